@@ -1,0 +1,1 @@
+//! The etalon table and the search of it.

@@ -1,0 +1,3 @@
+//! From dwell averages to an azimuth with its standard deviation.
+
+pub mod etalon;

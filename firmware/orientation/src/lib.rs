@@ -1,0 +1,17 @@
+//! True north, heading, pitch and roll from inertial sensors, as pure cores.
+//!
+//! ```text
+//!  gyro ─counts─▶ filter ─rate─▶ dwell average ─dwell─▶ matcher ─fit─▶ azimuth ± σ
+//!                                    ▲ one per stage position   ▲
+//!  stage ◀─command─ session                        etalon table (flash)
+//!  accelerometers ─▶ level ───────────────────────▶ (tilt enters the fit)
+//! ```
+//!
+//! Time and numbers go in, results come out: there is no bus, clock, allocator or async here, so
+//! the whole procedure can be replayed from a recording.
+#![no_std]
+#![forbid(unsafe_code)]
+
+pub mod align;
+pub mod signal;
+pub mod units;

@@ -1,0 +1,1 @@
+//! Butterworth low-pass sections in wide fixed point.

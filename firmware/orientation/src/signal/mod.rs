@@ -1,0 +1,3 @@
+//! From raw samples to the average of one dwell.
+
+pub mod butterworth;

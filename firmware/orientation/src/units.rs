@@ -1,0 +1,143 @@
+//! Units and conventions of the stage path.
+//!
+//! Navigation frame: north, east, down. Body frame: x forward, y right, z down. The azimuth is that
+//! of body x from true north, clockwise from above. The stage angle is clockwise from above; the
+//! gyro's sensitive axis lies along body x at zero.
+//!
+//! Samples flow as integers in newtypes; what is computed once per dwell or per result is `f64` in
+//! SI units. Every conversion from `f64` rounds to nearest (ties away from zero) and saturates; NaN
+//! becomes zero, so readers of outside data must refuse NaN before they convert.
+
+use core::ops::Sub;
+
+/// Radians in one turn.
+pub const TURN: f64 = 2.0 * core::f64::consts::PI;
+
+/// Seconds of arc in one radian.
+pub const ARCSECONDS_PER_RADIAN: f64 = 1_296_000.0 / TURN;
+
+/// One degree per hour, in rad/s.
+pub const DEGREE_PER_HOUR: f64 = TURN / 360.0 / 3600.0;
+
+/// One degree per square root of an hour (angle random walk), in rad/√s.
+pub const DEGREE_PER_SQRT_HOUR: f64 = TURN / 360.0 / 60.0;
+
+/// Steps of the 32-bit fraction in one turn.
+const STEPS_PER_TURN: f64 = 4_294_967_296.0;
+
+/// Rounds to the nearest integer and saturates at the limits of `i32`; NaN becomes zero.
+fn to_i32(value: f64) -> i32 {
+    libm::round(value) as i32
+}
+
+/// Angular rate, 1 LSB = 1 nrad/s, range ±2.147 rad/s (±123 °/s).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct AngularRate(pub i32);
+
+impl AngularRate {
+    /// From rad/s.
+    #[must_use]
+    pub fn from_rad_per_s(rate: f64) -> Self {
+        Self(to_i32(rate * 1e9))
+    }
+
+    /// In rad/s, exact.
+    #[must_use]
+    pub fn rad_per_s(self) -> f64 {
+        f64::from(self.0) * 1e-9
+    }
+
+    /// Whether the value stands at a limit of its range, where a sensor or a conversion clips.
+    #[must_use]
+    pub fn is_saturated(self) -> bool {
+        self.0 == i32::MAX || self.0 == i32::MIN
+    }
+}
+
+/// Specific force, 1 LSB = 1 µm/s², range ±2147 m/s².
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct SpecificForce(pub i32);
+
+impl SpecificForce {
+    /// From m/s².
+    #[must_use]
+    pub fn from_m_per_s2(force: f64) -> Self {
+        Self(to_i32(force * 1e6))
+    }
+
+    /// In m/s².
+    #[must_use]
+    pub fn m_per_s2(self) -> f64 {
+        f64::from(self.0) * 1e-6
+    }
+}
+
+/// Temperature, 1 LSB = 1 m°C.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Temperature(pub i32);
+
+impl Temperature {
+    /// From °C.
+    #[must_use]
+    pub fn from_celsius(temperature: f64) -> Self {
+        Self(to_i32(temperature * 1e3))
+    }
+
+    /// In °C.
+    #[must_use]
+    pub fn celsius(self) -> f64 {
+        f64::from(self.0) * 1e-3
+    }
+}
+
+/// An angle as a 32-bit fraction of a turn (1 LSB = 1.46 nrad); it wraps by itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Angle(pub u32);
+
+impl Angle {
+    /// From radians, any number of turns (exact to one LSB up to 10⁶ turns).
+    #[must_use]
+    pub fn from_rad(angle: f64) -> Self {
+        let turns = angle / TURN;
+        let fraction = turns - libm::floor(turns);
+        Self(libm::round(fraction * STEPS_PER_TURN) as u64 as u32)
+    }
+
+    /// In radians, [0, 2π).
+    #[must_use]
+    pub fn rad(self) -> f64 {
+        f64::from(self.0) * (TURN / STEPS_PER_TURN)
+    }
+
+    /// In radians, [−π, π).
+    #[must_use]
+    pub fn signed_rad(self) -> f64 {
+        f64::from(self.0 as i32) * (TURN / STEPS_PER_TURN)
+    }
+}
+
+impl Sub for Angle {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self(self.0.wrapping_sub(other.0))
+    }
+}
+
+/// A point in time, 1 LSB = 1 µs since the session's clock began.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Instant(pub u64);
+
+impl Instant {
+    /// From seconds; negative times become zero.
+    #[must_use]
+    pub fn from_seconds(seconds: f64) -> Self {
+        Self(libm::round(seconds * 1e6) as u64)
+    }
+
+    /// In seconds.
+    #[must_use]
+    pub fn seconds(self) -> f64 {
+        self.0 as f64 * 1e-6
+    }
+}

@@ -1,0 +1,4 @@
+//! The host's bench: recordings, replay, campaigns and their output.
+#![forbid(unsafe_code)]
+
+pub mod recording;
