@@ -1,3 +1,31 @@
-//! The simulated world that feeds the orientation board.
+//! The simulated world that feeds the orientation board: Earth, stage, sensors, one seed.
+//!
+//! ```text
+//!  stops ─▶ stage ─angle─▶ site (Earth rate, gravity) ─▶ gyro, accelerometer ─▶ sample
+//!             └─▶ encoder ────────────────────────────────────────────────────▶
+//!                            disturbance, temperature ─▶
+//! ```
+//!
+//! This crate is an oracle. It carries its own reading of the physics, by full rotation matrices, and
+//! never depends on the `orientation` crate, so that it can catch that crate's mistakes.
+//!
+//! Conventions: navigation frame north, east, down; body frame forward, right, down; the *platform*
+//! frame is the body frame turned by the stage angle about body z, clockwise from above, so that
+//! platform x carries the gyro's sensitive axis. SI units inside; configurations take the units of
+//! data sheets, named in each field.
+//!
+//! One seed gives one run, bit for bit, on every target: all arithmetic is `f64` and libm, every
+//! noise source owns a stream of its own (switching one off does not move the others).
 #![no_std]
 #![forbid(unsafe_code)]
+
+pub mod accelerometer;
+pub mod disturbance;
+pub mod earth;
+pub mod flicker;
+pub mod gyro;
+pub mod instruments;
+pub mod noise;
+pub mod stage;
+pub mod temperature;
+pub mod world;

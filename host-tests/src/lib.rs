@@ -1,4 +1,14 @@
 //! The host's bench: recordings, replay, campaigns and their output.
+//!
+//! It drives the same session and cores that the board runs; only files, threads and the terminal
+//! are its own.
 #![forbid(unsafe_code)]
 
+pub mod campaign;
+pub mod criterion;
+pub mod output;
 pub mod recording;
+pub mod reference;
+pub mod replay;
+pub mod setting;
+pub mod simulate;

@@ -12,6 +12,16 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
-pub mod align;
-pub mod signal;
 pub mod units;
+
+pub mod earth;
+pub mod error;
+pub mod math;
+
+pub mod signal;
+
+pub mod noise;
+
+pub mod align;
+
+pub mod session;

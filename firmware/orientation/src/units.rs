@@ -112,7 +112,7 @@ impl Angle {
     /// In radians, [−π, π).
     #[must_use]
     pub fn signed_rad(self) -> f64 {
-        f64::from(self.0 as i32) * (TURN / STEPS_PER_TURN)
+        f64::from(self.0.cast_signed()) * (TURN / STEPS_PER_TURN)
     }
 }
 

@@ -1,3 +1,22 @@
 //! From raw samples to the average of one dwell.
 
+pub mod blocks;
 pub mod butterworth;
+pub mod dwell;
+
+use crate::units::{Angle, AngularRate, Instant, SpecificForce, Temperature};
+
+/// One moment of the stage path: the precise gyro and what belongs to it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sample {
+    /// When it was taken.
+    pub time: Instant,
+    /// Encoder angle of the stage.
+    pub stage: Angle,
+    /// Rate about the gyro's sensitive axis.
+    pub rate: AngularRate,
+    /// Platform accelerometer: x along the sensitive axis, y 90° clockwise of it, z down.
+    pub force: [SpecificForce; 3],
+    /// Temperature at the gyro, where it is measured.
+    pub temperature: Option<Temperature>,
+}

@@ -1,0 +1,284 @@
+//! From a session's dwells to a verdict: an azimuth with σ, or the reason why there is none.
+
+use heapless::Vec;
+
+use super::POSITIONS;
+use super::criterion::{self, Criterion};
+use super::direction::Amplitude;
+use super::level::{self, Tilt};
+use super::quality::{self, Disturbance, Norm};
+use super::setting::Setting;
+use super::stepwise::{Fit, Problem, Residual};
+use crate::error::Refusal;
+use crate::math::chi_square_tail;
+use crate::signal::dwell::Dwell;
+use crate::units::TURN;
+
+/// Studentised residual beyond which a dwell is left out (2.7e-5 two-sided: one healthy session of
+/// 60 dwells in 600 loses one).
+const OUTLIER_BOUND: f64 = 4.2;
+/// Probability of a healthy session's residuals below which they are refused.
+const WHITENESS_PROBABILITY: f64 = 1e-6;
+/// Bound of the correlation of neighbouring residuals, in its standard deviation 1/√n.
+const CORRELATION_BOUND: f64 = 5.0;
+/// Chi-square by which the second-best azimuth must be worse than the best (4σ).
+const SECOND_MINIMUM: f64 = 16.0;
+/// Bound of the Earth-rate ratio in its σ.
+const RATIO_BOUND: f64 = 5.0;
+/// What the Earth-rate ratio may be off beyond its σ: scale errors that no data sheet excludes and
+/// that turn no azimuth.
+const RATIO_TOLERANCE: f64 = 0.005;
+/// Angles closer than this are the same position, rad.
+const SAME_POSITION: f64 = 1e-3;
+
+/// An azimuth that passed every test.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Azimuth {
+    /// Azimuth of body x from true north, clockwise from above, rad, [0, 2π).
+    pub angle: f64,
+    /// Its standard deviation, rad.
+    pub sigma: f64,
+}
+
+/// All that a session found.
+#[derive(Clone, Debug)]
+pub struct Conclusion {
+    /// The azimuth, or why there is none.
+    pub verdict: Result<Azimuth, Refusal>,
+    /// The tilt.
+    pub tilt: Tilt,
+    /// The fit, where the positions determined one; its azimuth counts only with the verdict.
+    pub fit: Option<Fit>,
+    /// Angle random walk used, rad/√s.
+    pub angle_random_walk: f64,
+    /// For each dwell, why it was left out.
+    pub disturbances: Vec<Option<Disturbance>, POSITIONS>,
+    /// For each dwell, its residual; zero where it was left out.
+    pub residuals: Vec<Residual, POSITIONS>,
+}
+
+impl Conclusion {
+    /// Judges the dwells, fits the rest, and decides.
+    #[must_use]
+    pub fn of(setting: &Setting, dwells: &[Dwell], criterion: Criterion) -> Self {
+        let mut conclusion = Self::before(setting, dwells);
+        if !setting.latitude.has_north() {
+            let latitude = degrees(setting.latitude.rad());
+            conclusion.verdict = Err(Refusal::LatitudeTooHigh { latitude });
+            return conclusion;
+        }
+        conclusion.verdict = conclusion.decide(setting, dwells, criterion);
+        conclusion
+    }
+
+    fn decide(
+        &mut self,
+        setting: &Setting,
+        dwells: &[Dwell],
+        criterion: Criterion,
+    ) -> Result<Azimuth, Refusal> {
+        let fit = self.fit_undisturbed(setting, dwells)?;
+        self.judge(setting, &fit)?;
+        self.azimuth(setting, dwells, &fit, criterion)
+    }
+
+    /// The judgement of each dwell by itself, and the tilt from those that passed.
+    fn before(setting: &Setting, dwells: &[Dwell]) -> Self {
+        let norm = Norm::of(setting, dwells);
+        let mut conclusion = Self {
+            verdict: Err(Refusal::TooFewPositions { positions: 0 }),
+            tilt: Tilt::default(),
+            fit: None,
+            angle_random_walk: libm::sqrt(norm.white()),
+            disturbances: dwells.iter().map(|dwell| norm.disturbance(dwell)).collect(),
+            residuals: dwells.iter().map(|_| Residual::default()).collect(),
+        };
+        conclusion.level(setting, dwells);
+        let gravity = setting.latitude.gravity();
+        quality::moved(dwells, gravity, &conclusion.tilt, &mut conclusion.disturbances);
+        conclusion.level(setting, dwells);
+        conclusion
+    }
+
+    fn level(&mut self, setting: &Setting, dwells: &[Dwell]) {
+        let kept = dwells.iter().zip(&self.disturbances).filter(|(_, why)| why.is_none());
+        let bias = setting.accelerometer_bias_sigma;
+        self.tilt = level::tilt(kept.map(|(dwell, _)| dwell), setting.latitude.gravity(), bias);
+    }
+
+    /// Fits, and leaves out the dwell that stands out most, until none does.
+    fn fit_undisturbed(&mut self, setting: &Setting, dwells: &[Dwell]) -> Result<Fit, Refusal> {
+        loop {
+            let kept: Vec<&Dwell, POSITIONS> = self.kept(dwells).map(|(_, dwell)| dwell).collect();
+            Self::enough(dwells.len(), &kept)?;
+            if !setting.white_known {
+                self.angle_random_walk = libm::sqrt(white_of(&kept));
+            }
+            let white = self.angle_random_walk * self.angle_random_walk;
+            let tilt = self.tilt;
+            let problem = Problem { setting, tilt: &tilt, white, dwells: &kept };
+            let fit = problem.fit().ok_or(Refusal::ArcCannotTell)?;
+            self.keep_residuals(dwells, &problem, &fit);
+            self.fit = Some(fit.clone());
+            let Some((worst, residual)) = self.worst() else { return Ok(fit) };
+            if dwells.len() - kept.len() >= allowed(dwells.len()) || fit.degrees < 2 {
+                return Ok(fit);
+            }
+            self.disturbances[worst] = Some(Disturbance::Outlier(residual));
+            self.level(setting, dwells);
+        }
+    }
+
+    /// The dwells that take part, with their indices.
+    fn kept<'a>(&self, dwells: &'a [Dwell]) -> impl Iterator<Item = (usize, &'a Dwell)> {
+        dwells.iter().enumerate().filter(|(index, _)| self.disturbances[*index].is_none())
+    }
+
+    fn enough(positions: usize, kept: &[&Dwell]) -> Result<(), Refusal> {
+        let different = different_positions(kept);
+        let disturbed = positions - kept.len();
+        if disturbed > allowed(positions) {
+            return Err(Refusal::Disturbed { disturbed, positions });
+        }
+        if different < 3 {
+            return Err(Refusal::TooFewPositions { positions: different });
+        }
+        Ok(())
+    }
+
+    fn keep_residuals(&mut self, dwells: &[Dwell], problem: &Problem, fit: &Fit) {
+        let places: Vec<usize, POSITIONS> = self.kept(dwells).map(|(index, _)| index).collect();
+        self.residuals.fill(Residual::default());
+        problem.residuals(fit, |index, residual| self.residuals[places[index]] = residual);
+    }
+
+    /// The residual that stands out most, if one is beyond the bound.
+    fn worst(&self) -> Option<(usize, f64)> {
+        let sizes = self.residuals.iter().map(|residual| residual.studentised.abs());
+        let (index, size) = sizes
+            .enumerate()
+            .fold((0, 0.0), |most, item| if item.1 > most.1 { item } else { most });
+        (size > OUTLIER_BOUND).then_some((index, size))
+    }
+
+    /// Every test that an azimuth must pass; `equations.md` §1 and §2.
+    fn judge(&self, setting: &Setting, fit: &Fit) -> Result<(), Refusal> {
+        self.judge_tilt(setting, fit)?;
+        if fit.direction.margin < SECOND_MINIMUM {
+            return Err(Refusal::ArcCannotTell);
+        }
+        let (sigma, required) = (degrees(fit.sigma()), degrees(setting.required_sigma));
+        if sigma.is_nan() || sigma > required {
+            let (source, _) = fit.budget.greatest();
+            return Err(Refusal::BudgetNotMet { sigma, required, source });
+        }
+        self.judge_residuals(fit)?;
+        let (ratio, sigma) = (fit.ratio, fit.ratio_sigma);
+        if (ratio - 1.0).abs() > RATIO_BOUND * sigma + RATIO_TOLERANCE {
+            return Err(Refusal::EarthRateMismatch { ratio, sigma });
+        }
+        Ok(())
+    }
+
+    fn judge_tilt(&self, setting: &Setting, fit: &Fit) -> Result<(), Refusal> {
+        let (tilt, allowed) = (libm::asin(self.tilt.magnitude().min(1.0)), setting.allowed_tilt);
+        if tilt > allowed {
+            return Err(Refusal::TiltTooGreat { tilt: degrees(tilt), allowed: degrees(allowed) });
+        }
+        let (sigma, required) =
+            (degrees(fit.budget.accelerometer), degrees(setting.required_sigma));
+        if sigma > required {
+            return Err(Refusal::TiltTooUncertain { sigma, required });
+        }
+        Ok(())
+    }
+
+    /// Chi-square of the residuals, and the correlation of neighbours.
+    fn judge_residuals(&self, fit: &Fit) -> Result<(), Refusal> {
+        let degrees = fit.degrees as f64;
+        if fit.degrees > 0 && chi_square_tail(fit.chi_square, degrees) < WHITENESS_PROBABILITY {
+            return Err(Refusal::ResidualsNotWhite { ratio: fit.chi_square / degrees });
+        }
+        let kept: Vec<f64, POSITIONS> = (self.residuals.iter().zip(&self.disturbances))
+            .filter(|(_, why)| why.is_none())
+            .map(|(residual, _)| residual.normalised)
+            .collect();
+        let power: f64 = kept.iter().map(|r| r * r).sum();
+        let shared: f64 = kept.windows(2).map(|pair| pair[0] * pair[1]).sum();
+        let correlation = shared / power.max(1e-300);
+        if correlation * libm::sqrt(kept.len() as f64) > CORRELATION_BOUND {
+            return Err(Refusal::ResidualsCorrelated { correlation });
+        }
+        Ok(())
+    }
+
+    /// The azimuth by the chosen criterion.
+    fn azimuth(
+        &self,
+        setting: &Setting,
+        dwells: &[Dwell],
+        fit: &Fit,
+        criterion: Criterion,
+    ) -> Result<Azimuth, Refusal> {
+        let kept: Vec<&Dwell, POSITIONS> = self.kept(dwells).map(|(_, dwell)| dwell).collect();
+        let white = self.angle_random_walk * self.angle_random_walk;
+        let problem = Problem { setting, tilt: &self.tilt, white, dwells: &kept };
+        let azimuth = match criterion {
+            Criterion::MaximumLikelihood => {
+                Azimuth { angle: wrapped(fit.direction.azimuth), sigma: fit.sigma() }
+            }
+            paper => criterion::azimuth(&problem, fit, paper)?,
+        };
+        let (sigma, required) = (degrees(azimuth.sigma), degrees(setting.required_sigma));
+        if sigma > required {
+            let (source, _) = fit.budget.greatest();
+            return Err(Refusal::BudgetNotMet { sigma, required, source });
+        }
+        Ok(azimuth)
+    }
+}
+
+impl Fit {
+    /// Whether the horizontal Earth rate was left free.
+    #[must_use]
+    pub fn earth_rate_is_free(&self) -> bool {
+        self.model.amplitude == Amplitude::Free
+    }
+}
+
+/// How many of `positions` dwells may be left out: a third.
+fn allowed(positions: usize) -> usize {
+    positions / 3
+}
+
+/// N² from the scatter inside the dwells, each weighted by its degrees of freedom.
+fn white_of(kept: &[&Dwell]) -> f64 {
+    let (mut power, mut freedom) = (0.0, 0.0);
+    for quietness in kept.iter().filter_map(|dwell| dwell.quietness.as_ref()) {
+        power += quietness.scatter * quietness.block_seconds;
+        freedom += quietness.blocks as f64 - 2.0;
+    }
+    if freedom > 0.0 { power / freedom } else { 0.0 }
+}
+
+/// How many of the dwells stand at angles of their own.
+fn different_positions(kept: &[&Dwell]) -> usize {
+    let is_new = |index: usize| {
+        kept[..index]
+            .iter()
+            .all(|other| (kept[index].stage - other.stage).signed_rad().abs() > SAME_POSITION)
+    };
+    (0..kept.len()).filter(|&index| is_new(index)).count()
+}
+
+/// An angle in [0, 2π).
+#[must_use]
+pub fn wrapped(angle: f64) -> f64 {
+    let wrapped = angle - TURN * libm::floor(angle / TURN);
+    if wrapped < TURN { wrapped } else { 0.0 }
+}
+
+/// Radians to degrees.
+fn degrees(angle: f64) -> f64 {
+    angle / TURN * 360.0
+}

@@ -1,0 +1,137 @@
+//! How an azimuth is chosen: by maximum likelihood, or by one of Sokolov's criteria on the table.
+//!
+//! The paper's criteria compare differences of neighbouring dwells with the etalon table. They are
+//! offered for comparison: differencing colours the noise, and so each of them does worse than the
+//! limit (`equations.md` §2). Their standard deviation says so.
+
+use heapless::Vec;
+
+use super::POSITIONS;
+use super::conclusion::{Azimuth, wrapped};
+use super::etalon::table::{ONE, STEP};
+use super::etalon::{self, Accepted, Limit, Series, Table};
+use super::stepwise::{Fit, Problem};
+use crate::error::Refusal;
+use crate::signal::dwell::Dwell;
+
+/// How the azimuth is chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Criterion {
+    /// Generalised least squares on the dwells themselves.
+    MaximumLikelihood,
+    /// min Σ(δ^Et − δ)² over the table.
+    LeastSquares,
+    /// min Σ|δ^Et − δ| over the table.
+    LeastAbsolute,
+    /// The middle of what Σ(δ^Et − δ)² ≤ α₁ accepts; α₁ in (rad/s)².
+    WithinSquares(f64),
+    /// The middle of what Σ|δ^Et − δ| ≤ α accepts; α in rad/s.
+    WithinAbsolute(f64),
+}
+
+/// Dwells at equal steps, in the order of their angle.
+struct Row<'a> {
+    dwells: Vec<&'a Dwell, POSITIONS>,
+    /// Step in grid steps of 10″, clockwise positive.
+    step: i32,
+}
+
+/// The azimuth by one of the paper's criteria; maximum likelihood is the fit's own.
+///
+/// The rates are first freed of what tilt does to them, to second order at the fit's azimuth, as
+/// the table knows only a level stage.
+///
+/// # Errors
+/// [`Refusal::StepsUneven`], or a bound that accepts nothing or everything.
+pub fn azimuth(problem: &Problem, fit: &Fit, criterion: Criterion) -> Result<Azimuth, Refusal> {
+    let row = Row::of(problem.dwells).ok_or(Refusal::StepsUneven)?;
+    let ratios = row.dwells.iter().map(|dwell| problem.level_ratio(fit, dwell));
+    let series = Series::new(ratios, row.step).map_err(|_| Refusal::StepsUneven)?;
+    let rate = problem.setting.latitude.horizontal_rate();
+    let (first, width) = match criterion {
+        Criterion::MaximumLikelihood => searched(&series, etalon::Criterion::MaximumLikelihood),
+        Criterion::LeastSquares => searched(&series, etalon::Criterion::LeastSquares),
+        Criterion::LeastAbsolute => searched(&series, etalon::Criterion::LeastAbsolute),
+        Criterion::WithinSquares(bound) => {
+            let units = bound / (rate * rate) * (ONE * ONE);
+            accepted(&series, Limit::WithinSquares(units as u128))?
+        }
+        Criterion::WithinAbsolute(bound) => {
+            accepted(&series, Limit::WithinAbsolute((bound / rate * ONE) as u64))?
+        }
+    };
+    let start = row.dwells.first().map_or(0.0, |dwell| dwell.stage.rad());
+    let absolute = matches!(criterion, Criterion::LeastAbsolute | Criterion::WithinAbsolute(_));
+    let variance = row.variance(problem, first, absolute) + width * width / 12.0;
+    let others = fit.budget.beside_noise();
+    Ok(Azimuth { angle: wrapped(first - start), sigma: libm::sqrt(variance + others * others) })
+}
+
+/// The best azimuth of the first position, rad; no width.
+fn searched(series: &Series, criterion: etalon::Criterion) -> (f64, f64) {
+    (etalon::search(Table::built_in(), series, criterion).azimuth, 0.0)
+}
+
+/// Middle and width of the accepted arc, rad.
+fn accepted(series: &Series, limit: Limit) -> Result<(f64, f64), Refusal> {
+    match etalon::accepted(Table::built_in(), series, limit).accepted {
+        Accepted::Nothing => Err(Refusal::NothingAccepted),
+        Accepted::Everything => Err(Refusal::EverythingAccepted),
+        Accepted::Arc { middle, width, .. } => {
+            Ok((f64::from(middle) * STEP, f64::from(width) * STEP))
+        }
+    }
+}
+
+impl<'a> Row<'a> {
+    /// The dwells as they came, or else sorted by angle; `None` where their steps are uneven.
+    fn of(dwells: &[&'a Dwell]) -> Option<Self> {
+        let mut dwells: Vec<&Dwell, POSITIONS> = Vec::from_slice(dwells).ok()?;
+        if let Some(step) = even_step(&dwells) {
+            return Some(Self { dwells, step });
+        }
+        let start = dwells.first()?.stage;
+        dwells.sort_unstable_by_key(|dwell| (dwell.stage - start).0.cast_signed());
+        let step = even_step(&dwells)?;
+        Some(Self { dwells, step })
+    }
+
+    /// What a change of azimuth does to each difference, ∂δ/∂A in units of `Ω_h`.
+    fn slopes(&self, first: f64) -> Vec<f64, POSITIONS> {
+        let step = f64::from(self.step) * STEP;
+        let sine = |index: usize| libm::sin(first + index as f64 * step);
+        (1..self.dwells.len()).map(|index| sine(index - 1) - sine(index)).collect()
+    }
+
+    /// Variance of the azimuth from the noise of the dwells, rad².
+    ///
+    /// Least squares: the error is Σ gᵢ εᵢ / Σ g² with g the slopes, ε the differences' noise.
+    /// Least absolute values: Σ gᵢ sign(εᵢ) / (2 f(0) Σ g²), with f(0) the density of ε at zero and
+    /// −1/3 the correlation of the signs of neighbouring differences (arcsine law of −1/2).
+    fn variance(&self, problem: &Problem, first: f64, absolute: bool) -> f64 {
+        let slopes = self.slopes(first);
+        let power: f64 = slopes.iter().map(|g| g * g).sum();
+        let dwell = self.dwells.iter().map(|dwell| problem.white_variance(dwell)).sum::<f64>()
+            / self.dwells.len() as f64;
+        let neighbours: f64 = slopes.windows(2).map(|g| g[0] * g[1]).sum();
+        let sum = if absolute {
+            core::f64::consts::PI * dwell * (power - 2.0 / 3.0 * neighbours)
+        } else {
+            2.0 * dwell * (power - neighbours)
+        };
+        sum / (power * power)
+    }
+}
+
+/// The step between neighbours in grid steps, where it is the same for all within one of them.
+fn even_step(dwells: &[&Dwell]) -> Option<i32> {
+    let [first, second, ..] = dwells else { return None };
+    let last = dwells.last()?;
+    let rough = (second.stage - first.stage).signed_rad();
+    let step = libm::round(rough / STEP);
+    let even = dwells.iter().enumerate().all(|(index, dwell)| {
+        let expected = crate::units::Angle::from_rad(index as f64 * step * STEP);
+        (dwell.stage - first.stage - expected).signed_rad().abs() <= STEP
+    });
+    (even && !core::ptr::eq(*first, *last)).then_some(step as i32)
+}

@@ -1,0 +1,175 @@
+//! From the horizontal Earth rate's two components to an azimuth.
+//!
+//! A regression gives β = ρ(cos A, sin A) in units of the expected horizontal Earth rate Ω_h, with
+//! its covariance. ρ is Ω̂_h/Ω_h: free, known exactly, or known within the gyro's scale tolerance.
+//! J(A) is the least chi-square over ρ; on a short arc it may have two minima, so the whole circle
+//! is scanned before the best is refined.
+
+/// What is known beforehand of ρ, the Earth rate found over the Earth rate expected.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Amplitude {
+    /// Nothing: A = atan2(·,·).
+    Free,
+    /// One, with this standard deviation; zero: exactly one.
+    Known(f64),
+}
+
+/// The two components with what weighs them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Components {
+    /// β: north and east component along body x, in units of Ω_h.
+    pub value: [f64; 2],
+    /// Their covariance.
+    pub covariance: [[f64; 2]; 2],
+}
+
+/// An azimuth with its linearised uncertainty.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Direction {
+    /// Azimuth of body x, rad, [−π, π].
+    pub azimuth: f64,
+    /// ρ of the solution.
+    pub amplitude: f64,
+    /// Variance of the azimuth, rad².
+    pub variance: f64,
+    /// How the azimuth follows the components, ∂A/∂β, rad.
+    pub gain: [f64; 2],
+    /// By how much chi-square at the next minimum exceeds that of the best.
+    pub margin: f64,
+}
+
+/// Directions in which J is sampled before it is refined; two minima cannot hide between them.
+const SCAN: usize = 64;
+
+/// J(A) and its parts.
+struct Profile {
+    information: [[f64; 2]; 2],
+    weighted: [f64; 2],
+    amplitude: Amplitude,
+}
+
+impl Components {
+    /// ρ without any prior, and its standard deviation from this covariance.
+    #[must_use]
+    pub fn ratio(&self) -> (f64, f64) {
+        let [a, b] = self.value;
+        let ratio = libm::hypot(a, b).max(1e-12);
+        let unit = [a / ratio, b / ratio];
+        (ratio, libm::sqrt(quadratic(&self.covariance, unit)))
+    }
+
+    /// The most likely azimuth; `None` where the covariance is not positive.
+    #[must_use]
+    pub fn direction(&self, amplitude: Amplitude) -> Option<Direction> {
+        let profile = Profile::new(self, amplitude)?;
+        let (azimuth, margin) = profile.minimise();
+        Some(profile.linearise(azimuth, margin))
+    }
+}
+
+impl Profile {
+    fn new(components: &Components, amplitude: Amplitude) -> Option<Self> {
+        let [[a, b], [_, d]] = components.covariance;
+        let determinant = a * d - b * b;
+        if determinant.is_nan() || determinant <= 0.0 {
+            return None;
+        }
+        let information =
+            [[d / determinant, -b / determinant], [-b / determinant, a / determinant]];
+        Some(Self { information, weighted: product(&information, components.value), amplitude })
+    }
+
+    /// Chi-square at a unit vector less that of β itself, and ρ there.
+    fn at(&self, azimuth: f64) -> (f64, f64) {
+        let (sine, cosine) = libm::sincos(azimuth);
+        let power = quadratic(&self.information, [cosine, sine]);
+        let along = self.weighted[0] * cosine + self.weighted[1] * sine;
+        match self.amplitude {
+            Amplitude::Free if along > 0.0 => (-along * along / power, along / power),
+            Amplitude::Free => (0.0, 0.0),
+            Amplitude::Known(sigma) if sigma > 0.0 => {
+                let prior = 1.0 / (sigma * sigma);
+                let best = (along + prior) / (power + prior);
+                (prior - best * (along + prior), best)
+            }
+            Amplitude::Known(_) => (power - 2.0 * along, 1.0),
+        }
+    }
+
+    /// The azimuth of the least J, and how much greater the second minimum is.
+    fn minimise(&self) -> (f64, f64) {
+        let step = core::f64::consts::TAU / SCAN as f64;
+        let sampled: [f64; SCAN] = core::array::from_fn(|k| self.at(k as f64 * step).0);
+        let (mut best, mut second) = ((0.0, f64::INFINITY), f64::INFINITY);
+        for k in 0..SCAN {
+            let (before, after) = (sampled[(k + SCAN - 1) % SCAN], sampled[(k + 1) % SCAN]);
+            if sampled[k] > before || sampled[k] >= after {
+                continue;
+            }
+            let azimuth = self.refine(k as f64 * step, step);
+            let value = self.at(azimuth).0;
+            if value < best.1 {
+                second = best.1;
+                best = (azimuth, value);
+            } else {
+                second = second.min(value);
+            }
+        }
+        let margin = if second.is_finite() { second - best.1 } else { f64::INFINITY };
+        (best.0, margin)
+    }
+
+    /// Follows the parabola through three points, halving its width, never further than `step`.
+    fn refine(&self, start: f64, step: f64) -> f64 {
+        let (mut azimuth, mut width) = (start, 0.5 * step);
+        for _ in 0..24 {
+            let [low, middle, high] =
+                [azimuth - width, azimuth, azimuth + width].map(|angle| self.at(angle).0);
+            let curvature = low - 2.0 * middle + high;
+            let slope = 0.5 * (high - low);
+            let shift = if curvature > 0.0 { -slope / curvature } else { -slope.signum() };
+            azimuth += shift.clamp(-1.0, 1.0) * width;
+            width = (0.5 * width).max(1e-5);
+        }
+        azimuth
+    }
+
+    /// Information of (A, ρ) at the solution, inverted for A.
+    fn linearise(&self, azimuth: f64, margin: f64) -> Direction {
+        let (sine, cosine) = libm::sincos(azimuth);
+        let (_, amplitude) = self.at(azimuth);
+        let across = [-amplitude * sine, amplitude * cosine];
+        let across_weighted = product(&self.information, across);
+        let along_weighted = product(&self.information, [cosine, sine]);
+        let across_power = dot(across, across_weighted);
+        let mixed = dot(across, along_weighted);
+        let along_power = dot([cosine, sine], along_weighted);
+        let coupling = match self.amplitude {
+            Amplitude::Free => mixed / along_power,
+            Amplitude::Known(sigma) if sigma > 0.0 => mixed / (along_power + 1.0 / (sigma * sigma)),
+            Amplitude::Known(_) => 0.0,
+        };
+        let variance = 1.0 / (across_power - coupling * mixed);
+        let gain = [0, 1].map(|i| variance * (across_weighted[i] - coupling * along_weighted[i]));
+        let azimuth = libm::atan2(sine, cosine);
+        Direction { azimuth, amplitude, variance, gain, margin }
+    }
+}
+
+/// xᵀy.
+#[must_use]
+pub fn dot(x: [f64; 2], y: [f64; 2]) -> f64 {
+    x[0] * y[0] + x[1] * y[1]
+}
+
+/// M x.
+#[must_use]
+pub fn product(matrix: &[[f64; 2]; 2], x: [f64; 2]) -> [f64; 2] {
+    [dot(matrix[0], x), dot(matrix[1], x)]
+}
+
+/// xᵀM x.
+#[must_use]
+pub fn quadratic(matrix: &[[f64; 2]; 2], x: [f64; 2]) -> f64 {
+    dot(x, product(matrix, x))
+}

@@ -1,1 +1,0 @@
-//! The etalon table and the search of it.

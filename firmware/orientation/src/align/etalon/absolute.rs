@@ -1,0 +1,186 @@
+//! Exhaustive search of a sum of absolute values without the exhaustion.
+//!
+//! On each piece between two zero crossings the continuous sum is one sinusoid; where it is below a
+//! level it touches an end of the piece or surrounds the sinusoid's minimum, so walks from those
+//! three places meet every index that can win.
+
+use libm::floor;
+
+use super::arc::{Cover, Judge, Side};
+use super::exact;
+use super::series::Series;
+use super::sweep::{Piece, Sweep};
+use super::table::{STEP, TURN, Table};
+use super::{Acceptance, Match};
+
+/// The best index so far, and what a piece must stay below to be worth evaluating.
+struct Best<'a> {
+    table: Table,
+    series: &'a Series,
+    rounding: f64,
+    index: i32,
+    objective: u64,
+    reach: f64,
+    evaluations: u32,
+}
+
+impl Best<'_> {
+    fn offer(&mut self, k: i32) {
+        let value = exact::absolute(self.table, self.series, k);
+        self.evaluations += 1;
+        if (value, k) < (self.objective, self.index) {
+            self.index = k;
+            self.objective = value;
+            self.reach = value as f64 + self.rounding;
+        }
+    }
+
+    /// Evaluates from `from` towards `to`, both included, as far as the piece may compete; the
+    /// result is the index that may not, or the one beyond `to`.
+    fn walk(&mut self, piece: &Piece, from: i32, to: i32, sign: i32) -> i32 {
+        let mut k = from;
+        while (to - k) * sign >= 0 && piece.at(self.table, k) <= self.reach {
+            // The first guess was evaluated already.
+            if k != self.index {
+                self.offer(k);
+            }
+            k += sign;
+        }
+        k
+    }
+
+    /// Evaluates all of the piece that may compete.
+    fn cover(&mut self, piece: &Piece) {
+        let (first, last) = piece.indices();
+        if first > last || !piece.dips_to(self.reach) {
+            return;
+        }
+        let first = self.walk(piece, first, last, 1);
+        let last = self.walk(piece, last, first, -1);
+        if first > last {
+            return;
+        }
+        let middle = floor(piece.minimum()) as i32;
+        if (first..=last).contains(&middle) {
+            self.walk(piece, middle, first, -1);
+            self.walk(piece, middle + 1, last, 1);
+        }
+    }
+}
+
+/// The grid index at which the continuous sum is least.
+fn guess(table: Table, sweep: &Sweep) -> i32 {
+    let (mut index, mut least) = (0, f64::INFINITY);
+    for piece in sweep.pieces() {
+        let (first, last) = piece.indices();
+        if first > last || !piece.dips_to(least) {
+            continue;
+        }
+        let middle = (floor(piece.minimum()) as i32).clamp(first, last);
+        for k in [first, middle, (middle + 1).min(last), last] {
+            let value = piece.at(table, k);
+            if value < least {
+                (index, least) = (k, value);
+            }
+        }
+    }
+    index
+}
+
+/// The index of the least sum; see [`super::search`].
+pub(super) fn search(table: Table, series: &Series) -> Match {
+    let sweep = Sweep::new(series);
+    let mut best = Best {
+        table,
+        series,
+        rounding: sweep.rounding(),
+        index: TURN,
+        objective: u64::MAX,
+        reach: f64::INFINITY,
+        evaluations: 0,
+    };
+    best.offer(guess(table, &sweep));
+    for piece in sweep.pieces() {
+        best.cover(&piece);
+    }
+    Match {
+        index: best.index,
+        objective: u128::from(best.objective),
+        azimuth: super::wrap(refine(&sweep, best.index) * STEP),
+        evaluations: best.evaluations,
+    }
+}
+
+/// Where within one step of index `k` the continuous sum is least, in grid steps.
+fn refine(sweep: &Sweep, k: i32) -> f64 {
+    let (mut place, mut least) = (f64::from(k), f64::INFINITY);
+    for piece in sweep.pieces() {
+        for turn in [-TURN, 0, TURN] {
+            // The stretch of the piece within one step of k, seen from this turn.
+            let from = piece.from.max(f64::from(k + turn - 1));
+            let to = piece.to.min(f64::from(k + turn + 1));
+            if from > to {
+                continue;
+            }
+            for position in [from, to, piece.minimum().clamp(from, to)] {
+                let value = piece.at_fraction(position);
+                if value < least {
+                    (place, least) = (position, value);
+                }
+            }
+        }
+    }
+    place
+}
+
+/// One piece's continuous sum against a limit.
+struct Within<'a> {
+    table: Table,
+    series: &'a Series,
+    piece: Piece,
+    limit: u64,
+    rounding: f64,
+    evaluations: u32,
+}
+
+impl Judge for Within<'_> {
+    fn side(&self, k: i32) -> Side {
+        let above = self.piece.at(self.table, k) - self.limit as f64;
+        if above <= -self.rounding {
+            Side::Inside
+        } else if above <= self.rounding {
+            Side::Unsure
+        } else {
+            Side::Outside
+        }
+    }
+
+    fn accepts(&mut self, k: i32) -> bool {
+        self.evaluations += 1;
+        exact::absolute(self.table, self.series, k) <= self.limit
+    }
+}
+
+/// The arc on which the sum is at most `limit`; see [`super::accepted`].
+pub(super) fn within(table: Table, series: &Series, limit: u64) -> Acceptance {
+    let sweep = Sweep::new(series);
+    let mut cover = Cover::default();
+    let mut evaluations = 0;
+    for piece in sweep.pieces() {
+        let rounding = sweep.rounding();
+        let mut judge = Within { table, series, piece, limit, rounding, evaluations };
+        let (first, last) = piece.indices();
+        if first <= last && piece.dips_to(limit as f64 + rounding) {
+            let mut turns = [piece.minimum(), piece.maximum()].map(|turn| floor(turn) as i32);
+            turns.sort_unstable();
+            let mut from = first;
+            for turn in turns.into_iter().filter(|turn| (first..last).contains(turn)) {
+                cover.judge_monotone(&mut judge, from, turn);
+                from = turn + 1;
+            }
+            cover.judge_monotone(&mut judge, from, last);
+        }
+        evaluations = judge.evaluations;
+    }
+    Acceptance { accepted: cover.finish(), evaluations }
+}

@@ -1,0 +1,137 @@
+//! The smallest arc that covers an accepted set, built while walking once round the circle.
+
+use super::{Accepted, table::TURN};
+
+/// Where a continuous objective puts one index against the limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Side {
+    /// Surely accepted.
+    Inside,
+    /// Too near to tell: evaluate exactly.
+    Unsure,
+    /// Surely rejected.
+    Outside,
+}
+
+/// Judges single indices: by the continuous bound, and exactly.
+pub(super) trait Judge {
+    /// The side on which the continuous objective and its error bound put index `k`.
+    fn side(&self, k: i32) -> Side;
+    /// Whether the exact objective at index `k` is within the limit.
+    fn accepts(&mut self, k: i32) -> bool;
+}
+
+/// The accepted indices seen so far, in increasing order from wherever the walk began.
+///
+/// Indices are unwrapped: one walk covers one turn from any start.
+#[derive(Debug, Default)]
+pub(super) struct Cover {
+    first: Option<i32>,
+    last: i32,
+    gap: i32,
+    start: i32,
+}
+
+impl Cover {
+    /// Adds the accepted run `from` to `to`, both included; an empty run changes nothing.
+    pub(super) fn accept(&mut self, from: i32, to: i32) {
+        if from > to {
+            return;
+        }
+        if self.first.is_none() {
+            self.first = Some(from);
+        } else {
+            self.close(from);
+        }
+        self.last = to;
+    }
+
+    /// Ends the gap that runs up to the accepted index `next`; of equal gaps the one whose arc
+    /// begins at the lowest index is kept.
+    fn close(&mut self, next: i32) {
+        let (gap, start) = (next - self.last - 1, next.rem_euclid(TURN));
+        if gap > self.gap || (gap == self.gap && gap > 0 && start < self.start) {
+            self.gap = gap;
+            self.start = start;
+        }
+    }
+
+    /// Judges every index of `from` to `to` by itself.
+    pub(super) fn judge_each(&mut self, judge: &mut impl Judge, from: i32, to: i32) {
+        for k in from..=to {
+            let inside = match judge.side(k) {
+                Side::Inside => true,
+                Side::Unsure => judge.accepts(k),
+                Side::Outside => false,
+            };
+            if inside {
+                self.accept(k, k);
+            }
+        }
+    }
+
+    /// Judges `from` to `to`, between which the continuous objective is monotone, by bisection:
+    /// only the indices at the crossing are evaluated exactly.
+    pub(super) fn judge_monotone(&mut self, judge: &mut impl Judge, from: i32, to: i32) {
+        if from > to {
+            return;
+        }
+        match (judge.side(from), judge.side(to)) {
+            (Side::Inside, Side::Inside) => self.accept(from, to),
+            (Side::Outside, Side::Outside) => {}
+            (start, end) if start <= end => {
+                let sure = last_within(judge, Side::Inside, from - 1, to + 1);
+                let unsure = last_within(judge, Side::Unsure, sure, to + 1);
+                self.accept(from, sure);
+                self.accept_exactly(judge, sure + 1, unsure);
+            }
+            _ => {
+                let sure = last_within(judge, Side::Inside, to + 1, from - 1);
+                let unsure = last_within(judge, Side::Unsure, sure, from - 1);
+                self.accept_exactly(judge, unsure, sure - 1);
+                self.accept(sure, to);
+            }
+        }
+    }
+
+    fn accept_exactly(&mut self, judge: &mut impl Judge, from: i32, to: i32) {
+        for k in from..=to {
+            if judge.accepts(k) {
+                self.accept(k, k);
+            }
+        }
+    }
+
+    /// The result once the whole turn has been walked.
+    pub(super) fn finish(mut self) -> Accepted {
+        let Some(first) = self.first else { return Accepted::Nothing };
+        self.close(first + TURN);
+        if self.gap == 0 {
+            return Accepted::Everything;
+        }
+        let width = TURN - 1 - self.gap;
+        let middle = (self.start + width / 2).rem_euclid(TURN);
+        Accepted::Arc { first: self.start, middle, width }
+    }
+}
+
+/// The last index on the way from `near` (not judged, taken as within) to `far` (not judged, taken
+/// as beyond) whose side is at most `side`.
+///
+/// It first tries ever longer strides from `near`, because the unsure zone is mostly one or two
+/// indices wide, then bisects.
+fn last_within(judge: &impl Judge, side: Side, near: i32, far: i32) -> i32 {
+    let (mut near, mut far) = (near, far);
+    let mut stride = if side == Side::Unsure { 1 } else { (far - near).abs() };
+    while (far - near).abs() > 1 {
+        let half = (far - near).abs() / 2;
+        let k = near + half.min(stride) * (far - near).signum();
+        if judge.side(k) <= side {
+            near = k;
+            stride = stride.saturating_mul(2);
+        } else {
+            far = k;
+        }
+    }
+    near
+}

@@ -1,0 +1,130 @@
+//! The etalon table and the search of it: which azimuth best explains a series of dwells?
+//!
+//! ```text
+//!  rates / Ω_h, step ─▶ Series ─┬─▶ search(Criterion) ─▶ Match: index, azimuth below the grid
+//!  QUARTER_COSINE ────▶ Table ──┴─▶ accepted(Limit) ───▶ Acceptance: arc of accepted indices
+//! ```
+//!
+//! The gyro dwells at n positions one uniform step apart; position i measures
+//! `Z_i` = `Ω_h` cos(A + iΔ) + S + noise, with an unknown constant drift S. Sokolov (2019) compares
+//! the differences of neighbours with a table of reference values for every azimuth on a 10″ grid
+//! and takes the best of them by brute force. Here the same answer, bit for bit that of a brute
+//! force in exact integers over the stored table with the lowest index on a tie, comes from a few
+//! exact evaluations: a continuous form of the objective and a rigorous bound on table rounding
+//! say which indices can win (`host-tests/tests/etalon.rs` holds it to the brute force).
+//!
+//! * *Azimuth index* k, 0 to 129 599: the azimuth of the sensitive axis **at the first position**
+//!   is k · 10″, clockwise from north. The paper reports the n-th position: add (n − 1) Δ.
+//! * *Table units*: 2³¹ is the horizontal Earth rate `Ω_h` = Ω cos φ. A limit of α °/h is
+//!   α/`Ω_h` · 2³¹ units, `Ω_h` in °/h; a limit on squares is the square of that. The paper's "5″"
+//!   taken as 5 °/h accepts every azimuth, taken as 5″/h = 0.0014 °/h none.
+//!
+//! A search keeps under 5 KiB on the stack, allocates nothing and does not recurse. Its cost
+//! follows the series: without Earth rate in it (all values equal on a full circle) every index may
+//! win and all 129 600 are evaluated.
+
+mod absolute;
+mod arc;
+mod exact;
+mod landscape;
+mod quadratic;
+pub mod series;
+mod sweep;
+pub mod table;
+
+pub use series::{Series, SeriesError};
+pub use table::Table;
+
+use exact::Squares;
+
+/// What is minimised, with d the table's cosines at a candidate azimuth minus the measured values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Criterion {
+    /// n Σd² − (Σd)², the mean-removed least squares: the maximum-likelihood answer for white noise
+    /// and a constant drift, and the default.
+    MaximumLikelihood,
+    /// Σ(dᵢ₊₁ − dᵢ)², the paper's sum of squares of differences (its section 2, after eq. 4).
+    LeastSquares,
+    /// Σ|dᵢ₊₁ − dᵢ|, the paper's sum of absolute differences.
+    LeastAbsolute,
+}
+
+/// Which azimuths are accepted (the paper's eq. 4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Limit {
+    /// Σ(dᵢ₊₁ − dᵢ)² at most this many squared table units.
+    WithinSquares(u128),
+    /// Σ|dᵢ₊₁ − dᵢ| at most this many table units.
+    WithinAbsolute(u64),
+}
+
+/// The best azimuth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Match {
+    /// Azimuth of the first position in grid steps of 10″, 0 to 129 599; the lowest on a tie.
+    pub index: i32,
+    /// The objective there, exact, in table units (squared for sums of squares).
+    pub objective: u128,
+    /// Azimuth of the first position in rad, [0, 2π), interpolated below the grid: the minimum of
+    /// the continuous objective (for [`Criterion::LeastAbsolute`] within one step of `index`).
+    /// Within 0.5″ of the truth without noise.
+    pub azimuth: f64,
+    /// How many indices were evaluated exactly.
+    pub evaluations: u32,
+}
+
+/// The accepted set's smallest covering arc.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Accepted {
+    /// No azimuth meets the limit: it is below the noise.
+    Nothing,
+    /// The smallest arc that covers the accepted indices (the complement of their largest gap; of
+    /// equal gaps the arc with the lowest first index).
+    Arc {
+        /// First index of the arc, clockwise, in grid steps of 10″.
+        first: i32,
+        /// Its middle, rounded towards the first index.
+        middle: i32,
+        /// Steps from the first to the last index; 0 when one index is accepted.
+        width: i32,
+    },
+    /// Every azimuth meets the limit: it says nothing.
+    Everything,
+}
+
+/// The accepted azimuths and what finding them took.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Acceptance {
+    /// The accepted set.
+    pub accepted: Accepted,
+    /// How many indices were evaluated exactly.
+    pub evaluations: u32,
+}
+
+/// Finds the azimuth index with the least exact objective over the whole circle.
+#[must_use]
+pub fn search(table: Table, series: &Series, criterion: Criterion) -> Match {
+    match criterion {
+        Criterion::MaximumLikelihood => quadratic::search(table, series, Squares::Centred),
+        Criterion::LeastSquares => quadratic::search(table, series, Squares::Differences),
+        Criterion::LeastAbsolute => absolute::search(table, series),
+    }
+}
+
+/// Finds the smallest arc that covers every azimuth index whose exact objective meets `limit`.
+#[must_use]
+pub fn accepted(table: Table, series: &Series, limit: Limit) -> Acceptance {
+    match limit {
+        Limit::WithinSquares(limit) => {
+            quadratic::within(table, series, Squares::Differences, limit)
+        }
+        Limit::WithinAbsolute(limit) => absolute::within(table, series, limit),
+    }
+}
+
+/// An azimuth in rad, brought to [0, 2π) from at most a turn outside.
+fn wrap(azimuth: f64) -> f64 {
+    use core::f64::consts::TAU;
+    let wrapped = if azimuth < 0.0 { azimuth + TAU } else { azimuth };
+    if wrapped >= TAU { wrapped - TAU } else { wrapped }
+}

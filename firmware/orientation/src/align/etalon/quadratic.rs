@@ -1,0 +1,189 @@
+//! Exhaustive search of a sum of squares without the exhaustion.
+//!
+//! The continuous objective's root is within a known bound of the exact one's, so only indices
+//! whose continuous root lies within that bound of the best exact root can win; they lie next to
+//! the (at most two) minima and are evaluated exactly.
+
+use libm::sqrt;
+
+use super::arc::{Cover, Judge, Side};
+use super::exact::Squares;
+use super::landscape::{Landscape, rounding};
+use super::series::Series;
+use super::table::{TURN, Table};
+use super::{Acceptance, Match};
+
+/// A sum of squares over one series, continuous and exact.
+struct Objective<'a> {
+    table: Table,
+    series: &'a Series,
+    squares: Squares,
+    landscape: Landscape,
+    rounding: f64,
+    slack: f64,
+    small: f64,
+    evaluations: u32,
+}
+
+impl<'a> Objective<'a> {
+    fn new(table: Table, series: &'a Series, squares: Squares) -> Self {
+        let landscape = Landscape::new(table, series, squares);
+        Self {
+            table,
+            series,
+            squares,
+            landscape,
+            rounding: rounding(series.count(), squares),
+            slack: landscape.slack(),
+            small: squares.small_limit(series.count()),
+            evaluations: 0,
+        }
+    }
+
+    fn continuous(&self, k: i32) -> f64 {
+        self.landscape.at(self.table, k)
+    }
+
+    /// The exact objective at `k`, where the continuous one is `near`.
+    fn exact(&mut self, k: i32, near: f64) -> u128 {
+        self.evaluations += 1;
+        // Half the limit leaves room for the difference between the two.
+        self.squares.at(self.table, self.series, k, near < 0.5 * self.small)
+    }
+
+    /// The largest continuous value at which the exact one may still be `value`.
+    fn reach(&self, value: f64) -> f64 {
+        let root = sqrt(value) + self.rounding;
+        root * root + self.slack
+    }
+
+    /// The largest continuous value at which the exact one is surely within `value`.
+    fn surety(&self, value: f64) -> f64 {
+        let root = sqrt(value) - self.rounding;
+        if root < 0.0 { f64::NEG_INFINITY } else { root * root - self.slack }
+    }
+}
+
+/// The best index so far, and what an index must stay below to be worth evaluating.
+struct Best {
+    index: i32,
+    objective: u128,
+    origin: i32,
+    reach: f64,
+}
+
+impl Best {
+    fn at(objective: &mut Objective, k: i32, near: f64) -> Self {
+        let value = objective.exact(k, near);
+        Self { index: k, objective: value, origin: k, reach: objective.reach(value as f64) }
+    }
+
+    /// Evaluates `origin` ± 1, 2, … as far as they may compete; the result is how far they did.
+    fn walk(&mut self, objective: &mut Objective, origin: i32, sign: i32, limit: i32) -> i32 {
+        for distance in 1..limit {
+            let k = (origin + sign * distance).rem_euclid(TURN);
+            let near = objective.continuous(k);
+            if near > self.reach {
+                return distance - 1;
+            }
+            self.offer(objective, k, near, origin);
+        }
+        limit - 1
+    }
+
+    fn offer(&mut self, objective: &mut Objective, k: i32, near: f64, origin: i32) {
+        let value = objective.exact(k, near);
+        if (value, k) < (self.objective, self.index) {
+            let reach = self.reach.min(objective.reach(value as f64));
+            *self = Self { index: k, objective: value, origin, reach };
+        }
+    }
+}
+
+/// The index of the least objective; see [`super::search`].
+pub(super) fn search(table: Table, series: &Series, squares: Squares) -> Match {
+    let mut objective = Objective::new(table, series, squares);
+    let [mut first, mut second] = objective.landscape.turns(table).minima;
+    let (mut near, mut other) = (objective.continuous(first), objective.continuous(second));
+    if other < near {
+        core::mem::swap(&mut first, &mut second);
+        core::mem::swap(&mut near, &mut other);
+    }
+    let mut best = Best::at(&mut objective, first, near);
+    let above = best.walk(&mut objective, first, 1, TURN);
+    let below = best.walk(&mut objective, first, -1, TURN - above);
+    let covered = (second - (first - below)).rem_euclid(TURN) <= above + below;
+    if !covered && other <= best.reach {
+        best.offer(&mut objective, second, other, second);
+        let above = best.walk(&mut objective, second, 1, TURN);
+        best.walk(&mut objective, second, -1, TURN - above);
+    }
+    Match {
+        index: best.index,
+        objective: best.objective,
+        azimuth: objective.landscape.refine(best.origin),
+        evaluations: objective.evaluations,
+    }
+}
+
+/// The continuous objective against a limit.
+struct Within<'a> {
+    objective: Objective<'a>,
+    limit: u128,
+    sure: f64,
+    reach: f64,
+}
+
+impl Judge for Within<'_> {
+    fn side(&self, k: i32) -> Side {
+        let value = self.objective.continuous(k);
+        if value <= self.sure {
+            Side::Inside
+        } else if value <= self.reach {
+            Side::Unsure
+        } else {
+            Side::Outside
+        }
+    }
+
+    fn accepts(&mut self, k: i32) -> bool {
+        // The exact value is near the limit wherever the side is unsure.
+        self.objective.exact(k, self.reach) <= self.limit
+    }
+}
+
+/// The arc on which the objective is at most `limit`; see [`super::accepted`].
+pub(super) fn within(table: Table, series: &Series, squares: Squares, limit: u128) -> Acceptance {
+    let objective = Objective::new(table, series, squares);
+    let turns = objective.landscape.turns(table);
+    let (sure, reach) = (objective.surety(limit as f64), objective.reach(limit as f64));
+    let mut judge = Within { objective, limit, sure, reach };
+    let mut anchors = [turns.minima[0], turns.minima[1], turns.maxima[0], turns.maxima[1]];
+    anchors.sort_unstable();
+    let mut cover = Cover::default();
+    for (from, to) in anchors.into_iter().zip([anchors[1], anchors[2], anchors[3]]) {
+        segment(&mut cover, &mut judge, from, to);
+    }
+    segment(&mut cover, &mut judge, anchors[3], anchors[0] + TURN);
+    Acceptance { accepted: cover.finish(), evaluations: judge.objective.evaluations }
+}
+
+/// Judges `from` to `to` − 1, between two turns of the objective: one by one where it is flat,
+/// by bisection between.
+fn segment(cover: &mut Cover, judge: &mut Within, from: i32, to: i32) {
+    let (table, landscape) = (judge.objective.table, judge.objective.landscape);
+    let error = landscape.slope_error();
+    let flat = |k: i32| landscape.slope(table, k).abs() <= error;
+    // A turn is known to a step, and its bounds were rounded by another.
+    let mut rise = (from + 2).min(to - 1);
+    while rise < to - 1 && flat(rise) {
+        rise += 1;
+    }
+    let mut fall = (to - 2).max(rise + 1);
+    while fall > rise + 1 && flat(fall) {
+        fall -= 1;
+    }
+    cover.judge_each(judge, from, rise);
+    cover.judge_monotone(judge, rise + 1, fall - 1);
+    cover.judge_each(judge, fall, to - 1);
+}

@@ -1,0 +1,86 @@
+//! The measured series: what the dwells gave, in the table's units.
+
+use heapless::Vec;
+
+use super::table::{HALF, ONE, TURN};
+
+/// The most positions one series can hold.
+pub const CAPACITY: usize = 64;
+
+/// Values are limited to ±2⁴⁰ table units (512 times the horizontal Earth rate), so that every sum
+/// of the exact search stays within its integer type.
+pub const LIMIT: i64 = 1 << 40;
+
+/// Why a series cannot be matched, each with its remedy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SeriesError {
+    /// Fewer than three positions: two leave a mirrored azimuth, so measure at one more.
+    TooFew,
+    /// More than [`CAPACITY`] positions: average neighbours or take a larger step.
+    TooMany,
+    /// The step is a whole number of turns: every position looks the same way, so choose another.
+    ZeroStep,
+    /// The step is half a turn: azimuths A and −A give the same series, so choose another.
+    MirrorTiedStep,
+    /// A rate is infinite or not a number: leave that dwell out before matching.
+    NotFinite,
+}
+
+/// Dwell rates over the horizontal Earth rate, at positions one uniform step apart.
+#[derive(Clone, Debug)]
+pub struct Series {
+    values: Vec<i64, CAPACITY>,
+    step: i32,
+}
+
+impl Series {
+    /// Takes the ratios `Z_i` / `Ω_h` (dimensionless) in the order measured and the step between
+    /// positions in grid steps of 10″, clockwise positive.
+    ///
+    /// Each ratio is rounded to the nearest 2⁻³¹ (ties away from zero) and clamped to ±[`LIMIT`].
+    ///
+    /// # Errors
+    /// [`SeriesError`] names what is wrong and what to do.
+    pub fn new(ratios: impl IntoIterator<Item = f64>, step: i32) -> Result<Self, SeriesError> {
+        let mut values = Vec::new();
+        for ratio in ratios {
+            values.push(to_units(ratio)?).map_err(|_| SeriesError::TooMany)?;
+        }
+        if values.len() < 3 {
+            return Err(SeriesError::TooFew);
+        }
+        match step.rem_euclid(TURN) {
+            0 => Err(SeriesError::ZeroStep),
+            HALF => Err(SeriesError::MirrorTiedStep),
+            step if step > HALF => Ok(Self { values, step: step - TURN }),
+            step => Ok(Self { values, step }),
+        }
+    }
+
+    /// The values, 2³¹ = the horizontal Earth rate.
+    #[must_use]
+    pub fn values(&self) -> &[i64] {
+        &self.values
+    }
+
+    /// The step between positions in grid steps, reduced to less than half a turn either way.
+    #[must_use]
+    pub fn step(&self) -> i32 {
+        self.step
+    }
+
+    /// The number of positions, 3 to [`CAPACITY`].
+    #[must_use]
+    pub fn count(&self) -> f64 {
+        self.values.len() as f64
+    }
+}
+
+/// A ratio in table units, rounded and clamped.
+fn to_units(ratio: f64) -> Result<i64, SeriesError> {
+    if !ratio.is_finite() {
+        return Err(SeriesError::NotFinite);
+    }
+    // The cast saturates, so the clamp also holds for ratios beyond the range of i64.
+    Ok((libm::round(ratio * ONE) as i64).clamp(-LIMIT, LIMIT))
+}

@@ -1,0 +1,168 @@
+//! A sum of absolute values as a continuous function of azimuth: one sinusoid between crossings.
+//!
+//! Term i is |uᵢ(A) − wᵢ| with uᵢ = Re(gᵢ e^{jA}) the difference of two cosines and wᵢ the measured
+//! one. Each term crosses zero at most twice round the circle, so the sum consists of at most
+//! 2(n − 1) + 1 pieces Re(G e^{jA}) − W, and a sweep through the sorted crossings yields them.
+
+use core::f64::consts::PI;
+
+use heapless::Vec;
+use libm::{acos, atan2, ceil, fabs, sincos};
+
+use super::series::{CAPACITY, Series};
+use super::table::{ONE, QUARTER, STEP, TURN, Table};
+
+/// One turn in grid steps.
+const CIRCLE: f64 = TURN as f64;
+
+/// One term uᵢ(A) − wᵢ in table units.
+#[derive(Clone, Copy, Debug)]
+struct Term {
+    re: f64,
+    im: f64,
+    offset: f64,
+}
+
+/// A term changes sign at `at` (grid steps, fractional): to positive if it rises.
+#[derive(Clone, Copy, Debug)]
+struct Crossing {
+    at: f64,
+    term: u8,
+    rises: bool,
+}
+
+/// A stretch of the circle on which the sum is `re` cos A − `im` sin A − `offset`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Piece {
+    re: f64,
+    im: f64,
+    offset: f64,
+    /// Begin and end in grid steps, fractional.
+    pub(super) from: f64,
+    pub(super) to: f64,
+}
+
+impl Piece {
+    /// The first and last grid index on the piece; first > last when there is none.
+    pub(super) fn indices(&self) -> (i32, i32) {
+        (ceil(self.from) as i32, ceil(self.to) as i32 - 1)
+    }
+
+    /// The sum at grid index `k`, cosine and sine from the table.
+    pub(super) fn at(&self, table: Table, k: i32) -> f64 {
+        let (c, s) = table.unit(k);
+        c * self.re - s * self.im - self.offset
+    }
+
+    /// The sum at `position` in grid steps, fractional.
+    pub(super) fn at_fraction(&self, position: f64) -> f64 {
+        let (s, c) = sincos(position * STEP);
+        c * self.re - s * self.im - self.offset
+    }
+
+    /// Whether the piece's sinusoid anywhere reaches down to `value`.
+    pub(super) fn dips_to(&self, value: f64) -> bool {
+        let height = -(value + self.offset);
+        height <= 0.0 || self.re * self.re + self.im * self.im >= height * height
+    }
+
+    /// Where the piece's sinusoid has its minimum, grid steps in [0, 129 600); it may lie outside
+    /// of the piece.
+    pub(super) fn minimum(&self) -> f64 {
+        circle(atan2(self.im, -self.re) / STEP)
+    }
+
+    /// Where it has its maximum, likewise.
+    pub(super) fn maximum(&self) -> f64 {
+        circle(atan2(-self.im, self.re) / STEP)
+    }
+}
+
+/// A position in grid steps, brought to [0, 129 600) from at most a few turns outside.
+fn circle(position: f64) -> f64 {
+    let turned = position - CIRCLE * libm::floor(position / CIRCLE);
+    if turned >= CIRCLE { 0.0 } else { turned }
+}
+
+/// The terms, their crossings in order, and the sum's first piece (3.6 KiB).
+pub(super) struct Sweep {
+    terms: Vec<Term, CAPACITY>,
+    crossings: Vec<Crossing, { 2 * CAPACITY }>,
+    start: Piece,
+    rounding: f64,
+}
+
+impl Sweep {
+    pub(super) fn new(series: &Series) -> Self {
+        let start = Piece { re: 0.0, im: 0.0, offset: 0.0, from: 0.0, to: CIRCLE };
+        let mut sweep = Self { terms: Vec::new(), crossings: Vec::new(), start, rounding: 0.0 };
+        let half = f64::from(series.step()) * (0.5 * STEP);
+        let radius = 2.0 * ONE * libm::sin(fabs(half));
+        let quarter = f64::from(QUARTER * series.step().signum());
+        for (index, pair) in (0_i32..).zip(series.values().windows(2)) {
+            let phase = (f64::from(index) + 0.5) * f64::from(series.step()) + quarter;
+            sweep.add(radius, circle(phase), (pair[1] - pair[0]) as f64);
+        }
+        sweep.crossings.sort_unstable_by(|a, b| a.at.total_cmp(&b.at));
+        sweep
+    }
+
+    /// Adds the term `radius` · cos(A + `phase`) − `offset`, the phase in grid steps.
+    fn add(&mut self, radius: f64, phase: f64, offset: f64) {
+        // Nearer to tangency than this the two crossings could swap by rounding, and the term is
+        // zero to 1e-3 units between them.
+        const TANGENT: f64 = 1.0 - 1e-13;
+        let (sine, cosine) = sincos(phase * STEP);
+        let term = Term { re: radius * cosine, im: radius * sine, offset };
+        let mut positive = offset < 0.0;
+        let ratio = offset / radius;
+        if fabs(ratio) < TANGENT {
+            let width = acos(ratio) * (0.5 * CIRCLE / PI);
+            let (rise, fall) = (circle(-phase - width), circle(-phase + width));
+            positive = rise > fall;
+            self.cross(rise, true);
+            self.cross(fall, false);
+        }
+        self.start.turn(term, if positive { 1.0 } else { -1.0 });
+        // One unit for the two entries, and the rounding of 128 partial sums.
+        self.rounding += 1.0 + (radius + fabs(offset)) * (128.0 * f64::EPSILON);
+        // The table's cos A and sin A on the piece's sinusoid.
+        self.rounding += 0.7072 * radius / ONE;
+        // A series holds fewer terms than the capacity.
+        let _ = self.terms.push(term);
+    }
+
+    /// Notes a crossing of the term that is being added.
+    fn cross(&mut self, at: f64, rises: bool) {
+        // Two for each of fewer terms than the capacity always fit.
+        let _ = self.crossings.push(Crossing { at, term: self.terms.len() as u8, rises });
+    }
+
+    /// A bound on the difference between a piece at a grid index and the exact sum there.
+    pub(super) fn rounding(&self) -> f64 {
+        self.rounding
+    }
+
+    /// The pieces from index 0 round the circle, empty ones included.
+    pub(super) fn pieces(&self) -> impl Iterator<Item = Piece> + '_ {
+        let mut state = self.start;
+        let end = Crossing { at: CIRCLE, term: u8::MAX, rises: false };
+        self.crossings.iter().copied().chain(core::iter::once(end)).map(move |crossing| {
+            let piece = Piece { to: crossing.at, ..state };
+            state.from = crossing.at;
+            if let Some(&term) = self.terms.get(usize::from(crossing.term)) {
+                state.turn(term, if crossing.rises { 2.0 } else { -2.0 });
+            }
+            piece
+        })
+    }
+}
+
+impl Piece {
+    /// Adds `times` the term.
+    fn turn(&mut self, term: Term, times: f64) {
+        self.re += times * term.re;
+        self.im += times * term.im;
+        self.offset += times * term.offset;
+    }
+}

@@ -1,0 +1,173 @@
+//! The etalon table: one quarter of the cosine on a 10″ grid, made at build time.
+//!
+//! Entry `k` is 2³¹ cos(k · 10″) rounded to nearest, as `u32` because a signed 32-bit fraction
+//! cannot hold cos 0 = 1. By symmetry 129 604 bytes of flash serve the full circle, sine and cosine,
+//! and any step that is a multiple of 10″.
+
+/// Grid steps in one turn; one step is 10″.
+pub const TURN: i32 = 129_600;
+
+/// Grid steps in half a turn.
+pub(super) const HALF: i32 = TURN / 2;
+
+/// Grid steps in a quarter of a turn.
+pub(super) const QUARTER: i32 = TURN / 4;
+
+/// Number of entries, both ends of the quarter included.
+pub const ENTRIES: usize = 32_401;
+
+/// One grid step (10″) in rad.
+pub const STEP: f64 = core::f64::consts::TAU / TURN as f64;
+
+/// The value of cos 0 in table units.
+pub const ONE: f64 = 2_147_483_648.0;
+
+/// The table as built; a board that wants it in a flash section of its own copies it into a
+/// `static` there and hands that to [`Table::new`].
+pub static QUARTER_COSINE: [u32; ENTRIES] =
+    include!(concat!(env!("OUT_DIR"), "/quarter_cosine.rs"));
+
+/// CRC-32 (IEEE 802.3) of the entries as little-endian bytes, computed at build time.
+pub const CHECKSUM: u32 = include!(concat!(env!("OUT_DIR"), "/quarter_cosine_crc.rs"));
+
+/// The remainders of the reflected IEEE 802.3 polynomial for four bits.
+const NIBBLE: [u32; 16] = nibble_remainders();
+
+const fn nibble_remainders() -> [u32; 16] {
+    let mut remainders = [0; 16];
+    let mut nibble = 0;
+    while nibble < 16 {
+        let mut crc = nibble as u32;
+        let mut bit = 0;
+        while bit < 4 {
+            crc = (crc >> 1) ^ (0xEDB8_8320 & (crc & 1).wrapping_neg());
+            bit += 1;
+        }
+        remainders[nibble] = crc;
+        nibble += 1;
+    }
+    remainders
+}
+
+/// The table's bits are not those that were built: the flash is damaged, program it again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ChecksumMismatch {
+    /// The CRC-32 of what was read.
+    pub found: u32,
+}
+
+/// Full-circle access to a quarter table that lies anywhere in memory.
+#[derive(Clone, Copy, Debug)]
+pub struct Table {
+    quarter: &'static [u32; ENTRIES],
+}
+
+impl Table {
+    /// Borrows `quarter`, laid out as [`QUARTER_COSINE`].
+    #[must_use]
+    pub const fn new(quarter: &'static [u32; ENTRIES]) -> Self {
+        Self { quarter }
+    }
+
+    /// The table as built, where the linker put it.
+    #[must_use]
+    pub fn built_in() -> Self {
+        Self::new(&QUARTER_COSINE)
+    }
+
+    /// Compares the CRC-32 of the entries with [`CHECKSUM`] (about 2 M instructions).
+    ///
+    /// # Errors
+    /// [`ChecksumMismatch`] when any bit differs.
+    pub fn verify(self) -> Result<(), ChecksumMismatch> {
+        let mut crc = u32::MAX;
+        for &entry in self.quarter {
+            // The remainder is linear: a little-endian word enters whole.
+            crc ^= entry;
+            for _ in 0..8 {
+                crc = (crc >> 4) ^ NIBBLE[(crc & 15) as usize];
+            }
+        }
+        if !crc == CHECKSUM { Ok(()) } else { Err(ChecksumMismatch { found: !crc }) }
+    }
+
+    /// 2³¹ cos(`index` · 10″), any index, within ±0.5 (+1e-6); the symmetries of the cosine hold
+    /// exactly.
+    #[must_use]
+    #[inline]
+    pub fn cos(self, index: i32) -> i64 {
+        let run = Run::at(index.rem_euclid(TURN), 0);
+        self.quarter.get(run.index as usize).map_or(0, |&entry| run.signed(entry))
+    }
+
+    /// 2³¹ sin(`index` · 10″), any index, within ±0.5 (+1e-6).
+    #[must_use]
+    #[inline]
+    pub fn sin(self, index: i32) -> i64 {
+        self.cos(index.rem_euclid(TURN) - QUARTER)
+    }
+
+    /// Cosine and sine at `index` as fractions of one, within 2⁻³² (+1e-15).
+    #[inline]
+    pub(super) fn unit(self, index: i32) -> (f64, f64) {
+        ((self.cos(index)) as f64 * (1.0 / ONE), self.sin(index) as f64 * (1.0 / ONE))
+    }
+
+    /// Calls `visit` with 2³¹ cos((`start` + i `step`) · 10″) − `values[i]` for every i.
+    ///
+    /// Inside one quadrant the walk is a plain stride, and the test that the entry exists is also
+    /// the test that the quadrant ends: this loop is most of the cost of an exact evaluation.
+    #[inline]
+    pub(super) fn residuals(
+        self,
+        start: i32,
+        step: i32,
+        values: &[i64],
+        mut visit: impl FnMut(i64),
+    ) {
+        let mut position = start.rem_euclid(TURN);
+        let mut rest = values;
+        while !rest.is_empty() {
+            let Run { mut index, stride, sign } = Run::at(position, step);
+            let mut used = 0;
+            for &value in rest {
+                let Some(&entry) = self.quarter.get(index as usize) else { break };
+                visit((i64::from(entry) ^ sign) - sign - value);
+                index += stride;
+                position += step;
+                used += 1;
+            }
+            rest = &rest[used..];
+            position = position.rem_euclid(TURN);
+        }
+    }
+}
+
+/// Where a walk over the circle stands in the quarter table.
+struct Run {
+    /// Index into the quarter; outside of it, also below zero, the quadrant has ended.
+    index: i32,
+    /// What one step on the circle adds to the index.
+    stride: i32,
+    /// 0, or −1 where the cosine is negative.
+    sign: i64,
+}
+
+impl Run {
+    /// At `position` on the circle, 0 to [`TURN`] − 1, walking by `step`.
+    #[inline]
+    fn at(position: i32, step: i32) -> Self {
+        match position / QUARTER {
+            0 => Self { index: position, stride: step, sign: 0 },
+            1 => Self { index: HALF - position, stride: -step, sign: -1 },
+            2 => Self { index: position - HALF, stride: step, sign: -1 },
+            _ => Self { index: TURN - position, stride: -step, sign: 0 },
+        }
+    }
+
+    /// The entry with the quadrant's sign.
+    #[inline]
+    fn signed(&self, entry: u32) -> i64 {
+        (i64::from(entry) ^ self.sign) - self.sign
+    }
+}

@@ -1,0 +1,183 @@
+//! Which dwells were disturbed: judged from inside each, before any azimuth is known.
+//!
+//! A kick shows in the scatter of a dwell's blocks, a nudge as a step of any length inside it, a
+//! slow push as a slope that the other dwells do not share. All are measured against the gyro's
+//! noise; where that is unknown, against the median of the dwells.
+
+use core::fmt;
+
+use super::setting::Setting;
+use super::{POSITIONS, level};
+use crate::math::{chi_square_tail, median};
+use crate::signal::blocks::Quietness;
+use crate::signal::dwell::{Dwell, SampleFault};
+
+/// Why a dwell is left out of the fit. Numbers are in units of the expected standard deviation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Disturbance {
+    /// Its samples were sick.
+    Samples(SampleFault),
+    /// Its blocks scatter more than the noise: factor of the variance.
+    Unquiet(f64),
+    /// Its rate stepped or was pushed for a while.
+    Step(f64),
+    /// Its rate drifted unlike that of the other dwells.
+    Drift(f64),
+    /// The accelerometer stood out: the platform moved.
+    Moved(f64),
+    /// Its mean does not fit the others.
+    Outlier(f64),
+}
+
+impl fmt::Display for Disturbance {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Samples(SampleFault::Saturated) => f.write_str("gyro saturated"),
+            Self::Samples(SampleFault::Stuck) => f.write_str("gyro stuck: every sample the same"),
+            Self::Samples(SampleFault::Missing) => f.write_str("samples missing"),
+            Self::Unquiet(x) => write!(f, "not quiet: {x:.1} times the noise power"),
+            Self::Step(x) => write!(f, "stepped by {x:.1} σ within the dwell"),
+            Self::Drift(x) => write!(f, "drifted by {x:.1} σ within the dwell"),
+            Self::Moved(x) => write!(f, "platform moved by {x:.1} σ"),
+            Self::Outlier(x) => write!(f, "residual of {x:.1} σ"),
+        }
+    }
+}
+
+/// Probability with which the scatter test rejects a healthy dwell.
+const SCATTER_PROBABILITY: f64 = 1e-5;
+/// Bound of the step scan, σ: it searches 120 intervals, so a healthy dwell passes it with a
+/// probability of about 1 − 5e-5.
+const STEP_BOUND: f64 = 5.0;
+/// Bound of the slope test, σ (7e-6 two-sided).
+const SLOPE_BOUND: f64 = 4.5;
+/// Bound of the test of the accelerometer against the tilt, in robust σ of the dwells. Wide, for
+/// this scatter is itself estimated from few dwells.
+const MOVED_BOUND: f64 = 12.0;
+
+/// What quiet dwells look like for this gyro.
+#[derive(Clone, Copy, Debug)]
+pub struct Norm {
+    /// White noise, (rad/s)²·s: N².
+    white: f64,
+    /// Random walk, (rad/s)²/s: K².
+    walk: f64,
+    /// Flicker, (rad/s)²: B²/π.
+    flicker: f64,
+    /// Slope that the dwells share, rad/s².
+    slope: f64,
+}
+
+impl Norm {
+    /// From what is known of the gyro and from the dwells so far.
+    #[must_use]
+    pub fn of(setting: &Setting, dwells: &[Dwell]) -> Self {
+        let noise = &setting.noise;
+        let known = noise.angle_random_walk * noise.angle_random_walk;
+        let estimated = || white_median(dwells);
+        Self {
+            white: if setting.white_known { known } else { estimated() },
+            walk: noise.rate_random_walk * noise.rate_random_walk,
+            flicker: noise.bias_instability * noise.bias_instability / core::f64::consts::PI,
+            slope: slope_median(dwells),
+        }
+    }
+
+    /// White noise of the gyro, N², (rad/s)²·s.
+    #[must_use]
+    pub fn white(&self) -> f64 {
+        self.white
+    }
+
+    /// What disturbed this dwell, if anything did.
+    #[must_use]
+    pub fn disturbance(&self, dwell: &Dwell) -> Option<Disturbance> {
+        if let Some(fault) = dwell.fault {
+            return Some(Disturbance::Samples(fault));
+        }
+        let quietness = dwell.quietness.as_ref()?;
+        if self.white <= 0.0 {
+            return None;
+        }
+        self.unquiet(quietness).or_else(|| self.step(quietness)).or_else(|| self.drift(quietness))
+    }
+
+    /// Variance of one block about the dwell's line: white noise, and what of the drift a line
+    /// does not follow.
+    fn block_variance(&self, quietness: &Quietness) -> f64 {
+        let seconds = quietness.blocks as f64 * quietness.block_seconds;
+        self.white / quietness.block_seconds + self.walk * seconds / 15.0 + 2.0 * self.flicker
+    }
+
+    fn unquiet(&self, quietness: &Quietness) -> Option<Disturbance> {
+        let degrees = quietness.blocks as f64 - 2.0;
+        let chi_square = quietness.scatter / self.block_variance(quietness);
+        (chi_square_tail(chi_square, degrees) < SCATTER_PROBABILITY)
+            .then_some(Disturbance::Unquiet(chi_square / degrees))
+    }
+
+    fn step(&self, quietness: &Quietness) -> Option<Disturbance> {
+        let step = quietness.largest_step / libm::sqrt(self.block_variance(quietness));
+        (step > STEP_BOUND).then_some(Disturbance::Step(step))
+    }
+
+    /// A random walk over T has a slope of variance 6K²/(5T); flicker one of about 6B²/(πT²).
+    fn drift(&self, quietness: &Quietness) -> Option<Disturbance> {
+        let seconds = quietness.blocks as f64 * quietness.block_seconds;
+        let unit = quietness.slope_unit;
+        let variance = self.white / quietness.block_seconds * unit * unit
+            + 1.2 * self.walk / seconds
+            + 6.0 * self.flicker / (seconds * seconds);
+        let slope = (quietness.slope - self.slope).abs() / libm::sqrt(variance);
+        (slope > SLOPE_BOUND).then_some(Disturbance::Drift(slope))
+    }
+}
+
+/// Marks the dwells whose accelerometer reading does not fit the tilt of the others.
+pub fn moved(dwells: &[Dwell], gravity: f64, tilt: &level::Tilt, mark: &mut [Option<Disturbance>]) {
+    let mut deviation: heapless::Vec<f64, POSITIONS> = dwells
+        .iter()
+        .map(|dwell| dwell.force.map_or(0.0, |force| off_level(dwell, force, gravity, tilt)))
+        .collect();
+    let found = deviation.clone();
+    let typical = median(&mut deviation).max(1e-7);
+    for (mark, deviation) in mark.iter_mut().zip(found) {
+        if mark.is_none() && deviation > MOVED_BOUND * typical {
+            *mark = Some(Disturbance::Moved(deviation / typical));
+        }
+    }
+}
+
+/// Distance of a dwell's mean force from that of the tilt and the biases, g.
+fn off_level(dwell: &Dwell, force: [f64; 3], gravity: f64, tilt: &level::Tilt) -> f64 {
+    let expected = tilt.force(dwell.stage.rad());
+    libm::hypot(
+        force[0] / gravity - expected[0] - tilt.bias[0],
+        force[1] / gravity - expected[1] - tilt.bias[1],
+    )
+}
+
+/// N² from the median of the dwells' own scatter; from their neighbouring blocks, which a slow
+/// disturbance leaves alone, while there are fewer than three dwells.
+fn white_median(dwells: &[Dwell]) -> f64 {
+    let few = dwells.len() < 3;
+    let estimate = |quietness: &Quietness| {
+        let blocks = quietness.blocks as f64;
+        let variance = if few {
+            quietness.neighbour_squares / (2.0 * (blocks - 1.0))
+        } else {
+            quietness.scatter / (blocks - 2.0)
+        };
+        variance * quietness.block_seconds
+    };
+    let mut values: heapless::Vec<f64, POSITIONS> =
+        dwells.iter().filter_map(|dwell| dwell.quietness.as_ref().map(estimate)).collect();
+    median(&mut values)
+}
+
+/// The slope that the dwells share; with fewer than three, none is known to be shared.
+fn slope_median(dwells: &[Dwell]) -> f64 {
+    let mut slopes: heapless::Vec<f64, POSITIONS> =
+        dwells.iter().filter_map(|dwell| dwell.quietness.as_ref().map(|q| q.slope)).collect();
+    if slopes.len() < 3 { 0.0 } else { median(&mut slopes) }
+}

@@ -1,0 +1,128 @@
+//! The streaming normal-equation core that every alignment method shares.
+//!
+//! Rows of unit noise come in one at a time; only their products are kept. Columns are chosen when
+//! solving, so that one pass serves every model that is compared. A column may carry a prior: zero
+//! mean and a known standard deviation, entered as information on its diagonal.
+
+use crate::math::{cholesky, cholesky_solve};
+
+/// Sums of products of `P` columns and the left side.
+#[derive(Clone, Debug)]
+pub struct Regression<const P: usize> {
+    products: [[f64; P]; P],
+    with_left: [f64; P],
+    left_squared: f64,
+    rows: usize,
+}
+
+/// Which columns a solution uses and what is known of them beforehand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Column {
+    /// Left out: the coefficient is zero.
+    Absent,
+    /// Estimated freely.
+    Free,
+    /// Estimated, with a prior of zero mean and this standard deviation.
+    Prior(f64),
+}
+
+/// A least-squares solution; coefficients of absent columns are zero.
+#[derive(Clone, Debug)]
+pub struct Solution<const P: usize> {
+    /// Coefficients in the units of left side over column.
+    pub coefficients: [f64; P],
+    /// Their covariance, for rows of unit noise.
+    pub covariance: [[f64; P]; P],
+    /// Sum of squared residuals and of squared priors, in units of the noise.
+    pub chi_square: f64,
+    /// Rows less freely estimated coefficients.
+    pub degrees: usize,
+}
+
+impl<const P: usize> Default for Regression<P> {
+    fn default() -> Self {
+        Self { products: [[0.0; P]; P], with_left: [0.0; P], left_squared: 0.0, rows: 0 }
+    }
+}
+
+impl<const P: usize> Regression<P> {
+    /// Adds a row whose noise has variance one.
+    pub fn push(&mut self, columns: &[f64; P], left: f64) {
+        for i in 0..P {
+            for j in 0..P {
+                self.products[i][j] += columns[i] * columns[j];
+            }
+            self.with_left[i] += columns[i] * left;
+        }
+        self.left_squared += left * left;
+        self.rows += 1;
+    }
+
+    /// Solves for the chosen columns; `None` where they cannot be told apart or rows are too few.
+    #[must_use]
+    pub fn solve(&self, model: &[Column; P]) -> Option<Solution<P>> {
+        let (used, size) = used_columns(model);
+        let free = model.iter().filter(|&&column| column == Column::Free).count();
+        let degrees = self.rows.checked_sub(free)?;
+        let mut factor = [[0.0; P]; P];
+        let mut coefficients = [0.0; P];
+        for i in 0..size {
+            for j in 0..size {
+                factor[i][j] = self.products[used[i]][used[j]];
+            }
+            if let Column::Prior(sigma) = model[used[i]] {
+                factor[i][i] += 1.0 / (sigma * sigma);
+            }
+            coefficients[i] = self.with_left[used[i]];
+        }
+        if !cholesky(&mut factor, size) {
+            return None;
+        }
+        cholesky_solve(&factor, size, &mut coefficients);
+        let explained: f64 = (0..size).map(|i| coefficients[i] * self.with_left[used[i]]).sum();
+        Some(Solution {
+            coefficients: spread(&coefficients, &used, size),
+            covariance: inverse(&factor, &used, size),
+            chi_square: (self.left_squared - explained).max(0.0),
+            degrees,
+        })
+    }
+}
+
+/// Indices of the columns in use, and how many there are.
+fn used_columns<const P: usize>(model: &[Column; P]) -> ([usize; P], usize) {
+    let mut used = [0; P];
+    let mut size = 0;
+    for (index, column) in model.iter().enumerate() {
+        if *column != Column::Absent {
+            used[size] = index;
+            size += 1;
+        }
+    }
+    (used, size)
+}
+
+/// Puts packed values back at their columns.
+fn spread<const P: usize>(packed: &[f64; P], used: &[usize; P], size: usize) -> [f64; P] {
+    let mut full = [0.0; P];
+    for i in 0..size {
+        full[used[i]] = packed[i];
+    }
+    full
+}
+
+/// The inverse of the factored matrix, at the places of its columns.
+fn inverse<const P: usize>(
+    factor: &[[f64; P]; P],
+    used: &[usize; P],
+    size: usize,
+) -> [[f64; P]; P] {
+    let mut full = [[0.0; P]; P];
+    for i in 0..size {
+        let mut unit = [0.0; P];
+        unit[i] = 1.0;
+        cholesky_solve(factor, size, &mut unit);
+        full[used[i]] = spread(&unit, used, size);
+    }
+    full
+}

@@ -1,0 +1,59 @@
+//! What is known before an alignment begins: the place, the gyro, the platform, and what is asked.
+
+use crate::earth::Latitude;
+use crate::noise::model::GyroNoise;
+use crate::units::TURN;
+
+/// The place, the instrument and the demands. A standard deviation of zero says: exact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setting {
+    /// Geodetic latitude.
+    pub latitude: Latitude,
+    /// 1σ of the latitude, rad.
+    pub latitude_sigma: f64,
+    /// The gyro's drift and, where [`Self::white_known`], its white noise.
+    pub noise: GyroNoise,
+    /// Whether N is known; else it is estimated from the dwells.
+    pub white_known: bool,
+    /// 1σ of the gyro's scale factor, relative.
+    pub scale_sigma: f64,
+    /// g-sensitivity κ along the sensitive axis and 90° clockwise of it, rad/s per g.
+    pub g_sensitivity: [f64; 2],
+    /// 1σ of either part of κ, rad/s per g.
+    pub g_sensitivity_sigma: f64,
+    /// 1σ of each accelerometer bias, m/s².
+    pub accelerometer_bias_sigma: f64,
+    /// 1σ of the encoder's zero and harmonics, as they turn the azimuth, rad.
+    pub encoder_sigma: f64,
+    /// Greatest standard deviation of the azimuth that is accepted, rad.
+    pub required_sigma: f64,
+    /// Greatest tilt of the platform that is accepted, rad.
+    pub allowed_tilt: f64,
+}
+
+impl Setting {
+    /// An ideal instrument at a latitude: nothing is uncertain, N is to be estimated, an azimuth
+    /// of 10° (1σ) and a tilt of 15° are accepted.
+    #[must_use]
+    pub fn at(latitude: Latitude) -> Self {
+        Self {
+            latitude,
+            latitude_sigma: 0.0,
+            noise: GyroNoise::default(),
+            white_known: false,
+            scale_sigma: 0.0,
+            g_sensitivity: [0.0; 2],
+            g_sensitivity_sigma: 0.0,
+            accelerometer_bias_sigma: 0.0,
+            encoder_sigma: 0.0,
+            required_sigma: 10.0 / 360.0 * TURN,
+            allowed_tilt: 15.0 / 360.0 * TURN,
+        }
+    }
+
+    /// Relative 1σ of the horizontal Earth rate as the gyro reads it: scale factor and latitude.
+    #[must_use]
+    pub fn amplitude_sigma(&self) -> f64 {
+        libm::hypot(self.scale_sigma, libm::tan(self.latitude.rad()) * self.latitude_sigma)
+    }
+}

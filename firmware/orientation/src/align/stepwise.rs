@@ -1,0 +1,429 @@
+//! Maximum-likelihood azimuth from dwells at several stage angles (`equations.md` §2).
+//!
+//! Each dwell is a row: its mean rate, less the vertical Earth rate and the g-sensitivity that the
+//! tilt turns into it, on the sensitive axis' north and east parts, a constant, and where they are
+//! needed time and temperature. Nothing is differenced. The rows are whitened for the gyro's
+//! noise, so the covariance of the fit is the Cramér–Rao bound of what went in.
+
+use super::budget::Budget;
+use super::direction::{Amplitude, Components, Direction, dot, product, quadratic};
+use super::level::Tilt;
+use super::regression::{Column, Regression, Solution};
+use super::setting::Setting;
+use crate::noise::model::GyroNoise;
+use crate::noise::whitener::Whitener;
+use crate::signal::dwell::Dwell;
+
+/// Columns of the regression.
+const COLUMNS: usize = 5;
+/// Index of the north part of the sensitive axis; the east part follows.
+const NORTH: usize = 0;
+/// Index of the constant.
+const CONSTANT: usize = 2;
+/// Index of time since the first dwell, h.
+const TIME: usize = 3;
+/// Index of temperature above that of the first dwell, °C.
+const TEMPERATURE: usize = 4;
+
+/// Chi-square of one degree of freedom that noise exceeds with a probability of 0.001.
+const TREND_CHI_SQUARE: f64 = 10.83;
+/// By how much a trend may raise the standard deviation of the azimuth.
+const TREND_COST: f64 = 1.5;
+/// By how much leaving the Earth rate free may raise the standard deviation of the azimuth.
+const FREE_COST: f64 = 1.02;
+
+/// Which columns a fit used.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Model {
+    /// Time, with its prior where the ramp R is known.
+    pub time: Column,
+    /// Temperature.
+    pub temperature: Column,
+    /// The horizontal Earth rate.
+    pub amplitude: Amplitude,
+}
+
+/// An azimuth with all that is known about it.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// Columns used.
+    pub model: Model,
+    /// The solution.
+    pub direction: Direction,
+    /// Where its standard deviation comes from.
+    pub budget: Budget,
+    /// Cramér–Rao bound of these columns for all stationary time of these dwells, rad.
+    pub limit: f64,
+    /// Ω̂_h/Ω_h with the Earth rate free.
+    pub ratio: f64,
+    /// 1σ of the ratio: noise, tilt, g-sensitivity and scale.
+    pub ratio_sigma: f64,
+    /// Chi-square of the residuals.
+    pub chi_square: f64,
+    /// Its degrees of freedom.
+    pub degrees: usize,
+    coefficients: [f64; COLUMNS],
+    covariance: [[f64; COLUMNS]; COLUMNS],
+}
+
+/// A residual of one dwell.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Residual {
+    /// Measured less fitted rate, with the drift still in it, rad/s.
+    pub rate: f64,
+    /// What its predecessors do not explain, in its standard deviation.
+    pub normalised: f64,
+    /// The same, allowing for what the dwell itself pulled the fit (leverage).
+    pub studentised: f64,
+}
+
+/// The dwells of an alignment and what is known about them.
+#[derive(Clone, Copy)]
+pub struct Problem<'a> {
+    /// The place and the instrument.
+    pub setting: &'a Setting,
+    /// The tilt.
+    pub tilt: &'a Tilt,
+    /// N², known or estimated, (rad/s)²·s.
+    pub white: f64,
+    /// The dwells that take part, in the order of time.
+    pub dwells: &'a [&'a Dwell],
+}
+
+impl Problem<'_> {
+    /// Fits the azimuth; `None` where the positions do not determine it.
+    #[must_use]
+    pub fn fit(&self) -> Option<Fit> {
+        let noise = self.setting.noise;
+        let regression = self.regression(&noise, Dwell::taper_factor);
+        let model = self.choose(&regression)?;
+        let solution = regression.solve(&model.columns())?;
+        let components = self.components(&solution);
+        let direction = components.direction(model.amplitude)?;
+        let mut fit = Fit {
+            model,
+            direction,
+            budget: self.budget(&regression, &model, &direction)?,
+            limit: self.limit(&noise, &model)?,
+            ratio: components.ratio().0,
+            ratio_sigma: self.ratio_sigma(&components),
+            chi_square: 0.0,
+            degrees: 0,
+            coefficients: [0.0; COLUMNS],
+            covariance: solution.covariance,
+        };
+        fit.constrain(&solution);
+        Some(fit)
+    }
+
+    /// Gives each dwell its residual, in their order.
+    pub fn residuals(&self, fit: &Fit, mut each: impl FnMut(usize, Residual)) {
+        let mut whitener = self.whitener(&self.setting.noise);
+        for (index, dwell) in self.dwells.iter().enumerate() {
+            let row = self.row(dwell);
+            let rate = remainder(&row, &fit.coefficients) * self.setting.latitude.horizontal_rate();
+            let mut white = row;
+            self.whiten(&mut whitener, dwell, Dwell::taper_factor, &mut white);
+            let normalised = remainder(&white, &fit.coefficients);
+            let leverage = leverage(&white, &fit.covariance);
+            let studentised = normalised / libm::sqrt((1.0 - leverage).max(0.05));
+            each(index, Residual { rate, normalised, studentised });
+        }
+    }
+
+    /// The row of a dwell: its columns and, last, its left side, all in units of Ω_h.
+    fn row(&self, dwell: &Dwell) -> [f64; COLUMNS + 1] {
+        let theta = dwell.stage.rad();
+        let axis = self.tilt.sensitive_axis(theta);
+        let force = self.tilt.force(theta);
+        let latitude = self.setting.latitude;
+        let first = self.dwells[0];
+        let left = dwell.rate - first.rate + latitude.vertical_rate() * axis[2]
+            - dot(self.setting.g_sensitivity, force);
+        let warmer = dwell.temperature.unwrap_or(0.0) - first.temperature.unwrap_or(0.0);
+        let hours = (dwell.middle - first.middle) / 3600.0;
+        [axis[0], -axis[1], 1.0, hours, warmer, left / latitude.horizontal_rate()]
+    }
+
+    /// White-noise variance of a dwell's mean, in units of `Ω_h`².
+    pub(super) fn white_variance(&self, dwell: &Dwell) -> f64 {
+        let rate = self.setting.latitude.horizontal_rate();
+        self.own_variance(dwell) * dwell.taper / (rate * rate)
+    }
+
+    /// What the dwell would have measured on a level stage with this fit, in units of `Ω_h` and
+    /// less a constant.
+    pub(super) fn level_ratio(&self, fit: &Fit, dwell: &Dwell) -> f64 {
+        let [north, east, .., left] = self.row(dwell);
+        let (sine, cosine) = libm::sincos(dwell.stage.rad());
+        let [a, b, ..] = fit.coefficients;
+        left - a * (north - cosine) - b * (east + sine)
+    }
+
+    /// White-noise variance of an untapered mean, (rad/s)².
+    fn own_variance(&self, dwell: &Dwell) -> f64 {
+        dwell.stated_variance.unwrap_or(self.white / dwell.seconds)
+    }
+
+    fn whitener(&self, noise: &GyroNoise) -> Whitener<{ COLUMNS + 1 }> {
+        let scale = 1.0 / self.setting.latitude.horizontal_rate();
+        let shortest = self.dwells.iter().map(|dwell| dwell.seconds).fold(f64::INFINITY, f64::min);
+        let relative = GyroNoise {
+            bias_instability: noise.bias_instability * scale,
+            rate_random_walk: noise.rate_random_walk * scale,
+            ..GyroNoise::default()
+        };
+        Whitener::new(&relative, shortest)
+    }
+
+    fn whiten(
+        &self,
+        whitener: &mut Whitener<{ COLUMNS + 1 }>,
+        dwell: &Dwell,
+        taper: fn(&Dwell) -> f64,
+        row: &mut [f64; COLUMNS + 1],
+    ) {
+        let rate = self.setting.latitude.horizontal_rate();
+        let own = self.own_variance(dwell) * taper(dwell);
+        whitener.whiten(dwell.start(), dwell.end(), own / (rate * rate), row);
+    }
+
+    fn regression(&self, noise: &GyroNoise, taper: fn(&Dwell) -> f64) -> Regression<COLUMNS> {
+        let mut whitener = self.whitener(noise);
+        let mut regression = Regression::default();
+        for dwell in self.dwells {
+            let mut row = self.row(dwell);
+            self.whiten(&mut whitener, dwell, taper, &mut row);
+            let [a, b, c, d, e, left] = row;
+            regression.push(&[a, b, c, d, e], left);
+        }
+        regression
+    }
+
+    fn components(&self, solution: &Solution<COLUMNS>) -> Components {
+        let [a, b, ..] = solution.coefficients;
+        let [[c, d, ..], [e, f, ..], ..] = solution.covariance;
+        Components { value: [a, b], covariance: [[c, d], [e, f]] }
+    }
+
+    /// Variance of the azimuth and its direction for a model.
+    fn direction(&self, regression: &Regression<COLUMNS>, model: &Model) -> Option<Direction> {
+        let solution = regression.solve(&model.columns())?;
+        self.components(&solution).direction(model.amplitude)
+    }
+
+    /// Chooses the columns and whether the Earth rate stays free.
+    fn choose(&self, regression: &Regression<COLUMNS>) -> Option<Model> {
+        let mut model = self.base();
+        self.add_trend(regression, &mut model)?;
+        let free = Model { amplitude: Amplitude::Free, ..model };
+        let known = self.direction(regression, &model)?.variance;
+        if let Some(direction) = self.direction(regression, &free)
+            && direction.variance <= FREE_COST * FREE_COST * known
+        {
+            return Some(free);
+        }
+        Some(model)
+    }
+
+    /// The model before any trend is looked for: a known ramp enters with its prior.
+    fn base(&self) -> Model {
+        let ramp = self.setting.noise.rate_ramp * 3600.0 / self.setting.latitude.horizontal_rate();
+        Model {
+            time: if ramp > 0.0 { Column::Prior(ramp) } else { Column::Absent },
+            temperature: Column::Absent,
+            amplitude: Amplitude::Known(self.setting.amplitude_sigma()),
+        }
+    }
+
+    /// Adds temperature and then time where chi-square asks for it and the azimuth can afford it.
+    fn add_trend(&self, regression: &Regression<COLUMNS>, model: &mut Model) -> Option<()> {
+        for _ in 0..2 {
+            let before = regression.solve(&model.columns())?.chi_square;
+            let variance = self.direction(regression, model)?.variance;
+            let mut best = (*model, TREND_CHI_SQUARE);
+            for candidate in self.candidates(model).into_iter().flatten() {
+                let Some(solution) = regression.solve(&candidate.columns()) else { continue };
+                let Some(direction) = self.direction(regression, &candidate) else { continue };
+                let affordable = direction.variance <= TREND_COST * TREND_COST * variance;
+                if affordable && before - solution.chi_square > best.1 {
+                    best = (candidate, before - solution.chi_square);
+                }
+            }
+            *model = best.0;
+        }
+        Some(())
+    }
+
+    fn candidates(&self, model: &Model) -> [Option<Model>; 2] {
+        let measured = self.dwells.iter().all(|dwell| dwell.temperature.is_some());
+        let cold = measured && model.temperature == Column::Absent;
+        let steady = model.time == Column::Absent;
+        [
+            cold.then_some(Model { temperature: Column::Free, ..*model }),
+            steady.then_some(Model { time: Column::Free, ..*model }),
+        ]
+    }
+
+    /// The bound that noise sets for these columns when all stationary time counts fully.
+    fn limit(&self, noise: &GyroNoise, model: &Model) -> Option<f64> {
+        let regression = self.regression(noise, |_| 1.0);
+        self.direction(&regression, model).map(|direction| libm::sqrt(direction.variance))
+    }
+
+    /// Splits the variance: noise alone, then what drift, temperature and scale add, then what the
+    /// fit cannot see.
+    fn budget(
+        &self,
+        coloured: &Regression<COLUMNS>,
+        model: &Model,
+        direction: &Direction,
+    ) -> Option<Budget> {
+        let white = self.regression(&self.setting.noise.white_part(), Dwell::taper_factor);
+        let variance = |regression: &Regression<COLUMNS>, model: &Model| {
+            self.direction(regression, model).map(|direction| direction.variance)
+        };
+        let exact = match model.amplitude {
+            Amplitude::Free => Amplitude::Free,
+            Amplitude::Known(_) => Amplitude::Known(0.0),
+        };
+        let bare = Model { time: Column::Absent, temperature: Column::Absent, amplitude: exact };
+        let noise = variance(&white, &bare)?;
+        let drift = variance(coloured, &Model { time: model.time, ..bare })?.max(noise);
+        let temperature = variance(coloured, &Model { amplitude: exact, ..*model })?.max(drift);
+        let amplitude = (direction.variance - temperature).max(0.0);
+        let tilted = self.tilted(direction);
+        let share = self.scale_share();
+        Some(Budget {
+            noise: libm::sqrt(noise),
+            drift: libm::sqrt(drift - noise),
+            temperature: libm::sqrt(temperature - drift),
+            scale: libm::sqrt(amplitude * share),
+            latitude: libm::sqrt(amplitude * (1.0 - share)),
+            g_sensitivity: tilted[0],
+            accelerometer: tilted[1],
+            encoder: self.setting.encoder_sigma,
+        })
+    }
+
+    /// Which part of the amplitude's variance is the scale factor's.
+    fn scale_share(&self) -> f64 {
+        let amplitude = self.setting.amplitude_sigma();
+        if amplitude > 0.0 {
+            (self.setting.scale_sigma / amplitude) * (self.setting.scale_sigma / amplitude)
+        } else {
+            1.0
+        }
+    }
+
+    /// What g-sensitivity and accelerometer cost in azimuth, rad: both turn with the stage as the
+    /// Earth rate does, so they shift the two components.
+    fn tilted(&self, direction: &Direction) -> [f64; 2] {
+        let [kappa, tilt] = self.component_errors();
+        [kappa, tilt].map(|covariance| libm::sqrt(quadratic(&covariance, direction.gain).max(0.0)))
+    }
+
+    /// Covariance of the components, in units of Ω_h, from κ and from the tilt.
+    ///
+    /// A tilt phasor F shifts them by (Ω_v + κ)F/Ω_h, as complex numbers.
+    fn component_errors(&self) -> [[[f64; 2]; 2]; 2] {
+        let rate = self.setting.latitude.horizontal_rate();
+        let kappa = self.setting.g_sensitivity_sigma * self.tilt.magnitude() / rate;
+        let real = (self.setting.latitude.vertical_rate() + self.setting.g_sensitivity[0]) / rate;
+        let imaginary = self.setting.g_sensitivity[1] / rate;
+        let rows = [[real, -imaginary], [imaginary, real]];
+        let tilt = rows.map(|row| {
+            let half = product(&self.tilt.covariance, row);
+            [dot(rows[0], half), dot(rows[1], half)]
+        });
+        [[[kappa * kappa, 0.0], [0.0, kappa * kappa]], tilt]
+    }
+
+    fn ratio_sigma(&self, components: &Components) -> f64 {
+        let (ratio, sigma) = components.ratio();
+        let unit = components.value.map(|value| value / ratio);
+        let [kappa, tilt] = self.component_errors();
+        let amplitude = self.setting.amplitude_sigma();
+        let variance = sigma * sigma
+            + quadratic(&kappa, unit)
+            + quadratic(&tilt, unit)
+            + amplitude * amplitude;
+        libm::sqrt(variance.max(0.0))
+    }
+}
+
+impl Model {
+    fn columns(&self) -> [Column; COLUMNS] {
+        [Column::Free, Column::Free, Column::Free, self.time, self.temperature]
+    }
+}
+
+impl Fit {
+    /// Standard deviation of the azimuth, rad.
+    #[must_use]
+    pub fn sigma(&self) -> f64 {
+        self.budget.sigma()
+    }
+
+    /// Slope of the trend with time, in units of Ω_h per hour.
+    #[must_use]
+    pub fn trend(&self) -> f64 {
+        self.coefficients[TIME]
+    }
+
+    /// Slope with temperature, in units of Ω_h per °C.
+    #[must_use]
+    pub fn temperature_slope(&self) -> f64 {
+        self.coefficients[TEMPERATURE]
+    }
+
+    /// Puts the two components on the chosen direction and lets the other coefficients follow.
+    fn constrain(&mut self, solution: &Solution<COLUMNS>) {
+        let (sine, cosine) = libm::sincos(self.direction.azimuth);
+        let wanted = [self.direction.amplitude * cosine, self.direction.amplitude * sine];
+        let free = solution.coefficients;
+        let change = [wanted[0] - free[NORTH], wanted[1] - free[NORTH + 1]];
+        let [[a, b, ..], [_, d, ..], ..] = solution.covariance;
+        let determinant = a * d - b * b;
+        let weights = [
+            (d * change[0] - b * change[1]) / determinant,
+            (a * change[1] - b * change[0]) / determinant,
+        ];
+        for (index, value) in self.coefficients.iter_mut().enumerate() {
+            let row = &solution.covariance[index];
+            *value = free[index] + row[0] * weights[0] + row[1] * weights[1];
+        }
+        self.chi_square = solution.chi_square + dot(change, weights);
+        self.degrees = match self.model.amplitude {
+            Amplitude::Free => solution.degrees,
+            Amplitude::Known(_) => solution.degrees + 1,
+        };
+    }
+}
+
+impl Dwell {
+    /// The taper as a function, to choose between it and none.
+    fn taper_factor(&self) -> f64 {
+        self.taper
+    }
+}
+
+/// Left side less the columns' part of it.
+fn remainder(row: &[f64; COLUMNS + 1], coefficients: &[f64; COLUMNS]) -> f64 {
+    let fitted: f64 = row.iter().zip(coefficients).map(|(x, c)| x * c).sum();
+    row[COLUMNS] - fitted
+}
+
+/// xᵀ Cov x of a whitened row.
+fn leverage(row: &[f64; COLUMNS + 1], covariance: &[[f64; COLUMNS]; COLUMNS]) -> f64 {
+    let mut sum = 0.0;
+    for i in 0..COLUMNS {
+        for j in 0..COLUMNS {
+            sum += row[i] * row[j] * covariance[i][j];
+        }
+    }
+    sum
+}
+
+/// The constant's index, for readers of the coefficients.
+const _: () = assert!(CONSTANT == NORTH + 2 && TEMPERATURE + 1 == COLUMNS);

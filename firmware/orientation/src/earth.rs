@@ -1,0 +1,61 @@
+//! The Earth as the gyro and the accelerometer feel it: rotation and normal gravity at a latitude.
+
+use crate::units::TURN;
+
+/// Earth's rotation rate, rad/s (WGS84; 15.041067 °/h).
+pub const EARTH_RATE: f64 = 7.292_115e-5;
+
+/// Latitude beyond which the horizontal Earth rate is too small to point north, rad (85°).
+pub const HIGHEST_LATITUDE: f64 = 85.0 / 360.0 * TURN;
+
+/// Normal gravity at the equator, m/s² (WGS84).
+const GRAVITY_EQUATOR: f64 = 9.780_325_335_9;
+/// Somigliana's constant k (WGS84).
+const SOMIGLIANA: f64 = 0.001_931_852_652_41;
+/// First eccentricity squared of the ellipsoid (WGS84).
+const ECCENTRICITY_SQUARED: f64 = 0.006_694_379_990_14;
+
+/// A geodetic latitude, rad, known to lie in ±90°.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Latitude(f64);
+
+impl Latitude {
+    /// From degrees, north positive; `None` outside ±90° and for NaN.
+    #[must_use]
+    pub fn from_degrees(degrees: f64) -> Option<Self> {
+        (degrees.abs() <= 90.0).then_some(Self(degrees / 360.0 * TURN))
+    }
+
+    /// In radians, north positive.
+    #[must_use]
+    pub fn rad(self) -> f64 {
+        self.0
+    }
+
+    /// Horizontal part of the Earth rate, Ω cos φ, rad/s; points north.
+    #[must_use]
+    pub fn horizontal_rate(self) -> f64 {
+        EARTH_RATE * libm::cos(self.0)
+    }
+
+    /// Vertical part of the Earth rate, Ω sin φ, rad/s; points up where positive.
+    #[must_use]
+    pub fn vertical_rate(self) -> f64 {
+        EARTH_RATE * libm::sin(self.0)
+    }
+
+    /// Normal gravity on the ellipsoid, m/s² (Somigliana, WGS84).
+    #[must_use]
+    pub fn gravity(self) -> f64 {
+        let sine = libm::sin(self.0);
+        let squared = sine * sine;
+        GRAVITY_EQUATOR * (1.0 + SOMIGLIANA * squared)
+            / libm::sqrt(1.0 - ECCENTRICITY_SQUARED * squared)
+    }
+
+    /// Whether an azimuth can be asked for here: |φ| ≤ 85°.
+    #[must_use]
+    pub fn has_north(self) -> bool {
+        self.0.abs() <= HIGHEST_LATITUDE
+    }
+}

@@ -1,0 +1,48 @@
+//! The gyro's noise in the field's terms: N, B, K, R.
+
+use crate::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
+
+/// Noise coefficients of a gyro in SI units (`equations.md` §0 conventions: Allan variance
+/// N²/τ + (2 ln 2/π)B² + K²τ/3 + R²τ²/2). Zero means: not present.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GyroNoise {
+    /// Angle random walk N, rad/√s.
+    pub angle_random_walk: f64,
+    /// Bias instability B, rad/s; one-sided spectral density B²/(π f).
+    pub bias_instability: f64,
+    /// Rate random walk K, rad/s/√s.
+    pub rate_random_walk: f64,
+    /// Rate ramp R, rad/s², as the 1σ of an unknown constant slope.
+    pub rate_ramp: f64,
+}
+
+impl GyroNoise {
+    /// From N in °/√h, B in °/h, K in °/h/√h and R in °/h².
+    #[must_use]
+    pub fn from_field_units(n: f64, b: f64, k: f64, r: f64) -> Self {
+        Self {
+            angle_random_walk: n * DEGREE_PER_SQRT_HOUR,
+            bias_instability: b * DEGREE_PER_HOUR,
+            rate_random_walk: k * DEGREE_PER_HOUR / 60.0,
+            rate_ramp: r * DEGREE_PER_HOUR / 3600.0,
+        }
+    }
+
+    /// Variance of a mean over `seconds` that the white part leaves, (rad/s)².
+    #[must_use]
+    pub fn white_variance(&self, seconds: f64) -> f64 {
+        self.angle_random_walk * self.angle_random_walk / seconds
+    }
+
+    /// Whether there is noise that one dwell shares with the next, beside a ramp.
+    #[must_use]
+    pub fn is_coloured(&self) -> bool {
+        self.bias_instability > 0.0 || self.rate_random_walk > 0.0
+    }
+
+    /// The same gyro with its drift taken away: only N remains.
+    #[must_use]
+    pub fn white_part(&self) -> Self {
+        Self { angle_random_walk: self.angle_random_walk, ..Self::default() }
+    }
+}

@@ -1,0 +1,196 @@
+//! Turns dwell means with coloured noise into rows of unit white noise, in fixed memory.
+//!
+//! The noise of successive dwell means is white (N), plus a random walk (K), plus flicker (B) as a
+//! sum of Gauss–Markov processes, one for each factor of four in correlation time. A Kalman filter
+//! of these states alone predicts what each dwell mean has in common with its predecessors. The
+//! prediction is linear, so the same filter applied to every column of a regression and to its
+//! left side gives rows whose noise is independent with variance one: ordinary least squares on
+//! them is generalised least squares on the dwells. Each process is averaged exactly over a dwell;
+//! for K this is the covariance of `equations.md` §2, K²(a + T/3) on the diagonal.
+
+use super::model::GyroNoise;
+
+/// Gauss–Markov processes that make up flicker noise.
+const FLICKER_STATES: usize = 7;
+/// Flicker processes and the random walk.
+const STATES: usize = FLICKER_STATES + 1;
+/// Ratio of successive correlation times; the sum follows 1/f within ±2 % at this spacing.
+const SPACING: f64 = 4.0;
+/// ln 4.
+const LOG_SPACING: f64 = 1.386_294_361_119_890_6;
+
+/// One noise process: a Gauss–Markov process, or a random walk (infinite correlation time).
+#[derive(Clone, Copy, Debug, Default)]
+struct Process {
+    /// Correlation time, s; infinite for the random walk.
+    correlation: f64,
+    /// Density of the driving noise, (rad/s)²/s.
+    drive: f64,
+}
+
+/// How one process passes through an interval: its end value and its mean over the interval.
+#[derive(Clone, Copy, Debug, Default)]
+struct Step {
+    /// End value for a unit start value.
+    end: f64,
+    /// Mean for a unit start value.
+    mean: f64,
+    /// Variance that the interval adds to the end value.
+    end_variance: f64,
+    /// Covariance that it adds between end value and mean.
+    cross: f64,
+    /// Variance that it adds to the mean.
+    mean_variance: f64,
+}
+
+impl Process {
+    fn step(&self, seconds: f64) -> Step {
+        let x = seconds / self.correlation;
+        let (e1, e2) = (-libm::expm1(-x), -libm::expm1(-2.0 * x));
+        let power = self.drive * seconds;
+        if x < 1e-3 {
+            // The limits of a random walk, with the first-order decay.
+            return Step {
+                end: 1.0 - e1,
+                mean: 1.0 - 0.5 * x,
+                end_variance: power * (1.0 - x),
+                cross: 0.5 * power * (1.0 - x),
+                mean_variance: power / 3.0 * (1.0 - 0.75 * x),
+            };
+        }
+        Step {
+            end: 1.0 - e1,
+            mean: e1 / x,
+            end_variance: 0.5 * power * e2 / x,
+            cross: 0.5 * power * e1 * e1 / (x * x),
+            mean_variance: power * (x - 2.0 * e1 + 0.5 * e2) / (x * x * x),
+        }
+    }
+}
+
+/// The filter; `COLUMNS` counts the regression's columns and its left side.
+#[derive(Clone, Debug)]
+pub struct Whitener<const COLUMNS: usize> {
+    processes: [Process; STATES],
+    covariance: [[f64; STATES]; STATES],
+    state: [[f64; COLUMNS]; STATES],
+    end: Option<f64>,
+    /// White density of the flicker that is faster than its processes, (rad/s)²·s.
+    fast: f64,
+    coloured: bool,
+}
+
+impl<const COLUMNS: usize> Whitener<COLUMNS> {
+    /// For a gyro whose shortest dwell lasts `shortest` seconds.
+    ///
+    /// Flicker is modelled between correlation times of a third of that dwell and 4096/3 of it;
+    /// the low cut-off is therefore 1/(2π·1365·`shortest`) Hz. What is slower is a constant to the
+    /// regression, which has a column for it. What is faster averages like white noise: processes of
+    /// variance s² and correlation time τ leave 2s²τ/T, summed over τ/4, τ/16, …
+    #[must_use]
+    pub fn new(noise: &GyroNoise, shortest: f64) -> Self {
+        let mut whitener = Self {
+            processes: [Process::default(); STATES],
+            covariance: [[0.0; STATES]; STATES],
+            state: [[0.0; COLUMNS]; STATES],
+            end: None,
+            fast: 0.0,
+            coloured: noise.is_coloured(),
+        };
+        let flicker = noise.bias_instability * noise.bias_instability / core::f64::consts::PI;
+        let mut correlation = shortest / 3.0;
+        whitener.fast = 2.0 * flicker * LOG_SPACING * correlation / (SPACING - 1.0);
+        for index in 0..FLICKER_STATES {
+            let variance = flicker * LOG_SPACING;
+            whitener.processes[index] =
+                Process { correlation, drive: 2.0 * variance / correlation };
+            whitener.covariance[index][index] = variance;
+            correlation *= SPACING;
+        }
+        whitener.processes[FLICKER_STATES] = Process {
+            correlation: f64::INFINITY,
+            drive: noise.rate_random_walk * noise.rate_random_walk,
+        };
+        whitener
+    }
+
+    /// Whitens the row of a dwell mean over [`start`, `end`] (s) in place; `white` is the variance
+    /// that is this dwell's own, (rad/s)². Dwells come in the order of time.
+    pub fn whiten(&mut self, start: f64, end: f64, white: f64, row: &mut [f64; COLUMNS]) {
+        if !self.coloured {
+            scale(row, white);
+            return;
+        }
+        if let Some(previous) = self.end {
+            self.drift(start - previous);
+        }
+        self.end = Some(end);
+        self.observe(end - start, white, row);
+    }
+
+    /// Carries the processes over a time without a measurement.
+    fn drift(&mut self, seconds: f64) {
+        if seconds <= 0.0 {
+            return;
+        }
+        let steps = self.steps(seconds);
+        self.advance(&steps);
+    }
+
+    fn steps(&self, seconds: f64) -> [Step; STATES] {
+        core::array::from_fn(|index| self.processes[index].step(seconds))
+    }
+
+    fn advance(&mut self, steps: &[Step; STATES]) {
+        for i in 0..STATES {
+            for value in &mut self.state[i] {
+                *value *= steps[i].end;
+            }
+            for j in 0..STATES {
+                self.covariance[i][j] *= steps[i].end * steps[j].end;
+            }
+            self.covariance[i][i] += steps[i].end_variance;
+        }
+    }
+
+    /// Predicts the dwell's mean, replaces the row by its normalised surprise and learns from it.
+    fn observe(&mut self, seconds: f64, white: f64, row: &mut [f64; COLUMNS]) {
+        let steps = self.steps(seconds);
+        let (cross, variance) = self.mean_covariance(&steps, white + self.fast / seconds);
+        for (column, value) in row.iter_mut().enumerate() {
+            let predicted: f64 = (0..STATES).map(|i| steps[i].mean * self.state[i][column]).sum();
+            *value -= predicted;
+        }
+        self.advance(&steps);
+        for i in 0..STATES {
+            let gain = cross[i] / variance;
+            for (state, surprise) in self.state[i].iter_mut().zip(row.iter()) {
+                *state += gain * surprise;
+            }
+            for j in 0..STATES {
+                self.covariance[i][j] -= gain * cross[j];
+            }
+        }
+        scale(row, variance);
+    }
+
+    /// Covariance of the states at the dwell's end with its mean, and the variance of the mean.
+    fn mean_covariance(&self, steps: &[Step; STATES], white: f64) -> ([f64; STATES], f64) {
+        let mut variance = white;
+        let mut cross = [0.0; STATES];
+        for i in 0..STATES {
+            let shared: f64 = (0..STATES).map(|j| self.covariance[i][j] * steps[j].mean).sum();
+            cross[i] = steps[i].end * shared + steps[i].cross;
+            variance += steps[i].mean * shared + steps[i].mean_variance;
+        }
+        (cross, variance)
+    }
+}
+
+/// Divides a row by the standard deviation of its noise.
+fn scale<const COLUMNS: usize>(row: &mut [f64; COLUMNS], variance: f64) {
+    let weight = 1.0 / libm::sqrt(variance);
+    for value in row {
+        *value *= weight;
+    }
+}

@@ -1,0 +1,432 @@
+//! The alignment procedure as a state machine without I/O: an event in, a command out.
+//!
+//! ```text
+//!  level ─▶ dwell ─▶ rotate ─▶ dwell ─▶ … ─▶ match ─▶ azimuth ± σ, or the reason for none
+//!             ▲└─disturbed: again─┘
+//! ```
+//!
+//! The stage is judged by its encoder alone: a dwell is where the angle stands still, wherever the
+//! command came from. So a recording replays the same session that a board runs.
+
+pub mod schedule;
+
+use heapless::Vec;
+
+use self::schedule::{Position, Schedule, StopRule};
+use crate::align::POSITIONS;
+use crate::align::conclusion::Conclusion;
+use crate::align::criterion::Criterion;
+use crate::align::etalon::Table;
+use crate::align::quality::{Disturbance, Norm};
+use crate::align::setting::Setting;
+use crate::error::Refusal;
+use crate::signal::Sample;
+use crate::signal::butterworth::{Coefficients, DesignError};
+use crate::signal::dwell::{Dwell, DwellAverage};
+use crate::units::{Angle, Instant, TURN};
+
+/// Second-order sections of the stage filter: Sokolov's sixth order.
+const SECTIONS: usize = 3;
+/// The filter's cut-off times the shortest dwell: its taper then costs 1.2 % of σ.
+const CUTOFF_DWELLS: f64 = 20.0;
+/// Highest cut-off over the sample rate, so that the filter still filters.
+const HIGHEST_CUTOFF: f64 = 0.2;
+/// Lowest cut-off over the sample rate at which the filter's coefficients are exact enough.
+const LOWEST_CUTOFF: f64 = 2.5e-4;
+
+/// How the session goes about it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Procedure {
+    /// Where the stage goes.
+    pub schedule: Schedule,
+    /// When it stops early.
+    pub stop: StopRule,
+    /// How the azimuth is found.
+    pub criterion: Criterion,
+    /// Sample period, s.
+    pub sample_seconds: f64,
+    /// How long the platform is levelled before the first dwell counts, s; these samples belong to
+    /// that dwell all the same.
+    pub level_seconds: f64,
+    /// How long the stage rests after an arrival before the dwell begins, s.
+    pub settle_seconds: f64,
+    /// How often a disturbed dwell is repeated at its position.
+    pub retries: usize,
+    /// Longest time for the whole session, s.
+    pub longest_seconds: f64,
+    /// Longest time for one rotation, s.
+    pub longest_rotation: f64,
+    /// Stage travel from lowest to highest angle, rad.
+    pub travel: [f64; 2],
+    /// Change of the encoder angle that still counts as standing, rad.
+    pub still: f64,
+    /// Distance from the commanded angle that counts as arrived, rad.
+    pub arrival: f64,
+}
+
+impl Procedure {
+    /// The default of the stage: travel −10°…370°, two repetitions, stand within 20 µrad (seven
+    /// steps of a 21-bit encoder), arrive within 0.05°, 30 s for a rotation and twice the dwells'
+    /// time and a minute for everything.
+    #[must_use]
+    pub fn new(schedule: Schedule, sample_seconds: f64) -> Self {
+        let longest_seconds = 2.0 * schedule.seconds() + 30.0 * schedule.len() as f64 + 60.0;
+        Self {
+            schedule,
+            stop: StopRule::AllPositions,
+            criterion: Criterion::MaximumLikelihood,
+            sample_seconds,
+            level_seconds: 0.0,
+            settle_seconds: 0.0,
+            retries: 2,
+            longest_seconds,
+            longest_rotation: 30.0,
+            travel: [-10.0 / 360.0 * TURN, 370.0 / 360.0 * TURN],
+            still: 20e-6,
+            arrival: 0.05 / 360.0 * TURN,
+        }
+    }
+
+    /// The filter's cut-off for this schedule, Hz.
+    #[must_use]
+    pub fn cutoff(&self) -> f64 {
+        let rate = 1.0 / self.sample_seconds;
+        (CUTOFF_DWELLS / self.schedule.shortest())
+            .clamp(LOWEST_CUTOFF * rate, HIGHEST_CUTOFF * rate)
+    }
+
+    /// The first position that is beyond the stage's travel.
+    fn beyond_travel(&self) -> Option<f64> {
+        let [low, high] = self.travel;
+        let outside = |angle: f64| !(low..=high).contains(&angle);
+        match &self.schedule {
+            Schedule::Listed(list) => list.iter().map(|p| p.angle).find(|&angle| outside(angle)),
+            Schedule::TowardMaximum { start, .. } => outside(*start).then_some(*start),
+        }
+    }
+}
+
+/// Why a procedure cannot be begun.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ProcedureError {
+    /// The filter cannot be designed for this sample rate.
+    Filter(DesignError),
+    /// Dwells of this many samples are shorter than the filter's settling.
+    DwellTooShort {
+        /// Samples of the shortest dwell.
+        samples: u32,
+        /// Samples that are needed.
+        needed: u32,
+    },
+    /// A position lies outside the stage's travel, rad.
+    BeyondTravel(f64),
+    /// There is no position.
+    NoPosition,
+    /// The etalon table in flash fails its CRC: flash the firmware again.
+    TableCorrupt,
+}
+
+/// What happens to a session.
+#[derive(Clone, Copy, Debug)]
+pub enum Event<'a> {
+    /// A sample of the stage path.
+    Sample(&'a Sample),
+    /// A dwell that was averaged elsewhere.
+    Averaged(&'a Dwell),
+    /// There will be no more.
+    End,
+}
+
+/// What the session asks for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Command {
+    /// Go on sampling.
+    Wait,
+    /// Send the stage to this angle, rad, not wrapped.
+    Rotate(f64),
+    /// Nothing more: the conclusion stands.
+    Finished,
+}
+
+/// Where the session is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Phase {
+    /// The tilt is looked at before anything turns.
+    Level,
+    /// A dwell is being averaged.
+    Dwell,
+    /// The stage is on its way since this time.
+    Rotate(Instant),
+    /// The conclusion stands.
+    Done,
+}
+
+/// A dwell that was thrown away and measured again.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Repetition {
+    /// Index of the position.
+    pub position: usize,
+    /// What disturbed it.
+    pub why: Disturbance,
+}
+
+/// One alignment from the first sample to its conclusion.
+#[derive(Clone, Debug)]
+pub struct Session {
+    setting: Setting,
+    procedure: Procedure,
+    coefficients: Coefficients<SECTIONS>,
+    phase: Phase,
+    target: Position,
+    begun: Option<Instant>,
+    average: Option<DwellAverage<SECTIONS>>,
+    dwells: Vec<Dwell, POSITIONS>,
+    repetitions: Vec<Repetition, POSITIONS>,
+    tries: usize,
+    conclusion: Option<Conclusion>,
+}
+
+impl Session {
+    /// Prepares a session; nothing moves yet.
+    ///
+    /// # Errors
+    /// A procedure that the filter or the stage cannot follow.
+    pub fn new(setting: Setting, procedure: Procedure) -> Result<Self, ProcedureError> {
+        Table::built_in().verify().map_err(|_| ProcedureError::TableCorrupt)?;
+        let rate = 1.0 / procedure.sample_seconds;
+        let coefficients =
+            Coefficients::low_pass(procedure.cutoff(), rate).map_err(ProcedureError::Filter)?;
+        let samples = libm::round(procedure.schedule.shortest() * rate) as u32;
+        let needed = coefficients.settling();
+        if samples < needed {
+            return Err(ProcedureError::DwellTooShort { samples, needed });
+        }
+        if let Some(angle) = procedure.beyond_travel() {
+            return Err(ProcedureError::BeyondTravel(angle));
+        }
+        let target = procedure.schedule.next(&[], 0.0).ok_or(ProcedureError::NoPosition)?;
+        Ok(Self {
+            setting,
+            procedure,
+            coefficients,
+            phase: Phase::Level,
+            target,
+            begun: None,
+            average: None,
+            dwells: Vec::new(),
+            repetitions: Vec::new(),
+            tries: 0,
+            conclusion: None,
+        })
+    }
+
+    /// Takes one event and answers what is to be done now.
+    pub fn handle(&mut self, event: Event) -> Command {
+        match event {
+            _ if self.phase == Phase::Done => Command::Finished,
+            Event::Sample(sample) => self.sample(sample),
+            Event::Averaged(dwell) => self.averaged(dwell),
+            Event::End => self.conclude(None),
+        }
+    }
+
+    /// Where the session is.
+    #[must_use]
+    pub fn phase(&self) -> Phase {
+        self.phase
+    }
+
+    /// The dwells so far.
+    #[must_use]
+    pub fn dwells(&self) -> &[Dwell] {
+        &self.dwells
+    }
+
+    /// The dwells that were measured again.
+    #[must_use]
+    pub fn repetitions(&self) -> &[Repetition] {
+        &self.repetitions
+    }
+
+    /// How many positions are planned.
+    #[must_use]
+    pub fn planned(&self) -> usize {
+        self.procedure.schedule.len()
+    }
+
+    /// How the azimuth is found.
+    #[must_use]
+    pub fn criterion(&self) -> Criterion {
+        self.procedure.criterion
+    }
+
+    /// The conclusion, once the session has finished.
+    #[must_use]
+    pub fn conclusion(&self) -> Option<&Conclusion> {
+        self.conclusion.as_ref()
+    }
+
+    /// What the dwells so far would conclude: for progress and for stopping early.
+    #[must_use]
+    pub fn preview(&self) -> Conclusion {
+        Conclusion::of(&self.setting, &self.dwells, Criterion::MaximumLikelihood)
+    }
+
+    fn sample(&mut self, sample: &Sample) -> Command {
+        let begun = *self.begun.get_or_insert(sample.time);
+        if sample.time.seconds() - begun.seconds() > self.procedure.longest_seconds {
+            return self.conclude(Some(Refusal::TimeExhausted));
+        }
+        if let Some(command) = self.follow(sample) {
+            return command;
+        }
+        match self.phase {
+            Phase::Level => self.level(sample.time),
+            Phase::Dwell => self.dwell(sample.time),
+            Phase::Rotate(since) => self.rotate(sample, since),
+            Phase::Done => Command::Finished,
+        }
+    }
+
+    /// Averages while the stage stands; where it moves, ends the dwell and begins again.
+    fn follow(&mut self, sample: &Sample) -> Option<Command> {
+        let mut ended = None;
+        match &mut self.average {
+            Some(average) if average.stands_at(sample.stage, self.procedure.still) => {
+                average.push(&self.coefficients, sample);
+                return None;
+            }
+            Some(_) if self.phase == Phase::Dwell => ended = Some(self.complete(sample.time)),
+            _ => {}
+        }
+        self.average = Some(DwellAverage::begin(&self.coefficients, sample));
+        ended
+    }
+
+    /// Looks at the tilt once enough samples are in, then goes to the first position.
+    fn level(&mut self, now: Instant) -> Command {
+        let Some(average) = &self.average else { return Command::Wait };
+        if f64::from(average.count()) * self.procedure.sample_seconds < self.procedure.level_seconds
+        {
+            return Command::Wait;
+        }
+        let [x, y, _] = average.force();
+        let tilt = libm::asin((libm::hypot(x, y) / self.setting.latitude.gravity()).min(1.0));
+        if tilt > self.setting.allowed_tilt {
+            let [tilt, allowed] = [tilt, self.setting.allowed_tilt].map(|a| a / TURN * 360.0);
+            return self.conclude(Some(Refusal::TiltTooGreat { tilt, allowed }));
+        }
+        if self.stands_at_target() {
+            self.phase = Phase::Dwell;
+            return Command::Wait;
+        }
+        self.send(now)
+    }
+
+    /// Sends the stage to the target.
+    fn send(&mut self, now: Instant) -> Command {
+        self.phase = Phase::Rotate(now);
+        Command::Rotate(self.target.angle)
+    }
+
+    /// Whether the running average began where the stage was sent.
+    fn stands_at_target(&self) -> bool {
+        let target = Angle::from_rad(self.target.angle);
+        self.average.as_ref().is_some_and(|average| {
+            (average.anchor() - target).signed_rad().abs() <= self.procedure.arrival
+        })
+    }
+
+    /// Ends the dwell when its time is over.
+    fn dwell(&mut self, now: Instant) -> Command {
+        let seconds = self.average.as_ref().map_or(0.0, |average| {
+            (f64::from(average.count()) + 0.5) * self.procedure.sample_seconds
+        });
+        if seconds < self.target.seconds { Command::Wait } else { self.complete(now) }
+    }
+
+    /// Waits until the stage stands where it was sent.
+    fn rotate(&mut self, sample: &Sample, since: Instant) -> Command {
+        let count = self.average.as_ref().map_or(0, DwellAverage::count);
+        let rested = f64::from(count) * self.procedure.sample_seconds;
+        if self.stands_at_target() && count > 1 && rested >= self.procedure.settle_seconds {
+            if self.procedure.settle_seconds > 0.0 {
+                self.average = None;
+            }
+            self.phase = Phase::Dwell;
+        } else if sample.time.seconds() - since.seconds() > self.procedure.longest_rotation {
+            let target = Angle::from_rad(self.target.angle);
+            let [target, actual] = [target, sample.stage].map(|a| a.rad() / TURN * 360.0);
+            return self.conclude(Some(Refusal::StageNotThere { target, actual }));
+        }
+        Command::Wait
+    }
+
+    /// Takes the dwell in progress, or has it repeated. One that the stage cut short by moving of
+    /// itself is begun again where it was meant to be.
+    fn complete(&mut self, now: Instant) -> Command {
+        let finished = self
+            .average
+            .take()
+            .and_then(|average| average.finish(&self.coefficients, self.procedure.sample_seconds));
+        let Some(dwell) = finished else { return self.send(now) };
+        if self.dwells.push(dwell).is_err() {
+            return self.conclude(None);
+        }
+        match Norm::of(&self.setting, &self.dwells).disturbance(&dwell) {
+            Some(why) if self.tries < self.procedure.retries => self.repeat(why),
+            _ => self.go_on(now),
+        }
+    }
+
+    /// Drops the last dwell; the stage stays and the next sample begins it anew.
+    fn repeat(&mut self, why: Disturbance) -> Command {
+        self.dwells.pop();
+        self.tries += 1;
+        // A full log loses only the record of one more repetition, never a dwell.
+        let _ = self.repetitions.push(Repetition { position: self.dwells.len(), why });
+        Command::Wait
+    }
+
+    /// Sends the stage to the next position, or concludes.
+    fn go_on(&mut self, now: Instant) -> Command {
+        self.tries = 0;
+        let sigma = self.difference_sigma();
+        let schedule = &self.procedure.schedule;
+        let stops = schedule
+            .last_difference(&self.dwells, sigma)
+            .is_some_and(|difference| self.procedure.stop.stops(difference, sigma));
+        let [low, high] = self.procedure.travel;
+        match schedule.next(&self.dwells, sigma) {
+            Some(next) if !stops && (low..=high).contains(&next.angle) => {
+                self.target = next;
+                self.send(now)
+            }
+            _ => self.conclude(None),
+        }
+    }
+
+    /// Standard deviation of the difference of two dwells, rad/s.
+    fn difference_sigma(&self) -> f64 {
+        let white = Norm::of(&self.setting, &self.dwells).white();
+        libm::sqrt(2.0 * white / self.procedure.schedule.shortest())
+    }
+
+    fn averaged(&mut self, dwell: &Dwell) -> Command {
+        match self.dwells.push(*dwell) {
+            Ok(()) if self.dwells.len() < self.planned() => Command::Wait,
+            _ => self.conclude(None),
+        }
+    }
+
+    /// Ends the session with what there is, or with a reason that no dwell can mend.
+    fn conclude(&mut self, reason: Option<Refusal>) -> Command {
+        let mut conclusion = Conclusion::of(&self.setting, &self.dwells, self.procedure.criterion);
+        if let Some(reason) = reason {
+            conclusion.verdict = Err(reason);
+        }
+        self.conclusion = Some(conclusion);
+        self.phase = Phase::Done;
+        Command::Finished
+    }
+}

@@ -1,0 +1,155 @@
+//! Where the stage goes and how long it stays.
+
+use heapless::Vec;
+
+use crate::align::POSITIONS;
+use crate::signal::dwell::Dwell;
+
+/// One position: a stage angle and how long to stay.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Position {
+    /// Stage angle, rad, not wrapped: the cables are.
+    pub angle: f64,
+    /// Length of the dwell, s.
+    pub seconds: f64,
+}
+
+/// Which positions to visit.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Schedule {
+    /// These, in this order.
+    Listed(Vec<Position, POSITIONS>),
+    /// Sokolov's: equal steps from `start` towards growing rate. The first steps go clockwise until
+    /// the rate has changed significantly; where it fell, the rest go on from `start` the other way.
+    TowardMaximum {
+        /// Angle of the first position, rad.
+        start: f64,
+        /// Step Δ, rad, positive.
+        step: f64,
+        /// Number of positions n.
+        positions: usize,
+        /// Length of each dwell, s.
+        seconds: f64,
+    },
+}
+
+/// When to stop before the last position.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum StopRule {
+    /// Never: all positions are visited.
+    #[default]
+    AllPositions,
+    /// Sokolov's: when the rate's difference to the previous position is negative. Noise alone makes
+    /// it fire early.
+    SignChange,
+    /// When that difference is negative by this many of its standard deviations.
+    Significant(f64),
+}
+
+impl StopRule {
+    /// Whether to stop, for the last difference δ and its standard deviation, rad/s.
+    #[must_use]
+    pub fn stops(self, difference: f64, sigma: f64) -> bool {
+        match self {
+            Self::AllPositions => false,
+            Self::SignChange => difference < 0.0,
+            Self::Significant(bound) => difference < -bound * sigma,
+        }
+    }
+}
+
+/// Significance, in σ, with which the direction of growing rate is decided.
+const DIRECTION_BOUND: f64 = 3.0;
+
+impl Schedule {
+    /// These positions in this order; `None` where they are more than [`POSITIONS`].
+    #[must_use]
+    pub fn listed(positions: &[Position]) -> Option<Self> {
+        Vec::from_slice(positions).ok().map(Self::Listed)
+    }
+
+    /// Equal steps over the full circle, from zero, the last one step before a whole turn.
+    #[must_use]
+    pub fn circle(positions: usize, seconds: f64) -> Self {
+        let step = core::f64::consts::TAU / positions.max(1) as f64;
+        let list = (0..positions.min(POSITIONS))
+            .map(|index| Position { angle: index as f64 * step, seconds })
+            .collect();
+        Self::Listed(list)
+    }
+
+    /// How many positions there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Listed(list) => list.len(),
+            Self::TowardMaximum { positions, .. } => *positions,
+        }
+    }
+
+    /// Whether there is no position.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Shortest dwell, s.
+    #[must_use]
+    pub fn shortest(&self) -> f64 {
+        match self {
+            Self::Listed(list) => list.iter().map(|p| p.seconds).fold(f64::INFINITY, f64::min),
+            Self::TowardMaximum { seconds, .. } => *seconds,
+        }
+    }
+
+    /// Sum of all dwells, s.
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        match self {
+            Self::Listed(list) => list.iter().map(|p| p.seconds).sum(),
+            Self::TowardMaximum { seconds, positions, .. } => *positions as f64 * seconds,
+        }
+    }
+
+    /// The position after these dwells; `sigma` is the standard deviation of a difference, rad/s.
+    #[must_use]
+    pub fn next(&self, dwells: &[Dwell], sigma: f64) -> Option<Position> {
+        match self {
+            Self::Listed(list) => list.get(dwells.len()).copied(),
+            Self::TowardMaximum { start, step, positions, seconds } => {
+                let steps = steps_towards(dwells, sigma);
+                let angle = start + f64::from(steps) * step;
+                (dwells.len() < *positions).then_some(Position { angle, seconds: *seconds })
+            }
+        }
+    }
+
+    /// The last difference δ in the direction of the turn; none where the last two dwells are not
+    /// neighbours.
+    #[must_use]
+    pub fn last_difference(&self, dwells: &[Dwell], sigma: f64) -> Option<f64> {
+        let [.., before, last] = dwells else { return None };
+        let turned_back = match self {
+            Self::Listed(_) => false,
+            Self::TowardMaximum { .. } => {
+                turning_point(dwells, sigma).is_none_or(|turn| dwells.len() <= turn + 2)
+            }
+        };
+        (!turned_back).then_some(last.rate - before.rate)
+    }
+}
+
+/// Index of the first dwell whose rate differs significantly from that of the first.
+fn turning_point(dwells: &[Dwell], sigma: f64) -> Option<usize> {
+    let first = dwells.first()?.rate;
+    dwells.iter().position(|dwell| (dwell.rate - first).abs() > DIRECTION_BOUND * sigma)
+}
+
+/// In steps from the start, where to go next.
+fn steps_towards(dwells: &[Dwell], sigma: f64) -> i32 {
+    let visited = dwells.len() as i32;
+    match turning_point(dwells, sigma) {
+        Some(turn) if dwells[turn].rate < dwells[0].rate => turn as i32 - visited,
+        _ => visited,
+    }
+}

@@ -1,0 +1,131 @@
+//! Block means of one dwell, from which its quietness is judged.
+//!
+//! Sixteen sums hold the whole dwell, however long: when all are full, neighbours merge and the
+//! block length doubles, so a dwell ends with eight to sixteen equal blocks. They are taken before
+//! the filter, so white noise leaves them independent.
+
+/// Most blocks that are kept.
+pub const BLOCKS: usize = 16;
+
+/// Block sums of the deviations from the dwell's first sample.
+#[derive(Clone, Debug)]
+pub struct Blocks {
+    sums: [i64; BLOCKS],
+    full: usize,
+    current: i64,
+    filled: u32,
+    length: u32,
+}
+
+impl Default for Blocks {
+    fn default() -> Self {
+        Self { sums: [0; BLOCKS], full: 0, current: 0, filled: 0, length: 1 }
+    }
+}
+
+impl Blocks {
+    /// Adds one deviation, in nrad/s.
+    pub fn push(&mut self, deviation: i32) {
+        self.current += i64::from(deviation);
+        self.filled += 1;
+        if self.filled == self.length {
+            self.close();
+        }
+    }
+
+    fn close(&mut self) {
+        if self.full == BLOCKS {
+            self.merge();
+            // What was just filled is now half a block.
+            return;
+        }
+        self.sums[self.full] = self.current;
+        self.full += 1;
+        self.current = 0;
+        self.filled = 0;
+    }
+
+    fn merge(&mut self) {
+        for index in 0..BLOCKS / 2 {
+            self.sums[index] = self.sums[2 * index] + self.sums[2 * index + 1];
+        }
+        self.full = BLOCKS / 2;
+        self.length *= 2;
+    }
+
+    /// The statistics of the full blocks; `None` for fewer than four.
+    #[must_use]
+    pub fn quietness(&self, sample_seconds: f64) -> Option<Quietness> {
+        if self.full < 4 {
+            return None;
+        }
+        let scale = 1e-9 / f64::from(self.length);
+        let mut means = [0.0; BLOCKS];
+        for (mean, sum) in means.iter_mut().zip(self.sums) {
+            *mean = sum as f64 * scale;
+        }
+        let seconds = f64::from(self.length) * sample_seconds;
+        Some(Quietness::of(&means[..self.full], seconds))
+    }
+}
+
+/// How still a dwell was, before it is known how noisy the gyro is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quietness {
+    /// Number of blocks.
+    pub blocks: usize,
+    /// Length of a block, s.
+    pub block_seconds: f64,
+    /// Slope of a straight line through the blocks, rad/s².
+    pub slope: f64,
+    /// The slope's standard deviation for a block standard deviation of one, 1/s.
+    pub slope_unit: f64,
+    /// Sum of squares about that line, (rad/s)²; `blocks` − 2 degrees of freedom.
+    pub scatter: f64,
+    /// Largest step between an interval of blocks and the rest, about that line, in rad/s, scaled
+    /// so that a block standard deviation of one gives it variance one.
+    pub largest_step: f64,
+    /// Sum of squared differences of neighbouring blocks, (rad/s)²: twice their variance each, and
+    /// deaf to a slow disturbance.
+    pub neighbour_squares: f64,
+}
+
+impl Quietness {
+    fn of(means: &[f64], block_seconds: f64) -> Self {
+        let count = means.len() as f64;
+        let centre = 0.5 * (count - 1.0);
+        let mean = means.iter().sum::<f64>() / count;
+        let spread = count * (count * count - 1.0) / 12.0;
+        let moment: f64 = means.iter().enumerate().map(|(i, m)| (i as f64 - centre) * m).sum();
+        let slope = moment / spread;
+        let mut rest = [0.0; BLOCKS];
+        for (index, value) in means.iter().enumerate() {
+            rest[index] = value - mean - slope * (index as f64 - centre);
+        }
+        Self {
+            blocks: means.len(),
+            block_seconds,
+            slope: slope / block_seconds,
+            slope_unit: 1.0 / (libm::sqrt(spread) * block_seconds),
+            scatter: rest.iter().map(|r| r * r).sum(),
+            largest_step: largest_step(&rest[..means.len()]),
+            neighbour_squares: means.windows(2).map(|w| (w[1] - w[0]) * (w[1] - w[0])).sum(),
+        }
+    }
+}
+
+/// The scan for a disturbance of any length: the greatest normalised difference of an interval.
+fn largest_step(rest: &[f64]) -> f64 {
+    let count = rest.len() as f64;
+    let mut largest: f64 = 0.0;
+    for from in 0..rest.len() {
+        let mut sum = 0.0;
+        for (length, value) in rest[from..].iter().enumerate().take(rest.len() - 1) {
+            sum += value;
+            let inside = length as f64 + 1.0;
+            let deviation = libm::sqrt(inside * (1.0 - inside / count).max(1e-9));
+            largest = largest.max((sum / deviation).abs());
+        }
+    }
+    largest
+}

@@ -1,1 +1,0 @@
-//! Butterworth low-pass sections in wide fixed point.

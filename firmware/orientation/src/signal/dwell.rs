@@ -1,0 +1,224 @@
+//! The average of one dwell: filter, integrate, and judge what went in.
+//!
+//! The filter starts at each arrival as if the first sample x₀ had stood for ever, so nothing of
+//! the previous position and of the rotation can smear into this one. The mean of its output over
+//! n samples is then x₀ + Σ wⱼ(xⱼ − x₀), with wⱼ the step response at the time that is left; as
+//! Σ wⱼ = n − D is known from the design (D the lag), dividing by (n − D)/n gives an unbiased mean
+//! in which x₀ cancels. Nothing is discarded: the taper costs the variance factor
+//! (n − 2D + E)·n/(n − D)², with E the lag power.
+
+use super::Sample;
+use super::blocks::{Blocks, Quietness};
+use super::butterworth::{Coefficients, Filter};
+use crate::units::{Angle, AngularRate, Instant};
+
+/// What one dwell leaves behind, whoever averaged it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Dwell {
+    /// Encoder angle.
+    pub stage: Angle,
+    /// Middle of the averaged time, s. (The taper's own middle lies half its lag earlier, in every
+    /// dwell alike, so it is of no consequence.)
+    pub middle: f64,
+    /// Length of the averaged time, s.
+    pub seconds: f64,
+    /// Samples averaged; zero where that is not known.
+    pub samples: u32,
+    /// Mean rate about the sensitive axis, rad/s.
+    pub rate: f64,
+    /// White-noise variance of the mean over that of an average of all samples, ≥ 1.
+    pub taper: f64,
+    /// Variance of the mean as its source states it, (rad/s)².
+    pub stated_variance: Option<f64>,
+    /// Standard deviation of one sample about the mean, rad/s.
+    pub spread: f64,
+    /// Block statistics, where there were samples enough.
+    pub quietness: Option<Quietness>,
+    /// Mean specific force on the platform's axes, m/s², where it was measured.
+    pub force: Option<[f64; 3]>,
+    /// Mean temperature, °C, where it was measured.
+    pub temperature: Option<f64>,
+    /// What was wrong with samples.
+    pub fault: Option<SampleFault>,
+}
+
+impl Dwell {
+    /// When the averaged time began, s.
+    #[must_use]
+    pub fn start(&self) -> f64 {
+        self.middle - 0.5 * self.seconds
+    }
+
+    /// When the averaged time ended, s.
+    #[must_use]
+    pub fn end(&self) -> f64 {
+        self.middle + 0.5 * self.seconds
+    }
+}
+
+/// A sickness of the samples of a dwell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SampleFault {
+    /// A rate stood at the limit of its range.
+    Saturated,
+    /// Every rate was the same: the gyro or its bus is stuck.
+    Stuck,
+    /// Samples were missing: the times have a gap.
+    Missing,
+}
+
+/// Mean of a quantity as a sum of deviations from its first value.
+#[derive(Clone, Copy, Debug, Default)]
+struct Deviations {
+    origin: i32,
+    sum: i64,
+}
+
+impl Deviations {
+    fn push(&mut self, value: i32) {
+        self.sum += i64::from(value) - i64::from(self.origin);
+    }
+
+    /// The mean in units of `lsb`.
+    fn mean(&self, count: f64, lsb: f64) -> f64 {
+        (f64::from(self.origin) + self.sum as f64 / count) * lsb
+    }
+}
+
+/// The running average of a dwell in progress.
+#[derive(Clone, Debug)]
+pub struct DwellAverage<const SECTIONS: usize> {
+    first: Instant,
+    last: Instant,
+    anchor: Angle,
+    count: u32,
+    origin: AngularRate,
+    filter: Filter<SECTIONS>,
+    filtered: i64,
+    squares: u64,
+    blocks: Blocks,
+    stage: i64,
+    force: [Deviations; 3],
+    temperature: Option<Deviations>,
+    saturated: bool,
+    longest_gap: u64,
+}
+
+impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
+    /// Begins at the first sample of a standstill, which counts.
+    #[must_use]
+    pub fn begin(coefficients: &Coefficients<SECTIONS>, sample: &Sample) -> Self {
+        let mut average = Self {
+            first: sample.time,
+            last: sample.time,
+            anchor: sample.stage,
+            count: 0,
+            origin: sample.rate,
+            filter: Filter::at_rest(sample.rate),
+            filtered: 0,
+            squares: 0,
+            blocks: Blocks::default(),
+            stage: 0,
+            force: sample.force.map(|force| Deviations { origin: force.0, sum: 0 }),
+            temperature: sample.temperature.map(|t| Deviations { origin: t.0, sum: 0 }),
+            saturated: false,
+            longest_gap: 0,
+        };
+        average.push(coefficients, sample);
+        average
+    }
+
+    /// Adds a sample of the same standstill.
+    pub fn push(&mut self, coefficients: &Coefficients<SECTIONS>, sample: &Sample) {
+        let deviation = sample.rate.0.saturating_sub(self.origin.0);
+        let filtered = self.filter.update(coefficients, sample.rate);
+        self.filtered += i64::from(filtered.0) - i64::from(self.origin.0);
+        let size = u64::from(deviation.unsigned_abs());
+        self.squares = self.squares.saturating_add(size * size);
+        self.blocks.push(deviation);
+        self.saturated |= sample.rate.is_saturated();
+        self.stage += i64::from((sample.stage - self.anchor).0 as i32);
+        for (sum, force) in self.force.iter_mut().zip(sample.force) {
+            sum.push(force.0);
+        }
+        if let (Some(sum), Some(temperature)) = (&mut self.temperature, sample.temperature) {
+            sum.push(temperature.0);
+        }
+        self.longest_gap = self.longest_gap.max(sample.time.0.saturating_sub(self.last.0));
+        self.last = sample.time;
+        self.count += 1;
+    }
+
+    /// Whether a stage angle is still that of the first sample, within `tolerance` rad.
+    #[must_use]
+    pub fn stands_at(&self, stage: Angle, tolerance: f64) -> bool {
+        (stage - self.anchor).signed_rad().abs() <= tolerance
+    }
+
+    /// Encoder angle at the first sample.
+    #[must_use]
+    pub fn anchor(&self) -> Angle {
+        self.anchor
+    }
+
+    /// Samples so far.
+    #[must_use]
+    pub fn count(&self) -> u32 {
+        self.count
+    }
+
+    /// Mean specific force so far, m/s².
+    #[must_use]
+    pub fn force(&self) -> [f64; 3] {
+        self.force.map(|sum| sum.mean(f64::from(self.count), 1e-6))
+    }
+
+    /// The dwell, for a sample period in seconds; `None` while the filter has not settled.
+    #[must_use]
+    pub fn finish(
+        &self,
+        coefficients: &Coefficients<SECTIONS>,
+        sample_seconds: f64,
+    ) -> Option<Dwell> {
+        if self.count < coefficients.settling() {
+            return None;
+        }
+        let count = f64::from(self.count);
+        let weight = count - coefficients.lag();
+        let power = count - 2.0 * coefficients.lag() + coefficients.lag_power();
+        let offset = self.stage as f64 / count;
+        Some(Dwell {
+            stage: Angle(self.anchor.0.wrapping_add(libm::round(offset) as i32 as u32)),
+            middle: 0.5 * (self.first.seconds() + self.last.seconds()),
+            seconds: count * sample_seconds,
+            samples: self.count,
+            rate: (f64::from(self.origin.0) + self.filtered as f64 / weight) * 1e-9,
+            taper: power * count / (weight * weight),
+            stated_variance: None,
+            spread: self.spread(),
+            quietness: self.blocks.quietness(sample_seconds),
+            force: Some(self.force()),
+            temperature: self.temperature.map(|sum| sum.mean(count, 1e-3)),
+            fault: self.fault(sample_seconds),
+        })
+    }
+
+    /// Standard deviation of one sample about the mean of the filtered ones, rad/s.
+    fn spread(&self) -> f64 {
+        let count = f64::from(self.count);
+        let mean = self.filtered as f64 / count;
+        libm::sqrt((self.squares as f64 / count - mean * mean).max(0.0)) * 1e-9
+    }
+
+    fn fault(&self, sample_seconds: f64) -> Option<SampleFault> {
+        if self.saturated {
+            Some(SampleFault::Saturated)
+        } else if self.squares == 0 {
+            Some(SampleFault::Stuck)
+        } else if self.longest_gap as f64 * 1e-6 > 1.5 * sample_seconds {
+            Some(SampleFault::Missing)
+        } else {
+            None
+        }
+    }
+}

@@ -1,0 +1,196 @@
+//! Error model of one precise gyro, in the field's units.
+//!
+//! Per sample at rate `f_s`: white noise σ = N·√`f_s` (a rate of two-sided density N² averaged over one
+//! period), rate random walk with steps K/√`f_s`, flicker (`flicker`), a ramp R·t, and quantisation of
+//! the angle. The Allan variance of the sum is 3Q²/τ² + N²/τ + (2 ln 2/π)B² + K²τ/3 + R²τ²/2
+//! (IEEE Std 952-1997, annex C).
+
+use crate::flicker::Flicker;
+use crate::noise::{Generator, White, source};
+
+/// One degree in radians.
+const DEGREE: f64 = core::f64::consts::PI / 180.0;
+
+/// One degree per hour in rad/s.
+pub const DEGREE_PER_HOUR: f64 = DEGREE / 3600.0;
+
+/// One second of arc in radians.
+const ARCSECOND: f64 = DEGREE / 3600.0;
+
+/// Errors of a gyro as a data sheet states them; all zero (the default) is a perfect gyro.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GyroConfiguration {
+    /// N, angle random walk, °/√h, ≥ 0.
+    pub n_deg_sqrt_h: f64,
+    /// B, bias instability, °/h, ≥ 0: one-sided spectrum B²/(π f), Allan floor 0.664 B.
+    pub b_deg_h: f64,
+    /// Lower cut-off of the flicker, Hz (default 10⁻⁵: below any run of this project).
+    pub flicker_low_hz: f64,
+    /// Upper cut-off of the flicker, Hz (default 10; keep it below half the sample rate).
+    pub flicker_high_hz: f64,
+    /// K, rate random walk, °/h/√h, ≥ 0; zero at the first sample.
+    pub k_deg_h_sqrt_h: f64,
+    /// R, rate ramp, °/h², from the first sample.
+    pub r_deg_h2: f64,
+    /// Q, quantisation, arcsec RMS: the output angle has a least step of √12·Q.
+    pub q_arcsec: f64,
+    /// Turn-on bias, °/h: the fixed part.
+    pub bias_deg_h: f64,
+    /// Turn-on bias, °/h: 1σ of the part drawn anew for every seed.
+    pub bias_sigma_deg_h: f64,
+    /// Scale factor error, 1: the gyro shows (1 + error) × the rate.
+    pub scale_error: f64,
+    /// Scale factor error, 1: 1σ of the part drawn anew for every seed.
+    pub scale_sigma: f64,
+    /// g-sensitivity (`k_s`, `k_o`), °/h/g, along the sensitive axis and 90° clockwise of it.
+    pub g_sensitivity_deg_h_g: [f64; 2],
+    /// Temperature coefficient of the bias, °/h/°C.
+    pub temperature_deg_h_c: f64,
+    /// Temperature at which the bias is stated, °C (default 25).
+    pub reference_c: f64,
+    /// Elevation of the sensitive axis above the platform plane, rad (non-orthogonality α).
+    pub axis_elevation_rad: f64,
+}
+
+impl Default for GyroConfiguration {
+    fn default() -> Self {
+        Self {
+            n_deg_sqrt_h: 0.0,
+            b_deg_h: 0.0,
+            flicker_low_hz: 1e-5,
+            flicker_high_hz: 10.0,
+            k_deg_h_sqrt_h: 0.0,
+            r_deg_h2: 0.0,
+            q_arcsec: 0.0,
+            bias_deg_h: 0.0,
+            bias_sigma_deg_h: 0.0,
+            scale_error: 0.0,
+            scale_sigma: 0.0,
+            g_sensitivity_deg_h_g: [0.0; 2],
+            temperature_deg_h_c: 0.0,
+            reference_c: 25.0,
+            axis_elevation_rad: 0.0,
+        }
+    }
+}
+
+impl GyroConfiguration {
+    /// White noise of one sample at `rate_hz`, rad/s: N·√`f_s`.
+    #[must_use]
+    pub fn white_sigma_rad_s(&self, rate_hz: f64) -> f64 {
+        // √h is 60 √s.
+        self.n_deg_sqrt_h * (DEGREE / 60.0) * libm::sqrt(rate_hz)
+    }
+
+    /// Step of the rate random walk from sample to sample at `rate_hz`, rad/s: K/√`f_s`.
+    #[must_use]
+    pub fn walk_sigma_rad_s(&self, rate_hz: f64) -> f64 {
+        self.k_deg_h_sqrt_h * (DEGREE_PER_HOUR / 60.0) / libm::sqrt(rate_hz)
+    }
+}
+
+/// A gyro at work: its configuration, what it drew at start, and the state of its noise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gyro {
+    configuration: GyroConfiguration,
+    bias_rad_s: f64,
+    scale_error: f64,
+    white: White,
+    walk: White,
+    walked_rad_s: f64,
+    flicker: Flicker,
+    quantiser: Quantiser,
+}
+
+impl Gyro {
+    /// A gyro read `rate_hz` times a second (> 0); bias and scale are drawn from the seed.
+    #[must_use]
+    pub fn new(configuration: &GyroConfiguration, rate_hz: f64, seed: u64) -> Self {
+        let c = *configuration;
+        let mut start = Generator::stream(seed, source::GYRO_START);
+        let bias_deg_h = c.bias_deg_h + c.bias_sigma_deg_h * start.gaussian();
+        let b = c.b_deg_h * DEGREE_PER_HOUR;
+        let noise = Generator::stream(seed, source::GYRO_FLICKER);
+        Self {
+            configuration: c,
+            bias_rad_s: bias_deg_h * DEGREE_PER_HOUR,
+            scale_error: c.scale_error + c.scale_sigma * start.gaussian(),
+            white: White::new(c.white_sigma_rad_s(rate_hz), seed, source::GYRO_WHITE),
+            walk: White::new(c.walk_sigma_rad_s(rate_hz), seed, source::GYRO_WALK),
+            walked_rad_s: 0.0,
+            flicker: Flicker::new(b, c.flicker_low_hz, c.flicker_high_hz, rate_hz, noise),
+            quantiser: Quantiser::new(c.q_arcsec * ARCSECOND, rate_hz),
+        }
+    }
+
+    /// Turn-on bias of this start, rad/s.
+    #[must_use]
+    pub fn bias_rad_s(&self) -> f64 {
+        self.bias_rad_s
+    }
+
+    /// Scale factor error of this start, 1.
+    #[must_use]
+    pub fn scale_error(&self) -> f64 {
+        self.scale_error
+    }
+
+    /// Rate along the sensitive axis, rad/s, of a platform turning at `platform_rad_s` (x along the
+    /// axis, y 90° clockwise, z down; the stage's own rate included).
+    #[must_use]
+    pub fn along_axis(&self, platform_rad_s: [f64; 3]) -> f64 {
+        let elevation = self.configuration.axis_elevation_rad;
+        // Elevation is up, platform z is down.
+        libm::cos(elevation) * platform_rad_s[0] - libm::sin(elevation) * platform_rad_s[2]
+    }
+
+    /// What the gyro shows without noise, ramp and temperature, rad/s: scale, bias, g-sensitivity.
+    /// `axis_rad_s` from [`Gyro::along_axis`], `force_g` the specific force on platform x and y in g.
+    #[must_use]
+    pub fn steady(&self, axis_rad_s: f64, force_g: [f64; 2]) -> f64 {
+        let [along, across] = self.configuration.g_sensitivity_deg_h_g;
+        let gravity = (along * force_g[0] + across * force_g[1]) * DEGREE_PER_HOUR;
+        (1.0 + self.scale_error) * axis_rad_s + gravity + self.bias_rad_s
+    }
+
+    /// The next output, rad/s, `elapsed_s` after the first sample at `temperature_c`, when
+    /// [`Gyro::steady`] and any disturbance come to `steady_rad_s`.
+    #[inline]
+    pub fn sample(&mut self, steady_rad_s: f64, elapsed_s: f64, temperature_c: f64) -> f64 {
+        let c = &self.configuration;
+        let drift_deg_h = c.r_deg_h2 / 3600.0 * elapsed_s
+            + c.temperature_deg_h_c * (temperature_c - c.reference_c);
+        let slow = drift_deg_h * DEGREE_PER_HOUR + self.walked_rad_s + self.flicker.sample();
+        self.walked_rad_s += self.walk.sample();
+        self.quantiser.sample(steady_rad_s + slow + self.white.sample())
+    }
+}
+
+/// Output of whole angle increments: the angle is rounded to a step, the rest is carried over, so
+/// that no rotation is ever lost. Its error is uniform over a step of √12·Q: Q RMS.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Quantiser {
+    /// Rate of one step per sample, rad/s; zero for none.
+    step_rad_s: f64,
+    /// Angle not yet shown, steps, within ±½.
+    carried: f64,
+}
+
+impl Quantiser {
+    /// Quantisation of `q_rad` RMS at `rate_hz`.
+    fn new(q_rad: f64, rate_hz: f64) -> Self {
+        Self { step_rad_s: libm::sqrt(12.0) * q_rad * rate_hz, carried: 0.0 }
+    }
+
+    /// Quantises one sample, rad/s.
+    #[inline]
+    fn sample(&mut self, rate_rad_s: f64) -> f64 {
+        if self.step_rad_s <= 0.0 {
+            return rate_rad_s;
+        }
+        let steps = self.carried + rate_rad_s / self.step_rad_s;
+        let shown = libm::rint(steps);
+        self.carried = steps - shown;
+        shown * self.step_rad_s
+    }
+}

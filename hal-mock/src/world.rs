@@ -1,0 +1,72 @@
+//! A whole recording of kind `stage`, sample by sample: instruments, stops, disturbances, one seed.
+
+use crate::disturbance::{self, Disturbance};
+use crate::instruments::{Instruments, InstrumentsConfiguration, Sample, Truth};
+use crate::stage::{Stage, Stop};
+
+/// A run: the instruments, where the stage goes, what disturbs it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WorldConfiguration<'a> {
+    /// Site, attitude, sensors.
+    pub instruments: InstrumentsConfiguration,
+    /// Positions of the stage in order; the run ends with the last dwell.
+    pub stops: &'a [Stop],
+    /// Events, in any order.
+    pub disturbances: &'a [Disturbance],
+}
+
+/// A world at work; an iterator of samples that starts at t = 0.
+#[derive(Clone, Debug, PartialEq)]
+pub struct World<'a> {
+    rate_hz: f64,
+    stage: Stage<'a>,
+    disturbances: &'a [Disturbance],
+    instruments: Instruments,
+    next: u64,
+}
+
+impl<'a> World<'a> {
+    /// The world of a configuration; the seed fixes everything random in it.
+    #[must_use]
+    pub fn new(configuration: WorldConfiguration<'a>, seed: u64) -> Self {
+        let rate_hz = configuration.instruments.rate_hz;
+        Self {
+            rate_hz,
+            stage: Stage::new(configuration.stops, rate_hz),
+            disturbances: configuration.disturbances,
+            instruments: Instruments::new(&configuration.instruments, seed),
+            next: 0,
+        }
+    }
+
+    /// The next sample; none after the last dwell.
+    #[inline]
+    pub fn next_sample(&mut self) -> Option<Sample> {
+        let stage = self.stage.state(self.next)?;
+        let time_s = self.next as f64 / self.rate_hz;
+        self.next += 1;
+        self.instruments.turn(stage);
+        let effect = disturbance::total(self.disturbances, time_s);
+        Some(self.instruments.sample(time_s, &effect))
+    }
+
+    /// The truth behind the latest sample.
+    #[must_use]
+    pub fn truth(&self) -> Truth {
+        self.instruments.truth()
+    }
+
+    /// Length of the whole run, s.
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        self.stage.seconds()
+    }
+}
+
+impl Iterator for World<'_> {
+    type Item = Sample;
+
+    fn next(&mut self) -> Option<Sample> {
+        self.next_sample()
+    }
+}

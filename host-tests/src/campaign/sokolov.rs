@@ -1,0 +1,431 @@
+//! Sokolov's numerical experiment (papers/000, section 3) and what it leaves open.
+//!
+//! White noise of 0.15 °/h on each sample at 100 Hz, a constant bias of 0.01 °/h (1σ), latitude
+//! 47°35′, 60 dwells of 1 s through the sixth-order Butterworth filter in fixed point, first on the
+//! paper's arc of 28′ steps, then on the full circle. The paper prints the least error of 90 runs;
+//! here it stands beside the RMS and the limit.
+
+use hal_mock::gyro::GyroConfiguration;
+use hal_mock::instruments::InstrumentsConfiguration;
+use hal_mock::stage::Stop;
+use hal_mock::world::{World, WorldConfiguration};
+use orientation::align::conclusion::Conclusion;
+use orientation::align::criterion::Criterion;
+use orientation::align::etalon::table::{self, ONE, STEP};
+use orientation::align::etalon::{self, Accepted, Limit, Series, Table as Etalon};
+use orientation::align::setting::Setting;
+use orientation::earth::Latitude;
+use orientation::noise::model::GyroNoise;
+use orientation::session::schedule::{Position, Schedule, StopRule};
+use orientation::session::{Procedure, Session};
+use orientation::signal::Sample;
+use orientation::signal::dwell::Dwell;
+use orientation::units::{ARCSECONDS_PER_RADIAN, DEGREE_PER_HOUR};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::statistics::{coverage, least, rms};
+use crate::output::azimuth_error;
+use crate::reference::Filter;
+use crate::replay::drive;
+use crate::simulate::stage_path;
+
+/// Latitude of the paper, °.
+const LATITUDE_DEG: f64 = 47.0 + 35.0 / 60.0;
+/// Angle random walk of 0.15 °/h per sample at 100 Hz, °/√h.
+const ANGLE_RANDOM_WALK: f64 = 0.000_25;
+/// 1σ of the constant bias S, °/h.
+const BIAS_DEG_H: f64 = 0.01;
+/// Positions n.
+const POSITIONS: usize = 60;
+/// Samples of one dwell of 1 s.
+const DWELL_SAMPLES: usize = 100;
+/// Sample rate, Hz.
+const RATE_HZ: f64 = 100.0;
+/// Realisations for each azimuth in the paper's Table 1.
+pub const TABLE_RUNS: usize = 90;
+/// The paper's azimuths, °, moved off the 10″ grid by a third and more of a step.
+const AZIMUTHS_DEG: [f64; 3] =
+    [28.0 + 10.0 / 60.0 + 3.7 / 3600.0, 28.5 + 4.1 / 3600.0, 28.0 + 50.0 / 60.0 + 6.3 / 3600.0];
+/// The paper's Table 1: the least error over 90 realisations, ″.
+const PAPER_LEAST: [f64; 3] = [7.3, 9.6, 6.0];
+
+/// Where the stage goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Turn {
+    /// 60 steps of 28′ from azimuth 28° towards north.
+    Arc,
+    /// 60 steps of 6°.
+    Circle,
+}
+
+impl Turn {
+    /// Its name in tables.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Arc => "28° arc, steps of 28′",
+            Self::Circle => "full circle, steps of 6°",
+        }
+    }
+
+    /// Step Δ with its sign, rad.
+    fn step(self) -> f64 {
+        match self {
+            Self::Arc => (-28.0_f64 / 60.0).to_radians(),
+            Self::Circle => 6.0_f64.to_radians(),
+        }
+    }
+}
+
+/// The setting that the solver gets.
+///
+/// # Panics
+/// Never: the latitude is a constant within ±90°.
+#[must_use]
+pub fn setting() -> Setting {
+    let latitude = Latitude::from_degrees(LATITUDE_DEG).unwrap_or_else(|| unreachable!());
+    Setting {
+        noise: GyroNoise::from_field_units(ANGLE_RANDOM_WALK, 0.0, 0.0, 0.0),
+        white_known: true,
+        ..Setting::at(latitude)
+    }
+}
+
+/// The samples of one realisation.
+#[must_use]
+pub fn samples(turn: Turn, azimuth_deg: f64, seed: u64) -> Vec<Sample> {
+    let stops: Vec<Stop> = (0..POSITIONS).map(|i| Stop::new(i as f64 * turn.step(), 1.0)).collect();
+    let gyro = GyroConfiguration {
+        n_deg_sqrt_h: ANGLE_RANDOM_WALK,
+        bias_sigma_deg_h: BIAS_DEG_H,
+        ..GyroConfiguration::default()
+    };
+    let instruments = InstrumentsConfiguration {
+        latitude_deg: LATITUDE_DEG,
+        azimuth_deg,
+        rate_hz: RATE_HZ,
+        gyro,
+        ..InstrumentsConfiguration::default()
+    };
+    let configuration = WorldConfiguration { instruments, stops: &stops, disturbances: &[] };
+    World::new(configuration, seed).map(|reading| stage_path(&reading)).collect()
+}
+
+/// The procedure that follows this turn.
+fn procedure(turn: Turn) -> Procedure {
+    let position = |i| Position { angle: f64::from(i) * turn.step(), seconds: 1.0 };
+    let positions: Vec<Position> = (0..POSITIONS as u32).map(position).collect();
+    let schedule = Schedule::listed(&positions).unwrap_or_else(|| Schedule::circle(0, 1.0));
+    let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
+    Procedure { travel: everywhere, retries: 0, ..Procedure::new(schedule, 1.0 / RATE_HZ) }
+}
+
+/// The dwells of one realisation, through the session's fixed-point filter.
+///
+/// # Errors
+/// What keeps the session from beginning.
+pub fn dwells(turn: Turn, samples: &[Sample]) -> Result<Vec<Dwell>, String> {
+    let mut session =
+        Session::new(setting(), procedure(turn)).map_err(|error| format!("{error:?}"))?;
+    drive(&mut session, samples.iter().copied(), |_| {});
+    Ok(session.dwells().to_vec())
+}
+
+/// The same dwells with rates from the filter in `f64`.
+fn in_floating_point(turn: Turn, samples: &[Sample], dwells: &[Dwell]) -> Vec<Dwell> {
+    let filter = Filter::low_pass(6, procedure(turn).cutoff(), RATE_HZ);
+    let rates: Vec<f64> = samples.iter().map(|sample| sample.rate.rad_per_s()).collect();
+    let means = rates.chunks(DWELL_SAMPLES).map(|chunk| filter.dwell_mean(chunk));
+    dwells.iter().zip(means).map(|(dwell, rate)| Dwell { rate, ..*dwell }).collect()
+}
+
+/// One answer against the truth.
+#[derive(Clone, Copy, Debug)]
+struct Answer {
+    /// Error, ″.
+    error: f64,
+    /// Standard deviation, ″.
+    sigma: f64,
+    /// Cramér–Rao bound, ″.
+    limit: f64,
+}
+
+/// Solves by a criterion; none where it is refused.
+fn answer(dwells: &[Dwell], criterion: Criterion, azimuth_deg: f64) -> Option<Answer> {
+    let conclusion = Conclusion::of(&setting(), dwells, criterion);
+    let azimuth = conclusion.verdict.ok()?;
+    let error = azimuth_error(azimuth.angle.to_degrees(), azimuth_deg) * 3600.0;
+    let limit = conclusion.fit?.limit * ARCSECONDS_PER_RADIAN;
+    Some(Answer { error, sigma: azimuth.sigma * ARCSECONDS_PER_RADIAN, limit })
+}
+
+/// The paper's bounds: 1.5 and 1.25 of what the noise alone is expected to leave, so that the truth
+/// is accepted nearly always.
+fn criteria() -> [(&'static str, Criterion); 5] {
+    // White noise of a dwell of 1 s, and of a difference of two, rad/s.
+    let dwell = ANGLE_RANDOM_WALK * 60.0 * DEGREE_PER_HOUR;
+    let difference = dwell * std::f64::consts::SQRT_2;
+    let terms = (POSITIONS - 1) as f64;
+    let absolute = terms * difference * (2.0 / std::f64::consts::PI).sqrt();
+    [
+        ("ml", Criterion::MaximumLikelihood),
+        ("least-squares", Criterion::LeastSquares),
+        ("least-absolute", Criterion::LeastAbsolute),
+        ("within-squares", Criterion::WithinSquares(1.5 * terms * difference * difference)),
+        ("within-absolute", Criterion::WithinAbsolute(1.25 * absolute)),
+    ]
+}
+
+/// A row of the table: one criterion on one turn.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// The criterion.
+    pub criterion: &'static str,
+    /// Realisations.
+    pub runs: usize,
+    /// How many were refused.
+    pub refused: usize,
+    /// RMS error, ″.
+    pub rms_arcsec: f64,
+    /// Least error over the realisations of each azimuth, ″.
+    pub least_arcsec: [f64; 3],
+    /// RMS of the standard deviations that were stated, ″.
+    pub sigma_arcsec: f64,
+    /// Cramér–Rao bound, ″.
+    pub limit_arcsec: f64,
+    /// RMS over limit.
+    pub ratio: f64,
+}
+
+/// The table of one turn.
+#[derive(Clone, Debug, Serialize)]
+pub struct Table {
+    /// The turn.
+    pub schedule: &'static str,
+    /// One row for each criterion.
+    pub rows: Vec<Row>,
+    /// The paper's figures for its least error, ″.
+    pub paper_least_arcsec: [f64; 3],
+    /// The stop rules on these dwells.
+    pub stop_rules: Vec<StopRow>,
+    /// What the paper's α accepts.
+    pub paper_alpha: Vec<AlphaRow>,
+}
+
+/// When a stop rule fires.
+#[derive(Clone, Debug, Serialize)]
+pub struct StopRow {
+    /// The rule.
+    pub rule: &'static str,
+    /// Median of the step at which it fires.
+    pub median_step: usize,
+    /// Runs in which all positions are reached.
+    pub all_positions: usize,
+    /// Runs.
+    pub runs: usize,
+}
+
+/// What a bound α of Σ|·| accepts of the full circle.
+#[derive(Clone, Debug, Serialize)]
+pub struct AlphaRow {
+    /// α, °/h.
+    pub alpha_deg_h: f64,
+    /// Runs.
+    pub runs: usize,
+    /// Runs in which nothing is accepted.
+    pub nothing: usize,
+    /// Runs in which every candidate of the paper's range, 0 to 90°, is accepted.
+    pub whole_range: usize,
+    /// Mean width of the accepted arc in the others, °.
+    pub mean_width_deg: f64,
+}
+
+/// Three azimuths, `TABLE_RUNS` realisations each, all criteria.
+///
+/// # Errors
+/// What keeps a session from beginning.
+pub fn tabulate(turn: Turn, tick: impl Fn() + Sync) -> Result<Table, String> {
+    let all: Vec<(usize, Vec<Dwell>)> = (0..3 * TABLE_RUNS)
+        .into_par_iter()
+        .map(|run| {
+            let place = run / TABLE_RUNS;
+            let samples = samples(turn, AZIMUTHS_DEG[place], run as u64 + 1);
+            tick();
+            Ok((place, dwells(turn, &samples)?))
+        })
+        .collect::<Result<_, String>>()?;
+    let rows = criteria().map(|(name, criterion)| row(&all, name, criterion));
+    Ok(Table {
+        schedule: turn.name(),
+        rows: rows.to_vec(),
+        paper_least_arcsec: PAPER_LEAST,
+        stop_rules: if turn == Turn::Arc { stop_rules(&all) } else { Vec::new() },
+        paper_alpha: if turn == Turn::Arc { paper_alpha(&all) } else { Vec::new() },
+    })
+}
+
+fn row(all: &[(usize, Vec<Dwell>)], name: &'static str, criterion: Criterion) -> Row {
+    let answers: Vec<(usize, Option<Answer>)> = all
+        .par_iter()
+        .map(|(place, dwells)| (*place, answer(dwells, criterion, AZIMUTHS_DEG[*place])))
+        .collect();
+    let given: Vec<(usize, Answer)> = answers
+        .iter()
+        .filter_map(|(place, answer)| answer.map(|answer| (*place, answer)))
+        .collect();
+    let errors: Vec<f64> = given.iter().map(|(_, answer)| answer.error).collect();
+    let limits: Vec<f64> = given.iter().map(|(_, answer)| answer.limit).collect();
+    let sigmas: Vec<f64> = given.iter().map(|(_, answer)| answer.sigma).collect();
+    let at = |place: usize| -> Vec<f64> {
+        given.iter().filter(|(p, _)| *p == place).map(|(_, answer)| answer.error).collect()
+    };
+    Row {
+        criterion: name,
+        runs: answers.len(),
+        refused: answers.len() - given.len(),
+        rms_arcsec: rms(&errors),
+        least_arcsec: [0, 1, 2].map(|place| least(&at(place))),
+        sigma_arcsec: rms(&sigmas),
+        limit_arcsec: rms(&limits),
+        ratio: rms(&errors) / rms(&limits),
+    }
+}
+
+/// The step at which a rule would have stopped; `POSITIONS` where it never does.
+fn stopped_at(dwells: &[Dwell], rule: StopRule) -> usize {
+    let sigma = ANGLE_RANDOM_WALK * 60.0 * DEGREE_PER_HOUR * std::f64::consts::SQRT_2;
+    let stops = |pair: &[Dwell]| rule.stops(pair[1].rate - pair[0].rate, sigma);
+    dwells.windows(2).position(stops).map_or(POSITIONS, |index| index + 2)
+}
+
+fn stop_rules(all: &[(usize, Vec<Dwell>)]) -> Vec<StopRow> {
+    let rules = [
+        ("the paper's: δ changes sign", StopRule::SignChange),
+        ("significant: δ < −3 σ", StopRule::Significant(3.0)),
+    ];
+    let row = |(name, rule)| {
+        let mut steps: Vec<usize> =
+            all.iter().map(|(_, dwells)| stopped_at(dwells, rule)).collect();
+        steps.sort_unstable();
+        StopRow {
+            rule: name,
+            median_step: steps[steps.len() / 2],
+            all_positions: steps.iter().filter(|&&step| step == POSITIONS).count(),
+            runs: steps.len(),
+        }
+    };
+    rules.into_iter().map(row).collect()
+}
+
+/// The paper's α = 5″ read as 5 °/h, and as 5″/h.
+fn paper_alpha(all: &[(usize, Vec<Dwell>)]) -> Vec<AlphaRow> {
+    [5.0, 5.0 / 3600.0].into_iter().map(|alpha| alpha_row(all, alpha)).collect()
+}
+
+fn alpha_row(all: &[(usize, Vec<Dwell>)], alpha_deg_h: f64) -> AlphaRow {
+    let rate = setting().latitude.horizontal_rate();
+    let limit = Limit::WithinAbsolute((alpha_deg_h * DEGREE_PER_HOUR / rate * ONE) as u64);
+    let step = (Turn::Arc.step() / STEP).round() as i32;
+    let accepted: Vec<Accepted> = all
+        .par_iter()
+        .filter_map(|(_, dwells)| {
+            let series = Series::new(dwells.iter().map(|dwell| dwell.rate / rate), step).ok()?;
+            Some(etalon::accepted(Etalon::built_in(), &series, limit).accepted)
+        })
+        .collect();
+    let widths: Vec<f64> = accepted.iter().filter_map(|&accepted| width_deg(accepted)).collect();
+    AlphaRow {
+        alpha_deg_h,
+        runs: accepted.len(),
+        nothing: accepted.iter().filter(|&&accepted| accepted == Accepted::Nothing).count(),
+        whole_range: accepted.iter().filter(|&&accepted| covers_quarter(accepted)).count(),
+        mean_width_deg: widths.iter().sum::<f64>() / widths.len().max(1) as f64,
+    }
+}
+
+fn width_deg(accepted: Accepted) -> Option<f64> {
+    match accepted {
+        Accepted::Nothing => None,
+        Accepted::Arc { width, .. } => Some((f64::from(width) * STEP).to_degrees()),
+        Accepted::Everything => Some(360.0),
+    }
+}
+
+/// Whether 0 to 90° of the last position's azimuth, the paper's range, are all accepted.
+fn covers_quarter(accepted: Accepted) -> bool {
+    let Accepted::Arc { first, width, .. } = accepted else {
+        return accepted == Accepted::Everything;
+    };
+    let turned = (Turn::Arc.step() / STEP).round() as i32 * (POSITIONS as i32 - 1);
+    let from = (0 - turned - first).rem_euclid(table::TURN);
+    from + table::TURN / 4 <= width
+}
+
+/// How maximum likelihood does over many azimuths, and what fixed point costs it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Precision {
+    /// The turn.
+    pub schedule: &'static str,
+    /// Realisations.
+    pub runs: usize,
+    /// How many were refused.
+    pub refused: usize,
+    /// RMS error, ″.
+    pub rms_arcsec: f64,
+    /// RMS error of the same path in `f64`, ″.
+    pub rms_floating_point_arcsec: f64,
+    /// Cramér–Rao bound, RMS over the realisations, ″.
+    pub limit_arcsec: f64,
+    /// RMS over limit.
+    pub ratio: f64,
+    /// RMS of the fixed-point path over that of the `f64` path.
+    pub fixed_point_ratio: f64,
+    /// Per cent of errors within one, two and three σ.
+    pub coverage_percent: [f64; 3],
+}
+
+/// Azimuths of the realisations: 28°…29° on the arc, all around on the circle, off the grid.
+fn azimuth_of(turn: Turn, run: usize) -> f64 {
+    // Steps of the golden section fill the range evenly.
+    let fraction = (run as f64 * 0.618_033_988_749_895).fract();
+    match turn {
+        Turn::Arc => 28.0 + fraction,
+        Turn::Circle => 360.0 * fraction,
+    }
+}
+
+/// Runs `runs` realisations through the fixed-point path and through `f64`.
+///
+/// # Errors
+/// What keeps a session from beginning.
+pub fn precision(turn: Turn, runs: usize, tick: impl Fn() + Sync) -> Result<Precision, String> {
+    let answers: Vec<[Option<Answer>; 2]> = (0..runs)
+        .into_par_iter()
+        .map(|run| {
+            let azimuth = azimuth_of(turn, run);
+            let samples = samples(turn, azimuth, (1 << 32) + run as u64);
+            let fixed = dwells(turn, &samples)?;
+            let floating = in_floating_point(turn, &samples, &fixed);
+            tick();
+            Ok([fixed, floating].map(|d| answer(&d, Criterion::MaximumLikelihood, azimuth)))
+        })
+        .collect::<Result<_, String>>()?;
+    let given: Vec<[Answer; 2]> =
+        answers.iter().filter_map(|[a, b]| (*a).zip(*b)).map(Into::into).collect();
+    let errors = |path: usize| -> Vec<f64> { given.iter().map(|pair| pair[path].error).collect() };
+    let sigmas: Vec<f64> = given.iter().map(|pair| pair[0].sigma).collect();
+    let limits: Vec<f64> = given.iter().map(|pair| pair[0].limit).collect();
+    let (fixed, floating) = (errors(0), errors(1));
+    Ok(Precision {
+        schedule: turn.name(),
+        runs,
+        refused: runs - given.len(),
+        rms_arcsec: rms(&fixed),
+        rms_floating_point_arcsec: rms(&floating),
+        limit_arcsec: rms(&limits),
+        ratio: rms(&fixed) / rms(&limits),
+        fixed_point_ratio: rms(&fixed) / rms(&floating),
+        coverage_percent: coverage(&fixed, &sigmas),
+    })
+}

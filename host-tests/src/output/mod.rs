@@ -1,0 +1,41 @@
+//! What the user sees: the result block, the JSON object, the progress bar.
+
+pub mod json;
+pub mod progress;
+pub mod table;
+pub mod text;
+
+use orientation::align::regression::Column;
+use orientation::align::stepwise::Fit;
+
+/// Radians to degrees.
+#[must_use]
+pub fn degrees(angle: f64) -> f64 {
+    angle.to_degrees()
+}
+
+/// rad/s to °/h.
+#[must_use]
+pub fn degrees_per_hour(rate: f64) -> f64 {
+    rate.to_degrees() * 3600.0
+}
+
+/// The difference of two azimuths in degrees, (−180, 180].
+#[must_use]
+pub fn azimuth_error(azimuth: f64, truth: f64) -> f64 {
+    let turns = (azimuth - truth) / 360.0;
+    (turns - turns.round()) * 360.0
+}
+
+/// The names of the columns that a fit used.
+#[must_use]
+pub fn columns(fit: &Fit) -> Vec<&'static str> {
+    let mut names = vec!["cos", "sin", "1"];
+    if fit.model.time != Column::Absent {
+        names.push("t");
+    }
+    if fit.model.temperature != Column::Absent {
+        names.push("temperature");
+    }
+    names
+}

@@ -1,0 +1,97 @@
+//! The campaign's tables.
+
+use std::fmt::{self, Write};
+
+use crate::campaign::sokolov::{AlphaRow, Precision, Table};
+use crate::campaign::statistics::NORMAL_COVERAGE;
+
+/// Writes the tables of Sokolov's experiment.
+///
+/// # Errors
+/// Those of the writer.
+pub fn sokolov(out: &mut impl Write, tables: &[Table], precisions: &[Precision]) -> fmt::Result {
+    writeln!(
+        out,
+        "\nSokolov 2019, Table 1: 60 dwells of 1 s, 0.15 °/h per sample at 100 Hz, 47°35′"
+    )?;
+    writeln!(out, "three azimuths (28°10′, 28°30′, 28°50′, off the grid); errors in arc seconds")?;
+    for table in tables {
+        of_turn(out, table)?;
+    }
+    writeln!(out, "\nMaximum likelihood through fixed point, azimuths off the grid")?;
+    for precision in precisions {
+        of_precision(out, precision)?;
+    }
+    Ok(())
+}
+
+fn of_turn(out: &mut impl Write, table: &Table) -> fmt::Result {
+    writeln!(out, "\n{}", table.schedule)?;
+    writeln!(
+        out,
+        "  {:<16} {:>5} {:>8} {:>9} {:>9} {:>9} {:>8}   {:<24} {}",
+        "criterion",
+        "runs",
+        "refused",
+        "RMS",
+        "stated σ",
+        "limit",
+        "ratio",
+        "least of 90 each",
+        "paper's least"
+    )?;
+    for row in &table.rows {
+        writeln!(
+            out,
+            "  {:<16} {:>5} {:>8} {:>9.1} {:>9.1} {:>9.1} {:>8.2}   {:<24} {}",
+            row.criterion,
+            row.runs,
+            row.refused,
+            row.rms_arcsec,
+            row.sigma_arcsec,
+            row.limit_arcsec,
+            row.ratio,
+            list(&row.least_arcsec),
+            list(&table.paper_least_arcsec),
+        )?;
+    }
+    for rule in &table.stop_rules {
+        writeln!(
+            out,
+            "  stop rule, {}: median step {}, all 60 reached in {} of {}",
+            rule.rule, rule.median_step, rule.all_positions, rule.runs
+        )?;
+    }
+    for row in &table.paper_alpha {
+        let AlphaRow { alpha_deg_h, runs, nothing, whole_range, mean_width_deg } = row;
+        writeln!(
+            out,
+            "  the paper's α as {alpha_deg_h:.4} °/h accepts nothing in {nothing} of {runs} runs, all of \
+             0…90° in {whole_range}; mean width {mean_width_deg:.1}° of the circle"
+        )?;
+    }
+    Ok(())
+}
+
+fn list(values: &[f64; 3]) -> String {
+    values.map(|value| format!("{value:.1}")).join(", ")
+}
+
+fn of_precision(out: &mut impl Write, row: &Precision) -> fmt::Result {
+    writeln!(out, "\n{}: {} runs, {} refused", row.schedule, row.runs, row.refused)?;
+    writeln!(
+        out,
+        "  RMS {:.2}, limit {:.2}, ratio {:.4}; in f64 {:.2}, fixed point adds {:+.3} %",
+        row.rms_arcsec,
+        row.limit_arcsec,
+        row.ratio,
+        row.rms_floating_point_arcsec,
+        100.0 * (row.fixed_point_ratio - 1.0)
+    )?;
+    let [one, two, three] = row.coverage_percent;
+    let [a, b, c] = NORMAL_COVERAGE;
+    writeln!(
+        out,
+        "  within 1, 2, 3 σ: {one:.1}, {two:.1}, {three:.1} % (normal: {a:.1}, {b:.1}, {c:.1} %)"
+    )
+}

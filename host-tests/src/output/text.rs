@@ -1,0 +1,158 @@
+//! The result block that a person reads.
+
+use std::fmt::{self, Write};
+
+use orientation::align::conclusion::Conclusion;
+use orientation::align::stepwise::Fit;
+
+use super::json::earth_rate;
+use super::{azimuth_error, columns, degrees, degrees_per_hour};
+use crate::replay::Replay;
+
+/// Writes the block for a replay of `name`; `truth_deg` is for its error alone.
+///
+/// # Errors
+/// Those of the writer.
+pub fn block(
+    out: &mut impl Write,
+    name: &str,
+    replay: &Replay,
+    conclusion: &Conclusion,
+    truth_deg: Option<f64>,
+) -> fmt::Result {
+    headline(out, name, replay, conclusion, truth_deg)?;
+    if conclusion.tilt.measured {
+        let tilt = &conclusion.tilt;
+        let [pitch, roll] = [tilt.pitch(), tilt.roll()].map(|a| positive_zero(degrees(a)));
+        line(out, "pitch, roll", format_args!("{pitch:.4}°, {roll:.4}°"))?;
+    } else {
+        line(out, "pitch, roll", format_args!("not measured: taken as level"))?;
+    }
+    if let Some(fit) = &conclusion.fit {
+        of_fit(out, replay, conclusion, fit)?;
+    }
+    line(out, "assumed", format_args!("{}", replay.assumed.join("; ")))?;
+    dwells(out, replay, conclusion)
+}
+
+fn line(out: &mut impl Write, label: &str, value: fmt::Arguments<'_>) -> fmt::Result {
+    writeln!(out, "  {label:<18} {value}")
+}
+
+/// What rounds to zero prints without a sign.
+fn positive_zero(value: f64) -> f64 {
+    if value.abs() < 5e-5 { 0.0 } else { value }
+}
+
+fn headline(
+    out: &mut impl Write,
+    name: &str,
+    replay: &Replay,
+    conclusion: &Conclusion,
+    truth_deg: Option<f64>,
+) -> fmt::Result {
+    match &conclusion.verdict {
+        Err(reason) => {
+            writeln!(out, "\nNo azimuth from {name}\n")?;
+            line(out, "reason", format_args!("{reason}"))
+        }
+        Ok(azimuth) => {
+            writeln!(out, "\nTrue north found in {name}\n")?;
+            let [angle, sigma] = [azimuth.angle, azimuth.sigma].map(degrees);
+            line(out, "azimuth of body x", format_args!("{angle:.4}° ± {sigma:.4}° (1σ)"))?;
+            if let Some(fit) = &conclusion.fit {
+                limit(out, replay, fit)?;
+            }
+            let Some(truth) = truth_deg else { return Ok(()) };
+            let error = azimuth_error(angle, truth);
+            let sigmas = error / sigma;
+            line(
+                out,
+                "truth",
+                format_args!("{truth:.4}°: the error is {error:+.4}°, {sigmas:+.2} σ"),
+            )
+        }
+    }
+}
+
+fn limit(out: &mut impl Write, replay: &Replay, fit: &Fit) -> fmt::Result {
+    let limit = degrees(fit.limit);
+    let source = if replay.noise_is_known() { "stated noise" } else { "noise estimated from it" };
+    line(out, "limit", format_args!("{limit:.4}° (Cramér–Rao for the {source})"))
+}
+
+fn of_fit(
+    out: &mut impl Write,
+    replay: &Replay,
+    conclusion: &Conclusion,
+    fit: &Fit,
+) -> fmt::Result {
+    let (ratio, sigma) = (fit.ratio, fit.ratio_sigma);
+    line(out, "Earth rate", format_args!("{ratio:.4} ± {sigma:.4} of that expected"))?;
+    let names = columns(fit).join(", ");
+    line(out, "model", format_args!("{names}; Earth rate {}", earth_rate(fit)))?;
+    line(out, "criterion", format_args!("{}", replay.criterion_name()))?;
+    let noise = degrees(conclusion.angle_random_walk) * 60.0;
+    let how = if replay.noise_is_known() { "stated" } else { "estimated" };
+    line(out, "gyro noise N", format_args!("{noise:.6} °/√h ({how})"))?;
+    let (chi, degrees) = (fit.chi_square, fit.degrees);
+    line(out, "residuals", format_args!("χ² {chi:.1} for {degrees} degrees of freedom"))?;
+    budget(out, fit)
+}
+
+/// The budget with each part's share of the variance.
+fn budget(out: &mut impl Write, fit: &Fit) -> fmt::Result {
+    let sigma = fit.sigma();
+    writeln!(out, "\n  error budget (1σ of the azimuth)")?;
+    for (source, part) in fit.budget.parts() {
+        let share = 100.0 * (part / sigma) * (part / sigma);
+        writeln!(out, "    {:<28} {:>9.4}°  {share:>5.1} %", source.to_string(), degrees(part))?;
+    }
+    writeln!(out, "    {:<28} {:>9.4}°", "root sum of squares", degrees(sigma))?;
+    if let Some(source) = fit.budget.dominant() {
+        writeln!(out, "    {source} dominates{}", remedy(source))?;
+    }
+    writeln!(out)
+}
+
+/// What helps against a part that dominates.
+fn remedy(source: orientation::error::Source) -> &'static str {
+    use orientation::error::Source;
+    match source {
+        Source::GSensitivity => ": level the platform mechanically, or calibrate κ at two tilts",
+        Source::Accelerometer => ": turn a full circle, or calibrate the accelerometer",
+        Source::Scale => ": turn a longer arc, or calibrate the scale factor",
+        Source::Drift | Source::Temperature => ": let the gyro settle, or repeat the circle faster",
+        _ => "",
+    }
+}
+
+fn dwells(out: &mut impl Write, replay: &Replay, conclusion: &Conclusion) -> fmt::Result {
+    writeln!(
+        out,
+        "\n  {:>3} {:>9} {:>8} {:>7} {:>13} {:>12} {:>6}",
+        "#", "stage °", "from s", "for s", "rate °/h", "residual °/h", "σ"
+    )?;
+    let found = conclusion.disturbances.iter().zip(&conclusion.residuals);
+    for (index, (dwell, (why, residual))) in replay.session.dwells().iter().zip(found).enumerate() {
+        write!(
+            out,
+            "  {:>3} {:>9.4} {:>8.2} {:>7.2} {:>13.5} ",
+            index + 1,
+            degrees(dwell.stage.rad()),
+            dwell.start(),
+            dwell.seconds,
+            degrees_per_hour(dwell.rate),
+        )?;
+        match why {
+            Some(why) => writeln!(out, "left out: {why}")?,
+            None => writeln!(
+                out,
+                "{:>12.5} {:>6.2}",
+                degrees_per_hour(residual.rate),
+                residual.studentised
+            )?,
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,147 @@
+//! Columns: which of a line's fields are needed, and their numbers.
+//!
+//! Fields are plain numbers between commas, so a line is split at its commas and nothing is ever
+//! quoted. A column that the kind does not know, `truth_*` above all, is never parsed.
+
+use std::collections::HashSet;
+
+use super::error::Fault;
+use super::lines::Line;
+use super::number::{Range, number};
+use super::problem::{HeaderProblem, ValueProblem};
+
+/// Most columns that a kind can know.
+pub(super) const MAX_COLUMNS: usize = 8;
+
+/// When a column must be there.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Need {
+    /// Always.
+    Always,
+    /// Never.
+    Optional,
+    /// When any of these is: they come together.
+    AnyOf(&'static [&'static str]),
+}
+
+/// A column that a kind knows.
+pub(super) struct Column {
+    /// Its name.
+    pub name: &'static str,
+    /// When it must be there.
+    pub need: Need,
+    /// The range of its numbers.
+    pub range: Range,
+}
+
+impl Column {
+    /// A column that must be there.
+    pub const fn always(name: &'static str, range: Range) -> Self {
+        Self { name, need: Need::Always, range }
+    }
+}
+
+/// How the fields of this file's rows map to the kind's columns.
+pub(super) struct Layout {
+    columns: &'static [Column],
+    /// For each field, the place of its column in `columns`.
+    fields: Vec<Option<usize>>,
+    present: [bool; MAX_COLUMNS],
+}
+
+/// The numbers of one row.
+pub(super) struct Values<'a> {
+    /// The row's line.
+    pub line: u64,
+    numbers: [f64; MAX_COLUMNS],
+    present: &'a [bool; MAX_COLUMNS],
+}
+
+impl Values<'_> {
+    /// The number in a column that is there ([`Layout::new`] has seen to it).
+    pub fn needed(&self, column: usize) -> f64 {
+        self.numbers[column]
+    }
+
+    /// The number in a column, when it is there.
+    pub fn optional(&self, column: usize) -> Option<f64> {
+        self.present[column].then_some(self.numbers[column])
+    }
+}
+
+impl Layout {
+    /// Reads the line of column names. `columns` has no more than [`MAX_COLUMNS`].
+    pub fn new(columns: &'static [Column], line: u64, names: &str) -> Result<Self, Fault> {
+        let mut layout = Self { columns, fields: Vec::new(), present: [false; MAX_COLUMNS] };
+        let mut seen = HashSet::new();
+        for (index, name) in names.split(',').map(str::trim_ascii).enumerate() {
+            check_name(line, index, name, seen.insert(name))?;
+            let place = columns.iter().position(|column| column.name == name);
+            layout.fields.push(place);
+            if let Some(place) = place {
+                layout.present[place] = true;
+            }
+        }
+        layout.check_needs(line)?;
+        Ok(layout)
+    }
+
+    /// Whether every needed column is there.
+    fn check_needs(&self, line: u64) -> Result<(), Fault> {
+        let Some(missing) = self.needed().find(|column| !self.has(column.name)) else {
+            return Ok(());
+        };
+        let all = self.needed().map(|column| column.name).collect::<Vec<_>>().join(",");
+        Err(Fault::column(line, missing.name, HeaderProblem::MissingColumn(all)))
+    }
+
+    /// Whether the column of this name is there.
+    fn has(&self, name: &str) -> bool {
+        self.columns
+            .iter()
+            .zip(self.present)
+            .any(|(column, present)| present && column.name == name)
+    }
+
+    /// The columns that must be there, given which optional ones are.
+    fn needed(&self) -> impl Iterator<Item = &'static Column> {
+        self.columns.iter().filter(|column| match column.need {
+            Need::Always => true,
+            Need::Optional => false,
+            Need::AnyOf(group) => group.iter().any(|name| self.has(name)),
+        })
+    }
+
+    /// Reads the numbers of a row.
+    pub fn values(&self, line: &Line<'_>) -> Result<Values<'_>, Fault> {
+        self.check_count(line)?;
+        let mut numbers = [0.0; MAX_COLUMNS];
+        for (field, place) in line.text.split(',').zip(&self.fields) {
+            let Some(place) = *place else { continue };
+            let Column { name, range, .. } = &self.columns[place];
+            numbers[place] = number(field.trim_ascii(), range)
+                .map_err(|problem| Fault::column(line.number, name, problem))?;
+        }
+        Ok(Values { line: line.number, numbers, present: &self.present })
+    }
+
+    /// A wrong count is told before a wrong number: a cut line has both.
+    fn check_count(&self, line: &Line<'_>) -> Result<(), Fault> {
+        let found = 1 + line.text.bytes().filter(|&byte| byte == b',').count();
+        let columns = self.fields.len();
+        if found == columns {
+            return Ok(());
+        }
+        let cut = !line.ended && found < columns;
+        let problem = if cut { ValueProblem::CutShort } else { ValueProblem::FieldCount };
+        Err(Fault::line(line.number, problem(found, columns)))
+    }
+}
+
+/// Refuses a column without a name or with a name that another has.
+fn check_name(line: u64, index: usize, name: &str, is_new: bool) -> Result<(), Fault> {
+    if name.is_empty() {
+        return Err(Fault::line(line, HeaderProblem::UnnamedColumn(index + 1)));
+    }
+    if is_new { Ok(()) } else { Err(Fault::column(line, name, HeaderProblem::DuplicateColumn)) }
+}

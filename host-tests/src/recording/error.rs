@@ -1,0 +1,109 @@
+//! What is wrong with a recording, where, and what to do about it, in one line.
+
+use std::error::Error;
+use std::fmt;
+
+use super::problem::Problem;
+
+/// Longest excerpt of a recording that a message quotes, in characters.
+const EXCERPT: usize = 40;
+
+/// Why a recording was not read. [`Display`](fmt::Display) is one line, whatever the file holds:
+/// `walk.csv: line 812, column g_rad_s: "abc" is not a number; …`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReadError {
+    /// The name under which the recording was read.
+    pub file: String,
+    /// Where in the file.
+    pub place: Place,
+    /// What is wrong, and the remedy.
+    pub problem: Problem,
+}
+
+/// Where in a recording something is wrong. Lines count from 1, of the text after decompression.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// The file as a whole.
+    Whole,
+    /// A line.
+    Line(u64),
+    /// A header key, and its line.
+    Key(u64, String),
+    /// A column, and the line of the row or of the column names.
+    Column(u64, String),
+}
+
+/// A [`ReadError`] before it learns the file's name.
+#[derive(Debug)]
+pub(super) struct Fault {
+    place: Place,
+    problem: Problem,
+}
+
+impl Fault {
+    /// A problem at a place.
+    pub fn new(place: Place, problem: impl Into<Problem>) -> Self {
+        Self { place, problem: problem.into() }
+    }
+
+    /// A problem of one line.
+    pub fn line(line: u64, problem: impl Into<Problem>) -> Self {
+        Self::new(Place::Line(line), problem)
+    }
+
+    /// A problem of one column in one line.
+    pub fn column(line: u64, name: &str, problem: impl Into<Problem>) -> Self {
+        Self::new(Place::Column(line, name.to_owned()), problem)
+    }
+
+    /// A problem of one header key.
+    pub fn key(line: u64, name: &str, problem: impl Into<Problem>) -> Self {
+        Self::new(Place::Key(line, name.to_owned()), problem)
+    }
+
+    /// Names the file.
+    pub fn in_file(self, file: &str) -> ReadError {
+        ReadError { file: file.to_owned(), place: self.place, problem: self.problem }
+    }
+}
+
+impl fmt::Display for ReadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}{}", printable(&self.file), self.place, self.problem)
+    }
+}
+
+impl Error for ReadError {}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Whole => Ok(()),
+            Self::Line(line) => write!(f, "line {line}: "),
+            Self::Key(line, key) => write!(f, "line {line}, key {}: ", shortened(key)),
+            Self::Column(line, name) => write!(f, "line {line}, column {}: ", shortened(name)),
+        }
+    }
+}
+
+/// Replaces what would break the message's line or hide part of it.
+pub(super) fn printable(text: &str) -> String {
+    let hides = |c: char| c.is_control() || matches!(c, '\u{2028}'..='\u{202e}');
+    text.chars().map(|c| if hides(c) { char::REPLACEMENT_CHARACTER } else { c }).collect()
+}
+
+/// The text in one line and no longer than a message bears.
+fn shortened(text: &str) -> String {
+    match text.char_indices().nth(EXCERPT) {
+        Some((end, _)) => printable(&text[..end]) + "…",
+        None => printable(text),
+    }
+}
+
+/// The text in double quotes, escaped, and no longer than a message bears.
+pub(super) fn quoted(text: &str) -> String {
+    match text.char_indices().nth(EXCERPT) {
+        Some((end, _)) => format!("{:?}…", &text[..end]),
+        None => format!("{text:?}"),
+    }
+}

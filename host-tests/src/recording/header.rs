@@ -1,0 +1,235 @@
+//! The header of a recording: `# key: value` lines above the column names.
+//!
+//! What a solver may know becomes a [`Header`]; `truth_*` keys go to [`Truth`] while the lines are
+//! read, so no other type ever holds them. Unknown keys, and comments without a colon, are skipped.
+
+use super::error::Fault;
+use super::number::{Range, number};
+use super::problem::{HeaderProblem, Problem, SourceProblem, ValueProblem};
+
+/// What the header says about the site and the instrument. A key that is absent is `None`: a noise
+/// coefficient is then estimated, an uncertainty taken as zero.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Header {
+    /// Latitude, °, north positive, [−90, 90].
+    pub latitude_deg: Option<f64>,
+    /// Sample rate, Hz, (0, 10⁶].
+    pub rate_hz: Option<f64>,
+    /// Angle random walk N, °/√h, ≥ 0.
+    pub gyro_n_deg_sqrt_h: Option<f64>,
+    /// Bias instability B, °/h, ≥ 0.
+    pub gyro_b_deg_h: Option<f64>,
+    /// Rate random walk K, °/h/√h, ≥ 0.
+    pub gyro_k_deg_h_sqrt_h: Option<f64>,
+    /// Rate ramp R, °/h², ≥ 0.
+    pub gyro_r_deg_h2: Option<f64>,
+    /// 1σ of the gyro's bias from start to start, °/h, ≥ 0.
+    pub gyro_bias_deg_h: Option<f64>,
+    /// 1σ of the gyro's relative scale error, [0, 1].
+    pub gyro_scale_sigma: Option<f64>,
+    /// 1σ of the accelerometer's bias from start to start, m/s², ≥ 0.
+    pub accelerometer_bias_m_s2: Option<f64>,
+    /// g-sensitivity along the sensitive axis and across it (`k_s`, `k_o`), °/h/g.
+    pub g_sensitivity_deg_h_g: Option<[f64; 2]>,
+    /// 1σ of each of the two, °/h/g, ≥ 0.
+    pub g_sensitivity_sigma_deg_h_g: Option<f64>,
+    /// The principle of the sensor.
+    pub sensor: Option<Sensor>,
+}
+
+/// The principle of the rate sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sensor {
+    /// A gyroscope.
+    Gyro,
+    /// A molecular-electronic rate sensor.
+    Met,
+}
+
+/// What a simulator or a reference instrument knows, for checking a result only: a solver must
+/// never be given this.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Truth {
+    /// `truth_azimuth_deg`: azimuth of body x at the end, °; `None` when absent or `nan`.
+    pub azimuth_deg: Option<f64>,
+    /// The other `truth_*` keys and their text, in the order of the file.
+    pub others: Vec<(String, String)>,
+}
+
+/// Most `truth_*` keys: they are the only ones kept without being known.
+const MAX_TRUTH_KEYS: usize = 1000;
+
+/// Keys whose value is not one number.
+const WORDS: [&str; 3] = ["kind", PAIR, "sensor"];
+const PAIR: &str = "g_sensitivity_deg_h_g";
+
+/// Larger than any gyro that could find north, small enough that squares stay finite.
+const LARGEST: f64 = 1e6;
+const SIGNED: Range = Range::symmetric(LARGEST, " °/h/g");
+const AZIMUTH: Range = Range::symmetric(360.0, "°");
+
+/// A key whose value is one number.
+struct NumberKey {
+    name: &'static str,
+    range: Range,
+    slot: fn(&mut Header) -> &mut Option<f64>,
+}
+
+/// Shortens the table.
+const fn key(
+    name: &'static str,
+    range: Range,
+    slot: fn(&mut Header) -> &mut Option<f64>,
+) -> NumberKey {
+    NumberKey { name, range, slot }
+}
+
+static NUMBERS: [NumberKey; 10] = [
+    key("latitude_deg", Range::symmetric(90.0, "°"), |h| &mut h.latitude_deg),
+    key("rate_hz", Range::above_zero(1e6, " Hz"), |h| &mut h.rate_hz),
+    key("gyro_N_deg_sqrt_h", Range::from_zero(LARGEST, " °/√h"), |h| &mut h.gyro_n_deg_sqrt_h),
+    key("gyro_B_deg_h", Range::from_zero(LARGEST, " °/h"), |h| &mut h.gyro_b_deg_h),
+    key("gyro_K_deg_h_sqrt_h", Range::from_zero(LARGEST, " °/h/√h"), |h| {
+        &mut h.gyro_k_deg_h_sqrt_h
+    }),
+    key("gyro_R_deg_h2", Range::from_zero(LARGEST, " °/h²"), |h| &mut h.gyro_r_deg_h2),
+    key("gyro_bias_deg_h", Range::from_zero(LARGEST, " °/h"), |h| &mut h.gyro_bias_deg_h),
+    key("gyro_scale_sigma", Range::from_zero(1.0, ""), |h| &mut h.gyro_scale_sigma),
+    key("accelerometer_bias_m_s2", Range::from_zero(2147.0, " m/s²"), |h| {
+        &mut h.accelerometer_bias_m_s2
+    }),
+    key("g_sensitivity_sigma_deg_h_g", Range::from_zero(LARGEST, " °/h/g"), |h| {
+        &mut h.g_sensitivity_sigma_deg_h_g
+    }),
+];
+
+/// One header line.
+#[derive(Debug)]
+struct Entry {
+    line: u64,
+    key: String,
+    value: String,
+}
+
+/// The header lines that matter, while they are collected.
+#[derive(Debug, Default)]
+pub(super) struct Collector {
+    known: Vec<Entry>,
+    truth: Vec<Entry>,
+}
+
+/// The key and value of a comment line, without its `#`; `None` for a plain remark.
+fn key_and_value(comment: &str) -> Option<(&str, &str)> {
+    let (key, value) = comment.trim_start_matches('#').split_once(':')?;
+    Some((key.trim_ascii(), value.trim_ascii()))
+}
+
+/// Whether the key bears on how a recording is read.
+fn is_known(key: &str) -> bool {
+    WORDS.contains(&key) || NUMBERS.iter().any(|number| number.name == key)
+}
+
+/// Refuses a comment below the column names that says what only the header may say: skipping it
+/// would lose, say, the noise of a recording without a word. Other comments there are skipped.
+pub(super) fn check_late(line: u64, comment: &str) -> Result<(), Fault> {
+    match key_and_value(comment) {
+        Some((key, _)) if is_known(key) => Err(Fault::key(line, key, HeaderProblem::Late)),
+        _ => Ok(()),
+    }
+}
+
+impl Collector {
+    /// Takes one comment line of the header.
+    pub fn add(&mut self, line: u64, comment: &str) -> Result<(), Fault> {
+        let Some((key, value)) = key_and_value(comment) else { return Ok(()) };
+        let entries = match key {
+            _ if is_known(key) => &mut self.known,
+            _ if key.starts_with("truth_") => &mut self.truth,
+            _ => return Ok(()),
+        };
+        match entries.iter().find(|entry| entry.key == key) {
+            Some(before) if before.value == value => return Ok(()),
+            Some(before) => return Err(contradiction(line, before, value)),
+            None if entries.len() < MAX_TRUTH_KEYS => {}
+            None => return Err(too_many_keys(line)),
+        }
+        entries.push(Entry { line, key: key.to_owned(), value: value.to_owned() });
+        Ok(())
+    }
+
+    /// The line and text of a known key.
+    pub fn get(&self, key: &str) -> Option<(u64, &str)> {
+        self.known.iter().find(|entry| entry.key == key).map(|e| (e.line, e.value.as_str()))
+    }
+
+    /// What a solver may know.
+    pub fn header(&self) -> Result<Header, Fault> {
+        let mut header = Header::default();
+        for NumberKey { name, range, slot } in &NUMBERS {
+            *slot(&mut header) = self.parse(name, |text| Ok(number(text, range)?))?;
+        }
+        header.g_sensitivity_deg_h_g = self.parse(PAIR, pair)?;
+        header.sensor = self.parse("sensor", sensor)?;
+        Ok(header)
+    }
+
+    /// What only a check may know.
+    pub fn truth(self) -> Result<Truth, Fault> {
+        let mut truth = Truth::default();
+        for Entry { line, key, value } in self.truth {
+            if key == "truth_azimuth_deg" {
+                truth.azimuth_deg =
+                    azimuth(&value).map_err(|problem| Fault::key(line, &key, problem))?;
+            } else {
+                truth.others.push((key, value));
+            }
+        }
+        Ok(truth)
+    }
+
+    /// Parses a known key's value; `None` when the key is absent.
+    fn parse<T>(
+        &self,
+        key: &str,
+        parse: impl Fn(&str) -> Result<T, Problem>,
+    ) -> Result<Option<T>, Fault> {
+        let Some((line, text)) = self.get(key) else { return Ok(None) };
+        parse(text).map(Some).map_err(|problem| Fault::key(line, key, problem))
+    }
+}
+
+/// The key has another value further up.
+fn contradiction(line: u64, before: &Entry, value: &str) -> Fault {
+    let problem = HeaderProblem::Contradiction(value.to_owned(), before.value.clone(), before.line);
+    Fault::key(line, &before.key, problem)
+}
+
+/// More keys than memory should be spent on.
+fn too_many_keys(line: u64) -> Fault {
+    Fault::line(line, SourceProblem::TooMany(MAX_TRUTH_KEYS as u64, "truth_ keys"))
+}
+
+/// Two numbers with a comma.
+fn pair(text: &str) -> Result<[f64; 2], Problem> {
+    let (first, second) =
+        text.split_once(',').ok_or_else(|| HeaderProblem::NotAPair(text.to_owned()))?;
+    Ok([number(first.trim_ascii(), &SIGNED)?, number(second.trim_ascii(), &SIGNED)?])
+}
+
+/// The sensor's name.
+fn sensor(text: &str) -> Result<Sensor, Problem> {
+    match text {
+        "gyro" => Ok(Sensor::Gyro),
+        "met" => Ok(Sensor::Met),
+        other => Err(HeaderProblem::UnknownSensor(other.to_owned()).into()),
+    }
+}
+
+/// The true azimuth; a truth may be `nan`, which says that it is not known.
+fn azimuth(text: &str) -> Result<Option<f64>, ValueProblem> {
+    match number(text, &AZIMUTH) {
+        Ok(value) => Ok(Some(value)),
+        Err(ValueProblem::Nan(_)) => Ok(None),
+        Err(problem) => Err(problem),
+    }
+}

@@ -1,0 +1,190 @@
+//! Recordings in CSV: a header of `# key: value` lines, one line of column names, rows of numbers.
+//!
+//! [`read`] takes a file, plain or gzip-compressed, of any size and content and gives a
+//! [`Recording`] or one line that says what is wrong and where. Nothing is guessed: a number that
+//! is missing, not finite, outside the range of its quantity or out of order is an error. Tolerated
+//! are CRLF line ends, blank lines, spaces around fields, a byte order mark, unknown keys, comments
+//! and columns that the kind does not know.
+//!
+//! What a simulator knows goes to [`Truth`] while the file is read; [`Recording::into_parts`] takes
+//! it off, and a solver is given only a [`Header`] and a [`Body`], which cannot hold it.
+
+mod columns;
+mod error;
+mod header;
+mod lines;
+mod number;
+mod problem;
+mod rows;
+mod timing;
+
+use std::fmt;
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+pub use error::{Place, ReadError};
+pub use header::{Header, Sensor, Truth};
+pub use lines::{MAX_LINE_BYTES, MAX_ROWS};
+pub use number::Range;
+pub use problem::{HeaderProblem, Problem, SourceProblem, TimeProblem, ValueProblem};
+pub use rows::{DwellRow, StageRow};
+
+use error::Fault;
+use header::Collector;
+use lines::Lines;
+use timing::Times;
+
+/// What a recording holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    /// What the header says about the site and the instrument.
+    pub header: Header,
+    /// The rows.
+    pub body: Body,
+    /// What only a check may know.
+    pub truth: Truth,
+}
+
+impl Recording {
+    /// The parts, so that the truth can be kept from the solver.
+    #[must_use]
+    pub fn into_parts(self) -> (Header, Body, Truth) {
+        (self.header, self.body, self.truth)
+    }
+}
+
+/// The rows of a recording, at least one, in the order of the file.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Body {
+    /// Samples of one gyro on a rotation stage.
+    Stage(Vec<StageRow>),
+    /// One row a position, already averaged.
+    Dwells(Vec<DwellRow>),
+}
+
+/// The kinds that the format has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// One gyro on a rotation stage that stops; read here.
+    Stage,
+    /// One sensor on a stage that turns all the time.
+    Rotating,
+    /// Three gyros and three accelerometers.
+    Imu,
+    /// A body in fast rotation about its long axis.
+    Spin,
+    /// A gyro at rest, for Allan variance.
+    Static,
+    /// One row a position, already averaged; read here.
+    Dwells,
+}
+
+/// The names of the kinds, for messages; a test compares them with [`Kind`].
+const KINDS: &str = "stage, rotating, imu, spin, static or dwells";
+
+impl Kind {
+    /// The kinds, in the order of the format.
+    pub const ALL: [Self; 6] =
+        [Self::Stage, Self::Rotating, Self::Imu, Self::Spin, Self::Static, Self::Dwells];
+
+    /// The kind's name in a header.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Stage => "stage",
+            Self::Rotating => "rotating",
+            Self::Imu => "imu",
+            Self::Spin => "spin",
+            Self::Static => "static",
+            Self::Dwells => "dwells",
+        }
+    }
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// Reads a recording from a file, plain or gzip-compressed.
+///
+/// # Errors
+/// [`ReadError`] names file, line, column and remedy in one line.
+pub fn read(path: &Path) -> Result<Recording, ReadError> {
+    let name = path.display().to_string();
+    let refused = |error: &io::Error| {
+        Fault::new(Place::Whole, SourceProblem::Io(error.kind(), error.to_string())).in_file(&name)
+    };
+    let file = File::open(path).map_err(|error| refused(&error))?;
+    read_from(&name, file)
+}
+
+/// Reads a recording from any reader; `name` stands in the errors. Reads no more than 32 KiB past
+/// the place where reading stops, when the input is not compressed.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_from(name: &str, reader: impl Read) -> Result<Recording, ReadError> {
+    parse(reader).map_err(|fault| fault.in_file(name))
+}
+
+/// Reads a kind's rows below the column names: their line and text.
+type ReadRows = fn(&mut Lines<'_>, u64, &str) -> Result<Body, Fault>;
+
+/// Reads a recording. Another kind is another arm here, and one each in [`Body`] and
+/// [`check_times`], beside its row.
+fn parse(reader: impl Read) -> Result<Recording, Fault> {
+    let mut lines = Lines::new(reader)?;
+    let (entries, names) = preamble(&mut lines)?;
+    let (line, kind) = kind(&entries)?;
+    let read_rows: ReadRows = match kind {
+        Kind::Stage => |lines, line, names| Ok(Body::Stage(rows::read(lines, line, names)?)),
+        Kind::Dwells => |lines, line, names| Ok(Body::Dwells(rows::read(lines, line, names)?)),
+        other => return Err(Fault::line(line, HeaderProblem::UnreadKind(other))),
+    };
+    let header = entries.header()?;
+    let (line, names) =
+        names.ok_or_else(|| Fault::line(lines.number(), HeaderProblem::NoColumnNames))?;
+    let body = read_rows(&mut lines, line, &names)?;
+    let rate = entries.get("rate_hz").map(|(line, _)| line).zip(header.rate_hz);
+    check_times(&body, rate)?;
+    Ok(Recording { header, body, truth: entries.truth()? })
+}
+
+/// The line of column names: its number and text.
+type Names = Option<(u64, String)>;
+
+/// Reads the header and the line of column names, which is the first that is no comment.
+fn preamble(lines: &mut Lines<'_>) -> Result<(Collector, Names), Fault> {
+    let mut entries = Collector::default();
+    let mut is_empty = true;
+    while let Some(line) = lines.next()? {
+        is_empty = false;
+        if !line.text.starts_with('#') {
+            return Ok((entries, Some((line.number, line.text.to_owned()))));
+        }
+        entries.add(line.number, line.text)?;
+    }
+    if is_empty { Err(Fault::new(Place::Whole, SourceProblem::Empty)) } else { Ok((entries, None)) }
+}
+
+/// The kind that the header names, and the line where it does.
+fn kind(entries: &Collector) -> Result<(u64, Kind), Fault> {
+    let missing = || Fault::new(Place::Whole, HeaderProblem::NoKind);
+    let (line, text) = entries.get("kind").ok_or_else(missing)?;
+    let unknown = || Fault::key(line, "kind", HeaderProblem::UnknownKind(text.to_owned()));
+    let kind = Kind::ALL.into_iter().find(|kind| kind.name() == text).ok_or_else(unknown)?;
+    Ok((line, kind))
+}
+
+/// Refuses gaps and a rate (its line, and Hz) that the times contradict. Dwells have no rate.
+fn check_times(body: &Body, rate: Option<(u64, f64)>) -> Result<(), Fault> {
+    match body {
+        Body::Stage(rows) => {
+            Times { rows, stamp: |row| (row.line, row.time_s), column: "t_s" }.check(rate)
+        }
+        Body::Dwells(_) => Ok(()),
+    }
+}

@@ -1,0 +1,74 @@
+//! Numbers of a recording: finite, and inside the range that their quantity has.
+
+use std::fmt;
+
+use super::problem::ValueProblem;
+
+/// The values that a quantity may take, both ends included unless said.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    low: f64,
+    high: f64,
+    above_low: bool,
+    unit: &'static str,
+}
+
+impl Range {
+    /// From `-limit` to `limit`.
+    #[must_use]
+    pub const fn symmetric(limit: f64, unit: &'static str) -> Self {
+        Self { low: -limit, high: limit, above_low: false, unit }
+    }
+
+    /// From zero to `high`.
+    #[must_use]
+    pub const fn from_zero(high: f64, unit: &'static str) -> Self {
+        Self { low: 0.0, high, above_low: false, unit }
+    }
+
+    /// Above zero, to `high`.
+    #[must_use]
+    pub const fn above_zero(high: f64, unit: &'static str) -> Self {
+        Self { low: 0.0, high, above_low: true, unit }
+    }
+
+    /// Whether the value lies inside; NaN does not.
+    #[must_use]
+    pub fn contains(&self, value: f64) -> bool {
+        (self.low..=self.high).contains(&value) && !(self.above_low && value <= self.low)
+    }
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { low, high, above_low, unit } = self;
+        let above = if *above_low { "above " } else { "" };
+        if low + high == 0.0 {
+            write!(f, "±{high}{unit}")
+        } else {
+            write!(f, "{above}{low} to {high}{unit}")
+        }
+    }
+}
+
+/// Reads a number inside the range. `nan`, `inf` and what overflows a double are refused by name.
+pub(super) fn number(text: &str, range: &'static Range) -> Result<f64, ValueProblem> {
+    match text.parse::<f64>() {
+        Ok(value) if range.contains(value) => Ok(value),
+        Ok(value) => Err(refusal(value, text, range)),
+        Err(_) if text.is_empty() => Err(ValueProblem::EmptyField),
+        Err(_) => Err(ValueProblem::NotANumber(text.to_owned())),
+    }
+}
+
+/// Why a value that is a number to Rust does not do.
+fn refusal(value: f64, text: &str, range: &'static Range) -> ValueProblem {
+    let text = text.to_owned();
+    if value.is_nan() {
+        ValueProblem::Nan(text)
+    } else if value.is_infinite() {
+        ValueProblem::Infinite(text)
+    } else {
+        ValueProblem::OutOfRange(text, range)
+    }
+}

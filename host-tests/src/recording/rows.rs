@@ -1,0 +1,156 @@
+//! Rows: what each kind of recording has in one.
+//!
+//! Another kind is a row type with its table of columns here, and the arms that
+//! [`super::parse`] names.
+
+use super::columns::{Column, Layout, MAX_COLUMNS, Need, Values};
+use super::error::Fault;
+use super::header::check_late;
+use super::lines::{Lines, MAX_ROWS};
+use super::number::Range;
+use super::problem::{SourceProblem, TimeProblem, ValueProblem};
+
+/// Times, in seconds, that a double resolves to 2 µs.
+const TIME: Range = Range::symmetric(1e10, " s");
+/// Stage angles that [`orientation::units::Angle`] takes exactly: 10⁶ turns.
+const STAGE: Range = Range::symmetric(6.283_185e6, " rad");
+/// The range of [`orientation::units::AngularRate`].
+const RATE: Range = Range::symmetric(2.147_483_647, " rad/s");
+/// The range of [`orientation::units::SpecificForce`].
+const FORCE: Range = Range::symmetric(2_147.483_647, " m/s²");
+/// The range of [`orientation::units::Temperature`].
+const TEMPERATURE: Range = Range::symmetric(2_147_483.647, " °C");
+/// The force columns of a dwell come together or not at all.
+const FORCES: [&str; 3] = ["fx_m_s2", "fy_m_s2", "fz_m_s2"];
+
+/// One sample of a `stage` recording.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StageRow {
+    /// The line of the file, from 1, for messages about this sample.
+    pub line: u64,
+    /// Time, s, later than in the row before; its zero is the recorder's and it may be negative.
+    pub time_s: f64,
+    /// Stage angle, rad, clockwise from above, ±10⁶ turns.
+    pub stage_rad: f64,
+    /// Rate along the gyro's sensitive axis, rad/s, ±2.147483647.
+    pub rate_rad_s: f64,
+    /// Specific force on the platform, m/s², ±2147.483647: along the sensitive axis, 90° clockwise
+    /// from it, down.
+    pub force_m_s2: [f64; 3],
+    /// Temperature of the gyro, °C, when recorded.
+    pub temperature_c: Option<f64>,
+}
+
+/// One position of a `dwells` recording, already averaged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DwellRow {
+    /// Stage angle, rad, clockwise from above, ±10⁶ turns.
+    pub stage_rad: f64,
+    /// Mean rate along the gyro's sensitive axis, rad/s, ±2.147483647.
+    pub rate_rad_s: f64,
+    /// 1σ of that mean, rad/s, above 0.
+    pub sigma_rad_s: f64,
+    /// Length of the dwell, s, above 0.
+    pub seconds: f64,
+    /// Time of its middle, s, later than in the row before, when recorded.
+    pub mid_s: Option<f64>,
+    /// Mean specific force on the platform, m/s², as in [`StageRow`], when recorded.
+    pub force_m_s2: Option<[f64; 3]>,
+}
+
+/// A kind's row.
+pub(super) trait Row: Sized {
+    /// The columns that the kind knows; [`Values`] has their numbers at the same places.
+    const COLUMNS: &'static [Column];
+    /// The place of the column whose numbers must increase.
+    const TIME: usize;
+
+    /// The row that has these numbers.
+    fn from_values(values: &Values<'_>) -> Self;
+}
+
+impl Row for StageRow {
+    const COLUMNS: &'static [Column] = &[
+        Column::always("t_s", TIME),
+        Column::always("stage_rad", STAGE),
+        Column::always("g_rad_s", RATE),
+        Column::always("fx_m_s2", FORCE),
+        Column::always("fy_m_s2", FORCE),
+        Column::always("fz_m_s2", FORCE),
+        Column { name: "temperature_c", need: Need::Optional, range: TEMPERATURE },
+    ];
+    const TIME: usize = 0;
+
+    fn from_values(values: &Values<'_>) -> Self {
+        Self {
+            line: values.line,
+            time_s: values.needed(0),
+            stage_rad: values.needed(1),
+            rate_rad_s: values.needed(2),
+            force_m_s2: [3, 4, 5].map(|column| values.needed(column)),
+            temperature_c: values.optional(6),
+        }
+    }
+}
+
+impl Row for DwellRow {
+    const COLUMNS: &'static [Column] = &[
+        Column::always("stage_rad", STAGE),
+        Column::always("rate_rad_s", RATE),
+        Column::always("sigma_rad_s", Range::above_zero(2.147_483_647, " rad/s")),
+        Column::always("seconds", Range::above_zero(1e10, " s")),
+        Column { name: "mid_s", need: Need::Optional, range: TIME },
+        Column { name: "fx_m_s2", need: Need::AnyOf(&FORCES), range: FORCE },
+        Column { name: "fy_m_s2", need: Need::AnyOf(&FORCES), range: FORCE },
+        Column { name: "fz_m_s2", need: Need::AnyOf(&FORCES), range: FORCE },
+    ];
+    const TIME: usize = 4;
+
+    fn from_values(values: &Values<'_>) -> Self {
+        let force = [5, 6, 7].map(|column| values.needed(column));
+        Self {
+            stage_rad: values.needed(0),
+            rate_rad_s: values.needed(1),
+            sigma_rad_s: values.needed(2),
+            seconds: values.needed(3),
+            mid_s: values.optional(4),
+            force_m_s2: values.optional(5).map(|_| force),
+        }
+    }
+}
+
+/// Reads all rows below the column names, which stand in line `line`.
+pub(super) fn read<T: Row>(lines: &mut Lines<'_>, line: u64, names: &str) -> Result<Vec<T>, Fault> {
+    const { assert!(T::COLUMNS.len() <= MAX_COLUMNS && T::TIME < T::COLUMNS.len()) };
+    let layout = Layout::new(T::COLUMNS, line, names)?;
+    let mut rows = Vec::new();
+    let mut before = None;
+    while let Some(line) = lines.next()? {
+        if line.text.starts_with('#') {
+            check_late(line.number, line.text)?;
+            continue;
+        }
+        if rows.len() as u64 == MAX_ROWS {
+            return Err(Fault::line(line.number, SourceProblem::TooMany(MAX_ROWS, "rows")));
+        }
+        let values = layout.values(&line)?;
+        before = later::<T>(before, &values)?;
+        rows.push(T::from_values(&values));
+    }
+    if rows.is_empty() { Err(Fault::line(line, ValueProblem::NoRows)) } else { Ok(rows) }
+}
+
+/// The row's line and time, when it has a time; refuses one that is not later than the one before.
+fn later<T: Row>(
+    before: Option<(u64, f64)>,
+    values: &Values<'_>,
+) -> Result<Option<(u64, f64)>, Fault> {
+    let time = values.optional(T::TIME);
+    match (before, time) {
+        (Some((before_line, before_s)), Some(time_s)) if time_s <= before_s => {
+            let problem = TimeProblem::NotLater { time_s, before_s, before_line };
+            Err(Fault::column(values.line, T::COLUMNS[T::TIME].name, problem))
+        }
+        _ => Ok(time.map(|time| (values.line, time))),
+    }
+}

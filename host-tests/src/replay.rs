@@ -1,0 +1,267 @@
+//! Drives the session of the pure crate with a recording, as the board drives it with sensors.
+//!
+//! A recording has gone where it went: the positions at which its stage stood become the session's
+//! schedule, its travel has no limit, and nothing can be repeated. The types that come in here hold
+//! no truth.
+
+use std::fmt;
+
+use orientation::align::POSITIONS;
+use orientation::align::criterion::Criterion;
+use orientation::align::setting::Setting;
+use orientation::earth::Latitude;
+use orientation::session::schedule::{Position, Schedule};
+use orientation::session::{Event, Procedure, ProcedureError, Session};
+use orientation::signal::Sample;
+use orientation::signal::dwell::Dwell;
+use orientation::units::{Angle, AngularRate, Instant, SpecificForce, TURN, Temperature};
+
+use crate::recording::{Body, DwellRow, Header, StageRow};
+use crate::setting::{Described, describe};
+
+/// What the user asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Latitude instead of the header's.
+    pub latitude: Option<Latitude>,
+    /// How the azimuth is found.
+    pub criterion: Criterion,
+    /// Greatest accepted standard deviation, rad; `None` for the default.
+    pub required_sigma: Option<f64>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { latitude: None, criterion: Criterion::MaximumLikelihood, required_sigma: None }
+    }
+}
+
+/// A finished replay.
+#[derive(Clone, Debug)]
+pub struct Replay {
+    /// The session, with its conclusion.
+    pub session: Session,
+    /// The setting it ran in.
+    pub setting: Setting,
+    /// What had to be assumed.
+    pub assumed: Vec<String>,
+}
+
+impl Replay {
+    /// The criterion as the command line names it.
+    #[must_use]
+    pub fn criterion_name(&self) -> String {
+        crate::criterion::name(self.session.criterion())
+    }
+
+    /// Whether the gyro's white noise was stated rather than estimated.
+    #[must_use]
+    pub fn noise_is_known(&self) -> bool {
+        self.setting.white_known
+            || self.session.dwells().iter().all(|dwell| dwell.stated_variance.is_some())
+    }
+}
+
+/// Why a recording that could be read cannot be replayed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ReplayError {
+    /// Neither the header nor the user gives a latitude.
+    NoLatitude,
+    /// The stage never stood still long enough.
+    NoDwell,
+    /// More positions than a session holds.
+    TooManyPositions(usize),
+    /// The session cannot follow the recording.
+    Procedure(ProcedureError),
+}
+
+impl fmt::Display for ReplayError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoLatitude => {
+                f.write_str("key latitude_deg is missing: add it or give --latitude")
+            }
+            Self::NoDwell => f.write_str(
+                "column stage_rad: the stage stands still nowhere long enough for a dwell",
+            ),
+            Self::TooManyPositions(found) => {
+                write!(f, "{found} positions are more than the {POSITIONS} that a session holds")
+            }
+            Self::Procedure(ProcedureError::Filter(error)) => {
+                write!(f, "no filter for this sample rate: {error}")
+            }
+            Self::Procedure(ProcedureError::DwellTooShort { samples, needed }) => write!(
+                f,
+                "the shortest dwell has {samples} samples; the filter needs {needed} to settle"
+            ),
+            Self::Procedure(ProcedureError::BeyondTravel(angle)) => {
+                write!(f, "position {:.2}° is beyond the stage's travel", angle / TURN * 360.0)
+            }
+            Self::Procedure(ProcedureError::TableCorrupt) => {
+                f.write_str("the etalon table in this program fails its checksum")
+            }
+            Self::Procedure(ProcedureError::NoPosition) => f.write_str("there is no position"),
+        }
+    }
+}
+
+impl std::error::Error for ReplayError {}
+
+/// Replays a recording; `progress` sees the session after each dwell.
+///
+/// # Errors
+/// What keeps the session from beginning. A refusal is not an error but the session's conclusion.
+pub fn replay(
+    header: &Header,
+    body: &Body,
+    options: &Options,
+    progress: impl FnMut(&Session),
+) -> Result<Replay, ReplayError> {
+    let Described { mut setting, assumed } = describe(header, latitude(header, options)?);
+    if let Some(sigma) = options.required_sigma {
+        setting.required_sigma = sigma;
+    }
+    let session = match body {
+        Body::Stage(rows) => stage(header, rows, setting, options.criterion, progress),
+        Body::Dwells(rows) => dwells(rows, setting, options.criterion, progress),
+    }?;
+    Ok(Replay { session, setting, assumed })
+}
+
+fn latitude(header: &Header, options: &Options) -> Result<Latitude, ReplayError> {
+    options
+        .latitude
+        .or_else(|| header.latitude_deg.and_then(Latitude::from_degrees))
+        .ok_or(ReplayError::NoLatitude)
+}
+
+fn stage(
+    header: &Header,
+    rows: &[StageRow],
+    setting: Setting,
+    criterion: Criterion,
+    progress: impl FnMut(&Session),
+) -> Result<Session, ReplayError> {
+    let sample_seconds = header.rate_hz.map_or_else(|| median_step(rows), |rate| 1.0 / rate);
+    let procedure = followed(&standstills(rows, sample_seconds)?, sample_seconds, criterion)?;
+    let mut session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
+    let begin = rows.first().map_or(0.0, |row| row.time_s);
+    drive(&mut session, rows.iter().map(|row| sample(row, begin)), progress);
+    Ok(session)
+}
+
+/// The procedure that goes where a recording went.
+fn followed(
+    positions: &[Position],
+    sample_seconds: f64,
+    criterion: Criterion,
+) -> Result<Procedure, ReplayError> {
+    let schedule =
+        Schedule::listed(positions).ok_or(ReplayError::TooManyPositions(positions.len()))?;
+    Ok(Procedure {
+        criterion,
+        retries: 0,
+        travel: [f64::NEG_INFINITY, f64::INFINITY],
+        longest_seconds: f64::INFINITY,
+        longest_rotation: f64::INFINITY,
+        ..Procedure::new(schedule, sample_seconds)
+    })
+}
+
+/// Feeds samples to a session until it has finished or they end.
+pub fn drive(
+    session: &mut Session,
+    samples: impl Iterator<Item = Sample>,
+    mut progress: impl FnMut(&Session),
+) {
+    let mut seen = 0;
+    for sample in samples {
+        session.handle(Event::Sample(&sample));
+        if session.dwells().len() != seen {
+            seen = session.dwells().len();
+            progress(session);
+        }
+    }
+    session.handle(Event::End);
+}
+
+/// A row in the stage path's units, its time from `begin` on; rounding as in
+/// [`orientation::units`].
+fn sample(row: &StageRow, begin: f64) -> Sample {
+    Sample {
+        time: Instant::from_seconds(row.time_s - begin),
+        stage: Angle::from_rad(row.stage_rad),
+        rate: AngularRate::from_rad_per_s(row.rate_rad_s),
+        force: row.force_m_s2.map(SpecificForce::from_m_per_s2),
+        temperature: row.temperature_c.map(Temperature::from_celsius),
+    }
+}
+
+/// Change of the encoder angle that still counts as standing, rad, as in [`Procedure::new`].
+const STILL: f64 = 20e-6;
+/// A standstill shorter than this part of the longest is a pause in a rotation, not a dwell.
+const PAUSE: f64 = 0.3;
+/// Fewest samples of a dwell.
+const FEWEST_SAMPLES: u32 = 10;
+
+/// Where the stage stood still, and for how long.
+fn standstills(rows: &[StageRow], sample_seconds: f64) -> Result<Vec<Position>, ReplayError> {
+    let mut runs: Vec<(f64, u32)> = Vec::new();
+    for row in rows {
+        match runs.last_mut() {
+            Some((anchor, count)) if (row.stage_rad - *anchor).abs() <= STILL => *count += 1,
+            _ => runs.push((row.stage_rad, 1)),
+        }
+    }
+    let longest = runs.iter().map(|run| run.1).max().unwrap_or(0);
+    let shortest = FEWEST_SAMPLES.max((f64::from(longest) * PAUSE) as u32);
+    runs.retain(|run| run.1 >= shortest);
+    if runs.is_empty() {
+        return Err(ReplayError::NoDwell);
+    }
+    let position = |(angle, count)| Position { angle, seconds: f64::from(count) * sample_seconds };
+    Ok(runs.into_iter().map(position).collect())
+}
+
+/// The sample period where the header does not give the rate, s.
+fn median_step(rows: &[StageRow]) -> f64 {
+    let mut steps: Vec<f64> = rows.windows(2).map(|pair| pair[1].time_s - pair[0].time_s).collect();
+    orientation::math::median(&mut steps).max(1e-6)
+}
+
+fn dwells(
+    rows: &[DwellRow],
+    setting: Setting,
+    criterion: Criterion,
+    mut progress: impl FnMut(&Session),
+) -> Result<Session, ReplayError> {
+    let position = |row: &DwellRow| Position { angle: row.stage_rad, seconds: row.seconds };
+    let positions: Vec<Position> = rows.iter().map(position).collect();
+    // No sample passes the filter; any rate at which the shortest dwell lets it settle will do.
+    let shortest = positions.iter().map(|p| p.seconds).fold(f64::INFINITY, f64::min);
+    let procedure = followed(&positions, shortest / 100.0, criterion)?;
+    let mut session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
+    let mut end = 0.0;
+    for row in rows {
+        let middle = row.mid_s.unwrap_or(end + 0.5 * row.seconds);
+        end = middle + 0.5 * row.seconds;
+        session.handle(Event::Averaged(&averaged(row, middle)));
+        progress(&session);
+    }
+    session.handle(Event::End);
+    Ok(session)
+}
+
+/// A row as a dwell whose variance is stated; without times the rows follow each other directly.
+fn averaged(row: &DwellRow, middle: f64) -> Dwell {
+    Dwell {
+        stage: Angle::from_rad(row.stage_rad),
+        middle,
+        seconds: row.seconds,
+        rate: row.rate_rad_s,
+        taper: 1.0,
+        stated_variance: Some(row.sigma_rad_s * row.sigma_rad_s),
+        force: row.force_m_s2,
+        ..Dwell::default()
+    }
+}
