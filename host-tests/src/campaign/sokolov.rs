@@ -340,7 +340,8 @@ fn alpha_row(all: &[(usize, Vec<Dwell>)], alpha_deg_h: f64) -> AlphaRow {
         runs: accepted.len(),
         nothing: accepted.iter().filter(|&&accepted| accepted == Accepted::Nothing).count(),
         whole_range: accepted.iter().filter(|&&accepted| covers_quarter(accepted)).count(),
-        mean_width_deg: widths.iter().sum::<f64>() / widths.len().max(1) as f64,
+        mean_width_deg: widths.iter().fold(0.0, |sum, width| sum + width)
+            / widths.len().max(1) as f64,
     }
 }
 
