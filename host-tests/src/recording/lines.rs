@@ -13,8 +13,8 @@ use super::problem::SourceProblem;
 /// Longest line, in bytes without its line end. A row has some hundred.
 pub const MAX_LINE_BYTES: u64 = 64 * 1024;
 
-/// Most rows: eleven hours at 500 Hz, 1.6 GB in memory.
-pub const MAX_ROWS: u64 = 20_000_000;
+/// Most rows: over an hour at 2 kHz, 640 MB in memory.
+pub const MAX_ROWS: u64 = 8_000_000;
 
 /// Most lines of any sort, blank ones and comments too.
 const MAX_LINES: u64 = MAX_ROWS + 1_000_000;

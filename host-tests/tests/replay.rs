@@ -1,0 +1,224 @@
+//! The recordings of an independent simulator, replayed through the session.
+
+use std::path::Path;
+
+use bench::output::azimuth_error;
+use bench::recording::{self, Header};
+use bench::replay::{Options, Replay, replay};
+use orientation::align::conclusion::Conclusion;
+use orientation::align::criterion::Criterion;
+use orientation::align::quality::Disturbance;
+use orientation::earth::Latitude;
+use orientation::error::{Refusal, Source};
+
+struct Replayed {
+    replay: Replay,
+    header: Header,
+    truth_deg: f64,
+}
+
+impl Replayed {
+    fn conclusion(&self) -> &Conclusion {
+        self.replay.session.conclusion().expect("the session has ended")
+    }
+
+    /// Error and σ, °.
+    fn error_and_sigma(&self) -> (f64, f64) {
+        let azimuth = self.conclusion().verdict.expect("there is an azimuth");
+        let error = azimuth_error(azimuth.angle.to_degrees(), self.truth_deg);
+        (error, azimuth.sigma.to_degrees())
+    }
+
+    fn sigma_over_limit(&self) -> f64 {
+        let fit = self.conclusion().fit.as_ref().expect("there is a fit");
+        fit.sigma() / fit.limit
+    }
+
+    /// The dwells left out: start, end, why.
+    fn excluded(&self) -> Vec<(f64, f64, Disturbance)> {
+        let dwells = self.replay.session.dwells().iter().zip(&self.conclusion().disturbances);
+        dwells.filter_map(|(d, why)| why.map(|why| (d.start(), d.end(), why))).collect()
+    }
+}
+
+fn replayed_with(name: &str, options: &Options) -> Replayed {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/recordings").join(name);
+    let (header, body, truth) = recording::read(&path).expect("it reads").into_parts();
+    let replay = replay(&header, &body, options, |_| {}).expect("it replays");
+    Replayed { replay, header, truth_deg: truth.azimuth_deg.expect("it carries a truth") }
+}
+
+fn replayed(name: &str) -> Replayed {
+    replayed_with(&format!("{name}.csv.gz"), &Options::default())
+}
+
+const ALL: [&str; 10] = [
+    "positions-four-fog",
+    "stepwise-bumped",
+    "stepwise-circle",
+    "stepwise-mems",
+    "stepwise-nudged",
+    "stepwise-paper-1",
+    "stepwise-paper-2",
+    "stepwise-paper-3",
+    "stepwise-tilted-drift",
+    "stepwise-unknown-g",
+];
+
+#[test]
+fn every_recording_gives_north_within_three_and_a_half_sigma() {
+    for name in ALL {
+        let (error, sigma) = replayed(name).error_and_sigma();
+        println!("{name}: {error:+.4}° ± {sigma:.4}°");
+        assert!(error.abs() <= 3.5 * sigma, "{name}: {error}° ± {sigma}°");
+    }
+}
+
+#[test]
+fn sigma_is_within_a_tenth_of_the_limit_where_noise_alone_limits() {
+    for name in ALL.iter().filter(|name| **name != "stepwise-unknown-g") {
+        let ratio = replayed(name).sigma_over_limit();
+        assert!((0.999..1.1).contains(&ratio), "{name}: σ is {ratio} of the limit");
+    }
+}
+
+#[test]
+fn the_limit_on_the_full_circle_is_the_closed_form() {
+    for name in ["stepwise-circle", "stepwise-bumped", "stepwise-nudged"] {
+        let replayed = replayed(name);
+        let n = replayed.header.gyro_n_deg_sqrt_h.expect("N is stated");
+        let latitude = replayed.header.latitude_deg.expect("it is stated").to_radians();
+        let kept = replayed.replay.session.dwells().iter().zip(&replayed.conclusion().disturbances);
+        let hours: f64 =
+            kept.filter(|(_, why)| why.is_none()).map(|(d, _)| d.seconds / 3600.0).sum();
+        // √2 N / (Ω_h √T), and what a dwell left out of twelve changes of the circle's symmetry.
+        let expected = 2.0_f64.sqrt() * n / (15.041_067 * latitude.cos() * hours.sqrt());
+        let fit = replayed.conclusion().fit.as_ref().expect("there is a fit");
+        assert!((fit.limit / expected - 1.0).abs() < 0.12, "{name}: {} {expected}", fit.limit);
+    }
+}
+
+#[test]
+fn a_bumped_and_a_nudged_dwell_are_left_out_and_nothing_else() {
+    for (name, from, to) in [("stepwise-bumped", 47.0, 51.0), ("stepwise-nudged", 79.0, 83.0)] {
+        let excluded = replayed(name).excluded();
+        assert_eq!(excluded.len(), 1, "{name}: {excluded:?}");
+        assert!(excluded[0].0 < from && to < excluded[0].1, "{name}: {excluded:?}");
+    }
+    for name in ALL.iter().filter(|name| !name.ends_with("bumped") && !name.ends_with("nudged")) {
+        assert_eq!(replayed(name).excluded(), [], "{name}");
+    }
+}
+
+#[test]
+fn an_unknown_g_sensitivity_dominates_and_is_said_to() {
+    let replayed = replayed("stepwise-unknown-g");
+    let fit = replayed.conclusion().fit.as_ref().expect("there is a fit");
+    assert_eq!(fit.budget.dominant(), Some(Source::GSensitivity));
+    let mut block = String::new();
+    bench::output::text::block(&mut block, "x", &replayed.replay, replayed.conclusion(), None)
+        .expect("strings take all");
+    assert!(block.contains("g-sensitivity dominates: level the platform mechanically"), "{block}");
+}
+
+#[test]
+fn a_mems_gyro_is_honestly_good_to_one_or_two_degrees() {
+    let replayed = replayed("stepwise-mems");
+    let (_, sigma) = replayed.error_and_sigma();
+    assert!((1.0..2.0).contains(&sigma), "{sigma}");
+    let fit = replayed.conclusion().fit.as_ref().expect("there is a fit");
+    assert!(fit.earth_rate_is_free());
+    assert!((fit.ratio - 1.0).abs() < 2.0 * fit.ratio_sigma);
+}
+
+#[test]
+fn all_of_the_papers_criteria_answer_within_their_sigma() {
+    let criteria = [
+        Criterion::LeastSquares,
+        Criterion::LeastAbsolute,
+        bench::criterion::parse("within-squares=0.05").expect("it parses"),
+    ];
+    for criterion in criteria {
+        for name in ["stepwise-circle", "stepwise-paper-1", "stepwise-paper-2", "stepwise-paper-3"]
+        {
+            let options = Options { criterion, ..Options::default() };
+            let (error, sigma) =
+                replayed_with(&format!("{name}.csv.gz"), &options).error_and_sigma();
+            assert!(error.abs() <= 3.5 * sigma, "{name} {criterion:?}: {error} ± {sigma}");
+        }
+    }
+}
+
+#[test]
+fn a_left_out_dwell_makes_the_steps_uneven_for_the_papers_criteria() {
+    let options = Options { criterion: Criterion::LeastSquares, ..Options::default() };
+    let replayed = replayed_with("stepwise-bumped.csv.gz", &options);
+    assert_eq!(replayed.conclusion().verdict, Err(Refusal::StepsUneven));
+}
+
+#[test]
+fn a_wrong_latitude_is_noticed_by_the_earth_rate() {
+    let options = Options { latitude: Latitude::from_degrees(60.0), ..Options::default() };
+    let replayed = replayed_with("stepwise-circle.csv.gz", &options);
+    let verdict = replayed.conclusion().verdict;
+    assert!(matches!(verdict, Err(Refusal::EarthRateMismatch { .. })), "{verdict:?}");
+}
+
+#[test]
+fn beyond_eighty_five_degrees_north_is_refused() {
+    let options = Options { latitude: Latitude::from_degrees(-85.5), ..Options::default() };
+    let replayed = replayed_with("stepwise-circle.csv.gz", &options);
+    let verdict = replayed.conclusion().verdict;
+    assert!(matches!(verdict, Err(Refusal::LatitudeTooHigh { .. })), "{verdict:?}");
+}
+
+#[test]
+fn a_demand_beyond_the_limit_is_refused_and_names_what_limits() {
+    let required_sigma = Some(0.01_f64.to_radians());
+    let options = Options { required_sigma, ..Options::default() };
+    let replayed = replayed_with("stepwise-circle.csv.gz", &options);
+    let verdict = replayed.conclusion().verdict;
+    let Err(Refusal::BudgetNotMet { source, .. }) = verdict else { panic!("{verdict:?}") };
+    assert_eq!(source, Source::Noise);
+}
+
+#[test]
+fn noise_that_is_not_stated_is_estimated_from_the_dwells() {
+    for name in ["stepwise-circle", "stepwise-tilted-drift"] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/recordings");
+        let path = path.join(format!("{name}.csv.gz"));
+        let (mut header, body, truth) = recording::read(&path).expect("it reads").into_parts();
+        let stated = header.gyro_n_deg_sqrt_h.take().expect("N is stated");
+        let replay = replay(&header, &body, &Options::default(), |_| {}).expect("it replays");
+        let conclusion = replay.session.conclusion().expect("it has ended");
+        let found = conclusion.angle_random_walk.to_degrees() * 60.0;
+        assert!((found / stated - 1.0).abs() < 0.15, "{name}: {found} for {stated}");
+        let azimuth = conclusion.verdict.expect("there is an azimuth");
+        let truth = truth.azimuth_deg.expect("it carries a truth");
+        let error = azimuth_error(azimuth.angle.to_degrees(), truth);
+        assert!(error.abs() < 3.5 * azimuth.sigma.to_degrees(), "{name}: {error}");
+    }
+}
+
+#[test]
+fn rows_of_averaged_dwells_give_the_same_north_as_their_samples() {
+    let sampled = replayed("stepwise-tilted-drift");
+    let mut text = String::from("# kind: dwells\n# latitude_deg: 55.75\n");
+    text += "# gyro_K_deg_h_sqrt_h: 0.2\n# gyro_R_deg_h2: 2\n# g_sensitivity_deg_h_g: 9,-5\n";
+    text += "# g_sensitivity_sigma_deg_h_g: 0.05\n# accelerometer_bias_m_s2: 0.05\n";
+    text += "stage_rad,rate_rad_s,sigma_rad_s,seconds,mid_s,fx_m_s2,fy_m_s2,fz_m_s2\n";
+    let density = 0.004 * (std::f64::consts::PI / 180.0 / 60.0);
+    for dwell in sampled.replay.session.dwells() {
+        let sigma = density / dwell.seconds.sqrt() * dwell.taper.sqrt();
+        let [x, y, z] = dwell.force.expect("it was measured");
+        let (stage, rate) = (dwell.stage.rad(), dwell.rate);
+        let (seconds, middle) = (dwell.seconds, dwell.middle);
+        text += &format!("{stage:e},{rate:e},{sigma:e},{seconds},{middle},{x:e},{y:e},{z:e}\n");
+    }
+    let (header, body, _) =
+        recording::read_from("dwells.csv", text.as_bytes()).expect("it reads").into_parts();
+    let replay = replay(&header, &body, &Options::default(), |_| {}).expect("it replays");
+    let conclusion = replay.session.conclusion().expect("it has ended");
+    let (a, b) = (conclusion.verdict.expect("ok"), sampled.conclusion().verdict.expect("ok"));
+    assert!((a.angle - b.angle).abs() < 1e-9 && (a.sigma - b.sigma).abs() < 1e-9, "{a:?} {b:?}");
+}

@@ -1,0 +1,175 @@
+//! The session with a simulated stage that obeys it: retries, travel, direction, refusals.
+
+use bench::output::azimuth_error;
+use bench::simulate::run;
+use hal_mock::disturbance::Disturbance;
+use hal_mock::gyro::GyroConfiguration;
+use hal_mock::instruments::InstrumentsConfiguration;
+use orientation::align::setting::Setting;
+use orientation::earth::Latitude;
+use orientation::error::Refusal;
+use orientation::noise::model::GyroNoise;
+use orientation::session::schedule::{Position, Schedule, StopRule};
+use orientation::session::{Phase, Procedure, ProcedureError, Session};
+
+const N_DEG_SQRT_H: f64 = 0.001;
+const LATITUDE_DEG: f64 = 47.58;
+
+fn setting() -> Setting {
+    Setting {
+        noise: GyroNoise::from_field_units(N_DEG_SQRT_H, 0.0, 0.0, 0.0),
+        white_known: true,
+        ..Setting::at(Latitude::from_degrees(LATITUDE_DEG).expect("it is one"))
+    }
+}
+
+fn world(azimuth_deg: f64) -> InstrumentsConfiguration {
+    let gyro = GyroConfiguration {
+        n_deg_sqrt_h: N_DEG_SQRT_H,
+        bias_sigma_deg_h: 1.0,
+        ..GyroConfiguration::default()
+    };
+    InstrumentsConfiguration {
+        latitude_deg: LATITUDE_DEG,
+        azimuth_deg,
+        pitch_deg: 0.3,
+        roll_deg: -0.4,
+        rate_hz: 100.0,
+        gyro,
+        ..InstrumentsConfiguration::default()
+    }
+}
+
+fn circle() -> Procedure {
+    Procedure::new(Schedule::circle(12, 5.0), 0.01)
+}
+
+fn session(procedure: Procedure) -> Session {
+    Session::new(setting(), procedure).expect("it begins")
+}
+
+/// Error over σ.
+fn error_in_sigmas(session: &Session, azimuth_deg: f64) -> f64 {
+    let conclusion = session.conclusion().expect("it has ended");
+    let azimuth = conclusion.verdict.expect("there is an azimuth");
+    azimuth_error(azimuth.angle.to_degrees(), azimuth_deg) / azimuth.sigma.to_degrees()
+}
+
+#[test]
+fn a_circle_is_turned_step_by_step_and_gives_north() {
+    for (seed, azimuth) in [(1, 3.3), (2, 123.4), (3, 359.9), (4, 200.0)] {
+        let mut session = session(circle());
+        let sent = run(&mut session, &world(azimuth), &[], 1.0, 200.0, seed);
+        let expected: Vec<f64> = (1..12).map(|i| f64::from(i) * 30.0_f64.to_radians()).collect();
+        assert_eq!(sent.len(), expected.len());
+        assert!(sent.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{sent:?}");
+        assert!(error_in_sigmas(&session, azimuth).abs() < 3.5);
+    }
+}
+
+#[test]
+fn a_disturbed_dwell_is_measured_again_without_moving_the_stage() {
+    let nudge = Disturbance::Nudge { start_s: 14.0, seconds: 2.0, rate_deg_h: 5.0 };
+    let mut session = session(circle());
+    let sent = run(&mut session, &world(77.0), &[nudge], 1.0, 200.0, 5);
+    assert_eq!(sent.len(), 11);
+    assert_eq!(session.repetitions().len(), 1);
+    assert_eq!(session.repetitions()[0].position, 2);
+    assert!(session.conclusion().expect("done").disturbances.iter().all(Option::is_none));
+    assert!(error_in_sigmas(&session, 77.0).abs() < 3.5);
+}
+
+#[test]
+fn retries_are_bounded_and_a_lasting_disturbance_is_refused() {
+    let lasting: Vec<Disturbance> = (0..400)
+        .map(|i| Disturbance::Nudge { start_s: f64::from(i) * 3.0, seconds: 1.0, rate_deg_h: 60.0 })
+        .collect();
+    let mut session = session(circle());
+    run(&mut session, &world(10.0), &lasting, 1.0, 2000.0, 6);
+    let conclusion = session.conclusion().expect("it has ended");
+    assert!(
+        matches!(conclusion.verdict, Err(Refusal::Disturbed { .. })),
+        "{:?}",
+        conclusion.verdict
+    );
+    assert_eq!(session.dwells().len(), 12);
+    assert_eq!(session.repetitions().len(), 24);
+}
+
+#[test]
+fn the_whole_session_is_bounded_in_time() {
+    let mut session = session(Procedure { longest_seconds: 20.0, ..circle() });
+    run(&mut session, &world(10.0), &[], 1.0, 2000.0, 7);
+    let verdict = session.conclusion().expect("it has ended").verdict;
+    assert_eq!(verdict, Err(Refusal::TimeExhausted));
+}
+
+#[test]
+fn a_stage_that_does_not_arrive_is_refused() {
+    let mut session = session(circle());
+    // It takes longer for a rotation than is allowed.
+    run(&mut session, &world(10.0), &[], 50.0, 2000.0, 8);
+    let verdict = session.conclusion().expect("it has ended").verdict;
+    assert!(matches!(verdict, Err(Refusal::StageNotThere { .. })), "{verdict:?}");
+}
+
+#[test]
+fn a_platform_that_is_not_level_enough_is_refused_before_anything_turns() {
+    let mut session = session(circle());
+    let tilted = InstrumentsConfiguration { pitch_deg: 20.0, ..world(10.0) };
+    let sent = run(&mut session, &tilted, &[], 1.0, 200.0, 9);
+    assert_eq!(sent, [0.0; 0]);
+    let verdict = session.conclusion().expect("it has ended").verdict;
+    assert!(matches!(verdict, Err(Refusal::TiltTooGreat { .. })), "{verdict:?}");
+}
+
+fn ascending(positions: usize) -> Procedure {
+    let step = 6.0_f64.to_radians();
+    let schedule = Schedule::TowardMaximum { start: 0.0, step, positions, seconds: 5.0 };
+    let travel = [-200.0_f64.to_radians(), 200.0_f64.to_radians()];
+    Procedure { travel, ..Procedure::new(schedule, 0.01) }
+}
+
+#[test]
+fn the_stage_turns_towards_growing_rate() {
+    for (azimuth, towards) in [(60.0, -1.0), (300.0, 1.0), (150.0, -1.0), (210.0, 1.0)] {
+        let mut session = session(ascending(20));
+        let sent = run(&mut session, &world(azimuth), &[], 0.5, 400.0, 10);
+        let last = sent.last().expect("it was sent");
+        assert!(last * towards > 0.0, "{azimuth}: {sent:?}");
+        assert!(error_in_sigmas(&session, azimuth).abs() < 3.5, "{azimuth}");
+    }
+}
+
+#[test]
+fn the_significant_stop_rule_ends_past_the_maximum_where_the_papers_stops_short() {
+    let positions_with = |stop| {
+        let mut session = session(Procedure { stop, ..ascending(40) });
+        run(&mut session, &world(300.0), &[], 0.5, 600.0, 11);
+        assert_eq!(session.phase(), Phase::Done);
+        session.dwells().len()
+    };
+    let (paper, significant) =
+        (positions_with(StopRule::SignChange), positions_with(StopRule::Significant(3.0)));
+    // The maximum is 60° away: ten steps, so that the eleventh position points north.
+    assert!(paper < significant, "{paper} {significant}");
+    assert!((12..16).contains(&significant), "{significant}");
+}
+
+#[test]
+fn the_stage_never_leaves_its_travel() {
+    let travel = [-0.2, 0.2];
+    let mut session = session(Procedure { travel, ..ascending(20) });
+    let sent = run(&mut session, &world(100.0), &[], 0.5, 400.0, 12);
+    assert!(sent.iter().all(|angle| (travel[0]..=travel[1]).contains(angle)), "{sent:?}");
+    let positions = [0.0, 7.0].map(|angle| Position { angle, seconds: 5.0 });
+    let listed = Schedule::listed(&positions).expect("they fit");
+    let begun = Session::new(setting(), Procedure::new(listed, 0.01));
+    assert_eq!(begun.err(), Some(ProcedureError::BeyondTravel(7.0)));
+}
+
+#[test]
+fn a_dwell_that_the_filter_cannot_settle_in_is_no_procedure() {
+    let begun = Session::new(setting(), Procedure::new(Schedule::circle(12, 0.2), 0.01));
+    assert!(matches!(begun.err(), Some(ProcedureError::DwellTooShort { samples: 20, .. })));
+}
