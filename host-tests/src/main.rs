@@ -9,17 +9,13 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use bench::campaign::sokolov::{self, Turn};
+use bench::demonstration;
 use bench::output::{json, progress, table, text};
 use bench::recording::{self, Recording};
 use bench::replay::{Options, replay};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use orientation::align::criterion::Criterion;
 use orientation::earth::Latitude;
-
-/// The recording that ships with the program.
-const DEMONSTRATION: &[u8] = include_bytes!("../data/demonstration.csv");
-/// Its name in messages.
-const DEMONSTRATION_NAME: &str = "demonstration.csv (built in)";
 
 /// Finds true north from a precise gyro on a rotation stage, with its standard deviation.
 ///
@@ -112,9 +108,9 @@ fn main() -> ExitCode {
 fn run(line: &CommandLine) -> Result<bool, String> {
     match &line.command {
         None => {
-            let recording = recording::read_from(DEMONSTRATION_NAME, DEMONSTRATION)
+            let recording = recording::read_from(demonstration::NAME, demonstration::RECORDING)
                 .map_err(|error| error.to_string())?;
-            replayed(DEMONSTRATION_NAME, recording, &Options::default(), line.json)
+            replayed(demonstration::NAME, recording, &Options::default(), line.json)
         }
         Some(Command::Replay(options)) => {
             let recording = recording::read(&options.file).map_err(|error| error.to_string())?;

@@ -5,7 +5,7 @@ use std::fmt::{self, Write};
 use orientation::align::conclusion::Conclusion;
 use orientation::align::stepwise::Fit;
 
-use super::json::earth_rate;
+use super::json::{Excluded, earth_rate, excluded};
 use super::{azimuth_error, columns, degrees, degrees_per_hour};
 use crate::replay::Replay;
 
@@ -32,6 +32,7 @@ pub fn block(
         of_fit(out, replay, conclusion, fit)?;
     }
     line(out, "assumed", format_args!("{}", replay.assumed.join("; ")))?;
+    left_out(out, replay, conclusion)?;
     dwells(out, replay, conclusion)
 }
 
@@ -127,6 +128,15 @@ fn remedy(source: orientation::error::Source) -> &'static str {
     }
 }
 
+/// Names the dwells that take no part.
+fn left_out(out: &mut impl Write, replay: &Replay, conclusion: &Conclusion) -> fmt::Result {
+    for Excluded { dwell, stage_deg, from_s, to_s, reason } in excluded(replay, conclusion) {
+        let place = format_args!("dwell {dwell}, {stage_deg:.2}°, {from_s:.1}…{to_s:.1} s");
+        line(out, "left out", format_args!("{place}: {reason}"))?;
+    }
+    Ok(())
+}
+
 fn dwells(out: &mut impl Write, replay: &Replay, conclusion: &Conclusion) -> fmt::Result {
     writeln!(
         out,
@@ -140,7 +150,7 @@ fn dwells(out: &mut impl Write, replay: &Replay, conclusion: &Conclusion) -> fmt
             "  {:>3} {:>9.4} {:>8.2} {:>7.2} {:>13.5} ",
             index + 1,
             degrees(dwell.stage.rad()),
-            dwell.start(),
+            dwell.start().max(0.0),
             dwell.seconds,
             degrees_per_hour(dwell.rate),
         )?;
