@@ -1,6 +1,6 @@
 //! The small recording that ships with the program, and how it was made.
 //!
-//! A fibre-optic gyro of the OIUS-1000 class (N 0.001 °/√h, papers/003) beside an accelerometer with
+//! A fibre-optic gyro of the OIUS-1000 class (N 0.001 °/√h) beside an accelerometer with
 //! a bias of some mg, on a stage that turns a full circle in twelve steps, on a base that is not
 //! quite level. Somebody leans on the base in the seventh dwell.
 

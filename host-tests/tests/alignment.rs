@@ -1,5 +1,6 @@
 //! Regression, whitening, direction, level and the dwell tests, against dense algebra written here
 //! and closed forms.
+#![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
 use hal_mock::noise::Generator;
 use orientation::align::direction::{Amplitude, Components};
@@ -69,7 +70,7 @@ fn whitened_covariance(
     regression.solve(&[Column::Free; 3]).expect("it is determined").covariance
 }
 
-/// `equations.md` §2: N²/T on the diagonal and K²(a + T/3), else K² times the earlier mid-time.
+/// N²/T on the diagonal and K²(a + T/3), else K² times the earlier mid-time.
 #[test]
 fn a_random_walk_is_whitened_exactly() {
     let (rows, times) = circle(12, 10.0);
@@ -159,7 +160,7 @@ fn chi_square(components: &Components, amplitude: Amplitude, azimuth: f64, rho: 
 /// Least chi-square over a grid of azimuths and amplitudes.
 fn least_of_grid(components: &Components, amplitude: Amplitude) -> f64 {
     let rhos: Vec<f64> = match amplitude {
-        Amplitude::Known(sigma) if sigma == 0.0 => vec![1.0],
+        Amplitude::Known(0.0) => vec![1.0],
         _ => (0..=200).map(|i| f64::from(i) * 0.01).collect(),
     };
     let azimuths = (0..36_000).map(|k| f64::from(k) * std::f64::consts::TAU / 36_000.0);

@@ -136,7 +136,7 @@ fn gain_db(sections: &[Section], frequency: f64) -> f64 {
 /// The ideal gain in dB: the analogue Butterworth response at the warped frequency.
 fn ideal_db(order: usize, ratio: f64, frequency: f64) -> f64 {
     let warped = (PI * frequency).tan() / (PI * ratio).tan();
-    -10.0 * (1.0 + warped.powi(2 * order as i32)).log10()
+    -10.0 * (1.0 + warped.powf(2.0 * f64::from(order as u32))).log10()
 }
 
 fn check_sections<const S: usize>(vector: &Value) {

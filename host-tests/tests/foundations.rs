@@ -1,4 +1,5 @@
 //! Units, Earth and the numerical pieces, against published values, scipy and closed forms.
+#![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
 use orientation::earth::Latitude;
 use orientation::math::{chi_square_tail, cholesky, cholesky_solve, median};
@@ -101,6 +102,7 @@ fn dependent_columns_are_noticed() {
 }
 
 /// `scipy.stats.chi2.sf`.
+#[allow(clippy::unreadable_literal, reason = "as scipy prints them")]
 #[test]
 fn the_chi_square_tail_is_that_of_scipy() {
     let table = [

@@ -1,5 +1,7 @@
 //! The recordings of an independent simulator, replayed through the session.
+#![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
+use std::fmt::Write;
 use std::path::Path;
 
 use bench::output::azimuth_error;
@@ -213,7 +215,8 @@ fn rows_of_averaged_dwells_give_the_same_north_as_their_samples() {
         let [x, y, z] = dwell.force.expect("it was measured");
         let (stage, rate) = (dwell.stage.rad(), dwell.rate);
         let (seconds, middle) = (dwell.seconds, dwell.middle);
-        text += &format!("{stage:e},{rate:e},{sigma:e},{seconds},{middle},{x:e},{y:e},{z:e}\n");
+        writeln!(text, "{stage:e},{rate:e},{sigma:e},{seconds},{middle},{x:e},{y:e},{z:e}")
+            .expect("strings take all");
     }
     let (header, body, _) =
         recording::read_from("dwells.csv", text.as_bytes()).expect("it reads").into_parts();

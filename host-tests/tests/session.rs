@@ -1,4 +1,5 @@
 //! The session with a simulated stage that obeys it: retries, travel, direction, refusals.
+#![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
 use bench::output::azimuth_error;
 use bench::simulate::run;
@@ -9,8 +10,9 @@ use orientation::align::setting::Setting;
 use orientation::earth::Latitude;
 use orientation::error::Refusal;
 use orientation::noise::model::GyroNoise;
+use orientation::session::procedure::{Procedure, ProcedureError};
 use orientation::session::schedule::{Position, Schedule, StopRule};
-use orientation::session::{Phase, Procedure, ProcedureError, Session};
+use orientation::session::{Phase, Session};
 
 const N_DEG_SQRT_H: f64 = 0.001;
 const LATITUDE_DEG: f64 = 47.58;

@@ -1,4 +1,5 @@
-//! Sokolov's numerical experiment (papers/000, section 3) and what it leaves open.
+//! Sokolov's numerical experiment ("Determining the Initial Orientation…",
+//! 2019, section 3) and what it leaves open.
 //!
 //! White noise of 0.15 °/h on each sample at 100 Hz, a constant bias of 0.01 °/h (1σ), latitude
 //! 47°35′, 60 dwells of 1 s through the sixth-order Butterworth filter in fixed point, first on the
@@ -16,8 +17,9 @@ use orientation::align::etalon::{self, Accepted, Limit, Series, Table as Etalon}
 use orientation::align::setting::Setting;
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
+use orientation::session::Session;
+use orientation::session::procedure::Procedure;
 use orientation::session::schedule::{Position, Schedule, StopRule};
-use orientation::session::{Procedure, Session};
 use orientation::signal::Sample;
 use orientation::signal::dwell::Dwell;
 use orientation::units::{ARCSECONDS_PER_RADIAN, DEGREE_PER_HOUR};
@@ -358,7 +360,7 @@ fn covers_quarter(accepted: Accepted) -> bool {
     let Accepted::Arc { first, width, .. } = accepted else {
         return accepted == Accepted::Everything;
     };
-    let turned = (Turn::Arc.step() / STEP).round() as i32 * (POSITIONS as i32 - 1);
+    let turned = (Turn::Arc.step() / STEP * (POSITIONS - 1) as f64).round() as i32;
     let from = (0 - turned - first).rem_euclid(table::TURN);
     from + table::TURN / 4 <= width
 }

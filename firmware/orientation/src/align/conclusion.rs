@@ -161,7 +161,7 @@ impl Conclusion {
         (size > OUTLIER_BOUND).then_some((index, size))
     }
 
-    /// Every test that an azimuth must pass; `equations.md` §1 and §2.
+    /// Every test that an azimuth must pass.
     fn judge(&self, setting: &Setting, fit: &Fit) -> Result<(), Refusal> {
         self.judge_tilt(setting, fit)?;
         if fit.direction.margin < SECOND_MINIMUM {

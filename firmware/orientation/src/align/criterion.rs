@@ -2,7 +2,7 @@
 //!
 //! The paper's criteria compare differences of neighbouring dwells with the etalon table. They are
 //! offered for comparison: differencing colours the noise, and so each of them does worse than the
-//! limit (`equations.md` §2). Their standard deviation says so.
+//! limit. Their standard deviation says so.
 
 use heapless::Vec;
 

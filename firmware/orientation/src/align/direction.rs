@@ -1,7 +1,7 @@
 //! From the horizontal Earth rate's two components to an azimuth.
 //!
-//! A regression gives β = ρ(cos A, sin A) in units of the expected horizontal Earth rate Ω_h, with
-//! its covariance. ρ is Ω̂_h/Ω_h: free, known exactly, or known within the gyro's scale tolerance.
+//! A regression gives β = ρ(cos A, sin A) in units of the expected horizontal Earth rate `Ω_h`, with
+//! its covariance. ρ is `Ω̂_h/Ω_h`: free, known exactly, or known within the gyro's scale tolerance.
 //! J(A) is the least chi-square over ρ; on a short arc it may have two minima, so the whole circle
 //! is scanned before the best is refined.
 
@@ -17,7 +17,7 @@ pub enum Amplitude {
 /// The two components with what weighs them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Components {
-    /// β: north and east component along body x, in units of Ω_h.
+    /// β: north and east component along body x, in units of `Ω_h`.
     pub value: [f64; 2],
     /// Their covariance.
     pub covariance: [[f64; 2]; 2],

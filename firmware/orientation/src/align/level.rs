@@ -1,7 +1,7 @@
 //! Tilt of the stage from the accelerometer that rides on it.
 //!
 //! Over the stage angle θ the readings are `f_x/g = Re(F e^{jθ}) + b_x` and
-//! `f_y/g = −Im(F e^{jθ}) + b_y` (`equations.md` §1). The tilt phasor F and both biases are fitted
+//! `f_y/g = −Im(F e^{jθ}) + b_y`. The tilt phasor F and both biases are fitted
 //! together: over a full circle F comes out free of bias; over a short arc the bias's stated
 //! uncertainty goes into F's.
 

@@ -2,7 +2,7 @@
 
 use crate::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 
-/// Noise coefficients of a gyro in SI units (`equations.md` §0 conventions: Allan variance
+/// Noise coefficients of a gyro in SI units (Allan variance
 /// N²/τ + (2 ln 2/π)B² + K²τ/3 + R²τ²/2). Zero means: not present.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GyroNoise {

@@ -6,7 +6,7 @@
 //! prediction is linear, so the same filter applied to every column of a regression and to its
 //! left side gives rows whose noise is independent with variance one: ordinary least squares on
 //! them is generalised least squares on the dwells. Each process is averaged exactly over a dwell;
-//! for K this is the covariance of `equations.md` §2, K²(a + T/3) on the diagonal.
+//! for K its variance is K²(a + T/3), a being the dwell's start and T its length.
 
 use super::model::GyroNoise;
 
@@ -167,8 +167,8 @@ impl<const COLUMNS: usize> Whitener<COLUMNS> {
             for (state, surprise) in self.state[i].iter_mut().zip(row.iter()) {
                 *state += gain * surprise;
             }
-            for j in 0..STATES {
-                self.covariance[i][j] -= gain * cross[j];
+            for (shared, other) in self.covariance[i].iter_mut().zip(cross) {
+                *shared -= gain * other;
             }
         }
         scale(row, variance);

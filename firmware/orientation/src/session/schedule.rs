@@ -15,6 +15,10 @@ pub struct Position {
 }
 
 /// Which positions to visit.
+#[allow(
+    clippy::large_enum_variant,
+    reason = "without an allocator the list lives here; a session holds one schedule"
+)]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Schedule {
     /// These, in this order.
@@ -118,7 +122,7 @@ impl Schedule {
             Self::Listed(list) => list.get(dwells.len()).copied(),
             Self::TowardMaximum { start, step, positions, seconds } => {
                 let steps = steps_towards(dwells, sigma);
-                let angle = start + f64::from(steps) * step;
+                let angle = start + steps * step;
                 (dwells.len() < *positions).then_some(Position { angle, seconds: *seconds })
             }
         }
@@ -146,10 +150,10 @@ fn turning_point(dwells: &[Dwell], sigma: f64) -> Option<usize> {
 }
 
 /// In steps from the start, where to go next.
-fn steps_towards(dwells: &[Dwell], sigma: f64) -> i32 {
-    let visited = dwells.len() as i32;
+fn steps_towards(dwells: &[Dwell], sigma: f64) -> f64 {
+    let visited = dwells.len() as f64;
     match turning_point(dwells, sigma) {
-        Some(turn) if dwells[turn].rate < dwells[0].rate => turn as i32 - visited,
+        Some(turn) if dwells[turn].rate < dwells[0].rate => turn as f64 - visited,
         _ => visited,
     }
 }

@@ -137,7 +137,7 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
         self.squares = self.squares.saturating_add(size * size);
         self.blocks.push(deviation);
         self.saturated |= sample.rate.is_saturated();
-        self.stage += i64::from((sample.stage - self.anchor).0 as i32);
+        self.stage += i64::from((sample.stage - self.anchor).0.cast_signed());
         for (sum, force) in self.force.iter_mut().zip(sample.force) {
             sum.push(force.0);
         }

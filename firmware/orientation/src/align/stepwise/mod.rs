@@ -1,14 +1,19 @@
-//! Maximum-likelihood azimuth from dwells at several stage angles (`equations.md` §2).
+//! Maximum-likelihood azimuth from dwells at several stage angles.
 //!
 //! Each dwell is a row: its mean rate, less the vertical Earth rate and the g-sensitivity that the
 //! tilt turns into it, on the sensitive axis' north and east parts, a constant, and where they are
 //! needed time and temperature. Nothing is differenced. The rows are whitened for the gyro's
 //! noise, so the covariance of the fit is the Cramér–Rao bound of what went in.
 
+mod model;
+mod uncertainty;
+
+pub use model::Model;
+
 use super::budget::Budget;
-use super::direction::{Amplitude, Components, Direction, dot, product, quadratic};
+use super::direction::{Amplitude, Components, Direction, dot};
 use super::level::Tilt;
-use super::regression::{Column, Regression, Solution};
+use super::regression::{Regression, Solution};
 use super::setting::Setting;
 use crate::noise::model::GyroNoise;
 use crate::noise::whitener::Whitener;
@@ -25,24 +30,6 @@ const TIME: usize = 3;
 /// Index of temperature above that of the first dwell, °C.
 const TEMPERATURE: usize = 4;
 
-/// Chi-square of one degree of freedom that noise exceeds with a probability of 0.001.
-const TREND_CHI_SQUARE: f64 = 10.83;
-/// By how much a trend may raise the standard deviation of the azimuth.
-const TREND_COST: f64 = 1.5;
-/// By how much leaving the Earth rate free may raise the standard deviation of the azimuth.
-const FREE_COST: f64 = 1.02;
-
-/// Which columns a fit used.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Model {
-    /// Time, with its prior where the ramp R is known.
-    pub time: Column,
-    /// Temperature.
-    pub temperature: Column,
-    /// The horizontal Earth rate.
-    pub amplitude: Amplitude,
-}
-
 /// An azimuth with all that is known about it.
 #[derive(Clone, Debug)]
 pub struct Fit {
@@ -54,7 +41,7 @@ pub struct Fit {
     pub budget: Budget,
     /// Cramér–Rao bound of these columns for all stationary time of these dwells, rad.
     pub limit: f64,
-    /// Ω̂_h/Ω_h with the Earth rate free.
+    /// `Ω̂_h/Ω_h` with the Earth rate free.
     pub ratio: f64,
     /// 1σ of the ratio: noise, tilt, g-sensitivity and scale.
     pub ratio_sigma: f64,
@@ -98,15 +85,15 @@ impl Problem<'_> {
         let regression = self.regression(&noise, Dwell::taper_factor);
         let model = self.choose(&regression)?;
         let solution = regression.solve(&model.columns())?;
-        let components = self.components(&solution);
-        let direction = components.direction(model.amplitude)?;
+        let found = components(&solution);
+        let direction = found.direction(model.amplitude)?;
         let mut fit = Fit {
             model,
             direction,
             budget: self.budget(&regression, &model, &direction)?,
             limit: self.limit(&noise, &model)?,
-            ratio: components.ratio().0,
-            ratio_sigma: self.ratio_sigma(&components),
+            ratio: found.ratio().0,
+            ratio_sigma: self.ratio_sigma(&found),
             chi_square: 0.0,
             degrees: 0,
             coefficients: [0.0; COLUMNS],
@@ -131,7 +118,7 @@ impl Problem<'_> {
         }
     }
 
-    /// The row of a dwell: its columns and, last, its left side, all in units of Ω_h.
+    /// The row of a dwell: its columns and, last, its left side, all in units of `Ω_h`.
     fn row(&self, dwell: &Dwell) -> [f64; COLUMNS + 1] {
         let theta = dwell.stage.rad();
         let axis = self.tilt.sensitive_axis(theta);
@@ -199,163 +186,6 @@ impl Problem<'_> {
         }
         regression
     }
-
-    fn components(&self, solution: &Solution<COLUMNS>) -> Components {
-        let [a, b, ..] = solution.coefficients;
-        let [[c, d, ..], [e, f, ..], ..] = solution.covariance;
-        Components { value: [a, b], covariance: [[c, d], [e, f]] }
-    }
-
-    /// Variance of the azimuth and its direction for a model.
-    fn direction(&self, regression: &Regression<COLUMNS>, model: &Model) -> Option<Direction> {
-        let solution = regression.solve(&model.columns())?;
-        self.components(&solution).direction(model.amplitude)
-    }
-
-    /// Chooses the columns and whether the Earth rate stays free.
-    fn choose(&self, regression: &Regression<COLUMNS>) -> Option<Model> {
-        let mut model = self.base();
-        self.add_trend(regression, &mut model)?;
-        let free = Model { amplitude: Amplitude::Free, ..model };
-        let known = self.direction(regression, &model)?.variance;
-        if let Some(direction) = self.direction(regression, &free)
-            && direction.variance <= FREE_COST * FREE_COST * known
-        {
-            return Some(free);
-        }
-        Some(model)
-    }
-
-    /// The model before any trend is looked for: a known ramp enters with its prior.
-    fn base(&self) -> Model {
-        let ramp = self.setting.noise.rate_ramp * 3600.0 / self.setting.latitude.horizontal_rate();
-        Model {
-            time: if ramp > 0.0 { Column::Prior(ramp) } else { Column::Absent },
-            temperature: Column::Absent,
-            amplitude: Amplitude::Known(self.setting.amplitude_sigma()),
-        }
-    }
-
-    /// Adds temperature and then time where chi-square asks for it and the azimuth can afford it.
-    fn add_trend(&self, regression: &Regression<COLUMNS>, model: &mut Model) -> Option<()> {
-        for _ in 0..2 {
-            let before = regression.solve(&model.columns())?.chi_square;
-            let variance = self.direction(regression, model)?.variance;
-            let mut best = (*model, TREND_CHI_SQUARE);
-            for candidate in self.candidates(model).into_iter().flatten() {
-                let Some(solution) = regression.solve(&candidate.columns()) else { continue };
-                let Some(direction) = self.direction(regression, &candidate) else { continue };
-                let affordable = direction.variance <= TREND_COST * TREND_COST * variance;
-                if affordable && before - solution.chi_square > best.1 {
-                    best = (candidate, before - solution.chi_square);
-                }
-            }
-            *model = best.0;
-        }
-        Some(())
-    }
-
-    fn candidates(&self, model: &Model) -> [Option<Model>; 2] {
-        let measured = self.dwells.iter().all(|dwell| dwell.temperature.is_some());
-        let cold = measured && model.temperature == Column::Absent;
-        let steady = model.time == Column::Absent;
-        [
-            cold.then_some(Model { temperature: Column::Free, ..*model }),
-            steady.then_some(Model { time: Column::Free, ..*model }),
-        ]
-    }
-
-    /// The bound that noise sets for these columns when all stationary time counts fully.
-    fn limit(&self, noise: &GyroNoise, model: &Model) -> Option<f64> {
-        let regression = self.regression(noise, |_| 1.0);
-        self.direction(&regression, model).map(|direction| libm::sqrt(direction.variance))
-    }
-
-    /// Splits the variance: noise alone, then what drift, temperature and scale add, then what the
-    /// fit cannot see.
-    fn budget(
-        &self,
-        coloured: &Regression<COLUMNS>,
-        model: &Model,
-        direction: &Direction,
-    ) -> Option<Budget> {
-        let white = self.regression(&self.setting.noise.white_part(), Dwell::taper_factor);
-        let variance = |regression: &Regression<COLUMNS>, model: &Model| {
-            self.direction(regression, model).map(|direction| direction.variance)
-        };
-        let exact = match model.amplitude {
-            Amplitude::Free => Amplitude::Free,
-            Amplitude::Known(_) => Amplitude::Known(0.0),
-        };
-        let bare = Model { time: Column::Absent, temperature: Column::Absent, amplitude: exact };
-        let noise = variance(&white, &bare)?;
-        let drift = variance(coloured, &Model { time: model.time, ..bare })?.max(noise);
-        let temperature = variance(coloured, &Model { amplitude: exact, ..*model })?.max(drift);
-        let amplitude = (direction.variance - temperature).max(0.0);
-        let tilted = self.tilted(direction);
-        let share = self.scale_share();
-        Some(Budget {
-            noise: libm::sqrt(noise),
-            drift: libm::sqrt(drift - noise),
-            temperature: libm::sqrt(temperature - drift),
-            scale: libm::sqrt(amplitude * share),
-            latitude: libm::sqrt(amplitude * (1.0 - share)),
-            g_sensitivity: tilted[0],
-            accelerometer: tilted[1],
-            encoder: self.setting.encoder_sigma,
-        })
-    }
-
-    /// Which part of the amplitude's variance is the scale factor's.
-    fn scale_share(&self) -> f64 {
-        let amplitude = self.setting.amplitude_sigma();
-        if amplitude > 0.0 {
-            (self.setting.scale_sigma / amplitude) * (self.setting.scale_sigma / amplitude)
-        } else {
-            1.0
-        }
-    }
-
-    /// What g-sensitivity and accelerometer cost in azimuth, rad: both turn with the stage as the
-    /// Earth rate does, so they shift the two components.
-    fn tilted(&self, direction: &Direction) -> [f64; 2] {
-        let [kappa, tilt] = self.component_errors();
-        [kappa, tilt].map(|covariance| libm::sqrt(quadratic(&covariance, direction.gain).max(0.0)))
-    }
-
-    /// Covariance of the components, in units of Ω_h, from κ and from the tilt.
-    ///
-    /// A tilt phasor F shifts them by (Ω_v + κ)F/Ω_h, as complex numbers.
-    fn component_errors(&self) -> [[[f64; 2]; 2]; 2] {
-        let rate = self.setting.latitude.horizontal_rate();
-        let kappa = self.setting.g_sensitivity_sigma * self.tilt.magnitude() / rate;
-        let real = (self.setting.latitude.vertical_rate() + self.setting.g_sensitivity[0]) / rate;
-        let imaginary = self.setting.g_sensitivity[1] / rate;
-        let rows = [[real, -imaginary], [imaginary, real]];
-        let tilt = rows.map(|row| {
-            let half = product(&self.tilt.covariance, row);
-            [dot(rows[0], half), dot(rows[1], half)]
-        });
-        [[[kappa * kappa, 0.0], [0.0, kappa * kappa]], tilt]
-    }
-
-    fn ratio_sigma(&self, components: &Components) -> f64 {
-        let (ratio, sigma) = components.ratio();
-        let unit = components.value.map(|value| value / ratio);
-        let [kappa, tilt] = self.component_errors();
-        let amplitude = self.setting.amplitude_sigma();
-        let variance = sigma * sigma
-            + quadratic(&kappa, unit)
-            + quadratic(&tilt, unit)
-            + amplitude * amplitude;
-        libm::sqrt(variance.max(0.0))
-    }
-}
-
-impl Model {
-    fn columns(&self) -> [Column; COLUMNS] {
-        [Column::Free, Column::Free, Column::Free, self.time, self.temperature]
-    }
 }
 
 impl Fit {
@@ -365,13 +195,13 @@ impl Fit {
         self.budget.sigma()
     }
 
-    /// Slope of the trend with time, in units of Ω_h per hour.
+    /// Slope of the trend with time, in units of `Ω_h` per hour.
     #[must_use]
     pub fn trend(&self) -> f64 {
         self.coefficients[TIME]
     }
 
-    /// Slope with temperature, in units of Ω_h per °C.
+    /// Slope with temperature, in units of `Ω_h` per °C.
     #[must_use]
     pub fn temperature_slope(&self) -> f64 {
         self.coefficients[TEMPERATURE]
@@ -406,6 +236,13 @@ impl Dwell {
     fn taper_factor(&self) -> f64 {
         self.taper
     }
+}
+
+/// The two components of the Earth rate in a solution.
+fn components(solution: &Solution<COLUMNS>) -> Components {
+    let [a, b, ..] = solution.coefficients;
+    let [[c, d, ..], [e, f, ..], ..] = solution.covariance;
+    Components { value: [a, b], covariance: [[c, d], [e, f]] }
 }
 
 /// Left side less the columns' part of it.

@@ -1,0 +1,105 @@
+//! How a session goes about it: schedule, patience, travel, and what makes a procedure impossible.
+
+use super::schedule::{Schedule, StopRule};
+use crate::align::criterion::Criterion;
+use crate::signal::butterworth::DesignError;
+use crate::units::TURN;
+
+/// The filter's cut-off times the shortest dwell: its taper then costs 1.2 % of σ.
+const CUTOFF_DWELLS: f64 = 20.0;
+/// Highest cut-off over the sample rate, so that the filter still filters.
+const HIGHEST_CUTOFF: f64 = 0.2;
+/// Lowest cut-off over the sample rate at which the filter's coefficients are exact enough.
+const LOWEST_CUTOFF: f64 = 2.5e-4;
+
+/// How the session goes about it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Procedure {
+    /// Where the stage goes.
+    pub schedule: Schedule,
+    /// When it stops early.
+    pub stop: StopRule,
+    /// How the azimuth is found.
+    pub criterion: Criterion,
+    /// Sample period, s.
+    pub sample_seconds: f64,
+    /// How long the platform is levelled before the first dwell counts, s; these samples belong to
+    /// that dwell all the same.
+    pub level_seconds: f64,
+    /// How long the stage rests after an arrival before the dwell begins, s.
+    pub settle_seconds: f64,
+    /// How often a disturbed dwell is repeated at its position.
+    pub retries: usize,
+    /// Longest time for the whole session, s.
+    pub longest_seconds: f64,
+    /// Longest time for one rotation, s.
+    pub longest_rotation: f64,
+    /// Stage travel from lowest to highest angle, rad.
+    pub travel: [f64; 2],
+    /// Change of the encoder angle that still counts as standing, rad.
+    pub still: f64,
+    /// Distance from the commanded angle that counts as arrived, rad.
+    pub arrival: f64,
+}
+
+impl Procedure {
+    /// The default of the stage: travel −10°…370°, two repetitions, stand within 20 µrad (seven
+    /// steps of a 21-bit encoder), arrive within 0.05°, 30 s for a rotation and twice the dwells'
+    /// time and a minute for everything.
+    #[must_use]
+    pub fn new(schedule: Schedule, sample_seconds: f64) -> Self {
+        let longest_seconds = 2.0 * schedule.seconds() + 30.0 * schedule.len() as f64 + 60.0;
+        Self {
+            schedule,
+            stop: StopRule::AllPositions,
+            criterion: Criterion::MaximumLikelihood,
+            sample_seconds,
+            level_seconds: 0.0,
+            settle_seconds: 0.0,
+            retries: 2,
+            longest_seconds,
+            longest_rotation: 30.0,
+            travel: [-10.0 / 360.0 * TURN, 370.0 / 360.0 * TURN],
+            still: 20e-6,
+            arrival: 0.05 / 360.0 * TURN,
+        }
+    }
+
+    /// The filter's cut-off for this schedule, Hz.
+    #[must_use]
+    pub fn cutoff(&self) -> f64 {
+        let rate = 1.0 / self.sample_seconds;
+        (CUTOFF_DWELLS / self.schedule.shortest())
+            .clamp(LOWEST_CUTOFF * rate, HIGHEST_CUTOFF * rate)
+    }
+
+    /// The first position that is beyond the stage's travel.
+    pub(super) fn beyond_travel(&self) -> Option<f64> {
+        let [low, high] = self.travel;
+        let outside = |angle: f64| !(low..=high).contains(&angle);
+        match &self.schedule {
+            Schedule::Listed(list) => list.iter().map(|p| p.angle).find(|&angle| outside(angle)),
+            Schedule::TowardMaximum { start, .. } => outside(*start).then_some(*start),
+        }
+    }
+}
+
+/// Why a procedure cannot be begun.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ProcedureError {
+    /// The filter cannot be designed for this sample rate.
+    Filter(DesignError),
+    /// Dwells of this many samples are shorter than the filter's settling.
+    DwellTooShort {
+        /// Samples of the shortest dwell.
+        samples: u32,
+        /// Samples that are needed.
+        needed: u32,
+    },
+    /// A position lies outside the stage's travel, rad.
+    BeyondTravel(f64),
+    /// There is no position.
+    NoPosition,
+    /// The etalon table in flash fails its CRC: flash the firmware again.
+    TableCorrupt,
+}
