@@ -1,0 +1,239 @@
+//! The `meridian` program as a user meets it: output, exit codes, one clear line for each mistake.
+
+#![allow(clippy::expect_used, reason = "a test that cannot go on has failed")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use bench::demonstration;
+use serde_json::Value;
+
+fn meridian(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_meridian")).args(arguments).output().expect("it starts")
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().expect("no signal ended it")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).expect("it prints UTF-8")
+}
+
+fn stored(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/recordings");
+    path.join(format!("{name}.csv.gz")).display().to_string()
+}
+
+/// A file of its own for one test, gone with it.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new(name: &str, content: &[u8]) -> Self {
+        let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+        fs::write(&path, content).expect("the folder is ours");
+        Self(path)
+    }
+
+    fn path(&self) -> String {
+        self.0.display().to_string()
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        // A file that is left behind hurts nobody.
+        let _ = fs::remove_file(&self.0);
+    }
+}
+
+fn object(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).expect("one JSON object and nothing else")
+}
+
+#[test]
+fn without_a_command_north_is_found_in_the_recording_that_ships() {
+    let output = meridian(&[]);
+    assert_eq!(code(&output), 0);
+    let block = text(&output.stdout);
+    for part in ["True north found", "azimuth of body x", "limit", "error budget", "left out: "] {
+        assert!(block.contains(part), "{part} is missing in {block}");
+    }
+}
+
+#[test]
+fn the_recording_that_ships_is_what_the_generator_makes() {
+    let made = demonstration::text().expect("strings take all");
+    let mut stored = String::new();
+    let mut decoder = flate2::read::GzDecoder::new(demonstration::RECORDING);
+    std::io::Read::read_to_string(&mut decoder, &mut stored).expect("it unpacks");
+    assert!(made == stored, "run the example make_demonstration");
+}
+
+#[test]
+fn json_is_one_object_with_the_documented_keys() {
+    let output = meridian(&["replay", &stored("stepwise-nudged"), "--json"]);
+    assert_eq!((code(&output), text(&output.stderr)), (0, String::new()));
+    let object = object(&output);
+    let keys = [
+        "method",
+        "status",
+        "azimuth_deg",
+        "sigma_deg",
+        "limit_deg",
+        "budget",
+        "positions",
+        "seconds",
+        "pitch_deg",
+        "roll_deg",
+        "earth_rate_ratio",
+        "earth_rate_ratio_sigma",
+        "model",
+        "excluded",
+    ];
+    for key in keys {
+        assert!(!object[key].is_null(), "{key} is missing in {object}");
+    }
+    assert_eq!((&object["method"], &object["status"]), (&"stepwise".into(), &"ok".into()));
+    let parts = [
+        "noise",
+        "drift",
+        "g_sensitivity",
+        "accelerometer",
+        "encoder",
+        "latitude",
+        "scale",
+        "temperature",
+    ];
+    let squares = |part: &&str| object["budget"][part].as_f64().expect("a number").powi(2);
+    let sigma = object["sigma_deg"].as_f64().expect("a number");
+    assert!((parts.iter().map(squares).sum::<f64>().sqrt() / sigma - 1.0).abs() < 1e-9);
+    assert_eq!(object["excluded"][0]["dwell"], 8);
+    assert!(object["excluded"][0]["reason"].is_string());
+}
+
+#[test]
+fn a_refusal_has_its_reason_no_azimuth_and_exit_code_one() {
+    let file = stored("stepwise-circle");
+    for option in [["--latitude", "86"], ["--require-sigma", "0.001"], ["--latitude", "-60"]] {
+        let output = meridian(&["replay", &file, "--json", option[0], option[1]]);
+        let object = object(&output);
+        assert_eq!((code(&output), &object["status"]), (1, &"refused".into()));
+        assert!(object["azimuth_deg"].is_null() && object["reason"].is_string(), "{object}");
+    }
+    let output = meridian(&["replay", &file, "--latitude", "86"]);
+    assert_eq!(code(&output), 1);
+    assert!(text(&output.stdout).contains("latitude 86.00° is beyond ±85°"));
+}
+
+#[test]
+fn impossible_options_are_misuse() {
+    let file = stored("stepwise-circle");
+    let mistakes: [&[&str]; 14] = [
+        &["replay"],
+        &["replay", &file, "--latitude", "91"],
+        &["replay", &file, "--latitude", "nan"],
+        &["replay", &file, "--latitude", "north"],
+        &["replay", &file, "--criterion", "best"],
+        &["replay", &file, "--criterion", "within-squares"],
+        &["replay", &file, "--criterion", "within-squares=-1"],
+        &["replay", &file, "--criterion", "ml=3"],
+        &["replay", &file, "--method", "magic"],
+        &["replay", &file, "--require-sigma", "0"],
+        &["campaign", "sokolov", "--runs", "0"],
+        &["campaign", "nobody"],
+        &["campaign", "sokolov", "--runs", "many"],
+        &["fly"],
+    ];
+    for arguments in mistakes {
+        let output = meridian(arguments);
+        assert_eq!(code(&output), 2, "{arguments:?}");
+        assert!(text(&output.stderr).starts_with("error: "), "{arguments:?}");
+        assert_eq!(text(&output.stdout), "", "{arguments:?}");
+    }
+}
+
+/// A small sound recording with one thing changed.
+fn changed(from: &str, to: &str) -> String {
+    let text = demonstration::text().expect("strings take all");
+    assert!(text.contains(from), "{from}");
+    text.replacen(from, to, 1)
+}
+
+#[test]
+fn a_malformed_recording_gets_one_line_that_names_file_line_and_column() {
+    let row = "\n1.00,";
+    let cases: [(&str, String, &str); 9] = [
+        ("column.csv", changed(",g_rad_s,", ",gyro,"), "g_rad_s"),
+        ("number.csv", changed(row, "\n1.0x,"), "line 62, column t_s"),
+        ("backwards.csv", changed(row, "\n0.50,"), "line 62, column t_s"),
+        ("nan.csv", changed(row, "\nnan,"), "line 62, column t_s"),
+        ("kind.csv", changed("kind: stage", "kind: song"), "kind"),
+        ("latitude.csv", changed("latitude_deg: 47.58", "latitude_deg: 91"), "latitude_deg"),
+        ("empty.csv", String::new(), "empty"),
+        ("long.csv", changed("\n1.00", &"7".repeat(10_000_000)), "65536 bytes"),
+        ("cut.csv", demonstration::text().expect("strings take all")[..9000].to_owned(), "line"),
+    ];
+    for (name, content, part) in cases {
+        let file = Scratch::new(name, content.as_bytes());
+        let output = meridian(&["replay", &file.path()]);
+        let message = text(&output.stderr);
+        assert_eq!(code(&output), 1, "{name}: {message}");
+        assert_eq!(message.lines().count(), 1, "{name}: {message}");
+        assert!(message.contains(name) && message.contains(part), "{name}: {message}");
+    }
+}
+
+#[test]
+fn a_gap_in_the_times_is_named() {
+    let text_of = demonstration::text().expect("strings take all");
+    let without: String = text_of.lines().filter(|line| !line.starts_with("2.")).fold(
+        String::new(),
+        |mut all, line| {
+            all.push_str(line);
+            all.push('\n');
+            all
+        },
+    );
+    let file = Scratch::new("gap.csv", without.as_bytes());
+    let output = meridian(&["replay", &file.path()]);
+    let message = text(&output.stderr);
+    assert_eq!(code(&output), 1);
+    assert!(message.contains("gap.csv") && message.contains("line 112"), "{message}");
+}
+
+#[test]
+fn a_file_that_is_not_there_is_named() {
+    let output = meridian(&["replay", "no-such-file.csv", "--json"]);
+    assert_eq!((code(&output), text(&output.stdout)), (1, String::new()));
+    assert!(text(&output.stderr).contains("no-such-file.csv"));
+}
+
+#[test]
+fn a_stage_that_never_stands_still_has_no_dwell() {
+    let mut moving = String::from("# kind: stage\n# latitude_deg: 50\n");
+    moving += "t_s,stage_rad,g_rad_s,fx_m_s2,fy_m_s2,fz_m_s2\n";
+    for i in 0..500 {
+        let (time, angle) = (f64::from(i) * 0.02, f64::from(i) * 0.01);
+        moving += &[time, angle, 1e-5, 0.0, 0.0, -9.8].map(|x| x.to_string()).join(",");
+        moving += "\n";
+    }
+    let file = Scratch::new("moving.csv", moving.as_bytes());
+    let output = meridian(&["replay", &file.path()]);
+    assert_eq!(code(&output), 1);
+    assert!(text(&output.stderr).contains("stage_rad"), "{}", text(&output.stderr));
+}
+
+#[test]
+fn a_campaign_prints_its_tables_as_text_and_as_json() {
+    let output = meridian(&["campaign", "sokolov", "--runs", "20"]);
+    assert_eq!(code(&output), 0);
+    let block = text(&output.stdout);
+    for part in ["28° arc", "full circle", "least-absolute", "7.3, 9.6, 6.0", "limit", "ratio"] {
+        assert!(block.contains(part), "{part} is missing in {block}");
+    }
+    let object = object(&meridian(&["campaign", "sokolov", "--runs", "20", "--json"]));
+    assert_eq!(object["tables"][0]["rows"].as_array().map(Vec::len), Some(5));
+    assert!(object["precision"][1]["ratio"].is_number());
+}
