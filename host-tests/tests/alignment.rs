@@ -185,7 +185,7 @@ fn the_direction_is_the_best_of_the_whole_circle() {
             azimuth.cos() + long * c * generator.gaussian(),
             azimuth.sin() + long * s * generator.gaussian(),
         ];
-        let components = Components { value, covariance };
+        let components = Components { value, covariance, vertical: [0.0; 2] };
         for amplitude in [Amplitude::Known(0.0), Amplitude::Known(0.05)] {
             let found = components.direction(amplitude).expect("it is determined");
             let least = least_of_grid(&components, amplitude);
@@ -200,7 +200,7 @@ fn the_direction_is_the_best_of_the_whole_circle() {
 #[test]
 fn a_known_amplitude_sees_only_the_error_across() {
     let covariance = [[0.04, 0.0], [0.0, 0.01]];
-    let components = Components { value: [1.0, 0.0], covariance };
+    let components = Components { value: [1.0, 0.0], covariance, vertical: [0.0; 2] };
     for amplitude in [Amplitude::Free, Amplitude::Known(0.0), Amplitude::Known(0.02)] {
         let direction = components.direction(amplitude).expect("it is determined");
         assert!((direction.variance - 0.01).abs() < 1e-9, "{direction:?}");
@@ -211,7 +211,11 @@ fn a_known_amplitude_sees_only_the_error_across() {
 #[test]
 fn two_azimuths_that_fit_alike_have_no_margin() {
     // Only cos A is known: +A and −A.
-    let components = Components { value: [0.5, 0.0], covariance: [[1e-4, 0.0], [0.0, 100.0]] };
+    let components = Components {
+        value: [0.5, 0.0],
+        covariance: [[1e-4, 0.0], [0.0, 100.0]],
+        vertical: [0.0; 2],
+    };
     let direction = components.direction(Amplitude::Known(0.0)).expect("it is determined");
     assert!(direction.margin < 1e-3, "{direction:?}");
 }

@@ -1,7 +1,9 @@
 //! From the horizontal Earth rate's two components to an azimuth.
 //!
-//! A regression gives β = ρ(cos A, sin A) in units of the expected horizontal Earth rate `Ω_h`, with
-//! its covariance. ρ is `Ω̂_h/Ω_h`: free, known exactly, or known within the gyro's scale tolerance.
+//! A regression gives β in units of the expected horizontal Earth rate `Ω_h`, with its covariance.
+//! On a level stage β = ρ(cos A, sin A), ρ being `Ω̂_h/Ω_h`: free, known exactly, or known within the
+//! gyro's scale tolerance. On a tilted one the vertical Earth rate f = `Ω_v`F/`Ω_h` is scaled alike,
+//! and the regression has taken it away unscaled: β + f = ρ(cos A, sin A) + ρf.
 //! J(A) is the least chi-square over ρ; on a short arc it may have two minima, so the whole circle
 //! is scanned before the best is refined.
 
@@ -21,6 +23,8 @@ pub struct Components {
     pub value: [f64; 2],
     /// Their covariance.
     pub covariance: [[f64; 2]; 2],
+    /// f: the vertical Earth rate's components through the tilt, in units of `Ω_h`.
+    pub vertical: [f64; 2],
 }
 
 /// An azimuth with its linearised uncertainty.
@@ -30,6 +34,8 @@ pub struct Direction {
     pub azimuth: f64,
     /// ρ of the solution.
     pub amplitude: f64,
+    /// Variance of ρ.
+    pub amplitude_variance: f64,
     /// Variance of the azimuth, rad².
     pub variance: f64,
     /// How the azimuth follows the components, ∂A/∂β, rad.
@@ -38,26 +44,26 @@ pub struct Direction {
     pub margin: f64,
 }
 
+impl Direction {
+    /// β of this solution: ρ(e + f) − f, for the unit vector e of its azimuth.
+    #[must_use]
+    pub fn components(&self, unit: [f64; 2], vertical: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|i| self.amplitude * (unit[i] + vertical[i]) - vertical[i])
+    }
+}
+
 /// Directions in which J is sampled before it is refined; two minima cannot hide between them.
 const SCAN: usize = 64;
 
 /// J(A) and its parts.
 struct Profile {
     information: [[f64; 2]; 2],
-    weighted: [f64; 2],
+    target: [f64; 2],
+    vertical: [f64; 2],
     amplitude: Amplitude,
 }
 
 impl Components {
-    /// ρ without any prior, and its standard deviation from this covariance.
-    #[must_use]
-    pub fn ratio(&self) -> (f64, f64) {
-        let [a, b] = self.value;
-        let ratio = libm::hypot(a, b).max(1e-12);
-        let unit = [a / ratio, b / ratio];
-        (ratio, libm::sqrt(quadratic(&self.covariance, unit)))
-    }
-
     /// The most likely azimuth; `None` where the covariance is not positive.
     #[must_use]
     pub fn direction(&self, amplitude: Amplitude) -> Option<Direction> {
@@ -76,14 +82,23 @@ impl Profile {
         }
         let information =
             [[d / determinant, -b / determinant], [-b / determinant, a / determinant]];
-        Some(Self { information, weighted: product(&information, components.value), amplitude })
+        let [north, east] = components.vertical;
+        let target =
+            product(&information, [components.value[0] + north, components.value[1] + east]);
+        Some(Self { information, target, vertical: components.vertical, amplitude })
+    }
+
+    /// What ρ multiplies: the unit vector of an azimuth and the vertical Earth rate's part.
+    fn along(&self, [cosine, sine]: [f64; 2]) -> [f64; 2] {
+        [cosine + self.vertical[0], sine + self.vertical[1]]
     }
 
     /// Chi-square at a unit vector less that of β itself, and ρ there.
     fn at(&self, azimuth: f64) -> (f64, f64) {
         let (sine, cosine) = libm::sincos(azimuth);
-        let power = quadratic(&self.information, [cosine, sine]);
-        let along = self.weighted[0] * cosine + self.weighted[1] * sine;
+        let direction = self.along([cosine, sine]);
+        let power = quadratic(&self.information, direction);
+        let along = dot(self.target, direction);
         match self.amplitude {
             Amplitude::Free if along > 0.0 => (-along * along / power, along / power),
             Amplitude::Free => (0.0, 0.0),
@@ -140,19 +155,22 @@ impl Profile {
         let (_, amplitude) = self.at(azimuth);
         let across = [-amplitude * sine, amplitude * cosine];
         let across_weighted = product(&self.information, across);
-        let along_weighted = product(&self.information, [cosine, sine]);
+        let along = self.along([cosine, sine]);
+        let along_weighted = product(&self.information, along);
         let across_power = dot(across, across_weighted);
         let mixed = dot(across, along_weighted);
-        let along_power = dot([cosine, sine], along_weighted);
-        let coupling = match self.amplitude {
-            Amplitude::Free => mixed / along_power,
-            Amplitude::Known(sigma) if sigma > 0.0 => mixed / (along_power + 1.0 / (sigma * sigma)),
+        let along_power = dot(along, along_weighted);
+        let freedom = match self.amplitude {
+            Amplitude::Free => 1.0 / along_power,
+            Amplitude::Known(sigma) if sigma > 0.0 => 1.0 / (along_power + 1.0 / (sigma * sigma)),
             Amplitude::Known(_) => 0.0,
         };
+        let coupling = mixed * freedom;
         let variance = 1.0 / (across_power - coupling * mixed);
+        let amplitude_variance = freedom * (1.0 + coupling * mixed * variance);
         let gain = [0, 1].map(|i| variance * (across_weighted[i] - coupling * along_weighted[i]));
         let azimuth = libm::atan2(sine, cosine);
-        Direction { azimuth, amplitude, variance, gain, margin }
+        Direction { azimuth, amplitude, amplitude_variance, variance, gain, margin }
     }
 }
 

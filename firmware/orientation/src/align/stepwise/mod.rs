@@ -85,21 +85,22 @@ impl Problem<'_> {
         let regression = self.regression(&noise, Dwell::taper_factor);
         let model = self.choose(&regression)?;
         let solution = regression.solve(&model.columns())?;
-        let found = components(&solution);
-        let direction = found.direction(model.amplitude)?;
+        let components = self.components(&solution);
+        let direction = components.direction(model.amplitude)?;
+        let free = components.direction(Amplitude::Free)?;
         let mut fit = Fit {
             model,
             direction,
             budget: self.budget(&regression, &model, &direction)?,
             limit: self.limit(&noise, &model)?,
-            ratio: found.ratio().0,
-            ratio_sigma: self.ratio_sigma(&found),
+            ratio: free.amplitude,
+            ratio_sigma: self.ratio_sigma(&free),
             chi_square: 0.0,
             degrees: 0,
             coefficients: [0.0; COLUMNS],
             covariance: solution.covariance,
         };
-        fit.constrain(&solution);
+        fit.constrain(&solution, components.vertical);
         Some(fit)
     }
 
@@ -132,6 +133,15 @@ impl Problem<'_> {
         [axis[0], -axis[1], 1.0, hours, warmer, left / latitude.horizontal_rate()]
     }
 
+    /// The two components of the Earth rate in a solution, and the vertical one's.
+    fn components(&self, solution: &Solution<COLUMNS>) -> Components {
+        let [a, b, ..] = solution.coefficients;
+        let [[c, d, ..], [e, f, ..], ..] = solution.covariance;
+        let slope = libm::tan(self.setting.latitude.rad());
+        let vertical = [slope * self.tilt.real, slope * self.tilt.imaginary];
+        Components { value: [a, b], covariance: [[c, d], [e, f]], vertical }
+    }
+
     /// White-noise variance of a dwell's mean, in units of `Ω_h`².
     pub(super) fn white_variance(&self, dwell: &Dwell) -> f64 {
         let rate = self.setting.latitude.horizontal_rate();
@@ -144,7 +154,9 @@ impl Problem<'_> {
         let [north, east, .., left] = self.row(dwell);
         let (sine, cosine) = libm::sincos(dwell.stage.rad());
         let [a, b, ..] = fit.coefficients;
-        left - a * (north - cosine) - b * (east + sine)
+        let Direction { azimuth, amplitude, .. } = fit.direction;
+        let (east_part, north_part) = libm::sincos(azimuth);
+        left - a * north - b * east + amplitude * (north_part * cosine - east_part * sine)
     }
 
     /// White-noise variance of an untapered mean, (rad/s)².
@@ -208,9 +220,9 @@ impl Fit {
     }
 
     /// Puts the two components on the chosen direction and lets the other coefficients follow.
-    fn constrain(&mut self, solution: &Solution<COLUMNS>) {
+    fn constrain(&mut self, solution: &Solution<COLUMNS>, vertical: [f64; 2]) {
         let (sine, cosine) = libm::sincos(self.direction.azimuth);
-        let wanted = [self.direction.amplitude * cosine, self.direction.amplitude * sine];
+        let wanted = self.direction.components([cosine, sine], vertical);
         let free = solution.coefficients;
         let change = [wanted[0] - free[NORTH], wanted[1] - free[NORTH + 1]];
         let [[a, b, ..], [_, d, ..], ..] = solution.covariance;
@@ -236,13 +248,6 @@ impl Dwell {
     fn taper_factor(&self) -> f64 {
         self.taper
     }
-}
-
-/// The two components of the Earth rate in a solution.
-fn components(solution: &Solution<COLUMNS>) -> Components {
-    let [a, b, ..] = solution.coefficients;
-    let [[c, d, ..], [e, f, ..], ..] = solution.covariance;
-    Components { value: [a, b], covariance: [[c, d], [e, f]] }
 }
 
 /// Left side less the columns' part of it.

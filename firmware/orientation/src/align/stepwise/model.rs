@@ -3,7 +3,7 @@
 
 use super::super::direction::{Amplitude, Direction};
 use super::super::regression::{Column, Regression};
-use super::{COLUMNS, Problem, components};
+use super::{COLUMNS, Problem};
 
 /// Chi-square of one degree of freedom that noise exceeds with a probability of 0.001.
 const TREND_CHI_SQUARE: f64 = 10.83;
@@ -27,22 +27,25 @@ impl Model {
     pub(super) fn columns(&self) -> [Column; COLUMNS] {
         [Column::Free, Column::Free, Column::Free, self.time, self.temperature]
     }
-
-    /// The direction that this model finds.
-    pub(super) fn direction(&self, regression: &Regression<COLUMNS>) -> Option<Direction> {
-        let solution = regression.solve(&self.columns())?;
-        components(&solution).direction(self.amplitude)
-    }
 }
 
 impl Problem<'_> {
+    /// The direction that a model finds.
+    pub(super) fn direction(
+        &self,
+        regression: &Regression<COLUMNS>,
+        model: &Model,
+    ) -> Option<Direction> {
+        self.components(&regression.solve(&model.columns())?).direction(model.amplitude)
+    }
+
     /// Chooses the columns and whether the Earth rate stays free.
     pub(super) fn choose(&self, regression: &Regression<COLUMNS>) -> Option<Model> {
         let mut model = self.base();
         self.add_trend(regression, &mut model)?;
         let free = Model { amplitude: Amplitude::Free, ..model };
-        let known = model.direction(regression)?.variance;
-        if let Some(direction) = free.direction(regression)
+        let known = self.direction(regression, &model)?.variance;
+        if let Some(direction) = self.direction(regression, &free)
             && direction.variance <= FREE_COST * FREE_COST * known
         {
             return Some(free);
@@ -64,11 +67,11 @@ impl Problem<'_> {
     fn add_trend(&self, regression: &Regression<COLUMNS>, model: &mut Model) -> Option<()> {
         for _ in 0..2 {
             let before = regression.solve(&model.columns())?.chi_square;
-            let variance = model.direction(regression)?.variance;
+            let variance = self.direction(regression, model)?.variance;
             let mut best = (*model, TREND_CHI_SQUARE);
             for candidate in self.candidates(model).into_iter().flatten() {
                 let Some(solution) = regression.solve(&candidate.columns()) else { continue };
-                let Some(direction) = candidate.direction(regression) else { continue };
+                let Some(direction) = self.direction(regression, &candidate) else { continue };
                 let affordable = direction.variance <= TREND_COST * TREND_COST * variance;
                 if affordable && before - solution.chi_square > best.1 {
                     best = (candidate, before - solution.chi_square);

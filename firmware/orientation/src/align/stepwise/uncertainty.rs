@@ -1,7 +1,7 @@
 //! Where the standard deviation comes from: the limit, the budget, the Earth-rate ratio's σ.
 
 use super::super::budget::Budget;
-use super::super::direction::{Amplitude, Components, Direction, dot, product, quadratic};
+use super::super::direction::{Amplitude, Direction, dot, product, quadratic};
 use super::super::regression::{Column, Regression};
 use super::{COLUMNS, Model, Problem};
 use crate::noise::model::GyroNoise;
@@ -11,7 +11,7 @@ impl Problem<'_> {
     /// The bound that noise sets for these columns when all stationary time counts fully.
     pub(super) fn limit(&self, noise: &GyroNoise, model: &Model) -> Option<f64> {
         let regression = self.regression(noise, |_| 1.0);
-        model.direction(&regression).map(|direction| libm::sqrt(direction.variance))
+        self.direction(&regression, model).map(|direction| libm::sqrt(direction.variance))
     }
 
     /// Splits the variance: noise alone, then what drift, temperature and scale add, then what the
@@ -24,7 +24,7 @@ impl Problem<'_> {
     ) -> Option<Budget> {
         let white = self.regression(&self.setting.noise.white_part(), Dwell::taper_factor);
         let variance = |regression: &Regression<COLUMNS>, model: &Model| {
-            model.direction(regression).map(|direction| direction.variance)
+            self.direction(regression, model).map(|direction| direction.variance)
         };
         let exact = match model.amplitude {
             Amplitude::Free => Amplitude::Free,
@@ -82,15 +82,13 @@ impl Problem<'_> {
         [[[kappa * kappa, 0.0], [0.0, kappa * kappa]], tilt]
     }
 
-    pub(super) fn ratio_sigma(&self, components: &Components) -> f64 {
-        let (ratio, sigma) = components.ratio();
-        let unit = components.value.map(|value| value / ratio);
-        let [kappa, tilt] = self.component_errors();
+    /// 1σ of the Earth-rate ratio that `free` found: noise, κ and tilt along it, scale, latitude.
+    pub(super) fn ratio_sigma(&self, free: &Direction) -> f64 {
+        let (sine, cosine) = libm::sincos(free.azimuth);
+        let [kappa, tilt] =
+            self.component_errors().map(|errors| quadratic(&errors, [cosine, sine]));
         let amplitude = self.setting.amplitude_sigma();
-        let variance = sigma * sigma
-            + quadratic(&kappa, unit)
-            + quadratic(&tilt, unit)
-            + amplitude * amplitude;
+        let variance = free.amplitude_variance + kappa + tilt + amplitude * amplitude;
         libm::sqrt(variance.max(0.0))
     }
 }
