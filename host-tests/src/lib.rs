@@ -7,6 +7,7 @@
 pub mod campaign;
 pub mod criterion;
 pub mod demonstration;
+pub mod oracle;
 pub mod output;
 pub mod recording;
 pub mod reference;

@@ -192,7 +192,7 @@ fn disturbed(seed: u64) -> (Case, Vec<Disturbance>) {
     // In units of the noise of a mean over the disturbance.
     let noise = case.world.gyro.n_deg_sqrt_h * 60.0 / seconds.sqrt();
     let rate_deg_h = noise * logarithmic(&mut generator, 1.0, 1000.0);
-    let disturbance = if seed % 2 == 0 {
+    let disturbance = if seed.is_multiple_of(2) {
         Disturbance::Nudge { start_s, seconds, rate_deg_h }
     } else {
         let rate_deg_h = 30.0 * rate_deg_h;
@@ -233,4 +233,95 @@ fn a_wrong_latitude_shows_in_the_earth_rate() {
     println!("{} answers, RMS {:.3} σ, refused {refusals:?}", errors.len(), rms(&errors));
     // Near the equator, or within the gyro's own scale tolerance, nothing can tell.
     assert!(errors.len() < 6, "{} answers", errors.len());
+}
+
+/// A quiet instrument on a full circle, to be spoilt in one way.
+fn sound() -> Case {
+    let mut case = case(4, false);
+    case.world.latitude_deg = 50.0;
+    case.world.pitch_deg = 0.5;
+    case.world.roll_deg = 0.5;
+    case.setting.latitude = Latitude::from_degrees(50.0).expect("it is one");
+    let gyro = GyroConfiguration { n_deg_sqrt_h: 0.001, ..GyroConfiguration::default() };
+    case.world.gyro = gyro;
+    case.setting.noise = GyroNoise::from_field_units(0.001, 0.0, 0.0, 0.0);
+    case.setting.g_sensitivity = [0.0; 2];
+    turned(&mut case, 12, 30.0);
+    case
+}
+
+fn turned(case: &mut Case, positions: u32, step_deg: f64) {
+    let step = step_deg.to_radians();
+    case.stops =
+        (0..positions).map(|i| Stop::new(f64::from(i) * step, case.seconds).after(1.0)).collect();
+}
+
+#[test]
+fn a_sound_instrument_is_not_refused() {
+    assert!(verdict(&sound(), &[], 1).is_ok());
+}
+
+#[test]
+fn two_positions_are_too_few() {
+    let mut case = sound();
+    turned(&mut case, 2, 180.0);
+    assert_eq!(verdict(&case, &[], 2), Err(Refusal::TooFewPositions { positions: 2 }));
+    // Coming back to the same two places does not help.
+    case.stops.extend_from_within(..);
+    assert_eq!(verdict(&case, &[], 3), Err(Refusal::TooFewPositions { positions: 2 }));
+}
+
+#[test]
+fn a_short_arc_about_the_turning_point_cannot_tell() {
+    let mut case = sound();
+    // The rate's slope alone shows: A and 180° − A fit alike.
+    case.world.azimuth_deg = 60.0;
+    case.world.pitch_deg = 0.0;
+    case.world.roll_deg = 0.0;
+    turned(&mut case, 6, 1.0);
+    let verdict = verdict(&case, &[], 4);
+    assert!(
+        matches!(verdict, Err(Refusal::ArcCannotTell | Refusal::BudgetNotMet { .. })),
+        "{verdict:?}"
+    );
+}
+
+#[test]
+fn an_accelerometer_bias_on_a_short_arc_makes_the_tilt_too_uncertain() {
+    let mut case = sound();
+    case.setting.accelerometer_bias_sigma = 5.0;
+    case.world.accelerometer.noise_m_s2_sqrt_hz = 0.5;
+    case.setting.required_sigma = 0.5_f64.to_radians();
+    turned(&mut case, 12, 4.0);
+    let verdict = verdict(&case, &[], 5);
+    assert!(matches!(verdict, Err(Refusal::TiltTooUncertain { .. })), "{verdict:?}");
+}
+
+#[test]
+fn a_gyro_that_is_noisier_than_stated_is_refused() {
+    let mut case = sound();
+    case.world.gyro.k_deg_h_sqrt_h = 20.0;
+    let verdict = verdict(&case, &[], 6);
+    assert!(
+        matches!(
+            verdict,
+            Err(Refusal::ResidualsNotWhite { .. }
+                | Refusal::ResidualsCorrelated { .. }
+                | Refusal::Disturbed { .. })
+        ),
+        "{verdict:?}"
+    );
+}
+
+#[test]
+fn a_platform_that_tips_during_a_dwell_loses_that_dwell() {
+    let case = sound();
+    let tip = Disturbance::Bump {
+        start_s: 3.0 * (case.seconds + 1.0),
+        seconds: case.seconds,
+        frequency_hz: 0.1,
+        rate_deg_h: 0.0,
+        force_m_s2: [0.5, 0.0, 0.0],
+    };
+    assert!(verdict(&case, &[tip], 7).is_ok());
 }

@@ -43,18 +43,19 @@ pub struct Procedure {
 }
 
 impl Procedure {
-    /// The default of the stage: travel −10°…370°, two repetitions, stand within 20 µrad (seven
+    /// The default of the stage: a quarter of a dwell for the first look at the tilt, travel −10°…370°, two repetitions, stand within 20 µrad (seven
     /// steps of a 21-bit encoder), arrive within 0.05°, 30 s for a rotation and twice the dwells'
     /// time and a minute for everything.
     #[must_use]
     pub fn new(schedule: Schedule, sample_seconds: f64) -> Self {
+        let level_seconds = 0.25 * schedule.shortest();
         let longest_seconds = 2.0 * schedule.seconds() + 30.0 * schedule.len() as f64 + 60.0;
         Self {
             schedule,
             stop: StopRule::AllPositions,
             criterion: Criterion::MaximumLikelihood,
             sample_seconds,
-            level_seconds: 0.0,
+            level_seconds,
             settle_seconds: 0.0,
             retries: 2,
             longest_seconds,

@@ -88,8 +88,10 @@ fn guess(table: Table, sweep: &Sweep) -> i32 {
 }
 
 /// The index of the least sum; see [`super::search`].
+#[inline(never)]
 pub(super) fn search(table: Table, series: &Series) -> Match {
-    let sweep = Sweep::new(series);
+    let mut sweep = Sweep::empty();
+    sweep.fill(series);
     let mut best = Best {
         table,
         series,
@@ -162,8 +164,10 @@ impl Judge for Within<'_> {
 }
 
 /// The arc on which the sum is at most `limit`; see [`super::accepted`].
+#[inline(never)]
 pub(super) fn within(table: Table, series: &Series, limit: u64) -> Acceptance {
-    let sweep = Sweep::new(series);
+    let mut sweep = Sweep::empty();
+    sweep.fill(series);
     let mut cover = Cover::default();
     let mut evaluations = 0;
     for piece in sweep.pieces() {

@@ -80,14 +80,12 @@ impl Cover {
             (Side::Inside, Side::Inside) => self.accept(from, to),
             (Side::Outside, Side::Outside) => {}
             (start, end) if start <= end => {
-                let sure = last_within(judge, Side::Inside, from - 1, to + 1);
-                let unsure = last_within(judge, Side::Unsure, sure, to + 1);
+                let (sure, unsure) = crossing(judge, from - 1, to + 1);
                 self.accept(from, sure);
                 self.accept_exactly(judge, sure + 1, unsure);
             }
             _ => {
-                let sure = last_within(judge, Side::Inside, to + 1, from - 1);
-                let unsure = last_within(judge, Side::Unsure, sure, from - 1);
+                let (sure, unsure) = crossing(judge, to + 1, from - 1);
                 self.accept_exactly(judge, unsure, sure - 1);
                 self.accept(sure, to);
             }
@@ -115,18 +113,23 @@ impl Cover {
     }
 }
 
-/// The last index on the way from `near` (not judged, taken as within) to `far` (not judged, taken
-/// as beyond) whose side is at most `side`.
+/// The last sure index, and the last that is not surely rejected, on the way from `near` (beyond
+/// the sure end) to `far` (beyond the other).
+fn crossing(judge: &impl Judge, near: i32, far: i32) -> (i32, i32) {
+    let sure = last_within(|k| judge.side(k) == Side::Inside, near, far, TURN);
+    (sure, last_within(|k| judge.side(k) != Side::Outside, sure, far, 1))
+}
+
+/// The last index that is `within` on the way from `near` (not asked, taken as within) to `far` (not
+/// asked, taken as beyond).
 ///
-/// It first tries ever longer strides from `near`, because the unsure zone is mostly one or two
-/// indices wide, then bisects.
-fn last_within(judge: &impl Judge, side: Side, near: i32, far: i32) -> i32 {
-    let (mut near, mut far) = (near, far);
-    let mut stride = if side == Side::Unsure { 1 } else { (far - near).abs() };
+/// It takes ever longer strides from `near`, the first of length `stride`, then bisects.
+pub(super) fn last_within(within: impl Fn(i32) -> bool, near: i32, far: i32, stride: i32) -> i32 {
+    let (mut near, mut far, mut stride) = (near, far, stride);
     while (far - near).abs() > 1 {
         let half = (far - near).abs() / 2;
         let k = near + half.min(stride) * (far - near).signum();
-        if judge.side(k) <= side {
+        if within(k) {
             near = k;
             stride = stride.saturating_mul(2);
         } else {

@@ -46,6 +46,7 @@ fn first(table: Table, series: &Series, k: i32) -> i64 {
     table.cos(k) - series.values().first().copied().unwrap_or(0)
 }
 
+#[inline(never)]
 fn centred_small(table: Table, series: &Series, k: i32) -> u128 {
     let origin = first(table, series, k) as i32;
     let (mut squares, mut sum) = (0_i64, 0_i64);
@@ -58,6 +59,7 @@ fn centred_small(table: Table, series: &Series, k: i32) -> u128 {
     (count * i128::from(squares) - i128::from(sum) * i128::from(sum)) as u128
 }
 
+#[inline(never)]
 fn centred(table: Table, series: &Series, k: i32) -> u128 {
     let (mut squares, mut sum) = (0_i128, 0_i128);
     table.residuals(k, series.step(), series.values(), |d| {
@@ -67,6 +69,7 @@ fn centred(table: Table, series: &Series, k: i32) -> u128 {
     (series.values().len() as i128 * squares - sum * sum) as u128
 }
 
+#[inline(never)]
 fn differences_small(table: Table, series: &Series, k: i32) -> u128 {
     let mut before = first(table, series, k) as i32;
     let mut squares = 0_i64;
@@ -78,6 +81,7 @@ fn differences_small(table: Table, series: &Series, k: i32) -> u128 {
     squares as u128
 }
 
+#[inline(never)]
 fn differences(table: Table, series: &Series, k: i32) -> u128 {
     let mut before = first(table, series, k);
     let mut squares = 0_u128;

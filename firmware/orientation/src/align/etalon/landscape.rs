@@ -10,30 +10,37 @@
 //! * the second quadrant has none, the third one maximum;
 //! * the fourth has a minimum and a maximum or neither, on either side of tan ψ = −∛(Y/X).
 
-use libm::{atan2, cbrt, sincos};
+use libm::{atan2, cbrt, fabs, sincos, sqrt};
 
 use super::exact::Squares;
 use super::series::Series;
 use super::table::{HALF, ONE, QUARTER, STEP, TURN, Table};
 
-/// The sums, means removed or differenced, in squared table units.
+/// The sums, means removed or differenced, scaled so that the table's integer cosines serve as
+/// they are: a soft-float multiplication costs more than a look-up.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Landscape {
+    /// Σp², Σq² and their difference.
     pp: f64,
-    pq: f64,
     qq: f64,
-    pz: f64,
-    qz: f64,
+    spread: f64,
+    /// 2Σpq, 2Σpz, 2Σqz.
+    pq2: f64,
+    pz2: f64,
+    qz2: f64,
+    /// Σz².
     zz: f64,
 }
 
-/// The grid indices where the objective turns, to within a step or where it is flat.
+/// Grid indices between which the objective turns, as the module describes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Turns {
-    /// The global minimum, then the other one if there is one.
-    pub(super) minima: [i32; 2],
-    /// The maxima.
-    pub(super) maxima: [i32; 2],
+pub(super) struct Bounds {
+    /// The end of the major axis on the measured point's side, ψ = 0 after reflection.
+    major: i32,
+    /// The end of the minor axis on its side, ψ = π/2.
+    minor: i32,
+    /// Between the minimum and the maximum of the fourth quadrant.
+    saddle: i32,
 }
 
 /// The exact integer sums of products of (p, q, z).
@@ -63,55 +70,83 @@ impl Sums {
 impl Landscape {
     /// Sums `series` over the table; the sums are exact until they are rounded to `f64`.
     pub(super) fn new(table: Table, series: &Series, squares: Squares) -> Self {
+        // A power of two: the scaling is exact.
+        const SCALE: f64 = 1.0 / ONE;
         let sums = match squares {
             Squares::Centred => centred_sums(table, series),
             Squares::Differences => difference_sums(table, series),
         };
         let [pp, pq, qq, pz, qz, zz] = sums.products.map(|sum| sum as f64);
-        Self { pp, pq, qq, pz, qz, zz }
+        let [pp, qq] = [pp, qq].map(|sum| sum * (SCALE * SCALE));
+        let pq2 = pq * (2.0 * SCALE * SCALE);
+        Self { pp, qq, spread: pp - qq, pq2, pz2: pz * (2.0 * SCALE), qz2: qz * (2.0 * SCALE), zz }
     }
 
     /// The objective at grid index `k`, cosine and sine from the table.
     pub(super) fn at(&self, table: Table, k: i32) -> f64 {
-        let (c, s) = table.unit(k);
-        let cosine = c * self.pp - 2.0 * (s * self.pq + self.pz);
-        let sine = s * self.qq + 2.0 * self.qz;
-        self.zz + c * cosine + s * sine
+        let (c, s) = table.phasor(k);
+        let cosine = c * self.pp - s * self.pq2 - self.pz2;
+        self.zz + c * cosine + s * (s * self.qq + self.qz2)
     }
 
-    /// Half the objective's slope per radian at grid index `k`.
+    /// The objective's slope per radian, over 2³¹, at grid index `k`.
     pub(super) fn slope(&self, table: Table, k: i32) -> f64 {
-        let ((c, s), (c2, s2)) = (table.unit(k), table.unit(2 * k));
-        s * self.pz + c * self.qz - 0.5 * s2 * (self.pp - self.qq) - c2 * self.pq
+        let ((c, s), (c2, s2)) = (table.phasor(k), table.phasor(2 * k));
+        (s * self.pz2 + c * self.qz2) * (1.0 / ONE) - s2 * self.spread - c2 * self.pq2
     }
 
-    /// How far [`Self::slope`] may be off: 2⁻³² in each cosine, doubled for the arithmetic.
+    /// How far [`Self::slope`] may be off: half a unit in each cosine, doubled for the arithmetic.
     pub(super) fn slope_error(&self) -> f64 {
-        let size = self.pz.abs() + self.qz.abs() + (self.pp - self.qq).abs() + self.pq.abs();
-        size / ONE
+        let linear = (fabs(self.pz2) + fabs(self.qz2)) * (1.0 / ONE);
+        linear + fabs(self.spread) + fabs(self.pq2)
     }
 
     /// A bound on the `f64` rounding of [`Self::at`]: 16 roundings of the largest partial sum.
     pub(super) fn slack(&self) -> f64 {
-        let mixed = self.pz.abs() + self.qz.abs() + self.pq.abs();
-        (self.zz + self.pp + self.qq + 2.0 * mixed) * (8.0 * f64::EPSILON)
+        let squares = (self.pp + self.qq + fabs(self.pq2)) * (ONE * ONE);
+        let linear = (fabs(self.pz2) + fabs(self.qz2)) * ONE;
+        (self.zz + squares + linear) * (8.0 * f64::EPSILON)
     }
 
-    /// Where the objective turns, by bisection between the bounds the module describes.
-    pub(super) fn turns(&self, table: Table) -> Turns {
-        let axis = 0.5 * atan2(-2.0 * self.pq, self.pp - self.qq);
+    /// A bound on the error that table rounding makes in the root of the objective.
+    ///
+    /// Per cosine 0.5 for the entry compared and 0.7072 for p and q, twice that per difference; the
+    /// root of n Σ(d − mean)² is √n times a norm. Then half a unit of cos A and of sin A on all of
+    /// p and q, which is little on a short arc.
+    pub(super) fn rounding(&self, count: f64, squares: Squares) -> f64 {
+        const ENTRY: f64 = 1.2073;
+        let entries = match squares {
+            Squares::Centred => ENTRY * count,
+            Squares::Differences => 2.0 * ENTRY * sqrt(count - 1.0),
+        };
+        entries + 0.5001 * (sqrt(self.pp) + sqrt(self.qq))
+    }
+
+    /// The bounds between which the objective turns.
+    pub(super) fn bounds(&self) -> Bounds {
+        let axis = 0.5 * atan2(-self.pq2, self.spread);
         let (sine, cosine) = sincos(axis);
-        let x = self.pz * cosine - self.qz * sine;
-        let y = -(self.pz * sine + self.qz * cosine);
+        let x = self.pz2 * cosine - self.qz2 * sine;
+        let y = -(self.pz2 * sine + self.qz2 * cosine);
         let axis = libm::round(axis / STEP) as i32;
-        let major = if x < 0.0 { axis + HALF } else { axis };
-        let minor = if y < 0.0 { axis - QUARTER } else { axis + QUARTER };
-        let saddle = axis + libm::round(atan2(-cbrt(y), cbrt(x)) / STEP) as i32;
-        let turn = |from, to, sign| self.turn(table, from, to, sign);
-        Turns {
-            minima: [turn(major, minor, 1.0), turn(minor + HALF, saddle, 1.0)],
-            maxima: [turn(major + HALF, minor + HALF, -1.0), turn(saddle, major, -1.0)],
+        Bounds {
+            major: if x < 0.0 { axis + HALF } else { axis },
+            minor: if y < 0.0 { axis - QUARTER } else { axis + QUARTER },
+            saddle: axis + libm::round(atan2(-cbrt(y), cbrt(x)) / STEP) as i32,
         }
+    }
+
+    /// The global minimum, then the place of the other one if there is one; to within a step, or
+    /// where the objective is flat.
+    pub(super) fn minima(&self, table: Table, bounds: &Bounds) -> [i32; 2] {
+        let &Bounds { major, minor, saddle } = bounds;
+        [self.turn(table, major, minor, 1.0), self.turn(table, minor + HALF, saddle, 1.0)]
+    }
+
+    /// The maxima, likewise.
+    pub(super) fn maxima(&self, table: Table, bounds: &Bounds) -> [i32; 2] {
+        let &Bounds { major, minor, saddle } = bounds;
+        [self.turn(table, major + HALF, minor + HALF, -1.0), self.turn(table, saddle, major, -1.0)]
     }
 
     /// The index on the way from `from` to `to` at which `sign` · J stops falling.
@@ -131,18 +166,19 @@ impl Landscape {
     /// method on the slope, each step at most one grid step.
     pub(super) fn refine(&self, k: i32) -> f64 {
         const ENOUGH: f64 = 1e-10;
+        let (pz, qz) = (self.pz2 * (1.0 / ONE), self.qz2 * (1.0 / ONE));
         let mut azimuth = f64::from(k) * STEP;
         for _ in 0..8 {
             let (s, c) = sincos(azimuth);
-            let (c2, s2, spread) = (c * c - s * s, s * c, self.pp - self.qq);
-            let slope = s * self.pz + c * self.qz - s2 * spread - c2 * self.pq;
-            let curvature = c * self.pz - s * self.qz - c2 * spread + 4.0 * s2 * self.pq;
+            let (c2, s2) = (c * c - s * s, 2.0 * s * c);
+            let slope = s * pz + c * qz - s2 * self.spread - c2 * self.pq2;
+            let curvature = c * pz - s * qz - 2.0 * (c2 * self.spread - s2 * self.pq2);
             if curvature <= 0.0 {
                 break;
             }
             let change = (slope / curvature).clamp(-STEP, STEP);
             azimuth -= change;
-            if change.abs() < ENOUGH {
+            if fabs(change) < ENOUGH {
                 break;
             }
         }
@@ -175,16 +211,4 @@ fn difference_sums(table: Table, series: &Series) -> Sums {
         index = next;
     }
     sums
-}
-
-/// A bound on the error that table rounding makes in the root of the objective.
-///
-/// Per cosine: 0.5 for the entry compared, 0.7072 for p and q, 0.7072 for cos A and sin A; twice
-/// that per difference. The root of n Σ(d − mean)² is √n times the norm.
-pub(super) fn rounding(count: f64, squares: Squares) -> f64 {
-    const ENTRY: f64 = 1.9145;
-    match squares {
-        Squares::Centred => ENTRY * count,
-        Squares::Differences => 2.0 * ENTRY * libm::sqrt(count - 1.0),
-    }
 }

@@ -17,11 +17,12 @@
 //!   is k · 10″, clockwise from north. The paper reports the n-th position: add (n − 1) Δ.
 //! * *Table units*: 2³¹ is the horizontal Earth rate `Ω_h` = Ω cos φ. A limit of α °/h is
 //!   α/`Ω_h` · 2³¹ units, `Ω_h` in °/h; a limit on squares is the square of that. The paper's "5″"
-//!   taken as 5 °/h accepts every azimuth, taken as 5″/h = 0.0014 °/h none.
+//!   taken as 5 °/h accepts the whole quarter it searches, taken as 5″/h = 0.0014 °/h nothing.
 //!
-//! A search keeps under 5 KiB on the stack, allocates nothing and does not recurse. Its cost
-//! follows the series: without Earth rate in it (all values equal on a full circle) every index may
-//! win and all 129 600 are evaluated.
+//! Nothing here allocates or recurses. On a Cortex-M4 with 60 positions in the paper's settings a
+//! search for a least sum of squares takes 0.11 to 0.29 M instructions and 1.6 KiB of stack, for a
+//! least sum of absolute values 2.8 M and 5.6 KiB. The cost follows the series: without Earth rate
+//! in it (all values equal on a full circle) every index may win and all 129 600 are evaluated.
 
 mod absolute;
 mod arc;

@@ -4,11 +4,11 @@
 //! whose continuous root lies within that bound of the best exact root can win; they lie next to
 //! the (at most two) minima and are evaluated exactly.
 
-use libm::sqrt;
+use libm::{fabs, sqrt};
 
-use super::arc::{Cover, Judge, Side};
+use super::arc::{Cover, Judge, Side, last_within};
 use super::exact::Squares;
-use super::landscape::{Landscape, rounding};
+use super::landscape::Landscape;
 use super::series::Series;
 use super::table::{TURN, Table};
 use super::{Acceptance, Match};
@@ -33,9 +33,10 @@ impl<'a> Objective<'a> {
             series,
             squares,
             landscape,
-            rounding: rounding(series.count(), squares),
+            rounding: landscape.rounding(series.count(), squares),
             slack: landscape.slack(),
-            small: squares.small_limit(series.count()),
+            // Half the limit leaves room for the difference between continuous and exact.
+            small: 0.5 * squares.small_limit(series.count()),
             evaluations: 0,
         }
     }
@@ -44,11 +45,15 @@ impl<'a> Objective<'a> {
         self.landscape.at(self.table, k)
     }
 
+    /// Whether the sign of the slope at `k` is uncertain.
+    fn is_flat(&self, k: i32) -> bool {
+        fabs(self.landscape.slope(self.table, k)) <= self.landscape.slope_error()
+    }
+
     /// The exact objective at `k`, where the continuous one is `near`.
     fn exact(&mut self, k: i32, near: f64) -> u128 {
         self.evaluations += 1;
-        // Half the limit leaves room for the difference between the two.
-        self.squares.at(self.table, self.series, k, near < 0.5 * self.small)
+        self.squares.at(self.table, self.series, k, near < self.small)
     }
 
     /// The largest continuous value at which the exact one may still be `value`.
@@ -78,17 +83,26 @@ impl Best {
         Self { index: k, objective: value, origin: k, reach: objective.reach(value as f64) }
     }
 
-    /// Evaluates `origin` ± 1, 2, … as far as they may compete; the result is how far they did.
+    /// Evaluates `origin` + `sign`, + 2 `sign`, … below `limit` steps as far as they may compete;
+    /// the result is how far that is.
     fn walk(&mut self, objective: &mut Objective, origin: i32, sign: i32, limit: i32) -> i32 {
-        for distance in 1..limit {
-            let k = (origin + sign * distance).rem_euclid(TURN);
-            let near = objective.continuous(k);
-            if near > self.reach {
-                return distance - 1;
+        let place = |distance: i32| (origin + sign * distance).rem_euclid(TURN);
+        // The minimum may lie beyond, by the two steps of rounding or anywhere where it is flat.
+        let mut last = 0;
+        while last + 1 < limit && (last < 2 || objective.is_flat(place(last))) {
+            last += 1;
+            let near = objective.continuous(place(last));
+            if near <= self.reach {
+                self.offer(objective, place(last), near, origin);
             }
-            self.offer(objective, k, near, origin);
         }
-        limit - 1
+        // From there the objective rises.
+        let (reach, flat) = (self.reach, last);
+        last = last_within(|k| objective.continuous(place(k)) <= reach, flat, limit, 1);
+        for distance in flat + 1..=last {
+            self.offer(objective, place(distance), reach, origin);
+        }
+        last
     }
 
     fn offer(&mut self, objective: &mut Objective, k: i32, near: f64, origin: i32) {
@@ -103,7 +117,8 @@ impl Best {
 /// The index of the least objective; see [`super::search`].
 pub(super) fn search(table: Table, series: &Series, squares: Squares) -> Match {
     let mut objective = Objective::new(table, series, squares);
-    let [mut first, mut second] = objective.landscape.turns(table).minima;
+    let bounds = objective.landscape.bounds();
+    let [mut first, mut second] = objective.landscape.minima(table, &bounds);
     let (mut near, mut other) = (objective.continuous(first), objective.continuous(second));
     if other < near {
         core::mem::swap(&mut first, &mut second);
@@ -112,9 +127,10 @@ pub(super) fn search(table: Table, series: &Series, squares: Squares) -> Match {
     let mut best = Best::at(&mut objective, first, near);
     let above = best.walk(&mut objective, first, 1, TURN);
     let below = best.walk(&mut objective, first, -1, TURN - above);
-    let covered = (second - (first - below)).rem_euclid(TURN) <= above + below;
-    if !covered && other <= best.reach {
-        best.offer(&mut objective, second, other, second);
+    if (second - (first - below)).rem_euclid(TURN) > above + below {
+        if other <= best.reach {
+            best.offer(&mut objective, second, other, second);
+        }
         let above = best.walk(&mut objective, second, 1, TURN);
         best.walk(&mut objective, second, -1, TURN - above);
     }
@@ -155,10 +171,12 @@ impl Judge for Within<'_> {
 /// The arc on which the objective is at most `limit`; see [`super::accepted`].
 pub(super) fn within(table: Table, series: &Series, squares: Squares, limit: u128) -> Acceptance {
     let objective = Objective::new(table, series, squares);
-    let turns = objective.landscape.turns(table);
+    let bounds = objective.landscape.bounds();
+    let [first, second] = objective.landscape.minima(table, &bounds);
+    let [third, fourth] = objective.landscape.maxima(table, &bounds);
     let (sure, reach) = (objective.surety(limit as f64), objective.reach(limit as f64));
     let mut judge = Within { objective, limit, sure, reach };
-    let mut anchors = [turns.minima[0], turns.minima[1], turns.maxima[0], turns.maxima[1]];
+    let mut anchors = [first, second, third, fourth];
     anchors.sort_unstable();
     let mut cover = Cover::default();
     for (from, to) in anchors.into_iter().zip([anchors[1], anchors[2], anchors[3]]) {
@@ -171,16 +189,13 @@ pub(super) fn within(table: Table, series: &Series, squares: Squares, limit: u12
 /// Judges `from` to `to` − 1, between two turns of the objective: one by one where it is flat,
 /// by bisection between.
 fn segment(cover: &mut Cover, judge: &mut Within, from: i32, to: i32) {
-    let (table, landscape) = (judge.objective.table, judge.objective.landscape);
-    let error = landscape.slope_error();
-    let flat = |k: i32| landscape.slope(table, k).abs() <= error;
     // A turn is known to a step, and its bounds were rounded by another.
     let mut rise = (from + 2).min(to - 1);
-    while rise < to - 1 && flat(rise) {
+    while rise < to - 1 && judge.objective.is_flat(rise) {
         rise += 1;
     }
     let mut fall = (to - 2).max(rise + 1);
-    while fall > rise + 1 && flat(fall) {
+    while fall > rise + 1 && judge.objective.is_flat(fall) {
         fall -= 1;
     }
     cover.judge_each(judge, from, rise);

@@ -96,7 +96,7 @@ impl Table {
     #[must_use]
     #[inline]
     pub fn cos(self, index: i32) -> i64 {
-        let run = Run::at(index.rem_euclid(TURN), 0);
+        let run = Run::at(index.rem_euclid(TURN));
         self.quarter.get(run.index as usize).map_or(0, |&entry| run.signed(entry))
     }
 
@@ -107,10 +107,10 @@ impl Table {
         self.cos(index.rem_euclid(TURN) - QUARTER)
     }
 
-    /// Cosine and sine at `index` as fractions of one, within 2⁻³² (+1e-15).
+    /// [`Self::cos`] and [`Self::sin`] as `f64`, exact.
     #[inline]
-    pub(super) fn unit(self, index: i32) -> (f64, f64) {
-        ((self.cos(index)) as f64 * (1.0 / ONE), self.sin(index) as f64 * (1.0 / ONE))
+    pub(super) fn phasor(self, index: i32) -> (f64, f64) {
+        (self.cos(index) as f64, self.sin(index) as f64)
     }
 
     /// Calls `visit` with 2³¹ cos((`start` + i `step`) · 10″) − `values[i]` for every i.
@@ -125,20 +125,16 @@ impl Table {
         values: &[i64],
         mut visit: impl FnMut(i64),
     ) {
-        let mut position = start.rem_euclid(TURN);
-        let mut rest = values;
-        while !rest.is_empty() {
-            let Run { mut index, stride, sign } = Run::at(position, step);
-            let mut used = 0;
-            for &value in rest {
-                let Some(&entry) = self.quarter.get(index as usize) else { break };
-                visit((i64::from(entry) ^ sign) - sign - value);
-                index += stride;
-                position += step;
-                used += 1;
+        let (mut position, mut rest) = (start.rem_euclid(TURN), values.iter());
+        loop {
+            let mut run = Run::at(position);
+            let stride = if run.mirrored { -step } else { step };
+            while let Some(&entry) = self.quarter.get(run.index as usize) {
+                let Some(value) = rest.next() else { return };
+                visit(run.signed(entry) - value);
+                run.index += stride;
             }
-            rest = &rest[used..];
-            position = position.rem_euclid(TURN);
+            position = run.position().rem_euclid(TURN);
         }
     }
 }
@@ -147,22 +143,30 @@ impl Table {
 struct Run {
     /// Index into the quarter; outside of it, also below zero, the quadrant has ended.
     index: i32,
-    /// What one step on the circle adds to the index.
-    stride: i32,
+    /// Position on the circle of index 0.
+    origin: i32,
+    /// Whether the index falls as the position rises.
+    mirrored: bool,
     /// 0, or −1 where the cosine is negative.
     sign: i64,
 }
 
 impl Run {
-    /// At `position` on the circle, 0 to [`TURN`] − 1, walking by `step`.
+    /// At `position` on the circle, 0 to [`TURN`] − 1.
     #[inline]
-    fn at(position: i32, step: i32) -> Self {
-        match position / QUARTER {
-            0 => Self { index: position, stride: step, sign: 0 },
-            1 => Self { index: HALF - position, stride: -step, sign: -1 },
-            2 => Self { index: position - HALF, stride: step, sign: -1 },
-            _ => Self { index: TURN - position, stride: -step, sign: 0 },
-        }
+    fn at(position: i32) -> Self {
+        let (origin, mirrored, sign) = match position / QUARTER {
+            0 => (0, false, 0),
+            1 => (HALF, true, -1),
+            2 => (HALF, false, -1),
+            _ => (TURN, true, 0),
+        };
+        Self { index: (position - origin).abs(), origin, mirrored, sign }
+    }
+
+    /// The position on the circle, perhaps outside of one turn.
+    fn position(&self) -> i32 {
+        if self.mirrored { self.origin - self.index } else { self.origin + self.index }
     }
 
     /// The entry with the quadrant's sign.
