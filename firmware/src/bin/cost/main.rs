@@ -1,0 +1,113 @@
+//! Counts the instructions of the pure cores on an emulated Cortex-M4F and holds them to budgets.
+//!
+//! `cargo cost` builds this image at the board's own addresses and runs it in QEMU, where the core's
+//! timer counts executed instructions. **Instructions are not cycles**: on the board a load or a taken
+//! branch takes more than one, flash has wait states, and a count here is a lower bound there. The
+//! figures repeat exactly, so that a change in them is a change of the code.
+//!
+//! The exit status is 0 only if the counter counts right and all budgets are kept.
+#![no_std]
+#![no_main]
+
+mod conclusion;
+mod counter;
+mod matching;
+mod memory;
+mod report;
+mod samples;
+mod scale;
+
+use core::panic::PanicInfo;
+
+use cortex_m::asm::wfi;
+use cortex_m_rt::entry;
+use cortex_m_semihosting::{debug, hprintln};
+use orientation::align::conclusion::Conclusion;
+use orientation::align::etalon::series::SeriesError;
+use orientation::session::Session;
+use orientation::signal::butterworth::DesignError;
+
+use counter::Counter;
+use report::{Report, figure, heading};
+
+/// Budget of flash, bytes: a quarter of the board's.
+const FLASH: u64 = 256 * 1024;
+
+/// Why nothing was measured.
+#[derive(Debug)]
+#[expect(dead_code, reason = "the content is printed")]
+enum Failure {
+    /// The core's peripherals were taken before.
+    NoTimer,
+    /// A filter could not be designed.
+    Filter(DesignError),
+    /// A series could not be matched.
+    Series(SeriesError),
+}
+
+impl From<DesignError> for Failure {
+    fn from(error: DesignError) -> Self {
+        Self::Filter(error)
+    }
+}
+
+impl From<SeriesError> for Failure {
+    fn from(error: SeriesError) -> Self {
+        Self::Series(error)
+    }
+}
+
+#[entry]
+fn main() -> ! {
+    let mut report = Report::default();
+    if let Err(failure) = measure(&mut report) {
+        hprintln!("{failure:?}");
+        report.require("everything was measured", false);
+    }
+    report.end()
+}
+
+/// Everything, in the order of the data path.
+fn measure(report: &mut Report) -> Result<(), Failure> {
+    let peripherals = cortex_m::Peripherals::take().ok_or(Failure::NoTimer)?;
+    let counter = Counter::start(peripherals.SYST);
+    check_scale(&counter, report);
+    heading("INSTRUCTIONS (not cycles) on a Cortex-M4F");
+    samples::report(&counter, report)?;
+    matching::report(&counter, report)?;
+    conclusion::report(&counter, report)?;
+    heading("bytes");
+    sizes(report)
+}
+
+/// Shows that the counter counts instructions, also beyond its 24 bits.
+fn check_scale(counter: &Counter, report: &mut Report) {
+    heading("checks, instructions");
+    let mut check = |name, work: fn(), known| {
+        report.check(name, counter.measure(work).0.instructions(), known);
+    };
+    check("a thousand instructions in a row", scale::thousand, scale::THOUSAND);
+    check("a loop of ten million", scale::long_loop, scale::LONG_LOOP);
+}
+
+/// Stack, static sizes and flash.
+fn sizes(report: &mut Report) -> Result<(), Failure> {
+    matching::report_stack()?;
+    figure("stack of a conclusion of 60 dwells", conclusion::stack()? as u64);
+    figure("stack of this image at its deepest", memory::greatest_stack() as u64);
+    figure("a Session", size_of::<Session>() as u64);
+    figure("a Conclusion", size_of::<Conclusion>() as u64);
+    figure("static memory of this image", memory::statics() as u64);
+    report.budget("flash of this image, etalon table included", memory::flash() as u64, FLASH);
+    Ok(())
+}
+
+/// Prints what went wrong and ends the emulator with an error.
+#[panic_handler]
+fn panic(information: &PanicInfo) -> ! {
+    hprintln!("{information}");
+    debug::exit(debug::EXIT_FAILURE);
+    loop {
+        wfi();
+    }
+}

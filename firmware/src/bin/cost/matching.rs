@@ -1,0 +1,168 @@
+//! The match over the etalon table, in the setting of Sokolov (2019).
+
+use hal_mock::noise::Generator;
+use orientation::align::etalon::series::SeriesError;
+use orientation::align::etalon::table::{ONE, STEP, TURN};
+use orientation::align::etalon::{self, Acceptance, Criterion, Limit, Match, Series, Table};
+
+use crate::counter::Counter;
+use crate::memory;
+use crate::report::{Report, figure};
+
+/// Positions n.
+const POSITIONS: u32 = 60;
+/// Random series of each kind.
+const SERIES: usize = 100;
+/// White noise of a dwell of 1 s over the horizontal Earth rate: 0.015 °/h at 47°35′.
+const SIGMA: f64 = 1.48e-3;
+/// Constant drift over the horizontal Earth rate, 1σ: 0.01 °/h.
+const DRIFT_SIGMA: f64 = 9.9e-4;
+/// α₁ over the sum of squares that noise alone is expected to leave.
+const ACCEPTED_SQUARES: f64 = 1.5;
+/// Budget of a match by least squares of any kind, instructions.
+const BUDGET: u64 = 310_000;
+
+/// Where the stage goes.
+#[derive(Clone, Copy)]
+struct Turn {
+    name: &'static str,
+    /// Step in grid steps of 10″.
+    step: i32,
+    /// First azimuth in grid steps.
+    from: f64,
+    /// Range of the first azimuths in grid steps.
+    range: f64,
+}
+
+/// 28′ towards north from 28° to 29°, and 6° from anywhere.
+const TURNS: [Turn; 2] = [
+    Turn { name: "arc", step: -168, from: 10_080.0, range: 360.0 },
+    Turn { name: "circle", step: 2160, from: 0.0, range: TURN as f64 },
+];
+
+impl Turn {
+    /// A noisy series from a random azimuth.
+    fn series(self, seed: u64) -> Result<Series, SeriesError> {
+        let mut noise = Generator::stream(seed, 3);
+        let first = self.from + self.range * noise.uniform();
+        let drift = DRIFT_SIGMA * noise.gaussian();
+        let ratio = |index| {
+            let azimuth = (first + f64::from(index) * f64::from(self.step)) * STEP;
+            libm::cos(azimuth) + drift + SIGMA * noise.gaussian()
+        };
+        Series::new((0..POSITIONS).map(ratio), self.step)
+    }
+}
+
+/// Costs or counts of many series.
+struct Spread([u64; SERIES]);
+
+impl Spread {
+    /// Of what `figure` says for each series.
+    fn of(mut figure: impl FnMut(&Series) -> u64, turn: Turn) -> Result<Self, SeriesError> {
+        let mut figures = [0; SERIES];
+        for (seed, place) in (1..).zip(&mut figures) {
+            *place = figure(&turn.series(seed)?);
+        }
+        sort(&mut figures);
+        Ok(Self(figures))
+    }
+
+    fn median(&self) -> u64 {
+        self.0[SERIES / 2]
+    }
+
+    fn greatest(&self) -> u64 {
+        self.0[SERIES - 1]
+    }
+}
+
+/// Sorts by insertion: the library's sort takes some kilobytes of the flash that is measured.
+fn sort(figures: &mut [u64]) {
+    for end in 1..figures.len() {
+        for place in (1..=end).rev() {
+            if figures[place - 1] > figures[place] {
+                figures.swap(place - 1, place);
+            }
+        }
+    }
+}
+
+/// Measures every criterion on both turns.
+pub fn report(counter: &Counter, report: &mut Report) -> Result<(), SeriesError> {
+    for turn in TURNS {
+        quadratic(counter, report, turn, "maximum likelihood", Criterion::MaximumLikelihood)?;
+        quadratic(counter, report, turn, "least squares", Criterion::LeastSquares)?;
+        within(counter, report, turn)?;
+        absolute(counter, turn)?;
+    }
+    Ok(())
+}
+
+/// Tells the stack of each kind of match.
+pub fn report_stack() -> Result<(), SeriesError> {
+    let series = TURNS[0].series(1)?;
+    let of = |criterion| memory::stack_of(|| search(&series, criterion)).0 as u64;
+    figure("stack of a match, maximum likelihood", of(Criterion::MaximumLikelihood));
+    figure("stack of a match, least absolute", of(Criterion::LeastAbsolute));
+    let within = memory::stack_of(|| accepted(&series, squares_limit())).0 as u64;
+    figure("stack of a match, within squares", within);
+    Ok(())
+}
+
+#[inline(never)]
+fn search(series: &Series, criterion: Criterion) -> Match {
+    etalon::search(Table::built_in(), series, criterion)
+}
+
+#[inline(never)]
+fn accepted(series: &Series, limit: Limit) -> Acceptance {
+    etalon::accepted(Table::built_in(), series, limit)
+}
+
+/// α₁: so many times the n − 1 differences' noise, in squared table units.
+fn squares_limit() -> Limit {
+    let expected = f64::from(POSITIONS - 1) * 2.0 * SIGMA * SIGMA;
+    Limit::WithinSquares((ACCEPTED_SQUARES * expected * ONE * ONE) as u128)
+}
+
+fn quadratic(
+    counter: &Counter,
+    report: &mut Report,
+    turn: Turn,
+    name: &str,
+    criterion: Criterion,
+) -> Result<(), SeriesError> {
+    let cost = |series: &Series| counter.measure(|| search(series, criterion)).0.instructions();
+    budgeted(report, turn, name, &Spread::of(cost, turn)?);
+    Ok(())
+}
+
+fn within(counter: &Counter, report: &mut Report, turn: Turn) -> Result<(), SeriesError> {
+    let limit = squares_limit();
+    let cost = |series: &Series| counter.measure(|| accepted(series, limit)).0.instructions();
+    budgeted(report, turn, "within squares", &Spread::of(cost, turn)?);
+    Ok(())
+}
+
+fn absolute(counter: &Counter, turn: Turn) -> Result<(), SeriesError> {
+    let criterion = Criterion::LeastAbsolute;
+    let cost = |series: &Series| counter.measure(|| search(series, criterion)).0.instructions();
+    let spread = Spread::of(cost, turn)?;
+    let evaluations = Spread::of(|series| u64::from(search(series, criterion).evaluations), turn)?;
+    let row = |what, count| {
+        figure(format_args!("match of 60, {}, least absolute, {what}", turn.name), count);
+    };
+    row("median", spread.median());
+    row("greatest", spread.greatest());
+    row("evaluations, median", evaluations.median());
+    row("evaluations, greatest", evaluations.greatest());
+    Ok(())
+}
+
+/// The two rows of a criterion that has a budget.
+fn budgeted(report: &mut Report, turn: Turn, name: &str, spread: &Spread) {
+    let turn = turn.name;
+    figure(format_args!("match of 60, {turn}, {name}, median"), spread.median());
+    report.budget(format_args!("match of 60, {turn}, {name}, greatest"), spread.greatest(), BUDGET);
+}

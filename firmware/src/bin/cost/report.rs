@@ -1,0 +1,61 @@
+//! The printed table, and whether everything stayed within its budget.
+
+use core::fmt::Display;
+
+use cortex_m::asm::wfi;
+use cortex_m_semihosting::{debug, hprintln};
+
+/// Parts in which a check may be off by one: one per cent.
+const CHECK_PARTS: u64 = 100;
+
+/// Begins a table of this quantity.
+pub fn heading(quantity: &str) {
+    hprintln!("");
+    hprintln!("{:>10} {:>10} {:5} {quantity}", "count", "budget", "");
+}
+
+/// A figure that is only told.
+pub fn figure(name: impl Display, count: u64) {
+    hprintln!("{count:>10} {:>10} {:5} {name}", "-", "");
+}
+
+/// Whether all figures so far are as they must be.
+#[derive(Debug, Default)]
+pub struct Report {
+    failed: bool,
+}
+
+impl Report {
+    /// A figure that must not exceed its budget.
+    pub fn budget(&mut self, name: impl Display, count: u64, budget: u64) {
+        let verdict = if count <= budget { "ok" } else { "OVER" };
+        self.failed |= count > budget;
+        hprintln!("{count:>10} {budget:>10} {verdict:5} {name}");
+    }
+
+    /// A figure that is known and must come out within one per cent.
+    pub fn check(&mut self, name: impl Display, count: u64, known: u64) {
+        let agrees = count.abs_diff(known) * CHECK_PARTS <= known;
+        self.failed |= !agrees;
+        let verdict = if agrees { "ok" } else { "WRONG" };
+        hprintln!("{count:>10} {known:>10} {verdict:5} {name}");
+    }
+
+    /// Something that must be true for the figures to mean what they say.
+    pub fn require(&mut self, what: &str, is_true: bool) {
+        if !is_true {
+            self.failed = true;
+            hprintln!("NOT TRUE: {what}");
+        }
+    }
+
+    /// Ends the emulator, successfully only if nothing failed.
+    pub fn end(self) -> ! {
+        hprintln!("");
+        hprintln!("{}", if self.failed { "FAILED" } else { "all within budget" });
+        debug::exit(if self.failed { debug::EXIT_FAILURE } else { debug::EXIT_SUCCESS });
+        loop {
+            wfi();
+        }
+    }
+}

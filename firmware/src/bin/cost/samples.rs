@@ -1,0 +1,97 @@
+//! What is done once per sample.
+
+use core::hint::black_box;
+
+use hal_mock::noise::Generator;
+use orientation::signal::Sample;
+use orientation::signal::butterworth::{Coefficients, DesignError, Filter};
+use orientation::signal::dwell::DwellAverage;
+use orientation::units::{Angle, AngularRate, Instant, SpecificForce, Temperature};
+
+use crate::counter::{Cost, Counter};
+use crate::report::{Report, figure};
+
+/// Sections of order 6.
+const SECTIONS: usize = 3;
+/// Samples through the filter alone.
+const FILTERED: u64 = 1000;
+/// Samples through filter and dwell: one second at [`RATE_HZ`].
+const AVERAGED: u64 = 2000;
+/// The highest sample rate of the stage path, Hz.
+const RATE_HZ: f64 = 2000.0;
+/// A cut-off that follows from dwells of 10 s, Hz.
+const CUTOFF_HZ: f64 = 2.0;
+/// White noise of a sample, rad/s: 0.15 °/h, the paper's.
+const RATE_SIGMA: f64 = 7.3e-7;
+/// Mean specific force, m/s².
+const FORCE: [f64; 3] = [0.01, -0.02, -9.81];
+/// White noise of a specific force, m/s².
+const FORCE_SIGMA: f64 = 1e-3;
+
+/// Measures filter, filter with dwell, and the filter's design.
+pub fn report(counter: &Counter, report: &mut Report) -> Result<(), DesignError> {
+    let (cost, coefficients) = counter.measure(design);
+    let coefficients = coefficients?;
+    report.budget("Butterworth of order 6, a sample", filter(counter, &coefficients), 115);
+    report.budget("filter and dwell, a sample with force", dwell(counter, &coefficients), 250);
+    figure("design of the filter for 2 Hz at 2 kHz", cost.instructions());
+    Ok(())
+}
+
+#[inline(never)]
+fn design() -> Result<Coefficients<SECTIONS>, DesignError> {
+    Coefficients::low_pass(black_box(CUTOFF_HZ), black_box(RATE_HZ))
+}
+
+#[inline(never)]
+fn update(
+    filter: &mut Filter<SECTIONS>,
+    coefficients: &Coefficients<SECTIONS>,
+    rate: AngularRate,
+) -> AngularRate {
+    filter.update(coefficients, rate)
+}
+
+#[inline(never)]
+fn push(
+    average: &mut DwellAverage<SECTIONS>,
+    coefficients: &Coefficients<SECTIONS>,
+    sample: &Sample,
+) {
+    average.push(coefficients, sample);
+}
+
+/// Mean instructions of a sample through the filter, call included.
+fn filter(counter: &Counter, coefficients: &Coefficients<SECTIONS>) -> u64 {
+    let mut noise = Generator::new(1);
+    let mut filter = Filter::at_rest(AngularRate(0));
+    let mut total = Cost::default();
+    for _ in 0..FILTERED {
+        let rate = AngularRate::from_rad_per_s(RATE_SIGMA * noise.gaussian());
+        total += counter.measure(|| update(&mut filter, coefficients, rate)).0;
+    }
+    total.mean(FILTERED)
+}
+
+/// Mean instructions of a sample through filter and dwell, call included.
+fn dwell(counter: &Counter, coefficients: &Coefficients<SECTIONS>) -> u64 {
+    let mut noise = Generator::new(2);
+    let mut average = DwellAverage::begin(coefficients, &sample(0, &mut noise));
+    let mut total = Cost::default();
+    for index in 1..=AVERAGED {
+        let sample = sample(index, &mut noise);
+        total += counter.measure(|| push(&mut average, coefficients, &sample)).0;
+    }
+    total.mean(AVERAGED)
+}
+
+/// A noisy sample of a standstill.
+fn sample(index: u64, noise: &mut Generator) -> Sample {
+    Sample {
+        time: Instant(index * 500),
+        stage: Angle(1 << 20),
+        rate: AngularRate::from_rad_per_s(RATE_SIGMA * noise.gaussian()),
+        force: FORCE.map(|f| SpecificForce::from_m_per_s2(f + FORCE_SIGMA * noise.gaussian())),
+        temperature: Some(Temperature(25_000 + (index & 7) as i32)),
+    }
+}
