@@ -73,14 +73,60 @@ pub struct Repetition {
     pub why: Disturbance,
 }
 
+/// Where the stage is to stand and for how long, in the units of the sample path.
+#[derive(Clone, Copy, Debug)]
+struct Target {
+    position: Position,
+    stage: Angle,
+    samples: u32,
+}
+
+impl Target {
+    fn new(position: Position, sample_seconds: f64) -> Self {
+        let samples = samples(position.seconds, sample_seconds);
+        Self { position, stage: Angle::from_rad(position.angle), samples }
+    }
+}
+
+/// The procedure's times and angles in the units of the sample path, which knows no `f64`.
+#[derive(Clone, Copy, Debug)]
+struct Pace {
+    still: Angle,
+    arrival: Angle,
+    level: u32,
+    settle: u32,
+    longest: u64,
+    longest_rotation: u64,
+}
+
+impl Pace {
+    fn of(procedure: &Procedure) -> Self {
+        let samples = |seconds| samples(seconds, procedure.sample_seconds);
+        Self {
+            still: Angle::from_rad(procedure.still),
+            arrival: Angle::from_rad(procedure.arrival),
+            level: samples(procedure.level_seconds),
+            settle: samples(procedure.settle_seconds),
+            longest: Instant::from_seconds(procedure.longest_seconds).0,
+            longest_rotation: Instant::from_seconds(procedure.longest_rotation).0,
+        }
+    }
+}
+
+/// A time in samples, to nearest.
+fn samples(seconds: f64, sample_seconds: f64) -> u32 {
+    libm::round(seconds / sample_seconds) as u32
+}
+
 /// One alignment from the first sample to its conclusion.
 #[derive(Clone, Debug)]
 pub struct Session {
     setting: Setting,
     procedure: Procedure,
     coefficients: Coefficients<SECTIONS>,
+    pace: Pace,
     phase: Phase,
-    target: Position,
+    target: Target,
     begun: Option<Instant>,
     average: Option<DwellAverage<SECTIONS>>,
     dwells: Vec<Dwell, POSITIONS>,
@@ -99,7 +145,7 @@ impl Session {
         let rate = 1.0 / procedure.sample_seconds;
         let coefficients =
             Coefficients::low_pass(procedure.cutoff(), rate).map_err(ProcedureError::Filter)?;
-        let samples = libm::round(procedure.schedule.shortest() * rate) as u32;
+        let samples = samples(procedure.schedule.shortest(), procedure.sample_seconds);
         let needed = coefficients.settling();
         if samples < needed {
             return Err(ProcedureError::DwellTooShort { samples, needed });
@@ -107,13 +153,14 @@ impl Session {
         if let Some(angle) = procedure.beyond_travel() {
             return Err(ProcedureError::BeyondTravel(angle));
         }
-        let target = procedure.schedule.next(&[], 0.0).ok_or(ProcedureError::NoPosition)?;
+        let first = procedure.schedule.next(&[], 0.0).ok_or(ProcedureError::NoPosition)?;
         Ok(Self {
             setting,
+            target: Target::new(first, procedure.sample_seconds),
+            pace: Pace::of(&procedure),
             procedure,
             coefficients,
             phase: Phase::Level,
-            target,
             begun: None,
             average: None,
             dwells: Vec::new(),
@@ -177,7 +224,7 @@ impl Session {
 
     fn sample(&mut self, sample: &Sample) -> Command {
         let begun = *self.begun.get_or_insert(sample.time);
-        if sample.time.seconds() - begun.seconds() > self.procedure.longest_seconds {
+        if sample.time.0.saturating_sub(begun.0) > self.pace.longest {
             return self.conclude(Some(Refusal::TimeExhausted));
         }
         if let Some(command) = self.follow(sample) {
@@ -195,7 +242,7 @@ impl Session {
     fn follow(&mut self, sample: &Sample) -> Option<Command> {
         let mut ended = None;
         match &mut self.average {
-            Some(average) if average.stands_at(sample.stage, self.procedure.still) => {
+            Some(average) if average.stands_at(sample.stage, self.pace.still) => {
                 average.push(&self.coefficients, sample);
                 return None;
             }
@@ -209,8 +256,7 @@ impl Session {
     /// Looks at the tilt once enough samples are in, then goes to the first position.
     fn level(&mut self, now: Instant) -> Command {
         let Some(average) = &self.average else { return Command::Wait };
-        if f64::from(average.count()) * self.procedure.sample_seconds < self.procedure.level_seconds
-        {
+        if average.count() < self.pace.level {
             return Command::Wait;
         }
         let [x, y, _] = average.force();
@@ -229,37 +275,32 @@ impl Session {
     /// Sends the stage to the target.
     fn send(&mut self, now: Instant) -> Command {
         self.phase = Phase::Rotate(now);
-        Command::Rotate(self.target.angle)
+        Command::Rotate(self.target.position.angle)
     }
 
     /// Whether the running average began where the stage was sent.
     fn stands_at_target(&self) -> bool {
-        let target = Angle::from_rad(self.target.angle);
-        self.average.as_ref().is_some_and(|average| {
-            (average.anchor() - target).signed_rad().abs() <= self.procedure.arrival
-        })
+        let (stage, arrival) = (self.target.stage, self.pace.arrival);
+        self.average.as_ref().is_some_and(|average| average.stands_at(stage, arrival))
     }
 
     /// Ends the dwell when its time is over.
     fn dwell(&mut self, now: Instant) -> Command {
-        let seconds = self.average.as_ref().map_or(0.0, |average| {
-            (f64::from(average.count()) + 0.5) * self.procedure.sample_seconds
-        });
-        if seconds < self.target.seconds { Command::Wait } else { self.complete(now) }
+        let count = self.average.as_ref().map_or(0, DwellAverage::count);
+        if count < self.target.samples { Command::Wait } else { self.complete(now) }
     }
 
     /// Waits until the stage stands where it was sent.
     fn rotate(&mut self, sample: &Sample, since: Instant) -> Command {
         let count = self.average.as_ref().map_or(0, DwellAverage::count);
-        let rested = f64::from(count) * self.procedure.sample_seconds;
-        if self.stands_at_target() && count > 1 && rested >= self.procedure.settle_seconds {
-            if self.procedure.settle_seconds > 0.0 {
+        if self.stands_at_target() && count > 1 && count >= self.pace.settle {
+            if self.pace.settle > 0 {
                 self.average = None;
             }
             self.phase = Phase::Dwell;
-        } else if sample.time.seconds() - since.seconds() > self.procedure.longest_rotation {
-            let target = Angle::from_rad(self.target.angle);
-            let [target, actual] = [target, sample.stage].map(|a| a.rad() / TURN * 360.0);
+        } else if sample.time.0.saturating_sub(since.0) > self.pace.longest_rotation {
+            let [target, actual] =
+                [self.target.stage, sample.stage].map(|a| a.rad() / TURN * 360.0);
             return self.conclude(Some(Refusal::StageNotThere { target, actual }));
         }
         Command::Wait
@@ -302,7 +343,7 @@ impl Session {
         let [low, high] = self.procedure.travel;
         match schedule.next(&self.dwells, sigma) {
             Some(next) if !stops && (low..=high).contains(&next.angle) => {
-                self.target = next;
+                self.target = Target::new(next, self.procedure.sample_seconds);
                 self.send(now)
             }
             _ => self.conclude(None),

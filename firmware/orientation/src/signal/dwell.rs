@@ -149,16 +149,10 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
         self.count += 1;
     }
 
-    /// Whether a stage angle is still that of the first sample, within `tolerance` rad.
+    /// Whether a stage angle is that of the first sample, within `tolerance`.
     #[must_use]
-    pub fn stands_at(&self, stage: Angle, tolerance: f64) -> bool {
-        (stage - self.anchor).signed_rad().abs() <= tolerance
-    }
-
-    /// Encoder angle at the first sample.
-    #[must_use]
-    pub fn anchor(&self) -> Angle {
-        self.anchor
+    pub fn stands_at(&self, stage: Angle, tolerance: Angle) -> bool {
+        (stage - self.anchor).0.cast_signed().unsigned_abs() <= tolerance.0
     }
 
     /// Samples so far.

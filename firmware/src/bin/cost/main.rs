@@ -74,7 +74,7 @@ fn measure(report: &mut Report) -> Result<(), Failure> {
     matching::report(&counter, report)?;
     conclusion::report(&counter, report)?;
     heading("bytes");
-    sizes(report)
+    sizes()
 }
 
 /// Shows that the counter counts instructions, also beyond its 24 bits.
@@ -88,7 +88,7 @@ fn check_scale(counter: &Counter, report: &mut Report) {
 }
 
 /// Stack, static sizes and flash.
-fn sizes(report: &mut Report) -> Result<(), Failure> {
+fn sizes() -> Result<(), Failure> {
     matching::report_stack()?;
     figure("stack of a conclusion of 60 dwells", conclusion::stack()? as u64);
     figure("stack of this image at its deepest", memory::greatest_stack() as u64);
