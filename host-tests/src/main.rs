@@ -10,7 +10,8 @@ use std::process::ExitCode;
 
 use bench::campaign::sokolov::{self, Turn};
 use bench::demonstration;
-use bench::output::{json, progress, table, text};
+use bench::output::progress::Progress;
+use bench::output::{json, table, text};
 use bench::recording::{self, Recording};
 use bench::replay::{Options, replay};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -142,10 +143,10 @@ fn replayed(
     as_json: bool,
 ) -> Result<bool, String> {
     let (header, body, truth) = recording.into_parts();
-    let bar = progress::bar(0, "positions");
-    let replay = replay(&header, &body, options, |session| progress::show(&bar, session))
+    let progress = Progress::new(0, "positions");
+    let replay = replay(&header, &body, options, |session| progress.session(session))
         .map_err(|error| format!("{name}: {error}"))?;
-    bar.finish_and_clear();
+    progress.finish();
     let conclusion = replay.session.conclusion().ok_or("the session did not end")?;
     let output = if as_json {
         let object = json::azimuth(&replay, conclusion, truth.azimuth_deg);
@@ -167,13 +168,13 @@ fn replayed(
 fn sokolov(runs: usize, as_json: bool) -> Result<(), String> {
     let turns = [Turn::Arc, Turn::Circle];
     let total = turns.len() * (3 * sokolov::TABLE_RUNS + runs);
-    let bar = progress::bar(total as u64, "alignments");
-    let tick = || bar.inc(1);
+    let progress = Progress::new(total as u64, "alignments");
+    let tick = || progress.step();
     let tables = turns.map(|turn| sokolov::tabulate(turn, tick));
     let tables = tables.into_iter().collect::<Result<Vec<_>, _>>()?;
     let precisions = turns.map(|turn| sokolov::precision(turn, runs, tick));
     let precisions = precisions.into_iter().collect::<Result<Vec<_>, _>>()?;
-    bar.finish_and_clear();
+    progress.finish();
     let output = if as_json {
         let object = serde_json::json!({
             "campaign": "sokolov", "status": "ok", "tables": tables, "precision": precisions,

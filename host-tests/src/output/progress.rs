@@ -1,34 +1,75 @@
-//! Progress on standard error: silent where that is no terminal.
+//! Progress on standard error: a bar on a terminal, elsewhere a dozen lines.
+
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use orientation::session::Session;
 
 use super::degrees;
 
-/// A bar of `length` steps with a message behind it.
-#[must_use]
-pub fn bar(length: u64, what: &'static str) -> ProgressBar {
-    let style = ProgressStyle::with_template("{prefix} [{bar:30}] {pos}/{len} {msg}");
-    let bar = ProgressBar::new(length).with_prefix(what);
-    match style {
-        Ok(style) => bar.with_style(style.progress_chars("━╸ ")),
-        Err(_) => bar,
+/// Lines that a whole task may print where there is no terminal.
+const LINES: u64 = 12;
+
+/// The progress of one task; shared by the threads that work at it.
+pub struct Progress {
+    bar: ProgressBar,
+    what: &'static str,
+    told: AtomicU64,
+}
+
+impl Progress {
+    /// Of a task of `length` steps; `what` names them.
+    #[must_use]
+    pub fn new(length: u64, what: &'static str) -> Self {
+        let style = ProgressStyle::with_template("{prefix} [{bar:30}] {pos}/{len} {msg}");
+        let bar = ProgressBar::new(length).with_prefix(what);
+        let bar = match style {
+            Ok(style) => bar.with_style(style.progress_chars("━╸ ")),
+            Err(_) => bar,
+        };
+        Self { bar, what, told: AtomicU64::new(0) }
+    }
+
+    /// One more step is done.
+    pub fn step(&self) {
+        self.bar.inc(1);
+        self.tell(String::new);
+    }
+
+    /// Shows how far a session is and what its dwells so far would give.
+    pub fn session(&self, session: &Session) {
+        self.bar.set_length(session.planned() as u64);
+        self.bar.set_position(session.dwells().len() as u64);
+        self.tell(|| so_far(session));
+    }
+
+    /// The task is done: the bar stays as it is.
+    pub fn finish(&self) {
+        self.bar.abandon();
+    }
+
+    /// Puts a message behind the bar; without a terminal, prints a line each time that another
+    /// twelfth of the task is done.
+    fn tell(&self, message: impl FnOnce() -> String) {
+        if !self.bar.is_hidden() {
+            self.bar.set_message(message());
+            return;
+        }
+        let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0).max(1));
+        let part = done * LINES / all;
+        if self.told.fetch_max(part, Ordering::Relaxed) < part {
+            eprintln!("{} {done}/{all} {}", self.what, message());
+        }
     }
 }
 
-/// Shows how far a session is and what its dwells so far would give.
-pub fn show(bar: &ProgressBar, session: &Session) {
-    bar.set_length(session.planned() as u64);
-    bar.set_position(session.dwells().len() as u64);
-    if bar.is_hidden() {
-        return;
-    }
-    let message = match session.preview().fit {
+/// What the dwells so far would give.
+fn so_far(session: &Session) -> String {
+    match session.preview().fit {
         Some(fit) => {
             let [sigma, limit] = [fit.sigma(), fit.limit].map(degrees);
             format!("σ so far {sigma:.4}°, limit {limit:.4}°")
         }
         None => "not yet determined".to_owned(),
-    };
-    bar.set_message(message);
+    }
 }
