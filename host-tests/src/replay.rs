@@ -91,10 +91,9 @@ impl fmt::Display for ReplayError {
             Self::Procedure(ProcedureError::Filter(error)) => {
                 write!(f, "no filter for this sample rate: {error}")
             }
-            Self::Procedure(ProcedureError::DwellTooShort { samples, needed }) => write!(
-                f,
-                "the shortest dwell has {samples} samples; the filter needs {needed} to settle"
-            ),
+            Self::Procedure(ProcedureError::DwellTooShort { samples, needed }) => {
+                write!(f, "the shortest dwell has {samples} samples; the filter needs {needed}")
+            }
             Self::Procedure(ProcedureError::BeyondTravel(angle)) => {
                 write!(f, "position {:.2}° is beyond the stage's travel", angle / TURN * 360.0)
             }

@@ -464,6 +464,13 @@ fn check_facts<const S: usize>(ratio: f64) {
     let power: f64 = rests.iter().map(|rest| rest * rest).sum();
     assert!(close(coefficients.lag(), lag, 1e-7), "{} {lag}", coefficients.lag());
     assert!(close(coefficients.lag_power(), power, 1e-9), "{} {power}", coefficients.lag_power());
+    for count in [1, 7, coefficients.settling() / 2, coefficients.settling() + 5] {
+        let responses = rests.iter().take(count as usize).map(|rest| 1.0 - rest);
+        let sums = [responses.clone().sum(), responses.map(|s| s * s).sum::<f64>()];
+        for (ours, sum) in coefficients.step_sums(count).into_iter().zip(sums) {
+            assert!((ours - sum).abs() < 1e-7 * (1.0 + lag + sum), "{count}: {ours} {sum}");
+        }
+    }
     let last = rests.iter().rposition(|rest| rest.abs() >= 1e-6).expect("the step starts at zero");
     assert_eq!(coefficients.settling() as usize, last + 1);
     let ideal: f64 = exact(S, ratio).iter().map(|(p, loss)| loss / p).sum();

@@ -171,7 +171,25 @@ fn the_stage_never_leaves_its_travel() {
 }
 
 #[test]
-fn a_dwell_that_the_filter_cannot_settle_in_is_no_procedure() {
-    let begun = Session::new(setting(), Procedure::new(Schedule::circle(12, 0.2), 0.01));
-    assert!(matches!(begun.err(), Some(ProcedureError::DwellTooShort { samples: 20, .. })));
+fn dwells_that_the_filter_has_no_time_to_settle_in_are_unbiased() {
+    // 20 samples at 100 Hz: the cut-off is a fifth of the sample rate and settling takes 42.
+    let procedure = Procedure::new(Schedule::circle(24, 0.2), 0.01);
+    let mut errors = Vec::new();
+    for seed in 0..200 {
+        let mut session = session(procedure.clone());
+        let azimuth = seed as f64 * 1.7;
+        run(&mut session, &world(azimuth), &[], 0.1, 60.0, 1000 + seed);
+        errors.push(error_in_sigmas(&session, azimuth));
+        let fit = session.conclusion().and_then(|conclusion| conclusion.fit.as_ref());
+        let fit = fit.expect("there is a fit");
+        assert!(fit.sigma() / fit.limit < 1.12, "{} of the limit", fit.sigma() / fit.limit);
+    }
+    let rms = bench::campaign::statistics::rms(&errors);
+    assert!((0.88..1.12).contains(&rms), "RMS {rms} σ");
+}
+
+#[test]
+fn a_dwell_too_short_for_the_filters_lag_is_no_procedure() {
+    let begun = Session::new(setting(), Procedure::new(Schedule::circle(12, 0.1), 0.01));
+    assert!(matches!(begun.err(), Some(ProcedureError::DwellTooShort { samples: 10, .. })));
 }

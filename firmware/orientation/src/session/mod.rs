@@ -24,7 +24,7 @@ use crate::align::setting::Setting;
 use crate::error::Refusal;
 use crate::signal::Sample;
 use crate::signal::butterworth::Coefficients;
-use crate::signal::dwell::{Dwell, DwellAverage};
+use crate::signal::dwell::{self, Dwell, DwellAverage};
 use crate::units::{Angle, Instant, TURN};
 
 /// Second-order sections of the stage filter: Sokolov's sixth order.
@@ -146,7 +146,7 @@ impl Session {
         let coefficients =
             Coefficients::low_pass(procedure.cutoff(), rate).map_err(ProcedureError::Filter)?;
         let samples = samples(procedure.schedule.shortest(), procedure.sample_seconds);
-        let needed = coefficients.settling();
+        let needed = dwell::shortest(&coefficients);
         if samples < needed {
             return Err(ProcedureError::DwellTooShort { samples, needed });
         }

@@ -90,7 +90,7 @@ impl Procedure {
 pub enum ProcedureError {
     /// The filter cannot be designed for this sample rate.
     Filter(DesignError),
-    /// Dwells of this many samples are shorter than the filter's settling.
+    /// Dwells of this many samples are too short for the filter's lag.
     DwellTooShort {
         /// Samples of the shortest dwell.
         samples: u32,

@@ -3,9 +3,9 @@
 //! The filter starts at each arrival as if the first sample x₀ had stood for ever, so nothing of
 //! the previous position and of the rotation can smear into this one. The mean of its output over
 //! n samples is then x₀ + Σ wⱼ(xⱼ − x₀), with wⱼ the step response at the time that is left; as
-//! Σ wⱼ = n − D is known from the design (D the lag), dividing by (n − D)/n gives an unbiased mean
-//! in which x₀ cancels. Nothing is discarded: the taper costs the variance factor
-//! (n − 2D + E)·n/(n − D)², with E the lag power.
+//! W = Σ wⱼ is known from the design, dividing by W/n gives an unbiased mean in which x₀ cancels.
+//! Nothing is discarded: the taper costs the variance factor n Σ wⱼ²/W². For a dwell longer than
+//! the filter's settling W = n − D and Σ wⱼ² = n − 2D + E, with D the lag and E the lag power.
 
 use super::Sample;
 use super::blocks::{Blocks, Quietness};
@@ -83,6 +83,12 @@ impl Deviations {
     fn mean(&self, count: f64, lsb: f64) -> f64 {
         (f64::from(self.origin) + self.sum as f64 / count) * lsb
     }
+}
+
+/// The fewest samples that make a dwell: four times the filter's lag, and eight.
+#[must_use]
+pub fn shortest<const SECTIONS: usize>(coefficients: &Coefficients<SECTIONS>) -> u32 {
+    (libm::ceil(4.0 * coefficients.lag()) as u32).max(8)
 }
 
 /// The running average of a dwell in progress.
@@ -167,19 +173,18 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
         self.force.map(|sum| sum.mean(f64::from(self.count), 1e-6))
     }
 
-    /// The dwell, for a sample period in seconds; `None` while the filter has not settled.
+    /// The dwell, for a sample period in seconds; `None` while it is shorter than [`shortest`].
     #[must_use]
     pub fn finish(
         &self,
         coefficients: &Coefficients<SECTIONS>,
         sample_seconds: f64,
     ) -> Option<Dwell> {
-        if self.count < coefficients.settling() {
+        if self.count < shortest(coefficients) {
             return None;
         }
         let count = f64::from(self.count);
-        let weight = count - coefficients.lag();
-        let power = count - 2.0 * coefficients.lag() + coefficients.lag_power();
+        let [weight, power] = coefficients.step_sums(self.count);
         let offset = self.stage as f64 / count;
         Some(Dwell {
             stage: Angle(self.anchor.0.wrapping_add(libm::round(offset) as i32 as u32)),

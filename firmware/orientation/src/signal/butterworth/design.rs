@@ -113,6 +113,21 @@ impl<const SECTIONS: usize> Coefficients<SECTIONS> {
         self.settling
     }
 
+    /// Σ s(k) and Σ s(k)² over the first `samples` samples of the unit step response; followed in
+    /// `f64` where it has not settled by then.
+    #[must_use]
+    pub fn step_sums(&self, samples: u32) -> [f64; 2] {
+        if samples >= self.settling {
+            let count = f64::from(samples);
+            return [count - self.lag, count - 2.0 * self.lag + self.lag_power];
+        }
+        let mut states = [(0.0, 1.0); SECTIONS];
+        (0..samples).fold([0.0, 0.0], |[sum, squares], _| {
+            let response = 1.0 - fall(&self.gains, &mut states);
+            [sum + response, squares + response * response]
+        })
+    }
+
     /// The sections as they are realised, in order of growing quality factor.
     #[must_use]
     pub fn quantised(&self) -> [Section; SECTIONS] {
