@@ -12,6 +12,7 @@ use super::etalon::table::{ONE, STEP};
 use super::etalon::{self, Accepted, Limit, Series, Table};
 use super::stepwise::{Fit, Problem};
 use crate::error::Refusal;
+use crate::math::sort;
 use crate::signal::dwell::Dwell;
 
 /// How the azimuth is chosen.
@@ -91,7 +92,8 @@ impl<'a> Row<'a> {
             return Some(Self { dwells, step });
         }
         let start = dwells.first()?.stage;
-        dwells.sort_unstable_by_key(|dwell| (dwell.stage - start).0.cast_signed());
+        let turned = |dwell: &Dwell| (dwell.stage - start).0.cast_signed();
+        sort(&mut dwells, |a, b| turned(a) < turned(b));
         let step = even_step(&dwells)?;
         Some(Self { dwells, step })
     }

@@ -67,7 +67,32 @@ pub enum SampleFault {
     Missing,
 }
 
-/// Mean of a quantity as a sum of deviations from its first value.
+/// Mean of a quantity that every sample brings, as a plain sum; its first value is taken away at
+/// the end, so that the mean keeps its last bits.
+#[derive(Clone, Copy, Debug, Default)]
+struct Total {
+    origin: i32,
+    sum: i64,
+}
+
+impl Total {
+    #[inline]
+    fn push(&mut self, value: i32) {
+        self.sum += i64::from(value);
+    }
+
+    /// The sum of the deviations of `count` values from the first.
+    fn deviation(&self, count: u32) -> i64 {
+        self.sum - i64::from(self.origin) * i64::from(count)
+    }
+
+    /// The mean of `count` values in units of `lsb`.
+    fn mean(&self, count: u32, lsb: f64) -> f64 {
+        (f64::from(self.origin) + self.deviation(count) as f64 / f64::from(count)) * lsb
+    }
+}
+
+/// Mean of a quantity that samples may lack, as a sum of deviations from its first value.
 #[derive(Clone, Copy, Debug, Default)]
 struct Deviations {
     origin: i32,
@@ -97,14 +122,13 @@ pub struct DwellAverage<const SECTIONS: usize> {
     first: Instant,
     last: Instant,
     anchor: Angle,
-    count: u32,
-    origin: AngularRate,
+    /// The raw rate of the first sample, and the sum of the filtered ones.
+    filtered: Total,
     filter: Filter<SECTIONS>,
-    filtered: i64,
     squares: u64,
     blocks: Blocks,
     stage: i64,
-    force: [Deviations; 3],
+    force: [Total; 3],
     temperature: Option<Deviations>,
     saturated: bool,
     longest_gap: u64,
@@ -118,14 +142,12 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
             first: sample.time,
             last: sample.time,
             anchor: sample.stage,
-            count: 0,
-            origin: sample.rate,
+            filtered: Total { origin: sample.rate.0, sum: 0 },
             filter: Filter::at_rest(sample.rate),
-            filtered: 0,
             squares: 0,
             blocks: Blocks::default(),
             stage: 0,
-            force: sample.force.map(|force| Deviations { origin: force.0, sum: 0 }),
+            force: sample.force.map(|force| Total { origin: force.0, sum: 0 }),
             temperature: sample.temperature.map(|t| Deviations { origin: t.0, sum: 0 }),
             saturated: false,
             longest_gap: 0,
@@ -136,23 +158,64 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
 
     /// Adds a sample of the same standstill.
     pub fn push(&mut self, coefficients: &Coefficients<SECTIONS>, sample: &Sample) {
-        let deviation = sample.rate.0.saturating_sub(self.origin.0);
-        let filtered = self.filter.update(coefficients, sample.rate);
-        self.filtered += i64::from(filtered.0) - i64::from(self.origin.0);
-        let size = u64::from(deviation.unsigned_abs());
-        self.squares = self.squares.saturating_add(size * size);
-        self.blocks.push(deviation);
-        self.saturated |= sample.rate.is_saturated();
+        self.push_rate(coefficients, sample.rate);
         self.stage += i64::from((sample.stage - self.anchor).0.cast_signed());
+        self.push_time(sample.time);
         for (sum, force) in self.force.iter_mut().zip(sample.force) {
             sum.push(force.0);
         }
         if let (Some(sum), Some(temperature)) = (&mut self.temperature, sample.temperature) {
             sum.push(temperature.0);
         }
-        self.longest_gap = self.longest_gap.max(sample.time.0.saturating_sub(self.last.0));
-        self.last = sample.time;
-        self.count += 1;
+    }
+
+    #[inline]
+    fn push_rate(&mut self, coefficients: &Coefficients<SECTIONS>, rate: AngularRate) {
+        let filtered = self.filter.update(coefficients, rate);
+        self.filtered.push(filtered.0);
+        let deviation = rate.0.saturating_sub(self.filtered.origin);
+        let square = (i64::from(deviation) * i64::from(deviation)).cast_unsigned();
+        // A square is at most 2⁶²: it fits above any sum below 2⁶³.
+        if self.squares.cast_signed() < 0 {
+            self.add_to_great(square);
+        } else {
+            self.squares += square;
+        }
+        self.blocks.push(deviation);
+        if rate.is_saturated() {
+            self.saturate();
+        }
+    }
+
+    #[inline]
+    fn push_time(&mut self, time: Instant) {
+        // Wraps where time ran backwards, to more than any gap.
+        let gap = time.0.wrapping_sub(self.last.0);
+        if gap > self.longest_gap {
+            self.widen_gap(time);
+        }
+        self.last = time;
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn widen_gap(&mut self, time: Instant) {
+        if time > self.last {
+            self.longest_gap = time.0 - self.last.0;
+        }
+    }
+
+    /// Adds to a sum of squares that may be near its limit.
+    #[cold]
+    #[inline(never)]
+    fn add_to_great(&mut self, square: u64) {
+        self.squares = self.squares.saturating_add(square);
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn saturate(&mut self) {
+        self.saturated = true;
     }
 
     /// Whether a stage angle is that of the first sample, within `tolerance`.
@@ -164,13 +227,13 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
     /// Samples so far.
     #[must_use]
     pub fn count(&self) -> u32 {
-        self.count
+        self.blocks.count()
     }
 
     /// Mean specific force so far, m/s².
     #[must_use]
     pub fn force(&self) -> [f64; 3] {
-        self.force.map(|sum| sum.mean(f64::from(self.count), 1e-6))
+        self.force.map(|sum| sum.mean(self.count(), 1e-6))
     }
 
     /// The dwell, for a sample period in seconds; `None` while it is shorter than [`shortest`].
@@ -180,18 +243,19 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
         coefficients: &Coefficients<SECTIONS>,
         sample_seconds: f64,
     ) -> Option<Dwell> {
-        if self.count < shortest(coefficients) {
+        let samples = self.count();
+        if samples < shortest(coefficients) {
             return None;
         }
-        let count = f64::from(self.count);
-        let [weight, power] = coefficients.step_sums(self.count);
+        let count = f64::from(samples);
+        let [weight, power] = coefficients.step_sums(samples);
         let offset = self.stage as f64 / count;
         Some(Dwell {
             stage: Angle(self.anchor.0.wrapping_add(libm::round(offset) as i32 as u32)),
             middle: 0.5 * (self.first.seconds() + self.last.seconds()),
             seconds: count * sample_seconds,
-            samples: self.count,
-            rate: (f64::from(self.origin.0) + self.filtered as f64 / weight) * 1e-9,
+            samples: self.count(),
+            rate: (f64::from(self.filtered.origin) + self.deviation() / weight) * 1e-9,
             taper: power * count / (weight * weight),
             stated_variance: None,
             spread: self.spread(),
@@ -202,10 +266,15 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
         })
     }
 
+    /// Sum of the filtered rates' deviations from the first raw one, nrad/s.
+    fn deviation(&self) -> f64 {
+        self.filtered.deviation(self.count()) as f64
+    }
+
     /// Standard deviation of one sample about the mean of the filtered ones, rad/s.
     fn spread(&self) -> f64 {
-        let count = f64::from(self.count);
-        let mean = self.filtered as f64 / count;
+        let count = f64::from(self.count());
+        let mean = self.deviation() / count;
         libm::sqrt((self.squares as f64 / count - mean * mean).max(0.0)) * 1e-9
     }
 

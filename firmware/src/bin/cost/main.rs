@@ -81,7 +81,7 @@ fn measure(report: &mut Report) -> Result<(), Failure> {
 fn check_scale(counter: &Counter, report: &mut Report) {
     heading("checks, instructions");
     let mut check = |name, work: fn(), known| {
-        report.check(name, counter.measure(work).0.instructions(), known);
+        report.check(format_args!("{name}"), counter.measure(work).0.instructions(), known);
     };
     check("a thousand instructions in a row", scale::thousand, scale::THOUSAND);
     check("a loop of ten million", scale::long_loop, scale::LONG_LOOP);
@@ -90,13 +90,13 @@ fn check_scale(counter: &Counter, report: &mut Report) {
 /// Stack, static sizes and flash.
 fn sizes() -> Result<(), Failure> {
     matching::report_stack()?;
-    figure("stack of a conclusion of 60 dwells", conclusion::stack()? as u64);
-    figure("stack of this image at its deepest", memory::greatest_stack() as u64);
-    figure("a Session", size_of::<Session>() as u64);
-    figure("a Conclusion", size_of::<Conclusion>() as u64);
-    figure("static memory of this image", memory::statics() as u64);
+    figure(format_args!("stack of a conclusion of 60 dwells"), conclusion::stack()? as u64);
+    figure(format_args!("stack of this image at its deepest"), memory::greatest_stack() as u64);
+    figure(format_args!("a Session"), size_of::<Session>() as u64);
+    figure(format_args!("a Conclusion"), size_of::<Conclusion>() as u64);
+    figure(format_args!("static memory of this image"), memory::statics() as u64);
     figure(
-        "flash of this image, its measuring and the etalon table included",
+        format_args!("flash of this image, its measuring and the etalon table included"),
         memory::flash() as u64,
     );
     Ok(())

@@ -103,10 +103,10 @@ pub fn report(counter: &Counter, report: &mut Report) -> Result<(), SeriesError>
 pub fn report_stack() -> Result<(), SeriesError> {
     let series = TURNS[0].series(1)?;
     let of = |criterion| memory::stack_of(|| search(&series, criterion)).0 as u64;
-    figure("stack of a match, maximum likelihood", of(Criterion::MaximumLikelihood));
-    figure("stack of a match, least absolute", of(Criterion::LeastAbsolute));
+    figure(format_args!("stack of a match, maximum likelihood"), of(Criterion::MaximumLikelihood));
+    figure(format_args!("stack of a match, least absolute"), of(Criterion::LeastAbsolute));
     let within = memory::stack_of(|| accepted(&series, squares_limit())).0 as u64;
-    figure("stack of a match, within squares", within);
+    figure(format_args!("stack of a match, within squares"), within);
     Ok(())
 }
 

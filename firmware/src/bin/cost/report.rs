@@ -1,6 +1,6 @@
 //! The printed table, and whether everything stayed within its budget.
 
-use core::fmt::Display;
+use core::fmt::Arguments;
 
 use cortex_m::asm::wfi;
 use cortex_m_semihosting::{debug, hprintln};
@@ -15,7 +15,8 @@ pub fn heading(quantity: &str) {
 }
 
 /// A figure that is only told.
-pub fn figure(name: impl Display, count: u64) {
+#[inline(never)]
+pub fn figure(name: Arguments, count: u64) {
     hprintln!("{count:>10} {:>10} {:5} {name}", "-", "");
 }
 
@@ -27,14 +28,15 @@ pub struct Report {
 
 impl Report {
     /// A figure that must not exceed its budget.
-    pub fn budget(&mut self, name: impl Display, count: u64, budget: u64) {
+    #[inline(never)]
+    pub fn budget(&mut self, name: Arguments, count: u64, budget: u64) {
         let verdict = if count <= budget { "ok" } else { "OVER" };
         self.failed |= count > budget;
         hprintln!("{count:>10} {budget:>10} {verdict:5} {name}");
     }
 
     /// A figure that is known and must come out within one per cent.
-    pub fn check(&mut self, name: impl Display, count: u64, known: u64) {
+    pub fn check(&mut self, name: Arguments, count: u64, known: u64) {
         let agrees = count.abs_diff(known) * CHECK_PARTS <= known;
         self.failed |= !agrees;
         let verdict = if agrees { "ok" } else { "WRONG" };

@@ -12,6 +12,7 @@ use super::series::Series;
 use super::sweep::{Piece, Sweep};
 use super::table::{STEP, TURN, Table};
 use super::{Acceptance, Match};
+use crate::math::sort;
 
 /// The best index so far, and what a piece must stay below to be worth evaluating.
 struct Best<'a> {
@@ -124,7 +125,7 @@ fn refine(sweep: &Sweep, k: i32) -> f64 {
             if from > to {
                 continue;
             }
-            for position in [from, to, piece.minimum().clamp(from, to)] {
+            for position in [from, to, piece.minimum().max(from).min(to)] {
                 let value = piece.at_fraction(position);
                 if value < least {
                     (place, least) = (position, value);
@@ -176,7 +177,7 @@ pub(super) fn within(table: Table, series: &Series, limit: u64) -> Acceptance {
         let (first, last) = piece.indices();
         if first <= last && piece.dips_to(limit as f64 + rounding) {
             let mut turns = [piece.minimum(), piece.maximum()].map(|turn| floor(turn) as i32);
-            turns.sort_unstable();
+            sort(&mut turns, |a, b| a < b);
             let mut from = first;
             for turn in turns.into_iter().filter(|turn| (first..last).contains(turn)) {
                 cover.judge_monotone(&mut judge, from, turn);

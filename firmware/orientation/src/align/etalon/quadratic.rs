@@ -12,6 +12,7 @@ use super::landscape::Landscape;
 use super::series::Series;
 use super::table::{TURN, Table};
 use super::{Acceptance, Match};
+use crate::math::sort;
 
 /// A sum of squares over one series, continuous and exact.
 struct Objective<'a> {
@@ -177,7 +178,7 @@ pub(super) fn within(table: Table, series: &Series, squares: Squares, limit: u12
     let (sure, reach) = (objective.surety(limit as f64), objective.reach(limit as f64));
     let mut judge = Within { objective, limit, sure, reach };
     let mut anchors = [first, second, third, fourth];
-    anchors.sort_unstable();
+    sort(&mut anchors, |a, b| a < b);
     let mut cover = Cover::default();
     for (from, to) in anchors.into_iter().zip([anchors[1], anchors[2], anchors[3]]) {
         segment(&mut cover, &mut judge, from, to);

@@ -11,6 +11,7 @@ use libm::{acos, atan2, ceil, fabs, sincos};
 
 use super::series::{CAPACITY, Series};
 use super::table::{ONE, QUARTER, STEP, TURN, Table};
+use crate::math::sort;
 
 /// One turn in grid steps.
 const CIRCLE: f64 = TURN as f64;
@@ -78,18 +79,6 @@ impl Piece {
     }
 }
 
-/// Sorts by insertion: 126 crossings take less than the library's sort takes in flash, and it does
-/// not recurse. Positions are not negative, so their bits compare as they do.
-fn sort(crossings: &mut [Crossing]) {
-    for end in 1..crossings.len() {
-        let mut place = end;
-        while place > 0 && crossings[place - 1].at.to_bits() > crossings[place].at.to_bits() {
-            crossings.swap(place - 1, place);
-            place -= 1;
-        }
-    }
-}
-
 /// A position in grid steps, brought to [0, 129 600) from at most a few turns outside.
 fn circle(position: f64) -> f64 {
     let turned = position - CIRCLE * libm::floor(position / CIRCLE);
@@ -121,7 +110,8 @@ impl Sweep {
             let phase = (f64::from(index) + 0.5) * f64::from(series.step()) + quarter;
             self.add(radius, circle(phase), (pair[1] - pair[0]) as f64);
         }
-        sort(&mut self.crossings);
+        // Positions are not negative, so their bits compare as they do.
+        sort(&mut self.crossings, |a, b| a.at.to_bits() < b.at.to_bits());
     }
 
     /// Adds the term `radius` · cos(A + `phase`) − `offset`, the phase in grid steps.
