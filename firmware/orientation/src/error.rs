@@ -86,6 +86,13 @@ pub enum Refusal {
         /// Correlation of neighbours.
         correlation: f64,
     },
+    /// The rate drifts, and these positions cannot tell the drift from the Earth rate.
+    TrendNotSeparable,
+    /// The accelerometer does not feel gravity.
+    AccelerometerImplausible {
+        /// Its reading over gravity, downwards positive as at rest.
+        ratio: f64,
+    },
     /// The horizontal Earth rate found is not that of the latitude and the gyro's scale.
     EarthRateMismatch {
         /// Found over expected.
@@ -155,6 +162,15 @@ impl fmt::Display for Refusal {
             }
             Self::ResidualsCorrelated { correlation } => {
                 write!(f, "residuals are not white: neighbours correlate by {correlation:.2}")
+            }
+            Self::TrendNotSeparable => f.write_str(
+                "the rate drifts, and these positions cannot tell it from the Earth rate: turn a full circle",
+            ),
+            Self::AccelerometerImplausible { ratio } => {
+                write!(
+                    f,
+                    "the accelerometer feels {ratio:.3} of gravity: check its axes, signs and units"
+                )
             }
             Self::EarthRateMismatch { ratio, sigma } => {
                 write!(

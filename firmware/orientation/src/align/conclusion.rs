@@ -4,7 +4,6 @@ use heapless::Vec;
 
 use super::POSITIONS;
 use super::criterion::{self, Criterion};
-use super::direction::Amplitude;
 use super::level::{self, Tilt};
 use super::quality::{self, Disturbance, Norm};
 use super::setting::Setting;
@@ -19,6 +18,8 @@ use crate::units::TURN;
 const OUTLIER_BOUND: f64 = 4.2;
 /// Probability of a healthy session's residuals below which they are refused.
 const WHITENESS_PROBABILITY: f64 = 1e-6;
+/// Chi-square by which a trend that the azimuth cannot afford may explain the dwells (1e-6).
+const HIDDEN_TREND: f64 = 24.0;
 /// Bound of the correlation of neighbouring residuals, in its standard deviation 1/√n.
 const CORRELATION_BOUND: f64 = 5.0;
 /// Chi-square by which the second-best azimuth must be worse than the best (4σ).
@@ -28,6 +29,8 @@ const RATIO_BOUND: f64 = 5.0;
 /// What the Earth-rate ratio may be off beyond its σ: scale errors that no data sheet excludes and
 /// that turn no azimuth.
 const RATIO_TOLERANCE: f64 = 0.005;
+/// What the accelerometer may read off gravity beyond five of its bias's σ: scale and altitude.
+const GRAVITY_TOLERANCE: f64 = 0.05;
 /// Angles closer than this are the same position, rad.
 const SAME_POSITION: f64 = 1e-3;
 
@@ -78,7 +81,7 @@ impl Conclusion {
         criterion: Criterion,
     ) -> Result<Azimuth, Refusal> {
         let fit = self.fit_undisturbed(setting, dwells)?;
-        self.judge(setting, &fit)?;
+        self.judge(setting, dwells, &fit)?;
         self.azimuth(setting, dwells, &fit, criterion)
     }
 
@@ -120,9 +123,12 @@ impl Conclusion {
             let fit = problem.fit().ok_or(Refusal::ArcCannotTell)?;
             self.keep_residuals(dwells, &problem, &fit);
             self.fit = Some(fit.clone());
+            if fit.model.rejected.chi_square > HIDDEN_TREND {
+                return Err(Refusal::TrendNotSeparable);
+            }
             let Some((worst, residual)) = self.worst() else { return Ok(fit) };
-            if dwells.len() - kept.len() >= allowed(dwells.len()) || fit.degrees < 2 {
-                return Ok(fit);
+            if self.outliers() >= allowed_outliers(dwells.len()) || fit.degrees < 2 {
+                return Err(Refusal::ResidualsNotWhite { ratio: excess(&fit) });
             }
             self.disturbances[worst] = Some(Disturbance::Outlier(residual));
             self.level(setting, dwells);
@@ -161,8 +167,14 @@ impl Conclusion {
         (size > OUTLIER_BOUND).then_some((index, size))
     }
 
+    /// How many dwells were left out for their residual alone.
+    fn outliers(&self) -> usize {
+        self.disturbances.iter().filter(|why| matches!(why, Some(Disturbance::Outlier(_)))).count()
+    }
+
     /// Every test that an azimuth must pass.
-    fn judge(&self, setting: &Setting, fit: &Fit) -> Result<(), Refusal> {
+    fn judge(&self, setting: &Setting, dwells: &[Dwell], fit: &Fit) -> Result<(), Refusal> {
+        self.judge_accelerometer(setting, dwells)?;
         self.judge_tilt(setting, fit)?;
         if fit.direction.margin < SECOND_MINIMUM {
             return Err(Refusal::ArcCannotTell);
@@ -178,6 +190,19 @@ impl Conclusion {
             return Err(Refusal::EarthRateMismatch { ratio, sigma });
         }
         Ok(())
+    }
+
+    /// Whether the accelerometer feels gravity: one that is dead, turned over or in other units
+    /// makes a tilt that is none.
+    fn judge_accelerometer(&self, setting: &Setting, dwells: &[Dwell]) -> Result<(), Refusal> {
+        let gravity = setting.latitude.gravity();
+        let kept = self.kept(dwells).map(|(_, dwell)| dwell);
+        let Some(ratio) = level::gravity_ratio(kept, gravity) else { return Ok(()) };
+        let tolerance = GRAVITY_TOLERANCE + 5.0 * setting.accelerometer_bias_sigma / gravity;
+        if (ratio - 1.0).abs() <= tolerance {
+            return Ok(());
+        }
+        Err(Refusal::AccelerometerImplausible { ratio })
     }
 
     fn judge_tilt(&self, setting: &Setting, fit: &Fit) -> Result<(), Refusal> {
@@ -197,7 +222,7 @@ impl Conclusion {
     fn judge_residuals(&self, fit: &Fit) -> Result<(), Refusal> {
         let degrees = fit.degrees as f64;
         if fit.degrees > 0 && chi_square_tail(fit.chi_square, degrees) < WHITENESS_PROBABILITY {
-            return Err(Refusal::ResidualsNotWhite { ratio: fit.chi_square / degrees });
+            return Err(Refusal::ResidualsNotWhite { ratio: excess(fit) });
         }
         let kept: Vec<f64, POSITIONS> = (self.residuals.iter().zip(&self.disturbances))
             .filter(|(_, why)| why.is_none())
@@ -238,17 +263,19 @@ impl Conclusion {
     }
 }
 
-impl Fit {
-    /// Whether the horizontal Earth rate was left free.
-    #[must_use]
-    pub fn earth_rate_is_free(&self) -> bool {
-        self.model.amplitude == Amplitude::Free
-    }
-}
-
 /// How many of `positions` dwells may be left out: a third.
 fn allowed(positions: usize) -> usize {
     positions / 3
+}
+
+/// How many may be left out for their residual alone: a tenth, and one.
+fn allowed_outliers(positions: usize) -> usize {
+    (positions / 10).max(1)
+}
+
+/// Chi-square over its degrees of freedom.
+fn excess(fit: &Fit) -> f64 {
+    fit.chi_square / fit.degrees.max(1) as f64
 }
 
 /// N² from the scatter inside the dwells, each weighted by its degrees of freedom.

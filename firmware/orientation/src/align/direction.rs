@@ -7,6 +7,9 @@
 //! J(A) is the least chi-square over ρ; on a short arc it may have two minima, so the whole circle
 //! is scanned before the best is refined.
 
+use super::etalon::Table;
+use super::etalon::table;
+
 /// What is known beforehand of ρ, the Earth rate found over the Earth rate expected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Amplitude {
@@ -45,6 +48,21 @@ pub struct Direction {
 }
 
 impl Direction {
+    /// Covariance that knowing ρ leaves to the components: across the azimuth by its own variance,
+    /// along it by that of ρ.
+    #[must_use]
+    pub fn components_covariance(&self, vertical: [f64; 2]) -> [[f64; 2]; 2] {
+        let (sine, cosine) = libm::sincos(self.azimuth);
+        let across = [-self.amplitude * sine, self.amplitude * cosine];
+        let along = [cosine + vertical[0], sine + vertical[1]];
+        [0, 1].map(|i| {
+            [0, 1].map(|j| {
+                self.variance * across[i] * across[j]
+                    + self.amplitude_variance * along[i] * along[j]
+            })
+        })
+    }
+
     /// β of this solution: ρ(e + f) − f, for the unit vector e of its azimuth.
     #[must_use]
     pub fn components(&self, unit: [f64; 2], vertical: [f64; 2]) -> [f64; 2] {
@@ -75,13 +93,7 @@ impl Components {
 
 impl Profile {
     fn new(components: &Components, amplitude: Amplitude) -> Option<Self> {
-        let [[a, b], [_, d]] = components.covariance;
-        let determinant = a * d - b * b;
-        if determinant.is_nan() || determinant <= 0.0 {
-            return None;
-        }
-        let information =
-            [[d / determinant, -b / determinant], [-b / determinant, a / determinant]];
+        let information = inverted(&components.covariance)?;
         let [north, east] = components.vertical;
         let target =
             product(&information, [components.value[0] + north, components.value[1] + east]);
@@ -96,7 +108,12 @@ impl Profile {
     /// Chi-square at a unit vector less that of β itself, and ρ there.
     fn at(&self, azimuth: f64) -> (f64, f64) {
         let (sine, cosine) = libm::sincos(azimuth);
-        let direction = self.along([cosine, sine]);
+        self.towards([cosine, sine])
+    }
+
+    /// The same for the unit vector of an azimuth.
+    fn towards(&self, unit: [f64; 2]) -> (f64, f64) {
+        let direction = self.along(unit);
         let power = quadratic(&self.information, direction);
         let along = dot(self.target, direction);
         match self.amplitude {
@@ -114,7 +131,7 @@ impl Profile {
     /// The azimuth of the least J, and how much greater the second minimum is.
     fn minimise(&self) -> (f64, f64) {
         let step = core::f64::consts::TAU / SCAN as f64;
-        let sampled: [f64; SCAN] = core::array::from_fn(|k| self.at(k as f64 * step).0);
+        let sampled: [f64; SCAN] = core::array::from_fn(|k| self.towards(of_table(k)).0);
         let (mut best, mut second) = ((0.0, f64::INFINITY), f64::INFINITY);
         for k in 0..SCAN {
             let (before, after) = (sampled[(k + SCAN - 1) % SCAN], sampled[(k + 1) % SCAN]);
@@ -174,6 +191,13 @@ impl Profile {
     }
 }
 
+/// The unit vector of the scan's direction `k`, from the etalon table.
+fn of_table(k: usize) -> [f64; 2] {
+    let index = (k * (table::TURN as usize / SCAN)) as u32;
+    let index = index.cast_signed();
+    [Table::built_in().cos(index), Table::built_in().sin(index)].map(|x| x as f64 / table::ONE)
+}
+
 /// xᵀy.
 #[must_use]
 pub fn dot(x: [f64; 2], y: [f64; 2]) -> f64 {
@@ -190,4 +214,12 @@ pub fn product(matrix: &[[f64; 2]; 2], x: [f64; 2]) -> [f64; 2] {
 #[must_use]
 pub fn quadratic(matrix: &[[f64; 2]; 2], x: [f64; 2]) -> f64 {
     dot(x, product(matrix, x))
+}
+
+/// The inverse of a symmetric matrix; `None` where it is not positive.
+#[must_use]
+pub fn inverted([[a, b], [_, d]]: &[[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
+    let determinant = a * d - b * b;
+    let positive = determinant > 0.0 && *a > 0.0;
+    positive.then(|| [[d / determinant, -b / determinant], [-b / determinant, a / determinant]])
 }

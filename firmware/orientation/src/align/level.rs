@@ -89,6 +89,19 @@ pub fn tilt<'a>(
     second.map_or_else(Tilt::default, |(tilt, _)| tilt)
 }
 
+/// Mean specific force over gravity, positive where it points up through the platform, as at rest;
+/// `None` where no dwell has a force.
+#[must_use]
+pub fn gravity_ratio<'a>(dwells: impl Iterator<Item = &'a Dwell>, gravity: f64) -> Option<f64> {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for [x, y, z] in dwells.filter_map(|dwell| dwell.force) {
+        let size = libm::sqrt(x * x + y * y + z * z);
+        sum += if z < 0.0 { size } else { -size };
+        count += 1.0;
+    }
+    (count > 0.0).then(|| sum / count / gravity)
+}
+
 /// One fit whose noise is `sigma` g; also the scatter found.
 fn fit<'a>(
     dwells: impl Iterator<Item = &'a Dwell>,

@@ -51,9 +51,11 @@ const SCATTER_PROBABILITY: f64 = 1e-5;
 const STEP_BOUND: f64 = 5.0;
 /// Bound of the slope test, σ (7e-6 two-sided).
 const SLOPE_BOUND: f64 = 4.5;
-/// Bound of the test of the accelerometer against the tilt, in robust σ of the dwells. Wide, for
-/// this scatter is itself estimated from few dwells.
+/// Bound of the test of the accelerometer against the tilt, in the usual scatter of the dwells. Wide,
+/// for this scatter is itself estimated from few dwells.
 const MOVED_BOUND: f64 = 12.0;
+/// Scatter that no accelerometer is held below, g: the bound is then 0.03° of tilt.
+const LEAST_SCATTER: f64 = 5e-5;
 
 /// What quiet dwells look like for this gyro.
 #[derive(Clone, Copy, Debug)]
@@ -134,27 +136,31 @@ impl Norm {
 }
 
 /// Marks the dwells whose accelerometer reading does not fit the tilt of the others.
+///
+/// What is usual comes from the differences of successive dwells, which a platform that moves once
+/// leaves alone however many dwells stand on either side.
 pub fn moved(dwells: &[Dwell], gravity: f64, tilt: &level::Tilt, mark: &mut [Option<Disturbance>]) {
-    let mut deviation: heapless::Vec<f64, POSITIONS> = dwells
+    let deviations: heapless::Vec<[f64; 2], POSITIONS> = dwells
         .iter()
-        .map(|dwell| dwell.force.map_or(0.0, |force| off_level(dwell, force, gravity, tilt)))
+        .map(|dwell| dwell.force.map_or([0.0; 2], |force| off_level(dwell, force, gravity, tilt)))
         .collect();
-    let found = deviation.clone();
-    let typical = median(&mut deviation).max(1e-7);
-    for (mark, deviation) in mark.iter_mut().zip(found) {
-        if mark.is_none() && deviation > MOVED_BOUND * typical {
-            *mark = Some(Disturbance::Moved(deviation / typical));
+    let mut steps: heapless::Vec<f64, POSITIONS> = deviations
+        .windows(2)
+        .map(|pair| libm::hypot(pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]))
+        .collect();
+    let usual = (median(&mut steps) * core::f64::consts::FRAC_1_SQRT_2).max(LEAST_SCATTER);
+    for (mark, [x, y]) in mark.iter_mut().zip(deviations) {
+        let deviation = libm::hypot(x, y) / usual;
+        if mark.is_none() && deviation > MOVED_BOUND {
+            *mark = Some(Disturbance::Moved(deviation));
         }
     }
 }
 
-/// Distance of a dwell's mean force from that of the tilt and the biases, g.
-fn off_level(dwell: &Dwell, force: [f64; 3], gravity: f64, tilt: &level::Tilt) -> f64 {
+/// How a dwell's mean force differs from that of the tilt and the biases, g.
+fn off_level(dwell: &Dwell, force: [f64; 3], gravity: f64, tilt: &level::Tilt) -> [f64; 2] {
     let expected = tilt.force(dwell.stage.rad());
-    libm::hypot(
-        force[0] / gravity - expected[0] - tilt.bias[0],
-        force[1] / gravity - expected[1] - tilt.bias[1],
-    )
+    [0, 1].map(|i| force[i] / gravity - expected[i] - tilt.bias[i])
 }
 
 /// N² from the median of the dwells' own scatter; from their neighbouring blocks, which a slow

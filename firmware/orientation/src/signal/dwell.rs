@@ -110,6 +110,9 @@ impl Deviations {
     }
 }
 
+/// Sample periods without a sample that a dwell bears: two samples in a row may be lost.
+const LONGEST_GAP: f64 = 3.5;
+
 /// The fewest samples that make a dwell: four times the filter's lag, and eight.
 #[must_use]
 pub fn shortest<const SECTIONS: usize>(coefficients: &Coefficients<SECTIONS>) -> u32 {
@@ -283,7 +286,7 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
             Some(SampleFault::Saturated)
         } else if self.squares == 0 {
             Some(SampleFault::Stuck)
-        } else if self.longest_gap as f64 * 1e-6 > 1.5 * sample_seconds {
+        } else if self.longest_gap as f64 * 1e-6 > LONGEST_GAP * sample_seconds {
             Some(SampleFault::Missing)
         } else {
             None

@@ -8,16 +8,17 @@
 mod model;
 mod uncertainty;
 
-pub use model::Model;
+pub use model::{Model, RejectedTrend};
 
 use super::budget::Budget;
-use super::direction::{Amplitude, Components, Direction, dot};
+use super::direction::{Amplitude, Components, Direction, dot, inverted, product};
 use super::level::Tilt;
 use super::regression::{Regression, Solution};
 use super::setting::Setting;
 use crate::noise::model::GyroNoise;
 use crate::noise::whitener::Whitener;
 use crate::signal::dwell::Dwell;
+use uncertainty::Covariance;
 
 /// Columns of the regression.
 const COLUMNS: usize = 5;
@@ -41,6 +42,8 @@ pub struct Fit {
     pub budget: Budget,
     /// Cramér–Rao bound of these columns for all stationary time of these dwells, rad.
     pub limit: f64,
+    /// The same bound with the Earth rate free, rad.
+    pub limit_free: f64,
     /// `Ω̂_h/Ω_h` with the Earth rate free.
     pub ratio: f64,
     /// 1σ of the ratio: noise, tilt, g-sensitivity and scale.
@@ -81,8 +84,7 @@ impl Problem<'_> {
     /// Fits the azimuth; `None` where the positions do not determine it.
     #[must_use]
     pub fn fit(&self) -> Option<Fit> {
-        let noise = self.setting.noise;
-        let regression = self.regression(&noise, Dwell::taper_factor);
+        let regression = self.regression(&self.setting.noise, Dwell::taper_factor);
         let model = self.choose(&regression)?;
         let solution = regression.solve(&model.columns())?;
         let components = self.components(&solution);
@@ -92,7 +94,8 @@ impl Problem<'_> {
             model,
             direction,
             budget: self.budget(&regression, &model, &direction)?,
-            limit: self.limit(&noise, &model)?,
+            limit: self.limit(&model)?,
+            limit_free: self.limit(&Model { amplitude: Amplitude::Free, ..model })?,
             ratio: free.amplitude,
             ratio_sigma: self.ratio_sigma(&free),
             chi_square: 0.0,
@@ -100,7 +103,8 @@ impl Problem<'_> {
             coefficients: [0.0; COLUMNS],
             covariance: solution.covariance,
         };
-        fit.constrain(&solution, components.vertical);
+        fit.constrain(&solution, &components);
+        fit.allow_for_excess();
         Some(fit)
     }
 
@@ -133,13 +137,26 @@ impl Problem<'_> {
         [axis[0], -axis[1], 1.0, hours, warmer, left / latitude.horizontal_rate()]
     }
 
-    /// The two components of the Earth rate in a solution, and the vertical one's.
-    fn components(&self, solution: &Solution<COLUMNS>) -> Components {
+    /// The two components of the Earth rate in a solution, and the vertical one's, as noise alone
+    /// leaves them.
+    fn noise_components(&self, solution: &Solution<COLUMNS>) -> Components {
         let [a, b, ..] = solution.coefficients;
-        let [[c, d, ..], [e, f, ..], ..] = solution.covariance;
         let slope = libm::tan(self.setting.latitude.rad());
         let vertical = [slope * self.tilt.real, slope * self.tilt.imaginary];
-        Components { value: [a, b], covariance: [[c, d], [e, f]], vertical }
+        Components { value: [a, b], covariance: block(&solution.covariance), vertical }
+    }
+
+    /// The same, with what tilt and κ leave uncertain.
+    fn components(&self, solution: &Solution<COLUMNS>) -> Components {
+        let mut components = self.noise_components(solution);
+        for errors in self.component_errors() {
+            for (i, row) in errors.iter().enumerate() {
+                for (j, error) in row.iter().enumerate() {
+                    components.covariance[i][j] += error;
+                }
+            }
+        }
+        components
     }
 
     /// White-noise variance of a dwell's mean, in units of `Ω_h`².
@@ -148,15 +165,13 @@ impl Problem<'_> {
         self.own_variance(dwell) * dwell.taper / (rate * rate)
     }
 
-    /// What the dwell would have measured on a level stage with this fit, in units of `Ω_h` and
-    /// less a constant.
+    /// What the dwell would have measured on a level stage without the fit's trends, in units of
+    /// `Ω_h` and less a constant.
     pub(super) fn level_ratio(&self, fit: &Fit, dwell: &Dwell) -> f64 {
-        let [north, east, .., left] = self.row(dwell);
         let (sine, cosine) = libm::sincos(dwell.stage.rad());
-        let [a, b, ..] = fit.coefficients;
         let Direction { azimuth, amplitude, .. } = fit.direction;
-        let (east_part, north_part) = libm::sincos(azimuth);
-        left - a * north - b * east + amplitude * (north_part * cosine - east_part * sine)
+        let (east, north) = libm::sincos(azimuth);
+        remainder(&self.row(dwell), &fit.coefficients) + amplitude * (north * cosine - east * sine)
     }
 
     /// White-noise variance of an untapered mean, (rad/s)².
@@ -219,27 +234,40 @@ impl Fit {
         self.coefficients[TEMPERATURE]
     }
 
-    /// Puts the two components on the chosen direction and lets the other coefficients follow.
-    fn constrain(&mut self, solution: &Solution<COLUMNS>, vertical: [f64; 2]) {
+    /// Puts the two components on the chosen direction and lets the other coefficients follow, as
+    /// far as noise and not tilt or κ explains the change.
+    fn constrain(&mut self, solution: &Solution<COLUMNS>, components: &Components) {
         let (sine, cosine) = libm::sincos(self.direction.azimuth);
-        let wanted = self.direction.components([cosine, sine], vertical);
+        let wanted = self.direction.components([cosine, sine], components.vertical);
         let free = solution.coefficients;
         let change = [wanted[0] - free[NORTH], wanted[1] - free[NORTH + 1]];
-        let [[a, b, ..], [_, d, ..], ..] = solution.covariance;
-        let determinant = a * d - b * b;
-        let weights = [
-            (d * change[0] - b * change[1]) / determinant,
-            (a * change[1] - b * change[0]) / determinant,
-        ];
+        let weights = inverted(&components.covariance).map_or([0.0; 2], |m| product(&m, change));
         for (index, value) in self.coefficients.iter_mut().enumerate() {
             let row = &solution.covariance[index];
             *value = free[index] + row[0] * weights[0] + row[1] * weights[1];
         }
         self.chi_square = solution.chi_square + dot(change, weights);
-        self.degrees = match self.model.amplitude {
-            Amplitude::Free => solution.degrees,
-            Amplitude::Known(_) => solution.degrees + 1,
-        };
+        self.degrees = solution.degrees;
+        if let Amplitude::Known(_) = self.model.amplitude {
+            self.degrees += 1;
+            self.tighten(solution, components.vertical);
+        }
+    }
+
+    /// The coefficients' covariance once the components may only move with azimuth and amplitude.
+    fn tighten(&mut self, solution: &Solution<COLUMNS>, vertical: [f64; 2]) {
+        let free = block(&solution.covariance);
+        let held = self.direction.components_covariance(vertical);
+        let Some(inverse) = inverted(&free) else { return };
+        let follow: [[f64; 2]; COLUMNS] = core::array::from_fn(|index| {
+            product(&inverse, [solution.covariance[index][0], solution.covariance[index][1]])
+        });
+        let lost = [0, 1].map(|i| [0, 1].map(|j| free[i][j] - held[i][j]));
+        for (row, left) in self.covariance.iter_mut().zip(follow) {
+            for (value, right) in row.iter_mut().zip(follow) {
+                *value -= dot(left, product(&lost, right));
+            }
+        }
     }
 }
 
@@ -254,6 +282,12 @@ impl Dwell {
 fn remainder(row: &[f64; COLUMNS + 1], coefficients: &[f64; COLUMNS]) -> f64 {
     let fitted: f64 = row.iter().zip(coefficients).map(|(x, c)| x * c).sum();
     row[COLUMNS] - fitted
+}
+
+/// The block of the two components.
+fn block(covariance: &[[f64; COLUMNS]; COLUMNS]) -> Covariance {
+    let [[a, b, ..], [c, d, ..], ..] = *covariance;
+    [[a, b], [c, d]]
 }
 
 /// xᵀ Cov x of a whitened row.

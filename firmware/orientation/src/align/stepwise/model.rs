@@ -4,11 +4,14 @@
 use super::super::direction::{Amplitude, Direction};
 use super::super::regression::{Column, Regression};
 use super::{COLUMNS, Problem};
+use crate::units::TURN;
 
 /// Chi-square of one degree of freedom that noise exceeds with a probability of 0.001.
 const TREND_CHI_SQUARE: f64 = 10.83;
 /// By how much a trend may raise the standard deviation of the azimuth.
 const TREND_COST: f64 = 1.5;
+/// Degrees of freedom that must remain beside a trend: with fewer, one disturbed dwell looks alike.
+const TREND_DEGREES: usize = 3;
 /// By how much leaving the Earth rate free may raise the standard deviation of the azimuth.
 const FREE_COST: f64 = 1.02;
 
@@ -21,6 +24,25 @@ pub struct Model {
     pub temperature: Column,
     /// The horizontal Earth rate.
     pub amplitude: Amplitude,
+    /// A trend that the dwells show but the azimuth cannot afford.
+    pub rejected: RejectedTrend,
+}
+
+/// A trend that chi-square asks for and that was left out all the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RejectedTrend {
+    /// By how much it would lower chi-square; zero where there is none.
+    pub chi_square: f64,
+    /// By how much it would turn the azimuth, rad.
+    pub shift: f64,
+}
+
+/// What one candidate trend would do.
+struct Trial {
+    model: Model,
+    gain: f64,
+    shift: f64,
+    affordable: bool,
 }
 
 impl Model {
@@ -31,26 +53,25 @@ impl Model {
 
 impl Problem<'_> {
     /// The direction that a model finds.
-    pub(super) fn direction(
-        &self,
-        regression: &Regression<COLUMNS>,
-        model: &Model,
-    ) -> Option<Direction> {
+    fn direction(&self, regression: &Regression<COLUMNS>, model: &Model) -> Option<Direction> {
         self.components(&regression.solve(&model.columns())?).direction(model.amplitude)
     }
 
     /// Chooses the columns and whether the Earth rate stays free.
+    ///
+    /// The cost of freedom is judged for one amplitude: that a weak Earth rate has a wide azimuth
+    /// is no reason to believe in a strong one.
     pub(super) fn choose(&self, regression: &Regression<COLUMNS>) -> Option<Model> {
         let mut model = self.base();
         self.add_trend(regression, &mut model)?;
         let free = Model { amplitude: Amplitude::Free, ..model };
-        let known = self.direction(regression, &model)?.variance;
-        if let Some(direction) = self.direction(regression, &free)
-            && direction.variance <= FREE_COST * FREE_COST * known
-        {
-            return Some(free);
+        let cost =
+            |direction: Direction| direction.variance * direction.amplitude * direction.amplitude;
+        let known = cost(self.direction(regression, &model)?);
+        match self.direction(regression, &free).map(cost) {
+            Some(cost) if cost <= FREE_COST * FREE_COST * known => Some(free),
+            _ => Some(model),
         }
-        Some(model)
     }
 
     /// The model before any trend is looked for: a known ramp enters with its prior.
@@ -60,35 +81,65 @@ impl Problem<'_> {
             time: if ramp > 0.0 { Column::Prior(ramp) } else { Column::Absent },
             temperature: Column::Absent,
             amplitude: Amplitude::Known(self.setting.amplitude_sigma()),
+            rejected: RejectedTrend::default(),
         }
     }
 
-    /// Adds temperature and then time where chi-square asks for it and the azimuth can afford it.
+    /// Adds temperature and time where chi-square asks for them and the azimuth can afford them;
+    /// one that it cannot afford is kept in mind.
     fn add_trend(&self, regression: &Regression<COLUMNS>, model: &mut Model) -> Option<()> {
         for _ in 0..2 {
-            let before = regression.solve(&model.columns())?.chi_square;
-            let variance = self.direction(regression, model)?.variance;
-            let mut best = (*model, TREND_CHI_SQUARE);
-            for candidate in self.candidates(model).into_iter().flatten() {
-                let Some(solution) = regression.solve(&candidate.columns()) else { continue };
-                let Some(direction) = self.direction(regression, &candidate) else { continue };
-                let affordable = direction.variance <= TREND_COST * TREND_COST * variance;
-                if affordable && before - solution.chi_square > best.1 {
-                    best = (candidate, before - solution.chi_square);
+            let solution = regression.solve(&model.columns())?;
+            let before = (solution.chi_square, self.direction(regression, model)?);
+            let trials = candidates(model, self.is_warm());
+            let best = trials
+                .into_iter()
+                .flatten()
+                .filter_map(|candidate| self.trial(regression, candidate, before))
+                .filter(|trial| trial.gain > TREND_CHI_SQUARE)
+                .max_by(|a, b| a.gain.total_cmp(&b.gain));
+            match best {
+                Some(trial) if trial.affordable => *model = trial.model,
+                Some(Trial { gain, shift, .. }) => {
+                    model.rejected = RejectedTrend { chi_square: gain, shift };
                 }
+                None => {}
             }
-            *model = best.0;
         }
         Some(())
     }
 
-    fn candidates(&self, model: &Model) -> [Option<Model>; 2] {
-        let measured = self.dwells.iter().all(|dwell| dwell.temperature.is_some());
-        let cold = measured && model.temperature == Column::Absent;
-        let steady = model.time == Column::Absent;
-        [
-            cold.then_some(Model { temperature: Column::Free, ..*model }),
-            steady.then_some(Model { time: Column::Free, ..*model }),
-        ]
+    /// What a candidate does to chi-square and to the azimuth, both given without it.
+    fn trial(
+        &self,
+        regression: &Regression<COLUMNS>,
+        model: Model,
+        (chi_square, before): (f64, Direction),
+    ) -> Option<Trial> {
+        let solution = regression.solve(&model.columns())?;
+        let after = self.components(&solution).direction(model.amplitude)?;
+        let cheap = after.variance <= TREND_COST * TREND_COST * before.variance;
+        let turned = (after.azimuth - before.azimuth) / TURN;
+        Some(Trial {
+            model,
+            gain: chi_square - solution.chi_square,
+            shift: (turned - libm::round(turned)) * TURN,
+            affordable: cheap && solution.degrees >= TREND_DEGREES,
+        })
     }
+
+    /// Whether every dwell has a temperature.
+    fn is_warm(&self) -> bool {
+        self.dwells.iter().all(|dwell| dwell.temperature.is_some())
+    }
+}
+
+/// The models with one more trend.
+fn candidates(model: &Model, is_warm: bool) -> [Option<Model>; 2] {
+    let cold = is_warm && model.temperature == Column::Absent;
+    let steady = model.time == Column::Absent;
+    [
+        cold.then_some(Model { temperature: Column::Free, ..*model }),
+        steady.then_some(Model { time: Column::Free, ..*model }),
+    ]
 }

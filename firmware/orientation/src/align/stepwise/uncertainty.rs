@@ -1,75 +1,69 @@
-//! Where the standard deviation comes from: the limit, the budget, the Earth-rate ratio's σ.
+//! Where the standard deviation comes from: the limit, the budget, what tilt and κ leave.
 
 use super::super::budget::Budget;
 use super::super::direction::{Amplitude, Direction, dot, product, quadratic};
 use super::super::regression::{Column, Regression};
-use super::{COLUMNS, Model, Problem};
-use crate::noise::model::GyroNoise;
+use super::{COLUMNS, Fit, Model, Problem, block};
+use crate::math::chi_square_tail;
 use crate::signal::dwell::Dwell;
+
+/// Probability of the residuals below which their excess over the stated noise raises σ.
+const EXCESS_PROBABILITY: f64 = 0.01;
+
+/// A symmetric 2×2 covariance of the components, in units of `Ω_h`².
+pub(super) type Covariance = [[f64; 2]; 2];
 
 impl Problem<'_> {
     /// The bound that noise sets for these columns when all stationary time counts fully.
-    pub(super) fn limit(&self, noise: &GyroNoise, model: &Model) -> Option<f64> {
-        let regression = self.regression(noise, |_| 1.0);
-        self.direction(&regression, model).map(|direction| libm::sqrt(direction.variance))
+    pub(super) fn limit(&self, model: &Model) -> Option<f64> {
+        let regression = self.regression(&self.setting.noise, |_| 1.0);
+        let components = self.noise_components(&regression.solve(&model.columns())?);
+        components.direction(model.amplitude).map(|direction| libm::sqrt(direction.variance))
     }
 
-    /// Splits the variance: noise alone, then what drift, temperature and scale add, then what the
-    /// fit cannot see.
+    /// Splits the variance: what the dwells' noise does through the gain, what tilt and κ do, and
+    /// the rest, which is the amplitude's prior.
     pub(super) fn budget(
         &self,
         coloured: &Regression<COLUMNS>,
         model: &Model,
         direction: &Direction,
     ) -> Option<Budget> {
+        let through = |covariance: &Covariance| quadratic(covariance, direction.gain).max(0.0);
+        let of = |regression: &Regression<COLUMNS>, model: &Model| {
+            regression.solve(&model.columns()).map(|solution| through(&block(&solution.covariance)))
+        };
         let white = self.regression(&self.setting.noise.white_part(), Dwell::taper_factor);
-        let variance = |regression: &Regression<COLUMNS>, model: &Model| {
-            self.direction(regression, model).map(|direction| direction.variance)
-        };
-        let exact = match model.amplitude {
-            Amplitude::Free => Amplitude::Free,
-            Amplitude::Known(_) => Amplitude::Known(0.0),
-        };
-        let bare = Model { time: Column::Absent, temperature: Column::Absent, amplitude: exact };
-        let noise = variance(&white, &bare)?;
-        let drift = variance(coloured, &Model { time: model.time, ..bare })?.max(noise);
-        let temperature = variance(coloured, &Model { amplitude: exact, ..*model })?.max(drift);
-        let amplitude = (direction.variance - temperature).max(0.0);
-        let tilted = self.tilted(direction);
+        let cold = Model { temperature: Column::Absent, ..*model };
+        let all = of(coloured, model)?;
+        let drifting = of(coloured, &cold)?.min(all);
+        let noise = of(&white, &Model { time: Column::Absent, ..cold })?.min(drifting);
+        let [kappa, tilt] = self.component_errors().map(|covariance| through(&covariance));
+        let amplitude = (direction.variance - all - kappa - tilt).max(0.0);
         let share = self.scale_share();
         Some(Budget {
             noise: libm::sqrt(noise),
-            drift: libm::sqrt(drift - noise),
-            temperature: libm::sqrt(temperature - drift),
+            drift: libm::sqrt(drifting - noise + model.rejected.shift * model.rejected.shift),
+            temperature: libm::sqrt(all - drifting),
             scale: libm::sqrt(amplitude * share),
             latitude: libm::sqrt(amplitude * (1.0 - share)),
-            g_sensitivity: tilted[0],
-            accelerometer: tilted[1],
+            g_sensitivity: libm::sqrt(kappa),
+            accelerometer: libm::sqrt(tilt),
             encoder: self.setting.encoder_sigma,
         })
     }
 
     /// Which part of the amplitude's variance is the scale factor's.
     fn scale_share(&self) -> f64 {
-        let amplitude = self.setting.amplitude_sigma();
-        if amplitude > 0.0 {
-            (self.setting.scale_sigma / amplitude) * (self.setting.scale_sigma / amplitude)
-        } else {
-            1.0
-        }
+        let share = self.setting.scale_sigma / self.setting.amplitude_sigma().max(1e-30);
+        if self.setting.amplitude_sigma() > 0.0 { share * share } else { 1.0 }
     }
 
-    /// What g-sensitivity and accelerometer cost in azimuth, rad: both turn with the stage as the
-    /// Earth rate does, so they shift the two components.
-    fn tilted(&self, direction: &Direction) -> [f64; 2] {
-        let [kappa, tilt] = self.component_errors();
-        [kappa, tilt].map(|covariance| libm::sqrt(quadratic(&covariance, direction.gain).max(0.0)))
-    }
-
-    /// Covariance of the components, in units of `Ω_h`, from κ and from the tilt.
+    /// Covariance of the components from κ and from the tilt: both turn with the stage as the Earth
+    /// rate does, so the dwells cannot tell them from it.
     ///
     /// A tilt phasor F shifts them by `(Ω_v + κ)F/Ω_h`, as complex numbers.
-    fn component_errors(&self) -> [[[f64; 2]; 2]; 2] {
+    pub(super) fn component_errors(&self) -> [Covariance; 2] {
         let rate = self.setting.latitude.horizontal_rate();
         let kappa = self.setting.g_sensitivity_sigma * self.tilt.magnitude() / rate;
         let real = (self.setting.latitude.vertical_rate() + self.setting.g_sensitivity[0]) / rate;
@@ -82,13 +76,27 @@ impl Problem<'_> {
         [[[kappa * kappa, 0.0], [0.0, kappa * kappa]], tilt]
     }
 
-    /// 1σ of the Earth-rate ratio that `free` found: noise, κ and tilt along it, scale, latitude.
+    /// 1σ of the Earth-rate ratio that `free` found: all of the components', scale and latitude.
     pub(super) fn ratio_sigma(&self, free: &Direction) -> f64 {
-        let (sine, cosine) = libm::sincos(free.azimuth);
-        let [kappa, tilt] =
-            self.component_errors().map(|errors| quadratic(&errors, [cosine, sine]));
         let amplitude = self.setting.amplitude_sigma();
-        let variance = free.amplitude_variance + kappa + tilt + amplitude * amplitude;
-        libm::sqrt(variance.max(0.0))
+        libm::sqrt(free.amplitude_variance + amplitude * amplitude)
+    }
+}
+
+impl Fit {
+    /// Raises what the dwells' noise contributes where they scatter more than it explains.
+    pub(super) fn allow_for_excess(&mut self) {
+        let degrees = self.degrees as f64;
+        if self.degrees > 0 && chi_square_tail(self.chi_square, degrees) < EXCESS_PROBABILITY {
+            let factor = libm::sqrt(self.chi_square / degrees);
+            self.budget.noise *= factor;
+            self.budget.drift *= factor;
+        }
+    }
+
+    /// Whether the horizontal Earth rate was left free.
+    #[must_use]
+    pub fn earth_rate_is_free(&self) -> bool {
+        self.model.amplitude == Amplitude::Free
     }
 }
