@@ -3,7 +3,7 @@
 use orientation::align::criterion::Criterion;
 use orientation::units::DEGREE_PER_HOUR;
 
-/// Parses `ml`, `least-squares`, `least-absolute`, `within-squares=A1` or `within-absolute=A`,
+/// Parses `ml`, `table` (maximum likelihood over the table), `least-squares`, `least-absolute`, `within-squares=A1` or `within-absolute=A`,
 /// with A1 in (°/h)² and A in °/h.
 ///
 /// # Errors
@@ -15,6 +15,7 @@ pub fn parse(text: &str) -> Result<Criterion, String> {
     };
     match (name, bound) {
         ("ml", None) => Ok(Criterion::MaximumLikelihood),
+        ("table", None) => Ok(Criterion::OnTable),
         ("least-squares", None) => Ok(Criterion::LeastSquares),
         ("least-absolute", None) => Ok(Criterion::LeastAbsolute),
         ("within-squares", Some(bound)) => {
@@ -24,7 +25,7 @@ pub fn parse(text: &str) -> Result<Criterion, String> {
         ("within-squares" | "within-absolute", None) => {
             Err(format!("{name} needs a bound: {name}=NUMBER"))
         }
-        _ => Err("possible values: ml, least-squares, least-absolute, within-squares=A1, \
+        _ => Err("possible values: ml, table, least-squares, least-absolute, within-squares=A1, \
                   within-absolute=A"
             .to_owned()),
     }
@@ -42,6 +43,7 @@ fn bound(text: &str) -> Result<f64, String> {
 pub fn name(criterion: Criterion) -> String {
     match criterion {
         Criterion::MaximumLikelihood => "ml".to_owned(),
+        Criterion::OnTable => "table".to_owned(),
         Criterion::LeastSquares => "least-squares".to_owned(),
         Criterion::LeastAbsolute => "least-absolute".to_owned(),
         Criterion::WithinSquares(bound) => {

@@ -65,7 +65,7 @@ struct ReplayOptions {
     /// Latitude in degrees, north positive, instead of the recording's.
     #[arg(long, value_name = "DEGREES", value_parser = latitude, allow_negative_numbers = true)]
     latitude: Option<Latitude>,
-    /// How the azimuth is found: ml, least-squares, least-absolute, within-squares=A1 in (°/h)²,
+    /// How the azimuth is found: ml, table (ml over the etalon table), least-squares, least-absolute, within-squares=A1 in (°/h)²,
     /// within-absolute=A in °/h.
     #[arg(long, default_value = "ml", value_parser = bench::criterion::parse)]
     criterion: Criterion,
@@ -94,15 +94,42 @@ fn sigma(text: &str) -> Result<f64, String> {
 }
 
 fn main() -> ExitCode {
-    let line = CommandLine::parse();
+    let line = match CommandLine::try_parse() {
+        Ok(line) => line,
+        Err(error) => return misuse(&error),
+    };
     match run(&line) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
-        Err(message) => {
-            eprintln!("meridian: {message}");
-            ExitCode::from(1)
-        }
+        Err(message) => failed(&message, line.json),
     }
+}
+
+/// Prints help where that was asked for, else what is wrong with the options in one line.
+fn misuse(error: &clap::Error) -> ExitCode {
+    if !error.use_stderr() {
+        // Nothing is to be done where even the help cannot be printed.
+        let _ = error.print();
+        return ExitCode::SUCCESS;
+    }
+    let text = error.render().to_string();
+    let lines = text.lines().map(str::trim).take_while(|line| !line.starts_with("Usage:"));
+    let message: Vec<&str> = lines
+        .filter(|line| !line.is_empty() && !line.starts_with("For more information"))
+        .collect();
+    eprintln!("{}", message.join(" "));
+    ExitCode::from(2)
+}
+
+/// Says why there is no result, as JSON too where that was asked for.
+fn failed(message: &str, as_json: bool) -> ExitCode {
+    if as_json {
+        let object = serde_json::json!({ "status": "failed", "reason": message });
+        // The reason goes to standard error all the same.
+        let _ = print(&object.to_string());
+    }
+    eprintln!("meridian: {message}");
+    ExitCode::from(1)
 }
 
 /// Runs the command; whether there was a result.

@@ -86,7 +86,11 @@ impl fmt::Display for ReplayError {
                 "column stage_rad: the stage stands still nowhere long enough for a dwell",
             ),
             Self::TooManyPositions(found) => {
-                write!(f, "{found} positions are more than the {POSITIONS} that a session holds")
+                write!(
+                    f,
+                    "column stage_rad: {found} positions are more than the {POSITIONS} that a \
+                     session holds: split the recording, or average neighbours into kind dwells"
+                )
             }
             Self::Procedure(ProcedureError::Filter(error)) => {
                 write!(f, "no filter for this sample rate: {error}")
@@ -117,7 +121,7 @@ pub fn replay(
     options: &Options,
     progress: impl FnMut(&Session),
 ) -> Result<Replay, ReplayError> {
-    let Described { mut setting, assumed } = describe(header, latitude(header, options)?);
+    let Described { mut setting, assumed } = describe(header, body, latitude(header, options)?);
     if let Some(sigma) = options.required_sigma {
         setting.required_sigma = sigma;
     }
@@ -142,8 +146,11 @@ fn stage(
     criterion: Criterion,
     progress: impl FnMut(&Session),
 ) -> Result<Session, ReplayError> {
-    let sample_seconds = header.rate_hz.map_or_else(|| median_step(rows), |rate| 1.0 / rate);
-    let procedure = followed(&standstills(rows, sample_seconds)?, sample_seconds, criterion)?;
+    let sample_seconds = sample_seconds(header, rows);
+    let still = still(rows);
+    let positions = standstills(rows, sample_seconds, still)?;
+    let followed = followed(&positions, sample_seconds, criterion)?;
+    let procedure = Procedure { still, ..followed };
     let mut session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
     let begin = rows.first().map_or(0.0, |row| row.time_s);
     drive(&mut session, rows.iter().map(|row| sample(row, begin)), progress);
@@ -197,25 +204,54 @@ fn sample(row: &StageRow, begin: f64) -> Sample {
     }
 }
 
-/// Change of the encoder angle that still counts as standing, rad, as in [`Procedure::new`].
-const STILL: f64 = 20e-6;
-/// A standstill shorter than this part of the longest is a pause in a rotation, not a dwell.
+/// Change of the encoder angle that counts as standing where the encoder is quiet, rad, as in
+/// [`Procedure::new`]; and the most for a noisy one.
+const STILL: [f64; 2] = [20e-6, 300e-6];
+/// The same in medians of the encoder's change from sample to sample: six standard deviations of a
+/// difference of two readings.
+const STILL_MEDIANS: f64 = 9.0;
+/// A standstill shorter than this part of the median one is a pause in a rotation, not a dwell.
 const PAUSE: f64 = 0.3;
 /// Fewest samples of a dwell.
 const FEWEST_SAMPLES: u32 = 10;
 
+/// How far the encoder may stray in a standstill, rad: most samples of a recording stand still.
+fn still(rows: &[StageRow]) -> f64 {
+    let mut changes: Vec<f64> =
+        rows.windows(2).map(|pair| turned(pair[0].stage_rad, pair[1].stage_rad).abs()).collect();
+    let usual = median(&mut changes);
+    (STILL_MEDIANS * usual).clamp(STILL[0], STILL[1])
+}
+
+/// The (upper) median in linear time; zero of none.
+fn median(values: &mut [f64]) -> f64 {
+    let half = values.len() / 2;
+    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(half, f64::total_cmp).1 }
+}
+
+/// The angle from one reading to the next, rad; a wrap of the encoder is none.
+fn turned(from: f64, to: f64) -> f64 {
+    let turns = (to - from) / TURN;
+    (turns - turns.round()) * TURN
+}
+
 /// Where the stage stood still, and for how long.
-fn standstills(rows: &[StageRow], sample_seconds: f64) -> Result<Vec<Position>, ReplayError> {
+fn standstills(
+    rows: &[StageRow],
+    sample_seconds: f64,
+    still: f64,
+) -> Result<Vec<Position>, ReplayError> {
     let mut runs: Vec<(f64, u32)> = Vec::new();
     for row in rows {
         match runs.last_mut() {
-            Some((anchor, count)) if (row.stage_rad - *anchor).abs() <= STILL => *count += 1,
+            Some((anchor, count)) if turned(*anchor, row.stage_rad).abs() <= still => *count += 1,
             _ => runs.push((row.stage_rad, 1)),
         }
     }
-    let longest = runs.iter().map(|run| run.1).max().unwrap_or(0);
-    let shortest = FEWEST_SAMPLES.max((f64::from(longest) * PAUSE) as u32);
-    runs.retain(|run| run.1 >= shortest);
+    runs.retain(|run| run.1 >= FEWEST_SAMPLES);
+    let mut lengths: Vec<f64> = runs.iter().map(|run| f64::from(run.1)).collect();
+    let usual = median(&mut lengths);
+    runs.retain(|run| f64::from(run.1) >= PAUSE * usual);
     if runs.is_empty() {
         return Err(ReplayError::NoDwell);
     }
@@ -223,10 +259,19 @@ fn standstills(rows: &[StageRow], sample_seconds: f64) -> Result<Vec<Position>, 
     Ok(runs.into_iter().map(position).collect())
 }
 
-/// The sample period where the header does not give the rate, s.
-fn median_step(rows: &[StageRow]) -> f64 {
+/// How far the header's rate may be off before the times are believed instead.
+const RATE_TOLERANCE: f64 = 0.01;
+
+/// The sample period, s: the header's, unless the times say otherwise.
+fn sample_seconds(header: &Header, rows: &[StageRow]) -> f64 {
     let mut steps: Vec<f64> = rows.windows(2).map(|pair| pair[1].time_s - pair[0].time_s).collect();
-    orientation::math::median(&mut steps).max(1e-6)
+    let whole: f64 = steps.iter().sum();
+    let mean = whole / steps.len().max(1) as f64;
+    match header.rate_hz {
+        Some(rate) if (mean * rate - 1.0).abs() <= RATE_TOLERANCE => 1.0 / rate,
+        Some(_) => mean.max(1e-6),
+        None => median(&mut steps).max(1e-6),
+    }
 }
 
 fn dwells(

@@ -5,7 +5,7 @@ use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
 use orientation::units::DEGREE_PER_HOUR;
 
-use crate::recording::Header;
+use crate::recording::{Body, Header};
 
 /// A setting, and in words what had to be assumed for it.
 #[derive(Clone, Debug)]
@@ -18,7 +18,7 @@ pub struct Described {
 
 /// Builds the setting for a latitude from the header's keys.
 #[must_use]
-pub fn describe(header: &Header, latitude: Latitude) -> Described {
+pub fn describe(header: &Header, body: &Body, latitude: Latitude) -> Described {
     let mut assumed = Vec::new();
     let mut or_zero = |value: Option<f64>, words: &str| {
         value.unwrap_or_else(|| {
@@ -34,14 +34,18 @@ pub fn describe(header: &Header, latitude: Latitude) -> Described {
     } else {
         or_zero(header.g_sensitivity_sigma_deg_h_g, "no g-sensitivity")
     };
-    if header.gyro_n_deg_sqrt_h.is_none() {
+    let white_known = header.gyro_n_deg_sqrt_h.is_some_and(|n| n > 0.0);
+    if let (Body::Stage(_), false) = (body, white_known) {
         assumed.push("white noise as the dwells show it".to_owned());
+    }
+    if noise(header) == noise(header).white_part() {
+        assumed.push("no gyro drift (B, K, R)".to_owned());
     }
     assumed.push("latitude and encoder exact".to_owned());
     let kappa = header.g_sensitivity_deg_h_g.unwrap_or_default();
     let setting = Setting {
         noise: noise(header),
-        white_known: header.gyro_n_deg_sqrt_h.is_some_and(|n| n > 0.0),
+        white_known,
         scale_sigma,
         g_sensitivity: kappa.map(|part| part * DEGREE_PER_HOUR),
         g_sensitivity_sigma: kappa_sigma * DEGREE_PER_HOUR,

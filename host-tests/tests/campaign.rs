@@ -17,7 +17,8 @@ fn readme() -> String {
 
 fn check_precision(turn: Turn) -> Precision {
     let result = precision(turn, RUNS, || {}).expect("it runs");
-    assert_eq!(result.refused, 0);
+    // Once in 16 000 runs noise looks like a trend that an arc cannot tell from the Earth rate.
+    assert!(result.refused <= RUNS / 1000, "{result:?}");
     assert!(result.ratio <= 1.05, "{result:?}");
     assert!(result.fixed_point_ratio <= 1.005, "{result:?}");
     for (found, normal) in result.coverage_percent.iter().zip(NORMAL_COVERAGE) {

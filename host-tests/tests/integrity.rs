@@ -325,3 +325,84 @@ fn a_platform_that_tips_during_a_dwell_loses_that_dwell() {
     };
     assert!(verdict(&case, &[tip], 7).is_ok());
 }
+
+/// Runs a spoilt instrument many times; the azimuths that came out, as errors over σ.
+fn answers(runs: u64, spoil: impl Fn(&mut Case, u64) -> Vec<Disturbance> + Sync) -> Vec<f64> {
+    let errors = (0..runs).into_par_iter().filter_map(|seed| {
+        let mut case = sound();
+        let disturbances = spoil(&mut case, seed);
+        let Azimuth { angle, sigma } = verdict(&case, &disturbances, seed).ok()?;
+        let error = azimuth_error(angle.to_degrees(), case.world.azimuth_deg);
+        Some(error / sigma.to_degrees())
+    });
+    errors.collect()
+}
+
+fn greatest(errors: &[f64]) -> f64 {
+    errors.iter().map(|error| error.abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn an_accelerometer_that_does_not_feel_gravity_is_refused() {
+    let spoil: [fn(f64) -> [f64; 3]; 3] =
+        [|_| [0.0, 0.0, 9.81], |_| [0.0, 0.0, 19.62], |_| [0.0, 0.0, 8.8]];
+    for bias in spoil {
+        let mut case = sound();
+        case.world.accelerometer.bias_m_s2 = bias(0.0);
+        case.setting.accelerometer_bias_sigma = 0.05;
+        let verdict = verdict(&case, &[], 8);
+        let refused = matches!(verdict, Err(Refusal::AccelerometerImplausible { .. }));
+        assert!(refused, "{:?}: {verdict:?}", bias(0.0));
+    }
+}
+
+#[test]
+fn a_scale_error_that_is_not_stated_is_named_whichever_way_it_goes() {
+    for scale_error in [-0.04, -0.03, 0.03, 0.04] {
+        let mut case = sound();
+        case.world.gyro.scale_error = scale_error;
+        case.setting.scale_sigma = 0.0;
+        let verdict = verdict(&case, &[], 9);
+        let named = matches!(verdict, Err(Refusal::EarthRateMismatch { .. }));
+        assert!(named, "{scale_error}: {verdict:?}");
+    }
+}
+
+#[test]
+fn an_unknown_g_sensitivity_refuses_no_healthy_run_and_leaves_sigma_true() {
+    let errors = answers(300, |case, seed| {
+        let mut generator = Generator::new(seed);
+        case.world.pitch_deg = 6.0 * generator.uniform() - 3.0;
+        case.world.roll_deg = 6.0 * generator.uniform() - 3.0;
+        let kappa = [generator.gaussian(), generator.gaussian()];
+        case.world.gyro.g_sensitivity_deg_h_g = kappa.map(|k| 10.0 * k);
+        case.setting.g_sensitivity_sigma = 10.0 * DEGREE_PER_HOUR;
+        case.setting.scale_sigma = 0.0;
+        if seed % 2 == 0 {
+            turned(case, 12, 15.0);
+        }
+        Vec::new()
+    });
+    assert!(errors.len() >= 297, "{} of 300 answered", errors.len());
+    assert!((0.85..1.15).contains(&rms(&errors)), "RMS {} σ", rms(&errors));
+}
+
+#[test]
+fn few_positions_and_a_nudge_over_a_whole_dwell_stay_within_what_can_be_noticed() {
+    let errors = answers(400, |case, seed| {
+        let positions = 4 + seed as u32 % 3;
+        turned(case, positions, 360.0 / f64::from(positions));
+        let mut generator = Generator::new(seed);
+        let dwell = (generator.uniform() * f64::from(positions)).floor();
+        let noise = 0.001 * 60.0 / case.seconds.sqrt();
+        vec![Disturbance::Nudge {
+            start_s: dwell * (case.seconds + 1.0),
+            seconds: case.seconds,
+            rate_deg_h: noise * (3.0 + 7.0 * generator.uniform()),
+        }]
+    });
+    println!("{} answers, RMS {}, greatest {} σ", errors.len(), rms(&errors), greatest(&errors));
+    // One degree of freedom shows half of a nudge in one of four dwells: what it hides may reach
+    // this much, no more.
+    assert!(rms(&errors) < 1.9 && greatest(&errors) < 6.5);
+}

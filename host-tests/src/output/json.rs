@@ -150,7 +150,7 @@ pub fn excluded(replay: &Replay, conclusion: &Conclusion) -> Vec<Excluded> {
             why.map(|why| Excluded {
                 dwell: index + 1,
                 stage_deg: degrees(dwell.stage.rad()),
-                from_s: dwell.start(),
+                from_s: dwell.start().max(0.0),
                 to_s: dwell.end(),
                 reason: why.to_string(),
             })

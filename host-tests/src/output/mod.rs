@@ -14,6 +14,12 @@ pub fn degrees(angle: f64) -> f64 {
     angle.to_degrees()
 }
 
+/// What rounds to zero, being smaller than `half`, prints without a sign.
+#[must_use]
+pub fn positive_zero(value: f64, half: f64) -> f64 {
+    if value.abs() < half { 0.0 } else { value }
+}
+
 /// rad/s to °/h.
 #[must_use]
 pub fn degrees_per_hour(rate: f64) -> f64 {

@@ -2,6 +2,7 @@
 
 use std::fmt::{self, Write};
 
+use super::positive_zero;
 use crate::campaign::sokolov::{AlphaRow, Precision, Table};
 use crate::campaign::statistics::NORMAL_COVERAGE;
 
@@ -29,19 +30,28 @@ fn of_turn(out: &mut impl Write, table: &Table) -> fmt::Result {
     writeln!(out, "\n{}", table.schedule)?;
     writeln!(
         out,
-        "  {:<16} {:>5} {:>8} {:>9} {:>9} {:>9} {:>8}   {:<24} paper's least",
-        "criterion", "runs", "refused", "RMS", "stated σ", "limit", "ratio", "least of 90 each"
+        "  {:<16} {:>5} {:>8} {:>9} {:>9} {:>9} {:>11} {:>8}   {:<24} paper's least",
+        "criterion",
+        "runs",
+        "refused",
+        "RMS",
+        "stated σ",
+        "limit",
+        "Ω_h free",
+        "ratio",
+        "least of 90 each"
     )?;
     for row in &table.rows {
         writeln!(
             out,
-            "  {:<16} {:>5} {:>8} {:>9.1} {:>9.1} {:>9.1} {:>8.2}   {:<24} {}",
+            "  {:<16} {:>5} {:>8} {:>9.1} {:>9.1} {:>9.1} {:>11.1} {:>8.2}   {:<24} {}",
             row.criterion,
             row.runs,
             row.refused,
             row.rms_arcsec,
             row.sigma_arcsec,
             row.limit_arcsec,
+            row.limit_free_arcsec,
             row.ratio,
             list(&row.least_arcsec),
             list(&table.paper_least_arcsec),
@@ -78,7 +88,7 @@ fn of_precision(out: &mut impl Write, row: &Precision) -> fmt::Result {
         row.limit_arcsec,
         row.ratio,
         row.rms_floating_point_arcsec,
-        100.0 * (row.fixed_point_ratio - 1.0)
+        positive_zero(100.0 * (row.fixed_point_ratio - 1.0), 5e-4)
     )?;
     let [one, two, three] = row.coverage_percent;
     let [a, b, c] = NORMAL_COVERAGE;

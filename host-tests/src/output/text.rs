@@ -6,7 +6,7 @@ use orientation::align::conclusion::Conclusion;
 use orientation::align::stepwise::Fit;
 
 use super::json::{Excluded, earth_rate, excluded};
-use super::{azimuth_error, columns, degrees, degrees_per_hour};
+use super::{azimuth_error, columns, degrees, degrees_per_hour, positive_zero};
 use crate::replay::Replay;
 
 /// Writes the block for a replay of `name`; `truth_deg` is for its error alone.
@@ -23,7 +23,7 @@ pub fn block(
     headline(out, name, replay, conclusion, truth_deg)?;
     if conclusion.tilt.measured {
         let tilt = &conclusion.tilt;
-        let [pitch, roll] = [tilt.pitch(), tilt.roll()].map(|a| positive_zero(degrees(a)));
+        let [pitch, roll] = [tilt.pitch(), tilt.roll()].map(|a| positive_zero(degrees(a), 5e-5));
         line(out, "pitch, roll", format_args!("{pitch:.4}°, {roll:.4}°"))?;
     } else {
         line(out, "pitch, roll", format_args!("not measured: taken as level"))?;
@@ -38,11 +38,6 @@ pub fn block(
 
 fn line(out: &mut impl Write, label: &str, value: fmt::Arguments<'_>) -> fmt::Result {
     writeln!(out, "  {label:<18} {value}")
-}
-
-/// What rounds to zero prints without a sign.
-fn positive_zero(value: f64) -> f64 {
-    if value.abs() < 5e-5 { 0.0 } else { value }
 }
 
 fn headline(

@@ -16,10 +16,13 @@ use crate::units::TURN;
 /// Studentised residual beyond which a dwell is left out (2.7e-5 two-sided: one healthy session of
 /// 60 dwells in 600 loses one).
 const OUTLIER_BOUND: f64 = 4.2;
-/// Probability of a healthy session's residuals below which they are refused.
-const WHITENESS_PROBABILITY: f64 = 1e-6;
-/// Chi-square by which a trend that the azimuth cannot afford may explain the dwells (1e-6).
-const HIDDEN_TREND: f64 = 24.0;
+/// Degrees of freedom that are few: a disturbed dwell then hides in the fit.
+const FEW_DEGREES: usize = 3;
+/// Probability of a healthy session's residuals below which they are refused: with few degrees of
+/// freedom, and with more.
+const WHITENESS_PROBABILITY: [f64; 2] = [1e-3, 1e-6];
+/// Chi-square by which a trend that the azimuth cannot afford may explain the dwells (6e-5).
+const HIDDEN_TREND: f64 = 16.0;
 /// Bound of the correlation of neighbouring residuals, in its standard deviation 1/√n.
 const CORRELATION_BOUND: f64 = 5.0;
 /// Chi-square by which the second-best azimuth must be worse than the best (4σ).
@@ -123,7 +126,7 @@ impl Conclusion {
             let fit = problem.fit().ok_or(Refusal::ArcCannotTell)?;
             self.keep_residuals(dwells, &problem, &fit);
             self.fit = Some(fit.clone());
-            if fit.model.rejected.chi_square > HIDDEN_TREND {
+            if fit.model.rejected_trend > HIDDEN_TREND {
                 return Err(Refusal::TrendNotSeparable);
             }
             let Some((worst, residual)) = self.worst() else { return Ok(fit) };
@@ -221,7 +224,8 @@ impl Conclusion {
     /// Chi-square of the residuals, and the correlation of neighbours.
     fn judge_residuals(&self, fit: &Fit) -> Result<(), Refusal> {
         let degrees = fit.degrees as f64;
-        if fit.degrees > 0 && chi_square_tail(fit.chi_square, degrees) < WHITENESS_PROBABILITY {
+        let least = WHITENESS_PROBABILITY[usize::from(fit.degrees > FEW_DEGREES)];
+        if fit.degrees > 0 && chi_square_tail(fit.chi_square, degrees) < least {
             return Err(Refusal::ResidualsNotWhite { ratio: excess(fit) });
         }
         let kept: Vec<f64, POSITIONS> = (self.residuals.iter().zip(&self.disturbances))

@@ -20,6 +20,9 @@ use crate::signal::dwell::Dwell;
 pub enum Criterion {
     /// Generalised least squares on the dwells themselves.
     MaximumLikelihood,
+    /// Mean-removed least squares over the table: maximum likelihood for white noise on a level
+    /// stage, in integers.
+    OnTable,
     /// min Σ(δ^Et − δ)² over the table.
     LeastSquares,
     /// min Σ|δ^Et − δ| over the table.
@@ -50,7 +53,9 @@ pub fn azimuth(problem: &Problem, fit: &Fit, criterion: Criterion) -> Result<Azi
     let series = Series::new(ratios, row.step).map_err(|_| Refusal::StepsUneven)?;
     let rate = problem.setting.latitude.horizontal_rate();
     let (first, width) = match criterion {
-        Criterion::MaximumLikelihood => searched(&series, etalon::Criterion::MaximumLikelihood),
+        Criterion::MaximumLikelihood | Criterion::OnTable => {
+            searched(&series, etalon::Criterion::MaximumLikelihood)
+        }
         Criterion::LeastSquares => searched(&series, etalon::Criterion::LeastSquares),
         Criterion::LeastAbsolute => searched(&series, etalon::Criterion::LeastAbsolute),
         Criterion::WithinSquares(bound) => {
@@ -62,8 +67,7 @@ pub fn azimuth(problem: &Problem, fit: &Fit, criterion: Criterion) -> Result<Azi
         }
     };
     let start = row.dwells.first().map_or(0.0, |dwell| dwell.stage.rad());
-    let absolute = matches!(criterion, Criterion::LeastAbsolute | Criterion::WithinAbsolute(_));
-    let variance = row.variance(problem, first, absolute) + width * width / 12.0;
+    let variance = row.variance(problem, first, criterion) + width * width / 12.0;
     let others = fit.budget.beside_noise();
     Ok(Azimuth { angle: wrapped(first - start), sigma: libm::sqrt(variance + others * others) })
 }
@@ -105,21 +109,38 @@ impl<'a> Row<'a> {
         (1..self.dwells.len()).map(|index| sine(index - 1) - sine(index)).collect()
     }
 
+    /// Σ (∂z/∂A − mean)² over the dwells, in units of `Ω_h`².
+    fn mean_removed_power(&self, first: f64) -> f64 {
+        let step = f64::from(self.step) * STEP;
+        let slope = |index: usize| -libm::sin(first + index as f64 * step);
+        let count = self.dwells.len();
+        let mean = (0..count).map(slope).sum::<f64>() / count as f64;
+        (0..count).map(|index| (slope(index) - mean) * (slope(index) - mean)).sum()
+    }
+
     /// Variance of the azimuth from the noise of the dwells, rad².
     ///
     /// Least squares: the error is Σ gᵢ εᵢ / Σ g² with g the slopes, ε the differences' noise.
     /// Least absolute values: Σ gᵢ sign(εᵢ) / (2 f(0) Σ g²), with f(0) the density of ε at zero and
     /// −1/3 the correlation of the signs of neighbouring differences (arcsine law of −1/2).
-    fn variance(&self, problem: &Problem, first: f64, absolute: bool) -> f64 {
+    ///
+    /// Mean-removed least squares: σ² / Σ (g − mean of g)² with g the slopes of the dwells.
+    fn variance(&self, problem: &Problem, first: f64, criterion: Criterion) -> f64 {
         let slopes = self.slopes(first);
         let power: f64 = slopes.iter().map(|g| g * g).sum();
         let dwell = self.dwells.iter().map(|dwell| problem.white_variance(dwell)).sum::<f64>()
             / self.dwells.len() as f64;
         let neighbours: f64 = slopes.windows(2).map(|g| g[0] * g[1]).sum();
-        let sum = if absolute {
-            core::f64::consts::PI * dwell * (power - 2.0 / 3.0 * neighbours)
-        } else {
-            2.0 * dwell * (power - neighbours)
+        let sum = match criterion {
+            Criterion::MaximumLikelihood | Criterion::OnTable => {
+                return dwell / self.mean_removed_power(first);
+            }
+            Criterion::LeastSquares | Criterion::WithinSquares(_) => {
+                2.0 * dwell * (power - neighbours)
+            }
+            Criterion::LeastAbsolute | Criterion::WithinAbsolute(_) => {
+                core::f64::consts::PI * dwell * (power - 2.0 / 3.0 * neighbours)
+            }
         };
         sum / (power * power)
     }

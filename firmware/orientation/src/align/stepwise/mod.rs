@@ -8,7 +8,7 @@
 mod model;
 mod uncertainty;
 
-pub use model::{Model, RejectedTrend};
+pub use model::Model;
 
 use super::budget::Budget;
 use super::direction::{Amplitude, Components, Direction, dot, inverted, product};

@@ -4,7 +4,6 @@
 use super::super::direction::{Amplitude, Direction};
 use super::super::regression::{Column, Regression};
 use super::{COLUMNS, Problem};
-use crate::units::TURN;
 
 /// Chi-square of one degree of freedom that noise exceeds with a probability of 0.001.
 const TREND_CHI_SQUARE: f64 = 10.83;
@@ -24,24 +23,15 @@ pub struct Model {
     pub temperature: Column,
     /// The horizontal Earth rate.
     pub amplitude: Amplitude,
-    /// A trend that the dwells show but the azimuth cannot afford.
-    pub rejected: RejectedTrend,
-}
-
-/// A trend that chi-square asks for and that was left out all the same.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct RejectedTrend {
-    /// By how much it would lower chi-square; zero where there is none.
-    pub chi_square: f64,
-    /// By how much it would turn the azimuth, rad.
-    pub shift: f64,
+    /// By how much a trend that the azimuth cannot afford would lower chi-square; zero where there
+    /// is none.
+    pub rejected_trend: f64,
 }
 
 /// What one candidate trend would do.
 struct Trial {
     model: Model,
     gain: f64,
-    shift: f64,
     affordable: bool,
 }
 
@@ -81,7 +71,7 @@ impl Problem<'_> {
             time: if ramp > 0.0 { Column::Prior(ramp) } else { Column::Absent },
             temperature: Column::Absent,
             amplitude: Amplitude::Known(self.setting.amplitude_sigma()),
-            rejected: RejectedTrend::default(),
+            rejected_trend: 0.0,
         }
     }
 
@@ -90,7 +80,7 @@ impl Problem<'_> {
     fn add_trend(&self, regression: &Regression<COLUMNS>, model: &mut Model) -> Option<()> {
         for _ in 0..2 {
             let solution = regression.solve(&model.columns())?;
-            let before = (solution.chi_square, self.direction(regression, model)?);
+            let before = (solution.chi_square, self.direction(regression, model)?.variance);
             let trials = candidates(model, self.is_warm());
             let best = trials
                 .into_iter()
@@ -100,30 +90,26 @@ impl Problem<'_> {
                 .max_by(|a, b| a.gain.total_cmp(&b.gain));
             match best {
                 Some(trial) if trial.affordable => *model = trial.model,
-                Some(Trial { gain, shift, .. }) => {
-                    model.rejected = RejectedTrend { chi_square: gain, shift };
-                }
+                Some(trial) => model.rejected_trend = trial.gain,
                 None => {}
             }
         }
         Some(())
     }
 
-    /// What a candidate does to chi-square and to the azimuth, both given without it.
+    /// What a candidate does to chi-square and to the azimuth's variance, both given without it.
     fn trial(
         &self,
         regression: &Regression<COLUMNS>,
         model: Model,
-        (chi_square, before): (f64, Direction),
+        (chi_square, variance): (f64, f64),
     ) -> Option<Trial> {
         let solution = regression.solve(&model.columns())?;
         let after = self.components(&solution).direction(model.amplitude)?;
-        let cheap = after.variance <= TREND_COST * TREND_COST * before.variance;
-        let turned = (after.azimuth - before.azimuth) / TURN;
+        let cheap = after.variance <= TREND_COST * TREND_COST * variance;
         Some(Trial {
             model,
             gain: chi_square - solution.chi_square,
-            shift: (turned - libm::round(turned)) * TURN,
             affordable: cheap && solution.degrees >= TREND_DEGREES,
         })
     }

@@ -8,7 +8,7 @@ use crate::math::chi_square_tail;
 use crate::signal::dwell::Dwell;
 
 /// Probability of the residuals below which their excess over the stated noise raises σ.
-const EXCESS_PROBABILITY: f64 = 0.01;
+const EXCESS_PROBABILITY: f64 = 0.02;
 
 /// A symmetric 2×2 covariance of the components, in units of `Ω_h`².
 pub(super) type Covariance = [[f64; 2]; 2];
@@ -43,7 +43,7 @@ impl Problem<'_> {
         let share = self.scale_share();
         Some(Budget {
             noise: libm::sqrt(noise),
-            drift: libm::sqrt(drifting - noise + model.rejected.shift * model.rejected.shift),
+            drift: libm::sqrt(drifting - noise),
             temperature: libm::sqrt(all - drifting),
             scale: libm::sqrt(amplitude * share),
             latitude: libm::sqrt(amplitude * (1.0 - share)),
