@@ -126,75 +126,86 @@ pub enum Refusal {
 
 impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self::LatitudeTooHigh { latitude } => {
-                write!(
-                    f,
-                    "latitude {latitude:.2}° is beyond ±85°: too little of the Earth rate is horizontal"
-                )
+        match self.words() {
+            Some(words) => f.write_str(words),
+            None => self.with_numbers(f),
+        }
+    }
+}
+
+impl Refusal {
+    /// The reasons that carry no number.
+    fn words(&self) -> Option<&'static str> {
+        Some(match self {
+            Self::ArcCannotTell => {
+                "the positions cannot tell the azimuth: turn the stage over a longer arc"
             }
+            Self::TrendNotSeparable => {
+                "the rate drifts, and these positions cannot tell it from the Earth rate: turn a full circle"
+            }
+            Self::TimeExhausted => "the time allowed ran out",
+            Self::StepsUneven => {
+                "this criterion needs equal steps that are a multiple of 10″, none left out"
+            }
+            Self::NothingAccepted => "no azimuth of the table lies within the bound",
+            Self::EverythingAccepted => {
+                "every azimuth of the table lies within the bound: it cannot tell"
+            }
+            _ => return None,
+        })
+    }
+
+    /// The reasons of place, platform and stage; those of the fit follow.
+    fn with_numbers(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::LatitudeTooHigh { latitude } => write!(
+                f,
+                "latitude {latitude:.2}° is beyond ±85°: too little of the Earth rate is horizontal"
+            ),
+            Self::TiltTooGreat { tilt, allowed } => write!(
+                f,
+                "the platform is inclined by {tilt:.2}°, more than {allowed:.1}°: level it"
+            ),
+            Self::AccelerometerImplausible { ratio } => write!(
+                f,
+                "the accelerometer feels {ratio:.3} of gravity: check its axes, signs and units"
+            ),
+            Self::StageNotThere { target, actual } => {
+                write!(f, "the stage was sent to {target:.3}° but stands at {actual:.3}°")
+            }
+            Self::Disturbed { disturbed, positions } => write!(
+                f,
+                "{disturbed} of {positions} dwells were disturbed: keep the platform still"
+            ),
             Self::TooFewPositions { positions } => {
                 write!(f, "{positions} undisturbed position(s): three different ones are needed")
             }
-            Self::ArcCannotTell => f.write_str(
-                "the positions cannot tell the azimuth: turn the stage over a longer arc",
+            _ => self.of_fit(f),
+        }
+    }
+
+    /// The reasons that the fit gives.
+    fn of_fit(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::BudgetNotMet { sigma, required, source } => write!(
+                f,
+                "σ would be {sigma:.3}°, above the accepted {required:.3}°; {source} contributes most"
             ),
-            Self::BudgetNotMet { sigma, required, source } => {
-                write!(
-                    f,
-                    "σ would be {sigma:.3}°, above the accepted {required:.3}°; {source} contributes most"
-                )
-            }
-            Self::TiltTooGreat { tilt, allowed } => {
-                write!(
-                    f,
-                    "the platform is inclined by {tilt:.2}°, more than {allowed:.1}°: level it"
-                )
-            }
-            Self::TiltTooUncertain { sigma, required } => {
-                write!(
-                    f,
-                    "the tilt is known too badly: it alone costs {sigma:.3}° of {required:.3}°; turn a full circle or calibrate the accelerometer"
-                )
-            }
+            Self::TiltTooUncertain { sigma, required } => write!(
+                f,
+                "the tilt is known too badly: it alone costs {sigma:.3}° of {required:.3}°; turn a full circle or calibrate the accelerometer"
+            ),
             Self::ResidualsNotWhite { ratio } => {
                 write!(f, "residuals are not white: {ratio:.1} times the stated noise power")
             }
             Self::ResidualsCorrelated { correlation } => {
                 write!(f, "residuals are not white: neighbours correlate by {correlation:.2}")
             }
-            Self::TrendNotSeparable => f.write_str(
-                "the rate drifts, and these positions cannot tell it from the Earth rate: turn a full circle",
+            Self::EarthRateMismatch { ratio, sigma } => write!(
+                f,
+                "Earth rate found is {ratio:.3} ± {sigma:.3} of the expected: check latitude and gyro scale"
             ),
-            Self::AccelerometerImplausible { ratio } => {
-                write!(
-                    f,
-                    "the accelerometer feels {ratio:.3} of gravity: check its axes, signs and units"
-                )
-            }
-            Self::EarthRateMismatch { ratio, sigma } => {
-                write!(
-                    f,
-                    "Earth rate found is {ratio:.3} ± {sigma:.3} of the expected: check latitude and gyro scale"
-                )
-            }
-            Self::Disturbed { disturbed, positions } => {
-                write!(
-                    f,
-                    "{disturbed} of {positions} dwells were disturbed: keep the platform still"
-                )
-            }
-            Self::StageNotThere { target, actual } => {
-                write!(f, "the stage was sent to {target:.3}° but stands at {actual:.3}°")
-            }
-            Self::TimeExhausted => f.write_str("the time allowed ran out"),
-            Self::StepsUneven => f.write_str(
-                "this criterion needs equal steps that are a multiple of 10″, none left out",
-            ),
-            Self::NothingAccepted => f.write_str("no azimuth of the table lies within the bound"),
-            Self::EverythingAccepted => {
-                f.write_str("every azimuth of the table lies within the bound: it cannot tell")
-            }
+            _ => Ok(()),
         }
     }
 }

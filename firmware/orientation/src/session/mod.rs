@@ -8,13 +8,14 @@
 //! The stage is judged by its encoder alone: a dwell is where the angle stands still, wherever the
 //! command came from. So a recording replays the same session that a board runs.
 
+mod pace;
 pub mod procedure;
 pub mod schedule;
 
 use heapless::Vec;
 
+use self::pace::{Pace, Target, samples};
 use self::procedure::{Procedure, ProcedureError};
-use self::schedule::Position;
 use crate::align::POSITIONS;
 use crate::align::conclusion::Conclusion;
 use crate::align::criterion::Criterion;
@@ -25,7 +26,7 @@ use crate::error::Refusal;
 use crate::signal::Sample;
 use crate::signal::butterworth::Coefficients;
 use crate::signal::dwell::{self, Dwell, DwellAverage};
-use crate::units::{Angle, Instant, TURN};
+use crate::units::{Instant, TURN};
 
 /// Second-order sections of the stage filter: Sokolov's sixth order.
 const SECTIONS: usize = 3;
@@ -71,51 +72,6 @@ pub struct Repetition {
     pub position: usize,
     /// What disturbed it.
     pub why: Disturbance,
-}
-
-/// Where the stage is to stand and for how long, in the units of the sample path.
-#[derive(Clone, Copy, Debug)]
-struct Target {
-    position: Position,
-    stage: Angle,
-    samples: u32,
-}
-
-impl Target {
-    fn new(position: Position, sample_seconds: f64) -> Self {
-        let samples = samples(position.seconds, sample_seconds);
-        Self { position, stage: Angle::from_rad(position.angle), samples }
-    }
-}
-
-/// The procedure's times and angles in the units of the sample path, which knows no `f64`.
-#[derive(Clone, Copy, Debug)]
-struct Pace {
-    still: Angle,
-    arrival: Angle,
-    level: u32,
-    settle: u32,
-    longest: u64,
-    longest_rotation: u64,
-}
-
-impl Pace {
-    fn of(procedure: &Procedure) -> Self {
-        let samples = |seconds| samples(seconds, procedure.sample_seconds);
-        Self {
-            still: Angle::from_rad(procedure.still),
-            arrival: Angle::from_rad(procedure.arrival),
-            level: samples(procedure.level_seconds),
-            settle: samples(procedure.settle_seconds),
-            longest: Instant::from_seconds(procedure.longest_seconds).0,
-            longest_rotation: Instant::from_seconds(procedure.longest_rotation).0,
-        }
-    }
-}
-
-/// A time in samples, to nearest.
-fn samples(seconds: f64, sample_seconds: f64) -> u32 {
-    libm::round(seconds / sample_seconds) as u32
 }
 
 /// One alignment from the first sample to its conclusion.

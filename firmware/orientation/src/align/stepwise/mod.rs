@@ -20,16 +20,9 @@ use crate::noise::whitener::Whitener;
 use crate::signal::dwell::Dwell;
 use uncertainty::Covariance;
 
-/// Columns of the regression.
+/// Columns of the regression: north and east part of the sensitive axis, constant, time since the
+/// first dwell (h), temperature above that of the first dwell (°C).
 const COLUMNS: usize = 5;
-/// Index of the north part of the sensitive axis; the east part follows.
-const NORTH: usize = 0;
-/// Index of the constant.
-const CONSTANT: usize = 2;
-/// Index of time since the first dwell, h.
-const TIME: usize = 3;
-/// Index of temperature above that of the first dwell, °C.
-const TEMPERATURE: usize = 4;
 
 /// An azimuth with all that is known about it.
 #[derive(Clone, Debug)]
@@ -222,25 +215,13 @@ impl Fit {
         self.budget.sigma()
     }
 
-    /// Slope of the trend with time, in units of `Ω_h` per hour.
-    #[must_use]
-    pub fn trend(&self) -> f64 {
-        self.coefficients[TIME]
-    }
-
-    /// Slope with temperature, in units of `Ω_h` per °C.
-    #[must_use]
-    pub fn temperature_slope(&self) -> f64 {
-        self.coefficients[TEMPERATURE]
-    }
-
     /// Puts the two components on the chosen direction and lets the other coefficients follow, as
     /// far as noise and not tilt or κ explains the change.
     fn constrain(&mut self, solution: &Solution<COLUMNS>, components: &Components) {
         let (sine, cosine) = libm::sincos(self.direction.azimuth);
         let wanted = self.direction.components([cosine, sine], components.vertical);
         let free = solution.coefficients;
-        let change = [wanted[0] - free[NORTH], wanted[1] - free[NORTH + 1]];
+        let change = [wanted[0] - free[0], wanted[1] - free[1]];
         let weights = inverted(&components.covariance).map_or([0.0; 2], |m| product(&m, change));
         for (index, value) in self.coefficients.iter_mut().enumerate() {
             let row = &solution.covariance[index];
@@ -300,6 +281,3 @@ fn leverage(row: &[f64; COLUMNS + 1], covariance: &[[f64; COLUMNS]; COLUMNS]) ->
     }
     sum
 }
-
-/// The constant's index, for readers of the coefficients.
-const _: () = assert!(CONSTANT == NORTH + 2 && TEMPERATURE + 1 == COLUMNS);
