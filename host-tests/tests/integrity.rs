@@ -404,5 +404,5 @@ fn few_positions_and_a_nudge_over_a_whole_dwell_stay_within_what_can_be_noticed(
     println!("{} answers, RMS {}, greatest {} σ", errors.len(), rms(&errors), greatest(&errors));
     // One degree of freedom shows half of a nudge in one of four dwells: what it hides may reach
     // this much, no more.
-    assert!(rms(&errors) < 1.9 && greatest(&errors) < 6.5);
+    assert!(errors.len() < 200 && rms(&errors) < 2.1 && greatest(&errors) < 6.5);
 }

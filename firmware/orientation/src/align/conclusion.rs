@@ -7,7 +7,7 @@ use super::criterion::{self, Criterion};
 use super::level::{self, Tilt};
 use super::quality::{self, Disturbance, Norm};
 use super::setting::Setting;
-use super::stepwise::{Fit, Problem, Residual};
+use super::stepwise::{FEW_DEGREES, Fit, Problem, Residual};
 use crate::error::Refusal;
 use crate::math::chi_square_tail;
 use crate::signal::dwell::Dwell;
@@ -16,8 +16,6 @@ use crate::units::TURN;
 /// Studentised residual beyond which a dwell is left out (2.7e-5 two-sided: one healthy session of
 /// 60 dwells in 600 loses one).
 const OUTLIER_BOUND: f64 = 4.2;
-/// Degrees of freedom that are few: a disturbed dwell then hides in the fit.
-const FEW_DEGREES: usize = 3;
 /// Probability of a healthy session's residuals below which they are refused: with few degrees of
 /// freedom, and with more.
 const WHITENESS_PROBABILITY: [f64; 2] = [1e-3, 1e-6];
@@ -126,13 +124,17 @@ impl Conclusion {
             let fit = problem.fit().ok_or(Refusal::ArcCannotTell)?;
             self.keep_residuals(dwells, &problem, &fit);
             self.fit = Some(fit.clone());
-            if fit.model.rejected_trend > HIDDEN_TREND {
-                return Err(Refusal::TrendNotSeparable);
-            }
-            let Some((worst, residual)) = self.worst() else { return Ok(fit) };
-            if self.outliers() >= allowed_outliers(dwells.len()) || fit.degrees < 2 {
-                return Err(Refusal::ResidualsNotWhite { ratio: excess(&fit) });
-            }
+            // With few degrees of freedom the worst residual need not be the disturbed dwell's.
+            let removable =
+                self.outliers() < allowed_outliers(dwells.len()) && fit.degrees > FEW_DEGREES;
+            let worst = self.worst();
+            let hidden = fit.model.rejected_trend > HIDDEN_TREND;
+            let (worst, residual) = match worst {
+                Some(worst) if removable => worst,
+                _ if hidden => return Err(Refusal::TrendNotSeparable),
+                Some(_) => return Err(Refusal::ResidualsNotWhite { ratio: excess(&fit) }),
+                None => return Ok(fit),
+            };
             self.disturbances[worst] = Some(Disturbance::Outlier(residual));
             self.level(setting, dwells);
         }
@@ -183,7 +185,7 @@ impl Conclusion {
             return Err(Refusal::ArcCannotTell);
         }
         let (sigma, required) = (degrees(fit.sigma()), degrees(setting.required_sigma));
-        if sigma.is_nan() || sigma > required {
+        if !(sigma > 0.0 && sigma <= required) {
             let (source, _) = fit.budget.greatest();
             return Err(Refusal::BudgetNotMet { sigma, required, source });
         }

@@ -69,7 +69,9 @@ pub fn azimuth(problem: &Problem, fit: &Fit, criterion: Criterion) -> Result<Azi
     let start = row.dwells.first().map_or(0.0, |dwell| dwell.stage.rad());
     let variance = row.variance(problem, first, criterion) + width * width / 12.0;
     let others = fit.budget.beside_noise();
-    Ok(Azimuth { angle: wrapped(first - start), sigma: libm::sqrt(variance + others * others) })
+    // No criterion on the same dwells can do better than maximum likelihood.
+    let sigma = libm::sqrt(variance + others * others).max(fit.sigma());
+    Ok(Azimuth { angle: wrapped(first - start), sigma })
 }
 
 /// The best azimuth of the first position, rad; no width.

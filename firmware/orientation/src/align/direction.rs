@@ -39,6 +39,8 @@ pub struct Direction {
     pub amplitude: f64,
     /// Variance of ρ.
     pub amplitude_variance: f64,
+    /// Covariance of the azimuth, rad, and ρ.
+    pub mixed_covariance: f64,
     /// Variance of the azimuth, rad².
     pub variance: f64,
     /// How the azimuth follows the components, ∂A/∂β, rad.
@@ -48,8 +50,7 @@ pub struct Direction {
 }
 
 impl Direction {
-    /// Covariance that knowing ρ leaves to the components: across the azimuth by its own variance,
-    /// along it by that of ρ.
+    /// Covariance that knowing of ρ leaves to the components.
     #[must_use]
     pub fn components_covariance(&self, vertical: [f64; 2]) -> [[f64; 2]; 2] {
         let (sine, cosine) = libm::sincos(self.azimuth);
@@ -59,6 +60,7 @@ impl Direction {
             [0, 1].map(|j| {
                 self.variance * across[i] * across[j]
                     + self.amplitude_variance * along[i] * along[j]
+                    + self.mixed_covariance * (across[i] * along[j] + along[i] * across[j])
             })
         })
     }
@@ -185,9 +187,18 @@ impl Profile {
         let coupling = mixed * freedom;
         let variance = 1.0 / (across_power - coupling * mixed);
         let amplitude_variance = freedom * (1.0 + coupling * mixed * variance);
+        let mixed_covariance = -coupling * variance;
         let gain = [0, 1].map(|i| variance * (across_weighted[i] - coupling * along_weighted[i]));
         let azimuth = libm::atan2(sine, cosine);
-        Direction { azimuth, amplitude, amplitude_variance, variance, gain, margin }
+        Direction {
+            azimuth,
+            amplitude,
+            amplitude_variance,
+            mixed_covariance,
+            variance,
+            gain,
+            margin,
+        }
     }
 }
 

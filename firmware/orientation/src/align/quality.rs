@@ -68,6 +68,8 @@ pub struct Norm {
     flicker: f64,
     /// Slope that the dwells share, rad/s².
     slope: f64,
+    /// Variance of that slope, (rad/s²)².
+    slope_variance: f64,
 }
 
 impl Norm {
@@ -77,8 +79,10 @@ impl Norm {
         let noise = &setting.noise;
         let known = noise.angle_random_walk * noise.angle_random_walk;
         let estimated = || white_median(dwells);
+        let white = if setting.white_known { known } else { estimated() };
         Self {
-            white: if setting.white_known { known } else { estimated() },
+            white,
+            slope_variance: white * slope_density(dwells),
             walk: noise.rate_random_walk * noise.rate_random_walk,
             flicker: noise.bias_instability * noise.bias_instability / core::f64::consts::PI,
             slope: slope_median(dwells),
@@ -129,7 +133,8 @@ impl Norm {
         let unit = quietness.slope_unit;
         let variance = self.white / quietness.block_seconds * unit * unit
             + 1.2 * self.walk / seconds
-            + 6.0 * self.flicker / (seconds * seconds);
+            + 6.0 * self.flicker / (seconds * seconds)
+            + self.slope_variance;
         let slope = (quietness.slope - self.slope).abs() / libm::sqrt(variance);
         (slope > SLOPE_BOUND).then_some(Disturbance::Drift(slope))
     }
@@ -179,6 +184,20 @@ fn white_median(dwells: &[Dwell]) -> f64 {
     let mut values: heapless::Vec<f64, POSITIONS> =
         dwells.iter().filter_map(|dwell| dwell.quietness.as_ref().map(estimate)).collect();
     median(&mut values)
+}
+
+/// Variance of the shared slope for white noise of density one: a median of n values has π/2 of the
+/// variance of their mean.
+fn slope_density(dwells: &[Dwell]) -> f64 {
+    let density = |quietness: &Quietness| {
+        quietness.slope_unit * quietness.slope_unit / quietness.block_seconds
+    };
+    let mut values: heapless::Vec<f64, POSITIONS> =
+        dwells.iter().filter_map(|dwell| dwell.quietness.as_ref().map(density)).collect();
+    if values.len() < 3 {
+        return 0.0;
+    }
+    core::f64::consts::FRAC_PI_2 / values.len() as f64 * median(&mut values)
 }
 
 /// The slope that the dwells share; with fewer than three, none is known to be shared.

@@ -31,6 +31,9 @@ pub struct Setting {
     pub allowed_tilt: f64,
 }
 
+/// Relative uncertainty of the Earth rate below which it is exact: no azimuth shows it.
+const EXACT_AMPLITUDE: f64 = 1e-9;
+
 impl Setting {
     /// An ideal instrument at a latitude: nothing is uncertain, N is to be estimated, an azimuth
     /// of 10° (1σ) and a tilt of 15° are accepted.
@@ -54,6 +57,8 @@ impl Setting {
     /// Relative 1σ of the horizontal Earth rate as the gyro reads it: scale factor and latitude.
     #[must_use]
     pub fn amplitude_sigma(&self) -> f64 {
-        libm::hypot(self.scale_sigma, libm::tan(self.latitude.rad()) * self.latitude_sigma)
+        let latitude = libm::tan(self.latitude.rad()) * self.latitude_sigma;
+        let sigma = libm::hypot(self.scale_sigma, latitude);
+        if sigma < EXACT_AMPLITUDE { 0.0 } else { sigma }
     }
 }

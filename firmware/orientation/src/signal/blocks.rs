@@ -76,6 +76,10 @@ impl Blocks {
         for (mean, sum) in means.iter_mut().zip(self.sums) {
             *mean = sum as f64 * scale;
         }
+        // What did not fill a block belongs to the last one: no part of the dwell goes unjudged.
+        let tail = self.length - self.lacking;
+        let all = self.sums[self.full - 1] + self.current;
+        means[self.full - 1] = all as f64 * 1e-9 / f64::from(self.length + tail);
         let seconds = f64::from(self.length) * sample_seconds;
         Some(Quietness::of(&means[..self.full], seconds))
     }

@@ -9,6 +9,7 @@ mod model;
 mod uncertainty;
 
 pub use model::Model;
+pub use uncertainty::FEW_DEGREES;
 
 use super::budget::Budget;
 use super::direction::{Amplitude, Components, Direction, dot, inverted, product};
@@ -96,7 +97,7 @@ impl Problem<'_> {
             coefficients: [0.0; COLUMNS],
             covariance: solution.covariance,
         };
-        fit.constrain(&solution, &components);
+        fit.constrain(&solution, &components, &self.noise_components(&solution));
         fit.allow_for_excess();
         Some(fit)
     }
@@ -217,7 +218,12 @@ impl Fit {
 
     /// Puts the two components on the chosen direction and lets the other coefficients follow, as
     /// far as noise and not tilt or κ explains the change.
-    fn constrain(&mut self, solution: &Solution<COLUMNS>, components: &Components) {
+    fn constrain(
+        &mut self,
+        solution: &Solution<COLUMNS>,
+        components: &Components,
+        noise: &Components,
+    ) {
         let (sine, cosine) = libm::sincos(self.direction.azimuth);
         let wanted = self.direction.components([cosine, sine], components.vertical);
         let free = solution.coefficients;
@@ -231,15 +237,20 @@ impl Fit {
         self.degrees = solution.degrees;
         if let Amplitude::Known(_) = self.model.amplitude {
             self.degrees += 1;
-            self.tighten(solution, components.vertical);
+            self.tighten(solution, noise);
         }
     }
 
-    /// The coefficients' covariance once the components may only move with azimuth and amplitude.
-    fn tighten(&mut self, solution: &Solution<COLUMNS>, vertical: [f64; 2]) {
-        let free = block(&solution.covariance);
-        let held = self.direction.components_covariance(vertical);
-        let Some(inverse) = inverted(&free) else { return };
+    /// The coefficients' covariance once the components, as noise alone leaves them, may only move
+    /// with azimuth and amplitude.
+    fn tighten(&mut self, solution: &Solution<COLUMNS>, noise: &Components) {
+        let free = noise.covariance;
+        let (Some(inverse), Some(direction)) =
+            (inverted(&free), noise.direction(self.model.amplitude))
+        else {
+            return;
+        };
+        let held = direction.components_covariance(noise.vertical);
         let follow: [[f64; 2]; COLUMNS] = core::array::from_fn(|index| {
             product(&inverse, [solution.covariance[index][0], solution.covariance[index][1]])
         });

@@ -11,6 +11,8 @@ const TREND_CHI_SQUARE: f64 = 10.83;
 const TREND_COST: f64 = 1.5;
 /// Degrees of freedom that must remain beside a trend: with fewer, one disturbed dwell looks alike.
 const TREND_DEGREES: usize = 3;
+/// Ramp below which there is none, in units of `Ω_h` per hour.
+const LEAST_RAMP: f64 = 1e-9;
 /// By how much leaving the Earth rate free may raise the standard deviation of the azimuth.
 const FREE_COST: f64 = 1.02;
 
@@ -68,7 +70,7 @@ impl Problem<'_> {
     fn base(&self) -> Model {
         let ramp = self.setting.noise.rate_ramp * 3600.0 / self.setting.latitude.horizontal_rate();
         Model {
-            time: if ramp > 0.0 { Column::Prior(ramp) } else { Column::Absent },
+            time: if ramp > LEAST_RAMP { Column::Prior(ramp) } else { Column::Absent },
             temperature: Column::Absent,
             amplitude: Amplitude::Known(self.setting.amplitude_sigma()),
             rejected_trend: 0.0,

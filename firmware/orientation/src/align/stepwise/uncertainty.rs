@@ -7,8 +7,11 @@ use super::{COLUMNS, Fit, Model, Problem, block};
 use crate::math::chi_square_tail;
 use crate::signal::dwell::Dwell;
 
-/// Probability of the residuals below which their excess over the stated noise raises σ.
-const EXCESS_PROBABILITY: f64 = 0.02;
+/// Probability of the residuals below which their excess over the stated noise raises σ: with few
+/// degrees of freedom, where a disturbed dwell hides easily, and with more.
+const EXCESS_PROBABILITY: [f64; 2] = [0.02, 1e-3];
+/// Degrees of freedom that are few.
+pub const FEW_DEGREES: usize = 3;
 
 /// A symmetric 2×2 covariance of the components, in units of `Ω_h`².
 pub(super) type Covariance = [[f64; 2]; 2];
@@ -87,7 +90,8 @@ impl Fit {
     /// Raises what the dwells' noise contributes where they scatter more than it explains.
     pub(super) fn allow_for_excess(&mut self) {
         let degrees = self.degrees as f64;
-        if self.degrees > 0 && chi_square_tail(self.chi_square, degrees) < EXCESS_PROBABILITY {
+        let least = EXCESS_PROBABILITY[usize::from(self.degrees > FEW_DEGREES)];
+        if self.degrees > 0 && chi_square_tail(self.chi_square, degrees) < least {
             let factor = libm::sqrt(self.chi_square / degrees);
             self.budget.noise *= factor;
             self.budget.drift *= factor;
