@@ -10,7 +10,7 @@ use orientation::align::POSITIONS;
 use orientation::align::criterion::Criterion;
 use orientation::align::setting::Setting;
 use orientation::earth::Latitude;
-use orientation::session::procedure::{Procedure, ProcedureError};
+use orientation::session::procedure::{Procedure, ProcedureError, STILL};
 use orientation::session::schedule::{Position, Schedule};
 use orientation::session::{Event, Session};
 use orientation::signal::Sample;
@@ -204,9 +204,8 @@ fn sample(row: &StageRow, begin: f64) -> Sample {
     }
 }
 
-/// Change of the encoder angle that counts as standing where the encoder is quiet, rad, as in
-/// [`Procedure::new`]; and the most for a noisy one.
-const STILL: [f64; 2] = [20e-6, 300e-6];
+/// Greatest change of a noisy encoder's angle that counts as standing, rad.
+const STILL_NOISY: f64 = 300e-6;
 /// The same in medians of the encoder's change from sample to sample: six standard deviations of a
 /// difference of two readings.
 const STILL_MEDIANS: f64 = 9.0;
@@ -220,7 +219,7 @@ fn still(rows: &[StageRow]) -> f64 {
     let mut changes: Vec<f64> =
         rows.windows(2).map(|pair| turned(pair[0].stage_rad, pair[1].stage_rad).abs()).collect();
     let usual = median(&mut changes);
-    (STILL_MEDIANS * usual).clamp(STILL[0], STILL[1])
+    (STILL_MEDIANS * usual).clamp(STILL, STILL_NOISY)
 }
 
 /// The (upper) median in linear time; zero of none.

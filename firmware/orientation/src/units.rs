@@ -25,6 +25,13 @@ pub const DEGREE_PER_SQRT_HOUR: f64 = TURN / 360.0 / 60.0;
 /// Steps of the 32-bit fraction in one turn.
 const STEPS_PER_TURN: f64 = 4_294_967_296.0;
 
+/// An angle in [0, 2π).
+#[must_use]
+pub fn wrapped(angle: f64) -> f64 {
+    let wrapped = angle - TURN * libm::floor(angle / TURN);
+    if wrapped < TURN { wrapped } else { 0.0 }
+}
+
 /// Rounds to the nearest integer and saturates at the limits of `i32`; NaN becomes zero.
 fn to_i32(value: f64) -> i32 {
     libm::round(value) as i32

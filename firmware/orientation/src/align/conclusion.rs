@@ -11,7 +11,7 @@ use super::stepwise::{FEW_DEGREES, Fit, Problem, Residual};
 use crate::error::Refusal;
 use crate::math::chi_square_tail;
 use crate::signal::dwell::Dwell;
-use crate::units::TURN;
+use crate::units::{TURN, wrapped};
 
 /// Studentised residual beyond which a dwell is left out (2.7e-5 two-sided: one healthy session of
 /// 60 dwells in 600 loses one).
@@ -184,11 +184,7 @@ impl Conclusion {
         if fit.direction.margin < SECOND_MINIMUM {
             return Err(Refusal::ArcCannotTell);
         }
-        let (sigma, required) = (degrees(fit.sigma()), degrees(setting.required_sigma));
-        if !(sigma > 0.0 && sigma <= required) {
-            let (source, _) = fit.budget.greatest();
-            return Err(Refusal::BudgetNotMet { sigma, required, source });
-        }
+        within_budget(setting, fit, fit.sigma())?;
         self.judge_residuals(fit)?;
         let (ratio, sigma) = (fit.ratio, fit.ratio_sigma);
         if (ratio - 1.0).abs() > RATIO_BOUND * sigma + RATIO_TOLERANCE {
@@ -260,11 +256,7 @@ impl Conclusion {
             }
             paper => criterion::azimuth(&problem, fit, paper)?,
         };
-        let (sigma, required) = (degrees(azimuth.sigma), degrees(setting.required_sigma));
-        if sigma > required {
-            let (source, _) = fit.budget.greatest();
-            return Err(Refusal::BudgetNotMet { sigma, required, source });
-        }
+        within_budget(setting, fit, azimuth.sigma)?;
         Ok(azimuth)
     }
 }
@@ -304,11 +296,14 @@ fn different_positions(kept: &[&Dwell]) -> usize {
     (0..kept.len()).filter(|&index| is_new(index)).count()
 }
 
-/// An angle in [0, 2π).
-#[must_use]
-pub fn wrapped(angle: f64) -> f64 {
-    let wrapped = angle - TURN * libm::floor(angle / TURN);
-    if wrapped < TURN { wrapped } else { 0.0 }
+/// Refuses a standard deviation (rad) that is none, or more than is accepted.
+fn within_budget(setting: &Setting, fit: &Fit, sigma: f64) -> Result<(), Refusal> {
+    let (sigma, required) = (degrees(sigma), degrees(setting.required_sigma));
+    if sigma > 0.0 && sigma <= required {
+        return Ok(());
+    }
+    let (source, _) = fit.budget.greatest();
+    Err(Refusal::BudgetNotMet { sigma, required, source })
 }
 
 /// Radians to degrees.

@@ -7,13 +7,14 @@
 use heapless::Vec;
 
 use super::POSITIONS;
-use super::conclusion::{Azimuth, wrapped};
+use super::conclusion::Azimuth;
 use super::etalon::table::{ONE, STEP};
 use super::etalon::{self, Accepted, Limit, Series, Table};
 use super::stepwise::{Fit, Problem};
 use crate::error::Refusal;
 use crate::math::sort;
 use crate::signal::dwell::Dwell;
+use crate::units::wrapped;
 
 /// How the azimuth is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -12,6 +12,9 @@ const HIGHEST_CUTOFF: f64 = 0.2;
 /// Lowest cut-off over the sample rate at which the filter's coefficients are exact enough.
 const LOWEST_CUTOFF: f64 = 2.5e-4;
 
+/// Change of the encoder angle that still counts as standing, rad: seven steps of a 21-bit encoder.
+pub const STILL: f64 = 20e-6;
+
 /// How the session goes about it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Procedure {
@@ -61,7 +64,7 @@ impl Procedure {
             longest_seconds,
             longest_rotation: 30.0,
             travel: [-10.0 / 360.0 * TURN, 370.0 / 360.0 * TURN],
-            still: 20e-6,
+            still: STILL,
             arrival: 0.05 / 360.0 * TURN,
         }
     }

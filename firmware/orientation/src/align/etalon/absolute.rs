@@ -109,7 +109,7 @@ pub(super) fn search(table: Table, series: &Series) -> Match {
     Match {
         index: best.index,
         objective: u128::from(best.objective),
-        azimuth: super::wrap(refine(&sweep, best.index) * STEP),
+        azimuth: crate::units::wrapped(refine(&sweep, best.index) * STEP),
         evaluations: best.evaluations,
     }
 }

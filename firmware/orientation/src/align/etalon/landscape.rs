@@ -182,7 +182,7 @@ impl Landscape {
                 break;
             }
         }
-        super::wrap(azimuth)
+        crate::units::wrapped(azimuth)
     }
 }
 

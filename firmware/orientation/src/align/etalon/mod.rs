@@ -122,10 +122,3 @@ pub fn accepted(table: Table, series: &Series, limit: Limit) -> Acceptance {
         Limit::WithinAbsolute(limit) => absolute::within(table, series, limit),
     }
 }
-
-/// An azimuth in rad, brought to [0, 2π) from at most a turn outside.
-fn wrap(azimuth: f64) -> f64 {
-    use core::f64::consts::TAU;
-    let wrapped = if azimuth < 0.0 { azimuth + TAU } else { azimuth };
-    if wrapped >= TAU { wrapped - TAU } else { wrapped }
-}
