@@ -20,12 +20,21 @@
 #![forbid(unsafe_code)]
 
 pub mod accelerometer;
+pub mod ads1262;
+pub mod adxl355;
+pub mod chip;
+pub mod clock;
 pub mod disturbance;
 pub mod earth;
+pub mod environment;
 pub mod flicker;
 pub mod gyro;
 pub mod instruments;
+pub mod mt6835;
 pub mod noise;
+pub mod spi;
 pub mod stage;
 pub mod temperature;
+pub mod tmc5160;
+pub mod violation;
 pub mod world;

@@ -14,3 +14,4 @@ pub mod reference;
 pub mod replay;
 pub mod setting;
 pub mod simulate;
+pub mod virtual_time;

@@ -1,0 +1,50 @@
+//! Why a chip gave no reading, and what to do about it.
+
+use core::fmt;
+
+/// A failed exchange with a chip.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// The bus reported an error: repeat the transfer.
+    Bus,
+    /// A checksum was wrong: repeat the transfer.
+    Checksum,
+    /// The chip has restarted and lost its configuration: start it again.
+    Reset,
+    /// Another chip answers, or none: check the wiring.
+    Identity {
+        /// What the identity register held.
+        found: u32,
+    },
+    /// The chip's self-test failed: start it again, then replace it.
+    SelfTest,
+    /// A register does not hold what was written to it: start the chip again.
+    NotAsWritten {
+        /// The register's address.
+        register: u8,
+    },
+    /// The chip did not become ready in its time: start it again.
+    NotReady,
+    /// The chip reports that its supply, reference or magnet is bad: readings mean nothing.
+    Alarm {
+        /// The chip's own status bits.
+        status: u8,
+    },
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Bus => f.write_str("bus error"),
+            Self::Checksum => f.write_str("wrong checksum"),
+            Self::Reset => f.write_str("it was reset"),
+            Self::Identity { found } => write!(f, "wrong identity {found:#x}"),
+            Self::SelfTest => f.write_str("self-test failed"),
+            Self::NotAsWritten { register } => {
+                write!(f, "register {register:#04x} does not hold what was written")
+            }
+            Self::NotReady => f.write_str("not ready in time"),
+            Self::Alarm { status } => write!(f, "alarm, status {status:#04x}"),
+        }
+    }
+}

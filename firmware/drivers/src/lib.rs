@@ -1,0 +1,20 @@
+//! The chips of the orientation board, one folder a chip: registers, a pure codec, a thin async shell.
+//!
+//! ```text
+//!  fibre-optic gyro ─volts─▶ ads1262 ─▶ rate        stage ─▶ mt6835  ─▶ angle
+//!  platform ─────────force─▶ adxl355 ─▶ force       motor ◀─ tmc5160 ◀─ position
+//! ```
+//!
+//! A codec turns bytes into units and back without any bus, so it can be tested alone; a shell does
+//! the transfers on [`embedded_hal_async`] and nothing else. Every reading is either valid or a
+//! [`Fault`](fault::Fault) that names its remedy; a driver never blocks for ever and never retries by
+//! itself: patience is the instrument's business.
+#![no_std]
+#![forbid(unsafe_code)]
+
+pub mod ads1262;
+pub mod adxl355;
+pub mod fault;
+pub mod mt6835;
+pub mod pause;
+pub mod tmc5160;

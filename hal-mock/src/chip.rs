@@ -1,0 +1,107 @@
+//! A chip on a serial bus: registers behind transactions, and a clock of its own.
+
+use embassy_time::Instant;
+
+use crate::violation::Violations;
+
+/// The select line of one chip on the board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Select {
+    /// The converter of the precise gyro.
+    Gyro,
+    /// The accelerometer on the platform.
+    Accelerometer,
+    /// The encoder of the stage.
+    Encoder,
+    /// The motor driver of the stage.
+    Actuator,
+}
+
+/// One transaction as the chip sees it, from select low to select high.
+#[derive(Clone, Copy, Debug)]
+pub struct Transaction<'a> {
+    /// When select fell.
+    pub now: Instant,
+    /// Bus clock, Hz.
+    pub hertz: u32,
+    /// The bytes from the controller.
+    pub sent: &'a [u8],
+}
+
+/// A data-ready line.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ReadyLine {
+    /// Whether the line is active: data that nobody has read.
+    pub active: bool,
+    /// When it becomes active again, where it does of itself.
+    pub next: Option<Instant>,
+}
+
+/// A chip with serial interface in an environment `E`.
+pub trait SpiChip<E> {
+    /// When the chip next does something of itself, such as a conversion.
+    fn next_event(&self) -> Option<Instant>;
+
+    /// Does what is due at [`Self::next_event`].
+    fn event(&mut self, environment: &mut E);
+
+    /// Answers a transaction into `reply`, which is as long as what was sent. All events up to its
+    /// time have happened. A byte of the reply depends on earlier sent bytes only.
+    fn transact(&mut self, environment: &mut E, transaction: &Transaction, reply: &mut [u8]);
+
+    /// The data-ready line; chips without one never become ready.
+    fn ready_line(&self) -> ReadyLine {
+        ReadyLine::default()
+    }
+
+    /// Loses its supply for a moment and starts again at `now` with its reset values.
+    fn power_cycle(&mut self, now: Instant);
+
+    /// What was done to it that its data sheet forbids.
+    fn violations(&self) -> &Violations;
+}
+
+/// Lets a chip do everything that is due until `now`, that moment included.
+pub fn advance<E>(chip: &mut impl SpiChip<E>, environment: &mut E, now: Instant) {
+    while chip.next_event().is_some_and(|at| at <= now) {
+        chip.event(environment);
+    }
+}
+
+/// Chips that can be addressed through [`crate::spi::SpiPort`].
+pub trait Rig {
+    /// Answers a transaction with the selected chip.
+    fn transact(&mut self, select: Select, transaction: &Transaction, reply: &mut [u8]);
+
+    /// The data-ready line of the selected chip at `now`.
+    fn ready_line(&mut self, select: Select, now: Instant) -> ReadyLine;
+
+    /// Has the selected chip lose its supply for a moment.
+    fn power_cycle(&mut self, select: Select, now: Instant);
+}
+
+/// One chip alone with its environment.
+#[derive(Clone, Debug)]
+pub struct Single<C, E> {
+    /// The chip.
+    pub chip: C,
+    /// What surrounds it.
+    pub environment: E,
+}
+
+impl<C: SpiChip<E>, E> Rig for Single<C, E> {
+    fn transact(&mut self, _: Select, transaction: &Transaction, reply: &mut [u8]) {
+        advance(&mut self.chip, &mut self.environment, transaction.now);
+        self.chip.transact(&mut self.environment, transaction, reply);
+    }
+
+    fn ready_line(&mut self, _: Select, now: Instant) -> ReadyLine {
+        advance(&mut self.chip, &mut self.environment, now);
+        self.chip.ready_line()
+    }
+
+    fn power_cycle(&mut self, _: Select, now: Instant) {
+        advance(&mut self.chip, &mut self.environment, now);
+        self.chip.power_cycle(now);
+    }
+}

@@ -1,0 +1,60 @@
+//! Virtual time: nothing happens between two events, so the clock jumps from one to the next.
+//!
+//! A binary wraps one clock as its embassy-time driver and calls [`VirtualClock::advance`] when
+//! every future waits. Time then costs nothing, and one seed gives one run.
+
+use core::task::Waker;
+
+use embassy_time::Instant;
+use embassy_time_queue_utils::Queue;
+
+/// A clock of microseconds that stands still until it is advanced.
+#[derive(Debug)]
+pub struct VirtualClock {
+    now: u64,
+    queue: Queue,
+}
+
+impl VirtualClock {
+    /// A clock at zero with nothing to wait for.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { now: 0, queue: Queue::new() }
+    }
+
+    /// Ticks (µs) since the start.
+    #[must_use]
+    pub fn now(&self) -> u64 {
+        self.now
+    }
+
+    /// Wakes the waker when the clock reaches `at`, in ticks.
+    pub fn schedule_wake(&mut self, at: u64, waker: &Waker) {
+        self.queue.schedule_wake(at, waker);
+    }
+
+    /// Jumps to the next moment for which somebody waits and wakes all who wait for it; `false`, and
+    /// no jump, where nobody does.
+    pub fn advance(&mut self) -> bool {
+        let next = self.queue.next_expiration(self.now);
+        if next == u64::MAX {
+            return false;
+        }
+        self.now = next;
+        self.queue.next_expiration(next);
+        true
+    }
+}
+
+impl Default for VirtualClock {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The `count`-th period of a frequency in hertz after `start`, to the nearest microsecond; the
+/// rounding does not add up.
+#[must_use]
+pub fn period(start: Instant, count: u64, hertz: f64) -> Instant {
+    Instant::from_micros(start.as_micros() + libm::round(count as f64 * 1e6 / hertz) as u64)
+}

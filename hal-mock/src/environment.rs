@@ -1,0 +1,45 @@
+//! What the chips feel and move, in physical units: the seam between a chip and the world.
+//!
+//! Chips ask in rising order of time; each call stands for one measurement, so noise is drawn once
+//! for each.
+
+use embassy_time::Instant;
+
+/// A voltage between the two inputs of a converter.
+pub trait AnalogueInput {
+    /// The mean voltage over the conversion that ends at `now`, V.
+    fn volts(&mut self, now: Instant) -> f64;
+}
+
+/// What an accelerometer feels.
+pub trait ForceInput {
+    /// Specific force on the chip's axes over the output period that ends at `now`, in units of
+    /// 9.80665 m/s².
+    fn force_g(&mut self, now: Instant) -> [f64; 3];
+
+    /// Temperature, °C.
+    fn temperature_c(&mut self, now: Instant) -> f64;
+}
+
+/// The shaft with a magnet in front of an angle encoder.
+pub trait ShaftAngle {
+    /// What an ideal encoder with this magnet would show, turns, any number of them.
+    fn shaft_turns(&mut self, now: Instant) -> f64;
+
+    /// Whether the magnet's field is strong enough.
+    fn magnet_is_present(&self) -> bool {
+        true
+    }
+}
+
+/// What a stepper motor moves.
+pub trait Mechanics {
+    /// The motor's field stands at `microsteps` and turns at `microsteps_per_s` from `now` on.
+    fn drive(&mut self, now: Instant, microsteps: f64, microsteps_per_s: f64);
+
+    /// Whether the motor cannot follow.
+    fn is_blocked(&self) -> bool;
+
+    /// Whether the left and the right reference switch are touched.
+    fn reference_switches(&self) -> [bool; 2];
+}

@@ -1,0 +1,1 @@
+//! Simulated MT6835: 21-bit magnetic angle encoder of the stage (MagnTek data sheet).

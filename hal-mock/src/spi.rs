@@ -1,0 +1,159 @@
+//! The bus side of the simulated chips: `embedded-hal-async` in front, transactions behind.
+//!
+//! A transaction takes the time of its bits at the bus clock; the chip sees it when select falls.
+
+use core::cell::RefCell;
+use core::convert::Infallible;
+
+use embassy_time::{Duration, Instant, Timer};
+use embedded_hal::digital::ErrorType as PinErrorType;
+use embedded_hal_async::digital::Wait;
+use embedded_hal_async::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
+use heapless::Vec;
+
+use crate::chip::{Rig, Select, Transaction};
+
+/// Bytes of the longest transaction.
+const LONGEST: usize = 64;
+
+/// One chip of a rig behind its select line.
+#[derive(Debug)]
+pub struct SpiPort<'a, R> {
+    rig: &'a RefCell<R>,
+    select: Select,
+    hertz: u32,
+}
+
+impl<'a, R> SpiPort<'a, R> {
+    /// The chip at `select`, with a bus clock of `hertz` (> 0).
+    #[must_use]
+    pub const fn new(rig: &'a RefCell<R>, select: Select, hertz: u32) -> Self {
+        Self { rig, select, hertz }
+    }
+}
+
+impl<R> ErrorType for SpiPort<'_, R> {
+    type Error = ErrorKind;
+}
+
+impl<R: Rig> SpiDevice for SpiPort<'_, R> {
+    async fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), ErrorKind> {
+        let (sent, pause) = flatten(operations)?;
+        let mut reply = [0; LONGEST];
+        let reply = &mut reply[..sent.len()];
+        let transaction = Transaction { now: Instant::now(), hertz: self.hertz, sent: &sent };
+        self.rig.borrow_mut().transact(self.select, &transaction, reply);
+        Timer::after(duration(sent.len(), self.hertz) + pause).await;
+        distribute(operations, reply);
+        Ok(())
+    }
+}
+
+/// Time of so many bytes, rounded up to microseconds.
+fn duration(bytes: usize, hertz: u32) -> Duration {
+    Duration::from_micros((bytes as u64 * 8_000_000).div_ceil(u64::from(hertz)))
+}
+
+/// All bytes of a transaction in a row, and the pauses in it.
+fn flatten(operations: &[Operation<'_, u8>]) -> Result<(Vec<u8, LONGEST>, Duration), ErrorKind> {
+    let mut sent = Vec::new();
+    let mut pause = 0;
+    for operation in operations {
+        match operation {
+            Operation::Write(bytes) | Operation::Transfer(_, bytes) => {
+                sent.extend_from_slice(bytes)
+            }
+            Operation::TransferInPlace(bytes) => sent.extend_from_slice(bytes),
+            Operation::Read(bytes) => sent.resize(sent.len() + bytes.len(), 0),
+            Operation::DelayNs(nanoseconds) => {
+                pause += u64::from(*nanoseconds);
+                Ok(())
+            }
+        }
+        .map_err(|_| ErrorKind::Overrun)?;
+        if let Operation::Transfer(read, written) = operation {
+            let longer = read.len().max(written.len());
+            sent.resize(sent.len() + longer - written.len(), 0).map_err(|_| ErrorKind::Overrun)?;
+        }
+    }
+    Ok((sent, Duration::from_micros(pause.div_ceil(1000))))
+}
+
+/// Hands the reply out to the operations that read.
+fn distribute(operations: &mut [Operation<'_, u8>], reply: &[u8]) {
+    let mut rest = reply;
+    for operation in operations {
+        let (bytes, length): (&mut [u8], usize) = match operation {
+            Operation::Write(bytes) => (&mut [], bytes.len()),
+            Operation::Read(bytes) | Operation::TransferInPlace(bytes) => {
+                let length = bytes.len();
+                (bytes, length)
+            }
+            Operation::Transfer(read, written) => {
+                let length = read.len().max(written.len());
+                (read, length)
+            }
+            Operation::DelayNs(_) => continue,
+        };
+        let (own, later) = rest.split_at(length);
+        let count = bytes.len();
+        bytes.copy_from_slice(&own[..count]);
+        rest = later;
+    }
+}
+
+/// The data-ready line of one chip of a rig.
+#[derive(Debug)]
+pub struct ReadyPin<'a, R> {
+    rig: &'a RefCell<R>,
+    select: Select,
+}
+
+impl<'a, R: Rig> ReadyPin<'a, R> {
+    /// The line of the chip at `select`.
+    #[must_use]
+    pub const fn new(rig: &'a RefCell<R>, select: Select) -> Self {
+        Self { rig, select }
+    }
+
+    /// Waits until the line next becomes active; for ever where it does not.
+    async fn next_edge(&self) {
+        let line = self.rig.borrow_mut().ready_line(self.select, Instant::now());
+        match line.next {
+            Some(at) => Timer::at(at).await,
+            None => core::future::pending().await,
+        }
+    }
+}
+
+impl<R> PinErrorType for ReadyPin<'_, R> {
+    type Error = Infallible;
+}
+
+/// The lines of all chips here are active low: falling is becoming ready.
+impl<R: Rig> Wait for ReadyPin<'_, R> {
+    async fn wait_for_high(&mut self) -> Result<(), Infallible> {
+        core::future::pending().await
+    }
+
+    async fn wait_for_low(&mut self) -> Result<(), Infallible> {
+        let active = self.rig.borrow_mut().ready_line(self.select, Instant::now()).active;
+        if !active {
+            self.next_edge().await;
+        }
+        Ok(())
+    }
+
+    async fn wait_for_rising_edge(&mut self) -> Result<(), Infallible> {
+        core::future::pending().await
+    }
+
+    async fn wait_for_falling_edge(&mut self) -> Result<(), Infallible> {
+        self.next_edge().await;
+        Ok(())
+    }
+
+    async fn wait_for_any_edge(&mut self) -> Result<(), Infallible> {
+        self.wait_for_falling_edge().await
+    }
+}

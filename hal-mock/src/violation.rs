@@ -1,0 +1,78 @@
+//! What a driver did that its chip's data sheet forbids: recorded, so that a test can fail on it.
+
+use core::fmt;
+
+use embassy_time::Instant;
+use heapless::Vec;
+
+/// Violations that are kept; later ones are only counted.
+const KEPT: usize = 16;
+
+/// A forbidden access.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Misuse {
+    /// No register has this address.
+    UnknownRegister,
+    /// The register can only be read.
+    ReadOnly,
+    /// The register can only be written.
+    WriteOnly,
+    /// A reserved bit was not written with its reserved value.
+    ReservedBits,
+    /// A value that the data sheet excludes, or excludes in this state.
+    ForbiddenValue,
+    /// The command byte means nothing.
+    UnknownCommand,
+    /// The transaction has the wrong number of bytes.
+    Length,
+    /// The bus clock is faster than the chip allows.
+    ClockTooFast,
+    /// The chip was still starting, resetting or busy.
+    TooEarly,
+}
+
+/// A forbidden access: what, where, when.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Violation {
+    /// What was wrong.
+    pub misuse: Misuse,
+    /// The register's address, or the command byte.
+    pub address: u8,
+    /// When.
+    pub at: Instant,
+}
+
+impl fmt::Display for Violation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { misuse, address, at } = self;
+        write!(f, "{misuse:?} at {address:#04x} after {} µs", at.as_micros())
+    }
+}
+
+/// The forbidden accesses of one chip.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Violations {
+    first: Vec<Violation, KEPT>,
+    count: usize,
+}
+
+impl Violations {
+    /// Records one.
+    pub fn record(&mut self, misuse: Misuse, address: u8, at: Instant) {
+        self.count += 1;
+        // Where there is no more room the count still tells.
+        let _ = self.first.push(Violation { misuse, address, at });
+    }
+
+    /// How many there were.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The first of them.
+    #[must_use]
+    pub fn first(&self) -> &[Violation] {
+        &self.first
+    }
+}
