@@ -1,6 +1,6 @@
 //! Why a chip gave no reading, and what to do about it.
 
-use core::fmt;
+use orientation::words;
 
 /// A failed exchange with a chip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,19 +32,13 @@ pub enum Fault {
     },
 }
 
-impl fmt::Display for Fault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Bus => f.write_str("bus error"),
-            Self::Checksum => f.write_str("wrong checksum"),
-            Self::Reset => f.write_str("it was reset"),
-            Self::Identity { found } => write!(f, "wrong identity {found:#x}"),
-            Self::SelfTest => f.write_str("self-test failed"),
-            Self::NotAsWritten { register } => {
-                write!(f, "register {register:#04x} does not hold what was written")
-            }
-            Self::NotReady => f.write_str("not ready in time"),
-            Self::Alarm { status } => write!(f, "alarm, status {status:#04x}"),
-        }
-    }
+words! { Fault:
+    Self::Bus => "bus error";
+    Self::Checksum => "wrong checksum";
+    Self::Reset => "it has restarted";
+    Self::Identity { found } => "wrong identity {}", found;
+    Self::SelfTest => "self-test failed";
+    Self::NotAsWritten { register } => "register {} does not hold what was written", register;
+    Self::NotReady => "not ready in time";
+    Self::Alarm { status } => "alarm, status {}", status;
 }

@@ -1,6 +1,8 @@
 //! Why something ended without a result.
 
-use core::fmt;
+use crate::device::{Device, Trouble};
+use crate::words;
+use crate::words::Rounded;
 
 /// Where the standard deviation of an azimuth comes from; see [`crate::align::budget::Budget`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,19 +25,15 @@ pub enum Source {
     Temperature,
 }
 
-impl fmt::Display for Source {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Noise => "gyro noise",
-            Self::Drift => "gyro drift",
-            Self::GSensitivity => "g-sensitivity",
-            Self::Accelerometer => "tilt from the accelerometer",
-            Self::Encoder => "stage encoder",
-            Self::Latitude => "latitude",
-            Self::Scale => "gyro scale factor",
-            Self::Temperature => "temperature slope",
-        })
-    }
+words! { Source:
+    Self::Noise => "gyro noise";
+    Self::Drift => "gyro drift";
+    Self::GSensitivity => "g-sensitivity";
+    Self::Accelerometer => "tilt from the accelerometer";
+    Self::Encoder => "stage encoder";
+    Self::Latitude => "latitude";
+    Self::Scale => "gyro scale factor";
+    Self::Temperature => "temperature slope";
 }
 
 /// Why no azimuth is given. Angles in degrees, ready to print.
@@ -122,90 +120,53 @@ pub enum Refusal {
     NothingAccepted,
     /// Every entry of the table lies within the given bound.
     EverythingAccepted,
+    /// A device of the board failed.
+    Device {
+        /// Which.
+        device: Device,
+        /// What is wrong with it.
+        trouble: Trouble,
+    },
 }
 
-impl fmt::Display for Refusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.words() {
-            Some(words) => f.write_str(words),
-            None => self.with_numbers(f),
-        }
-    }
-}
-
-impl Refusal {
-    /// The reasons that carry no number.
-    fn words(&self) -> Option<&'static str> {
-        Some(match self {
-            Self::ArcCannotTell => {
-                "the positions cannot tell the azimuth: turn the stage over a longer arc"
-            }
-            Self::TrendNotSeparable => {
-                "the rate drifts, and these positions cannot tell it from the Earth rate: turn a full circle"
-            }
-            Self::TimeExhausted => "the time allowed ran out",
-            Self::StepsUneven => {
-                "this criterion needs equal steps that are a multiple of 10″, none left out"
-            }
-            Self::NothingAccepted => "no azimuth of the table lies within the bound",
-            Self::EverythingAccepted => {
-                "every azimuth of the table lies within the bound: it cannot tell"
-            }
-            _ => return None,
-        })
-    }
-
-    /// The reasons of place, platform and stage; those of the fit follow.
-    fn with_numbers(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self::LatitudeTooHigh { latitude } => write!(
-                f,
-                "latitude {latitude:.2}° is beyond ±85°: too little of the Earth rate is horizontal"
-            ),
-            Self::TiltTooGreat { tilt, allowed } => write!(
-                f,
-                "the platform is inclined by {tilt:.2}°, more than {allowed:.1}°: level it"
-            ),
-            Self::AccelerometerImplausible { ratio } => write!(
-                f,
-                "the accelerometer feels {ratio:.3} of gravity: check its axes, signs and units"
-            ),
-            Self::StageNotThere { target, actual } => {
-                write!(f, "the stage was sent to {target:.3}° but stands at {actual:.3}°")
-            }
-            Self::Disturbed { disturbed, positions } => write!(
-                f,
-                "{disturbed} of {positions} dwells were disturbed: keep the platform still"
-            ),
-            Self::TooFewPositions { positions } => {
-                write!(f, "{positions} undisturbed position(s): three different ones are needed")
-            }
-            _ => self.of_fit(f),
-        }
-    }
-
-    /// The reasons that the fit gives.
-    fn of_fit(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self::BudgetNotMet { sigma, required, source } => write!(
-                f,
-                "σ would be {sigma:.3}°, above the accepted {required:.3}°; {source} contributes most"
-            ),
-            Self::TiltTooUncertain { sigma, required } => write!(
-                f,
-                "the tilt is known too badly: it alone costs {sigma:.3}° of {required:.3}°; turn a full circle or calibrate the accelerometer"
-            ),
-            Self::ResidualsNotWhite { ratio } => {
-                write!(f, "residuals are not white: {ratio:.1} times the stated noise power")
-            }
-            Self::ResidualsCorrelated { correlation } => {
-                write!(f, "residuals are not white: neighbours correlate by {correlation:.2}")
-            }
-            Self::EarthRateMismatch { ratio, sigma } => write!(
-                f,
-                "Earth rate found is {ratio:.3} ± {sigma:.3} of the expected: check latitude and gyro scale"
-            ),
-            _ => Ok(()),
-        }
-    }
+words! { Refusal:
+    Self::LatitudeTooHigh { latitude } =>
+        "latitude {}° is beyond ±85°: too little of the Earth rate is horizontal",
+        Rounded::<2>(latitude);
+    Self::TooFewPositions { positions } =>
+        "{} undisturbed position(s): three different ones are needed", positions;
+    Self::ArcCannotTell =>
+        "the positions cannot tell the azimuth: turn the stage over a longer arc";
+    Self::BudgetNotMet { sigma, required, source } =>
+        "σ would be {}°, above the accepted {}°; {} contributes most",
+        Rounded::<3>(sigma), Rounded::<3>(required), source;
+    Self::TiltTooGreat { tilt, allowed } =>
+        "the platform is inclined by {}°, more than {}°: level it",
+        Rounded::<2>(tilt), Rounded::<1>(allowed);
+    Self::TiltTooUncertain { sigma, required } =>
+        "the tilt is known too badly: it alone costs {}° of {}°; turn a full circle or calibrate the accelerometer",
+        Rounded::<3>(sigma), Rounded::<3>(required);
+    Self::ResidualsNotWhite { ratio } =>
+        "residuals are not white: {} times the stated noise power", Rounded::<1>(ratio);
+    Self::ResidualsCorrelated { correlation } =>
+        "residuals are not white: neighbours correlate by {}", Rounded::<2>(correlation);
+    Self::TrendNotSeparable =>
+        "the rate drifts, and these positions cannot tell it from the Earth rate: turn a full circle";
+    Self::AccelerometerImplausible { ratio } =>
+        "the accelerometer feels {} of gravity: check its axes, signs and units",
+        Rounded::<3>(ratio);
+    Self::EarthRateMismatch { ratio, sigma } =>
+        "Earth rate found is {} ± {} of the expected: check latitude and gyro scale",
+        Rounded::<3>(ratio), Rounded::<3>(sigma);
+    Self::Disturbed { disturbed, positions } =>
+        "{} of {} dwells were disturbed: keep the platform still", disturbed, positions;
+    Self::StageNotThere { target, actual } =>
+        "the stage was sent to {}° but stands at {}°", Rounded::<3>(target), Rounded::<3>(actual);
+    Self::TimeExhausted => "the time allowed ran out";
+    Self::StepsUneven =>
+        "this criterion needs equal steps that are a multiple of 10″, none left out";
+    Self::NothingAccepted => "no azimuth of the table lies within the bound";
+    Self::EverythingAccepted =>
+        "every azimuth of the table lies within the bound: it cannot tell";
+    Self::Device { device, trouble } => "{}: {}", device, trouble;
 }

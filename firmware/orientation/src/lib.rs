@@ -13,7 +13,9 @@
 #![forbid(unsafe_code)]
 
 pub mod units;
+pub mod words;
 
+pub mod device;
 pub mod earth;
 pub mod error;
 pub mod math;

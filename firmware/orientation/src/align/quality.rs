@@ -4,13 +4,13 @@
 //! slow push as a slope that the other dwells do not share. All are measured against the gyro's
 //! noise; where that is unknown, against the median of the dwells.
 
-use core::fmt;
-
 use super::setting::Setting;
 use super::{POSITIONS, level};
 use crate::math::{chi_square_tail, median};
 use crate::signal::blocks::Quietness;
 use crate::signal::dwell::{Dwell, SampleFault};
+use crate::words;
+use crate::words::Rounded;
 
 /// Why a dwell is left out of the fit. Numbers are in units of the expected standard deviation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,19 +29,15 @@ pub enum Disturbance {
     Outlier(f64),
 }
 
-impl fmt::Display for Disturbance {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Samples(SampleFault::Saturated) => f.write_str("gyro saturated"),
-            Self::Samples(SampleFault::Stuck) => f.write_str("gyro stuck: every sample the same"),
-            Self::Samples(SampleFault::Missing) => f.write_str("samples missing"),
-            Self::Unquiet(x) => write!(f, "not quiet: {x:.1} times the noise power"),
-            Self::Step(x) => write!(f, "stepped by {x:.1} σ within the dwell"),
-            Self::Drift(x) => write!(f, "drifted by {x:.1} σ within the dwell"),
-            Self::Moved(x) => write!(f, "platform moved by {x:.1} σ"),
-            Self::Outlier(x) => write!(f, "residual of {x:.1} σ"),
-        }
-    }
+words! { Disturbance:
+    Self::Samples(SampleFault::Saturated) => "gyro saturated";
+    Self::Samples(SampleFault::Stuck) => "gyro stuck: every sample the same";
+    Self::Samples(SampleFault::Missing) => "samples missing";
+    Self::Unquiet(x) => "not quiet: {} times the noise power", Rounded::<1>(x);
+    Self::Step(x) => "stepped by {} σ within the dwell", Rounded::<1>(x);
+    Self::Drift(x) => "drifted by {} σ within the dwell", Rounded::<1>(x);
+    Self::Moved(x) => "platform moved by {} σ", Rounded::<1>(x);
+    Self::Outlier(x) => "residual of {} σ", Rounded::<1>(x);
 }
 
 /// Probability with which the scatter test rejects a healthy dwell.

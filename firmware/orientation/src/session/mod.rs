@@ -30,6 +30,7 @@ use crate::units::{Instant, TURN};
 
 /// Second-order sections of the stage filter: Sokolov's sixth order.
 const SECTIONS: usize = 3;
+
 /// What happens to a session.
 #[derive(Clone, Copy, Debug)]
 pub enum Event<'a> {
@@ -39,6 +40,8 @@ pub enum Event<'a> {
     Averaged(&'a Dwell),
     /// There will be no more.
     End,
+    /// The instrument cannot go on.
+    Failed(Refusal),
 }
 
 /// What the session asks for.
@@ -133,6 +136,7 @@ impl Session {
             Event::Sample(sample) => self.sample(sample),
             Event::Averaged(dwell) => self.averaged(dwell),
             Event::End => self.conclude(None),
+            Event::Failed(reason) => self.conclude(Some(reason)),
         }
     }
 

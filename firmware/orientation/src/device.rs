@@ -1,0 +1,77 @@
+//! The devices that an alignment depends on, and what can go wrong with them for good.
+
+use crate::words;
+use crate::words::Rounded;
+
+/// A device of the board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Device {
+    /// The precise gyro.
+    Gyro,
+    /// The accelerometer on the platform.
+    Accelerometer,
+    /// The encoder of the stage.
+    Encoder,
+    /// The stage's motor and its driver.
+    Stage,
+}
+
+words! { Device:
+    Self::Gyro => "gyro";
+    Self::Accelerometer => "accelerometer";
+    Self::Encoder => "encoder";
+    Self::Stage => "stage";
+}
+
+/// What is wrong with a device, where repeating and restarting did not mend it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Trouble {
+    /// Its bus fails.
+    Bus,
+    /// Its readings fail their checksum.
+    Checksum,
+    /// It restarts again and again.
+    Resets,
+    /// Another chip answers, or none.
+    Identity,
+    /// Its self-test fails.
+    SelfTest,
+    /// It does not keep what is written to it.
+    NotAsWritten,
+    /// It gives no more data.
+    Silent,
+    /// It reports a bad supply, reference, magnet or driver.
+    Alarm,
+    /// It gives the same reading for ever.
+    Stuck,
+    /// It stays at the limit of its range.
+    Saturated,
+    /// It does not turn.
+    Stalled,
+    /// Motor and encoder disagree, by this angle, °.
+    Disagrees(f64),
+    /// The index was not found.
+    NoIndex,
+    /// It was sent beyond its travel, to this angle, °.
+    BeyondTravel(f64),
+    /// It stands elsewhere than it was sent, by this angle, °.
+    NotThere(f64),
+}
+
+words! { Trouble:
+    Self::Bus => "its bus fails";
+    Self::Checksum => "its readings fail their checksum";
+    Self::Resets => "it restarts again and again: check its supply";
+    Self::Identity => "another chip answers, or none: check the wiring";
+    Self::SelfTest => "its self-test fails";
+    Self::NotAsWritten => "it does not keep its configuration";
+    Self::Silent => "it gives no more data";
+    Self::Alarm => "it reports a bad supply, reference or magnet";
+    Self::Stuck => "it gives the same reading for ever";
+    Self::Saturated => "it stays at the limit of its range";
+    Self::Stalled => "it is blocked";
+    Self::Disagrees(angle) => "motor and encoder disagree by {}°", Rounded::<2>(angle);
+    Self::NoIndex => "its index was not found";
+    Self::BeyondTravel(angle) => "{}° is beyond its travel", Rounded::<2>(angle);
+    Self::NotThere(angle) => "it stands {}° from where it was sent", Rounded::<3>(angle);
+}
