@@ -1,0 +1,232 @@
+//! Acquisition: on every conversion of the gyro one sample of the stage path, or none and the reason.
+//!
+//! The conversion sets the time; the encoder is read right after it, the accelerometer with every
+//! so-manieth sample. A sample goes out only whole: without a good rate and a good angle there is
+//! none, and its absence shows in the next one's time.
+
+use embassy_time::{Duration, Instant, with_timeout};
+use orientation::device::{Device, Trouble};
+use orientation::error::Refusal;
+use orientation::signal::Sample;
+use orientation::units::{Angle, AngularRate, SpecificForce, Temperature};
+
+use crate::calibration::Calibration;
+use crate::configuration::Configuration;
+use crate::event::Event;
+use crate::guarded::Guarded;
+use crate::patience::Symptom;
+use crate::ports::{Accelerometer, Encoder, ForceReading, Gyro, Observer};
+use crate::shared::Shared;
+use crate::timeline::{Arrival, Timeline};
+
+/// Periods without a conversion after which the gyro is silent.
+const SILENCE: u32 = 8;
+/// Equal readings in a row that are no chance: the last bits of both sensors are noise.
+const STUCK: u32 = 64;
+/// Longest time at the limit of the range, s: a slammed door is over by then.
+const SATURATED_SECONDS: f64 = 5.0;
+
+/// How often something came in a row.
+#[derive(Clone, Copy, Debug)]
+struct Row<T> {
+    last: Option<T>,
+    count: u32,
+}
+
+impl<T: Copy + PartialEq> Row<T> {
+    const fn new() -> Self {
+        Self { last: None, count: 0 }
+    }
+
+    /// How often this value has come in a row before.
+    fn push(&mut self, value: T) -> u32 {
+        self.count = if self.last.replace(value) == Some(value) { self.count + 1 } else { 0 };
+        self.count
+    }
+}
+
+/// The sensors of the stage path at work.
+pub struct Acquisition<'a, G, A, E, O> {
+    gyro: Guarded<G>,
+    accelerometer: Guarded<A>,
+    encoder: Guarded<E>,
+    shared: &'a Shared<'a, O>,
+    calibration: Calibration,
+    timeline: Timeline,
+    silence: Duration,
+    divider: u32,
+    until_force: u32,
+    rates: Row<AngularRate>,
+    forces: Row<[SpecificForce; 3]>,
+    rates_clipped: u32,
+    forces_clipped: u32,
+    longest_clipped: u32,
+}
+
+impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, A, E, O> {
+    /// Takes the sensors; nothing is started yet.
+    pub fn new(
+        gyro: G,
+        accelerometer: A,
+        encoder: E,
+        configuration: &Configuration,
+        shared: &'a Shared<'a, O>,
+    ) -> Self {
+        let period = configuration.period();
+        Self {
+            gyro: Guarded::new(gyro, Device::Gyro),
+            accelerometer: Guarded::new(accelerometer, Device::Accelerometer),
+            encoder: Guarded::new(encoder, Device::Encoder),
+            shared,
+            calibration: Calibration::new(configuration.encoder),
+            timeline: Timeline::new(period),
+            silence: Duration::from_micros(u64::from(period) * u64::from(SILENCE)),
+            divider: configuration.force_divider.max(1),
+            until_force: 0,
+            rates: Row::new(),
+            forces: Row::new(),
+            rates_clipped: 0,
+            forces_clipped: 0,
+            longest_clipped: (SATURATED_SECONDS * configuration.sample_rate) as u32,
+        }
+    }
+
+    /// Samples until a sensor is given up; gives the reason.
+    pub async fn run(mut self) -> Refusal {
+        match self.sample_for_ever().await {
+            Ok(never) => match never {},
+            Err(reason) => reason,
+        }
+    }
+
+    async fn sample_for_ever(&mut self) -> Result<core::convert::Infallible, Refusal> {
+        self.accelerometer.start(self.shared).await?;
+        self.encoder.start(self.shared).await?;
+        self.gyro.start(self.shared).await?;
+        loop {
+            if let Some(sample) = self.sample().await? {
+                self.hand_over(sample);
+            }
+        }
+    }
+
+    /// Queues a sample for the session, and tells of it where it cannot.
+    fn hand_over(&self, sample: Sample) {
+        self.shared.count(|health| health.samples += 1);
+        if self.shared.samples.try_send(sample).is_err() {
+            self.shared.count(|health| health.overflowed += 1);
+            self.shared.tell(Event::Overflowed(self.shared.health.get().overflowed));
+        }
+    }
+
+    /// The next sample, or none where a reading was lost.
+    async fn sample(&mut self) -> Result<Option<Sample>, Refusal> {
+        let Some(time) = self.conversion().await? else { return Ok(None) };
+        let rate = self.rate().await?;
+        let stage = self.angle().await?;
+        let force = self.force().await?;
+        let (Some(rate), Some(stage)) = (rate, stage) else { return Ok(None) };
+        self.judge(time);
+        Ok(Some(Sample {
+            time: orientation::units::Instant(time.as_micros()),
+            stage,
+            rate,
+            force: force.map(|(force, _)| force),
+            temperature: force.map(|(_, temperature)| temperature),
+        }))
+    }
+
+    /// Waits for a conversion; its time.
+    async fn conversion(&mut self) -> Result<Option<Instant>, Refusal> {
+        match with_timeout(self.silence, self.gyro.device.ready()).await {
+            Ok(outcome) => {
+                let now = Instant::now();
+                let ready = self.gyro.checked(outcome, self.shared).await?;
+                Ok(ready.map(|()| now))
+            }
+            Err(_) => self.gyro.mend(Symptom::Silent, self.shared).await.map(|()| None),
+        }
+    }
+
+    async fn rate(&mut self) -> Result<Option<AngularRate>, Refusal> {
+        let outcome = self.gyro.device.read().await;
+        let Some(reading) = self.gyro.checked(outcome, self.shared).await? else {
+            return Ok(None);
+        };
+        if !reading.is_new {
+            return Ok(None);
+        }
+        self.judge_saturation(reading.rate)?;
+        if self.rates.push(reading.rate) >= STUCK && !reading.rate.is_saturated() {
+            self.rates = Row::new();
+            self.gyro.mend(Symptom::Stuck, self.shared).await?;
+            return Ok(None);
+        }
+        Ok(Some(reading.rate))
+    }
+
+    fn judge_saturation(&mut self, rate: AngularRate) -> Result<(), Refusal> {
+        self.rates_clipped = if rate.is_saturated() { self.rates_clipped + 1 } else { 0 };
+        if self.rates_clipped <= self.longest_clipped {
+            return Ok(());
+        }
+        Err(self.shared.give_up(Device::Gyro, Trouble::Saturated))
+    }
+
+    async fn angle(&mut self) -> Result<Option<Angle>, Refusal> {
+        let outcome = self.encoder.device.read().await;
+        let shown = self.encoder.checked(outcome, self.shared).await?;
+        Ok(shown.map(|shown| {
+            let angle = self.calibration.correct(shown);
+            self.shared.angle.set((angle, Instant::now()));
+            self.shared.sensing.signal(());
+            angle
+        }))
+    }
+
+    /// Force and temperature with every so-manieth sample.
+    async fn force(&mut self) -> Result<Option<([SpecificForce; 3], Temperature)>, Refusal> {
+        if self.until_force > 0 {
+            self.until_force -= 1;
+            return Ok(None);
+        }
+        self.until_force = self.divider - 1;
+        let outcome = self.accelerometer.device.read().await;
+        let Some(reading) = self.accelerometer.checked(outcome, self.shared).await? else {
+            return Ok(None);
+        };
+        self.judge_force(&reading).await?;
+        let usable = reading.is_new && !reading.is_clipped;
+        Ok(usable.then_some((reading.force, reading.temperature)))
+    }
+
+    /// Old outputs and equal ones show an accelerometer that has stopped; one that stays at its
+    /// limit is of no use.
+    async fn judge_force(&mut self, reading: &ForceReading) -> Result<(), Refusal> {
+        self.forces_clipped =
+            if reading.is_clipped { self.forces_clipped + self.divider } else { 0 };
+        if self.forces_clipped > self.longest_clipped {
+            return Err(self.shared.give_up(Device::Accelerometer, Trouble::Saturated));
+        }
+        if self.forces.push(reading.force) < STUCK {
+            return Ok(());
+        }
+        self.forces = Row::new();
+        self.accelerometer.mend(Symptom::Stuck, self.shared).await
+    }
+
+    /// Counts and tells samples that are missing or beside their time.
+    fn judge(&mut self, time: Instant) {
+        match self.timeline.judge(time) {
+            Arrival::InTime => {}
+            Arrival::Late(microseconds) => {
+                self.shared.count(|health| health.late += 1);
+                self.shared.tell(Event::Late(microseconds));
+            }
+            Arrival::Missing(count) => {
+                self.shared.count(|health| health.missing = health.missing.saturating_add(count));
+                self.shared.tell(Event::Missing(count));
+            }
+        }
+    }
+}

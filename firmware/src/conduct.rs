@@ -1,0 +1,167 @@
+//! Conducts the session: samples in, commands to the stage, and what comes of it told.
+
+use embassy_futures::select::{Either, select};
+use embassy_time::{Duration, Instant, with_timeout};
+use orientation::align::conclusion::Conclusion;
+use orientation::error::Refusal;
+use orientation::session::{Command, Event as SessionEvent, Phase, Session};
+use orientation::signal::Sample;
+use orientation::units::{DEGREE_PER_HOUR, TURN};
+
+use crate::event::Event;
+use crate::link::Status;
+use crate::ports::{Observer, Recorder};
+use crate::shared::Shared;
+
+/// Time without any sample after which nothing more is expected: longer than all restarts of a
+/// sensor together.
+const SILENCE: Duration = Duration::from_secs(30);
+/// Longest time until the stage is homed: a search over the whole travel, and again.
+const HOMING: Duration = Duration::from_secs(300);
+/// Degrees of a radian.
+const DEGREES: f64 = 360.0 / TURN;
+
+/// The session at work.
+pub struct Conductor<'a, R, O> {
+    session: &'a mut Session,
+    recorder: R,
+    shared: &'a Shared<'a, O>,
+    told: Told,
+}
+
+/// What has been told of the session.
+#[derive(Clone, Copy, Debug, Default)]
+struct Told {
+    dwells: usize,
+    repetitions: usize,
+    is_level: bool,
+}
+
+impl<'a, R: Recorder, O: Observer> Conductor<'a, R, O> {
+    /// Takes a session that has not begun.
+    pub fn new(session: &'a mut Session, recorder: R, shared: &'a Shared<'a, O>) -> Self {
+        Self { session, recorder, shared, told: Told::default() }
+    }
+
+    /// Conducts the session to its conclusion.
+    pub async fn run(mut self) {
+        self.begin();
+        if let Err(reason) = self.conduct().await {
+            self.session.handle(SessionEvent::Failed(reason));
+        }
+        self.conclude();
+    }
+
+    fn begin(&self) {
+        let of = self.session.planned();
+        self.shared.status.set(Status::Homing);
+        let dwell = self.session.dwell_seconds();
+        let latitude = self.session.latitude().rad() * DEGREES;
+        self.shared.tell(Event::Begun { positions: of, dwell, latitude });
+    }
+
+    async fn conduct(&mut self) -> Result<(), Refusal> {
+        self.wait_for_home().await?;
+        loop {
+            let sample = self.sample().await?;
+            self.recorder.record(&sample).await;
+            let command = self.session.handle(SessionEvent::Sample(&sample));
+            self.follow();
+            match command {
+                Command::Wait => {}
+                Command::Rotate(angle) => self.shared.target.signal(angle),
+                Command::Finished => return Ok(()),
+            }
+        }
+    }
+
+    /// Lets samples go by until angles mean something.
+    async fn wait_for_home(&self) -> Result<(), Refusal> {
+        let deadline = Instant::now() + HOMING;
+        while !self.shared.homed.signaled() {
+            self.sample().await?;
+            if Instant::now() > deadline {
+                return Err(Refusal::TimeExhausted);
+            }
+        }
+        Ok(())
+    }
+
+    /// The next sample, or why there will be none.
+    async fn sample(&self) -> Result<Sample, Refusal> {
+        let next = select(self.shared.failure.wait(), self.shared.samples.receive());
+        match with_timeout(SILENCE, next).await {
+            Ok(Either::First(reason)) => Err(reason),
+            Ok(Either::Second(sample)) => Ok(sample),
+            Err(_) => Err(Refusal::TimeExhausted),
+        }
+    }
+
+    /// Tells what the last sample changed.
+    fn follow(&mut self) {
+        if !self.told.is_level && self.session.phase() != Phase::Level {
+            self.told.is_level = true;
+            self.tell_level();
+        }
+        if self.session.repetitions().len() > self.told.repetitions {
+            self.told.repetitions = self.session.repetitions().len();
+            self.tell_repetition();
+        }
+        if self.session.dwells().len() > self.told.dwells {
+            self.told.dwells = self.session.dwells().len();
+            self.tell_dwell();
+        }
+    }
+
+    fn tell_level(&self) {
+        let [along, across] = self.session.inclination().map(|angle| angle * DEGREES);
+        self.shared.tell(Event::Levelled(along, across));
+        self.tell_status();
+    }
+
+    fn tell_repetition(&self) {
+        if let Some(repetition) = self.session.repetitions().last() {
+            self.shared.tell(Event::Repeated(repetition.position + 1, repetition.why));
+        }
+    }
+
+    fn tell_dwell(&self) {
+        if let Some(dwell) = self.session.dwells().last() {
+            let rate = dwell.rate / DEGREE_PER_HOUR;
+            self.shared.tell(Event::Dwelled(self.told.dwells, self.session.planned(), rate));
+        }
+        self.shared.observer().progress(self.session);
+        self.tell_status();
+    }
+
+    fn tell_status(&self) {
+        let (done, of) = (self.told.dwells as u16, self.session.planned() as u16);
+        self.shared.status.set(Status::Measuring { done, of });
+    }
+
+    fn conclude(&self) {
+        let Some(conclusion) = self.session.conclusion() else { return };
+        self.tell_left_out(conclusion);
+        match conclusion.verdict {
+            Ok(azimuth) => {
+                let limit = conclusion.fit.as_ref().map_or(0.0, |fit| fit.limit);
+                let [angle, sigma, limit] =
+                    [azimuth.angle, azimuth.sigma, limit].map(|angle| angle * DEGREES);
+                self.shared.tell(Event::Concluded(angle, sigma, limit));
+                self.shared.status.set(Status::concluded(angle, sigma));
+            }
+            Err(reason) => {
+                self.shared.tell(Event::Refused(reason));
+                self.shared.status.set(Status::Refused);
+            }
+        }
+    }
+
+    fn tell_left_out(&self, conclusion: &Conclusion) {
+        for (number, why) in (1..).zip(&conclusion.disturbances) {
+            if let Some(why) = why {
+                self.shared.tell(Event::LeftOut(number, *why));
+            }
+        }
+    }
+}

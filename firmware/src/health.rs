@@ -1,0 +1,66 @@
+//! What went wrong so far, counted: nothing is lost silently.
+
+use orientation::device::Device;
+
+/// Counters since the start; all stop at their limits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Health {
+    /// Samples that were taken.
+    pub samples: u32,
+    /// Samples that never came.
+    pub missing: u32,
+    /// Samples that came beside their time.
+    pub late: u32,
+    /// Samples that nobody took in time.
+    pub overflowed: u32,
+    /// Readings lost, by device: gyro, accelerometer, encoder, stage.
+    pub lost: [u16; 4],
+    /// Restarts, by device.
+    pub restarts: [u16; 4],
+    /// Status lines that the link did not take.
+    pub unsent: u32,
+}
+
+impl Health {
+    /// Nothing has gone wrong.
+    pub const EMPTY: Self = Self {
+        samples: 0,
+        missing: 0,
+        late: 0,
+        overflowed: 0,
+        lost: [0; 4],
+        restarts: [0; 4],
+        unsent: 0,
+    };
+
+    /// A reading of a device was lost.
+    pub fn lose(&mut self, device: Device) {
+        count(&mut self.lost, device);
+    }
+
+    /// A device was started again.
+    pub fn restart(&mut self, device: Device) {
+        count(&mut self.restarts, device);
+    }
+
+    /// All faults together.
+    #[must_use]
+    pub fn faults(&self) -> u32 {
+        let devices: u32 = self.lost.iter().chain(&self.restarts).map(|n| u32::from(*n)).sum();
+        devices
+            .saturating_add(self.missing)
+            .saturating_add(self.late)
+            .saturating_add(self.overflowed)
+            .saturating_add(self.unsent)
+    }
+}
+
+fn count(counters: &mut [u16; 4], device: Device) {
+    let counter = &mut counters[match device {
+        Device::Gyro => 0,
+        Device::Accelerometer => 1,
+        Device::Encoder => 2,
+        Device::Stage => 3,
+    }];
+    *counter = counter.saturating_add(1);
+}

@@ -1,0 +1,35 @@
+//! The instrument: the same application on the board, in the emulator and on the host.
+//!
+//! ```text
+//!  gyro ──────┐
+//!  encoder ───┼─▶ acquire ─sample─▶ conduct (filter, dwell, session) ─▶ azimuth ± σ ─▶ link
+//!  force ─────┘      │ angle           │ command                    └▶ observer (log)
+//!                    └────────────▶ stage ─▶ motor
+//! ```
+//!
+//! [`run::run`] joins these parts in fixed order; it knows no pin, no bus and no clock but
+//! `embassy-time`'s. What it needs from the outside are the traits of [`ports`]; [`chips`] gives them
+//! to the drivers of the `drivers` crate. What happens is told once, as an [`event::Event`].
+#![no_std]
+#![forbid(unsafe_code)]
+
+pub mod ports;
+
+pub mod chips;
+
+pub mod acquire;
+pub mod calibration;
+pub mod guarded;
+pub mod patience;
+pub mod timeline;
+
+pub mod conduct;
+pub mod stage;
+
+pub mod event;
+pub mod health;
+pub mod link;
+
+pub mod configuration;
+pub mod run;
+pub mod shared;

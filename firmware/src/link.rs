@@ -1,0 +1,102 @@
+//! The status line: one line of text a second, for whoever listens.
+//!
+//! ```text
+//! measuring 5/24, faults 0
+//! azimuth 213.702 sigma 0.033, faults 0
+//! ```
+//!
+//! Numbers are integers of thousandths inside, so that no float formatting is needed on the board.
+
+use core::fmt::{self, Write as _};
+
+use embassy_time::{Duration, Timer, with_timeout};
+use embedded_io_async::Write;
+use heapless::String;
+
+use crate::event::Event;
+use crate::ports::Observer;
+use crate::shared::Shared;
+
+/// Time between two lines.
+const PERIOD: Duration = Duration::from_secs(1);
+/// A link that does not take a line in this time loses it: 64 bytes take 67 ms at 9600 baud.
+const LONGEST: Duration = Duration::from_millis(500);
+/// Bytes of the longest line.
+const LENGTH: usize = 64;
+
+/// What the instrument is about. Angles in thousandths of a degree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// Devices are started.
+    Starting,
+    /// The stage looks for its index.
+    Homing,
+    /// Dwells are measured.
+    Measuring {
+        /// Dwells that are taken.
+        done: u16,
+        /// Dwells that are planned.
+        of: u16,
+    },
+    /// The azimuth is found.
+    Concluded {
+        /// Azimuth of body x.
+        azimuth: u32,
+        /// Its 1σ, rounded up.
+        sigma: u32,
+    },
+    /// There is none; the log tells why.
+    Refused,
+}
+
+impl Status {
+    /// A found azimuth with its σ, both in degrees.
+    #[must_use]
+    pub fn concluded(azimuth: f64, sigma: f64) -> Self {
+        // To nearest, wrapped at a full turn; σ never rounds to less than it is.
+        let azimuth = libm::round(azimuth * 1e3) as u32 % 360_000;
+        Self::Concluded { azimuth, sigma: libm::ceil(sigma * 1e3) as u32 }
+    }
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Starting => f.write_str("starting"),
+            Self::Homing => f.write_str("homing"),
+            Self::Measuring { done, of } => write!(f, "measuring {done}/{of}"),
+            Self::Concluded { azimuth, sigma } => write!(
+                f,
+                "azimuth {}.{:03} sigma {}.{:03}",
+                azimuth / 1000,
+                azimuth % 1000,
+                sigma / 1000,
+                sigma % 1000
+            ),
+            Self::Refused => f.write_str("no azimuth"),
+        }
+    }
+}
+
+/// Sends a status line every second, for ever.
+pub async fn run<L: Write, O: Observer>(link: &mut L, shared: &Shared<'_, O>) {
+    loop {
+        send(link, shared).await;
+        Timer::after(PERIOD).await;
+    }
+}
+
+/// Sends one status line. A link that does not take it costs the line, which is counted, and told
+/// the first time.
+pub async fn send<L: Write, O: Observer>(link: &mut L, shared: &Shared<'_, O>) {
+    let mut line = String::<LENGTH>::new();
+    let faults = shared.health.get().faults();
+    // The longest line fits; a longer one would be cut.
+    let _ = write!(line, "{}, faults {faults}\r\n", shared.status.get());
+    if !matches!(with_timeout(LONGEST, link.write_all(line.as_bytes())).await, Ok(Ok(()))) {
+        if shared.health.get().unsent == 0 {
+            shared.tell(Event::LinkSilent);
+        }
+        shared.count(|health| health.unsent = health.unsent.saturating_add(1));
+    }
+}

@@ -1,0 +1,94 @@
+//! How much a device may fail before it is started again, and before it is given up.
+
+use drivers::fault::Fault;
+use orientation::device::Trouble;
+use orientation::words;
+
+/// Readings in a row that may be lost to the bus before the device is started again.
+const LOST_IN_A_ROW: u8 = 3;
+/// How often a device may be started again in one session: a device that needs more is sick, and
+/// its gaps would cost more dwells than a session repeats.
+const RESTARTS: u8 = 5;
+
+/// What a device shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Symptom {
+    /// The driver reports a fault.
+    Chip(Fault),
+    /// It signals no more data.
+    Silent,
+    /// It gives the same reading again and again.
+    Stuck,
+    /// Its readings stay at the limit of the range.
+    Saturated,
+}
+
+words! { Symptom:
+    Self::Chip(fault) => "{}", fault;
+    Self::Silent => "no data in time";
+    Self::Stuck => "the same reading again and again";
+    Self::Saturated => "at the limit of its range";
+}
+
+impl From<Symptom> for Trouble {
+    fn from(symptom: Symptom) -> Self {
+        match symptom {
+            Symptom::Chip(Fault::Bus) => Self::Bus,
+            Symptom::Chip(Fault::Checksum) => Self::Checksum,
+            Symptom::Chip(Fault::Reset) => Self::Resets,
+            Symptom::Chip(Fault::Identity { .. }) => Self::Identity,
+            Symptom::Chip(Fault::SelfTest) => Self::SelfTest,
+            Symptom::Chip(Fault::NotAsWritten { .. }) => Self::NotAsWritten,
+            Symptom::Chip(Fault::Alarm { .. }) => Self::Alarm,
+            Symptom::Chip(Fault::NotReady) | Symptom::Silent => Self::Silent,
+            Symptom::Stuck => Self::Stuck,
+            Symptom::Saturated => Self::Saturated,
+        }
+    }
+}
+
+/// What to do about a symptom.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Remedy {
+    /// Do without this reading.
+    Drop,
+    /// Start the device again.
+    Restart,
+    /// Give the device up.
+    GiveUp(Trouble),
+}
+
+/// What is left of the patience with one device.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Patience {
+    lost: u8,
+    restarts: u8,
+}
+
+impl Patience {
+    /// How often the device was to be started again.
+    #[must_use]
+    pub fn restarts(&self) -> u8 {
+        self.restarts
+    }
+
+    /// A reading was good.
+    pub fn succeeded(&mut self) {
+        self.lost = 0;
+    }
+
+    /// A reading failed. Repeating helps against the bus, starting again against the rest.
+    pub fn failed(&mut self, symptom: Symptom) -> Remedy {
+        let passing = matches!(symptom, Symptom::Chip(Fault::Bus | Fault::Checksum));
+        if passing && self.lost < LOST_IN_A_ROW {
+            self.lost += 1;
+            return Remedy::Drop;
+        }
+        self.lost = 0;
+        if self.restarts >= RESTARTS {
+            return Remedy::GiveUp(symptom.into());
+        }
+        self.restarts += 1;
+        Remedy::Restart
+    }
+}

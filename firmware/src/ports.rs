@@ -1,0 +1,141 @@
+//! What the instrument needs from its board: the traits that chips, links and logs implement.
+//!
+//! Nothing in here waits for ever but [`Gyro::ready`], which may be dropped at any time.
+
+use drivers::fault::Fault;
+use embassy_time::Instant;
+use orientation::session::Session;
+use orientation::signal::Sample;
+use orientation::units::{Angle, AngularRate, SpecificForce, Temperature};
+
+use crate::event::Event;
+
+/// A device that can be started, and started again when it is lost.
+#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
+pub trait Startable {
+    /// Resets, identifies, tests and configures the device, whatever state it is in.
+    async fn start(&mut self) -> Result<(), Fault>;
+}
+
+/// One conversion of the precise gyro.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RateReading {
+    /// The rate; at a limit of its range where the converter clipped.
+    pub rate: AngularRate,
+    /// Whether nobody has read this conversion before.
+    pub is_new: bool,
+}
+
+/// The precise gyro.
+#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
+pub trait Gyro: Startable {
+    /// Waits until a conversion is ready. Safe to drop.
+    async fn ready(&mut self) -> Result<(), Fault>;
+
+    /// Reads that conversion.
+    async fn read(&mut self) -> Result<RateReading, Fault>;
+}
+
+/// One reading of the accelerometer, in the platform's axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ForceReading {
+    /// Specific force: x along the sensitive axis, y 90° clockwise of it, z down.
+    pub force: [SpecificForce; 3],
+    /// Temperature of the chip.
+    pub temperature: Temperature,
+    /// Whether it is new since the last reading.
+    pub is_new: bool,
+    /// Whether an axis stood at the limit of its range.
+    pub is_clipped: bool,
+}
+
+/// The accelerometer on the platform.
+#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
+pub trait Accelerometer: Startable {
+    /// Reads the latest output.
+    async fn read(&mut self) -> Result<ForceReading, Fault>;
+}
+
+/// The encoder of the stage.
+#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
+pub trait Encoder: Startable {
+    /// Reads the angle now.
+    async fn read(&mut self) -> Result<Angle, Fault>;
+}
+
+/// What the stage's motor does.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Motion {
+    /// Stage angle by the motor's own count, rad, not wrapped.
+    pub angle: f64,
+    /// Whether the motor stands.
+    pub is_standing: bool,
+    /// Whether it stands at its target.
+    pub has_reached: bool,
+    /// Whether it was stopped by a stall.
+    pub is_stalled: bool,
+    /// Whether the index, the switch at the lower end, is touched.
+    pub at_index: bool,
+}
+
+/// The motor of the stage.
+#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
+pub trait Actuator: Startable {
+    /// Sends the stage to an angle, rad, not wrapped, by the motor's count.
+    async fn go_to(&mut self, angle: f64) -> Result<(), Fault>;
+
+    /// Turns at a rate, rad/s, clockwise positive, until it is told otherwise or touches an end.
+    async fn seek(&mut self, rate: f64) -> Result<(), Fault>;
+
+    /// Declares the angle at which the motor stands, rad.
+    async fn set_angle(&mut self, angle: f64) -> Result<(), Fault>;
+
+    /// Stops where it is, and lets a motor that stalled turn again.
+    async fn release(&mut self) -> Result<(), Fault>;
+
+    /// What the motor does.
+    async fn motion(&mut self) -> Result<Motion, Fault>;
+}
+
+/// Where raw samples are kept. It may take its time: samples then queue.
+#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
+pub trait Recorder {
+    /// Keeps one sample.
+    async fn record(&mut self, sample: &Sample);
+}
+
+/// A recorder that keeps nothing.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoRecorder;
+
+impl Recorder for NoRecorder {
+    async fn record(&mut self, _: &Sample) {}
+}
+
+/// Who is told what happens.
+pub trait Observer {
+    /// Something happened.
+    fn event(&self, at: Instant, event: &Event);
+
+    /// The session has taken one more dwell.
+    fn progress(&self, session: &Session);
+}
+
+/// All that a board offers.
+#[derive(Debug)]
+pub struct Ports<G, A, E, M, L, R, O> {
+    /// The precise gyro.
+    pub gyro: G,
+    /// The accelerometer on the platform.
+    pub accelerometer: A,
+    /// The encoder of the stage.
+    pub encoder: E,
+    /// The motor of the stage.
+    pub actuator: M,
+    /// Where status lines go.
+    pub link: L,
+    /// Where raw samples go.
+    pub recorder: R,
+    /// Who is told what happens.
+    pub observer: O,
+}

@@ -1,0 +1,88 @@
+//! What the parts of the instrument hand to each other: one bounded channel, two signals, some cells.
+
+use core::cell::Cell;
+
+use embassy_sync::blocking_mutex::raw::NoopRawMutex;
+use embassy_sync::channel::Channel;
+use embassy_sync::signal::Signal;
+use embassy_time::Instant;
+use orientation::device::{Device, Trouble};
+use orientation::error::Refusal;
+use orientation::signal::Sample;
+use orientation::units::Angle;
+
+use crate::event::Event;
+use crate::health::Health;
+use crate::link::Status;
+use crate::patience::Symptom;
+use crate::ports::Observer;
+
+/// Samples that may wait for the session: 8 ms at 2 kHz.
+pub const QUEUE: usize = 16;
+
+/// The seams between the parts. All of them run in one executor, so nothing needs a lock.
+pub struct Shared<'a, O> {
+    /// From acquisition to the session.
+    pub samples: Channel<NoopRawMutex, Sample, QUEUE>,
+    /// From the session to the stage: where to stand, rad.
+    pub target: Signal<NoopRawMutex, f64>,
+    /// From acquisition to the stage: the sensors give data.
+    pub sensing: Signal<NoopRawMutex, ()>,
+    /// From the stage to the session: angles mean something.
+    pub homed: Signal<NoopRawMutex, ()>,
+    /// From anybody to the session: it cannot go on.
+    pub failure: Signal<NoopRawMutex, Refusal>,
+    /// The latest encoder angle, corrected, and when it was read.
+    pub angle: Cell<(Angle, Instant)>,
+    /// What went wrong so far.
+    pub health: Cell<Health>,
+    /// What the link tells.
+    pub status: Cell<Status>,
+    observer: &'a O,
+}
+
+impl<'a, O: Observer> Shared<'a, O> {
+    /// Nothing has happened yet.
+    pub const fn new(observer: &'a O) -> Self {
+        Self {
+            samples: Channel::new(),
+            target: Signal::new(),
+            sensing: Signal::new(),
+            homed: Signal::new(),
+            failure: Signal::new(),
+            angle: Cell::new((Angle(0), Instant::MIN)),
+            health: Cell::new(Health::EMPTY),
+            status: Cell::new(Status::Starting),
+            observer,
+        }
+    }
+
+    /// Tells what happened.
+    pub fn tell(&self, event: Event) {
+        self.observer.event(Instant::now(), &event);
+    }
+
+    /// Who is told.
+    pub fn observer(&self) -> &O {
+        self.observer
+    }
+
+    /// Counts something.
+    pub fn count(&self, change: impl FnOnce(&mut Health)) {
+        let mut health = self.health.get();
+        change(&mut health);
+        self.health.set(health);
+    }
+
+    /// Counts and tells a lost reading.
+    pub fn lose(&self, device: Device, symptom: Symptom) {
+        self.count(|health| health.lose(device));
+        self.tell(Event::Lost(device, symptom));
+    }
+
+    /// Tells that a device is given up, and gives the reason for the session's end.
+    pub fn give_up(&self, device: Device, trouble: Trouble) -> Refusal {
+        self.tell(Event::GivenUp(device, trouble));
+        Refusal::Device { device, trouble }
+    }
+}

@@ -1,0 +1,256 @@
+//! The stage: finds its index, goes where it is sent within its travel, and compares motor and
+//! encoder after every movement.
+//!
+//! The encoder knows the angle but not the turn, the motor's count knows the turn but not the angle:
+//! at the index, a switch at the lower end of the travel, each learns from the other. From then on
+//! they must agree; where they do not, one of them is wrong and no azimuth may come of it.
+
+use core::convert::Infallible;
+
+use drivers::fault::Fault;
+use embassy_time::{Duration, Instant, Timer};
+use orientation::device::{Device, Trouble};
+use orientation::error::Refusal;
+use orientation::units::{Angle, TURN};
+
+use crate::configuration::StageConfiguration;
+use crate::event::Event;
+use crate::guarded::Guarded;
+use crate::ports::{Actuator, Motion, Observer};
+use crate::shared::Shared;
+
+/// How often the motor is asked what it does.
+const POLL: Duration = Duration::from_millis(20);
+/// How often a movement that was blocked or missed is tried again.
+const RETRIES: usize = 3;
+/// Rest after a stall, so that what blocks the stage can go away.
+const STALL_REST: Duration = Duration::from_millis(500);
+/// Age beyond which the encoder's angle is none.
+const STALE: Duration = Duration::from_millis(100);
+/// How long a fresh angle is waited for: sensors that are started again give none meanwhile.
+const PATIENCE: Duration = Duration::from_secs(5);
+/// Degrees of a radian.
+const DEGREES: f64 = 360.0 / TURN;
+
+/// What breaks a movement off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Break {
+    /// The motor is blocked.
+    Stalled,
+    /// The motor driver was started again: its count is lost.
+    Lost,
+    /// Nothing helps.
+    Refused(Refusal),
+}
+
+impl From<Refusal> for Break {
+    fn from(reason: Refusal) -> Self {
+        Self::Refused(reason)
+    }
+}
+
+/// The stage under control.
+pub struct Stage<'a, M, O> {
+    actuator: Guarded<M>,
+    configuration: StageConfiguration,
+    shared: &'a Shared<'a, O>,
+}
+
+impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
+    /// Takes the motor; nothing moves yet.
+    pub fn new(actuator: M, configuration: &StageConfiguration, shared: &'a Shared<'a, O>) -> Self {
+        let actuator = Guarded::new(actuator, Device::Stage);
+        Self { actuator, configuration: *configuration, shared }
+    }
+
+    /// Homes, then goes where it is sent until it must be given up; gives the reason.
+    pub async fn run(mut self) -> Refusal {
+        match self.serve().await {
+            Ok(never) => match never {},
+            Err(reason) => reason,
+        }
+    }
+
+    async fn serve(&mut self) -> Result<Infallible, Refusal> {
+        self.actuator.start(self.shared).await?;
+        self.shared.sensing.wait().await;
+        self.home().await?;
+        self.shared.homed.signal(());
+        loop {
+            let target = self.shared.target.wait().await;
+            self.turn_to(target).await?;
+        }
+    }
+
+    /// Finds the index and sets the motor's count by the encoder there.
+    async fn home(&mut self) -> Result<(), Refusal> {
+        self.shared.tell(Event::Homing);
+        for _ in 0..=RETRIES {
+            match self.find_index().await {
+                Ok(()) => return Ok(()),
+                Err(Break::Refused(reason)) => return Err(reason),
+                Err(Break::Stalled) => {
+                    self.shared.tell(Event::Blocked);
+                    Timer::after(STALL_REST).await;
+                }
+                Err(Break::Lost) => {}
+            }
+        }
+        Err(self.fail(Trouble::Stalled))
+    }
+
+    /// Goes down to the index, always from above, and believes the encoder's angle there.
+    async fn find_index(&mut self) -> Result<(), Break> {
+        let rate = self.configuration.seek_rate;
+        self.ask(M::release).await?;
+        if self.ask(M::motion).await?.at_index {
+            self.seek(rate).await?;
+            self.follow(Trouble::NoIndex, |motion| !motion.at_index).await?;
+            self.ask(M::release).await?;
+        }
+        self.seek(-rate).await?;
+        let motion = self.follow(Trouble::NoIndex, |motion| motion.is_standing).await?;
+        if !motion.at_index {
+            return Err(self.fail(Trouble::NoIndex).into());
+        }
+        self.adopt_index().await
+    }
+
+    async fn adopt_index(&mut self) -> Result<(), Break> {
+        Timer::after(self.configuration.settle).await;
+        let index = self.configuration.index;
+        let shown = self.shown_near(index).await?;
+        if (shown - index).abs() > self.configuration.index_tolerance {
+            return Err(self.fail(Trouble::Disagrees((shown - index) * DEGREES)).into());
+        }
+        self.ask(async |motor: &mut M| motor.set_angle(shown).await).await?;
+        self.shared.tell(Event::Homed(shown * DEGREES));
+        Ok(())
+    }
+
+    /// Goes to an angle, rad, and does not rest until the encoder shows it.
+    async fn turn_to(&mut self, target: f64) -> Result<(), Refusal> {
+        let [low, high] = self.configuration.travel;
+        if !(low..=high).contains(&target) {
+            return Err(self.fail(Trouble::BeyondTravel(target * DEGREES)));
+        }
+        let begun = Instant::now();
+        self.shared.tell(Event::Turning(target * DEGREES));
+        let mut aim = target;
+        let mut trouble = Trouble::Stalled;
+        for _ in 0..=RETRIES {
+            match self.approach(aim, target).await {
+                Ok(off) if off.abs() <= self.configuration.tolerance => {
+                    let took = (Instant::now() - begun).as_micros() as f64 * 1e-6;
+                    self.shared.tell(Event::Arrived((target + off) * DEGREES, took));
+                    return Ok(());
+                }
+                Ok(off) => {
+                    self.shared.tell(Event::Corrected(off * DEGREES));
+                    trouble = Trouble::NotThere(off * DEGREES);
+                    aim -= off;
+                }
+                Err(broken) => self.recover(broken).await?,
+            }
+        }
+        Err(self.fail(trouble))
+    }
+
+    /// One movement; how far the encoder then stands from the target, rad. Motor and encoder must
+    /// agree.
+    async fn approach(&mut self, aim: f64, target: f64) -> Result<f64, Break> {
+        self.ask(async |motor: &mut M| motor.go_to(aim).await).await?;
+        let is_there = |motion: &Motion| motion.has_reached && motion.is_standing;
+        let motion = self.follow(Trouble::Stalled, is_there).await?;
+        Timer::after(self.configuration.settle).await;
+        let shown = self.shown_near(motion.angle).await?;
+        let apart = shown - motion.angle;
+        if apart.abs() > self.configuration.agreement {
+            return Err(self.fail(Trouble::Disagrees(apart * DEGREES)).into());
+        }
+        Ok(shown - target)
+    }
+
+    /// Makes the stage ready for another attempt.
+    async fn recover(&mut self, broken: Break) -> Result<(), Refusal> {
+        match broken {
+            Break::Refused(reason) => Err(reason),
+            Break::Lost => self.home().await,
+            Break::Stalled => match self.free().await {
+                Ok(()) => Ok(()),
+                Err(Break::Refused(reason)) => Err(reason),
+                Err(Break::Stalled | Break::Lost) => self.home().await,
+            },
+        }
+    }
+
+    /// Lets a blocked motor turn again, its count set by the encoder.
+    async fn free(&mut self) -> Result<(), Break> {
+        self.shared.tell(Event::Blocked);
+        self.ask(M::release).await?;
+        Timer::after(STALL_REST).await;
+        let counted = self.ask(M::motion).await?.angle;
+        let shown = self.shown_near(counted).await?;
+        self.ask(async |motor: &mut M| motor.set_angle(shown).await).await
+    }
+
+    async fn seek(&mut self, rate: f64) -> Result<(), Break> {
+        self.ask(async |motor: &mut M| motor.seek(rate).await).await
+    }
+
+    /// Watches the motor until it does what is waited for; `trouble` where it takes too long.
+    async fn follow(
+        &mut self,
+        trouble: Trouble,
+        is_done: impl Fn(&Motion) -> bool,
+    ) -> Result<Motion, Break> {
+        let deadline = Instant::now() + self.configuration.longest;
+        while Instant::now() < deadline {
+            Timer::after(POLL).await;
+            let motion = self.ask(M::motion).await?;
+            if motion.is_stalled {
+                return Err(Break::Stalled);
+            }
+            if is_done(&motion) {
+                return Ok(motion);
+            }
+        }
+        Err(self.fail(trouble).into())
+    }
+
+    /// An exchange with the motor driver, repeated while only the bus fails.
+    async fn ask<T>(
+        &mut self,
+        mut exchange: impl AsyncFnMut(&mut M) -> Result<T, Fault>,
+    ) -> Result<T, Break> {
+        let restarts = self.actuator.restarts();
+        loop {
+            let outcome = exchange(&mut self.actuator.device).await;
+            if let Some(answer) = self.actuator.checked(outcome, self.shared).await? {
+                return Ok(answer);
+            }
+            if self.actuator.restarts() != restarts {
+                return Err(Break::Lost);
+            }
+        }
+    }
+
+    /// The encoder's angle, rad, in the turn around `near`.
+    async fn shown_near(&self, near: f64) -> Result<f64, Refusal> {
+        let deadline = Instant::now() + PATIENCE;
+        loop {
+            let (shown, read) = self.shared.angle.get();
+            if Instant::now() - read <= STALE {
+                return Ok(near + (shown - Angle::from_rad(near)).signed_rad());
+            }
+            if Instant::now() > deadline {
+                return Err(self.shared.give_up(Device::Encoder, Trouble::Silent));
+            }
+            Timer::after(POLL).await;
+        }
+    }
+
+    fn fail(&self, trouble: Trouble) -> Refusal {
+        self.shared.give_up(Device::Stage, trouble)
+    }
+}
