@@ -8,7 +8,7 @@ use embassy_time::{Duration, Instant, with_timeout};
 use orientation::device::{Device, Trouble};
 use orientation::error::Refusal;
 use orientation::signal::Sample;
-use orientation::units::{Angle, AngularRate, SpecificForce, Temperature};
+use orientation::units::{Angle, AngularRate, SpecificForce, TURN, Temperature};
 
 use crate::calibration::Calibration;
 use crate::configuration::Configuration;
@@ -25,6 +25,11 @@ const SILENCE: u32 = 8;
 const STUCK: u32 = 64;
 /// Longest time at the limit of the range, s: a slammed door is over by then.
 const SATURATED_SECONDS: f64 = 5.0;
+
+/// Faster than any stage, rad/s: a quarter of a turn a second.
+const FASTEST: f64 = TURN / 4.0;
+/// What a stage may jump by: play, ringing, a slipping magnet, rad.
+const PLAY: f64 = TURN / 360.0;
 
 /// How often something came in a row.
 #[derive(Clone, Copy, Debug)]
@@ -61,6 +66,8 @@ pub struct Acquisition<'a, G, A, E, O> {
     rates_clipped: u32,
     forces_clipped: u32,
     longest_clipped: u32,
+    greatest_step: u32,
+    has_jumped: bool,
 }
 
 impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, A, E, O> {
@@ -88,6 +95,8 @@ impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, 
             rates_clipped: 0,
             forces_clipped: 0,
             longest_clipped: (SATURATED_SECONDS * configuration.sample_rate) as u32,
+            greatest_step: Angle::from_rad(PLAY + FASTEST / configuration.sample_rate).0,
+            has_jumped: false,
         }
     }
 
@@ -138,14 +147,13 @@ impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, 
 
     /// Waits for a conversion; its time.
     async fn conversion(&mut self) -> Result<Option<Instant>, Refusal> {
-        match with_timeout(self.silence, self.gyro.device.ready()).await {
-            Ok(outcome) => {
-                let now = Instant::now();
-                let ready = self.gyro.checked(outcome, self.shared).await?;
-                Ok(ready.map(|()| now))
-            }
-            Err(_) => self.gyro.mend(Symptom::Silent, self.shared).await.map(|()| None),
-        }
+        let outcome = with_timeout(self.silence, self.gyro.device.ready()).await;
+        let symptom = match outcome {
+            Ok(Ok(())) => return Ok(Some(Instant::now())),
+            Ok(Err(fault)) => Symptom::Chip(fault),
+            Err(_) => Symptom::Silent,
+        };
+        self.gyro.mend(symptom, self.shared).await.map(|()| None)
     }
 
     async fn rate(&mut self) -> Result<Option<AngularRate>, Refusal> {
@@ -176,12 +184,25 @@ impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, 
     async fn angle(&mut self) -> Result<Option<Angle>, Refusal> {
         let outcome = self.encoder.device.read().await;
         let shown = self.encoder.checked(outcome, self.shared).await?;
-        Ok(shown.map(|shown| {
-            let angle = self.calibration.correct(shown);
-            self.shared.angle.set((angle, Instant::now()));
-            self.shared.sensing.signal(());
-            angle
-        }))
+        Ok(shown
+            .map(|shown| self.calibration.correct(shown))
+            .filter(|angle| self.is_in_line(*angle)))
+    }
+
+    /// Takes an angle, unless it is further from the one before than the stage can turn: such a one is
+    /// lost, but the next is believed.
+    fn is_in_line(&mut self, angle: Angle) -> bool {
+        let (last, _) = self.shared.angle.get();
+        let step = (angle - last).0.cast_signed().unsigned_abs();
+        self.has_jumped =
+            step > self.greatest_step && !self.has_jumped && self.timeline.has_begun();
+        if self.has_jumped {
+            self.shared.lose(Device::Encoder, Symptom::Jumped);
+            return false;
+        }
+        self.shared.angle.set((angle, Instant::now()));
+        self.shared.sensing.signal(());
+        true
     }
 
     /// Force and temperature with every so-manieth sample.

@@ -1,1 +1,139 @@
-//! The drivers as ports.
+//! The drivers as the instrument's ports: units, axes, and what counts as valid.
+
+use drivers::ads1262::Ads1262;
+use drivers::ads1262::scale::Scale;
+use drivers::adxl355::Adxl355;
+use drivers::fault::Fault;
+use drivers::mt6835::Mt6835;
+use drivers::tmc5160::Tmc5160;
+use drivers::tmc5160::units::Velocity;
+use embedded_hal_async::delay::DelayNs;
+use embedded_hal_async::digital::Wait;
+use embedded_hal_async::spi::SpiDevice;
+use orientation::units::{Angle, AngularRate, TURN};
+
+use crate::ports::{
+    Accelerometer, Actuator, Encoder, ForceReading, Gyro, Motion, RateReading, Startable,
+};
+
+/// A gyro with a voltage for its rate, behind its converter.
+#[derive(Debug)]
+pub struct AnalogueGyro<S, R, D> {
+    /// The converter.
+    pub converter: Ads1262<S, R, D>,
+    /// The gyro's scale factor.
+    pub scale: Scale,
+    /// Size of the rate beyond which the gyro's own output clips, while its converter may not.
+    pub limit: AngularRate,
+}
+
+impl<S: SpiDevice, R: Wait, D: DelayNs> Startable for AnalogueGyro<S, R, D> {
+    async fn start(&mut self) -> Result<(), Fault> {
+        self.converter.start().await
+    }
+}
+
+impl<S: SpiDevice, R: Wait, D: DelayNs> Gyro for AnalogueGyro<S, R, D> {
+    async fn ready(&mut self) -> Result<(), Fault> {
+        self.converter.ready().await
+    }
+
+    async fn read(&mut self) -> Result<RateReading, Fault> {
+        let conversion = self.converter.read().await?;
+        let rate = self.scale.rate(conversion.code);
+        let is_clipped =
+            conversion.is_clipped || rate.0.unsigned_abs() >= self.limit.0.unsigned_abs();
+        let rate = match (is_clipped, rate.0 < 0) {
+            (false, _) => rate,
+            (true, false) => AngularRate(i32::MAX),
+            (true, true) => AngularRate(i32::MIN),
+        };
+        Ok(RateReading { rate, is_new: conversion.is_new })
+    }
+}
+
+/// The accelerometer on the platform: its x along the sensitive axis, y 90° clockwise, z down.
+#[derive(Debug)]
+pub struct PlatformAccelerometer<S, D>(pub Adxl355<S, D>);
+
+impl<S: SpiDevice, D: DelayNs> Startable for PlatformAccelerometer<S, D> {
+    async fn start(&mut self) -> Result<(), Fault> {
+        self.0.start().await
+    }
+}
+
+impl<S: SpiDevice, D: DelayNs> Accelerometer for PlatformAccelerometer<S, D> {
+    async fn read(&mut self) -> Result<ForceReading, Fault> {
+        let reading = self.0.read().await?;
+        Ok(ForceReading {
+            force: reading.force,
+            temperature: reading.temperature,
+            is_new: reading.is_fresh,
+            is_clipped: reading.is_clipped,
+        })
+    }
+}
+
+/// The encoder on the stage's axis, rising clockwise from above.
+#[derive(Debug)]
+pub struct StageEncoder<S, D>(pub Mt6835<S, D>);
+
+impl<S: SpiDevice, D: DelayNs> Startable for StageEncoder<S, D> {
+    async fn start(&mut self) -> Result<(), Fault> {
+        self.0.start().await
+    }
+}
+
+impl<S: SpiDevice, D: DelayNs> Encoder for StageEncoder<S, D> {
+    async fn read(&mut self) -> Result<Angle, Fault> {
+        self.0.read().await.map(|reading| reading.angle)
+    }
+}
+
+/// Microsteps in one turn of the stage: 200 full steps of 256, behind a gear of 90:1.
+pub const MICROSTEPS_PER_TURN: f64 = 200.0 * 256.0 * 90.0;
+
+/// The motor behind its gear, positive clockwise from above.
+#[derive(Debug)]
+pub struct StageMotor<S, D>(pub Tmc5160<S, D>);
+
+/// An angle of the stage, rad, in microsteps, to nearest; saturates at the driver's range.
+fn microsteps(angle: f64) -> i32 {
+    libm::round(angle / TURN * MICROSTEPS_PER_TURN) as i32
+}
+
+impl<S: SpiDevice, D: DelayNs> Startable for StageMotor<S, D> {
+    async fn start(&mut self) -> Result<(), Fault> {
+        self.0.start().await
+    }
+}
+
+impl<S: SpiDevice, D: DelayNs> Actuator for StageMotor<S, D> {
+    async fn go_to(&mut self, angle: f64) -> Result<(), Fault> {
+        self.0.go_to(microsteps(angle)).await
+    }
+
+    async fn seek(&mut self, rate: f64) -> Result<(), Fault> {
+        self.0.run(Velocity(microsteps(rate))).await
+    }
+
+    async fn set_angle(&mut self, angle: f64) -> Result<(), Fault> {
+        self.0.set_position(microsteps(angle)).await
+    }
+
+    async fn release(&mut self) -> Result<(), Fault> {
+        self.0.stop().await?;
+        self.0.clear_stall().await
+    }
+
+    async fn motion(&mut self) -> Result<Motion, Fault> {
+        let status = self.0.status().await?;
+        Ok(Motion {
+            angle: f64::from(status.position) / MICROSTEPS_PER_TURN * TURN,
+            is_standing: status.standing,
+            has_reached: status.reached,
+            is_stalled: status.stalled,
+            at_index: status.left_switch,
+        })
+    }
+}

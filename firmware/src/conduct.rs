@@ -55,8 +55,8 @@ impl<'a, R: Recorder, O: Observer> Conductor<'a, R, O> {
     fn begin(&self) {
         let of = self.session.planned();
         self.shared.status.set(Status::Homing);
-        let dwell = self.session.dwell_seconds();
-        let latitude = self.session.latitude().rad() * DEGREES;
+        let dwell = self.session.procedure().schedule.shortest();
+        let latitude = self.session.setting().latitude.rad() * DEGREES;
         self.shared.tell(Event::Begun { positions: of, dwell, latitude });
     }
 
@@ -114,8 +114,10 @@ impl<'a, R: Recorder, O: Observer> Conductor<'a, R, O> {
     }
 
     fn tell_level(&self) {
-        let [along, across] = self.session.inclination().map(|angle| angle * DEGREES);
-        self.shared.tell(Event::Levelled(along, across));
+        if let Some([along, across, down]) = self.session.force() {
+            let [along, across] = [along, across].map(|f| libm::atan2(f, -down) * DEGREES);
+            self.shared.tell(Event::Levelled(along, across));
+        }
         self.tell_status();
     }
 

@@ -15,6 +15,8 @@ pub struct StageConfiguration {
     pub index: f64,
     /// How far from there the encoder may stand after the stage has stopped, rad.
     pub index_tolerance: f64,
+    /// Where the stage waits for the session, rad: the first position, so that no time is lost.
+    pub home: f64,
     /// Travel from lowest to highest angle, rad.
     pub travel: [f64; 2],
     /// Rate of the search for the index, rad/s.
@@ -31,12 +33,13 @@ pub struct StageConfiguration {
 }
 
 impl Default for StageConfiguration {
-    /// Index at −5°, travel −10°…370° (cables wrap), search at 12°/s, within 0.03° of the target,
+    /// Index at −5°, home at 0°, travel −10°…370° (cables wrap), search at 12°/s, within 0.03° of the target,
     /// motor and encoder within 0.05°, a quarter of a second of rest, 60 s for any movement.
     fn default() -> Self {
         Self {
             index: -5.0 * DEGREE,
             index_tolerance: 2.0 * DEGREE,
+            home: 0.0,
             travel: [-10.0 * DEGREE, 370.0 * DEGREE],
             seek_rate: 12.0 * DEGREE,
             tolerance: 0.03 * DEGREE,

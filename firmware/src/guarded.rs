@@ -45,7 +45,6 @@ impl<D: Startable> Guarded<D> {
                 Remedy::Drop | Remedy::Restart => self.rest(shared, symptom).await,
             }
         }
-        self.patience.succeeded();
         shared.tell(Event::Started(self.name));
         Ok(())
     }

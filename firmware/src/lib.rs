@@ -33,3 +33,6 @@ pub mod link;
 pub mod configuration;
 pub mod run;
 pub mod shared;
+
+#[cfg(feature = "simulated")]
+pub mod simulated;

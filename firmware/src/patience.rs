@@ -21,6 +21,8 @@ pub enum Symptom {
     Stuck,
     /// Its readings stay at the limit of the range.
     Saturated,
+    /// A reading that cannot be: too far from the one before.
+    Jumped,
 }
 
 words! { Symptom:
@@ -28,6 +30,7 @@ words! { Symptom:
     Self::Silent => "no data in time";
     Self::Stuck => "the same reading again and again";
     Self::Saturated => "at the limit of its range";
+    Self::Jumped => "too far from the one before";
 }
 
 impl From<Symptom> for Trouble {
@@ -41,7 +44,7 @@ impl From<Symptom> for Trouble {
             Symptom::Chip(Fault::NotAsWritten { .. }) => Self::NotAsWritten,
             Symptom::Chip(Fault::Alarm { .. }) => Self::Alarm,
             Symptom::Chip(Fault::NotReady) | Symptom::Silent => Self::Silent,
-            Symptom::Stuck => Self::Stuck,
+            Symptom::Stuck | Symptom::Jumped => Self::Stuck,
             Symptom::Saturated => Self::Saturated,
         }
     }
@@ -63,6 +66,8 @@ pub enum Remedy {
 pub struct Patience {
     lost: u8,
     restarts: u8,
+    /// What began the trouble that is going on.
+    cause: Option<Symptom>,
 }
 
 impl Patience {
@@ -75,10 +80,12 @@ impl Patience {
     /// A reading was good.
     pub fn succeeded(&mut self) {
         self.lost = 0;
+        self.cause = None;
     }
 
     /// A reading failed. Repeating helps against the bus, starting again against the rest.
     pub fn failed(&mut self, symptom: Symptom) -> Remedy {
+        let cause = *self.cause.get_or_insert(symptom);
         let passing = matches!(symptom, Symptom::Chip(Fault::Bus | Fault::Checksum));
         if passing && self.lost < LOST_IN_A_ROW {
             self.lost += 1;
@@ -86,9 +93,18 @@ impl Patience {
         }
         self.lost = 0;
         if self.restarts >= RESTARTS {
-            return Remedy::GiveUp(symptom.into());
+            return Remedy::GiveUp(reason(cause, symptom).into());
         }
         self.restarts += 1;
         Remedy::Restart
+    }
+}
+
+/// Which of two symptoms tells more: a sick bus, or a device that fell silent or stuck, explains all
+/// that follows; what else began the trouble is told better by what came last.
+fn reason(first: Symptom, last: Symptom) -> Symptom {
+    match first {
+        Symptom::Chip(Fault::Bus | Fault::Checksum) | Symptom::Silent | Symptom::Stuck => first,
+        Symptom::Chip(_) | Symptom::Saturated | Symptom::Jumped => last,
     }
 }

@@ -121,6 +121,16 @@ pub trait Observer {
     fn progress(&self, session: &Session);
 }
 
+impl<O: Observer> Observer for &O {
+    fn event(&self, at: Instant, event: &Event) {
+        (**self).event(at, event);
+    }
+
+    fn progress(&self, session: &Session) {
+        (**self).progress(session);
+    }
+}
+
 /// All that a board offers.
 #[derive(Debug)]
 pub struct Ports<G, A, E, M, L, R, O> {

@@ -10,6 +10,7 @@ use orientation::session::Session;
 use crate::acquire::Acquisition;
 use crate::conduct::Conductor;
 use crate::configuration::Configuration;
+use crate::health::Health;
 use crate::link;
 use crate::ports::{Accelerometer, Actuator, Encoder, Gyro, Observer, Ports, Recorder};
 use crate::shared::Shared;
@@ -18,12 +19,13 @@ use crate::stage::Stage;
 /// Runs an alignment from power-on to its conclusion, which is then in the session.
 ///
 /// The session, the greatest piece of memory, belongs to the caller, who chooses where it lies.
-/// Ends within a bounded time, whatever the devices do: every wait inside has a limit.
+/// Gives what went wrong meanwhile. Ends within a bounded time, whatever the devices do: every wait inside has a limit.
 pub async fn run<G, A, E, M, L, R, O>(
     mut ports: Ports<G, A, E, M, L, R, O>,
     configuration: &Configuration,
     session: &mut Session,
-) where
+) -> Health
+where
     G: Gyro,
     A: Accelerometer,
     E: Encoder,
@@ -45,6 +47,7 @@ pub async fn run<G, A, E, M, L, R, O>(
     )
     .await;
     link::send(&mut ports.link, shared).await;
+    shared.health.get()
 }
 
 /// A part that ends only by failing: the session is told the first reason, and it is silent.

@@ -22,8 +22,8 @@ use crate::shared::Shared;
 /// How often the motor is asked what it does.
 const POLL: Duration = Duration::from_millis(20);
 /// How often a movement that was blocked or missed is tried again.
-const RETRIES: usize = 3;
-/// Rest after a stall, so that what blocks the stage can go away.
+const RETRIES: u32 = 5;
+/// Rest after the first stall, so that what blocks the stage can go away; it doubles with each.
 const STALL_REST: Duration = Duration::from_millis(500);
 /// Age beyond which the encoder's angle is none.
 const STALE: Duration = Duration::from_millis(100);
@@ -75,6 +75,7 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
         self.actuator.start(self.shared).await?;
         self.shared.sensing.wait().await;
         self.home().await?;
+        self.turn_to(self.configuration.home).await?;
         self.shared.homed.signal(());
         loop {
             let target = self.shared.target.wait().await;
@@ -85,13 +86,13 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
     /// Finds the index and sets the motor's count by the encoder there.
     async fn home(&mut self) -> Result<(), Refusal> {
         self.shared.tell(Event::Homing);
-        for _ in 0..=RETRIES {
+        for attempt in 0..=RETRIES {
             match self.find_index().await {
                 Ok(()) => return Ok(()),
                 Err(Break::Refused(reason)) => return Err(reason),
                 Err(Break::Stalled) => {
                     self.shared.tell(Event::Blocked);
-                    Timer::after(STALL_REST).await;
+                    Timer::after(STALL_REST * (1 << attempt)).await;
                 }
                 Err(Break::Lost) => {}
             }
@@ -138,7 +139,7 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
         self.shared.tell(Event::Turning(target * DEGREES));
         let mut aim = target;
         let mut trouble = Trouble::Stalled;
-        for _ in 0..=RETRIES {
+        for attempt in 0..=RETRIES {
             match self.approach(aim, target).await {
                 Ok(off) if off.abs() <= self.configuration.tolerance => {
                     let took = (Instant::now() - begun).as_micros() as f64 * 1e-6;
@@ -150,7 +151,8 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
                     trouble = Trouble::NotThere(off * DEGREES);
                     aim -= off;
                 }
-                Err(broken) => self.recover(broken).await?,
+                Err(Break::Stalled) if attempt == RETRIES => break,
+                Err(broken) => self.recover(broken, STALL_REST * (1 << attempt)).await?,
             }
         }
         Err(self.fail(trouble))
@@ -172,11 +174,11 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
     }
 
     /// Makes the stage ready for another attempt.
-    async fn recover(&mut self, broken: Break) -> Result<(), Refusal> {
+    async fn recover(&mut self, broken: Break, rest: Duration) -> Result<(), Refusal> {
         match broken {
             Break::Refused(reason) => Err(reason),
             Break::Lost => self.home().await,
-            Break::Stalled => match self.free().await {
+            Break::Stalled => match self.free(rest).await {
                 Ok(()) => Ok(()),
                 Err(Break::Refused(reason)) => Err(reason),
                 Err(Break::Stalled | Break::Lost) => self.home().await,
@@ -185,10 +187,10 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
     }
 
     /// Lets a blocked motor turn again, its count set by the encoder.
-    async fn free(&mut self) -> Result<(), Break> {
+    async fn free(&mut self, rest: Duration) -> Result<(), Break> {
         self.shared.tell(Event::Blocked);
         self.ask(M::release).await?;
-        Timer::after(STALL_REST).await;
+        Timer::after(rest).await;
         let counted = self.ask(M::motion).await?.angle;
         let shown = self.shown_near(counted).await?;
         self.ask(async |motor: &mut M| motor.set_angle(shown).await).await

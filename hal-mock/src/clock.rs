@@ -28,9 +28,13 @@ impl VirtualClock {
         self.now
     }
 
-    /// Wakes the waker when the clock reaches `at`, in ticks.
+    /// Wakes the waker when the clock reaches `at`, in ticks; at once where it has.
     pub fn schedule_wake(&mut self, at: u64, waker: &Waker) {
-        self.queue.schedule_wake(at, waker);
+        if at <= self.now {
+            waker.wake_by_ref();
+        } else {
+            self.queue.schedule_wake(at, waker);
+        }
     }
 
     /// Jumps to the next moment for which somebody waits and wakes all who wait for it; `false`, and

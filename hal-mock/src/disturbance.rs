@@ -42,6 +42,25 @@ pub struct Effect {
 }
 
 impl Disturbance {
+    /// A door that falls shut nearby, `start_s` after the first sample: 0.4 s of a structure's 14 Hz,
+    /// of 150 °/h and some hundredths of m/s², far above the noise of a good gyro.
+    #[must_use]
+    pub const fn door_slam(start_s: f64) -> Self {
+        Self::Bump {
+            start_s,
+            seconds: 0.4,
+            frequency_hz: 14.0,
+            rate_deg_h: 150.0,
+            force_m_s2: [0.05, 0.03, 0.08],
+        }
+    }
+
+    /// A rate of 1000 °/s, beyond the full scale of any precise gyro.
+    #[must_use]
+    pub const fn overload(start_s: f64, seconds: f64) -> Self {
+        Self::Nudge { start_s, seconds, rate_deg_h: 1000.0 * 3600.0 }
+    }
+
     /// Its effect at a time in s from the first sample; nothing outside its interval.
     #[must_use]
     pub fn at(&self, time_s: f64) -> Effect {

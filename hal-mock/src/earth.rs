@@ -73,6 +73,12 @@ impl Site {
         }
     }
 
+    /// The same place under a base of another attitude.
+    #[must_use]
+    pub fn with_attitude(&self, attitude: &Attitude) -> Self {
+        Self { body_to_navigation: attitude.body_to_navigation(), ..*self }
+    }
+
     /// Local gravity, m/s²: the g of the g-sensitivity.
     #[must_use]
     pub fn gravity_m_s2(&self) -> f64 {

@@ -1,5 +1,9 @@
 //! The instruments on the platform, read at any stage state: what `World` reads on its schedule, and
 //! what a simulated board reads while its own firmware turns the stage.
+//!
+//! A schedule reads all of them at once ([`Instruments::sample`]); chips read each at its own rate
+//! ([`Instruments::rate`], [`Instruments::force`], [`Instruments::temperature`]). Every source of
+//! noise has a stream of its own, so both give the same numbers.
 
 use crate::accelerometer::{Accelerometer, AccelerometerConfiguration};
 use crate::disturbance::Effect;
@@ -105,11 +109,43 @@ pub struct Instruments {
     pose: Pose,
 }
 
+/// How the base moves at one moment: small angles on top of its attitude, and their derivatives.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BaseMotion {
+    /// Added to the attitude of the base.
+    pub lean: Attitude,
+    /// Rates of azimuth, pitch and roll, rad/s.
+    pub rates_rad_s: [f64; 3],
+}
+
+impl BaseMotion {
+    /// Rate of the base about its own axes forward, right, down, rad/s, at an attitude: kinematics of
+    /// the turns azimuth, pitch, roll in this order.
+    #[must_use]
+    pub fn body_rad_s(&self, attitude: &Attitude) -> [f64; 3] {
+        let [azimuth, pitch, roll] = self.rates_rad_s;
+        let (sine_pitch, cosine_pitch) = libm::sincos(attitude.pitch_rad);
+        let (sine_roll, cosine_roll) = libm::sincos(attitude.roll_rad);
+        let level = azimuth * cosine_pitch;
+        [
+            roll - azimuth * sine_pitch,
+            pitch * cosine_roll + level * sine_roll,
+            level * cosine_roll - pitch * sine_roll,
+        ]
+    }
+}
+
 /// What one stage state gives without noise, computed once while the stage stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Pose {
     stage: StageState,
     encoder_rad: f64,
+    felt: Felt,
+}
+
+/// What the platform's sensors feel, less noise.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Felt {
     axis_rad_s: f64,
     steady_rad_s: f64,
     force_m_s2: [f64; 3],
@@ -119,6 +155,17 @@ impl Instruments {
     /// Instruments with the stage at zero; everything random comes from the seed.
     #[must_use]
     pub fn new(configuration: &InstrumentsConfiguration, seed: u64) -> Self {
+        Self::with_accelerometer_at(configuration, configuration.rate_hz, seed)
+    }
+
+    /// The same with an accelerometer read `accelerometer_hz` times a second (> 0), not at the rate of
+    /// the gyro.
+    #[must_use]
+    pub fn with_accelerometer_at(
+        configuration: &InstrumentsConfiguration,
+        accelerometer_hz: f64,
+        seed: u64,
+    ) -> Self {
         let c = configuration;
         let attitude = c.attitude();
         let mut instruments = Self {
@@ -127,7 +174,7 @@ impl Instruments {
             encoder: c.encoder,
             temperature: c.temperature,
             gyro: Gyro::new(&c.gyro, c.rate_hz, seed),
-            accelerometer: Accelerometer::new(&c.accelerometer, c.rate_hz, seed),
+            accelerometer: Accelerometer::new(&c.accelerometer, accelerometer_hz, seed),
             thermometer: Thermometer::new(&c.temperature, seed),
             pose: Pose::default(),
         };
@@ -143,21 +190,62 @@ impl Instruments {
         }
     }
 
+    /// Moves the stage on a base that moves itself, which costs the whole geometry every time.
+    pub fn turn_on(&mut self, stage: StageState, motion: &BaseMotion) {
+        self.turn(stage);
+        let attitude = Attitude {
+            azimuth_rad: self.attitude.azimuth_rad + motion.lean.azimuth_rad,
+            pitch_rad: self.attitude.pitch_rad + motion.lean.pitch_rad,
+            roll_rad: self.attitude.roll_rad + motion.lean.roll_rad,
+        };
+        let site = self.site.with_attitude(&attitude);
+        self.pose.felt = self.felt_at(&site, stage, motion.body_rad_s(&attitude));
+    }
+
     /// Reads everything once, `time_s` after the first sample. Call `rate_hz` times a second.
     #[inline]
     pub fn sample(&mut self, time_s: f64, effect: &Effect) -> Sample {
         let temperature_c = self.temperature.at(time_s);
-        let pose = &self.pose;
-        let [x, y, z] = pose.force_m_s2;
-        let [add_x, add_y, add_z] = effect.force_m_s2;
-        let rate_rad_s = pose.steady_rad_s + effect.rate_rad_s;
         Sample {
             time_s,
-            stage_rad: pose.encoder_rad,
-            rate_rad_s: self.gyro.sample(rate_rad_s, time_s, temperature_c),
-            force_m_s2: self.accelerometer.sample([x + add_x, y + add_y, z + add_z]),
+            stage_rad: self.pose.encoder_rad,
+            rate_rad_s: self.rate_at(time_s, temperature_c, effect),
+            force_m_s2: self.force(effect),
             temperature_c: self.thermometer.sample(temperature_c),
         }
+    }
+
+    /// What the gyro shows next, rad/s, `time_s` after the first sample. Call `rate_hz` times a second.
+    #[inline]
+    pub fn rate(&mut self, time_s: f64, effect: &Effect) -> f64 {
+        self.rate_at(time_s, self.temperature.at(time_s), effect)
+    }
+
+    /// What the accelerometer shows next, m/s², on platform x, y, z. Call at its own rate.
+    #[inline]
+    pub fn force(&mut self, effect: &Effect) -> [f64; 3] {
+        let [x, y, z] = self.pose.felt.force_m_s2;
+        let [add_x, add_y, add_z] = effect.force_m_s2;
+        self.accelerometer.sample([x + add_x, y + add_y, z + add_z])
+    }
+
+    /// What the thermometer shows next, °C, `time_s` after the first sample.
+    #[inline]
+    pub fn temperature(&mut self, time_s: f64) -> f64 {
+        self.thermometer.sample(self.temperature.at(time_s))
+    }
+
+    /// What the encoder shows, rad: it has no noise.
+    #[must_use]
+    pub fn shown_rad(&self) -> f64 {
+        self.pose.encoder_rad
+    }
+
+    /// The gyro's next output at a true temperature.
+    #[inline]
+    fn rate_at(&mut self, time_s: f64, temperature_c: f64, effect: &Effect) -> f64 {
+        let rate_rad_s = self.pose.felt.steady_rad_s + effect.rate_rad_s;
+        self.gyro.sample(rate_rad_s, time_s, temperature_c)
     }
 
     /// The truth behind the latest sample.
@@ -166,27 +254,36 @@ impl Instruments {
         Truth {
             attitude: self.attitude,
             stage: self.pose.stage,
-            axis_rad_s: self.pose.axis_rad_s,
+            axis_rad_s: self.pose.felt.axis_rad_s,
             gyro_bias_rad_s: self.gyro.bias_rad_s(),
             gyro_scale_error: self.gyro.scale_error(),
             accelerometer_bias_m_s2: self.accelerometer.bias_m_s2(),
         }
     }
 
-    /// Everything that does not change while the stage stands.
+    /// Everything that does not change while the stage stands on a base at rest.
     fn pose_at(&self, stage: StageState) -> Pose {
-        let PlatformInput { rate_rad_s: [x, y, z], force_m_s2 } =
-            self.site.on_platform(stage.angle_rad);
-        // The stage turns about platform z, down, clockwise from above.
-        let axis_rad_s = self.gyro.along_axis([x, y, z + stage.rate_rad_s]);
-        let gravity = self.site.gravity_m_s2();
-        let force_g = [force_m_s2[0] / gravity, force_m_s2[1] / gravity];
-        Pose {
-            stage,
-            encoder_rad: self.encoder.read(stage.angle_rad),
-            axis_rad_s,
-            steady_rad_s: self.gyro.steady(axis_rad_s, force_g),
-            force_m_s2,
-        }
+        let encoder_rad = self.encoder.read(stage.angle_rad);
+        Pose { stage, encoder_rad, felt: self.felt_at(&self.site, stage, [0.0; 3]) }
     }
+
+    /// What is felt on a base that turns at `body_rad_s` about forward, right, down.
+    fn felt_at(&self, site: &Site, stage: StageState, body_rad_s: [f64; 3]) -> Felt {
+        let PlatformInput { rate_rad_s: [x, y, z], force_m_s2 } = site.on_platform(stage.angle_rad);
+        let [along, across, down] = about_stage(body_rad_s, stage.angle_rad);
+        // The stage turns about platform z, down, clockwise from above.
+        let axis_rad_s = self.gyro.along_axis([x + along, y + across, z + down + stage.rate_rad_s]);
+        let gravity = site.gravity_m_s2();
+        let force_g = [force_m_s2[0] / gravity, force_m_s2[1] / gravity];
+        Felt { axis_rad_s, steady_rad_s: self.gyro.steady(axis_rad_s, force_g), force_m_s2 }
+    }
+}
+
+/// A vector of the base on the platform axes at a stage angle in rad; zero needs no sines.
+fn about_stage([forward, right, down]: [f64; 3], angle_rad: f64) -> [f64; 3] {
+    if [forward, right] == [0.0; 2] {
+        return [0.0, 0.0, down];
+    }
+    let (sine, cosine) = libm::sincos(angle_rad);
+    [forward * cosine + right * sine, right * cosine - forward * sine, down]
 }

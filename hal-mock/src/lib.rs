@@ -1,9 +1,20 @@
 //! The simulated world that feeds the orientation board: Earth, stage, sensors, one seed.
 //!
+//! On a schedule, as a recording:
+//!
 //! ```text
 //!  stops ─▶ stage ─angle─▶ site (Earth rate, gravity) ─▶ gyro, accelerometer ─▶ sample
 //!             └─▶ encoder ────────────────────────────────────────────────────▶
 //!                            disturbance, temperature ─▶
+//! ```
+//!
+//! Or around a firmware that turns the stage itself, in virtual time, at the level of registers:
+//!
+//! ```text
+//!  driver ⇄ fault ⇄ spi ⇄ board ┬ ads1262 ◀─volts── plant: instruments as above,
+//!                               ├ adxl355 ◀─force──        on the stage's mechanics,
+//!                               ├ mt6835 ◀──angle──        on a base that may sway
+//!                               └ tmc5160 ─microsteps─▶
 //! ```
 //!
 //! This crate is an oracle. It carries its own reading of the physics, by full rotation matrices, and
@@ -22,16 +33,19 @@
 pub mod accelerometer;
 pub mod ads1262;
 pub mod adxl355;
+pub mod board;
 pub mod chip;
 pub mod clock;
 pub mod disturbance;
 pub mod earth;
 pub mod environment;
+pub mod fault;
 pub mod flicker;
 pub mod gyro;
 pub mod instruments;
 pub mod mt6835;
 pub mod noise;
+pub mod plant;
 pub mod spi;
 pub mod stage;
 pub mod temperature;

@@ -148,4 +148,6 @@ pub(crate) mod source {
     pub const ACCELEROMETER_WHITE: u64 = 6;
     /// White noise of a thermometer.
     pub const THERMOMETER: u64 = 7;
+    /// White noise of the converter behind the gyro.
+    pub const CONVERTER: u64 = 8;
 }

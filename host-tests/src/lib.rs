@@ -7,6 +7,7 @@
 pub mod campaign;
 pub mod criterion;
 pub mod demonstration;
+pub mod instrument;
 pub mod oracle;
 pub mod output;
 pub mod recording;

@@ -4,23 +4,28 @@
 //! result, 1 where it is refused or failed, 2 for misuse.
 #![forbid(unsafe_code)]
 
+mod command;
+
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use bench::campaign;
 use bench::campaign::sokolov::{self, Turn};
-use bench::demonstration;
 use bench::output::progress::Progress;
 use bench::output::{json, table, text};
 use bench::recording::{self, Recording};
 use bench::replay::{Options, replay};
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, FromArgMatches, Parser, Subcommand, ValueEnum};
+use firmware::simulated::fault::Fault;
 use orientation::align::criterion::Criterion;
 use orientation::earth::Latitude;
 
+use crate::command::run::{RunOptions, Told};
+
 /// Finds true north from a precise gyro on a rotation stage, with its standard deviation.
 ///
-/// Without a command a small built-in recording is replayed.
+/// Without a command it is `run`.
 #[derive(Parser)]
 #[command(name = "meridian", version)]
 struct CommandLine {
@@ -33,6 +38,8 @@ struct CommandLine {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Runs the whole board application on simulated chips.
+    Run(RunOptions),
     /// Runs the alignment on a recording of kind `stage` or `dwells`.
     Replay(ReplayOptions),
     /// Runs many simulated alignments and prints their errors beside the limit.
@@ -44,15 +51,19 @@ struct CampaignOptions {
     /// Which campaign.
     #[arg(value_enum, default_value = "sokolov")]
     name: Campaign,
-    /// Realisations on each schedule for the ratio to the limit and the coverage of σ.
-    #[arg(long, default_value_t = 5000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    runs: u32,
+    /// How many runs: of sokolov on each schedule (5000), of instrument (500), of faults each (1).
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    runs: Option<u32>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
 enum Campaign {
     /// The numerical experiment of Sokolov 2019: stepwise gyrocompassing, all five criteria.
     Sokolov,
+    /// The whole instrument on simulated chips, over drawn sites and attitudes.
+    Instrument,
+    /// Every chip with every fault.
+    Faults,
 }
 
 #[derive(Args)]
@@ -93,15 +104,28 @@ fn sigma(text: &str) -> Result<f64, String> {
     }
 }
 
+/// The command line; without a command it is `run` with all its defaults.
+fn parse() -> Result<(bool, Command), clap::Error> {
+    let CommandLine { json, command } = CommandLine::try_parse()?;
+    match command {
+        Some(command) => Ok((json, command)),
+        None => {
+            let matches = Command::augment_subcommands(clap::Command::new("meridian"))
+                .try_get_matches_from(["meridian", "run"])?;
+            Ok((json, Command::from_arg_matches(&matches)?))
+        }
+    }
+}
+
 fn main() -> ExitCode {
-    let line = match CommandLine::try_parse() {
-        Ok(line) => line,
+    let (as_json, command) = match parse() {
+        Ok(parsed) => parsed,
         Err(error) => return misuse(&error),
     };
-    match run(&line) {
+    match run(&command, as_json) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
-        Err(message) => failed(&message, line.json),
+        Err(message) => failed(&message, as_json),
     }
 }
 
@@ -133,22 +157,29 @@ fn failed(message: &str, as_json: bool) -> ExitCode {
 }
 
 /// Runs the command; whether there was a result.
-fn run(line: &CommandLine) -> Result<bool, String> {
-    match &line.command {
-        None => {
-            let recording = recording::read_from(demonstration::NAME, demonstration::RECORDING)
-                .map_err(|error| error.to_string())?;
-            replayed(demonstration::NAME, recording, &Options::default(), line.json)
-        }
-        Some(Command::Replay(options)) => {
+fn run(command: &Command, as_json: bool) -> Result<bool, String> {
+    match command {
+        Command::Run(options) => simulated(options, as_json),
+        Command::Replay(options) => {
             let recording = recording::read(&options.file).map_err(|error| error.to_string())?;
             let name = options.file.display().to_string();
-            replayed(&name, recording, &options.into(), line.json)
+            replayed(&name, recording, &options.into(), as_json)
         }
-        Some(Command::Campaign(options)) => match options.name {
-            Campaign::Sokolov => sokolov(options.runs as usize, line.json).map(|()| true),
+        Command::Campaign(options) => match options.name {
+            Campaign::Sokolov => sokolov(options.runs.unwrap_or(5000) as usize, as_json),
+            Campaign::Instrument => instrument(options.runs.unwrap_or(500) as usize, as_json),
+            Campaign::Faults => faults(u64::from(options.runs.unwrap_or(1)), as_json),
         },
     }
+}
+
+fn simulated(options: &RunOptions, as_json: bool) -> Result<bool, String> {
+    let Told { found, output, refusal } = command::run::run(options, as_json)?;
+    print(&output)?;
+    if let (Some(reason), true) = (refusal, as_json) {
+        eprintln!("meridian: {reason}");
+    }
+    Ok(found)
 }
 
 impl From<&ReplayOptions> for Options {
@@ -192,7 +223,7 @@ fn replayed(
 }
 
 /// Both schedules: the paper's table, then the precision.
-fn sokolov(runs: usize, as_json: bool) -> Result<(), String> {
+fn sokolov(runs: usize, as_json: bool) -> Result<bool, String> {
     let turns = [Turn::Arc, Turn::Circle];
     let total = turns.len() * (3 * sokolov::TABLE_RUNS + runs);
     let progress = Progress::new(total as u64, "alignments");
@@ -202,17 +233,48 @@ fn sokolov(runs: usize, as_json: bool) -> Result<(), String> {
     let precisions = turns.map(|turn| sokolov::precision(turn, runs, tick));
     let precisions = precisions.into_iter().collect::<Result<Vec<_>, _>>()?;
     progress.finish();
-    let output = if as_json {
-        let object = serde_json::json!({
-            "campaign": "sokolov", "status": "ok", "tables": tables, "precision": precisions,
-        });
-        serde_json::to_string_pretty(&object).map_err(|error| error.to_string())?
+    let object = serde_json::json!({
+        "campaign": "sokolov", "status": "ok", "tables": tables, "precision": precisions,
+    });
+    tell(as_json, &object, |text| table::sokolov(text, &tables, &precisions))?;
+    Ok(true)
+}
+
+/// The whole instrument over many seeds; whether none was refused.
+fn instrument(runs: usize, as_json: bool) -> Result<bool, String> {
+    let progress = Progress::new(runs as u64, "alignments");
+    let row = campaign::instrument::precision(runs, || progress.step())
+        .map_err(|error| error.to_string())?;
+    progress.finish();
+    let object = serde_json::json!({ "campaign": "instrument", "status": "ok", "precision": row });
+    tell(as_json, &object, |text| table::instrument(text, &row))?;
+    Ok(row.refused == 0)
+}
+
+/// Every fault with one seed; whether no north was wrong.
+fn faults(seed: u64, as_json: bool) -> Result<bool, String> {
+    let progress = Progress::new(Fault::all().count() as u64, "faults");
+    let rows =
+        campaign::faults::rows(seed, || progress.step()).map_err(|error| error.to_string())?;
+    progress.finish();
+    let object = serde_json::json!({ "campaign": "faults", "status": "ok", "faults": rows });
+    tell(as_json, &object, |text| table::faults(text, &rows))?;
+    Ok(rows.iter().all(|row| row.outcome != campaign::faults::WRONG))
+}
+
+/// Prints an object, or the text that a table makes.
+fn tell(
+    as_json: bool,
+    object: &serde_json::Value,
+    table: impl FnOnce(&mut String) -> std::fmt::Result,
+) -> Result<(), String> {
+    let mut text = String::new();
+    if as_json {
+        text = serde_json::to_string_pretty(object).map_err(|error| error.to_string())?;
     } else {
-        let mut text = String::new();
-        table::sokolov(&mut text, &tables, &precisions).map_err(|error| error.to_string())?;
-        text
-    };
-    print(&output)
+        table(&mut text).map_err(|error| error.to_string())?;
+    }
+    print(&text)
 }
 
 /// Writes to standard output; a closed pipe is no error of ours.

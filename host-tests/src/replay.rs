@@ -92,19 +92,7 @@ impl fmt::Display for ReplayError {
                      session holds: split the recording, or average neighbours into kind dwells"
                 )
             }
-            Self::Procedure(ProcedureError::Filter(error)) => {
-                write!(f, "no filter for this sample rate: {error}")
-            }
-            Self::Procedure(ProcedureError::DwellTooShort { samples, needed }) => {
-                write!(f, "the shortest dwell has {samples} samples; the filter needs {needed}")
-            }
-            Self::Procedure(ProcedureError::BeyondTravel(angle)) => {
-                write!(f, "position {:.2}° is beyond the stage's travel", angle / TURN * 360.0)
-            }
-            Self::Procedure(ProcedureError::TableCorrupt) => {
-                f.write_str("the etalon table in this program fails its checksum")
-            }
-            Self::Procedure(ProcedureError::NoPosition) => f.write_str("there is no position"),
+            Self::Procedure(error) => error.fmt(f),
         }
     }
 }
@@ -199,7 +187,7 @@ fn sample(row: &StageRow, begin: f64) -> Sample {
         time: Instant::from_seconds(row.time_s - begin),
         stage: Angle::from_rad(row.stage_rad),
         rate: AngularRate::from_rad_per_s(row.rate_rad_s),
-        force: row.force_m_s2.map(SpecificForce::from_m_per_s2),
+        force: Some(row.force_m_s2.map(SpecificForce::from_m_per_s2)),
         temperature: row.temperature_c.map(Temperature::from_celsius),
     }
 }

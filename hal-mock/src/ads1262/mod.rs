@@ -1,1 +1,243 @@
-//! Simulated ADS1262: 32-bit converter of the analogue fibre-optic gyro (Texas Instruments SBAS661).
+//! Simulated ADS1262: 32-bit converter of the analogue fibre-optic gyro (Texas Instruments SBAS661C).
+//!
+//! Full register map of the 21 registers, commands, direct and commanded reading, all filters and
+//! data rates, calibration registers, test voltage, both checksum forms. Not modelled: chopping and
+//! the calibration commands (recorded as violations, so that nobody relies on them), pins other than
+//! AIN0 and AIN1 (0 V), supply and clock pins, noise of its own.
+//!
+//! Conversions end at the environment's time; the environment is asked only where the gyro's inputs
+//! are selected. A transaction acts at its bytes' time, and conversions that end in its course
+//! become visible after it, as the data sheet has them wait (figure 9-43).
+
+mod analogue;
+mod frame;
+mod registers;
+mod timing;
+mod transaction;
+
+use embassy_time::Instant;
+
+use crate::chip::{ReadyLine, SpiChip, Transaction};
+use crate::clock::period;
+use crate::environment::AnalogueInput;
+use crate::violation::Violations;
+use analogue::{Selected, Voltages};
+use registers::Registers;
+
+/// Bit of the status byte: the conversion was not read before.
+const STATUS_NEW: u8 = 0x40;
+
+/// Conversions under way.
+#[derive(Clone, Copy, Debug)]
+struct Running {
+    /// When the first one ends.
+    first: Instant,
+    /// How many have ended.
+    done: u64,
+    /// Conversions per second.
+    hertz: f64,
+}
+
+impl Running {
+    fn next(&self) -> Instant {
+        period(self.first, self.done, self.hertz)
+    }
+}
+
+/// The newest conversion.
+#[derive(Clone, Copy, Debug, Default)]
+struct Holding {
+    code: i32,
+    alarms: u8,
+    is_new: bool,
+}
+
+/// What is broken in this chip.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sickness {
+    /// The code that every conversion gives.
+    stuck_at: Option<i32>,
+    is_dead: bool,
+    corrupts_next: bool,
+    /// A register that does not take what is written.
+    broken_register: Option<u8>,
+}
+
+/// The chip.
+#[derive(Clone, Debug)]
+pub struct Ads1262 {
+    registers: Registers,
+    identity: u8,
+    voltages: Voltages,
+    /// Commands before this are too early.
+    operational: Instant,
+    /// When the internal reference was switched on.
+    reference_since: Instant,
+    running: Option<Running>,
+    holding: Holding,
+    /// The data-ready line, and with it the shift register that is read directly.
+    is_ready: bool,
+    overwritten: u64,
+    /// Whether a clock is found at the pins.
+    has_external_clock: bool,
+    sickness: Sickness,
+    violations: Violations,
+}
+
+impl Ads1262 {
+    /// A healthy chip whose supply comes up at time zero.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            registers: Registers::reset(0),
+            identity: 0,
+            voltages: Voltages { supply: 5.0, reference: 2.5 },
+            operational: Instant::from_micros(0) + timing::POWER_UP,
+            reference_since: Instant::from_micros(0),
+            running: None,
+            holding: Holding::default(),
+            is_ready: false,
+            overwritten: 0,
+            has_external_clock: false,
+            sickness: Sickness::default(),
+            violations: Violations::default(),
+        }
+    }
+
+    /// From now on every conversion repeats the last code, and is signalled as new all the same.
+    pub fn stick(&mut self) {
+        self.stick_at(self.holding.code);
+    }
+
+    /// From now on every conversion gives this code.
+    pub fn stick_at(&mut self, code: i32) {
+        self.sickness.stuck_at = Some(code);
+    }
+
+    /// From now on no conversion ends.
+    pub fn die(&mut self) {
+        self.sickness.is_dead = true;
+        self.running = None;
+    }
+
+    /// The next frame that is read by command has one wrong bit.
+    pub fn corrupt_next(&mut self) {
+        self.sickness.corrupts_next = true;
+    }
+
+    /// From now on this register keeps its value whatever is written.
+    pub fn break_register(&mut self, address: u8) {
+        self.sickness.broken_register = Some(address);
+    }
+
+    /// From now on a clock is found at the pins, which the status byte shows.
+    pub fn clock_externally(&mut self) {
+        self.has_external_clock = true;
+    }
+
+    /// Ends all sickness; voltages, clock and identity stay.
+    pub fn heal(&mut self) {
+        self.sickness = Sickness::default();
+    }
+
+    /// What the ID register says; zero is an ADS1262.
+    pub fn set_identity(&mut self, identity: u8) {
+        self.identity = identity;
+        self.registers = Registers::reset(identity);
+    }
+
+    /// The internal reference's voltage, V.
+    pub fn set_reference(&mut self, volts: f64) {
+        self.voltages.reference = volts;
+    }
+
+    /// The analogue supply's voltage, V.
+    pub fn set_supply(&mut self, volts: f64) {
+        self.voltages.supply = volts;
+    }
+
+    /// Conversions that were overwritten before anybody read them.
+    #[must_use]
+    pub fn overwritten(&self) -> u64 {
+        self.overwritten
+    }
+
+    /// The status byte of the newest conversion (table 9-18); there is no second converter.
+    fn status(&self) -> u8 {
+        let new = if self.holding.is_new { STATUS_NEW } else { 0 };
+        let clock = u8::from(self.has_external_clock) << 5;
+        new | clock | self.holding.alarms | u8::from(self.registers.reset_flag())
+    }
+
+    /// Begins conversions at `at`; what was converted before is lost.
+    fn begin(&mut self, at: Instant) {
+        let registers = &self.registers;
+        let latency = timing::latency(registers.filter(), registers.rate(), registers.delay());
+        let hertz = timing::hertz(registers.rate());
+        self.clear();
+        if !self.sickness.is_dead {
+            self.running = Some(Running { first: at + latency, done: 0, hertz });
+        }
+    }
+
+    /// Ends conversions and forgets their results.
+    fn clear(&mut self) {
+        self.running = None;
+        self.holding = Holding::default();
+        self.is_ready = false;
+    }
+
+    /// All registers as after a reset, which stops conversions.
+    fn reset(&mut self, at: Instant) {
+        if !self.registers.is_reference_on() {
+            self.reference_since = at;
+        }
+        self.registers = Registers::reset(self.identity);
+        self.clear();
+    }
+}
+
+impl Default for Ads1262 {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<E: AnalogueInput> SpiChip<E> for Ads1262 {
+    fn next_event(&self) -> Option<Instant> {
+        self.running.map(|running| running.next())
+    }
+
+    fn event(&mut self, environment: &mut E) {
+        let Some(mut running) = self.running else { return };
+        let volts = match analogue::selected(&self.registers, self.voltages) {
+            Selected::Gyro(sign) => sign * environment.volts(running.next()),
+            Selected::Own(volts) => volts,
+        };
+        running.done += 1;
+        self.running = (!self.registers.is_one_shot()).then_some(running);
+        self.overwritten += u64::from(self.holding.is_new);
+        let (converted, alarms) = analogue::convert(&self.registers, self.voltages, volts);
+        let code = self.sickness.stuck_at.unwrap_or(converted);
+        self.holding = Holding { code, alarms, is_new: true };
+        self.is_ready = true;
+    }
+
+    fn transact(&mut self, _: &mut E, transaction: &Transaction, reply: &mut [u8]) {
+        transaction::transact(self, transaction, reply);
+    }
+
+    fn ready_line(&self) -> ReadyLine {
+        ReadyLine { active: self.is_ready, next: self.running.map(|running| running.next()) }
+    }
+
+    fn power_cycle(&mut self, now: Instant) {
+        self.reset(now);
+        self.operational = now + timing::POWER_UP;
+        self.reference_since = now;
+    }
+
+    fn violations(&self) -> &Violations {
+        &self.violations
+    }
+}

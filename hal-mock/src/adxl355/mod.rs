@@ -1,1 +1,335 @@
 //! Simulated ADXL355: three-axis accelerometer on the platform (Analog Devices data sheet, rev. C).
+//!
+//! Modelled: register map with access rules, power-up and reset times, the NVM's busy bit, output
+//! rates, ranges, offsets, self-test, temperature, status, FIFO, data-ready pin, shadow registers
+//! and the race that may spoil them. The filter is the environment's mean over the output period.
+//! Not modelled, and without effect: high-pass filter, activity detection, external synchronisation.
+//!
+//! Where the data sheet promises nothing, the chip does the worst: a byte of data that is clocked
+//! out after a new sample has landed in the same transaction comes inverted, the busy bit is still
+//! set at the first look after loading, and self-test mode lets outside forces through (the data
+//! sheet says both that it does and that it does not).
+
+mod fifo;
+mod registers;
+
+use embassy_time::{Duration, Instant};
+
+use crate::chip::{ReadyLine, SpiChip, Transaction};
+use crate::clock::period;
+use crate::environment::ForceInput;
+use crate::violation::{Misuse, Violations};
+use fifo::Fifo;
+use registers::{
+    DEFAULTS, DRDY_OFF, FIFO_DATA, FIFO_ENTRIES, FIFO_SAMPLES, FILTER, OFFSET_X_H, POWER_CTL,
+    RANGE, RESET, SELF_TEST, SHADOW, SHADOW_LAST, SIZE, STANDBY, STATUS, TEMP1, TEMP2, XDATA3,
+    ZDATA1,
+};
+
+/// From power to standby (Specifications, Turn-On Time: below 10 ms).
+pub const POWER_UP: Duration = Duration::from_millis(10);
+
+/// From software reset to standby: the data sheet has no figure; the Linux driver waits this long.
+pub const RESET_TIME: Duration = Duration::from_millis(5);
+
+/// Bus clocks, Hz (SPI Characteristics).
+const CLOCKS: core::ops::RangeInclusive<u32> = 100_000..=10_000_000;
+
+/// Answer to the self-test force, g (Specifications, typical values).
+const SELF_TEST_RESPONSE: [f64; 3] = [0.3, 0.3, 1.5];
+
+/// Factory settings of this chip: any pattern, each chip has its own.
+const FACTORY: [u8; 5] = [0x3C, 0x81, 0x5A, 0x07, 0xE2];
+
+/// What wrongly loaded factory settings add to each axis, g.
+const SPOILED_BIAS: f64 = 0.1;
+
+const DATA_RDY: u8 = 0x01;
+const FIFO_FULL: u8 = 0x02;
+const FIFO_OVR: u8 = 0x04;
+const NVM_BUSY: u8 = 0x10;
+
+/// The measuring of a chip that is not in standby.
+#[derive(Clone, Copy, Debug)]
+struct Measuring {
+    since: Instant,
+    samples: u64,
+    hertz: f64,
+}
+
+impl Measuring {
+    fn next(&self) -> Instant {
+        period(self.since, self.samples + 1, self.hertz)
+    }
+}
+
+/// The simulated chip.
+#[derive(Clone, Debug)]
+pub struct Adxl355 {
+    registers: [u8; SIZE],
+    shadow: [u8; 5],
+    ready_at: Instant,
+    is_powering_up: bool,
+    measuring: Option<Measuring>,
+    /// When the data-ready pin falls by itself; it is high until then.
+    pin_falls: Option<Instant>,
+    counts: [i32; 3],
+    fifo: Fifo,
+    self_test_response: [f64; 3],
+    spoiled_resets: u32,
+    violations: Violations,
+}
+
+impl Adxl355 {
+    /// A chip that gets its supply at `now`.
+    #[must_use]
+    pub fn new(now: Instant) -> Self {
+        Self {
+            registers: DEFAULTS,
+            shadow: FACTORY,
+            ready_at: now + POWER_UP,
+            is_powering_up: true,
+            measuring: None,
+            pin_falls: None,
+            counts: [0; 3],
+            fifo: Fifo::default(),
+            self_test_response: SELF_TEST_RESPONSE,
+            spoiled_resets: 0,
+            violations: Violations::default(),
+        }
+    }
+
+    /// Has the next software resets load wrong factory settings (Reset Register, note: a race in
+    /// silicon up to revision 1); power cycles never do.
+    pub fn spoil_resets(&mut self, count: u32) {
+        self.spoiled_resets = count;
+    }
+
+    /// Has the chip answer the self-test force like this, g.
+    pub fn answer_self_test(&mut self, response: [f64; 3]) {
+        self.self_test_response = response;
+    }
+
+    /// Flips a bit of a register, as a disturbance of the chip would.
+    pub fn flip(&mut self, address: u8, bit: u8) {
+        if let Some(register) = self.registers.get_mut(usize::from(address)) {
+            *register ^= 1 << bit;
+        }
+    }
+
+    fn restart(&mut self, now: Instant) {
+        let spoiled = self.spoiled_resets > 0;
+        *self = Self {
+            ready_at: now + RESET_TIME,
+            is_powering_up: false,
+            shadow: if spoiled { FACTORY.map(|byte| byte ^ 0x11) } else { FACTORY },
+            spoiled_resets: self.spoiled_resets.saturating_sub(1),
+            ..self.sane(now)
+        };
+        self.registers[usize::from(STATUS)] = NVM_BUSY;
+    }
+
+    /// The same chip as new, with its sicknesses and its record.
+    fn sane(&mut self, now: Instant) -> Self {
+        Self {
+            self_test_response: self.self_test_response,
+            spoiled_resets: self.spoiled_resets,
+            violations: core::mem::take(&mut self.violations),
+            ..Self::new(now)
+        }
+    }
+
+    fn at(&self, address: u8) -> u8 {
+        self.registers[usize::from(address)]
+    }
+
+    /// Takes the sample that is due.
+    fn convert(&mut self, environment: &mut impl ForceInput, mut measuring: Measuring) {
+        let now = measuring.next();
+        let force = environment.force_g(now);
+        for (axis, force) in force.into_iter().enumerate() {
+            self.counts[axis] = self.count(axis, force);
+        }
+        let temperature = 1885.0 - 9.05 * (environment.temperature_c(now) - 25.0);
+        let [high, low] = (libm::round(temperature) as u16).min(0xFFF).to_be_bytes();
+        self.registers[usize::from(TEMP2)] = high;
+        self.registers[usize::from(TEMP1)] = low;
+        let is_lost = self.fifo.push(self.counts);
+        let status = &mut self.registers[usize::from(STATUS)];
+        *status |= DATA_RDY | if is_lost { FIFO_OVR } else { 0 };
+        measuring.samples += 1;
+        self.pin_falls = Some(now + Duration::from_micros((0.5e6 / measuring.hertz) as u64));
+        self.measuring = Some(measuring);
+    }
+
+    /// A force of one axis, g, in counts.
+    fn count(&self, axis: usize, force: f64) -> i32 {
+        let test = if self.at(SELF_TEST) == 3 { self.self_test_response[axis] } else { 0.0 };
+        let bias = if self.shadow == FACTORY { 0.0 } else { SPOILED_BIAS };
+        let per_g = f64::from(256_000 >> ((self.at(RANGE) & 0x03) - 1));
+        let offset = usize::from(OFFSET_X_H) + 2 * axis;
+        let offset = i16::from_be_bytes([self.registers[offset], self.registers[offset + 1]]);
+        let count = libm::round((force + test + bias) * per_g) as i32;
+        count.saturating_add(i32::from(offset) << 4).clamp(-0x8_0000, 0x7_FFFF)
+    }
+
+    /// Reads one register with all that a read does to it.
+    fn read(&mut self, address: u8, now: Instant) -> u8 {
+        match address {
+            STATUS => self.read_status(now),
+            FIFO_ENTRIES => self.fifo.entries(),
+            XDATA3..=ZDATA1 => {
+                self.pin_falls = None;
+                let byte = usize::from(address - XDATA3);
+                (self.counts[byte / 3] << 4 >> (16 - 8 * (byte % 3))) as u8
+            }
+            SHADOW..=SHADOW_LAST => self.shadow[usize::from(address - SHADOW)],
+            _ => self.at(address),
+        }
+    }
+
+    fn read_status(&mut self, now: Instant) -> u8 {
+        let is_full = self.fifo.entries() >= self.at(FIFO_SAMPLES);
+        let status = self.at(STATUS) | if is_full { FIFO_FULL } else { 0 };
+        let is_busy = now < self.ready_at;
+        self.registers[usize::from(STATUS)] = if is_busy { NVM_BUSY } else { 0 };
+        status
+    }
+
+    /// Reads registers in a row. At the FIFO the address stays, and the FIFO gives its values only
+    /// where the transaction began there.
+    fn read_row(&mut self, first: u8, transaction: &Transaction, reply: &mut [u8]) {
+        let landing = self.measuring.map(|measuring| measuring.next());
+        let mut address = first;
+        for (index, byte) in reply.iter_mut().enumerate() {
+            if let Some(misuse) = registers::read_refusal(address) {
+                self.violations.record(misuse, address, transaction.now);
+            } else if address == FIFO_DATA {
+                self.pin_falls = None;
+                *byte = if first == FIFO_DATA { self.fifo.read() } else { 0 };
+                continue;
+            } else {
+                *byte = self.read(address, transaction.now);
+                if has_landed(landing, transaction, index + 2) {
+                    *byte ^= data_bits(address);
+                }
+            }
+            address = address.wrapping_add(1);
+        }
+    }
+
+    fn write(&mut self, address: u8, value: u8, now: Instant) {
+        let held = self.registers.get(usize::from(address)).copied().unwrap_or(0);
+        let is_measuring = self.measuring.is_some();
+        if let Some(misuse) = registers::write_refusal(address, value, held, is_measuring) {
+            self.violations.record(misuse, address, now);
+        } else if address == RESET {
+            self.restart(now);
+        } else {
+            self.registers[usize::from(address)] = value;
+            if address == POWER_CTL {
+                self.switch(now);
+            }
+        }
+    }
+
+    /// Begins or ends measuring; in standby the data path is reset.
+    fn switch(&mut self, now: Instant) {
+        if self.at(POWER_CTL) & STANDBY == 0 {
+            let hertz = 4000.0 / f64::from(1_u32 << (self.at(FILTER) & 0x0F));
+            self.measuring.get_or_insert(Measuring { since: now, samples: 0, hertz });
+        } else {
+            self.measuring = None;
+            self.pin_falls = None;
+            self.counts = [0; 3];
+            self.fifo = Fifo::default();
+            self.registers[usize::from(STATUS)] = 0;
+        }
+    }
+
+    fn judge_clock(&mut self, transaction: &Transaction, address: u8) {
+        if transaction.hertz > *CLOCKS.end() {
+            self.violations.record(Misuse::ClockTooFast, address, transaction.now);
+        } else if transaction.hertz < *CLOCKS.start() {
+            self.violations.record(Misuse::ForbiddenValue, address, transaction.now);
+        }
+    }
+
+    /// Whether the chip listens; while it loads its settings only the status can be read.
+    fn listens(&mut self, command: u8, length: usize, now: Instant) -> bool {
+        let is_status = command == STATUS << 1 | 1 && length == 1 && !self.is_powering_up;
+        let listens = now >= self.ready_at || is_status;
+        if !listens {
+            self.violations.record(Misuse::TooEarly, command >> 1, now);
+        }
+        listens
+    }
+}
+
+/// Whether a new sample lands before so many bytes of a transaction have passed.
+fn has_landed(landing: Option<Instant>, transaction: &Transaction, bytes: usize) -> bool {
+    landing.is_some_and(|at| {
+        let wait = at.as_micros().saturating_sub(transaction.now.as_micros());
+        wait * u64::from(transaction.hertz) < bytes as u64 * 8_000_000
+    })
+}
+
+/// The bits of a register that a new sample changes.
+const fn data_bits(address: u8) -> u8 {
+    match address {
+        TEMP2 => 0x0F,
+        0x0A | 0x0D | ZDATA1 => 0xF0,
+        TEMP1 | XDATA3..ZDATA1 => 0xFF,
+        _ => 0,
+    }
+}
+
+impl<E: ForceInput> SpiChip<E> for Adxl355 {
+    fn next_event(&self) -> Option<Instant> {
+        let next = self.measuring.map(|measuring| measuring.next());
+        next.map(|at| self.pin_falls.map_or(at, |falls| falls.min(at)))
+    }
+
+    fn event(&mut self, environment: &mut E) {
+        let Some(measuring) = self.measuring else { return };
+        if self.pin_falls.take().is_none_or(|falls| falls >= measuring.next()) {
+            self.convert(environment, measuring);
+        }
+    }
+
+    fn transact(&mut self, _: &mut E, transaction: &Transaction, reply: &mut [u8]) {
+        reply.fill(0);
+        let now = transaction.now;
+        let [command, data @ ..] = transaction.sent else { return };
+        let (command, address) = (*command, command >> 1);
+        self.judge_clock(transaction, address);
+        if data.is_empty() {
+            self.violations.record(Misuse::Length, address, now);
+        } else if self.listens(command, data.len(), now) {
+            if command & 1 == 1 {
+                self.read_row(address, transaction, &mut reply[1..]);
+            } else {
+                for (address, value) in (address..).zip(data) {
+                    self.write(address, *value, now);
+                }
+            }
+        }
+    }
+
+    /// High where the data sheet has it high: a new sample that nobody has read, for half a period.
+    fn ready_line(&self) -> ReadyLine {
+        if self.at(POWER_CTL) & DRDY_OFF != 0 {
+            return ReadyLine::default();
+        }
+        let next = self.measuring.map(|measuring| measuring.next());
+        ReadyLine { active: self.pin_falls.is_some(), next }
+    }
+
+    fn power_cycle(&mut self, now: Instant) {
+        *self = self.sane(now);
+    }
+
+    fn violations(&self) -> &Violations {
+        &self.violations
+    }
+}

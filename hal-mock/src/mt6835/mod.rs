@@ -1,1 +1,254 @@
-//! Simulated MT6835: 21-bit magnetic angle encoder of the stage (MagnTek data sheet).
+//! Simulated MT6835: 21-bit magnetic angle encoder of the stage (`MagnTek` data sheet, rev. 1.3).
+//!
+//! Modelled: commands, register map in RAM with the EEPROM behind it, power-up and programming time,
+//! the angle latched when a burst begins, zero position, direction, hysteresis, warnings, checksum.
+//! Not modelled, and without effect: bandwidth (noise is the environment's), table of corrections,
+//! self-calibration, the incremental and PWM outputs.
+
+mod registers;
+
+use embassy_time::{Duration, Instant};
+
+use crate::chip::{SpiChip, Transaction};
+use crate::environment::ShaftAngle;
+use crate::violation::{Misuse, Violations};
+use registers::{
+    ANGLE, CALIBRATION, CRC, DIRECTION, FACTORY, SIZE, ZERO_HIGH, ZERO_LOW, hysteresis, writable,
+};
+
+/// From power to angles (data sheet, Power-up Time, as quoted by a public evaluation of the chip).
+pub const POWER_UP: Duration = Duration::from_millis(64);
+
+/// Programming the EEPROM; its supply must not fail meanwhile.
+pub const PROGRAMMING: Duration = Duration::from_secs(6);
+
+/// Fastest bus clock, Hz.
+const FASTEST: u32 = 16_000_000;
+
+/// Steps in a turn.
+const STEPS: f64 = 2_097_152.0;
+
+/// Turns per second above which the chip warns: 120 000 1/min.
+const FASTEST_SHAFT: f64 = 2000.0;
+
+/// Delay of the chip's signal path, s (Electrical Characteristics, typical): noise between two looks
+/// at one moment is no speed.
+const DELAY: f64 = 10e-6;
+
+/// The answer of a chip that takes a command for its EEPROM.
+const ACKNOWLEDGE: u8 = 0x55;
+
+/// The simulated chip.
+#[derive(Clone, Debug)]
+pub struct Mt6835 {
+    ram: [u8; SIZE],
+    eeprom: [u8; SIZE],
+    programmings: u32,
+    ready_at: Instant,
+    calibration: u8,
+    /// Where the hysteresis holds the angle, turns.
+    held: Option<f64>,
+    /// When the shaft was last looked at, and where it was.
+    seen: Option<(Instant, f64)>,
+    has_undervoltage: bool,
+    spoiled: u8,
+    violations: Violations,
+}
+
+impl Mt6835 {
+    /// A chip from the factory that gets its supply at `now`.
+    #[must_use]
+    pub fn new(now: Instant) -> Self {
+        Self {
+            ram: FACTORY,
+            eeprom: FACTORY,
+            programmings: 0,
+            ready_at: now + POWER_UP,
+            calibration: 0,
+            held: None,
+            seen: None,
+            has_undervoltage: false,
+            spoiled: 0,
+            violations: Violations::default(),
+        }
+    }
+
+    /// How often the EEPROM was programmed.
+    #[must_use]
+    pub fn programmings(&self) -> u32 {
+        self.programmings
+    }
+
+    /// What a register in RAM holds.
+    #[must_use]
+    pub fn register(&self, address: u16) -> u8 {
+        self.ram.get(usize::from(address)).copied().unwrap_or(0)
+    }
+
+    /// Flips a bit of a register in RAM, as a disturbance of the chip would.
+    pub fn flip(&mut self, address: u16, bit: u8) {
+        if let Some(register) = self.ram.get_mut(usize::from(address)) {
+            *register ^= 1 << bit;
+        }
+    }
+
+    /// Has the next burst carry these wrong bits in its checksum.
+    pub fn spoil_checksum(&mut self, bits: u8) {
+        self.spoiled = bits;
+    }
+
+    /// Sets the state of the self-calibration, two bits: none, running, failed, done.
+    pub fn set_calibration(&mut self, state: u8) {
+        self.calibration = state & 0x03;
+    }
+
+    /// Has the supply be too low, but not so low that the chip restarts.
+    pub fn set_undervoltage(&mut self, is_low: bool) {
+        self.has_undervoltage = is_low;
+    }
+
+    /// Angle, status and checksum of this moment.
+    fn frame(&mut self, environment: &mut impl ShaftAngle, now: Instant) -> [u8; 4] {
+        let turns = environment.shaft_turns(now);
+        let is_fast = self.seen.replace((now, turns)).is_some_and(|(then, before)| {
+            let seconds = (now.as_micros() - then.as_micros()) as f64 * 1e-6;
+            libm::fabs(turns - before) > FASTEST_SHAFT * (seconds + DELAY)
+        });
+        let is_weak = !environment.magnet_is_present();
+        let warnings =
+            u32::from(is_fast) | u32::from(is_weak) << 1 | u32::from(self.has_undervoltage) << 2;
+        let word = self.steps(turns) << 3 | warnings;
+        let [_, high, middle, low] = word.to_be_bytes();
+        [high, middle, low, remainder(word) ^ core::mem::take(&mut self.spoiled)]
+    }
+
+    /// The angle in steps, after hysteresis, zero position and direction.
+    fn steps(&mut self, turns: f64) -> u32 {
+        let direction = self.register(DIRECTION);
+        let play = hysteresis(direction);
+        let held = self.held.map_or(turns, |held| held.max(turns - play).min(turns + play));
+        self.held = Some(held);
+        let fraction = held - libm::floor(held);
+        let steps = libm::round(fraction * STEPS) as u32;
+        let zero = u32::from(self.register(ZERO_HIGH)) << 13
+            | u32::from(self.register(ZERO_LOW) >> 4) << 9;
+        let steps = steps.wrapping_sub(zero);
+        let steps = if direction & 0x08 == 0 { steps } else { steps.wrapping_neg() };
+        steps & 0x1F_FFFF
+    }
+
+    fn read(&mut self, environment: &mut impl ShaftAngle, address: u16, now: Instant) -> u8 {
+        match address {
+            ANGLE..=CRC => self.frame(environment, now)[usize::from(address - ANGLE)],
+            CALIBRATION => self.calibration << 6,
+            _ if writable(address).is_some() => self.register(address),
+            _ => {
+                self.violations.record(Misuse::UnknownRegister, address as u8, now);
+                0
+            }
+        }
+    }
+
+    fn write(&mut self, address: u16, value: u8, now: Instant) {
+        let changed = value ^ self.register(address);
+        let misuse = match writable(address) {
+            None => Misuse::UnknownRegister,
+            Some(0) => Misuse::ReadOnly,
+            Some(mask) if changed & !mask != 0 => Misuse::ReservedBits,
+            Some(_) => {
+                self.ram[usize::from(address)] = value;
+                return;
+            }
+        };
+        self.violations.record(misuse, address as u8, now);
+    }
+
+    /// Takes the angle of this moment as zero, in RAM.
+    fn set_zero(&mut self, environment: &mut impl ShaftAngle, now: Instant) -> u8 {
+        self.ram[usize::from(ZERO_HIGH)] = 0;
+        self.ram[usize::from(ZERO_LOW)] &= 0x0F;
+        let turns = environment.shaft_turns(now);
+        let zero = (self.steps(turns) >> 9) as u16;
+        self.ram[usize::from(ZERO_HIGH)] = (zero >> 4) as u8;
+        self.ram[usize::from(ZERO_LOW)] |= (zero << 4) as u8;
+        ACKNOWLEDGE
+    }
+
+    fn program(&mut self, now: Instant) -> u8 {
+        self.eeprom = self.ram;
+        self.programmings += 1;
+        self.ready_at = now + PROGRAMMING;
+        ACKNOWLEDGE
+    }
+
+    /// Whether a transaction is one that the chip can follow.
+    fn is_sound(&mut self, transaction: &Transaction) -> bool {
+        let command = transaction.sent.first().copied().unwrap_or(0);
+        let length = if command >> 4 == 0xA { 6 } else { 3 };
+        let misuse = if transaction.hertz > FASTEST {
+            Misuse::ClockTooFast
+        } else if transaction.now < self.ready_at {
+            Misuse::TooEarly
+        } else if transaction.sent.len() != length {
+            Misuse::Length
+        } else {
+            return true;
+        };
+        self.violations.record(misuse, command, transaction.now);
+        false
+    }
+}
+
+/// The remainder of a 24-bit message by x⁸ + x² + x + 1, by long division as on paper.
+fn remainder(message: u32) -> u8 {
+    const DIVISOR: u32 = 0x107;
+    let mut rest = message << 8;
+    for bit in (8..32).rev() {
+        if rest >> bit & 1 == 1 {
+            rest ^= DIVISOR << (bit - 8);
+        }
+    }
+    rest as u8
+}
+
+impl<E: ShaftAngle> SpiChip<E> for Mt6835 {
+    fn next_event(&self) -> Option<Instant> {
+        None
+    }
+
+    fn event(&mut self, _: &mut E) {}
+
+    fn transact(&mut self, environment: &mut E, transaction: &Transaction, reply: &mut [u8]) {
+        reply.fill(0);
+        let now = transaction.now;
+        if !self.is_sound(transaction) {
+            return;
+        }
+        let [first, second, third, ..] = *transaction.sent else { return };
+        let address = u16::from_be_bytes([first & 0x0F, second]);
+        match (first >> 4, address) {
+            (0x3, _) => reply[2] = self.read(environment, address, now),
+            (0x6, _) => self.write(address, third, now),
+            (0xA, ANGLE) => reply[2..6].copy_from_slice(&self.frame(environment, now)),
+            (0x5, 0) => reply[2] = self.set_zero(environment, now),
+            (0xC, 0) => reply[2] = self.program(now),
+            (0x5 | 0xA | 0xC, _) => self.violations.record(Misuse::ForbiddenValue, first, now),
+            _ => self.violations.record(Misuse::UnknownCommand, first, now),
+        }
+    }
+
+    fn power_cycle(&mut self, now: Instant) {
+        *self = Self {
+            ram: self.eeprom,
+            eeprom: self.eeprom,
+            programmings: self.programmings,
+            has_undervoltage: self.has_undervoltage,
+            violations: core::mem::take(&mut self.violations),
+            ..Self::new(now)
+        };
+    }
+
+    fn violations(&self) -> &Violations {
+        &self.violations
+    }
+}

@@ -1,1 +1,335 @@
 //! Simulated TMC5160: stepper driver with ramp generator of the stage (Trinamic data sheet, rev. 1.14).
+//!
+//! ```text
+//!  SPI ─▶ map (access, reserved bits) ─▶ ramp ─microsteps─▶ Mechanics
+//!            └─▶ status (flags, SPI_STATUS) ◀─blocked, switches─┘
+//! ```
+//!
+//! While the motor moves the chip looks at its surroundings every [`STEP`] (some 1 300 instructions of a
+//! Cortex-M4F): switches and stalls act with that granularity. Standing it has no events and looks at each transaction. Simplified: `SG_RESULT` is 0 where the motor is
+//! blocked and [`FREE_RUNNING`] otherwise, `CoolStep`, `DcStep`, `StealthChop` and the encoder input are
+//! registers without effect, `VSTART` acts in positioning mode only, and reading a write-only register
+//! (on which the data sheet is silent) gives zero and a violation.
+
+mod demand;
+mod map;
+mod ramp;
+mod rules;
+mod status;
+
+use embassy_time::{Duration, Instant};
+
+use self::demand::{Demand, FRACTION_BITS};
+use self::map::{ADDRESSES, Access, address};
+use self::ramp::Ramp;
+use crate::chip::{SpiChip, Transaction};
+use crate::environment::Mechanics;
+use crate::violation::{Misuse, Violations};
+
+/// Time between two looks at the surroundings while the motor moves.
+pub const STEP: Duration = Duration::from_millis(1);
+
+/// `SG_RESULT` of a motor that turns freely.
+pub const FREE_RUNNING: u32 = 350;
+
+/// The supply's reset ends so long after it is there (28.2, `VVCC_IO`, typical).
+const RESET_DELAY: Duration = Duration::from_micros(10);
+
+/// Bytes of a datagram (4.1).
+const DATAGRAM: usize = 5;
+
+/// Microsteps in one electrical period: where the field stands after a reset.
+const PERIOD: i64 = 1024;
+
+/// Bits of a microstep that the field is driven with.
+const FIELD_BITS: u32 = 20;
+
+/// What the chip counts time with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Oscillator {
+    /// The factory-calibrated one: 12 MHz, 11.5 … 12.5 MHz at 50 °C (28.2).
+    Internal {
+        /// Its true frequency, Hz.
+        hertz: u32,
+    },
+    /// A clock on CLK, 4 … 18 MHz.
+    External {
+        /// Its frequency, Hz.
+        hertz: u32,
+    },
+}
+
+impl Oscillator {
+    /// Frequency, Hz, to the kilohertz below.
+    #[must_use]
+    pub const fn hertz(self) -> u32 {
+        match self {
+            Self::Internal { hertz } | Self::External { hertz } => hertz,
+        }
+    }
+
+    /// Fastest bus clock, Hz (4.3).
+    const fn bus_hertz(self) -> u32 {
+        match self {
+            Self::Internal { .. } => 4_000_000,
+            Self::External { hertz } => hertz / 2,
+        }
+    }
+}
+
+/// What only a chip can suffer from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sickness {
+    /// It is well.
+    #[default]
+    None,
+    /// The bridges are too hot.
+    Overheated,
+    /// Coil A is short to ground.
+    Short,
+    /// Coil A is not connected.
+    OpenLoad,
+    /// The charge pump's voltage is low.
+    ChargePumpLow,
+    /// `DRV_ENN` is high: the bridges are off.
+    Disabled,
+    /// `SD_MODE` is high: steps come from outside.
+    StepMode,
+    /// VERSION is another chip's.
+    Foreign,
+}
+
+/// The chip.
+#[derive(Clone, Debug)]
+pub struct Tmc5160 {
+    oscillator: Oscillator,
+    /// Microsteps per second in one unit of the ramp's velocity.
+    per_second: f64,
+    registers: [u32; ADDRESSES],
+    ramp: Ramp,
+    /// Latched bits of `RAMP_STAT`.
+    events: u32,
+    sickness: Sickness,
+    /// Levels of REFL and REFR.
+    pins: [bool; 2],
+    /// The active switches at the last look, left and right.
+    stops_seen: u8,
+    was_reached: bool,
+    /// Whether TSTEP is below TCOOLTHRS.
+    fast: bool,
+    blocked: bool,
+    /// Clocks since the last motion.
+    still: u64,
+    started: Instant,
+    at: Instant,
+    /// Thousandths of a clock that are not yet a whole one.
+    remainder: u32,
+    pending: u32,
+    latched: u8,
+    violations: Violations,
+}
+
+impl Tmc5160 {
+    /// A chip whose supply comes up at `now`.
+    #[must_use]
+    pub fn new(oscillator: Oscillator, now: Instant) -> Self {
+        let mut chip = Self {
+            oscillator,
+            per_second: f64::from(oscillator.hertz()) / (1_u64 << 41) as f64,
+            registers: map::reset_values(),
+            ramp: Ramp::at(0),
+            events: 0,
+            sickness: Sickness::None,
+            pins: [false; 2],
+            stops_seen: 0,
+            was_reached: false,
+            fast: false,
+            blocked: false,
+            still: u64::MAX >> 1,
+            started: now,
+            at: now,
+            remainder: 0,
+            pending: 0,
+            latched: 0,
+            violations: Violations::default(),
+        };
+        chip.ramp.ask(Demand::of(&chip.registers));
+        chip.note();
+        chip.latch();
+        chip
+    }
+
+    /// Makes the chip sick, or well again.
+    pub fn suffer(&mut self, sickness: Sickness) {
+        self.sickness = sickness;
+        self.catch_errors();
+    }
+
+    /// A register as it stands, whether or not the bus may read it.
+    #[must_use]
+    pub fn register(&self, address: u8) -> u32 {
+        self.value(address & 0x7F)
+    }
+
+    /// Where the motor's field stands, microsteps, 0 where the chip began.
+    #[must_use]
+    pub fn field(&self) -> i64 {
+        self.ramp.field()
+    }
+
+    /// Clocks until `now`, whole ones.
+    fn elapse(&mut self, now: Instant) -> u64 {
+        let micros = now.saturating_duration_since(self.at).as_micros();
+        let total = u64::from(self.remainder) + micros * u64::from(self.oscillator.hertz() / 1000);
+        self.at = self.at.max(now);
+        // The usual millisecond needs no long division.
+        if let Ok(total) = u32::try_from(total) {
+            self.remainder = total % 1000;
+            return u64::from(total / 1000);
+        }
+        self.remainder = (total % 1000) as u32;
+        total / 1000
+    }
+
+    /// Comes up to `now` and looks around.
+    fn settle(&mut self, environment: &mut impl Mechanics, now: Instant) {
+        let clocks = self.elapse(now);
+        if self.ramp.is_busy() {
+            self.ramp.advance(clocks as u32);
+            self.still = 0;
+        } else {
+            self.still = self.still.saturating_add(clocks).min(u64::MAX >> 1);
+        }
+        self.drive(environment);
+        self.pins = environment.reference_switches();
+        self.blocked = environment.is_blocked();
+        let moved = self.ramp.fine_velocity();
+        self.latch_switches();
+        self.watch_load();
+        if self.ramp.fine_velocity() != moved {
+            self.drive(environment);
+        }
+        self.note();
+    }
+
+    /// Turns the field.
+    fn drive(&self, environment: &mut impl Mechanics) {
+        let fine =
+            self.field() << FIELD_BITS | self.ramp.fraction() >> (FRACTION_BITS - FIELD_BITS);
+        let per_second = self.ramp.fine_velocity() as f64 * self.per_second;
+        environment.drive(self.at, fine as f64 * (1.0 / f64::from(1 << FIELD_BITS)), per_second);
+    }
+
+    /// Executes a command; what the next datagram carries back (4.1.1).
+    fn execute(&mut self, command: u8, data: u32) -> u32 {
+        let (address, is_write) = (command & 0x7F, command & 0x80 != 0);
+        let Some(register) = map::register(address) else {
+            self.violate(Misuse::UnknownRegister, address);
+            return if is_write { data } else { 0 };
+        };
+        if is_write {
+            self.write(address, register, data);
+            data
+        } else if register.access.can_read() {
+            self.value(address)
+        } else {
+            self.violate(Misuse::WriteOnly, address);
+            0
+        }
+    }
+
+    fn write(&mut self, address: u8, register: map::Register, data: u32) {
+        if !register.access.can_write() {
+            return self.violate(Misuse::ReadOnly, address);
+        }
+        if data & !register.mask != 0 {
+            self.violate(Misuse::ReservedBits, address);
+        }
+        let data = data & register.mask;
+        if rules::is_forbidden(&self.registers, address, data) {
+            self.violate(Misuse::ForbiddenValue, address);
+        }
+        if register.access == Access::WriteToClear {
+            self.clear(address, data);
+        } else {
+            self.registers[usize::from(address)] = data;
+            self.take_effect(address, data);
+        }
+    }
+
+    /// What a written register changes at once.
+    fn take_effect(&mut self, address: u8, data: u32) {
+        match address {
+            address::XACTUAL => self.ramp.place(data.cast_signed()),
+            address::SW_MODE => self.set_stops(),
+            address::RAMPMODE..=address::XTARGET => self.ramp.ask(Demand::of(&self.registers)),
+            _ => {}
+        }
+    }
+
+    fn violate(&mut self, misuse: Misuse, address: u8) {
+        self.violations.record(misuse, address, self.at);
+    }
+
+    /// Whether a transaction is one; what is wrong with it is recorded.
+    fn accepts(&mut self, transaction: &Transaction) -> bool {
+        let command = transaction.sent.first().copied().unwrap_or_default();
+        if transaction.hertz > self.oscillator.bus_hertz() {
+            self.violate(Misuse::ClockTooFast, command);
+        }
+        let early = transaction.now < self.started + RESET_DELAY;
+        if early {
+            self.violate(Misuse::TooEarly, command);
+        }
+        let whole = transaction.sent.len() == DATAGRAM;
+        if !whole {
+            self.violate(Misuse::Length, command);
+        }
+        whole && !early
+    }
+}
+
+impl<E: Mechanics> SpiChip<E> for Tmc5160 {
+    fn next_event(&self) -> Option<Instant> {
+        self.ramp.is_busy().then(|| self.at + STEP)
+    }
+
+    fn event(&mut self, environment: &mut E) {
+        self.settle(environment, self.at + STEP);
+    }
+
+    fn transact(&mut self, environment: &mut E, transaction: &Transaction, reply: &mut [u8]) {
+        self.settle(environment, transaction.now);
+        reply.fill(0);
+        if !self.accepts(transaction) {
+            return;
+        }
+        if let (Some((status, data)), [command, sent @ ..]) =
+            (reply.split_first_mut(), transaction.sent)
+        {
+            *status = self.latched;
+            data.copy_from_slice(&self.pending.to_be_bytes());
+            let word = sent.iter().fold(0, |word, byte| word << 8 | u32::from(*byte));
+            self.pending = self.execute(*command, word);
+        }
+        self.note();
+        self.latch();
+        self.drive(environment);
+    }
+
+    fn power_cycle(&mut self, now: Instant) {
+        let field = self.field();
+        let violations = core::mem::take(&mut self.violations);
+        *self = Self { sickness: self.sickness, ..Self::new(self.oscillator, now) };
+        // The rotor is drawn to the nearest beginning of an electrical period.
+        self.ramp = Ramp::at((field + PERIOD / 2).div_euclid(PERIOD) * PERIOD);
+        self.ramp.ask(Demand::of(&self.registers));
+        self.violations = violations;
+        self.catch_errors();
+        self.latch();
+    }
+
+    fn violations(&self) -> &Violations {
+        &self.violations
+    }
+}

@@ -1,4 +1,6 @@
 //! Monte-Carlo campaigns: many simulated alignments, told as tables.
 
+pub mod faults;
+pub mod instrument;
 pub mod sokolov;
 pub mod statistics;

@@ -43,6 +43,11 @@ impl Progress {
         self.tell(|| so_far(session));
     }
 
+    /// Prints a line of a log above the bar.
+    pub fn log(&self, line: &str) {
+        if self.bar.is_hidden() { eprintln!("{line}") } else { self.bar.println(line) }
+    }
+
     /// The task is done: the bar stays as it is.
     pub fn finish(&self) {
         self.bar.abandon();

@@ -5,6 +5,7 @@ use std::fmt::{self, Write};
 use super::positive_zero;
 use crate::campaign::sokolov::{AlphaRow, Precision, Table};
 use crate::campaign::statistics::NORMAL_COVERAGE;
+use crate::campaign::{faults, instrument};
 
 /// Writes the tables of Sokolov's experiment.
 ///
@@ -96,4 +97,68 @@ fn of_precision(out: &mut impl Write, row: &Precision) -> fmt::Result {
         out,
         "  within 1, 2, 3 σ: {one:.1}, {two:.1}, {three:.1} % (normal: {a:.1}, {b:.1}, {c:.1} %)"
     )
+}
+
+/// Writes what many runs of the whole instrument amount to.
+///
+/// # Errors
+/// Those of the writer.
+pub fn instrument(out: &mut impl Write, row: &instrument::Precision) -> fmt::Result {
+    let [one, two, three] = row.coverage_percent;
+    let [a, b, c] = NORMAL_COVERAGE;
+    writeln!(
+        out,
+        "\nThe whole instrument on simulated chips: 24 positions of 10 s, latitudes ±70°, tilts to 5°"
+    )?;
+    writeln!(out, "{} runs, {} refused", row.runs, row.refused)?;
+    if let Some(reason) = &row.first_reason {
+        writeln!(out, "  first refusal: {reason}")?;
+    }
+    writeln!(
+        out,
+        "  RMS error {:.4}°, RMS limit {:.4}°; RMS of error over limit {:.3}",
+        row.rms_deg, row.limit_deg, row.ratio
+    )?;
+    writeln!(
+        out,
+        "  within 1, 2, 3 σ: {one:.1}, {two:.1}, {three:.1} % (normal: {a:.1}, {b:.1}, {c:.1} %); \
+         worst {:.2} σ",
+        row.worst_sigmas
+    )?;
+    writeln!(
+        out,
+        "  {} dwells measured again, {} accesses that a data sheet forbids",
+        row.repeated, row.violations
+    )
+}
+
+/// Writes what came of every fault.
+///
+/// # Errors
+/// Those of the writer.
+pub fn faults(out: &mut impl Write, rows: &[faults::Row]) -> fmt::Result {
+    writeln!(
+        out,
+        "\n{:<30} {:<8} {:>7} {:>6} {:>8} {:>8} {:>8}  what the board noticed first → why it refused",
+        "fault", "outcome", "error σ", "faults", "repeated", "left out", "after s"
+    )?;
+    for row in rows {
+        let error = row.error_sigmas.map_or_else(|| "-".to_owned(), |e| format!("{e:+.2}"));
+        write!(
+            out,
+            "{:<30} {:<8} {error:>7} {:>6} {:>8} {:>8} {:>8.1}  {}",
+            row.fault,
+            row.outcome,
+            row.faults,
+            row.repeated,
+            row.left_out,
+            row.seconds,
+            row.noticed.as_deref().unwrap_or("nothing")
+        )?;
+        match &row.reason {
+            Some(reason) => writeln!(out, " → {reason}")?,
+            None => writeln!(out)?,
+        }
+    }
+    Ok(())
 }

@@ -2,11 +2,13 @@
 
 use std::fmt::{self, Write};
 
+use firmware::simulated::scenario::Scenario;
 use orientation::align::conclusion::Conclusion;
 use orientation::align::stepwise::Fit;
 
 use super::json::{Excluded, earth_rate, excluded};
 use super::{azimuth_error, columns, degrees, degrees_per_hour, positive_zero};
+use crate::instrument::Run;
 use crate::replay::Replay;
 
 /// Writes the block for a replay of `name`; `truth_deg` is for its error alone.
@@ -121,6 +123,39 @@ fn remedy(source: orientation::error::Source) -> &'static str {
         Source::Drift | Source::Temperature => ": let the gyro settle, or repeat the circle faster",
         _ => "",
     }
+}
+
+/// What the board went through, after the block of a simulated run that took `wall` seconds.
+///
+/// # Errors
+/// Those of the writer.
+pub fn run(out: &mut impl Write, run: &Run, scenario: &Scenario, wall: f64) -> fmt::Result {
+    let Run { seconds, health, .. } = run;
+    let ratio = seconds / wall;
+    writeln!(out)?;
+    line(
+        out,
+        "simulated",
+        format_args!(
+            "{seconds:.1} s at {} Hz in {wall:.2} s: {ratio:.0} times real time",
+            scenario.sample_rate_hz
+        ),
+    )?;
+    line(
+        out,
+        "samples",
+        format_args!(
+            "{} taken, {} missing, {} late, {} overflowed",
+            health.samples, health.missing, health.late, health.overflowed
+        ),
+    )?;
+    let [lost, restarts]: [u32; 2] =
+        [health.lost, health.restarts].map(|counts| counts.iter().map(|n| u32::from(*n)).sum());
+    line(out, "devices", format_args!("{lost} readings lost, {restarts} restarts"))?;
+    for violation in &run.violations {
+        line(out, "FORBIDDEN", format_args!("{violation}"))?;
+    }
+    Ok(())
 }
 
 /// Names the dwells that take no part.

@@ -1,1 +1,200 @@
-//! ADS1262: 32-bit converter of the analogue fibre-optic gyro (Texas Instruments SBAS661).
+//! ADS1262: 32-bit converter of the analogue fibre-optic gyro (Texas Instruments SBAS661C).
+//!
+//! ```text
+//!  gyro ─▶ AIN0/AIN1 ─▶ gain ─▶ modulator 921.6 kHz ─▶ sinc⁵ ─▶ mean ─▶ code ─▶ Scale ─▶ rate
+//!  test voltage ─▶┘                                             data-ready ─▶ ready()
+//! ```
+//!
+//! Bus: SPI mode 1, at most 8 MHz. One sample is a command and a frame,
+//! [`BYTES_PER_SAMPLE`] = 7 bytes: 7 µs at 8 MHz, 11.2 µs at 5 MHz ([`bus_time`]); at 400 SPS
+//! that is 0.3 % and 0.5 % of the bus.
+//!
+//! The newest conversion is read by command, not straight from the shift register: the direct way
+//! saves one byte, but allows no other clocking since data-ready and must end 2.2 µs before the next
+//! conversion (figure 9-43), which a late task cannot promise. By command data are valid at any
+//! time, and the status byte tells whether they are new.
+//!
+//! Time: at 400 SPS the first conversion comes 2.855 ms after the start, the others every 2.5 ms, and
+//! each shows the input as it was 1.4 ms before, in the mean ([`Configuration::latency`]).
+//!
+//! A data-ready line that stays silent can be a chip that has restarted, since a reset stops
+//! conversions: when a wait for [`Ads1262::ready`] is given up, [`Ads1262::read`] tells why
+//! ([`Fault::Reset`]), and [`Ads1262::start`] brings it back. After a wrong checksum the conversion
+//! is lost, for a second reading of it is not marked as new: wait for the next one.
+
+pub mod codec;
+pub mod configuration;
+pub mod registers;
+pub mod scale;
+
+use core::time::Duration;
+
+use embedded_hal_async::delay::DelayNs;
+use embedded_hal_async::digital::Wait;
+use embedded_hal_async::spi::{MODE_1, Mode, SpiDevice};
+
+use crate::fault::Fault;
+use crate::pause::pause;
+use codec::{Conversion, FRAME};
+use configuration::{Configuration, Sign};
+use registers::{Image, WRITTEN};
+
+/// Clock polarity and phase (section 7.6: data change on rising and are taken on falling edges).
+pub const SPI_MODE: Mode = MODE_1;
+
+/// Fastest bus clock, Hz: 125 ns a bit (section 7.6).
+pub const GREATEST_BUS_HERTZ: u32 = 8_000_000;
+
+/// Bytes on the bus for one sample: the command and the frame.
+pub const BYTES_PER_SAMPLE: usize = 1 + FRAME;
+
+/// From the last supply threshold to the first communication: 65 536 clocks, 8.9 ms, and the
+/// oscillator's tolerance (figure 9-52).
+const POWER_UP: Duration = Duration::from_millis(10);
+
+/// From the reset command to the next one: 8 clocks, at the slowest clock of 1 MHz (table 9-32).
+const RESET: Duration = Duration::from_micros(8);
+
+/// Start of the internal reference with 1 µF to its last 10⁻⁵ (figure 7-33; TI's
+/// example code waits as long). Counted from the reset, for nobody knows how long the supply is up.
+const REFERENCE_SETTLING: Duration = Duration::from_millis(50);
+
+/// A test conversion is given its latency and one part in so many more, 5 %: the oscillator may be
+/// slow by 2 % (section 7.5).
+const OSCILLATOR_MARGIN: u32 = 20;
+
+/// What the test voltage converts to: 1 V of 2.5 V.
+const TEST_CODE: i32 = 858_993_459;
+
+/// How far the test voltage may be off, 10 %: it scales with the analogue supply (± 5 %, section
+/// 7.3), and its divider and the reference add little. Enough to find a dead or stuck modulator, a
+/// wrong gain, polarity, multiplexer or reference.
+const TEST_TOLERANCE: u32 = 85_899_346;
+
+/// Time on the bus for one sample at a clock of `hertz` (> 0).
+#[must_use]
+pub const fn bus_time(hertz: u32) -> Duration {
+    Duration::from_nanos(BYTES_PER_SAMPLE as u64 * 8_000_000_000 / hertz as u64)
+}
+
+/// An ADS1262 on a bus, with its data-ready line (falling: a conversion is ready).
+#[derive(Debug)]
+pub struct Ads1262<S, R, D> {
+    spi: S,
+    ready: R,
+    delay: D,
+    configuration: Configuration,
+}
+
+impl<S, R, D> Ads1262<S, R, D> {
+    /// A chip that has yet to be started. Its START pin is held low, its clock input grounded.
+    pub const fn new(spi: S, ready: R, delay: D, configuration: Configuration) -> Self {
+        Self { spi, ready, delay, configuration }
+    }
+}
+
+impl<S: SpiDevice, R: Wait, D: DelayNs> Ads1262<S, R, D> {
+    /// Resets, identifies, tests and configures the chip and begins conversions: from any state,
+    /// in 60 ms and two conversions. The gyro is not measured before the test voltage was, in both
+    /// directions, through the configured filter and gain.
+    ///
+    /// # Errors
+    /// [`Fault::Bus`]; [`Fault::Identity`] with ID, POWER and INTERFACE where another chip, none, or
+    /// one that did not obey the reset answers; [`Fault::NotAsWritten`]; [`Fault::NotReady`] where it
+    /// does not convert, [`Fault::SelfTest`] where it converts wrongly, [`Fault::Alarm`] where its
+    /// reference is low or its clock not its own.
+    pub async fn start(&mut self) -> Result<(), Fault> {
+        pause(&mut self.delay, POWER_UP).await;
+        self.reset().await?;
+        self.identify().await?;
+        pause(&mut self.delay, REFERENCE_SETTLING).await;
+        self.test(Sign::Plus).await?;
+        self.test(Sign::Minus).await?;
+        self.run(&self.configuration.image()).await
+    }
+
+    /// Waits for a conversion that nobody has read. May be dropped at any time without loss; has no
+    /// end of its own, so the caller sets one.
+    ///
+    /// # Errors
+    /// [`Fault::Bus`] where the line cannot be observed.
+    pub async fn ready(&mut self) -> Result<(), Fault> {
+        self.ready.wait_for_low().await.map_err(|_| Fault::Bus)
+    }
+
+    /// Reads the newest conversion, at any time.
+    ///
+    /// # Errors
+    /// [`Fault::Bus`], and as [`codec::decode`].
+    pub async fn read(&mut self) -> Result<Conversion, Fault> {
+        let mut bytes = [0; BYTES_PER_SAMPLE];
+        bytes[0] = registers::RDATA1;
+        self.spi.transfer_in_place(&mut bytes).await.map_err(|_| Fault::Bus)?;
+        let [_, frame @ ..] = bytes;
+        codec::decode(frame)
+    }
+
+    async fn reset(&mut self) -> Result<(), Fault> {
+        self.write(&[registers::RESET]).await?;
+        pause(&mut self.delay, RESET).await;
+        Ok(())
+    }
+
+    /// An ADS1262 has the device number zero, and so has a dead line: only with the reset values of
+    /// the two registers behind it is it an identity.
+    async fn identify(&mut self) -> Result<(), Fault> {
+        let mut bytes = [registers::RREG | registers::ID, 2, 0, 0, 0];
+        self.spi.transfer_in_place(&mut bytes).await.map_err(|_| Fault::Bus)?;
+        let [_, _, id, power, interface] = bytes;
+        let is_right = id >> registers::DEVICE_SHIFT == 0
+            && power == registers::POWER_RESET_VALUE
+            && interface == registers::INTERFACE_STATUS_AND_SUM;
+        let found = u32::from_be_bytes([0, id, power, interface]);
+        if is_right { Ok(()) } else { Err(Fault::Identity { found }) }
+    }
+
+    /// Converts the test voltage once.
+    async fn test(&mut self, sign: Sign) -> Result<(), Fault> {
+        self.run(&self.configuration.test_image(sign)).await?;
+        let latency = self.configuration.latency();
+        pause(&mut self.delay, latency + latency / OSCILLATOR_MARGIN).await;
+        let conversion = self.read().await?;
+        if !conversion.is_new {
+            return Err(Fault::NotReady);
+        }
+        if conversion.status.is_clock_external() {
+            return Err(Fault::Alarm { status: conversion.status.0 });
+        }
+        let expected = if sign == Sign::Plus { TEST_CODE } else { -TEST_CODE };
+        let is_near = conversion.code.abs_diff(expected) <= TEST_TOLERANCE;
+        if is_near && !conversion.is_clipped { Ok(()) } else { Err(Fault::SelfTest) }
+    }
+
+    /// Begins conversions with these registers and no others: a reset stops what ran before.
+    async fn run(&mut self, image: &Image) -> Result<(), Fault> {
+        self.reset().await?;
+        let mut bytes = [0; 2 + WRITTEN];
+        bytes[..2].copy_from_slice(&[registers::WREG | registers::POWER, WRITTEN as u8 - 1]);
+        bytes[2..].copy_from_slice(image.bytes());
+        self.write(&bytes).await?;
+        self.verify(image).await?;
+        self.write(&[registers::START1]).await
+    }
+
+    async fn verify(&mut self, image: &Image) -> Result<(), Fault> {
+        let mut bytes = [0; 2 + WRITTEN];
+        bytes[..2].copy_from_slice(&[registers::RREG | registers::POWER, WRITTEN as u8 - 1]);
+        self.spi.transfer_in_place(&mut bytes).await.map_err(|_| Fault::Bus)?;
+        let pairs = (registers::POWER..).zip(bytes[2..].iter().zip(image.bytes()));
+        for (register, (found, written)) in pairs {
+            if found != written {
+                return Err(Fault::NotAsWritten { register });
+            }
+        }
+        Ok(())
+    }
+
+    async fn write(&mut self, bytes: &[u8]) -> Result<(), Fault> {
+        self.spi.write(bytes).await.map_err(|_| Fault::Bus)
+    }
+}

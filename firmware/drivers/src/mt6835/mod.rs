@@ -1,1 +1,209 @@
-//! MT6835: 21-bit magnetic angle encoder of the stage (MagnTek data sheet).
+//! MT6835: 21-bit angle encoder of the stage (`MagnTek` data sheet, rev. 1.3). SPI mode 3.
+//!
+//! **Identity.** The chip has no fixed number to know it by. `start` therefore writes three patterns
+//! to the byte that is free for the user and reads them back through the chip's 12-bit addresses;
+//! with the checksum of a burst that is as near to an identity as it offers. The last pattern stays.
+//!
+//! **A chip that has reset itself** has loaded its registers from the EEPROM again and has lost the
+//! pattern. There is no status bit for it, so every reading also reads one register: the pattern at
+//! every other reading, between them the registers that the angle depends on, in turn. A reset is told
+//! by the second reading after it at the latest, another changed register within ten. A burst of
+//! zeros passes its checksum: it is believed only after the pattern was seen.
+//!
+//! **RAM only.** The EEPROM lasts for some thousand programmings and a wrong one stays; this driver
+//! has no way to send the commands for programming or for setting the zero.
+//!
+//! **No reset.** The chip knows no reset command; it restarts by its supply alone. `start` sets every
+//! register that the driver owns and keeps the maker's bits in them.
+//!
+//! A reading costs [`BYTES_PER_READING`] bytes on the bus, [`TIME_PER_READING`] at [`BUS_HERTZ`].
+
+pub mod codec;
+pub mod registers;
+
+use core::time::Duration;
+
+use embedded_hal_async::delay::DelayNs;
+use embedded_hal_async::spi::{Operation, SpiDevice};
+use orientation::units::Angle;
+
+use crate::fault::Fault;
+use crate::pause::pause;
+use registers::{
+    BANDWIDTH, BURST, Bandwidth, CALIBRATION, CORRECTION, DIRECTION, Hysteresis, USER_ID,
+    ZERO_HIGH, ZERO_LOW,
+};
+
+/// Bus clock, Hz; the chip allows 16 MHz (SPI Timing).
+pub const BUS_HERTZ: u32 = 5_000_000;
+
+/// Bytes of a reading: a burst and one register.
+pub const BYTES_PER_READING: usize = 6 + 3;
+
+/// Bus time of a reading.
+pub const TIME_PER_READING: Duration =
+    Duration::from_nanos(BYTES_PER_READING as u64 * 8 * 1_000_000_000 / BUS_HERTZ as u64);
+
+/// From power to angles. 64 ms by the data sheet (Electrical Characteristics, Power-up Time), as a
+/// public evaluation of the chip quotes it, and a margin of a tenth.
+const POWER_UP: Duration = Duration::from_millis(70);
+
+/// What a started chip's user byte holds; neither what an empty EEPROM nor a dead line gives.
+const PATTERN: u8 = 0x4D;
+
+/// Written and read back in turn to know the chip by: each bit both ways, then the pattern that stays.
+const PATTERNS: [u8; 3] = [0xA5, 0x5A, PATTERN];
+
+/// The registers that the angle depends on.
+const WATCHED: [u16; 5] = [DIRECTION, BANDWIDTH, ZERO_HIGH, ZERO_LOW, CORRECTION];
+
+/// What can be chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Configuration {
+    /// Whether the angle is to fall where the chip by itself would let it rise. Which way that is
+    /// depends on the side that the chip is mounted on.
+    pub is_reversed: bool,
+    /// Hysteresis.
+    pub hysteresis: Hysteresis,
+    /// Bandwidth.
+    pub bandwidth: Bandwidth,
+}
+
+/// One angle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reading {
+    /// The shaft's angle when the transfer began, in steps of 2⁻²¹ turn; the conversion is exact.
+    pub angle: Angle,
+}
+
+/// The encoder behind its bus.
+#[derive(Debug)]
+pub struct Mt6835<S, D> {
+    spi: S,
+    delay: D,
+    configuration: Configuration,
+    /// What the watched registers held at the start; nothing before a start has come to its end.
+    expected: Option<[u8; WATCHED.len()]>,
+    /// Counts readings, modulo twice the watched registers.
+    turn: usize,
+}
+
+impl<S: SpiDevice, D: DelayNs> Mt6835<S, D> {
+    /// The chip on `spi` (mode 3, at most 16 MHz); nothing is sent yet.
+    pub const fn new(spi: S, delay: D, configuration: Configuration) -> Self {
+        Self { spi, delay, configuration, expected: None, turn: 0 }
+    }
+
+    /// Brings the chip from any state to readiness: identity, state of its calibration,
+    /// configuration, read-back, one good angle. Takes about 70 ms.
+    ///
+    /// # Errors
+    /// [`Fault::Bus`]; [`Fault::Identity`] with the byte that came instead of the pattern;
+    /// [`Fault::NotReady`] while a self-calibration runs, [`Fault::SelfTest`] where it has failed;
+    /// [`Fault::NotAsWritten`]; [`Fault::Checksum`] where two reads of one register differ, or of the
+    /// burst; [`Fault::Alarm`] with the chip's warnings.
+    pub async fn start(&mut self) -> Result<(), Fault> {
+        self.expected = None;
+        pause(&mut self.delay, POWER_UP).await;
+        self.identify().await?;
+        codec::calibration(self.agreed(CALIBRATION).await?)?;
+        self.configure().await?;
+        let mut held = [0; WATCHED.len()];
+        for (held, register) in held.iter_mut().zip(WATCHED) {
+            *held = self.agreed(register).await?;
+        }
+        self.expected = Some(held);
+        self.turn = 0;
+        self.read().await.map(|_| ())
+    }
+
+    /// Reads the angle of this moment.
+    ///
+    /// # Errors
+    /// [`Fault::Bus`]; [`Fault::Checksum`]; [`Fault::Reset`], also before a start has come to its
+    /// end; [`Fault::NotAsWritten`] for a register that has changed; [`Fault::Alarm`] with the
+    /// warnings of [`registers`]: at overspeed the angle lags without bound, with a weak magnet or
+    /// supply it is noise, so none of them is an angle.
+    pub async fn read(&mut self) -> Result<Reading, Fault> {
+        let bytes = self.burst().await?;
+        let frame = codec::frame(bytes)?;
+        self.watch(bytes == [0; 4]).await?;
+        match frame.status {
+            0 => Ok(Reading { angle: frame.angle }),
+            status => Err(Fault::Alarm { status }),
+        }
+    }
+
+    /// Looks at the register whose turn it is, and at the pattern where there is doubt.
+    async fn watch(&mut self, is_doubtful: bool) -> Result<(), Fault> {
+        let expected = self.expected.ok_or(Fault::Reset)?;
+        let (index, is_pattern) = (self.turn / 2, self.turn.is_multiple_of(2));
+        self.turn = (self.turn + 1) % (2 * WATCHED.len());
+        if is_pattern || is_doubtful {
+            self.see_pattern().await?;
+        }
+        if is_pattern {
+            return Ok(());
+        }
+        held(WATCHED[index], self.register(WATCHED[index]).await?, expected[index])
+    }
+
+    async fn see_pattern(&mut self) -> Result<(), Fault> {
+        if self.register(USER_ID).await? == PATTERN { Ok(()) } else { Err(Fault::Reset) }
+    }
+
+    async fn identify(&mut self) -> Result<(), Fault> {
+        for pattern in PATTERNS {
+            self.write(USER_ID, pattern).await?;
+            let found = self.register(USER_ID).await?;
+            if found != pattern {
+                return Err(Fault::Identity { found: found.into() });
+            }
+        }
+        Ok(())
+    }
+
+    async fn configure(&mut self) -> Result<(), Fault> {
+        let Configuration { is_reversed, hysteresis, bandwidth } = self.configuration;
+        let kept = self.agreed(DIRECTION).await?;
+        self.set(DIRECTION, codec::direction(kept, is_reversed, hysteresis)).await?;
+        let kept = self.agreed(BANDWIDTH).await?;
+        self.set(BANDWIDTH, codec::bandwidth(kept, bandwidth)).await
+    }
+
+    /// Writes a register and reads it back.
+    async fn set(&mut self, register: u16, value: u8) -> Result<(), Fault> {
+        self.write(register, value).await?;
+        held(register, self.agreed(register).await?, value)
+    }
+
+    /// A register that reads the same twice: single registers have no checksum, and what is read
+    /// here is written back.
+    async fn agreed(&mut self, register: u16) -> Result<u8, Fault> {
+        let value = self.register(register).await?;
+        if self.register(register).await? == value { Ok(value) } else { Err(Fault::Checksum) }
+    }
+
+    async fn burst(&mut self) -> Result<[u8; 4], Fault> {
+        let mut bytes = [0; 4];
+        let mut operations = [Operation::Write(&BURST), Operation::Read(&mut bytes)];
+        self.spi.transaction(&mut operations).await.map_err(|_| Fault::Bus)?;
+        Ok(bytes)
+    }
+
+    async fn register(&mut self, register: u16) -> Result<u8, Fault> {
+        let mut bytes = codec::read(register);
+        self.spi.transfer_in_place(&mut bytes).await.map_err(|_| Fault::Bus)?;
+        Ok(bytes[2])
+    }
+
+    async fn write(&mut self, register: u16, value: u8) -> Result<(), Fault> {
+        self.spi.write(&codec::write(register, value)).await.map_err(|_| Fault::Bus)
+    }
+}
+
+/// Whether a register holds what it ought to; registers above 0xFF are told by their lower byte.
+fn held(register: u16, found: u8, expected: u8) -> Result<(), Fault> {
+    let fault = Fault::NotAsWritten { register: register as u8 };
+    if found == expected { Ok(()) } else { Err(fault) }
+}

@@ -30,7 +30,6 @@ use crate::units::{Instant, TURN};
 
 /// Second-order sections of the stage filter: Sokolov's sixth order.
 const SECTIONS: usize = 3;
-
 /// What happens to a session.
 #[derive(Clone, Copy, Debug)]
 pub enum Event<'a> {
@@ -140,6 +139,24 @@ impl Session {
         }
     }
 
+    /// What is known of place, instrument and demands.
+    #[must_use]
+    pub fn setting(&self) -> &Setting {
+        &self.setting
+    }
+
+    /// How the session goes about it.
+    #[must_use]
+    pub fn procedure(&self) -> &Procedure {
+        &self.procedure
+    }
+
+    /// Mean specific force of the standstill in progress, m/s², where there was one.
+    #[must_use]
+    pub fn force(&self) -> Option<[f64; 3]> {
+        self.average.as_ref().and_then(DwellAverage::force)
+    }
+
     /// Where the session is.
     #[must_use]
     pub fn phase(&self) -> Phase {
@@ -213,13 +230,13 @@ impl Session {
         ended
     }
 
-    /// Looks at the tilt once enough samples are in, then goes to the first position.
+    /// Looks at the tilt once enough samples are in and one of them brought a force, then goes to the first position.
     fn level(&mut self, now: Instant) -> Command {
-        let Some(average) = &self.average else { return Command::Wait };
-        if average.count() < self.pace.level {
+        let is_long = |average: &&DwellAverage<SECTIONS>| average.count() >= self.pace.level;
+        let Some([x, y, _]) = self.average.as_ref().filter(is_long).and_then(DwellAverage::force)
+        else {
             return Command::Wait;
-        }
-        let [x, y, _] = average.force();
+        };
         let tilt = libm::asin((libm::hypot(x, y) / self.setting.latitude.gravity()).min(1.0));
         if tilt > self.setting.allowed_tilt {
             let [tilt, allowed] = [tilt, self.setting.allowed_tilt].map(|a| a / TURN * 360.0);
@@ -254,9 +271,6 @@ impl Session {
     fn rotate(&mut self, sample: &Sample, since: Instant) -> Command {
         let count = self.average.as_ref().map_or(0, DwellAverage::count);
         if self.stands_at_target() && count > 1 && count >= self.pace.settle {
-            if self.pace.settle > 0 {
-                self.average = None;
-            }
             self.phase = Phase::Dwell;
         } else if sample.time.0.saturating_sub(since.0) > self.pace.longest_rotation {
             let [target, actual] =

@@ -28,7 +28,7 @@ pub(super) struct Pace {
     pub(super) arrival: Angle,
     /// Samples for the first look at the tilt.
     pub(super) level: u32,
-    /// Samples of rest after an arrival.
+    /// Samples of standing that make an arrival.
     pub(super) settle: u32,
     /// Longest session, µs.
     pub(super) longest: u64,

@@ -4,6 +4,8 @@ use super::schedule::{Schedule, StopRule};
 use crate::align::criterion::Criterion;
 use crate::signal::butterworth::DesignError;
 use crate::units::TURN;
+use crate::words;
+use crate::words::Rounded;
 
 /// The filter's cut-off times the shortest dwell: its taper then costs 1.2 % of σ.
 const CUTOFF_DWELLS: f64 = 20.0;
@@ -29,7 +31,8 @@ pub struct Procedure {
     /// How long the platform is levelled before the first dwell counts, s; these samples belong to
     /// that dwell all the same.
     pub level_seconds: f64,
-    /// How long the stage rests after an arrival before the dwell begins, s.
+    /// How long the stage must stand before it counts as arrived, s; these samples belong to the
+    /// dwell all the same. A stage that rings after it has stopped needs as long as it rings.
     pub settle_seconds: f64,
     /// How often a disturbed dwell is repeated at its position.
     pub retries: usize,
@@ -106,4 +109,14 @@ pub enum ProcedureError {
     NoPosition,
     /// The etalon table in flash fails its CRC: flash the firmware again.
     TableCorrupt,
+}
+
+words! { ProcedureError:
+    Self::Filter(error) => "no filter for this sample rate: {}", error;
+    Self::DwellTooShort { samples, needed } =>
+        "the shortest dwell has {} samples; the filter needs {}", samples, needed;
+    Self::BeyondTravel(angle) =>
+        "position {}° is beyond the stage's travel", Rounded::<2>(angle / TURN * 360.0);
+    Self::NoPosition => "there is no position";
+    Self::TableCorrupt => "the etalon table fails its checksum";
 }

@@ -6,8 +6,8 @@
 //! *Discrete-Time Signal Processing*, 3rd edition, §7.2; scipy's `butter` is the oracle in tests.)
 
 use super::sections::Gains;
+use crate::words;
 use core::f64::consts::PI;
-use core::fmt;
 
 /// Highest cutoff as a part of the sample rate; beyond it p would not fit the gains.
 const HIGHEST_RATIO: f64 = 0.25;
@@ -32,18 +32,12 @@ pub enum DesignError {
     CutoffTooLow,
 }
 
-impl fmt::Display for DesignError {
-    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-        formatter.write_str(match self {
-            Self::NotPositive => "cutoff and sample rate must be positive numbers: give both in Hz",
-            Self::CutoffTooHigh => {
-                "the cutoff is above 1/4 of the sample rate: lower the cutoff or sample faster"
-            }
-            Self::CutoffTooLow => {
-                "the cutoff is below 1/100000 of the sample rate: raise it or average samples first"
-            }
-        })
-    }
+words! { DesignError:
+    Self::NotPositive => "cutoff and sample rate must be positive numbers: give both in Hz";
+    Self::CutoffTooHigh =>
+        "the cutoff is above 1/4 of the sample rate: lower the cutoff or sample faster";
+    Self::CutoffTooLow =>
+        "the cutoff is below 1/100000 of the sample rate: raise it or average samples first";
 }
 
 impl core::error::Error for DesignError {}

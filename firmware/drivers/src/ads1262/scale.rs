@@ -1,0 +1,68 @@
+//! From the converter's code to the gyro's rate: one integer multiplication.
+
+use orientation::units::AngularRate;
+
+use super::configuration::Gain;
+
+/// Reference inside the chip, V (section 7.5).
+pub const INTERNAL_REFERENCE_VOLTS: f64 = 2.5;
+
+/// Codes in half of the full range.
+const CODES: f64 = 2_147_483_648.0;
+/// The multiplier has 31 bits: at least this much.
+const LEAST_MULTIPLIER: f64 = 1_073_741_824.0;
+/// Greatest shift for which the sum of product and rounding fits 64 bits.
+const GREATEST_SHIFT: u32 = 62;
+
+/// Rate of one code as multiplier / 2^shift, in nrad/s.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Scale {
+    multiplier: i32,
+    shift: u32,
+    /// Half of what the shift drops.
+    half: i64,
+}
+
+impl Scale {
+    /// For a gyro of `volts_per_rad_per_s` V per rad/s (negative where it turns the other way) behind
+    /// a converter of `reference_volts` V and `gain`.
+    ///
+    /// The factor is rounded to nearest at 31 bits: relative error ≤ 2⁻³¹. `None` where no scale
+    /// exists (zero, not finite) or one code is outside 2⁻³² … 2³⁰ nrad/s.
+    #[must_use]
+    pub const fn new(volts_per_rad_per_s: f64, reference_volts: f64, gain: Gain) -> Option<Self> {
+        let volts_per_code = reference_volts / (gain.factor() * CODES);
+        let factor = volts_per_code / volts_per_rad_per_s * 1e9;
+        let Some((magnitude, shift)) = normalised(factor.abs()) else { return None };
+        let multiplier = if factor < 0.0 { -magnitude } else { magnitude };
+        Some(Self { multiplier, shift, half: 1 << (shift - 1) })
+    }
+
+    /// The rate of a code, to the nearest nrad/s (ties upwards), saturated at the ends of
+    /// [`AngularRate`]. Error ≤ 0.5 nrad/s + |rate| · 2⁻³¹ (tested against `f64`).
+    /// Some 30 instructions of a Cortex-M4.
+    #[must_use]
+    pub const fn rate(self, code: i32) -> AngularRate {
+        let rate = (code as i64 * self.multiplier as i64 + self.half) >> self.shift;
+        if rate > i32::MAX as i64 {
+            AngularRate(i32::MAX)
+        } else if rate < i32::MIN as i64 {
+            AngularRate(i32::MIN)
+        } else {
+            AngularRate(rate as i32)
+        }
+    }
+}
+
+/// A positive factor as a 31-bit multiplier and the shift that undoes it.
+const fn normalised(factor: f64) -> Option<(i32, u32)> {
+    let mut value = factor;
+    let mut shift = 0;
+    while value < LEAST_MULTIPLIER && shift < GREATEST_SHIFT {
+        value *= 2.0;
+        shift += 1;
+    }
+    let fits = shift > 0 && value >= LEAST_MULTIPLIER && value < CODES;
+    // Just below 2³¹ the conversion saturates, which is still within the bound.
+    if fits { Some(((value + 0.5) as i32, shift)) } else { None }
+}

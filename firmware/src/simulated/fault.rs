@@ -1,0 +1,259 @@
+//! The catalogue of what can go wrong with a simulated board, each by its name.
+
+use core::fmt;
+
+use embassy_time::{Duration, Instant, Timer};
+use hal_mock::chip::Select;
+use hal_mock::disturbance::Disturbance;
+use hal_mock::fault::{Blackout, BusFault, FaultPlan, When};
+use hal_mock::plant::StageFault;
+use heapless::Vec;
+use orientation::signal::Sample;
+use orientation::units::TURN;
+
+use crate::ports::Recorder;
+
+/// When things go wrong that go wrong in the middle: in a dwell of the default schedule.
+const MIDDLE: Instant = Instant::from_secs(65);
+/// The same in seconds.
+const MIDDLE_S: f64 = 65.0;
+/// How long a passing fault of the stage lasts: it spans the rotation that follows.
+const PASSING: Duration = Duration::from_secs(15);
+/// Chooses the bits that are flipped.
+const FLIP: u64 = 6;
+/// For how long a recorder that hangs takes no sample.
+const HANG: Duration = Duration::from_millis(500);
+/// Angle at which a cable is caught, rad: 200°.
+const CAUGHT: f64 = 200.0 / 360.0 * TURN;
+/// By how much the encoder's magnet slips, rad: 0.5°.
+const SLIP: f64 = 0.5 / 360.0 * TURN;
+
+/// What is wrong with a chip or its bus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sickness {
+    /// Another chip answers, or none, from the start.
+    Identity,
+    /// One bit of one reply is wrong.
+    ChecksumOnce,
+    /// One bit of every reply is wrong.
+    ChecksumAlways,
+    /// The same reply comes again and again.
+    Stuck,
+    /// No data-ready any more; where there is no such line, no answer any more.
+    Silent,
+    /// One data-ready edge is lost; where there is no such line, one answer.
+    SilentOnce,
+    /// The supply is lost for a moment.
+    Reset,
+    /// The bus reports an error once.
+    BusOnce,
+    /// The bus reports errors from some time on.
+    BusAlways,
+    /// One transfer takes 300 ms.
+    Hang,
+}
+
+/// Something that goes wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// With a chip.
+    Chip(Select, Sickness),
+    /// Something blocks the stage for a while.
+    BlockedOnce,
+    /// Something blocks the stage for good.
+    Blocked,
+    /// A cable is caught at 200°, within the travel.
+    TravelLimit,
+    /// The encoder's magnet slips by half a degree.
+    EncoderSlip,
+    /// The gyro's output clips for two seconds.
+    SaturationOnce,
+    /// The gyro's output clips for good.
+    Saturation,
+    /// Whoever takes the samples does not for half a second.
+    Overflow,
+    /// A door falls shut.
+    DoorSlam,
+    /// Somebody leans on the base for some seconds.
+    Nudge,
+}
+
+const CHIPS: [(Select, &str); 4] = [
+    (Select::Gyro, "gyro"),
+    (Select::Accelerometer, "accelerometer"),
+    (Select::Encoder, "encoder"),
+    (Select::Actuator, "stage"),
+];
+
+const SICKNESSES: [(Sickness, &str); 10] = [
+    (Sickness::Identity, "identity"),
+    (Sickness::ChecksumOnce, "checksum-once"),
+    (Sickness::ChecksumAlways, "checksum-always"),
+    (Sickness::Stuck, "stuck"),
+    (Sickness::SilentOnce, "silent-once"),
+    (Sickness::Silent, "silent"),
+    (Sickness::Reset, "reset"),
+    (Sickness::BusOnce, "bus-once"),
+    (Sickness::BusAlways, "bus-always"),
+    (Sickness::Hang, "hang"),
+];
+
+const OTHERS: [(Fault, &str); 9] = [
+    (Fault::BlockedOnce, "stage-blocked-once"),
+    (Fault::Blocked, "stage-blocked"),
+    (Fault::TravelLimit, "travel-limit"),
+    (Fault::EncoderSlip, "encoder-slip"),
+    (Fault::SaturationOnce, "saturation-once"),
+    (Fault::Saturation, "saturation"),
+    (Fault::Overflow, "overflow"),
+    (Fault::DoorSlam, "door-slam"),
+    (Fault::Nudge, "nudge"),
+];
+
+/// How many faults there are.
+pub const COUNT: usize = CHIPS.len() * SICKNESSES.len() + OTHERS.len();
+
+impl Fault {
+    /// All faults: every chip with every sickness, then the rest.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let chips = CHIPS.iter().flat_map(|(select, _)| {
+            SICKNESSES.iter().map(|(sickness, _)| Self::Chip(*select, *sickness))
+        });
+        chips.chain(OTHERS.iter().map(|(fault, _)| *fault))
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Self::Chip(select, sickness) = self {
+            return write!(f, "{}-{}", name(&CHIPS, select), name(&SICKNESSES, sickness));
+        }
+        f.write_str(name(&OTHERS, self))
+    }
+}
+
+/// The name that a table gives to a value; every value is in its table.
+fn name<T: PartialEq>(table: &[(T, &'static str)], value: &T) -> &'static str {
+    table.iter().find(|(entry, _)| entry == value).map_or("", |(_, name)| name)
+}
+
+/// What a fault does to the parts of the board.
+#[derive(Clone, Debug, Default)]
+pub struct Plan {
+    /// Faults of the four buses: gyro, accelerometer, encoder, actuator.
+    pub buses: [Option<FaultPlan>; 4],
+    /// Lost data-ready edges.
+    pub ready: Option<When>,
+    /// Losses of supply.
+    pub blackouts: Vec<Blackout, 1>,
+    /// Faults of the stage.
+    pub stage: Vec<StageFault, 1>,
+    /// What happens to the base.
+    pub disturbances: Vec<Disturbance, 1>,
+    /// Angle at which the travel ends too soon, rad.
+    pub caught: Option<f64>,
+    /// When the recorder hangs.
+    pub hang: Option<Instant>,
+}
+
+impl Plan {
+    /// The plan of a fault, or of none.
+    #[must_use]
+    pub fn of(fault: Option<Fault>) -> Self {
+        let mut plan = Self::default();
+        match fault {
+            None => {}
+            Some(Fault::Chip(select, sickness)) => plan.sicken(select, sickness),
+            Some(other) => plan.disturb(other),
+        }
+        plan
+    }
+
+    fn sicken(&mut self, select: Select, sickness: Sickness) {
+        let once = When::once(MIDDLE);
+        let always = When::always(MIDDLE);
+        let fault = match sickness {
+            Sickness::Reset => {
+                self.blackouts = [Blackout { select, at: MIDDLE }].into_iter().collect();
+                return;
+            }
+            Sickness::Silent | Sickness::SilentOnce if select == Select::Gyro => {
+                self.ready = Some(if sickness == Sickness::Silent { always } else { once });
+                return;
+            }
+            Sickness::Identity => (BusFault::Missing { level: 0xff }, When::always(Instant::MIN)),
+            Sickness::ChecksumOnce => (BusFault::FlippedBit { seed: FLIP }, once),
+            Sickness::ChecksumAlways => (BusFault::FlippedBit { seed: FLIP }, always),
+            Sickness::Stuck => (BusFault::Stuck, always),
+            Sickness::Silent => (BusFault::Missing { level: 0x00 }, always),
+            Sickness::SilentOnce => (BusFault::Missing { level: 0x00 }, once),
+            Sickness::BusOnce => (BusFault::Error, once),
+            Sickness::BusAlways => (BusFault::Error, always),
+            Sickness::Hang => (BusFault::Hang, once),
+        };
+        let (fault, when) = fault;
+        self.buses[place(select)] = Some(FaultPlan { fault, when });
+    }
+
+    fn disturb(&mut self, fault: Fault) {
+        let held = |until| StageFault::Block { from: MIDDLE, until };
+        let stage = match fault {
+            Fault::BlockedOnce => Some(held(MIDDLE + PASSING)),
+            Fault::Blocked => Some(held(Instant::MAX)),
+            Fault::EncoderSlip => Some(StageFault::Slip { at: MIDDLE, by_rad: SLIP }),
+            _ => None,
+        };
+        let disturbance = match fault {
+            Fault::SaturationOnce => Some(Disturbance::overload(MIDDLE_S, 2.0)),
+            Fault::Saturation => Some(Disturbance::overload(MIDDLE_S, 1e6)),
+            Fault::DoorSlam => Some(Disturbance::door_slam(MIDDLE_S)),
+            Fault::Nudge => {
+                Some(Disturbance::Nudge { start_s: MIDDLE_S, seconds: 4.0, rate_deg_h: 2.0 })
+            }
+            _ => None,
+        };
+        self.stage = stage.into_iter().collect();
+        self.disturbances = disturbance.into_iter().collect();
+        self.caught = (fault == Fault::TravelLimit).then_some(CAUGHT);
+        self.hang = (fault == Fault::Overflow).then_some(MIDDLE);
+    }
+
+    /// The plan of the bus of one chip.
+    #[must_use]
+    pub fn bus(&self, select: Select) -> Option<FaultPlan> {
+        self.buses[place(select)]
+    }
+}
+
+/// The place of a chip in [`Plan::buses`].
+fn place(select: Select) -> usize {
+    match select {
+        Select::Gyro => 0,
+        Select::Accelerometer => 1,
+        Select::Encoder => 2,
+        Select::Actuator => 3,
+    }
+}
+
+/// A recorder that may hang once.
+#[derive(Debug)]
+pub struct FaultyRecorder<R> {
+    recorder: R,
+    hang: Option<Instant>,
+}
+
+impl<R> FaultyRecorder<R> {
+    /// The recorder with the time when it hangs, or a healthy one.
+    pub const fn new(recorder: R, hang: Option<Instant>) -> Self {
+        Self { recorder, hang }
+    }
+}
+
+impl<R: Recorder> Recorder for FaultyRecorder<R> {
+    async fn record(&mut self, sample: &Sample) {
+        if self.hang.take_if(|at| Instant::now() >= *at).is_some() {
+            Timer::after(HANG).await;
+        }
+        self.recorder.record(sample).await;
+    }
+}

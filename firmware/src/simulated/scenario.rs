@@ -1,0 +1,262 @@
+//! One simulated alignment: what is true, what the board is told, and what goes wrong.
+
+use drivers::ads1262::configuration::{self as converter, DataRate, Gain};
+use drivers::ads1262::scale::{INTERNAL_REFERENCE_VOLTS, Scale};
+use drivers::adxl355;
+use hal_mock::accelerometer::AccelerometerConfiguration;
+use hal_mock::gyro::GyroConfiguration;
+use hal_mock::instruments::InstrumentsConfiguration;
+use hal_mock::plant::PlantConfiguration;
+use hal_mock::plant::train::StageConfiguration;
+use hal_mock::stage::{EncoderConfiguration, Harmonic};
+use orientation::align::setting::Setting;
+use orientation::earth::Latitude;
+use orientation::noise::model::GyroNoise;
+use orientation::session::procedure::Procedure;
+use orientation::session::schedule::Schedule;
+use orientation::units::{AngularRate, DEGREE_PER_HOUR, TURN};
+
+use crate::calibration::Harmonics;
+use crate::configuration::Configuration;
+
+/// One degree in radians.
+const DEGREE: f64 = TURN / 360.0;
+/// The gyro's g-sensitivity along and across its axis as it is calibrated, °/h/g.
+const G_SENSITIVITY: [f64; 2] = [0.05, -0.03];
+/// 1σ of that calibration, °/h/g.
+const G_SENSITIVITY_SIGMA: f64 = 0.002;
+/// 1σ of the gyro's scale factor.
+const SCALE_SIGMA: f64 = 5e-4;
+/// Noise density of the ADXL355, 25 µg/√Hz (data sheet, table 1), m/s²/√Hz.
+const FORCE_NOISE: f64 = 25e-6 * 9.80665;
+/// 1σ of the ADXL355's offset, 25 mg at most (data sheet, table 1), m/s².
+const FORCE_BIAS_SIGMA: f64 = 0.0083 * 9.80665;
+/// Magnet's eccentricity and ellipticity as the encoder shows them, rad: 0.05° and 0.02°.
+const HARMONICS: [Harmonic; 2] = [
+    Harmonic { amplitude_rad: 0.05 * DEGREE, phase_rad: 0.7 },
+    Harmonic { amplitude_rad: 0.02 * DEGREE, phase_rad: -1.1 },
+];
+/// 1σ of what the calibration of the harmonics leaves, rad: 2″.
+const ENCODER_SIGMA: f64 = 2.0 / 3600.0 * DEGREE;
+
+/// Data rates of the converter at which a stage path runs.
+pub const RATES: [DataRate; 7] = [
+    DataRate::Sps20,
+    DataRate::Sps50,
+    DataRate::Sps60,
+    DataRate::Sps100,
+    DataRate::Sps400,
+    DataRate::Sps1200,
+    DataRate::Sps2400,
+];
+/// White noise of the converter, V RMS per conversion: 1 µV, below the gyro's own.
+const CONVERTER_NOISE: f64 = 1e-6;
+/// Play of the stage's gear, rad: 0.01°.
+const BACKLASH: f64 = 0.01 * DEGREE;
+/// How the stage rings after it has stopped.
+const RINGING_HZ: f64 = 15.0;
+/// Damping ratio of that ringing.
+const RINGING_DAMPING: f64 = 0.08;
+/// For how long it rings, s: until 56 µrad, a/ω² at the end of its ramp, are below what stands.
+const RINGS_SECONDS: f64 = 0.25;
+
+/// Scale factor of the gyro, V per rad/s: 50 mV per °/s.
+const VOLTS: f64 = 0.05 / DEGREE;
+/// Rate at which the gyro's output clips, rad/s: 40 °/s, 2 V of the converter's 2.5 V.
+const FULL_SCALE: f64 = 40.0 * DEGREE;
+/// What the board takes for clipped: 97 % of that.
+pub const LIMIT: AngularRate = AngularRate((0.97 * FULL_SCALE * 1e9) as i32);
+/// The same scale factor as the board knows it.
+pub const SCALE: Scale = match Scale::new(VOLTS, INTERNAL_REFERENCE_VOLTS, Gain::X1) {
+    Some(scale) => scale,
+    None => unreachable!(),
+};
+
+/// A class of precise gyro.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GyroClass {
+    /// N, angle random walk, °/√h.
+    pub n_deg_sqrt_h: f64,
+    /// B, bias instability, °/h.
+    pub b_deg_h: f64,
+    /// K, rate random walk, °/h/√h.
+    pub k_deg_h_sqrt_h: f64,
+    /// 1σ of the turn-on bias, °/h.
+    pub bias_sigma_deg_h: f64,
+}
+
+impl GyroClass {
+    /// Fibre-optic, OIUS-1000 class (Burov): the default.
+    pub const FIBRE_OPTIC: Self =
+        Self { n_deg_sqrt_h: 0.001, b_deg_h: 0.007, k_deg_h_sqrt_h: 0.0, bias_sigma_deg_h: 0.5 };
+    /// Fibre-optic, of a lower grade.
+    pub const FIBRE_OPTIC_COARSE: Self =
+        Self { n_deg_sqrt_h: 0.02, b_deg_h: 0.1, k_deg_h_sqrt_h: 0.0, bias_sigma_deg_h: 3.0 };
+    /// The best micromechanical ones.
+    pub const MICROMECHANICAL_FINE: Self =
+        Self { n_deg_sqrt_h: 0.036, b_deg_h: 0.3, k_deg_h_sqrt_h: 0.0, bias_sigma_deg_h: 10.0 };
+    /// Micromechanical, tactical grade.
+    pub const MICROMECHANICAL: Self =
+        Self { n_deg_sqrt_h: 0.15, b_deg_h: 0.5, k_deg_h_sqrt_h: 0.0, bias_sigma_deg_h: 30.0 };
+
+    fn noise(&self) -> GyroNoise {
+        GyroNoise::from_field_units(self.n_deg_sqrt_h, self.b_deg_h, self.k_deg_h_sqrt_h, 0.0)
+    }
+}
+
+/// A simulated alignment. The true attitude is for the simulation alone: the board is never told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scenario {
+    /// What fixes everything random.
+    pub seed: u64,
+    /// Latitude, °, which the board knows.
+    pub latitude_deg: f64,
+    /// True azimuth of body x, °.
+    pub azimuth_deg: f64,
+    /// True pitch, °.
+    pub pitch_deg: f64,
+    /// True roll, °.
+    pub roll_deg: f64,
+    /// The precise gyro.
+    pub gyro: GyroClass,
+    /// Samples a second: one of the converter's data rates, Hz.
+    pub sample_rate_hz: f64,
+    /// Positions on the full circle.
+    pub positions: usize,
+    /// Time at each, s.
+    pub dwell_s: f64,
+    /// Stage angle at power-on, °.
+    pub start_deg: f64,
+}
+
+impl Default for Scenario {
+    /// Fibre-optic class, latitude 47.58°, 24 positions of 10 s on the full circle at 400 Hz, a base
+    /// that is not quite level and a stage that was left at 20°.
+    fn default() -> Self {
+        Self {
+            seed: 1,
+            latitude_deg: 47.58,
+            azimuth_deg: 213.7,
+            pitch_deg: 0.6,
+            roll_deg: -0.4,
+            gyro: GyroClass::FIBRE_OPTIC,
+            sample_rate_hz: 400.0,
+            positions: 24,
+            dwell_s: 10.0,
+            start_deg: 20.0,
+        }
+    }
+}
+
+impl Scenario {
+    /// What the board is told of place and instrument; none where the latitude is none.
+    #[must_use]
+    pub fn setting(&self) -> Option<Setting> {
+        let latitude = Latitude::from_degrees(self.latitude_deg)?;
+        Some(Setting {
+            noise: self.gyro.noise(),
+            white_known: true,
+            scale_sigma: SCALE_SIGMA,
+            g_sensitivity: G_SENSITIVITY.map(|part| part * DEGREE_PER_HOUR),
+            g_sensitivity_sigma: G_SENSITIVITY_SIGMA * DEGREE_PER_HOUR,
+            accelerometer_bias_sigma: FORCE_BIAS_SIGMA,
+            encoder_sigma: ENCODER_SIGMA,
+            ..Setting::at(latitude)
+        })
+    }
+
+    /// How the board goes about it.
+    #[must_use]
+    pub fn procedure(&self) -> Procedure {
+        let schedule = Schedule::circle(self.positions, self.dwell_s);
+        let procedure = Procedure::new(schedule, 1.0 / self.sample_rate_hz);
+        Procedure { settle_seconds: RINGS_SECONDS, ..procedure }
+    }
+
+    /// What the board is told of its devices.
+    #[must_use]
+    pub fn configuration(&self) -> Configuration {
+        Configuration { encoder: calibration(), ..Configuration::at(self.sample_rate_hz) }
+    }
+
+    /// What is true of the instruments.
+    #[must_use]
+    pub fn instruments(&self) -> InstrumentsConfiguration {
+        InstrumentsConfiguration {
+            latitude_deg: self.latitude_deg,
+            azimuth_deg: self.azimuth_deg,
+            pitch_deg: self.pitch_deg,
+            roll_deg: self.roll_deg,
+            rate_hz: self.sample_rate_hz,
+            gyro: self.gyroscope(),
+            accelerometer: AccelerometerConfiguration {
+                noise_m_s2_sqrt_hz: FORCE_NOISE,
+                bias_sigma_m_s2: FORCE_BIAS_SIGMA,
+                ..AccelerometerConfiguration::default()
+            },
+            encoder: EncoderConfiguration {
+                step_rad: 0.0,
+                first: HARMONICS[0],
+                second: HARMONICS[1],
+            },
+            ..InstrumentsConfiguration::default()
+        }
+    }
+
+    /// What is true of everything that the chips feel and move.
+    #[must_use]
+    pub fn plant(&self) -> PlantConfiguration<'static> {
+        PlantConfiguration {
+            instruments: self.instruments(),
+            gyro_volts_per_rad_s: VOLTS,
+            gyro_full_scale_rad_s: FULL_SCALE,
+            converter_noise_v: CONVERTER_NOISE,
+            stage: StageConfiguration {
+                start_rad: self.start_deg * DEGREE,
+                backlash_rad: BACKLASH,
+                ringing_hz: RINGING_HZ,
+                ringing_damping: RINGING_DAMPING,
+                ..StageConfiguration::default()
+            },
+            ..PlantConfiguration::default()
+        }
+    }
+
+    /// The converter's configuration: the data rate nearest to the sample rate.
+    #[must_use]
+    pub fn converter(&self) -> converter::Configuration {
+        let off = |rate: DataRate| (rate.hertz() - self.sample_rate_hz).abs();
+        let nearer = |best, rate| if off(rate) < off(best) { rate } else { best };
+        let rate = RATES.into_iter().fold(DataRate::Sps100, nearer);
+        converter::Configuration { rate, ..converter::Configuration::default() }
+    }
+
+    fn gyroscope(&self) -> GyroConfiguration {
+        GyroConfiguration {
+            n_deg_sqrt_h: self.gyro.n_deg_sqrt_h,
+            b_deg_h: self.gyro.b_deg_h,
+            k_deg_h_sqrt_h: self.gyro.k_deg_h_sqrt_h,
+            bias_sigma_deg_h: self.gyro.bias_sigma_deg_h,
+            scale_sigma: SCALE_SIGMA,
+            g_sensitivity_deg_h_g: G_SENSITIVITY,
+            axis_elevation_rad: 0.05 * DEGREE,
+            ..GyroConfiguration::default()
+        }
+    }
+}
+
+/// The encoder's harmonics as a calibration found them: sine and cosine parts of what is true.
+fn calibration() -> Harmonics {
+    let parts = |harmonic: Harmonic| {
+        let Harmonic { amplitude_rad, phase_rad } = harmonic;
+        [amplitude_rad * libm::cos(phase_rad), amplitude_rad * libm::sin(phase_rad)]
+            .map(|part| part as f32)
+    };
+    Harmonics { first: parts(HARMONICS[0]), second: parts(HARMONICS[1]) }
+}
+
+/// The accelerometer's configuration: more outputs than are read.
+#[must_use]
+pub fn accelerometer() -> adxl355::Configuration {
+    adxl355::Configuration { rate: adxl355::registers::OutputRate::Hz125 }
+}

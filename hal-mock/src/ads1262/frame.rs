@@ -1,0 +1,37 @@
+//! The bytes of a conversion on the bus (SBAS661C figures 9-43 to 9-48).
+
+use heapless::Vec;
+
+use super::registers::Registers;
+
+/// Bytes of one conversion as far as they are sent.
+pub(super) type Frame = Vec<u8, 6>;
+
+/// A frame in the form that INTERFACE asks for: status, four bytes of data, checksum.
+pub(super) fn frame(registers: &Registers, status: u8, code: i32) -> Frame {
+    let data = code.to_be_bytes();
+    let status = registers.has_status().then_some(status);
+    let check = match registers.checksum_form() {
+        1 => Some(sum(data)),
+        2 => Some(remainder(data)),
+        _ => None,
+    };
+    status.into_iter().chain(data).chain(check).collect()
+}
+
+/// The four bytes and 9Bh, of which the low byte is kept (checksum mode).
+fn sum(data: [u8; 4]) -> u8 {
+    let whole: u32 = data.iter().map(|&byte| u32::from(byte)).sum();
+    ((whole + 0x9B) & 0xFF) as u8
+}
+
+/// Remainder of the division of the data, eight zeros behind them, by x⁸ + x² + x + 1, as the data
+/// sheet does it by hand (CRC mode).
+fn remainder(data: [u8; 4]) -> u8 {
+    let mut rest = u64::from(u32::from_be_bytes(data)) << 8;
+    while rest > 0xFF {
+        let align = 55 - rest.leading_zeros();
+        rest ^= 0b1_0000_0111 << align;
+    }
+    rest as u8
+}

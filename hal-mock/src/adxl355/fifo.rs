@@ -1,0 +1,52 @@
+//! The FIFO of the ADXL355: 96 values of one axis each, three bytes on the bus.
+
+use heapless::Deque;
+
+/// Values that fit.
+const SIZE: usize = 96;
+
+/// Marks an x value.
+const X: u32 = 0b01;
+
+/// Marks a read of the empty FIFO.
+const EMPTY: u32 = 0b10;
+
+/// A FIFO in stream mode: new values push out the oldest.
+#[derive(Clone, Debug, Default)]
+pub struct Fifo {
+    values: Deque<u32, SIZE>,
+    word: u32,
+    bytes_left: u8,
+}
+
+impl Fifo {
+    /// Takes a sample; tells whether older values were lost for it.
+    pub fn push(&mut self, counts: [i32; 3]) -> bool {
+        let is_full = self.values.len() + counts.len() > SIZE;
+        for (axis, count) in counts.into_iter().enumerate() {
+            if self.values.is_full() {
+                self.values.pop_front();
+            }
+            let mark = if axis == 0 { X } else { 0 };
+            // There is room: it was just made.
+            let _ = self.values.push_back((count.cast_unsigned() << 4 & 0xFF_FFFF) | mark);
+        }
+        is_full
+    }
+
+    /// The next byte; every third takes a value out.
+    pub fn read(&mut self) -> u8 {
+        if self.bytes_left == 0 {
+            self.word = self.values.pop_front().unwrap_or(EMPTY);
+            self.bytes_left = 3;
+        }
+        self.bytes_left -= 1;
+        (self.word >> (8 * self.bytes_left)) as u8
+    }
+
+    /// Values in it, 0 … 96.
+    #[must_use]
+    pub fn entries(&self) -> u8 {
+        self.values.len() as u8
+    }
+}

@@ -1,0 +1,75 @@
+//! A data-ready line that may lose edges.
+
+use embassy_time::Instant;
+use embedded_hal::digital::ErrorType;
+use embedded_hal_async::digital::Wait;
+
+use super::When;
+
+/// A data-ready line that may lose edges: what waited for a lost edge, or for the level that it
+/// brought, waits for the next edge.
+#[derive(Debug)]
+pub struct FaultyReady<W> {
+    line: W,
+    when: Option<When>,
+    shown: bool,
+}
+
+impl<W> FaultyReady<W> {
+    /// The line with a time when it loses edges, or a healthy one.
+    #[must_use]
+    pub const fn new(line: W, when: Option<When>) -> Self {
+        Self { line, when, shown: false }
+    }
+
+    /// Whether what has just happened on the line is lost.
+    fn loses(&mut self) -> bool {
+        self.when.is_some_and(|when| when.shows(Instant::now(), &mut self.shown))
+    }
+}
+
+impl<W: ErrorType> ErrorType for FaultyReady<W> {
+    type Error = W::Error;
+}
+
+impl<W: Wait> Wait for FaultyReady<W> {
+    async fn wait_for_high(&mut self) -> Result<(), W::Error> {
+        self.line.wait_for_high().await?;
+        while self.loses() {
+            self.line.wait_for_rising_edge().await?;
+        }
+        Ok(())
+    }
+
+    async fn wait_for_low(&mut self) -> Result<(), W::Error> {
+        self.line.wait_for_low().await?;
+        while self.loses() {
+            self.line.wait_for_falling_edge().await?;
+        }
+        Ok(())
+    }
+
+    async fn wait_for_rising_edge(&mut self) -> Result<(), W::Error> {
+        self.line.wait_for_rising_edge().await?;
+        while self.loses() {
+            self.line.wait_for_rising_edge().await?;
+        }
+        Ok(())
+    }
+
+    async fn wait_for_falling_edge(&mut self) -> Result<(), W::Error> {
+        self.line.wait_for_falling_edge().await?;
+        while self.loses() {
+            self.line.wait_for_falling_edge().await?;
+        }
+        Ok(())
+    }
+
+    async fn wait_for_any_edge(&mut self) -> Result<(), W::Error> {
+        self.line.wait_for_any_edge().await?;
+        while self.loses() {
+            self.line.wait_for_any_edge().await?;
+        }
+        Ok(())
+    }
+}

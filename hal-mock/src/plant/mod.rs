@@ -1,0 +1,271 @@
+//! The plant: the stage's mechanics with the instruments on it, as the chips of the board see them.
+//!
+//! ```text
+//!  actuator ─microsteps─▶ train ─angle, rate─▶ instruments ─volts─▶ gyro's converter
+//!     ▲ blocked, switches ──┘   base, sway ──▶     │  │ └──force, temperature─▶ accelerometer
+//!                                disturbances ─────┘  └──shown angle + slip──▶ encoder
+//! ```
+//!
+//! Time counts from the start of the clock and must not fall. Noise is drawn once for each reading:
+//! of the gyro once a conversion, of the accelerometer once an output. A reading stands for the
+//! motion at its end; within one period of the gyro's converter the stage turns too little to matter
+//! except while it rotates. While the stage stands on a base at rest nothing is computed but noise,
+//! warm-up and disturbances.
+
+mod ringing;
+pub mod sway;
+pub mod train;
+
+use embassy_time::Instant;
+
+use crate::disturbance::{self, Disturbance, Effect};
+use crate::environment::{AnalogueInput, ForceInput, Mechanics, ShaftAngle};
+use crate::instruments::{Instruments, InstrumentsConfiguration, Truth};
+use crate::noise::{White, source};
+use sway::SwayConfiguration;
+use train::{StageConfiguration, Train};
+
+/// The unit of an accelerometer's output, m/s² (standard gravity, ISO 80000-3).
+const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
+
+/// One degree per second in rad/s.
+const DEGREE_PER_SECOND: f64 = core::f64::consts::PI / 180.0;
+
+/// Bytes of a plant: it lies in a static of a board with 96 KB.
+const LARGEST: usize = 2560;
+
+const _: () = assert!(size_of::<Plant>() <= LARGEST);
+
+/// What goes wrong with the stage, by time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StageFault {
+    /// Something holds the stage from one moment until another; [`Instant::MAX`] for good.
+    Block {
+        /// When it is caught.
+        from: Instant,
+        /// When it is let go.
+        until: Instant,
+    },
+    /// The encoder's magnet slips on its shaft.
+    Slip {
+        /// When.
+        at: Instant,
+        /// What the encoder shows more from then on, rad.
+        by_rad: f64,
+    },
+}
+
+/// A stage with its instruments, and everything that happens to them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlantConfiguration<'a> {
+    /// Site, attitude, sensors. Its `rate_hz` is the conversion rate of the gyro's converter; its
+    /// encoder's `step_rad` stays zero, since the chip has its own.
+    pub instruments: InstrumentsConfiguration,
+    /// Output rate of the accelerometer, Hz, > 0 (default 125).
+    pub accelerometer_hz: f64,
+    /// Scale factor of the gyro, V per rad/s (default 50 mV per °/s).
+    pub gyro_volts_per_rad_s: f64,
+    /// Rate at which the gyro's output clips, rad/s (default 40 °/s: ±2 V).
+    pub gyro_full_scale_rad_s: f64,
+    /// White noise of the converter, V RMS per conversion.
+    pub converter_noise_v: f64,
+    /// Mechanics of the stage.
+    pub stage: StageConfiguration,
+    /// Sway of the base.
+    pub sway: SwayConfiguration,
+    /// Bumps, nudges and overloads; their times count from the start of the clock.
+    pub disturbances: &'a [Disturbance],
+    /// Faults of the stage, in any order.
+    pub faults: &'a [StageFault],
+}
+
+impl Default for PlantConfiguration<'_> {
+    /// Perfect instruments on a perfect stage, left alone.
+    fn default() -> Self {
+        Self {
+            instruments: InstrumentsConfiguration::default(),
+            accelerometer_hz: 125.0,
+            gyro_volts_per_rad_s: 0.05 / DEGREE_PER_SECOND,
+            gyro_full_scale_rad_s: 40.0 * DEGREE_PER_SECOND,
+            converter_noise_v: 0.0,
+            stage: StageConfiguration::default(),
+            sway: SwayConfiguration::default(),
+            disturbances: &[],
+            faults: &[],
+        }
+    }
+}
+
+/// The plant at work.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plant<'a> {
+    instruments: Instruments,
+    train: Train,
+    /// The base's sway, where it sways.
+    sway: Option<SwayConfiguration>,
+    /// Moment of the latest pose on a swaying base.
+    swayed_at: Option<Instant>,
+    converter: White,
+    gyro_volts_per_rad_s: f64,
+    gyro_full_scale_rad_s: f64,
+    disturbances: &'a [Disturbance],
+    faults: &'a [StageFault],
+    /// When the stage is next caught or let go.
+    next_change: Instant,
+}
+
+impl<'a> Plant<'a> {
+    /// A plant at the start of the clock; the seed fixes everything random in it.
+    #[must_use]
+    pub fn new(configuration: &PlantConfiguration<'a>, seed: u64) -> Self {
+        let c = configuration;
+        let accelerometer_hz = c.accelerometer_hz;
+        let mut plant = Self {
+            instruments: Instruments::with_accelerometer_at(&c.instruments, accelerometer_hz, seed),
+            train: Train::new(&c.stage),
+            sway: c.sway.is_active().then_some(c.sway),
+            swayed_at: None,
+            converter: White::new(c.converter_noise_v, seed, source::CONVERTER),
+            gyro_volts_per_rad_s: c.gyro_volts_per_rad_s,
+            gyro_full_scale_rad_s: c.gyro_full_scale_rad_s,
+            disturbances: c.disturbances,
+            faults: c.faults,
+            next_change: Instant::MIN,
+        };
+        plant.advance(Instant::MIN);
+        plant
+    }
+
+    /// Moves the stage on to `now`, so that switches and stall are those of that moment.
+    #[inline]
+    pub fn advance(&mut self, now: Instant) {
+        while self.next_change <= now {
+            self.change();
+        }
+        self.train.advance(now);
+    }
+
+    /// The motor loses its current: its field stops where it is. A motor driver that starts again
+    /// counts from zero, and the rotor takes the nearest of its positions that fits.
+    pub fn stop_motor(&mut self, now: Instant) {
+        self.advance(now);
+        self.train.stop();
+    }
+
+    /// What the sensors cannot know: attitude of the base at rest, drawn biases and scale; stage as
+    /// of the latest moment, rate as of the latest reading.
+    #[must_use]
+    pub fn truth(&self) -> Truth {
+        Truth { stage: self.train.state(), ..self.instruments.truth() }
+    }
+
+    /// Catches the stage or lets it go, as is due.
+    #[cold]
+    fn change(&mut self) {
+        let at = self.next_change;
+        self.train.advance(at);
+        self.train.hold(self.faults.iter().any(|fault| fault.blocks(at)));
+        let changes = self.faults.iter().filter_map(|fault| fault.change_after(at));
+        self.next_change = changes.min().unwrap_or(Instant::MAX);
+    }
+
+    /// Brings the instruments to where the stage is at `now`.
+    #[inline]
+    fn look(&mut self, now: Instant) {
+        self.advance(now);
+        let stage = self.train.state();
+        match &self.sway {
+            None => self.instruments.turn(stage),
+            Some(sway) if self.swayed_at != Some(now) => {
+                self.instruments.turn_on(stage, &sway.at(seconds(now)));
+                self.swayed_at = Some(now);
+            }
+            Some(_) => {}
+        }
+    }
+
+    /// What the disturbances add at `now`.
+    #[inline]
+    fn effect(&self, now: Instant) -> Effect {
+        if self.disturbances.is_empty() {
+            return Effect::default();
+        }
+        disturbance::total(self.disturbances, seconds(now))
+    }
+}
+
+impl StageFault {
+    /// Whether it holds the stage at `now`.
+    fn blocks(&self, now: Instant) -> bool {
+        matches!(*self, Self::Block { from, until } if (from..until).contains(&now))
+    }
+
+    /// When it next catches the stage or lets it go.
+    fn change_after(&self, now: Instant) -> Option<Instant> {
+        match *self {
+            Self::Block { from, until } => [from, until].into_iter().filter(|at| *at > now).min(),
+            Self::Slip { .. } => None,
+        }
+    }
+
+    /// How far it has moved the encoder, rad.
+    fn slip_rad(&self, now: Instant) -> f64 {
+        match *self {
+            Self::Slip { at, by_rad } if at <= now => by_rad,
+            _ => 0.0,
+        }
+    }
+}
+
+/// Seconds since the start of the clock.
+fn seconds(now: Instant) -> f64 {
+    now.as_micros() as f64 * 1e-6
+}
+
+impl AnalogueInput for Plant<'_> {
+    fn volts(&mut self, now: Instant) -> f64 {
+        self.look(now);
+        let effect = self.effect(now);
+        let limit = self.gyro_full_scale_rad_s;
+        let rate_rad_s = self.instruments.rate(seconds(now), &effect).max(-limit).min(limit);
+        rate_rad_s * self.gyro_volts_per_rad_s + self.converter.sample()
+    }
+}
+
+/// The accelerometer's axes are those of the platform: x along the gyro's axis, z down.
+impl ForceInput for Plant<'_> {
+    fn force_g(&mut self, now: Instant) -> [f64; 3] {
+        self.look(now);
+        let effect = self.effect(now);
+        self.instruments.force(&effect).map(|force| force / STANDARD_GRAVITY_M_S2)
+    }
+
+    fn temperature_c(&mut self, now: Instant) -> f64 {
+        self.instruments.temperature(seconds(now))
+    }
+}
+
+impl ShaftAngle for Plant<'_> {
+    fn shaft_turns(&mut self, now: Instant) -> f64 {
+        self.look(now);
+        let slip_rad: f64 = self.faults.iter().map(|fault| fault.slip_rad(now)).sum();
+        (self.instruments.shown_rad() + slip_rad) / core::f64::consts::TAU
+    }
+}
+
+impl Mechanics for Plant<'_> {
+    fn drive(&mut self, now: Instant, microsteps: f64, microsteps_per_s: f64) {
+        self.advance(now);
+        self.train.drive(microsteps, microsteps_per_s);
+        // The pose of this moment may have been another.
+        self.swayed_at = None;
+    }
+
+    fn is_blocked(&self) -> bool {
+        self.train.is_blocked()
+    }
+
+    fn reference_switches(&self) -> [bool; 2] {
+        self.train.switches()
+    }
+}

@@ -1,0 +1,224 @@
+//! `meridian run`: the whole board application on simulated chips.
+
+use std::path::PathBuf;
+use std::time::Instant as WallClock;
+
+use bench::instrument::recorder::CsvRecorder;
+use bench::instrument::{self, Run, Watch};
+use bench::output::progress::Progress;
+use bench::output::{json, text};
+use clap::{Args, ValueEnum};
+use drivers::ads1262::configuration::DataRate;
+use embassy_time::Instant;
+use firmware::event::Event;
+use firmware::ports::NoRecorder;
+use firmware::simulated::fault::Fault;
+use firmware::simulated::scenario::{GyroClass, RATES, Scenario};
+use orientation::session::Session;
+
+/// What can be said of a simulated alignment.
+#[derive(Args, Clone, Debug)]
+pub struct RunOptions {
+    /// Latitude in degrees, north positive.
+    #[arg(long, value_name = "DEGREES", default_value = "47.58", value_parser = within::<90>, allow_negative_numbers = true)]
+    latitude: f64,
+    /// True azimuth of body x in degrees; the board is not told.
+    #[arg(long, value_name = "DEGREES", default_value = "213.7", value_parser = within::<360>, allow_negative_numbers = true)]
+    azimuth: f64,
+    /// True pitch of the base in degrees, nose up positive.
+    #[arg(long, value_name = "DEGREES", default_value = "0.6", value_parser = within::<90>, allow_negative_numbers = true)]
+    pitch: f64,
+    /// True roll of the base in degrees, right side down positive.
+    #[arg(long, value_name = "DEGREES", default_value = "-0.4", value_parser = within::<180>, allow_negative_numbers = true)]
+    roll: f64,
+    /// The precise gyro.
+    #[arg(long, value_enum, default_value = "fog")]
+    gyro: Gyro,
+    /// Samples of the gyro a second: a data rate of its converter.
+    #[arg(long, value_name = "HERTZ", default_value = "400", value_parser = rate)]
+    rate: f64,
+    /// Positions on the full circle.
+    #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u8).range(3..=64))]
+    positions: u8,
+    /// Seconds at each position.
+    #[arg(long, value_name = "SECONDS", default_value = "10", value_parser = dwell)]
+    dwell: f64,
+    /// What fixes everything random.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Method.
+    #[arg(long, value_enum, default_value = "stepwise")]
+    method: Method,
+    /// What goes wrong; `list` names the faults.
+    #[arg(long, value_name = "NAME", value_parser = fault)]
+    fault: Option<Named>,
+    /// Writes the samples that the session got as a recording for `replay`.
+    #[arg(long, value_name = "FILE.csv")]
+    record: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Method {
+    /// Stepwise gyrocompassing.
+    Stepwise,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Gyro {
+    /// Fibre-optic: N 0.001 °/√h, B 0.007 °/h.
+    Fog,
+    /// Fibre-optic, lower grade: N 0.02 °/√h, B 0.1 °/h.
+    FogCoarse,
+    /// The best micromechanical: N 0.036 °/√h, B 0.3 °/h.
+    MemsFine,
+    /// Micromechanical, tactical grade: N 0.15 °/√h, B 0.5 °/h.
+    Mems,
+}
+
+/// A fault by its name, or the wish to see the names.
+#[derive(Clone, Copy, Debug)]
+enum Named {
+    List,
+    Fault(Fault),
+}
+
+fn within<const LIMIT: u16>(text: &str) -> Result<f64, String> {
+    let limit = f64::from(LIMIT);
+    match text.parse::<f64>() {
+        Ok(angle) if angle.abs() <= limit => Ok(angle),
+        Ok(_) => Err(format!("outside ±{limit}°")),
+        Err(_) => Err("not a number".to_owned()),
+    }
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    let rates = RATES.map(DataRate::hertz);
+    let known = rates.map(|rate| rate.to_string()).join(", ");
+    let rate = text.parse::<f64>().ok().filter(|rate| rates.contains(rate));
+    rate.ok_or_else(|| format!("not one of the converter's rates: {known}"))
+}
+
+fn dwell(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if (0.5..=600.0).contains(&seconds) => Ok(seconds),
+        _ => Err("not a number of seconds from 0.5 to 600".to_owned()),
+    }
+}
+
+fn fault(text: &str) -> Result<Named, String> {
+    if text == "list" {
+        return Ok(Named::List);
+    }
+    let found = Fault::all().find(|fault| fault.to_string() == text);
+    found.map(Named::Fault).ok_or_else(|| "no such fault; `--fault list` names them".to_owned())
+}
+
+impl From<Gyro> for GyroClass {
+    fn from(gyro: Gyro) -> Self {
+        match gyro {
+            Gyro::Fog => Self::FIBRE_OPTIC,
+            Gyro::FogCoarse => Self::FIBRE_OPTIC_COARSE,
+            Gyro::MemsFine => Self::MICROMECHANICAL_FINE,
+            Gyro::Mems => Self::MICROMECHANICAL,
+        }
+    }
+}
+
+impl From<&RunOptions> for Scenario {
+    fn from(options: &RunOptions) -> Self {
+        // One method so far: naming it changes nothing.
+        let Method::Stepwise = options.method;
+        Self {
+            seed: options.seed,
+            latitude_deg: options.latitude,
+            azimuth_deg: options.azimuth,
+            pitch_deg: options.pitch,
+            roll_deg: options.roll,
+            gyro: options.gyro.into(),
+            sample_rate_hz: options.rate,
+            positions: usize::from(options.positions),
+            dwell_s: options.dwell,
+            ..Self::default()
+        }
+    }
+}
+
+/// Shows the log and the progress while the board works.
+struct Terminal(Progress);
+
+impl Watch for Terminal {
+    fn event(&self, at: Instant, event: &Event) {
+        let seconds = at.as_micros() as f64 * 1e-6;
+        self.0.log(&format!("{seconds:>11.6} {event}"));
+    }
+
+    fn progress(&self, session: &Session) {
+        self.0.session(session);
+    }
+}
+
+/// What came of a run, ready to print.
+pub struct Told {
+    /// Whether there was a result.
+    pub found: bool,
+    /// For standard output.
+    pub output: String,
+    /// Why there was none.
+    pub refusal: Option<String>,
+}
+
+/// Runs the board and tells what came of it.
+pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
+    let fault = match options.fault {
+        Some(Named::List) => return Ok(Told { found: true, output: names(), refusal: None }),
+        Some(Named::Fault(fault)) => Some(fault),
+        None => None,
+    };
+    let scenario = Scenario::from(options);
+    let begun = WallClock::now();
+    let finished = simulate(&scenario, fault, options)?;
+    let seconds = begun.elapsed().as_secs_f64();
+    let output = told(&finished, &scenario, seconds, as_json)?;
+    let conclusion = finished.conclusion().ok_or("the session did not end")?;
+    let refusal = conclusion.verdict.as_ref().err().map(ToString::to_string);
+    Ok(Told { found: refusal.is_none(), output, refusal })
+}
+
+fn names() -> String {
+    Fault::all().map(|fault| fault.to_string()).collect::<Vec<_>>().join("\n")
+}
+
+fn simulate(
+    scenario: &Scenario,
+    fault: Option<Fault>,
+    options: &RunOptions,
+) -> Result<Run, String> {
+    let watch = Terminal(Progress::new(0, "positions"));
+    let run = match &options.record {
+        None => instrument::run(scenario, fault, NoRecorder, &watch),
+        Some(path) => {
+            let failed = |error: std::io::Error| format!("{}: {error}", path.display());
+            let setting = scenario.setting().ok_or("the latitude is outside ±90°")?;
+            let mut recorder = CsvRecorder::create(path, scenario, &setting).map_err(failed)?;
+            let run = instrument::run(scenario, fault, &mut recorder, &watch);
+            recorder.finish().map_err(failed)?;
+            run
+        }
+    };
+    watch.0.finish();
+    run.map_err(|error| error.to_string())
+}
+
+fn told(run: &Run, scenario: &Scenario, wall: f64, as_json: bool) -> Result<String, String> {
+    let conclusion = run.conclusion().ok_or("the session did not end")?;
+    let truth = Some(scenario.azimuth_deg);
+    if as_json {
+        let object = json::azimuth(&run.replay, conclusion, truth);
+        return serde_json::to_string_pretty(&object).map_err(|error| error.to_string());
+    }
+    let mut block = String::new();
+    text::block(&mut block, "the simulated run", &run.replay, conclusion, truth)
+        .and_then(|()| text::run(&mut block, run, scenario, wall))
+        .map_err(|error| error.to_string())?;
+    Ok(block)
+}

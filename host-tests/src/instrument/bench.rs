@@ -1,0 +1,101 @@
+//! Wires one simulated board to the instrument and runs it.
+
+use std::cell::RefCell;
+
+use embassy_time::Instant;
+use embedded_io_async::{ErrorType, Write};
+use firmware::event::Event;
+use firmware::ports::{Observer, Recorder};
+use firmware::simulated;
+use firmware::simulated::fault::{Fault, Plan};
+use firmware::simulated::scenario::Scenario;
+use orientation::session::Session;
+
+use super::{Run, RunError};
+use crate::replay::Replay;
+use crate::virtual_time;
+
+/// What the board was not told but takes as known.
+const ASSUMED: &str = "latitude exact, calibrations as stated";
+
+/// Who watches a run while it goes on.
+pub trait Watch {
+    /// The board told something.
+    fn event(&self, _: Instant, _: &Event) {}
+
+    /// One more dwell was taken.
+    fn progress(&self, _: &Session) {}
+}
+
+/// Nobody watches.
+impl Watch for () {}
+
+/// Keeps what the board tells and passes it on.
+struct Log<'a, W> {
+    events: RefCell<Vec<(Instant, Event)>>,
+    watch: &'a W,
+}
+
+impl<W: Watch> Observer for Log<'_, W> {
+    fn event(&self, at: Instant, event: &Event) {
+        self.events.borrow_mut().push((at, *event));
+        self.watch.event(at, event);
+    }
+
+    fn progress(&self, session: &Session) {
+        self.watch.progress(session);
+    }
+}
+
+/// The wire of the link: it takes everything.
+struct Wire<'a>(&'a RefCell<Vec<u8>>);
+
+impl ErrorType for Wire<'_> {
+    type Error = core::convert::Infallible;
+}
+
+impl Write for Wire<'_> {
+    async fn write(&mut self, bytes: &[u8]) -> Result<usize, Self::Error> {
+        self.0.borrow_mut().extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    async fn flush(&mut self) -> Result<(), Self::Error> {
+        Ok(())
+    }
+}
+
+/// Runs a scenario in virtual time on this thread.
+///
+/// # Errors
+/// What keeps the session from beginning, and a deadlock. A refusal is the session's conclusion.
+pub fn run<R: Recorder, W: Watch>(
+    scenario: &Scenario,
+    fault: Option<Fault>,
+    recorder: R,
+    watch: &W,
+) -> Result<Run, RunError> {
+    let setting = scenario.setting().ok_or(RunError::Latitude(scenario.latitude_deg))?;
+    let mut session = Session::new(setting, scenario.procedure()).map_err(RunError::Procedure)?;
+    let plan = Plan::of(fault);
+    let board = RefCell::new(simulated::board(scenario, &plan));
+    let log = Log { events: RefCell::default(), watch };
+    let bytes = RefCell::default();
+    let (health, ended) = virtual_time::run(async {
+        let outside = simulated::Outside { link: Wire(&bytes), recorder, observer: &log };
+        let health = simulated::run(&board, scenario, &plan, outside, &mut session).await;
+        (health, Instant::now())
+    })
+    .map_err(|_| RunError::Deadlock)?;
+    let violations = simulated::violations(&board.borrow())
+        .map(|(select, violation)| format!("{select:?}: {violation}"))
+        .collect();
+    Ok(Run {
+        replay: Replay { session, setting, assumed: vec![ASSUMED.to_owned()] },
+        events: log.events.into_inner(),
+        lines: String::from_utf8_lossy(&bytes.into_inner()).into_owned(),
+        seconds: ended.as_micros() as f64 * 1e-6,
+        health,
+        violations,
+    })
+}

@@ -1,0 +1,64 @@
+//! The whole instrument on simulated chips, in virtual time: one scenario in, one run out.
+
+mod bench;
+pub mod recorder;
+
+pub use bench::{Watch, run};
+
+use std::fmt;
+
+use embassy_time::Instant;
+use firmware::event::Event;
+use firmware::health::Health;
+use orientation::align::conclusion::Conclusion;
+use orientation::session::procedure::ProcedureError;
+
+use crate::replay::Replay;
+
+/// A finished run.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// The session with its conclusion, told like a replay.
+    pub replay: Replay,
+    /// What the board told, in order.
+    pub events: Vec<(Instant, Event)>,
+    /// What the link carried.
+    pub lines: String,
+    /// Virtual time from power-on to the end, s.
+    pub seconds: f64,
+    /// What went wrong, counted.
+    pub health: Health,
+    /// What the drivers did that a data sheet forbids.
+    pub violations: Vec<String>,
+}
+
+impl Run {
+    /// What the session concluded; every run concludes.
+    #[must_use]
+    pub fn conclusion(&self) -> Option<&Conclusion> {
+        self.replay.session.conclusion()
+    }
+}
+
+/// Why a scenario could not be run; a refusal is not among them.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RunError {
+    /// The latitude is outside ±90°.
+    Latitude(f64),
+    /// The session cannot begin.
+    Procedure(ProcedureError),
+    /// Everything waited and nothing would have come.
+    Deadlock,
+}
+
+impl fmt::Display for RunError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Latitude(latitude) => write!(f, "latitude {latitude}° is outside ±90°"),
+            Self::Procedure(error) => error.fmt(f),
+            Self::Deadlock => f.write_str("the instrument waits for something that never comes"),
+        }
+    }
+}
+
+impl std::error::Error for RunError {}
