@@ -27,7 +27,7 @@ impl Harmonics {
     /// The error at an angle that the encoder shows, in steps of an [`Angle`].
     fn error(&self, shown: Angle) -> i32 {
         let theta = shown.0.cast_signed() as f32 * STEP;
-        let [sine, cosine] = [theta.sin(), theta.cos()];
+        let [sine, cosine] = [F32Ext::sin(theta), F32Ext::cos(theta)];
         let [sine2, cosine2] = [2.0 * sine * cosine, 1.0 - 2.0 * sine * sine];
         let [a1, b1] = self.first;
         let [a2, b2] = self.second;

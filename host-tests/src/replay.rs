@@ -59,7 +59,7 @@ impl Replay {
     #[must_use]
     pub fn noise_is_known(&self) -> bool {
         self.setting.white_known
-            || self.session.dwells().iter().all(|dwell| dwell.stated_variance.is_some())
+            || self.session.dwells().iter().all(|dwell| dwell.stated_variance.get().is_some())
     }
 }
 
@@ -292,7 +292,7 @@ fn averaged(row: &DwellRow, middle: f64) -> Dwell {
         seconds: row.seconds,
         rate: row.rate_rad_s,
         taper: 1.0,
-        stated_variance: Some(row.sigma_rad_s * row.sigma_rad_s),
+        stated_variance: Some(row.sigma_rad_s * row.sigma_rad_s).into(),
         force: row.force_m_s2,
         ..Dwell::default()
     }

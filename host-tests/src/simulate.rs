@@ -14,7 +14,7 @@ pub fn stage_path(reading: &Reading) -> Sample {
         time: Instant::from_seconds(reading.time_s),
         stage: Angle::from_rad(reading.stage_rad),
         rate: AngularRate::from_rad_per_s(reading.rate_rad_s),
-        force: reading.force_m_s2.map(SpecificForce::from_m_per_s2),
+        force: Some(reading.force_m_s2.map(SpecificForce::from_m_per_s2)),
         temperature: Some(Temperature::from_celsius(reading.temperature_c)),
     }
 }

@@ -97,6 +97,40 @@ impl Temperature {
     }
 }
 
+/// A number that may be missing, in the room of a number: `Option<f64>` takes twice as much.
+#[derive(Clone, Copy, Debug)]
+pub struct Optional(f64);
+
+impl Optional {
+    /// No number.
+    pub const NONE: Self = Self(f64::NAN);
+
+    /// The number, if there is one.
+    #[must_use]
+    pub fn get(self) -> Option<f64> {
+        (!self.0.is_nan()).then_some(self.0)
+    }
+}
+
+impl Default for Optional {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
+impl From<Option<f64>> for Optional {
+    /// Not a number becomes none.
+    fn from(number: Option<f64>) -> Self {
+        number.map_or(Self::NONE, Self)
+    }
+}
+
+impl PartialEq for Optional {
+    fn eq(&self, other: &Self) -> bool {
+        self.get() == other.get()
+    }
+}
+
 /// An angle as a 32-bit fraction of a turn (1 LSB = 1.46 nrad); it wraps by itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Angle(pub u32);

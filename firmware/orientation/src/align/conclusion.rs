@@ -7,7 +7,7 @@ use super::criterion::{self, Criterion};
 use super::level::{self, Tilt};
 use super::quality::{self, Disturbance, Norm};
 use super::setting::Setting;
-use super::stepwise::{FEW_DEGREES, Fit, Problem, Residual};
+use super::stepwise::{FEW_DEGREES, Fit, Found, Problem, Residual};
 use crate::error::Refusal;
 use crate::math::chi_square_tail;
 use crate::signal::dwell::Dwell;
@@ -61,18 +61,37 @@ pub struct Conclusion {
     pub residuals: Vec<Residual, POSITIONS>,
 }
 
+impl Default for Conclusion {
+    /// Of nothing: refused.
+    fn default() -> Self {
+        Self {
+            verdict: Err(Refusal::TooFewPositions { positions: 0 }),
+            tilt: Tilt::default(),
+            fit: None,
+            angle_random_walk: 0.0,
+            disturbances: Vec::new(),
+            residuals: Vec::new(),
+        }
+    }
+}
+
 impl Conclusion {
     /// Judges the dwells, fits the rest, and decides.
     #[must_use]
     pub fn of(setting: &Setting, dwells: &[Dwell], criterion: Criterion) -> Self {
-        let mut conclusion = Self::before(setting, dwells);
-        if !setting.latitude.has_north() {
-            let latitude = degrees(setting.latitude.rad());
-            conclusion.verdict = Err(Refusal::LatitudeTooHigh { latitude });
-            return conclusion;
-        }
-        conclusion.verdict = conclusion.decide(setting, dwells, criterion);
+        let mut conclusion = Self::default();
+        conclusion.draw(setting, dwells, criterion);
         conclusion
+    }
+
+    /// The same in place of a [`Self::default`]: 3 KB that need not stand on a small stack.
+    pub fn draw(&mut self, setting: &Setting, dwells: &[Dwell], criterion: Criterion) {
+        self.begin(setting, dwells);
+        self.verdict = if setting.latitude.has_north() {
+            self.decide(setting, dwells, criterion)
+        } else {
+            Err(Refusal::LatitudeTooHigh { latitude: degrees(setting.latitude.rad()) })
+        };
     }
 
     fn decide(
@@ -81,27 +100,25 @@ impl Conclusion {
         dwells: &[Dwell],
         criterion: Criterion,
     ) -> Result<Azimuth, Refusal> {
-        let fit = self.fit_undisturbed(setting, dwells)?;
-        self.judge(setting, dwells, &fit)?;
-        self.azimuth(setting, dwells, &fit, criterion)
+        self.fit_undisturbed(setting, dwells)?;
+        let Some(fit) = &self.fit else { return Err(Refusal::ArcCannotTell) };
+        self.judge(setting, dwells, fit)?;
+        self.azimuth(setting, dwells, fit, criterion)
     }
 
     /// The judgement of each dwell by itself, and the tilt from those that passed.
-    fn before(setting: &Setting, dwells: &[Dwell]) -> Self {
+    #[inline(never)]
+    fn begin(&mut self, setting: &Setting, dwells: &[Dwell]) {
         let norm = Norm::of(setting, dwells);
-        let mut conclusion = Self {
-            verdict: Err(Refusal::TooFewPositions { positions: 0 }),
-            tilt: Tilt::default(),
-            fit: None,
-            angle_random_walk: libm::sqrt(norm.white()),
-            disturbances: dwells.iter().map(|dwell| norm.disturbance(dwell)).collect(),
-            residuals: dwells.iter().map(|_| Residual::default()).collect(),
-        };
-        conclusion.level(setting, dwells);
-        let gravity = setting.latitude.gravity();
-        quality::moved(dwells, gravity, &conclusion.tilt, &mut conclusion.disturbances);
-        conclusion.level(setting, dwells);
-        conclusion
+        self.angle_random_walk = libm::sqrt(norm.white());
+        for dwell in dwells {
+            // A session holds no more dwells than these.
+            let _ = self.disturbances.push(norm.disturbance(dwell));
+            let _ = self.residuals.push(Residual::default());
+        }
+        self.level(setting, dwells);
+        quality::moved(dwells, setting.latitude.gravity(), &self.tilt, &mut self.disturbances);
+        self.level(setting, dwells);
     }
 
     fn level(&mut self, setting: &Setting, dwells: &[Dwell]) {
@@ -111,7 +128,10 @@ impl Conclusion {
     }
 
     /// Fits, and leaves out the dwell that stands out most, until none does.
-    fn fit_undisturbed(&mut self, setting: &Setting, dwells: &[Dwell]) -> Result<Fit, Refusal> {
+    ///
+    /// Not inlined, nor are the other steps: their stacks need not stand on top of each other.
+    #[inline(never)]
+    fn fit_undisturbed(&mut self, setting: &Setting, dwells: &[Dwell]) -> Result<(), Refusal> {
         loop {
             let kept: Vec<&Dwell, POSITIONS> = self.kept(dwells).map(|(_, dwell)| dwell).collect();
             Self::enough(dwells.len(), &kept)?;
@@ -121,19 +141,19 @@ impl Conclusion {
             let white = self.angle_random_walk * self.angle_random_walk;
             let tilt = self.tilt;
             let problem = Problem { setting, tilt: &tilt, white, dwells: &kept };
-            let fit = problem.fit().ok_or(Refusal::ArcCannotTell)?;
-            self.keep_residuals(dwells, &problem, &fit);
-            self.fit = Some(fit.clone());
+            let found = problem.fit().ok_or(Refusal::ArcCannotTell)?;
+            self.keep_residuals(&problem, &found);
+            let fit = self.fit.insert(found.0);
+            let (degrees, ratio) = (fit.degrees, excess(fit));
+            let hidden = fit.model.rejected_trend > HIDDEN_TREND;
             // With few degrees of freedom the worst residual need not be the disturbed dwell's.
             let removable =
-                self.outliers() < allowed_outliers(dwells.len()) && fit.degrees > FEW_DEGREES;
-            let worst = self.worst();
-            let hidden = fit.model.rejected_trend > HIDDEN_TREND;
-            let (worst, residual) = match worst {
+                self.outliers() < allowed_outliers(dwells.len()) && degrees > FEW_DEGREES;
+            let (worst, residual) = match self.worst() {
                 Some(worst) if removable => worst,
                 _ if hidden => return Err(Refusal::TrendNotSeparable),
-                Some(_) => return Err(Refusal::ResidualsNotWhite { ratio: excess(&fit) }),
-                None => return Ok(fit),
+                Some(_) => return Err(Refusal::ResidualsNotWhite { ratio }),
+                None => return Ok(()),
             };
             self.disturbances[worst] = Some(Disturbance::Outlier(residual));
             self.level(setting, dwells);
@@ -157,10 +177,15 @@ impl Conclusion {
         Ok(())
     }
 
-    fn keep_residuals(&mut self, dwells: &[Dwell], problem: &Problem, fit: &Fit) {
-        let places: Vec<usize, POSITIONS> = self.kept(dwells).map(|(index, _)| index).collect();
-        self.residuals.fill(Residual::default());
-        problem.residuals(fit, |index, residual| self.residuals[places[index]] = residual);
+    fn keep_residuals(&mut self, problem: &Problem, found: &Found) {
+        let Self { residuals, disturbances, .. } = self;
+        residuals.fill(Residual::default());
+        let mut places = residuals.iter_mut().zip(disturbances).filter(|(_, why)| why.is_none());
+        problem.residuals(found, |residual| {
+            if let Some((place, _)) = places.next() {
+                *place = residual;
+            }
+        });
     }
 
     /// The residual that stands out most, if one is beyond the bound.
@@ -178,6 +203,7 @@ impl Conclusion {
     }
 
     /// Every test that an azimuth must pass.
+    #[inline(never)]
     fn judge(&self, setting: &Setting, dwells: &[Dwell], fit: &Fit) -> Result<(), Refusal> {
         self.judge_accelerometer(setting, dwells)?;
         self.judge_tilt(setting, fit)?;
@@ -240,6 +266,7 @@ impl Conclusion {
     }
 
     /// The azimuth by the chosen criterion.
+    #[inline(never)]
     fn azimuth(
         &self,
         setting: &Setting,
@@ -281,7 +308,7 @@ fn white_of(kept: &[&Dwell]) -> f64 {
     let (mut power, mut freedom) = (0.0, 0.0);
     for quietness in kept.iter().filter_map(|dwell| dwell.quietness.as_ref()) {
         power += quietness.scatter * quietness.block_seconds;
-        freedom += quietness.blocks as f64 - 2.0;
+        freedom += quietness.count() - 2.0;
     }
     if freedom > 0.0 { power / freedom } else { 0.0 }
 }

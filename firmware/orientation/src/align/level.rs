@@ -5,7 +5,7 @@
 //! together: over a full circle F comes out free of bias; over a short arc the bias's stated
 //! uncertainty goes into F's.
 
-use super::regression::{Column, Regression};
+use super::regression::{COLUMNS, Column, Regression};
 use crate::signal::dwell::Dwell;
 
 /// The tilt phasor in g: real part along body x, imaginary part to its quadrature.
@@ -109,20 +109,20 @@ fn fit<'a>(
     bias_sigma: f64,
     sigma: f64,
 ) -> Option<(Tilt, f64)> {
-    let mut regression = Regression::<4>::default();
+    let mut regression = Regression::<COLUMNS>::default();
     let mut rows: f64 = 0.0;
     let weight = 1.0 / sigma;
     for dwell in dwells {
         let Some([x, y, _]) = dwell.force else { continue };
         let (sine, cosine) = libm::sincos(dwell.stage.rad());
         let [cosine, sine] = [cosine * weight, sine * weight];
-        regression.push(&[cosine, -sine, weight, 0.0], x / gravity * weight);
-        regression.push(&[-sine, -cosine, 0.0, weight], y / gravity * weight);
+        regression.push(&[cosine, -sine, weight, 0.0, 0.0], x / gravity * weight);
+        regression.push(&[-sine, -cosine, 0.0, weight, 0.0], y / gravity * weight);
         rows += 2.0;
     }
     let bias = Column::Prior(bias_sigma);
-    let solution = regression.solve(&[Column::Free, Column::Free, bias, bias])?;
-    let [real, imaginary, bias_x, bias_y] = solution.coefficients;
+    let solution = regression.solve(&[Column::Free, Column::Free, bias, bias, Column::Absent])?;
+    let [real, imaginary, bias_x, bias_y, _] = solution.coefficients;
     let [[a, b, ..], [c, d, ..], ..] = solution.covariance;
     let covariance = [[a, b], [c, d]];
     let tilt = Tilt { real, imaginary, covariance, bias: [bias_x, bias_y], measured: true };

@@ -71,6 +71,7 @@ pub struct Norm {
 impl Norm {
     /// From what is known of the gyro and from the dwells so far.
     #[must_use]
+    #[inline(never)]
     pub fn of(setting: &Setting, dwells: &[Dwell]) -> Self {
         let noise = &setting.noise;
         let known = noise.angle_random_walk * noise.angle_random_walk;
@@ -107,12 +108,12 @@ impl Norm {
     /// Variance of one block about the dwell's line: white noise, and what of the drift a line
     /// does not follow.
     fn block_variance(&self, quietness: &Quietness) -> f64 {
-        let seconds = quietness.blocks as f64 * quietness.block_seconds;
+        let seconds = quietness.count() * quietness.block_seconds;
         self.white / quietness.block_seconds + self.walk * seconds / 15.0 + 2.0 * self.flicker
     }
 
     fn unquiet(&self, quietness: &Quietness) -> Option<Disturbance> {
-        let degrees = quietness.blocks as f64 - 2.0;
+        let degrees = quietness.count() - 2.0;
         let chi_square = quietness.scatter / self.block_variance(quietness);
         (chi_square_tail(chi_square, degrees) < SCATTER_PROBABILITY)
             .then_some(Disturbance::Unquiet(chi_square / degrees))
@@ -125,8 +126,8 @@ impl Norm {
 
     /// A random walk over T has a slope of variance 6K²/(5T); flicker one of about 6B²/(πT²).
     fn drift(&self, quietness: &Quietness) -> Option<Disturbance> {
-        let seconds = quietness.blocks as f64 * quietness.block_seconds;
-        let unit = quietness.slope_unit;
+        let seconds = quietness.count() * quietness.block_seconds;
+        let unit = quietness.slope_unit();
         let variance = self.white / quietness.block_seconds * unit * unit
             + 1.2 * self.walk / seconds
             + 6.0 * self.flicker / (seconds * seconds)
@@ -140,6 +141,7 @@ impl Norm {
 ///
 /// What is usual comes from the differences of successive dwells, which a platform that moves once
 /// leaves alone however many dwells stand on either side.
+#[inline(never)]
 pub fn moved(dwells: &[Dwell], gravity: f64, tilt: &level::Tilt, mark: &mut [Option<Disturbance>]) {
     let deviations: heapless::Vec<[f64; 2], POSITIONS> = dwells
         .iter()
@@ -169,7 +171,7 @@ fn off_level(dwell: &Dwell, force: [f64; 3], gravity: f64, tilt: &level::Tilt) -
 fn white_median(dwells: &[Dwell]) -> f64 {
     let few = dwells.len() < 3;
     let estimate = |quietness: &Quietness| {
-        let blocks = quietness.blocks as f64;
+        let blocks = quietness.count();
         let variance = if few {
             quietness.neighbour_squares / (2.0 * (blocks - 1.0))
         } else {
@@ -186,7 +188,7 @@ fn white_median(dwells: &[Dwell]) -> f64 {
 /// variance of their mean.
 fn slope_density(dwells: &[Dwell]) -> f64 {
     let density = |quietness: &Quietness| {
-        quietness.slope_unit * quietness.slope_unit / quietness.block_seconds
+        quietness.slope_unit() * quietness.slope_unit() / quietness.block_seconds
     };
     let mut values: heapless::Vec<f64, POSITIONS> =
         dwells.iter().filter_map(|dwell| dwell.quietness.as_ref().map(density)).collect();

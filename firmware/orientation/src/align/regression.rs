@@ -6,6 +6,9 @@
 
 use crate::math::{cholesky, cholesky_solve};
 
+/// Columns of the regressions on a board: one size for all, so that one copy in flash serves them.
+pub const COLUMNS: usize = 5;
+
 /// Sums of products of `P` columns and the left side.
 #[derive(Clone, Debug)]
 pub struct Regression<const P: usize> {

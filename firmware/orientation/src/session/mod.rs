@@ -30,6 +30,10 @@ use crate::units::{Instant, TURN};
 
 /// Second-order sections of the stage filter: Sokolov's sixth order.
 const SECTIONS: usize = 3;
+
+/// Most repetitions whose record is kept: two at each of twelve positions.
+const REPETITIONS: usize = 24;
+
 /// What happens to a session.
 #[derive(Clone, Copy, Debug)]
 pub enum Event<'a> {
@@ -88,7 +92,7 @@ pub struct Session {
     begun: Option<Instant>,
     average: Option<DwellAverage<SECTIONS>>,
     dwells: Vec<Dwell, POSITIONS>,
-    repetitions: Vec<Repetition, POSITIONS>,
+    repetitions: Vec<Repetition, REPETITIONS>,
     tries: usize,
     conclusion: Option<Conclusion>,
 }
@@ -169,7 +173,7 @@ impl Session {
         &self.dwells
     }
 
-    /// The dwells that were measured again.
+    /// The dwells that were measured again; of more than 24 the first ones.
     #[must_use]
     pub fn repetitions(&self) -> &[Repetition] {
         &self.repetitions
@@ -339,11 +343,11 @@ impl Session {
 
     /// Ends the session with what there is, or with a reason that no dwell can mend.
     fn conclude(&mut self, reason: Option<Refusal>) -> Command {
-        let mut conclusion = Conclusion::of(&self.setting, &self.dwells, self.procedure.criterion);
+        let conclusion = self.conclusion.insert(Conclusion::default());
+        conclusion.draw(&self.setting, &self.dwells, self.procedure.criterion);
         if let Some(reason) = reason {
             conclusion.verdict = Err(reason);
         }
-        self.conclusion = Some(conclusion);
         self.phase = Phase::Done;
         Command::Finished
     }

@@ -4,6 +4,8 @@
 //! block length doubles, so a dwell ends with eight to sixteen equal blocks. They are taken before
 //! the filter, so white noise leaves them independent.
 
+use core::num::NonZero;
+
 /// Most blocks that are kept.
 pub const BLOCKS: usize = 16;
 
@@ -68,9 +70,7 @@ impl Blocks {
     /// The statistics of the full blocks; `None` for fewer than four.
     #[must_use]
     pub fn quietness(&self, sample_seconds: f64) -> Option<Quietness> {
-        if self.full < 4 {
-            return None;
-        }
+        let blocks = NonZero::new(self.full as u32).filter(|blocks| blocks.get() >= 4)?;
         let scale = 1e-9 / f64::from(self.length);
         let mut means = [0.0; BLOCKS];
         for (mean, sum) in means.iter_mut().zip(self.sums) {
@@ -81,21 +81,19 @@ impl Blocks {
         let all = self.sums[self.full - 1] + self.current;
         means[self.full - 1] = all as f64 * 1e-9 / f64::from(self.length + tail);
         let seconds = f64::from(self.length) * sample_seconds;
-        Some(Quietness::of(&means[..self.full], seconds))
+        Some(Quietness::of(&means[..self.full], blocks, seconds))
     }
 }
 
 /// How still a dwell was, before it is known how noisy the gyro is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quietness {
-    /// Number of blocks.
-    pub blocks: usize,
+    /// Number of blocks; never zero, so that `None` takes no room of its own.
+    pub blocks: NonZero<u32>,
     /// Length of a block, s.
     pub block_seconds: f64,
     /// Slope of a straight line through the blocks, rad/s².
     pub slope: f64,
-    /// The slope's standard deviation for a block standard deviation of one, 1/s.
-    pub slope_unit: f64,
     /// Sum of squares about that line, (rad/s)²; `blocks` − 2 degrees of freedom.
     pub scatter: f64,
     /// Largest step between an interval of blocks and the rest, about that line, in rad/s, scaled
@@ -107,27 +105,42 @@ pub struct Quietness {
 }
 
 impl Quietness {
-    fn of(means: &[f64], block_seconds: f64) -> Self {
+    /// Number of blocks.
+    #[must_use]
+    pub fn count(&self) -> f64 {
+        f64::from(self.blocks.get())
+    }
+
+    /// The slope's standard deviation for a block standard deviation of one, 1/s.
+    #[must_use]
+    pub fn slope_unit(&self) -> f64 {
+        1.0 / (libm::sqrt(spread(self.count())) * self.block_seconds)
+    }
+
+    fn of(means: &[f64], blocks: NonZero<u32>, block_seconds: f64) -> Self {
         let count = means.len() as f64;
         let centre = 0.5 * (count - 1.0);
         let mean = means.iter().sum::<f64>() / count;
-        let spread = count * (count * count - 1.0) / 12.0;
         let moment: f64 = means.iter().enumerate().map(|(i, m)| (i as f64 - centre) * m).sum();
-        let slope = moment / spread;
+        let slope = moment / spread(count);
         let mut rest = [0.0; BLOCKS];
         for (index, value) in means.iter().enumerate() {
             rest[index] = value - mean - slope * (index as f64 - centre);
         }
         Self {
-            blocks: means.len(),
+            blocks,
             block_seconds,
             slope: slope / block_seconds,
-            slope_unit: 1.0 / (libm::sqrt(spread) * block_seconds),
             scatter: rest.iter().map(|r| r * r).sum(),
             largest_step: largest_step(&rest[..means.len()]),
             neighbour_squares: means.windows(2).map(|w| (w[1] - w[0]) * (w[1] - w[0])).sum(),
         }
     }
+}
+
+/// Sum of the squared distances of `count` equidistant points from their middle.
+fn spread(count: f64) -> f64 {
+    count * (count * count - 1.0) / 12.0
 }
 
 /// The scan for a disturbance of any length: the greatest normalised difference of an interval.

@@ -10,7 +10,7 @@
 use super::Sample;
 use super::blocks::{Blocks, Quietness};
 use super::butterworth::{Coefficients, Filter};
-use crate::units::{Angle, AngularRate, Instant};
+use crate::units::{Angle, AngularRate, Instant, Optional};
 
 /// What one dwell leaves behind, whoever averaged it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,15 +29,13 @@ pub struct Dwell {
     /// White-noise variance of the mean over that of an average of all samples, ≥ 1.
     pub taper: f64,
     /// Variance of the mean as its source states it, (rad/s)².
-    pub stated_variance: Option<f64>,
-    /// Standard deviation of one sample about the mean, rad/s.
-    pub spread: f64,
+    pub stated_variance: Optional,
     /// Block statistics, where there were samples enough.
     pub quietness: Option<Quietness>,
     /// Mean specific force on the platform's axes, m/s², where it was measured.
     pub force: Option<[f64; 3]>,
     /// Mean temperature, °C, where it was measured.
-    pub temperature: Option<f64>,
+    pub temperature: Optional,
     /// What was wrong with samples.
     pub fault: Option<SampleFault>,
 }
@@ -67,46 +65,38 @@ pub enum SampleFault {
     Missing,
 }
 
-/// Mean of a quantity that every sample brings, as a plain sum; its first value is taken away at
-/// the end, so that the mean keeps its last bits.
-#[derive(Clone, Copy, Debug, Default)]
-struct Total {
-    origin: i32,
-    sum: i64,
+/// Means of quantities that come together and with some samples only, as plain sums; the first
+/// values are taken away at the end, so that the means keep their last bits.
+#[derive(Clone, Copy, Debug)]
+struct Means<const N: usize> {
+    origins: [i32; N],
+    sums: [i64; N],
+    count: u32,
 }
 
-impl Total {
-    #[inline]
-    fn push(&mut self, value: i32) {
-        self.sum += i64::from(value);
+impl<const N: usize> Means<N> {
+    /// Of nothing.
+    const EMPTY: Self = Self { origins: [0; N], sums: [0; N], count: 0 };
+
+    fn push(&mut self, values: [i32; N]) {
+        if self.count == 0 {
+            self.origins = values;
+        }
+        self.count += 1;
+        for (sum, value) in self.sums.iter_mut().zip(&values) {
+            *sum += i64::from(*value);
+        }
     }
 
-    /// The sum of the deviations of `count` values from the first.
-    fn deviation(&self, count: u32) -> i64 {
-        self.sum - i64::from(self.origin) * i64::from(count)
-    }
-
-    /// The mean of `count` values in units of `lsb`.
-    fn mean(&self, count: u32, lsb: f64) -> f64 {
-        (f64::from(self.origin) + self.deviation(count) as f64 / f64::from(count)) * lsb
-    }
-}
-
-/// Mean of a quantity that samples may lack, as a sum of deviations from its first value.
-#[derive(Clone, Copy, Debug, Default)]
-struct Deviations {
-    origin: i32,
-    sum: i64,
-}
-
-impl Deviations {
-    fn push(&mut self, value: i32) {
-        self.sum += i64::from(value) - i64::from(self.origin);
-    }
-
-    /// The mean in units of `lsb`.
-    fn mean(&self, count: f64, lsb: f64) -> f64 {
-        (f64::from(self.origin) + self.sum as f64 / count) * lsb
+    /// The means in units of `lsb`; `None` of nothing.
+    fn get(&self, lsb: f64) -> Option<[f64; N]> {
+        let count = i64::from(self.count);
+        let mean = |index: usize| {
+            let origin = self.origins[index];
+            let deviations = self.sums[index] - i64::from(origin) * count;
+            (f64::from(origin) + deviations as f64 / count as f64) * lsb
+        };
+        (count > 0).then(|| core::array::from_fn(mean))
     }
 }
 
@@ -125,14 +115,17 @@ pub struct DwellAverage<const SECTIONS: usize> {
     first: Instant,
     last: Instant,
     anchor: Angle,
-    /// The raw rate of the first sample, and the sum of the filtered ones.
-    filtered: Total,
+    /// The raw rate of the first sample.
+    origin: AngularRate,
+    /// Sum of the filtered rates; the origin is taken away at the end.
+    filtered: i64,
     filter: Filter<SECTIONS>,
-    squares: u64,
+    /// Every bit that was set in the raw rate's deviation from the first.
+    changes: i32,
     blocks: Blocks,
     stage: i64,
-    force: [Total; 3],
-    temperature: Option<Deviations>,
+    force: Means<3>,
+    temperature: Means<1>,
     saturated: bool,
     longest_gap: u64,
 }
@@ -145,13 +138,14 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
             first: sample.time,
             last: sample.time,
             anchor: sample.stage,
-            filtered: Total { origin: sample.rate.0, sum: 0 },
+            origin: sample.rate,
+            filtered: 0,
             filter: Filter::at_rest(sample.rate),
-            squares: 0,
+            changes: 0,
             blocks: Blocks::default(),
             stage: 0,
-            force: sample.force.map(|force| Total { origin: force.0, sum: 0 }),
-            temperature: sample.temperature.map(|t| Deviations { origin: t.0, sum: 0 }),
+            force: Means::EMPTY,
+            temperature: Means::EMPTY,
             saturated: false,
             longest_gap: 0,
         };
@@ -160,30 +154,35 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
     }
 
     /// Adds a sample of the same standstill.
+    ///
+    /// The filter comes last: it needs all registers, and what is needed before it is then done.
     pub fn push(&mut self, coefficients: &Coefficients<SECTIONS>, sample: &Sample) {
-        self.push_rate(coefficients, sample.rate);
-        self.stage += i64::from((sample.stage - self.anchor).0.cast_signed());
-        self.push_time(sample.time);
-        for (sum, force) in self.force.iter_mut().zip(sample.force) {
-            sum.push(force.0);
+        if sample.force.is_some() | sample.temperature.is_some() {
+            self.push_slow(sample);
         }
-        if let (Some(sum), Some(temperature)) = (&mut self.temperature, sample.temperature) {
-            sum.push(temperature.0);
+        self.push_time(sample.time);
+        self.stage += i64::from((sample.stage - self.anchor).0.cast_signed());
+        self.push_raw(sample.rate);
+        self.filtered += i64::from(self.filter.update(coefficients, sample.rate).0);
+    }
+
+    /// Takes what only some samples bring.
+    #[cold]
+    #[inline(never)]
+    fn push_slow(&mut self, sample: &Sample) {
+        if let Some([x, y, z]) = sample.force {
+            self.force.push([x.0, y.0, z.0]);
+        }
+        if let Some(temperature) = sample.temperature {
+            self.temperature.push([temperature.0]);
         }
     }
 
+    /// Takes the rate as it came.
     #[inline]
-    fn push_rate(&mut self, coefficients: &Coefficients<SECTIONS>, rate: AngularRate) {
-        let filtered = self.filter.update(coefficients, rate);
-        self.filtered.push(filtered.0);
-        let deviation = rate.0.saturating_sub(self.filtered.origin);
-        let square = (i64::from(deviation) * i64::from(deviation)).cast_unsigned();
-        // A square is at most 2⁶²: it fits above any sum below 2⁶³.
-        if self.squares.cast_signed() < 0 {
-            self.add_to_great(square);
-        } else {
-            self.squares += square;
-        }
+    fn push_raw(&mut self, rate: AngularRate) {
+        let deviation = rate.0.saturating_sub(self.origin.0);
+        self.changes |= deviation;
         self.blocks.push(deviation);
         if rate.is_saturated() {
             self.saturate();
@@ -208,13 +207,6 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
         }
     }
 
-    /// Adds to a sum of squares that may be near its limit.
-    #[cold]
-    #[inline(never)]
-    fn add_to_great(&mut self, square: u64) {
-        self.squares = self.squares.saturating_add(square);
-    }
-
     #[cold]
     #[inline(never)]
     fn saturate(&mut self) {
@@ -233,10 +225,10 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
         self.blocks.count()
     }
 
-    /// Mean specific force so far, m/s².
+    /// Mean specific force so far, m/s²; `None` while no sample brought one.
     #[must_use]
-    pub fn force(&self) -> [f64; 3] {
-        self.force.map(|sum| sum.mean(self.count(), 1e-6))
+    pub fn force(&self) -> Option<[f64; 3]> {
+        self.force.get(1e-6)
     }
 
     /// The dwell, for a sample period in seconds; `None` while it is shorter than [`shortest`].
@@ -258,33 +250,25 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
             middle: 0.5 * (self.first.seconds() + self.last.seconds()),
             seconds: count * sample_seconds,
             samples: self.count(),
-            rate: (f64::from(self.filtered.origin) + self.deviation() / weight) * 1e-9,
+            rate: (f64::from(self.origin.0) + self.deviation() / weight) * 1e-9,
             taper: power * count / (weight * weight),
-            stated_variance: None,
-            spread: self.spread(),
+            stated_variance: Optional::NONE,
             quietness: self.blocks.quietness(sample_seconds),
-            force: Some(self.force()),
-            temperature: self.temperature.map(|sum| sum.mean(count, 1e-3)),
+            force: self.force(),
+            temperature: self.temperature.get(1e-3).map(|[temperature]| temperature).into(),
             fault: self.fault(sample_seconds),
         })
     }
 
     /// Sum of the filtered rates' deviations from the first raw one, nrad/s.
     fn deviation(&self) -> f64 {
-        self.filtered.deviation(self.count()) as f64
-    }
-
-    /// Standard deviation of one sample about the mean of the filtered ones, rad/s.
-    fn spread(&self) -> f64 {
-        let count = f64::from(self.count());
-        let mean = self.deviation() / count;
-        libm::sqrt((self.squares as f64 / count - mean * mean).max(0.0)) * 1e-9
+        (self.filtered - i64::from(self.origin.0) * i64::from(self.count())) as f64
     }
 
     fn fault(&self, sample_seconds: f64) -> Option<SampleFault> {
         if self.saturated {
             Some(SampleFault::Saturated)
-        } else if self.squares == 0 {
+        } else if self.changes == 0 {
             Some(SampleFault::Stuck)
         } else if self.longest_gap as f64 * 1e-6 > LONGEST_GAP * sample_seconds {
             Some(SampleFault::Missing)

@@ -15,8 +15,9 @@ pub struct Sample {
     pub stage: Angle,
     /// Rate about the gyro's sensitive axis.
     pub rate: AngularRate,
-    /// Platform accelerometer: x along the sensitive axis, y 90° clockwise of it, z down.
-    pub force: [SpecificForce; 3],
-    /// Temperature at the gyro, where it is measured.
+    /// Platform accelerometer, where a fresh reading came with this sample (it is read less often
+    /// than the gyro): x along the sensitive axis, y 90° clockwise of it, z down.
+    pub force: Option<[SpecificForce; 3]>,
+    /// Temperature at the gyro, where a fresh reading came with this sample.
     pub temperature: Option<Temperature>,
 }

@@ -41,7 +41,8 @@ pub fn report(counter: &Counter, report: &mut Report) -> Result<(), DesignError>
         let dwells = fill(&mut dwells[..count])?;
         for (name, drift) in [("white noise", [0.0; 2]), ("with B and K", DRIFT)] {
             let Some(setting) = setting(drift) else { continue };
-            let (cost, conclusion) = counter.measure(|| conclude(&setting, dwells));
+            let mut conclusion = Conclusion::default();
+            let (cost, ()) = counter.measure(|| conclude(&mut conclusion, &setting, dwells));
             report.require("the session found its azimuth", is_right(&conclusion));
             let title = format_args!("conclusion of {count} dwells, {name}");
             report.budget(title, cost.instructions(), BUDGET);
@@ -50,16 +51,18 @@ pub fn report(counter: &Counter, report: &mut Report) -> Result<(), DesignError>
     Ok(())
 }
 
-/// Bytes of stack of a conclusion with drift.
+/// Bytes of stack of a conclusion with drift, drawn in place as a session does.
 pub fn stack() -> Result<usize, DesignError> {
     let mut dwells = [Dwell::default(); MOST];
     let dwells = fill(&mut dwells)?;
-    Ok(setting(DRIFT).map_or(0, |setting| memory::stack_of(|| conclude(&setting, dwells)).0))
+    let mut conclusion = Conclusion::default();
+    Ok(setting(DRIFT)
+        .map_or(0, |setting| memory::stack_of(|| conclude(&mut conclusion, &setting, dwells)).0))
 }
 
 #[inline(never)]
-fn conclude(setting: &Setting, dwells: &[Dwell]) -> Conclusion {
-    Conclusion::of(setting, dwells, Criterion::MaximumLikelihood)
+fn conclude(conclusion: &mut Conclusion, setting: &Setting, dwells: &[Dwell]) {
+    conclusion.draw(setting, dwells, Criterion::MaximumLikelihood);
 }
 
 /// Whether the azimuth is that of the simulated dwells within 5 σ.
@@ -99,7 +102,7 @@ fn sample(moment: u32, angle: f64, noise: &mut Generator) -> Sample {
         time: Instant(u64::from(moment) * 10_000),
         stage: Angle::from_rad(angle),
         rate: AngularRate::from_rad_per_s(rate),
-        force: [0.0, 0.0, -9.8085].map(SpecificForce::from_m_per_s2),
+        force: Some([0.0, 0.0, -9.8085].map(SpecificForce::from_m_per_s2)),
         temperature: Some(Temperature(25_000)),
     }
 }

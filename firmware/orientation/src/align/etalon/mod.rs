@@ -20,8 +20,8 @@
 //!   taken as 5 °/h accepts the whole quarter it searches, taken as 5″/h = 0.0014 °/h nothing.
 //!
 //! Nothing here allocates or recurses. On a Cortex-M4 with 60 positions in the paper's settings a
-//! search for a least sum of squares takes 0.11 to 0.29 M instructions and 1.6 KiB of stack, for a
-//! least sum of absolute values 2.8 M and 5.6 KiB. The cost follows the series: without Earth rate
+//! search for a least sum of squares takes 0.13 to 0.18 M instructions and 1.6 KiB of stack, for a
+//! least sum of absolute values 2.9 M and 5.6 KiB. The cost follows the series: without Earth rate
 //! in it (all values equal on a full circle) every index may win and all 129 600 are evaluated.
 
 mod absolute;

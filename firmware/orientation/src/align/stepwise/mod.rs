@@ -14,16 +14,16 @@ pub use uncertainty::FEW_DEGREES;
 use super::budget::Budget;
 use super::direction::{Amplitude, Components, Direction, dot, inverted, product};
 use super::level::Tilt;
-use super::regression::{Regression, Solution};
+use super::regression::{COLUMNS, Regression, Solution};
 use super::setting::Setting;
 use crate::noise::model::GyroNoise;
 use crate::noise::whitener::Whitener;
 use crate::signal::dwell::Dwell;
 use uncertainty::Covariance;
 
-/// Columns of the regression: north and east part of the sensitive axis, constant, time since the
-/// first dwell (h), temperature above that of the first dwell (°C).
-const COLUMNS: usize = 5;
+/// A dwell in the regression: north and east part of the sensitive axis, constant, time since the
+/// first dwell (h), temperature above that of the first dwell (°C) and, last, the left side.
+type Row = [f64; COLUMNS + 1];
 
 /// An azimuth with all that is known about it.
 #[derive(Clone, Debug)]
@@ -47,8 +47,10 @@ pub struct Fit {
     /// Its degrees of freedom.
     pub degrees: usize,
     coefficients: [f64; COLUMNS],
-    covariance: [[f64; COLUMNS]; COLUMNS],
 }
+
+/// A fit, and what only its residuals need: the covariance of its coefficients.
+pub type Found = (Fit, [[f64; COLUMNS]; COLUMNS]);
 
 /// A residual of one dwell.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -77,48 +79,47 @@ pub struct Problem<'a> {
 impl Problem<'_> {
     /// Fits the azimuth; `None` where the positions do not determine it.
     #[must_use]
-    pub fn fit(&self) -> Option<Fit> {
+    #[inline(never)]
+    pub fn fit(&self) -> Option<Found> {
         let regression = self.regression(&self.setting.noise, Dwell::taper_factor);
         let model = self.choose(&regression)?;
-        let solution = regression.solve(&model.columns())?;
+        let mut solution = regression.solve(&model.columns())?;
         let components = self.components(&solution);
         let direction = components.direction(model.amplitude)?;
         let free = components.direction(Amplitude::Free)?;
+        let [limit, limit_free] = self.limits(&model)?;
         let mut fit = Fit {
             model,
             direction,
             budget: self.budget(&regression, &model, &direction)?,
-            limit: self.limit(&model)?,
-            limit_free: self.limit(&Model { amplitude: Amplitude::Free, ..model })?,
+            limit,
+            limit_free,
             ratio: free.amplitude,
             ratio_sigma: self.ratio_sigma(&free),
             chi_square: 0.0,
             degrees: 0,
-            coefficients: [0.0; COLUMNS],
-            covariance: solution.covariance,
+            coefficients: solution.coefficients,
         };
-        fit.constrain(&solution, &components, &self.noise_components(&solution));
+        let noise = self.noise_components(&solution);
+        fit.constrain(&mut solution, &components, &noise);
         fit.allow_for_excess();
-        Some(fit)
+        Some((fit, solution.covariance))
     }
 
-    /// Gives each dwell its residual, in their order.
-    pub fn residuals(&self, fit: &Fit, mut each: impl FnMut(usize, Residual)) {
-        let mut whitener = self.whitener(&self.setting.noise);
-        for (index, dwell) in self.dwells.iter().enumerate() {
-            let row = self.row(dwell);
-            let rate = remainder(&row, &fit.coefficients) * self.setting.latitude.horizontal_rate();
-            let mut white = row;
-            self.whiten(&mut whitener, dwell, Dwell::taper_factor, &mut white);
-            let normalised = remainder(&white, &fit.coefficients);
-            let leverage = leverage(&white, &fit.covariance);
+    /// Gives each dwell its residual, in their order, for what [`Self::fit`] found.
+    pub fn residuals(&self, (fit, covariance): &Found, mut each: impl FnMut(Residual)) {
+        let horizontal = self.setting.latitude.horizontal_rate();
+        self.whiten(&self.setting.noise, Dwell::taper_factor, &mut |row, white| {
+            let rate = remainder(row, &fit.coefficients) * horizontal;
+            let normalised = remainder(white, &fit.coefficients);
+            let leverage = leverage(white, covariance);
             let studentised = normalised / libm::sqrt((1.0 - leverage).max(0.05));
-            each(index, Residual { rate, normalised, studentised });
-        }
+            each(Residual { rate, normalised, studentised });
+        });
     }
 
     /// The row of a dwell: its columns and, last, its left side, all in units of `Ω_h`.
-    fn row(&self, dwell: &Dwell) -> [f64; COLUMNS + 1] {
+    fn row(&self, dwell: &Dwell) -> Row {
         let theta = dwell.stage.rad();
         let axis = self.tilt.sensitive_axis(theta);
         let force = self.tilt.force(theta);
@@ -126,7 +127,8 @@ impl Problem<'_> {
         let first = self.dwells[0];
         let left = dwell.rate - first.rate + latitude.vertical_rate() * axis[2]
             - dot(self.setting.g_sensitivity, force);
-        let warmer = dwell.temperature.unwrap_or(0.0) - first.temperature.unwrap_or(0.0);
+        let celsius = |dwell: &Dwell| dwell.temperature.get().unwrap_or(0.0);
+        let warmer = celsius(dwell) - celsius(first);
         let hours = (dwell.middle - first.middle) / 3600.0;
         [axis[0], -axis[1], 1.0, hours, warmer, left / latitude.horizontal_rate()]
     }
@@ -170,7 +172,7 @@ impl Problem<'_> {
 
     /// White-noise variance of an untapered mean, (rad/s)².
     fn own_variance(&self, dwell: &Dwell) -> f64 {
-        dwell.stated_variance.unwrap_or(self.white / dwell.seconds)
+        dwell.stated_variance.get().unwrap_or(self.white / dwell.seconds)
     }
 
     fn whitener(&self, noise: &GyroNoise) -> Whitener<{ COLUMNS + 1 }> {
@@ -184,27 +186,30 @@ impl Problem<'_> {
         Whitener::new(&relative, shortest)
     }
 
+    /// Gives the row of each dwell, and the same with its noise white. One copy in flash serves
+    /// all who want them.
     fn whiten(
         &self,
-        whitener: &mut Whitener<{ COLUMNS + 1 }>,
-        dwell: &Dwell,
+        noise: &GyroNoise,
         taper: fn(&Dwell) -> f64,
-        row: &mut [f64; COLUMNS + 1],
+        each: &mut dyn FnMut(&Row, &Row),
     ) {
         let rate = self.setting.latitude.horizontal_rate();
-        let own = self.own_variance(dwell) * taper(dwell);
-        whitener.whiten(dwell.start(), dwell.end(), own / (rate * rate), row);
+        let mut whitener = self.whitener(noise);
+        for dwell in self.dwells {
+            let own = self.own_variance(dwell) * taper(dwell);
+            let row = self.row(dwell);
+            let mut white = row;
+            whitener.whiten(dwell.start(), dwell.end(), own / (rate * rate), &mut white);
+            each(&row, &white);
+        }
     }
 
     fn regression(&self, noise: &GyroNoise, taper: fn(&Dwell) -> f64) -> Regression<COLUMNS> {
-        let mut whitener = self.whitener(noise);
         let mut regression = Regression::default();
-        for dwell in self.dwells {
-            let mut row = self.row(dwell);
-            self.whiten(&mut whitener, dwell, taper, &mut row);
-            let [a, b, c, d, e, left] = row;
+        self.whiten(noise, taper, &mut |_, &[a, b, c, d, e, left]| {
             regression.push(&[a, b, c, d, e], left);
-        }
+        });
         regression
     }
 }
@@ -220,7 +225,7 @@ impl Fit {
     /// far as noise and not tilt or κ explains the change.
     fn constrain(
         &mut self,
-        solution: &Solution<COLUMNS>,
+        solution: &mut Solution<COLUMNS>,
         components: &Components,
         noise: &Components,
     ) {
@@ -237,28 +242,7 @@ impl Fit {
         self.degrees = solution.degrees;
         if let Amplitude::Known(_) = self.model.amplitude {
             self.degrees += 1;
-            self.tighten(solution, noise);
-        }
-    }
-
-    /// The coefficients' covariance once the components, as noise alone leaves them, may only move
-    /// with azimuth and amplitude.
-    fn tighten(&mut self, solution: &Solution<COLUMNS>, noise: &Components) {
-        let free = noise.covariance;
-        let (Some(inverse), Some(direction)) =
-            (inverted(&free), noise.direction(self.model.amplitude))
-        else {
-            return;
-        };
-        let held = direction.components_covariance(noise.vertical);
-        let follow: [[f64; 2]; COLUMNS] = core::array::from_fn(|index| {
-            product(&inverse, [solution.covariance[index][0], solution.covariance[index][1]])
-        });
-        let lost = [0, 1].map(|i| [0, 1].map(|j| free[i][j] - held[i][j]));
-        for (row, left) in self.covariance.iter_mut().zip(follow) {
-            for (value, right) in row.iter_mut().zip(follow) {
-                *value -= dot(left, product(&lost, right));
-            }
+            tighten(solution, noise, self.model.amplitude);
         }
     }
 }
@@ -270,8 +254,27 @@ impl Dwell {
     }
 }
 
+/// Leaves the coefficients' covariance as it is once the components, as noise alone leaves them, may
+/// only move with azimuth and amplitude.
+fn tighten(solution: &mut Solution<COLUMNS>, noise: &Components, amplitude: Amplitude) {
+    let free = noise.covariance;
+    let (Some(inverse), Some(direction)) = (inverted(&free), noise.direction(amplitude)) else {
+        return;
+    };
+    let held = direction.components_covariance(noise.vertical);
+    let follow: [[f64; 2]; COLUMNS] = core::array::from_fn(|index| {
+        product(&inverse, [solution.covariance[index][0], solution.covariance[index][1]])
+    });
+    let lost = [0, 1].map(|i| [0, 1].map(|j| free[i][j] - held[i][j]));
+    for (row, left) in solution.covariance.iter_mut().zip(follow) {
+        for (value, right) in row.iter_mut().zip(follow) {
+            *value -= dot(left, product(&lost, right));
+        }
+    }
+}
+
 /// Left side less the columns' part of it.
-fn remainder(row: &[f64; COLUMNS + 1], coefficients: &[f64; COLUMNS]) -> f64 {
+fn remainder(row: &Row, coefficients: &[f64; COLUMNS]) -> f64 {
     let fitted: f64 = row.iter().zip(coefficients).map(|(x, c)| x * c).sum();
     row[COLUMNS] - fitted
 }
@@ -283,7 +286,7 @@ fn block(covariance: &[[f64; COLUMNS]; COLUMNS]) -> Covariance {
 }
 
 /// xᵀ Cov x of a whitened row.
-fn leverage(row: &[f64; COLUMNS + 1], covariance: &[[f64; COLUMNS]; COLUMNS]) -> f64 {
+fn leverage(row: &Row, covariance: &[[f64; COLUMNS]; COLUMNS]) -> f64 {
     let mut sum = 0.0;
     for i in 0..COLUMNS {
         for j in 0..COLUMNS {

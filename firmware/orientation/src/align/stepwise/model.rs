@@ -2,8 +2,8 @@
 //! costs nothing.
 
 use super::super::direction::{Amplitude, Direction};
-use super::super::regression::{Column, Regression};
-use super::{COLUMNS, Problem};
+use super::super::regression::{COLUMNS, Column, Regression};
+use super::Problem;
 
 /// Chi-square of one degree of freedom that noise exceeds with a probability of 0.001.
 const TREND_CHI_SQUARE: f64 = 10.83;
@@ -118,7 +118,7 @@ impl Problem<'_> {
 
     /// Whether every dwell has a temperature.
     fn is_warm(&self) -> bool {
-        self.dwells.iter().all(|dwell| dwell.temperature.is_some())
+        self.dwells.iter().all(|dwell| dwell.temperature.get().is_some())
     }
 }
 

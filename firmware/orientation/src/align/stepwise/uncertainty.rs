@@ -2,8 +2,8 @@
 
 use super::super::budget::Budget;
 use super::super::direction::{Amplitude, Direction, dot, product, quadratic};
-use super::super::regression::{Column, Regression};
-use super::{COLUMNS, Fit, Model, Problem, block};
+use super::super::regression::{COLUMNS, Column, Regression};
+use super::{Fit, Model, Problem, block};
 use crate::math::chi_square_tail;
 use crate::signal::dwell::Dwell;
 
@@ -17,15 +17,19 @@ pub const FEW_DEGREES: usize = 3;
 pub(super) type Covariance = [[f64; 2]; 2];
 
 impl Problem<'_> {
-    /// The bound that noise sets for these columns when all stationary time counts fully.
-    pub(super) fn limit(&self, model: &Model) -> Option<f64> {
+    /// The bound that noise sets for these columns when all stationary time counts fully, and the
+    /// same with the Earth rate free.
+    #[inline(never)]
+    pub(super) fn limits(&self, model: &Model) -> Option<[f64; 2]> {
         let regression = self.regression(&self.setting.noise, |_| 1.0);
         let components = self.noise_components(&regression.solve(&model.columns())?);
-        components.direction(model.amplitude).map(|direction| libm::sqrt(direction.variance))
+        let sigma = |amplitude| components.direction(amplitude).map(|d| libm::sqrt(d.variance));
+        Some([sigma(model.amplitude)?, sigma(Amplitude::Free)?])
     }
 
     /// Splits the variance: what the dwells' noise does through the gain, what tilt and κ do, and
     /// the rest, which is the amplitude's prior.
+    #[inline(never)]
     pub(super) fn budget(
         &self,
         coloured: &Regression<COLUMNS>,
