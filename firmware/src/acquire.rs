@@ -52,9 +52,9 @@ impl<T: Copy + PartialEq> Row<T> {
 
 /// The sensors of the stage path at work.
 pub struct Acquisition<'a, G, A, E, O> {
-    gyro: Guarded<G>,
-    accelerometer: Guarded<A>,
-    encoder: Guarded<E>,
+    gyro: Guarded<'a, G>,
+    accelerometer: Guarded<'a, A>,
+    encoder: Guarded<'a, E>,
     shared: &'a Shared<'a, O>,
     calibration: Calibration,
     timeline: Timeline,
@@ -73,9 +73,9 @@ pub struct Acquisition<'a, G, A, E, O> {
 impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, A, E, O> {
     /// Takes the sensors; nothing is started yet.
     pub fn new(
-        gyro: G,
-        accelerometer: A,
-        encoder: E,
+        gyro: &'a mut G,
+        accelerometer: &'a mut A,
+        encoder: &'a mut E,
         configuration: &Configuration,
         shared: &'a Shared<'a, O>,
     ) -> Self {
@@ -101,7 +101,7 @@ impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, 
     }
 
     /// Samples until a sensor is given up; gives the reason.
-    pub async fn run(mut self) -> Refusal {
+    pub async fn run(&mut self) -> Refusal {
         match self.sample_for_ever().await {
             Ok(never) => match never {},
             Err(reason) => reason,

@@ -1,5 +1,7 @@
 //! Conducts the session: samples in, commands to the stage, and what comes of it told.
 
+use core::future::pending;
+
 use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, with_timeout};
 use orientation::align::conclusion::Conclusion;
@@ -24,7 +26,7 @@ const DEGREES: f64 = 360.0 / TURN;
 /// The session at work.
 pub struct Conductor<'a, R, O> {
     session: &'a mut Session,
-    recorder: R,
+    recorder: &'a mut R,
     shared: &'a Shared<'a, O>,
     told: Told,
 }
@@ -39,17 +41,20 @@ struct Told {
 
 impl<'a, R: Recorder, O: Observer> Conductor<'a, R, O> {
     /// Takes a session that has not begun.
-    pub fn new(session: &'a mut Session, recorder: R, shared: &'a Shared<'a, O>) -> Self {
+    pub fn new(session: &'a mut Session, recorder: &'a mut R, shared: &'a Shared<'a, O>) -> Self {
         Self { session, recorder, shared, told: Told::default() }
     }
 
-    /// Conducts the session to its conclusion.
-    pub async fn run(mut self) {
+    /// Conducts the session to its conclusion, then waits for the link to tell of it.
+    pub async fn run(&mut self) {
         self.begin();
         if let Err(reason) = self.conduct().await {
             self.session.handle(SessionEvent::Failed(reason));
         }
         self.conclude();
+        self.shared.concluded.signal(());
+        // The link ends the run once it has told the last status.
+        pending().await
     }
 
     fn begin(&self) {

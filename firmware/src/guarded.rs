@@ -15,16 +15,16 @@ const REST: Duration = Duration::from_millis(20);
 
 /// A device under guard.
 #[derive(Debug)]
-pub struct Guarded<D> {
+pub struct Guarded<'a, D> {
     /// The device.
-    pub device: D,
+    pub device: &'a mut D,
     name: Device,
     patience: Patience,
 }
 
-impl<D: Startable> Guarded<D> {
+impl<'a, D: Startable> Guarded<'a, D> {
     /// Guards a device.
-    pub fn new(device: D, name: Device) -> Self {
+    pub fn new(device: &'a mut D, name: Device) -> Self {
         Self { device, name, patience: Patience::default() }
     }
 

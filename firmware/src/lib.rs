@@ -34,5 +34,8 @@ pub mod configuration;
 pub mod run;
 pub mod shared;
 
+#[cfg(feature = "defmt")]
+pub mod log;
+
 #[cfg(feature = "simulated")]
 pub mod simulated;

@@ -9,6 +9,7 @@
 
 use core::fmt::{self, Write as _};
 
+use embassy_futures::select::select;
 use embassy_time::{Duration, Timer, with_timeout};
 use embedded_io_async::Write;
 use heapless::String;
@@ -59,6 +60,14 @@ impl Status {
     }
 }
 
+impl Status {
+    /// Whether nothing follows.
+    #[must_use]
+    pub fn is_last(&self) -> bool {
+        matches!(self, Self::Concluded { .. } | Self::Refused)
+    }
+}
+
 impl fmt::Display for Status {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -78,11 +87,15 @@ impl fmt::Display for Status {
     }
 }
 
-/// Sends a status line every second, for ever.
+/// Sends a status line every second until the session's end is told.
 pub async fn run<L: Write, O: Observer>(link: &mut L, shared: &Shared<'_, O>) {
     loop {
+        let is_last = shared.status.get().is_last();
         send(link, shared).await;
-        Timer::after(PERIOD).await;
+        if is_last {
+            return;
+        }
+        select(Timer::after(PERIOD), shared.concluded.wait()).await;
     }
 }
 

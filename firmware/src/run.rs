@@ -1,6 +1,7 @@
 //! The whole instrument: its parts joined in fixed order, so that one seed gives one run anywhere.
 
 use core::future::pending;
+use core::pin::pin;
 
 use embassy_futures::select::select4;
 use embedded_io_async::Write;
@@ -21,7 +22,7 @@ use crate::stage::Stage;
 /// The session, the greatest piece of memory, belongs to the caller, who chooses where it lies.
 /// Gives what went wrong meanwhile. Ends within a bounded time, whatever the devices do: every wait inside has a limit.
 pub async fn run<G, A, E, M, L, R, O>(
-    mut ports: Ports<G, A, E, M, L, R, O>,
+    ports: &mut Ports<G, A, E, M, L, R, O>,
     configuration: &Configuration,
     session: &mut Session,
 ) -> Health
@@ -34,25 +35,22 @@ where
     R: Recorder,
     O: Observer,
 {
-    let shared = &Shared::new(&ports.observer);
-    let acquisition =
-        Acquisition::new(ports.gyro, ports.accelerometer, ports.encoder, configuration, shared);
-    let stage = Stage::new(ports.actuator, &configuration.stage, shared);
-    let conductor = Conductor::new(session, ports.recorder, shared);
-    select4(
-        failing(acquisition.run(), shared),
-        failing(stage.run(), shared),
-        conductor.run(),
-        link::run(&mut ports.link, shared),
-    )
-    .await;
-    link::send(&mut ports.link, shared).await;
+    let Ports { gyro, accelerometer, encoder, actuator, link, recorder, observer } = ports;
+    let shared = &Shared::new(observer);
+    let mut acquisition = Acquisition::new(gyro, accelerometer, encoder, configuration, shared);
+    let mut stage = Stage::new(actuator, &configuration.stage, shared);
+    let mut conductor = Conductor::new(session, recorder, shared);
+    // Pinned here, each part lies in memory once.
+    let acquire = pin!(async { fail(acquisition.run().await, shared).await });
+    let position = pin!(async { fail(stage.run().await, shared).await });
+    let conduct = pin!(conductor.run());
+    let tell = pin!(link::run(link, shared));
+    select4(acquire, position, conduct, tell).await;
     shared.health.get()
 }
 
-/// A part that ends only by failing: the session is told the first reason, and it is silent.
-async fn failing<O: Observer>(part: impl Future<Output = Refusal>, shared: &Shared<'_, O>) {
-    let reason = part.await;
+/// A part has failed: the session is told the first reason, and the part is silent.
+async fn fail<O: Observer>(reason: Refusal, shared: &Shared<'_, O>) {
     if !shared.failure.signaled() {
         shared.failure.signal(reason);
     }

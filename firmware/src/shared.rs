@@ -32,6 +32,8 @@ pub struct Shared<'a, O> {
     pub homed: Signal<NoopRawMutex, ()>,
     /// From anybody to the session: it cannot go on.
     pub failure: Signal<NoopRawMutex, Refusal>,
+    /// From the session to the link: the last status stands.
+    pub concluded: Signal<NoopRawMutex, ()>,
     /// The latest encoder angle, corrected, and when it was read.
     pub angle: Cell<(Angle, Instant)>,
     /// What went wrong so far.
@@ -50,6 +52,7 @@ impl<'a, O: Observer> Shared<'a, O> {
             sensing: Signal::new(),
             homed: Signal::new(),
             failure: Signal::new(),
+            concluded: Signal::new(),
             angle: Cell::new((Angle(0), Instant::MIN)),
             health: Cell::new(Health::EMPTY),
             status: Cell::new(Status::Starting),

@@ -51,20 +51,24 @@ impl From<Refusal> for Break {
 
 /// The stage under control.
 pub struct Stage<'a, M, O> {
-    actuator: Guarded<M>,
+    actuator: Guarded<'a, M>,
     configuration: StageConfiguration,
     shared: &'a Shared<'a, O>,
 }
 
 impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
     /// Takes the motor; nothing moves yet.
-    pub fn new(actuator: M, configuration: &StageConfiguration, shared: &'a Shared<'a, O>) -> Self {
+    pub fn new(
+        actuator: &'a mut M,
+        configuration: &StageConfiguration,
+        shared: &'a Shared<'a, O>,
+    ) -> Self {
         let actuator = Guarded::new(actuator, Device::Stage);
         Self { actuator, configuration: *configuration, shared }
     }
 
     /// Homes, then goes where it is sent until it must be given up; gives the reason.
-    pub async fn run(mut self) -> Refusal {
+    pub async fn run(&mut self) -> Refusal {
         match self.serve().await {
             Ok(never) => match never {},
             Err(reason) => reason,
@@ -227,7 +231,7 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
     ) -> Result<T, Break> {
         let restarts = self.actuator.restarts();
         loop {
-            let outcome = exchange(&mut self.actuator.device).await;
+            let outcome = exchange(self.actuator.device).await;
             if let Some(answer) = self.actuator.checked(outcome, self.shared).await? {
                 return Ok(answer);
             }

@@ -6,7 +6,7 @@ use embassy_time::Instant;
 use heapless::Vec;
 
 /// Violations that are kept; later ones are only counted.
-const KEPT: usize = 16;
+const KEPT: usize = 4;
 
 /// A forbidden access.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

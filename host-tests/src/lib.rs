@@ -1,4 +1,4 @@
-//! The host's bench: recordings, replay, campaigns and their output.
+//! The host's bench: recordings, replay, campaigns, the emulator, and their output.
 //!
 //! It drives the same session and cores that the board runs; only files, threads and the terminal
 //! are its own.
@@ -7,6 +7,7 @@
 pub mod campaign;
 pub mod criterion;
 pub mod demonstration;
+pub mod emulate;
 pub mod instrument;
 pub mod oracle;
 pub mod output;

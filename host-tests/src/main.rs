@@ -1,4 +1,4 @@
-//! The `meridian` command line: replays recordings and runs campaigns.
+//! The `meridian` command line: replays recordings, runs campaigns and the emulated firmware.
 //!
 //! Results go to standard output, progress and errors to standard error. The exit code is 0 with a
 //! result, 1 where it is refused or failed, 2 for misuse.
@@ -12,8 +12,9 @@ use std::process::ExitCode;
 
 use bench::campaign;
 use bench::campaign::sokolov::{self, Turn};
+use bench::emulate::emulate;
 use bench::output::progress::Progress;
-use bench::output::{json, table, text};
+use bench::output::{emulation, json, table, text};
 use bench::recording::{self, Recording};
 use bench::replay::{Options, replay};
 use clap::{Args, FromArgMatches, Parser, Subcommand, ValueEnum};
@@ -44,6 +45,16 @@ enum Command {
     Replay(ReplayOptions),
     /// Runs many simulated alignments and prints their errors beside the limit.
     Campaign(CampaignOptions),
+    /// Runs the firmware on an emulated Cortex-M4F, compares its result with the host's bit for bit,
+    /// and holds its instructions and memory to their budget. Needs qemu-system-arm.
+    Emulate(EmulateOptions),
+}
+
+#[derive(Args)]
+struct EmulateOptions {
+    /// What fixes everything random in the simulated world.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
 }
 
 #[derive(Args)]
@@ -165,6 +176,7 @@ fn run(command: &Command, as_json: bool) -> Result<bool, String> {
             let name = options.file.display().to_string();
             replayed(&name, recording, &options.into(), as_json)
         }
+        Command::Emulate(options) => emulated(options.seed, as_json),
         Command::Campaign(options) => match options.name {
             Campaign::Sokolov => sokolov(options.runs.unwrap_or(5000) as usize, as_json),
             Campaign::Instrument => instrument(options.runs.unwrap_or(500) as usize, as_json),
@@ -275,6 +287,21 @@ fn tell(
         table(&mut text).map_err(|error| error.to_string())?;
     }
     print(&text)
+}
+
+/// Runs the firmware's images; whether all is as it must be.
+fn emulated(seed: u64, as_json: bool) -> Result<bool, String> {
+    let found = emulate(seed, |line| eprintln!("{line}"))?;
+    let output = if as_json {
+        let object = emulation::object(&found);
+        serde_json::to_string_pretty(&object).map_err(|error| error.to_string())?
+    } else {
+        let mut text = String::new();
+        emulation::tables(&mut text, &found).map_err(|error| error.to_string())?;
+        text
+    };
+    print(&output)?;
+    Ok(found.is_right())
 }
 
 /// Writes to standard output; a closed pipe is no error of ours.

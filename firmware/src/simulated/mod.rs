@@ -85,7 +85,7 @@ pub async fn run<B: Rig, L: Write, R: Recorder, O: Observer>(
 ) -> Health {
     let bus = |select, hertz| FaultySpi::new(SpiPort::new(board, select, hertz), plan.bus(select));
     let ready = FaultyReady::new(ReadyPin::new(board, Select::Gyro), plan.ready);
-    let ports = Ports {
+    let mut ports = Ports {
         gyro: chips::AnalogueGyro {
             converter: Ads1262::new(
                 bus(Select::Gyro, CONVERTER_HERTZ),
@@ -115,7 +115,7 @@ pub async fn run<B: Rig, L: Write, R: Recorder, O: Observer>(
         recorder: FaultyRecorder::new(outside.recorder, plan.hang),
         observer: outside.observer,
     };
-    crate::run::run(ports, &scenario.configuration(), session).await
+    crate::run::run(&mut ports, &scenario.configuration(), session).await
 }
 
 /// What the drivers did that a data sheet forbids, in words.

@@ -12,6 +12,7 @@ use hal_mock::stage::{EncoderConfiguration, Harmonic};
 use orientation::align::setting::Setting;
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
+use orientation::session::Session;
 use orientation::session::procedure::Procedure;
 use orientation::session::schedule::Schedule;
 use orientation::units::{AngularRate, DEGREE_PER_HOUR, TURN};
@@ -171,6 +172,12 @@ impl Scenario {
         let schedule = Schedule::circle(self.positions, self.dwell_s);
         let procedure = Procedure::new(schedule, 1.0 / self.sample_rate_hz);
         Procedure { settle_seconds: RINGS_SECONDS, ..procedure }
+    }
+
+    /// The session that follows; none where the latitude is none or the schedule impossible.
+    #[must_use]
+    pub fn session(&self) -> Option<Session> {
+        Session::new(self.setting()?, self.procedure()).ok()
     }
 
     /// What the board is told of its devices.

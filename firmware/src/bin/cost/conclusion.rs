@@ -11,12 +11,11 @@ use orientation::signal::butterworth::{Coefficients, DesignError};
 use orientation::signal::dwell::{Dwell, DwellAverage};
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce, TURN, Temperature};
 
+use crate::budget::CONCLUSION_INSTRUCTIONS;
 use crate::counter::Counter;
-use crate::memory;
 use crate::report::Report;
+use crate::stack::stack_of;
 
-/// One second at the board's 80 MHz, if every instruction took one cycle.
-const BUDGET: u64 = 80_000_000;
 /// Latitude, °.
 const LATITUDE_DEG: f64 = 47.0 + 35.0 / 60.0;
 /// Azimuth of the body, rad.
@@ -45,7 +44,7 @@ pub fn report(counter: &Counter, report: &mut Report) -> Result<(), DesignError>
             let (cost, ()) = counter.measure(|| conclude(&mut conclusion, &setting, dwells));
             report.require("the session found its azimuth", is_right(&conclusion));
             let title = format_args!("conclusion of {count} dwells, {name}");
-            report.budget(title, cost.instructions(), BUDGET);
+            report.budget(title, cost.instructions(), CONCLUSION_INSTRUCTIONS);
         }
     }
     Ok(())
@@ -57,7 +56,7 @@ pub fn stack() -> Result<usize, DesignError> {
     let dwells = fill(&mut dwells)?;
     let mut conclusion = Conclusion::default();
     Ok(setting(DRIFT)
-        .map_or(0, |setting| memory::stack_of(|| conclude(&mut conclusion, &setting, dwells)).0))
+        .map_or(0, |setting| stack_of(|| conclude(&mut conclusion, &setting, dwells)).0))
 }
 
 #[inline(never)]

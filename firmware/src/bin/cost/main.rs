@@ -9,13 +9,17 @@
 #![no_std]
 #![no_main]
 
+mod budget;
 mod conclusion;
+#[path = "../measure/counter.rs"]
 mod counter;
 mod matching;
 mod memory;
 mod report;
 mod samples;
 mod scale;
+#[path = "../measure/stack.rs"]
+mod stack;
 
 use core::panic::PanicInfo;
 
@@ -91,7 +95,7 @@ fn check_scale(counter: &Counter, report: &mut Report) {
 fn sizes() -> Result<(), Failure> {
     matching::report_stack()?;
     figure(format_args!("stack of a conclusion of 60 dwells"), conclusion::stack()? as u64);
-    figure(format_args!("stack of this image at its deepest"), memory::greatest_stack() as u64);
+    figure(format_args!("stack of this image at its deepest"), stack::greatest_stack() as u64);
     figure(format_args!("a Session"), size_of::<Session>() as u64);
     figure(format_args!("a Conclusion"), size_of::<Conclusion>() as u64);
     figure(format_args!("static memory of this image"), memory::statics() as u64);

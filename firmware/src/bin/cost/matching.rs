@@ -5,9 +5,10 @@ use orientation::align::etalon::series::SeriesError;
 use orientation::align::etalon::table::{ONE, STEP, TURN};
 use orientation::align::etalon::{self, Acceptance, Criterion, Limit, Match, Series, Table};
 
+use crate::budget::MATCH_INSTRUCTIONS;
 use crate::counter::Counter;
-use crate::memory;
 use crate::report::{Report, figure};
+use crate::stack::stack_of;
 
 /// Positions n.
 const POSITIONS: u32 = 60;
@@ -19,8 +20,6 @@ const SIGMA: f64 = 1.48e-3;
 const DRIFT_SIGMA: f64 = 9.9e-4;
 /// α₁ over the sum of squares that noise alone is expected to leave.
 const ACCEPTED_SQUARES: f64 = 1.5;
-/// Budget of a match by least squares of any kind, instructions.
-const BUDGET: u64 = 310_000;
 
 /// Where the stage goes.
 #[derive(Clone, Copy)]
@@ -102,10 +101,10 @@ pub fn report(counter: &Counter, report: &mut Report) -> Result<(), SeriesError>
 /// Tells the stack of each kind of match.
 pub fn report_stack() -> Result<(), SeriesError> {
     let series = TURNS[0].series(1)?;
-    let of = |criterion| memory::stack_of(|| search(&series, criterion)).0 as u64;
+    let of = |criterion| stack_of(|| search(&series, criterion)).0 as u64;
     figure(format_args!("stack of a match, maximum likelihood"), of(Criterion::MaximumLikelihood));
     figure(format_args!("stack of a match, least absolute"), of(Criterion::LeastAbsolute));
-    let within = memory::stack_of(|| accepted(&series, squares_limit())).0 as u64;
+    let within = stack_of(|| accepted(&series, squares_limit())).0 as u64;
     figure(format_args!("stack of a match, within squares"), within);
     Ok(())
 }
@@ -164,5 +163,9 @@ fn absolute(counter: &Counter, turn: Turn) -> Result<(), SeriesError> {
 fn budgeted(report: &mut Report, turn: Turn, name: &str, spread: &Spread) {
     let turn = turn.name;
     figure(format_args!("match of 60, {turn}, {name}, median"), spread.median());
-    report.budget(format_args!("match of 60, {turn}, {name}, greatest"), spread.greatest(), BUDGET);
+    report.budget(
+        format_args!("match of 60, {turn}, {name}, greatest"),
+        spread.greatest(),
+        MATCH_INSTRUCTIONS,
+    );
 }

@@ -8,6 +8,7 @@ use orientation::signal::butterworth::{Coefficients, DesignError, Filter};
 use orientation::signal::dwell::DwellAverage;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce, Temperature};
 
+use crate::budget::{FILTER_AND_DWELL_INSTRUCTIONS, FILTER_INSTRUCTIONS};
 use crate::counter::{Cost, Counter};
 use crate::report::{Report, figure};
 
@@ -42,9 +43,13 @@ pub fn report(counter: &Counter, report: &mut Report) -> Result<(), DesignError>
     report.budget(
         format_args!("Butterworth of order 6, a sample"),
         filter(counter, &coefficients),
-        115,
+        FILTER_INSTRUCTIONS,
     );
-    report.budget(format_args!("filter and dwell, a sample"), dwell(counter, &coefficients), 150);
+    report.budget(
+        format_args!("filter and dwell, a sample"),
+        dwell(counter, &coefficients),
+        FILTER_AND_DWELL_INSTRUCTIONS,
+    );
     figure(format_args!("design of the filter for 2 Hz at 2 kHz"), cost.instructions());
     Ok(())
 }

@@ -6,7 +6,7 @@
 //! instructions to what it interrupts.
 
 use core::hint::black_box;
-use core::ops::{Add, AddAssign};
+use core::ops::{Add, AddAssign, Div, Sub};
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use cortex_m::peripheral::SYST;
@@ -54,6 +54,24 @@ impl Add for Cost {
 
     fn add(self, other: Self) -> Self {
         Self { ticks: self.ticks + other.ticks }
+    }
+}
+
+/// What is left; nothing where more is taken away than there is.
+impl Sub for Cost {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self { ticks: self.ticks.saturating_sub(other.ticks) }
+    }
+}
+
+/// One of so many equal pieces, rounded to nearest.
+impl Div<u64> for Cost {
+    type Output = Self;
+
+    fn div(self, count: u64) -> Self {
+        Self { ticks: (self.ticks + count / 2) / count }
     }
 }
 

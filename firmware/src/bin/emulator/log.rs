@@ -1,0 +1,64 @@
+//! The log: defmt by semihosting, decoded on the host; and the image's end where something is wrong.
+
+#![expect(unsafe_code, reason = "a hard fault's handler is unsafe to define")]
+
+use core::panic::PanicInfo;
+use core::sync::atomic::{AtomicBool, Ordering};
+
+use cortex_m_rt::{ExceptionFrame, exception};
+use defmt::{Display2Format, error, println};
+use defmt_semihosting as _;
+use semihosting::process::ExitCode;
+
+use crate::clock;
+use crate::meter::{Meter, Task};
+
+defmt::timestamp!("{=u64:us}", clock::now());
+
+/// What the whole instrument took for `samples` samples of the gyro.
+pub fn effort(meter: &Meter, samples: u64) {
+    println!(
+        "effort instructions={=u64} simulation={=u64} samples={=u64} microseconds={=u64}",
+        meter.instrument().instructions(),
+        meter.simulation().instructions(),
+        samples,
+        clock::now()
+    );
+}
+
+/// What a task took.
+pub fn task(task: &Task) {
+    println!(
+        "task polls={=u64} instructions={=u64} worst={=u64} name={=str}",
+        task.polls(),
+        task.total().instructions(),
+        task.worst().instructions(),
+        task.name()
+    );
+}
+
+/// Bytes of stack at the deepest.
+pub fn stack(bytes: usize) {
+    println!("stack bytes={=usize}", bytes);
+}
+
+/// Whether the image is already ending because something is wrong.
+static ENDING: AtomicBool = AtomicBool::new(false);
+
+/// Ends the emulator with an error; logs why, but not why that failed.
+fn end(why: impl FnOnce()) -> ! {
+    if !ENDING.swap(true, Ordering::Relaxed) {
+        why();
+    }
+    ExitCode::FAILURE.exit_process()
+}
+
+#[panic_handler]
+fn panic(information: &PanicInfo) -> ! {
+    end(|| error!("{}", Display2Format(information)))
+}
+
+#[exception]
+unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
+    end(|| error!("hard fault at {=u32:#x}", frame.pc()))
+}

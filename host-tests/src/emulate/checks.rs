@@ -1,0 +1,69 @@
+//! The figures of the whole instrument against its budget.
+
+use serde::Serialize;
+
+use super::budget::Budget;
+use super::collect::Figures;
+use super::sections::Memory;
+
+/// Instructions that the board executes in a microsecond at best: one in a cycle, at 80 MHz.
+const PER_MICROSECOND: u64 = 80;
+/// How many times the stack that was seen must fit: what was seen is not the worst there is.
+const STACK_MARGIN: u64 = 2;
+
+/// A figure and its limit.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Check {
+    /// What it is.
+    pub what: &'static str,
+    /// The figure.
+    pub count: u64,
+    /// Its limit.
+    pub budget: u64,
+    /// Whether the limit is the least that is allowed, not the most.
+    pub at_least: bool,
+}
+
+impl Check {
+    /// Whether the limit is kept.
+    #[must_use]
+    pub fn is_kept(&self) -> bool {
+        if self.at_least { self.count >= self.budget } else { self.count <= self.budget }
+    }
+}
+
+/// All checks, in the order of the printed table.
+#[must_use]
+pub fn all(figures: &Figures, memory: &Memory, budget: &Budget) -> Vec<Check> {
+    let most = |what, count, budget| Check { what, count, budget, at_least: false };
+    let limited = |what, count, name| most(what, count, budget.limit(name));
+    let worst = figures.tasks.iter().map(|task| task.worst).max().unwrap_or(0);
+    let doubled = figures.stack_bytes * STACK_MARGIN;
+    vec![
+        limited(
+            "instructions a sample, the whole instrument",
+            per_sample(figures),
+            "sample_instructions",
+        ),
+        limited("instructions of the longest poll of a task", worst, "poll_instructions"),
+        Check {
+            at_least: true,
+            ..limited("percent idle at 80 MHz, at least", idle_percent(figures), "idle_percent")
+        },
+        limited("bytes of flash, the etalon table included", memory.flash_bytes(), "flash_bytes"),
+        limited("bytes of static RAM", memory.ram_bytes(), "static_ram_bytes"),
+        limited("bytes of stack at its deepest", figures.stack_bytes, "stack_bytes"),
+        most("bytes of that stack twice, in what RAM leaves", doubled, memory.stack_room_bytes),
+    ]
+}
+
+/// Mean instructions for a sample, rounded up.
+fn per_sample(figures: &Figures) -> u64 {
+    figures.instructions.div_ceil(figures.samples.max(1))
+}
+
+/// Share of the core's time that is left, rounded down; at best, as instructions are not cycles.
+fn idle_percent(figures: &Figures) -> u64 {
+    let all = (figures.microseconds * PER_MICROSECOND).max(1);
+    100 - (figures.instructions * 100).div_ceil(all).min(100)
+}

@@ -1,0 +1,123 @@
+//! `meridian emulate`: the firmware on an emulated Cortex-M4F, against the host and its budget.
+//!
+//! ```text
+//!  images (cargo) ─▶ qemu ─bytes─▶ decode ─lines─▶ collect ─▶ outcome ◀─compare─ host
+//!        │                                            └─▶ figures ─▶ checks ◀─ budget.toml
+//!        └─ELF─▶ sections ──────────────────────────────────────────────▲
+//! ```
+//!
+//! The image `emulator` runs the instrument on simulated chips and says what it found, bit by bit,
+//! and what it took; the image `cost` counts the cores alone.
+
+pub mod budget;
+pub mod checks;
+pub mod collect;
+pub mod cost;
+pub mod decode;
+pub mod host;
+pub mod images;
+pub mod outcome;
+pub mod qemu;
+pub mod sections;
+
+use std::fs;
+use std::path::Path;
+use std::time::Duration;
+
+use self::budget::Budget;
+use self::collect::Collected;
+use self::decode::Decoder;
+use self::outcome::{Difference, Outcome};
+use self::sections::Memory;
+
+/// Longest time for an image to run: a hundred times what is usual, and never for ever.
+const PATIENCE: Duration = Duration::from_mins(10);
+
+/// All that an emulation showed.
+#[derive(Clone, Debug)]
+pub struct Emulation {
+    /// What the emulated instrument found.
+    pub emulated: Outcome,
+    /// Whether that is what the host found.
+    pub comparison: Result<(), Difference>,
+    /// What the instrument took.
+    pub figures: collect::Figures,
+    /// Where its memory goes.
+    pub memory: Memory,
+    /// What the cores take.
+    pub cost: Vec<cost::Row>,
+    /// Whether the image `cost` found everything right.
+    pub cost_is_right: bool,
+    /// The figures against the budget.
+    pub checks: Vec<checks::Check>,
+}
+
+impl Emulation {
+    /// Whether the results agree and the budget is kept.
+    #[must_use]
+    pub fn is_right(&self) -> bool {
+        self.comparison.is_ok()
+            && self.cost_is_right
+            && self.checks.iter().all(checks::Check::is_kept)
+    }
+}
+
+/// Builds, runs, compares and checks; the log's lines go to `tell` as they come.
+///
+/// # Errors
+/// One line that says what is missing or what went wrong.
+pub fn emulate(seed: u64, tell: impl FnMut(&decode::Line)) -> Result<Emulation, String> {
+    qemu::require()?;
+    let images = images::build()?;
+    let budget = Budget::read(&images::root().join("firmware/budget.toml"))?;
+    let elf = read(&images.emulator)?;
+    let (emulated, figures) = instrument(&images.emulator, &elf, seed, tell)?;
+    let memory = Memory::of(&elf)?;
+    let (cost, cost_is_right) = cores(&images.cost)?;
+    Ok(Emulation {
+        comparison: outcome::compare(&emulated, &host::outcome(seed)?),
+        emulated,
+        checks: checks::all(&figures, &memory, &budget),
+        figures,
+        memory,
+        cost,
+        cost_is_right,
+    })
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, String> {
+    fs::read(path).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+/// Runs the image `emulator`.
+fn instrument(
+    image: &Path,
+    elf: &[u8],
+    seed: u64,
+    mut tell: impl FnMut(&decode::Line),
+) -> Result<(Outcome, collect::Figures), String> {
+    let table = decode::table(elf)?;
+    let mut decoder = Decoder::new(&table);
+    let mut collected = Collected::default();
+    let status = qemu::run(image, &["-append", &seed.to_string()], PATIENCE, |bytes| {
+        decoder.take(bytes, |line| {
+            tell(line);
+            collected.take(line)
+        })
+    })?;
+    if !status.success() {
+        return Err(format!("the image `emulator` failed ({status}): its last lines say why"));
+    }
+    collected.finish()
+}
+
+/// Runs the image `cost`.
+fn cores(image: &Path) -> Result<(Vec<cost::Row>, bool), String> {
+    let mut output = Vec::new();
+    let status = qemu::run(image, &[], PATIENCE, |bytes| {
+        output.extend_from_slice(bytes);
+        Ok(())
+    })?;
+    let rows = cost::parse(&String::from_utf8_lossy(&output))?;
+    Ok((rows, status.success()))
+}

@@ -1,0 +1,227 @@
+//! What a run found, as bits, and where two runs differ.
+
+use std::fmt;
+
+use orientation::align::conclusion::Conclusion;
+use orientation::signal::dwell::Dwell;
+
+/// The numbers of a dwell that are compared, by their names in the log.
+pub const FIELDS: [&str; 10] = [
+    "stage",
+    "middle",
+    "seconds",
+    "samples",
+    "rate",
+    "taper",
+    "force_x",
+    "force_y",
+    "force_z",
+    "temperature",
+];
+
+/// The bits of what is absent: a NaN that no computation gives.
+const ABSENT: u64 = u64::MAX;
+
+/// The bits of a dwell's numbers, in the order of [`FIELDS`]; [`None`] where one is absent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DwellBits(pub [Option<u64>; FIELDS.len()]);
+
+impl DwellBits {
+    /// From hexadecimal texts; [`None`] where one is missing or is no number.
+    #[must_use]
+    pub fn parse<'t>(text: impl Fn(&'static str) -> Option<&'t str>) -> Option<Self> {
+        let mut bits = [None; FIELDS.len()];
+        for (bits, name) in bits.iter_mut().zip(FIELDS) {
+            let value = u64::from_str_radix(text(name)?, 16).ok()?;
+            *bits = (value != ABSENT).then_some(value);
+        }
+        Some(Self(bits))
+    }
+}
+
+impl From<&Dwell> for DwellBits {
+    fn from(dwell: &Dwell) -> Self {
+        let [x, y, z] = dwell.force.map_or([None; 3], |force| force.map(|f| Some(f.to_bits())));
+        Self([
+            Some(dwell.stage.0.into()),
+            Some(dwell.middle.to_bits()),
+            Some(dwell.seconds.to_bits()),
+            Some(dwell.samples.into()),
+            Some(dwell.rate.to_bits()),
+            Some(dwell.taper.to_bits()),
+            x,
+            y,
+            z,
+            dwell.temperature.get().map(f64::to_bits),
+        ])
+    }
+}
+
+/// What a run found.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Outcome {
+    /// The seed of the run.
+    pub seed: u64,
+    /// Bits of the azimuth, rad.
+    pub azimuth_bits: Option<u64>,
+    /// Bits of its standard deviation, rad.
+    pub sigma_bits: Option<u64>,
+    /// Why there is no azimuth.
+    pub reason: Option<String>,
+    /// The dwells.
+    pub dwells: Vec<DwellBits>,
+}
+
+impl Outcome {
+    /// Of a conclusion and its dwells.
+    #[must_use]
+    pub fn of(seed: u64, conclusion: &Conclusion, dwells: &[Dwell]) -> Self {
+        let found = conclusion.verdict.as_ref();
+        Self {
+            seed,
+            azimuth_bits: found.ok().map(|azimuth| azimuth.angle.to_bits()),
+            sigma_bits: found.ok().map(|azimuth| azimuth.sigma.to_bits()),
+            reason: found.err().map(ToString::to_string),
+            dwells: dwells.iter().map(DwellBits::from).collect(),
+        }
+    }
+}
+
+/// The first thing in which two runs differ.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Difference {
+    /// They had different seeds.
+    Seed {
+        /// The emulated run's.
+        emulated: u64,
+        /// The host's.
+        host: u64,
+    },
+    /// A number of a dwell.
+    Dwell {
+        /// Number of the dwell, from one.
+        number: usize,
+        /// Name of the number.
+        field: &'static str,
+        /// Its bits in the emulated run.
+        emulated: Option<u64>,
+        /// Its bits on the host.
+        host: Option<u64>,
+    },
+    /// The number of dwells.
+    Dwells {
+        /// In the emulated run.
+        emulated: usize,
+        /// On the host.
+        host: usize,
+    },
+    /// The azimuth or its standard deviation.
+    Result {
+        /// Which.
+        field: &'static str,
+        /// Its bits in the emulated run.
+        emulated: Option<u64>,
+        /// Its bits on the host.
+        host: Option<u64>,
+    },
+    /// The reason why there is no azimuth.
+    Reason {
+        /// The emulated run's.
+        emulated: Option<String>,
+        /// The host's.
+        host: Option<String>,
+    },
+}
+
+impl fmt::Display for Difference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Seed { emulated, host } => {
+                write!(f, "seed: {emulated} in the emulator, {host} on the host")
+            }
+            Self::Dwell { number, field, emulated, host } => {
+                let [emulated, host] = [emulated, host].map(|bits| shown(field, *bits));
+                write!(f, "dwell {number}, {field}: {emulated} in the emulator, {host} on the host")
+            }
+            Self::Dwells { emulated, host } => {
+                write!(f, "dwells: {emulated} in the emulator, {host} on the host")
+            }
+            Self::Result { field, emulated, host } => {
+                let [emulated, host] = [emulated, host].map(|bits| shown(field, *bits));
+                write!(f, "{field}: {emulated} in the emulator, {host} on the host")
+            }
+            Self::Reason { emulated, host } => {
+                let [emulated, host] =
+                    [emulated, host].map(|reason| reason.as_deref().unwrap_or("none"));
+                write!(f, "reason: «{emulated}» in the emulator, «{host}» on the host")
+            }
+        }
+    }
+}
+
+/// Bits, and the number that they are.
+fn shown(field: &str, bits: Option<u64>) -> String {
+    match bits {
+        None => "none".to_owned(),
+        Some(bits) if ["stage", "samples"].contains(&field) => format!("{bits:#x}"),
+        Some(bits) => format!("{bits:#018x} ({:e})", f64::from_bits(bits)),
+    }
+}
+
+/// Whether two runs found the same, bit for bit; in the order of cause and effect, so that the
+/// difference told is where it began.
+///
+/// # Errors
+/// The first difference.
+pub fn compare(emulated: &Outcome, host: &Outcome) -> Result<(), Difference> {
+    if emulated.seed != host.seed {
+        return Err(Difference::Seed { emulated: emulated.seed, host: host.seed });
+    }
+    let pairs = emulated.dwells.iter().zip(&host.dwells);
+    pairs.enumerate().try_for_each(|(index, (emulated, host))| dwell(index, emulated, host))?;
+    let counts = [emulated.dwells.len(), host.dwells.len()];
+    if counts[0] != counts[1] {
+        return Err(Difference::Dwells { emulated: counts[0], host: counts[1] });
+    }
+    result("azimuth", emulated.azimuth_bits, host.azimuth_bits)?;
+    result("sigma", emulated.sigma_bits, host.sigma_bits)?;
+    let [one, other] = [emulated, host].map(|run| run.reason.as_deref().map(short));
+    if one == other {
+        return Ok(());
+    }
+    Err(Difference::Reason { emulated: emulated.reason.clone(), host: host.reason.clone() })
+}
+
+fn dwell(index: usize, emulated: &DwellBits, host: &DwellBits) -> Result<(), Difference> {
+    let mut numbers = FIELDS.into_iter().zip(emulated.0.into_iter().zip(host.0));
+    match numbers.find(|(_, (emulated, host))| emulated != host) {
+        None => Ok(()),
+        Some((field, (emulated, host))) => {
+            Err(Difference::Dwell { number: index + 1, field, emulated, host })
+        }
+    }
+}
+
+fn result(field: &'static str, emulated: Option<u64>, host: Option<u64>) -> Result<(), Difference> {
+    if emulated == host { Ok(()) } else { Err(Difference::Result { field, emulated, host }) }
+}
+
+/// A sentence with its decimals cut to what they say: the log's formatter leaves out zeros at the
+/// end that the host's writes.
+fn short(sentence: &str) -> String {
+    sentence.split_inclusive(|c: char| !c.is_ascii_digit() && c != '.').map(shortened).collect()
+}
+
+/// One number with what stands behind it, without zeros at its end.
+fn shortened(word: &str) -> String {
+    let end = word.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(word.len());
+    let (number, behind) = word.split_at(end);
+    match number.split_once('.') {
+        Some((whole, places)) if !places.is_empty() && !places.contains('.') => {
+            let places = places.trim_end_matches('0');
+            let point = if places.is_empty() { "" } else { "." };
+            format!("{whole}{point}{places}{behind}")
+        }
+        _ => word.to_owned(),
+    }
+}

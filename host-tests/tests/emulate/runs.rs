@@ -1,0 +1,104 @@
+//! Two runs are compared bit for bit, and where they differ is named.
+
+use bench::emulate::host;
+use bench::emulate::outcome::{Difference, DwellBits, FIELDS, Outcome, compare};
+
+fn outcome() -> Outcome {
+    let dwell = |rate: f64| DwellBits([Some(rate.to_bits()); FIELDS.len()]);
+    Outcome {
+        seed: 7,
+        azimuth_bits: Some(1.25_f64.to_bits()),
+        sigma_bits: Some(0.5_f64.to_bits()),
+        reason: None,
+        dwells: vec![dwell(1.0), dwell(2.0), dwell(3.0)],
+    }
+}
+
+#[test]
+fn runs_that_are_the_same_in_every_bit_agree() {
+    assert_eq!(compare(&outcome(), &outcome()), Ok(()));
+}
+
+#[test]
+fn one_bit_anywhere_is_found_and_named() {
+    for dwell in 0..3 {
+        for (index, name) in FIELDS.into_iter().enumerate() {
+            for bit in [0, 31, 63] {
+                let (host, mut emulated) = (outcome(), outcome());
+                let place = &mut emulated.dwells[dwell].0[index];
+                *place = place.map(|bits| bits ^ (1 << bit));
+                match compare(&emulated, &host) {
+                    Err(Difference::Dwell { number, field, .. }) => {
+                        assert_eq!((number, field), (dwell + 1, name));
+                    }
+                    other => panic!("{other:?}"),
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_difference_is_told_with_both_values() {
+    let (host, mut emulated) = (outcome(), outcome());
+    emulated.dwells[1].0[4] = Some(2.5_f64.to_bits());
+    let told = compare(&emulated, &host).expect_err("they differ").to_string();
+    assert_eq!(
+        told,
+        "dwell 2, rate: 0x4004000000000000 (2.5e0) in the emulator, 0x4000000000000000 (2e0) on the host"
+    );
+}
+
+#[test]
+fn an_absent_number_differs_from_any_number() {
+    let (host, mut emulated) = (outcome(), outcome());
+    emulated.dwells[2].0[10] = None;
+    let told = compare(&emulated, &host).expect_err("they differ").to_string();
+    assert!(told.starts_with("dwell 3, temperature: none in the emulator"), "{told}");
+}
+
+/// What makes a run another one.
+type Change = fn(&mut Outcome);
+
+#[test]
+fn seed_azimuth_sigma_and_the_number_of_dwells_are_compared() {
+    let changes: [(&str, Change); 4] = [
+        ("seed", |run| run.seed = 8),
+        ("azimuth", |run| run.azimuth_bits = None),
+        ("sigma", |run| run.sigma_bits = Some(0)),
+        ("dwells", |run| run.dwells.truncate(2)),
+    ];
+    for (name, change) in changes {
+        let mut emulated = outcome();
+        change(&mut emulated);
+        let told = compare(&emulated, &outcome()).expect_err("they differ").to_string();
+        assert!(told.starts_with(&format!("{name}: ")), "{told}");
+    }
+}
+
+#[test]
+fn reasons_differ_by_words_and_digits_but_not_by_zeros_at_the_end() {
+    let refused = |reason: &str| Outcome {
+        azimuth_bits: None,
+        sigma_bits: None,
+        reason: Some(reason.to_owned()),
+        ..outcome()
+    };
+    let agree = |one, other| compare(&refused(one), &refused(other)).is_ok();
+    assert!(agree(
+        "σ would be 12.5°, above 10°: gyro noise",
+        "σ would be 12.500°, above 10.000°: gyro noise"
+    ));
+    assert!(!agree("σ would be 12.5°", "σ would be 12.51°"));
+    assert!(!agree("σ would be 10°", "σ would be 100°"));
+    assert!(!agree("the time allowed ran out", "the time allowed is short"));
+    assert!(compare(&refused("no"), &outcome()).is_err());
+}
+
+#[test]
+fn the_host_finds_the_same_again_and_something_else_for_another_seed() {
+    let run = |seed| host::outcome(seed).expect("it ends");
+    assert_eq!(compare(&run(3), &run(3)), Ok(()));
+    assert!(run(3).azimuth_bits.is_some() || run(3).reason.is_some());
+    assert_ne!(run(3).dwells, run(4).dwells);
+}
