@@ -1,7 +1,7 @@
 //! Acquisition: on every conversion of the gyro one sample of the stage path, or none and the reason.
 //!
-//! The conversion sets the time; the encoder is read right after it, the accelerometer with every
-//! so-manieth sample. A sample goes out only whole: without a good rate and a good angle there is
+//! The conversion sets the time; encoder and accelerometer are read right after it, with every
+//! so-manieth sample: between, the stage cannot have turned far, and the force is only averaged. A sample goes out only whole: without a good rate and a good angle there is
 //! none, and its absence shows in the next one's time.
 
 use embassy_time::{Duration, Instant, with_timeout};
@@ -15,7 +15,7 @@ use crate::configuration::Configuration;
 use crate::event::Event;
 use crate::guarded::Guarded;
 use crate::patience::Symptom;
-use crate::ports::{Accelerometer, Encoder, ForceReading, Gyro, Observer};
+use crate::ports::{Accelerometer, Encoder, ForceReading, Gyro, Observer, Sensors};
 use crate::shared::Shared;
 use crate::timeline::{Arrival, Timeline};
 
@@ -50,6 +50,31 @@ impl<T: Copy + PartialEq> Row<T> {
     }
 }
 
+/// Says yes at first, then every so-manieth time.
+#[derive(Clone, Copy, Debug)]
+struct Every {
+    divider: u32,
+    left: u32,
+}
+
+impl Every {
+    fn new(divider: u32) -> Self {
+        Self { divider: divider.max(1), left: 0 }
+    }
+
+    fn is_due(&mut self) -> bool {
+        let is_due = self.left == 0;
+        self.left = if is_due { self.divider } else { self.left } - 1;
+        is_due
+    }
+}
+
+/// How far the stage can turn between two readings of its angle, in steps of an [`Angle`].
+fn greatest_step(configuration: &Configuration) -> u32 {
+    let seconds = f64::from(configuration.angle_divider) / configuration.sample_rate;
+    Angle::from_rad(PLAY + FASTEST * seconds).0
+}
+
 /// The sensors of the stage path at work.
 pub struct Acquisition<'a, G, A, E, O> {
     gyro: Guarded<'a, G>,
@@ -59,8 +84,10 @@ pub struct Acquisition<'a, G, A, E, O> {
     calibration: Calibration,
     timeline: Timeline,
     silence: Duration,
-    divider: u32,
-    until_force: u32,
+    forces_due: Every,
+    angles_due: Every,
+    /// The angle of the latest reading; none where it was lost.
+    angle: Option<Angle>,
     rates: Row<AngularRate>,
     forces: Row<[SpecificForce; 3]>,
     rates_clipped: u32,
@@ -73,29 +100,28 @@ pub struct Acquisition<'a, G, A, E, O> {
 impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, A, E, O> {
     /// Takes the sensors; nothing is started yet.
     pub fn new(
-        gyro: &'a mut G,
-        accelerometer: &'a mut A,
-        encoder: &'a mut E,
+        sensors: &'a mut Sensors<G, A, E>,
         configuration: &Configuration,
         shared: &'a Shared<'a, O>,
     ) -> Self {
         let period = configuration.period();
         Self {
-            gyro: Guarded::new(gyro, Device::Gyro),
-            accelerometer: Guarded::new(accelerometer, Device::Accelerometer),
-            encoder: Guarded::new(encoder, Device::Encoder),
+            gyro: Guarded::new(&mut sensors.gyro, Device::Gyro),
+            accelerometer: Guarded::new(&mut sensors.accelerometer, Device::Accelerometer),
+            encoder: Guarded::new(&mut sensors.encoder, Device::Encoder),
             shared,
             calibration: Calibration::new(configuration.encoder),
             timeline: Timeline::new(period),
             silence: Duration::from_micros(u64::from(period) * u64::from(SILENCE)),
-            divider: configuration.force_divider.max(1),
-            until_force: 0,
+            forces_due: Every::new(configuration.force_divider),
+            angles_due: Every::new(configuration.angle_divider),
+            angle: None,
             rates: Row::new(),
             forces: Row::new(),
             rates_clipped: 0,
             forces_clipped: 0,
             longest_clipped: (SATURATED_SECONDS * configuration.sample_rate) as u32,
-            greatest_step: Angle::from_rad(PLAY + FASTEST / configuration.sample_rate).0,
+            greatest_step: greatest_step(configuration),
             has_jumped: false,
         }
     }
@@ -181,12 +207,15 @@ impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, 
         Err(self.shared.give_up(Device::Gyro, Trouble::Saturated))
     }
 
+    /// The stage's angle, read anew with every so-manieth sample; none where that was lost.
     async fn angle(&mut self) -> Result<Option<Angle>, Refusal> {
-        let outcome = self.encoder.device.read().await;
-        let shown = self.encoder.checked(outcome, self.shared).await?;
-        Ok(shown
-            .map(|shown| self.calibration.correct(shown))
-            .filter(|angle| self.is_in_line(*angle)))
+        if self.angles_due.is_due() || self.angle.is_none() {
+            let outcome = self.encoder.device.read().await;
+            let shown = self.encoder.checked(outcome, self.shared).await?;
+            let angle = shown.map(|shown| self.calibration.correct(shown));
+            self.angle = angle.filter(|angle| self.is_in_line(*angle));
+        }
+        Ok(self.angle)
     }
 
     /// Takes an angle, unless it is further from the one before than the stage can turn: such a one is
@@ -207,11 +236,9 @@ impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, 
 
     /// Force and temperature with every so-manieth sample.
     async fn force(&mut self) -> Result<Option<([SpecificForce; 3], Temperature)>, Refusal> {
-        if self.until_force > 0 {
-            self.until_force -= 1;
+        if !self.forces_due.is_due() {
             return Ok(None);
         }
-        self.until_force = self.divider - 1;
         let outcome = self.accelerometer.device.read().await;
         let Some(reading) = self.accelerometer.checked(outcome, self.shared).await? else {
             return Ok(None);
@@ -224,8 +251,8 @@ impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, 
     /// Old outputs and equal ones show an accelerometer that has stopped; one that stays at its
     /// limit is of no use.
     async fn judge_force(&mut self, reading: &ForceReading) -> Result<(), Refusal> {
-        self.forces_clipped =
-            if reading.is_clipped { self.forces_clipped + self.divider } else { 0 };
+        let clipped = self.forces_clipped + self.forces_due.divider;
+        self.forces_clipped = if reading.is_clipped { clipped } else { 0 };
         if self.forces_clipped > self.longest_clipped {
             return Err(self.shared.give_up(Device::Accelerometer, Trouble::Saturated));
         }

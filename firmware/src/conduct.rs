@@ -3,7 +3,7 @@
 use core::future::pending;
 
 use embassy_futures::select::{Either, select};
-use embassy_time::{Duration, Instant, with_timeout};
+use embassy_time::{Duration, Instant};
 use orientation::align::conclusion::Conclusion;
 use orientation::error::Refusal;
 use orientation::session::{Command, Event as SessionEvent, Phase, Session};
@@ -15,9 +15,6 @@ use crate::link::Status;
 use crate::ports::{Observer, Recorder};
 use crate::shared::Shared;
 
-/// Time without any sample after which nothing more is expected: longer than all restarts of a
-/// sensor together.
-const SILENCE: Duration = Duration::from_secs(30);
 /// Longest time until the stage is homed: a search over the whole travel, and again.
 const HOMING: Duration = Duration::from_secs(300);
 /// Degrees of a radian.
@@ -94,11 +91,9 @@ impl<'a, R: Recorder, O: Observer> Conductor<'a, R, O> {
 
     /// The next sample, or why there will be none.
     async fn sample(&self) -> Result<Sample, Refusal> {
-        let next = select(self.shared.failure.wait(), self.shared.samples.receive());
-        match with_timeout(SILENCE, next).await {
-            Ok(Either::First(reason)) => Err(reason),
-            Ok(Either::Second(sample)) => Ok(sample),
-            Err(_) => Err(Refusal::TimeExhausted),
+        match select(self.shared.failure.wait(), self.shared.samples.receive()).await {
+            Either::First(reason) => Err(reason),
+            Either::Second(sample) => Ok(sample),
         }
     }
 

@@ -57,6 +57,8 @@ pub struct Configuration {
     pub sample_rate: f64,
     /// The accelerometer is read with every so-manieth sample, ≥ 1.
     pub force_divider: u32,
+    /// The encoder is read with every so-manieth sample, ≥ 1.
+    pub angle_divider: u32,
     /// What the encoder shows beyond the true angle.
     pub encoder: Harmonics,
     /// The stage.
@@ -65,15 +67,18 @@ pub struct Configuration {
 
 /// Rate at which the accelerometer is read, Hz; its mean is all that an alignment needs.
 const FORCE_RATE: f64 = 100.0;
+/// Rate at which the encoder is read, Hz: the stage turns 0.1° between two readings.
+const ANGLE_RATE: f64 = 200.0;
 
 impl Configuration {
     /// The default board with a gyro of so many samples a second.
     #[must_use]
     pub fn at(sample_rate: f64) -> Self {
-        let force_divider = (libm::round(sample_rate / FORCE_RATE) as u32).max(1);
+        let divider = |rate: f64| (libm::round(sample_rate / rate) as u32).max(1);
         Self {
             sample_rate,
-            force_divider,
+            force_divider: divider(FORCE_RATE),
+            angle_divider: divider(ANGLE_RATE),
             encoder: Harmonics::default(),
             stage: StageConfiguration::default(),
         }

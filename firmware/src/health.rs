@@ -1,6 +1,15 @@
 //! What went wrong so far, counted: nothing is lost silently.
 
+use embassy_time::{Duration, Timer};
 use orientation::device::Device;
+use orientation::error::Refusal;
+
+use crate::ports::Observer;
+use crate::shared::Shared;
+
+/// Time without any sample after which nothing more is expected: longer than all restarts of a
+/// sensor together.
+const SILENCE: Duration = Duration::from_secs(30);
 
 /// Counters since the start; all stop at their limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -63,4 +72,15 @@ fn count(counters: &mut [u16; 4], device: Device) {
         Device::Stage => 3,
     }];
     *counter = counter.saturating_add(1);
+}
+
+/// Ends the session where no sample comes any more, whatever the reason.
+pub async fn watch<O: Observer>(shared: &Shared<'_, O>) {
+    loop {
+        let before = shared.health.get().samples;
+        Timer::after(SILENCE).await;
+        if shared.health.get().samples == before {
+            shared.fail(Refusal::TimeExhausted);
+        }
+    }
 }

@@ -131,21 +131,24 @@ impl<O: Observer> Observer for &O {
     }
 }
 
-/// All that a board offers.
+/// The sensors of the stage path, which acquisition owns.
 #[derive(Debug)]
-pub struct Ports<G, A, E, M, L, R, O> {
+pub struct Sensors<G, A, E> {
     /// The precise gyro.
     pub gyro: G,
     /// The accelerometer on the platform.
     pub accelerometer: A,
     /// The encoder of the stage.
     pub encoder: E,
+}
+
+/// What else a board offers.
+#[derive(Debug)]
+pub struct Ports<M, L, R> {
     /// The motor of the stage.
     pub actuator: M,
     /// Where status lines go.
     pub link: L,
     /// Where raw samples go.
     pub recorder: R,
-    /// Who is told what happens.
-    pub observer: O,
 }

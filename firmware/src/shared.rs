@@ -60,7 +60,15 @@ impl<'a, O: Observer> Shared<'a, O> {
         }
     }
 
-    /// Tells what happened.
+    /// Tells the session why it cannot go on; the first reason stands.
+    pub fn fail(&self, reason: Refusal) {
+        if !self.failure.signaled() {
+            self.failure.signal(reason);
+        }
+    }
+
+    /// Tells what happened. In one place: every part tells, and a clock and a log go with it.
+    #[inline(never)]
     pub fn tell(&self, event: Event) {
         self.observer.event(Instant::now(), &event);
     }

@@ -3,7 +3,7 @@
 //! Every thread has a clock of its own, so runs side by side do not see each other.
 
 use std::cell::RefCell;
-use std::pin::pin;
+use std::pin::{Pin, pin};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::task::{Context, Poll, Wake, Waker};
@@ -46,25 +46,56 @@ impl Wake for Flag {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Deadlock;
 
+/// A future with a flag of its own: it is polled only when it was woken.
+struct Task<F> {
+    future: F,
+    flag: Arc<Flag>,
+    waker: Waker,
+}
+
+impl<F: Future> Task<Pin<&mut F>> {
+    fn new(future: Pin<&mut F>) -> Task<Pin<&mut F>> {
+        let flag = Arc::new(Flag(AtomicBool::new(true)));
+        Task { future, waker: Waker::from(Arc::clone(&flag)), flag }
+    }
+
+    /// Polls the future if it was woken since it last was; whether it was.
+    fn poll(&mut self) -> Option<Poll<F::Output>> {
+        let was_woken = self.flag.0.swap(false, Ordering::Relaxed);
+        was_woken.then(|| self.future.as_mut().poll(&mut Context::from_waker(&self.waker)))
+    }
+}
+
 /// Runs a future to its end on a clock that begins at zero.
 ///
 /// # Errors
 /// [`Deadlock`] where it waits and no time would wake it.
 pub fn run<F: Future>(future: F) -> Result<F::Output, Deadlock> {
+    run_beside(core::future::pending::<()>(), future)
+}
+
+/// Runs a future to its end on a clock that begins at zero, and another beside it, which need not
+/// end.
+///
+/// # Errors
+/// [`Deadlock`] where both wait and no time would wake either.
+pub fn run_beside<B: Future, F: Future>(beside: B, future: F) -> Result<F::Output, Deadlock> {
     CLOCK.set(VirtualClock::new());
-    let flag = Arc::new(Flag(AtomicBool::new(false)));
-    let waker = Waker::from(Arc::clone(&flag));
-    let mut context = Context::from_waker(&waker);
-    let mut future = pin!(future);
+    let (beside, future) = (pin!(beside), pin!(future));
+    let mut beside = Some(Task::new(beside));
+    let mut main = Task::new(future);
     loop {
-        flag.0.store(false, Ordering::Relaxed);
-        if let Poll::Ready(output) = future.as_mut().poll(&mut context) {
-            return Ok(output);
+        let polled = beside.as_mut().and_then(Task::poll);
+        let worked = polled.is_some();
+        if polled.is_some_and(|poll| poll.is_ready()) {
+            beside = None;
         }
-        while !flag.0.load(Ordering::Relaxed) {
-            if !CLOCK.with_borrow_mut(VirtualClock::advance) {
-                return Err(Deadlock);
-            }
+        match main.poll() {
+            Some(Poll::Ready(output)) => return Ok(output),
+            Some(Poll::Pending) => {}
+            None if worked => {}
+            None if CLOCK.with_borrow_mut(VirtualClock::advance) => {}
+            None => return Err(Deadlock),
         }
     }
 }

@@ -25,7 +25,7 @@ fn short(seed: u64) -> Scenario {
 }
 
 fn run(scenario: &Scenario) -> Run {
-    instrument::run(scenario, None, NoRecorder, &()).expect("the scenario is possible")
+    instrument::align(scenario, None, NoRecorder, &()).expect("the scenario is possible")
 }
 
 fn conclusion(run: &Run) -> &Conclusion {
@@ -81,7 +81,7 @@ fn a_recorded_run_replays_to_the_same_azimuth() {
         let setting = scenario.setting().expect("a latitude");
         let mut recorder =
             CsvRecorder::create(&path, &scenario, &setting).expect("the folder is ours");
-        let run = instrument::run(&scenario, None, &mut recorder, &()).expect("it is possible");
+        let run = instrument::align(&scenario, None, &mut recorder, &()).expect("it is possible");
         recorder.finish().expect("the disk has room");
         let (header, body, truth) = recording::read(&path).expect("it is well-formed").into_parts();
         assert_eq!(truth.azimuth_deg, Some(scenario.azimuth_deg));

@@ -12,7 +12,6 @@ use drivers::adxl355::{self, Adxl355};
 use drivers::mt6835::{self, Mt6835};
 use drivers::tmc5160::{self, Tmc5160};
 use embassy_time::{Delay, Instant};
-use embedded_io_async::Write;
 use hal_mock::ads1262::Ads1262 as SimulatedConverter;
 use hal_mock::adxl355::Adxl355 as SimulatedAccelerometer;
 use hal_mock::board::Board;
@@ -24,13 +23,11 @@ use hal_mock::plant::{Plant, PlantConfiguration};
 use hal_mock::spi::{ReadyPin, SpiPort};
 use hal_mock::tmc5160::{Oscillator, Tmc5160 as SimulatedMotorDriver};
 use hal_mock::violation::Violation;
-use orientation::session::Session;
 
 use self::fault::{FaultyRecorder, Plan};
 use self::scenario::Scenario;
 use crate::chips;
-use crate::health::Health;
-use crate::ports::{Observer, Ports, Recorder};
+use crate::ports::{Ports, Sensors};
 
 /// Bus clock of the gyro's converter, Hz; it allows 8 MHz.
 const CONVERTER_HERTZ: u32 = 5_000_000;
@@ -41,17 +38,6 @@ const OSCILLATOR: Oscillator = Oscillator::Internal { hertz: 12_240_000 };
 /// The simulated chips around their plant.
 pub type Chips<'a> =
     Board<'a, SimulatedConverter, SimulatedAccelerometer, SimulatedEncoder, SimulatedMotorDriver>;
-
-/// The outside of the simulated board.
-#[derive(Debug)]
-pub struct Outside<L, R, O> {
-    /// Where status lines go.
-    pub link: L,
-    /// Where raw samples go.
-    pub recorder: R,
-    /// Who is told what happens.
-    pub observer: O,
-}
 
 /// The simulated board of a scenario with a plan of faults.
 #[must_use]
@@ -75,47 +61,65 @@ pub fn board<'a>(scenario: &Scenario, plan: &'a Plan) -> Chips<'a> {
     }
 }
 
-/// Runs the instrument on a simulated board, or on whatever stands around one.
-pub async fn run<B: Rig, L: Write, R: Recorder, O: Observer>(
-    board: &RefCell<B>,
+/// A chip's bus, which may fail.
+pub type Bus<'a, B> = FaultySpi<SpiPort<'a, B>>;
+
+/// The sensors on a simulated board, or on whatever stands around one.
+pub type SimulatedSensors<'a, B> = Sensors<
+    chips::AnalogueGyro<Bus<'a, B>, FaultyReady<ReadyPin<'a, B>>, Delay>,
+    chips::PlatformAccelerometer<Bus<'a, B>, Delay>,
+    chips::StageEncoder<Bus<'a, B>, Delay>,
+>;
+
+/// The other ports.
+pub type SimulatedPorts<'a, B, L, R> =
+    Ports<chips::StageMotor<Bus<'a, B>, Delay>, L, FaultyRecorder<R>>;
+
+/// The bus of one chip.
+fn bus<'a, B: Rig>(board: &'a RefCell<B>, plan: &Plan, select: Select, hertz: u32) -> Bus<'a, B> {
+    FaultySpi::new(SpiPort::new(board, select, hertz), plan.bus(select))
+}
+
+/// The sensors of a simulated board.
+pub fn sensors<'a, B: Rig>(
+    board: &'a RefCell<B>,
     scenario: &Scenario,
     plan: &Plan,
-    outside: Outside<L, R, O>,
-    session: &mut Session,
-) -> Health {
-    let bus = |select, hertz| FaultySpi::new(SpiPort::new(board, select, hertz), plan.bus(select));
+) -> SimulatedSensors<'a, B> {
+    let bus = |select, hertz| bus(board, plan, select, hertz);
     let ready = FaultyReady::new(ReadyPin::new(board, Select::Gyro), plan.ready);
-    let mut ports = Ports {
+    let converter = bus(Select::Gyro, CONVERTER_HERTZ);
+    let accelerometer = bus(Select::Accelerometer, adxl355::BUS_HERTZ);
+    let encoder = bus(Select::Encoder, mt6835::BUS_HERTZ);
+    Sensors {
         gyro: chips::AnalogueGyro {
-            converter: Ads1262::new(
-                bus(Select::Gyro, CONVERTER_HERTZ),
-                ready,
-                Delay,
-                scenario.converter(),
-            ),
+            converter: Ads1262::new(converter, ready, Delay, scenario.converter()),
             scale: scenario::SCALE,
             limit: scenario::LIMIT,
         },
         accelerometer: chips::PlatformAccelerometer(Adxl355::new(
-            bus(Select::Accelerometer, adxl355::BUS_HERTZ),
+            accelerometer,
             Delay,
             scenario::accelerometer(),
         )),
-        encoder: chips::StageEncoder(Mt6835::new(
-            bus(Select::Encoder, mt6835::BUS_HERTZ),
-            Delay,
-            mt6835::Configuration::default(),
-        )),
-        actuator: chips::StageMotor(Tmc5160::new(
-            bus(Select::Actuator, tmc5160::BUS_HERTZ),
-            Delay,
-            tmc5160::configuration::Configuration::default(),
-        )),
-        link: outside.link,
-        recorder: FaultyRecorder::new(outside.recorder, plan.hang),
-        observer: outside.observer,
-    };
-    crate::run::run(&mut ports, &scenario.configuration(), session).await
+        encoder: chips::StageEncoder(Mt6835::new(encoder, Delay, mt6835::Configuration::default())),
+    }
+}
+
+/// The other ports of a simulated board.
+pub fn ports<'a, B: Rig, L, R>(
+    board: &'a RefCell<B>,
+    plan: &Plan,
+    link: L,
+    recorder: R,
+) -> SimulatedPorts<'a, B, L, R> {
+    let bus = bus(board, plan, Select::Actuator, tmc5160::BUS_HERTZ);
+    let configuration = tmc5160::configuration::Configuration::default();
+    Ports {
+        actuator: chips::StageMotor(Tmc5160::new(bus, Delay, configuration)),
+        link,
+        recorder: FaultyRecorder::new(recorder, plan.hang),
+    }
 }
 
 /// What the drivers did that a data sheet forbids, in words.

@@ -12,7 +12,7 @@ use hal_mock::stage::{EncoderConfiguration, Harmonic};
 use orientation::align::setting::Setting;
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
-use orientation::session::Session;
+use orientation::session::Prepared;
 use orientation::session::procedure::Procedure;
 use orientation::session::schedule::Schedule;
 use orientation::units::{AngularRate, DEGREE_PER_HOUR, TURN};
@@ -174,10 +174,10 @@ impl Scenario {
         Procedure { settle_seconds: RINGS_SECONDS, ..procedure }
     }
 
-    /// The session that follows; none where the latitude is none or the schedule impossible.
+    /// What its session needs; none where the latitude is none or the schedule impossible.
     #[must_use]
-    pub fn session(&self) -> Option<Session> {
-        Session::new(self.setting()?, self.procedure()).ok()
+    pub fn prepared(&self) -> Option<Prepared> {
+        Prepared::new(self.setting()?, self.procedure()).ok()
     }
 
     /// What the board is told of its devices.

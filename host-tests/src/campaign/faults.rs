@@ -59,7 +59,7 @@ pub fn rows(seed: u64, tick: impl Fn() + Sync) -> Result<Vec<Row>, RunError> {
 
 fn row(fault: Fault, seed: u64) -> Result<Row, RunError> {
     let scenario = Scenario { seed, sample_rate_hz: RATE_HZ, ..Scenario::default() };
-    let run = instrument::run(&scenario, Some(fault), NoRecorder, &())?;
+    let run = instrument::align(&scenario, Some(fault), NoRecorder, &())?;
     let conclusion = run.conclusion().ok_or(RunError::Deadlock)?;
     let error = conclusion.verdict.ok().map(|azimuth| {
         azimuth_error(degrees(azimuth.angle), scenario.azimuth_deg) / degrees(azimuth.sigma)

@@ -82,7 +82,7 @@ pub fn precision(runs: usize, tick: impl Fn() + Sync) -> Result<Precision, RunEr
 }
 
 fn outcome(scenario: &Scenario) -> Result<Outcome, RunError> {
-    let run = instrument::run(scenario, None, NoRecorder, &())?;
+    let run = instrument::align(scenario, None, NoRecorder, &())?;
     let conclusion = run.conclusion().ok_or(RunError::Deadlock)?;
     let limit = conclusion.fit.as_ref().map_or(f64::NAN, |fit| degrees(fit.limit));
     let found = conclusion.verdict.map(|azimuth| {

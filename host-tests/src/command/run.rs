@@ -195,12 +195,12 @@ fn simulate(
 ) -> Result<Run, String> {
     let watch = Terminal(Progress::new(0, "positions"));
     let run = match &options.record {
-        None => instrument::run(scenario, fault, NoRecorder, &watch),
+        None => instrument::align(scenario, fault, NoRecorder, &watch),
         Some(path) => {
             let failed = |error: std::io::Error| format!("{}: {error}", path.display());
             let setting = scenario.setting().ok_or("the latitude is outside ±90°")?;
             let mut recorder = CsvRecorder::create(path, scenario, &setting).map_err(failed)?;
-            let run = instrument::run(scenario, fault, &mut recorder, &watch);
+            let run = instrument::align(scenario, fault, &mut recorder, &watch);
             recorder.finish().map_err(failed)?;
             run
         }

@@ -12,7 +12,7 @@ use crate::instrument;
 /// Where it comes to no end.
 pub fn outcome(seed: u64) -> Result<Outcome, String> {
     let scenario = Scenario { seed, ..Scenario::default() };
-    let run = instrument::run(&scenario, None, NoRecorder, &())
+    let run = instrument::align(&scenario, None, NoRecorder, &())
         .map_err(|error| format!("the host's run: {error}"))?;
     let conclusion = run.conclusion().ok_or("the host's run found nothing")?;
     Ok(Outcome::of(seed, conclusion, run.replay.session.dwells()))

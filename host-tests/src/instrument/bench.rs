@@ -6,6 +6,8 @@ use embassy_time::Instant;
 use embedded_io_async::{ErrorType, Write};
 use firmware::event::Event;
 use firmware::ports::{Observer, Recorder};
+use firmware::run::{acquire, run};
+use firmware::shared::Shared;
 use firmware::simulated;
 use firmware::simulated::fault::{Fault, Plan};
 use firmware::simulated::scenario::Scenario;
@@ -69,7 +71,7 @@ impl Write for Wire<'_> {
 ///
 /// # Errors
 /// What keeps the session from beginning, and a deadlock. A refusal is the session's conclusion.
-pub fn run<R: Recorder, W: Watch>(
+pub fn align<R: Recorder, W: Watch>(
     scenario: &Scenario,
     fault: Option<Fault>,
     recorder: R,
@@ -81,12 +83,17 @@ pub fn run<R: Recorder, W: Watch>(
     let board = RefCell::new(simulated::board(scenario, &plan));
     let log = Log { events: RefCell::default(), watch };
     let bytes = RefCell::default();
-    let (health, ended) = virtual_time::run(async {
-        let outside = simulated::Outside { link: Wire(&bytes), recorder, observer: &log };
-        let health = simulated::run(&board, scenario, &plan, outside, &mut session).await;
+    let shared = Shared::new(&log);
+    let configuration = scenario.configuration();
+    let mut sensors = simulated::sensors(&board, scenario, &plan);
+    let mut ports = simulated::ports(&board, &plan, Wire(&bytes), recorder);
+    let acquisition = acquire(&mut sensors, &configuration, &shared);
+    let instrument = async {
+        let health = run(&mut ports, &configuration, &mut session, &shared).await;
         (health, Instant::now())
-    })
-    .map_err(|_| RunError::Deadlock)?;
+    };
+    let (health, ended) =
+        virtual_time::run_beside(acquisition, instrument).map_err(|_| RunError::Deadlock)?;
     let violations = simulated::violations(&board.borrow())
         .map(|(select, violation)| format!("{select:?}: {violation}"))
         .collect();

@@ -3,7 +3,7 @@
 mod bench;
 pub mod recorder;
 
-pub use bench::{Watch, run};
+pub use bench::{Watch, align};
 
 use std::fmt;
 

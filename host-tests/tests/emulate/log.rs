@@ -39,7 +39,7 @@ fn the_log_gives_back_the_bits_and_the_figures() {
     let rate = Some((-1.0 / 65_536.0_f64).to_bits());
     let temperature = Some(25.0_f64.to_bits());
     let stage = Some(1 << 30);
-    let dwell = [stage, half, one, Some(100), rate, one, Some(0), None, None, None, temperature];
+    let dwell = [stage, half, one, Some(100), rate, one, None, None, None, temperature];
     assert_eq!(outcome.dwells, [DwellBits(dwell); 2]);
     let tasks =
         vec![Task { name: "the instrument".into(), polls: 30, instructions: 900, worst: 100 }];

@@ -16,6 +16,7 @@ use heapless::Vec;
 
 use self::pace::{Pace, Target, samples};
 use self::procedure::{Procedure, ProcedureError};
+use self::schedule::Position;
 use crate::align::POSITIONS;
 use crate::align::conclusion::Conclusion;
 use crate::align::criterion::Criterion;
@@ -80,6 +81,59 @@ pub struct Repetition {
     pub why: Disturbance,
 }
 
+/// What a session needs before it begins: small, so that the session itself can be made where it
+/// is to lie.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    setting: Setting,
+    procedure: Procedure,
+    coefficients: Coefficients<SECTIONS>,
+    first: Position,
+}
+
+impl Prepared {
+    /// Checks a procedure and designs its filter.
+    ///
+    /// # Errors
+    /// A procedure that the filter or the stage cannot follow.
+    pub fn new(setting: Setting, procedure: Procedure) -> Result<Self, ProcedureError> {
+        Table::built_in().verify().map_err(|_| ProcedureError::TableCorrupt)?;
+        let rate = 1.0 / procedure.sample_seconds;
+        let coefficients =
+            Coefficients::low_pass(procedure.cutoff(), rate).map_err(ProcedureError::Filter)?;
+        let samples = samples(procedure.schedule.shortest(), procedure.sample_seconds);
+        let needed = dwell::shortest(&coefficients);
+        if samples < needed {
+            return Err(ProcedureError::DwellTooShort { samples, needed });
+        }
+        if let Some(angle) = procedure.beyond_travel() {
+            return Err(ProcedureError::BeyondTravel(angle));
+        }
+        let first = procedure.schedule.next(&[], 0.0).ok_or(ProcedureError::NoPosition)?;
+        Ok(Self { setting, procedure, coefficients, first })
+    }
+}
+
+impl From<Prepared> for Session {
+    fn from(prepared: Prepared) -> Self {
+        let Prepared { setting, procedure, coefficients, first } = prepared;
+        Self {
+            setting,
+            target: Target::new(first, procedure.sample_seconds),
+            pace: Pace::of(&procedure),
+            procedure,
+            coefficients,
+            phase: Phase::Level,
+            begun: None,
+            average: None,
+            dwells: Vec::new(),
+            repetitions: Vec::new(),
+            tries: 0,
+            conclusion: None,
+        }
+    }
+}
+
 /// One alignment from the first sample to its conclusion.
 #[derive(Clone, Debug)]
 pub struct Session {
@@ -98,38 +152,12 @@ pub struct Session {
 }
 
 impl Session {
-    /// Prepares a session; nothing moves yet.
+    /// A session that has not begun; nothing moves yet.
     ///
     /// # Errors
     /// A procedure that the filter or the stage cannot follow.
     pub fn new(setting: Setting, procedure: Procedure) -> Result<Self, ProcedureError> {
-        Table::built_in().verify().map_err(|_| ProcedureError::TableCorrupt)?;
-        let rate = 1.0 / procedure.sample_seconds;
-        let coefficients =
-            Coefficients::low_pass(procedure.cutoff(), rate).map_err(ProcedureError::Filter)?;
-        let samples = samples(procedure.schedule.shortest(), procedure.sample_seconds);
-        let needed = dwell::shortest(&coefficients);
-        if samples < needed {
-            return Err(ProcedureError::DwellTooShort { samples, needed });
-        }
-        if let Some(angle) = procedure.beyond_travel() {
-            return Err(ProcedureError::BeyondTravel(angle));
-        }
-        let first = procedure.schedule.next(&[], 0.0).ok_or(ProcedureError::NoPosition)?;
-        Ok(Self {
-            setting,
-            target: Target::new(first, procedure.sample_seconds),
-            pace: Pace::of(&procedure),
-            procedure,
-            coefficients,
-            phase: Phase::Level,
-            begun: None,
-            average: None,
-            dwells: Vec::new(),
-            repetitions: Vec::new(),
-            tries: 0,
-            conclusion: None,
-        })
+        Prepared::new(setting, procedure).map(Self::from)
     }
 
     /// Takes one event and answers what is to be done now.

@@ -11,18 +11,20 @@ use defmt_semihosting as _;
 use semihosting::process::ExitCode;
 
 use crate::clock;
-use crate::meter::{Meter, Task};
+use crate::meter::{Meter, Stretch, Task};
 
 defmt::timestamp!("{=u64:us}", clock::now());
 
-/// What the whole instrument took for `samples` samples of the gyro.
-pub fn effort(meter: &Meter, samples: u64) {
+/// What the whole instrument took from its first dwell to its last, of a gyro with so many samples a
+/// second.
+pub fn effort(meter: &Meter, sample_rate: f64) {
+    let Stretch { instrument, simulation, microseconds } = meter.between_marks();
     println!(
         "effort instructions={=u64} simulation={=u64} samples={=u64} microseconds={=u64}",
-        meter.instrument().instructions(),
-        meter.simulation().instructions(),
-        samples,
-        clock::now()
+        instrument.instructions(),
+        simulation.instructions(),
+        (microseconds as f64 * sample_rate * 1e-6) as u64,
+        microseconds
     );
 }
 

@@ -26,16 +26,19 @@ mod seed;
 #[path = "../measure/stack.rs"]
 mod stack;
 
-use core::cell::{OnceCell, RefCell};
+use core::cell::{Cell, RefCell};
 use core::pin::pin;
 
 use cortex_m_rt::entry;
 use embassy_executor::SpawnError;
 use embassy_executor::raw::Executor;
+use firmware::configuration::Configuration;
 use firmware::ports::NoRecorder;
-use firmware::simulated;
+use firmware::run::acquire;
+use firmware::shared::Shared;
 use firmware::simulated::fault::Plan;
 use firmware::simulated::scenario::Scenario;
+use firmware::simulated::{self, Chips, SimulatedPorts, SimulatedSensors};
 use orientation::session::Session;
 use semihosting::process::ExitCode;
 use static_cell::StaticCell;
@@ -77,18 +80,29 @@ impl From<Deadlock> for Failure {
 /// What the tasks share with [`main`].
 struct Bench {
     meter: Meter,
+    acquisition: Task,
     instrument: Task,
-    finished: OnceCell<Finished>,
+    finished: Cell<bool>,
 }
 
-/// What is left when the instrument has finished.
-struct Finished {
-    session: &'static Session,
-    samples: u64,
-}
+/// The simulated board as a metered rig.
+type Rig = RefCell<Metered<Chips<'static>>>;
+/// The seams between the instrument's parts.
+type Seams = Shared<'static, Log>;
+/// The sensors on that rig.
+type Inputs = SimulatedSensors<'static, Metered<Chips<'static>>>;
+/// The other ports on that rig.
+type Outputs = SimulatedPorts<'static, Metered<Chips<'static>>, NoLink, NoRecorder>;
 
+/// Nothing goes wrong here.
+static PLAN: StaticCell<Plan> = StaticCell::new();
+static RIG: StaticCell<Rig> = StaticCell::new();
 static BENCH: StaticCell<Bench> = StaticCell::new();
-static SESSION: StaticCell<Session> = StaticCell::new();
+static LOG: StaticCell<Log> = StaticCell::new();
+static SEAMS: StaticCell<Seams> = StaticCell::new();
+static INPUTS: StaticCell<Inputs> = StaticCell::new();
+static OUTPUTS: StaticCell<Outputs> = StaticCell::new();
+static SESSION: StaticCell<RefCell<Session>> = StaticCell::new();
 static EXECUTOR: StaticCell<Executor> = StaticCell::new();
 
 #[entry]
@@ -108,34 +122,71 @@ fn main() -> ! {
 fn run() -> Result<(), Failure> {
     let seed = seed::from_host().ok_or(Failure::NoSeed)?;
     let peripherals = cortex_m::Peripherals::take().ok_or(Failure::NoTimer)?;
-    let meter = Meter::new(Counter::start(peripherals.SYST));
-    let bench: &'static Bench =
-        BENCH.init(Bench { meter, instrument: Task::new("instrument"), finished: OnceCell::new() });
     let scenario = Scenario { seed, ..Scenario::default() };
-    let session = scenario.session().ok_or(Failure::Session)?;
+    let prepared = scenario.prepared().ok_or(Failure::Session)?;
+    let session: &'static RefCell<Session> =
+        SESSION.init_with(|| RefCell::new(Session::from(prepared)));
+    let bench: &'static Bench = BENCH.init(Bench {
+        meter: Meter::new(Counter::start(peripherals.SYST)),
+        acquisition: Task::new("acquisition"),
+        instrument: Task::new("instrument"),
+        finished: Cell::new(false),
+    });
     let executor: &'static Executor = EXECUTOR.init_with(executor::new);
-    executor.spawner().spawn(instrument(bench, scenario, SESSION.init(session))?);
-    executor::run(executor, &bench.meter, || bench.finished.get().is_some())?;
-    let Finished { session, samples } = bench.finished.get().ok_or(Failure::NoConclusion)?;
+    spawn(executor, bench, &scenario, session)?;
+    executor::run(executor, &bench.meter, || bench.finished.get())?;
+    let session = session.borrow();
     let conclusion = session.conclusion().ok_or(Failure::NoConclusion)?;
     results::log(seed, conclusion, session.dwells());
-    log::effort(&bench.meter, *samples);
+    log::effort(&bench.meter, scenario.sample_rate_hz);
+    log::task(&bench.acquisition);
     log::task(&bench.instrument);
     Ok(())
 }
 
-/// The one task: the instrument on its simulated chips.
+/// Builds the simulated board and gives acquisition and instrument a task each.
+fn spawn(
+    executor: &'static Executor,
+    bench: &'static Bench,
+    scenario: &Scenario,
+    session: &'static RefCell<Session>,
+) -> Result<(), Failure> {
+    let plan: &'static Plan = PLAN.init_with(|| Plan::of(None));
+    let rig: &'static Rig = RIG
+        .init_with(|| RefCell::new(Metered::new(simulated::board(scenario, plan), &bench.meter)));
+    let seams: &'static Seams = SEAMS.init_with(|| Shared::new(LOG.init(Log(&bench.meter))));
+    let inputs = INPUTS.init_with(|| simulated::sensors(rig, scenario, plan));
+    let outputs = OUTPUTS.init_with(|| simulated::ports(rig, plan, NoLink, NoRecorder));
+    let configuration = scenario.configuration();
+    let spawner = executor.spawner();
+    spawner.spawn(acquisition(bench, inputs, configuration, seams)?);
+    spawner.spawn(instrument(bench, outputs, configuration, seams, session)?);
+    Ok(())
+}
+
 #[embassy_executor::task]
-async fn instrument(bench: &'static Bench, scenario: Scenario, session: &'static mut Session) {
-    let run = pin!(async {
-        let plan = Plan::of(None);
-        let board = Metered::new(simulated::board(&scenario, &plan), &bench.meter);
-        let board = RefCell::new(board);
-        let outside =
-            simulated::Outside { link: NoLink, recorder: NoRecorder, observer: Log(&bench.meter) };
-        let health = simulated::run(&board, &scenario, &plan, outside, session).await;
-        // It runs once: nothing has finished before.
-        let _ = bench.finished.set(Finished { session, samples: health.samples.into() });
+async fn acquisition(
+    bench: &'static Bench,
+    inputs: &'static mut Inputs,
+    configuration: Configuration,
+    seams: &'static Seams,
+) {
+    let future = pin!(acquire(inputs, &configuration, seams));
+    bench.acquisition.run(&bench.meter, future).await;
+}
+
+#[embassy_executor::task]
+async fn instrument(
+    bench: &'static Bench,
+    outputs: &'static mut Outputs,
+    configuration: Configuration,
+    seams: &'static Seams,
+    session: &'static RefCell<Session>,
+) {
+    let future = pin!(async {
+        let mut session = session.borrow_mut();
+        firmware::run::run(outputs, &configuration, &mut session, seams).await;
+        bench.finished.set(true);
     });
-    bench.instrument.run(&bench.meter, run).await;
+    bench.instrument.run(&bench.meter, future).await;
 }

@@ -13,6 +13,24 @@ use crate::counter::{Cost, Counter};
 /// How often nothing is put outside, to learn what that costs.
 const CALIBRATIONS: u64 = 1000;
 
+/// The accounts at one moment.
+#[derive(Clone, Copy, Default)]
+pub struct Mark {
+    instrument: Cost,
+    simulation: Cost,
+    microseconds: u64,
+}
+
+/// What was taken between two moments.
+pub struct Stretch {
+    /// By the instrument.
+    pub instrument: Cost,
+    /// By the simulation.
+    pub simulation: Cost,
+    /// Virtual time, µs.
+    pub microseconds: u64,
+}
+
 /// The counter with its two accounts.
 pub struct Meter {
     counter: Counter,
@@ -22,13 +40,16 @@ pub struct Meter {
     outside: Cell<Cost>,
     /// What putting something outside costs by itself.
     fee: Cost,
+    /// The accounts at the first mark and at the last.
+    marks: Cell<Option<[Mark; 2]>>,
 }
 
 impl Meter {
     /// A meter that has learnt its own cost.
     pub fn new(counter: Counter) -> Self {
         let [all, outside] = [Cost::default(); 2].map(Cell::new);
-        let mut meter = Self { counter, all, outside, fee: Cost::default() };
+        let mut meter =
+            Self { counter, all, outside, fee: Cost::default(), marks: Cell::new(None) };
         let (cost, ()) = meter.counter.measure(|| {
             for _ in 0..CALIBRATIONS {
                 meter.outside(|| ());
@@ -58,14 +79,22 @@ impl Meter {
         (cost - (self.outside.get() - before), result)
     }
 
-    /// What the instrument took.
-    pub fn instrument(&self) -> Cost {
-        self.all.get() - self.outside.get()
+    /// Marks this moment. The poll that is going on does not count yet.
+    pub fn mark(&self, microseconds: u64) {
+        let simulation = self.outside.get();
+        let now = Mark { instrument: self.all.get() - simulation, simulation, microseconds };
+        let first = self.marks.get().map_or(now, |[first, _]| first);
+        self.marks.set(Some([first, now]));
     }
 
-    /// What the simulation took.
-    pub fn simulation(&self) -> Cost {
-        self.outside.get()
+    /// What was taken between the first mark and the last.
+    pub fn between_marks(&self) -> Stretch {
+        let [first, last] = self.marks.get().unwrap_or_default();
+        Stretch {
+            instrument: last.instrument - first.instrument,
+            simulation: last.simulation - first.simulation,
+            microseconds: last.microseconds - first.microseconds,
+        }
     }
 }
 

@@ -11,6 +11,7 @@ use firmware::ports::Observer;
 use hal_mock::chip::{ReadyLine, Rig, Select, Transaction};
 use orientation::session::Session;
 
+use crate::clock;
 use crate::meter::Meter;
 
 /// Simulated chips whose work is not the instrument's. What carries the bytes to them is counted as
@@ -49,7 +50,9 @@ impl Observer for Log {
         self.0.outside(|| DefmtLog.event(at, event));
     }
 
-    fn progress(&self, _: &Session) {}
+    fn progress(&self, _: &Session) {
+        self.0.mark(clock::now());
+    }
 }
 
 /// A link that takes everything.
