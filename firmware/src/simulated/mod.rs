@@ -12,6 +12,8 @@ use drivers::adxl355::{self, Adxl355};
 use drivers::mt6835::{self, Mt6835};
 use drivers::tmc5160::{self, Tmc5160};
 use embassy_time::{Delay, Instant};
+use embedded_hal_async::digital::Wait;
+use embedded_hal_async::spi::SpiDevice;
 use hal_mock::ads1262::Ads1262 as SimulatedConverter;
 use hal_mock::adxl355::Adxl355 as SimulatedAccelerometer;
 use hal_mock::board::Board;
@@ -62,58 +64,105 @@ pub fn board<'a>(scenario: &Scenario, plan: &'a Plan) -> Chips<'a> {
 }
 
 /// A chip's bus, which may fail.
-pub type Bus<'a, B> = FaultySpi<SpiPort<'a, B>>;
+type Bus<'a, B> = FaultySpi<SpiPort<'a, B>>;
 
-/// The sensors on a simulated board, or on whatever stands around one.
-pub type SimulatedSensors<'a, B> = Sensors<
-    chips::AnalogueGyro<Bus<'a, B>, FaultyReady<ReadyPin<'a, B>>, Delay>,
-    chips::PlatformAccelerometer<Bus<'a, B>, Delay>,
-    chips::StageEncoder<Bus<'a, B>, Delay>,
->;
+/// The data-ready line of the gyro's converter, which may fail.
+type Ready<'a, B> = FaultyReady<ReadyPin<'a, B>>;
 
-/// The other ports.
-pub type SimulatedPorts<'a, B, L, R> =
-    Ports<chips::StageMotor<Bus<'a, B>, Delay>, L, FaultyRecorder<R>>;
+/// What is put around each simulated port: nothing, or a meter.
+pub trait Around {
+    /// A bus with it around.
+    type Spi<S: SpiDevice>: SpiDevice;
+    /// A line with it around.
+    type Line<W: Wait>: Wait;
 
-/// The bus of one chip.
-fn bus<'a, B: Rig>(board: &'a RefCell<B>, plan: &Plan, select: Select, hertz: u32) -> Bus<'a, B> {
-    FaultySpi::new(SpiPort::new(board, select, hertz), plan.bus(select))
+    /// Puts it around a bus.
+    fn spi<S: SpiDevice>(&self, bus: S) -> Self::Spi<S>;
+
+    /// Puts it around a line.
+    fn line<W: Wait>(&self, line: W) -> Self::Line<W>;
+}
+
+/// Nothing around the ports.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Bare;
+
+impl Around for Bare {
+    type Spi<S: SpiDevice> = S;
+    type Line<W: Wait> = W;
+
+    fn spi<S: SpiDevice>(&self, bus: S) -> S {
+        bus
+    }
+
+    fn line<W: Wait>(&self, line: W) -> W {
+        line
+    }
 }
 
 /// The sensors of a simulated board.
-pub fn sensors<'a, B: Rig>(
+pub type SimulatedSensors<'a, B, A> = Sensors<
+    chips::AnalogueGyro<<A as Around>::Spi<Bus<'a, B>>, <A as Around>::Line<Ready<'a, B>>, Delay>,
+    chips::PlatformAccelerometer<<A as Around>::Spi<Bus<'a, B>>, Delay>,
+    chips::StageEncoder<<A as Around>::Spi<Bus<'a, B>>, Delay>,
+>;
+
+/// The other ports of a simulated board.
+pub type SimulatedPorts<'a, B, A, L, R> =
+    Ports<chips::StageMotor<<A as Around>::Spi<Bus<'a, B>>, Delay>, L, FaultyRecorder<R>>;
+
+/// A simulated board's select lines, with what is around them.
+struct Wiring<'a, 'p, B, A> {
+    board: &'a RefCell<B>,
+    plan: &'p Plan,
+    around: &'p A,
+}
+
+impl<'a, B: Rig, A: Around> Wiring<'a, '_, B, A> {
+    fn bus(&self, select: Select, hertz: u32) -> A::Spi<Bus<'a, B>> {
+        let port = SpiPort::new(self.board, select, hertz);
+        self.around.spi(FaultySpi::new(port, self.plan.bus(select)))
+    }
+
+    fn ready(&self) -> A::Line<Ready<'a, B>> {
+        let line = ReadyPin::new(self.board, Select::Gyro);
+        self.around.line(FaultyReady::new(line, self.plan.ready))
+    }
+}
+
+/// The sensors of a simulated board.
+pub fn sensors<'a, B: Rig, A: Around>(
     board: &'a RefCell<B>,
     scenario: &Scenario,
     plan: &Plan,
-) -> SimulatedSensors<'a, B> {
-    let bus = |select, hertz| bus(board, plan, select, hertz);
-    let ready = FaultyReady::new(ReadyPin::new(board, Select::Gyro), plan.ready);
-    let converter = bus(Select::Gyro, CONVERTER_HERTZ);
-    let accelerometer = bus(Select::Accelerometer, adxl355::BUS_HERTZ);
-    let encoder = bus(Select::Encoder, mt6835::BUS_HERTZ);
+    around: &A,
+) -> SimulatedSensors<'a, B, A> {
+    let wiring = Wiring { board, plan, around };
+    let converter = wiring.bus(Select::Gyro, CONVERTER_HERTZ);
+    let accelerometer = wiring.bus(Select::Accelerometer, adxl355::BUS_HERTZ);
+    let encoder = wiring.bus(Select::Encoder, mt6835::BUS_HERTZ);
+    let accelerometer = Adxl355::new(accelerometer, Delay, scenario::accelerometer());
+    let encoder = Mt6835::new(encoder, Delay, mt6835::Configuration::default());
     Sensors {
         gyro: chips::AnalogueGyro {
-            converter: Ads1262::new(converter, ready, Delay, scenario.converter()),
+            converter: Ads1262::new(converter, wiring.ready(), Delay, scenario.converter()),
             scale: scenario::SCALE,
             limit: scenario::LIMIT,
         },
-        accelerometer: chips::PlatformAccelerometer(Adxl355::new(
-            accelerometer,
-            Delay,
-            scenario::accelerometer(),
-        )),
-        encoder: chips::StageEncoder(Mt6835::new(encoder, Delay, mt6835::Configuration::default())),
+        accelerometer: chips::PlatformAccelerometer(accelerometer),
+        encoder: chips::StageEncoder(encoder),
     }
 }
 
 /// The other ports of a simulated board.
-pub fn ports<'a, B: Rig, L, R>(
+pub fn ports<'a, B: Rig, A: Around, L, R>(
     board: &'a RefCell<B>,
     plan: &Plan,
+    around: &A,
     link: L,
     recorder: R,
-) -> SimulatedPorts<'a, B, L, R> {
-    let bus = bus(board, plan, Select::Actuator, tmc5160::BUS_HERTZ);
+) -> SimulatedPorts<'a, B, A, L, R> {
+    let bus = Wiring { board, plan, around }.bus(Select::Actuator, tmc5160::BUS_HERTZ);
     let configuration = tmc5160::configuration::Configuration::default();
     Ports {
         actuator: chips::StageMotor(Tmc5160::new(bus, Delay, configuration)),

@@ -7,6 +7,9 @@ use serde::Serialize;
 /// Where RAM begins on a Cortex-M (ARMv7-M Architecture Reference Manual, B3.1); flash lies below.
 const RAM: u64 = 0x2000_0000;
 
+/// Where `memory.x` puts the simulated chips and world.
+const SIMULATION: &str = ".simulation";
+
 /// A section that takes memory.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Section {
@@ -46,10 +49,11 @@ impl Memory {
         })
     }
 
-    /// Bytes of flash.
+    /// Bytes of flash without the simulation, which is no part of the product.
     #[must_use]
     pub fn flash_bytes(&self) -> u64 {
-        self.sections.iter().map(|section| section.flash_bytes).sum()
+        let product = self.sections.iter().filter(|section| section.name != SIMULATION);
+        product.map(|section| section.flash_bytes).sum()
     }
 
     /// Bytes of RAM, without the stack.

@@ -46,7 +46,7 @@ use static_cell::StaticCell;
 use counter::Counter;
 use executor::Deadlock;
 use meter::{Meter, Task};
-use outside::{Log, Metered, NoLink};
+use outside::{Log, Metering, NoLink};
 
 /// Why nothing was found.
 #[derive(defmt::Format)]
@@ -85,14 +85,14 @@ struct Bench {
     finished: Cell<bool>,
 }
 
-/// The simulated board as a metered rig.
-type Rig = RefCell<Metered<Chips<'static>>>;
+/// The simulated board.
+type Rig = RefCell<Chips<'static>>;
 /// The seams between the instrument's parts.
 type Seams = Shared<'static, Log>;
-/// The sensors on that rig.
-type Inputs = SimulatedSensors<'static, Metered<Chips<'static>>>;
-/// The other ports on that rig.
-type Outputs = SimulatedPorts<'static, Metered<Chips<'static>>, NoLink, NoRecorder>;
+/// Its sensors.
+type Inputs = SimulatedSensors<'static, Chips<'static>, Metering>;
+/// Its other ports.
+type Outputs = SimulatedPorts<'static, Chips<'static>, Metering, NoLink, NoRecorder>;
 
 /// Nothing goes wrong here.
 static PLAN: StaticCell<Plan> = StaticCell::new();
@@ -152,11 +152,11 @@ fn spawn(
     session: &'static RefCell<Session>,
 ) -> Result<(), Failure> {
     let plan: &'static Plan = PLAN.init_with(|| Plan::of(None));
-    let rig: &'static Rig = RIG
-        .init_with(|| RefCell::new(Metered::new(simulated::board(scenario, plan), &bench.meter)));
+    let rig: &'static Rig = RIG.init_with(|| RefCell::new(simulated::board(scenario, plan)));
+    let metering = Metering(&bench.meter);
     let seams: &'static Seams = SEAMS.init_with(|| Shared::new(LOG.init(Log(&bench.meter))));
-    let inputs = INPUTS.init_with(|| simulated::sensors(rig, scenario, plan));
-    let outputs = OUTPUTS.init_with(|| simulated::ports(rig, plan, NoLink, NoRecorder));
+    let inputs = INPUTS.init_with(|| simulated::sensors(rig, scenario, plan, &metering));
+    let outputs = OUTPUTS.init_with(|| simulated::ports(rig, plan, &metering, NoLink, NoRecorder));
     let configuration = scenario.configuration();
     let spawner = executor.spawner();
     spawner.spawn(acquisition(bench, inputs, configuration, seams)?);

@@ -1,44 +1,89 @@
-//! What stands around the instrument here: metered simulated chips, its log, a link that nobody
+//! What stands around the instrument here: metered ports of the simulated chips, its log, a link that nobody
 //! reads.
 
 use core::convert::Infallible;
+use core::future::poll_fn;
+use core::pin::pin;
 
 use embassy_time::Instant;
+use embedded_hal::digital::ErrorType as PinErrorType;
+use embedded_hal_async::digital::Wait;
+use embedded_hal_async::spi::{ErrorType as SpiErrorType, Operation, SpiDevice};
 use embedded_io_async::{ErrorType, Write};
 use firmware::event::Event;
 use firmware::log::DefmtLog;
 use firmware::ports::Observer;
-use hal_mock::chip::{ReadyLine, Rig, Select, Transaction};
+use firmware::simulated::Around;
 use orientation::session::Session;
 
 use crate::clock;
 use crate::meter::Meter;
 
-/// Simulated chips whose work is not the instrument's. What carries the bytes to them is counted as
-/// the instrument's: it stands for the board's bus driver.
-pub struct Metered<R> {
-    rig: R,
+/// A simulated port whose work is not the instrument's: the board's bus drivers and their interrupts
+/// are others, so what this one takes says nothing of the board.
+pub struct Outside<T> {
+    port: T,
     meter: &'static Meter,
 }
 
-impl<R> Metered<R> {
-    /// Meters a rig.
-    pub fn new(rig: R, meter: &'static Meter) -> Self {
-        Self { rig, meter }
+/// Puts a meter around every simulated port.
+pub struct Metering(pub &'static Meter);
+
+impl Around for Metering {
+    type Spi<S: SpiDevice> = Outside<S>;
+    type Line<W: Wait> = Outside<W>;
+
+    fn spi<S: SpiDevice>(&self, port: S) -> Outside<S> {
+        Outside { port, meter: self.0 }
+    }
+
+    fn line<W: Wait>(&self, port: W) -> Outside<W> {
+        Outside { port, meter: self.0 }
     }
 }
 
-impl<R: Rig> Rig for Metered<R> {
-    fn transact(&mut self, select: Select, transaction: &Transaction, reply: &mut [u8]) {
-        self.meter.outside(|| self.rig.transact(select, transaction, reply));
+/// Drives a simulation's future; its polls go to the simulation's account.
+async fn outside<F: Future>(meter: &Meter, future: F) -> F::Output {
+    let mut future = pin!(future);
+    poll_fn(|context| meter.outside(|| future.as_mut().poll(context))).await
+}
+
+impl<T: SpiErrorType> SpiErrorType for Outside<T> {
+    type Error = T::Error;
+}
+
+impl<T: SpiDevice> SpiDevice for Outside<T> {
+    async fn transaction(
+        &mut self,
+        operations: &mut [Operation<'_, u8>],
+    ) -> Result<(), Self::Error> {
+        outside(self.meter, self.port.transaction(operations)).await
+    }
+}
+
+impl<T: PinErrorType> PinErrorType for Outside<T> {
+    type Error = T::Error;
+}
+
+impl<T: Wait> Wait for Outside<T> {
+    async fn wait_for_high(&mut self) -> Result<(), Self::Error> {
+        outside(self.meter, self.port.wait_for_high()).await
     }
 
-    fn ready_line(&mut self, select: Select, now: Instant) -> ReadyLine {
-        self.meter.outside(|| self.rig.ready_line(select, now))
+    async fn wait_for_low(&mut self) -> Result<(), Self::Error> {
+        outside(self.meter, self.port.wait_for_low()).await
     }
 
-    fn power_cycle(&mut self, select: Select, now: Instant) {
-        self.meter.outside(|| self.rig.power_cycle(select, now));
+    async fn wait_for_rising_edge(&mut self) -> Result<(), Self::Error> {
+        outside(self.meter, self.port.wait_for_rising_edge()).await
+    }
+
+    async fn wait_for_falling_edge(&mut self) -> Result<(), Self::Error> {
+        outside(self.meter, self.port.wait_for_falling_edge()).await
+    }
+
+    async fn wait_for_any_edge(&mut self) -> Result<(), Self::Error> {
+        outside(self.meter, self.port.wait_for_any_edge()).await
     }
 }
 
