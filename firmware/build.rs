@@ -16,9 +16,11 @@ fn main() -> io::Result<()> {
     println!("cargo::rerun-if-changed=../memory.x");
     if env::var("CARGO_CFG_TARGET_OS").is_ok_and(|system| system == "none") {
         println!("cargo::rustc-link-arg-bins=-Tlink.x");
-        if env::var_os("CARGO_FEATURE_EMULATOR").is_some() {
-            // defmt's own script: strings that stay on the host.
-            println!("cargo::rustc-link-arg-bin=emulator=-Tdefmt.x");
+        // defmt's own script: strings that stay on the host.
+        for (feature, image) in [("EMULATOR", "emulator"), ("BOARD", "board")] {
+            if env::var_os(format!("CARGO_FEATURE_{feature}")).is_some() {
+                println!("cargo::rustc-link-arg-bin={image}=-Tdefmt.x");
+            }
         }
     }
     let directory = PathBuf::from(env::var_os("OUT_DIR").ok_or(io::ErrorKind::NotFound)?);

@@ -3,14 +3,17 @@
 use core::fmt;
 
 use embassy_time::{Duration, Instant, Timer};
+use embedded_hal_async::digital::Wait;
+use embedded_hal_async::spi::SpiDevice;
 use hal_mock::chip::Select;
 use hal_mock::disturbance::Disturbance;
-use hal_mock::fault::{Blackout, BusFault, FaultPlan, When};
+use hal_mock::fault::{Blackout, BusFault, FaultPlan, FaultyReady, FaultySpi, When};
 use hal_mock::plant::StageFault;
 use heapless::Vec;
 use orientation::signal::Sample;
 use orientation::units::TURN;
 
+use super::Around;
 use crate::ports::Recorder;
 
 /// When things go wrong that go wrong in the middle: in a dwell of the default schedule.
@@ -217,11 +220,18 @@ impl Plan {
         self.caught = (fault == Fault::TravelLimit).then_some(CAUGHT);
         self.hang = (fault == Fault::Overflow).then_some(MIDDLE);
     }
+}
 
-    /// The plan of the bus of one chip.
-    #[must_use]
-    pub fn bus(&self, select: Select) -> Option<FaultPlan> {
-        self.buses[place(select)]
+impl Around for Plan {
+    type Spi<S: SpiDevice> = FaultySpi<S>;
+    type Line<W: Wait> = FaultyReady<W>;
+
+    fn spi<S: SpiDevice>(&self, select: Select, bus: S) -> FaultySpi<S> {
+        FaultySpi::new(bus, self.buses[place(select)])
+    }
+
+    fn line<W: Wait>(&self, line: W) -> FaultyReady<W> {
+        FaultyReady::new(line, self.ready)
     }
 }
 

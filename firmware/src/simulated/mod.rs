@@ -18,7 +18,6 @@ use hal_mock::ads1262::Ads1262 as SimulatedConverter;
 use hal_mock::adxl355::Adxl355 as SimulatedAccelerometer;
 use hal_mock::board::Board;
 use hal_mock::chip::{Rig, Select};
-use hal_mock::fault::{FaultyReady, FaultySpi};
 use hal_mock::mt6835::Mt6835 as SimulatedEncoder;
 use hal_mock::plant::train::StageConfiguration;
 use hal_mock::plant::{Plant, PlantConfiguration};
@@ -26,7 +25,7 @@ use hal_mock::spi::{ReadyPin, SpiPort};
 use hal_mock::tmc5160::{Oscillator, Tmc5160 as SimulatedMotorDriver};
 use hal_mock::violation::Violation;
 
-use self::fault::{FaultyRecorder, Plan};
+use self::fault::Plan;
 use self::scenario::Scenario;
 use crate::chips;
 use crate::ports::{Ports, Sensors};
@@ -63,89 +62,59 @@ pub fn board<'a>(scenario: &Scenario, plan: &'a Plan) -> Chips<'a> {
     }
 }
 
-/// A chip's bus, which may fail.
-type Bus<'a, B> = FaultySpi<SpiPort<'a, B>>;
-
-/// The data-ready line of the gyro's converter, which may fail.
-type Ready<'a, B> = FaultyReady<ReadyPin<'a, B>>;
-
-/// What is put around each simulated port: nothing, or a meter.
+/// What is put around the simulated ports: a plan of faults, or a meter.
 pub trait Around {
     /// A bus with it around.
     type Spi<S: SpiDevice>: SpiDevice;
     /// A line with it around.
     type Line<W: Wait>: Wait;
 
-    /// Puts it around a bus.
-    fn spi<S: SpiDevice>(&self, bus: S) -> Self::Spi<S>;
+    /// Puts it around the bus of a chip.
+    fn spi<S: SpiDevice>(&self, select: Select, bus: S) -> Self::Spi<S>;
 
-    /// Puts it around a line.
+    /// Puts it around the data-ready line of the gyro's converter.
     fn line<W: Wait>(&self, line: W) -> Self::Line<W>;
 }
 
-/// Nothing around the ports.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Bare;
-
-impl Around for Bare {
-    type Spi<S: SpiDevice> = S;
-    type Line<W: Wait> = W;
-
-    fn spi<S: SpiDevice>(&self, bus: S) -> S {
-        bus
-    }
-
-    fn line<W: Wait>(&self, line: W) -> W {
-        line
-    }
-}
+/// A simulated bus with something around it.
+type Bus<'a, B, A> = <A as Around>::Spi<SpiPort<'a, B>>;
 
 /// The sensors of a simulated board.
 pub type SimulatedSensors<'a, B, A> = Sensors<
-    chips::AnalogueGyro<<A as Around>::Spi<Bus<'a, B>>, <A as Around>::Line<Ready<'a, B>>, Delay>,
-    chips::PlatformAccelerometer<<A as Around>::Spi<Bus<'a, B>>, Delay>,
-    chips::StageEncoder<<A as Around>::Spi<Bus<'a, B>>, Delay>,
+    chips::AnalogueGyro<Bus<'a, B, A>, <A as Around>::Line<ReadyPin<'a, B>>, Delay>,
+    chips::PlatformAccelerometer<Bus<'a, B, A>, Delay>,
+    chips::StageEncoder<Bus<'a, B, A>, Delay>,
 >;
 
 /// The other ports of a simulated board.
-pub type SimulatedPorts<'a, B, A, L, R> =
-    Ports<chips::StageMotor<<A as Around>::Spi<Bus<'a, B>>, Delay>, L, FaultyRecorder<R>>;
+pub type SimulatedPorts<'a, B, A, L, R> = Ports<chips::StageMotor<Bus<'a, B, A>, Delay>, L, R>;
 
-/// A simulated board's select lines, with what is around them.
-struct Wiring<'a, 'p, B, A> {
+/// The bus of one chip, with a clock of `hertz`.
+fn bus<'a, B: Rig, A: Around>(
     board: &'a RefCell<B>,
-    plan: &'p Plan,
-    around: &'p A,
-}
-
-impl<'a, B: Rig, A: Around> Wiring<'a, '_, B, A> {
-    fn bus(&self, select: Select, hertz: u32) -> A::Spi<Bus<'a, B>> {
-        let port = SpiPort::new(self.board, select, hertz);
-        self.around.spi(FaultySpi::new(port, self.plan.bus(select)))
-    }
-
-    fn ready(&self) -> A::Line<Ready<'a, B>> {
-        let line = ReadyPin::new(self.board, Select::Gyro);
-        self.around.line(FaultyReady::new(line, self.plan.ready))
-    }
+    around: &A,
+    select: Select,
+    hertz: u32,
+) -> Bus<'a, B, A> {
+    around.spi(select, SpiPort::new(board, select, hertz))
 }
 
 /// The sensors of a simulated board.
 pub fn sensors<'a, B: Rig, A: Around>(
     board: &'a RefCell<B>,
     scenario: &Scenario,
-    plan: &Plan,
     around: &A,
 ) -> SimulatedSensors<'a, B, A> {
-    let wiring = Wiring { board, plan, around };
-    let converter = wiring.bus(Select::Gyro, CONVERTER_HERTZ);
-    let accelerometer = wiring.bus(Select::Accelerometer, adxl355::BUS_HERTZ);
-    let encoder = wiring.bus(Select::Encoder, mt6835::BUS_HERTZ);
+    let bus = |select, hertz| bus(board, around, select, hertz);
+    let converter = bus(Select::Gyro, CONVERTER_HERTZ);
+    let ready = around.line(ReadyPin::new(board, Select::Gyro));
+    let accelerometer = bus(Select::Accelerometer, adxl355::BUS_HERTZ);
     let accelerometer = Adxl355::new(accelerometer, Delay, scenario::accelerometer());
+    let encoder = bus(Select::Encoder, mt6835::BUS_HERTZ);
     let encoder = Mt6835::new(encoder, Delay, mt6835::Configuration::default());
     Sensors {
         gyro: chips::AnalogueGyro {
-            converter: Ads1262::new(converter, wiring.ready(), Delay, scenario.converter()),
+            converter: Ads1262::new(converter, ready, Delay, scenario.converter()),
             scale: scenario::SCALE,
             limit: scenario::LIMIT,
         },
@@ -157,18 +126,13 @@ pub fn sensors<'a, B: Rig, A: Around>(
 /// The other ports of a simulated board.
 pub fn ports<'a, B: Rig, A: Around, L, R>(
     board: &'a RefCell<B>,
-    plan: &Plan,
     around: &A,
     link: L,
     recorder: R,
 ) -> SimulatedPorts<'a, B, A, L, R> {
-    let bus = Wiring { board, plan, around }.bus(Select::Actuator, tmc5160::BUS_HERTZ);
+    let bus = bus(board, around, Select::Actuator, tmc5160::BUS_HERTZ);
     let configuration = tmc5160::configuration::Configuration::default();
-    Ports {
-        actuator: chips::StageMotor(Tmc5160::new(bus, Delay, configuration)),
-        link,
-        recorder: FaultyRecorder::new(recorder, plan.hang),
-    }
+    Ports { actuator: chips::StageMotor(Tmc5160::new(bus, Delay, configuration)), link, recorder }
 }
 
 /// What the drivers did that a data sheet forbids, in words.

@@ -150,6 +150,18 @@ impl Default for Scenario {
 }
 
 impl Scenario {
+    /// The default with another seed.
+    #[must_use]
+    pub fn usual(seed: u64) -> Self {
+        Self { seed, ..Self::default() }
+    }
+
+    /// Four short dwells at 2400 Hz: what a sample costs at the highest rate of the stage path.
+    #[must_use]
+    pub fn brief(seed: u64) -> Self {
+        Self { seed, sample_rate_hz: 2400.0, positions: 4, dwell_s: 1.0, ..Self::default() }
+    }
+
     /// What the board is told of place and instrument; none where the latitude is none.
     #[must_use]
     pub fn setting(&self) -> Option<Setting> {

@@ -1,4 +1,4 @@
-//! The host's own run of what the image `emulator` runs: the default scenario with a seed.
+//! The host's own run of what the image `emulator` runs.
 
 use firmware::ports::NoRecorder;
 use firmware::simulated::scenario::Scenario;
@@ -6,14 +6,13 @@ use firmware::simulated::scenario::Scenario;
 use super::outcome::Outcome;
 use crate::instrument;
 
-/// What the run of a seed finds here.
+/// What the run of a scenario finds here.
 ///
 /// # Errors
 /// Where it comes to no end.
-pub fn outcome(seed: u64) -> Result<Outcome, String> {
-    let scenario = Scenario { seed, ..Scenario::default() };
-    let run = instrument::align(&scenario, None, NoRecorder, &())
+pub fn outcome(scenario: &Scenario) -> Result<Outcome, String> {
+    let run = instrument::align(scenario, None, NoRecorder, &())
         .map_err(|error| format!("the host's run: {error}"))?;
     let conclusion = run.conclusion().ok_or("the host's run found nothing")?;
-    Ok(Outcome::of(seed, conclusion, run.replay.session.dwells()))
+    Ok(Outcome::of(scenario.seed, conclusion, run.replay.session.dwells()))
 }

@@ -24,6 +24,8 @@ use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
+use firmware::simulated::scenario::Scenario;
+
 use self::budget::Budget;
 use self::collect::Collected;
 use self::decode::Decoder;
@@ -42,6 +44,8 @@ pub struct Emulation {
     pub comparison: Result<(), Difference>,
     /// What the instrument took.
     pub figures: collect::Figures,
+    /// What it took in the brief run at the highest sample rate.
+    pub brief: collect::Figures,
     /// Where its memory goes.
     pub memory: Memory,
     /// What the cores take.
@@ -66,19 +70,24 @@ impl Emulation {
 ///
 /// # Errors
 /// One line that says what is missing or what went wrong.
-pub fn emulate(seed: u64, tell: impl FnMut(&decode::Line)) -> Result<Emulation, String> {
+pub fn emulate(seed: u64, mut tell: impl FnMut(&decode::Line)) -> Result<Emulation, String> {
     qemu::require()?;
     let images = images::build()?;
     let budget = Budget::read(&images::root().join("firmware/budget.toml"))?;
     let elf = read(&images.emulator)?;
-    let (emulated, figures) = instrument(&images.emulator, &elf, seed, tell)?;
+    let mut run = |order: &str| instrument(&images.emulator, &elf, order, &mut tell);
+    let (emulated, figures) = run(&seed.to_string())?;
+    let (brief_outcome, brief) = run(&format!("{seed}/brief"))?;
+    let usual = outcome::compare(&emulated, &host::outcome(&Scenario::usual(seed))?);
+    let in_brief = outcome::compare(&brief_outcome, &host::outcome(&Scenario::brief(seed))?);
     let memory = Memory::of(&elf)?;
     let (cost, cost_is_right) = cores(&images.cost)?;
     Ok(Emulation {
-        comparison: outcome::compare(&emulated, &host::outcome(seed)?),
+        comparison: usual.and(in_brief),
         emulated,
-        checks: checks::all(&figures, &memory, &budget),
+        checks: checks::all(&figures, &brief, &memory, &budget),
         figures,
+        brief,
         memory,
         cost,
         cost_is_right,
@@ -93,13 +102,13 @@ fn read(path: &Path) -> Result<Vec<u8>, String> {
 fn instrument(
     image: &Path,
     elf: &[u8],
-    seed: u64,
+    order: &str,
     mut tell: impl FnMut(&decode::Line),
 ) -> Result<(Outcome, collect::Figures), String> {
     let table = decode::table(elf)?;
     let mut decoder = Decoder::new(&table);
     let mut collected = Collected::default();
-    let status = qemu::run(image, &["-append", &seed.to_string()], PATIENCE, |bytes| {
+    let status = qemu::run(image, &["-append", order], PATIENCE, |bytes| {
         decoder.take(bytes, |line| {
             tell(line);
             collected.take(line)

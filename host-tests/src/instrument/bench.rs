@@ -8,9 +8,9 @@ use firmware::event::Event;
 use firmware::ports::{Observer, Recorder};
 use firmware::run::{acquire, run};
 use firmware::shared::Shared;
-use firmware::simulated::fault::{Fault, Plan};
+use firmware::simulated;
+use firmware::simulated::fault::{Fault, FaultyRecorder, Plan};
 use firmware::simulated::scenario::Scenario;
-use firmware::simulated::{self, Bare};
 use orientation::session::Session;
 
 use super::{Run, RunError};
@@ -85,8 +85,9 @@ pub fn align<R: Recorder, W: Watch>(
     let bytes = RefCell::default();
     let shared = Shared::new(&log);
     let configuration = scenario.configuration();
-    let mut sensors = simulated::sensors(&board, scenario, &plan, &Bare);
-    let mut ports = simulated::ports(&board, &plan, &Bare, Wire(&bytes), recorder);
+    let mut sensors = simulated::sensors(&board, scenario, &plan);
+    let recorder = FaultyRecorder::new(recorder, plan.hang);
+    let mut ports = simulated::ports(&board, &plan, Wire(&bytes), recorder);
     let acquisition = acquire(&mut sensors, &configuration, &shared);
     let instrument = async {
         let health = run(&mut ports, &configuration, &mut session, &shared).await;

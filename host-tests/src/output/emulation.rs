@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use crate::emulate::Emulation;
 use crate::emulate::checks::Check;
+use crate::emulate::collect::Figures;
 use crate::emulate::cost::Row;
 use crate::emulate::outcome::Outcome;
 
@@ -68,10 +69,16 @@ fn tasks(out: &mut impl Write, emulation: &Emulation) -> fmt::Result {
             task.polls, task.instructions, task.worst, task.name
         )?;
     }
+    effort(out, "from the first dwell to the last", figures)?;
+    effort(out, "the same at 2400 Hz, in a brief run", &emulation.brief)?;
+    writeln!(out, "(without bus drivers and interrupts, which are the board's own)")
+}
+
+fn effort(out: &mut impl Write, when: &str, figures: &Figures) -> fmt::Result {
     let seconds = figures.microseconds as f64 / 1e6;
     writeln!(
         out,
-        "{} samples in {seconds:.1} s of virtual time; {} instructions with the executor, \
+        "{when}: {} samples in {seconds:.1} s of virtual time, {} instructions with the executor, \
          {} more of the simulated chips and world",
         figures.samples, figures.instructions, figures.simulation
     )
@@ -83,7 +90,7 @@ fn sections(out: &mut impl Write, emulation: &Emulation) -> fmt::Result {
         writeln!(out, "{:>10} {:>10} {}", section.flash_bytes, section.ram_bytes, section.name)?;
     }
     let memory = &emulation.memory;
-    writeln!(out, "{:>10} {:>10} all", memory.flash_bytes(), memory.ram_bytes())
+    writeln!(out, "{:>10} {:>10} all but the simulation", memory.flash_bytes(), memory.ram_bytes())
 }
 
 fn row(out: &mut impl Write, check: &Check) -> fmt::Result {
@@ -110,6 +117,8 @@ pub fn object(emulation: &Emulation) -> Value {
         "simulation_instructions": figures.simulation,
         "samples": figures.samples,
         "seconds": figures.microseconds as f64 / 1e6,
+        "instructions_per_sample_at_2400_hz":
+            emulation.brief.instructions / emulation.brief.samples.max(1),
         "tasks": figures.tasks,
         "memory": emulation.memory,
         "cores": emulation.cost,

@@ -99,7 +99,7 @@ fn figures() -> Figures {
 #[test]
 fn figures_at_their_limits_are_within_them() {
     let memory = Memory::of(&image()).expect("an image");
-    let checks = checks::all(&figures(), &memory, &budget());
+    let checks = checks::all(&figures(), &figures(), &memory, &budget());
     let counts: Vec<u64> = checks.iter().map(|check| check.count).collect();
     assert_eq!(counts, [100, 500, 90, 135_668, 3040, 4096, 8192]);
     assert_eq!(checks[6].budget, memory.stack_room_bytes);
@@ -110,7 +110,7 @@ fn figures_at_their_limits_are_within_them() {
 fn a_figure_beyond_its_limit_is_found() {
     let memory = Memory::of(&image()).expect("an image");
     let failing = |figures: &Figures, memory: &Memory| -> Vec<usize> {
-        let checks = checks::all(figures, memory, &budget());
+        let checks = checks::all(figures, figures, memory, &budget());
         (0..checks.len()).filter(|&index| !checks[index].is_kept()).collect()
     };
     let worse = |change: fn(&mut Figures)| {

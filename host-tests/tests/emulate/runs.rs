@@ -2,6 +2,7 @@
 
 use bench::emulate::host;
 use bench::emulate::outcome::{Difference, DwellBits, FIELDS, Outcome, compare};
+use firmware::simulated::scenario::Scenario;
 
 fn outcome() -> Outcome {
     let dwell = |rate: f64| DwellBits([Some(rate.to_bits()); FIELDS.len()]);
@@ -97,7 +98,7 @@ fn reasons_differ_by_words_and_digits_but_not_by_zeros_at_the_end() {
 
 #[test]
 fn the_host_finds_the_same_again_and_something_else_for_another_seed() {
-    let run = |seed| host::outcome(seed).expect("it ends");
+    let run = |seed| host::outcome(&Scenario::brief(seed)).expect("it ends");
     assert_eq!(compare(&run(3), &run(3)), Ok(()));
     assert!(run(3).azimuth_bits.is_some() || run(3).reason.is_some());
     assert_ne!(run(3).dwells, run(4).dwells);

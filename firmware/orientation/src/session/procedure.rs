@@ -76,8 +76,10 @@ impl Procedure {
     #[must_use]
     pub fn cutoff(&self) -> f64 {
         let rate = 1.0 / self.sample_seconds;
+        // `clamp` would bring a panic that formats floats, 15 KB of it.
         (CUTOFF_DWELLS / self.schedule.shortest())
-            .clamp(LOWEST_CUTOFF * rate, HIGHEST_CUTOFF * rate)
+            .max(LOWEST_CUTOFF * rate)
+            .min(HIGHEST_CUTOFF * rate)
     }
 
     /// The first position that is beyond the stage's travel.

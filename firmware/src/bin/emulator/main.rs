@@ -20,9 +20,9 @@ mod counter;
 mod executor;
 mod log;
 mod meter;
+mod order;
 mod outside;
 mod results;
-mod seed;
 #[path = "../measure/stack.rs"]
 mod stack;
 
@@ -46,6 +46,7 @@ use static_cell::StaticCell;
 use counter::Counter;
 use executor::Deadlock;
 use meter::{Meter, Task};
+use order::Order;
 use outside::{Log, Metering, NoLink};
 
 /// Why nothing was found.
@@ -53,8 +54,8 @@ use outside::{Log, Metering, NoLink};
 enum Failure {
     /// The core's peripherals were taken before.
     NoTimer,
-    /// The host gave no seed.
-    NoSeed,
+    /// The host did not say what to run.
+    NoOrder,
     /// The instrument's task could not be started.
     NotStarted,
     /// Every task waits for something that no time brings.
@@ -120,9 +121,9 @@ fn main() -> ! {
 
 /// Runs the instrument to its end and logs what it found and what it took.
 fn run() -> Result<(), Failure> {
-    let seed = seed::from_host().ok_or(Failure::NoSeed)?;
+    let Order { seed, is_brief } = order::from_host().ok_or(Failure::NoOrder)?;
     let peripherals = cortex_m::Peripherals::take().ok_or(Failure::NoTimer)?;
-    let scenario = Scenario { seed, ..Scenario::default() };
+    let scenario = if is_brief { Scenario::brief(seed) } else { Scenario::usual(seed) };
     let prepared = scenario.prepared().ok_or(Failure::Session)?;
     let session: &'static RefCell<Session> =
         SESSION.init_with(|| RefCell::new(Session::from(prepared)));
@@ -155,8 +156,8 @@ fn spawn(
     let rig: &'static Rig = RIG.init_with(|| RefCell::new(simulated::board(scenario, plan)));
     let metering = Metering(&bench.meter);
     let seams: &'static Seams = SEAMS.init_with(|| Shared::new(LOG.init(Log(&bench.meter))));
-    let inputs = INPUTS.init_with(|| simulated::sensors(rig, scenario, plan, &metering));
-    let outputs = OUTPUTS.init_with(|| simulated::ports(rig, plan, &metering, NoLink, NoRecorder));
+    let inputs = INPUTS.init_with(|| simulated::sensors(rig, scenario, &metering));
+    let outputs = OUTPUTS.init_with(|| simulated::ports(rig, &metering, NoLink, NoRecorder));
     let configuration = scenario.configuration();
     let spawner = executor.spawner();
     spawner.spawn(acquisition(bench, inputs, configuration, seams)?);

@@ -14,6 +14,7 @@ use firmware::event::Event;
 use firmware::log::DefmtLog;
 use firmware::ports::Observer;
 use firmware::simulated::Around;
+use hal_mock::chip::Select;
 use orientation::session::Session;
 
 use crate::clock;
@@ -33,7 +34,7 @@ impl Around for Metering {
     type Spi<S: SpiDevice> = Outside<S>;
     type Line<W: Wait> = Outside<W>;
 
-    fn spi<S: SpiDevice>(&self, port: S) -> Outside<S> {
+    fn spi<S: SpiDevice>(&self, _: Select, port: S) -> Outside<S> {
         Outside { port, meter: self.0 }
     }
 

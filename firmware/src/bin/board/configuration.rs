@@ -1,0 +1,103 @@
+//! What this board must be told before it is flashed: **edit this file**, the link takes no commands.
+//!
+//! | what | where to get it |
+//! |---|---|
+//! | [`LATITUDE`] | a map; 0.01° is near enough |
+//! | [`GYRO_SCALE`], [`GYRO_SCALE_SIGMA`], [`GYRO_LIMIT`] | the gyro's test sheet, and the amplifier between it and the converter |
+//! | [`GYRO_N`], [`GYRO_B`], [`GYRO_K`] | the gyro's data sheet; better its Allan deviation |
+//! | [`G_SENSITIVITY`] | the test sheet, or a calibration with the axis up and down |
+//! | [`ENCODER`] | a calibration of the stage; until then zero, a greater [`ENCODER_SIGMA`], and in [`instrument`] a greater `stage.agreement` |
+//!
+//! Too small a σ here is too small a σ of the azimuth: in doubt take the greater one.
+
+use drivers::ads1262::configuration::{Configuration as Converter, DataRate, Filter, Gain};
+use drivers::ads1262::scale::{INTERNAL_REFERENCE_VOLTS, Scale};
+use firmware::calibration::Harmonics;
+use firmware::configuration::Configuration;
+use orientation::align::setting::Setting;
+use orientation::earth::Latitude;
+use orientation::noise::model::GyroNoise;
+use orientation::session::procedure::Procedure;
+use orientation::session::schedule::Schedule;
+use orientation::units::{AngularRate, DEGREE_PER_HOUR, TURN};
+
+/// One degree, rad.
+const DEGREE: f64 = TURN / 360.0;
+
+/// Geodetic latitude, °, north positive; up to ±85°, beyond there is no north to find.
+const LATITUDE: f64 = 47.58;
+const _: () = assert!(-85.0 <= LATITUDE && LATITUDE <= 85.0);
+
+/// Rate beyond which the gyro's own output may clip, °/s: 97 % of its range.
+const GYRO_LIMIT: f64 = 0.97 * 40.0;
+/// Scale factor of the gyro at the converter's input, V per °/s, negative where it is mounted upside
+/// down. The converter takes ±2.5 V.
+const GYRO_SCALE: f64 = 0.05;
+
+/// N, angle random walk, °/√h (OIUS-1000 class).
+const GYRO_N: f64 = 0.001;
+/// B, bias instability, °/h.
+const GYRO_B: f64 = 0.007;
+/// K, rate random walk, °/h/√h.
+const GYRO_K: f64 = 0.0;
+/// 1σ of the scale factor, relative.
+const GYRO_SCALE_SIGMA: f64 = 5e-4;
+/// g-sensitivity along the gyro's axis and 90° clockwise of it, °/h/g.
+const G_SENSITIVITY: [f64; 2] = [0.0, 0.0];
+/// 1σ of each, °/h/g.
+const G_SENSITIVITY_SIGMA: f64 = 0.1;
+
+/// 1σ of the accelerometer's biases, m/s²: the ADXL355's offset is 25 mg at most (data sheet rev. C,
+/// table 1).
+const FORCE_BIAS_SIGMA: f64 = 0.0083 * 9.80665;
+
+/// The encoder's error over a turn, rad.
+const ENCODER: Harmonics = Harmonics { first: [0.0; 2], second: [0.0; 2] };
+/// 1σ of what is left of it as it turns the azimuth, rad.
+const ENCODER_SIGMA: f64 = 0.05 * DEGREE;
+
+/// The converter: samples a second, filter and gain.
+pub const CONVERTER: Converter =
+    Converter { rate: DataRate::Sps400, filter: Filter::Sinc1, gain: Gain::X1 };
+/// The rate of the converter's codes; does not compile where the scale factor is none.
+pub const SCALE: Scale =
+    match Scale::new(GYRO_SCALE / DEGREE, INTERNAL_REFERENCE_VOLTS, CONVERTER.gain) {
+        Some(scale) => scale,
+        None => unreachable!(),
+    };
+/// The rate beyond which the gyro may clip.
+pub const LIMIT: AngularRate = AngularRate((GYRO_LIMIT * DEGREE * 1e9) as i32);
+
+/// Positions on the full circle.
+const POSITIONS: usize = 24;
+/// Time at each, s.
+const DWELL: f64 = 10.0;
+/// For how long the stage rings after an arrival, s.
+const RINGING: f64 = 0.25;
+
+/// What is known of place and instrument.
+pub fn setting() -> Setting {
+    let latitude = defmt::unwrap!(Latitude::from_degrees(LATITUDE));
+    Setting {
+        noise: GyroNoise::from_field_units(GYRO_N, GYRO_B, GYRO_K, 0.0),
+        white_known: true,
+        scale_sigma: GYRO_SCALE_SIGMA,
+        g_sensitivity: G_SENSITIVITY.map(|part| part * DEGREE_PER_HOUR),
+        g_sensitivity_sigma: G_SENSITIVITY_SIGMA * DEGREE_PER_HOUR,
+        accelerometer_bias_sigma: FORCE_BIAS_SIGMA,
+        encoder_sigma: ENCODER_SIGMA,
+        ..Setting::at(latitude)
+    }
+}
+
+/// How the session goes about it.
+pub fn procedure() -> Procedure {
+    let schedule = Schedule::circle(POSITIONS, DWELL);
+    let procedure = Procedure::new(schedule, 1.0 / CONVERTER.rate.hertz());
+    Procedure { settle_seconds: RINGING, ..procedure }
+}
+
+/// What the instrument is told of its devices.
+pub fn instrument() -> Configuration {
+    Configuration { encoder: ENCODER, ..Configuration::at(CONVERTER.rate.hertz()) }
+}

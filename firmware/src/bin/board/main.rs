@@ -1,0 +1,97 @@
+//! The instrument on the board B-L475E-IOT01A (STM32L475VG, Cortex-M4F, 80 MHz).
+//!
+//! `cargo board` flashes it through the board's own ST-LINK and shows the log; the status lines come
+//! out of the virtual COM port, 115 200 baud. What must be told beforehand stands in
+//! [`configuration`]. This is the only place that names the controller.
+//!
+//! | connector | pin | controller | signal |
+//! |---|---|---|---|
+//! | Arduino CN1 | 6, D13 | PA5 | SPI1 clock: ADS1262 SCLK, ADXL355 SCLK (LED1 flickers with it) |
+//! | | 5, D12 | PA6 | SPI1 data in: ADS1262 DOUT/DRDY, ADXL355 MISO |
+//! | | 4, D11 | PA7 | SPI1 data out: ADS1262 DIN, ADXL355 MOSI |
+//! | | 3, D10 | PA2 | ADS1262 CS |
+//! | | 2, D9 | PA15 | ADXL355 CS |
+//! | Arduino CN3 | 3, D2 | PD14 | ADS1262 DRDY |
+//! | Arduino CN2 | 4, 5, 6 | | 3.3 V, 5 V, ground |
+//! | PMOD CN10 | 4 | PD1 | SPI2 clock: MT6835 SCK, TMC5160 SCK |
+//! | | 3 | PD3 | SPI2 data in: MT6835 MISO, TMC5160 SDO |
+//! | | 2 | PD4 | SPI2 data out: MT6835 MOSI, TMC5160 SDI |
+//! | | 1 | PD5 | TMC5160 CSN |
+//! | | 8 | PD0 | MT6835 CSN |
+//! | | 7 | PD2 | TMC5160 `DRV_ENN`, with a pull-up at the driver |
+//! | | 5, 6 | | ground, 3.3 V |
+//! | ST-LINK CN7 | USB | PB6 | status lines (USART1) |
+//!
+//! Connectors after UM2153 rev. 5: Table 4 (Arduino), Table 10 (PMOD, solder bridges as delivered:
+//! SB14, 15, 18, 21 closed, SB12, 16, 19, 20 open), section 7.10 (virtual COM port). At the chips:
+//! ADS1262 START and CLKIN low, RESET/PWDN high, gyro between AIN0 and AIN1; TMC5160 CLK and
+//! `SD_MODE` low, `SPI_MODE` high, the index a normally open switch from `REFL_STEP` to its supply.
+#![no_std]
+#![no_main]
+
+mod clock;
+mod configuration;
+mod ports;
+mod watchdog;
+mod wiring;
+
+use core::future::pending;
+
+use defmt_rtt as _;
+use embassy_executor::Spawner;
+use embassy_time::Instant;
+use firmware::log::DefmtLog;
+use firmware::run::{acquire, run};
+use firmware::shared::Shared;
+use orientation::session::procedure::ProcedureError;
+use orientation::session::{Prepared, Session};
+use panic_probe as _;
+use static_cell::StaticCell;
+
+use ports::Inputs;
+use wiring::Wiring;
+
+/// The seams between the instrument's parts.
+type Seams = Shared<'static, DefmtLog>;
+
+defmt::timestamp!("{=u64:us}", Instant::now().as_micros());
+
+#[embassy_executor::main]
+async fn main(spawner: Spawner) {
+    let reason = watchdog::reason();
+    let has_crystal = !watchdog::crystal_failed(reason);
+    watchdog::arm();
+    let peripherals = clock::start(has_crystal);
+    defmt::info!("board: started by {}, clock follows its crystal: {}", reason, has_crystal);
+    spawner.spawn(defmt::unwrap!(watchdog::feed()));
+    match session() {
+        Ok(session) => align(spawner, defmt::unwrap!(wiring::connect(peripherals)), session).await,
+        Err(error) => defmt::error!("board: no session: {}", error),
+    }
+}
+
+/// Runs the instrument to its conclusion; never ends, because what is wired would be let go: the
+/// motor would lose its current and the link its last bytes.
+async fn align(spawner: Spawner, wiring: Wiring, session: &'static mut Session) -> ! {
+    static SEAMS: StaticCell<Seams> = StaticCell::new();
+    let seams: &'static Seams = SEAMS.init_with(|| Shared::new(&DefmtLog));
+    let Wiring { sensors, motor, link, motor_enable: _enabled } = wiring;
+    spawner.spawn(defmt::unwrap!(acquisition(ports::inputs(sensors), seams)));
+    let mut outputs = ports::outputs(motor, link);
+    let health = run(&mut outputs, &configuration::instrument(), session, seams).await;
+    defmt::info!("board: done, {} faults on the way", health.faults());
+    pending().await
+}
+
+/// Samples for ever.
+#[embassy_executor::task]
+async fn acquisition(mut inputs: Inputs, seams: &'static Seams) {
+    acquire(&mut inputs, &configuration::instrument(), seams).await;
+}
+
+/// The session, made where it stays.
+fn session() -> Result<&'static mut Session, ProcedureError> {
+    static SESSION: StaticCell<Session> = StaticCell::new();
+    let prepared = Prepared::new(configuration::setting(), configuration::procedure())?;
+    Ok(SESSION.init_with(|| Session::from(prepared)))
+}

@@ -1,0 +1,120 @@
+//! Pins, buses and DMA channels: from the controller's peripherals to the instrument's ports.
+//!
+//! **One clock polarity on each bus.** Between two transfers embassy switches the SPI off, and a
+//! pull resistor alone holds the clock where the bus was set up to idle (RM0351, SPI, clock phase
+//! and polarity). A device of the other polarity would see an edge more with its select low. So the
+//! ADS1262 and the ADXL355, which idle low, share one bus, the MT6835 and the TMC5160, which idle
+//! high, the other; the phases may differ.
+
+use drivers::{ads1262, adxl355, mt6835};
+use embassy_embedded_hal::shared_bus::asynch::spi::SpiDeviceWithConfig;
+use embassy_stm32::exti::{self, ExtiInput};
+use embassy_stm32::gpio::{Level, Output, Pin, Pull, Speed};
+use embassy_stm32::interrupt::typelevel::EXTI15_10;
+use embassy_stm32::mode::Async;
+use embassy_stm32::peripherals::{DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA2_CH6};
+use embassy_stm32::spi::mode::Master;
+use embassy_stm32::spi::{self, MODE_0, MODE_1, MODE_3, Mode, Spi};
+use embassy_stm32::time::Hertz;
+use embassy_stm32::usart::{self, ConfigError, UartTx};
+use embassy_stm32::{Peri, Peripherals, bind_interrupts, dma};
+use embassy_sync::blocking_mutex::raw::NoopRawMutex;
+use embassy_sync::mutex::Mutex;
+use static_cell::StaticCell;
+
+use crate::clock;
+
+bind_interrupts!(struct Interrupts {
+    EXTI15_10 => exti::InterruptHandler<EXTI15_10>;
+    DMA1_CHANNEL2 => dma::InterruptHandler<DMA1_CH2>;
+    DMA1_CHANNEL3 => dma::InterruptHandler<DMA1_CH3>;
+    DMA1_CHANNEL4 => dma::InterruptHandler<DMA1_CH4>;
+    DMA1_CHANNEL5 => dma::InterruptHandler<DMA1_CH5>;
+    DMA2_CHANNEL6 => dma::InterruptHandler<DMA2_CH6>;
+});
+
+/// Greatest clock of the TMC5160's bus with its own oscillator, Hz (data sheet rev. 1.14, 4.3).
+const TMC5160_HERTZ: u32 = 4_000_000;
+
+/// A bus that several devices share. All of them belong to one executor: nothing needs a lock.
+type Bus = Mutex<NoopRawMutex, Spi<'static, Async, Master>>;
+/// A device on it, with its own mode and clock.
+pub type Device =
+    SpiDeviceWithConfig<'static, NoopRawMutex, Spi<'static, Async, Master>, Output<'static>>;
+/// A data-ready line.
+pub type Ready = ExtiInput<'static, Async>;
+/// The virtual COM port.
+pub type Link = UartTx<'static, Async>;
+
+/// What is connected.
+pub struct Wiring {
+    /// All sensors.
+    pub sensors: SensorWires,
+    /// TMC5160.
+    pub motor: Device,
+    /// Its enable, low: without this pin, or while it is reset, the motor has no current.
+    pub motor_enable: Output<'static>,
+    /// Where status lines go.
+    pub link: Link,
+}
+
+/// The sensors' part of it.
+pub struct SensorWires {
+    /// ADS1262.
+    pub converter: Device,
+    /// Its data-ready line, low when a conversion is ready.
+    pub ready: Ready,
+    /// ADXL355.
+    pub accelerometer: Device,
+    /// MT6835.
+    pub encoder: Device,
+}
+
+/// Connects everything.
+pub fn connect(p: Peripherals) -> Result<Wiring, ConfigError> {
+    static SENSORS: StaticCell<Bus> = StaticCell::new();
+    static STAGE: StaticCell<Bus> = StaticCell::new();
+    let low = settings(MODE_1, ads1262::GREATEST_BUS_HERTZ);
+    let high = settings(MODE_3, TMC5160_HERTZ);
+    let sensors = Spi::new(p.SPI1, p.PA5, p.PA7, p.PA6, p.DMA1_CH3, p.DMA1_CH2, Interrupts, low);
+    let stage = Spi::new(p.SPI2, p.PD1, p.PD4, p.PD3, p.DMA1_CH5, p.DMA1_CH4, Interrupts, high);
+    let sensors = SENSORS.init(Mutex::new(sensors));
+    let stage = STAGE.init(Mutex::new(stage));
+    Ok(Wiring {
+        sensors: SensorWires {
+            converter: device(sensors, p.PA2, low),
+            ready: ExtiInput::new(p.PD14, p.EXTI14, Pull::Up, Interrupts),
+            accelerometer: device(sensors, p.PA15, settings(MODE_0, adxl355::BUS_HERTZ)),
+            encoder: device(stage, p.PD0, settings(MODE_3, mt6835::BUS_HERTZ)),
+        },
+        motor: device(stage, p.PD5, high),
+        motor_enable: Output::new(p.PD2, Level::Low, Speed::Low),
+        link: UartTx::new(p.USART1, p.PB6, p.DMA2_CH6, Interrupts, usart::Config::default())?,
+    })
+}
+
+/// A device on a bus, not selected.
+fn device(bus: &'static Bus, select: Peri<'static, impl Pin>, settings: spi::Config) -> Device {
+    SpiDeviceWithConfig::new(bus, Output::new(select, Level::High, Speed::Medium), settings)
+}
+
+/// A device's mode, and the fastest clock not above its limit, Hz. With a broken line the bus reads
+/// ones: unlike zeros, no checksum takes them.
+fn settings(mode: Mode, limit: u32) -> spi::Config {
+    let mut settings = spi::Config::default();
+    settings.mode = mode;
+    settings.frequency = within(limit);
+    settings.miso_pull = Pull::Up;
+    settings.gpio_speed = Speed::Medium;
+    settings
+}
+
+/// The fastest clock that a divider gives and that is not above the limit, Hz. embassy itself takes
+/// the nearest divider, which may be faster than asked.
+const fn within(limit: u32) -> Hertz {
+    let mut clock = clock::SYSTEM / 2;
+    while clock > limit {
+        clock /= 2;
+    }
+    Hertz(clock)
+}
