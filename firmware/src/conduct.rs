@@ -51,7 +51,7 @@ impl<'a, R: Recorder, O: Observer> Conductor<'a, R, O> {
         self.conclude();
         self.shared.concluded.signal(());
         // The link ends the run once it has told the last status.
-        pending().await
+        pending::<()>().await;
     }
 
     fn begin(&self) {

@@ -29,6 +29,7 @@ impl<'a, D: Startable> Guarded<'a, D> {
     }
 
     /// How often the device had to be started again.
+    #[must_use]
     pub fn restarts(&self) -> u8 {
         self.patience.restarts()
     }

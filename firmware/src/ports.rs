@@ -64,6 +64,7 @@ pub trait Encoder: Startable {
 }
 
 /// What the stage's motor does.
+#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own; all combine")]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
     /// Stage angle by the motor's own count, rad, not wrapped.

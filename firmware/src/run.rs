@@ -33,7 +33,7 @@ pub async fn acquire<G, A, E, O>(
 {
     let reason = Acquisition::new(sensors, configuration, shared).run().await;
     shared.fail(reason);
-    pending().await
+    pending::<()>().await;
 }
 
 /// Runs an alignment from power-on to its conclusion, which is then in the session; gives what went
@@ -59,7 +59,7 @@ where
     let conduct = pin!(conductor.run());
     let position = pin!(async {
         shared.fail(stage.run().await);
-        pending::<()>().await
+        pending::<()>().await;
     });
     let tell = pin!(link::run(link, shared));
     let watch = pin!(health::watch(shared));

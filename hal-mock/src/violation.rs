@@ -6,7 +6,7 @@ use embassy_time::Instant;
 use heapless::Vec;
 
 /// Violations that are kept; later ones are only counted.
-const KEPT: usize = 4;
+const KEPT: usize = 16;
 
 /// A forbidden access.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,14 +38,14 @@ pub struct Violation {
     pub misuse: Misuse,
     /// The register's address, or the command byte.
     pub address: u8,
-    /// When.
-    pub at: Instant,
+    /// When, µs since the clock began; it stops at its limit after an hour.
+    pub microseconds: u32,
 }
 
 impl fmt::Display for Violation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { misuse, address, at } = self;
-        write!(f, "{misuse:?} at {address:#04x} after {} µs", at.as_micros())
+        let Self { misuse, address, microseconds } = self;
+        write!(f, "{misuse:?} at {address:#04x} after {microseconds} µs")
     }
 }
 
@@ -60,8 +60,9 @@ impl Violations {
     /// Records one.
     pub fn record(&mut self, misuse: Misuse, address: u8, at: Instant) {
         self.count += 1;
+        let microseconds = u32::try_from(at.as_micros()).unwrap_or(u32::MAX);
         // Where there is no more room the count still tells.
-        let _ = self.first.push(Violation { misuse, address, at });
+        let _ = self.first.push(Violation { misuse, address, microseconds });
     }
 
     /// How many there were.

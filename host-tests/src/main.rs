@@ -118,14 +118,12 @@ fn sigma(text: &str) -> Result<f64, String> {
 /// The command line; without a command it is `run` with all its defaults.
 fn parse() -> Result<(bool, Command), clap::Error> {
     let CommandLine { json, command } = CommandLine::try_parse()?;
-    match command {
-        Some(command) => Ok((json, command)),
-        None => {
-            let matches = Command::augment_subcommands(clap::Command::new("meridian"))
-                .try_get_matches_from(["meridian", "run"])?;
-            Ok((json, Command::from_arg_matches(&matches)?))
-        }
+    if let Some(command) = command {
+        return Ok((json, command));
     }
+    let matches = Command::augment_subcommands(clap::Command::new("meridian"))
+        .try_get_matches_from(["meridian", "run"])?;
+    Ok((json, Command::from_arg_matches(&matches)?))
 }
 
 fn main() -> ExitCode {

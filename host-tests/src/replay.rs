@@ -197,7 +197,7 @@ const STILL_NOISY: f64 = 300e-6;
 /// The same in medians of the encoder's change from sample to sample: six standard deviations of a
 /// difference of two readings.
 const STILL_MEDIANS: f64 = 9.0;
-/// A standstill shorter than this part of the median one is a pause in a rotation, not a dwell.
+/// A standstill shorter than this part of the usual one is a pause in a rotation, not a dwell.
 const PAUSE: f64 = 0.3;
 /// Fewest samples of a dwell.
 const FEWEST_SAMPLES: u32 = 10;
@@ -222,6 +222,19 @@ fn turned(from: f64, to: f64) -> f64 {
     (turns - turns.round()) * TURN
 }
 
+/// The length of the standstills in which half of all standing samples lie: a stage that rings at
+/// every arrival leaves many short ones, but few samples in them.
+fn usual_length(mut lengths: Vec<u32>) -> u32 {
+    lengths.sort_unstable();
+    let half = lengths.iter().map(|length| u64::from(*length)).sum::<u64>() / 2;
+    let mut below = 0;
+    let reaches_half = |length: &u32| {
+        below += u64::from(*length);
+        below > half
+    };
+    lengths.into_iter().find(reaches_half).unwrap_or(0)
+}
+
 /// Where the stage stood still, and for how long.
 fn standstills(
     rows: &[StageRow],
@@ -236,8 +249,7 @@ fn standstills(
         }
     }
     runs.retain(|run| run.1 >= FEWEST_SAMPLES);
-    let mut lengths: Vec<f64> = runs.iter().map(|run| f64::from(run.1)).collect();
-    let usual = median(&mut lengths);
+    let usual = f64::from(usual_length(runs.iter().map(|run| run.1).collect()));
     runs.retain(|run| f64::from(run.1) >= PAUSE * usual);
     if runs.is_empty() {
         return Err(ReplayError::NoDwell);

@@ -53,12 +53,66 @@ fn object(output: &Output) -> Value {
 }
 
 #[test]
-fn without_a_command_north_is_found_in_the_recording_that_ships() {
+fn without_a_command_the_whole_board_finds_north_on_simulated_chips() {
     let output = meridian(&[]);
     assert_eq!(code(&output), 0);
     let block = text(&output.stdout);
-    for part in ["True north found", "azimuth of body x", "limit", "error budget", "left out: "] {
+    for part in [
+        "True north found in the simulated run",
+        "azimuth of body x",
+        "limit",
+        "truth",
+        "error budget",
+        "times real time",
+    ] {
         assert!(block.contains(part), "{part} is missing in {block}");
+    }
+    let log = text(&output.stderr);
+    for part in ["identity and self-test passed", "dwell 24 of 24", "positions 24/24 σ so far"] {
+        assert!(log.contains(part), "{part} is missing in {log}");
+    }
+}
+
+#[test]
+fn what_is_run_is_what_was_asked_for() {
+    let options = ["run", "--json", "--positions", "6", "--dwell", "3", "--rate", "100"];
+    let place = ["--latitude", "-33.9", "--azimuth", "12.5", "--pitch", "2", "--roll=-3"];
+    let output = meridian(&[&options[..], &place[..], &["--seed", "9"]].concat());
+    assert_eq!(code(&output), 0);
+    let object = object(&output);
+    let number = |key: &str| object[key].as_f64().expect("a number");
+    assert!((number("azimuth_deg") - 12.5).abs() < 4.0 * number("sigma_deg"));
+    assert!((number("pitch_deg") - 2.0).abs() < 0.05 && (number("roll_deg") + 3.0).abs() < 0.05);
+    assert_eq!(object["positions"], 6);
+    assert_eq!(object["status"], "ok");
+}
+
+#[test]
+fn a_fault_that_no_patience_mends_is_exit_one_with_its_reason() {
+    let output = meridian(&["run", "--rate", "100", "--fault", "gyro-identity", "--json"]);
+    assert_eq!(code(&output), 1);
+    let object = object(&output);
+    assert_eq!(object["status"], "refused");
+    assert_eq!(object["reason"], "gyro: another chip answers, or none: check the wiring");
+    assert!(text(&output.stderr).contains("meridian: gyro: another chip answers"));
+}
+
+#[test]
+fn what_run_cannot_do_is_misuse_in_one_line() {
+    for wrong in [
+        &["run", "--latitude", "91"][..],
+        &["run", "--rate", "2000"],
+        &["run", "--gyro", "laser"],
+        &["run", "--fault", "nothing"],
+        &["run", "--positions", "2"],
+        &["run", "--dwell", "0"],
+        &["run", "--method", "siap"],
+        &["run", "--seed", "-1"],
+        &["run", "--azimuth", "nan"],
+    ] {
+        let output = meridian(wrong);
+        assert_eq!(code(&output), 2, "{wrong:?}");
+        assert_eq!(text(&output.stderr).lines().count(), 1, "{wrong:?}");
     }
 }
 

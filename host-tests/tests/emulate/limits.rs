@@ -78,7 +78,7 @@ fn a_budget_that_is_not_well_formed_says_where() {
 }
 
 fn budget() -> Budget {
-    let values = [0, 0, 0, 0, 100, 500, 90, 135_668, 3040, 4096];
+    let values = [0, 0, 0, 0, 4000, 500, 90, 135_668, 3040, 4096];
     let lines = NAMES.iter().zip(values).map(|(name, value)| format!("{name} = {value}"));
     Budget::parse(&lines.collect::<Vec<_>>().join("\n")).expect("well formed")
 }
@@ -86,8 +86,8 @@ fn budget() -> Budget {
 fn figures() -> Figures {
     let task = |worst| Task { name: "task".into(), polls: 1, instructions: 1, worst };
     Figures {
-        // 999.1 instructions for ten samples; 8 in a µs of 80.
-        instructions: 991,
+        // 4000 instructions a sample, rounded up: with 2000 samples a second a tenth of 80 million.
+        instructions: 39_991,
         simulation: 5,
         samples: 10,
         microseconds: 124,
@@ -101,7 +101,7 @@ fn figures_at_their_limits_are_within_them() {
     let memory = Memory::of(&image()).expect("an image");
     let checks = checks::all(&figures(), &figures(), &memory, &budget());
     let counts: Vec<u64> = checks.iter().map(|check| check.count).collect();
-    assert_eq!(counts, [100, 500, 90, 135_668, 3040, 4096, 8192]);
+    assert_eq!(counts, [4000, 500, 90, 135_668, 3040, 4096, 8192]);
     assert_eq!(checks[6].budget, memory.stack_room_bytes);
     assert!(checks.iter().all(Check::is_kept), "{checks:?}");
 }
@@ -118,7 +118,7 @@ fn a_figure_beyond_its_limit_is_found() {
         change(&mut figures);
         figures
     };
-    assert_eq!(failing(&worse(|f| f.instructions = 1001), &memory), [0, 2]);
+    assert_eq!(failing(&worse(|f| f.instructions = 40_001), &memory), [0, 2]);
     assert_eq!(failing(&worse(|f| f.tasks[0].worst = 501), &memory), [1]);
     assert_eq!(failing(&worse(|f| f.stack_bytes = 4097), &memory), [5]);
     let smaller = Memory { stack_room_bytes: 8191, ..memory.clone() };

@@ -53,7 +53,7 @@ fn a_difference_is_told_with_both_values() {
 #[test]
 fn an_absent_number_differs_from_any_number() {
     let (host, mut emulated) = (outcome(), outcome());
-    emulated.dwells[2].0[10] = None;
+    emulated.dwells[2].0[9] = None;
     let told = compare(&emulated, &host).expect_err("they differ").to_string();
     assert!(told.starts_with("dwell 3, temperature: none in the emulator"), "{told}");
 }
