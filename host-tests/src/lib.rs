@@ -6,7 +6,6 @@
 
 pub mod campaign;
 pub mod criterion;
-pub mod demonstration;
 pub mod emulate;
 pub mod instrument;
 pub mod oracle;

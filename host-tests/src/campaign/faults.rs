@@ -1,5 +1,7 @@
 //! Every chip with every sickness: recovered with the azimuth within 5 σ, or refused with a reason.
 
+use std::ops::RangeInclusive;
+
 use firmware::event::Event;
 use firmware::ports::NoRecorder;
 use firmware::simulated::fault::Fault;
@@ -43,13 +45,14 @@ pub struct Row {
     pub violations: usize,
 }
 
-/// Runs every fault once; `tick` after each.
+/// Runs every fault with every seed; `tick` after each.
 ///
 /// # Errors
 /// What keeps a run from beginning, and a deadlock.
-pub fn rows(seed: u64, tick: impl Fn() + Sync) -> Result<Vec<Row>, RunError> {
-    let faults: Vec<Fault> = Fault::all().collect();
-    let rows = faults.into_par_iter().map(|fault| {
+pub fn rows(seeds: RangeInclusive<u64>, tick: impl Fn() + Sync) -> Result<Vec<Row>, RunError> {
+    let cases: Vec<(Fault, u64)> =
+        seeds.flat_map(|seed| Fault::all().map(move |fault| (fault, seed))).collect();
+    let rows = cases.into_par_iter().map(|(fault, seed)| {
         let row = row(fault, seed);
         tick();
         row

@@ -16,6 +16,8 @@ use firmware::simulated::fault::Fault;
 use firmware::simulated::scenario::{GyroClass, RATES, Scenario};
 use orientation::session::Session;
 
+use super::Told;
+
 /// What can be said of a simulated alignment.
 #[derive(Args, Clone, Debug)]
 pub struct RunOptions {
@@ -157,16 +159,6 @@ impl Watch for Terminal {
     }
 }
 
-/// What came of a run, ready to print.
-pub struct Told {
-    /// Whether there was a result.
-    pub found: bool,
-    /// For standard output.
-    pub output: String,
-    /// Why there was none.
-    pub refusal: Option<String>,
-}
-
 /// Runs the board and tells what came of it.
 pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
     let fault = match options.fault {
@@ -176,12 +168,16 @@ pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
     };
     let scenario = Scenario::from(options);
     let begun = WallClock::now();
-    let finished = simulate(&scenario, fault, options)?;
-    let seconds = begun.elapsed().as_secs_f64();
-    let output = told(&finished, &scenario, seconds, as_json)?;
-    let conclusion = finished.conclusion().ok_or("the session did not end")?;
-    let refusal = conclusion.verdict.as_ref().err().map(ToString::to_string);
-    Ok(Told { found: refusal.is_none(), output, refusal })
+    let run = simulate(&scenario, fault, options)?;
+    let wall = begun.elapsed().as_secs_f64();
+    let conclusion = run.conclusion().ok_or("the session did not end")?;
+    let truth = Some(scenario.azimuth_deg);
+    let object = json::azimuth(&run.replay, conclusion, truth);
+    let told = Told::of(conclusion.verdict.is_ok(), as_json, &object, |block| {
+        text::block(block, "the simulated run", &run.replay, conclusion, truth)?;
+        text::run(block, &run, &scenario, wall)
+    })?;
+    Ok(Told { refusal: conclusion.verdict.as_ref().err().map(ToString::to_string), ..told })
 }
 
 fn names() -> String {
@@ -207,18 +203,4 @@ fn simulate(
     };
     watch.0.finish();
     run.map_err(|error| error.to_string())
-}
-
-fn told(run: &Run, scenario: &Scenario, wall: f64, as_json: bool) -> Result<String, String> {
-    let conclusion = run.conclusion().ok_or("the session did not end")?;
-    let truth = Some(scenario.azimuth_deg);
-    if as_json {
-        let object = json::azimuth(&run.replay, conclusion, truth);
-        return serde_json::to_string_pretty(&object).map_err(|error| error.to_string());
-    }
-    let mut block = String::new();
-    text::block(&mut block, "the simulated run", &run.replay, conclusion, truth)
-        .and_then(|()| text::run(&mut block, run, scenario, wall))
-        .map_err(|error| error.to_string())?;
-    Ok(block)
 }

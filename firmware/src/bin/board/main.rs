@@ -35,11 +35,10 @@ mod ports;
 mod watchdog;
 mod wiring;
 
-use core::future::pending;
-
 use defmt_rtt as _;
 use embassy_executor::Spawner;
-use embassy_time::Instant;
+use embassy_time::{Instant, Timer};
+use firmware::link;
 use firmware::log::DefmtLog;
 use firmware::run::{acquire, run};
 use firmware::shared::Shared;
@@ -70,7 +69,7 @@ async fn main(spawner: Spawner) {
     }
 }
 
-/// Runs the instrument to its conclusion; never ends, because what is wired would be let go: the
+/// Runs the instrument to its conclusion and goes on telling it; never ends, because what is wired would be let go: the
 /// motor would lose its current and the link its last bytes.
 async fn align(spawner: Spawner, wiring: Wiring, session: &'static mut Session) -> ! {
     static SEAMS: StaticCell<Seams> = StaticCell::new();
@@ -80,7 +79,10 @@ async fn align(spawner: Spawner, wiring: Wiring, session: &'static mut Session) 
     let mut outputs = ports::outputs(motor, link);
     let health = run(&mut outputs, &configuration::instrument(), session, seams).await;
     defmt::info!("board: done, {} faults on the way", health.faults());
-    pending().await
+    loop {
+        Timer::after_secs(1).await;
+        link::send(&mut outputs.link, seams).await;
+    }
 }
 
 /// Samples for ever.

@@ -26,7 +26,7 @@ mod results;
 #[path = "../measure/stack.rs"]
 mod stack;
 
-use core::cell::{Cell, RefCell};
+use core::cell::{OnceCell, RefCell};
 use core::pin::pin;
 
 use cortex_m_rt::entry;
@@ -83,7 +83,8 @@ struct Bench {
     meter: Meter,
     acquisition: Task,
     instrument: Task,
-    finished: Cell<bool>,
+    /// The session, once it has concluded.
+    finished: OnceCell<&'static Session>,
 }
 
 /// The simulated board.
@@ -103,7 +104,7 @@ static LOG: StaticCell<Log> = StaticCell::new();
 static SEAMS: StaticCell<Seams> = StaticCell::new();
 static INPUTS: StaticCell<Inputs> = StaticCell::new();
 static OUTPUTS: StaticCell<Outputs> = StaticCell::new();
-static SESSION: StaticCell<RefCell<Session>> = StaticCell::new();
+static SESSION: StaticCell<Session> = StaticCell::new();
 static EXECUTOR: StaticCell<Executor> = StaticCell::new();
 
 #[entry]
@@ -125,18 +126,17 @@ fn run() -> Result<(), Failure> {
     let peripherals = cortex_m::Peripherals::take().ok_or(Failure::NoTimer)?;
     let scenario = if is_brief { Scenario::brief(seed) } else { Scenario::usual(seed) };
     let prepared = scenario.prepared().ok_or(Failure::Session)?;
-    let session: &'static RefCell<Session> =
-        SESSION.init_with(|| RefCell::new(Session::from(prepared)));
+    let session = SESSION.init_with(|| Session::from(prepared));
     let bench: &'static Bench = BENCH.init(Bench {
         meter: Meter::new(Counter::start(peripherals.SYST)),
         acquisition: Task::new("acquisition"),
         instrument: Task::new("instrument"),
-        finished: Cell::new(false),
+        finished: OnceCell::new(),
     });
     let executor: &'static Executor = EXECUTOR.init_with(executor::new);
     spawn(executor, bench, &scenario, session)?;
-    executor::run(executor, &bench.meter, || bench.finished.get())?;
-    let session = session.borrow();
+    executor::run(executor, &bench.meter, || bench.finished.get().is_some())?;
+    let session = bench.finished.get().ok_or(Failure::NoConclusion)?;
     let conclusion = session.conclusion().ok_or(Failure::NoConclusion)?;
     results::log(seed, conclusion, session.dwells());
     log::effort(&bench.meter, scenario.sample_rate_hz);
@@ -150,7 +150,7 @@ fn spawn(
     executor: &'static Executor,
     bench: &'static Bench,
     scenario: &Scenario,
-    session: &'static RefCell<Session>,
+    session: &'static mut Session,
 ) -> Result<(), Failure> {
     let plan: &'static Plan = PLAN.init_with(|| Plan::of(None));
     let rig: &'static Rig = RIG.init_with(|| RefCell::new(simulated::board(scenario, plan)));
@@ -182,12 +182,12 @@ async fn instrument(
     outputs: &'static mut Outputs,
     configuration: Configuration,
     seams: &'static Seams,
-    session: &'static RefCell<Session>,
+    session: &'static mut Session,
 ) {
     let future = pin!(async {
-        let mut session = session.borrow_mut();
-        firmware::run::run(outputs, &configuration, &mut session, seams).await;
-        bench.finished.set(true);
+        firmware::run::run(outputs, &configuration, session, seams).await;
+        // It runs once: nothing has finished before.
+        let _ = bench.finished.set(session);
     });
     bench.instrument.run(&bench.meter, future).await;
 }

@@ -1,0 +1,82 @@
+//! `meridian campaign`: many simulated alignments.
+
+use bench::campaign::sokolov::{self, Turn};
+use bench::campaign::{faults, instrument};
+use bench::output::progress::Progress;
+use bench::output::table;
+use clap::{Args, ValueEnum};
+use firmware::simulated::fault::Fault;
+use serde_json::json;
+
+use super::Told;
+
+/// Which campaign, how long.
+#[derive(Args)]
+pub struct CampaignOptions {
+    /// Which campaign.
+    #[arg(value_enum, default_value = "sokolov")]
+    name: Campaign,
+    /// How many runs: of sokolov on each schedule (5000), of instrument (500), of each fault (1).
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    runs: Option<u32>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Campaign {
+    /// The numerical experiment of Sokolov 2019: stepwise gyrocompassing, all five criteria.
+    Sokolov,
+    /// The whole instrument on simulated chips, over drawn sites and attitudes.
+    Instrument,
+    /// Every chip with every fault.
+    Faults,
+}
+
+/// Runs a campaign.
+pub fn run(options: &CampaignOptions, as_json: bool) -> Result<Told, String> {
+    let runs = |usual: u32| options.runs.unwrap_or(usual) as usize;
+    match options.name {
+        Campaign::Sokolov => sokolov(runs(5000), as_json),
+        Campaign::Instrument => instrument(runs(500), as_json),
+        Campaign::Faults => faults(runs(1), as_json),
+    }
+}
+
+/// Both schedules: the paper's table, then the precision.
+fn sokolov(runs: usize, as_json: bool) -> Result<Told, String> {
+    let turns = [Turn::Arc, Turn::Circle];
+    let total = turns.len() * (3 * sokolov::TABLE_RUNS + runs);
+    let progress = Progress::new(total as u64, "alignments");
+    let tick = || progress.step();
+    let tables = turns.map(|turn| sokolov::tabulate(turn, tick));
+    let tables = tables.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let precisions = turns.map(|turn| sokolov::precision(turn, runs, tick));
+    let precisions = precisions.into_iter().collect::<Result<Vec<_>, _>>()?;
+    progress.finish();
+    let object = json!({
+        "campaign": "sokolov", "status": "ok", "tables": tables, "precision": precisions,
+    });
+    Told::of(true, as_json, &object, |text| table::sokolov(text, &tables, &precisions))
+}
+
+/// The whole instrument over many seeds; a result where none was refused.
+fn instrument(runs: usize, as_json: bool) -> Result<Told, String> {
+    let progress = Progress::new(runs as u64, "alignments");
+    let row = instrument::precision(runs, || progress.step()).map_err(|error| error.to_string())?;
+    progress.finish();
+    let found = row.refused == 0;
+    let status = if found { "ok" } else { "failed" };
+    let object = json!({ "campaign": "instrument", "status": status, "precision": row });
+    Told::of(found, as_json, &object, |text| table::instrument(text, &row))
+}
+
+/// Every fault with every seed; a result where no north was wrong.
+fn faults(runs: usize, as_json: bool) -> Result<Told, String> {
+    let progress = Progress::new((Fault::all().count() * runs) as u64, "faults");
+    let rows =
+        faults::rows(1..=runs as u64, || progress.step()).map_err(|error| error.to_string())?;
+    progress.finish();
+    let found = rows.iter().all(|row| row.outcome != faults::WRONG);
+    let status = if found { "ok" } else { "failed" };
+    let object = json!({ "campaign": "faults", "status": status, "faults": rows });
+    Told::of(found, as_json, &object, |text| table::faults(text, &rows))
+}

@@ -1,0 +1,22 @@
+//! `meridian emulate`: the firmware on an emulated Cortex-M4F.
+
+use bench::emulate::emulate;
+use bench::output::emulation;
+use clap::Args;
+
+use super::Told;
+
+/// What to emulate.
+#[derive(Args)]
+pub struct EmulateOptions {
+    /// What fixes everything random in the simulated world.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+/// Runs the firmware's images; whether all is as it must be.
+pub fn run(options: &EmulateOptions, as_json: bool) -> Result<Told, String> {
+    let found = emulate(options.seed, |line| eprintln!("{line}"))?;
+    let object = emulation::object(&found);
+    Told::of(found.is_right(), as_json, &object, |text| emulation::tables(text, &found))
+}

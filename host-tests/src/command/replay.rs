@@ -1,0 +1,82 @@
+//! `meridian replay`: the alignment on a recording.
+
+use std::path::PathBuf;
+
+use bench::output::progress::Progress;
+use bench::output::{json, text};
+use bench::recording;
+use bench::replay::{Options, replay};
+use clap::{Args, ValueEnum};
+use orientation::align::criterion::Criterion;
+use orientation::earth::Latitude;
+
+use super::Told;
+
+/// Which recording, and how it is taken.
+#[derive(Args)]
+pub struct ReplayOptions {
+    /// The recording, CSV, also gzip-compressed.
+    file: PathBuf,
+    /// Method; the default follows from the kind.
+    #[arg(long, value_enum)]
+    method: Option<Method>,
+    /// Latitude in degrees, north positive, instead of the recording's.
+    #[arg(long, value_name = "DEGREES", value_parser = latitude, allow_negative_numbers = true)]
+    latitude: Option<Latitude>,
+    /// How the azimuth is found: ml, table (ml over the etalon table), least-squares, least-absolute, within-squares=A1 in (°/h)²,
+    /// within-absolute=A in °/h.
+    #[arg(long, default_value = "ml", value_parser = bench::criterion::parse)]
+    criterion: Criterion,
+    /// Greatest standard deviation that is accepted, in degrees (1σ).
+    #[arg(long, value_name = "DEGREES", default_value = "10", value_parser = sigma)]
+    require_sigma: f64,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Method {
+    /// Stepwise gyrocompassing.
+    Stepwise,
+}
+
+fn latitude(text: &str) -> Result<Latitude, String> {
+    let degrees: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    Latitude::from_degrees(degrees).ok_or_else(|| "outside ±90°".to_owned())
+}
+
+/// A standard deviation in degrees, as radians.
+fn sigma(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(degrees) if degrees > 0.0 && degrees <= 180.0 => Ok(degrees.to_radians()),
+        _ => Err("not a number of degrees above 0, at most 180".to_owned()),
+    }
+}
+
+impl From<&ReplayOptions> for Options {
+    fn from(options: &ReplayOptions) -> Self {
+        // One method so far: naming it changes nothing.
+        let (Some(Method::Stepwise) | None) = options.method;
+        Self {
+            latitude: options.latitude,
+            criterion: options.criterion,
+            required_sigma: Some(options.require_sigma),
+        }
+    }
+}
+
+/// Replays a recording.
+pub fn run(options: &ReplayOptions, as_json: bool) -> Result<Told, String> {
+    let recording = recording::read(&options.file).map_err(|error| error.to_string())?;
+    let name = options.file.display().to_string();
+    let (header, body, truth) = recording.into_parts();
+    let progress = Progress::new(0, "positions");
+    let replay = replay(&header, &body, &options.into(), |session| progress.session(session))
+        .map_err(|error| format!("{name}: {error}"))?;
+    progress.finish();
+    let conclusion = replay.session.conclusion().ok_or("the session did not end")?;
+    let object = json::azimuth(&replay, conclusion, truth.azimuth_deg);
+    let told = Told::of(conclusion.verdict.is_ok(), as_json, &object, |block| {
+        text::block(block, &name, &replay, conclusion, truth.azimuth_deg)
+    })?;
+    let refusal = conclusion.verdict.as_ref().err().map(|reason| format!("{name}: {reason}"));
+    Ok(Told { refusal, ..told })
+}
