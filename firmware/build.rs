@@ -1,5 +1,5 @@
 //! Links the bare-metal images by cortex-m-rt's script, which takes the memory map from `memory.x`,
-//! and hands them the budget.
+//! and hands them the budget: as constants, and as limits that the board's image must keep to link.
 //!
 //! Cargo starts the linker in the workspace root, so `memory.x` is found there from any directory.
 
@@ -24,19 +24,51 @@ fn main() -> io::Result<()> {
         }
     }
     let directory = PathBuf::from(env::var_os("OUT_DIR").ok_or(io::ErrorKind::NotFound)?);
-    fs::write(directory.join("budget.rs"), constants(&fs::read_to_string(BUDGET)?)?)
+    let budget = fs::read_to_string(BUDGET)?;
+    fs::write(directory.join("budget.rs"), constants(&budget)?)?;
+    fs::write(directory.join("budget.x"), limits(&budget)?)?;
+    println!("cargo::rustc-link-search={}", directory.display());
+    if env::var_os("CARGO_FEATURE_BOARD").is_some() {
+        println!("cargo::rustc-link-arg-bin=board=-Tbudget.x");
+    }
+    Ok(())
 }
 
-/// Every `key = value` of the budget as a constant.
+/// The budget's keys and values.
+fn entries(budget: &str) -> impl Iterator<Item = (&str, String)> {
+    budget.lines().filter_map(|line| {
+        let (key, value) = line.split('#').next()?.split_once('=')?;
+        Some((key.trim(), value.trim().replace('_', "")))
+    })
+}
+
+/// Every entry of the budget as a constant.
 fn constants(budget: &str) -> io::Result<String> {
     let mut source = String::new();
-    for line in budget.lines() {
-        let Some((key, value)) = line.split('#').next().and_then(|line| line.split_once('='))
-        else {
-            continue;
-        };
-        let (key, value) = (key.trim().to_uppercase(), value.trim());
+    for (key, value) in entries(budget) {
+        let key = key.to_uppercase();
         writeln!(source, "pub const {key}: u64 = {value};").map_err(io::Error::other)?;
     }
     Ok(source)
+}
+
+/// A linker script that refuses an image beyond its memory.
+fn limits(budget: &str) -> io::Result<String> {
+    let limit = |name: &str| {
+        let entry = entries(budget).find(|(key, _)| *key == name);
+        entry
+            .map(|(_, value)| value)
+            .ok_or_else(|| io::Error::other(format!("{BUDGET}: no {name}")))
+    };
+    let sum = |sections: &[&str]| {
+        sections.iter().map(|name| format!("SIZEOF({name})")).collect::<Vec<_>>().join(" + ")
+    };
+    let flash = sum(&[".vector_table", ".text", ".etalon", ".rodata", ".data"]);
+    let ram = sum(&[".data", ".bss", ".uninit"]);
+    Ok(format!(
+        "ASSERT({flash} <= {}, \"the image takes more flash than budget.toml allows\");\n\
+         ASSERT({ram} <= {}, \"the statics take more RAM than budget.toml allows\");\n",
+        limit("flash_bytes")?,
+        limit("static_ram_bytes")?
+    ))
 }
