@@ -3,7 +3,8 @@
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
-use std::path::PathBuf;
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::thread;
 
 use bench::campaign::faults::{self, WRONG_SIGMAS};
@@ -124,22 +125,88 @@ fn the_log_tells_what_the_board_did_in_order() {
 
 #[test]
 fn north_is_found_as_well_as_the_limit_allows_over_sites_attitudes_and_tilts() {
-    let Precision { runs, refused, first_reason, ratio, coverage_percent, violations, .. } =
-        campaign::precision(500, || ()).expect("all are possible");
-    assert_eq!((runs, refused, violations), (500, 0, 0), "{first_reason:?}");
-    assert!(ratio <= 1.06, "RMS over limit {ratio}");
+    let found = campaign::precision(500, || ()).expect("all are possible");
+    let Precision { runs, refused, violations, ratio, coverage_percent, .. } = &found;
+    assert_eq!((runs, refused, violations), (&500, &0, &0), "{found:?}");
+    assert!(*ratio <= 1.06, "{found:?}");
     for (found, normal) in coverage_percent.iter().zip(NORMAL_COVERAGE) {
         assert!((found - normal).abs() <= 2.5, "{found} % instead of {normal} %");
+    }
+    let [one, two, three] = coverage_percent;
+    let row = format!(
+        "| 24 positions of 15° | {:.4}° | {:.4}° | {ratio:.3} | {one:.1}, {two:.1}, {three:.1} % |",
+        found.rms_deg, found.limit_deg
+    );
+    let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md");
+    let readme = fs::read_to_string(readme).expect("the README is there");
+    assert!(readme.contains(&row), "the README lacks {row}");
+}
+
+/// What a fault must come to: an azimuth, or a refusal whose reason says this.
+fn expected(fault: &str) -> Option<&'static str> {
+    const NOT_THERE: &str = "another chip answers, or none";
+    let (device, sickness) = fault.split_once('-').expect("device and sickness");
+    let is_gyro = device == "gyro";
+    match sickness {
+        "identity" => Some(NOT_THERE),
+        "checksum-always" if is_gyro || device == "encoder" => Some("fail their checksum"),
+        // These have no checksum: a broken reply shows in identity or read-back, after a while.
+        "checksum-always" if device == "accelerometer" => Some("accelerometer: "),
+        "checksum-always" => Some("stage: "),
+        "stuck" if is_gyro || device == "accelerometer" => Some("the same reading for ever"),
+        "stuck" if device == "encoder" => Some("encoder: "),
+        "stuck" => Some("stage: "),
+        "silent" if is_gyro => Some("gives no more data"),
+        "silent" => Some(NOT_THERE),
+        "bus-always" => Some("its bus fails"),
+        "blocked" | "limit" => Some("it is blocked"),
+        "slip" => Some("motor and encoder disagree"),
+        _ if fault == "saturation-always" => Some("at the limit of its range"),
+        _ => None,
     }
 }
 
 #[test]
 fn every_fault_of_every_chip_is_survived_or_refused_for_its_reason_and_nothing_hangs() {
     let rows = faults::rows(1..=2, || ()).expect("nothing waits for ever");
+    assert_eq!(rows.len(), 2 * (4 * 10 + 9), "every chip with every sickness, and the rest");
     for row in &rows {
-        assert_ne!(row.outcome, "WRONG", "{row:?} is off by more than {WRONG_SIGMAS} σ");
-        assert!(row.seconds < 1800.0, "{row:?} takes too long");
-        assert!(row.outcome == "found" || row.reason.is_some());
+        // The default session takes 276 s; what was lost is measured again, patience has its limits.
+        assert!(row.seconds < 400.0, "{row:?} takes too long");
+        match (expected(&row.fault), &row.reason) {
+            (None, None) => {
+                let sigmas = row.error_sigmas.expect("an azimuth");
+                assert!(sigmas.abs() <= WRONG_SIGMAS, "{row:?}: a wrong north");
+            }
+            (Some(part), Some(reason)) => assert!(reason.contains(part), "{row:?}: not {part}"),
+            _ => panic!("{row:?}"),
+        }
+    }
+}
+
+/// What the board must have noticed of faults that it survives.
+#[test]
+fn what_is_survived_is_noticed() {
+    let rows = faults::rows(1..=1, || ()).expect("nothing waits for ever");
+    for (fault, part) in [
+        ("gyro-checksum-once", "gyro: reading lost: wrong checksum"),
+        ("encoder-checksum-once", "encoder: reading lost: wrong checksum"),
+        ("gyro-silent-once", "1 sample(s) missing"),
+        ("encoder-silent-once", "encoder: reading lost: too far from the one before"),
+        ("gyro-bus-once", "gyro: reading lost: bus error"),
+        ("accelerometer-reset", "accelerometer: it has restarted: starting it again"),
+        ("encoder-reset", "encoder: it has restarted: starting it again"),
+        ("stage-reset", "stage: it has restarted: starting it again"),
+        ("gyro-hang", "sample(s) missing"),
+        ("stage-blocked-once", "stage: blocked, trying again"),
+        ("saturation-once", "is measured again: gyro saturated"),
+        ("overflow-once", "samples came faster than they were taken"),
+        ("door-slam", "is measured again"),
+        ("base-nudge", "is measured again"),
+    ] {
+        let row = rows.iter().find(|row| row.fault == fault).expect(fault);
+        let noticed = row.noticed.as_deref().unwrap_or("nothing");
+        assert!(noticed.contains(part), "{fault}: {noticed}");
     }
 }
 

@@ -107,10 +107,10 @@ const OTHERS: [(Fault, &str); 9] = [
     (Fault::TravelLimit, "travel-limit"),
     (Fault::EncoderSlip, "encoder-slip"),
     (Fault::SaturationOnce, "saturation-once"),
-    (Fault::Saturation, "saturation"),
-    (Fault::Overflow, "overflow"),
+    (Fault::Saturation, "saturation-always"),
+    (Fault::Overflow, "overflow-once"),
     (Fault::DoorSlam, "door-slam"),
-    (Fault::Nudge, "nudge"),
+    (Fault::Nudge, "base-nudge"),
 ];
 
 /// How many faults there are.
