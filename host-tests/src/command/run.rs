@@ -5,8 +5,9 @@ use std::time::Instant as WallClock;
 
 use bench::instrument::recorder::CsvRecorder;
 use bench::instrument::{self, Run, Watch};
+use bench::output::json::{self, AzimuthObject};
 use bench::output::progress::Progress;
-use bench::output::{json, text};
+use bench::output::text;
 use clap::{Args, ValueEnum};
 use drivers::ads1262::configuration::DataRate;
 use embassy_time::Instant;
@@ -15,6 +16,7 @@ use firmware::ports::NoRecorder;
 use firmware::simulated::fault::Fault;
 use firmware::simulated::scenario::{GyroClass, RATES, Scenario};
 use orientation::session::Session;
+use serde_json::{Value, json};
 
 use super::Told;
 
@@ -172,12 +174,30 @@ pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
     let wall = begun.elapsed().as_secs_f64();
     let conclusion = run.conclusion().ok_or("the session did not end")?;
     let truth = Some(scenario.azimuth_deg);
-    let object = json::azimuth(&run.replay, conclusion, truth);
+    let object = object(&run, &scenario, json::azimuth(&run.replay, conclusion, truth))?;
     let told = Told::of(conclusion.verdict.is_ok(), as_json, &object, |block| {
         text::block(block, "the simulated run", &run.replay, conclusion, truth)?;
         text::run(block, &run, &scenario, wall)
     })?;
     Ok(Told { refusal: conclusion.verdict.as_ref().err().map(ToString::to_string), ..told })
+}
+
+/// The object of a result, with what only a simulated run has.
+fn object(run: &Run, scenario: &Scenario, result: AzimuthObject) -> Result<Value, String> {
+    let mut object = serde_json::to_value(result).map_err(|error| error.to_string())?;
+    let health = &run.health;
+    object["seed"] = scenario.seed.into();
+    object["simulated_seconds"] = run.seconds.into();
+    object["health"] = json!({
+        "samples": health.samples,
+        "missing": health.missing,
+        "late": health.late,
+        "overflowed": health.overflowed,
+        "lost": health.lost,
+        "restarts": health.restarts,
+        "violations": run.violations,
+    });
+    Ok(object)
 }
 
 fn names() -> String {
