@@ -5,7 +5,14 @@ use core::time::Duration;
 use embedded_hal_async::delay::DelayNs;
 
 /// Waits for at least `time`, rounded up to whole microseconds.
-pub async fn pause(delay: &mut impl DelayNs, time: Duration) {
-    let microseconds = time.as_nanos().div_ceil(1000);
-    delay.delay_us(u32::try_from(microseconds).unwrap_or(u32::MAX)).await;
+pub fn pause(delay: &mut impl DelayNs, time: Duration) -> impl Future<Output = ()> {
+    delay.delay_us(microseconds(time))
+}
+
+/// A time rounded up to whole microseconds; more than fit are as many as fit.
+fn microseconds(time: Duration) -> u32 {
+    let whole =
+        u32::try_from(time.as_secs()).ok().and_then(|seconds| seconds.checked_mul(1_000_000));
+    let part = time.subsec_nanos().div_ceil(1000);
+    whole.and_then(|whole| whole.checked_add(part)).unwrap_or(u32::MAX)
 }

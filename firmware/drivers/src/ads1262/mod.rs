@@ -31,13 +31,13 @@ use core::time::Duration;
 
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::digital::Wait;
-use embedded_hal_async::spi::{MODE_1, Mode, SpiDevice};
+use embedded_hal_async::spi::{MODE_1, Mode, Operation, SpiDevice};
 
 use crate::fault::Fault;
 use crate::pause::pause;
 use codec::{Conversion, FRAME};
 use configuration::{Configuration, Sign};
-use registers::{Image, WRITTEN};
+use registers::Image;
 
 /// Clock polarity and phase (section 7.6: data change on rising and are taken on falling edges).
 pub const SPI_MODE: Mode = MODE_1;
@@ -108,8 +108,9 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Ads1262<S, R, D> {
         self.reset().await?;
         self.identify().await?;
         pause(&mut self.delay, REFERENCE_SETTLING).await;
-        self.test(Sign::Plus).await?;
-        self.test(Sign::Minus).await?;
+        for sign in [Sign::Plus, Sign::Minus] {
+            self.test(sign).await?;
+        }
         self.run(&self.configuration.image()).await
     }
 
@@ -129,7 +130,7 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Ads1262<S, R, D> {
     pub async fn read(&mut self) -> Result<Conversion, Fault> {
         let mut bytes = [0; BYTES_PER_SAMPLE];
         bytes[0] = registers::RDATA1;
-        self.spi.transfer_in_place(&mut bytes).await.map_err(|_| Fault::Bus)?;
+        self.transfer(&mut bytes).await?;
         let [_, frame @ ..] = bytes;
         codec::decode(frame)
     }
@@ -144,7 +145,7 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Ads1262<S, R, D> {
     /// the two registers behind it is it an identity.
     async fn identify(&mut self) -> Result<(), Fault> {
         let mut bytes = [registers::RREG | registers::ID, 2, 0, 0, 0];
-        self.spi.transfer_in_place(&mut bytes).await.map_err(|_| Fault::Bus)?;
+        self.transfer(&mut bytes).await?;
         let [_, _, id, power, interface] = bytes;
         let is_right = id >> registers::DEVICE_SHIFT == 0
             && power == registers::POWER_RESET_VALUE
@@ -173,28 +174,20 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Ads1262<S, R, D> {
     /// Begins conversions with these registers and no others: a reset stops what ran before.
     async fn run(&mut self, image: &Image) -> Result<(), Fault> {
         self.reset().await?;
-        let mut bytes = [0; 2 + WRITTEN];
-        bytes[..2].copy_from_slice(&[registers::WREG | registers::POWER, WRITTEN as u8 - 1]);
-        bytes[2..].copy_from_slice(image.bytes());
-        self.write(&bytes).await?;
-        self.verify(image).await?;
+        self.write(&image.written()).await?;
+        let mut bytes = registers::READ_BACK;
+        self.transfer(&mut bytes).await?;
+        image.verify(&bytes)?;
         self.write(&[registers::START1]).await
     }
 
-    async fn verify(&mut self, image: &Image) -> Result<(), Fault> {
-        let mut bytes = [0; 2 + WRITTEN];
-        bytes[..2].copy_from_slice(&[registers::RREG | registers::POWER, WRITTEN as u8 - 1]);
-        self.spi.transfer_in_place(&mut bytes).await.map_err(|_| Fault::Bus)?;
-        let pairs = (registers::POWER..).zip(bytes[2..].iter().zip(image.bytes()));
-        for (register, (found, written)) in pairs {
-            if found != written {
-                return Err(Fault::NotAsWritten { register });
-            }
-        }
-        Ok(())
+    async fn transfer(&mut self, bytes: &mut [u8]) -> Result<(), Fault> {
+        let mut operations = [Operation::TransferInPlace(bytes)];
+        self.spi.transaction(&mut operations).await.map_err(|_| Fault::Bus)
     }
 
     async fn write(&mut self, bytes: &[u8]) -> Result<(), Fault> {
-        self.spi.write(bytes).await.map_err(|_| Fault::Bus)
+        let mut operations = [Operation::Write(bytes)];
+        self.spi.transaction(&mut operations).await.map_err(|_| Fault::Bus)
     }
 }

@@ -1,5 +1,7 @@
 //! Commands, register addresses and bits (SBAS661C table 9-33 and section 9.6).
 
+use crate::fault::Fault;
+
 /// Resets the chip to its default registers.
 pub const RESET: u8 = 0x06;
 /// Starts conversions.
@@ -64,6 +66,17 @@ pub const TEST_LOW: u8 = 0x17;
 /// Registers that this driver writes: POWER to TDACN, all that bears on a conversion.
 pub const WRITTEN: usize = 17;
 
+/// Bytes of the commands that write or read them.
+const COMMAND: usize = 2 + WRITTEN;
+
+/// The command that reads POWER to TDACN; the answer comes behind its first two bytes.
+pub(super) const READ_BACK: [u8; COMMAND] = {
+    let mut command = [0; COMMAND];
+    command[0] = RREG | POWER;
+    command[1] = WRITTEN as u8 - 1;
+    command
+};
+
 /// What POWER to TDACN are to hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Image([u8; WRITTEN]);
@@ -95,5 +108,23 @@ impl Image {
     #[must_use]
     pub const fn bytes(&self) -> &[u8; WRITTEN] {
         &self.0
+    }
+
+    /// The command that writes them.
+    pub(super) fn written(&self) -> [u8; COMMAND] {
+        let mut command = [0; COMMAND];
+        let head = [WREG | POWER, WRITTEN as u8 - 1];
+        command.iter_mut().zip(head.iter().chain(&self.0)).for_each(|(byte, from)| *byte = *from);
+        command
+    }
+
+    /// Compares them with the answer to [`READ_BACK`].
+    pub(super) fn verify(&self, [_, _, found @ ..]: &[u8; COMMAND]) -> Result<(), Fault> {
+        for (register, (found, written)) in (POWER..).zip(found.iter().zip(&self.0)) {
+            if found != written {
+                return Err(Fault::NotAsWritten { register });
+            }
+        }
+        Ok(())
     }
 }

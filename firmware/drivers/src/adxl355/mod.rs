@@ -84,6 +84,18 @@ const SELF_TEST_INTERVAL: Duration = Duration::from_millis(1);
 /// and Profile": at most 2.52 periods of delay, twice that to the end of a step).
 const FILTER_PERIODS: u32 = 5;
 
+/// What begins the two halves of the self-test, without and with the force.
+const HALVES: &[&[(u8, u8)]] = &[
+    &[(RANGE, RANGE_8_G), (SELF_TEST, SELF_TEST_MODE), (POWER_CTL, MEASURING)],
+    &[(SELF_TEST, SELF_TEST_FORCE)],
+];
+
+/// What ends it.
+const AFTER_TEST: &[(u8, u8)] = &[(SELF_TEST, SELF_TEST_OFF), (POWER_CTL, STANDBY)];
+
+/// The copies of the factory settings.
+type Shadow = [u8; 5];
+
 /// What can be chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Configuration {
@@ -122,7 +134,7 @@ pub struct Adxl355<S, D> {
     delay: D,
     configuration: Configuration,
     /// The factory settings as the chip loaded them before the first software reset.
-    shadow: Option<[u8; 5]>,
+    shadow: Option<Shadow>,
     revision: u8,
     /// New samples since all registers were right; at its limit until they are.
     reads_unchecked: u8,
@@ -196,7 +208,9 @@ impl<S: SpiDevice, D: DelayNs> Adxl355<S, D> {
     async fn sample(&mut self) -> Result<(Frame, bool), Fault> {
         let mut is_fresh = false;
         for _ in 0..ATTEMPTS {
-            let frame = codec::frame(&self.registers(STATUS).await?)?;
+            let mut burst = [0; BURST];
+            self.read_from(STATUS, &mut burst).await?;
+            let frame = codec::frame(&burst)?;
             is_fresh |= frame.status.is_ready();
             if !self.status().await?.is_ready() {
                 return Ok((frame, is_fresh));
@@ -207,19 +221,25 @@ impl<S: SpiDevice, D: DelayNs> Adxl355<S, D> {
     }
 
     async fn identify(&mut self) -> Result<(), Fault> {
-        let found: [u8; 4] = self.registers(DEVID_AD).await?;
-        if found[..3] != IDENTITY {
+        let mut found = [0; 4];
+        self.read_from(DEVID_AD, &mut found).await?;
+        let [identity @ .., revision] = found;
+        if identity != IDENTITY {
             return Err(Fault::Identity { found: u32::from_be_bytes(found) });
         }
-        self.revision = found[3];
+        self.revision = revision;
         Ok(())
     }
 
     /// Keeps the factory settings as they are before the first software reset; two reads must agree.
     async fn keep_shadow(&mut self) -> Result<(), Fault> {
         if self.shadow.is_none() {
-            let shadow = self.registers(SHADOW).await?;
-            if shadow != self.registers(SHADOW).await? {
+            let mut shadows = [Shadow::default(); 2];
+            for shadow in &mut shadows {
+                self.read_from(SHADOW, shadow).await?;
+            }
+            let [shadow, again] = shadows;
+            if shadow != again {
                 return Err(Fault::Checksum);
             }
             self.shadow = Some(shadow);
@@ -231,9 +251,10 @@ impl<S: SpiDevice, D: DelayNs> Adxl355<S, D> {
     /// revision 1 may spoil them (Reset Register, note on software resets).
     async fn reset(&mut self) -> Result<(), Fault> {
         for _ in 0..RESETS {
-            self.write(RESET, RESET_CODE).await?;
+            self.write(&[(RESET, RESET_CODE)]).await?;
             self.wait_loaded().await?;
-            let shadow = self.registers(SHADOW).await?;
+            let mut shadow = Shadow::default();
+            self.read_from(SHADOW, &mut shadow).await?;
             if self.shadow == Some(shadow) {
                 return Ok(());
             }
@@ -254,22 +275,20 @@ impl<S: SpiDevice, D: DelayNs> Adxl355<S, D> {
     /// Self-test at ±8 g, where gravity and the force together cannot clip, and at 4 kHz, the rate
     /// after reset: the difference that the force makes (Self Test).
     async fn test(&mut self) -> Result<(), Fault> {
-        self.write(RANGE, RANGE_8_G).await?;
-        self.write(SELF_TEST, SELF_TEST_MODE).await?;
-        self.write(POWER_CTL, MEASURING).await?;
-        let without = self.sum().await?;
-        self.write(SELF_TEST, SELF_TEST_FORCE).await?;
-        let with = self.sum().await?;
-        self.write(SELF_TEST, SELF_TEST_OFF).await?;
-        self.write(POWER_CTL, STANDBY).await?;
+        let mut sums = [[0; 3]; 2];
+        for (sum, contents) in sums.iter_mut().zip(HALVES) {
+            self.write(contents).await?;
+            self.sum(sum).await?;
+        }
+        self.write(AFTER_TEST).await?;
+        let [without, with] = sums;
         let passes = codec::self_test_passes(without, with, SELF_TEST_SAMPLES);
         if passes { Ok(()) } else { Err(Fault::SelfTest) }
     }
 
-    /// The sum of some samples after settling.
-    async fn sum(&mut self) -> Result<[i32; 3], Fault> {
+    /// Adds some samples after settling.
+    async fn sum(&mut self, sum: &mut [i32; 3]) -> Result<(), Fault> {
         pause(&mut self.delay, SETTLING).await;
-        let mut sum = [0; 3];
         for _ in 0..SELF_TEST_SAMPLES {
             pause(&mut self.delay, SELF_TEST_INTERVAL).await;
             let (frame, is_fresh) = self.sample().await?;
@@ -280,39 +299,45 @@ impl<S: SpiDevice, D: DelayNs> Adxl355<S, D> {
                 *sum += count;
             }
         }
-        Ok(sum)
+        Ok(())
     }
 
     /// Sets what differs from the reset values; allowed in standby only (Register Map, note).
     async fn configure(&mut self) -> Result<(), Fault> {
-        self.write(FILTER, self.configuration.rate.filter()).await?;
-        self.write(RANGE, RANGE_2_G).await?;
-        self.write(POWER_CTL, MEASURING).await
+        let rate = (FILTER, self.configuration.rate.filter());
+        self.write(&[rate, (RANGE, RANGE_2_G), (POWER_CTL, MEASURING)]).await
     }
 
     /// Compares all writable registers with what they ought to hold.
     async fn check(&mut self) -> Result<(), Fault> {
-        let found: [u8; SETTINGS] = self.registers(OFFSET_X_H).await?;
+        let mut found = [0; SETTINGS];
+        self.read_from(OFFSET_X_H, &mut found).await?;
         codec::compare(&found, &codec::settings(self.configuration.rate))?;
         self.reads_unchecked = 0;
         Ok(())
     }
 
     async fn status(&mut self) -> Result<Status, Fault> {
-        let [status] = self.registers(STATUS).await?;
+        let mut status = [0];
+        self.read_from(STATUS, &mut status).await?;
+        let [status] = status;
         Ok(Status(status))
     }
 
-    /// Registers in a row, from `first` on.
-    async fn registers<const N: usize>(&mut self, first: u8) -> Result<[u8; N], Fault> {
+    /// Reads registers in a row, from `first` on.
+    async fn read_from(&mut self, first: u8, bytes: &mut [u8]) -> Result<(), Fault> {
         let command = [first << 1 | 1];
-        let mut bytes = [0; N];
-        let mut operations = [Operation::Write(&command), Operation::Read(&mut bytes)];
-        self.spi.transaction(&mut operations).await.map_err(|_| Fault::Bus)?;
-        Ok(bytes)
+        let mut operations = [Operation::Write(&command), Operation::Read(bytes)];
+        self.spi.transaction(&mut operations).await.map_err(|_| Fault::Bus)
     }
 
-    async fn write(&mut self, register: u8, value: u8) -> Result<(), Fault> {
-        self.spi.write(&[register << 1, value]).await.map_err(|_| Fault::Bus)
+    /// Writes registers, one after another.
+    async fn write(&mut self, contents: &[(u8, u8)]) -> Result<(), Fault> {
+        for (register, value) in contents {
+            let bytes = [register << 1, *value];
+            let mut operations = [Operation::Write(&bytes)];
+            self.spi.transaction(&mut operations).await.map_err(|_| Fault::Bus)?;
+        }
+        Ok(())
     }
 }

@@ -193,12 +193,16 @@ impl<S: SpiDevice, D: DelayNs> Mt6835<S, D> {
 
     async fn register(&mut self, register: u16) -> Result<u8, Fault> {
         let mut bytes = codec::read(register);
-        self.spi.transfer_in_place(&mut bytes).await.map_err(|_| Fault::Bus)?;
-        Ok(bytes[2])
+        let mut operations = [Operation::TransferInPlace(&mut bytes)];
+        self.spi.transaction(&mut operations).await.map_err(|_| Fault::Bus)?;
+        let [.., value] = bytes;
+        Ok(value)
     }
 
     async fn write(&mut self, register: u16, value: u8) -> Result<(), Fault> {
-        self.spi.write(&codec::write(register, value)).await.map_err(|_| Fault::Bus)
+        let bytes = codec::write(register, value);
+        let mut operations = [Operation::Write(&bytes)];
+        self.spi.transaction(&mut operations).await.map_err(|_| Fault::Bus)
     }
 }
 

@@ -37,7 +37,7 @@ use embedded_hal_async::spi::SpiDevice;
 
 use self::codec::{DATAGRAM, Guard, Status};
 use self::configuration::Configuration;
-use self::link::Link;
+use self::link::{Link, Pass};
 use self::registers::{Address, drv_status, gstat, ioin, ramp_mode, ramp_stat, spi_status};
 use self::units::Velocity;
 use crate::fault::Fault;
@@ -71,6 +71,34 @@ const STOPPING_LOOKS: usize = 100;
 /// has tried three times (11.2).
 const BRIDGE_TEST: Duration = Duration::from_millis(2);
 
+/// Slows down to rest.
+const STOP: [(Address, u32); 2] = [(registers::VMAX, 0), (registers::RAMPMODE, ramp_mode::FORWARD)];
+
+/// Stays at rest, whatever target and velocity are told.
+const HOLD: [(Address, u32); 1] = [(registers::RAMPMODE, ramp_mode::HOLD)];
+
+/// Lets a motor that has stalled move again, but not yet.
+const CLEAR_STALL: [(Address, u32); 3] = [
+    (registers::VMAX, 0),
+    (registers::RAMPMODE, ramp_mode::HOLD),
+    (registers::RAMP_STAT, ramp_stat::STALLED),
+];
+
+/// Clears the global flags with the bridges off.
+const CLEAR_ERRORS: [(Address, u32); 2] =
+    [(registers::CHOPCONF, codec::CHOPPER_OFF), (registers::GSTAT, gstat::ALL)];
+
+/// What a status is made of; the version and the position again tell whether the rest is true.
+const LOOKED_AT: [Address; 7] = [
+    registers::RAMP_STAT,
+    registers::XACTUAL,
+    registers::VACTUAL,
+    registers::DRV_STATUS,
+    registers::GSTAT,
+    registers::IOIN,
+    registers::XACTUAL,
+];
+
 /// The driver.
 #[derive(Debug)]
 pub struct Tmc5160<S, D> {
@@ -99,15 +127,10 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
         self.identify().await?;
         self.come_to_rest().await?;
         self.clear_errors().await?;
-        self.write(&codec::settings(&self.configuration)).await?;
-        let [position] = self.read([registers::XACTUAL]).await?;
-        self.write(&[
-            (registers::XTARGET, position),
-            (registers::RAMPMODE, ramp_mode::POSITION),
-            (registers::CHOPCONF, codec::CHOPPER),
-        ])
-        .await?;
-        self.verify_settings(position).await?;
+        let mut position = [0];
+        let look = Pass::Read(&[registers::XACTUAL], &mut position);
+        self.link.pass(&mut [Pass::Configure(&self.configuration), look], false).await?;
+        self.stand_ready(position).await?;
         self.test_bridges().await
     }
 
@@ -118,12 +141,11 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
     /// [`Fault::Alarm`] where a stall waits for [`Self::clear_stall`] or the bridges are shut down.
     pub async fn go_to(&mut self, microsteps: i32) -> Result<(), Fault> {
         let Configuration { clock, ramp, .. } = self.configuration;
-        let guard = self.prepare(ramp.peak).await?;
         let target = (registers::XTARGET, microsteps.cast_unsigned());
-        self.write(&[guard, target]).await?;
-        self.verify([guard, target]).await?;
+        let first = [self.guard(ramp.peak), target];
         let peak = clock.velocity_units(ramp.peak);
-        self.write(&[(registers::RAMPMODE, ramp_mode::POSITION), (registers::VMAX, peak)]).await
+        let last = [(registers::RAMPMODE, ramp_mode::POSITION), (registers::VMAX, peak)];
+        self.depart(&first, &first, &last).await
     }
 
     /// Moves on with a velocity, either way, until it is stopped: softly by switches where it is too
@@ -132,18 +154,18 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
     /// # Errors
     /// As [`Self::go_to`].
     pub async fn run(&mut self, velocity: Velocity) -> Result<(), Fault> {
-        let guard = self.prepare(velocity).await?;
         let is_forward = velocity.0 >= 0;
         let mode = if is_forward { ramp_mode::FORWARD } else { ramp_mode::BACKWARD };
         let units = self.configuration.clock.velocity_units(velocity);
-        self.write(&[guard, (registers::RAMP_STAT, ramp_stat::LATCHED_LEFT)]).await?;
-        self.verify([guard]).await?;
-        self.write(&[(registers::VMAX, units), (registers::RAMPMODE, mode)]).await
+        let guard = self.guard(velocity);
+        let first = [guard, (registers::RAMP_STAT, ramp_stat::LATCHED_LEFT)];
+        let last = [(registers::VMAX, units), (registers::RAMPMODE, mode)];
+        self.depart(&first, &[guard], &last).await
     }
 
     /// Slows down to rest with AMAX (12.2.4 a); a stall stays to be acknowledged.
     pub async fn stop(&mut self) -> Result<(), Fault> {
-        self.write(&[(registers::VMAX, 0), (registers::RAMPMODE, ramp_mode::FORWARD)]).await
+        self.pass(&mut [Pass::Write(&STOP)]).await.map(|_| ())
     }
 
     /// Says where the standing motor is, microsteps.
@@ -152,34 +174,34 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
     /// [`Fault::NotReady`] while it moves.
     pub async fn set_position(&mut self, microsteps: i32) -> Result<(), Fault> {
         let position = microsteps.cast_unsigned();
-        let [state] = self.read([registers::RAMP_STAT]).await?;
-        if state & ramp_stat::STANDING == 0 {
+        let mut state = [0];
+        self.pass(&mut [Pass::Read(&[registers::RAMP_STAT], &mut state)]).await?;
+        if !is_set(state, ramp_stat::STANDING) {
             return Err(Fault::NotReady);
         }
         let both = [(registers::XACTUAL, position), (registers::XTARGET, position)];
-        self.write(&[(registers::RAMPMODE, ramp_mode::HOLD)]).await?;
-        self.write(&both).await?;
-        self.verify(both).await?;
-        self.write(&[(registers::RAMPMODE, ramp_mode::POSITION)]).await
+        let follow = [(registers::RAMPMODE, ramp_mode::POSITION)];
+        let mut passes =
+            [Pass::Write(&HOLD), Pass::Write(&both), Pass::Verify(&both), Pass::Write(&follow)];
+        self.pass(&mut passes).await.map(|_| ())
     }
 
     /// Where the left switch was met since the last [`Self::run`], microsteps; a soft stop leads
     /// beyond it.
     pub async fn left_edge(&mut self) -> Result<Option<i32>, Fault> {
-        let [state, edge] = self.read([registers::RAMP_STAT, registers::XLATCH]).await?;
+        let mut found = [0; 2];
+        let addresses = [registers::RAMP_STAT, registers::XLATCH];
+        self.pass(&mut [Pass::Read(&addresses, &mut found)]).await?;
+        let [state, edge] = found;
         Ok((state & ramp_stat::LATCHED_LEFT != 0).then(|| edge.cast_signed()))
     }
 
     /// Acknowledges a stall; the motor stays where it is. It has lost its position: home again.
     pub async fn clear_stall(&mut self) -> Result<(), Fault> {
-        self.write(&[
-            (registers::VMAX, 0),
-            (registers::RAMPMODE, ramp_mode::HOLD),
-            (registers::RAMP_STAT, ramp_stat::STALLED),
-        ])
-        .await?;
-        let [state] = self.read([registers::RAMP_STAT]).await?;
-        if state & ramp_stat::STALLED != 0 {
+        let mut state = [0];
+        let look = Pass::Read(&[registers::RAMP_STAT], &mut state);
+        self.pass(&mut [Pass::Write(&CLEAR_STALL), look]).await?;
+        if is_set(state, ramp_stat::STALLED) {
             return Err(Fault::NotAsWritten { register: registers::RAMP_STAT.0 });
         }
         Ok(())
@@ -191,17 +213,9 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
     /// [`Fault::Checksum`] where two looks at a standing motor differ, [`Fault::Identity`] where the
     /// version does not come back.
     pub async fn status(&mut self) -> Result<Status, Fault> {
-        let [ramp, position, velocity, driver, global, inputs, again] = self
-            .read([
-                registers::RAMP_STAT,
-                registers::XACTUAL,
-                registers::VACTUAL,
-                registers::DRV_STATUS,
-                registers::GSTAT,
-                registers::IOIN,
-                registers::XACTUAL,
-            ])
-            .await?;
+        let mut found = [0; LOOKED_AT.len()];
+        self.pass(&mut [Pass::Read(&LOOKED_AT, &mut found)]).await?;
+        let [ramp, position, velocity, driver, global, inputs, again] = found;
         check_version(inputs)?;
         let clock = self.configuration.clock;
         let status = Status::new(clock, [ramp, position, velocity, driver, global]);
@@ -211,48 +225,47 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
         Ok(status)
     }
 
-    /// Reads from a chip that must not have been reset.
-    async fn read<const N: usize>(&mut self, addresses: [Address; N]) -> Result<[u32; N], Fault> {
-        let (values, seen) = self.link.read(addresses).await?;
-        check_reset(seen)?;
-        Ok(values)
+    /// Passes through a chip that must not have been reset.
+    fn pass(&mut self, passes: &mut [Pass<'_>]) -> impl Future<Output = Result<u8, Fault>> {
+        self.link.pass(passes, false)
     }
 
-    /// Writes to a chip that must not have been reset.
-    async fn write(&mut self, values: &[(Address, u32)]) -> Result<(), Fault> {
-        let ((), seen) = self.link.write(values).await?;
-        check_reset(seen)
+    /// Passes through a chip that may have been reset.
+    fn pass_anyhow(&mut self, passes: &mut [Pass<'_>]) -> impl Future<Output = Result<u8, Fault>> {
+        self.link.pass(passes, true)
     }
 
-    /// Compares registers with what was written to them.
-    async fn verify<const N: usize>(&mut self, written: [(Address, u32); N]) -> Result<(), Fault> {
-        let found = self.read(written.map(|(address, _)| address)).await?;
-        for ((Address(register), value), found) in written.into_iter().zip(found) {
-            if found != value {
-                return Err(Fault::NotAsWritten { register });
-            }
-        }
-        Ok(())
+    /// The stops that suit a velocity.
+    fn guard(&self, velocity: Velocity) -> (Address, u32) {
+        let guard = Guard::at(self.configuration.stall, velocity);
+        (registers::SW_MODE, codec::switch_mode(&self.configuration, guard))
     }
 
-    /// Refuses to move where the chip cannot, and has a standing motor stand until all is said. The
-    /// stops that suit a velocity, to be written next.
-    async fn prepare(&mut self, velocity: Velocity) -> Result<(Address, u32), Fault> {
-        let ([state], seen) = self.link.read([registers::RAMP_STAT]).await?;
-        check_reset(seen)?;
-        if state & ramp_stat::STALLED != 0 || seen & spi_status::DRIVER_ERROR != 0 {
+    /// Begins a motion: what is written first, what of it must be found again, what is written then.
+    /// Refuses to move where the chip cannot, and has a standing motor stand until all is said.
+    async fn depart(
+        &mut self,
+        first: &[(Address, u32)],
+        verified: &[(Address, u32)],
+        last: &[(Address, u32)],
+    ) -> Result<(), Fault> {
+        let mut state = [0];
+        let look = Pass::Read(&[registers::RAMP_STAT], &mut state);
+        let seen = self.pass(&mut [look]).await?;
+        if is_set(state, ramp_stat::STALLED) || seen & spi_status::DRIVER_ERROR != 0 {
             return Err(Fault::Alarm { status: seen });
         }
-        if state & ramp_stat::STANDING != 0 {
-            self.write(&[(registers::RAMPMODE, ramp_mode::HOLD)]).await?;
-        }
-        let guard = Guard::at(self.configuration.stall, velocity);
-        Ok((registers::SW_MODE, codec::switch_mode(&self.configuration, guard)))
+        let mut passes =
+            [Pass::Write(&HOLD), Pass::Write(first), Pass::Verify(verified), Pass::Write(last)];
+        let moving = usize::from(!is_set(state, ramp_stat::STANDING));
+        self.pass(passes.get_mut(moving..).unwrap_or_default()).await.map(|_| ())
     }
 
     /// Whether the right chip is there, ready to move by itself. It may have been reset.
     async fn identify(&mut self) -> Result<(), Fault> {
-        let ([inputs], _) = self.link.read([registers::IOIN]).await?;
+        let mut inputs = [0];
+        self.pass_anyhow(&mut [Pass::Read(&[registers::IOIN], &mut inputs)]).await?;
+        let [inputs] = inputs;
         check_version(inputs)?;
         if inputs & ioin::STEP_MODE != 0 {
             return Err(Fault::Identity { found: inputs });
@@ -265,13 +278,12 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
 
     /// Stops whatever the motor did before, and holds it.
     async fn come_to_rest(&mut self) -> Result<(), Fault> {
-        let stop = [(registers::VMAX, 0), (registers::RAMPMODE, ramp_mode::FORWARD)];
-        self.link.write(&stop).await?;
+        self.pass_anyhow(&mut [Pass::Write(&STOP)]).await?;
         for _ in 0..STOPPING_LOOKS {
-            let ([state], _) = self.link.read([registers::RAMP_STAT]).await?;
-            if state & ramp_stat::STANDING != 0 {
-                self.link.write(&[(registers::RAMPMODE, ramp_mode::HOLD)]).await?;
-                return Ok(());
+            let mut state = [0];
+            self.pass_anyhow(&mut [Pass::Read(&[registers::RAMP_STAT], &mut state)]).await?;
+            if is_set(state, ramp_stat::STANDING) {
+                return self.pass_anyhow(&mut [Pass::Write(&HOLD)]).await.map(|_| ());
             }
             pause(&mut self.delay, STOPPING).await;
         }
@@ -280,17 +292,19 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
 
     /// Clears the global flags with the bridges off; what comes back is true.
     async fn clear_errors(&mut self) -> Result<(), Fault> {
-        let clear = [(registers::CHOPCONF, codec::CHOPPER_OFF), (registers::GSTAT, gstat::ALL)];
-        self.link.write(&clear).await?;
-        let ([errors], _) = self.link.read([registers::GSTAT]).await?;
+        let mut errors = [0];
+        let look = Pass::Read(&[registers::GSTAT], &mut errors);
+        self.pass_anyhow(&mut [Pass::Write(&CLEAR_ERRORS), look]).await?;
+        let [errors] = errors;
         if errors & gstat::ALL != 0 {
             return Err(Fault::Alarm { status: errors as u8 });
         }
         Ok(())
     }
 
-    /// Reads back every register that can be.
-    async fn verify_settings(&mut self, position: u32) -> Result<(), Fault> {
+    /// Has the motor stand where it is in position mode, switches the bridges on, and reads back
+    /// every register that can be.
+    async fn stand_ready(&mut self, [position]: [u32; 1]) -> Result<(), Fault> {
         let configuration = &self.configuration;
         let written = [
             (registers::GCONF, codec::global_configuration(configuration)),
@@ -299,13 +313,18 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
             (registers::RAMPMODE, ramp_mode::POSITION),
             (registers::CHOPCONF, codec::CHOPPER),
         ];
-        self.verify(written).await
+        let [.., target, mode, chopper] = written;
+        let last = [target, mode, chopper];
+        self.pass(&mut [Pass::Write(&last), Pass::Verify(&written)]).await.map(|_| ())
     }
 
     /// Lets the bridges work and asks whether they have found a short.
     async fn test_bridges(&mut self) -> Result<(), Fault> {
         pause(&mut self.delay, BRIDGE_TEST).await;
-        let [driver, global] = self.read([registers::DRV_STATUS, registers::GSTAT]).await?;
+        let mut found = [0; 2];
+        let addresses = [registers::DRV_STATUS, registers::GSTAT];
+        self.pass(&mut [Pass::Read(&addresses, &mut found)]).await?;
+        let [driver, global] = found;
         if driver & drv_status::SHUT_DOWN != 0 || global & gstat::ALL != 0 {
             return Err(Fault::SelfTest);
         }
@@ -313,9 +332,9 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
     }
 }
 
-/// Whether no datagram told of a reset.
-const fn check_reset(seen: u8) -> Result<(), Fault> {
-    if seen & spi_status::RESET == 0 { Ok(()) } else { Err(Fault::Reset) }
+/// Whether a register has a bit.
+const fn is_set([register]: [u32; 1], bit: u32) -> bool {
+    register & bit != 0
 }
 
 /// Whether IOIN is this chip's.
