@@ -4,6 +4,7 @@
 //! so-manieth sample: between, the stage cannot have turned far, and the force is only averaged. A sample goes out only whole: without a good rate and a good angle there is
 //! none, and its absence shows in the next one's time.
 
+use drivers::fault::Fault;
 use embassy_time::{Duration, Instant, with_timeout};
 use orientation::device::{Device, Trouble};
 use orientation::error::Refusal;
@@ -15,7 +16,7 @@ use crate::configuration::Configuration;
 use crate::event::Event;
 use crate::guarded::Guarded;
 use crate::patience::Symptom;
-use crate::ports::{Accelerometer, Encoder, ForceReading, Gyro, Observer, Sensors};
+use crate::ports::{Accelerometer, Encoder, ForceReading, Gyro, Observer, RateReading, Sensors};
 use crate::shared::Shared;
 use crate::timeline::{Arrival, Timeline};
 
@@ -30,6 +31,9 @@ const SATURATED_SECONDS: f64 = 5.0;
 const FASTEST: f64 = TURN / 4.0;
 /// What a stage may jump by: play, ringing, a slipping magnet, rad.
 const PLAY: f64 = TURN / 360.0;
+
+/// A force with the temperature at which it was measured.
+type Force = ([SpecificForce; 3], Temperature);
 
 /// How often something came in a row.
 #[derive(Clone, Copy, Debug)]
@@ -184,19 +188,30 @@ impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, 
 
     async fn rate(&mut self) -> Result<Option<AngularRate>, Refusal> {
         let outcome = self.gyro.device.read().await;
-        let Some(reading) = self.gyro.checked(outcome, self.shared).await? else {
-            return Ok(None);
+        match self.judge_rate(outcome)? {
+            Ok(rate) => Ok(rate),
+            Err(symptom) => self.gyro.mend(symptom, self.shared).await.map(|()| None),
+        }
+    }
+
+    /// A new rate, none where it is not new, or what is to be mended.
+    fn judge_rate(
+        &mut self,
+        outcome: Result<RateReading, Fault>,
+    ) -> Result<Result<Option<AngularRate>, Symptom>, Refusal> {
+        let RateReading { rate, is_new } = match self.gyro.checked(outcome) {
+            Ok(reading) => reading,
+            Err(symptom) => return Ok(Err(symptom)),
         };
-        if !reading.is_new {
-            return Ok(None);
+        if !is_new {
+            return Ok(Ok(None));
         }
-        self.judge_saturation(reading.rate)?;
-        if self.rates.push(reading.rate) >= STUCK && !reading.rate.is_saturated() {
+        self.judge_saturation(rate)?;
+        if self.rates.push(rate) >= STUCK && !rate.is_saturated() {
             self.rates = Row::new();
-            self.gyro.mend(Symptom::Stuck, self.shared).await?;
-            return Ok(None);
+            return Ok(Err(Symptom::Stuck));
         }
-        Ok(Some(reading.rate))
+        Ok(Ok(Some(rate)))
     }
 
     fn judge_saturation(&mut self, rate: AngularRate) -> Result<(), Refusal> {
@@ -211,9 +226,11 @@ impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, 
     async fn angle(&mut self) -> Result<Option<Angle>, Refusal> {
         if self.angles_due.is_due() || self.angle.is_none() {
             let outcome = self.encoder.device.read().await;
-            let shown = self.encoder.checked(outcome, self.shared).await?;
-            let angle = shown.map(|shown| self.calibration.correct(shown));
-            self.angle = angle.filter(|angle| self.is_in_line(*angle));
+            self.angle = match self.encoder.checked(outcome) {
+                Ok(shown) => Some(self.calibration.correct(shown)),
+                Err(symptom) => self.encoder.mend(symptom, self.shared).await.map(|()| None)?,
+            };
+            self.angle = self.angle.filter(|angle| self.is_in_line(*angle));
         }
         Ok(self.angle)
     }
@@ -235,32 +252,38 @@ impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, 
     }
 
     /// Force and temperature with every so-manieth sample.
-    async fn force(&mut self) -> Result<Option<([SpecificForce; 3], Temperature)>, Refusal> {
+    async fn force(&mut self) -> Result<Option<Force>, Refusal> {
         if !self.forces_due.is_due() {
             return Ok(None);
         }
         let outcome = self.accelerometer.device.read().await;
-        let Some(reading) = self.accelerometer.checked(outcome, self.shared).await? else {
-            return Ok(None);
-        };
-        self.judge_force(&reading).await?;
-        let usable = reading.is_new && !reading.is_clipped;
-        Ok(usable.then_some((reading.force, reading.temperature)))
+        match self.judge_force(outcome)? {
+            Ok(force) => Ok(force),
+            Err(symptom) => self.accelerometer.mend(symptom, self.shared).await.map(|()| None),
+        }
     }
 
-    /// Old outputs and equal ones show an accelerometer that has stopped; one that stays at its
-    /// limit is of no use.
-    async fn judge_force(&mut self, reading: &ForceReading) -> Result<(), Refusal> {
+    /// A force, none where it is old or clipped, or what is to be mended. Old outputs and equal ones
+    /// show an accelerometer that has stopped; one that stays at its limit is of no use.
+    fn judge_force(
+        &mut self,
+        outcome: Result<ForceReading, Fault>,
+    ) -> Result<Result<Option<Force>, Symptom>, Refusal> {
+        let reading = match self.accelerometer.checked(outcome) {
+            Ok(reading) => reading,
+            Err(symptom) => return Ok(Err(symptom)),
+        };
         let clipped = self.forces_clipped + self.forces_due.divider;
         self.forces_clipped = if reading.is_clipped { clipped } else { 0 };
         if self.forces_clipped > self.longest_clipped {
             return Err(self.shared.give_up(Device::Accelerometer, Trouble::Saturated));
         }
-        if self.forces.push(reading.force) < STUCK {
-            return Ok(());
+        if self.forces.push(reading.force) >= STUCK {
+            self.forces = Row::new();
+            return Ok(Err(Symptom::Stuck));
         }
-        self.forces = Row::new();
-        self.accelerometer.mend(Symptom::Stuck, self.shared).await
+        let usable = reading.is_new && !reading.is_clipped;
+        Ok(Ok(usable.then_some((reading.force, reading.temperature))))
     }
 
     /// Counts and tells samples that are missing or beside their time.

@@ -28,14 +28,14 @@ pub struct AnalogueGyro<S, R, D> {
 }
 
 impl<S: SpiDevice, R: Wait, D: DelayNs> Startable for AnalogueGyro<S, R, D> {
-    async fn start(&mut self) -> Result<(), Fault> {
-        self.converter.start().await
+    fn start(&mut self) -> impl Future<Output = Result<(), Fault>> {
+        self.converter.start()
     }
 }
 
 impl<S: SpiDevice, R: Wait, D: DelayNs> Gyro for AnalogueGyro<S, R, D> {
-    async fn ready(&mut self) -> Result<(), Fault> {
-        self.converter.ready().await
+    fn ready(&mut self) -> impl Future<Output = Result<(), Fault>> {
+        self.converter.ready()
     }
 
     async fn read(&mut self) -> Result<RateReading, Fault> {
@@ -57,8 +57,8 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Gyro for AnalogueGyro<S, R, D> {
 pub struct PlatformAccelerometer<S, D>(pub Adxl355<S, D>);
 
 impl<S: SpiDevice, D: DelayNs> Startable for PlatformAccelerometer<S, D> {
-    async fn start(&mut self) -> Result<(), Fault> {
-        self.0.start().await
+    fn start(&mut self) -> impl Future<Output = Result<(), Fault>> {
+        self.0.start()
     }
 }
 
@@ -79,8 +79,8 @@ impl<S: SpiDevice, D: DelayNs> Accelerometer for PlatformAccelerometer<S, D> {
 pub struct StageEncoder<S, D>(pub Mt6835<S, D>);
 
 impl<S: SpiDevice, D: DelayNs> Startable for StageEncoder<S, D> {
-    async fn start(&mut self) -> Result<(), Fault> {
-        self.0.start().await
+    fn start(&mut self) -> impl Future<Output = Result<(), Fault>> {
+        self.0.start()
     }
 }
 
@@ -103,22 +103,22 @@ fn microsteps(angle: f64) -> i32 {
 }
 
 impl<S: SpiDevice, D: DelayNs> Startable for StageMotor<S, D> {
-    async fn start(&mut self) -> Result<(), Fault> {
-        self.0.start().await
+    fn start(&mut self) -> impl Future<Output = Result<(), Fault>> {
+        self.0.start()
     }
 }
 
 impl<S: SpiDevice, D: DelayNs> Actuator for StageMotor<S, D> {
-    async fn go_to(&mut self, angle: f64) -> Result<(), Fault> {
-        self.0.go_to(microsteps(angle)).await
+    fn go_to(&mut self, angle: f64) -> impl Future<Output = Result<(), Fault>> {
+        self.0.go_to(microsteps(angle))
     }
 
-    async fn seek(&mut self, rate: f64) -> Result<(), Fault> {
-        self.0.run(Velocity(microsteps(rate))).await
+    fn seek(&mut self, rate: f64) -> impl Future<Output = Result<(), Fault>> {
+        self.0.run(Velocity(microsteps(rate)))
     }
 
-    async fn set_angle(&mut self, angle: f64) -> Result<(), Fault> {
-        self.0.set_position(microsteps(angle)).await
+    fn set_angle(&mut self, angle: f64) -> impl Future<Output = Result<(), Fault>> {
+        self.0.set_position(microsteps(angle))
     }
 
     async fn release(&mut self) -> Result<(), Fault> {

@@ -1,6 +1,7 @@
 //! A device with the patience that is left for it: lost readings are counted, a lost device is
 //! started again, a sick one given up.
 
+use drivers::fault::Fault;
 use embassy_time::{Duration, Timer};
 use orientation::device::Device;
 use orientation::error::Refusal;
@@ -18,36 +19,52 @@ const REST: Duration = Duration::from_millis(20);
 pub struct Guarded<'a, D> {
     /// The device.
     pub device: &'a mut D,
+    guard: Guard,
+}
+
+/// What guards a device: the same for every device, so that it is there once.
+#[derive(Debug)]
+struct Guard {
     name: Device,
     patience: Patience,
+}
+
+impl Guard {
+    /// Whether the device is to be started again after this, or only the reading is lost.
+    fn is_to_restart<O: Observer>(
+        &mut self,
+        symptom: Symptom,
+        shared: &Shared<'_, O>,
+    ) -> Result<bool, Refusal> {
+        match self.patience.failed(symptom) {
+            Remedy::Drop => Ok(false),
+            Remedy::Restart => Ok(true),
+            Remedy::GiveUp(trouble) => Err(shared.give_up(self.name, trouble)),
+        }
+    }
 }
 
 impl<'a, D: Startable> Guarded<'a, D> {
     /// Guards a device.
     pub fn new(device: &'a mut D, name: Device) -> Self {
-        Self { device, name, patience: Patience::default() }
+        Self { device, guard: Guard { name, patience: Patience::default() } }
     }
 
     /// How often the device had to be started again.
     #[must_use]
     pub fn restarts(&self) -> u8 {
-        self.patience.restarts()
+        self.guard.patience.restarts()
     }
 
     /// Starts the device, several times where it must be.
     ///
     /// # Errors
     /// It is given up.
-    pub async fn start<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal> {
-        while let Err(fault) = self.device.start().await {
-            let symptom = Symptom::Chip(fault);
-            match self.patience.failed(symptom) {
-                Remedy::GiveUp(trouble) => return Err(shared.give_up(self.name, trouble)),
-                Remedy::Drop | Remedy::Restart => self.rest(shared, symptom).await,
-            }
-        }
-        shared.tell(Event::Started(self.name));
-        Ok(())
+    pub fn start<O: Observer>(
+        &mut self,
+        shared: &Shared<'_, O>,
+    ) -> impl Future<Output = Result<(), Refusal>> {
+        self.start_after(None, shared)
     }
 
     /// Takes note of a symptom and mends it: the reading is lost, perhaps the device started again.
@@ -59,40 +76,38 @@ impl<'a, D: Startable> Guarded<'a, D> {
         symptom: Symptom,
         shared: &Shared<'_, O>,
     ) -> Result<(), Refusal> {
-        match self.patience.failed(symptom) {
-            Remedy::Drop => {
-                shared.lose(self.name, symptom);
-                Ok(())
-            }
-            Remedy::Restart => {
-                self.rest(shared, symptom).await;
-                self.start(shared).await
-            }
-            Remedy::GiveUp(trouble) => Err(shared.give_up(self.name, trouble)),
+        if self.guard.is_to_restart(symptom, shared)? {
+            return self.start_after(Some(symptom), shared).await;
         }
+        shared.lose(self.guard.name, symptom);
+        Ok(())
     }
 
-    /// The outcome of an exchange; a failed one is mended and gives nothing.
-    ///
-    /// # Errors
-    /// The device is given up.
-    pub async fn checked<T, O: Observer>(
+    /// The outcome of an exchange, or what is to be mended.
+    pub fn checked<T>(&mut self, outcome: Result<T, Fault>) -> Result<T, Symptom> {
+        if outcome.is_ok() {
+            self.guard.patience.succeeded();
+        }
+        outcome.map_err(Symptom::Chip)
+    }
+
+    /// Starts the device until it has started, each time after a rest where something was wrong.
+    async fn start_after<O: Observer>(
         &mut self,
-        outcome: Result<T, drivers::fault::Fault>,
+        mut trouble: Option<Symptom>,
         shared: &Shared<'_, O>,
-    ) -> Result<Option<T>, Refusal> {
-        match outcome {
-            Ok(value) => {
-                self.patience.succeeded();
-                Ok(Some(value))
+    ) -> Result<(), Refusal> {
+        loop {
+            if let Some(symptom) = trouble {
+                shared.restart(self.guard.name, symptom);
+                Timer::after(REST).await;
             }
-            Err(fault) => self.mend(Symptom::Chip(fault), shared).await.map(|()| None),
+            let Err(fault) = self.device.start().await else { break };
+            let symptom = Symptom::Chip(fault);
+            self.guard.is_to_restart(symptom, shared)?;
+            trouble = Some(symptom);
         }
-    }
-
-    async fn rest<O: Observer>(&self, shared: &Shared<'_, O>, symptom: Symptom) {
-        shared.count(|health| health.restart(self.name));
-        shared.tell(Event::Restarting(self.name, symptom));
-        Timer::after(REST).await;
+        shared.tell(Event::Started(self.guard.name));
+        Ok(())
     }
 }

@@ -91,6 +91,12 @@ impl<'a, O: Observer> Shared<'a, O> {
         self.tell(Event::Lost(device, symptom));
     }
 
+    /// Counts and tells that a device is started again.
+    pub fn restart(&self, device: Device, symptom: Symptom) {
+        self.count(|health| health.restart(device));
+        self.tell(Event::Restarting(device, symptom));
+    }
+
     /// Tells that a device is given up, and gives the reason for the session's end.
     pub fn give_up(&self, device: Device, trouble: Trouble) -> Refusal {
         self.tell(Event::GivenUp(device, trouble));

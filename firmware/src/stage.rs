@@ -49,9 +49,26 @@ impl From<Refusal> for Break {
     }
 }
 
+/// What the motor driver is asked.
+#[derive(Clone, Copy, Debug)]
+enum Request {
+    /// To go to an angle, rad.
+    GoTo(f64),
+    /// To turn at a rate, rad/s.
+    Seek(f64),
+    /// To take this for the angle at which the motor stands, rad.
+    SetAngle(f64),
+    /// To stop, and to let a motor that stalled turn again.
+    Release,
+    /// What the motor does.
+    Look,
+}
+
 /// The stage under control.
 pub struct Stage<'a, M, O> {
     actuator: Guarded<'a, M>,
+    /// What the motor did when it was last looked at.
+    motion: Motion,
     configuration: StageConfiguration,
     shared: &'a Shared<'a, O>,
 }
@@ -64,7 +81,7 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
         shared: &'a Shared<'a, O>,
     ) -> Self {
         let actuator = Guarded::new(actuator, Device::Stage);
-        Self { actuator, configuration: *configuration, shared }
+        Self { actuator, motion: Motion::default(), configuration: *configuration, shared }
     }
 
     /// Homes, then goes where it is sent until it must be given up; gives the reason.
@@ -106,19 +123,23 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
 
     /// Goes down to the index, always from above, and believes the encoder's angle there.
     async fn find_index(&mut self) -> Result<(), Break> {
-        let rate = self.configuration.seek_rate;
-        self.ask(M::release).await?;
-        if self.ask(M::motion).await?.at_index {
-            self.seek(rate).await?;
-            self.follow(Trouble::NoIndex, |motion| !motion.at_index).await?;
-            self.ask(M::release).await?;
+        self.ask(Request::Release).await?;
+        self.ask(Request::Look).await?;
+        if self.motion.at_index {
+            self.seek(1.0, |motion| !motion.at_index).await?;
+            self.ask(Request::Release).await?;
         }
-        self.seek(-rate).await?;
-        let motion = self.follow(Trouble::NoIndex, |motion| motion.is_standing).await?;
-        if !motion.at_index {
+        self.seek(-1.0, |motion| motion.is_standing).await?;
+        if !self.motion.at_index {
             return Err(self.fail(Trouble::NoIndex).into());
         }
         self.adopt_index().await
+    }
+
+    /// Turns up or down until the motor does what is waited for.
+    async fn seek(&mut self, way: f64, is_done: fn(&Motion) -> bool) -> Result<(), Break> {
+        self.ask(Request::Seek(way * self.configuration.seek_rate)).await?;
+        self.follow(Trouble::NoIndex, is_done).await
     }
 
     async fn adopt_index(&mut self) -> Result<(), Break> {
@@ -128,7 +149,7 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
         if (shown - index).abs() > self.configuration.index_tolerance {
             return Err(self.fail(Trouble::Disagrees((shown - index) * DEGREES)).into());
         }
-        self.ask(async |motor: &mut M| motor.set_angle(shown).await).await?;
+        self.ask(Request::SetAngle(shown)).await?;
         self.shared.tell(Event::Homed(shown * DEGREES));
         Ok(())
     }
@@ -165,12 +186,11 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
     /// One movement; how far the encoder then stands from the target, rad. Motor and encoder must
     /// agree.
     async fn approach(&mut self, aim: f64, target: f64) -> Result<f64, Break> {
-        self.ask(async |motor: &mut M| motor.go_to(aim).await).await?;
-        let is_there = |motion: &Motion| motion.has_reached && motion.is_standing;
-        let motion = self.follow(Trouble::Stalled, is_there).await?;
+        self.ask(Request::GoTo(aim)).await?;
+        self.follow(Trouble::Stalled, |motion| motion.has_reached && motion.is_standing).await?;
         Timer::after(self.configuration.settle).await;
-        let shown = self.shown_near(motion.angle).await?;
-        let apart = shown - motion.angle;
+        let shown = self.shown_near(self.motion.angle).await?;
+        let apart = shown - self.motion.angle;
         if apart.abs() > self.configuration.agreement {
             return Err(self.fail(Trouble::Disagrees(apart * DEGREES)).into());
         }
@@ -193,51 +213,54 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
     /// Lets a blocked motor turn again, its count set by the encoder.
     async fn free(&mut self, rest: Duration) -> Result<(), Break> {
         self.shared.tell(Event::Blocked);
-        self.ask(M::release).await?;
+        self.ask(Request::Release).await?;
         Timer::after(rest).await;
-        let counted = self.ask(M::motion).await?.angle;
-        let shown = self.shown_near(counted).await?;
-        self.ask(async |motor: &mut M| motor.set_angle(shown).await).await
-    }
-
-    async fn seek(&mut self, rate: f64) -> Result<(), Break> {
-        self.ask(async |motor: &mut M| motor.seek(rate).await).await
+        self.ask(Request::Look).await?;
+        let shown = self.shown_near(self.motion.angle).await?;
+        self.ask(Request::SetAngle(shown)).await
     }
 
     /// Watches the motor until it does what is waited for; `trouble` where it takes too long.
     async fn follow(
         &mut self,
         trouble: Trouble,
-        is_done: impl Fn(&Motion) -> bool,
-    ) -> Result<Motion, Break> {
+        is_done: fn(&Motion) -> bool,
+    ) -> Result<(), Break> {
         let deadline = Instant::now() + self.configuration.longest;
         while Instant::now() < deadline {
             Timer::after(POLL).await;
-            let motion = self.ask(M::motion).await?;
-            if motion.is_stalled {
+            self.ask(Request::Look).await?;
+            if self.motion.is_stalled {
                 return Err(Break::Stalled);
             }
-            if is_done(&motion) {
-                return Ok(motion);
+            if is_done(&self.motion) {
+                return Ok(());
             }
         }
         Err(self.fail(trouble).into())
     }
 
     /// An exchange with the motor driver, repeated while only the bus fails.
-    async fn ask<T>(
-        &mut self,
-        mut exchange: impl AsyncFnMut(&mut M) -> Result<T, Fault>,
-    ) -> Result<T, Break> {
+    async fn ask(&mut self, request: Request) -> Result<(), Break> {
         let restarts = self.actuator.restarts();
         loop {
-            let outcome = exchange(self.actuator.device).await;
-            if let Some(answer) = self.actuator.checked(outcome, self.shared).await? {
-                return Ok(answer);
-            }
+            let outcome = self.exchange(request).await;
+            let Err(symptom) = self.actuator.checked(outcome) else { return Ok(()) };
+            self.actuator.mend(symptom, self.shared).await?;
             if self.actuator.restarts() != restarts {
                 return Err(Break::Lost);
             }
+        }
+    }
+
+    async fn exchange(&mut self, request: Request) -> Result<(), Fault> {
+        let motor = &mut *self.actuator.device;
+        match request {
+            Request::GoTo(angle) => motor.go_to(angle).await,
+            Request::Seek(rate) => motor.seek(rate).await,
+            Request::SetAngle(angle) => motor.set_angle(angle).await,
+            Request::Release => motor.release().await,
+            Request::Look => motor.motion().await.map(|motion| self.motion = motion),
         }
     }
 
