@@ -66,7 +66,6 @@ pub trait Encoder: Startable {
 /// What the stage's motor does.
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own; all combine")]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[expect(clippy::struct_excessive_bools, reason = "they are independent flags of the driver")]
 pub struct Motion {
     /// Stage angle by the motor's own count, rad, not wrapped.
     pub angle: f64,
