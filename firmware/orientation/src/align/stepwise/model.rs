@@ -1,7 +1,7 @@
 //! Which columns the fit uses: trends where the data ask for them, the Earth rate free where that
 //! costs nothing.
 
-use super::super::direction::{Amplitude, Direction};
+use super::super::direction::Amplitude;
 use super::super::regression::{COLUMNS, Column, Regression};
 use super::Problem;
 
@@ -30,11 +30,26 @@ pub struct Model {
     pub rejected_trend: f64,
 }
 
-/// What one candidate trend would do.
-struct Trial {
-    model: Model,
-    gain: f64,
-    affordable: bool,
+/// What a model makes of the dwells.
+#[derive(Clone, Copy)]
+struct Outcome {
+    chi_square: f64,
+    degrees: usize,
+    variance: f64,
+    amplitude: f64,
+}
+
+impl Outcome {
+    /// The azimuth's variance for one amplitude: that a weak Earth rate has a wide azimuth is no
+    /// reason to believe in a strong one.
+    fn cost(&self) -> f64 {
+        self.variance * self.amplitude * self.amplitude
+    }
+
+    /// Whether the azimuth can afford what a trend has made of the outcome without it.
+    fn is_affordable(&self, before: &Self) -> bool {
+        self.variance <= TREND_COST * TREND_COST * before.variance && self.degrees >= TREND_DEGREES
+    }
 }
 
 impl Model {
@@ -44,24 +59,29 @@ impl Model {
 }
 
 impl Problem<'_> {
-    /// The direction that a model finds.
-    fn direction(&self, regression: &Regression<COLUMNS>, model: &Model) -> Option<Direction> {
-        self.components(&regression.solve(&model.columns())?).direction(model.amplitude)
+    /// What a model makes of the dwells; nothing where they do not determine it. One copy in flash
+    /// serves every model that is compared.
+    #[inline(never)]
+    fn outcome(&self, regression: &Regression<COLUMNS>, model: &Model) -> Option<Outcome> {
+        let solution = regression.solve(&model.columns())?;
+        let direction = self.components(&solution).direction(model.amplitude)?;
+        Some(Outcome {
+            chi_square: solution.chi_square,
+            degrees: solution.degrees,
+            variance: direction.variance,
+            amplitude: direction.amplitude,
+        })
     }
 
     /// Chooses the columns and whether the Earth rate stays free.
-    ///
-    /// The cost of freedom is judged for one amplitude: that a weak Earth rate has a wide azimuth
-    /// is no reason to believe in a strong one.
+    #[inline(never)]
     pub(super) fn choose(&self, regression: &Regression<COLUMNS>) -> Option<Model> {
         let mut model = self.base();
         self.add_trend(regression, &mut model)?;
         let free = Model { amplitude: Amplitude::Free, ..model };
-        let cost =
-            |direction: Direction| direction.variance * direction.amplitude * direction.amplitude;
-        let known = cost(self.direction(regression, &model)?);
-        match self.direction(regression, &free).map(cost) {
-            Some(cost) if cost <= FREE_COST * FREE_COST * known => Some(free),
+        let known = self.outcome(regression, &model)?.cost();
+        match self.outcome(regression, &free) {
+            Some(outcome) if outcome.cost() <= FREE_COST * FREE_COST * known => Some(free),
             _ => Some(model),
         }
     }
@@ -80,40 +100,24 @@ impl Problem<'_> {
     /// Adds temperature and time where chi-square asks for them and the azimuth can afford them;
     /// one that it cannot afford is kept in mind.
     fn add_trend(&self, regression: &Regression<COLUMNS>, model: &mut Model) -> Option<()> {
+        let is_warm = self.is_warm();
         for _ in 0..2 {
-            let solution = regression.solve(&model.columns())?;
-            let before = (solution.chi_square, self.direction(regression, model)?.variance);
-            let trials = candidates(model, self.is_warm());
-            let best = trials
-                .into_iter()
-                .flatten()
-                .filter_map(|candidate| self.trial(regression, candidate, before))
-                .filter(|trial| trial.gain > TREND_CHI_SQUARE)
-                .max_by(|a, b| a.gain.total_cmp(&b.gain));
+            let before = self.outcome(regression, model)?;
+            let mut best: Option<(Model, Outcome, f64)> = None;
+            for candidate in candidates(model, is_warm).into_iter().flatten() {
+                let Some(outcome) = self.outcome(regression, &candidate) else { continue };
+                let gain = before.chi_square - outcome.chi_square;
+                if gain > TREND_CHI_SQUARE && best.is_none_or(|(.., most)| gain >= most) {
+                    best = Some((candidate, outcome, gain));
+                }
+            }
             match best {
-                Some(trial) if trial.affordable => *model = trial.model,
-                Some(trial) => model.rejected_trend = trial.gain,
+                Some((trend, outcome, _)) if outcome.is_affordable(&before) => *model = trend,
+                Some((.., gain)) => model.rejected_trend = gain,
                 None => {}
             }
         }
         Some(())
-    }
-
-    /// What a candidate does to chi-square and to the azimuth's variance, both given without it.
-    fn trial(
-        &self,
-        regression: &Regression<COLUMNS>,
-        model: Model,
-        (chi_square, variance): (f64, f64),
-    ) -> Option<Trial> {
-        let solution = regression.solve(&model.columns())?;
-        let after = self.components(&solution).direction(model.amplitude)?;
-        let cheap = after.variance <= TREND_COST * TREND_COST * variance;
-        Some(Trial {
-            model,
-            gain: chi_square - solution.chi_square,
-            affordable: cheap && solution.degrees >= TREND_DEGREES,
-        })
     }
 
     /// Whether every dwell has a temperature.
