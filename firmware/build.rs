@@ -35,10 +35,10 @@ fn main() -> io::Result<()> {
 }
 
 /// The budget's keys and values.
-fn entries(budget: &str) -> impl Iterator<Item = (&str, String)> {
+fn entries(budget: &str) -> impl Iterator<Item = (&str, &str)> {
     budget.lines().filter_map(|line| {
         let (key, value) = line.split('#').next()?.split_once('=')?;
-        Some((key.trim(), value.trim().replace('_', "")))
+        Some((key.trim(), value.trim()))
     })
 }
 

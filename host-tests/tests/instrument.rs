@@ -146,22 +146,21 @@ fn north_is_found_as_well_as_the_limit_allows_over_sites_attitudes_and_tilts() {
 fn expected(fault: &str) -> Option<&'static str> {
     const NOT_THERE: &str = "another chip answers, or none";
     let (device, sickness) = fault.split_once('-').expect("device and sickness");
-    let is_gyro = device == "gyro";
+    let [is_gyro, is_stage] = ["gyro", "stage"].map(|name| device == name);
+    let is_force = device == "accelerometer";
     match sickness {
-        "identity" => Some(NOT_THERE),
-        "checksum-always" if is_gyro || device == "encoder" => Some("fail their checksum"),
-        // These have no checksum: a broken reply shows in identity or read-back, after a while.
-        "checksum-always" if device == "accelerometer" => Some("accelerometer: "),
-        "checksum-always" => Some("stage: "),
-        "stuck" if is_gyro || device == "accelerometer" => Some("the same reading for ever"),
-        "stuck" if device == "encoder" => Some("encoder: "),
-        "stuck" => Some("stage: "),
         "silent" if is_gyro => Some("gives no more data"),
-        "silent" => Some(NOT_THERE),
+        "identity" | "silent" => Some(NOT_THERE),
+        // Without a checksum a broken reply shows in identity or read-back, after a while.
+        "checksum-always" | "stuck" if is_stage => Some("stage: "),
+        "checksum-always" if is_force => Some("accelerometer: "),
+        "checksum-always" => Some("fail their checksum"),
+        "stuck" if device == "encoder" => Some("encoder: "),
+        "stuck" => Some("the same reading for ever"),
         "bus-always" => Some("its bus fails"),
         "blocked" | "limit" => Some("it is blocked"),
         "slip" => Some("motor and encoder disagree"),
-        _ if fault == "saturation-always" => Some("at the limit of its range"),
+        "always" => Some("at the limit of its range"),
         _ => None,
     }
 }

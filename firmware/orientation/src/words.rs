@@ -1,6 +1,6 @@
 //! One wording for people, whether the text is made here or on the host that reads the log.
 //!
-//! [`words!`](crate::words) gives a type its [`core::fmt::Display`] and, with feature `defmt`, its
+//! [`words!`](crate::words!) gives a type its [`core::fmt::Display`] and, with feature `defmt`, its
 //! `defmt::Format`, from the same sentences. Numbers go through [`Rounded`].
 
 use core::fmt;
