@@ -57,7 +57,7 @@ fn limits(budget: &str) -> io::Result<String> {
     let limit = |name: &str| {
         let entry = entries(budget).find(|(key, _)| *key == name);
         entry
-            .map(|(_, value)| value)
+            .map(|(_, value)| value.replace('_', ""))
             .ok_or_else(|| io::Error::other(format!("{BUDGET}: no {name}")))
     };
     let sum = |sections: &[&str]| {

@@ -99,6 +99,8 @@ pub struct Acquisition<'a, G, A, E, O> {
     longest_clipped: u32,
     greatest_step: u32,
     has_jumped: bool,
+    /// Samples lost in a row because nobody took them.
+    overflowed: u32,
 }
 
 impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, A, E, O> {
@@ -127,6 +129,7 @@ impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, 
             longest_clipped: (SATURATED_SECONDS * configuration.sample_rate) as u32,
             greatest_step: greatest_step(configuration),
             has_jumped: false,
+            overflowed: 0,
         }
     }
 
@@ -150,11 +153,14 @@ impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, 
     }
 
     /// Queues a sample for the session, and tells of it where it cannot.
-    fn hand_over(&self, sample: Sample) {
+    fn hand_over(&mut self, sample: Sample) {
         self.shared.count(|health| health.samples += 1);
         if self.shared.samples.try_send(sample).is_err() {
+            self.overflowed += 1;
             self.shared.count(|health| health.overflowed += 1);
-            self.shared.tell(Event::Overflowed(self.shared.health.get().overflowed));
+        } else if self.overflowed > 0 {
+            self.shared.tell(Event::Overflowed(self.overflowed));
+            self.overflowed = 0;
         }
     }
 
@@ -187,8 +193,9 @@ impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, 
     }
 
     async fn rate(&mut self) -> Result<Option<AngularRate>, Refusal> {
+        let begun = Instant::now();
         let outcome = self.gyro.device.read().await;
-        match self.judge_rate(outcome)? {
+        match self.judge_rate(begun, outcome)? {
             Ok(rate) => Ok(rate),
             Err(symptom) => self.gyro.mend(symptom, self.shared).await.map(|()| None),
         }
@@ -197,9 +204,10 @@ impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, 
     /// A new rate, none where it is not new, or what is to be mended.
     fn judge_rate(
         &mut self,
+        begun: Instant,
         outcome: Result<RateReading, Fault>,
     ) -> Result<Result<Option<AngularRate>, Symptom>, Refusal> {
-        let RateReading { rate, is_new } = match self.gyro.checked(outcome) {
+        let RateReading { rate, is_new } = match self.gyro.checked(begun, outcome) {
             Ok(reading) => reading,
             Err(symptom) => return Ok(Err(symptom)),
         };
@@ -225,8 +233,9 @@ impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, 
     /// The stage's angle, read anew with every so-manieth sample; none where that was lost.
     async fn angle(&mut self) -> Result<Option<Angle>, Refusal> {
         if self.angles_due.is_due() || self.angle.is_none() {
+            let begun = Instant::now();
             let outcome = self.encoder.device.read().await;
-            self.angle = match self.encoder.checked(outcome) {
+            self.angle = match self.encoder.checked(begun, outcome) {
                 Ok(shown) => Some(self.calibration.correct(shown)),
                 Err(symptom) => self.encoder.mend(symptom, self.shared).await.map(|()| None)?,
             };
@@ -256,8 +265,9 @@ impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, 
         if !self.forces_due.is_due() {
             return Ok(None);
         }
+        let begun = Instant::now();
         let outcome = self.accelerometer.device.read().await;
-        match self.judge_force(outcome)? {
+        match self.judge_force(begun, outcome)? {
             Ok(force) => Ok(force),
             Err(symptom) => self.accelerometer.mend(symptom, self.shared).await.map(|()| None),
         }
@@ -267,9 +277,10 @@ impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, 
     /// show an accelerometer that has stopped; one that stays at its limit is of no use.
     fn judge_force(
         &mut self,
+        begun: Instant,
         outcome: Result<ForceReading, Fault>,
     ) -> Result<Result<Option<Force>, Symptom>, Refusal> {
-        let reading = match self.accelerometer.checked(outcome) {
+        let reading = match self.accelerometer.checked(begun, outcome) {
             Ok(reading) => reading,
             Err(symptom) => return Ok(Err(symptom)),
         };

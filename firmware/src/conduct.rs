@@ -15,8 +15,10 @@ use crate::link::Status;
 use crate::ports::{Observer, Recorder};
 use crate::shared::Shared;
 
-/// Longest time until the stage is homed: a search over the whole travel, and again.
-const HOMING: Duration = Duration::from_secs(300);
+/// Longest time until the stage is homed: six searches over the whole travel, with their rests.
+const HOMING: Duration = Duration::from_secs(900);
+/// Part of a dwell's time that is as good as all of it.
+const WHOLE: f64 = 0.99;
 /// Degrees of a radian.
 const DEGREES: f64 = 360.0 / TURN;
 
@@ -63,6 +65,7 @@ impl<'a, R: Recorder, O: Observer> Conductor<'a, R, O> {
     }
 
     async fn conduct(&mut self) -> Result<(), Refusal> {
+        self.check_place()?;
         self.wait_for_home().await?;
         loop {
             let sample = self.sample().await?;
@@ -75,6 +78,15 @@ impl<'a, R: Recorder, O: Observer> Conductor<'a, R, O> {
                 Command::Finished => return Ok(()),
             }
         }
+    }
+
+    /// Refuses a place where nothing could be found, before anything turns.
+    fn check_place(&self) -> Result<(), Refusal> {
+        let latitude = self.session.setting().latitude;
+        if latitude.has_north() {
+            return Ok(());
+        }
+        Err(Refusal::LatitudeTooHigh { latitude: latitude.rad() * DEGREES })
     }
 
     /// Lets samples go by until angles mean something.
@@ -131,6 +143,9 @@ impl<'a, R: Recorder, O: Observer> Conductor<'a, R, O> {
         if let Some(dwell) = self.session.dwells().last() {
             let rate = dwell.rate / DEGREE_PER_HOUR;
             self.shared.tell(Event::Dwelled(self.told.dwells, self.session.planned(), rate));
+            if dwell.seconds < WHOLE * self.session.procedure().schedule.shortest() {
+                self.shared.tell(Event::CutShort(dwell.seconds));
+            }
         }
         self.shared.observer().progress(self.session);
         self.tell_status();

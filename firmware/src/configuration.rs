@@ -13,7 +13,8 @@ const DEGREE: f64 = TURN / 360.0;
 pub struct StageConfiguration {
     /// Stage angle at which the index switch closes, rad; it stays closed below.
     pub index: f64,
-    /// How far from there the encoder may stand after the stage has stopped, rad.
+    /// How far from there the encoder may stand after the stage has stopped, rad: what a wrong zero of
+    /// the encoder may cost in azimuth.
     pub index_tolerance: f64,
     /// Where the stage waits for the session, rad: the first position, so that no time is lost.
     pub home: f64,
@@ -38,7 +39,7 @@ impl Default for StageConfiguration {
     fn default() -> Self {
         Self {
             index: -5.0 * DEGREE,
-            index_tolerance: 2.0 * DEGREE,
+            index_tolerance: 0.05 * DEGREE,
             home: 0.0,
             travel: [-10.0 * DEGREE, 370.0 * DEGREE],
             seek_rate: 12.0 * DEGREE,

@@ -32,7 +32,7 @@ pub enum Event {
     Missing(u32),
     /// A sample came at the wrong time, by so many µs.
     Late(i32),
-    /// Samples were thrown away because nobody took them: how many so far.
+    /// So many samples in a row were thrown away because nobody took them.
     Overflowed(u32),
     /// The stage looks for its index.
     Homing,
@@ -50,6 +50,8 @@ pub enum Event {
     Levelled(f64, f64),
     /// A dwell was taken: number, of how many, its mean rate.
     Dwelled(usize, usize, f64),
+    /// The dwell is shorter than planned, so many seconds: the stage moved of itself.
+    CutShort(f64),
     /// A dwell is measured again.
     Repeated(usize, Disturbance),
     /// A dwell is left out of the fit.
@@ -72,7 +74,7 @@ words! { Event:
     Self::GivenUp(device, trouble) => "{}: given up: {}", device, trouble;
     Self::Missing(count) => "{} sample(s) missing", count;
     Self::Late(microseconds) => "a sample came {} µs beside its time", microseconds;
-    Self::Overflowed(count) => "samples came faster than they were taken: {} lost so far", count;
+    Self::Overflowed(count) => "{} sample(s) lost: nobody took them in time", count;
     Self::Homing => "stage: looking for its index";
     Self::Homed(angle) => "stage: index found at {}°", Rounded::<3>(angle);
     Self::Turning(angle) => "stage: to {}°", Rounded::<3>(angle);
@@ -84,6 +86,8 @@ words! { Event:
         "level: platform inclined by {}° along and {}° across the gyro's axis",
         Rounded::<3>(pitch), Rounded::<3>(roll);
     Self::Dwelled(number, of, rate) => "dwell {} of {}: {} °/h", number, of, Rounded::<4>(rate);
+    Self::CutShort(seconds) =>
+        "that dwell is short, {} s: the stage moved of itself", Rounded::<1>(seconds);
     Self::Repeated(number, why) => "dwell {} is measured again: {}", number, why;
     Self::LeftOut(number, why) => "dwell {} is left out: {}", number, why;
     Self::Concluded(azimuth, sigma, limit) =>

@@ -2,7 +2,7 @@
 //! started again, a sick one given up.
 
 use drivers::fault::Fault;
-use embassy_time::{Duration, Timer};
+use embassy_time::{Duration, Instant, Timer};
 use orientation::device::Device;
 use orientation::error::Refusal;
 
@@ -13,6 +13,9 @@ use crate::shared::Shared;
 
 /// Rest before a device is started again, so that a disturbed supply can recover.
 const REST: Duration = Duration::from_millis(20);
+
+/// An exchange of less than a millisecond that takes as long as this hangs.
+const SLOW: Duration = Duration::from_millis(50);
 
 /// A device under guard.
 #[derive(Debug)]
@@ -83,8 +86,11 @@ impl<'a, D: Startable> Guarded<'a, D> {
         Ok(())
     }
 
-    /// The outcome of an exchange, or what is to be mended.
-    pub fn checked<T>(&mut self, outcome: Result<T, Fault>) -> Result<T, Symptom> {
+    /// The outcome of an exchange that was begun then, or what is to be mended.
+    pub fn checked<T>(&mut self, begun: Instant, outcome: Result<T, Fault>) -> Result<T, Symptom> {
+        if begun.elapsed() > SLOW {
+            return Err(Symptom::Slow);
+        }
         if outcome.is_ok() {
             self.guard.patience.succeeded();
         }

@@ -21,6 +21,8 @@ pub enum Symptom {
     Stuck,
     /// Its readings stay at the limit of the range.
     Saturated,
+    /// Its bus takes far too long.
+    Slow,
     /// A reading that cannot be: too far from the one before.
     Jumped,
 }
@@ -30,6 +32,7 @@ words! { Symptom:
     Self::Silent => "no data in time";
     Self::Stuck => "the same reading again and again";
     Self::Saturated => "at the limit of its range";
+    Self::Slow => "its bus hangs";
     Self::Jumped => "too far from the one before";
 }
 
@@ -46,6 +49,7 @@ impl From<Symptom> for Trouble {
             Symptom::Chip(Fault::NotReady) | Symptom::Silent => Self::Silent,
             Symptom::Stuck | Symptom::Jumped => Self::Stuck,
             Symptom::Saturated => Self::Saturated,
+            Symptom::Slow => Self::Slow,
         }
     }
 }
@@ -66,6 +70,8 @@ pub enum Remedy {
 pub struct Patience {
     lost: u8,
     restarts: u8,
+    /// Whether it ever gave a good reading.
+    has_worked: bool,
     /// What began the trouble that is going on.
     cause: Option<Symptom>,
 }
@@ -80,6 +86,7 @@ impl Patience {
     /// A reading was good.
     pub fn succeeded(&mut self) {
         self.lost = 0;
+        self.has_worked = true;
         self.cause = None;
     }
 
@@ -93,18 +100,26 @@ impl Patience {
         }
         self.lost = 0;
         if self.restarts >= RESTARTS {
-            return Remedy::GiveUp(reason(cause, symptom).into());
+            return Remedy::GiveUp(self.reason(cause, symptom).into());
         }
         self.restarts += 1;
         Remedy::Restart
     }
-}
 
-/// Which of two symptoms tells more: a sick bus, or a device that fell silent or stuck, explains all
-/// that follows; what else began the trouble is told better by what came last.
-fn reason(first: Symptom, last: Symptom) -> Symptom {
-    match first {
-        Symptom::Chip(Fault::Bus | Fault::Checksum) | Symptom::Silent | Symptom::Stuck => first,
-        Symptom::Chip(_) | Symptom::Saturated | Symptom::Jumped => last,
+    /// Which of two symptoms tells more: a sick bus, or a device that fell silent or stuck, explains
+    /// all that follows; what else began the trouble is told better by what came last. A device that
+    /// has worked is no other one: it answers no more.
+    fn reason(&self, first: Symptom, last: Symptom) -> Symptom {
+        match (first, last) {
+            (
+                Symptom::Chip(Fault::Bus | Fault::Checksum)
+                | Symptom::Silent
+                | Symptom::Stuck
+                | Symptom::Slow,
+                _,
+            ) => first,
+            (_, Symptom::Chip(Fault::Identity { .. })) if self.has_worked => Symptom::Silent,
+            _ => last,
+        }
     }
 }

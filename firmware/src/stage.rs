@@ -21,8 +21,11 @@ use crate::shared::Shared;
 
 /// How often the motor is asked what it does.
 const POLL: Duration = Duration::from_millis(20);
-/// How often a movement that was blocked or missed is tried again.
+/// How often the search for the index is tried again while something blocks it.
 const RETRIES: u32 = 5;
+/// How often a movement is tried again: what blocks it twice after the stage has homed blocks it for
+/// good.
+const MOVES: u32 = 2;
 /// Rest after the first stall, so that what blocks the stage can go away; it doubles with each.
 const STALL_REST: Duration = Duration::from_millis(500);
 /// Age beyond which the encoder's angle is none.
@@ -118,7 +121,7 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
                 Err(Break::Lost) => {}
             }
         }
-        Err(self.fail(Trouble::Stalled))
+        Err(self.fail(self.blocked()))
     }
 
     /// Goes down to the index, always from above, and believes the encoder's angle there.
@@ -163,8 +166,8 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
         let begun = Instant::now();
         self.shared.tell(Event::Turning(target * DEGREES));
         let mut aim = target;
-        let mut trouble = Trouble::Stalled;
-        for attempt in 0..=RETRIES {
+        let mut trouble = None;
+        for attempt in 0..=MOVES {
             match self.approach(aim, target).await {
                 Ok(off) if off.abs() <= self.configuration.tolerance => {
                     let took = (Instant::now() - begun).as_micros() as f64 * 1e-6;
@@ -173,21 +176,26 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
                 }
                 Ok(off) => {
                     self.shared.tell(Event::Corrected(off * DEGREES));
-                    trouble = Trouble::NotThere(off * DEGREES);
+                    trouble = Some(Trouble::NotThere(off * DEGREES));
                     aim -= off;
                 }
-                Err(Break::Stalled) if attempt == RETRIES => break,
+                Err(Break::Stalled) if attempt == MOVES => break,
                 Err(broken) => self.recover(broken, STALL_REST * (1 << attempt)).await?,
             }
         }
-        Err(self.fail(trouble))
+        Err(self.fail(trouble.unwrap_or_else(|| self.blocked())))
+    }
+
+    /// The trouble of a stage that stands where it stands.
+    fn blocked(&self) -> Trouble {
+        Trouble::Stalled(self.shared.angle.get().0.rad() * DEGREES)
     }
 
     /// One movement; how far the encoder then stands from the target, rad. Motor and encoder must
     /// agree.
     async fn approach(&mut self, aim: f64, target: f64) -> Result<f64, Break> {
         self.ask(Request::GoTo(aim)).await?;
-        self.follow(Trouble::Stalled, |motion| motion.has_reached && motion.is_standing).await?;
+        self.follow(Trouble::Silent, |motion| motion.has_reached && motion.is_standing).await?;
         Timer::after(self.configuration.settle).await;
         let shown = self.shown_near(self.motion.angle).await?;
         let apart = shown - self.motion.angle;
@@ -197,27 +205,18 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
         Ok(shown - target)
     }
 
-    /// Makes the stage ready for another attempt.
+    /// Makes the stage ready for another attempt. What the motor counts after a stall or a restart is
+    /// worth nothing, and the encoder alone proves nothing: both must meet at the index again.
     async fn recover(&mut self, broken: Break, rest: Duration) -> Result<(), Refusal> {
         match broken {
             Break::Refused(reason) => Err(reason),
             Break::Lost => self.home().await,
-            Break::Stalled => match self.free(rest).await {
-                Ok(()) => Ok(()),
-                Err(Break::Refused(reason)) => Err(reason),
-                Err(Break::Stalled | Break::Lost) => self.home().await,
-            },
+            Break::Stalled => {
+                self.shared.tell(Event::Blocked);
+                Timer::after(rest).await;
+                self.home().await
+            }
         }
-    }
-
-    /// Lets a blocked motor turn again, its count set by the encoder.
-    async fn free(&mut self, rest: Duration) -> Result<(), Break> {
-        self.shared.tell(Event::Blocked);
-        self.ask(Request::Release).await?;
-        Timer::after(rest).await;
-        self.ask(Request::Look).await?;
-        let shown = self.shown_near(self.motion.angle).await?;
-        self.ask(Request::SetAngle(shown)).await
     }
 
     /// Watches the motor until it does what is waited for; `trouble` where it takes too long.
@@ -244,8 +243,9 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
     async fn ask(&mut self, request: Request) -> Result<(), Break> {
         let restarts = self.actuator.restarts();
         loop {
+            let begun = Instant::now();
             let outcome = self.exchange(request).await;
-            let Err(symptom) = self.actuator.checked(outcome) else { return Ok(()) };
+            let Err(symptom) = self.actuator.checked(begun, outcome) else { return Ok(()) };
             self.actuator.mend(symptom, self.shared).await?;
             if self.actuator.restarts() != restarts {
                 return Err(Break::Lost);

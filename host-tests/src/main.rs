@@ -9,6 +9,7 @@ mod command;
 
 use std::process::ExitCode;
 
+use bench::output::say;
 use clap::{FromArgMatches, Parser, Subcommand};
 
 use crate::command::campaign::CampaignOptions;
@@ -78,7 +79,7 @@ fn misuse(error: &clap::Error) -> ExitCode {
     let message: Vec<&str> = lines
         .filter(|line| !line.is_empty() && !line.starts_with("For more information"))
         .collect();
-    eprintln!("{}", message.join(" "));
+    say(&message.join(" "));
     ExitCode::from(2)
 }
 
@@ -89,7 +90,7 @@ fn failed(message: &str, as_json: bool) -> ExitCode {
         // The reason goes to standard error all the same.
         let _ = print(&object.to_string());
     }
-    eprintln!("meridian: {message}");
+    say(&format!("meridian: {message}"));
     ExitCode::from(1)
 }
 
@@ -102,8 +103,8 @@ fn tell(command: &Command, as_json: bool) -> Result<bool, String> {
         Command::Emulate(options) => command::emulate::run(options, as_json),
     }?;
     print(&output)?;
-    if let (Some(reason), true) = (refusal, as_json) {
-        eprintln!("meridian: {reason}");
+    if let Some(reason) = refusal {
+        say(&format!("meridian: {reason}"));
     }
     Ok(found)
 }

@@ -201,6 +201,8 @@ const STILL_MEDIANS: f64 = 9.0;
 const PAUSE: f64 = 0.3;
 /// Fewest samples of a dwell.
 const FEWEST_SAMPLES: u32 = 10;
+/// Shortest dwell, s: a stage that creeps at the ends of a rotation seems to stand for less.
+const SHORTEST_SECONDS: f64 = 0.1;
 
 /// How far the encoder may stray in a standstill, rad: most samples of a recording stand still.
 fn still(rows: &[StageRow]) -> f64 {
@@ -248,7 +250,8 @@ fn standstills(
             _ => runs.push((row.stage_rad, 1)),
         }
     }
-    runs.retain(|run| run.1 >= FEWEST_SAMPLES);
+    let fewest = FEWEST_SAMPLES.max((SHORTEST_SECONDS / sample_seconds) as u32);
+    runs.retain(|run| run.1 >= fewest);
     let usual = f64::from(usual_length(runs.iter().map(|run| run.1).collect()));
     runs.retain(|run| f64::from(run.1) >= PAUSE * usual);
     if runs.is_empty() {

@@ -108,7 +108,7 @@ fn the_whole_session_is_bounded_in_time() {
 
 #[test]
 fn a_stage_that_does_not_arrive_is_refused() {
-    let mut session = session(circle());
+    let mut session = session(Procedure { longest_rotation: 30.0, ..circle() });
     // It takes longer for a rotation than is allowed.
     run(&mut session, &world(10.0), &[], 50.0, 2000.0, 8);
     let verdict = session.conclusion().expect("it has ended").verdict;

@@ -36,9 +36,9 @@ words! { Fault:
     Self::Bus => "bus error";
     Self::Checksum => "wrong checksum";
     Self::Reset => "it has restarted";
-    Self::Identity { found } => "wrong identity {}", found;
+    Self::Identity { found } => "wrong identity {:#x}", found;
     Self::SelfTest => "self-test failed";
-    Self::NotAsWritten { register } => "register {} does not hold what was written", register;
+    Self::NotAsWritten { register } => "register {:#x} does not hold what was written", register;
     Self::NotReady => "not ready in time";
-    Self::Alarm { status } => "alarm, status {}", status;
+    Self::Alarm { status } => "alarm, status {:#x}", status;
 }

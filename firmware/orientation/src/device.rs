@@ -40,14 +40,16 @@ pub enum Trouble {
     NotAsWritten,
     /// It gives no more data.
     Silent,
+    /// Its bus takes far too long, again and again.
+    Slow,
     /// It reports a bad supply, reference, magnet or driver.
     Alarm,
     /// It gives the same reading for ever.
     Stuck,
     /// It stays at the limit of its range.
     Saturated,
-    /// It does not turn.
-    Stalled,
+    /// It does not turn on from this angle, °.
+    Stalled(f64),
     /// Motor and encoder disagree, by this angle, °.
     Disagrees(f64),
     /// The index was not found.
@@ -66,10 +68,11 @@ words! { Trouble:
     Self::SelfTest => "its self-test fails";
     Self::NotAsWritten => "it does not keep its configuration";
     Self::Silent => "it gives no more data";
+    Self::Slow => "its bus hangs again and again";
     Self::Alarm => "it reports a bad supply, reference or magnet";
     Self::Stuck => "it gives the same reading for ever";
     Self::Saturated => "it stays at the limit of its range";
-    Self::Stalled => "it is blocked";
+    Self::Stalled(angle) => "it is blocked at {}°", Rounded::<1>(angle);
     Self::Disagrees(angle) => "motor and encoder disagree by {}°", Rounded::<2>(angle);
     Self::NoIndex => "its index was not found";
     Self::BeyondTravel(angle) => "{}° is beyond its travel", Rounded::<2>(angle);

@@ -69,6 +69,12 @@ pub enum Fault {
     TravelLimit,
     /// The encoder's magnet slips by half a degree.
     EncoderSlip,
+    /// The magnet has slipped before the start.
+    EncoderSlipAtStart,
+    /// The magnet slips while something blocks the stage.
+    EncoderSlipBlocked,
+    /// Every transfer of the gyro's converter takes 300 ms.
+    GyroHang,
     /// The gyro's output clips for two seconds.
     SaturationOnce,
     /// The gyro's output clips for good.
@@ -101,11 +107,14 @@ const SICKNESSES: [(Sickness, &str); 10] = [
     (Sickness::Hang, "hang"),
 ];
 
-const OTHERS: [(Fault, &str); 9] = [
+const OTHERS: [(Fault, &str); 12] = [
     (Fault::BlockedOnce, "stage-blocked-once"),
     (Fault::Blocked, "stage-blocked"),
     (Fault::TravelLimit, "travel-limit"),
     (Fault::EncoderSlip, "encoder-slip"),
+    (Fault::EncoderSlipAtStart, "encoder-slip-at-start"),
+    (Fault::EncoderSlipBlocked, "blocked-slip"),
+    (Fault::GyroHang, "gyro-hang-always"),
     (Fault::SaturationOnce, "saturation-once"),
     (Fault::Saturation, "saturation-always"),
     (Fault::Overflow, "overflow-once"),
@@ -150,7 +159,7 @@ pub struct Plan {
     /// Losses of supply.
     pub blackouts: Vec<Blackout, 1>,
     /// Faults of the stage.
-    pub stage: Vec<StageFault, 1>,
+    pub stage: Vec<StageFault, 2>,
     /// What happens to the base.
     pub disturbances: Vec<Disturbance, 1>,
     /// Angle at which the travel ends too soon, rad.
@@ -200,12 +209,16 @@ impl Plan {
 
     fn disturb(&mut self, fault: Fault) {
         let held = |until| StageFault::Block { from: MIDDLE, until };
+        let slip = |at| StageFault::Slip { at, by_rad: SLIP };
         let stage = match fault {
             Fault::BlockedOnce => Some(held(MIDDLE + PASSING)),
             Fault::Blocked => Some(held(Instant::MAX)),
-            Fault::EncoderSlip => Some(StageFault::Slip { at: MIDDLE, by_rad: SLIP }),
+            Fault::EncoderSlip => Some(slip(MIDDLE)),
+            Fault::EncoderSlipAtStart => Some(slip(Instant::MIN)),
+            Fault::EncoderSlipBlocked => Some(slip(MIDDLE + PASSING / 2)),
             _ => None,
         };
+        let block = matches!(fault, Fault::EncoderSlipBlocked).then(|| held(MIDDLE + PASSING));
         let disturbance = match fault {
             Fault::SaturationOnce => Some(Disturbance::overload(MIDDLE_S, 2.0)),
             Fault::Saturation => Some(Disturbance::overload(MIDDLE_S, 1e6)),
@@ -215,7 +228,11 @@ impl Plan {
             }
             _ => None,
         };
-        self.stage = stage.into_iter().collect();
+        self.stage = stage.into_iter().chain(block).collect();
+        if fault == Fault::GyroHang {
+            let plan = FaultPlan { fault: BusFault::Hang, when: When::always(MIDDLE) };
+            self.buses[place(Select::Gyro)] = Some(plan);
+        }
         self.disturbances = disturbance.into_iter().collect();
         self.caught = (fault == Fault::TravelLimit).then_some(CAUGHT);
         self.hang = (fault == Fault::Overflow).then_some(MIDDLE);

@@ -1,7 +1,7 @@
 //! `meridian emulate`: the firmware on an emulated Cortex-M4F.
 
 use bench::emulate::emulate;
-use bench::output::emulation;
+use bench::output::{emulation, say};
 use clap::Args;
 
 use super::Told;
@@ -16,7 +16,7 @@ pub struct EmulateOptions {
 
 /// Runs the firmware's images; whether all is as it must be.
 pub fn run(options: &EmulateOptions, as_json: bool) -> Result<Told, String> {
-    let found = emulate(options.seed, |line| eprintln!("{line}"))?;
+    let found = emulate(options.seed, |line| say(&line.to_string()))?;
     let object = emulation::object(&found);
     Told::of(found.is_right(), as_json, &object, |text| emulation::tables(text, &found))
 }

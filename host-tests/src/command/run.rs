@@ -1,5 +1,6 @@
 //! `meridian run`: the whole board application on simulated chips.
 
+use std::fmt::Write;
 use std::path::PathBuf;
 use std::time::Instant as WallClock;
 
@@ -135,7 +136,7 @@ impl From<&RunOptions> for Scenario {
         Self {
             seed: options.seed,
             latitude_deg: options.latitude,
-            azimuth_deg: options.azimuth,
+            azimuth_deg: options.azimuth.rem_euclid(360.0),
             pitch_deg: options.pitch,
             roll_deg: options.roll,
             gyro: options.gyro.into(),
@@ -164,13 +165,16 @@ impl Watch for Terminal {
 /// Runs the board and tells what came of it.
 pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
     let fault = match options.fault {
-        Some(Named::List) => return Ok(Told { found: true, output: names(), refusal: None }),
+        Some(Named::List) => {
+            let names: Vec<String> = Fault::all().map(|fault| fault.to_string()).collect();
+            return Told::of(true, as_json, &names, |text| text.write_str(&names.join("\n")));
+        }
         Some(Named::Fault(fault)) => Some(fault),
         None => None,
     };
     let scenario = Scenario::from(options);
     let begun = WallClock::now();
-    let run = simulate(&scenario, fault, options)?;
+    let (run, recorded) = simulate(&scenario, fault, options)?;
     let wall = begun.elapsed().as_secs_f64();
     let conclusion = run.conclusion().ok_or("the session did not end")?;
     let truth = Some(scenario.azimuth_deg);
@@ -179,7 +183,9 @@ pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
         text::block(block, "the simulated run", &run.replay, conclusion, truth)?;
         text::run(block, &run, &scenario, wall)
     })?;
-    Ok(Told { refusal: conclusion.verdict.as_ref().err().map(ToString::to_string), ..told })
+    // A recording that failed is a failure, but the azimuth is not lost with it.
+    let refusal = conclusion.verdict.as_ref().err().map(ToString::to_string).or(recorded.err());
+    Ok(Told { found: refusal.is_none(), refusal, ..told })
 }
 
 /// The object of a result, with what only a simulated run has.
@@ -200,16 +206,14 @@ fn object(run: &Run, scenario: &Scenario, result: AzimuthObject) -> Result<Value
     Ok(object)
 }
 
-fn names() -> String {
-    Fault::all().map(|fault| fault.to_string()).collect::<Vec<_>>().join("\n")
-}
-
+/// Runs the board; the run, and whether its recording is whole.
 fn simulate(
     scenario: &Scenario,
     fault: Option<Fault>,
     options: &RunOptions,
-) -> Result<Run, String> {
+) -> Result<(Run, Result<(), String>), String> {
     let watch = Terminal(Progress::new(0, "positions"));
+    let mut recorded = Ok(());
     let run = match &options.record {
         None => instrument::align(scenario, fault, NoRecorder, &watch),
         Some(path) => {
@@ -217,10 +221,10 @@ fn simulate(
             let setting = scenario.setting().ok_or("the latitude is outside ±90°")?;
             let mut recorder = CsvRecorder::create(path, scenario, &setting).map_err(failed)?;
             let run = instrument::align(scenario, fault, &mut recorder, &watch);
-            recorder.finish().map_err(failed)?;
+            recorded = recorder.finish().map_err(failed);
             run
         }
     };
     watch.0.finish();
-    run.map_err(|error| error.to_string())
+    run.map(|run| (run, recorded)).map_err(|error| error.to_string())
 }

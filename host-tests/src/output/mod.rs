@@ -6,8 +6,15 @@ pub mod progress;
 pub mod table;
 pub mod text;
 
+use std::io::{self, Write};
+
 use orientation::align::regression::Column;
 use orientation::align::stepwise::Fit;
+
+/// Writes a line to standard error. Where nobody reads it, it is lost, and that is no error of ours.
+pub fn say(line: &str) {
+    let _ = writeln!(io::stderr(), "{line}");
+}
 
 /// Radians to degrees.
 #[must_use]

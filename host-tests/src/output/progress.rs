@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use indicatif::{ProgressBar, ProgressStyle};
 use orientation::session::Session;
 
-use super::degrees;
+use super::{degrees, say};
 
 /// Lines that a whole task may print where there is no terminal.
 const LINES: u64 = 12;
@@ -45,7 +45,7 @@ impl Progress {
 
     /// Prints a line of a log above the bar.
     pub fn log(&self, line: &str) {
-        if self.bar.is_hidden() { eprintln!("{line}") } else { self.bar.println(line) }
+        if self.bar.is_hidden() { say(line) } else { self.bar.println(line) }
     }
 
     /// The task is done: the bar stays as it is.
@@ -63,7 +63,7 @@ impl Progress {
         let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0).max(1));
         let part = done * LINES / all;
         if self.told.fetch_max(part, Ordering::Relaxed) < part {
-            eprintln!("{} {done}/{all} {}", self.what, message());
+            say(&format!("{} {done}/{all} {}", self.what, message()));
         }
     }
 }
