@@ -20,6 +20,7 @@ mod samples;
 mod scale;
 #[path = "../measure/stack.rs"]
 mod stack;
+mod yardsticks;
 
 use core::panic::PanicInfo;
 
@@ -76,6 +77,7 @@ fn measure(report: &mut Report) -> Result<(), Failure> {
     heading("INSTRUCTIONS (not cycles) on a Cortex-M4F");
     samples::report(&counter, report)?;
     matching::report(&counter, report)?;
+    yardsticks::regression(&counter, report);
     conclusion::report(&counter, report)?;
     heading("bytes");
     sizes()

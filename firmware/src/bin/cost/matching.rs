@@ -9,6 +9,7 @@ use crate::budget::MATCH_INSTRUCTIONS;
 use crate::counter::Counter;
 use crate::report::{Report, figure};
 use crate::stack::stack_of;
+use crate::yardsticks;
 
 /// Positions n.
 const POSITIONS: u32 = 60;
@@ -20,6 +21,8 @@ const SIGMA: f64 = 1.48e-3;
 const DRIFT_SIGMA: f64 = 9.9e-4;
 /// α₁ over the sum of squares that noise alone is expected to leave.
 const ACCEPTED_SQUARES: f64 = 1.5;
+/// α: 1.2 times what noise alone leaves, (n − 1)·√2·σ·√(2/π) over the horizontal Earth rate.
+const ACCEPTED_ABSOLUTE: f64 = 1.2 * 59.0 * 1.414 * SIGMA * 0.798;
 
 /// Where the stage goes.
 #[derive(Clone, Copy)]
@@ -93,8 +96,10 @@ pub fn report(counter: &Counter, report: &mut Report) -> Result<(), SeriesError>
         quadratic(counter, report, turn, "maximum likelihood", Criterion::MaximumLikelihood)?;
         quadratic(counter, report, turn, "least squares", Criterion::LeastSquares)?;
         within(counter, report, turn)?;
+        within_absolute(counter, turn)?;
         absolute(counter, turn)?;
     }
+    yardsticks::exhaustive(counter, report, &TURNS[0].series(1)?);
     Ok(())
 }
 
@@ -141,6 +146,18 @@ fn within(counter: &Counter, report: &mut Report, turn: Turn) -> Result<(), Seri
     let limit = squares_limit();
     let cost = |series: &Series| counter.measure(|| accepted(series, limit)).0.instructions();
     budgeted(report, turn, "within squares", &Spread::of(cost, turn)?);
+    Ok(())
+}
+
+fn within_absolute(counter: &Counter, turn: Turn) -> Result<(), SeriesError> {
+    let limit = Limit::WithinAbsolute((ACCEPTED_ABSOLUTE * ONE) as u64);
+    let cost = |series: &Series| counter.measure(|| accepted(series, limit)).0.instructions();
+    let spread = Spread::of(cost, turn)?;
+    let row = |what, count| {
+        figure(format_args!("match of 60, {}, within absolute, {what}", turn.name), count);
+    };
+    row("median", spread.median());
+    row("greatest", spread.greatest());
     Ok(())
 }
 
