@@ -1,8 +1,9 @@
 //! Acquisition: on every conversion of the gyro one sample of the stage path, or none and the reason.
 //!
 //! The conversion sets the time; encoder and accelerometer are read right after it, with every
-//! so-manieth sample: between, the stage cannot have turned far, and the force is only averaged. A sample goes out only whole: without a good rate and a good angle there is
-//! none, and its absence shows in the next one's time.
+//! so-manieth sample: between, the stage cannot have turned far, and the force is only averaged. A
+//! sample goes out only whole: without a good rate and a good angle there is none, and its absence
+//! shows in the next one's time.
 
 use drivers::fault::Fault;
 use embassy_time::{Duration, Instant, with_timeout};

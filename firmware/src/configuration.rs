@@ -34,8 +34,8 @@ pub struct StageConfiguration {
 }
 
 impl Default for StageConfiguration {
-    /// Index at −5°, home at 0°, travel −10°…370° (cables wrap), search at 12°/s, within 0.03° of the target,
-    /// motor and encoder within 0.05°, a quarter of a second of rest, 60 s for any movement.
+    /// Index at −5°, home at 0°, travel −10°…370° (cables wrap), search at 12°/s, within 0.03° of the
+    /// target, motor and encoder within 0.05°, a quarter of a second of rest, 60 s for any movement.
     fn default() -> Self {
         Self {
             index: -5.0 * DEGREE,

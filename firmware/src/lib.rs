@@ -8,8 +8,9 @@
 //! ```
 //!
 //! [`run::acquire`] samples, [`run::run`] joins the other parts in fixed order; they know no pin, no
-//! bus and no clock but `embassy-time`'s. What it needs from the outside are the traits of [`ports`]; [`chips`] gives them
-//! to the drivers of the `drivers` crate. What happens is told once, as an [`event::Event`].
+//! bus and no clock but `embassy-time`'s. What they need from the outside are the traits of [`ports`];
+//! [`chips`] gives them to the drivers of the `drivers` crate. What happens is told once, as an
+//! [`event::Event`].
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -49,10 +49,10 @@ pub struct Procedure {
 }
 
 impl Procedure {
-    /// The default of the stage: a quarter of a dwell for the first look at the tilt, travel −10°…370°, two repetitions, stand within 20 µrad (seven
-    /// steps of a 21-bit encoder), arrive within 0.05°, two minutes for a rotation, in
-    /// which a stage can home again, and twice the dwells'
-    /// time and a minute for everything.
+    /// The default of the stage: a quarter of a dwell for the first look at the tilt, travel
+    /// −10°…370°, two repetitions, stand within 20 µrad (seven steps of a 21-bit encoder), arrive
+    /// within 0.05°, two minutes for a rotation, in which a stage can home again, and twice the
+    /// dwells' time, half a minute for each and a minute for everything.
     #[must_use]
     pub fn new(schedule: Schedule, sample_seconds: f64) -> Self {
         let level_seconds = 0.25 * schedule.shortest();
