@@ -179,7 +179,8 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
                     trouble = Some(Trouble::NotThere(off * DEGREES));
                     aim -= off;
                 }
-                Err(Break::Stalled) if attempt == MOVES => break,
+                Err(Break::Stalled) if attempt == MOVES => trouble = None,
+                Err(Break::Lost) if attempt == MOVES => trouble = Some(Trouble::Resets),
                 Err(broken) => self.recover(broken, STALL_REST * (1 << attempt)).await?,
             }
         }
@@ -188,14 +189,14 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
 
     /// The trouble of a stage that stands where it stands.
     fn blocked(&self) -> Trouble {
-        Trouble::Stalled(self.shared.angle.get().0.rad() * DEGREES)
+        Trouble::Stalled(self.nearest_shown(self.motion.angle) * DEGREES)
     }
 
     /// One movement; how far the encoder then stands from the target, rad. Motor and encoder must
     /// agree.
     async fn approach(&mut self, aim: f64, target: f64) -> Result<f64, Break> {
         self.ask(Request::GoTo(aim)).await?;
-        self.follow(Trouble::Silent, |motion| motion.has_reached && motion.is_standing).await?;
+        self.follow(Trouble::Restless, |motion| motion.has_reached && motion.is_standing).await?;
         Timer::after(self.configuration.settle).await;
         let shown = self.shown_near(self.motion.angle).await?;
         let apart = shown - self.motion.angle;
@@ -264,13 +265,19 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
         }
     }
 
-    /// The encoder's angle, rad, in the turn around `near`.
+    /// The latest encoder angle, rad, in the turn around `near`, however old.
+    fn nearest_shown(&self, near: f64) -> f64 {
+        let (shown, _) = self.shared.angle.get();
+        near + (shown - Angle::from_rad(near)).signed_rad()
+    }
+
+    /// A fresh encoder angle, rad, in the turn around `near`.
     async fn shown_near(&self, near: f64) -> Result<f64, Refusal> {
         let deadline = Instant::now() + PATIENCE;
         loop {
-            let (shown, read) = self.shared.angle.get();
+            let (_, read) = self.shared.angle.get();
             if Instant::now() - read <= STALE {
-                return Ok(near + (shown - Angle::from_rad(near)).signed_rad());
+                return Ok(self.nearest_shown(near));
             }
             if Instant::now() > deadline {
                 return Err(self.shared.give_up(Device::Encoder, Trouble::Silent));

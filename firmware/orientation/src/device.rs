@@ -48,6 +48,8 @@ pub enum Trouble {
     Stuck,
     /// It stays at the limit of its range.
     Saturated,
+    /// It moves and does not come to rest.
+    Restless,
     /// It does not turn on from this angle, °.
     Stalled(f64),
     /// Motor and encoder disagree, by this angle, °.
@@ -72,6 +74,7 @@ words! { Trouble:
     Self::Alarm => "it reports a bad supply, reference or magnet";
     Self::Stuck => "it gives the same reading for ever";
     Self::Saturated => "it stays at the limit of its range";
+    Self::Restless => "it does not come to rest";
     Self::Stalled(angle) => "it is blocked at {}°", Rounded::<1>(angle);
     Self::Disagrees(angle) => "motor and encoder disagree by {}°", Rounded::<2>(angle);
     Self::NoIndex => "its index was not found";

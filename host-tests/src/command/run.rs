@@ -178,7 +178,11 @@ pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
     let wall = begun.elapsed().as_secs_f64();
     let conclusion = run.conclusion().ok_or("the session did not end")?;
     let truth = Some(scenario.azimuth_deg);
-    let object = object(&run, &scenario, json::azimuth(&run.replay, conclusion, truth))?;
+    let mut object = object(&run, &scenario, json::azimuth(&run.replay, conclusion, truth))?;
+    if let Err(reason) = &recorded {
+        object["status"] = "failed".into();
+        object["reason"] = reason.as_str().into();
+    }
     let told = Told::of(conclusion.verdict.is_ok(), as_json, &object, |block| {
         text::block(block, "the simulated run", &run.replay, conclusion, truth)?;
         text::run(block, &run, &scenario, wall)

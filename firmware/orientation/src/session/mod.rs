@@ -262,7 +262,8 @@ impl Session {
         ended
     }
 
-    /// Looks at the tilt once enough samples are in and one of them brought a force, then goes to the first position.
+    /// Looks at the tilt once enough samples are in and one of them brought a force, then goes to the
+    /// first position.
     fn level(&mut self, now: Instant) -> Command {
         let is_long = |average: &&DwellAverage<SECTIONS>| average.count() >= self.pace.level;
         let Some([x, y, _]) = self.average.as_ref().filter(is_long).and_then(DwellAverage::force)

@@ -51,7 +51,7 @@ pub struct Procedure {
 impl Procedure {
     /// The default of the stage: a quarter of a dwell for the first look at the tilt, travel
     /// −10°…370°, two repetitions, stand within 20 µrad (seven steps of a 21-bit encoder), arrive
-    /// within 0.05°, two minutes for a rotation, in which a stage can home again, and twice the
+    /// within 0.05°, five minutes for a rotation, in which a stage can home again, and twice the
     /// dwells' time, half a minute for each and a minute for everything.
     #[must_use]
     pub fn new(schedule: Schedule, sample_seconds: f64) -> Self {
@@ -66,7 +66,7 @@ impl Procedure {
             settle_seconds: 0.0,
             retries: 2,
             longest_seconds,
-            longest_rotation: 120.0,
+            longest_rotation: 300.0,
             travel: [-10.0 / 360.0 * TURN, 370.0 / 360.0 * TURN],
             still: STILL,
             arrival: 0.05 / 360.0 * TURN,
