@@ -10,7 +10,7 @@ use embassy_time::{Duration, Instant, with_timeout};
 use orientation::device::{Device, Trouble};
 use orientation::error::Refusal;
 use orientation::signal::Sample;
-use orientation::units::{Angle, AngularRate, SpecificForce, TURN, Temperature};
+use orientation::units::{Angle, AngularRate, DEGREE, SpecificForce, TURN, Temperature};
 
 use crate::calibration::Calibration;
 use crate::configuration::Configuration;
@@ -31,7 +31,7 @@ const SATURATED_SECONDS: f64 = 5.0;
 /// Faster than any stage, rad/s: a quarter of a turn a second.
 const FASTEST: f64 = TURN / 4.0;
 /// What a stage may jump by: play, ringing, a slipping magnet, rad.
-const PLAY: f64 = TURN / 360.0;
+const PLAY: f64 = DEGREE;
 
 /// A force with the temperature at which it was measured.
 type Force = ([SpecificForce; 3], Temperature);

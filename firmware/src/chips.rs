@@ -6,6 +6,7 @@ use drivers::adxl355::Adxl355;
 use drivers::fault::Fault;
 use drivers::mt6835::Mt6835;
 use drivers::tmc5160::Tmc5160;
+use drivers::tmc5160::configuration::MICROSTEPS_PER_TURN;
 use drivers::tmc5160::units::Velocity;
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::digital::Wait;
@@ -90,16 +91,13 @@ impl<S: SpiDevice, D: DelayNs> Encoder for StageEncoder<S, D> {
     }
 }
 
-/// Microsteps in one turn of the stage: 200 full steps of 256, behind a gear of 90:1.
-pub const MICROSTEPS_PER_TURN: f64 = 200.0 * 256.0 * 90.0;
-
 /// The motor behind its gear, positive clockwise from above.
 #[derive(Debug)]
 pub struct StageMotor<S, D>(pub Tmc5160<S, D>);
 
 /// An angle of the stage, rad, in microsteps, to nearest; saturates at the driver's range.
 fn microsteps(angle: f64) -> i32 {
-    libm::round(angle / TURN * MICROSTEPS_PER_TURN) as i32
+    libm::round(angle / TURN * f64::from(MICROSTEPS_PER_TURN)) as i32
 }
 
 impl<S: SpiDevice, D: DelayNs> Startable for StageMotor<S, D> {
@@ -129,7 +127,7 @@ impl<S: SpiDevice, D: DelayNs> Actuator for StageMotor<S, D> {
     async fn motion(&mut self) -> Result<Motion, Fault> {
         let status = self.0.status().await?;
         Ok(Motion {
-            angle: f64::from(status.position) / MICROSTEPS_PER_TURN * TURN,
+            angle: f64::from(status.position) / f64::from(MICROSTEPS_PER_TURN) * TURN,
             is_standing: status.standing,
             has_reached: status.reached,
             is_stalled: status.stalled,

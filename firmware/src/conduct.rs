@@ -8,7 +8,7 @@ use orientation::align::conclusion::Conclusion;
 use orientation::error::Refusal;
 use orientation::session::{Command, Event as SessionEvent, Phase, Session};
 use orientation::signal::Sample;
-use orientation::units::{DEGREE_PER_HOUR, TURN};
+use orientation::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN as DEGREES};
 
 use crate::event::Event;
 use crate::link::Status;
@@ -19,8 +19,6 @@ use crate::shared::Shared;
 const HOMING: Duration = Duration::from_secs(900);
 /// Part of a dwell's time that is as good as all of it.
 const WHOLE: f64 = 0.99;
-/// Degrees of a radian.
-const DEGREES: f64 = 360.0 / TURN;
 
 /// The session at work.
 pub struct Conductor<'a, R, O> {

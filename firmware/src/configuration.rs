@@ -1,12 +1,9 @@
 //! What the instrument must know of its board before it begins.
 
 use embassy_time::Duration;
-use orientation::units::TURN;
+use orientation::units::DEGREE;
 
 use crate::calibration::Harmonics;
-
-/// One degree in radians.
-const DEGREE: f64 = TURN / 360.0;
 
 /// The stage's mechanics and how patiently it is driven.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -58,9 +58,7 @@ impl Status {
         let azimuth = libm::round(azimuth * 1e3) as u32 % 360_000;
         Self::Concluded { azimuth, sigma: libm::ceil(sigma * 1e3) as u32 }
     }
-}
 
-impl Status {
     /// Whether nothing follows.
     #[must_use]
     pub fn is_last(&self) -> bool {

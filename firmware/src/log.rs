@@ -1,7 +1,6 @@
 //! The observer that logs: every event once, by defmt, as a sentence that the host puts together.
 
 use embassy_time::Instant;
-use orientation::session::Session;
 
 use crate::event::Event;
 use crate::ports::Observer;
@@ -16,6 +15,4 @@ impl Observer for DefmtLog {
     fn event(&self, _: Instant, event: &Event) {
         defmt::info!("{}", event);
     }
-
-    fn progress(&self, _: &Session) {}
 }

@@ -19,8 +19,6 @@ pub enum Symptom {
     Silent,
     /// It gives the same reading again and again.
     Stuck,
-    /// Its readings stay at the limit of the range.
-    Saturated,
     /// Its bus takes far too long.
     Slow,
     /// A reading that cannot be: too far from the one before.
@@ -31,7 +29,6 @@ words! { Symptom:
     Self::Chip(fault) => "{}", fault;
     Self::Silent => "no data in time";
     Self::Stuck => "the same reading again and again";
-    Self::Saturated => "at the limit of its range";
     Self::Slow => "its bus hangs";
     Self::Jumped => "too far from the one before";
 }
@@ -48,7 +45,6 @@ impl From<Symptom> for Trouble {
             Symptom::Chip(Fault::Alarm { .. }) => Self::Alarm,
             Symptom::Chip(Fault::NotReady) | Symptom::Silent => Self::Silent,
             Symptom::Stuck | Symptom::Jumped => Self::Stuck,
-            Symptom::Saturated => Self::Saturated,
             Symptom::Slow => Self::Slow,
         }
     }

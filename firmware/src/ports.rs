@@ -119,7 +119,12 @@ pub trait Observer {
     fn event(&self, at: Instant, event: &Event);
 
     /// The session has taken one more dwell.
-    fn progress(&self, session: &Session);
+    fn progress(&self, _: &Session) {}
+}
+
+/// Nobody is told.
+impl Observer for () {
+    fn event(&self, _: Instant, _: &Event) {}
 }
 
 impl<O: Observer> Observer for &O {

@@ -11,7 +11,7 @@ use drivers::fault::Fault;
 use embassy_time::{Duration, Instant, Timer};
 use orientation::device::{Device, Trouble};
 use orientation::error::Refusal;
-use orientation::units::{Angle, TURN};
+use orientation::units::{Angle, DEGREES_PER_RADIAN as DEGREES};
 
 use crate::configuration::StageConfiguration;
 use crate::event::Event;
@@ -32,8 +32,6 @@ const STALL_REST: Duration = Duration::from_millis(500);
 const STALE: Duration = Duration::from_millis(100);
 /// How long a fresh angle is waited for: sensors that are started again give none meanwhile.
 const PATIENCE: Duration = Duration::from_secs(5);
-/// Degrees of a radian.
-const DEGREES: f64 = 360.0 / TURN;
 
 /// What breaks a movement off.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -17,7 +17,6 @@ use firmware::ports::Observer;
 use firmware::shared::Shared;
 use firmware::timeline::{Arrival, Timeline};
 use orientation::device::{Device, Trouble};
-use orientation::session::Session;
 use orientation::units::Angle;
 use proptest::prelude::*;
 
@@ -144,8 +143,6 @@ impl Observer for Told {
     fn event(&self, _: Instant, event: &Event) {
         self.0.borrow_mut().push(*event);
     }
-
-    fn progress(&self, _: &Session) {}
 }
 
 /// A link that hangs, or refuses.

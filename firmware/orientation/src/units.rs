@@ -13,6 +13,12 @@ use core::ops::Sub;
 /// Radians in one turn.
 pub const TURN: f64 = 2.0 * core::f64::consts::PI;
 
+/// One degree, in radians.
+pub const DEGREE: f64 = TURN / 360.0;
+
+/// Degrees in one radian.
+pub const DEGREES_PER_RADIAN: f64 = 360.0 / TURN;
+
 /// Seconds of arc in one radian.
 pub const ARCSECONDS_PER_RADIAN: f64 = 1_296_000.0 / TURN;
 

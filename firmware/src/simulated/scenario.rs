@@ -15,13 +15,11 @@ use orientation::noise::model::GyroNoise;
 use orientation::session::Prepared;
 use orientation::session::procedure::Procedure;
 use orientation::session::schedule::Schedule;
-use orientation::units::{AngularRate, DEGREE_PER_HOUR, TURN};
+use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR};
 
 use crate::calibration::Harmonics;
 use crate::configuration::Configuration;
 
-/// One degree in radians.
-const DEGREE: f64 = TURN / 360.0;
 /// The gyro's g-sensitivity along and across its axis as it is calibrated, °/h/g.
 const G_SENSITIVITY: [f64; 2] = [0.05, -0.03];
 /// 1σ of that calibration, °/h/g.

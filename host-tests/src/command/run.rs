@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::time::Instant as WallClock;
 
 use bench::instrument::recorder::CsvRecorder;
-use bench::instrument::{self, Run, Watch};
+use bench::instrument::{self, Run};
 use bench::output::json::{self, AzimuthObject};
 use bench::output::progress::Progress;
 use bench::output::text;
@@ -13,7 +13,7 @@ use clap::{Args, ValueEnum};
 use drivers::ads1262::configuration::DataRate;
 use embassy_time::Instant;
 use firmware::event::Event;
-use firmware::ports::NoRecorder;
+use firmware::ports::{NoRecorder, Observer};
 use firmware::simulated::fault::Fault;
 use firmware::simulated::scenario::{GyroClass, RATES, Scenario};
 use orientation::session::Session;
@@ -151,7 +151,7 @@ impl From<&RunOptions> for Scenario {
 /// Shows the log and the progress while the board works.
 struct Terminal(Progress);
 
-impl Watch for Terminal {
+impl Observer for Terminal {
     fn event(&self, at: Instant, event: &Event) {
         let seconds = at.as_micros() as f64 * 1e-6;
         self.0.log(&format!("{seconds:>11.6} {event}"));

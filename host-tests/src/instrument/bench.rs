@@ -20,25 +20,13 @@ use crate::virtual_time;
 /// What the board was not told but takes as known.
 const ASSUMED: &str = "latitude exact, calibrations as stated";
 
-/// Who watches a run while it goes on.
-pub trait Watch {
-    /// The board told something.
-    fn event(&self, _: Instant, _: &Event) {}
-
-    /// One more dwell was taken.
-    fn progress(&self, _: &Session) {}
-}
-
-/// Nobody watches.
-impl Watch for () {}
-
 /// Keeps what the board tells and passes it on.
 struct Log<'a, W> {
     events: RefCell<Vec<(Instant, Event)>>,
     watch: &'a W,
 }
 
-impl<W: Watch> Observer for Log<'_, W> {
+impl<W: Observer> Observer for Log<'_, W> {
     fn event(&self, at: Instant, event: &Event) {
         self.events.borrow_mut().push((at, *event));
         self.watch.event(at, event);
@@ -71,7 +59,7 @@ impl Write for Wire<'_> {
 ///
 /// # Errors
 /// What keeps the session from beginning, and a deadlock. A refusal is the session's conclusion.
-pub fn align<R: Recorder, W: Watch>(
+pub fn align<R: Recorder, W: Observer>(
     scenario: &Scenario,
     fault: Option<Fault>,
     recorder: R,

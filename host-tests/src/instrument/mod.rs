@@ -3,7 +3,7 @@
 mod bench;
 pub mod recorder;
 
-pub use bench::{Watch, align};
+pub use bench::align;
 
 use std::fmt;
 

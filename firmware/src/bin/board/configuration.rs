@@ -19,10 +19,7 @@ use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
 use orientation::session::procedure::Procedure;
 use orientation::session::schedule::Schedule;
-use orientation::units::{AngularRate, DEGREE_PER_HOUR, TURN};
-
-/// One degree, rad.
-const DEGREE: f64 = TURN / 360.0;
+use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR};
 
 /// Geodetic latitude, °, north positive; up to ±85°, beyond there is no north to find.
 const LATITUDE: f64 = 47.58;
