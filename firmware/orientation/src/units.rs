@@ -22,6 +22,9 @@ pub const DEGREES_PER_RADIAN: f64 = 360.0 / TURN;
 /// Seconds of arc in one radian.
 pub const ARCSECONDS_PER_RADIAN: f64 = 1_296_000.0 / TURN;
 
+/// One second of arc, in radians.
+pub const ARCSECOND: f64 = TURN / 1_296_000.0;
+
 /// One degree per hour, in rad/s.
 pub const DEGREE_PER_HOUR: f64 = TURN / 360.0 / 3600.0;
 

@@ -1,11 +1,13 @@
-//! The gyro's noise in the field's terms: N, B, K, R.
+//! The gyro's noise in the field's terms: Q, N, B, K, R.
 
-use crate::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
+use crate::units::{ARCSECOND, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 
 /// Noise coefficients of a gyro in SI units (Allan variance
-/// N²/τ + (2 ln 2/π)B² + K²τ/3 + R²τ²/2). Zero means: not present.
+/// 3Q²/τ² + N²/τ + (2 ln 2/π)B² + K²τ/3 + R²τ²/2). Zero means: not present.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GyroNoise {
+    /// Quantisation Q, rad: 1σ of the angle's rounding.
+    pub quantisation: f64,
     /// Angle random walk N, rad/√s.
     pub angle_random_walk: f64,
     /// Bias instability B, rad/s; one-sided spectral density B²/(π f).
@@ -25,7 +27,14 @@ impl GyroNoise {
             bias_instability: b * DEGREE_PER_HOUR,
             rate_random_walk: k * DEGREE_PER_HOUR / 60.0,
             rate_ramp: r * DEGREE_PER_HOUR / 3600.0,
+            ..Self::default()
         }
+    }
+
+    /// The same gyro with a quantisation of Q arc seconds.
+    #[must_use]
+    pub fn with_quantisation(self, q: f64) -> Self {
+        Self { quantisation: q * ARCSECOND, ..self }
     }
 
     /// Variance of a mean over `seconds` that the white part leaves, (rad/s)².
