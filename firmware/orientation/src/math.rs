@@ -1,5 +1,39 @@
 //! Small numerical pieces that several methods share: Cholesky factors and chi-square tails.
 
+use core::ops::{AddAssign, Div, Mul, MulAssign, SubAssign};
+
+/// A number in the precision that a computation needs: `f64` for results, `f32`, a tenth of the
+/// instructions on this core, where a thousandth is enough.
+pub trait Scalar:
+    Copy + Default + AddAssign + SubAssign + MulAssign + Mul<Output = Self> + Div<Output = Self>
+{
+    /// To nearest.
+    fn of(value: f64) -> Self;
+
+    /// The square root.
+    fn root(self) -> Self;
+}
+
+impl Scalar for f64 {
+    fn of(value: f64) -> Self {
+        value
+    }
+
+    fn root(self) -> Self {
+        libm::sqrt(self)
+    }
+}
+
+impl Scalar for f32 {
+    fn of(value: f64) -> Self {
+        value as Self
+    }
+
+    fn root(self) -> Self {
+        libm::sqrtf(self)
+    }
+}
+
 /// Factors a symmetric positive matrix in place into its lower triangle L, A = L·Lᵀ.
 ///
 /// Only the leading `size` rows are used. Returns `false` where a pivot is not safely positive

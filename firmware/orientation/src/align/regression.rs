@@ -12,6 +12,7 @@ pub const COLUMNS: usize = 5;
 /// Sums of products of `P` columns and the left side.
 #[derive(Clone, Debug)]
 pub struct Regression<const P: usize> {
+    /// Products of the columns, lower triangle.
     products: [[f64; P]; P],
     with_left: [f64; P],
     left_squared: f64,
@@ -52,7 +53,8 @@ impl<const P: usize> Regression<P> {
     /// Adds a row whose noise has variance one.
     pub fn push(&mut self, columns: &[f64; P], left: f64) {
         for i in 0..P {
-            for j in 0..P {
+            // The lower triangle is all that a Cholesky factor needs.
+            for j in 0..=i {
                 self.products[i][j] += columns[i] * columns[j];
             }
             self.with_left[i] += columns[i] * left;
@@ -70,7 +72,7 @@ impl<const P: usize> Regression<P> {
         let mut factor = [[0.0; P]; P];
         let mut coefficients = [0.0; P];
         for i in 0..size {
-            for j in 0..size {
+            for j in 0..=i {
                 factor[i][j] = self.products[used[i]][used[j]];
             }
             if let Column::Prior(sigma) = model[used[i]] {

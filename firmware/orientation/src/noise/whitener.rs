@@ -9,6 +9,7 @@
 //! for K its variance is K²(a + T/3), a being the dwell's start and T its length.
 
 use super::model::GyroNoise;
+use crate::math::Scalar;
 
 /// Gauss–Markov processes that make up flicker noise.
 const FLICKER_STATES: usize = 7;
@@ -30,57 +31,98 @@ struct Process {
 
 /// How one process passes through an interval: its end value and its mean over the interval.
 #[derive(Clone, Copy, Debug, Default)]
-struct Step {
+struct Step<T> {
     /// End value for a unit start value.
-    end: f64,
+    end: T,
     /// Mean for a unit start value.
-    mean: f64,
+    mean: T,
     /// Variance that the interval adds to the end value.
-    end_variance: f64,
+    end_variance: T,
     /// Covariance that it adds between end value and mean.
-    cross: f64,
+    cross: T,
     /// Variance that it adds to the mean.
-    mean_variance: f64,
+    mean_variance: T,
 }
 
 impl Process {
-    fn step(&self, seconds: f64) -> Step {
+    /// The step over an interval, for e₁ = 1 − e⁻ˣ with x the interval over the correlation time.
+    fn step<T: Scalar>(&self, seconds: f64, e1: f64) -> Step<T> {
         let x = seconds / self.correlation;
-        let (e1, e2) = (-libm::expm1(-x), -libm::expm1(-2.0 * x));
         let power = self.drive * seconds;
-        if x < 1e-3 {
+        let [end, mean, end_variance, cross, mean_variance] = if x < 1e-3 {
             // The limits of a random walk, with the first-order decay.
-            return Step {
-                end: 1.0 - e1,
-                mean: 1.0 - 0.5 * x,
-                end_variance: power * (1.0 - x),
-                cross: 0.5 * power * (1.0 - x),
-                mean_variance: power / 3.0 * (1.0 - 0.75 * x),
-            };
+            [
+                1.0 - e1,
+                1.0 - 0.5 * x,
+                power * (1.0 - x),
+                0.5 * power * (1.0 - x),
+                power / 3.0 * (1.0 - 0.75 * x),
+            ]
+        } else {
+            let (per_x, e2) = (1.0 / x, doubled(e1));
+            let power = power * per_x;
+            [
+                1.0 - e1,
+                e1 * per_x,
+                0.5 * power * e2,
+                0.5 * power * e1 * e1 * per_x,
+                power * (x - 2.0 * e1 + 0.5 * e2) * per_x * per_x,
+            ]
         }
-        Step {
-            end: 1.0 - e1,
-            mean: e1 / x,
-            end_variance: 0.5 * power * e2 / x,
-            cross: 0.5 * power * e1 * e1 / (x * x),
-            mean_variance: power * (x - 2.0 * e1 + 0.5 * e2) / (x * x * x),
+        .map(T::of);
+        Step { end, mean, end_variance, cross, mean_variance }
+    }
+}
+
+/// 1 − e⁻²ˣ from 1 − e⁻ˣ, to the last bits.
+fn doubled(e1: f64) -> f64 {
+    e1 * (2.0 - e1)
+}
+
+/// The steps of all processes over the interval that was last asked for: dwells are mostly alike.
+#[derive(Clone, Copy, Debug)]
+struct Steps<T> {
+    seconds: f64,
+    of: [Step<T>; STATES],
+}
+
+impl<T: Scalar> Steps<T> {
+    fn none() -> Self {
+        Self { seconds: f64::NAN, of: [Step::default(); STATES] }
+    }
+
+    /// The steps over so many seconds. Correlation times are in the ratio of [`SPACING`], so one
+    /// exponential serves them all.
+    fn over(&mut self, processes: &[Process; STATES], seconds: f64) -> [Step<T>; STATES] {
+        if self.seconds != seconds {
+            self.seconds = seconds;
+            self.of[FLICKER_STATES] = processes[FLICKER_STATES].step(seconds, 0.0);
+            let slowest = processes[FLICKER_STATES - 1].correlation;
+            let mut e1 = -libm::expm1(-seconds / slowest);
+            for index in (0..FLICKER_STATES).rev() {
+                self.of[index] = processes[index].step(seconds, e1);
+                e1 = doubled(doubled(e1));
+            }
         }
+        self.of
     }
 }
 
 /// The filter; `COLUMNS` counts the regression's columns and its left side.
 #[derive(Clone, Debug)]
-pub struct Whitener<const COLUMNS: usize> {
+pub struct Whitener<const COLUMNS: usize, T = f64> {
     processes: [Process; STATES],
-    covariance: [[f64; STATES]; STATES],
-    state: [[f64; COLUMNS]; STATES],
+    covariance: [[T; STATES]; STATES],
+    state: [[T; COLUMNS]; STATES],
     end: Option<f64>,
     /// White density of the flicker that is faster than its processes, (rad/s)²·s.
     fast: f64,
     coloured: bool,
+    gap: Steps<T>,
+    dwell: Steps<T>,
 }
 
-impl<const COLUMNS: usize> Whitener<COLUMNS> {
+impl<const COLUMNS: usize, T: Scalar> Whitener<COLUMNS, T> {
     /// For a gyro whose shortest dwell lasts `shortest` seconds.
     ///
     /// Flicker is modelled between correlation times of a third of that dwell and 4096/3 of it;
@@ -91,11 +133,13 @@ impl<const COLUMNS: usize> Whitener<COLUMNS> {
     pub fn new(noise: &GyroNoise, shortest: f64) -> Self {
         let mut whitener = Self {
             processes: [Process::default(); STATES],
-            covariance: [[0.0; STATES]; STATES],
-            state: [[0.0; COLUMNS]; STATES],
+            covariance: [[T::default(); STATES]; STATES],
+            state: [[T::default(); COLUMNS]; STATES],
             end: None,
             fast: 0.0,
             coloured: noise.is_coloured(),
+            gap: Steps::none(),
+            dwell: Steps::none(),
         };
         let flicker = noise.bias_instability * noise.bias_instability / core::f64::consts::PI;
         let mut correlation = shortest / 3.0;
@@ -104,7 +148,7 @@ impl<const COLUMNS: usize> Whitener<COLUMNS> {
             let variance = flicker * LOG_SPACING;
             whitener.processes[index] =
                 Process { correlation, drive: 2.0 * variance / correlation };
-            whitener.covariance[index][index] = variance;
+            whitener.covariance[index][index] = T::of(variance);
             correlation *= SPACING;
         }
         whitener.processes[FLICKER_STATES] = Process {
@@ -116,9 +160,9 @@ impl<const COLUMNS: usize> Whitener<COLUMNS> {
 
     /// Whitens the row of a dwell mean over [`start`, `end`] (s) in place; `white` is the variance
     /// that is this dwell's own, (rad/s)². Dwells come in the order of time.
-    pub fn whiten(&mut self, start: f64, end: f64, white: f64, row: &mut [f64; COLUMNS]) {
+    pub fn whiten(&mut self, start: f64, end: f64, white: f64, row: &mut [T; COLUMNS]) {
         if !self.coloured {
-            scale(row, white);
+            scale(row, T::of(white));
             return;
         }
         if let Some(previous) = self.end {
@@ -133,15 +177,11 @@ impl<const COLUMNS: usize> Whitener<COLUMNS> {
         if seconds <= 0.0 {
             return;
         }
-        let steps = self.steps(seconds);
+        let steps = self.gap.over(&self.processes, seconds);
         self.advance(&steps);
     }
 
-    fn steps(&self, seconds: f64) -> [Step; STATES] {
-        core::array::from_fn(|index| self.processes[index].step(seconds))
-    }
-
-    fn advance(&mut self, steps: &[Step; STATES]) {
+    fn advance(&mut self, steps: &[Step<T>; STATES]) {
         for i in 0..STATES {
             for value in &mut self.state[i] {
                 *value *= steps[i].end;
@@ -154,18 +194,19 @@ impl<const COLUMNS: usize> Whitener<COLUMNS> {
     }
 
     /// Predicts the dwell's mean, replaces the row by its normalised surprise and learns from it.
-    fn observe(&mut self, seconds: f64, white: f64, row: &mut [f64; COLUMNS]) {
-        let steps = self.steps(seconds);
-        let (cross, variance) = self.mean_covariance(&steps, white + self.fast / seconds);
+    fn observe(&mut self, seconds: f64, white: f64, row: &mut [T; COLUMNS]) {
+        let steps = self.dwell.over(&self.processes, seconds);
+        let (cross, variance) = self.mean_covariance(&steps, T::of(white + self.fast / seconds));
         for (column, value) in row.iter_mut().enumerate() {
-            let predicted: f64 = (0..STATES).map(|i| steps[i].mean * self.state[i][column]).sum();
-            *value -= predicted;
+            for (step, state) in steps.iter().zip(&self.state) {
+                *value -= step.mean * state[column];
+            }
         }
         self.advance(&steps);
         for i in 0..STATES {
             let gain = cross[i] / variance;
             for (state, surprise) in self.state[i].iter_mut().zip(row.iter()) {
-                *state += gain * surprise;
+                *state += gain * *surprise;
             }
             for (shared, other) in self.covariance[i].iter_mut().zip(cross) {
                 *shared -= gain * other;
@@ -175,21 +216,26 @@ impl<const COLUMNS: usize> Whitener<COLUMNS> {
     }
 
     /// Covariance of the states at the dwell's end with its mean, and the variance of the mean.
-    fn mean_covariance(&self, steps: &[Step; STATES], white: f64) -> ([f64; STATES], f64) {
+    fn mean_covariance(&self, steps: &[Step<T>; STATES], white: T) -> ([T; STATES], T) {
         let mut variance = white;
-        let mut cross = [0.0; STATES];
+        let mut cross = [T::default(); STATES];
         for i in 0..STATES {
-            let shared: f64 = (0..STATES).map(|j| self.covariance[i][j] * steps[j].mean).sum();
-            cross[i] = steps[i].end * shared + steps[i].cross;
-            variance += steps[i].mean * shared + steps[i].mean_variance;
+            let mut shared = T::default();
+            for (covariance, step) in self.covariance[i].iter().zip(steps) {
+                shared += *covariance * step.mean;
+            }
+            cross[i] = steps[i].cross;
+            cross[i] += steps[i].end * shared;
+            variance += steps[i].mean * shared;
+            variance += steps[i].mean_variance;
         }
         (cross, variance)
     }
 }
 
 /// Divides a row by the standard deviation of its noise.
-fn scale<const COLUMNS: usize>(row: &mut [f64; COLUMNS], variance: f64) {
-    let weight = 1.0 / libm::sqrt(variance);
+fn scale<const COLUMNS: usize, T: Scalar>(row: &mut [T; COLUMNS], variance: T) {
+    let weight = T::of(1.0) / variance.root();
     for value in row {
         *value *= weight;
     }
