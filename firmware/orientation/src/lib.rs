@@ -26,4 +26,6 @@ pub mod noise;
 
 pub mod align;
 
+pub mod planner;
+
 pub mod session;

@@ -43,6 +43,20 @@ impl GyroNoise {
         self.angle_random_walk * self.angle_random_walk / seconds
     }
 
+    /// Variance that the rounding of the angle at either end leaves to a mean over `seconds`,
+    /// (rad/s)².
+    #[must_use]
+    pub fn rounding_variance(&self, seconds: f64) -> f64 {
+        let rounding = self.quantisation / seconds;
+        2.0 * rounding * rounding
+    }
+
+    /// Variance of a mean over `seconds` that it shares with no other, (rad/s)²: N and Q.
+    #[must_use]
+    pub fn own_variance(&self, seconds: f64) -> f64 {
+        self.white_variance(seconds) + self.rounding_variance(seconds)
+    }
+
     /// Whether there is noise that one dwell shares with the next, beside a ramp.
     #[must_use]
     pub fn is_coloured(&self) -> bool {

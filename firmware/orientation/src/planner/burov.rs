@@ -1,0 +1,96 @@
+//! Burov's optimisation: how often to turn in a given time, and how long a wanted rate error takes.
+//!
+//! Source: Burov, eq. (1). A gyro is turned between n positions in a total time `t_GC`, each rotation
+//! taking `t_rot`; its error after autocompensation is
+//!
+//! ```text
+//! Δω(n)² = R²(t_GC + t_rot)²/(2n²) + K²(t_GC + t_rot)/(3n) + N²/t_w + 3Q²/t_w²,
+//! t_w = t_GC − (n − 1) t_rot
+//! ```
+//!
+//! Δω is the error of a *rate*. A horizontal gyro that only has to tell its component along one axis
+//! has an azimuth error of Δω/Ω_h; a full azimuth needs two components in the same time, √2 of it.
+//! The paper leaves B out, which no turning changes in its model; it is added as B√(2 ln 2/π).
+
+use crate::noise::model::GyroNoise;
+
+/// Fewest positions that compensate anything.
+const FEWEST: u32 = 2;
+/// Most positions that are looked at: more than any stage turns to in a day.
+const MOST: u32 = 100_000;
+/// Longest total time that is looked at, s: a day.
+pub const LONGEST: f64 = 86_400.0;
+/// Halvings of an interval of time: from a day to a nanosecond.
+const HALVINGS: usize = 48;
+
+/// The best that turning between positions can do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Autocompensation {
+    /// Number of positions n.
+    pub positions: u32,
+    /// Time in each, s: the total less the rotations, over n.
+    pub dwell: f64,
+    /// Total time `t_GC`, s.
+    pub seconds: f64,
+    /// Δω(n), rad/s, 1σ.
+    pub rate_error: f64,
+}
+
+/// Δω(n), rad/s, for `positions` in `seconds` of total time with `rotation` seconds for each
+/// rotation; `None` where the rotations leave no time.
+#[must_use]
+pub fn rate_error(noise: &GyroNoise, positions: u32, seconds: f64, rotation: f64) -> Option<f64> {
+    let n = f64::from(positions);
+    let whole = seconds + rotation;
+    let still = seconds - (n - 1.0) * rotation;
+    let GyroNoise { quantisation: q, angle_random_walk: white, rate_random_walk: k, .. } = *noise;
+    let ramp = noise.rate_ramp * whole / n;
+    let square = 0.5 * ramp * ramp
+        + k * k * whole / (3.0 * n)
+        + white * white / still
+        + 3.0 * q * q / (still * still);
+    (positions >= FEWEST && still > 0.0).then(|| libm::sqrt(square))
+}
+
+/// The number of positions with the least Δω in `seconds` of total time; `None` where not even one
+/// rotation fits in.
+///
+/// Each term of Δω² is convex in n, so their sum is, and the sign of its change is bisected. Without
+/// noise that grows with the dwell two positions are best.
+#[must_use]
+pub fn best(noise: &GyroNoise, seconds: f64, rotation: f64) -> Option<Autocompensation> {
+    let of = |n| rate_error(noise, n, seconds, rotation).unwrap_or(f64::INFINITY);
+    let (mut low, mut high) = (FEWEST, MOST);
+    while low < high {
+        let middle = u32::midpoint(low, high);
+        if of(middle + 1) < of(middle) { low = middle + 1 } else { high = middle }
+    }
+    let rate_error = rate_error(noise, low, seconds, rotation)?;
+    let n = f64::from(low);
+    let dwell = (seconds - (n - 1.0) * rotation) / n;
+    Some(Autocompensation { positions: low, dwell, seconds, rate_error })
+}
+
+/// The shortest total time in which Δω comes down to `wanted` rad/s, with its best number of
+/// positions; `Err` with the least Δω where a day does not do.
+pub fn least_time(noise: &GyroNoise, wanted: f64, rotation: f64) -> Result<Autocompensation, f64> {
+    let longest = best(noise, LONGEST, rotation).ok_or(f64::INFINITY)?;
+    if longest.rate_error > wanted {
+        return Err(longest.rate_error);
+    }
+    let (mut low, mut high) = (rotation, longest);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high.seconds);
+        match best(noise, middle, rotation) {
+            Some(found) if found.rate_error <= wanted => high = found,
+            _ => low = middle,
+        }
+    }
+    Ok(high)
+}
+
+/// What bias instability adds to a rate whatever is turned, B√(2 ln 2/π), rad/s.
+#[must_use]
+pub fn flicker_floor(noise: &GyroNoise) -> f64 {
+    noise.bias_instability * libm::sqrt(2.0 * core::f64::consts::LN_2 / core::f64::consts::PI)
+}
