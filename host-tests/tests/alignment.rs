@@ -7,7 +7,7 @@ use orientation::align::direction::{Amplitude, Components};
 use orientation::align::level::tilt;
 use orientation::align::quality::{Disturbance, Norm};
 use orientation::align::regression::{Column, Regression};
-use orientation::align::setting::Setting;
+use orientation::align::setting::{Half, Setting};
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
 use orientation::noise::whitener::Whitener;
@@ -185,7 +185,7 @@ fn the_direction_is_the_best_of_the_whole_circle() {
             azimuth.cos() + long * c * generator.gaussian(),
             azimuth.sin() + long * s * generator.gaussian(),
         ];
-        let components = Components { value, covariance, vertical: [0.0; 2] };
+        let components = Components { value, covariance, vertical: [0.0; 2], half: None };
         for amplitude in [Amplitude::Known(0.0), Amplitude::Known(0.05)] {
             let found = components.direction(amplitude).expect("it is determined");
             let least = least_of_grid(&components, amplitude);
@@ -200,7 +200,7 @@ fn the_direction_is_the_best_of_the_whole_circle() {
 #[test]
 fn a_known_amplitude_sees_only_the_error_across() {
     let covariance = [[0.04, 0.0], [0.0, 0.01]];
-    let components = Components { value: [1.0, 0.0], covariance, vertical: [0.0; 2] };
+    let components = Components { value: [1.0, 0.0], covariance, vertical: [0.0; 2], half: None };
     for amplitude in [Amplitude::Free, Amplitude::Known(0.0), Amplitude::Known(0.02)] {
         let direction = components.direction(amplitude).expect("it is determined");
         assert!((direction.variance - 0.01).abs() < 1e-9, "{direction:?}");
@@ -215,9 +215,17 @@ fn two_azimuths_that_fit_alike_have_no_margin() {
         value: [0.5, 0.0],
         covariance: [[1e-4, 0.0], [0.0, 100.0]],
         vertical: [0.0; 2],
+        half: None,
     };
     let direction = components.direction(Amplitude::Known(0.0)).expect("it is determined");
     assert!(direction.margin < 1e-3, "{direction:?}");
+    // Where the half is known, there is but one of them.
+    for (half, azimuth) in [(Half::East, 60.0_f64), (Half::West, -60.0)] {
+        let known = Components { half: Some(half), ..components };
+        let direction = known.direction(Amplitude::Known(0.0)).expect("it is determined");
+        assert!((direction.azimuth - azimuth.to_radians()).abs() < 1e-6, "{direction:?}");
+        assert!(direction.margin > 1e3, "{direction:?}");
+    }
 }
 
 /// A dwell with the forces of a tilt and biases, in g of 9.8 m/s².

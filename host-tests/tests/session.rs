@@ -10,6 +10,7 @@ use orientation::align::setting::Setting;
 use orientation::earth::Latitude;
 use orientation::error::Refusal;
 use orientation::noise::model::GyroNoise;
+use orientation::planner::{Conditions, Rotation, for_time};
 use orientation::session::procedure::{Procedure, ProcedureError};
 use orientation::session::schedule::{Position, Schedule, StopRule};
 use orientation::session::{Phase, Session};
@@ -194,4 +195,70 @@ fn dwells_that_the_filter_has_no_time_to_settle_in_are_unbiased() {
 fn a_dwell_too_short_for_the_filters_lag_is_no_procedure() {
     let begun = Session::new(setting(), Procedure::new(Schedule::circle(12, 0.1), 0.01));
     assert!(matches!(begun.err(), Some(ProcedureError::DwellTooShort { samples: 10, .. })));
+}
+
+/// A plan for the gyro of these tests on a stage that takes a second to turn.
+fn planned(seconds: f64) -> Schedule {
+    let conditions = Conditions {
+        noise: setting().noise,
+        rotation: Rotation::fixed(1.0),
+        shortest: 1.0,
+        fewest: 8,
+    };
+    Schedule::Planned(for_time(&conditions, seconds).expect("there is time"))
+}
+
+/// A session that is to reach σ of so many degrees within so many seconds, by a gyro of so many times
+/// the stated noise; how many dwells it took and what came of it.
+fn until(sigma_deg: f64, seconds: f64, noise: f64, seed: u64) -> (Session, f64) {
+    let required_sigma = sigma_deg.to_radians();
+    let procedure = Procedure::new(planned(60.0), 0.01).until_accurate(seconds);
+    let mut session =
+        Session::new(Setting { required_sigma, ..setting() }, procedure).expect("it begins");
+    let mut configuration = world(123.4);
+    configuration.gyro.n_deg_sqrt_h *= noise;
+    run(&mut session, &configuration, &[], 1.0, 4.0 * seconds, seed);
+    let end = session.dwells().last().map_or(0.0, |dwell| dwell.end());
+    (session, end)
+}
+
+#[test]
+fn a_session_ends_as_soon_as_the_accuracy_asked_for_is_reached() {
+    // √2 N/(Ω_h √T) is 0.062° for N = 0.001 °/√h, 47.58° and 60 s of dwells.
+    for (wanted, least, most) in [(0.1, 20.0, 62.0), (0.05, 95.0, 130.0), (0.035, 190.0, 250.0)] {
+        let (session, end) = until(wanted, 400.0, 1.0, 3);
+        let azimuth = session.conclusion().expect("done").verdict.expect("it is reached");
+        assert!(azimuth.sigma.to_degrees() <= wanted, "{wanted}: {azimuth:?}");
+        assert!((least..most).contains(&end), "{wanted}° took {end} s");
+        assert!(error_in_sigmas(&session, 123.4).abs() < 3.5);
+    }
+}
+
+#[test]
+fn a_session_goes_on_when_its_dwells_scatter_more_than_the_noise_predicts() {
+    let mean_end = |noise: f64| {
+        let ends = (1..=8).map(|seed| {
+            let (session, end) = until(0.068, 500.0, noise, seed);
+            assert!(session.conclusion().expect("done").verdict.is_ok());
+            end
+        });
+        ends.sum::<f64>() / 8.0
+    };
+    let (quiet, noisy) = (mean_end(1.0), mean_end(1.3));
+    assert!((60.0..75.0).contains(&quiet), "{quiet} s");
+    // 1.3² = 1.69 times the time, in steps of four positions.
+    assert!((1.5..2.1).contains(&(noisy / quiet)), "{quiet} s, {noisy} s");
+}
+
+#[test]
+fn a_session_that_cannot_reach_its_accuracy_in_time_says_so_early_and_how_near_it_could_come() {
+    let (session, end) = until(0.01, 300.0, 1.0, 5);
+    let verdict = session.conclusion().expect("done").verdict;
+    let Err(Refusal::OutOfReach { sigma, required, seconds }) = verdict else {
+        panic!("{verdict:?}")
+    };
+    assert!((required - 0.01).abs() < 1e-9 && seconds == 300.0);
+    // White noise: √2 N/(Ω_h √T) for the dwells' part of 300 s.
+    assert!((0.027..0.032).contains(&sigma), "{sigma}");
+    assert!(end < 70.0, "it took {end} s to see that");
 }

@@ -49,6 +49,8 @@ pub enum Refusal {
         /// How many were left.
         positions: usize,
     },
+    /// Two positions leave two azimuths, and the half in which it lies was not stated.
+    SignUnknown,
     /// The measured positions do not determine the azimuth, or leave two of them.
     ArcCannotTell,
     /// The standard deviation is greater than was asked for.
@@ -59,6 +61,15 @@ pub enum Refusal {
         required: f64,
         /// What contributes most.
         source: Source,
+    },
+    /// The standard deviation that was asked for cannot be reached in the time allowed.
+    OutOfReach {
+        /// The least that can be reached, °.
+        sigma: f64,
+        /// The one that was asked for, °.
+        required: f64,
+        /// The time allowed, s.
+        seconds: f64,
     },
     /// The platform is inclined more than the method allows.
     TiltTooGreat {
@@ -135,11 +146,16 @@ words! { Refusal:
         Rounded::<2>(latitude);
     Self::TooFewPositions { positions } =>
         "{} undisturbed position(s): three different ones are needed", positions;
+    Self::SignUnknown =>
+        "two positions leave two azimuths: add a third, or state whether it points east or west";
     Self::ArcCannotTell =>
         "the positions cannot tell the azimuth: turn the stage over a longer arc";
     Self::BudgetNotMet { sigma, required, source } =>
         "σ would be {}°, above the accepted {}°; {} contributes most",
         Rounded::<3>(sigma), Rounded::<3>(required), source;
+    Self::OutOfReach { sigma, required, seconds } =>
+        "σ of {}° is out of reach: {}° is the least that {} s can give",
+        Rounded::<3>(required), Rounded::<3>(sigma), Rounded::<0>(seconds);
     Self::TiltTooGreat { tilt, allowed } =>
         "the platform is inclined by {}°, more than {}°: level it",
         Rounded::<2>(tilt), Rounded::<1>(allowed);

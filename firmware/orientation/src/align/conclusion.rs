@@ -2,16 +2,16 @@
 
 use heapless::Vec;
 
-use super::POSITIONS;
 use super::criterion::{self, Criterion};
 use super::level::{self, Tilt};
 use super::quality::{self, Disturbance, Norm};
 use super::setting::Setting;
 use super::stepwise::{FEW_DEGREES, Fit, Found, Problem, Residual};
+use super::{POSITIONS, different_positions};
 use crate::error::Refusal;
 use crate::math::chi_square_tail;
 use crate::signal::dwell::Dwell;
-use crate::units::{TURN, wrapped};
+use crate::units::{Angle, TURN, wrapped};
 
 /// Studentised residual beyond which a dwell is left out (2.7e-5 two-sided: one healthy session of
 /// 60 dwells in 600 loses one).
@@ -25,6 +25,9 @@ const HIDDEN_TREND: f64 = 16.0;
 const CORRELATION_BOUND: f64 = 5.0;
 /// Chi-square by which the second-best azimuth must be worse than the best (4σ).
 const SECOND_MINIMUM: f64 = 16.0;
+/// Of the tangent of the angle from the axis of two positions, what σ may be at most, rad: the second
+/// order is then a tenth of the first.
+const STEEPNESS: f64 = 0.2;
 /// Bound of the Earth-rate ratio in its σ.
 const RATIO_BOUND: f64 = 5.0;
 /// What the Earth-rate ratio may be off beyond its σ: scale errors that no data sheet excludes and
@@ -32,8 +35,6 @@ const RATIO_BOUND: f64 = 5.0;
 const RATIO_TOLERANCE: f64 = 0.005;
 /// What the accelerometer may read off gravity beyond five of its bias's σ: scale and altitude.
 const GRAVITY_TOLERANCE: f64 = 0.05;
-/// Angles closer than this are the same position, rad.
-const SAME_POSITION: f64 = 1e-3;
 
 /// An azimuth that passed every test.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -134,7 +135,7 @@ impl Conclusion {
     fn fit_undisturbed(&mut self, setting: &Setting, dwells: &[Dwell]) -> Result<(), Refusal> {
         loop {
             let kept: Vec<&Dwell, POSITIONS> = self.kept(dwells).map(|(_, dwell)| dwell).collect();
-            Self::enough(dwells.len(), &kept)?;
+            Self::enough(setting, dwells.len(), &kept)?;
             if !setting.white_known {
                 self.angle_random_walk = libm::sqrt(white_of(&kept));
             }
@@ -165,16 +166,17 @@ impl Conclusion {
         dwells.iter().enumerate().filter(|(index, _)| self.disturbances[*index].is_none())
     }
 
-    fn enough(positions: usize, kept: &[&Dwell]) -> Result<(), Refusal> {
+    fn enough(setting: &Setting, positions: usize, kept: &[&Dwell]) -> Result<(), Refusal> {
         let different = different_positions(kept);
         let disturbed = positions - kept.len();
         if disturbed > allowed(positions) {
             return Err(Refusal::Disturbed { disturbed, positions });
         }
-        if different < 3 {
-            return Err(Refusal::TooFewPositions { positions: different });
+        match (different, setting.half) {
+            (3.., _) | (2, Some(_)) => Ok(()),
+            (2, None) => Err(Refusal::SignUnknown),
+            _ => Err(Refusal::TooFewPositions { positions: different }),
         }
-        Ok(())
     }
 
     fn keep_residuals(&mut self, problem: &Problem, found: &Found) {
@@ -211,6 +213,7 @@ impl Conclusion {
             return Err(Refusal::ArcCannotTell);
         }
         within_budget(setting, fit, fit.sigma())?;
+        self.judge_single_axis(dwells, fit)?;
         self.judge_residuals(fit)?;
         let (ratio, sigma) = (fit.ratio, fit.ratio_sigma);
         if (ratio - 1.0).abs() > RATIO_BOUND * sigma + RATIO_TOLERANCE {
@@ -243,6 +246,20 @@ impl Conclusion {
             return Err(Refusal::TiltTooUncertain { sigma, required });
         }
         Ok(())
+    }
+
+    /// Refuses what two positions say near their own axis, where the azimuth's error is not normal:
+    /// the cosine that they measure is flat there.
+    fn judge_single_axis(&self, dwells: &[Dwell], fit: &Fit) -> Result<(), Refusal> {
+        let mut angles = self.kept(dwells).map(|(_, dwell)| dwell.stage);
+        let Some(first) = angles.next().filter(|_| fit.model.is_single_axis) else { return Ok(()) };
+        let apart = |angle: Angle| (angle - first).signed_rad();
+        let other =
+            angles.map(apart).fold(0.0, |most: f64, x| if x.abs() > most.abs() { x } else { most });
+        // The difference of two unit vectors stands at right angles to their mean.
+        let axis = first.rad() + 0.5 * other + 0.25 * TURN;
+        let slope = libm::tan(fit.direction.azimuth + axis).abs();
+        if fit.sigma() > STEEPNESS * slope { Err(Refusal::ArcCannotTell) } else { Ok(()) }
     }
 
     /// Chi-square of the residuals, and the correlation of neighbours.
@@ -311,16 +328,6 @@ fn white_of(kept: &[&Dwell]) -> f64 {
         freedom += quietness.count() - 2.0;
     }
     if freedom > 0.0 { power / freedom } else { 0.0 }
-}
-
-/// How many of the dwells stand at angles of their own.
-fn different_positions(kept: &[&Dwell]) -> usize {
-    let is_new = |index: usize| {
-        kept[..index]
-            .iter()
-            .all(|other| (kept[index].stage - other.stage).signed_rad().abs() > SAME_POSITION)
-    };
-    (0..kept.len()).filter(|&index| is_new(index)).count()
 }
 
 /// Refuses a standard deviation (rad) that is none, or more than is accepted.

@@ -9,6 +9,7 @@
 
 use super::etalon::Table;
 use super::etalon::table;
+use super::setting::Half;
 
 /// What is known beforehand of ρ, the Earth rate found over the Earth rate expected.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +29,8 @@ pub struct Components {
     pub covariance: [[f64; 2]; 2],
     /// f: the vertical Earth rate's components through the tilt, in units of `Ω_h`.
     pub vertical: [f64; 2],
+    /// Where alone the azimuth is looked for.
+    pub half: Option<Half>,
 }
 
 /// An azimuth with its linearised uncertainty.
@@ -80,15 +83,17 @@ struct Profile {
     information: [[f64; 2]; 2],
     target: [f64; 2],
     vertical: [f64; 2],
+    half: Option<Half>,
     amplitude: Amplitude,
 }
 
 impl Components {
-    /// The most likely azimuth; `None` where the covariance is not positive.
+    /// The most likely azimuth; `None` where the covariance is not positive, or where no azimuth of
+    /// the known half fits better than its neighbours.
     #[must_use]
     pub fn direction(&self, amplitude: Amplitude) -> Option<Direction> {
         let profile = Profile::new(self, amplitude)?;
-        let (azimuth, margin) = profile.minimise();
+        let (azimuth, margin) = profile.minimise()?;
         Some(profile.linearise(azimuth, margin))
     }
 }
@@ -99,7 +104,8 @@ impl Profile {
         let [north, east] = components.vertical;
         let target =
             product(&information, [components.value[0] + north, components.value[1] + east]);
-        Some(Self { information, target, vertical: components.vertical, amplitude })
+        let Components { vertical, half, .. } = *components;
+        Some(Self { information, target, vertical, half, amplitude })
     }
 
     /// What ρ multiplies: the unit vector of an azimuth and the vertical Earth rate's part.
@@ -131,7 +137,7 @@ impl Profile {
     }
 
     /// The azimuth of the least J, and how much greater the second minimum is.
-    fn minimise(&self) -> (f64, f64) {
+    fn minimise(&self) -> Option<(f64, f64)> {
         let step = core::f64::consts::TAU / SCAN as f64;
         let sampled: [f64; SCAN] = core::array::from_fn(|k| self.towards(of_table(k)).0);
         let (mut best, mut second) = ((0.0, f64::INFINITY), f64::INFINITY);
@@ -141,6 +147,9 @@ impl Profile {
                 continue;
             }
             let azimuth = self.refine(k as f64 * step, step);
+            if self.half.is_some_and(|half| !half.contains(azimuth)) {
+                continue;
+            }
             let value = self.at(azimuth).0;
             if value < best.1 {
                 second = best.1;
@@ -150,7 +159,7 @@ impl Profile {
             }
         }
         let margin = if second.is_finite() { second - best.1 } else { f64::INFINITY };
-        (best.0, margin)
+        best.1.is_finite().then_some((best.0, margin))
     }
 
     /// Follows the parabola through three points, halving its width, never further than `step`.

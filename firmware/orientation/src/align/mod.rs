@@ -11,5 +11,20 @@ pub mod regression;
 pub mod setting;
 pub mod stepwise;
 
+use crate::signal::dwell::Dwell;
+
 /// Most positions that one alignment can hold.
 pub const POSITIONS: usize = 64;
+
+/// Angles closer than this are the same position, rad.
+const SAME_POSITION: f64 = 1e-3;
+
+/// How many of the dwells stand at angles of their own.
+pub(crate) fn different_positions(kept: &[&Dwell]) -> usize {
+    let is_new = |index: usize| {
+        kept[..index]
+            .iter()
+            .all(|other| (kept[index].stage - other.stage).signed_rad().abs() > SAME_POSITION)
+    };
+    (0..kept.len()).filter(|&index| is_new(index)).count()
+}

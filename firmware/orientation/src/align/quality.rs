@@ -112,6 +112,18 @@ impl Norm {
         self.white / quietness.block_seconds + self.walk * seconds / 15.0 + 2.0 * self.flicker
     }
 
+    /// White noise as the scatter inside the dwells shows it, N², (rad/s)²·s: that of the gyro where
+    /// they scatter as its noise says.
+    #[must_use]
+    pub fn observed_white(&self, dwells: &[Dwell]) -> f64 {
+        let (mut found, mut expected) = (0.0, 0.0);
+        for quietness in dwells.iter().filter_map(|dwell| dwell.quietness.as_ref()) {
+            found += quietness.scatter;
+            expected += (quietness.count() - 2.0) * self.block_variance(quietness);
+        }
+        if expected > 0.0 { self.white * found / expected } else { self.white }
+    }
+
     fn unquiet(&self, quietness: &Quietness) -> Option<Disturbance> {
         let degrees = quietness.count() - 2.0;
         let chi_square = quietness.scatter / self.block_variance(quietness);

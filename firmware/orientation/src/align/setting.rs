@@ -4,6 +4,24 @@ use crate::earth::Latitude;
 use crate::noise::model::GyroNoise;
 use crate::units::TURN;
 
+/// The half of the circle in which an azimuth is known to lie, which is all that two opposite
+/// positions cannot tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Half {
+    /// 0° to 180°.
+    East,
+    /// 180° to 360°.
+    West,
+}
+
+impl Half {
+    /// Whether an azimuth, rad, lies in it.
+    #[must_use]
+    pub fn contains(self, azimuth: f64) -> bool {
+        (libm::sin(azimuth) >= 0.0) == (self == Self::East)
+    }
+}
+
 /// The place, the instrument and the demands. A standard deviation of zero says: exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
@@ -25,6 +43,9 @@ pub struct Setting {
     pub accelerometer_bias_sigma: f64,
     /// 1σ of the encoder's zero and harmonics, as they turn the azimuth, rad.
     pub encoder_sigma: f64,
+    /// The half of the circle in which the azimuth is known to lie, if that is known; two positions
+    /// need it, and no answer comes from the other half.
+    pub half: Option<Half>,
     /// Greatest standard deviation of the azimuth that is accepted, rad.
     pub required_sigma: f64,
     /// Greatest tilt of the platform that is accepted, rad.
@@ -49,6 +70,7 @@ impl Setting {
             g_sensitivity_sigma: 0.0,
             accelerometer_bias_sigma: 0.0,
             encoder_sigma: 0.0,
+            half: None,
             required_sigma: 10.0 / 360.0 * TURN,
             allowed_tilt: 15.0 / 360.0 * TURN,
         }

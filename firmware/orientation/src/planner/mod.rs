@@ -120,7 +120,10 @@ impl Plan {
     }
 
     /// The visits with their times.
-    pub fn visits<'a>(&'a self, rotation: &'a Rotation) -> impl Iterator<Item = Visit> + Clone + 'a {
+    pub fn visits<'a>(
+        &'a self,
+        rotation: &'a Rotation,
+    ) -> impl Iterator<Item = Visit> + Clone + 'a {
         let mut start = 0.0;
         let mut before = self.angle(0);
         (0..self.positions()).map(move |index| {
@@ -137,7 +140,9 @@ impl Plan {
 /// Time that a schedule spends turning, s.
 fn turning(rotation: &Rotation, order: Order, passes: usize) -> f64 {
     let angle = |index| order.angle(index, passes);
-    (1..passes * order.length()).map(|index| rotation.seconds(angle(index) - angle(index - 1))).sum()
+    (1..passes * order.length())
+        .map(|index| rotation.seconds(angle(index) - angle(index - 1)))
+        .sum()
 }
 
 /// The better of two plans.

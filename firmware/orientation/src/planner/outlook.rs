@@ -6,6 +6,7 @@
 //! scale add is the conclusion's business.
 
 use crate::align::regression::{COLUMNS, Column, Regression, Solution};
+use crate::align::stepwise::excess;
 use crate::noise::model::GyroNoise;
 use crate::noise::whitener::Whitener;
 use crate::signal::dwell::Dwell;
@@ -48,11 +49,10 @@ pub struct Outlook {
 }
 
 impl Outlook {
-    /// The standard deviation that the scatter of the dwells shows where it exceeds the noise's, rad/s.
+    /// The same as the dwells show it: raised where they scatter more than the noise explains.
     #[must_use]
     pub fn observed_rate_sigma(&self) -> f64 {
-        let excess = self.chi_square / self.degrees.max(1) as f64;
-        self.rate_sigma * libm::sqrt(excess.max(1.0))
+        self.rate_sigma * excess(self.chi_square, self.degrees)
     }
 }
 
@@ -63,10 +63,7 @@ type Row = [f32; COLUMNS + 1];
 /// The outlook over visits in the order of time; `None` where they do not tell two components.
 #[must_use]
 #[inline(never)]
-pub fn outlook(
-    noise: &GyroNoise,
-    visits: impl Iterator<Item = Visit> + Clone,
-) -> Option<Outlook> {
+pub fn outlook(noise: &GyroNoise, visits: impl Iterator<Item = Visit> + Clone) -> Option<Outlook> {
     let first = visits.clone().next()?;
     let shortest = visits.clone().map(|visit| visit.seconds).fold(f64::INFINITY, f64::min);
     let mut whitener = Whitener::<{ COLUMNS + 1 }, f32>::new(&in_degrees_per_hour(noise), shortest);

@@ -8,6 +8,7 @@
 //! The stage is judged by its encoder alone: a dwell is where the angle stands still, wherever the
 //! command came from. So a recording replays the same session that a board runs.
 
+mod accuracy;
 mod pace;
 pub mod procedure;
 pub mod schedule;
@@ -16,7 +17,7 @@ use heapless::Vec;
 
 use self::pace::{Pace, Target, samples};
 use self::procedure::{Procedure, ProcedureError};
-use self::schedule::Position;
+use self::schedule::{Position, StopRule};
 use crate::align::POSITIONS;
 use crate::align::conclusion::Conclusion;
 use crate::align::criterion::Criterion;
@@ -210,7 +211,10 @@ impl Session {
     /// How many positions are planned.
     #[must_use]
     pub fn planned(&self) -> usize {
-        self.procedure.schedule.len()
+        match self.procedure.stop {
+            StopRule::Accuracy { .. } => self.procedure.schedule.len_beyond(self.dwells.len()),
+            _ => self.procedure.schedule.len(),
+        }
     }
 
     /// How the azimuth is found.
@@ -342,6 +346,9 @@ impl Session {
     /// Sends the stage to the next position, or concludes.
     fn go_on(&mut self, now: Instant) -> Command {
         self.tries = 0;
+        if let StopRule::Accuracy { seconds } = self.procedure.stop {
+            return self.go_on_until(seconds, now);
+        }
         let sigma = self.difference_sigma();
         let schedule = &self.procedure.schedule;
         let stops = schedule
@@ -349,12 +356,15 @@ impl Session {
             .is_some_and(|difference| self.procedure.stop.stops(difference, sigma));
         let [low, high] = self.procedure.travel;
         match schedule.next(&self.dwells, sigma) {
-            Some(next) if !stops && (low..=high).contains(&next.angle) => {
-                self.target = Target::new(next, self.procedure.sample_seconds);
-                self.send(now)
-            }
+            Some(next) if !stops && (low..=high).contains(&next.angle) => self.go_to(next, now),
             _ => self.conclude(None),
         }
+    }
+
+    /// Takes a position for the next target and sends the stage there.
+    fn go_to(&mut self, position: Position, now: Instant) -> Command {
+        self.target = Target::new(position, self.procedure.sample_seconds);
+        self.send(now)
     }
 
     /// Standard deviation of the difference of two dwells, rad/s.
@@ -368,6 +378,12 @@ impl Session {
             Ok(()) if self.dwells.len() < self.planned() => Command::Wait,
             _ => self.conclude(None),
         }
+    }
+
+    /// Takes back a conclusion that came too early.
+    fn resume(&mut self) {
+        self.conclusion = None;
+        self.phase = Phase::Dwell;
     }
 
     /// Ends the session with what there is, or with a reason that no dwell can mend.

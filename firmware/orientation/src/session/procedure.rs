@@ -1,6 +1,7 @@
 //! How a session goes about it: schedule, patience, travel, and what makes a procedure impossible.
 
 use super::schedule::{Schedule, StopRule};
+use crate::align::POSITIONS;
 use crate::align::criterion::Criterion;
 use crate::signal::butterworth::DesignError;
 use crate::units::TURN;
@@ -73,6 +74,14 @@ impl Procedure {
         }
     }
 
+    /// The same, until the accuracy of [`crate::align::setting::Setting::required_sigma`] is reached or
+    /// so many seconds have passed.
+    #[must_use]
+    pub fn until_accurate(self, seconds: f64) -> Self {
+        let patience = 2.0 * seconds + 30.0 * POSITIONS as f64 + 60.0;
+        Self { stop: StopRule::Accuracy { seconds }, longest_seconds: patience, ..self }
+    }
+
     /// The filter's cut-off for this schedule, Hz.
     #[must_use]
     pub fn cutoff(&self) -> f64 {
@@ -89,6 +98,9 @@ impl Procedure {
         let outside = |angle: f64| !(low..=high).contains(&angle);
         match &self.schedule {
             Schedule::Listed(list) => list.iter().map(|p| p.angle).find(|&angle| outside(angle)),
+            Schedule::Planned(plan) => {
+                (0..plan.positions()).map(|index| plan.angle(index)).find(|&angle| outside(angle))
+            }
             Schedule::TowardMaximum { start, .. } => outside(*start).then_some(*start),
         }
     }

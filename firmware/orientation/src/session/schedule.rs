@@ -3,6 +3,8 @@
 use heapless::Vec;
 
 use crate::align::POSITIONS;
+use crate::planner::Plan;
+use crate::planner::order::Order;
 use crate::signal::dwell::Dwell;
 
 /// One position: a stage angle and how long to stay.
@@ -23,6 +25,8 @@ pub struct Position {
 pub enum Schedule {
     /// These, in this order.
     Listed(Vec<Position, POSITIONS>),
+    /// What the planner made of the gyro's noise.
+    Planned(Plan),
     /// Sokolov's: equal steps from `start` towards growing rate. The first steps go clockwise until
     /// the rate has changed significantly; where it fell, the rest go on from `start` the other way.
     TowardMaximum {
@@ -48,6 +52,13 @@ pub enum StopRule {
     SignChange,
     /// When that difference is negative by this many of its standard deviations.
     Significant(f64),
+    /// When the standard deviation, as predicted from the gyro's noise and as observed in the dwells,
+    /// is that which was asked for. The session goes on beyond its schedule until then, and gives up
+    /// as soon as it sees that the time will not do.
+    Accuracy {
+        /// Time allowed for the whole session, s.
+        seconds: f64,
+    },
 }
 
 impl StopRule {
@@ -55,12 +66,15 @@ impl StopRule {
     #[must_use]
     pub fn stops(self, difference: f64, sigma: f64) -> bool {
         match self {
-            Self::AllPositions => false,
+            Self::AllPositions | Self::Accuracy { .. } => false,
             Self::SignChange => difference < 0.0,
             Self::Significant(bound) => difference < -bound * sigma,
         }
     }
 }
+
+/// Fewest dwells whose scatter says something about them.
+const FEWEST: usize = 8;
 
 /// Significance, in σ, with which the direction of growing rate is decided.
 const DIRECTION_BOUND: f64 = 3.0;
@@ -87,7 +101,52 @@ impl Schedule {
     pub fn len(&self) -> usize {
         match self {
             Self::Listed(list) => list.len(),
+            Self::Planned(plan) => plan.positions(),
             Self::TowardMaximum { positions, .. } => *positions,
+        }
+    }
+
+    /// How many positions there are once so many dwells are done and it goes on: whole passes.
+    #[must_use]
+    pub fn len_beyond(&self, dwells: usize) -> usize {
+        let length = self.len();
+        let pass = match self {
+            Self::Planned(_) => Order::Quadrature.length(),
+            _ => length.max(1),
+        };
+        let more = dwells.saturating_sub(length);
+        (length + more.next_multiple_of(pass)).min(POSITIONS)
+    }
+
+    /// Whether so many dwells make up whole passes, so that what has been seen so far is as good in
+    /// every direction and drift has been cancelled.
+    #[must_use]
+    pub fn is_balanced(&self, dwells: usize) -> bool {
+        let pass = match self {
+            Self::Planned(plan) if plan.order != Order::Pairs => plan.order.length(),
+            _ => self.len(),
+        };
+        if dwells < self.len() {
+            dwells >= FEWEST && dwells.is_multiple_of(pass)
+        } else {
+            dwells == self.len_beyond(dwells)
+        }
+    }
+
+    /// The position with this index; beyond the end a planned schedule goes on with 0, 180, 90, 270°
+    /// and a list begins anew.
+    #[must_use]
+    pub fn position(&self, index: usize) -> Option<Position> {
+        match self {
+            Self::Listed(list) => list.get(index % list.len().max(1)).copied(),
+            Self::Planned(plan) => {
+                let angle = match index.checked_sub(plan.positions()) {
+                    None => plan.angle(index),
+                    Some(beyond) => Order::Quadrature.angle(beyond, 1),
+                };
+                Some(Position { angle, seconds: plan.dwell })
+            }
+            Self::TowardMaximum { .. } => None,
         }
     }
 
@@ -102,6 +161,7 @@ impl Schedule {
     pub fn shortest(&self) -> f64 {
         match self {
             Self::Listed(list) => list.iter().map(|p| p.seconds).fold(f64::INFINITY, f64::min),
+            Self::Planned(plan) => plan.dwell,
             Self::TowardMaximum { seconds, .. } => *seconds,
         }
     }
@@ -111,6 +171,7 @@ impl Schedule {
     pub fn seconds(&self) -> f64 {
         match self {
             Self::Listed(list) => list.iter().map(|p| p.seconds).sum(),
+            Self::Planned(plan) => plan.positions() as f64 * plan.dwell,
             Self::TowardMaximum { seconds, positions, .. } => *positions as f64 * seconds,
         }
     }
@@ -119,7 +180,9 @@ impl Schedule {
     #[must_use]
     pub fn next(&self, dwells: &[Dwell], sigma: f64) -> Option<Position> {
         match self {
-            Self::Listed(list) => list.get(dwells.len()).copied(),
+            Self::Listed(_) | Self::Planned(_) => {
+                self.position(dwells.len()).filter(|_| dwells.len() < self.len())
+            }
             Self::TowardMaximum { start, step, positions, seconds } => {
                 let steps = steps_towards(dwells, sigma);
                 let angle = start + steps * step;
@@ -134,7 +197,7 @@ impl Schedule {
     pub fn last_difference(&self, dwells: &[Dwell], sigma: f64) -> Option<f64> {
         let [.., before, last] = dwells else { return None };
         let turned_back = match self {
-            Self::Listed(_) => false,
+            Self::Listed(_) | Self::Planned(_) => false,
             Self::TowardMaximum { .. } => {
                 turning_point(dwells, sigma).is_none_or(|turn| dwells.len() <= turn + 2)
             }

@@ -9,7 +9,7 @@ mod model;
 mod uncertainty;
 
 pub use model::Model;
-pub use uncertainty::FEW_DEGREES;
+pub use uncertainty::{FEW_DEGREES, excess};
 
 use super::budget::Budget;
 use super::direction::{Amplitude, Components, Direction, dot, inverted, product};
@@ -139,7 +139,8 @@ impl Problem<'_> {
         let [a, b, ..] = solution.coefficients;
         let slope = libm::tan(self.setting.latitude.rad());
         let vertical = [slope * self.tilt.real, slope * self.tilt.imaginary];
-        Components { value: [a, b], covariance: block(&solution.covariance), vertical }
+        let covariance = block(&solution.covariance);
+        Components { value: [a, b], covariance, vertical, half: self.setting.half }
     }
 
     /// The same, with what tilt and κ leave uncertain.
@@ -172,7 +173,9 @@ impl Problem<'_> {
 
     /// White-noise variance of an untapered mean, (rad/s)².
     fn own_variance(&self, dwell: &Dwell) -> f64 {
-        dwell.stated_variance.get().unwrap_or(self.white / dwell.seconds)
+        let noise =
+            || self.white / dwell.seconds + self.setting.noise.rounding_variance(dwell.seconds);
+        dwell.stated_variance.get().unwrap_or_else(noise)
     }
 
     fn whitener(&self, noise: &GyroNoise) -> Whitener<{ COLUMNS + 1 }> {
@@ -239,9 +242,8 @@ impl Fit {
             *value = free[index] + row[0] * weights[0] + row[1] * weights[1];
         }
         self.chi_square = solution.chi_square + dot(change, weights);
-        self.degrees = solution.degrees;
+        self.degrees = self.model.degrees(solution);
         if let Amplitude::Known(_) = self.model.amplitude {
-            self.degrees += 1;
             tighten(solution, noise, self.model.amplitude);
         }
     }

@@ -1,8 +1,9 @@
 //! Which columns the fit uses: trends where the data ask for them, the Earth rate free where that
 //! costs nothing.
 
+use super::super::different_positions;
 use super::super::direction::Amplitude;
-use super::super::regression::{COLUMNS, Column, Regression};
+use super::super::regression::{COLUMNS, Column, Regression, Solution};
 use super::Problem;
 
 /// Chi-square of one degree of freedom that noise exceeds with a probability of 0.001.
@@ -13,6 +14,9 @@ const TREND_COST: f64 = 1.5;
 const TREND_DEGREES: usize = 3;
 /// Ramp below which there is none, in units of `Ω_h` per hour.
 const LEAST_RAMP: f64 = 1e-9;
+/// 1σ of either component of the Earth rate before two positions are looked at, in units of `Ω_h`:
+/// so wide that it says nothing, and yet a number.
+const UNKNOWN_COMPONENT: f64 = 100.0;
 /// By how much leaving the Earth rate free may raise the standard deviation of the azimuth.
 const FREE_COST: f64 = 1.02;
 
@@ -25,6 +29,8 @@ pub struct Model {
     pub temperature: Column,
     /// The horizontal Earth rate.
     pub amplitude: Amplitude,
+    /// Whether the dwells stand at two positions only, which show one component and the constant.
+    pub is_single_axis: bool,
     /// By how much a trend that the azimuth cannot afford would lower chi-square; zero where there
     /// is none.
     pub rejected_trend: f64,
@@ -54,7 +60,19 @@ impl Outcome {
 
 impl Model {
     pub(super) fn columns(&self) -> [Column; COLUMNS] {
-        [Column::Free, Column::Free, Column::Free, self.time, self.temperature]
+        let component =
+            if self.is_single_axis { Column::Prior(UNKNOWN_COMPONENT) } else { Column::Free };
+        [component, component, Column::Free, self.time, self.temperature]
+    }
+
+    /// Degrees of freedom of a solution for these columns. Two positions show one component of two;
+    /// a known Earth rate leaves one freedom to both.
+    pub(super) fn degrees(&self, solution: &Solution<COLUMNS>) -> usize {
+        match (self.is_single_axis, self.amplitude) {
+            (true, _) => solution.degrees.saturating_sub(1),
+            (false, Amplitude::Known(_)) => solution.degrees + 1,
+            (false, Amplitude::Free) => solution.degrees,
+        }
     }
 }
 
@@ -93,6 +111,7 @@ impl Problem<'_> {
             time: if ramp > LEAST_RAMP { Column::Prior(ramp) } else { Column::Absent },
             temperature: Column::Absent,
             amplitude: Amplitude::Known(self.setting.amplitude_sigma()),
+            is_single_axis: different_positions(self.dwells) < 3,
             rejected_trend: 0.0,
         }
     }

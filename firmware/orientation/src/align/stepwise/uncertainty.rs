@@ -90,16 +90,22 @@ impl Problem<'_> {
     }
 }
 
+/// By how much residuals of this chi-square scatter more than the stated noise, as a factor of its
+/// standard deviation; one where that may be chance.
+#[must_use]
+pub fn excess(chi_square: f64, degrees: usize) -> f64 {
+    let least = EXCESS_PROBABILITY[usize::from(degrees > FEW_DEGREES)];
+    let freedom = degrees as f64;
+    let is_chance = degrees == 0 || chi_square_tail(chi_square, freedom) >= least;
+    if is_chance { 1.0 } else { libm::sqrt(chi_square / freedom) }
+}
+
 impl Fit {
     /// Raises what the dwells' noise contributes where they scatter more than it explains.
     pub(super) fn allow_for_excess(&mut self) {
-        let degrees = self.degrees as f64;
-        let least = EXCESS_PROBABILITY[usize::from(self.degrees > FEW_DEGREES)];
-        if self.degrees > 0 && chi_square_tail(self.chi_square, degrees) < least {
-            let factor = libm::sqrt(self.chi_square / degrees);
-            self.budget.noise *= factor;
-            self.budget.drift *= factor;
-        }
+        let factor = excess(self.chi_square, self.degrees);
+        self.budget.noise *= factor;
+        self.budget.drift *= factor;
     }
 
     /// Whether the horizontal Earth rate was left free.
