@@ -10,6 +10,7 @@ pub mod emulate;
 pub mod instrument;
 pub mod oracle;
 pub mod output;
+pub mod planning;
 pub mod recording;
 pub mod reference;
 pub mod replay;

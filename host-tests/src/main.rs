@@ -14,6 +14,7 @@ use clap::{FromArgMatches, Parser, Subcommand};
 
 use crate::command::campaign::CampaignOptions;
 use crate::command::emulate::EmulateOptions;
+use crate::command::plan::PlanOptions;
 use crate::command::replay::ReplayOptions;
 use crate::command::run::RunOptions;
 use crate::command::{Told, print};
@@ -37,6 +38,8 @@ enum Command {
     Run(RunOptions),
     /// Runs the alignment on a recording of kind `stage` or `dwells`.
     Replay(ReplayOptions),
+    /// Plans positions and dwells for a gyro's noise.
+    Plan(PlanOptions),
     /// Runs many simulated alignments and prints their errors beside the limit.
     Campaign(CampaignOptions),
     /// Runs the firmware on an emulated Cortex-M4F, compares its result with the host's bit for bit,
@@ -99,6 +102,7 @@ fn tell(command: &Command, as_json: bool) -> Result<bool, String> {
     let Told { found, output, refusal } = match command {
         Command::Run(options) => command::run::run(options, as_json),
         Command::Replay(options) => command::replay::run(options, as_json),
+        Command::Plan(options) => command::plan::run(options, as_json),
         Command::Campaign(options) => command::campaign::run(options, as_json),
         Command::Emulate(options) => command::emulate::run(options, as_json),
     }?;

@@ -2,12 +2,14 @@
 
 pub mod campaign;
 pub mod emulate;
+pub mod plan;
 pub mod replay;
 pub mod run;
 
 use std::fmt;
 use std::io::Write;
 
+use orientation::earth::Latitude;
 use serde::Serialize;
 
 /// What came of a command, ready to print.
@@ -35,6 +37,20 @@ impl Told {
             text(&mut output).map_err(|error| error.to_string())?;
         }
         Ok(Self { found, output, refusal: None })
+    }
+}
+
+/// A latitude in degrees.
+fn latitude(text: &str) -> Result<Latitude, String> {
+    let degrees: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    Latitude::from_degrees(degrees).ok_or_else(|| "outside ±90°".to_owned())
+}
+
+/// A standard deviation in degrees, as radians.
+fn sigma(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(degrees) if degrees > 0.0 && degrees <= 180.0 => Ok(degrees.to_radians()),
+        _ => Err("not a number of degrees above 0, at most 180".to_owned()),
     }
 }
 

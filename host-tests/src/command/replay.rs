@@ -10,7 +10,7 @@ use clap::{Args, ValueEnum};
 use orientation::align::criterion::Criterion;
 use orientation::earth::Latitude;
 
-use super::Told;
+use super::{Told, latitude, sigma};
 
 /// Which recording, and how it is taken.
 #[derive(Args)]
@@ -36,19 +36,6 @@ pub struct ReplayOptions {
 enum Method {
     /// Stepwise gyrocompassing.
     Stepwise,
-}
-
-fn latitude(text: &str) -> Result<Latitude, String> {
-    let degrees: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
-    Latitude::from_degrees(degrees).ok_or_else(|| "outside ±90°".to_owned())
-}
-
-/// A standard deviation in degrees, as radians.
-fn sigma(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(degrees) if degrees > 0.0 && degrees <= 180.0 => Ok(degrees.to_radians()),
-        _ => Err("not a number of degrees above 0, at most 180".to_owned()),
-    }
 }
 
 impl From<&ReplayOptions> for Options {

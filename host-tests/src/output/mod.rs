@@ -2,6 +2,7 @@
 
 pub mod emulation;
 pub mod json;
+pub mod plan;
 pub mod progress;
 pub mod table;
 pub mod text;

@@ -1,0 +1,220 @@
+//! Schedules for a gyro: Burov's and the project's own, side by side.
+
+use std::fmt;
+
+use orientation::align::POSITIONS;
+use orientation::earth::Latitude;
+use orientation::noise::model::GyroNoise;
+use orientation::planner::burov::{self, Autocompensation};
+use orientation::planner::order::Order;
+use orientation::planner::{Conditions, Plan, PlanError, Rotation, for_sigma, for_time};
+use orientation::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN};
+use serde::Serialize;
+
+/// Fewest positions of a schedule that notices a disturbed dwell.
+pub const FEWEST: usize = 8;
+/// Shortest dwell that is planned, s.
+pub const SHORTEST: f64 = 1.0;
+/// Longest time that is planned for a wanted σ, s.
+const LONGEST: f64 = burov::LONGEST;
+
+/// What is asked of a schedule.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Wanted {
+    /// The best in a total time, s.
+    Seconds(f64),
+    /// The least time for a full azimuth of this 1σ, rad.
+    Sigma(f64),
+}
+
+/// A gyro, a place, a stage and what is asked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Request {
+    /// The gyro's noise.
+    pub noise: GyroNoise,
+    /// Where.
+    pub latitude: Latitude,
+    /// Time of one rotation, s, whatever its angle.
+    pub rotation: f64,
+    /// What is asked.
+    pub wanted: Wanted,
+}
+
+/// Burov's schedule, eq. (1).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct OfBurov {
+    /// Number of positions n.
+    pub positions: u32,
+    /// Time in each, s.
+    pub dwell_s: f64,
+    /// Total time, s.
+    pub seconds: f64,
+    /// Δω(n) of eq. (1), the 1σ of a rate, °/h.
+    pub rate_error_deg_h: f64,
+    /// B√(2 ln 2/π), which eq. (1) leaves out, °/h.
+    pub flicker_deg_h: f64,
+    /// Both together over `Ω_h`: the 1σ of an azimuth whose half is known and which is read off one
+    /// axis, °.
+    pub one_axis_sigma_deg: f64,
+    /// √2 of that: the 1σ of a full azimuth from one gyro, °.
+    pub sigma_deg: f64,
+}
+
+/// The schedule of the least σ for the fit of this project.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Optimum {
+    /// The order of positions.
+    pub order: &'static str,
+    /// How often it is gone through.
+    pub passes: usize,
+    /// Number of positions.
+    pub positions: usize,
+    /// Time in each, s.
+    pub dwell_s: f64,
+    /// Total time, s.
+    pub seconds: f64,
+    /// 1σ of each horizontal rate component, °/h.
+    pub rate_error_deg_h: f64,
+    /// 1σ of a full azimuth as noise leaves it, °.
+    pub sigma_deg: f64,
+}
+
+/// What was planned.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Planned {
+    /// Burov's schedule, at the top of the object; none where his model cannot reach what is wanted.
+    #[serde(flatten)]
+    pub burov: Option<OfBurov>,
+    /// The least 1σ of a full azimuth that his model reaches in a day, °, where it cannot.
+    pub burov_least_sigma_deg: Option<f64>,
+    /// The project's own.
+    pub optimum: Optimum,
+    /// One pass of 0, 180, 90, 270° in the same time as the optimum, 1σ of a full azimuth, °.
+    pub one_pass_sigma_deg: Option<f64>,
+}
+
+/// Why nothing was planned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Unplanned {
+    /// The time does not hold the fewest positions.
+    TooShort,
+    /// Every coefficient is zero.
+    NoNoise,
+    /// A day does not do; the least 1σ of a full azimuth, °.
+    OutOfReach(f64),
+    /// Too near to a pole.
+    NoNorth,
+}
+
+impl fmt::Display for Unplanned {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooShort => write!(
+                f,
+                "the time holds no schedule: {FEWEST} dwells of {SHORTEST} s and their rotations \
+                 are the least"
+            ),
+            Self::NoNoise => f.write_str("every coefficient is zero: give at least --arw"),
+            Self::OutOfReach(sigma) => {
+                write!(
+                    f,
+                    "out of reach: {sigma:.4}° (1σ) is the least that a day and {POSITIONS} positions give"
+                )
+            }
+            Self::NoNorth => f.write_str("beyond ±85° too little of the Earth rate is horizontal"),
+        }
+    }
+}
+
+impl Request {
+    /// Plans.
+    ///
+    /// # Errors
+    /// Why there is no schedule.
+    pub fn plan(&self) -> Result<Planned, Unplanned> {
+        if !self.latitude.has_north() {
+            return Err(Unplanned::NoNorth);
+        }
+        let optimum = self.optimum()?;
+        let four = Conditions { fewest: 4, ..self.conditions() };
+        let one_pass = Plan::of(&four, Order::Quadrature, 1, optimum.seconds);
+        let (burov, burov_least_sigma_deg) = match self.burov()? {
+            Ok(best) => (Some(self.of_burov(&best)), None),
+            Err(least) => (None, Some(self.degrees(least))),
+        };
+        Ok(Planned {
+            burov,
+            burov_least_sigma_deg,
+            optimum: self.told(&optimum),
+            one_pass_sigma_deg: one_pass.map(|plan| self.degrees(plan.rate_sigma)),
+        })
+    }
+
+    /// What the planner of the core is given.
+    #[must_use]
+    pub fn conditions(&self) -> Conditions {
+        let rotation = Rotation::fixed(self.rotation);
+        Conditions { noise: self.noise, rotation, shortest: SHORTEST, fewest: FEWEST }
+    }
+
+    fn degrees(&self, rate_sigma: f64) -> f64 {
+        rate_sigma / self.latitude.horizontal_rate() * DEGREES_PER_RADIAN
+    }
+
+    fn optimum(&self) -> Result<Plan, Unplanned> {
+        let conditions = self.conditions();
+        let plan = match self.wanted {
+            Wanted::Seconds(seconds) => for_time(&conditions, seconds),
+            Wanted::Sigma(sigma) => {
+                for_sigma(&conditions, sigma * self.latitude.horizontal_rate(), LONGEST)
+            }
+        };
+        plan.map_err(|error| match error {
+            PlanError::TooShort => Unplanned::TooShort,
+            PlanError::NoNoise => Unplanned::NoNoise,
+            PlanError::OutOfReach(rate) => Unplanned::OutOfReach(self.degrees(rate)),
+        })
+    }
+
+    /// Burov's schedule, or the least rate error of either of two components, rad/s.
+    fn burov(&self) -> Result<Result<Autocompensation, f64>, Unplanned> {
+        match self.wanted {
+            Wanted::Seconds(seconds) => {
+                burov::best(&self.noise, seconds, self.rotation).map(Ok).ok_or(Unplanned::TooShort)
+            }
+            Wanted::Sigma(sigma) => {
+                let rate = sigma * self.latitude.horizontal_rate();
+                let flicker = burov::flicker_floor(&self.noise);
+                let left = (0.5 * rate * rate - flicker * flicker).max(0.0).sqrt();
+                let found = burov::least_time(&self.noise, left, self.rotation);
+                Ok(found.map_err(|least| std::f64::consts::SQRT_2 * least.hypot(flicker)))
+            }
+        }
+    }
+
+    fn of_burov(&self, best: &Autocompensation) -> OfBurov {
+        let flicker = burov::flicker_floor(&self.noise);
+        let one_axis = self.degrees(best.rate_error.hypot(flicker));
+        OfBurov {
+            positions: best.positions,
+            dwell_s: best.dwell,
+            seconds: best.seconds,
+            rate_error_deg_h: best.rate_error / DEGREE_PER_HOUR,
+            flicker_deg_h: flicker / DEGREE_PER_HOUR,
+            one_axis_sigma_deg: one_axis,
+            sigma_deg: std::f64::consts::SQRT_2 * one_axis,
+        }
+    }
+
+    fn told(&self, plan: &Plan) -> Optimum {
+        Optimum {
+            order: plan.order.name(),
+            passes: plan.passes,
+            positions: plan.positions(),
+            dwell_s: plan.dwell,
+            seconds: plan.seconds,
+            rate_error_deg_h: plan.rate_sigma / DEGREE_PER_HOUR,
+            sigma_deg: self.degrees(plan.rate_sigma),
+        }
+    }
+}
