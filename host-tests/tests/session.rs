@@ -62,7 +62,7 @@ fn error_in_sigmas(session: &Session, azimuth_deg: f64) -> f64 {
 fn a_circle_is_turned_step_by_step_and_gives_north() {
     for (seed, azimuth) in [(1, 3.3), (2, 123.4), (3, 359.9), (4, 200.0)] {
         let mut session = session(circle());
-        let sent = run(&mut session, &world(azimuth), &[], 1.0, 200.0, seed);
+        let sent = run(&mut session, &world(azimuth), &[], Rotation::fixed(1.0), 200.0, seed);
         let expected: Vec<f64> = (1..12).map(|i| f64::from(i) * 30.0_f64.to_radians()).collect();
         assert_eq!(sent.len(), expected.len());
         assert!(sent.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{sent:?}");
@@ -74,7 +74,7 @@ fn a_circle_is_turned_step_by_step_and_gives_north() {
 fn a_disturbed_dwell_is_measured_again_without_moving_the_stage() {
     let nudge = Disturbance::Nudge { start_s: 14.0, seconds: 2.0, rate_deg_h: 5.0 };
     let mut session = session(circle());
-    let sent = run(&mut session, &world(77.0), &[nudge], 1.0, 200.0, 5);
+    let sent = run(&mut session, &world(77.0), &[nudge], Rotation::fixed(1.0), 200.0, 5);
     assert_eq!(sent.len(), 11);
     assert_eq!(session.repetitions().len(), 1);
     assert_eq!(session.repetitions()[0].position, 2);
@@ -88,7 +88,7 @@ fn retries_are_bounded_and_a_lasting_disturbance_is_refused() {
         .map(|i| Disturbance::Nudge { start_s: f64::from(i) * 3.0, seconds: 1.0, rate_deg_h: 60.0 })
         .collect();
     let mut session = session(circle());
-    run(&mut session, &world(10.0), &lasting, 1.0, 2000.0, 6);
+    run(&mut session, &world(10.0), &lasting, Rotation::fixed(1.0), 2000.0, 6);
     let conclusion = session.conclusion().expect("it has ended");
     assert!(
         matches!(conclusion.verdict, Err(Refusal::Disturbed { .. })),
@@ -102,7 +102,7 @@ fn retries_are_bounded_and_a_lasting_disturbance_is_refused() {
 #[test]
 fn the_whole_session_is_bounded_in_time() {
     let mut session = session(Procedure { longest_seconds: 20.0, ..circle() });
-    run(&mut session, &world(10.0), &[], 1.0, 2000.0, 7);
+    run(&mut session, &world(10.0), &[], Rotation::fixed(1.0), 2000.0, 7);
     let verdict = session.conclusion().expect("it has ended").verdict;
     assert_eq!(verdict, Err(Refusal::TimeExhausted));
 }
@@ -111,7 +111,7 @@ fn the_whole_session_is_bounded_in_time() {
 fn a_stage_that_does_not_arrive_is_refused() {
     let mut session = session(Procedure { longest_rotation: 30.0, ..circle() });
     // It takes longer for a rotation than is allowed.
-    run(&mut session, &world(10.0), &[], 50.0, 2000.0, 8);
+    run(&mut session, &world(10.0), &[], Rotation::fixed(50.0), 2000.0, 8);
     let verdict = session.conclusion().expect("it has ended").verdict;
     assert!(matches!(verdict, Err(Refusal::StageNotThere { .. })), "{verdict:?}");
 }
@@ -120,7 +120,7 @@ fn a_stage_that_does_not_arrive_is_refused() {
 fn a_platform_that_is_not_level_enough_is_refused_before_anything_turns() {
     let mut session = session(circle());
     let tilted = InstrumentsConfiguration { pitch_deg: 20.0, ..world(10.0) };
-    let sent = run(&mut session, &tilted, &[], 1.0, 200.0, 9);
+    let sent = run(&mut session, &tilted, &[], Rotation::fixed(1.0), 200.0, 9);
     assert_eq!(sent, [0.0; 0]);
     let verdict = session.conclusion().expect("it has ended").verdict;
     assert!(matches!(verdict, Err(Refusal::TiltTooGreat { .. })), "{verdict:?}");
@@ -137,7 +137,7 @@ fn ascending(positions: usize) -> Procedure {
 fn the_stage_turns_towards_growing_rate() {
     for (azimuth, towards) in [(60.0, -1.0), (300.0, 1.0), (150.0, -1.0), (210.0, 1.0)] {
         let mut session = session(ascending(20));
-        let sent = run(&mut session, &world(azimuth), &[], 0.5, 400.0, 10);
+        let sent = run(&mut session, &world(azimuth), &[], Rotation::fixed(0.5), 400.0, 10);
         let last = sent.last().expect("it was sent");
         assert!(last * towards > 0.0, "{azimuth}: {sent:?}");
         assert!(error_in_sigmas(&session, azimuth).abs() < 3.5, "{azimuth}");
@@ -148,7 +148,7 @@ fn the_stage_turns_towards_growing_rate() {
 fn the_significant_stop_rule_ends_past_the_maximum_where_the_papers_stops_short() {
     let positions_with = |stop| {
         let mut session = session(Procedure { stop, ..ascending(40) });
-        run(&mut session, &world(300.0), &[], 0.5, 600.0, 11);
+        run(&mut session, &world(300.0), &[], Rotation::fixed(0.5), 600.0, 11);
         assert_eq!(session.phase(), Phase::Done);
         session.dwells().len()
     };
@@ -163,7 +163,7 @@ fn the_significant_stop_rule_ends_past_the_maximum_where_the_papers_stops_short(
 fn the_stage_never_leaves_its_travel() {
     let travel = [-0.2, 0.2];
     let mut session = session(Procedure { travel, ..ascending(20) });
-    let sent = run(&mut session, &world(100.0), &[], 0.5, 400.0, 12);
+    let sent = run(&mut session, &world(100.0), &[], Rotation::fixed(0.5), 400.0, 12);
     assert!(sent.iter().all(|angle| (travel[0]..=travel[1]).contains(angle)), "{sent:?}");
     let positions = [0.0, 7.0].map(|angle| Position { angle, seconds: 5.0 });
     let listed = Schedule::listed(&positions).expect("they fit");
@@ -179,7 +179,7 @@ fn dwells_that_the_filter_has_no_time_to_settle_in_are_unbiased() {
     for seed in 0..200 {
         let mut session = session(procedure.clone());
         let azimuth = seed as f64 * 1.7;
-        run(&mut session, &world(azimuth), &[], 0.1, 60.0, 1000 + seed);
+        run(&mut session, &world(azimuth), &[], Rotation::fixed(0.1), 60.0, 1000 + seed);
         errors.push(error_in_sigmas(&session, azimuth));
         let fit = session.conclusion().and_then(|conclusion| conclusion.fit.as_ref());
         let fit = fit.expect("there is a fit");
@@ -217,7 +217,7 @@ fn until(sigma_deg: f64, seconds: f64, noise: f64, seed: u64) -> (Session, f64) 
         Session::new(Setting { required_sigma, ..setting() }, procedure).expect("it begins");
     let mut configuration = world(123.4);
     configuration.gyro.n_deg_sqrt_h *= noise;
-    run(&mut session, &configuration, &[], 1.0, 4.0 * seconds, seed);
+    run(&mut session, &configuration, &[], Rotation::fixed(1.0), 4.0 * seconds, seed);
     let end = session.dwells().last().map_or(0.0, |dwell| dwell.end());
     (session, end)
 }
