@@ -11,6 +11,7 @@ pub mod instrument;
 pub mod oracle;
 pub mod output;
 pub mod planning;
+pub mod positions;
 pub mod recording;
 pub mod reference;
 pub mod replay;

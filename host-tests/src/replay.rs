@@ -8,7 +8,7 @@ use std::fmt;
 
 use orientation::align::POSITIONS;
 use orientation::align::criterion::Criterion;
-use orientation::align::setting::Setting;
+use orientation::align::setting::{Half, Setting};
 use orientation::earth::Latitude;
 use orientation::session::procedure::{Procedure, ProcedureError, STILL};
 use orientation::session::schedule::{Position, Schedule};
@@ -20,9 +20,34 @@ use orientation::units::{Angle, AngularRate, Instant, SpecificForce, TURN, Tempe
 use crate::recording::{Body, DwellRow, Header, StageRow};
 use crate::setting::{Described, describe};
 
+/// By which of its names an alignment in positions is called; the fit is the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// Stepwise gyrocompassing.
+    #[default]
+    Stepwise,
+    /// Autocompensated positions, in passes.
+    Positions,
+}
+
+impl Method {
+    /// Its name on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Stepwise => "stepwise",
+            Self::Positions => "positions",
+        }
+    }
+}
+
 /// What the user asked for.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
+    /// The method.
+    pub method: Method,
+    /// The half of the circle in which the azimuth lies, where that is known.
+    pub half: Option<Half>,
     /// Latitude instead of the header's.
     pub latitude: Option<Latitude>,
     /// How the azimuth is found.
@@ -33,13 +58,21 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { latitude: None, criterion: Criterion::MaximumLikelihood, required_sigma: None }
+        Self {
+            method: Method::default(),
+            half: None,
+            latitude: None,
+            criterion: Criterion::MaximumLikelihood,
+            required_sigma: None,
+        }
     }
 }
 
 /// A finished replay.
 #[derive(Clone, Debug)]
 pub struct Replay {
+    /// The method.
+    pub method: Method,
     /// The session, with its conclusion.
     pub session: Session,
     /// The setting it ran in.
@@ -110,6 +143,7 @@ pub fn replay(
     progress: impl FnMut(&Session),
 ) -> Result<Replay, ReplayError> {
     let Described { mut setting, assumed } = describe(header, body, latitude(header, options)?);
+    setting.half = options.half;
     if let Some(sigma) = options.required_sigma {
         setting.required_sigma = sigma;
     }
@@ -117,7 +151,7 @@ pub fn replay(
         Body::Stage(rows) => stage(header, rows, setting, options.criterion, progress),
         Body::Dwells(rows) => dwells(rows, setting, options.criterion, progress),
     }?;
-    Ok(Replay { session, setting, assumed })
+    Ok(Replay { method: options.method, session, setting, assumed })
 }
 
 fn latitude(header: &Header, options: &Options) -> Result<Latitude, ReplayError> {

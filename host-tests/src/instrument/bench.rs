@@ -14,7 +14,7 @@ use firmware::simulated::scenario::Scenario;
 use orientation::session::Session;
 
 use super::{Run, RunError};
-use crate::replay::Replay;
+use crate::replay::{Method, Replay};
 use crate::virtual_time;
 
 /// What the board was not told but takes as known.
@@ -87,7 +87,12 @@ pub fn align<R: Recorder, W: Observer>(
         .map(|(select, violation)| format!("{select:?}: {violation}"))
         .collect();
     Ok(Run {
-        replay: Replay { session, setting, assumed: vec![ASSUMED.to_owned()] },
+        replay: Replay {
+            method: Method::Stepwise,
+            session,
+            setting,
+            assumed: vec![ASSUMED.to_owned()],
+        },
         events: log.events.into_inner(),
         lines: String::from_utf8_lossy(&bytes.into_inner()).into_owned(),
         seconds: ended.as_micros() as f64 * 1e-6,

@@ -6,7 +6,8 @@ use orientation::align::stepwise::Fit;
 use serde::Serialize;
 
 use super::{azimuth_error, columns, degrees};
-use crate::replay::Replay;
+use crate::positions::{Autocompensation, autocompensation};
+use crate::replay::{Method, Replay};
 
 /// The object of a method that gives an azimuth.
 #[derive(Clone, Debug, Serialize)]
@@ -53,6 +54,9 @@ pub struct AzimuthObject {
     pub horizontal_earth_rate: Option<&'static str>,
     /// Dwells left out.
     pub excluded: Vec<Excluded>,
+    /// The positions and what plain least squares makes of them; of method `positions`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub autocompensation: Option<Autocompensation>,
     /// What was assumed.
     pub assumed: Vec<String>,
 }
@@ -112,7 +116,7 @@ pub fn azimuth(replay: &Replay, conclusion: &Conclusion, truth_deg: Option<f64>)
         dwells.filter(|(_, why)| why.is_none()).map(|(dwell, _)| dwell)
     };
     AzimuthObject {
-        method: "stepwise",
+        method: replay.method.name(),
         criterion: replay.criterion_name(),
         status: if verdict.is_ok() { "ok" } else { "refused" },
         reason: verdict.err().map(ToString::to_string),
@@ -131,6 +135,8 @@ pub fn azimuth(replay: &Replay, conclusion: &Conclusion, truth_deg: Option<f64>)
         model: fit.map(columns).unwrap_or_default(),
         horizontal_earth_rate: fit.map(earth_rate),
         excluded: excluded(replay, conclusion),
+        autocompensation: (replay.method == Method::Positions)
+            .then(|| autocompensation(&replay.session, conclusion)),
         assumed: replay.assumed.clone(),
     }
 }

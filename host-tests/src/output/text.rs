@@ -9,7 +9,8 @@ use orientation::align::stepwise::Fit;
 use super::json::{Excluded, earth_rate, excluded};
 use super::{azimuth_error, columns, degrees, degrees_per_hour, positive_zero};
 use crate::instrument::Run;
-use crate::replay::Replay;
+use crate::positions::autocompensation;
+use crate::replay::{Method, Replay};
 
 /// Writes the block for a replay of `name`; `truth_deg` is for its error alone.
 ///
@@ -32,6 +33,9 @@ pub fn block(
     }
     if let Some(fit) = &conclusion.fit {
         of_fit(out, replay, conclusion, fit)?;
+    }
+    if replay.method == Method::Positions {
+        positions(out, replay, conclusion)?;
     }
     line(out, "assumed", format_args!("{}", replay.assumed.join("; ")))?;
     left_out(out, replay, conclusion)?;
@@ -96,6 +100,23 @@ fn of_fit(
     let (chi, degrees) = (fit.chi_square, fit.degrees);
     line(out, "residuals", format_args!("χ² {chi:.1} for {degrees} degrees of freedom"))?;
     budget(out, fit)
+}
+
+/// How often each position was visited, and what plain autocompensation gives.
+fn positions(out: &mut impl Write, replay: &Replay, conclusion: &Conclusion) -> fmt::Result {
+    let found = autocompensation(&replay.session, conclusion);
+    let visited = found.angles_deg.iter().zip(&found.visits);
+    let list: Vec<String> =
+        visited.map(|(angle, times)| format!("{angle:.1}° × {times}")).collect();
+    line(out, "positions", format_args!("{}", list.join(", ")))?;
+    let (Some(azimuth), Some(off)) = (found.plain_azimuth_deg, found.plain_off_sigmas) else {
+        return Ok(());
+    };
+    line(
+        out,
+        "without weights",
+        format_args!("{azimuth:.4}° by plain least squares, {off:+.2} σ from the azimuth"),
+    )
 }
 
 /// The budget with each part's share of the variance.
