@@ -13,6 +13,7 @@ pub mod output;
 pub mod recording;
 pub mod reference;
 pub mod replay;
+pub mod report;
 pub mod setting;
 pub mod simulate;
 pub mod virtual_time;
