@@ -4,6 +4,7 @@
 //! are its own.
 #![forbid(unsafe_code)]
 
+pub mod allan;
 pub mod campaign;
 pub mod criterion;
 pub mod emulate;
