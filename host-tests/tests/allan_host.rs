@@ -5,3 +5,5 @@
 
 #[path = "allan_host/estimators.rs"]
 mod estimators;
+#[path = "allan_host/recordings.rs"]
+mod recordings;

@@ -1,8 +1,8 @@
 //! Sums of squared differences of one segment's phase, each in one pass.
 //!
 //! `x` is the phase in units of one period: the running sum of n rates, n + 1 values from zero; `m`
-//! is the averaging factor. The definitions are those of
-//! NIST SP 1065, section 5.2.
+//! is the averaging factor. The definitions are those of NIST SP 1065,
+//! section 5.2.
 
 /// Squares and how many they are.
 #[derive(Clone, Copy, Default)]

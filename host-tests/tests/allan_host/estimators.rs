@@ -121,7 +121,7 @@ fn factors_rise_without_a_hole_to_half_of_the_longest_segment() {
     let factors = record.factors();
     assert_eq!(factors[..10], [1, 2, 3, 4, 5, 6, 7, 8, 10, 12]);
     assert_eq!(factors.last(), Some(&448));
-    assert!(factors.windows(2).all(|pair| pair[0] < pair[1] && 3 * pair[0] >= pair[1] + 1));
+    assert!(factors.windows(2).all(|pair| pair[0] < pair[1] && 2 * pair[0] >= pair[1]));
 }
 
 /// The overlapping Allan variance from its definition: every pair of adjacent windows of averages
