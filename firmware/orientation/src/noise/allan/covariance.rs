@@ -1,0 +1,1 @@
+//! Covariance of Allan variances.
