@@ -12,6 +12,7 @@ use std::process::ExitCode;
 use bench::output::say;
 use clap::{FromArgMatches, Parser, Subcommand};
 
+use crate::command::allan::AllanOptions;
 use crate::command::campaign::CampaignOptions;
 use crate::command::emulate::EmulateOptions;
 use crate::command::replay::ReplayOptions;
@@ -37,6 +38,8 @@ enum Command {
     Run(RunOptions),
     /// Runs the alignment on a recording of kind `stage` or `dwells`.
     Replay(ReplayOptions),
+    /// Finds a gyro's noise from a recording of kind `static`: Allan deviation and coefficients.
+    Allan(AllanOptions),
     /// Runs many simulated alignments and prints their errors beside the limit.
     Campaign(CampaignOptions),
     /// Runs the firmware on an emulated Cortex-M4F, compares its result with the host's bit for bit,
@@ -99,6 +102,7 @@ fn tell(command: &Command, as_json: bool) -> Result<bool, String> {
     let Told { found, output, refusal } = match command {
         Command::Run(options) => command::run::run(options, as_json),
         Command::Replay(options) => command::replay::run(options, as_json),
+        Command::Allan(options) => command::allan::run(options, as_json),
         Command::Campaign(options) => command::campaign::run(options, as_json),
         Command::Emulate(options) => command::emulate::run(options, as_json),
     }?;

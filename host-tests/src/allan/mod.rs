@@ -4,7 +4,9 @@
 //! window in it, and is what the other is compared with. A record is rates at one period, in
 //! segments where samples are missing between them: no difference is taken across a gap.
 
+pub mod analysis;
 mod differences;
+pub mod speed;
 
 use differences::{Sum, modified, second, third, total};
 
@@ -89,12 +91,12 @@ impl Record {
         self.phases.iter().map(|phases| phases.len() - 1).max().unwrap_or(0)
     }
 
-    /// The averaging factors 1, 2, 3, then four to each octave (4, 5, 6, 7 · 2ᵏ), as far as two
-    /// windows fit into a segment.
+    /// The averaging factors 1, 2, 3, 4, 6, 8, 12, … (two to each octave, as on the board), as far as
+    /// two windows fit into a segment.
     #[must_use]
     pub fn factors(&self) -> Vec<usize> {
-        let octaves = (0..usize::BITS - 3).flat_map(|k| (4..8).map(move |m| m << k));
-        (1..4).chain(octaves).take_while(|factor| 2 * factor <= self.longest()).collect()
+        let octaves = (1..usize::BITS - 2).flat_map(|k| [2 << k, 3 << k]);
+        (1..4).chain(octaves).take_while(|factor| factor <= &(self.longest() / 2)).collect()
     }
 
     /// The variance for an averaging time of `factor` periods; `None` where no window is long

@@ -25,9 +25,9 @@ const BAR: i32 = 8;
 const DASH: u32 = 16;
 const BAND_OPACITY: f64 = 0.2;
 
-/// Colours that people who cannot tell red from green tell apart (Okabe and Ito 2008), the darkest
-/// first.
-const COLOURS: [RGBColor; 7] = [
+/// Colours that people who cannot tell red from green tell apart (Okabe and Ito 2008, with grey and
+/// brown for its black and yellow).
+const COLOURS: [RGBColor; 8] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -35,6 +35,7 @@ const COLOURS: [RGBColor; 7] = [
     RGBColor(86, 180, 233),
     RGBColor(230, 159, 0),
     RGBColor(80, 80, 80),
+    RGBColor(148, 103, 60),
 ];
 
 /// The colour of the series at this place.
