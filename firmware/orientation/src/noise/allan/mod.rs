@@ -14,6 +14,7 @@
 pub mod covariance;
 mod kernel;
 
+use super::model::GyroNoise;
 use crate::units::AngularRate;
 
 /// Levels: the last reaches τ = 6·2²³ samples, half of a record of 10⁸.
@@ -34,6 +35,21 @@ pub const MOST_SAMPLES: u32 = u32::MAX;
 
 const _: () = assert!(size_of::<Allan>() <= 4096, "the board's room for it");
 const _: () = assert!(RING > 2 * FACTORS[1] as usize, "a ring holds a second difference");
+
+/// What each coefficient's square counts in the Allan variance at τ = `seconds`: Q, N, B, K, R.
+#[must_use]
+pub fn terms(seconds: f64) -> [f64; 5] {
+    let flat = 2.0 * core::f64::consts::LN_2 / core::f64::consts::PI;
+    let square = seconds * seconds;
+    [3.0 / square, 1.0 / seconds, flat, seconds / 3.0, 0.5 * square]
+}
+
+/// Allan variance of a noise at τ = `seconds`, (rad/s)².
+#[must_use]
+pub fn variance(noise: &GyroNoise, seconds: f64) -> f64 {
+    let coefficients = noise.coefficients().map(|coefficient| coefficient * coefficient);
+    terms(seconds).iter().zip(coefficients).map(|(term, square)| term * square).sum()
+}
 
 /// One estimate of the Allan variance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -3,10 +3,20 @@
 //! σ²(τ) = 3Q²/τ² + N²/τ + (2 ln 2/π)B² + K²τ/3 + R²τ²/2 (IEEE Std 952-1997, annex C), fitted with
 //! coefficients that are not negative.
 
-use super::allan::{Allan, Point};
+mod regression;
+mod search;
+mod spread;
+
+use heapless::Vec;
+
+use self::search::Search;
+use super::allan::{Allan, MOST_POINTS, Point};
 use super::model::GyroNoise;
 use crate::units::{ARCSECOND, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 use crate::words;
+
+/// Fewest samples of which anything is said: eight τ, as many as the coefficients and three.
+const LEAST_SAMPLES: u64 = 64;
 
 /// One coefficient as the record knows it, in the unit its place states.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,16 +82,33 @@ pub struct NoiseFit {
 }
 
 impl NoiseFit {
-    /// The noise of a gyro that was sampled every `sample_seconds` at rest.
+    /// The noise of a gyro that stood still while it was sampled every `sample_seconds`.
     pub fn of(allan: &Allan, sample_seconds: f64) -> Result<Self, FitError> {
-        let _ = (allan, sample_seconds);
-        Err(FitError::Constant)
+        if allan.is_saturated() {
+            return Err(FitError::Saturated);
+        }
+        if allan.is_constant() && allan.samples() > 1 {
+            return Err(FitError::Constant);
+        }
+        let points: Vec<Point, MOST_POINTS> = allan.points(sample_seconds).collect();
+        let fit = Self::of_points(&points, sample_seconds)?;
+        let step = allan.resolution();
+        if points[0].variance < step * step / 12.0 {
+            return Err(FitError::Unresolved);
+        }
+        Ok(fit)
     }
 
-    /// The same from points, rising in τ, that were estimated elsewhere (terms advance by `stride`).
-    pub fn of_points(points: &[Point]) -> Result<Self, FitError> {
-        let _ = points;
-        Err(FitError::Constant)
+    /// The same from points, rising in τ, that were estimated elsewhere.
+    pub fn of_points(points: &[Point], sample_seconds: f64) -> Result<Self, FitError> {
+        if !(sample_seconds > 0.0 && sample_seconds.is_finite()) {
+            return Err(FitError::Period);
+        }
+        let samples = points.first().map_or(0, |point| point.terms + 1);
+        if samples < LEAST_SAMPLES {
+            return Err(FitError::TooShort { samples, needed: LEAST_SAMPLES });
+        }
+        Ok(Search::begin(points, sample_seconds).finish())
     }
 
     /// The coefficients found; what is not observable is zero.
