@@ -17,7 +17,7 @@ use orientation::signal::Sample;
 use orientation::signal::dwell::Dwell;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce, TURN, Temperature};
 
-use crate::recording::{Body, DwellRow, Header, StageRow};
+use crate::recording::{Body, DwellRow, Header, Kind, StageRow};
 use crate::setting::{Described, describe};
 
 /// By which of its names an alignment in positions is called; the fit is the same.
@@ -101,6 +101,8 @@ impl Replay {
 pub enum ReplayError {
     /// Neither the header nor the user gives a latitude.
     NoLatitude,
+    /// A kind without positions.
+    Kind(Kind),
     /// The stage never stood still long enough.
     NoDwell,
     /// More positions than a session holds.
@@ -115,6 +117,7 @@ impl fmt::Display for ReplayError {
             Self::NoLatitude => {
                 f.write_str("key latitude_deg is missing: add it or give --latitude")
             }
+            Self::Kind(kind) => write!(f, "kind `{kind}` has no positions to align from"),
             Self::NoDwell => f.write_str(
                 "column stage_rad: the stage stands still nowhere long enough for a dwell",
             ),
@@ -150,6 +153,7 @@ pub fn replay(
     let session = match body {
         Body::Stage(rows) => stage(header, rows, setting, options.criterion, progress),
         Body::Dwells(rows) => dwells(rows, setting, options.criterion, progress),
+        Body::Static(_) => return Err(ReplayError::Kind(body.kind())),
     }?;
     Ok(Replay { method: options.method, session, setting, assumed })
 }

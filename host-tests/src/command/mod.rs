@@ -1,5 +1,6 @@
 //! The commands of the program, one file each: options in, [`Told`] out.
 
+pub mod allan;
 pub mod campaign;
 pub mod emulate;
 pub mod plan;

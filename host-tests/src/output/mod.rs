@@ -1,5 +1,6 @@
 //! What the user sees: the result block, the JSON object, the progress bar.
 
+pub mod allan;
 pub mod burov;
 pub mod emulation;
 pub mod json;

@@ -42,7 +42,8 @@ pub fn block(
     dwells(out, replay, conclusion)
 }
 
-fn line(out: &mut impl Write, label: &str, value: fmt::Arguments<'_>) -> fmt::Result {
+/// Writes what belongs to a label.
+pub(super) fn line(out: &mut impl Write, label: &str, value: fmt::Arguments<'_>) -> fmt::Result {
     writeln!(out, "  {label:<18} {value}")
 }
 

@@ -1,0 +1,59 @@
+//! `meridian allan`: the noise of a gyro at rest.
+
+use std::path::PathBuf;
+
+use bench::allan::analysis::{Analysis, Rest};
+use bench::allan::speed;
+use bench::output::allan::Shown;
+use bench::recording;
+use clap::Args;
+use orientation::noise::model::GyroNoise;
+
+use super::Told;
+
+/// Which recording, and what of it.
+#[derive(Args)]
+pub struct AllanOptions {
+    /// The recording of kind `static`, CSV, also gzip-compressed.
+    file: PathBuf,
+    /// The column with the rate; the default is `g_rad_s`, else `gx_rad_s`.
+    #[arg(long, value_name = "NAME")]
+    column: Option<String>,
+    /// Writes the curve, its fit and all numbers as a page for a browser.
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
+}
+
+/// Analyses a recording.
+pub fn run(options: &AllanOptions, as_json: bool) -> Result<Told, String> {
+    let recording = recording::read(&options.file).map_err(|error| error.to_string())?;
+    let name = options.file.display().to_string();
+    let (header, body, _) = recording.into_parts();
+    let rest = Rest::take(&header, &body, options.column.as_deref())
+        .map_err(|error| format!("{name}: {error}"))?;
+    let analysis = Analysis::of(&rest);
+    let found = analysis.as_ref().ok();
+    let shown = Shown {
+        name: &name,
+        rest: &rest,
+        analysis: &analysis,
+        comparison: found.map(|_| speed::compare(&rest)),
+        schedule: found.and_then(|analysis| schedule(&analysis.fit.noise())),
+    };
+    if let Some(path) = &options.report {
+        shown.report().write(path).map_err(|error| error.to_string())?;
+    }
+    let told = Told::of(found.is_some(), as_json, &shown.object(), |out| shown.text(out))?;
+    let refusal = analysis.as_ref().err().map(|reason| {
+        let notes: String = rest.notes().iter().map(|note| format!("; {note}")).collect();
+        format!("{name}: column {}: {reason}{notes}", rest.column)
+    });
+    Ok(Told { refusal, ..told })
+}
+
+/// The schedule that suits this noise, in a line with its units.
+///
+/// HOOK: `orientation::noise::planner` answers here; until it is connected none is suggested.
+fn schedule(_noise: &GyroNoise) -> Option<String> {
+    None
+}
