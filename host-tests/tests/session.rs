@@ -9,10 +9,12 @@ use hal_mock::instruments::InstrumentsConfiguration;
 use orientation::align::setting::Setting;
 use orientation::earth::Latitude;
 use orientation::error::Refusal;
+use orientation::noise::fit::FitError;
 use orientation::noise::model::GyroNoise;
 use orientation::planner::{Conditions, Rotation, for_time};
 use orientation::session::procedure::{Procedure, ProcedureError};
 use orientation::session::schedule::{Position, Schedule, StopRule};
+use orientation::session::survey::Survey;
 use orientation::session::{Phase, Session};
 
 const N_DEG_SQRT_H: f64 = 0.001;
@@ -261,4 +263,82 @@ fn a_session_that_cannot_reach_its_accuracy_in_time_says_so_early_and_how_near_i
     // White noise: √2 N/(Ω_h √T) for the dwells' part of 300 s.
     assert!((0.027..0.032).contains(&sigma), "{sigma}");
     assert!(end < 70.0, "it took {end} s to see that");
+}
+
+/// A session that stands still for ten minutes first, to know its gyro.
+fn surveyed(configuration: &InstrumentsConfiguration, stop: StopRule, seed: u64) -> Session {
+    let survey = Survey {
+        seconds: 600.0,
+        rotation: Rotation::fixed(1.0),
+        shortest: 1.0,
+        plan_seconds: 240.0,
+    };
+    let procedure = Procedure { stop, ..circle().after(survey) };
+    // What the data sheet says is five times what this gyro does.
+    let stated = GyroNoise::from_field_units(5.0 * N_DEG_SQRT_H, 0.0, 0.0, 0.0);
+    let required_sigma = 0.05_f64.to_radians();
+    let setting = Setting { noise: stated, required_sigma, ..setting() };
+    let mut session = Session::new(setting, procedure).expect("it begins");
+    run(&mut session, configuration, &[], Rotation::fixed(1.0), 2000.0, seed);
+    session
+}
+
+#[test]
+fn a_survey_learns_the_gyros_noise_and_the_plan_and_sigma_follow_from_it() {
+    for (seed, azimuth) in [(21, 40.0), (22, 160.0), (23, 280.0)] {
+        let session = surveyed(&world(azimuth), StopRule::AllPositions, seed);
+        let found = session.surveyed().expect("there was a survey").degrees_per_sqrt_hour();
+        let n = found.value().expect("N is observable");
+        assert!((n / N_DEG_SQRT_H - 1.0).abs() < 0.02, "{n}");
+        let Schedule::Planned(plan) = session.procedure().schedule else { panic!("no plan") };
+        assert!((plan.seconds - 240.0).abs() < 1e-9 && session.dwells().len() == plan.positions());
+        // √2 N/(Ω_h √T) for the plan's dwells.
+        let standing = plan.dwell * plan.positions() as f64 / 3600.0;
+        let rate = setting().latitude.horizontal_rate().to_degrees() * 3600.0;
+        let expected = 2.0_f64.sqrt() * N_DEG_SQRT_H / (rate * standing.sqrt());
+        let sigma = session.conclusion().expect("done").verdict.expect("north").sigma;
+        assert!((sigma / expected - 1.0).abs() < 0.05, "{sigma} against {expected}");
+        assert!(error_in_sigmas(&session, azimuth).abs() < 3.5);
+    }
+}
+
+#[test]
+fn a_survey_that_shows_the_accuracy_out_of_reach_ends_before_anything_turns() {
+    let mut noisy = world(70.0);
+    noisy.gyro.n_deg_sqrt_h = 0.02;
+    let session = surveyed(&noisy, StopRule::Accuracy { seconds: 900.0 }, 24);
+    let verdict = session.conclusion().expect("done").verdict;
+    // The 300 s left give √2·0.02/(10.15·√(1/12)) rad = 0.55°.
+    assert!(
+        matches!(verdict, Err(Refusal::OutOfReach { sigma, .. }) if (0.5..0.65).contains(&sigma)),
+        "{verdict:?}"
+    );
+    assert!(session.dwells().is_empty());
+    // The same gyro as stated and five times the time: what is asked for is reached.
+    let quiet = surveyed(&world(70.0), StopRule::Accuracy { seconds: 900.0 }, 25);
+    let azimuth = quiet.conclusion().expect("done").verdict.expect("it is reached");
+    assert!(azimuth.sigma.to_degrees() <= 0.05);
+}
+
+#[test]
+fn a_survey_of_a_stuck_or_saturated_gyro_says_so() {
+    let mut stuck = world(70.0);
+    stuck.gyro.n_deg_sqrt_h = 0.0;
+    let session = surveyed(&stuck, StopRule::AllPositions, 26);
+    let verdict = session.conclusion().expect("done").verdict;
+    assert_eq!(verdict, Err(Refusal::NoiseUnknown(FitError::Constant)));
+    let overload = Disturbance::Nudge { start_s: 100.0, seconds: 1.0, rate_deg_h: 1e9 };
+    let mut session = Session::new(
+        setting(),
+        circle().after(Survey {
+            seconds: 300.0,
+            rotation: Rotation::fixed(1.0),
+            shortest: 1.0,
+            plan_seconds: 240.0,
+        }),
+    )
+    .expect("it begins");
+    run(&mut session, &world(70.0), &[overload], Rotation::fixed(1.0), 900.0, 27);
+    let verdict = session.conclusion().expect("done").verdict;
+    assert_eq!(verdict, Err(Refusal::NoiseUnknown(FitError::Saturated)));
 }
