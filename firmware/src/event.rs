@@ -3,6 +3,7 @@
 use orientation::align::quality::Disturbance;
 use orientation::device::{Device, Trouble};
 use orientation::error::Refusal;
+use orientation::noise::fit::{Coefficient, Estimate};
 use orientation::words;
 use orientation::words::Rounded;
 
@@ -48,6 +49,21 @@ pub enum Event {
     Blocked,
     /// The platform is level enough: pitch and roll of the platform, °.
     Levelled(f64, f64),
+    /// The stage stands still for so many seconds, to know the gyro.
+    Surveying(f64),
+    /// A coefficient of the gyro's noise as the survey found it.
+    Noise(Coefficient, Estimate),
+    /// The plan that follows from the noise.
+    Planned {
+        /// Positions.
+        positions: usize,
+        /// Time at each, s.
+        dwell: f64,
+        /// Time for all with the rotations, s.
+        seconds: f64,
+        /// 1σ of the azimuth that it promises, °.
+        sigma: f64,
+    },
     /// A dwell was taken: number, of how many, its mean rate.
     Dwelled(usize, usize, f64),
     /// The dwell is shorter than planned, so many seconds: the stage moved of itself.
@@ -85,6 +101,11 @@ words! { Event:
     Self::Levelled(pitch, roll) =>
         "level: platform inclined by {}° along and {}° across the gyro's axis",
         Rounded::<3>(pitch), Rounded::<3>(roll);
+    Self::Surveying(seconds) => "survey: standing still for {} s to know the gyro", Rounded::<0>(seconds);
+    Self::Noise(coefficient, estimate) => "{}: {}", coefficient, estimate;
+    Self::Planned { positions, dwell, seconds, sigma } =>
+        "plan: {} positions of {} s, {} s in all, for {}° (1σ)",
+        positions, Rounded::<2>(dwell), Rounded::<0>(seconds), Rounded::<4>(sigma);
     Self::Dwelled(number, of, rate) => "dwell {} of {}: {} °/h", number, of, Rounded::<4>(rate);
     Self::CutShort(seconds) =>
         "that dwell is short, {} s: the stage moved of itself", Rounded::<1>(seconds);

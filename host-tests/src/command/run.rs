@@ -15,7 +15,7 @@ use embassy_time::Instant;
 use firmware::event::Event;
 use firmware::ports::{NoRecorder, Observer};
 use firmware::simulated::fault::Fault;
-use firmware::simulated::scenario::{GyroClass, RATES, Scenario};
+use firmware::simulated::scenario::{Aim, GyroClass, RATES, Scenario};
 use orientation::session::Session;
 use serde_json::{Value, json};
 
@@ -42,6 +42,16 @@ pub struct RunOptions {
     /// Samples of the gyro a second: a data rate of its converter.
     #[arg(long, value_name = "HERTZ", default_value = "400", value_parser = rate)]
     rate: f64,
+    /// The best schedule for the gyro in so many seconds, instead of positions on the full circle; with
+    /// --sigma the time allowed.
+    #[arg(long, value_name = "SECONDS", value_parser = allowed, conflicts_with_all = ["positions", "dwell"])]
+    seconds: Option<f64>,
+    /// Goes on until this standard deviation is reached, in degrees (1σ).
+    #[arg(long, value_name = "DEGREES", value_parser = wanted, conflicts_with_all = ["positions", "dwell"])]
+    sigma: Option<f64>,
+    /// Stands still first for so many seconds, to know the gyro's noise and to plan by it.
+    #[arg(long, value_name = "SECONDS", value_parser = allowed)]
+    survey: Option<f64>,
     /// Positions on the full circle.
     #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u8).range(3..=64))]
     positions: u8,
@@ -103,6 +113,17 @@ fn rate(text: &str) -> Result<f64, String> {
     rate.ok_or_else(|| format!("not one of the converter's rates: {known}"))
 }
 
+fn allowed(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if (60.0..=36_000.0).contains(&seconds) => Ok(seconds),
+        _ => Err("not a number of seconds from 60 to 36000".to_owned()),
+    }
+}
+
+fn wanted(text: &str) -> Result<f64, String> {
+    super::sigma(text).map(f64::to_degrees)
+}
+
 fn dwell(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(seconds) if (0.5..=600.0).contains(&seconds) => Ok(seconds),
@@ -129,6 +150,21 @@ impl From<Gyro> for GyroClass {
     }
 }
 
+/// Time allowed for an accuracy where none is stated, s.
+const ALLOWED: f64 = 1800.0;
+
+impl RunOptions {
+    fn aim(&self) -> Aim {
+        match (self.sigma, self.seconds) {
+            (None, None) => Aim::Circle,
+            (None, Some(seconds)) => Aim::Time(seconds),
+            (Some(sigma_deg), seconds) => {
+                Aim::Accuracy { sigma_deg, seconds: seconds.unwrap_or(ALLOWED) }
+            }
+        }
+    }
+}
+
 impl From<&RunOptions> for Scenario {
     fn from(options: &RunOptions) -> Self {
         // One method so far: naming it changes nothing.
@@ -141,6 +177,8 @@ impl From<&RunOptions> for Scenario {
             roll_deg: options.roll,
             gyro: options.gyro.into(),
             sample_rate_hz: options.rate,
+            aim: options.aim(),
+            survey_s: options.survey.unwrap_or(0.0),
             positions: usize::from(options.positions),
             dwell_s: options.dwell,
             ..Self::default()

@@ -89,8 +89,8 @@ pub fn align<R: Recorder, W: Observer>(
     Ok(Run {
         replay: Replay {
             method: Method::Stepwise,
+            setting: *session.setting(),
             session,
-            setting,
             assumed: vec![ASSUMED.to_owned()],
         },
         events: log.events.into_inner(),

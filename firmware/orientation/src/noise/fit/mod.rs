@@ -14,6 +14,7 @@ use super::allan::{Allan, MOST_POINTS, Point};
 use super::model::GyroNoise;
 use crate::units::{ARCSECOND, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 use crate::words;
+use crate::words::Rounded;
 
 /// Fewest samples of which anything is said: eight τ, as many as the coefficients and three.
 const LEAST_SAMPLES: u64 = 64;
@@ -58,8 +59,8 @@ impl Estimate {
 }
 
 words! { Estimate:
-    Self::Found { value, sigma } => "{} ± {}", value, sigma;
-    Self::NotObservable { at_most } => "not observable, at most {}", at_most;
+    Self::Found { value, sigma } => "{} ± {}", Rounded::<5>(value), Rounded::<5>(sigma);
+    Self::NotObservable { at_most } => "not observable, at most {}", Rounded::<5>(at_most);
 }
 
 /// What a record says of its gyro's noise.
@@ -123,6 +124,18 @@ impl NoiseFit {
         }
     }
 
+    /// All of them in the field's units.
+    #[must_use]
+    pub fn in_field_units(&self) -> [(Coefficient, Estimate); 5] {
+        [
+            (Coefficient::Quantisation, self.arcseconds()),
+            (Coefficient::AngleRandomWalk, self.degrees_per_sqrt_hour()),
+            (Coefficient::BiasInstability, self.degrees_per_hour()),
+            (Coefficient::RateRandomWalk, self.degrees_per_hour_per_sqrt_hour()),
+            (Coefficient::RateRamp, self.degrees_per_hour_squared()),
+        ]
+    }
+
     /// Q, arc seconds.
     #[must_use]
     pub fn arcseconds(&self) -> Estimate {
@@ -152,6 +165,29 @@ impl NoiseFit {
     pub fn degrees_per_hour_squared(&self) -> Estimate {
         self.rate_ramp.in_unit(DEGREE_PER_HOUR / 3600.0)
     }
+}
+
+/// A coefficient of the noise model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coefficient {
+    /// Q, arc seconds.
+    Quantisation,
+    /// N, °/√h.
+    AngleRandomWalk,
+    /// B, °/h.
+    BiasInstability,
+    /// K, °/h/√h.
+    RateRandomWalk,
+    /// R, °/h².
+    RateRamp,
+}
+
+words! { Coefficient:
+    Self::Quantisation => "quantisation Q, arc seconds";
+    Self::AngleRandomWalk => "angle random walk N, °/√h";
+    Self::BiasInstability => "bias instability B, °/h";
+    Self::RateRandomWalk => "rate random walk K, °/h/√h";
+    Self::RateRamp => "rate ramp R, °/h²";
 }
 
 /// Why a record says nothing.
