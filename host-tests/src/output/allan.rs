@@ -26,24 +26,30 @@ pub struct Shown<'a> {
     pub schedule: Option<String>,
 }
 
-/// A coefficient of the noise in the unit of data sheets.
+/// A coefficient of the noise.
 struct Coefficient {
     name: &'static str,
     unit: &'static str,
     key: &'static str,
+    /// In SI units.
+    si: Estimate,
+    /// In the unit of data sheets.
     estimate: Estimate,
 }
 
 /// Q, N, B, K and R, in the order of [`orientation::noise::allan::terms`].
 fn coefficients(fit: &NoiseFit) -> [Coefficient; 5] {
+    let [q, n] = [fit.arcseconds(), fit.degrees_per_sqrt_hour()];
+    let [b, k] = [fit.degrees_per_hour(), fit.degrees_per_hour_per_sqrt_hour()];
+    let r = fit.degrees_per_hour_squared();
     [
-        ("Q quantisation", "arcsec", "q_arcsec", fit.arcseconds()),
-        ("N angle random walk", "°/√h", "n_deg_sqrt_h", fit.degrees_per_sqrt_hour()),
-        ("B bias instability", "°/h", "b_deg_h", fit.degrees_per_hour()),
-        ("K rate random walk", "°/h/√h", "k_deg_h_sqrt_h", fit.degrees_per_hour_per_sqrt_hour()),
-        ("R rate ramp", "°/h²", "r_deg_h2", fit.degrees_per_hour_squared()),
+        ("Q quantisation", "arcsec", "q_arcsec", fit.quantisation, q),
+        ("N angle random walk", "°/√h", "n_deg_sqrt_h", fit.angle_random_walk, n),
+        ("B bias instability", "°/h", "b_deg_h", fit.bias_instability, b),
+        ("K rate random walk", "°/h/√h", "k_deg_h_sqrt_h", fit.rate_random_walk, k),
+        ("R rate ramp", "°/h²", "r_deg_h2", fit.rate_ramp, r),
     ]
-    .map(|(name, unit, key, estimate)| Coefficient { name, unit, key, estimate })
+    .map(|(name, unit, key, si, estimate)| Coefficient { name, unit, key, si, estimate })
 }
 
 impl Coefficient {

@@ -67,24 +67,15 @@ fn asymptotes(analysis: &Analysis) -> impl Iterator<Item = Series> {
     let deviations = analysis.points.iter().map(|point| degrees_per_hour(point.deviation));
     let low = deviations.clone().fold(f64::INFINITY, f64::min) / HEADROOM;
     let high = deviations.fold(0.0, f64::max) * HEADROOM;
-    let fit = &analysis.fit;
-    let estimates = [
-        fit.quantisation,
-        fit.angle_random_walk,
-        fit.bias_instability,
-        fit.rate_random_walk,
-        fit.rate_ramp,
-    ];
-    coefficients(fit).into_iter().zip(estimates).enumerate().map(
-        move |(index, (named, estimate))| {
-            let (Estimate::Found { value, .. } | Estimate::NotObservable { at_most: value }) =
-                estimate;
-            let curve = times(analysis)
-                .map(|tau| (tau, degrees_per_hour(value * terms(tau)[index].sqrt())))
-                .filter(|(_, deviation)| (low..high).contains(deviation));
-            Series::new(&format!("{}: {}", named.name, named.told()), Style::Dashed, curve)
-        },
-    )
+    coefficients(&analysis.fit).into_iter().enumerate().map(move |(index, coefficient)| {
+        let (Estimate::Found { value, .. } | Estimate::NotObservable { at_most: value }) =
+            coefficient.si;
+        let curve = times(analysis)
+            .map(|tau| (tau, degrees_per_hour(value * terms(tau)[index].sqrt())))
+            .filter(|(_, deviation)| (low..high).contains(deviation));
+        let name = format!("{}: {}", coefficient.name, coefficient.told());
+        Series::new(&name, Style::Dashed, curve)
+    })
 }
 
 fn coefficient_table(analysis: &Analysis) -> Table {
