@@ -7,6 +7,7 @@ use bench::allan::speed;
 use bench::output::allan::Shown;
 use bench::recording;
 use clap::Args;
+use orientation::noise::fit::FitError;
 use orientation::noise::model::GyroNoise;
 
 use super::Told;
@@ -40,15 +41,24 @@ pub fn run(options: &AllanOptions, as_json: bool) -> Result<Told, String> {
         comparison: found.map(|_| speed::compare(&rest)),
         schedule: found.and_then(|analysis| schedule(&analysis.fit.noise())),
     };
-    if let Some(path) = &options.report {
-        shown.report().write(path).map_err(|error| error.to_string())?;
+    let report = |path: &PathBuf| shown.report().write(path).map_err(|error| error.to_string());
+    let written = options.report.as_ref().map_or(Ok(()), report);
+    let mut object = shown.object();
+    if let Err(reason) = &written {
+        object["status"] = "failed".into();
+        object["reason"] = reason.as_str().into();
     }
-    let told = Told::of(found.is_some(), as_json, &shown.object(), |out| shown.text(out))?;
-    let refusal = analysis.as_ref().err().map(|reason| {
-        let notes: String = rest.notes().iter().map(|note| format!("; {note}")).collect();
-        format!("{name}: column {}: {reason}{notes}", rest.column)
-    });
-    Ok(Told { refusal, ..told })
+    let told = Told::of(true, as_json, &object, |out| shown.text(out))?;
+    // A page that failed is a failure, but the numbers are not lost with it.
+    let refusal = analysis.as_ref().err().map(|reason| refusal(&name, &rest, reason));
+    let refusal = refusal.or(written.err());
+    Ok(Told { found: refusal.is_none(), refusal, ..told })
+}
+
+/// Why there is no noise, with what is to be known of the record.
+fn refusal(name: &str, rest: &Rest, reason: &FitError) -> String {
+    let told = [vec![reason.to_string()], rest.notes()].concat().join("; ");
+    format!("{name}: column {}: {told}", rest.column)
 }
 
 /// The schedule that suits this noise, in a line with its units.

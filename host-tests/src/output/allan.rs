@@ -1,16 +1,16 @@
-//! What `meridian allan` shows: the text, the JSON object, the report.
+//! What `meridian allan` shows: the text, the JSON object, the page.
+
+mod page;
 
 use std::fmt::{self, Write};
 
-use orientation::noise::allan::terms;
 use orientation::noise::fit::{Estimate, FitError, NoiseFit};
 use serde_json::{Map, Value, json};
 
 use super::degrees_per_hour;
 use super::text::line;
-use crate::allan::analysis::{Analysis, Rest};
+use crate::allan::analysis::{Analysis, Confident, Rest};
 use crate::allan::speed::Comparison;
-use crate::report::{Axis, Figure, Report, Series, Style, Table};
 
 /// What is to be shown.
 pub struct Shown<'a> {
@@ -26,24 +26,30 @@ pub struct Shown<'a> {
     pub schedule: Option<String>,
 }
 
-/// A coefficient of the noise in the unit of data sheets.
+/// A coefficient of the noise.
 struct Coefficient {
     name: &'static str,
     unit: &'static str,
     key: &'static str,
+    /// In SI units.
+    si: Estimate,
+    /// In the unit of data sheets.
     estimate: Estimate,
 }
 
-/// Q, N, B, K and R, as [`terms`] has them.
+/// Q, N, B, K and R, in the order of [`orientation::noise::allan::terms`].
 fn coefficients(fit: &NoiseFit) -> [Coefficient; 5] {
+    let [q, n] = [fit.arcseconds(), fit.degrees_per_sqrt_hour()];
+    let [b, k] = [fit.degrees_per_hour(), fit.degrees_per_hour_per_sqrt_hour()];
+    let r = fit.degrees_per_hour_squared();
     [
-        ("Q quantisation", "arcsec", "q_arcsec", fit.arcseconds()),
-        ("N angle random walk", "°/√h", "n_deg_sqrt_h", fit.degrees_per_sqrt_hour()),
-        ("B bias instability", "°/h", "b_deg_h", fit.degrees_per_hour()),
-        ("K rate random walk", "°/h/√h", "k_deg_h_sqrt_h", fit.degrees_per_hour_per_sqrt_hour()),
-        ("R rate ramp", "°/h²", "r_deg_h2", fit.degrees_per_hour_squared()),
+        ("Q quantisation", "arcsec", "q_arcsec", fit.quantisation, q),
+        ("N angle random walk", "°/√h", "n_deg_sqrt_h", fit.angle_random_walk, n),
+        ("B bias instability", "°/h", "b_deg_h", fit.bias_instability, b),
+        ("K rate random walk", "°/h/√h", "k_deg_h_sqrt_h", fit.rate_random_walk, k),
+        ("R rate ramp", "°/h²", "r_deg_h2", fit.rate_ramp, r),
     ]
-    .map(|(name, unit, key, estimate)| Coefficient { name, unit, key, estimate })
+    .map(|(name, unit, key, si, estimate)| Coefficient { name, unit, key, si, estimate })
 }
 
 impl Coefficient {
@@ -132,24 +138,6 @@ impl Shown<'_> {
         gaps.map(|gap| json!({"line": gap.line, "from_s": gap.from_s, "seconds": gap.seconds}))
             .collect()
     }
-
-    /// The report, where the record says something.
-    #[must_use]
-    pub fn report(&self) -> Report {
-        let mut subtitle = vec![format!("{}: {}", self.name, self.record())];
-        subtitle.extend(self.rest.notes());
-        let mut parts = Vec::new();
-        match self.analysis {
-            Ok(analysis) => {
-                parts.push(figure(analysis).into());
-                parts.push(coefficient_table(analysis).into());
-                parts.push(point_table(analysis).into());
-            }
-            Err(reason) => subtitle.push(format!("no noise: {reason}")),
-        }
-        subtitle.extend(self.schedule.clone());
-        Report { title: format!("Noise of {}", self.rest.column), subtitle, parts }
-    }
 }
 
 fn of_analysis(out: &mut impl Write, analysis: &Analysis) -> fmt::Result {
@@ -207,7 +195,7 @@ fn speed(out: &mut impl Write, comparison: &Comparison) -> fmt::Result {
 
 /// The curve as arrays.
 fn deviations(analysis: &Analysis) -> Map<String, Value> {
-    let rates = |rate: fn(&crate::allan::analysis::Confident) -> f64| -> Value {
+    let rates = |rate: fn(&Confident) -> f64| -> Value {
         analysis.points.iter().map(|point| degrees_per_hour(rate(point))).collect()
     };
     let arrays = [
@@ -245,85 +233,4 @@ fn quality(analysis: &Analysis, comparison: Option<&Comparison>) -> [(String, Va
         ("streaming_difference", comparison.map(|both| both.difference).into()),
     ]
     .map(|(key, value)| (key.to_owned(), value))
-}
-
-/// Beyond so many times the least and the greatest deviation no asymptote is drawn.
-const HEADROOM: f64 = 2.0;
-/// Places along a curve.
-const PLACES: u32 = 100;
-
-fn figure(analysis: &Analysis) -> Figure {
-    let points = || analysis.points.iter();
-    let limits = |rates: [f64; 2]| rates.map(degrees_per_hour);
-    let measured = || points().map(|point| (point.seconds, degrees_per_hour(point.deviation)));
-    let band = points()
-        .map(|point| (point.seconds, degrees_per_hour(point.deviation), limits(point.limits)));
-    let squares = analysis.fit.noise().coefficients().map(|coefficient| coefficient * coefficient);
-    let fitted = times(analysis).map(|tau| {
-        let variance: f64 =
-            terms(tau).iter().zip(squares).map(|(term, square)| term * square).sum();
-        (tau, degrees_per_hour(variance.sqrt()))
-    });
-    let mut series = vec![
-        Series::new("limits of 68.3 %", Style::Band, band),
-        Series::new("overlapping Allan deviation", Style::Points, measured()),
-        Series::new("fit", Style::Line, fitted),
-    ];
-    series.extend(asymptotes(analysis));
-    Figure {
-        title: "Allan deviation".to_owned(),
-        x: Axis::logarithmic("averaging time τ", "s"),
-        y: Axis::logarithmic("Allan deviation σ", "°/h"),
-        series,
-    }
-}
-
-/// Averaging times, equally far apart in ratio, over all of the record.
-fn times(analysis: &Analysis) -> impl Iterator<Item = f64> {
-    let end = |point: Option<&crate::allan::analysis::Confident>| point.map_or(1.0, |p| p.seconds);
-    let (first, last) = (end(analysis.points.first()), end(analysis.points.last()));
-    (0..=PLACES).map(move |i| first * (last / first).powf(f64::from(i) / f64::from(PLACES)))
-}
-
-/// What each coefficient alone would give, within the figure.
-fn asymptotes(analysis: &Analysis) -> impl Iterator<Item = Series> {
-    let deviations = analysis.points.iter().map(|point| degrees_per_hour(point.deviation));
-    let low = deviations.clone().fold(f64::INFINITY, f64::min) / HEADROOM;
-    let high = deviations.fold(0.0, f64::max) * HEADROOM;
-    let fit = &analysis.fit;
-    let estimates = [
-        fit.quantisation,
-        fit.angle_random_walk,
-        fit.bias_instability,
-        fit.rate_random_walk,
-        fit.rate_ramp,
-    ];
-    coefficients(fit).into_iter().zip(estimates).enumerate().map(
-        move |(index, (named, estimate))| {
-            let (Estimate::Found { value, .. } | Estimate::NotObservable { at_most: value }) =
-                estimate;
-            let curve = times(analysis)
-                .map(|tau| (tau, degrees_per_hour(value * terms(tau)[index].sqrt())))
-                .filter(|(_, deviation)| (low..high).contains(deviation));
-            Series::new(&format!("{}: {}", named.name, named.told()), Style::Dashed, curve)
-        },
-    )
-}
-
-fn coefficient_table(analysis: &Analysis) -> Table {
-    let row = |coefficient: Coefficient| vec![coefficient.name.to_owned(), coefficient.told()];
-    Table {
-        title: "Coefficients (± 1σ)".to_owned(),
-        head: ["coefficient", "value"].map(str::to_owned).to_vec(),
-        rows: coefficients(&analysis.fit).map(row).to_vec(),
-    }
-}
-
-fn point_table(analysis: &Analysis) -> Table {
-    let head = ["τ, s", "σ, °/h", "lower limit, °/h", "upper limit, °/h", "degrees of freedom"];
-    Table {
-        title: "Overlapping Allan deviation with its limits of 68.3 %".to_owned(),
-        head: head.map(str::to_owned).to_vec(),
-        rows: rows(analysis).map(|row| row.to_vec()).collect(),
-    }
 }

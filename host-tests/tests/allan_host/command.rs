@@ -91,7 +91,7 @@ fn the_curve_is_four_arrays_of_one_length_within_its_limits() {
     }
     // The overlapping Allan deviation of the file by its definition in numpy, °/h.
     for (seconds, expected) in
-        [(0.1, 3.818997516), (1.2, 1.119345607), (51.2, 0.301604066), (614.4, 0.479155550)]
+        [(0.1, 3.818_997_516), (1.2, 1.119_345_607), (51.2, 0.301_604_066), (614.4, 0.479_155_550)]
     {
         let index = tau.iter().position(|tau| (tau / seconds - 1.0).abs() < 1e-6).expect("there");
         assert!(
@@ -141,8 +141,11 @@ fn the_page_has_the_curve_its_limits_the_fit_and_five_asymptotes() {
 
 #[test]
 fn a_page_that_cannot_be_written_is_named() {
-    let output = allan(&[&hour(), "--report", "/no/such/folder/a.html"]);
+    let output = allan(&[&hour(), "--json", "--report", "/no/such/folder/a.html"]);
     assert!(refusal(&output).contains("/no/such/folder/a.html: the report cannot be written"));
+    let object = object(&output);
+    assert_eq!(object["status"], "failed");
+    assert!(object["n_deg_sqrt_h"].is_number(), "the numbers are not lost with the page");
 }
 
 #[test]

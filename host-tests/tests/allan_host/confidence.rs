@@ -31,11 +31,11 @@ fn white(seed: u64, samples: usize) -> Vec<f64> {
 fn limits_are_those_of_the_chi_square_distribution() {
     // scipy.stats.chi2.ppf at the normal distribution's ±1σ.
     let expected = [
-        (1.0, [0.709416729, 4.995661613]),
-        (2.5, [0.749595819, 2.086490627]),
-        (10.0, [0.835497220, 1.326790088]),
-        (300.0, [0.961556575, 1.043456315]),
-        (20000.5, [0.995037334, 1.005037667]),
+        (1.0, [0.709_416_729, 4.995_661_613]),
+        (2.5, [0.749_595_819, 2.086_490_627]),
+        (10.0, [0.835_497_220, 1.326_790_088]),
+        (300.0, [0.961_556_575, 1.043_456_315]),
+        (20000.5, [0.995_037_334, 1.005_037_667]),
     ];
     for (degrees, limits) in expected {
         for (found, limit) in factors(degrees).into_iter().zip(limits) {

@@ -78,29 +78,23 @@ impl Level {
     /// Takes the angle number `index`, nrad/s·samples.
     fn push(&mut self, index: u32, angle: i64) {
         self.angles[index as usize % RING] = angle;
-        add(&mut self.sums, FACTORS, &self.angles, index);
+        let Self { angles, sums: [four, six] } = self;
+        add::<{ FACTORS[0] }>(four, angles, index, angle);
+        add::<{ FACTORS[1] }>(six, angles, index, angle);
     }
 }
 
-/// Adds the squares of the second differences that end at `index`, where the record reaches back.
-fn add<const N: usize>(sums: &mut [u128; N], steps: [u32; N], angles: &[i64; RING], index: u32) {
-    let angle = |back: u32| angles[index.wrapping_sub(back) as usize % RING];
-    for (sum, step) in sums.iter_mut().zip(steps) {
-        if index >= 2 * step {
-            let difference = angle(0).wrapping_sub(angle(step));
-            let before = angle(step).wrapping_sub(angle(2 * step));
-            *sum += square(difference.wrapping_sub(before));
-        }
+/// Adds the square of the second difference that ends with `newest`, the angle number `index`, where
+/// the record reaches so far back. The steps are constants: that saves a quarter of the instructions.
+#[inline]
+fn add<const STEP: u32>(sum: &mut u128, angles: &[i64; RING], index: u32, newest: i64) {
+    if index >= 2 * STEP {
+        let angle = |back: u32| angles[index.wrapping_sub(back) as usize % RING];
+        let middle = angle(STEP);
+        let difference = newest.wrapping_sub(middle).wrapping_sub(middle);
+        let size = u128::from(difference.wrapping_add(angle(2 * STEP)).unsigned_abs());
+        *sum += size * size;
     }
-}
-
-/// The square, by one instruction where it can be.
-fn square(difference: i64) -> u128 {
-    if let Ok(short) = i32::try_from(difference) {
-        return u128::from((i64::from(short) * i64::from(short)).unsigned_abs());
-    }
-    let size = u128::from(difference.unsigned_abs());
-    size * size
 }
 
 /// The estimator; see the module.
@@ -150,7 +144,11 @@ impl Allan {
         for (shift, level) in (0..=reached).zip(&mut self.levels) {
             level.push(self.samples >> shift, self.angle);
         }
-        add(&mut self.short, SHORT, &self.levels[0].angles, self.samples);
+        let (angles, index) = (&self.levels[0].angles, self.samples);
+        let [one, two, three] = &mut self.short;
+        add::<{ SHORT[0] }>(one, angles, index, self.angle);
+        add::<{ SHORT[1] }>(two, angles, index, self.angle);
+        add::<{ SHORT[2] }>(three, angles, index, self.angle);
     }
 
     /// Notes what makes a record useless.

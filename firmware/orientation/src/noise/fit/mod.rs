@@ -10,7 +10,7 @@ mod spread;
 use heapless::Vec;
 
 use self::search::Search;
-use super::allan::{Allan, MOST_POINTS, Point};
+use super::allan::{Allan, MOST_POINTS, Point, variance};
 use super::model::GyroNoise;
 use crate::units::{ARCSECOND, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 use crate::words;
@@ -109,7 +109,30 @@ impl NoiseFit {
         if samples < LEAST_SAMPLES {
             return Err(FitError::TooShort { samples, needed: LEAST_SAMPLES });
         }
-        Ok(Search::begin(points, sample_seconds).finish())
+        let fit = Search::begin(points, sample_seconds).finish();
+        if fit.is_finite() { Ok(fit) } else { Err(FitError::NotNoise) }
+    }
+
+    /// Whether every coefficient is a number.
+    fn is_finite(&self) -> bool {
+        let is_finite = |estimate: &Estimate| match *estimate {
+            Estimate::Found { value, sigma } => value.is_finite() && sigma.is_finite(),
+            Estimate::NotObservable { at_most } => at_most.is_finite(),
+        };
+        self.estimates().iter().all(is_finite)
+    }
+
+    /// Q, N, B, K and R, in SI units.
+    #[must_use]
+    pub fn estimates(&self) -> [Estimate; 5] {
+        let Self { quantisation: q, angle_random_walk: n, bias_instability: b, .. } = *self;
+        [q, n, b, self.rate_random_walk, self.rate_ramp]
+    }
+
+    /// The fitted Allan variance at τ = `seconds`, (rad/s)².
+    #[must_use]
+    pub fn variance(&self, seconds: f64) -> f64 {
+        variance(&self.noise(), seconds)
     }
 
     /// The coefficients found; what is not observable is zero.
@@ -190,6 +213,12 @@ words! { Coefficient:
     Self::RateRamp => "rate ramp R, °/h²";
 }
 
+words! { NoiseFit:
+    fit => "Q {}″; N {} °/√h; B {} °/h; K {} °/h/√h; R {} °/h²",
+        fit.arcseconds(), fit.degrees_per_sqrt_hour(), fit.degrees_per_hour(),
+        fit.degrees_per_hour_per_sqrt_hour(), fit.degrees_per_hour_squared();
+}
+
 /// Why a record says nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FitError {
@@ -204,8 +233,10 @@ pub enum FitError {
     Constant,
     /// A sample stood at a limit of its range.
     Saturated,
-    /// The noise is smaller than the step of the numbers it came in.
+    /// The noise is smaller than what the rounding of its numbers adds.
     Unresolved,
+    /// The variances are zero, infinite or those of a disturbance without noise.
+    NotNoise,
     /// The time between samples is not a positive number.
     Period,
 }
@@ -216,5 +247,6 @@ words! { FitError:
     Self::Constant => "all samples are equal: the gyro or its bus is stuck";
     Self::Saturated => "a sample stood at the limit of its range";
     Self::Unresolved => "the noise is smaller than the step of the samples";
+    Self::NotNoise => "the record is not one of noise";
     Self::Period => "the time between samples is not a positive number of seconds";
 }
