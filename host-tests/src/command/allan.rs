@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use bench::allan::analysis::{Analysis, Rest};
 use bench::allan::speed;
 use bench::output::allan::Shown;
+use bench::planning::Suggestion;
 use bench::recording;
 use clap::Args;
 use orientation::noise::fit::FitError;
-use orientation::noise::model::GyroNoise;
 
 use super::Told;
 
@@ -39,7 +39,7 @@ pub fn run(options: &AllanOptions, as_json: bool) -> Result<Told, String> {
         rest: &rest,
         analysis: &analysis,
         comparison: found.map(|_| speed::compare(&rest)),
-        schedule: found.and_then(|analysis| schedule(&analysis.fit.noise())),
+        schedule: found.and_then(|analysis| Suggestion::of(analysis.fit.noise())),
     };
     let report = |path: &PathBuf| shown.report().write(path).map_err(|error| error.to_string());
     let written = options.report.as_ref().map_or(Ok(()), report);
@@ -59,11 +59,4 @@ pub fn run(options: &AllanOptions, as_json: bool) -> Result<Told, String> {
 fn refusal(name: &str, rest: &Rest, reason: &FitError) -> String {
     let told = [vec![reason.to_string()], rest.notes()].concat().join("; ");
     format!("{name}: column {}: {told}", rest.column)
-}
-
-/// The schedule that suits this noise, in a line with its units.
-///
-/// HOOK: `orientation::noise::planner` answers here; until it is connected none is suggested.
-fn schedule(_noise: &GyroNoise) -> Option<String> {
-    None
 }

@@ -11,6 +11,7 @@ use super::degrees_per_hour;
 use super::text::line;
 use crate::allan::analysis::{Analysis, Confident, Rest};
 use crate::allan::speed::Comparison;
+use crate::planning::Suggestion;
 
 /// What is to be shown.
 pub struct Shown<'a> {
@@ -23,7 +24,7 @@ pub struct Shown<'a> {
     /// How both estimators did, where it says something.
     pub comparison: Option<Comparison>,
     /// The schedule that suits this noise, where one is planned.
-    pub schedule: Option<String>,
+    pub schedule: Option<Suggestion>,
 }
 
 /// A coefficient of the noise.
@@ -129,7 +130,7 @@ impl Shown<'_> {
             object.extend(coefficients(&analysis.fit).iter().flat_map(entries));
             object.extend(quality(analysis, self.comparison.as_ref()));
         }
-        object.insert("schedule".to_owned(), self.schedule.clone().into());
+        object.insert("schedule".to_owned(), json!(self.schedule.map(|s| s.0)));
         object.into()
     }
 

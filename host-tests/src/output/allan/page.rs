@@ -28,7 +28,7 @@ impl Shown<'_> {
             }
             Err(reason) => subtitle.push(format!("no noise: {reason}")),
         }
-        subtitle.extend(self.schedule.clone());
+        subtitle.extend(self.schedule.map(|schedule| schedule.to_string()));
         Report { title: format!("Noise of {}", self.rest.column), subtitle, parts }
     }
 }
