@@ -1,11 +1,13 @@
 //! `meridian campaign`: many simulated alignments.
 
+use std::path::{Path, PathBuf};
+
 use bench::campaign::burov::{classes, devices, drift};
 use bench::campaign::sokolov::{self, Turn};
 use bench::campaign::{faults, instrument};
-use bench::output::burov as told;
 use bench::output::progress::Progress;
 use bench::output::table;
+use bench::output::{burov as told, page};
 use clap::{Args, ValueEnum};
 use firmware::simulated::fault::Fault;
 use serde_json::json;
@@ -22,6 +24,9 @@ pub struct CampaignOptions {
     /// and for each class a tenth of it, of instrument (500), of each fault (1).
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     runs: Option<u32>,
+    /// Writes figures and tables as a page for a browser; of burov.
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -39,9 +44,12 @@ enum Campaign {
 /// Runs a campaign.
 pub fn run(options: &CampaignOptions, as_json: bool) -> Result<Told, String> {
     let runs = |usual: u32| options.runs.unwrap_or(usual) as usize;
+    if options.report.is_some() && !matches!(options.name, Campaign::Burov) {
+        return Err("--report: only the campaign burov draws so far".to_owned());
+    }
     match options.name {
         Campaign::Sokolov => sokolov(runs(5000), as_json),
-        Campaign::Burov => burov(runs(5000), as_json),
+        Campaign::Burov => burov(runs(5000), options.report.as_deref(), as_json),
         Campaign::Instrument => instrument(runs(500), as_json),
         Campaign::Faults => faults(runs(1), as_json),
     }
@@ -66,7 +74,7 @@ fn sokolov(runs: usize, as_json: bool) -> Result<Told, String> {
 
 /// The paper's example and devices, schedules under drift, the five classes; a result where every row
 /// is met.
-fn burov(runs: usize, as_json: bool) -> Result<Told, String> {
+fn burov(runs: usize, report: Option<&Path>, as_json: bool) -> Result<Told, String> {
     let of_class = (runs / 10).max(1);
     let total = 2 * drift::GYROS.len() * runs + classes::COUNT * of_class;
     let progress = Progress::new(total as u64, "alignments");
@@ -82,11 +90,12 @@ fn burov(runs: usize, as_json: bool) -> Result<Told, String> {
         "campaign": "burov", "status": status, "devices": devices, "rate_error_deg_h": curve,
         "drift": compared, "classes": rows,
     });
-    Told::of(found, as_json, &object, |text| {
+    let told = Told::of(found, as_json, &object, |text| {
         told::devices(text, &curve, &devices)?;
         told::drift(text, &compared)?;
         told::classes(text, &rows)
-    })
+    })?;
+    Ok(told.with_page(report, || page::burov::report(&devices, &compared, &rows)))
 }
 
 /// The whole instrument over many seeds; a result where none was refused.

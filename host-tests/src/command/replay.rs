@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use bench::output::progress::Progress;
-use bench::output::{json, text};
+use bench::output::{json, page, text};
 use bench::recording;
 use bench::replay::{self, Options, replay};
 use clap::{Args, ValueEnum};
@@ -34,6 +34,9 @@ pub struct ReplayOptions {
     /// Greatest standard deviation that is accepted, in degrees (1σ).
     #[arg(long, value_name = "DEGREES", default_value = "10", value_parser = sigma)]
     require_sigma: f64,
+    /// Writes figures and tables as a page for a browser.
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -88,5 +91,6 @@ pub fn run(options: &ReplayOptions, as_json: bool) -> Result<Told, String> {
         text::block(block, &name, &replay, conclusion, truth.azimuth_deg)
     })?;
     let refusal = conclusion.verdict.as_ref().err().map(|reason| format!("{name}: {reason}"));
-    Ok(Told { refusal, ..told })
+    let page = || page::alignment::report(&name, &replay, conclusion);
+    Ok(Told { refusal, ..told }.with_page(options.report.as_deref(), page))
 }

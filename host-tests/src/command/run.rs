@@ -8,7 +8,7 @@ use bench::instrument::recorder::CsvRecorder;
 use bench::instrument::{self, Run};
 use bench::output::json::{self, AzimuthObject};
 use bench::output::progress::Progress;
-use bench::output::text;
+use bench::output::{page, text};
 use clap::{Args, ValueEnum};
 use drivers::ads1262::configuration::DataRate;
 use embassy_time::Instant;
@@ -70,6 +70,9 @@ pub struct RunOptions {
     /// Writes the samples that the session got as a recording for `replay`.
     #[arg(long, value_name = "FILE.csv")]
     record: Option<PathBuf>,
+    /// Writes figures and tables as a page for a browser.
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -227,7 +230,9 @@ pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
     })?;
     // A recording that failed is a failure, but the azimuth is not lost with it.
     let refusal = conclusion.verdict.as_ref().err().map(ToString::to_string).or(recorded.err());
-    Ok(Told { found: refusal.is_none(), refusal, ..told })
+    let page = || page::alignment::report("the simulated run", &run.replay, conclusion);
+    let told = Told { found: refusal.is_none(), refusal, ..told };
+    Ok(told.with_page(options.report.as_deref(), page))
 }
 
 /// The object of a result, with what only a simulated run has.
