@@ -5,7 +5,7 @@ use orientation::noise::fit::{Estimate, NoiseFit};
 use rayon::prelude::*;
 
 /// Records of each gyro.
-const RECORDS: u64 = 200;
+const RECORDS: u64 = 150;
 /// Samples of one hour.
 const HOUR: u32 = 36_000;
 /// Names of the coefficients.
@@ -67,10 +67,10 @@ fn check(mix: Mix) {
         println!("{title}");
         if mix[index] > 0.0 {
             assert!(found > 0.95, "{title}");
-            // 200 records give the ratio to 5 % (1σ).
+            // 150 records give the ratio to 6 % (1σ).
             assert!((0.85..1.2).contains(&ratio), "{title}");
         } else {
-            // 5 %, and 1.5 % (1σ) that 200 records leave open.
+            // 5 %, and 1.8 % (1σ) that 150 records leave open.
             assert!(found <= 0.065, "{title}");
         }
         assert!(above <= 0.065, "{title}");

@@ -50,9 +50,10 @@ impl Columns {
     }
 }
 
-/// Weighted sums of the points; columns are scaled to norm 1.
+/// Weighted sums of the points over some columns, which are scaled to norm 1; others are zero.
 #[derive(Clone, Copy, Debug)]
 pub struct Sums {
+    columns: Columns,
     normal: [[f64; COLUMNS]; COLUMNS],
     right: [f64; COLUMNS],
     scales: [f64; COLUMNS],
@@ -60,29 +61,38 @@ pub struct Sums {
 
 impl Sums {
     /// Of points whose variances have the standard deviations `sigmas`.
-    pub fn new(points: &[Point], sigmas: &[f64]) -> Self {
+    pub fn new(points: &[Point], sigmas: &[f64], columns: Columns) -> Self {
         let mut sums = Self {
+            columns,
             normal: [[0.0; COLUMNS]; COLUMNS],
             right: [0.0; COLUMNS],
             scales: [0.0; COLUMNS],
         };
         for (point, sigma) in points.iter().zip(sigmas) {
-            let row = terms(point.seconds).map(|term| term / sigma);
-            for i in 0..COLUMNS {
-                for j in 0..=i {
-                    sums.normal[i][j] += row[i] * row[j];
-                }
-                sums.right[i] += row[i] * (point.variance / sigma);
-            }
+            let weight = 1.0 / sigma;
+            sums.add(&terms(point.seconds), point.variance * weight, weight);
         }
         sums.scale();
         sums
     }
 
+    fn add(&mut self, terms: &[f64; COLUMNS], left: f64, weight: f64) {
+        for i in self.columns.each() {
+            let term = terms[i] * weight;
+            let scaled = term * weight;
+            for j in self.columns.each().take_while(|&j| j <= i) {
+                self.normal[i][j] += scaled * terms[j];
+            }
+            self.right[i] += term * left;
+        }
+    }
+
     fn scale(&mut self) {
-        self.scales = core::array::from_fn(|i| 1.0 / libm::sqrt(self.normal[i][i]));
-        for i in 0..COLUMNS {
-            for j in 0..=i {
+        for i in self.columns.each() {
+            self.scales[i] = 1.0 / libm::sqrt(self.normal[i][i]);
+        }
+        for i in self.columns.each() {
+            for j in self.columns.each().take_while(|&j| j <= i) {
                 self.normal[i][j] *= self.scales[i] * self.scales[j];
             }
             self.right[i] *= self.scales[i];
@@ -126,10 +136,10 @@ impl Sums {
 
     /// The best of all solutions that are not negative: of every choice of columns that gives
     /// positive ones, that which explains most.
-    pub fn positive(&self, columns: Columns) -> (Columns, [f64; COLUMNS]) {
+    pub fn positive(&self) -> (Columns, [f64; COLUMNS]) {
         let mut best = (Columns(0), [0.0; COLUMNS]);
         let mut most = 0.0;
-        for subset in columns.subsets() {
+        for subset in self.columns.subsets() {
             let Some(solution) = self.solve(subset, &self.right) else { continue };
             let explained: f64 = solution.iter().zip(self.right).map(|(x, b)| x * b).sum();
             if explained > most && subset.each().all(|column| solution[column] > 0.0) {

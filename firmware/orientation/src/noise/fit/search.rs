@@ -133,8 +133,8 @@ impl<'p> Search<'p> {
         let mut model = Model { columns: allowed, squares: [0.0; COLUMNS], deviance: 0.0 };
         for _ in 0..ROUNDS {
             let before = model.squares;
-            let sums = Sums::new(self.points, &self.sigmas(&variances));
-            (model.columns, model.squares) = sums.positive(allowed);
+            let sums = Sums::new(self.points, &self.sigmas(&variances), allowed);
+            (model.columns, model.squares) = sums.positive();
             let noise = model.noise();
             for (variance_now, point) in variances.iter_mut().zip(self.points) {
                 *variance_now = variance(&noise, point.seconds);

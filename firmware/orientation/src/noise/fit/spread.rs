@@ -3,7 +3,7 @@
 use heapless::Vec;
 
 use super::Estimate;
-use super::regression::{COLUMNS, Sums, row};
+use super::regression::{COLUMNS, Columns, Sums, row};
 use super::search::{Model, Search};
 use crate::noise::allan::MOST_POINTS;
 use crate::noise::allan::covariance::{Law, Window};
@@ -41,7 +41,7 @@ impl Search<'_> {
     /// deviation that it has if it is zero.
     pub fn squares(&self, model: &Model) -> [Square; COLUMNS] {
         let sigmas = self.sigmas(self.variances());
-        let sums = Sums::new(self.points, &sigmas);
+        let sums = Sums::new(self.points, &sigmas, Columns::ALL);
         let mut squares = [Square::default(); COLUMNS];
         let rows: [Row; COLUMNS] = core::array::from_fn(|column| {
             let inverse = sums.inverse(model.columns.with(column), column).unwrap_or_default();
