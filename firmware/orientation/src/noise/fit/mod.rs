@@ -5,8 +5,9 @@
 //! out has a limit.
 //!
 //! Two laws that rise alike over one record are hard to tell apart. A random walk that is seldom above
-//! the bias instability may be told as that or, one time in ten, as a ramp; one that a great ramp hides
-//! is missing from the ramp's deviation. Record longer, or at an even temperature.
+//! the bias instability may be told as that, whose deviation is then too small by a half, or one time
+//! in ten as a ramp; one that a great ramp hides is missing from the ramp's deviation. Record longer, or at an
+//! even temperature.
 
 mod regression;
 mod search;

@@ -60,8 +60,9 @@ pub struct Sums {
 }
 
 impl Sums {
-    /// Of points whose variances have the standard deviations `sigmas`.
-    pub fn new(points: &[Point], sigmas: &[f64], columns: Columns) -> Self {
+    /// Of points whose variances have the standard deviations `sigmas`, less what squares that are
+    /// given explain.
+    pub fn new(points: &[Point], sigmas: &[f64], columns: Columns, given: &[f64; COLUMNS]) -> Self {
         let mut sums = Self {
             columns,
             normal: [[0.0; COLUMNS]; COLUMNS],
@@ -70,7 +71,8 @@ impl Sums {
         };
         for (point, sigma) in points.iter().zip(sigmas) {
             let weight = 1.0 / sigma;
-            sums.add(&terms(point.seconds), point.variance * weight, weight);
+            let terms = terms(point.seconds);
+            sums.add(&terms, (point.variance - sum(given, &terms)) * weight, weight);
         }
         sums.scale();
         sums
@@ -141,7 +143,7 @@ impl Sums {
         let mut most = 0.0;
         for subset in self.columns.subsets() {
             let Some(solution) = self.solve(subset, &self.right) else { continue };
-            let explained: f64 = solution.iter().zip(self.right).map(|(x, b)| x * b).sum();
+            let explained = sum(&solution, &self.right);
             if explained > most && subset.each().all(|column| solution[column] > 0.0) {
                 most = explained;
                 best = (subset, core::array::from_fn(|i| solution[i] * self.scales[i]));
@@ -151,12 +153,15 @@ impl Sums {
     }
 }
 
+/// Σ xᵢyᵢ.
+pub fn sum(x: &[f64; COLUMNS], y: &[f64; COLUMNS]) -> f64 {
+    x.iter().zip(y).map(|(x, y)| x * y).sum()
+}
+
 /// What each point's variance counts in a coefficient's square, from that coefficient's column of the
 /// inverse.
 pub fn row(inverse: &[f64; COLUMNS], points: &[Point], sigmas: &[f64]) -> Vec<f64, MOST_POINTS> {
-    let count = |(point, sigma): (&Point, &f64)| {
-        let sum: f64 = terms(point.seconds).iter().zip(inverse).map(|(term, x)| term * x).sum();
-        sum / (sigma * sigma)
-    };
+    let count =
+        |(point, sigma): (&Point, &f64)| sum(inverse, &terms(point.seconds)) / (sigma * sigma);
     points.iter().zip(sigmas).map(count).collect()
 }
