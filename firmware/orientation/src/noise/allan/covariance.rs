@@ -1,7 +1,7 @@
 //! How sure Allan variances are, and how they go together, under a noise model.
 //!
 //! The terms are Gaussian, so the covariance of two Allan variances is 2/(M₁M₂) ΣΣ c², c being the
-//! covariance of a term of one with a term of the other ([`super::kernel`]), plus 4·D₁D₂·c where a
+//! covariance of a term of one with a term of the other (the module `kernel`), plus 4·D₁D₂·c where a
 //! ramp adds D to every term. The double sum is one over lags, each with the number of pairs that lie
 //! so far apart. Lags near the places where c has its corners are all taken; between them one stands
 //! for a block of up to half of the distance to the next corner, so that a pair costs some
