@@ -44,9 +44,10 @@ fn published(law: usize, phases: f64, m: f64) -> f64 {
 
 #[test]
 fn degrees_of_freedom_are_nists() {
-    // NIST's formulas are fits, of a few per cent.
+    // NIST's formulas are fits: flicker's is off by up to 9 %. That of the random walk counts steps
+    // from sample to sample, so that it differs where m is small.
     for law in 0..4 {
-        for m in [1, 2, 4, 8, 16, 64] {
+        for m in [1, 2, 4, 8, 16, 64].into_iter().filter(|&m| law < 3 || m >= 4) {
             let found = degrees_of_freedom(&point(1024, m, 1), &pure(law), 1.0);
             let known = published(law, 1025.0, f64::from(m));
             let ratio = found / known;
@@ -92,30 +93,35 @@ fn exhaustive(noise: &GyroNoise, [one, other]: [&Point; 2]) -> f64 {
     2.0 * sum / (one.terms * other.terms) as f64
 }
 
-#[test]
-fn thinned_lags_give_the_double_sum_within_two_per_cent() {
-    let mixed = GyroNoise { rate_ramp: 2e-3, rate_random_walk: 0.03, ..pure(1) };
-    let noises = [pure(0), pure(1), pure(2), pure(3), mixed];
-    let samples = 1500;
-    let windows =
-        [(1, 1), (2, 1), (4, 1), (12, 2), (16, 4), (48, 8), (128, 32), (384, 64), (512, 128)];
-    let mut worst: f64 = 0.0;
-    for noise in &noises {
-        let law = Law::new(noise, 1.0);
-        for (index, one) in windows.iter().enumerate() {
-            for other in &windows[..=index] {
-                let pair = [one, other].map(|&(span, stride)| point(samples, span, stride));
-                let [a, b] = pair.map(|point| Window::new(&point, noise, 1.0));
-                let known = exhaustive(noise, [&pair[0], &pair[1]]);
-                let own = pair.map(|point| exhaustive(noise, [&point, &point]).sqrt());
-                // Relative to the two deviations: covariances that hardly matter may be off by more.
-                let error = (law.covariance(&a, &b) - known).abs() / (own[0] * own[1]);
-                worst = worst.max(error);
-                assert!(error < 0.02, "{noise:?}, {one:?} and {other:?}: {error}");
-            }
+/// Spans and strides from a few samples to a third of the record.
+const WINDOWS: [(u32, u32); 7] =
+    [(1, 1), (6, 2), (32, 8), (48, 8), (128, 32), (384, 64), (512, 128)];
+
+/// The greatest error of a covariance, in the two points' standard deviations.
+fn greatest_error(noise: &GyroNoise) -> f64 {
+    let law = Law::new(noise, 1.0);
+    let points = WINDOWS.map(|(span, stride)| point(1100, span, stride));
+    let sigmas = points.map(|point| exhaustive(noise, [&point, &point]).sqrt());
+    let mut greatest: f64 = 0.0;
+    for i in 0..points.len() {
+        for j in 0..=i {
+            let pair = [points[i], points[j]];
+            let [one, other] = pair.map(|point| Window::new(&point, noise, 1.0));
+            let error = law.covariance(&one, &other) - exhaustive(noise, [&pair[0], &pair[1]]);
+            greatest = greatest.max(error.abs() / (sigmas[i] * sigmas[j]));
         }
     }
-    println!("worst {worst:.4}");
+    greatest
+}
+
+#[test]
+fn thinned_lags_give_the_double_sum_within_one_per_cent() {
+    let mixed = GyroNoise { rate_ramp: 2e-3, rate_random_walk: 0.03, ..pure(1) };
+    for noise in [pure(0), pure(1), pure(2), pure(3), mixed] {
+        let error = greatest_error(&noise);
+        println!("{noise:?}: {error:.5}");
+        assert!(error < 0.01, "{noise:?}: {error}");
+    }
 }
 
 #[test]

@@ -54,7 +54,7 @@ fn noise(size: i64, count: usize) -> impl Iterator<Item = i32> {
         Some(state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407))
     };
     let states = std::iter::successors(Some(1_u64), next).take(count);
-    states.map(move |state| ((i64::from(state as u32 >> 1) * 2 * size >> 31) - size) as i32)
+    states.map(move |state| (((state >> 33).cast_signed() * 2 * size) >> 31) as i32 - size as i32)
 }
 
 #[test]

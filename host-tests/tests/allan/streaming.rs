@@ -57,7 +57,7 @@ proptest! {
 
     #[test]
     fn long_swings_between_the_extremes_stay_exact(half in 1_usize..400, count in 1000_usize..6000) {
-        let swing = |index: usize| if index / half % 2 == 0 { i32::MIN } else { i32::MAX };
+        let swing = |index: usize| if (index / half).is_multiple_of(2) { i32::MIN } else { i32::MAX };
         let samples: Vec<_> = (0..count).map(swing).collect();
         let points: Vec<_> = streamed(&samples).points(1.0).collect();
         prop_assert_eq!(points, expected(&samples, 1.0));

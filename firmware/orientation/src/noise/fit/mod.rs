@@ -1,7 +1,13 @@
 //! The gyro's noise coefficients from its Allan variance.
 //!
 //! σ²(τ) = 3Q²/τ² + N²/τ + (2 ln 2/π)B² + K²τ/3 + R²τ²/2 (IEEE Std 952-1997, annex C), fitted with
-//! coefficients that are not negative.
+//! coefficients that are not negative. What is found has its standard deviation; what does not stand
+//! out has a limit.
+//!
+//! Two laws that rise alike over one record are hard to tell apart. A random walk that is seldom above
+//! the bias instability may be told as that, whose deviation is then too small by a half, or one time
+//! in ten as a ramp; one that a great ramp hides is missing from the ramp's deviation. Record longer, or at an
+//! even temperature.
 
 mod regression;
 mod search;
@@ -19,7 +25,8 @@ use crate::words::Rounded;
 /// Fewest samples of which anything is said: eight τ, as many as the coefficients and three.
 const LEAST_SAMPLES: u64 = 64;
 
-/// One coefficient as the record knows it, in the unit its place states.
+/// One coefficient as the record knows it, in the unit its place states. It is told with five decimal
+/// places, which suit the field's units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Estimate {
     /// It stands out.

@@ -50,39 +50,51 @@ impl Columns {
     }
 }
 
-/// Weighted sums of the points; columns are scaled to norm 1.
+/// Weighted sums of the points over some columns, which are scaled to norm 1; others are zero.
 #[derive(Clone, Copy, Debug)]
 pub struct Sums {
+    columns: Columns,
     normal: [[f64; COLUMNS]; COLUMNS],
     right: [f64; COLUMNS],
     scales: [f64; COLUMNS],
 }
 
 impl Sums {
-    /// Of points whose variances have the standard deviations `sigmas`.
-    pub fn new(points: &[Point], sigmas: &[f64]) -> Self {
+    /// Of points whose variances have the standard deviations `sigmas`, less what squares that are
+    /// given explain.
+    pub fn new(points: &[Point], sigmas: &[f64], columns: Columns, given: &[f64; COLUMNS]) -> Self {
         let mut sums = Self {
+            columns,
             normal: [[0.0; COLUMNS]; COLUMNS],
             right: [0.0; COLUMNS],
             scales: [0.0; COLUMNS],
         };
         for (point, sigma) in points.iter().zip(sigmas) {
-            let row = terms(point.seconds).map(|term| term / sigma);
-            for i in 0..COLUMNS {
-                for j in 0..=i {
-                    sums.normal[i][j] += row[i] * row[j];
-                }
-                sums.right[i] += row[i] * (point.variance / sigma);
-            }
+            let weight = 1.0 / sigma;
+            let terms = terms(point.seconds);
+            sums.add(&terms, (point.variance - sum(given, &terms)) * weight, weight);
         }
         sums.scale();
         sums
     }
 
+    fn add(&mut self, terms: &[f64; COLUMNS], left: f64, weight: f64) {
+        for i in self.columns.each() {
+            let term = terms[i] * weight;
+            let scaled = term * weight;
+            for j in self.columns.each().take_while(|&j| j <= i) {
+                self.normal[i][j] += scaled * terms[j];
+            }
+            self.right[i] += term * left;
+        }
+    }
+
     fn scale(&mut self) {
-        self.scales = core::array::from_fn(|i| 1.0 / libm::sqrt(self.normal[i][i]));
-        for i in 0..COLUMNS {
-            for j in 0..=i {
+        for i in self.columns.each() {
+            self.scales[i] = 1.0 / libm::sqrt(self.normal[i][i]);
+        }
+        for i in self.columns.each() {
+            for j in self.columns.each().take_while(|&j| j <= i) {
                 self.normal[i][j] *= self.scales[i] * self.scales[j];
             }
             self.right[i] *= self.scales[i];
@@ -126,12 +138,12 @@ impl Sums {
 
     /// The best of all solutions that are not negative: of every choice of columns that gives
     /// positive ones, that which explains most.
-    pub fn positive(&self, columns: Columns) -> (Columns, [f64; COLUMNS]) {
+    pub fn positive(&self) -> (Columns, [f64; COLUMNS]) {
         let mut best = (Columns(0), [0.0; COLUMNS]);
         let mut most = 0.0;
-        for subset in columns.subsets() {
+        for subset in self.columns.subsets() {
             let Some(solution) = self.solve(subset, &self.right) else { continue };
-            let explained: f64 = solution.iter().zip(self.right).map(|(x, b)| x * b).sum();
+            let explained = sum(&solution, &self.right);
             if explained > most && subset.each().all(|column| solution[column] > 0.0) {
                 most = explained;
                 best = (subset, core::array::from_fn(|i| solution[i] * self.scales[i]));
@@ -141,12 +153,15 @@ impl Sums {
     }
 }
 
+/// Σ xᵢyᵢ.
+pub fn sum(x: &[f64; COLUMNS], y: &[f64; COLUMNS]) -> f64 {
+    x.iter().zip(y).map(|(x, y)| x * y).sum()
+}
+
 /// What each point's variance counts in a coefficient's square, from that coefficient's column of the
 /// inverse.
 pub fn row(inverse: &[f64; COLUMNS], points: &[Point], sigmas: &[f64]) -> Vec<f64, MOST_POINTS> {
-    let count = |(point, sigma): (&Point, &f64)| {
-        let sum: f64 = terms(point.seconds).iter().zip(inverse).map(|(term, x)| term * x).sum();
-        sum / (sigma * sigma)
-    };
+    let count =
+        |(point, sigma): (&Point, &f64)| sum(inverse, &terms(point.seconds)) / (sigma * sigma);
     points.iter().zip(sigmas).map(count).collect()
 }

@@ -3,7 +3,7 @@
 use heapless::Vec;
 
 use super::Estimate;
-use super::regression::{COLUMNS, Sums, row};
+use super::regression::{COLUMNS, Columns, Sums, row};
 use super::search::{Model, Search};
 use crate::noise::allan::MOST_POINTS;
 use crate::noise::allan::covariance::{Law, Window};
@@ -23,13 +23,15 @@ impl Square {
         2.0 * self.value.max(0.0) / self.sigma
     }
 
-    /// The coefficient, or its limit where it is not in the model.
-    pub fn estimate(&self, is_found: bool) -> Estimate {
-        if is_found {
-            let value = libm::sqrt(self.value);
-            return Estimate::Found { value, sigma: 0.5 * self.sigma / value };
-        }
-        Estimate::NotObservable { at_most: libm::sqrt(self.value.max(0.0) + 2.0 * self.sigma) }
+    /// The coefficient.
+    pub fn estimate(&self) -> Estimate {
+        let value = libm::sqrt(self.value);
+        Estimate::Found { value, sigma: 0.5 * self.sigma / value }
+    }
+
+    /// The square at two standard deviations above the estimate.
+    pub fn limit(&self) -> f64 {
+        self.value.max(0.0) + 2.0 * self.sigma
     }
 }
 
@@ -41,7 +43,7 @@ impl Search<'_> {
     /// deviation that it has if it is zero.
     pub fn squares(&self, model: &Model) -> [Square; COLUMNS] {
         let sigmas = self.sigmas(self.variances());
-        let sums = Sums::new(self.points, &sigmas);
+        let sums = Sums::new(self.points, &sigmas, Columns::ALL, &[0.0; COLUMNS]);
         let mut squares = [Square::default(); COLUMNS];
         let rows: [Row; COLUMNS] = core::array::from_fn(|column| {
             let inverse = sums.inverse(model.columns.with(column), column).unwrap_or_default();
