@@ -44,7 +44,7 @@ pub struct AzimuthObject {
     pub pitch_deg: Option<f64>,
     /// Roll of the body, where it was measured.
     pub roll_deg: Option<f64>,
-    /// Earth rate found over expected.
+    /// Earth rate found over expected; none of two positions, which take it for granted.
     pub earth_rate_ratio: Option<f64>,
     /// 1σ of the ratio.
     pub earth_rate_ratio_sigma: Option<f64>,
@@ -108,6 +108,7 @@ impl From<&Budget> for BudgetObject {
 #[must_use]
 pub fn azimuth(replay: &Replay, conclusion: &Conclusion, truth_deg: Option<f64>) -> AzimuthObject {
     let fit = conclusion.fit.as_ref();
+    let seen = fit.filter(|fit| !fit.model.is_single_axis);
     let verdict = conclusion.verdict.as_ref();
     let found = verdict.ok().map(|azimuth| degrees(azimuth.angle));
     let tilt = conclusion.tilt.measured.then_some(&conclusion.tilt);
@@ -130,8 +131,8 @@ pub fn azimuth(replay: &Replay, conclusion: &Conclusion, truth_deg: Option<f64>)
         seconds: kept().map(|dwell| dwell.seconds).sum(),
         pitch_deg: tilt.map(|tilt| degrees(tilt.pitch())),
         roll_deg: tilt.map(|tilt| degrees(tilt.roll())),
-        earth_rate_ratio: fit.map(|fit| fit.ratio),
-        earth_rate_ratio_sigma: fit.map(|fit| fit.ratio_sigma),
+        earth_rate_ratio: seen.map(|fit| fit.ratio),
+        earth_rate_ratio_sigma: seen.map(|fit| fit.ratio_sigma),
         model: fit.map(columns).unwrap_or_default(),
         horizontal_earth_rate: fit.map(earth_rate),
         excluded: excluded(replay, conclusion),

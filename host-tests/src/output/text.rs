@@ -91,7 +91,11 @@ fn of_fit(
     fit: &Fit,
 ) -> fmt::Result {
     let (ratio, sigma) = (fit.ratio, fit.ratio_sigma);
-    line(out, "Earth rate", format_args!("{ratio:.4} ± {sigma:.4} of that expected"))?;
+    if fit.model.is_single_axis {
+        line(out, "Earth rate", format_args!("taken for granted: two positions do not show it"))?;
+    } else {
+        line(out, "Earth rate", format_args!("{ratio:.4} ± {sigma:.4} of that expected"))?;
+    }
     let names = columns(fit).join(", ");
     line(out, "model", format_args!("{names}; Earth rate {}", earth_rate(fit)))?;
     line(out, "criterion", format_args!("{}", replay.criterion_name()))?;

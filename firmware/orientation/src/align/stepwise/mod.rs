@@ -38,7 +38,7 @@ pub struct Fit {
     pub limit: f64,
     /// The same bound with the Earth rate free, rad.
     pub limit_free: f64,
-    /// `Ω̂_h/Ω_h` with the Earth rate free.
+    /// `Ω̂_h/Ω_h` with the Earth rate free; of two positions, which do not show it, without meaning.
     pub ratio: f64,
     /// 1σ of the ratio: noise, tilt, g-sensitivity and scale.
     pub ratio_sigma: f64,
@@ -86,7 +86,7 @@ impl Problem<'_> {
         let mut solution = regression.solve(&model.columns())?;
         let components = self.components(&solution);
         let direction = components.direction(model.amplitude)?;
-        let free = components.direction(Amplitude::Free)?;
+        let free = components.free()?;
         let [limit, limit_free] = self.limits(&model)?;
         let mut fit = Fit {
             model,

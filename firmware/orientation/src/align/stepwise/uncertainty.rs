@@ -23,8 +23,8 @@ impl Problem<'_> {
     pub(super) fn limits(&self, model: &Model) -> Option<[f64; 2]> {
         let regression = self.regression(&self.setting.noise, |_| 1.0);
         let components = self.noise_components(&regression.solve(&model.columns())?);
-        let sigma = |amplitude| components.direction(amplitude).map(|d| libm::sqrt(d.variance));
-        Some([sigma(model.amplitude)?, sigma(Amplitude::Free)?])
+        let sigma = |direction: Direction| libm::sqrt(direction.variance);
+        Some([components.direction(model.amplitude).map(sigma)?, components.free().map(sigma)?])
     }
 
     /// Splits the variance: what the dwells' noise does through the gain, what tilt and κ do, and
