@@ -2,11 +2,36 @@
 
 use crate::earth::Latitude;
 use crate::noise::model::GyroNoise;
+use crate::signal::dwell::Dwell;
 use crate::units::TURN;
+
+/// What carries the gyro, and where its accelerometer sits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mount {
+    /// A single-axis stage. The accelerometer rides on it beside the gyro, so that its biases average
+    /// out over a circle.
+    #[default]
+    Stage,
+    /// Two frames ([`super::mount`]). The accelerometer sits on the base: its biases are tilt.
+    TwoFrames,
+}
+
+impl Mount {
+    /// By how much a dwell has turned the accelerometer from the base's axes, rad.
+    #[must_use]
+    pub fn accelerometer_turn(self, dwell: &Dwell) -> f64 {
+        match self {
+            Self::Stage => dwell.stage.rad(),
+            Self::TwoFrames => 0.0,
+        }
+    }
+}
 
 /// The place, the instrument and the demands. A standard deviation of zero says: exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
+    /// What carries the gyro.
+    pub mount: Mount,
     /// Geodetic latitude.
     pub latitude: Latitude,
     /// 1σ of the latitude, rad.
@@ -17,13 +42,15 @@ pub struct Setting {
     pub white_known: bool,
     /// 1σ of the gyro's scale factor, relative.
     pub scale_sigma: f64,
-    /// g-sensitivity κ along the sensitive axis and 90° clockwise of it, rad/s per g.
+    /// g-sensitivity κ along the sensitive axis and 90° clockwise of it, rad/s per g; in two frames
+    /// along the inner frame's axis instead.
     pub g_sensitivity: [f64; 2],
-    /// 1σ of either part of κ, rad/s per g.
+    /// 1σ of either part of κ, rad/s per g; in two frames of the third one too, which is taken as zero.
     pub g_sensitivity_sigma: f64,
     /// 1σ of each accelerometer bias, m/s².
     pub accelerometer_bias_sigma: f64,
-    /// 1σ of the encoder's zero and harmonics, as they turn the azimuth, rad.
+    /// 1σ of the encoder's zero and harmonics, as they turn the azimuth, rad; in two frames with what
+    /// their calibration leaves ([`super::mount::azimuth_sigma`]).
     pub encoder_sigma: f64,
     /// Greatest standard deviation of the azimuth that is accepted, rad.
     pub required_sigma: f64,
@@ -40,6 +67,7 @@ impl Setting {
     #[must_use]
     pub fn at(latitude: Latitude) -> Self {
         Self {
+            mount: Mount::Stage,
             latitude,
             latitude_sigma: 0.0,
             noise: GyroNoise::default(),

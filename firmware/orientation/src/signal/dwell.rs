@@ -15,8 +15,11 @@ use crate::units::{Angle, AngularRate, Instant, Optional};
 /// What one dwell leaves behind, whoever averaged it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Dwell {
-    /// Encoder angle.
+    /// Encoder angle: the heading of the sensitive axis in the base plane.
     pub stage: Angle,
+    /// Mean elevation of the sensitive axis above the base plane, rad, up positive; zero where it lies
+    /// in that plane. In single precision, which takes no room: 0.3° is kept to 10⁻⁴″.
+    pub elevation: f32,
     /// Middle of the averaged time, s. (The taper's own middle lies half its lag earlier, in every
     /// dwell alike, so it is of no consequence.)
     pub middle: f64,
@@ -32,7 +35,7 @@ pub struct Dwell {
     pub stated_variance: Optional,
     /// Block statistics, where there were samples enough.
     pub quietness: Option<Quietness>,
-    /// Mean specific force on the platform's axes, m/s², where it was measured.
+    /// Mean specific force on the accelerometer's axes, m/s², where it was measured.
     pub force: Option<[f64; 3]>,
     /// Mean temperature, °C, where it was measured.
     pub temperature: Optional,
@@ -126,6 +129,7 @@ pub struct DwellAverage<const SECTIONS: usize> {
     stage: i64,
     force: Means<3>,
     temperature: Means<1>,
+    elevation: Means<1>,
     saturated: bool,
     longest_gap: u64,
 }
@@ -146,6 +150,7 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
             stage: 0,
             force: Means::EMPTY,
             temperature: Means::EMPTY,
+            elevation: Means::EMPTY,
             saturated: false,
             longest_gap: 0,
         };
@@ -166,7 +171,8 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
         self.filtered += i64::from(self.filter.update(coefficients, sample.rate).0);
     }
 
-    /// Takes what only some samples bring.
+    /// Takes what only some samples bring. An elevation comes with a force: asking for it alone would
+    /// cost every sample a test.
     #[cold]
     #[inline(never)]
     fn push_slow(&mut self, sample: &Sample) {
@@ -175,6 +181,9 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
         }
         if let Some(temperature) = sample.temperature {
             self.temperature.push([temperature.0]);
+        }
+        if let Some(elevation) = sample.elevation {
+            self.elevation.push([elevation.0.cast_signed()]);
         }
     }
 
@@ -247,6 +256,7 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
         let offset = self.stage as f64 / count;
         Some(Dwell {
             stage: Angle(self.anchor.0.wrapping_add(libm::round(offset) as i32 as u32)),
+            elevation: self.elevation.get(Angle::STEP).map_or(0.0, |[elevation]| elevation as f32),
             middle: 0.5 * (self.first.seconds() + self.last.seconds()),
             seconds: count * sample_seconds,
             samples: self.count(),
