@@ -23,7 +23,7 @@ use crate::configuration::Configuration;
 /// The gyro's g-sensitivity along and across its axis as it is calibrated, °/h/g.
 const G_SENSITIVITY: [f64; 2] = [0.05, -0.03];
 /// 1σ of that calibration, °/h/g.
-const G_SENSITIVITY_SIGMA: f64 = 0.002;
+pub(super) const G_SENSITIVITY_SIGMA: f64 = 0.002;
 /// 1σ of the gyro's scale factor.
 const SCALE_SIGMA: f64 = 5e-4;
 /// Noise density of the ADXL355, 25 µg/√Hz (data sheet, table 1), m/s²/√Hz.
@@ -57,7 +57,7 @@ const RINGING_HZ: f64 = 15.0;
 /// Damping ratio of that ringing.
 const RINGING_DAMPING: f64 = 0.08;
 /// For how long it rings, s: until 56 µrad, a/ω² at the end of its ramp, are below what stands.
-const RINGS_SECONDS: f64 = 0.25;
+pub(super) const RINGS_SECONDS: f64 = 0.25;
 
 /// Scale factor of the gyro, V per rad/s: 50 mV per °/s.
 const VOLTS: f64 = 0.05 / DEGREE;

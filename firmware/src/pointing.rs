@@ -1,0 +1,268 @@
+//! Where the gyro's sensitive axis points, by the encoders: of a stage's one axis, or of two frames.
+//!
+//! Every encoder is guarded, its harmonics are taken off, and a reading further from the one before
+//! than anything can turn is lost. Two frames give heading and elevation by their calibrated geometry;
+//! while either moves there is no sample, for the heading alone does not tell.
+
+use core::cell::Cell;
+
+use embassy_time::{Duration, Instant};
+use orientation::align::mount::{FrameAngles, TwoFrame};
+use orientation::device::Device;
+use orientation::error::Refusal;
+use orientation::session::procedure::STILL;
+use orientation::units::{Angle, DEGREE, TURN};
+
+use crate::calibration::{Calibration, Harmonics};
+use crate::configuration::{Configuration, FramesConfiguration};
+use crate::guarded::Guarded;
+use crate::patience::Symptom;
+use crate::ports::{Encoder, Frames, Observer};
+use crate::shared::{LatestAngle, Shared};
+
+/// Faster than any stage, rad/s: a quarter of a turn a second.
+const FASTEST: f64 = TURN / 4.0;
+/// What a stage may jump by: play, ringing, a slipping magnet, rad.
+const PLAY: f64 = DEGREE;
+
+/// Where the axis points with one sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Aim {
+    /// Heading in the base plane.
+    pub heading: Angle,
+    /// Elevation above it, where there can be one.
+    pub elevation: Option<Angle>,
+    /// Whether a sample may be taken: not while frames move.
+    pub is_standing: bool,
+}
+
+/// What knows where the axis points.
+#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
+pub trait Pointing<O> {
+    /// Starts the encoders.
+    async fn start(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal>;
+
+    /// Where the axis points now, read anew with every so-manieth sample; none where a reading was
+    /// lost. `has_begun` says that there was a sample before.
+    async fn aim(
+        &mut self,
+        shared: &Shared<'_, O>,
+        has_begun: bool,
+    ) -> Result<Option<Aim>, Refusal>;
+}
+
+/// Says yes at first, then every so-manieth time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Every {
+    divider: u32,
+    left: u32,
+}
+
+impl Every {
+    pub(crate) fn new(divider: u32) -> Self {
+        Self { divider: divider.max(1), left: 0 }
+    }
+
+    pub(crate) fn divider(&self) -> u32 {
+        self.divider
+    }
+
+    pub(crate) fn is_due(&mut self) -> bool {
+        let is_due = self.left == 0;
+        self.left = if is_due { self.divider } else { self.left } - 1;
+        is_due
+    }
+}
+
+/// How far an axis can turn between two readings of its angle, in steps of an [`Angle`].
+fn greatest_step(configuration: &Configuration) -> u32 {
+    let seconds = f64::from(configuration.angle_divider) / configuration.sample_rate;
+    Angle::from_rad(PLAY + FASTEST * seconds).0
+}
+
+/// The encoder of one axis at work.
+pub struct Shaft<'a, E> {
+    encoder: Guarded<'a, E>,
+    name: Device,
+    calibration: Calibration,
+    due: Every,
+    /// The angle of the latest reading; none where it was lost.
+    angle: Option<Angle>,
+    latest: &'a LatestAngle,
+    greatest_step: u32,
+    has_jumped: bool,
+}
+
+impl<'a, E: Encoder> Shaft<'a, E> {
+    /// Takes an encoder by its name in the log; nothing is started yet. Good angles go to `latest`.
+    pub fn new(
+        encoder: &'a mut E,
+        name: Device,
+        harmonics: Harmonics,
+        configuration: &Configuration,
+        latest: &'a LatestAngle,
+    ) -> Self {
+        Self {
+            encoder: Guarded::new(encoder, name),
+            name,
+            calibration: Calibration::new(harmonics),
+            due: Every::new(configuration.angle_divider),
+            angle: None,
+            latest,
+            greatest_step: greatest_step(configuration),
+            has_jumped: false,
+        }
+    }
+
+    /// The angle, read anew with every so-manieth sample; none where that was lost.
+    async fn read<O: Observer>(
+        &mut self,
+        shared: &Shared<'_, O>,
+        has_begun: bool,
+    ) -> Result<Option<Angle>, Refusal> {
+        if self.due.is_due() || self.angle.is_none() {
+            let begun = Instant::now();
+            let outcome = self.encoder.device.read().await;
+            self.angle = match self.encoder.checked(begun, outcome) {
+                Ok(shown) => Some(self.calibration.correct(shown)),
+                Err(symptom) => self.encoder.mend(symptom, shared).await.map(|()| None)?,
+            };
+            self.angle = self.angle.filter(|angle| self.is_in_line(*angle, shared, has_begun));
+        }
+        Ok(self.angle)
+    }
+
+    /// Takes an angle, unless it is further from the one before than the axis can turn: such a one is
+    /// lost, but the next is believed.
+    fn is_in_line<O: Observer>(
+        &mut self,
+        angle: Angle,
+        shared: &Shared<'_, O>,
+        has_begun: bool,
+    ) -> bool {
+        let (last, _) = self.latest.get();
+        let step = (angle - last).0.cast_signed().unsigned_abs();
+        self.has_jumped = step > self.greatest_step && !self.has_jumped && has_begun;
+        if self.has_jumped {
+            shared.lose(self.name, Symptom::Jumped);
+            return false;
+        }
+        self.latest.set((angle, Instant::now()));
+        shared.sensing.signal(());
+        true
+    }
+}
+
+/// The one axis of a stage: the sensitive axis lies in its plane, and its angle is the heading.
+impl<E: Encoder, O: Observer> Pointing<O> for Shaft<'_, E> {
+    async fn start(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal> {
+        self.encoder.start(shared).await
+    }
+
+    async fn aim(
+        &mut self,
+        shared: &Shared<'_, O>,
+        has_begun: bool,
+    ) -> Result<Option<Aim>, Refusal> {
+        let angle = self.read(shared, has_begun).await?;
+        Ok(angle.map(|heading| Aim { heading, elevation: None, is_standing: true }))
+    }
+}
+
+/// The two frames of a mount.
+pub struct FrameShafts<'a, E> {
+    shafts: Frames<Shaft<'a, E>>,
+    geometry: TwoFrame,
+    rest: Duration,
+    /// Angles from which neither frame has moved, and since when.
+    anchor: Frames<Angle>,
+    since: Instant,
+    /// Angles that [`Self::aim`] is for: trigonometry is done only where they have changed.
+    seen: Option<Frames<Angle>>,
+    aim: Aim,
+}
+
+impl<'a, E: Encoder> FrameShafts<'a, E> {
+    /// Takes both encoders; nothing is started yet.
+    pub fn new(
+        encoders: &'a mut Frames<E>,
+        configuration: &Configuration,
+        frames: &FramesConfiguration,
+        latest: &'a Frames<LatestAngle>,
+    ) -> Self {
+        let Frames { outer, inner } = encoders;
+        let Frames { outer: outer_error, inner: inner_error } = frames.encoders;
+        let shaft = |encoder, name, harmonics, latest| {
+            Shaft::new(encoder, name, harmonics, configuration, latest)
+        };
+        Self {
+            shafts: Frames {
+                outer: shaft(outer, Device::OuterEncoder, outer_error, &latest.outer),
+                inner: shaft(inner, Device::InnerEncoder, inner_error, &latest.inner),
+            },
+            geometry: frames.geometry(),
+            rest: frames.rest,
+            anchor: Frames::default(),
+            since: Instant::MIN,
+            seen: None,
+            aim: Aim { heading: Angle(0), elevation: None, is_standing: false },
+        }
+    }
+
+    /// Whether both frames have rested.
+    fn has_rested(&mut self, angles: Frames<Angle>) -> bool {
+        let still = Angle::from_rad(STILL).0;
+        let has_moved = |now: Angle, then: Angle| (now - then).0.cast_signed().unsigned_abs() > still;
+        if has_moved(angles.outer, self.anchor.outer) || has_moved(angles.inner, self.anchor.inner) {
+            self.anchor = angles;
+            self.since = Instant::now();
+        }
+        self.since.elapsed() >= self.rest
+    }
+
+    /// The direction of the axis at these angles.
+    fn point(&mut self, angles: Frames<Angle>) {
+        if self.seen.replace(angles) == Some(angles) {
+            return;
+        }
+        let Frames { outer, inner } = angles.map(Angle::signed_rad);
+        let pointing = self.geometry.pointing(FrameAngles { outer, inner });
+        self.aim.heading = Angle::from_rad(pointing.heading);
+        self.aim.elevation = Some(Angle::from_rad(pointing.elevation));
+    }
+}
+
+impl<E: Encoder, O: Observer> Pointing<O> for FrameShafts<'_, E> {
+    async fn start(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal> {
+        self.shafts.outer.encoder.start(shared).await?;
+        self.shafts.inner.encoder.start(shared).await
+    }
+
+    async fn aim(
+        &mut self,
+        shared: &Shared<'_, O>,
+        has_begun: bool,
+    ) -> Result<Option<Aim>, Refusal> {
+        let outer = self.shafts.outer.read(shared, has_begun).await?;
+        let inner = self.shafts.inner.read(shared, has_begun).await?;
+        let (Some(outer), Some(inner)) = (outer, inner) else { return Ok(None) };
+        let angles = Frames { outer, inner };
+        self.aim.is_standing = self.has_rested(angles);
+        if self.aim.is_standing {
+            self.point(angles);
+        }
+        Ok(Some(self.aim))
+    }
+}
+
+/// Latest angles of both frames that nobody has read yet.
+impl Frames<LatestAngle> {
+    /// Nothing was read.
+    #[must_use]
+    pub const fn unread() -> Self {
+        Self {
+            outer: Cell::new((Angle(0), Instant::MIN)),
+            inner: Cell::new((Angle(0), Instant::MIN)),
+        }
+    }
+}
