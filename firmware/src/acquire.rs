@@ -68,7 +68,7 @@ pub struct Acquisition<'a, G, A, P, O> {
     overflowed: u32,
 }
 
-impl<'a, G: Gyro, A: Accelerometer, P: Pointing<O>, O: Observer> Acquisition<'a, G, A, P, O> {
+impl<'a, G: Gyro, A: Accelerometer, P: Pointing, O: Observer> Acquisition<'a, G, A, P, O> {
     /// Takes the sensors; nothing is started yet.
     pub fn new(
         gyro: &'a mut G,
@@ -105,7 +105,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing<O>, O: Observer> Acquisition<'a,
 
     async fn sample_for_ever(&mut self) -> Result<core::convert::Infallible, Refusal> {
         self.accelerometer.start(self.shared).await?;
-        self.pointing.start(self.shared).await?;
+        self.pointing.start().await?;
         self.gyro.start(self.shared).await?;
         loop {
             if let Some(sample) = self.sample().await? {
@@ -130,10 +130,11 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing<O>, O: Observer> Acquisition<'a,
     async fn sample(&mut self) -> Result<Option<Sample>, Refusal> {
         let Some(time) = self.conversion().await? else { return Ok(None) };
         let rate = self.rate().await?;
-        let aim = self.pointing.aim(self.shared, self.timeline.has_begun()).await?;
+        let shown = self.pointing.read().await?;
         let force = self.force().await?;
-        let (Some(rate), Some(aim)) = (rate, aim) else { return Ok(None) };
+        let (Some(rate), Some(shown)) = (rate, shown) else { return Ok(None) };
         self.judge(time);
+        let aim = self.pointing.aim(shown);
         if !aim.is_standing {
             self.shared.count(|health| health.samples += 1);
             return Ok(None);

@@ -38,17 +38,18 @@ pub struct Aim {
 
 /// What knows where the axis points.
 #[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
-pub trait Pointing<O> {
-    /// Starts the encoders.
-    async fn start(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal>;
+pub trait Pointing {
+    /// What the encoders show.
+    type Shown;
 
-    /// Where the axis points now, read anew with every so-manieth sample; none where a reading was
-    /// lost. `has_begun` says that there was a sample before.
-    async fn aim(
-        &mut self,
-        shared: &Shared<'_, O>,
-        has_begun: bool,
-    ) -> Result<Option<Aim>, Refusal>;
+    /// Starts the encoders.
+    async fn start(&mut self) -> Result<(), Refusal>;
+
+    /// What the encoders show, read anew with every so-manieth sample; none where a reading was lost.
+    async fn read(&mut self) -> Result<Option<Self::Shown>, Refusal>;
+
+    /// Where the axis points when the encoders show this.
+    fn aim(&mut self, shown: Self::Shown) -> Aim;
 }
 
 /// Says yes at first, then every so-manieth time.
@@ -81,7 +82,7 @@ fn greatest_step(configuration: &Configuration) -> u32 {
 }
 
 /// The encoder of one axis at work.
-pub struct Shaft<'a, E> {
+pub struct Shaft<'a, E, O> {
     encoder: Guarded<'a, E>,
     name: Device,
     calibration: Calibration,
@@ -91,9 +92,10 @@ pub struct Shaft<'a, E> {
     latest: &'a LatestAngle,
     greatest_step: u32,
     has_jumped: bool,
+    shared: &'a Shared<'a, O>,
 }
 
-impl<'a, E: Encoder> Shaft<'a, E> {
+impl<'a, E: Encoder, O: Observer> Shaft<'a, E, O> {
     /// Takes an encoder by its name in the log; nothing is started yet. Good angles go to `latest`.
     pub fn new(
         encoder: &'a mut E,
@@ -101,6 +103,7 @@ impl<'a, E: Encoder> Shaft<'a, E> {
         harmonics: Harmonics,
         configuration: &Configuration,
         latest: &'a LatestAngle,
+        shared: &'a Shared<'a, O>,
     ) -> Self {
         Self {
             encoder: Guarded::new(encoder, name),
@@ -111,67 +114,55 @@ impl<'a, E: Encoder> Shaft<'a, E> {
             latest,
             greatest_step: greatest_step(configuration),
             has_jumped: false,
+            shared,
         }
-    }
-
-    /// The angle, read anew with every so-manieth sample; none where that was lost.
-    async fn read<O: Observer>(
-        &mut self,
-        shared: &Shared<'_, O>,
-        has_begun: bool,
-    ) -> Result<Option<Angle>, Refusal> {
-        if self.due.is_due() || self.angle.is_none() {
-            let begun = Instant::now();
-            let outcome = self.encoder.device.read().await;
-            self.angle = match self.encoder.checked(begun, outcome) {
-                Ok(shown) => Some(self.calibration.correct(shown)),
-                Err(symptom) => self.encoder.mend(symptom, shared).await.map(|()| None)?,
-            };
-            self.angle = self.angle.filter(|angle| self.is_in_line(*angle, shared, has_begun));
-        }
-        Ok(self.angle)
     }
 
     /// Takes an angle, unless it is further from the one before than the axis can turn: such a one is
     /// lost, but the next is believed.
-    fn is_in_line<O: Observer>(
-        &mut self,
-        angle: Angle,
-        shared: &Shared<'_, O>,
-        has_begun: bool,
-    ) -> bool {
-        let (last, _) = self.latest.get();
+    fn is_in_line(&mut self, angle: Angle) -> bool {
+        let (last, read) = self.latest.get();
         let step = (angle - last).0.cast_signed().unsigned_abs();
-        self.has_jumped = step > self.greatest_step && !self.has_jumped && has_begun;
+        self.has_jumped = step > self.greatest_step && !self.has_jumped && read > Instant::MIN;
         if self.has_jumped {
-            shared.lose(self.name, Symptom::Jumped);
+            self.shared.lose(self.name, Symptom::Jumped);
             return false;
         }
         self.latest.set((angle, Instant::now()));
-        shared.sensing.signal(());
+        self.shared.sensing.signal(());
         true
     }
 }
 
 /// The one axis of a stage: the sensitive axis lies in its plane, and its angle is the heading.
-impl<E: Encoder, O: Observer> Pointing<O> for Shaft<'_, E> {
-    async fn start(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal> {
-        self.encoder.start(shared).await
+impl<E: Encoder, O: Observer> Pointing for Shaft<'_, E, O> {
+    type Shown = Angle;
+
+    async fn start(&mut self) -> Result<(), Refusal> {
+        self.encoder.start(self.shared).await
     }
 
-    async fn aim(
-        &mut self,
-        shared: &Shared<'_, O>,
-        has_begun: bool,
-    ) -> Result<Option<Aim>, Refusal> {
-        let angle = self.read(shared, has_begun).await?;
-        Ok(angle.map(|heading| Aim { heading, elevation: None, is_standing: true }))
+    async fn read(&mut self) -> Result<Option<Angle>, Refusal> {
+        if self.due.is_due() || self.angle.is_none() {
+            let begun = Instant::now();
+            let outcome = self.encoder.device.read().await;
+            self.angle = match self.encoder.checked(begun, outcome) {
+                Ok(shown) => Some(self.calibration.correct(shown)),
+                Err(symptom) => self.encoder.mend(symptom, self.shared).await.map(|()| None)?,
+            };
+            self.angle = self.angle.filter(|angle| self.is_in_line(*angle));
+        }
+        Ok(self.angle)
+    }
+
+    fn aim(&mut self, heading: Angle) -> Aim {
+        Aim { heading, elevation: None, is_standing: true }
     }
 }
 
 /// The two frames of a mount.
-pub struct FrameShafts<'a, E> {
-    shafts: Frames<Shaft<'a, E>>,
+pub struct FrameShafts<'a, E, O> {
+    shafts: Frames<Shaft<'a, E, O>>,
     geometry: TwoFrame,
     rest: Duration,
     /// Angles from which neither frame has moved, and since when.
@@ -182,18 +173,19 @@ pub struct FrameShafts<'a, E> {
     aim: Aim,
 }
 
-impl<'a, E: Encoder> FrameShafts<'a, E> {
+impl<'a, E: Encoder, O: Observer> FrameShafts<'a, E, O> {
     /// Takes both encoders; nothing is started yet.
     pub fn new(
         encoders: &'a mut Frames<E>,
         configuration: &Configuration,
         frames: &FramesConfiguration,
         latest: &'a Frames<LatestAngle>,
+        shared: &'a Shared<'a, O>,
     ) -> Self {
         let Frames { outer, inner } = encoders;
         let Frames { outer: outer_error, inner: inner_error } = frames.encoders;
         let shaft = |encoder, name, harmonics, latest| {
-            Shaft::new(encoder, name, harmonics, configuration, latest)
+            Shaft::new(encoder, name, harmonics, configuration, latest, shared)
         };
         Self {
             shafts: Frames {
@@ -232,26 +224,26 @@ impl<'a, E: Encoder> FrameShafts<'a, E> {
     }
 }
 
-impl<E: Encoder, O: Observer> Pointing<O> for FrameShafts<'_, E> {
-    async fn start(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal> {
-        self.shafts.outer.encoder.start(shared).await?;
-        self.shafts.inner.encoder.start(shared).await
+impl<E: Encoder, O: Observer> Pointing for FrameShafts<'_, E, O> {
+    type Shown = Frames<Angle>;
+
+    async fn start(&mut self) -> Result<(), Refusal> {
+        self.shafts.outer.start().await?;
+        self.shafts.inner.start().await
     }
 
-    async fn aim(
-        &mut self,
-        shared: &Shared<'_, O>,
-        has_begun: bool,
-    ) -> Result<Option<Aim>, Refusal> {
-        let outer = self.shafts.outer.read(shared, has_begun).await?;
-        let inner = self.shafts.inner.read(shared, has_begun).await?;
-        let (Some(outer), Some(inner)) = (outer, inner) else { return Ok(None) };
-        let angles = Frames { outer, inner };
+    async fn read(&mut self) -> Result<Option<Frames<Angle>>, Refusal> {
+        let outer = self.shafts.outer.read().await?;
+        let inner = self.shafts.inner.read().await?;
+        Ok(outer.zip(inner).map(|(outer, inner)| Frames { outer, inner }))
+    }
+
+    fn aim(&mut self, angles: Frames<Angle>) -> Aim {
         self.aim.is_standing = self.has_rested(angles);
         if self.aim.is_standing {
             self.point(angles);
         }
-        Ok(Some(self.aim))
+        self.aim
     }
 }
 

@@ -5,7 +5,7 @@
 //! are generic over their ports, and both end within a bounded time, whatever the devices do.
 
 use core::future::pending;
-use core::pin::pin;
+use core::pin::{Pin, pin};
 
 use embassy_futures::select::{select, select4};
 use embedded_io_async::Write;
@@ -39,7 +39,8 @@ pub async fn acquire<G, A, E, O>(
 {
     let Sensors { gyro, accelerometer, encoder } = sensors;
     let harmonics = configuration.encoder;
-    let shaft = Shaft::new(encoder, Device::Encoder, harmonics, configuration, &shared.angle);
+    let (name, latest) = (Device::Encoder, &shared.angle);
+    let shaft = Shaft::new(encoder, name, harmonics, configuration, latest, shared);
     let reason = Acquisition::new(gyro, accelerometer, shaft, configuration, shared).run().await;
     shared.fail(reason);
     pending::<()>().await;
@@ -59,7 +60,7 @@ pub async fn acquire_frames<G, A, E, O>(
     O: Observer,
 {
     let Sensors { gyro, accelerometer, encoder } = sensors;
-    let shafts = FrameShafts::new(encoder, configuration, frames, latest);
+    let shafts = FrameShafts::new(encoder, configuration, frames, latest, shared);
     let reason = Acquisition::new(gyro, accelerometer, shafts, configuration, shared).run().await;
     shared.fail(reason);
     pending::<()>().await;
@@ -83,7 +84,8 @@ where
 {
     let Ports { actuator, link, recorder } = ports;
     let mut stage = Stage::new(actuator, &configuration.stage, shared);
-    beside(stage.run(), link, recorder, session, shared).await
+    let turning = pin!(stage.run());
+    beside(turning, link, recorder, session, shared).await
 }
 
 /// The same on a mount with two frames. After an azimuth it takes the gyro's axis to the vertical,
@@ -103,7 +105,10 @@ where
 {
     let Ports { actuator, link, recorder } = ports;
     let mut gimbal = Gimbal::new(actuator, frames, latest, shared);
-    let health = beside(gimbal.run(), link, recorder, session, shared).await;
+    let health = {
+        let turning = pin!(gimbal.run());
+        beside(turning, link, recorder, session, shared).await
+    };
     if session.conclusion().is_some_and(|conclusion| conclusion.verdict.is_ok()) {
         // Where that fails, the log has the reason; the azimuth stands all the same.
         select(gimbal.store(), discard(shared)).await;
@@ -120,7 +125,7 @@ async fn discard<O>(shared: &Shared<'_, O>) {
 
 /// Joins the parts around what turns the gyro, which ends only with a reason to end everything.
 async fn beside<L, R, O>(
-    turning: impl Future<Output = Refusal>,
+    turning: Pin<&mut impl Future<Output = Refusal>>,
     link: &mut L,
     recorder: &mut R,
     session: &mut Session,

@@ -18,8 +18,8 @@ use hal_mock::plant::train::StageConfiguration;
 use hal_mock::plant::{PlantConfiguration, StageFault};
 use hal_mock::spi::{ReadyPin, SpiPort};
 use hal_mock::violation::Violation;
-use orientation::align::mount::{ARRIVAL, MountError, TwoFrame, azimuth_sigma};
-use orientation::align::setting::{Mount, Setting};
+use orientation::align::mount::{ARRIVAL, MountError, TWO_FRAMES, TwoFrame, azimuth_sigma};
+use orientation::align::setting::Setting;
 use orientation::session::procedure::Procedure;
 use orientation::session::schedule::{Position, Schedule};
 use orientation::units::DEGREE;
@@ -95,7 +95,7 @@ impl FramesScenario {
         let setting = self.base.setting()?;
         let encoder = setting.encoder_sigma;
         Some(Setting {
-            mount: Mount::TwoFrames,
+            mount: TWO_FRAMES,
             accelerometer_bias_sigma: FORCE_BIAS_SIGMA,
             encoder_sigma: azimuth_sigma(self.orthogonality_sigma, encoder, setting.latitude),
             ..setting

@@ -116,6 +116,7 @@ pub struct Plant<'a> {
 impl<'a> Plant<'a> {
     /// A plant at the start of the clock; the seed fixes everything random in it.
     #[must_use]
+    #[inline(never)]
     pub fn new(configuration: &PlantConfiguration<'a>, seed: u64) -> Self {
         let c = configuration;
         let accelerometer_hz = c.accelerometer_hz;

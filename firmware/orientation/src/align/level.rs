@@ -58,18 +58,12 @@ impl Tilt {
         ]
     }
 
-    /// The same with the axis at an `elevation` (rad) above the base plane.
+    /// The base's downward axis, in the levelled frame.
     #[must_use]
-    pub fn raised_axis(&self, theta: f64, elevation: f64) -> [f64; 3] {
-        let axis = self.sensitive_axis(theta);
-        if elevation == 0.0 {
-            return axis;
-        }
+    pub fn down(&self) -> [f64; 3] {
         let (sine_roll, cosine_roll) = libm::sincos(self.roll());
         let cosine_pitch = libm::sqrt((1.0 - self.real * self.real).max(0.0));
-        let down = [self.real * cosine_roll, -sine_roll, cosine_pitch * cosine_roll];
-        let (sine, cosine) = libm::sincos(elevation);
-        core::array::from_fn(|i| cosine * axis[i] - sine * down[i])
+        [self.real * cosine_roll, -sine_roll, cosine_pitch * cosine_roll]
     }
 
     /// Specific force away from the base plane, up through it, in g.
@@ -103,13 +97,13 @@ pub fn tilt<'a>(
     gravity: f64,
     bias_sigma: f64,
 ) -> Tilt {
-    tilt_in(Mount::Stage, dwells, gravity, bias_sigma)
+    tilt_in(&Mount::STAGE, dwells, gravity, bias_sigma)
 }
 
 /// The same from the accelerometer of any mount.
 #[must_use]
 pub fn tilt_in<'a>(
-    mount: Mount,
+    mount: &Mount,
     dwells: impl Iterator<Item = &'a Dwell> + Clone,
     gravity: f64,
     bias_sigma: f64,
@@ -137,7 +131,7 @@ pub fn gravity_ratio<'a>(dwells: impl Iterator<Item = &'a Dwell>, gravity: f64) 
 
 /// One fit whose noise is `sigma` g; also the scatter found.
 fn fit<'a>(
-    mount: Mount,
+    mount: &Mount,
     dwells: impl Iterator<Item = &'a Dwell>,
     gravity: f64,
     bias_sigma: f64,

@@ -16,7 +16,8 @@
 //! vertical at 90° (up) and 270° (down): unlike on a stage, `k_o` then meets all of gravity, and turns
 //! the azimuth as an Earth rate along body y would. The third part, across both, does so along body x.
 
-use crate::align::level::Tilt;
+use super::level::Tilt;
+use super::setting::Mount;
 use crate::earth::Latitude;
 use crate::signal::dwell::Dwell;
 use crate::units::{DEGREE, DEGREES_PER_RADIAN, wrapped};
@@ -223,10 +224,21 @@ impl Station {
     }
 }
 
+/// The two-frame mount in a [`Setting`](super::setting::Setting).
+pub const TWO_FRAMES: Mount =
+    Mount { name: "two frames", is_on_base: true, axis: raised_axis, force: case_force };
+
+/// The sensitive axis of a dwell in the levelled frame: its heading and its elevation.
+fn raised_axis(tilt: &Tilt, dwell: &Dwell) -> [f64; 3] {
+    let level = tilt.sensitive_axis(dwell.stage.rad());
+    let down = tilt.down();
+    let (sine, cosine) = libm::sincos(f64::from(dwell.elevation));
+    [0, 1, 2].map(|i| cosine * level[i] - sine * down[i])
+}
+
 /// Specific force along the sensitive axis and along the inner frame's axis of a dwell, in g, as a
-/// tilt makes it: what κ multiplies. The mount's non-orthogonality is of no account here.
-#[must_use]
-pub fn force(tilt: &Tilt, dwell: &Dwell) -> [f64; 2] {
+/// tilt makes it. The mount's non-orthogonality is of no account here.
+fn case_force(tilt: &Tilt, dwell: &Dwell) -> [f64; 2] {
     let theta = dwell.stage.rad();
     let (sine, cosine) = libm::sincos(f64::from(dwell.elevation));
     let up = tilt.upward();

@@ -1,29 +1,45 @@
 //! What is known before an alignment begins: the place, the gyro, the platform, and what is asked.
 
+use super::level::Tilt;
 use crate::earth::Latitude;
 use crate::noise::model::GyroNoise;
 use crate::signal::dwell::Dwell;
 use crate::units::TURN;
 
-/// What carries the gyro, and where its accelerometer sits.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Mount {
-    /// A single-axis stage. The accelerometer rides on it beside the gyro, so that its biases average
-    /// out over a circle.
-    #[default]
-    Stage,
-    /// Two frames ([`super::mount`]). The accelerometer sits on the base: its biases are tilt.
-    TwoFrames,
+/// What carries the gyro, and where its accelerometer sits. A mount comes with its own geometry, so
+/// that the firmware of one holds nothing of another's.
+#[derive(Clone, Copy, Debug)]
+pub struct Mount {
+    /// Its name.
+    pub name: &'static str,
+    /// Whether the accelerometer sits on the base, so that its biases are tilt; else it rides beside
+    /// the gyro, and they average out over a circle.
+    pub is_on_base: bool,
+    /// The sensitive axis in a dwell, in the levelled frame: forward, right, down.
+    pub axis: fn(&Tilt, &Dwell) -> [f64; 3],
+    /// Specific force that κ multiplies in a dwell, in g.
+    pub force: fn(&Tilt, &Dwell) -> [f64; 2],
 }
 
 impl Mount {
+    /// The single-axis stage: the sensitive axis stays in its plane, the accelerometer rides on it.
+    pub const STAGE: Self = Self {
+        name: "stage",
+        is_on_base: false,
+        axis: |tilt, dwell| tilt.sensitive_axis(dwell.stage.rad()),
+        force: |tilt, dwell| tilt.force(dwell.stage.rad()),
+    };
+
     /// By how much a dwell has turned the accelerometer from the base's axes, rad.
     #[must_use]
-    pub fn accelerometer_turn(self, dwell: &Dwell) -> f64 {
-        match self {
-            Self::Stage => dwell.stage.rad(),
-            Self::TwoFrames => 0.0,
-        }
+    pub fn accelerometer_turn(&self, dwell: &Dwell) -> f64 {
+        if self.is_on_base { 0.0 } else { dwell.stage.rad() }
+    }
+}
+
+impl PartialEq for Mount {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
     }
 }
 
@@ -67,7 +83,7 @@ impl Setting {
     #[must_use]
     pub fn at(latitude: Latitude) -> Self {
         Self {
-            mount: Mount::Stage,
+            mount: Mount::STAGE,
             latitude,
             latitude_sigma: 0.0,
             noise: GyroNoise::default(),

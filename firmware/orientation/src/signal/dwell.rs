@@ -103,6 +103,9 @@ impl<const N: usize> Means<N> {
     }
 }
 
+/// One step of a [`SpecificForce`](crate::units::SpecificForce), m/s².
+const FORCE_STEP: f64 = 1e-6;
+
 /// Sample periods without a sample that a dwell bears: two samples in a row may be lost.
 const LONGEST_GAP: f64 = 3.5;
 
@@ -127,9 +130,9 @@ pub struct DwellAverage<const SECTIONS: usize> {
     changes: i32,
     blocks: Blocks,
     stage: i64,
-    force: Means<3>,
+    /// Specific force and, with it, the elevation.
+    force: Means<4>,
     temperature: Means<1>,
-    elevation: Means<1>,
     saturated: bool,
     longest_gap: u64,
 }
@@ -150,7 +153,6 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
             stage: 0,
             force: Means::EMPTY,
             temperature: Means::EMPTY,
-            elevation: Means::EMPTY,
             saturated: false,
             longest_gap: 0,
         };
@@ -177,13 +179,11 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
     #[inline(never)]
     fn push_slow(&mut self, sample: &Sample) {
         if let Some([x, y, z]) = sample.force {
-            self.force.push([x.0, y.0, z.0]);
+            let elevation = sample.elevation.unwrap_or_default();
+            self.force.push([x.0, y.0, z.0, elevation.0.cast_signed()]);
         }
         if let Some(temperature) = sample.temperature {
             self.temperature.push([temperature.0]);
-        }
-        if let Some(elevation) = sample.elevation {
-            self.elevation.push([elevation.0.cast_signed()]);
         }
     }
 
@@ -237,7 +237,12 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
     /// Mean specific force so far, m/s²; `None` while no sample brought one.
     #[must_use]
     pub fn force(&self) -> Option<[f64; 3]> {
-        self.force.get(1e-6)
+        self.force.get(FORCE_STEP).map(|[x, y, z, _]| [x, y, z])
+    }
+
+    /// Mean elevation so far, rad; zero while no sample brought one.
+    fn elevation(&self) -> f32 {
+        self.force.get(Angle::STEP).map_or(0.0, |[.., elevation]| elevation as f32)
     }
 
     /// The dwell, for a sample period in seconds; `None` while it is shorter than [`shortest`].
@@ -256,7 +261,7 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
         let offset = self.stage as f64 / count;
         Some(Dwell {
             stage: Angle(self.anchor.0.wrapping_add(libm::round(offset) as i32 as u32)),
-            elevation: self.elevation.get(Angle::STEP).map_or(0.0, |[elevation]| elevation as f32),
+            elevation: self.elevation(),
             middle: 0.5 * (self.first.seconds() + self.last.seconds()),
             seconds: count * sample_seconds,
             samples: self.count(),

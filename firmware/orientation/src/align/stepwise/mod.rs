@@ -14,9 +14,8 @@ pub use uncertainty::FEW_DEGREES;
 use super::budget::Budget;
 use super::direction::{Amplitude, Components, Direction, dot, inverted, product};
 use super::level::Tilt;
-use super::mount;
 use super::regression::{COLUMNS, Regression, Solution};
-use super::setting::{Mount, Setting};
+use super::setting::Setting;
 use crate::noise::model::GyroNoise;
 use crate::noise::whitener::Whitener;
 use crate::signal::dwell::Dwell;
@@ -121,12 +120,9 @@ impl Problem<'_> {
 
     /// The row of a dwell: its columns and, last, its left side, all in units of `Ω_h`.
     fn row(&self, dwell: &Dwell) -> Row {
-        let theta = dwell.stage.rad();
-        let axis = self.tilt.raised_axis(theta, f64::from(dwell.elevation));
-        let force = match self.setting.mount {
-            Mount::Stage => self.tilt.force(theta),
-            Mount::TwoFrames => mount::force(self.tilt, dwell),
-        };
+        let mount = &self.setting.mount;
+        let axis = (mount.axis)(self.tilt, dwell);
+        let force = (mount.force)(self.tilt, dwell);
         let latitude = self.setting.latitude;
         let first = self.dwells[0];
         let left = dwell.rate - first.rate + latitude.vertical_rate() * axis[2]

@@ -3,7 +3,6 @@
 use super::super::budget::Budget;
 use super::super::direction::{Amplitude, Direction, dot, product, quadratic};
 use super::super::regression::{COLUMNS, Column, Regression};
-use super::super::setting::Mount;
 use super::{Fit, Model, Problem, block};
 use crate::math::chi_square_tail;
 use crate::signal::dwell::Dwell;
@@ -74,9 +73,10 @@ impl Problem<'_> {
     /// `k_s` alone; the other parts of κ meet the vertical force ([`super::super::mount`]).
     pub(super) fn component_errors(&self) -> [Covariance; 2] {
         let rate = self.setting.latitude.horizontal_rate();
-        let (force, across) = match self.setting.mount {
-            Mount::Stage => (self.tilt.magnitude(), self.setting.g_sensitivity[1]),
-            Mount::TwoFrames => (1.0, 0.0),
+        let (force, across) = if self.setting.mount.is_on_base {
+            (1.0, 0.0)
+        } else {
+            (self.tilt.magnitude(), self.setting.g_sensitivity[1])
         };
         let kappa = self.setting.g_sensitivity_sigma * force / rate;
         let real = (self.setting.latitude.vertical_rate() + self.setting.g_sensitivity[0]) / rate;
