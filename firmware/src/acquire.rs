@@ -135,10 +135,6 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, O: Observer> Acquisition<'a, G,
         let (Some(rate), Some(shown)) = (rate, shown) else { return Ok(None) };
         self.judge(time);
         let aim = self.pointing.aim(shown);
-        if !aim.is_standing {
-            self.shared.count(|health| health.samples += 1);
-            return Ok(None);
-        }
         Ok(Some(Sample {
             time: orientation::units::Instant(time.as_micros()),
             stage: aim.heading,

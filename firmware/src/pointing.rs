@@ -1,8 +1,9 @@
 //! Where the gyro's sensitive axis points, by the encoders: of a stage's one axis, or of two frames.
 //!
 //! Every encoder is guarded, its harmonics are taken off, and a reading further from the one before
-//! than anything can turn is lost. Two frames give heading and elevation by their calibrated geometry;
-//! while either moves there is no sample, for the heading alone does not tell.
+//! than anything can turn is lost. Two frames give heading and elevation by their calibrated geometry.
+//! The session takes the axis to stand where its heading does; of two frames the heading does not tell,
+//! so while either moves, or the axis is not level, it is made to jump from sample to sample.
 
 use core::cell::Cell;
 
@@ -25,6 +26,10 @@ const FASTEST: f64 = TURN / 4.0;
 /// What a stage may jump by: play, ringing, a slipping magnet, rad.
 const PLAY: f64 = DEGREE;
 
+/// Elevation beyond which the axis is not where the frames were sent, rad: three times what a drive
+/// tolerates.
+const LEVEL: f64 = 0.1 * DEGREE;
+
 /// Where the axis points with one sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Aim {
@@ -32,8 +37,6 @@ pub struct Aim {
     pub heading: Angle,
     /// Elevation above it, where there can be one.
     pub elevation: Option<Angle>,
-    /// Whether a sample may be taken: not while frames move.
-    pub is_standing: bool,
 }
 
 /// What knows where the axis points.
@@ -156,7 +159,7 @@ impl<E: Encoder, O: Observer> Pointing for Shaft<'_, E, O> {
     }
 
     fn aim(&mut self, heading: Angle) -> Aim {
-        Aim { heading, elevation: None, is_standing: true }
+        Aim { heading, elevation: None }
     }
 }
 
@@ -197,7 +200,7 @@ impl<'a, E: Encoder, O: Observer> FrameShafts<'a, E, O> {
             anchor: Frames::default(),
             since: Instant::MIN,
             seen: None,
-            aim: Aim { heading: Angle(0), elevation: None, is_standing: false },
+            aim: Aim { heading: Angle(0), elevation: None },
         }
     }
 
@@ -210,6 +213,11 @@ impl<'a, E: Encoder, O: Observer> FrameShafts<'a, E, O> {
             self.since = Instant::now();
         }
         self.since.elapsed() >= self.rest
+    }
+
+    /// Whether the axis lies as nearly in the base plane as the frames take it.
+    fn is_level(&self) -> bool {
+        self.aim.elevation.is_some_and(|elevation| elevation.signed_rad().abs() <= LEVEL)
     }
 
     /// The direction of the axis at these angles.
@@ -239,10 +247,15 @@ impl<E: Encoder, O: Observer> Pointing for FrameShafts<'_, E, O> {
     }
 
     fn aim(&mut self, angles: Frames<Angle>) -> Aim {
-        self.aim.is_standing = self.has_rested(angles);
-        if self.aim.is_standing {
+        if self.has_rested(angles) {
             self.point(angles);
+            if self.is_level() {
+                return self.aim;
+            }
         }
+        // A quarter of a turn there and back: no two of these stand at one angle.
+        self.aim.heading.0 ^= 1 << 30;
+        self.seen = None;
         self.aim
     }
 }
