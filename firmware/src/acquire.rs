@@ -218,7 +218,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, O: Observer> Acquisition<'a, G,
             Ok(reading) => reading,
             Err(symptom) => return Ok(Err(symptom)),
         };
-        let clipped = self.forces_clipped + self.forces_due.divider();
+        let clipped = self.forces_clipped + self.forces_due.divider;
         self.forces_clipped = if reading.is_clipped { clipped } else { 0 };
         if self.forces_clipped > self.longest_clipped {
             return Err(self.shared.give_up(Device::Accelerometer, Trouble::Saturated));

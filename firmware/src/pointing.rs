@@ -58,7 +58,8 @@ pub trait Pointing {
 /// Says yes at first, then every so-manieth time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Every {
-    divider: u32,
+    /// How many.
+    pub(crate) divider: u32,
     left: u32,
 }
 
@@ -67,15 +68,19 @@ impl Every {
         Self { divider: divider.max(1), left: 0 }
     }
 
-    pub(crate) fn divider(&self) -> u32 {
-        self.divider
-    }
-
     pub(crate) fn is_due(&mut self) -> bool {
         let is_due = self.left == 0;
         self.left = if is_due { self.divider } else { self.left } - 1;
         is_due
     }
+}
+
+/// A quarter of a turn in steps of an [`Angle`].
+const QUARTER_TURN: u32 = 1 << 30;
+
+/// How far apart two angles are, in steps.
+fn distance(a: Angle, b: Angle) -> u32 {
+    (a - b).0.cast_signed().unsigned_abs()
 }
 
 /// How far an axis can turn between two readings of its angle, in steps of an [`Angle`].
@@ -125,8 +130,8 @@ impl<'a, E: Encoder, O: Observer> Shaft<'a, E, O> {
     /// lost, but the next is believed.
     fn is_in_line(&mut self, angle: Angle) -> bool {
         let (last, read) = self.latest.get();
-        let step = (angle - last).0.cast_signed().unsigned_abs();
-        self.has_jumped = step > self.greatest_step && !self.has_jumped && read > Instant::MIN;
+        let is_far = distance(angle, last) > self.greatest_step;
+        self.has_jumped = is_far && !self.has_jumped && read > Instant::MIN;
         if self.has_jumped {
             self.shared.lose(self.name, Symptom::Jumped);
             return false;
@@ -168,6 +173,13 @@ pub struct FrameShafts<'a, E, O> {
     shafts: Frames<Shaft<'a, E, O>>,
     geometry: TwoFrame,
     rest: Duration,
+    /// Change of an angle that still counts as rest, and elevation that counts as level, in steps of an
+    /// [`Angle`].
+    still: u32,
+    level: u32,
+    /// What the heading of an axis that does not stand is off by: nothing or a quarter of a turn, in
+    /// turns, so that no two samples show one angle.
+    jump: u32,
     /// Angles from which neither frame has moved, and since when.
     anchor: Frames<Angle>,
     since: Instant,
@@ -197,6 +209,9 @@ impl<'a, E: Encoder, O: Observer> FrameShafts<'a, E, O> {
             },
             geometry: frames.geometry(),
             rest: frames.rest,
+            still: Angle::from_rad(STILL).0,
+            level: Angle::from_rad(LEVEL).0,
+            jump: 0,
             anchor: Frames::default(),
             since: Instant::MIN,
             seen: None,
@@ -206,18 +221,13 @@ impl<'a, E: Encoder, O: Observer> FrameShafts<'a, E, O> {
 
     /// Whether both frames have rested.
     fn has_rested(&mut self, angles: Frames<Angle>) -> bool {
-        let still = Angle::from_rad(STILL).0;
-        let has_moved = |now: Angle, then: Angle| (now - then).0.cast_signed().unsigned_abs() > still;
-        if has_moved(angles.outer, self.anchor.outer) || has_moved(angles.inner, self.anchor.inner) {
+        let has_moved = |now, then| distance(now, then) > self.still;
+        if has_moved(angles.outer, self.anchor.outer) || has_moved(angles.inner, self.anchor.inner)
+        {
             self.anchor = angles;
             self.since = Instant::now();
         }
         self.since.elapsed() >= self.rest
-    }
-
-    /// Whether the axis lies as nearly in the base plane as the frames take it.
-    fn is_level(&self) -> bool {
-        self.aim.elevation.is_some_and(|elevation| elevation.signed_rad().abs() <= LEVEL)
     }
 
     /// The direction of the axis at these angles.
@@ -249,14 +259,12 @@ impl<E: Encoder, O: Observer> Pointing for FrameShafts<'_, E, O> {
     fn aim(&mut self, angles: Frames<Angle>) -> Aim {
         if self.has_rested(angles) {
             self.point(angles);
-            if self.is_level() {
+            if self.aim.elevation.is_some_and(|up| distance(up, Angle(0)) <= self.level) {
                 return self.aim;
             }
         }
-        // A quarter of a turn there and back: no two of these stand at one angle.
-        self.aim.heading.0 ^= 1 << 30;
-        self.seen = None;
-        self.aim
+        self.jump ^= QUARTER_TURN;
+        Aim { heading: Angle(self.aim.heading.0.wrapping_add(self.jump)), ..self.aim }
     }
 }
 

@@ -198,7 +198,11 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
             match self.approach(aim, target).await {
                 Ok(off) if off.abs() <= self.configuration.tolerance => {
                     let took = (Instant::now() - begun).as_micros() as f64 * 1e-6;
-                    self.shared.tell(Event::Arrived(self.axis.drive, (target + off) * DEGREES, took));
+                    self.shared.tell(Event::Arrived(
+                        self.axis.drive,
+                        (target + off) * DEGREES,
+                        took,
+                    ));
                     return Ok(());
                 }
                 Ok(off) => {

@@ -105,10 +105,8 @@ impl FramesScenario {
     /// How the board goes about it.
     #[must_use]
     pub fn procedure(&self) -> Procedure {
-        let pass = PASS.map(|heading| Position {
-            angle: heading * DEGREE,
-            seconds: self.base.dwell_s,
-        });
+        let pass =
+            PASS.map(|heading| Position { angle: heading * DEGREE, seconds: self.base.dwell_s });
         let positions = core::iter::repeat_n(pass, self.passes).flatten().collect();
         let schedule = Schedule::Listed(positions);
         Procedure {
@@ -153,7 +151,7 @@ impl FramesScenario {
             *part += left(sigma);
         }
         let third_g_sensitivity_deg_h_g = left(sigma);
-        let frame = |faults, zero_rad, start_deg| self.frame(&plant, faults, zero_rad, start_deg);
+        let frame = |faults, zero_rad, start_deg| frame(&plant, faults, zero_rad, start_deg);
         GimbalConfiguration {
             outer: frame(&plan.outer, told.outer_zero, self.start_deg.outer),
             inner: frame(&plan.inner, told.inner_zero, self.start_deg.inner),
@@ -163,29 +161,28 @@ impl FramesScenario {
         }
     }
 
-    /// A frame with the gear and the encoder of the single-axis stage.
-    fn frame<'a>(
-        &self,
-        plant: &PlantConfiguration<'_>,
-        faults: &'a [StageFault],
-        zero_rad: f64,
-        start_deg: f64,
-    ) -> FrameConfiguration<'a> {
-        let perfect = FrameConfiguration::default();
-        let stage = StageConfiguration {
-            start_rad: start_deg * DEGREE,
-            travel_rad: perfect.stage.travel_rad,
-            switches_rad: perfect.stage.switches_rad,
-            ..plant.stage
-        };
-        FrameConfiguration { stage, encoder: plant.instruments.encoder, zero_rad, faults }
-    }
-
     /// The simulated board.
     #[must_use]
     pub fn board<'a>(&self, plan: &'a FramePlan) -> GimbalBoard<'a> {
         GimbalBoard::new(Gimbal::new(&self.gimbal(plan), self.base.seed), OSCILLATOR)
     }
+}
+
+/// A frame with the gear and the encoder of the single-axis stage.
+fn frame<'a>(
+    plant: &PlantConfiguration<'_>,
+    faults: &'a [StageFault],
+    zero_rad: f64,
+    start_deg: f64,
+) -> FrameConfiguration<'a> {
+    let perfect = FrameConfiguration::default();
+    let stage = StageConfiguration {
+        start_rad: start_deg * DEGREE,
+        travel_rad: perfect.stage.travel_rad,
+        switches_rad: perfect.stage.switches_rad,
+        ..plant.stage
+    };
+    FrameConfiguration { stage, encoder: plant.instruments.encoder, zero_rad, faults }
 }
 
 /// The bus of a chip on the simulated board.
@@ -222,10 +219,7 @@ pub fn sensors<'a>(
             limit: scenario::LIMIT,
         },
         accelerometer: chips::PlatformAccelerometer(accelerometer),
-        encoder: Frames {
-            outer: encoder(Select::Encoder),
-            inner: encoder(Select::InnerEncoder),
-        },
+        encoder: Frames { outer: encoder(Select::Encoder), inner: encoder(Select::InnerEncoder) },
     }
 }
 
@@ -240,8 +234,7 @@ pub fn ports<'a, L, R>(
         let configuration = tmc5160::configuration::Configuration::default();
         chips::StageMotor(Tmc5160::new(bus, Delay, configuration))
     };
-    let actuator =
-        Frames { outer: motor(Select::Actuator), inner: motor(Select::InnerActuator) };
+    let actuator = Frames { outer: motor(Select::Actuator), inner: motor(Select::InnerActuator) };
     Ports { actuator, link, recorder }
 }
 

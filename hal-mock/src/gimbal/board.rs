@@ -79,10 +79,7 @@ impl<'a> GimbalBoard<'a> {
             Select::Actuator => SpiChip::<super::Side>::next_event(&self.actuators[0]),
             Select::InnerActuator => SpiChip::<super::Side>::next_event(&self.actuators[1]),
         };
-        CHIPS
-            .iter()
-            .filter_map(|select| Some((event(*select)?, *select)))
-            .min_by_key(|(at, _)| *at)
+        CHIPS.iter().filter_map(|select| Some((event(*select)?, *select))).min_by_key(|(at, _)| *at)
     }
 
     /// Does something with a chip in its environment.

@@ -16,9 +16,7 @@ use embassy_time::Instant;
 
 use crate::accelerometer::Accelerometer;
 use crate::disturbance::{self, Effect};
-use crate::earth::{
-    Attitude, Matrix, Site, about_x, about_y, about_z, multiply,
-};
+use crate::earth::{Attitude, Matrix, Site, about_x, about_y, about_z, multiply};
 use crate::environment::{AnalogueInput, ForceInput, Mechanics, ShaftAngle};
 use crate::gyro::{DEGREE_PER_HOUR, Gyro};
 use crate::instruments::BaseMotion;

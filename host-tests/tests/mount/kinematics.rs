@@ -106,7 +106,9 @@ fn a_calibration_beyond_the_frames_travel_is_refused() {
     let degrees = |angle: f64| angle.to_radians();
     let mount = TwoFrame { inner_zero: degrees(2.5), ..TwoFrame::default() };
     let refused = mount.angles(Station::Forward).expect_err("92.5° is beyond the limit");
-    assert!(matches!(refused, MountError::BeyondLimit(angle) if (angle - degrees(92.5)).abs() < 1e-9));
+    assert!(
+        matches!(refused, MountError::BeyondLimit(angle) if (angle - degrees(92.5)).abs() < 1e-9)
+    );
     assert!(mount.angles(Station::Backward).is_ok());
     let skew = TwoFrame { frames: degrees(60.0), gyro: degrees(60.0), ..TwoFrame::default() };
     assert_eq!(skew.angles(Station::Storage), Err(MountError::Unreachable(Station::Storage)));

@@ -166,12 +166,7 @@ pub fn moved(
 }
 
 /// How a dwell's mean force differs from that of the tilt and the biases, g.
-fn off_level(
-    setting: &Setting,
-    dwell: &Dwell,
-    force: [f64; 3],
-    tilt: &level::Tilt,
-) -> [f64; 2] {
+fn off_level(setting: &Setting, dwell: &Dwell, force: [f64; 3], tilt: &level::Tilt) -> [f64; 2] {
     let gravity = setting.latitude.gravity();
     let expected = tilt.force(setting.mount.accelerometer_turn(dwell));
     [0, 1].map(|i| force[i] / gravity - expected[i] - tilt.bias[i])
