@@ -50,7 +50,7 @@ pub struct ForceReading {
     pub is_clipped: bool,
 }
 
-/// The accelerometer on the platform.
+/// The accelerometer on the platform, or on the base.
 #[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait Accelerometer: Startable {
     /// Reads the latest output.

@@ -18,6 +18,7 @@ use hal_mock::plant::train::StageConfiguration;
 use hal_mock::plant::{PlantConfiguration, StageFault};
 use hal_mock::spi::{ReadyPin, SpiPort};
 use hal_mock::violation::Violation;
+use orientation::align::POSITIONS;
 use orientation::align::mount::{ARRIVAL, MountError, TWO_FRAMES, TwoFrame, azimuth_sigma};
 use orientation::align::setting::Setting;
 use orientation::session::procedure::Procedure;
@@ -107,7 +108,7 @@ impl FramesScenario {
     pub fn procedure(&self) -> Procedure {
         let pass =
             PASS.map(|heading| Position { angle: heading * DEGREE, seconds: self.base.dwell_s });
-        let positions = core::iter::repeat_n(pass, self.passes).flatten().collect();
+        let positions = core::iter::repeat_n(pass, self.passes).flatten().take(POSITIONS).collect();
         let schedule = Schedule::Listed(positions);
         Procedure {
             arrival: ARRIVAL,

@@ -115,6 +115,8 @@ pub struct Plant<'a> {
 
 impl<'a> Plant<'a> {
     /// A plant at the start of the clock; the seed fixes everything random in it.
+    ///
+    /// Not inlined: in an image it is to be counted with the simulation, not with who calls it.
     #[must_use]
     #[inline(never)]
     pub fn new(configuration: &PlantConfiguration<'a>, seed: u64) -> Self {

@@ -244,6 +244,8 @@ fn the_log_tells_both_frames_and_the_storage_in_order() {
         assert!(rest.any(|line| line.contains(part)), "{part} is missing in {told:#?}");
     }
     assert!(run.run.lines.contains("azimuth "), "{}", run.run.lines);
+    // The frames turn the gyro about its own axis: nothing of that has come into a dwell.
+    assert_eq!(run.run.replay.session.repetitions().len(), 0);
 }
 
 #[test]

@@ -1,12 +1,15 @@
 //! The simulated gimbal against the oracle: axes, rates, forces, encoders, faults.
 
 use embassy_time::Instant;
+use hal_mock::chip::{Rig, Select, Transaction};
 use hal_mock::environment::{AnalogueInput, ForceInput, Mechanics, ShaftAngle};
+use hal_mock::gimbal::board::GimbalBoard;
 use hal_mock::gimbal::{FrameConfiguration, Gimbal, GimbalConfiguration, Misalignment};
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::instruments::InstrumentsConfiguration;
 use hal_mock::plant::train::StageConfiguration;
 use hal_mock::plant::{PlantConfiguration, StageFault};
+use hal_mock::tmc5160::Oscillator;
 use orientation::align::mount::{FrameAngles, TwoFrame};
 use proptest::prelude::*;
 
@@ -170,4 +173,35 @@ fn one_frame_is_held_and_slips_and_meets_its_end_without_the_other() {
     assert!((plant.frames()[0].angle_rad.to_degrees() - 100.0).abs() < 1e-9);
     assert!(plant.outer().is_blocked());
     assert_eq!(plant.outer().reference_switches(), [false, true]);
+}
+
+#[test]
+fn a_driver_that_loses_its_supply_stops_its_own_frame_alone() {
+    let angles = FrameAngles { outer: 0.0, inner: 0.0 };
+    let gimbal = Gimbal::new(&gimbal(&TwoFrame::default(), angles, [0.0; 3]), 1);
+    let oscillator = Oscillator::Internal { hertz: 12_000_000 };
+    let mut board = GimbalBoard::new(gimbal, oscillator);
+    board.gimbal.outer().drive(at(1.0), 0.0, 0.1 * PER_RAD);
+    board.gimbal.inner().drive(at(1.0), 0.0, 0.1 * PER_RAD);
+    board.power_cycle(Select::InnerActuator, at(2.0));
+    board.advance(at(3.0));
+    let [outer, inner] = board.gimbal.frames().map(|frame| frame.angle_rad);
+    assert!((outer - 0.2).abs() < 1e-9 && (inner - 0.1).abs() < 1e-9, "{outer} {inner}");
+    // Each encoder answers on its own select line; 64 ms after its supply came back, not before.
+    let mut angle = |select, now| {
+        let mut reply = [0; 6];
+        let sent = [0xA0, 0x03, 0, 0, 0, 0];
+        board.transact(select, &Transaction { now, hertz: 5_000_000, sent: &sent }, &mut reply);
+        let [_, _, high, middle, low, _] = reply;
+        let steps = u32::from_be_bytes([0, high, middle, low]) >> 3;
+        f64::from(steps) / 2_097_152.0 * core::f64::consts::TAU
+    };
+    assert!((angle(Select::Encoder, at(3.0)) - 0.2).abs() < 3e-6);
+    assert!((angle(Select::InnerEncoder, at(3.0)) - 0.1).abs() < 3e-6);
+    board.power_cycle(Select::InnerEncoder, at(4.0));
+    assert_eq!(board.violations(Select::InnerEncoder).count(), 0);
+    let transaction = Transaction { now: at(4.01), hertz: 5_000_000, sent: &[0x31, 0x00, 0] };
+    board.transact(Select::InnerEncoder, &transaction, &mut [0; 3]);
+    assert_eq!(board.violations(Select::InnerEncoder).count(), 1);
+    assert_eq!(board.violations(Select::Encoder).count(), 0);
 }

@@ -11,7 +11,8 @@ use crate::units::{Angle, AngularRate, Instant, SpecificForce, Temperature};
 pub struct Sample {
     /// When it was taken.
     pub time: Instant,
-    /// Encoder angle of the stage: the heading θ of the sensitive axis in the base plane.
+    /// Encoder angle of the stage: the heading θ of the sensitive axis in the base plane. What does
+    /// not stand shows another angle with every sample.
     pub stage: Angle,
     /// Rate about the gyro's sensitive axis.
     pub rate: AngularRate,
