@@ -35,18 +35,20 @@ pub enum Event {
     Late(i32),
     /// So many samples in a row were thrown away because nobody took them.
     Overflowed(u32),
-    /// The stage looks for its index.
-    Homing,
-    /// The stage found its index at this angle, °.
-    Homed(f64),
-    /// The stage is sent to this angle, °.
-    Turning(f64),
-    /// The stage stands: at this angle, after so many seconds.
-    Arrived(f64, f64),
-    /// The stage stands beside its target by this angle, °, and goes again.
-    Corrected(f64),
-    /// The stage is blocked and tries again.
-    Blocked,
+    /// An axis looks for its index.
+    Homing(Device),
+    /// An axis found its index at this angle, °.
+    Homed(Device, f64),
+    /// An axis is sent to this angle, °.
+    Turning(Device, f64),
+    /// An axis stands: at this angle, after so many seconds.
+    Arrived(Device, f64, f64),
+    /// An axis stands beside its target by this angle, °, and goes again.
+    Corrected(Device, f64),
+    /// An axis is blocked and tries again.
+    Blocked(Device),
+    /// The gyro's axis stands vertical, to store the azimuth: angles of the outer and the inner frame.
+    Stored(f64, f64),
     /// The platform is level enough: pitch and roll of the platform, °.
     Levelled(f64, f64),
     /// The stage stands still for so many seconds, to know the gyro.
@@ -91,13 +93,17 @@ words! { Event:
     Self::Missing(count) => "{} sample(s) missing", count;
     Self::Late(microseconds) => "a sample came {} µs beside its time", microseconds;
     Self::Overflowed(count) => "{} sample(s) lost: nobody took them in time", count;
-    Self::Homing => "stage: looking for its index";
-    Self::Homed(angle) => "stage: index found at {}°", Rounded::<3>(angle);
-    Self::Turning(angle) => "stage: to {}°", Rounded::<3>(angle);
-    Self::Arrived(angle, seconds) =>
-        "stage: stands at {}° after {} s", Rounded::<3>(angle), Rounded::<2>(seconds);
-    Self::Corrected(angle) => "stage: {}° beside its target, going again", Rounded::<3>(angle);
-    Self::Blocked => "stage: blocked, trying again";
+    Self::Homing(axis) => "{}: looking for its index", axis;
+    Self::Homed(axis, angle) => "{}: index found at {}°", axis, Rounded::<3>(angle);
+    Self::Turning(axis, angle) => "{}: to {}°", axis, Rounded::<3>(angle);
+    Self::Arrived(axis, angle, seconds) =>
+        "{}: stands at {}° after {} s", axis, Rounded::<3>(angle), Rounded::<2>(seconds);
+    Self::Corrected(axis, angle) =>
+        "{}: {}° beside its target, going again", axis, Rounded::<3>(angle);
+    Self::Blocked(axis) => "{}: blocked, trying again", axis;
+    Self::Stored(outer, inner) =>
+        "gyro vertical to store the azimuth: outer frame at {}°, inner frame at {}°",
+        Rounded::<3>(outer), Rounded::<3>(inner);
     Self::Levelled(pitch, roll) =>
         "level: platform inclined by {}° along and {}° across the gyro's axis",
         Rounded::<3>(pitch), Rounded::<3>(roll);

@@ -22,7 +22,7 @@ pub struct Health {
     pub late: u32,
     /// Samples that nobody took in time.
     pub overflowed: u32,
-    /// Readings lost, by device: gyro, accelerometer, encoder, stage.
+    /// Readings lost, by device: gyro, accelerometer, encoder, stage; both frames together.
     pub lost: [u16; 4],
     /// Restarts, by device.
     pub restarts: [u16; 4],
@@ -68,8 +68,8 @@ fn count(counters: &mut [u16; 4], device: Device) {
     let counter = &mut counters[match device {
         Device::Gyro => 0,
         Device::Accelerometer => 1,
-        Device::Encoder => 2,
-        Device::Stage => 3,
+        Device::Encoder | Device::OuterEncoder | Device::InnerEncoder => 2,
+        Device::Stage | Device::OuterFrame | Device::InnerFrame => 3,
     }];
     *counter = counter.saturating_add(1);
 }

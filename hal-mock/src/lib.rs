@@ -17,6 +17,8 @@
 //!                               └ tmc5160 ─microsteps─▶
 //! ```
 //!
+//! A two-frame mount ([`gimbal`]) has six chips around a plant of its own.
+//!
 //! This crate is an oracle. It carries its own reading of the physics, by full rotation matrices, and
 //! never depends on the `orientation` crate, so that it can catch that crate's mistakes.
 //!
@@ -41,6 +43,7 @@ pub mod earth;
 pub mod environment;
 pub mod fault;
 pub mod flicker;
+pub mod gimbal;
 pub mod gyro;
 pub mod instruments;
 pub mod mt6835;

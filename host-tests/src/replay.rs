@@ -227,6 +227,7 @@ fn sample(row: &StageRow, begin: f64) -> Sample {
         rate: AngularRate::from_rad_per_s(row.rate_rad_s),
         force: Some(row.force_m_s2.map(SpecificForce::from_m_per_s2)),
         temperature: row.temperature_c.map(Temperature::from_celsius),
+        elevation: None,
     }
 }
 

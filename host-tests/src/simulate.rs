@@ -17,6 +17,7 @@ pub fn stage_path(reading: &Reading) -> Sample {
         rate: AngularRate::from_rad_per_s(reading.rate_rad_s),
         force: Some(reading.force_m_s2.map(SpecificForce::from_m_per_s2)),
         temperature: Some(Temperature::from_celsius(reading.temperature_c)),
+        elevation: None,
     }
 }
 

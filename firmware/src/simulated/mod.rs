@@ -3,6 +3,7 @@
 //! Host and emulator run exactly this, so that their results can be compared bit for bit.
 
 pub mod fault;
+pub mod mount;
 pub mod scenario;
 
 use core::cell::RefCell;

@@ -25,7 +25,7 @@ use crate::configuration::Configuration;
 /// The gyro's g-sensitivity along and across its axis as it is calibrated, °/h/g.
 const G_SENSITIVITY: [f64; 2] = [0.05, -0.03];
 /// 1σ of that calibration, °/h/g.
-const G_SENSITIVITY_SIGMA: f64 = 0.002;
+pub(super) const G_SENSITIVITY_SIGMA: f64 = 0.002;
 /// 1σ of the gyro's scale factor.
 const SCALE_SIGMA: f64 = 5e-4;
 /// Noise density of the ADXL355, 25 µg/√Hz (data sheet, table 1), m/s²/√Hz.
@@ -59,7 +59,7 @@ const RINGING_HZ: f64 = 15.0;
 /// Damping ratio of that ringing.
 const RINGING_DAMPING: f64 = 0.08;
 /// For how long it rings, s: until 56 µrad, a/ω² at the end of its ramp, are below what stands.
-const RINGS_SECONDS: f64 = 0.25;
+pub(super) const RINGS_SECONDS: f64 = 0.25;
 
 /// How long the stage takes to turn: its motor driver's ramp, 1.20 s for 15° and 18.41 s for 360°, and
 /// what it rests and looks around after it.

@@ -92,9 +92,9 @@ fn noticed(run: &Run) -> Option<String> {
             event,
             Event::Begun { .. }
                 | Event::Started(_)
-                | Event::Homing
-                | Event::Homed(_)
-                | Event::Turning(_)
+                | Event::Homing(_)
+                | Event::Homed(..)
+                | Event::Turning(..)
                 | Event::Arrived(..)
                 | Event::Levelled(..)
                 | Event::Dwelled(..)

@@ -5,16 +5,17 @@ use std::path::PathBuf;
 use std::time::Instant as WallClock;
 
 use bench::instrument::recorder::CsvRecorder;
-use bench::instrument::{self, Run};
+use bench::instrument::{self, FramesRun, Run};
 use bench::output::json::{self, AzimuthObject};
 use bench::output::progress::Progress;
-use bench::output::{page, text};
+use bench::output::{degrees, page, text};
 use clap::{Args, ValueEnum};
 use drivers::ads1262::configuration::DataRate;
 use embassy_time::Instant;
 use firmware::event::Event;
 use firmware::ports::{NoRecorder, Observer};
 use firmware::simulated::fault::Fault;
+use firmware::simulated::mount::{FramePlan, FramesScenario};
 use firmware::simulated::scenario::{Aim, GyroClass, RATES, Scenario};
 use orientation::session::Session;
 use serde_json::{Value, json};
@@ -52,7 +53,13 @@ pub struct RunOptions {
     /// Stands still first for so many seconds, to know the gyro's noise and to plan by it.
     #[arg(long, value_name = "SECONDS", value_parser = allowed)]
     survey: Option<f64>,
-    /// Positions on the full circle.
+    /// What carries the gyro.
+    #[arg(long, value_enum, default_value = "stage")]
+    mount: MountKind,
+    /// With two frames: how often the four headings are visited.
+    #[arg(long, default_value_t = 6, value_parser = clap::value_parser!(u8).range(1..=16))]
+    passes: u8,
+    /// On a stage: positions on the full circle.
     #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u8).range(3..=64))]
     positions: u8,
     /// Seconds at each position.
@@ -79,6 +86,14 @@ pub struct RunOptions {
 enum Method {
     /// Stepwise gyrocompassing.
     Stepwise,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum MountKind {
+    /// A single-axis stage.
+    Stage,
+    /// Two frames: four headings, and vertical to store the azimuth.
+    TwoFrame,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -214,6 +229,9 @@ pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
         None => None,
     };
     let scenario = Scenario::from(options);
+    if options.mount == MountKind::TwoFrame {
+        return run_frames(&scenario, options, as_json);
+    }
     let begun = WallClock::now();
     let (run, recorded) = simulate(&scenario, fault, options)?;
     let wall = begun.elapsed().as_secs_f64();
@@ -233,6 +251,39 @@ pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
     let page = || page::alignment::report("the simulated run", &run.replay, conclusion);
     let told = Told { found: refusal.is_none(), refusal, ..told };
     Ok(told.with_page(options.report.as_deref(), page))
+}
+
+/// Runs the board with a two-frame mount and tells what came of it.
+fn run_frames(base: &Scenario, options: &RunOptions, as_json: bool) -> Result<Told, String> {
+    if options.record.is_some() {
+        return Err("a two-frame mount is not recorded: a recording knows no elevation".to_owned());
+    }
+    if options.fault.is_some() {
+        return Err("the faults are those of a stage: leave out --mount two-frame".to_owned());
+    }
+    let passes = usize::from(options.passes);
+    let scenario = FramesScenario { base: *base, passes, ..FramesScenario::default() };
+    let begun = WallClock::now();
+    let watch = Terminal(Progress::new(0, "positions"));
+    let frames = instrument::align_frames(&scenario, &FramePlan::default(), &watch);
+    watch.0.finish();
+    let FramesRun { run, axis: [forward, right, down] } =
+        frames.map_err(|error| error.to_string())?;
+    let wall = begun.elapsed().as_secs_f64();
+    let conclusion = run.conclusion().ok_or("the session did not end")?;
+    let truth = Some(base.azimuth_deg);
+    let stored = run.events.iter().any(|(_, event)| matches!(event, Event::Stored(..)));
+    let off_vertical = degrees(forward.hypot(right).atan2(down));
+    let mut object = object(&run, base, json::azimuth(&run.replay, conclusion, truth))?;
+    object["stored"] = stored.into();
+    object["truth_off_vertical_deg"] = off_vertical.into();
+    let told = Told::of(conclusion.verdict.is_ok(), as_json, &object, |block| {
+        text::block(block, "the simulated run on two frames", &run.replay, conclusion, truth)?;
+        text::run(block, &run, base, wall)?;
+        text::stored(block, stored, off_vertical)
+    })?;
+    let refusal = conclusion.verdict.as_ref().err().map(ToString::to_string);
+    Ok(Told { refusal, ..told })
 }
 
 /// The object of a result, with what only a simulated run has.

@@ -184,6 +184,15 @@ pub fn run(out: &mut impl Write, run: &Run, scenario: &Scenario, wall: f64) -> f
     Ok(())
 }
 
+/// Where a two-frame mount has left the gyro, after [`run`].
+///
+/// # Errors
+/// Those of the writer.
+pub fn stored(out: &mut impl Write, is_stored: bool, off_vertical_deg: f64) -> fmt::Result {
+    let what = if is_stored { "vertical, to store the azimuth" } else { "not stored" };
+    line(out, "gyro", format_args!("{what}: truly {off_vertical_deg:.4}° off the base's vertical"))
+}
+
 /// Names the dwells that take no part.
 fn left_out(out: &mut impl Write, replay: &Replay, conclusion: &Conclusion) -> fmt::Result {
     for Excluded { dwell, stage_deg, from_s, to_s, reason } in excluded(replay, conclusion) {

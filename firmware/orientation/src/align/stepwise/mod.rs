@@ -120,9 +120,9 @@ impl Problem<'_> {
 
     /// The row of a dwell: its columns and, last, its left side, all in units of `Ω_h`.
     fn row(&self, dwell: &Dwell) -> Row {
-        let theta = dwell.stage.rad();
-        let axis = self.tilt.sensitive_axis(theta);
-        let force = self.tilt.force(theta);
+        let mount = &self.setting.mount;
+        let axis = (mount.axis)(self.tilt, dwell);
+        let force = (mount.force)(self.tilt, dwell);
         let latitude = self.setting.latitude;
         let first = self.dwells[0];
         let left = dwell.rate - first.rate + latitude.vertical_rate() * axis[2]
