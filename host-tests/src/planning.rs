@@ -154,7 +154,13 @@ impl Request {
     #[must_use]
     pub fn conditions(&self) -> Conditions {
         let rotation = Rotation::fixed(self.rotation);
-        Conditions { noise: self.noise, rotation, shortest: SHORTEST, fewest: FEWEST }
+        Conditions {
+            noise: self.noise,
+            rotation,
+            shortest: SHORTEST,
+            fewest: FEWEST,
+            orders: &Order::COMPARED,
+        }
     }
 
     fn degrees(&self, rate_sigma: f64) -> f64 {

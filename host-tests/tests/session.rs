@@ -11,6 +11,7 @@ use orientation::earth::Latitude;
 use orientation::error::Refusal;
 use orientation::noise::fit::FitError;
 use orientation::noise::model::GyroNoise;
+use orientation::planner::order::Order;
 use orientation::planner::{Conditions, Rotation, for_time};
 use orientation::session::procedure::{Procedure, ProcedureError};
 use orientation::session::schedule::{Position, Schedule, StopRule};
@@ -206,6 +207,7 @@ fn planned(seconds: f64) -> Schedule {
         rotation: Rotation::fixed(1.0),
         shortest: 1.0,
         fewest: 8,
+        orders: &Order::COMPARED,
     };
     Schedule::Planned(for_time(&conditions, seconds).expect("there is time"))
 }
@@ -270,6 +272,7 @@ fn surveyed(configuration: &InstrumentsConfiguration, stop: StopRule, seed: u64)
     let survey = Survey {
         seconds: 600.0,
         rotation: Rotation::fixed(1.0),
+        orders: &Order::COMPARED,
         shortest: 1.0,
         plan_seconds: 240.0,
     };
@@ -333,6 +336,7 @@ fn a_survey_of_a_stuck_or_saturated_gyro_says_so() {
         circle().after(Survey {
             seconds: 300.0,
             rotation: Rotation::fixed(1.0),
+            orders: &Order::COMPARED,
             shortest: 1.0,
             plan_seconds: 240.0,
         }),

@@ -21,11 +21,13 @@ use hal_mock::violation::Violation;
 use orientation::align::POSITIONS;
 use orientation::align::mount::{ARRIVAL, MountError, TWO_FRAMES, TwoFrame, azimuth_sigma};
 use orientation::align::setting::Setting;
+use orientation::planner::Rotation;
+use orientation::planner::order::Order;
 use orientation::session::procedure::Procedure;
 use orientation::session::schedule::{Position, Schedule};
 use orientation::units::DEGREE;
 
-use super::scenario::{self, Scenario};
+use super::scenario::{self, Scenario, Turning};
 use super::{CONVERTER_HERTZ, OSCILLATOR};
 use crate::chips;
 use crate::configuration::FramesConfiguration;
@@ -34,6 +36,11 @@ use crate::ports::{Frames, Ports, Sensors};
 /// 1σ of the accelerometers on the base, m/s²: their biases are tilt, so they are calibrated, to
 /// 0.1 mg; as delivered, an ADXL355 would cost 0.5° at 48°.
 const FORCE_BIAS_SIGMA: f64 = 1e-4 * 9.80665;
+
+/// How long the frames take: the stage's ramp, each on its own way; they stand 1.5 s before they are
+/// believed.
+const ROTATION: Rotation =
+    Rotation { rest: scenario::ROTATION.rest + 1.5, speed: 0.35, wraps: true };
 
 /// The headings of a pass in their order, °: opposite ones follow each other, so that drift cancels.
 const PASS: [f64; 4] = [0.0, 180.0, 90.0, 270.0];
@@ -109,12 +116,12 @@ impl FramesScenario {
         let pass =
             PASS.map(|heading| Position { angle: heading * DEGREE, seconds: self.base.dwell_s });
         let positions = core::iter::repeat_n(pass, self.passes).flatten().take(POSITIONS).collect();
-        let schedule = Schedule::Listed(positions);
-        Procedure {
-            arrival: ARRIVAL,
-            settle_seconds: scenario::RINGS_SECONDS,
-            ..Procedure::new(schedule, 1.0 / self.base.sample_rate_hz)
-        }
+        let turning = Turning {
+            rotation: ROTATION,
+            orders: &Order::QUARTERS,
+            usual: Schedule::Listed(positions),
+        };
+        Procedure { arrival: ARRIVAL, ..self.base.procedure_on(&turning) }
     }
 
     /// What the board is told of the frames.

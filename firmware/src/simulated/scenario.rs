@@ -12,6 +12,7 @@ use hal_mock::stage::{EncoderConfiguration, Harmonic};
 use orientation::align::setting::Setting;
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
+use orientation::planner::order::Order;
 use orientation::planner::{Conditions, Rotation, for_sigma, for_time};
 use orientation::session::Prepared;
 use orientation::session::procedure::Procedure;
@@ -63,7 +64,7 @@ pub(super) const RINGS_SECONDS: f64 = 0.25;
 
 /// How long the stage takes to turn: its motor driver's ramp, 1.20 s for 15° and 18.41 s for 360°, and
 /// what it rests and looks around after it.
-const ROTATION: Rotation = Rotation { rest: 0.45 + 0.3, speed: 0.35 };
+pub(super) const ROTATION: Rotation = Rotation { rest: 0.45 + 0.3, speed: 0.35, wraps: false };
 /// Shortest dwell of a plan, s.
 const SHORTEST: f64 = 2.0;
 /// Fewest positions of a plan.
@@ -113,6 +114,13 @@ impl GyroClass {
     fn noise(&self) -> GyroNoise {
         GyroNoise::from_field_units(self.n_deg_sqrt_h, self.b_deg_h, self.k_deg_h_sqrt_h, 0.0)
     }
+}
+
+/// How a mount turns, and where it goes unless a plan says otherwise.
+pub(super) struct Turning {
+    pub(super) rotation: Rotation,
+    pub(super) orders: &'static [Order],
+    pub(super) usual: Schedule,
 }
 
 /// How the board is to go about its alignment.
@@ -215,10 +223,16 @@ impl Scenario {
     /// How the board goes about it.
     #[must_use]
     pub fn procedure(&self) -> Procedure {
-        let procedure = Procedure::new(self.schedule(), 1.0 / self.sample_rate_hz);
+        let circle = Schedule::circle(self.positions, self.dwell_s);
+        self.procedure_on(&Turning { rotation: ROTATION, orders: &Order::COMPARED, usual: circle })
+    }
+
+    /// The same on any mount.
+    pub(super) fn procedure_on(&self, turning: &Turning) -> Procedure {
+        let procedure = Procedure::new(self.schedule(turning), 1.0 / self.sample_rate_hz);
         let mut procedure = Procedure { settle_seconds: RINGS_SECONDS, ..procedure };
         if self.survey_s > 0.0 {
-            procedure = procedure.after(self.survey());
+            procedure = procedure.after(self.survey(turning));
         }
         match self.aim {
             Aim::Accuracy { seconds, .. } => procedure.until_accurate(seconds),
@@ -235,32 +249,39 @@ impl Scenario {
     }
 
     /// The schedule for the noise that is stated; for an accuracy that is out of reach the best in the
-    /// time, so that the session can tell how near it comes. A time that holds none has the circle.
-    fn schedule(&self) -> Schedule {
-        let circle = || Schedule::circle(self.positions, self.dwell_s);
+    /// time, so that the session can tell how near it comes. A time that holds none has the usual one.
+    fn schedule(&self, turning: &Turning) -> Schedule {
+        let usual = || turning.usual.clone();
         let conditions = Conditions {
             noise: self.gyro.noise(),
-            rotation: ROTATION,
+            rotation: turning.rotation,
             shortest: SHORTEST,
             fewest: FEWEST,
+            orders: turning.orders,
         };
         let plan = match (self.aim, Latitude::from_degrees(self.latitude_deg)) {
-            (Aim::Circle, _) | (_, None) => return circle(),
+            (Aim::Circle, _) | (_, None) => return usual(),
             (Aim::Time(seconds), _) => for_time(&conditions, seconds),
             (Aim::Accuracy { seconds, .. }, Some(latitude)) => {
                 let wanted = self.required_sigma() * latitude.horizontal_rate();
                 for_sigma(&conditions, wanted, seconds).or_else(|_| for_time(&conditions, seconds))
             }
         };
-        plan.map_or_else(|_| circle(), Schedule::Planned)
+        plan.map_or_else(|_| usual(), Schedule::Planned)
     }
 
-    fn survey(&self) -> Survey {
+    fn survey(&self, turning: &Turning) -> Survey {
         let plan_seconds = match self.aim {
-            Aim::Circle => self.positions as f64 * self.dwell_s,
+            Aim::Circle => turning.usual.seconds(),
             Aim::Time(seconds) | Aim::Accuracy { seconds, .. } => seconds,
         };
-        Survey { seconds: self.survey_s, rotation: ROTATION, shortest: SHORTEST, plan_seconds }
+        Survey {
+            seconds: self.survey_s,
+            rotation: turning.rotation,
+            orders: turning.orders,
+            shortest: SHORTEST,
+            plan_seconds,
+        }
     }
 
     /// What its session needs; none where the latitude is none or the schedule impossible.

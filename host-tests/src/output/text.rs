@@ -100,7 +100,11 @@ fn of_fit(
     line(out, "model", format_args!("{names}; Earth rate {}", earth_rate(fit)))?;
     line(out, "criterion", format_args!("{}", replay.criterion_name()))?;
     let noise = degrees(conclusion.angle_random_walk) * 60.0;
-    let how = if replay.noise_is_known() { "stated" } else { "estimated" };
+    let how = match (replay.session.surveyed(), replay.noise_is_known()) {
+        (Some(_), _) => "surveyed",
+        (None, true) => "stated",
+        (None, false) => "estimated",
+    };
     line(out, "gyro noise N", format_args!("{noise:.6} °/√h ({how})"))?;
     let (chi, degrees) = (fit.chi_square, fit.degrees);
     line(out, "residuals", format_args!("χ² {chi:.1} for {degrees} degrees of freedom"))?;

@@ -11,6 +11,7 @@ use crate::error::Refusal;
 use crate::noise::allan::Allan;
 use crate::noise::fit::{Estimate, NoiseFit};
 use crate::noise::model::GyroNoise;
+use crate::planner::order::Order;
 use crate::planner::{Conditions, PlanError, Rotation, for_sigma, for_time};
 use crate::signal::Sample;
 use crate::signal::dwell::{Dwell, DwellAverage, SampleFault};
@@ -28,6 +29,8 @@ pub struct Survey {
     pub seconds: f64,
     /// How the stage turns.
     pub rotation: Rotation,
+    /// The orders of positions that it can turn through.
+    pub orders: &'static [Order],
     /// Shortest dwell of the plan, s.
     pub shortest: f64,
     /// Total time of the plan, s; with [`StopRule::Accuracy`] the accuracy rules instead.
@@ -125,6 +128,7 @@ impl Session {
             rotation: survey.rotation,
             shortest: survey.shortest,
             fewest: FEWEST,
+            orders: survey.orders,
         };
         let rate = self.setting.latitude.horizontal_rate();
         let (plan, allowed) = match self.procedure.stop {

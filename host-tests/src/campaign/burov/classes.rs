@@ -5,6 +5,7 @@
 
 use hal_mock::gyro::Gyro;
 use orientation::keep::stored::{Handover, Keeper, Rest, StoredAzimuth};
+use orientation::planner::order::Order;
 use orientation::planner::{Conditions, Rotation, for_time};
 use orientation::units::{AngularRate, DEGREE_PER_HOUR};
 use serde::Serialize;
@@ -15,7 +16,7 @@ use crate::output::{azimuth_error, degrees};
 use crate::planning::{FEWEST, SHORTEST};
 
 /// How long the stage turns: its motor driver's ramp at 0.35 rad/s, with slopes and rest.
-const STAGE: Rotation = Rotation { rest: 0.7, speed: 0.35 };
+const STAGE: Rotation = Rotation { rest: 0.7, speed: 0.35, wraps: false };
 /// What comes before the first dwell and after the last, s: homing, levelling, the answer.
 const OVERHEAD: f64 = 25.0;
 /// Rest before an azimuth is stored, s, in which the gyro's bias is learnt.
@@ -158,6 +159,7 @@ impl Class {
             rotation: STAGE,
             shortest: SHORTEST,
             fewest: FEWEST,
+            orders: &Order::COMPARED,
         };
         let Ok(plan) = for_time(&conditions, 60.0 * self.minutes - OVERHEAD) else {
             return ("no schedule fits".to_owned(), Precision::of(&[]));

@@ -53,8 +53,13 @@ pub struct Comparison {
 #[must_use]
 pub fn compare(gyro: Grade, runs: usize, tick: impl Fn() + Sync) -> Option<Comparison> {
     let rotation = Rotation::fixed(ROTATION);
-    let conditions =
-        Conditions { noise: gyro.noise(), rotation, shortest: SHORTEST, fewest: FEWEST };
+    let conditions = Conditions {
+        noise: gyro.noise(),
+        rotation,
+        shortest: SHORTEST,
+        fewest: FEWEST,
+        orders: &Order::COMPARED,
+    };
     let four = Conditions { fewest: 4, ..conditions };
     let planned = for_time(&conditions, SECONDS).ok()?;
     let one_pass = Plan::of(&four, Order::Quadrature, 1, SECONDS)?;

@@ -66,8 +66,8 @@ impl Estimate {
 }
 
 words! { Estimate:
-    Self::Found { value, sigma } => "{} ± {}", Rounded::<5>(value), Rounded::<5>(sigma);
-    Self::NotObservable { at_most } => "not observable, at most {}", Rounded::<5>(at_most);
+    Self::Found { value, sigma } => "{} ± {}", Rounded::<6>(value), Rounded::<6>(sigma);
+    Self::NotObservable { at_most } => "not observable, at most {}", Rounded::<6>(at_most);
 }
 
 /// What a record says of its gyro's noise.
