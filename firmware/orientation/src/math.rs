@@ -5,7 +5,14 @@ use core::ops::{AddAssign, Div, Mul, MulAssign, SubAssign};
 /// A number in the precision that a computation needs: `f64` for results, `f32`, a tenth of the
 /// instructions on this core, where a thousandth is enough.
 pub trait Scalar:
-    Copy + Default + AddAssign + SubAssign + MulAssign + Mul<Output = Self> + Div<Output = Self>
+    Copy
+    + Default
+    + Into<f64>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+    + Mul<Output = Self>
+    + Div<Output = Self>
 {
     /// To nearest.
     fn of(value: f64) -> Self;

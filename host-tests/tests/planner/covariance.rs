@@ -16,7 +16,7 @@ pub fn rate_sigma(noise: &GyroNoise, visits: &[Visit]) -> f64 {
         .collect();
     let information = inverse(covariance);
     let columns: Vec<[f64; 3]> =
-        visits.iter().map(|visit| [visit.angle.cos(), -visit.angle.sin(), 1.0]).collect();
+        visits.iter().map(|visit| [visit.unit[0].into(), -f64::from(visit.unit[1]), 1.0]).collect();
     let normal: Vec<Vec<f64>> =
         (0..3).map(|p| (0..3).map(|q| quadratic(&columns, &information, p, q)).collect()).collect();
     let solution = inverse(normal);

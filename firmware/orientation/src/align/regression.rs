@@ -4,18 +4,18 @@
 //! solving, so that one pass serves every model that is compared. A column may carry a prior: zero
 //! mean and a known standard deviation, entered as information on its diagonal.
 
-use crate::math::{cholesky, cholesky_solve};
+use crate::math::{Scalar, cholesky, cholesky_solve};
 
 /// Columns of the regressions on a board: one size for all, so that one copy in flash serves them.
 pub const COLUMNS: usize = 5;
 
 /// Sums of products of `P` columns and the left side.
 #[derive(Clone, Debug)]
-pub struct Regression<const P: usize> {
+pub struct Regression<const P: usize, T = f64> {
     /// Products of the columns, lower triangle.
-    products: [[f64; P]; P],
-    with_left: [f64; P],
-    left_squared: f64,
+    products: [[T; P]; P],
+    with_left: [T; P],
+    left_squared: T,
     rows: usize,
 }
 
@@ -43,15 +43,16 @@ pub struct Solution<const P: usize> {
     pub degrees: usize,
 }
 
-impl<const P: usize> Default for Regression<P> {
+impl<const P: usize, T: Scalar> Default for Regression<P, T> {
     fn default() -> Self {
-        Self { products: [[0.0; P]; P], with_left: [0.0; P], left_squared: 0.0, rows: 0 }
+        let zero = T::default();
+        Self { products: [[zero; P]; P], with_left: [zero; P], left_squared: zero, rows: 0 }
     }
 }
 
-impl<const P: usize> Regression<P> {
+impl<const P: usize, T: Scalar> Regression<P, T> {
     /// Adds a row whose noise has variance one.
-    pub fn push(&mut self, columns: &[f64; P], left: f64) {
+    pub fn push(&mut self, columns: &[T; P], left: T) {
         for i in 0..P {
             // The lower triangle is all that a Cholesky factor needs.
             for j in 0..=i {
@@ -73,22 +74,23 @@ impl<const P: usize> Regression<P> {
         let mut coefficients = [0.0; P];
         for i in 0..size {
             for j in 0..=i {
-                factor[i][j] = self.products[used[i]][used[j]];
+                factor[i][j] = self.products[used[i]][used[j]].into();
             }
             if let Column::Prior(sigma) = model[used[i]] {
                 factor[i][i] += 1.0 / (sigma * sigma);
             }
-            coefficients[i] = self.with_left[used[i]];
+            coefficients[i] = self.with_left[used[i]].into();
         }
         if !cholesky(&mut factor, size) {
             return None;
         }
         cholesky_solve(&factor, size, &mut coefficients);
-        let explained: f64 = (0..size).map(|i| coefficients[i] * self.with_left[used[i]]).sum();
+        let left = |i: usize| -> f64 { self.with_left[used[i]].into() };
+        let explained: f64 = (0..size).map(|i| coefficients[i] * left(i)).sum();
         Some(Solution {
             coefficients: spread(&coefficients, &used, size),
             covariance: inverse(&factor, &used, size),
-            chi_square: (self.left_squared - explained).max(0.0),
+            chi_square: (self.left_squared.into() - explained).max(0.0),
             degrees,
         })
     }

@@ -83,19 +83,27 @@ fn doubled(e1: f64) -> f64 {
 #[derive(Clone, Copy, Debug)]
 struct Steps<T> {
     seconds: f64,
+    /// Variance that the flicker faster than all processes leaves to a mean, (rad/s)².
+    fast: f64,
     of: [Step<T>; STATES],
 }
 
 impl<T: Scalar> Steps<T> {
     fn none() -> Self {
-        Self { seconds: f64::NAN, of: [Step::default(); STATES] }
+        Self { seconds: f64::NAN, fast: 0.0, of: [Step::default(); STATES] }
     }
 
     /// The steps over so many seconds. Correlation times are in the ratio of [`SPACING`], so one
     /// exponential serves them all.
-    fn over(&mut self, processes: &[Process; STATES], seconds: f64) -> [Step<T>; STATES] {
+    fn over(
+        &mut self,
+        processes: &[Process; STATES],
+        fast: f64,
+        seconds: f64,
+    ) -> [Step<T>; STATES] {
         if self.seconds != seconds {
             self.seconds = seconds;
+            self.fast = fast / seconds;
             self.of[FLICKER_STATES] = processes[FLICKER_STATES].step(seconds, 0.0);
             let slowest = processes[FLICKER_STATES - 1].correlation;
             let mut e1 = -libm::expm1(-seconds / slowest);
@@ -177,7 +185,7 @@ impl<const COLUMNS: usize, T: Scalar> Whitener<COLUMNS, T> {
         if seconds <= 0.0 {
             return;
         }
-        let steps = self.gap.over(&self.processes, seconds);
+        let steps = self.gap.over(&self.processes, self.fast, seconds);
         self.advance(&steps);
     }
 
@@ -195,8 +203,8 @@ impl<const COLUMNS: usize, T: Scalar> Whitener<COLUMNS, T> {
 
     /// Predicts the dwell's mean, replaces the row by its normalised surprise and learns from it.
     fn observe(&mut self, seconds: f64, white: f64, row: &mut [T; COLUMNS]) {
-        let steps = self.dwell.over(&self.processes, seconds);
-        let (cross, variance) = self.mean_covariance(&steps, T::of(white + self.fast / seconds));
+        let steps = self.dwell.over(&self.processes, self.fast, seconds);
+        let (cross, variance) = self.mean_covariance(&steps, T::of(white + self.dwell.fast));
         for (column, value) in row.iter_mut().enumerate() {
             for (step, state) in steps.iter().zip(&self.state) {
                 *value -= step.mean * state[column];

@@ -13,8 +13,8 @@ use crate::align::POSITIONS;
 use crate::earth::Latitude;
 use crate::noise::model::GyroNoise;
 use crate::units::TURN;
-use order::Order;
-use outlook::{Outlook, Visit, outlook};
+use order::{Order, PARTS};
+use outlook::{Visit, rate_sigma};
 
 /// How long the stage takes to turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +34,20 @@ impl Rotation {
         Self { rest: seconds, speed: f64::INFINITY, wraps: false }
     }
 
-    /// Time for a rotation by `angle` rad; none for none.
+    /// Time from one position to another, s; positions in twenty-fourths of a turn, each of which takes
+    /// `per_part` seconds.
+    fn between(&self, from: u8, to: u8, per_part: f64) -> f64 {
+        let parts = to.abs_diff(from);
+        let way = if self.wraps { parts.min(PARTS - parts) } else { parts };
+        if parts == 0 { 0.0 } else { self.rest + f64::from(way) * per_part }
+    }
+
+    /// Time for a twenty-fourth of a turn between the slopes, s.
+    fn part_seconds(&self) -> f64 {
+        TURN / f64::from(PARTS) / self.speed
+    }
+
+    /// Time for a rotation by `angle` rad, at most a turn; none for none.
     #[must_use]
     pub fn seconds(&self, angle: f64) -> f64 {
         let angle = angle.abs();
@@ -85,8 +98,14 @@ pub enum PlanError {
     NoNoise,
 }
 
+/// Part of σ that another order must come down to, to be looked at in a second search.
+const WORTH_IT: f64 = 0.99;
 /// Passes that are tried before the best is refined; the positions bound them.
 const PASSES: [usize; 8] = [1, 2, 3, 4, 6, 8, 11, 16];
+/// Time with which the search for a wanted accuracy begins, s.
+const USUAL: f64 = 300.0;
+/// Factor by which the time grows at least while the accuracy is not reached.
+const STRIDE: f64 = 1.2;
 /// Most steps towards the time that a wanted accuracy takes.
 const STEPS: usize = 12;
 /// Time by which a plan may exceed the least that does, relative.
@@ -113,31 +132,32 @@ impl Plan {
 
     /// These passes in this total time; `None` where they do not fit.
     #[must_use]
+    #[inline(never)]
     pub fn of(conditions: &Conditions, order: Order, passes: usize, seconds: f64) -> Option<Self> {
         let positions = passes * order.length();
+        if !(conditions.fewest..=POSITIONS).contains(&positions) {
+            return None;
+        }
         let turning = turning(&conditions.rotation, order, passes);
         let dwell = (seconds - turning) / positions as f64;
-        if dwell < conditions.shortest || !(conditions.fewest..=POSITIONS).contains(&positions) {
+        if dwell < conditions.shortest {
             return None;
         }
         let plan = Self { order, passes, dwell, seconds, rate_sigma: 0.0 };
-        let Outlook { rate_sigma, .. } =
-            outlook(&conditions.noise, plan.visits(&conditions.rotation))?;
-        Some(Self { rate_sigma, ..plan })
+        let visits = plan.visits(&conditions.rotation);
+        rate_sigma(&conditions.noise, dwell, visits).map(|rate_sigma| Self { rate_sigma, ..plan })
     }
 
     /// The visits with their times.
-    pub fn visits<'a>(
-        &'a self,
-        rotation: &'a Rotation,
-    ) -> impl Iterator<Item = Visit> + Clone + 'a {
+    pub fn visits<'a>(&'a self, rotation: &Rotation) -> impl Iterator<Item = Visit> + 'a {
+        let (rotation, per_part) = (*rotation, rotation.part_seconds());
         let mut start = 0.0;
-        let mut before = self.angle(0);
+        let mut before = self.order.part(0, self.passes);
         (0..self.positions()).map(move |index| {
-            let angle = self.angle(index);
-            start += rotation.seconds(angle - before);
-            before = angle;
-            let visit = Visit { angle, start, seconds: self.dwell, rate: 0.0 };
+            let part = self.order.part(index, self.passes);
+            start += rotation.between(before, part, per_part);
+            before = part;
+            let visit = Visit::planned(part, start, self.dwell);
             start += self.dwell;
             visit
         })
@@ -146,10 +166,10 @@ impl Plan {
 
 /// Time that a schedule spends turning, s.
 fn turning(rotation: &Rotation, order: Order, passes: usize) -> f64 {
-    let angle = |index| order.angle(index, passes);
-    (1..passes * order.length())
-        .map(|index| rotation.seconds(angle(index) - angle(index - 1)))
-        .sum()
+    let per_part = rotation.part_seconds();
+    let part = |index| order.part(index, passes);
+    let rotations = 1..passes * order.length();
+    rotations.map(|index| rotation.between(part(index - 1), part(index), per_part)).sum()
 }
 
 /// The better of two plans.
@@ -161,13 +181,44 @@ fn better(one: Option<Plan>, other: Option<Plan>) -> Option<Plan> {
     }
 }
 
-/// The best passes of one order in a total time.
+/// The best of some passes of one order in a total time. σ² falls with the passes as drift cancels and
+/// rises with the rotations, so the first rise ends the search.
 fn best_of(conditions: &Conditions, order: Order, seconds: f64) -> Option<Plan> {
-    let tried = PASSES.map(|passes| Plan::of(conditions, order, passes, seconds));
-    let best = tried.into_iter().reduce(better).flatten()?;
-    let near = [-2_isize, -1, 1, 2].map(|step| best.passes.saturating_add_signed(step));
-    let near = near.map(|passes| Plan::of(conditions, order, passes, seconds));
-    near.into_iter().fold(Some(best), better)
+    let mut best: Option<Plan> = None;
+    for passes in PASSES {
+        match (Plan::of(conditions, order, passes, seconds), best) {
+            (Some(plan), Some(least)) if plan.rate_sigma >= least.rate_sigma => break,
+            (Some(plan), _) => best = Some(plan),
+            (None, Some(_)) => break,
+            (None, None) => {}
+        }
+    }
+    best
+}
+
+/// The best passes next to `plan`'s in a total time, one step at a time.
+fn climbed(conditions: &Conditions, plan: &Plan, seconds: f64) -> Option<Plan> {
+    let of = |passes| Plan::of(conditions, plan.order, passes, seconds);
+    let mut best = of(plan.passes);
+    for step in [-1_isize, 1] {
+        let mut passes = plan.passes;
+        loop {
+            passes = passes.saturating_add_signed(step);
+            match (of(passes), best) {
+                (Some(next), Some(least)) if next.rate_sigma < least.rate_sigma => {
+                    best = Some(next)
+                }
+                // With less time the passes that were best may not fit.
+                (Some(next), None) => best = Some(next),
+                (None, None) if step < 0 && passes > 0 => {}
+                _ => break,
+            }
+        }
+        if best.is_some_and(|best| best.passes != plan.passes) {
+            break;
+        }
+    }
+    best
 }
 
 /// The schedule of the least σ in a total time.
@@ -179,7 +230,8 @@ pub fn for_time(conditions: &Conditions, seconds: f64) -> Result<Plan, PlanError
         return Err(PlanError::NoNoise);
     }
     let plans = conditions.orders.iter().map(|order| best_of(conditions, *order, seconds));
-    plans.reduce(better).flatten().ok_or(PlanError::TooShort)
+    let best = plans.reduce(better).flatten().ok_or(PlanError::TooShort)?;
+    Ok(climbed(conditions, &best, seconds).unwrap_or(best))
 }
 
 /// The shortest schedule, at most `longest` seconds, whose 1σ of a rate component is `wanted` rad/s;
@@ -188,31 +240,67 @@ pub fn for_time(conditions: &Conditions, seconds: f64) -> Result<Plan, PlanError
 /// # Errors
 /// [`PlanError::OutOfReach`] where `longest` does not do, and those of [`for_time`].
 pub fn for_sigma(conditions: &Conditions, wanted: f64, longest: f64) -> Result<Plan, PlanError> {
-    let most = for_time(conditions, longest)?;
-    if most.rate_sigma > wanted {
-        return Err(PlanError::OutOfReach(most.rate_sigma));
+    if conditions.noise == GyroNoise::default() {
+        return Err(PlanError::NoNoise);
     }
-    let found = shortened(conditions, most, wanted);
-    // What is best in the longest time need not be so in this one.
-    match for_time(conditions, found.seconds) {
-        Ok(other) if other.order != found.order => Ok(shortened(conditions, other, wanted)),
-        _ => Ok(found),
-    }
+    let usual = conditions.orders.first().copied();
+    let begun = usual.and_then(|order| best_of(conditions, order, longest.min(USUAL)));
+    let begun = begun.map_or_else(|| for_time(conditions, longest), Ok)?;
+    let enough = lengthened(conditions, begun, wanted, longest)?;
+    let found = shortened(conditions, enough, wanted);
+    // What is best in one time need not be so in another.
+    let orders = conditions.orders.iter().map(|order| Plan {
+        order: *order,
+        passes: (found.positions() / order.length()).max(1),
+        ..found
+    });
+    let other =
+        orders.map(|plan| climbed(conditions, &plan, found.seconds)).reduce(better).flatten();
+    Ok(match other {
+        Some(other) if other.rate_sigma < WORTH_IT * found.rate_sigma => {
+            shortened(conditions, other, wanted)
+        }
+        _ => found,
+    })
 }
 
-/// The shortest plan of the same order that still reaches `wanted`, as `most` does.
-fn shortened(conditions: &Conditions, most: Plan, wanted: f64) -> Plan {
-    let (mut low, mut high) = (0.0, most);
+/// Where white noise leads from a plan's time towards `wanted`, and a little further.
+fn aimed(plan: &Plan, wanted: f64) -> f64 {
+    let ratio = plan.rate_sigma / wanted;
+    plan.seconds * ratio * ratio * (1.0 + 0.5 * CLOSE)
+}
+
+/// A plan that reaches `wanted`, in more and more time.
+fn lengthened(
+    conditions: &Conditions,
+    mut plan: Plan,
+    wanted: f64,
+    longest: f64,
+) -> Result<Plan, PlanError> {
+    while plan.rate_sigma > wanted {
+        if plan.seconds >= longest {
+            return Err(PlanError::OutOfReach(plan.rate_sigma));
+        }
+        let seconds = aimed(&plan, wanted).max(STRIDE * plan.seconds).min(longest);
+        let next = climbed(conditions, &plan, seconds);
+        plan =
+            if seconds < longest { next } else { better(next, for_time(conditions, longest).ok()) }
+                .ok_or(PlanError::TooShort)?;
+    }
+    Ok(plan)
+}
+
+/// The shortest plan of the same order that still reaches `wanted`, as `high` does.
+fn shortened(conditions: &Conditions, mut high: Plan, wanted: f64) -> Plan {
+    let mut low = 0.0;
     for _ in 0..STEPS {
         let span = high.seconds - low;
         if span <= CLOSE * high.seconds {
             break;
         }
-        // White noise falls as 1/√t: aim where that leads, but well within what is left.
-        let ratio = high.rate_sigma / wanted;
-        let aimed = high.seconds * ratio * ratio * (1.0 + 0.5 * CLOSE);
-        let middle = aimed.max(low + 0.1 * span).min((1.0 - 0.9 * CLOSE) * high.seconds);
-        match best_of(conditions, most.order, middle) {
+        let most = (1.0 - 0.9 * CLOSE) * high.seconds;
+        let middle = aimed(&high, wanted).max(low + 0.1 * span).min(most);
+        match climbed(conditions, &high, middle) {
             Some(plan) if plan.rate_sigma <= wanted => high = plan,
             _ => low = middle,
         }

@@ -1,6 +1,6 @@
 //! Orders in which positions are visited so that drift cancels.
 
-use core::f64::consts::TAU;
+use crate::units::TURN;
 
 /// An order of positions; a *pass* is its least repeatable part.
 ///
@@ -20,20 +20,31 @@ pub enum Order {
     Pairs,
     /// 0°, 120°, 240°: three positions.
     Thirds,
-    /// This many equal steps over the circle.
-    Circle(u8),
+    /// Eight equal steps over the circle, again and again.
+    Eighths,
     /// 0°, 180°: two positions, which leave two azimuths unless its half is known.
     Opposite,
 }
 
-/// Quarter turns of a pass.
-const QUADRATURE: [u8; 4] = [0, 2, 1, 3];
-/// Quarter turns there and back.
-const THERE_AND_BACK: [u8; 8] = [0, 2, 1, 3, 3, 1, 2, 0];
-/// Quarter turns in the order of their angle, there and back.
-const SWEEP: [u8; 8] = [0, 1, 2, 3, 3, 2, 1, 0];
-/// Quarter turns, mirrored.
-const MIRRORED: [u8; 8] = [0, 2, 2, 0, 1, 3, 3, 1];
+/// Parts of a turn in which every position is a whole number: halves, thirds, quarters and eighths.
+pub const PARTS: u8 = 24;
+
+/// Burov's four positions.
+const QUADRATURE: [u8; 4] = [0, 12, 6, 18];
+/// There and back.
+const THERE_AND_BACK: [u8; 8] = [0, 12, 6, 18, 18, 6, 12, 0];
+/// Pairs, mirrored.
+const MIRRORED: [u8; 8] = [0, 12, 12, 0, 6, 18, 18, 6];
+/// In the order of their angle, there and back.
+const SWEEP: [u8; 8] = [0, 6, 12, 18, 18, 12, 6, 0];
+/// A quarter apart, then the other two.
+const PAIRS: [[u8; 2]; 2] = [[0, 12], [6, 18]];
+/// A third apart.
+const THIRDS: [u8; 3] = [0, 8, 16];
+/// An eighth apart.
+const EIGHTHS: [u8; 8] = [0, 3, 6, 9, 12, 15, 18, 21];
+/// Half a turn apart.
+const OPPOSITE: [u8; 2] = [0, 12];
 
 impl Order {
     /// The orders that the planner compares.
@@ -44,45 +55,47 @@ impl Order {
         Self::Sweep,
         Self::Pairs,
         Self::Thirds,
-        Self::Circle(8),
+        Self::Eighths,
     ];
 
     /// Those of them that need four headings only, as two frames have.
     pub const QUARTERS: [Self; 5] =
         [Self::Quadrature, Self::ThereAndBack, Self::Mirrored, Self::Sweep, Self::Pairs];
 
+    /// The positions of a pass in twenty-fourths of a turn; of [`Self::Pairs`] those of one of each.
+    const fn pass(self) -> &'static [u8] {
+        match self {
+            Self::Quadrature | Self::Pairs => &QUADRATURE,
+            Self::ThereAndBack => &THERE_AND_BACK,
+            Self::Mirrored => &MIRRORED,
+            Self::Sweep => &SWEEP,
+            Self::Thirds => &THIRDS,
+            Self::Eighths => &EIGHTHS,
+            Self::Opposite => &OPPOSITE,
+        }
+    }
+
     /// Positions in a pass.
     #[must_use]
-    pub fn length(self) -> usize {
-        match self {
-            Self::Quadrature | Self::Pairs => 4,
-            Self::ThereAndBack | Self::Mirrored | Self::Sweep => 8,
-            Self::Thirds => 3,
-            Self::Circle(steps) => usize::from(steps.max(1)),
-            Self::Opposite => 2,
+    pub const fn length(self) -> usize {
+        self.pass().len()
+    }
+
+    /// A position in so many passes, in twenty-fourths of a turn, 0 to 23.
+    #[must_use]
+    pub fn part(self, index: usize, passes: usize) -> u8 {
+        if self == Self::Pairs {
+            let second = index % (4 * passes.max(1)) >= 2 * passes;
+            return PAIRS[usize::from(second)][index % 2];
         }
+        let pass = self.pass();
+        pass[index % pass.len()]
     }
 
     /// Stage angle of a position in so many passes, rad, [0, 2π).
     #[must_use]
     pub fn angle(self, index: usize, passes: usize) -> f64 {
-        let quarters = |quarter: u8| 0.25 * TAU * f64::from(quarter);
-        match self {
-            Self::Quadrature => quarters(QUADRATURE[index % 4]),
-            Self::ThereAndBack => quarters(THERE_AND_BACK[index % 8]),
-            Self::Mirrored => quarters(MIRRORED[index % 8]),
-            Self::Sweep => quarters(SWEEP[index % 8]),
-            Self::Pairs => {
-                let second = u8::from(index % (4 * passes.max(1)) >= 2 * passes);
-                quarters(second + 2 * (index % 2) as u8)
-            }
-            Self::Thirds => TAU / 3.0 * (index % 3) as f64,
-            Self::Circle(steps) => {
-                let steps = usize::from(steps.max(1));
-                TAU / steps as f64 * (index % steps) as f64
-            }
-            Self::Opposite => quarters(2 * (index % 2) as u8),
-        }
+        f64::from(self.part(index, passes)) * (TURN / f64::from(PARTS))
     }
 
     /// Its name, as it is printed.
@@ -95,7 +108,7 @@ impl Order {
             Self::Sweep => "0, 90, 180, 270° and back",
             Self::Pairs => "0, 180° in turn, then 90, 270°",
             Self::Thirds => "0, 120, 240°",
-            Self::Circle(_) => "equal steps over the circle",
+            Self::Eighths => "eight equal steps over the circle",
             Self::Opposite => "0, 180°",
         }
     }

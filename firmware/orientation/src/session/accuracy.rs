@@ -7,8 +7,9 @@ use crate::align::POSITIONS;
 use crate::align::quality::Norm;
 use crate::error::{Refusal, Source};
 use crate::noise::model::GyroNoise;
-use crate::planner::outlook::{Outlook, Visit, outlook};
-use crate::units::{DEGREES_PER_RADIAN, Instant};
+use crate::planner::outlook::{Visit, rate_sigma};
+use crate::signal::dwell::Dwell;
+use crate::units::{Angle, DEGREES_PER_RADIAN, Instant};
 
 impl Session {
     /// Sends the stage to the next position, or concludes: with an azimuth, or because the time
@@ -35,12 +36,13 @@ impl Session {
     fn weigh(&mut self, seconds: f64, left: f64) -> Option<Command> {
         let rate = self.setting.latitude.horizontal_rate();
         let noise = self.noise();
-        let so_far = outlook(&noise, self.dwells().iter().map(Visit::from))?;
-        let (required, sigma) = (self.setting.required_sigma, so_far.observed_rate_sigma() / rate);
+        let required = self.setting.required_sigma;
+        let sigma =
+            rate_sigma(&noise, self.shortest(), self.dwells().iter().map(Visit::from))? / rate;
         if sigma <= required {
             return self.try_to_conclude(left);
         }
-        let least = self.least_rate_sigma(&noise, &so_far, left) / rate;
+        let least = self.least_rate_sigma(&noise, left)? / rate;
         let is_hopeless = least > required;
         let [sigma, required] = [least, required].map(|angle| angle * DEGREES_PER_RADIAN);
         is_hopeless.then(|| self.conclude(Some(Refusal::OutOfReach { sigma, required, seconds })))
@@ -69,22 +71,24 @@ impl Session {
         GyroNoise { angle_random_walk: libm::sqrt(white), ..self.setting.noise }
     }
 
-    /// What all positions that still fit into the time left will bring, if the dwells go on to
-    /// scatter as they do, rad/s.
-    fn least_rate_sigma(&self, noise: &GyroNoise, now: &Outlook, left: f64) -> f64 {
+    /// What all positions that still fit into the time left will bring, rad/s.
+    fn least_rate_sigma(&self, noise: &GyroNoise, left: f64) -> Option<f64> {
         let (schedule, done) = (&self.procedure.schedule, self.dwells().len());
         let seconds = schedule.shortest();
         let period = self.period().max(seconds);
         let begin = self.dwells().last().map_or(0.0, |dwell| dwell.end());
         let more = ((left / period) as usize).min(POSITIONS - done);
         let to_come = (0..more).filter_map(|index| {
-            let angle = schedule.position(done + index)?.angle;
-            let start = begin + (index + 1) as f64 * period - seconds;
-            Some(Visit { angle, start, seconds, rate: 0.0 })
+            let stage = Angle::from_rad(schedule.position(done + index)?.angle);
+            let middle = begin + (index + 1) as f64 * period - 0.5 * seconds;
+            Some(Visit::from(&Dwell { stage, middle, seconds, ..Dwell::default() }))
         });
-        let all = outlook(noise, self.dwells().iter().map(Visit::from).chain(to_come));
-        let factor = now.observed_rate_sigma() / now.rate_sigma;
-        all.map_or(f64::INFINITY, |outlook| outlook.rate_sigma * factor)
+        rate_sigma(noise, self.shortest(), self.dwells().iter().map(Visit::from).chain(to_come))
+    }
+
+    /// Length of the shortest dwell, s.
+    fn shortest(&self) -> f64 {
+        self.dwells().iter().map(|dwell| dwell.seconds).fold(f64::INFINITY, f64::min)
     }
 
     /// Time from one dwell to the next so far, s.

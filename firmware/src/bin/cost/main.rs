@@ -16,6 +16,7 @@ mod counter;
 mod matching;
 mod memory;
 mod noise;
+mod planning;
 mod report;
 mod samples;
 mod scale;
@@ -82,6 +83,7 @@ fn measure(report: &mut Report) -> Result<(), Failure> {
     yardsticks::regression(&counter, report);
     conclusion::report(&counter, report)?;
     noise::report(&counter, report);
+    planning::report(&counter, report);
     heading("bytes");
     sizes()
 }
@@ -101,6 +103,7 @@ fn sizes() -> Result<(), Failure> {
     matching::report_stack()?;
     figure(format_args!("stack of a conclusion of 60 dwells"), conclusion::stack()? as u64);
     figure(format_args!("stack of a noise fit of the full grid"), noise::stack() as u64);
+    figure(format_args!("stack of a plan"), planning::stack() as u64);
     figure(format_args!("stack of this image at its deepest"), stack::greatest_stack() as u64);
     figure(format_args!("a Session"), size_of::<Session>() as u64);
     figure(format_args!("a Conclusion"), size_of::<Conclusion>() as u64);

@@ -9,7 +9,7 @@ mod model;
 mod uncertainty;
 
 pub use model::Model;
-pub use uncertainty::{FEW_DEGREES, excess};
+pub use uncertainty::FEW_DEGREES;
 
 use super::budget::Budget;
 use super::direction::{Amplitude, Components, Direction, dot, inverted, product};

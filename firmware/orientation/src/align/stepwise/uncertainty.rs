@@ -98,8 +98,7 @@ impl Problem<'_> {
 
 /// By how much residuals of this chi-square scatter more than the stated noise, as a factor of its
 /// standard deviation; one where that may be chance.
-#[must_use]
-pub fn excess(chi_square: f64, degrees: usize) -> f64 {
+fn excess(chi_square: f64, degrees: usize) -> f64 {
     let least = EXCESS_PROBABILITY[usize::from(degrees > FEW_DEGREES)];
     let freedom = degrees as f64;
     let is_chance = degrees == 0 || chi_square_tail(chi_square, freedom) >= least;

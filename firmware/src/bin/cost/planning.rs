@@ -1,0 +1,65 @@
+//! What a plan takes: the best schedule for a time, and the time for a wanted σ.
+
+use orientation::noise::model::GyroNoise;
+use orientation::planner::order::Order;
+use orientation::planner::{Conditions, Plan, PlanError, Rotation, burov, for_sigma, for_time};
+
+use crate::budget::PLAN_INSTRUCTIONS;
+use crate::counter::Counter;
+use crate::report::Report;
+use crate::stack::stack_of;
+
+/// N in °/√h, B in °/h, K in °/h/√h and R in °/h² of the gyros that are planned for.
+const GYROS: [[f64; 4]; 2] = [[0.001, 0.007, 0.0, 0.127], [0.06, 1.0, 0.5, 2.0]];
+/// Total time, s.
+const SECONDS: f64 = 300.0;
+/// The wanted σ over that of this time: worse, so that less time does.
+const RELAXED: f64 = 1.3;
+/// Longest time that is looked at for a wanted σ, s.
+const LONGEST: f64 = 1800.0;
+
+/// Measures the greatest of the gyros for either question, and Burov's formula.
+pub fn report(counter: &Counter, report: &mut Report) {
+    let [time, sigma, burov] = GYROS
+        .map(|gyro| costs(counter, gyro, report))
+        .into_iter()
+        .fold([0; 3], |most: [u64; 3], costs| {
+            core::array::from_fn(|index| most[index].max(costs[index]))
+        });
+    report.budget(format_args!("plan for a time, all orders"), time, PLAN_INSTRUCTIONS);
+    report.budget(format_args!("plan for a wanted sigma"), sigma, PLAN_INSTRUCTIONS);
+    report.budget(format_args!("Burov's best positions"), burov, PLAN_INSTRUCTIONS);
+}
+
+/// Bytes of stack of a plan.
+pub fn stack() -> usize {
+    let conditions = conditions(GYROS[1]);
+    stack_of(|| plan(&conditions).is_ok()).0
+}
+
+/// Instructions of a plan for a time, of one for a σ, and of Burov's.
+fn costs(counter: &Counter, gyro: [f64; 4], report: &mut Report) -> [u64; 3] {
+    let conditions = conditions(gyro);
+    let (time, planned) = counter.measure(|| plan(&conditions));
+    let wanted = RELAXED * planned.map_or(0.0, |plan| plan.rate_sigma);
+    let (sigma, found) = counter.measure(|| for_sigma(&conditions, wanted, LONGEST));
+    report.require("both plans were made", planned.is_ok() && found.is_ok());
+    let (burov, best) = counter.measure(|| burov::best(&conditions.noise, SECONDS, 2.0));
+    report.require("Burov's best was found", best.is_some());
+    [time, sigma, burov].map(|cost| cost.instructions())
+}
+
+#[inline(never)]
+fn plan(conditions: &Conditions) -> Result<Plan, PlanError> {
+    for_time(conditions, SECONDS)
+}
+
+fn conditions([n, b, k, r]: [f64; 4]) -> Conditions {
+    Conditions {
+        noise: GyroNoise::from_field_units(n, b, k, r),
+        rotation: Rotation::fixed(2.0),
+        shortest: 1.0,
+        fewest: 8,
+        orders: &Order::COMPARED,
+    }
+}
