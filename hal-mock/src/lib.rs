@@ -15,6 +15,7 @@
 //!                               ├ adxl355 ◀─force──        on the stage's mechanics,
 //!                               ├ mt6835 ◀──angle──        on a base that may sway
 //!                               └ tmc5160 ─microsteps─▶
+//!  driver ⇄ i2c ⇄ lsm6dsl ◀─rates, forces── base that sways
 //! ```
 //!
 //! This crate is an oracle. It carries its own reading of the physics, by full rotation matrices, and
@@ -42,7 +43,9 @@ pub mod environment;
 pub mod fault;
 pub mod flicker;
 pub mod gyro;
+pub mod i2c;
 pub mod instruments;
+pub mod lsm6dsl;
 pub mod mt6835;
 pub mod noise;
 pub mod plant;
