@@ -6,15 +6,19 @@
 //! prediction is linear, so the same filter applied to every column of a regression and to its
 //! left side gives rows whose noise is independent with variance one: ordinary least squares on
 //! them is generalised least squares on the dwells. Each process is averaged exactly over a dwell;
-//! for K its variance is K²(a + T/3), a being the dwell's start and T its length.
+//! for K its variance is K²(a + T/3), a being the dwell's start and T its length. Of the angle error
+//! that a subtracted sway leaves a dwell sees the change over its time, divided by it.
 
 use super::model::GyroNoise;
 use crate::math::Scalar;
+use crate::signal::sway::SwayNoise;
 
 /// Gauss–Markov processes that make up flicker noise.
 const FLICKER_STATES: usize = 7;
 /// Flicker processes and the random walk.
-const STATES: usize = FLICKER_STATES + 1;
+const RATES: usize = FLICKER_STATES + 1;
+/// The same and the angle error of a subtracted sway, which comes last and mostly is not there.
+const STATES: usize = RATES + 1;
 /// Ratio of successive correlation times; the sum follows 1/f within ±2 % at this spacing.
 const SPACING: f64 = 4.0;
 /// ln 4.
@@ -74,6 +78,19 @@ impl Process {
     }
 }
 
+/// How the angle error of a subtracted sway passes through an interval, as a rate.
+fn sway_step<T: Scalar>(sway: &SwayNoise, seconds: f64) -> Step<T> {
+    let e1 = -libm::expm1(-seconds / sway.correlation);
+    let added = sway.angle_variance * doubled(e1);
+    Step {
+        end: T::of(1.0 - e1),
+        mean: T::of(-e1 / seconds),
+        end_variance: T::of(added),
+        cross: T::of(added / seconds),
+        mean_variance: T::of(added / (seconds * seconds)),
+    }
+}
+
 /// 1 − e⁻²ˣ from 1 − e⁻ˣ, to the last bits.
 fn doubled(e1: f64) -> f64 {
     e1 * (2.0 - e1)
@@ -93,7 +110,12 @@ impl<T: Scalar> Steps<T> {
 
     /// The steps over so many seconds. Correlation times are in the ratio of [`SPACING`], so one
     /// exponential serves them all.
-    fn over(&mut self, processes: &[Process; STATES], seconds: f64) -> [Step<T>; STATES] {
+    fn over(
+        &mut self,
+        processes: &[Process; RATES],
+        sway: &SwayNoise,
+        seconds: f64,
+    ) -> [Step<T>; STATES] {
         if self.seconds != seconds {
             self.seconds = seconds;
             self.of[FLICKER_STATES] = processes[FLICKER_STATES].step(seconds, 0.0);
@@ -103,6 +125,9 @@ impl<T: Scalar> Steps<T> {
                 self.of[index] = processes[index].step(seconds, e1);
                 e1 = doubled(doubled(e1));
             }
+            if sway.angle_variance > 0.0 {
+                self.of[RATES] = sway_step(sway, seconds);
+            }
         }
         self.of
     }
@@ -111,7 +136,10 @@ impl<T: Scalar> Steps<T> {
 /// The filter; `COLUMNS` counts the regression's columns and its left side.
 #[derive(Clone, Debug)]
 pub struct Whitener<const COLUMNS: usize, T = f64> {
-    processes: [Process; STATES],
+    processes: [Process; RATES],
+    sway: SwayNoise,
+    /// How many of the states are there.
+    active: usize,
     covariance: [[T; STATES]; STATES],
     state: [[T; COLUMNS]; STATES],
     end: Option<f64>,
@@ -132,7 +160,9 @@ impl<const COLUMNS: usize, T: Scalar> Whitener<COLUMNS, T> {
     #[must_use]
     pub fn new(noise: &GyroNoise, shortest: f64) -> Self {
         let mut whitener = Self {
-            processes: [Process::default(); STATES],
+            processes: [Process::default(); RATES],
+            sway: SwayNoise::NONE,
+            active: RATES,
             covariance: [[T::default(); STATES]; STATES],
             state: [[T::default(); COLUMNS]; STATES],
             end: None,
@@ -158,6 +188,18 @@ impl<const COLUMNS: usize, T: Scalar> Whitener<COLUMNS, T> {
         whitener
     }
 
+    /// The same where a sway is subtracted, which leaves this error.
+    #[must_use]
+    pub fn with_sway(mut self, sway: &SwayNoise) -> Self {
+        if sway.angle_variance > 0.0 {
+            self.sway = *sway;
+            self.active = STATES;
+            self.covariance[RATES][RATES] = T::of(sway.angle_variance);
+            self.coloured = true;
+        }
+        self
+    }
+
     /// Whitens the row of a dwell mean over [`start`, `end`] (s) in place; `white` is the variance
     /// that is this dwell's own, (rad/s)². Dwells come in the order of time.
     pub fn whiten(&mut self, start: f64, end: f64, white: f64, row: &mut [T; COLUMNS]) {
@@ -177,16 +219,16 @@ impl<const COLUMNS: usize, T: Scalar> Whitener<COLUMNS, T> {
         if seconds <= 0.0 {
             return;
         }
-        let steps = self.gap.over(&self.processes, seconds);
+        let steps = self.gap.over(&self.processes, &self.sway, seconds);
         self.advance(&steps);
     }
 
     fn advance(&mut self, steps: &[Step<T>; STATES]) {
-        for i in 0..STATES {
+        for i in 0..self.active {
             for value in &mut self.state[i] {
                 *value *= steps[i].end;
             }
-            for j in 0..STATES {
+            for j in 0..self.active {
                 self.covariance[i][j] *= steps[i].end * steps[j].end;
             }
             self.covariance[i][i] += steps[i].end_variance;
@@ -195,20 +237,20 @@ impl<const COLUMNS: usize, T: Scalar> Whitener<COLUMNS, T> {
 
     /// Predicts the dwell's mean, replaces the row by its normalised surprise and learns from it.
     fn observe(&mut self, seconds: f64, white: f64, row: &mut [T; COLUMNS]) {
-        let steps = self.dwell.over(&self.processes, seconds);
+        let steps = self.dwell.over(&self.processes, &self.sway, seconds);
         let (cross, variance) = self.mean_covariance(&steps, T::of(white + self.fast / seconds));
         for (column, value) in row.iter_mut().enumerate() {
-            for (step, state) in steps.iter().zip(&self.state) {
+            for (step, state) in steps.iter().zip(&self.state).take(self.active) {
                 *value -= step.mean * state[column];
             }
         }
         self.advance(&steps);
-        for i in 0..STATES {
+        for i in 0..self.active {
             let gain = cross[i] / variance;
             for (state, surprise) in self.state[i].iter_mut().zip(row.iter()) {
                 *state += gain * *surprise;
             }
-            for (shared, other) in self.covariance[i].iter_mut().zip(cross) {
+            for (shared, other) in self.covariance[i].iter_mut().zip(cross).take(self.active) {
                 *shared -= gain * other;
             }
         }
@@ -219,9 +261,9 @@ impl<const COLUMNS: usize, T: Scalar> Whitener<COLUMNS, T> {
     fn mean_covariance(&self, steps: &[Step<T>; STATES], white: T) -> ([T; STATES], T) {
         let mut variance = white;
         let mut cross = [T::default(); STATES];
-        for i in 0..STATES {
+        for i in 0..self.active {
             let mut shared = T::default();
-            for (covariance, step) in self.covariance[i].iter().zip(steps) {
+            for (covariance, step) in self.covariance[i].iter().zip(steps).take(self.active) {
                 shared += *covariance * step.mean;
             }
             cross[i] = steps[i].cross;
