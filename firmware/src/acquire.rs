@@ -19,12 +19,13 @@ use crate::guarded::Guarded;
 use crate::patience::Symptom;
 use crate::ports::{Accelerometer, Encoder, ForceReading, Gyro, Observer, RateReading, Sensors};
 use crate::shared::Shared;
+use crate::steady::{Base, Steady};
 use crate::timeline::{Arrival, Timeline};
 
 /// Periods without a conversion after which the gyro is silent.
 const SILENCE: u32 = 8;
 /// Equal readings in a row that are no chance: the last bits of both sensors are noise.
-const STUCK: u32 = 64;
+pub(crate) const STUCK: u32 = 64;
 /// Longest time at the limit of the range, s: a slammed door is over by then.
 const SATURATED_SECONDS: f64 = 5.0;
 
@@ -38,18 +39,18 @@ type Force = ([SpecificForce; 3], Temperature);
 
 /// How often something came in a row.
 #[derive(Clone, Copy, Debug)]
-struct Row<T> {
+pub(crate) struct Row<T> {
     last: Option<T>,
     count: u32,
 }
 
 impl<T: Copy + PartialEq> Row<T> {
-    const fn new() -> Self {
+    pub(crate) const fn new() -> Self {
         Self { last: None, count: 0 }
     }
 
     /// How often this value has come in a row before.
-    fn push(&mut self, value: T) -> u32 {
+    pub(crate) fn push(&mut self, value: T) -> u32 {
         self.count = if self.last.replace(value) == Some(value) { self.count + 1 } else { 0 };
         self.count
     }
@@ -57,17 +58,17 @@ impl<T: Copy + PartialEq> Row<T> {
 
 /// Says yes at first, then every so-manieth time.
 #[derive(Clone, Copy, Debug)]
-struct Every {
+pub(crate) struct Every {
     divider: u32,
     left: u32,
 }
 
 impl Every {
-    fn new(divider: u32) -> Self {
+    pub(crate) fn new(divider: u32) -> Self {
         Self { divider: divider.max(1), left: 0 }
     }
 
-    fn is_due(&mut self) -> bool {
+    pub(crate) fn is_due(&mut self) -> bool {
         let is_due = self.left == 0;
         self.left = if is_due { self.divider } else { self.left } - 1;
         is_due
@@ -81,10 +82,11 @@ fn greatest_step(configuration: &Configuration) -> u32 {
 }
 
 /// The sensors of the stage path at work.
-pub struct Acquisition<'a, G, A, E, O> {
+pub struct Acquisition<'a, G, A, E, S, O> {
     gyro: Guarded<'a, G>,
     accelerometer: Guarded<'a, A>,
     encoder: Guarded<'a, E>,
+    steady: S,
     shared: &'a Shared<'a, O>,
     calibration: Calibration,
     timeline: Timeline,
@@ -104,10 +106,12 @@ pub struct Acquisition<'a, G, A, E, O> {
     overflowed: u32,
 }
 
-impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, A, E, O> {
+impl<'a, G: Gyro, A: Accelerometer, E: Encoder, S: Steady, O: Observer>
+    Acquisition<'a, G, A, E, S, O>
+{
     /// Takes the sensors; nothing is started yet.
-    pub fn new(
-        sensors: &'a mut Sensors<G, A, E>,
+    pub fn new<B: Base<Steady<'a> = S>>(
+        sensors: &'a mut Sensors<G, A, E, B>,
         configuration: &Configuration,
         shared: &'a Shared<'a, O>,
     ) -> Self {
@@ -116,6 +120,7 @@ impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, 
             gyro: Guarded::new(&mut sensors.gyro, Device::Gyro),
             accelerometer: Guarded::new(&mut sensors.accelerometer, Device::Accelerometer),
             encoder: Guarded::new(&mut sensors.encoder, Device::Encoder),
+            steady: sensors.base.steady(),
             shared,
             calibration: Calibration::new(configuration.encoder),
             timeline: Timeline::new(period),
@@ -145,6 +150,7 @@ impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, 
     async fn sample_for_ever(&mut self) -> Result<core::convert::Infallible, Refusal> {
         self.accelerometer.start(self.shared).await?;
         self.encoder.start(self.shared).await?;
+        self.steady.start(self.shared).await?;
         self.gyro.start(self.shared).await?;
         loop {
             if let Some(sample) = self.sample().await? {
@@ -172,6 +178,7 @@ impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, 
         let stage = self.angle().await?;
         let force = self.force().await?;
         let (Some(rate), Some(stage)) = (rate, stage) else { return Ok(None) };
+        let rate = self.steady.steadied(rate, stage, self.shared).await?;
         self.judge(time);
         Ok(Some(Sample {
             time: orientation::units::Instant(time.as_micros()),
@@ -257,7 +264,9 @@ impl<'a, G: Gyro, A: Accelerometer, E: Encoder, O: Observer> Acquisition<'a, G, 
             return false;
         }
         self.shared.angle.set((angle, Instant::now()));
-        self.shared.sensing.signal(());
+        if self.steady.is_decided() {
+            self.shared.sensing.signal(());
+        }
         true
     }
 

@@ -22,6 +22,7 @@ pub mod acquire;
 pub mod calibration;
 pub mod guarded;
 pub mod patience;
+pub mod steady;
 pub mod timeline;
 
 pub mod conduct;

@@ -19,16 +19,18 @@ use crate::link;
 use crate::ports::{Accelerometer, Actuator, Encoder, Gyro, Observer, Ports, Recorder, Sensors};
 use crate::shared::Shared;
 use crate::stage::Stage;
+use crate::steady::Base;
 
 /// Samples until a sensor is given up, which the session is told; never ends.
-pub async fn acquire<G, A, E, O>(
-    sensors: &mut Sensors<G, A, E>,
+pub async fn acquire<G, A, E, B, O>(
+    sensors: &mut Sensors<G, A, E, B>,
     configuration: &Configuration,
     shared: &Shared<'_, O>,
 ) where
     G: Gyro,
     A: Accelerometer,
     E: Encoder,
+    B: Base,
     O: Observer,
 {
     let reason = Acquisition::new(sensors, configuration, shared).run().await;

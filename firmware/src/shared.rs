@@ -9,6 +9,7 @@ use embassy_time::Instant;
 use orientation::device::{Device, Trouble};
 use orientation::error::Refusal;
 use orientation::signal::Sample;
+use orientation::signal::sway::SwayNoise;
 use orientation::units::Angle;
 
 use crate::event::Event;
@@ -36,6 +37,8 @@ pub struct Shared<'a, O> {
     pub concluded: Signal<NoopRawMutex, ()>,
     /// The latest encoder angle, corrected, and when it was read.
     pub angle: Cell<(Angle, Instant)>,
+    /// What a subtracted sway leaves in the samples; decided before the stage is homed.
+    pub sway: Cell<SwayNoise>,
     /// What went wrong so far.
     pub health: Cell<Health>,
     /// What the link tells.
@@ -54,6 +57,7 @@ impl<'a, O: Observer> Shared<'a, O> {
             failure: Signal::new(),
             concluded: Signal::new(),
             angle: Cell::new((Angle(0), Instant::MIN)),
+            sway: Cell::new(SwayNoise::NONE),
             health: Cell::new(Health::EMPTY),
             status: Cell::new(Status::Starting),
             observer,

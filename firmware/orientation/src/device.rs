@@ -14,6 +14,8 @@ pub enum Device {
     Encoder,
     /// The stage's motor and its driver.
     Stage,
+    /// The coarse sensors on the base.
+    Base,
 }
 
 words! { Device:
@@ -21,6 +23,7 @@ words! { Device:
     Self::Accelerometer => "accelerometer";
     Self::Encoder => "encoder";
     Self::Stage => "stage";
+    Self::Base => "base";
 }
 
 /// What is wrong with a device, where repeating and restarting did not mend it.

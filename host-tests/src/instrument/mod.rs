@@ -3,7 +3,7 @@
 mod bench;
 pub mod recorder;
 
-pub use bench::align;
+pub use bench::{align, align_on};
 
 use std::fmt;
 
