@@ -168,6 +168,9 @@ pub struct Sway {
     sensors: CoarseSensors,
     /// Points up, on the base's axes forward, right, down; nothing before the first reading.
     up: Option<[f32; 3]>,
+    /// The first rates: what differs from them is small enough for the last bits to count.
+    origin: [AngularRate; 3],
+    /// What is the gyros' own of that difference, rad/s.
     bias: [f32; 3],
     /// Rate of the estimated attitude, rad/s, as it will be a delay later.
     rate: [f32; 2],
@@ -187,6 +190,7 @@ impl Sway {
         Self {
             sensors,
             up: None,
+            origin: [AngularRate(0); 3],
             bias: [0.0; 3],
             rate: [0.0; 2],
             latest: [0.0; 2],
@@ -207,14 +211,17 @@ impl Sway {
     /// base's axes forward, right, down. After a longer time than can be bridged it begins anew, with
     /// the bias that it knows.
     pub fn push(&mut self, seconds: f32, rate: [AngularRate; 3], force: [SpecificForce; 3]) {
-        let rate = rate.map(|rate| rate.0 as f32 * NANO);
+        if self.up.is_none() {
+            self.origin = rate;
+        }
+        let off = |i: usize| rate[i].0.saturating_sub(self.origin[i].0) as f32 * NANO;
+        let rate = [0, 1, 2].map(off);
         let force = force.map(|force| force.0 as f32 * (MICRO / GRAVITY));
         match self.up {
             Some(up) if seconds > 0.0 && seconds <= LONGEST_STEP => {
                 self.turn(seconds, rate, force, up);
             }
-            before => {
-                self.bias = if before.is_none() { rate } else { self.bias };
+            _ => {
                 self.up = Some(force);
                 self.upright = 0.0;
             }
