@@ -78,17 +78,14 @@ impl Process {
     }
 }
 
-/// How the angle error of a subtracted sway passes through an interval, as a rate.
-fn sway_step<T: Scalar>(sway: &SwayNoise, seconds: f64) -> Step<T> {
+/// How the angle error of a subtracted sway passes through an interval, as a rate: the parts of a
+/// [`Step`] in their order.
+#[inline(never)]
+fn sway_step(sway: &SwayNoise, seconds: f64) -> [f64; 5] {
     let e1 = -libm::expm1(-seconds / sway.correlation);
-    let added = sway.angle_variance * doubled(e1);
-    Step {
-        end: T::of(1.0 - e1),
-        mean: T::of(-e1 / seconds),
-        end_variance: T::of(added),
-        cross: T::of(added / seconds),
-        mean_variance: T::of(added / (seconds * seconds)),
-    }
+    let (rate, added) = (1.0 / seconds, sway.angle_variance * doubled(e1));
+    let cross = added * rate;
+    [1.0 - e1, -e1 * rate, added, cross, cross * rate]
 }
 
 /// 1 − e⁻²ˣ from 1 − e⁻ˣ, to the last bits.
@@ -126,7 +123,9 @@ impl<T: Scalar> Steps<T> {
                 e1 = doubled(doubled(e1));
             }
             if sway.angle_variance > 0.0 {
-                self.of[RATES] = sway_step(sway, seconds);
+                let step = sway_step(sway, seconds);
+                let [end, mean, end_variance, cross, mean_variance] = step.map(T::of);
+                self.of[RATES] = Step { end, mean, end_variance, cross, mean_variance };
             }
         }
         self.of

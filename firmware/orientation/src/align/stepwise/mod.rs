@@ -19,6 +19,7 @@ use super::setting::Setting;
 use crate::noise::model::GyroNoise;
 use crate::noise::whitener::Whitener;
 use crate::signal::dwell::Dwell;
+use crate::signal::sway::SwayNoise;
 use uncertainty::Covariance;
 
 /// A dwell in the regression: north and east part of the sensitive axis, constant, time since the
@@ -191,7 +192,11 @@ impl Problem<'_> {
             rate_random_walk: noise.rate_random_walk * scale,
             ..GyroNoise::default()
         };
-        Whitener::new(&relative, shortest).with_sway(&self.setting.sway.scaled(scale))
+        let sway = SwayNoise {
+            angle_variance: self.setting.sway.angle_variance * scale * scale,
+            ..self.setting.sway
+        };
+        Whitener::new(&relative, shortest).with_sway(&sway)
     }
 
     /// Gives the row of each dwell, and the same with its noise white. One copy in flash serves

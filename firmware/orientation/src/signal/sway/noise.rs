@@ -40,17 +40,6 @@ impl SwayNoise {
         2.0 * self.residual_variance / (seconds * seconds)
     }
 
-    /// The same with angles in another unit.
-    #[must_use]
-    pub fn scaled(&self, factor: f64) -> Self {
-        let square = factor * factor;
-        Self {
-            angle_variance: self.angle_variance * square,
-            correlation: self.correlation,
-            residual_variance: self.residual_variance * square,
-        }
-    }
-
     /// Standard deviation of the angle, rad.
     #[must_use]
     pub fn angle_sigma(&self) -> f64 {
