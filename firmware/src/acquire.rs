@@ -10,16 +10,16 @@ use embassy_time::{Duration, Instant, with_timeout};
 use orientation::device::{Device, Trouble};
 use orientation::error::Refusal;
 use orientation::signal::Sample;
-use orientation::units::{Angle, AngularRate, DEGREE, SpecificForce, TURN, Temperature};
+use orientation::units::{AngularRate, SpecificForce, Temperature};
 
-use crate::calibration::Calibration;
 use crate::configuration::Configuration;
 use crate::event::Event;
 use crate::guarded::Guarded;
 use crate::patience::Symptom;
-use crate::ports::{Accelerometer, Encoder, ForceReading, Gyro, Observer, RateReading, Sensors};
+use crate::pointing::{Every, Pointing};
+use crate::ports::{Accelerometer, ForceReading, Gyro, Observer, RateReading};
 use crate::shared::Shared;
-use crate::steady::{Base, Steady};
+use crate::steady::Steady;
 use crate::timeline::{Arrival, Timeline};
 
 /// Periods without a conversion after which the gyro is silent.
@@ -28,11 +28,6 @@ const SILENCE: u32 = 8;
 pub(crate) const STUCK: u32 = 64;
 /// Longest time at the limit of the range, s: a slammed door is over by then.
 const SATURATED_SECONDS: f64 = 5.0;
-
-/// Faster than any stage, rad/s: a quarter of a turn a second.
-const FASTEST: f64 = TURN / 4.0;
-/// What a stage may jump by: play, ringing, a slipping magnet, rad.
-const PLAY: f64 = DEGREE;
 
 /// A force with the temperature at which it was measured.
 type Force = ([SpecificForce; 3], Temperature);
@@ -56,85 +51,52 @@ impl<T: Copy + PartialEq> Row<T> {
     }
 }
 
-/// Says yes at first, then every so-manieth time.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Every {
-    divider: u32,
-    left: u32,
-}
-
-impl Every {
-    pub(crate) fn new(divider: u32) -> Self {
-        Self { divider: divider.max(1), left: 0 }
-    }
-
-    pub(crate) fn is_due(&mut self) -> bool {
-        let is_due = self.left == 0;
-        self.left = if is_due { self.divider } else { self.left } - 1;
-        is_due
-    }
-}
-
-/// How far the stage can turn between two readings of its angle, in steps of an [`Angle`].
-fn greatest_step(configuration: &Configuration) -> u32 {
-    let seconds = f64::from(configuration.angle_divider) / configuration.sample_rate;
-    Angle::from_rad(PLAY + FASTEST * seconds).0
-}
-
 /// The sensors of the stage path at work.
-pub struct Acquisition<'a, G, A, E, S, O> {
+pub struct Acquisition<'a, G, A, P, S, O> {
     gyro: Guarded<'a, G>,
     accelerometer: Guarded<'a, A>,
-    encoder: Guarded<'a, E>,
+    pointing: P,
     steady: S,
     shared: &'a Shared<'a, O>,
-    calibration: Calibration,
     timeline: Timeline,
     silence: Duration,
     forces_due: Every,
-    angles_due: Every,
-    /// The angle of the latest reading; none where it was lost.
-    angle: Option<Angle>,
     rates: Row<AngularRate>,
     forces: Row<[SpecificForce; 3]>,
     rates_clipped: u32,
     forces_clipped: u32,
     longest_clipped: u32,
-    greatest_step: u32,
-    has_jumped: bool,
     /// Samples lost in a row because nobody took them.
     overflowed: u32,
 }
 
-impl<'a, G: Gyro, A: Accelerometer, E: Encoder, S: Steady, O: Observer>
-    Acquisition<'a, G, A, E, S, O>
+impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: Steady, O: Observer>
+    Acquisition<'a, G, A, P, S, O>
 {
     /// Takes the sensors; nothing is started yet.
-    pub fn new<B: Base<Steady<'a> = S>>(
-        sensors: &'a mut Sensors<G, A, E, B>,
+    pub fn new(
+        gyro: &'a mut G,
+        accelerometer: &'a mut A,
+        pointing: P,
+        steady: S,
         configuration: &Configuration,
         shared: &'a Shared<'a, O>,
     ) -> Self {
         let period = configuration.period();
         Self {
-            gyro: Guarded::new(&mut sensors.gyro, Device::Gyro),
-            accelerometer: Guarded::new(&mut sensors.accelerometer, Device::Accelerometer),
-            encoder: Guarded::new(&mut sensors.encoder, Device::Encoder),
-            steady: sensors.base.steady(),
+            gyro: Guarded::new(gyro, Device::Gyro),
+            accelerometer: Guarded::new(accelerometer, Device::Accelerometer),
+            pointing,
+            steady,
             shared,
-            calibration: Calibration::new(configuration.encoder),
             timeline: Timeline::new(period),
             silence: Duration::from_micros(u64::from(period) * u64::from(SILENCE)),
             forces_due: Every::new(configuration.force_divider),
-            angles_due: Every::new(configuration.angle_divider),
-            angle: None,
             rates: Row::new(),
             forces: Row::new(),
             rates_clipped: 0,
             forces_clipped: 0,
             longest_clipped: (SATURATED_SECONDS * configuration.sample_rate) as u32,
-            greatest_step: greatest_step(configuration),
-            has_jumped: false,
             overflowed: 0,
         }
     }
@@ -149,7 +111,7 @@ impl<'a, G: Gyro, A: Accelerometer, E: Encoder, S: Steady, O: Observer>
 
     async fn sample_for_ever(&mut self) -> Result<core::convert::Infallible, Refusal> {
         self.accelerometer.start(self.shared).await?;
-        self.encoder.start(self.shared).await?;
+        self.pointing.start().await?;
         self.steady.start(self.shared).await?;
         self.gyro.start(self.shared).await?;
         loop {
@@ -175,17 +137,23 @@ impl<'a, G: Gyro, A: Accelerometer, E: Encoder, S: Steady, O: Observer>
     async fn sample(&mut self) -> Result<Option<Sample>, Refusal> {
         let Some(time) = self.conversion().await? else { return Ok(None) };
         let rate = self.rate().await?;
-        let stage = self.angle().await?;
+        self.steady.follow(self.shared).await?;
+        if !self.steady.is_decided() {
+            self.shared.count(|health| health.samples += 1);
+            return Ok(None);
+        }
+        let shown = self.pointing.read().await?;
         let force = self.force().await?;
-        let (Some(rate), Some(stage)) = (rate, stage) else { return Ok(None) };
-        let rate = self.steady.steadied(rate, stage, self.shared).await?;
+        let (Some(rate), Some(shown)) = (rate, shown) else { return Ok(None) };
         self.judge(time);
+        let aim = self.pointing.aim(shown);
         Ok(Some(Sample {
             time: orientation::units::Instant(time.as_micros()),
-            stage,
-            rate,
+            stage: aim.heading,
+            rate: self.steady.steadied(rate, aim.heading),
             force: force.map(|(force, _)| force),
             temperature: force.map(|(_, temperature)| temperature),
+            elevation: aim.elevation.filter(|_| force.is_some()),
         }))
     }
 
@@ -236,38 +204,6 @@ impl<'a, G: Gyro, A: Accelerometer, E: Encoder, S: Steady, O: Observer>
             return Ok(());
         }
         Err(self.shared.give_up(Device::Gyro, Trouble::Saturated))
-    }
-
-    /// The stage's angle, read anew with every so-manieth sample; none where that was lost.
-    async fn angle(&mut self) -> Result<Option<Angle>, Refusal> {
-        if self.angles_due.is_due() || self.angle.is_none() {
-            let begun = Instant::now();
-            let outcome = self.encoder.device.read().await;
-            self.angle = match self.encoder.checked(begun, outcome) {
-                Ok(shown) => Some(self.calibration.correct(shown)),
-                Err(symptom) => self.encoder.mend(symptom, self.shared).await.map(|()| None)?,
-            };
-            self.angle = self.angle.filter(|angle| self.is_in_line(*angle));
-        }
-        Ok(self.angle)
-    }
-
-    /// Takes an angle, unless it is further from the one before than the stage can turn: such a one is
-    /// lost, but the next is believed.
-    fn is_in_line(&mut self, angle: Angle) -> bool {
-        let (last, _) = self.shared.angle.get();
-        let step = (angle - last).0.cast_signed().unsigned_abs();
-        self.has_jumped =
-            step > self.greatest_step && !self.has_jumped && self.timeline.has_begun();
-        if self.has_jumped {
-            self.shared.lose(Device::Encoder, Symptom::Jumped);
-            return false;
-        }
-        self.shared.angle.set((angle, Instant::now()));
-        if self.steady.is_decided() {
-            self.shared.sensing.signal(());
-        }
-        true
     }
 
     /// Force and temperature with every so-manieth sample.

@@ -57,7 +57,8 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Gyro for AnalogueGyro<S, R, D> {
     }
 }
 
-/// The accelerometer on the platform: its x along the sensitive axis, y 90° clockwise, z down.
+/// The accelerometer on the platform: its x along the sensitive axis, y 90° clockwise, z down. Of a
+/// two-frame mount it sits on the base: forward, right, down.
 #[derive(Debug)]
 pub struct PlatformAccelerometer<S, D>(pub Adxl355<S, D>);
 

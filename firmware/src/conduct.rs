@@ -6,6 +6,8 @@ use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant};
 use orientation::align::conclusion::Conclusion;
 use orientation::error::Refusal;
+use orientation::noise::fit::NoiseFit;
+use orientation::session::schedule::Schedule;
 use orientation::session::{Command, Event as SessionEvent, Phase, Session};
 use orientation::signal::Sample;
 use orientation::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN as DEGREES};
@@ -34,6 +36,7 @@ struct Told {
     dwells: usize,
     repetitions: usize,
     is_level: bool,
+    is_planned: bool,
 }
 
 impl<'a, R: Recorder, O: Observer> Conductor<'a, R, O> {
@@ -114,6 +117,10 @@ impl<'a, R: Recorder, O: Observer> Conductor<'a, R, O> {
             self.told.is_level = true;
             self.tell_level();
         }
+        if !self.told.is_planned && self.session.surveyed().is_some() {
+            self.told.is_planned = true;
+            self.tell_plan();
+        }
         if self.session.repetitions().len() > self.told.repetitions {
             self.told.repetitions = self.session.repetitions().len();
             self.tell_repetition();
@@ -129,7 +136,26 @@ impl<'a, R: Recorder, O: Observer> Conductor<'a, R, O> {
             let [along, across] = [along, across].map(|f| libm::atan2(f, -down) * DEGREES);
             self.shared.tell(Event::Levelled(along, across));
         }
+        if let Some(survey) = &self.session.procedure().survey {
+            self.shared.tell(Event::Surveying(survey.seconds));
+        }
         self.tell_status();
+    }
+
+    /// What the survey found and what follows from it.
+    fn tell_plan(&self) {
+        let found = self.session.surveyed().map(NoiseFit::in_field_units);
+        for (coefficient, estimate) in found.into_iter().flatten() {
+            self.shared.tell(Event::Noise(coefficient, estimate));
+        }
+        if let Schedule::Planned(plan) = &self.session.procedure().schedule {
+            self.shared.tell(Event::Planned {
+                positions: plan.positions(),
+                dwell: plan.dwell,
+                seconds: plan.seconds,
+                sigma: plan.sigma(self.session.setting().latitude) * DEGREES,
+            });
+        }
     }
 
     fn tell_repetition(&self) {
@@ -151,6 +177,10 @@ impl<'a, R: Recorder, O: Observer> Conductor<'a, R, O> {
     }
 
     fn tell_status(&self) {
+        if self.session.phase() == Phase::Survey {
+            self.shared.status.set(Status::Surveying);
+            return;
+        }
         let (done, of) = (self.told.dwells as u16, self.session.planned() as u16);
         self.shared.status.set(Status::Measuring { done, of });
     }

@@ -1,9 +1,11 @@
 //! What the instrument must know of its board before it begins.
 
 use embassy_time::Duration;
+use orientation::align::mount::{FrameAngles, LIMIT, MountError, Station, TwoFrame};
 use orientation::units::DEGREE;
 
 use crate::calibration::Harmonics;
+use crate::ports::Frames;
 
 /// The stage's mechanics and how patiently it is driven.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +47,63 @@ impl Default for StageConfiguration {
             settle: Duration::from_millis(250),
             longest: Duration::from_secs(60),
         }
+    }
+}
+
+/// The two frames of a mount: geometry, encoders, drives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FramesConfiguration {
+    geometry: TwoFrame,
+    stations: [FrameAngles; STATIONS.len()],
+    /// What the encoders show beyond the true angles.
+    pub encoders: Frames<Harmonics>,
+    /// The drives; where they wait and how far they turn is the geometry's.
+    pub drives: Frames<StageConfiguration>,
+    /// For how long neither frame may have moved before samples count. Unlike a stage, the frames turn
+    /// the gyro about its own axis, so it feels how they ring long after the encoders do.
+    pub rest: Duration,
+}
+
+/// Where a mount stands.
+const STATIONS: [Station; 5] =
+    [Station::Forward, Station::Right, Station::Backward, Station::Left, Station::Storage];
+
+/// The default rest: frames that ring at 15 Hz, damped by 0.08, then turn by less than 0.02 °/h.
+const FRAMES_REST: Duration = Duration::from_millis(1500);
+
+/// True angle at which a frame's index switch closes, rad; it stays closed below.
+const FRAME_INDEX: f64 = -95.0 * DEGREE;
+
+impl FramesConfiguration {
+    /// The default drives with encoders and a geometry as they are calibrated: index at −95°, travel
+    /// as [`LIMIT`] has it.
+    ///
+    /// # Errors
+    /// A geometry that does not let the axis stand where it must.
+    pub fn new(geometry: TwoFrame, encoders: Frames<Harmonics>) -> Result<Self, MountError> {
+        let drive = |zero| StageConfiguration {
+            index: FRAME_INDEX + zero,
+            travel: [-LIMIT, LIMIT],
+            ..StageConfiguration::default()
+        };
+        let mut stations = [FrameAngles::default(); STATIONS.len()];
+        for (angles, station) in stations.iter_mut().zip(STATIONS) {
+            *angles = geometry.angles(station)?;
+        }
+        let zeros = Frames { outer: geometry.outer_zero, inner: geometry.inner_zero };
+        Ok(Self { geometry, stations, encoders, drives: zeros.map(drive), rest: FRAMES_REST })
+    }
+
+    /// How the mount is calibrated.
+    #[must_use]
+    pub fn geometry(&self) -> TwoFrame {
+        self.geometry
+    }
+
+    /// The angles of a station.
+    #[must_use]
+    pub fn angles(&self, station: Station) -> FrameAngles {
+        self.stations[station as usize]
     }
 }
 

@@ -3,6 +3,7 @@
 use orientation::align::quality::Disturbance;
 use orientation::device::{Device, Trouble};
 use orientation::error::Refusal;
+use orientation::noise::fit::{Coefficient, Estimate};
 use orientation::words;
 use orientation::words::Rounded;
 
@@ -39,20 +40,37 @@ pub enum Event {
     /// The base sways, which is subtracted: RMS of its angle, °, its frequency, Hz, and the RMS of
     /// what is left of the angle, °.
     BaseSways(f64, f64, f64),
-    /// The stage looks for its index.
-    Homing,
-    /// The stage found its index at this angle, °.
-    Homed(f64),
-    /// The stage is sent to this angle, °.
-    Turning(f64),
-    /// The stage stands: at this angle, after so many seconds.
-    Arrived(f64, f64),
-    /// The stage stands beside its target by this angle, °, and goes again.
-    Corrected(f64),
-    /// The stage is blocked and tries again.
-    Blocked,
+    /// An axis looks for its index.
+    Homing(Device),
+    /// An axis found its index at this angle, °.
+    Homed(Device, f64),
+    /// An axis is sent to this angle, °.
+    Turning(Device, f64),
+    /// An axis stands: at this angle, after so many seconds.
+    Arrived(Device, f64, f64),
+    /// An axis stands beside its target by this angle, °, and goes again.
+    Corrected(Device, f64),
+    /// An axis is blocked and tries again.
+    Blocked(Device),
+    /// The gyro's axis stands vertical, to store the azimuth: angles of the outer and the inner frame.
+    Stored(f64, f64),
     /// The platform is level enough: pitch and roll of the platform, °.
     Levelled(f64, f64),
+    /// The stage stands still for so many seconds, to know the gyro.
+    Surveying(f64),
+    /// A coefficient of the gyro's noise as the survey found it.
+    Noise(Coefficient, Estimate),
+    /// The plan that follows from the noise.
+    Planned {
+        /// Positions.
+        positions: usize,
+        /// Time at each, s.
+        dwell: f64,
+        /// Time for all with the rotations, s.
+        seconds: f64,
+        /// 1σ of the azimuth that it promises, °.
+        sigma: f64,
+    },
     /// A dwell was taken: number, of how many, its mean rate.
     Dwelled(usize, usize, f64),
     /// The dwell is shorter than planned, so many seconds: the stage moved of itself.
@@ -85,16 +103,25 @@ words! { Event:
     Self::BaseSways(angle, hertz, left) =>
         "base: sways by {}° at {} Hz (RMS); it is subtracted but for {}°",
         Rounded::<4>(angle), Rounded::<2>(hertz), Rounded::<4>(left);
-    Self::Homing => "stage: looking for its index";
-    Self::Homed(angle) => "stage: index found at {}°", Rounded::<3>(angle);
-    Self::Turning(angle) => "stage: to {}°", Rounded::<3>(angle);
-    Self::Arrived(angle, seconds) =>
-        "stage: stands at {}° after {} s", Rounded::<3>(angle), Rounded::<2>(seconds);
-    Self::Corrected(angle) => "stage: {}° beside its target, going again", Rounded::<3>(angle);
-    Self::Blocked => "stage: blocked, trying again";
+    Self::Homing(axis) => "{}: looking for its index", axis;
+    Self::Homed(axis, angle) => "{}: index found at {}°", axis, Rounded::<3>(angle);
+    Self::Turning(axis, angle) => "{}: to {}°", axis, Rounded::<3>(angle);
+    Self::Arrived(axis, angle, seconds) =>
+        "{}: stands at {}° after {} s", axis, Rounded::<3>(angle), Rounded::<2>(seconds);
+    Self::Corrected(axis, angle) =>
+        "{}: {}° beside its target, going again", axis, Rounded::<3>(angle);
+    Self::Blocked(axis) => "{}: blocked, trying again", axis;
+    Self::Stored(outer, inner) =>
+        "gyro vertical to store the azimuth: outer frame at {}°, inner frame at {}°",
+        Rounded::<3>(outer), Rounded::<3>(inner);
     Self::Levelled(pitch, roll) =>
         "level: platform inclined by {}° along and {}° across the gyro's axis",
         Rounded::<3>(pitch), Rounded::<3>(roll);
+    Self::Surveying(seconds) => "survey: standing still for {} s to know the gyro", Rounded::<0>(seconds);
+    Self::Noise(coefficient, estimate) => "{}: {}", coefficient, estimate;
+    Self::Planned { positions, dwell, seconds, sigma } =>
+        "plan: {} positions of {} s, {} s in all, for {}° (1σ)",
+        positions, Rounded::<2>(dwell), Rounded::<0>(seconds), Rounded::<4>(sigma);
     Self::Dwelled(number, of, rate) => "dwell {} of {}: {} °/h", number, of, Rounded::<4>(rate);
     Self::CutShort(seconds) =>
         "that dwell is short, {} s: the stage moved of itself", Rounded::<1>(seconds);

@@ -22,7 +22,7 @@ pub struct Health {
     pub late: u32,
     /// Samples that nobody took in time.
     pub overflowed: u32,
-    /// Readings lost, by device: gyro, accelerometer, encoder, stage, base.
+    /// Readings lost, by device: gyro, accelerometer, encoder, stage, base; both frames together.
     pub lost: [u16; 5],
     /// Restarts, by device.
     pub restarts: [u16; 5],
@@ -68,8 +68,8 @@ fn count(counters: &mut [u16; 5], device: Device) {
     let counter = &mut counters[match device {
         Device::Gyro => 0,
         Device::Accelerometer => 1,
-        Device::Encoder => 2,
-        Device::Stage => 3,
+        Device::Encoder | Device::OuterEncoder | Device::InnerEncoder => 2,
+        Device::Stage | Device::OuterFrame | Device::InnerFrame => 3,
         Device::Base => 4,
     }];
     *counter = counter.saturating_add(1);

@@ -7,6 +7,9 @@
 //!                    └────────────▶ stage ─▶ motor
 //! ```
 //!
+//! A two-frame mount has two encoders and two motors: [`pointing`] and [`gimbal`] stand for encoder and
+//! stage then.
+//!
 //! [`run::acquire`] samples, [`run::run`] joins the other parts in fixed order; they know no pin, no
 //! bus and no clock but `embassy-time`'s. What they need from the outside are the traits of [`ports`];
 //! [`chips`] gives them to the drivers of the `drivers` crate. What happens is told once, as an
@@ -22,10 +25,12 @@ pub mod acquire;
 pub mod calibration;
 pub mod guarded;
 pub mod patience;
+pub mod pointing;
 pub mod steady;
 pub mod timeline;
 
 pub mod conduct;
+pub mod gimbal;
 pub mod stage;
 
 pub mod event;

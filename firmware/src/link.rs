@@ -32,6 +32,8 @@ pub enum Status {
     Starting,
     /// The stage looks for its index.
     Homing,
+    /// The stage stands still to know the gyro.
+    Surveying,
     /// Dwells are measured.
     Measuring {
         /// Dwells that are taken.
@@ -71,6 +73,7 @@ impl fmt::Display for Status {
         match self {
             Self::Starting => f.write_str("starting"),
             Self::Homing => f.write_str("homing"),
+            Self::Surveying => f.write_str("surveying"),
             Self::Measuring { done, of } => write!(f, "measuring {done}/{of}"),
             Self::Concluded { azimuth, sigma } => write!(
                 f,

@@ -37,10 +37,11 @@ pub trait Gyro: Startable {
     async fn read(&mut self) -> Result<RateReading, Fault>;
 }
 
-/// One reading of the accelerometer, in the platform's axes.
+/// One reading of the accelerometer, in the axes of the platform, or of the base it is fixed to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ForceReading {
-    /// Specific force: x along the sensitive axis, y 90° clockwise of it, z down.
+    /// Specific force. On the platform x along the sensitive axis, y 90° clockwise of it, z down; on
+    /// the base forward, right, down.
     pub force: [SpecificForce; 3],
     /// Temperature of the chip.
     pub temperature: Temperature,
@@ -50,7 +51,7 @@ pub struct ForceReading {
     pub is_clipped: bool,
 }
 
-/// The accelerometer on the platform.
+/// The accelerometer on the platform, or on the base.
 #[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait Accelerometer: Startable {
     /// Reads the latest output.
@@ -166,6 +167,22 @@ impl<O: Observer> Observer for &O {
     }
 }
 
+/// What a two-frame mount has twice.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Frames<T> {
+    /// Of the outer frame.
+    pub outer: T,
+    /// Of the inner frame.
+    pub inner: T,
+}
+
+impl<T> Frames<T> {
+    /// The same with something done to both.
+    pub fn map<U>(self, change: impl Fn(T) -> U) -> Frames<U> {
+        Frames { outer: change(self.outer), inner: change(self.inner) }
+    }
+}
+
 /// The sensors of the stage path, which acquisition owns.
 #[derive(Debug)]
 pub struct Sensors<G, A, E, B = NoBase> {
@@ -173,7 +190,7 @@ pub struct Sensors<G, A, E, B = NoBase> {
     pub gyro: G,
     /// The accelerometer on the platform.
     pub accelerometer: A,
-    /// The encoder of the stage.
+    /// The encoder of the stage; [`Frames`] of a mount with two.
     pub encoder: E,
     /// Coarse sensors on the base, where there are any.
     pub base: B,
@@ -190,7 +207,7 @@ impl<G, A, E> Sensors<G, A, E> {
 /// What else a board offers.
 #[derive(Debug)]
 pub struct Ports<M, L, R> {
-    /// The motor of the stage.
+    /// The motor of the stage; [`Frames`] of a mount with two.
     pub actuator: M,
     /// Where status lines go.
     pub link: L,

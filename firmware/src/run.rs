@@ -5,19 +5,25 @@
 //! are generic over their ports, and both end within a bounded time, whatever the devices do.
 
 use core::future::pending;
-use core::pin::pin;
+use core::pin::{Pin, pin};
 
-use embassy_futures::select::select4;
+use embassy_futures::select::{select, select4};
 use embedded_io_async::Write;
+use orientation::device::Device;
+use orientation::error::Refusal;
 use orientation::session::Session;
 
 use crate::acquire::Acquisition;
 use crate::conduct::Conductor;
-use crate::configuration::Configuration;
+use crate::configuration::{Configuration, FramesConfiguration};
+use crate::gimbal::Gimbal;
 use crate::health::{self, Health};
 use crate::link;
-use crate::ports::{Accelerometer, Actuator, Encoder, Gyro, Observer, Ports, Recorder, Sensors};
-use crate::shared::Shared;
+use crate::pointing::{FrameShafts, Shaft};
+use crate::ports::{
+    Accelerometer, Actuator, Encoder, Frames, Gyro, Observer, Ports, Recorder, Sensors,
+};
+use crate::shared::{LatestAngle, Shared};
 use crate::stage::Stage;
 use crate::steady::Base;
 
@@ -33,7 +39,37 @@ pub async fn acquire<G, A, E, B, O>(
     B: Base,
     O: Observer,
 {
-    let reason = Acquisition::new(sensors, configuration, shared).run().await;
+    let Sensors { gyro, accelerometer, encoder, base } = sensors;
+    let harmonics = configuration.encoder;
+    let (name, latest) = (Device::Encoder, &shared.angle);
+    let shaft = Shaft::new(encoder, name, harmonics, configuration, latest, shared);
+    let reason = Acquisition::new(gyro, accelerometer, shaft, base.steady(), configuration, shared)
+        .run()
+        .await;
+    shared.fail(reason);
+    pending::<()>().await;
+}
+
+/// The same for a mount with two frames, whose latest angles go to `latest`.
+pub async fn acquire_frames<G, A, E, B, O>(
+    sensors: &mut Sensors<G, A, Frames<E>, B>,
+    configuration: &Configuration,
+    frames: &FramesConfiguration,
+    latest: &Frames<LatestAngle>,
+    shared: &Shared<'_, O>,
+) where
+    G: Gyro,
+    A: Accelerometer,
+    E: Encoder,
+    B: Base,
+    O: Observer,
+{
+    let Sensors { gyro, accelerometer, encoder, base } = sensors;
+    let shafts = FrameShafts::new(encoder, configuration, frames, latest, shared);
+    let reason =
+        Acquisition::new(gyro, accelerometer, shafts, base.steady(), configuration, shared)
+            .run()
+            .await;
     shared.fail(reason);
     pending::<()>().await;
 }
@@ -56,11 +92,63 @@ where
 {
     let Ports { actuator, link, recorder } = ports;
     let mut stage = Stage::new(actuator, &configuration.stage, shared);
+    let turning = pin!(stage.run());
+    beside(turning, link, recorder, session, shared).await
+}
+
+/// The same on a mount with two frames. After an azimuth it takes the gyro's axis to the vertical,
+/// where it can store it.
+pub async fn run_frames<M, L, R, O>(
+    ports: &mut Ports<Frames<M>, L, R>,
+    frames: &FramesConfiguration,
+    latest: &Frames<LatestAngle>,
+    session: &mut Session,
+    shared: &Shared<'_, O>,
+) -> Health
+where
+    M: Actuator,
+    L: Write,
+    R: Recorder,
+    O: Observer,
+{
+    let Ports { actuator, link, recorder } = ports;
+    let mut gimbal = Gimbal::new(actuator, frames, latest, shared);
+    let health = {
+        let turning = pin!(gimbal.run());
+        beside(turning, link, recorder, session, shared).await
+    };
+    if session.conclusion().is_some_and(|conclusion| conclusion.verdict.is_ok()) {
+        // Where that fails, the log has the reason; the azimuth stands all the same.
+        select(gimbal.store(), discard(shared)).await;
+    }
+    health
+}
+
+/// Lets samples go by.
+async fn discard<O>(shared: &Shared<'_, O>) {
+    loop {
+        shared.samples.receive().await;
+    }
+}
+
+/// Joins the parts around what turns the gyro, which ends only with a reason to end everything.
+async fn beside<L, R, O>(
+    turning: Pin<&mut impl Future<Output = Refusal>>,
+    link: &mut L,
+    recorder: &mut R,
+    session: &mut Session,
+    shared: &Shared<'_, O>,
+) -> Health
+where
+    L: Write,
+    R: Recorder,
+    O: Observer,
+{
     let mut conductor = Conductor::new(session, recorder, shared);
     // Pinned here, each part lies in memory once.
     let conduct = pin!(conductor.run());
     let position = pin!(async {
-        shared.fail(stage.run().await);
+        shared.fail(turning.await);
         pending::<()>().await;
     });
     let tell = pin!(link::run(link, shared));

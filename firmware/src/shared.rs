@@ -21,6 +21,9 @@ use crate::ports::Observer;
 /// Samples that may wait for the session: 8 ms at 2 kHz.
 pub const QUEUE: usize = 16;
 
+/// The latest encoder angle of an axis, corrected, and when it was read.
+pub type LatestAngle = Cell<(Angle, Instant)>;
+
 /// The seams between the parts. All of them run in one executor, so nothing needs a lock.
 pub struct Shared<'a, O> {
     /// From acquisition to the session.
@@ -35,8 +38,8 @@ pub struct Shared<'a, O> {
     pub failure: Signal<NoopRawMutex, Refusal>,
     /// From the session to the link: the last status stands.
     pub concluded: Signal<NoopRawMutex, ()>,
-    /// The latest encoder angle, corrected, and when it was read.
-    pub angle: Cell<(Angle, Instant)>,
+    /// The stage's latest angle.
+    pub angle: LatestAngle,
     /// What a subtracted sway leaves in the samples; decided before the stage is homed.
     pub sway: Cell<SwayNoise>,
     /// What went wrong so far.

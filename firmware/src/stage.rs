@@ -17,7 +17,7 @@ use crate::configuration::StageConfiguration;
 use crate::event::Event;
 use crate::guarded::Guarded;
 use crate::ports::{Actuator, Motion, Observer};
-use crate::shared::Shared;
+use crate::shared::{LatestAngle, Shared};
 
 /// How often the motor is asked what it does.
 const POLL: Duration = Duration::from_millis(20);
@@ -32,6 +32,15 @@ const STALL_REST: Duration = Duration::from_millis(500);
 const STALE: Duration = Duration::from_millis(100);
 /// How long a fresh angle is waited for: sensors that are started again give none meanwhile.
 const PATIENCE: Duration = Duration::from_secs(5);
+
+/// An axis' devices, as the log names them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Axis {
+    /// Motor and its driver.
+    pub drive: Device,
+    /// Encoder.
+    pub encoder: Device,
+}
 
 /// What breaks a movement off.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,24 +74,39 @@ enum Request {
     Look,
 }
 
-/// The stage under control.
+/// The stage under control, or one frame of a mount with two.
 pub struct Stage<'a, M, O> {
+    axis: Axis,
     actuator: Guarded<'a, M>,
     /// What the motor did when it was last looked at.
     motion: Motion,
     configuration: StageConfiguration,
+    latest: &'a LatestAngle,
     shared: &'a Shared<'a, O>,
 }
 
 impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
-    /// Takes the motor; nothing moves yet.
+    /// Takes the motor of a single-axis stage; nothing moves yet.
     pub fn new(
         actuator: &'a mut M,
         configuration: &StageConfiguration,
         shared: &'a Shared<'a, O>,
     ) -> Self {
-        let actuator = Guarded::new(actuator, Device::Stage);
-        Self { actuator, motion: Motion::default(), configuration: *configuration, shared }
+        let axis = Axis { drive: Device::Stage, encoder: Device::Encoder };
+        Self::of(axis, actuator, configuration, &shared.angle, shared)
+    }
+
+    /// Takes the motor of an axis whose encoder shows the `latest` angle; nothing moves yet.
+    pub fn of(
+        axis: Axis,
+        actuator: &'a mut M,
+        configuration: &StageConfiguration,
+        latest: &'a LatestAngle,
+        shared: &'a Shared<'a, O>,
+    ) -> Self {
+        let actuator = Guarded::new(actuator, axis.drive);
+        let (motion, configuration) = (Motion::default(), *configuration);
+        Self { axis, actuator, motion, configuration, latest, shared }
     }
 
     /// Homes, then goes where it is sent until it must be given up; gives the reason.
@@ -94,7 +118,7 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
     }
 
     async fn serve(&mut self) -> Result<Infallible, Refusal> {
-        self.actuator.start(self.shared).await?;
+        self.start().await?;
         self.shared.sensing.wait().await;
         self.home().await?;
         self.turn_to(self.configuration.home).await?;
@@ -105,15 +129,20 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
         }
     }
 
+    /// Starts the motor's driver.
+    pub(crate) fn start(&mut self) -> impl Future<Output = Result<(), Refusal>> {
+        self.actuator.start(self.shared)
+    }
+
     /// Finds the index and sets the motor's count by the encoder there.
-    async fn home(&mut self) -> Result<(), Refusal> {
-        self.shared.tell(Event::Homing);
+    pub(crate) async fn home(&mut self) -> Result<(), Refusal> {
+        self.shared.tell(Event::Homing(self.axis.drive));
         for attempt in 0..=RETRIES {
             match self.find_index().await {
                 Ok(()) => return Ok(()),
                 Err(Break::Refused(reason)) => return Err(reason),
                 Err(Break::Stalled) => {
-                    self.shared.tell(Event::Blocked);
+                    self.shared.tell(Event::Blocked(self.axis.drive));
                     Timer::after(STALL_REST * (1 << attempt)).await;
                 }
                 Err(Break::Lost) => {}
@@ -151,29 +180,33 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
             return Err(self.fail(Trouble::Disagrees((shown - index) * DEGREES)).into());
         }
         self.ask(Request::SetAngle(shown)).await?;
-        self.shared.tell(Event::Homed(shown * DEGREES));
+        self.shared.tell(Event::Homed(self.axis.drive, shown * DEGREES));
         Ok(())
     }
 
     /// Goes to an angle, rad, and does not rest until the encoder shows it.
-    async fn turn_to(&mut self, target: f64) -> Result<(), Refusal> {
+    pub(crate) async fn turn_to(&mut self, target: f64) -> Result<(), Refusal> {
         let [low, high] = self.configuration.travel;
         if !(low..=high).contains(&target) {
             return Err(self.fail(Trouble::BeyondTravel(target * DEGREES)));
         }
         let begun = Instant::now();
-        self.shared.tell(Event::Turning(target * DEGREES));
+        self.shared.tell(Event::Turning(self.axis.drive, target * DEGREES));
         let mut aim = target;
         let mut trouble = None;
         for attempt in 0..=MOVES {
             match self.approach(aim, target).await {
                 Ok(off) if off.abs() <= self.configuration.tolerance => {
                     let took = (Instant::now() - begun).as_micros() as f64 * 1e-6;
-                    self.shared.tell(Event::Arrived((target + off) * DEGREES, took));
+                    self.shared.tell(Event::Arrived(
+                        self.axis.drive,
+                        (target + off) * DEGREES,
+                        took,
+                    ));
                     return Ok(());
                 }
                 Ok(off) => {
-                    self.shared.tell(Event::Corrected(off * DEGREES));
+                    self.shared.tell(Event::Corrected(self.axis.drive, off * DEGREES));
                     trouble = Some(Trouble::NotThere(off * DEGREES));
                     aim -= off;
                 }
@@ -211,7 +244,7 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
             Break::Refused(reason) => Err(reason),
             Break::Lost => self.home().await,
             Break::Stalled => {
-                self.shared.tell(Event::Blocked);
+                self.shared.tell(Event::Blocked(self.axis.drive));
                 Timer::after(rest).await;
                 self.home().await
             }
@@ -265,7 +298,7 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
 
     /// The latest encoder angle, rad, in the turn around `near`, however old.
     fn nearest_shown(&self, near: f64) -> f64 {
-        let (shown, _) = self.shared.angle.get();
+        let (shown, _) = self.latest.get();
         near + (shown - Angle::from_rad(near)).signed_rad()
     }
 
@@ -273,18 +306,18 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
     async fn shown_near(&self, near: f64) -> Result<f64, Refusal> {
         let deadline = Instant::now() + PATIENCE;
         loop {
-            let (_, read) = self.shared.angle.get();
+            let (_, read) = self.latest.get();
             if Instant::now() - read <= STALE {
                 return Ok(self.nearest_shown(near));
             }
             if Instant::now() > deadline {
-                return Err(self.shared.give_up(Device::Encoder, Trouble::Silent));
+                return Err(self.shared.give_up(self.axis.encoder, Trouble::Silent));
             }
             Timer::after(POLL).await;
         }
     }
 
     fn fail(&self, trouble: Trouble) -> Refusal {
-        self.shared.give_up(Device::Stage, trouble)
+        self.shared.give_up(self.axis.drive, trouble)
     }
 }

@@ -16,10 +16,11 @@ use orientation::error::Refusal;
 use orientation::signal::sway::{Decision, Sway};
 use orientation::units::{Angle, AngularRate, DEGREES_PER_RADIAN as DEGREES, SpecificForce, TURN};
 
-use crate::acquire::{Every, Row, STUCK};
+use crate::acquire::{Row, STUCK};
 use crate::event::Event;
 use crate::guarded::Guarded;
 use crate::patience::Symptom;
+use crate::pointing::Every;
 use crate::ports::{BaseReading, BaseSensors, NoBase, Observer};
 use crate::shared::Shared;
 
@@ -51,13 +52,11 @@ pub trait Steady {
     /// Whether it is known what is to be done.
     fn is_decided(&self) -> bool;
 
-    /// The rate at a stage angle, less the sway along the sensitive axis.
-    async fn steadied<O: Observer>(
-        &mut self,
-        rate: AngularRate,
-        stage: Angle,
-        shared: &Shared<'_, O>,
-    ) -> Result<AngularRate, Refusal>;
+    /// Reads what it needs; called with every sample.
+    async fn follow<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal>;
+
+    /// The rate along a level axis at this heading, less the sway.
+    fn steadied(&mut self, rate: AngularRate, heading: Angle) -> AngularRate;
 }
 
 impl Base for NoBase {
@@ -81,13 +80,15 @@ impl Steady for NoBase {
         true
     }
 
-    fn steadied<O: Observer>(
+    fn follow<O: Observer>(
         &mut self,
-        rate: AngularRate,
-        _: Angle,
         _: &Shared<'_, O>,
-    ) -> impl Future<Output = Result<AngularRate, Refusal>> {
-        ready(Ok(rate))
+    ) -> impl Future<Output = Result<(), Refusal>> {
+        ready(Ok(()))
+    }
+
+    fn steadied(&mut self, rate: AngularRate, _: Angle) -> AngularRate {
+        rate
     }
 }
 
@@ -231,24 +232,24 @@ impl<B: BaseSensors> Steady for Steadied<'_, B> {
         self.is_lost || self.sway.decision() != Decision::Watching
     }
 
-    async fn steadied<O: Observer>(
-        &mut self,
-        rate: AngularRate,
-        stage: Angle,
-        shared: &Shared<'_, O>,
-    ) -> Result<AngularRate, Refusal> {
-        if self.due.is_due() && !self.is_lost {
-            let was_decided = self.is_decided();
-            if let Err(symptom) = self.read().await {
-                self.mend(symptom, shared).await?;
-            }
-            if !was_decided {
-                self.tell(shared);
-            }
+    async fn follow<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal> {
+        if self.is_lost || !self.due.is_due() {
+            return Ok(());
         }
+        let was_decided = self.is_decided();
+        if let Err(symptom) = self.read().await {
+            self.mend(symptom, shared).await?;
+        }
+        if !was_decided {
+            self.tell(shared);
+        }
+        Ok(())
+    }
+
+    fn steadied(&mut self, rate: AngularRate, heading: Angle) -> AngularRate {
         if rate.is_saturated() {
-            return Ok(rate);
+            return rate;
         }
-        Ok(AngularRate(rate.0.saturating_sub(self.swaying(stage))))
+        AngularRate(rate.0.saturating_sub(self.swaying(heading)))
     }
 }

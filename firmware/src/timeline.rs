@@ -27,12 +27,6 @@ impl Timeline {
         Self { period, last: None }
     }
 
-    /// Whether there was a sample before.
-    #[must_use]
-    pub fn has_begun(&self) -> bool {
-        self.last.is_some()
-    }
-
     /// Judges the next sample. A quarter of a period is forgiven: the bus may be late, but a
     /// converter's own clock is good to per cents.
     pub fn judge(&mut self, now: Instant) -> Arrival {

@@ -14,7 +14,7 @@ use crate::violation::Violations;
 /// Order in which chips act at equal times: the stage moves before it is measured.
 const ORDER: [Select; 4] = [Select::Actuator, Select::Gyro, Select::Accelerometer, Select::Encoder];
 
-/// The plant with the converter `G` of the gyro, the accelerometer `A`, the encoder `E` and the motor
+/// The plant of a single-axis stage, whose one frame answers for an inner one too, with the converter `G` of the gyro, the accelerometer `A`, the encoder `E` and the motor
 /// driver `M`.
 #[derive(Clone, Debug)]
 pub struct Board<'a, G, A, E, M> {
@@ -92,8 +92,8 @@ where
         match select {
             Select::Gyro => &self.gyro,
             Select::Accelerometer => &self.accelerometer,
-            Select::Encoder => &self.encoder,
-            Select::Actuator => &self.actuator,
+            Select::Encoder | Select::InnerEncoder => &self.encoder,
+            Select::Actuator | Select::InnerActuator => &self.actuator,
         }
     }
 
@@ -101,8 +101,8 @@ where
         let chip: &mut dyn SpiChip<Plant<'a>> = match select {
             Select::Gyro => &mut self.gyro,
             Select::Accelerometer => &mut self.accelerometer,
-            Select::Encoder => &mut self.encoder,
-            Select::Actuator => &mut self.actuator,
+            Select::Encoder | Select::InnerEncoder => &mut self.encoder,
+            Select::Actuator | Select::InnerActuator => &mut self.actuator,
         };
         (chip, &mut self.plant)
     }

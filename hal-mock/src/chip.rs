@@ -15,6 +15,10 @@ pub enum Select {
     Encoder,
     /// The motor driver of the stage.
     Actuator,
+    /// The encoder of a two-frame mount's inner frame; the outer one has the stage's.
+    InnerEncoder,
+    /// The motor driver of the inner frame.
+    InnerActuator,
 }
 
 /// One transaction as the chip sees it, from select low to select high.

@@ -114,25 +114,25 @@ pub struct PlatformInput {
 }
 
 /// Rotation about x (forward), rad.
-fn about_x(angle: f64) -> Matrix {
+pub(crate) fn about_x(angle: f64) -> Matrix {
     let (s, c) = libm::sincos(angle);
     [[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]]
 }
 
 /// Rotation about y (right), rad.
-fn about_y(angle: f64) -> Matrix {
+pub(crate) fn about_y(angle: f64) -> Matrix {
     let (s, c) = libm::sincos(angle);
     [[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]]
 }
 
 /// Rotation about z (down), rad.
-fn about_z(angle: f64) -> Matrix {
+pub(crate) fn about_z(angle: f64) -> Matrix {
     let (s, c) = libm::sincos(angle);
     [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]
 }
 
 /// The product of two matrices.
-fn multiply(left: &Matrix, right: &Matrix) -> Matrix {
+pub(crate) fn multiply(left: &Matrix, right: &Matrix) -> Matrix {
     left.map(|row| apply_transposed(right, row))
 }
 

@@ -18,6 +18,8 @@
 //!  driver ⇄ i2c ⇄ lsm6dsl ◀─rates, forces── base that sways
 //! ```
 //!
+//! A two-frame mount ([`gimbal`]) has six chips around a plant of its own.
+//!
 //! This crate is an oracle. It carries its own reading of the physics, by full rotation matrices, and
 //! never depends on the `orientation` crate, so that it can catch that crate's mistakes.
 //!
@@ -42,6 +44,7 @@ pub mod earth;
 pub mod environment;
 pub mod fault;
 pub mod flicker;
+pub mod gimbal;
 pub mod gyro;
 pub mod i2c;
 pub mod instruments;

@@ -4,6 +4,7 @@
 //! are its own.
 #![forbid(unsafe_code)]
 
+pub mod allan;
 pub mod campaign;
 pub mod criterion;
 pub mod emulate;
@@ -11,9 +12,11 @@ pub mod instrument;
 pub mod oracle;
 pub mod output;
 pub mod planning;
+pub mod positions;
 pub mod recording;
 pub mod reference;
 pub mod replay;
+pub mod report;
 pub mod setting;
 pub mod simulate;
 pub mod virtual_time;

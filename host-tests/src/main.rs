@@ -12,6 +12,7 @@ use std::process::ExitCode;
 use bench::output::say;
 use clap::{FromArgMatches, Parser, Subcommand};
 
+use crate::command::allan::AllanOptions;
 use crate::command::campaign::CampaignOptions;
 use crate::command::emulate::EmulateOptions;
 use crate::command::plan::PlanOptions;
@@ -40,6 +41,8 @@ enum Command {
     Replay(ReplayOptions),
     /// Plans positions and dwells for a gyro's noise.
     Plan(PlanOptions),
+    /// Finds a gyro's noise from a recording of kind `static`: Allan deviation and coefficients.
+    Allan(AllanOptions),
     /// Runs many simulated alignments and prints their errors beside the limit.
     Campaign(CampaignOptions),
     /// Runs the firmware on an emulated Cortex-M4F, compares its result with the host's bit for bit,
@@ -103,6 +106,7 @@ fn tell(command: &Command, as_json: bool) -> Result<bool, String> {
         Command::Run(options) => command::run::run(options, as_json),
         Command::Replay(options) => command::replay::run(options, as_json),
         Command::Plan(options) => command::plan::run(options, as_json),
+        Command::Allan(options) => command::allan::run(options, as_json),
         Command::Campaign(options) => command::campaign::run(options, as_json),
         Command::Emulate(options) => command::emulate::run(options, as_json),
     }?;

@@ -154,7 +154,13 @@ impl Request {
     #[must_use]
     pub fn conditions(&self) -> Conditions {
         let rotation = Rotation::fixed(self.rotation);
-        Conditions { noise: self.noise, rotation, shortest: SHORTEST, fewest: FEWEST }
+        Conditions {
+            noise: self.noise,
+            rotation,
+            shortest: SHORTEST,
+            fewest: FEWEST,
+            orders: &Order::COMPARED,
+        }
     }
 
     fn degrees(&self, rate_sigma: f64) -> f64 {
@@ -216,5 +222,43 @@ impl Request {
             rate_error_deg_h: plan.rate_sigma / DEGREE_PER_HOUR,
             sigma_deg: self.degrees(plan.rate_sigma),
         }
+    }
+}
+
+/// Time for which a schedule is suggested where none is asked for, s.
+const SUGGESTED_SECONDS: f64 = 300.0;
+/// Time of a rotation in it, s.
+const SUGGESTED_ROTATION: f64 = 2.0;
+
+/// The schedule that suits a gyro, at the equator: σ times sec φ elsewhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Suggestion(pub Planned);
+
+impl Suggestion {
+    /// For five minutes; none for a gyro of which nothing is known.
+    #[must_use]
+    pub fn of(noise: GyroNoise) -> Option<Self> {
+        let latitude = Latitude::from_degrees(0.0)?;
+        let wanted = Wanted::Seconds(SUGGESTED_SECONDS);
+        let request = Request { noise, latitude, rotation: SUGGESTED_ROTATION, wanted };
+        request.plan().ok().map(Self)
+    }
+}
+
+impl fmt::Display for Suggestion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Planned { burov, optimum, .. } = &self.0;
+        write!(
+            f,
+            "in {SUGGESTED_SECONDS} s with {SUGGESTED_ROTATION} s a rotation: {} positions of {:.2} s \
+             ({}), azimuth {:.4}°·sec φ (1σ)",
+            optimum.positions, optimum.dwell_s, optimum.order, optimum.sigma_deg
+        )?;
+        let Some(burov) = burov else { return Ok(()) };
+        write!(
+            f,
+            "; Burov's eq. (1): {} positions, rate error {:.3e} °/h",
+            burov.positions, burov.rate_error_deg_h
+        )
     }
 }

@@ -8,7 +8,7 @@ use std::fmt;
 
 use orientation::align::POSITIONS;
 use orientation::align::criterion::Criterion;
-use orientation::align::setting::Setting;
+use orientation::align::setting::{Half, Setting};
 use orientation::earth::Latitude;
 use orientation::session::procedure::{Procedure, ProcedureError, STILL};
 use orientation::session::schedule::{Position, Schedule};
@@ -17,12 +17,37 @@ use orientation::signal::Sample;
 use orientation::signal::dwell::Dwell;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce, TURN, Temperature};
 
-use crate::recording::{Body, DwellRow, Header, StageRow};
+use crate::recording::{Body, DwellRow, Header, Kind, StageRow};
 use crate::setting::{Described, describe};
+
+/// By which of its names an alignment in positions is called; the fit is the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// Stepwise gyrocompassing.
+    #[default]
+    Stepwise,
+    /// Autocompensated positions, in passes.
+    Positions,
+}
+
+impl Method {
+    /// Its name on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Stepwise => "stepwise",
+            Self::Positions => "positions",
+        }
+    }
+}
 
 /// What the user asked for.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
+    /// The method.
+    pub method: Method,
+    /// The half of the circle in which the azimuth lies, where that is known.
+    pub half: Option<Half>,
     /// Latitude instead of the header's.
     pub latitude: Option<Latitude>,
     /// How the azimuth is found.
@@ -33,13 +58,21 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { latitude: None, criterion: Criterion::MaximumLikelihood, required_sigma: None }
+        Self {
+            method: Method::default(),
+            half: None,
+            latitude: None,
+            criterion: Criterion::MaximumLikelihood,
+            required_sigma: None,
+        }
     }
 }
 
 /// A finished replay.
 #[derive(Clone, Debug)]
 pub struct Replay {
+    /// The method.
+    pub method: Method,
     /// The session, with its conclusion.
     pub session: Session,
     /// The setting it ran in.
@@ -68,6 +101,8 @@ impl Replay {
 pub enum ReplayError {
     /// Neither the header nor the user gives a latitude.
     NoLatitude,
+    /// A kind without positions.
+    Kind(Kind),
     /// The stage never stood still long enough.
     NoDwell,
     /// More positions than a session holds.
@@ -82,6 +117,7 @@ impl fmt::Display for ReplayError {
             Self::NoLatitude => {
                 f.write_str("key latitude_deg is missing: add it or give --latitude")
             }
+            Self::Kind(kind) => write!(f, "kind `{kind}` has no positions to align from"),
             Self::NoDwell => f.write_str(
                 "column stage_rad: the stage stands still nowhere long enough for a dwell",
             ),
@@ -110,14 +146,16 @@ pub fn replay(
     progress: impl FnMut(&Session),
 ) -> Result<Replay, ReplayError> {
     let Described { mut setting, assumed } = describe(header, body, latitude(header, options)?);
+    setting.half = options.half;
     if let Some(sigma) = options.required_sigma {
         setting.required_sigma = sigma;
     }
     let session = match body {
         Body::Stage(rows) => stage(header, rows, setting, options.criterion, progress),
         Body::Dwells(rows) => dwells(rows, setting, options.criterion, progress),
+        Body::Static(_) => return Err(ReplayError::Kind(body.kind())),
     }?;
-    Ok(Replay { session, setting, assumed })
+    Ok(Replay { method: options.method, session, setting, assumed })
 }
 
 fn latitude(header: &Header, options: &Options) -> Result<Latitude, ReplayError> {
@@ -189,6 +227,7 @@ fn sample(row: &StageRow, begin: f64) -> Sample {
         rate: AngularRate::from_rad_per_s(row.rate_rad_s),
         force: Some(row.force_m_s2.map(SpecificForce::from_m_per_s2)),
         temperature: row.temperature_c.map(Temperature::from_celsius),
+        elevation: None,
     }
 }
 

@@ -3,6 +3,7 @@
 use hal_mock::disturbance::{self, Disturbance};
 use hal_mock::instruments::{Instruments, InstrumentsConfiguration, Sample as Reading};
 use hal_mock::stage::{StageState, minimum_jerk};
+use orientation::planner::Rotation;
 use orientation::session::{Command, Event, Phase, Session};
 use orientation::signal::Sample;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce, Temperature};
@@ -16,16 +17,17 @@ pub fn stage_path(reading: &Reading) -> Sample {
         rate: AngularRate::from_rad_per_s(reading.rate_rad_s),
         force: Some(reading.force_m_s2.map(SpecificForce::from_m_per_s2)),
         temperature: Some(Temperature::from_celsius(reading.temperature_c)),
+        elevation: None,
     }
 }
 
-/// A stage that goes where it is sent, in a fixed time.
+/// A stage that goes where it is sent, in the time that the angle takes.
 #[derive(Clone, Copy, Debug)]
 struct ObedientStage {
     from: f64,
     to: f64,
     since: f64,
-    rotation_s: f64,
+    rotation: Rotation,
 }
 
 impl ObedientStage {
@@ -34,10 +36,11 @@ impl ObedientStage {
     }
 
     fn state(&self, now: f64) -> StageState {
-        if now - self.since >= self.rotation_s {
+        let seconds = self.rotation.seconds(self.to - self.from);
+        if now - self.since >= seconds {
             return StageState { angle_rad: self.to, rate_rad_s: 0.0 };
         }
-        minimum_jerk(self.from, self.to, self.rotation_s, now - self.since)
+        minimum_jerk(self.from, self.to, seconds, now - self.since)
     }
 }
 
@@ -48,12 +51,12 @@ pub fn run(
     session: &mut Session,
     configuration: &InstrumentsConfiguration,
     disturbances: &[Disturbance],
-    rotation_s: f64,
+    rotation: Rotation,
     longest_s: f64,
     seed: u64,
 ) -> Vec<f64> {
     let mut instruments = Instruments::new(configuration, seed);
-    let mut stage = ObedientStage { from: 0.0, to: 0.0, since: -rotation_s, rotation_s };
+    let mut stage = ObedientStage { from: 0.0, to: 0.0, since: 0.0, rotation };
     let mut sent = Vec::new();
     let samples = (longest_s * configuration.rate_hz) as u64;
     for index in 0..samples {

@@ -73,6 +73,30 @@ fn without_a_command_the_whole_board_finds_north_on_simulated_chips() {
 }
 
 #[test]
+fn two_frames_find_north_and_leave_the_gyro_vertical() {
+    let options = ["run", "--mount", "two-frame", "--passes", "2", "--rate", "100"];
+    let output = meridian(&options);
+    assert_eq!(code(&output), 0);
+    let block = text(&output.stdout);
+    for part in
+        ["found in the simulated run on two frames", "truth", "vertical, to store the azimuth"]
+    {
+        assert!(block.contains(part), "{part} is missing in {block}");
+    }
+    assert!(text(&output.stderr).contains("dwell 8 of 8"));
+    let found = object(&meridian(&[&options[..], &["--json"]].concat()));
+    assert_eq!(found["stored"], true);
+    assert!(found["truth_off_vertical_deg"].as_f64().is_some_and(|off| off < 0.05));
+    for (option, reason) in
+        [(["--record", "x.csv"], "elevation"), (["--fault", "base-nudge"], "stage")]
+    {
+        let refused = meridian(&[&options[..], &option].concat());
+        assert_ne!(code(&refused), 0);
+        assert!(text(&refused.stderr).contains(reason), "{}", text(&refused.stderr));
+    }
+}
+
+#[test]
 fn what_is_run_is_what_was_asked_for() {
     let options = ["run", "--json", "--positions", "6", "--dwell", "3", "--rate", "100"];
     let place = ["--latitude", "-33.9", "--azimuth", "12.5", "--pitch", "2", "--roll=-3"];

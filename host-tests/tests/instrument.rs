@@ -8,8 +8,9 @@ use std::path::{Path, PathBuf};
 use std::thread;
 
 use bench::campaign::faults::{self, WRONG_SIGMAS};
-use bench::campaign::instrument::{self as campaign, Precision};
+use bench::campaign::instrument::{self as campaign, Runs};
 use bench::campaign::statistics::NORMAL_COVERAGE;
+use bench::campaign::statistics::Precision;
 use bench::instrument::recorder::CsvRecorder;
 use bench::instrument::{self, Run};
 use bench::output::{azimuth_error, degrees};
@@ -125,8 +126,9 @@ fn the_log_tells_what_the_board_did_in_order() {
 
 #[test]
 fn north_is_found_as_well_as_the_limit_allows_over_sites_attitudes_and_tilts() {
-    let found = campaign::precision(500, || ()).expect("all are possible");
-    let Precision { runs, refused, violations, ratio, coverage_percent, .. } = &found;
+    let Runs { precision: found, violations, .. } =
+        &campaign::precision(500, || ()).expect("all are possible");
+    let Precision { runs, refused, ratio, coverage_percent, .. } = found;
     assert_eq!((runs, refused, violations), (&500, &0, &0), "{found:?}");
     assert!(*ratio <= 1.06, "{found:?}");
     for (found, normal) in coverage_percent.iter().zip(NORMAL_COVERAGE) {

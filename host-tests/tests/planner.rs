@@ -27,7 +27,7 @@ fn noise_of([n, b, k, r]: [f64; 4]) -> GyroNoise {
 }
 
 fn conditions(noise: GyroNoise, rotation: Rotation) -> Conditions {
-    Conditions { noise, rotation, shortest: 0.5, fewest: 8 }
+    Conditions { noise, rotation, shortest: 0.5, fewest: 8, orders: &Order::COMPARED }
 }
 
 #[test]
@@ -116,7 +116,7 @@ proptest! {
     ) {
         let noise = GyroNoise::from_field_units(n, b * n, k * n, r * n);
         let order = Order::COMPARED[order];
-        let rotation = Rotation { rest: 0.5, speed: 0.35 };
+        let rotation = Rotation { rest: 0.5, speed: 0.35, wraps: false };
         let plan =
             Plan { order, passes, dwell, seconds: 0.0, rate_sigma: 0.0 };
         let visits: Vec<Visit> = plan.visits(&rotation).collect();
@@ -144,7 +144,7 @@ fn the_planned_schedule_is_better_than_one_pass_of_four_positions() {
 #[test]
 fn no_order_and_no_number_of_passes_beats_the_plan() {
     for gyro in GYROS.into_iter().chain([[0.02, 0.0, 0.0, 0.0], [0.02, 0.3, 2.0, 0.0]]) {
-        for rotation in [Rotation::fixed(2.0), Rotation { rest: 0.7, speed: 0.35 }] {
+        for rotation in [Rotation::fixed(2.0), Rotation { rest: 0.7, speed: 0.35, wraps: false }] {
             let conditions = conditions(noise_of(gyro), rotation);
             let planned = for_time(&conditions, 300.0).expect("there is time");
             for order in Order::COMPARED {

@@ -64,7 +64,7 @@ fn changed(text: &str, from: &str, to: &str) -> String {
 fn stage_rows(recording: Recording) -> Vec<StageRow> {
     match recording.body {
         Body::Stage(rows) => rows,
-        Body::Dwells(_) => panic!("is dwells"),
+        other => panic!("is {}", other.kind()),
     }
 }
 

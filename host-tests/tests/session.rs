@@ -9,10 +9,13 @@ use hal_mock::instruments::InstrumentsConfiguration;
 use orientation::align::setting::Setting;
 use orientation::earth::Latitude;
 use orientation::error::Refusal;
+use orientation::noise::fit::FitError;
 use orientation::noise::model::GyroNoise;
+use orientation::planner::order::Order;
 use orientation::planner::{Conditions, Rotation, for_time};
 use orientation::session::procedure::{Procedure, ProcedureError};
 use orientation::session::schedule::{Position, Schedule, StopRule};
+use orientation::session::survey::Survey;
 use orientation::session::{Phase, Session};
 
 const N_DEG_SQRT_H: f64 = 0.001;
@@ -62,7 +65,7 @@ fn error_in_sigmas(session: &Session, azimuth_deg: f64) -> f64 {
 fn a_circle_is_turned_step_by_step_and_gives_north() {
     for (seed, azimuth) in [(1, 3.3), (2, 123.4), (3, 359.9), (4, 200.0)] {
         let mut session = session(circle());
-        let sent = run(&mut session, &world(azimuth), &[], 1.0, 200.0, seed);
+        let sent = run(&mut session, &world(azimuth), &[], Rotation::fixed(1.0), 200.0, seed);
         let expected: Vec<f64> = (1..12).map(|i| f64::from(i) * 30.0_f64.to_radians()).collect();
         assert_eq!(sent.len(), expected.len());
         assert!(sent.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{sent:?}");
@@ -74,7 +77,7 @@ fn a_circle_is_turned_step_by_step_and_gives_north() {
 fn a_disturbed_dwell_is_measured_again_without_moving_the_stage() {
     let nudge = Disturbance::Nudge { start_s: 14.0, seconds: 2.0, rate_deg_h: 5.0 };
     let mut session = session(circle());
-    let sent = run(&mut session, &world(77.0), &[nudge], 1.0, 200.0, 5);
+    let sent = run(&mut session, &world(77.0), &[nudge], Rotation::fixed(1.0), 200.0, 5);
     assert_eq!(sent.len(), 11);
     assert_eq!(session.repetitions().len(), 1);
     assert_eq!(session.repetitions()[0].position, 2);
@@ -88,7 +91,7 @@ fn retries_are_bounded_and_a_lasting_disturbance_is_refused() {
         .map(|i| Disturbance::Nudge { start_s: f64::from(i) * 3.0, seconds: 1.0, rate_deg_h: 60.0 })
         .collect();
     let mut session = session(circle());
-    run(&mut session, &world(10.0), &lasting, 1.0, 2000.0, 6);
+    run(&mut session, &world(10.0), &lasting, Rotation::fixed(1.0), 2000.0, 6);
     let conclusion = session.conclusion().expect("it has ended");
     assert!(
         matches!(conclusion.verdict, Err(Refusal::Disturbed { .. })),
@@ -102,7 +105,7 @@ fn retries_are_bounded_and_a_lasting_disturbance_is_refused() {
 #[test]
 fn the_whole_session_is_bounded_in_time() {
     let mut session = session(Procedure { longest_seconds: 20.0, ..circle() });
-    run(&mut session, &world(10.0), &[], 1.0, 2000.0, 7);
+    run(&mut session, &world(10.0), &[], Rotation::fixed(1.0), 2000.0, 7);
     let verdict = session.conclusion().expect("it has ended").verdict;
     assert_eq!(verdict, Err(Refusal::TimeExhausted));
 }
@@ -111,7 +114,7 @@ fn the_whole_session_is_bounded_in_time() {
 fn a_stage_that_does_not_arrive_is_refused() {
     let mut session = session(Procedure { longest_rotation: 30.0, ..circle() });
     // It takes longer for a rotation than is allowed.
-    run(&mut session, &world(10.0), &[], 50.0, 2000.0, 8);
+    run(&mut session, &world(10.0), &[], Rotation::fixed(50.0), 2000.0, 8);
     let verdict = session.conclusion().expect("it has ended").verdict;
     assert!(matches!(verdict, Err(Refusal::StageNotThere { .. })), "{verdict:?}");
 }
@@ -120,7 +123,7 @@ fn a_stage_that_does_not_arrive_is_refused() {
 fn a_platform_that_is_not_level_enough_is_refused_before_anything_turns() {
     let mut session = session(circle());
     let tilted = InstrumentsConfiguration { pitch_deg: 20.0, ..world(10.0) };
-    let sent = run(&mut session, &tilted, &[], 1.0, 200.0, 9);
+    let sent = run(&mut session, &tilted, &[], Rotation::fixed(1.0), 200.0, 9);
     assert_eq!(sent, [0.0; 0]);
     let verdict = session.conclusion().expect("it has ended").verdict;
     assert!(matches!(verdict, Err(Refusal::TiltTooGreat { .. })), "{verdict:?}");
@@ -137,7 +140,7 @@ fn ascending(positions: usize) -> Procedure {
 fn the_stage_turns_towards_growing_rate() {
     for (azimuth, towards) in [(60.0, -1.0), (300.0, 1.0), (150.0, -1.0), (210.0, 1.0)] {
         let mut session = session(ascending(20));
-        let sent = run(&mut session, &world(azimuth), &[], 0.5, 400.0, 10);
+        let sent = run(&mut session, &world(azimuth), &[], Rotation::fixed(0.5), 400.0, 10);
         let last = sent.last().expect("it was sent");
         assert!(last * towards > 0.0, "{azimuth}: {sent:?}");
         assert!(error_in_sigmas(&session, azimuth).abs() < 3.5, "{azimuth}");
@@ -148,7 +151,7 @@ fn the_stage_turns_towards_growing_rate() {
 fn the_significant_stop_rule_ends_past_the_maximum_where_the_papers_stops_short() {
     let positions_with = |stop| {
         let mut session = session(Procedure { stop, ..ascending(40) });
-        run(&mut session, &world(300.0), &[], 0.5, 600.0, 11);
+        run(&mut session, &world(300.0), &[], Rotation::fixed(0.5), 600.0, 11);
         assert_eq!(session.phase(), Phase::Done);
         session.dwells().len()
     };
@@ -163,7 +166,7 @@ fn the_significant_stop_rule_ends_past_the_maximum_where_the_papers_stops_short(
 fn the_stage_never_leaves_its_travel() {
     let travel = [-0.2, 0.2];
     let mut session = session(Procedure { travel, ..ascending(20) });
-    let sent = run(&mut session, &world(100.0), &[], 0.5, 400.0, 12);
+    let sent = run(&mut session, &world(100.0), &[], Rotation::fixed(0.5), 400.0, 12);
     assert!(sent.iter().all(|angle| (travel[0]..=travel[1]).contains(angle)), "{sent:?}");
     let positions = [0.0, 7.0].map(|angle| Position { angle, seconds: 5.0 });
     let listed = Schedule::listed(&positions).expect("they fit");
@@ -179,7 +182,7 @@ fn dwells_that_the_filter_has_no_time_to_settle_in_are_unbiased() {
     for seed in 0..200 {
         let mut session = session(procedure.clone());
         let azimuth = seed as f64 * 1.7;
-        run(&mut session, &world(azimuth), &[], 0.1, 60.0, 1000 + seed);
+        run(&mut session, &world(azimuth), &[], Rotation::fixed(0.1), 60.0, 1000 + seed);
         errors.push(error_in_sigmas(&session, azimuth));
         let fit = session.conclusion().and_then(|conclusion| conclusion.fit.as_ref());
         let fit = fit.expect("there is a fit");
@@ -204,6 +207,7 @@ fn planned(seconds: f64) -> Schedule {
         rotation: Rotation::fixed(1.0),
         shortest: 1.0,
         fewest: 8,
+        orders: &Order::COMPARED,
     };
     Schedule::Planned(for_time(&conditions, seconds).expect("there is time"))
 }
@@ -217,7 +221,7 @@ fn until(sigma_deg: f64, seconds: f64, noise: f64, seed: u64) -> (Session, f64) 
         Session::new(Setting { required_sigma, ..setting() }, procedure).expect("it begins");
     let mut configuration = world(123.4);
     configuration.gyro.n_deg_sqrt_h *= noise;
-    run(&mut session, &configuration, &[], 1.0, 4.0 * seconds, seed);
+    run(&mut session, &configuration, &[], Rotation::fixed(1.0), 4.0 * seconds, seed);
     let end = session.dwells().last().map_or(0.0, |dwell| dwell.end());
     (session, end)
 }
@@ -261,4 +265,84 @@ fn a_session_that_cannot_reach_its_accuracy_in_time_says_so_early_and_how_near_i
     // White noise: √2 N/(Ω_h √T) for the dwells' part of 300 s.
     assert!((0.027..0.032).contains(&sigma), "{sigma}");
     assert!(end < 70.0, "it took {end} s to see that");
+}
+
+/// A session that stands still for ten minutes first, to know its gyro.
+fn surveyed(configuration: &InstrumentsConfiguration, stop: StopRule, seed: u64) -> Session {
+    let survey = Survey {
+        seconds: 600.0,
+        rotation: Rotation::fixed(1.0),
+        orders: &Order::COMPARED,
+        shortest: 1.0,
+        plan_seconds: 240.0,
+    };
+    let procedure = Procedure { stop, ..circle().after(survey) };
+    // What the data sheet says is five times what this gyro does.
+    let stated = GyroNoise::from_field_units(5.0 * N_DEG_SQRT_H, 0.0, 0.0, 0.0);
+    let required_sigma = 0.05_f64.to_radians();
+    let setting = Setting { noise: stated, required_sigma, ..setting() };
+    let mut session = Session::new(setting, procedure).expect("it begins");
+    run(&mut session, configuration, &[], Rotation::fixed(1.0), 2000.0, seed);
+    session
+}
+
+#[test]
+fn a_survey_learns_the_gyros_noise_and_the_plan_and_sigma_follow_from_it() {
+    for (seed, azimuth) in [(21, 40.0), (22, 160.0), (23, 280.0)] {
+        let session = surveyed(&world(azimuth), StopRule::AllPositions, seed);
+        let found = session.surveyed().expect("there was a survey").degrees_per_sqrt_hour();
+        let n = found.value().expect("N is observable");
+        assert!((n / N_DEG_SQRT_H - 1.0).abs() < 0.02, "{n}");
+        let Schedule::Planned(plan) = session.procedure().schedule else { panic!("no plan") };
+        assert!((plan.seconds - 240.0).abs() < 1e-9 && session.dwells().len() == plan.positions());
+        // √2 N/(Ω_h √T) for the plan's dwells.
+        let standing = plan.dwell * plan.positions() as f64 / 3600.0;
+        let rate = setting().latitude.horizontal_rate().to_degrees() * 3600.0;
+        let expected = 2.0_f64.sqrt() * N_DEG_SQRT_H / (rate * standing.sqrt());
+        let sigma = session.conclusion().expect("done").verdict.expect("north").sigma;
+        assert!((sigma / expected - 1.0).abs() < 0.05, "{sigma} against {expected}");
+        assert!(error_in_sigmas(&session, azimuth).abs() < 3.5);
+    }
+}
+
+#[test]
+fn a_survey_that_shows_the_accuracy_out_of_reach_ends_before_anything_turns() {
+    let mut noisy = world(70.0);
+    noisy.gyro.n_deg_sqrt_h = 0.02;
+    let session = surveyed(&noisy, StopRule::Accuracy { seconds: 900.0 }, 24);
+    let verdict = session.conclusion().expect("done").verdict;
+    // The 300 s left give √2·0.02/(10.15·√(1/12)) rad = 0.55°.
+    assert!(
+        matches!(verdict, Err(Refusal::OutOfReach { sigma, .. }) if (0.5..0.65).contains(&sigma)),
+        "{verdict:?}"
+    );
+    assert!(session.dwells().is_empty());
+    // The same gyro as stated and five times the time: what is asked for is reached.
+    let quiet = surveyed(&world(70.0), StopRule::Accuracy { seconds: 900.0 }, 25);
+    let azimuth = quiet.conclusion().expect("done").verdict.expect("it is reached");
+    assert!(azimuth.sigma.to_degrees() <= 0.05);
+}
+
+#[test]
+fn a_survey_of_a_stuck_or_saturated_gyro_says_so() {
+    let mut stuck = world(70.0);
+    stuck.gyro.n_deg_sqrt_h = 0.0;
+    let session = surveyed(&stuck, StopRule::AllPositions, 26);
+    let verdict = session.conclusion().expect("done").verdict;
+    assert_eq!(verdict, Err(Refusal::NoiseUnknown(FitError::Constant)));
+    let overload = Disturbance::Nudge { start_s: 100.0, seconds: 1.0, rate_deg_h: 1e9 };
+    let mut session = Session::new(
+        setting(),
+        circle().after(Survey {
+            seconds: 300.0,
+            rotation: Rotation::fixed(1.0),
+            orders: &Order::COMPARED,
+            shortest: 1.0,
+            plan_seconds: 240.0,
+        }),
+    )
+    .expect("it begins");
+    run(&mut session, &world(70.0), &[overload], Rotation::fixed(1.0), 900.0, 27);
+    let verdict = session.conclusion().expect("done").verdict;
+    assert_eq!(verdict, Err(Refusal::NoiseUnknown(FitError::Saturated)));
 }

@@ -12,8 +12,16 @@ pub enum Device {
     Accelerometer,
     /// The encoder of the stage.
     Encoder,
-    /// The stage's motor and its driver.
+    /// The stage's motor and its driver; the mount as a whole where it has two frames.
     Stage,
+    /// The encoder of a mount's outer frame.
+    OuterEncoder,
+    /// The encoder of its inner frame.
+    InnerEncoder,
+    /// The outer frame's motor and its driver.
+    OuterFrame,
+    /// The inner frame's.
+    InnerFrame,
     /// The coarse sensors on the base.
     Base,
 }
@@ -23,6 +31,10 @@ words! { Device:
     Self::Accelerometer => "accelerometer";
     Self::Encoder => "encoder";
     Self::Stage => "stage";
+    Self::OuterEncoder => "outer encoder";
+    Self::InnerEncoder => "inner encoder";
+    Self::OuterFrame => "outer frame";
+    Self::InnerFrame => "inner frame";
     Self::Base => "base";
 }
 

@@ -1,6 +1,7 @@
 //! Why something ended without a result.
 
 use crate::device::{Device, Trouble};
+use crate::noise::fit::FitError;
 use crate::words;
 use crate::words::Rounded;
 
@@ -69,6 +70,13 @@ pub enum Refusal {
         /// The one that was asked for, °.
         required: f64,
         /// The time allowed, s.
+        seconds: f64,
+    },
+    /// The survey says nothing of the gyro's noise.
+    NoiseUnknown(FitError),
+    /// No schedule fits into the time.
+    NoSchedule {
+        /// The time, s.
         seconds: f64,
     },
     /// The platform is inclined more than the method allows.
@@ -156,6 +164,8 @@ words! { Refusal:
     Self::OutOfReach { sigma, required, seconds } =>
         "σ of {}° is out of reach: {}° is the least that {} s can give",
         Rounded::<3>(required), Rounded::<3>(sigma), Rounded::<0>(seconds);
+    Self::NoiseUnknown(why) => "the gyro's noise cannot be learnt: {}", why;
+    Self::NoSchedule { seconds } => "no schedule fits into {} s", Rounded::<0>(seconds);
     Self::TiltTooGreat { tilt, allowed } =>
         "the platform is inclined by {}°, more than {}°: level it",
         Rounded::<2>(tilt), Rounded::<1>(allowed);

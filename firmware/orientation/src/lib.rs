@@ -28,4 +28,6 @@ pub mod align;
 
 pub mod planner;
 
+pub mod keep;
+
 pub mod session;

@@ -145,6 +145,9 @@ impl PartialEq for Optional {
 pub struct Angle(pub u32);
 
 impl Angle {
+    /// One step, rad.
+    pub const STEP: f64 = TURN / STEPS_PER_TURN;
+
     /// From radians, any number of turns (exact to one LSB up to 10⁶ turns).
     #[must_use]
     pub fn from_rad(angle: f64) -> Self {
@@ -156,13 +159,13 @@ impl Angle {
     /// In radians, [0, 2π).
     #[must_use]
     pub fn rad(self) -> f64 {
-        f64::from(self.0) * (TURN / STEPS_PER_TURN)
+        f64::from(self.0) * Self::STEP
     }
 
     /// In radians, [−π, π).
     #[must_use]
     pub fn signed_rad(self) -> f64 {
-        f64::from(self.0.cast_signed()) * (TURN / STEPS_PER_TURN)
+        f64::from(self.0.cast_signed()) * Self::STEP
     }
 }
 

@@ -257,8 +257,8 @@ fn place(select: Select) -> usize {
     match select {
         Select::Gyro => 0,
         Select::Accelerometer => 1,
-        Select::Encoder => 2,
-        Select::Actuator => 3,
+        Select::Encoder | Select::InnerEncoder => 2,
+        Select::Actuator | Select::InnerActuator => 3,
     }
 }
 

@@ -4,6 +4,7 @@
 
 pub mod base;
 pub mod fault;
+pub mod mount;
 pub mod scenario;
 
 use core::cell::RefCell;

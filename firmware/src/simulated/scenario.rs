@@ -13,9 +13,12 @@ use hal_mock::stage::{EncoderConfiguration, Harmonic};
 use orientation::align::setting::Setting;
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
+use orientation::planner::order::Order;
+use orientation::planner::{Conditions, Rotation, for_sigma, for_time};
 use orientation::session::Prepared;
 use orientation::session::procedure::Procedure;
 use orientation::session::schedule::Schedule;
+use orientation::session::survey::Survey;
 use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR};
 
 use super::base::{self, CoarseClass};
@@ -25,7 +28,7 @@ use crate::configuration::Configuration;
 /// The gyro's g-sensitivity along and across its axis as it is calibrated, °/h/g.
 const G_SENSITIVITY: [f64; 2] = [0.05, -0.03];
 /// 1σ of that calibration, °/h/g.
-const G_SENSITIVITY_SIGMA: f64 = 0.002;
+pub(super) const G_SENSITIVITY_SIGMA: f64 = 0.002;
 /// 1σ of the gyro's scale factor.
 const SCALE_SIGMA: f64 = 5e-4;
 /// Noise density of the ADXL355, 25 µg/√Hz (data sheet, table 1), m/s²/√Hz.
@@ -59,7 +62,17 @@ const RINGING_HZ: f64 = 15.0;
 /// Damping ratio of that ringing.
 const RINGING_DAMPING: f64 = 0.08;
 /// For how long it rings, s: until 56 µrad, a/ω² at the end of its ramp, are below what stands.
-const RINGS_SECONDS: f64 = 0.25;
+pub(super) const RINGS_SECONDS: f64 = 0.25;
+
+/// How long the stage takes to turn: its motor driver's ramp, 1.20 s for 15° and 18.41 s for 360°, and
+/// what it rests and looks around after it.
+pub(super) const ROTATION: Rotation = Rotation { rest: 0.45 + 0.3, speed: 0.35, wraps: false };
+/// Shortest dwell of a plan, s.
+const SHORTEST: f64 = 2.0;
+/// Fewest positions of a plan.
+const FEWEST: usize = 8;
+/// Greatest 1σ of an azimuth that is accepted where none is asked for, rad.
+const ACCEPTED_SIGMA: f64 = 10.0 * DEGREE;
 
 /// Scale factor of the gyro, V per rad/s: 50 mV per °/s.
 const VOLTS: f64 = 0.05 / DEGREE;
@@ -105,6 +118,30 @@ impl GyroClass {
     }
 }
 
+/// How a mount turns, and where it goes unless a plan says otherwise.
+pub(super) struct Turning {
+    pub(super) rotation: Rotation,
+    pub(super) orders: &'static [Order],
+    pub(super) usual: Schedule,
+}
+
+/// How the board is to go about its alignment.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Aim {
+    /// Equal dwells on the full circle, as many and as long as the scenario says.
+    #[default]
+    Circle,
+    /// The best schedule for the gyro in so many seconds.
+    Time(f64),
+    /// Until a standard deviation is reached.
+    Accuracy {
+        /// 1σ, °.
+        sigma_deg: f64,
+        /// Time allowed, s.
+        seconds: f64,
+    },
+}
+
 /// A simulated alignment. The true attitude is for the simulation alone: the board is never told.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scenario {
@@ -126,6 +163,10 @@ pub struct Scenario {
     pub positions: usize,
     /// Time at each, s.
     pub dwell_s: f64,
+    /// How the schedule is chosen.
+    pub aim: Aim,
+    /// How long the stage stands still first, to know the gyro, s; zero for not at all.
+    pub survey_s: f64,
     /// Stage angle at power-on, °.
     pub start_deg: f64,
     /// Amplitude of the base's sway, °; zero for a base at rest.
@@ -152,6 +193,8 @@ impl Default for Scenario {
             sample_rate_hz: 400.0,
             positions: 24,
             dwell_s: 10.0,
+            aim: Aim::Circle,
+            survey_s: 0.0,
             start_deg: 20.0,
             sway_deg: 0.0,
             sway_hz: 0.5,
@@ -186,6 +229,7 @@ impl Scenario {
             g_sensitivity_sigma: G_SENSITIVITY_SIGMA * DEGREE_PER_HOUR,
             accelerometer_bias_sigma: FORCE_BIAS_SIGMA,
             encoder_sigma: ENCODER_SIGMA,
+            required_sigma: self.required_sigma(),
             ..Setting::at(latitude)
         })
     }
@@ -193,9 +237,65 @@ impl Scenario {
     /// How the board goes about it.
     #[must_use]
     pub fn procedure(&self) -> Procedure {
-        let schedule = Schedule::circle(self.positions, self.dwell_s);
-        let procedure = Procedure::new(schedule, 1.0 / self.sample_rate_hz);
-        Procedure { settle_seconds: RINGS_SECONDS, ..procedure }
+        let circle = Schedule::circle(self.positions, self.dwell_s);
+        self.procedure_on(&Turning { rotation: ROTATION, orders: &Order::COMPARED, usual: circle })
+    }
+
+    /// The same on any mount.
+    pub(super) fn procedure_on(&self, turning: &Turning) -> Procedure {
+        let procedure = Procedure::new(self.schedule(turning), 1.0 / self.sample_rate_hz);
+        let mut procedure = Procedure { settle_seconds: RINGS_SECONDS, ..procedure };
+        if self.survey_s > 0.0 {
+            procedure = procedure.after(self.survey(turning));
+        }
+        match self.aim {
+            Aim::Accuracy { seconds, .. } => procedure.until_accurate(seconds),
+            Aim::Circle | Aim::Time(_) => procedure,
+        }
+    }
+
+    /// The greatest 1σ that is accepted, rad.
+    fn required_sigma(&self) -> f64 {
+        match self.aim {
+            Aim::Accuracy { sigma_deg, .. } => sigma_deg * DEGREE,
+            Aim::Circle | Aim::Time(_) => ACCEPTED_SIGMA,
+        }
+    }
+
+    /// The schedule for the noise that is stated; for an accuracy that is out of reach the best in the
+    /// time, so that the session can tell how near it comes. A time that holds none has the usual one.
+    fn schedule(&self, turning: &Turning) -> Schedule {
+        let usual = || turning.usual.clone();
+        let conditions = Conditions {
+            noise: self.gyro.noise(),
+            rotation: turning.rotation,
+            shortest: SHORTEST,
+            fewest: FEWEST,
+            orders: turning.orders,
+        };
+        let plan = match (self.aim, Latitude::from_degrees(self.latitude_deg)) {
+            (Aim::Circle, _) | (_, None) => return usual(),
+            (Aim::Time(seconds), _) => for_time(&conditions, seconds),
+            (Aim::Accuracy { seconds, .. }, Some(latitude)) => {
+                let wanted = self.required_sigma() * latitude.horizontal_rate();
+                for_sigma(&conditions, wanted, seconds).or_else(|_| for_time(&conditions, seconds))
+            }
+        };
+        plan.map_or_else(|_| usual(), Schedule::Planned)
+    }
+
+    fn survey(&self, turning: &Turning) -> Survey {
+        let plan_seconds = match self.aim {
+            Aim::Circle => turning.usual.seconds(),
+            Aim::Time(seconds) | Aim::Accuracy { seconds, .. } => seconds,
+        };
+        Survey {
+            seconds: self.survey_s,
+            rotation: turning.rotation,
+            orders: turning.orders,
+            shortest: SHORTEST,
+            plan_seconds,
+        }
     }
 
     /// What its session needs; none where the latitude is none or the schedule impossible.

@@ -13,6 +13,7 @@
 //! warm-up and disturbances.
 
 pub mod base;
+pub(crate) mod drive;
 mod ringing;
 pub mod sway;
 pub mod train;
@@ -23,11 +24,12 @@ use crate::disturbance::{self, Disturbance, Effect};
 use crate::environment::{AnalogueInput, ForceInput, Mechanics, ShaftAngle};
 use crate::instruments::{Instruments, InstrumentsConfiguration, Truth};
 use crate::noise::{White, source};
+use drive::Drive;
 use sway::SwayConfiguration;
-use train::{StageConfiguration, Train};
+use train::StageConfiguration;
 
 /// The unit of an accelerometer's output, m/s² (standard gravity, ISO 80000-3).
-const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
+pub(crate) const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
 
 /// One degree per second in rad/s.
 const DEGREE_PER_SECOND: f64 = core::f64::consts::PI / 180.0;
@@ -101,7 +103,7 @@ impl Default for PlantConfiguration<'_> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plant<'a> {
     instruments: Instruments,
-    train: Train,
+    drive: Drive<'a>,
     /// The base's sway, where it sways.
     sway: Option<SwayConfiguration>,
     /// Moment of the latest pose on a swaying base.
@@ -110,71 +112,53 @@ pub struct Plant<'a> {
     gyro_volts_per_rad_s: f64,
     gyro_full_scale_rad_s: f64,
     disturbances: &'a [Disturbance],
-    faults: &'a [StageFault],
-    /// When the stage is next caught or let go.
-    next_change: Instant,
 }
 
 impl<'a> Plant<'a> {
     /// A plant at the start of the clock; the seed fixes everything random in it.
+    ///
+    /// Not inlined: in an image it is to be counted with the simulation, not with who calls it.
     #[must_use]
+    #[inline(never)]
     pub fn new(configuration: &PlantConfiguration<'a>, seed: u64) -> Self {
         let c = configuration;
         let accelerometer_hz = c.accelerometer_hz;
-        let mut plant = Self {
+        Self {
             instruments: Instruments::with_accelerometer_at(&c.instruments, accelerometer_hz, seed),
-            train: Train::new(&c.stage),
+            drive: Drive::new(&c.stage, c.faults),
             sway: c.sway.is_active().then_some(c.sway),
             swayed_at: None,
             converter: White::new(c.converter_noise_v, seed, source::CONVERTER),
             gyro_volts_per_rad_s: c.gyro_volts_per_rad_s,
             gyro_full_scale_rad_s: c.gyro_full_scale_rad_s,
             disturbances: c.disturbances,
-            faults: c.faults,
-            next_change: Instant::MIN,
-        };
-        plant.advance(Instant::MIN);
-        plant
+        }
     }
 
     /// Moves the stage on to `now`, so that switches and stall are those of that moment.
     #[inline]
     pub fn advance(&mut self, now: Instant) {
-        while self.next_change <= now {
-            self.change();
-        }
-        self.train.advance(now);
+        self.drive.advance(now);
     }
 
     /// The motor loses its current: its field stops where it is. A motor driver that starts again
     /// counts from zero, and the rotor takes the nearest of its positions that fits.
     pub fn stop_motor(&mut self, now: Instant) {
-        self.advance(now);
-        self.train.stop();
+        self.drive.stop(now);
     }
 
     /// What the sensors cannot know: attitude of the base at rest, drawn biases and scale; stage as
     /// of the latest moment, rate as of the latest reading.
     #[must_use]
     pub fn truth(&self) -> Truth {
-        Truth { stage: self.train.state(), ..self.instruments.truth() }
-    }
-
-    /// Catches the stage or lets it go, as is due.
-    #[cold]
-    fn change(&mut self) {
-        let at = self.next_change;
-        self.train.advance(at);
-        self.train.hold(self.faults.iter().any(|fault| fault.blocks(at)));
-        let changes = self.faults.iter().filter_map(|fault| fault.change_after(at));
-        self.next_change = changes.min().unwrap_or(Instant::MAX);
+        Truth { stage: self.drive.state(), ..self.instruments.truth() }
     }
 
     /// Brings the instruments to where the stage is at `now`.
     #[inline]
     fn look(&mut self, now: Instant) {
         self.advance(now);
-        let stage = self.train.state();
+        let stage = self.drive.state();
         match &self.sway {
             None => self.instruments.turn(stage),
             Some(sway) if self.swayed_at != Some(now) => {
@@ -195,31 +179,8 @@ impl<'a> Plant<'a> {
     }
 }
 
-impl StageFault {
-    /// Whether it holds the stage at `now`.
-    fn blocks(&self, now: Instant) -> bool {
-        matches!(*self, Self::Block { from, until } if (from..until).contains(&now))
-    }
-
-    /// When it next catches the stage or lets it go.
-    fn change_after(&self, now: Instant) -> Option<Instant> {
-        match *self {
-            Self::Block { from, until } => [from, until].into_iter().filter(|at| *at > now).min(),
-            Self::Slip { .. } => None,
-        }
-    }
-
-    /// How far it has moved the encoder, rad.
-    fn slip_rad(&self, now: Instant) -> f64 {
-        match *self {
-            Self::Slip { at, by_rad } if at <= now => by_rad,
-            _ => 0.0,
-        }
-    }
-}
-
 /// Seconds since the start of the clock.
-fn seconds(now: Instant) -> f64 {
+pub(crate) fn seconds(now: Instant) -> f64 {
     now.as_micros() as f64 * 1e-6
 }
 
@@ -249,24 +210,22 @@ impl ForceInput for Plant<'_> {
 impl ShaftAngle for Plant<'_> {
     fn shaft_turns(&mut self, now: Instant) -> f64 {
         self.look(now);
-        let slip_rad: f64 = self.faults.iter().map(|fault| fault.slip_rad(now)).sum();
-        (self.instruments.shown_rad() + slip_rad) / core::f64::consts::TAU
+        (self.instruments.shown_rad() + self.drive.slip_rad(now)) / core::f64::consts::TAU
     }
 }
 
 impl Mechanics for Plant<'_> {
     fn drive(&mut self, now: Instant, microsteps: f64, microsteps_per_s: f64) {
-        self.advance(now);
-        self.train.drive(microsteps, microsteps_per_s);
+        self.drive.drive(now, microsteps, microsteps_per_s);
         // The pose of this moment may have been another.
         self.swayed_at = None;
     }
 
     fn is_blocked(&self) -> bool {
-        self.train.is_blocked()
+        self.drive.is_blocked()
     }
 
     fn reference_switches(&self) -> [bool; 2] {
-        self.train.switches()
+        self.drive.switches()
     }
 }

@@ -71,7 +71,7 @@ struct Segment {
 
 /// The drive of the stage at work.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Train {
+pub(crate) struct Train {
     configuration: StageConfiguration,
     rad_per_microstep: f64,
     segment: Segment,
@@ -86,7 +86,7 @@ pub(super) struct Train {
 
 impl Train {
     /// A drive at rest, at the start of the clock.
-    pub(super) fn new(configuration: &StageConfiguration) -> Self {
+    pub(crate) fn new(configuration: &StageConfiguration) -> Self {
         let c = *configuration;
         let segment = Segment {
             since: Instant::MIN,
@@ -110,13 +110,13 @@ impl Train {
     }
 
     /// Stage angle and rate at the moment last reached.
-    pub(super) fn state(&self) -> StageState {
+    pub(crate) fn state(&self) -> StageState {
         self.state
     }
 
     /// Moves on to `now`; a moment in the past changes nothing. Free while the stage stands.
     #[inline]
-    pub(super) fn advance(&mut self, now: Instant) {
+    pub(crate) fn advance(&mut self, now: Instant) {
         if now <= self.now {
             return;
         }
@@ -129,30 +129,30 @@ impl Train {
     }
 
     /// The field stands at `microsteps` and turns at `microsteps_per_s` from now on.
-    pub(super) fn drive(&mut self, microsteps: f64, microsteps_per_s: f64) {
+    pub(crate) fn drive(&mut self, microsteps: f64, microsteps_per_s: f64) {
         let jump = microsteps - self.field_now();
         let periods = libm::rint(jump / PERIOD_MICROSTEPS);
         self.begin(microsteps, microsteps_per_s, periods * PERIOD_MICROSTEPS, self.held);
     }
 
     /// The field stops where it is, as when its driver loses the supply.
-    pub(super) fn stop(&mut self) {
+    pub(crate) fn stop(&mut self) {
         self.begin(self.field_now(), 0.0, 0.0, self.held);
     }
 
     /// Something holds the stage, or lets it go; the field turns on.
-    pub(super) fn hold(&mut self, held: bool) {
+    pub(crate) fn hold(&mut self, held: bool) {
         let microsteps_per_s = self.segment.rate_rad_s / self.rad_per_microstep;
         self.begin(self.field_now(), microsteps_per_s, 0.0, held);
     }
 
     /// Whether the motor cannot follow: the stage is held, or pushed against an end.
-    pub(super) fn is_blocked(&self) -> bool {
+    pub(crate) fn is_blocked(&self) -> bool {
         self.held || self.elapsed_s(self.now) >= self.segment.ended_s
     }
 
     /// Left and right reference switch.
-    pub(super) fn switches(&self) -> [bool; 2] {
+    pub(crate) fn switches(&self) -> [bool; 2] {
         let [left, right] = self.configuration.switches_rad;
         let output = self.output_at(self.elapsed_s(self.now));
         [output < left, output > right]

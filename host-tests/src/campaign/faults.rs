@@ -94,9 +94,9 @@ fn noticed(run: &Run) -> Option<String> {
                 | Event::Started(_)
                 | Event::BaseStill(_)
                 | Event::BaseSways(..)
-                | Event::Homing
-                | Event::Homed(_)
-                | Event::Turning(_)
+                | Event::Homing(_)
+                | Event::Homed(..)
+                | Event::Turning(..)
                 | Event::Arrived(..)
                 | Event::Levelled(..)
                 | Event::Dwelled(..)

@@ -7,9 +7,8 @@ use orientation::error::Refusal;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::statistics::{coverage, rms};
+use super::statistics::{Answer, Precision};
 use crate::instrument::{self, RunError};
-use crate::output::{azimuth_error, degrees};
 
 /// Greatest latitude that is drawn, °.
 const LATITUDE_DEG: f64 = 70.0;
@@ -18,25 +17,12 @@ const TILT_DEG: f64 = 5.0;
 /// Sample rate of the campaign, Hz: the noise per dwell does not depend on it.
 const RATE_HZ: f64 = 100.0;
 
-/// What many runs amount to. Angles in degrees.
+/// What many runs of the instrument amount to.
 #[derive(Clone, Debug, Serialize)]
-pub struct Precision {
-    /// Runs.
-    pub runs: usize,
-    /// Runs that were refused; all were healthy.
-    pub refused: usize,
-    /// The first refusal's reason.
-    pub first_reason: Option<String>,
-    /// RMS of the errors.
-    pub rms_deg: f64,
-    /// RMS of the limits.
-    pub limit_deg: f64,
-    /// RMS of error over limit, run by run.
-    pub ratio: f64,
-    /// Per cent of errors within 1, 2 and 3 σ.
-    pub coverage_percent: [f64; 3],
-    /// The greatest error in its σ.
-    pub worst_sigmas: f64,
+pub struct Runs {
+    /// Their errors.
+    #[serde(flatten)]
+    pub precision: Precision,
     /// Dwells that were measured again, in all runs.
     pub repeated: usize,
     /// Accesses that a data sheet forbids, in all runs.
@@ -45,7 +31,7 @@ pub struct Precision {
 
 /// One run's outcome.
 struct Outcome {
-    found: Result<[f64; 3], Refusal>,
+    answer: Result<Answer, Refusal>,
     repeated: usize,
     violations: usize,
 }
@@ -72,7 +58,7 @@ pub fn scenario(seed: u64) -> Scenario {
 ///
 /// # Errors
 /// What keeps a run from beginning, and a deadlock.
-pub fn precision(runs: usize, tick: impl Fn() + Sync) -> Result<Precision, RunError> {
+pub fn precision(runs: usize, tick: impl Fn() + Sync) -> Result<Runs, RunError> {
     let outcomes = (1..=runs as u64).into_par_iter().map(|seed| {
         let outcome = outcome(&scenario(seed));
         tick();
@@ -84,32 +70,17 @@ pub fn precision(runs: usize, tick: impl Fn() + Sync) -> Result<Precision, RunEr
 fn outcome(scenario: &Scenario) -> Result<Outcome, RunError> {
     let run = instrument::align(scenario, None, NoRecorder, &())?;
     let conclusion = run.conclusion().ok_or(RunError::Deadlock)?;
-    let limit = conclusion.fit.as_ref().map_or(f64::NAN, |fit| degrees(fit.limit));
-    let found = conclusion.verdict.map(|azimuth| {
-        let error = azimuth_error(degrees(azimuth.angle), scenario.azimuth_deg);
-        [error, degrees(azimuth.sigma), limit]
-    });
     Ok(Outcome {
-        found,
+        answer: Answer::of(conclusion, scenario.azimuth_deg),
         repeated: run.replay.session.repetitions().len(),
         violations: run.violations.len(),
     })
 }
 
-fn summary(outcomes: &[Outcome]) -> Precision {
-    let found: Vec<[f64; 3]> = outcomes.iter().filter_map(|o| o.found.ok()).collect();
-    let column = |index: usize| found.iter().map(|row| row[index]).collect::<Vec<f64>>();
-    let [errors, sigmas, limits] = [0, 1, 2].map(column);
-    let over = |of: &[f64]| errors.iter().zip(of).map(|(e, s)| e / s).collect::<Vec<f64>>();
-    Precision {
-        runs: outcomes.len(),
-        refused: outcomes.len() - found.len(),
-        first_reason: outcomes.iter().find_map(|o| o.found.err()).map(|reason| reason.to_string()),
-        rms_deg: rms(&errors),
-        limit_deg: rms(&limits),
-        ratio: rms(&over(&limits)),
-        coverage_percent: coverage(&errors, &sigmas),
-        worst_sigmas: over(&sigmas).iter().fold(0.0, |worst: f64, e| worst.max(e.abs())),
+fn summary(outcomes: &[Outcome]) -> Runs {
+    let answers: Vec<_> = outcomes.iter().map(|outcome| outcome.answer).collect();
+    Runs {
+        precision: Precision::of(&answers),
         repeated: outcomes.iter().map(|o| o.repeated).sum(),
         violations: outcomes.iter().map(|o| o.violations).sum(),
     }

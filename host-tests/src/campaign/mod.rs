@@ -1,5 +1,6 @@
 //! Monte-Carlo campaigns: many simulated alignments, told as tables.
 
+pub mod burov;
 pub mod faults;
 pub mod instrument;
 pub mod sokolov;

@@ -1,5 +1,77 @@
 //! What many errors amount to.
 
+use orientation::align::conclusion::Conclusion;
+use orientation::error::Refusal;
+use serde::Serialize;
+
+use crate::output::{azimuth_error, degrees};
+
+/// One alignment against the truth, in degrees.
+#[derive(Clone, Copy, Debug)]
+pub struct Answer {
+    /// Error of the azimuth.
+    pub error: f64,
+    /// Its standard deviation.
+    pub sigma: f64,
+    /// Cramér–Rao bound.
+    pub limit: f64,
+}
+
+impl Answer {
+    /// Of a conclusion.
+    ///
+    /// # Errors
+    /// Its refusal.
+    pub fn of(conclusion: &Conclusion, truth_deg: f64) -> Result<Self, Refusal> {
+        let azimuth = conclusion.verdict?;
+        let limit = conclusion.fit.as_ref().map_or(f64::NAN, |fit| degrees(fit.limit));
+        let error = azimuth_error(degrees(azimuth.angle), truth_deg);
+        Ok(Self { error, sigma: degrees(azimuth.sigma), limit })
+    }
+}
+
+/// What many alignments amount to. Angles in degrees.
+#[derive(Clone, Debug, Serialize)]
+pub struct Precision {
+    /// Runs.
+    pub runs: usize,
+    /// Runs that were refused; all were healthy.
+    pub refused: usize,
+    /// The first refusal's reason.
+    pub first_reason: Option<String>,
+    /// RMS of the errors.
+    pub rms_deg: f64,
+    /// RMS of the limits.
+    pub limit_deg: f64,
+    /// RMS of error over limit, run by run.
+    pub ratio: f64,
+    /// Per cent of errors within 1, 2 and 3 σ.
+    pub coverage_percent: [f64; 3],
+    /// The greatest error in its σ.
+    pub worst_sigmas: f64,
+}
+
+impl Precision {
+    /// Of these answers.
+    #[must_use]
+    pub fn of(answers: &[Result<Answer, Refusal>]) -> Self {
+        let given: Vec<Answer> = answers.iter().filter_map(|answer| answer.ok()).collect();
+        let column = |of: fn(&Answer) -> f64| given.iter().map(of).collect::<Vec<f64>>();
+        let [errors, sigmas, limits] =
+            [column(|a| a.error), column(|a| a.sigma), column(|a| a.limit)];
+        Self {
+            runs: answers.len(),
+            refused: answers.len() - given.len(),
+            first_reason: answers.iter().find_map(|a| a.err()).map(|reason| reason.to_string()),
+            rms_deg: rms(&errors),
+            limit_deg: rms(&limits),
+            ratio: rms(&column(|answer| answer.error / answer.limit)),
+            coverage_percent: coverage(&errors, &sigmas),
+            worst_sigmas: given.iter().fold(0.0, |worst, a| worst.max((a.error / a.sigma).abs())),
+        }
+    }
+}
+
 /// Root mean square; zero of none.
 #[must_use]
 pub fn rms(values: &[f64]) -> f64 {

@@ -1,5 +1,6 @@
 //! The commands of the program, one file each: options in, [`Told`] out.
 
+pub mod allan;
 pub mod campaign;
 pub mod emulate;
 pub mod plan;
@@ -8,7 +9,9 @@ pub mod run;
 
 use std::fmt;
 use std::io::Write;
+use std::path::Path;
 
+use bench::report::Report;
 use orientation::earth::Latitude;
 use serde::Serialize;
 
@@ -51,6 +54,19 @@ fn sigma(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(degrees) if degrees > 0.0 && degrees <= 180.0 => Ok(degrees.to_radians()),
         _ => Err("not a number of degrees above 0, at most 180".to_owned()),
+    }
+}
+
+impl Told {
+    /// The same with a page for `--report`, where one was asked for. A page that cannot be written is a
+    /// failure, but the rest is not lost with it.
+    fn with_page(self, path: Option<&Path>, page: impl FnOnce() -> Report) -> Self {
+        match path.map(|path| page().write(path)) {
+            Some(Err(error)) => {
+                Self { found: false, refusal: self.refusal.or(Some(error.to_string())), ..self }
+            }
+            _ => self,
+        }
     }
 }
 

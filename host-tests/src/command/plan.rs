@@ -1,6 +1,8 @@
 //! `meridian plan`: positions, dwell and σ for a gyro's noise, or the time for a wanted σ.
 
-use bench::output::plan;
+use std::path::PathBuf;
+
+use bench::output::{page, plan};
 use bench::planning::{Request, Wanted};
 use clap::{ArgGroup, Args};
 use orientation::earth::Latitude;
@@ -40,6 +42,9 @@ pub struct PlanOptions {
     /// Time of one rotation, s.
     #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = seconds)]
     rotate_seconds: f64,
+    /// Writes figures and tables as a page for a browser.
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
 }
 
 /// A coefficient of the noise.
@@ -91,7 +96,8 @@ pub fn run(options: &PlanOptions, as_json: bool) -> Result<Told, String> {
     if let Ok(Value::Object(fields)) = serde_json::to_value(planned) {
         object.extend(fields);
     }
-    Told::of(true, as_json, &object, |text| plan::block(text, &request, &planned))
+    let told = Told::of(true, as_json, &object, |text| plan::block(text, &request, &planned))?;
+    Ok(told.with_page(options.report.as_deref(), || page::plan::report(&request, &planned)))
 }
 
 /// No schedule, and why.

@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 
 use bench::output::progress::Progress;
-use bench::output::{json, text};
+use bench::output::{json, page, text};
 use bench::recording;
-use bench::replay::{Options, replay};
+use bench::replay::{self, Options, replay};
 use clap::{Args, ValueEnum};
 use orientation::align::criterion::Criterion;
+use orientation::align::setting;
 use orientation::earth::Latitude;
 
 use super::{Told, latitude, sigma};
@@ -27,22 +28,47 @@ pub struct ReplayOptions {
     /// within-absolute=A in °/h.
     #[arg(long, default_value = "ml", value_parser = bench::criterion::parse)]
     criterion: Criterion,
+    /// The half of the circle in which the azimuth is known to lie: two positions need it.
+    #[arg(long, value_enum)]
+    half: Option<Half>,
     /// Greatest standard deviation that is accepted, in degrees (1σ).
     #[arg(long, value_name = "DEGREES", default_value = "10", value_parser = sigma)]
     require_sigma: f64,
+    /// Writes figures and tables as a page for a browser.
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
 enum Method {
     /// Stepwise gyrocompassing.
     Stepwise,
+    /// Autocompensated positions, in passes.
+    Positions,
+}
+
+/// The half of the circle.
+#[derive(Clone, Copy, ValueEnum)]
+enum Half {
+    /// 0° to 180°.
+    East,
+    /// 180° to 360°.
+    West,
 }
 
 impl From<&ReplayOptions> for Options {
     fn from(options: &ReplayOptions) -> Self {
-        // One method so far: naming it changes nothing.
-        let (Some(Method::Stepwise) | None) = options.method;
+        let method = match options.method {
+            Some(Method::Positions) => replay::Method::Positions,
+            Some(Method::Stepwise) | None => replay::Method::Stepwise,
+        };
+        let half = options.half.map(|half| match half {
+            Half::East => setting::Half::East,
+            Half::West => setting::Half::West,
+        });
         Self {
+            method,
+            half,
             latitude: options.latitude,
             criterion: options.criterion,
             required_sigma: Some(options.require_sigma),
@@ -65,5 +91,6 @@ pub fn run(options: &ReplayOptions, as_json: bool) -> Result<Told, String> {
         text::block(block, &name, &replay, conclusion, truth.azimuth_deg)
     })?;
     let refusal = conclusion.verdict.as_ref().err().map(|reason| format!("{name}: {reason}"));
-    Ok(Told { refusal, ..told })
+    let page = || page::alignment::report(&name, &replay, conclusion);
+    Ok(Told { refusal, ..told }.with_page(options.report.as_deref(), page))
 }

@@ -5,17 +5,18 @@ use std::path::PathBuf;
 use std::time::Instant as WallClock;
 
 use bench::instrument::recorder::CsvRecorder;
-use bench::instrument::{self, Run};
+use bench::instrument::{self, FramesRun, Run};
 use bench::output::json::{self, AzimuthObject};
 use bench::output::progress::Progress;
-use bench::output::text;
+use bench::output::{degrees, page, text};
 use clap::{Args, ValueEnum};
 use drivers::ads1262::configuration::DataRate;
 use embassy_time::Instant;
 use firmware::event::Event;
 use firmware::ports::{NoRecorder, Observer};
 use firmware::simulated::fault::Fault;
-use firmware::simulated::scenario::{GyroClass, RATES, Scenario};
+use firmware::simulated::mount::{FramePlan, FramesScenario};
+use firmware::simulated::scenario::{Aim, GyroClass, RATES, Scenario};
 use orientation::session::Session;
 use serde_json::{Value, json};
 
@@ -42,7 +43,23 @@ pub struct RunOptions {
     /// Samples of the gyro a second: a data rate of its converter.
     #[arg(long, value_name = "HERTZ", default_value = "400", value_parser = rate)]
     rate: f64,
-    /// Positions on the full circle.
+    /// The best schedule for the gyro in so many seconds, instead of positions on the full circle; with
+    /// --sigma the time allowed.
+    #[arg(long, value_name = "SECONDS", value_parser = allowed, conflicts_with_all = ["positions", "dwell"])]
+    seconds: Option<f64>,
+    /// Goes on until this standard deviation is reached, in degrees (1σ).
+    #[arg(long, value_name = "DEGREES", value_parser = wanted, conflicts_with_all = ["positions", "dwell"])]
+    sigma: Option<f64>,
+    /// Stands still first for so many seconds, to know the gyro's noise and to plan by it.
+    #[arg(long, value_name = "SECONDS", value_parser = allowed)]
+    survey: Option<f64>,
+    /// What carries the gyro.
+    #[arg(long, value_enum, default_value = "stage")]
+    mount: MountKind,
+    /// With two frames: how often the four headings are visited.
+    #[arg(long, default_value_t = 6, value_parser = clap::value_parser!(u8).range(1..=16))]
+    passes: u8,
+    /// On a stage: positions on the full circle.
     #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u8).range(3..=64))]
     positions: u8,
     /// Seconds at each position.
@@ -69,12 +86,23 @@ pub struct RunOptions {
     /// Writes the samples that the session got as a recording for `replay`.
     #[arg(long, value_name = "FILE.csv")]
     record: Option<PathBuf>,
+    /// Writes figures and tables as a page for a browser.
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Method {
     /// Stepwise gyrocompassing.
     Stepwise,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum MountKind {
+    /// A single-axis stage.
+    Stage,
+    /// Two frames: four headings, and vertical to store the azimuth.
+    TwoFrame,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -110,6 +138,17 @@ fn rate(text: &str) -> Result<f64, String> {
     let known = rates.map(|rate| rate.to_string()).join(", ");
     let rate = text.parse::<f64>().ok().filter(|rate| rates.contains(rate));
     rate.ok_or_else(|| format!("not one of the converter's rates: {known}"))
+}
+
+fn allowed(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if (60.0..=36_000.0).contains(&seconds) => Ok(seconds),
+        _ => Err("not a number of seconds from 60 to 36000".to_owned()),
+    }
+}
+
+fn wanted(text: &str) -> Result<f64, String> {
+    super::sigma(text).map(f64::to_degrees)
 }
 
 fn dwell(text: &str) -> Result<f64, String> {
@@ -152,6 +191,21 @@ impl From<Gyro> for GyroClass {
     }
 }
 
+/// Time allowed for an accuracy where none is stated, s.
+const ALLOWED: f64 = 1800.0;
+
+impl RunOptions {
+    fn aim(&self) -> Aim {
+        match (self.sigma, self.seconds) {
+            (None, None) => Aim::Circle,
+            (None, Some(seconds)) => Aim::Time(seconds),
+            (Some(sigma_deg), seconds) => {
+                Aim::Accuracy { sigma_deg, seconds: seconds.unwrap_or(ALLOWED) }
+            }
+        }
+    }
+}
+
 impl From<&RunOptions> for Scenario {
     fn from(options: &RunOptions) -> Self {
         // One method so far: naming it changes nothing.
@@ -164,6 +218,8 @@ impl From<&RunOptions> for Scenario {
             roll_deg: options.roll,
             gyro: options.gyro.into(),
             sample_rate_hz: options.rate,
+            aim: options.aim(),
+            survey_s: options.survey.unwrap_or(0.0),
             positions: usize::from(options.positions),
             dwell_s: options.dwell,
             sway_deg: options.sway.unwrap_or(0.0),
@@ -199,6 +255,9 @@ pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
         None => None,
     };
     let scenario = Scenario::from(options);
+    if options.mount == MountKind::TwoFrame {
+        return run_frames(&scenario, options, as_json);
+    }
     let begun = WallClock::now();
     let (run, recorded) = simulate(&scenario, fault, options)?;
     let wall = begun.elapsed().as_secs_f64();
@@ -215,7 +274,42 @@ pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
     })?;
     // A recording that failed is a failure, but the azimuth is not lost with it.
     let refusal = conclusion.verdict.as_ref().err().map(ToString::to_string).or(recorded.err());
-    Ok(Told { found: refusal.is_none(), refusal, ..told })
+    let page = || page::alignment::report("the simulated run", &run.replay, conclusion);
+    let told = Told { found: refusal.is_none(), refusal, ..told };
+    Ok(told.with_page(options.report.as_deref(), page))
+}
+
+/// Runs the board with a two-frame mount and tells what came of it.
+fn run_frames(base: &Scenario, options: &RunOptions, as_json: bool) -> Result<Told, String> {
+    if options.record.is_some() {
+        return Err("a two-frame mount is not recorded: a recording knows no elevation".to_owned());
+    }
+    if options.fault.is_some() {
+        return Err("the faults are those of a stage: leave out --mount two-frame".to_owned());
+    }
+    let passes = usize::from(options.passes);
+    let scenario = FramesScenario { base: *base, passes, ..FramesScenario::default() };
+    let begun = WallClock::now();
+    let watch = Terminal(Progress::new(0, "positions"));
+    let frames = instrument::align_frames(&scenario, &FramePlan::default(), &watch);
+    watch.0.finish();
+    let FramesRun { run, axis: [forward, right, down] } =
+        frames.map_err(|error| error.to_string())?;
+    let wall = begun.elapsed().as_secs_f64();
+    let conclusion = run.conclusion().ok_or("the session did not end")?;
+    let truth = Some(base.azimuth_deg);
+    let stored = run.events.iter().any(|(_, event)| matches!(event, Event::Stored(..)));
+    let off_vertical = degrees(forward.hypot(right).atan2(down));
+    let mut object = object(&run, base, json::azimuth(&run.replay, conclusion, truth))?;
+    object["stored"] = stored.into();
+    object["truth_off_vertical_deg"] = off_vertical.into();
+    let told = Told::of(conclusion.verdict.is_ok(), as_json, &object, |block| {
+        text::block(block, "the simulated run on two frames", &run.replay, conclusion, truth)?;
+        text::run(block, &run, base, wall)?;
+        text::stored(block, stored, off_vertical)
+    })?;
+    let refusal = conclusion.verdict.as_ref().err().map(ToString::to_string);
+    Ok(Told { refusal, ..told })
 }
 
 /// The object of a result, with what only a simulated run has.

@@ -4,11 +4,13 @@ use std::fs;
 use std::path::Path;
 
 /// The names of the limits.
-pub const NAMES: [&str; 10] = [
+pub const NAMES: [&str; 12] = [
     "filter_instructions",
     "filter_and_dwell_instructions",
     "match_instructions",
     "conclusion_instructions",
+    "allan_instructions",
+    "noise_fit_instructions",
     "sample_instructions",
     "poll_instructions",
     "idle_percent",

@@ -16,16 +16,23 @@ use firmware::steady::Base;
 use orientation::session::Session;
 
 use super::{Run, RunError};
-use crate::replay::Replay;
+use crate::replay::{Method, Replay};
 use crate::virtual_time;
 
 /// What the board was not told but takes as known.
-const ASSUMED: &str = "latitude exact, calibrations as stated";
+pub(super) const ASSUMED: &str = "latitude exact, calibrations as stated";
 
 /// Keeps what the board tells and passes it on.
-struct Log<'a, W> {
-    events: RefCell<Vec<(Instant, Event)>>,
+pub(super) struct Log<'a, W> {
+    pub(super) events: RefCell<Vec<(Instant, Event)>>,
     watch: &'a W,
+}
+
+impl<'a, W> Log<'a, W> {
+    /// An empty one.
+    pub(super) fn new(watch: &'a W) -> Self {
+        Self { events: RefCell::default(), watch }
+    }
 }
 
 impl<W: Observer> Observer for Log<'_, W> {
@@ -40,7 +47,7 @@ impl<W: Observer> Observer for Log<'_, W> {
 }
 
 /// The wire of the link: it takes everything.
-struct Wire<'a>(&'a RefCell<Vec<u8>>);
+pub(super) struct Wire<'a>(pub(super) &'a RefCell<Vec<u8>>);
 
 impl ErrorType for Wire<'_> {
     type Error = core::convert::Infallible;
@@ -93,7 +100,7 @@ pub fn align_on<B: Base, R: Recorder, W: Observer>(
     let mut session = Session::new(setting, scenario.procedure()).map_err(RunError::Procedure)?;
     let plan = Plan::of(fault);
     let board = RefCell::new(simulated::board(scenario, &plan));
-    let log = Log { events: RefCell::default(), watch };
+    let log = Log::new(watch);
     let bytes = RefCell::default();
     let shared = Shared::new(&log);
     let configuration = scenario.configuration();
@@ -110,9 +117,13 @@ pub fn align_on<B: Base, R: Recorder, W: Observer>(
     let violations = simulated::violations(&board.borrow())
         .map(|(select, violation)| format!("{select:?}: {violation}"))
         .collect();
-    let setting = *session.setting();
     Ok(Run {
-        replay: Replay { session, setting, assumed: vec![ASSUMED.to_owned()] },
+        replay: Replay {
+            method: Method::Stepwise,
+            setting: *session.setting(),
+            session,
+            assumed: vec![ASSUMED.to_owned()],
+        },
         events: log.events.into_inner(),
         lines: String::from_utf8_lossy(&bytes.into_inner()).into_owned(),
         seconds: ended.as_micros() as f64 * 1e-6,

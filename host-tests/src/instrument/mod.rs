@@ -1,9 +1,11 @@
 //! The whole instrument on simulated chips, in virtual time: one scenario in, one run out.
 
 mod bench;
+mod frames;
 pub mod recorder;
 
 pub use bench::{align, align_on};
+pub use frames::{FramesRun, align_frames};
 
 use std::fmt;
 
@@ -11,6 +13,7 @@ use embassy_time::Instant;
 use firmware::event::Event;
 use firmware::health::Health;
 use orientation::align::conclusion::Conclusion;
+use orientation::align::mount::MountError;
 use orientation::session::procedure::ProcedureError;
 
 use crate::replay::Replay;
@@ -47,6 +50,8 @@ pub enum RunError {
     Latitude(f64),
     /// The session cannot begin.
     Procedure(ProcedureError),
+    /// The mount's calibration is impossible.
+    Mount(MountError),
     /// Everything waited and nothing would have come.
     Deadlock,
 }
@@ -56,6 +61,7 @@ impl fmt::Display for RunError {
         match self {
             Self::Latitude(latitude) => write!(f, "latitude {latitude}° is outside ±90°"),
             Self::Procedure(error) => error.fmt(f),
+            Self::Mount(error) => error.fmt(f),
             Self::Deadlock => f.write_str("the instrument waits for something that never comes"),
         }
     }

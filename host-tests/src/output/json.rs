@@ -6,7 +6,8 @@ use orientation::align::stepwise::Fit;
 use serde::Serialize;
 
 use super::{azimuth_error, columns, degrees};
-use crate::replay::Replay;
+use crate::positions::{Autocompensation, autocompensation};
+use crate::replay::{Method, Replay};
 
 /// The object of a method that gives an azimuth.
 #[derive(Clone, Debug, Serialize)]
@@ -43,7 +44,7 @@ pub struct AzimuthObject {
     pub pitch_deg: Option<f64>,
     /// Roll of the body, where it was measured.
     pub roll_deg: Option<f64>,
-    /// Earth rate found over expected.
+    /// Earth rate found over expected; none of two positions, which take it for granted.
     pub earth_rate_ratio: Option<f64>,
     /// 1σ of the ratio.
     pub earth_rate_ratio_sigma: Option<f64>,
@@ -53,6 +54,9 @@ pub struct AzimuthObject {
     pub horizontal_earth_rate: Option<&'static str>,
     /// Dwells left out.
     pub excluded: Vec<Excluded>,
+    /// The positions and what plain least squares makes of them; of method `positions`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub autocompensation: Option<Autocompensation>,
     /// What was assumed.
     pub assumed: Vec<String>,
 }
@@ -104,6 +108,7 @@ impl From<&Budget> for BudgetObject {
 #[must_use]
 pub fn azimuth(replay: &Replay, conclusion: &Conclusion, truth_deg: Option<f64>) -> AzimuthObject {
     let fit = conclusion.fit.as_ref();
+    let seen = fit.filter(|fit| !fit.model.is_single_axis);
     let verdict = conclusion.verdict.as_ref();
     let found = verdict.ok().map(|azimuth| degrees(azimuth.angle));
     let tilt = conclusion.tilt.measured.then_some(&conclusion.tilt);
@@ -112,7 +117,7 @@ pub fn azimuth(replay: &Replay, conclusion: &Conclusion, truth_deg: Option<f64>)
         dwells.filter(|(_, why)| why.is_none()).map(|(dwell, _)| dwell)
     };
     AzimuthObject {
-        method: "stepwise",
+        method: replay.method.name(),
         criterion: replay.criterion_name(),
         status: if verdict.is_ok() { "ok" } else { "refused" },
         reason: verdict.err().map(ToString::to_string),
@@ -126,11 +131,13 @@ pub fn azimuth(replay: &Replay, conclusion: &Conclusion, truth_deg: Option<f64>)
         seconds: kept().map(|dwell| dwell.seconds).sum(),
         pitch_deg: tilt.map(|tilt| degrees(tilt.pitch())),
         roll_deg: tilt.map(|tilt| degrees(tilt.roll())),
-        earth_rate_ratio: fit.map(|fit| fit.ratio),
-        earth_rate_ratio_sigma: fit.map(|fit| fit.ratio_sigma),
+        earth_rate_ratio: seen.map(|fit| fit.ratio),
+        earth_rate_ratio_sigma: seen.map(|fit| fit.ratio_sigma),
         model: fit.map(columns).unwrap_or_default(),
         horizontal_earth_rate: fit.map(earth_rate),
         excluded: excluded(replay, conclusion),
+        autocompensation: (replay.method == Method::Positions)
+            .then(|| autocompensation(&replay.session, conclusion)),
         assumed: replay.assumed.clone(),
     }
 }

@@ -1,7 +1,10 @@
 //! What the user sees: the result block, the JSON object, the progress bar.
 
+pub mod allan;
+pub mod burov;
 pub mod emulation;
 pub mod json;
+pub mod page;
 pub mod plan;
 pub mod progress;
 pub mod table;

@@ -4,7 +4,7 @@ use std::fmt::{self, Write};
 
 use super::positive_zero;
 use crate::campaign::sokolov::{AlphaRow, Precision, Table};
-use crate::campaign::statistics::NORMAL_COVERAGE;
+use crate::campaign::statistics::{NORMAL_COVERAGE, Precision as Errors};
 use crate::campaign::{faults, instrument};
 
 /// Writes the tables of Sokolov's experiment.
@@ -103,14 +103,27 @@ fn of_precision(out: &mut impl Write, row: &Precision) -> fmt::Result {
 ///
 /// # Errors
 /// Those of the writer.
-pub fn instrument(out: &mut impl Write, row: &instrument::Precision) -> fmt::Result {
-    let [one, two, three] = row.coverage_percent;
-    let [a, b, c] = NORMAL_COVERAGE;
+pub fn instrument(out: &mut impl Write, runs: &instrument::Runs) -> fmt::Result {
     writeln!(
         out,
         "\nThe whole instrument on simulated chips: 24 positions of 10 s, latitudes ±70°, tilts to 5°"
     )?;
-    writeln!(out, "{} runs, {} refused", row.runs, row.refused)?;
+    errors(out, &runs.precision)?;
+    writeln!(
+        out,
+        "  {} dwells measured again, {} accesses that a data sheet forbids",
+        runs.repeated, runs.violations
+    )
+}
+
+/// Writes what many alignments amount to.
+///
+/// # Errors
+/// Those of the writer.
+pub fn errors(out: &mut impl Write, row: &Errors) -> fmt::Result {
+    let [one, two, three] = row.coverage_percent;
+    let [a, b, c] = NORMAL_COVERAGE;
+    writeln!(out, "  {} runs, {} refused", row.runs, row.refused)?;
     if let Some(reason) = &row.first_reason {
         writeln!(out, "  first refusal: {reason}")?;
     }
@@ -124,11 +137,6 @@ pub fn instrument(out: &mut impl Write, row: &instrument::Precision) -> fmt::Res
         "  within 1, 2, 3 σ: {one:.1}, {two:.1}, {three:.1} % (normal: {a:.1}, {b:.1}, {c:.1} %); \
          worst {:.2} σ",
         row.worst_sigmas
-    )?;
-    writeln!(
-        out,
-        "  {} dwells measured again, {} accesses that a data sheet forbids",
-        row.repeated, row.violations
     )
 }
 

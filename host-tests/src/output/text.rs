@@ -9,7 +9,8 @@ use orientation::align::stepwise::Fit;
 use super::json::{Excluded, earth_rate, excluded};
 use super::{azimuth_error, columns, degrees, degrees_per_hour, positive_zero};
 use crate::instrument::Run;
-use crate::replay::Replay;
+use crate::positions::autocompensation;
+use crate::replay::{Method, Replay};
 
 /// Writes the block for a replay of `name`; `truth_deg` is for its error alone.
 ///
@@ -33,12 +34,16 @@ pub fn block(
     if let Some(fit) = &conclusion.fit {
         of_fit(out, replay, conclusion, fit)?;
     }
+    if replay.method == Method::Positions {
+        positions(out, replay, conclusion)?;
+    }
     line(out, "assumed", format_args!("{}", replay.assumed.join("; ")))?;
     left_out(out, replay, conclusion)?;
     dwells(out, replay, conclusion)
 }
 
-fn line(out: &mut impl Write, label: &str, value: fmt::Arguments<'_>) -> fmt::Result {
+/// Writes what belongs to a label.
+pub(super) fn line(out: &mut impl Write, label: &str, value: fmt::Arguments<'_>) -> fmt::Result {
     writeln!(out, "  {label:<18} {value}")
 }
 
@@ -86,16 +91,41 @@ fn of_fit(
     fit: &Fit,
 ) -> fmt::Result {
     let (ratio, sigma) = (fit.ratio, fit.ratio_sigma);
-    line(out, "Earth rate", format_args!("{ratio:.4} ± {sigma:.4} of that expected"))?;
+    if fit.model.is_single_axis {
+        line(out, "Earth rate", format_args!("taken for granted: two positions do not show it"))?;
+    } else {
+        line(out, "Earth rate", format_args!("{ratio:.4} ± {sigma:.4} of that expected"))?;
+    }
     let names = columns(fit).join(", ");
     line(out, "model", format_args!("{names}; Earth rate {}", earth_rate(fit)))?;
     line(out, "criterion", format_args!("{}", replay.criterion_name()))?;
     let noise = degrees(conclusion.angle_random_walk) * 60.0;
-    let how = if replay.noise_is_known() { "stated" } else { "estimated" };
+    let how = match (replay.session.surveyed(), replay.noise_is_known()) {
+        (Some(_), _) => "surveyed",
+        (None, true) => "stated",
+        (None, false) => "estimated",
+    };
     line(out, "gyro noise N", format_args!("{noise:.6} °/√h ({how})"))?;
     let (chi, degrees) = (fit.chi_square, fit.degrees);
     line(out, "residuals", format_args!("χ² {chi:.1} for {degrees} degrees of freedom"))?;
     budget(out, fit)
+}
+
+/// How often each position was visited, and what plain autocompensation gives.
+fn positions(out: &mut impl Write, replay: &Replay, conclusion: &Conclusion) -> fmt::Result {
+    let found = autocompensation(&replay.session, conclusion);
+    let visited = found.angles_deg.iter().zip(&found.visits);
+    let list: Vec<String> =
+        visited.map(|(angle, times)| format!("{angle:.1}° × {times}")).collect();
+    line(out, "positions", format_args!("{}", list.join(", ")))?;
+    let (Some(azimuth), Some(off)) = (found.plain_azimuth_deg, found.plain_off_sigmas) else {
+        return Ok(());
+    };
+    line(
+        out,
+        "without weights",
+        format_args!("{azimuth:.4}° by plain least squares, {off:+.2} σ from the azimuth"),
+    )
 }
 
 /// The budget with each part's share of the variance.
@@ -156,6 +186,15 @@ pub fn run(out: &mut impl Write, run: &Run, scenario: &Scenario, wall: f64) -> f
         line(out, "FORBIDDEN", format_args!("{violation}"))?;
     }
     Ok(())
+}
+
+/// Where a two-frame mount has left the gyro, after [`run`].
+///
+/// # Errors
+/// Those of the writer.
+pub fn stored(out: &mut impl Write, is_stored: bool, off_vertical_deg: f64) -> fmt::Result {
+    let what = if is_stored { "vertical, to store the azimuth" } else { "not stored" };
+    line(out, "gyro", format_args!("{what}: truly {off_vertical_deg:.4}° off the base's vertical"))
 }
 
 /// Names the dwells that take no part.

@@ -22,6 +22,8 @@ pub(super) enum Need {
     Optional,
     /// When any of these is: they come together.
     AnyOf(&'static [&'static str]),
+    /// When none of these is: they stand in for it.
+    NoneOf(&'static [&'static str]),
 }
 
 /// A column that a kind knows.
@@ -109,6 +111,7 @@ impl Layout {
             Need::Always => true,
             Need::Optional => false,
             Need::AnyOf(group) => group.iter().any(|name| self.has(name)),
+            Need::NoneOf(group) => !group.iter().any(|name| self.has(name)),
         })
     }
 

@@ -16,6 +16,7 @@ mod lines;
 mod number;
 mod problem;
 mod rows;
+mod spacing;
 mod timing;
 
 use std::fmt;
@@ -28,7 +29,8 @@ pub use header::{Header, Sensor, Truth};
 pub use lines::{MAX_LINE_BYTES, MAX_ROWS};
 pub use number::Range;
 pub use problem::{HeaderProblem, Problem, SourceProblem, TimeProblem, ValueProblem};
-pub use rows::{DwellRow, StageRow};
+pub use rows::{DwellRow, ImuSample, StageRow, StaticRow};
+pub use spacing::{Gap, Spacing};
 
 use error::Fault;
 use header::Collector;
@@ -61,6 +63,20 @@ pub enum Body {
     Stage(Vec<StageRow>),
     /// One row a position, already averaged.
     Dwells(Vec<DwellRow>),
+    /// Samples at rest; samples may be missing, as [`Spacing`] says.
+    Static(Vec<StaticRow>),
+}
+
+impl Body {
+    /// The kind of its recording.
+    #[must_use]
+    pub fn kind(&self) -> Kind {
+        match self {
+            Self::Stage(_) => Kind::Stage,
+            Self::Dwells(_) => Kind::Dwells,
+            Self::Static(_) => Kind::Static,
+        }
+    }
 }
 
 /// The kinds that the format has.
@@ -74,7 +90,7 @@ pub enum Kind {
     Imu,
     /// A body in fast rotation about its long axis.
     Spin,
-    /// A gyro at rest, for Allan variance.
+    /// A gyro at rest, for Allan variance; read here.
     Static,
     /// One row a position, already averaged; read here.
     Dwells,
@@ -142,6 +158,7 @@ fn parse(reader: impl Read) -> Result<Recording, Fault> {
     let read_rows: ReadRows = match kind {
         Kind::Stage => |lines, line, names| Ok(Body::Stage(rows::read(lines, line, names)?)),
         Kind::Dwells => |lines, line, names| Ok(Body::Dwells(rows::read(lines, line, names)?)),
+        Kind::Static => |lines, line, names| Ok(Body::Static(rows::read(lines, line, names)?)),
         other => return Err(Fault::line(line, HeaderProblem::UnreadKind(other))),
     };
     let header = entries.header()?;
@@ -179,12 +196,13 @@ fn kind(entries: &Collector) -> Result<(u64, Kind), Fault> {
     Ok((line, kind))
 }
 
-/// Refuses gaps and a rate (its line, and Hz) that the times contradict. Dwells have no rate.
+/// Refuses gaps and a rate (its line, and Hz) that the times contradict. Dwells have no rate; what
+/// [`Spacing`] finds in a record at rest is no error.
 fn check_times(body: &Body, rate: Option<(u64, f64)>) -> Result<(), Fault> {
     match body {
         Body::Stage(rows) => {
             Times { rows, stamp: |row| (row.line, row.time_s), column: "t_s" }.check(rate)
         }
-        Body::Dwells(_) => Ok(()),
+        Body::Dwells(_) | Body::Static(_) => Ok(()),
     }
 }

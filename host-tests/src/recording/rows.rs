@@ -22,6 +22,8 @@ const FORCE: Range = Range::symmetric(2_147.483_647, " m/s²");
 const TEMPERATURE: Range = Range::symmetric(2_147_483.647, " °C");
 /// The force columns of a dwell come together or not at all.
 const FORCES: [&str; 3] = ["fx_m_s2", "fy_m_s2", "fz_m_s2"];
+/// So do those of an inertial measurement unit.
+const IMU: [&str; 6] = ["gx_rad_s", "gy_rad_s", "gz_rad_s", "ax_m_s2", "ay_m_s2", "az_m_s2"];
 
 /// One sample of a `stage` recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,6 +58,28 @@ pub struct DwellRow {
     pub mid_s: Option<f64>,
     /// Mean specific force on the platform, m/s², as in [`StageRow`], when recorded.
     pub force_m_s2: Option<[f64; 3]>,
+}
+
+/// One sample of a `static` recording: of one gyro, of an inertial measurement unit, or of both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StaticRow {
+    /// The line of the file, from 1, for messages about this sample.
+    pub line: u64,
+    /// Time, s, later than in the row before; its zero is the recorder's and it may be negative.
+    pub time_s: f64,
+    /// Rate along the gyro's sensitive axis, rad/s, ±2.147483647, when recorded.
+    pub rate_rad_s: Option<f64>,
+    /// Rates and forces along body x, y and z, when recorded.
+    pub imu: Option<ImuSample>,
+}
+
+/// What an inertial measurement unit gives at a time, along body x (forward), y (right), z (down).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImuSample {
+    /// Rates, rad/s, ±2.147483647.
+    pub rates_rad_s: [f64; 3],
+    /// Specific force, m/s², ±2147.483647.
+    pub force_m_s2: [f64; 3],
 }
 
 /// A kind's row.
@@ -115,6 +139,31 @@ impl Row for DwellRow {
             seconds: values.needed(3),
             mid_s: values.optional(4),
             force_m_s2: values.optional(5).map(|_| force),
+        }
+    }
+}
+
+impl Row for StaticRow {
+    const COLUMNS: &'static [Column] = &[
+        Column::always("t_s", TIME),
+        Column { name: "g_rad_s", need: Need::NoneOf(&IMU), range: RATE },
+        Column { name: IMU[0], need: Need::AnyOf(&IMU), range: RATE },
+        Column { name: IMU[1], need: Need::AnyOf(&IMU), range: RATE },
+        Column { name: IMU[2], need: Need::AnyOf(&IMU), range: RATE },
+        Column { name: IMU[3], need: Need::AnyOf(&IMU), range: FORCE },
+        Column { name: IMU[4], need: Need::AnyOf(&IMU), range: FORCE },
+        Column { name: IMU[5], need: Need::AnyOf(&IMU), range: FORCE },
+    ];
+    const TIME: usize = 0;
+
+    fn from_values(values: &Values<'_>) -> Self {
+        let three = |first: usize| [0, 1, 2].map(|axis| values.needed(first + axis));
+        let imu = ImuSample { rates_rad_s: three(2), force_m_s2: three(5) };
+        Self {
+            line: values.line,
+            time_s: values.needed(0),
+            rate_rad_s: values.optional(1),
+            imu: values.optional(2).map(|_| imu),
         }
     }
 }

@@ -50,7 +50,7 @@ impl<T> Times<'_, T> {
     }
 
     /// The median of the steps (the lower one of two), in seconds; `None` with fewer than two rows.
-    fn median_step(&self) -> Option<f64> {
+    pub fn median_step(&self) -> Option<f64> {
         let time = |row| (self.stamp)(row).1;
         let mut steps: Vec<f64> =
             self.rows.windows(2).map(|pair| time(&pair[1]) - time(&pair[0])).collect();

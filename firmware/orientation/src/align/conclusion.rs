@@ -118,14 +118,14 @@ impl Conclusion {
             let _ = self.residuals.push(Residual::default());
         }
         self.level(setting, dwells);
-        quality::moved(dwells, setting.latitude.gravity(), &self.tilt, &mut self.disturbances);
+        quality::moved(setting, dwells, &self.tilt, &mut self.disturbances);
         self.level(setting, dwells);
     }
 
     fn level(&mut self, setting: &Setting, dwells: &[Dwell]) {
         let kept = dwells.iter().zip(&self.disturbances).filter(|(_, why)| why.is_none());
-        let bias = setting.accelerometer_bias_sigma;
-        self.tilt = level::tilt(kept.map(|(dwell, _)| dwell), setting.latitude.gravity(), bias);
+        let (gravity, bias) = (setting.latitude.gravity(), setting.accelerometer_bias_sigma);
+        self.tilt = level::tilt_in(&setting.mount, kept.map(|(dwell, _)| dwell), gravity, bias);
     }
 
     /// Fits, and leaves out the dwell that stands out most, until none does.
@@ -216,7 +216,9 @@ impl Conclusion {
         self.judge_single_axis(dwells, fit)?;
         self.judge_residuals(fit)?;
         let (ratio, sigma) = (fit.ratio, fit.ratio_sigma);
-        if (ratio - 1.0).abs() > RATIO_BOUND * sigma + RATIO_TOLERANCE {
+        // Two positions take the Earth rate for granted.
+        let is_seen = !fit.model.is_single_axis;
+        if is_seen && (ratio - 1.0).abs() > RATIO_BOUND * sigma + RATIO_TOLERANCE {
             return Err(Refusal::EarthRateMismatch { ratio, sigma });
         }
         Ok(())

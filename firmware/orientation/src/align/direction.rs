@@ -88,6 +88,12 @@ struct Profile {
 }
 
 impl Components {
+    /// The direction that the components themselves show, Earth rate and half left open.
+    #[must_use]
+    pub fn free(&self) -> Option<Direction> {
+        Self { half: None, ..*self }.direction(Amplitude::Free)
+    }
+
     /// The most likely azimuth; `None` where the covariance is not positive, or where no azimuth of
     /// the known half fits better than its neighbours.
     #[must_use]

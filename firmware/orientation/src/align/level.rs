@@ -2,10 +2,11 @@
 //!
 //! Over the stage angle θ the readings are `f_x/g = Re(F e^{jθ}) + b_x` and
 //! `f_y/g = −Im(F e^{jθ}) + b_y`. The tilt phasor F and both biases are fitted
-//! together: over a full circle F comes out free of bias; over a short arc the bias's stated
-//! uncertainty goes into F's.
+//! together: over a full circle F comes out free of bias; over a short arc, or from an accelerometer
+//! on the base, the bias's stated uncertainty goes into F's.
 
 use super::regression::{COLUMNS, Column, Regression};
+use super::setting::Mount;
 use crate::signal::dwell::Dwell;
 
 /// The tilt phasor in g: real part along body x, imaginary part to its quadrature.
@@ -57,6 +58,21 @@ impl Tilt {
         ]
     }
 
+    /// The base's downward axis, in the levelled frame.
+    #[must_use]
+    pub fn down(&self) -> [f64; 3] {
+        let (sine_roll, cosine_roll) = libm::sincos(self.roll());
+        let cosine_pitch = libm::sqrt((1.0 - self.real * self.real).max(0.0));
+        [self.real * cosine_roll, -sine_roll, cosine_pitch * cosine_roll]
+    }
+
+    /// Specific force away from the base plane, up through it, in g.
+    #[must_use]
+    pub fn upward(&self) -> f64 {
+        let magnitude = self.magnitude();
+        libm::sqrt((1.0 - magnitude * magnitude).max(0.0))
+    }
+
     /// Specific force along the sensitive axis and 90° clockwise of it, in g, free of bias.
     #[must_use]
     pub fn force(&self, theta: f64) -> [f64; 2] {
@@ -73,7 +89,7 @@ const SCATTER: [f64; 2] = [1e-4, 1e-8];
 /// Fits the tilt to the dwells' mean forces, for gravity in m/s² and the 1σ of each accelerometer
 /// bias in m/s² (zero: taken as free of bias).
 ///
-/// The scatter of the dwells about a first fit is the noise of the second. Dwells without force
+/// The accelerometer rides on a stage. The scatter of the dwells about a first fit is the noise of the second. Dwells without force
 /// make the platform level and not measured.
 #[must_use]
 pub fn tilt<'a>(
@@ -81,10 +97,21 @@ pub fn tilt<'a>(
     gravity: f64,
     bias_sigma: f64,
 ) -> Tilt {
+    tilt_in(&Mount::STAGE, dwells, gravity, bias_sigma)
+}
+
+/// The same from the accelerometer of any mount.
+#[must_use]
+pub fn tilt_in<'a>(
+    mount: &Mount,
+    dwells: impl Iterator<Item = &'a Dwell> + Clone,
+    gravity: f64,
+    bias_sigma: f64,
+) -> Tilt {
     let bias = (bias_sigma / gravity).max(EXACT_BIAS);
-    let first = fit(dwells.clone(), gravity, bias, SCATTER[0]);
+    let first = fit(mount, dwells.clone(), gravity, bias, SCATTER[0]);
     let second = first
-        .and_then(|(_, scatter)| fit(dwells, gravity, bias, scatter.max(SCATTER[1])))
+        .and_then(|(_, scatter)| fit(mount, dwells, gravity, bias, scatter.max(SCATTER[1])))
         .or(first);
     second.map_or_else(Tilt::default, |(tilt, _)| tilt)
 }
@@ -104,6 +131,7 @@ pub fn gravity_ratio<'a>(dwells: impl Iterator<Item = &'a Dwell>, gravity: f64) 
 
 /// One fit whose noise is `sigma` g; also the scatter found.
 fn fit<'a>(
+    mount: &Mount,
     dwells: impl Iterator<Item = &'a Dwell>,
     gravity: f64,
     bias_sigma: f64,
@@ -114,7 +142,7 @@ fn fit<'a>(
     let weight = 1.0 / sigma;
     for dwell in dwells {
         let Some([x, y, _]) = dwell.force else { continue };
-        let (sine, cosine) = libm::sincos(dwell.stage.rad());
+        let (sine, cosine) = libm::sincos(mount.accelerometer_turn(dwell));
         let [cosine, sine] = [cosine * weight, sine * weight];
         regression.push(&[cosine, -sine, weight, 0.0, 0.0], x / gravity * weight);
         regression.push(&[-sine, -cosine, 0.0, weight, 0.0], y / gravity * weight);

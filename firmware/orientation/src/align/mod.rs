@@ -6,6 +6,7 @@ pub mod criterion;
 pub mod direction;
 pub mod etalon;
 pub mod level;
+pub mod mount;
 pub mod quality;
 pub mod regression;
 pub mod setting;

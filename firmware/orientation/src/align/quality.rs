@@ -164,10 +164,15 @@ impl Norm {
 /// What is usual comes from the differences of successive dwells, which a platform that moves once
 /// leaves alone however many dwells stand on either side.
 #[inline(never)]
-pub fn moved(dwells: &[Dwell], gravity: f64, tilt: &level::Tilt, mark: &mut [Option<Disturbance>]) {
+pub fn moved(
+    setting: &Setting,
+    dwells: &[Dwell],
+    tilt: &level::Tilt,
+    mark: &mut [Option<Disturbance>],
+) {
     let deviations: heapless::Vec<[f64; 2], POSITIONS> = dwells
         .iter()
-        .map(|dwell| dwell.force.map_or([0.0; 2], |force| off_level(dwell, force, gravity, tilt)))
+        .map(|dwell| dwell.force.map_or([0.0; 2], |force| off_level(setting, dwell, force, tilt)))
         .collect();
     let mut steps: heapless::Vec<f64, POSITIONS> = deviations
         .windows(2)
@@ -183,8 +188,9 @@ pub fn moved(dwells: &[Dwell], gravity: f64, tilt: &level::Tilt, mark: &mut [Opt
 }
 
 /// How a dwell's mean force differs from that of the tilt and the biases, g.
-fn off_level(dwell: &Dwell, force: [f64; 3], gravity: f64, tilt: &level::Tilt) -> [f64; 2] {
-    let expected = tilt.force(dwell.stage.rad());
+fn off_level(setting: &Setting, dwell: &Dwell, force: [f64; 3], tilt: &level::Tilt) -> [f64; 2] {
+    let gravity = setting.latitude.gravity();
+    let expected = tilt.force(setting.mount.accelerometer_turn(dwell));
     [0, 1].map(|i| force[i] / gravity - expected[i] - tilt.bias[i])
 }
 

@@ -1,7 +1,9 @@
 //! What is known before an alignment begins: the place, the gyro, the platform, and what is asked.
 
+use super::level::Tilt;
 use crate::earth::Latitude;
 use crate::noise::model::GyroNoise;
+use crate::signal::dwell::Dwell;
 use crate::signal::sway::SwayNoise;
 use crate::units::TURN;
 
@@ -23,9 +25,48 @@ impl Half {
     }
 }
 
+/// What carries the gyro, and where its accelerometer sits. A mount comes with its own geometry, so
+/// that the firmware of one holds nothing of another's.
+#[derive(Clone, Copy, Debug)]
+pub struct Mount {
+    /// Its name.
+    pub name: &'static str,
+    /// Whether the accelerometer sits on the base, so that its biases are tilt; else it rides beside
+    /// the gyro, and they average out over a circle.
+    pub is_on_base: bool,
+    /// The sensitive axis in a dwell, in the levelled frame: forward, right, down.
+    pub axis: fn(&Tilt, &Dwell) -> [f64; 3],
+    /// Specific force that κ multiplies in a dwell, in g.
+    pub force: fn(&Tilt, &Dwell) -> [f64; 2],
+}
+
+impl Mount {
+    /// The single-axis stage: the sensitive axis stays in its plane, the accelerometer rides on it.
+    pub const STAGE: Self = Self {
+        name: "stage",
+        is_on_base: false,
+        axis: |tilt, dwell| tilt.sensitive_axis(dwell.stage.rad()),
+        force: |tilt, dwell| tilt.force(dwell.stage.rad()),
+    };
+
+    /// By how much a dwell has turned the accelerometer from the base's axes, rad.
+    #[must_use]
+    pub fn accelerometer_turn(&self, dwell: &Dwell) -> f64 {
+        if self.is_on_base { 0.0 } else { dwell.stage.rad() }
+    }
+}
+
+impl PartialEq for Mount {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
 /// The place, the instrument and the demands. A standard deviation of zero says: exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
+    /// What carries the gyro.
+    pub mount: Mount,
     /// Geodetic latitude.
     pub latitude: Latitude,
     /// 1σ of the latitude, rad.
@@ -38,13 +79,15 @@ pub struct Setting {
     pub sway: SwayNoise,
     /// 1σ of the gyro's scale factor, relative.
     pub scale_sigma: f64,
-    /// g-sensitivity κ along the sensitive axis and 90° clockwise of it, rad/s per g.
+    /// g-sensitivity κ along the sensitive axis and 90° clockwise of it, rad/s per g; in two frames
+    /// along the inner frame's axis instead.
     pub g_sensitivity: [f64; 2],
-    /// 1σ of either part of κ, rad/s per g.
+    /// 1σ of either part of κ, rad/s per g; in two frames of the third one too, which is taken as zero.
     pub g_sensitivity_sigma: f64,
     /// 1σ of each accelerometer bias, m/s².
     pub accelerometer_bias_sigma: f64,
-    /// 1σ of the encoder's zero and harmonics, as they turn the azimuth, rad.
+    /// 1σ of the encoder's zero and harmonics, as they turn the azimuth, rad; in two frames with what
+    /// their calibration leaves ([`super::mount::azimuth_sigma`]).
     pub encoder_sigma: f64,
     /// The half of the circle in which the azimuth is known to lie, if that is known; two positions
     /// need it, and no answer comes from the other half.
@@ -64,6 +107,7 @@ impl Setting {
     #[must_use]
     pub fn at(latitude: Latitude) -> Self {
         Self {
+            mount: Mount::STAGE,
             latitude,
             latitude_sigma: 0.0,
             noise: GyroNoise::default(),

@@ -37,6 +37,13 @@ impl GyroNoise {
         Self { quantisation: q * ARCSECOND, ..self }
     }
 
+    /// Q, N, B, K and R, as the fields have them.
+    #[must_use]
+    pub fn coefficients(&self) -> [f64; 5] {
+        let Self { quantisation: q, angle_random_walk: n, bias_instability: b, .. } = *self;
+        [q, n, b, self.rate_random_walk, self.rate_ramp]
+    }
+
     /// Variance of a mean over `seconds` that the white part leaves, (rad/s)².
     #[must_use]
     pub fn white_variance(&self, seconds: f64) -> f64 {

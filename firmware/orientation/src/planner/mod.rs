@@ -12,6 +12,7 @@ pub mod outlook;
 use crate::align::POSITIONS;
 use crate::earth::Latitude;
 use crate::noise::model::GyroNoise;
+use crate::units::TURN;
 use order::Order;
 use outlook::{Outlook, Visit, outlook};
 
@@ -22,19 +23,23 @@ pub struct Rotation {
     pub rest: f64,
     /// Rate between the slopes, rad/s, > 0; infinite where rotations of any angle take alike.
     pub speed: f64,
+    /// Whether it takes the shorter way round: with slip rings, or with two frames.
+    pub wraps: bool,
 }
 
 impl Rotation {
     /// Every rotation takes so many seconds.
     #[must_use]
     pub fn fixed(seconds: f64) -> Self {
-        Self { rest: seconds, speed: f64::INFINITY }
+        Self { rest: seconds, speed: f64::INFINITY, wraps: false }
     }
 
     /// Time for a rotation by `angle` rad; none for none.
     #[must_use]
     pub fn seconds(&self, angle: f64) -> f64 {
-        if angle == 0.0 { 0.0 } else { self.rest + angle.abs() / self.speed }
+        let angle = angle.abs();
+        let way = if self.wraps { angle.min(TURN - angle) } else { angle };
+        if angle == 0.0 { 0.0 } else { self.rest + way / self.speed }
     }
 }
 
@@ -50,6 +55,8 @@ pub struct Conditions {
     /// Fewest positions: fewer than eight leave too few degrees of freedom to notice a disturbed
     /// dwell.
     pub fewest: usize,
+    /// The orders that the stage can turn through.
+    pub orders: &'static [Order],
 }
 
 /// Positions in their order, and what comes of them.
@@ -171,8 +178,8 @@ pub fn for_time(conditions: &Conditions, seconds: f64) -> Result<Plan, PlanError
     if conditions.noise == GyroNoise::default() {
         return Err(PlanError::NoNoise);
     }
-    let orders = Order::COMPARED.map(|order| best_of(conditions, order, seconds));
-    orders.into_iter().reduce(better).flatten().ok_or(PlanError::TooShort)
+    let plans = conditions.orders.iter().map(|order| best_of(conditions, *order, seconds));
+    plans.reduce(better).flatten().ok_or(PlanError::TooShort)
 }
 
 /// The shortest schedule, at most `longest` seconds, whose 1σ of a rate component is `wanted` rad/s;

@@ -47,6 +47,10 @@ impl Order {
         Self::Circle(8),
     ];
 
+    /// Those of them that need four headings only, as two frames have.
+    pub const QUARTERS: [Self; 5] =
+        [Self::Quadrature, Self::ThereAndBack, Self::Mirrored, Self::Sweep, Self::Pairs];
+
     /// Positions in a pass.
     #[must_use]
     pub fn length(self) -> usize {

@@ -16,14 +16,14 @@ impl Session {
     pub(super) fn go_on_until(&mut self, seconds: f64, now: Instant) -> Command {
         let begun = self.begun.map_or(0.0, Instant::seconds);
         let left = seconds - (now.seconds() - begun);
-        if self.procedure.schedule.is_balanced(self.dwells.len())
+        if self.procedure.schedule.is_balanced(self.dwells().len())
             && let Some(command) = self.weigh(seconds, left)
         {
             return command;
         }
-        let next = self.procedure.schedule.position(self.dwells.len());
+        let next = self.procedure.schedule.position(self.dwells().len());
         match next {
-            Some(next) if next.seconds <= left && self.dwells.len() < POSITIONS => {
+            Some(next) if next.seconds <= left && self.dwells().len() < POSITIONS => {
                 self.go_to(next, now)
             }
             _ => self.conclude(None),
@@ -35,7 +35,7 @@ impl Session {
     fn weigh(&mut self, seconds: f64, left: f64) -> Option<Command> {
         let rate = self.setting.latitude.horizontal_rate();
         let noise = self.noise();
-        let so_far = outlook(&noise, self.dwells.iter().map(Visit::from))?;
+        let so_far = outlook(&noise, self.dwells().iter().map(Visit::from))?;
         let (required, sigma) = (self.setting.required_sigma, so_far.observed_rate_sigma() / rate);
         if sigma <= required {
             return self.try_to_conclude(left);
@@ -64,32 +64,32 @@ impl Session {
 
     /// The gyro's noise, N as it is stated or, where that is more, as the dwells show it.
     fn noise(&self) -> GyroNoise {
-        let norm = Norm::of(&self.setting, &self.dwells);
-        let white = norm.white().max(norm.observed_white(&self.dwells));
+        let norm = Norm::of(&self.setting, self.dwells());
+        let white = norm.white().max(norm.observed_white(self.dwells()));
         GyroNoise { angle_random_walk: libm::sqrt(white), ..self.setting.noise }
     }
 
     /// What all positions that still fit into the time left will bring, if the dwells go on to
     /// scatter as they do, rad/s.
     fn least_rate_sigma(&self, noise: &GyroNoise, now: &Outlook, left: f64) -> f64 {
-        let (schedule, done) = (&self.procedure.schedule, self.dwells.len());
+        let (schedule, done) = (&self.procedure.schedule, self.dwells().len());
         let seconds = schedule.shortest();
         let period = self.period().max(seconds);
-        let begin = self.dwells.last().map_or(0.0, |dwell| dwell.end());
+        let begin = self.dwells().last().map_or(0.0, |dwell| dwell.end());
         let more = ((left / period) as usize).min(POSITIONS - done);
         let to_come = (0..more).filter_map(|index| {
             let angle = schedule.position(done + index)?.angle;
             let start = begin + (index + 1) as f64 * period - seconds;
             Some(Visit { angle, start, seconds, rate: 0.0 })
         });
-        let all = outlook(noise, self.dwells.iter().map(Visit::from).chain(to_come));
+        let all = outlook(noise, self.dwells().iter().map(Visit::from).chain(to_come));
         let factor = now.observed_rate_sigma() / now.rate_sigma;
         all.map_or(f64::INFINITY, |outlook| outlook.rate_sigma * factor)
     }
 
     /// Time from one dwell to the next so far, s.
     fn period(&self) -> f64 {
-        let [first, .., last] = self.dwells.as_slice() else { return 0.0 };
-        (last.middle - first.middle) / (self.dwells.len() - 1) as f64
+        let [first, .., last] = self.dwells() else { return 0.0 };
+        (last.middle - first.middle) / (self.dwells().len() - 1) as f64
     }
 }

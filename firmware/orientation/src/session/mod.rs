@@ -1,7 +1,7 @@
 //! The alignment procedure as a state machine without I/O: an event in, a command out.
 //!
 //! ```text
-//!  level ─▶ dwell ─▶ rotate ─▶ dwell ─▶ … ─▶ match ─▶ azimuth ± σ, or the reason for none
+//!  level ─▶ (survey) ─▶ dwell ─▶ rotate ─▶ dwell ─▶ … ─▶ match ─▶ azimuth ± σ, or the reason for none
 //!             ▲└─disturbed: again─┘
 //! ```
 //!
@@ -12,19 +12,21 @@ mod accuracy;
 mod pace;
 pub mod procedure;
 pub mod schedule;
+pub mod survey;
 
 use heapless::Vec;
 
 use self::pace::{Pace, Target, samples};
 use self::procedure::{Procedure, ProcedureError};
 use self::schedule::{Position, StopRule};
-use crate::align::POSITIONS;
+use self::survey::Store;
 use crate::align::conclusion::Conclusion;
 use crate::align::criterion::Criterion;
 use crate::align::etalon::Table;
 use crate::align::quality::{Disturbance, Norm};
 use crate::align::setting::Setting;
 use crate::error::Refusal;
+use crate::noise::fit::NoiseFit;
 use crate::signal::Sample;
 use crate::signal::butterworth::Coefficients;
 use crate::signal::dwell::{self, Dwell, DwellAverage};
@@ -66,6 +68,8 @@ pub enum Command {
 pub enum Phase {
     /// The tilt is looked at before anything turns.
     Level,
+    /// The stage stands still while the gyro's noise is learnt.
+    Survey,
     /// A dwell is being averaged.
     Dwell,
     /// The stage is on its way since this time.
@@ -90,7 +94,7 @@ pub struct Prepared {
     setting: Setting,
     procedure: Procedure,
     coefficients: Coefficients<SECTIONS>,
-    first: Position,
+    target: Target,
 }
 
 impl Prepared {
@@ -100,40 +104,47 @@ impl Prepared {
     /// A procedure that the filter or the stage cannot follow.
     pub fn new(setting: Setting, procedure: Procedure) -> Result<Self, ProcedureError> {
         Table::built_in().verify().map_err(|_| ProcedureError::TableCorrupt)?;
-        let rate = 1.0 / procedure.sample_seconds;
-        let coefficients =
-            Coefficients::low_pass(procedure.cutoff(), rate).map_err(ProcedureError::Filter)?;
-        let samples = samples(procedure.schedule.shortest(), procedure.sample_seconds);
-        let needed = dwell::shortest(&coefficients);
-        if samples < needed {
-            return Err(ProcedureError::DwellTooShort { samples, needed });
-        }
-        if let Some(angle) = procedure.beyond_travel() {
-            return Err(ProcedureError::BeyondTravel(angle));
-        }
-        let first = procedure.schedule.next(&[], 0.0).ok_or(ProcedureError::NoPosition)?;
-        Ok(Self { setting, procedure, coefficients, first })
+        let (coefficients, target) = designed(&procedure)?;
+        Ok(Self { setting, procedure, coefficients, target })
     }
 }
 
 impl From<Prepared> for Session {
     fn from(prepared: Prepared) -> Self {
-        let Prepared { setting, procedure, coefficients, first } = prepared;
+        let Prepared { setting, procedure, coefficients, target } = prepared;
         Self {
             setting,
-            target: Target::new(first, procedure.sample_seconds),
+            target,
             pace: Pace::of(&procedure),
+            store: Store::of(&procedure),
+            surveyed: None,
             procedure,
             coefficients,
             phase: Phase::Level,
             begun: None,
             average: None,
-            dwells: Vec::new(),
             repetitions: Vec::new(),
             tries: 0,
             conclusion: None,
         }
     }
+}
+
+/// The filter of a procedure and where it goes first.
+fn designed(procedure: &Procedure) -> Result<(Coefficients<SECTIONS>, Target), ProcedureError> {
+    let rate = 1.0 / procedure.sample_seconds;
+    let coefficients =
+        Coefficients::low_pass(procedure.cutoff(), rate).map_err(ProcedureError::Filter)?;
+    let samples = samples(procedure.schedule.shortest(), procedure.sample_seconds);
+    let needed = dwell::shortest(&coefficients);
+    if samples < needed {
+        return Err(ProcedureError::DwellTooShort { samples, needed });
+    }
+    if let Some(angle) = procedure.beyond_travel() {
+        return Err(ProcedureError::BeyondTravel(angle));
+    }
+    let first = procedure.schedule.next(&[], 0.0).ok_or(ProcedureError::NoPosition)?;
+    Ok((coefficients, Target::new(first, procedure.sample_seconds)))
 }
 
 /// One alignment from the first sample to its conclusion.
@@ -147,7 +158,8 @@ pub struct Session {
     target: Target,
     begun: Option<Instant>,
     average: Option<DwellAverage<SECTIONS>>,
-    dwells: Vec<Dwell, POSITIONS>,
+    store: Store,
+    surveyed: Option<NoiseFit>,
     repetitions: Vec<Repetition, REPETITIONS>,
     tries: usize,
     conclusion: Option<Conclusion>,
@@ -206,7 +218,7 @@ impl Session {
     /// The dwells so far.
     #[must_use]
     pub fn dwells(&self) -> &[Dwell] {
-        &self.dwells
+        self.store.dwells()
     }
 
     /// The dwells that were measured again; of more than 24 the first ones.
@@ -219,7 +231,7 @@ impl Session {
     #[must_use]
     pub fn planned(&self) -> usize {
         match self.procedure.stop {
-            StopRule::Accuracy { .. } => self.procedure.schedule.len_beyond(self.dwells.len()),
+            StopRule::Accuracy { .. } => self.procedure.schedule.len_beyond(self.dwells().len()),
             _ => self.procedure.schedule.len(),
         }
     }
@@ -239,7 +251,7 @@ impl Session {
     /// What the dwells so far would conclude: for progress and for stopping early.
     #[must_use]
     pub fn preview(&self) -> Conclusion {
-        Conclusion::of(&self.setting, &self.dwells, Criterion::MaximumLikelihood)
+        Conclusion::of(&self.setting, self.dwells(), Criterion::MaximumLikelihood)
     }
 
     fn sample(&mut self, sample: &Sample) -> Command {
@@ -252,6 +264,7 @@ impl Session {
         }
         match self.phase {
             Phase::Level => self.level(sample.time),
+            Phase::Survey => self.survey(sample),
             Phase::Dwell => self.dwell(sample.time),
             Phase::Rotate(since) => self.rotate(sample, since),
             Phase::Done => Command::Finished,
@@ -285,6 +298,11 @@ impl Session {
         if tilt > self.setting.allowed_tilt {
             let [tilt, allowed] = [tilt, self.setting.allowed_tilt].map(|a| a / TURN * 360.0);
             return self.conclude(Some(Refusal::TiltTooGreat { tilt, allowed }));
+        }
+        if self.is_surveying() {
+            self.phase = Phase::Survey;
+            self.average = None;
+            return Command::Wait;
         }
         if self.stands_at_target() {
             self.phase = Phase::Dwell;
@@ -332,10 +350,10 @@ impl Session {
             .take()
             .and_then(|average| average.finish(&self.coefficients, self.procedure.sample_seconds));
         let Some(dwell) = finished else { return self.send(now) };
-        if self.dwells.push(dwell).is_err() {
+        if self.store.push(dwell).is_err() {
             return self.conclude(None);
         }
-        match Norm::of(&self.setting, &self.dwells).disturbance(&dwell) {
+        match Norm::of(&self.setting, self.dwells()).disturbance(&dwell) {
             Some(why) if self.tries < self.procedure.retries => self.repeat(why),
             _ => self.go_on(now),
         }
@@ -343,10 +361,10 @@ impl Session {
 
     /// Drops the last dwell; the stage stays and the next sample begins it anew.
     fn repeat(&mut self, why: Disturbance) -> Command {
-        self.dwells.pop();
+        self.store.pop();
         self.tries += 1;
         // A full log loses only the record of one more repetition, never a dwell.
-        let _ = self.repetitions.push(Repetition { position: self.dwells.len(), why });
+        let _ = self.repetitions.push(Repetition { position: self.dwells().len(), why });
         Command::Wait
     }
 
@@ -357,12 +375,12 @@ impl Session {
             return self.go_on_until(seconds, now);
         }
         let sigma = self.difference_sigma();
-        let schedule = &self.procedure.schedule;
+        let (schedule, dwells) = (&self.procedure.schedule, self.store.dwells());
         let stops = schedule
-            .last_difference(&self.dwells, sigma)
+            .last_difference(dwells, sigma)
             .is_some_and(|difference| self.procedure.stop.stops(difference, sigma));
         let [low, high] = self.procedure.travel;
-        match schedule.next(&self.dwells, sigma) {
+        match schedule.next(dwells, sigma) {
             Some(next) if !stops && (low..=high).contains(&next.angle) => self.go_to(next, now),
             _ => self.conclude(None),
         }
@@ -376,13 +394,13 @@ impl Session {
 
     /// Standard deviation of the difference of two dwells, rad/s.
     fn difference_sigma(&self) -> f64 {
-        let white = Norm::of(&self.setting, &self.dwells).white();
+        let white = Norm::of(&self.setting, self.dwells()).white();
         libm::sqrt(2.0 * white / self.procedure.schedule.shortest())
     }
 
     fn averaged(&mut self, dwell: &Dwell) -> Command {
-        match self.dwells.push(*dwell) {
-            Ok(()) if self.dwells.len() < self.planned() => Command::Wait,
+        match self.store.push(*dwell) {
+            Ok(()) if self.dwells().len() < self.planned() => Command::Wait,
             _ => self.conclude(None),
         }
     }
@@ -396,7 +414,7 @@ impl Session {
     /// Ends the session with what there is, or with a reason that no dwell can mend.
     fn conclude(&mut self, reason: Option<Refusal>) -> Command {
         let conclusion = self.conclusion.insert(Conclusion::default());
-        conclusion.draw(&self.setting, &self.dwells, self.procedure.criterion);
+        conclusion.draw(&self.setting, self.store.dwells(), self.procedure.criterion);
         if let Some(reason) = reason {
             conclusion.verdict = Err(reason);
         }

@@ -28,6 +28,8 @@ pub(super) struct Pace {
     pub(super) arrival: Angle,
     /// Samples for the first look at the tilt.
     pub(super) level: u32,
+    /// Samples of a survey.
+    pub(super) survey: u32,
     /// Samples of standing that make an arrival.
     pub(super) settle: u32,
     /// Longest session, µs.
@@ -43,6 +45,7 @@ impl Pace {
             still: Angle::from_rad(procedure.still),
             arrival: Angle::from_rad(procedure.arrival),
             level: samples(procedure.level_seconds),
+            survey: procedure.survey.map_or(0, |survey| samples(survey.seconds)),
             settle: samples(procedure.settle_seconds),
             longest: Instant::from_seconds(procedure.longest_seconds).0,
             longest_rotation: Instant::from_seconds(procedure.longest_rotation).0,

@@ -1,6 +1,7 @@
 //! How a session goes about it: schedule, patience, travel, and what makes a procedure impossible.
 
 use super::schedule::{Schedule, StopRule};
+use super::survey::Survey;
 use crate::align::POSITIONS;
 use crate::align::criterion::Criterion;
 use crate::signal::butterworth::DesignError;
@@ -23,6 +24,8 @@ pub const STILL: f64 = 20e-6;
 pub struct Procedure {
     /// Where the stage goes.
     pub schedule: Schedule,
+    /// What is learnt of the gyro first; the schedule is then made anew.
+    pub survey: Option<Survey>,
     /// When it stops early.
     pub stop: StopRule,
     /// How the azimuth is found.
@@ -60,6 +63,7 @@ impl Procedure {
         let longest_seconds = 2.0 * schedule.seconds() + 30.0 * schedule.len() as f64 + 60.0;
         Self {
             schedule,
+            survey: None,
             stop: StopRule::AllPositions,
             criterion: Criterion::MaximumLikelihood,
             sample_seconds,
@@ -72,6 +76,14 @@ impl Procedure {
             still: STILL,
             arrival: 0.05 / 360.0 * TURN,
         }
+    }
+
+    /// The same, once the gyro's noise is known from a survey.
+    #[must_use]
+    pub fn after(self, survey: Survey) -> Self {
+        let patience = 2.0 * (survey.seconds + survey.plan_seconds) + 30.0 * POSITIONS as f64;
+        let longest_seconds = self.longest_seconds + patience;
+        Self { survey: Some(survey), longest_seconds, ..self }
     }
 
     /// The same, until the accuracy of [`crate::align::setting::Setting::required_sigma`] is reached or

@@ -15,8 +15,11 @@ use crate::units::{Angle, AngularRate, Instant, Optional};
 /// What one dwell leaves behind, whoever averaged it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Dwell {
-    /// Encoder angle.
+    /// Encoder angle: the heading of the sensitive axis in the base plane.
     pub stage: Angle,
+    /// Mean elevation of the sensitive axis above the base plane, rad, up positive; zero where it lies
+    /// in that plane. In single precision, which takes no room: 0.3° is kept to 10⁻⁴″.
+    pub elevation: f32,
     /// Middle of the averaged time, s. (The taper's own middle lies half its lag earlier, in every
     /// dwell alike, so it is of no consequence.)
     pub middle: f64,
@@ -32,7 +35,7 @@ pub struct Dwell {
     pub stated_variance: Optional,
     /// Block statistics, where there were samples enough.
     pub quietness: Option<Quietness>,
-    /// Mean specific force on the platform's axes, m/s², where it was measured.
+    /// Mean specific force on the accelerometer's axes, m/s², where it was measured.
     pub force: Option<[f64; 3]>,
     /// Mean temperature, °C, where it was measured.
     pub temperature: Optional,
@@ -100,6 +103,9 @@ impl<const N: usize> Means<N> {
     }
 }
 
+/// One step of a [`SpecificForce`](crate::units::SpecificForce), m/s².
+const FORCE_STEP: f64 = 1e-6;
+
 /// Sample periods without a sample that a dwell bears: two samples in a row may be lost.
 const LONGEST_GAP: f64 = 3.5;
 
@@ -124,7 +130,8 @@ pub struct DwellAverage<const SECTIONS: usize> {
     changes: i32,
     blocks: Blocks,
     stage: i64,
-    force: Means<3>,
+    /// Specific force and, with it, the elevation.
+    force: Means<4>,
     temperature: Means<1>,
     saturated: bool,
     longest_gap: u64,
@@ -166,12 +173,14 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
         self.filtered += i64::from(self.filter.update(coefficients, sample.rate).0);
     }
 
-    /// Takes what only some samples bring.
+    /// Takes what only some samples bring. An elevation comes with a force: asking for it alone would
+    /// cost every sample a test.
     #[cold]
     #[inline(never)]
     fn push_slow(&mut self, sample: &Sample) {
         if let Some([x, y, z]) = sample.force {
-            self.force.push([x.0, y.0, z.0]);
+            let elevation = sample.elevation.unwrap_or_default();
+            self.force.push([x.0, y.0, z.0, elevation.0.cast_signed()]);
         }
         if let Some(temperature) = sample.temperature {
             self.temperature.push([temperature.0]);
@@ -228,7 +237,12 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
     /// Mean specific force so far, m/s²; `None` while no sample brought one.
     #[must_use]
     pub fn force(&self) -> Option<[f64; 3]> {
-        self.force.get(1e-6)
+        self.force.get(FORCE_STEP).map(|[x, y, z, _]| [x, y, z])
+    }
+
+    /// Mean elevation so far, rad; zero while no sample brought one.
+    fn elevation(&self) -> f32 {
+        self.force.get(Angle::STEP).map_or(0.0, |[.., elevation]| elevation as f32)
     }
 
     /// The dwell, for a sample period in seconds; `None` while it is shorter than [`shortest`].
@@ -247,6 +261,7 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
         let offset = self.stage as f64 / count;
         Some(Dwell {
             stage: Angle(self.anchor.0.wrapping_add(libm::round(offset) as i32 as u32)),
+            elevation: self.elevation(),
             middle: 0.5 * (self.first.seconds() + self.last.seconds()),
             seconds: count * sample_seconds,
             samples: self.count(),

@@ -12,13 +12,18 @@ use crate::units::{Angle, AngularRate, Instant, SpecificForce, Temperature};
 pub struct Sample {
     /// When it was taken.
     pub time: Instant,
-    /// Encoder angle of the stage.
+    /// Encoder angle of the stage: the heading θ of the sensitive axis in the base plane. What does
+    /// not stand shows another angle with every sample.
     pub stage: Angle,
     /// Rate about the gyro's sensitive axis.
     pub rate: AngularRate,
-    /// Platform accelerometer, where a fresh reading came with this sample (it is read less often
-    /// than the gyro): x along the sensitive axis, y 90° clockwise of it, z down.
+    /// Accelerometer, where a fresh reading came with this sample (it is read less often than the
+    /// gyro). On a stage's platform: x along the sensitive axis, y 90° clockwise of it, z down; on the
+    /// base: forward, right, down.
     pub force: Option<[SpecificForce; 3]>,
     /// Temperature at the gyro, where a fresh reading came with this sample.
     pub temperature: Option<Temperature>,
+    /// Elevation of the sensitive axis above the base plane, up positive; none where the stage keeps
+    /// it in that plane. It counts with samples that bring a force.
+    pub elevation: Option<Angle>,
 }

@@ -103,5 +103,6 @@ fn sample(moment: u32, angle: f64, noise: &mut Generator) -> Sample {
         rate: AngularRate::from_rad_per_s(rate),
         force: Some([0.0, 0.0, -9.8085].map(SpecificForce::from_m_per_s2)),
         temperature: Some(Temperature(25_000)),
+        elevation: None,
     }
 }

@@ -15,6 +15,7 @@ mod conclusion;
 mod counter;
 mod matching;
 mod memory;
+mod noise;
 mod report;
 mod samples;
 mod scale;
@@ -29,6 +30,7 @@ use cortex_m_rt::entry;
 use cortex_m_semihosting::{debug, hprintln};
 use orientation::align::conclusion::Conclusion;
 use orientation::align::etalon::series::SeriesError;
+use orientation::noise::allan::Allan;
 use orientation::session::Session;
 use orientation::signal::butterworth::DesignError;
 
@@ -79,6 +81,7 @@ fn measure(report: &mut Report) -> Result<(), Failure> {
     matching::report(&counter, report)?;
     yardsticks::regression(&counter, report);
     conclusion::report(&counter, report)?;
+    noise::report(&counter, report);
     heading("bytes");
     sizes()
 }
@@ -97,9 +100,11 @@ fn check_scale(counter: &Counter, report: &mut Report) {
 fn sizes() -> Result<(), Failure> {
     matching::report_stack()?;
     figure(format_args!("stack of a conclusion of 60 dwells"), conclusion::stack()? as u64);
+    figure(format_args!("stack of a noise fit of the full grid"), noise::stack() as u64);
     figure(format_args!("stack of this image at its deepest"), stack::greatest_stack() as u64);
     figure(format_args!("a Session"), size_of::<Session>() as u64);
     figure(format_args!("a Conclusion"), size_of::<Conclusion>() as u64);
+    figure(format_args!("an Allan variance"), size_of::<Allan>() as u64);
     figure(format_args!("static memory of this image"), memory::statics() as u64);
     figure(
         format_args!("flash of this image, its measuring and the etalon table included"),

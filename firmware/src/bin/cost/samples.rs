@@ -97,5 +97,6 @@ fn sample(index: u64, noise: &mut Generator) -> Sample {
             FORCE.map(|f| SpecificForce::from_m_per_s2(f + FORCE_SIGMA * noise.gaussian()))
         }),
         temperature: is_slow.then_some(Temperature(25_000 + (index & 0x70) as i32)),
+        elevation: None,
     }
 }

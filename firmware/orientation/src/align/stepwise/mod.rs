@@ -39,7 +39,7 @@ pub struct Fit {
     pub limit: f64,
     /// The same bound with the Earth rate free, rad.
     pub limit_free: f64,
-    /// `Ω̂_h/Ω_h` with the Earth rate free.
+    /// `Ω̂_h/Ω_h` with the Earth rate free; of two positions, which do not show it, without meaning.
     pub ratio: f64,
     /// 1σ of the ratio: noise, tilt, g-sensitivity and scale.
     pub ratio_sigma: f64,
@@ -87,7 +87,7 @@ impl Problem<'_> {
         let mut solution = regression.solve(&model.columns())?;
         let components = self.components(&solution);
         let direction = components.direction(model.amplitude)?;
-        let free = components.direction(Amplitude::Free)?;
+        let free = components.free()?;
         let [limit, limit_free] = self.limits(&model)?;
         let mut fit = Fit {
             model,
@@ -121,9 +121,9 @@ impl Problem<'_> {
 
     /// The row of a dwell: its columns and, last, its left side, all in units of `Ω_h`.
     fn row(&self, dwell: &Dwell) -> Row {
-        let theta = dwell.stage.rad();
-        let axis = self.tilt.sensitive_axis(theta);
-        let force = self.tilt.force(theta);
+        let mount = &self.setting.mount;
+        let axis = (mount.axis)(self.tilt, dwell);
+        let force = (mount.force)(self.tilt, dwell);
         let latitude = self.setting.latitude;
         let first = self.dwells[0];
         let left = dwell.rate - first.rate + latitude.vertical_rate() * axis[2]

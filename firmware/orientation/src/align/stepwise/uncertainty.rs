@@ -23,8 +23,8 @@ impl Problem<'_> {
     pub(super) fn limits(&self, model: &Model) -> Option<[f64; 2]> {
         let regression = self.regression(&self.setting.noise, |_| 1.0);
         let components = self.noise_components(&regression.solve(&model.columns())?);
-        let sigma = |amplitude| components.direction(amplitude).map(|d| libm::sqrt(d.variance));
-        Some([sigma(model.amplitude)?, sigma(Amplitude::Free)?])
+        let sigma = |direction: Direction| libm::sqrt(direction.variance);
+        Some([components.direction(model.amplitude).map(sigma)?, components.free().map(sigma)?])
     }
 
     /// Splits the variance: what the dwells' noise does through the gain, what tilt and κ do, and
@@ -69,12 +69,18 @@ impl Problem<'_> {
     /// Covariance of the components from κ and from the tilt: both turn with the stage as the Earth
     /// rate does, so the dwells cannot tell them from it.
     ///
-    /// A tilt phasor F shifts them by `(Ω_v + κ)F/Ω_h`, as complex numbers.
+    /// A tilt phasor F shifts them by `(Ω_v + κ)F/Ω_h`, as complex numbers. In two frames it meets
+    /// `k_s` alone; the other parts of κ meet the vertical force ([`super::super::mount`]).
     pub(super) fn component_errors(&self) -> [Covariance; 2] {
         let rate = self.setting.latitude.horizontal_rate();
-        let kappa = self.setting.g_sensitivity_sigma * self.tilt.magnitude() / rate;
+        let (force, across) = if self.setting.mount.is_on_base {
+            (1.0, 0.0)
+        } else {
+            (self.tilt.magnitude(), self.setting.g_sensitivity[1])
+        };
+        let kappa = self.setting.g_sensitivity_sigma * force / rate;
         let real = (self.setting.latitude.vertical_rate() + self.setting.g_sensitivity[0]) / rate;
-        let imaginary = self.setting.g_sensitivity[1] / rate;
+        let imaginary = across / rate;
         let rows = [[real, -imaginary], [imaginary, real]];
         let tilt = rows.map(|row| {
             let half = product(&self.tilt.covariance, row);

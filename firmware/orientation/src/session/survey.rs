@@ -1,0 +1,192 @@
+//! Knowing the gyro before aligning with it: the stage stands still while the Allan variance is
+//! taken, the noise is fitted to it, and the planner makes the schedule.
+
+use heapless::Vec;
+
+use super::procedure::{Procedure, ProcedureError};
+use super::schedule::{Schedule, StopRule};
+use super::{Command, Phase, Session, designed};
+use crate::align::POSITIONS;
+use crate::error::Refusal;
+use crate::noise::allan::Allan;
+use crate::noise::fit::{Estimate, NoiseFit};
+use crate::noise::model::GyroNoise;
+use crate::planner::order::Order;
+use crate::planner::{Conditions, PlanError, Rotation, for_sigma, for_time};
+use crate::signal::Sample;
+use crate::signal::dwell::{Dwell, DwellAverage, SampleFault};
+use crate::units::{AngularRate, DEGREES_PER_RADIAN, Instant};
+
+/// Part of the accuracy asked for that a plan leaves to what is not noise.
+const RESERVE: f64 = 0.95;
+/// Fewest positions of a plan: enough to notice a disturbed dwell.
+const FEWEST: usize = 8;
+
+/// What is to be learnt of the gyro first, and what the plan is then made for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Survey {
+    /// How long the stage stands still, s.
+    pub seconds: f64,
+    /// How the stage turns.
+    pub rotation: Rotation,
+    /// The orders of positions that it can turn through.
+    pub orders: &'static [Order],
+    /// Shortest dwell of the plan, s.
+    pub shortest: f64,
+    /// Total time of the plan, s; with [`StopRule::Accuracy`] the accuracy rules instead.
+    pub plan_seconds: f64,
+}
+
+/// What a session gathers: first the Allan variance, then dwells, in the same room.
+#[allow(clippy::large_enum_variant, reason = "without an allocator both live in this one place")]
+#[derive(Clone, Debug)]
+pub(super) enum Store {
+    Survey(Allan),
+    Dwells(Vec<Dwell, POSITIONS>),
+}
+
+impl Store {
+    /// For a procedure that begins with a survey, or does not.
+    pub(super) fn of(procedure: &Procedure) -> Self {
+        match procedure.survey {
+            Some(_) => Self::Survey(Allan::new()),
+            None => Self::Dwells(Vec::new()),
+        }
+    }
+
+    pub(super) fn dwells(&self) -> &[Dwell] {
+        match self {
+            Self::Survey(_) => &[],
+            Self::Dwells(dwells) => dwells,
+        }
+    }
+
+    /// Adds a dwell; gives it back where there is no room.
+    pub(super) fn push(&mut self, dwell: Dwell) -> Result<(), Dwell> {
+        match self {
+            Self::Survey(_) => Err(dwell),
+            Self::Dwells(dwells) => dwells.push(dwell),
+        }
+    }
+
+    pub(super) fn pop(&mut self) {
+        if let Self::Dwells(dwells) = self {
+            dwells.pop();
+        }
+    }
+
+    /// Adds a sample to a survey, begun anew where it is the first; how many it has.
+    fn survey(&mut self, rate: AngularRate, is_first: bool) -> u32 {
+        let Self::Survey(allan) = self else { return u32::MAX };
+        if is_first {
+            *allan = Allan::new();
+        }
+        allan.push(rate);
+        allan.samples()
+    }
+}
+
+impl Session {
+    /// Takes a sample of the survey; a stage that moves begins it anew.
+    pub(super) fn survey(&mut self, sample: &Sample) -> Command {
+        let is_first = self.average.as_ref().is_none_or(|average| average.count() <= 1);
+        if self.store.survey(sample.rate, is_first) < self.pace.survey {
+            return Command::Wait;
+        }
+        match self.learn(sample.time) {
+            Ok(command) => command,
+            Err(reason) => self.conclude(Some(reason)),
+        }
+    }
+
+    /// Ends the survey: noise, plan, and off to its first position.
+    #[inline(never)]
+    fn learn(&mut self, now: Instant) -> Result<Command, Refusal> {
+        let seconds = self.procedure.sample_seconds;
+        let average = self.average.take();
+        let dwell = average
+            .and_then(|average: DwellAverage<_>| average.finish(&self.coefficients, seconds));
+        let Store::Survey(allan) = &mut self.store else { return Ok(Command::Wait) };
+        if dwell.is_some_and(|dwell| dwell.fault == Some(SampleFault::Missing)) {
+            *allan = Allan::new();
+            return Ok(Command::Wait);
+        }
+        let found = NoiseFit::of(allan, seconds).map_err(Refusal::NoiseUnknown)?;
+        self.setting.noise = known(&found, &self.setting.noise);
+        self.setting.white_known = true;
+        self.surveyed = Some(found);
+        self.plan(now)?;
+        self.store = Store::Dwells(Vec::new());
+        Ok(self.send(now))
+    }
+
+    /// Plans for the noise that is now known.
+    fn plan(&mut self, now: Instant) -> Result<(), Refusal> {
+        let Some(survey) = self.procedure.survey else { return Ok(()) };
+        let conditions = Conditions {
+            noise: self.setting.noise,
+            rotation: survey.rotation,
+            shortest: survey.shortest,
+            fewest: FEWEST,
+            orders: survey.orders,
+        };
+        let rate = self.setting.latitude.horizontal_rate();
+        let (plan, allowed) = match self.procedure.stop {
+            StopRule::Accuracy { seconds } => {
+                let begun = self.begun.map_or(0.0, Instant::seconds);
+                let left = seconds - (now.seconds() - begun);
+                let wanted = RESERVE * self.setting.required_sigma * rate;
+                (for_sigma(&conditions, wanted, left), seconds)
+            }
+            _ => (for_time(&conditions, survey.plan_seconds), survey.plan_seconds),
+        };
+        let plan = plan.map_err(|error| self.unplanned(error, allowed))?;
+        self.procedure.schedule = Schedule::Planned(plan);
+        designed(&self.procedure)
+            .map(|(coefficients, target)| {
+                self.coefficients = coefficients;
+                self.target = target;
+            })
+            .map_err(|_: ProcedureError| Refusal::NoSchedule { seconds: allowed })
+    }
+
+    /// Why there is no plan, in degrees.
+    fn unplanned(&self, error: PlanError, seconds: f64) -> Refusal {
+        let degrees = |angle: f64| angle * DEGREES_PER_RADIAN;
+        match error {
+            PlanError::OutOfReach(rate) => Refusal::OutOfReach {
+                sigma: degrees(rate / self.setting.latitude.horizontal_rate()),
+                required: degrees(self.setting.required_sigma),
+                seconds,
+            },
+            PlanError::TooShort | PlanError::NoNoise => Refusal::NoSchedule { seconds },
+        }
+    }
+
+    /// What the survey found of the gyro's noise, where there was one.
+    #[must_use]
+    pub fn surveyed(&self) -> Option<&NoiseFit> {
+        self.surveyed.as_ref()
+    }
+
+    /// Whether the stage stands still for the survey.
+    pub(super) fn is_surveying(&self) -> bool {
+        matches!(self.store, Store::Survey(_)) && self.phase != Phase::Done
+    }
+}
+
+/// The noise to go by: what was found, and of what was not observable what was stated, as far as the
+/// survey bears it out.
+fn known(found: &NoiseFit, stated: &GyroNoise) -> GyroNoise {
+    let of = |estimate: Estimate, stated: f64| match estimate {
+        Estimate::Found { value, .. } => value,
+        Estimate::NotObservable { at_most } => stated.min(at_most),
+    };
+    GyroNoise {
+        quantisation: of(found.quantisation, stated.quantisation),
+        angle_random_walk: of(found.angle_random_walk, stated.angle_random_walk),
+        bias_instability: of(found.bias_instability, stated.bias_instability),
+        rate_random_walk: of(found.rate_random_walk, stated.rate_random_walk),
+        rate_ramp: of(found.rate_ramp, stated.rate_ramp),
+    }
+}

@@ -1,0 +1,89 @@
+//! What it takes to know the gyro's noise: the Allan variance of each sample, and one fit.
+
+use core::hint::black_box;
+
+use hal_mock::noise::Generator;
+use heapless::Vec;
+use orientation::noise::allan::{Allan, MOST_POINTS, Point, variance};
+use orientation::noise::fit::{Estimate, FitError, NoiseFit};
+use orientation::noise::model::GyroNoise;
+use orientation::units::AngularRate;
+
+use crate::budget::{ALLAN_INSTRUCTIONS, NOISE_FIT_INSTRUCTIONS};
+use crate::counter::{Cost, Counter};
+use crate::report::Report;
+use crate::stack::stack_of;
+
+/// Samples through the estimator.
+const SAMPLES: u64 = 4096;
+/// White noise of a sample, rad/s: N = 0.02 °/√h at 10 Hz.
+const SIGMA: f64 = 1.8e-5;
+/// Samples in a second of the fitted records.
+const RATE_HZ: f64 = 2000.0;
+/// Samples of the longest record that the estimator resolves.
+const LONGEST: f64 = 1e8;
+/// Samples of an hour of rest.
+const HOUR: f64 = 3600.0 * RATE_HZ;
+/// N in °/√h, B in °/h and K in °/h/√h.
+const GYRO: [f64; 3] = [0.02, 0.3, 2.0];
+
+/// [`Allan::push`].
+type Push = fn(&mut Allan, AngularRate);
+
+/// Measures a sample, and fits of an hour and of the full grid.
+pub fn report(counter: &Counter, report: &mut Report) {
+    report.budget(format_args!("Allan variance, a sample"), sample(counter), ALLAN_INSTRUCTIONS);
+    for (name, samples) in [("an hour at 2 kHz", HOUR), ("10^8 samples", LONGEST)] {
+        let points = points(samples);
+        let (cost, fit) = counter.measure(|| fit(&points));
+        let is_found = |fit: NoiseFit| matches!(fit.angle_random_walk, Estimate::Found { .. });
+        report.require("the fit found N", fit.is_ok_and(is_found));
+        let title = format_args!("noise fit, {name}");
+        report.budget(title, cost.instructions(), NOISE_FIT_INSTRUCTIONS);
+    }
+}
+
+/// Bytes of stack of a fit of the full grid.
+pub fn stack() -> usize {
+    let points = points(LONGEST);
+    stack_of(|| fit(&points).is_ok()).0
+}
+
+#[inline(never)]
+fn fit(points: &[Point]) -> Result<NoiseFit, FitError> {
+    NoiseFit::of_points(points, 1.0 / RATE_HZ)
+}
+
+/// Mean instructions of a sample, call included.
+fn sample(counter: &Counter) -> u64 {
+    let mut noise = Generator::new(5);
+    let mut allan = Allan::new();
+    // A function that the optimiser cannot see is called, not inlined.
+    let push = black_box(Allan::push as Push);
+    let mut total = Cost::default();
+    for _ in 0..SAMPLES {
+        let rate = AngularRate::from_rad_per_s(SIGMA * noise.gaussian());
+        total += counter.measure(|| push(&mut allan, rate)).0;
+    }
+    total.mean(SAMPLES)
+}
+
+/// Points as a record of so many samples could give: the model's, with the scatter of white noise.
+fn points(samples: f64) -> Vec<Point, MOST_POINTS> {
+    let mut noise = Generator::new(6);
+    let gyro = GyroNoise::from_field_units(GYRO[0], GYRO[1], GYRO[2], 0.0);
+    let levels = (0..24).flat_map(|level| [4.0, 6.0].map(|m| (m, f64::from(1_u32 << level))));
+    let grid = [1.0, 2.0, 3.0].map(|m| (m, 1.0)).into_iter().chain(levels);
+    let point = |(m, stride): (f64, f64)| {
+        let terms = libm::floor(samples / stride) + 1.0 - 2.0 * m;
+        let seconds = m * stride / RATE_HZ;
+        let scatter = libm::sqrt(m / terms.max(1.0)) * noise.gaussian();
+        Point {
+            seconds,
+            variance: variance(&gyro, seconds) * (1.0 + scatter).max(0.1),
+            stride: stride / RATE_HZ,
+            terms: terms.max(0.0) as u64,
+        }
+    };
+    grid.map(point).filter(|point| point.terms > 0).collect()
+}

@@ -1,0 +1,257 @@
+//! One simulated alignment on a two-frame mount: what is true, what the board is told, the wiring.
+//!
+//! Site, attitude, gyro and dwells are those of a [`Scenario`]; the mechanism, its calibration and the
+//! accelerometer on the base are its own. What a calibration leaves is drawn from the seed.
+
+use core::cell::RefCell;
+
+use drivers::ads1262::Ads1262;
+use drivers::adxl355::{self, Adxl355};
+use drivers::mt6835::{self, Mt6835};
+use drivers::tmc5160::{self, Tmc5160};
+use embassy_time::Delay;
+use hal_mock::chip::Select;
+use hal_mock::gimbal::board::{CHIPS, GimbalBoard};
+use hal_mock::gimbal::{FrameConfiguration, Gimbal, GimbalConfiguration, Misalignment};
+use hal_mock::noise::Generator;
+use hal_mock::plant::train::StageConfiguration;
+use hal_mock::plant::{PlantConfiguration, StageFault};
+use hal_mock::spi::{ReadyPin, SpiPort};
+use hal_mock::violation::Violation;
+use orientation::align::POSITIONS;
+use orientation::align::mount::{ARRIVAL, MountError, TWO_FRAMES, TwoFrame, azimuth_sigma};
+use orientation::align::setting::Setting;
+use orientation::planner::Rotation;
+use orientation::planner::order::Order;
+use orientation::session::procedure::Procedure;
+use orientation::session::schedule::{Position, Schedule};
+use orientation::units::DEGREE;
+
+use super::scenario::{self, Scenario, Turning};
+use super::{CONVERTER_HERTZ, OSCILLATOR};
+use crate::chips;
+use crate::configuration::FramesConfiguration;
+use crate::ports::{Frames, NoBase, Ports, Sensors};
+
+/// 1σ of the accelerometers on the base, m/s²: their biases are tilt, so they are calibrated, to
+/// 0.1 mg; as delivered, an ADXL355 would cost 0.5° at 48°.
+const FORCE_BIAS_SIGMA: f64 = 1e-4 * 9.80665;
+
+/// How long the frames take: the stage's ramp, each on its own way; they stand 1.5 s before they are
+/// believed.
+const ROTATION: Rotation =
+    Rotation { rest: scenario::ROTATION.rest + 1.5, speed: 0.35, wraps: true };
+
+/// The headings of a pass in their order, °: opposite ones follow each other, so that drift cancels.
+const PASS: [f64; 4] = [0.0, 180.0, 90.0, 270.0];
+
+/// A stream of random numbers that no source of noise has.
+const STREAM: u64 = 1000;
+
+/// What goes wrong with the frames.
+#[derive(Clone, Debug, Default)]
+pub struct FramePlan {
+    /// Of the outer one.
+    pub outer: heapless::Vec<StageFault, 2>,
+    /// Of the inner one.
+    pub inner: heapless::Vec<StageFault, 2>,
+}
+
+/// A simulated alignment on a two-frame mount.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FramesScenario {
+    /// Site, attitude, gyro, sample rate and dwell; its positions and start angle are not looked at.
+    pub base: Scenario,
+    /// How often the four headings are visited, 1…16.
+    pub passes: usize,
+    /// What the calibration found.
+    pub calibrated: TwoFrame,
+    /// 1σ of each non-orthogonality that it leaves, rad.
+    pub orthogonality_sigma: f64,
+    /// Whether the board is told of it; else it takes the mount for perfect.
+    pub is_told: bool,
+    /// Frame angles at power-on, °.
+    pub start_deg: Frames<f64>,
+}
+
+impl Default for FramesScenario {
+    /// Six passes of four dwells of 10 s on a mount with non-orthogonalities of some tenths of a degree,
+    /// calibrated to 5″.
+    fn default() -> Self {
+        Self {
+            base: Scenario::default(),
+            passes: 6,
+            calibrated: TwoFrame {
+                azimuth: 0.05 * DEGREE,
+                pitch: -0.08 * DEGREE,
+                frames: 0.15 * DEGREE,
+                gyro: -0.12 * DEGREE,
+                outer_zero: 0.1 * DEGREE,
+                inner_zero: -0.2 * DEGREE,
+            },
+            orthogonality_sigma: 5.0 / 3600.0 * DEGREE,
+            is_told: true,
+            start_deg: Frames { outer: 12.0, inner: -35.0 },
+        }
+    }
+}
+
+impl FramesScenario {
+    /// What the board is told of place and instrument; none where the latitude is none.
+    #[must_use]
+    pub fn setting(&self) -> Option<Setting> {
+        let setting = self.base.setting()?;
+        let encoder = setting.encoder_sigma;
+        Some(Setting {
+            mount: TWO_FRAMES,
+            accelerometer_bias_sigma: FORCE_BIAS_SIGMA,
+            encoder_sigma: azimuth_sigma(self.orthogonality_sigma, encoder, setting.latitude),
+            ..setting
+        })
+    }
+
+    /// How the board goes about it.
+    #[must_use]
+    pub fn procedure(&self) -> Procedure {
+        let pass =
+            PASS.map(|heading| Position { angle: heading * DEGREE, seconds: self.base.dwell_s });
+        let positions = core::iter::repeat_n(pass, self.passes).flatten().take(POSITIONS).collect();
+        let turning = Turning {
+            rotation: ROTATION,
+            orders: &Order::QUARTERS,
+            usual: Schedule::Listed(positions),
+        };
+        Procedure { arrival: ARRIVAL, ..self.base.procedure_on(&turning) }
+    }
+
+    /// What the board is told of the frames.
+    ///
+    /// # Errors
+    /// A calibration that lets the axis not stand where it must.
+    pub fn frames(&self) -> Result<FramesConfiguration, MountError> {
+        let told = if self.is_told { self.calibrated } else { self.zeros() };
+        let harmonics = self.base.configuration().encoder;
+        FramesConfiguration::new(told, Frames { outer: harmonics, inner: harmonics })
+    }
+
+    /// A perfect mount with the same zeros of its encoders, without which nothing homes.
+    fn zeros(&self) -> TwoFrame {
+        let TwoFrame { outer_zero, inner_zero, .. } = self.calibrated;
+        TwoFrame { outer_zero, inner_zero, ..TwoFrame::default() }
+    }
+
+    /// What is true of everything that the chips feel and move.
+    #[must_use]
+    pub fn gimbal<'a>(&self, plan: &'a FramePlan) -> GimbalConfiguration<'a> {
+        let mut chance = Generator::stream(self.base.seed, STREAM);
+        let mut left = |sigma: f64| sigma * chance.gaussian();
+        let told = &self.calibrated;
+        let misalignment = Misalignment {
+            azimuth_rad: told.azimuth,
+            pitch_rad: told.pitch,
+            frames_rad: told.frames + left(self.orthogonality_sigma),
+            gyro_rad: told.gyro + left(self.orthogonality_sigma),
+        };
+        let mut plant = self.base.plant();
+        plant.instruments.accelerometer.bias_sigma_m_s2 = FORCE_BIAS_SIGMA;
+        let sigma = scenario::G_SENSITIVITY_SIGMA;
+        for part in &mut plant.instruments.gyro.g_sensitivity_deg_h_g {
+            *part += left(sigma);
+        }
+        let third_g_sensitivity_deg_h_g = left(sigma);
+        let frame = |faults, zero_rad, start_deg| frame(&plant, faults, zero_rad, start_deg);
+        GimbalConfiguration {
+            outer: frame(&plan.outer, told.outer_zero, self.start_deg.outer),
+            inner: frame(&plan.inner, told.inner_zero, self.start_deg.inner),
+            plant,
+            misalignment,
+            third_g_sensitivity_deg_h_g,
+        }
+    }
+
+    /// The simulated board.
+    #[must_use]
+    pub fn board<'a>(&self, plan: &'a FramePlan) -> GimbalBoard<'a> {
+        GimbalBoard::new(Gimbal::new(&self.gimbal(plan), self.base.seed), OSCILLATOR)
+    }
+}
+
+/// A frame with the gear and the encoder of the single-axis stage.
+fn frame<'a>(
+    plant: &PlantConfiguration<'_>,
+    faults: &'a [StageFault],
+    zero_rad: f64,
+    start_deg: f64,
+) -> FrameConfiguration<'a> {
+    let perfect = FrameConfiguration::default();
+    let stage = StageConfiguration {
+        start_rad: start_deg * DEGREE,
+        travel_rad: perfect.stage.travel_rad,
+        switches_rad: perfect.stage.switches_rad,
+        ..plant.stage
+    };
+    FrameConfiguration { stage, encoder: plant.instruments.encoder, zero_rad, faults }
+}
+
+/// The bus of a chip on the simulated board.
+type Bus<'a> = SpiPort<'a, GimbalBoard<'a>>;
+
+/// The sensors of the simulated board.
+pub type FrameSensors<'a> = Sensors<
+    chips::AnalogueGyro<Bus<'a>, ReadyPin<'a, GimbalBoard<'a>>, Delay>,
+    chips::PlatformAccelerometer<Bus<'a>, Delay>,
+    Frames<chips::StageEncoder<Bus<'a>, Delay>>,
+>;
+
+/// Its other ports.
+pub type FramePorts<'a, L, R> = Ports<Frames<chips::StageMotor<Bus<'a>, Delay>>, L, R>;
+
+/// The sensors of a simulated board.
+#[must_use]
+pub fn sensors<'a>(
+    board: &'a RefCell<GimbalBoard<'a>>,
+    scenario: &FramesScenario,
+) -> FrameSensors<'a> {
+    let encoder = |select| {
+        let bus = SpiPort::new(board, select, mt6835::BUS_HERTZ);
+        chips::StageEncoder(Mt6835::new(bus, Delay, mt6835::Configuration::default()))
+    };
+    let converter = SpiPort::new(board, Select::Gyro, CONVERTER_HERTZ);
+    let ready = ReadyPin::new(board, Select::Gyro);
+    let accelerometer = SpiPort::new(board, Select::Accelerometer, adxl355::BUS_HERTZ);
+    let accelerometer = Adxl355::new(accelerometer, Delay, scenario::accelerometer());
+    Sensors {
+        gyro: chips::AnalogueGyro {
+            converter: Ads1262::new(converter, ready, Delay, scenario.base.converter()),
+            scale: scenario::SCALE,
+            limit: scenario::LIMIT,
+        },
+        accelerometer: chips::PlatformAccelerometer(accelerometer),
+        encoder: Frames { outer: encoder(Select::Encoder), inner: encoder(Select::InnerEncoder) },
+        base: NoBase,
+    }
+}
+
+/// The other ports of a simulated board.
+pub fn ports<'a, L, R>(
+    board: &'a RefCell<GimbalBoard<'a>>,
+    link: L,
+    recorder: R,
+) -> FramePorts<'a, L, R> {
+    let motor = |select| {
+        let bus = SpiPort::new(board, select, tmc5160::BUS_HERTZ);
+        let configuration = tmc5160::configuration::Configuration::default();
+        chips::StageMotor(Tmc5160::new(bus, Delay, configuration))
+    };
+    let actuator = Frames { outer: motor(Select::Actuator), inner: motor(Select::InnerActuator) };
+    Ports { actuator, link, recorder }
+}
+
+/// What the drivers did that a data sheet forbids, in words.
+pub fn violations<'a>(
+    board: &'a GimbalBoard<'_>,
+) -> impl Iterator<Item = (Select, Violation)> + 'a {
+    CHIPS.into_iter().flat_map(|select| {
+        board.violations(select).first().iter().map(move |violation| (select, *violation))
+    })
+}

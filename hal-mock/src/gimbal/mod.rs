@@ -1,0 +1,340 @@
+//! The plant of a two-frame mount: two trains, a gyro in the inner frame, an accelerometer on the base.
+//!
+//! ```text
+//!  outer actuator ─▶ train ─▶ outer frame, about body x ─▶ shown angle ─▶ outer encoder
+//!  inner actuator ─▶ train ─▶ inner frame, across it ────▶ shown angle ─▶ inner encoder
+//!                               └─▶ gyro ─volts─▶ its converter     base ─force─▶ accelerometer
+//! ```
+//!
+//! With both frames at zero the inner axis lies along body y and the gyro's sensitive axis points down.
+//! Own reading of the mechanism, by products of full rotation matrices. Time and noise as in
+//! [`crate::plant`].
+
+pub mod board;
+
+use embassy_time::Instant;
+
+use crate::accelerometer::Accelerometer;
+use crate::disturbance::{self, Effect};
+use crate::earth::{Attitude, Matrix, Site, about_x, about_y, about_z, multiply};
+use crate::environment::{AnalogueInput, ForceInput, Mechanics, ShaftAngle};
+use crate::gyro::{DEGREE_PER_HOUR, Gyro};
+use crate::instruments::BaseMotion;
+use crate::noise::{White, source};
+use crate::plant::drive::Drive;
+use crate::plant::sway::SwayConfiguration;
+use crate::plant::train::StageConfiguration;
+use crate::plant::{PlantConfiguration, STANDARD_GRAVITY_M_S2, StageFault, seconds};
+use crate::stage::{EncoderConfiguration, StageState};
+use crate::temperature::{TemperatureConfiguration, Thermometer};
+
+/// How the mechanism differs from a perfect one, rad; right-handed about the named axis with both
+/// frames at zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Misalignment {
+    /// Turn of the outer axis from body x about body z, down.
+    pub azimuth_rad: f64,
+    /// Then about body y, right.
+    pub pitch_rad: f64,
+    /// Turn of the inner axis about z from the perpendicular to the outer axis.
+    pub frames_rad: f64,
+    /// Turn of the sensitive axis from the perpendicular to the inner axis, towards its right end.
+    pub gyro_rad: f64,
+}
+
+/// One frame: mechanics, encoder, faults.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameConfiguration<'a> {
+    /// Its drive; angles are true ones.
+    pub stage: StageConfiguration,
+    /// Its encoder's errors; the chip has its own steps.
+    pub encoder: EncoderConfiguration,
+    /// What the encoder shows where the frame stands at zero, rad.
+    pub zero_rad: f64,
+    /// What goes wrong with it.
+    pub faults: &'a [StageFault],
+}
+
+impl Default for FrameConfiguration<'_> {
+    /// Perfect, standing at zero, between hard ends at ±100° with switches at ±95°.
+    fn default() -> Self {
+        Self {
+            stage: StageConfiguration {
+                travel_rad: [-100.0, 100.0].map(f64::to_radians),
+                switches_rad: [-95.0, 95.0].map(f64::to_radians),
+                ..StageConfiguration::default()
+            },
+            encoder: EncoderConfiguration::default(),
+            zero_rad: 0.0,
+            faults: &[],
+        }
+    }
+}
+
+/// A two-frame mount with its instruments, and everything that happens to them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GimbalConfiguration<'a> {
+    /// Site, attitude, sensors, converter, sway and disturbances. Stage, its faults, encoder and the
+    /// gyro's elevation are those of a single-axis stage and not looked at.
+    pub plant: PlantConfiguration<'a>,
+    /// The outer frame.
+    pub outer: FrameConfiguration<'a>,
+    /// The inner frame.
+    pub inner: FrameConfiguration<'a>,
+    /// How the mechanism is misaligned.
+    pub misalignment: Misalignment,
+    /// The gyro's g-sensitivity across both its sensitive axis and the inner axis, forward where the
+    /// frames stand at zero, °/h/g; the other two stand with the gyro, the second one along the inner
+    /// axis.
+    pub third_g_sensitivity_deg_h_g: f64,
+}
+
+/// A frame at work.
+#[derive(Clone, Debug, PartialEq)]
+struct Frame<'a> {
+    drive: Drive<'a>,
+    encoder: EncoderConfiguration,
+    zero_rad: f64,
+}
+
+impl<'a> Frame<'a> {
+    fn new(configuration: &FrameConfiguration<'a>) -> Self {
+        Self {
+            drive: Drive::new(&configuration.stage, configuration.faults),
+            encoder: configuration.encoder,
+            zero_rad: configuration.zero_rad,
+        }
+    }
+
+    /// What the encoder shows, turns.
+    fn shaft_turns(&mut self, now: Instant) -> f64 {
+        self.drive.advance(now);
+        let angle_rad = self.encoder.read(self.drive.state().angle_rad);
+        (angle_rad + self.zero_rad + self.drive.slip_rad(now)) / core::f64::consts::TAU
+    }
+}
+
+/// What the gyro and the accelerometer feel, less noise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Felt {
+    frames: [StageState; 2],
+    steady_rad_s: f64,
+    force_m_s2: [f64; 3],
+}
+
+/// The mount at work.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gimbal<'a> {
+    outer: Frame<'a>,
+    inner: Frame<'a>,
+    misalignment: Misalignment,
+    third_rad_s: f64,
+    attitude: Attitude,
+    site: Site,
+    sway: Option<SwayConfiguration>,
+    gyro: Gyro,
+    accelerometer: Accelerometer,
+    temperature: TemperatureConfiguration,
+    thermometer: Thermometer,
+    converter: White,
+    volts_per_rad_s: f64,
+    full_scale_rad_s: f64,
+    disturbances: &'a [disturbance::Disturbance],
+    /// What was felt last, on a base at rest.
+    felt: Option<Felt>,
+}
+
+/// Axes of the mechanism in the base's frame, unit vectors forward, right, down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Axes {
+    /// The outer frame's axis.
+    pub outer: [f64; 3],
+    /// The inner frame's axis.
+    pub inner: [f64; 3],
+    /// The gyro's sensitive axis.
+    pub sensitive: [f64; 3],
+    /// Across the inner and the sensitive axis: forward where the frames stand at zero.
+    pub third: [f64; 3],
+}
+
+impl Misalignment {
+    /// The axes with the frames at these true angles, rad: the outer one positive right side down, the
+    /// inner one where it takes the sensitive axis from down to forward.
+    #[must_use]
+    pub fn axes(&self, outer_rad: f64, inner_rad: f64) -> Axes {
+        let case = multiply(&about_z(self.azimuth_rad), &about_y(self.pitch_rad));
+        let bearing = multiply(&multiply(&case, &about_x(outer_rad)), &about_z(self.frames_rad));
+        let frame = multiply(&bearing, &about_y(inner_rad));
+        let gyro = multiply(&frame, &about_x(-self.gyro_rad));
+        Axes {
+            outer: column(&case, 0),
+            inner: column(&bearing, 1),
+            sensitive: column(&gyro, 2),
+            third: column(&frame, 0),
+        }
+    }
+}
+
+impl<'a> Gimbal<'a> {
+    /// A mount at the start of the clock; the seed fixes everything random in it.
+    #[must_use]
+    pub fn new(configuration: &GimbalConfiguration<'a>, seed: u64) -> Self {
+        let PlantConfiguration { instruments, .. } = configuration.plant;
+        let attitude = instruments.attitude();
+        let accelerometer_hz = configuration.plant.accelerometer_hz;
+        Self {
+            outer: Frame::new(&configuration.outer),
+            inner: Frame::new(&configuration.inner),
+            misalignment: configuration.misalignment,
+            third_rad_s: configuration.third_g_sensitivity_deg_h_g * DEGREE_PER_HOUR,
+            attitude,
+            site: Site::new(instruments.latitude_deg.to_radians(), &attitude),
+            sway: Some(configuration.plant.sway).filter(SwayConfiguration::is_active),
+            gyro: Gyro::new(&instruments.gyro, instruments.rate_hz, seed),
+            accelerometer: Accelerometer::new(&instruments.accelerometer, accelerometer_hz, seed),
+            temperature: instruments.temperature,
+            thermometer: Thermometer::new(&instruments.temperature, seed),
+            converter: White::new(configuration.plant.converter_noise_v, seed, source::CONVERTER),
+            volts_per_rad_s: configuration.plant.gyro_volts_per_rad_s,
+            full_scale_rad_s: configuration.plant.gyro_full_scale_rad_s,
+            disturbances: configuration.plant.disturbances,
+            felt: None,
+        }
+    }
+
+    /// Moves both frames on to `now`.
+    pub fn advance(&mut self, now: Instant) {
+        self.outer.drive.advance(now);
+        self.inner.drive.advance(now);
+    }
+
+    /// True angles and rates of the outer and the inner frame at the latest moment.
+    #[must_use]
+    pub fn frames(&self) -> [StageState; 2] {
+        [&self.outer, &self.inner].map(|frame| frame.drive.state())
+    }
+
+    /// The outer frame as its chips see it.
+    pub fn outer(&mut self) -> Side<'_, 'a> {
+        Side { gimbal: self, is_inner: false }
+    }
+
+    /// The inner frame as its chips see it.
+    pub fn inner(&mut self) -> Side<'_, 'a> {
+        Side { gimbal: self, is_inner: true }
+    }
+
+    fn felt(&mut self, now: Instant) -> Felt {
+        self.advance(now);
+        let frames = self.frames();
+        if let Some(sway) = &self.sway {
+            let motion = sway.at(seconds(now));
+            return self.felt_on(&motion, frames);
+        }
+        match self.felt {
+            Some(felt) if felt.frames == frames => felt,
+            _ => *self.felt.insert(self.felt_on(&BaseMotion::default(), frames)),
+        }
+    }
+
+    /// What is felt on a base that moves.
+    fn felt_on(&self, motion: &BaseMotion, frames: [StageState; 2]) -> Felt {
+        let attitude = Attitude {
+            azimuth_rad: self.attitude.azimuth_rad + motion.lean.azimuth_rad,
+            pitch_rad: self.attitude.pitch_rad + motion.lean.pitch_rad,
+            roll_rad: self.attitude.roll_rad + motion.lean.roll_rad,
+        };
+        let base = self.site.with_attitude(&attitude).on_platform(0.0);
+        let [outer, inner] = frames;
+        let axes = self.misalignment.axes(outer.angle_rad, inner.angle_rad);
+        let own = motion.body_rad_s(&attitude);
+        let rate: [f64; 3] = core::array::from_fn(|i| {
+            base.rate_rad_s[i]
+                + own[i]
+                + outer.rate_rad_s * axes.outer[i]
+                + inner.rate_rad_s * axes.inner[i]
+        });
+        let gravity = self.site.gravity_m_s2();
+        let [along, inner_g, third_g] = [axes.sensitive, axes.inner, axes.third]
+            .map(|axis| dot(axis, base.force_m_s2) / gravity);
+        let steady_rad_s = self.gyro.steady(dot(axes.sensitive, rate), [along, inner_g])
+            + third_g * self.third_rad_s;
+        Felt { frames, steady_rad_s, force_m_s2: base.force_m_s2 }
+    }
+
+    fn effect(&self, now: Instant) -> Effect {
+        disturbance::total(self.disturbances, seconds(now))
+    }
+}
+
+/// A column of a matrix: where it takes a unit vector.
+fn column(matrix: &Matrix, index: usize) -> [f64; 3] {
+    [0, 1, 2].map(|row| matrix[row][index])
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+impl AnalogueInput for Gimbal<'_> {
+    fn volts(&mut self, now: Instant) -> f64 {
+        let steady_rad_s = self.felt(now).steady_rad_s + self.effect(now).rate_rad_s;
+        let temperature_c = self.temperature.at(seconds(now));
+        let rate_rad_s = self.gyro.sample(steady_rad_s, seconds(now), temperature_c);
+        let limit = self.full_scale_rad_s;
+        rate_rad_s.max(-limit).min(limit) * self.volts_per_rad_s + self.converter.sample()
+    }
+}
+
+/// The accelerometer's axes are those of the base: forward, right, down.
+impl ForceInput for Gimbal<'_> {
+    fn force_g(&mut self, now: Instant) -> [f64; 3] {
+        let (force, effect) = (self.felt(now).force_m_s2, self.effect(now).force_m_s2);
+        let felt = core::array::from_fn(|i| force[i] + effect[i]);
+        self.accelerometer.sample(felt).map(|force| force / STANDARD_GRAVITY_M_S2)
+    }
+
+    fn temperature_c(&mut self, now: Instant) -> f64 {
+        self.thermometer.sample(self.temperature.at(seconds(now)))
+    }
+}
+
+/// One frame of a mount: what its encoder and its motor driver see.
+#[derive(Debug)]
+pub struct Side<'g, 'a> {
+    gimbal: &'g mut Gimbal<'a>,
+    is_inner: bool,
+}
+
+impl<'a> Side<'_, 'a> {
+    fn frame(&mut self) -> &mut Frame<'a> {
+        if self.is_inner { &mut self.gimbal.inner } else { &mut self.gimbal.outer }
+    }
+
+    /// The motor loses its current: its field stops where it is.
+    pub fn stop_motor(&mut self, now: Instant) {
+        self.frame().drive.stop(now);
+    }
+}
+
+impl ShaftAngle for Side<'_, '_> {
+    fn shaft_turns(&mut self, now: Instant) -> f64 {
+        self.frame().shaft_turns(now)
+    }
+}
+
+impl Mechanics for Side<'_, '_> {
+    fn drive(&mut self, now: Instant, microsteps: f64, microsteps_per_s: f64) {
+        self.frame().drive.drive(now, microsteps, microsteps_per_s);
+    }
+
+    fn is_blocked(&self) -> bool {
+        let frame = if self.is_inner { &self.gimbal.inner } else { &self.gimbal.outer };
+        frame.drive.is_blocked()
+    }
+
+    fn reference_switches(&self) -> [bool; 2] {
+        let frame = if self.is_inner { &self.gimbal.inner } else { &self.gimbal.outer };
+        frame.drive.switches()
+    }
+}

@@ -1,0 +1,220 @@
+//! The paper's Table 1: five classes of orientation system, each with a gyro that meets its row.
+//!
+//! The rows of azimuth and time are met by simulation: three classes find north themselves, for the
+//! two lightest an azimuth is handed over from outside and stored by the gyro until the time is over.
+
+use hal_mock::gyro::Gyro;
+use orientation::keep::stored::{Handover, Keeper, Rest, StoredAzimuth};
+use orientation::planner::order::Order;
+use orientation::planner::{Conditions, Rotation, for_time};
+use orientation::units::{AngularRate, DEGREE_PER_HOUR};
+use serde::Serialize;
+
+use super::{BIAS_DEG_H, Grade, RATE_HZ, Trial, latitude, over};
+use crate::campaign::statistics::{Answer, Precision};
+use crate::output::{azimuth_error, degrees};
+use crate::planning::{FEWEST, SHORTEST};
+
+/// How long the stage turns: its motor driver's ramp at 0.35 rad/s, with slopes and rest.
+const STAGE: Rotation = Rotation { rest: 0.7, speed: 0.35, wraps: false };
+/// What comes before the first dwell and after the last, s: homing, levelling, the answer.
+const OVERHEAD: f64 = 25.0;
+/// Rest before an azimuth is stored, s, in which the gyro's bias is learnt.
+const REST: f64 = 20.0;
+
+/// How a class comes to its azimuth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Way {
+    /// It finds north itself.
+    Gyrocompassing,
+    /// An azimuth is handed over with this 1σ, °, and stored.
+    HandedOver(f64),
+}
+
+/// A class of the paper's Table 1, and the gyro that is to meet it.
+#[derive(Clone, Copy, Debug)]
+struct Class {
+    name: &'static str,
+    /// Azimuth, °, 3σ.
+    wanted_deg: f64,
+    minutes: f64,
+    gyro: &'static str,
+    grade: Grade,
+    way: Way,
+}
+
+/// The five rows.
+const CLASSES: [Class; 5] = [
+    Class {
+        name: "very lightweight",
+        wanted_deg: 0.60,
+        minutes: 1.0,
+        gyro: "MEMS",
+        grade: grade(0.15, 0.5, 2.0, 0.0),
+        way: Way::HandedOver(0.15),
+    },
+    Class {
+        name: "light",
+        wanted_deg: 0.48,
+        minutes: 5.0,
+        gyro: "good MEMS or small fibre-optic",
+        grade: grade(0.03, 0.2, 0.2, 0.0),
+        way: Way::HandedOver(0.12),
+    },
+    Class {
+        name: "light reconnaissance",
+        wanted_deg: 0.36,
+        minutes: 5.0,
+        gyro: "fibre-optic",
+        grade: grade(0.003, 0.01, 0.0, 0.1),
+        way: Way::Gyrocompassing,
+    },
+    Class {
+        name: "average multifunctional",
+        wanted_deg: 0.24,
+        minutes: 5.0,
+        gyro: "fibre-optic, OIUS-1000",
+        grade: grade(0.001, 0.007, 0.0, 0.127),
+        way: Way::Gyrocompassing,
+    },
+    Class {
+        name: "remote-control station",
+        wanted_deg: 0.48,
+        minutes: 6.0,
+        gyro: "fibre-optic",
+        grade: grade(0.004, 0.015, 0.0, 0.1),
+        way: Way::Gyrocompassing,
+    },
+];
+
+const fn grade(n: f64, b: f64, k: f64, r: f64) -> Grade {
+    Grade { n_deg_sqrt_h: n, b_deg_h: b, k_deg_h_sqrt_h: k, r_deg_h2: r }
+}
+
+/// A row of the table.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// The class.
+    pub class: &'static str,
+    /// Azimuth that is wanted, °, 3σ.
+    pub wanted_deg: f64,
+    /// In so many minutes.
+    pub minutes: f64,
+    /// The gyro in words.
+    pub gyro: &'static str,
+    /// The gyro.
+    pub grade: Grade,
+    /// How it comes to its azimuth.
+    pub way: String,
+    /// Three times the RMS error, °.
+    pub three_rms_deg: f64,
+    /// Three times what is the least for this gyro and schedule, °.
+    pub three_limit_deg: f64,
+    /// Per cent of errors within 1, 2 and 3 σ.
+    pub coverage_percent: [f64; 3],
+    /// Runs.
+    pub runs: usize,
+    /// Runs that were refused.
+    pub refused: usize,
+    /// Whether the row is met.
+    pub is_met: bool,
+}
+
+/// The five rows over `runs` runs each.
+#[must_use]
+pub fn rows(runs: usize, tick: impl Fn() + Sync) -> Vec<Row> {
+    CLASSES.iter().map(|class| class.row(runs, &tick)).collect()
+}
+
+/// Number of classes.
+pub const COUNT: usize = CLASSES.len();
+
+impl Class {
+    fn row(&self, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
+        let (way, precision) = match self.way {
+            Way::Gyrocompassing => self.found(runs, tick),
+            Way::HandedOver(sigma) => self.stored(sigma, runs, tick),
+        };
+        let three_rms_deg = 3.0 * precision.rms_deg;
+        Row {
+            class: self.name,
+            wanted_deg: self.wanted_deg,
+            minutes: self.minutes,
+            gyro: self.gyro,
+            grade: self.grade,
+            way,
+            three_rms_deg,
+            three_limit_deg: 3.0 * precision.limit_deg,
+            coverage_percent: precision.coverage_percent,
+            runs: precision.runs,
+            refused: precision.refused,
+            is_met: precision.refused == 0 && three_rms_deg <= self.wanted_deg,
+        }
+    }
+
+    /// North by the best schedule for the time that is left.
+    fn found(&self, runs: usize, tick: &(impl Fn() + Sync)) -> (String, Precision) {
+        let conditions = Conditions {
+            noise: self.grade.noise(),
+            rotation: STAGE,
+            shortest: SHORTEST,
+            fewest: FEWEST,
+            orders: &Order::COMPARED,
+        };
+        let Ok(plan) = for_time(&conditions, 60.0 * self.minutes - OVERHEAD) else {
+            return ("no schedule fits".to_owned(), Precision::of(&[]));
+        };
+        let trial = Trial { grade: self.grade, plan, rotation: STAGE };
+        let answers = over(runs, tick, |seed| trial.answer(seed));
+        let way = format!("{} positions of {:.1} s", plan.positions(), plan.dwell);
+        (way, Precision::of(&answers))
+    }
+
+    /// An azimuth from outside, stored until the time is over.
+    fn stored(
+        &self,
+        sigma_deg: f64,
+        runs: usize,
+        tick: &(impl Fn() + Sync),
+    ) -> (String, Precision) {
+        let answers = over(runs, tick, |seed| Ok(self.keep(sigma_deg, seed)));
+        (format!("handed over with 1σ {sigma_deg}°, stored"), Precision::of(&answers))
+    }
+
+    /// One azimuth of zero, handed over with an error of its own and kept on a base that turns.
+    fn keep(&self, sigma_deg: f64, seed: u64) -> Answer {
+        let mut gyro = Gyro::new(&self.grade.simulated(), RATE_HZ, seed);
+        let mut handed = hal_mock::noise::Generator::stream(seed, 1 << 20);
+        let azimuth = (sigma_deg * handed.gaussian()).to_radians();
+        let keeper = Keeper {
+            noise: self.grade.noise(),
+            bias_sigma: BIAS_DEG_H * DEGREE_PER_HOUR,
+            latitude: latitude(),
+            sample_seconds: 1.0 / RATE_HZ,
+        };
+        let vertical = -latitude().vertical_rate();
+        let mut index = 0;
+        let mut shown = |rate: f64| {
+            let elapsed = f64::from(index) / RATE_HZ;
+            index += 1;
+            AngularRate::from_rad_per_s(gyro.sample(gyro.steady(rate, [0.0; 2]), elapsed, 25.0))
+        };
+        let mut rest = Rest::default();
+        for _ in 0..(REST * RATE_HZ) as u32 {
+            rest.push(shown(vertical));
+        }
+        let handover = Handover { azimuth, sigma: sigma_deg.to_radians() };
+        let mut stored = StoredAzimuth::begin(keeper, handover, &rest);
+        let samples = ((60.0 * self.minutes - REST) * RATE_HZ) as u32;
+        // The vehicle turns by a turn and a half in all: an azimuth of 180° at the end.
+        let turning = 3.0 * std::f64::consts::PI / (f64::from(samples) / RATE_HZ);
+        for _ in 0..samples {
+            stored.push(shown(vertical + turning));
+        }
+        Answer {
+            error: azimuth_error(degrees(stored.azimuth()), 180.0),
+            sigma: degrees(stored.sigma()),
+            limit: degrees(stored.sigma()),
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! Schedules under drift: the planned one against a single pass of four positions.
+
+use orientation::planner::order::Order;
+use orientation::planner::{Conditions, Plan, Rotation, for_time};
+use serde::Serialize;
+
+use super::{Grade, Trial, latitude, over};
+use crate::campaign::statistics::Precision;
+use crate::output::degrees;
+use crate::planning::{FEWEST, SHORTEST};
+
+/// Total time, s.
+const SECONDS: f64 = 300.0;
+/// Time of a rotation, s.
+const ROTATION: f64 = 2.0;
+
+/// The gyros: fibre-optic in a temperature gradient, and one that drifts in every way.
+pub const GYROS: [Grade; 2] = [
+    Grade { n_deg_sqrt_h: 0.001, b_deg_h: 0.007, k_deg_h_sqrt_h: 0.0, r_deg_h2: 0.127 },
+    Grade { n_deg_sqrt_h: 0.06, b_deg_h: 1.0, k_deg_h_sqrt_h: 0.5, r_deg_h2: 2.0 },
+];
+
+/// A schedule under drift, over many runs.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// The gyro.
+    pub gyro: Grade,
+    /// The order of positions.
+    pub order: &'static str,
+    /// Number of positions.
+    pub positions: usize,
+    /// Time in each, s.
+    pub dwell_s: f64,
+    /// 1σ of the azimuth as it was predicted, °.
+    pub predicted_deg: f64,
+    /// What the runs gave.
+    #[serde(flatten)]
+    pub precision: Precision,
+}
+
+/// Both schedules for one gyro.
+#[derive(Clone, Debug, Serialize)]
+pub struct Comparison {
+    /// The planned schedule.
+    pub planned: Row,
+    /// One pass of 0, 180, 90, 270°.
+    pub one_pass: Row,
+    /// RMS of the one pass over that of the plan.
+    pub gain: f64,
+}
+
+/// Compares the schedules for a gyro over `runs` runs each; none where there is no plan.
+#[must_use]
+pub fn compare(gyro: Grade, runs: usize, tick: impl Fn() + Sync) -> Option<Comparison> {
+    let rotation = Rotation::fixed(ROTATION);
+    let conditions = Conditions {
+        noise: gyro.noise(),
+        rotation,
+        shortest: SHORTEST,
+        fewest: FEWEST,
+        orders: &Order::COMPARED,
+    };
+    let four = Conditions { fewest: 4, ..conditions };
+    let planned = for_time(&conditions, SECONDS).ok()?;
+    let one_pass = Plan::of(&four, Order::Quadrature, 1, SECONDS)?;
+    let row = |plan| row(&Trial { grade: gyro, plan, rotation }, runs, &tick);
+    let [planned, one_pass] = [planned, one_pass].map(row);
+    let gain = one_pass.precision.rms_deg / planned.precision.rms_deg;
+    Some(Comparison { planned, one_pass, gain })
+}
+
+fn row(trial: &Trial, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
+    let answers = over(runs, tick, |seed| trial.answer(seed));
+    let plan = &trial.plan;
+    Row {
+        gyro: trial.grade,
+        order: plan.order.name(),
+        positions: plan.positions(),
+        dwell_s: plan.dwell,
+        predicted_deg: degrees(plan.sigma(latitude())),
+        precision: Precision::of(&answers),
+    }
+}

@@ -1,0 +1,141 @@
+//! Burov's paper by simulation: its example, its devices, schedules under drift, and its five classes.
+
+pub mod classes;
+pub mod devices;
+pub mod drift;
+
+use hal_mock::gyro::GyroConfiguration;
+use hal_mock::instruments::InstrumentsConfiguration;
+use orientation::align::setting::Setting;
+use orientation::earth::Latitude;
+use orientation::error::Refusal;
+use orientation::noise::model::GyroNoise;
+use orientation::planner::{Plan, Rotation};
+use orientation::session::Session;
+use orientation::session::procedure::Procedure;
+use orientation::session::schedule::Schedule;
+use orientation::units::DEGREE_PER_HOUR;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::statistics::Answer;
+use crate::simulate::run;
+
+/// Latitude of the simulations, °.
+pub const LATITUDE_DEG: f64 = 48.0;
+/// Sample rate, Hz; the noise of a dwell does not depend on it.
+const RATE_HZ: f64 = 12.5;
+/// Upper cut-off of the flicker, Hz: below half the sample rate, above all that a dwell lets pass.
+const FLICKER_HIGH_HZ: f64 = 5.0;
+/// Turn-on bias, °/h.
+const BIAS_DEG_H: f64 = 1.0;
+/// 1σ of either accelerometer bias, m/s²: a good 1 mg.
+const FORCE_BIAS: f64 = 0.01;
+/// Golden angle, °: azimuths of successive seeds fill the circle evenly.
+const GOLDEN_ANGLE_DEG: f64 = 137.507_764;
+
+/// A gyro by its coefficients.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Grade {
+    /// N, °/√h.
+    pub n_deg_sqrt_h: f64,
+    /// B, °/h.
+    pub b_deg_h: f64,
+    /// K, °/h/√h.
+    pub k_deg_h_sqrt_h: f64,
+    /// R, °/h².
+    pub r_deg_h2: f64,
+}
+
+impl Grade {
+    /// Its noise.
+    #[must_use]
+    pub fn noise(&self) -> GyroNoise {
+        let Self { n_deg_sqrt_h, b_deg_h, k_deg_h_sqrt_h, r_deg_h2 } = *self;
+        GyroNoise::from_field_units(n_deg_sqrt_h, b_deg_h, k_deg_h_sqrt_h, r_deg_h2)
+    }
+
+    /// The same for the simulation, whose ramp is R to the full.
+    fn simulated(&self) -> GyroConfiguration {
+        GyroConfiguration {
+            n_deg_sqrt_h: self.n_deg_sqrt_h,
+            b_deg_h: self.b_deg_h,
+            k_deg_h_sqrt_h: self.k_deg_h_sqrt_h,
+            r_deg_h2: self.r_deg_h2,
+            flicker_high_hz: FLICKER_HIGH_HZ,
+            bias_sigma_deg_h: BIAS_DEG_H,
+            ..GyroConfiguration::default()
+        }
+    }
+}
+
+/// An alignment to simulate: a gyro, a plan for it and how the stage turns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trial {
+    /// The gyro.
+    pub grade: Grade,
+    /// The plan.
+    pub plan: Plan,
+    /// The stage.
+    pub rotation: Rotation,
+}
+
+/// The latitude of the simulations.
+///
+/// # Panics
+/// Never: it is a constant within ±90°.
+#[must_use]
+pub fn latitude() -> Latitude {
+    Latitude::from_degrees(LATITUDE_DEG).unwrap_or_else(|| unreachable!())
+}
+
+impl Trial {
+    /// One alignment through samples, filter and session.
+    fn answer(&self, seed: u64) -> Result<Answer, Refusal> {
+        let azimuth_deg = (GOLDEN_ANGLE_DEG * seed as f64) % 360.0;
+        let procedure = Procedure::new(Schedule::Planned(self.plan), 1.0 / RATE_HZ);
+        let mut session = Session::new(self.setting(), procedure)
+            .map_err(|_| Refusal::TooFewPositions { positions: 0 })?;
+        let longest = 2.0 * self.plan.seconds + 60.0;
+        run(&mut session, &self.world(azimuth_deg), &[], self.rotation, longest, seed);
+        session.conclusion().ok_or(Refusal::TimeExhausted).and_then(|c| Answer::of(c, azimuth_deg))
+    }
+
+    fn setting(&self) -> Setting {
+        Setting {
+            noise: self.grade.noise(),
+            white_known: true,
+            accelerometer_bias_sigma: FORCE_BIAS,
+            ..Setting::at(latitude())
+        }
+    }
+
+    fn world(&self, azimuth_deg: f64) -> InstrumentsConfiguration {
+        let mut world = InstrumentsConfiguration {
+            latitude_deg: LATITUDE_DEG,
+            azimuth_deg,
+            pitch_deg: 0.7,
+            roll_deg: -0.4,
+            rate_hz: RATE_HZ,
+            gyro: self.grade.simulated(),
+            ..InstrumentsConfiguration::default()
+        };
+        world.accelerometer.bias_sigma_m_s2 = FORCE_BIAS;
+        world
+    }
+}
+
+/// One result for each seed.
+fn over<T: Send>(runs: usize, tick: &(impl Fn() + Sync), of: impl Fn(u64) -> T + Sync) -> Vec<T> {
+    let of = |seed| {
+        tick();
+        of(seed)
+    };
+    (1..=runs as u64).into_par_iter().map(of).collect()
+}
+
+/// 3σ of an azimuth along one axis for a rate error in rad/s, at the equator, °; times sec φ elsewhere.
+fn three_sigma_secant(rate_error: f64) -> f64 {
+    // Ω is 15.041067 °/h.
+    3.0 * (rate_error / DEGREE_PER_HOUR / 15.041_067).to_degrees()
+}

@@ -1,0 +1,73 @@
+//! Wires one simulated board with a two-frame mount to the instrument and runs it.
+
+use std::cell::RefCell;
+
+use embassy_time::Instant;
+use firmware::ports::{Frames, NoRecorder, Observer};
+use firmware::run::{acquire_frames, run_frames};
+use firmware::shared::Shared;
+use firmware::simulated::mount::{self, FramePlan, FramesScenario};
+use orientation::session::Session;
+
+use super::bench::{ASSUMED, Log, Wire};
+use super::{Run, RunError};
+use crate::replay::{Method, Replay};
+use crate::virtual_time;
+
+/// A finished run on a two-frame mount.
+#[derive(Clone, Debug)]
+pub struct FramesRun {
+    /// As of any board.
+    pub run: Run,
+    /// The true direction of the gyro's axis at the end: forward, right, down in the base.
+    pub axis: [f64; 3],
+}
+
+/// Runs a scenario in virtual time on this thread.
+///
+/// # Errors
+/// What keeps the session from beginning, and a deadlock. A refusal is the session's conclusion.
+pub fn align_frames<W: Observer>(
+    scenario: &FramesScenario,
+    plan: &FramePlan,
+    watch: &W,
+) -> Result<FramesRun, RunError> {
+    let setting = scenario.setting().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
+    let mut session = Session::new(setting, scenario.procedure()).map_err(RunError::Procedure)?;
+    let frames = scenario.frames().map_err(RunError::Mount)?;
+    let board = RefCell::new(scenario.board(plan));
+    let log = Log::new(watch);
+    let bytes = RefCell::default();
+    let shared = Shared::new(&log);
+    let latest = Frames::unread();
+    let configuration = scenario.base.configuration();
+    let mut sensors = mount::sensors(&board, scenario);
+    let mut ports = mount::ports(&board, Wire(&bytes), NoRecorder);
+    let acquisition = acquire_frames(&mut sensors, &configuration, &frames, &latest, &shared);
+    let instrument = async {
+        let health = run_frames(&mut ports, &frames, &latest, &mut session, &shared).await;
+        (health, Instant::now())
+    };
+    let (health, ended) =
+        virtual_time::run_beside(acquisition, instrument).map_err(|_| RunError::Deadlock)?;
+    let violations = mount::violations(&board.borrow())
+        .map(|(select, violation)| format!("{select:?}: {violation}"))
+        .collect();
+    let [outer, inner] = board.borrow().gimbal.frames();
+    let misalignment = scenario.gimbal(plan).misalignment;
+    let axis = misalignment.axes(outer.angle_rad, inner.angle_rad).sensitive;
+    let run = Run {
+        replay: Replay {
+            method: Method::Positions,
+            session,
+            setting,
+            assumed: vec![ASSUMED.to_owned()],
+        },
+        events: log.events.into_inner(),
+        lines: String::from_utf8_lossy(&bytes.into_inner()).into_owned(),
+        seconds: ended.as_micros() as f64 * 1e-6,
+        health,
+        violations,
+    };
+    Ok(FramesRun { run, axis })
+}

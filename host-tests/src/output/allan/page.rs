@@ -1,0 +1,97 @@
+//! The page of `meridian allan`: the curve with its limits, fit and asymptotes, and all numbers.
+
+use orientation::noise::allan::{terms, variance};
+use orientation::noise::fit::Estimate;
+
+use super::super::degrees_per_hour;
+use super::{Coefficient, Shown, coefficients, rows};
+use crate::allan::analysis::{Analysis, Confident};
+use crate::report::{Axis, Figure, Report, Series, Style, Table};
+
+/// Beyond so many times the least and the greatest deviation no asymptote is drawn.
+const HEADROOM: f64 = 2.0;
+/// Places along a curve.
+const PLACES: u32 = 100;
+
+impl Shown<'_> {
+    /// The page; where the record says nothing, the reason for it.
+    #[must_use]
+    pub fn report(&self) -> Report {
+        let mut subtitle = vec![format!("{}: {}", self.name, self.record())];
+        subtitle.extend(self.rest.notes());
+        let mut parts = Vec::new();
+        match self.analysis {
+            Ok(analysis) => {
+                parts.push(figure(analysis).into());
+                parts.push(coefficient_table(analysis).into());
+                parts.push(point_table(analysis).into());
+            }
+            Err(reason) => subtitle.push(format!("no noise: {reason}")),
+        }
+        subtitle.extend(self.schedule.map(|schedule| schedule.to_string()));
+        Report { title: format!("Noise of {}", self.rest.column), subtitle, parts }
+    }
+}
+
+fn figure(analysis: &Analysis) -> Figure {
+    let points = || analysis.points.iter();
+    let limits = |rates: [f64; 2]| rates.map(degrees_per_hour);
+    let measured = || points().map(|point| (point.seconds, degrees_per_hour(point.deviation)));
+    let band = points()
+        .map(|point| (point.seconds, degrees_per_hour(point.deviation), limits(point.limits)));
+    let noise = analysis.fit.noise();
+    let fitted = times(analysis).map(|tau| (tau, degrees_per_hour(variance(&noise, tau).sqrt())));
+    let mut series = vec![
+        Series::new("limits of 68.3 %", Style::Band, band),
+        Series::new("overlapping Allan deviation", Style::Points, measured()),
+        Series::new("fit", Style::Line, fitted),
+    ];
+    series.extend(asymptotes(analysis));
+    Figure {
+        title: "Allan deviation".to_owned(),
+        x: Axis::logarithmic("averaging time τ", "s"),
+        y: Axis::logarithmic("Allan deviation σ", "°/h"),
+        series,
+    }
+}
+
+/// Averaging times, equally far apart in ratio, over all of the record.
+fn times(analysis: &Analysis) -> impl Iterator<Item = f64> {
+    let end = |point: Option<&Confident>| point.map_or(1.0, |p| p.seconds);
+    let (first, last) = (end(analysis.points.first()), end(analysis.points.last()));
+    (0..=PLACES).map(move |i| first * (last / first).powf(f64::from(i) / f64::from(PLACES)))
+}
+
+/// What each coefficient alone would give, within the figure.
+fn asymptotes(analysis: &Analysis) -> impl Iterator<Item = Series> {
+    let deviations = analysis.points.iter().map(|point| degrees_per_hour(point.deviation));
+    let low = deviations.clone().fold(f64::INFINITY, f64::min) / HEADROOM;
+    let high = deviations.fold(0.0, f64::max) * HEADROOM;
+    coefficients(&analysis.fit).into_iter().enumerate().map(move |(index, coefficient)| {
+        let (Estimate::Found { value, .. } | Estimate::NotObservable { at_most: value }) =
+            coefficient.si;
+        let curve = times(analysis)
+            .map(|tau| (tau, degrees_per_hour(value * terms(tau)[index].sqrt())))
+            .filter(|(_, deviation)| (low..high).contains(deviation));
+        let name = format!("{}: {}", coefficient.name, coefficient.told());
+        Series::new(&name, Style::Dashed, curve)
+    })
+}
+
+fn coefficient_table(analysis: &Analysis) -> Table {
+    let row = |coefficient: Coefficient| vec![coefficient.name.to_owned(), coefficient.told()];
+    Table {
+        title: "Coefficients (± 1σ)".to_owned(),
+        head: ["coefficient", "value"].map(str::to_owned).to_vec(),
+        rows: coefficients(&analysis.fit).map(row).to_vec(),
+    }
+}
+
+fn point_table(analysis: &Analysis) -> Table {
+    let head = ["τ, s", "σ, °/h", "lower limit, °/h", "upper limit, °/h", "degrees of freedom"];
+    Table {
+        title: "Overlapping Allan deviation with its limits of 68.3 %".to_owned(),
+        head: head.map(str::to_owned).to_vec(),
+        rows: rows(analysis).map(|row| row.to_vec()).collect(),
+    }
+}

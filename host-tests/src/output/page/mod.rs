@@ -1,0 +1,5 @@
+//! The pages that `--report` writes: figures and tables of an alignment, a plan, a campaign.
+
+pub mod alignment;
+pub mod burov;
+pub mod plan;

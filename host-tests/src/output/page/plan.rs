@@ -1,0 +1,86 @@
+//! The page of a plan: Burov's curve, the orders that were compared, and the time that σ takes.
+
+use orientation::planner::order::Order;
+use orientation::planner::{Plan, burov, for_time};
+use orientation::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN};
+
+use crate::planning::{Planned, Request};
+use crate::report::{Axis, Figure, Report, Series, Style};
+
+/// Most passes that the figure shows.
+const MOST_PASSES: usize = 21;
+/// Times along the curve of σ, and how far they reach on either side of the plan's.
+const TIMES: u32 = 24;
+/// Times between which the curve reaches, as factors of the plan's.
+const REACH: [f64; 2] = [0.3, 6.0];
+
+/// The page for a plan.
+#[must_use]
+pub fn report(request: &Request, planned: &Planned) -> Report {
+    let optimum = &planned.optimum;
+    let subtitle = vec![
+        format!(
+            "{} positions of {:.2} s ({}), {:.1} s in all: full azimuth {:.4}° (1σ)",
+            optimum.positions, optimum.dwell_s, optimum.order, optimum.seconds, optimum.sigma_deg
+        ),
+        "noise alone; tilt, encoder and scale come on top of it".to_owned(),
+    ];
+    let seconds = optimum.seconds;
+    let parts = vec![
+        autocompensation(request, planned.burov.map_or(seconds, |best| best.seconds)).into(),
+        orders(request, seconds).into(),
+        times(request, seconds).into(),
+    ];
+    Report { title: "Schedule for a gyro".to_owned(), subtitle, parts }
+}
+
+/// Δω over the number of positions.
+fn autocompensation(request: &Request, seconds: f64) -> Figure {
+    let best = burov::best(&request.noise, seconds, request.rotation);
+    let most = best.map_or(20, |best| 3 * best.positions).min(300);
+    let of = |n| burov::rate_error(&request.noise, n, seconds, request.rotation);
+    let curve = (2..=most).filter_map(|n| Some((f64::from(n), of(n)? / DEGREE_PER_HOUR)));
+    let best = best.map(|best| (f64::from(best.positions), best.rate_error / DEGREE_PER_HOUR));
+    Figure {
+        title: format!("Burov's eq. (1) in {seconds:.0} s"),
+        x: Axis::linear("number of positions", ""),
+        y: Axis::linear("rate error, 1σ", "°/h"),
+        series: vec![
+            Series::new("rate error", Style::Line, curve),
+            Series::new("best", Style::Points, best),
+        ],
+    }
+}
+
+/// σ of every order over its number of positions.
+fn orders(request: &Request, seconds: f64) -> Figure {
+    let conditions = request.conditions();
+    let degrees = |plan: &Plan| plan.sigma(request.latitude) * DEGREES_PER_RADIAN;
+    let series = Order::COMPARED.map(|order| {
+        let plans = (1..=MOST_PASSES).filter_map(|n| Plan::of(&conditions, order, n, seconds));
+        let points = plans.map(|plan| (plan.positions() as f64, degrees(&plan)));
+        Series::new(order.name(), Style::LineAndPoints, points)
+    });
+    Figure {
+        title: format!("Orders of positions in {seconds:.0} s"),
+        x: Axis::linear("number of positions", ""),
+        y: Axis::linear("full azimuth, 1σ", "°"),
+        series: series.to_vec(),
+    }
+}
+
+/// σ of the best schedule over the total time.
+fn times(request: &Request, seconds: f64) -> Figure {
+    let [low, high] = REACH;
+    let time = |i| seconds * low * (high / low).powf(f64::from(i) / f64::from(TIMES));
+    let curve = (0..=TIMES).map(time).filter_map(|time| {
+        let plan = for_time(&request.conditions(), time).ok()?;
+        Some((time, plan.sigma(request.latitude) * DEGREES_PER_RADIAN))
+    });
+    Figure {
+        title: "The best schedule over the time it may take".to_owned(),
+        x: Axis::logarithmic("total time", "s"),
+        y: Axis::logarithmic("full azimuth, 1σ", "°"),
+        series: vec![Series::new("optimum", Style::LineAndPoints, curve)],
+    }
+}

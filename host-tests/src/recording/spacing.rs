@@ -1,0 +1,77 @@
+//! How the samples of a recording at rest follow each other: their period, and where some are
+//! missing.
+
+use std::ops::Range;
+
+use super::rows::StaticRow;
+use super::timing::Times;
+
+/// Samples are consecutive while a step misses the period by no more than this part of it; more,
+/// and at least one is missing, or the times jump.
+const STEP_TOLERANCE: f64 = 0.5;
+
+/// The part by which the header's rate may miss that of the times before it is told.
+const RATE_TOLERANCE: f64 = 0.01;
+
+/// The times of a recording at rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spacing {
+    /// Time from one sample to the next, s: the mean over consecutive samples.
+    pub period_s: f64,
+    /// Where samples are missing, in the order of the file.
+    pub gaps: Vec<Gap>,
+    /// The header's rate, Hz, where it misses that of the times by more than 1 %: the times are
+    /// believed.
+    pub contradicted_rate_hz: Option<f64>,
+    rows: usize,
+}
+
+/// A step that is not one period long.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gap {
+    /// The row after it, from 0.
+    pub row: usize,
+    /// The line of that row.
+    pub line: u64,
+    /// When the row before was taken, s.
+    pub from_s: f64,
+    /// From that row to this, s.
+    pub seconds: f64,
+}
+
+impl Spacing {
+    /// Of these rows, whose times increase, and the header's rate in Hz; `None` with fewer than two
+    /// rows.
+    #[must_use]
+    pub fn of(rows: &[StaticRow], rate_hz: Option<f64>) -> Option<Self> {
+        let times = Times { rows, stamp: |row| (row.line, row.time_s), column: "t_s" };
+        let median = times.median_step()?;
+        let is_step = |step: f64| (step / median - 1.0).abs() <= STEP_TOLERANCE;
+        let steps = rows.windows(2).map(step).filter(|step| is_step(*step));
+        let (sum, count) = steps.fold((0.0, 0.0), |(sum, count), step| (sum + step, count + 1.0));
+        let period_s = sum / count;
+        let misses = |rate: &f64| (rate * period_s - 1.0).abs() > RATE_TOLERANCE;
+        let between = rows.windows(2).enumerate();
+        let gaps = between.filter(|(_, pair)| !is_step(step(pair))).map(|(i, pair)| Gap {
+            row: i + 1,
+            line: pair[1].line,
+            from_s: pair[0].time_s,
+            seconds: step(pair),
+        });
+        let gaps = gaps.collect();
+        let contradicted_rate_hz = rate_hz.filter(misses);
+        Some(Self { period_s, gaps, contradicted_rate_hz, rows: rows.len() })
+    }
+
+    /// The rows between the gaps.
+    pub fn segments(&self) -> impl Iterator<Item = Range<usize>> + '_ {
+        let starts = std::iter::once(0).chain(self.gaps.iter().map(|gap| gap.row));
+        let ends = self.gaps.iter().map(|gap| gap.row).chain([self.rows]);
+        starts.zip(ends).map(|(start, end)| start..end)
+    }
+}
+
+/// From one row to the next, s.
+fn step(pair: &[StaticRow]) -> f64 {
+    pair[1].time_s - pair[0].time_s
+}

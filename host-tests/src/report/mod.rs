@@ -1,0 +1,210 @@
+//! Reports: figures and tables in one HTML file that needs nothing beside it, for `--report`.
+//!
+//! A [`Report`] is data; [`Report::write`] draws every figure as inline SVG, so that the file works
+//! in any browser without a network. A point that is not finite, or not above zero on a logarithmic
+//! axis, is left out; a figure without any point says so. Every axis names its unit.
+
+mod chart;
+mod html;
+mod span;
+
+use std::error::Error;
+use std::fmt;
+use std::io;
+use std::path::Path;
+
+/// A whole report.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Report {
+    /// The heading, and the title of the browser's window.
+    pub title: String,
+    /// Lines below it: what was measured, with what, how.
+    pub subtitle: Vec<String>,
+    /// Figures and tables, in their order.
+    pub parts: Vec<Part>,
+}
+
+/// A part of a report.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Part {
+    /// Curves over an axis.
+    Figure(Figure),
+    /// Rows of text.
+    Table(Table),
+}
+
+/// Curves over common axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    /// The heading.
+    pub title: String,
+    /// The horizontal axis.
+    pub x: Axis,
+    /// The vertical axis.
+    pub y: Axis,
+    /// The curves; later ones are drawn over earlier ones.
+    pub series: Vec<Series>,
+}
+
+/// An axis of a figure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// The quantity.
+    pub label: String,
+    /// Its unit; empty where it has none.
+    pub unit: String,
+    /// How values are laid along it.
+    pub scale: Scale,
+}
+
+/// How values are laid along an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// Equal differences are equally long.
+    Linear,
+    /// Equal ratios are equally long; values must be above zero.
+    Logarithmic,
+}
+
+/// A curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// Its name in the legend.
+    pub name: String,
+    /// How it is drawn.
+    pub style: Style,
+    /// Its points, in the order in which a line joins them.
+    pub points: Vec<Point>,
+}
+
+/// How a curve is drawn. Limits are error bars, but in [`Style::Band`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Style {
+    /// A line through the points.
+    Line,
+    /// A thin broken line through the points, for what only guides the eye.
+    Dashed,
+    /// Dots.
+    Points,
+    /// Dots with a line through them.
+    LineAndPoints,
+    /// The area between the limits; the points themselves are not drawn.
+    Band,
+}
+
+/// A point of a curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// On the horizontal axis.
+    pub x: f64,
+    /// On the vertical axis.
+    pub y: f64,
+    /// Lower and upper limit on the vertical axis; what leaves the figure is cut at its edge.
+    pub limits: Option<[f64; 2]>,
+}
+
+/// Rows of text under column names.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Table {
+    /// The heading.
+    pub title: String,
+    /// The names of the columns, with units.
+    pub head: Vec<String>,
+    /// The rows.
+    pub rows: Vec<Vec<String>>,
+}
+
+impl Axis {
+    /// An axis on which equal differences are equally long; `unit` is empty for a plain number.
+    #[must_use]
+    pub fn linear(label: &str, unit: &str) -> Self {
+        Self { label: label.to_owned(), unit: unit.to_owned(), scale: Scale::Linear }
+    }
+
+    /// An axis on which equal ratios are equally long; `unit` is empty for a plain number.
+    #[must_use]
+    pub fn logarithmic(label: &str, unit: &str) -> Self {
+        Self { scale: Scale::Logarithmic, ..Self::linear(label, unit) }
+    }
+
+    /// What stands beside the axis.
+    fn title(&self) -> String {
+        let Self { label, unit, .. } = self;
+        if unit.is_empty() { label.clone() } else { format!("{label}, {unit}") }
+    }
+}
+
+impl Series {
+    /// A curve through (x, y).
+    pub fn new(
+        name: &str,
+        style: Style,
+        points: impl IntoIterator<Item = impl Into<Point>>,
+    ) -> Self {
+        let points = points.into_iter().map(Into::into).collect();
+        Self { name: name.to_owned(), style, points }
+    }
+}
+
+impl From<(f64, f64)> for Point {
+    fn from((x, y): (f64, f64)) -> Self {
+        Self { x, y, limits: None }
+    }
+}
+
+impl From<(f64, f64, [f64; 2])> for Point {
+    fn from((x, y, limits): (f64, f64, [f64; 2])) -> Self {
+        Self { x, y, limits: Some(limits) }
+    }
+}
+
+impl From<Figure> for Part {
+    fn from(figure: Figure) -> Self {
+        Self::Figure(figure)
+    }
+}
+
+impl From<Table> for Part {
+    fn from(table: Table) -> Self {
+        Self::Table(table)
+    }
+}
+
+/// Why a report was not written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ReportError {
+    /// The file.
+    pub file: String,
+    /// What is wrong with it.
+    pub reason: String,
+}
+
+impl fmt::Display for ReportError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: the report cannot be written: {}", self.file, self.reason)
+    }
+}
+
+impl Error for ReportError {}
+
+impl Report {
+    /// Writes the report to a file, over one that is there.
+    ///
+    /// # Errors
+    /// [`ReportError`] names the file and what the system says.
+    pub fn write(&self, path: &Path) -> Result<(), ReportError> {
+        let refused = |reason| ReportError { file: path.display().to_string(), reason };
+        let text = html::document(self).map_err(|error| refused(error.to_string()))?;
+        std::fs::write(path, text).map_err(|error| refused(words(&error)))
+    }
+}
+
+/// The system's refusals that a user meets have words of their own.
+fn words(error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::NotFound => "there is no such folder".to_owned(),
+        io::ErrorKind::PermissionDenied => "the folder or file is protected".to_owned(),
+        io::ErrorKind::IsADirectory => "it is a directory; name a file in it".to_owned(),
+        _ => error.to_string(),
+    }
+}
