@@ -19,12 +19,13 @@ use crate::patience::Symptom;
 use crate::pointing::{Every, Pointing};
 use crate::ports::{Accelerometer, ForceReading, Gyro, Observer, RateReading};
 use crate::shared::Shared;
+use crate::steady::Steady;
 use crate::timeline::{Arrival, Timeline};
 
 /// Periods without a conversion after which the gyro is silent.
 const SILENCE: u32 = 8;
 /// Equal readings in a row that are no chance: the last bits of both sensors are noise.
-const STUCK: u32 = 64;
+pub(crate) const STUCK: u32 = 64;
 /// Longest time at the limit of the range, s: a slammed door is over by then.
 const SATURATED_SECONDS: f64 = 5.0;
 
@@ -33,28 +34,29 @@ type Force = ([SpecificForce; 3], Temperature);
 
 /// How often something came in a row.
 #[derive(Clone, Copy, Debug)]
-struct Row<T> {
+pub(crate) struct Row<T> {
     last: Option<T>,
     count: u32,
 }
 
 impl<T: Copy + PartialEq> Row<T> {
-    const fn new() -> Self {
+    pub(crate) const fn new() -> Self {
         Self { last: None, count: 0 }
     }
 
     /// How often this value has come in a row before.
-    fn push(&mut self, value: T) -> u32 {
+    pub(crate) fn push(&mut self, value: T) -> u32 {
         self.count = if self.last.replace(value) == Some(value) { self.count + 1 } else { 0 };
         self.count
     }
 }
 
 /// The sensors of the stage path at work.
-pub struct Acquisition<'a, G, A, P, O> {
+pub struct Acquisition<'a, G, A, P, S, O> {
     gyro: Guarded<'a, G>,
     accelerometer: Guarded<'a, A>,
     pointing: P,
+    steady: S,
     shared: &'a Shared<'a, O>,
     timeline: Timeline,
     silence: Duration,
@@ -68,12 +70,15 @@ pub struct Acquisition<'a, G, A, P, O> {
     overflowed: u32,
 }
 
-impl<'a, G: Gyro, A: Accelerometer, P: Pointing, O: Observer> Acquisition<'a, G, A, P, O> {
+impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: Steady, O: Observer>
+    Acquisition<'a, G, A, P, S, O>
+{
     /// Takes the sensors; nothing is started yet.
     pub fn new(
         gyro: &'a mut G,
         accelerometer: &'a mut A,
         pointing: P,
+        steady: S,
         configuration: &Configuration,
         shared: &'a Shared<'a, O>,
     ) -> Self {
@@ -82,6 +87,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, O: Observer> Acquisition<'a, G,
             gyro: Guarded::new(gyro, Device::Gyro),
             accelerometer: Guarded::new(accelerometer, Device::Accelerometer),
             pointing,
+            steady,
             shared,
             timeline: Timeline::new(period),
             silence: Duration::from_micros(u64::from(period) * u64::from(SILENCE)),
@@ -106,6 +112,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, O: Observer> Acquisition<'a, G,
     async fn sample_for_ever(&mut self) -> Result<core::convert::Infallible, Refusal> {
         self.accelerometer.start(self.shared).await?;
         self.pointing.start().await?;
+        self.steady.start(self.shared).await?;
         self.gyro.start(self.shared).await?;
         loop {
             if let Some(sample) = self.sample().await? {
@@ -130,6 +137,11 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, O: Observer> Acquisition<'a, G,
     async fn sample(&mut self) -> Result<Option<Sample>, Refusal> {
         let Some(time) = self.conversion().await? else { return Ok(None) };
         let rate = self.rate().await?;
+        self.steady.follow(self.shared).await?;
+        if !self.steady.is_decided() {
+            self.shared.count(|health| health.samples += 1);
+            return Ok(None);
+        }
         let shown = self.pointing.read().await?;
         let force = self.force().await?;
         let (Some(rate), Some(shown)) = (rate, shown) else { return Ok(None) };
@@ -138,7 +150,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, O: Observer> Acquisition<'a, G,
         Ok(Some(Sample {
             time: orientation::units::Instant(time.as_micros()),
             stage: aim.heading,
-            rate,
+            rate: self.steady.steadied(rate, aim.heading),
             force: force.map(|(force, _)| force),
             temperature: force.map(|(_, temperature)| temperature),
             elevation: aim.elevation.filter(|_| force.is_some()),

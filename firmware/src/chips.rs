@@ -4,17 +4,21 @@ use drivers::ads1262::Ads1262;
 use drivers::ads1262::scale::Scale;
 use drivers::adxl355::Adxl355;
 use drivers::fault::Fault;
+use drivers::lsm6dsl::Lsm6dsl;
 use drivers::mt6835::Mt6835;
 use drivers::tmc5160::Tmc5160;
 use drivers::tmc5160::configuration::MICROSTEPS_PER_TURN;
 use drivers::tmc5160::units::Velocity;
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::digital::Wait;
+use embedded_hal_async::i2c::I2c;
 use embedded_hal_async::spi::SpiDevice;
+use orientation::signal::sway::CoarseSensors;
 use orientation::units::{Angle, AngularRate, TURN};
 
 use crate::ports::{
-    Accelerometer, Actuator, Encoder, ForceReading, Gyro, Motion, RateReading, Startable,
+    Accelerometer, Actuator, BaseReading, BaseSensors, Encoder, ForceReading, Gyro, Motion,
+    RateReading, Startable,
 };
 
 /// A gyro with a voltage for its rate, behind its converter.
@@ -73,6 +77,42 @@ impl<S: SpiDevice, D: DelayNs> Accelerometer for PlatformAccelerometer<S, D> {
             is_new: reading.is_fresh,
             is_clipped: reading.is_clipped,
         })
+    }
+}
+
+/// The coarse IMU on the base, mounted with its x forward, y right, z down.
+#[derive(Debug)]
+pub struct BaseImu<I, D> {
+    /// The chip.
+    pub chip: Lsm6dsl<I, D>,
+    /// What is stated of it.
+    pub sensors: CoarseSensors,
+    /// It is read with every so-manieth sample of the precise gyro.
+    pub divider: u32,
+}
+
+impl<I: I2c, D: DelayNs> Startable for BaseImu<I, D> {
+    fn start(&mut self) -> impl Future<Output = Result<(), Fault>> {
+        self.chip.start()
+    }
+}
+
+impl<I: I2c, D: DelayNs> BaseSensors for BaseImu<I, D> {
+    async fn read(&mut self) -> Result<Option<BaseReading>, Fault> {
+        let reading = self.chip.read().await?;
+        Ok(reading.map(|reading| BaseReading {
+            rate: reading.rate,
+            force: reading.force,
+            is_clipped: reading.is_rate_clipped || reading.is_force_clipped,
+        }))
+    }
+
+    fn sensors(&self) -> CoarseSensors {
+        self.sensors
+    }
+
+    fn divider(&self) -> u32 {
+        self.divider
     }
 }
 

@@ -68,6 +68,7 @@ impl<'a, R: Recorder, O: Observer> Conductor<'a, R, O> {
     async fn conduct(&mut self) -> Result<(), Refusal> {
         self.check_place()?;
         self.wait_for_home().await?;
+        self.session.allow_for(self.shared.sway.get());
         loop {
             let sample = self.sample().await?;
             self.recorder.record(&sample).await;

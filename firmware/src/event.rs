@@ -35,6 +35,11 @@ pub enum Event {
     Late(i32),
     /// So many samples in a row were thrown away because nobody took them.
     Overflowed(u32),
+    /// The base hardly sways: RMS of its angle, °.
+    BaseStill(f64),
+    /// The base sways, which is subtracted: RMS of its angle, °, its frequency, Hz, and the RMS of
+    /// what is left of the angle, °.
+    BaseSways(f64, f64, f64),
     /// An axis looks for its index.
     Homing(Device),
     /// An axis found its index at this angle, °.
@@ -93,6 +98,11 @@ words! { Event:
     Self::Missing(count) => "{} sample(s) missing", count;
     Self::Late(microseconds) => "a sample came {} µs beside its time", microseconds;
     Self::Overflowed(count) => "{} sample(s) lost: nobody took them in time", count;
+    Self::BaseStill(angle) =>
+        "base: still within {}°, nothing is subtracted", Rounded::<4>(angle);
+    Self::BaseSways(angle, hertz, left) =>
+        "base: sways by {}° at {} Hz (RMS); it is subtracted but for {}°",
+        Rounded::<4>(angle), Rounded::<2>(hertz), Rounded::<4>(left);
     Self::Homing(axis) => "{}: looking for its index", axis;
     Self::Homed(axis, angle) => "{}: index found at {}°", axis, Rounded::<3>(angle);
     Self::Turning(axis, angle) => "{}: to {}°", axis, Rounded::<3>(angle);

@@ -22,10 +22,10 @@ pub struct Health {
     pub late: u32,
     /// Samples that nobody took in time.
     pub overflowed: u32,
-    /// Readings lost, by device: gyro, accelerometer, encoder, stage; both frames together.
-    pub lost: [u16; 4],
+    /// Readings lost, by device: gyro, accelerometer, encoder, stage, base; both frames together.
+    pub lost: [u16; 5],
     /// Restarts, by device.
-    pub restarts: [u16; 4],
+    pub restarts: [u16; 5],
     /// Status lines that the link did not take.
     pub unsent: u32,
 }
@@ -37,8 +37,8 @@ impl Health {
         missing: 0,
         late: 0,
         overflowed: 0,
-        lost: [0; 4],
-        restarts: [0; 4],
+        lost: [0; 5],
+        restarts: [0; 5],
         unsent: 0,
     };
 
@@ -64,12 +64,13 @@ impl Health {
     }
 }
 
-fn count(counters: &mut [u16; 4], device: Device) {
+fn count(counters: &mut [u16; 5], device: Device) {
     let counter = &mut counters[match device {
         Device::Gyro => 0,
         Device::Accelerometer => 1,
         Device::Encoder | Device::OuterEncoder | Device::InnerEncoder => 2,
         Device::Stage | Device::OuterFrame | Device::InnerFrame => 3,
+        Device::Base => 4,
     }];
     *counter = counter.saturating_add(1);
 }

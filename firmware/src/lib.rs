@@ -26,6 +26,7 @@ pub mod calibration;
 pub mod guarded;
 pub mod patience;
 pub mod pointing;
+pub mod steady;
 pub mod timeline;
 
 pub mod conduct;

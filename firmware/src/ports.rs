@@ -6,6 +6,7 @@ use drivers::fault::Fault;
 use embassy_time::Instant;
 use orientation::session::Session;
 use orientation::signal::Sample;
+use orientation::signal::sway::CoarseSensors;
 use orientation::units::{Angle, AngularRate, SpecificForce, Temperature};
 
 use crate::event::Event;
@@ -63,6 +64,34 @@ pub trait Encoder: Startable {
     /// Reads the angle now.
     async fn read(&mut self) -> Result<Angle, Fault>;
 }
+
+/// One reading of the coarse sensors on the base, on its axes forward, right, down.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BaseReading {
+    /// Rates about the axes.
+    pub rate: [AngularRate; 3],
+    /// Specific forces on the axes.
+    pub force: [SpecificForce; 3],
+    /// Whether anything stood at the limit of its range.
+    pub is_clipped: bool,
+}
+
+/// Coarse gyros and accelerometers on the base.
+#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
+pub trait BaseSensors: Startable {
+    /// Reads the latest output; none where it was read before.
+    async fn read(&mut self) -> Result<Option<BaseReading>, Fault>;
+
+    /// What is stated of them.
+    fn sensors(&self) -> CoarseSensors;
+
+    /// They are read with every so-manieth sample of the precise gyro, ≥ 1.
+    fn divider(&self) -> u32;
+}
+
+/// A base without sensors: rates are taken as they are.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoBase;
 
 /// What the stage's motor does.
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own; all combine")]
@@ -156,13 +185,23 @@ impl<T> Frames<T> {
 
 /// The sensors of the stage path, which acquisition owns.
 #[derive(Debug)]
-pub struct Sensors<G, A, E> {
+pub struct Sensors<G, A, E, B = NoBase> {
     /// The precise gyro.
     pub gyro: G,
     /// The accelerometer on the platform.
     pub accelerometer: A,
     /// The encoder of the stage; [`Frames`] of a mount with two.
     pub encoder: E,
+    /// Coarse sensors on the base, where there are any.
+    pub base: B,
+}
+
+impl<G, A, E> Sensors<G, A, E> {
+    /// The same with sensors on the base.
+    pub fn with_base<B>(self, base: B) -> Sensors<G, A, E, B> {
+        let Self { gyro, accelerometer, encoder, base: NoBase } = self;
+        Sensors { gyro, accelerometer, encoder, base }
+    }
 }
 
 /// What else a board offers.

@@ -25,30 +25,34 @@ use crate::ports::{
 };
 use crate::shared::{LatestAngle, Shared};
 use crate::stage::Stage;
+use crate::steady::Base;
 
 /// Samples until a sensor is given up, which the session is told; never ends.
-pub async fn acquire<G, A, E, O>(
-    sensors: &mut Sensors<G, A, E>,
+pub async fn acquire<G, A, E, B, O>(
+    sensors: &mut Sensors<G, A, E, B>,
     configuration: &Configuration,
     shared: &Shared<'_, O>,
 ) where
     G: Gyro,
     A: Accelerometer,
     E: Encoder,
+    B: Base,
     O: Observer,
 {
-    let Sensors { gyro, accelerometer, encoder } = sensors;
+    let Sensors { gyro, accelerometer, encoder, base } = sensors;
     let harmonics = configuration.encoder;
     let (name, latest) = (Device::Encoder, &shared.angle);
     let shaft = Shaft::new(encoder, name, harmonics, configuration, latest, shared);
-    let reason = Acquisition::new(gyro, accelerometer, shaft, configuration, shared).run().await;
+    let reason = Acquisition::new(gyro, accelerometer, shaft, base.steady(), configuration, shared)
+        .run()
+        .await;
     shared.fail(reason);
     pending::<()>().await;
 }
 
 /// The same for a mount with two frames, whose latest angles go to `latest`.
-pub async fn acquire_frames<G, A, E, O>(
-    sensors: &mut Sensors<G, A, Frames<E>>,
+pub async fn acquire_frames<G, A, E, B, O>(
+    sensors: &mut Sensors<G, A, Frames<E>, B>,
     configuration: &Configuration,
     frames: &FramesConfiguration,
     latest: &Frames<LatestAngle>,
@@ -57,11 +61,15 @@ pub async fn acquire_frames<G, A, E, O>(
     G: Gyro,
     A: Accelerometer,
     E: Encoder,
+    B: Base,
     O: Observer,
 {
-    let Sensors { gyro, accelerometer, encoder } = sensors;
+    let Sensors { gyro, accelerometer, encoder, base } = sensors;
     let shafts = FrameShafts::new(encoder, configuration, frames, latest, shared);
-    let reason = Acquisition::new(gyro, accelerometer, shafts, configuration, shared).run().await;
+    let reason =
+        Acquisition::new(gyro, accelerometer, shafts, base.steady(), configuration, shared)
+            .run()
+            .await;
     shared.fail(reason);
     pending::<()>().await;
 }

@@ -9,6 +9,7 @@ use embassy_time::Instant;
 use orientation::device::{Device, Trouble};
 use orientation::error::Refusal;
 use orientation::signal::Sample;
+use orientation::signal::sway::SwayNoise;
 use orientation::units::Angle;
 
 use crate::event::Event;
@@ -39,6 +40,8 @@ pub struct Shared<'a, O> {
     pub concluded: Signal<NoopRawMutex, ()>,
     /// The stage's latest angle.
     pub angle: LatestAngle,
+    /// What a subtracted sway leaves in the samples; decided before the stage is homed.
+    pub sway: Cell<SwayNoise>,
     /// What went wrong so far.
     pub health: Cell<Health>,
     /// What the link tells.
@@ -57,6 +60,7 @@ impl<'a, O: Observer> Shared<'a, O> {
             failure: Signal::new(),
             concluded: Signal::new(),
             angle: Cell::new((Angle(0), Instant::MIN)),
+            sway: Cell::new(SwayNoise::NONE),
             health: Cell::new(Health::EMPTY),
             status: Cell::new(Status::Starting),
             observer,

@@ -21,6 +21,12 @@ pub trait ForceInput {
     fn temperature_c(&mut self, now: Instant) -> f64;
 }
 
+/// What gyros and accelerometers on one chip feel.
+pub trait MotionInput: ForceInput {
+    /// Rate about the chip's axes over the output period that ends at `now`, rad/s.
+    fn rate_rad_s(&mut self, now: Instant) -> [f64; 3];
+}
+
 /// The shaft with a magnet in front of an angle encoder.
 pub trait ShaftAngle {
     /// What an ideal encoder with this magnet would show, turns, any number of them.

@@ -15,6 +15,7 @@
 //!                               ├ adxl355 ◀─force──        on the stage's mechanics,
 //!                               ├ mt6835 ◀──angle──        on a base that may sway
 //!                               └ tmc5160 ─microsteps─▶
+//!  driver ⇄ i2c ⇄ lsm6dsl ◀─rates, forces── base that sways
 //! ```
 //!
 //! A two-frame mount ([`gimbal`]) has six chips around a plant of its own.
@@ -45,7 +46,9 @@ pub mod fault;
 pub mod flicker;
 pub mod gimbal;
 pub mod gyro;
+pub mod i2c;
 pub mod instruments;
+pub mod lsm6dsl;
 pub mod mt6835;
 pub mod noise;
 pub mod plant;

@@ -150,4 +150,10 @@ pub(crate) mod source {
     pub const THERMOMETER: u64 = 7;
     /// White noise of the converter behind the gyro.
     pub const CONVERTER: u64 = 8;
+    /// What the coarse sensors of the base draw once per start: scale, bias of each axis.
+    pub const COARSE_START: u64 = 9;
+    /// White noise of the coarse gyros, three axes in turn.
+    pub const COARSE_RATE: u64 = 10;
+    /// White noise of the coarse accelerometers, three axes in turn.
+    pub const COARSE_FORCE: u64 = 11;
 }

@@ -3,6 +3,7 @@
 //! ```text
 //!  fibre-optic gyro ─volts─▶ ads1262 ─▶ rate        stage ─▶ mt6835  ─▶ angle
 //!  platform ─────────force─▶ adxl355 ─▶ force       motor ◀─ tmc5160 ◀─ position
+//!  base ─────rates, forces─▶ lsm6dsl ─▶ sway
 //! ```
 //!
 //! A codec turns bytes into units and back without any bus, so it can be tested alone; a shell does
@@ -15,6 +16,7 @@
 pub mod ads1262;
 pub mod adxl355;
 pub mod fault;
+pub mod lsm6dsl;
 pub mod mt6835;
 pub mod pause;
 pub mod tmc5160;

@@ -22,6 +22,8 @@ pub enum Device {
     OuterFrame,
     /// The inner frame's.
     InnerFrame,
+    /// The coarse sensors on the base.
+    Base,
 }
 
 words! { Device:
@@ -33,6 +35,7 @@ words! { Device:
     Self::InnerEncoder => "inner encoder";
     Self::OuterFrame => "outer frame";
     Self::InnerFrame => "inner frame";
+    Self::Base => "base";
 }
 
 /// What is wrong with a device, where repeating and restarting did not mend it.

@@ -2,6 +2,7 @@
 //!
 //! Host and emulator run exactly this, so that their results can be compared bit for bit.
 
+pub mod base;
 pub mod fault;
 pub mod mount;
 pub mod scenario;
@@ -29,7 +30,7 @@ use hal_mock::violation::Violation;
 use self::fault::Plan;
 use self::scenario::Scenario;
 use crate::chips;
-use crate::ports::{Ports, Sensors};
+use crate::ports::{NoBase, Ports, Sensors};
 
 /// Bus clock of the gyro's converter, Hz; it allows 8 MHz.
 const CONVERTER_HERTZ: u32 = 5_000_000;
@@ -121,6 +122,7 @@ pub fn sensors<'a, B: Rig, A: Around>(
         },
         accelerometer: chips::PlatformAccelerometer(accelerometer),
         encoder: chips::StageEncoder(encoder),
+        base: NoBase,
     }
 }
 

@@ -31,7 +31,7 @@ use super::scenario::{self, Scenario, Turning};
 use super::{CONVERTER_HERTZ, OSCILLATOR};
 use crate::chips;
 use crate::configuration::FramesConfiguration;
-use crate::ports::{Frames, Ports, Sensors};
+use crate::ports::{Frames, NoBase, Ports, Sensors};
 
 /// 1σ of the accelerometers on the base, m/s²: their biases are tilt, so they are calibrated, to
 /// 0.1 mg; as delivered, an ADXL355 would cost 0.5° at 48°.
@@ -228,6 +228,7 @@ pub fn sensors<'a>(
         },
         accelerometer: chips::PlatformAccelerometer(accelerometer),
         encoder: Frames { outer: encoder(Select::Encoder), inner: encoder(Select::InnerEncoder) },
+        base: NoBase,
     }
 }
 

@@ -7,6 +7,7 @@ use hal_mock::accelerometer::AccelerometerConfiguration;
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::instruments::InstrumentsConfiguration;
 use hal_mock::plant::PlantConfiguration;
+use hal_mock::plant::sway::SwayConfiguration;
 use hal_mock::plant::train::StageConfiguration;
 use hal_mock::stage::{EncoderConfiguration, Harmonic};
 use orientation::align::setting::Setting;
@@ -20,6 +21,7 @@ use orientation::session::schedule::Schedule;
 use orientation::session::survey::Survey;
 use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR};
 
+use super::base::{self, CoarseClass};
 use crate::calibration::Harmonics;
 use crate::configuration::Configuration;
 
@@ -167,6 +169,14 @@ pub struct Scenario {
     pub survey_s: f64,
     /// Stage angle at power-on, °.
     pub start_deg: f64,
+    /// Amplitude of the base's sway, °; zero for a base at rest.
+    pub sway_deg: f64,
+    /// Its frequency, Hz.
+    pub sway_hz: f64,
+    /// Whether a coarse IMU stands on the base.
+    pub has_base_imu: bool,
+    /// Its class.
+    pub coarse: CoarseClass,
 }
 
 impl Default for Scenario {
@@ -186,6 +196,10 @@ impl Default for Scenario {
             aim: Aim::Circle,
             survey_s: 0.0,
             start_deg: 20.0,
+            sway_deg: 0.0,
+            sway_hz: 0.5,
+            has_base_imu: false,
+            coarse: CoarseClass::LSM6DSL,
         }
     }
 }
@@ -328,6 +342,7 @@ impl Scenario {
             gyro_volts_per_rad_s: VOLTS,
             gyro_full_scale_rad_s: FULL_SCALE,
             converter_noise_v: CONVERTER_NOISE,
+            sway: self.sway(),
             stage: StageConfiguration {
                 start_rad: self.start_deg * DEGREE,
                 backlash_rad: BACKLASH,
@@ -337,6 +352,10 @@ impl Scenario {
             },
             ..PlantConfiguration::default()
         }
+    }
+
+    fn sway(&self) -> SwayConfiguration {
+        if self.sway_deg > 0.0 { base::sway(self) } else { SwayConfiguration::default() }
     }
 
     /// The converter's configuration: the data rate nearest to the sample rate.

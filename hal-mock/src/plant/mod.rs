@@ -12,6 +12,7 @@
 //! except while it rotates. While the stage stands on a base at rest nothing is computed but noise,
 //! warm-up and disturbances.
 
+pub mod base;
 pub(crate) mod drive;
 mod ringing;
 pub mod sway;

@@ -92,6 +92,8 @@ fn noticed(run: &Run) -> Option<String> {
             event,
             Event::Begun { .. }
                 | Event::Started(_)
+                | Event::BaseStill(_)
+                | Event::BaseSways(..)
                 | Event::Homing(_)
                 | Event::Homed(..)
                 | Event::Turning(..)

@@ -65,6 +65,15 @@ pub struct RunOptions {
     /// Seconds at each position.
     #[arg(long, value_name = "SECONDS", default_value = "10", value_parser = dwell)]
     dwell: f64,
+    /// Amplitude of the base's sway in degrees; brings a coarse IMU on the base with it.
+    #[arg(long, value_name = "DEGREES", value_parser = sway, conflicts_with = "record")]
+    sway: Option<f64>,
+    /// Frequency of the sway in hertz.
+    #[arg(long, value_name = "HERTZ", default_value = "0.5", value_parser = sway_hertz)]
+    sway_hertz: f64,
+    /// Lets the base sway without a coarse IMU on it.
+    #[arg(long, requires = "sway")]
+    no_base_imu: bool,
     /// What fixes everything random.
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -149,6 +158,20 @@ fn dwell(text: &str) -> Result<f64, String> {
     }
 }
 
+fn sway(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(amplitude) if (0.0..=2.0).contains(&amplitude) => Ok(amplitude),
+        _ => Err("not an amplitude from 0 to 2°".to_owned()),
+    }
+}
+
+fn sway_hertz(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(frequency) if (0.05..=5.0).contains(&frequency) => Ok(frequency),
+        _ => Err("not a frequency from 0.05 to 5 Hz".to_owned()),
+    }
+}
+
 fn fault(text: &str) -> Result<Named, String> {
     if text == "list" {
         return Ok(Named::List);
@@ -199,6 +222,9 @@ impl From<&RunOptions> for Scenario {
             survey_s: options.survey.unwrap_or(0.0),
             positions: usize::from(options.positions),
             dwell_s: options.dwell,
+            sway_deg: options.sway.unwrap_or(0.0),
+            sway_hz: options.sway_hertz,
+            has_base_imu: options.sway.is_some() && !options.no_base_imu,
             ..Self::default()
         }
     }

@@ -5,12 +5,14 @@ use std::cell::RefCell;
 use embassy_time::Instant;
 use embedded_io_async::{ErrorType, Write};
 use firmware::event::Event;
-use firmware::ports::{Observer, Recorder};
+use firmware::ports::{NoBase, Observer, Recorder};
 use firmware::run::{acquire, run};
 use firmware::shared::Shared;
 use firmware::simulated;
+use firmware::simulated::base;
 use firmware::simulated::fault::{Fault, FaultyRecorder, Plan};
 use firmware::simulated::scenario::Scenario;
+use firmware::steady::Base;
 use orientation::session::Session;
 
 use super::{Run, RunError};
@@ -72,6 +74,28 @@ pub fn align<R: Recorder, W: Observer>(
     recorder: R,
     watch: &W,
 ) -> Result<Run, RunError> {
+    if !scenario.has_base_imu {
+        return align_on(NoBase, scenario, fault, recorder, watch);
+    }
+    let rig = RefCell::new(base::rig(scenario));
+    let mut run = align_on(base::imu(&rig, scenario), scenario, fault, recorder, watch)?;
+    let rig = rig.borrow();
+    run.violations
+        .extend(base::violations(&rig).iter().map(|violation| format!("Base: {violation}")));
+    Ok(run)
+}
+
+/// The same with these sensors on the base.
+///
+/// # Errors
+/// Those of [`align`].
+pub fn align_on<B: Base, R: Recorder, W: Observer>(
+    base: B,
+    scenario: &Scenario,
+    fault: Option<Fault>,
+    recorder: R,
+    watch: &W,
+) -> Result<Run, RunError> {
     let setting = scenario.setting().ok_or(RunError::Latitude(scenario.latitude_deg))?;
     let mut session = Session::new(setting, scenario.procedure()).map_err(RunError::Procedure)?;
     let plan = Plan::of(fault);
@@ -80,7 +104,7 @@ pub fn align<R: Recorder, W: Observer>(
     let bytes = RefCell::default();
     let shared = Shared::new(&log);
     let configuration = scenario.configuration();
-    let mut sensors = simulated::sensors(&board, scenario, &plan);
+    let mut sensors = simulated::sensors(&board, scenario, &plan).with_base(base);
     let recorder = FaultyRecorder::new(recorder, plan.hang);
     let mut ports = simulated::ports(&board, &plan, Wire(&bytes), recorder);
     let acquisition = acquire(&mut sensors, &configuration, &shared);

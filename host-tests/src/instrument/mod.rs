@@ -4,7 +4,7 @@ mod bench;
 mod frames;
 pub mod recorder;
 
-pub use bench::align;
+pub use bench::{align, align_on};
 pub use frames::{FramesRun, align_frames};
 
 use std::fmt;

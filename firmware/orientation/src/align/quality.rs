@@ -9,6 +9,7 @@ use super::{POSITIONS, level};
 use crate::math::{chi_square_tail, median};
 use crate::signal::blocks::Quietness;
 use crate::signal::dwell::{Dwell, SampleFault};
+use crate::signal::sway::SwayNoise;
 use crate::words;
 use crate::words::Rounded;
 
@@ -62,6 +63,8 @@ pub struct Norm {
     walk: f64,
     /// Flicker, (rad/s)²: B²/π.
     flicker: f64,
+    /// What a subtracted sway leaves.
+    sway: SwayNoise,
     /// Slope that the dwells share, rad/s².
     slope: f64,
     /// Variance of that slope, (rad/s²)².
@@ -79,6 +82,7 @@ impl Norm {
         let white = if setting.white_known { known } else { estimated() };
         Self {
             white,
+            sway: setting.sway,
             slope_variance: white * slope_density(dwells),
             walk: noise.rate_random_walk * noise.rate_random_walk,
             flicker: noise.bias_instability * noise.bias_instability / core::f64::consts::PI,
@@ -109,7 +113,13 @@ impl Norm {
     /// does not follow.
     fn block_variance(&self, quietness: &Quietness) -> f64 {
         let seconds = quietness.count() * quietness.block_seconds;
-        self.white / quietness.block_seconds + self.walk * seconds / 15.0 + 2.0 * self.flicker
+        self.own_variance(quietness) + self.walk * seconds / 15.0 + 2.0 * self.flicker
+    }
+
+    /// Variance of one block that no other shares: white noise, and what a subtracted sway leaves.
+    fn own_variance(&self, quietness: &Quietness) -> f64 {
+        let seconds = quietness.block_seconds;
+        self.white / seconds + self.sway.mean_variance(seconds)
     }
 
     /// White noise as the scatter inside the dwells shows it, N², (rad/s)²·s: that of the gyro where
@@ -140,7 +150,7 @@ impl Norm {
     fn drift(&self, quietness: &Quietness) -> Option<Disturbance> {
         let seconds = quietness.count() * quietness.block_seconds;
         let unit = quietness.slope_unit();
-        let variance = self.white / quietness.block_seconds * unit * unit
+        let variance = self.own_variance(quietness) * unit * unit
             + 1.2 * self.walk / seconds
             + 6.0 * self.flicker / (seconds * seconds)
             + self.slope_variance;

@@ -4,6 +4,7 @@ use super::level::Tilt;
 use crate::earth::Latitude;
 use crate::noise::model::GyroNoise;
 use crate::signal::dwell::Dwell;
+use crate::signal::sway::SwayNoise;
 use crate::units::TURN;
 
 /// The half of the circle in which an azimuth is known to lie, which is all that two opposite
@@ -74,6 +75,8 @@ pub struct Setting {
     pub noise: GyroNoise,
     /// Whether N is known; else it is estimated from the dwells.
     pub white_known: bool,
+    /// What subtracting the base's sway leaves in the rates.
+    pub sway: SwayNoise,
     /// 1σ of the gyro's scale factor, relative.
     pub scale_sigma: f64,
     /// g-sensitivity κ along the sensitive axis and 90° clockwise of it, rad/s per g; in two frames
@@ -109,6 +112,7 @@ impl Setting {
             latitude_sigma: 0.0,
             noise: GyroNoise::default(),
             white_known: false,
+            sway: SwayNoise::NONE,
             scale_sigma: 0.0,
             g_sensitivity: [0.0; 2],
             g_sensitivity_sigma: 0.0,

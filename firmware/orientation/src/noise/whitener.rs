@@ -6,15 +6,19 @@
 //! prediction is linear, so the same filter applied to every column of a regression and to its
 //! left side gives rows whose noise is independent with variance one: ordinary least squares on
 //! them is generalised least squares on the dwells. Each process is averaged exactly over a dwell;
-//! for K its variance is K²(a + T/3), a being the dwell's start and T its length.
+//! for K its variance is K²(a + T/3), a being the dwell's start and T its length. Of the angle error
+//! that a subtracted sway leaves a dwell sees the change over its time, divided by it.
 
 use super::model::GyroNoise;
 use crate::math::Scalar;
+use crate::signal::sway::SwayNoise;
 
 /// Gauss–Markov processes that make up flicker noise.
 const FLICKER_STATES: usize = 7;
 /// Flicker processes and the random walk.
-const STATES: usize = FLICKER_STATES + 1;
+const RATES: usize = FLICKER_STATES + 1;
+/// The same and the angle error of a subtracted sway, which comes last and mostly is not there.
+const STATES: usize = RATES + 1;
 /// Ratio of successive correlation times; the sum follows 1/f within ±2 % at this spacing.
 const SPACING: f64 = 4.0;
 /// ln 4.
@@ -74,9 +78,28 @@ impl Process {
     }
 }
 
+/// How the angle error of a subtracted sway passes through an interval, as a rate: the parts of a
+/// [`Step`] in their order.
+#[inline(never)]
+fn sway_step(sway: &SwayNoise, seconds: f64) -> [f64; 5] {
+    let e1 = -libm::expm1(-seconds / sway.correlation);
+    let (rate, added) = (1.0 / seconds, sway.angle_variance * doubled(e1));
+    let cross = added * rate;
+    [1.0 - e1, -e1 * rate, added, cross, cross * rate]
+}
+
 /// 1 − e⁻²ˣ from 1 − e⁻ˣ, to the last bits.
 fn doubled(e1: f64) -> f64 {
     e1 * (2.0 - e1)
+}
+
+/// The processes and what is beside them.
+#[derive(Clone, Copy, Debug)]
+struct Model {
+    processes: [Process; RATES],
+    /// White density of the flicker that is faster than its processes, (rad/s)²·s.
+    fast: f64,
+    sway: SwayNoise,
 }
 
 /// The steps of all processes over the interval that was last asked for: dwells are mostly alike.
@@ -95,21 +118,22 @@ impl<T: Scalar> Steps<T> {
 
     /// The steps over so many seconds. Correlation times are in the ratio of [`SPACING`], so one
     /// exponential serves them all.
-    fn over(
-        &mut self,
-        processes: &[Process; STATES],
-        fast: f64,
-        seconds: f64,
-    ) -> [Step<T>; STATES] {
+    fn over(&mut self, model: &Model, seconds: f64) -> [Step<T>; STATES] {
         if self.seconds != seconds {
             self.seconds = seconds;
-            self.fast = fast / seconds;
+            self.fast = model.fast / seconds;
+            let processes = &model.processes;
             self.of[FLICKER_STATES] = processes[FLICKER_STATES].step(seconds, 0.0);
             let slowest = processes[FLICKER_STATES - 1].correlation;
             let mut e1 = -libm::expm1(-seconds / slowest);
             for index in (0..FLICKER_STATES).rev() {
                 self.of[index] = processes[index].step(seconds, e1);
                 e1 = doubled(doubled(e1));
+            }
+            if model.sway.angle_variance > 0.0 {
+                let step = sway_step(&model.sway, seconds);
+                let [end, mean, end_variance, cross, mean_variance] = step.map(T::of);
+                self.of[RATES] = Step { end, mean, end_variance, cross, mean_variance };
             }
         }
         self.of
@@ -119,12 +143,13 @@ impl<T: Scalar> Steps<T> {
 /// The filter; `COLUMNS` counts the regression's columns and its left side.
 #[derive(Clone, Debug)]
 pub struct Whitener<const COLUMNS: usize, T = f64> {
-    processes: [Process; STATES],
+    model: Model,
+    /// How many of the states are there.
+    active: usize,
+    /// Covariance of the states, lower triangle.
     covariance: [[T; STATES]; STATES],
     state: [[T; COLUMNS]; STATES],
     end: Option<f64>,
-    /// White density of the flicker that is faster than its processes, (rad/s)²·s.
-    fast: f64,
     coloured: bool,
     gap: Steps<T>,
     dwell: Steps<T>,
@@ -140,30 +165,46 @@ impl<const COLUMNS: usize, T: Scalar> Whitener<COLUMNS, T> {
     #[must_use]
     pub fn new(noise: &GyroNoise, shortest: f64) -> Self {
         let mut whitener = Self {
-            processes: [Process::default(); STATES],
+            model: Model {
+                processes: [Process::default(); RATES],
+                fast: 0.0,
+                sway: SwayNoise::NONE,
+            },
+            active: RATES,
             covariance: [[T::default(); STATES]; STATES],
             state: [[T::default(); COLUMNS]; STATES],
             end: None,
-            fast: 0.0,
             coloured: noise.is_coloured(),
             gap: Steps::none(),
             dwell: Steps::none(),
         };
         let flicker = noise.bias_instability * noise.bias_instability / core::f64::consts::PI;
         let mut correlation = shortest / 3.0;
-        whitener.fast = 2.0 * flicker * LOG_SPACING * correlation / (SPACING - 1.0);
+        whitener.model.fast = 2.0 * flicker * LOG_SPACING * correlation / (SPACING - 1.0);
         for index in 0..FLICKER_STATES {
             let variance = flicker * LOG_SPACING;
-            whitener.processes[index] =
+            whitener.model.processes[index] =
                 Process { correlation, drive: 2.0 * variance / correlation };
             whitener.covariance[index][index] = T::of(variance);
             correlation *= SPACING;
         }
-        whitener.processes[FLICKER_STATES] = Process {
+        whitener.model.processes[FLICKER_STATES] = Process {
             correlation: f64::INFINITY,
             drive: noise.rate_random_walk * noise.rate_random_walk,
         };
         whitener
+    }
+
+    /// The same where a sway is subtracted, which leaves this error.
+    #[must_use]
+    pub fn with_sway(mut self, sway: &SwayNoise) -> Self {
+        if sway.angle_variance > 0.0 {
+            self.model.sway = *sway;
+            self.active = STATES;
+            self.covariance[RATES][RATES] = T::of(sway.angle_variance);
+            self.coloured = true;
+        }
+        self
     }
 
     /// Whitens the row of a dwell mean over [`start`, `end`] (s) in place; `white` is the variance
@@ -185,16 +226,16 @@ impl<const COLUMNS: usize, T: Scalar> Whitener<COLUMNS, T> {
         if seconds <= 0.0 {
             return;
         }
-        let steps = self.gap.over(&self.processes, self.fast, seconds);
+        let steps = self.gap.over(&self.model, seconds);
         self.advance(&steps);
     }
 
     fn advance(&mut self, steps: &[Step<T>; STATES]) {
-        for i in 0..STATES {
+        for i in 0..self.active {
             for value in &mut self.state[i] {
                 *value *= steps[i].end;
             }
-            for j in 0..STATES {
+            for j in 0..=i {
                 self.covariance[i][j] *= steps[i].end * steps[j].end;
             }
             self.covariance[i][i] += steps[i].end_variance;
@@ -203,20 +244,20 @@ impl<const COLUMNS: usize, T: Scalar> Whitener<COLUMNS, T> {
 
     /// Predicts the dwell's mean, replaces the row by its normalised surprise and learns from it.
     fn observe(&mut self, seconds: f64, white: f64, row: &mut [T; COLUMNS]) {
-        let steps = self.dwell.over(&self.processes, self.fast, seconds);
+        let steps = self.dwell.over(&self.model, seconds);
         let (cross, variance) = self.mean_covariance(&steps, T::of(white + self.dwell.fast));
         for (column, value) in row.iter_mut().enumerate() {
-            for (step, state) in steps.iter().zip(&self.state) {
+            for (step, state) in steps.iter().zip(&self.state).take(self.active) {
                 *value -= step.mean * state[column];
             }
         }
         self.advance(&steps);
-        for i in 0..STATES {
+        for i in 0..self.active {
             let gain = cross[i] / variance;
             for (state, surprise) in self.state[i].iter_mut().zip(row.iter()) {
                 *state += gain * *surprise;
             }
-            for (shared, other) in self.covariance[i].iter_mut().zip(cross) {
+            for (shared, other) in self.covariance[i].iter_mut().zip(cross).take(i + 1) {
                 *shared -= gain * other;
             }
         }
@@ -227,10 +268,11 @@ impl<const COLUMNS: usize, T: Scalar> Whitener<COLUMNS, T> {
     fn mean_covariance(&self, steps: &[Step<T>; STATES], white: T) -> ([T; STATES], T) {
         let mut variance = white;
         let mut cross = [T::default(); STATES];
-        for i in 0..STATES {
+        for i in 0..self.active {
             let mut shared = T::default();
-            for (covariance, step) in self.covariance[i].iter().zip(steps) {
-                shared += *covariance * step.mean;
+            for (j, step) in steps.iter().enumerate().take(self.active) {
+                let covariance = if j <= i { self.covariance[i][j] } else { self.covariance[j][i] };
+                shared += covariance * step.mean;
             }
             cross[i] = steps[i].cross;
             cross[i] += steps[i].end * shared;

@@ -30,6 +30,7 @@ use crate::noise::fit::NoiseFit;
 use crate::signal::Sample;
 use crate::signal::butterworth::Coefficients;
 use crate::signal::dwell::{self, Dwell, DwellAverage};
+use crate::signal::sway::SwayNoise;
 use crate::units::{Instant, TURN};
 
 /// Second-order sections of the stage filter: Sokolov's sixth order.
@@ -188,6 +189,12 @@ impl Session {
     #[must_use]
     pub fn setting(&self) -> &Setting {
         &self.setting
+    }
+
+    /// Says that the base's sway is subtracted from the rates, which leaves this noise. To be said
+    /// before the first dwell.
+    pub fn allow_for(&mut self, sway: SwayNoise) {
+        self.setting.sway = sway;
     }
 
     /// How the session goes about it.

@@ -3,6 +3,7 @@
 pub mod blocks;
 pub mod butterworth;
 pub mod dwell;
+pub mod sway;
 
 use crate::units::{Angle, AngularRate, Instant, SpecificForce, Temperature};
 

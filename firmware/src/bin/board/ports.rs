@@ -6,7 +6,7 @@ use drivers::mt6835::{self, Mt6835};
 use drivers::tmc5160::{Tmc5160, configuration::Configuration as Motor};
 use embassy_time::Delay;
 use firmware::chips::{AnalogueGyro, PlatformAccelerometer, StageEncoder, StageMotor};
-use firmware::ports::{NoRecorder, Ports, Sensors};
+use firmware::ports::{NoBase, NoRecorder, Ports, Sensors};
 
 use crate::configuration;
 use crate::wiring::{Device, Link, Ready, SensorWires};
@@ -32,6 +32,7 @@ pub fn inputs(wires: SensorWires) -> Inputs {
         },
         accelerometer: PlatformAccelerometer(accelerometer),
         encoder: StageEncoder(Mt6835::new(encoder, Delay, mt6835::Configuration::default())),
+        base: NoBase,
     }
 }
 

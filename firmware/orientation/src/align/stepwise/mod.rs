@@ -19,6 +19,7 @@ use super::setting::Setting;
 use crate::noise::model::GyroNoise;
 use crate::noise::whitener::Whitener;
 use crate::signal::dwell::Dwell;
+use crate::signal::sway::SwayNoise;
 use uncertainty::Covariance;
 
 /// A dwell in the regression: north and east part of the sensitive axis, constant, time since the
@@ -156,10 +157,11 @@ impl Problem<'_> {
         components
     }
 
-    /// White-noise variance of a dwell's mean, in units of `Ω_h`².
+    /// Variance of a dwell's mean without drift, in units of `Ω_h`².
     pub(super) fn white_variance(&self, dwell: &Dwell) -> f64 {
         let rate = self.setting.latitude.horizontal_rate();
-        self.own_variance(dwell) * dwell.taper / (rate * rate)
+        let sway = self.setting.sway.angle_mean_variance(dwell.seconds);
+        (self.own_variance(dwell) * dwell.taper + sway) / (rate * rate)
     }
 
     /// What the dwell would have measured on a level stage without the fit's trends, in units of
@@ -171,10 +173,14 @@ impl Problem<'_> {
         remainder(&self.row(dwell), &fit.coefficients) + amplitude * (north * cosine - east * sine)
     }
 
-    /// White-noise variance of an untapered mean, (rad/s)².
+    /// Variance of an untapered mean that no other dwell shares, (rad/s)²: white noise, and what a
+    /// subtracted sway leaves.
     fn own_variance(&self, dwell: &Dwell) -> f64 {
-        let noise =
-            || self.white / dwell.seconds + self.setting.noise.rounding_variance(dwell.seconds);
+        let seconds = dwell.seconds;
+        let noise = || {
+            let rounding = self.setting.noise.rounding_variance(seconds);
+            self.white / seconds + rounding + self.setting.sway.residual_mean_variance(seconds)
+        };
         dwell.stated_variance.get().unwrap_or_else(noise)
     }
 
@@ -186,7 +192,11 @@ impl Problem<'_> {
             rate_random_walk: noise.rate_random_walk * scale,
             ..GyroNoise::default()
         };
-        Whitener::new(&relative, shortest)
+        let sway = SwayNoise {
+            angle_variance: self.setting.sway.angle_variance * scale * scale,
+            ..self.setting.sway
+        };
+        Whitener::new(&relative, shortest).with_sway(&sway)
     }
 
     /// Gives the row of each dwell, and the same with its noise white. One copy in flash serves

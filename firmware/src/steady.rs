@@ -1,0 +1,255 @@
+//! Takes the base's sway off the precise gyro's rates, on instruments that have a coarse IMU there.
+//!
+//! The base IMU is read with every so-manieth sample; between, its latest rate is held. Before the
+//! sway was watched for long enough nothing is decided, and the stage is not told to begin. Then the
+//! whole session is measured as it was decided.
+//!
+//! A base IMU that is lost is started again like any other device. Where it is given up, a session
+//! that does not need it goes on without it.
+
+use core::future::ready;
+
+use embassy_time::Instant;
+use micromath::F32Ext;
+use orientation::device::Device;
+use orientation::error::Refusal;
+use orientation::signal::sway::{Decision, Sway};
+use orientation::units::{Angle, AngularRate, DEGREES_PER_RADIAN as DEGREES, SpecificForce, TURN};
+
+use crate::acquire::{Row, STUCK};
+use crate::event::Event;
+use crate::guarded::Guarded;
+use crate::patience::Symptom;
+use crate::pointing::Every;
+use crate::ports::{BaseReading, BaseSensors, NoBase, Observer};
+use crate::shared::Shared;
+
+/// Time without a new reading after which the base IMU is silent, µs.
+const SILENCE: u64 = 100_000;
+/// Radians of one step of an [`Angle`].
+const STEP: f32 = (TURN / 4_294_967_296.0) as f32;
+/// Change of the stage's angle, in steps, for which its sine is kept: 2⁻¹⁴ of a turn, which turns
+/// 0.04 % of a sway across the axis.
+const KEPT: u32 = 1 << 18;
+
+/// Whatever stands on the base: sensors, or nothing.
+pub trait Base {
+    /// What makes rates steady with it.
+    type Steady<'a>: Steady
+    where
+        Self: 'a;
+
+    /// Takes the sensors; nothing is started yet.
+    fn steady(&mut self) -> Self::Steady<'_>;
+}
+
+/// What makes rates steady.
+#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
+pub trait Steady {
+    /// Starts what it needs.
+    async fn start<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal>;
+
+    /// Whether it is known what is to be done.
+    fn is_decided(&self) -> bool;
+
+    /// Reads what it needs; called with every sample.
+    async fn follow<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal>;
+
+    /// The rate along a level axis at this heading, less the sway.
+    fn steadied(&mut self, rate: AngularRate, heading: Angle) -> AngularRate;
+}
+
+impl Base for NoBase {
+    type Steady<'a> = NoBase;
+
+    fn steady(&mut self) -> NoBase {
+        NoBase
+    }
+}
+
+/// Rates are taken as they are.
+impl Steady for NoBase {
+    fn start<O: Observer>(
+        &mut self,
+        _: &Shared<'_, O>,
+    ) -> impl Future<Output = Result<(), Refusal>> {
+        ready(Ok(()))
+    }
+
+    fn is_decided(&self) -> bool {
+        true
+    }
+
+    fn follow<O: Observer>(
+        &mut self,
+        _: &Shared<'_, O>,
+    ) -> impl Future<Output = Result<(), Refusal>> {
+        ready(Ok(()))
+    }
+
+    fn steadied(&mut self, rate: AngularRate, _: Angle) -> AngularRate {
+        rate
+    }
+}
+
+impl<B: BaseSensors> Base for B {
+    type Steady<'a>
+        = Steadied<'a, B>
+    where
+        B: 'a;
+
+    fn steady(&mut self) -> Steadied<'_, B> {
+        Steadied::new(self)
+    }
+}
+
+/// Sensors on the base at work.
+pub struct Steadied<'a, B> {
+    base: Guarded<'a, B>,
+    due: Every,
+    sway: Sway,
+    /// When the latest new reading came.
+    latest: Instant,
+    /// Since when none has come: that time, or the latest start.
+    silent: Instant,
+    readings: Row<[AngularRate; 3]>,
+    /// Stage angle of [`Self::axis`].
+    stage: Angle,
+    /// Cosine and sine of that angle.
+    axis: [f32; 2],
+    /// Whether it was given up.
+    is_lost: bool,
+}
+
+impl<'a, B: BaseSensors> Steadied<'a, B> {
+    fn new(device: &'a mut B) -> Self {
+        let (sensors, divider) = (device.sensors(), device.divider());
+        Self {
+            base: Guarded::new(device, Device::Base),
+            due: Every::new(divider),
+            sway: Sway::new(sensors),
+            latest: Instant::MIN,
+            silent: Instant::MIN,
+            readings: Row::new(),
+            stage: Angle(0),
+            axis: [1.0, 0.0],
+            is_lost: false,
+        }
+    }
+
+    fn is_swaying(&self) -> bool {
+        matches!(self.sway.decision(), Decision::Swaying(..))
+    }
+
+    /// Takes a reading where there is a new one; what is to be mended where there ought to be.
+    async fn read(&mut self) -> Result<(), Symptom> {
+        let begun = Instant::now();
+        let outcome = self.base.device.read().await;
+        match self.base.checked(begun, outcome)? {
+            Some(reading) => self.push(begun, reading),
+            None if (begun - self.silent).as_micros() > SILENCE => Err(Symptom::Silent),
+            None => Ok(()),
+        }
+    }
+
+    /// A clipped reading is left out: the gap after it makes the estimate begin anew.
+    fn push(&mut self, at: Instant, reading: BaseReading) -> Result<(), Symptom> {
+        let BaseReading { rate, force, is_clipped } = reading;
+        self.silent = at;
+        if self.readings.push(rate) >= STUCK {
+            self.readings = Row::new();
+            return Err(Symptom::Stuck);
+        }
+        if !is_clipped {
+            self.turn(at, rate, force);
+        }
+        Ok(())
+    }
+
+    fn turn(&mut self, at: Instant, rate: [AngularRate; 3], force: [SpecificForce; 3]) {
+        let seconds = (at - self.latest).as_micros() as f32 * 1e-6;
+        self.latest = at;
+        self.sway.push(seconds, rate, force);
+    }
+
+    /// Starts the sensors again where they must be; goes on without them where it can.
+    async fn mend<O: Observer>(
+        &mut self,
+        symptom: Symptom,
+        shared: &Shared<'_, O>,
+    ) -> Result<(), Refusal> {
+        let restarts = self.base.restarts();
+        let outcome = self.base.mend(symptom, shared).await;
+        if self.base.restarts() != restarts {
+            self.silent = Instant::now();
+        }
+        match outcome {
+            Err(reason) if self.is_swaying() => Err(reason),
+            Err(_) => {
+                self.is_lost = true;
+                Ok(())
+            }
+            Ok(()) => Ok(()),
+        }
+    }
+
+    /// Tells what was decided, once.
+    fn tell<O: Observer>(&self, shared: &Shared<'_, O>) {
+        match self.sway.decision() {
+            Decision::Watching => {}
+            Decision::Still(size) => {
+                shared.tell(Event::BaseStill(f64::from(size.angle) * DEGREES));
+            }
+            Decision::Swaying(size, noise) => {
+                shared.sway.set(noise);
+                let hertz = f64::from(size.rate / size.angle) / TURN;
+                let [angle, left] =
+                    [f64::from(size.angle), noise.angle_sigma()].map(|angle| angle * DEGREES);
+                shared.tell(Event::BaseSways(angle, hertz, left));
+            }
+        }
+    }
+
+    /// What the sway adds at a stage angle, nrad/s.
+    fn swaying(&mut self, stage: Angle) -> i32 {
+        if (stage - self.stage).0.cast_signed().unsigned_abs() > KEPT {
+            self.stage = stage;
+            let theta = stage.0.cast_signed() as f32 * STEP;
+            self.axis = [F32Ext::cos(theta), F32Ext::sin(theta)];
+        }
+        (self.sway.along(self.axis) * 1e9) as i32
+    }
+}
+
+impl<B: BaseSensors> Steady for Steadied<'_, B> {
+    async fn start<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal> {
+        self.is_lost = self.base.start(shared).await.is_err();
+        self.silent = Instant::now();
+        Ok(())
+    }
+
+    fn is_decided(&self) -> bool {
+        self.is_lost || self.sway.decision() != Decision::Watching
+    }
+
+    async fn follow<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal> {
+        if self.is_lost || !self.due.is_due() {
+            return Ok(());
+        }
+        let was_decided = self.is_decided();
+        if let Err(symptom) = self.read().await {
+            self.mend(symptom, shared).await?;
+        }
+        if !was_decided {
+            self.tell(shared);
+        }
+        Ok(())
+    }
+
+    fn steadied(&mut self, rate: AngularRate, heading: Angle) -> AngularRate {
+        if rate.is_saturated() {
+            return rate;
+        }
+        AngularRate(rate.0.saturating_sub(self.swaying(heading)))
+    }
+}

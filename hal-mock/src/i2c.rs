@@ -1,0 +1,162 @@
+//! The I²C side of the simulated chips: `embedded-hal-async` in front, transfers behind.
+//!
+//! A transfer takes the time of its bits at the bus clock; the chip sees it when it begins. Whoever
+//! is not addressed, or not ready, does not acknowledge.
+
+use core::cell::RefCell;
+
+use embassy_time::{Duration, Instant, Timer};
+use embedded_hal_async::i2c::{ErrorKind, ErrorType, I2c, NoAcknowledgeSource, Operation};
+use heapless::Vec;
+
+use crate::chip::Single;
+use crate::violation::Violations;
+
+/// Bytes of the longest write, and of the longest read.
+const LONGEST: usize = 64;
+
+/// One transfer as a chip sees it: bytes written, then, after a repeated start, bytes read.
+#[derive(Clone, Copy, Debug)]
+pub struct Transfer<'a> {
+    /// When it began.
+    pub now: Instant,
+    /// Bus clock, Hz.
+    pub hertz: u32,
+    /// The 7-bit address.
+    pub address: u8,
+    /// The bytes from the controller; the register comes first.
+    pub sent: &'a [u8],
+}
+
+impl Transfer<'_> {
+    /// When the byte of this index of the reply goes over the bus, to the next microsecond.
+    #[must_use]
+    pub fn time_of(&self, index: usize) -> Instant {
+        self.now + bits(bit_times(self.sent.len()) + bit_times(index), self.hertz)
+    }
+}
+
+/// A chip on an I²C bus in an environment `E`.
+pub trait I2cChip<E> {
+    /// When the chip next does something of itself, such as a conversion.
+    fn next_event(&self) -> Option<Instant>;
+
+    /// Does what is due at [`Self::next_event`].
+    fn event(&mut self, environment: &mut E);
+
+    /// Takes a transfer and answers it into `reply`; whether it acknowledged. All events up to its
+    /// begin have happened.
+    fn transfer(&mut self, environment: &mut E, transfer: &Transfer, reply: &mut [u8]) -> bool;
+
+    /// Loses its supply for a moment and starts again at `now` with its reset values.
+    fn power_cycle(&mut self, now: Instant);
+
+    /// What was done to it that its data sheet forbids.
+    fn violations(&self) -> &Violations;
+}
+
+/// Chips that can be addressed through [`I2cPort`].
+pub trait I2cRig {
+    /// Takes a transfer; whether anybody acknowledged.
+    fn transfer(&mut self, transfer: &Transfer, reply: &mut [u8]) -> bool;
+}
+
+impl<C: I2cChip<E>, E> Single<C, E> {
+    /// Lets an I²C chip do everything that is due until `now`, that moment included.
+    fn advance(&mut self, now: Instant) {
+        while self.chip.next_event().is_some_and(|at| at <= now) {
+            self.chip.event(&mut self.environment);
+        }
+    }
+
+    /// Has an I²C chip lose its supply for a moment.
+    pub fn interrupt_supply(&mut self, now: Instant) {
+        self.advance(now);
+        self.chip.power_cycle(now);
+    }
+}
+
+impl<C: I2cChip<E>, E> I2cRig for Single<C, E> {
+    fn transfer(&mut self, transfer: &Transfer, reply: &mut [u8]) -> bool {
+        self.advance(transfer.now);
+        self.chip.transfer(&mut self.environment, transfer, reply)
+    }
+}
+
+/// The bus of a rig.
+#[derive(Debug)]
+pub struct I2cPort<'a, R> {
+    rig: &'a RefCell<R>,
+    hertz: u32,
+}
+
+impl<'a, R> I2cPort<'a, R> {
+    /// The bus with a clock of `hertz` (> 0).
+    #[must_use]
+    pub const fn new(rig: &'a RefCell<R>, hertz: u32) -> Self {
+        Self { rig, hertz }
+    }
+}
+
+impl<R> ErrorType for I2cPort<'_, R> {
+    type Error = ErrorKind;
+}
+
+impl<R: I2cRig> I2c for I2cPort<'_, R> {
+    async fn transaction(
+        &mut self,
+        address: u8,
+        operations: &mut [Operation<'_>],
+    ) -> Result<(), ErrorKind> {
+        let (sent, wanted) = flatten(operations)?;
+        let mut reply = [0; LONGEST];
+        let reply = &mut reply[..wanted];
+        let transfer = Transfer { now: Instant::now(), hertz: self.hertz, address, sent: &sent };
+        let is_acknowledged = self.rig.borrow_mut().transfer(&transfer, reply);
+        let read = if wanted > 0 { bit_times(wanted) } else { 0 };
+        let times = if is_acknowledged { bit_times(sent.len()) + read } else { bit_times(0) };
+        Timer::after(bits(times + 1, self.hertz)).await;
+        if !is_acknowledged {
+            return Err(ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address));
+        }
+        distribute(operations, reply);
+        Ok(())
+    }
+}
+
+/// Bit times of a start, an address and so many bytes, each with its acknowledge.
+const fn bit_times(bytes: usize) -> usize {
+    1 + 9 * (1 + bytes)
+}
+
+/// Time of so many bits, rounded up to microseconds.
+fn bits(count: usize, hertz: u32) -> Duration {
+    Duration::from_micros((count as u64 * 1_000_000).div_ceil(u64::from(hertz)))
+}
+
+/// All bytes that are written, and how many are to be read after them: no chip here is read first.
+fn flatten(operations: &[Operation<'_>]) -> Result<(Vec<u8, LONGEST>, usize), ErrorKind> {
+    let (mut sent, mut wanted) = (Vec::new(), 0);
+    for operation in operations {
+        match operation {
+            Operation::Write(bytes) if wanted == 0 => {
+                sent.extend_from_slice(bytes).map_err(|_| ErrorKind::Overrun)?;
+            }
+            Operation::Write(_) => return Err(ErrorKind::Other),
+            Operation::Read(bytes) => wanted += bytes.len(),
+        }
+    }
+    if wanted > LONGEST { Err(ErrorKind::Overrun) } else { Ok((sent, wanted)) }
+}
+
+/// Hands the reply out to the operations that read.
+fn distribute(operations: &mut [Operation<'_>], reply: &[u8]) {
+    let mut rest = reply;
+    for operation in operations {
+        if let Operation::Read(bytes) = operation {
+            let (own, later) = rest.split_at(bytes.len());
+            bytes.copy_from_slice(own);
+            rest = later;
+        }
+    }
+}

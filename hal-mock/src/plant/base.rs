@@ -1,0 +1,149 @@
+//! The base as coarse sensors on it feel it: its sway, the Earth's rotation and gravity, and their
+//! own errors.
+//!
+//! The sensors' axes are those of the body: forward, right, down. They stand `lever_m` from the
+//! point that the base sways about, so they also feel what swaying accelerates there.
+
+use embassy_time::Instant;
+
+use super::STANDARD_GRAVITY_M_S2;
+use super::sway::SwayConfiguration;
+use crate::earth::{Attitude, Site};
+use crate::environment::{ForceInput, MotionInput};
+use crate::instruments::InstrumentsConfiguration;
+use crate::noise::{Generator, White, source};
+
+/// Half the time over which the angular acceleration is taken, s: sways are slower by far.
+const HALF_STEP_S: f64 = 1e-3;
+
+/// Errors of coarse sensors, as data sheets state them; the default is perfect.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CoarseConfiguration {
+    /// Outputs a second of each sensor, Hz: the band of its noise.
+    pub rate_hz: f64,
+    /// Noise density of the gyros, m°/s/√Hz, one-sided.
+    pub rate_noise_mdps_sqrt_hz: f64,
+    /// 1σ of the gyros' zero-rate level, °/s.
+    pub rate_bias_sigma_deg_s: f64,
+    /// Noise density of the accelerometers, µg/√Hz, one-sided.
+    pub force_noise_ug_sqrt_hz: f64,
+    /// 1σ of the accelerometers' offset, mg.
+    pub force_bias_sigma_mg: f64,
+    /// 1σ of the scale factor of each axis, relative.
+    pub scale_sigma: f64,
+    /// From the point that the base sways about to the sensors, body axes, m.
+    pub lever_m: [f64; 3],
+}
+
+/// The base at work under its coarse sensors.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Base {
+    attitude: Attitude,
+    site: Site,
+    sway: SwayConfiguration,
+    lever_m: [f64; 3],
+    /// Scale factor, bias and noise of gyros (rad/s) and accelerometers (m/s²).
+    sensors: [Errors; 2],
+}
+
+/// Errors of three equal axes.
+#[derive(Clone, Debug, PartialEq)]
+struct Errors {
+    scale: [f64; 3],
+    bias: [f64; 3],
+    white: White,
+}
+
+impl Errors {
+    fn new(start: &mut Generator, scale: f64, bias: f64, white: White) -> Self {
+        let mut draw = |sigma: f64| [0; 3].map(|_| sigma * start.gaussian());
+        Self { scale: draw(scale).map(|error| 1.0 + error), bias: draw(bias), white }
+    }
+
+    fn show(&mut self, truth: [f64; 3]) -> [f64; 3] {
+        let mut shown = truth;
+        for (axis, value) in shown.iter_mut().enumerate() {
+            *value = *value * self.scale[axis] + self.bias[axis] + self.white.sample();
+        }
+        shown
+    }
+}
+
+impl Base {
+    /// The base of these instruments, swaying like this, with sensors of such errors.
+    #[must_use]
+    pub fn new(
+        instruments: &InstrumentsConfiguration,
+        sway: &SwayConfiguration,
+        coarse: &CoarseConfiguration,
+        seed: u64,
+    ) -> Self {
+        let attitude = instruments.attitude();
+        let mut start = Generator::stream(seed, source::COARSE_START);
+        let band = libm::sqrt(0.5 * coarse.rate_hz);
+        let rate = (coarse.rate_noise_mdps_sqrt_hz * 1e-3).to_radians() * band;
+        let force = coarse.force_noise_ug_sqrt_hz * 1e-6 * STANDARD_GRAVITY_M_S2 * band;
+        let offset = coarse.force_bias_sigma_mg * 1e-3 * STANDARD_GRAVITY_M_S2;
+        let white = |sigma, source| White::new(sigma, seed, source);
+        let mut errors = |bias, white| Errors::new(&mut start, coarse.scale_sigma, bias, white);
+        Self {
+            attitude,
+            site: Site::new(instruments.latitude_deg.to_radians(), &attitude),
+            sway: *sway,
+            lever_m: coarse.lever_m,
+            sensors: [
+                errors(coarse.rate_bias_sigma_deg_s.to_radians(), white(rate, source::COARSE_RATE)),
+                errors(offset, white(force, source::COARSE_FORCE)),
+            ],
+        }
+    }
+
+    /// Where the base leans, and how fast it turns about its own axes, rad/s.
+    fn motion(&self, time_s: f64) -> (Attitude, [f64; 3]) {
+        let motion = self.sway.at(time_s);
+        let attitude = Attitude {
+            azimuth_rad: self.attitude.azimuth_rad + motion.lean.azimuth_rad,
+            pitch_rad: self.attitude.pitch_rad + motion.lean.pitch_rad,
+            roll_rad: self.attitude.roll_rad + motion.lean.roll_rad,
+        };
+        (attitude, motion.body_rad_s(&attitude))
+    }
+
+    /// What the lever accelerates by: ω̇ × r + ω × (ω × r), m/s².
+    fn lever_m_s2(&self, time_s: f64, turning: [f64; 3]) -> [f64; 3] {
+        let before = self.motion(time_s - HALF_STEP_S).1;
+        let after = self.motion(time_s + HALF_STEP_S).1;
+        let angular = [0, 1, 2].map(|i| (after[i] - before[i]) / (2.0 * HALF_STEP_S));
+        let tangential = cross(angular, self.lever_m);
+        let centripetal = cross(turning, cross(turning, self.lever_m));
+        [0, 1, 2].map(|i| tangential[i] + centripetal[i])
+    }
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+impl ForceInput for Base {
+    fn force_g(&mut self, now: Instant) -> [f64; 3] {
+        let time_s = super::seconds(now);
+        let (attitude, turning) = self.motion(time_s);
+        let standing = self.site.with_attitude(&attitude).on_platform(0.0).force_m_s2;
+        let lever = self.lever_m_s2(time_s, turning);
+        let felt = [0, 1, 2].map(|i| standing[i] + lever[i]);
+        self.sensors[1].show(felt).map(|force| force / STANDARD_GRAVITY_M_S2)
+    }
+
+    /// Room temperature: these sensors' warm-up is not simulated.
+    fn temperature_c(&mut self, _: Instant) -> f64 {
+        25.0
+    }
+}
+
+impl MotionInput for Base {
+    fn rate_rad_s(&mut self, now: Instant) -> [f64; 3] {
+        let (attitude, turning) = self.motion(super::seconds(now));
+        let earth = self.site.with_attitude(&attitude).on_platform(0.0).rate_rad_s;
+        self.sensors[0].show([0, 1, 2].map(|i| earth[i] + turning[i]))
+    }
+}
