@@ -116,27 +116,105 @@ impl<T: Scalar> Steps<T> {
         Self { seconds: f64::NAN, fast: 0.0, of: [Step::default(); STATES] }
     }
 
-    /// The steps over so many seconds. Correlation times are in the ratio of [`SPACING`], so one
-    /// exponential serves them all.
-    fn over(&mut self, model: &Model, seconds: f64) -> [Step<T>; STATES] {
+    /// The steps over so many seconds.
+    fn over(&mut self, model: &Model, seconds: f64) -> &[Step<T>; STATES] {
         if self.seconds != seconds {
             self.seconds = seconds;
-            self.fast = model.fast / seconds;
-            let processes = &model.processes;
-            self.of[FLICKER_STATES] = processes[FLICKER_STATES].step(seconds, 0.0);
-            let slowest = processes[FLICKER_STATES - 1].correlation;
-            let mut e1 = -libm::expm1(-seconds / slowest);
-            for index in (0..FLICKER_STATES).rev() {
-                self.of[index] = processes[index].step(seconds, e1);
-                e1 = doubled(doubled(e1));
+            self.renew(model);
+        }
+        &self.of
+    }
+
+    /// Variance that the flicker faster than all processes leaves to a mean, (rad/s)².
+    fn fast(&mut self, model: &Model, seconds: f64) -> f64 {
+        self.over(model, seconds);
+        self.fast
+    }
+
+    /// Correlation times are in the ratio of [`SPACING`], so one exponential serves them all.
+    #[inline(never)]
+    fn renew(&mut self, model: &Model) {
+        let (processes, seconds) = (&model.processes, self.seconds);
+        self.fast = model.fast / seconds;
+        self.of[FLICKER_STATES] = processes[FLICKER_STATES].step(seconds, 0.0);
+        let slowest = processes[FLICKER_STATES - 1].correlation;
+        let mut e1 = -libm::expm1(-seconds / slowest);
+        for index in (0..FLICKER_STATES).rev() {
+            self.of[index] = processes[index].step(seconds, e1);
+            e1 = doubled(doubled(e1));
+        }
+        if model.sway.angle_variance > 0.0 {
+            let step = sway_step(&model.sway, seconds);
+            let [end, mean, end_variance, cross, mean_variance] = step.map(T::of);
+            self.of[RATES] = Step { end, mean, end_variance, cross, mean_variance };
+        }
+    }
+}
+
+/// What is believed of the states: their estimates for every column, and how sure they are.
+#[derive(Clone, Debug)]
+struct Belief<const COLUMNS: usize, T> {
+    /// How many of the states are there.
+    active: usize,
+    /// Covariance of the states, lower triangle.
+    covariance: [[T; STATES]; STATES],
+    state: [[T; COLUMNS]; STATES],
+}
+
+impl<const COLUMNS: usize, T: Scalar> Belief<COLUMNS, T> {
+    /// Carries the states over an interval.
+    fn advance(&mut self, steps: &[Step<T>; STATES]) {
+        for (i, step) in steps.iter().enumerate().take(self.active) {
+            for value in &mut self.state[i] {
+                *value *= step.end;
             }
-            if model.sway.angle_variance > 0.0 {
-                let step = sway_step(&model.sway, seconds);
-                let [end, mean, end_variance, cross, mean_variance] = step.map(T::of);
-                self.of[RATES] = Step { end, mean, end_variance, cross, mean_variance };
+            for (shared, other) in self.covariance[i].iter_mut().zip(steps).take(i + 1) {
+                *shared *= step.end * other.end;
+            }
+            self.covariance[i][i] += step.end_variance;
+        }
+    }
+
+    /// Takes off a row what the states predict of a mean.
+    fn surprise(&self, steps: &[Step<T>; STATES], row: &mut [T; COLUMNS]) {
+        for (step, state) in steps.iter().zip(&self.state).take(self.active) {
+            for (value, state) in row.iter_mut().zip(state) {
+                *value -= step.mean * *state;
             }
         }
-        self.of
+    }
+
+    /// Learns from the surprise of a mean with this variance and covariance with the states.
+    fn learn(&mut self, cross: &[T; STATES], variance: T, surprise: &[T; COLUMNS]) {
+        for i in 0..self.active {
+            let gain = cross[i] / variance;
+            for (state, surprise) in self.state[i].iter_mut().zip(surprise) {
+                *state += gain * *surprise;
+            }
+            for (shared, other) in self.covariance[i].iter_mut().zip(cross).take(i + 1) {
+                *shared -= gain * *other;
+            }
+        }
+    }
+
+    /// Covariance of the states at an interval's end with its mean, and the variance of the mean.
+    fn mean_covariance(&self, steps: &[Step<T>; STATES], white: T) -> ([T; STATES], T) {
+        let mut variance = white;
+        let mut cross = [T::default(); STATES];
+        for i in 0..self.active {
+            let mut shared = T::default();
+            for (covariance, step) in self.covariance[i].iter().zip(steps).take(i + 1) {
+                shared += *covariance * step.mean;
+            }
+            for (row, step) in self.covariance.iter().zip(steps).take(self.active).skip(i + 1) {
+                shared += row[i] * step.mean;
+            }
+            cross[i] = steps[i].cross;
+            cross[i] += steps[i].end * shared;
+            variance += steps[i].mean * shared;
+            variance += steps[i].mean_variance;
+        }
+        (cross, variance)
     }
 }
 
@@ -144,11 +222,7 @@ impl<T: Scalar> Steps<T> {
 #[derive(Clone, Debug)]
 pub struct Whitener<const COLUMNS: usize, T = f64> {
     model: Model,
-    /// How many of the states are there.
-    active: usize,
-    /// Covariance of the states, lower triangle.
-    covariance: [[T; STATES]; STATES],
-    state: [[T; COLUMNS]; STATES],
+    belief: Belief<COLUMNS, T>,
     end: Option<f64>,
     coloured: bool,
     gap: Steps<T>,
@@ -164,35 +238,28 @@ impl<const COLUMNS: usize, T: Scalar> Whitener<COLUMNS, T> {
     /// variance s² and correlation time τ leave 2s²τ/T, summed over τ/4, τ/16, …
     #[must_use]
     pub fn new(noise: &GyroNoise, shortest: f64) -> Self {
-        let mut whitener = Self {
-            model: Model {
-                processes: [Process::default(); RATES],
-                fast: 0.0,
-                sway: SwayNoise::NONE,
-            },
+        let zero = T::default();
+        let mut belief = Belief {
             active: RATES,
-            covariance: [[T::default(); STATES]; STATES],
-            state: [[T::default(); COLUMNS]; STATES],
-            end: None,
-            coloured: noise.is_coloured(),
-            gap: Steps::none(),
-            dwell: Steps::none(),
+            covariance: [[zero; STATES]; STATES],
+            state: [[zero; COLUMNS]; STATES],
         };
         let flicker = noise.bias_instability * noise.bias_instability / core::f64::consts::PI;
-        let mut correlation = shortest / 3.0;
-        whitener.model.fast = 2.0 * flicker * LOG_SPACING * correlation / (SPACING - 1.0);
-        for index in 0..FLICKER_STATES {
-            let variance = flicker * LOG_SPACING;
-            whitener.model.processes[index] =
-                Process { correlation, drive: 2.0 * variance / correlation };
-            whitener.covariance[index][index] = T::of(variance);
+        let (variance, mut correlation) = (flicker * LOG_SPACING, shortest / 3.0);
+        let fast = 2.0 * variance * correlation / (SPACING - 1.0);
+        let mut processes = [Process::default(); RATES];
+        for (index, process) in processes.iter_mut().enumerate().take(FLICKER_STATES) {
+            *process = Process { correlation, drive: 2.0 * variance / correlation };
+            belief.covariance[index][index] = T::of(variance);
             correlation *= SPACING;
         }
-        whitener.model.processes[FLICKER_STATES] = Process {
+        processes[FLICKER_STATES] = Process {
             correlation: f64::INFINITY,
             drive: noise.rate_random_walk * noise.rate_random_walk,
         };
-        whitener
+        let model = Model { processes, fast, sway: SwayNoise::NONE };
+        let coloured = noise.is_coloured();
+        Self { model, belief, end: None, coloured, gap: Steps::none(), dwell: Steps::none() }
     }
 
     /// The same where a sway is subtracted, which leaves this error.
@@ -200,8 +267,8 @@ impl<const COLUMNS: usize, T: Scalar> Whitener<COLUMNS, T> {
     pub fn with_sway(mut self, sway: &SwayNoise) -> Self {
         if sway.angle_variance > 0.0 {
             self.model.sway = *sway;
-            self.active = STATES;
-            self.covariance[RATES][RATES] = T::of(sway.angle_variance);
+            self.belief.active = STATES;
+            self.belief.covariance[RATES][RATES] = T::of(sway.angle_variance);
             self.coloured = true;
         }
         self
@@ -223,63 +290,21 @@ impl<const COLUMNS: usize, T: Scalar> Whitener<COLUMNS, T> {
 
     /// Carries the processes over a time without a measurement.
     fn drift(&mut self, seconds: f64) {
-        if seconds <= 0.0 {
-            return;
-        }
-        let steps = self.gap.over(&self.model, seconds);
-        self.advance(&steps);
-    }
-
-    fn advance(&mut self, steps: &[Step<T>; STATES]) {
-        for i in 0..self.active {
-            for value in &mut self.state[i] {
-                *value *= steps[i].end;
-            }
-            for j in 0..=i {
-                self.covariance[i][j] *= steps[i].end * steps[j].end;
-            }
-            self.covariance[i][i] += steps[i].end_variance;
+        if seconds > 0.0 {
+            self.belief.advance(self.gap.over(&self.model, seconds));
         }
     }
 
     /// Predicts the dwell's mean, replaces the row by its normalised surprise and learns from it.
     fn observe(&mut self, seconds: f64, white: f64, row: &mut [T; COLUMNS]) {
-        let steps = self.dwell.over(&self.model, seconds);
-        let (cross, variance) = self.mean_covariance(&steps, T::of(white + self.dwell.fast));
-        for (column, value) in row.iter_mut().enumerate() {
-            for (step, state) in steps.iter().zip(&self.state).take(self.active) {
-                *value -= step.mean * state[column];
-            }
-        }
-        self.advance(&steps);
-        for i in 0..self.active {
-            let gain = cross[i] / variance;
-            for (state, surprise) in self.state[i].iter_mut().zip(row.iter()) {
-                *state += gain * *surprise;
-            }
-            for (shared, other) in self.covariance[i].iter_mut().zip(cross).take(i + 1) {
-                *shared -= gain * other;
-            }
-        }
+        let Self { model, belief, dwell, .. } = self;
+        let fast = dwell.fast(model, seconds);
+        let steps = dwell.over(model, seconds);
+        let (cross, variance) = belief.mean_covariance(steps, T::of(white + fast));
+        belief.surprise(steps, row);
+        belief.advance(steps);
+        belief.learn(&cross, variance, row);
         scale(row, variance);
-    }
-
-    /// Covariance of the states at the dwell's end with its mean, and the variance of the mean.
-    fn mean_covariance(&self, steps: &[Step<T>; STATES], white: T) -> ([T; STATES], T) {
-        let mut variance = white;
-        let mut cross = [T::default(); STATES];
-        for i in 0..self.active {
-            let mut shared = T::default();
-            for (j, step) in steps.iter().enumerate().take(self.active) {
-                let covariance = if j <= i { self.covariance[i][j] } else { self.covariance[j][i] };
-                shared += covariance * step.mean;
-            }
-            cross[i] = steps[i].cross;
-            cross[i] += steps[i].end * shared;
-            variance += steps[i].mean * shared;
-            variance += steps[i].mean_variance;
-        }
-        (cross, variance)
     }
 }
 
