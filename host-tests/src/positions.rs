@@ -37,12 +37,13 @@ pub fn autocompensation(session: &Session, conclusion: &Conclusion) -> Autocompe
         session.dwells().iter().zip(&conclusion.disturbances).filter(|(_, why)| why.is_none());
     for (dwell, _) in kept {
         let angle = dwell.stage.rad();
-        match angles.iter().position(|other| (wrapped(angle - other + SAME)) < 2.0 * SAME) {
-            Some(index) => visits[index] += 1,
-            None => {
-                angles.push(angle);
-                visits.push(1);
-            }
+        if let Some(index) =
+            angles.iter().position(|other| wrapped(angle - other + SAME) < 2.0 * SAME)
+        {
+            visits[index] += 1;
+        } else {
+            angles.push(angle);
+            visits.push(1);
         }
     }
     let shift = shift(session, conclusion);

@@ -17,6 +17,7 @@ use orientation::session::procedure::{Procedure, ProcedureError};
 use orientation::session::schedule::{Position, Schedule, StopRule};
 use orientation::session::survey::Survey;
 use orientation::session::{Phase, Session};
+use orientation::signal::dwell::Dwell;
 
 const N_DEG_SQRT_H: f64 = 0.001;
 const LATITUDE_DEG: f64 = 47.58;
@@ -222,7 +223,7 @@ fn until(sigma_deg: f64, seconds: f64, noise: f64, seed: u64) -> (Session, f64) 
     let mut configuration = world(123.4);
     configuration.gyro.n_deg_sqrt_h *= noise;
     run(&mut session, &configuration, &[], Rotation::fixed(1.0), 4.0 * seconds, seed);
-    let end = session.dwells().last().map_or(0.0, |dwell| dwell.end());
+    let end = session.dwells().last().map_or(0.0, Dwell::end);
     (session, end)
 }
 

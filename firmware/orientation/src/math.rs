@@ -18,6 +18,7 @@ pub trait Scalar:
     fn of(value: f64) -> Self;
 
     /// The square root.
+    #[must_use]
     fn root(self) -> Self;
 }
 

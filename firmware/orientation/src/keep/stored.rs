@@ -1,7 +1,7 @@
 //! An azimuth that is stored by a gyro with a vertical axis, and how it ages.
 //!
 //! Source: Burov, section 2 (storage of the azimuth with the gyro in the vertical position). On a level
-//! base A(t) = A₀ + ∫(ω_z + Ω_v) dt, ω_z being the rate about the downward axis, less the gyro's bias.
+//! base `A(t) = A₀ + ∫(ω_z + Ω_v) dt`, `ω_z` being the rate about the downward axis, less the gyro's bias.
 //! The bias is learnt at rest just before: a rest of `a` seconds and a storage of `b` seconds
 //! leave it uncertain by the difference of the means of two adjacent intervals.
 

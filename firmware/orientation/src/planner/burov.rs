@@ -9,7 +9,7 @@
 //! ```
 //!
 //! Δω is the error of a *rate*. A horizontal gyro that only has to tell its component along one axis
-//! has an azimuth error of Δω/Ω_h; a full azimuth needs two components in the same time, √2 of it.
+//! has an azimuth error of `Δω/Ω_h`; a full azimuth needs two components in the same time, √2 of it.
 //! The paper leaves B out, which no turning changes in its model; it is added as B√(2 ln 2/π).
 
 use crate::noise::model::GyroNoise;

@@ -206,7 +206,7 @@ fn climbed(conditions: &Conditions, plan: &Plan, seconds: f64) -> Option<Plan> {
             passes = passes.saturating_add_signed(step);
             match (of(passes), best) {
                 (Some(next), Some(least)) if next.rate_sigma < least.rate_sigma => {
-                    best = Some(next)
+                    best = Some(next);
                 }
                 // With less time the passes that were best may not fit.
                 (Some(next), None) => best = Some(next),

@@ -76,7 +76,7 @@ impl Session {
         let (schedule, done) = (&self.procedure.schedule, self.dwells().len());
         let seconds = schedule.shortest();
         let period = self.period().max(seconds);
-        let begin = self.dwells().last().map_or(0.0, |dwell| dwell.end());
+        let begin = self.dwells().last().map_or(0.0, Dwell::end);
         let more = ((left / period) as usize).min(POSITIONS - done);
         let to_come = (0..more).filter_map(|index| {
             let stage = Angle::from_rad(schedule.position(done + index)?.angle);

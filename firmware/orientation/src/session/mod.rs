@@ -350,7 +350,7 @@ impl Session {
             .take()
             .and_then(|average| average.finish(&self.coefficients, self.procedure.sample_seconds));
         let Some(dwell) = finished else { return self.send(now) };
-        if self.store.push(dwell).is_err() {
+        if !self.store.push(dwell) {
             return self.conclude(None);
         }
         match Norm::of(&self.setting, self.dwells()).disturbance(&dwell) {
@@ -399,9 +399,11 @@ impl Session {
     }
 
     fn averaged(&mut self, dwell: &Dwell) -> Command {
-        match self.store.push(*dwell) {
-            Ok(()) if self.dwells().len() < self.planned() => Command::Wait,
-            _ => self.conclude(None),
+        let is_taken = self.store.push(*dwell);
+        if is_taken && self.dwells().len() < self.planned() {
+            Command::Wait
+        } else {
+            self.conclude(None)
         }
     }
 

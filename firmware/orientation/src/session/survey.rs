@@ -46,7 +46,9 @@ pub(super) enum Store {
 }
 
 impl Store {
-    /// For a procedure that begins with a survey, or does not.
+    /// For a procedure that begins with a survey, or does not. Inlined, so that it is made where it is to
+    /// lie and not on the stack.
+    #[inline(always)]
     pub(super) fn of(procedure: &Procedure) -> Self {
         match procedure.survey {
             Some(_) => Self::Survey(Allan::new()),
@@ -61,11 +63,11 @@ impl Store {
         }
     }
 
-    /// Adds a dwell; gives it back where there is no room.
-    pub(super) fn push(&mut self, dwell: Dwell) -> Result<(), Dwell> {
+    /// Adds a dwell; whether there was room.
+    pub(super) fn push(&mut self, dwell: Dwell) -> bool {
         match self {
-            Self::Survey(_) => Err(dwell),
-            Self::Dwells(dwells) => dwells.push(dwell),
+            Self::Survey(_) => false,
+            Self::Dwells(dwells) => dwells.push(dwell).is_ok(),
         }
     }
 

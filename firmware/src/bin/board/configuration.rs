@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`LATITUDE`] | a map; 0.01° is near enough |
 //! | [`GYRO_SCALE`], [`GYRO_SCALE_SIGMA`], [`GYRO_LIMIT`] | the gyro's test sheet, and the amplifier between it and the converter |
-//! | [`GYRO_N`], [`GYRO_B`], [`GYRO_K`] | the gyro's data sheet; better its Allan deviation |
+//! | [`GYRO_N`], [`GYRO_B`], [`GYRO_K`] | the gyro's data sheet; better `meridian allan` of a record at rest, or a [`SURVEY`] on the board |
 //! | [`G_SENSITIVITY`] | the test sheet, or a calibration with the axis up and down |
 //! | [`ENCODER`] | a calibration of the stage; until then zero, a greater [`ENCODER_SIGMA`], and in [`instrument`] a greater `stage.agreement` |
 //!
@@ -17,8 +17,11 @@ use firmware::configuration::Configuration;
 use orientation::align::setting::Setting;
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
+use orientation::planner::Rotation;
+use orientation::planner::order::Order;
 use orientation::session::procedure::Procedure;
 use orientation::session::schedule::Schedule;
+use orientation::session::survey::Survey;
 use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR};
 
 /// Geodetic latitude, °, north positive; up to ±85°, beyond there is no north to find.
@@ -65,10 +68,19 @@ pub const SCALE: Scale =
 /// The rate beyond which the gyro may clip.
 pub const LIMIT: AngularRate = AngularRate((GYRO_LIMIT * DEGREE * 1e9) as i32);
 
+/// How long the board stands still first to know its gyro, s: it then plans by what it found, for as
+/// long as the dwells below would take. `None`: it believes what stands above. An hour shows B and K,
+/// ten minutes N.
+const SURVEY: Option<f64> = None;
+/// 1σ of the azimuth until which it goes on, °, and the time allowed for everything, s. `None`: it
+/// ends with its schedule.
+const ACCURACY: Option<(f64, f64)> = None;
 /// Positions on the full circle.
 const POSITIONS: usize = 24;
 /// Time at each, s.
 const DWELL: f64 = 10.0;
+/// How long the stage takes to turn: 1.20 s for 15°, 18.41 s for 360°, and a look around.
+const ROTATION: Rotation = Rotation { rest: 0.75, speed: 0.35, wraps: false };
 /// For how long the stage rings after an arrival, s.
 const RINGING: f64 = 0.25;
 
@@ -83,6 +95,7 @@ pub fn setting() -> Setting {
         g_sensitivity_sigma: G_SENSITIVITY_SIGMA * DEGREE_PER_HOUR,
         accelerometer_bias_sigma: FORCE_BIAS_SIGMA,
         encoder_sigma: ENCODER_SIGMA,
+        required_sigma: ACCURACY.map_or(10.0, |(sigma, _)| sigma) * DEGREE,
         ..Setting::at(latitude)
     }
 }
@@ -90,8 +103,23 @@ pub fn setting() -> Setting {
 /// How the session goes about it.
 pub fn procedure() -> Procedure {
     let schedule = Schedule::circle(POSITIONS, DWELL);
+    let plan_seconds = schedule.seconds();
     let procedure = Procedure::new(schedule, 1.0 / CONVERTER.rate.hertz());
-    Procedure { settle_seconds: RINGING, ..procedure }
+    let mut procedure = Procedure { settle_seconds: RINGING, ..procedure };
+    if let Some(seconds) = SURVEY {
+        let orders = &Order::COMPARED;
+        procedure = procedure.after(Survey {
+            seconds,
+            rotation: ROTATION,
+            orders,
+            shortest: 2.0,
+            plan_seconds,
+        });
+    }
+    match ACCURACY {
+        Some((_, seconds)) => procedure.until_accurate(seconds),
+        None => procedure,
+    }
 }
 
 /// What the instrument is told of its devices.

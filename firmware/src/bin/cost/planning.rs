@@ -5,7 +5,7 @@ use orientation::planner::order::Order;
 use orientation::planner::{Conditions, Plan, PlanError, Rotation, burov, for_sigma, for_time};
 
 use crate::budget::PLAN_INSTRUCTIONS;
-use crate::counter::Counter;
+use crate::counter::{Cost, Counter};
 use crate::report::Report;
 use crate::stack::stack_of;
 
@@ -46,7 +46,7 @@ fn costs(counter: &Counter, gyro: [f64; 4], report: &mut Report) -> [u64; 3] {
     report.require("both plans were made", planned.is_ok() && found.is_ok());
     let (burov, best) = counter.measure(|| burov::best(&conditions.noise, SECONDS, 2.0));
     report.require("Burov's best was found", best.is_some());
-    [time, sigma, burov].map(|cost| cost.instructions())
+    [time, sigma, burov].map(Cost::instructions)
 }
 
 #[inline(never)]
