@@ -217,6 +217,13 @@ impl Scenario {
         Self { seed, sample_rate_hz: 2400.0, positions: 4, dwell_s: 1.0, ..Self::default() }
     }
 
+    /// Two minutes of survey at 100 Hz, and the plan that follows for one minute more.
+    #[must_use]
+    pub fn surveying(seed: u64) -> Self {
+        let base = Self::usual(seed);
+        Self { sample_rate_hz: 100.0, survey_s: 120.0, aim: Aim::Time(60.0), ..base }
+    }
+
     /// What the board is told of place and instrument; none where the latitude is none.
     #[must_use]
     pub fn setting(&self) -> Option<Setting> {

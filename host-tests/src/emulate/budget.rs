@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 /// The names of the limits.
-pub const NAMES: [&str; 13] = [
+pub const NAMES: [&str; 14] = [
     "filter_instructions",
     "filter_and_dwell_instructions",
     "match_instructions",
@@ -14,6 +14,7 @@ pub const NAMES: [&str; 13] = [
     "noise_fit_instructions",
     "sample_instructions",
     "poll_instructions",
+    "survey_poll_instructions",
     "idle_percent",
     "flash_bytes",
     "static_ram_bytes",

@@ -34,20 +34,32 @@ impl Check {
     }
 }
 
-/// All checks, in the order of the printed table; `brief` is the run at the highest sample rate.
+/// All checks, in the order of the printed table; `brief` is the run at the highest sample rate,
+/// `survey` the one that learns its gyro's noise.
 #[must_use]
-pub fn all(figures: &Figures, brief: &Figures, memory: &Memory, budget: &Budget) -> Vec<Check> {
+pub fn all(
+    figures: &Figures,
+    brief: &Figures,
+    survey: &Figures,
+    memory: &Memory,
+    budget: &Budget,
+) -> Vec<Check> {
     let most = |what, count, budget| Check { what, count, budget, at_least: false };
     let limited = |what, count, name| most(what, count, budget.limit(name));
-    let worst = figures.tasks.iter().map(|task| task.worst).max().unwrap_or(0);
-    let doubled = figures.stack_bytes * STACK_MARGIN;
+    let worst = |of: &Figures| of.tasks.iter().map(|task| task.worst).max().unwrap_or(0);
+    let stack = figures.stack_bytes.max(survey.stack_bytes);
     vec![
         limited(
             "instructions a sample at 2400 Hz, the whole instrument",
             per_sample(brief),
             "sample_instructions",
         ),
-        limited("instructions of the longest poll of a task", worst, "poll_instructions"),
+        limited("instructions of the longest poll of a task", worst(figures), "poll_instructions"),
+        limited(
+            "the same where the noise is learnt and a plan made",
+            worst(survey),
+            "survey_poll_instructions",
+        ),
         Check {
             at_least: true,
             ..limited(
@@ -58,8 +70,12 @@ pub fn all(figures: &Figures, brief: &Figures, memory: &Memory, budget: &Budget)
         },
         limited("bytes of flash, the etalon table included", memory.flash_bytes(), "flash_bytes"),
         limited("bytes of static RAM", memory.ram_bytes(), "static_ram_bytes"),
-        limited("bytes of stack at its deepest", figures.stack_bytes, "stack_bytes"),
-        most("bytes of that stack twice, in what RAM leaves", doubled, memory.stack_room_bytes),
+        limited("bytes of stack at its deepest", stack, "stack_bytes"),
+        most(
+            "bytes of that stack twice, in what RAM leaves",
+            stack * STACK_MARGIN,
+            memory.stack_room_bytes,
+        ),
     ]
 }
 

@@ -46,6 +46,8 @@ pub struct Emulation {
     pub figures: collect::Figures,
     /// What it took in the brief run at the highest sample rate.
     pub brief: collect::Figures,
+    /// What it took in a run that learns its gyro's noise and plans by it.
+    pub survey: collect::Figures,
     /// Where its memory goes.
     pub memory: Memory,
     /// What the cores take.
@@ -78,16 +80,19 @@ pub fn emulate(seed: u64, mut tell: impl FnMut(&decode::Line)) -> Result<Emulati
     let mut run = |order: &str| instrument(&images.emulator, &elf, order, &mut tell);
     let (emulated, figures) = run(&seed.to_string())?;
     let (brief_outcome, brief) = run(&format!("{seed}/brief"))?;
+    let (survey_outcome, survey) = run(&format!("{seed}/survey"))?;
     let usual = outcome::compare(&emulated, &host::outcome(&Scenario::usual(seed))?);
     let in_brief = outcome::compare(&brief_outcome, &host::outcome(&Scenario::brief(seed))?);
+    let surveyed = outcome::compare(&survey_outcome, &host::outcome(&Scenario::surveying(seed))?);
     let memory = Memory::of(&elf)?;
     let (cost, cost_is_right) = cores(&images.cost)?;
     Ok(Emulation {
-        comparison: usual.and(in_brief),
+        comparison: usual.and(in_brief).and(surveyed),
         emulated,
-        checks: checks::all(&figures, &brief, &memory, &budget),
+        checks: checks::all(&figures, &brief, &survey, &memory, &budget),
         figures,
         brief,
+        survey,
         memory,
         cost,
         cost_is_right,

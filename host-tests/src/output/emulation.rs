@@ -71,6 +71,7 @@ fn tasks(out: &mut impl Write, emulation: &Emulation) -> fmt::Result {
     }
     effort(out, "from the first dwell to the last", figures)?;
     effort(out, "the same at 2400 Hz, in a brief run", &emulation.brief)?;
+    effort(out, "the same at 100 Hz, after a survey of two minutes", &emulation.survey)?;
     writeln!(out, "(without bus drivers and interrupts, which are the board's own)")
 }
 

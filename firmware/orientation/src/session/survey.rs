@@ -9,12 +9,12 @@ use super::{Command, Phase, Session, designed};
 use crate::align::POSITIONS;
 use crate::error::Refusal;
 use crate::noise::allan::Allan;
-use crate::noise::fit::{Estimate, NoiseFit};
+use crate::noise::fit::{Estimate, FitError, NoiseFit};
 use crate::noise::model::GyroNoise;
 use crate::planner::order::Order;
 use crate::planner::{Conditions, PlanError, Rotation, for_sigma, for_time};
 use crate::signal::Sample;
-use crate::signal::dwell::{Dwell, DwellAverage, SampleFault};
+use crate::signal::dwell::{Dwell, SampleFault};
 use crate::units::{AngularRate, DEGREES_PER_RADIAN, Instant};
 
 /// Part of the accuracy asked for that a plan leaves to what is not noise.
@@ -77,12 +77,33 @@ impl Store {
         }
     }
 
+    /// Begins the survey anew. Not inlined, nor is the next: what is new passes over the stack.
+    #[inline(never)]
+    fn begin_survey(&mut self) {
+        *self = Self::Survey(Allan::new());
+    }
+
+    /// Ends the survey.
+    #[inline(never)]
+    fn begin_dwells(&mut self) {
+        *self = Self::Dwells(Vec::new());
+    }
+
+    /// What the survey shows of the noise of a gyro that is sampled every `seconds`.
+    #[inline(never)]
+    fn fit(&self, seconds: f64) -> Option<Result<NoiseFit, FitError>> {
+        match self {
+            Self::Survey(allan) => Some(NoiseFit::of(allan, seconds)),
+            Self::Dwells(_) => None,
+        }
+    }
+
     /// Adds a sample to a survey, begun anew where it is the first; how many it has.
     fn survey(&mut self, rate: AngularRate, is_first: bool) -> u32 {
-        let Self::Survey(allan) = self else { return u32::MAX };
         if is_first {
-            *allan = Allan::new();
+            self.begin_survey();
         }
+        let Self::Survey(allan) = self else { return u32::MAX };
         allan.push(rate);
         allan.samples()
     }
@@ -104,25 +125,32 @@ impl Session {
     /// Ends the survey: noise, plan, and off to its first position.
     #[inline(never)]
     fn learn(&mut self, now: Instant) -> Result<Command, Refusal> {
-        let seconds = self.procedure.sample_seconds;
-        let average = self.average.take();
-        let dwell = average
-            .and_then(|average: DwellAverage<_>| average.finish(&self.coefficients, seconds));
-        let Store::Survey(allan) = &mut self.store else { return Ok(Command::Wait) };
-        if dwell.is_some_and(|dwell| dwell.fault == Some(SampleFault::Missing)) {
-            *allan = Allan::new();
+        if self.has_missed_samples() {
+            self.store.begin_survey();
             return Ok(Command::Wait);
         }
-        let found = NoiseFit::of(allan, seconds).map_err(Refusal::NoiseUnknown)?;
+        let fit = self.store.fit(self.procedure.sample_seconds);
+        let Some(fit) = fit else { return Ok(Command::Wait) };
+        let found = fit.map_err(Refusal::NoiseUnknown)?;
         self.setting.noise = known(&found, &self.setting.noise);
         self.setting.white_known = true;
         self.surveyed = Some(found);
         self.plan(now)?;
-        self.store = Store::Dwells(Vec::new());
+        self.store.begin_dwells();
         Ok(self.send(now))
     }
 
+    /// Takes the standstill of the survey, and tells whether samples were missing in it.
+    #[inline(never)]
+    fn has_missed_samples(&mut self) -> bool {
+        let seconds = self.procedure.sample_seconds;
+        let dwell = self.average.as_ref().and_then(|all| all.finish(&self.coefficients, seconds));
+        self.average = None;
+        dwell.is_some_and(|dwell| dwell.fault == Some(SampleFault::Missing))
+    }
+
     /// Plans for the noise that is now known.
+    #[inline(never)]
     fn plan(&mut self, now: Instant) -> Result<(), Refusal> {
         let Some(survey) = self.procedure.survey else { return Ok(()) };
         let conditions = Conditions {

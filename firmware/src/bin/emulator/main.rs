@@ -122,9 +122,8 @@ fn main() -> ! {
 
 /// Runs the instrument to its end and logs what it found and what it took.
 fn run() -> Result<(), Failure> {
-    let Order { seed, is_brief } = order::from_host().ok_or(Failure::NoOrder)?;
+    let Order { seed, scenario } = order::from_host().ok_or(Failure::NoOrder)?;
     let peripherals = cortex_m::Peripherals::take().ok_or(Failure::NoTimer)?;
-    let scenario = if is_brief { Scenario::brief(seed) } else { Scenario::usual(seed) };
     let prepared = scenario.prepared().ok_or(Failure::Session)?;
     let session = SESSION.init_with(|| Session::from(prepared));
     let bench: &'static Bench = BENCH.init(Bench {

@@ -1,8 +1,10 @@
 //! What to run, as the host says it in the last word of the image's command line: `SEED`, or
-//! `SEED/brief` for the short run at the highest sample rate.
+//! `SEED/brief` for the short run at the highest sample rate, or `SEED/survey` for one that learns its
+//! gyro's noise first.
 
 use core::mem::MaybeUninit;
 
+use firmware::simulated::scenario::Scenario;
 use semihosting::sys::arm_compat::sys_get_cmdline_uninit;
 
 /// Bytes of the longest command line; the emulator begins it with the image's path.
@@ -12,8 +14,8 @@ const LONGEST: usize = 4096;
 pub struct Order {
     /// What fixes everything random.
     pub seed: u64,
-    /// Whether it is the short run.
-    pub is_brief: bool,
+    /// The run.
+    pub scenario: Scenario,
 }
 
 /// The host's order; `None` where there is none.
@@ -23,6 +25,13 @@ pub fn from_host() -> Option<Order> {
     let line = sys_get_cmdline_uninit(&mut line).ok()?;
     let line = line.split(|&byte| byte == 0).next()?;
     let word = str::from_utf8(line.rsplit(|&byte| byte == b' ').next()?).ok()?;
-    let (seed, is_brief) = word.strip_suffix("/brief").map_or((word, false), |seed| (seed, true));
-    Some(Order { seed: seed.parse().ok()?, is_brief })
+    let (seed, kind) = word.split_once('/').unwrap_or((word, ""));
+    let seed = seed.parse().ok()?;
+    let scenario = match kind {
+        "" => Scenario::usual(seed),
+        "brief" => Scenario::brief(seed),
+        "survey" => Scenario::surveying(seed),
+        _ => return None,
+    };
+    Some(Order { seed, scenario })
 }
