@@ -9,6 +9,7 @@
 //! in ten as a ramp; one that a great ramp hides is missing from the ramp's deviation. Record longer, or at an
 //! even temperature.
 
+mod average;
 mod regression;
 mod search;
 mod spread;
