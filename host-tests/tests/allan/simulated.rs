@@ -140,13 +140,13 @@ fn is_told(estimates: &[Estimate; 5]) -> bool {
 fn a_walk_that_hardly_shows_is_found_or_limited() {
     let fits = fits(STATIC);
     let [q, n, b, k, r] = all_statistics(&fits, STATIC);
-    assert!(n.found == 1.0 && b.found > 0.95 && k.found > 0.65);
-    // What is found of a walk that is missed in three of ten records lies nearer than its deviation.
+    assert!(n.found == 1.0 && b.found > 0.95 && k.found > 0.68);
+    // What is found of a walk that is missed in each fourth record lies nearer than its deviation.
     assert!((0.8..1.2).contains(&b.ratio) && (0.6..1.2).contains(&k.ratio), "{b:?} {k:?}");
     assert!(k.above <= 0.065 && q.found <= 0.05 && r.found <= 0.086, "{k:?} {q:?} {r:?}");
     let told = fits.iter().filter(|fit| is_told(fit)).count();
     println!("{told} of {} records tell all of this gyro", fits.len());
-    assert!(told as f64 > 0.63 * fits.len() as f64, "{told}");
+    assert!(told as f64 > 0.65 * fits.len() as f64, "{told}");
 }
 
 #[test]
@@ -163,7 +163,7 @@ fn walks_beside_bias_instability_have_honest_deviations() {
 
 #[test]
 fn one_slow_noise_is_seldom_told_as_another() {
-    // What the fit's module says: up to one record in eight, within what 150 leave open.
+    // The fit's module says how often: these mixes in up to one record of eight.
     let mix = [0.0, 0.02, 0.0, 2.0, 0.0];
     let [_, _, b, k, r] = all_statistics(&fits(mix), mix);
     assert!(b.found <= 0.125 && r.found <= 0.086 && k.found > 0.88 && k.above <= 0.065);

@@ -15,7 +15,7 @@ use super::search::Choice;
 /// Neighbouring points repeat each other: about so many tell the same.
 const REPEATS: f64 = 2.0;
 /// Part of the weight that makes a coefficient found.
-const CERTAIN: f64 = 0.8;
+const CERTAIN: f64 = 0.75;
 
 /// Weighted sums over choices.
 #[derive(Clone, Copy, Debug, Default)]
