@@ -74,7 +74,7 @@ fn check(mix: Mix) {
         if mix[index] > 0.0 {
             assert!(found > 0.95, "{title}");
             // 150 records give the ratio to 6 % (1σ).
-            assert!((0.85..1.2).contains(&ratio), "{title}");
+            assert!((0.8..1.2).contains(&ratio), "{title}");
         } else {
             // 5 %, and twice the 1.8 % (1σ) that 150 records leave open.
             assert!(found <= 0.086, "{title}");
@@ -112,20 +112,66 @@ fn quantisation_is_found_with_its_deviation() {
     check([0.1, 0.02, 0.0, 0.0, 0.0]);
 }
 
-#[test]
-fn a_walk_that_hardly_shows_is_found_or_limited() {
-    let mix = [0.0, 0.02, 0.3, 2.0, 0.0];
-    let fits = fits(mix);
+/// The kind of data/recordings/static-gyro-1h.csv.gz.
+const STATIC: Mix = [0.0, 0.02, 0.3, 2.0, 0.0];
+
+/// The statistics of every coefficient, printed.
+fn all_statistics(fits: &[[Estimate; 5]], mix: Mix) -> [Statistics; 5] {
     let of = |index: usize| {
         let estimates: Vec<_> = fits.iter().map(|fit| fit[index]).collect();
         statistics(&estimates, mix[index])
     };
-    let (n, b, k, r) = (of(1), of(2), of(3), of(4));
-    println!("{mix:?}: N {n:.2?}\nB {b:.2?}\nK {k:.2?}\nR {r:.2?}");
-    assert!(n.found == 1.0 && b.found > 0.95 && k.found > 0.6);
-    // What the fit's module says of such records: missed walks make B's deviation too small.
-    assert!(b.ratio < 1.6 && k.ratio < 1.2 && k.above < 0.12, "{b:?} {k:?}");
-    assert!(r.found < 0.12, "{r:?}");
+    let all = std::array::from_fn(of);
+    println!("{mix:?}: {all:.2?}");
+    all
+}
+
+/// Whether N is within 2 %, B and K within 2σ, and Q and R are not observable.
+fn is_told(estimates: &[Estimate; 5]) -> bool {
+    let [q, n, b, k, r] = *estimates;
+    let is_near = |estimate: Estimate, truth: f64| matches!(estimate, Estimate::Found { value, sigma } if (value - truth).abs() < 2.0 * sigma);
+    q.value().or(r.value()).is_none()
+        && n.value().is_some_and(|n| (n / STATIC[1] - 1.0).abs() < 0.02)
+        && is_near(b, STATIC[2])
+        && is_near(k, STATIC[3])
+}
+
+#[test]
+fn a_walk_that_hardly_shows_is_found_or_limited() {
+    let fits = fits(STATIC);
+    let [q, n, b, k, r] = all_statistics(&fits, STATIC);
+    assert!(n.found == 1.0 && b.found > 0.95 && k.found > 0.68);
+    // What is found of a walk that is missed in each fourth record lies nearer than its deviation.
+    assert!((0.8..1.2).contains(&b.ratio) && (0.6..1.2).contains(&k.ratio), "{b:?} {k:?}");
+    assert!(k.above <= 0.065 && q.found <= 0.05 && r.found <= 0.086, "{k:?} {q:?} {r:?}");
+    let told = fits.iter().filter(|fit| is_told(fit)).count();
+    println!("{told} of {} records tell all of this gyro", fits.len());
+    assert!(told as f64 > 0.65 * fits.len() as f64, "{told}");
+}
+
+#[test]
+fn walks_beside_bias_instability_have_honest_deviations() {
+    for mix in [[0.0, 0.02, 0.3, 4.0, 0.0], [0.0, 0.01, 0.2, 3.0, 0.0]] {
+        let [q, n, b, k, r] = all_statistics(&fits(mix), mix);
+        assert!(n.found == 1.0 && b.found > 0.85 && k.found > 0.9, "{b:?} {k:?}");
+        for found in [&n, &b, &k] {
+            assert!((0.8..1.2).contains(&found.ratio), "{found:?}");
+        }
+        assert!(b.above.max(k.above) <= 0.065 && q.found.max(r.found) <= 0.086, "{q:?} {r:?}");
+    }
+}
+
+#[test]
+fn one_slow_noise_is_seldom_told_as_another() {
+    // The fit's module says how often: these mixes in up to one record of eight.
+    let mix = [0.0, 0.02, 0.0, 2.0, 0.0];
+    let [_, _, b, k, r] = all_statistics(&fits(mix), mix);
+    assert!(b.found <= 0.125 && r.found <= 0.086 && k.found > 0.88 && k.above <= 0.065);
+    assert!((0.8..1.2).contains(&k.ratio), "{k:?}");
+    let mix = [0.0, 0.02, 0.3, 0.0, 5.0];
+    let [_, _, b, k, r] = all_statistics(&fits(mix), mix);
+    assert!(k.found <= 0.125 && b.found > 0.95 && r.found > 0.6 && r.above <= 0.065);
+    assert!((0.8..1.2).contains(&b.ratio) && (0.75..1.2).contains(&r.ratio), "{b:?} {r:?}");
 }
 
 #[test]

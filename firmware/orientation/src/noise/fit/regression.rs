@@ -24,11 +24,6 @@ impl Columns {
         self.0 >> column & 1 == 1
     }
 
-    /// Without this one.
-    pub fn without(self, column: usize) -> Self {
-        Self(self.0 & !(1 << column))
-    }
-
     /// With this one.
     pub fn with(self, column: usize) -> Self {
         Self(self.0 | 1 << column)
@@ -60,9 +55,8 @@ pub struct Sums {
 }
 
 impl Sums {
-    /// Of points whose variances have the standard deviations `sigmas`, less what squares that are
-    /// given explain.
-    pub fn new(points: &[Point], sigmas: &[f64], columns: Columns, given: &[f64; COLUMNS]) -> Self {
+    /// Of points whose variances have the standard deviations `sigmas`.
+    pub fn new(points: &[Point], sigmas: &[f64], columns: Columns) -> Self {
         let mut sums = Self {
             columns,
             normal: [[0.0; COLUMNS]; COLUMNS],
@@ -71,8 +65,7 @@ impl Sums {
         };
         for (point, sigma) in points.iter().zip(sigmas) {
             let weight = 1.0 / sigma;
-            let terms = terms(point.seconds);
-            sums.add(&terms, (point.variance - sum(given, &terms)) * weight, weight);
+            sums.add(&terms(point.seconds), point.variance * weight, weight);
         }
         sums.scale();
         sums

@@ -1,21 +1,19 @@
-//! Which coefficients a record shows.
+//! What every choice of coefficients makes of a record.
 //!
 //! Allan variances are nearly gamma distributed, and with few degrees of freedom far from normal. So
-//! models are compared by their gamma deviance Σ ν (r − 1 − ln r), r = V̂/V, with ν the equivalent
-//! degrees of freedom: of every choice of coefficients the one is taken whose deviance, with a price
-//! for each coefficient, is least. Neighbouring points repeat each other, which makes deviances too
-//! great; by how much, a coefficient's variance from the full covariance tells, over that of
-//! independent points. What it gains after division by this must pass the usual limit.
-//! tests/allan/simulated.rs holds how often this errs.
+//! choices are compared by their gamma deviance Σ ν (r − 1 − ln r), r = V̂/V, with ν the equivalent
+//! degrees of freedom, and a price for each coefficient. No choice is taken alone: the module
+//! `average` weighs them all.
 //!
 //! The points are weighted as if they were independent, and the deviations come from their full
 //! covariance. Weighting by the full covariance too would lessen the deviation of N by 11 %, of B and
-//! K by 1 to 8 % (an hour at 10 Hz), and would make every value hang on the model's finest errors.
+//! K by 1 to 8 % (an hour at 10 Hz), would tell a walk from the bias instability no better, and would
+//! make every value hang on the model's finest errors.
 
 use heapless::Vec;
 
+use super::average::average;
 use super::regression::{COLUMNS, Columns, Sums, WHITE, sum};
-use super::spread::Square;
 use super::{Estimate, NoiseFit};
 use crate::noise::allan::covariance::degrees_of_freedom;
 use crate::noise::allan::{MOST_POINTS, Point, terms, variance};
@@ -25,17 +23,15 @@ use crate::noise::model::GyroNoise;
 /// points that tell the same.
 const PRICE: f64 = 8.0;
 /// What a ramp must besides: it is rare, and a random walk over one record looks like it.
-const RAMP_PRICE: f64 = 4.0;
-/// What it must gain at last, per point of its own: two standard deviations, squared.
-const LEAST_GAIN: f64 = 4.0;
-/// Least value of a coefficient, in its standard deviations.
-const LEAST_RATIO: f64 = 2.0;
+const RAMP_PRICE: f64 = 6.0;
 /// Most rounds of one fit: each draws its weights from the model that the one before has found.
 const ROUNDS: usize = 10;
 /// Relative change of the squares at which the rounds end, a tenth of what an hour can tell.
 const SETTLED: f64 = 1e-3;
 /// Rounds of degrees of freedom, which hardly depend on the model.
 const DEGREE_ROUNDS: usize = 3;
+/// Choices of coefficients: N belongs to every gyro, each of the others may be there or not.
+pub const CHOICES: usize = 1 << (COLUMNS - 1);
 
 /// Squares of coefficients and how well they fit.
 #[derive(Clone, Copy, Debug)]
@@ -58,16 +54,20 @@ impl Model {
             rate_ramp: r,
         }
     }
-
-    /// The deviance and the prices of the coefficients.
-    fn cost(&self) -> f64 {
-        let ramp = if self.columns.has(COLUMNS - 1) { RAMP_PRICE } else { 0.0 };
-        self.deviance + PRICE * self.columns.count() as f64 + ramp
-    }
 }
 
-/// Steps of the search for a limit: it grows twofold at first and ends within a tenth.
-const LIMIT_STEPS: usize = 6;
+/// A choice of coefficients, fitted.
+#[derive(Clone, Copy, Debug)]
+pub struct Choice {
+    /// Those that may be more than zero.
+    pub columns: Columns,
+    /// The squares of the coefficients.
+    pub squares: [f64; COLUMNS],
+    /// Standard deviations of the squares, if the points did not repeat each other.
+    pub spreads: [f64; COLUMNS],
+    /// The deviance and the prices of the coefficients.
+    pub cost: f64,
+}
 
 /// A fit under way.
 pub struct Search<'p> {
@@ -97,60 +97,69 @@ impl<'p> Search<'p> {
 
     /// The coefficients that stand out, and limits of the others.
     pub fn finish(mut self) -> NoiseFit {
-        let mut allowed = self.choose();
-        loop {
-            let model = self.settle(allowed);
-            let squares = self.squares(&model);
-            match self.superfluous(&model, &squares) {
-                Some(column) => allowed = allowed.without(column),
-                None => return self.conclude(&model, &squares),
-            }
-        }
+        self.settle();
+        let (best, choices) = self.choices();
+        self.expect(&best.noise());
+        let inflations = self.inflations(&best);
+        self.conclude(average(&choices, &inflations))
     }
 
-    /// The columns of the least cost; N belongs to every gyro.
-    fn choose(&mut self) -> Columns {
-        let mut best = self.settle(Columns::ALL);
+    /// Every choice, and the model of the one that costs least.
+    fn choices(&self) -> (Model, Vec<Choice, CHOICES>) {
+        let mut least = f64::INFINITY;
+        let mut best = Model { columns: Columns(0), squares: [0.0; COLUMNS], deviance: 0.0 };
+        let mut choices = Vec::new();
         for columns in Columns::ALL.subsets().filter(|columns| columns.has(WHITE)) {
-            let model = self.fit(columns);
-            if model.cost() < best.cost() {
-                best = model;
+            let (model, variances) = self.fit(columns);
+            let choice = self.choice(columns, &model, &variances);
+            if choice.cost < least {
+                (least, best) = (choice.cost, model);
             }
+            // There is room for all of them.
+            let _ = choices.push(choice);
         }
-        best.columns
+        (best, choices)
     }
 
-    /// Fits with degrees of freedom that agree with the model.
-    fn settle(&mut self, allowed: Columns) -> Model {
-        let mut model = self.fit(allowed);
+    fn choice(&self, columns: Columns, model: &Model, variances: &[f64]) -> Choice {
+        let ramp = if columns.has(COLUMNS - 1) { RAMP_PRICE } else { 0.0 };
+        Choice {
+            columns,
+            squares: model.squares,
+            spreads: self.spreads(columns, model, variances),
+            cost: model.deviance + PRICE * columns.count() as f64 + ramp,
+        }
+    }
+
+    /// Brings the degrees of freedom to agree with the model of all coefficients.
+    fn settle(&mut self) {
         for _ in 0..DEGREE_ROUNDS {
-            let noise = model.noise();
-            for (index, point) in self.points.iter().enumerate() {
-                self.degrees[index] = degrees_of_freedom(point, &noise, self.sample_seconds);
-                self.variances[index] = variance(&noise, point.seconds);
+            let noise = self.fit(Columns::ALL).0.noise();
+            for (degrees, point) in self.degrees.iter_mut().zip(self.points) {
+                *degrees = degrees_of_freedom(point, &noise, self.sample_seconds);
             }
-            model = self.fit(allowed);
+            self.expect(&noise);
         }
-        model
     }
 
-    /// The model of the least deviance.
-    fn fit(&self, allowed: Columns) -> Model {
-        self.fit_beside(allowed, [0.0; COLUMNS])
+    /// Takes the variances from a noise.
+    fn expect(&mut self, noise: &GyroNoise) {
+        for (expected, point) in self.variances.iter_mut().zip(self.points) {
+            *expected = variance(noise, point.seconds);
+        }
     }
 
-    /// The model of the least deviance beside squares that are given: weights that follow the model
-    /// lead there. Only the squares that were fitted are in it.
-    fn fit_beside(&self, allowed: Columns, given: [f64; COLUMNS]) -> Model {
+    /// The model of the least deviance, to which weights that follow the model lead, and the
+    /// variances that it expects.
+    fn fit(&self, columns: Columns) -> (Model, Vec<f64, MOST_POINTS>) {
         let mut variances = self.variances.clone();
-        let mut model = Model { columns: allowed, squares: [0.0; COLUMNS], deviance: 0.0 };
+        let mut model = Model { columns, squares: [0.0; COLUMNS], deviance: 0.0 };
         for _ in 0..ROUNDS {
             let before = model.squares;
-            let sums = Sums::new(self.points, &self.sigmas(&variances), allowed, &given);
+            let sums = Sums::new(self.points, &self.sigmas(&variances), columns);
             (model.columns, model.squares) = sums.positive();
-            let all = core::array::from_fn(|i| model.squares[i] + given[i]);
             for (variance, point) in variances.iter_mut().zip(self.points) {
-                *variance = sum(&all, &terms(point.seconds));
+                *variance = sum(&model.squares, &terms(point.seconds));
             }
             let moved = |(now, then): (f64, f64)| (now - then).abs() > SETTLED * now;
             if !model.squares.into_iter().zip(before).any(moved) {
@@ -158,7 +167,7 @@ impl<'p> Search<'p> {
             }
         }
         model.deviance = self.deviance(&variances);
-        model
+        (model, variances)
     }
 
     /// Standard deviations of the points where these are their variances, (rad/s)².
@@ -167,7 +176,7 @@ impl<'p> Search<'p> {
         variances.iter().zip(&self.degrees).map(sigma).collect()
     }
 
-    /// Expected variances of the points under the model that was settled last, (rad/s)².
+    /// Expected variances of the points, (rad/s)².
     pub fn variances(&self) -> &[f64] {
         &self.variances
     }
@@ -180,63 +189,31 @@ impl<'p> Search<'p> {
         self.points.iter().zip(variances).zip(&self.degrees).map(part).sum()
     }
 
-    /// The column that stands out least, where that is too little; N stays.
-    fn superfluous(&self, model: &Model, squares: &[Square; COLUMNS]) -> Option<usize> {
-        let gain = |column: usize| {
-            let square = &squares[column];
-            if square.ratio() < LEAST_RATIO {
-                return 0.0;
-            }
-            let without = self.fit(model.columns.without(column));
-            (without.deviance - model.deviance) / square.inflation
+    fn conclude(mut self, estimates: [Estimate; COLUMNS]) -> NoiseFit {
+        let found = estimates.iter().filter(|estimate| estimate.value().is_some()).count();
+        let [quantisation, angle_random_walk, bias_instability, rate_random_walk, rate_ramp] =
+            estimates;
+        let mut fit = NoiseFit {
+            quantisation,
+            angle_random_walk,
+            bias_instability,
+            rate_random_walk,
+            rate_ramp,
+            chi_square: 0.0,
+            degrees: self.points.len().saturating_sub(found),
         };
-        let gains = model.columns.without(WHITE).each().map(|column| (gain(column), column));
-        let least = gains.reduce(|a, b| if b.0 < a.0 { b } else { a });
-        least.filter(|&(gain, _)| gain < LEAST_GAIN).map(|(_, column)| column)
+        self.expect(&fit.noise());
+        fit.chi_square = self.chi_square();
+        fit
     }
 
-    /// What the square of an absent coefficient does not exceed: beyond its two standard deviations
-    /// as far as the others can make room for it.
-    fn limit(&self, model: &Model, column: usize, square: &Square) -> f64 {
-        let is_possible = |limit: f64| {
-            let mut given = [0.0; COLUMNS];
-            given[column] = limit;
-            let loss = self.fit_beside(model.columns, given).deviance - model.deviance;
-            loss < LEAST_GAIN * square.inflation
-        };
-        let mut limit = square.limit();
-        let mut factor = 2.0;
-        for _ in 0..LIMIT_STEPS {
-            if is_possible(limit * factor) {
-                limit *= factor;
-            } else {
-                factor = libm::sqrt(factor);
-            }
-        }
-        limit
-    }
-
-    fn conclude(&self, model: &Model, squares: &[Square; COLUMNS]) -> NoiseFit {
+    /// Squared deviations of the points from what is expected, over their variances.
+    fn chi_square(&self) -> f64 {
         let deviation = |((point, variance), sigma): ((&Point, &f64), &f64)| {
             let deviation = (point.variance - variance) / sigma;
             deviation * deviation
         };
         let sigmas = self.sigmas(&self.variances);
-        let estimate = |column: usize| {
-            let square = &squares[column];
-            if model.columns.has(column) {
-                return square.estimate();
-            }
-            Estimate::NotObservable { at_most: libm::sqrt(self.limit(model, column, square)) }
-        };
-        NoiseFit {
-            quantisation: estimate(0),
-            angle_random_walk: estimate(1),
-            bias_instability: estimate(2),
-            rate_random_walk: estimate(3),
-            rate_ramp: estimate(4),
-            chi_square: self.points.iter().zip(&self.variances).zip(&sigmas).map(deviation).sum(),
-            degrees: self.points.len().saturating_sub(model.columns.count()),
-        }
+        self.points.iter().zip(&self.variances).zip(&sigmas).map(deviation).sum()
     }
 }
