@@ -116,7 +116,7 @@ impl From<Prepared> for Session {
             setting,
             target,
             pace: Pace::of(&procedure),
-            store: Store::of(&procedure),
+            store: Store::Dwells(Vec::new()),
             surveyed: None,
             procedure,
             coefficients,
@@ -299,7 +299,8 @@ impl Session {
             let [tilt, allowed] = [tilt, self.setting.allowed_tilt].map(|a| a / TURN * 360.0);
             return self.conclude(Some(Refusal::TiltTooGreat { tilt, allowed }));
         }
-        if self.is_surveying() {
+        if self.must_survey() {
+            self.store.begin_survey();
             self.phase = Phase::Survey;
             self.average = None;
             return Command::Wait;

@@ -3,9 +3,9 @@
 
 use heapless::Vec;
 
-use super::procedure::{Procedure, ProcedureError};
+use super::procedure::ProcedureError;
 use super::schedule::{Schedule, StopRule};
-use super::{Command, Phase, Session, designed};
+use super::{Command, Session, designed};
 use crate::align::POSITIONS;
 use crate::error::Refusal;
 use crate::noise::allan::Allan;
@@ -46,16 +46,6 @@ pub(super) enum Store {
 }
 
 impl Store {
-    /// For a procedure that begins with a survey, or does not. Inlined, so that it is made where it is to
-    /// lie and not on the stack.
-    #[inline(always)]
-    pub(super) fn of(procedure: &Procedure) -> Self {
-        match procedure.survey {
-            Some(_) => Self::Survey(Allan::new()),
-            None => Self::Dwells(Vec::new()),
-        }
-    }
-
     pub(super) fn dwells(&self) -> &[Dwell] {
         match self {
             Self::Survey(_) => &[],
@@ -77,9 +67,9 @@ impl Store {
         }
     }
 
-    /// Begins the survey anew. Not inlined, nor is the next: what is new passes over the stack.
+    /// Begins a survey. Not inlined, nor is the next: what is new passes over the stack.
     #[inline(never)]
-    fn begin_survey(&mut self) {
+    pub(super) fn begin_survey(&mut self) {
         *self = Self::Survey(Allan::new());
     }
 
@@ -199,9 +189,9 @@ impl Session {
         self.surveyed.as_ref()
     }
 
-    /// Whether the stage stands still for the survey.
-    pub(super) fn is_surveying(&self) -> bool {
-        matches!(self.store, Store::Survey(_)) && self.phase != Phase::Done
+    /// Whether there is to be a survey that has not been made.
+    pub(super) fn must_survey(&self) -> bool {
+        self.procedure.survey.is_some() && self.surveyed.is_none()
     }
 }
 
