@@ -3,7 +3,7 @@
 //! ```text
 //!  gyro ─counts─▶ filter ─rate─▶ dwell average ─dwell─▶ matcher ─fit─▶ azimuth ± σ
 //!                                    ▲ one per stage position   ▲
-//!  stage ◀─command─ session                        etalon table (flash)
+//!  stage ◀─command─ session ◀─plan─ planner ◀─ Allan variance    etalon table (flash)
 //!  accelerometers ─▶ level ───────────────────────▶ (tilt enters the fit)
 //! ```
 //!
