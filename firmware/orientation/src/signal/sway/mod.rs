@@ -39,6 +39,11 @@ const MICRO: f32 = 1e-6;
 /// Nanoradians in a radian, as rates come.
 const NANO: f32 = 1e-9;
 
+/// Factor on the variance of the angle error that σ is told. While the axis turns, the errors of
+/// successive dwells share less than the whitening believes: 1.16 on a circle of 24, computed. The
+/// rest is measured: without the factor the RMS of error over σ was 1.18 in 180 simulated runs.
+const RAISED: f64 = 1.4;
+
 /// Shortest time that the gains are those of, s.
 const YOUNGEST: f32 = 1.0;
 /// Longest time that the bias is a mean of, s: a temperature that drifts may be followed.
@@ -275,7 +280,7 @@ impl Sway {
 
     fn swaying(&self, size: Size, own: f32, left: f32) -> Decision {
         let noise = SwayNoise {
-            angle_variance: f64::from(own),
+            angle_variance: RAISED * f64::from(own),
             correlation: f64::from(self.sensors.memory),
             residual_variance: f64::from(left),
         };
