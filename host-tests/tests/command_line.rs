@@ -322,3 +322,114 @@ fn a_campaign_prints_its_tables_as_text_and_as_json() {
     assert_eq!(object["tables"][0]["rows"].as_array().map(Vec::len), Some(6));
     assert!(object["precision"][1]["ratio"].is_number());
 }
+
+#[test]
+fn a_plan_gives_burovs_positions_and_the_optimum_beside_them() {
+    let gyro = ["plan", "--arw", "0.001", "--ramp", "0.127", "--latitude", "0", "--json"];
+    let output = meridian(&[&gyro[..], &["--seconds", "300"]].concat());
+    assert_eq!(code(&output), 0);
+    let plan = object(&output);
+    assert_eq!(plan["positions"], 11);
+    let error = plan["rate_error_deg_h"].as_f64().expect("a number");
+    assert!((error / 3.650_503_146_508_27e-3 - 1.0).abs() < 1e-6);
+    let optimum = &plan["optimum"];
+    assert!(
+        optimum["sigma_deg"].as_f64().expect("a number")
+            < plan["sigma_deg"].as_f64().expect("a number")
+    );
+    // The inverse question, for what this time gives.
+    let sigma = optimum["sigma_deg"].to_string();
+    let inverse = object(&meridian(&[&gyro[..], &["--sigma", &sigma]].concat()));
+    let seconds = inverse["optimum"]["seconds"].as_f64().expect("a number");
+    assert!((295.0..=303.0).contains(&seconds), "{seconds}");
+}
+
+#[test]
+fn a_plan_that_cannot_be_says_why() {
+    for (arguments, reason) in [
+        (&["--arw", "0", "--latitude", "48", "--seconds", "300"][..], "every coefficient is zero"),
+        (&["--arw", "0.1", "--latitude", "48", "--seconds", "5"], "the time holds no schedule"),
+        (&["--arw", "0.1", "--latitude", "89", "--seconds", "300"], "beyond ±85°"),
+        (&["--arw", "0.1", "--latitude", "48", "--sigma", "1e-5"], "out of reach"),
+    ] {
+        let output = meridian(&[&["plan"], arguments].concat());
+        assert_eq!(code(&output), 1, "{arguments:?}");
+        assert!(text(&output.stderr).contains(reason), "{}", text(&output.stderr));
+    }
+    for wrong in [
+        &["--arw", "0.1", "--latitude", "48"][..],
+        &["--arw", "-1", "--latitude", "48", "--seconds", "300"],
+        &["--arw", "nan", "--latitude", "48", "--seconds", "300"],
+        &["--arw", "0.1", "--latitude", "91", "--seconds", "300"],
+        &["--arw", "0.1", "--latitude", "48", "--seconds", "300", "--sigma", "1"],
+    ] {
+        assert_eq!(code(&meridian(&[&["plan"], wrong].concat())), 2, "{wrong:?}");
+    }
+}
+
+#[test]
+fn a_board_that_surveys_its_gyro_tells_what_it_found_and_planned() {
+    let output = meridian(&["run", "--survey", "300", "--seconds", "200", "--rate", "100"]);
+    assert_eq!(code(&output), 0);
+    let log = text(&output.stderr);
+    for part in ["survey: standing still for 300 s", "angle random walk N, °/√h: 0.00", "plan: "]
+    {
+        assert!(log.contains(part), "{part} is missing in\n{log}");
+    }
+    assert!(text(&output.stdout).contains("(surveyed)"));
+}
+
+#[test]
+fn a_board_ends_when_its_accuracy_is_reached_or_says_that_it_cannot_be() {
+    let reached = meridian(&["run", "--sigma", "0.05", "--rate", "100", "--json"]);
+    assert_eq!(code(&reached), 0);
+    assert!(object(&reached)["sigma_deg"].as_f64().expect("a number") <= 0.05);
+    let hopeless = ["run", "--sigma", "0.01", "--seconds", "300", "--rate", "100", "--json"];
+    let output = meridian(&hopeless);
+    assert_eq!(code(&output), 1);
+    let reason = object(&output)["reason"].as_str().expect("a reason").to_owned();
+    assert!(reason.contains("0.010° is out of reach"), "{reason}");
+}
+
+#[test]
+fn two_positions_are_an_answer_only_where_the_half_is_stated() {
+    let header = "# kind: dwells\n# latitude_deg: 48\nstage_rad,rate_rad_s,sigma_rad_s,seconds\n";
+    // cos 60° of the horizontal Earth rate about a bias of 1e-6 rad/s.
+    let rate = 7.292_115e-5 * 48.0_f64.to_radians().cos() * 0.5;
+    let row = |angle: f64, sign: f64| format!("{angle},{},1e-8,100\n", 1e-6 + sign * rate);
+    let rows: String =
+        (0..3).flat_map(|_| [row(0.0, 1.0), row(std::f64::consts::PI, -1.0)]).collect();
+    let file = Scratch::new("two-positions.csv", format!("{header}{rows}").as_bytes());
+    let path = file.path();
+    let refused = meridian(&["replay", &path, "--method", "positions", "--json"]);
+    assert_eq!(code(&refused), 1);
+    assert!(object(&refused)["reason"].as_str().expect("why").contains("east or west"));
+    for (half, azimuth) in [("east", 60.0), ("west", 300.0)] {
+        let output =
+            meridian(&["replay", &path, "--method", "positions", "--half", half, "--json"]);
+        assert_eq!(code(&output), 0, "{}", text(&output.stderr));
+        let found = object(&output);
+        assert_eq!(found["method"], "positions");
+        assert!((found["azimuth_deg"].as_f64().expect("a number") - azimuth).abs() < 0.01);
+        assert!(found["earth_rate_ratio"].is_null());
+    }
+}
+
+#[test]
+fn pages_are_written_for_alignments_and_plans() {
+    let page = Scratch::new("page.html", b"");
+    let path = page.path();
+    let recording = stored("positions-four-fog");
+    for arguments in [
+        &["replay", &recording, "--report", &path][..],
+        &["plan", "--arw", "0.01", "--latitude", "48", "--seconds", "300", "--report", &path],
+    ] {
+        assert_eq!(code(&meridian(arguments)), 0);
+        let html = fs::read_to_string(&page.0).expect("it is there");
+        assert!(html.matches("<svg").count() >= 2, "{arguments:?}");
+    }
+    let nowhere = ["replay", &recording, "--report", "/nowhere/page.html"];
+    let output = meridian(&nowhere);
+    assert_eq!(code(&output), 1);
+    assert!(text(&output.stderr).contains("/nowhere/page.html"));
+}

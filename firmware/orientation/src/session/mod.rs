@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!  level ─▶ (survey) ─▶ dwell ─▶ rotate ─▶ dwell ─▶ … ─▶ match ─▶ azimuth ± σ, or the reason for none
-//!             ▲└─disturbed: again─┘
+//!                        ▲└─disturbed: again─┘
 //! ```
 //!
 //! The stage is judged by its encoder alone: a dwell is where the angle stands still, wherever the
@@ -10,26 +10,28 @@
 
 mod accuracy;
 mod pace;
+mod prepared;
 pub mod procedure;
 pub mod schedule;
 pub mod survey;
 
+pub use prepared::Prepared;
+
 use heapless::Vec;
 
-use self::pace::{Pace, Target, samples};
+use self::pace::{Pace, Target};
 use self::procedure::{Procedure, ProcedureError};
 use self::schedule::{Position, StopRule};
 use self::survey::Store;
 use crate::align::conclusion::Conclusion;
 use crate::align::criterion::Criterion;
-use crate::align::etalon::Table;
 use crate::align::quality::{Disturbance, Norm};
 use crate::align::setting::Setting;
 use crate::error::Refusal;
 use crate::noise::fit::NoiseFit;
 use crate::signal::Sample;
 use crate::signal::butterworth::Coefficients;
-use crate::signal::dwell::{self, Dwell, DwellAverage};
+use crate::signal::dwell::{Dwell, DwellAverage};
 use crate::signal::sway::SwayNoise;
 use crate::units::{Instant, TURN};
 
@@ -85,66 +87,6 @@ pub struct Repetition {
     pub position: usize,
     /// What disturbed it.
     pub why: Disturbance,
-}
-
-/// What a session needs before it begins: small, so that the session itself can be made where it
-/// is to lie.
-#[derive(Clone, Debug)]
-pub struct Prepared {
-    setting: Setting,
-    procedure: Procedure,
-    coefficients: Coefficients<SECTIONS>,
-    target: Target,
-}
-
-impl Prepared {
-    /// Checks a procedure and designs its filter.
-    ///
-    /// # Errors
-    /// A procedure that the filter or the stage cannot follow.
-    pub fn new(setting: Setting, procedure: Procedure) -> Result<Self, ProcedureError> {
-        Table::built_in().verify().map_err(|_| ProcedureError::TableCorrupt)?;
-        let (coefficients, target) = designed(&procedure)?;
-        Ok(Self { setting, procedure, coefficients, target })
-    }
-}
-
-impl From<Prepared> for Session {
-    fn from(prepared: Prepared) -> Self {
-        let Prepared { setting, procedure, coefficients, target } = prepared;
-        Self {
-            setting,
-            target,
-            pace: Pace::of(&procedure),
-            store: Store::Dwells(Vec::new()),
-            surveyed: None,
-            procedure,
-            coefficients,
-            phase: Phase::Level,
-            begun: None,
-            average: None,
-            repetitions: Vec::new(),
-            tries: 0,
-            conclusion: None,
-        }
-    }
-}
-
-/// The filter of a procedure and where it goes first.
-fn designed(procedure: &Procedure) -> Result<(Coefficients<SECTIONS>, Target), ProcedureError> {
-    let rate = 1.0 / procedure.sample_seconds;
-    let coefficients =
-        Coefficients::low_pass(procedure.cutoff(), rate).map_err(ProcedureError::Filter)?;
-    let samples = samples(procedure.schedule.shortest(), procedure.sample_seconds);
-    let needed = dwell::shortest(&coefficients);
-    if samples < needed {
-        return Err(ProcedureError::DwellTooShort { samples, needed });
-    }
-    if let Some(angle) = procedure.beyond_travel() {
-        return Err(ProcedureError::BeyondTravel(angle));
-    }
-    let first = procedure.schedule.next(&[], 0.0).ok_or(ProcedureError::NoPosition)?;
-    Ok((coefficients, Target::new(first, procedure.sample_seconds)))
 }
 
 /// One alignment from the first sample to its conclusion.

@@ -3,9 +3,10 @@
 
 use heapless::Vec;
 
+use super::prepared::designed;
 use super::procedure::ProcedureError;
 use super::schedule::{Schedule, StopRule};
-use super::{Command, Session, designed};
+use super::{Command, Session};
 use crate::align::POSITIONS;
 use crate::error::Refusal;
 use crate::noise::allan::Allan;

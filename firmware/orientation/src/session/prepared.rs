@@ -1,0 +1,74 @@
+//! What a session is made of: a procedure that was checked, with its filter.
+
+use heapless::Vec;
+
+use super::pace::{Pace, Target, samples};
+use super::procedure::{Procedure, ProcedureError};
+use super::survey::Store;
+use super::{Phase, SECTIONS, Session};
+use crate::align::etalon::Table;
+use crate::align::setting::Setting;
+use crate::signal::butterworth::Coefficients;
+use crate::signal::dwell;
+
+/// What a session needs before it begins: small, so that the session itself can be made where it
+/// is to lie.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    setting: Setting,
+    procedure: Procedure,
+    coefficients: Coefficients<SECTIONS>,
+    target: Target,
+}
+
+impl Prepared {
+    /// Checks a procedure and designs its filter.
+    ///
+    /// # Errors
+    /// A procedure that the filter or the stage cannot follow.
+    pub fn new(setting: Setting, procedure: Procedure) -> Result<Self, ProcedureError> {
+        Table::built_in().verify().map_err(|_| ProcedureError::TableCorrupt)?;
+        let (coefficients, target) = designed(&procedure)?;
+        Ok(Self { setting, procedure, coefficients, target })
+    }
+}
+
+impl From<Prepared> for Session {
+    fn from(prepared: Prepared) -> Self {
+        let Prepared { setting, procedure, coefficients, target } = prepared;
+        Self {
+            setting,
+            target,
+            pace: Pace::of(&procedure),
+            store: Store::Dwells(Vec::new()),
+            surveyed: None,
+            procedure,
+            coefficients,
+            phase: Phase::Level,
+            begun: None,
+            average: None,
+            repetitions: Vec::new(),
+            tries: 0,
+            conclusion: None,
+        }
+    }
+}
+
+/// The filter of a procedure and where it goes first.
+pub(super) fn designed(
+    procedure: &Procedure,
+) -> Result<(Coefficients<SECTIONS>, Target), ProcedureError> {
+    let rate = 1.0 / procedure.sample_seconds;
+    let coefficients =
+        Coefficients::low_pass(procedure.cutoff(), rate).map_err(ProcedureError::Filter)?;
+    let samples = samples(procedure.schedule.shortest(), procedure.sample_seconds);
+    let needed = dwell::shortest(&coefficients);
+    if samples < needed {
+        return Err(ProcedureError::DwellTooShort { samples, needed });
+    }
+    if let Some(angle) = procedure.beyond_travel() {
+        return Err(ProcedureError::BeyondTravel(angle));
+    }
+    let first = procedure.schedule.next(&[], 0.0).ok_or(ProcedureError::NoPosition)?;
+    Ok((coefficients, Target::new(first, procedure.sample_seconds)))
+}
