@@ -31,6 +31,15 @@ pub enum Method {
 }
 
 impl Method {
+    /// Of a session that ran by itself: a planned schedule goes through positions.
+    #[must_use]
+    pub fn of(session: &Session) -> Self {
+        match session.procedure().schedule {
+            Schedule::Planned(_) => Self::Positions,
+            Schedule::Listed(_) | Schedule::TowardMaximum { .. } => Self::Stepwise,
+        }
+    }
+
     /// Its name on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {

@@ -10,7 +10,7 @@ use hal_mock::plant::PlantConfiguration;
 use hal_mock::plant::sway::SwayConfiguration;
 use hal_mock::plant::train::StageConfiguration;
 use hal_mock::stage::{EncoderConfiguration, Harmonic};
-use orientation::align::setting::Setting;
+use orientation::align::setting::{Half, Setting};
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
 use orientation::planner::order::Order;
@@ -167,6 +167,8 @@ pub struct Scenario {
     pub aim: Aim,
     /// How long the stage stands still first, to know the gyro, s; zero for not at all.
     pub survey_s: f64,
+    /// The half of the circle in which the azimuth is known to lie, where the board is told.
+    pub half: Option<Half>,
     /// Stage angle at power-on, °.
     pub start_deg: f64,
     /// Amplitude of the base's sway, °; zero for a base at rest.
@@ -195,6 +197,7 @@ impl Default for Scenario {
             dwell_s: 10.0,
             aim: Aim::Circle,
             survey_s: 0.0,
+            half: None,
             start_deg: 20.0,
             sway_deg: 0.0,
             sway_hz: 0.5,
@@ -236,6 +239,7 @@ impl Scenario {
             g_sensitivity_sigma: G_SENSITIVITY_SIGMA * DEGREE_PER_HOUR,
             accelerometer_bias_sigma: FORCE_BIAS_SIGMA,
             encoder_sigma: ENCODER_SIGMA,
+            half: self.half,
             required_sigma: self.required_sigma(),
             ..Setting::at(latitude)
         })

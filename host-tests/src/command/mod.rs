@@ -12,6 +12,8 @@ use std::io::Write;
 use std::path::Path;
 
 use bench::report::Report;
+use clap::ValueEnum;
+use orientation::align::setting;
 use orientation::earth::Latitude;
 use serde::Serialize;
 
@@ -40,6 +42,24 @@ impl Told {
             text(&mut output).map_err(|error| error.to_string())?;
         }
         Ok(Self { found, output, refusal: None })
+    }
+}
+
+/// The half of the circle in which an azimuth lies.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Half {
+    /// 0° to 180°.
+    East,
+    /// 180° to 360°.
+    West,
+}
+
+impl From<Half> for setting::Half {
+    fn from(half: Half) -> Self {
+        match half {
+            Half::East => Self::East,
+            Half::West => Self::West,
+        }
     }
 }
 

@@ -8,10 +8,9 @@ use bench::recording;
 use bench::replay::{self, Options, replay};
 use clap::{Args, ValueEnum};
 use orientation::align::criterion::Criterion;
-use orientation::align::setting;
 use orientation::earth::Latitude;
 
-use super::{Told, latitude, sigma};
+use super::{Half, Told, latitude, sigma};
 
 /// Which recording, and how it is taken.
 #[derive(Args)]
@@ -47,28 +46,15 @@ enum Method {
     Positions,
 }
 
-/// The half of the circle.
-#[derive(Clone, Copy, ValueEnum)]
-enum Half {
-    /// 0° to 180°.
-    East,
-    /// 180° to 360°.
-    West,
-}
-
 impl From<&ReplayOptions> for Options {
     fn from(options: &ReplayOptions) -> Self {
         let method = match options.method {
             Some(Method::Positions) => replay::Method::Positions,
             Some(Method::Stepwise) | None => replay::Method::Stepwise,
         };
-        let half = options.half.map(|half| match half {
-            Half::East => setting::Half::East,
-            Half::West => setting::Half::West,
-        });
         Self {
             method,
-            half,
+            half: options.half.map(Into::into),
             latitude: options.latitude,
             criterion: options.criterion,
             required_sigma: Some(options.require_sigma),

@@ -20,7 +20,7 @@ use firmware::simulated::scenario::{Aim, GyroClass, RATES, Scenario};
 use orientation::session::Session;
 use serde_json::{Value, json};
 
-use super::Told;
+use super::{Half, Told};
 
 /// What can be said of a simulated alignment.
 #[derive(Args, Clone, Debug)]
@@ -59,8 +59,11 @@ pub struct RunOptions {
     /// With two frames: how often the four headings are visited.
     #[arg(long, default_value_t = 6, value_parser = clap::value_parser!(u8).range(1..=16))]
     passes: u8,
+    /// The half of the circle in which the board is told that the azimuth lies: two positions need it.
+    #[arg(long, value_enum)]
+    half: Option<Half>,
     /// On a stage: positions on the full circle.
-    #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u8).range(3..=64))]
+    #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u8).range(2..=64))]
     positions: u8,
     /// Seconds at each position.
     #[arg(long, value_name = "SECONDS", default_value = "10", value_parser = dwell)]
@@ -93,8 +96,10 @@ pub struct RunOptions {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Method {
-    /// Stepwise gyrocompassing.
+    /// Stepwise gyrocompassing over the full circle, unless a plan is asked for.
     Stepwise,
+    /// Autocompensated positions: the best schedule for the gyro, in 300 s unless stated.
+    Positions,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -191,13 +196,18 @@ impl From<Gyro> for GyroClass {
     }
 }
 
+/// Time of a plan where none is stated, s.
+const USUAL: f64 = 300.0;
 /// Time allowed for an accuracy where none is stated, s.
 const ALLOWED: f64 = 1800.0;
 
 impl RunOptions {
     fn aim(&self) -> Aim {
         match (self.sigma, self.seconds) {
-            (None, None) => Aim::Circle,
+            (None, None) => match self.method {
+                Method::Stepwise => Aim::Circle,
+                Method::Positions => Aim::Time(USUAL),
+            },
             (None, Some(seconds)) => Aim::Time(seconds),
             (Some(sigma_deg), seconds) => {
                 Aim::Accuracy { sigma_deg, seconds: seconds.unwrap_or(ALLOWED) }
@@ -208,8 +218,6 @@ impl RunOptions {
 
 impl From<&RunOptions> for Scenario {
     fn from(options: &RunOptions) -> Self {
-        // One method so far: naming it changes nothing.
-        let Method::Stepwise = options.method;
         Self {
             seed: options.seed,
             latitude_deg: options.latitude,
@@ -220,6 +228,7 @@ impl From<&RunOptions> for Scenario {
             sample_rate_hz: options.rate,
             aim: options.aim(),
             survey_s: options.survey.unwrap_or(0.0),
+            half: options.half.map(Into::into),
             positions: usize::from(options.positions),
             dwell_s: options.dwell,
             sway_deg: options.sway.unwrap_or(0.0),

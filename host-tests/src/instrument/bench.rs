@@ -119,7 +119,7 @@ pub fn align_on<B: Base, R: Recorder, W: Observer>(
         .collect();
     Ok(Run {
         replay: Replay {
-            method: Method::Stepwise,
+            method: Method::of(&session),
             setting: *session.setting(),
             session,
             assumed: vec![ASSUMED.to_owned()],

@@ -22,8 +22,6 @@ pub enum Order {
     Thirds,
     /// Eight equal steps over the circle, again and again.
     Eighths,
-    /// 0°, 180°: two positions, which leave two azimuths unless its half is known.
-    Opposite,
 }
 
 /// Parts of a turn in which every position is a whole number: halves, thirds, quarters and eighths.
@@ -43,8 +41,6 @@ const PAIRS: [[u8; 2]; 2] = [[0, 12], [6, 18]];
 const THIRDS: [u8; 3] = [0, 8, 16];
 /// An eighth apart.
 const EIGHTHS: [u8; 8] = [0, 3, 6, 9, 12, 15, 18, 21];
-/// Half a turn apart.
-const OPPOSITE: [u8; 2] = [0, 12];
 
 impl Order {
     /// The orders that the planner compares.
@@ -71,7 +67,6 @@ impl Order {
             Self::Sweep => &SWEEP,
             Self::Thirds => &THIRDS,
             Self::Eighths => &EIGHTHS,
-            Self::Opposite => &OPPOSITE,
         }
     }
 
@@ -109,7 +104,6 @@ impl Order {
             Self::Pairs => "0, 180° in turn, then 90, 270°",
             Self::Thirds => "0, 120, 240°",
             Self::Eighths => "eight equal steps over the circle",
-            Self::Opposite => "0, 180°",
         }
     }
 }
