@@ -3,10 +3,12 @@
 use std::cell::RefCell;
 
 use embassy_time::Instant;
-use firmware::ports::{Frames, NoRecorder, Observer};
+use firmware::ports::{Frames, NoBase, NoRecorder, Observer};
 use firmware::run::{acquire_frames, run_frames};
 use firmware::shared::Shared;
+use firmware::simulated::base;
 use firmware::simulated::mount::{self, FramePlan, FramesScenario};
+use firmware::steady::Base;
 use orientation::session::Session;
 
 use super::bench::{ASSUMED, Log, Wire};
@@ -32,6 +34,24 @@ pub fn align_frames<W: Observer>(
     plan: &FramePlan,
     watch: &W,
 ) -> Result<FramesRun, RunError> {
+    if !scenario.base.has_base_imu {
+        return align_frames_on(NoBase, scenario, plan, watch);
+    }
+    let rig = RefCell::new(base::rig(&scenario.base));
+    let mut frames = align_frames_on(base::imu(&rig, &scenario.base), scenario, plan, watch)?;
+    let rig = rig.borrow();
+    let violations = base::violations(&rig).iter();
+    frames.run.violations.extend(violations.map(|violation| format!("Base: {violation}")));
+    Ok(frames)
+}
+
+/// The same with these sensors on the base.
+fn align_frames_on<B: Base, W: Observer>(
+    base: B,
+    scenario: &FramesScenario,
+    plan: &FramePlan,
+    watch: &W,
+) -> Result<FramesRun, RunError> {
     let setting = scenario.setting().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
     let mut session = Session::new(setting, scenario.procedure()).map_err(RunError::Procedure)?;
     let frames = scenario.frames().map_err(RunError::Mount)?;
@@ -41,7 +61,7 @@ pub fn align_frames<W: Observer>(
     let shared = Shared::new(&log);
     let latest = Frames::unread();
     let configuration = scenario.base.configuration();
-    let mut sensors = mount::sensors(&board, scenario);
+    let mut sensors = mount::sensors(&board, scenario).with_base(base);
     let mut ports = mount::ports(&board, Wire(&bytes), NoRecorder);
     let acquisition = acquire_frames(&mut sensors, &configuration, &frames, &latest, &shared);
     let instrument = async {
@@ -59,8 +79,8 @@ pub fn align_frames<W: Observer>(
     let run = Run {
         replay: Replay {
             method: Method::Positions,
+            setting: *session.setting(),
             session,
-            setting,
             assumed: vec![ASSUMED.to_owned()],
         },
         events: log.events.into_inner(),

@@ -257,3 +257,27 @@ fn a_seed_gives_one_run_and_another_seed_another() {
     assert_eq!(azimuth(5), azimuth(5));
     assert_ne!(azimuth(5), azimuth(6));
 }
+
+#[test]
+fn a_swaying_base_is_taken_off_the_gyro_in_its_frames_too() {
+    let swaying = |seed: u64, has_base_imu: bool| {
+        let scenario = drawn(seed);
+        let base = Scenario { sway_deg: 0.1, sway_hz: 0.5, has_base_imu, ..scenario.base };
+        FramesScenario { base, ..scenario }
+    };
+    let alone = swaying(1, false);
+    let verdict = found(&alone, &run(&alone, &FramePlan::default()));
+    assert!(matches!(verdict, Err(Refusal::Disturbed { .. })), "{verdict:?}");
+    let ratios: Vec<f64> = (1..=16_u64)
+        .into_par_iter()
+        .filter_map(|seed| {
+            let scenario = swaying(seed, true);
+            // Near a pole σ may exceed the 10° that are accepted.
+            let [error, sigma] = found(&scenario, &run(&scenario, &FramePlan::default())).ok()?;
+            Some(error / sigma)
+        })
+        .collect();
+    assert!(ratios.len() >= 10, "{ratios:?}");
+    // The whitening overstates σ where the axis turns by quarters.
+    assert!((0.4..1.1).contains(&rms(&ratios)), "{ratios:?}");
+}
