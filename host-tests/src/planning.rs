@@ -7,12 +7,10 @@ use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
 use orientation::planner::burov::{self, Autocompensation};
 use orientation::planner::order::Order;
-use orientation::planner::{Conditions, Plan, PlanError, Rotation, for_sigma, for_time};
+use orientation::planner::{Conditions, FEWEST, Plan, PlanError, Rotation, for_sigma, for_time};
 use orientation::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN};
 use serde::Serialize;
 
-/// Fewest positions of a schedule that notices a disturbed dwell.
-pub const FEWEST: usize = 8;
 /// Shortest dwell that is planned, s.
 pub const SHORTEST: f64 = 1.0;
 /// Longest time that is planned for a wanted σ, s.
@@ -98,7 +96,7 @@ pub struct Planned {
 pub enum Unplanned {
     /// The time does not hold the fewest positions.
     TooShort,
-    /// Every coefficient is zero.
+    /// Neither N nor Q is given.
     NoNoise,
     /// A day does not do; the least 1σ of a full azimuth, °.
     OutOfReach(f64),
@@ -114,7 +112,10 @@ impl fmt::Display for Unplanned {
                 "the time holds no schedule: {FEWEST} dwells of {SHORTEST} s and their rotations \
                  are the least"
             ),
-            Self::NoNoise => f.write_str("every coefficient is zero: give at least --arw"),
+            Self::NoNoise => f.write_str(
+                "N and Q are zero, or next to it: without noise of its own any dwell is long enough; give \
+                 --arw",
+            ),
             Self::OutOfReach(sigma) => {
                 write!(
                     f,

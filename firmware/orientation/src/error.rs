@@ -52,6 +52,8 @@ pub enum Refusal {
     },
     /// Two positions leave two azimuths, and the half in which it lies was not stated.
     SignUnknown,
+    /// No azimuth of the half that was stated fits the dwells.
+    NotInHalf,
     /// The measured positions do not determine the azimuth, or leave two of them.
     ArcCannotTell,
     /// The standard deviation is greater than was asked for.
@@ -105,6 +107,11 @@ pub enum Refusal {
     },
     /// The rate drifts, and these positions cannot tell the drift from the Earth rate.
     TrendNotSeparable,
+    /// The accelerometer does not turn with the stage as its encoder does.
+    AccelerometerAstray {
+        /// RMS of what no tilt explains, in thousandths of gravity.
+        scatter: f64,
+    },
     /// The accelerometer does not feel gravity.
     AccelerometerImplausible {
         /// Its reading over gravity, downwards positive as at rest.
@@ -156,6 +163,8 @@ words! { Refusal:
         "{} undisturbed position(s): three different ones are needed", positions;
     Self::SignUnknown =>
         "two positions leave two azimuths: add a third, or state whether it points east or west";
+    Self::NotInHalf =>
+        "no azimuth of the stated half fits: it lies in the other one, or too near the axis between them";
     Self::ArcCannotTell =>
         "the positions cannot tell the azimuth: turn the stage over a longer arc";
     Self::BudgetNotMet { sigma, required, source } =>
@@ -181,6 +190,9 @@ words! { Refusal:
     Self::AccelerometerImplausible { ratio } =>
         "the accelerometer feels {} of gravity: check its axes, signs and units",
         Rounded::<3>(ratio);
+    Self::AccelerometerAstray { scatter } =>
+        "the accelerometer strays by {} mg from any tilt: check which way the encoder counts, and the axes",
+        Rounded::<1>(scatter);
     Self::EarthRateMismatch { ratio, sigma } =>
         "Earth rate found is {} ± {} of the expected: check latitude and gyro scale",
         Rounded::<3>(ratio), Rounded::<3>(sigma);

@@ -14,7 +14,7 @@ use orientation::align::setting::{Half, Setting};
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
 use orientation::planner::order::Order;
-use orientation::planner::{Conditions, Rotation, for_sigma, for_time};
+use orientation::planner::{Conditions, FEWEST, Rotation, for_sigma, for_time};
 use orientation::session::Prepared;
 use orientation::session::procedure::Procedure;
 use orientation::session::schedule::Schedule;
@@ -69,8 +69,6 @@ pub(super) const RINGS_SECONDS: f64 = 0.25;
 pub(super) const ROTATION: Rotation = Rotation { rest: 0.45 + 0.3, speed: 0.35, wraps: false };
 /// Shortest dwell of a plan, s.
 const SHORTEST: f64 = 2.0;
-/// Fewest positions of a plan.
-const FEWEST: usize = 8;
 /// Greatest 1σ of an azimuth that is accepted where none is asked for, rad.
 const ACCEPTED_SIGMA: f64 = 10.0 * DEGREE;
 

@@ -113,7 +113,8 @@ impl Rest {
         let missing: f64 = gaps.iter().map(|gap| gap.seconds - period_s).sum();
         let gaps = gaps.first().map(|first| {
             let (count, line, from) = (gaps.len(), first.line, first.from_s);
-            format!("{count} gaps, {missing:.3} s in all, the first before line {line} after {from} s: no window crosses one")
+            let gaps = if count == 1 { "gap" } else { "gaps" };
+            format!("{count} {gaps}, {missing:.3} s in all, the first before line {line} after {from} s: no window crosses one")
         });
         rate.into_iter().chain(gaps).collect()
     }

@@ -5,6 +5,7 @@ mod page;
 use std::fmt::{self, Write};
 
 use orientation::noise::fit::{Estimate, FitError, NoiseFit};
+use orientation::units::DEGREE_PER_HOUR;
 use serde_json::{Map, Value, json};
 
 use super::degrees_per_hour;
@@ -12,6 +13,9 @@ use super::text::line;
 use crate::allan::analysis::{Analysis, Confident, Rest};
 use crate::allan::speed::Comparison;
 use crate::planning::Suggestion;
+
+/// χ² over its degrees of freedom beyond which the model does not fit.
+const MISFIT: f64 = 3.0;
 
 /// What is to be shown.
 pub struct Shown<'a> {
@@ -85,7 +89,7 @@ impl Shown<'_> {
             }
         }
         line(out, "record", format_args!("{}", self.record()))?;
-        for note in self.rest.notes() {
+        for note in self.notes() {
             line(out, "noted", format_args!("{note}"))?;
         }
         if let Ok(analysis) = self.analysis {
@@ -98,6 +102,24 @@ impl Shown<'_> {
             Some(schedule) => line(out, "schedule", format_args!("{schedule}")),
             None => Ok(()),
         }
+    }
+
+    /// What is to be known of the record, and of what the fit leaves open.
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
+        let fit = self.analysis.as_ref().ok().map(|analysis| &analysis.fit);
+        let seconds = self.rest.rates.len() as f64 * self.rest.spacing.period_s;
+        let misfit = fit.filter(|fit| fit.chi_square > MISFIT * fit.degrees as f64).map(|_| {
+            "the Allan variance does not follow the noise model: something else moves the rate, and the \
+             coefficients say little"
+                .to_owned()
+        });
+        let hidden = fit.filter(|fit| fit.rate_ramp.value().is_some());
+        let hidden = hidden.and_then(|fit| fit.hidden_slope(seconds)).map(|slope| {
+            let slope = slope / DEGREE_PER_HOUR * 3600.0;
+            format!("a random walk that is not observable may hide beside the ramp: ± {slope:.3} °/h² then")
+        });
+        self.rest.notes().into_iter().chain(misfit).chain(hidden).collect()
     }
 
     /// How much there is of it.
@@ -124,7 +146,7 @@ impl Shown<'_> {
         set("samples", self.rest.rates.len().into());
         set("rate_hz", (1.0 / self.rest.spacing.period_s).into());
         set("gaps", self.gaps());
-        set("notes", self.rest.notes().into());
+        set("notes", self.notes().into());
         if let Ok(analysis) = self.analysis {
             object.extend(deviations(analysis));
             object.extend(coefficients(&analysis.fit).iter().flat_map(entries));
@@ -183,7 +205,11 @@ fn short(number: f64) -> String {
 fn speed(out: &mut impl Write, comparison: &Comparison) -> fmt::Result {
     let Comparison { streaming, batch, points, difference } = comparison;
     let [streaming, batch] = [streaming, batch].map(|rate| rate / 1e6);
-    line(out, "streaming", format_args!("{streaming:.2} million samples/s, as on the board"))?;
+    line(
+        out,
+        "streaming",
+        format_args!("{streaming:.2} million samples/s, the board's estimator on this machine"),
+    )?;
     line(out, "batch", format_args!("{batch:.2} million samples/s, every window"))?;
     line(
         out,

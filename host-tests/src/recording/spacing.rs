@@ -6,9 +6,9 @@ use std::ops::Range;
 use super::rows::StaticRow;
 use super::timing::Times;
 
-/// Samples are consecutive while a step misses the period by no more than this part of it; more,
-/// and at least one is missing, or the times jump.
-const STEP_TOLERANCE: f64 = 0.5;
+/// Samples are consecutive while the step between them is no more than so many periods: with one
+/// missing it is two, and clocks jitter.
+const LONGEST_STEP: f64 = 1.75;
 
 /// The part by which the header's rate may miss that of the times before it is told.
 const RATE_TOLERANCE: f64 = 0.01;
@@ -26,7 +26,7 @@ pub struct Spacing {
     rows: usize,
 }
 
-/// A step that is not one period long.
+/// A step that is longer than a period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap {
     /// The row after it, from 0.
@@ -46,7 +46,7 @@ impl Spacing {
     pub fn of(rows: &[StaticRow], rate_hz: Option<f64>) -> Option<Self> {
         let times = Times { rows, stamp: |row| (row.line, row.time_s), column: "t_s" };
         let median = times.median_step()?;
-        let is_step = |step: f64| (step / median - 1.0).abs() <= STEP_TOLERANCE;
+        let is_step = |step: f64| step <= LONGEST_STEP * median;
         let steps = rows.windows(2).map(step).filter(|step| is_step(*step));
         let (sum, count) = steps.fold((0.0, 0.0), |(sum, count), step| (sum + step, count + 1.0));
         let period_s = sum / count;

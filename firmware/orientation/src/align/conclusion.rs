@@ -25,6 +25,9 @@ const HIDDEN_TREND: f64 = 16.0;
 const CORRELATION_BOUND: f64 = 5.0;
 /// Chi-square by which the second-best azimuth must be worse than the best (4σ).
 const SECOND_MINIMUM: f64 = 16.0;
+/// RMS of the dwells' mean forces about any tilt, g, beyond which the accelerometer and the encoder do
+/// not turn alike: ten times what the worst accelerometer's scale makes of 5°.
+const STRAYING: f64 = 3e-3;
 /// Of the tangent of the angle from the axis of two positions, what σ may be at most, rad: the second
 /// order is then a tenth of the first.
 const STEEPNESS: f64 = 0.2;
@@ -142,7 +145,9 @@ impl Conclusion {
             let white = self.angle_random_walk * self.angle_random_walk;
             let tilt = self.tilt;
             let problem = Problem { setting, tilt: &tilt, white, dwells: &kept };
-            let found = problem.fit().ok_or(Refusal::ArcCannotTell)?;
+            let nothing =
+                if setting.half.is_some() { Refusal::NotInHalf } else { Refusal::ArcCannotTell };
+            let found = problem.fit().ok_or(nothing)?;
             self.keep_residuals(&problem, &found);
             let fit = self.fit.insert(found.0);
             let (degrees, ratio) = (fit.degrees, excess(fit));
@@ -231,10 +236,10 @@ impl Conclusion {
         let kept = self.kept(dwells).map(|(_, dwell)| dwell);
         let Some(ratio) = level::gravity_ratio(kept, gravity) else { return Ok(()) };
         let tolerance = GRAVITY_TOLERANCE + 5.0 * setting.accelerometer_bias_sigma / gravity;
-        if (ratio - 1.0).abs() <= tolerance {
-            return Ok(());
+        if (ratio - 1.0).abs() > tolerance {
+            return Err(Refusal::AccelerometerImplausible { ratio });
         }
-        Err(Refusal::AccelerometerImplausible { ratio })
+        Ok(())
     }
 
     fn judge_tilt(&self, setting: &Setting, fit: &Fit) -> Result<(), Refusal> {
@@ -246,6 +251,10 @@ impl Conclusion {
             (degrees(fit.budget.accelerometer), degrees(setting.required_sigma));
         if sigma > required {
             return Err(Refusal::TiltTooUncertain { sigma, required });
+        }
+        let scatter = self.tilt.scatter;
+        if scatter > STRAYING {
+            return Err(Refusal::AccelerometerAstray { scatter: scatter * 1e3 });
         }
         Ok(())
     }

@@ -20,6 +20,8 @@ pub struct Tilt {
     pub covariance: [[f64; 2]; 2],
     /// Accelerometer biases along its x and y, g.
     pub bias: [f64; 2],
+    /// RMS of the dwells' forces about any tilt and any bias, g.
+    pub scatter: f64,
     /// Whether it was measured; else the platform is taken as level.
     pub measured: bool,
 }
@@ -83,14 +85,16 @@ impl Tilt {
 
 /// Least uncertainty of a bias that is said to be exact, g.
 const EXACT_BIAS: f64 = 1e-9;
+/// Uncertainty of a bias of which nothing is known, g.
+const ANY_BIAS: f64 = 1.0;
 /// Scatter with which the first fit is weighted, and the least that the second believes, g.
 const SCATTER: [f64; 2] = [1e-4, 1e-8];
 
 /// Fits the tilt to the dwells' mean forces, for gravity in m/s² and the 1σ of each accelerometer
 /// bias in m/s² (zero: taken as free of bias).
 ///
-/// The accelerometer rides on a stage. The scatter of the dwells about a first fit is the noise of the second. Dwells without force
-/// make the platform level and not measured.
+/// The accelerometer rides on a stage. The scatter of the dwells about a first fit is the noise of the
+/// second. Dwells without force make the platform level and not measured.
 #[must_use]
 pub fn tilt<'a>(
     dwells: impl Iterator<Item = &'a Dwell> + Clone,
@@ -111,9 +115,11 @@ pub fn tilt_in<'a>(
     let bias = (bias_sigma / gravity).max(EXACT_BIAS);
     let first = fit(mount, dwells.clone(), gravity, bias, SCATTER[0]);
     let second = first
-        .and_then(|(_, scatter)| fit(mount, dwells, gravity, bias, scatter.max(SCATTER[1])))
+        .and_then(|(_, scatter)| fit(mount, dwells.clone(), gravity, bias, scatter.max(SCATTER[1])))
         .or(first);
-    second.map_or_else(Tilt::default, |(tilt, _)| tilt)
+    let any_bias = fit(mount, dwells, gravity, ANY_BIAS, SCATTER[0]);
+    let scatter = any_bias.map_or(0.0, |(_, scatter)| scatter);
+    second.map_or_else(Tilt::default, |(tilt, _)| Tilt { scatter, ..tilt })
 }
 
 /// Mean specific force over gravity, positive where it points up through the platform, as at rest;
@@ -153,6 +159,7 @@ fn fit<'a>(
     let [real, imaginary, bias_x, bias_y, _] = solution.coefficients;
     let [[a, b, ..], [c, d, ..], ..] = solution.covariance;
     let covariance = [[a, b], [c, d]];
-    let tilt = Tilt { real, imaginary, covariance, bias: [bias_x, bias_y], measured: true };
-    Some((tilt, sigma * libm::sqrt(solution.chi_square / (rows - 4.0).max(1.0))))
+    let scatter = sigma * libm::sqrt(solution.chi_square / (rows - 4.0).max(1.0));
+    let bias = [bias_x, bias_y];
+    Some((Tilt { real, imaginary, covariance, bias, scatter, measured: true }, scatter))
 }

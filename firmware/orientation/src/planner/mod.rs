@@ -65,11 +65,18 @@ pub struct Conditions {
     pub rotation: Rotation,
     /// Shortest dwell, s, > 0: what the filter needs.
     pub shortest: f64,
-    /// Fewest positions: fewer than eight leave too few degrees of freedom to notice a disturbed
-    /// dwell.
+    /// Fewest positions, usually [`FEWEST`].
     pub fewest: usize,
     /// The orders that the stage can turn through.
     pub orders: &'static [Order],
+}
+
+impl Conditions {
+    /// Whether there is noise that a longer dwell averages, as far as single precision sees it.
+    fn check(&self) -> Result<(), PlanError> {
+        let has_noise = self.noise.own_variance(1.0) > LEAST_VARIANCE;
+        if has_noise { Ok(()) } else { Err(PlanError::NoNoise) }
+    }
 }
 
 /// Positions in their order, and what comes of them.
@@ -94,12 +101,16 @@ pub enum PlanError {
     TooShort,
     /// The accuracy is out of reach; the least 1σ of a rate component within the time, rad/s.
     OutOfReach(f64),
-    /// The gyro's noise is not known: everything is zero.
+    /// Neither N nor Q is known: without noise of its own any dwell is long enough.
     NoNoise,
 }
 
 /// Part of σ that another order must come down to, to be looked at in a second search.
 const WORTH_IT: f64 = 0.99;
+/// Fewest positions of a schedule: fewer leave too few degrees of freedom to notice a disturbed dwell.
+pub const FEWEST: usize = 8;
+/// Least variance of a mean over a second, (rad/s)²: 10⁻⁸ °/√h.
+const LEAST_VARIANCE: f64 = 1e-23;
 /// Passes that are tried before the best is refined; the positions bound them.
 const PASSES: [usize; 8] = [1, 2, 3, 4, 6, 8, 11, 16];
 /// Time with which the search for a wanted accuracy begins, s.
@@ -226,9 +237,7 @@ fn climbed(conditions: &Conditions, plan: &Plan, seconds: f64) -> Option<Plan> {
 /// # Errors
 /// [`PlanError::TooShort`], [`PlanError::NoNoise`].
 pub fn for_time(conditions: &Conditions, seconds: f64) -> Result<Plan, PlanError> {
-    if conditions.noise == GyroNoise::default() {
-        return Err(PlanError::NoNoise);
-    }
+    conditions.check()?;
     let plans = conditions.orders.iter().map(|order| best_of(conditions, *order, seconds));
     let best = plans.reduce(better).flatten().ok_or(PlanError::TooShort)?;
     Ok(climbed(conditions, &best, seconds).unwrap_or(best))
@@ -240,9 +249,7 @@ pub fn for_time(conditions: &Conditions, seconds: f64) -> Result<Plan, PlanError
 /// # Errors
 /// [`PlanError::OutOfReach`] where `longest` does not do, and those of [`for_time`].
 pub fn for_sigma(conditions: &Conditions, wanted: f64, longest: f64) -> Result<Plan, PlanError> {
-    if conditions.noise == GyroNoise::default() {
-        return Err(PlanError::NoNoise);
-    }
+    conditions.check()?;
     let usual = conditions.orders.first().copied();
     let begun = usual.and_then(|order| best_of(conditions, order, longest.min(USUAL)));
     let begun = begun.map_or_else(|| for_time(conditions, longest), Ok)?;

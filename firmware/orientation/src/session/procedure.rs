@@ -91,7 +91,8 @@ impl Procedure {
     #[must_use]
     pub fn until_accurate(self, seconds: f64) -> Self {
         let patience = 2.0 * seconds + 30.0 * POSITIONS as f64 + 60.0;
-        Self { stop: StopRule::Accuracy { seconds }, longest_seconds: patience, ..self }
+        let longest_seconds = self.longest_seconds.max(patience);
+        Self { stop: StopRule::Accuracy { seconds }, longest_seconds, ..self }
     }
 
     /// The filter's cut-off for this schedule, Hz.

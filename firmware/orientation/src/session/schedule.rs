@@ -3,8 +3,8 @@
 use heapless::Vec;
 
 use crate::align::POSITIONS;
-use crate::planner::Plan;
 use crate::planner::order::Order;
+use crate::planner::{FEWEST, Plan};
 use crate::signal::dwell::Dwell;
 
 /// One position: a stage angle and how long to stay.
@@ -56,7 +56,7 @@ pub enum StopRule {
     /// is that which was asked for. The session goes on beyond its schedule until then, and gives up
     /// as soon as it sees that the time will not do.
     Accuracy {
-        /// Time allowed for the whole session, s.
+        /// Time allowed from the session's beginning or, where there is a survey, from its end, s.
         seconds: f64,
     },
 }
@@ -72,9 +72,6 @@ impl StopRule {
         }
     }
 }
-
-/// Fewest dwells whose scatter says something about them.
-const FEWEST: usize = 8;
 
 /// Significance, in σ, with which the direction of growing rate is decided.
 const DIRECTION_BOUND: f64 = 3.0;

@@ -13,15 +13,13 @@ use crate::noise::allan::Allan;
 use crate::noise::fit::{Estimate, FitError, NoiseFit};
 use crate::noise::model::GyroNoise;
 use crate::planner::order::Order;
-use crate::planner::{Conditions, PlanError, Rotation, for_sigma, for_time};
+use crate::planner::{Conditions, FEWEST, PlanError, Rotation, for_sigma, for_time};
 use crate::signal::Sample;
 use crate::signal::dwell::{Dwell, SampleFault};
 use crate::units::{AngularRate, DEGREES_PER_RADIAN, Instant};
 
 /// Part of the accuracy asked for that a plan leaves to what is not noise.
 const RESERVE: f64 = 0.95;
-/// Fewest positions of a plan: enough to notice a disturbed dwell.
-const FEWEST: usize = 8;
 
 /// What is to be learnt of the gyro first, and what the plan is then made for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,7 +124,9 @@ impl Session {
         self.setting.noise = known(&found, &self.setting.noise);
         self.setting.white_known = true;
         self.surveyed = Some(found);
-        self.plan(now)?;
+        // The time allowed counts from here.
+        self.begun = Some(now);
+        self.plan()?;
         self.store.begin_dwells();
         Ok(self.send(now))
     }
@@ -142,7 +142,7 @@ impl Session {
 
     /// Plans for the noise that is now known.
     #[inline(never)]
-    fn plan(&mut self, now: Instant) -> Result<(), Refusal> {
+    fn plan(&mut self) -> Result<(), Refusal> {
         let Some(survey) = self.procedure.survey else { return Ok(()) };
         let conditions = Conditions {
             noise: self.setting.noise,
@@ -154,10 +154,8 @@ impl Session {
         let rate = self.setting.latitude.horizontal_rate();
         let (plan, allowed) = match self.procedure.stop {
             StopRule::Accuracy { seconds } => {
-                let begun = self.begun.map_or(0.0, Instant::seconds);
-                let left = seconds - (now.seconds() - begun);
                 let wanted = RESERVE * self.setting.required_sigma * rate;
-                (for_sigma(&conditions, wanted, left), seconds)
+                (for_sigma(&conditions, wanted, seconds), seconds)
             }
             _ => (for_time(&conditions, survey.plan_seconds), survey.plan_seconds),
         };

@@ -5,15 +5,13 @@
 
 use hal_mock::gyro::Gyro;
 use orientation::keep::stored::{Handover, Keeper, Rest, StoredAzimuth};
-use orientation::planner::order::Order;
-use orientation::planner::{Conditions, Rotation, for_time};
+use orientation::planner::{Rotation, for_time};
 use orientation::units::{AngularRate, DEGREE_PER_HOUR};
 use serde::Serialize;
 
 use super::{BIAS_DEG_H, Grade, RATE_HZ, Trial, latitude, over};
 use crate::campaign::statistics::{Answer, Precision};
 use crate::output::{azimuth_error, degrees};
-use crate::planning::{FEWEST, SHORTEST};
 
 /// How long the stage turns: its motor driver's ramp at 0.35 rad/s, with slopes and rest.
 const STAGE: Rotation = Rotation { rest: 0.7, speed: 0.35, wraps: false };
@@ -154,13 +152,7 @@ impl Class {
 
     /// North by the best schedule for the time that is left.
     fn found(&self, runs: usize, tick: &(impl Fn() + Sync)) -> (String, Precision) {
-        let conditions = Conditions {
-            noise: self.grade.noise(),
-            rotation: STAGE,
-            shortest: SHORTEST,
-            fewest: FEWEST,
-            orders: &Order::COMPARED,
-        };
+        let conditions = self.grade.conditions(STAGE);
         let Ok(plan) = for_time(&conditions, 60.0 * self.minutes - OVERHEAD) else {
             return ("no schedule fits".to_owned(), Precision::of(&[]));
         };

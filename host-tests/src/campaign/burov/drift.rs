@@ -7,7 +7,6 @@ use serde::Serialize;
 use super::{Grade, Trial, latitude, over};
 use crate::campaign::statistics::Precision;
 use crate::output::degrees;
-use crate::planning::{FEWEST, SHORTEST};
 
 /// Total time, s.
 const SECONDS: f64 = 300.0;
@@ -53,13 +52,7 @@ pub struct Comparison {
 #[must_use]
 pub fn compare(gyro: Grade, runs: usize, tick: impl Fn() + Sync) -> Option<Comparison> {
     let rotation = Rotation::fixed(ROTATION);
-    let conditions = Conditions {
-        noise: gyro.noise(),
-        rotation,
-        shortest: SHORTEST,
-        fewest: FEWEST,
-        orders: &Order::COMPARED,
-    };
+    let conditions = gyro.conditions(rotation);
     let four = Conditions { fewest: 4, ..conditions };
     let planned = for_time(&conditions, SECONDS).ok()?;
     let one_pass = Plan::of(&four, Order::Quadrature, 1, SECONDS)?;

@@ -10,7 +10,8 @@ use orientation::align::setting::Setting;
 use orientation::earth::Latitude;
 use orientation::error::Refusal;
 use orientation::noise::model::GyroNoise;
-use orientation::planner::{Plan, Rotation};
+use orientation::planner::order::Order;
+use orientation::planner::{Conditions, FEWEST, Plan, Rotation};
 use orientation::session::Session;
 use orientation::session::procedure::Procedure;
 use orientation::session::schedule::Schedule;
@@ -19,6 +20,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::statistics::Answer;
+use crate::planning::SHORTEST;
 use crate::simulate::run;
 
 /// Latitude of the simulations, °.
@@ -53,6 +55,17 @@ impl Grade {
     pub fn noise(&self) -> GyroNoise {
         let Self { n_deg_sqrt_h, b_deg_h, k_deg_h_sqrt_h, r_deg_h2 } = *self;
         GyroNoise::from_field_units(n_deg_sqrt_h, b_deg_h, k_deg_h_sqrt_h, r_deg_h2)
+    }
+
+    /// What a planner is told of it on such a stage.
+    fn conditions(&self, rotation: Rotation) -> Conditions {
+        Conditions {
+            noise: self.noise(),
+            rotation,
+            shortest: SHORTEST,
+            fewest: FEWEST,
+            orders: &Order::COMPARED,
+        }
     }
 
     /// The same for the simulation, whose ramp is R to the full.

@@ -18,7 +18,7 @@ impl Shown<'_> {
     #[must_use]
     pub fn report(&self) -> Report {
         let mut subtitle = vec![format!("{}: {}", self.name, self.record())];
-        subtitle.extend(self.rest.notes());
+        subtitle.extend(self.notes());
         let mut parts = Vec::new();
         match self.analysis {
             Ok(analysis) => {

@@ -33,6 +33,8 @@ use crate::units::{ARCSECOND, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 use crate::words;
 use crate::words::Rounded;
 
+/// Variance of the slope of a random walk, in K² over its length: 6/5.
+const WALK_SLOPE: f64 = 1.2;
 /// Fewest samples of which anything is said: eight τ, as many as the coefficients and three.
 const LEAST_SAMPLES: u64 = 64;
 
@@ -128,7 +130,36 @@ impl NoiseFit {
             return Err(FitError::TooShort { samples, needed: LEAST_SAMPLES });
         }
         let fit = Search::begin(points, sample_seconds).finish();
+        let fit = fit.with_slope_of_walk(samples as f64 * sample_seconds);
         if fit.is_finite() { Ok(fit) } else { Err(FitError::NotNoise) }
+    }
+
+    /// Adds to the σ of a ramp what the random walk over so many seconds looks like one: a slope of
+    /// variance 6K²/(5T). A walk that was not found may still hide beside a ramp:
+    /// [`Self::hidden_slope`] says how much.
+    fn with_slope_of_walk(self, seconds: f64) -> Self {
+        let (Estimate::Found { value, sigma }, Some(walk)) =
+            (self.rate_ramp, self.rate_random_walk.value())
+        else {
+            return self;
+        };
+        let sigma = libm::sqrt(sigma * sigma + WALK_SLOPE * walk * walk / seconds);
+        let rate_ramp = if value > 2.0 * sigma {
+            Estimate::Found { value, sigma }
+        } else {
+            Estimate::NotObservable { at_most: value + 2.0 * sigma }
+        };
+        Self { rate_ramp, ..self }
+    }
+
+    /// What a random walk that was not found, but may be there, would make of the slope over so many
+    /// seconds, 1σ, rad/s².
+    #[must_use]
+    pub fn hidden_slope(&self, seconds: f64) -> Option<f64> {
+        match self.rate_random_walk {
+            Estimate::Found { .. } => None,
+            Estimate::NotObservable { at_most } => Some(at_most * libm::sqrt(WALK_SLOPE / seconds)),
+        }
     }
 
     /// Whether every coefficient is a number.
