@@ -148,6 +148,10 @@ impl<'a, R: Recorder, O: Observer> Conductor<'a, R, O> {
         for (coefficient, estimate) in found.into_iter().flatten() {
             self.shared.tell(Event::Noise(coefficient, estimate));
         }
+        // Where the survey ended in a refusal, the schedule is still the one before it.
+        if self.session.phase() == Phase::Done {
+            return;
+        }
         if let Schedule::Planned(plan) = &self.session.procedure().schedule {
             self.shared.tell(Event::Planned {
                 positions: plan.positions(),

@@ -66,10 +66,23 @@ fn main() -> ExitCode {
         Ok(parsed) => parsed,
         Err(error) => return misuse(&error),
     };
+    if let Err(wrong) = check(&command) {
+        say(&format!("error: {wrong}"));
+        return ExitCode::from(2);
+    }
     match tell(&command, as_json) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
         Err(message) => failed(&message, as_json),
+    }
+}
+
+/// What cannot go together in a command's options.
+fn check(command: &Command) -> Result<(), &'static str> {
+    match command {
+        Command::Run(options) => options.check(),
+        Command::Campaign(options) => options.check(),
+        Command::Replay(_) | Command::Allan(_) | Command::Plan(_) | Command::Emulate(_) => Ok(()),
     }
 }
 

@@ -154,7 +154,13 @@ pub fn replay(
     options: &Options,
     progress: impl FnMut(&Session),
 ) -> Result<Replay, ReplayError> {
-    let Described { mut setting, assumed } = describe(header, body, latitude(header, options)?);
+    let unfit = || ReplayError::Kind(body.kind());
+    // What cannot be aligned from needs no latitude either.
+    let latitude = latitude(header, options).map_err(|error| match body {
+        Body::Static(_) => unfit(),
+        Body::Stage(_) | Body::Dwells(_) => error,
+    })?;
+    let Described { mut setting, assumed } = describe(header, body, latitude);
     setting.half = options.half;
     if let Some(sigma) = options.required_sigma {
         setting.required_sigma = sigma;
@@ -162,7 +168,7 @@ pub fn replay(
     let session = match body {
         Body::Stage(rows) => stage(header, rows, setting, options.criterion, progress),
         Body::Dwells(rows) => dwells(rows, setting, options.criterion, progress),
-        Body::Static(_) => return Err(ReplayError::Kind(body.kind())),
+        Body::Static(_) => return Err(unfit()),
     }?;
     Ok(Replay { method: options.method, session, setting, assumed })
 }

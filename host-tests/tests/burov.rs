@@ -8,8 +8,8 @@ use std::path::Path;
 use bench::campaign::burov::{classes, devices, drift};
 use bench::campaign::statistics::NORMAL_COVERAGE;
 
-/// Runs of each schedule: RMS is then known to 2.2 %, the coverage to 1.5 points.
-const RUNS: usize = 1000;
+/// Runs of each schedule, as the campaign does: RMS is then known to 1 %, the coverage to 0.7 points.
+const RUNS: usize = 5000;
 
 fn readme() -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md");
@@ -39,18 +39,19 @@ fn under_drift_the_plan_reaches_the_limit_and_beats_a_single_pass() {
         let found = drift::compare(gyro, RUNS, || ()).expect("there is a plan");
         for row in [&found.planned, &found.one_pass] {
             let precision = &row.precision;
-            // With one degree of freedom a session in a thousand is refused by chance.
-            assert!(precision.refused <= if row.positions > 4 { 0 } else { 4 }, "{row:?}");
+            // With one degree of freedom a session in a thousand is refused by chance, and with a σ of
+            // 3° one in a thousand exceeds 10°.
+            assert!(precision.refused <= if row.positions > 4 { 0 } else { 12 }, "{row:?}");
             assert!(precision.ratio <= 1.05 && precision.ratio >= 0.95, "{row:?}");
             for (covered, normal) in precision.coverage_percent.iter().zip(NORMAL_COVERAGE) {
-                assert!((covered - normal).abs() <= 3.0, "{row:?}");
+                assert!((covered - normal).abs() <= 2.0, "{row:?}");
             }
             // What was predicted before is what the dwells then limit.
             assert!((row.predicted_deg / precision.limit_deg - 1.0).abs() < 0.02, "{row:?}");
         }
         // The limits' own ratio, without the chance of the runs.
         let limits = found.one_pass.precision.limit_deg / found.planned.precision.limit_deg;
-        assert!(limits >= gain && found.gain >= gain - 0.05, "{} {limits}", found.gain);
+        assert!(limits >= gain && found.gain >= gain, "{} {limits}", found.gain);
         let precision = &found.planned.precision;
         let [one, two, three] = precision.coverage_percent;
         let row = format!(

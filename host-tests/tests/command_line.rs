@@ -127,7 +127,7 @@ fn what_run_cannot_do_is_misuse_in_one_line() {
         &["run", "--rate", "2000"],
         &["run", "--gyro", "laser"],
         &["run", "--fault", "nothing"],
-        &["run", "--positions", "2"],
+        &["run", "--positions", "1"],
         &["run", "--dwell", "0"],
         &["run", "--method", "siap"],
         &["run", "--seed", "-1"],
@@ -347,7 +347,7 @@ fn a_plan_gives_burovs_positions_and_the_optimum_beside_them() {
 #[test]
 fn a_plan_that_cannot_be_says_why() {
     for (arguments, reason) in [
-        (&["--arw", "0", "--latitude", "48", "--seconds", "300"][..], "every coefficient is zero"),
+        (&["--arw", "0", "--latitude", "48", "--seconds", "300"][..], "N and Q are zero"),
         (&["--arw", "0.1", "--latitude", "48", "--seconds", "5"], "the time holds no schedule"),
         (&["--arw", "0.1", "--latitude", "89", "--seconds", "300"], "beyond ±85°"),
         (&["--arw", "0.1", "--latitude", "48", "--sigma", "1e-5"], "out of reach"),

@@ -41,12 +41,20 @@ enum Campaign {
     Faults,
 }
 
+impl CampaignOptions {
+    /// What cannot go together.
+    ///
+    /// # Errors
+    /// The options, and why.
+    pub fn check(&self) -> Result<(), &'static str> {
+        let draws = matches!(self.name, Campaign::Burov);
+        if self.report.is_some() && !draws { Err("--report: only burov draws") } else { Ok(()) }
+    }
+}
+
 /// Runs a campaign.
 pub fn run(options: &CampaignOptions, as_json: bool) -> Result<Told, String> {
     let runs = |usual: u32| options.runs.unwrap_or(usual) as usize;
-    if options.report.is_some() && !matches!(options.name, Campaign::Burov) {
-        return Err("--report: only the campaign burov draws so far".to_owned());
-    }
     match options.name {
         Campaign::Sokolov => sokolov(runs(5000), as_json),
         Campaign::Burov => burov(runs(5000), options.report.as_deref(), as_json),

@@ -56,9 +56,9 @@ pub struct RunOptions {
     /// What carries the gyro.
     #[arg(long, value_enum, default_value = "stage")]
     mount: MountKind,
-    /// With two frames: how often the four headings are visited.
-    #[arg(long, default_value_t = 6, value_parser = clap::value_parser!(u8).range(1..=16))]
-    passes: u8,
+    /// With two frames: how often the four headings are visited (6).
+    #[arg(long, value_name = "PASSES", value_parser = clap::value_parser!(u8).range(1..=16), conflicts_with_all = ["seconds", "sigma"])]
+    passes: Option<u8>,
     /// The half of the circle in which the board is told that the azimuth lies: two positions need it.
     #[arg(long, value_enum)]
     half: Option<Half>,
@@ -72,7 +72,7 @@ pub struct RunOptions {
     #[arg(long, value_name = "DEGREES", value_parser = sway, conflicts_with = "record")]
     sway: Option<f64>,
     /// Frequency of the sway in hertz.
-    #[arg(long, value_name = "HERTZ", default_value = "0.5", value_parser = sway_hertz)]
+    #[arg(long, value_name = "HERTZ", default_value = "0.5", value_parser = sway_hertz, requires = "sway")]
     sway_hertz: f64,
     /// Lets the base sway without a coarse IMU on it.
     #[arg(long, requires = "sway")]
@@ -196,12 +196,34 @@ impl From<Gyro> for GyroClass {
     }
 }
 
+/// Passes on two frames where none are stated.
+const PASSES: usize = 6;
 /// Time of a plan where none is stated, s.
 const USUAL: f64 = 300.0;
 /// Time allowed for an accuracy where none is stated, s.
 const ALLOWED: f64 = 1800.0;
 
 impl RunOptions {
+    /// What cannot go together.
+    ///
+    /// # Errors
+    /// The options, and why.
+    pub fn check(&self) -> Result<(), &'static str> {
+        let on_frames = self.mount == MountKind::TwoFrame;
+        match () {
+            () if on_frames && self.record.is_some() => Err(
+                "--record: a two-frame mount is not recorded, since a recording knows no elevation",
+            ),
+            () if on_frames && self.fault.is_some() => {
+                Err("--fault: the faults are those of a stage; leave out --mount two-frame")
+            }
+            () if !on_frames && self.passes.is_some() => {
+                Err("--passes: they are those of two frames; a stage has --positions")
+            }
+            () => Ok(()),
+        }
+    }
+
     fn aim(&self) -> Aim {
         match (self.sigma, self.seconds) {
             (None, None) => match self.method {
@@ -290,13 +312,7 @@ pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
 
 /// Runs the board with a two-frame mount and tells what came of it.
 fn run_frames(base: &Scenario, options: &RunOptions, as_json: bool) -> Result<Told, String> {
-    if options.record.is_some() {
-        return Err("a two-frame mount is not recorded: a recording knows no elevation".to_owned());
-    }
-    if options.fault.is_some() {
-        return Err("the faults are those of a stage: leave out --mount two-frame".to_owned());
-    }
-    let passes = usize::from(options.passes);
+    let passes = options.passes.map_or(PASSES, usize::from);
     let scenario = FramesScenario { base: *base, passes, ..FramesScenario::default() };
     let begun = WallClock::now();
     let watch = Terminal(Progress::new(0, "positions"));
@@ -318,7 +334,9 @@ fn run_frames(base: &Scenario, options: &RunOptions, as_json: bool) -> Result<To
         text::stored(block, stored, off_vertical)
     })?;
     let refusal = conclusion.verdict.as_ref().err().map(ToString::to_string);
-    Ok(Told { refusal, ..told })
+    let page =
+        || page::alignment::report("the simulated run on two frames", &run.replay, conclusion);
+    Ok(Told { refusal, ..told }.with_page(options.report.as_deref(), page))
 }
 
 /// The object of a result, with what only a simulated run has.

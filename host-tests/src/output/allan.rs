@@ -153,6 +153,7 @@ impl Shown<'_> {
             object.extend(quality(analysis, self.comparison.as_ref()));
         }
         object.insert("schedule".to_owned(), json!(self.schedule.map(|s| s.0)));
+        object.insert("schedule_angles".to_owned(), "at the equator; times sec φ elsewhere".into());
         object.into()
     }
 

@@ -2,6 +2,7 @@
 
 use std::fmt::{self, Write};
 
+use orientation::planner::FEWEST;
 use orientation::units::{ARCSECOND, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 
 use super::degrees;
@@ -57,7 +58,8 @@ fn of_burov(out: &mut impl Write, planned: &Planned) -> fmt::Result {
 pub fn optimum(out: &mut impl Write, optimum: &Optimum, one_pass: Option<f64>) -> fmt::Result {
     writeln!(
         out,
-        "\nThe optimum for Meridian's fit: the covariance of a full azimuth, noise alone"
+        "\nThe best for Meridian's fit with {FEWEST} positions or more, so that a disturbed dwell is \
+         noticed:\nthe covariance of a full azimuth, noise alone"
     )?;
     writeln!(
         out,
@@ -79,7 +81,11 @@ pub fn optimum(out: &mut impl Write, optimum: &Optimum, one_pass: Option<f64>) -
     Ok(())
 }
 
-fn asked(out: &mut impl Write, request: &Request) -> fmt::Result {
+/// Writes what was asked.
+///
+/// # Errors
+/// Those of the writer.
+pub fn asked(out: &mut impl Write, request: &Request) -> fmt::Result {
     let noise = &request.noise;
     writeln!(
         out,

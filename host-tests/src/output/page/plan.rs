@@ -4,6 +4,7 @@ use orientation::planner::order::Order;
 use orientation::planner::{Plan, burov, for_time};
 use orientation::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN};
 
+use crate::output::plan;
 use crate::planning::{Planned, Request};
 use crate::report::{Axis, Figure, Report, Series, Style};
 
@@ -18,13 +19,17 @@ const REACH: [f64; 2] = [0.3, 6.0];
 #[must_use]
 pub fn report(request: &Request, planned: &Planned) -> Report {
     let optimum = &planned.optimum;
-    let subtitle = vec![
+    let mut asked = String::new();
+    // Writing to a string cannot fail.
+    let _ = plan::asked(&mut asked, request);
+    let mut subtitle: Vec<String> = asked.trim().lines().map(str::to_owned).collect();
+    subtitle.extend([
         format!(
             "{} positions of {:.2} s ({}), {:.1} s in all: full azimuth {:.4}° (1σ)",
             optimum.positions, optimum.dwell_s, optimum.order, optimum.seconds, optimum.sigma_deg
         ),
         "noise alone; tilt, encoder and scale come on top of it".to_owned(),
-    ];
+    ]);
     let seconds = optimum.seconds;
     let parts = vec![
         autocompensation(request, planned.burov.map_or(seconds, |best| best.seconds)).into(),
