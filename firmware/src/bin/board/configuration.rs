@@ -72,8 +72,8 @@ pub const LIMIT: AngularRate = AngularRate((GYRO_LIMIT * DEGREE * 1e9) as i32);
 /// long as the dwells below would take. `None`: it believes what stands above. An hour shows B and K,
 /// ten minutes N.
 const SURVEY: Option<f64> = None;
-/// 1σ of the azimuth until which it goes on, °, and the time allowed for everything, s. `None`: it
-/// ends with its schedule.
+/// 1σ of the azimuth until which it goes on, °, and the time allowed, s, from the end of the survey or
+/// else from the beginning. `None`: it ends with its schedule.
 const ACCURACY: Option<(f64, f64)> = None;
 /// Positions on the full circle.
 const POSITIONS: usize = 24;
