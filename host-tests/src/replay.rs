@@ -50,6 +50,9 @@ impl Method {
     }
 }
 
+/// What an answer rests on where the half of the circle was stated.
+pub const HALF: &str = "the half of the circle as stated: two positions give its mirror image else";
+
 /// What the user asked for.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
@@ -160,8 +163,9 @@ pub fn replay(
         Body::Static(_) => unfit(),
         Body::Stage(_) | Body::Dwells(_) => error,
     })?;
-    let Described { mut setting, assumed } = describe(header, body, latitude);
+    let Described { mut setting, mut assumed } = describe(header, body, latitude);
     setting.half = options.half;
+    assumed.extend(options.half.map(|_| HALF.to_owned()));
     if let Some(sigma) = options.required_sigma {
         setting.required_sigma = sigma;
     }

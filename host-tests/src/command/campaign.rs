@@ -103,6 +103,11 @@ fn burov(runs: usize, report: Option<&Path>, as_json: bool) -> Result<Told, Stri
         told::drift(text, &compared)?;
         told::classes(text, &rows)
     })?;
+    let refusal = (!found).then(|| {
+        "a class does not meet its row; with few runs (a tenth of --runs) that may be chance"
+            .to_owned()
+    });
+    let told = Told { refusal, ..told };
     Ok(told.with_page(report, || page::burov::report(&devices, &compared, &rows)))
 }
 

@@ -16,7 +16,7 @@ use firmware::steady::Base;
 use orientation::session::Session;
 
 use super::{Run, RunError};
-use crate::replay::{Method, Replay};
+use crate::replay::{HALF, Method, Replay};
 use crate::virtual_time;
 
 /// What the board was not told but takes as known.
@@ -122,7 +122,11 @@ pub fn align_on<B: Base, R: Recorder, W: Observer>(
             method: Method::of(&session),
             setting: *session.setting(),
             session,
-            assumed: vec![ASSUMED.to_owned()],
+            assumed: [ASSUMED]
+                .into_iter()
+                .chain(scenario.half.map(|_| HALF))
+                .map(str::to_owned)
+                .collect(),
         },
         events: log.events.into_inner(),
         lines: String::from_utf8_lossy(&bytes.into_inner()).into_owned(),

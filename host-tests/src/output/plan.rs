@@ -72,10 +72,11 @@ pub fn optimum(out: &mut impl Write, optimum: &Optimum, one_pass: Option<f64>) -
     )?;
     writeln!(out, "  order {}, {} passes", optimum.order, optimum.passes)?;
     if let Some(sigma) = one_pass {
+        let ratio = sigma / optimum.sigma_deg;
+        let but = if ratio < 1.0 { "; but it would not notice a disturbed dwell" } else { "" };
         writeln!(
             out,
-            "  one pass of 0, 180, 90, 270° in the same time: {sigma:.4}° (1σ), {:.2} times as much",
-            sigma / optimum.sigma_deg
+            "  one pass of 0, 180, 90, 270° in the same time: {sigma:.4}° (1σ), {ratio:.2} times as much{but}"
         )?;
     }
     Ok(())
