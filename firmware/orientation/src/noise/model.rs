@@ -64,14 +64,12 @@ impl GyroNoise {
         self.white_variance(seconds) + self.rounding_variance(seconds)
     }
 
-    /// Two-sided spectral density that counts in a line at `frequency`, Hz, over whole periods,
-    /// (rad/s)²/Hz: N², B²/(2πf), and twice K²/(2πf)², since a walk's sine over whole periods has three
-    /// times the variance of its cosine.
+    /// Two-sided spectral density at a frequency in Hz, (rad/s)²/Hz: N² + B²/(2πf) + K²/(2πf)².
     #[must_use]
     pub fn density_at(&self, frequency: f64) -> f64 {
         let (n, b) = (self.angle_random_walk, self.bias_instability);
         let k = self.rate_random_walk / (TURN * frequency);
-        n * n + b * b / (TURN * frequency) + 2.0 * k * k
+        n * n + b * b / (TURN * frequency) + k * k
     }
 
     /// Whether there is noise that one dwell shares with the next, beside a ramp.

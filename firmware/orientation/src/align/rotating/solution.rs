@@ -297,8 +297,9 @@ impl Problem<'_> {
         }
     }
 
-    /// What the coupling's uncertainty turns the azimuth by, rad: its even part directly, its odd part
-    /// through the integrated g-sensitivity.
+    /// What the coupling's uncertainty turns the azimuth by, rad. Of an unevenness that belongs to the
+    /// angle, hence changes its sign with the sense, the part in phase cancels but for what an integrated
+    /// g-sensitivity mixes in; the part in quadrature, a lag, does not.
     fn coupling_sigma(&self, fit: &Fit) -> f64 {
         let [horizontal, _] = self.earth();
         let worst = self.pairs.iter().map(|pair| {
@@ -306,10 +307,10 @@ impl Problem<'_> {
             let (even, odd) =
                 ((clockwise + counter).scaled(0.5), (clockwise - counter).scaled(0.5));
             let coupling = coupling::nearest(self.couplings, pair.speed());
-            let sigma = coupling.map_or(self.setting.coupling_limit, |coupling| {
-                libm::sqrt(coupling.variance(pair.speed()))
-            });
-            sigma * libm::hypot(even.size(), odd.size() * fit.molecular.size())
+            let [in_phase, lagging] = coupling
+                .map_or([self.setting.coupling_limit, 0.0], |found| found.sigmas(pair.speed()));
+            let mixed = libm::hypot(even.size(), odd.size() * fit.molecular.size());
+            libm::hypot(in_phase * mixed, lagging * odd.size())
         });
         worst.fold(0.0, f64::max) / horizontal
     }
