@@ -1,5 +1,5 @@
 //! What the gyro and the accelerometer of a turning platform show at the turn, against §4:
-//! u = Re{[cos α·E + (Ω_v + κ)F + G/(jdw)] e^{jθ}} + sin α·(Ω_v − θ̇) + bias.
+//! `u = Re{[cos α·E + (Ω_v + κ)F + G/(jdw)] e^{jθ}} + sin α·(Ω_v − θ̇) + bias`.
 
 use std::f64::consts::TAU;
 
@@ -42,7 +42,7 @@ fn turning(gyro: GyroConfiguration, turns: f64) -> Vec<TurningSample> {
     run(&TurntableConfiguration { instruments, segments: &segments, ..Default::default() }, 1)
 }
 
-/// E and F of §4, and Ω_v.
+/// E and F of §4, and the vertical Earth rate.
 fn truth() -> (Complex, Complex, f64) {
     let latitude = LATITUDE_DEG.to_radians();
     let earth = Complex::turned(EARTH_RATE_RAD_S * latitude.cos(), AZIMUTH_DEG.to_radians());
@@ -105,7 +105,7 @@ fn ordinary_g_sensitivity_turns_with_the_platform_and_is_the_same_in_both_direct
     }
 }
 
-/// ρ = |G|/(wΩ_h) of 0.13 at the slower speed.
+/// `ρ = |G|/(wΩ_h)` of 0.13 at the slower speed.
 const FORCE: [f64; 2] = [2.2e-3, -1.6e-3];
 
 #[test]

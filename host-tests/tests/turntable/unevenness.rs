@@ -102,6 +102,38 @@ fn a_tilted_axis_takes_the_unevenness_for_north() {
 }
 
 #[test]
+fn the_raw_azimuth_is_wrong_by_as_much_as_the_equations_say() {
+    // §4's table: 55.75°, 0.137 Hz, α 0.8°, tilt 0.3°, 0.2 % once a turn: up to ±36°.
+    let gyro = GyroConfiguration {
+        axis_elevation_rad: 0.8_f64.to_radians(),
+        ..GyroConfiguration::default()
+    };
+    let site = InstrumentsConfiguration {
+        latitude_deg: 55.75,
+        azimuth_deg: 30.0,
+        gyro,
+        ..InstrumentsConfiguration::default()
+    };
+    let segments = [Segment::steady(TAU * 0.137, 20.0 / 0.137)];
+    let errors = (0..36).map(|step| {
+        let phase_rad = f64::from(step) * TAU / 36.0;
+        let first = Ripple { relative: 0.002, phase_rad };
+        let configuration = TurntableConfiguration {
+            instruments: site.leaning(0.3, 100.0),
+            unevenness: Unevenness { first, ..Unevenness::default() },
+            segments: &segments,
+            ..Default::default()
+        };
+        let (shown, _) = phasor(&run(&configuration, 1), |sample| sample.rate_rad_s);
+        shown.1.atan2(shown.0).to_degrees() - 30.0
+    });
+    let (least, most) =
+        errors.fold((0.0_f64, 0.0_f64), |(a, b), error| (a.min(error), b.max(error)));
+    assert_near(most, 36.0, 0.7);
+    assert_near(least, -36.0, 0.7);
+}
+
+#[test]
 fn the_plants_stage_is_as_uneven_and_its_encoder_sees_it() {
     let stage = StageConfiguration { unevenness: GEAR, ..StageConfiguration::endless() };
     let mut plant = Plant::new(&PlantConfiguration { stage, ..Default::default() }, 1);
