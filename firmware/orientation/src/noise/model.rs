@@ -72,6 +72,14 @@ impl GyroNoise {
         n * n + b * b / (TURN * frequency) + k * k
     }
 
+    /// The same as it scatters the line of one period about that of others: there the walk counts twice,
+    /// since what is its slope within a period has not been taken off.
+    #[must_use]
+    pub fn density_of_period(&self, frequency: f64) -> f64 {
+        let k = self.rate_random_walk / (TURN * frequency);
+        self.density_at(frequency) + k * k
+    }
+
     /// Whether there is noise that one dwell shares with the next, beside a ramp.
     #[must_use]
     pub fn is_coloured(&self) -> bool {

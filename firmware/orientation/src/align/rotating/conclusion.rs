@@ -12,6 +12,7 @@ use crate::align::conclusion::Azimuth;
 use crate::device::Device;
 use crate::error::Refusal;
 use crate::math::{Complex, chi_square_tail};
+use crate::noise::model::GyroNoise;
 use crate::units::{DEGREES_PER_RADIAN as DEGREES, TURN};
 
 /// What the speeds of both senses may differ by, relative.
@@ -131,11 +132,14 @@ impl Conclusion {
         Ok(())
     }
 
-    /// Spectral density of the noise at a speed.
-    fn density(&self, setting: &Setting, speed: f64) -> f64 {
-        let mut noise = setting.common.noise;
-        noise.angle_random_walk = self.angle_random_walk;
-        noise.density_at(speed / TURN)
+    /// The gyro's noise, with the N that is known or was found.
+    fn noise(&self, setting: &Setting) -> GyroNoise {
+        GyroNoise { angle_random_walk: self.angle_random_walk, ..setting.common.noise }
+    }
+
+    /// Variance of either part of one turn's phasor, (rad/s)², for a sensor of gain one.
+    fn of_one_turn(&self, setting: &Setting, speed: f64) -> f64 {
+        of_turn(speed, self.noise(setting).density_of_period(speed / TURN))
     }
 
     /// Finds both senses of every speed.
@@ -176,7 +180,7 @@ impl Conclusion {
         for stretch in stretches {
             let joined = stretch.count() / stretch.turns().len().max(1) as u32;
             let speed = stretch.speed();
-            let variance = of_turn(speed, self.density(setting, speed)) / f64::from(joined);
+            let variance = self.of_one_turn(setting, speed) / f64::from(joined);
             // What the sensor's gain makes of its noise, which counts at its input.
             let gain = if setting.sensor.is_flat {
                 1.0
@@ -200,8 +204,8 @@ impl Conclusion {
         for pair in &self.pairs {
             let gain = if setting.sensor.is_flat { 1.0 } else { pair.gain(horizontal) };
             for average in [&pair.clockwise, &pair.counter] {
-                let density = self.density(setting, average.speed) * gain * gain;
-                let variance = of_turn(average.speed, density) / average.joined();
+                let variance =
+                    self.of_one_turn(setting, average.speed) * gain * gain / average.joined();
                 self.chi_square += average.scatter / variance;
                 self.degrees += average.degrees;
                 drift = drift.max(average.trend / variance);
@@ -228,7 +232,8 @@ impl Conclusion {
 
     #[inline(never)]
     fn solve(&self, setting: &Setting) -> Option<Fit> {
-        let density = |speed: f64| self.density(setting, speed);
+        let noise = self.noise(setting);
+        let density = |speed: f64| noise.density_at(speed / TURN);
         let walk = self.angle_random_walk;
         let white = if setting.common.white_known { walk * walk } else { 0.0 };
         let (pairs, couplings) = (&self.pairs, &self.couplings);
