@@ -217,7 +217,8 @@ impl Problem<'_> {
         let odd = self.slowest().map_or(Complex::default(), Pair::odd);
         fit.molecular = odd / mean * Complex::new(0.0, 1.0);
         let size = earth.size();
-        Turned { angle: earth.angle(), noise: 1.0 / information / (size * size), left: 0.0 }
+        let angle = levelled(earth, fit.tilt).angle();
+        Turned { angle, noise: 1.0 / information / (size * size), left: 0.0 }
     }
 
     /// The speed that shows an integrated g-sensitivity most.
@@ -252,8 +253,9 @@ impl Problem<'_> {
         let sine = (across.im / horizontal).clamp(-1.0, 1.0);
         // How the azimuth follows arg E′.
         let slope = 1.0 + across.re / horizontal / libm::sqrt((1.0 - sine * sine).max(1e-6));
+        let earth = Complex::unit(freed.angle - libm::asin(sine));
         Some(Turned {
-            angle: freed.angle - libm::asin(sine),
+            angle: levelled(earth, fit.tilt).angle(),
             noise: freed.noise * slope * slope,
             left: freed.left * slope * slope,
         })
@@ -314,6 +316,17 @@ impl Problem<'_> {
         });
         worst.fold(0.0, f64::max) / horizontal
     }
+}
+
+/// The Earth rate's phasor as a level platform would show it. Tilted by pitch and roll (equations.md §1),
+/// E is `Ω_h` (cos A cos p + j (sin A cos r − cos A sin p sin r)): at 3° this turns it by up to 0.08°.
+fn levelled(earth: Complex, tilt: Complex) -> Complex {
+    let sine_pitch = tilt.re.clamp(-1.0, 1.0);
+    let cosine_pitch = libm::sqrt((1.0 - sine_pitch * sine_pitch).max(f64::MIN_POSITIVE));
+    let sine_roll = (tilt.im / cosine_pitch).clamp(-1.0, 1.0);
+    let cosine_roll = libm::sqrt((1.0 - sine_roll * sine_roll).max(f64::MIN_POSITIVE));
+    let north = earth.re / cosine_pitch;
+    Complex::new(north, (earth.im + north * sine_pitch * sine_roll) / cosine_roll)
 }
 
 /// An azimuth before it is judged.
