@@ -51,6 +51,8 @@ pub struct Average {
 /// The turns of a stretch as compensated phasors.
 struct Turns<'a> {
     all: &'a [Turn],
+    /// Part of the platform's steady rate that the gyro shows.
+    steady: f64,
     phasors: Vec<Complex, TURNS>,
     is_kept: [bool; TURNS],
 }
@@ -60,7 +62,9 @@ impl<'a> Turns<'a> {
         let frequency = stretch.sense.signed(stretch.speed());
         let coupling = coupling::nearest(couplings, frequency);
         let response = coupling.map_or(Complex::default(), |coupling| coupling.response(frequency));
-        let mut found = Self { all: stretch.turns(), phasors: Vec::new(), is_kept: [true; TURNS] };
+        let steady = coupling.map_or(0.0, |coupling| coupling.response(0.0).re);
+        let (all, phasors) = (stretch.turns(), Vec::new());
+        let mut found = Self { all, steady, phasors, is_kept: [true; TURNS] };
         for turn in stretch.turns() {
             let turning = Complex::of_signal(turn.turning);
             // A stretch holds no more turns than these.
@@ -109,12 +113,14 @@ impl<'a> Turns<'a> {
         (if square > 0.0 { product / square } else { 0.0 }, square)
     }
 
-    /// Drift of the gyro's rate, rad/s²: none is told by fewer than three turns.
+    /// Drift of the gyro's rate, rad/s²: none is told by fewer than three turns. A platform that turned
+    /// quicker in one of them, as where it begins to, is no drift.
     fn slope(&self) -> f64 {
         if self.count() < 3 {
             return 0.0;
         }
-        self.slope_of(|index| f64::from(self.all[index].offset)).0
+        let own = |turn: &Turn| f64::from(turn.offset) - self.steady * f64::from(turn.speed);
+        self.slope_of(|index| own(&self.all[index])).0
     }
 
     fn distance(&self, index: usize, from: Complex) -> f64 {
@@ -143,10 +149,18 @@ impl<'a> Turns<'a> {
 
 impl Average {
     /// The mean of a stretch whose turns have phasors of this variance in either part, (rad/s)²; `None`
-    /// without two turns.
+    /// without two turns. A sensor that is not flat does not show steady rotation.
     #[must_use]
-    pub fn of(stretch: &Stretch, couplings: &[Coupling], variance: f64) -> Option<Self> {
+    pub fn of(
+        stretch: &Stretch,
+        couplings: &[Coupling],
+        variance: f64,
+        is_flat: bool,
+    ) -> Option<Self> {
         let mut turns = Turns::of(stretch, couplings);
+        if !is_flat {
+            turns.steady = 0.0;
+        }
         turns.leave_out(variance);
         turns.free();
         let count = turns.count();

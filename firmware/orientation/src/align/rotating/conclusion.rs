@@ -182,12 +182,9 @@ impl Conclusion {
             let speed = stretch.speed();
             let variance = self.of_one_turn(setting, speed) / f64::from(joined);
             // What the sensor's gain makes of its noise, which counts at its input.
-            let gain = if setting.sensor.is_flat {
-                1.0
-            } else {
-                typical_size(stretch, couplings) / horizontal
-            };
-            let average = Average::of(stretch, couplings, variance * gain * gain);
+            let is_flat = setting.sensor.is_flat;
+            let gain = if is_flat { 1.0 } else { typical_size(stretch, couplings) / horizontal };
+            let average = Average::of(stretch, couplings, variance * gain * gain, is_flat);
             if let Some(average) = average {
                 // There are no more stretches than these.
                 let _ = averages.push(average);
