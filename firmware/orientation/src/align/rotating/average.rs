@@ -119,8 +119,13 @@ impl<'a> Turns<'a> {
         if self.count() < 3 {
             return 0.0;
         }
-        let own = |turn: &Turn| f64::from(turn.offset) - self.steady * f64::from(turn.speed);
-        self.slope_of(|index| own(&self.all[index])).0
+        self.slope_of(|index| self.own_rate(index)).0
+    }
+
+    /// Mean of the gyro's rate over a turn without the platform's part, rad/s.
+    fn own_rate(&self, index: usize) -> f64 {
+        let turn = &self.all[index];
+        f64::from(turn.offset) - self.steady * f64::from(turn.speed)
     }
 
     fn distance(&self, index: usize, from: Complex) -> f64 {
@@ -189,7 +194,7 @@ impl Average {
             force,
             force_variance: force_scatter / (count - 1) as f64,
             mean_force: turns.mean(|index| f64::from(turn(index).mean_force)),
-            share: turns.share(square) / f64::from(joined),
+            share: turns.share(square, variance) / f64::from(joined),
             scatter: turns.kept().map(|index| turns.distance(index, phasor)).sum(),
             trend: (cosine * cosine + sine * sine) * square,
             degrees: 2 * (count as u32 - 1),
@@ -206,15 +211,29 @@ impl Average {
 }
 
 impl Turns<'_> {
-    /// Variance of either part of the mean where a turn's is one: what the drift's slope adds, whose
-    /// own variance is that of the turns' means, half of a phasor's.
-    fn share(&self, square: f64) -> f64 {
+    /// Variance of either part of the mean where a turn's is one: what the drift's slope adds. Its own is
+    /// that of the turns' mean rates, half of a phasor's, or what they show where they do not lie on a
+    /// line, as after a bump of some turns.
+    fn share(&self, square: f64, variance: f64) -> f64 {
         let own = 1.0 / self.count() as f64;
         if self.count() < 3 || square <= 0.0 {
             return own;
         }
         let leak = self.mean_complex(|index| Complex::of_signal(self.all[index].leak)).size();
-        own + 0.5 * leak * leak * 0.5 / square
+        let offset = (self.bend() / variance.max(f64::MIN_POSITIVE)).max(0.5);
+        own + 0.5 * leak * leak * offset / square
+    }
+
+    /// Variance of the turns' mean rates about a line, (rad/s)².
+    fn bend(&self) -> f64 {
+        let (slope, square) = self.slope_of(|index| self.own_rate(index));
+        let mean = self.mean(|index| self.own_rate(index));
+        let scatter = self.mean(|index| {
+            let away = self.own_rate(index) - mean;
+            away * away
+        });
+        let count = self.count() as f64;
+        (count * scatter - slope * slope * square).max(0.0) / (count - 2.0)
     }
 }
 
