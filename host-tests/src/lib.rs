@@ -19,4 +19,5 @@ pub mod replay;
 pub mod report;
 pub mod setting;
 pub mod simulate;
+pub mod spectrum;
 pub mod virtual_time;

@@ -157,24 +157,35 @@ pub fn replay(
     options: &Options,
     progress: impl FnMut(&Session),
 ) -> Result<Replay, ReplayError> {
-    let unfit = || ReplayError::Kind(body.kind());
-    // What cannot be aligned from needs no latitude either.
-    let latitude = latitude(header, options).map_err(|error| match body {
-        Body::Static(_) => unfit(),
-        Body::Stage(_) | Body::Dwells(_) => error,
-    })?;
+    let stops = Stops::of(body)?;
+    let latitude = latitude(header, options)?;
     let Described { mut setting, mut assumed } = describe(header, body, latitude);
     setting.half = options.half;
     assumed.extend(options.half.map(|_| HALF.to_owned()));
     if let Some(sigma) = options.required_sigma {
         setting.required_sigma = sigma;
     }
-    let session = match body {
-        Body::Stage(rows) => stage(header, rows, setting, options.criterion, progress),
-        Body::Dwells(rows) => dwells(rows, setting, options.criterion, progress),
-        Body::Static(_) => return Err(unfit()),
+    let session = match stops {
+        Stops::Samples(rows) => stage(header, rows, setting, options.criterion, progress),
+        Stops::Averages(rows) => dwells(rows, setting, options.criterion, progress),
     }?;
     Ok(Replay { method: options.method, session, setting, assumed })
+}
+
+/// The rows of a recording whose stage stops.
+enum Stops<'a> {
+    Samples(&'a [StageRow]),
+    Averages(&'a [DwellRow]),
+}
+
+impl<'a> Stops<'a> {
+    fn of(body: &'a Body) -> Result<Self, ReplayError> {
+        match body {
+            Body::Stage(rows) => Ok(Self::Samples(rows)),
+            Body::Dwells(rows) => Ok(Self::Averages(rows)),
+            other => Err(ReplayError::Kind(other.kind())),
+        }
+    }
 }
 
 fn latitude(header: &Header, options: &Options) -> Result<Latitude, ReplayError> {
