@@ -17,6 +17,7 @@ pub mod recording;
 pub mod reference;
 pub mod replay;
 pub mod report;
+pub mod rotating;
 pub mod setting;
 pub mod simulate;
 pub mod spectrum;

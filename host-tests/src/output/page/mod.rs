@@ -3,3 +3,4 @@
 pub mod alignment;
 pub mod burov;
 pub mod plan;
+pub mod rotating;
