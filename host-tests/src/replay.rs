@@ -115,6 +115,8 @@ pub enum ReplayError {
     NoLatitude,
     /// A kind without positions.
     Kind(Kind),
+    /// A kind whose stage does not turn all the time.
+    Stops(Kind),
     /// The stage never stood still long enough.
     NoDwell,
     /// More positions than a session holds.
@@ -130,6 +132,12 @@ impl fmt::Display for ReplayError {
                 f.write_str("key latitude_deg is missing: add it or give --latitude")
             }
             Self::Kind(kind) => write!(f, "kind `{kind}` has no positions to align from"),
+            Self::Stops(kind) => {
+                write!(
+                    f,
+                    "kind `{kind}` has no platform that turns all the time: no method rotating"
+                )
+            }
             Self::NoDwell => f.write_str(
                 "column stage_rad: the stage stands still nowhere long enough for a dwell",
             ),
@@ -188,7 +196,11 @@ impl<'a> Stops<'a> {
     }
 }
 
-fn latitude(header: &Header, options: &Options) -> Result<Latitude, ReplayError> {
+/// The user's latitude, or the header's.
+///
+/// # Errors
+/// Neither gives one.
+pub(crate) fn latitude(header: &Header, options: &Options) -> Result<Latitude, ReplayError> {
     options
         .latitude
         .or_else(|| header.latitude_deg.and_then(Latitude::from_degrees))

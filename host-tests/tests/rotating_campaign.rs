@@ -6,7 +6,7 @@ mod oracle;
 
 use std::f64::consts::TAU;
 
-use bench::campaign::rotating::world::{LATITUDE_DEG, World, segments};
+use bench::campaign::rotating::world::{LATITUDE_DEG, World};
 use bench::output::azimuth_error;
 use bench::rotating::part::Part;
 
@@ -14,17 +14,13 @@ use oracle::Known;
 
 #[test]
 fn an_independent_solution_finds_the_simulated_north() {
-    for azimuth_deg in [0.3, 77.7, 201.2, 303.3] {
+    for seed in 1..=4 {
         let world = World {
-            azimuth_deg,
-            quickest_deg: 40.0,
-            uphill_deg: 100.0,
             n_deg_sqrt_h: 0.000_2,
             g_sensitivity_deg_h_g: [8.0, -5.0],
-            molecular: None,
-            segments: segments(&[0.137], 200.0),
+            ..World::drawn(seed, &[0.137], 200.0)
         };
-        let rows = world.rows(1);
+        let rows = world.rows(seed);
         let uneven = 12.0 / 0.137;
         let whole = (27.0 - 1e-3) / 0.137;
         let part =
@@ -37,7 +33,7 @@ fn an_independent_solution_finds_the_simulated_north() {
         };
         let turns = [part(uneven, whole), part(uneven + 200.0, whole)];
         let found = oracle::azimuth(turns, coupling, &known).to_degrees();
-        let error = azimuth_error(found, azimuth_deg);
+        let error = azimuth_error(found, world.azimuth_deg);
         println!("{:.6} {error:.5}", -coupling.asin().to_degrees());
         assert!((-coupling.asin().to_degrees() - 0.8).abs() < 1e-4);
         assert!(error.abs() < 0.025, "{error}");

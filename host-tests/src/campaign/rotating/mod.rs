@@ -1,3 +1,81 @@
 //! Dynamic north finding by simulation: papers/004 with the figures of equations.md §4.
 
+pub mod molecular;
+pub mod refusals;
+pub mod stages;
 pub mod world;
+
+use orientation::align::rotating::solution::Fit;
+use orientation::align::rotating::{Sensor, Setting};
+use orientation::align::setting::Setting as Common;
+use orientation::earth::Latitude;
+use orientation::error::Refusal;
+use orientation::noise::model::GyroNoise;
+use orientation::session::rotating::Session;
+use orientation::units::DEGREE_PER_HOUR;
+use rayon::prelude::*;
+
+use self::world::{LATITUDE_DEG, World};
+use super::statistics::Answer;
+use crate::output::{azimuth_error, degrees};
+use crate::recording::RotatingRow;
+use crate::rotating::follow;
+
+/// Golden angle, °: azimuths of successive seeds fill the circle evenly.
+const GOLDEN_ANGLE_DEG: f64 = 137.507_764;
+/// What a solver is told of a gyro without noise, °/√h: less than any.
+const LEAST_WALK: f64 = 0.000_2;
+
+/// What a session made of a world.
+#[derive(Clone, Copy, Debug)]
+pub struct Solved {
+    /// The azimuth against the truth, or why there is none.
+    pub answer: Result<Answer, Refusal>,
+    /// The fit, where there is one.
+    pub fit: Option<Fit>,
+}
+
+/// Turns a world's platform and follows it.
+#[must_use]
+pub fn solve(world: &World, sensor: Sensor, seed: u64) -> Solved {
+    solve_rows(world, sensor, &world.rows(seed))
+}
+
+/// Follows a world's platform by rows that something may have happened to.
+fn solve_rows(world: &World, sensor: Sensor, rows: &[RotatingRow]) -> Solved {
+    let Some(setting) = setting(world, sensor) else {
+        return Solved { answer: Err(Refusal::TimeExhausted), fit: None };
+    };
+    let session = follow(setting, rows, 1.0 / world::RATE_HZ);
+    let conclusion = session.as_ref().ok().and_then(Session::conclusion);
+    let verdict = conclusion.map_or(Err(Refusal::TimeExhausted), |conclusion| conclusion.verdict);
+    let fit = conclusion.and_then(|conclusion| conclusion.fit);
+    let limit = fit.map_or(f64::NAN, |fit| degrees(fit.limit));
+    let answer = verdict.map(|azimuth| Answer {
+        error: azimuth_error(degrees(azimuth.angle), world.azimuth_deg),
+        sigma: degrees(azimuth.sigma),
+        limit,
+    });
+    Solved { answer, fit }
+}
+
+fn setting(world: &World, sensor: Sensor) -> Option<Setting> {
+    let walk = world.n_deg_sqrt_h.max(LEAST_WALK);
+    let common = Common {
+        noise: GyroNoise::from_field_units(walk, 0.0, 0.0, 0.0),
+        white_known: true,
+        g_sensitivity: world.g_sensitivity_deg_h_g.map(|part| part * DEGREE_PER_HOUR),
+        ..Common::at(Latitude::from_degrees(LATITUDE_DEG)?)
+    };
+    Some(Setting::new(common, sensor))
+}
+
+/// One result for each seed.
+fn over<T: Send>(runs: usize, tick: &(impl Fn() + Sync), of: impl Fn(u64) -> T + Sync) -> Vec<T> {
+    let of = |seed| {
+        let result = of(seed);
+        tick();
+        result
+    };
+    (1..=runs as u64).into_par_iter().map(of).collect()
+}

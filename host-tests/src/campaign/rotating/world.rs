@@ -2,11 +2,14 @@
 
 use std::f64::consts::TAU;
 
+use hal_mock::disturbance::Disturbance;
+use hal_mock::earth::EARTH_RATE_RAD_S;
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::instruments::InstrumentsConfiguration;
 use hal_mock::molecular::MolecularConfiguration;
+use hal_mock::noise::Generator;
 use hal_mock::stage::{EncoderConfiguration, Ripple, Unevenness};
-use hal_mock::turntable::{Segment, Turntable, TurntableConfiguration};
+use hal_mock::turntable::{EncoderSlip, Segment, TurningSample, Turntable, TurntableConfiguration};
 
 use crate::recording::RotatingRow;
 
@@ -26,6 +29,10 @@ const UNEVEN_TURNS: f64 = 12.0;
 const MODULATION: (f64, f64) = (0.25, 0.83);
 /// Step of the encoder: 21 bit.
 const ENCODER_STEP_RAD: f64 = TAU / 2_097_152.0;
+/// Where the accelerometer clips, m/s²: ±2.048 g.
+const FORCE_FULL_SCALE: f64 = 20.08;
+/// The random stream from which worlds are drawn: none of those that their sensors draw from.
+const DRAWN: u64 = 1_000;
 /// Noise of the accelerometer, m/s²/√Hz: 25 µg/√Hz, an ADXL355's.
 const FORCE_NOISE: f64 = 2.5e-4;
 
@@ -46,6 +53,31 @@ pub struct World {
     pub molecular: Option<MolecularConfiguration>,
     /// What the platform does in turn.
     pub segments: Vec<Segment>,
+    /// What goes wrong with the encoder.
+    pub slip: EncoderSlip,
+    /// What befalls the sensors.
+    pub disturbances: Vec<Disturbance>,
+}
+
+impl World {
+    /// A healthy gyro that turns at these speeds, so many seconds each way at each; azimuth, gear and tilt
+    /// are drawn.
+    #[must_use]
+    pub fn drawn(seed: u64, speeds_hz: &[f64], seconds: f64) -> Self {
+        let mut chance = Generator::stream(seed, DRAWN);
+        let mut angle = || 360.0 * chance.uniform();
+        Self {
+            azimuth_deg: angle(),
+            quickest_deg: angle(),
+            uphill_deg: angle(),
+            n_deg_sqrt_h: 0.0,
+            g_sensitivity_deg_h_g: [0.0; 2],
+            molecular: None,
+            segments: segments(speeds_hz, seconds),
+            slip: EncoderSlip::default(),
+            disturbances: Vec::new(),
+        }
+    }
 }
 
 /// An uneven stretch, then as many seconds clockwise and counter-clockwise at each speed in turns a
@@ -58,6 +90,39 @@ pub fn segments(speeds_hz: &[f64], seconds: f64) -> Vec<Segment> {
         Segment::steady(TAU * first, UNEVEN_TURNS / first).uneven(depth, frequency * first);
     let both = |speed: &f64| [TAU * speed, -TAU * speed].map(|rate| Segment::steady(rate, seconds));
     [uneven].into_iter().chain(speeds_hz.iter().flat_map(both)).collect()
+}
+
+/// A molecular-electronic sensor by what it does at a speed.
+#[derive(Clone, Copy, Debug)]
+pub struct Integrating {
+    /// Its integrated g-sensitivity times the tilt, over speed and horizontal Earth rate: ρ.
+    pub ratio: f64,
+    /// Direction of that g-sensitivity from the sensitive axis, clockwise, °.
+    pub toward_deg: f64,
+    /// By how much it lags, °, in [0, 90).
+    pub lag_deg: f64,
+    /// The speed, turns a second.
+    pub speed_hz: f64,
+}
+
+impl Integrating {
+    /// The g-sensitivity as it multiplies the tilt's phasor, rad/s² per g.
+    #[must_use]
+    pub fn force_rad_s2_g(&self) -> [f64; 2] {
+        let horizontal = EARTH_RATE_RAD_S * LATITUDE_DEG.to_radians().cos();
+        let tilt = TILT_DEG.to_radians().sin();
+        let size = self.ratio * TAU * self.speed_hz * horizontal / tilt;
+        let (sine, cosine) = self.toward_deg.to_radians().sin_cos();
+        [size * cosine, size * sine]
+    }
+
+    /// The sensor that does so.
+    #[must_use]
+    pub fn sensor(&self) -> MolecularConfiguration {
+        let lag_s = self.lag_deg.to_radians().tan() / (TAU * self.speed_hz);
+        let force_rad_s2_g = self.force_rad_s2_g();
+        MolecularConfiguration { force_rad_s2_g, high_pass_hz: 0.0, lag_s }
+    }
 }
 
 impl World {
@@ -90,10 +155,13 @@ impl World {
         let configuration = TurntableConfiguration {
             instruments: self.instruments(),
             unevenness: Unevenness { first: quickest, ..Unevenness::default() },
+            accelerometer_full_scale_m_s2: FORCE_FULL_SCALE,
+            slip: self.slip,
             segments: &self.segments,
+            disturbances: &self.disturbances,
             ..TurntableConfiguration::default()
         };
-        let row = |(index, sample): (usize, hal_mock::turntable::TurningSample)| RotatingRow {
+        let row = |(index, sample): (usize, TurningSample)| RotatingRow {
             line: index as u64 + 1,
             time_s: sample.time_s,
             stage_rad: sample.stage_rad,
