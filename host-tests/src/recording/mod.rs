@@ -70,6 +70,12 @@ pub enum Body {
 }
 
 impl Body {
+    /// The rows of a platform that turns all the time; none of another kind.
+    #[must_use]
+    pub fn rotating(&self) -> &[RotatingRow] {
+        if let Self::Rotating(rows) = self { rows } else { &[] }
+    }
+
     /// The kind of its recording.
     #[must_use]
     pub fn kind(&self) -> Kind {

@@ -25,6 +25,8 @@ pub const TILT_DEG: f64 = 0.3;
 pub const UNEVENNESS: f64 = 0.002;
 /// Length of the deliberately uneven stretch, turns.
 const UNEVEN_TURNS: f64 = 12.0;
+/// Time in which the platform takes on another rate, s.
+const RAMP_SECONDS: f64 = 3.0;
 /// Its depth, relative, and its frequency in turns.
 const MODULATION: (f64, f64) = (0.25, 0.83);
 /// Step of the encoder: 21 bit.
@@ -88,7 +90,7 @@ pub fn segments(speeds_hz: &[f64], seconds: f64) -> Vec<Segment> {
     let (depth, frequency) = MODULATION;
     let uneven =
         Segment::steady(TAU * first, UNEVEN_TURNS / first).uneven(depth, frequency * first);
-    let both = |speed: &f64| [TAU * speed, -TAU * speed].map(|rate| Segment::steady(rate, seconds));
+    let both = |speed: &f64| [TAU * speed, -TAU * speed].map(|rate| Segment::steady(rate, seconds).after(RAMP_SECONDS));
     [uneven].into_iter().chain(speeds_hz.iter().flat_map(both)).collect()
 }
 
