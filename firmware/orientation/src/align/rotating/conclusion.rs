@@ -6,7 +6,7 @@ use super::Setting;
 use super::average::{Average, typical_size, variance_of_neighbours};
 use super::coupling::Coupling;
 use super::follower::{Follower, STRETCHES};
-use super::solution::{Fit, Pair, Problem, SPEEDS, of_turn};
+use super::solution::{Fit, Pair, Problem, SPEEDS, force_density, of_turn};
 use super::turn::{Sense, Stretch};
 use crate::align::conclusion::Azimuth;
 use crate::device::Device;
@@ -28,6 +28,8 @@ const SENSES_TOLERANCE: f64 = 0.05;
 const RATIO_TOLERANCE: f64 = 0.005;
 /// What the tilt may differ by between stretches beyond five σ, g.
 const TILT_TOLERANCE: f64 = 1e-5;
+/// Degrees of freedom at which a bound on a scatter that is itself estimated doubles.
+const FEW: f64 = 10.0;
 /// Mean force over whole turns beyond which an accelerometer does not lie in the platform's plane, m/s²,
 /// beyond five of its bias's σ.
 const FORCE_TOLERANCE: f64 = 1.0;
@@ -244,14 +246,17 @@ impl Conclusion {
     fn judge_force(&self, setting: &Setting, fit: &Fit) -> Result<(), Refusal> {
         let gravity = setting.common.latitude.gravity();
         let allowed = FORCE_TOLERANCE + DIFFERENT * setting.common.accelerometer_bias_sigma;
+        let (density, degrees) = force_density(&self.pairs);
+        // A standard deviation from few turns may be far too small.
+        let different = DIFFERENT * (1.0 + FEW / f64::from(degrees.max(1)));
         for average in self.pairs.iter().flat_map(|pair| [&pair.clockwise, &pair.counter]) {
             if average.mean_force.abs() > allowed {
                 let ratio = average.mean_force / gravity;
                 return Err(Refusal::AccelerometerImplausible { ratio });
             }
             let apart: Complex = average.force.scaled(1.0 / gravity) - fit.tilt;
-            let sigma = libm::sqrt(average.force_variance) / gravity;
-            if apart.size() > DIFFERENT * sigma + TILT_TOLERANCE {
+            let sigma = libm::sqrt(density / average.seconds) / gravity;
+            if apart.size() > different * sigma + TILT_TOLERANCE {
                 return Err(Refusal::TiltChanged { change: apart.size() * 1e3 });
             }
         }

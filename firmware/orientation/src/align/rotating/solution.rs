@@ -179,13 +179,13 @@ impl Problem<'_> {
     /// The tilt's phasor and the 1σ of its parts, g.
     fn tilt(&self) -> (Complex, f64) {
         let gravity = self.setting.common.latitude.gravity();
-        let (mut sum, mut information) = (Complex::default(), 0.0);
+        let (mut sum, mut seconds) = (Complex::default(), 0.0);
         for average in self.pairs.iter().flat_map(Pair::senses) {
-            let weight = 1.0 / average.force_variance.max(f64::MIN_POSITIVE);
-            sum = sum + average.force.scaled(weight);
-            information += weight;
+            sum = sum + average.force.scaled(average.seconds);
+            seconds += average.seconds;
         }
-        (sum.scaled(1.0 / information / gravity), libm::sqrt(1.0 / information) / gravity)
+        let variance = force_density(self.pairs).0 / seconds;
+        (sum.scaled(1.0 / seconds / gravity), libm::sqrt(variance) / gravity)
     }
 
     /// What multiplies the tilt, rad/s per g: vertical Earth rate and ordinary g-sensitivity.
@@ -314,6 +314,18 @@ impl Problem<'_> {
         });
         worst.fold(0.0, f64::max) / horizontal
     }
+}
+
+/// Variance of either part of a force's phasor times the time over which it was found, (m/s²)²·s, and the
+/// degrees of freedom from which this is known.
+#[must_use]
+pub fn force_density(pairs: &[Pair]) -> (f64, u32) {
+    let (mut sum, mut degrees) = (0.0, 0);
+    for average in pairs.iter().flat_map(Pair::senses) {
+        sum += average.force_scatter * average.seconds / (0.5 * f64::from(average.degrees) + 1.0);
+        degrees += average.degrees;
+    }
+    (sum / f64::from(degrees.max(1)), degrees)
 }
 
 /// An azimuth before it is judged.
