@@ -11,9 +11,9 @@
 //! state x with x′ = −ωx + (ωu − κf), shown u − x: so the integral never grows beyond κ·f/ω, and
 //! without a high-pass it is a plain integral from the first sample.
 //!
-//! Between two samples the input is taken to be linear, and its response is exact. Of a sine at w
-//! this makes at most ((w² + ω²)h² + (wh)²)/12 relative at a sample period h: 2·10⁻⁵ at 1 rad/s and
-//! 100 Hz. White noise is felt, sample by sample, as the nodes of such lines; noise of the electronics
+//! Between two samples the input of each filter is taken to be linear, and its response is exact. Of a
+//! sine at w this makes, at a sample period h, at most (w² + wω)h²/12 relative in a rate and w²h²/6 in
+//! a force: 2·10⁻⁵ at 1 rad/s and 100 Hz. White noise is felt, sample by sample, as the nodes of such lines; noise of the electronics
 //! behind, bias included, passes no filter.
 
 /// Dynamics of a molecular-electronic sensor; the default adds nothing.

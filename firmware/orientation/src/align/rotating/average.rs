@@ -33,8 +33,8 @@ pub struct Average {
     pub turning: Complex,
     /// The force along the sensitive axis, m/s².
     pub force: Complex,
-    /// Variance of either part of `force`, from its scatter, (m/s²)².
-    pub force_variance: f64,
+    /// Sum of the squared distances of the turns' forces from their mean, (m/s²)².
+    pub force_scatter: f64,
     /// Mean force along the sensitive axis, m/s².
     pub mean_force: f64,
     /// Variance of either part of `phasor` where that of one turn of the platform is one.
@@ -44,7 +44,7 @@ pub struct Average {
     /// Squared drift of the phasor from turn to turn, over its variance where that of a turn is one,
     /// (rad/s)².
     pub trend: f64,
-    /// Degrees of freedom of `scatter`.
+    /// Degrees of freedom of `scatter` and `force_scatter`.
     pub degrees: u32,
 }
 
@@ -157,9 +157,9 @@ impl Average {
         let turn = |index: usize| &turns.all[index];
         let phasor = turns.mean_complex(|index| turns.phasors[index]);
         let force = turns.mean_complex(|index| Complex::of_signal(turn(index).force));
-        let force_scatter = turns.mean(|index| {
+        let force_scatter = turns.kept().map(|index| {
             let away = Complex::of_signal(turn(index).force) - force;
-            0.5 * away.size() * away.size()
+            away.re * away.re + away.im * away.im
         });
         let (cosine, square) = turns.slope_of(|index| turns.phasors[index].re);
         let (sine, _) = turns.slope_of(|index| turns.phasors[index].im);
@@ -173,7 +173,7 @@ impl Average {
             phasor,
             turning: turns.mean_complex(|index| Complex::of_signal(turn(index).turning)),
             force,
-            force_variance: force_scatter / (count - 1) as f64,
+            force_scatter: force_scatter.sum(),
             mean_force: turns.mean(|index| f64::from(turn(index).mean_force)),
             share: turns.share(square) / f64::from(joined),
             scatter: turns.kept().map(|index| turns.distance(index, phasor)).sum(),

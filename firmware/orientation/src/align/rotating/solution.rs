@@ -179,13 +179,13 @@ impl Problem<'_> {
     /// The tilt's phasor and the 1σ of its parts, g.
     fn tilt(&self) -> (Complex, f64) {
         let gravity = self.setting.common.latitude.gravity();
-        let (mut sum, mut information) = (Complex::default(), 0.0);
+        let (mut sum, mut seconds) = (Complex::default(), 0.0);
         for average in self.pairs.iter().flat_map(Pair::senses) {
-            let weight = 1.0 / average.force_variance.max(f64::MIN_POSITIVE);
-            sum = sum + average.force.scaled(weight);
-            information += weight;
+            sum = sum + average.force.scaled(average.seconds);
+            seconds += average.seconds;
         }
-        (sum.scaled(1.0 / information / gravity), libm::sqrt(1.0 / information) / gravity)
+        let variance = force_density(self.pairs).0 / seconds;
+        (sum.scaled(1.0 / seconds / gravity), libm::sqrt(variance) / gravity)
     }
 
     /// What multiplies the tilt, rad/s per g: vertical Earth rate and ordinary g-sensitivity.
@@ -297,8 +297,9 @@ impl Problem<'_> {
         }
     }
 
-    /// What the coupling's uncertainty turns the azimuth by, rad: its even part directly, its odd part
-    /// through the integrated g-sensitivity.
+    /// What the coupling's uncertainty turns the azimuth by, rad. Of an unevenness that belongs to the
+    /// angle, hence changes its sign with the sense, the part in phase cancels but for what an integrated
+    /// g-sensitivity mixes in; the part in quadrature, a lag, does not.
     fn coupling_sigma(&self, fit: &Fit) -> f64 {
         let [horizontal, _] = self.earth();
         let worst = self.pairs.iter().map(|pair| {
@@ -306,13 +307,25 @@ impl Problem<'_> {
             let (even, odd) =
                 ((clockwise + counter).scaled(0.5), (clockwise - counter).scaled(0.5));
             let coupling = coupling::nearest(self.couplings, pair.speed());
-            let sigma = coupling.map_or(self.setting.coupling_limit, |coupling| {
-                libm::sqrt(coupling.variance(pair.speed()))
-            });
-            sigma * libm::hypot(even.size(), odd.size() * fit.molecular.size())
+            let [in_phase, lagging] = coupling
+                .map_or([self.setting.coupling_limit, 0.0], |found| found.sigmas(pair.speed()));
+            let mixed = libm::hypot(even.size(), odd.size() * fit.molecular.size());
+            libm::hypot(in_phase * mixed, lagging * odd.size())
         });
         worst.fold(0.0, f64::max) / horizontal
     }
+}
+
+/// Variance of either part of a force's phasor times the time over which it was found, (m/s²)²·s, and the
+/// degrees of freedom from which this is known.
+#[must_use]
+pub fn force_density(pairs: &[Pair]) -> (f64, u32) {
+    let (mut sum, mut degrees) = (0.0, 0);
+    for average in pairs.iter().flat_map(Pair::senses) {
+        sum += average.force_scatter * average.seconds / (0.5 * f64::from(average.degrees) + 1.0);
+        degrees += average.degrees;
+    }
+    (sum / f64::from(degrees.max(1)), degrees)
 }
 
 /// An azimuth before it is judged.
