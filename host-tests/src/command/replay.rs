@@ -71,9 +71,12 @@ impl ReplayOptions {
     /// # Errors
     /// The options, and why.
     pub fn check(&self) -> Result<(), &'static str> {
-        if !matches!(self.method, Some(Method::Rotating)) {
-            return Ok(());
-        }
+        let is_rotating = matches!(self.method, Some(Method::Rotating));
+        if is_rotating { self.check_rotating() } else { Ok(()) }
+    }
+
+    /// The same for a platform that turns all the time.
+    fn check_rotating(&self) -> Result<(), &'static str> {
         if self.criterion != Criterion::MaximumLikelihood {
             return Err("--criterion: a platform that turns all the time has the one criterion");
         }
@@ -103,6 +106,7 @@ fn turning(
     options: &ReplayOptions,
     as_json: bool,
 ) -> Result<Told, String> {
+    options.check_rotating()?;
     let (header, body, truth) = recording.into_parts();
     let replay = rotating::replay(&header, &body, &options.into())
         .map_err(|error| format!("{name}: {error}"))?;

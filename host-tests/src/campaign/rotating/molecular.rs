@@ -11,7 +11,7 @@ use rustfft::num_complex::Complex;
 use serde::Serialize;
 
 use super::world::{Integrating, LATITUDE_DEG, TILT_DEG, World};
-use super::{over, solve};
+use super::{Solved, over, solve};
 use crate::campaign::statistics::{Answer, Precision, rms};
 use crate::output::azimuth_error;
 
@@ -109,7 +109,7 @@ fn greatest(values: &[f64]) -> f64 {
 
 impl Draw {
     /// Phase and direction of the g-sensitivity from a seed, the platform's world too.
-    fn of(ratio: f64, seed: u64, speeds_hz: &[f64], seconds: f64) -> Self {
+    fn of(ratio: f64, seed: u64) -> Self {
         let mut chance = Generator::stream(seed, SENSOR_DRAWN);
         let [least, most] = PHASES_DEG;
         let sensor = Integrating {
@@ -119,7 +119,7 @@ impl Draw {
             speed_hz: SPEEDS_HZ[0],
         };
         let molecular = Some(sensor.sensor());
-        Self { sensor, world: World { molecular, ..World::drawn(seed, speeds_hz, seconds) } }
+        Self { sensor, world: World { molecular, ..World::drawn(seed, &SPEEDS_HZ, SECONDS) } }
     }
 
     /// What §4 predicts for one speed, °: half of arg(1 + γ²) with γ = G/(w E′), carried over from E′ to
@@ -147,19 +147,19 @@ impl Draw {
 
 fn run(ratio: f64, seed: u64) -> Run {
     let [first, _] = SPEEDS_HZ;
-    let one = Draw::of(ratio, seed, &[first], 2.0 * SECONDS);
-    let two = Draw::of(ratio, seed, &SPEEDS_HZ, SECONDS);
-    let noisy = World { n_deg_sqrt_h: WALK, ..two.world.clone() };
-    let noisy = solve(&noisy, Sensor::MOLECULAR, seed);
-    let error = |world: &World| {
-        let fit = solve(world, Sensor::MOLECULAR, seed).fit;
+    let draw = Draw::of(ratio, seed);
+    let world = &draw.world;
+    let both = |world: &World| solve(world, Sensor::MOLECULAR, &SPEEDS_HZ, SECONDS, seed);
+    let noisy = both(&World { n_deg_sqrt_h: WALK, ..world.clone() });
+    let error = |solved: Solved| {
+        let fit = solved.fit;
         let azimuth = fit.map_or(f64::NAN, |fit| fit.azimuth.to_degrees());
         azimuth_error(azimuth, world.azimuth_deg)
     };
     Run {
-        one_speed: error(&one.world),
-        predicted: one.predicted_deg(),
-        two_speeds: error(&two.world),
+        one_speed: error(solve(world, Sensor::MOLECULAR, &[first], 2.0 * SECONDS, seed)),
+        predicted: draw.predicted_deg(),
+        two_speeds: error(both(world)),
         plain_limit: noisy.fit.map_or(f64::NAN, |fit| fit.plain_limit.to_degrees()),
         answer: noisy.answer,
     }

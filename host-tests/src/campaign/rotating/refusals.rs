@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use super::stages::{SECONDS, TURN_HZ};
 use super::world::World;
-use super::{Solved, over, solve};
+use super::{Solved, follow_world, over};
 use crate::campaign::faults::WRONG_SIGMAS;
 
 /// Angle random walk of the gyro, °/√h.
@@ -56,7 +56,7 @@ fn row(case: &Case, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
     let solved = over(runs, tick, |seed| {
         let mut world = World { n_deg_sqrt_h: WALK, ..World::drawn(seed, &[TURN_HZ], SECONDS) };
         (case.spoil)(&mut world);
-        solve(&world, Sensor::GYRO, seed)
+        follow_world(&world, Sensor::GYRO, seed)
     });
     let (reason, reason_given) = most_given(&solved);
     Row {

@@ -2,16 +2,20 @@
 
 use std::f64::consts::TAU;
 
-use hal_mock::disturbance::Disturbance;
+use hal_mock::disturbance::{Disturbance, Effect};
 use hal_mock::earth::EARTH_RATE_RAD_S;
 use hal_mock::gyro::GyroConfiguration;
-use hal_mock::instruments::InstrumentsConfiguration;
+use hal_mock::instruments::{Instruments, InstrumentsConfiguration};
 use hal_mock::molecular::MolecularConfiguration;
 use hal_mock::noise::Generator;
 use hal_mock::stage::{EncoderConfiguration, Ripple, Unevenness};
 use hal_mock::turntable::{EncoderSlip, Segment, TurningSample, Turntable, TurntableConfiguration};
 
+use orientation::session::rotating::{Command, Event, Session};
+
+use super::motor::Motor;
 use crate::recording::RotatingRow;
+use crate::simulate::stage_path;
 
 /// Latitude, °: that of papers/004's laboratory.
 pub const LATITUDE_DEG: f64 = 55.75;
@@ -90,7 +94,9 @@ pub fn segments(speeds_hz: &[f64], seconds: f64) -> Vec<Segment> {
     let (depth, frequency) = MODULATION;
     let uneven =
         Segment::steady(TAU * first, UNEVEN_TURNS / first).uneven(depth, frequency * first);
-    let both = |speed: &f64| [TAU * speed, -TAU * speed].map(|rate| Segment::steady(rate, seconds).after(RAMP_SECONDS));
+    let both = |speed: &f64| {
+        [TAU * speed, -TAU * speed].map(|rate| Segment::steady(rate, seconds).after(RAMP_SECONDS))
+    };
     [uneven].into_iter().chain(speeds_hz.iter().flat_map(both)).collect()
 }
 
@@ -150,13 +156,36 @@ impl World {
         instruments.leaning(TILT_DEG, self.uphill_deg)
     }
 
+    fn gear(&self) -> Unevenness {
+        let first = Ripple { relative: UNEVENNESS, phase_rad: self.quickest_deg.to_radians() };
+        Unevenness { first, ..Unevenness::default() }
+    }
+
+    /// Runs a session to its end on a platform that obeys it.
+    ///
+    /// The loop is bounded: a session that does not end within `longest_s` is given the end.
+    pub fn obey(&self, session: &mut Session, longest_s: f64, seed: u64) {
+        let mut instruments = Instruments::new(&self.instruments(), seed);
+        let (mut motor, gear) = (Motor::default(), self.gear());
+        for index in 0..(longest_s * RATE_HZ) as u64 {
+            let time_s = index as f64 / RATE_HZ;
+            instruments.turn(gear.stage(motor.after(1.0 / RATE_HZ)));
+            let reading = instruments.sample(time_s, &Effect::default());
+            match session.handle(Event::Sample(&stage_path(&reading))) {
+                Command::Turn(rate_rad_s) => motor.send(rate_rad_s),
+                Command::Wait => {}
+                Command::Finished => return,
+            }
+        }
+        session.handle(Event::End);
+    }
+
     /// The platform's samples as rows of a recording of kind `rotating`.
     #[must_use]
     pub fn rows(&self, seed: u64) -> Vec<RotatingRow> {
-        let quickest = Ripple { relative: UNEVENNESS, phase_rad: self.quickest_deg.to_radians() };
         let configuration = TurntableConfiguration {
             instruments: self.instruments(),
-            unevenness: Unevenness { first: quickest, ..Unevenness::default() },
+            unevenness: self.gear(),
             accelerometer_full_scale_m_s2: FORCE_FULL_SCALE,
             slip: self.slip,
             segments: &self.segments,
