@@ -12,6 +12,9 @@ const OUTLIER: f64 = 21.0;
 /// Median of the squared distance of two neighbours over the variance of either part: 2 · 2 ln 2.
 const MEDIAN_OF_NEIGHBOURS: f64 = 2.772_588_722_239_781;
 
+/// Number of differences of neighbours from which a variance comes out half too small at times.
+const FEW_NEIGHBOURS: f64 = 2.0;
+
 /// A stretch's phasors. A phasor a stands for the signal Re{a e^{jθ}}.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Average {
@@ -213,7 +216,7 @@ pub fn typical_size(stretch: &Stretch, couplings: &[Coupling]) -> f64 {
 }
 
 /// Variance of either part of a turn's phasor from the differences of neighbours, (rad/s)², which
-/// disturbed turns hardly touch; zero where there are none.
+/// disturbed turns hardly touch, with what few of them make it uncertain; zero where there are none.
 #[must_use]
 pub fn variance_of_neighbours(stretches: &[Stretch], couplings: &[Coupling]) -> f64 {
     let mut squares: Vec<f64, { 4 * TURNS }> = Vec::new();
@@ -224,5 +227,6 @@ pub fn variance_of_neighbours(stretches: &[Stretch], couplings: &[Coupling]) -> 
             let _ = squares.push(turns.distance(index, turns.phasors[index - 1]));
         }
     }
-    median(&mut squares) / MEDIAN_OF_NEIGHBOURS
+    let few = 1.0 + FEW_NEIGHBOURS / squares.len().max(1) as f64;
+    few * median(&mut squares) / MEDIAN_OF_NEIGHBOURS
 }

@@ -226,7 +226,9 @@ impl Conclusion {
         {
             return Err(Refusal::ResidualsNotWhite { ratio });
         }
-        if drift > DIFFERENT * DIFFERENT {
+        // A standard deviation from the same few turns may be far too small.
+        let few = if is_known { 0.0 } else { FEW / f64::from(self.degrees.max(1)) };
+        if libm::sqrt(drift) > DIFFERENT * (1.0 + few) {
             return Err(Refusal::DirectionDrifts { sigmas: libm::sqrt(drift) });
         }
         Ok(())
