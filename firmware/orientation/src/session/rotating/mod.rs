@@ -163,7 +163,8 @@ impl Session {
     #[must_use]
     pub fn turns(&self) -> (u32, u32) {
         let done = self.follower.stretches().iter().map(Stretch::count).sum();
-        (done, 2 * self.procedure.turns * self.procedure.speeds.len() as u32)
+        let speeds = 0..self.procedure.speeds.len();
+        (done, speeds.map(|index| 2 * self.procedure.turns_at(index)).sum())
     }
 
     /// Mean force at rest, m/s², where there was one.
@@ -284,10 +285,11 @@ impl Session {
     /// Turns until the turns are full; gives up where that takes far too long.
     fn even(&mut self, index: usize, sense: Sense, has_turned: bool, elapsed: u64) -> Command {
         self.turns += u32::from(has_turned);
-        if self.turns >= self.procedure.turns {
+        let turns = self.procedure.turns_at(index);
+        if self.turns >= turns {
             return self.go_on(index, sense);
         }
-        let planned = f64::from(self.procedure.turns) * TURN / self.speed(index);
+        let planned = f64::from(turns) * TURN / self.speed(index);
         if is_over(elapsed, PATIENCE.0 * planned + PATIENCE.1) {
             let wanted = sense.signed(self.speed(index)) * DEGREES;
             return self.conclude(Some(Refusal::PlatformStopped { wanted }));

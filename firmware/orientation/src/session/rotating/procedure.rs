@@ -10,7 +10,7 @@ use crate::units::TURN;
 /// Frequencies of the modulation over that of the turn: far enough from it to be told apart in twelve
 /// turns, and on both sides, so that what a sensor does between them is what it does at the turn.
 const TONES: [f64; 2] = [0.83, 1.17];
-/// Default time in either sense, s.
+/// Default time in either sense for each speed, s.
 const DEFAULT_SECONDS: f64 = 180.0;
 /// Length of a block: what the platform turns meanwhile costs 1e-4 of the signal.
 const BLOCK_SECONDS: f64 = 0.02;
@@ -23,7 +23,7 @@ const BLOCK_ANGLE: f64 = 0.1 / 360.0 * TURN;
 pub struct Procedure {
     /// Speeds, rad/s, > 0, one or two.
     pub speeds: Vec<f64, SPEEDS>,
-    /// Even turns in either sense at each speed, two at least.
+    /// Even turns in either sense at the slower speed, two at least; see [`Self::turns_at`].
     pub turns: u32,
     /// Turns that are uneven on purpose before them; zero where the stored couplings are to do.
     pub uneven_turns: u32,
@@ -42,12 +42,14 @@ pub struct Procedure {
 }
 
 impl Procedure {
-    /// Speeds with a default number of turns: three minutes in either sense, twelve uneven turns modulated
-    /// by a quarter.
+    /// Speeds with a default number of turns: three minutes in either sense for each, twelve uneven turns
+    /// modulated by a quarter.
     #[must_use]
     pub fn new(speeds: &[f64], sample_seconds: f64) -> Self {
         let slowest = speeds.iter().copied().fold(f64::INFINITY, f64::min);
-        let turns = libm::ceil(DEFAULT_SECONDS * slowest / TURN).clamp(2.0, 1e6) as u32;
+        let squares: f64 = speeds.iter().map(|speed| speed * speed).sum();
+        let share = speeds.len() as f64 * slowest * slowest / squares;
+        let turns = libm::ceil(DEFAULT_SECONDS * share * slowest / TURN).clamp(2.0, 1e6) as u32;
         Self {
             speeds: speeds.iter().copied().take(SPEEDS).collect(),
             turns,
@@ -65,6 +67,16 @@ impl Procedure {
     #[must_use]
     pub fn recorded(sample_seconds: f64) -> Self {
         Self { block_seconds: BLOCK_SECONDS, ..Self::new(&[], sample_seconds) }
+    }
+
+    /// Even turns in either sense at a speed. Two speeds a < b give the azimuth as
+    /// (b² B − a² A)/(b² − a²) of what either says: with times as these weights its noise is least, (b² +
+    /// a²)/(b² − a²) of what one speed would have without a g-sensitivity.
+    #[must_use]
+    pub fn turns_at(&self, index: usize) -> u32 {
+        let slowest = self.speeds.iter().copied().fold(f64::INFINITY, f64::min);
+        let faster = self.speeds.get(index).map_or(1.0, |speed| speed / slowest);
+        libm::round(f64::from(self.turns) * faster * faster * faster).min(1e6) as u32
     }
 
     /// Sample periods in a block.
