@@ -12,6 +12,9 @@ const OUTLIER: f64 = 21.0;
 /// Median of the squared distance of two neighbours over the variance of either part: 2 · 2 ln 2.
 const MEDIAN_OF_NEIGHBOURS: f64 = 2.772_588_722_239_781;
 
+/// Number of differences of neighbours from which a variance comes out half too small at times.
+const FEW_NEIGHBOURS: f64 = 2.0;
+
 /// A stretch's phasors. A phasor a stands for the signal Re{a e^{jθ}}.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Average {
@@ -118,8 +121,7 @@ impl<'a> Turns<'a> {
     }
 
     fn distance(&self, index: usize, from: Complex) -> f64 {
-        let away = self.phasors[index] - from;
-        away.re * away.re + away.im * away.im
+        (self.phasors[index] - from).power()
     }
 
     /// Leaves out the turn that is furthest from the others while one is too far; at most a third.
@@ -157,10 +159,7 @@ impl Average {
         let turn = |index: usize| &turns.all[index];
         let phasor = turns.mean_complex(|index| turns.phasors[index]);
         let force = turns.mean_complex(|index| Complex::of_signal(turn(index).force));
-        let force_scatter = turns.kept().map(|index| {
-            let away = Complex::of_signal(turn(index).force) - force;
-            away.re * away.re + away.im * away.im
-        });
+        let apart = |index: usize| (Complex::of_signal(turn(index).force) - force).power();
         let (cosine, square) = turns.slope_of(|index| turns.phasors[index].re);
         let (sine, _) = turns.slope_of(|index| turns.phasors[index].im);
         Some(Self {
@@ -173,7 +172,7 @@ impl Average {
             phasor,
             turning: turns.mean_complex(|index| Complex::of_signal(turn(index).turning)),
             force,
-            force_scatter: force_scatter.sum(),
+            force_scatter: turns.kept().map(apart).sum(),
             mean_force: turns.mean(|index| f64::from(turn(index).mean_force)),
             share: turns.share(square) / f64::from(joined),
             scatter: turns.kept().map(|index| turns.distance(index, phasor)).sum(),
@@ -213,7 +212,7 @@ pub fn typical_size(stretch: &Stretch, couplings: &[Coupling]) -> f64 {
 }
 
 /// Variance of either part of a turn's phasor from the differences of neighbours, (rad/s)², which
-/// disturbed turns hardly touch; zero where there are none.
+/// disturbed turns hardly touch, with what few of them make it uncertain; zero where there are none.
 #[must_use]
 pub fn variance_of_neighbours(stretches: &[Stretch], couplings: &[Coupling]) -> f64 {
     let mut squares: Vec<f64, { 4 * TURNS }> = Vec::new();
@@ -224,5 +223,6 @@ pub fn variance_of_neighbours(stretches: &[Stretch], couplings: &[Coupling]) -> 
             let _ = squares.push(turns.distance(index, turns.phasors[index - 1]));
         }
     }
-    median(&mut squares) / MEDIAN_OF_NEIGHBOURS
+    let few = 1.0 + FEW_NEIGHBOURS / squares.len().max(1) as f64;
+    few * median(&mut squares) / MEDIAN_OF_NEIGHBOURS
 }
