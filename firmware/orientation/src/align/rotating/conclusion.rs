@@ -6,7 +6,7 @@ use super::Setting;
 use super::average::{Average, typical_size, variance_of_neighbours};
 use super::coupling::Coupling;
 use super::follower::{Follower, STRETCHES};
-use super::solution::{Fit, Pair, Problem, SPEEDS, of_turn};
+use super::solution::{Fit, Pair, Problem, SPEEDS, force_density, of_turn};
 use super::turn::{Sense, Stretch};
 use crate::align::conclusion::Azimuth;
 use crate::device::Device;
@@ -28,6 +28,8 @@ const SENSES_TOLERANCE: f64 = 0.05;
 const RATIO_TOLERANCE: f64 = 0.005;
 /// What the tilt may differ by between stretches beyond five σ, g.
 const TILT_TOLERANCE: f64 = 1e-5;
+/// Degrees of freedom at which a bound on a scatter that is itself estimated doubles.
+const FEW: f64 = 10.0;
 /// Mean force over whole turns beyond which an accelerometer does not lie in the platform's plane, m/s²,
 /// beyond five of its bias's σ.
 const FORCE_TOLERANCE: f64 = 1.0;
@@ -196,35 +198,43 @@ impl Conclusion {
     /// Chi-square of the turns about their means, and their drift.
     #[inline(never)]
     fn judge_turns(&mut self, setting: &Setting) -> Result<(), Refusal> {
-        let horizontal = setting.common.latitude.horizontal_rate();
-        let (mut drift, mut left_out, mut turns) = (0.0f64, 0, 0);
-        for pair in &self.pairs {
-            let gain = if setting.sensor.is_flat { 1.0 } else { pair.gain(horizontal) };
-            for average in [&pair.clockwise, &pair.counter] {
-                let variance =
-                    self.of_one_turn(setting, average.speed) * gain * gain / average.joined();
-                self.chi_square += average.scatter / variance;
-                self.degrees += average.degrees;
-                drift = drift.max(average.trend / variance);
-                left_out += average.left_out;
-                turns += average.turns + average.left_out;
-            }
-        }
+        let drift = self.scatter(setting);
+        let averages = || self.pairs.iter().flat_map(Pair::senses);
+        let left_out: u32 = averages().map(|average| average.left_out).sum();
+        let turns: u32 = left_out + averages().map(|average| average.turns).sum::<u32>();
         if 4 * left_out > turns {
             let [disturbed, positions] = [left_out, turns].map(|count| count as usize);
             return Err(Refusal::Disturbed { disturbed, positions });
         }
-        let ratio = self.chi_square / f64::from(self.degrees.max(1));
+        let degrees = f64::from(self.degrees.max(1));
         let is_known = setting.common.white_known;
-        if is_known
-            && chi_square_tail(self.chi_square, f64::from(self.degrees)) < SCATTER_PROBABILITY
-        {
-            return Err(Refusal::ResidualsNotWhite { ratio });
+        if is_known && chi_square_tail(self.chi_square, degrees) < SCATTER_PROBABILITY {
+            return Err(Refusal::ResidualsNotWhite { ratio: self.chi_square / degrees });
         }
-        if drift > DIFFERENT * DIFFERENT {
-            return Err(Refusal::DirectionDrifts { sigmas: libm::sqrt(drift) });
+        // A standard deviation from the same few turns may be far too small.
+        let few = if is_known { 0.0 } else { FEW / degrees };
+        if drift > DIFFERENT * (1.0 + few) {
+            return Err(Refusal::DirectionDrifts { sigmas: drift });
         }
         Ok(())
+    }
+
+    /// Sums up chi-square; the greatest drift of a stretch's phasor, in σ.
+    fn scatter(&mut self, setting: &Setting) -> f64 {
+        let horizontal = setting.common.latitude.horizontal_rate();
+        let (mut chi_square, mut degrees, mut drift) = (0.0, 0, 0.0f64);
+        for pair in &self.pairs {
+            let gain = if setting.sensor.is_flat { 1.0 } else { pair.gain(horizontal) };
+            for average in pair.senses() {
+                let one = self.of_one_turn(setting, average.speed) * gain * gain;
+                let variance = one / average.joined();
+                chi_square += average.scatter / variance;
+                degrees += average.degrees;
+                drift = drift.max(average.trend / variance);
+            }
+        }
+        (self.chi_square, self.degrees) = (chi_square, degrees);
+        libm::sqrt(drift)
     }
 
     #[inline(never)]
@@ -241,14 +251,17 @@ impl Conclusion {
     fn judge_force(&self, setting: &Setting, fit: &Fit) -> Result<(), Refusal> {
         let gravity = setting.common.latitude.gravity();
         let allowed = FORCE_TOLERANCE + DIFFERENT * setting.common.accelerometer_bias_sigma;
-        for average in self.pairs.iter().flat_map(|pair| [&pair.clockwise, &pair.counter]) {
+        let (density, degrees) = force_density(&self.pairs);
+        // A standard deviation from few turns may be far too small.
+        let different = DIFFERENT * (1.0 + FEW / f64::from(degrees.max(1)));
+        for average in self.pairs.iter().flat_map(Pair::senses) {
             if average.mean_force.abs() > allowed {
                 let ratio = average.mean_force / gravity;
                 return Err(Refusal::AccelerometerImplausible { ratio });
             }
             let apart: Complex = average.force.scaled(1.0 / gravity) - fit.tilt;
-            let sigma = libm::sqrt(average.force_variance) / gravity;
-            if apart.size() > DIFFERENT * sigma + TILT_TOLERANCE {
+            let sigma = libm::sqrt(density / average.seconds) / gravity;
+            if apart.size() > different * sigma + TILT_TOLERANCE {
                 return Err(Refusal::TiltChanged { change: apart.size() * 1e3 });
             }
         }

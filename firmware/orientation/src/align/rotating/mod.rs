@@ -14,7 +14,9 @@ pub mod average;
 pub mod conclusion;
 pub mod coupling;
 pub mod follower;
+pub mod level;
 pub mod molecular;
+pub mod part;
 pub mod solution;
 pub mod turn;
 

@@ -3,10 +3,14 @@
 use super::Setting;
 use super::average::Average;
 use super::coupling::{self, Coupling};
+use super::level::Lean;
 use super::molecular::{self, Freed, Halves};
 use crate::align::budget::Budget;
 use crate::math::Complex;
 use crate::units::{TURN, wrapped};
+
+/// How far a flat sensor may lag behind the encoder, where no uneven turn has told, 1σ, s.
+const UNKNOWN_LAG: f64 = 0.01;
 
 /// Most speeds.
 pub const SPEEDS: usize = 2;
@@ -33,7 +37,9 @@ impl Pair {
         self.clockwise.seconds + self.counter.seconds
     }
 
-    fn senses(&self) -> [&Average; 2] {
+    /// Both.
+    #[must_use]
+    pub fn senses(&self) -> [&Average; 2] {
         [&self.clockwise, &self.counter]
     }
 
@@ -109,6 +115,8 @@ pub struct Fit {
     pub tilt: Complex,
     /// 1σ of either part of it, g.
     pub tilt_sigma: f64,
+    /// The same as pitch and roll of the body.
+    pub lean: Lean,
     /// Horizontal Earth rate found over expected, and its 1σ; one and infinite where the sensor's gain is
     /// unknown.
     pub ratio: f64,
@@ -154,7 +162,8 @@ impl Problem<'_> {
     pub fn solve(&self) -> Option<Fit> {
         let first = self.pairs.first()?;
         let (tilt, tilt_sigma) = self.tilt();
-        let mut fit = Fit { tilt, tilt_sigma, ratio: 1.0, ..Fit::default() };
+        let lean = Lean::of(tilt);
+        let mut fit = Fit { tilt, tilt_sigma, lean, ratio: 1.0, ..Fit::default() };
         fit.ratio_sigma = f64::INFINITY;
         let is_flat = self.setting.sensor.is_flat;
         let turned = if is_flat { self.flat(&mut fit) } else { self.lagging(&mut fit)? };
@@ -179,13 +188,13 @@ impl Problem<'_> {
     /// The tilt's phasor and the 1σ of its parts, g.
     fn tilt(&self) -> (Complex, f64) {
         let gravity = self.setting.common.latitude.gravity();
-        let (mut sum, mut information) = (Complex::default(), 0.0);
+        let (mut sum, mut seconds) = (Complex::default(), 0.0);
         for average in self.pairs.iter().flat_map(Pair::senses) {
-            let weight = 1.0 / average.force_variance.max(f64::MIN_POSITIVE);
-            sum = sum + average.force.scaled(weight);
-            information += weight;
+            sum = sum + average.force.scaled(average.seconds);
+            seconds += average.seconds;
         }
-        (sum.scaled(1.0 / information / gravity), libm::sqrt(1.0 / information) / gravity)
+        let variance = force_density(self.pairs).0 / seconds;
+        (sum.scaled(1.0 / seconds / gravity), libm::sqrt(variance) / gravity)
     }
 
     /// What multiplies the tilt, rad/s per g: vertical Earth rate and ordinary g-sensitivity.
@@ -206,18 +215,16 @@ impl Problem<'_> {
             fit.difference = fit.difference.max(odd * odd * weight);
         }
         let mean = sum.scaled(1.0 / information);
-        let mut earth = mean;
-        // The tilt's part is small: three rounds settle the ratio to 1e-6.
-        for _ in 0..3 {
-            fit.ratio = earth.size() / horizontal;
-            earth = mean - self.per_tilt(fit.ratio) * fit.tilt;
+        let (mut angle, mut size) = (0.0, mean.size());
+        // The tilt's part is small: a few rounds settle the ratio.
+        for _ in 0..4 {
+            fit.ratio = size / horizontal;
+            (angle, size) = fit.lean.azimuth(mean - self.per_tilt(fit.ratio) * fit.tilt);
         }
         fit.ratio_sigma = libm::sqrt(1.0 / information) / horizontal;
         // Q₊ − Q₋ is −2jγE′.
         let odd = self.slowest().map_or(Complex::default(), Pair::odd);
         fit.molecular = odd / mean * Complex::new(0.0, 1.0);
-        let size = earth.size();
-        let angle = levelled(earth, fit.tilt).angle();
         Turned { angle, noise: 1.0 / information / (size * size), left: 0.0 }
     }
 
@@ -249,16 +256,9 @@ impl Problem<'_> {
             *phase += freed.ratio.re * slowest / pair.speed();
         }
         let [horizontal, _] = self.earth();
-        let across = self.per_tilt(1.0) * fit.tilt * Complex::unit(-freed.angle);
-        let sine = (across.im / horizontal).clamp(-1.0, 1.0);
-        // How the azimuth follows arg E′.
-        let slope = 1.0 + across.re / horizontal / libm::sqrt((1.0 - sine * sine).max(1e-6));
-        let earth = Complex::unit(freed.angle - libm::asin(sine));
-        Some(Turned {
-            angle: levelled(earth, fit.tilt).angle(),
-            noise: freed.noise * slope * slope,
-            left: freed.left * slope * slope,
-        })
+        let others = (self.per_tilt(1.0) * fit.tilt).scaled(1.0 / horizontal);
+        let (angle, slope) = fit.lean.azimuth_towards(freed.angle, others)?;
+        Some(Turned { angle, noise: freed.noise * slope * slope, left: freed.left * slope * slope })
     }
 
     /// The limit of a flat sensor of known g-sensitivity in the same time.
@@ -309,8 +309,9 @@ impl Problem<'_> {
             let (even, odd) =
                 ((clockwise + counter).scaled(0.5), (clockwise - counter).scaled(0.5));
             let coupling = coupling::nearest(self.couplings, pair.speed());
-            let [in_phase, lagging] = coupling
-                .map_or([self.setting.coupling_limit, 0.0], |found| found.sigmas(pair.speed()));
+            let limit = self.setting.coupling_limit;
+            let unknown = [limit, limit * UNKNOWN_LAG * pair.speed()];
+            let [in_phase, lagging] = coupling.map_or(unknown, |found| found.sigmas(pair.speed()));
             let mixed = libm::hypot(even.size(), odd.size() * fit.molecular.size());
             libm::hypot(in_phase * mixed, lagging * odd.size())
         });
@@ -318,15 +319,16 @@ impl Problem<'_> {
     }
 }
 
-/// The Earth rate's phasor as a level platform would show it. Tilted by pitch and roll (equations.md §1),
-/// E is `Ω_h` (cos A cos p + j (sin A cos r − cos A sin p sin r)): at 3° this turns it by up to 0.08°.
-fn levelled(earth: Complex, tilt: Complex) -> Complex {
-    let sine_pitch = tilt.re.clamp(-1.0, 1.0);
-    let cosine_pitch = libm::sqrt((1.0 - sine_pitch * sine_pitch).max(f64::MIN_POSITIVE));
-    let sine_roll = (tilt.im / cosine_pitch).clamp(-1.0, 1.0);
-    let cosine_roll = libm::sqrt((1.0 - sine_roll * sine_roll).max(f64::MIN_POSITIVE));
-    let north = earth.re / cosine_pitch;
-    Complex::new(north, (earth.im + north * sine_pitch * sine_roll) / cosine_roll)
+/// Variance of either part of a force's phasor times the time over which it was found, (m/s²)²·s, and the
+/// degrees of freedom from which this is known.
+#[must_use]
+pub fn force_density(pairs: &[Pair]) -> (f64, u32) {
+    let (mut sum, mut degrees) = (0.0, 0);
+    for average in pairs.iter().flat_map(Pair::senses) {
+        sum += average.force_scatter * average.seconds / (0.5 * f64::from(average.degrees) + 1.0);
+        degrees += average.degrees;
+    }
+    (sum / f64::from(degrees.max(1)), degrees)
 }
 
 /// An azimuth before it is judged.
