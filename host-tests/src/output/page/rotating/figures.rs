@@ -53,6 +53,20 @@ pub fn spectra(part: &Part<'_>, coupling: f64) -> Figure {
     }
 }
 
+/// The sensor's spectrum as it comes, of several parts at the same speed.
+pub fn compared(parts: &[Part<'_>], names: &[String]) -> Figure {
+    let turn = parts.first().map_or(0.0, |part| turn_hz(part.rows).abs());
+    let of = |(part, name): (&Part<'_>, &String)| {
+        lines(name, Style::LineAndPoints, part, &|row| row.rate_rad_s)
+    };
+    Figure {
+        title: "Amplitude spectra of the sensor".to_owned(),
+        x: Axis::linear(&format!("frequency in turns, of {turn:.4} Hz each"), ""),
+        y: Axis::logarithmic("amplitude", "°/h"),
+        series: parts.iter().zip(names).map(of).collect(),
+    }
+}
+
 /// The spectrum of the platform's rate alone, in Hz.
 pub fn platform(parts: &[Part<'_>]) -> Figure {
     let of = |part: &Part<'_>| {

@@ -1,5 +1,6 @@
 //! The page of an alignment on a turning platform: papers/004's figures, and where σ comes from.
 
+pub mod campaign;
 mod figures;
 
 use orientation::align::rotating::conclusion::Conclusion;
