@@ -53,7 +53,11 @@ impl CampaignOptions {
     /// The options, and why.
     pub fn check(&self) -> Result<(), &'static str> {
         let draws = matches!(self.name, Campaign::Burov | Campaign::Rotating);
-        if self.report.is_some() && !draws { Err("--report: only burov and rotating draw") } else { Ok(()) }
+        if self.report.is_some() && !draws {
+            Err("--report: only burov and rotating draw")
+        } else {
+            Ok(())
+        }
     }
 }
 
@@ -144,9 +148,7 @@ fn rotating(runs: usize, report: Option<&Path>, as_json: bool) -> Result<Told, S
     })?;
     let refusal = (!found).then(|| "a healthy run was refused, or a north was wrong".to_owned());
     let told = Told { refusal, ..told };
-    Ok(told.with_page(report, || {
-        page::rotating::campaign::report(&stages, &molecular, &refusals)
-    }))
+    Ok(told.with_page(report, || page::rotating::campaign::report(&stages, &molecular, &refusals)))
 }
 
 /// The whole instrument over many seeds; a result where none was refused.

@@ -60,7 +60,8 @@ fn raw(row: &stages::Row) -> Figure {
 }
 
 fn of_precisions(stages: &[stages::Row], molecular: &[molecular::Row]) -> Table {
-    let gyro = |row: &stages::Row| line(&format!("gyro, N {} °/√h", row.n_deg_sqrt_h), &row.precision);
+    let gyro =
+        |row: &stages::Row| line(&format!("gyro, N {} °/√h", row.n_deg_sqrt_h), &row.precision);
     let sensor = |row: &molecular::Row| {
         let name = format!("molecular, ρ {}, N {} °/√h", row.ratio, molecular::WALK);
         line(&name, &row.precision)
@@ -108,7 +109,8 @@ fn of_molecular(rows: &[molecular::Row]) -> Table {
         ratio.chain(numbers).chain([format!("{:.2}", row.noise_ratio)]).collect()
     };
     Table {
-        title: "Molecular-electronic sensor: what is left of its g-sensitivity without noise".to_owned(),
+        title: "Molecular-electronic sensor: what is left of its g-sensitivity without noise"
+            .to_owned(),
         head: named(&[
             "ρ",
             "one speed: RMS, °",
