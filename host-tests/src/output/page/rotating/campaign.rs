@@ -11,6 +11,8 @@ use crate::rotating::part::Part;
 
 /// The couplings of the figure with two of them, °: as in the campaign, and nearly aligned.
 const COUPLINGS_DEG: [f64; 2] = [COUPLING_DEG, 0.1];
+/// When the platform has taken on its speed, s.
+const SETTLED: f64 = 5.0;
 /// Length of the even stretch that it shows, s.
 const SECONDS: f64 = 200.0;
 
@@ -145,7 +147,7 @@ fn of_couplings() -> Vec<OfPage> {
         let world = World { coupling_deg, segments: even, ..stages::world(stages::WALKS[0], 1) };
         world.rows(1)
     });
-    let parts = rows.each_ref().map(|rows| Part::between(rows, 0.0, SECONDS, true));
+    let parts = rows.each_ref().map(|rows| Part::between(rows, SETTLED, SECONDS, true));
     let names = COUPLINGS_DEG.map(|coupling| format!("coupling {coupling}°"));
     let platform = figures::platform(&parts[..1]);
     vec![figures::compared(&parts, &names).into(), platform.into()]
