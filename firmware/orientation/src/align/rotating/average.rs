@@ -4,6 +4,7 @@ use heapless::Vec;
 
 use super::coupling::{self, Coupling};
 use super::turn::{Sense, Stretch, TURNS, Turn};
+use crate::align::regression::{Column, Regression};
 use crate::math::{Complex, median};
 
 /// Squared distance of a turn from the others, in variances of either part, beyond which it is left
@@ -54,16 +55,19 @@ pub struct Average {
 /// The turns of a stretch as compensated phasors.
 struct Turns<'a> {
     all: &'a [Turn],
+    /// Part of the platform's steady rate that the gyro shows.
+    steady: f64,
     phasors: Vec<Complex, TURNS>,
     is_kept: [bool; TURNS],
 }
 
 impl<'a> Turns<'a> {
-    fn of(stretch: &'a Stretch, couplings: &[Coupling]) -> Self {
+    fn of(stretch: &'a Stretch, couplings: &[Coupling], steady: f64) -> Self {
         let frequency = stretch.sense.signed(stretch.speed());
         let coupling = coupling::nearest(couplings, frequency);
         let response = coupling.map_or(Complex::default(), |coupling| coupling.response(frequency));
-        let mut found = Self { all: stretch.turns(), phasors: Vec::new(), is_kept: [true; TURNS] };
+        let (all, phasors) = (stretch.turns(), Vec::new());
+        let mut found = Self { all, steady, phasors, is_kept: [true; TURNS] };
         for turn in stretch.turns() {
             let turning = Complex::of_signal(turn.turning);
             // A stretch holds no more turns than these.
@@ -112,12 +116,19 @@ impl<'a> Turns<'a> {
         (if square > 0.0 { product / square } else { 0.0 }, square)
     }
 
-    /// Drift of the gyro's rate, rad/s²: none is told by fewer than three turns.
+    /// Drift of the gyro's rate, rad/s²: none is told by fewer than three turns. A platform that turned
+    /// quicker in one of them, as where it begins to, is no drift.
     fn slope(&self) -> f64 {
         if self.count() < 3 {
             return 0.0;
         }
-        self.slope_of(|index| f64::from(self.all[index].offset)).0
+        self.slope_of(|index| self.own_rate(index)).0
+    }
+
+    /// Mean of the gyro's rate over a turn without the platform's part, rad/s.
+    fn own_rate(&self, index: usize) -> f64 {
+        let turn = &self.all[index];
+        f64::from(turn.offset) - self.steady * f64::from(turn.speed)
     }
 
     fn distance(&self, index: usize, from: Complex) -> f64 {
@@ -145,10 +156,15 @@ impl<'a> Turns<'a> {
 
 impl Average {
     /// The mean of a stretch whose turns have phasors of this variance in either part, (rad/s)²; `None`
-    /// without two turns.
+    /// without two turns. Of the platform's steady rate the gyro shows this part ([`steady_part`]).
     #[must_use]
-    pub fn of(stretch: &Stretch, couplings: &[Coupling], variance: f64) -> Option<Self> {
-        let mut turns = Turns::of(stretch, couplings);
+    pub fn of(
+        stretch: &Stretch,
+        couplings: &[Coupling],
+        steady: f64,
+        variance: f64,
+    ) -> Option<Self> {
+        let mut turns = Turns::of(stretch, couplings, steady);
         turns.leave_out(variance);
         turns.free();
         let count = turns.count();
@@ -174,7 +190,7 @@ impl Average {
             force,
             force_scatter: turns.kept().map(apart).sum(),
             mean_force: turns.mean(|index| f64::from(turn(index).mean_force)),
-            share: turns.share(square) / f64::from(joined),
+            share: turns.share(square, variance) / f64::from(joined),
             scatter: turns.kept().map(|index| turns.distance(index, phasor)).sum(),
             trend: (cosine * cosine + sine * sine) * square,
             degrees: 2 * (count as u32 - 1),
@@ -191,22 +207,51 @@ impl Average {
 }
 
 impl Turns<'_> {
-    /// Variance of either part of the mean where a turn's is one: what the drift's slope adds, whose
-    /// own variance is that of the turns' means, half of a phasor's.
-    fn share(&self, square: f64) -> f64 {
+    /// Variance of either part of the mean where a turn's is one: what the drift's slope adds. Its own is
+    /// that of the turns' mean rates, half of a phasor's, or what they show where they do not lie on a
+    /// line, as after a bump of some turns.
+    fn share(&self, square: f64, variance: f64) -> f64 {
         let own = 1.0 / self.count() as f64;
         if self.count() < 3 || square <= 0.0 {
             return own;
         }
         let leak = self.mean_complex(|index| Complex::of_signal(self.all[index].leak)).size();
-        own + 0.5 * leak * leak * 0.5 / square
+        let offset = (self.bend() / variance.max(f64::MIN_POSITIVE)).max(0.5);
+        own + 0.5 * leak * leak * offset / square
     }
+
+    /// Variance of the turns' mean rates about a line, (rad/s)².
+    fn bend(&self) -> f64 {
+        let (slope, square) = self.slope_of(|index| self.own_rate(index));
+        let mean = self.mean(|index| self.own_rate(index));
+        let scatter = self.mean(|index| {
+            let away = self.own_rate(index) - mean;
+            away * away
+        });
+        let count = self.count() as f64;
+        (count * scatter - slope * slope * square).max(0.0) / (count - 2.0)
+    }
+}
+
+/// Part of the platform's steady rate that the gyro shows: the slope of its mean rates over the speeds
+/// of the stretches. A sensor that passes nothing steady shows none; one sense alone cannot tell.
+#[must_use]
+pub fn steady_part(stretches: &[Stretch]) -> f64 {
+    let mut regression = Regression::<2>::default();
+    for stretch in stretches {
+        let mut rates: Vec<f64, TURNS> =
+            stretch.turns().iter().map(|turn| f64::from(turn.offset)).collect();
+        let speed = stretch.sense.signed(stretch.speed());
+        regression.push(&[1.0, speed], median(&mut rates));
+    }
+    let found = regression.solve(&[Column::Free; 2]);
+    found.map_or(0.0, |found| found.coefficients[1])
 }
 
 /// Size of a turn's phasor, rad/s: the median, which disturbed turns hardly touch.
 #[must_use]
 pub fn typical_size(stretch: &Stretch, couplings: &[Coupling]) -> f64 {
-    let turns = Turns::of(stretch, couplings);
+    let turns = Turns::of(stretch, couplings, 0.0);
     let mut sizes: Vec<f64, TURNS> = turns.phasors.iter().map(|phasor| phasor.size()).collect();
     median(&mut sizes)
 }
@@ -217,7 +262,7 @@ pub fn typical_size(stretch: &Stretch, couplings: &[Coupling]) -> f64 {
 pub fn variance_of_neighbours(stretches: &[Stretch], couplings: &[Coupling]) -> f64 {
     let mut squares: Vec<f64, { 4 * TURNS }> = Vec::new();
     for stretch in stretches {
-        let turns = Turns::of(stretch, couplings);
+        let turns = Turns::of(stretch, couplings, 0.0);
         for index in 1..turns.all.len() {
             // Four stretches hold no more.
             let _ = squares.push(turns.distance(index, turns.phasors[index - 1]));

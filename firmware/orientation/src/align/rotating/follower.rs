@@ -166,14 +166,38 @@ impl Follower {
     /// angles unless it was measured by itself.
     #[inline]
     pub fn push(&mut self, sample: &Sample, turning: Option<f32>) -> bool {
+        let block = self.blocks.push(sample, turning);
         if self.mode == Mode::Ignore {
+            if let Some(block) = block {
+                self.latest(block, turning.is_some());
+            }
             return false;
         }
-        let block = self.blocks.push(sample, turning);
         if let Some([along, _, _]) = sample.force {
             self.force(along);
         }
-        block.is_some_and(|block| self.take(block))
+        block.is_some_and(|block| self.take(block, turning.is_some()))
+    }
+
+    /// The block before the latest one, with its neighbours, once there are three. By how much the encoder
+    /// shows more or less in it alone than goes with its neighbours, and with its own rate where that was
+    /// measured, is a slip, in whatever mode.
+    fn latest(&mut self, next: Block, is_measured: bool) -> Option<[Block; 3]> {
+        let [before, block] = self.latest;
+        self.latest = [block, Some(next)];
+        let (before, block) = (before?, block?);
+        let (mut least, mut greatest) =
+            (before.turning.min(next.turning), before.turning.max(next.turning));
+        if is_measured {
+            (least, greatest) = (least.min(block.turning), greatest.max(block.turning));
+        }
+        let turned = block.turned as f64 * Angle::STEP;
+        let shown = (turned / f64::from(block.seconds)) as f32;
+        let slip = turned - f64::from(shown.max(least).min(greatest) * block.seconds);
+        if slip.abs() > SLIP.max(self.slip.abs()) {
+            self.slip = slip;
+        }
+        Some([before, block, next])
     }
 
     /// Takes a force, unless it stands at the limit of its range.
@@ -202,10 +226,8 @@ impl Follower {
 
     /// Takes the block before the latest two, whose neighbours are both known.
     #[inline(never)]
-    fn take(&mut self, next: Block) -> bool {
-        let [before, block] = self.latest;
-        self.latest = [block, Some(next)];
-        let (Some(before), Some(block)) = (before, block) else { return false };
+    fn take(&mut self, next: Block, is_measured: bool) -> bool {
+        let Some([before, block, next]) = self.latest(next, is_measured) else { return false };
         let seconds = block.seconds + 0.5 * (before.seconds + next.seconds);
         let quickening = (next.turning - before.turning) / seconds;
         // A block beside a jump may hold a part of it.

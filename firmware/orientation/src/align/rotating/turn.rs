@@ -59,7 +59,7 @@ impl Turn {
         forces: &Regression<COLUMNS>,
     ) -> Option<Self> {
         let (offset, rate) = phasor(&sums.regression(RATE))?;
-        let (_, turning) = phasor(&sums.regression(TURNING))?;
+        let (speed, turning) = phasor(&sums.regression(TURNING))?;
         let (middle, leak) = phasor(&sums.regression(TIME))?;
         let (mean_force, force) = phasor(forces)?;
         let begun = reference.time.saturating_sub(since) as f64 * 1e-6;
@@ -72,7 +72,7 @@ impl Turn {
             offset: (offset + f64::from(reference.rate) * 1e-9) as f32,
             middle: (begun + middle) as f32,
             seconds: seconds as f32,
-            speed: reference.turning + sums.mean(TURNING) as f32,
+            speed: (f64::from(reference.turning) + speed) as f32,
         })
     }
 

@@ -1,0 +1,175 @@
+//! What goes wrong with the gyro and the accelerometer, or what is wrongly declared.
+
+use hal_mock::disturbance::Disturbance;
+use hal_mock::molecular::MolecularConfiguration;
+use hal_mock::turntable::{TurningSample, TurntableConfiguration};
+use orientation::earth::Latitude;
+
+use super::outcome::{
+    assert_never_wrong, assert_refused, assert_right, clockwise_s, counter_s, edited, plain, with,
+};
+
+#[test]
+fn bumped_turns_are_left_out() {
+    let bumps = [Disturbance::door_slam(clockwise_s(3.3)), Disturbance::door_slam(counter_s(2.2))];
+    let overload = [Disturbance::overload(clockwise_s(3.3), 0.2)];
+    let leant = |rate_deg_h: f64| {
+        [Disturbance::Nudge { start_s: clockwise_s(3.3), seconds: 20.0, rate_deg_h }]
+    };
+    let (little, more, much) = (leant(0.3), leant(5.0), leant(60.0));
+    for disturbances in [&bumps[..], &overload, &little, &more] {
+        assert_right(|seed, case| {
+            with(seed, &case, |configuration| TurntableConfiguration {
+                disturbances,
+                ..configuration
+            })
+        });
+    }
+    assert_never_wrong(&["Disturbed"], |seed, case| {
+        with(seed, &case, |configuration| TurntableConfiguration {
+            disturbances: &much,
+            ..configuration
+        })
+    });
+}
+
+#[test]
+fn a_platform_that_is_bumped_in_every_turn_is_refused() {
+    let bumps: Vec<Disturbance> = (0..200)
+        .map(|number| Disturbance::Nudge {
+            start_s: f64::from(number) * 2.9 + f64::from(number % 5) * 0.3,
+            seconds: 1.0,
+            rate_deg_h: 20.0 + 10.0 * f64::from(number % 7),
+        })
+        .collect();
+    assert_refused(&["Disturbed", "ResidualsNotWhite"], |seed, case| {
+        with(seed, &case, |configuration| TurntableConfiguration {
+            disturbances: &bumps,
+            ..configuration
+        })
+    });
+}
+
+#[test]
+fn an_accelerometer_that_saturates_sticks_or_is_dead_is_refused() {
+    let pushed = [Disturbance::force_overload(clockwise_s(0.0), 60.0)];
+    assert_refused(&["Device"], |seed, case| {
+        with(seed, &case, |configuration| TurntableConfiguration {
+            disturbances: &pushed,
+            accelerometer_full_scale_m_s2: 20.08,
+            ..configuration
+        })
+    });
+    assert_refused(&["Device"], |seed, case| {
+        edited(seed, &case, |samples| {
+            let middle = samples.len() / 2;
+            let force = samples[middle].force_m_s2;
+            samples[middle..].iter_mut().for_each(|sample| sample.force_m_s2 = force);
+        })
+    });
+    assert_refused(&["Device"], |seed, case| {
+        edited(seed, &case, |samples| {
+            samples.iter_mut().for_each(|sample| sample.force_m_s2 = [0.0; 3]);
+        })
+    });
+    // Vertical where it should be level.
+    assert_refused(&["AccelerometerImplausible"], |seed, case| {
+        edited(seed, &case, |samples| {
+            samples.iter_mut().for_each(|sample| sample.force_m_s2.swap(0, 2));
+        })
+    });
+}
+
+#[test]
+fn a_molecular_sensor_that_is_declared_a_gyro_is_refused_or_right() {
+    let names = ["SensesDisagree", "Disturbed", "ResidualsNotWhite", "EarthRateMismatch"];
+    let sensors = [
+        (0.0, 0.05, 0.0),
+        (0.0, 0.3, 0.0),
+        (0.03, 0.0, 0.0),
+        (0.03, 0.2, 0.0),
+        (0.0, 0.0, 1e-3),
+        (0.03, 0.1, 1e-3),
+        (0.1, 0.3, 1e-4),
+    ];
+    for (high_pass_hz, lag_s, g) in sensors {
+        assert_never_wrong(&names, |seed, mut case| {
+            let force_rad_s2_g = [g, 0.5 * g];
+            case.instruments.gyro.molecular =
+                Some(MolecularConfiguration { force_rad_s2_g, high_pass_hz, lag_s });
+            plain(seed, &case)
+        });
+    }
+}
+
+#[test]
+fn a_wrong_scale_or_latitude_is_refused_and_turns_no_azimuth() {
+    for scale_error in [0.1, -0.1, 0.01, -0.004] {
+        assert_never_wrong(&["EarthRateMismatch"], |seed, mut case| {
+            case.instruments.gyro.scale_error = scale_error;
+            plain(seed, &case)
+        });
+    }
+    for latitude_deg in [10.0, 50.0, 60.0] {
+        assert_refused(&["EarthRateMismatch"], |seed, mut case| {
+            case.setting.common.latitude = Latitude::from_degrees(latitude_deg).expect("one");
+            plain(seed, &case)
+        });
+    }
+    assert_refused(&["LatitudeTooHigh"], |seed, mut case| {
+        case.setting.common.latitude = Latitude::from_degrees(86.0).expect("one");
+        plain(seed, &case)
+    });
+}
+
+#[test]
+fn a_sensor_that_stands_badly_is_to_be_aligned_mechanically() {
+    for alpha_deg in [5.0_f64, -5.0, 2.1, -2.1] {
+        assert_refused(&["Misaligned"], |seed, mut case| {
+            case.instruments.gyro.axis_elevation_rad = alpha_deg.to_radians();
+            plain(seed, &case)
+        });
+    }
+    assert_refused(&["Misaligned", "SensesDisagree"], |seed, mut case| {
+        case.instruments.gyro.axis_elevation_rad = 0.4;
+        plain(seed, &case)
+    });
+}
+
+#[test]
+fn a_platform_too_steep_is_refused() {
+    assert_refused(&["TiltTooGreat"], |seed, mut case| {
+        case.instruments = case.instruments.leaning(16.0, 100.0);
+        case.setting.common.allowed_tilt = 10.0_f64.to_radians();
+        plain(seed, &case)
+    });
+}
+
+#[test]
+fn without_an_uneven_turn_or_a_stored_coupling_the_sigma_says_so() {
+    assert_never_wrong(&["SensesDisagree"], |seed, mut case| {
+        case.segments.remove(0);
+        plain(seed, &case)
+    });
+}
+
+/// What changes a sample, so that an installation is wrong which the tilt alone shows.
+type Wrong = fn(&mut TurningSample);
+
+#[test]
+fn an_encoder_or_axes_that_are_wired_the_wrong_way_are_refused() {
+    let names = ["AccelerometerAstray", "EarthRateMismatch"];
+    let wrongs: [Wrong; 3] = [
+        |sample| {
+            sample.stage_rad *= -1.0;
+            sample.stage_rate_rad_s *= -1.0;
+        },
+        |sample| sample.force_m_s2[0] *= -1.0,
+        |sample| sample.force_m_s2.swap(0, 1),
+    ];
+    for wrong in wrongs {
+        assert_refused(&names, |seed, case| {
+            edited(seed, &case, |samples| samples.iter_mut().for_each(wrong))
+        });
+    }
+}
