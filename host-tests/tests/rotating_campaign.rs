@@ -1,7 +1,7 @@
 //! Dynamic north finding by simulation: the figures of equations.md §4.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
-#[path = "rotating/oracle.rs"]
+#[path = "rotating_replay/oracle.rs"]
 mod oracle;
 
 use std::f64::consts::TAU;

@@ -2,11 +2,11 @@
 //! the truth and an independent solution, and refusals where the recording is spoilt.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
-#[path = "rotating/oracle.rs"]
+#[path = "rotating_replay/oracle.rs"]
 mod oracle;
-#[path = "rotating/output.rs"]
+#[path = "rotating_replay/output.rs"]
 mod output;
-#[path = "rotating/spoilt.rs"]
+#[path = "rotating_replay/spoilt.rs"]
 mod spoilt;
 
 use std::path::{Path, PathBuf};
