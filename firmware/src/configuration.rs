@@ -50,6 +50,24 @@ impl Default for StageConfiguration {
     }
 }
 
+/// A platform on a slip ring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TurntableConfiguration {
+    /// What motor and encoder may differ by from one turn to the next, rad: play, what the encoder's
+    /// calibration leaves, the time between two readings. Less than the azimuth's σ lets pass is out of
+    /// reach here; the session finds slower and smaller slips by its turns.
+    pub agreement: f64,
+    /// Rest after the motor has stopped, before the encoder is believed.
+    pub settle: Duration,
+}
+
+impl Default for TurntableConfiguration {
+    /// Motor and encoder within 0.15°, a quarter of a second of rest.
+    fn default() -> Self {
+        Self { agreement: 0.15 * DEGREE, settle: Duration::from_millis(250) }
+    }
+}
+
 /// The two frames of a mount: geometry, encoders, drives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FramesConfiguration {
@@ -139,6 +157,12 @@ impl Configuration {
             encoder: Harmonics::default(),
             stage: StageConfiguration::default(),
         }
+    }
+
+    /// The same on a turntable, which has turned on by the next sample: every one has its own angle.
+    #[must_use]
+    pub fn turning(sample_rate: f64) -> Self {
+        Self { angle_divider: 1, ..Self::at(sample_rate) }
     }
 
     /// The sample period, µs, to nearest.

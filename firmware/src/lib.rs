@@ -31,7 +31,9 @@ pub mod timeline;
 
 pub mod conduct;
 pub mod gimbal;
+pub mod motor;
 pub mod stage;
+pub mod turntable;
 
 pub mod event;
 pub mod health;

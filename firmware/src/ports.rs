@@ -5,6 +5,7 @@
 use drivers::fault::Fault;
 use embassy_time::Instant;
 use orientation::session::Session;
+use orientation::session::rotating::RotatingSession;
 use orientation::signal::Sample;
 use orientation::signal::sway::CoarseSensors;
 use orientation::units::{Angle, AngularRate, SpecificForce, Temperature};
@@ -115,7 +116,8 @@ pub trait Actuator: Startable {
     /// Sends the stage to an angle, rad, not wrapped, by the motor's count.
     async fn go_to(&mut self, angle: f64) -> Result<(), Fault>;
 
-    /// Turns at a rate, rad/s, clockwise positive, until it is told otherwise or touches an end.
+    /// Turns at a rate, rad/s, clockwise positive, until it is told otherwise or touches an end; also
+    /// on the way. Zero has it come to rest by its ramp.
     async fn seek(&mut self, rate: f64) -> Result<(), Fault>;
 
     /// Declares the angle at which the motor stands, rad.
@@ -150,6 +152,9 @@ pub trait Observer {
 
     /// The session has taken one more dwell.
     fn progress(&self, _: &Session) {}
+
+    /// The session on a turning platform has taken one more turn.
+    fn turned(&self, _: &RotatingSession) {}
 }
 
 /// Nobody is told.
@@ -164,6 +169,10 @@ impl<O: Observer> Observer for &O {
 
     fn progress(&self, session: &Session) {
         (**self).progress(session);
+    }
+
+    fn turned(&self, session: &RotatingSession) {
+        (**self).turned(session);
     }
 }
 

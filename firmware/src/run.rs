@@ -12,10 +12,11 @@ use embedded_io_async::Write;
 use orientation::device::Device;
 use orientation::error::Refusal;
 use orientation::session::Session;
+use orientation::session::rotating::RotatingSession;
 
 use crate::acquire::Acquisition;
-use crate::conduct::Conductor;
-use crate::configuration::{Configuration, FramesConfiguration};
+use crate::conduct::{Conducted, Conductor};
+use crate::configuration::{Configuration, FramesConfiguration, TurntableConfiguration};
 use crate::gimbal::Gimbal;
 use crate::health::{self, Health};
 use crate::link;
@@ -26,6 +27,7 @@ use crate::ports::{
 use crate::shared::{LatestAngle, Shared};
 use crate::stage::Stage;
 use crate::steady::Base;
+use crate::turntable::Turntable;
 
 /// Samples until a sensor is given up, which the session is told; never ends.
 pub async fn acquire<G, A, E, B, O>(
@@ -96,7 +98,27 @@ where
     beside(turning, link, recorder, session, shared).await
 }
 
-/// The same on a mount with two frames. After an azimuth it takes the gyro's axis to the vertical,
+/// The same on a platform that turns all the time, which [`acquire`] samples with a configuration for
+/// [turning](Configuration::turning).
+pub async fn run_rotating<M, L, R, O>(
+    ports: &mut Ports<M, L, R>,
+    configuration: &TurntableConfiguration,
+    session: &mut RotatingSession,
+    shared: &Shared<'_, O>,
+) -> Health
+where
+    M: Actuator,
+    L: Write,
+    R: Recorder,
+    O: Observer,
+{
+    let Ports { actuator, link, recorder } = ports;
+    let mut turntable = Turntable::new(actuator, configuration, shared);
+    let turning = pin!(turntable.run());
+    beside(turning, link, recorder, session, shared).await
+}
+
+/// The same as [`run`] on a mount with two frames. After an azimuth it takes the gyro's axis to the vertical,
 /// where it can store it.
 pub async fn run_frames<M, L, R, O>(
     ports: &mut Ports<Frames<M>, L, R>,
@@ -132,14 +154,15 @@ async fn discard<O>(shared: &Shared<'_, O>) {
 }
 
 /// Joins the parts around what turns the gyro, which ends only with a reason to end everything.
-async fn beside<L, R, O>(
+async fn beside<S, L, R, O>(
     turning: Pin<&mut impl Future<Output = Refusal>>,
     link: &mut L,
     recorder: &mut R,
-    session: &mut Session,
+    session: &mut S,
     shared: &Shared<'_, O>,
 ) -> Health
 where
+    S: Conducted,
     L: Write,
     R: Recorder,
     O: Observer,
