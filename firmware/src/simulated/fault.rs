@@ -30,6 +30,8 @@ const HANG: Duration = Duration::from_millis(500);
 const CAUGHT: f64 = 200.0 / 360.0 * TURN;
 /// By how much the encoder's magnet slips, rad: 0.5°.
 const SLIP: f64 = 0.5 / 360.0 * TURN;
+/// How fast it creeps, rad/s: 0.02°/s, by which three steps of 15° add up to what a stage tolerates.
+const CREEP: f64 = 0.02 / 360.0 * TURN;
 
 /// What is wrong with a chip or its bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,12 +75,18 @@ pub enum Fault {
     EncoderSlipAtStart,
     /// The magnet slips while something blocks the stage.
     EncoderSlipBlocked,
+    /// The magnet creeps whenever the stage turns.
+    EncoderCreep,
     /// Every transfer of the gyro's converter takes 300 ms.
     GyroHang,
     /// The gyro's output clips for two seconds.
     SaturationOnce,
     /// The gyro's output clips for good.
     Saturation,
+    /// The accelerometer's output clips for two seconds.
+    OverloadOnce,
+    /// The accelerometer's output clips for good.
+    Overload,
     /// Whoever takes the samples does not for half a second.
     Overflow,
     /// A door falls shut.
@@ -107,16 +115,19 @@ const SICKNESSES: [(Sickness, &str); 10] = [
     (Sickness::Hang, "hang"),
 ];
 
-const OTHERS: [(Fault, &str); 12] = [
+const OTHERS: [(Fault, &str); 15] = [
     (Fault::BlockedOnce, "stage-blocked-once"),
     (Fault::Blocked, "stage-blocked"),
     (Fault::TravelLimit, "travel-limit"),
     (Fault::EncoderSlip, "encoder-slip"),
     (Fault::EncoderSlipAtStart, "encoder-slip-at-start"),
     (Fault::EncoderSlipBlocked, "blocked-slip"),
+    (Fault::EncoderCreep, "encoder-creep"),
     (Fault::GyroHang, "gyro-hang-always"),
     (Fault::SaturationOnce, "saturation-once"),
     (Fault::Saturation, "saturation-always"),
+    (Fault::OverloadOnce, "overload-once"),
+    (Fault::Overload, "overload-always"),
     (Fault::Overflow, "overflow-once"),
     (Fault::DoorSlam, "door-slam"),
     (Fault::Nudge, "base-nudge"),
@@ -216,12 +227,15 @@ impl Plan {
             Fault::EncoderSlip => Some(slip(MIDDLE)),
             Fault::EncoderSlipAtStart => Some(slip(Instant::MIN)),
             Fault::EncoderSlipBlocked => Some(slip(MIDDLE + PASSING / 2)),
+            Fault::EncoderCreep => Some(StageFault::Creep { from: MIDDLE, rad_per_s: CREEP }),
             _ => None,
         };
         let block = matches!(fault, Fault::EncoderSlipBlocked).then(|| held(MIDDLE + PASSING));
         let disturbance = match fault {
             Fault::SaturationOnce => Some(Disturbance::overload(MIDDLE_S, 2.0)),
             Fault::Saturation => Some(Disturbance::overload(MIDDLE_S, 1e6)),
+            Fault::OverloadOnce => Some(Disturbance::force_overload(MIDDLE_S, 2.0)),
+            Fault::Overload => Some(Disturbance::force_overload(MIDDLE_S, 1e6)),
             Fault::DoorSlam => Some(Disturbance::door_slam(MIDDLE_S)),
             Fault::Nudge => {
                 Some(Disturbance::Nudge { start_s: MIDDLE_S, seconds: 4.0, rate_deg_h: 2.0 })

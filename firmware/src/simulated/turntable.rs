@@ -1,0 +1,167 @@
+//! One simulated alignment on a platform that turns all the time: what is true, what the board is told.
+//!
+//! Site, attitude, gyro and sample rate are those of a [`Scenario`]; slip ring, unevenness, speeds and
+//! the sensor's own dynamics are its own. The chips are the same.
+
+use core::cell::RefCell;
+
+use drivers::tmc5160::configuration::{Configuration as Motor, Switches};
+use hal_mock::chip::Rig;
+use hal_mock::molecular::MolecularConfiguration;
+use hal_mock::plant::PlantConfiguration;
+use hal_mock::plant::train::StageConfiguration;
+use hal_mock::stage::{Ripple, Unevenness};
+use orientation::align::setting::Setting;
+use orientation::session::rotating::{Coupling, RotatingProcedure};
+use orientation::units::{DEGREE, TURN};
+
+use super::fault::Plan;
+use super::scenario::{GyroClass, Scenario};
+use super::{Around, Chips, SimulatedPorts, board_around, ports_with};
+use crate::configuration::{Configuration, TurntableConfiguration};
+
+/// The motor driver of a platform that turns without end: it has no switches.
+const MOTOR: Switches = Switches { left: None, right: None };
+
+/// A molecular-electronic sensor: little noise at the turn's frequency, a drift that no gyro has.
+pub const MOLECULAR_ELECTRONIC: GyroClass =
+    GyroClass { n_deg_sqrt_h: 0.002, b_deg_h: 0.0, k_deg_h_sqrt_h: 0.0, bias_sigma_deg_h: 5.0 };
+
+/// Its dynamics: 8° ahead at 0.137 Hz by its high-pass, 2.5° behind by its lag, and a g-sensitivity that
+/// at that speed and 0.7° of tilt is a fifth of the horizontal Earth rate.
+pub const DYNAMICS: MolecularConfiguration = MolecularConfiguration {
+    force_rad_s2_g: [5e-4, -3e-4],
+    high_pass_hz: 0.02,
+    lag_s: 0.05,
+};
+
+/// A simulated alignment on a turning platform.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TurntableScenario {
+    /// Site, attitude, gyro and sample rate; its positions and dwells are not looked at.
+    pub base: Scenario,
+    /// Dynamics of a molecular-electronic sensor; none for a gyro.
+    pub molecular: Option<MolecularConfiguration>,
+    /// Turns a second, the second speed zero where there is none, Hz.
+    pub speeds_hz: [f64; 2],
+    /// Turns in each direction at each speed.
+    pub turns: usize,
+    /// How far the sensitive axis rises over the platform's plane, °.
+    pub elevation_deg: f64,
+    /// How uneven the gear is, relative, once and twice per turn.
+    pub unevenness: [f64; 2],
+    /// Angles at which it is quickest, °.
+    pub quickest_deg: [f64; 2],
+    /// A coupling that was stored, so that no uneven turn is needed.
+    pub stored: Option<Coupling>,
+}
+
+impl Default for TurntableScenario {
+    /// The default gyro, raised by 0.8°, at 0.137 Hz for ten turns each way, on a gear that is uneven by
+    /// 0.2 % once and 0.05 % twice per turn.
+    fn default() -> Self {
+        Self {
+            base: Scenario::default(),
+            molecular: None,
+            speeds_hz: [0.137, 0.0],
+            turns: 10,
+            elevation_deg: 0.8,
+            unevenness: [0.002, 0.0005],
+            quickest_deg: [35.0, 110.0],
+            stored: None,
+        }
+    }
+}
+
+impl TurntableScenario {
+    /// The default with another seed.
+    #[must_use]
+    pub fn usual(seed: u64) -> Self {
+        Self { base: Scenario::usual(seed), ..Self::default() }
+    }
+
+    /// Three turns each way at 100 Hz.
+    #[must_use]
+    pub fn brief(seed: u64) -> Self {
+        let base = Scenario { sample_rate_hz: 100.0, ..Scenario::usual(seed) };
+        Self { base, turns: 3, ..Self::default() }
+    }
+
+    /// A molecular-electronic sensor at two speeds.
+    #[must_use]
+    pub fn molecular(seed: u64) -> Self {
+        let base = Scenario { gyro: MOLECULAR_ELECTRONIC, ..Scenario::usual(seed) };
+        let (molecular, speeds_hz) = (Some(DYNAMICS), [0.1, 0.2]);
+        Self { base, molecular, speeds_hz, ..Self::default() }
+    }
+
+    /// What the board is told of place and instrument; none where the latitude is none.
+    #[must_use]
+    pub fn setting(&self) -> Option<Setting> {
+        self.base.setting()
+    }
+
+    /// How the board goes about it.
+    #[must_use]
+    pub fn procedure(&self) -> RotatingProcedure {
+        RotatingProcedure {
+            speeds: self.speeds_hz.map(|speed| speed * TURN),
+            speed_count: self.speeds_hz.iter().filter(|speed| **speed > 0.0).count(),
+            turns: self.turns,
+            sample_seconds: 1.0 / self.base.sample_rate_hz,
+            coupling: self.stored,
+        }
+    }
+
+    /// What the board is told of its devices.
+    #[must_use]
+    pub fn configuration(&self) -> Configuration {
+        Configuration {
+            encoder: self.base.configuration().encoder,
+            ..Configuration::turning(self.base.sample_rate_hz)
+        }
+    }
+
+    /// What it is told of the platform.
+    #[must_use]
+    pub fn turntable(&self) -> TurntableConfiguration {
+        TurntableConfiguration::default()
+    }
+
+    /// What is true of everything that the chips feel and move.
+    #[must_use]
+    pub fn plant(&self) -> PlantConfiguration<'static> {
+        let mut plant = self.base.plant();
+        plant.instruments.gyro.axis_elevation_rad = self.elevation_deg * DEGREE;
+        plant.instruments.gyro.molecular = self.molecular;
+        let ripple = |harmonic: usize| Ripple {
+            relative: self.unevenness[harmonic],
+            phase_rad: self.quickest_deg[harmonic] * DEGREE,
+        };
+        let endless = StageConfiguration::endless();
+        plant.stage = StageConfiguration {
+            travel_rad: endless.travel_rad,
+            switches_rad: endless.switches_rad,
+            unevenness: Unevenness { first: ripple(0), second: ripple(1) },
+            ..plant.stage
+        };
+        plant
+    }
+
+    /// The simulated board with a plan of faults.
+    #[must_use]
+    pub fn board<'a>(&self, plan: &'a Plan) -> Chips<'a> {
+        board_around(&self.plant(), self.base.seed, plan)
+    }
+}
+
+/// The other ports of its simulated board; the sensors are those of [`super::sensors`].
+pub fn ports<'a, B: Rig, A: Around, L, R>(
+    board: &'a RefCell<B>,
+    around: &A,
+    link: L,
+    recorder: R,
+) -> SimulatedPorts<'a, B, A, L, R> {
+    let motor = Motor { switches: MOTOR, ..Motor::default() };
+    ports_with(board, around, motor, link, recorder)
+}
