@@ -13,7 +13,7 @@ use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Timer};
 use orientation::device::Trouble;
 use orientation::error::Refusal;
-use orientation::units::{Angle, DEGREES_PER_RADIAN as DEGREES};
+use orientation::units::{Angle, DEGREES_PER_RADIAN as DEGREES, TURN};
 
 use crate::configuration::TurntableConfiguration;
 use crate::event::Event;
@@ -122,7 +122,7 @@ impl<'a, M: Actuator, O: Observer> Turntable<'a, M, O> {
         self.motor.ask(Request::SetAngle(shown)).await?;
         self.motor.look().await?;
         self.looked = Instant::now();
-        self.comparison = Comparison::default();
+        self.comparison = Comparison::at(Angle::from_rad(shown));
         Ok(())
     }
 
@@ -137,7 +137,8 @@ impl<'a, M: Actuator, O: Observer> Turntable<'a, M, O> {
         self.motor.ask(Request::Seek(rate)).await
     }
 
-    /// Looks at the motor and compares it with the encoder.
+    /// Looks at the motor and compares it with the encoder. A platform that has not left where it was
+    /// aligned is blocked: its motor is too slow yet to know that it stalls.
     async fn watch(&mut self) -> Result<(), Break> {
         let before = (self.looked, self.motor.motion.angle);
         self.motor.look().await?;
@@ -146,15 +147,23 @@ impl<'a, M: Actuator, O: Observer> Turntable<'a, M, O> {
         let Some((shown, read)) = self.motor.fresh() else { return Ok(()) };
         let counted = at(read, before, (self.looked, self.motor.motion.angle));
         let apart = self.comparison.judge(shown, Angle::from_rad(counted));
+        if self.is_far(apart) && !self.is_far(self.comparison.way(shown)) {
+            return Err(Break::Stalled);
+        }
         self.check(apart)
+    }
+
+    /// Whether angles that should be one are not, rad.
+    fn is_far(&self, apart: f64) -> bool {
+        apart.abs() > self.configuration.agreement
     }
 
     /// Refuses to go on where motor and encoder differ by too much, rad.
     fn check(&self, apart: f64) -> Result<(), Break> {
-        if apart.abs() <= self.configuration.agreement {
-            return Ok(());
+        if self.is_far(apart) {
+            return Err(self.motor.fail(Trouble::Disagrees(apart * DEGREES)).into());
         }
-        Err(self.motor.fail(Trouble::Disagrees(apart * DEGREES)).into())
+        Ok(())
     }
 }
 
@@ -168,6 +177,8 @@ fn at(time: Instant, before: (Instant, f64), after: (Instant, f64)) -> f64 {
 /// By what encoder and motor differ in each sector of a turn.
 #[derive(Clone, Copy, Debug, Default)]
 struct Comparison {
+    /// Where both were one.
+    aligned: Angle,
     /// As the sector was first entered.
     known: [Angle; SECTORS],
     /// A bit for every sector that was.
@@ -176,6 +187,17 @@ struct Comparison {
 }
 
 impl Comparison {
+    /// Of a motor whose count was set there.
+    fn at(aligned: Angle) -> Self {
+        Self { aligned, ..Self::default() }
+    }
+
+    /// How far the encoder has moved from there, rad: half a turn once it has moved by a sector.
+    fn way(&self, shown: Angle) -> f64 {
+        let has_moved = self.entered.count_ones() > 1;
+        if has_moved { TURN / 2.0 } else { (shown - self.aligned).signed_rad() }
+    }
+
     /// How much more they differ than when the platform first came by here, rad: where it has not been
     /// before, than a look before.
     fn judge(&mut self, shown: Angle, counted: Angle) -> f64 {
