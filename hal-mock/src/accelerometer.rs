@@ -1,5 +1,6 @@
-//! Error model of the accelerometer on the platform.
+//! Error model of the accelerometer on the platform, and what it feels off the axis of a turning one.
 
+use crate::disturbance::Effect;
 use crate::noise::{Generator, White, source};
 
 /// Errors of a three-axis accelerometer; the default is perfect.
@@ -60,5 +61,37 @@ impl Accelerometer {
             y + bias_y + self.white.sample(),
             z + bias_z + self.white.sample(),
         ]
+    }
+}
+
+/// An accelerometer that does not sit on the axis of the stage, and what the stage did at its latest
+/// output.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Lever {
+    arm_m: [f64; 2],
+    seen_s: f64,
+    seen_rad_s: f64,
+}
+
+impl Lever {
+    /// A lever along the gyro's axis and 90° clockwise of it, m, on a stage at rest.
+    pub(crate) fn new(arm_m: [f64; 2]) -> Self {
+        Self { arm_m, ..Self::default() }
+    }
+
+    /// Adds what the lever accelerates by, with the mean angular acceleration since the last output:
+    /// ω̇ × r + ω × (ω × r), ω about z, down.
+    pub(crate) fn add(&mut self, effect: &mut Effect, time_s: f64, rate_rad_s: f64) {
+        let [x, y] = self.arm_m;
+        if [x, y] == [0.0; 2] {
+            return;
+        }
+        let elapsed_s = time_s - self.seen_s;
+        let change_rad_s = rate_rad_s - self.seen_rad_s;
+        let angular = if elapsed_s > 0.0 { change_rad_s / elapsed_s } else { 0.0 };
+        (self.seen_s, self.seen_rad_s) = (time_s, rate_rad_s);
+        let square = rate_rad_s * rate_rad_s;
+        effect.force_m_s2[0] -= angular * y + square * x;
+        effect.force_m_s2[1] += angular * x - square * y;
     }
 }

@@ -1,7 +1,8 @@
-//! What happens to a base that is not left alone: a bump, or a nudge.
+//! What happens to a base that is not left alone: a bump, a nudge, or a push.
 //!
-//! Both act on the sensitive axis during [start, start + seconds) only, and leave attitude and
-//! azimuth as they were.
+//! All act on the sensors during [start, start + seconds) only, and leave attitude and azimuth as
+//! they were. A bump shakes gyro and accelerometer, a nudge only the gyro, a push only the
+//! accelerometer.
 
 use crate::gyro::DEGREE_PER_HOUR;
 
@@ -29,6 +30,15 @@ pub enum Disturbance {
         seconds: f64,
         /// Rate along the sensitive axis, °/h.
         rate_deg_h: f64,
+    },
+    /// A steady force on the accelerometer.
+    Push {
+        /// Beginning, s from the first sample.
+        start_s: f64,
+        /// Duration, s.
+        seconds: f64,
+        /// Specific force on platform x, y, z, m/s².
+        force_m_s2: [f64; 3],
     },
 }
 
@@ -61,6 +71,12 @@ impl Disturbance {
         Self::Nudge { start_s, seconds, rate_deg_h: 1000.0 * 3600.0 }
     }
 
+    /// Three times gravity along the sensitive axis, beyond the ±2 g of a tilt sensor.
+    #[must_use]
+    pub const fn force_overload(start_s: f64, seconds: f64) -> Self {
+        Self::Push { start_s, seconds, force_m_s2: [30.0, 0.0, 0.0] }
+    }
+
     /// Its effect at a time in s from the first sample; nothing outside its interval.
     #[must_use]
     pub fn at(&self, time_s: f64) -> Effect {
@@ -74,6 +90,11 @@ impl Disturbance {
                 let active = (0.0..seconds).contains(&(time_s - start_s));
                 let rate_deg_h = if active { rate_deg_h } else { 0.0 };
                 Effect { rate_rad_s: rate_deg_h * DEGREE_PER_HOUR, ..Effect::default() }
+            }
+            Self::Push { start_s, seconds, force_m_s2 } => {
+                let active = (0.0..seconds).contains(&(time_s - start_s));
+                let force_m_s2 = if active { force_m_s2 } else { [0.0; 3] };
+                Effect { force_m_s2, ..Effect::default() }
             }
         }
     }

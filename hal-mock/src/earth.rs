@@ -46,6 +46,16 @@ pub struct Attitude {
 }
 
 impl Attitude {
+    /// A base that leans by `tilt_rad` so that its axis at stage angle `uphill_rad` points uphill most:
+    /// the force along an axis at θ is g·sin(tilt)·cos(θ − uphill), exactly.
+    #[must_use]
+    pub fn tilted(azimuth_rad: f64, tilt_rad: f64, uphill_rad: f64) -> Self {
+        let (rise, level) = libm::sincos(tilt_rad);
+        let (across, along) = libm::sincos(uphill_rad);
+        let pitch_rad = libm::asin(rise * along);
+        Self { azimuth_rad, pitch_rad, roll_rad: libm::atan2(-rise * across, level) }
+    }
+
     /// Matrix from body to navigation axes: Rz(azimuth)·Ry(pitch)·Rx(roll).
     #[must_use]
     pub fn body_to_navigation(&self) -> Matrix {

@@ -4,8 +4,12 @@
 //! period), rate random walk with steps K/√`f_s`, flicker (`flicker`), a ramp R·t, and quantisation of
 //! the angle. The Allan variance of the sum is 3Q²/τ² + N²/τ + (2 ln 2/π)B² + K²τ/3 + R²τ²/2
 //! (IEEE Std 952-1997, annex C).
+//!
+//! A molecular-electronic sensor ([`crate::molecular`]) has dynamics between what it feels, white noise
+//! included, and the rest of these errors, which are those of its electronics.
 
 use crate::flicker::Flicker;
+use crate::molecular::{Molecular, MolecularConfiguration};
 use crate::noise::{Generator, White, source};
 
 /// One degree in radians.
@@ -50,6 +54,8 @@ pub struct GyroConfiguration {
     pub reference_c: f64,
     /// Elevation of the sensitive axis above the platform plane, rad (non-orthogonality α).
     pub axis_elevation_rad: f64,
+    /// The dynamics of a molecular-electronic sensor; none (the default) for a gyro.
+    pub molecular: Option<MolecularConfiguration>,
 }
 
 impl Default for GyroConfiguration {
@@ -70,6 +76,7 @@ impl Default for GyroConfiguration {
             temperature_deg_h_c: 0.0,
             reference_c: 25.0,
             axis_elevation_rad: 0.0,
+            molecular: None,
         }
     }
 }
@@ -89,10 +96,15 @@ impl GyroConfiguration {
     }
 }
 
-/// A gyro at work: its configuration, what it drew at start, and the state of its noise.
+/// A gyro at work: what it drew at start, what of its errors is steady, and the state of its noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gyro {
-    configuration: GyroConfiguration,
+    g_sensitivity_deg_h_g: [f64; 2],
+    r_deg_h2: f64,
+    temperature_deg_h_c: f64,
+    reference_c: f64,
+    /// Sine and cosine of the axis's elevation.
+    elevation: [f64; 2],
     bias_rad_s: f64,
     scale_error: f64,
     white: White,
@@ -100,6 +112,7 @@ pub struct Gyro {
     walked_rad_s: f64,
     flicker: Flicker,
     quantiser: Quantiser,
+    molecular: Option<Molecular>,
 }
 
 impl Gyro {
@@ -112,7 +125,11 @@ impl Gyro {
         let b = c.b_deg_h * DEGREE_PER_HOUR;
         let noise = Generator::stream(seed, source::GYRO_FLICKER);
         Self {
-            configuration: c,
+            g_sensitivity_deg_h_g: c.g_sensitivity_deg_h_g,
+            r_deg_h2: c.r_deg_h2,
+            temperature_deg_h_c: c.temperature_deg_h_c,
+            reference_c: c.reference_c,
+            elevation: [libm::sin(c.axis_elevation_rad), libm::cos(c.axis_elevation_rad)],
             bias_rad_s: bias_deg_h * DEGREE_PER_HOUR,
             scale_error: c.scale_error + c.scale_sigma * start.gaussian(),
             white: White::new(c.white_sigma_rad_s(rate_hz), seed, source::GYRO_WHITE),
@@ -120,6 +137,7 @@ impl Gyro {
             walked_rad_s: 0.0,
             flicker: Flicker::new(b, c.flicker_low_hz, c.flicker_high_hz, rate_hz, noise),
             quantiser: Quantiser::new(c.q_arcsec * ARCSECOND, rate_hz),
+            molecular: c.molecular.map(|dynamics| Molecular::new(&dynamics, rate_hz)),
         }
     }
 
@@ -139,30 +157,51 @@ impl Gyro {
     /// axis, y 90° clockwise, z down; the stage's own rate included).
     #[must_use]
     pub fn along_axis(&self, platform_rad_s: [f64; 3]) -> f64 {
-        let elevation = self.configuration.axis_elevation_rad;
+        let [sine, cosine] = self.elevation;
         // Elevation is up, platform z is down.
-        libm::cos(elevation) * platform_rad_s[0] - libm::sin(elevation) * platform_rad_s[2]
+        cosine * platform_rad_s[0] - sine * platform_rad_s[2]
     }
 
     /// What the gyro shows without noise, ramp and temperature, rad/s: scale, bias, g-sensitivity.
     /// `axis_rad_s` from [`Gyro::along_axis`], `force_g` the specific force on platform x and y in g.
     #[must_use]
     pub fn steady(&self, axis_rad_s: f64, force_g: [f64; 2]) -> f64 {
-        let [along, across] = self.configuration.g_sensitivity_deg_h_g;
+        let [along, across] = self.g_sensitivity_deg_h_g;
         let gravity = (along * force_g[0] + across * force_g[1]) * DEGREE_PER_HOUR;
         (1.0 + self.scale_error) * axis_rad_s + gravity + self.bias_rad_s
     }
 
     /// The next output, rad/s, `elapsed_s` after the first sample at `temperature_c`, when
-    /// [`Gyro::steady`] and any disturbance come to `steady_rad_s`.
+    /// [`Gyro::steady`] and any disturbance come to `steady_rad_s`, and nothing accelerates it.
     #[inline]
     pub fn sample(&mut self, steady_rad_s: f64, elapsed_s: f64, temperature_c: f64) -> f64 {
-        let c = &self.configuration;
-        let drift_deg_h = c.r_deg_h2 / 3600.0 * elapsed_s
-            + c.temperature_deg_h_c * (temperature_c - c.reference_c);
+        self.sample_under([0.0; 2], steady_rad_s, elapsed_s, temperature_c)
+    }
+
+    /// The same under a specific force on platform x and y, g, which matters to a molecular-electronic
+    /// sensor beyond what [`Gyro::steady`] has of it. Call `rate_hz` times a second.
+    #[inline]
+    pub fn sample_under(
+        &mut self,
+        force_g: [f64; 2],
+        steady_rad_s: f64,
+        elapsed_s: f64,
+        temperature_c: f64,
+    ) -> f64 {
+        let drift_deg_h = self.r_deg_h2 / 3600.0 * elapsed_s
+            + self.temperature_deg_h_c * (temperature_c - self.reference_c);
         let slow = drift_deg_h * DEGREE_PER_HOUR + self.walked_rad_s + self.flicker.sample();
         self.walked_rad_s += self.walk.sample();
-        self.quantiser.sample(steady_rad_s + slow + self.white.sample())
+        let white = self.white.sample();
+        let shown = match &mut self.molecular {
+            None => steady_rad_s + slow + white,
+            Some(dynamics) => {
+                // The bias is the electronics' own and passes no filter.
+                let felt_rad_s = steady_rad_s - self.bias_rad_s;
+                dynamics.sample(felt_rad_s, white, force_g) + self.bias_rad_s + slow
+            }
+        };
+        self.quantiser.sample(shown)
     }
 }
 

@@ -53,6 +53,16 @@ impl Default for InstrumentsConfiguration {
 }
 
 impl InstrumentsConfiguration {
+    /// The same on a base that leans by `tilt_deg` with its axis at stage angle `uphill_deg` uphill
+    /// ([`Attitude::tilted`]), °.
+    #[must_use]
+    pub fn leaning(self, tilt_deg: f64, uphill_deg: f64) -> Self {
+        let attitude = Attitude::tilted(0.0, tilt_deg.to_radians(), uphill_deg.to_radians());
+        let (pitch_deg, roll_deg) =
+            (attitude.pitch_rad.to_degrees(), attitude.roll_rad.to_degrees());
+        Self { pitch_deg, roll_deg, ..self }
+    }
+
     /// Attitude of the base, rad.
     #[must_use]
     pub fn attitude(&self) -> Attitude {
@@ -149,6 +159,8 @@ struct Felt {
     axis_rad_s: f64,
     steady_rad_s: f64,
     force_m_s2: [f64; 3],
+    /// Force on platform x and y in units of local gravity.
+    force_g: [f64; 2],
 }
 
 impl Instruments {
@@ -245,7 +257,7 @@ impl Instruments {
     #[inline]
     fn rate_at(&mut self, time_s: f64, temperature_c: f64, effect: &Effect) -> f64 {
         let rate_rad_s = self.pose.felt.steady_rad_s + effect.rate_rad_s;
-        self.gyro.sample(rate_rad_s, time_s, temperature_c)
+        self.gyro.sample_under(self.pose.felt.force_g, rate_rad_s, time_s, temperature_c)
     }
 
     /// The truth behind the latest sample.
@@ -275,7 +287,8 @@ impl Instruments {
         let axis_rad_s = self.gyro.along_axis([x + along, y + across, z + down + stage.rate_rad_s]);
         let gravity = site.gravity_m_s2();
         let force_g = [force_m_s2[0] / gravity, force_m_s2[1] / gravity];
-        Felt { axis_rad_s, steady_rad_s: self.gyro.steady(axis_rad_s, force_g), force_m_s2 }
+        let steady_rad_s = self.gyro.steady(axis_rad_s, force_g);
+        Felt { axis_rad_s, steady_rad_s, force_m_s2, force_g }
     }
 }
 

@@ -8,13 +8,20 @@
 //!                            disturbance, temperature ─▶
 //! ```
 //!
+//! On a platform that turns all the time ([`turntable`]), as a recording too:
+//!
+//! ```text
+//!  segments ─▶ motor ─▶ uneven gear ─angle, rate─▶ site ─▶ gyro or molecular sensor ─▶ sample
+//!                             └─▶ encoder ─▶ slip ─▶         accelerometer, lever ───▶
+//! ```
+//!
 //! Or around a firmware that turns the stage itself, in virtual time, at the level of registers:
 //!
 //! ```text
 //!  driver ⇄ fault ⇄ spi ⇄ board ┬ ads1262 ◀─volts── plant: instruments as above,
 //!                               ├ adxl355 ◀─force──        on the stage's mechanics,
-//!                               ├ mt6835 ◀──angle──        on a base that may sway
-//!                               └ tmc5160 ─microsteps─▶
+//!                               ├ mt6835 ◀──angle──        on a base that may sway;
+//!                               └ tmc5160 ─microsteps─▶    the stage may turn without end
 //!  driver ⇄ i2c ⇄ lsm6dsl ◀─rates, forces── base that sways
 //! ```
 //!
@@ -49,6 +56,7 @@ pub mod gyro;
 pub mod i2c;
 pub mod instruments;
 pub mod lsm6dsl;
+pub mod molecular;
 pub mod mt6835;
 pub mod noise;
 pub mod plant;
@@ -56,5 +64,6 @@ pub mod spi;
 pub mod stage;
 pub mod temperature;
 pub mod tmc5160;
+pub mod turntable;
 pub mod violation;
 pub mod world;

@@ -1,4 +1,5 @@
-//! The rotation stage: a list of stops, rotations of minimum jerk between them, and the encoder.
+//! The rotation stage: a list of stops, rotations of minimum jerk between them, its gear's unevenness,
+//! and the encoder.
 //!
 //! Sample k is taken at k/`rate_hz`. A dwell begins with the sample at which the stage arrives, so a
 //! dwell of T seconds after an instantaneous rotation has exactly T·`rate_hz` samples. The sample at
@@ -125,8 +126,57 @@ impl<'a> Stage<'a> {
 
 /// Number of the first sample at or after a time. A millionth of a period is forgiven, so that sums
 /// of decimal fractions fall on the sample they mean.
-fn first_sample(time_s: f64, rate_hz: f64) -> u64 {
+pub(crate) fn first_sample(time_s: f64, rate_hz: f64) -> u64 {
     libm::ceil(time_s * rate_hz - 1e-6) as u64
+}
+
+/// One harmonic of a gear's unevenness.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Ripple {
+    /// Relative amplitude ε of the rate, 1, within ±1.
+    pub relative: f64,
+    /// Rotor angle φ at which the stage is quickest, rad.
+    pub phase_rad: f64,
+}
+
+impl Ripple {
+    /// What the `k`-th harmonic adds to an even angle, rad, and to 1 in the ratio of the rates:
+    /// (ε/k)·sin k(y − φ) and ε·cos k(y − φ), the one the slope of the other.
+    fn at(&self, k: f64, even_rad: f64) -> (f64, f64) {
+        if self.relative == 0.0 {
+            return (0.0, 0.0);
+        }
+        let (sine, cosine) = libm::sincos(k * (even_rad - self.phase_rad));
+        (self.relative / k * sine, self.relative * cosine)
+    }
+}
+
+/// Unevenness of the gear: an even rotor turns the stage quicker here and slower there. The default
+/// is even.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Unevenness {
+    /// Once per turn: eccentricity.
+    pub first: Ripple,
+    /// Twice per turn: ellipticity.
+    pub second: Ripple,
+}
+
+impl Unevenness {
+    /// The stage behind a gear whose even angle and rate are these: angle y + Σ (`ε_k`/k)·sin k(y − `φ_k`)
+    /// and rate ẏ·(1 + Σ `ε_k` cos k(y − `φ_k`)). An even gear changes no bit.
+    #[must_use]
+    #[inline]
+    pub fn stage(&self, even: StageState) -> StageState {
+        if self.first.relative == 0.0 && self.second.relative == 0.0 {
+            return even;
+        }
+        let (first_rad, first) = self.first.at(1.0, even.angle_rad);
+        let (second_rad, second) = self.second.at(2.0, even.angle_rad);
+        StageState {
+            angle_rad: even.angle_rad + (first_rad + second_rad),
+            rate_rad_s: even.rate_rad_s * (1.0 + first + second),
+        }
+    }
 }
 
 /// One harmonic of the encoder's error over a turn.
@@ -136,6 +186,16 @@ pub struct Harmonic {
     pub amplitude_rad: f64,
     /// Phase at stage angle zero, rad.
     pub phase_rad: f64,
+}
+
+impl Harmonic {
+    /// The error of the `k`-th harmonic at a stage angle, rad: amplitude·sin(kθ + phase).
+    fn at(&self, k: f64, angle_rad: f64) -> f64 {
+        if self.amplitude_rad == 0.0 {
+            return 0.0;
+        }
+        self.amplitude_rad * libm::sin(k * angle_rad + self.phase_rad)
+    }
 }
 
 /// Errors of the encoder; the default is perfect.
@@ -153,9 +213,7 @@ impl EncoderConfiguration {
     /// What the encoder shows, rad, at a true stage angle in rad, to the nearest step.
     #[must_use]
     pub fn read(&self, angle_rad: f64) -> f64 {
-        let first = self.first.amplitude_rad * libm::sin(angle_rad + self.first.phase_rad);
-        let second = self.second.amplitude_rad * libm::sin(2.0 * angle_rad + self.second.phase_rad);
-        let shown = angle_rad + first + second;
+        let shown = angle_rad + self.first.at(1.0, angle_rad) + self.second.at(2.0, angle_rad);
         if self.step_rad > 0.0 { libm::rint(shown / self.step_rad) * self.step_rad } else { shown }
     }
 }

@@ -119,6 +119,8 @@ impl<'a> Frame<'a> {
 struct Felt {
     frames: [StageState; 2],
     steady_rad_s: f64,
+    /// Along the sensitive and the inner axis, g.
+    force_g: [f64; 2],
     force_m_s2: [f64; 3],
 }
 
@@ -257,9 +259,10 @@ impl<'a> Gimbal<'a> {
         let gravity = self.site.gravity_m_s2();
         let [along, inner_g, third_g] = [axes.sensitive, axes.inner, axes.third]
             .map(|axis| dot(axis, base.force_m_s2) / gravity);
-        let steady_rad_s = self.gyro.steady(dot(axes.sensitive, rate), [along, inner_g])
-            + third_g * self.third_rad_s;
-        Felt { frames, steady_rad_s, force_m_s2: base.force_m_s2 }
+        let force_g = [along, inner_g];
+        let steady_rad_s =
+            self.gyro.steady(dot(axes.sensitive, rate), force_g) + third_g * self.third_rad_s;
+        Felt { frames, steady_rad_s, force_g, force_m_s2: base.force_m_s2 }
     }
 
     fn effect(&self, now: Instant) -> Effect {
@@ -278,9 +281,15 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 impl AnalogueInput for Gimbal<'_> {
     fn volts(&mut self, now: Instant) -> f64 {
-        let steady_rad_s = self.felt(now).steady_rad_s + self.effect(now).rate_rad_s;
+        let (felt, added) = (self.felt(now), self.effect(now).rate_rad_s);
         let temperature_c = self.temperature.at(seconds(now));
-        let rate_rad_s = self.gyro.sample(steady_rad_s, seconds(now), temperature_c);
+        let elapsed_s = seconds(now);
+        let rate_rad_s = self.gyro.sample_under(
+            felt.force_g,
+            felt.steady_rad_s + added,
+            elapsed_s,
+            temperature_c,
+        );
         let limit = self.full_scale_rad_s;
         rate_rad_s.max(-limit).min(limit) * self.volts_per_rad_s + self.converter.sample()
     }

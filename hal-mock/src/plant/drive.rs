@@ -1,4 +1,4 @@
-//! A train with what goes wrong with it: caught and let go by time, an encoder that slips.
+//! A train with what goes wrong with it: caught and let go by time, an encoder that slips or creeps.
 
 use embassy_time::Instant;
 
@@ -11,15 +11,20 @@ use crate::stage::StageState;
 pub(crate) struct Drive<'a> {
     train: Train,
     faults: &'a [StageFault],
-    /// When it is next caught or let go.
+    /// When a fault next begins or ends.
     next_change: Instant,
+    /// How fast the encoder creeps while the stage turns, rad/s.
+    creep_rad_s: f64,
+    /// How far it had crept when the latest command came, rad.
+    crept_rad: f64,
 }
 
 impl<'a> Drive<'a> {
     /// A drive at the start of the clock.
     pub(crate) fn new(configuration: &StageConfiguration, faults: &'a [StageFault]) -> Self {
         let train = Train::new(configuration);
-        let mut drive = Self { train, faults, next_change: Instant::MIN };
+        let next_change = Instant::MIN;
+        let mut drive = Self { train, faults, next_change, creep_rad_s: 0.0, crept_rad: 0.0 };
         drive.advance(Instant::MIN);
         drive
     }
@@ -33,12 +38,14 @@ impl<'a> Drive<'a> {
         self.train.advance(now);
     }
 
-    /// Catches it or lets it go, as is due.
+    /// Begins and ends the faults that are due.
     #[cold]
     fn change(&mut self) {
         let at = self.next_change;
         self.train.advance(at);
+        self.creep();
         self.train.hold(self.faults.iter().any(|fault| fault.blocks(at)));
+        self.creep_rad_s = self.faults.iter().map(|fault| fault.creep_rad_s(at)).sum();
         let changes = self.faults.iter().filter_map(|fault| fault.change_after(at));
         self.next_change = changes.min().unwrap_or(Instant::MAX);
     }
@@ -46,13 +53,22 @@ impl<'a> Drive<'a> {
     /// The motor's field stops where it is.
     pub(crate) fn stop(&mut self, now: Instant) {
         self.advance(now);
+        self.creep();
         self.train.stop();
     }
 
     /// The motor's field stands at `microsteps` and turns at `microsteps_per_s` from `now` on.
     pub(crate) fn drive(&mut self, now: Instant, microsteps: f64, microsteps_per_s: f64) {
         self.advance(now);
+        self.creep();
         self.train.drive(microsteps, microsteps_per_s);
+    }
+
+    /// Keeps what has crept under the command that ends now.
+    fn creep(&mut self) {
+        if self.creep_rad_s != 0.0 {
+            self.crept_rad += self.creep_rad_s * self.train.driven_s();
+        }
     }
 
     /// Angle and rate at the moment last reached.
@@ -71,9 +87,13 @@ impl<'a> Drive<'a> {
         self.train.switches()
     }
 
-    /// How far the encoder has slipped, rad.
+    /// How far the encoder has slipped and crept, rad.
     pub(crate) fn slip_rad(&self, now: Instant) -> f64 {
-        self.faults.iter().map(|fault| fault.slip_rad(now)).sum()
+        let slipped: f64 = self.faults.iter().map(|fault| fault.slip_rad(now)).sum();
+        if self.creep_rad_s == 0.0 && self.crept_rad == 0.0 {
+            return slipped;
+        }
+        slipped + (self.crept_rad + self.creep_rad_s * self.train.driven_s())
     }
 }
 
@@ -83,11 +103,20 @@ impl StageFault {
         matches!(*self, Self::Block { from, until } if (from..until).contains(&now))
     }
 
-    /// When it next catches the stage or lets it go.
+    /// When it next begins or ends to act on the motion.
     fn change_after(&self, now: Instant) -> Option<Instant> {
         match *self {
             Self::Block { from, until } => [from, until].into_iter().filter(|at| *at > now).min(),
+            Self::Creep { from, .. } => Some(from).filter(|from| *from > now),
             Self::Slip { .. } => None,
+        }
+    }
+
+    /// How fast it moves the encoder of a turning stage, rad/s.
+    fn creep_rad_s(&self, now: Instant) -> f64 {
+        match *self {
+            Self::Creep { from, rad_per_s } if from <= now => rad_per_s,
+            _ => 0.0,
         }
     }
 

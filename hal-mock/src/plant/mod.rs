@@ -20,6 +20,7 @@ pub mod train;
 
 use embassy_time::Instant;
 
+use crate::accelerometer::Lever;
 use crate::disturbance::{self, Disturbance, Effect};
 use crate::environment::{AnalogueInput, ForceInput, Mechanics, ShaftAngle};
 use crate::instruments::{Instruments, InstrumentsConfiguration, Truth};
@@ -56,6 +57,13 @@ pub enum StageFault {
         /// What the encoder shows more from then on, rad.
         by_rad: f64,
     },
+    /// The encoder's magnet creeps on its shaft whenever the motor turns the stage, either way.
+    Creep {
+        /// From when on.
+        from: Instant,
+        /// What the encoder shows more for each second of turning, rad/s.
+        rad_per_s: f64,
+    },
 }
 
 /// A stage with its instruments, and everything that happens to them.
@@ -66,6 +74,9 @@ pub struct PlantConfiguration<'a> {
     pub instruments: InstrumentsConfiguration,
     /// Output rate of the accelerometer, Hz, > 0 (default 125).
     pub accelerometer_hz: f64,
+    /// From the axis of the stage to the accelerometer, m, along the gyro's axis and 90° clockwise of
+    /// it (default: on the axis).
+    pub accelerometer_lever_m: [f64; 2],
     /// Scale factor of the gyro, V per rad/s (default 50 mV per °/s).
     pub gyro_volts_per_rad_s: f64,
     /// Rate at which the gyro's output clips, rad/s (default 40 °/s: ±2 V).
@@ -88,6 +99,7 @@ impl Default for PlantConfiguration<'_> {
         Self {
             instruments: InstrumentsConfiguration::default(),
             accelerometer_hz: 125.0,
+            accelerometer_lever_m: [0.0; 2],
             gyro_volts_per_rad_s: 0.05 / DEGREE_PER_SECOND,
             gyro_full_scale_rad_s: 40.0 * DEGREE_PER_SECOND,
             converter_noise_v: 0.0,
@@ -108,6 +120,7 @@ pub struct Plant<'a> {
     sway: Option<SwayConfiguration>,
     /// Moment of the latest pose on a swaying base.
     swayed_at: Option<Instant>,
+    lever: Lever,
     converter: White,
     gyro_volts_per_rad_s: f64,
     gyro_full_scale_rad_s: f64,
@@ -128,6 +141,7 @@ impl<'a> Plant<'a> {
             drive: Drive::new(&c.stage, c.faults),
             sway: c.sway.is_active().then_some(c.sway),
             swayed_at: None,
+            lever: Lever::new(c.accelerometer_lever_m),
             converter: White::new(c.converter_noise_v, seed, source::CONVERTER),
             gyro_volts_per_rad_s: c.gyro_volts_per_rad_s,
             gyro_full_scale_rad_s: c.gyro_full_scale_rad_s,
@@ -198,7 +212,8 @@ impl AnalogueInput for Plant<'_> {
 impl ForceInput for Plant<'_> {
     fn force_g(&mut self, now: Instant) -> [f64; 3] {
         self.look(now);
-        let effect = self.effect(now);
+        let mut effect = self.effect(now);
+        self.lever.add(&mut effect, seconds(now), self.drive.state().rate_rad_s);
         self.instruments.force(&effect).map(|force| force / STANDARD_GRAVITY_M_S2)
     }
 

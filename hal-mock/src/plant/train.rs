@@ -8,13 +8,14 @@
 use embassy_time::Instant;
 
 use super::ringing::Ringing;
-use crate::stage::StageState;
+use crate::stage::{StageState, Unevenness};
 
 /// Period of a hybrid stepper motor: four full steps of 256 microsteps. A field that jumps takes the
 /// rotor to the nearest of its equal positions, which are so far apart.
 const PERIOD_MICROSTEPS: f64 = 1024.0;
 
-/// Mechanics of the stage; angles clockwise from above, not wrapped.
+/// Mechanics of the stage; angles clockwise from above, not wrapped. Ends, switches and start are
+/// angles of the gear, which an uneven one shows as up to Σ `ε_k`/k more or less at the stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StageConfiguration {
     /// Microsteps (1/256 of a full step) in a turn of the stage, > 0. Default 4 608 000: 200 full
@@ -34,6 +35,18 @@ pub struct StageConfiguration {
     pub ringing_hz: f64,
     /// Damping ratio of the ringing, [0, 1): it decays as exp(−2π·ratio·frequency·t).
     pub ringing_damping: f64,
+    /// Unevenness of the last gear.
+    pub unevenness: Unevenness,
+}
+
+impl StageConfiguration {
+    /// A stage that turns without end, its cables led through a slip ring: no hard ends, and no
+    /// reference switches. Everything else is the default.
+    #[must_use]
+    pub fn endless() -> Self {
+        let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
+        Self { travel_rad: everywhere, switches_rad: everywhere, ..Self::default() }
+    }
 }
 
 impl Default for StageConfiguration {
@@ -46,6 +59,7 @@ impl Default for StageConfiguration {
             backlash_rad: 0.0,
             ringing_hz: 0.0,
             ringing_damping: 0.0,
+            unevenness: Unevenness::default(),
         }
     }
 }
@@ -105,7 +119,7 @@ impl Train {
             held: false,
             ringing: Ringing::new(c.ringing_hz, c.ringing_damping),
             now: Instant::MIN,
-            state: StageState { angle_rad: c.start_rad, rate_rad_s: 0.0 },
+            state: c.unevenness.stage(StageState { angle_rad: c.start_rad, rate_rad_s: 0.0 }),
         }
     }
 
@@ -190,6 +204,12 @@ impl Train {
         if driven { segment.rate_rad_s } else { 0.0 }
     }
 
+    /// For how long the motor has turned the stage since the latest command, s.
+    pub(crate) fn driven_s(&self) -> f64 {
+        let Segment { engaged_s, ended_s, .. } = self.segment;
+        (self.elapsed_s(self.now).min(ended_s) - engaged_s).max(0.0)
+    }
+
     /// An output that a rotor takes along when the play between them is used up, within the travel.
     fn follow(&self, output_rad: f64, rotor_rad: f64) -> f64 {
         let play = 0.5 * self.configuration.backlash_rad;
@@ -271,9 +291,9 @@ impl Train {
         let elapsed_s = self.elapsed_s(self.now);
         let (offset, rate) = self.ringing.state();
         let [low, high] = self.configuration.travel_rad;
-        StageState {
+        self.configuration.unevenness.stage(StageState {
             angle_rad: (self.output_at(elapsed_s) + offset).max(low).min(high),
             rate_rad_s: self.output_rate_at(elapsed_s) + rate,
-        }
+        })
     }
 }
