@@ -1,6 +1,7 @@
 //! What the instrument tells of itself: read in a row, these sentences say what it did and why.
 
 use orientation::align::quality::Disturbance;
+use orientation::align::rotating::turn::Sense;
 use orientation::device::{Device, Trouble};
 use orientation::error::Refusal;
 use orientation::noise::fit::{Coefficient, Estimate};
@@ -24,7 +25,7 @@ pub enum Event {
     /// The instrument begins, on a platform that turns all the time.
     BegunTurning {
         /// Turns that are planned.
-        turns: usize,
+        turns: u32,
         /// Latitude, °.
         latitude: f64,
     },
@@ -92,10 +93,12 @@ pub enum Event {
     Uneven(f64),
     /// How far the gyro's axis stands from the platform's plane, and its 1σ, °.
     Coupled(f64, f64),
-    /// Turns count from here, at this rate, °/s.
-    Stretch(f64),
+    /// Turns count from here: which way, at this speed, °/s.
+    Stretch(Sense, f64),
     /// A turn was taken: number, of how many.
-    Turned(usize, usize),
+    Turned(u32, u32),
+    /// So many turns are left out of the fit.
+    TurnsLeftOut(u32, Sense),
     /// The azimuth, its σ and the limit that no estimator can beat, °.
     Concluded(f64, f64, f64),
     /// There is no azimuth.
@@ -152,8 +155,11 @@ words! { Event:
         "uneven turns, {} °/s in the mean, to know how the gyro feels the platform", Rounded::<2>(rate);
     Self::Coupled(angle, sigma) =>
         "gyro's axis {}° ± {}° (1σ) above the platform", Rounded::<4>(angle), Rounded::<4>(sigma);
-    Self::Stretch(rate) => "turns count from here, at {} °/s", Rounded::<2>(rate);
+    Self::Stretch(sense, speed) =>
+        "turns count from here: {}, {} °/s", sense, Rounded::<2>(speed);
     Self::Turned(number, of) => "turn {} of {}", number, of;
+    Self::TurnsLeftOut(turns, sense) =>
+        "{} turn(s) {} left out: something disturbed them", turns, sense;
     Self::Concluded(azimuth, sigma, limit) =>
         "azimuth {}° ± {}° (1σ), limit {}°",
         Rounded::<4>(azimuth), Rounded::<4>(sigma), Rounded::<4>(limit);

@@ -4,8 +4,7 @@
 
 use drivers::fault::Fault;
 use embassy_time::Instant;
-use orientation::session::Session;
-use orientation::session::rotating::RotatingSession;
+use orientation::session::{Session, rotating};
 use orientation::signal::Sample;
 use orientation::signal::sway::CoarseSensors;
 use orientation::units::{Angle, AngularRate, SpecificForce, Temperature};
@@ -154,7 +153,7 @@ pub trait Observer {
     fn progress(&self, _: &Session) {}
 
     /// The session on a turning platform has taken one more turn.
-    fn turned(&self, _: &RotatingSession) {}
+    fn turned(&self, _: &rotating::Session) {}
 }
 
 /// Nobody is told.
@@ -171,7 +170,7 @@ impl<O: Observer> Observer for &O {
         (**self).progress(session);
     }
 
-    fn turned(&self, session: &RotatingSession) {
+    fn turned(&self, session: &rotating::Session) {
         (**self).turned(session);
     }
 }

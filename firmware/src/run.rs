@@ -11,8 +11,7 @@ use embassy_futures::select::{select, select4};
 use embedded_io_async::Write;
 use orientation::device::Device;
 use orientation::error::Refusal;
-use orientation::session::Session;
-use orientation::session::rotating::RotatingSession;
+use orientation::session::{Session, rotating};
 
 use crate::acquire::Acquisition;
 use crate::conduct::{Conducted, Conductor};
@@ -99,11 +98,11 @@ where
 }
 
 /// The same on a platform that turns all the time, which [`acquire`] samples with a configuration for
-/// [turning](Configuration::turning).
+/// [turning](Configuration::turning). Whatever the end, the platform comes to rest.
 pub async fn run_rotating<M, L, R, O>(
     ports: &mut Ports<M, L, R>,
     configuration: &TurntableConfiguration,
-    session: &mut RotatingSession,
+    session: &mut rotating::Session,
     shared: &Shared<'_, O>,
 ) -> Health
 where
@@ -114,8 +113,13 @@ where
 {
     let Ports { actuator, link, recorder } = ports;
     let mut turntable = Turntable::new(actuator, configuration, shared);
-    let turning = pin!(turntable.run());
-    beside(turning, link, recorder, session, shared).await
+    let health = {
+        let turning = pin!(turntable.run());
+        beside(turning, link, recorder, session, shared).await
+    };
+    // Where that fails, too, the log has the reason.
+    select(turntable.rest(), discard(shared)).await;
+    health
 }
 
 /// The same as [`run`] on a mount with two frames. After an azimuth it takes the gyro's axis to the vertical,

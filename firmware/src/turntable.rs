@@ -69,6 +69,31 @@ impl<'a, M: Actuator, O: Observer> Turntable<'a, M, O> {
         }
     }
 
+    /// Has the platform come to rest.
+    ///
+    /// # Errors
+    /// A motor that had to be given up meanwhile, which is told.
+    pub async fn rest(&mut self) -> Result<(), Refusal> {
+        for _ in 0..=BLOCKS {
+            match self.stop().await {
+                Err(Break::Refused(reason)) => return Err(reason),
+                // A driver that was started again has stopped its motor; a stall has, too.
+                Ok(()) | Err(Break::Lost | Break::Stalled) => {}
+            }
+        }
+        Ok(())
+    }
+
+    async fn stop(&mut self) -> Result<(), Break> {
+        self.motor.look().await?;
+        if self.motor.motion.is_standing {
+            return Ok(());
+        }
+        self.motor.tell(|axis| Event::Revolving(axis, 0.0));
+        self.motor.ask(Request::Seek(0.0)).await?;
+        self.motor.follow(Trouble::Restless, LONGEST_STOP, |motion| motion.is_standing).await
+    }
+
     async fn serve(&mut self) -> Result<Infallible, Refusal> {
         self.motor.start().await?;
         self.motor.shared.sensing.wait().await;

@@ -2,7 +2,7 @@
 
 use orientation::earth::Latitude;
 use orientation::error::Refusal;
-use orientation::session::rotating::{Command, Event as SessionEvent, Phase, RotatingSession};
+use orientation::session::rotating::{Command, Event as SessionEvent, Phase, Session};
 use orientation::signal::Sample;
 use orientation::signal::sway::SwayNoise;
 use orientation::units::DEGREES_PER_RADIAN as DEGREES;
@@ -17,7 +17,7 @@ use crate::shared::Shared;
 #[derive(Clone, Copy, Debug)]
 pub struct Told {
     phase: Phase,
-    turns: usize,
+    turns: u32,
 }
 
 impl Default for Told {
@@ -26,20 +26,19 @@ impl Default for Told {
     }
 }
 
-impl Conducted for RotatingSession {
+impl Conducted for Session {
     type Told = Told;
 
     fn latitude(&self) -> Latitude {
-        self.setting().latitude
+        self.setting().common.latitude
     }
 
     fn outset(&self) -> Event {
         let (_, turns) = self.turns();
-        let latitude = self.setting().latitude.rad() * DEGREES;
-        Event::BegunTurning { turns, latitude }
+        Event::BegunTurning { turns, latitude: self.latitude().rad() * DEGREES }
     }
 
-    /// Sway is not subtracted on a platform that turns.
+    /// A platform that turns has no sensors on its base.
     fn allow_for(&mut self, _: SwayNoise) {}
 
     fn take(&mut self, sample: &Sample) -> Step {
@@ -56,7 +55,8 @@ impl Conducted for RotatingSession {
 
     fn follow<O: Observer>(&self, told: &mut Told, shared: &Shared<'_, O>) {
         if self.phase() != told.phase {
-            tell_phase(self, told.phase, shared);
+            tell_found(self, told.phase, shared);
+            tell_phase(self, shared);
             told.phase = self.phase();
         }
         let (done, of) = self.turns();
@@ -68,30 +68,48 @@ impl Conducted for RotatingSession {
         }
     }
 
-    fn conclude<O: Observer>(&self, _: &Shared<'_, O>) -> Option<Result<[f64; 3], Refusal>> {
+    fn conclude<O: Observer>(&self, shared: &Shared<'_, O>) -> Option<Result<[f64; 3], Refusal>> {
         let conclusion = self.conclusion()?;
-        Some(conclusion.verdict.map(|azimuth| [azimuth.angle, azimuth.sigma, conclusion.limit]))
+        for average in conclusion.pairs.iter().flat_map(|pair| [&pair.clockwise, &pair.counter]) {
+            if average.left_out > 0 {
+                shared.tell(Event::TurnsLeftOut(average.left_out, average.sense));
+            }
+        }
+        let limit = conclusion.fit.as_ref().map_or(0.0, |fit| fit.limit);
+        Some(conclusion.verdict.map(|azimuth| [azimuth.angle, azimuth.sigma, limit]))
     }
 }
 
-/// What the phase that is over has found, and what the next one does.
-fn tell_phase<O: Observer>(session: &RotatingSession, before: Phase, shared: &Shared<'_, O>) {
-    match (before, session.coupling(), session.force()) {
-        (Phase::Level, _, Some(force)) => tell_level(force, shared),
-        (Phase::Uneven { .. }, Some(coupling), _) => {
-            shared.tell(Event::Coupled(coupling.sine * DEGREES, coupling.sine_sigma * DEGREES));
+/// What the phase that is over has found.
+fn tell_found<O: Observer>(session: &Session, phase: Phase, shared: &Shared<'_, O>) {
+    match phase {
+        Phase::Level => {
+            if let Some(force) = session.force() {
+                tell_level(force, shared);
+            }
+        }
+        Phase::Uneven(index) => {
+            if let Some(coupling) = session.couplings().nth(index) {
+                let [angle, sigma] = [coupling.angle(), coupling.sine_sigma];
+                shared.tell(Event::Coupled(angle * DEGREES, sigma * DEGREES));
+            }
         }
         _ => {}
     }
+}
+
+/// What the phase that begins does.
+fn tell_phase<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
+    let speed = |index: usize| session.procedure().speeds.get(index).map_or(0.0, |w| w * DEGREES);
     match session.phase() {
-        Phase::Uneven { speed } => shared.tell(Event::Uneven(speed * DEGREES)),
-        Phase::Turning { speed, .. } => shared.tell(Event::Stretch(speed * DEGREES)),
-        Phase::Level | Phase::Settle | Phase::Done => {}
+        Phase::Uneven(index) => shared.tell(Event::Uneven(speed(index))),
+        Phase::Even(index, sense) => shared.tell(Event::Stretch(sense, speed(index))),
+        _ => {}
     }
     tell_status(session, shared);
 }
 
-fn tell_status<O: Observer>(session: &RotatingSession, shared: &Shared<'_, O>) {
+fn tell_status<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
     let (done, of) = session.turns();
     shared.status.set(Status::Measuring { done: done as u16, of: of as u16 });
 }

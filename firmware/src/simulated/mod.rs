@@ -113,11 +113,21 @@ pub fn sensors<'a, B: Rig, A: Around>(
     scenario: &Scenario,
     around: &A,
 ) -> SimulatedSensors<'a, B, A> {
+    sensors_with(board, scenario, scenario::accelerometer(), around)
+}
+
+/// The same with an accelerometer that is told something else.
+fn sensors_with<'a, B: Rig, A: Around>(
+    board: &'a RefCell<B>,
+    scenario: &Scenario,
+    force: adxl355::Configuration,
+    around: &A,
+) -> SimulatedSensors<'a, B, A> {
     let bus = |select, hertz| bus(board, around, select, hertz);
     let converter = bus(Select::Gyro, CONVERTER_HERTZ);
     let ready = around.line(ReadyPin::new(board, Select::Gyro));
     let accelerometer = bus(Select::Accelerometer, adxl355::BUS_HERTZ);
-    let accelerometer = Adxl355::new(accelerometer, Delay, scenario::accelerometer());
+    let accelerometer = Adxl355::new(accelerometer, Delay, force);
     let encoder = bus(Select::Encoder, mt6835::BUS_HERTZ);
     let encoder = Mt6835::new(encoder, Delay, mt6835::Configuration::default());
     Sensors {

@@ -5,35 +5,52 @@
 
 use core::cell::RefCell;
 
+use drivers::adxl355;
+use drivers::adxl355::registers::OutputRate;
 use drivers::tmc5160::configuration::{Configuration as Motor, Switches};
+use embassy_time::{Duration, Instant};
 use hal_mock::chip::Rig;
 use hal_mock::molecular::MolecularConfiguration;
 use hal_mock::plant::PlantConfiguration;
 use hal_mock::plant::train::StageConfiguration;
 use hal_mock::stage::{Ripple, Unevenness};
-use orientation::align::setting::Setting;
-use orientation::session::rotating::{Coupling, RotatingProcedure};
+use orientation::align::rotating::coupling::Coupling;
+use orientation::align::rotating::solution::SPEEDS;
+use orientation::align::rotating::{Sensor, Setting};
+use orientation::session::rotating::{Procedure, Session};
 use orientation::units::{DEGREE, TURN};
 
-use super::fault::Plan;
+use super::fault::{Fault, Plan};
 use super::scenario::{GyroClass, Scenario};
-use super::{Around, Chips, SimulatedPorts, board_around, ports_with};
+use super::{Around, Chips, SimulatedPorts, SimulatedSensors, board_around, ports_with, sensors_with};
 use crate::configuration::{Configuration, TurntableConfiguration};
 
 /// The motor driver of a platform that turns without end: it has no switches.
 const MOTOR: Switches = Switches { left: None, right: None };
 
+/// The accelerometer of a platform that turns: its filter delays a force by two and a half outputs, in
+/// which the platform is not to turn far.
+const FORCE: adxl355::Configuration = adxl355::Configuration { rate: OutputRate::Hz1000 };
+/// The same rate, Hz.
+const FORCE_HERTZ: f64 = 1000.0;
+
 /// A molecular-electronic sensor: little noise at the turn's frequency, a drift that no gyro has.
 pub const MOLECULAR_ELECTRONIC: GyroClass =
     GyroClass { n_deg_sqrt_h: 0.002, b_deg_h: 0.0, k_deg_h_sqrt_h: 0.0, bias_sigma_deg_h: 5.0 };
 
-/// Its dynamics: 8° ahead at 0.137 Hz by its high-pass, 2.5° behind by its lag, and a g-sensitivity that
-/// at that speed and 0.7° of tilt is a fifth of the horizontal Earth rate.
+/// Its dynamics: 17° ahead at 0.1 Hz and 9° at 0.2 Hz by its high-pass, about 1° behind by its lag, and a
+/// g-sensitivity that at 0.1 Hz and 0.7° of tilt is a fifth of the horizontal Earth rate.
 pub const DYNAMICS: MolecularConfiguration = MolecularConfiguration {
-    force_rad_s2_g: [5e-4, -3e-4],
-    high_pass_hz: 0.02,
-    lag_s: 0.05,
+    force_rad_s2_g: [4e-4, -2.5e-4],
+    high_pass_hz: 0.03,
+    lag_s: 0.02,
 };
+/// Time constants of the high-pass until a change of the platform's rate, of which a raised axis shows a
+/// hundredth, is below what the Earth's is to be known to: e⁻¹⁴ is 10⁻⁶.
+const SETTLED: f64 = 14.0;
+
+/// Until the platform is ready to turn, s.
+const START_SECONDS: f64 = 1.0;
 
 /// A simulated alignment on a turning platform.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,31 +61,34 @@ pub struct TurntableScenario {
     pub molecular: Option<MolecularConfiguration>,
     /// Turns a second, the second speed zero where there is none, Hz.
     pub speeds_hz: [f64; 2],
+    /// Uneven turns at each speed; none where a stored coupling is to do.
+    pub uneven_turns: u32,
     /// Turns in each direction at each speed.
-    pub turns: usize,
+    pub turns: u32,
     /// How far the sensitive axis rises over the platform's plane, °.
     pub elevation_deg: f64,
     /// How uneven the gear is, relative, once and twice per turn.
     pub unevenness: [f64; 2],
     /// Angles at which it is quickest, °.
     pub quickest_deg: [f64; 2],
-    /// A coupling that was stored, so that no uneven turn is needed.
-    pub stored: Option<Coupling>,
+    /// Couplings that were stored, for each speed.
+    pub stored: [Option<Coupling>; SPEEDS],
 }
 
 impl Default for TurntableScenario {
-    /// The default gyro, raised by 0.8°, at 0.137 Hz for ten turns each way, on a gear that is uneven by
-    /// 0.2 % once and 0.05 % twice per turn.
+    /// The default gyro, raised by 0.8°, at 0.137 Hz for twelve uneven turns and ten each way, on a gear
+    /// that is uneven by 0.2 % once and 0.05 % twice per turn.
     fn default() -> Self {
         Self {
             base: Scenario::default(),
             molecular: None,
             speeds_hz: [0.137, 0.0],
+            uneven_turns: 12,
             turns: 10,
             elevation_deg: 0.8,
             unevenness: [0.002, 0.0005],
             quickest_deg: [35.0, 110.0],
-            stored: None,
+            stored: [None; SPEEDS],
         }
     }
 }
@@ -80,11 +100,11 @@ impl TurntableScenario {
         Self { base: Scenario::usual(seed), ..Self::default() }
     }
 
-    /// Three turns each way at 100 Hz.
+    /// Six uneven turns and three each way at 100 Hz.
     #[must_use]
     pub fn brief(seed: u64) -> Self {
         let base = Scenario { sample_rate_hz: 100.0, ..Scenario::usual(seed) };
-        Self { base, turns: 3, ..Self::default() }
+        Self { base, uneven_turns: 6, turns: 3, ..Self::default() }
     }
 
     /// A molecular-electronic sensor at two speeds.
@@ -98,19 +118,30 @@ impl TurntableScenario {
     /// What the board is told of place and instrument; none where the latitude is none.
     #[must_use]
     pub fn setting(&self) -> Option<Setting> {
-        self.base.setting()
+        let setting = Setting::new(self.base.setting()?, self.sensor());
+        Some(Setting { couplings: self.stored, ..setting })
+    }
+
+    fn sensor(&self) -> Sensor {
+        let Some(dynamics) = self.molecular else { return Sensor::GYRO };
+        let settle_seconds = SETTLED / (TURN * dynamics.high_pass_hz);
+        Sensor { settle_seconds, ..Sensor::MOLECULAR }
     }
 
     /// How the board goes about it.
     #[must_use]
-    pub fn procedure(&self) -> RotatingProcedure {
-        RotatingProcedure {
-            speeds: self.speeds_hz.map(|speed| speed * TURN),
-            speed_count: self.speeds_hz.iter().filter(|speed| **speed > 0.0).count(),
-            turns: self.turns,
-            sample_seconds: 1.0 / self.base.sample_rate_hz,
-            coupling: self.stored,
-        }
+    pub fn procedure(&self) -> Procedure {
+        let speeds = self.speeds_hz.map(|speed| speed * TURN);
+        let count = speeds.iter().take_while(|speed| **speed > 0.0).count();
+        let Self { uneven_turns, turns, .. } = *self;
+        let sample_seconds = 1.0 / self.base.sample_rate_hz;
+        Procedure { uneven_turns, turns, ..Procedure::new(&speeds[..count], sample_seconds) }
+    }
+
+    /// Its session; none where the latitude is none or the procedure impossible.
+    #[must_use]
+    pub fn session(&self) -> Option<Session> {
+        Session::new(self.setting()?, self.procedure()).ok()
     }
 
     /// What the board is told of its devices.
@@ -132,6 +163,7 @@ impl TurntableScenario {
     #[must_use]
     pub fn plant(&self) -> PlantConfiguration<'static> {
         let mut plant = self.base.plant();
+        plant.accelerometer_hz = FORCE_HERTZ;
         plant.instruments.gyro.axis_elevation_rad = self.elevation_deg * DEGREE;
         plant.instruments.gyro.molecular = self.molecular;
         let ripple = |harmonic: usize| Ripple {
@@ -148,6 +180,17 @@ impl TurntableScenario {
         plant
     }
 
+    /// A plan of a fault that comes amid the clockwise turns.
+    #[must_use]
+    pub fn plan(&self, fault: Option<Fault>) -> Plan {
+        let Procedure { ramp_seconds, level_seconds, .. } = self.procedure();
+        let turns = f64::from(self.uneven_turns) + 0.5 * f64::from(self.turns);
+        let phases = if self.uneven_turns > 0 { 2.0 } else { 1.0 };
+        let seconds = START_SECONDS + level_seconds + phases * ramp_seconds;
+        let seconds = seconds + turns / self.speeds_hz[0];
+        Plan::at(fault, Instant::MIN + Duration::from_millis((seconds * 1e3) as u64))
+    }
+
     /// The simulated board with a plan of faults.
     #[must_use]
     pub fn board<'a>(&self, plan: &'a Plan) -> Chips<'a> {
@@ -155,7 +198,16 @@ impl TurntableScenario {
     }
 }
 
-/// The other ports of its simulated board; the sensors are those of [`super::sensors`].
+/// The sensors of its simulated board.
+pub fn sensors<'a, B: Rig, A: Around>(
+    board: &'a RefCell<B>,
+    scenario: &TurntableScenario,
+    around: &A,
+) -> SimulatedSensors<'a, B, A> {
+    sensors_with(board, &scenario.base, FORCE, around)
+}
+
+/// The other ports of its simulated board.
 pub fn ports<'a, B: Rig, A: Around, L, R>(
     board: &'a RefCell<B>,
     around: &A,

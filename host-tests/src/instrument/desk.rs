@@ -10,8 +10,7 @@ use firmware::ports::Observer;
 use firmware::shared::Shared;
 use hal_mock::chip::Select;
 use hal_mock::violation::Violation;
-use orientation::session::Session;
-use orientation::session::rotating::RotatingSession;
+use orientation::session::{Session, rotating};
 
 use super::{Run, RunError};
 use crate::virtual_time;
@@ -35,7 +34,7 @@ impl<W: Observer> Observer for Log<'_, W> {
         self.watch.progress(session);
     }
 
-    fn turned(&self, session: &RotatingSession) {
+    fn turned(&self, session: &rotating::Session) {
         self.watch.turned(session);
     }
 }

@@ -5,15 +5,15 @@ use std::cell::RefCell;
 use firmware::ports::{Observer, Recorder};
 use firmware::run::{acquire, run_rotating};
 use firmware::simulated;
-use firmware::simulated::fault::{Fault, FaultyRecorder, Plan};
+use firmware::simulated::fault::{Fault, FaultyRecorder};
 use firmware::simulated::turntable::{self, TurntableScenario};
-use orientation::session::rotating::RotatingSession;
+use orientation::session::rotating;
 
 use super::desk::{self, Desk};
 use super::{Run, RunError};
 
 /// A finished run on a turning platform.
-pub type TurntableRun = Run<RotatingSession>;
+pub type TurntableRun = Run<rotating::Session>;
 
 /// Runs a scenario in virtual time on this thread.
 ///
@@ -27,14 +27,14 @@ pub fn align_turning<R: Recorder, W: Observer>(
 ) -> Result<TurntableRun, RunError> {
     let setting = scenario.setting().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
     let mut session =
-        RotatingSession::new(setting, scenario.procedure()).map_err(RunError::Procedure)?;
-    let plan = Plan::of(fault);
+        rotating::Session::new(setting, scenario.procedure()).map_err(RunError::Procedure)?;
+    let plan = scenario.plan(fault);
     let board = RefCell::new(scenario.board(&plan));
     let desk = Desk::new(watch);
     let seams = desk.seams();
     let configuration = scenario.configuration();
     let platform = scenario.turntable();
-    let mut sensors = simulated::sensors(&board, &scenario.base, &plan);
+    let mut sensors = turntable::sensors(&board, scenario, &plan);
     let recorder = FaultyRecorder::new(recorder, plan.hang);
     let mut ports = turntable::ports(&board, &plan, desk.wire(), recorder);
     let ended = desk::run(
