@@ -1,5 +1,6 @@
 //! Why something ended without a result.
 
+use crate::align::rotating::turn::Sense;
 use crate::device::{Device, Trouble};
 use crate::noise::fit::FitError;
 use crate::words;
@@ -146,6 +147,69 @@ pub enum Refusal {
     NothingAccepted,
     /// Every entry of the table lies within the given bound.
     EverythingAccepted,
+    /// The platform did not turn round often enough in one sense.
+    TurnsTooFew {
+        /// Which.
+        sense: Sense,
+        /// Whole even turns in it that count.
+        turns: u32,
+    },
+    /// The platform turned in one sense faster than in the other.
+    SpeedsUnequal {
+        /// Speed clockwise, °/s.
+        clockwise: f64,
+        /// Speed counter-clockwise, °/s.
+        counter: f64,
+    },
+    /// The platform does not turn as it is told.
+    PlatformStopped {
+        /// Speed that it was told, °/s, clockwise positive.
+        wanted: f64,
+    },
+    /// The encoder moved against the platform.
+    EncoderSlipped {
+        /// By how much, °.
+        angle: f64,
+    },
+    /// The sensitive axis stands too far from the platform's plane.
+    Misaligned {
+        /// How far, °.
+        angle: f64,
+        /// The greatest accepted, °.
+        allowed: f64,
+    },
+    /// Nothing is known of how the gyro feels the platform's own rate.
+    CouplingUnknown,
+    /// What both senses show differs by more than a flat sensor lets them.
+    SensesDisagree {
+        /// Half of the difference, in σ.
+        sigmas: f64,
+    },
+    /// What two speeds show does not go together.
+    SpeedsDisagree {
+        /// By how much, in σ.
+        sigmas: f64,
+    },
+    /// The tilt that the accelerometer shows changed between the senses or speeds.
+    TiltChanged {
+        /// By how much, thousandths of gravity.
+        change: f64,
+    },
+    /// The Earth rate's direction drifts from turn to turn.
+    DirectionDrifts {
+        /// By how much, in σ.
+        sigmas: f64,
+    },
+    /// The sensor lags so far that north cannot be told from south.
+    PhaseAmbiguous {
+        /// Its phase, °.
+        phase: f64,
+    },
+    /// The integrated g-sensitivity is too large a part of what turns.
+    MolecularTooGreat {
+        /// That part.
+        ratio: f64,
+    },
     /// A device of the board failed.
     Device {
         /// Which.
@@ -206,5 +270,35 @@ words! { Refusal:
     Self::NothingAccepted => "no azimuth of the table lies within the bound";
     Self::EverythingAccepted =>
         "every azimuth of the table lies within the bound: it cannot tell";
+    Self::TurnsTooFew { sense, turns } =>
+        "{} whole even turn(s) {}: two are needed in either sense", turns, sense;
+    Self::SpeedsUnequal { clockwise, counter } =>
+        "the platform turned by {} °/s clockwise, by {} °/s counter-clockwise: both must be equal",
+        Rounded::<3>(clockwise), Rounded::<3>(counter);
+    Self::PlatformStopped { wanted } =>
+        "the platform does not turn, or not evenly, by {} °/s as it is told", Rounded::<2>(wanted);
+    Self::EncoderSlipped { angle } =>
+        "the encoder moved by {}° against the platform", Rounded::<2>(angle);
+    Self::Misaligned { angle, allowed } =>
+        "the sensitive axis stands {}° from the platform's plane, more than {}°: align the sensor mechanically",
+        Rounded::<2>(angle), Rounded::<1>(allowed);
+    Self::CouplingUnknown =>
+        "nobody knows how the sensor feels the platform's own rate: turn it unevenly first";
+    Self::SensesDisagree { sigmas } =>
+        "clockwise and counter-clockwise disagree by {} σ: this sensor is not flat, or lags",
+        Rounded::<1>(sigmas);
+    Self::SpeedsDisagree { sigmas } =>
+        "the two speeds disagree by {} σ about the sensor's g-sensitivity", Rounded::<1>(sigmas);
+    Self::TiltChanged { change } =>
+        "the tilt changed by {} mg between senses or speeds: the base moved, or the encoder slipped",
+        Rounded::<2>(change);
+    Self::DirectionDrifts { sigmas } =>
+        "the Earth rate's direction drifts from turn to turn by {} σ: the encoder slips, or the base turns",
+        Rounded::<1>(sigmas);
+    Self::PhaseAmbiguous { phase } =>
+        "the sensor lags by {}°: north cannot be told from south", Rounded::<0>(phase);
+    Self::MolecularTooGreat { ratio } =>
+        "g-sensitivity makes {} of what turns with the platform: level it, or turn faster",
+        Rounded::<2>(ratio);
     Self::Device { device, trouble } => "{}: {}", device, trouble;
 }

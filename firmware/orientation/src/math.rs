@@ -1,6 +1,6 @@
-//! Small numerical pieces that several methods share: Cholesky factors and chi-square tails.
+//! Small numerical pieces that several methods share: phasors, Cholesky factors, chi-square tails.
 
-use core::ops::{AddAssign, Div, Mul, MulAssign, SubAssign};
+use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Sub, SubAssign};
 
 /// A number in the precision that a computation needs: `f64` for results, `f32`, a tenth of the
 /// instructions on this core, where a thousandth is enough.
@@ -39,6 +39,94 @@ impl Scalar for f32 {
 
     fn root(self) -> Self {
         libm::sqrtf(self)
+    }
+}
+
+/// A complex number: the phasor a of a signal Re{a e^{jθ}} on a turning platform.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Complex {
+    /// Real part, the signal's cosine.
+    pub re: f64,
+    /// Imaginary part, less the signal's sine.
+    pub im: f64,
+}
+
+impl Complex {
+    /// From its parts.
+    #[must_use]
+    pub const fn new(re: f64, im: f64) -> Self {
+        Self { re, im }
+    }
+
+    /// From the coefficients of cosine and sine of a signal.
+    #[must_use]
+    pub fn of_signal([cosine, sine]: [f32; 2]) -> Self {
+        Self::new(f64::from(cosine), -f64::from(sine))
+    }
+
+    /// Of size one, at an angle in rad.
+    #[must_use]
+    pub fn unit(angle: f64) -> Self {
+        let (sine, cosine) = libm::sincos(angle);
+        Self::new(cosine, sine)
+    }
+
+    /// Its angle, rad, [−π, π].
+    #[must_use]
+    pub fn angle(self) -> f64 {
+        libm::atan2(self.im, self.re)
+    }
+
+    /// Its size.
+    #[must_use]
+    pub fn size(self) -> f64 {
+        libm::hypot(self.re, self.im)
+    }
+
+    /// Its conjugate.
+    #[must_use]
+    pub const fn conjugate(self) -> Self {
+        Self::new(self.re, -self.im)
+    }
+
+    /// So many times as large.
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        Self::new(self.re * factor, self.im * factor)
+    }
+}
+
+impl Add for Complex {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self::new(self.re + other.re, self.im + other.im)
+    }
+}
+
+impl Sub for Complex {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self::new(self.re - other.re, self.im - other.im)
+    }
+}
+
+impl Mul for Complex {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        let Self { re, im } = other;
+        Self::new(self.re * re - self.im * im, self.re * im + self.im * re)
+    }
+}
+
+impl Div for Complex {
+    type Output = Self;
+
+    fn div(self, other: Self) -> Self {
+        let power = other.re * other.re + other.im * other.im;
+        (self * other.conjugate()).scaled(1.0 / power)
     }
 }
 

@@ -1,4 +1,4 @@
-//! From dwell averages to an azimuth with its standard deviation.
+//! From dwell averages, or the turns of a platform, to an azimuth with its standard deviation.
 
 pub mod budget;
 pub mod conclusion;
@@ -9,6 +9,7 @@ pub mod level;
 pub mod mount;
 pub mod quality;
 pub mod regression;
+pub mod rotating;
 pub mod setting;
 pub mod stepwise;
 

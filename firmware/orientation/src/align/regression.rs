@@ -96,6 +96,15 @@ impl<const P: usize, T: Scalar> Regression<P, T> {
     }
 }
 
+impl<const P: usize> Regression<P> {
+    /// From sums that were gathered elsewhere: products of the columns, lower triangle, and of each
+    /// with the left side. Without the left side's own square, chi-square means nothing.
+    #[must_use]
+    pub fn of_products(products: [[f64; P]; P], with_left: [f64; P], rows: usize) -> Self {
+        Self { products, with_left, left_squared: 0.0, rows }
+    }
+}
+
 /// Indices of the columns in use, and how many there are.
 fn used_columns<const P: usize>(model: &[Column; P]) -> ([usize; P], usize) {
     let mut used = [0; P];

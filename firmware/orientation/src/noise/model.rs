@@ -1,6 +1,6 @@
 //! The gyro's noise in the field's terms: Q, N, B, K, R.
 
-use crate::units::{ARCSECOND, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
+use crate::units::{ARCSECOND, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, TURN};
 
 /// Noise coefficients of a gyro in SI units (Allan variance
 /// 3Q²/τ² + N²/τ + (2 ln 2/π)B² + K²τ/3 + R²τ²/2). Zero means: not present.
@@ -62,6 +62,16 @@ impl GyroNoise {
     #[must_use]
     pub fn own_variance(&self, seconds: f64) -> f64 {
         self.white_variance(seconds) + self.rounding_variance(seconds)
+    }
+
+    /// Two-sided spectral density that counts in a line at `frequency`, Hz, over whole periods,
+    /// (rad/s)²/Hz: N², B²/(2πf), and twice K²/(2πf)², since a walk's sine over whole periods has three
+    /// times the variance of its cosine.
+    #[must_use]
+    pub fn density_at(&self, frequency: f64) -> f64 {
+        let (n, b) = (self.angle_random_walk, self.bias_instability);
+        let k = self.rate_random_walk / (TURN * frequency);
+        n * n + b * b / (TURN * frequency) + 2.0 * k * k
     }
 
     /// Whether there is noise that one dwell shares with the next, beside a ramp.

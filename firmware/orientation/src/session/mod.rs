@@ -12,6 +12,7 @@ mod accuracy;
 mod pace;
 mod prepared;
 pub mod procedure;
+pub mod rotating;
 pub mod schedule;
 pub mod survey;
 

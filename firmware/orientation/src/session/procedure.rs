@@ -135,6 +135,8 @@ pub enum ProcedureError {
     BeyondTravel(f64),
     /// There is no position.
     NoPosition,
+    /// A turning platform needs speeds above zero, two turns at least, and a modulation of its uneven turns.
+    NoSpeed,
     /// The etalon table in flash fails its CRC: flash the firmware again.
     TableCorrupt,
 }
@@ -146,5 +148,7 @@ words! { ProcedureError:
     Self::BeyondTravel(angle) =>
         "position {}° is beyond the stage's travel", Rounded::<2>(angle / TURN * 360.0);
     Self::NoPosition => "there is no position";
+    Self::NoSpeed =>
+        "a turning platform needs one or two speeds above zero, two turns in either sense, a modulation";
     Self::TableCorrupt => "the etalon table fails its checksum";
 }

@@ -1,8 +1,9 @@
-//! From raw samples to the average of one dwell.
+//! From raw samples to the average of one dwell, or to the phasors of a turning platform.
 
 pub mod blocks;
 pub mod butterworth;
 pub mod dwell;
+pub mod phasor;
 pub mod sway;
 
 use crate::units::{Angle, AngularRate, Instant, SpecificForce, Temperature};

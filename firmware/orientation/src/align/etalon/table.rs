@@ -4,6 +4,8 @@
 //! cannot hold cos 0 = 1. By symmetry 129 604 bytes of flash serve the full circle, sine and cosine,
 //! and any step that is a multiple of 10″.
 
+use crate::units::Angle;
+
 /// Grid steps in one turn; one step is 10″.
 pub const TURN: i32 = 129_600;
 
@@ -18,6 +20,9 @@ pub const ENTRIES: usize = 32_401;
 
 /// One grid step (10″) in rad.
 pub const STEP: f64 = core::f64::consts::TAU / TURN as f64;
+
+/// [`STEP`] in units of 2⁻³² rad.
+const STEP_IN_32_BITS: i64 = (STEP * 4_294_967_296.0) as i64;
 
 /// The value of cos 0 in table units.
 pub const ONE: f64 = 2_147_483_648.0;
@@ -105,6 +110,30 @@ impl Table {
     #[inline]
     pub fn sin(self, index: i32) -> i64 {
         self.cos(index.rem_euclid(TURN) - QUARTER)
+    }
+
+    /// Cosine and sine of any angle in units of 2⁻³⁰, within ±1: the grid's values, carried on to the
+    /// angle by each other (the second order, at most 3e-10, is left out). Some 50 instructions.
+    #[must_use]
+    #[inline]
+    pub fn at(self, angle: Angle) -> [i32; 2] {
+        let steps = u64::from(angle.0) * TURN as u64;
+        let index = ((steps + (1 << 31)) >> 32) as i32;
+        // How far beyond the grid's point, in 2⁻³² of a step: half a step at most, either way.
+        let beyond = steps.wrapping_sub((index as u64) << 32) as i32;
+        // In units of 2⁻³² rad.
+        let beyond = (i64::from(beyond) * STEP_IN_32_BITS) >> 32;
+        let quarter = if index < QUARTER { index + TURN - QUARTER } else { index - QUARTER };
+        let (cosine, sine) = (self.on_circle(index), self.on_circle(quarter));
+        [(cosine - ((sine * beyond) >> 32)) >> 1, (sine + ((cosine * beyond) >> 32)) >> 1]
+            .map(|value| value as i32)
+    }
+
+    /// [`Self::cos`] of an index from 0 to [`TURN`].
+    #[inline]
+    fn on_circle(self, index: i32) -> i64 {
+        let run = Run::at(if index == TURN { 0 } else { index });
+        self.quarter.get(run.index as usize).map_or(0, |&entry| run.signed(entry))
     }
 
     /// [`Self::cos`] and [`Self::sin`] as `f64`, exact.

@@ -1,0 +1,228 @@
+//! The mean of a stretch: its turns freed of drift and coupling, disturbed ones left out.
+
+use heapless::Vec;
+
+use super::coupling::{self, Coupling};
+use super::turn::{Sense, Stretch, TURNS, Turn};
+use crate::math::{Complex, median};
+
+/// Squared distance of a turn from the others, in variances of either part, beyond which it is left
+/// out (exp(−x/2): one healthy turn in 40 000).
+const OUTLIER: f64 = 21.0;
+/// Median of the squared distance of two neighbours over the variance of either part: 2 · 2 ln 2.
+const MEDIAN_OF_NEIGHBOURS: f64 = 2.772_588_722_239_781;
+
+/// A stretch's phasors. A phasor a stands for the signal Re{a e^{jθ}}.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Average {
+    /// Which way the platform turned.
+    pub sense: Sense,
+    /// How fast, rad/s, > 0.
+    pub speed: f64,
+    /// Turns that count, and those that were left out, in turns of the platform.
+    pub turns: u32,
+    /// Turns left out.
+    pub left_out: u32,
+    /// Time in the turns that count, s.
+    pub seconds: f64,
+    /// The gyro's rate as it came, rad/s.
+    pub raw: Complex,
+    /// The same without drift and coupling, Q₊ or Q₋.
+    pub phasor: Complex,
+    /// The platform's rate, rad/s.
+    pub turning: Complex,
+    /// The force along the sensitive axis, m/s².
+    pub force: Complex,
+    /// Variance of either part of `force`, from its scatter, (m/s²)².
+    pub force_variance: f64,
+    /// Mean force along the sensitive axis, m/s².
+    pub mean_force: f64,
+    /// Variance of either part of `phasor` where that of one turn of the platform is one.
+    pub share: f64,
+    /// Sum of the squared distances of the turns from their mean, (rad/s)².
+    pub scatter: f64,
+    /// Squared drift of the phasor from turn to turn, over its variance where that of a turn is one,
+    /// (rad/s)².
+    pub trend: f64,
+    /// Degrees of freedom of `scatter`.
+    pub degrees: u32,
+}
+
+/// The turns of a stretch as compensated phasors.
+struct Turns<'a> {
+    all: &'a [Turn],
+    phasors: Vec<Complex, TURNS>,
+    is_kept: [bool; TURNS],
+}
+
+impl<'a> Turns<'a> {
+    fn of(stretch: &'a Stretch, couplings: &[Coupling]) -> Self {
+        let frequency = stretch.sense.signed(stretch.speed());
+        let coupling = coupling::nearest(couplings, frequency);
+        let response = coupling.map_or(Complex::default(), |coupling| coupling.response(frequency));
+        let mut found = Self { all: stretch.turns(), phasors: Vec::new(), is_kept: [true; TURNS] };
+        for turn in stretch.turns() {
+            let turning = Complex::of_signal(turn.turning);
+            // A stretch holds no more turns than these.
+            let _ = found.phasors.push(Complex::of_signal(turn.rate) - response * turning);
+        }
+        found
+    }
+
+    /// Frees the phasors of a drift of the gyro, as the turns that count show it. It leaks into all of
+    /// them alike, so that it does not matter for which count.
+    fn free(&mut self) {
+        let slope = self.slope();
+        for (phasor, turn) in self.phasors.iter_mut().zip(self.all) {
+            *phasor = *phasor - Complex::of_signal(turn.leak).scaled(slope);
+        }
+    }
+
+    fn kept(&self) -> impl Iterator<Item = usize> {
+        (0..self.all.len()).filter(|&index| self.is_kept[index])
+    }
+
+    fn count(&self) -> usize {
+        self.kept().count()
+    }
+
+    /// Mean of something over the turns that count.
+    fn mean(&self, of: impl Fn(usize) -> f64) -> f64 {
+        self.kept().map(of).sum::<f64>() / self.count().max(1) as f64
+    }
+
+    fn mean_complex(&self, of: impl Fn(usize) -> Complex) -> Complex {
+        let sum = self.kept().map(of).fold(Complex::default(), |sum, part| sum + part);
+        sum.scaled(1.0 / self.count().max(1) as f64)
+    }
+
+    /// Least-squares slope of something over the times of the turns, and the times' sum of squares.
+    fn slope_of(&self, of: impl Fn(usize) -> f64) -> (f64, f64) {
+        let time = |index: usize| f64::from(self.all[index].middle);
+        let middle = self.mean(time);
+        let (mut product, mut square) = (0.0, 0.0);
+        for index in self.kept() {
+            let away = time(index) - middle;
+            product += away * of(index);
+            square += away * away;
+        }
+        (if square > 0.0 { product / square } else { 0.0 }, square)
+    }
+
+    /// Drift of the gyro's rate, rad/s²: none is told by fewer than three turns.
+    fn slope(&self) -> f64 {
+        if self.count() < 3 {
+            return 0.0;
+        }
+        self.slope_of(|index| f64::from(self.all[index].offset)).0
+    }
+
+    fn distance(&self, index: usize, from: Complex) -> f64 {
+        let away = self.phasors[index] - from;
+        away.re * away.re + away.im * away.im
+    }
+
+    /// Leaves out the turn that is furthest from the others while one is too far; at most a third.
+    fn leave_out(&mut self, variance: f64) {
+        for _ in 0..self.all.len() / 3 {
+            let mean = self.mean_complex(|index| self.phasors[index]);
+            let count = self.count() as f64;
+            let far = |index: usize| (index, self.distance(index, mean));
+            let furthest = self
+                .kept()
+                .map(far)
+                .fold((0, 0.0), |most, next| if next.1 > most.1 { next } else { most });
+            // A turn's distance from the mean in which it takes part itself is shorter.
+            if furthest.1 * count / (count - 1.0) <= OUTLIER * variance {
+                return;
+            }
+            self.is_kept[furthest.0] = false;
+        }
+    }
+}
+
+impl Average {
+    /// The mean of a stretch whose turns have phasors of this variance in either part, (rad/s)²; `None`
+    /// without two turns.
+    #[must_use]
+    pub fn of(stretch: &Stretch, couplings: &[Coupling], variance: f64) -> Option<Self> {
+        let mut turns = Turns::of(stretch, couplings);
+        turns.leave_out(variance);
+        turns.free();
+        let count = turns.count();
+        if count < 2 {
+            return None;
+        }
+        let joined = stretch.count() / stretch.turns().len().max(1) as u32;
+        let turn = |index: usize| &turns.all[index];
+        let phasor = turns.mean_complex(|index| turns.phasors[index]);
+        let force = turns.mean_complex(|index| Complex::of_signal(turn(index).force));
+        let force_scatter = turns.mean(|index| {
+            let away = Complex::of_signal(turn(index).force) - force;
+            0.5 * away.size() * away.size()
+        });
+        let (cosine, square) = turns.slope_of(|index| turns.phasors[index].re);
+        let (sine, _) = turns.slope_of(|index| turns.phasors[index].im);
+        Some(Self {
+            sense: stretch.sense,
+            speed: stretch.speed(),
+            turns: count as u32 * joined,
+            left_out: (turns.all.len() - count) as u32 * joined,
+            seconds: turns.kept().map(|index| f64::from(turn(index).seconds)).sum(),
+            raw: turns.mean_complex(|index| Complex::of_signal(turn(index).rate)),
+            phasor,
+            turning: turns.mean_complex(|index| Complex::of_signal(turn(index).turning)),
+            force,
+            force_variance: force_scatter / (count - 1) as f64,
+            mean_force: turns.mean(|index| f64::from(turn(index).mean_force)),
+            share: turns.share(square) / f64::from(joined),
+            scatter: turns.kept().map(|index| turns.distance(index, phasor)).sum(),
+            trend: (cosine * cosine + sine * sine) * square,
+            degrees: 2 * (count as u32 - 1),
+        })
+    }
+}
+
+impl Average {
+    /// Turns that were joined to one.
+    #[must_use]
+    pub fn joined(&self) -> f64 {
+        f64::from(self.turns) / (0.5 * f64::from(self.degrees) + 1.0)
+    }
+}
+
+impl Turns<'_> {
+    /// Variance of either part of the mean where a turn's is one: what the drift's slope adds, whose
+    /// own variance is that of the turns' means, half of a phasor's.
+    fn share(&self, square: f64) -> f64 {
+        let own = 1.0 / self.count() as f64;
+        if self.count() < 3 || square <= 0.0 {
+            return own;
+        }
+        let leak = self.mean_complex(|index| Complex::of_signal(self.all[index].leak)).size();
+        own + 0.5 * leak * leak * 0.5 / square
+    }
+}
+
+/// Size of a turn's phasor, rad/s: the median, which disturbed turns hardly touch.
+#[must_use]
+pub fn typical_size(stretch: &Stretch, couplings: &[Coupling]) -> f64 {
+    let turns = Turns::of(stretch, couplings);
+    let mut sizes: Vec<f64, TURNS> = turns.phasors.iter().map(|phasor| phasor.size()).collect();
+    median(&mut sizes)
+}
+
+/// Variance of either part of a turn's phasor from the differences of neighbours, (rad/s)², which
+/// disturbed turns hardly touch; zero where there are none.
+#[must_use]
+pub fn variance_of_neighbours(stretches: &[Stretch], couplings: &[Coupling]) -> f64 {
+    let mut squares: Vec<f64, { 4 * TURNS }> = Vec::new();
+    for stretch in stretches {
+        let turns = Turns::of(stretch, couplings);
+        for index in 1..turns.all.len() {
+            // Four stretches hold no more.
+            let _ = squares.push(turns.distance(index, turns.phasors[index - 1]));
+        }
+    }
+    median(&mut squares) / MEDIAN_OF_NEIGHBOURS
+}

@@ -1,0 +1,320 @@
+//! From what a platform's turns left to a verdict: an azimuth with σ, or the reason why there is none.
+
+use heapless::Vec;
+
+use super::Setting;
+use super::average::{Average, typical_size, variance_of_neighbours};
+use super::coupling::Coupling;
+use super::follower::{Follower, STRETCHES};
+use super::solution::{Fit, Pair, Problem, SPEEDS, of_turn};
+use super::turn::{Sense, Stretch};
+use crate::align::conclusion::Azimuth;
+use crate::device::Device;
+use crate::error::Refusal;
+use crate::math::{Complex, chi_square_tail};
+use crate::units::{DEGREES_PER_RADIAN as DEGREES, TURN};
+
+/// What the speeds of both senses may differ by, relative.
+const EQUAL_SPEEDS: f64 = 0.01;
+/// Probability of healthy turns' scatter below which they are refused.
+const SCATTER_PROBABILITY: f64 = 1e-6;
+/// What is a difference and no chance, in σ.
+const DIFFERENT: f64 = 5.0;
+/// What both senses of a flat sensor may differ by beyond that, of the Earth rate: a lag of some
+/// milliseconds, the encoder's harmonics, which cancel.
+const SENSES_TOLERANCE: f64 = 0.05;
+/// What the Earth-rate ratio may be off beyond five of its σ.
+const RATIO_TOLERANCE: f64 = 0.005;
+/// What the tilt may differ by between stretches beyond five σ, g.
+const TILT_TOLERANCE: f64 = 1e-5;
+/// Mean force over whole turns beyond which an accelerometer does not lie in the platform's plane, m/s²,
+/// beyond five of its bias's σ.
+const FORCE_TOLERANCE: f64 = 1.0;
+/// Greatest phase of a sensor, rad: 60°.
+const GREATEST_PHASE: f64 = TURN / 6.0;
+/// Greatest measured part of an integrated g-sensitivity.
+const GREATEST_MOLECULAR: f64 = 0.5;
+
+/// All that a turning platform found.
+#[derive(Clone, Debug)]
+pub struct Conclusion {
+    /// The azimuth, or why there is none.
+    pub verdict: Result<Azimuth, Refusal>,
+    /// The fit, where both senses were there; its azimuth counts only with the verdict.
+    pub fit: Option<Fit>,
+    /// How the gyro feels the platform's rate, found or stored, at one speed or at each.
+    pub couplings: Vec<Coupling, SPEEDS>,
+    /// Both senses at each speed.
+    pub pairs: Vec<Pair, SPEEDS>,
+    /// Angle random walk used, rad/√s: known, or from the scatter of the turns.
+    pub angle_random_walk: f64,
+    /// Scatter of the turns over what noise makes of it: chi-square and its degrees of freedom.
+    pub chi_square: f64,
+    /// Degrees of freedom of that.
+    pub degrees: u32,
+}
+
+impl Default for Conclusion {
+    /// Of nothing: refused.
+    fn default() -> Self {
+        Self {
+            verdict: Err(Refusal::TurnsTooFew { sense: Sense::Clockwise, turns: 0 }),
+            fit: None,
+            couplings: Vec::new(),
+            pairs: Vec::new(),
+            angle_random_walk: 0.0,
+            chi_square: 0.0,
+            degrees: 0,
+        }
+    }
+}
+
+impl Conclusion {
+    /// Judges what a follower has, solves, and decides.
+    #[must_use]
+    pub fn of(setting: &Setting, follower: &Follower) -> Self {
+        let mut conclusion = Self::default();
+        conclusion.draw(setting, follower);
+        conclusion
+    }
+
+    /// The same in place of a [`Self::default`].
+    pub fn draw(&mut self, setting: &Setting, follower: &Follower) {
+        self.verdict = self.decide(setting, follower);
+    }
+
+    fn decide(&mut self, setting: &Setting, follower: &Follower) -> Result<Azimuth, Refusal> {
+        let latitude = setting.common.latitude;
+        if !latitude.has_north() {
+            return Err(Refusal::LatitudeTooHigh { latitude: latitude.rad() * DEGREES });
+        }
+        self.couple(setting, follower)?;
+        Self::judge_followed(follower)?;
+        self.pair(setting, follower.stretches())?;
+        self.judge_turns(setting)?;
+        let fit = self.solve(setting).ok_or(Refusal::CouplingUnknown)?;
+        self.fit = Some(fit);
+        self.judge_force(setting, &fit)?;
+        judge(setting, &fit)?;
+        within_budget(setting, &fit)
+    }
+
+    /// The couplings from the uneven turns, or the stored ones.
+    #[inline(never)]
+    fn couple(&mut self, setting: &Setting, follower: &Follower) -> Result<(), Refusal> {
+        let mut noise = setting.common.noise;
+        if !setting.common.white_known {
+            noise.angle_random_walk = estimate(follower.stretches(), &self.couplings);
+        }
+        let found = follower.uneven().iter().filter_map(|uneven| uneven.coupling(&noise));
+        self.couplings = found.collect();
+        if self.couplings.is_empty() {
+            self.couplings = setting.couplings.iter().flatten().copied().collect();
+        }
+        if !setting.common.white_known {
+            noise.angle_random_walk = estimate(follower.stretches(), &self.couplings);
+        }
+        self.angle_random_walk = noise.angle_random_walk;
+        if self.couplings.is_empty() && !setting.sensor.is_flat {
+            return Err(Refusal::CouplingUnknown);
+        }
+        self.couplings.iter().try_for_each(|coupling| setting.accept(coupling))
+    }
+
+    fn judge_followed(follower: &Follower) -> Result<(), Refusal> {
+        if let Some(trouble) = follower.accelerometer() {
+            return Err(Refusal::Device { device: Device::Accelerometer, trouble });
+        }
+        if follower.slip() != 0.0 {
+            return Err(Refusal::EncoderSlipped { angle: follower.slip() * DEGREES });
+        }
+        Ok(())
+    }
+
+    /// Spectral density of the noise at a speed.
+    fn density(&self, setting: &Setting, speed: f64) -> f64 {
+        let mut noise = setting.common.noise;
+        noise.angle_random_walk = self.angle_random_walk;
+        noise.density_at(speed / TURN)
+    }
+
+    /// Finds both senses of every speed.
+    #[inline(never)]
+    fn pair(&mut self, setting: &Setting, stretches: &[Stretch]) -> Result<(), Refusal> {
+        let averages = self.averages(setting, stretches);
+        let of = |sense: Sense| averages.iter().filter(move |average| average.sense == sense);
+        for sense in [Sense::Clockwise, Sense::CounterClockwise] {
+            if of(sense).next().is_none() {
+                let count = stretches.iter().filter(|stretch| stretch.sense == sense);
+                return Err(Refusal::TurnsTooFew { sense, turns: count.map(Stretch::count).sum() });
+            }
+        }
+        for clockwise in of(Sense::Clockwise) {
+            let apart = |average: &Average| (average.speed - clockwise.speed).abs();
+            let nearest = of(Sense::CounterClockwise)
+                .reduce(|best, next| if apart(next) < apart(best) { next } else { best });
+            let Some(counter) = nearest else { continue };
+            if apart(counter) > EQUAL_SPEEDS * clockwise.speed {
+                return Err(unequal(clockwise, counter));
+            }
+            // Four stretches hold no more than two of one sense that have a partner.
+            let _ = self.pairs.push(Pair { clockwise: *clockwise, counter: *counter });
+        }
+        let alone = of(Sense::CounterClockwise)
+            .find(|average| self.pairs.iter().all(|pair| pair.counter.speed != average.speed));
+        match (alone, self.pairs.first()) {
+            (Some(counter), Some(pair)) => Err(unequal(&pair.clockwise, counter)),
+            _ => Ok(()),
+        }
+    }
+
+    /// The means of the stretches, disturbed turns left out.
+    fn averages(&self, setting: &Setting, stretches: &[Stretch]) -> Vec<Average, STRETCHES> {
+        let couplings = &self.couplings;
+        let horizontal = setting.common.latitude.horizontal_rate();
+        let mut averages = Vec::new();
+        for stretch in stretches {
+            let joined = stretch.count() / stretch.turns().len().max(1) as u32;
+            let speed = stretch.speed();
+            let variance = of_turn(speed, self.density(setting, speed)) / f64::from(joined);
+            // What the sensor's gain makes of its noise, which counts at its input.
+            let gain = if setting.sensor.is_flat {
+                1.0
+            } else {
+                typical_size(stretch, couplings) / horizontal
+            };
+            let average = Average::of(stretch, couplings, variance * gain * gain);
+            if let Some(average) = average {
+                // There are no more stretches than these.
+                let _ = averages.push(average);
+            }
+        }
+        averages
+    }
+
+    /// Chi-square of the turns about their means, and their drift.
+    #[inline(never)]
+    fn judge_turns(&mut self, setting: &Setting) -> Result<(), Refusal> {
+        let horizontal = setting.common.latitude.horizontal_rate();
+        let (mut drift, mut left_out, mut turns) = (0.0f64, 0, 0);
+        for pair in &self.pairs {
+            let gain = if setting.sensor.is_flat { 1.0 } else { pair.gain(horizontal) };
+            for average in [&pair.clockwise, &pair.counter] {
+                let density = self.density(setting, average.speed) * gain * gain;
+                let variance = of_turn(average.speed, density) / average.joined();
+                self.chi_square += average.scatter / variance;
+                self.degrees += average.degrees;
+                drift = drift.max(average.trend / variance);
+                left_out += average.left_out;
+                turns += average.turns + average.left_out;
+            }
+        }
+        if 4 * left_out > turns {
+            let [disturbed, positions] = [left_out, turns].map(|count| count as usize);
+            return Err(Refusal::Disturbed { disturbed, positions });
+        }
+        let ratio = self.chi_square / f64::from(self.degrees.max(1));
+        let is_known = setting.common.white_known;
+        if is_known
+            && chi_square_tail(self.chi_square, f64::from(self.degrees)) < SCATTER_PROBABILITY
+        {
+            return Err(Refusal::ResidualsNotWhite { ratio });
+        }
+        if drift > DIFFERENT * DIFFERENT {
+            return Err(Refusal::DirectionDrifts { sigmas: libm::sqrt(drift) });
+        }
+        Ok(())
+    }
+
+    #[inline(never)]
+    fn solve(&self, setting: &Setting) -> Option<Fit> {
+        let density = |speed: f64| self.density(setting, speed);
+        let walk = self.angle_random_walk;
+        let white = if setting.common.white_known { walk * walk } else { 0.0 };
+        let (pairs, couplings) = (&self.pairs, &self.couplings);
+        Problem { setting, pairs, couplings, density: &density, white }.solve()
+    }
+
+    /// Whether the accelerometer lies in the platform's plane and saw one tilt.
+    fn judge_force(&self, setting: &Setting, fit: &Fit) -> Result<(), Refusal> {
+        let gravity = setting.common.latitude.gravity();
+        let allowed = FORCE_TOLERANCE + DIFFERENT * setting.common.accelerometer_bias_sigma;
+        for average in self.pairs.iter().flat_map(|pair| [&pair.clockwise, &pair.counter]) {
+            if average.mean_force.abs() > allowed {
+                let ratio = average.mean_force / gravity;
+                return Err(Refusal::AccelerometerImplausible { ratio });
+            }
+            let apart: Complex = average.force.scaled(1.0 / gravity) - fit.tilt;
+            let sigma = libm::sqrt(average.force_variance) / gravity;
+            if apart.size() > DIFFERENT * sigma + TILT_TOLERANCE {
+                return Err(Refusal::TiltChanged { change: apart.size() * 1e3 });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// N from the scatter of neighbouring turns, rad/√s.
+fn estimate(stretches: &[Stretch], couplings: &[Coupling]) -> f64 {
+    let variance = variance_of_neighbours(stretches, couplings);
+    let speed = stretches.first().map_or(0.0, Stretch::speed);
+    libm::sqrt(variance / of_turn(speed, 1.0).max(f64::MIN_POSITIVE))
+}
+
+fn unequal(clockwise: &Average, counter: &Average) -> Refusal {
+    let [clockwise, counter] = [clockwise, counter].map(|average| average.speed * DEGREES);
+    Refusal::SpeedsUnequal { clockwise, counter }
+}
+
+/// Every test that a fit must pass by itself.
+fn judge(setting: &Setting, fit: &Fit) -> Result<(), Refusal> {
+    let (tilt, allowed) = (libm::asin(fit.tilt.size().min(1.0)), setting.common.allowed_tilt);
+    if tilt > allowed {
+        let [tilt, allowed] = [tilt, allowed].map(|angle| angle * DEGREES);
+        return Err(Refusal::TiltTooGreat { tilt, allowed });
+    }
+    if setting.sensor.is_flat { judge_flat(setting, fit) } else { judge_lagging(setting, fit) }
+}
+
+fn judge_flat(setting: &Setting, fit: &Fit) -> Result<(), Refusal> {
+    let sigmas = libm::sqrt(fit.difference);
+    let is_molecular = setting.sensor.molecular_sigma > 0.0;
+    if !is_molecular && sigmas > DIFFERENT && fit.molecular.size() > SENSES_TOLERANCE {
+        return Err(Refusal::SensesDisagree { sigmas });
+    }
+    let (ratio, sigma) = (fit.ratio, fit.ratio_sigma);
+    let sigma_and_scale = libm::hypot(sigma, setting.common.amplitude_sigma());
+    if (ratio - 1.0).abs() > DIFFERENT * sigma_and_scale + RATIO_TOLERANCE {
+        return Err(Refusal::EarthRateMismatch { ratio, sigma });
+    }
+    Ok(())
+}
+
+fn judge_lagging(setting: &Setting, fit: &Fit) -> Result<(), Refusal> {
+    let phase =
+        fit.phases.iter().fold(0.0, |most: f64, x| if x.abs() > most.abs() { *x } else { most });
+    if phase.abs() > GREATEST_PHASE {
+        return Err(Refusal::PhaseAmbiguous { phase: phase * DEGREES });
+    }
+    if setting.sensor.molecular_sigma == 0.0 {
+        return Ok(());
+    }
+    if fit.disagreement > DIFFERENT {
+        return Err(Refusal::SpeedsDisagree { sigmas: fit.disagreement });
+    }
+    let ratio = fit.molecular.im.abs();
+    if ratio > GREATEST_MOLECULAR {
+        return Err(Refusal::MolecularTooGreat { ratio });
+    }
+    Ok(())
+}
+
+/// The azimuth, unless its standard deviation is none, or more than is accepted.
+fn within_budget(setting: &Setting, fit: &Fit) -> Result<Azimuth, Refusal> {
+    let (sigma, required) = (fit.sigma(), setting.common.required_sigma);
+    if sigma <= required {
+        return Ok(Azimuth { angle: fit.azimuth, sigma });
+    }
+    let source = fit.budget.greatest().0;
+    Err(Refusal::BudgetNotMet { sigma: sigma * DEGREES, required: required * DEGREES, source })
+}

@@ -1,0 +1,326 @@
+//! From the phasors of both senses to an azimuth with its standard deviation (equations.md §4).
+
+use super::Setting;
+use super::average::Average;
+use super::coupling::{self, Coupling};
+use super::molecular::{self, Freed, Halves};
+use crate::align::budget::Budget;
+use crate::math::Complex;
+use crate::units::{TURN, wrapped};
+
+/// Most speeds.
+pub const SPEEDS: usize = 2;
+
+/// Both senses at one speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pair {
+    /// Clockwise.
+    pub clockwise: Average,
+    /// Counter-clockwise.
+    pub counter: Average,
+}
+
+impl Pair {
+    /// Mean speed of both senses, rad/s.
+    #[must_use]
+    pub fn speed(&self) -> f64 {
+        0.5 * (self.clockwise.speed + self.counter.speed)
+    }
+
+    /// Whole time, s.
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        self.clockwise.seconds + self.counter.seconds
+    }
+
+    fn senses(&self) -> [&Average; 2] {
+        [&self.clockwise, &self.counter]
+    }
+
+    fn phasors(&self) -> [Complex; 2] {
+        self.senses().map(|average| average.phasor)
+    }
+
+    /// Half the sum of both senses: what does not change its sign.
+    #[must_use]
+    pub fn even(&self) -> Complex {
+        (self.clockwise.phasor + self.counter.phasor).scaled(0.5)
+    }
+
+    /// Half their difference: what does.
+    #[must_use]
+    pub fn odd(&self) -> Complex {
+        (self.clockwise.phasor - self.counter.phasor).scaled(0.5)
+    }
+
+    /// Gain of the sensor by the horizontal Earth rate that both senses show, without the tilt's part.
+    #[must_use]
+    pub fn gain(&self, horizontal: f64) -> f64 {
+        let [clockwise, counter] = self.phasors();
+        libm::sqrt((clockwise * counter).size()) / horizontal
+    }
+
+    /// Variances of either part of Q₊ and Q₋ for a spectral density of the sensor's input.
+    fn variances(&self, density: f64, gain: f64) -> [f64; 2] {
+        self.senses().map(|average| average.share * of_turn(average.speed, density) * gain * gain)
+    }
+
+    /// One over the variance of either part of their mean.
+    fn information(&self, density: f64, gain: f64) -> f64 {
+        let [clockwise, counter] = self.variances(density, gain);
+        4.0 / (clockwise + counter)
+    }
+}
+
+/// Variance of either part of one turn's phasor at a speed in rad/s, for a spectral density, (rad/s)².
+#[must_use]
+pub fn of_turn(speed: f64, density: f64) -> f64 {
+    2.0 * density * speed / TURN
+}
+
+/// The azimuth after each stage of compensation, rad, [0, 2π).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stages {
+    /// The raw phasor of the clockwise turns at the first speed.
+    pub raw: f64,
+    /// The same without the platform's own rate.
+    pub coupling: f64,
+    /// Both senses together.
+    pub senses: f64,
+    /// Everything: tilt, g-sensitivity, second speed.
+    pub full: f64,
+}
+
+/// What the phasors say.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Fit {
+    /// Azimuth of body x from true north, clockwise from above, rad, [0, 2π).
+    pub azimuth: f64,
+    /// Where its standard deviation comes from.
+    pub budget: Budget,
+    /// Standard deviation that no estimator can beat which must find the same unknowns, rad; zero where
+    /// the gyro's noise is not known.
+    pub limit: f64,
+    /// The same with gain, lag and integrated g-sensitivity known, rad.
+    pub plain_limit: f64,
+    /// The azimuth after each stage.
+    pub stages: Stages,
+    /// Tilt of the platform as the accelerometer shows it, g: size and angle of its phasor.
+    pub tilt: Complex,
+    /// 1σ of either part of it, g.
+    pub tilt_sigma: f64,
+    /// Horizontal Earth rate found over expected, and its 1σ; one and infinite where the sensor's gain is
+    /// unknown.
+    pub ratio: f64,
+    /// 1σ of that.
+    pub ratio_sigma: f64,
+    /// The integrated g-sensitivity at the slower speed over the Earth rate that turns with it, γ.
+    pub molecular: Complex,
+    /// What the slower speed alone would be off by for it, rad.
+    pub one_speed: f64,
+    /// How far both speeds disagree about it, in σ.
+    pub disagreement: f64,
+    /// Phase of the sensor at each speed, rad; zero for a flat one.
+    pub phases: [f64; SPEEDS],
+    /// How much both senses differ, squared and over the variance of either part; flat sensors alone.
+    pub difference: f64,
+}
+
+impl Fit {
+    /// Standard deviation of the azimuth, rad.
+    #[must_use]
+    pub fn sigma(&self) -> f64 {
+        self.budget.sigma()
+    }
+}
+
+/// What the phasors are solved with.
+pub struct Problem<'a> {
+    /// What is known beforehand.
+    pub setting: &'a Setting,
+    /// The speeds, one or two.
+    pub pairs: &'a [Pair],
+    /// How the gyro feels the platform's rate, at one speed or at each.
+    pub couplings: &'a [Coupling],
+    /// Spectral density of the gyro's noise at a speed in rad/s, (rad/s)²/Hz.
+    pub density: &'a dyn Fn(f64) -> f64,
+    /// Spectral density of its white noise; zero where it is not known.
+    pub white: f64,
+}
+
+impl Problem<'_> {
+    /// Solves; `None` without a pair.
+    #[must_use]
+    pub fn solve(&self) -> Option<Fit> {
+        let first = self.pairs.first()?;
+        let (tilt, tilt_sigma) = self.tilt();
+        let mut fit = Fit { tilt, tilt_sigma, ratio: 1.0, ..Fit::default() };
+        fit.ratio_sigma = f64::INFINITY;
+        let is_flat = self.setting.sensor.is_flat;
+        let turned = if is_flat { self.flat(&mut fit) } else { self.lagging(&mut fit)? };
+        fit.azimuth = wrapped(turned.angle);
+        fit.budget = self.budget(&fit, &turned);
+        fit.plain_limit = self.plain_limit();
+        fit.limit = if self.white > 0.0 { fit.budget.noise } else { 0.0 };
+        let senses = if is_flat { first.even().angle() } else { self.halves(first).angle };
+        let stages = [first.clockwise.raw.angle(), first.clockwise.phasor.angle(), senses];
+        let [raw, coupling, senses] = stages.map(wrapped);
+        fit.stages = Stages { raw, coupling, senses, full: fit.azimuth };
+        Some(fit)
+    }
+
+    /// Horizontal and vertical Earth rate as the axis can feel them, rad/s.
+    fn earth(&self) -> [f64; 2] {
+        let latitude = self.setting.common.latitude;
+        let along = self.couplings.first().map_or(1.0, |coupling| libm::cos(coupling.angle()));
+        [latitude.horizontal_rate() * along, latitude.vertical_rate()]
+    }
+
+    /// The tilt's phasor and the 1σ of its parts, g.
+    fn tilt(&self) -> (Complex, f64) {
+        let gravity = self.setting.common.latitude.gravity();
+        let (mut sum, mut information) = (Complex::default(), 0.0);
+        for average in self.pairs.iter().flat_map(Pair::senses) {
+            let weight = 1.0 / average.force_variance.max(f64::MIN_POSITIVE);
+            sum = sum + average.force.scaled(weight);
+            information += weight;
+        }
+        (sum.scaled(1.0 / information / gravity), libm::sqrt(1.0 / information) / gravity)
+    }
+
+    /// What multiplies the tilt, rad/s per g: vertical Earth rate and ordinary g-sensitivity.
+    fn per_tilt(&self, ratio: f64) -> Complex {
+        let [along, across] = self.setting.common.g_sensitivity;
+        Complex::new(ratio * self.earth()[1] + along, across)
+    }
+
+    /// A flat sensor: what changes its sign with the sense cancels.
+    fn flat(&self, fit: &mut Fit) -> Turned {
+        let [horizontal, _] = self.earth();
+        let (mut sum, mut information) = (Complex::default(), 0.0);
+        for pair in self.pairs {
+            let weight = pair.information((self.density)(pair.speed()), 1.0);
+            sum = sum + pair.even().scaled(weight);
+            information += weight;
+            let odd = pair.odd().size();
+            fit.difference = fit.difference.max(odd * odd * weight);
+        }
+        let mean = sum.scaled(1.0 / information);
+        let mut earth = mean;
+        // The tilt's part is small: three rounds settle the ratio to 1e-6.
+        for _ in 0..3 {
+            fit.ratio = earth.size() / horizontal;
+            earth = mean - self.per_tilt(fit.ratio) * fit.tilt;
+        }
+        fit.ratio_sigma = libm::sqrt(1.0 / information) / horizontal;
+        // Q₊ − Q₋ is −2jγE′.
+        let odd = self.slowest().map_or(Complex::default(), Pair::odd);
+        fit.molecular = odd / mean * Complex::new(0.0, 1.0);
+        let size = earth.size();
+        Turned { angle: earth.angle(), noise: 1.0 / information / (size * size), left: 0.0 }
+    }
+
+    /// The speed that shows an integrated g-sensitivity most.
+    fn slowest(&self) -> Option<&Pair> {
+        self.pairs.iter().reduce(|a, b| if b.speed() < a.speed() { b } else { a })
+    }
+
+    fn halves(&self, pair: &Pair) -> Halves {
+        let (gain, density) = (pair.gain(self.earth()[0]), (self.density)(pair.speed()));
+        Halves::of(pair.speed(), pair.phasors(), pair.variances(density, gain))
+    }
+
+    /// A sensor of unknown gain and lag: half of arg Q₊Q₋, then the tilt's part off the angle.
+    fn lagging(&self, fit: &mut Fit) -> Option<Turned> {
+        let mut halves: heapless::Vec<Halves, SPEEDS> = heapless::Vec::new();
+        for (pair, phase) in self.pairs.iter().zip(&mut fit.phases) {
+            let half = self.halves(pair);
+            *phase = half.phase;
+            // There are no more pairs than speeds.
+            let _ = halves.push(half);
+        }
+        let freed: Freed = molecular::freed(&halves, self.setting.sensor.molecular_sigma)?;
+        fit.molecular = freed.ratio;
+        fit.one_speed = freed.one_speed;
+        fit.disagreement = freed.disagreement;
+        let slowest = self.slowest()?.speed();
+        for (phase, pair) in fit.phases.iter_mut().zip(self.pairs) {
+            *phase += freed.ratio.re * slowest / pair.speed();
+        }
+        let [horizontal, _] = self.earth();
+        let across = self.per_tilt(1.0) * fit.tilt * Complex::unit(-freed.angle);
+        let sine = (across.im / horizontal).clamp(-1.0, 1.0);
+        // How the azimuth follows arg E′.
+        let slope = 1.0 + across.re / horizontal / libm::sqrt((1.0 - sine * sine).max(1e-6));
+        Some(Turned {
+            angle: freed.angle - libm::asin(sine),
+            noise: freed.noise * slope * slope,
+            left: freed.left * slope * slope,
+        })
+    }
+
+    /// The limit of a flat sensor of known g-sensitivity in the same time.
+    fn plain_limit(&self) -> f64 {
+        if self.white <= 0.0 {
+            return 0.0;
+        }
+        let information: f64 =
+            self.pairs.iter().map(|pair| pair.information(self.white, 1.0)).sum();
+        1.0 / libm::sqrt(information) / self.earth()[0]
+    }
+
+    /// The part of the noise that is white, of one; all of it where that is not known.
+    fn white_part(&self, pair: &Pair) -> f64 {
+        if self.white > 0.0 { (self.white / (self.density)(pair.speed())).min(1.0) } else { 1.0 }
+    }
+
+    fn budget(&self, fit: &Fit, turned: &Turned) -> Budget {
+        let common = &self.setting.common;
+        let [horizontal, _] = self.earth();
+        let size = fit.tilt.size();
+        let white = self.pairs.first().map_or(1.0, |pair| self.white_part(pair));
+        let across = (fit.tilt * Complex::unit(-turned.angle)).im;
+        let cosine = libm::cos(common.latitude.rad());
+        Budget {
+            noise: libm::sqrt(turned.noise * white),
+            drift: libm::sqrt(turned.noise * (1.0 - white)),
+            g_sensitivity: libm::hypot(
+                common.g_sensitivity_sigma * size / horizontal,
+                libm::sqrt(turned.left),
+            ),
+            accelerometer: self.per_tilt(1.0).size() * fit.tilt_sigma / horizontal,
+            encoder: libm::hypot(common.encoder_sigma, self.coupling_sigma(fit)),
+            latitude: across.abs() * common.latitude_sigma / (cosine * cosine),
+            // A flat sensor's scale is found with the azimuth; an unknown gain needs none.
+            scale: 0.0,
+            temperature: 0.0,
+        }
+    }
+
+    /// What the coupling's uncertainty turns the azimuth by, rad: its even part directly, its odd part
+    /// through the integrated g-sensitivity.
+    fn coupling_sigma(&self, fit: &Fit) -> f64 {
+        let [horizontal, _] = self.earth();
+        let worst = self.pairs.iter().map(|pair| {
+            let [clockwise, counter] = pair.senses().map(|average| average.turning);
+            let (even, odd) =
+                ((clockwise + counter).scaled(0.5), (clockwise - counter).scaled(0.5));
+            let coupling = coupling::nearest(self.couplings, pair.speed());
+            let sigma = coupling.map_or(self.setting.coupling_limit, |coupling| {
+                libm::sqrt(coupling.variance(pair.speed()))
+            });
+            sigma * libm::hypot(even.size(), odd.size() * fit.molecular.size())
+        });
+        worst.fold(0.0, f64::max) / horizontal
+    }
+}
+
+/// An azimuth before it is judged.
+struct Turned {
+    /// rad.
+    angle: f64,
+    /// Variance from the gyro's noise, rad².
+    noise: f64,
+    /// Variance from a g-sensitivity that was not told apart, rad².
+    left: f64,
+}

@@ -1,0 +1,279 @@
+//! Demodulation of a gyro on a turning platform: from samples to sums of products, in fixed memory.
+//!
+//! ```text
+//!  sample ─trapezoid─▶ block (≈ 20 ms) ─products, i64─▶ stretch of turning ─f64─▶ Sums ─▶ fits
+//! ```
+//!
+//! A block is the mean of rate, cosine and sine over some sample periods, by the trapezoidal rule from
+//! sample to sample, so that its platform rate is exactly what the encoder turned in that time: the
+//! encoder's steps then cancel from block to block. What is fitted to what is chosen afterwards.
+
+use super::Sample;
+use crate::align::etalon::Table;
+use crate::align::regression::Regression;
+use crate::units::Angle;
+
+/// Columns that the gyro's rate may be fitted to.
+pub const COLUMNS: usize = 6;
+
+/// A constant.
+pub const ONE: usize = 0;
+/// Cosine of the platform's angle.
+pub const COSINE: usize = 1;
+/// Its sine.
+pub const SINE: usize = 2;
+/// Time since the reference, s.
+pub const TIME: usize = 3;
+/// Rate of the platform beyond the reference, rad/s.
+pub const TURNING: usize = 4;
+/// Its derivative, rad/s².
+pub const QUICKENING: usize = 5;
+
+/// Signals of a row: the columns, and the gyro's rate beyond the reference, rad/s.
+const SIGNALS: usize = COLUMNS + 1;
+/// The gyro's rate among the signals.
+pub const RATE: usize = COLUMNS;
+
+/// What one step of each signal in a row of integers is worth.
+const STEPS: [f64; SIGNALS] = [1.0, TRIGONOMETRIC, TRIGONOMETRIC, 1e-4, 1e-6, 1e-6, 1e-9];
+/// Step of cosine and sine, 2⁻²².
+const TRIGONOMETRIC: f64 = 1.0 / 4_194_304.0;
+/// Bits that the table's cosine has more, and one for the trapezoid's two ends.
+const EXCESS_BITS: u32 = 30 - 22 + 1;
+
+/// Greatest distance of the gyro's rate from the reference, nrad/s: 1.9 °/s. What is further away is no
+/// Earth rate.
+const FURTHEST: i64 = 1 << 25;
+
+/// The mean of a block.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Block {
+    /// Time of its middle, µs.
+    pub time: u64,
+    /// Its length, s.
+    pub seconds: f32,
+    /// Rate of the platform, rad/s.
+    pub turning: f32,
+    /// By how much the platform turned, steps of an [`Angle`].
+    pub turned: i64,
+    /// Mean cosine and sine, 2⁻²².
+    phasor: [i32; 2],
+    /// Mean rate of the gyro, nrad/s.
+    pub rate: i32,
+    /// Whether a rate in it stood at the limit of its range.
+    pub is_saturated: bool,
+}
+
+/// Averages samples into blocks.
+#[derive(Clone, Copy, Debug)]
+pub struct Blocks {
+    /// Sample periods in a block.
+    periods: u32,
+    last: Option<Point>,
+    begun: u64,
+    count: u32,
+    turned: i64,
+    /// Sums over the periods of the values at both of their ends.
+    turning: f32,
+    rate: i64,
+    phasor: [i64; 2],
+    is_saturated: bool,
+}
+
+/// What a sample brings.
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    time: u64,
+    stage: Angle,
+    turning: Option<f32>,
+    rate: i32,
+    phasor: [i32; 2],
+}
+
+impl Blocks {
+    /// Blocks of so many sample periods, at least one.
+    #[must_use]
+    pub fn of(periods: u32) -> Self {
+        Self {
+            periods: periods.max(1),
+            last: None,
+            begun: 0,
+            count: 0,
+            turned: 0,
+            turning: 0.0,
+            rate: 0,
+            phasor: [0; 2],
+            is_saturated: false,
+        }
+    }
+
+    /// Forgets the block in progress: what comes next does not join on to it.
+    pub fn restart(&mut self) {
+        *self = Self::of(self.periods);
+    }
+
+    /// Cosine and sine of the latest sample's angle, 2⁻³⁰.
+    #[must_use]
+    pub fn phasor(&self) -> [i32; 2] {
+        self.last.map_or([0; 2], |last| last.phasor)
+    }
+
+    /// Takes a sample, and the platform's rate in rad/s where something measured it; gives a block when
+    /// one is full. The platform must turn by less than half a turn from sample to sample.
+    #[inline]
+    pub fn push(&mut self, sample: &Sample, turning: Option<f32>) -> Option<Block> {
+        let (time, stage, rate) = (sample.time.0, sample.stage, sample.rate.0);
+        let point = Point { time, stage, turning, rate, phasor: Table::built_in().at(stage) };
+        let last = self.last.replace(point)?;
+        if self.count == 0 {
+            self.begun = last.time;
+        }
+        self.count += 1;
+        self.turned += i64::from((stage - last.stage).0.cast_signed());
+        if let (Some(now), Some(before)) = (turning, last.turning) {
+            self.turning += now + before;
+        }
+        self.rate += i64::from(rate) + i64::from(last.rate);
+        self.phasor[0] += i64::from(point.phasor[0]) + i64::from(last.phasor[0]);
+        self.phasor[1] += i64::from(point.phasor[1]) + i64::from(last.phasor[1]);
+        self.is_saturated |= sample.rate.is_saturated();
+        (self.count >= self.periods).then(|| self.finish(time))
+    }
+
+    /// The block that ends at this time.
+    fn finish(&mut self, ended: u64) -> Block {
+        let seconds = ended.saturating_sub(self.begun).max(1) as f32 * 1e-6;
+        let ends = 2 * i64::from(self.count);
+        let is_measured = self.last.is_some_and(|last| last.turning.is_some());
+        let shown = self.turned as f32 * (Angle::STEP as f32) / seconds;
+        let block = Block {
+            time: self.begun.midpoint(ended),
+            seconds,
+            turning: if is_measured { self.turning / ends as f32 } else { shown },
+            turned: self.turned,
+            phasor: self.phasor.map(|sum| {
+                let mean = sum / i64::from(self.count);
+                (mean >> EXCESS_BITS) as i32
+            }),
+            rate: (self.rate / ends) as i32,
+            is_saturated: self.is_saturated,
+        };
+        *self = Self { last: self.last, ..Self::of(self.periods) };
+        block
+    }
+}
+
+/// What time, rates and platform rate are counted from, so that their products stay small.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Reference {
+    /// Time, µs.
+    pub time: u64,
+    /// Rate of the gyro, nrad/s.
+    pub rate: i32,
+    /// Rate of the platform, rad/s.
+    pub turning: f32,
+}
+
+impl Reference {
+    /// That of a block.
+    #[must_use]
+    pub fn of(block: &Block) -> Self {
+        Self { time: block.time, rate: block.rate, turning: block.turning }
+    }
+}
+
+/// Products of the signals of some blocks, exact: to be emptied into [`Sums`] every few thousand.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Products {
+    sums: [i64; PRODUCTS],
+    rows: u32,
+    /// Whether a rate was too far from the reference, or saturated.
+    pub is_astray: bool,
+}
+
+/// Products of two signals, less the square of the rate, which no fit needs.
+const PRODUCTS: usize = SIGNALS * (SIGNALS + 1) / 2 - 1;
+
+impl Products {
+    /// Adds a block with the derivative of its platform rate, rad/s².
+    #[inline]
+    pub fn push(&mut self, block: &Block, quickening: f32, reference: &Reference) {
+        let rate = i64::from(block.rate) - i64::from(reference.rate);
+        self.is_astray |= block.is_saturated || rate.abs() > FURTHEST;
+        let seconds_1e4 = block.time.saturating_sub(reference.time) / 100;
+        let row = [
+            1,
+            block.phasor[0],
+            block.phasor[1],
+            seconds_1e4 as i32,
+            ((block.turning - reference.turning) * 1e6) as i32,
+            (quickening * 1e6) as i32,
+            rate.clamp(-FURTHEST, FURTHEST) as i32,
+        ];
+        let mut sums = self.sums.iter_mut();
+        for (index, &one) in row.iter().enumerate() {
+            for (&other, sum) in row[..=index].iter().zip(&mut sums) {
+                *sum += i64::from(one) * i64::from(other);
+            }
+        }
+        self.rows += 1;
+    }
+}
+
+/// The same sums in SI units, for as long a time as it takes.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sums {
+    products: [f64; PRODUCTS],
+    rows: u32,
+}
+
+impl Sums {
+    /// Takes the products of some blocks over.
+    pub fn absorb(&mut self, products: &Products) {
+        for (sum, &product) in self.products.iter_mut().zip(&products.sums) {
+            *sum += product as f64;
+        }
+        self.rows += products.rows;
+    }
+
+    /// Adds the same of other blocks with the same reference.
+    pub fn add(&mut self, other: &Self) {
+        for (sum, product) in self.products.iter_mut().zip(other.products) {
+            *sum += product;
+        }
+        self.rows += other.rows;
+    }
+
+    /// How many blocks.
+    #[must_use]
+    pub fn rows(&self) -> u32 {
+        self.rows
+    }
+
+    /// Sum of the products of two signals, not both the rate, in their units.
+    #[must_use]
+    pub fn product(&self, one: usize, other: usize) -> f64 {
+        let (row, column) = (one.max(other), one.min(other));
+        self.products[row * (row + 1) / 2 + column] * STEPS[row] * STEPS[column]
+    }
+
+    /// Mean of a signal.
+    #[must_use]
+    pub fn mean(&self, signal: usize) -> f64 {
+        self.product(signal, ONE) / f64::from(self.rows.max(1))
+    }
+
+    /// The regression of a signal on the columns.
+    #[must_use]
+    pub fn regression(&self, left: usize) -> Regression<COLUMNS> {
+        let mut products = [[0.0; COLUMNS]; COLUMNS];
+        let mut with_left = [0.0; COLUMNS];
+        for (row, (products, with_left)) in products.iter_mut().zip(&mut with_left).enumerate() {
+            for (column, product) in products.iter_mut().enumerate().take(row + 1) {
+                *product = self.product(row, column);
+            }
+            *with_left = self.product(row, left);
+        }
+        Regression::of_products(products, with_left, self.rows as usize)
+    }
+}
