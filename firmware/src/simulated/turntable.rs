@@ -17,7 +17,7 @@ use hal_mock::stage::{Ripple, Unevenness};
 use orientation::align::rotating::coupling::Coupling;
 use orientation::align::rotating::solution::SPEEDS;
 use orientation::align::rotating::{Sensor, Setting};
-use orientation::session::rotating::{Procedure, Session};
+use orientation::session::rotating::{self, Procedure};
 use orientation::units::{DEGREE, TURN};
 
 use super::fault::{Fault, Plan};
@@ -100,11 +100,12 @@ impl TurntableScenario {
         Self { base: Scenario::usual(seed), ..Self::default() }
     }
 
-    /// Six uneven turns and three each way at 100 Hz.
+    /// Four uneven turns and two each way at 0.2 Hz: what a sample costs at the highest rate of the stage
+    /// path, 2400 Hz.
     #[must_use]
     pub fn brief(seed: u64) -> Self {
-        let base = Scenario { sample_rate_hz: 100.0, ..Scenario::usual(seed) };
-        Self { base, uneven_turns: 6, turns: 3, ..Self::default() }
+        let base = Scenario { sample_rate_hz: 2400.0, ..Scenario::usual(seed) };
+        Self { base, speeds_hz: [0.2, 0.0], uneven_turns: 4, turns: 2, ..Self::default() }
     }
 
     /// A molecular-electronic sensor at two speeds.
@@ -138,10 +139,12 @@ impl TurntableScenario {
         Procedure { uneven_turns, turns, ..Procedure::new(&speeds[..count], sample_seconds) }
     }
 
-    /// Its session; none where the latitude is none or the procedure impossible.
+    /// Both, checked; none where the latitude is none or the procedure impossible.
     #[must_use]
-    pub fn session(&self) -> Option<Session> {
-        Session::new(self.setting()?, self.procedure()).ok()
+    pub fn checked(&self) -> Option<(Setting, Procedure)> {
+        let procedure = self.procedure();
+        rotating::check(&procedure).ok()?;
+        Some((self.setting()?, procedure))
     }
 
     /// What the board is told of its devices.

@@ -13,7 +13,13 @@ use super::desk::{self, Desk};
 use super::{Run, RunError};
 
 /// A finished run on a turning platform.
-pub type TurntableRun = Run<rotating::Session>;
+#[derive(Clone, Debug)]
+pub struct TurntableRun {
+    /// As of any board.
+    pub run: Run<rotating::Session>,
+    /// The platform's true rate at the end, rad/s.
+    pub rate: f64,
+}
 
 /// Runs a scenario in virtual time on this thread.
 ///
@@ -42,5 +48,6 @@ pub fn align_turning<R: Recorder, W: Observer>(
         run_rotating(&mut ports, &platform, &mut session, &seams),
     )?;
     let violations = desk::told(simulated::violations(&board.borrow()));
-    Ok(desk.clear(&ended, violations, session))
+    let rate = board.borrow().plant.truth().stage.rate_rad_s;
+    Ok(TurntableRun { run: desk.clear(&ended, violations, session), rate })
 }
