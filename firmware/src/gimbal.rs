@@ -14,9 +14,9 @@ use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 
 use crate::configuration::FramesConfiguration;
 use crate::event::Event;
+use crate::motor::Axis;
 use crate::ports::{Actuator, Frames, Observer};
 use crate::shared::{LatestAngle, Shared};
-use crate::motor::Axis;
 use crate::stage::Stage;
 
 /// The names of the two frames' devices.

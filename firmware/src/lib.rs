@@ -42,6 +42,7 @@ pub mod link;
 pub mod configuration;
 pub mod run;
 pub mod shared;
+pub mod storage;
 
 #[cfg(feature = "defmt")]
 pub mod log;

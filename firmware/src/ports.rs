@@ -4,6 +4,7 @@
 
 use drivers::fault::Fault;
 use embassy_time::Instant;
+use orientation::align::rotating::coupling::BYTES;
 use orientation::session::{Session, rotating};
 use orientation::signal::Sample;
 use orientation::signal::sway::CoarseSensors;
@@ -127,6 +128,17 @@ pub trait Actuator: Startable {
 
     /// What the motor does.
     async fn motion(&mut self) -> Result<Motion, Fault>;
+}
+
+/// Where calibrations are kept over a loss of supply.
+#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
+pub trait CalibrationStore {
+    /// What was kept last in a slot, if anything was.
+    async fn load(&mut self, slot: u8) -> Result<Option<[u8; BYTES]>, Fault>;
+
+    /// Keeps something in a slot. Where the supply is lost meanwhile, a slot has what it had or what it
+    /// was to have.
+    async fn save(&mut self, slot: u8, bytes: &[u8; BYTES]) -> Result<(), Fault>;
 }
 
 /// Where raw samples are kept. It may take its time: samples then queue.

@@ -14,7 +14,7 @@ use orientation::error::Refusal;
 use orientation::session::{Session, rotating};
 
 use crate::acquire::Acquisition;
-use crate::conduct::{Conducted, Conductor};
+use crate::conduct::{Conducted, Conductor, Rotating, Stepwise};
 use crate::configuration::{Configuration, FramesConfiguration, TurntableConfiguration};
 use crate::gimbal::Gimbal;
 use crate::health::{self, Health};
@@ -94,7 +94,7 @@ where
     let Ports { actuator, link, recorder } = ports;
     let mut stage = Stage::new(actuator, &configuration.stage, shared);
     let turning = pin!(stage.run());
-    beside(turning, link, recorder, session, shared).await
+    beside(turning, link, recorder, &mut Stepwise::new(session), shared).await
 }
 
 /// The same on a platform that turns all the time, which [`acquire`] samples with a configuration for
@@ -115,7 +115,7 @@ where
     let mut turntable = Turntable::new(actuator, configuration, shared);
     let health = {
         let turning = pin!(turntable.run());
-        beside(turning, link, recorder, session, shared).await
+        beside(turning, link, recorder, &mut Rotating::new(session), shared).await
     };
     // Where that fails, too, the log has the reason.
     select(turntable.rest(), discard(shared)).await;
@@ -141,7 +141,7 @@ where
     let mut gimbal = Gimbal::new(actuator, frames, latest, shared);
     let health = {
         let turning = pin!(gimbal.run());
-        beside(turning, link, recorder, session, shared).await
+        beside(turning, link, recorder, &mut Stepwise::new(session), shared).await
     };
     if session.conclusion().is_some_and(|conclusion| conclusion.verdict.is_ok()) {
         // Where that fails, the log has the reason; the azimuth stands all the same.
@@ -158,15 +158,14 @@ async fn discard<O>(shared: &Shared<'_, O>) {
 }
 
 /// Joins the parts around what turns the gyro, which ends only with a reason to end everything.
-async fn beside<S, L, R, O>(
-    turning: Pin<&mut impl Future<Output = Refusal>>,
+async fn beside<L, R, O>(
+    turning: Pin<&mut dyn Future<Output = Refusal>>,
     link: &mut L,
     recorder: &mut R,
-    session: &mut S,
+    session: &mut dyn Conducted<O>,
     shared: &Shared<'_, O>,
 ) -> Health
 where
-    S: Conducted,
     L: Write,
     R: Recorder,
     O: Observer,

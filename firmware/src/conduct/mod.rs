@@ -3,6 +3,9 @@
 mod rotating;
 mod stepwise;
 
+pub use rotating::Rotating;
+pub use stepwise::Stepwise;
+
 use core::future::pending;
 
 use embassy_futures::select::{Either, select};
@@ -32,11 +35,9 @@ pub enum Step {
     Finish,
 }
 
-/// A session that can be conducted.
-pub trait Conducted {
-    /// What was told of it.
-    type Told: Default;
-
+/// A session with what was told of it. The conductor knows no more of its kind, so that an image with
+/// two kinds has one conductor.
+pub trait Conducted<O> {
     /// Where it is to find north.
     fn latitude(&self) -> Latitude;
 
@@ -53,25 +54,28 @@ pub trait Conducted {
     fn fail(&mut self, reason: Refusal);
 
     /// Tells what the last sample changed.
-    fn follow<O: Observer>(&self, told: &mut Self::Told, shared: &Shared<'_, O>);
+    fn follow(&mut self, shared: &Shared<'_, O>);
 
     /// Tells what was left out, and gives the azimuth, its σ and its limit, rad, or the reason why there
     /// is none; [`None`] before the end.
-    fn conclude<O: Observer>(&self, shared: &Shared<'_, O>) -> Option<Result<[f64; 3], Refusal>>;
+    fn conclude(&self, shared: &Shared<'_, O>) -> Option<Result<[f64; 3], Refusal>>;
 }
 
 /// The session at work.
-pub struct Conductor<'a, S: Conducted, R, O> {
-    session: &'a mut S,
+pub struct Conductor<'a, R, O> {
+    session: &'a mut dyn Conducted<O>,
     recorder: &'a mut R,
     shared: &'a Shared<'a, O>,
-    told: S::Told,
 }
 
-impl<'a, S: Conducted, R: Recorder, O: Observer> Conductor<'a, S, R, O> {
+impl<'a, R: Recorder, O: Observer> Conductor<'a, R, O> {
     /// Takes a session that has not begun.
-    pub fn new(session: &'a mut S, recorder: &'a mut R, shared: &'a Shared<'a, O>) -> Self {
-        Self { session, recorder, shared, told: S::Told::default() }
+    pub fn new(
+        session: &'a mut dyn Conducted<O>,
+        recorder: &'a mut R,
+        shared: &'a Shared<'a, O>,
+    ) -> Self {
+        Self { session, recorder, shared }
     }
 
     /// Conducts the session to its conclusion, then waits for the link to tell of it.
@@ -95,7 +99,7 @@ impl<'a, S: Conducted, R: Recorder, O: Observer> Conductor<'a, S, R, O> {
             let sample = self.sample().await?;
             self.recorder.record(&sample).await;
             let step = self.session.take(&sample);
-            self.session.follow(&mut self.told, self.shared);
+            self.session.follow(self.shared);
             match step {
                 Step::Wait => {}
                 Step::Move(to) => self.shared.wanted.signal(to),

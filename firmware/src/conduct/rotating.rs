@@ -13,36 +13,45 @@ use crate::link::Status;
 use crate::ports::Observer;
 use crate::shared::Shared;
 
-/// What has been told of the session.
+/// A session on a platform that turns all the time.
+pub struct Rotating<'a> {
+    session: &'a mut Session,
+    told: Told,
+}
+
+/// What has been told of it.
 #[derive(Clone, Copy, Debug)]
-pub struct Told {
+struct Told {
     phase: Phase,
     turns: u32,
 }
 
-impl Default for Told {
-    fn default() -> Self {
-        Self { phase: Phase::Level, turns: 0 }
+impl<'a> Rotating<'a> {
+    /// A session of which nothing was told.
+    pub fn new(session: &'a mut Session) -> Self {
+        let told = Told { phase: session.phase(), turns: 0 };
+        Self { session, told }
     }
 }
 
-impl Conducted for Session {
-    type Told = Told;
-
+impl<O: Observer> Conducted<O> for Rotating<'_> {
     fn latitude(&self) -> Latitude {
-        self.setting().common.latitude
+        self.session.setting().common.latitude
     }
 
     fn outset(&self) -> Event {
-        let (_, turns) = self.turns();
-        Event::BegunTurning { turns, latitude: self.latitude().rad() * DEGREES }
+        let (_, turns) = self.session.turns();
+        Event::BegunTurning {
+            turns,
+            latitude: self.session.setting().common.latitude.rad() * DEGREES,
+        }
     }
 
     /// A platform that turns has no sensors on its base.
     fn allow_for(&mut self, _: SwayNoise) {}
 
     fn take(&mut self, sample: &Sample) -> Step {
-        match self.handle(SessionEvent::Sample(sample)) {
+        match self.session.handle(SessionEvent::Sample(sample)) {
             Command::Wait => Step::Wait,
             Command::Turn(rate) => Step::Move(rate),
             Command::Finished => Step::Finish,
@@ -50,26 +59,27 @@ impl Conducted for Session {
     }
 
     fn fail(&mut self, reason: Refusal) {
-        self.handle(SessionEvent::Failed(reason));
+        self.session.handle(SessionEvent::Failed(reason));
     }
 
-    fn follow<O: Observer>(&self, told: &mut Told, shared: &Shared<'_, O>) {
-        if self.phase() != told.phase {
-            tell_found(self, told.phase, shared);
-            tell_phase(self, shared);
-            told.phase = self.phase();
+    fn follow(&mut self, shared: &Shared<'_, O>) {
+        let (session, told) = (&*self.session, &mut self.told);
+        if session.phase() != told.phase {
+            tell_found(session, told.phase, shared);
+            tell_phase(session, shared);
+            told.phase = session.phase();
         }
-        let (done, of) = self.turns();
+        let (done, of) = session.turns();
         if done > told.turns {
             told.turns = done;
             shared.tell(Event::Turned(done, of));
-            tell_status(self, shared);
-            shared.observer().turned(self);
+            tell_status(session, shared);
+            shared.observer().turned(session);
         }
     }
 
-    fn conclude<O: Observer>(&self, shared: &Shared<'_, O>) -> Option<Result<[f64; 3], Refusal>> {
-        let conclusion = self.conclusion()?;
+    fn conclude(&self, shared: &Shared<'_, O>) -> Option<Result<[f64; 3], Refusal>> {
+        let conclusion = self.session.conclusion()?;
         for average in conclusion.pairs.iter().flat_map(|pair| [&pair.clockwise, &pair.counter]) {
             if average.left_out > 0 {
                 shared.tell(Event::TurnsLeftOut(average.left_out, average.sense));

@@ -18,34 +18,45 @@ use crate::shared::Shared;
 /// Part of a dwell's time that is as good as all of it.
 const WHOLE: f64 = 0.99;
 
-/// What has been told of the session.
+/// A session in positions.
+pub struct Stepwise<'a> {
+    session: &'a mut Session,
+    told: Told,
+}
+
+/// What has been told of it.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Told {
+struct Told {
     dwells: usize,
     repetitions: usize,
     is_level: bool,
     is_planned: bool,
 }
 
-impl Conducted for Session {
-    type Told = Told;
+impl<'a> Stepwise<'a> {
+    /// A session of which nothing was told.
+    pub fn new(session: &'a mut Session) -> Self {
+        Self { session, told: Told::default() }
+    }
+}
 
+impl<O: Observer> Conducted<O> for Stepwise<'_> {
     fn latitude(&self) -> Latitude {
-        self.setting().latitude
+        self.session.setting().latitude
     }
 
     fn outset(&self) -> Event {
-        let dwell = self.procedure().schedule.shortest();
-        let latitude = self.setting().latitude.rad() * DEGREES;
-        Event::Begun { positions: self.planned(), dwell, latitude }
+        let dwell = self.session.procedure().schedule.shortest();
+        let latitude = self.session.setting().latitude.rad() * DEGREES;
+        Event::Begun { positions: self.session.planned(), dwell, latitude }
     }
 
     fn allow_for(&mut self, sway: SwayNoise) {
-        self.allow_for(sway);
+        self.session.allow_for(sway);
     }
 
     fn take(&mut self, sample: &Sample) -> Step {
-        match self.handle(SessionEvent::Sample(sample)) {
+        match self.session.handle(SessionEvent::Sample(sample)) {
             Command::Wait => Step::Wait,
             Command::Rotate(angle) => Step::Move(angle),
             Command::Finished => Step::Finish,
@@ -53,32 +64,33 @@ impl Conducted for Session {
     }
 
     fn fail(&mut self, reason: Refusal) {
-        self.handle(SessionEvent::Failed(reason));
+        self.session.handle(SessionEvent::Failed(reason));
     }
 
-    fn follow<O: Observer>(&self, told: &mut Told, shared: &Shared<'_, O>) {
-        if !told.is_level && self.phase() != Phase::Level {
+    fn follow(&mut self, shared: &Shared<'_, O>) {
+        let (session, told) = (&*self.session, &mut self.told);
+        if !told.is_level && session.phase() != Phase::Level {
             told.is_level = true;
-            tell_begun(self, shared);
-            tell_status(self, shared);
+            tell_begun(session, shared);
+            tell_status(session, shared);
         }
-        if !told.is_planned && self.surveyed().is_some() {
+        if !told.is_planned && session.surveyed().is_some() {
             told.is_planned = true;
-            tell_plan(self, shared);
+            tell_plan(session, shared);
         }
-        if self.repetitions().len() > told.repetitions {
-            told.repetitions = self.repetitions().len();
-            tell_repetition(self, shared);
+        if session.repetitions().len() > told.repetitions {
+            told.repetitions = session.repetitions().len();
+            tell_repetition(session, shared);
         }
-        if self.dwells().len() > told.dwells {
-            told.dwells = self.dwells().len();
-            tell_dwell(self, shared);
-            tell_status(self, shared);
+        if session.dwells().len() > told.dwells {
+            told.dwells = session.dwells().len();
+            tell_dwell(session, shared);
+            tell_status(session, shared);
         }
     }
 
-    fn conclude<O: Observer>(&self, shared: &Shared<'_, O>) -> Option<Result<[f64; 3], Refusal>> {
-        let conclusion = self.conclusion()?;
+    fn conclude(&self, shared: &Shared<'_, O>) -> Option<Result<[f64; 3], Refusal>> {
+        let conclusion = self.session.conclusion()?;
         for (number, why) in (1..).zip(&conclusion.disturbances) {
             if let Some(why) = why {
                 shared.tell(Event::LeftOut(number, *why));

@@ -22,7 +22,9 @@ use orientation::units::{DEGREE, TURN};
 
 use super::fault::{Fault, Plan};
 use super::scenario::{GyroClass, Scenario};
-use super::{Around, Chips, SimulatedPorts, SimulatedSensors, board_around, ports_with, sensors_with};
+use super::{
+    Around, Chips, SimulatedPorts, SimulatedSensors, board_around, ports_with, sensors_with,
+};
 use crate::configuration::{Configuration, TurntableConfiguration};
 
 /// The motor driver of a platform that turns without end: it has no switches.
@@ -40,11 +42,8 @@ pub const MOLECULAR_ELECTRONIC: GyroClass =
 
 /// Its dynamics: 17° ahead at 0.1 Hz and 9° at 0.2 Hz by its high-pass, about 1° behind by its lag, and a
 /// g-sensitivity that at 0.1 Hz and 0.7° of tilt is a fifth of the horizontal Earth rate.
-pub const DYNAMICS: MolecularConfiguration = MolecularConfiguration {
-    force_rad_s2_g: [4e-4, -2.5e-4],
-    high_pass_hz: 0.03,
-    lag_s: 0.02,
-};
+pub const DYNAMICS: MolecularConfiguration =
+    MolecularConfiguration { force_rad_s2_g: [4e-4, -2.5e-4], high_pass_hz: 0.03, lag_s: 0.02 };
 /// Time constants of the high-pass until a change of the platform's rate, of which a raised axis shows a
 /// hundredth, is below what the Earth's is to be known to: e⁻¹⁴ is 10⁻⁶.
 const SETTLED: f64 = 14.0;

@@ -24,12 +24,14 @@ pub enum Sitting {
 }
 
 impl Sitting {
-    /// A session in positions.
+    /// A session in positions. Not inlined: what it is made of on the stack is not to stay there.
+    #[inline(never)]
     pub fn stepwise(prepared: Prepared) -> &'static mut Self {
         PLACE.init_with(|| Self::Stepwise(Session::from(prepared)))
     }
 
     /// A session on a turning platform, whose procedure was checked.
+    #[inline(never)]
     pub fn turning(setting: Setting, procedure: rotating::Procedure) -> &'static mut Self {
         PLACE.init_with(|| Self::Turning(rotating::Session::of(setting, procedure)))
     }
@@ -65,9 +67,11 @@ impl Sitting {
             }
             Self::Turning(session) => {
                 let stretches = session.follower().stretches().iter();
-                stretches.flat_map(|stretch| stretch.turns()).zip(1..).for_each(|(turn, number)| {
-                    results::turn(number, turn);
-                });
+                stretches.flat_map(|stretch| stretch.turns()).zip(1..).for_each(
+                    |(turn, number)| {
+                        results::turn(number, turn);
+                    },
+                );
                 results::outcome(seed, &session.conclusion()?.verdict);
             }
         }
