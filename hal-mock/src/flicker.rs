@@ -22,21 +22,14 @@ struct Process {
     value: f64,
     keep: f64,
     kick: f64,
-    /// Updates when the counter has none of these bits: every power of two of samples.
-    mask: u64,
 }
 
 impl Process {
-    /// A process of deviation `sigma` and corner `corner` in rad/s, sampled every `interval_s`, in
+    /// A process of deviation `sigma` that is updated after each `step` of its correlation time, in
     /// its stationary state.
-    fn new(sigma: f64, corner: f64, interval_s: f64, noise: &mut Generator) -> Self {
-        let mut hold = 1_u64;
-        while 2.0 * hold as f64 * corner * interval_s <= HOLD && hold < 1 << 40 {
-            hold *= 2;
-        }
-        let step = hold as f64 * corner * interval_s;
+    fn new(sigma: f64, step: f64, noise: &mut Generator) -> Self {
         let kick = sigma * libm::sqrt(-libm::expm1(-2.0 * step));
-        Self { value: sigma * noise.gaussian(), keep: libm::exp(-step), kick, mask: hold - 1 }
+        Self { value: sigma * noise.gaussian(), keep: libm::exp(-step), kick }
     }
 
     /// Moves on by one hold; returns the change.
@@ -47,11 +40,23 @@ impl Process {
     }
 }
 
+/// How often a process of corner `corner` in rad/s is updated that is sampled every `interval_s`: once
+/// in so many samples, as a power of two.
+fn hold(corner: f64, interval_s: f64) -> u8 {
+    let mut power = 0;
+    while 2.0 * (1_u64 << power) as f64 * corner * interval_s <= HOLD && power < 40 {
+        power += 1;
+    }
+    power
+}
+
 /// Flicker noise of one-sided spectrum S(f) = B²/(π f) between two cut-offs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flicker {
-    /// Fastest first, so that the masks nest and an update can stop at the first that holds.
+    /// Fastest first, so that an update can stop at the first that is held.
     processes: [Process; MAXIMUM],
+    /// Each is updated when the counter ends in so many zero bits.
+    holds: [u8; MAXIMUM],
     count: usize,
     sum: f64,
     samples: u64,
@@ -69,13 +74,15 @@ impl Flicker {
         let (count, ratio) = if b > 0.0 { spacing(low_hz, high_hz) } else { (0, 1.0) };
         let sigma = b * libm::sqrt(libm::log(ratio) / core::f64::consts::PI);
         let mut corner = core::f64::consts::TAU * high_hz / libm::sqrt(ratio);
-        let mut processes = [Process::default(); MAXIMUM];
-        for process in processes.iter_mut().take(count) {
-            *process = Process::new(sigma, corner, 1.0 / rate_hz, &mut noise);
+        let (mut processes, mut holds) = ([Process::default(); MAXIMUM], [0; MAXIMUM]);
+        for (process, power) in processes.iter_mut().zip(&mut holds).take(count) {
+            *power = hold(corner, 1.0 / rate_hz);
+            let step = (1_u64 << *power) as f64 * corner * (1.0 / rate_hz);
+            *process = Process::new(sigma, step, &mut noise);
             corner /= ratio;
         }
         let sum = processes.iter().map(|process| process.value).sum();
-        Self { processes, count, sum, samples: 0, noise }
+        Self { processes, holds, count, sum, samples: 0, noise }
     }
 
     /// The next sample, in the unit of `b`.
@@ -85,8 +92,9 @@ impl Flicker {
     /// processes at 100 Hz and 2 kHz).
     #[inline]
     pub fn sample(&mut self) -> f64 {
-        for process in self.processes.iter_mut().take(self.count) {
-            if self.samples & process.mask != 0 {
+        let zeros = self.samples.trailing_zeros();
+        for (process, power) in self.processes.iter_mut().zip(&self.holds).take(self.count) {
+            if zeros < u32::from(*power) {
                 break;
             }
             self.sum += process.update(&mut self.noise);

@@ -64,14 +64,20 @@ impl GyroNoise {
         self.white_variance(seconds) + self.rounding_variance(seconds)
     }
 
-    /// Two-sided spectral density that counts in a line at `frequency`, Hz, over whole periods,
-    /// (rad/s)²/Hz: N², B²/(2πf), and twice K²/(2πf)², since a walk's sine over whole periods has three
-    /// times the variance of its cosine.
+    /// Two-sided spectral density at a frequency in Hz, (rad/s)²/Hz: N² + B²/(2πf) + K²/(2πf)².
     #[must_use]
     pub fn density_at(&self, frequency: f64) -> f64 {
         let (n, b) = (self.angle_random_walk, self.bias_instability);
         let k = self.rate_random_walk / (TURN * frequency);
-        n * n + b * b / (TURN * frequency) + 2.0 * k * k
+        n * n + b * b / (TURN * frequency) + k * k
+    }
+
+    /// The same as it scatters the line of one period about that of others: there the walk counts twice,
+    /// since what is its slope within a period has not been taken off.
+    #[must_use]
+    pub fn density_of_period(&self, frequency: f64) -> f64 {
+        let k = self.rate_random_walk / (TURN * frequency);
+        self.density_at(frequency) + k * k
     }
 
     /// Whether there is noise that one dwell shares with the next, beside a ramp.

@@ -312,23 +312,21 @@ impl Session {
         Command::Turn(self.speed(index))
     }
 
-    /// Turns unevenly for so many turns, once the platform has taken on the speed.
+    /// Turns unevenly, for so many turns once the sensor has settled.
     fn uneven(&mut self, index: usize, now: Instant, elapsed: u64) -> Command {
-        let speed = self.speed(index);
-        let settle = self.settle_seconds();
+        let (speed, settle) = (self.speed(index), self.settle_seconds());
         let seconds = f64::from(self.procedure.uneven_turns) * TURN / speed;
         if is_over(elapsed, settle + seconds) {
             return self.end_uneven(index);
         }
-        if !is_over(elapsed, settle) || now.0.saturating_sub(self.commanded.0) < COMMAND_PERIOD {
+        if now.0.saturating_sub(self.commanded.0) < COMMAND_PERIOD {
             return Command::Wait;
         }
         self.commanded = now;
-        if self.follower.mode() == Mode::Ignore {
+        if self.follower.mode() == Mode::Ignore && is_over(elapsed, settle) {
             self.follower.follow(Mode::Uneven);
         }
-        let time = elapsed as f64 * 1e-6 - settle;
-        Command::Turn(self.procedure.uneven_rate(speed, time))
+        Command::Turn(self.procedure.uneven_rate(speed, elapsed as f64 * 1e-6))
     }
 
     /// Ends where the sensor stands badly, or the platform did not turn.

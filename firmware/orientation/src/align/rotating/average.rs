@@ -12,6 +12,9 @@ const OUTLIER: f64 = 21.0;
 /// Median of the squared distance of two neighbours over the variance of either part: 2 · 2 ln 2.
 const MEDIAN_OF_NEIGHBOURS: f64 = 2.772_588_722_239_781;
 
+/// Number of differences of neighbours from which a variance comes out half too small at times.
+const FEW_NEIGHBOURS: f64 = 2.0;
+
 /// A stretch's phasors. A phasor a stands for the signal Re{a e^{jθ}}.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Average {
@@ -33,8 +36,8 @@ pub struct Average {
     pub turning: Complex,
     /// The force along the sensitive axis, m/s².
     pub force: Complex,
-    /// Variance of either part of `force`, from its scatter, (m/s²)².
-    pub force_variance: f64,
+    /// Sum of the squared distances of the turns' forces from their mean, (m/s²)².
+    pub force_scatter: f64,
     /// Mean force along the sensitive axis, m/s².
     pub mean_force: f64,
     /// Variance of either part of `phasor` where that of one turn of the platform is one.
@@ -44,7 +47,7 @@ pub struct Average {
     /// Squared drift of the phasor from turn to turn, over its variance where that of a turn is one,
     /// (rad/s)².
     pub trend: f64,
-    /// Degrees of freedom of `scatter`.
+    /// Degrees of freedom of `scatter` and `force_scatter`.
     pub degrees: u32,
 }
 
@@ -157,9 +160,9 @@ impl Average {
         let turn = |index: usize| &turns.all[index];
         let phasor = turns.mean_complex(|index| turns.phasors[index]);
         let force = turns.mean_complex(|index| Complex::of_signal(turn(index).force));
-        let force_scatter = turns.mean(|index| {
+        let force_scatter = turns.kept().map(|index| {
             let away = Complex::of_signal(turn(index).force) - force;
-            0.5 * away.size() * away.size()
+            away.re * away.re + away.im * away.im
         });
         let (cosine, square) = turns.slope_of(|index| turns.phasors[index].re);
         let (sine, _) = turns.slope_of(|index| turns.phasors[index].im);
@@ -173,7 +176,7 @@ impl Average {
             phasor,
             turning: turns.mean_complex(|index| Complex::of_signal(turn(index).turning)),
             force,
-            force_variance: force_scatter / (count - 1) as f64,
+            force_scatter: force_scatter.sum(),
             mean_force: turns.mean(|index| f64::from(turn(index).mean_force)),
             share: turns.share(square) / f64::from(joined),
             scatter: turns.kept().map(|index| turns.distance(index, phasor)).sum(),
@@ -213,7 +216,7 @@ pub fn typical_size(stretch: &Stretch, couplings: &[Coupling]) -> f64 {
 }
 
 /// Variance of either part of a turn's phasor from the differences of neighbours, (rad/s)², which
-/// disturbed turns hardly touch; zero where there are none.
+/// disturbed turns hardly touch, with what few of them make it uncertain; zero where there are none.
 #[must_use]
 pub fn variance_of_neighbours(stretches: &[Stretch], couplings: &[Coupling]) -> f64 {
     let mut squares: Vec<f64, { 4 * TURNS }> = Vec::new();
@@ -224,5 +227,6 @@ pub fn variance_of_neighbours(stretches: &[Stretch], couplings: &[Coupling]) -> 
             let _ = squares.push(turns.distance(index, turns.phasors[index - 1]));
         }
     }
-    median(&mut squares) / MEDIAN_OF_NEIGHBOURS
+    let few = 1.0 + FEW_NEIGHBOURS / squares.len().max(1) as f64;
+    few * median(&mut squares) / MEDIAN_OF_NEIGHBOURS
 }

@@ -6,12 +6,13 @@ use super::Setting;
 use super::average::{Average, typical_size, variance_of_neighbours};
 use super::coupling::Coupling;
 use super::follower::{Follower, STRETCHES};
-use super::solution::{Fit, Pair, Problem, SPEEDS, of_turn};
+use super::solution::{Fit, Pair, Problem, SPEEDS, force_density, of_turn};
 use super::turn::{Sense, Stretch};
 use crate::align::conclusion::Azimuth;
 use crate::device::Device;
 use crate::error::Refusal;
 use crate::math::{Complex, chi_square_tail};
+use crate::noise::model::GyroNoise;
 use crate::units::{DEGREES_PER_RADIAN as DEGREES, TURN};
 
 /// What the speeds of both senses may differ by, relative.
@@ -27,6 +28,8 @@ const SENSES_TOLERANCE: f64 = 0.05;
 const RATIO_TOLERANCE: f64 = 0.005;
 /// What the tilt may differ by between stretches beyond five σ, g.
 const TILT_TOLERANCE: f64 = 1e-5;
+/// Degrees of freedom at which a bound on a scatter that is itself estimated doubles.
+const FEW: f64 = 10.0;
 /// Mean force over whole turns beyond which an accelerometer does not lie in the platform's plane, m/s²,
 /// beyond five of its bias's σ.
 const FORCE_TOLERANCE: f64 = 1.0;
@@ -131,11 +134,14 @@ impl Conclusion {
         Ok(())
     }
 
-    /// Spectral density of the noise at a speed.
-    fn density(&self, setting: &Setting, speed: f64) -> f64 {
-        let mut noise = setting.common.noise;
-        noise.angle_random_walk = self.angle_random_walk;
-        noise.density_at(speed / TURN)
+    /// The gyro's noise, with the N that is known or was found.
+    fn noise(&self, setting: &Setting) -> GyroNoise {
+        GyroNoise { angle_random_walk: self.angle_random_walk, ..setting.common.noise }
+    }
+
+    /// Variance of either part of one turn's phasor, (rad/s)², for a sensor of gain one.
+    fn of_one_turn(&self, setting: &Setting, speed: f64) -> f64 {
+        of_turn(speed, self.noise(setting).density_of_period(speed / TURN))
     }
 
     /// Finds both senses of every speed.
@@ -176,7 +182,7 @@ impl Conclusion {
         for stretch in stretches {
             let joined = stretch.count() / stretch.turns().len().max(1) as u32;
             let speed = stretch.speed();
-            let variance = of_turn(speed, self.density(setting, speed)) / f64::from(joined);
+            let variance = self.of_one_turn(setting, speed) / f64::from(joined);
             // What the sensor's gain makes of its noise, which counts at its input.
             let gain = if setting.sensor.is_flat {
                 1.0
@@ -200,8 +206,8 @@ impl Conclusion {
         for pair in &self.pairs {
             let gain = if setting.sensor.is_flat { 1.0 } else { pair.gain(horizontal) };
             for average in [&pair.clockwise, &pair.counter] {
-                let density = self.density(setting, average.speed) * gain * gain;
-                let variance = of_turn(average.speed, density) / average.joined();
+                let variance =
+                    self.of_one_turn(setting, average.speed) * gain * gain / average.joined();
                 self.chi_square += average.scatter / variance;
                 self.degrees += average.degrees;
                 drift = drift.max(average.trend / variance);
@@ -220,7 +226,9 @@ impl Conclusion {
         {
             return Err(Refusal::ResidualsNotWhite { ratio });
         }
-        if drift > DIFFERENT * DIFFERENT {
+        // A standard deviation from the same few turns may be far too small.
+        let few = if is_known { 0.0 } else { FEW / f64::from(self.degrees.max(1)) };
+        if libm::sqrt(drift) > DIFFERENT * (1.0 + few) {
             return Err(Refusal::DirectionDrifts { sigmas: libm::sqrt(drift) });
         }
         Ok(())
@@ -228,7 +236,8 @@ impl Conclusion {
 
     #[inline(never)]
     fn solve(&self, setting: &Setting) -> Option<Fit> {
-        let density = |speed: f64| self.density(setting, speed);
+        let noise = self.noise(setting);
+        let density = |speed: f64| noise.density_at(speed / TURN);
         let walk = self.angle_random_walk;
         let white = if setting.common.white_known { walk * walk } else { 0.0 };
         let (pairs, couplings) = (&self.pairs, &self.couplings);
@@ -239,14 +248,17 @@ impl Conclusion {
     fn judge_force(&self, setting: &Setting, fit: &Fit) -> Result<(), Refusal> {
         let gravity = setting.common.latitude.gravity();
         let allowed = FORCE_TOLERANCE + DIFFERENT * setting.common.accelerometer_bias_sigma;
+        let (density, degrees) = force_density(&self.pairs);
+        // A standard deviation from few turns may be far too small.
+        let different = DIFFERENT * (1.0 + FEW / f64::from(degrees.max(1)));
         for average in self.pairs.iter().flat_map(|pair| [&pair.clockwise, &pair.counter]) {
             if average.mean_force.abs() > allowed {
                 let ratio = average.mean_force / gravity;
                 return Err(Refusal::AccelerometerImplausible { ratio });
             }
             let apart: Complex = average.force.scaled(1.0 / gravity) - fit.tilt;
-            let sigma = libm::sqrt(average.force_variance) / gravity;
-            if apart.size() > DIFFERENT * sigma + TILT_TOLERANCE {
+            let sigma = libm::sqrt(density / average.seconds) / gravity;
+            if apart.size() > different * sigma + TILT_TOLERANCE {
                 return Err(Refusal::TiltChanged { change: apart.size() * 1e3 });
             }
         }

@@ -89,10 +89,10 @@ impl Coupling {
         Complex::new(at_rest, 0.0) / Complex::new(1.0, frequency * lag)
     }
 
-    /// Variance of either part of that response.
+    /// 1σ of the parts of that response, in phase and in quadrature.
     #[must_use]
-    pub fn variance(&self, frequency: f64) -> f64 {
-        squared(self.sine_sigma).max(squared(frequency * self.quadrature_sigma))
+    pub fn sigmas(&self, frequency: f64) -> [f64; 2] {
+        [self.sine_sigma, frequency * self.quadrature_sigma]
     }
 }
 

@@ -220,6 +220,8 @@ pub struct Follower {
     /// Rate of the turn's first eighth, rad/s.
     speed: f32,
     uneven: Vec<Uneven, SPEEDS>,
+    /// Whether the next uneven eighth does not count: the sensor still answers to what was before.
+    is_settling: bool,
     stretches: Vec<Stretch, STRETCHES>,
     broken: Option<Broken>,
     /// The greatest slip of the encoder, rad.
@@ -247,6 +249,7 @@ impl Follower {
             eighths: 0,
             speed: 0.0,
             uneven: Vec::new(),
+            is_settling: true,
             stretches: Vec::new(),
             broken: None,
             slip: 0.0,
@@ -301,6 +304,7 @@ impl Follower {
     /// Forgets what is in progress: the next sample does not join on to the one before.
     pub fn restart(&mut self) {
         self.blocks.restart();
+        self.is_settling = true;
         self.latest = [None; 2];
         self.broken = None;
         self.part = Part::default();
@@ -486,7 +490,7 @@ impl Follower {
     }
 
     fn take_uneven(&mut self, part: &Part) {
-        if part.products.is_astray {
+        if core::mem::take(&mut self.is_settling) || part.products.is_astray {
             return;
         }
         if let Some(uneven) = self.uneven_in_progress() {

@@ -14,6 +14,7 @@ pub mod average;
 pub mod conclusion;
 pub mod coupling;
 pub mod follower;
+pub mod level;
 pub mod molecular;
 pub mod solution;
 pub mod turn;

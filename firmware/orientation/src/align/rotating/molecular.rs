@@ -14,6 +14,9 @@ const ROUNDS: usize = 4;
 /// What x may be where one speed alone is at hand and nothing is known of the sensor, 1σ: γ of 0.3.
 const ASSUMED: f64 = 0.3;
 
+/// What y may differ by between the speeds: a coupling that changes with the frequency.
+const TOLERANCE: f64 = 0.01;
+
 /// Both senses at one speed, without H.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Halves {
@@ -164,12 +167,14 @@ fn extrapolated(halves: &[Halves], slowest: f64, [x, y]: [f64; 2], spread: f64) 
     }
 }
 
-/// How far the speeds disagree about y, over its standard deviation: squares summed.
+/// How far the speeds disagree about y beyond a tolerance, over its standard deviation: root of the sum
+/// of squares.
 fn disagreement(halves: &[Halves], slowest: f64, ratio: Complex) -> f64 {
     let squares = halves.iter().map(|half| {
         let scale = slowest / half.speed;
         let off = half.sine_part(ratio.re * scale) - ratio.im * scale;
-        off * off / half.variance
+        let beyond = (off.abs() - TOLERANCE).max(0.0);
+        beyond * beyond / half.variance
     });
     libm::sqrt(squares.sum())
 }

@@ -3,10 +3,14 @@
 use super::Setting;
 use super::average::Average;
 use super::coupling::{self, Coupling};
+use super::level::Lean;
 use super::molecular::{self, Freed, Halves};
 use crate::align::budget::Budget;
 use crate::math::Complex;
 use crate::units::{TURN, wrapped};
+
+/// How far a flat sensor may lag behind the encoder, where no uneven turn has told, 1σ, s.
+const UNKNOWN_LAG: f64 = 0.01;
 
 /// Most speeds.
 pub const SPEEDS: usize = 2;
@@ -109,6 +113,8 @@ pub struct Fit {
     pub tilt: Complex,
     /// 1σ of either part of it, g.
     pub tilt_sigma: f64,
+    /// The same as pitch and roll of the body.
+    pub lean: Lean,
     /// Horizontal Earth rate found over expected, and its 1σ; one and infinite where the sensor's gain is
     /// unknown.
     pub ratio: f64,
@@ -154,7 +160,8 @@ impl Problem<'_> {
     pub fn solve(&self) -> Option<Fit> {
         let first = self.pairs.first()?;
         let (tilt, tilt_sigma) = self.tilt();
-        let mut fit = Fit { tilt, tilt_sigma, ratio: 1.0, ..Fit::default() };
+        let lean = Lean::of(tilt);
+        let mut fit = Fit { tilt, tilt_sigma, lean, ratio: 1.0, ..Fit::default() };
         fit.ratio_sigma = f64::INFINITY;
         let is_flat = self.setting.sensor.is_flat;
         let turned = if is_flat { self.flat(&mut fit) } else { self.lagging(&mut fit)? };
@@ -179,13 +186,13 @@ impl Problem<'_> {
     /// The tilt's phasor and the 1σ of its parts, g.
     fn tilt(&self) -> (Complex, f64) {
         let gravity = self.setting.common.latitude.gravity();
-        let (mut sum, mut information) = (Complex::default(), 0.0);
+        let (mut sum, mut seconds) = (Complex::default(), 0.0);
         for average in self.pairs.iter().flat_map(Pair::senses) {
-            let weight = 1.0 / average.force_variance.max(f64::MIN_POSITIVE);
-            sum = sum + average.force.scaled(weight);
-            information += weight;
+            sum = sum + average.force.scaled(average.seconds);
+            seconds += average.seconds;
         }
-        (sum.scaled(1.0 / information / gravity), libm::sqrt(1.0 / information) / gravity)
+        let variance = force_density(self.pairs).0 / seconds;
+        (sum.scaled(1.0 / seconds / gravity), libm::sqrt(variance) / gravity)
     }
 
     /// What multiplies the tilt, rad/s per g: vertical Earth rate and ordinary g-sensitivity.
@@ -206,18 +213,17 @@ impl Problem<'_> {
             fit.difference = fit.difference.max(odd * odd * weight);
         }
         let mean = sum.scaled(1.0 / information);
-        let mut earth = mean;
-        // The tilt's part is small: three rounds settle the ratio to 1e-6.
-        for _ in 0..3 {
-            fit.ratio = earth.size() / horizontal;
-            earth = mean - self.per_tilt(fit.ratio) * fit.tilt;
+        let (mut angle, mut size) = (0.0, mean.size());
+        // The tilt's part is small: a few rounds settle the ratio.
+        for _ in 0..4 {
+            fit.ratio = size / horizontal;
+            (angle, size) = fit.lean.azimuth(mean - self.per_tilt(fit.ratio) * fit.tilt);
         }
         fit.ratio_sigma = libm::sqrt(1.0 / information) / horizontal;
         // Q₊ − Q₋ is −2jγE′.
         let odd = self.slowest().map_or(Complex::default(), Pair::odd);
         fit.molecular = odd / mean * Complex::new(0.0, 1.0);
-        let size = earth.size();
-        Turned { angle: earth.angle(), noise: 1.0 / information / (size * size), left: 0.0 }
+        Turned { angle, noise: 1.0 / information / (size * size), left: 0.0 }
     }
 
     /// The speed that shows an integrated g-sensitivity most.
@@ -248,15 +254,9 @@ impl Problem<'_> {
             *phase += freed.ratio.re * slowest / pair.speed();
         }
         let [horizontal, _] = self.earth();
-        let across = self.per_tilt(1.0) * fit.tilt * Complex::unit(-freed.angle);
-        let sine = (across.im / horizontal).clamp(-1.0, 1.0);
-        // How the azimuth follows arg E′.
-        let slope = 1.0 + across.re / horizontal / libm::sqrt((1.0 - sine * sine).max(1e-6));
-        Some(Turned {
-            angle: freed.angle - libm::asin(sine),
-            noise: freed.noise * slope * slope,
-            left: freed.left * slope * slope,
-        })
+        let others = (self.per_tilt(1.0) * fit.tilt).scaled(1.0 / horizontal);
+        let (angle, slope) = fit.lean.azimuth_towards(freed.angle, others)?;
+        Some(Turned { angle, noise: freed.noise * slope * slope, left: freed.left * slope * slope })
     }
 
     /// The limit of a flat sensor of known g-sensitivity in the same time.
@@ -297,8 +297,9 @@ impl Problem<'_> {
         }
     }
 
-    /// What the coupling's uncertainty turns the azimuth by, rad: its even part directly, its odd part
-    /// through the integrated g-sensitivity.
+    /// What the coupling's uncertainty turns the azimuth by, rad. Of an unevenness that belongs to the
+    /// angle, hence changes its sign with the sense, the part in phase cancels but for what an integrated
+    /// g-sensitivity mixes in; the part in quadrature, a lag, does not.
     fn coupling_sigma(&self, fit: &Fit) -> f64 {
         let [horizontal, _] = self.earth();
         let worst = self.pairs.iter().map(|pair| {
@@ -306,13 +307,26 @@ impl Problem<'_> {
             let (even, odd) =
                 ((clockwise + counter).scaled(0.5), (clockwise - counter).scaled(0.5));
             let coupling = coupling::nearest(self.couplings, pair.speed());
-            let sigma = coupling.map_or(self.setting.coupling_limit, |coupling| {
-                libm::sqrt(coupling.variance(pair.speed()))
-            });
-            sigma * libm::hypot(even.size(), odd.size() * fit.molecular.size())
+            let limit = self.setting.coupling_limit;
+            let unknown = [limit, limit * UNKNOWN_LAG * pair.speed()];
+            let [in_phase, lagging] = coupling.map_or(unknown, |found| found.sigmas(pair.speed()));
+            let mixed = libm::hypot(even.size(), odd.size() * fit.molecular.size());
+            libm::hypot(in_phase * mixed, lagging * odd.size())
         });
         worst.fold(0.0, f64::max) / horizontal
     }
+}
+
+/// Variance of either part of a force's phasor times the time over which it was found, (m/s²)²·s, and the
+/// degrees of freedom from which this is known.
+#[must_use]
+pub fn force_density(pairs: &[Pair]) -> (f64, u32) {
+    let (mut sum, mut degrees) = (0.0, 0);
+    for average in pairs.iter().flat_map(Pair::senses) {
+        sum += average.force_scatter * average.seconds / (0.5 * f64::from(average.degrees) + 1.0);
+        degrees += average.degrees;
+    }
+    (sum / f64::from(degrees.max(1)), degrees)
 }
 
 /// An azimuth before it is judged.

@@ -1,0 +1,61 @@
+//! From what turns in the platform's plane to an azimuth on the horizon, exactly for any tilt.
+//!
+//! The plane's axes are body x and y. With pitch p, roll r and azimuth A, the horizontal Earth rate turns
+//! with the platform as `Ω_h` (a cos A + j b sin A), a = cos p − j sin r sin p, b = cos r, and the
+//! specific force, in g, as F = sin p + j sin r cos p (rotations azimuth, pitch, roll in this order).
+
+use crate::math::Complex;
+
+/// How the platform leans.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Lean {
+    /// Pitch of body x, rad, up positive.
+    pub pitch: f64,
+    /// Roll about it, rad.
+    pub roll: f64,
+}
+
+impl Lean {
+    /// From the phasor of the specific force in the plane, g.
+    #[must_use]
+    pub fn of(force: Complex) -> Self {
+        let pitch = libm::asin(force.re.clamp(-1.0, 1.0));
+        let roll = libm::asin((force.im / libm::cos(pitch).max(1e-6)).clamp(-1.0, 1.0));
+        Self { pitch, roll }
+    }
+
+    /// a and b: what cosine and sine of the azimuth contribute.
+    fn parts(&self) -> (Complex, f64) {
+        let (sine, cosine) = libm::sincos(self.pitch);
+        (Complex::new(cosine, -libm::sin(self.roll) * sine), libm::cos(self.roll))
+    }
+
+    /// Azimuth, rad, and size of the horizontal rate whose phasor in the plane this is.
+    #[must_use]
+    pub fn azimuth(&self, horizontal: Complex) -> (f64, f64) {
+        let (a, b) = self.parts();
+        let north = horizontal.re / a.re;
+        let east = (horizontal.im - a.im * north) / b;
+        (libm::atan2(east, north), libm::hypot(north, east))
+    }
+
+    /// Azimuth near `angle`, rad, at which the horizontal rate of size one and `others`, what else turns
+    /// in the plane, point together at `angle`; and how it follows that angle. `None` where nothing does.
+    #[must_use]
+    pub fn azimuth_towards(&self, angle: f64, others: Complex) -> Option<(f64, f64)> {
+        let (a, b) = self.parts();
+        let back = Complex::unit(-angle);
+        // Across the angle the sum has no part: p cos A + q sin A = c.
+        let (p, q) = ((a * back).im, b * back.re);
+        let (size, turned) = (libm::hypot(p, q), libm::atan2(q, p));
+        let cosine = -(others * back).im / size;
+        if cosine.is_nan() || cosine.abs() >= 1.0 {
+            return None;
+        }
+        let azimuth = turned - libm::acos(cosine);
+        let (sine, cosine) = libm::sincos(azimuth);
+        let sum = a.scaled(cosine) + Complex::new(0.0, b * sine) + others;
+        let moves = a.scaled(-sine) + Complex::new(0.0, b * cosine);
+        Some((azimuth, (sum * back).re / (moves * back).im))
+    }
+}
