@@ -96,7 +96,11 @@ pub fn emulate(seed: u64, mut tell: impl FnMut(&decode::Line)) -> Result<Emulati
     Ok(Emulation {
         comparison: usual.and(in_brief).and(surveyed).and(turned),
         emulated,
-        checks: checks::all(&Runs { figures: &figures, brief: &brief, survey: &survey, turning: &turning }, &memory, &budget),
+        checks: checks::all(
+            &Runs { figures: &figures, brief: &brief, survey: &survey, turning: &turning },
+            &memory,
+            &budget,
+        ),
         figures,
         brief,
         survey,
