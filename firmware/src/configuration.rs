@@ -143,7 +143,7 @@ pub struct Configuration {
 /// Rate at which the accelerometer is read, Hz; its mean is all that an alignment needs.
 const FORCE_RATE: f64 = 100.0;
 /// Rate at which the encoder is read, Hz: the stage turns 0.1° between two readings.
-const ANGLE_RATE: f64 = 200.0;
+pub const ANGLE_RATE: f64 = 200.0;
 
 impl Configuration {
     /// The default board with a gyro of so many samples a second.

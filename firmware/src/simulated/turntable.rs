@@ -7,6 +7,7 @@ use core::cell::RefCell;
 
 use drivers::adxl355;
 use drivers::adxl355::registers::OutputRate;
+use drivers::mt6835;
 use drivers::tmc5160::configuration::{Configuration as Motor, Switches};
 use embassy_time::{Duration, Instant};
 use hal_mock::chip::Rig;
@@ -25,7 +26,7 @@ use super::scenario::{GyroClass, Scenario};
 use super::{
     Around, Chips, SimulatedPorts, SimulatedSensors, board_around, ports_with, sensors_with,
 };
-use crate::configuration::{Configuration, TurntableConfiguration};
+use crate::configuration::{ANGLE_RATE, Configuration, TurntableConfiguration};
 
 /// The motor driver of a platform that turns without end: it has no switches.
 const MOTOR: Switches = Switches { left: None, right: None };
@@ -155,6 +156,12 @@ impl TurntableScenario {
         }
     }
 
+    /// The encoder, read with every sample, but its registers not more often than those of a stage's.
+    fn encoder(&self) -> mt6835::Configuration {
+        let unwatched = self.base.sample_rate_hz / ANGLE_RATE - 1.0;
+        mt6835::Configuration { unwatched: unwatched as u8, ..mt6835::Configuration::default() }
+    }
+
     /// What it is told of the platform.
     #[must_use]
     pub fn turntable(&self) -> TurntableConfiguration {
@@ -206,7 +213,7 @@ pub fn sensors<'a, B: Rig, A: Around>(
     scenario: &TurntableScenario,
     around: &A,
 ) -> SimulatedSensors<'a, B, A> {
-    sensors_with(board, &scenario.base, FORCE, around)
+    sensors_with(board, &scenario.base, (FORCE, scenario.encoder()), around)
 }
 
 /// The other ports of its simulated board.
