@@ -7,6 +7,13 @@
 //!  accelerometers ─▶ level ───────────────────────▶ (tilt enters the fit)
 //! ```
 //!
+//! On a platform that turns all the time the path is another, with the same ends:
+//!
+//! ```text
+//!  gyro, encoder ─▶ block ─▶ sums of a turn ─▶ Q₊, Q₋ ─both senses, one or two speeds─▶ azimuth ± σ
+//!                              └─uneven turn─▶ coupling ──▲    accelerometer ─▶ tilt ──▲
+//! ```
+//!
 //! Time and numbers go in, results come out: there is no bus, clock, allocator or async here, so
 //! the whole procedure can be replayed from a recording.
 #![no_std]

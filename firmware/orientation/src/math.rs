@@ -83,6 +83,12 @@ impl Complex {
         libm::hypot(self.re, self.im)
     }
 
+    /// The square of its size.
+    #[must_use]
+    pub fn power(self) -> f64 {
+        self.re * self.re + self.im * self.im
+    }
+
     /// Its conjugate.
     #[must_use]
     pub const fn conjugate(self) -> Self {
@@ -125,8 +131,7 @@ impl Div for Complex {
     type Output = Self;
 
     fn div(self, other: Self) -> Self {
-        let power = other.re * other.re + other.im * other.im;
-        (self * other.conjugate()).scaled(1.0 / power)
+        (self * other.conjugate()).scaled(1.0 / other.power())
     }
 }
 

@@ -121,8 +121,7 @@ impl<'a> Turns<'a> {
     }
 
     fn distance(&self, index: usize, from: Complex) -> f64 {
-        let away = self.phasors[index] - from;
-        away.re * away.re + away.im * away.im
+        (self.phasors[index] - from).power()
     }
 
     /// Leaves out the turn that is furthest from the others while one is too far; at most a third.
@@ -160,10 +159,7 @@ impl Average {
         let turn = |index: usize| &turns.all[index];
         let phasor = turns.mean_complex(|index| turns.phasors[index]);
         let force = turns.mean_complex(|index| Complex::of_signal(turn(index).force));
-        let force_scatter = turns.kept().map(|index| {
-            let away = Complex::of_signal(turn(index).force) - force;
-            away.re * away.re + away.im * away.im
-        });
+        let apart = |index: usize| (Complex::of_signal(turn(index).force) - force).power();
         let (cosine, square) = turns.slope_of(|index| turns.phasors[index].re);
         let (sine, _) = turns.slope_of(|index| turns.phasors[index].im);
         Some(Self {
@@ -176,7 +172,7 @@ impl Average {
             phasor,
             turning: turns.mean_complex(|index| Complex::of_signal(turn(index).turning)),
             force,
-            force_scatter: force_scatter.sum(),
+            force_scatter: turns.kept().map(apart).sum(),
             mean_force: turns.mean(|index| f64::from(turn(index).mean_force)),
             share: turns.share(square) / f64::from(joined),
             scatter: turns.kept().map(|index| turns.distance(index, phasor)).sum(),

@@ -201,37 +201,43 @@ impl Conclusion {
     /// Chi-square of the turns about their means, and their drift.
     #[inline(never)]
     fn judge_turns(&mut self, setting: &Setting) -> Result<(), Refusal> {
-        let horizontal = setting.common.latitude.horizontal_rate();
-        let (mut drift, mut left_out, mut turns) = (0.0f64, 0, 0);
-        for pair in &self.pairs {
-            let gain = if setting.sensor.is_flat { 1.0 } else { pair.gain(horizontal) };
-            for average in [&pair.clockwise, &pair.counter] {
-                let variance =
-                    self.of_one_turn(setting, average.speed) * gain * gain / average.joined();
-                self.chi_square += average.scatter / variance;
-                self.degrees += average.degrees;
-                drift = drift.max(average.trend / variance);
-                left_out += average.left_out;
-                turns += average.turns + average.left_out;
-            }
-        }
+        let drift = self.scatter(setting);
+        let averages = || self.pairs.iter().flat_map(Pair::senses);
+        let left_out: u32 = averages().map(|average| average.left_out).sum();
+        let turns: u32 = left_out + averages().map(|average| average.turns).sum::<u32>();
         if 4 * left_out > turns {
             let [disturbed, positions] = [left_out, turns].map(|count| count as usize);
             return Err(Refusal::Disturbed { disturbed, positions });
         }
-        let ratio = self.chi_square / f64::from(self.degrees.max(1));
+        let degrees = f64::from(self.degrees.max(1));
         let is_known = setting.common.white_known;
-        if is_known
-            && chi_square_tail(self.chi_square, f64::from(self.degrees)) < SCATTER_PROBABILITY
-        {
-            return Err(Refusal::ResidualsNotWhite { ratio });
+        if is_known && chi_square_tail(self.chi_square, degrees) < SCATTER_PROBABILITY {
+            return Err(Refusal::ResidualsNotWhite { ratio: self.chi_square / degrees });
         }
         // A standard deviation from the same few turns may be far too small.
-        let few = if is_known { 0.0 } else { FEW / f64::from(self.degrees.max(1)) };
-        if libm::sqrt(drift) > DIFFERENT * (1.0 + few) {
-            return Err(Refusal::DirectionDrifts { sigmas: libm::sqrt(drift) });
+        let few = if is_known { 0.0 } else { FEW / degrees };
+        if drift > DIFFERENT * (1.0 + few) {
+            return Err(Refusal::DirectionDrifts { sigmas: drift });
         }
         Ok(())
+    }
+
+    /// Sums up chi-square; the greatest drift of a stretch's phasor, in σ.
+    fn scatter(&mut self, setting: &Setting) -> f64 {
+        let horizontal = setting.common.latitude.horizontal_rate();
+        let (mut chi_square, mut degrees, mut drift) = (0.0, 0, 0.0f64);
+        for pair in &self.pairs {
+            let gain = if setting.sensor.is_flat { 1.0 } else { pair.gain(horizontal) };
+            for average in pair.senses() {
+                let one = self.of_one_turn(setting, average.speed) * gain * gain;
+                let variance = one / average.joined();
+                chi_square += average.scatter / variance;
+                degrees += average.degrees;
+                drift = drift.max(average.trend / variance);
+            }
+        }
+        (self.chi_square, self.degrees) = (chi_square, degrees);
+        libm::sqrt(drift)
     }
 
     #[inline(never)]
@@ -251,7 +257,7 @@ impl Conclusion {
         let (density, degrees) = force_density(&self.pairs);
         // A standard deviation from few turns may be far too small.
         let different = DIFFERENT * (1.0 + FEW / f64::from(degrees.max(1)));
-        for average in self.pairs.iter().flat_map(|pair| [&pair.clockwise, &pair.counter]) {
+        for average in self.pairs.iter().flat_map(Pair::senses) {
             if average.mean_force.abs() > allowed {
                 let ratio = average.mean_force / gravity;
                 return Err(Refusal::AccelerometerImplausible { ratio });

@@ -10,14 +10,12 @@
 
 use heapless::Vec;
 
-use super::coupling::Coupling;
+use super::part::{Broken, EIGHTH, Forces, Part, Uneven, is_jump};
 use super::solution::SPEEDS;
 use super::turn::{Sense, Stretch, Turn};
-use crate::align::regression::Regression;
 use crate::device::Trouble;
-use crate::noise::model::GyroNoise;
 use crate::signal::Sample;
-use crate::signal::phasor::{Block, Blocks, COLUMNS, COSINE, ONE, Products, Reference, SINE, Sums};
+use crate::signal::phasor::{Block, Blocks, Reference, Sums};
 use crate::units::{Angle, SpecificForce, TURN as WHOLE_TURN};
 
 /// Most stretches: two speeds, both senses.
@@ -25,17 +23,8 @@ pub const STRETCHES: usize = 4;
 
 /// Eighths in a turn.
 const EIGHTHS: u32 = 8;
-/// Steps of an [`Angle`] in an eighth of a turn.
-const EIGHTH: i64 = 1 << 29;
 /// Blocks after which an eighth is given up: the platform stands.
 const LONGEST_EIGHTH: u32 = 4096;
-/// Range of the platform's rate within an eighth, over its mean, that still counts as even.
-const EVEN: f32 = 0.04;
-/// What the mean rates of a turn's eighths may differ by.
-const ALIKE: f32 = 0.02;
-/// Change of the platform's rate from block to block, over its speed, that nobody commands: the platform
-/// took another speed there, or something touched it.
-const JUMP: f32 = 0.02;
 /// Part of an eighth with which the last one of a turn is whole enough: what is missing costs nothing,
 /// since the fit knows of it.
 const NEARLY: f64 = 0.8;
@@ -61,147 +50,6 @@ pub enum Mode {
     Even,
     /// Whatever comes: an uneven stretch first, then even turns.
     Recorded,
-}
-
-/// The sums of an uneven stretch.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Uneven {
-    /// Products of all signals.
-    pub sums: Sums,
-    /// Its length, s.
-    pub seconds: f64,
-    /// Angle turned through, rad, clockwise positive.
-    pub turned: f64,
-}
-
-impl Uneven {
-    /// The coupling that it shows, if it was uneven enough.
-    #[must_use]
-    pub fn coupling(&self, noise: &GyroNoise) -> Option<Coupling> {
-        Coupling::of(&self.sums, self.seconds, self.turned, noise)
-    }
-}
-
-/// A break of even turns: what the platform has turned in it, steps of an [`Angle`], and for how long, s.
-#[derive(Clone, Copy, Debug, Default)]
-struct Broken {
-    turned: i64,
-    seconds: f32,
-}
-
-impl Broken {
-    /// What it turned beyond a speed in rad/s, rad.
-    fn slip(&self, speed: f32) -> f64 {
-        self.turned as f64 * Angle::STEP - f64::from(speed) * f64::from(self.seconds)
-    }
-}
-
-/// The part of a turn that is being gathered.
-#[derive(Clone, Copy, Debug, Default)]
-struct Part {
-    products: Products,
-    forces: Forces,
-    turned: i64,
-    /// How far beyond its eighth the one before went, steps of an [`Angle`].
-    ahead: i64,
-    seconds: f32,
-    least: f32,
-    greatest: f32,
-    last: f32,
-    rows: u32,
-}
-
-impl Part {
-    fn push(&mut self, block: &Block, quickening: f32, reference: &Reference) {
-        let turning = block.turning;
-        if self.rows == 0 {
-            (self.least, self.greatest) = (turning, turning);
-        }
-        self.least = self.least.min(turning);
-        self.greatest = self.greatest.max(turning);
-        self.last = turning;
-        self.products.push(block, quickening, reference);
-        self.turned += block.turned;
-        self.seconds += block.seconds;
-        self.rows += 1;
-    }
-
-    /// Whether a rate of the platform does not go on from the last block.
-    fn jumps_to(&self, turning: f32) -> bool {
-        self.rows > 0 && is_jump(self.last, turning)
-    }
-
-    /// How far it has come, steps of an [`Angle`].
-    fn reached(&self) -> i64 {
-        self.turned.abs() + self.ahead
-    }
-
-    /// Mean rate of the platform, rad/s.
-    fn speed(&self) -> f32 {
-        self.turned as f32 * (Angle::STEP as f32) / self.seconds
-    }
-
-    fn is_even(&self) -> bool {
-        let range = self.greatest - self.least;
-        !self.products.is_astray && range <= EVEN * self.speed().abs()
-    }
-
-    /// Whether the platform turned as fast as `speed`, rad/s.
-    fn is_alike(&self, speed: f32) -> bool {
-        (self.speed() - speed).abs() <= ALIKE * speed.abs()
-    }
-}
-
-/// Whether a rate of the platform does not go on from the one before.
-fn is_jump(before: f32, after: f32) -> bool {
-    (after - before).abs() > JUMP * after.abs().max(before.abs())
-}
-
-/// Products of cosine and sine with the force along the sensitive axis.
-#[derive(Clone, Copy, Debug, Default)]
-struct Forces {
-    /// 1·c, 1·s, c·c, c·s, s·s in 2⁻¹⁶; then the force in µm/s² with 1, c, s.
-    sums: [i64; 8],
-    count: u32,
-}
-
-/// What a step of cosine or sine in [`Forces`] is worth.
-const FORCE_STEP: f64 = 1.0 / 65_536.0;
-
-impl Forces {
-    #[inline]
-    fn push(&mut self, phasor: [i32; 2], force: i32) {
-        let [c, s] = phasor.map(|value| i64::from(value >> 14));
-        let force = i64::from(force);
-        let terms = [c, s, c * c, c * s, s * s, force, force * c, force * s];
-        for (sum, term) in self.sums.iter_mut().zip(terms) {
-            *sum += term;
-        }
-        self.count += 1;
-    }
-
-    fn add(&mut self, other: &Self) {
-        for (sum, term) in self.sums.iter_mut().zip(other.sums) {
-            *sum += term;
-        }
-        self.count += other.count;
-    }
-
-    fn regression(&self) -> Regression<COLUMNS> {
-        let [c, s, cc, cs, ss, f, fc, fs] = self.sums.map(|sum| sum as f64);
-        let mut products = [[0.0; COLUMNS]; COLUMNS];
-        let mut with_left = [0.0; COLUMNS];
-        products[ONE][ONE] = f64::from(self.count);
-        products[COSINE][ONE] = c * FORCE_STEP;
-        products[SINE][ONE] = s * FORCE_STEP;
-        products[COSINE][COSINE] = cc * FORCE_STEP * FORCE_STEP;
-        products[SINE][COSINE] = cs * FORCE_STEP * FORCE_STEP;
-        products[SINE][SINE] = ss * FORCE_STEP * FORCE_STEP;
-        with_left[ONE] = f * 1e-6;
-        with_left[COSINE] = fc * FORCE_STEP * 1e-6;
-        with_left[SINE] = fs * FORCE_STEP * 1e-6;
-        Regression::of_products(products, with_left, self.count as usize)
-    }
 }
 
 /// The follower at work.

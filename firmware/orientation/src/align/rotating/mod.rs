@@ -16,6 +16,7 @@ pub mod coupling;
 pub mod follower;
 pub mod level;
 pub mod molecular;
+pub mod part;
 pub mod solution;
 pub mod turn;
 

@@ -41,7 +41,7 @@ impl Halves {
         let off = |angle: f64| (clockwise * Complex::unit(-angle)).angle();
         let other = half + core::f64::consts::PI;
         let angle = if off(half).abs() <= off(other).abs() { half } else { other };
-        let [more, less] = phasors.map(|phasor| phasor.re * phasor.re + phasor.im * phasor.im);
+        let [more, less] = phasors.map(Complex::power);
         Self {
             speed,
             angle,
@@ -148,20 +148,17 @@ fn extrapolated(halves: &[Halves], slowest: f64, [x, y]: [f64; 2], spread: f64) 
         targets[1] += falls * angle / half.variance;
     }
     let determinant = one * two - both * both;
-    let weigh = |angle: f64, product: f64| (two * angle - both * product) / determinant;
-    let noise: f64 = halves
-        .iter()
-        .map(|half| {
-            let falls = (slowest / half.speed) * (slowest / half.speed);
-            let weight = weigh(1.0, falls) / half.variance;
-            weight * weight * half.variance
-        })
-        .sum();
-    let variance = two / determinant;
+    // What the half angles themselves weigh in the angle, squared and by their variances.
+    let noise = |half: &Halves| {
+        let scale = slowest / half.speed;
+        let weight = (two - both * scale * scale) / determinant;
+        weight * weight / half.variance
+    };
+    let noise: f64 = halves.iter().map(noise).sum();
     Freed {
-        angle: first + weigh(targets[0], targets[1]),
+        angle: first + (two * targets[0] - both * targets[1]) / determinant,
         noise,
-        left: (variance - noise).max(0.0),
+        left: (two / determinant - noise).max(0.0),
         one_speed: (one * targets[1] - both * targets[0]) / determinant,
         ..Freed::default()
     }

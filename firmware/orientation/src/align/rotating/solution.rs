@@ -37,7 +37,9 @@ impl Pair {
         self.clockwise.seconds + self.counter.seconds
     }
 
-    fn senses(&self) -> [&Average; 2] {
+    /// Both.
+    #[must_use]
+    pub fn senses(&self) -> [&Average; 2] {
         [&self.clockwise, &self.counter]
     }
 

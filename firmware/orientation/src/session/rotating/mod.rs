@@ -7,15 +7,15 @@
 //! It commands the platform's rate, but judges by the encoder alone what the platform did: a recording
 //! replays the same session.
 
-use heapless::Vec;
+mod procedure;
+
+pub use procedure::{Procedure, check};
 
 use super::procedure::ProcedureError;
-use crate::align::etalon::Table;
 use crate::align::rotating::Setting;
 use crate::align::rotating::conclusion::Conclusion;
 use crate::align::rotating::coupling::Coupling;
 use crate::align::rotating::follower::{Follower, Mode};
-use crate::align::rotating::solution::SPEEDS;
 use crate::align::rotating::turn::{Sense, Stretch};
 use crate::error::Refusal;
 use crate::signal::Sample;
@@ -62,84 +62,12 @@ pub enum Phase {
     Done,
 }
 
-/// How the session goes about it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Procedure {
-    /// Speeds, rad/s, > 0, one or two.
-    pub speeds: Vec<f64, SPEEDS>,
-    /// Even turns in either sense at each speed, two at least.
-    pub turns: u32,
-    /// Turns that are uneven on purpose before them; zero where the stored couplings are to do.
-    pub uneven_turns: u32,
-    /// Amplitude of their modulation over the speed.
-    pub modulation: f64,
-    /// Sample period, s.
-    pub sample_seconds: f64,
-    /// Length of the blocks to which samples are averaged, s.
-    pub block_seconds: f64,
-    /// How long the platform is levelled at rest, s.
-    pub level_seconds: f64,
-    /// How long the platform needs to take on any speed, s.
-    pub ramp_seconds: f64,
-    /// Date, s since 1970, with which a coupling is stored; zero where nobody knows.
-    pub date: u64,
-}
-
-/// Frequencies of the modulation over that of the turn: far enough from it to be told apart in twelve
-/// turns, and on both sides, so that what a sensor does between them is what it does at the turn.
-const TONES: [f64; 2] = [0.83, 1.17];
 /// Between two commands of an uneven turn, µs.
 const COMMAND_PERIOD: u64 = 20_000;
 /// How often more time than planned a stretch may take, and how much more, s.
 const PATIENCE: (f64, f64) = (2.0, 30.0);
 /// Sample periods that make a gap.
 const GAP: f64 = 3.5;
-
-impl Procedure {
-    /// Speeds with a default number of turns: three minutes in either sense, twelve uneven turns modulated
-    /// by a quarter.
-    #[must_use]
-    pub fn new(speeds: &[f64], sample_seconds: f64) -> Self {
-        let slowest = speeds.iter().copied().fold(f64::INFINITY, f64::min);
-        let turns = libm::ceil(DEFAULT_SECONDS * slowest / TURN).clamp(2.0, 1e6) as u32;
-        Self {
-            speeds: speeds.iter().copied().take(SPEEDS).collect(),
-            turns,
-            uneven_turns: 12,
-            modulation: 0.25,
-            sample_seconds,
-            block_seconds: BLOCK_SECONDS.max(BLOCK_ANGLE / slowest),
-            level_seconds: 2.0,
-            ramp_seconds: 3.0,
-            date: 0,
-        }
-    }
-
-    /// Whatever a recording with this sample period shows.
-    #[must_use]
-    pub fn recorded(sample_seconds: f64) -> Self {
-        Self { block_seconds: BLOCK_SECONDS, ..Self::new(&[], sample_seconds) }
-    }
-
-    /// Sample periods in a block.
-    fn periods(&self) -> u32 {
-        libm::round(self.block_seconds / self.sample_seconds).clamp(1.0, 1e6) as u32
-    }
-
-    /// Rate of the platform `time` s into an uneven turn, rad/s.
-    fn uneven_rate(&self, speed: f64, time: f64) -> f64 {
-        let tones: f64 = TONES.iter().map(|tone| libm::sin(tone * speed * time)).sum();
-        speed * (1.0 + self.modulation / TONES.len() as f64 * tones)
-    }
-}
-
-/// Default time in either sense, s.
-const DEFAULT_SECONDS: f64 = 180.0;
-/// Length of a block: what the platform turns meanwhile costs 1e-4 of the signal.
-const BLOCK_SECONDS: f64 = 0.02;
-/// The least that the platform turns in a block, rad: a tenth of a degree, so that the encoder's steps
-/// are small.
-const BLOCK_ANGLE: f64 = 0.1 / 360.0 * TURN;
 
 /// One alignment on a turning platform.
 #[derive(Clone, Debug)]
@@ -235,7 +163,8 @@ impl Session {
     #[must_use]
     pub fn turns(&self) -> (u32, u32) {
         let done = self.follower.stretches().iter().map(Stretch::count).sum();
-        (done, 2 * self.procedure.turns * self.procedure.speeds.len() as u32)
+        let speeds = 0..self.procedure.speeds.len();
+        (done, speeds.map(|index| 2 * self.procedure.turns_at(index)).sum())
     }
 
     /// Mean force at rest, m/s², where there was one.
@@ -356,10 +285,11 @@ impl Session {
     /// Turns until the turns are full; gives up where that takes far too long.
     fn even(&mut self, index: usize, sense: Sense, has_turned: bool, elapsed: u64) -> Command {
         self.turns += u32::from(has_turned);
-        if self.turns >= self.procedure.turns {
+        let turns = self.procedure.turns_at(index);
+        if self.turns >= turns {
             return self.go_on(index, sense);
         }
-        let planned = f64::from(self.procedure.turns) * TURN / self.speed(index);
+        let planned = f64::from(turns) * TURN / self.speed(index);
         if is_over(elapsed, PATIENCE.0 * planned + PATIENCE.1) {
             let wanted = sense.signed(self.speed(index)) * DEGREES;
             return self.conclude(Some(Refusal::PlatformStopped { wanted }));
@@ -411,21 +341,4 @@ impl Session {
 /// Whether so many µs are more than so many s.
 fn is_over(elapsed: u64, seconds: f64) -> bool {
     elapsed as f64 * 1e-6 >= seconds
-}
-
-/// What a procedure must be.
-///
-/// # Errors
-/// As [`Session::new`].
-pub fn check(procedure: &Procedure) -> Result<(), ProcedureError> {
-    Table::built_in().verify().map_err(|_| ProcedureError::TableCorrupt)?;
-    let are_speeds = procedure.speeds.iter().all(|speed| *speed > 0.0 && speed.is_finite());
-    let is_uneven = procedure.uneven_turns == 0 || procedure.modulation > 0.0;
-    let has_turns = procedure.turns >= 2;
-    let has_period = procedure.sample_seconds > 0.0 && procedure.sample_seconds.is_finite();
-    if are_speeds && is_uneven && has_turns && has_period {
-        Ok(())
-    } else {
-        Err(ProcedureError::NoSpeed)
-    }
 }

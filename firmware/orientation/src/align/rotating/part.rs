@@ -1,0 +1,157 @@
+//! What a follower gathers: the eighth of a turn in progress, its forces, an uneven stretch, a break.
+
+use super::coupling::Coupling;
+use crate::align::regression::Regression;
+use crate::noise::model::GyroNoise;
+use crate::signal::phasor::{Block, COLUMNS, COSINE, ONE, Products, Reference, SINE, Sums};
+use crate::units::Angle;
+
+/// Steps of an [`Angle`] in an eighth of a turn.
+pub(super) const EIGHTH: i64 = 1 << 29;
+/// Range of the platform's rate within an eighth, over its mean, that still counts as even.
+const EVEN: f32 = 0.04;
+/// What the mean rates of a turn's eighths may differ by.
+const ALIKE: f32 = 0.02;
+/// Change of the platform's rate from block to block, over its speed, that nobody commands: the platform
+/// took another speed there, or something touched it.
+const JUMP: f32 = 0.02;
+/// The sums of an uneven stretch.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Uneven {
+    /// Products of all signals.
+    pub sums: Sums,
+    /// Its length, s.
+    pub seconds: f64,
+    /// Angle turned through, rad, clockwise positive.
+    pub turned: f64,
+}
+
+impl Uneven {
+    /// The coupling that it shows, if it was uneven enough.
+    #[must_use]
+    pub fn coupling(&self, noise: &GyroNoise) -> Option<Coupling> {
+        Coupling::of(&self.sums, self.seconds, self.turned, noise)
+    }
+}
+
+/// A break of even turns: what the platform has turned in it, steps of an [`Angle`], and for how long, s.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Broken {
+    pub(super) turned: i64,
+    pub(super) seconds: f32,
+}
+
+impl Broken {
+    /// What it turned beyond a speed in rad/s, rad.
+    pub(super) fn slip(&self, speed: f32) -> f64 {
+        self.turned as f64 * Angle::STEP - f64::from(speed) * f64::from(self.seconds)
+    }
+}
+
+/// The part of a turn that is being gathered.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Part {
+    pub(super) products: Products,
+    pub(super) forces: Forces,
+    pub(super) turned: i64,
+    /// How far beyond its eighth the one before went, steps of an [`Angle`].
+    pub(super) ahead: i64,
+    pub(super) seconds: f32,
+    pub(super) least: f32,
+    pub(super) greatest: f32,
+    pub(super) last: f32,
+    pub(super) rows: u32,
+}
+
+impl Part {
+    pub(super) fn push(&mut self, block: &Block, quickening: f32, reference: &Reference) {
+        let turning = block.turning;
+        if self.rows == 0 {
+            (self.least, self.greatest) = (turning, turning);
+        }
+        self.least = self.least.min(turning);
+        self.greatest = self.greatest.max(turning);
+        self.last = turning;
+        self.products.push(block, quickening, reference);
+        self.turned += block.turned;
+        self.seconds += block.seconds;
+        self.rows += 1;
+    }
+
+    /// Whether a rate of the platform does not go on from the last block.
+    pub(super) fn jumps_to(&self, turning: f32) -> bool {
+        self.rows > 0 && is_jump(self.last, turning)
+    }
+
+    /// How far it has come, steps of an [`Angle`].
+    pub(super) fn reached(&self) -> i64 {
+        self.turned.abs() + self.ahead
+    }
+
+    /// Mean rate of the platform, rad/s.
+    pub(super) fn speed(&self) -> f32 {
+        self.turned as f32 * (Angle::STEP as f32) / self.seconds
+    }
+
+    pub(super) fn is_even(&self) -> bool {
+        let range = self.greatest - self.least;
+        !self.products.is_astray && range <= EVEN * self.speed().abs()
+    }
+
+    /// Whether the platform turned as fast as `speed`, rad/s.
+    pub(super) fn is_alike(&self, speed: f32) -> bool {
+        (self.speed() - speed).abs() <= ALIKE * speed.abs()
+    }
+}
+
+/// Whether a rate of the platform does not go on from the one before.
+pub(super) fn is_jump(before: f32, after: f32) -> bool {
+    (after - before).abs() > JUMP * after.abs().max(before.abs())
+}
+
+/// Products of cosine and sine with the force along the sensitive axis.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Forces {
+    /// 1·c, 1·s, c·c, c·s, s·s in 2⁻¹⁶; then the force in µm/s² with 1, c, s.
+    sums: [i64; 8],
+    count: u32,
+}
+
+/// What a step of cosine or sine in [`Forces`] is worth.
+const FORCE_STEP: f64 = 1.0 / 65_536.0;
+
+impl Forces {
+    #[inline]
+    pub(super) fn push(&mut self, phasor: [i32; 2], force: i32) {
+        let [c, s] = phasor.map(|value| i64::from(value >> 14));
+        let force = i64::from(force);
+        let terms = [c, s, c * c, c * s, s * s, force, force * c, force * s];
+        for (sum, term) in self.sums.iter_mut().zip(terms) {
+            *sum += term;
+        }
+        self.count += 1;
+    }
+
+    pub(super) fn add(&mut self, other: &Self) {
+        for (sum, term) in self.sums.iter_mut().zip(other.sums) {
+            *sum += term;
+        }
+        self.count += other.count;
+    }
+
+    pub(super) fn regression(&self) -> Regression<COLUMNS> {
+        let [c, s, cc, cs, ss, f, fc, fs] = self.sums.map(|sum| sum as f64);
+        let mut products = [[0.0; COLUMNS]; COLUMNS];
+        let mut with_left = [0.0; COLUMNS];
+        products[ONE][ONE] = f64::from(self.count);
+        products[COSINE][ONE] = c * FORCE_STEP;
+        products[SINE][ONE] = s * FORCE_STEP;
+        products[COSINE][COSINE] = cc * FORCE_STEP * FORCE_STEP;
+        products[SINE][COSINE] = cs * FORCE_STEP * FORCE_STEP;
+        products[SINE][SINE] = ss * FORCE_STEP * FORCE_STEP;
+        with_left[ONE] = f * 1e-6;
+        with_left[COSINE] = fc * FORCE_STEP * 1e-6;
+        with_left[SINE] = fs * FORCE_STEP * 1e-6;
+        Regression::of_products(products, with_left, self.count as usize)
+    }
+}
