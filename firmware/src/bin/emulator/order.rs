@@ -21,6 +21,7 @@ use crate::{Inputs, Outputs, Rig};
 const LONGEST: usize = 4096;
 
 /// What to run.
+#[expect(clippy::large_enum_variant, reason = "there is one")]
 pub enum Order {
     /// An alignment in positions.
     Stepwise(Scenario),
@@ -68,7 +69,7 @@ impl Order {
         match self {
             Self::Stepwise(scenario) => scenario.prepared().map(Sitting::stepwise),
             Self::Turning(scenario) => {
-                scenario.checked().map(|(setting, procedure)| Sitting::turning(setting, procedure))
+                scenario.checked().map(|(setting, procedure)| Sitting::turning(&setting, procedure))
             }
         }
     }

@@ -6,6 +6,7 @@ use firmware::ports::{Actuator, Observer, Ports, Recorder};
 use firmware::run::{run, run_rotating};
 use firmware::shared::Shared;
 use orientation::align::rotating::Setting;
+use orientation::align::rotating::turn::Stretch;
 use orientation::session::{Prepared, Session, rotating};
 use static_cell::StaticCell;
 
@@ -32,8 +33,8 @@ impl Sitting {
 
     /// A session on a turning platform, whose procedure was checked.
     #[inline(never)]
-    pub fn turning(setting: Setting, procedure: rotating::Procedure) -> &'static mut Self {
-        PLACE.init_with(|| Self::Turning(rotating::Session::of(setting, procedure)))
+    pub fn turning(setting: &Setting, procedure: rotating::Procedure) -> &'static mut Self {
+        PLACE.init_with(|| Self::Turning(rotating::Session::of(*setting, procedure)))
     }
 
     /// Runs the instrument to the session's conclusion.
@@ -67,11 +68,9 @@ impl Sitting {
             }
             Self::Turning(session) => {
                 let stretches = session.follower().stretches().iter();
-                stretches.flat_map(|stretch| stretch.turns()).zip(1..).for_each(
-                    |(turn, number)| {
-                        results::turn(number, turn);
-                    },
-                );
+                stretches.flat_map(Stretch::turns).zip(1..).for_each(|(turn, number)| {
+                    results::turn(number, turn);
+                });
                 results::outcome(seed, &session.conclusion()?.verdict);
             }
         }
