@@ -125,10 +125,10 @@ impl<'a, E: Encoder, O: Observer> Shaft<'a, E, O> {
         }
     }
 
-    /// Takes an angle, unless it is further from the one before than the axis can turn: such a one is
+    /// Takes an angle that was read now, unless it is further from the one before than the axis can turn: such a one is
     /// lost, but the next is believed.
-    fn is_in_line(&mut self, angle: Angle) -> bool {
-        let ((last, read), now) = (self.latest.get(), Instant::now());
+    fn is_in_line(&mut self, angle: Angle, now: Instant) -> bool {
+        let (last, read) = self.latest.get();
         let is_far = distance(angle, last) > greatest_step(now - read);
         self.has_jumped = is_far && !self.has_jumped && read > Instant::MIN;
         if self.has_jumped {
@@ -153,11 +153,12 @@ impl<E: Encoder, O: Observer> Pointing for Shaft<'_, E, O> {
         if self.due.is_due() || self.angle.is_none() {
             let begun = Instant::now();
             let outcome = self.encoder.device.read().await;
-            self.angle = match self.encoder.checked(begun, outcome) {
+            let now = Instant::now();
+            self.angle = match self.encoder.checked_at(now, begun, outcome) {
                 Ok(shown) => Some(self.calibration.correct(shown)),
                 Err(symptom) => self.encoder.mend(symptom, self.shared).await.map(|()| None)?,
             };
-            self.angle = self.angle.filter(|angle| self.is_in_line(*angle));
+            self.angle = self.angle.filter(|angle| self.is_in_line(*angle, now));
         }
         Ok(self.angle)
     }

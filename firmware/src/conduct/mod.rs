@@ -9,7 +9,7 @@ pub use stepwise::Stepwise;
 use core::future::pending;
 
 use embassy_futures::select::{Either, select};
-use embassy_time::{Duration, Instant};
+use embassy_time::{Duration, Instant, Timer};
 use orientation::earth::Latitude;
 use orientation::error::Refusal;
 use orientation::signal::Sample;
@@ -23,6 +23,10 @@ use crate::shared::Shared;
 
 /// Longest time until the stage is homed: six searches over the whole travel, with their rests.
 const HOMING: Duration = Duration::from_secs(900);
+
+/// Rest once all samples are taken: those of a quick gyro are then taken some at a time, because waking for
+/// each costs more than the sample. A quarter of what the queue holds at 2 kHz.
+const REST: Duration = Duration::from_millis(2);
 
 /// What a session wants done.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,6 +108,9 @@ impl<'a, R: Recorder, O: Observer> Conductor<'a, R, O> {
                 Step::Wait => {}
                 Step::Move(to) => self.shared.wanted.signal(to),
                 Step::Finish => return Ok(()),
+            }
+            if self.shared.samples.is_empty() {
+                Timer::after(REST).await;
             }
         }
     }

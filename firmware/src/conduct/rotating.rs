@@ -1,5 +1,6 @@
 //! The session on a platform that turns all the time, as it is conducted.
 
+use orientation::align::rotating::turn::Stretch;
 use orientation::earth::Latitude;
 use orientation::error::Refusal;
 use orientation::session::rotating::{Command, Event as SessionEvent, Phase, Session};
@@ -69,9 +70,11 @@ impl<O: Observer> Conducted<O> for Rotating<'_> {
             tell_phase(session, shared);
             told.phase = session.phase();
         }
-        let (done, of) = session.turns();
+        // With every sample, so it does not ask how many are planned.
+        let done = session.follower().stretches().iter().map(Stretch::count).sum();
         if done > told.turns {
             told.turns = done;
+            let (_, of) = session.turns();
             shared.tell(Event::Turned(done, of));
             tell_status(session, shared);
             shared.observer().turned(session);

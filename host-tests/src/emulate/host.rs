@@ -3,6 +3,7 @@
 use firmware::ports::NoRecorder;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;
+use orientation::align::rotating::turn::Stretch;
 
 use super::outcome::Outcome;
 use crate::instrument::{self, RunError};
@@ -12,7 +13,7 @@ use crate::instrument::{self, RunError};
 /// # Errors
 /// Where it comes to no end.
 pub fn outcome(scenario: &Scenario) -> Result<Outcome, String> {
-    let run = instrument::align(scenario, None, NoRecorder, &()).map_err(failed)?;
+    let run = instrument::align(scenario, None, NoRecorder, &()).map_err(|error| failed(&error))?;
     let conclusion = run.conclusion().ok_or(NOTHING)?;
     let dwells = run.replay.session.dwells().iter().map(Into::into).collect();
     Ok(Outcome { dwells, ..Outcome::of(scenario.seed, &conclusion.verdict) })
@@ -23,15 +24,17 @@ pub fn outcome(scenario: &Scenario) -> Result<Outcome, String> {
 /// # Errors
 /// Where it comes to no end.
 pub fn turning(scenario: &TurntableScenario) -> Result<Outcome, String> {
-    let run = instrument::align_turning(scenario, None, NoRecorder, &()).map_err(failed)?.run;
+    let run = instrument::align_turning(scenario, None, NoRecorder, &())
+        .map_err(|error| failed(&error))?
+        .run;
     let conclusion = run.replay.conclusion().ok_or(NOTHING)?;
     let stretches = run.replay.follower().stretches().iter();
-    let turns = stretches.flat_map(|stretch| stretch.turns()).map(Into::into).collect();
+    let turns = stretches.flat_map(Stretch::turns).map(Into::into).collect();
     Ok(Outcome { turns, ..Outcome::of(scenario.base.seed, &conclusion.verdict) })
 }
 
 const NOTHING: &str = "the host's run found nothing";
 
-fn failed(error: RunError) -> String {
+fn failed(error: &RunError) -> String {
     format!("the host's run: {error}")
 }
