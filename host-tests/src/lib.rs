@@ -17,6 +17,8 @@ pub mod recording;
 pub mod reference;
 pub mod replay;
 pub mod report;
+pub mod rotating;
 pub mod setting;
 pub mod simulate;
+pub mod spectrum;
 pub mod virtual_time;

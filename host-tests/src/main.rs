@@ -37,7 +37,7 @@ struct CommandLine {
 enum Command {
     /// Runs the whole board application on simulated chips.
     Run(RunOptions),
-    /// Runs the alignment on a recording of kind `stage` or `dwells`.
+    /// Runs the alignment on a recording of kind `stage`, `dwells` or `rotating`.
     Replay(ReplayOptions),
     /// Plans positions and dwells for a gyro's noise.
     Plan(PlanOptions),
@@ -82,7 +82,8 @@ fn check(command: &Command) -> Result<(), &'static str> {
     match command {
         Command::Run(options) => options.check(),
         Command::Campaign(options) => options.check(),
-        Command::Replay(_) | Command::Allan(_) | Command::Plan(_) | Command::Emulate(_) => Ok(()),
+        Command::Replay(options) => options.check(),
+        Command::Allan(_) | Command::Plan(_) | Command::Emulate(_) => Ok(()),
     }
 }
 

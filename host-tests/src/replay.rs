@@ -115,6 +115,8 @@ pub enum ReplayError {
     NoLatitude,
     /// A kind without positions.
     Kind(Kind),
+    /// A kind whose stage does not turn all the time.
+    Stops(Kind),
     /// The stage never stood still long enough.
     NoDwell,
     /// More positions than a session holds.
@@ -130,6 +132,12 @@ impl fmt::Display for ReplayError {
                 f.write_str("key latitude_deg is missing: add it or give --latitude")
             }
             Self::Kind(kind) => write!(f, "kind `{kind}` has no positions to align from"),
+            Self::Stops(kind) => {
+                write!(
+                    f,
+                    "kind `{kind}` has no platform that turns all the time: no method rotating"
+                )
+            }
             Self::NoDwell => f.write_str(
                 "column stage_rad: the stage stands still nowhere long enough for a dwell",
             ),
@@ -157,27 +165,42 @@ pub fn replay(
     options: &Options,
     progress: impl FnMut(&Session),
 ) -> Result<Replay, ReplayError> {
-    let unfit = || ReplayError::Kind(body.kind());
-    // What cannot be aligned from needs no latitude either.
-    let latitude = latitude(header, options).map_err(|error| match body {
-        Body::Static(_) => unfit(),
-        Body::Stage(_) | Body::Dwells(_) => error,
-    })?;
+    let stops = Stops::of(body)?;
+    let latitude = latitude(header, options)?;
     let Described { mut setting, mut assumed } = describe(header, body, latitude);
     setting.half = options.half;
     assumed.extend(options.half.map(|_| HALF.to_owned()));
     if let Some(sigma) = options.required_sigma {
         setting.required_sigma = sigma;
     }
-    let session = match body {
-        Body::Stage(rows) => stage(header, rows, setting, options.criterion, progress),
-        Body::Dwells(rows) => dwells(rows, setting, options.criterion, progress),
-        Body::Static(_) => return Err(unfit()),
+    let session = match stops {
+        Stops::Samples(rows) => stage(header, rows, setting, options.criterion, progress),
+        Stops::Averages(rows) => dwells(rows, setting, options.criterion, progress),
     }?;
     Ok(Replay { method: options.method, session, setting, assumed })
 }
 
-fn latitude(header: &Header, options: &Options) -> Result<Latitude, ReplayError> {
+/// The rows of a recording whose stage stops.
+enum Stops<'a> {
+    Samples(&'a [StageRow]),
+    Averages(&'a [DwellRow]),
+}
+
+impl<'a> Stops<'a> {
+    fn of(body: &'a Body) -> Result<Self, ReplayError> {
+        match body {
+            Body::Stage(rows) => Ok(Self::Samples(rows)),
+            Body::Dwells(rows) => Ok(Self::Averages(rows)),
+            other => Err(ReplayError::Kind(other.kind())),
+        }
+    }
+}
+
+/// The user's latitude, or the header's.
+///
+/// # Errors
+/// Neither gives one.
+pub(crate) fn latitude(header: &Header, options: &Options) -> Result<Latitude, ReplayError> {
     options
         .latitude
         .or_else(|| header.latitude_deg.and_then(Latitude::from_degrees))

@@ -10,6 +10,8 @@ mod hostile;
 mod malformed;
 #[path = "recording/malformed_rows.rs"]
 mod malformed_rows;
+#[path = "recording/rotating.rs"]
+mod rotating;
 #[path = "recording/stored.rs"]
 mod stored;
 
@@ -37,6 +39,17 @@ const DWELLS: &str = "\
 stage_rad,rate_rad_s,sigma_rad_s,seconds,mid_s,fx_m_s2,fy_m_s2,fz_m_s2
 0.0,1e-5,1e-8,60,30,0.1,0.2,-9.8
 3.0,-1e-5,2e-8,50,100,0.3,0.4,-9.7
+";
+
+/// A `rotating` recording; its column names stand in line 4, its rows in lines 5 to 7.
+const ROTATING: &str = "\
+# kind: rotating
+# rate_hz: 50
+# sensor: met
+t_s,stage_rad,stage_rate_rad_s,g_rad_s,a_m_s2
+0.00,125.6,0.86,-1.25e-2,0.125
+0.02,125.7,0.87,-1.26e-2,0.126
+0.04,125.8,0.88,-1.27e-2,0.127
 ";
 
 /// Reads bytes under the name that the messages show.

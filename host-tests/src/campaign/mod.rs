@@ -3,5 +3,6 @@
 pub mod burov;
 pub mod faults;
 pub mod instrument;
+pub mod rotating;
 pub mod sokolov;
 pub mod statistics;

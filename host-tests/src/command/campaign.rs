@@ -3,9 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use bench::campaign::burov::{classes, devices, drift};
+use bench::campaign::rotating::{molecular, refusals, stages};
 use bench::campaign::sokolov::{self, Turn};
 use bench::campaign::{faults, instrument};
 use bench::output::progress::Progress;
+use bench::output::rotating::campaign as of_rotating;
 use bench::output::table;
 use bench::output::{burov as told, page};
 use clap::{Args, ValueEnum};
@@ -21,7 +23,8 @@ pub struct CampaignOptions {
     #[arg(value_enum, default_value = "sokolov")]
     name: Campaign,
     /// How many runs: of sokolov on each schedule (5000), of burov on each schedule (5000)
-    /// and for each class a tenth of it, of instrument (500), of each fault (1).
+    /// and for each class a tenth of it, of rotating in each table (500), of each of its refusals a
+    /// tenth of it, of instrument (500), of each fault (1).
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     runs: Option<u32>,
     /// Writes figures and tables as a page for a browser; of burov.
@@ -35,6 +38,8 @@ enum Campaign {
     Sokolov,
     /// Burov's optimisation, his devices and classes, and schedules under drift.
     Burov,
+    /// Papers/004: a platform that turns all the time, its errors and what is done about each.
+    Rotating,
     /// The whole instrument on simulated chips, over drawn sites and attitudes.
     Instrument,
     /// Every chip with every fault.
@@ -58,6 +63,7 @@ pub fn run(options: &CampaignOptions, as_json: bool) -> Result<Told, String> {
     match options.name {
         Campaign::Sokolov => sokolov(runs(5000), as_json),
         Campaign::Burov => burov(runs(5000), options.report.as_deref(), as_json),
+        Campaign::Rotating => rotating(runs(500), options.report.as_deref(), as_json),
         Campaign::Instrument => instrument(runs(500), as_json),
         Campaign::Faults => faults(runs(1), as_json),
     }
@@ -109,6 +115,35 @@ fn burov(runs: usize, report: Option<&Path>, as_json: bool) -> Result<Told, Stri
     });
     let told = Told { refusal, ..told };
     Ok(told.with_page(report, || page::burov::report(&devices, &compared, &rows)))
+}
+
+/// The stages of compensation, molecular-electronic sensors, and what must be refused; a result where no
+/// healthy run was refused and no north was wrong.
+fn rotating(runs: usize, report: Option<&Path>, as_json: bool) -> Result<Told, String> {
+    let of_case = (runs / 10).max(1);
+    let tables = stages::WALKS.len() + molecular::RATIOS.len();
+    let total = tables * runs + refusals::COUNT * of_case;
+    let progress = Progress::new(total as u64, "alignments");
+    let tick = || progress.step();
+    let stages = stages::rows(runs, tick);
+    let molecular = molecular::rows(runs, tick);
+    let refusals = refusals::rows(of_case, tick);
+    progress.finish();
+    let healthy = stages.iter().map(|row| &row.precision);
+    let mut healthy = healthy.chain(molecular.iter().map(|row| &row.precision));
+    let found = healthy.all(|row| row.refused == 0) && refusals.iter().all(|row| row.wrong == 0);
+    let status = if found { "ok" } else { "failed" };
+    let object = json!({
+        "campaign": "rotating", "status": status, "stages": stages, "molecular": molecular,
+        "refusals": refusals,
+    });
+    let told = Told::of(found, as_json, &object, |text| {
+        of_rotating::stages(text, &stages)?;
+        of_rotating::molecular(text, &molecular)?;
+        of_rotating::refusals(text, &refusals)
+    })?;
+    let refusal = (!found).then(|| "a healthy run was refused, or a north was wrong".to_owned());
+    Ok(Told { refusal, ..told })
 }
 
 /// The whole instrument over many seeds; a result where none was refused.

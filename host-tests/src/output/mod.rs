@@ -7,6 +7,7 @@ pub mod json;
 pub mod page;
 pub mod plan;
 pub mod progress;
+pub mod rotating;
 pub mod table;
 pub mod text;
 

@@ -3,6 +3,7 @@
 use std::fmt::{self, Write};
 
 use firmware::simulated::scenario::Scenario;
+use orientation::align::budget::Budget;
 use orientation::align::conclusion::Conclusion;
 use orientation::align::stepwise::Fit;
 
@@ -108,7 +109,7 @@ fn of_fit(
     line(out, "gyro noise N", format_args!("{noise:.6} °/√h ({how})"))?;
     let (chi, degrees) = (fit.chi_square, fit.degrees);
     line(out, "residuals", format_args!("χ² {chi:.1} for {degrees} degrees of freedom"))?;
-    budget(out, fit)
+    budget(out, &fit.budget)
 }
 
 /// How often each position was visited, and what plain autocompensation gives.
@@ -129,15 +130,15 @@ fn positions(out: &mut impl Write, replay: &Replay, conclusion: &Conclusion) -> 
 }
 
 /// The budget with each part's share of the variance.
-fn budget(out: &mut impl Write, fit: &Fit) -> fmt::Result {
-    let sigma = fit.sigma();
+pub(super) fn budget(out: &mut impl Write, budget: &Budget) -> fmt::Result {
+    let sigma = budget.sigma();
     writeln!(out, "\n  error budget (1σ of the azimuth)")?;
-    for (source, part) in fit.budget.parts() {
+    for (source, part) in budget.parts() {
         let share = 100.0 * (part / sigma) * (part / sigma);
         writeln!(out, "    {:<28} {:>9.4}°  {share:>5.1} %", source.to_string(), degrees(part))?;
     }
     writeln!(out, "    {:<28} {:>9.4}°", "root sum of squares", degrees(sigma))?;
-    if let Some(source) = fit.budget.dominant() {
+    if let Some(source) = budget.dominant() {
         writeln!(out, "    {source} dominates{}", remedy(source))?;
     }
     writeln!(out)

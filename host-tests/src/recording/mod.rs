@@ -29,7 +29,7 @@ pub use header::{Header, Sensor, Truth};
 pub use lines::{MAX_LINE_BYTES, MAX_ROWS};
 pub use number::Range;
 pub use problem::{HeaderProblem, Problem, SourceProblem, TimeProblem, ValueProblem};
-pub use rows::{DwellRow, ImuSample, StageRow, StaticRow};
+pub use rows::{DwellRow, ImuSample, RotatingRow, StageRow, StaticRow};
 pub use spacing::{Gap, Spacing};
 
 use error::Fault;
@@ -61,6 +61,8 @@ impl Recording {
 pub enum Body {
     /// Samples of one gyro on a rotation stage.
     Stage(Vec<StageRow>),
+    /// Samples of one sensor on a stage that turns all the time.
+    Rotating(Vec<RotatingRow>),
     /// One row a position, already averaged.
     Dwells(Vec<DwellRow>),
     /// Samples at rest; samples may be missing, as [`Spacing`] says.
@@ -68,11 +70,18 @@ pub enum Body {
 }
 
 impl Body {
+    /// The rows of a platform that turns all the time; none of another kind.
+    #[must_use]
+    pub fn rotating(&self) -> &[RotatingRow] {
+        if let Self::Rotating(rows) = self { rows } else { &[] }
+    }
+
     /// The kind of its recording.
     #[must_use]
     pub fn kind(&self) -> Kind {
         match self {
             Self::Stage(_) => Kind::Stage,
+            Self::Rotating(_) => Kind::Rotating,
             Self::Dwells(_) => Kind::Dwells,
             Self::Static(_) => Kind::Static,
         }
@@ -84,7 +93,7 @@ impl Body {
 pub enum Kind {
     /// One gyro on a rotation stage that stops; read here.
     Stage,
-    /// One sensor on a stage that turns all the time.
+    /// One sensor on a stage that turns all the time; read here.
     Rotating,
     /// Three gyros and three accelerometers.
     Imu,
@@ -157,6 +166,7 @@ fn parse(reader: impl Read) -> Result<Recording, Fault> {
     let (line, kind) = kind(&entries)?;
     let read_rows: ReadRows = match kind {
         Kind::Stage => |lines, line, names| Ok(Body::Stage(rows::read(lines, line, names)?)),
+        Kind::Rotating => |lines, line, names| Ok(Body::Rotating(rows::read(lines, line, names)?)),
         Kind::Dwells => |lines, line, names| Ok(Body::Dwells(rows::read(lines, line, names)?)),
         Kind::Static => |lines, line, names| Ok(Body::Static(rows::read(lines, line, names)?)),
         other => return Err(Fault::line(line, HeaderProblem::UnreadKind(other))),
@@ -201,6 +211,9 @@ fn kind(entries: &Collector) -> Result<(u64, Kind), Fault> {
 fn check_times(body: &Body, rate: Option<(u64, f64)>) -> Result<(), Fault> {
     match body {
         Body::Stage(rows) => {
+            Times { rows, stamp: |row| (row.line, row.time_s), column: "t_s" }.check(rate)
+        }
+        Body::Rotating(rows) => {
             Times { rows, stamp: |row| (row.line, row.time_s), column: "t_s" }.check(rate)
         }
         Body::Dwells(_) | Body::Static(_) => Ok(()),

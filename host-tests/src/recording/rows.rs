@@ -16,6 +16,8 @@ const TIME: Range = Range::symmetric(1e10, " s");
 const STAGE: Range = Range::symmetric(6.283_185e6, " rad");
 /// The range of [`orientation::units::AngularRate`].
 const RATE: Range = Range::symmetric(2.147_483_647, " rad/s");
+/// Rates at which a stage can turn: 160 turns a second.
+const STAGE_RATE: Range = Range::symmetric(1e3, " rad/s");
 /// The range of [`orientation::units::SpecificForce`].
 const FORCE: Range = Range::symmetric(2_147.483_647, " m/s²");
 /// The range of [`orientation::units::Temperature`].
@@ -41,6 +43,23 @@ pub struct StageRow {
     pub force_m_s2: [f64; 3],
     /// Temperature of the gyro, °C, when recorded.
     pub temperature_c: Option<f64>,
+}
+
+/// One sample of a `rotating` recording: a stage that turns all the time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RotatingRow {
+    /// The line of the file, from 1, for messages about this sample.
+    pub line: u64,
+    /// Time, s, later than in the row before; its zero is the recorder's and it may be negative.
+    pub time_s: f64,
+    /// Stage angle, rad, clockwise from above, ±10⁶ turns; whole turns are counted.
+    pub stage_rad: f64,
+    /// Rate of the stage, rad/s, clockwise positive, ±1000.
+    pub stage_rate_rad_s: f64,
+    /// Rate along the gyro's sensitive axis, rad/s, ±2.147483647.
+    pub rate_rad_s: f64,
+    /// Specific force along the sensitive axis, in the platform's plane, m/s², ±2147.483647.
+    pub force_m_s2: f64,
 }
 
 /// One position of a `dwells` recording, already averaged.
@@ -113,6 +132,28 @@ impl Row for StageRow {
             rate_rad_s: values.needed(2),
             force_m_s2: [3, 4, 5].map(|column| values.needed(column)),
             temperature_c: values.optional(6),
+        }
+    }
+}
+
+impl Row for RotatingRow {
+    const COLUMNS: &'static [Column] = &[
+        Column::always("t_s", TIME),
+        Column::always("stage_rad", STAGE),
+        Column::always("stage_rate_rad_s", STAGE_RATE),
+        Column::always("g_rad_s", RATE),
+        Column::always("a_m_s2", FORCE),
+    ];
+    const TIME: usize = 0;
+
+    fn from_values(values: &Values<'_>) -> Self {
+        Self {
+            line: values.line,
+            time_s: values.needed(0),
+            stage_rad: values.needed(1),
+            stage_rate_rad_s: values.needed(2),
+            rate_rad_s: values.needed(3),
+            force_m_s2: values.needed(4),
         }
     }
 }

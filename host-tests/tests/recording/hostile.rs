@@ -9,7 +9,7 @@ use bench::recording::{MAX_LINE_BYTES, MAX_ROWS, read, read_from};
 use flate2::{Compression, write::GzEncoder};
 use proptest::prelude::*;
 
-use super::{DWELLS, STAGE, changed, gzip, message, parse};
+use super::{DWELLS, ROTATING, STAGE, changed, gzip, message, parse};
 
 /// Gives a text, then repeats another without end, and counts what is taken.
 struct Endless<'a> {
@@ -225,8 +225,8 @@ proptest! {
         changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
         cut in any::<prop::sample::Index>(),
     ) {
-        for good in [STAGE.as_bytes().to_vec(), DWELLS.as_bytes().to_vec(), gzip(STAGE.as_bytes())] {
-            let mut bytes = good;
+        let plain = [STAGE, DWELLS, ROTATING].map(|text| text.as_bytes().to_vec());
+        for mut bytes in plain.into_iter().chain([gzip(STAGE.as_bytes())]) {
             for (index, byte) in &changes {
                 let at = index.index(bytes.len());
                 bytes[at] = *byte;
@@ -240,7 +240,7 @@ proptest! {
     fn any_piece_put_anywhere_reads_or_gives_one_line(
         pieces in prop::collection::vec((any::<prop::sample::Index>(), 0..PIECES.len()), 1..4),
     ) {
-        for good in [STAGE, DWELLS] {
+        for good in [STAGE, DWELLS, ROTATING] {
             let mut bytes = good.as_bytes().to_vec();
             for (index, piece) in &pieces {
                 let at = index.index(bytes.len());

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use bench::recording::{Header, Recording, read};
+use bench::recording::{Body, Header, Recording, Sensor, read};
 
 use super::stage_rows;
 
@@ -136,6 +136,44 @@ fn each_stored_recording_has_its_rows_header_and_truth() {
     }
 }
 
+/// The two whose stage turns all the time.
+fn rotating() -> [Expected; 2] {
+    let one_speed = Header {
+        sensor: Some(Sensor::Gyro),
+        g_sensitivity_deg_h_g: Some([8.0, -5.0]),
+        ..header(55.75, 50.0, 0.002)
+    };
+    let two_speeds = Header { sensor: Some(Sensor::Met), ..header(55.75, 50.0, 0.002) };
+    [
+        Expected {
+            name: "rotating-gyro",
+            lines: 13148,
+            header_lines: 7,
+            azimuth_deg: 37.3123,
+            header: one_speed,
+        },
+        Expected {
+            name: "rotating-met-two-speeds",
+            lines: 18007,
+            header_lines: 6,
+            azimuth_deg: 252.6391,
+            header: two_speeds,
+        },
+    ]
+}
+
+#[test]
+fn each_rotating_recording_has_its_rows_header_and_truth() {
+    for expected in rotating() {
+        let recording = stored(expected.name);
+        assert_eq!(recording.header, expected.header, "{}", expected.name);
+        assert_eq!(recording.truth.azimuth_deg, Some(expected.azimuth_deg), "{}", expected.name);
+        let Body::Rotating(rows) = recording.body else { panic!("is {}", recording.body.kind()) };
+        assert_eq!(rows.len(), expected.lines - expected.header_lines - 1, "{}", expected.name);
+        assert_eq!(rows.last().map(|row| row.line), Some(expected.lines as u64));
+    }
+}
+
 #[test]
 fn the_disturbances_are_known_to_the_truth_only() {
     for (name, span) in [("stepwise-bumped", "47-51"), ("stepwise-nudged", "79-83")] {
@@ -147,7 +185,7 @@ fn the_disturbances_are_known_to_the_truth_only() {
 #[test]
 fn the_table_of_the_data_agrees_with_the_files() {
     let table = include_str!("../../data/README.md");
-    for Expected { name, lines, header_lines, header, .. } in all() {
+    for Expected { name, lines, header_lines, header, .. } in all().into_iter().chain(rotating()) {
         let row = table.lines().find(|line| line.contains(name)).or_else(|| {
             let series = name.rsplit_once('-').map_or(name, |(series, _)| series);
             table.lines().find(|line| line.contains(series))

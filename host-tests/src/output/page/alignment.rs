@@ -5,8 +5,9 @@ use orientation::align::conclusion::Conclusion;
 use orientation::align::stepwise::Fit;
 
 use super::super::{degrees, degrees_per_hour};
+use super::budget;
 use crate::replay::Replay;
-use crate::report::{Axis, Figure, Part, Report, Series, Style, Table};
+use crate::report::{Axis, Figure, Part, Report, Series, Style};
 
 /// Places along the fitted curve.
 const PLACES: u32 = 180;
@@ -32,7 +33,7 @@ pub fn report(name: &str, replay: &Replay, conclusion: &Conclusion) -> Report {
         ));
         parts.push(rates(replay, conclusion, fit).into());
         parts.push(residuals(replay, conclusion).into());
-        parts.push(budget(fit).into());
+        parts.push(budget(&fit.budget).into());
     }
     Report { title: format!("Alignment: {name}"), subtitle, parts }
 }
@@ -89,17 +90,5 @@ fn residuals(replay: &Replay, conclusion: &Conclusion) -> Figure {
         x: Axis::linear("time", "s"),
         y: Axis::linear("residual", "°/h"),
         series: vec![Series::new("measured less fitted", Style::LineAndPoints, points)],
-    }
-}
-
-fn budget(fit: &Fit) -> Table {
-    let row = |(source, part): (_, f64)| -> Vec<String> {
-        let share = 100.0 * (part / fit.sigma()).powi(2);
-        vec![format!("{source}"), format!("{:.4}", degrees(part)), format!("{share:.1}")]
-    };
-    Table {
-        title: "Error budget (1σ of the azimuth)".to_owned(),
-        head: ["source", "part, °", "share of the variance, %"].map(str::to_owned).to_vec(),
-        rows: fit.budget.parts().map(|(source, part)| row((source, part))).to_vec(),
     }
 }

@@ -3,3 +3,22 @@
 pub mod alignment;
 pub mod burov;
 pub mod plan;
+pub mod rotating;
+
+use orientation::align::budget::Budget;
+
+use super::degrees;
+use crate::report::Table;
+
+/// Where σ comes from.
+fn budget(budget: &Budget) -> Table {
+    let row = |(source, part): (_, f64)| -> Vec<String> {
+        let share = 100.0 * (part / budget.sigma()).powi(2);
+        vec![format!("{source}"), format!("{:.4}", degrees(part)), format!("{share:.1}")]
+    };
+    Table {
+        title: "Error budget (1σ of the azimuth)".to_owned(),
+        head: ["source", "part, °", "share of the variance, %"].map(str::to_owned).to_vec(),
+        rows: budget.parts().map(|(source, part)| row((source, part))).to_vec(),
+    }
+}

@@ -10,6 +10,8 @@ use crate::units::TURN;
 /// Frequencies of the modulation over that of the turn: far enough from it to be told apart in twelve
 /// turns, and on both sides, so that what a sensor does between them is what it does at the turn.
 const TONES: [f64; 2] = [0.83, 1.17];
+/// Least turns in either sense: one alone cannot be told from a disturbed one.
+const LEAST_TURNS: f64 = 2.0;
 /// Default time in either sense for each speed, s.
 const DEFAULT_SECONDS: f64 = 180.0;
 /// Length of a block: what the platform turns meanwhile costs 1e-4 of the signal.
@@ -47,12 +49,9 @@ impl Procedure {
     #[must_use]
     pub fn new(speeds: &[f64], sample_seconds: f64) -> Self {
         let slowest = speeds.iter().copied().fold(f64::INFINITY, f64::min);
-        let squares: f64 = speeds.iter().map(|speed| speed * speed).sum();
-        let share = speeds.len() as f64 * slowest * slowest / squares;
-        let turns = libm::ceil(DEFAULT_SECONDS * share * slowest / TURN).clamp(2.0, 1e6) as u32;
         Self {
             speeds: speeds.iter().copied().take(SPEEDS).collect(),
-            turns,
+            turns: default_turns(speeds, slowest),
             uneven_turns: 12,
             modulation: 0.25,
             sample_seconds,
@@ -91,6 +90,14 @@ impl Procedure {
     }
 }
 
+/// Turns in either sense at the slowest of some speeds, for the default time.
+fn default_turns(speeds: &[f64], slowest: f64) -> u32 {
+    let squares: f64 = speeds.iter().map(|speed| speed * speed).sum();
+    let share = speeds.len() as f64 * slowest * slowest / squares;
+    let turns = libm::ceil(DEFAULT_SECONDS * share * slowest / TURN);
+    if turns > LEAST_TURNS { turns.min(1e6) as u32 } else { LEAST_TURNS as u32 }
+}
+
 /// What a procedure must be.
 ///
 /// # Errors
@@ -100,7 +107,7 @@ pub fn check(procedure: &Procedure) -> Result<(), ProcedureError> {
     Table::built_in().verify().map_err(|_| ProcedureError::TableCorrupt)?;
     let are_speeds = procedure.speeds.iter().all(|speed| *speed > 0.0 && speed.is_finite());
     let is_uneven = procedure.uneven_turns == 0 || procedure.modulation > 0.0;
-    let has_turns = procedure.turns >= 2;
+    let has_turns = f64::from(procedure.turns) >= LEAST_TURNS;
     let has_period = procedure.sample_seconds > 0.0 && procedure.sample_seconds.is_finite();
     if are_speeds && is_uneven && has_turns && has_period {
         Ok(())

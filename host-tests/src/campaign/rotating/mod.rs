@@ -1,0 +1,100 @@
+//! Dynamic north finding by simulation: papers/004 with the figures of equations.md §4.
+
+pub mod molecular;
+pub mod motor;
+pub mod refusals;
+pub mod stages;
+pub mod world;
+
+use std::f64::consts::TAU;
+
+use orientation::align::rotating::solution::Fit;
+use orientation::align::rotating::{Sensor, Setting};
+use orientation::align::setting::Setting as Common;
+use orientation::earth::Latitude;
+use orientation::error::Refusal;
+use orientation::noise::model::GyroNoise;
+use orientation::session::rotating::{Procedure, Session};
+use orientation::units::DEGREE_PER_HOUR;
+use rayon::prelude::*;
+
+use self::world::{LATITUDE_DEG, World};
+use super::statistics::Answer;
+use crate::output::{azimuth_error, degrees};
+use crate::rotating::follow;
+
+/// Golden angle, °: azimuths of successive seeds fill the circle evenly.
+const GOLDEN_ANGLE_DEG: f64 = 137.507_764;
+/// What a solver is told of a gyro without noise, °/√h: less than any.
+const LEAST_WALK: f64 = 0.000_2;
+
+/// What a session made of a world.
+#[derive(Clone, Copy, Debug)]
+pub struct Solved {
+    /// The azimuth against the truth, or why there is none.
+    pub answer: Result<Answer, Refusal>,
+    /// The fit, where there is one.
+    pub fit: Option<Fit>,
+}
+
+/// Turns a world's platform as a session wants it: at these speeds in turns a second, so many seconds each
+/// way at each, in whole turns.
+#[must_use]
+pub fn solve(world: &World, sensor: Sensor, speeds_hz: &[f64], seconds: f64, seed: u64) -> Solved {
+    let speeds: Vec<f64> = speeds_hz.iter().map(|speed| TAU * speed).collect();
+    let slowest = speeds_hz.iter().copied().fold(f64::INFINITY, f64::min);
+    let mut procedure = Procedure::new(&speeds, 1.0 / world::RATE_HZ);
+    procedure.turns = (seconds * slowest) as u32;
+    let session = setting(world, sensor).and_then(|setting| Session::new(setting, procedure).ok());
+    let Some(mut session) = session else { return Solved::NONE };
+    let longest = 60.0 + (4.0 * seconds + 400.0 / slowest) * speeds.len() as f64;
+    world.obey(&mut session, longest, seed);
+    Solved::of(&session, world)
+}
+
+/// Turns a world's platform by its own segments, and follows it.
+#[must_use]
+pub fn follow_world(world: &World, sensor: Sensor, seed: u64) -> Solved {
+    let session = setting(world, sensor)
+        .and_then(|setting| follow(setting, &world.rows(seed), 1.0 / world::RATE_HZ).ok());
+    session.map_or(Solved::NONE, |session| Solved::of(&session, world))
+}
+
+impl Solved {
+    /// Where a session could not even begin.
+    const NONE: Self = Self { answer: Err(Refusal::TimeExhausted), fit: None };
+
+    fn of(session: &Session, world: &World) -> Self {
+        let conclusion = session.conclusion();
+        let verdict = conclusion.map_or(Err(Refusal::TimeExhausted), |found| found.verdict);
+        let fit = conclusion.and_then(|found| found.fit);
+        let limit = fit.map_or(f64::NAN, |fit| degrees(fit.limit));
+        let answer = verdict.map(|azimuth| Answer {
+            error: azimuth_error(degrees(azimuth.angle), world.azimuth_deg),
+            sigma: degrees(azimuth.sigma),
+            limit,
+        });
+        Self { answer, fit }
+    }
+}
+
+fn setting(world: &World, sensor: Sensor) -> Option<Setting> {
+    let walk = world.n_deg_sqrt_h.max(LEAST_WALK);
+    let common = Common {
+        noise: GyroNoise::from_field_units(walk, 0.0, 0.0, 0.0),
+        white_known: true,
+        g_sensitivity: world.g_sensitivity_deg_h_g.map(|part| part * DEGREE_PER_HOUR),
+        ..Common::at(Latitude::from_degrees(LATITUDE_DEG)?)
+    };
+    Some(Setting::new(common, sensor))
+}
+
+/// One result for each seed.
+fn over<T: Send>(runs: usize, tick: &(impl Fn() + Sync), of: impl Fn(u64) -> T + Sync) -> Vec<T> {
+    let of = |seed| {
+        let result = of(seed);
+        tick();
+        result
+    };
+    (1..=runs as u64).into_par_iter().map(of).collect()
+}

@@ -1,0 +1,146 @@
+//! Platforms that do not turn as they should, and sensors that do not feel what they should: each is
+//! refused with its reason, or gives a north that holds.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use hal_mock::disturbance::Disturbance;
+use hal_mock::turntable::{EncoderSlip, Segment};
+use orientation::align::rotating::Sensor;
+use serde::Serialize;
+
+use super::stages::{SECONDS, TURN_HZ};
+use super::world::World;
+use super::{Solved, follow_world, over};
+use crate::campaign::faults::WRONG_SIGMAS;
+
+/// Angle random walk of the gyro, °/√h.
+const WALK: f64 = 0.002;
+/// Before this the deliberately uneven stretch is over, and the first even turns, s.
+const LATER: f64 = 160.0;
+
+/// Something that goes wrong.
+#[derive(Clone, Copy)]
+struct Case {
+    name: &'static str,
+    spoil: fn(&mut World),
+}
+
+/// What came of one case, over many runs.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// What went wrong.
+    pub case: &'static str,
+    /// Runs.
+    pub runs: usize,
+    /// Runs that were refused.
+    pub refused: usize,
+    /// Runs whose azimuth is off by more than 5 σ: there must be none.
+    pub wrong: usize,
+    /// The reason that was given most often.
+    pub reason: Option<String>,
+    /// How often.
+    pub reason_given: usize,
+}
+
+/// Every case with seeds 1 to `runs`; `tick` after each run.
+#[must_use]
+pub fn rows(runs: usize, tick: impl Fn() + Sync) -> Vec<Row> {
+    CASES.iter().map(|case| row(case, runs, &tick)).collect()
+}
+
+/// How many cases there are.
+pub const COUNT: usize = CASES.len();
+
+fn row(case: &Case, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
+    let solved = over(runs, tick, |seed| {
+        let mut world = World { n_deg_sqrt_h: WALK, ..World::drawn(seed, &[TURN_HZ], SECONDS) };
+        (case.spoil)(&mut world);
+        follow_world(&world, Sensor::GYRO, seed)
+    });
+    let (reason, reason_given) = most_given(&solved);
+    Row {
+        case: case.name,
+        runs,
+        refused: solved.iter().filter(|run| run.answer.is_err()).count(),
+        wrong: solved.iter().filter(|run| is_wrong(run)).count(),
+        reason,
+        reason_given,
+    }
+}
+
+fn is_wrong(run: &Solved) -> bool {
+    run.answer.is_ok_and(|answer| !(answer.error.abs() <= WRONG_SIGMAS * answer.sigma))
+}
+
+/// The reason that was given most often, its numbers apart, in the words of its first run.
+fn most_given(solved: &[Solved]) -> (Option<String>, usize) {
+    let mut reasons: BTreeMap<String, (String, usize)> = BTreeMap::new();
+    for reason in solved.iter().filter_map(|run| run.answer.err()) {
+        let text = reason.to_string();
+        let words: String = text.chars().filter(|letter| letter.is_alphabetic()).collect();
+        reasons.entry(words).or_insert((text, 0)).1 += 1;
+    }
+    let most = reasons.into_values().max_by_key(|(_, count)| *count);
+    most.map_or((None, 0), |(text, count)| (Some(text), count))
+}
+
+/// The last stretch, which is counter-clockwise.
+fn last(world: &mut World, of: impl Fn(Segment) -> Vec<Segment>) {
+    let segment = world.segments.pop();
+    world.segments.extend(segment.into_iter().flat_map(of));
+}
+
+const CASES: [Case; 11] = [
+    Case { name: "counter-clockwise 2 % faster", spoil: |world| faster(world, 1.02) },
+    Case { name: "counter-clockwise 10 % faster", spoil: |world| faster(world, 1.1) },
+    Case { name: "platform never turns back", spoil: |world| world.segments.truncate(2) },
+    Case {
+        name: "platform stops on the way back",
+        spoil: |world| {
+            last(world, |segment| {
+                let moving = Segment { seconds: 1.5 / TURN_HZ, ..segment };
+                vec![moving, Segment::steady(0.0, SECONDS - moving.seconds)]
+            });
+        },
+    },
+    Case {
+        name: "platform stands",
+        spoil: |world| world.segments = vec![Segment::steady(0.0, 300.0)],
+    },
+    Case {
+        name: "half a turn each way",
+        spoil: |world| {
+            for segment in world.segments.iter_mut().skip(1) {
+                segment.seconds = 0.5 / TURN_HZ;
+            }
+        },
+    },
+    Case {
+        name: "encoder slips by 2°",
+        spoil: |world| {
+            world.slip = EncoderSlip { from_s: LATER, by_rad: TAU / 180.0, rad_per_s: 0.0 }
+        },
+    },
+    Case {
+        name: "encoder creeps by 10° a minute",
+        spoil: |world| {
+            world.slip = EncoderSlip { from_s: LATER, by_rad: 0.0, rad_per_s: TAU / 2160.0 }
+        },
+    },
+    Case {
+        name: "accelerometer saturated from the start",
+        spoil: |world| saturate(world, 0.0, 600.0),
+    },
+    Case { name: "accelerometer saturated later on", spoil: |world| saturate(world, LATER, 600.0) },
+    Case { name: "accelerometer saturated for 3 s", spoil: |world| saturate(world, LATER, 3.0) },
+];
+
+fn faster(world: &mut World, factor: f64) {
+    last(world, |segment| vec![Segment { rate_rad_s: factor * segment.rate_rad_s, ..segment }]);
+}
+
+fn saturate(world: &mut World, start_s: f64, seconds: f64) {
+    let force_m_s2 = [100.0, 0.0, 0.0];
+    world.disturbances.push(Disturbance::Push { start_s, seconds, force_m_s2 });
+}

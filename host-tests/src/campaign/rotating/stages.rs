@@ -1,0 +1,112 @@
+//! A flat gyro on an uneven platform: the error after each stage of compensation, and what noise leaves
+//! of it.
+
+use std::f64::consts::TAU;
+
+use orientation::align::rotating::Sensor;
+use serde::Serialize;
+
+use super::world::{Integrating, World};
+use super::{GOLDEN_ANGLE_DEG, Solved, over, solve};
+use crate::campaign::statistics::{Precision, rms};
+use crate::output::azimuth_error;
+
+/// Speed, turns a second: that of papers/004's last figure.
+pub const TURN_HZ: f64 = 0.137;
+/// Time each way, s.
+pub const SECONDS: f64 = 200.0;
+/// Angle random walks, °/√h: one that shows what is left of the errors, and a realistic one.
+pub const WALKS: [f64; 2] = [0.000_2, 0.02];
+/// An integrated g-sensitivity that cancels between the senses, over the horizontal Earth rate.
+const RATIO: f64 = 0.004;
+
+/// What the solver is told of such a gyro: no more than what size the part may have that cancels, rad/s.
+const SENSOR: Sensor =
+    Sensor { is_flat: true, molecular_sigma: RATIO * TAU * TURN_HZ, settle_seconds: 1.0 };
+
+/// The stages in their order.
+pub const STAGES: [&str; 4] = ["raw", "without unevenness", "both senses", "everything"];
+
+/// What one stage leaves, over many runs, °.
+#[derive(Clone, Debug, Serialize)]
+pub struct Stage {
+    /// The stage.
+    pub stage: &'static str,
+    /// RMS error.
+    pub rms_deg: f64,
+    /// Greatest absolute error.
+    pub greatest_deg: f64,
+}
+
+/// Many runs with one gyro.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// Its N, °/√h.
+    pub n_deg_sqrt_h: f64,
+    /// What each stage leaves.
+    pub stages: Vec<Stage>,
+    /// The azimuths in the end, against limit and σ.
+    #[serde(flatten)]
+    pub precision: Precision,
+    /// The raw error of each run, °, over where the gear is quickest as it acts, from the azimuth, °.
+    #[serde(skip)]
+    pub raw: Vec<(f64, f64)>,
+}
+
+/// One run: where the unevenness acts, and the error after each stage, °.
+struct Run {
+    acts_deg: f64,
+    errors_deg: Option<[f64; 4]>,
+    solved: Solved,
+}
+
+/// Runs seeds 1 to `runs` with each gyro; `tick` after each.
+#[must_use]
+pub fn rows(runs: usize, tick: impl Fn() + Sync) -> Vec<Row> {
+    WALKS.into_iter().map(|n| row(n, runs, &tick)).collect()
+}
+
+fn row(n_deg_sqrt_h: f64, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
+    let runs = over(runs, tick, |seed| run(n_deg_sqrt_h, seed));
+    let answers: Vec<_> = runs.iter().map(|run| run.solved.answer).collect();
+    let raw = |run: &Run| Some((run.acts_deg, run.errors_deg?[0]));
+    Row {
+        n_deg_sqrt_h,
+        stages: (0..STAGES.len()).map(|index| stage(index, &runs)).collect(),
+        precision: Precision::of(&answers),
+        raw: runs.iter().filter_map(raw).collect(),
+    }
+}
+
+fn stage(index: usize, runs: &[Run]) -> Stage {
+    let of = |run: &Run| Some(run.errors_deg?[index]);
+    let errors: Vec<f64> = runs.iter().filter_map(of).collect();
+    let greatest_deg = errors.iter().fold(0.0, |most: f64, error| most.max(error.abs()));
+    Stage { stage: STAGES[index], rms_deg: rms(&errors), greatest_deg }
+}
+
+/// The world of a seed: azimuths fill the circle evenly, the rest is drawn.
+#[must_use]
+pub fn world(n_deg_sqrt_h: f64, seed: u64) -> World {
+    World {
+        n_deg_sqrt_h,
+        azimuth_deg: (GOLDEN_ANGLE_DEG * seed as f64) % 360.0,
+        molecular: Some(
+            Integrating { ratio: RATIO, toward_deg: 0.0, lag_deg: 0.0, speed_hz: TURN_HZ }.sensor(),
+        ),
+        ..World::drawn(seed, &[TURN_HZ], SECONDS)
+    }
+}
+
+fn run(n_deg_sqrt_h: f64, seed: u64) -> Run {
+    let world = world(n_deg_sqrt_h, seed);
+    let solved = solve(&world, SENSOR, &[TURN_HZ], SECONDS, seed);
+    // The coupling's sine is negative: what is quickest acts as slowest. Its phasor is conjugate.
+    let acts_deg = azimuth_error(180.0 - world.quickest_deg, world.azimuth_deg);
+    let error = |stage: f64| azimuth_error(stage.to_degrees(), world.azimuth_deg);
+    let errors_deg = solved.fit.map(|fit| {
+        let stages = fit.stages;
+        [stages.raw, stages.coupling, stages.senses, stages.full].map(error)
+    });
+    Run { acts_deg, errors_deg, solved }
+}

@@ -1,0 +1,61 @@
+//! Amplitude spectra, for the figures of papers/004: how much of each frequency is in a signal.
+//!
+//! One-sided and amplitude-correct: a sinusoid of amplitude a on a line of the spectrum shows as a,
+//! whatever the window. The mean is taken off first, since a gyro's coupling with the turn is a
+//! thousand times the Earth rate.
+
+use std::f64::consts::TAU;
+
+use rustfft::FftPlanner;
+use rustfft::num_complex::Complex;
+
+/// How the samples are weighted before they are transformed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Window {
+    /// All alike: exact over whole periods, with far side lobes otherwise.
+    Rectangular,
+    /// Hann's, periodic: side lobes fall fast, at lines twice as wide.
+    Hann,
+}
+
+/// A line of a spectrum.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Line {
+    /// Its frequency, Hz.
+    pub frequency_hz: f64,
+    /// Amplitude of the sinusoid there, in the signal's unit.
+    pub amplitude: f64,
+}
+
+impl Window {
+    /// The weight of a sample.
+    fn weight(self, index: usize, samples: usize) -> f64 {
+        match self {
+            Self::Rectangular => 1.0,
+            Self::Hann => 0.5 - 0.5 * (TAU * index as f64 / samples as f64).cos(),
+        }
+    }
+}
+
+/// The spectrum of evenly spaced samples, from the lowest frequency above zero to half the rate; empty
+/// for fewer than two samples.
+#[must_use]
+pub fn amplitudes(signal: &[f64], rate_hz: f64, window: Window) -> Vec<Line> {
+    let samples = signal.len();
+    let mean = signal.iter().sum::<f64>() / samples.max(1) as f64;
+    let weights: Vec<f64> = (0..samples).map(|index| window.weight(index, samples)).collect();
+    let weighted = signal.iter().zip(&weights).map(|(x, weight)| (x - mean) * weight);
+    let mut buffer: Vec<Complex<f64>> = weighted.map(Complex::from).collect();
+    FftPlanner::new().plan_fft_forward(samples).process(&mut buffer);
+    let whole: f64 = weights.iter().sum();
+    let line = |index: usize| Line {
+        frequency_hz: index as f64 * rate_hz / samples as f64,
+        amplitude: sides(index, samples) * buffer[index].norm() / whole,
+    };
+    (1..=samples / 2).map(line).collect()
+}
+
+/// A frequency stands on both sides of the two-sided spectrum, but for half the sample rate.
+fn sides(index: usize, samples: usize) -> f64 {
+    if 2 * index == samples { 1.0 } else { 2.0 }
+}
