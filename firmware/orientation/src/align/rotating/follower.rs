@@ -33,6 +33,8 @@ const SAME_SPEED: f64 = 0.03;
 /// By how much an encoder may have moved against the platform in what broke a turn, rad: 0.3°, twice
 /// what an unevenness of 0.2 % makes of a quarter turn.
 const SLIP: f64 = 0.3 / 360.0 * WHOLE_TURN;
+/// What is more is none: the platform stood for a while, or ran.
+const GREATEST_SLIP: f64 = 0.5 * WHOLE_TURN;
 
 /// Force at which an accelerometer of ±2 g clips, µm/s²: 97 % of it.
 const FORCE_LIMIT: i32 = 19_000_000;
@@ -395,7 +397,7 @@ impl Follower {
         if is_even {
             let broken = self.broken.take().filter(|_| is_alike);
             let slip = broken.map_or(0.0, |broken| broken.slip(self.speed));
-            if slip.abs() > SLIP.max(self.slip.abs()) {
+            if slip.abs() < GREATEST_SLIP && slip.abs() > SLIP.max(self.slip.abs()) {
                 self.slip = slip;
             }
         } else {
