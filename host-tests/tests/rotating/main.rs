@@ -6,6 +6,12 @@
 
 mod outcome;
 mod platform_faults;
+mod phasor;
 mod sensor_faults;
+mod stretch;
+mod table;
+mod coupling;
 mod integrity;
+mod met;
+mod molecular;
 mod rig;
