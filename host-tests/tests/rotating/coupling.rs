@@ -50,7 +50,6 @@ fn sine_and_lag_are_the_simulations_and_their_sigma_is_honest() {
         });
         for part in [0, 1] {
             let ratio = rms(&ratios.iter().map(|both| both[part]).collect::<Vec<_>>());
-            println!("lag {lag_s}, part {part}: {ratio}");
             // 150 draws tell it to 6 %.
             assert!((0.8..1.2).contains(&ratio), "{ratio} of σ, part {part}, lag {lag_s}");
         }

@@ -157,7 +157,6 @@ fn a_prior_and_noise_together_are_what_sensors_drawn_from_it_scatter_by() {
             square += error * error / (found.noise + found.left);
         }
         let ratio = (square / f64::from(count)).sqrt();
-        println!("{sigma} {noise}: {ratio}");
         assert!((ratio - 1.0).abs() < 0.05, "{ratio} at {sigma}, {noise}");
     }
 }

@@ -139,7 +139,10 @@ fn the_coefficients_are_those_that_were_made_at_any_rate_speed_and_sense() {
                     assert!(off <= allowed, "{index}: {found} for {exact} at {rate_hz} {speed}");
                 }
                 let off = (found[QUICKENING] - COEFFICIENTS[QUICKENING]).abs();
-                assert!(off * speed.abs() < 1e-3 * 0.012 + block * 0.012, "{off} at {rate_hz} {speed}");
+                assert!(
+                    off * speed.abs() < 1e-3 * 0.012 + block * 0.012,
+                    "{off} at {rate_hz} {speed}"
+                );
             }
         }
     }

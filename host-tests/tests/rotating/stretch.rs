@@ -28,8 +28,7 @@ fn stretch(count: u32) -> Stretch {
 fn assert_mean(stretch: &Stretch, of: impl Fn(&Turn) -> f32) {
     let exact: f64 = (0..stretch.count()).map(|number| f64::from(of(&turn(number)))).sum();
     let found: f64 = stretch.turns().iter().map(|turn| f64::from(of(turn))).sum();
-    let (exact, found) =
-        (exact / f64::from(stretch.count()), found / stretch.turns().len() as f64);
+    let (exact, found) = (exact / f64::from(stretch.count()), found / stretch.turns().len() as f64);
     assert!((found - exact).abs() <= 3e-7 * exact.abs() + 3e-12, "{found} is not {exact}");
 }
 

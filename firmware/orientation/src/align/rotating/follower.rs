@@ -396,9 +396,8 @@ impl Follower {
     /// that speed is a slip.
     fn judge_slip(&mut self, part: &Part, is_even: bool, is_alike: bool) {
         if is_even {
-            let is_short = |broken: &Broken| {
-                f64::from(self.speed.abs() * broken.seconds) < LONGEST_BREAK
-            };
+            let is_short =
+                |broken: &Broken| f64::from(self.speed.abs() * broken.seconds) < LONGEST_BREAK;
             let broken = self.broken.take().filter(|broken| is_alike && is_short(broken));
             let slip = broken.map_or(0.0, |broken| broken.slip(self.speed));
             if slip.abs() > SLIP.max(self.slip.abs()) {
