@@ -35,8 +35,14 @@ pub fn describe(header: &Header, body: &Body, latitude: Latitude) -> Described {
         or_zero(header.g_sensitivity_sigma_deg_h_g, "no g-sensitivity")
     };
     let white_known = header.gyro_n_deg_sqrt_h.is_some_and(|n| n > 0.0);
-    if let (Body::Stage(_), false) = (body, white_known) {
-        assumed.push("white noise as the dwells show it".to_owned());
+    match body {
+        Body::Stage(_) if !white_known => {
+            assumed.push("white noise as the dwells show it".to_owned());
+        }
+        Body::Rotating(_) if !white_known => {
+            assumed.push("white noise as the turns show it".to_owned());
+        }
+        _ => {}
     }
     if noise(header) == noise(header).white_part() {
         assumed.push("no gyro drift (B, K, R)".to_owned());

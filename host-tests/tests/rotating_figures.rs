@@ -7,7 +7,7 @@ use std::path::Path;
 
 use bench::recording::{self, Body, RotatingRow};
 use bench::rotating::part::Part;
-use bench::rotating::turns::{phasor, phasors, rate_hz, spectrum, turn_hz, whole_turns};
+use bench::rotating::turns::{freed, phasor, phasors, rate_hz, spectrum, turn_hz, whole_turns};
 use bench::spectrum::Line;
 
 /// Rows of a platform at `speed` rad/s, 50 a second, whose gyro shows 3 cos θ − 4 sin θ on a drift.
@@ -112,4 +112,18 @@ fn at_even_rotation_the_line_of_the_turn_becomes_the_earth_rate() {
     // Tilt and g-sensitivity are left, 3/4 of a degree at most.
     assert!((after / horizontal - 1.0).abs() < 0.02, "{after} {horizontal}");
     assert!((before / horizontal - 1.0).abs() > 0.05, "{before} {horizontal}");
+}
+
+#[test]
+fn what_a_sensor_shows_of_the_platforms_rate_and_its_derivative_is_taken_off() {
+    let uneven = |row: RotatingRow| {
+        let turn = 3.0 * row.time_s;
+        let felt = 0.01 * turn.sin() - 0.002 * 3.0 * turn.cos();
+        RotatingRow { stage_rate_rad_s: turn.sin(), rate_rad_s: 0.5 + felt, ..row }
+    };
+    let rows: Vec<RotatingRow> = even_rows(1.0, 500).into_iter().map(uneven).collect();
+    let left = freed(&rows, 0.01, -0.002);
+    // The central difference misses (3 · 0.02)²/6 of the derivative.
+    assert!(left[1..499].iter().all(|row| (row.rate_rad_s - 0.5).abs() < 4e-6));
+    assert_eq!(freed(&[], 1.0, 1.0), []);
 }

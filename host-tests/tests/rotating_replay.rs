@@ -1,30 +1,44 @@
-//! The recordings of a turning platform, replayed through the session.
+//! The recordings of a turning platform, replayed through the session: north, coupling and stages against
+//! the truth and an independent solution, and refusals where the recording is spoilt.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
-#[path = "rotating/oracle.rs"]
+#[path = "rotating_replay/oracle.rs"]
 mod oracle;
+#[path = "rotating_replay/output.rs"]
+mod output;
+#[path = "rotating_replay/spoilt.rs"]
+mod spoilt;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use bench::output::azimuth_error;
 use bench::recording::{self, Body, Header, RotatingRow};
-use bench::replay::Options;
+use bench::replay::{Options, ReplayError};
 use bench::rotating::{Replay, replay};
 use orientation::align::rotating::conclusion::Conclusion;
+use orientation::error::Refusal;
+
+use oracle::Known;
 
 /// A recording with its truth.
+#[derive(Clone)]
 struct Recorded {
     header: Header,
     rows: Vec<RotatingRow>,
     truth_deg: f64,
 }
 
+fn file(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("data/recordings")
+        .join(name)
+        .with_extension("csv.gz")
+}
+
 fn recorded(name: &str) -> Recorded {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/recordings").join(name);
-    let (header, body, truth) =
-        recording::read(&path.with_extension("csv.gz")).expect("it reads").into_parts();
-    let Body::Rotating(rows) = body else { panic!("is {}", body.kind()) };
-    Recorded { header, rows, truth_deg: truth.azimuth_deg.expect("it carries a truth") }
+    let (header, body, truth) = recording::read(&file(name)).expect("it reads").into_parts();
+    let truth_deg = truth.azimuth_deg.expect("it carries a truth");
+    Recorded { header, rows: body.rotating().to_vec(), truth_deg }
 }
 
 impl Recorded {
@@ -32,28 +46,153 @@ impl Recorded {
         let body = Body::Rotating(self.rows.clone());
         replay(&self.header, &body, &Options::default()).expect("it replays")
     }
+
+    fn refusal(&self) -> Refusal {
+        let replay = self.replayed();
+        conclusion(&replay).verdict.expect_err("it is refused")
+    }
+
+    /// The rows between two times, s.
+    fn between(&self, from_s: f64, to_s: f64) -> &[RotatingRow] {
+        let before = |seconds: f64| self.rows.partition_point(|row| row.time_s < seconds);
+        &self.rows[before(from_s)..before(to_s)]
+    }
 }
 
 fn conclusion(replay: &Replay) -> &Conclusion {
     replay.conclusion().expect("the session has ended")
 }
 
-const BOTH: [&str; 2] = ["rotating-gyro", "rotating-met-two-speeds"];
+const GYRO: &str = "rotating-gyro";
+const MET: &str = "rotating-met-two-speeds";
+/// When the uneven stretch of the gyro's recording ends, s: twelve turns at 0.137 Hz.
+const UNEVEN_S: f64 = 87.59;
+/// When it turns back, s.
+const BACK_S: f64 = 175.19;
 
 #[test]
 fn both_recordings_give_north_within_three_and_a_half_sigma() {
-    for name in BOTH {
+    for name in [GYRO, MET] {
         let recorded = recorded(name);
-        let replay = recorded.replayed();
-        let conclusion = conclusion(&replay);
-        println!("{name}: {conclusion:#?}");
-        for part in replay.parts(&recorded.rows) {
-            println!("{part} {} {}", part.rows[0].time_s, part.rows.last().unwrap().time_s);
-        }
-        let azimuth = conclusion.verdict.expect("there is an azimuth");
+        let azimuth = conclusion(&recorded.replayed()).verdict.expect("there is an azimuth");
         let error = azimuth_error(azimuth.angle.to_degrees(), recorded.truth_deg);
         let sigma = azimuth.sigma.to_degrees();
         println!("{name}: {error:+.4}° ± {sigma:.4}°");
         assert!(error.abs() <= 3.5 * sigma, "{name}: {error}° ± {sigma}°");
     }
+}
+
+#[test]
+fn sigma_is_that_of_the_noise_in_whole_turns_and_no_less_than_the_limit() {
+    for name in [GYRO, MET] {
+        let replay = recorded(name).replayed();
+        let fit = conclusion(&replay).fit.expect("there is a fit");
+        let ratio = fit.sigma() / fit.limit;
+        assert!((0.999..1.1).contains(&ratio), "{name}: σ is {ratio} of the limit");
+    }
+    // √2 N/(Ω_h √T), and of 24 turns at 0.137 Hz one in either sense may be lost to the change of speed.
+    let replay = recorded(GYRO).replayed();
+    let fit = conclusion(&replay).fit.expect("there is a fit");
+    let closed = |turns: f64| {
+        let hours = turns / 0.137 / 3600.0;
+        2.0_f64.sqrt() * 0.002 / (15.041_067 * 55.75_f64.to_radians().cos() * hours.sqrt())
+    };
+    assert!(
+        (closed(24.0)..closed(22.0) * 1.001).contains(&fit.limit),
+        "{} {}",
+        fit.limit,
+        closed(24.0)
+    );
+}
+
+#[test]
+fn two_speeds_cost_at_most_two_and_a_half_times_the_limit_without_g_and_h() {
+    let replay = recorded(MET).replayed();
+    let fit = conclusion(&replay).fit.expect("there is a fit");
+    let ratio = fit.limit / fit.plain_limit;
+    assert!((1.0..2.5).contains(&ratio), "{ratio}");
+}
+
+#[test]
+fn the_coupling_is_that_of_an_independent_fit() {
+    let recorded = recorded(GYRO);
+    let independent = -oracle::coupling(recorded.between(0.0, UNEVEN_S)).asin().to_degrees();
+    let replay = recorded.replayed();
+    let found = conclusion(&replay).couplings.first().expect("there is one").angle().to_degrees();
+    println!("{found:.6}° {independent:.6}°");
+    assert!((found - independent).abs() < 1e-4, "{found}° {independent}°");
+    assert!((found - 0.8).abs() < 1e-4, "{found}°");
+}
+
+#[test]
+fn an_independent_solution_of_the_gyros_recording_agrees() {
+    let recorded = recorded(GYRO);
+    let known = Known {
+        latitude: 55.75_f64.to_radians(),
+        gravity: hal_mock::earth::normal_gravity_m_s2(55.75_f64.to_radians()),
+        g_sensitivity: [8.0, -5.0].map(|part: f64| part.to_radians() / 3600.0),
+    };
+    let coupling = oracle::coupling(recorded.between(0.0, UNEVEN_S));
+    let turns = [recorded.between(UNEVEN_S, BACK_S), recorded.between(BACK_S, 300.0)];
+    let independent = oracle::azimuth(turns, coupling, &known).to_degrees();
+    let replay = recorded.replayed();
+    let azimuth = conclusion(&replay).verdict.expect("there is an azimuth");
+    let difference = azimuth_error(azimuth.angle.to_degrees(), independent);
+    // Another choice of turns, and no lag in the independent one: within the noise.
+    assert!(difference.abs() < azimuth.sigma.to_degrees(), "{difference}°");
+}
+
+#[test]
+fn the_recording_of_the_molecular_sensor_needs_its_second_speed() {
+    let replay = recorded(MET).replayed();
+    let fit = conclusion(&replay).fit.expect("there is a fit");
+    // 1.1° at ρ 0.2: within the bound ρ²/2, and far beyond σ.
+    let ratio = fit.molecular.size();
+    assert!(fit.one_speed.abs() > 3.0 * fit.sigma(), "{}", fit.one_speed.to_degrees());
+    assert!(fit.one_speed.abs() < 0.55 * ratio * ratio, "{} {ratio}", fit.one_speed);
+}
+
+#[test]
+fn a_recording_is_parted_where_the_platform_changed_its_way() {
+    let recorded = recorded(GYRO);
+    let replay = recorded.replayed();
+    let parts = replay.parts(&recorded.rows);
+    let names: Vec<String> = parts.iter().map(ToString::to_string).collect();
+    let expected = [
+        "clockwise at 0.137 Hz, unevenly",
+        "clockwise at 0.137 Hz",
+        "counter-clockwise at 0.137 Hz",
+    ];
+    assert_eq!(names, expected);
+    let begins: Vec<f64> = parts.iter().map(|part| part.rows[0].time_s).collect();
+    for (begin, expected) in begins.iter().zip([0.0, UNEVEN_S, BACK_S]) {
+        assert!((begin - expected).abs() < 8.0, "{begins:?}");
+    }
+}
+
+#[test]
+fn what_is_not_known_is_said() {
+    let mut recorded = recorded(GYRO);
+    recorded.header.sensor = None;
+    recorded.header.gyro_n_deg_sqrt_h = None;
+    let replay = recorded.replayed();
+    assert!(replay.assumed.iter().any(|words| words.contains("a gyro, not a molecular")));
+    assert!(replay.assumed.iter().any(|words| words.contains("white noise as the turns show it")));
+    let found = conclusion(&replay).angle_random_walk.to_degrees() * 60.0;
+    assert!((found / 0.002 - 1.0).abs() < 0.4, "{found}");
+}
+
+#[test]
+fn without_a_latitude_or_on_another_kind_there_is_no_replay() {
+    let mut recorded = recorded(GYRO);
+    recorded.header.latitude_deg = None;
+    let body = Body::Rotating(recorded.rows);
+    let none = replay(&recorded.header, &body, &Options::default()).expect_err("no latitude");
+    assert_eq!(none, ReplayError::NoLatitude);
+    let stage = recording::read(&file("stepwise-paper-1")).expect("it reads");
+    let other = replay(&stage.header, &stage.body, &Options::default()).expect_err("another kind");
+    assert_eq!(
+        other.to_string(),
+        "kind `stage` has no platform that turns all the time: no method rotating"
+    );
 }

@@ -27,7 +27,7 @@ pub struct CampaignOptions {
     /// tenth of it, of instrument (500), of each fault (1).
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     runs: Option<u32>,
-    /// Writes figures and tables as a page for a browser; of burov.
+    /// Writes figures and tables as a page for a browser; of burov and rotating.
     #[arg(long, value_name = "FILE.html")]
     report: Option<PathBuf>,
 }
@@ -52,8 +52,12 @@ impl CampaignOptions {
     /// # Errors
     /// The options, and why.
     pub fn check(&self) -> Result<(), &'static str> {
-        let draws = matches!(self.name, Campaign::Burov);
-        if self.report.is_some() && !draws { Err("--report: only burov draws") } else { Ok(()) }
+        let draws = matches!(self.name, Campaign::Burov | Campaign::Rotating);
+        if self.report.is_some() && !draws {
+            Err("--report: only burov and rotating draw")
+        } else {
+            Ok(())
+        }
     }
 }
 
@@ -143,7 +147,8 @@ fn rotating(runs: usize, report: Option<&Path>, as_json: bool) -> Result<Told, S
         of_rotating::refusals(text, &refusals)
     })?;
     let refusal = (!found).then(|| "a healthy run was refused, or a north was wrong".to_owned());
-    Ok(Told { refusal, ..told })
+    let told = Told { refusal, ..told };
+    Ok(told.with_page(report, || page::rotating::campaign::report(&stages, &molecular, &refusals)))
 }
 
 /// The whole instrument over many seeds; a result where none was refused.

@@ -89,3 +89,18 @@ pub fn spectrum(rows: &[RotatingRow], signal: Signal<'_>) -> Vec<Line> {
     let values: Vec<f64> = whole.iter().map(signal).collect();
     amplitudes(&values, rate_hz(rows), Window::Hann)
 }
+
+/// The rows without what the sensor shows of the platform's rate and of its derivative: `sine` of the one,
+/// `quadrature`, s, of the other.
+#[must_use]
+pub fn freed(rows: &[RotatingRow], sine: f64, quadrature: f64) -> Vec<RotatingRow> {
+    let of = |index: usize| {
+        let (row, before) = (&rows[index], &rows[index.saturating_sub(1)]);
+        let after = &rows[(index + 1).min(rows.len() - 1)];
+        let seconds = (after.time_s - before.time_s).max(f64::MIN_POSITIVE);
+        let quickening = (after.stage_rate_rad_s - before.stage_rate_rad_s) / seconds;
+        let felt = sine * row.stage_rate_rad_s + quadrature * quickening;
+        RotatingRow { rate_rad_s: row.rate_rad_s - felt, ..*row }
+    };
+    (0..rows.len()).map(of).collect()
+}

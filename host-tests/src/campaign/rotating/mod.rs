@@ -25,6 +25,10 @@ use crate::rotating::follow;
 
 /// Golden angle, °: azimuths of successive seeds fill the circle evenly.
 const GOLDEN_ANGLE_DEG: f64 = 137.507_764;
+/// By how much a number of turns may miss a whole one for rounding.
+const WHOLE: f64 = 1e-9;
+/// Time for level, uneven turns and changes of speed, s.
+const SPARE: f64 = 600.0;
 /// What a solver is told of a gyro without noise, °/√h: less than any.
 const LEAST_WALK: f64 = 0.000_2;
 
@@ -38,17 +42,17 @@ pub struct Solved {
 }
 
 /// Turns a world's platform as a session wants it: at these speeds in turns a second, so many seconds each
-/// way at each, in whole turns.
+/// way in all, shared between the speeds as the session does.
 #[must_use]
 pub fn solve(world: &World, sensor: Sensor, speeds_hz: &[f64], seconds: f64, seed: u64) -> Solved {
     let speeds: Vec<f64> = speeds_hz.iter().map(|speed| TAU * speed).collect();
     let slowest = speeds_hz.iter().copied().fold(f64::INFINITY, f64::min);
+    let squares: f64 = speeds_hz.iter().map(|speed| speed * speed).sum();
     let mut procedure = Procedure::new(&speeds, 1.0 / world::RATE_HZ);
-    procedure.turns = (seconds * slowest) as u32;
+    procedure.turns = (seconds * slowest * slowest / squares * slowest + WHOLE) as u32;
     let session = setting(world, sensor).and_then(|setting| Session::new(setting, procedure).ok());
     let Some(mut session) = session else { return Solved::NONE };
-    let longest = 60.0 + (4.0 * seconds + 400.0 / slowest) * speeds.len() as f64;
-    world.obey(&mut session, longest, seed);
+    world.obey(&mut session, 2.0 * seconds + SPARE, seed);
     Solved::of(&session, world)
 }
 

@@ -17,8 +17,8 @@ use crate::output::azimuth_error;
 
 /// Both speeds, turns a second.
 pub const SPEEDS_HZ: [f64; 2] = [0.1, 0.2];
-/// Time each way at each, s.
-pub const SECONDS: f64 = 100.0;
+/// Time each way, s.
+pub const SECONDS: f64 = 200.0;
 /// Integrated g-sensitivities over the horizontal Earth rate, at the slower speed.
 pub const RATIOS: [f64; 3] = [0.01, 0.1, 0.3];
 /// Phase of the sensor at the slower speed, °, from … to.
@@ -119,7 +119,7 @@ impl Draw {
             speed_hz: SPEEDS_HZ[0],
         };
         let molecular = Some(sensor.sensor());
-        Self { sensor, world: World { molecular, ..World::drawn(seed, &SPEEDS_HZ, SECONDS) } }
+        Self { sensor, world: World { molecular, ..World::drawn(seed, &[], 0.0) } }
     }
 
     /// What §4 predicts for one speed, °: half of arg(1 + γ²) with γ = G/(w E′), carried over from E′ to
@@ -157,7 +157,7 @@ fn run(ratio: f64, seed: u64) -> Run {
         azimuth_error(azimuth, world.azimuth_deg)
     };
     Run {
-        one_speed: error(solve(world, Sensor::MOLECULAR, &[first], 2.0 * SECONDS, seed)),
+        one_speed: error(solve(world, Sensor::MOLECULAR, &[first], SECONDS, seed)),
         predicted: draw.predicted_deg(),
         two_speeds: error(both(world)),
         plain_limit: noisy.fit.map_or(f64::NAN, |fit| fit.plain_limit.to_degrees()),

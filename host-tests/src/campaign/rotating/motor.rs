@@ -13,7 +13,7 @@ const STEP: f64 = 1e-3;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Motor {
     state: StageState,
-    motor_rad_s: f64,
+    turning_rad_s: f64,
     wanted_rad_s: f64,
 }
 
@@ -33,10 +33,10 @@ impl Motor {
     }
 
     fn step(&mut self, seconds: f64) {
-        let missing = self.wanted_rad_s - self.motor_rad_s;
-        self.motor_rad_s += missing.abs().min(ACCELERATION * seconds).copysign(missing);
+        let missing = self.wanted_rad_s - self.turning_rad_s;
+        self.turning_rad_s += missing.abs().min(ACCELERATION * seconds).copysign(missing);
         let StageState { angle_rad, rate_rad_s } = self.state;
-        let next_rad_s = rate_rad_s + (self.motor_rad_s - rate_rad_s) * seconds / FOLLOWS;
+        let next_rad_s = rate_rad_s + (self.turning_rad_s - rate_rad_s) * seconds / FOLLOWS;
         let angle_rad = angle_rad + 0.5 * (rate_rad_s + next_rad_s) * seconds;
         self.state = StageState { angle_rad, rate_rad_s: next_rad_s };
     }

@@ -13,6 +13,7 @@ use super::stages::{SECONDS, TURN_HZ};
 use super::world::World;
 use super::{Solved, follow_world, over};
 use crate::campaign::faults::WRONG_SIGMAS;
+use crate::campaign::statistics::Answer;
 
 /// Angle random walk of the gyro, °/√h.
 const WALK: f64 = 0.002;
@@ -70,7 +71,8 @@ fn row(case: &Case, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
 }
 
 fn is_wrong(run: &Solved) -> bool {
-    run.answer.is_ok_and(|answer| !(answer.error.abs() <= WRONG_SIGMAS * answer.sigma))
+    let is_right = |answer: Answer| answer.error.abs() <= WRONG_SIGMAS * answer.sigma;
+    run.answer.is_ok_and(|answer| !is_right(answer))
 }
 
 /// The reason that was given most often, its numbers apart, in the words of its first run.

@@ -94,7 +94,7 @@ pub fn world(n_deg_sqrt_h: f64, seed: u64) -> World {
         molecular: Some(
             Integrating { ratio: RATIO, toward_deg: 0.0, lag_deg: 0.0, speed_hz: TURN_HZ }.sensor(),
         ),
-        ..World::drawn(seed, &[TURN_HZ], SECONDS)
+        ..World::drawn(seed, &[], 0.0)
     }
 }
 

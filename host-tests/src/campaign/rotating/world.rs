@@ -51,6 +51,8 @@ pub struct World {
     pub quickest_deg: f64,
     /// Stage angle at which the sensitive axis points uphill, °.
     pub uphill_deg: f64,
+    /// Non-orthogonality of sensitive axis and platform axis, °.
+    pub coupling_deg: f64,
     /// Angle random walk, °/√h.
     pub n_deg_sqrt_h: f64,
     /// Ordinary g-sensitivity `k_s`, `k_o`, °/h/g.
@@ -76,6 +78,7 @@ impl World {
             azimuth_deg: angle(),
             quickest_deg: angle(),
             uphill_deg: angle(),
+            coupling_deg: COUPLING_DEG,
             n_deg_sqrt_h: 0.0,
             g_sensitivity_deg_h_g: [0.0; 2],
             molecular: None,
@@ -142,7 +145,7 @@ impl World {
             gyro: GyroConfiguration {
                 n_deg_sqrt_h: self.n_deg_sqrt_h,
                 g_sensitivity_deg_h_g: self.g_sensitivity_deg_h_g,
-                axis_elevation_rad: COUPLING_DEG.to_radians(),
+                axis_elevation_rad: self.coupling_deg.to_radians(),
                 molecular: self.molecular,
                 ..GyroConfiguration::default()
             },

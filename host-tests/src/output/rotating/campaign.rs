@@ -42,7 +42,7 @@ pub fn molecular(out: &mut impl Write, rows: &[molecular::Row]) -> fmt::Result {
     writeln!(
         out,
         "\nA molecular-electronic sensor that lags by {least}° to {most}°, gain and g-sensitivity unknown, at \
-         {slow} Hz and {fast} Hz, {} s each way at each, N = {} °/√h",
+         {slow} Hz and {fast} Hz, {} s each way in all, N = {} °/√h",
         molecular::SECONDS,
         molecular::WALK
     )?;

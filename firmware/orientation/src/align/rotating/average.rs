@@ -4,6 +4,7 @@ use heapless::Vec;
 
 use super::coupling::{self, Coupling};
 use super::turn::{Sense, Stretch, TURNS, Turn};
+use crate::align::regression::{Column, Regression};
 use crate::math::{Complex, median};
 
 /// Squared distance of a turn from the others, in variances of either part, beyond which it is left
@@ -61,11 +62,10 @@ struct Turns<'a> {
 }
 
 impl<'a> Turns<'a> {
-    fn of(stretch: &'a Stretch, couplings: &[Coupling]) -> Self {
+    fn of(stretch: &'a Stretch, couplings: &[Coupling], steady: f64) -> Self {
         let frequency = stretch.sense.signed(stretch.speed());
         let coupling = coupling::nearest(couplings, frequency);
         let response = coupling.map_or(Complex::default(), |coupling| coupling.response(frequency));
-        let steady = coupling.map_or(0.0, |coupling| coupling.response(0.0).re);
         let (all, phasors) = (stretch.turns(), Vec::new());
         let mut found = Self { all, steady, phasors, is_kept: [true; TURNS] };
         for turn in stretch.turns() {
@@ -156,18 +156,15 @@ impl<'a> Turns<'a> {
 
 impl Average {
     /// The mean of a stretch whose turns have phasors of this variance in either part, (rad/s)²; `None`
-    /// without two turns. A sensor that is not flat does not show steady rotation.
+    /// without two turns. Of the platform's steady rate the gyro shows this part ([`steady_part`]).
     #[must_use]
     pub fn of(
         stretch: &Stretch,
         couplings: &[Coupling],
+        steady: f64,
         variance: f64,
-        is_flat: bool,
     ) -> Option<Self> {
-        let mut turns = Turns::of(stretch, couplings);
-        if !is_flat {
-            turns.steady = 0.0;
-        }
+        let mut turns = Turns::of(stretch, couplings, steady);
         turns.leave_out(variance);
         turns.free();
         let count = turns.count();
@@ -236,10 +233,25 @@ impl Turns<'_> {
     }
 }
 
+/// Part of the platform's steady rate that the gyro shows: the slope of its mean rates over the speeds
+/// of the stretches. A sensor that passes nothing steady shows none; one sense alone cannot tell.
+#[must_use]
+pub fn steady_part(stretches: &[Stretch]) -> f64 {
+    let mut regression = Regression::<2>::default();
+    for stretch in stretches {
+        let mut rates: Vec<f64, TURNS> =
+            stretch.turns().iter().map(|turn| f64::from(turn.offset)).collect();
+        let speed = stretch.sense.signed(stretch.speed());
+        regression.push(&[1.0, speed], median(&mut rates));
+    }
+    let found = regression.solve(&[Column::Free; 2]);
+    found.map_or(0.0, |found| found.coefficients[1])
+}
+
 /// Size of a turn's phasor, rad/s: the median, which disturbed turns hardly touch.
 #[must_use]
 pub fn typical_size(stretch: &Stretch, couplings: &[Coupling]) -> f64 {
-    let turns = Turns::of(stretch, couplings);
+    let turns = Turns::of(stretch, couplings, 0.0);
     let mut sizes: Vec<f64, TURNS> = turns.phasors.iter().map(|phasor| phasor.size()).collect();
     median(&mut sizes)
 }
@@ -250,7 +262,7 @@ pub fn typical_size(stretch: &Stretch, couplings: &[Coupling]) -> f64 {
 pub fn variance_of_neighbours(stretches: &[Stretch], couplings: &[Coupling]) -> f64 {
     let mut squares: Vec<f64, { 4 * TURNS }> = Vec::new();
     for stretch in stretches {
-        let turns = Turns::of(stretch, couplings);
+        let turns = Turns::of(stretch, couplings, 0.0);
         for index in 1..turns.all.len() {
             // Four stretches hold no more.
             let _ = squares.push(turns.distance(index, turns.phasors[index - 1]));

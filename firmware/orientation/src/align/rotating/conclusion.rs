@@ -3,7 +3,7 @@
 use heapless::Vec;
 
 use super::Setting;
-use super::average::{Average, typical_size, variance_of_neighbours};
+use super::average::{Average, steady_part, typical_size, variance_of_neighbours};
 use super::coupling::Coupling;
 use super::follower::{Follower, STRETCHES};
 use super::solution::{Fit, Pair, Problem, SPEEDS, force_density, of_turn};
@@ -178,6 +178,7 @@ impl Conclusion {
     fn averages(&self, setting: &Setting, stretches: &[Stretch]) -> Vec<Average, STRETCHES> {
         let couplings = &self.couplings;
         let horizontal = setting.common.latitude.horizontal_rate();
+        let steady = steady_part(stretches);
         let mut averages = Vec::new();
         for stretch in stretches {
             let joined = stretch.count() / stretch.turns().len().max(1) as u32;
@@ -186,7 +187,7 @@ impl Conclusion {
             // What the sensor's gain makes of its noise, which counts at its input.
             let is_flat = setting.sensor.is_flat;
             let gain = if is_flat { 1.0 } else { typical_size(stretch, couplings) / horizontal };
-            let average = Average::of(stretch, couplings, variance * gain * gain, is_flat);
+            let average = Average::of(stretch, couplings, steady, variance * gain * gain);
             if let Some(average) = average {
                 // There are no more stretches than these.
                 let _ = averages.push(average);

@@ -34,22 +34,41 @@ fn lines(name: &str, style: Style, part: &Part<'_>, signal: Signal<'_>) -> Serie
     Series::new(name, style, near.filter(|(multiple, _)| *multiple <= MULTIPLES))
 }
 
-/// The sensor's spectrum before and after the platform's rate is taken off it with this coupling, and
-/// what the coupling makes of that rate.
-pub fn spectra(part: &Part<'_>, coupling: f64) -> Figure {
-    let before = |row: &RotatingRow| row.rate_rad_s;
-    let platform = |row: &RotatingRow| coupling * row.stage_rate_rad_s;
-    let after = |row: &RotatingRow| before(row) - platform(row);
+/// The sensor's spectrum before and after what it feels of the platform's rate is taken off it, and that
+/// part itself; `freed` has the rows after it.
+pub fn spectra(part: &Part<'_>, freed: &Part<'_>) -> Figure {
+    let felt: Vec<RotatingRow> = part.rows.iter().zip(freed.rows).map(difference).collect();
+    let felt = Part { is_even: part.is_even, rows: &felt };
     let turn = turn_hz(part.rows).abs();
+    let shown: Signal<'_> = &|row| row.rate_rad_s;
     Figure {
         title: format!("Amplitude spectra, {part}"),
         x: Axis::linear(&format!("frequency in turns, of {turn:.4} Hz each"), ""),
         y: Axis::logarithmic("amplitude", "°/h"),
         series: vec![
-            lines("sensor, before", Style::Line, part, &before),
-            lines("platform's rate times the coupling", Style::Dashed, part, &platform),
-            lines("sensor, after the coupling is taken off", Style::LineAndPoints, part, &after),
+            lines("sensor, before", Style::Line, part, shown),
+            lines("platform's rate as the coupling shows it", Style::Dashed, &felt, shown),
+            lines("sensor, after that is taken off", Style::LineAndPoints, freed, shown),
         ],
+    }
+}
+
+/// A row whose rate is what it is less in the other.
+fn difference((row, other): (&RotatingRow, &RotatingRow)) -> RotatingRow {
+    RotatingRow { rate_rad_s: row.rate_rad_s - other.rate_rad_s, ..*row }
+}
+
+/// The sensor's spectrum as it comes, of several parts at the same speed.
+pub fn compared(parts: &[Part<'_>], names: &[String]) -> Figure {
+    let turn = parts.first().map_or(0.0, |part| turn_hz(part.rows).abs());
+    let of = |(part, name): (&Part<'_>, &String)| {
+        lines(name, Style::LineAndPoints, part, &|row| row.rate_rad_s)
+    };
+    Figure {
+        title: "Amplitude spectra of the sensor".to_owned(),
+        x: Axis::linear(&format!("frequency in turns, of {turn:.4} Hz each"), ""),
+        y: Axis::logarithmic("amplitude", "°/h"),
+        series: parts.iter().zip(names).map(of).collect(),
     }
 }
 
@@ -68,30 +87,30 @@ pub fn platform(parts: &[Part<'_>]) -> Figure {
     }
 }
 
-/// The phasor of each turn of each even stretch in the complex plane, the coupling taken off.
-pub fn plane(parts: &[Part<'_>], coupling: f64) -> Figure {
-    let even = parts.iter().filter(|part| part.is_even);
+/// The phasor of each turn of each even part in the complex plane.
+pub fn plane(parts: &[Part<'_>]) -> Figure {
     let of = |part: &Part<'_>| {
-        let points = of_turns(part, coupling).into_iter().map(|(_, at)| (at.re, at.im));
+        let Turns { near, .. } = Turns::of(part);
+        let points = near.into_iter().map(|(_, at)| (at.re, at.im));
         Series::new(&part.to_string(), Style::Points, points)
     };
     Figure {
         title: "Phasor of the sensor's signal in each turn, the coupling taken off".to_owned(),
         x: Axis::linear("in step with cos θ", "°/h"),
         y: Axis::linear("in step with −sin θ", "°/h"),
-        series: even.map(of).collect(),
+        series: parts.iter().filter(|part| part.is_even).map(of).collect(),
     }
 }
 
 /// By how much each turn's phasor differs from the mean of its part.
-pub fn residuals(parts: &[Part<'_>], coupling: f64) -> Figure {
-    let even = parts.iter().filter(|part| part.is_even);
+pub fn residuals(parts: &[Part<'_>]) -> Figure {
     let of = |part: &Part<'_>| {
-        let turns = of_turns(part, coupling);
-        let mean = turns.iter().map(|(_, at)| at).sum::<Complex<f64>>() / turns.len().max(1) as f64;
+        let Turns { near, far } = Turns::of(part);
+        let mean = near.iter().map(|(_, at)| at).sum::<Complex<f64>>() / near.len().max(1) as f64;
+        let beyond = if far > 0 { format!(" ({far} far off, not shown)") } else { String::new() };
         let side = |name: &str, of: fn(Complex<f64>) -> f64| {
-            let points = turns.iter().map(|(time, at)| (*time, of(at - mean)));
-            Series::new(&format!("{name}, {part}"), Style::LineAndPoints, points)
+            let points = near.iter().map(|(time, at)| (*time, of(at - mean)));
+            Series::new(&format!("{name}, {part}{beyond}"), Style::LineAndPoints, points)
         };
         [side("cos θ", |at| at.re), side("−sin θ", |at| at.im)]
     };
@@ -99,13 +118,36 @@ pub fn residuals(parts: &[Part<'_>], coupling: f64) -> Figure {
         title: "Phasor of each turn less the mean of its stretch".to_owned(),
         x: Axis::linear("time", "s"),
         y: Axis::linear("residual", "°/h"),
-        series: even.flat_map(of).collect(),
+        series: parts.iter().filter(|part| part.is_even).flat_map(of).collect(),
     }
 }
 
-/// Times and phasors of a stretch's turns, °/h.
-fn of_turns(part: &Part<'_>, coupling: f64) -> Vec<(f64, Complex<f64>)> {
-    let after = |row: &RotatingRow| row.rate_rad_s - coupling * row.stage_rate_rad_s;
-    let turns = phasors(part.rows, &after).into_iter();
-    turns.map(|(time, at)| (time, at * degrees_per_hour(1.0))).collect()
+/// Distances from the middle, in the median of all, beyond which a turn would hide the others.
+const FAR: f64 = 20.0;
+
+/// Times and phasors of a part's turns, °/h.
+struct Turns {
+    near: Vec<(f64, Complex<f64>)>,
+    /// How many are too far from these.
+    far: usize,
+}
+
+impl Turns {
+    fn of(part: &Part<'_>) -> Self {
+        let turns = phasors(part.rows, &|row| row.rate_rad_s).into_iter();
+        let all: Vec<_> = turns.map(|(time, at)| (time, at * degrees_per_hour(1.0))).collect();
+        let middle_of = |of: fn(&Complex<f64>) -> f64| median(all.iter().map(|(_, at)| of(at)));
+        let middle = Complex::new(middle_of(|at| at.re), middle_of(|at| at.im));
+        let usual = median(all.iter().map(|(_, at)| (at - middle).norm()));
+        let is_near = |(_, at): &(f64, Complex<f64>)| (at - middle).norm() <= FAR * usual;
+        let (near, far): (Vec<_>, Vec<_>) = all.iter().copied().partition(is_near);
+        Self { near, far: far.len() }
+    }
+}
+
+/// The (upper) median; zero of none.
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or_default()
 }

@@ -1,16 +1,18 @@
 //! The page of an alignment on a turning platform: papers/004's figures, and where σ comes from.
 
+pub mod campaign;
 mod figures;
 
 use orientation::align::rotating::conclusion::Conclusion;
 
 use super::budget;
-use crate::output::degrees;
 use crate::output::rotating::json::{Stages, Stretch};
+use crate::output::{azimuth_error, degrees};
 use crate::recording::RotatingRow;
 use crate::report::{Part as OfPage, Report, Table};
 use crate::rotating::Replay;
 use crate::rotating::part::Part;
+use crate::rotating::turns::freed;
 
 /// The page for a replay of `name`, whose rows are these.
 #[must_use]
@@ -21,9 +23,12 @@ pub fn report(
     rows: &[RotatingRow],
 ) -> Report {
     let parts = replay.parts(rows);
-    let coupling = conclusion.couplings.first().map_or(0.0, |coupling| coupling.sine);
+    let freed = match conclusion.couplings.first() {
+        Some(coupling) => freed(rows, coupling.sine, coupling.quadrature),
+        None => rows.to_vec(),
+    };
     let mut page = tables(conclusion);
-    page.extend(of_parts(&parts, coupling));
+    page.extend(of_parts(&parts, &replay.parts(&freed)));
     Report {
         title: format!("Alignment on a turning platform: {name}"),
         subtitle: subtitle(replay, conclusion),
@@ -55,18 +60,18 @@ fn tables(conclusion: &Conclusion) -> Vec<OfPage> {
     vec![stages(&fit.into()).into(), of_stretches(&stretches).into(), budget(&fit.budget).into()]
 }
 
-/// Spectra of every part, then the phasors of its turns.
-fn of_parts(parts: &[Part<'_>], coupling: f64) -> Vec<OfPage> {
+/// Spectra of every part as it came and freed of the coupling, then the phasors of its turns.
+fn of_parts(parts: &[Part<'_>], freed: &[Part<'_>]) -> Vec<OfPage> {
     let mut page: Vec<OfPage> = Vec::new();
-    for part in parts {
+    for (part, freed) in parts.iter().zip(freed) {
         if !part.is_even {
             page.push(figures::profile(part).into());
         }
-        page.push(figures::spectra(part, coupling).into());
+        page.push(figures::spectra(part, freed).into());
     }
     page.push(figures::platform(parts).into());
-    page.push(figures::plane(parts, coupling).into());
-    page.push(figures::residuals(parts, coupling).into());
+    page.push(figures::plane(freed).into());
+    page.push(figures::residuals(freed).into());
     page
 }
 
@@ -77,7 +82,7 @@ fn named(head: &[&str]) -> Vec<String> {
 fn stages(stages: &Stages) -> Table {
     let full = stages.full_deg;
     let row = |(stage, azimuth): (&str, f64)| {
-        let off = crate::output::azimuth_error(azimuth, full);
+        let off = azimuth_error(azimuth, full);
         vec![stage.to_owned(), format!("{azimuth:.4}"), format!("{off:+.4}")]
     };
     Table {
