@@ -19,7 +19,7 @@ fn found(seed: u64, lag_s: f64, segment: Segment) -> (Case, Option<Coupling>) {
     case.segments = vec![segment];
     let mut follower = Follower::new(1, Mode::Uneven);
     for turning in Turntable::new(&case.configuration(), seed) {
-        let turning_rate = (seed % 2 == 0).then_some(turning.stage_rate_rad_s as f32);
+        let turning_rate = (seed.is_multiple_of(2)).then_some(turning.stage_rate_rad_s as f32);
         follower.push(&sample(&turning), turning_rate);
     }
     let coupling = follower.uneven()[0].coupling(&case.setting.common.noise);

@@ -91,7 +91,7 @@ fn campaign(seeds: Range<u64>, of: impl Fn(u64) -> Case + Sync + Send) -> (f64, 
         case.error(&case.conclude(seed)).map(|(error, sigma)| error / sigma)
     });
     let refused = ratios.iter().filter_map(|ratio| ratio.err());
-    let (count, last) = (refused.clone().count(), refused.last());
+    let (count, last) = (refused.clone().count(), refused.max_by_key(|_| 0));
     let good: Vec<f64> = ratios.into_iter().flatten().collect();
     (rms(&good), count, format!("{last:?}"))
 }

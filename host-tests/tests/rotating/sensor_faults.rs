@@ -64,18 +64,24 @@ fn an_accelerometer_that_saturates_sticks_or_is_dead_is_refused() {
         edited(seed, &case, |samples| {
             let middle = samples.len() / 2;
             let force = samples[middle].force_m_s2;
-            samples[middle..].iter_mut().for_each(|sample| sample.force_m_s2 = force);
+            for sample in &mut samples[middle..] {
+                sample.force_m_s2 = force;
+            }
         })
     });
     assert_refused(&["Device"], |seed, case| {
         edited(seed, &case, |samples| {
-            samples.iter_mut().for_each(|sample| sample.force_m_s2 = [0.0; 3]);
+            for sample in samples {
+                sample.force_m_s2 = [0.0; 3];
+            }
         })
     });
     // Vertical where it should be level.
     assert_refused(&["AccelerometerImplausible"], |seed, case| {
         edited(seed, &case, |samples| {
-            samples.iter_mut().for_each(|sample| sample.force_m_s2.swap(0, 2));
+            for sample in samples {
+                sample.force_m_s2.swap(0, 2);
+            }
         })
     });
 }
