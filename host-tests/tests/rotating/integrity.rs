@@ -11,6 +11,7 @@ use hal_mock::stage::{EncoderConfiguration, Harmonic, Ripple, Unevenness};
 use orientation::noise::model::GyroNoise;
 use orientation::session::rotating::Procedure;
 
+use super::outcome::healthy;
 use super::rig::{Case, both_senses, driven, flat, over, per_g, rms};
 
 /// What the gyro's noise is made of beside white noise.
@@ -146,4 +147,16 @@ fn a_session_that_turns_the_platform_itself_states_a_true_sigma() {
     println!("commanded: {:.3} of σ", rms(&ratios));
     // 120 draws tell an RMS to 6.5 %.
     assert!((0.82..1.18).contains(&rms(&ratios)), "{:.3}", rms(&ratios));
+}
+
+#[test]
+fn a_turn_that_begins_in_a_ramp_is_no_drift_of_the_gyro() {
+    for seed in 0..8 {
+        let mut case = healthy(seed, 0.0005);
+        case.instruments.gyro.n_deg_sqrt_h = 0.0;
+        case.instruments.gyro.axis_elevation_rad = 0.03;
+        case.segments = both_senses(1.6, 4.1);
+        let (error, _) = case.error(&case.conclude(seed)).expect("a healthy platform");
+        assert!(error.to_degrees().abs() < 0.02, "{}°", error.to_degrees());
+    }
 }
