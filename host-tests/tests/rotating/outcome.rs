@@ -74,7 +74,7 @@ pub fn healthy(seed: u64, n: f64) -> Case {
         start_rad: between(0.0, TAU),
         segments: both_senses(SPEED, TURNS + 0.1),
         setting,
-        is_by_encoder: seed % 2 == 0,
+        is_by_encoder: seed.is_multiple_of(2),
     }
 }
 
@@ -115,7 +115,9 @@ pub fn assert_refused(names: &[&str], run: impl Fn(u64, Case) -> Run + Sync + Se
 /// No run is wrong: it may be refused by one of these names.
 #[track_caller]
 pub fn assert_never_wrong(names: &[&str], run: impl Fn(u64, Case) -> Run + Sync + Send) {
-    runs(run).iter().for_each(|run| assert_sound(run, names));
+    for run in runs(run) {
+        assert_sound(&run, names);
+    }
 }
 
 /// Every run has an azimuth within 4 σ.

@@ -1,6 +1,6 @@
 //! What goes wrong with the platform and its encoder is refused by name.
 
-use hal_mock::turntable::{EncoderSlip, Segment};
+use hal_mock::turntable::{EncoderSlip, Segment, TurntableConfiguration};
 use orientation::error::Refusal;
 use orientation::session::rotating::Procedure;
 
@@ -108,7 +108,7 @@ fn places() -> [f64; 8] {
 
 #[test]
 fn a_slip_of_the_encoder_is_refused_wherever_it_happens() {
-    for by_deg in [0.5_f64, -0.5, 5.0, -5.0, 90.0] {
+    for by_deg in [0.5_f64, -5.0, 90.0] {
         for place in places() {
             assert_refused(&["EncoderSlipped"], |seed, case| {
                 let from_s = place + 0.05 * seed as f64;
@@ -118,8 +118,6 @@ fn a_slip_of_the_encoder_is_refused_wherever_it_happens() {
         }
     }
 }
-
-use hal_mock::turntable::TurntableConfiguration;
 
 #[test]
 fn a_slip_while_a_session_turns_the_platform_is_refused() {
@@ -142,27 +140,27 @@ fn a_creeping_encoder_is_refused_once_it_shows_above_the_noise() {
         move |seed: u64, case: super::rig::Case| {
             let rad_per_s = rate_deg_s.to_radians();
             let slip = EncoderSlip { from_s: clockwise_s(0.0), by_rad: 0.0, rad_per_s };
-            let run = with(seed, &case, |configuration| TurntableConfiguration {
-                slip,
-                ..configuration
-            });
+            let run =
+                with(seed, &case, |configuration| TurntableConfiguration { slip, ..configuration });
             // The zero moves: any azimuth that it went through is one.
             let crept = rad_per_s * (2.0 * turns_s(TURNS) + 5.0);
             run.map(|(error, sigma)| (error - error.clamp(-crept, 0.0), sigma))
         }
     };
-    let names = ["TiltChanged", "DirectionDrifts", "Disturbed", "SpeedsUnequal", "EncoderSlipped"];
+    let names =
+        ["TiltChanged", "DirectionDrifts", "Disturbed", "SpeedsUnequal", "ResidualsNotWhite"];
     for rate in [1e-5, 1e-4, 1e-3, 1e-2] {
         assert_never_wrong(&names, creep(rate));
     }
     for rate in [0.1, 0.3, 1.0, 3.0] {
+        let names = [&names[..], &["TurnsTooFew"]].concat();
         assert_refused(&names, creep(rate));
     }
 }
 
 #[test]
 fn a_tilt_that_changes_is_refused_or_leaves_the_azimuth_right() {
-    for change in [0.001, 0.003, 0.01, 0.03, 0.1, 0.3] {
+    for change in [0.003, 0.03, 0.3] {
         for place in [between_s(), clockwise_s(6.0)] {
             let names = ["TiltChanged", "DirectionDrifts", "ResidualsNotWhite", "Disturbed"];
             assert_never_wrong(&names, |seed, case| {
@@ -183,8 +181,9 @@ fn a_tilt_that_changes_is_refused_or_leaves_the_azimuth_right() {
 
 #[test]
 fn a_base_that_turned_is_refused_or_stood_where_the_azimuth_says() {
-    let names = ["TiltChanged", "DirectionDrifts", "ResidualsNotWhite", "Disturbed", "SensesDisagree"];
-    for change in [0.03, 0.1, 0.3, 1.0, 3.0_f64] {
+    let names =
+        ["TiltChanged", "DirectionDrifts", "ResidualsNotWhite", "Disturbed", "SensesDisagree"];
+    for change in [0.1, 1.0, 3.0_f64] {
         for place in [between_s(), clockwise_s(6.0)] {
             assert_never_wrong(&names, |seed, case| {
                 let mut after = case.clone();

@@ -42,14 +42,14 @@ pub fn sample(from: &TurningSample) -> Sample {
 }
 
 /// Replays samples as a recording.
-pub fn replayed(
-    setting: Setting,
+fn replayed(
+    setting: &Setting,
     period: f64,
     is_by_encoder: bool,
     samples: impl Iterator<Item = TurningSample>,
 ) -> Conclusion {
     let procedure = Procedure::recorded(period);
-    let mut session = Session::new(setting, procedure).expect("a recording has no speeds");
+    let mut session = Session::new(*setting, procedure).expect("a recording has no speeds");
     for turning in samples {
         let sample = sample(&turning);
         let event = if is_by_encoder {
@@ -108,7 +108,7 @@ impl Case {
     /// The same of another configuration, a fault in it perhaps.
     pub fn conclude_as(&self, configuration: &TurntableConfiguration, seed: u64) -> Conclusion {
         let period = 1.0 / self.instruments.rate_hz;
-        replayed(self.setting, period, self.is_by_encoder, Turntable::new(configuration, seed))
+        replayed(&self.setting, period, self.is_by_encoder, Turntable::new(configuration, seed))
     }
 
     /// What the platform's instruments show.
@@ -119,7 +119,7 @@ impl Case {
     /// What the session makes of samples, as a recording.
     pub fn replay(&self, samples: &[TurningSample]) -> Conclusion {
         let period = 1.0 / self.instruments.rate_hz;
-        replayed(self.setting, period, self.is_by_encoder, samples.iter().copied())
+        replayed(&self.setting, period, self.is_by_encoder, samples.iter().copied())
     }
 
     /// Error of a conclusion's azimuth, and its σ, rad.

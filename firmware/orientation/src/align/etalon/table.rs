@@ -112,8 +112,9 @@ impl Table {
         self.cos(index.rem_euclid(TURN) - QUARTER)
     }
 
-    /// Cosine and sine of any angle in units of 2⁻³⁰, within ±1: the grid's values, carried on to the
-    /// angle by each other (the second order, at most 3e-10, is left out). Some 50 instructions.
+    /// Cosine and sine of any angle in units of 2⁻³⁰, within ±2 (at most 1.7 were found): the grid's
+    /// values, carried on to the angle by each other. The second order, at most 0.32, is left out, and
+    /// what is less than a unit is cut off. Some 50 instructions.
     #[must_use]
     #[inline]
     pub fn at(self, angle: Angle) -> [i32; 2] {

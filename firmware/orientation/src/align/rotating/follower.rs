@@ -34,6 +34,9 @@ const SAME_SPEED: f64 = 0.03;
 /// By how much an encoder may have moved against the platform in what broke a turn, rad: 0.3°, twice
 /// what an unevenness of 0.2 % makes of a quarter turn.
 const SLIP: f64 = 0.3 / 360.0 * WHOLE_TURN;
+/// Most that a slip breaks, rad, three eighths of a turn: after more the platform stood, or turned unevenly
+/// and took on the speed again.
+const LONGEST_BREAK: f64 = 0.375 * WHOLE_TURN;
 
 /// Force at which an accelerometer of ±2 g clips, µm/s²: 97 % of it.
 const FORCE_LIMIT: i32 = 19_000_000;
@@ -394,7 +397,9 @@ impl Follower {
     /// that speed is a slip.
     fn judge_slip(&mut self, part: &Part, is_even: bool, is_alike: bool) {
         if is_even {
-            let broken = self.broken.take().filter(|_| is_alike);
+            let is_short =
+                |broken: &Broken| f64::from(self.speed.abs() * broken.seconds) < LONGEST_BREAK;
+            let broken = self.broken.take().filter(|broken| is_alike && is_short(broken));
             let slip = broken.map_or(0.0, |broken| broken.slip(self.speed));
             if slip.abs() > SLIP.max(self.slip.abs()) {
                 self.slip = slip;

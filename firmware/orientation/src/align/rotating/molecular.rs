@@ -105,6 +105,7 @@ pub fn freed(halves: &[Halves], sigma: f64) -> Option<Freed> {
         x = if y == 0.0 { 0.0 } else { product / y };
         found.ratio = Complex::new(x, y);
     }
+    found.one_speed += fourth_order(found.ratio.re, found.ratio.im);
     found.disagreement = disagreement(halves, slowest.speed, found.ratio);
     Some(found)
 }
