@@ -39,10 +39,17 @@ pub struct Coupling {
 }
 
 impl Coupling {
-    /// From the sums of an uneven stretch of `seconds`, in which the platform turned by `turned` rad;
-    /// `None` where it was too even, or too short, to tell.
+    /// From the sums of an uneven stretch of `seconds`, in which the platform turned by `turned` rad,
+    /// modulated at two frequencies that are apart by twice `width` of their mean, or at one; `None` where
+    /// it was too even, or too short, to tell.
     #[must_use]
-    pub fn of(sums: &Sums, seconds: f64, turned: f64, noise: &GyroNoise) -> Option<Self> {
+    pub fn of(
+        sums: &Sums,
+        seconds: f64,
+        turned: f64,
+        width: f64,
+        noise: &GyroNoise,
+    ) -> Option<Self> {
         let mean = turned / seconds;
         let rows = f64::from(sums.rows().max(1));
         let modulation = sums.product(TURNING, TURNING) / rows - squared(sums.mean(TURNING));
@@ -59,9 +66,10 @@ impl Coupling {
         // Noise of a row, whose mean is over this time.
         let density = noise.density_at(frequency / TURN) * rows / seconds;
         let sigma = |column: usize| libm::sqrt(density * found.covariance[column][column]);
+        let (sine, quadrature) = (found.coefficients[TURNING], found.coefficients[QUICKENING]);
         Some(Self {
-            sine: found.coefficients[TURNING],
-            quadrature: found.coefficients[QUICKENING],
+            sine,
+            quadrature: quadrature * at_one_frequency(frequency * quadrature / sine, width),
             sine_sigma: sigma(TURNING),
             quadrature_sigma: sigma(QUICKENING),
             frequency,
@@ -99,6 +107,14 @@ impl Coupling {
     pub fn sigmas(&self, frequency: f64) -> [f64; 2] {
         [self.sine_sigma, frequency * self.quadrature_sigma]
     }
+}
+
+/// What a lag that is fitted to two frequencies at once, apart by twice `width` of their mean, is too
+/// small by: one pole answers the higher one less. A lead (its tangent > 0), of which the law is another,
+/// is left as it is.
+fn at_one_frequency(lead: f64, width: f64) -> f64 {
+    let power = squared(lead);
+    if lead < 0.0 { 1.0 + squared(2.0 * width) * power / (1.0 + power) } else { 1.0 }
 }
 
 /// The one that was found nearest to a speed in rad/s.

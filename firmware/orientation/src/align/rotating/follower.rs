@@ -136,14 +136,17 @@ impl Follower {
         self.slip
     }
 
-    /// What is followed from now on; each time that it is uneven, another uneven stretch.
+    /// What is followed from now on.
     pub fn follow(&mut self, mode: Mode) {
         self.mode = mode;
         self.restart();
-        if mode == Mode::Uneven {
-            // One beyond the speeds goes on with the last.
-            let _ = self.uneven.push(Uneven::default());
-        }
+    }
+
+    /// Follows another uneven stretch, modulated by a line of this half width over its frequency.
+    pub fn follow_uneven(&mut self, width: f64) {
+        self.follow(Mode::Uneven);
+        // One beyond the speeds goes on with the last.
+        let _ = self.uneven.push(Uneven { width, ..Uneven::default() });
     }
 
     /// There will be no more: a turn that lacks a little is whole enough.

@@ -24,13 +24,15 @@ pub struct Uneven {
     pub seconds: f64,
     /// Angle turned through, rad, clockwise positive.
     pub turned: f64,
+    /// Half the width of the modulation's line over its frequency, where it was commanded.
+    pub width: f64,
 }
 
 impl Uneven {
     /// The coupling that it shows, if it was uneven enough.
     #[must_use]
     pub fn coupling(&self, noise: &GyroNoise) -> Option<Coupling> {
-        Coupling::of(&self.sums, self.seconds, self.turned, noise)
+        Coupling::of(&self.sums, self.seconds, self.turned, self.width, noise)
     }
 }
 

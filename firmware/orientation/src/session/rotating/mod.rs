@@ -259,7 +259,7 @@ impl Session {
         }
         self.commanded = now;
         if self.follower.mode() == Mode::Ignore && elapsed >= self.settled {
-            self.follower.follow(Mode::Uneven);
+            self.follower.follow_uneven(self.procedure.modulation_width());
         }
         let time = (elapsed as f64 - self.settled as f64) * 1e-6;
         Command::Turn(self.procedure.uneven_rate(self.speed(index), time))

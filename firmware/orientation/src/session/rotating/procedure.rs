@@ -42,14 +42,14 @@ pub struct Procedure {
 
 impl Procedure {
     /// Speeds with a default number of turns: three minutes in either sense for each, twelve uneven turns
-    /// modulated by a quarter.
+    /// modulated by a quarter, and twice as many where a lag counts for more.
     #[must_use]
     pub fn new(speeds: &[f64], sample_seconds: f64) -> Self {
         let slowest = speeds.iter().copied().fold(f64::INFINITY, f64::min);
         Self {
             speeds: speeds.iter().copied().take(SPEEDS).collect(),
             turns: default_turns(speeds, slowest),
-            uneven_turns: 12,
+            uneven_turns: if speeds.len() > 1 { 24 } else { 12 },
             modulation: 0.25,
             sample_seconds,
             block_seconds: BLOCK_SECONDS.max(BLOCK_ANGLE / slowest),
@@ -80,13 +80,18 @@ impl Procedure {
         libm::round(self.block_seconds / self.sample_seconds).clamp(1.0, 1e6) as u32
     }
 
+    /// Half the width of the modulation's line over its frequency: it turns into its opposite in all of the
+    /// uneven turns.
+    pub(super) fn modulation_width(&self) -> f64 {
+        0.5 / f64::from(self.uneven_turns.max(1))
+    }
+
     /// Rate of the platform `time` s into the uneven turns at a speed, rad/s, also before they count: modulated once per turn, where
     /// the unevenness that counts lies too, by a modulation that turns into its opposite meanwhile. What
     /// stays the same, as the Earth rate does, is told apart from it.
     pub(super) fn uneven_rate(&self, speed: f64, time: f64) -> f64 {
         let turned = speed * time;
-        let whole = f64::from(self.uneven_turns.max(1)) * TURN;
-        let depth = self.modulation * libm::cos(0.5 * TURN * turned / whole);
+        let depth = self.modulation * libm::cos(self.modulation_width() * turned);
         speed * (1.0 + depth * libm::sin(turned))
     }
 }
