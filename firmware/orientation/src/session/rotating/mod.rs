@@ -255,7 +255,7 @@ impl Session {
         if self.follower.mode() == Mode::Ignore && is_over(elapsed, settle) {
             self.follower.follow(Mode::Uneven);
         }
-        Command::Turn(self.procedure.uneven_rate(speed, elapsed as f64 * 1e-6))
+        Command::Turn(self.procedure.uneven_rate(speed, elapsed as f64 * 1e-6 - settle))
     }
 
     /// Ends where the sensor stands badly, or the platform did not turn.

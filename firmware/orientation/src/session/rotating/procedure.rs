@@ -7,9 +7,6 @@ use crate::align::rotating::solution::SPEEDS;
 use crate::session::procedure::ProcedureError;
 use crate::units::TURN;
 
-/// Frequencies of the modulation over that of the turn: far enough from it to be told apart in twelve
-/// turns, and on both sides, so that what a sensor does between them is what it does at the turn.
-const TONES: [f64; 2] = [0.83, 1.17];
 /// Least turns in either sense: one alone cannot be told from a disturbed one.
 const LEAST_TURNS: f64 = 2.0;
 /// Default time in either sense for each speed, s.
@@ -29,7 +26,7 @@ pub struct Procedure {
     pub turns: u32,
     /// Turns that are uneven on purpose before them; zero where the stored couplings are to do.
     pub uneven_turns: u32,
-    /// Amplitude of their modulation over the speed.
+    /// Greatest amplitude of their modulation over the speed.
     pub modulation: f64,
     /// Sample period, s.
     pub sample_seconds: f64,
@@ -83,10 +80,14 @@ impl Procedure {
         libm::round(self.block_seconds / self.sample_seconds).clamp(1.0, 1e6) as u32
     }
 
-    /// Rate of the platform `time` s into an uneven turn, rad/s.
+    /// Rate of the platform `time` s into the uneven turns at a speed, rad/s, also before they count: modulated once per turn, where
+    /// the unevenness that counts lies too, by a modulation that turns into its opposite meanwhile. What
+    /// stays the same, as the Earth rate does, is told apart from it.
     pub(super) fn uneven_rate(&self, speed: f64, time: f64) -> f64 {
-        let tones: f64 = TONES.iter().map(|tone| libm::sin(tone * speed * time)).sum();
-        speed * (1.0 + self.modulation / TONES.len() as f64 * tones)
+        let turned = speed * time;
+        let whole = f64::from(self.uneven_turns.max(1)) * TURN;
+        let depth = self.modulation * libm::cos(0.5 * TURN * turned / whole);
+        speed * (1.0 + depth * libm::sin(turned))
     }
 }
 
