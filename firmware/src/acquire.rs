@@ -235,7 +235,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: Steady, O: Observer>
         if self.forces_clipped > self.longest_clipped {
             return Err(self.shared.give_up(Device::Accelerometer, Trouble::Saturated));
         }
-        if self.forces.push(reading.force) >= STUCK {
+        if self.forces.push(reading.force) >= STUCK && !reading.is_clipped {
             self.forces = Row::new();
             return Ok(Err(Symptom::Stuck));
         }

@@ -50,6 +50,24 @@ impl Default for StageConfiguration {
     }
 }
 
+/// A platform on a slip ring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TurntableConfiguration {
+    /// What motor and encoder may differ by from one turn to the next, rad: play, what the encoder's
+    /// calibration leaves, the time between two readings. Less than the azimuth's σ lets pass is out of
+    /// reach here; the session finds slower and smaller slips by its turns.
+    pub agreement: f64,
+    /// Rest after the motor has stopped, before the encoder is believed.
+    pub settle: Duration,
+}
+
+impl Default for TurntableConfiguration {
+    /// Motor and encoder within 0.15°, a quarter of a second of rest.
+    fn default() -> Self {
+        Self { agreement: 0.15 * DEGREE, settle: Duration::from_millis(250) }
+    }
+}
+
 /// The two frames of a mount: geometry, encoders, drives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FramesConfiguration {
@@ -125,7 +143,7 @@ pub struct Configuration {
 /// Rate at which the accelerometer is read, Hz; its mean is all that an alignment needs.
 const FORCE_RATE: f64 = 100.0;
 /// Rate at which the encoder is read, Hz: the stage turns 0.1° between two readings.
-const ANGLE_RATE: f64 = 200.0;
+pub const ANGLE_RATE: f64 = 200.0;
 
 impl Configuration {
     /// The default board with a gyro of so many samples a second.
@@ -139,6 +157,12 @@ impl Configuration {
             encoder: Harmonics::default(),
             stage: StageConfiguration::default(),
         }
+    }
+
+    /// The same on a turntable, which has turned on by the next sample: every one has its own angle.
+    #[must_use]
+    pub fn turning(sample_rate: f64) -> Self {
+        Self { angle_divider: 1, ..Self::at(sample_rate) }
     }
 
     /// The sample period, µs, to nearest.

@@ -1,6 +1,7 @@
 //! What the instrument tells of itself: read in a row, these sentences say what it did and why.
 
 use orientation::align::quality::Disturbance;
+use orientation::align::rotating::turn::Sense;
 use orientation::device::{Device, Trouble};
 use orientation::error::Refusal;
 use orientation::noise::fit::{Coefficient, Estimate};
@@ -18,6 +19,13 @@ pub enum Event {
         positions: usize,
         /// Time at each, s.
         dwell: f64,
+        /// Latitude, °.
+        latitude: f64,
+    },
+    /// The instrument begins, on a platform that turns all the time.
+    BegunTurning {
+        /// Turns that are planned.
+        turns: u32,
         /// Latitude, °.
         latitude: f64,
     },
@@ -50,6 +58,8 @@ pub enum Event {
     Arrived(Device, f64, f64),
     /// An axis stands beside its target by this angle, °, and goes again.
     Corrected(Device, f64),
+    /// An axis begins to turn at this rate, °/s, clockwise positive, or is to come to rest.
+    Revolving(Device, f64),
     /// An axis is blocked and tries again.
     Blocked(Device),
     /// The gyro's axis stands vertical, to store the azimuth: angles of the outer and the inner frame.
@@ -79,6 +89,16 @@ pub enum Event {
     Repeated(usize, Disturbance),
     /// A dwell is left out of the fit.
     LeftOut(usize, Disturbance),
+    /// The platform turns unevenly on purpose, at this mean rate, °/s.
+    Uneven(f64),
+    /// How far the gyro's axis stands from the platform's plane, and its 1σ, °.
+    Coupled(f64, f64),
+    /// Turns count from here: which way, at this speed, °/s.
+    Stretch(Sense, f64),
+    /// A turn was taken: number, of how many.
+    Turned(u32, u32),
+    /// So many turns are left out of the fit.
+    TurnsLeftOut(u32, Sense),
     /// The azimuth, its σ and the limit that no estimator can beat, °.
     Concluded(f64, f64, f64),
     /// There is no azimuth.
@@ -91,6 +111,8 @@ words! { Event:
     Self::Begun { positions, dwell, latitude } =>
         "begin: {} positions of {} s at latitude {}°",
         positions, Rounded::<1>(dwell), Rounded::<4>(latitude);
+    Self::BegunTurning { turns, latitude } =>
+        "begin: {} turns at latitude {}°", turns, Rounded::<4>(latitude);
     Self::Started(device) => "{}: identity and self-test passed, configured", device;
     Self::Lost(device, symptom) => "{}: reading lost: {}", device, symptom;
     Self::Restarting(device, symptom) => "{}: {}: starting it again", device, symptom;
@@ -110,6 +132,8 @@ words! { Event:
         "{}: stands at {}° after {} s", axis, Rounded::<3>(angle), Rounded::<2>(seconds);
     Self::Corrected(axis, angle) =>
         "{}: {}° beside its target, going again", axis, Rounded::<3>(angle);
+    Self::Revolving(axis, 0.0) => "{}: comes to rest", axis;
+    Self::Revolving(axis, rate) => "{}: turns at {} °/s", axis, Rounded::<2>(rate);
     Self::Blocked(axis) => "{}: blocked, trying again", axis;
     Self::Stored(outer, inner) =>
         "gyro vertical to store the azimuth: outer frame at {}°, inner frame at {}°",
@@ -127,6 +151,15 @@ words! { Event:
         "that dwell is short, {} s: the stage moved of itself", Rounded::<1>(seconds);
     Self::Repeated(number, why) => "dwell {} is measured again: {}", number, why;
     Self::LeftOut(number, why) => "dwell {} is left out: {}", number, why;
+    Self::Uneven(rate) =>
+        "uneven turns, {} °/s in the mean, to know how the gyro feels the platform", Rounded::<2>(rate);
+    Self::Coupled(angle, sigma) =>
+        "gyro's axis {}° ± {}° (1σ) above the platform", Rounded::<4>(angle), Rounded::<4>(sigma);
+    Self::Stretch(sense, speed) =>
+        "turns count from here: {}, {} °/s", sense, Rounded::<2>(speed);
+    Self::Turned(number, of) => "turn {} of {}", number, of;
+    Self::TurnsLeftOut(turns, sense) =>
+        "{} turn(s) {} left out: something disturbed them", turns, sense;
     Self::Concluded(azimuth, sigma, limit) =>
         "azimuth {}° ± {}° (1σ), limit {}°",
         Rounded::<4>(azimuth), Rounded::<4>(sigma), Rounded::<4>(limit);

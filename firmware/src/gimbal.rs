@@ -14,9 +14,10 @@ use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 
 use crate::configuration::FramesConfiguration;
 use crate::event::Event;
+use crate::motor::Axis;
 use crate::ports::{Actuator, Frames, Observer};
 use crate::shared::{LatestAngle, Shared};
-use crate::stage::{Axis, Stage};
+use crate::stage::Stage;
 
 /// The names of the two frames' devices.
 const OUTER: Axis = Axis { drive: Device::OuterFrame, encoder: Device::OuterEncoder };
@@ -76,7 +77,7 @@ impl<'a, M: Actuator, O: Observer> Gimbal<'a, M, O> {
         self.go_to(Station::Forward).await?;
         self.shared.homed.signal(());
         loop {
-            let heading = self.shared.target.wait().await;
+            let heading = self.shared.wanted.wait().await;
             let station = Station::at_heading(heading).map_err(|_| {
                 self.shared.give_up(Device::Stage, Trouble::BeyondTravel(heading * DEGREES))
             })?;

@@ -88,7 +88,17 @@ impl<'a, D: Startable> Guarded<'a, D> {
 
     /// The outcome of an exchange that was begun then, or what is to be mended.
     pub fn checked<T>(&mut self, begun: Instant, outcome: Result<T, Fault>) -> Result<T, Symptom> {
-        if begun.elapsed() > SLOW {
+        self.checked_at(Instant::now(), begun, outcome)
+    }
+
+    /// The same of one that ended just now.
+    pub fn checked_at<T>(
+        &mut self,
+        now: Instant,
+        begun: Instant,
+        outcome: Result<T, Fault>,
+    ) -> Result<T, Symptom> {
+        if now - begun > SLOW {
             return Err(Symptom::Slow);
         }
         if outcome.is_ok() {

@@ -8,7 +8,8 @@
 //! ```
 //!
 //! A two-frame mount has two encoders and two motors: [`pointing`] and [`gimbal`] stand for encoder and
-//! stage then.
+//! stage then. On a platform that turns all the time, the [`turntable`] stands for the stage, and commands
+//! are rates.
 //!
 //! [`run::acquire`] samples, [`run::run`] joins the other parts in fixed order; they know no pin, no
 //! bus and no clock but `embassy-time`'s. What they need from the outside are the traits of [`ports`];
@@ -31,7 +32,9 @@ pub mod timeline;
 
 pub mod conduct;
 pub mod gimbal;
+pub mod motor;
 pub mod stage;
+pub mod turntable;
 
 pub mod event;
 pub mod health;
@@ -40,6 +43,7 @@ pub mod link;
 pub mod configuration;
 pub mod run;
 pub mod shared;
+pub mod storage;
 
 #[cfg(feature = "defmt")]
 pub mod log;

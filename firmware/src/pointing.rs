@@ -12,7 +12,7 @@ use orientation::align::mount::{FrameAngles, TwoFrame};
 use orientation::device::Device;
 use orientation::error::Refusal;
 use orientation::session::procedure::STILL;
-use orientation::units::{Angle, DEGREE, TURN};
+use orientation::units::{Angle, DEGREE};
 
 use crate::calibration::{Calibration, Harmonics};
 use crate::configuration::{Configuration, FramesConfiguration};
@@ -21,10 +21,12 @@ use crate::patience::Symptom;
 use crate::ports::{Encoder, Frames, Observer};
 use crate::shared::{LatestAngle, Shared};
 
-/// Faster than any stage, rad/s: a quarter of a turn a second.
-const FASTEST: f64 = TURN / 4.0;
-/// What a stage may jump by: play, ringing, a slipping magnet, rad.
-const PLAY: f64 = DEGREE;
+/// Faster than any stage: a quarter of a turn a second, in steps of an [`Angle`] in a microsecond.
+const FASTEST: u32 = (1 << 30) / 1_000_000 + 1;
+/// What a stage may jump by, in steps: a degree of play, ringing, a slipping magnet.
+const PLAY: u32 = u32::MAX / 360;
+/// The longest time that counts, µs: after it a stage may stand anywhere.
+const LONGEST: u64 = 2_000_000;
 
 /// Elevation beyond which the axis is not where the frames were sent, rad: three times what a drive
 /// tolerates.
@@ -83,10 +85,9 @@ fn distance(a: Angle, b: Angle) -> u32 {
     (a - b).0.cast_signed().unsigned_abs()
 }
 
-/// How far an axis can turn between two readings of its angle, in steps of an [`Angle`].
-fn greatest_step(configuration: &Configuration) -> u32 {
-    let seconds = f64::from(configuration.angle_divider) / configuration.sample_rate;
-    Angle::from_rad(PLAY + FASTEST * seconds).0
+/// How far an axis can turn in a time, in steps of an [`Angle`].
+fn greatest_step(time: Duration) -> u32 {
+    PLAY.saturating_add(time.as_micros().min(LONGEST) as u32 * FASTEST)
 }
 
 /// The encoder of one axis at work.
@@ -98,7 +99,6 @@ pub struct Shaft<'a, E, O> {
     /// The angle of the latest reading; none where it was lost.
     angle: Option<Angle>,
     latest: &'a LatestAngle,
-    greatest_step: u32,
     has_jumped: bool,
     shared: &'a Shared<'a, O>,
 }
@@ -120,23 +120,22 @@ impl<'a, E: Encoder, O: Observer> Shaft<'a, E, O> {
             due: Every::new(configuration.angle_divider),
             angle: None,
             latest,
-            greatest_step: greatest_step(configuration),
             has_jumped: false,
             shared,
         }
     }
 
-    /// Takes an angle, unless it is further from the one before than the axis can turn: such a one is
+    /// Takes an angle that was read now, unless it is further from the one before than the axis can turn: such a one is
     /// lost, but the next is believed.
-    fn is_in_line(&mut self, angle: Angle) -> bool {
+    fn is_in_line(&mut self, angle: Angle, now: Instant) -> bool {
         let (last, read) = self.latest.get();
-        let is_far = distance(angle, last) > self.greatest_step;
+        let is_far = distance(angle, last) > greatest_step(now - read);
         self.has_jumped = is_far && !self.has_jumped && read > Instant::MIN;
         if self.has_jumped {
             self.shared.lose(self.name, Symptom::Jumped);
             return false;
         }
-        self.latest.set((angle, Instant::now()));
+        self.latest.set((angle, now));
         self.shared.sensing.signal(());
         true
     }
@@ -154,11 +153,12 @@ impl<E: Encoder, O: Observer> Pointing for Shaft<'_, E, O> {
         if self.due.is_due() || self.angle.is_none() {
             let begun = Instant::now();
             let outcome = self.encoder.device.read().await;
-            self.angle = match self.encoder.checked(begun, outcome) {
+            let now = Instant::now();
+            self.angle = match self.encoder.checked_at(now, begun, outcome) {
                 Ok(shown) => Some(self.calibration.correct(shown)),
                 Err(symptom) => self.encoder.mend(symptom, self.shared).await.map(|()| None)?,
             };
-            self.angle = self.angle.filter(|angle| self.is_in_line(*angle));
+            self.angle = self.angle.filter(|angle| self.is_in_line(*angle, now));
         }
         Ok(self.angle)
     }

@@ -4,7 +4,8 @@
 
 use drivers::fault::Fault;
 use embassy_time::Instant;
-use orientation::session::Session;
+use orientation::align::rotating::coupling::BYTES;
+use orientation::session::{Session, rotating};
 use orientation::signal::Sample;
 use orientation::signal::sway::CoarseSensors;
 use orientation::units::{Angle, AngularRate, SpecificForce, Temperature};
@@ -115,7 +116,8 @@ pub trait Actuator: Startable {
     /// Sends the stage to an angle, rad, not wrapped, by the motor's count.
     async fn go_to(&mut self, angle: f64) -> Result<(), Fault>;
 
-    /// Turns at a rate, rad/s, clockwise positive, until it is told otherwise or touches an end.
+    /// Turns at a rate, rad/s, clockwise positive, until it is told otherwise or touches an end; also
+    /// on the way. Zero has it come to rest by its ramp.
     async fn seek(&mut self, rate: f64) -> Result<(), Fault>;
 
     /// Declares the angle at which the motor stands, rad.
@@ -126,6 +128,17 @@ pub trait Actuator: Startable {
 
     /// What the motor does.
     async fn motion(&mut self) -> Result<Motion, Fault>;
+}
+
+/// Where calibrations are kept over a loss of supply.
+#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
+pub trait CalibrationStore {
+    /// What was kept last in a slot, if anything was.
+    async fn load(&mut self, slot: u8) -> Result<Option<[u8; BYTES]>, Fault>;
+
+    /// Keeps something in a slot. Where the supply is lost meanwhile, a slot has what it had or what it
+    /// was to have.
+    async fn save(&mut self, slot: u8, bytes: &[u8; BYTES]) -> Result<(), Fault>;
 }
 
 /// Where raw samples are kept. It may take its time: samples then queue.
@@ -150,6 +163,9 @@ pub trait Observer {
 
     /// The session has taken one more dwell.
     fn progress(&self, _: &Session) {}
+
+    /// The session on a turning platform has taken one more turn.
+    fn turned(&self, _: &rotating::Session) {}
 }
 
 /// Nobody is told.
@@ -164,6 +180,10 @@ impl<O: Observer> Observer for &O {
 
     fn progress(&self, session: &Session) {
         (**self).progress(session);
+    }
+
+    fn turned(&self, session: &rotating::Session) {
+        (**self).turned(session);
     }
 }
 

@@ -11,11 +11,11 @@ use embassy_futures::select::{select, select4};
 use embedded_io_async::Write;
 use orientation::device::Device;
 use orientation::error::Refusal;
-use orientation::session::Session;
+use orientation::session::{Session, rotating};
 
 use crate::acquire::Acquisition;
-use crate::conduct::Conductor;
-use crate::configuration::{Configuration, FramesConfiguration};
+use crate::conduct::{Conducted, Conductor, Rotating, Stepwise};
+use crate::configuration::{Configuration, FramesConfiguration, TurntableConfiguration};
 use crate::gimbal::Gimbal;
 use crate::health::{self, Health};
 use crate::link;
@@ -26,6 +26,7 @@ use crate::ports::{
 use crate::shared::{LatestAngle, Shared};
 use crate::stage::Stage;
 use crate::steady::Base;
+use crate::turntable::Turntable;
 
 /// Samples until a sensor is given up, which the session is told; never ends.
 pub async fn acquire<G, A, E, B, O>(
@@ -93,10 +94,35 @@ where
     let Ports { actuator, link, recorder } = ports;
     let mut stage = Stage::new(actuator, &configuration.stage, shared);
     let turning = pin!(stage.run());
-    beside(turning, link, recorder, session, shared).await
+    beside(turning, link, recorder, &mut Stepwise::new(session), shared).await
 }
 
-/// The same on a mount with two frames. After an azimuth it takes the gyro's axis to the vertical,
+/// The same on a platform that turns all the time, which [`acquire`] samples with a configuration for
+/// [turning](Configuration::turning). Whatever the end, the platform comes to rest.
+pub async fn run_rotating<M, L, R, O>(
+    ports: &mut Ports<M, L, R>,
+    configuration: &TurntableConfiguration,
+    session: &mut rotating::Session,
+    shared: &Shared<'_, O>,
+) -> Health
+where
+    M: Actuator,
+    L: Write,
+    R: Recorder,
+    O: Observer,
+{
+    let Ports { actuator, link, recorder } = ports;
+    let mut turntable = Turntable::new(actuator, configuration, shared);
+    let health = {
+        let turning = pin!(turntable.run());
+        beside(turning, link, recorder, &mut Rotating::new(session), shared).await
+    };
+    // Where that fails, too, the log has the reason.
+    select(turntable.rest(), discard(shared)).await;
+    health
+}
+
+/// The same as [`run`] on a mount with two frames. After an azimuth it takes the gyro's axis to the vertical,
 /// where it can store it.
 pub async fn run_frames<M, L, R, O>(
     ports: &mut Ports<Frames<M>, L, R>,
@@ -115,7 +141,7 @@ where
     let mut gimbal = Gimbal::new(actuator, frames, latest, shared);
     let health = {
         let turning = pin!(gimbal.run());
-        beside(turning, link, recorder, session, shared).await
+        beside(turning, link, recorder, &mut Stepwise::new(session), shared).await
     };
     if session.conclusion().is_some_and(|conclusion| conclusion.verdict.is_ok()) {
         // Where that fails, the log has the reason; the azimuth stands all the same.
@@ -133,10 +159,10 @@ async fn discard<O>(shared: &Shared<'_, O>) {
 
 /// Joins the parts around what turns the gyro, which ends only with a reason to end everything.
 async fn beside<L, R, O>(
-    turning: Pin<&mut impl Future<Output = Refusal>>,
+    turning: Pin<&mut dyn Future<Output = Refusal>>,
     link: &mut L,
     recorder: &mut R,
-    session: &mut Session,
+    session: &mut dyn Conducted<O>,
     shared: &Shared<'_, O>,
 ) -> Health
 where

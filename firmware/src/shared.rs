@@ -28,8 +28,9 @@ pub type LatestAngle = Cell<(Angle, Instant)>;
 pub struct Shared<'a, O> {
     /// From acquisition to the session.
     pub samples: Channel<NoopRawMutex, Sample, QUEUE>,
-    /// From the session to the stage: where to stand, rad.
-    pub target: Signal<NoopRawMutex, f64>,
+    /// From the session to what turns the gyro: where to stand, rad, or on a turntable how fast to
+    /// turn, rad/s. The latest counts.
+    pub wanted: Signal<NoopRawMutex, f64>,
     /// From acquisition to the stage: the sensors give data.
     pub sensing: Signal<NoopRawMutex, ()>,
     /// From the stage to the session: angles mean something.
@@ -54,7 +55,7 @@ impl<'a, O: Observer> Shared<'a, O> {
     pub const fn new(observer: &'a O) -> Self {
         Self {
             samples: Channel::new(),
-            target: Signal::new(),
+            wanted: Signal::new(),
             sensing: Signal::new(),
             homed: Signal::new(),
             failure: Signal::new(),

@@ -7,6 +7,8 @@ mod codecs;
 mod driver;
 #[path = "tmc5160/driver_stops.rs"]
 mod driver_stops;
+#[path = "tmc5160/driver_turning.rs"]
+mod driver_turning;
 #[path = "tmc5160/golden.rs"]
 mod golden;
 #[path = "tmc5160/plant.rs"]

@@ -18,8 +18,6 @@ use crate::ports::Recorder;
 
 /// When things go wrong that go wrong in the middle: in a dwell of the default schedule.
 const MIDDLE: Instant = Instant::from_secs(65);
-/// The same in seconds.
-const MIDDLE_S: f64 = 65.0;
 /// How long a passing fault of the stage lasts: it spans the rotation that follows.
 const PASSING: Duration = Duration::from_secs(15);
 /// Chooses the bits that are flipped.
@@ -30,6 +28,8 @@ const HANG: Duration = Duration::from_millis(500);
 const CAUGHT: f64 = 200.0 / 360.0 * TURN;
 /// By how much the encoder's magnet slips, rad: 0.5°.
 const SLIP: f64 = 0.5 / 360.0 * TURN;
+/// How fast it creeps, rad/s: 0.02°/s, by which three steps of 15° add up to what a stage tolerates.
+const CREEP: f64 = 0.02 / 360.0 * TURN;
 
 /// What is wrong with a chip or its bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,12 +73,18 @@ pub enum Fault {
     EncoderSlipAtStart,
     /// The magnet slips while something blocks the stage.
     EncoderSlipBlocked,
+    /// The magnet creeps whenever the stage turns.
+    EncoderCreep,
     /// Every transfer of the gyro's converter takes 300 ms.
     GyroHang,
     /// The gyro's output clips for two seconds.
     SaturationOnce,
     /// The gyro's output clips for good.
     Saturation,
+    /// The accelerometer's output clips for two seconds.
+    OverloadOnce,
+    /// The accelerometer's output clips for good.
+    Overload,
     /// Whoever takes the samples does not for half a second.
     Overflow,
     /// A door falls shut.
@@ -107,16 +113,19 @@ const SICKNESSES: [(Sickness, &str); 10] = [
     (Sickness::Hang, "hang"),
 ];
 
-const OTHERS: [(Fault, &str); 12] = [
+const OTHERS: [(Fault, &str); 15] = [
     (Fault::BlockedOnce, "stage-blocked-once"),
     (Fault::Blocked, "stage-blocked"),
     (Fault::TravelLimit, "travel-limit"),
     (Fault::EncoderSlip, "encoder-slip"),
     (Fault::EncoderSlipAtStart, "encoder-slip-at-start"),
     (Fault::EncoderSlipBlocked, "blocked-slip"),
+    (Fault::EncoderCreep, "encoder-creep"),
     (Fault::GyroHang, "gyro-hang-always"),
     (Fault::SaturationOnce, "saturation-once"),
     (Fault::Saturation, "saturation-always"),
+    (Fault::OverloadOnce, "overload-once"),
+    (Fault::Overload, "overload-always"),
     (Fault::Overflow, "overflow-once"),
     (Fault::DoorSlam, "door-slam"),
     (Fault::Nudge, "base-nudge"),
@@ -172,21 +181,27 @@ impl Plan {
     /// The plan of a fault, or of none.
     #[must_use]
     pub fn of(fault: Option<Fault>) -> Self {
+        Self::at(fault, MIDDLE)
+    }
+
+    /// The same of one that comes in the middle at another time.
+    #[must_use]
+    pub fn at(fault: Option<Fault>, middle: Instant) -> Self {
         let mut plan = Self::default();
         match fault {
             None => {}
-            Some(Fault::Chip(select, sickness)) => plan.sicken(select, sickness),
-            Some(other) => plan.disturb(other),
+            Some(Fault::Chip(select, sickness)) => plan.sicken(select, sickness, middle),
+            Some(other) => plan.disturb(other, middle),
         }
         plan
     }
 
-    fn sicken(&mut self, select: Select, sickness: Sickness) {
-        let once = When::once(MIDDLE);
-        let always = When::always(MIDDLE);
+    fn sicken(&mut self, select: Select, sickness: Sickness, middle: Instant) {
+        let once = When::once(middle);
+        let always = When::always(middle);
         let fault = match sickness {
             Sickness::Reset => {
-                self.blackouts = [Blackout { select, at: MIDDLE }].into_iter().collect();
+                self.blackouts = [Blackout { select, at: middle }].into_iter().collect();
                 return;
             }
             Sickness::Silent | Sickness::SilentOnce if select == Select::Gyro => {
@@ -207,35 +222,39 @@ impl Plan {
         self.buses[place(select)] = Some(FaultPlan { fault, when });
     }
 
-    fn disturb(&mut self, fault: Fault) {
-        let held = |until| StageFault::Block { from: MIDDLE, until };
+    fn disturb(&mut self, fault: Fault, middle: Instant) {
+        let seconds = middle.as_micros() as f64 * 1e-6;
+        let held = |until| StageFault::Block { from: middle, until };
         let slip = |at| StageFault::Slip { at, by_rad: SLIP };
         let stage = match fault {
-            Fault::BlockedOnce => Some(held(MIDDLE + PASSING)),
+            Fault::BlockedOnce => Some(held(middle + PASSING)),
             Fault::Blocked => Some(held(Instant::MAX)),
-            Fault::EncoderSlip => Some(slip(MIDDLE)),
+            Fault::EncoderSlip => Some(slip(middle)),
             Fault::EncoderSlipAtStart => Some(slip(Instant::MIN)),
-            Fault::EncoderSlipBlocked => Some(slip(MIDDLE + PASSING / 2)),
+            Fault::EncoderSlipBlocked => Some(slip(middle + PASSING / 2)),
+            Fault::EncoderCreep => Some(StageFault::Creep { from: middle, rad_per_s: CREEP }),
             _ => None,
         };
-        let block = matches!(fault, Fault::EncoderSlipBlocked).then(|| held(MIDDLE + PASSING));
+        let block = matches!(fault, Fault::EncoderSlipBlocked).then(|| held(middle + PASSING));
         let disturbance = match fault {
-            Fault::SaturationOnce => Some(Disturbance::overload(MIDDLE_S, 2.0)),
-            Fault::Saturation => Some(Disturbance::overload(MIDDLE_S, 1e6)),
-            Fault::DoorSlam => Some(Disturbance::door_slam(MIDDLE_S)),
+            Fault::SaturationOnce => Some(Disturbance::overload(seconds, 2.0)),
+            Fault::Saturation => Some(Disturbance::overload(seconds, 1e6)),
+            Fault::OverloadOnce => Some(Disturbance::force_overload(seconds, 2.0)),
+            Fault::Overload => Some(Disturbance::force_overload(seconds, 1e6)),
+            Fault::DoorSlam => Some(Disturbance::door_slam(seconds)),
             Fault::Nudge => {
-                Some(Disturbance::Nudge { start_s: MIDDLE_S, seconds: 4.0, rate_deg_h: 2.0 })
+                Some(Disturbance::Nudge { start_s: seconds, seconds: 4.0, rate_deg_h: 2.0 })
             }
             _ => None,
         };
         self.stage = stage.into_iter().chain(block).collect();
         if fault == Fault::GyroHang {
-            let plan = FaultPlan { fault: BusFault::Hang, when: When::always(MIDDLE) };
+            let plan = FaultPlan { fault: BusFault::Hang, when: When::always(middle) };
             self.buses[place(Select::Gyro)] = Some(plan);
         }
         self.disturbances = disturbance.into_iter().collect();
         self.caught = (fault == Fault::TravelLimit).then_some(CAUGHT);
-        self.hang = (fault == Fault::Overflow).then_some(MIDDLE);
+        self.hang = (fault == Fault::Overflow).then_some(middle);
     }
 }
 

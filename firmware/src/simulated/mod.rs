@@ -6,12 +6,14 @@ pub mod base;
 pub mod fault;
 pub mod mount;
 pub mod scenario;
+pub mod turntable;
 
 use core::cell::RefCell;
 
 use drivers::ads1262::Ads1262;
 use drivers::adxl355::{self, Adxl355};
 use drivers::mt6835::{self, Mt6835};
+use drivers::tmc5160::configuration::Configuration as Motor;
 use drivers::tmc5160::{self, Tmc5160};
 use embassy_time::{Delay, Instant};
 use embedded_hal_async::digital::Wait;
@@ -45,17 +47,21 @@ pub type Chips<'a> =
 /// The simulated board of a scenario with a plan of faults.
 #[must_use]
 pub fn board<'a>(scenario: &Scenario, plan: &'a Plan) -> Chips<'a> {
-    let plant = scenario.plant();
+    board_around(&scenario.plant(), scenario.seed, plan)
+}
+
+/// The same around any plant.
+fn board_around<'a>(plant: &PlantConfiguration<'a>, seed: u64, plan: &'a Plan) -> Chips<'a> {
     let [low, high] = plant.stage.travel_rad;
     let travel_rad = [low, plan.caught.unwrap_or(high)];
     let configuration = PlantConfiguration {
         stage: StageConfiguration { travel_rad, ..plant.stage },
         disturbances: &plan.disturbances,
         faults: &plan.stage,
-        ..plant
+        ..*plant
     };
     Board {
-        plant: Plant::new(&configuration, scenario.seed),
+        plant: Plant::new(&configuration, seed),
         gyro: SimulatedConverter::new(),
         accelerometer: SimulatedAccelerometer::new(Instant::MIN),
         encoder: SimulatedEncoder::new(Instant::MIN),
@@ -107,13 +113,28 @@ pub fn sensors<'a, B: Rig, A: Around>(
     scenario: &Scenario,
     around: &A,
 ) -> SimulatedSensors<'a, B, A> {
+    sensors_with(
+        board,
+        scenario,
+        (scenario::accelerometer(), mt6835::Configuration::default()),
+        around,
+    )
+}
+
+/// The same with an accelerometer and an encoder that are told something else.
+fn sensors_with<'a, B: Rig, A: Around>(
+    board: &'a RefCell<B>,
+    scenario: &Scenario,
+    (force, angle): (adxl355::Configuration, mt6835::Configuration),
+    around: &A,
+) -> SimulatedSensors<'a, B, A> {
     let bus = |select, hertz| bus(board, around, select, hertz);
     let converter = bus(Select::Gyro, CONVERTER_HERTZ);
     let ready = around.line(ReadyPin::new(board, Select::Gyro));
     let accelerometer = bus(Select::Accelerometer, adxl355::BUS_HERTZ);
-    let accelerometer = Adxl355::new(accelerometer, Delay, scenario::accelerometer());
+    let accelerometer = Adxl355::new(accelerometer, Delay, force);
     let encoder = bus(Select::Encoder, mt6835::BUS_HERTZ);
-    let encoder = Mt6835::new(encoder, Delay, mt6835::Configuration::default());
+    let encoder = Mt6835::new(encoder, Delay, angle);
     Sensors {
         gyro: chips::AnalogueGyro {
             converter: Ads1262::new(converter, ready, Delay, scenario.converter()),
@@ -133,9 +154,19 @@ pub fn ports<'a, B: Rig, A: Around, L, R>(
     link: L,
     recorder: R,
 ) -> SimulatedPorts<'a, B, A, L, R> {
+    ports_with(board, around, Motor::default(), link, recorder)
+}
+
+/// The same with a motor driver that is told something else.
+fn ports_with<'a, B: Rig, A: Around, L, R>(
+    board: &'a RefCell<B>,
+    around: &A,
+    motor: Motor,
+    link: L,
+    recorder: R,
+) -> SimulatedPorts<'a, B, A, L, R> {
     let bus = bus(board, around, Select::Actuator, tmc5160::BUS_HERTZ);
-    let configuration = tmc5160::configuration::Configuration::default();
-    Ports { actuator: chips::StageMotor(Tmc5160::new(bus, Delay, configuration)), link, recorder }
+    Ports { actuator: chips::StageMotor(Tmc5160::new(bus, Delay, motor)), link, recorder }
 }
 
 /// What the drivers did that a data sheet forbids, in words.

@@ -111,7 +111,7 @@ impl GyroClass {
     pub const MICROMECHANICAL: Self =
         Self { n_deg_sqrt_h: 0.15, b_deg_h: 0.5, k_deg_h_sqrt_h: 0.0, bias_sigma_deg_h: 30.0 };
 
-    fn noise(&self) -> GyroNoise {
+    pub(super) fn noise(&self) -> GyroNoise {
         GyroNoise::from_field_units(self.n_deg_sqrt_h, self.b_deg_h, self.k_deg_h_sqrt_h, 0.0)
     }
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 /// The names of the limits.
-pub const NAMES: [&str; 14] = [
+pub const NAMES: [&str; 16] = [
     "filter_instructions",
     "filter_and_dwell_instructions",
     "match_instructions",
@@ -12,7 +12,9 @@ pub const NAMES: [&str; 14] = [
     "allan_instructions",
     "plan_instructions",
     "noise_fit_instructions",
+    "turning_instructions",
     "sample_instructions",
+    "turning_sample_instructions",
     "poll_instructions",
     "survey_poll_instructions",
     "idle_percent",

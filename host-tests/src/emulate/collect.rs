@@ -5,7 +5,7 @@
 use serde::Serialize;
 
 use super::decode::Line;
-use super::outcome::{DwellBits, Outcome};
+use super::outcome::{DwellBits, FIELDS, Outcome, TURN_FIELDS, TurnBits};
 
 /// What the whole instrument took.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -41,6 +41,7 @@ pub struct Task {
 #[derive(Clone, Debug, Default)]
 pub struct Collected {
     dwells: Vec<DwellBits>,
+    turns: Vec<TurnBits>,
     outcome: Option<Outcome>,
     effort: bool,
     figures: Figures,
@@ -63,8 +64,13 @@ impl Collected {
         match words.split(' ').next()? {
             "dwell" => {
                 let is_next = number("number") == Some(self.dwells.len() as u64 + 1);
-                let dwell = DwellBits::parse(|name| value(words, name))?;
+                let dwell = DwellBits::parse(FIELDS, |name| value(words, name))?;
                 is_next.then(|| self.dwells.push(dwell))
+            }
+            "turn" => {
+                let is_next = number("number") == Some(self.turns.len() as u64 + 1);
+                let turn = TurnBits::parse(TURN_FIELDS, |name| value(words, name))?;
+                is_next.then(|| self.turns.push(turn))
             }
             "outcome" => {
                 self.outcome = Some(outcome(words)?);
@@ -109,7 +115,8 @@ impl Collected {
         if self.figures.stack_bytes == 0 {
             return Err(missing("stack"));
         }
-        Ok((Outcome { dwells: self.dwells, ..outcome }, self.figures))
+        let Self { dwells, turns, figures, .. } = self;
+        Ok((Outcome { dwells, turns, ..outcome }, figures))
     }
 }
 
@@ -121,7 +128,7 @@ fn outcome(words: &str) -> Option<Outcome> {
         None => (Some(bits("azimuth")??), Some(bits("sigma")??)),
     };
     let seed = value(words, "seed")?.parse().ok()?;
-    Some(Outcome { seed, azimuth_bits, sigma_bits, reason, dwells: Vec::new() })
+    Some(Outcome { seed, azimuth_bits, sigma_bits, reason, ..Outcome::default() })
 }
 
 /// The value of a pair, up to the next blank.

@@ -1,18 +1,40 @@
-//! The host's own run of what the image `emulator` runs.
+//! The host's own runs of what the image `emulator` runs.
 
 use firmware::ports::NoRecorder;
 use firmware::simulated::scenario::Scenario;
+use firmware::simulated::turntable::TurntableScenario;
+use orientation::align::rotating::turn::Stretch;
 
 use super::outcome::Outcome;
-use crate::instrument;
+use crate::instrument::{self, RunError};
 
 /// What the run of a scenario finds here.
 ///
 /// # Errors
 /// Where it comes to no end.
 pub fn outcome(scenario: &Scenario) -> Result<Outcome, String> {
-    let run = instrument::align(scenario, None, NoRecorder, &())
-        .map_err(|error| format!("the host's run: {error}"))?;
-    let conclusion = run.conclusion().ok_or("the host's run found nothing")?;
-    Ok(Outcome::of(scenario.seed, conclusion, run.replay.session.dwells()))
+    let run = instrument::align(scenario, None, NoRecorder, &()).map_err(|error| failed(&error))?;
+    let conclusion = run.conclusion().ok_or(NOTHING)?;
+    let dwells = run.replay.session.dwells().iter().map(Into::into).collect();
+    Ok(Outcome { dwells, ..Outcome::of(scenario.seed, &conclusion.verdict) })
+}
+
+/// The same on a platform that turns all the time.
+///
+/// # Errors
+/// Where it comes to no end.
+pub fn turning(scenario: &TurntableScenario) -> Result<Outcome, String> {
+    let run = instrument::align_turning(scenario, None, NoRecorder, &())
+        .map_err(|error| failed(&error))?
+        .run;
+    let conclusion = run.replay.conclusion().ok_or(NOTHING)?;
+    let stretches = run.replay.follower().stretches().iter();
+    let turns = stretches.flat_map(Stretch::turns).map(Into::into).collect();
+    Ok(Outcome { turns, ..Outcome::of(scenario.base.seed, &conclusion.verdict) })
+}
+
+const NOTHING: &str = "the host's run found nothing";
+
+fn failed(error: &RunError) -> String {
+    format!("the host's run: {error}")
 }

@@ -25,8 +25,10 @@ use std::path::Path;
 use std::time::Duration;
 
 use firmware::simulated::scenario::Scenario;
+use firmware::simulated::turntable::TurntableScenario;
 
 use self::budget::Budget;
+use self::checks::Runs;
 use self::collect::Collected;
 use self::decode::Decoder;
 use self::outcome::{Difference, Outcome};
@@ -48,6 +50,8 @@ pub struct Emulation {
     pub brief: collect::Figures,
     /// What it took in a run that learns its gyro's noise and plans by it.
     pub survey: collect::Figures,
+    /// What it took on a platform that turns all the time, at the highest sample rate.
+    pub turning: collect::Figures,
     /// Where its memory goes.
     pub memory: Memory,
     /// What the cores take.
@@ -81,18 +85,26 @@ pub fn emulate(seed: u64, mut tell: impl FnMut(&decode::Line)) -> Result<Emulati
     let (emulated, figures) = run(&seed.to_string())?;
     let (brief_outcome, brief) = run(&format!("{seed}/brief"))?;
     let (survey_outcome, survey) = run(&format!("{seed}/survey"))?;
+    let (turning_outcome, turning) = run(&format!("{seed}/turning"))?;
     let usual = outcome::compare(&emulated, &host::outcome(&Scenario::usual(seed))?);
     let in_brief = outcome::compare(&brief_outcome, &host::outcome(&Scenario::brief(seed))?);
     let surveyed = outcome::compare(&survey_outcome, &host::outcome(&Scenario::surveying(seed))?);
+    let turned =
+        outcome::compare(&turning_outcome, &host::turning(&TurntableScenario::brief(seed))?);
     let memory = Memory::of(&elf)?;
     let (cost, cost_is_right) = cores(&images.cost)?;
     Ok(Emulation {
-        comparison: usual.and(in_brief).and(surveyed),
+        comparison: usual.and(in_brief).and(surveyed).and(turned),
         emulated,
-        checks: checks::all(&figures, &brief, &survey, &memory, &budget),
+        checks: checks::all(
+            &Runs { figures: &figures, brief: &brief, survey: &survey, turning: &turning },
+            &memory,
+            &budget,
+        ),
         figures,
         brief,
         survey,
+        turning,
         memory,
         cost,
         cost_is_right,

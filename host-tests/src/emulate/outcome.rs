@@ -2,7 +2,9 @@
 
 use std::fmt;
 
-use orientation::align::conclusion::Conclusion;
+use orientation::align::conclusion::Azimuth;
+use orientation::align::rotating::turn::Turn;
+use orientation::error::Refusal;
 use orientation::signal::dwell::Dwell;
 
 /// The numbers of a dwell that are compared, by their names in the log.
@@ -19,19 +21,45 @@ pub const FIELDS: [&str; 10] = [
     "temperature",
 ];
 
+/// The numbers of a turn that are compared, by their names in the log.
+pub const TURN_FIELDS: [&str; 13] = [
+    "rate_cos",
+    "rate_sin",
+    "turning_cos",
+    "turning_sin",
+    "leak_cos",
+    "leak_sin",
+    "force_cos",
+    "force_sin",
+    "mean_force",
+    "offset",
+    "middle",
+    "seconds",
+    "speed",
+];
+
 /// The bits of what is absent: a NaN that no computation gives.
 const ABSENT: u64 = u64::MAX;
 
-/// The bits of a dwell's numbers, in the order of [`FIELDS`]; [`None`] where one is absent.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct DwellBits(pub [Option<u64>; FIELDS.len()]);
+/// The bits of the numbers of something, in the order of their names; [`None`] where one is absent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bits<const N: usize>(pub [Option<u64>; N]);
 
-impl DwellBits {
+/// Of a dwell, in the order of [`FIELDS`].
+pub type DwellBits = Bits<{ FIELDS.len() }>;
+
+/// Of a turn, in the order of [`TURN_FIELDS`].
+pub type TurnBits = Bits<{ TURN_FIELDS.len() }>;
+
+impl<const N: usize> Bits<N> {
     /// From hexadecimal texts; [`None`] where one is missing or is no number.
     #[must_use]
-    pub fn parse<'t>(text: impl Fn(&'static str) -> Option<&'t str>) -> Option<Self> {
-        let mut bits = [None; FIELDS.len()];
-        for (bits, name) in bits.iter_mut().zip(FIELDS) {
+    pub fn parse<'t>(
+        names: [&'static str; N],
+        text: impl Fn(&'static str) -> Option<&'t str>,
+    ) -> Option<Self> {
+        let mut bits = [None; N];
+        for (bits, name) in bits.iter_mut().zip(names) {
             let value = u64::from_str_radix(text(name)?, 16).ok()?;
             *bits = (value != ABSENT).then_some(value);
         }
@@ -57,6 +85,18 @@ impl From<&Dwell> for DwellBits {
     }
 }
 
+impl From<&Turn> for TurnBits {
+    fn from(turn: &Turn) -> Self {
+        let [a, b] = turn.rate;
+        let [c, d] = turn.turning;
+        let [e, f] = turn.leak;
+        let [g, h] = turn.force;
+        let rest = [turn.mean_force, turn.offset, turn.middle, turn.seconds, turn.speed];
+        let [i, j, k, l, m] = rest;
+        Self([a, b, c, d, e, f, g, h, i, j, k, l, m].map(|value| Some(f64::from(value).to_bits())))
+    }
+}
+
 /// What a run found.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Outcome {
@@ -68,21 +108,23 @@ pub struct Outcome {
     pub sigma_bits: Option<u64>,
     /// Why there is no azimuth.
     pub reason: Option<String>,
-    /// The dwells.
+    /// The dwells, of a run in positions.
     pub dwells: Vec<DwellBits>,
+    /// The turns, of one on a platform that turns all the time.
+    pub turns: Vec<TurnBits>,
 }
 
 impl Outcome {
-    /// Of a conclusion and its dwells.
+    /// Of a verdict, without what led to it.
     #[must_use]
-    pub fn of(seed: u64, conclusion: &Conclusion, dwells: &[Dwell]) -> Self {
-        let found = conclusion.verdict.as_ref();
+    pub fn of(seed: u64, verdict: &Result<Azimuth, Refusal>) -> Self {
+        let found = verdict.as_ref();
         Self {
             seed,
             azimuth_bits: found.ok().map(|azimuth| azimuth.angle.to_bits()),
             sigma_bits: found.ok().map(|azimuth| azimuth.sigma.to_bits()),
             reason: found.err().map(ToString::to_string),
-            dwells: dwells.iter().map(DwellBits::from).collect(),
+            ..Self::default()
         }
     }
 }
@@ -97,9 +139,11 @@ pub enum Difference {
         /// The host's.
         host: u64,
     },
-    /// A number of a dwell.
-    Dwell {
-        /// Number of the dwell, from one.
+    /// A number of a dwell or a turn.
+    Number {
+        /// What it is of.
+        of: &'static str,
+        /// Which of them, from one.
         number: usize,
         /// Name of the number.
         field: &'static str,
@@ -108,8 +152,10 @@ pub enum Difference {
         /// Its bits on the host.
         host: Option<u64>,
     },
-    /// The number of dwells.
-    Dwells {
+    /// How many dwells or turns there were.
+    Count {
+        /// Of what.
+        of: &'static str,
         /// In the emulated run.
         emulated: usize,
         /// On the host.
@@ -139,12 +185,12 @@ impl fmt::Display for Difference {
             Self::Seed { emulated, host } => {
                 write!(f, "seed: {emulated} in the emulator, {host} on the host")
             }
-            Self::Dwell { number, field, emulated, host } => {
+            Self::Number { of, number, field, emulated, host } => {
                 let [emulated, host] = [emulated, host].map(|bits| shown(field, *bits));
-                write!(f, "dwell {number}, {field}: {emulated} in the emulator, {host} on the host")
+                write!(f, "{of} {number}, {field}: {emulated} in the emulator, {host} on the host")
             }
-            Self::Dwells { emulated, host } => {
-                write!(f, "dwells: {emulated} in the emulator, {host} on the host")
+            Self::Count { of, emulated, host } => {
+                write!(f, "{of}s: {emulated} in the emulator, {host} on the host")
             }
             Self::Result { field, emulated, host } => {
                 let [emulated, host] = [emulated, host].map(|bits| shown(field, *bits));
@@ -177,12 +223,8 @@ pub fn compare(emulated: &Outcome, host: &Outcome) -> Result<(), Difference> {
     if emulated.seed != host.seed {
         return Err(Difference::Seed { emulated: emulated.seed, host: host.seed });
     }
-    let pairs = emulated.dwells.iter().zip(&host.dwells);
-    pairs.enumerate().try_for_each(|(index, (emulated, host))| dwell(index, emulated, host))?;
-    let counts = [emulated.dwells.len(), host.dwells.len()];
-    if counts[0] != counts[1] {
-        return Err(Difference::Dwells { emulated: counts[0], host: counts[1] });
-    }
+    rows("dwell", FIELDS, &emulated.dwells, &host.dwells)?;
+    rows("turn", TURN_FIELDS, &emulated.turns, &host.turns)?;
     result("azimuth", emulated.azimuth_bits, host.azimuth_bits)?;
     result("sigma", emulated.sigma_bits, host.sigma_bits)?;
     let [one, other] = [emulated, host].map(|run| run.reason.as_deref().map(short));
@@ -192,14 +234,21 @@ pub fn compare(emulated: &Outcome, host: &Outcome) -> Result<(), Difference> {
     Err(Difference::Reason { emulated: emulated.reason.clone(), host: host.reason.clone() })
 }
 
-fn dwell(index: usize, emulated: &DwellBits, host: &DwellBits) -> Result<(), Difference> {
-    let mut numbers = FIELDS.into_iter().zip(emulated.0.into_iter().zip(host.0));
-    match numbers.find(|(_, (emulated, host))| emulated != host) {
-        None => Ok(()),
-        Some((field, (emulated, host))) => {
-            Err(Difference::Dwell { number: index + 1, field, emulated, host })
+/// Compares dwells, or turns, and how many there are.
+fn rows<const N: usize>(
+    of: &'static str,
+    names: [&'static str; N],
+    emulated: &[Bits<N>],
+    host: &[Bits<N>],
+) -> Result<(), Difference> {
+    for (number, (emulated, host)) in (1..).zip(emulated.iter().zip(host)) {
+        let mut numbers = names.into_iter().zip(emulated.0.into_iter().zip(host.0));
+        if let Some((field, (emulated, host))) = numbers.find(|(_, (one, other))| one != other) {
+            return Err(Difference::Number { of, number, field, emulated, host });
         }
     }
+    let [emulated, host] = [emulated, host].map(<[_]>::len);
+    if emulated == host { Ok(()) } else { Err(Difference::Count { of, emulated, host }) }
 }
 
 fn result(field: &'static str, emulated: Option<u64>, host: Option<u64>) -> Result<(), Difference> {

@@ -2,19 +2,16 @@
 
 use std::cell::RefCell;
 
-use embassy_time::Instant;
 use firmware::ports::{Frames, NoBase, NoRecorder, Observer};
 use firmware::run::{acquire_frames, run_frames};
-use firmware::shared::Shared;
 use firmware::simulated::base;
 use firmware::simulated::mount::{self, FramePlan, FramesScenario};
 use firmware::steady::Base;
 use orientation::session::Session;
 
-use super::bench::{ASSUMED, Log, Wire};
+use super::desk::{self, ASSUMED, Desk};
 use super::{Run, RunError};
 use crate::replay::{Method, Replay};
-use crate::virtual_time;
 
 /// A finished run on a two-frame mount.
 #[derive(Clone, Debug)]
@@ -56,38 +53,25 @@ fn align_frames_on<B: Base, W: Observer>(
     let mut session = Session::new(setting, scenario.procedure()).map_err(RunError::Procedure)?;
     let frames = scenario.frames().map_err(RunError::Mount)?;
     let board = RefCell::new(scenario.board(plan));
-    let log = Log::new(watch);
-    let bytes = RefCell::default();
-    let shared = Shared::new(&log);
+    let desk = Desk::new(watch);
+    let seams = desk.seams();
     let latest = Frames::unread();
     let configuration = scenario.base.configuration();
     let mut sensors = mount::sensors(&board, scenario).with_base(base);
-    let mut ports = mount::ports(&board, Wire(&bytes), NoRecorder);
-    let acquisition = acquire_frames(&mut sensors, &configuration, &frames, &latest, &shared);
-    let instrument = async {
-        let health = run_frames(&mut ports, &frames, &latest, &mut session, &shared).await;
-        (health, Instant::now())
-    };
-    let (health, ended) =
-        virtual_time::run_beside(acquisition, instrument).map_err(|_| RunError::Deadlock)?;
-    let violations = mount::violations(&board.borrow())
-        .map(|(select, violation)| format!("{select:?}: {violation}"))
-        .collect();
+    let mut ports = mount::ports(&board, desk.wire(), NoRecorder);
+    let ended = desk::run(
+        acquire_frames(&mut sensors, &configuration, &frames, &latest, &seams),
+        run_frames(&mut ports, &frames, &latest, &mut session, &seams),
+    )?;
     let [outer, inner] = board.borrow().gimbal.frames();
     let misalignment = scenario.gimbal(plan).misalignment;
     let axis = misalignment.axes(outer.angle_rad, inner.angle_rad).sensitive;
-    let run = Run {
-        replay: Replay {
-            method: Method::Positions,
-            setting: *session.setting(),
-            session,
-            assumed: vec![ASSUMED.to_owned()],
-        },
-        events: log.events.into_inner(),
-        lines: String::from_utf8_lossy(&bytes.into_inner()).into_owned(),
-        seconds: ended.as_micros() as f64 * 1e-6,
-        health,
-        violations,
+    let replay = Replay {
+        method: Method::Positions,
+        setting: *session.setting(),
+        session,
+        assumed: vec![ASSUMED.to_owned()],
     };
-    Ok(FramesRun { run, axis })
+    let violations = desk::told(mount::violations(&board.borrow()));
+    Ok(FramesRun { run: desk.clear(&ended, violations, replay), axis })
 }

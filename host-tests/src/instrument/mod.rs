@@ -1,11 +1,14 @@
 //! The whole instrument on simulated chips, in virtual time: one scenario in, one run out.
 
 mod bench;
+mod desk;
 mod frames;
 pub mod recorder;
+mod turntable;
 
 pub use bench::{align, align_on};
 pub use frames::{FramesRun, align_frames};
+pub use turntable::{TurntableRun, align_turning};
 
 use std::fmt;
 
@@ -18,11 +21,11 @@ use orientation::session::procedure::ProcedureError;
 
 use crate::replay::Replay;
 
-/// A finished run.
+/// A finished run of one kind of session.
 #[derive(Clone, Debug)]
-pub struct Run {
+pub struct Run<R = Replay> {
     /// The session with its conclusion, told like a replay.
-    pub replay: Replay,
+    pub replay: R,
     /// What the board told, in order.
     pub events: Vec<(Instant, Event)>,
     /// What the link carried.

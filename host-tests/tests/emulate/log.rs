@@ -2,7 +2,7 @@
 
 use bench::emulate::collect::{Collected, Figures, Task};
 use bench::emulate::decode::Line;
-use bench::emulate::outcome::{DwellBits, Outcome};
+use bench::emulate::outcome::{Bits, Outcome, TURN_FIELDS};
 
 fn printed(words: &str) -> Line {
     Line { time: "1.5".to_owned(), level: None, words: words.to_owned() }
@@ -40,7 +40,7 @@ fn the_log_gives_back_the_bits_and_the_figures() {
     let temperature = Some(25.0_f64.to_bits());
     let stage = Some(1 << 30);
     let dwell = [stage, half, one, Some(100), rate, one, None, None, None, temperature];
-    assert_eq!(outcome.dwells, [DwellBits(dwell); 2]);
+    assert_eq!(outcome.dwells, [Bits(dwell); 2]);
     let tasks =
         vec![Task { name: "the instrument".into(), polls: 30, instructions: 900, worst: 100 }];
     let expected = Figures {
@@ -52,6 +52,22 @@ fn the_log_gives_back_the_bits_and_the_figures() {
         tasks,
     };
     assert_eq!(figures, expected);
+}
+
+#[test]
+fn turns_come_in_their_order_with_all_their_numbers() {
+    let names = TURN_FIELDS.map(|name| format!("{name}=3fe0000000000000")).join(" ");
+    let mut log = whole_log();
+    log.drain(..2);
+    log.insert(0, format!("turn number=1 {names}"));
+    log.insert(1, format!("turn number=2 {names}"));
+    let (outcome, _) = collect(&log).expect("a whole log");
+    assert_eq!(outcome.turns, [Bits([Some(0.5_f64.to_bits()); TURN_FIELDS.len()]); 2]);
+    assert_eq!(outcome.dwells, []);
+    log.remove(0);
+    assert!(collect(&log).is_err(), "the first is missing");
+    log[0] = format!("turn number=1 {}", names.replace("leak_sin=", "leak="));
+    assert!(collect(&log).is_err(), "a number is missing");
 }
 
 #[test]

@@ -1,17 +1,22 @@
 //! Two runs are compared bit for bit, and where they differ is named.
 
 use bench::emulate::host;
-use bench::emulate::outcome::{Difference, DwellBits, FIELDS, Outcome, compare};
+use bench::emulate::outcome::{
+    Bits, Difference, DwellBits, FIELDS, Outcome, TURN_FIELDS, TurnBits, compare,
+};
 use firmware::simulated::scenario::Scenario;
+use firmware::simulated::turntable::TurntableScenario;
 
 fn outcome() -> Outcome {
-    let dwell = |rate: f64| DwellBits([Some(rate.to_bits()); FIELDS.len()]);
+    let dwell = |rate: f64| -> DwellBits { Bits([Some(rate.to_bits()); FIELDS.len()]) };
+    let turn = |rate: f64| -> TurnBits { Bits([Some(rate.to_bits()); TURN_FIELDS.len()]) };
     Outcome {
         seed: 7,
         azimuth_bits: Some(1.25_f64.to_bits()),
         sigma_bits: Some(0.5_f64.to_bits()),
         reason: None,
         dwells: vec![dwell(1.0), dwell(2.0), dwell(3.0)],
+        turns: vec![turn(4.0), turn(5.0)],
     }
 }
 
@@ -29,13 +34,24 @@ fn one_bit_anywhere_is_found_and_named() {
                 let place = &mut emulated.dwells[dwell].0[index];
                 *place = place.map(|bits| bits ^ (1 << bit));
                 match compare(&emulated, &host) {
-                    Err(Difference::Dwell { number, field, .. }) => {
-                        assert_eq!((number, field), (dwell + 1, name));
+                    Err(Difference::Number { of, number, field, .. }) => {
+                        assert_eq!((of, number, field), ("dwell", dwell + 1, name));
                     }
                     other => panic!("{other:?}"),
                 }
             }
         }
+    }
+}
+
+#[test]
+fn one_bit_of_any_number_of_a_turn_is_found_and_named() {
+    for (index, name) in TURN_FIELDS.into_iter().enumerate() {
+        let (host, mut emulated) = (outcome(), outcome());
+        let place = &mut emulated.turns[1].0[index];
+        *place = place.map(|bits| bits ^ (1 << 29));
+        let told = compare(&emulated, &host).expect_err("they differ").to_string();
+        assert!(told.starts_with(&format!("turn 2, {name}: ")), "{told}");
     }
 }
 
@@ -63,11 +79,12 @@ type Change = fn(&mut Outcome);
 
 #[test]
 fn seed_azimuth_sigma_and_the_number_of_dwells_are_compared() {
-    let changes: [(&str, Change); 4] = [
+    let changes: [(&str, Change); 5] = [
         ("seed", |run| run.seed = 8),
         ("azimuth", |run| run.azimuth_bits = None),
         ("sigma", |run| run.sigma_bits = Some(0)),
         ("dwells", |run| run.dwells.truncate(2)),
+        ("turns", |run| run.turns.truncate(1)),
     ];
     for (name, change) in changes {
         let mut emulated = outcome();
@@ -102,4 +119,12 @@ fn the_host_finds_the_same_again_and_something_else_for_another_seed() {
     assert_eq!(compare(&run(3), &run(3)), Ok(()));
     assert!(run(3).azimuth_bits.is_some() || run(3).reason.is_some());
     assert_ne!(run(3).dwells, run(4).dwells);
+}
+
+#[test]
+fn the_host_finds_the_same_turns_again_and_others_for_another_seed() {
+    let run = |seed| host::turning(&TurntableScenario::brief(seed)).expect("it ends");
+    assert_eq!(compare(&run(3), &run(3)), Ok(()));
+    assert_eq!((run(3).turns.len(), run(3).reason), (4, None));
+    assert_ne!(run(3).turns, run(4).turns);
 }

@@ -22,6 +22,7 @@ mod samples;
 mod scale;
 #[path = "../measure/stack.rs"]
 mod stack;
+mod turning;
 mod yardsticks;
 
 use core::panic::PanicInfo;
@@ -32,7 +33,7 @@ use cortex_m_semihosting::{debug, hprintln};
 use orientation::align::conclusion::Conclusion;
 use orientation::align::etalon::series::SeriesError;
 use orientation::noise::allan::Allan;
-use orientation::session::Session;
+use orientation::session::{Session, rotating};
 use orientation::signal::butterworth::DesignError;
 
 use counter::Counter;
@@ -79,6 +80,7 @@ fn measure(report: &mut Report) -> Result<(), Failure> {
     check_scale(&counter, report);
     heading("INSTRUCTIONS (not cycles) on a Cortex-M4F");
     samples::report(&counter, report)?;
+    turning::report(&counter, report);
     matching::report(&counter, report)?;
     yardsticks::regression(&counter, report);
     conclusion::report(&counter, report)?;
@@ -106,6 +108,7 @@ fn sizes() -> Result<(), Failure> {
     figure(format_args!("stack of a plan"), planning::stack() as u64);
     figure(format_args!("stack of this image at its deepest"), stack::greatest_stack() as u64);
     figure(format_args!("a Session"), size_of::<Session>() as u64);
+    figure(format_args!("a Session on a turning platform"), size_of::<rotating::Session>() as u64);
     figure(format_args!("a Conclusion"), size_of::<Conclusion>() as u64);
     figure(format_args!("an Allan variance"), size_of::<Allan>() as u64);
     figure(format_args!("static memory of this image"), memory::statics() as u64);

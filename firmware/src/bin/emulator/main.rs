@@ -8,8 +8,8 @@
 //! ```
 //!
 //! `meridian emulate` builds and runs this image, reads its log, and compares what it found with its
-//! own run of the same seed. The log speaks of three things that the host parses: `outcome` and
-//! `dwell` lines carry the bits of every number that was found, `effort` and `stack` lines what it
+//! own run of the same seed. The log speaks of three things that the host parses: `outcome`,
+//! `dwell` and `turn` lines carry the bits of every number that was found, `effort` and `stack` lines what it
 //! took. Nothing here prints by semihosting: it would fall into the middle of the log.
 #![no_std]
 #![no_main]
@@ -23,6 +23,7 @@ mod meter;
 mod order;
 mod outside;
 mod results;
+mod sitting;
 #[path = "../measure/stack.rs"]
 mod stack;
 
@@ -37,9 +38,7 @@ use firmware::ports::NoRecorder;
 use firmware::run::acquire;
 use firmware::shared::Shared;
 use firmware::simulated::fault::Plan;
-use firmware::simulated::scenario::Scenario;
-use firmware::simulated::{self, Chips, SimulatedPorts, SimulatedSensors};
-use orientation::session::Session;
+use firmware::simulated::{Chips, SimulatedPorts, SimulatedSensors};
 use semihosting::process::ExitCode;
 use static_cell::StaticCell;
 
@@ -48,6 +47,7 @@ use executor::Deadlock;
 use meter::{Meter, Task};
 use order::Order;
 use outside::{Log, Metering, NoLink};
+use sitting::Sitting;
 
 /// Why nothing was found.
 #[derive(defmt::Format)]
@@ -84,7 +84,7 @@ struct Bench {
     acquisition: Task,
     instrument: Task,
     /// The session, once it has concluded.
-    finished: OnceCell<&'static Session>,
+    finished: OnceCell<&'static Sitting>,
 }
 
 /// The simulated board.
@@ -104,7 +104,6 @@ static LOG: StaticCell<Log> = StaticCell::new();
 static SEAMS: StaticCell<Seams> = StaticCell::new();
 static INPUTS: StaticCell<Inputs> = StaticCell::new();
 static OUTPUTS: StaticCell<Outputs> = StaticCell::new();
-static SESSION: StaticCell<Session> = StaticCell::new();
 static EXECUTOR: StaticCell<Executor> = StaticCell::new();
 
 #[entry]
@@ -122,10 +121,9 @@ fn main() -> ! {
 
 /// Runs the instrument to its end and logs what it found and what it took.
 fn run() -> Result<(), Failure> {
-    let Order { seed, scenario } = order::from_host().ok_or(Failure::NoOrder)?;
+    let order = Order::from_host().ok_or(Failure::NoOrder)?;
     let peripherals = cortex_m::Peripherals::take().ok_or(Failure::NoTimer)?;
-    let prepared = scenario.prepared().ok_or(Failure::Session)?;
-    let session = SESSION.init_with(|| Session::from(prepared));
+    let session = order.session().ok_or(Failure::Session)?;
     let bench: &'static Bench = BENCH.init(Bench {
         meter: Meter::new(Counter::start(peripherals.SYST)),
         acquisition: Task::new("acquisition"),
@@ -133,12 +131,11 @@ fn run() -> Result<(), Failure> {
         finished: OnceCell::new(),
     });
     let executor: &'static Executor = EXECUTOR.init_with(executor::new);
-    spawn(executor, bench, &scenario, session)?;
+    spawn(executor, bench, &order, session)?;
     executor::run(executor, &bench.meter, || bench.finished.get().is_some())?;
     let session = bench.finished.get().ok_or(Failure::NoConclusion)?;
-    let conclusion = session.conclusion().ok_or(Failure::NoConclusion)?;
-    results::log(seed, conclusion, session.dwells());
-    log::effort(&bench.meter, scenario.sample_rate_hz);
+    session.log(order.base().seed).ok_or(Failure::NoConclusion)?;
+    log::effort(&bench.meter, order.base().sample_rate_hz);
     log::task(&bench.acquisition);
     log::task(&bench.instrument);
     Ok(())
@@ -148,16 +145,16 @@ fn run() -> Result<(), Failure> {
 fn spawn(
     executor: &'static Executor,
     bench: &'static Bench,
-    scenario: &Scenario,
-    session: &'static mut Session,
+    order: &Order,
+    session: &'static mut Sitting,
 ) -> Result<(), Failure> {
     let plan: &'static Plan = PLAN.init_with(|| Plan::of(None));
-    let rig: &'static Rig = RIG.init_with(|| RefCell::new(simulated::board(scenario, plan)));
+    let rig: &'static Rig = RIG.init_with(|| RefCell::new(order.board(plan)));
     let metering = Metering(&bench.meter);
     let seams: &'static Seams = SEAMS.init_with(|| Shared::new(LOG.init(Log(&bench.meter))));
-    let inputs = INPUTS.init_with(|| simulated::sensors(rig, scenario, &metering));
-    let outputs = OUTPUTS.init_with(|| simulated::ports(rig, &metering, NoLink, NoRecorder));
-    let configuration = scenario.configuration();
+    let inputs = INPUTS.init_with(|| order.inputs(rig, &metering));
+    let outputs = OUTPUTS.init_with(|| order.outputs(rig, &metering));
+    let configuration = order.configuration();
     let spawner = executor.spawner();
     spawner.spawn(acquisition(bench, inputs, configuration, seams)?);
     spawner.spawn(instrument(bench, outputs, configuration, seams, session)?);
@@ -181,10 +178,10 @@ async fn instrument(
     outputs: &'static mut Outputs,
     configuration: Configuration,
     seams: &'static Seams,
-    session: &'static mut Session,
+    session: &'static mut Sitting,
 ) {
     let future = pin!(async {
-        firmware::run::run(outputs, &configuration, session, seams).await;
+        session.run(outputs, &configuration, seams).await;
         // It runs once: nothing has finished before.
         let _ = bench.finished.set(session);
     });

@@ -15,7 +15,7 @@ use firmware::log::DefmtLog;
 use firmware::ports::Observer;
 use firmware::simulated::Around;
 use hal_mock::chip::Select;
-use orientation::session::Session;
+use orientation::session::{Session, rotating};
 
 use crate::clock;
 use crate::meter::Meter;
@@ -97,6 +97,10 @@ impl Observer for Log {
     }
 
     fn progress(&self, _: &Session) {
+        self.0.mark(clock::now());
+    }
+
+    fn turned(&self, _: &rotating::Session) {
         self.0.mark(clock::now());
     }
 }

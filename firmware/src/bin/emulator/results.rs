@@ -1,22 +1,21 @@
 //! What was found, bit by bit, for the host to compare with its own run.
 //!
-//! One line `dwell` for each dwell and one `outcome`: `name=value` pairs, bits in hexadecimal, all
+//! One line `dwell` for each dwell, or `turn` for each turn, and one `outcome`: `name=value` pairs, bits in hexadecimal, all
 //! ones for what is absent (no computation gives that pattern). They are printed at every log level.
 
 use defmt::println;
-use orientation::align::conclusion::Conclusion;
+use orientation::align::conclusion::Azimuth;
+use orientation::align::rotating::turn::Turn;
+use orientation::error::Refusal;
 use orientation::signal::dwell::Dwell;
 
 /// The bits of what is absent.
 const ABSENT: u64 = u64::MAX;
 
-/// Logs the dwells and the verdict.
+/// Logs the verdict.
 #[inline(never)]
-pub fn log(seed: u64, conclusion: &Conclusion, dwells: &[Dwell]) {
-    for (number, found) in (1..).zip(dwells) {
-        dwell(number, found);
-    }
-    match &conclusion.verdict {
+pub fn outcome(seed: u64, verdict: &Result<Azimuth, Refusal>) {
+    match verdict {
         Ok(azimuth) => println!(
             "outcome seed={=u64} azimuth={=u64:x} sigma={=u64:x}",
             seed,
@@ -27,7 +26,37 @@ pub fn log(seed: u64, conclusion: &Conclusion, dwells: &[Dwell]) {
     }
 }
 
-fn dwell(number: u32, dwell: &Dwell) {
+/// Logs a turn, its numbers as wide as those of a dwell.
+#[inline(never)]
+pub fn turn(number: u32, turn: &Turn) {
+    let bits = |value: f32| f64::from(value).to_bits();
+    let pair = |values: [f32; 2]| values.map(bits);
+    let [rate, turning, leak, force] = [turn.rate, turn.turning, turn.leak, turn.force].map(pair);
+    println!(
+        "turn number={=u32} rate_cos={=u64:x} rate_sin={=u64:x} turning_cos={=u64:x} \
+         turning_sin={=u64:x} leak_cos={=u64:x} leak_sin={=u64:x} force_cos={=u64:x} \
+         force_sin={=u64:x} mean_force={=u64:x} offset={=u64:x} middle={=u64:x} \
+         seconds={=u64:x} speed={=u64:x}",
+        number,
+        rate[0],
+        rate[1],
+        turning[0],
+        turning[1],
+        leak[0],
+        leak[1],
+        force[0],
+        force[1],
+        bits(turn.mean_force),
+        bits(turn.offset),
+        bits(turn.middle),
+        bits(turn.seconds),
+        bits(turn.speed)
+    );
+}
+
+/// Logs a dwell.
+#[inline(never)]
+pub fn dwell(number: u32, dwell: &Dwell) {
     let force = dwell.force.map_or([ABSENT; 3], |force| force.map(f64::to_bits));
     println!(
         "dwell number={=u32} stage={=u32:x} middle={=u64:x} seconds={=u64:x} samples={=u32:x} \

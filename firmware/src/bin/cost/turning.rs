@@ -1,0 +1,73 @@
+//! What is done once per sample of a platform that turns all the time: its demodulation.
+
+use core::hint::black_box;
+
+use hal_mock::noise::Generator;
+use orientation::align::rotating::follower::{Follower, Mode};
+use orientation::signal::Sample;
+use orientation::units::{Angle, AngularRate, Instant, SpecificForce, TURN};
+
+use crate::budget::TURNING_INSTRUCTIONS;
+use crate::counter::{Cost, Counter};
+use crate::report::{Report, figure};
+
+/// Samples a second.
+const RATE_HZ: f64 = 2000.0;
+/// Sample periods in a block of 20 ms.
+const PERIODS: u32 = 40;
+/// Turns of the platform a second.
+const SPEED_HZ: f64 = 0.137;
+/// Samples: two whole turns and what settles.
+const SAMPLES: u64 = 30_000;
+/// White noise of a sample, rad/s.
+const RATE_SIGMA: f64 = 7.3e-7;
+/// Horizontal Earth rate at 48°, rad/s.
+const EARTH: f64 = 4.9e-5;
+/// One sample in so many brings a specific force.
+const SLOW: u64 = 20;
+/// Tilt of the platform, m/s², and white noise of a specific force.
+const FORCE: [f64; 2] = [0.1, 1e-3];
+
+/// [`Follower::push`].
+type Push = fn(&mut Follower, &Sample, Option<f32>) -> bool;
+
+/// Measures the mean of a sample, and the greatest: the one that ends a turn.
+pub fn report(counter: &Counter, report: &mut Report) {
+    let mut noise = Generator::new(7);
+    let mut follower = Follower::new(PERIODS, Mode::Even);
+    // A function that the optimiser cannot see is called, not inlined.
+    let push = black_box(Follower::push as Push);
+    let (mut total, mut worst, mut turns) = (Cost::default(), Cost::default(), 0);
+    for index in 0..SAMPLES {
+        let sample = sample(index, &mut noise);
+        let (cost, has_turned) = counter.measure(|| push(&mut follower, &sample, None));
+        total += cost;
+        worst = worst.max(cost);
+        turns += u32::from(has_turned);
+    }
+    report.require("the platform turned round twice", turns == 2);
+    report.budget(
+        format_args!("demodulation on a turning platform, a sample"),
+        total.mean(SAMPLES),
+        TURNING_INSTRUCTIONS,
+    );
+    figure(format_args!("the same, a sample that ends a turn"), worst.instructions());
+}
+
+/// A sample of a platform that turns clockwise.
+fn sample(index: u64, noise: &mut Generator) -> Sample {
+    let seconds = index as f64 / RATE_HZ;
+    let angle = SPEED_HZ * TURN * seconds;
+    let mut white = |sigma: f64| sigma * noise.gaussian();
+    let rate = EARTH * libm::cos(angle) + white(RATE_SIGMA);
+    let along = FORCE[0] * libm::cos(angle) + white(FORCE[1]);
+    Sample {
+        time: Instant(index * 500),
+        stage: Angle::from_rad(angle),
+        rate: AngularRate::from_rad_per_s(rate),
+        force: (index.is_multiple_of(SLOW))
+            .then(|| [along, 0.0, -9.81].map(SpecificForce::from_m_per_s2)),
+        temperature: None,
+        elevation: None,
+    }
+}

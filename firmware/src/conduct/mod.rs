@@ -1,0 +1,167 @@
+//! Conducts a session: samples in, commands to what turns the gyro, and what comes of it told.
+
+mod rotating;
+mod stepwise;
+
+pub use rotating::Rotating;
+pub use stepwise::Stepwise;
+
+use core::future::pending;
+
+use embassy_futures::select::{Either, select};
+use embassy_time::{Duration, Instant, Timer};
+use orientation::earth::Latitude;
+use orientation::error::Refusal;
+use orientation::signal::Sample;
+use orientation::signal::sway::SwayNoise;
+use orientation::units::DEGREES_PER_RADIAN as DEGREES;
+
+use crate::event::Event;
+use crate::link::Status;
+use crate::ports::{Observer, Recorder};
+use crate::shared::Shared;
+
+/// Longest time until the stage is homed: six searches over the whole travel, with their rests.
+const HOMING: Duration = Duration::from_secs(900);
+
+/// Rest once all samples are taken: those of a quick gyro are then taken some at a time, because waking for
+/// each costs more than the sample. A quarter of what the queue holds at 2 kHz.
+const REST: Duration = Duration::from_millis(2);
+
+/// What a session wants done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Step {
+    /// To go on sampling.
+    Wait,
+    /// That the stage stands at this angle, rad, or that the platform turns at this rate, rad/s.
+    Move(f64),
+    /// Nothing more.
+    Finish,
+}
+
+/// A session with what was told of it. The conductor knows no more of its kind, so that an image with
+/// two kinds has one conductor.
+pub trait Conducted<O> {
+    /// Where it is to find north.
+    fn latitude(&self) -> Latitude;
+
+    /// What there is to tell before it begins.
+    fn outset(&self) -> Event;
+
+    /// Says what a sway that is subtracted leaves in the samples.
+    fn allow_for(&mut self, sway: SwayNoise);
+
+    /// Takes a sample.
+    fn take(&mut self, sample: &Sample) -> Step;
+
+    /// Ends it with a reason.
+    fn fail(&mut self, reason: Refusal);
+
+    /// Tells what the last sample changed.
+    fn follow(&mut self, shared: &Shared<'_, O>);
+
+    /// Tells what was left out, and gives the azimuth, its σ and its limit, rad, or the reason why there
+    /// is none; [`None`] before the end.
+    fn conclude(&self, shared: &Shared<'_, O>) -> Option<Result<[f64; 3], Refusal>>;
+}
+
+/// The session at work.
+pub struct Conductor<'a, R, O> {
+    session: &'a mut dyn Conducted<O>,
+    recorder: &'a mut R,
+    shared: &'a Shared<'a, O>,
+}
+
+impl<'a, R: Recorder, O: Observer> Conductor<'a, R, O> {
+    /// Takes a session that has not begun.
+    pub fn new(
+        session: &'a mut dyn Conducted<O>,
+        recorder: &'a mut R,
+        shared: &'a Shared<'a, O>,
+    ) -> Self {
+        Self { session, recorder, shared }
+    }
+
+    /// Conducts the session to its conclusion, then waits for the link to tell of it.
+    pub async fn run(&mut self) {
+        self.shared.status.set(Status::Homing);
+        self.shared.tell(self.session.outset());
+        if let Err(reason) = self.conduct().await {
+            self.session.fail(reason);
+        }
+        self.conclude();
+        self.shared.concluded.signal(());
+        // The link ends the run once it has told the last status.
+        pending::<()>().await;
+    }
+
+    async fn conduct(&mut self) -> Result<(), Refusal> {
+        self.check_place()?;
+        self.wait_for_home().await?;
+        self.session.allow_for(self.shared.sway.get());
+        loop {
+            let sample = self.sample().await?;
+            self.recorder.record(&sample).await;
+            let step = self.session.take(&sample);
+            self.session.follow(self.shared);
+            match step {
+                Step::Wait => {}
+                Step::Move(to) => self.shared.wanted.signal(to),
+                Step::Finish => return Ok(()),
+            }
+            if self.shared.samples.is_empty() {
+                Timer::after(REST).await;
+            }
+        }
+    }
+
+    /// Refuses a place where nothing could be found, before anything turns.
+    fn check_place(&self) -> Result<(), Refusal> {
+        let latitude = self.session.latitude();
+        if latitude.has_north() {
+            return Ok(());
+        }
+        Err(Refusal::LatitudeTooHigh { latitude: latitude.rad() * DEGREES })
+    }
+
+    /// Lets samples go by until angles mean something.
+    async fn wait_for_home(&self) -> Result<(), Refusal> {
+        let deadline = Instant::now() + HOMING;
+        while !self.shared.homed.signaled() {
+            self.sample().await?;
+            if Instant::now() > deadline {
+                return Err(Refusal::TimeExhausted);
+            }
+        }
+        Ok(())
+    }
+
+    /// The next sample, or why there will be none.
+    async fn sample(&self) -> Result<Sample, Refusal> {
+        match select(self.shared.failure.wait(), self.shared.samples.receive()).await {
+            Either::First(reason) => Err(reason),
+            Either::Second(sample) => Ok(sample),
+        }
+    }
+
+    fn conclude(&self) {
+        match self.session.conclude(self.shared) {
+            None => {}
+            Some(Ok(found)) => {
+                let [angle, sigma, limit] = found.map(|angle| angle * DEGREES);
+                self.shared.tell(Event::Concluded(angle, sigma, limit));
+                self.shared.status.set(Status::concluded(angle, sigma));
+            }
+            Some(Err(reason)) => {
+                self.shared.tell(Event::Refused(reason));
+                self.shared.status.set(Status::Refused);
+            }
+        }
+    }
+}
+
+/// Tells the tilt of a platform at rest from the force that it feels there.
+fn tell_level<O: Observer>([along, across, down]: [f64; 3], shared: &Shared<'_, O>) {
+    let [along, across] = [along, across].map(|f| libm::atan2(f, -down) * DEGREES);
+    shared.tell(Event::Levelled(along, across));
+}

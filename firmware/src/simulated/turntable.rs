@@ -1,0 +1,228 @@
+//! One simulated alignment on a platform that turns all the time: what is true, what the board is told.
+//!
+//! Site, attitude, gyro and sample rate are those of a [`Scenario`]; slip ring, unevenness, speeds and
+//! the sensor's own dynamics are its own. The chips are the same.
+
+use core::cell::RefCell;
+
+use drivers::adxl355;
+use drivers::adxl355::registers::OutputRate;
+use drivers::mt6835;
+use drivers::tmc5160::configuration::{Configuration as Motor, Switches};
+use embassy_time::{Duration, Instant};
+use hal_mock::chip::Rig;
+use hal_mock::molecular::MolecularConfiguration;
+use hal_mock::plant::PlantConfiguration;
+use hal_mock::plant::train::StageConfiguration;
+use hal_mock::stage::{Ripple, Unevenness};
+use orientation::align::rotating::coupling::Coupling;
+use orientation::align::rotating::solution::SPEEDS;
+use orientation::align::rotating::{Sensor, Setting};
+use orientation::session::rotating::{self, Procedure};
+use orientation::units::{DEGREE, TURN};
+
+use super::fault::{Fault, Plan};
+use super::scenario::{GyroClass, Scenario};
+use super::{
+    Around, Chips, SimulatedPorts, SimulatedSensors, board_around, ports_with, sensors_with,
+};
+use crate::configuration::{ANGLE_RATE, Configuration, TurntableConfiguration};
+
+/// The motor driver of a platform that turns without end: it has no switches.
+const MOTOR: Switches = Switches { left: None, right: None };
+
+/// The accelerometer of a platform that turns: its filter delays a force by two and a half outputs, in
+/// which the platform is not to turn far.
+const FORCE: adxl355::Configuration = adxl355::Configuration { rate: OutputRate::Hz1000 };
+/// The same rate, Hz.
+const FORCE_HERTZ: f64 = 1000.0;
+
+/// A molecular-electronic sensor: little noise at the turn's frequency, a drift that no gyro has.
+pub const MOLECULAR_ELECTRONIC: GyroClass =
+    GyroClass { n_deg_sqrt_h: 0.002, b_deg_h: 0.0, k_deg_h_sqrt_h: 0.0, bias_sigma_deg_h: 5.0 };
+
+/// Its dynamics: 17° ahead at 0.1 Hz and 9° at 0.2 Hz by its high-pass, about 1° behind by its lag, and a
+/// g-sensitivity that at 0.1 Hz and 0.7° of tilt is a fifth of the horizontal Earth rate.
+pub const DYNAMICS: MolecularConfiguration =
+    MolecularConfiguration { force_rad_s2_g: [4e-4, -2.5e-4], high_pass_hz: 0.03, lag_s: 0.02 };
+/// Time constants of the high-pass until a change of the platform's rate, of which a raised axis shows a
+/// hundredth, is below what the Earth's is to be known to: e⁻¹⁴ is 10⁻⁶.
+const SETTLED: f64 = 14.0;
+
+/// Until the platform is ready to turn, s.
+const START_SECONDS: f64 = 1.0;
+
+/// A simulated alignment on a turning platform.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TurntableScenario {
+    /// Site, attitude, gyro and sample rate; its positions and dwells are not looked at.
+    pub base: Scenario,
+    /// Dynamics of a molecular-electronic sensor; none for a gyro.
+    pub molecular: Option<MolecularConfiguration>,
+    /// Turns a second, the second speed zero where there is none, Hz.
+    pub speeds_hz: [f64; 2],
+    /// Uneven turns at each speed; none where a stored coupling is to do.
+    pub uneven_turns: u32,
+    /// Turns in each direction at each speed.
+    pub turns: u32,
+    /// How far the sensitive axis rises over the platform's plane, °.
+    pub elevation_deg: f64,
+    /// How uneven the gear is, relative, once and twice per turn.
+    pub unevenness: [f64; 2],
+    /// Angles at which it is quickest, °.
+    pub quickest_deg: [f64; 2],
+    /// Couplings that were stored, for each speed.
+    pub stored: [Option<Coupling>; SPEEDS],
+}
+
+impl Default for TurntableScenario {
+    /// The default gyro, raised by 0.8°, at 0.137 Hz for twelve uneven turns and ten each way, on a gear
+    /// that is uneven by 0.2 % once and 0.05 % twice per turn.
+    fn default() -> Self {
+        Self {
+            base: Scenario::default(),
+            molecular: None,
+            speeds_hz: [0.137, 0.0],
+            uneven_turns: 12,
+            turns: 10,
+            elevation_deg: 0.8,
+            unevenness: [0.002, 0.0005],
+            quickest_deg: [35.0, 110.0],
+            stored: [None; SPEEDS],
+        }
+    }
+}
+
+impl TurntableScenario {
+    /// The default with another seed.
+    #[must_use]
+    pub fn usual(seed: u64) -> Self {
+        Self { base: Scenario::usual(seed), ..Self::default() }
+    }
+
+    /// Four uneven turns and two each way at 0.2 Hz: what a sample costs at the highest rate of the stage
+    /// path, 2400 Hz.
+    #[must_use]
+    pub fn brief(seed: u64) -> Self {
+        let base = Scenario { sample_rate_hz: 2400.0, ..Scenario::usual(seed) };
+        Self { base, speeds_hz: [0.2, 0.0], uneven_turns: 4, turns: 2, ..Self::default() }
+    }
+
+    /// A molecular-electronic sensor at two speeds.
+    #[must_use]
+    pub fn molecular(seed: u64) -> Self {
+        let base = Scenario { gyro: MOLECULAR_ELECTRONIC, ..Scenario::usual(seed) };
+        let (molecular, speeds_hz) = (Some(DYNAMICS), [0.1, 0.2]);
+        Self { base, molecular, speeds_hz, ..Self::default() }
+    }
+
+    /// What the board is told of place and instrument; none where the latitude is none.
+    #[must_use]
+    pub fn setting(&self) -> Option<Setting> {
+        let setting = Setting::new(self.base.setting()?, self.sensor());
+        Some(Setting { couplings: self.stored, ..setting })
+    }
+
+    fn sensor(&self) -> Sensor {
+        let Some(dynamics) = self.molecular else { return Sensor::GYRO };
+        let settle_seconds = SETTLED / (TURN * dynamics.high_pass_hz);
+        Sensor { settle_seconds, ..Sensor::MOLECULAR }
+    }
+
+    /// How the board goes about it.
+    #[must_use]
+    pub fn procedure(&self) -> Procedure {
+        let speeds = self.speeds_hz.map(|speed| speed * TURN);
+        let count = speeds.iter().take_while(|speed| **speed > 0.0).count();
+        let Self { uneven_turns, turns, .. } = *self;
+        let sample_seconds = 1.0 / self.base.sample_rate_hz;
+        Procedure { uneven_turns, turns, ..Procedure::new(&speeds[..count], sample_seconds) }
+    }
+
+    /// Both, checked; none where the latitude is none or the procedure impossible.
+    #[must_use]
+    pub fn checked(&self) -> Option<(Setting, Procedure)> {
+        let procedure = self.procedure();
+        rotating::check(&procedure).ok()?;
+        Some((self.setting()?, procedure))
+    }
+
+    /// What the board is told of its devices.
+    #[must_use]
+    pub fn configuration(&self) -> Configuration {
+        Configuration {
+            encoder: self.base.configuration().encoder,
+            ..Configuration::turning(self.base.sample_rate_hz)
+        }
+    }
+
+    /// The encoder, read with every sample, but its registers not more often than those of a stage's.
+    fn encoder(&self) -> mt6835::Configuration {
+        let unwatched = self.base.sample_rate_hz / ANGLE_RATE - 1.0;
+        mt6835::Configuration { unwatched: unwatched as u8, ..mt6835::Configuration::default() }
+    }
+
+    /// What it is told of the platform.
+    #[must_use]
+    pub fn turntable(&self) -> TurntableConfiguration {
+        TurntableConfiguration::default()
+    }
+
+    /// What is true of everything that the chips feel and move.
+    #[must_use]
+    pub fn plant(&self) -> PlantConfiguration<'static> {
+        let mut plant = self.base.plant();
+        plant.accelerometer_hz = FORCE_HERTZ;
+        plant.instruments.gyro.axis_elevation_rad = self.elevation_deg * DEGREE;
+        plant.instruments.gyro.molecular = self.molecular;
+        let ripple = |harmonic: usize| Ripple {
+            relative: self.unevenness[harmonic],
+            phase_rad: self.quickest_deg[harmonic] * DEGREE,
+        };
+        let endless = StageConfiguration::endless();
+        plant.stage = StageConfiguration {
+            travel_rad: endless.travel_rad,
+            switches_rad: endless.switches_rad,
+            unevenness: Unevenness { first: ripple(0), second: ripple(1) },
+            ..plant.stage
+        };
+        plant
+    }
+
+    /// A plan of a fault that comes amid the clockwise turns.
+    #[must_use]
+    pub fn plan(&self, fault: Option<Fault>) -> Plan {
+        let Procedure { ramp_seconds, level_seconds, .. } = self.procedure();
+        let turns = f64::from(self.uneven_turns) + 0.5 * f64::from(self.turns);
+        let phases = if self.uneven_turns > 0 { 2.0 } else { 1.0 };
+        let seconds = START_SECONDS + level_seconds + phases * ramp_seconds;
+        let seconds = seconds + turns / self.speeds_hz[0];
+        Plan::at(fault, Instant::MIN + Duration::from_millis((seconds * 1e3) as u64))
+    }
+
+    /// The simulated board with a plan of faults.
+    #[must_use]
+    pub fn board<'a>(&self, plan: &'a Plan) -> Chips<'a> {
+        board_around(&self.plant(), self.base.seed, plan)
+    }
+}
+
+/// The sensors of its simulated board.
+pub fn sensors<'a, B: Rig, A: Around>(
+    board: &'a RefCell<B>,
+    scenario: &TurntableScenario,
+    around: &A,
+) -> SimulatedSensors<'a, B, A> {
+    sensors_with(board, &scenario.base, (FORCE, scenario.encoder()), around)
+}
+
+/// The other ports of its simulated board.
+pub fn ports<'a, B: Rig, A: Around, L, R>(
+    board: &'a RefCell<B>,
+    around: &A,
+    link: L,
+    recorder: R,
+) -> SimulatedPorts<'a, B, A, L, R> {
+    let motor = Motor { switches: MOTOR, ..Motor::default() };
+    ports_with(board, around, motor, link, recorder)
+}

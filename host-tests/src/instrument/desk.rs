@@ -1,0 +1,116 @@
+//! What stands around every simulated board: its log, the wire of its link, and the clock.
+
+use std::cell::RefCell;
+
+use embassy_time::Instant;
+use embedded_io_async::{ErrorType, Write};
+use firmware::event::Event;
+use firmware::health::Health;
+use firmware::ports::Observer;
+use firmware::shared::Shared;
+use hal_mock::chip::Select;
+use hal_mock::violation::Violation;
+use orientation::session::{Session, rotating};
+
+use super::{Run, RunError};
+use crate::virtual_time;
+
+/// What the board was not told but takes as known.
+pub(super) const ASSUMED: &str = "latitude exact, calibrations as stated";
+
+/// Keeps what the board tells and passes it on.
+pub(super) struct Log<'w, W> {
+    events: RefCell<Vec<(Instant, Event)>>,
+    watch: &'w W,
+}
+
+impl<W: Observer> Observer for Log<'_, W> {
+    fn event(&self, at: Instant, event: &Event) {
+        self.events.borrow_mut().push((at, *event));
+        self.watch.event(at, event);
+    }
+
+    fn progress(&self, session: &Session) {
+        self.watch.progress(session);
+    }
+
+    fn turned(&self, session: &rotating::Session) {
+        self.watch.turned(session);
+    }
+}
+
+/// The wire of the link: it takes everything.
+pub(super) struct Wire<'d>(&'d RefCell<Vec<u8>>);
+
+impl ErrorType for Wire<'_> {
+    type Error = core::convert::Infallible;
+}
+
+impl Write for Wire<'_> {
+    async fn write(&mut self, bytes: &[u8]) -> Result<usize, Self::Error> {
+        self.0.borrow_mut().extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    async fn flush(&mut self) -> Result<(), Self::Error> {
+        Ok(())
+    }
+}
+
+/// A desk on which a board is put.
+pub(super) struct Desk<'w, W> {
+    log: Log<'w, W>,
+    bytes: RefCell<Vec<u8>>,
+}
+
+/// How a run ended.
+pub(super) struct Ended {
+    health: Health,
+    at: Instant,
+}
+
+impl<'w, W: Observer> Desk<'w, W> {
+    /// An empty one; what a board tells goes on to `watch`.
+    pub(super) fn new(watch: &'w W) -> Self {
+        Self { log: Log { events: RefCell::default(), watch }, bytes: RefCell::default() }
+    }
+
+    /// The seams of the board's parts.
+    pub(super) fn seams(&self) -> Shared<'_, Log<'w, W>> {
+        Shared::new(&self.log)
+    }
+
+    /// The wire of its link.
+    pub(super) fn wire(&self) -> Wire<'_> {
+        Wire(&self.bytes)
+    }
+
+    /// What is left of a run.
+    pub(super) fn clear<R>(self, ended: &Ended, violations: Vec<String>, replay: R) -> Run<R> {
+        Run {
+            replay,
+            events: self.log.events.into_inner(),
+            lines: String::from_utf8_lossy(&self.bytes.into_inner()).into_owned(),
+            seconds: ended.at.as_micros() as f64 * 1e-6,
+            health: ended.health,
+            violations,
+        }
+    }
+}
+
+/// Runs a board's two futures in virtual time on this thread.
+///
+/// # Errors
+/// Everything waits and nothing would come.
+pub(super) fn run(
+    acquisition: impl Future<Output = ()>,
+    instrument: impl Future<Output = Health>,
+) -> Result<Ended, RunError> {
+    let instrument = async { Ended { health: instrument.await, at: Instant::now() } };
+    virtual_time::run_beside(acquisition, instrument).map_err(|_| RunError::Deadlock)
+}
+
+/// In words, what drivers did that a data sheet forbids.
+pub(super) fn told(violations: impl Iterator<Item = (Select, Violation)>) -> Vec<String> {
+    violations.map(|(select, violation)| format!("{select:?}: {violation}")).collect()
+}
