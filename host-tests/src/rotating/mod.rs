@@ -1,6 +1,7 @@
 //! Recordings of a platform that turns all the time: replay through the session, and what figures need.
 
 pub mod part;
+pub mod recorder;
 pub mod turns;
 
 use orientation::align::rotating::conclusion::Conclusion;

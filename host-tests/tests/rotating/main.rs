@@ -4,8 +4,8 @@
 #![allow(clippy::unwrap_used, dead_code)]
 #![allow(clippy::expect_used, reason = "a test that cannot go on has failed")]
 
+mod integrity;
 mod outcome;
 mod platform_faults;
-mod sensor_faults;
-mod integrity;
 mod rig;
+mod sensor_faults;

@@ -142,10 +142,8 @@ fn a_creeping_encoder_is_refused_once_it_shows_above_the_noise() {
         move |seed: u64, case: super::rig::Case| {
             let rad_per_s = rate_deg_s.to_radians();
             let slip = EncoderSlip { from_s: clockwise_s(0.0), by_rad: 0.0, rad_per_s };
-            let run = with(seed, &case, |configuration| TurntableConfiguration {
-                slip,
-                ..configuration
-            });
+            let run =
+                with(seed, &case, |configuration| TurntableConfiguration { slip, ..configuration });
             // The zero moves: any azimuth that it went through is one.
             let crept = rad_per_s * (2.0 * turns_s(TURNS) + 5.0);
             run.map(|(error, sigma)| (error - error.clamp(-crept, 0.0), sigma))
@@ -183,7 +181,8 @@ fn a_tilt_that_changes_is_refused_or_leaves_the_azimuth_right() {
 
 #[test]
 fn a_base_that_turned_is_refused_or_stood_where_the_azimuth_says() {
-    let names = ["TiltChanged", "DirectionDrifts", "ResidualsNotWhite", "Disturbed", "SensesDisagree"];
+    let names =
+        ["TiltChanged", "DirectionDrifts", "ResidualsNotWhite", "Disturbed", "SensesDisagree"];
     for change in [0.03, 0.1, 0.3, 1.0, 3.0_f64] {
         for place in [between_s(), clockwise_s(6.0)] {
             assert_never_wrong(&names, |seed, case| {
