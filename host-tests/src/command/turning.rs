@@ -103,7 +103,8 @@ pub fn run(
     watch.0.finish();
     let TurntableRun { run, .. } = run.map_err(|error| error.to_string())?;
     let wall = begun.elapsed().as_secs_f64();
-    let replay = Replay { session: run.replay.clone(), assumed: vec![ASSUMED.to_owned()] };
+    let replay =
+        Replay { session: run.replay.clone(), zero_s: 0.0, assumed: vec![ASSUMED.to_owned()] };
     let conclusion = replay.conclusion().ok_or("the session did not end")?;
     let truth = Some(scenario.base.azimuth_deg);
     let found = told::json::object(&replay, conclusion, truth);
