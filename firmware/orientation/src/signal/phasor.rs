@@ -4,9 +4,10 @@
 //!  sample ─trapezoid─▶ block (≈ 20 ms) ─products, i64─▶ stretch of turning ─f64─▶ Sums ─▶ fits
 //! ```
 //!
-//! A block is the mean of rate, cosine and sine over some sample periods, by the trapezoidal rule from
-//! sample to sample, so that its platform rate is exactly what the encoder turned in that time: the
-//! encoder's steps then cancel from block to block. What is fitted to what is chosen afterwards.
+//! A block is the mean of the rate over some sample periods, by the trapezoidal rule from sample to
+//! sample, so that its platform rate is exactly what the encoder turned in that time: the encoder's steps
+//! then cancel from block to block. Cosine and sine are averaged over the same time from its ends and
+//! middle. What is fitted to what is chosen afterwards.
 
 use super::Sample;
 use crate::align::etalon::Table;
@@ -38,8 +39,8 @@ pub const RATE: usize = COLUMNS;
 const STEPS: [f64; SIGNALS] = [1.0, TRIGONOMETRIC, TRIGONOMETRIC, 1e-4, 1e-6, 1e-6, 1e-9];
 /// Step of cosine and sine, 2⁻²².
 const TRIGONOMETRIC: f64 = 1.0 / 4_194_304.0;
-/// Bits that the table's cosine has more, and one for the trapezoid's two ends.
-const EXCESS_BITS: u32 = 30 - 22 + 1;
+/// Bits that the table's cosine has more.
+const EXCESS_BITS: u32 = 30 - 22;
 
 /// Greatest distance of the gyro's rate from the reference, nrad/s: 1.9 °/s. What is further away is no
 /// Earth rate.
@@ -67,42 +68,45 @@ pub struct Block {
 /// Averages samples into blocks.
 #[derive(Clone, Copy, Debug)]
 pub struct Blocks {
-    /// Sample periods in a block.
+    /// Sample periods in a block, and after how many its middle is reached.
     periods: u32,
+    middle: u32,
     last: Option<Point>,
-    begun: u64,
+    /// Where the block began, and its angle's cosine and sine there and in the middle, 2⁻³⁰.
+    begun: Point,
+    phasors: [[i32; 2]; 2],
     count: u32,
     turned: i64,
     /// Sums over the periods of the values at both of their ends.
     turning: f32,
     rate: i64,
-    phasor: [i64; 2],
     is_saturated: bool,
 }
 
 /// What a sample brings.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Point {
     time: u64,
     stage: Angle,
     turning: Option<f32>,
     rate: i32,
-    phasor: [i32; 2],
 }
 
 impl Blocks {
-    /// Blocks of so many sample periods, at least one.
+    /// Blocks of so many sample periods: one, or an even number, so that a sample is their middle.
     #[must_use]
     pub fn of(periods: u32) -> Self {
+        let middle = periods / 2;
         Self {
-            periods: periods.max(1),
+            periods: (2 * middle).max(1),
+            middle,
             last: None,
-            begun: 0,
+            begun: Point::default(),
+            phasors: [[0; 2]; 2],
             count: 0,
             turned: 0,
             turning: 0.0,
             rate: 0,
-            phasor: [0; 2],
             is_saturated: false,
         }
     }
@@ -112,54 +116,64 @@ impl Blocks {
         *self = Self::of(self.periods);
     }
 
-    /// Cosine and sine of the latest sample's angle, 2⁻³⁰.
-    #[must_use]
-    pub fn phasor(&self) -> [i32; 2] {
-        self.last.map_or([0; 2], |last| last.phasor)
-    }
-
     /// Takes a sample, and the platform's rate in rad/s where something measured it; gives a block when
     /// one is full. The platform must turn by less than half a turn from sample to sample.
     #[inline]
     pub fn push(&mut self, sample: &Sample, turning: Option<f32>) -> Option<Block> {
         let (time, stage, rate) = (sample.time.0, sample.stage, sample.rate.0);
-        let point = Point { time, stage, turning, rate, phasor: Table::built_in().at(stage) };
-        let last = self.last.replace(point)?;
-        if self.count == 0 {
-            self.begun = last.time;
-        }
+        let point = Point { time, stage, turning, rate };
+        let Some(last) = self.last.replace(point) else {
+            self.begin(point);
+            return None;
+        };
         self.count += 1;
         self.turned += i64::from((stage - last.stage).0.cast_signed());
+        self.rate += i64::from(rate) + i64::from(last.rate);
         if let (Some(now), Some(before)) = (turning, last.turning) {
             self.turning += now + before;
         }
-        self.rate += i64::from(rate) + i64::from(last.rate);
-        self.phasor[0] += i64::from(point.phasor[0]) + i64::from(last.phasor[0]);
-        self.phasor[1] += i64::from(point.phasor[1]) + i64::from(last.phasor[1]);
         self.is_saturated |= sample.rate.is_saturated();
-        (self.count >= self.periods).then(|| self.finish(time))
+        if self.count == self.middle {
+            self.phasors[1] = Table::built_in().at(stage);
+        }
+        (self.count >= self.periods).then(|| self.finish(point))
     }
 
-    /// The block that ends at this time.
-    fn finish(&mut self, ended: u64) -> Block {
-        let seconds = ended.saturating_sub(self.begun).max(1) as f32 * 1e-6;
+    /// Begins a block at a sample.
+    fn begin(&mut self, point: Point) {
+        let first = Table::built_in().at(point.stage);
+        *self = Self { last: Some(point), begun: point, ..Self::of(self.periods) };
+        self.phasors[0] = first;
+    }
+
+    /// The block that ends with this sample; the next one begins there.
+    fn finish(&mut self, end: Point) -> Block {
+        let seconds = end.time.saturating_sub(self.begun.time).max(1) as f32 * 1e-6;
         let ends = 2 * i64::from(self.count);
-        let is_measured = self.last.is_some_and(|last| last.turning.is_some());
         let shown = self.turned as f32 * (Angle::STEP as f32) / seconds;
         let block = Block {
-            time: self.begun.midpoint(ended),
+            time: self.begun.time.midpoint(end.time),
             seconds,
-            turning: if is_measured { self.turning / ends as f32 } else { shown },
+            turning: end.turning.map_or(shown, |_| self.turning / ends as f32),
             turned: self.turned,
-            phasor: self.phasor.map(|sum| {
-                let mean = sum / i64::from(self.count);
-                (mean >> EXCESS_BITS) as i32
-            }),
+            phasor: self.mean_phasor(Table::built_in().at(end.stage)),
             rate: (self.rate / ends) as i32,
             is_saturated: self.is_saturated,
         };
-        *self = Self { last: self.last, ..Self::of(self.periods) };
+        self.begin(end);
         block
+    }
+
+    /// Mean cosine and sine, 2⁻²²: by Simpson's rule where there is a sample in the middle, which is
+    /// exact to 1e-7 for a tenth of a turn, by the trapezoidal one where the rate has no other either.
+    fn mean_phasor(&self, last: [i32; 2]) -> [i32; 2] {
+        let [first, middle] = self.phasors;
+        [0, 1].map(|part| {
+            let ends = i64::from(first[part]) + i64::from(last[part]);
+            let mean =
+                if self.middle == 0 { ends / 2 } else { (ends + 4 * i64::from(middle[part])) / 6 };
+            (mean >> EXCESS_BITS) as i32
+        })
     }
 }
 

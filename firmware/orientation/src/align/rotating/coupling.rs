@@ -13,6 +13,8 @@ use crate::units::TURN;
 
 /// Least modulation of the platform's rate, RMS over its mean, from which a coupling is learnt.
 const LEAST_MODULATION: f64 = 0.02;
+/// How near to once per turn a modulation counts as just that, relative.
+const SAME_FREQUENCY: f64 = 0.1;
 /// Least number of turns with it: the modulation must stand apart from once per turn.
 const LEAST_TURNS: f64 = 3.0;
 
@@ -50,7 +52,10 @@ impl Coupling {
             return None;
         }
         let found = sums.regression(RATE).solve(&[Column::Free; COLUMNS])?;
-        let frequency = libm::sqrt(sums.product(QUICKENING, QUICKENING) / rows / modulation);
+        let shown = libm::sqrt(sums.product(QUICKENING, QUICKENING) / rows / modulation);
+        // Ends that cut a period short make this uncertain by some hundredths.
+        let is_once_a_turn = (shown - mean.abs()).abs() < SAME_FREQUENCY * mean.abs();
+        let frequency = if is_once_a_turn { mean.abs() } else { shown };
         // Noise of a row, whose mean is over this time.
         let density = noise.density_at(frequency / TURN) * rows / seconds;
         let sigma = |column: usize| libm::sqrt(density * found.covariance[column][column]);

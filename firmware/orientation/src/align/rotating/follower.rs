@@ -13,6 +13,7 @@ use heapless::Vec;
 use super::part::{Broken, EIGHTH, Forces, Part, Uneven, is_jump};
 use super::solution::SPEEDS;
 use super::turn::{Sense, Stretch, Turn};
+use crate::align::etalon::Table;
 use crate::device::Trouble;
 use crate::signal::Sample;
 use crate::signal::phasor::{Block, Blocks, Reference, Sums};
@@ -174,7 +175,7 @@ impl Follower {
             return false;
         }
         if let Some([along, _, _]) = sample.force {
-            self.force(along);
+            self.force(along, sample.stage);
         }
         block.is_some_and(|block| self.take(block, turning.is_some()))
     }
@@ -201,14 +202,14 @@ impl Follower {
     }
 
     /// Takes a force, unless it stands at the limit of its range.
-    fn force(&mut self, along: SpecificForce) {
+    fn force(&mut self, along: SpecificForce, stage: Angle) {
         self.repeated = if along == self.last_force { self.repeated + 1 } else { 0 };
         self.most_repeated = self.most_repeated.max(self.repeated);
         self.last_force = along;
         if along.0.abs() >= FORCE_LIMIT {
             self.clipped += 1;
         } else {
-            self.part.forces.push(self.blocks.phasor(), along.0);
+            self.part.forces.push(Table::built_in().at(stage), along.0);
         }
     }
 

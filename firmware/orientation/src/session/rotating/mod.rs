@@ -80,6 +80,11 @@ pub struct Session {
     since: Option<Instant>,
     commanded: Instant,
     last: Option<Instant>,
+    /// After how long in this phase the sensor has settled, and the phase ends, µs.
+    settled: u64,
+    end: u64,
+    /// What makes a gap between two samples, µs.
+    gap: u64,
     /// Turns of this phase.
     turns: u32,
     level: Level,
@@ -113,14 +118,17 @@ impl Session {
         Self {
             setting,
             follower: Follower::new(procedure.periods(), mode),
-            procedure,
             phase: if is_recorded { Phase::Recorded } else { Phase::Level },
             since: None,
             commanded: Instant::default(),
             last: None,
+            settled: 0,
+            end: microseconds(procedure.level_seconds),
+            gap: microseconds(GAP * procedure.sample_seconds),
             turns: 0,
             level: Level::default(),
             conclusion: None,
+            procedure,
         }
     }
 
@@ -192,7 +200,7 @@ impl Session {
     fn sample(&mut self, sample: &Sample, turning: Option<f32>) -> Command {
         let now = sample.time;
         let last = self.last.replace(now).unwrap_or(now);
-        if now.0.saturating_sub(last.0) as f64 * 1e-6 > GAP * self.procedure.sample_seconds {
+        if now.0.saturating_sub(last.0) > self.gap {
             self.follower.restart();
         }
         if let Some(temperature) = sample.temperature {
@@ -218,7 +226,7 @@ impl Session {
             }
             self.level.count += 1;
         }
-        if !is_over(elapsed, self.procedure.level_seconds) {
+        if elapsed < self.end {
             return Command::Wait;
         }
         let common = &self.setting.common;
@@ -243,19 +251,18 @@ impl Session {
 
     /// Turns unevenly, for so many turns once the sensor has settled.
     fn uneven(&mut self, index: usize, now: Instant, elapsed: u64) -> Command {
-        let (speed, settle) = (self.speed(index), self.settle_seconds());
-        let seconds = f64::from(self.procedure.uneven_turns) * TURN / speed;
-        if is_over(elapsed, settle + seconds) {
+        if elapsed >= self.end {
             return self.end_uneven(index);
         }
         if now.0.saturating_sub(self.commanded.0) < COMMAND_PERIOD {
             return Command::Wait;
         }
         self.commanded = now;
-        if self.follower.mode() == Mode::Ignore && is_over(elapsed, settle) {
+        if self.follower.mode() == Mode::Ignore && elapsed >= self.settled {
             self.follower.follow(Mode::Uneven);
         }
-        Command::Turn(self.procedure.uneven_rate(speed, elapsed as f64 * 1e-6 - settle))
+        let time = (elapsed as f64 - self.settled as f64) * 1e-6;
+        Command::Turn(self.procedure.uneven_rate(self.speed(index), time))
     }
 
     /// Ends where the sensor stands badly, or the platform did not turn.
@@ -276,7 +283,7 @@ impl Session {
     }
 
     fn settle(&mut self, index: usize, sense: Sense, elapsed: u64) -> Command {
-        if is_over(elapsed, self.settle_seconds()) {
+        if elapsed >= self.end {
             self.enter(Phase::Even(index, sense), Mode::Even);
         }
         Command::Wait
@@ -289,8 +296,7 @@ impl Session {
         if self.turns >= turns {
             return self.go_on(index, sense);
         }
-        let planned = f64::from(turns) * TURN / self.speed(index);
-        if is_over(elapsed, PATIENCE.0 * planned + PATIENCE.1) {
+        if elapsed >= self.end {
             let wanted = sense.signed(self.speed(index)) * DEGREES;
             return self.conclude(Some(Refusal::PlatformStopped { wanted }));
         }
@@ -309,6 +315,8 @@ impl Session {
 
     fn enter(&mut self, phase: Phase, mode: Mode) {
         self.phase = phase;
+        self.settled = microseconds(self.settle_seconds());
+        self.end = microseconds(self.longest(phase));
         self.since = None;
         self.turns = 0;
         self.follower.follow(mode);
@@ -317,6 +325,22 @@ impl Session {
     /// A speed, rad/s.
     fn speed(&self, index: usize) -> f64 {
         self.procedure.speeds.get(index).copied().unwrap_or_default()
+    }
+
+    /// How long a phase lasts at most, s.
+    fn longest(&self, phase: Phase) -> f64 {
+        match phase {
+            Phase::Uneven(index) => {
+                let turned = f64::from(self.procedure.uneven_turns) * TURN;
+                self.settle_seconds() + turned / self.speed(index)
+            }
+            Phase::Settle(..) => self.settle_seconds(),
+            Phase::Even(index, _) => {
+                let turned = f64::from(self.procedure.turns_at(index)) * TURN;
+                PATIENCE.0 * turned / self.speed(index) + PATIENCE.1
+            }
+            Phase::Level | Phase::Recorded | Phase::Done => 0.0,
+        }
     }
 
     /// How long nothing counts after a change of speed, s.
@@ -338,7 +362,7 @@ impl Session {
     }
 }
 
-/// Whether so many µs are more than so many s.
-fn is_over(elapsed: u64, seconds: f64) -> bool {
-    elapsed as f64 * 1e-6 >= seconds
+/// Seconds as whole µs.
+fn microseconds(seconds: f64) -> u64 {
+    Instant::from_seconds(seconds).0
 }
