@@ -79,12 +79,18 @@ fn the_raw_error_is_greatest_where_the_unevenness_acts_across_the_azimuth() {
 }
 
 #[test]
-fn one_speed_is_off_by_what_equations_md_predicts() {
-    for row in molecular::rows(12, || {}) {
+fn one_speed_is_off_by_what_equations_md_predicts_and_two_are_not() {
+    for row in molecular::rows(8, || {}) {
         println!("{row:?}");
         assert!(row.predicted_rms_deg <= row.bound_deg, "{row:?}");
-        assert!(row.off_prediction_deg < 0.12, "{row:?}");
         assert_eq!(row.precision.refused, 0, "{row:?}");
+        let is_aligned = row.coupling_deg == 0.0;
+        // What the coupling's own error leaves comes on top, with or without a g-sensitivity.
+        assert!(row.off_prediction_deg < if is_aligned { 0.012 } else { 0.06 }, "{row:?}");
+        assert!(row.two_speeds_rms_deg < if is_aligned { 0.01 } else { 0.1 }, "{row:?}");
+        // 5/3 of the limit, as eight runs show it.
+        assert!(row.noise_ratio < 3.5, "{row:?}");
+        assert!(row.precision.worst_sigmas < 4.5, "{row:?}");
     }
 }
 

@@ -125,7 +125,7 @@ fn burov(runs: usize, report: Option<&Path>, as_json: bool) -> Result<Told, Stri
 /// healthy run was refused and no north was wrong.
 fn rotating(runs: usize, report: Option<&Path>, as_json: bool) -> Result<Told, String> {
     let of_case = (runs / 10).max(1);
-    let tables = stages::WALKS.len() + molecular::RATIOS.len();
+    let tables = stages::WALKS.len() + molecular::COUNT;
     let total = tables * runs + refusals::COUNT * of_case;
     let progress = Progress::new(total as u64, "alignments");
     let tick = || progress.step();

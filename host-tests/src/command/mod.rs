@@ -6,6 +6,7 @@ pub mod emulate;
 pub mod plan;
 pub mod replay;
 pub mod run;
+pub mod turning;
 
 use std::fmt;
 use std::io::Write;

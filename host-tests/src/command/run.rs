@@ -6,7 +6,7 @@ use std::time::Instant as WallClock;
 
 use bench::instrument::recorder::CsvRecorder;
 use bench::instrument::{self, FramesRun, Run};
-use bench::output::json::{self, AzimuthObject};
+use bench::output::json;
 use bench::output::progress::Progress;
 use bench::output::{degrees, page, text};
 use clap::{Args, ValueEnum};
@@ -17,9 +17,11 @@ use firmware::ports::{NoRecorder, Observer};
 use firmware::simulated::fault::Fault;
 use firmware::simulated::mount::{FramePlan, FramesScenario};
 use firmware::simulated::scenario::{Aim, GyroClass, RATES, Scenario};
-use orientation::session::Session;
+use orientation::session::{Session, rotating};
+use serde::Serialize;
 use serde_json::{Value, json};
 
+use super::turning::TurningOptions;
 use super::{Half, Told};
 
 /// What can be said of a simulated alignment.
@@ -37,9 +39,9 @@ pub struct RunOptions {
     /// True roll of the base in degrees, right side down positive.
     #[arg(long, value_name = "DEGREES", default_value = "-0.4", value_parser = within::<180>, allow_negative_numbers = true)]
     roll: f64,
-    /// The precise gyro.
-    #[arg(long, value_enum, default_value = "fog")]
-    gyro: Gyro,
+    /// The precise gyro (fog).
+    #[arg(long, value_enum)]
+    gyro: Option<Gyro>,
     /// Samples of the gyro a second: a data rate of its converter.
     #[arg(long, value_name = "HERTZ", default_value = "400", value_parser = rate)]
     rate: f64,
@@ -62,12 +64,14 @@ pub struct RunOptions {
     /// The half of the circle in which the board is told that the azimuth lies: two positions need it.
     #[arg(long, value_enum)]
     half: Option<Half>,
-    /// On a stage: positions on the full circle.
-    #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u8).range(2..=64))]
-    positions: u8,
-    /// Seconds at each position.
-    #[arg(long, value_name = "SECONDS", default_value = "10", value_parser = dwell)]
-    dwell: f64,
+    /// On a stage: positions on the full circle (24).
+    #[arg(long, value_parser = clap::value_parser!(u8).range(2..=64))]
+    positions: Option<u8>,
+    /// Seconds at each position (10).
+    #[arg(long, value_name = "SECONDS", value_parser = dwell)]
+    dwell: Option<f64>,
+    #[command(flatten)]
+    turning: TurningOptions,
     /// Amplitude of the base's sway in degrees; brings a coarse IMU on the base with it.
     #[arg(long, value_name = "DEGREES", value_parser = sway, conflicts_with = "record")]
     sway: Option<f64>,
@@ -100,6 +104,8 @@ enum Method {
     Stepwise,
     /// Autocompensated positions: the best schedule for the gyro, in 300 s unless stated.
     Positions,
+    /// A platform that turns all the time, on a slip ring.
+    Rotating,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -196,6 +202,10 @@ impl From<Gyro> for GyroClass {
     }
 }
 
+/// Positions on the full circle where none are stated.
+const POSITIONS: usize = 24;
+/// Seconds at each where none are stated.
+const DWELL: f64 = 10.0;
 /// Passes on two frames where none are stated.
 const PASSES: usize = 6;
 /// Time of a plan where none is stated, s.
@@ -220,6 +230,33 @@ impl RunOptions {
             () if !on_frames && self.passes.is_some() => {
                 Err("--passes: they are those of two frames; a stage has --positions")
             }
+            () if matches!(self.method, Method::Rotating) => self.check_rotating(on_frames),
+            () if self.turning.is_given() => {
+                Err("--sensor, --speeds, --turns: they are those of --method rotating")
+            }
+            () => Ok(()),
+        }
+    }
+
+    /// What a platform that turns all the time cannot take.
+    fn check_rotating(&self, on_frames: bool) -> Result<(), &'static str> {
+        let stops = self.positions.is_some() || self.dwell.is_some() || self.survey.is_some();
+        let plans = self.seconds.is_some() || self.sigma.is_some() || self.half.is_some();
+        match () {
+            () if on_frames => Err("--mount: two frames do not turn without end"),
+            () if stops || plans => Err(
+                "--positions, --dwell, --survey, --seconds, --sigma, --half: a platform that turns all \
+                 the time has --speeds and --turns",
+            ),
+            () if self.sway.is_some() => {
+                Err("--sway: a platform that turns all the time stands on a base at rest")
+            }
+            () if self.record.is_some() => {
+                Err("--record: a platform that turns all the time is not recorded")
+            }
+            () if self.turning.is_molecular() && self.gyro.is_some() => {
+                Err("--gyro: a molecular-electronic sensor takes its place; leave out --sensor met")
+            }
             () => Ok(()),
         }
     }
@@ -228,7 +265,7 @@ impl RunOptions {
         match (self.sigma, self.seconds) {
             (None, None) => match self.method {
                 Method::Stepwise => Aim::Circle,
-                Method::Positions => Aim::Time(USUAL),
+                Method::Positions | Method::Rotating => Aim::Time(USUAL),
             },
             (None, Some(seconds)) => Aim::Time(seconds),
             (Some(sigma_deg), seconds) => {
@@ -246,13 +283,13 @@ impl From<&RunOptions> for Scenario {
             azimuth_deg: options.azimuth.rem_euclid(360.0),
             pitch_deg: options.pitch,
             roll_deg: options.roll,
-            gyro: options.gyro.into(),
+            gyro: options.gyro.unwrap_or(Gyro::Fog).into(),
             sample_rate_hz: options.rate,
             aim: options.aim(),
             survey_s: options.survey.unwrap_or(0.0),
             half: options.half.map(Into::into),
-            positions: usize::from(options.positions),
-            dwell_s: options.dwell,
+            positions: options.positions.map_or(POSITIONS, usize::from),
+            dwell_s: options.dwell.unwrap_or(DWELL),
             sway_deg: options.sway.unwrap_or(0.0),
             sway_hz: options.sway_hertz,
             has_base_imu: options.sway.is_some() && !options.no_base_imu,
@@ -262,7 +299,7 @@ impl From<&RunOptions> for Scenario {
 }
 
 /// Shows the log and the progress while the board works.
-struct Terminal(Progress);
+pub(super) struct Terminal(pub Progress);
 
 impl Observer for Terminal {
     fn event(&self, at: Instant, event: &Event) {
@@ -272,6 +309,10 @@ impl Observer for Terminal {
 
     fn progress(&self, session: &Session) {
         self.0.session(session);
+    }
+
+    fn turned(&self, session: &rotating::Session) {
+        self.0.turns(session.turns());
     }
 }
 
@@ -286,6 +327,10 @@ pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
         None => None,
     };
     let scenario = Scenario::from(options);
+    if let Method::Rotating = options.method {
+        let scenario = options.turning.scenario(&scenario);
+        return super::turning::run(&scenario, fault, options.report.as_deref(), as_json);
+    }
     if options.mount == MountKind::TwoFrame {
         return run_frames(&scenario, options, as_json);
     }
@@ -340,7 +385,11 @@ fn run_frames(base: &Scenario, options: &RunOptions, as_json: bool) -> Result<To
 }
 
 /// The object of a result, with what only a simulated run has.
-fn object(run: &Run, scenario: &Scenario, result: AzimuthObject) -> Result<Value, String> {
+pub(super) fn object<R>(
+    run: &Run<R>,
+    scenario: &Scenario,
+    result: impl Serialize,
+) -> Result<Value, String> {
     let mut object = serde_json::to_value(result).map_err(|error| error.to_string())?;
     let health = &run.health;
     object["seed"] = scenario.seed.into();

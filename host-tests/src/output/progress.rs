@@ -43,6 +43,13 @@ impl Progress {
         self.tell(|| so_far(session));
     }
 
+    /// Shows how many of the planned turns a platform has done.
+    pub fn turns(&self, (done, planned): (u32, u32)) {
+        self.bar.set_length(u64::from(planned));
+        self.bar.set_position(u64::from(done));
+        self.tell(String::new);
+    }
+
     /// Prints a line of a log above the bar.
     pub fn log(&self, line: &str) {
         if self.bar.is_hidden() { say(line) } else { self.bar.println(line) }

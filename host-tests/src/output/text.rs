@@ -160,7 +160,7 @@ fn remedy(source: orientation::error::Source) -> &'static str {
 ///
 /// # Errors
 /// Those of the writer.
-pub fn run(out: &mut impl Write, run: &Run, scenario: &Scenario, wall: f64) -> fmt::Result {
+pub fn run<R>(out: &mut impl Write, run: &Run<R>, scenario: &Scenario, wall: f64) -> fmt::Result {
     let Run { seconds, health, .. } = run;
     let ratio = seconds / wall;
     writeln!(out)?;

@@ -1,6 +1,7 @@
 //! Recordings of a platform that turns all the time: replay through the session, and what figures need.
 
 pub mod part;
+pub mod recorder;
 pub mod turns;
 
 use orientation::align::rotating::conclusion::Conclusion;
@@ -21,6 +22,8 @@ use crate::setting::{Described, describe};
 pub struct Replay {
     /// The session, with its conclusion.
     pub session: Session,
+    /// What the recording's clock showed at the session's zero, s.
+    pub zero_s: f64,
     /// What had to be assumed.
     pub assumed: Vec<String>,
 }
@@ -46,8 +49,11 @@ impl Replay {
             self.session.follower().stretches().iter().filter_map(span).collect();
         spans.sort_by(|a, b| a.0.total_cmp(&b.0));
         let begin = spans.first().map_or(f64::INFINITY, |span| span.0);
-        let uneven = Part::between(rows, 0.0, begin, false);
-        let even = spans.iter().map(|(from, to)| Part::between(rows, *from, *to, true));
+        let between = |from: f64, to: f64, is_even| {
+            Part::between(rows, self.zero_s + from, self.zero_s + to, is_even)
+        };
+        let uneven = between(0.0, begin, false);
+        let even = spans.iter().map(|(from, to)| between(*from, *to, true));
         [uneven].into_iter().chain(even).filter(|part| turns::whole_turns(part.rows) > 0).collect()
     }
 }
@@ -75,7 +81,8 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
     let sensor = sensor(header, &mut assumed);
     let rate = header.rate_hz.unwrap_or_else(|| turns::rate_hz(rows));
     let session = follow(Setting::new(common, sensor), rows, 1.0 / rate.max(f64::MIN_POSITIVE));
-    Ok(Replay { session: session.map_err(ReplayError::Procedure)?, assumed })
+    let zero_s = rows.first().map_or(0.0, |row| row.time_s);
+    Ok(Replay { session: session.map_err(ReplayError::Procedure)?, zero_s, assumed })
 }
 
 /// The kind of sensor that the header names.

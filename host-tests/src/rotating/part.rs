@@ -15,11 +15,10 @@ pub struct Part<'a> {
 }
 
 impl<'a> Part<'a> {
-    /// The rows from one time to another, both included, in seconds from the first row on.
+    /// The rows from one time to before another, s.
     #[must_use]
     pub fn between(rows: &'a [RotatingRow], from_s: f64, to_s: f64, is_even: bool) -> Self {
-        let begin = rows.first().map_or(0.0, |row| row.time_s);
-        let before = |seconds: f64| rows.partition_point(|row| row.time_s - begin < seconds);
+        let before = |seconds: f64| rows.partition_point(|row| row.time_s < seconds);
         let from = before(from_s);
         Self { is_even, rows: &rows[from..before(to_s).max(from)] }
     }

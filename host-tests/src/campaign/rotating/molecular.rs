@@ -10,7 +10,7 @@ use orientation::error::Refusal;
 use rustfft::num_complex::Complex;
 use serde::Serialize;
 
-use super::world::{Integrating, LATITUDE_DEG, TILT_DEG, World};
+use super::world::{COUPLING_DEG, Integrating, LATITUDE_DEG, TILT_DEG, World};
 use super::{Solved, over, solve};
 use crate::campaign::statistics::{Answer, Precision, rms};
 use crate::output::azimuth_error;
@@ -21,6 +21,10 @@ pub const SPEEDS_HZ: [f64; 2] = [0.1, 0.2];
 pub const SECONDS: f64 = 200.0;
 /// Integrated g-sensitivities over the horizontal Earth rate, at the slower speed.
 pub const RATIOS: [f64; 3] = [0.01, 0.1, 0.3];
+/// Couplings, °: of a sensor that was aligned, and of one that was not.
+pub const COUPLINGS_DEG: [f64; 2] = [0.0, COUPLING_DEG];
+/// How many rows there are.
+pub const COUNT: usize = RATIOS.len() * COUPLINGS_DEG.len();
 /// Phase of the sensor at the slower speed, °, from … to.
 pub const PHASES_DEG: [f64; 2] = [5.0, 20.0];
 /// Angle random walk of the runs with noise, °/√h.
@@ -32,6 +36,8 @@ const SENSOR_DRAWN: u64 = 1_001;
 /// Many runs at one ratio. Errors in degrees.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
+    /// Non-orthogonality of sensitive axis and platform axis.
+    pub coupling_deg: f64,
     /// The ratio ρ.
     pub ratio: f64,
     /// What §4 bounds the error of one speed by, ρ²/2.
@@ -73,14 +79,15 @@ struct Run {
     answer: Result<Answer, Refusal>,
 }
 
-/// Runs each ratio with seeds 1 to `runs`; `tick` after each.
+/// Runs each ratio at each coupling with seeds 1 to `runs`; `tick` after each.
 #[must_use]
 pub fn rows(runs: usize, tick: impl Fn() + Sync) -> Vec<Row> {
-    RATIOS.into_iter().map(|ratio| row(ratio, runs, &tick)).collect()
+    let at = |coupling| RATIOS.map(|ratio| row(coupling, ratio, runs, &tick));
+    COUPLINGS_DEG.into_iter().flat_map(at).collect()
 }
 
-fn row(ratio: f64, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
-    let runs = over(runs, tick, |seed| run(ratio, seed));
+fn row(coupling_deg: f64, ratio: f64, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
+    let runs = over(runs, tick, |seed| run(coupling_deg, ratio, seed));
     let column = |of: fn(&Run) -> f64| runs.iter().map(of).collect::<Vec<f64>>();
     let [one, predicted] = [column(|run| run.one_speed), column(|run| run.predicted)];
     let two = column(|run| run.two_speeds);
@@ -88,6 +95,7 @@ fn row(ratio: f64, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
     let plain_limit_deg = rms(&column(|run| run.plain_limit));
     let precision = Precision::of(&runs.iter().map(|run| run.answer).collect::<Vec<_>>());
     Row {
+        coupling_deg,
         ratio,
         bound_deg: (0.5 * ratio * ratio).to_degrees(),
         one_speed_rms_deg: rms(&one),
@@ -109,7 +117,7 @@ fn greatest(values: &[f64]) -> f64 {
 
 impl Draw {
     /// Phase and direction of the g-sensitivity from a seed, the platform's world too.
-    fn of(ratio: f64, seed: u64) -> Self {
+    fn of(coupling_deg: f64, ratio: f64, seed: u64) -> Self {
         let mut chance = Generator::stream(seed, SENSOR_DRAWN);
         let [least, most] = PHASES_DEG;
         let sensor = Integrating {
@@ -119,7 +127,7 @@ impl Draw {
             speed_hz: SPEEDS_HZ[0],
         };
         let molecular = Some(sensor.sensor());
-        Self { sensor, world: World { molecular, ..World::drawn(seed, &[], 0.0) } }
+        Self { sensor, world: World { coupling_deg, molecular, ..World::drawn(seed, &[], 0.0) } }
     }
 
     /// What §4 predicts for one speed, °: half of arg(1 + γ²) with γ = G/(w E′), carried over from E′ to
@@ -145,9 +153,9 @@ impl Draw {
     }
 }
 
-fn run(ratio: f64, seed: u64) -> Run {
+fn run(coupling_deg: f64, ratio: f64, seed: u64) -> Run {
     let [first, _] = SPEEDS_HZ;
-    let draw = Draw::of(ratio, seed);
+    let draw = Draw::of(coupling_deg, ratio, seed);
     let world = &draw.world;
     let both = |world: &World| solve(world, Sensor::MOLECULAR, &SPEEDS_HZ, SECONDS, seed);
     let noisy = both(&World { n_deg_sqrt_h: WALK, ..world.clone() });

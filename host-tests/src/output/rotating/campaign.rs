@@ -52,13 +52,22 @@ pub fn molecular(out: &mut impl Write, rows: &[molecular::Row]) -> fmt::Result {
     )?;
     writeln!(
         out,
-        "  {:>5} {:>9} {:>9} {:>9} {:>9} {:>9} {:>12} {:>9}",
-        "ρ", "RMS", "greatest", "predicted", "off that", "bound", "two: RMS", "greatest"
+        "  {:>9} {:>5} {:>9} {:>9} {:>9} {:>9} {:>9} {:>12} {:>9}",
+        "coupling",
+        "ρ",
+        "RMS",
+        "greatest",
+        "predicted",
+        "off that",
+        "bound",
+        "two: RMS",
+        "greatest"
     )?;
     for row in rows {
         writeln!(
             out,
-            "  {:>5} {:>9.4} {:>9.4} {:>9.4} {:>9.4} {:>9.4} {:>12.5} {:>9.5}",
+            "  {:>8}° {:>5} {:>9.4} {:>9.4} {:>9.4} {:>9.4} {:>9.4} {:>12.5} {:>9.5}",
+            row.coupling_deg,
             row.ratio,
             row.one_speed_rms_deg,
             row.one_speed_greatest_deg,
@@ -72,8 +81,8 @@ pub fn molecular(out: &mut impl Write, rows: &[molecular::Row]) -> fmt::Result {
     for row in rows {
         writeln!(
             out,
-            "\n  ρ {} with noise, two speeds: RMS {:.2} times the limit without G and H, {:.4}°",
-            row.ratio, row.noise_ratio, row.plain_limit_deg
+            "\n  coupling {}°, ρ {}, with noise, two speeds: RMS {:.2} times the limit without G and H, {:.4}°",
+            row.coupling_deg, row.ratio, row.noise_ratio, row.plain_limit_deg
         )?;
         errors(out, &row.precision)?;
     }

@@ -65,7 +65,12 @@ fn of_precisions(stages: &[stages::Row], molecular: &[molecular::Row]) -> Table 
     let gyro =
         |row: &stages::Row| line(&format!("gyro, N {} °/√h", row.n_deg_sqrt_h), &row.precision);
     let sensor = |row: &molecular::Row| {
-        let name = format!("molecular, ρ {}, N {} °/√h", row.ratio, molecular::WALK);
+        let name = format!(
+            "molecular, coupling {}°, ρ {}, N {} °/√h",
+            row.coupling_deg,
+            row.ratio,
+            molecular::WALK
+        );
         line(&name, &row.precision)
     };
     Table {
@@ -107,13 +112,14 @@ fn of_molecular(rows: &[molecular::Row]) -> Table {
             row.two_speeds_greatest_deg,
         ];
         let numbers = numbers.map(|number| format!("{number:.4}"));
-        let ratio = [format!("{}", row.ratio)].into_iter();
+        let ratio = [row.coupling_deg, row.ratio].map(|number| number.to_string()).into_iter();
         ratio.chain(numbers).chain([format!("{:.2}", row.noise_ratio)]).collect()
     };
     Table {
         title: "Molecular-electronic sensor: what is left of its g-sensitivity without noise"
             .to_owned(),
         head: named(&[
+            "coupling, °",
             "ρ",
             "one speed: RMS, °",
             "as §4 predicts, °",

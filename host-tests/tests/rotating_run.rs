@@ -1,0 +1,81 @@
+//! `run --method rotating`: the board on a turning platform from the command line, and its misuse.
+#![allow(clippy::expect_used, reason = "a test that cannot go on has failed")]
+
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn run(arguments: &[&str]) -> Output {
+    let program = env!("CARGO_BIN_EXE_meridian");
+    Command::new(program).arg("run").args(arguments).output().expect("it runs")
+}
+
+fn object(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).expect("one JSON object")
+}
+
+#[test]
+fn a_gyro_finds_north_on_a_turning_platform() {
+    let output = run(&["--method", "rotating", "--turns", "4", "--json", "--azimuth", "77"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let object = object(&output);
+    let number = |key: &str| object[key].as_f64().unwrap_or(f64::NAN);
+    assert_eq!((&object["method"], &object["sensor"]), (&"rotating".into(), &"gyro".into()));
+    assert!(number("error_deg").abs() < 4.5 * number("sigma_deg"), "{object}");
+    assert!((number("coupling_deg") - 0.8).abs() < 1e-3, "{object}");
+    assert_eq!((number("positions"), &object["health"]["missing"]), (8.0, &0.into()));
+}
+
+#[test]
+fn speeds_and_turns_are_those_that_were_asked_for() {
+    let output = run(&["--method", "rotating", "--speeds", "0.2", "--turns", "3", "--json"]);
+    let object = object(&output);
+    let stretches = object["stretches"].as_array().map(Vec::as_slice).unwrap_or_default();
+    assert_eq!(stretches.len(), 2, "{object}");
+    for stretch in stretches {
+        let speed = stretch["speed_hz"].as_f64().unwrap_or(0.0);
+        // The motor's clock is off by up to 4 %.
+        assert!((speed / 0.2 - 1.0).abs() < 0.04, "{stretch}");
+        assert_eq!(stretch["turns"], 3, "{stretch}");
+    }
+}
+
+#[test]
+fn what_cannot_go_together_is_misuse_with_the_options_named() {
+    let misuses: [(&[&str], &str); 8] = [
+        (&["--speeds", "0.1"], "--speeds"),
+        (&["--sensor", "met"], "--sensor"),
+        (&["--method", "rotating", "--dwell", "3"], "--dwell"),
+        (&["--method", "rotating", "--sigma", "0.1"], "--sigma"),
+        (&["--method", "rotating", "--mount", "two-frame"], "--mount"),
+        (&["--method", "rotating", "--sway", "0.1"], "--sway"),
+        (&["--method", "rotating", "--sensor", "met", "--gyro", "fog"], "--gyro"),
+        (&["--method", "rotating", "--record", "x.csv"], "--record"),
+    ];
+    for (arguments, option) in misuses {
+        let output = run(arguments);
+        let words = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {words}");
+        assert!(words.contains(option) && output.stdout.is_empty(), "{arguments:?}: {words}");
+    }
+}
+
+#[test]
+fn speeds_out_of_reach_or_too_close_are_misuse() {
+    for speeds in ["0", "0.6", "0.1,0.11", "0.1,0.2,0.3", "fast", "-0.1"] {
+        let output = run(&["--method", "rotating", &format!("--speeds={speeds}")]);
+        assert_eq!(output.status.code(), Some(2), "{speeds}");
+    }
+}
+
+#[test]
+fn the_report_of_a_run_draws_its_turns() {
+    let page = std::env::temp_dir().join(format!("rotating-run-{}.html", std::process::id()));
+    let path = page.display().to_string();
+    let output = run(&["--method", "rotating", "--turns", "3", "--report", path.as_str()]);
+    assert!(output.status.success());
+    let text = std::fs::read_to_string(&page).expect("it was written");
+    std::fs::remove_file(&page).expect("the file is ours");
+    assert!(text.contains("unevenly") && text.contains("Phasor of each turn"), "{text}");
+    assert!(!text.contains("no points to draw"));
+}
