@@ -20,7 +20,7 @@ use crate::simulate::stage_path;
 /// Latitude, °: that of papers/004's laboratory.
 pub const LATITUDE_DEG: f64 = 55.75;
 /// Sample rate, Hz: the noise of a turn does not depend on it; at fewer the motion between two samples does not follow a line.
-pub const RATE_HZ: f64 = 100.0;
+pub const RATE_HZ: f64 = 200.0;
 /// Non-orthogonality of sensitive axis and platform axis, °.
 pub const COUPLING_DEG: f64 = 0.8;
 /// Tilt of the platform, °.
