@@ -109,7 +109,7 @@ pub fn follow(
     let mut session = Session::new(setting, Procedure::recorded(sample_seconds))?;
     let begin = rows.first().map_or(0.0, |row| row.time_s);
     for row in rows {
-        session.handle(Event::Sample(&sample(row, begin)));
+        session.handle(Event::Recorded(&sample(row, begin), row.stage_rate_rad_s as f32));
     }
     session.handle(Event::End);
     Ok(session)

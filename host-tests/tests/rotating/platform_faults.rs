@@ -147,8 +147,14 @@ fn a_creeping_encoder_is_refused_once_it_shows_above_the_noise() {
             run.map(|(error, sigma)| (error - error.clamp(-crept, 0.0), sigma))
         }
     };
-    let names =
-        ["TiltChanged", "DirectionDrifts", "Disturbed", "SpeedsUnequal", "ResidualsNotWhite"];
+    let names = [
+        "TiltChanged",
+        "DirectionDrifts",
+        "Disturbed",
+        "SpeedsUnequal",
+        "ResidualsNotWhite",
+        "SensesDisagree",
+    ];
     for rate in [1e-5, 1e-4, 1e-3, 1e-2] {
         assert_never_wrong(&names, creep(rate));
     }

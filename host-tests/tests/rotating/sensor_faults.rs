@@ -158,3 +158,33 @@ fn without_an_uneven_turn_or_a_stored_coupling_the_sigma_says_so() {
         plain(seed, &case)
     });
 }
+
+#[test]
+fn an_encoder_that_counts_the_other_way_is_refused() {
+    assert_refused(
+        &["AccelerometerAstray", "EarthRateMismatch", "SensesDisagree"],
+        |seed, case| {
+            edited(seed, &case, |samples| {
+                for sample in samples {
+                    sample.stage_rad = -sample.stage_rad;
+                    sample.stage_rate_rad_s = -sample.stage_rate_rad_s;
+                }
+            })
+        },
+    );
+}
+
+#[test]
+fn an_accelerometer_with_a_wrong_axis_is_refused() {
+    let wrong: [fn([f64; 3]) -> [f64; 3]; 3] =
+        [|[x, y, z]| [-x, y, z], |[x, y, z]| [y, x, z], |[x, y, z]| [x, -y, z]];
+    for axes in wrong {
+        assert_refused(&["AccelerometerAstray"], |seed, case| {
+            edited(seed, &case, |samples| {
+                for sample in samples {
+                    sample.force_m_s2 = axes(sample.force_m_s2);
+                }
+            })
+        });
+    }
+}

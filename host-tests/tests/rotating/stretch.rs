@@ -10,6 +10,7 @@ fn turn(number: u32) -> Turn {
         turning: [part(3.0), part(4.0)],
         leak: [part(5.0), part(6.0)],
         force: [part(7.0), part(8.0)],
+        across: [0.0; 2],
         mean_force: part(9.0),
         offset: part(10.0),
         middle: 8.0 * number as f32 + 4.0,

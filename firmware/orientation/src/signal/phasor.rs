@@ -39,8 +39,8 @@ pub const RATE: usize = COLUMNS;
 const STEPS: [f64; SIGNALS] = [1.0, TRIGONOMETRIC, TRIGONOMETRIC, 1e-4, 1e-6, 1e-6, 1e-9];
 /// Step of cosine and sine, 2⁻²².
 const TRIGONOMETRIC: f64 = 1.0 / 4_194_304.0;
-/// Bits that the table's cosine has more.
-const EXCESS_BITS: u32 = 30 - 22;
+/// Step of the table's cosine, 2⁻³⁰, over that.
+const EXCESS: f32 = 1.0 / 256.0;
 
 /// Greatest distance of the gyro's rate from the reference, nrad/s: 1.9 °/s. What is further away is no
 /// Earth rate.
@@ -75,9 +75,10 @@ pub struct Blocks {
     /// Where the block began, and its angle's cosine and sine there and in the middle, 2⁻³⁰.
     begun: Point,
     phasors: [[i32; 2]; 2],
+    middle_time: u64,
     count: u32,
     turned: i64,
-    /// Sums over the periods of the values at both of their ends.
+    /// Sums over the periods of the values at both of their ends times their length, µs.
     turning: f32,
     rate: i64,
     is_saturated: bool,
@@ -103,6 +104,7 @@ impl Blocks {
             last: None,
             begun: Point::default(),
             phasors: [[0; 2]; 2],
+            middle_time: 0,
             count: 0,
             turned: 0,
             turning: 0.0,
@@ -128,13 +130,16 @@ impl Blocks {
         };
         self.count += 1;
         self.turned += i64::from((stage - last.stage).0.cast_signed());
-        self.rate += i64::from(rate) + i64::from(last.rate);
+        // A period in which samples are missing counts for as long as it took.
+        let period = time.saturating_sub(last.time) as u32;
+        self.rate += (i64::from(rate) + i64::from(last.rate)) * i64::from(period);
         if let (Some(now), Some(before)) = (turning, last.turning) {
-            self.turning += now + before;
+            self.turning += (now + before) * period as f32;
         }
         self.is_saturated |= sample.rate.is_saturated();
         if self.count == self.middle {
             self.phasors[1] = Table::built_in().at(stage);
+            self.middle_time = time;
         }
         (self.count >= self.periods).then(|| self.finish(point))
     }
@@ -148,31 +153,39 @@ impl Blocks {
 
     /// The block that ends with this sample; the next one begins there.
     fn finish(&mut self, end: Point) -> Block {
-        let seconds = end.time.saturating_sub(self.begun.time).max(1) as f32 * 1e-6;
-        let ends = 2 * i64::from(self.count);
+        let length = end.time.saturating_sub(self.begun.time).max(1);
+        let seconds = length as f32 * 1e-6;
+        // Both ends of every period were summed.
+        let twice = 2 * length.cast_signed();
         let shown = self.turned as f32 * (Angle::STEP as f32) / seconds;
         let block = Block {
             time: self.begun.time.midpoint(end.time),
             seconds,
-            turning: end.turning.map_or(shown, |_| self.turning / ends as f32),
+            turning: end.turning.map_or(shown, |_| self.turning / twice as f32),
             turned: self.turned,
-            phasor: self.mean_phasor(Table::built_in().at(end.stage)),
-            rate: (self.rate / ends) as i32,
+            phasor: self.mean_phasor(&end, Table::built_in().at(end.stage)),
+            rate: (self.rate / twice) as i32,
             is_saturated: self.is_saturated,
         };
         self.begin(end);
         block
     }
 
-    /// Mean cosine and sine, 2⁻²²: by Simpson's rule where there is a sample in the middle, which is
-    /// exact to 1e-7 for a tenth of a turn, by the trapezoidal one where the rate has no other either.
-    fn mean_phasor(&self, last: [i32; 2]) -> [i32; 2] {
+    /// Mean cosine and sine, 2⁻²²: of the parabola through both ends and the middle, which is exact to 1e-7
+    /// for a tenth of a turn; of a line where the rate has no other points either.
+    fn mean_phasor(&self, end: &Point, last: [i32; 2]) -> [i32; 2] {
         let [first, middle] = self.phasors;
+        let share = |time: u64| time.saturating_sub(self.begun.time).max(1) as f32;
+        // Where the middle lies, of the whole: at a half unless samples are missing.
+        let place = share(self.middle_time) / share(end.time);
+        let weight =
+            if self.middle == 0 { 0.0 } else { 1.0 / (6.0 * place * (1.0 - place)).max(0.5) };
+        let later = 0.5 - weight * place;
+        let weights = [1.0 - weight - later, weight, later];
         [0, 1].map(|part| {
-            let ends = i64::from(first[part]) + i64::from(last[part]);
-            let mean =
-                if self.middle == 0 { ends / 2 } else { (ends + 4 * i64::from(middle[part])) / 6 };
-            (mean >> EXCESS_BITS) as i32
+            let values = [first[part], middle[part], last[part]];
+            let terms = values.iter().zip(weights).map(|(&value, weight)| value as f32 * weight);
+            (terms.sum::<f32>() * EXCESS) as i32
         })
     }
 }

@@ -37,6 +37,8 @@ pub struct Average {
     pub turning: Complex,
     /// The force along the sensitive axis, m/s².
     pub force: Complex,
+    /// The force 90° clockwise of it, m/s²; zero where nothing reads that axis.
+    pub across: Complex,
     /// Sum of the squared distances of the turns' forces from their mean, (m/s²)².
     pub force_scatter: f64,
     /// Mean force along the sensitive axis, m/s².
@@ -188,6 +190,7 @@ impl Average {
             phasor,
             turning: turns.mean_complex(|index| Complex::of_signal(turn(index).turning)),
             force,
+            across: turns.mean_complex(|index| Complex::of_signal(turn(index).across)),
             force_scatter: turns.kept().map(apart).sum(),
             mean_force: turns.mean(|index| f64::from(turn(index).mean_force)),
             share: turns.share(square, variance) / f64::from(joined),

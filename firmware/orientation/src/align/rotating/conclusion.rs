@@ -21,11 +21,14 @@ const EQUAL_SPEEDS: f64 = 0.01;
 const SCATTER_PROBABILITY: f64 = 1e-6;
 /// What is a difference and no chance, in σ.
 const DIFFERENT: f64 = 5.0;
-/// What both senses of a flat sensor may differ by beyond that, of the Earth rate: a lag of some
-/// milliseconds, the encoder's harmonics, which cancel.
-const SENSES_TOLERANCE: f64 = 0.05;
+/// What both senses of a flat sensor may differ by beyond that, of the Earth rate: half of what the base
+/// may have turned between them, in rad.
+const SENSES_TOLERANCE: f64 = 0.01;
 /// What the Earth-rate ratio may be off beyond five of its σ.
 const RATIO_TOLERANCE: f64 = 0.005;
+/// What the accelerometer's two axes may differ by, of the force that turns with the platform: their
+/// scales, angles and delays.
+const STRAYING: f64 = 0.2;
 /// What the tilt may differ by between stretches beyond five σ, g.
 const TILT_TOLERANCE: f64 = 1e-5;
 /// Degrees of freedom at which a bound on a scatter that is itself estimated doubles.
@@ -98,7 +101,7 @@ impl Conclusion {
         let fit = self.solve(setting).ok_or(Refusal::CouplingUnknown)?;
         self.fit = Some(fit);
         self.judge_force(setting, &fit)?;
-        judge(setting, &fit)?;
+        judge(setting, &fit, self.degrees)?;
         within_budget(setting, &fit)
     }
 
@@ -260,8 +263,15 @@ impl Conclusion {
                 let ratio = average.mean_force / gravity;
                 return Err(Refusal::AccelerometerImplausible { ratio });
             }
-            let apart: Complex = average.force.scaled(1.0 / gravity) - fit.tilt;
             let sigma = libm::sqrt(density / average.seconds) / gravity;
+            // A quarter of a turn further the other axis feels the same.
+            let beside = average.across - Complex::new(0.0, 1.0) * average.force;
+            let strays = beside.size() / gravity;
+            let allowed = different * 2.0 * sigma + STRAYING * average.force.size() / gravity;
+            if average.across != Complex::default() && strays > allowed + TILT_TOLERANCE {
+                return Err(Refusal::AccelerometerAstray { scatter: strays * 1e3 });
+            }
+            let apart = average.force.scaled(1.0 / gravity) - fit.tilt;
             if apart.size() > different * sigma + TILT_TOLERANCE {
                 return Err(Refusal::TiltChanged { change: apart.size() * 1e3 });
             }
@@ -283,19 +293,25 @@ fn unequal(clockwise: &Average, counter: &Average) -> Refusal {
 }
 
 /// Every test that a fit must pass by itself.
-fn judge(setting: &Setting, fit: &Fit) -> Result<(), Refusal> {
+fn judge(setting: &Setting, fit: &Fit, degrees: u32) -> Result<(), Refusal> {
     let (tilt, allowed) = (libm::asin(fit.tilt.size().min(1.0)), setting.common.allowed_tilt);
     if tilt > allowed {
         let [tilt, allowed] = [tilt, allowed].map(|angle| angle * DEGREES);
         return Err(Refusal::TiltTooGreat { tilt, allowed });
     }
-    if setting.sensor.is_flat { judge_flat(setting, fit) } else { judge_lagging(setting, fit) }
+    if setting.sensor.is_flat {
+        judge_flat(setting, fit, degrees)
+    } else {
+        judge_lagging(setting, fit)
+    }
 }
 
-fn judge_flat(setting: &Setting, fit: &Fit) -> Result<(), Refusal> {
+fn judge_flat(setting: &Setting, fit: &Fit, degrees: u32) -> Result<(), Refusal> {
     let sigmas = libm::sqrt(fit.difference);
     let is_molecular = setting.sensor.molecular_sigma > 0.0;
-    if !is_molecular && sigmas > DIFFERENT && fit.molecular.size() > SENSES_TOLERANCE {
+    let different = DIFFERENT * (1.0 + FEW / f64::from(degrees.max(1)));
+    let tolerance = SENSES_TOLERANCE + different * fit.senses_sigma;
+    if !is_molecular && sigmas > different && fit.molecular.size() > tolerance {
         return Err(Refusal::SensesDisagree { sigmas });
     }
     let (ratio, sigma) = (fit.ratio, fit.ratio_sigma);

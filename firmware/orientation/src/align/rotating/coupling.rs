@@ -93,6 +93,12 @@ impl Coupling {
         -self.quadrature * self.sine / (squared(self.sine) + doubt).max(f64::MIN_POSITIVE)
     }
 
+    /// 1σ of that lag, s: infinite where there is no coupling.
+    #[must_use]
+    pub fn lag_sigma(&self) -> f64 {
+        self.quadrature_sigma / self.sine.abs()
+    }
+
     /// What the gyro shows of a modulation of the platform's rate at a frequency in rad/s, turning
     /// clockwise positive: the coupling behind one pole.
     #[must_use]

@@ -10,7 +10,7 @@
 
 use heapless::Vec;
 
-use super::part::{Broken, EIGHTH, Forces, Part, Uneven, is_jump};
+use super::part::{AXES, Broken, EIGHTH, Forces, Part, Uneven, is_jump};
 use super::solution::SPEEDS;
 use super::turn::{Sense, Stretch, Turn};
 use crate::align::etalon::Table;
@@ -180,8 +180,8 @@ impl Follower {
             }
             return false;
         }
-        if let Some([along, _, _]) = sample.force {
-            self.force(along, sample.stage);
+        if let Some([along, across, _]) = sample.force {
+            self.force([along, across], sample.stage);
         }
         block.is_some_and(|block| self.take(block, turning.is_some()))
     }
@@ -208,14 +208,16 @@ impl Follower {
     }
 
     /// Takes a force, unless it stands at the limit of its range.
-    fn force(&mut self, along: SpecificForce, stage: Angle) {
+    fn force(&mut self, forces: [SpecificForce; AXES], stage: Angle) {
+        let [along, _] = forces;
         self.repeated = if along == self.last_force { self.repeated + 1 } else { 0 };
         self.most_repeated = self.most_repeated.max(self.repeated);
         self.last_force = along;
         if along.0.abs() >= FORCE_LIMIT {
             self.clipped += 1;
         } else {
-            self.part.forces.push(Table::built_in().at(stage), along.0);
+            let phasor = Table::built_in().at(stage);
+            self.part.forces.push(phasor, forces.map(|force| force.0));
         }
     }
 
@@ -315,7 +317,7 @@ impl Follower {
         let reference = self.reference.take().unwrap_or_default();
         let (sense, speed) = (Sense::of(f64::from(self.speed)), f64::from(self.speed.abs()));
         let seconds = f64::from(self.turn_seconds);
-        let forces = self.turn_forces.regression();
+        let forces = [0, 1].map(|axis| self.turn_forces.regression(axis));
         let Some(stretch) = self.stretch(sense, speed, reference.time) else {
             self.begin_turn();
             return false;

@@ -100,9 +100,8 @@ pub fn freed(halves: &[Halves], sigma: f64) -> Option<Freed> {
         // xy of the slower speed: known to be so small.
         let spread = assumed * libm::hypot(y, libm::sqrt(slowest.variance));
         found = extrapolated(halves, slowest.speed, [x, y], spread);
-        let bound = GREATEST * y.abs();
-        let product = found.one_speed.max(-bound).min(bound);
-        x = if y == 0.0 { 0.0 } else { product / y };
+        // Where y is but noise, nothing is known of x.
+        x = (found.one_speed * y / (y * y + slowest.variance)).clamp(-GREATEST, GREATEST);
         found.ratio = Complex::new(x, y);
     }
     found.one_speed += fourth_order(found.ratio.re, found.ratio.im);

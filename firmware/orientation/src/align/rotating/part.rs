@@ -111,11 +111,16 @@ pub(super) fn is_jump(before: f32, after: f32) -> bool {
     (after - before).abs() > JUMP * after.abs().max(before.abs())
 }
 
-/// Products of cosine and sine with the force along the sensitive axis.
+/// Axes of the accelerometer in the platform's plane: along the sensitive axis, and 90° clockwise of it.
+pub(super) const AXES: usize = 2;
+
+/// Products of cosine and sine with the forces in the platform's plane.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Forces {
-    /// 1·c, 1·s, c·c, c·s, s·s in 2⁻¹⁶; then the force in µm/s² with 1, c, s.
-    sums: [i64; 8],
+    /// 1·c, 1·s, c·c, c·s, s·s in 2⁻¹⁶.
+    phasors: [i64; 5],
+    /// Each force in µm/s² with 1, c, s.
+    with_force: [[i64; 3]; AXES],
     count: u32,
 }
 
@@ -124,25 +129,35 @@ const FORCE_STEP: f64 = 1.0 / 65_536.0;
 
 impl Forces {
     #[inline]
-    pub(super) fn push(&mut self, phasor: [i32; 2], force: i32) {
+    pub(super) fn push(&mut self, phasor: [i32; 2], forces: [i32; AXES]) {
         let [c, s] = phasor.map(|value| i64::from(value >> 14));
-        let force = i64::from(force);
-        let terms = [c, s, c * c, c * s, s * s, force, force * c, force * s];
-        for (sum, term) in self.sums.iter_mut().zip(terms) {
+        for (sum, term) in self.phasors.iter_mut().zip([c, s, c * c, c * s, s * s]) {
             *sum += term;
+        }
+        for (sums, force) in self.with_force.iter_mut().zip(forces.map(i64::from)) {
+            for (sum, term) in sums.iter_mut().zip([force, force * c, force * s]) {
+                *sum += term;
+            }
         }
         self.count += 1;
     }
 
     pub(super) fn add(&mut self, other: &Self) {
-        for (sum, term) in self.sums.iter_mut().zip(other.sums) {
+        for (sum, term) in self.phasors.iter_mut().zip(other.phasors) {
+            *sum += term;
+        }
+        for (sum, term) in
+            self.with_force.iter_mut().flatten().zip(other.with_force.iter().flatten())
+        {
             *sum += term;
         }
         self.count += other.count;
     }
 
-    pub(super) fn regression(&self) -> Regression<COLUMNS> {
-        let [c, s, cc, cs, ss, f, fc, fs] = self.sums.map(|sum| sum as f64);
+    /// The regression of one axis.
+    pub(super) fn regression(&self, axis: usize) -> Regression<COLUMNS> {
+        let [c, s, cc, cs, ss] = self.phasors.map(|sum| sum as f64);
+        let [f, fc, fs] = self.with_force[axis].map(|sum| sum as f64);
         let mut products = [[0.0; COLUMNS]; COLUMNS];
         let mut with_left = [0.0; COLUMNS];
         products[ONE][ONE] = f64::from(self.count);

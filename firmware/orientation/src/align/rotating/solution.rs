@@ -7,10 +7,13 @@ use super::level::Lean;
 use super::molecular::{self, Freed, Halves};
 use crate::align::budget::Budget;
 use crate::math::Complex;
-use crate::units::{TURN, wrapped};
+use crate::units::{ARCSECOND, TURN, wrapped};
 
 /// How far a flat sensor may lag behind the encoder, where no uneven turn has told, 1σ, s.
 const UNKNOWN_LAG: f64 = 0.01;
+
+/// What an encoder's harmonic may turn the angle by where nothing is stated, 1σ, rad: 2″.
+const ENCODER_HARMONIC: f64 = 2.0 * ARCSECOND;
 
 /// Most speeds.
 pub const SPEEDS: usize = 2;
@@ -45,6 +48,14 @@ impl Pair {
 
     fn phasors(&self) -> [Complex; 2] {
         self.senses().map(|average| average.phasor)
+    }
+
+    /// The same with the phasors turned back by what a lag of so many seconds makes of them.
+    fn without_lag(mut self, lag: f64) -> Self {
+        let back = Complex::unit(libm::atan(self.speed() * lag));
+        self.clockwise.phasor = self.clockwise.phasor * back;
+        self.counter.phasor = self.counter.phasor * back.conjugate();
+        self
     }
 
     /// Half the sum of both senses: what does not change its sign.
@@ -132,6 +143,9 @@ pub struct Fit {
     pub phases: [f64; SPEEDS],
     /// How much both senses differ, squared and over the variance of either part; flat sensors alone.
     pub difference: f64,
+    /// 1σ of half the difference that both senses of a flat sensor may show beside its noise, of the Earth
+    /// rate: its lag, as far as it is not known, and the encoder's harmonics through the coupling.
+    pub senses_sigma: f64,
 }
 
 impl Fit {
@@ -208,6 +222,13 @@ impl Problem<'_> {
         let [horizontal, _] = self.earth();
         let (mut sum, mut information) = (Complex::default(), 0.0);
         for pair in self.pairs {
+            let coupling = coupling::nearest(self.couplings, pair.speed());
+            let sigma = coupling.map_or(UNKNOWN_LAG, Coupling::lag_sigma).min(UNKNOWN_LAG);
+            let through = coupling.map_or(0.0, |coupling| coupling.sine.abs());
+            let harmonic = ENCODER_HARMONIC + self.setting.common.encoder_sigma;
+            let shown = harmonic * through * pair.speed() / horizontal;
+            fit.senses_sigma = fit.senses_sigma.max(libm::hypot(sigma * pair.speed(), shown));
+            let pair = pair.without_lag(coupling.map_or(0.0, Coupling::lag));
             let weight = pair.information((self.density)(pair.speed()), 1.0);
             sum = sum + pair.even().scaled(weight);
             information += weight;

@@ -2,6 +2,7 @@
 
 use heapless::Vec;
 
+use super::part::AXES;
 use crate::align::regression::{Column, Regression};
 use crate::signal::phasor::{COLUMNS, COSINE, ONE, RATE, Reference, SINE, Sums, TIME, TURNING};
 
@@ -19,6 +20,8 @@ pub struct Turn {
     pub leak: [f32; 2],
     /// In the force along the sensitive axis, m/s².
     pub force: [f32; 2],
+    /// In the force 90° clockwise of it, m/s²; zeros where nothing reads that axis.
+    pub across: [f32; 2],
     /// Mean force along the sensitive axis, m/s².
     pub mean_force: f32,
     /// Mean of the gyro's rate, rad/s.
@@ -49,25 +52,28 @@ pub fn phasor(regression: &Regression<COLUMNS>) -> Option<(f64, [f32; 2])> {
 
 impl Turn {
     /// From the sums of a whole turn of `seconds` that began at `since` µs in its stretch, and the
-    /// regression of its forces; `None` where either does not go round.
+    /// regressions of its forces; `None` where either does not go round.
     #[must_use]
     pub fn of(
         sums: &Sums,
         reference: &Reference,
         since: u64,
         seconds: f64,
-        forces: &Regression<COLUMNS>,
+        forces: &[Regression<COLUMNS>; AXES],
     ) -> Option<Self> {
         let (offset, rate) = phasor(&sums.regression(RATE))?;
         let (speed, turning) = phasor(&sums.regression(TURNING))?;
         let (middle, leak) = phasor(&sums.regression(TIME))?;
-        let (mean_force, force) = phasor(forces)?;
+        let [along, across] = forces;
+        let (mean_force, force) = phasor(along)?;
+        let (_, across) = phasor(across)?;
         let begun = reference.time.saturating_sub(since) as f64 * 1e-6;
         Some(Self {
             rate,
             turning,
             leak,
             force,
+            across,
             mean_force: mean_force as f32,
             offset: (offset + f64::from(reference.rate) * 1e-9) as f32,
             middle: (begun + middle) as f32,
@@ -87,6 +93,7 @@ impl Turn {
             turning: pair(self.turning, other.turning),
             leak: pair(self.leak, other.leak),
             force: pair(self.force, other.force),
+            across: pair(self.across, other.across),
             mean_force: mean(self.mean_force, other.mean_force),
             offset: mean(self.offset, other.offset),
             middle: mean(self.middle, other.middle),
