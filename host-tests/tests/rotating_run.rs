@@ -80,7 +80,12 @@ fn a_flash_file_spares_the_uneven_turns_of_the_next_run() {
     assert_eq!(first["recalled"], Value::Array(Vec::new()));
     let number = |object: &Value, key: &str| object[key].as_f64().unwrap_or(f64::NAN);
     let apart = number(&first, "azimuth_deg") - number(&second, "azimuth_deg");
-    assert!(apart.abs() < number(&second, "sigma_deg"), "{apart}° apart: {second}");
+    let sigma = number(&first, "sigma_deg").hypot(number(&second, "sigma_deg"));
+    assert!(apart.abs() < 3.0 * sigma, "{apart}° apart: {second}");
+    for object in [&first, &second] {
+        let [error, sigma] = ["error_deg", "sigma_deg"].map(|key| number(object, key));
+        assert!(error.abs() < 3.0 * sigma, "{object}");
+    }
     let recalled = &second["recalled"][0];
     assert_eq!(recalled["date"], "2026-03-14", "{second}");
     assert!((15.0..35.0).contains(&number(recalled, "temperature_c")), "{second}");
