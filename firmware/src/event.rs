@@ -1,5 +1,6 @@
 //! What the instrument tells of itself: read in a row, these sentences say what it did and why.
 
+use drivers::fault::Fault;
 use orientation::align::quality::Disturbance;
 use orientation::align::rotating::turn::Sense;
 use orientation::device::{Device, Trouble};
@@ -9,6 +10,7 @@ use orientation::words;
 use orientation::words::Rounded;
 
 use crate::patience::Symptom;
+use crate::storage::Remembered;
 
 /// Something that happened. Angles in degrees, rates in degrees per hour, times in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,6 +95,16 @@ pub enum Event {
     Uneven(f64),
     /// How far the gyro's axis stands from the platform's plane, and its 1σ, °.
     Coupled(f64, f64),
+    /// A coupling that was stored is used again.
+    Recalled(Remembered),
+    /// None that is stored will do.
+    NothingRecalled,
+    /// What is stored cannot be read.
+    Forgotten(Fault),
+    /// A coupling is stored for the next time.
+    Kept(Remembered),
+    /// It could not be stored.
+    NotKept(Fault),
     /// Turns count from here: which way, at this speed, °/s.
     Stretch(Sense, f64),
     /// A turn was taken: number, of how many.
@@ -155,6 +167,11 @@ words! { Event:
         "uneven turns, {} °/s in the mean, to know how the gyro feels the platform", Rounded::<2>(rate);
     Self::Coupled(angle, sigma) =>
         "gyro's axis {}° ± {}° (1σ) above the platform", Rounded::<4>(angle), Rounded::<4>(sigma);
+    Self::Recalled(coupling) => "coupling recalled: {}", coupling;
+    Self::NothingRecalled => "no stored coupling is of these speeds, and fresh";
+    Self::Forgotten(fault) => "stored couplings cannot be read: {}", fault;
+    Self::Kept(coupling) => "coupling kept: {}", coupling;
+    Self::NotKept(fault) => "coupling lost, it could not be kept: {}", fault;
     Self::Stretch(sense, speed) =>
         "turns count from here: {}, {} °/s", sense, Rounded::<2>(speed);
     Self::Turned(number, of) => "turn {} of {}", number, of;

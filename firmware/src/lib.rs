@@ -36,6 +36,7 @@ pub mod motor;
 pub mod stage;
 pub mod turntable;
 
+pub mod date;
 pub mod event;
 pub mod health;
 pub mod link;

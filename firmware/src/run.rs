@@ -21,11 +21,13 @@ use crate::health::{self, Health};
 use crate::link;
 use crate::pointing::{FrameShafts, Shaft};
 use crate::ports::{
-    Accelerometer, Actuator, Encoder, Frames, Gyro, Observer, Ports, Recorder, Sensors,
+    Accelerometer, Actuator, CalibrationStore, Encoder, Frames, Gyro, Observer, Ports, Recorder,
+    Sensors,
 };
 use crate::shared::{LatestAngle, Shared};
 use crate::stage::Stage;
 use crate::steady::Base;
+use crate::storage;
 use crate::turntable::Turntable;
 
 /// Samples until a sensor is given up, which the session is told; never ends.
@@ -119,6 +121,27 @@ where
     };
     // Where that fails, too, the log has the reason.
     select(turntable.rest(), discard(shared)).await;
+    health
+}
+
+/// The same as [`run_rotating`], and keeps the couplings that it found. Those that were kept before must
+/// be in the session already, by [`storage::prepare`].
+pub async fn run_storing<M, L, R, S, O>(
+    ports: &mut Ports<M, L, R>,
+    configuration: &TurntableConfiguration,
+    session: &mut rotating::Session,
+    store: &mut S,
+    shared: &Shared<'_, O>,
+) -> Health
+where
+    M: Actuator,
+    L: Write,
+    R: Recorder,
+    S: CalibrationStore,
+    O: Observer,
+{
+    let health = run_rotating(ports, configuration, session, shared).await;
+    select(storage::conserve(store, session, shared), discard(shared)).await;
     health
 }
 

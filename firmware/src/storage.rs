@@ -2,16 +2,24 @@
 //! speed, with date and temperature.
 //!
 //! A coupling is found by uneven turns. One that is fresh enough spares them. Images that keep nothing
-//! name nothing of this module and pay nothing for it.
+//! pay nothing for it.
 
 use drivers::fault::Fault;
 use embedded_storage_async::nor_flash::NorFlash;
+use orientation::align::rotating::Setting;
 use orientation::align::rotating::coupling::{BYTES, Coupling};
 use orientation::align::rotating::solution::SPEEDS;
+use orientation::session::rotating::{Procedure, Session};
+use orientation::units::DEGREES_PER_RADIAN as DEGREES;
+use orientation::words;
+use orientation::words::Rounded;
 use sequential_storage::cache::{Cache, Uncached};
 use sequential_storage::map::{MapConfig, MapStorage};
 
-use crate::ports::CalibrationStore;
+use crate::date::Day;
+use crate::event::Event;
+use crate::ports::{CalibrationStore, Observer};
+use crate::shared::Shared;
 
 /// Bytes for the longest item: key and coupling, in whole words of flash.
 const BUFFER: usize = (1 + BYTES).next_multiple_of(32);
@@ -73,20 +81,25 @@ impl Today {
     }
 }
 
-/// The couplings of the first so many speeds, where each of them was kept, is sound and fresh; else none:
-/// then the platform is to turn unevenly first.
+/// How far from a speed a coupling may have been found, relative: the motor's clock is off by some
+/// hundredths, and not always by the same.
+const SAME_SPEED: f64 = 0.1;
+
+/// The couplings of these speeds, rad/s, where for each of them one was kept that is sound, fresh and of
+/// that speed; else none: then the platform is to turn unevenly first.
 ///
 /// # Errors
 /// The store's.
 pub async fn recall<S: CalibrationStore>(
     store: &mut S,
-    speeds: usize,
+    speeds: &[f64],
     today: Today,
 ) -> Result<Option<[Option<Coupling>; SPEEDS]>, Fault> {
     let mut couplings = [None; SPEEDS];
-    for (slot, place) in (0..).zip(couplings.iter_mut().take(speeds)) {
+    for ((slot, place), speed) in (0..).zip(&mut couplings).zip(speeds) {
+        let is_near = |found: f64| (found - speed).abs() < SAME_SPEED * speed;
         let found = store.load(slot).await?.as_ref().and_then(Coupling::from_bytes);
-        *place = found.filter(|coupling| today.is_fresh(coupling));
+        *place = found.filter(|found| today.is_fresh(found) && is_near(found.frequency));
         if place.is_none() {
             return Ok(None);
         }
@@ -107,4 +120,76 @@ pub async fn keep<S: CalibrationStore>(
         store.save(slot, &coupling.to_bytes()).await?;
     }
     Ok(())
+}
+
+/// Before a session: dates what it will find and, where its procedure has no uneven turns, gives it what
+/// was kept. Tells what was recalled.
+pub async fn prepare<S: CalibrationStore, O: Observer>(
+    store: &mut S,
+    today: Today,
+    (setting, procedure): (&mut Setting, &mut Procedure),
+    shared: &Shared<'_, O>,
+) {
+    procedure.date = today.date.unwrap_or_default();
+    if procedure.uneven_turns > 0 {
+        return;
+    }
+    match recall(store, &procedure.speeds, today).await {
+        Ok(Some(couplings)) => {
+            setting.couplings = couplings;
+            for coupling in couplings.iter().flatten() {
+                shared.tell(Event::Recalled(coupling.into()));
+            }
+        }
+        Ok(None) => shared.tell(Event::NothingRecalled),
+        Err(fault) => shared.tell(Event::Forgotten(fault)),
+    }
+}
+
+/// After a session: keeps the couplings that it found, if north was found with them, and tells it. What
+/// could not be trusted for north is not trusted for the next time.
+pub async fn conserve<S: CalibrationStore, O: Observer>(
+    store: &mut S,
+    session: &Session,
+    shared: &Shared<'_, O>,
+) {
+    if session.conclusion().is_none_or(|conclusion| conclusion.verdict.is_err()) {
+        return;
+    }
+    match keep(store, session.couplings()).await {
+        Ok(()) => {
+            session.couplings().for_each(|found| shared.tell(Event::Kept((&found).into())));
+        }
+        Err(fault) => shared.tell(Event::NotKept(fault)),
+    }
+}
+
+/// What is told of a stored coupling.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Remembered {
+    /// How far the gyro's axis stands above the platform, °.
+    pub angle: f64,
+    /// Rate of the platform at which it was found, °/s.
+    pub rate: f64,
+    /// The day.
+    pub day: Day,
+    /// Temperature then, °C.
+    pub temperature: f32,
+}
+
+impl From<&Coupling> for Remembered {
+    fn from(coupling: &Coupling) -> Self {
+        Self {
+            angle: coupling.angle() * DEGREES,
+            rate: coupling.frequency * DEGREES,
+            day: Day::of(coupling.date),
+            temperature: coupling.temperature,
+        }
+    }
+}
+
+words! { Remembered:
+    Self { angle, rate, day, temperature } =>
+        "gyro's axis {}° above the platform at {} °/s, found on {} at {} °C",
+        Rounded::<4>(angle), Rounded::<2>(rate), day, Rounded::<1>(f64::from(temperature));
 }

@@ -42,7 +42,10 @@ fn speeds_and_turns_are_those_that_were_asked_for() {
 
 #[test]
 fn what_cannot_go_together_is_misuse_with_the_options_named() {
-    let misuses: [(&[&str], &str); 8] = [
+    let misuses: [(&[&str], &str); 11] = [
+        (&["--flash", "x"], "--flash"),
+        (&["--uneven-turns", "6"], "--uneven-turns"),
+        (&["--method", "rotating", "--date", "2026-03-14"], "--flash"),
         (&["--speeds", "0.1"], "--speeds"),
         (&["--sensor", "met"], "--sensor"),
         (&["--method", "rotating", "--dwell", "3"], "--dwell"),
@@ -57,6 +60,89 @@ fn what_cannot_go_together_is_misuse_with_the_options_named() {
         let words = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {words}");
         assert!(words.contains(option) && output.stdout.is_empty(), "{arguments:?}: {words}");
+    }
+}
+
+/// A file of its own that is not there yet.
+fn flash(name: &str) -> String {
+    let path = std::env::temp_dir().join(format!("{name}-{}.flash", std::process::id()));
+    path.display().to_string()
+}
+
+#[test]
+fn a_flash_file_spares_the_uneven_turns_of_the_next_run() {
+    let file = flash("kept");
+    let turns = ["--method", "rotating", "--turns", "4", "--json", "--flash", file.as_str()];
+    let first = run(&[&turns[..], &["--date", "2026-03-14"]].concat());
+    let second = run(&[&turns[..], &["--date", "2026-03-20", "--uneven-turns", "0"]].concat());
+    std::fs::remove_file(&file).expect("it was written");
+    let [first, second] = [first, second].map(|output| object(&output));
+    assert_eq!(first["recalled"], Value::Array(Vec::new()));
+    let number = |object: &Value, key: &str| object[key].as_f64().unwrap_or(f64::NAN);
+    let apart = number(&first, "azimuth_deg") - number(&second, "azimuth_deg");
+    let sigma = number(&first, "sigma_deg").hypot(number(&second, "sigma_deg"));
+    assert!(apart.abs() < 3.0 * sigma, "{apart}° apart: {second}");
+    for object in [&first, &second] {
+        let [error, sigma] = ["error_deg", "sigma_deg"].map(|key| number(object, key));
+        assert!(error.abs() < 3.0 * sigma, "{object}");
+    }
+    let recalled = &second["recalled"][0];
+    assert_eq!(recalled["date"], "2026-03-14", "{second}");
+    assert!((15.0..35.0).contains(&number(recalled, "temperature_c")), "{second}");
+    assert!((number(recalled, "coupling_deg") - 0.8).abs() < 1e-3, "{second}");
+}
+
+#[test]
+fn a_molecular_electronic_sensor_without_a_stored_coupling_is_refused() {
+    let file = flash("empty");
+    let output = run(&[
+        "--method",
+        "rotating",
+        "--sensor",
+        "met",
+        "--uneven-turns",
+        "0",
+        "--flash",
+        &file,
+        "--json",
+    ]);
+    std::fs::remove_file(&file).expect("it was created");
+    let object = object(&output);
+    assert_eq!((output.status.code(), &object["status"]), (Some(1), &"refused".into()));
+    let reason = object["reason"].as_str().unwrap_or_default();
+    assert!(reason.contains("turn it unevenly first"), "{reason}");
+}
+
+#[test]
+fn a_damaged_flash_file_is_named_and_left_alone() {
+    let file = flash("damaged");
+    let arguments = ["--method", "rotating", "--turns", "2", "--flash", file.as_str()];
+    assert!(run(&arguments).status.success());
+    let mut bytes = std::fs::read(&file).expect("it was written");
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 0x10;
+    for damaged in [&bytes[..], &bytes[..middle], &[]] {
+        std::fs::write(&file, damaged).expect("the file is ours");
+        let output = run(&arguments);
+        let words = String::from_utf8_lossy(&output.stderr);
+        assert!(!output.status.success() && words.contains(&file), "{words}");
+        assert_eq!(std::fs::read(&file).expect("it is there"), damaged);
+    }
+    std::fs::remove_file(&file).expect("the file is ours");
+}
+
+#[test]
+fn what_is_no_day_or_too_few_uneven_turns_is_misuse() {
+    for (option, value) in [
+        ("--date", "2026-02-29"),
+        ("--date", "14.3.2026"),
+        ("--date", "2026-03-14-1"),
+        ("--uneven-turns", "3"),
+        ("--uneven-turns", "-1"),
+    ] {
+        let option = format!("{option}={value}");
+        let output = run(&["--method", "rotating", "--flash", "never-made", option.as_str()]);
+        assert_eq!(output.status.code(), Some(2), "{option}");
     }
 }
 

@@ -1,117 +1,23 @@
-//! Couplings are kept over a loss of supply: whenever it comes, the old one or the new one is there.
+//! Couplings are kept over a loss of supply: whenever it comes, the old one or the new one is there. The
+//! whole instrument uses what it kept, and tells it.
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
+use bench::instrument::{Keeping, TurntableRun, align_turning_again};
+use bench::output::{azimuth_error, degrees};
 use bench::virtual_time::run;
 use drivers::fault::Fault;
-use embedded_storage_async::nor_flash::{
-    ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
-};
-use firmware::ports::CalibrationStore;
+use firmware::date::Day;
+use firmware::event::Event;
+use firmware::ports::{CalibrationStore, NoRecorder};
+use firmware::simulated::flash::Flash;
+use firmware::simulated::scenario::Scenario;
+use firmware::simulated::turntable::TurntableScenario;
 use firmware::storage::{FlashStore, Today, keep, recall};
+use orientation::align::conclusion::Azimuth;
 use orientation::align::rotating::coupling::{BYTES, Coupling};
+use orientation::error::Refusal;
 use proptest::prelude::*;
-use sequential_storage::map::MapConfig;
-
-/// Bytes of a page and of a word of the board's flash (STM32L475, RM0351, 3.3).
-const PAGE: usize = 2048;
-const WORD: usize = 8;
-const PAGES: usize = 2;
-
-/// Flash of the board's kind: a word is programmed at once, with its check bits, and once between two
-/// erasures. The supply may be lost after so many words written or erased; a word that was being programmed
-/// in that very moment is not modelled, which the controller would report as an uncorrectable one.
-#[derive(Clone, Debug)]
-struct Flash {
-    bytes: Vec<u8>,
-    is_written: Vec<bool>,
-    left: Option<usize>,
-}
-
-/// The supply is gone, or a rule was broken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Trouble {
-    Supply,
-    Misuse,
-}
-
-impl NorFlashError for Trouble {
-    fn kind(&self) -> NorFlashErrorKind {
-        NorFlashErrorKind::Other
-    }
-}
-
-impl Flash {
-    fn new() -> Self {
-        let (bytes, is_written) = (vec![0xFF; PAGE * PAGES], vec![false; PAGE * PAGES / WORD]);
-        Self { bytes, is_written, left: None }
-    }
-
-    /// Takes one unit of what is left before the supply is lost.
-    fn spend(&mut self) -> Result<(), Trouble> {
-        match &mut self.left {
-            None => Ok(()),
-            Some(0) => Err(Trouble::Supply),
-            Some(left) => {
-                *left -= 1;
-                Ok(())
-            }
-        }
-    }
-}
-
-impl ErrorType for Flash {
-    type Error = Trouble;
-}
-
-impl ReadNorFlash for Flash {
-    const READ_SIZE: usize = 1;
-
-    async fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Trouble> {
-        let from = offset as usize;
-        bytes.copy_from_slice(self.bytes.get(from..from + bytes.len()).ok_or(Trouble::Misuse)?);
-        Ok(())
-    }
-
-    fn capacity(&self) -> usize {
-        self.bytes.len()
-    }
-}
-
-impl NorFlash for Flash {
-    const WRITE_SIZE: usize = WORD;
-    const ERASE_SIZE: usize = PAGE;
-
-    async fn erase(&mut self, from: u32, to: u32) -> Result<(), Trouble> {
-        let (from, to) = (from as usize, to as usize);
-        assert!(from.is_multiple_of(PAGE) && to.is_multiple_of(PAGE), "whole pages only");
-        for word in from / WORD..to / WORD {
-            self.spend()?;
-            self.bytes[word * WORD..(word + 1) * WORD].fill(0xFF);
-            self.is_written[word] = false;
-        }
-        Ok(())
-    }
-
-    async fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Trouble> {
-        let offset = offset as usize;
-        assert!(
-            offset.is_multiple_of(WORD) && bytes.len().is_multiple_of(WORD),
-            "whole words only"
-        );
-        for (word, written) in (offset / WORD..).zip(bytes.chunks(WORD)) {
-            assert!(!self.is_written[word], "a word is written once");
-            self.spend()?;
-            self.is_written[word] = true;
-            self.bytes[word * WORD..(word + 1) * WORD].copy_from_slice(written);
-        }
-        Ok(())
-    }
-}
-
-fn open(flash: Flash) -> FlashStore<Flash> {
-    FlashStore::new(flash, const { MapConfig::new(0..(PAGE * PAGES) as u32) })
-}
 
 fn save(store: &mut FlashStore<Flash>, bytes: &[u8; BYTES]) -> Result<(), Fault> {
     run(store.save(0, bytes)).expect("it ends")
@@ -139,7 +45,7 @@ fn stored(number: u8) -> [u8; BYTES] {
 
 /// A store with so many couplings written one after the other, the last of number 1.
 fn used(times: usize) -> FlashStore<Flash> {
-    let mut store = open(Flash::new());
+    let mut store = Flash::default().store();
     for _ in 0..times {
         save(&mut store, &stored(0)).expect("there is room");
     }
@@ -151,18 +57,18 @@ fn used(times: usize) -> FlashStore<Flash> {
 fn effort(times: usize) -> usize {
     let mut flash = used(times).into_flash();
     flash.left = Some(usize::MAX);
-    let mut store = open(flash);
+    let mut store = flash.store();
     save(&mut store, &stored(2)).expect("there is room");
     usize::MAX - store.into_flash().left.expect("it was set")
 }
 
 #[test]
 fn what_is_saved_last_is_loaded_from_then_on() {
-    let mut store = open(Flash::new());
+    let mut store = Flash::default().store();
     assert_eq!(load(&mut store), None);
     for number in 0..200 {
         save(&mut store, &stored(number)).expect("there is room");
-        store = open(store.into_flash());
+        store = store.into_flash().store();
         assert_eq!(load(&mut store), Some(stored(number)));
     }
 }
@@ -176,11 +82,11 @@ fn a_loss_of_supply_at_any_moment_leaves_the_old_coupling_or_the_new_one() {
         for cut in 0..effort(times) {
             let mut flash = used(times).into_flash();
             flash.left = Some(cut);
-            let mut store = open(flash);
+            let mut store = flash.store();
             assert!(save(&mut store, &stored(2)).is_err(), "the supply was lost");
             let mut flash = store.into_flash();
             flash.left = None;
-            let mut store = open(flash);
+            let mut store = flash.store();
             let found = load(&mut store).expect("nothing is lost");
             cuts += 1;
             assert!(found == stored(1) || found == stored(2), "after {times}, cut at {cut}");
@@ -194,28 +100,161 @@ fn a_loss_of_supply_at_any_moment_leaves_the_old_coupling_or_the_new_one() {
 
 #[test]
 fn every_speed_has_its_own_coupling_and_all_are_needed() {
-    let mut store = open(Flash::new());
+    let mut store = Flash::default().store();
     let today = Today { date: Some(1_700_000_100), longest: Some(3600) };
-    let recalled = |store: &mut FlashStore<Flash>, speeds| {
+    let recalled = |store: &mut FlashStore<Flash>, speeds: &[f64]| {
         run(recall(store, speeds, today)).expect("it ends").expect("the flash is sound")
     };
-    assert_eq!(recalled(&mut store, 1), None);
+    assert_eq!(recalled(&mut store, &[0.9]), None);
     let found = [coupling(0.01, 1_700_000_000), coupling(0.02, 1_700_000_050)];
     run(keep(&mut store, found.into_iter().take(1))).expect("it ends").expect("there is room");
-    assert_eq!(recalled(&mut store, 1), Some([Some(found[0]), None]));
-    assert_eq!(recalled(&mut store, 2), None);
+    assert_eq!(recalled(&mut store, &[0.9]), Some([Some(found[0]), None]));
+    assert_eq!(recalled(&mut store, &[0.9, 0.9]), None);
     run(keep(&mut store, found.into_iter())).expect("it ends").expect("there is room");
-    assert_eq!(recalled(&mut store, 2), Some(found.map(Some)));
+    assert_eq!(recalled(&mut store, &[0.9, 0.9]), Some(found.map(Some)));
 }
 
 #[test]
 fn what_is_no_coupling_is_not_recalled() {
-    let mut store = open(Flash::new());
+    let mut store = Flash::default().store();
     let mut bytes = stored(1);
     bytes[12] ^= 1;
     save(&mut store, &bytes).expect("there is room");
     let today = Today { date: None, longest: None };
-    assert_eq!(run(recall(&mut store, 1, today)), Ok(Ok(None)));
+    assert_eq!(run(recall(&mut store, &[0.9], today)), Ok(Ok(None)));
+}
+
+/// 2026-03-14, 09:26:53.
+const THEN: u64 = 1_773_480_413;
+/// 2026-03-20.
+const NOW: u64 = 1_773_964_800;
+
+fn keeping(flash: Flash, date: u64) -> Keeping {
+    Keeping { store: flash.store(), today: Today { date: Some(date), longest: None } }
+}
+
+/// A short alignment with so many uneven turns.
+fn scenario(seed: u64, uneven_turns: u32) -> TurntableScenario {
+    let base = Scenario { sample_rate_hz: 100.0, ..Scenario::usual(seed) };
+    TurntableScenario { base, uneven_turns, turns: 4, ..TurntableScenario::brief(seed) }
+}
+
+/// A sensor that is not flat, which must know its coupling.
+fn molecular(uneven_turns: u32) -> TurntableScenario {
+    let molecular = TurntableScenario::molecular(1);
+    let base = Scenario { sample_rate_hz: 100.0, ..molecular.base };
+    TurntableScenario { base, uneven_turns, turns: 2, ..molecular }
+}
+
+fn aligned(scenario: &TurntableScenario, keeping: &mut Keeping) -> TurntableRun {
+    align_turning_again(scenario, None, NoRecorder, &(), Some(keeping)).expect("it is possible")
+}
+
+fn verdict(run: &TurntableRun) -> Result<Azimuth, Refusal> {
+    run.run.replay.conclusion().expect("every run concludes").verdict
+}
+
+fn told(run: &TurntableRun, part: &str) -> Option<String> {
+    let mut told = run.run.events.iter().map(|(_, event)| event.to_string());
+    told.find(|line| line.contains(part))
+}
+
+#[test]
+fn what_an_uneven_turn_found_gives_the_same_north_the_next_time() {
+    let mut before = keeping(Flash::default(), THEN);
+    let first = aligned(&scenario(5, 6), &mut before);
+    let kept = told(&first, "coupling kept").expect("it is kept");
+    assert!(kept.contains("found on 2026-03-14 at 2") && kept.contains("°C"), "{kept}");
+    let mut after = keeping(before.store.into_flash(), NOW);
+    let second = aligned(&scenario(5, 0), &mut after);
+    let recalled = told(&second, "coupling recalled").expect("it is used");
+    assert_eq!(recalled.replace("recalled", "kept"), kept);
+    assert_eq!(told(&second, "uneven"), None);
+    assert_eq!(told(&second, "coupling kept"), None, "nothing new was found");
+    let [first, second] = [first, second].map(|run| verdict(&run).expect("north"));
+    let apart = azimuth_error(degrees(first.angle), degrees(second.angle)).abs();
+    // Both have noise of their own.
+    assert!(apart < 3.0 * degrees(first.sigma.hypot(second.sigma)), "{apart}° apart");
+}
+
+#[test]
+fn a_sensor_that_must_know_its_coupling_is_refused_before_anything_turns() {
+    let mut keeping = keeping(Flash::default(), NOW);
+    let run = aligned(&molecular(0), &mut keeping);
+    assert_eq!(verdict(&run), Err(Refusal::CouplingUnknown));
+    assert!(told(&run, "no stored coupling").is_some());
+    assert_eq!(told(&run, "stage: turns"), None);
+}
+
+#[test]
+fn couplings_of_both_speeds_of_a_molecular_electronic_sensor_are_used_again() {
+    let mut before = keeping(Flash::default(), THEN);
+    verdict(&aligned(&molecular(12), &mut before)).expect("north");
+    let mut after = keeping(before.store.into_flash(), NOW);
+    let run = aligned(&molecular(0), &mut after);
+    let azimuth = verdict(&run).expect("north");
+    let error = azimuth_error(degrees(azimuth.angle), molecular(0).base.azimuth_deg);
+    assert!(error.abs() < 4.0 * degrees(azimuth.sigma), "off by {error}°");
+    let is_recalled = |event: &Event| matches!(event, Event::Recalled(_));
+    assert_eq!(run.run.events.iter().filter(|(_, event)| is_recalled(event)).count(), 2);
+}
+
+/// What is found in doubt is not kept: it would be in doubt the next time, too.
+#[test]
+fn a_refused_session_keeps_nothing() {
+    let mut keeping = keeping(Flash::default(), THEN);
+    let tilted = TurntableScenario { elevation_deg: -2.5, ..scenario(1, 6) };
+    verdict(&aligned(&tilted, &mut keeping)).expect_err("it is misaligned");
+    assert_eq!(load(&mut keeping.store), None);
+}
+
+#[test]
+fn a_coupling_of_another_speed_or_of_tomorrow_is_not_used() {
+    let mut store = Flash::default().store();
+    let found = coupling(0.01, THEN);
+    run(keep(&mut store, core::iter::once(found))).expect("it ends").expect("there is room");
+    let mut recalled = |speed: f64, date| {
+        let today = Today { date: Some(date), longest: None };
+        run(recall(&mut store, &[speed], today)).expect("it ends").expect("the flash is sound")
+    };
+    assert!(recalled(0.9, NOW).is_some() && recalled(0.93, NOW).is_some());
+    assert_eq!(
+        (recalled(1.3, NOW), recalled(0.5, NOW), recalled(0.9, THEN - 1)),
+        (None, None, None)
+    );
+}
+
+#[test]
+fn a_store_that_fails_is_told_and_north_is_found_all_the_same() {
+    let mut flash = Flash::default();
+    flash.left = Some(2);
+    let mut keeping = keeping(flash, THEN);
+    let run = aligned(&scenario(5, 6), &mut keeping);
+    verdict(&run).expect("north");
+    assert!(told(&run, "coupling lost, it could not be kept: bus error").is_some());
+}
+
+/// Seconds by `date -u -d … +%s`.
+#[test]
+fn days_are_those_of_the_calendar() {
+    for (text, (year, month, day), seconds) in [
+        ("1970-01-02", (1970, 1, 2), 86_400),
+        ("2000-02-29", (2000, 2, 29), 951_782_400),
+        ("2026-03-14", (2026, 3, 14), 1_773_446_400),
+        ("2100-03-01", (2100, 3, 1), 4_107_542_400),
+        ("9999-12-31", (9999, 12, 31), 253_402_214_400),
+    ] {
+        assert_eq!(Day::begin(year, month, day), Some(seconds), "{text}");
+        assert_eq!(Day::of(seconds).to_string(), text);
+        assert_eq!(Day::of(seconds + 86_399).to_string(), text);
+    }
+    assert_eq!(Day::of(0).to_string(), "an unknown day");
+    assert_eq!(Day::of(u64::MAX).to_string(), "9999-12-31");
+    for (year, month, day) in
+        [(2026, 2, 29), (2100, 2, 29), (2026, 13, 1), (2026, 0, 1), (2026, 1, 0)]
+    {
+        assert_eq!(Day::begin(year, month, day), None, "{year}-{month}-{day}");
+    }
 }
 
 proptest! {

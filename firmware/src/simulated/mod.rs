@@ -4,6 +4,7 @@
 
 pub mod base;
 pub mod fault;
+pub mod flash;
 pub mod mount;
 pub mod scenario;
 pub mod turntable;

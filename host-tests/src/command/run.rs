@@ -231,9 +231,9 @@ impl RunOptions {
                 Err("--passes: they are those of two frames; a stage has --positions")
             }
             () if matches!(self.method, Method::Rotating) => self.check_rotating(on_frames),
-            () if self.turning.is_given() => {
-                Err("--sensor, --speeds, --turns: they are those of --method rotating")
-            }
+            () if self.turning.is_given() => Err(
+                "--sensor, --speeds, --turns, --uneven-turns, --flash: they are those of --method rotating",
+            ),
             () => Ok(()),
         }
     }
@@ -329,7 +329,8 @@ pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
     let scenario = Scenario::from(options);
     if let Method::Rotating = options.method {
         let scenario = options.turning.scenario(&scenario);
-        return super::turning::run(&scenario, fault, options.report.as_deref(), as_json);
+        let report = options.report.as_deref();
+        return super::turning::run(&options.turning, &scenario, fault, report, as_json);
     }
     if options.mount == MountKind::TwoFrame {
         return run_frames(&scenario, options, as_json);

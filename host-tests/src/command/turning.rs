@@ -1,18 +1,22 @@
 //! `meridian run --method rotating`: the board on a platform that turns all the time.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant as WallClock;
 
-use bench::instrument::{TurntableRun, align_turning};
+use bench::instrument::{Keeping, Run, TurntableRun, align_turning_again, flash_file};
 use bench::output::progress::Progress;
 use bench::output::text;
 use bench::output::{page, rotating as told};
 use bench::rotating::Replay;
 use bench::rotating::recorder::RowRecorder;
 use clap::{Args, ValueEnum};
+use firmware::date::Day;
+use firmware::event::Event;
 use firmware::simulated::fault::Fault;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;
+use firmware::storage::{Remembered, Today};
+use serde_json::{Value, json};
 
 use super::Told;
 use super::run::{Terminal, object};
@@ -29,6 +33,34 @@ pub struct TurningOptions {
     /// With --method rotating: whole turns each way at the slowest speed.
     #[arg(long, value_parser = clap::value_parser!(u32).range(2..=1000))]
     turns: Option<u32>,
+    /// With --method rotating: uneven turns before them, 0 where what --flash keeps is to do (12).
+    #[arg(long, value_name = "TURNS", value_parser = uneven_turns)]
+    uneven_turns: Option<u32>,
+    /// With --method rotating: the board's flash, which keeps what uneven turns find from run to run.
+    #[arg(long, value_name = "FILE")]
+    flash: Option<PathBuf>,
+    /// With --flash: today, so that the board knows when it found something.
+    #[arg(long, value_name = "YYYY-MM-DD", value_parser = date, requires = "flash")]
+    date: Option<u64>,
+}
+
+/// None, or enough to tell a coupling from the Earth rate.
+fn uneven_turns(text: &str) -> Result<u32, String> {
+    match text.parse::<u32>() {
+        Ok(turns) if turns == 0 || (4..=1000).contains(&turns) => Ok(turns),
+        _ => Err("neither 0 nor a number of turns from 4 to 1000".to_owned()),
+    }
+}
+
+/// A day of the calendar, as s since 1970.
+fn date(text: &str) -> Result<u64, String> {
+    let mut parts = text.splitn(3, '-').map(str::parse::<u16>);
+    let mut part = || parts.next()?.ok();
+    let found = (|| {
+        let (year, month, day) = (part()?, part()?, part()?);
+        Day::begin(year, month.try_into().ok()?, day.try_into().ok()?)
+    })();
+    found.ok_or_else(|| "no day from 1970-01-01 on, as YYYY-MM-DD".to_owned())
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -60,7 +92,8 @@ const LEAST_RATIO: f64 = 1.2;
 impl TurningOptions {
     /// Whether any of them was given.
     pub fn is_given(&self) -> bool {
-        self.sensor.is_some() || self.speeds.is_some() || self.turns.is_some()
+        let is_shaped = self.sensor.is_some() || self.speeds.is_some() || self.turns.is_some();
+        is_shaped || self.uneven_turns.is_some() || self.flash.is_some()
     }
 
     /// Whether the sensor is a molecular-electronic one.
@@ -77,11 +110,26 @@ impl TurningOptions {
         } else {
             TurntableScenario { base: *base, ..TurntableScenario::default() }
         };
-        let (speeds_hz, turns) = (self.speeds, self.turns);
         TurntableScenario {
-            speeds_hz: speeds_hz.unwrap_or(usual.speeds_hz),
-            turns: turns.unwrap_or(usual.turns),
+            speeds_hz: self.speeds.unwrap_or(usual.speeds_hz),
+            uneven_turns: self.uneven_turns.unwrap_or(usual.uneven_turns),
+            turns: self.turns.unwrap_or(usual.turns),
             ..usual
+        }
+    }
+
+    /// The board's flash and the day; none where it keeps nothing.
+    fn keeping(&self) -> Result<Option<Keeping>, String> {
+        let Some(path) = &self.flash else { return Ok(None) };
+        let today = Today { date: self.date, longest: None };
+        Ok(Some(Keeping { store: flash_file::load(path)?.store(), today }))
+    }
+
+    /// Writes back what the board keeps.
+    fn put_away(&self, keeping: Option<Keeping>) -> Result<(), String> {
+        match (&self.flash, keeping) {
+            (Some(path), Some(keeping)) => flash_file::save(path, &keeping.store.into_flash()),
+            _ => Ok(()),
         }
     }
 }
@@ -91,31 +139,56 @@ const NAME: &str = "the simulated run";
 
 /// Runs the board and tells what came of it.
 pub fn run(
+    options: &TurningOptions,
     scenario: &TurntableScenario,
     fault: Option<Fault>,
     report: Option<&Path>,
     as_json: bool,
 ) -> Result<Told, String> {
     let begun = WallClock::now();
+    let mut keeping = options.keeping()?;
     let watch = Terminal(Progress::new(0, "turns"));
     let mut recorder = RowRecorder::default();
-    let run = align_turning(scenario, fault, &mut recorder, &watch);
+    let run = align_turning_again(scenario, fault, &mut recorder, &watch, keeping.as_mut());
     watch.0.finish();
     let TurntableRun { run, .. } = run.map_err(|error| error.to_string())?;
+    let put_away = options.put_away(keeping);
     let wall = begun.elapsed().as_secs_f64();
     let replay =
         Replay { session: run.replay.clone(), zero_s: 0.0, assumed: vec![ASSUMED.to_owned()] };
     let conclusion = replay.conclusion().ok_or("the session did not end")?;
     let truth = Some(scenario.base.azimuth_deg);
     let found = told::json::object(&replay, conclusion, truth);
-    let object = object(&run, &scenario.base, found)?;
+    let mut object = object(&run, &scenario.base, found)?;
+    object["recalled"] = recalled(&run).map(in_json).collect();
     let told = Told::of(conclusion.verdict.is_ok(), as_json, &object, |block| {
         told::text::block(block, NAME, &replay, conclusion, truth)?;
+        recalled(&run)
+            .try_for_each(|coupling| text::line(block, "recalled", format_args!("{coupling}")))?;
         text::run(block, &run, &scenario.base, wall)
     })?;
-    let refusal = conclusion.verdict.as_ref().err().map(ToString::to_string);
+    // A flash that could not be written is a failure, but the azimuth is not lost with it.
+    let refusal = conclusion.verdict.as_ref().err().map(ToString::to_string).or(put_away.err());
     let page = || page::rotating::report(NAME, &replay, conclusion, recorder.rows());
-    Ok(Told { refusal, ..told }.with_page(report, page))
+    let told = Told { found: refusal.is_none(), refusal, ..told };
+    Ok(told.with_page(report, page))
+}
+
+/// The stored couplings that the board used.
+fn recalled<R>(run: &Run<R>) -> impl Iterator<Item = &Remembered> {
+    run.events.iter().filter_map(|(_, event)| match event {
+        Event::Recalled(coupling) => Some(coupling),
+        _ => None,
+    })
+}
+
+fn in_json(coupling: &Remembered) -> Value {
+    json!({
+        "coupling_deg": coupling.angle,
+        "speed_hz": coupling.rate / 360.0,
+        "date": coupling.day.to_string(),
+        "temperature_c": coupling.temperature,
+    })
 }
 
 /// What a simulated board is told.

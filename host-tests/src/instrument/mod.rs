@@ -2,13 +2,14 @@
 
 mod bench;
 mod desk;
+pub mod flash_file;
 mod frames;
 pub mod recorder;
 mod turntable;
 
 pub use bench::{align, align_on};
 pub use frames::{FramesRun, align_frames};
-pub use turntable::{TurntableRun, align_turning};
+pub use turntable::{Keeping, TurntableRun, align_turning, align_turning_again};
 
 use std::fmt;
 

@@ -3,14 +3,25 @@
 use std::cell::RefCell;
 
 use firmware::ports::{Observer, Recorder};
-use firmware::run::{acquire, run_rotating};
+use firmware::run::{acquire, run_rotating, run_storing};
 use firmware::simulated;
 use firmware::simulated::fault::{Fault, FaultyRecorder};
+use firmware::simulated::flash::Flash;
 use firmware::simulated::turntable::{self, TurntableScenario};
+use firmware::storage::{FlashStore, Today, prepare};
 use orientation::session::rotating;
 
 use super::desk::{self, Desk};
 use super::{Run, RunError};
+use crate::virtual_time;
+
+/// The store of a board that keeps couplings, and what it is told of the time.
+pub struct Keeping {
+    /// Where they are kept.
+    pub store: FlashStore<Flash>,
+    /// The day.
+    pub today: Today,
+}
 
 /// A finished run on a turning platform.
 #[derive(Clone, Debug)]
@@ -21,7 +32,7 @@ pub struct TurntableRun {
     pub rate: f64,
 }
 
-/// Runs a scenario in virtual time on this thread.
+/// Runs a scenario in virtual time on this thread, on a board that keeps nothing.
 ///
 /// # Errors
 /// What keeps the session from beginning, and a deadlock. A refusal is the session's conclusion.
@@ -31,22 +42,46 @@ pub fn align_turning<R: Recorder, W: Observer>(
     recorder: R,
     watch: &W,
 ) -> Result<TurntableRun, RunError> {
-    let setting = scenario.setting().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
-    let mut session =
-        rotating::Session::new(setting, scenario.procedure()).map_err(RunError::Procedure)?;
+    align_turning_again(scenario, fault, recorder, watch, None)
+}
+
+/// The same on a board that may have found couplings before, and keeps those that it finds.
+///
+/// # Errors
+/// Those of [`align_turning`].
+pub fn align_turning_again<R: Recorder, W: Observer>(
+    scenario: &TurntableScenario,
+    fault: Option<Fault>,
+    recorder: R,
+    watch: &W,
+    mut keeping: Option<&mut Keeping>,
+) -> Result<TurntableRun, RunError> {
+    let mut setting = scenario.setting().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
+    let mut procedure = scenario.procedure();
     let plan = scenario.plan(fault);
     let board = RefCell::new(scenario.board(&plan));
     let desk = Desk::new(watch);
     let seams = desk.seams();
+    if let Some(Keeping { store, today }) = &mut keeping {
+        let told = (&mut setting, &mut procedure);
+        let prepared = virtual_time::run(prepare(store, *today, told, &seams));
+        prepared.map_err(|_| RunError::Deadlock)?;
+    }
+    let mut session = rotating::Session::new(setting, procedure).map_err(RunError::Procedure)?;
     let configuration = scenario.configuration();
     let platform = scenario.turntable();
     let mut sensors = turntable::sensors(&board, scenario, &plan);
     let recorder = FaultyRecorder::new(recorder, plan.hang);
     let mut ports = turntable::ports(&board, &plan, desk.wire(), recorder);
-    let ended = desk::run(
-        acquire(&mut sensors, &configuration, &seams),
-        run_rotating(&mut ports, &platform, &mut session, &seams),
-    )?;
+    let instrument = async {
+        match keeping {
+            None => run_rotating(&mut ports, &platform, &mut session, &seams).await,
+            Some(Keeping { store, .. }) => {
+                run_storing(&mut ports, &platform, &mut session, store, &seams).await
+            }
+        }
+    };
+    let ended = desk::run(acquire(&mut sensors, &configuration, &seams), instrument)?;
     let violations = desk::told(simulated::violations(&board.borrow()));
     let rate = board.borrow().plant.truth().stage.rate_rad_s;
     Ok(TurntableRun { run: desk.clear(&ended, violations, session), rate })

@@ -44,7 +44,10 @@ pub fn block(
 }
 
 /// Writes what belongs to a label.
-pub(super) fn line(out: &mut impl Write, label: &str, value: fmt::Arguments<'_>) -> fmt::Result {
+///
+/// # Errors
+/// Those of the writer.
+pub fn line(out: &mut impl Write, label: &str, value: fmt::Arguments<'_>) -> fmt::Result {
     writeln!(out, "  {label:<18} {value}")
 }
 
