@@ -118,10 +118,10 @@ impl<'a> Turns<'a> {
         (if square > 0.0 { product / square } else { 0.0 }, square)
     }
 
-    /// Drift of the gyro's rate, rad/s²: none is told by fewer than three turns. A platform that turned
+    /// Drift of the gyro's rate, rad/s²: none is told by one turn. A platform that turned
     /// quicker in one of them, as where it begins to, is no drift.
     fn slope(&self) -> f64 {
-        if self.count() < 3 {
+        if self.count() < 2 {
             return 0.0;
         }
         self.slope_of(|index| self.own_rate(index)).0
@@ -215,7 +215,7 @@ impl Turns<'_> {
     /// line, as after a bump of some turns.
     fn share(&self, square: f64, variance: f64) -> f64 {
         let own = 1.0 / self.count() as f64;
-        if self.count() < 3 || square <= 0.0 {
+        if self.count() < 2 || square <= 0.0 {
             return own;
         }
         let leak = self.mean_complex(|index| Complex::of_signal(self.all[index].leak)).size();
@@ -232,7 +232,7 @@ impl Turns<'_> {
             away * away
         });
         let count = self.count() as f64;
-        (count * scatter - slope * slope * square).max(0.0) / (count - 2.0)
+        (count * scatter - slope * slope * square).max(0.0) / (count - 2.0).max(1.0)
     }
 }
 

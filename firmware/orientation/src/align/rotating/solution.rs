@@ -228,7 +228,7 @@ impl Problem<'_> {
             let harmonic = ENCODER_HARMONIC + self.setting.common.encoder_sigma;
             let shown = harmonic * through * pair.speed() / horizontal;
             fit.senses_sigma = fit.senses_sigma.max(libm::hypot(sigma * pair.speed(), shown));
-            let pair = pair.without_lag(coupling.map_or(0.0, Coupling::lag));
+            let pair = pair.without_lag(coupling.map_or(0.0, believed_lag));
             let weight = pair.information((self.density)(pair.speed()), 1.0);
             sum = sum + pair.even().scaled(weight);
             information += weight;
@@ -338,6 +338,13 @@ impl Problem<'_> {
         });
         worst.fold(0.0, f64::max) / horizontal
     }
+}
+
+/// The lag of a flat sensor, s: as the uneven turn shows it, as far as that knows better than that it is
+/// small.
+fn believed_lag(coupling: &Coupling) -> f64 {
+    let (known, sigma) = (UNKNOWN_LAG * UNKNOWN_LAG, coupling.lag_sigma());
+    coupling.lag() * known / (known + sigma * sigma)
 }
 
 /// Variance of either part of a force's phasor times the time over which it was found, (m/s²)²·s, and the
