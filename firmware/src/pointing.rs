@@ -136,7 +136,9 @@ impl<'a, E: Encoder, O: Observer> Shaft<'a, E, O> {
             return false;
         }
         self.latest.set((angle, now));
-        self.shared.sensing.signal(());
+        if !self.shared.sensing.signaled() {
+            self.shared.sensing.signal(());
+        }
         true
     }
 }

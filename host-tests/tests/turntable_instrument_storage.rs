@@ -171,7 +171,7 @@ fn what_an_uneven_turn_found_gives_the_same_north_the_next_time() {
     assert_eq!(recalled.replace("recalled", "kept"), kept);
     assert_eq!(told(&second, "uneven"), None);
     assert_eq!(told(&second, "coupling kept"), None, "nothing new was found");
-    let [first, second] = [first, second].map(|run| verdict(&run).expect("north"));
+    let [first, second] = [&first, &second].map(|run| verdict(run).expect("north"));
     let apart = azimuth_error(degrees(first.angle), degrees(second.angle)).abs();
     // Both have noise of their own.
     assert!(apart < 3.0 * degrees(first.sigma.hypot(second.sigma)), "{apart}° apart");

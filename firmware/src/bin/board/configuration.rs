@@ -2,10 +2,12 @@
 //!
 //! | what | where to get it |
 //! |---|---|
+//! | [`TURNS`] | what carries the gyro: a stage, or a platform on a slip ring |
 //! | [`LATITUDE`] | a map; 0.01° is near enough |
 //! | [`GYRO_SCALE`], [`GYRO_SCALE_SIGMA`], [`GYRO_LIMIT`] | the gyro's test sheet, and the amplifier between it and the converter |
 //! | [`GYRO_N`], [`GYRO_B`], [`GYRO_K`] | the gyro's data sheet; better `meridian allan` of a record at rest, or a [`SURVEY`] on the board |
 //! | [`G_SENSITIVITY`] | the test sheet, or a calibration with the axis up and down |
+//! | [`SPEEDS`], [`SENSOR`], [`UNEVEN_TURNS`] | of a turning platform: how fast it is to turn, and what turns |
 //! | [`ENCODER`] | a calibration of the stage; until then zero, a greater [`ENCODER_SIGMA`], and in [`instrument`] a greater `stage.agreement` |
 //!
 //! Too small a σ here is too small a σ of the azimuth: in doubt take the greater one.
@@ -13,16 +15,22 @@
 use drivers::ads1262::configuration::{Configuration as Converter, DataRate, Filter, Gain};
 use drivers::ads1262::scale::{INTERNAL_REFERENCE_VOLTS, Scale};
 use firmware::calibration::Harmonics;
-use firmware::configuration::Configuration;
+use firmware::configuration::{Configuration, TurntableConfiguration};
+use orientation::align::rotating::{self, Sensor};
 use orientation::align::setting::Setting;
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
 use orientation::planner::Rotation;
 use orientation::planner::order::Order;
 use orientation::session::procedure::Procedure;
+use orientation::session::rotating::Procedure as Turning;
 use orientation::session::schedule::Schedule;
 use orientation::session::survey::Survey;
-use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR};
+use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR, TURN};
+
+/// Whether the platform turns all the time, on a slip ring; else a stage stands at positions. What the
+/// other needs is not in the image.
+pub const TURNS: bool = false;
 
 /// Geodetic latitude, °, north positive; up to ±85°, beyond there is no north to find.
 const LATITUDE: f64 = 47.58;
@@ -124,5 +132,33 @@ pub fn procedure() -> Procedure {
 
 /// What the instrument is told of its devices.
 pub fn instrument() -> Configuration {
-    Configuration { encoder: ENCODER, ..Configuration::at(CONVERTER.rate.hertz()) }
+    let rate = CONVERTER.rate.hertz();
+    let usual = if TURNS { Configuration::turning(rate) } else { Configuration::at(rate) };
+    Configuration { encoder: ENCODER, ..usual }
+}
+
+/// On a turning platform: turns a second, one speed of a gyro, two of a molecular-electronic sensor.
+const SPEEDS: &[f64] = &[0.137];
+/// What kind of sensor turns: [`Sensor::GYRO`] or [`Sensor::MOLECULAR`].
+const SENSOR: Sensor = Sensor::GYRO;
+/// Uneven turns before the even ones, to know how the sensor feels the platform; none where what the
+/// flash keeps of them is to do. `None`: as many as are usual.
+const UNEVEN_TURNS: Option<u32> = None;
+
+/// What is known of place and instrument on a turning platform.
+pub fn turning_setting() -> rotating::Setting {
+    rotating::Setting::new(setting(), SENSOR)
+}
+
+/// How the session goes about it there.
+pub fn turning_procedure() -> Turning {
+    let mut speeds = [0.0; SPEEDS.len()];
+    speeds.iter_mut().zip(SPEEDS).for_each(|(speed, hertz)| *speed = hertz * TURN);
+    let usual = Turning::new(&speeds, 1.0 / CONVERTER.rate.hertz());
+    Turning { uneven_turns: UNEVEN_TURNS.unwrap_or(usual.uneven_turns), ..usual }
+}
+
+/// What the instrument is told of the platform.
+pub fn platform() -> TurntableConfiguration {
+    TurntableConfiguration::default()
 }

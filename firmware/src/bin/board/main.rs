@@ -32,23 +32,24 @@
 mod clock;
 mod configuration;
 mod ports;
+mod stepwise;
+mod turning;
 mod watchdog;
 mod wiring;
 
 use defmt_rtt as _;
 use embassy_executor::Spawner;
 use embassy_time::{Instant, Timer};
+use firmware::health::Health;
 use firmware::link;
 use firmware::log::DefmtLog;
-use firmware::run::{acquire, run};
+use firmware::run::acquire;
 use firmware::shared::Shared;
-use orientation::session::procedure::ProcedureError;
-use orientation::session::{Prepared, Session};
 use panic_probe as _;
 use static_cell::StaticCell;
 
-use ports::Inputs;
-use wiring::Wiring;
+use ports::{Inputs, Outputs};
+use wiring::SensorWires;
 
 /// The seams between the instrument's parts.
 type Seams = Shared<'static, DefmtLog>;
@@ -63,26 +64,21 @@ async fn main(spawner: Spawner) {
     let peripherals = clock::start(has_crystal);
     defmt::info!("board: started by {}, clock follows its crystal: {}", reason, has_crystal);
     spawner.spawn(defmt::unwrap!(watchdog::feed()));
-    match session() {
-        Ok(session) => align(spawner, defmt::unwrap!(wiring::connect(peripherals)), session).await,
-        Err(error) => defmt::error!("board: no session: {}", error),
+    let wiring = defmt::unwrap!(wiring::connect(peripherals));
+    // The task that is never spawned is not in the image.
+    if configuration::TURNS {
+        spawner.spawn(defmt::unwrap!(turning::align(spawner, wiring)));
+    } else {
+        spawner.spawn(defmt::unwrap!(stepwise::align(spawner, wiring)));
     }
 }
 
-/// Runs the instrument to its conclusion and goes on telling it; never ends, because what is wired would be let go: the
-/// motor would lose its current and the link its last bytes.
-async fn align(spawner: Spawner, wiring: Wiring, session: &'static mut Session) -> ! {
+/// The seams, with the sensors sampling into them.
+fn sample(spawner: Spawner, sensors: SensorWires) -> &'static Seams {
     static SEAMS: StaticCell<Seams> = StaticCell::new();
     let seams: &'static Seams = SEAMS.init_with(|| Shared::new(&DefmtLog));
-    let Wiring { sensors, motor, link, motor_enable: _enabled } = wiring;
     spawner.spawn(defmt::unwrap!(acquisition(ports::inputs(sensors), seams)));
-    let mut outputs = ports::outputs(motor, link);
-    let health = run(&mut outputs, &configuration::instrument(), session, seams).await;
-    defmt::info!("board: done, {} faults on the way", health.faults());
-    loop {
-        Timer::after_secs(1).await;
-        link::send(&mut outputs.link, seams).await;
-    }
+    seams
 }
 
 /// Samples for ever.
@@ -91,9 +87,12 @@ async fn acquisition(mut inputs: Inputs, seams: &'static Seams) {
     acquire(&mut inputs, &configuration::instrument(), seams).await;
 }
 
-/// The session, made where it stays.
-fn session() -> Result<&'static mut Session, ProcedureError> {
-    static SESSION: StaticCell<Session> = StaticCell::new();
-    let prepared = Prepared::new(configuration::setting(), configuration::procedure())?;
-    Ok(SESSION.init_with(|| Session::from(prepared)))
+/// Goes on telling the conclusion; never ends, because what is wired would be let go: the motor would
+/// lose its current and the link its last bytes.
+async fn tell(health: &Health, outputs: &mut Outputs, seams: &'static Seams) -> ! {
+    defmt::info!("board: done, {} faults on the way", health.faults());
+    loop {
+        Timer::after_secs(1).await;
+        link::send(&mut outputs.link, seams).await;
+    }
 }

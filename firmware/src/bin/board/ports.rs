@@ -1,11 +1,14 @@
 //! The chips on their wires, as the instrument's ports.
 
 use drivers::ads1262::Ads1262;
+use drivers::adxl355::registers::OutputRate;
 use drivers::adxl355::{self, Adxl355};
 use drivers::mt6835::{self, Mt6835};
-use drivers::tmc5160::{Tmc5160, configuration::Configuration as Motor};
+use drivers::tmc5160::Tmc5160;
+use drivers::tmc5160::configuration::{Configuration as Motor, Switches};
 use embassy_time::Delay;
 use firmware::chips::{AnalogueGyro, PlatformAccelerometer, StageEncoder, StageMotor};
+use firmware::configuration::ANGLE_RATE;
 use firmware::ports::{NoBase, NoRecorder, Ports, Sensors};
 
 use crate::configuration;
@@ -23,7 +26,7 @@ pub type Outputs = Ports<StageMotor<Device, Delay>, Link, NoRecorder>;
 /// The sensors on their wires.
 pub fn inputs(wires: SensorWires) -> Inputs {
     let SensorWires { converter, ready, accelerometer, encoder } = wires;
-    let accelerometer = Adxl355::new(accelerometer, Delay, adxl355::Configuration::default());
+    let accelerometer = Adxl355::new(accelerometer, Delay, force());
     Sensors {
         gyro: AnalogueGyro {
             converter: Ads1262::new(converter, ready, Delay, configuration::CONVERTER),
@@ -31,13 +34,37 @@ pub fn inputs(wires: SensorWires) -> Inputs {
             limit: configuration::LIMIT,
         },
         accelerometer: PlatformAccelerometer(accelerometer),
-        encoder: StageEncoder(Mt6835::new(encoder, Delay, mt6835::Configuration::default())),
+        encoder: StageEncoder(Mt6835::new(encoder, Delay, angle())),
         base: NoBase,
     }
 }
 
 /// The other ports on their wires.
 pub fn outputs(motor: Device, link: Link) -> Outputs {
-    let motor = Tmc5160::new(motor, Delay, Motor::default());
+    let motor = Tmc5160::new(motor, Delay, drive());
     Ports { actuator: StageMotor(motor), link, recorder: NoRecorder }
+}
+
+/// The accelerometer. Its filter delays a force by two and a half outputs, in which a platform that turns
+/// is not to turn far.
+fn force() -> adxl355::Configuration {
+    let usual = adxl355::Configuration::default();
+    let rate = if configuration::TURNS { OutputRate::Hz1000 } else { usual.rate };
+    adxl355::Configuration { rate }
+}
+
+/// The encoder. On a platform that turns it is read with every sample, but its registers not more often
+/// than those of a stage's.
+fn angle() -> mt6835::Configuration {
+    let usual = mt6835::Configuration::default();
+    let every = configuration::CONVERTER.rate.hertz() / ANGLE_RATE - 1.0;
+    let unwatched = if configuration::TURNS { every as u8 } else { usual.unwatched };
+    mt6835::Configuration { unwatched, ..usual }
+}
+
+/// The motor driver. A platform that turns without end has no switches.
+fn drive() -> Motor {
+    let usual = Motor::default();
+    let none = Switches { left: None, right: None };
+    Motor { switches: if configuration::TURNS { none } else { usual.switches }, ..usual }
 }

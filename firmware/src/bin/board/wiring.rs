@@ -12,7 +12,7 @@ use embassy_stm32::exti::{self, ExtiInput};
 use embassy_stm32::gpio::{Level, Output, Pin, Pull, Speed};
 use embassy_stm32::interrupt::typelevel::EXTI15_10;
 use embassy_stm32::mode::Async;
-use embassy_stm32::peripherals::{DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA2_CH6};
+use embassy_stm32::peripherals::{DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA2_CH6, FLASH};
 use embassy_stm32::spi::mode::Master;
 use embassy_stm32::spi::{self, MODE_0, MODE_1, MODE_3, Mode, Spi};
 use embassy_stm32::time::Hertz;
@@ -56,6 +56,8 @@ pub struct Wiring {
     pub motor_enable: Output<'static>,
     /// Where status lines go.
     pub link: Link,
+    /// The controller's own flash, where a turning platform keeps what it found.
+    pub flash: Peri<'static, FLASH>,
 }
 
 /// The sensors' part of it.
@@ -90,6 +92,7 @@ pub fn connect(p: Peripherals) -> Result<Wiring, ConfigError> {
         motor: device(stage, p.PD5, high),
         motor_enable: Output::new(p.PD2, Level::Low, Speed::Low),
         link: UartTx::new(p.USART1, p.PB6, p.DMA2_CH6, Interrupts, usart::Config::default())?,
+        flash: p.FLASH,
     })
 }
 

@@ -291,10 +291,12 @@ impl Session {
 
     /// Turns until the turns are full; gives up where that takes far too long.
     fn even(&mut self, index: usize, sense: Sense, has_turned: bool, elapsed: u64) -> Command {
-        self.turns += u32::from(has_turned);
-        let turns = self.procedure.turns_at(index);
-        if self.turns >= turns {
-            return self.go_on(index, sense);
+        // How many there are to be is asked with a turn alone: it costs 600 instructions.
+        if has_turned {
+            self.turns += 1;
+            if self.turns >= self.procedure.turns_at(index) {
+                return self.go_on(index, sense);
+            }
         }
         if elapsed >= self.end {
             let wanted = sense.signed(self.speed(index)) * DEGREES;
