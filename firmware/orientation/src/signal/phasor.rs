@@ -66,18 +66,22 @@ pub struct Block {
 }
 
 /// Averages samples into blocks.
+///
+/// An encoder may be read less often than the gyro: a sample with the angle of the one before brings no
+/// new one, and a block begins, has its middle and ends where one does. Where none comes for two blocks
+/// the platform stands, which is a block too.
 #[derive(Clone, Copy, Debug)]
 pub struct Blocks {
-    /// Sample periods in a block, and after how many its middle is reached.
+    /// Sample periods in a block, at least, and after how many its middle is looked for.
     periods: u32,
     middle: u32,
     last: Option<Point>,
-    /// Where the block began, and its angle's cosine and sine there and in the middle, 2⁻³⁰.
-    begun: Point,
+    /// Where the block began, if it has, and its angle's cosine and sine there and in the middle, 2⁻³⁰.
+    begun: Option<Point>,
     phasors: [[i32; 2]; 2],
+    /// Time of the middle, µs; zero where there was none yet.
     middle_time: u64,
     count: u32,
-    turned: i64,
     /// Sums over the periods of the values at both of their ends times their length, µs.
     turning: f32,
     rate: i64,
@@ -85,7 +89,7 @@ pub struct Blocks {
 }
 
 /// What a sample brings.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Point {
     time: u64,
     stage: Angle,
@@ -102,11 +106,10 @@ impl Blocks {
             periods: (2 * middle).max(1),
             middle,
             last: None,
-            begun: Point::default(),
+            begun: None,
             phasors: [[0; 2]; 2],
             middle_time: 0,
             count: 0,
-            turned: 0,
             turning: 0.0,
             rate: 0,
             is_saturated: false,
@@ -119,17 +122,21 @@ impl Blocks {
     }
 
     /// Takes a sample, and the platform's rate in rad/s where something measured it; gives a block when
-    /// one is full. The platform must turn by less than half a turn from sample to sample.
+    /// one is full. The platform must turn by less than half a turn in a block.
     #[inline]
     pub fn push(&mut self, sample: &Sample, turning: Option<f32>) -> Option<Block> {
         let (time, stage, rate) = (sample.time.0, sample.stage, sample.rate.0);
         let point = Point { time, stage, turning, rate };
-        let Some(last) = self.last.replace(point) else {
-            self.begin(point);
+        let last = self.last.replace(point)?;
+        let is_new = stage != last.stage;
+        let Some(begun) = self.begun else {
+            self.count += 1;
+            if is_new || self.count >= self.periods {
+                self.begin(point, Table::built_in().at(stage));
+            }
             return None;
         };
         self.count += 1;
-        self.turned += i64::from((stage - last.stage).0.cast_signed());
         // A period in which samples are missing counts for as long as it took.
         let period = time.saturating_sub(last.time) as u32;
         self.rate += (i64::from(rate) + i64::from(last.rate)) * i64::from(period);
@@ -137,49 +144,54 @@ impl Blocks {
             self.turning += (now + before) * period as f32;
         }
         self.is_saturated |= sample.rate.is_saturated();
-        if self.count == self.middle {
+        let stands = self.count >= 2 * self.periods;
+        if stands || (is_new && self.count >= self.periods) {
+            return Some(self.finish(&begun, point));
+        }
+        if is_new && self.count >= self.middle && self.middle_time == 0 {
             self.phasors[1] = Table::built_in().at(stage);
             self.middle_time = time;
         }
-        (self.count >= self.periods).then(|| self.finish(point))
+        None
     }
 
-    /// Begins a block at a sample.
-    fn begin(&mut self, point: Point) {
-        let first = Table::built_in().at(point.stage);
-        *self = Self { last: Some(point), begun: point, ..Self::of(self.periods) };
-        self.phasors[0] = first;
+    /// Begins a block at a sample, whose angle has this cosine and sine.
+    fn begin(&mut self, point: Point, phasor: [i32; 2]) {
+        *self = Self { last: Some(point), begun: Some(point), ..Self::of(self.periods) };
+        self.phasors[0] = phasor;
     }
 
     /// The block that ends with this sample; the next one begins there.
-    fn finish(&mut self, end: Point) -> Block {
-        let length = end.time.saturating_sub(self.begun.time).max(1);
+    fn finish(&mut self, begun: &Point, end: Point) -> Block {
+        let length = end.time.saturating_sub(begun.time).max(1);
         let seconds = length as f32 * 1e-6;
         // Both ends of every period were summed.
         let twice = 2 * length.cast_signed();
-        let shown = self.turned as f32 * (Angle::STEP as f32) / seconds;
+        let turned = i64::from((end.stage - begun.stage).0.cast_signed());
+        let shown = turned as f32 * (Angle::STEP as f32) / seconds;
+        let phasor = Table::built_in().at(end.stage);
         let block = Block {
-            time: self.begun.time.midpoint(end.time),
+            time: begun.time.midpoint(end.time),
             seconds,
             turning: end.turning.map_or(shown, |_| self.turning / twice as f32),
-            turned: self.turned,
-            phasor: self.mean_phasor(&end, Table::built_in().at(end.stage)),
+            turned,
+            phasor: self.mean_phasor(begun, &end, phasor),
             rate: (self.rate / twice) as i32,
             is_saturated: self.is_saturated,
         };
-        self.begin(end);
+        self.begin(end, phasor);
         block
     }
 
     /// Mean cosine and sine, 2⁻²²: of the parabola through both ends and the middle, which is exact to 1e-7
     /// for a tenth of a turn; of a line where the rate has no other points either.
-    fn mean_phasor(&self, end: &Point, last: [i32; 2]) -> [i32; 2] {
+    fn mean_phasor(&self, begun: &Point, end: &Point, last: [i32; 2]) -> [i32; 2] {
         let [first, middle] = self.phasors;
-        let share = |time: u64| time.saturating_sub(self.begun.time).max(1) as f32;
+        let share = |time: u64| time.saturating_sub(begun.time).max(1) as f32;
         // Where the middle lies, of the whole: at a half unless samples are missing.
         let place = share(self.middle_time) / share(end.time);
         let weight =
-            if self.middle == 0 { 0.0 } else { 1.0 / (6.0 * place * (1.0 - place)).max(0.5) };
+            if self.middle_time == 0 { 0.0 } else { 1.0 / (6.0 * place * (1.0 - place)).max(0.5) };
         let later = 0.5 - weight * place;
         let weights = [1.0 - weight - later, weight, later];
         [0, 1].map(|part| {

@@ -198,13 +198,18 @@ impl Follower {
         if is_measured {
             (least, greatest) = (least.min(block.turning), greatest.max(block.turning));
         }
-        let turned = block.turned as f64 * Angle::STEP;
-        let shown = (turned / f64::from(block.seconds)) as f32;
-        let slip = turned - f64::from(shown.max(least).min(greatest) * block.seconds);
+        let shown = block.turned as f32 * (Angle::STEP as f32) / block.seconds;
+        let beyond = shown - shown.max(least).min(greatest);
+        if beyond != 0.0 {
+            self.note_slip(f64::from(beyond * block.seconds));
+        }
+        Some([before, block, next])
+    }
+
+    fn note_slip(&mut self, slip: f64) {
         if slip.abs() > SLIP.max(self.slip.abs()) {
             self.slip = slip;
         }
-        Some([before, block, next])
     }
 
     /// Takes a force, unless it stands at the limit of its range.
@@ -406,9 +411,7 @@ impl Follower {
                 |broken: &Broken| f64::from(self.speed.abs() * broken.seconds) < LONGEST_BREAK;
             let broken = self.broken.take().filter(|broken| is_alike && is_short(broken));
             let slip = broken.map_or(0.0, |broken| broken.slip(self.speed));
-            if slip.abs() > SLIP.max(self.slip.abs()) {
-                self.slip = slip;
-            }
+            self.note_slip(slip);
         } else {
             self.note_break(part.turned, part.seconds);
         }
