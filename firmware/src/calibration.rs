@@ -10,10 +10,9 @@ use orientation::units::{Angle, TURN};
 const STEP: f32 = (TURN / 4_294_967_296.0) as f32;
 /// Steps of an [`Angle`] in one radian.
 const STEPS: f32 = (4_294_967_296.0 / TURN) as f32;
-/// Change of the angle, in steps, below which the correction is kept: a turn's 2¹²-th part. A
-/// correction of 0.1° changes by less than 1.2″ over it, and a platform that turns all the time needs it
-/// with every third sample at 2 kHz.
-const KEPT: u32 = 1 << 20;
+/// Change of the angle, in steps, below which the correction is kept: a turn's 2¹⁴-th part. A
+/// correction of 0.1° changes by less than 0.3″ over it.
+const KEPT: u32 = 1 << 18;
 
 /// What the encoder shows beyond the true angle: Σ aₖ sin kθ + bₖ cos kθ, rad.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

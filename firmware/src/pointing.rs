@@ -136,9 +136,7 @@ impl<'a, E: Encoder, O: Observer> Shaft<'a, E, O> {
             return false;
         }
         self.latest.set((angle, now));
-        if !self.shared.sensing.signaled() {
-            self.shared.sensing.signal(());
-        }
+        self.shared.sensing.signal(());
         true
     }
 }

@@ -113,6 +113,9 @@ where
     R: Recorder,
     O: Observer,
 {
+    if !is_coupled(session) {
+        session.handle(rotating::Event::Failed(Refusal::CouplingUnknown));
+    }
     let Ports { actuator, link, recorder } = ports;
     let mut turntable = Turntable::new(actuator, configuration, shared);
     let health = {
@@ -122,6 +125,14 @@ where
     // Where that fails, too, the log has the reason.
     select(turntable.rest(), discard(shared)).await;
     health
+}
+
+/// Whether a session can tell how its sensor feels the platform: one that is not flat must know it, or
+/// be about to learn it.
+fn is_coupled(session: &rotating::Session) -> bool {
+    let setting = session.setting();
+    let is_known = setting.couplings.iter().any(Option::is_some);
+    setting.sensor.is_flat || session.procedure().uneven_turns > 0 || is_known
 }
 
 /// The same as [`run_rotating`], and keeps the couplings that it found. Those that were kept before must

@@ -42,8 +42,8 @@ pub enum Step {
 /// A session with what was told of it. The conductor knows no more of its kind, so that an image with
 /// two kinds has one conductor.
 pub trait Conducted<O> {
-    /// Refuses where north could not be found, before anything turns.
-    fn check(&self) -> Result<(), Refusal>;
+    /// Where it is to find north.
+    fn latitude(&self) -> Latitude;
 
     /// What there is to tell before it begins.
     fn outset(&self) -> Event;
@@ -96,7 +96,7 @@ impl<'a, R: Recorder, O: Observer> Conductor<'a, R, O> {
     }
 
     async fn conduct(&mut self) -> Result<(), Refusal> {
-        self.session.check()?;
+        self.check_place()?;
         self.wait_for_home().await?;
         self.session.allow_for(self.shared.sway.get());
         loop {
@@ -113,6 +113,15 @@ impl<'a, R: Recorder, O: Observer> Conductor<'a, R, O> {
                 Timer::after(REST).await;
             }
         }
+    }
+
+    /// Refuses a place where nothing could be found, before anything turns.
+    fn check_place(&self) -> Result<(), Refusal> {
+        let latitude = self.session.latitude();
+        if latitude.has_north() {
+            return Ok(());
+        }
+        Err(Refusal::LatitudeTooHigh { latitude: latitude.rad() * DEGREES })
     }
 
     /// Lets samples go by until angles mean something.
@@ -149,14 +158,6 @@ impl<'a, R: Recorder, O: Observer> Conductor<'a, R, O> {
             }
         }
     }
-}
-
-/// Refuses a place without a north.
-fn check_place(latitude: Latitude) -> Result<(), Refusal> {
-    if latitude.has_north() {
-        return Ok(());
-    }
-    Err(Refusal::LatitudeTooHigh { latitude: latitude.rad() * DEGREES })
 }
 
 /// Tells the tilt of a platform at rest from the force that it feels there.

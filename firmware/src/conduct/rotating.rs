@@ -1,13 +1,14 @@
 //! The session on a platform that turns all the time, as it is conducted.
 
 use orientation::align::rotating::turn::Stretch;
+use orientation::earth::Latitude;
 use orientation::error::Refusal;
 use orientation::session::rotating::{Command, Event as SessionEvent, Phase, Session};
 use orientation::signal::Sample;
 use orientation::signal::sway::SwayNoise;
 use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 
-use super::{Conducted, Step, check_place, tell_level};
+use super::{Conducted, Step, tell_level};
 use crate::event::Event;
 use crate::link::Status;
 use crate::ports::Observer;
@@ -35,15 +36,8 @@ impl<'a> Rotating<'a> {
 }
 
 impl<O: Observer> Conducted<O> for Rotating<'_> {
-    /// A sensor that is not flat must know its coupling, or be about to learn it.
-    fn check(&self) -> Result<(), Refusal> {
-        let (setting, procedure) = (self.session.setting(), self.session.procedure());
-        check_place(setting.common.latitude)?;
-        let is_known = setting.couplings.iter().any(Option::is_some);
-        if setting.sensor.is_flat || procedure.uneven_turns > 0 || is_known {
-            return Ok(());
-        }
-        Err(Refusal::CouplingUnknown)
+    fn latitude(&self) -> Latitude {
+        self.session.setting().common.latitude
     }
 
     fn outset(&self) -> Event {

@@ -1,5 +1,6 @@
 //! The session in positions, as it is conducted.
 
+use orientation::earth::Latitude;
 use orientation::error::Refusal;
 use orientation::noise::fit::NoiseFit;
 use orientation::session::schedule::Schedule;
@@ -8,7 +9,7 @@ use orientation::signal::Sample;
 use orientation::signal::sway::SwayNoise;
 use orientation::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN as DEGREES};
 
-use super::{Conducted, Step, check_place, tell_level};
+use super::{Conducted, Step, tell_level};
 use crate::event::Event;
 use crate::link::Status;
 use crate::ports::Observer;
@@ -40,8 +41,8 @@ impl<'a> Stepwise<'a> {
 }
 
 impl<O: Observer> Conducted<O> for Stepwise<'_> {
-    fn check(&self) -> Result<(), Refusal> {
-        check_place(self.session.setting().latitude)
+    fn latitude(&self) -> Latitude {
+        self.session.setting().latitude
     }
 
     fn outset(&self) -> Event {
