@@ -143,7 +143,7 @@ pub struct Configuration {
 /// Rate at which the accelerometer is read, Hz; its mean is all that an alignment needs.
 const FORCE_RATE: f64 = 100.0;
 /// Rate at which the encoder is read, Hz: the stage turns 0.1° between two readings.
-pub const ANGLE_RATE: f64 = 200.0;
+const ANGLE_RATE: f64 = 200.0;
 
 impl Configuration {
     /// The default board with a gyro of so many samples a second.
@@ -157,12 +157,6 @@ impl Configuration {
             encoder: Harmonics::default(),
             stage: StageConfiguration::default(),
         }
-    }
-
-    /// The same on a turntable, which has turned on by the next sample: every one has its own angle.
-    #[must_use]
-    pub fn turning(sample_rate: f64) -> Self {
-        Self { angle_divider: 1, ..Self::at(sample_rate) }
     }
 
     /// The sample period, µs, to nearest.

@@ -99,8 +99,7 @@ where
     beside(turning, link, recorder, &mut Stepwise::new(session), shared).await
 }
 
-/// The same on a platform that turns all the time, which [`acquire`] samples with a configuration for
-/// [turning](Configuration::turning). Whatever the end, the platform comes to rest.
+/// The same on a platform that turns all the time. Whatever the end, the platform comes to rest.
 pub async fn run_rotating<M, L, R, O>(
     ports: &mut Ports<M, L, R>,
     configuration: &TurntableConfiguration,

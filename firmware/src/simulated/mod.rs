@@ -114,19 +114,14 @@ pub fn sensors<'a, B: Rig, A: Around>(
     scenario: &Scenario,
     around: &A,
 ) -> SimulatedSensors<'a, B, A> {
-    sensors_with(
-        board,
-        scenario,
-        (scenario::accelerometer(), mt6835::Configuration::default()),
-        around,
-    )
+    sensors_with(board, scenario, scenario::accelerometer(), around)
 }
 
-/// The same with an accelerometer and an encoder that are told something else.
+/// The same with an accelerometer that is told something else.
 fn sensors_with<'a, B: Rig, A: Around>(
     board: &'a RefCell<B>,
     scenario: &Scenario,
-    (force, angle): (adxl355::Configuration, mt6835::Configuration),
+    force: adxl355::Configuration,
     around: &A,
 ) -> SimulatedSensors<'a, B, A> {
     let bus = |select, hertz| bus(board, around, select, hertz);
@@ -135,7 +130,7 @@ fn sensors_with<'a, B: Rig, A: Around>(
     let accelerometer = bus(Select::Accelerometer, adxl355::BUS_HERTZ);
     let accelerometer = Adxl355::new(accelerometer, Delay, force);
     let encoder = bus(Select::Encoder, mt6835::BUS_HERTZ);
-    let encoder = Mt6835::new(encoder, Delay, angle);
+    let encoder = Mt6835::new(encoder, Delay, mt6835::Configuration::default());
     Sensors {
         gyro: chips::AnalogueGyro {
             converter: Ads1262::new(converter, ready, Delay, scenario.converter()),

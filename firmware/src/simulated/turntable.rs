@@ -7,7 +7,6 @@ use core::cell::RefCell;
 
 use drivers::adxl355;
 use drivers::adxl355::registers::OutputRate;
-use drivers::mt6835;
 use drivers::tmc5160::configuration::{Configuration as Motor, Switches};
 use embassy_time::{Duration, Instant};
 use hal_mock::chip::Rig;
@@ -26,7 +25,7 @@ use super::scenario::{GyroClass, Scenario};
 use super::{
     Around, Chips, SimulatedPorts, SimulatedSensors, board_around, ports_with, sensors_with,
 };
-use crate::configuration::{ANGLE_RATE, Configuration, TurntableConfiguration};
+use crate::configuration::{Configuration, TurntableConfiguration};
 
 /// The motor driver of a platform that turns without end: it has no switches.
 const MOTOR: Switches = Switches { left: None, right: None };
@@ -150,16 +149,7 @@ impl TurntableScenario {
     /// What the board is told of its devices.
     #[must_use]
     pub fn configuration(&self) -> Configuration {
-        Configuration {
-            encoder: self.base.configuration().encoder,
-            ..Configuration::turning(self.base.sample_rate_hz)
-        }
-    }
-
-    /// The encoder, read with every sample, but its registers not more often than those of a stage's.
-    fn encoder(&self) -> mt6835::Configuration {
-        let unwatched = self.base.sample_rate_hz / ANGLE_RATE - 1.0;
-        mt6835::Configuration { unwatched: unwatched as u8, ..mt6835::Configuration::default() }
+        self.base.configuration()
     }
 
     /// What it is told of the platform.
@@ -213,7 +203,7 @@ pub fn sensors<'a, B: Rig, A: Around>(
     scenario: &TurntableScenario,
     around: &A,
 ) -> SimulatedSensors<'a, B, A> {
-    sensors_with(board, &scenario.base, (FORCE, scenario.encoder()), around)
+    sensors_with(board, &scenario.base, FORCE, around)
 }
 
 /// The other ports of its simulated board.

@@ -35,22 +35,10 @@ pub fn frame(bytes: [u8; 4]) -> Result<Frame, Fault> {
 /// as zero.
 #[must_use]
 pub fn checksum(bytes: &[u8]) -> u8 {
-    let halves = bytes.iter().flat_map(|byte| [byte >> 4, byte & 0xF]);
-    halves.fold(0, |sum, half| (sum << 4) ^ REMAINDERS[usize::from((sum >> 4) ^ half)])
+    bytes.iter().fold(0, |sum, byte| (0..8).fold(sum ^ byte, |sum, _| shifted(sum)))
 }
 
-/// The checksums of half a byte: a turning platform's angle is read with every sample.
-const REMAINDERS: [u8; 16] = {
-    let mut remainders = [0; 16];
-    let mut half = 0;
-    while half < 16 {
-        remainders[half] = shifted(shifted(shifted(shifted((half as u8) << 4))));
-        half += 1;
-    }
-    remainders
-};
-
-const fn shifted(sum: u8) -> u8 {
+fn shifted(sum: u8) -> u8 {
     let feedback = if sum & 0x80 == 0 { 0 } else { 0x07 };
     sum << 1 ^ feedback
 }

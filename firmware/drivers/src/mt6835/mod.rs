@@ -8,8 +8,7 @@
 //! pattern. There is no status bit for it, so every reading also reads one register: the pattern at
 //! every other reading, between them the registers that the angle depends on, in turn. A reset is told
 //! by the second reading after it at the latest, another changed register within ten. A burst of
-//! zeros passes its checksum: it is believed only after the pattern was seen. Where angles are read very
-//! often, some readings may go without a register.
+//! zeros passes its checksum: it is believed only after the pattern was seen.
 //!
 //! **RAM only.** The EEPROM lasts for some thousand programmings and a wrong one stays; this driver
 //! has no way to send the commands for programming or for setting the zero.
@@ -68,9 +67,6 @@ pub struct Configuration {
     pub hysteresis: Hysteresis,
     /// Bandwidth.
     pub bandwidth: Bandwidth,
-    /// Readings without a look at a register after each one with it: what changes is noticed so much
-    /// later, and until then the angles are believed.
-    pub unwatched: u8,
 }
 
 /// One angle.
@@ -90,14 +86,12 @@ pub struct Mt6835<S, D> {
     expected: Option<[u8; WATCHED.len()]>,
     /// Counts readings, modulo twice the watched registers.
     turn: usize,
-    /// Readings until the next look at a register.
-    unwatched: u8,
 }
 
 impl<S: SpiDevice, D: DelayNs> Mt6835<S, D> {
     /// The chip on `spi` (mode 3, at most 16 MHz); nothing is sent yet.
     pub const fn new(spi: S, delay: D, configuration: Configuration) -> Self {
-        Self { spi, delay, configuration, expected: None, turn: 0, unwatched: 0 }
+        Self { spi, delay, configuration, expected: None, turn: 0 }
     }
 
     /// Brings the chip from any state to readiness: identity, state of its calibration,
@@ -120,7 +114,6 @@ impl<S: SpiDevice, D: DelayNs> Mt6835<S, D> {
         }
         self.expected = Some(held);
         self.turn = 0;
-        self.unwatched = 0;
         self.read().await.map(|_| ())
     }
 
@@ -144,11 +137,6 @@ impl<S: SpiDevice, D: DelayNs> Mt6835<S, D> {
     /// Looks at the register whose turn it is, and at the pattern where there is doubt.
     async fn watch(&mut self, is_doubtful: bool) -> Result<(), Fault> {
         let expected = self.expected.ok_or(Fault::Reset)?;
-        if self.unwatched > 0 && !is_doubtful {
-            self.unwatched -= 1;
-            return Ok(());
-        }
-        self.unwatched = self.configuration.unwatched;
         let (index, is_pattern) = (self.turn / 2, self.turn.is_multiple_of(2));
         self.turn = (self.turn + 1) % (2 * WATCHED.len());
         if is_pattern || is_doubtful {
@@ -176,7 +164,7 @@ impl<S: SpiDevice, D: DelayNs> Mt6835<S, D> {
     }
 
     async fn configure(&mut self) -> Result<(), Fault> {
-        let Configuration { is_reversed, hysteresis, bandwidth, .. } = self.configuration;
+        let Configuration { is_reversed, hysteresis, bandwidth } = self.configuration;
         let kept = self.agreed(DIRECTION).await?;
         self.set(DIRECTION, codec::direction(kept, is_reversed, hysteresis)).await?;
         let kept = self.agreed(BANDWIDTH).await?;

@@ -133,8 +133,7 @@ pub fn procedure() -> Procedure {
 /// What the instrument is told of its devices.
 pub fn instrument() -> Configuration {
     let rate = CONVERTER.rate.hertz();
-    let usual = if TURNS { Configuration::turning(rate) } else { Configuration::at(rate) };
-    Configuration { encoder: ENCODER, ..usual }
+    Configuration { encoder: ENCODER, ..Configuration::at(rate) }
 }
 
 /// On a turning platform: turns a second, one speed of a gyro, two of a molecular-electronic sensor.

@@ -8,7 +8,6 @@ use drivers::tmc5160::Tmc5160;
 use drivers::tmc5160::configuration::{Configuration as Motor, Switches};
 use embassy_time::Delay;
 use firmware::chips::{AnalogueGyro, PlatformAccelerometer, StageEncoder, StageMotor};
-use firmware::configuration::ANGLE_RATE;
 use firmware::ports::{NoBase, NoRecorder, Ports, Sensors};
 
 use crate::configuration;
@@ -34,7 +33,7 @@ pub fn inputs(wires: SensorWires) -> Inputs {
             limit: configuration::LIMIT,
         },
         accelerometer: PlatformAccelerometer(accelerometer),
-        encoder: StageEncoder(Mt6835::new(encoder, Delay, angle())),
+        encoder: StageEncoder(Mt6835::new(encoder, Delay, mt6835::Configuration::default())),
         base: NoBase,
     }
 }
@@ -51,15 +50,6 @@ fn force() -> adxl355::Configuration {
     let usual = adxl355::Configuration::default();
     let rate = if configuration::TURNS { OutputRate::Hz1000 } else { usual.rate };
     adxl355::Configuration { rate }
-}
-
-/// The encoder. On a platform that turns it is read with every sample, but its registers not more often
-/// than those of a stage's.
-fn angle() -> mt6835::Configuration {
-    let usual = mt6835::Configuration::default();
-    let every = configuration::CONVERTER.rate.hertz() / ANGLE_RATE - 1.0;
-    let unwatched = if configuration::TURNS { every as u8 } else { usual.unwatched };
-    mt6835::Configuration { unwatched, ..usual }
 }
 
 /// The motor driver. A platform that turns without end has no switches.
