@@ -132,6 +132,13 @@ pub enum Refusal {
         /// Of how many.
         positions: usize,
     },
+    /// More turns of a platform were disturbed than may be left out.
+    TurnsDisturbed {
+        /// How many were disturbed.
+        disturbed: u32,
+        /// Of how many.
+        turns: u32,
+    },
     /// The stage did not come to stand where it was sent.
     StageNotThere {
         /// Where it was sent, °.
@@ -262,6 +269,8 @@ words! { Refusal:
         Rounded::<3>(ratio), Rounded::<3>(sigma);
     Self::Disturbed { disturbed, positions } =>
         "{} of {} dwells were disturbed: keep the platform still", disturbed, positions;
+    Self::TurnsDisturbed { disturbed, turns } =>
+        "{} of {} turns were disturbed: keep the base still, let the sensor settle", disturbed, turns;
     Self::StageNotThere { target, actual } =>
         "the stage was sent to {}° but stands at {}°", Rounded::<3>(target), Rounded::<3>(actual);
     Self::TimeExhausted => "the time allowed ran out";

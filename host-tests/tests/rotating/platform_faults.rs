@@ -150,7 +150,7 @@ fn a_creeping_encoder_is_refused_once_it_shows_above_the_noise() {
     let names = [
         "TiltChanged",
         "DirectionDrifts",
-        "Disturbed",
+        "TurnsDisturbed",
         "SpeedsUnequal",
         "ResidualsNotWhite",
         "SensesDisagree",
@@ -168,7 +168,7 @@ fn a_creeping_encoder_is_refused_once_it_shows_above_the_noise() {
 fn a_tilt_that_changes_is_refused_or_leaves_the_azimuth_right() {
     for change in [0.003, 0.03, 0.3] {
         for place in [between_s(), clockwise_s(6.0)] {
-            let names = ["TiltChanged", "DirectionDrifts", "ResidualsNotWhite", "Disturbed"];
+            let names = ["TiltChanged", "DirectionDrifts", "ResidualsNotWhite", "TurnsDisturbed"];
             assert_never_wrong(&names, |seed, case| {
                 let mut after = case.clone();
                 after.instruments.pitch_deg += change;
@@ -188,7 +188,7 @@ fn a_tilt_that_changes_is_refused_or_leaves_the_azimuth_right() {
 #[test]
 fn a_base_that_turned_is_refused_or_stood_where_the_azimuth_says() {
     let names =
-        ["TiltChanged", "DirectionDrifts", "ResidualsNotWhite", "Disturbed", "SensesDisagree"];
+        ["TiltChanged", "DirectionDrifts", "ResidualsNotWhite", "TurnsDisturbed", "SensesDisagree"];
     for change in [0.1, 1.0, 3.0_f64] {
         for place in [between_s(), clockwise_s(6.0)] {
             assert_never_wrong(&names, |seed, case| {

@@ -25,7 +25,7 @@ fn bumped_turns_are_left_out() {
             })
         });
     }
-    assert_never_wrong(&["Disturbed"], |seed, case| {
+    assert_never_wrong(&["TurnsDisturbed"], |seed, case| {
         with(seed, &case, |configuration| TurntableConfiguration {
             disturbances: &much,
             ..configuration
@@ -42,7 +42,7 @@ fn a_platform_that_is_bumped_in_every_turn_is_refused() {
             rate_deg_h: 20.0 + 10.0 * f64::from(number % 7),
         })
         .collect();
-    assert_refused(&["Disturbed", "ResidualsNotWhite"], |seed, case| {
+    assert_refused(&["TurnsDisturbed", "ResidualsNotWhite"], |seed, case| {
         with(seed, &case, |configuration| TurntableConfiguration {
             disturbances: &bumps,
             ..configuration
@@ -88,7 +88,7 @@ fn an_accelerometer_that_saturates_sticks_or_is_dead_is_refused() {
 
 #[test]
 fn a_molecular_sensor_that_is_declared_a_gyro_is_refused_or_right() {
-    let names = ["SensesDisagree", "Disturbed", "ResidualsNotWhite", "EarthRateMismatch"];
+    let names = ["SensesDisagree", "TurnsDisturbed", "ResidualsNotWhite", "EarthRateMismatch"];
     let sensors = [
         (0.0, 0.05, 0.0),
         (0.0, 0.3, 0.0),

@@ -207,8 +207,7 @@ impl Conclusion {
         let left_out: u32 = averages().map(|average| average.left_out).sum();
         let turns: u32 = left_out + averages().map(|average| average.turns).sum::<u32>();
         if 4 * left_out > turns {
-            let [disturbed, positions] = [left_out, turns].map(|count| count as usize);
-            return Err(Refusal::Disturbed { disturbed, positions });
+            return Err(Refusal::TurnsDisturbed { disturbed: left_out, turns });
         }
         let degrees = f64::from(self.degrees.max(1));
         let is_known = setting.common.white_known;
