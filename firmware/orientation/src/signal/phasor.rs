@@ -36,7 +36,7 @@ const SIGNALS: usize = COLUMNS + 1;
 pub const RATE: usize = COLUMNS;
 
 /// What one step of each signal in a row of integers is worth.
-const STEPS: [f64; SIGNALS] = [1.0, TRIGONOMETRIC, TRIGONOMETRIC, 1e-4, 1e-6, 1e-6, 1e-9];
+const STEPS: [f64; SIGNALS] = [1.0, TRIGONOMETRIC, TRIGONOMETRIC, 1e-3, 1e-6, 1e-6, 1e-9];
 /// Step of cosine and sine, 2⁻²².
 const TRIGONOMETRIC: f64 = 1.0 / 4_194_304.0;
 /// Step of the table's cosine, 2⁻³⁰, over that.
@@ -45,6 +45,12 @@ const EXCESS: f32 = 1.0 / 256.0;
 /// Greatest distance of the gyro's rate from the reference, nrad/s: 1.9 °/s. What is further away is no
 /// Earth rate.
 const FURTHEST: i64 = 1 << 25;
+
+/// Greatest change of the platform's rate, rad/s, and of that in a second: no stage is so fast, and 4096
+/// squares of it fit.
+const FASTEST: f32 = 8.0;
+/// Longest time from the reference, ms: nine hours, of which 4096 squares fit.
+const LONGEST: u64 = 1 << 25;
 
 /// The mean of a block.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -238,15 +244,17 @@ impl Products {
     #[inline]
     pub fn push(&mut self, block: &Block, quickening: f32, reference: &Reference) {
         let rate = i64::from(block.rate) - i64::from(reference.rate);
-        self.is_astray |= block.is_saturated || rate.abs() > FURTHEST;
-        let seconds_1e4 = block.time.saturating_sub(reference.time) / 100;
+        let (turning, quickening) = (block.turning - reference.turning, quickening);
+        let is_far = rate.abs() > FURTHEST || turning.abs().max(quickening.abs()) > FASTEST;
+        self.is_astray |= block.is_saturated || is_far;
+        let milliseconds = block.time.saturating_sub(reference.time) / 1000;
         let row = [
             1,
             block.phasor[0],
             block.phasor[1],
-            seconds_1e4 as i32,
-            ((block.turning - reference.turning) * 1e6) as i32,
-            (quickening * 1e6) as i32,
+            milliseconds.min(LONGEST) as i32,
+            (turning.clamp(-FASTEST, FASTEST) * 1e6) as i32,
+            (quickening.clamp(-FASTEST, FASTEST) * 1e6) as i32,
             rate.clamp(-FURTHEST, FURTHEST) as i32,
         ];
         let mut sums = self.sums.iter_mut();

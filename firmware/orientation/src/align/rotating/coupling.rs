@@ -100,12 +100,15 @@ impl Coupling {
     }
 
     /// What the gyro shows of a modulation of the platform's rate at a frequency in rad/s, turning
-    /// clockwise positive: the coupling behind one pole.
+    /// clockwise positive: the coupling behind one pole, which lags, or leads as a high-pass does.
     #[must_use]
     pub fn response(&self, frequency: f64) -> Complex {
         let lag = self.lag();
-        let at_rest = self.sine * (1.0 + squared(self.frequency * lag));
-        Complex::new(at_rest, 0.0) / Complex::new(1.0, frequency * lag)
+        let passed = self.sine * (1.0 + squared(self.frequency * lag));
+        // A lag's tangent grows with the frequency, a lead's falls.
+        let tangent =
+            if lag < 0.0 { lag * squared(self.frequency) / frequency } else { frequency * lag };
+        Complex::new(passed, 0.0) / Complex::new(1.0, tangent)
     }
 
     /// 1σ of the parts of that response, in phase and in quadrature.

@@ -12,6 +12,10 @@ use crate::units::{ARCSECOND, TURN, wrapped};
 /// How far a flat sensor may lag behind the encoder, where no uneven turn has told, 1σ, s.
 const UNKNOWN_LAG: f64 = 0.01;
 
+/// What an uneven turn leaves untold of a sensor's phase at the turn, 1σ, rad: it is modulated over a band,
+/// and an integrated g-sensitivity answers to the modulation.
+const UNTOLD: f64 = 2.5e-3;
+
 /// What an encoder's harmonic may turn the angle by where nothing is stated, 1σ, rad: 2″.
 const ENCODER_HARMONIC: f64 = 2.0 * ARCSECOND;
 
@@ -48,6 +52,11 @@ impl Pair {
 
     fn phasors(&self) -> [Complex; 2] {
         self.senses().map(|average| average.phasor)
+    }
+
+    /// Half the difference of the platform's rates: an unevenness that belongs to the angle.
+    fn uneven(&self) -> Complex {
+        (self.clockwise.turning - self.counter.turning).scaled(0.5)
     }
 
     /// The same with the phasors turned back by what a lag of so many seconds makes of them.
@@ -224,9 +233,12 @@ impl Problem<'_> {
         for pair in self.pairs {
             let coupling = coupling::nearest(self.couplings, pair.speed());
             let sigma = coupling.map_or(UNKNOWN_LAG, Coupling::lag_sigma).min(UNKNOWN_LAG);
-            let through = coupling.map_or(0.0, |coupling| coupling.sine.abs());
             let harmonic = ENCODER_HARMONIC + self.setting.common.encoder_sigma;
-            let shown = harmonic * through * pair.speed() / horizontal;
+            let shown = match coupling {
+                Some(coupling) => harmonic * coupling.sine.abs() * pair.speed() / horizontal,
+                // What the platform's unevenness makes of it cancels between the senses.
+                None => self.setting.coupling_limit * pair.uneven().size() / horizontal,
+            };
             fit.senses_sigma = fit.senses_sigma.max(libm::hypot(sigma * pair.speed(), shown));
             let pair = pair.without_lag(coupling.map_or(0.0, believed_lag));
             let weight = pair.information((self.density)(pair.speed()), 1.0);
@@ -327,14 +339,16 @@ impl Problem<'_> {
         let [horizontal, _] = self.earth();
         let worst = self.pairs.iter().map(|pair| {
             let [clockwise, counter] = pair.senses().map(|average| average.turning);
-            let (even, odd) =
-                ((clockwise + counter).scaled(0.5), (clockwise - counter).scaled(0.5));
+            let (even, odd) = ((clockwise + counter).scaled(0.5), pair.uneven());
             let coupling = coupling::nearest(self.couplings, pair.speed());
             let limit = self.setting.coupling_limit;
             let unknown = [limit, limit * UNKNOWN_LAG * pair.speed()];
             let [in_phase, lagging] = coupling.map_or(unknown, |found| found.sigmas(pair.speed()));
             let mixed = libm::hypot(even.size(), odd.size() * fit.molecular.size());
-            libm::hypot(in_phase * mixed, lagging * odd.size())
+            // A flat sensor has no dynamics of which the uneven turn could show but a part.
+            let response = coupling.filter(|_| !self.setting.sensor.is_flat);
+            let left = response.map_or(0.0, |found| UNTOLD * found.sine.abs());
+            libm::hypot(in_phase * mixed, libm::hypot(lagging, left) * odd.size())
         });
         worst.fold(0.0, f64::max) / horizontal
     }

@@ -19,7 +19,7 @@ use crate::align::rotating::follower::{Follower, Mode};
 use crate::align::rotating::turn::{Sense, Stretch};
 use crate::error::Refusal;
 use crate::signal::Sample;
-use crate::units::{DEGREES_PER_RADIAN as DEGREES, Instant, TURN};
+use crate::units::{Angle, DEGREES_PER_RADIAN as DEGREES, Instant, TURN};
 
 /// What happens to a session.
 #[derive(Clone, Copy, Debug)]
@@ -83,6 +83,9 @@ pub struct Session {
     /// After how long in this phase the sensor has settled, and the phase ends, µs.
     settled: u64,
     end: u64,
+    /// When and where a turn began whose speed is measured, and what was found, rad/s; zero until then.
+    measured: Option<(Instant, Angle)>,
+    rate: f64,
     /// What makes a gap between two samples, µs.
     gap: u64,
     /// Turns of this phase.
@@ -123,6 +126,8 @@ impl Session {
             commanded: Instant::default(),
             last: None,
             settled: 0,
+            measured: None,
+            rate: 0.0,
             end: microseconds(procedure.level_seconds),
             gap: microseconds(GAP * procedure.sample_seconds),
             turns: 0,
@@ -211,7 +216,7 @@ impl Session {
         let elapsed = now.0.saturating_sub(since.0);
         match self.phase {
             Phase::Level => self.level(sample, elapsed),
-            Phase::Uneven(index) => self.uneven(index, now, elapsed),
+            Phase::Uneven(index) => self.uneven(index, sample, elapsed),
             Phase::Settle(index, sense) => self.settle(index, sense, elapsed),
             Phase::Even(index, sense) => self.even(index, sense, has_turned, elapsed),
             Phase::Recorded | Phase::Done => Command::Wait,
@@ -249,20 +254,43 @@ impl Session {
         Command::Turn(self.speed(index))
     }
 
-    /// Turns unevenly, for so many turns once the sensor has settled.
-    fn uneven(&mut self, index: usize, now: Instant, elapsed: u64) -> Command {
+    /// Turns once to know the speed, then unevenly: for so many turns once the sensor has settled.
+    fn uneven(&mut self, index: usize, sample: &Sample, elapsed: u64) -> Command {
+        if self.rate <= 0.0 {
+            self.measure(index, sample, elapsed);
+            return Command::Wait;
+        }
         if elapsed >= self.end {
             return self.end_uneven(index);
         }
-        if now.0.saturating_sub(self.commanded.0) < COMMAND_PERIOD {
+        if sample.time.0.saturating_sub(self.commanded.0) < COMMAND_PERIOD {
             return Command::Wait;
         }
-        self.commanded = now;
+        self.commanded = sample.time;
         if self.follower.mode() == Mode::Ignore && elapsed >= self.settled {
             self.follower.follow_uneven(self.procedure.modulation_width());
         }
         let time = (elapsed as f64 - self.settled as f64) * 1e-6;
-        Command::Turn(self.procedure.uneven_rate(self.speed(index), time))
+        Command::Turn(self.procedure.uneven_rate(self.speed(index), self.rate, time))
+    }
+
+    /// Measures by the encoder how fast the platform turns, over the time of one turn: a motor driver's
+    /// clock is some hundredths off, and the modulation must keep to the turns.
+    fn measure(&mut self, index: usize, sample: &Sample, elapsed: u64) {
+        let Some((since, stage)) = self.measured else {
+            if elapsed >= microseconds(self.procedure.ramp_seconds) {
+                self.measured = Some((sample.time, sample.stage));
+            }
+            return;
+        };
+        let seconds = sample.time.0.saturating_sub(since.0) as f64 * 1e-6;
+        if seconds < TURN / self.speed(index) {
+            return;
+        }
+        self.rate = (TURN + (sample.stage - stage).signed_rad()) / seconds;
+        self.since = Some(sample.time);
+        self.end =
+            self.settled + microseconds(f64::from(self.procedure.uneven_turns) * TURN / self.rate);
     }
 
     /// Ends where the sensor stands badly, or the platform did not turn.
@@ -320,6 +348,7 @@ impl Session {
         self.settled = microseconds(self.settle_seconds());
         self.end = microseconds(self.longest(phase));
         self.since = None;
+        (self.measured, self.rate) = (None, 0.0);
         self.turns = 0;
         self.follower.follow(mode);
     }
@@ -332,16 +361,13 @@ impl Session {
     /// How long a phase lasts at most, s.
     fn longest(&self, phase: Phase) -> f64 {
         match phase {
-            Phase::Uneven(index) => {
-                let turned = f64::from(self.procedure.uneven_turns) * TURN;
-                self.settle_seconds() + turned / self.speed(index)
-            }
             Phase::Settle(..) => self.settle_seconds(),
             Phase::Even(index, _) => {
                 let turned = f64::from(self.procedure.turns_at(index)) * TURN;
                 PATIENCE.0 * turned / self.speed(index) + PATIENCE.1
             }
-            Phase::Level | Phase::Recorded | Phase::Done => 0.0,
+            // An uneven turn's end follows from the speed that it measures.
+            Phase::Uneven(_) | Phase::Level | Phase::Recorded | Phase::Done => 0.0,
         }
     }
 

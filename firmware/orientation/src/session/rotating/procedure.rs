@@ -86,13 +86,13 @@ impl Procedure {
         0.5 / f64::from(self.uneven_turns.max(1))
     }
 
-    /// Rate of the platform `time` s into the uneven turns at a speed, rad/s, also before they count: modulated once per turn, where
-    /// the unevenness that counts lies too, by a modulation that turns into its opposite meanwhile. What
-    /// stays the same, as the Earth rate does, is told apart from it.
-    pub(super) fn uneven_rate(&self, speed: f64, time: f64) -> f64 {
-        let turned = speed * time;
-        let depth = self.modulation * libm::cos(self.modulation_width() * turned);
-        speed * (1.0 + depth * libm::sin(turned))
+    /// Rate of the platform `time` s into the uneven turns at a speed, also before they count, rad/s: of a
+    /// platform that was found to turn by `rate`, modulated once per turn, where the unevenness that counts
+    /// lies too, by a modulation that turns into its opposite meanwhile. What stays the same, as the Earth
+    /// rate does, is told apart from it.
+    pub(super) fn uneven_rate(&self, speed: f64, rate: f64, time: f64) -> f64 {
+        let depth = self.modulation * libm::cos(self.modulation_width() * rate * time);
+        speed * (1.0 + depth * libm::sin(rate * time))
     }
 }
 
@@ -112,7 +112,8 @@ fn default_turns(speeds: &[f64], slowest: f64) -> u32 {
 pub fn check(procedure: &Procedure) -> Result<(), ProcedureError> {
     Table::built_in().verify().map_err(|_| ProcedureError::TableCorrupt)?;
     let are_speeds = procedure.speeds.iter().all(|speed| *speed > 0.0 && speed.is_finite());
-    let is_uneven = procedure.uneven_turns == 0 || procedure.modulation > 0.0;
+    let is_uneven =
+        procedure.uneven_turns == 0 || (procedure.modulation > 0.0 && procedure.modulation < 1.0);
     let has_turns = f64::from(procedure.turns) >= LEAST_TURNS;
     let has_period = procedure.sample_seconds > 0.0 && procedure.sample_seconds.is_finite();
     if are_speeds && is_uneven && has_turns && has_period {
