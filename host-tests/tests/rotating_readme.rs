@@ -28,12 +28,15 @@ fn a_flat_gyro_reaches_its_limit_after_every_stage_of_compensation() {
     let mut rows = Vec::new();
     for row in stages::rows(RUNS[0], || {}) {
         let precision = &row.precision;
-        assert_eq!(precision.refused, 0, "{row:?}");
+        assert_eq!(precision.refused, 0, "{precision:?}");
         let [raw, coupling, senses, full] =
             [0, 1, 2, 3].map(|index| row.stages.get(index).map_or(f64::NAN, |s| s.rms_deg));
         // The platform's own motion leaves 0.002°, which only the quietest gyro shows.
-        assert!(precision.ratio < if row.n_deg_sqrt_h < 0.001 { 1.12 } else { 1.05 }, "{row:?}");
-        assert!(precision.ratio > 0.92, "{row:?}");
+        assert!(
+            precision.ratio < if row.n_deg_sqrt_h < 0.001 { 1.15 } else { 1.05 },
+            "{precision:?}"
+        );
+        assert!(precision.ratio > 0.92, "{precision:?}");
         rows.push(format!(
             "| N {} | {raw:.1}° | {coupling:.2}° | {senses:.2}° | {full:.4}° | {:.4}° | {:.3} | {} |",
             row.n_deg_sqrt_h,
@@ -50,7 +53,7 @@ fn two_speeds_free_a_molecular_electronic_sensor_of_its_g_sensitivity() {
     let mut rows = Vec::new();
     for row in molecular::rows(RUNS[1], || {}) {
         let precision = &row.precision;
-        assert_eq!(precision.refused, 0, "{row:?}");
+        assert_eq!(precision.refused, 0, "{precision:?}");
         let is_aligned = row.coupling_deg == 0.0;
         assert!(row.two_speeds_rms_deg < if is_aligned { 0.01 } else { 0.02 }, "{row:?}");
         assert!(row.off_prediction_deg < 0.03, "{row:?}");

@@ -48,7 +48,7 @@ const FURTHEST: i64 = 1 << 25;
 
 /// Greatest change of the platform's rate, rad/s, and of that in a second: no stage is so fast, and 4096
 /// squares of it fit.
-const FASTEST: f32 = 8.0;
+const FASTEST: f32 = 16.0;
 /// Longest time from the reference, ms: nine hours, of which 4096 squares fit.
 const LONGEST: u64 = 1 << 25;
 
