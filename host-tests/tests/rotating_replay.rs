@@ -106,11 +106,13 @@ fn sigma_is_that_of_the_noise_in_whole_turns_and_no_less_than_the_limit() {
 }
 
 #[test]
-fn two_speeds_cost_at_most_two_and_a_half_times_the_limit_without_g_and_h() {
+fn two_speeds_cost_what_the_times_of_the_recording_make_of_them() {
     let replay = recorded(MET).replayed();
     let fit = conclusion(&replay).fit.expect("there is a fit");
     let ratio = fit.limit / fit.plain_limit;
-    assert!((1.0..2.5).contains(&ratio), "{ratio}");
+    // Weights of 4/3 and −1/3 with a third of the time at the faster speed: 2.35 of the limit without G
+    // and H; what the drift and G take of so few turns comes on top.
+    assert!((2.3..2.6).contains(&ratio), "{ratio}");
 }
 
 #[test]

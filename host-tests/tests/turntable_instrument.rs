@@ -85,6 +85,23 @@ fn a_molecular_electronic_sensor_finds_north_at_two_speeds() {
 }
 
 #[test]
+fn a_sensor_that_leads_finds_north_at_every_azimuth_although_its_motor_is_fast() {
+    // Where the unevenness acts across the Earth rate, a coupling beside the turn would show at 8 σ.
+    for azimuth_deg in [33.7, 123.7, 303.7] {
+        let molecular = TurntableScenario::molecular(1);
+        let base = Scenario { azimuth_deg, ..molecular.base };
+        let scenario = TurntableScenario { base, ..molecular };
+        let run = run(&scenario);
+        let azimuth = verdict(&run).unwrap_or_else(|reason| panic!("{reason}"));
+        let (error, sigma) = error(&scenario, azimuth);
+        assert!(
+            error.abs() < 0.25 && error.abs() < 3.0 * sigma,
+            "{azimuth_deg}: {error} ± {sigma}"
+        );
+    }
+}
+
+#[test]
 fn a_seed_gives_one_run_and_another_seed_another() {
     let bits = |seed| verdict(&run(&short(seed))).map(|found| found.angle.to_bits());
     assert_eq!(bits(3), bits(3));

@@ -2,6 +2,7 @@
 
 use hal_mock::noise::Generator;
 use orientation::align::regression::Column;
+use orientation::align::rotating::follower::{Follower, Mode};
 use orientation::signal::Sample;
 use orientation::signal::phasor::{
     Block, Blocks, COLUMNS, Products, QUICKENING, RATE, Reference, Sums, TURNING,
@@ -202,4 +203,21 @@ fn the_products_hold_four_thousand_blocks_of_the_greatest_values() {
     sums.absorb(&products);
     assert_eq!(sums.rows(), 4096);
     assert!((sums.product(QUICKENING, QUICKENING) - 409_600.0).abs() < 1e-6);
+}
+
+#[test]
+fn angles_taken_for_rates_are_no_overflow() {
+    let mut follower = Follower::new(1, Mode::Recorded);
+    for number in 0..20_000_u64 {
+        let angle = 0.02 * number as f64;
+        let sample = Sample {
+            time: Instant(number * 20_000),
+            stage: Angle::from_rad(0.86 + 1e-4 * angle.sin()),
+            rate: AngularRate::from_rad_per_s(0.01),
+            ..Sample::default()
+        };
+        // Overflow panics in this profile.
+        follower.push(&sample, Some(angle as f32));
+    }
+    assert!(follower.stretches().is_empty());
 }
