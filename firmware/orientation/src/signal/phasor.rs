@@ -244,7 +244,7 @@ impl Products {
     #[inline]
     pub fn push(&mut self, block: &Block, quickening: f32, reference: &Reference) {
         let rate = i64::from(block.rate) - i64::from(reference.rate);
-        let (turning, quickening) = (block.turning - reference.turning, quickening);
+        let turning = block.turning - reference.turning;
         let is_far = rate.abs() > FURTHEST || turning.abs().max(quickening.abs()) > FASTEST;
         self.is_astray |= block.is_saturated || is_far;
         let milliseconds = block.time.saturating_sub(reference.time) / 1000;

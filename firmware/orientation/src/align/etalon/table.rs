@@ -4,6 +4,7 @@
 //! cannot hold cos 0 = 1. By symmetry 129 604 bytes of flash serve the full circle, sine and cosine,
 //! and any step that is a multiple of 10″.
 
+use crate::checksum::crc32;
 use crate::units::Angle;
 
 /// Grid steps in one turn; one step is 10″.
@@ -34,25 +35,6 @@ pub static QUARTER_COSINE: [u32; ENTRIES] =
 
 /// CRC-32 (IEEE 802.3) of the entries as little-endian bytes, computed at build time.
 pub const CHECKSUM: u32 = include!(concat!(env!("OUT_DIR"), "/quarter_cosine_crc.rs"));
-
-/// The remainders of the reflected IEEE 802.3 polynomial for four bits.
-const NIBBLE: [u32; 16] = nibble_remainders();
-
-const fn nibble_remainders() -> [u32; 16] {
-    let mut remainders = [0; 16];
-    let mut nibble = 0;
-    while nibble < 16 {
-        let mut crc = nibble as u32;
-        let mut bit = 0;
-        while bit < 4 {
-            crc = (crc >> 1) ^ (0xEDB8_8320 & (crc & 1).wrapping_neg());
-            bit += 1;
-        }
-        remainders[nibble] = crc;
-        nibble += 1;
-    }
-    remainders
-}
 
 /// The table's bits are not those that were built: the flash is damaged, program it again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,15 +67,8 @@ impl Table {
     /// # Errors
     /// [`ChecksumMismatch`] when any bit differs.
     pub fn verify(self) -> Result<(), ChecksumMismatch> {
-        let mut crc = u32::MAX;
-        for &entry in self.quarter {
-            // The remainder is linear: a little-endian word enters whole.
-            crc ^= entry;
-            for _ in 0..8 {
-                crc = (crc >> 4) ^ NIBBLE[(crc & 15) as usize];
-            }
-        }
-        if !crc == CHECKSUM { Ok(()) } else { Err(ChecksumMismatch { found: !crc }) }
+        let found = crc32(self.quarter.iter().copied());
+        if found == CHECKSUM { Ok(()) } else { Err(ChecksumMismatch { found }) }
     }
 
     /// 2³¹ cos(`index` · 10″), any index, within ±0.5 (+1e-6); the symmetries of the cosine hold

@@ -76,15 +76,7 @@ impl Default for Conclusion {
 }
 
 impl Conclusion {
-    /// Judges what a follower has, solves, and decides.
-    #[must_use]
-    pub fn of(setting: &Setting, follower: &Follower) -> Self {
-        let mut conclusion = Self::default();
-        conclusion.draw(setting, follower);
-        conclusion
-    }
-
-    /// The same in place of a [`Self::default`].
+    /// Judges what a follower has, solves, and decides, in place of a [`Self::default`].
     pub fn draw(&mut self, setting: &Setting, follower: &Follower) {
         self.verdict = self.decide(setting, follower);
     }
@@ -214,9 +206,8 @@ impl Conclusion {
         if is_known && chi_square_tail(self.chi_square, degrees) < SCATTER_PROBABILITY {
             return Err(Refusal::ResidualsNotWhite { ratio: self.chi_square / degrees });
         }
-        // A standard deviation from the same few turns may be far too small.
-        let few = if is_known { 0.0 } else { FEW / degrees };
-        if drift > DIFFERENT * (1.0 + few) {
+        let different = if is_known { DIFFERENT } else { different(self.degrees) };
+        if drift > different {
             return Err(Refusal::DirectionDrifts { sigmas: drift });
         }
         Ok(())
@@ -255,8 +246,7 @@ impl Conclusion {
         let gravity = setting.common.latitude.gravity();
         let allowed = FORCE_TOLERANCE + DIFFERENT * setting.common.accelerometer_bias_sigma;
         let (density, degrees) = force_density(&self.pairs);
-        // A standard deviation from few turns may be far too small.
-        let different = DIFFERENT * (1.0 + FEW / f64::from(degrees.max(1)));
+        let different = different(degrees);
         for average in self.pairs.iter().flat_map(Pair::senses) {
             if average.mean_force.abs() > allowed {
                 let ratio = average.mean_force / gravity;
@@ -286,6 +276,12 @@ fn estimate(stretches: &[Stretch], couplings: &[Coupling]) -> f64 {
     libm::sqrt(variance / of_turn(speed, 1.0).max(f64::MIN_POSITIVE))
 }
 
+/// What is a difference, in a σ that is itself known from so many degrees of freedom: from few it may be
+/// far too small.
+fn different(degrees: u32) -> f64 {
+    DIFFERENT * (1.0 + FEW / f64::from(degrees.max(1)))
+}
+
 fn unequal(clockwise: &Average, counter: &Average) -> Refusal {
     let [clockwise, counter] = [clockwise, counter].map(|average| average.speed * DEGREES);
     Refusal::SpeedsUnequal { clockwise, counter }
@@ -308,7 +304,7 @@ fn judge(setting: &Setting, fit: &Fit, degrees: u32) -> Result<(), Refusal> {
 fn judge_flat(setting: &Setting, fit: &Fit, degrees: u32) -> Result<(), Refusal> {
     let sigmas = libm::sqrt(fit.difference);
     let is_molecular = setting.sensor.molecular_sigma > 0.0;
-    let different = DIFFERENT * (1.0 + FEW / f64::from(degrees.max(1)));
+    let different = different(degrees);
     let tolerance = SENSES_TOLERANCE + different * fit.senses_sigma;
     if !is_molecular && sigmas > different && fit.molecular.size() > tolerance {
         return Err(Refusal::SensesDisagree { sigmas });

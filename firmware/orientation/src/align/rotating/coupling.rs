@@ -6,6 +6,7 @@
 //! and how far the gyro lags behind the encoder: rate = s (θ̇ − τ θ̈), the first order of a lag.
 
 use crate::align::regression::Column;
+use crate::checksum::crc32;
 use crate::math::Complex;
 use crate::noise::model::GyroNoise;
 use crate::signal::phasor::{COLUMNS, QUICKENING, RATE, Sums, TURNING};
@@ -152,7 +153,7 @@ impl Coupling {
         }
         bytes[44..52].copy_from_slice(&self.date.to_le_bytes());
         bytes[52..56].copy_from_slice(&self.temperature.to_le_bytes());
-        let checksum = crc32(&bytes[..CHECKED]);
+        let checksum = checksum(&bytes);
         bytes[CHECKED..].copy_from_slice(&checksum.to_le_bytes());
         bytes
     }
@@ -163,7 +164,7 @@ impl Coupling {
         let word = |at: usize| <[u8; 4]>::try_from(bytes.get(at..at + 4)?).ok();
         let long = |at: usize| <[u8; 8]>::try_from(bytes.get(at..at + 8)?).ok();
         let number = |index: usize| long(4 + 8 * index).map(f64::from_le_bytes);
-        let is_sound = u32::from_le_bytes(word(CHECKED)?) == crc32(&bytes[..CHECKED])
+        let is_sound = u32::from_le_bytes(word(CHECKED)?) == checksum(bytes)
             && u32::from_le_bytes(word(0)?) == LAYOUT;
         let coupling = Self {
             sine: number(0)?,
@@ -188,13 +189,10 @@ impl Coupling {
 /// How much of the bytes the checksum is for.
 const CHECKED: usize = BYTES - 4;
 
-/// CRC-32 (IEEE 802.3, reflected).
-fn crc32(bytes: &[u8]) -> u32 {
-    !bytes.iter().fold(u32::MAX, |crc, &byte| {
-        (0..8).fold(crc ^ u32::from(byte), |crc, _| {
-            (crc >> 1) ^ (0xEDB8_8320 & (crc & 1).wrapping_neg())
-        })
-    })
+/// The checksum of what stands before it.
+fn checksum(bytes: &[u8; BYTES]) -> u32 {
+    let (words, _) = bytes[..CHECKED].as_chunks::<4>();
+    crc32(words.iter().map(|word| u32::from_le_bytes(*word)))
 }
 
 fn squared(x: f64) -> f64 {

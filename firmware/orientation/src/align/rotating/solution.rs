@@ -38,12 +38,6 @@ impl Pair {
         0.5 * (self.clockwise.speed + self.counter.speed)
     }
 
-    /// Whole time, s.
-    #[must_use]
-    pub fn seconds(&self) -> f64 {
-        self.clockwise.seconds + self.counter.seconds
-    }
-
     /// Both.
     #[must_use]
     pub fn senses(&self) -> [&Average; 2] {
