@@ -70,6 +70,54 @@ impl AngularRate {
     }
 }
 
+/// Angle turned within one sample, 1 LSB = 4 nrad, range ±8.59 rad.
+///
+/// What rounding leaves over is carried to the next sample, so that no rotation is ever lost: the sum of
+/// any number of them is off by one LSB at most.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct AngleIncrement(pub i32);
+
+impl AngleIncrement {
+    /// One step, rad.
+    pub const STEP: f64 = 4e-9;
+
+    /// One step in nrad/s · µs, 10⁻¹⁵ rad.
+    const STEP_FEMTORADIANS: i64 = 4_000_000;
+
+    /// From rad; `carried`, rad, begins at zero and belongs to the axis.
+    #[must_use]
+    pub fn from_rad(angle: f64, carried: &mut f64) -> Self {
+        let whole = angle + *carried;
+        let increment = Self(to_i32(whole / Self::STEP));
+        *carried = if increment.is_saturated() { 0.0 } else { whole - increment.rad() };
+        increment
+    }
+
+    /// What a rate turns in so many µs; `carried`, 10⁻¹⁵ rad, begins at zero and belongs to the axis.
+    #[must_use]
+    pub fn of_rate(rate: AngularRate, microseconds: u32, carried: &mut i64) -> Self {
+        let whole = i64::from(rate.0) * i64::from(microseconds) + *carried;
+        let steps = whole / Self::STEP_FEMTORADIANS;
+        *carried = whole % Self::STEP_FEMTORADIANS;
+        if rate.is_saturated() {
+            return Self(if rate.0 > 0 { i32::MAX } else { i32::MIN });
+        }
+        Self(steps.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32)
+    }
+
+    /// In rad, exact.
+    #[must_use]
+    pub fn rad(self) -> f64 {
+        f64::from(self.0) * Self::STEP
+    }
+
+    /// Whether the value stands at a limit of its range, where a sensor or a conversion clips.
+    #[must_use]
+    pub fn is_saturated(self) -> bool {
+        self.0 == i32::MAX || self.0 == i32::MIN
+    }
+}
+
 /// Specific force, 1 LSB = 1 µm/s², range ±2147 m/s².
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct SpecificForce(pub i32);

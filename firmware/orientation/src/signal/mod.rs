@@ -6,7 +6,7 @@ pub mod dwell;
 pub mod phasor;
 pub mod sway;
 
-use crate::units::{Angle, AngularRate, Instant, SpecificForce, Temperature};
+use crate::units::{Angle, AngleIncrement, AngularRate, Instant, SpecificForce, Temperature};
 
 /// One moment of the stage path: the precise gyro and what belongs to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,4 +27,18 @@ pub struct Sample {
     /// Elevation of the sensitive axis above the base plane, up positive; none where the stage keeps
     /// it in that plane. It counts with samples that bring a force.
     pub elevation: Option<Angle>,
+}
+
+/// What three gyros and three accelerometers, fixed to the vehicle, measured since the sample before;
+/// axes forward, right, down.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct InertialSample {
+    /// When it ended.
+    pub time: Instant,
+    /// Angles turned about the axes: integrals of the rates, whatever the order of small rotations.
+    pub turned: [AngleIncrement; 3],
+    /// Mean specific force since the last one, where a fresh reading came with this sample.
+    pub force: Option<[SpecificForce; 3]>,
+    /// Whether anything stood at the limit of a sensor's range.
+    pub is_clipped: bool,
 }
