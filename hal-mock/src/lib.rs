@@ -15,6 +15,12 @@
 //!                             └─▶ encoder ─▶ slip ─▶         accelerometer, lever ───▶
 //! ```
 //!
+//! Or a vehicle that stands and drives ([`vehicle`]), with three gyros and accelerometers fixed to it:
+//!
+//! ```text
+//!  legs, events ─▶ route ─▶ motion on the rotating ellipsoid ─∫ω, ∫f─▶ gyros, accelerometers ─▶ sample
+//! ```
+//!
 //! Or around a firmware that turns the stage itself, in virtual time, at the level of registers:
 //!
 //! ```text
@@ -65,5 +71,6 @@ pub mod stage;
 pub mod temperature;
 pub mod tmc5160;
 pub mod turntable;
+pub mod vehicle;
 pub mod violation;
 pub mod world;
