@@ -31,7 +31,8 @@
 //!  driver ⇄ i2c ⇄ lsm6dsl ◀─rates, forces── base that sways
 //! ```
 //!
-//! A two-frame mount ([`gimbal`]) has six chips around a plant of its own.
+//! A two-frame mount ([`gimbal`]) has six chips around a plant of its own, a vehicle
+//! ([`vehicle::board`]) three converters and an accelerometer.
 //!
 //! This crate is an oracle. It carries its own reading of the physics, by full rotation matrices, and
 //! never depends on the `orientation` crate, so that it can catch that crate's mistakes.
@@ -49,6 +50,7 @@
 pub mod accelerometer;
 pub mod ads1262;
 pub mod adxl355;
+mod assembly;
 pub mod board;
 pub mod chip;
 pub mod clock;

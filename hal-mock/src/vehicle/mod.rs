@@ -6,9 +6,11 @@
 //! integrals of the body's inertial rate, not a rotation vector, so that coning is left to who uses
 //! them. Time counts from the start; the first sample ends one period after it.
 
+pub mod board;
 mod event;
 mod leg;
 pub mod motion;
+pub mod plant;
 pub mod scenario;
 mod sensors;
 mod smooth;
@@ -16,10 +18,10 @@ mod smooth;
 pub use self::event::{Event, SensorFault};
 pub use self::leg::{Drive, Leg, Stop};
 use self::motion::{Integrals, Motion, Position};
-use self::sensors::{Means, Sensors};
+use self::sensors::Sensors;
 use self::smooth::Smooth;
 use crate::accelerometer::AccelerometerConfiguration;
-use crate::earth::{Attitude, normal_gravity_m_s2};
+use crate::earth::Attitude;
 use crate::gyro::GyroConfiguration;
 use crate::instruments::BaseMotion;
 use crate::plant::sway::SwayConfiguration;
@@ -101,11 +103,6 @@ impl<'a> VehicleConfiguration<'a> {
             [self.latitude_deg, self.azimuth_deg].map(f64::to_radians);
         Motion::new(self.legs, self.events, latitude_rad, azimuth_rad, self.lever_m)
     }
-
-    /// Gravity at the start, m/s²: the g of the g-sensitivity.
-    fn gravity_m_s2(&self) -> f64 {
-        normal_gravity_m_s2(self.latitude_deg.to_radians())
-    }
 }
 
 /// One sample of a strapdown unit.
@@ -140,6 +137,22 @@ pub struct VehicleTruth {
     pub accelerometer_bias_m_s2: [f64; 3],
 }
 
+impl VehicleTruth {
+    /// The truth of this moment.
+    fn of(motion: &Motion, sensors: &Sensors) -> Self {
+        let biases = sensors.biases();
+        Self {
+            attitude: motion.attitude(),
+            position: *motion.position(),
+            displacement_m: motion.displacement_m(),
+            velocity_m_s: motion.velocity_m_s(),
+            gyro_bias_rad_s: biases.rate_rad_s,
+            gyro_scale_error: sensors.scale_errors(),
+            accelerometer_bias_m_s2: biases.force_m_s2,
+        }
+    }
+}
+
 /// A vehicle at work; an iterator of samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vehicle<'a> {
@@ -159,7 +172,7 @@ impl<'a> Vehicle<'a> {
         Self {
             rate_hz: configuration.rate_hz,
             motion: configuration.motion(),
-            sensors: Sensors::new(configuration, seed),
+            sensors: Sensors::new(configuration, configuration.rate_hz, seed),
             faults: configuration.faults,
             before: Integrals::default(),
             taken: 0,
@@ -180,16 +193,7 @@ impl<'a> Vehicle<'a> {
     /// The truth behind the latest sample.
     #[must_use]
     pub fn truth(&self) -> VehicleTruth {
-        let biases = self.sensors.biases();
-        VehicleTruth {
-            attitude: self.motion.attitude(),
-            position: *self.motion.position(),
-            displacement_m: self.motion.displacement_m(),
-            velocity_m_s: self.motion.velocity_m_s(),
-            gyro_bias_rad_s: biases.rate_rad_s,
-            gyro_scale_error: self.sensors.scale_errors(),
-            accelerometer_bias_m_s2: biases.force_m_s2,
-        }
+        VehicleTruth::of(&self.motion, &self.sensors)
     }
 
     /// The next sample, missing or not.
@@ -200,22 +204,11 @@ impl<'a> Vehicle<'a> {
         self.taken += 1;
         let time_s = self.taken as f64 / self.rate_hz;
         self.motion.advance(time_s);
-        let felt = self.means();
+        let felt = self.motion.integrals().means(&self.before, 1.0 / self.rate_hz);
+        self.before = *self.motion.integrals();
         let (shown, is_clipped) = self.sensors.sample(time_s, &felt);
         let turned_rad = shown.rate_rad_s.map(|rate| rate / self.rate_hz);
         Some(VehicleSample { time_s, turned_rad, force_m_s2: shown.force_m_s2, is_clipped })
-    }
-
-    /// Means over the sample that ends now.
-    fn means(&mut self) -> Means {
-        let (before, now) = (self.before, *self.motion.integrals());
-        self.before = now;
-        let mean =
-            |axis: usize, to: [f64; 3], from: [f64; 3]| (to[axis] - from[axis]) * self.rate_hz;
-        Means {
-            rate_rad_s: [0, 1, 2].map(|axis| mean(axis, now.turned_rad, before.turned_rad)),
-            force_m_s2: [0, 1, 2].map(|axis| mean(axis, now.pushed_m_s, before.pushed_m_s)),
-        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! The vehicle on the rotating ellipsoid: what gyros and accelerometers fixed to it feel, integrated.
 //!
 //! Angular rate: that of the body over the ground, Earth rate and transport rate. Specific force: what
-//! speeds up and steers, Coriolis (2ω_ie + ω_en) × v, gravity, and what a sensor off the axes of the
+//! speeds up and steers, Coriolis force, gravity, and what a sensor off the axes of the
 //! sway feels. Position follows from the same velocity, so that up-vectors, transport rate and
 //! displacement agree. All by full rotation matrices (P. D. Groves, "Principles of GNSS, Inertial, and
 //! Multisensor Integrated Navigation Systems", 2nd ed., §5.4: the equations, here run backwards).
@@ -9,6 +9,7 @@
 //! Height does not enter gravity or radii: 100 m of it change a transport rate by 2·10⁻⁵ of itself.
 
 use super::leg::{Leg, Neighbours};
+use super::sensors::Means;
 use super::{Event, Pose};
 use crate::earth::{
     Attitude, apply_transposed, curvature_radii_m, earth_rate_rad_s, normal_gravity_m_s2,
@@ -99,6 +100,20 @@ pub struct Integrals {
     pub turned_rad: [f64; 3],
     /// Of the specific force along forward, right, down, m/s.
     pub pushed_m_s: [f64; 3],
+}
+
+impl Integrals {
+    /// Mean rate and force since these were those, so many seconds ago; zero seconds have no mean, and
+    /// give zero.
+    pub(super) fn means(&self, before: &Self, seconds: f64) -> Means {
+        let mean = |to: [f64; 3], from: [f64; 3]| {
+            [0, 1, 2].map(|axis: usize| (to[axis] - from[axis]) / libm::fmax(seconds, 1e-9))
+        };
+        Means {
+            rate_rad_s: mean(self.turned_rad, before.turned_rad),
+            force_m_s2: mean(self.pushed_m_s, before.pushed_m_s),
+        }
+    }
 }
 
 /// A moving vehicle.
@@ -261,7 +276,8 @@ fn felt_at(pose: &Pose, latitude_rad: f64, lever_m: [f64; 3]) -> Felt {
     Felt { rate_rad_s, force_m_s2: sum(held, swung), velocity_m_s }
 }
 
-/// Specific force north, east, down, m/s², where the frame turns at `coriolis_rad_s` = 2ω_ie + ω_en.
+/// Specific force north, east, down, m/s², where the frame turns at `coriolis_rad_s`: twice Earth's
+/// rate and the transport rate.
 fn free_force(pose: &Pose, latitude_rad: f64, coriolis_rad_s: [f64; 3]) -> [f64; 3] {
     let [north, east, down] =
         sum(pose.acceleration_m_s2(), cross(coriolis_rad_s, pose.velocity_m_s()));

@@ -2,16 +2,10 @@
 
 use super::{SensorFault, VehicleConfiguration};
 use crate::accelerometer::Accelerometer;
+use crate::earth::normal_gravity_m_s2;
 use crate::gyro::Gyro;
 use crate::noise::{Generator, source};
 use crate::temperature::TemperatureConfiguration;
-
-/// The gyros of a vehicle, forward, right, down, read `rate_hz` times a second; each draws from streams
-/// of its own.
-pub(super) fn gyros(configuration: &VehicleConfiguration, rate_hz: f64, seed: u64) -> [Gyro; 3] {
-    let own = source::VEHICLE_GYROS.map(|index| Generator::stream(seed, index).next_u64());
-    [0, 1, 2].map(|axis| Gyro::new(&configuration.gyros[axis], rate_hz, own[axis]))
-}
 
 /// Means of the true rate, rad/s, and specific force, m/s², over a sample; what sensors show of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -20,12 +14,18 @@ pub(super) struct Means {
     pub(super) force_m_s2: [f64; 3],
 }
 
-/// The sensors at work, read in step.
+/// A seed for each of the three gyros, so that none shares a stream with another.
+pub(super) fn gyro_seeds(seed: u64) -> [u64; 3] {
+    source::VEHICLE_GYROS.map(|index| Generator::stream(seed, index).next_u64())
+}
+
+/// The sensors at work.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sensors<'a> {
     gyros: [Gyro; 3],
     accelerometer: Accelerometer,
     temperature: TemperatureConfiguration,
+    /// Gravity at the start, the g of the g-sensitivity.
     gravity_m_s2: f64,
     rate_limit_rad_s: f64,
     force_limit_m_s2: f64,
@@ -34,13 +34,18 @@ pub(super) struct Sensors<'a> {
 }
 
 impl<'a> Sensors<'a> {
-    pub(super) fn new(configuration: &VehicleConfiguration<'a>, seed: u64) -> Self {
-        let c = configuration;
+    /// Sensors of a vehicle whose accelerometers are read `accelerometer_hz` times a second (> 0).
+    pub(super) fn new(
+        configuration: &VehicleConfiguration<'a>,
+        accelerometer_hz: f64,
+        seed: u64,
+    ) -> Self {
+        let (c, seeds) = (configuration, gyro_seeds(seed));
         Self {
-            gyros: gyros(c, c.rate_hz, seed),
-            accelerometer: Accelerometer::new(&c.accelerometer, c.rate_hz, seed),
+            gyros: [0, 1, 2].map(|axis: usize| Gyro::new(&c.gyros[axis], c.rate_hz, seeds[axis])),
+            accelerometer: Accelerometer::new(&c.accelerometer, accelerometer_hz, seed),
             temperature: c.temperature,
-            gravity_m_s2: c.gravity_m_s2(),
+            gravity_m_s2: normal_gravity_m_s2(c.latitude_deg.to_radians()),
             rate_limit_rad_s: c.gyro_full_scale_rad_s,
             force_limit_m_s2: c.accelerometer_full_scale_m_s2,
             faults: c.faults,
@@ -48,19 +53,36 @@ impl<'a> Sensors<'a> {
         }
     }
 
-    /// What they show next, at the end of a sample, and whether anything clips.
-    pub(super) fn sample(&mut self, time_s: f64, felt: &Means) -> (Means, bool) {
-        let along = felt.force_m_s2.map(|force| force / self.gravity_m_s2);
+    /// What a gyro shows next, rad/s, at the end of its sample. Call at its rate.
+    pub(super) fn rate(&mut self, axis: usize, time_s: f64, felt: &Means) -> f64 {
         let temperature_c = self.temperature.at(time_s);
-        let mut shown = Means { force_m_s2: self.accelerometer.sample(felt.force_m_s2), ..*felt };
-        for (axis, gyro) in self.gyros.iter_mut().enumerate() {
-            let force_g = [along[axis], along[(axis + 1) % 3]];
-            let steady_rad_s = gyro.steady(felt.rate_rad_s[axis], force_g);
-            shown.rate_rad_s[axis] = gyro.sample(steady_rad_s, time_s, temperature_c);
-        }
-        let is_clipped = self.spoil(&mut shown, time_s);
-        self.last = shown;
-        (shown, is_clipped)
+        let force_g =
+            [axis, (axis + 1) % 3].map(|along| felt.force_m_s2[along] / self.gravity_m_s2);
+        let gyro = &mut self.gyros[axis];
+        let steady_rad_s = gyro.steady(felt.rate_rad_s[axis], force_g);
+        let value = gyro.sample(steady_rad_s, time_s, temperature_c);
+        let last = self.last.rate_rad_s[axis];
+        let shown = self.spoilt(axis, time_s, [value, last], self.rate_limit_rad_s);
+        self.last.rate_rad_s[axis] = shown;
+        shown
+    }
+
+    /// What the accelerometers show next, m/s². Call at their rate.
+    pub(super) fn force(&mut self, time_s: f64, felt: &Means) -> [f64; 3] {
+        let (values, last) = (self.accelerometer.sample(felt.force_m_s2), self.last.force_m_s2);
+        let limit = self.force_limit_m_s2;
+        self.last.force_m_s2 =
+            [0, 1, 2].map(|i: usize| self.spoilt(3 + i, time_s, [values[i], last[i]], limit));
+        self.last.force_m_s2
+    }
+
+    /// What all of them show next, and whether anything clips.
+    pub(super) fn sample(&mut self, time_s: f64, felt: &Means) -> (Means, bool) {
+        let rate_rad_s = [0, 1, 2].map(|axis| self.rate(axis, time_s, felt));
+        let force_m_s2 = self.force(time_s, felt);
+        let is_clipped = rate_rad_s.iter().any(|rate| rate.abs() >= self.rate_limit_rad_s)
+            || force_m_s2.iter().any(|force| force.abs() >= self.force_limit_m_s2);
+        (Means { rate_rad_s, force_m_s2 }, is_clipped)
     }
 
     /// Turn-on biases, rad/s and m/s².
@@ -76,21 +98,11 @@ impl<'a> Sensors<'a> {
         [0, 1, 2].map(|axis: usize| self.gyros[axis].scale_error())
     }
 
-    /// Puts faults and full scales on it; whether anything clips.
-    fn spoil(&self, shown: &mut Means, time_s: f64) -> bool {
-        let rates = shown.rate_rad_s.iter_mut().zip(self.last.rate_rad_s);
-        let forces = shown.force_m_s2.iter_mut().zip(self.last.force_m_s2);
-        let limits = [[self.rate_limit_rad_s; 3], [self.force_limit_m_s2; 3]];
-        let mut is_clipped = false;
-        for ((channel, (value, last)), full) in
-            rates.chain(forces).enumerate().zip(limits.into_iter().flatten())
-        {
-            for fault in self.faults {
-                *value = fault.shown(time_s, channel, *value, last, full);
-            }
-            is_clipped |= value.abs() >= full;
-            *value = value.max(-full).min(full);
-        }
-        is_clipped
+    /// A value, after the last one, with faults and full scale on it.
+    fn spoilt(&self, channel: usize, time_s: f64, [value, last]: [f64; 2], full: f64) -> f64 {
+        let faults = self.faults.iter();
+        let shown =
+            faults.fold(value, |value, fault| fault.shown(time_s, channel, value, last, full));
+        shown.max(-full).min(full)
     }
 }
