@@ -75,6 +75,8 @@ pub struct Follower {
     criteria: Option<Criteria>,
     /// Whether the vehicle stands: the last stop still lasts.
     is_at_rest: bool,
+    /// Seconds for which the criteria held without a break.
+    held: usize,
     stops: Vec<Stop, STOPS>,
     blocks: Blocks<AT_REST>,
     drives: Blocks<DRIVEN>,
@@ -100,6 +102,7 @@ impl Follower {
             window: Deque::new(),
             criteria: None,
             is_at_rest: false,
+            held: 0,
             stops: Vec::new(),
             blocks: Blocks::new(REST_SPAN),
             drives: Blocks::new(DRIVE_SPAN),
@@ -254,18 +257,21 @@ impl Follower {
     /// Looks for the beginning or the end of a stop.
     fn find(&mut self) {
         let is_rest = self.criteria.is_some_and(|criteria| criteria.is_rest(&self.limits));
+        self.held = if is_rest { self.held + 1 } else { 0 };
         match (self.is_at_rest, is_rest) {
+            // A vehicle that rocks may have come back to where it was ten seconds before by chance.
+            (false, true) if self.held <= DELAY => {}
             (false, true) => self.stand(),
             (true, true) => self.rest(WINDOW - 1 - LATEST, self.stops.len().saturating_sub(1)),
             (_, false) => self.is_at_rest = false,
         }
     }
 
-    /// Begins a stop with what of the window is past the delay.
+    /// Begins a stop with the window, which is past the delay.
     fn stand(&mut self) {
         self.is_at_rest = true;
         let stop = self.stops.len();
-        for index in DELAY..WINDOW - LATEST {
+        for index in 0..WINDOW - LATEST {
             self.rest(index, stop);
         }
     }
