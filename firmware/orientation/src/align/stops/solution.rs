@@ -20,9 +20,10 @@ use crate::signal::strapdown::{Carried, Rough};
 const LEVEL_SIGMA: f64 = 0.1;
 /// 1σ of its azimuth, rad: unknown.
 const AZIMUTH_SIGMA: f64 = 3.0;
-/// Repetitions, and the correction below which no further one is needed, rad: what it leaves is its square.
+/// Repetitions, and the correction below which no further one is needed, rad: half of its square is not
+/// seen, 1e-5°.
 const REPETITIONS: u32 = 8;
-const SETTLED: f64 = 1e-4;
+const SETTLED: f64 = 5e-4;
 /// Chi-square beyond which a block, or the rest of a stop, is left out: one healthy block in three million.
 const OUTLIER: f64 = 30.0;
 /// Least variance of what a vehicle sways, rad²: 20 milliarcseconds.
@@ -113,11 +114,10 @@ impl Solution {
     /// Runs along the path until the start frame stands still.
     pub fn settle(&mut self, setting: &Setting, path: &Path) {
         self.run(setting, path, Belief::Ideal);
-        for _ in 1..REPETITIONS {
-            let correction = self.filter.three(START);
-            self.frame = product(&by(&correction), &self.frame);
+        for _ in 0..REPETITIONS {
+            self.frame = product(&by(&self.filter.three(START)), &self.frame);
             self.run(setting, path, Belief::Shown);
-            if length(&correction) < SETTLED {
+            if length(&self.filter.three(START)) < SETTLED {
                 break;
             }
         }
@@ -325,9 +325,9 @@ impl Run<'_> {
 
     /// Takes measurements, unless they are outliers; what they brought beyond the expected.
     fn take(&self, filter: &mut Filter, measurements: &[Measurement]) -> Option<f64> {
-        let surprise = filter.surprise(measurements);
-        let is_taken = self.belief == Belief::Ideal || surprise <= OUTLIER;
-        is_taken.then(|| {
+        let is_ideal = self.belief == Belief::Ideal;
+        let surprise = if is_ideal { 0.0 } else { filter.surprise(measurements) };
+        (surprise <= OUTLIER).then(|| {
             filter.measure(measurements);
             surprise
         })
