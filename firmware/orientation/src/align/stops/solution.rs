@@ -41,6 +41,9 @@ const COVERED: f64 = 0.002;
 /// Step by which the latitude's effect is found, rad.
 const LATITUDE_STEP: f64 = 1e-3;
 
+/// A matrix of nothing.
+const NOTHING: Matrix = [[0.0; 3]; 3];
+
 /// What is believed of the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Belief {
@@ -111,9 +114,8 @@ impl Solution {
         }
     }
 
-    /// Runs along the path until the start frame stands still.
+    /// Runs along the path until the start frame stands still; the first run must have been made.
     pub fn settle(&mut self, setting: &Setting, path: &Path) {
-        self.run(setting, path, Belief::Ideal);
         for _ in 0..REPETITIONS {
             self.frame = product(&by(&self.filter.three(START)), &self.frame);
             self.run(setting, path, Belief::Shown);
@@ -182,7 +184,8 @@ impl Run<'_> {
         let noise = &self.setting.common.noise;
         let walk = noise.angle_random_walk.max(LEAST_WALK);
         let bias = gained(&to.bias, &self.last.bias);
-        let scale = gained(&to.scale, &self.last.scale);
+        let has_scale = self.setting.common.scale_sigma > 0.0;
+        let scale = if has_scale { gained(&to.scale, &self.last.scale) } else { NOTHING };
         solution.filter.carry(&bias, &scale, walk * walk * seconds);
         solution.filter.walk(self.bias_walk() * seconds);
         self.last = to;
