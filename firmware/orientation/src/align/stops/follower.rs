@@ -20,6 +20,8 @@ pub const WINDOW: usize = 10;
 const LATEST: usize = 2;
 /// Delay T₀ after which a vehicle that stopped no longer rocks, s.
 const DELAY: usize = 3;
+/// Time between two stops below which they are one, s: nobody drives anywhere.
+const RESUMED: f64 = 1.5;
 /// Length of a block at rest as long as there is room, s.
 const REST_SPAN: f32 = 5.0;
 /// Length of a block on the way as long as there is room, s.
@@ -74,6 +76,8 @@ pub struct Follower {
     is_at_rest: bool,
     /// Seconds for which the criteria held without a break.
     held: usize,
+    /// Length of the longest halt that was too short for a stop, s.
+    fleeting: f64,
     stops: Vec<Stop, STOPS>,
     blocks: Blocks<AT_REST>,
     drives: Blocks<DRIVEN>,
@@ -100,6 +104,7 @@ impl Follower {
             criteria: None,
             is_at_rest: false,
             held: 0,
+            fleeting: 0.0,
             stops: Vec::new(),
             blocks: Blocks::new(REST_SPAN),
             drives: Blocks::new(DRIVE_SPAN),
@@ -253,16 +258,32 @@ impl Follower {
             (false, true) if self.held <= DELAY => {}
             (false, true) => self.stand(),
             (true, true) => self.rest(WINDOW - 1 - LATEST, self.stops.len().saturating_sub(1)),
-            (_, false) => self.is_at_rest = false,
+            (true, false) => self.set_off(),
+            (false, false) => {}
         }
     }
 
-    /// Begins a stop with the window, which is past the delay.
+    /// Begins a stop with the window, which is past the delay, or goes on with one that somebody shook.
     fn stand(&mut self) {
         self.is_at_rest = true;
-        let stop = self.stops.len();
+        let from = self.window.front().map_or(0.0, |second| second.from);
+        let is_same = self.stops.last().is_some_and(|stop| from < stop.to + RESUMED);
+        let stop = self.stops.len() - usize::from(is_same);
         for index in 0..WINDOW - LATEST {
-            self.rest(index, stop);
+            if self.window.iter().nth(index).is_some_and(|second| !second.is_rest) {
+                self.rest(index, stop);
+            }
+        }
+    }
+
+    /// Ends a stop, and forgets it if it was shorter than the criteria look: a halt at a crossing.
+    fn set_off(&mut self) {
+        self.is_at_rest = false;
+        let Some(last) = self.stops.last().map(Stop::seconds) else { return };
+        if last < WINDOW as f64 {
+            self.stops.pop();
+            self.blocks.forget(self.stops.len());
+            self.fleeting = self.fleeting.max(last);
         }
     }
 
@@ -307,6 +328,12 @@ impl Follower {
     #[must_use]
     pub fn stops(&self) -> &[Stop] {
         &self.stops
+    }
+
+    /// Length of the longest halt that was too short for a stop, s; zero where there was none.
+    #[must_use]
+    pub fn fleeting(&self) -> f64 {
+        self.fleeting
     }
 
     /// Tells where the last stop is, north and east of the first, m.
