@@ -100,7 +100,10 @@ impl Conclusion {
             stated_density: 0.5 * setting.force_noise * setting.force_noise,
         };
         let found = Found::of(setting, &path);
-        Self { verdict: judge(setting, &found).map(|()| found.azimuth), found: Some(found) }
+        Self {
+            verdict: judge(setting, &found, path.stops.len() as u32).map(|()| found.azimuth),
+            found: Some(found),
+        }
     }
 
     /// Of nothing but a reason.
@@ -118,10 +121,14 @@ fn inspect(setting: &Setting, follower: &Follower) -> Result<(), Refusal> {
         None => {}
     }
     let stops = follower.stops();
+    let is_whole = *follower.rests() == Rests::Whole;
+    let seconds = follower.fleeting();
+    if seconds > 0.0 && stops.len() < 2 {
+        return Err(Refusal::StopTooShort { stop: stops.len() + 1, seconds, least: LEAST_REST });
+    }
     let [Some(first), Some(last)] = [stops.first(), stops.last()] else {
         return Err(Refusal::NoStop);
     };
-    let is_whole = *follower.rests() == Rests::Whole;
     if !is_whole && stops.len() == 1 {
         return Err(Refusal::OneStop { from: first.from, to: first.to });
     }
@@ -161,8 +168,22 @@ fn inspect_stop(
     Err(Refusal::VehicleMoves { stop: index + 1, rate, force: criteria.force.abs() })
 }
 
+/// Whether what was left out contradicts what is left. A vehicle may be turned at a stop, and a drive may
+/// end by rolling; but where most of them tell something else, it is the rest that is wrong.
+fn agree(found: &Found, stops: u32) -> Result<(), Refusal> {
+    let drives = stops.saturating_sub(1);
+    if drives > 0 && 2 * found.turning > stops {
+        return Err(Refusal::EarthNotFelt { stops: found.turning, of: stops });
+    }
+    if drives > 0 && 2 * found.unsteady >= drives {
+        return Err(Refusal::DrivesDisagree { drives: found.unsteady, of: drives });
+    }
+    Ok(())
+}
+
 /// Whether what was found can be believed.
-fn judge(setting: &Setting, found: &Found) -> Result<(), Refusal> {
+fn judge(setting: &Setting, found: &Found, stops: u32) -> Result<(), Refusal> {
+    agree(found, stops)?;
     let [left_out, blocks] = found.left_out;
     if left_out * LEFT_OUT > blocks {
         return Err(Refusal::RestDisturbed { disturbed: left_out, of: blocks });
