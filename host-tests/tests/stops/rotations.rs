@@ -1,7 +1,9 @@
 //! Rotations against scipy's, and levelling against its definition.
 
 use orientation::align::stops::inclination::pitch_and_roll;
-use orientation::math::rotation::{Matrix, Quaternion, Vector, about_down, by, levelled, product, small, transposed, turned};
+use orientation::math::rotation::{
+    Matrix, Quaternion, Vector, about_down, by, levelled, product, small, transposed, turned,
+};
 use proptest::prelude::*;
 
 use crate::assert_near;
@@ -73,9 +75,9 @@ proptest! {
     #[test]
     fn there_and_back_is_nowhere(rotation in vector(3.0), further in vector(3.0)) {
         let back = rotation.map(|part| -part);
-        assert_matrix(&product(&by(&rotation), &by(&back)), &Quaternion::ONE.matrix(), 1e-15);
+        assert_matrix(&product(&by(&rotation), &by(&back)), &Quaternion::ONE.matrix(), 4e-15);
         let chain = Quaternion::ONE.turned(&rotation).turned(&further);
-        assert_matrix(&chain.matrix(), &product(&by(&rotation), &by(&further)), 3e-15);
+        assert_matrix(&chain.matrix(), &product(&by(&rotation), &by(&further)), 6e-15);
     }
 
     #[test]

@@ -1,0 +1,74 @@
+//! A vehicle that stands and sways: gravity seen from inertial space does not care, plain averaging does.
+
+use hal_mock::vehicle::scenario::Scenario;
+use hal_mock::vehicle::{Leg, VehicleSample};
+use orientation::math::rotation::{Vector, cross, dot, unit};
+use rayon::prelude::*;
+
+use crate::drives::rms;
+use crate::world::{Day, Kind, Outcome, apart, known};
+
+/// Ten minutes with gyros of a navigation grade, with or without sway and doors.
+fn parked(seed: u64, sways: bool) -> Day {
+    let mut scenario = Scenario::parked(seed, 600.0);
+    for gyro in &mut scenario.vehicle.gyros {
+        (gyro.n_deg_sqrt_h, gyro.bias_sigma_deg_h) = (0.01, 0.02);
+    }
+    if !sways {
+        scenario.events.clear();
+        for leg in &mut scenario.legs {
+            if let Leg::Stop(stop) = leg {
+                stop.sway = Default::default();
+            }
+        }
+    }
+    let mut day = Day { rests: Kind::Whole, ..Day::new(scenario, seed) };
+    day.setting = known(52.0, 0.01, Some(0.02));
+    day
+}
+
+/// Azimuth from the mean force and the mean rate, as if nothing moved.
+fn averaged(day: &Day) -> (f64, Outcome) {
+    let (mut force, mut rate) = ([0.0; 3], [0.0; 3]);
+    let outcome = day.run_through(|sample: &mut VehicleSample| {
+        for axis in 0..3 {
+            force[axis] += sample.force_m_s2[axis];
+            rate[axis] += sample.turned_rad[axis];
+        }
+        true
+    });
+    let up: Vector = unit(&force);
+    let east = unit(&cross(&rate, &up));
+    let north = cross(&up, &east);
+    (dot(&[1.0, 0.0, 0.0], &east).atan2(dot(&[1.0, 0.0, 0.0], &north)), outcome)
+}
+
+/// RMS errors at the end, °: ours, and those of averaging; and how many were refused.
+fn figures(sways: bool, count: u64) -> ([f64; 2], usize) {
+    let all: Vec<(f64, f64, bool)> = (0..count)
+        .into_par_iter()
+        .map(|seed| {
+            let day = parked(seed, sways);
+            let (azimuth, outcome) = averaged(&day);
+            let found = outcome.conclusion.found.as_ref().expect("something to solve");
+            let [_, end] = outcome.azimuths;
+            let ours = apart(found.azimuth.angle, end).to_degrees();
+            (ours, apart(azimuth, end).to_degrees(), outcome.conclusion.verdict.is_err())
+        })
+        .collect();
+    let errors = [rms(all.iter().map(|errors| errors.0)), rms(all.iter().map(|errors| errors.1))];
+    (errors, all.iter().filter(|errors| errors.2).count())
+}
+
+#[test]
+fn sway_and_doors_cost_no_more_than_half_of_the_quiet_error() {
+    let count = 40;
+    let ([quiet, _], healthy) = figures(false, count);
+    let ([swaying, averaging], refused) = figures(true, count);
+    println!(
+        "parked: quiet {quiet:.4}° ({healthy} of {count} refused), swaying {swaying:.4}° ({refused} refused), averaging {averaging:.2}°"
+    );
+    assert!(swaying <= 1.5 * quiet, "{swaying}° {quiet}°");
+    assert!(averaging > 2.0, "{averaging}°");
+    assert_eq!(healthy, 0);
+}
