@@ -36,7 +36,6 @@ use embassy_executor::raw::Executor;
 use firmware::configuration::Configuration;
 use firmware::ports::NoRecorder;
 use firmware::run::acquire;
-use firmware::shared::Shared;
 use firmware::simulated::fault::Plan;
 use firmware::simulated::{Chips, SimulatedPorts, SimulatedSensors};
 use semihosting::process::ExitCode;
@@ -90,7 +89,7 @@ struct Bench {
 /// The simulated board.
 type Rig = RefCell<Chips<'static>>;
 /// The seams between the instrument's parts.
-type Seams = Shared<'static, Log>;
+type Seams = firmware::shared::Seams<'static, Log>;
 /// Its sensors.
 type Inputs = SimulatedSensors<'static, Chips<'static>, Metering>;
 /// Its other ports.
@@ -151,7 +150,7 @@ fn spawn(
     let plan: &'static Plan = PLAN.init_with(|| Plan::of(None));
     let rig: &'static Rig = RIG.init_with(|| RefCell::new(order.board(plan)));
     let metering = Metering(&bench.meter);
-    let seams: &'static Seams = SEAMS.init_with(|| Shared::new(LOG.init(Log(&bench.meter))));
+    let seams: &'static Seams = SEAMS.init_with(|| Seams::new(LOG.init(Log(&bench.meter))));
     let inputs = INPUTS.init_with(|| order.inputs(rig, &metering));
     let outputs = OUTPUTS.init_with(|| order.outputs(rig, &metering));
     let configuration = order.configuration();

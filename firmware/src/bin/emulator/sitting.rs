@@ -4,7 +4,7 @@ use embedded_io_async::Write;
 use firmware::configuration::{Configuration, TurntableConfiguration};
 use firmware::ports::{Actuator, Observer, Ports, Recorder};
 use firmware::run::{run, run_rotating};
-use firmware::shared::Shared;
+use firmware::shared::Seams;
 use orientation::align::rotating::Setting;
 use orientation::align::rotating::turn::Stretch;
 use orientation::session::{Prepared, Session, rotating};
@@ -42,7 +42,7 @@ impl Sitting {
         &mut self,
         outputs: &mut Ports<M, L, R>,
         configuration: &Configuration,
-        seams: &Shared<'_, O>,
+        seams: &Seams<'_, O>,
     ) where
         M: Actuator,
         L: Write,
