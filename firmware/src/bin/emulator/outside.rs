@@ -38,7 +38,7 @@ impl Around for Metering {
         Outside { port, meter: self.0 }
     }
 
-    fn line<W: Wait>(&self, port: W) -> Outside<W> {
+    fn line<W: Wait>(&self, _: Select, port: W) -> Outside<W> {
         Outside { port, meter: self.0 }
     }
 }
