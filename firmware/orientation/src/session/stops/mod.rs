@@ -1,113 +1,249 @@
-//! Stub.
-#![allow(missing_docs)]
-#![allow(clippy::pedantic)]
+//! The procedure of a vehicle that drives between stops, as a state machine without I/O.
+//!
+//! ```text
+//!  stop, level ─▶ drive ─▶ stop, level ─▶ (drive ─▶ stop …) ─▶ azimuth ± σ, or why none
+//! ```
+//!
+//! It asks for stops and drives, but judges by the sensors alone what the vehicle did: a recording replays
+//! the same session.
+
 use heapless::Vec;
 
-pub use crate::align::stops::{Conclusion, Setting};
-use crate::align::conclusion::Azimuth;
+use super::procedure::ProcedureError;
+use crate::align::stops::Setting;
+use crate::align::stops::conclusion::Conclusion;
+use crate::align::stops::follower::{Follower, Rests};
+use crate::align::stops::stop::{STOPS, Stop};
 use crate::error::Refusal;
-use crate::session::procedure::ProcedureError;
 use crate::signal::InertialSample;
+use crate::signal::rest::{Criteria, Limits};
 use crate::units::Instant;
 
-#[derive(Clone, Debug, PartialEq)]
-pub enum Stops {
-    Found(usize),
-    Whole,
-}
-#[derive(Clone, Debug, PartialEq)]
-pub struct Procedure {
-    pub stops: Stops,
-    pub sample_seconds: f64,
-    pub average_seconds: f64,
-    pub delay_seconds: f64,
-    pub stop_seconds: f64,
-}
-impl Procedure {
-    #[must_use]
-    pub fn new(stops: Stops, sample_seconds: f64) -> Self {
-        Self { stops, sample_seconds, average_seconds: 10.0, delay_seconds: 5.0, stop_seconds: 60.0 }
-    }
-}
+/// What happens to a session.
+#[derive(Clone, Copy, Debug)]
 pub enum Event<'a> {
+    /// A sample.
     Sample(&'a InertialSample),
+    /// Where the stop that lasts, or the last one, is: north and east of the first, m.
     Displaced([f64; 2]),
+    /// There will be no more.
     End,
+    /// The instrument cannot go on.
     Failed(Refusal),
 }
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Command { Wait, Drive, Finished }
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Phase { Level, Driving, Stopped(usize), Done }
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stop { pub from: f64, pub to: f64, pub pitch: f64, pub roll: f64, pub displacement: Option<[f64; 2]> }
+
+/// What the session asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Command {
+    /// Go on sampling.
+    Wait,
+    /// The vehicle may drive: this stop was long enough. Said once at each.
+    Drive,
+    /// Nothing more: the conclusion stands.
+    Finished,
+}
+
+/// Where the session is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// The vehicle did not stand yet.
+    Waiting,
+    /// It stands, for which time this is the index.
+    Standing(usize),
+    /// It drives, after that many stops.
+    Driving(usize),
+    /// The conclusion stands.
+    Done,
+}
+
+/// How the session goes about it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Procedure {
+    /// Where the stops are.
+    pub rests: Rests,
+    /// Stops after which it concludes; zero: when there are no more samples.
+    pub stops: usize,
+    /// How long the vehicle is to stand at each, s.
+    pub stop_seconds: f64,
+    /// Longest time for everything, s.
+    pub longest_seconds: f64,
+    /// Sample period, s.
+    pub sample_seconds: f64,
+    /// Displacements of the stops from the first, north and east, m, where they are known beforehand.
+    pub displacements: Vec<[f64; 2], STOPS>,
+}
+
+/// Default length of a stop, s: Szymanowski's short levelling.
+const STOP_SECONDS: f64 = 60.0;
+/// Longest time for everything, s.
+const LONGEST_SECONDS: f64 = 6.0 * 3600.0;
+
+impl Procedure {
+    /// So many stops of a minute, which the criteria find.
+    #[must_use]
+    pub fn new(stops: usize, sample_seconds: f64) -> Self {
+        Self {
+            rests: Rests::Found,
+            stops,
+            stop_seconds: STOP_SECONDS,
+            longest_seconds: LONGEST_SECONDS,
+            sample_seconds,
+            displacements: Vec::new(),
+        }
+    }
+
+    /// Whatever a recording with this sample period shows.
+    #[must_use]
+    pub fn recorded(rests: Rests, sample_seconds: f64) -> Self {
+        Self { rests, longest_seconds: f64::INFINITY, ..Self::new(0, sample_seconds) }
+    }
+
+    /// Whether it can be gone about.
+    fn check(&self) -> Result<(), ProcedureError> {
+        let is_period = self.sample_seconds > 0.0 && self.sample_seconds.is_finite();
+        let has_stops = self.stops <= STOPS && (self.stops != 1 || self.rests == Rests::Whole);
+        if is_period && has_stops && self.stop_seconds > 0.0 {
+            Ok(())
+        } else {
+            Err(ProcedureError::NoStops)
+        }
+    }
+}
+
+/// One alignment from stops.
 #[derive(Clone, Debug)]
 pub struct Session {
     setting: Setting,
     procedure: Procedure,
+    follower: Follower,
     phase: Phase,
-    stops: Vec<Stop, 10>,
+    begun: Option<Instant>,
+    /// Whether this stop was said to be long enough.
+    is_told: bool,
     conclusion: Option<Conclusion>,
-    last: Instant,
-    turned: [f64; 3],
-    samples: u32,
-    clipped: u32,
-    still: u32,
-    moving: u32,
-    sum: u64,
 }
+
 impl Session {
+    /// A session that has not begun.
+    ///
+    /// # Errors
+    /// [`ProcedureError::NoStops`]: no sample period, no length of a stop, one stop only, or too many.
     pub fn new(setting: Setting, procedure: Procedure) -> Result<Self, ProcedureError> {
-        Ok(Self { setting, procedure, phase: Phase::Level, stops: Vec::new(), conclusion: None, last: Instant(0), turned: [0.0; 3], samples: 0, clipped: 0, still: 0, moving: 0, sum: 0 })
+        procedure.check()?;
+        let gravity = setting.common.latitude.gravity();
+        let period = procedure.sample_seconds;
+        let follower = Follower::new(procedure.rests.clone(), &setting.sensors(), gravity, period);
+        let phase = Phase::Waiting;
+        let (begun, is_told, conclusion) = (None, false, None);
+        Ok(Self { setting, procedure, follower, phase, begun, is_told, conclusion })
     }
-    pub fn setting(&self) -> &Setting { &self.setting }
-    pub fn procedure(&self) -> &Procedure { &self.procedure }
-    pub fn phase(&self) -> Phase { self.phase }
-    pub fn stops(&self) -> &[Stop] { &self.stops }
-    pub fn conclusion(&self) -> Option<&Conclusion> { self.conclusion.as_ref() }
-    fn end(&mut self, verdict: Result<Azimuth, Refusal>) -> Command {
-        if self.conclusion.is_none() {
-            self.phase = Phase::Done;
-            self.conclusion = Some(Conclusion { verdict, start: None, limit: 0.0, biases: None, level: [0.0; 2] });
-        }
-        Command::Finished
-    }
+
+    /// Takes one event and answers what is to be done now.
     pub fn handle(&mut self, event: Event) -> Command {
-        if self.phase == Phase::Done { return Command::Finished; }
         match event {
-            Event::Failed(reason) => self.end(Err(reason)),
-            Event::End => self.end(Err(Refusal::TimeExhausted)),
-            Event::Displaced(place) => { if let Some(stop) = self.stops.last_mut() { stop.displacement = Some(place); } Command::Wait }
+            _ if self.phase == Phase::Done => Command::Finished,
             Event::Sample(sample) => self.sample(sample),
-        }
-    }
-    fn sample(&mut self, sample: &InertialSample) -> Command {
-        let period = self.procedure.sample_seconds;
-        let gap = (sample.time.0 - self.last.0) as f64 * 1e-6;
-        if self.last.0 > 0 && gap > 1.5 * period { return self.end(Err(Refusal::NoSchedule { seconds: gap })); }
-        self.last = sample.time;
-        if sample.is_clipped { self.clipped += 1; }
-        if self.clipped > 10 { return self.end(Err(Refusal::TimeExhausted)); }
-        for (sum, turned) in self.turned.iter_mut().zip(sample.turned) { *sum += turned.rad(); self.sum = self.sum.wrapping_mul(31).wrapping_add(turned.0 as u64); }
-        self.samples += 1;
-        let second = (1.0 / period) as u32;
-        if self.samples % second != 0 { return Command::Wait; }
-        let turned = core::mem::take(&mut self.turned);
-        let is_still = turned.iter().all(|t| t.abs() < 1.5e-4);
-        if is_still { self.still += 1; self.moving = 0; } else { self.moving += 1; if self.moving > 2 { self.still = 0; } }
-        let now = sample.time.0 as f64 * 1e-6;
-        match self.phase {
-            Phase::Level | Phase::Stopped(_) => {
-                if self.moving > 5 { self.phase = Phase::Driving; return Command::Wait; }
-                let number = match self.phase { Phase::Stopped(index) => index, _ => 0 };
-                if self.still == 15 && self.stops.len() == number {
-                    let _ = self.stops.push(Stop { from: now - 15.0, to: now, pitch: 0.01, roll: 0.02, displacement: None });
-                    if Stops::Found(self.stops.len()) == self.procedure.stops { return self.end(Ok(Azimuth { angle: self.sum as f64 * 1e-19, sigma: 3.0 })); }
-                    return Command::Drive;
-                }
+            Event::Displaced(displacement) => {
+                self.follower.displace(displacement);
                 Command::Wait
             }
-            _ => { if self.still > 10 { self.phase = Phase::Stopped(self.stops.len()); } Command::Wait }
+            Event::End => self.conclude(),
+            Event::Failed(reason) => self.finish(Conclusion::refused(reason)),
         }
+    }
+
+    /// What is known beforehand.
+    #[must_use]
+    pub fn setting(&self) -> &Setting {
+        &self.setting
+    }
+
+    /// How the session goes about it.
+    #[must_use]
+    pub fn procedure(&self) -> &Procedure {
+        &self.procedure
+    }
+
+    /// Where the session is.
+    #[must_use]
+    pub fn phase(&self) -> Phase {
+        self.phase
+    }
+
+    /// The stops so far; the last may last.
+    #[must_use]
+    pub fn stops(&self) -> &[Stop] {
+        self.follower.stops()
+    }
+
+    /// The criteria of the last ten seconds, and what they are held to; new once a second.
+    #[must_use]
+    pub fn criteria(&self) -> Option<(Criteria, Limits)> {
+        self.follower.criteria()
+    }
+
+    /// The conclusion, once the session has finished.
+    #[must_use]
+    pub fn conclusion(&self) -> Option<&Conclusion> {
+        self.conclusion.as_ref()
+    }
+
+    #[inline]
+    fn sample(&mut self, sample: &InertialSample) -> Command {
+        if self.follower.push(sample) { self.second(sample.time) } else { Command::Wait }
+    }
+
+    /// Looks about once a second.
+    fn second(&mut self, now: Instant) -> Command {
+        let begun = *self.begun.get_or_insert(now);
+        self.tell_displacements();
+        let count = self.follower.stops().len();
+        let phase = match (self.follower.is_at_rest(), count) {
+            (_, 0) => Phase::Waiting,
+            (true, count) => Phase::Standing(count - 1),
+            (false, count) => Phase::Driving(count),
+        };
+        if phase != self.phase {
+            self.is_told = false;
+            self.phase = phase;
+        }
+        if self.procedure.stops > 0 && self.follower.loss().is_some() {
+            return self.conclude();
+        }
+        if now.seconds() - begun.seconds() > self.procedure.longest_seconds {
+            return self.finish(Conclusion::refused(Refusal::TimeExhausted));
+        }
+        self.stand(count)
+    }
+
+    /// Looks whether the vehicle stood for long enough.
+    fn stand(&mut self, count: usize) -> Command {
+        let Phase::Standing(_) = self.phase else { return Command::Wait };
+        let length = self.follower.stops().last().map_or(0.0, Stop::seconds);
+        if self.is_told || length < self.procedure.stop_seconds {
+            return Command::Wait;
+        }
+        self.is_told = true;
+        if count == self.procedure.stops { self.conclude() } else { Command::Drive }
+    }
+
+    /// Where the last stop is, if that is known beforehand.
+    fn tell_displacements(&mut self) {
+        let Some(last) = self.follower.stops().len().checked_sub(1) else { return };
+        if let Some(displacement) = self.procedure.displacements.get(last) {
+            self.follower.displace(*displacement);
+        }
+    }
+
+    #[inline(never)]
+    fn conclude(&mut self) -> Command {
+        let conclusion = Conclusion::of(&self.setting, &mut self.follower);
+        self.finish(conclusion)
+    }
+
+    fn finish(&mut self, conclusion: Conclusion) -> Command {
+        self.conclusion = Some(conclusion);
+        self.phase = Phase::Done;
+        Command::Finished
     }
 }
