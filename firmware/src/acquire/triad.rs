@@ -21,7 +21,7 @@ use super::outlet::Outlet;
 use super::rates::{Rates, silence};
 use crate::configuration::VehicleConfiguration;
 use crate::patience::Symptom;
-use crate::ports::{Accelerometer, InStep, Observer, VehicleSensors};
+use crate::ports::{Accelerometer, ForceReading, InStep, Observer, VehicleSensors};
 use crate::shared::Seams;
 
 /// The gyros' names in the log, forward, right, down.
@@ -125,16 +125,13 @@ impl<'a, G: InStep, A: Accelerometer, O: Observer> TriadAcquisition<'a, G, A, O>
             return Ok(None);
         }
         let reading = self.forces.read(self.outlet.shared).await?;
-        let is_overloaded = reading.is_some_and(|reading| reading.is_clipped);
-        let force = reading.filter(|reading| !reading.is_clipped).map(|reading| reading.force);
-        let force = force.and_then(|force| self.mean.push(force));
+        let force = reading.and_then(|reading| self.mean.push(reading));
         let Some(rates) = rates else { return Ok(None) };
         self.outlet.judge(time);
         Ok(Some(InertialSample {
             time: orientation::units::Instant(time.as_micros()),
             turned: self.turned(rates, lasted),
             force,
-            is_clipped: is_overloaded || rates.iter().any(|rate| rate.is_saturated()),
         }))
     }
 
@@ -249,24 +246,27 @@ struct Mean {
     count: u32,
     /// µm/s².
     sums: [i64; 3],
+    /// Whether one of them stood at the limit of the range.
+    is_clipped: bool,
 }
 
 impl Mean {
     fn of(forces: u32) -> Self {
-        Self { of: forces.max(1), count: 0, sums: [0; 3] }
+        Self { of: forces.max(1), count: 0, sums: [0; 3], is_clipped: false }
     }
 
-    /// Adds a force; the mean, towards zero, once there are enough.
-    fn push(&mut self, force: [SpecificForce; 3]) -> Option<[SpecificForce; 3]> {
-        for (sum, part) in self.sums.iter_mut().zip(force) {
+    /// Adds a force; the mean, towards zero, once there are enough and none was clipped.
+    fn push(&mut self, reading: ForceReading) -> Option<[SpecificForce; 3]> {
+        for (sum, part) in self.sums.iter_mut().zip(reading.force) {
             *sum += i64::from(part.0);
         }
+        self.is_clipped |= reading.is_clipped;
         self.count += 1;
         if self.count < self.of {
             return None;
         }
-        let mean = self.sums.map(|sum| SpecificForce((sum / i64::from(self.count)) as i32));
-        *self = Self::of(self.of);
-        Some(mean)
+        let Self { sums, count, is_clipped, .. } = core::mem::replace(self, Self::of(self.of));
+        let mean = sums.map(|sum| SpecificForce((sum / i64::from(count)) as i32));
+        (!is_clipped).then_some(mean)
     }
 }

@@ -3,6 +3,8 @@
 //! Its commands are for who drives. Where somebody knows how far the vehicle has come, the session is told
 //! at every stop.
 
+use orientation::align::stops::conclusion::Conclusion;
+use orientation::align::stops::inclination::pitch_and_roll;
 use orientation::device::Device;
 use orientation::earth::Latitude;
 use orientation::error::Refusal;
@@ -46,8 +48,8 @@ impl<'a, W: Whereabouts> Stops<'a, W> {
     pub fn new(session: &'a mut Session, whereabouts: &'a mut W) -> Self {
         let told = Told {
             phase: session.phase(),
-            since: Instant(0),
-            now: Instant(0),
+            since: Instant::default(),
+            now: Instant::default(),
             placed: 0,
             place: None,
             may_drive: false,
@@ -57,7 +59,7 @@ impl<'a, W: Whereabouts> Stops<'a, W> {
 
     /// Tells the session where it stands, as soon as that is known.
     fn place(&mut self) {
-        let Phase::Stopped(index) = self.session.phase() else { return };
+        let Phase::Standing(index) = self.session.phase() else { return };
         if index <= self.told.placed {
             return;
         }
@@ -98,7 +100,7 @@ impl<W: Whereabouts, O: Observer> Conducted<O, InertialSample> for Stops<'_, W> 
 
     fn follow(&mut self, shared: &Shared<'_, O>) {
         let (session, told) = (&*self.session, &mut self.told);
-        if session.phase() != told.phase || shared.status.get() == Status::Starting {
+        if session.phase() != told.phase {
             tell_phase(session.phase(), told, shared);
             told.phase = session.phase();
             told.since = told.now;
@@ -114,40 +116,42 @@ impl<W: Whereabouts, O: Observer> Conducted<O, InertialSample> for Stops<'_, W> 
     }
 
     fn conclude(&self, shared: &Shared<'_, O>) -> Option<Result<[f64; 3], Refusal>> {
-        let conclusion = self.session.conclusion()?;
-        if let Some((biases, sigmas)) = conclusion.biases {
-            for ((gyro, bias), sigma) in GYROS.into_iter().zip(biases).zip(sigmas) {
+        let Conclusion { verdict, found } = self.session.conclusion()?;
+        if let Some(found) = found.as_ref().filter(|found| found.are_biases_observed) {
+            for ((gyro, bias), sigma) in GYROS.into_iter().zip(found.biases).zip(found.bias_sigmas) {
                 let [bias, sigma] = [bias, sigma].map(|rate| rate / DEGREE_PER_HOUR);
                 shared.tell(Event::Bias(gyro, bias, sigma));
             }
         }
-        Some(conclusion.verdict.map(|azimuth| [azimuth.angle, azimuth.sigma, conclusion.limit]))
+        let limit = found.as_ref().map_or(0.0, |found| found.limit);
+        Some(verdict.map(|azimuth| [azimuth.angle, azimuth.sigma, limit]))
     }
 }
 
 /// What the phase that begins does.
 fn tell_phase<O: Observer>(phase: Phase, told: &Told, shared: &Shared<'_, O>) {
     match phase {
-        Phase::Level => shared.status.set(Status::Levelling { stop: 1 }),
-        Phase::Driving => {
+        Phase::Standing(index) => {
+            if let Phase::Driving(_) = told.phase {
+                let seconds = told.now.seconds() - told.since.seconds();
+                shared.tell(Event::Stopped(index + 1, seconds));
+            }
+            shared.status.set(Status::Levelling { stop: index as u16 + 1 });
+        }
+        Phase::Driving(_) => {
             shared.tell(Event::Driving);
             shared.status.set(Status::Driving);
         }
-        Phase::Stopped(index) => {
-            let seconds = (told.now.0 - told.since.0) as f64 * 1e-6;
-            shared.tell(Event::Stopped(index + 1, seconds));
-            shared.status.set(Status::Levelling { stop: index as u16 + 1 });
-        }
-        Phase::Done => {}
+        Phase::Waiting | Phase::Done => {}
     }
 }
 
 /// That the stop was long enough.
 fn tell_levelled<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
-    if let Some(stop) = session.stops().last() {
-        let number = session.stops().len();
-        let level = [stop.pitch, stop.roll].map(|angle| angle * DEGREES);
-        shared.tell(Event::MayDrive(number, stop.to - stop.from, level));
-        shared.status.set(Status::MayDrive { stop: number as u16 });
-    }
+    let Some(stop) = session.stops().last() else { return };
+    let number = session.stops().len();
+    let up = stop.force.mean().map(core::ops::Neg::neg);
+    let level = pitch_and_roll(&up).map(|angle| angle * DEGREES);
+    shared.tell(Event::MayDrive(number, stop.seconds(), level));
+    shared.status.set(Status::MayDrive { stop: number as u16 });
 }
