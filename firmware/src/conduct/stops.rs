@@ -150,8 +150,7 @@ fn tell_phase<O: Observer>(phase: Phase, told: &Told, shared: &Shared<'_, O>) {
 fn tell_levelled<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
     let Some(stop) = session.stops().last() else { return };
     let number = session.stops().len();
-    let up = stop.force.mean().map(core::ops::Neg::neg);
-    let level = pitch_and_roll(&up).map(|angle| angle * DEGREES);
+    let level = pitch_and_roll(&stop.force.mean()).map(|angle| angle * DEGREES);
     shared.tell(Event::MayDrive(number, stop.seconds(), level));
     shared.status.set(Status::MayDrive { stop: number as u16 });
 }

@@ -191,7 +191,7 @@ pub(super) fn name<T: PartialEq>(table: &[(T, &'static str)], value: &T) -> &'st
 }
 
 /// What a fault does to the parts of the board.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Plan {
     /// Faults of the four buses: gyro, accelerometer, encoder, actuator.
     pub buses: [Option<FaultPlan>; 4],
@@ -210,6 +210,17 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// Nothing goes wrong.
+    pub const NONE: Self = Self {
+        buses: [None; 4],
+        ready: None,
+        blackouts: Vec::new(),
+        stage: Vec::new(),
+        disturbances: Vec::new(),
+        caught: None,
+        hang: None,
+    };
+
     /// The plan of a fault, or of none.
     #[must_use]
     pub fn of(fault: Option<Fault>) -> Self {
@@ -219,7 +230,7 @@ impl Plan {
     /// The same of one that comes in the middle at another time.
     #[must_use]
     pub fn at(fault: Option<Fault>, middle: Instant) -> Self {
-        let mut plan = Self::default();
+        let mut plan = Self::NONE;
         match fault {
             None => {}
             Some(Fault::Chip(select, sickness)) => plan.sicken(select, sickness, middle),

@@ -91,7 +91,7 @@ impl fmt::Display for VehicleFault {
 }
 
 /// What a fault does to the chips.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct VehiclePlan {
     /// Faults of the buses, in the order of [`CHIPS`].
     pub buses: [Option<FaultPlan>; CHIPS.len()],
@@ -108,10 +108,20 @@ pub struct VehiclePlan {
 }
 
 impl VehiclePlan {
+    /// Nothing goes wrong.
+    pub const NONE: Self = Self {
+        buses: [None; CHIPS.len()],
+        ready: [None; 3],
+        late: None,
+        blackouts: Vec::new(),
+        sensors: Vec::new(),
+        hang: None,
+    };
+
     /// The plan of a fault that comes at a time in s, or of none.
     #[must_use]
     pub fn at(fault: Option<VehicleFault>, seconds: f64) -> Self {
-        let mut plan = Self::default();
+        let mut plan = Self::NONE;
         let middle = Instant::from_micros((seconds * 1e6) as u64);
         let clipped = |channels: core::ops::Range<usize>, for_s: f64| {
             let (from_s, until_s) = (seconds, seconds + for_s);

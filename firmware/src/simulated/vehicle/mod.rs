@@ -21,7 +21,7 @@ use hal_mock::plant::sway::{SwayComponent, SwayConfiguration};
 use hal_mock::spi::ReadyPin;
 use hal_mock::vehicle::board::{CHIPS, GYROS, VehicleBoard};
 use hal_mock::vehicle::plant::{VehiclePlant, VehiclePlantConfiguration};
-use hal_mock::vehicle::{self as world, Event, Leg, Stop, VehicleConfiguration};
+use hal_mock::vehicle::{self as world, Drive, Event, Leg, Stop, VehicleConfiguration};
 use hal_mock::violation::Violation;
 use orientation::align::setting;
 use orientation::align::stops::Setting;
@@ -37,6 +37,9 @@ use crate::ports::VehicleSensors;
 
 /// 1σ of the accelerometers, m/s²: in a vehicle their biases are tilt, so they are calibrated, to 0.1 mg.
 const FORCE_BIAS_SIGMA: f64 = 1e-4 * 9.80665;
+/// How long the board levels at the stops of a brief run, and how long it drives, s.
+const BRIEF_STOP_SECONDS: f64 = 30.0;
+const BRIEF_DRIVE_SECONDS: f64 = 40.0;
 /// What a stop that is too short lasts, s.
 const SHORT_SECONDS: f64 = 12.0;
 /// Amplitude of the sway at stops that sway, °, and its frequencies, Hz.
@@ -51,6 +54,43 @@ const END_SECONDS: f64 = 2.0;
 const FORCE_FULL_SCALE: f64 = 2.048 * 9.80665;
 /// Time between two doors that fall shut, s.
 const BUMPS_SECONDS: f64 = 9.0;
+
+/// No sway.
+const STILL: SwayConfiguration = SwayConfiguration {
+    components: [SwayComponent {
+        azimuth_deg: 0.0,
+        pitch_deg: 0.0,
+        roll_deg: 0.0,
+        frequency_hz: 0.0,
+        phase_rad: 0.0,
+    }; 3],
+};
+
+/// A stop on ground that is inclined by so many degrees, and a way round a corner.
+const fn stop(pitch_deg: f64, roll_deg: f64) -> Leg {
+    let sway = STILL;
+    let settling_deg = [0.2, 0.05];
+    let seconds = BRIEF_STOP_SECONDS + FIND_SECONDS;
+    Leg::Stop(Stop { seconds, pitch_deg, roll_deg, sway, settling_deg })
+}
+
+/// What the vehicle of [`VehicleScenario::brief`] does: there is little memory where that runs.
+pub static BRIEF: [Leg; 3] = [
+    stop(1.2, -0.7),
+    Leg::Drive(Drive {
+        seconds: BRIEF_DRIVE_SECONDS,
+        heading_change_deg: 130.0,
+        turn_s: 15.0,
+        speed_m_s: 9.0,
+        winding_deg: 0.0,
+        winding_s: 1.0,
+        hills_deg: 1.0,
+        hills_s: 20.0,
+        weaving: STILL,
+        vibration_m_s2: 0.3,
+    }),
+    stop(-0.4, 1.5),
+];
 
 /// A day of a vehicle, as it is drawn from a seed.
 pub type Day = world::scenario::Scenario;
@@ -71,14 +111,14 @@ pub struct VehicleScenario {
 }
 
 impl Default for VehicleScenario {
-    /// Three stops of a minute at 100 Hz, five minutes of driving between them, a receiver that knows each
+    /// Three stops of a minute at 100 Hz, ten minutes of driving between them, a receiver that knows each
     /// to two metres.
     fn default() -> Self {
         Self {
             base: Scenario { sample_rate_hz: 100.0, ..Scenario::default() },
             stops: 3,
             stop_s: 60.0,
-            drive_s: 300.0,
+            drive_s: 600.0,
             place: Place::Known { sigma_m: 2.0 },
         }
     }
@@ -97,7 +137,7 @@ impl VehicleScenario {
     pub fn brief(seed: u64) -> Self {
         let usual = Self::usual(seed);
         let base = Scenario { sample_rate_hz: 400.0, ..usual.base };
-        Self { base, stops: 2, stop_s: 30.0, drive_s: 40.0, ..usual }
+        Self { base, stops: 2, stop_s: BRIEF_STOP_SECONDS, drive_s: BRIEF_DRIVE_SECONDS, ..usual }
     }
 
     /// What the board is told of place and instrument; none where the latitude is none.
