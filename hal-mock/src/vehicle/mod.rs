@@ -10,14 +10,17 @@ pub mod board;
 mod event;
 mod leg;
 pub mod motion;
+mod place;
 pub mod plant;
+mod route;
 pub mod scenario;
 mod sensors;
 mod smooth;
 
 pub use self::event::{Event, SensorFault};
 pub use self::leg::{Drive, Leg, Stop};
-use self::motion::{Integrals, Motion, Position};
+use self::motion::{Integrals, Motion};
+pub use self::place::Position;
 use self::sensors::Sensors;
 use self::smooth::Smooth;
 use crate::accelerometer::AccelerometerConfiguration;
@@ -221,7 +224,7 @@ impl Iterator for Vehicle<'_> {
 }
 
 /// How the vehicle moves at one moment, over the ground.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Pose {
     /// Attitude of the body, rad.
     azimuth: Smooth,
@@ -272,9 +275,14 @@ impl Pose {
         }
     }
 
+    /// Whether it goes nowhere.
+    fn stands(&self) -> bool {
+        self.speed == Smooth::default()
+    }
+
     /// Velocity north, east, down, m/s.
     fn velocity_m_s(&self) -> [f64; 3] {
-        if self.speed == Smooth::default() {
+        if self.stands() {
             return [0.0; 3];
         }
         let (sine, cosine) = libm::sincos(self.heading.value);
@@ -283,7 +291,7 @@ impl Pose {
 
     /// Its derivative on axes that stay level and northward, m/s².
     fn acceleration_m_s2(&self) -> [f64; 3] {
-        if self.speed == Smooth::default() {
+        if self.stands() {
             return [0.0; 3];
         }
         let (sine, cosine) = libm::sincos(self.heading.value);
