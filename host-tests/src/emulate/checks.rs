@@ -71,7 +71,7 @@ pub fn all(runs: &Runs<'_>, memory: &Memory, budget: &Budget) -> Vec<Check> {
             "turning_sample_instructions",
         ),
         limited(
-            "the same in a vehicle, three gyros at 400 Hz",
+            "the same in a vehicle, three gyros at 50 Hz",
             per_sample(stops),
             "stops_sample_instructions",
         ),

@@ -84,12 +84,20 @@ pub struct Ads1262<S, R, D> {
     ready: R,
     delay: D,
     configuration: Configuration,
+    /// Whether its clock comes from outside.
+    is_clocked: bool,
 }
 
 impl<S, R, D> Ads1262<S, R, D> {
     /// A chip that has yet to be started. Its START pin is held low, its clock input grounded.
     pub const fn new(spi: S, ready: R, delay: D, configuration: Configuration) -> Self {
-        Self { spi, ready, delay, configuration }
+        Self { spi, ready, delay, configuration, is_clocked: false }
+    }
+
+    /// The same with 7.3728 MHz at its clock input: several chips on one clock convert in step.
+    #[must_use]
+    pub fn clocked(self) -> Self {
+        Self { is_clocked: true, ..self }
     }
 }
 
@@ -102,7 +110,7 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Ads1262<S, R, D> {
     /// [`Fault::Bus`]; [`Fault::Identity`] with ID, POWER and INTERFACE where another chip, none, or
     /// one that did not obey the reset answers; [`Fault::NotAsWritten`]; [`Fault::NotReady`] where it
     /// does not convert, [`Fault::SelfTest`] where it converts wrongly, [`Fault::Alarm`] where its
-    /// reference is low or its clock not its own.
+    /// reference is low or its clock another than stated.
     pub async fn start(&mut self) -> Result<(), Fault> {
         pause(&mut self.delay, POWER_UP).await;
         self.reset().await?;
@@ -180,7 +188,7 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Ads1262<S, R, D> {
         if !conversion.is_new {
             return Err(Fault::NotReady);
         }
-        if conversion.status.is_clock_external() {
+        if conversion.status.is_clock_external() != self.is_clocked {
             return Err(Fault::Alarm { status: conversion.status.0 });
         }
         let expected = if sign == Sign::Plus { TEST_CODE } else { -TEST_CODE };
