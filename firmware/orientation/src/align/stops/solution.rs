@@ -20,9 +20,10 @@ use crate::signal::strapdown::{Carried, Rough};
 const LEVEL_SIGMA: f64 = 0.1;
 /// 1σ of its azimuth, rad: unknown.
 const AZIMUTH_SIGMA: f64 = 3.0;
-/// Repetitions, and the correction below which no further one is needed, rad.
+/// Repetitions, and the correction below which no further one is needed, rad: half of its square is not
+/// seen, 1e-5°.
 const REPETITIONS: u32 = 8;
-const SETTLED: f64 = 1e-8;
+const SETTLED: f64 = 5e-4;
 /// Chi-square beyond which a block, or the rest of a stop, is left out: one healthy block in three million.
 const OUTLIER: f64 = 30.0;
 /// Least variance of what a vehicle sways, rad²: 20 milliarcseconds.
@@ -40,12 +41,15 @@ const COVERED: f64 = 0.002;
 /// Step by which the latitude's effect is found, rad.
 const LATITUDE_STEP: f64 = 1e-3;
 
+/// A matrix of nothing.
+const NOTHING: Matrix = [[0.0; 3]; 3];
+
 /// What is believed of the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Belief {
     /// What it shows.
     Shown,
-    /// That nothing sways, all is quiet, nothing is left out: the limit of any estimator.
+    /// That nothing sways, all is quiet, nothing is left out: the limit of any estimator, and where to begin.
     Ideal,
 }
 
@@ -92,69 +96,62 @@ struct Run<'a> {
     /// The place, a little farther north, where the latitude is not exact.
     north: Option<Place>,
     belief: Belief,
-    is_gated: bool,
     last: Moment,
 }
 
 impl Solution {
-    /// Solves from a start frame that is nearly right.
+    /// Of nothing, with a start frame that is nearly right.
     #[must_use]
-    pub fn of(setting: &Setting, path: &Path, frame: &Matrix) -> Self {
-        let mut solution = Self::along(setting, path, frame, Belief::Shown, false);
-        for _ in 1..REPETITIONS {
-            let correction = solution.filter.three(START);
-            let frame = product(&by(&correction), &solution.frame);
-            solution = Self::along(setting, path, &frame, Belief::Shown, true);
-            if length(&correction) < SETTLED {
-                break;
-            }
-        }
-        solution
-    }
-
-    /// One run along the path.
-    #[must_use]
-    #[inline(never)]
-    pub fn along(
-        setting: &Setting,
-        path: &Path,
-        frame: &Matrix,
-        belief: Belief,
-        is_gated: bool,
-    ) -> Self {
-        let common = &setting.common;
-        let filter = Filter::new(
-            &start_covariance(frame),
-            setting.bias_sigma(),
-            common.scale_sigma,
-            common.accelerometer_bias_sigma,
-            common.latitude_sigma,
-        );
-        let mut solution = Self {
-            filter,
-            frame: *frame,
+    pub const fn new(frame: Matrix) -> Self {
+        Self {
+            filter: Filter::EMPTY,
+            frame,
             chi_square: 0.0,
             degrees: 0.0,
             left_out: 0,
             turning: 0,
             unsteady: 0,
-        };
+        }
+    }
+
+    /// Runs along the path until the start frame stands still; the first run must have been made.
+    pub fn settle(&mut self, setting: &Setting, path: &Path) {
+        for _ in 0..REPETITIONS {
+            self.frame = product(&by(&self.filter.three(START)), &self.frame);
+            self.run(setting, path, Belief::Shown);
+            if length(&self.filter.three(START)) < SETTLED {
+                break;
+            }
+        }
+    }
+
+    /// One run along the path.
+    #[inline(never)]
+    pub fn run(&mut self, setting: &Setting, path: &Path, belief: Belief) {
+        let common = &setting.common;
+        (self.chi_square, self.degrees) = (0.0, 0.0);
+        (self.left_out, self.turning, self.unsteady) = (0, 0, 0);
+        self.filter.begin(
+            &start_covariance(&self.frame),
+            setting.bias_sigma(),
+            common.scale_sigma,
+            common.accelerometer_bias_sigma,
+            common.latitude_sigma,
+        );
         let is_exact = common.latitude_sigma <= 0.0;
         let is_ideal = belief == Belief::Ideal;
         let mut run = Run {
             setting,
             path,
-            density: if is_ideal { path.stated_density } else { path.density() }.max(1e-12),
+            density: if is_ideal { path.least_density() } else { path.density() },
             north: (!is_exact).then(|| Place::moved(common.latitude, LATITUDE_STEP)),
             belief,
-            is_gated,
             last: Moment { at: path.start, ..Moment::default() },
         };
         for index in 0..path.stops.len() {
-            run.stop(&mut solution, index);
+            run.stop(self, index);
         }
-        run.carry(&mut solution, Moment::of(path.now, &path.carried));
-        solution
+        run.carry(self, Moment::of(path.now, &path.carried));
     }
 }
 
@@ -187,7 +184,8 @@ impl Run<'_> {
         let noise = &self.setting.common.noise;
         let walk = noise.angle_random_walk.max(LEAST_WALK);
         let bias = gained(&to.bias, &self.last.bias);
-        let scale = gained(&to.scale, &self.last.scale);
+        let has_scale = self.setting.common.scale_sigma > 0.0;
+        let scale = if has_scale { gained(&to.scale, &self.last.scale) } else { NOTHING };
         solution.filter.carry(&bias, &scale, walk * walk * seconds);
         solution.filter.walk(self.bias_walk() * seconds);
         self.last = to;
@@ -328,18 +326,14 @@ impl Run<'_> {
         })
     }
 
-    /// Takes measurements, unless they are outliers.
+    /// Takes measurements, unless they are outliers; what they brought beyond the expected.
     fn take(&self, filter: &mut Filter, measurements: &[Measurement]) -> Option<f64> {
-        if !self.is_gated || self.belief == Belief::Ideal {
-            return Some(filter.measure(measurements));
-        }
-        let before = filter.clone();
-        let chi_square = filter.measure(measurements);
-        if chi_square <= OUTLIER {
-            return Some(chi_square);
-        }
-        *filter = before;
-        None
+        let is_ideal = self.belief == Belief::Ideal;
+        let surprise = if is_ideal { 0.0 } else { filter.surprise(measurements) };
+        (surprise <= OUTLIER).then(|| {
+            filter.measure(measurements);
+            surprise
+        })
     }
 }
 
