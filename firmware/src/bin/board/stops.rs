@@ -42,7 +42,7 @@ async fn acquisition(mut triad: Triad, seams: &'static VehicleSeams) {
 /// The session, made where it stays.
 fn session() -> Result<&'static mut Session, ProcedureError> {
     static SESSION: StaticCell<Session> = StaticCell::new();
-    let session =
-        Session::new(configuration::driving_setting(), configuration::driving_procedure())?;
-    Ok(SESSION.init_with(|| session))
+    let procedure = configuration::driving_procedure();
+    procedure.check()?;
+    Ok(SESSION.init_with(|| Session::of(configuration::driving_setting(), procedure)))
 }

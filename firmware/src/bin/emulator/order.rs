@@ -6,13 +6,12 @@
 use core::mem::MaybeUninit;
 
 use firmware::ports::{NoRecorder, VehiclePorts};
+use firmware::simulated;
 use firmware::simulated::fault::Plan;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::{self, TurntableScenario};
 use firmware::simulated::vehicle::fault::VehiclePlan;
 use firmware::simulated::vehicle::{self, KnownPlace, VehicleScenario};
-use firmware::simulated::{self};
-use orientation::session::stops;
 use semihosting::sys::arm_compat::sys_get_cmdline_uninit;
 
 use crate::meter::Meter;
@@ -110,8 +109,8 @@ fn turning(scenario: &TurntableScenario, meter: &'static Meter) -> Option<(Sampl
 }
 
 fn driving(scenario: &VehicleScenario, meter: &'static Meter) -> Option<(Sampling, Running)> {
-    let session = stops::Session::new(scenario.setting()?, scenario.procedure()).ok()?;
-    let session = setup::driving(session)?;
+    let (setting, procedure) = scenario.checked()?;
+    let session = setup::driving(&setting, procedure)?;
     let around = Metering(meter);
     let (inputs, outputs, seams) = setup::vehicle(
         || scenario.board(&vehicle::BRIEF, &[], &VEHICLE_PLAN),

@@ -10,6 +10,7 @@ use firmware::shared::Seams;
 use firmware::simulated::vehicle::{KnownPlace, SimulatedTriad};
 use firmware::simulated::{Chips, SimulatedPorts, SimulatedSensors};
 use hal_mock::vehicle::board::VehicleBoard;
+use orientation::align;
 use orientation::align::rotating::Setting;
 use orientation::align::rotating::turn::Stretch;
 use orientation::session::{Prepared, Session, rotating, stops};
@@ -112,9 +113,12 @@ pub fn turning(
 
 /// A session in a vehicle.
 #[inline(never)]
-pub fn driving(session: stops::Session) -> Option<&'static mut stops::Session> {
-    let sitting = SITTING.init_with(|| Sitting::Stops(session));
-    if let Sitting::Stops(session) = sitting { Some(session) } else { None }
+pub fn driving(
+    setting: &align::stops::Setting,
+    procedure: stops::Procedure,
+) -> Option<&'static mut stops::Session> {
+    let session = || Sitting::Stops(stops::Session::of(*setting, procedure));
+    if let Sitting::Stops(session) = SITTING.init_with(session) { Some(session) } else { None }
 }
 
 /// Sensors that sample.

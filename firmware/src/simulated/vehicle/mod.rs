@@ -172,6 +172,14 @@ impl VehicleScenario {
         }
     }
 
+    /// Both, checked; none where the latitude is none or the procedure impossible.
+    #[must_use]
+    pub fn checked(&self) -> Option<(Setting, Procedure)> {
+        let procedure = self.procedure();
+        procedure.check().ok()?;
+        Some((self.setting()?, procedure))
+    }
+
     /// What the board is told of its devices.
     #[must_use]
     pub fn configuration(&self) -> configuration::VehicleConfiguration {
