@@ -26,8 +26,8 @@ use orientation::planner::Rotation;
 use orientation::planner::order::Order;
 use orientation::session::procedure::Procedure;
 use orientation::session::rotating::Procedure as Turning;
-use orientation::session::stops::Procedure as Driving;
 use orientation::session::schedule::Schedule;
+use orientation::session::stops::Procedure as Driving;
 use orientation::session::survey::Survey;
 use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR, TURN};
 

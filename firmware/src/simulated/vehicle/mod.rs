@@ -14,8 +14,8 @@ use drivers::ads1262::Ads1262;
 use drivers::adxl355::registers::OutputRate;
 use drivers::adxl355::{self, Adxl355};
 use embassy_time::Delay;
-use hal_mock::ads1262::Ads1262 as SimulatedConverter;
 use hal_mock::accelerometer::AccelerometerConfiguration;
+use hal_mock::ads1262::Ads1262 as SimulatedConverter;
 use hal_mock::chip::{Rig, Select};
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::plant::sway::{SwayComponent, SwayConfiguration};
@@ -147,6 +147,8 @@ impl VehicleScenario {
     pub fn setting(&self) -> Option<Setting> {
         let common = setting::Setting {
             accelerometer_bias_sigma: FORCE_BIAS_SIGMA,
+            g_sensitivity: [0.0; 2],
+            g_sensitivity_sigma: 0.0,
             ..self.base.setting()?
         };
         let displacement_sigma = match self.place {
