@@ -251,12 +251,19 @@ impl Follower {
         }
     }
 
-    /// Begins a stop with what of the window is past the delay.
+    /// Begins a stop with what of the window is past the delay, or goes on with one that was not left:
+    /// nobody drives anywhere without failing the criteria for as long as they look.
     fn stand(&mut self) {
         self.is_at_rest = true;
-        let stop = self.stops.len();
+        let now = self.window.back().map_or(0.0, |second| second.to);
+        let last = self.stops.last().map_or(f64::NEG_INFINITY, |stop| stop.to);
+        let goes_on = now - last < (WINDOW + LATEST) as f64;
+        let stop = self.stops.len() - usize::from(goes_on);
         for index in DELAY..WINDOW - LATEST {
-            self.rest(index, stop);
+            let is_new = self.window.iter().nth(index).is_some_and(|second| second.from >= last);
+            if is_new {
+                self.rest(index, stop);
+            }
         }
     }
 
