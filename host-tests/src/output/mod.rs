@@ -8,6 +8,7 @@ pub mod page;
 pub mod plan;
 pub mod progress;
 pub mod rotating;
+pub mod stops;
 pub mod table;
 pub mod text;
 
@@ -44,6 +45,12 @@ pub fn degrees_per_hour(rate: f64) -> f64 {
 pub fn azimuth_error(azimuth: f64, truth: f64) -> f64 {
     let turns = (azimuth - truth) / 360.0;
     (turns - turns.round()) * 360.0
+}
+
+/// Names as a table's head has them.
+#[must_use]
+pub fn named(head: &[&str]) -> Vec<String> {
+    head.iter().map(|name| (*name).to_owned()).collect()
 }
 
 /// The names of the columns that a fit used.

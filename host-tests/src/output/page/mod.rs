@@ -4,6 +4,7 @@ pub mod alignment;
 pub mod burov;
 pub mod plan;
 pub mod rotating;
+pub mod stops;
 
 use orientation::align::budget::Budget;
 

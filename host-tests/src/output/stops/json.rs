@@ -1,0 +1,164 @@
+//! The JSON object of an alignment from stops.
+
+use serde::Serialize;
+
+use super::columns;
+use crate::output::json::{BudgetObject, Verdict};
+use crate::output::{azimuth_error, degrees, degrees_per_hour};
+use crate::recording::Truth;
+use crate::stops::Replay;
+use crate::stops::core::{self, Conclusion};
+
+/// The object; its keys are those of every method that gives an azimuth, then its own.
+#[derive(Clone, Debug, Serialize)]
+pub struct Object {
+    /// `siap` or `static`.
+    pub method: &'static str,
+    /// The azimuth at the end, or why there is none.
+    #[serde(flatten)]
+    pub verdict: Verdict,
+    /// Azimuth of body x at the beginning, [0, 360); only with `ok`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub start_azimuth_deg: Option<f64>,
+    /// Its standard deviation; only with `ok`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub start_sigma_deg: Option<f64>,
+    /// It less the truth, where the recording carries one; only with `ok`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub start_error_deg: Option<f64>,
+    /// Cramér–Rao bound, where the noise is known.
+    pub limit_deg: Option<f64>,
+    /// The 1σ parts, where there is a solution.
+    pub budget: Option<BudgetObject>,
+    /// The greatest part beside noise, where it makes up more than half of the variance.
+    pub dominant: Option<String>,
+    /// Stops.
+    pub positions: usize,
+    /// Their time in seconds.
+    pub seconds: f64,
+    /// Pitch of the body at the last stop.
+    pub pitch_deg: Option<f64>,
+    /// Roll of the body at the last stop.
+    pub roll_deg: Option<f64>,
+    /// Horizontal Earth rate found over expected.
+    pub earth_rate_ratio: Option<f64>,
+    /// 1σ of the ratio.
+    pub earth_rate_ratio_sigma: Option<f64>,
+    /// What the solution found.
+    pub model: Vec<&'static str>,
+    /// Stops left out.
+    pub excluded: Vec<Excluded>,
+    /// What was assumed.
+    pub assumed: Vec<String>,
+    /// Biases of the gyros forward, right, down, °/h, where they could be told from the Earth rate.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bias_dph: Option<[f64; 3]>,
+    /// Their 1σ, °/h.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bias_sigma_dph: Option<[f64; 3]>,
+    /// What the paper's method makes of the first and the last stop.
+    pub plain: Option<Plain>,
+    /// The stops.
+    pub stops: Vec<Stop>,
+}
+
+/// The paper's method: azimuths of the least inclination U between the first stop and the last.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Plain {
+    /// At the end, in closed form.
+    pub azimuth_deg: f64,
+    /// Its standard deviation.
+    pub sigma_deg: f64,
+    /// At the start, in closed form.
+    pub start_azimuth_deg: f64,
+    /// At the end, where Brent's search finds the least U in the angle form.
+    pub brent_deg: f64,
+    /// The same in the paper's form.
+    pub euler_deg: f64,
+    /// The least U itself.
+    pub inclination_deg: f64,
+}
+
+/// A stop.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Stop {
+    /// When it began, on the recording's clock.
+    pub from_s: f64,
+    /// When it ended.
+    pub to_s: f64,
+    /// Pitch of the body.
+    pub pitch_deg: f64,
+    /// Roll of the body.
+    pub roll_deg: f64,
+    /// How far it lies from the first, north and east, where that was known.
+    pub displacement_m: Option<[f64; 2]>,
+}
+
+/// A stop left out.
+#[derive(Clone, Debug, Serialize)]
+pub struct Excluded {
+    /// Number of the stop, from one.
+    pub stop: usize,
+    /// Why.
+    pub reason: String,
+}
+
+impl From<&core::Plain> for Plain {
+    fn from(plain: &core::Plain) -> Self {
+        Self {
+            azimuth_deg: degrees(plain.azimuth),
+            sigma_deg: degrees(plain.sigma),
+            start_azimuth_deg: degrees(plain.start),
+            brent_deg: degrees(plain.brent),
+            euler_deg: degrees(plain.euler),
+            inclination_deg: degrees(plain.inclination.angle(plain.start)),
+        }
+    }
+}
+
+impl Stop {
+    /// Of the session's stop, whose zero is at `zero_s`.
+    #[must_use]
+    pub fn of(stop: &core::Stop, zero_s: f64) -> Self {
+        Self {
+            from_s: zero_s + stop.from,
+            to_s: zero_s + stop.to,
+            pitch_deg: degrees(stop.pitch),
+            roll_deg: degrees(stop.roll),
+            displacement_m: stop.displacement,
+        }
+    }
+}
+
+/// The object of a replay; the truth is for its errors alone.
+#[must_use]
+pub fn object(replay: &Replay, conclusion: &Conclusion, truth: &Truth) -> Object {
+    let is_ok = conclusion.verdict.is_ok();
+    let start = conclusion.start.filter(|_| is_ok);
+    let start_deg = start.map(|azimuth| degrees(azimuth.angle));
+    let stops = replay.session.stops();
+    let last = stops.last();
+    Object {
+        method: replay.method.name(),
+        verdict: Verdict::of(&conclusion.verdict, truth.azimuth_deg),
+        start_azimuth_deg: start_deg,
+        start_sigma_deg: start.map(|azimuth| degrees(azimuth.sigma)),
+        start_error_deg: start_deg.zip(truth.start_azimuth_deg).map(|(a, b)| azimuth_error(a, b)),
+        limit_deg: Some(degrees(conclusion.limit)).filter(|_| replay.noise_is_known()),
+        budget: Some((&conclusion.budget).into()),
+        dominant: conclusion.budget.dominant().map(|source| source.to_string()),
+        positions: stops.len(),
+        seconds: stops.iter().map(|stop| stop.to - stop.from).sum(),
+        pitch_deg: last.map(|stop| degrees(stop.pitch)),
+        roll_deg: last.map(|stop| degrees(stop.roll)),
+        earth_rate_ratio: Some(conclusion.ratio),
+        earth_rate_ratio_sigma: Some(conclusion.ratio_sigma),
+        model: columns(conclusion),
+        excluded: Vec::new(),
+        assumed: replay.assumed.clone(),
+        bias_dph: conclusion.biases.map(|(biases, _)| biases.map(degrees_per_hour)),
+        bias_sigma_dph: conclusion.biases.map(|(_, sigmas)| sigmas.map(degrees_per_hour)),
+        plain: conclusion.plain.as_ref().map(Into::into),
+        stops: stops.iter().map(|stop| Stop::of(stop, replay.zero_s)).collect(),
+    }
+}

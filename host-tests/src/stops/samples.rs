@@ -1,0 +1,111 @@
+//! Rows of a vehicle's recording as the samples that the session takes.
+
+use std::borrow::Cow;
+
+use orientation::signal::InertialSample;
+use orientation::units::{AngleIncrement, Instant, SpecificForce};
+
+use crate::recording::{Body, ImuRow, StaticRow};
+
+/// Steps longer than so many periods have a sample missing.
+const LONGEST_STEP: f64 = 1.5;
+
+/// Greatest rate, rad/s, and force, m/s², below which a flat top is no sensor at its limit: 3 °/s is less
+/// than any gyro's range, 1.5 g than any accelerometer's.
+const SMALLEST_RANGES: [f64; 2] = [0.05, 15.0];
+/// Samples of a flat top: a signal that is not cut stands at its greatest value for one.
+const FLAT: usize = 3;
+/// Part of neighbours that may be equal to the last digit where a signal is not coarsely written.
+const COARSE: f64 = 0.05;
+
+/// The rows of three gyros and three accelerometers, of whatever kind; none where one of them is missing.
+#[must_use]
+pub fn rows(body: &Body) -> Option<Cow<'_, [ImuRow]>> {
+    match body {
+        Body::Imu(rows) => Some(Cow::Borrowed(rows)),
+        Body::Static(rows) => rows.iter().map(row).collect::<Option<Vec<_>>>().map(Cow::Owned),
+        Body::Stage(_) | Body::Rotating(_) | Body::Dwells(_) => None,
+    }
+}
+
+fn row(row: &StaticRow) -> Option<ImuRow> {
+    Some(ImuRow { line: row.line, time_s: row.time_s, sample: row.imu? })
+}
+
+/// The sample period, s: the header's, unless over all the rows it and the times come apart by more than
+/// a sample. Times may be rounded, so their mean counts, of the steps without a missing sample.
+#[must_use]
+pub fn period(rate_hz: Option<f64>, rows: &[ImuRow]) -> f64 {
+    let steps = || rows.windows(2).map(|pair| pair[1].time_s - pair[0].time_s);
+    let mut sorted: Vec<f64> = steps().collect();
+    let middle = sorted.len() / 2;
+    if sorted.is_empty() {
+        return rate_hz.map_or(1.0, |rate| 1.0 / rate);
+    }
+    let longest = LONGEST_STEP * *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let (sum, count) = steps()
+        .filter(|step| *step <= longest)
+        .fold((0.0, 0.0), |(sum, count), step| (sum + step, count + 1.0));
+    let stated = rate_hz.map(|rate| 1.0 / rate);
+    stated.filter(|stated| (sum - count * stated).abs() <= *stated).unwrap_or(sum / count)
+}
+
+/// The samples of rows; their time counts from when the first one began.
+pub fn samples(rows: &[ImuRow], period_s: f64) -> impl Iterator<Item = InertialSample> + '_ {
+    let begin = begin(rows, period_s);
+    let limits = limits(rows);
+    let mut carried = [0.0; 3];
+    rows.iter().map(move |row| {
+        let mut turned = [AngleIncrement::default(); 3];
+        for (axis, rate) in row.sample.rates_rad_s.into_iter().enumerate() {
+            turned[axis] = AngleIncrement::from_rad(rate * period_s, &mut carried[axis]);
+        }
+        let is_cut = channels(row).zip(limits).any(|(value, limit)| value.abs() >= limit);
+        InertialSample {
+            time: Instant::from_seconds(row.time_s - begin),
+            turned,
+            force: Some(row.sample.force_m_s2.map(SpecificForce::from_m_per_s2)),
+            is_clipped: is_cut || turned.iter().any(|turned| turned.is_saturated()),
+        }
+    })
+}
+
+/// When the first sample began, s on the recorder's clock.
+#[must_use]
+pub fn begin(rows: &[ImuRow], period_s: f64) -> f64 {
+    rows.first().map_or(0.0, |row| row.time_s) - period_s
+}
+
+/// The three rates, then the three forces.
+fn channels(row: &ImuRow) -> impl Iterator<Item = f64> + '_ {
+    row.sample.rates_rad_s.into_iter().chain(row.sample.force_m_s2)
+}
+
+/// Where each channel is cut, infinite where it is not. A recording does not say what its sensors can
+/// measure, but a sensor at its limit shows one greatest value again and again.
+fn limits(rows: &[ImuRow]) -> [f64; 6] {
+    std::array::from_fn(|channel| {
+        let values = || rows.iter().filter_map(|row| channels(row).nth(channel)).map(f64::abs);
+        let greatest = values().fold(0.0, f64::max);
+        let smallest = SMALLEST_RANGES[channel / 3];
+        let is_cut = greatest > smallest && is_cut(values, greatest, smallest);
+        if is_cut { greatest } else { f64::INFINITY }
+    })
+}
+
+/// Whether a signal stands at its greatest value for several samples, which others do not share.
+fn is_cut<I: Iterator<Item = f64>>(values: impl Fn() -> I, greatest: f64, smallest: f64) -> bool {
+    let (mut run, mut longest) = (0, 0);
+    let (mut equal, mut large) = (0.0, 0.0);
+    let mut before = 0.0;
+    for value in values() {
+        run = if value == greatest { run + 1 } else { 0 };
+        longest = longest.max(run);
+        if value > smallest && value < greatest {
+            large += 1.0;
+            equal += f64::from(u8::from(value == before));
+        }
+        before = value;
+    }
+    longest >= FLAT && equal <= COARSE * large
+}
