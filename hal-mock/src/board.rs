@@ -90,7 +90,7 @@ where
 
     fn chip(&self, select: Select) -> &dyn SpiChip<Plant<'a>> {
         match select {
-            Select::Gyro => &self.gyro,
+            Select::Gyro | Select::GyroRight | Select::GyroDown => &self.gyro,
             Select::Accelerometer => &self.accelerometer,
             Select::Encoder | Select::InnerEncoder => &self.encoder,
             Select::Actuator | Select::InnerActuator => &self.actuator,
@@ -99,7 +99,7 @@ where
 
     fn chip_and_plant(&mut self, select: Select) -> (&mut dyn SpiChip<Plant<'a>>, &mut Plant<'a>) {
         let chip: &mut dyn SpiChip<Plant<'a>> = match select {
-            Select::Gyro => &mut self.gyro,
+            Select::Gyro | Select::GyroRight | Select::GyroDown => &mut self.gyro,
             Select::Accelerometer => &mut self.accelerometer,
             Select::Encoder | Select::InnerEncoder => &mut self.encoder,
             Select::Actuator | Select::InnerActuator => &mut self.actuator,

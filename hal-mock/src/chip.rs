@@ -7,8 +7,12 @@ use crate::violation::Violations;
 /// The select line of one chip on the board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Select {
-    /// The converter of the precise gyro.
+    /// The converter of the precise gyro; of a vehicle's three, that of the one forward.
     Gyro,
+    /// The converter of a vehicle's gyro to the right.
+    GyroRight,
+    /// The converter of a vehicle's gyro down.
+    GyroDown,
     /// The accelerometer on the platform.
     Accelerometer,
     /// The encoder of the stage.

@@ -11,6 +11,9 @@ pub const EARTH_RATE_RAD_S: f64 = 7.292_115e-5;
 /// Normal gravity at the equator, m/s² (WGS 84, NIMA TR8350.2, table 3.4).
 const GRAVITY_EQUATOR_M_S2: f64 = 9.780_325_335_9;
 
+/// Semi-major axis, m (WGS 84, NIMA TR8350.2, table 3.1).
+const SEMI_MAJOR_M: f64 = 6_378_137.0;
+
 /// Constant of Somigliana's formula (WGS 84, NIMA TR8350.2, table 3.4).
 const SOMIGLIANA: f64 = 0.001_931_852_652_41;
 
@@ -24,6 +27,16 @@ pub fn normal_gravity_m_s2(latitude_rad: f64) -> f64 {
     let square = sine * sine;
     GRAVITY_EQUATOR_M_S2 * (1.0 + SOMIGLIANA * square)
         / libm::sqrt(1.0 - ECCENTRICITY_SQUARED * square)
+}
+
+/// Radii of curvature of the ellipsoid, m, along the meridian and across it, at a geodetic latitude in
+/// rad: a(1 − e²)/(1 − e² sin²φ)^³ᐟ² and a/√(1 − e² sin²φ).
+#[must_use]
+pub fn curvature_radii_m(latitude_rad: f64) -> [f64; 2] {
+    let sine = libm::sin(latitude_rad);
+    let square = 1.0 - ECCENTRICITY_SQUARED * sine * sine;
+    let transverse_m = SEMI_MAJOR_M / libm::sqrt(square);
+    [transverse_m * (1.0 - ECCENTRICITY_SQUARED) / square, transverse_m]
 }
 
 /// Earth rate in north, east, down, rad/s, at a geodetic latitude in rad.
@@ -147,7 +160,7 @@ pub(crate) fn multiply(left: &Matrix, right: &Matrix) -> Matrix {
 }
 
 /// The transposed matrix times a vector, which is the vector as a row times the matrix.
-fn apply_transposed(matrix: &Matrix, vector: [f64; 3]) -> [f64; 3] {
+pub(crate) fn apply_transposed(matrix: &Matrix, vector: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|column| {
         vector[0] * matrix[0][column]
             + vector[1] * matrix[1][column]

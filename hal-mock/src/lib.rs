@@ -15,6 +15,12 @@
 //!                             └─▶ encoder ─▶ slip ─▶         accelerometer, lever ───▶
 //! ```
 //!
+//! Or a vehicle that stands and drives ([`vehicle`]), with three gyros and accelerometers fixed to it:
+//!
+//! ```text
+//!  legs, events ─▶ route ─▶ motion on the rotating ellipsoid ─∫ω, ∫f─▶ gyros, accelerometers ─▶ sample
+//! ```
+//!
 //! Or around a firmware that turns the stage itself, in virtual time, at the level of registers:
 //!
 //! ```text
@@ -25,7 +31,8 @@
 //!  driver ⇄ i2c ⇄ lsm6dsl ◀─rates, forces── base that sways
 //! ```
 //!
-//! A two-frame mount ([`gimbal`]) has six chips around a plant of its own.
+//! A two-frame mount ([`gimbal`]) has six chips around a plant of its own, a vehicle
+//! ([`vehicle::board`]) three converters and an accelerometer.
 //!
 //! This crate is an oracle. It carries its own reading of the physics, by full rotation matrices, and
 //! never depends on the `orientation` crate, so that it can catch that crate's mistakes.
@@ -43,6 +50,7 @@
 pub mod accelerometer;
 pub mod ads1262;
 pub mod adxl355;
+mod assembly;
 pub mod board;
 pub mod chip;
 pub mod clock;
@@ -65,5 +73,6 @@ pub mod stage;
 pub mod temperature;
 pub mod tmc5160;
 pub mod turntable;
+pub mod vehicle;
 pub mod violation;
 pub mod world;

@@ -156,4 +156,8 @@ pub(crate) mod source {
     pub const COARSE_RATE: u64 = 10;
     /// White noise of the coarse accelerometers, three axes in turn.
     pub const COARSE_FORCE: u64 = 11;
+    /// The seeds of the three gyros of a vehicle: each has all of the streams above to itself.
+    pub const VEHICLE_GYROS: [u64; 3] = [12, 13, 14];
+    /// What a drawn day of a vehicle is like.
+    pub const VEHICLE_SCENARIO: u64 = 15;
 }

@@ -274,7 +274,7 @@ impl Around for Plan {
 /// The place of a chip in [`Plan::buses`].
 fn place(select: Select) -> usize {
     match select {
-        Select::Gyro => 0,
+        Select::Gyro | Select::GyroRight | Select::GyroDown => 0,
         Select::Accelerometer => 1,
         Select::Encoder | Select::InnerEncoder => 2,
         Select::Actuator | Select::InnerActuator => 3,

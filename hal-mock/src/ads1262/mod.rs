@@ -20,12 +20,15 @@ use embassy_time::Instant;
 use crate::chip::{ReadyLine, SpiChip, Transaction};
 use crate::clock::period;
 use crate::environment::AnalogueInput;
-use crate::violation::Violations;
+use crate::violation::{Misuse, Violations};
 use analogue::{Selected, Voltages};
 use registers::Registers;
 
 /// Bit of the status byte: the conversion was not read before.
 const STATUS_NEW: u8 = 0x40;
+
+/// The command that stands for the START pin where it is misused.
+const START1: u8 = 0x08;
 
 /// Conversions under way.
 #[derive(Clone, Copy, Debug)]
@@ -133,6 +136,18 @@ impl Ads1262 {
     /// From now on a clock is found at the pins, which the status byte shows.
     pub fn clock_externally(&mut self) {
         self.has_external_clock = true;
+    }
+
+    /// The level of the START pin changes at `at`: conversions begin with its rise, in one moment in all
+    /// chips that share the line, and end with its fall (section 9.5.1). Commands want it low.
+    pub fn set_start(&mut self, is_high: bool, at: Instant) {
+        if at < self.operational {
+            self.violations.record(Misuse::TooEarly, START1, at);
+        } else if is_high {
+            self.start(START1, at);
+        } else {
+            self.running = None;
+        }
     }
 
     /// Ends all sickness; voltages, clock and identity stay.

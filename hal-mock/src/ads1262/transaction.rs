@@ -147,7 +147,7 @@ impl Ads1262 {
         Phase::Command
     }
 
-    fn start(&mut self, command: u8, at: Instant) {
+    pub(super) fn start(&mut self, command: u8, at: Instant) {
         if self.registers.references() == (0, 0) && at < self.reference_since + timing::REFERENCE {
             self.violations.record(Misuse::TooEarly, command, at);
         }

@@ -33,7 +33,7 @@ use train::StageConfiguration;
 pub(crate) const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
 
 /// One degree per second in rad/s.
-const DEGREE_PER_SECOND: f64 = core::f64::consts::PI / 180.0;
+pub(crate) const DEGREE_PER_SECOND: f64 = core::f64::consts::PI / 180.0;
 
 /// Bytes of a plant: it lies in a static of a board with 96 KB.
 const LARGEST: usize = 2560;

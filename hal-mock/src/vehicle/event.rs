@@ -1,0 +1,130 @@
+//! What people do to a vehicle, and what goes wrong with its sensors.
+
+use super::Pose;
+use super::smooth::Smooth;
+
+/// Something that happens to the vehicle, standing or not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Event {
+    /// A door falls shut: body and force ring and die away.
+    Slam {
+        /// When, s from the start.
+        at_s: f64,
+        /// Frequency of the ringing, Hz, > 0.
+        frequency_hz: f64,
+        /// Its time constant, s, > 0.
+        decay_s: f64,
+        /// Amplitude of azimuth, pitch and roll, °, before it dies away.
+        angles_deg: [f64; 3],
+        /// The same of the specific force forward, right, down, m/s².
+        force_m_s2: [f64; 3],
+    },
+    /// Somebody gets in or out: the vehicle takes another level for good.
+    Boarding {
+        /// When it begins, s from the start.
+        at_s: f64,
+        /// How long it takes, s.
+        seconds: f64,
+        /// Change of pitch, °.
+        pitch_deg: f64,
+        /// Change of roll, °.
+        roll_deg: f64,
+    },
+}
+
+impl Event {
+    /// A car door: 8 Hz for some tenths of a second, a hundredth of a degree, a tenth of a m/s².
+    #[must_use]
+    pub const fn door_slam(at_s: f64) -> Self {
+        Self::Slam {
+            at_s,
+            frequency_hz: 8.0,
+            decay_s: 0.12,
+            angles_deg: [0.004, 0.008, 0.02],
+            force_m_s2: [0.1, 0.3, 0.15],
+        }
+    }
+
+    /// A person gets in on the right within 2 s.
+    #[must_use]
+    pub const fn person_boards(at_s: f64) -> Self {
+        Self::Boarding { at_s, seconds: 2.0, pitch_deg: -0.02, roll_deg: 0.06 }
+    }
+
+    /// Adds what it does at a time in s.
+    pub(super) fn add(&self, pose: &mut Pose, time_s: f64) {
+        match *self {
+            Self::Slam { at_s, frequency_hz, decay_s, angles_deg, force_m_s2 } => {
+                let ringing = Smooth::bounce(frequency_hz, decay_s, time_s - at_s);
+                if ringing == Smooth::default() {
+                    return;
+                }
+                pose.turn(angles_deg.map(|angle| ringing.times(angle.to_radians())));
+                for (sum, force) in pose.force_m_s2.iter_mut().zip(force_m_s2) {
+                    *sum += force * ringing.value;
+                }
+            }
+            Self::Boarding { at_s, seconds, pitch_deg, roll_deg } => {
+                let sunk = Smooth::blend(0.0, 1.0, seconds, time_s - at_s);
+                let [pitch, roll] =
+                    [pitch_deg, roll_deg].map(|angle| sunk.times(angle.to_radians()));
+                pose.turn([Smooth::default(), pitch, roll]);
+            }
+        }
+    }
+}
+
+/// Something that goes wrong with the sensors, for [from, until) in s; `channel` 0 to 2 are the gyros
+/// forward, right, down, 3 to 5 the accelerometers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SensorFault {
+    /// Samples that end in this time are missing.
+    Gap {
+        /// Beginning, s.
+        from_s: f64,
+        /// End, s.
+        until_s: f64,
+    },
+    /// A sensor shows its full scale, as under an overload.
+    Saturated {
+        /// Which one.
+        channel: usize,
+        /// Beginning, s.
+        from_s: f64,
+        /// End, s.
+        until_s: f64,
+    },
+    /// A sensor repeats its last value.
+    Stuck {
+        /// Which one.
+        channel: usize,
+        /// Beginning, s.
+        from_s: f64,
+        /// End, s.
+        until_s: f64,
+    },
+}
+
+impl SensorFault {
+    /// Whether the sample that ends at a time in s is missing.
+    pub(super) fn loses(&self, time_s: f64) -> bool {
+        matches!(*self, Self::Gap { from_s, until_s } if (from_s..until_s).contains(&time_s))
+    }
+
+    /// What a channel shows at a time in s instead of `value`, after `last`, with such a full scale.
+    pub(super) fn shown(&self, time_s: f64, at: usize, value: f64, last: f64, full: f64) -> f64 {
+        match *self {
+            Self::Saturated { channel, from_s, until_s }
+                if channel == at && (from_s..until_s).contains(&time_s) =>
+            {
+                full
+            }
+            Self::Stuck { channel, from_s, until_s }
+                if channel == at && (from_s..until_s).contains(&time_s) =>
+            {
+                last
+            }
+            _ => value,
+        }
+    }
+}

@@ -1,0 +1,294 @@
+//! A vehicle that stands and drives on the rotating Earth, with three gyros and three accelerometers
+//! fixed to it, axes forward, right, down: sample by sample, as a recording of kind `imu`.
+//!
+//! A list of legs says when it stands and how it drives; everything changes smoothly. A sample carries
+//! integrals over its time, as an integrating strapdown unit gives them: the three angles are true
+//! integrals of the body's inertial rate, not a rotation vector, so that coning is left to who uses
+//! them. Time counts from the start; the first sample ends one period after it.
+
+pub mod board;
+mod event;
+mod leg;
+pub mod motion;
+pub mod plant;
+pub mod scenario;
+mod sensors;
+mod smooth;
+
+pub use self::event::{Event, SensorFault};
+pub use self::leg::{Drive, Leg, Stop};
+use self::motion::{Integrals, Motion, Position};
+use self::sensors::Sensors;
+use self::smooth::Smooth;
+use crate::accelerometer::AccelerometerConfiguration;
+use crate::earth::Attitude;
+use crate::gyro::GyroConfiguration;
+use crate::instruments::BaseMotion;
+use crate::plant::sway::SwayConfiguration;
+use crate::stage::first_sample;
+use crate::temperature::TemperatureConfiguration;
+
+/// A vehicle, its sensors, its day.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VehicleConfiguration<'a> {
+    /// Geodetic latitude of the start, °, within ±89.
+    pub latitude_deg: f64,
+    /// True azimuth at the start, °, clockwise from north.
+    pub azimuth_deg: f64,
+    /// Samples per second, Hz, > 0.
+    pub rate_hz: f64,
+    /// The gyros forward, right, down; each draws for itself. Elevation and dynamics of a sensor on a
+    /// stage are not looked at; the g-sensitivity is that along the axis and along the next one.
+    pub gyros: [GyroConfiguration; 3],
+    /// Rate at which a gyro clips, rad/s (default never).
+    pub gyro_full_scale_rad_s: f64,
+    /// The accelerometers.
+    pub accelerometer: AccelerometerConfiguration,
+    /// Force at which an accelerometer clips, m/s² (default never).
+    pub accelerometer_full_scale_m_s2: f64,
+    /// From the point about which the body sways to the sensors, m, forward, right, down; above it is
+    /// negative.
+    pub lever_m: [f64; 3],
+    /// The warm-up.
+    pub temperature: TemperatureConfiguration,
+    /// What the vehicle does, in order; the run ends with the last of it.
+    pub legs: &'a [Leg],
+    /// What people do to it, in any order.
+    pub events: &'a [Event],
+    /// What goes wrong with the sensors, in any order.
+    pub faults: &'a [SensorFault],
+}
+
+impl Default for VehicleConfiguration<'_> {
+    /// Perfect sensors at 100 Hz in a vehicle on the equator that faces north and has nowhere to go.
+    fn default() -> Self {
+        Self {
+            latitude_deg: 0.0,
+            azimuth_deg: 0.0,
+            rate_hz: 100.0,
+            gyros: [GyroConfiguration::default(); 3],
+            gyro_full_scale_rad_s: f64::INFINITY,
+            accelerometer: AccelerometerConfiguration::default(),
+            accelerometer_full_scale_m_s2: f64::INFINITY,
+            lever_m: [0.0; 3],
+            temperature: TemperatureConfiguration::default(),
+            legs: &[],
+            events: &[],
+            faults: &[],
+        }
+    }
+}
+
+impl<'a> VehicleConfiguration<'a> {
+    /// Length of the whole run, s.
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        self.legs.iter().map(Leg::seconds).sum()
+    }
+
+    /// From when until when the vehicle stands, s, stop by stop.
+    pub fn stops(&self) -> impl Iterator<Item = [f64; 2]> + 'a {
+        let mut end_s = 0.0;
+        self.legs.iter().filter_map(move |leg| {
+            let from_s = end_s;
+            end_s += leg.seconds();
+            matches!(leg, Leg::Stop(_)).then_some([from_s, end_s])
+        })
+    }
+
+    /// The same vehicle without its sensors.
+    #[must_use]
+    pub fn motion(&self) -> Motion<'a> {
+        let [latitude_rad, azimuth_rad] =
+            [self.latitude_deg, self.azimuth_deg].map(f64::to_radians);
+        Motion::new(self.legs, self.events, latitude_rad, azimuth_rad, self.lever_m)
+    }
+}
+
+/// One sample of a strapdown unit.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct VehicleSample {
+    /// Time of its end, s from the start.
+    pub time_s: f64,
+    /// Integral of each gyro's rate over the sample, rad, about forward, right, down.
+    pub turned_rad: [f64; 3],
+    /// Mean of each accelerometer over the sample, m/s², along forward, right, down.
+    pub force_m_s2: [f64; 3],
+    /// Whether a sensor was at its full scale.
+    pub is_clipped: bool,
+}
+
+/// What the sensors cannot know, at the end of the latest sample; for checking only.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VehicleTruth {
+    /// Attitude of the body; the azimuth is not wrapped.
+    pub attitude: Attitude,
+    /// Latitude, and longitude from the start.
+    pub position: Position,
+    /// North and east from the start, m ([`Position::displacement_m`]).
+    pub displacement_m: [f64; 2],
+    /// Velocity over the ground, north, east, down, m/s.
+    pub velocity_m_s: [f64; 3],
+    /// Turn-on biases of the gyros, rad/s.
+    pub gyro_bias_rad_s: [f64; 3],
+    /// Scale factor errors of the gyros, 1.
+    pub gyro_scale_error: [f64; 3],
+    /// Biases of the accelerometers, m/s².
+    pub accelerometer_bias_m_s2: [f64; 3],
+}
+
+impl VehicleTruth {
+    /// The truth of this moment.
+    fn of(motion: &Motion, sensors: &Sensors) -> Self {
+        let biases = sensors.biases();
+        Self {
+            attitude: motion.attitude(),
+            position: *motion.position(),
+            displacement_m: motion.displacement_m(),
+            velocity_m_s: motion.velocity_m_s(),
+            gyro_bias_rad_s: biases.rate_rad_s,
+            gyro_scale_error: sensors.scale_errors(),
+            accelerometer_bias_m_s2: biases.force_m_s2,
+        }
+    }
+}
+
+/// A vehicle at work; an iterator of samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Vehicle<'a> {
+    rate_hz: f64,
+    motion: Motion<'a>,
+    sensors: Sensors<'a>,
+    faults: &'a [SensorFault],
+    before: Integrals,
+    taken: u64,
+    count: u64,
+}
+
+impl<'a> Vehicle<'a> {
+    /// The vehicle of a configuration; the seed fixes everything random in it.
+    #[must_use]
+    pub fn new(configuration: &VehicleConfiguration<'a>, seed: u64) -> Self {
+        Self {
+            rate_hz: configuration.rate_hz,
+            motion: configuration.motion(),
+            sensors: Sensors::new(configuration, configuration.rate_hz, seed),
+            faults: configuration.faults,
+            before: Integrals::default(),
+            taken: 0,
+            count: first_sample(configuration.seconds(), configuration.rate_hz),
+        }
+    }
+
+    /// The next sample that is not missing; none after the last leg.
+    pub fn next_sample(&mut self) -> Option<VehicleSample> {
+        loop {
+            let sample = self.take()?;
+            if !self.faults.iter().any(|fault| fault.loses(sample.time_s)) {
+                return Some(sample);
+            }
+        }
+    }
+
+    /// The truth behind the latest sample.
+    #[must_use]
+    pub fn truth(&self) -> VehicleTruth {
+        VehicleTruth::of(&self.motion, &self.sensors)
+    }
+
+    /// The next sample, missing or not.
+    fn take(&mut self) -> Option<VehicleSample> {
+        if self.taken == self.count {
+            return None;
+        }
+        self.taken += 1;
+        let time_s = self.taken as f64 / self.rate_hz;
+        self.motion.advance(time_s);
+        let felt = self.motion.integrals().means(&self.before, 1.0 / self.rate_hz);
+        self.before = *self.motion.integrals();
+        let (shown, is_clipped) = self.sensors.sample(time_s, &felt);
+        let turned_rad = shown.rate_rad_s.map(|rate| rate / self.rate_hz);
+        Some(VehicleSample { time_s, turned_rad, force_m_s2: shown.force_m_s2, is_clipped })
+    }
+}
+
+impl Iterator for Vehicle<'_> {
+    type Item = VehicleSample;
+
+    fn next(&mut self) -> Option<VehicleSample> {
+        self.next_sample()
+    }
+}
+
+/// How the vehicle moves at one moment, over the ground.
+#[derive(Clone, Copy, Debug, Default)]
+struct Pose {
+    /// Attitude of the body, rad.
+    azimuth: Smooth,
+    pitch: Smooth,
+    roll: Smooth,
+    /// Where the road leads, rad, how fast, m/s, and how steep, height per way.
+    heading: Smooth,
+    speed: Smooth,
+    slope: Smooth,
+    /// What shakes the accelerometers, m/s².
+    force_m_s2: [f64; 3],
+}
+
+impl Pose {
+    /// Level and at rest, facing an azimuth in rad.
+    fn facing(azimuth_rad: f64) -> Self {
+        let azimuth = Smooth { value: azimuth_rad, rate: 0.0 };
+        Self { azimuth, heading: azimuth, ..Self::default() }
+    }
+
+    /// Turns the body by small azimuth, pitch and roll.
+    fn turn(&mut self, [azimuth, pitch, roll]: [Smooth; 3]) {
+        self.azimuth = self.azimuth + azimuth;
+        self.pitch = self.pitch + pitch;
+        self.roll = self.roll + roll;
+    }
+
+    /// Turns the body by so much of a sway as there is at a time in s.
+    fn sway(&mut self, sway: &SwayConfiguration, presence: Smooth, time_s: f64) {
+        if !sway.is_active() {
+            return;
+        }
+        let BaseMotion { lean, rates_rad_s } = sway.at(time_s);
+        let angles = [lean.azimuth_rad, lean.pitch_rad, lean.roll_rad];
+        let axis = |index: usize| Smooth { value: angles[index], rate: rates_rad_s[index] };
+        self.turn([0, 1, 2].map(|index| axis(index) * presence));
+    }
+
+    /// Attitude and its rates.
+    fn base(&self) -> BaseMotion {
+        BaseMotion {
+            lean: Attitude {
+                azimuth_rad: self.azimuth.value,
+                pitch_rad: self.pitch.value,
+                roll_rad: self.roll.value,
+            },
+            rates_rad_s: [self.azimuth, self.pitch, self.roll].map(|angle| angle.rate),
+        }
+    }
+
+    /// Velocity north, east, down, m/s.
+    fn velocity_m_s(&self) -> [f64; 3] {
+        if self.speed == Smooth::default() {
+            return [0.0; 3];
+        }
+        let (sine, cosine) = libm::sincos(self.heading.value);
+        [self.speed.value * cosine, self.speed.value * sine, -(self.speed * self.slope).value]
+    }
+
+    /// Its derivative on axes that stay level and northward, m/s².
+    fn acceleration_m_s2(&self) -> [f64; 3] {
+        if self.speed == Smooth::default() {
+            return [0.0; 3];
+        }
+        let (sine, cosine) = libm::sincos(self.heading.value);
+        let (along, across) = (self.speed.rate, self.speed.value * self.heading.rate);
+        let down = -(self.speed * self.slope).rate;
+        [along * cosine - across * sine, along * sine + across * cosine, down]
+    }
+}

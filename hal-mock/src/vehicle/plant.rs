@@ -1,0 +1,163 @@
+//! The vehicle as the chips of its board see it, in virtual time.
+//!
+//! ```text
+//!  motion ─∫ω─▶ gyro ─volts─▶ its converter, three of them      ∫f ─force─▶ accelerometer
+//! ```
+//!
+//! A sigma-delta converter and the filter of an accelerometer average: every reading is the mean since
+//! the reading before it by the same chip, or over one period where that is long ago. Chips that run in
+//! step so see the same stretches of time, others each its own. Time counts from the start of the
+//! clock and must not fall.
+
+use embassy_time::Instant;
+
+use super::motion::{Integrals, Motion};
+use super::sensors::{Means, Sensors, gyro_seeds};
+use super::{VehicleConfiguration, VehicleTruth};
+use crate::environment::{AnalogueInput, ForceInput};
+use crate::noise::{White, source};
+use crate::plant::{DEGREE_PER_SECOND, STANDARD_GRAVITY_M_S2, seconds};
+use crate::temperature::{TemperatureConfiguration, Thermometer};
+
+/// Whose reading of the accelerometer is marked, behind the three gyros.
+const ACCELEROMETER: usize = 3;
+
+/// Periods after which a reading no longer reaches back to the one before it.
+const LONG_AGO: f64 = 1.5;
+
+/// A vehicle with the analogue electronics of its gyros.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VehiclePlantConfiguration<'a> {
+    /// The vehicle; `rate_hz` is the conversion rate of the converters. The gyros' full scale (default
+    /// 40 °/s: ±2 V) clips before the converter; gaps are those of the bus and not looked at.
+    pub vehicle: VehicleConfiguration<'a>,
+    /// Output rate of the accelerometer, Hz, > 0 (default 125).
+    pub accelerometer_hz: f64,
+    /// Scale factor of the gyros, V per rad/s (default 50 mV per °/s).
+    pub gyro_volts_per_rad_s: f64,
+    /// White noise of each converter, V RMS per conversion.
+    pub converter_noise_v: f64,
+}
+
+impl Default for VehiclePlantConfiguration<'_> {
+    /// Perfect sensors in a vehicle that has nowhere to go.
+    fn default() -> Self {
+        Self {
+            vehicle: VehicleConfiguration {
+                gyro_full_scale_rad_s: 40.0 * DEGREE_PER_SECOND,
+                ..VehicleConfiguration::default()
+            },
+            accelerometer_hz: 125.0,
+            gyro_volts_per_rad_s: 0.05 / DEGREE_PER_SECOND,
+            converter_noise_v: 0.0,
+        }
+    }
+}
+
+/// What had been integrated when a chip read last.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Mark {
+    time_s: f64,
+    integrals: Integrals,
+}
+
+/// The plant at work.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VehiclePlant<'a> {
+    motion: Motion<'a>,
+    sensors: Sensors<'a>,
+    temperature: TemperatureConfiguration,
+    thermometer: Thermometer,
+    converters: [White; 3],
+    volts_per_rad_s: f64,
+    /// Of each gyro's converter and of the accelerometer.
+    marks: [Mark; 4],
+    /// Of a converter and of the accelerometer, s.
+    periods_s: [f64; 2],
+}
+
+impl<'a> VehiclePlant<'a> {
+    /// A plant at the start of the clock; the seed fixes everything random in it.
+    #[must_use]
+    #[inline(never)]
+    pub fn new(configuration: &VehiclePlantConfiguration<'a>, seed: u64) -> Self {
+        let c = configuration;
+        let converter = |own| White::new(c.converter_noise_v, own, source::CONVERTER);
+        Self {
+            motion: c.vehicle.motion(),
+            sensors: Sensors::new(&c.vehicle, c.accelerometer_hz, seed),
+            temperature: c.vehicle.temperature,
+            thermometer: Thermometer::new(&c.vehicle.temperature, seed),
+            converters: gyro_seeds(seed).map(converter),
+            volts_per_rad_s: c.gyro_volts_per_rad_s,
+            marks: [Mark::default(); 4],
+            periods_s: [1.0 / c.vehicle.rate_hz, 1.0 / c.accelerometer_hz],
+        }
+    }
+
+    /// What the sensors cannot know, as of the latest reading.
+    #[must_use]
+    pub fn truth(&self) -> VehicleTruth {
+        VehicleTruth::of(&self.motion, &self.sensors)
+    }
+
+    /// The truth at `now`, which is not before the latest reading.
+    #[must_use]
+    pub fn truth_at(&self, now: Instant) -> VehicleTruth {
+        let mut motion = self.motion.clone();
+        motion.advance(seconds(now));
+        VehicleTruth::of(&motion, &self.sensors)
+    }
+
+    /// The gyro about one axis, 0 to 2 for forward, right, down, as its converter sees it.
+    pub fn gyro(&mut self, axis: usize) -> GyroOutput<'_, 'a> {
+        GyroOutput { plant: self, axis }
+    }
+
+    /// Means over the sample of a chip that ends at a time in s.
+    fn felt(&mut self, chip: usize, time_s: f64) -> Means {
+        let period_s = self.periods_s[chip / ACCELEROMETER];
+        if time_s - self.marks[chip].time_s > LONG_AGO * period_s {
+            self.motion.advance(time_s - period_s);
+            self.marks[chip] = self.mark();
+        }
+        self.motion.advance(time_s);
+        let (from, to) = (self.marks[chip], self.mark());
+        self.marks[chip] = to;
+        to.integrals.means(&from.integrals, to.time_s - from.time_s)
+    }
+
+    fn mark(&self) -> Mark {
+        Mark { time_s: self.motion.time_s(), integrals: *self.motion.integrals() }
+    }
+}
+
+/// The accelerometer's axes are those of the vehicle.
+impl ForceInput for VehiclePlant<'_> {
+    fn force_g(&mut self, now: Instant) -> [f64; 3] {
+        let time_s = seconds(now);
+        let felt = self.felt(ACCELEROMETER, time_s);
+        self.sensors.force(time_s, &felt).map(|force| force / STANDARD_GRAVITY_M_S2)
+    }
+
+    fn temperature_c(&mut self, now: Instant) -> f64 {
+        self.thermometer.sample(self.temperature.at(seconds(now)))
+    }
+}
+
+/// One gyro of the vehicle: what its converter sees.
+#[derive(Debug)]
+pub struct GyroOutput<'p, 'a> {
+    plant: &'p mut VehiclePlant<'a>,
+    axis: usize,
+}
+
+impl AnalogueInput for GyroOutput<'_, '_> {
+    fn volts(&mut self, now: Instant) -> f64 {
+        let Self { plant, axis } = self;
+        let time_s = seconds(now);
+        let felt = plant.felt(*axis, time_s);
+        let rate_rad_s = plant.sensors.rate(*axis, time_s, &felt);
+        rate_rad_s * plant.volts_per_rad_s + plant.converters[*axis].sample()
+    }
+}
