@@ -62,8 +62,8 @@ impl Method {
     fn of(body: &Body) -> Self {
         match body.kind() {
             Kind::Rotating => Self::Rotating,
-            Kind::Imu | Kind::Static => Self::Siap,
-            Kind::Stage | Kind::Dwells | Kind::Spin => Self::Stepwise,
+            _ if stops::samples::rows(body).is_some() => Self::Siap,
+            _ => Self::Stepwise,
         }
     }
 }

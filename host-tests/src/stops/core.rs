@@ -104,13 +104,20 @@ impl Inclination {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Minimum {
+    pub at: f64,
+    pub value: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plain {
-    pub azimuth: f64,
-    pub start: f64,
-    pub sigma: f64,
-    pub brent: f64,
-    pub euler: f64,
     pub inclination: Inclination,
+    pub azimuth: f64,
+    pub sigma: f64,
+    pub angle: Minimum,
+    pub euler: Minimum,
+    pub ratio: f64,
+    pub ratio_sigma: f64,
 }
 
 #[derive(Clone, Debug)]

@@ -93,19 +93,21 @@ fn limits(rows: &[ImuRow]) -> [f64; 6] {
     })
 }
 
-/// Whether a signal stands at its greatest value for several samples, which others do not share.
+/// Whether a signal stands at its greatest value for several samples, which others do not share. One that
+/// stands there most of the time is steady.
 fn is_cut<I: Iterator<Item = f64>>(values: impl Fn() -> I, greatest: f64, smallest: f64) -> bool {
-    let (mut run, mut longest) = (0, 0);
+    let (mut run, mut longest, mut count) = (0, 0, 0);
     let (mut equal, mut large) = (0.0, 0.0);
     let mut before = 0.0;
     for value in values() {
         run = if value == greatest { run + 1 } else { 0 };
         longest = longest.max(run);
+        count += 1;
         if value > smallest && value < greatest {
             large += 1.0;
             equal += f64::from(u8::from(value == before));
         }
         before = value;
     }
-    longest >= FLAT && equal <= COARSE * large
+    longest >= FLAT && 2 * longest < count && equal <= COARSE * large
 }

@@ -1,5 +1,6 @@
 //! The JSON object of an alignment from stops.
 
+use orientation::units::wrapped;
 use serde::Serialize;
 
 use super::columns;
@@ -62,21 +63,41 @@ pub struct Object {
     pub stops: Vec<Stop>,
 }
 
-/// The paper's method: azimuths of the least inclination U between the first stop and the last.
+/// The paper's method: azimuths of the least inclination U between the first stop and the last. It finds
+/// that at the first stop; what the gyros turned leads to the end.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Plain {
-    /// At the end, in closed form.
-    pub azimuth_deg: f64,
+    /// At the end, in closed form, [0, 360); only with `ok`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub azimuth_deg: Option<f64>,
     /// Its standard deviation.
     pub sigma_deg: f64,
-    /// At the start, in closed form.
+    /// At the first stop, in closed form.
     pub start_azimuth_deg: f64,
-    /// At the end, where Brent's search finds the least U in the angle form.
+    /// At the first stop, where Brent's search finds the least U in the angle form.
     pub brent_deg: f64,
     /// The same in the paper's form.
     pub euler_deg: f64,
-    /// The least U itself.
+    /// The least U itself, in the angle form.
     pub inclination_deg: f64,
+}
+
+impl Plain {
+    /// Of a conclusion, where it has one.
+    #[must_use]
+    pub fn of(conclusion: &Conclusion) -> Option<Self> {
+        let plain = conclusion.plain.as_ref()?;
+        let turned = conclusion.verdict.ok().zip(conclusion.start);
+        let turned = turned.map(|(end, start)| end.angle - start.angle);
+        Some(Self {
+            azimuth_deg: turned.map(|turned| degrees(wrapped(plain.azimuth + turned))),
+            sigma_deg: degrees(plain.sigma),
+            start_azimuth_deg: degrees(plain.azimuth),
+            brent_deg: degrees(plain.angle.at),
+            euler_deg: degrees(plain.euler.at),
+            inclination_deg: degrees(plain.angle.value),
+        })
+    }
 }
 
 /// A stop.
@@ -101,19 +122,6 @@ pub struct Excluded {
     pub stop: usize,
     /// Why.
     pub reason: String,
-}
-
-impl From<&core::Plain> for Plain {
-    fn from(plain: &core::Plain) -> Self {
-        Self {
-            azimuth_deg: degrees(plain.azimuth),
-            sigma_deg: degrees(plain.sigma),
-            start_azimuth_deg: degrees(plain.start),
-            brent_deg: degrees(plain.brent),
-            euler_deg: degrees(plain.euler),
-            inclination_deg: degrees(plain.inclination.angle(plain.start)),
-        }
-    }
 }
 
 impl Stop {
@@ -158,7 +166,7 @@ pub fn object(replay: &Replay, conclusion: &Conclusion, truth: &Truth) -> Object
         assumed: replay.assumed.clone(),
         bias_dph: conclusion.biases.map(|(biases, _)| biases.map(degrees_per_hour)),
         bias_sigma_dph: conclusion.biases.map(|(_, sigmas)| sigmas.map(degrees_per_hour)),
-        plain: conclusion.plain.as_ref().map(Into::into),
+        plain: Plain::of(conclusion),
         stops: stops.iter().map(|stop| Stop::of(stop, replay.zero_s)).collect(),
     }
 }

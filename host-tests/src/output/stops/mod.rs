@@ -1,5 +1,6 @@
 //! What the user sees of a vehicle that stopped: result block, JSON object, campaign.
 
+pub mod campaign;
 pub mod json;
 pub mod text;
 

@@ -33,8 +33,8 @@ pub fn block(
         found(out, conclusion)?;
         budget(out, &conclusion.budget)?;
     }
-    if let Some(plain) = &conclusion.plain {
-        papers(out, &plain.into())?;
+    if let Some(plain) = Plain::of(conclusion) {
+        papers(out, &plain)?;
     }
     line(out, "assumed", format_args!("{}", replay.assumed.join("; ")))?;
     stops(out, replay)
@@ -66,14 +66,16 @@ fn found(out: &mut impl Write, conclusion: &Conclusion) -> fmt::Result {
 
 /// The paper's method beside it.
 fn papers(out: &mut impl Write, plain: &Plain) -> fmt::Result {
-    let Plain { azimuth_deg, sigma_deg, start_azimuth_deg, brent_deg, euler_deg, .. } = *plain;
+    let Plain { sigma_deg, start_azimuth_deg, brent_deg, euler_deg, .. } = *plain;
     writeln!(out, "  the paper's method, first stop and last, gyros taken as free of bias")?;
-    let angle =
-        format_args!("{azimuth_deg:.4}° ± {sigma_deg:.4}°, {start_azimuth_deg:.4}° at the start");
-    line(out, "  closed form", angle)?;
-    let [brent, euler] = [brent_deg, euler_deg].map(|angle| azimuth_error(angle, azimuth_deg));
+    if let Some(azimuth) = plain.azimuth_deg {
+        line(out, "  azimuth", format_args!("{azimuth:.4}° ± {sigma_deg:.4}° (1σ)"))?;
+    }
+    line(out, "  at the start", format_args!("{start_azimuth_deg:.4}° in closed form"))?;
+    let [brent, euler] =
+        [brent_deg, euler_deg].map(|angle| azimuth_error(angle, start_azimuth_deg));
     line(out, "  least angle", format_args!("{brent:+.2e}° from that, by Brent's search"))?;
-    line(out, "  least √(ΔΘ² + ΔΦ²)", format_args!("{euler:+.2e}° from that"))?;
+    line(out, "  √(ΔΘ² + ΔΦ²)", format_args!("least {euler:+.2e}° from that"))?;
     line(out, "  U there", format_args!("{:.5}°\n", plain.inclination_deg))
 }
 

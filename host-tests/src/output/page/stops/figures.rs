@@ -1,6 +1,7 @@
 //! The paper's figures: rate errors and W over the heading error (Figs. 4 and 5), both stop criteria over
 //! time (Figs. 6 and 7), U over the azimuth (Fig. 9).
 
+use orientation::earth::Latitude;
 use orientation::units::wrapped;
 
 use crate::output::stops::json::Object;
@@ -19,7 +20,7 @@ const LEAST_REACH_DEG: f64 = 0.02;
 pub fn azimuths(object: &Object) -> Option<Figure> {
     let with_limits = |at: f64, angle: f64, sigma: f64| (at, angle, [angle - sigma, angle + sigma]);
     let full = object.verdict.azimuth_deg.zip(object.verdict.sigma_deg);
-    let plain = object.plain.as_ref().map(|plain| (plain.azimuth_deg, plain.sigma_deg));
+    let plain = object.plain.as_ref().and_then(|plain| Some((plain.azimuth_deg?, plain.sigma_deg)));
     let (near, _) = full.or(plain)?;
     let series = [("the paper's method", 1.0, plain), ("everything that is known", 2.0, full)];
     let series = series.into_iter().filter_map(|(name, at, found)| {
@@ -38,7 +39,7 @@ pub fn azimuths(object: &Object) -> Option<Figure> {
 /// U over the whole circle, and near its minimum.
 pub fn inclinations(plain: &Plain) -> [Figure; 2] {
     let reach = (REACH_SIGMAS * degrees(plain.sigma)).clamp(LEAST_REACH_DEG, 90.0);
-    let minimum = degrees(plain.start);
+    let minimum = degrees(plain.azimuth);
     let near = (-PLACES..=PLACES).map(|i| minimum + reach * f64::from(i) / f64::from(PLACES));
     let circle = (0..=PLACES).map(|i| 360.0 * f64::from(i) / f64::from(PLACES));
     [
@@ -53,7 +54,7 @@ fn inclination(plain: &Plain, title: &str, azimuths_deg: Vec<f64>) -> Figure {
         azimuths_deg.iter().map(at).collect::<Vec<_>>()
     };
     let inclination = &plain.inclination;
-    let least = (degrees(plain.start), degrees(inclination.angle(plain.start)));
+    let least = (degrees(plain.azimuth), degrees(inclination.angle(plain.azimuth)));
     Figure {
         title: title.to_owned(),
         x: Axis::linear("azimuth azp at the start", "°"),
@@ -118,30 +119,25 @@ fn criterion(
     }
 }
 
-/// What a wrong azimuth makes of level rates at this latitude: the paper's p′ and q′, and
-/// W = 2 Ω_h |sin(δ/2)|; beside it U of this drive over the time between the stops.
-pub fn heading_error(replay: &Replay, plain: Option<&Plain>) -> Figure {
-    let horizontal = degrees_per_hour(replay.session.setting().common.latitude.horizontal_rate());
+/// What a wrong azimuth makes of level rates at a latitude: the paper's p′ and q′, and
+/// W = 2 Ω_h |sin(δ/2)|; beside it U of a drive over its seconds.
+pub fn heading_error(latitude: Latitude, drive: Option<(&Plain, f64)>) -> Figure {
+    let horizontal = degrees_per_hour(latitude.horizontal_rate());
     let over = |of: &dyn Fn(f64) -> f64| {
         let at = |i| 180.0 * f64::from(i) / f64::from(PLACES);
         (-PLACES..=PLACES).map(at).map(|error| (error, of(error.to_radians()))).collect::<Vec<_>>()
     };
+    let line = |name: &str, of: &dyn Fn(f64) -> f64| Series::new(name, Style::Line, over(of));
     let mut series = vec![
-        Series::new("p′ = Ω_h (1 − cos δ)", Style::Line, over(&|d| horizontal * (1.0 - d.cos()))),
-        Series::new("q′ = Ω_h sin δ", Style::Line, over(&|d| horizontal * d.sin())),
-        Series::new(
-            "W = 2 Ω_h |sin(δ/2)|",
-            Style::Line,
-            over(&|d| 2.0 * horizontal * (0.5 * d).sin().abs()),
-        ),
+        line("p′ = Ω_h (1 − cos δ)", &|error| horizontal * (1.0 - error.cos())),
+        line("q′ = Ω_h sin δ", &|error| horizontal * error.sin()),
+        line("W = 2 Ω_h |sin(δ/2)|", &|error| 2.0 * horizontal * (0.5 * error).sin().abs()),
     ];
-    let stops = replay.session.stops();
-    if let (Some(plain), [first, .., last]) = (plain, stops) {
-        let seconds = 0.5 * (last.from + last.to - first.from - first.to);
-        let of =
-            |d: f64| degrees_per_hour(plain.inclination.angle(wrapped(plain.start + d)) / seconds);
-        series.push(Series::new("U of this drive over its time", Style::Dashed, over(&of)));
-    }
+    series.extend(drive.map(|(plain, seconds)| {
+        let at = |error: f64| plain.inclination.angle(wrapped(plain.azimuth + error));
+        let of = |error: f64| degrees_per_hour(at(error) / seconds);
+        Series::new("U of this drive over its time", Style::Dashed, over(&of))
+    }));
     Figure {
         title: "Rate errors and W over the heading error δ (Figs. 4 and 5)".to_owned(),
         x: Axis::linear("heading error δ", "°"),

@@ -1,5 +1,6 @@
 //! The page of an alignment from stops: the figures of Szymanowski 2003, and where σ comes from.
 
+pub mod campaign;
 mod figures;
 
 use super::budget;
@@ -18,8 +19,10 @@ pub fn report(name: &str, replay: &Replay, conclusion: &Conclusion) -> Report {
     parts.extend(figures::azimuths(&object).map(Part::from));
     if let Some(plain) = &conclusion.plain {
         parts.extend(figures::inclinations(plain).map(Part::from));
-        parts.push(figures::heading_error(replay, Some(plain)).into());
-        parts.push(of_plain(&plain.into()).into());
+        let latitude = replay.session.setting().common.latitude;
+        let drive = seconds(&object.stops).map(|seconds| (plain, seconds));
+        parts.push(figures::heading_error(latitude, drive).into());
+        parts.extend(object.plain.as_ref().map(of_plain).map(Part::from));
     }
     parts.extend(figures::criteria(replay).into_iter().map(Part::from));
     if conclusion.verdict.is_ok() {
@@ -32,6 +35,12 @@ pub fn report(name: &str, replay: &Replay, conclusion: &Conclusion) -> Report {
         subtitle: subtitle(&object, conclusion),
         parts,
     }
+}
+
+/// From the middle of the first stop to that of the last, s.
+fn seconds(stops: &[Stop]) -> Option<f64> {
+    let [first, .., last] = stops else { return None };
+    Some(0.5 * (last.from_s + last.to_s - first.from_s - first.to_s))
 }
 
 fn subtitle(object: &Object, conclusion: &Conclusion) -> Vec<String> {
@@ -52,13 +61,13 @@ fn subtitle(object: &Object, conclusion: &Conclusion) -> Vec<String> {
 fn of_plain(plain: &Plain) -> Table {
     let row = |(form, azimuth): (&str, f64)| vec![form.to_owned(), format!("{azimuth:.7}")];
     let forms = [
-        ("closed form", plain.azimuth_deg),
+        ("closed form", plain.start_azimuth_deg),
         ("least angle, Brent's search", plain.brent_deg),
         ("least √(ΔΘ² + ΔΦ²), Brent's search", plain.euler_deg),
     ];
     Table {
         title: format!("The paper's method: 1σ {:.4}°", plain.sigma_deg),
-        head: named(&["form", "azimuth at the end, °"]),
+        head: named(&["form", "azimuth at the start, °"]),
         rows: forms.map(row).to_vec(),
     }
 }
