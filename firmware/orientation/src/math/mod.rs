@@ -1,4 +1,8 @@
-//! Small numerical pieces that several methods share: phasors, Cholesky factors, chi-square tails.
+//! Small numerical pieces that several methods share: phasors, rotations, Cholesky factors, chi-square
+//! tails, a bounded minimisation.
+
+pub mod brent;
+pub mod rotation;
 
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Sub, SubAssign};
 

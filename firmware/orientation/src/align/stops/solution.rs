@@ -1,0 +1,287 @@
+//! Runs the filter along a path, again and again until the start frame stands still.
+
+use super::Setting;
+use super::block::Block;
+use super::filter::{
+    Filter, LATITUDE, Measurement, NOW, PLACE, START, STATES, force_row, rest_row,
+};
+use super::path::Path;
+use super::place::{Place, up};
+use super::stop::Stop;
+use crate::earth::EARTH_RATE;
+use crate::math::rotation::{
+    Matrix, Vector, by, difference, dot, length, product, scaled, small, transposed, turned,
+};
+use crate::signal::strapdown::{Carried, Rough};
+
+/// 1σ of the level that the first stop gives the start frame, rad; far above what it is.
+const LEVEL_SIGMA: f64 = 0.1;
+/// 1σ of its azimuth, rad: unknown.
+const AZIMUTH_SIGMA: f64 = 3.0;
+/// Repetitions, and the correction below which no further one is needed, rad.
+const REPETITIONS: u32 = 8;
+const SETTLED: f64 = 1e-8;
+/// Chi-square beyond which a block, or the rest of a stop, is left out: one healthy block in three million.
+const OUTLIER: f64 = 30.0;
+/// Least variance of what a vehicle sways, rad²: 20 milliarcseconds.
+const LEAST_SWAY: f64 = 1e-14;
+/// How much slower than a second a sway may be: the power of its angle over that of its change in a second.
+const SLOW_SWAY: f64 = 4.0;
+/// Least angle random walk that is believed, rad/√s: 1e-5 °/√h.
+const LEAST_WALK: f64 = 2.9e-9;
+/// Step by which the latitude's effect is found, rad.
+const LATITUDE_STEP: f64 = 1e-3;
+
+/// What is believed of the path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Belief {
+    /// What it shows.
+    Shown,
+    /// That nothing sways, all is quiet, nothing is left out: the limit of any estimator.
+    Ideal,
+}
+
+/// The filter at the end of the path.
+#[derive(Clone, Debug)]
+pub struct Solution {
+    /// States; of φ what is left when [`Self::frame`] is taken for the start frame.
+    pub filter: Filter,
+    /// From north, east, down at the start, frozen, to the start frame.
+    pub frame: Matrix,
+    /// Sum of squares of what blocks showed beyond the expected, over their variances, of so many degrees
+    /// of freedom.
+    pub chi_square: f64,
+    /// Those degrees.
+    pub degrees: f64,
+    /// Blocks left out.
+    pub left_out: u32,
+    /// Stops at which the vehicle turned, whose rest rates are left out.
+    pub turning: u32,
+}
+
+/// What has been carried until a moment.
+#[derive(Clone, Copy, Debug, Default)]
+struct Moment {
+    at: f64,
+    bias: Rough,
+    scale: Rough,
+}
+
+impl Moment {
+    fn of(at: f64, carried: &Carried) -> Self {
+        Self { at, bias: carried.bias, scale: carried.scale }
+    }
+}
+
+/// A run along the path with one start frame.
+struct Run<'a> {
+    setting: &'a Setting,
+    path: &'a Path<'a>,
+    /// Power of the forces' noise, (m/s²)²·s.
+    density: f64,
+    /// The place, a little farther north, where the latitude is not exact.
+    north: Option<Place>,
+    belief: Belief,
+    is_gated: bool,
+    last: Moment,
+}
+
+impl Solution {
+    /// Solves from a start frame that is nearly right.
+    #[must_use]
+    pub fn of(setting: &Setting, path: &Path, frame: &Matrix) -> Self {
+        let mut solution = Self::along(setting, path, frame, Belief::Shown, false);
+        for _ in 1..REPETITIONS {
+            let correction = solution.filter.three(START);
+            let frame = product(&by(&correction), &solution.frame);
+            solution = Self::along(setting, path, &frame, Belief::Shown, true);
+            if length(&correction) < SETTLED {
+                break;
+            }
+        }
+        solution
+    }
+
+    /// One run along the path.
+    #[must_use]
+    #[inline(never)]
+    pub fn along(
+        setting: &Setting,
+        path: &Path,
+        frame: &Matrix,
+        belief: Belief,
+        is_gated: bool,
+    ) -> Self {
+        let common = &setting.common;
+        let filter = Filter::new(
+            &start_covariance(frame),
+            setting.bias_sigma(),
+            common.scale_sigma,
+            common.accelerometer_bias_sigma,
+            common.latitude_sigma,
+        );
+        let (chi_square, degrees, left_out, turning) = (0.0, 0.0, 0, 0);
+        let mut solution = Self { filter, frame: *frame, chi_square, degrees, left_out, turning };
+        let is_exact = common.latitude_sigma <= 0.0;
+        let is_ideal = belief == Belief::Ideal;
+        let mut run = Run {
+            setting,
+            path,
+            density: if is_ideal { path.stated_density } else { path.density() }.max(1e-12),
+            north: (!is_exact).then(|| Place::moved(common.latitude, LATITUDE_STEP)),
+            belief,
+            is_gated,
+            last: Moment { at: path.start, ..Moment::default() },
+        };
+        for index in 0..path.stops.len() {
+            run.stop(&mut solution, index);
+        }
+        run.carry(&mut solution, Moment::of(path.now, &path.carried));
+        solution
+    }
+}
+
+impl Run<'_> {
+    fn stop(&mut self, solution: &mut Solution, index: usize) {
+        let stop = &self.path.stops[index];
+        if index > 0 {
+            let drive = (stop.from - self.last.at).max(0.0);
+            match stop.displacement {
+                Some(_) => solution.filter.displace(self.setting.displacement_sigma),
+                None => solution.filter.stray(self.setting.speed_sigma * drive),
+            }
+        }
+        self.carry(solution, Moment::of(stop.from, &stop.begin));
+        solution.filter.anchor();
+        for block in self.path.blocks.of(index) {
+            let scale = stop.begin.scale;
+            self.carry(solution, Moment { at: block.middle, bias: block.bias, scale });
+            self.block(solution, block, self.path.displaced(index));
+        }
+        self.carry(solution, Moment::of(stop.to, &stop.end));
+        self.rest(solution, stop);
+    }
+
+    /// Carries the filter on to a moment.
+    fn carry(&mut self, solution: &mut Solution, to: Moment) {
+        let seconds = (to.at - self.last.at).max(0.0);
+        let noise = &self.setting.common.noise;
+        let walk = noise.angle_random_walk.max(LEAST_WALK);
+        let bias = gained(&to.bias, &self.last.bias);
+        let scale = gained(&to.scale, &self.last.scale);
+        solution.filter.carry(&bias, &scale, walk * walk * seconds);
+        solution.filter.walk(self.bias_walk() * seconds);
+        self.last = to;
+    }
+
+    /// Power of the biases' walk, (rad/s)²/s. Flicker and ramp are taken for the walk that has their Allan
+    /// variance over the whole time.
+    fn bias_walk(&self) -> f64 {
+        let whole = (self.path.now - self.path.start).max(1.0);
+        let [_, _, b, k, r] = self.setting.common.noise.coefficients();
+        k * k
+            + 6.0 * core::f64::consts::LN_2 / core::f64::consts::PI * b * b / whole
+            + 1.5 * r * r * whole
+    }
+
+    /// Takes the force of a block.
+    fn block(&self, solution: &mut Solution, block: &Block, displaced: [f64; 2]) {
+        let elapsed = block.middle - self.path.start;
+        let navigation = self.path.place.navigation(elapsed, displaced);
+        let above = turned(&solution.frame, &up(&navigation));
+        let predicted = scaled(&above, self.path.gravity);
+        let force = block.force.map(f64::from);
+        let variance = self.density / f64::from(block.seconds);
+        let along = transposed(&navigation);
+        let farther = self.north.map(|place| {
+            let moved = up(&place.navigation(elapsed, displaced));
+            let change = difference(&moved, &up(&navigation));
+            turned(&solution.frame, &scaled(&change, self.path.gravity / LATITUDE_STEP))
+        });
+        let measurements: [Measurement; 2] = core::array::from_fn(|axis| {
+            let direction = turned(&solution.frame, &along[axis]);
+            let mut row = force_row(&predicted, &direction, &block.attitude);
+            row[PLACE + axis] = self.path.gravity * self.path.place.per_metre()[axis];
+            row[LATITUDE] = farther.map_or(0.0, |change| dot(&change, &direction));
+            let value = dot(&difference(&force, &predicted), &direction);
+            Measurement { row, value, variance }
+        });
+        match self.take(&mut solution.filter, &measurements) {
+            Some(chi_square) => {
+                solution.chi_square += chi_square;
+                solution.degrees += 2.0;
+            }
+            None => solution.left_out += 1,
+        }
+    }
+
+    /// Takes it that the body turned with the Earth alone during a stop.
+    fn rest(&self, solution: &mut Solution, stop: &Stop) {
+        let turn = EARTH_RATE * stop.seconds();
+        let earth = by(&scaled(&turned(&solution.frame, &self.path.place.axis()), turn));
+        let [begin, end] = [&stop.begin, &stop.end].map(|carried| carried.attitude.matrix());
+        let shown = product(&end, &transposed(&begin));
+        let beyond = small(&product(&shown, &transposed(&earth)));
+        let rows: [_; 3] = core::array::from_fn(|axis| rest_row(&earth, axis));
+        let sway = self.sway(stop);
+        // On the body's axes, which sway differently.
+        let measurements: [Measurement; 3] = core::array::from_fn(|axis| {
+            let direction: Vector = core::array::from_fn(|part| begin[part][axis]);
+            let row = core::array::from_fn::<f64, STATES, _>(|state| {
+                (0..3).map(|part| direction[part] * rows[part][state]).sum()
+            });
+            Measurement { row, value: dot(&direction, &beyond), variance: sway[axis] }
+        });
+        if self.take(&mut solution.filter, &measurements).is_none() {
+            solution.turning += 1;
+        }
+    }
+
+    /// Variance of what a body's axes sway between both ends of a stop, rad²: what its seconds turn beyond
+    /// the gyros' noise.
+    fn sway(&self, stop: &Stop) -> Vector {
+        let walk = self.setting.common.noise.angle_random_walk;
+        let is_ideal = self.belief == Belief::Ideal;
+        stop.turned.variance().map(|variance| {
+            let beyond = if is_ideal { 0.0 } else { (variance - walk * walk).max(0.0) };
+            SLOW_SWAY * beyond + LEAST_SWAY
+        })
+    }
+
+    /// Takes measurements, unless they are outliers.
+    fn take(&self, filter: &mut Filter, measurements: &[Measurement]) -> Option<f64> {
+        if !self.is_gated || self.belief == Belief::Ideal {
+            return Some(filter.measure(measurements));
+        }
+        let before = filter.clone();
+        let chi_square = filter.measure(measurements);
+        if chi_square <= OUTLIER {
+            return Some(chi_square);
+        }
+        *filter = before;
+        None
+    }
+}
+
+/// Covariance of φ at the start: the level is nearly known, the azimuth is not.
+fn start_covariance(frame: &Matrix) -> Matrix {
+    let down: Vector = frame.map(|row| row[2]);
+    core::array::from_fn(|row| {
+        core::array::from_fn(|column| {
+            let level = if row == column { LEVEL_SIGMA * LEVEL_SIGMA } else { 0.0 };
+            level + AZIMUTH_SIGMA * AZIMUTH_SIGMA * down[row] * down[column]
+        })
+    })
+}
+
+fn gained(now: &Rough, before: &Rough) -> Matrix {
+    core::array::from_fn(|row| difference(&now[row].map(f64::from), &before[row].map(f64::from)))
+}
+
+/// How the state's rotation now turns something, as a row.
+#[must_use]
+pub fn now_row(gradient: &Vector) -> [f64; STATES] {
+    let mut row = [0.0; STATES];
+    row[NOW..NOW + 3].copy_from_slice(gradient);
+    row
+}
