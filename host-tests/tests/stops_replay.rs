@@ -15,9 +15,9 @@ use std::path::{Path, PathBuf};
 use bench::output::{azimuth_error, degrees, degrees_per_hour};
 use bench::recording::{self, Body, Header, ImuRow, Truth};
 use bench::stops::averaging::Averages;
-use bench::stops::core::Conclusion;
 use bench::stops::{Method, Options, Replay, replay};
 use orientation::align::conclusion::Azimuth;
+use orientation::align::stops::conclusion::{Conclusion, Found};
 use orientation::error::Refusal;
 
 const IDEAL: &str = "drive-ideal";
@@ -70,13 +70,17 @@ impl Recorded {
 
     /// The same at the start.
     fn start_error(&self, conclusion: &Conclusion) -> [f64; 2] {
-        off(conclusion.start.expect("there is one"), self.truth.start_azimuth_deg)
+        off(found(conclusion).start, self.truth.start_azimuth_deg)
     }
 }
 
 fn off(azimuth: Azimuth, truth_deg: Option<f64>) -> [f64; 2] {
     let truth = truth_deg.expect("it carries a truth");
     [azimuth_error(degrees(azimuth.angle), truth), degrees(azimuth.sigma)]
+}
+
+fn found(conclusion: &Conclusion) -> &Found {
+    conclusion.found.as_ref().expect("there was something to solve")
 }
 
 fn conclusion(replay: &Replay) -> &Conclusion {
@@ -112,7 +116,7 @@ fn rest_rates_leave_at_most_a_third_of_what_the_papers_method_leaves() {
     let replay = recorded.replayed();
     let conclusion = conclusion(&replay);
     let [_, sigma] = recorded.error(conclusion);
-    let plain = conclusion.plain.as_ref().expect("there are two stops");
+    let plain = &found(conclusion).plain;
     println!("{sigma:.4}° by everything, {:.4}° by the paper", degrees(plain.sigma));
     assert!(sigma <= degrees(plain.sigma) / 3.0, "{sigma}° {}°", degrees(plain.sigma));
     // And the paper's own σ is an honest one.
@@ -124,8 +128,10 @@ fn rest_rates_leave_at_most_a_third_of_what_the_papers_method_leaves() {
 #[test]
 fn three_stops_show_the_biases_that_the_gyros_had() {
     let replay = recorded(THREE).replayed();
-    let (biases, sigmas) = conclusion(&replay).biases.expect("they are observable");
-    for ((bias, sigma), truth) in biases.into_iter().zip(sigmas).zip([0.9, 0.7, -1.1]) {
+    let found = found(conclusion(&replay));
+    assert!(found.are_biases_observed);
+    let both = found.biases.into_iter().zip(found.bias_sigmas);
+    for ((bias, sigma), truth) in both.zip([0.9, 0.7, -1.1]) {
         let [bias, sigma] = [bias, sigma].map(degrees_per_hour);
         println!("{bias:+.4} ± {sigma:.4} °/h, truly {truth}");
         assert!((bias - truth).abs() <= 3.0 * sigma, "{bias} ± {sigma}, truly {truth}");
@@ -194,7 +200,7 @@ fn the_criteria_find_the_stops_that_were_not_stated() {
 fn brents_search_and_the_closed_form_agree_on_every_drive() {
     for name in [IDEAL, FOG, THREE] {
         let replay = recorded(name).replayed();
-        let plain = conclusion(&replay).plain.as_ref().expect("there are two stops");
+        let plain = &found(conclusion(&replay)).plain;
         let apart = |azimuth: f64| azimuth_error(degrees(azimuth), degrees(plain.azimuth)).abs();
         let [angle, euler] = [plain.angle.at, plain.euler.at].map(apart);
         println!("{name}: {angle:.1e}° as an angle, {euler:.1e}° in Euler form");
@@ -210,7 +216,7 @@ fn an_independent_solution_of_the_drives_agrees_with_the_papers_method() {
         let recorded = recorded(name);
         let independent = oracle::start_azimuth_deg(&recorded.header, &recorded.rows);
         let replay = recorded.replayed();
-        let plain = conclusion(&replay).plain.as_ref().expect("there are two stops");
+        let plain = &found(conclusion(&replay)).plain;
         let apart = azimuth_error(degrees(plain.azimuth), independent);
         println!("{name}: {apart:+.1e}° from the independent solution");
         assert!(apart.abs() < 1e-3, "{name}: {apart}°");

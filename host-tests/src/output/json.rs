@@ -97,6 +97,9 @@ pub struct BudgetObject {
     latitude: f64,
     scale: f64,
     temperature: f64,
+    /// Of a vehicle that drove.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    displacement: Option<f64>,
 }
 
 /// A dwell left out.
@@ -125,6 +128,7 @@ impl From<&Budget> for BudgetObject {
             latitude: degrees(budget.latitude),
             scale: degrees(budget.scale),
             temperature: degrees(budget.temperature),
+            displacement: (budget.displacement > 0.0).then(|| degrees(budget.displacement)),
         }
     }
 }

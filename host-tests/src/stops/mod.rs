@@ -4,17 +4,22 @@
 //! is only followed. The types that come in here hold no truth.
 
 pub mod averaging;
-pub mod core;
 pub mod noise;
 pub mod samples;
 
 use heapless::Vec as Few;
 use orientation::align::setting::Setting as Common;
+use orientation::align::stops::Setting;
+use orientation::align::stops::conclusion::Conclusion;
+use orientation::align::stops::follower::Rests;
+use orientation::align::stops::stop::STOPS;
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
+use orientation::session::stops::{Event, Procedure, Session};
+use orientation::signal::InertialSample;
+use orientation::signal::rest::{Criteria, Limits};
 use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 
-use self::core::{Conclusion, Criteria, Event, Procedure, STOPS, Session, Setting, Stops};
 use crate::recording::{Body, Header, ImuRow, Kind};
 use crate::replay::{self, ReplayError};
 use crate::setting::{Described, describe};
@@ -61,8 +66,8 @@ pub struct Replay {
     pub session: Session,
     /// What the recording's clock showed at the session's zero, s.
     pub zero_s: f64,
-    /// The stop criteria over the time, s from the session's zero.
-    pub criteria: Vec<(f64, Criteria)>,
+    /// The stop criteria and what they are held to over the time, s from the session's zero.
+    pub criteria: Vec<(f64, Criteria, Limits)>,
     /// What had to be assumed.
     pub assumed: Vec<String>,
 }
@@ -91,16 +96,17 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
     let period_s = samples::period(header.rate_hz, &rows);
     let zero_s = samples::begin(&rows, period_s);
     let method = options.method.unwrap_or_else(|| usual(header, &rows, period_s));
-    let stops = stops(header, method, zero_s)?;
-    let displacements_m = displacements(header, options)?;
+    let rests = rests(header, method, zero_s)?;
+    let displacements = displacements(header, options)?;
     let Described { setting: mut common, mut assumed } = describe(header, body, latitude);
     if let Some(sigma) = options.required_sigma {
         common.required_sigma = sigma;
     }
     let setting = setting(header, common, &rows, period_s, method, &mut assumed);
-    let mut follower = Follower::new(setting, Procedure::new(stops, period_s), displacements_m)?;
-    samples::samples(&rows, period_s).for_each(|sample| follower.push(&sample));
-    let (session, criteria) = follower.end()?;
+    let procedure = Procedure { displacements, ..Procedure::recorded(rests, period_s) };
+    let mut session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
+    let criteria = follow(&mut session, samples::samples(&rows, period_s));
+    check_displacements(&session)?;
     Ok(Replay { method, session, zero_s, criteria, assumed })
 }
 
@@ -130,27 +136,37 @@ fn usual(header: &Header, rows: &[ImuRow], period_s: f64) -> Method {
 }
 
 /// The stops as the session counts them.
-fn stops(header: &Header, method: Method, zero_s: f64) -> Result<Stops, ReplayError> {
+fn rests(header: &Header, method: Method, zero_s: f64) -> Result<Rests, ReplayError> {
     match (method, &header.stops_s) {
-        (Method::Static, _) => Ok(Stops::Whole),
-        (Method::Siap, None) => Ok(Stops::Found(0)),
+        (Method::Static, _) => Ok(Rests::Whole),
+        (Method::Siap, None) => Ok(Rests::Found),
         (Method::Siap, Some(stated)) => {
             let counted = stated.iter().map(|stop| stop.map(|time| time - zero_s));
             let all = Few::<_, STOPS>::from_slice(&counted.collect::<Vec<_>>());
-            all.map(Stops::Stated).map_err(|_| ReplayError::TooManyStops(stated.len(), STOPS))
+            all.map(Rests::Stated).map_err(|_| ReplayError::TooManyStops(stated.len(), STOPS))
         }
     }
 }
 
 /// The user's displacements, or the header's; one for each stop where stops are stated.
-fn displacements(header: &Header, options: &Options) -> Result<Vec<[f64; 2]>, ReplayError> {
+fn displacements(header: &Header, options: &Options) -> Result<Few<[f64; 2], STOPS>, ReplayError> {
     let list = options.displacements_m.as_ref().or(header.displacements_m.as_ref());
-    let list = list.cloned().unwrap_or_default();
+    let list = list.map_or(&[][..], Vec::as_slice);
+    let wrong = |stops| ReplayError::Displacements { stated: list.len(), stops };
     match &header.stops_s {
-        Some(stops) if !list.is_empty() && stops.len() != list.len() => {
-            Err(ReplayError::Displacements { stated: list.len(), stops: stops.len() })
-        }
-        _ => Ok(list),
+        Some(stops) if !list.is_empty() && stops.len() != list.len() => Err(wrong(stops.len())),
+        _ => Few::from_slice(list).map_err(|_| wrong(STOPS)),
+    }
+}
+
+/// Refuses displacements that are not one for each stop that was found.
+fn check_displacements(session: &Session) -> Result<(), ReplayError> {
+    let procedure = session.procedure();
+    let (stated, stops) = (procedure.displacements.len(), session.stops().len());
+    if stated == 0 || stated == stops || procedure.rests != Rests::Found {
+        Ok(())
+    } else {
+        Err(ReplayError::Displacements { stated, stops })
     }
 }
 
@@ -176,61 +192,23 @@ fn setting(
     if bias_sigma.is_none() {
         assumed.push("gyro biases unknown".to_owned());
     }
-    Setting { bias_sigma, force_noise: Some(white.force), ..Setting::new(common) }
+    Setting { bias_sigma, force_noise: white.force, ..Setting::new(common) }
 }
 
-/// Feeds a session, and keeps what a report shows of it.
-#[derive(Debug)]
-pub struct Follower {
-    session: Session,
-    displacements_m: Vec<[f64; 2]>,
-    told: usize,
-    criteria: Vec<(f64, Criteria)>,
-}
-
-impl Follower {
-    /// Of a session with this setting and procedure; displacements of the stops where they are known.
-    ///
-    /// # Errors
-    /// What keeps the session from beginning.
-    pub fn new(
-        setting: Setting,
-        procedure: Procedure,
-        displacements_m: Vec<[f64; 2]>,
-    ) -> Result<Self, ReplayError> {
-        let session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
-        Ok(Self { session, displacements_m, told: 0, criteria: Vec::new() })
-    }
-
-    /// One more sample.
-    pub fn push(&mut self, sample: &orientation::signal::InertialSample) {
-        self.session.handle(Event::Sample(sample));
-        if let Some(criteria) = self.session.criteria()
-            && self.criteria.last().is_none_or(|(_, last)| *last != criteria)
+/// Feeds samples to a session until they end; the stop criteria over time.
+pub fn follow(
+    session: &mut Session,
+    samples: impl Iterator<Item = InertialSample>,
+) -> Vec<(f64, Criteria, Limits)> {
+    let mut seen: Vec<(f64, Criteria, Limits)> = Vec::new();
+    for sample in samples {
+        session.handle(Event::Sample(&sample));
+        if let Some((criteria, limits)) = session.criteria()
+            && seen.last().is_none_or(|(_, last, _)| *last != criteria)
         {
-            self.criteria.push((sample.time.0 as f64 * 1e-6, criteria));
-        }
-        self.tell();
-    }
-
-    /// Tells the session how far a stop lies from the first as soon as it knows of that stop.
-    fn tell(&mut self) {
-        while self.told < self.session.stops().len().min(self.displacements_m.len()) {
-            self.session.handle(Event::Displaced(self.displacements_m[self.told]));
-            self.told += 1;
+            seen.push((sample.time.seconds(), criteria, limits));
         }
     }
-
-    /// The session with its conclusion, and the stop criteria over time.
-    ///
-    /// # Errors
-    /// There were not as many stops as displacements.
-    pub fn end(mut self) -> Result<(Session, Vec<(f64, Criteria)>), ReplayError> {
-        self.session.handle(Event::End);
-        let (stated, stops) = (self.displacements_m.len(), self.session.stops().len());
-        if stated > 0 && stated != stops {
-            return Err(ReplayError::Displacements { stated, stops });
-        }
-        Ok((self.session, self.criteria))
-    }
+    session.handle(Event::End);
+    seen
 }

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use orientation::signal::InertialSample;
 use orientation::units::{AngleIncrement, Instant, SpecificForce};
 
-use crate::recording::{Body, ImuRow, StaticRow};
+use crate::recording::{Body, ImuRow, ImuSample, StaticRow};
 
 /// Steps longer than so many periods have a sample missing.
 const LONGEST_STEP: f64 = 1.5;
@@ -50,23 +50,50 @@ pub fn period(rate_hz: Option<f64>, rows: &[ImuRow]) -> f64 {
     stated.filter(|stated| (sum - count * stated).abs() <= *stated).unwrap_or(sum / count)
 }
 
+/// Makes samples of what three gyros turned and three accelerometers felt; what rounding leaves over of a
+/// rotation goes to the next sample.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Converter {
+    carried: [f64; 3],
+}
+
+impl Converter {
+    /// The sample that ended at a time, s.
+    #[must_use]
+    pub fn sample(
+        &mut self,
+        time_s: f64,
+        turned_rad: [f64; 3],
+        force_m_s2: [f64; 3],
+    ) -> InertialSample {
+        let mut turned = [AngleIncrement::default(); 3];
+        for (axis, angle) in turned_rad.into_iter().enumerate() {
+            turned[axis] = AngleIncrement::from_rad(angle, &mut self.carried[axis]);
+        }
+        let force = Some(force_m_s2.map(SpecificForce::from_m_per_s2));
+        InertialSample { time: Instant::from_seconds(time_s), turned, force }
+    }
+}
+
 /// The samples of rows; their time counts from when the first one began.
 pub fn samples(rows: &[ImuRow], period_s: f64) -> impl Iterator<Item = InertialSample> + '_ {
     let begin = begin(rows, period_s);
     let limits = limits(rows);
-    let mut carried = [0.0; 3];
+    let mut converter = Converter::default();
     rows.iter().map(move |row| {
-        let mut turned = [AngleIncrement::default(); 3];
-        for (axis, rate) in row.sample.rates_rad_s.into_iter().enumerate() {
-            turned[axis] = AngleIncrement::from_rad(rate * period_s, &mut carried[axis]);
+        let ImuSample { rates_rad_s, force_m_s2 } = row.sample;
+        let turned_rad = rates_rad_s.map(|rate| rate * period_s);
+        let mut sample = converter.sample(row.time_s - begin, turned_rad, force_m_s2);
+        let mut cut = channels(row).zip(limits).map(|(value, limit)| value.abs() >= limit);
+        for turned in &mut sample.turned {
+            if cut.next() == Some(true) {
+                *turned = AngleIncrement(i32::MAX);
+            }
         }
-        let is_cut = channels(row).zip(limits).any(|(value, limit)| value.abs() >= limit);
-        InertialSample {
-            time: Instant::from_seconds(row.time_s - begin),
-            turned,
-            force: Some(row.sample.force_m_s2.map(SpecificForce::from_m_per_s2)),
-            is_clipped: is_cut || turned.iter().any(|turned| turned.is_saturated()),
+        if cut.any(|is_cut| is_cut) {
+            sample.force = None;
         }
+        sample
     })
 }
 

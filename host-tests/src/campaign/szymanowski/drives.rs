@@ -2,15 +2,15 @@
 //! the paper's, and that of everything that is known.
 
 use hal_mock::vehicle::scenario::Scenario;
-use heapless::Vec as Few;
+use orientation::align::stops::follower::Rests;
+use orientation::align::stops::plain;
 use orientation::error::Refusal;
 use serde::Serialize;
 
 use super::world::{Day, Told, live};
 use crate::campaign::over;
 use crate::campaign::statistics::{Answer, Precision, greatest, rms};
-use crate::output::{azimuth_error, degrees};
-use crate::stops::core::Stops;
+use crate::output::{azimuth_error, degrees, degrees_per_hour};
 
 /// Length of a stop, s.
 pub const STOP_S: f64 = 60.0;
@@ -138,9 +138,9 @@ impl Case {
         // As long as two stops and one drive, whatever the number of stops.
         let drive_s = (DRIVE_S - (stops - 2.0) * STOP_S) / drives;
         let scenario = Scenario::stops(seed, self.stops, STOP_S, drive_s);
-        let stated: Few<[f64; 2], _> = scenario.configuration().stops().collect();
-        let stops = if self.is_stated { Stops::Stated(stated) } else { Stops::Found(0) };
-        let told = Told { stops, knows_displacement: self.knows_displacement };
+        let stated = scenario.configuration().stops().collect();
+        let rests = if self.is_stated { Rests::Stated(stated) } else { Rests::Found };
+        let told = Told { rests, knows_displacement: self.knows_displacement };
         Run::of(&live(&scenario, seed, told))
     }
 }
@@ -148,33 +148,29 @@ impl Case {
 impl Run {
     fn of(day: &Day) -> Self {
         let averaging = azimuth_error(degrees(day.first.azimuth()), degrees(day.start));
-        let conclusion = match &day.conclusion {
-            Ok(conclusion) => conclusion,
-            Err(reason) => {
-                return Self { averaging, plain: None, biases: None, answer: Err(*reason) };
-            }
-        };
-        let plain = conclusion.plain.as_ref().map(|plain| {
-            let from_closed =
-                |azimuth: f64| azimuth_error(degrees(azimuth), degrees(plain.azimuth));
-            Plain {
-                error: azimuth_error(degrees(plain.azimuth), degrees(day.start)),
-                sigma: degrees(plain.sigma),
-                brent: from_closed(plain.angle.at),
-                euler: from_closed(plain.euler.at),
-            }
-        });
-        let biases = conclusion.biases.map(|(found, sigmas)| {
-            std::array::from_fn(|axis| {
-                let error = (found[axis] - day.biases[axis]) / sigmas[axis];
-                [error, crate::output::degrees_per_hour(sigmas[axis])]
-            })
-        });
-        let answer = conclusion.verdict.map(|azimuth| Answer {
-            error: azimuth_error(degrees(azimuth.angle), degrees(day.end)),
-            sigma: degrees(azimuth.sigma),
-            limit: degrees(conclusion.limit),
-        });
-        Self { averaging, plain, biases, answer }
+        let found = day.conclusion.found.as_ref();
+        Self {
+            averaging,
+            plain: found.map(|found| Plain::of(&found.plain, day.start)),
+            biases: found.filter(|found| found.are_biases_observed).map(|found| {
+                std::array::from_fn(|axis| {
+                    let sigma = found.bias_sigmas[axis];
+                    [(found.biases[axis] - day.biases[axis]) / sigma, degrees_per_hour(sigma)]
+                })
+            }),
+            answer: day.answer(),
+        }
+    }
+}
+
+impl Plain {
+    fn of(plain: &plain::Plain, start: f64) -> Self {
+        let from_closed = |azimuth: f64| azimuth_error(degrees(azimuth), degrees(plain.azimuth));
+        Self {
+            error: azimuth_error(degrees(plain.azimuth), degrees(start)),
+            sigma: degrees(plain.sigma),
+            brent: from_closed(plain.angle.at),
+            euler: from_closed(plain.euler.at),
+        }
     }
 }

@@ -5,14 +5,14 @@ use hal_mock::gyro::GyroConfiguration;
 use hal_mock::plant::sway::SwayConfiguration;
 use hal_mock::vehicle::scenario::{Scenario, fog};
 use hal_mock::vehicle::{Leg, Stop};
+use orientation::align::stops::follower::Rests;
 use serde::Serialize;
 
 use super::drives::{DRIVE_S, STOP_S};
 use super::world::{Told, live};
 use crate::campaign::over;
-use crate::campaign::statistics::{Answer, Precision, rms};
+use crate::campaign::statistics::{Precision, rms};
 use crate::output::{azimuth_error, degrees};
-use crate::stops::core::Stops;
 
 /// How long a vehicle with good gyros stands, s.
 pub const PARKED_S: f64 = 660.0;
@@ -65,16 +65,10 @@ pub fn rows(runs: usize, tick: impl Fn() + Sync) -> Vec<Row> {
 
 fn row(case: &Case, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
     let days = over(runs, tick, |seed| {
-        let told = Told { stops: Stops::Whole, knows_displacement: false };
+        let told = Told { rests: Rests::Whole, knows_displacement: false };
         let day = live(&case.scenario(seed), seed, told);
         let averaging = azimuth_error(degrees(day.whole.azimuth()), degrees(day.end));
-        let answer = day.conclusion.and_then(|conclusion| {
-            let azimuth = conclusion.verdict?;
-            let error = azimuth_error(degrees(azimuth.angle), degrees(day.end));
-            let limit = degrees(conclusion.limit);
-            Ok(Answer { error, sigma: degrees(azimuth.sigma), limit })
-        });
-        (averaging, answer)
+        (averaging, day.answer())
     });
     let (averaging, answers): (Vec<_>, Vec<_>) = days.into_iter().unzip();
     Row { case: case.name, averaging_rms_deg: rms(&averaging), precision: Precision::of(&answers) }

@@ -5,14 +5,19 @@ use hal_mock::gyro::GyroConfiguration;
 use hal_mock::vehicle::scenario::Scenario;
 use hal_mock::vehicle::{Vehicle, VehicleSample};
 use orientation::align::setting::Setting as Common;
+use orientation::align::stops::Setting;
+use orientation::align::stops::conclusion::Conclusion;
+use orientation::align::stops::follower::Rests;
 use orientation::earth::Latitude;
 use orientation::error::Refusal;
 use orientation::noise::model::GyroNoise;
-use orientation::signal::InertialSample;
-use orientation::units::{AngleIncrement, DEGREE_PER_HOUR, Instant, SpecificForce};
+use orientation::session::stops::{Event, Procedure, Session};
+use orientation::units::DEGREE_PER_HOUR;
 
+use crate::campaign::statistics::Answer;
+use crate::output::{azimuth_error, degrees};
 use crate::stops::averaging::Averages;
-use crate::stops::core::{Conclusion, Event, Procedure, Session, Setting, Stops};
+use crate::stops::samples::Converter;
 
 /// Samples a second: enough for the motion of a body on a road.
 pub const RATE_HZ: f64 = 50.0;
@@ -20,8 +25,8 @@ pub const RATE_HZ: f64 = 50.0;
 /// What one day gave.
 #[derive(Clone, Debug)]
 pub struct Day {
-    /// What the session made of it, or why it did not even begin.
-    pub conclusion: Result<Conclusion, Refusal>,
+    /// What the session made of it.
+    pub conclusion: Conclusion,
     /// True azimuth at the first sample, rad.
     pub start: f64,
     /// True azimuth at the last sample, rad.
@@ -34,11 +39,27 @@ pub struct Day {
     pub biases: [f64; 3],
 }
 
+impl Day {
+    /// The azimuth at the end against the truth.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn answer(&self) -> Result<Answer, Refusal> {
+        let azimuth = self.conclusion.verdict?;
+        let limit = self.conclusion.found.as_ref().map_or(f64::NAN, |found| found.limit);
+        Ok(Answer {
+            error: azimuth_error(degrees(azimuth.angle), degrees(self.end)),
+            sigma: degrees(azimuth.sigma),
+            limit: degrees(limit),
+        })
+    }
+}
+
 /// What the session is told of a day.
 #[derive(Clone, Debug)]
 pub struct Told {
     /// Its stops.
-    pub stops: Stops,
+    pub rests: Rests,
     /// Whether it is told how far they lie from each other.
     pub knows_displacement: bool,
 }
@@ -50,7 +71,7 @@ pub fn live(day: &Scenario, seed: u64, told: Told) -> Day {
     let configuration = day.configuration();
     let mut vehicle = Vehicle::new(&configuration, seed);
     let mut session = setting(&day).and_then(|setting| {
-        let procedure = Procedure::new(told.stops, 1.0 / RATE_HZ);
+        let procedure = Procedure::recorded(told.rests, 1.0 / RATE_HZ);
         Session::new(setting, procedure).ok()
     });
     let stops: Vec<[f64; 2]> = configuration.stops().collect();
@@ -67,7 +88,8 @@ pub fn live(day: &Scenario, seed: u64, told: Told) -> Day {
             first.push(sample.turned_rad, sample.force_m_s2);
         }
         let Some(session) = &mut session else { continue };
-        session.handle(Event::Sample(&path.sample(&sample)));
+        let VehicleSample { time_s, turned_rad, force_m_s2, .. } = sample;
+        session.handle(Event::Sample(&path.sample(time_s, turned_rad, force_m_s2)));
         if middles.next_if(|middle| *middle <= sample.time_s).is_some() && told.knows_displacement {
             session.handle(Event::Displaced(truth.displacement_m));
         }
@@ -78,7 +100,7 @@ pub fn live(day: &Scenario, seed: u64, told: Told) -> Day {
     let truth = vehicle.truth();
     let conclusion = session.as_ref().and_then(Session::conclusion).cloned();
     Day {
-        conclusion: conclusion.ok_or(Refusal::TimeExhausted),
+        conclusion: conclusion.unwrap_or(Conclusion::refused(Refusal::TimeExhausted)),
         start: start.unwrap_or(truth.attitude.azimuth_rad),
         end: truth.attitude.azimuth_rad,
         first,
@@ -105,28 +127,7 @@ fn setting(day: &Scenario) -> Option<Setting> {
     };
     Some(Setting {
         bias_sigma: Some(gyro.bias_sigma_deg_h * DEGREE_PER_HOUR),
-        force_noise: Some(accelerometer.noise_m_s2_sqrt_hz),
+        force_noise: accelerometer.noise_m_s2_sqrt_hz,
         ..Setting::new(common)
     })
-}
-
-/// Turns the world's samples into the session's; no rotation is lost to rounding.
-#[derive(Clone, Copy, Debug, Default)]
-struct Converter {
-    carried: [f64; 3],
-}
-
-impl Converter {
-    fn sample(&mut self, sample: &VehicleSample) -> InertialSample {
-        let mut turned = [AngleIncrement::default(); 3];
-        for (axis, angle) in sample.turned_rad.into_iter().enumerate() {
-            turned[axis] = AngleIncrement::from_rad(angle, &mut self.carried[axis]);
-        }
-        InertialSample {
-            time: Instant::from_seconds(sample.time_s),
-            turned,
-            force: Some(sample.force_m_s2.map(SpecificForce::from_m_per_s2)),
-            is_clipped: sample.is_clipped,
-        }
-    }
 }

@@ -4,13 +4,20 @@ pub mod campaign;
 pub mod json;
 pub mod text;
 
-use crate::stops::core::Conclusion;
+use crate::stops::Replay;
 
-/// The names of what a solution found.
-fn columns(conclusion: &Conclusion) -> Vec<&'static str> {
-    let mut names = vec!["azimuth"];
-    if conclusion.biases.is_some() {
-        names.push("gyro biases");
-    }
-    names
+/// The names of what a solution finds, all of it together.
+fn columns(replay: &Replay) -> Vec<&'static str> {
+    let setting = replay.session.setting();
+    let common = &setting.common;
+    let parts = [
+        (true, "azimuth"),
+        (true, "level"),
+        (setting.bias_sigma() > 0.0, "gyro biases"),
+        (common.scale_sigma > 0.0, "gyro scale factors"),
+        (common.accelerometer_bias_sigma > 0.0, "accelerometer biases"),
+        (common.latitude_sigma > 0.0, "latitude"),
+        (replay.session.stops().len() > 1, "displacement"),
+    ];
+    parts.into_iter().filter_map(|(is_there, name)| is_there.then_some(name)).collect()
 }

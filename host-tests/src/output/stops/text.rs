@@ -2,13 +2,14 @@
 
 use std::fmt::{self, Write};
 
+use orientation::align::stops::conclusion::{Conclusion, Found};
+
 use super::columns;
-use super::json::{Plain, Stop};
+use super::json::{Excluded, Plain, Stop, object};
 use crate::output::text::{budget, headline, line};
 use crate::output::{azimuth_error, degrees, degrees_per_hour, positive_zero};
 use crate::recording::Truth;
 use crate::stops::Replay;
-use crate::stops::core::Conclusion;
 
 /// Writes the block for a replay of `name`; the truth is for its errors alone.
 ///
@@ -21,29 +22,32 @@ pub fn block(
     conclusion: &Conclusion,
     truth: &Truth,
 ) -> fmt::Result {
-    headline(out, name, &conclusion.verdict, truth.azimuth_deg, |out| {
-        if !replay.noise_is_known() {
-            return line(out, "limit", format_args!("none: the noise is estimated from it"));
+    let object = object(replay, conclusion, truth);
+    headline(out, name, &conclusion.verdict, truth.azimuth_deg, |out| match object.limit_deg {
+        None => line(out, "limit", format_args!("none: the noise is estimated from it")),
+        Some(limit) => {
+            line(out, "limit", format_args!("{limit:.4}° (Cramér–Rao for the stated noise)"))
         }
-        let limit = degrees(conclusion.limit);
-        line(out, "limit", format_args!("{limit:.4}° (Cramér–Rao for the stated noise)"))
     })?;
-    if conclusion.verdict.is_ok() {
-        start(out, conclusion, truth)?;
-        found(out, conclusion)?;
-        budget(out, &conclusion.budget)?;
+    if let (Some(found), true) = (&conclusion.found, conclusion.verdict.is_ok()) {
+        start(out, found, truth)?;
+        details(out, replay, found)?;
+        budget(out, &found.budget)?;
     }
-    if let Some(plain) = Plain::of(conclusion) {
-        papers(out, &plain)?;
+    if let Some(plain) = &object.plain {
+        papers(out, plain)?;
     }
     line(out, "assumed", format_args!("{}", replay.assumed.join("; ")))?;
+    for Excluded { stop, reason } in &object.excluded {
+        let place = stop.map_or_else(String::new, |stop| format!("at stop {stop}, "));
+        line(out, "left out", format_args!("{place}{reason}"))?;
+    }
     stops(out, replay)
 }
 
 /// The azimuth at the beginning.
-fn start(out: &mut impl Write, conclusion: &Conclusion, truth: &Truth) -> fmt::Result {
-    let Some(start) = conclusion.start else { return Ok(()) };
-    let [angle, sigma] = [start.angle, start.sigma].map(degrees);
+fn start(out: &mut impl Write, found: &Found, truth: &Truth) -> fmt::Result {
+    let [angle, sigma] = [found.start.angle, found.start.sigma].map(degrees);
     line(out, "at the start", format_args!("{angle:.4}° ± {sigma:.4}° (1σ)"))?;
     let Some(truth) = truth.start_azimuth_deg else { return Ok(()) };
     let error = azimuth_error(angle, truth);
@@ -51,26 +55,26 @@ fn start(out: &mut impl Write, conclusion: &Conclusion, truth: &Truth) -> fmt::R
 }
 
 /// What else the solution found.
-fn found(out: &mut impl Write, conclusion: &Conclusion) -> fmt::Result {
-    let (ratio, sigma) = (conclusion.ratio, conclusion.ratio_sigma);
-    line(out, "Earth rate", format_args!("{ratio:.4} ± {sigma:.4} of that expected"))?;
-    if let Some((biases, sigmas)) = conclusion.biases {
-        let both = biases.into_iter().zip(sigmas).map(|(bias, sigma)| {
+fn details(out: &mut impl Write, replay: &Replay, found: &Found) -> fmt::Result {
+    let [pitch, roll] = found.level.map(|angle| positive_zero(degrees(angle), 5e-5));
+    line(out, "pitch, roll", format_args!("{pitch:.4}°, {roll:.4}°"))?;
+    let (ratio, sigma) = (found.plain.ratio, found.plain.ratio_sigma);
+    line(out, "Earth's turn", format_args!("{ratio:.4} ± {sigma:.4} of that expected"))?;
+    if found.are_biases_observed {
+        let both = found.biases.into_iter().zip(found.bias_sigmas).map(|(bias, sigma)| {
             format!("{:+.4} ± {:.4}", degrees_per_hour(bias), degrees_per_hour(sigma))
         });
         let all: Vec<String> = both.collect();
         line(out, "gyro biases", format_args!("{} °/h forward, right, down", all.join(", ")))?;
     }
-    line(out, "model", format_args!("{}", columns(conclusion).join(", ")))
+    line(out, "model", format_args!("{}", columns(replay).join(", ")))
 }
 
 /// The paper's method beside it.
 fn papers(out: &mut impl Write, plain: &Plain) -> fmt::Result {
-    let Plain { sigma_deg, start_azimuth_deg, brent_deg, euler_deg, .. } = *plain;
+    let Plain { azimuth_deg, sigma_deg, start_azimuth_deg, brent_deg, euler_deg, .. } = *plain;
     writeln!(out, "  the paper's method, first stop and last, gyros taken as free of bias")?;
-    if let Some(azimuth) = plain.azimuth_deg {
-        line(out, "  azimuth", format_args!("{azimuth:.4}° ± {sigma_deg:.4}° (1σ)"))?;
-    }
+    line(out, "  azimuth", format_args!("{azimuth_deg:.4}° ± {sigma_deg:.4}° (1σ)"))?;
     line(out, "  at the start", format_args!("{start_azimuth_deg:.4}° in closed form"))?;
     let [brent, euler] =
         [brent_deg, euler_deg].map(|angle| azimuth_error(angle, start_azimuth_deg));

@@ -1,14 +1,15 @@
 //! The paper's figures: rate errors and W over the heading error (Figs. 4 and 5), both stop criteria over
 //! time (Figs. 6 and 7), U over the azimuth (Fig. 9).
 
+use orientation::align::stops::plain::Plain;
 use orientation::earth::Latitude;
+use orientation::signal::rest::{Criteria, Limits};
 use orientation::units::wrapped;
 
 use crate::output::stops::json::Object;
 use crate::output::{azimuth_error, degrees, degrees_per_hour};
 use crate::report::{Axis, Figure, Series, Style};
 use crate::stops::Replay;
-use crate::stops::core::{Criteria, Plain};
 
 /// Places along a curve.
 const PLACES: i32 = 240;
@@ -20,7 +21,7 @@ const LEAST_REACH_DEG: f64 = 0.02;
 pub fn azimuths(object: &Object) -> Option<Figure> {
     let with_limits = |at: f64, angle: f64, sigma: f64| (at, angle, [angle - sigma, angle + sigma]);
     let full = object.verdict.azimuth_deg.zip(object.verdict.sigma_deg);
-    let plain = object.plain.as_ref().and_then(|plain| Some((plain.azimuth_deg?, plain.sigma_deg)));
+    let plain = object.plain.as_ref().map(|plain| (plain.azimuth_deg, plain.sigma_deg));
     let (near, _) = full.or(plain)?;
     let series = [("the paper's method", 1.0, plain), ("everything that is known", 2.0, full)];
     let series = series.into_iter().filter_map(|(name, at, found)| {
@@ -76,8 +77,9 @@ pub fn criteria(replay: &Replay) -> Vec<Figure> {
     if replay.criteria.is_empty() {
         return Vec::new();
     }
-    let rate = |criteria: &Criteria| [criteria.rate, criteria.rate_limit].map(degrees_per_hour);
-    let force = |criteria: &Criteria| [criteria.force, criteria.force_limit];
+    let rate =
+        |criteria: &Criteria, limits: &Limits| [criteria.rate, limits.rate].map(degrees_per_hour);
+    let force = |criteria: &Criteria, limits: &Limits| [criteria.force, limits.force];
     vec![
         criterion(replay, ["Kryt1 = Ω − |ω| (Fig. 6)", "|Kryt1|", "°/h"], rate),
         criterion(replay, ["Kryt2 = g − |f| (Fig. 7)", "|Kryt2|", "m/s²"], force),
@@ -89,12 +91,12 @@ pub fn criteria(replay: &Replay) -> Vec<Figure> {
 fn criterion(
     replay: &Replay,
     [title, label, unit]: [&str; 3],
-    of: impl Fn(&Criteria) -> [f64; 2],
+    of: impl Fn(&Criteria, &Limits) -> [f64; 2],
 ) -> Figure {
     let values: Vec<(f64, [f64; 2])> = replay
         .criteria
         .iter()
-        .map(|(time, criteria)| (replay.zero_s + time, of(criteria).map(f64::abs)))
+        .map(|(time, criteria, limits)| (replay.zero_s + time, of(criteria, limits).map(f64::abs)))
         .collect();
     let sizes = || values.iter().map(|(_, [size, _])| *size).filter(|size| *size > 0.0);
     let [low, high] = [sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max)];

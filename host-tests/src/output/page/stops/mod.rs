@@ -3,13 +3,14 @@
 pub mod campaign;
 mod figures;
 
+use orientation::align::stops::conclusion::Conclusion;
+
 use super::budget;
 use crate::output::stops::json::{Object, Plain, Stop, object};
 use crate::output::{degrees, named};
 use crate::recording::Truth;
 use crate::report::{Part, Report, Table};
 use crate::stops::Replay;
-use crate::stops::core::Conclusion;
 
 /// The page for a replay of `name`.
 #[must_use]
@@ -17,7 +18,8 @@ pub fn report(name: &str, replay: &Replay, conclusion: &Conclusion) -> Report {
     let object = object(replay, conclusion, &Truth::default());
     let mut parts: Vec<Part> = Vec::new();
     parts.extend(figures::azimuths(&object).map(Part::from));
-    if let Some(plain) = &conclusion.plain {
+    if let Some(found) = &conclusion.found {
+        let plain = &found.plain;
         parts.extend(figures::inclinations(plain).map(Part::from));
         let latitude = replay.session.setting().common.latitude;
         let drive = seconds(&object.stops).map(|seconds| (plain, seconds));
@@ -25,8 +27,8 @@ pub fn report(name: &str, replay: &Replay, conclusion: &Conclusion) -> Report {
         parts.extend(object.plain.as_ref().map(of_plain).map(Part::from));
     }
     parts.extend(figures::criteria(replay).into_iter().map(Part::from));
-    if conclusion.verdict.is_ok() {
-        parts.push(budget(&conclusion.budget).into());
+    if let Some(found) = &conclusion.found {
+        parts.push(budget(&found.budget).into());
         parts.extend(of_biases(&object).map(Part::from));
     }
     parts.push(of_stops(&object.stops).into());
