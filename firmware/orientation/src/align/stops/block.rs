@@ -1,4 +1,4 @@
-//! What is kept of the time at rest: means over blocks, which grow so that any time finds room.
+//! What is kept of the way: means over blocks, which grow so that any time finds room.
 
 use heapless::Vec;
 
@@ -6,11 +6,11 @@ use crate::math::rotation::sum;
 use crate::signal::strapdown::Rough;
 
 /// Most blocks of all stops together.
-pub const BLOCKS: usize = 64;
-/// Length of a block as long as there is room, s.
-const SPAN: f32 = 5.0;
+pub const AT_REST: usize = 64;
+/// Most blocks of all drives together.
+pub const DRIVEN: usize = 24;
 
-/// Some time at rest.
+/// Some time at rest, or on the way.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Block {
     /// Its middle, s.
@@ -23,7 +23,7 @@ pub struct Block {
     pub attitude: Rough,
     /// Rotation of the start frame that a bias of the gyros makes until its middle, s.
     pub bias: Rough,
-    /// The stop to which it belongs.
+    /// The stop to which it belongs, or after which it was driven.
     pub stop: u8,
 }
 
@@ -49,20 +49,20 @@ impl Block {
     }
 }
 
-/// The blocks of all stops, in order.
+/// The blocks of all stops, or of all drives, in order.
 #[derive(Clone, Debug)]
-pub struct Blocks {
-    blocks: Vec<Block, BLOCKS>,
+pub struct Blocks<const N: usize> {
+    blocks: Vec<Block, N>,
     span: f32,
 }
 
-impl Default for Blocks {
-    fn default() -> Self {
-        Self { blocks: Vec::new(), span: SPAN }
+impl<const N: usize> Blocks<N> {
+    /// None, which last for so many seconds as long as there is room.
+    #[must_use]
+    pub const fn new(span: f32) -> Self {
+        Self { blocks: Vec::new(), span }
     }
-}
 
-impl Blocks {
     /// Takes the next, which comes later than all before it.
     pub fn push(&mut self, block: Block) {
         if let Some(last) = self.blocks.last_mut()

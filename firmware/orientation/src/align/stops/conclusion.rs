@@ -74,6 +74,8 @@ pub struct Found {
     pub left_out: [u32; 2],
     /// Stops at which the vehicle turned, whose rest rates are left out.
     pub turning: u32,
+    /// Drives that did not come to rest at their end, whose velocity is left out.
+    pub unsteady: u32,
 }
 
 impl Conclusion {
@@ -92,6 +94,7 @@ impl Conclusion {
             start: follower.start(),
             stops: follower.stops(),
             blocks: follower.blocks(),
+            drives: follower.drives(),
             now: now.0,
             carried: now.1,
             stated_density: 0.5 * setting.force_noise * setting.force_noise,
@@ -212,6 +215,7 @@ impl Found {
             chi_square: [solution.chi_square, solution.degrees],
             left_out: [solution.left_out, path.blocks.all().len() as u32],
             turning: solution.turning,
+            unsteady: solution.unsteady,
         }
     }
 }

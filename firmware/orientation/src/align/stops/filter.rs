@@ -7,12 +7,12 @@
 //! between the beginning and the end of a stop the body turned with the Earth alone, so φ there differs by
 //! nothing but the sway. All is linear once the start is nearly known; repetition makes it known.
 
-use crate::math::rotation::{Matrix, Vector, cross, dot};
+use crate::math::rotation::{Matrix, Vector, cross};
 use crate::signal::strapdown::Rough;
 
 /// States: φ now, φ at the start, φ when the stop began, b, s, accelerometer biases, displacement beyond
-/// the stated one, latitude.
-pub const STATES: usize = 21;
+/// the stated one, latitude, velocity.
+pub const STATES: usize = 24;
 /// φ now, rad.
 pub const NOW: usize = 0;
 /// φ at the start, rad.
@@ -29,6 +29,9 @@ pub const FORCE: usize = 15;
 pub const PLACE: usize = 18;
 /// Latitude beyond the stated one, rad.
 pub const LATITUDE: usize = 20;
+
+/// What φ makes of the velocity that a drive sums up, m/s.
+pub const VELOCITY: usize = 21;
 
 /// A row that says which combination of the states is measured.
 pub type Row = [f64; STATES];
@@ -77,44 +80,44 @@ impl Filter {
 
     /// Carries φ on over a time in which it came to depend so much more on biases and scale errors, and
     /// by which noise widens it, rad².
-    #[inline(never)]
     pub fn carry(&mut self, bias: &Matrix, scale: &Matrix, noise: f64) {
-        for axis in 0..3 {
-            self.state[NOW + axis] +=
-                self.gain(bias, scale, axis, |filter, state| filter.state[state]);
-        }
-        for column in 0..STATES {
-            let gains: Vector = core::array::from_fn(|axis| {
-                self.gain(bias, scale, axis, |filter, state| filter.covariance[state][column])
-            });
-            for (axis, gain) in gains.into_iter().enumerate() {
-                self.covariance[NOW + axis][column] += gain;
-            }
-        }
-        for row in 0..STATES {
-            let gains: Vector = core::array::from_fn(|axis| {
-                self.gain(bias, scale, axis, |filter, state| filter.covariance[row][state])
-            });
-            for (axis, gain) in gains.into_iter().enumerate() {
-                self.covariance[row][NOW + axis] += gain;
-            }
-        }
+        let rows = core::array::from_fn(|axis| {
+            let mut row = [0.0; STATES];
+            row[BIAS..BIAS + 3].copy_from_slice(&bias[axis]);
+            row[SCALE..SCALE + 3].copy_from_slice(&scale[axis]);
+            row
+        });
+        self.add(NOW, &rows);
         for axis in NOW..NOW + 3 {
             self.covariance[axis][axis] += noise;
         }
     }
 
-    fn gain(
-        &self,
-        bias: &Matrix,
-        scale: &Matrix,
-        axis: usize,
-        of: impl Fn(&Self, usize) -> f64,
-    ) -> f64 {
-        let part = |matrix: &Matrix, first: usize| {
-            dot(&matrix[axis], &[of(self, first), of(self, first + 1), of(self, first + 2)])
-        };
-        part(bias, BIAS) + part(scale, SCALE)
+    /// Adds combinations of the other states to three.
+    #[inline(never)]
+    pub fn add(&mut self, first: usize, rows: &[Row; 3]) {
+        for (axis, row) in rows.iter().enumerate() {
+            self.state[first + axis] += product(&self.state, row);
+        }
+        let mut gains = [[0.0; STATES]; 3];
+        for (gain, row) in gains.iter_mut().zip(rows) {
+            for (part, line) in row.iter().zip(&self.covariance).filter(|(part, _)| **part != 0.0) {
+                for (sum, entry) in gain.iter_mut().zip(line) {
+                    *sum += part * entry;
+                }
+            }
+        }
+        for (axis, gain) in gains.iter().enumerate() {
+            for (entry, part) in self.covariance[first + axis].iter_mut().zip(gain) {
+                *entry += part;
+            }
+        }
+        for line in &mut self.covariance {
+            let gains: Vector = core::array::from_fn(|axis| product(line, &rows[axis]));
+            for (entry, gain) in line[first..first + 3].iter_mut().zip(gains) {
+                *entry += gain;
+            }
+        }
     }
 
     /// Lets the biases walk by this variance, (rad/s)².
@@ -140,13 +143,13 @@ impl Filter {
         }
     }
 
-    /// Forgets what is known of the displacement, whose 1σ, m, is this from now on.
-    pub fn displace(&mut self, sigma: f64) {
-        for state in PLACE..PLACE + 2 {
+    /// Forgets what is known of some states, whose 1σ is this from now on.
+    pub fn forget(&mut self, states: core::ops::Range<usize>, sigma: f64) {
+        for state in states {
             self.state[state] = 0.0;
-            for other in 0..STATES {
-                self.covariance[state][other] = 0.0;
-                self.covariance[other][state] = 0.0;
+            self.covariance[state] = [0.0; STATES];
+            for line in &mut self.covariance {
+                line[state] = 0.0;
             }
             self.covariance[state][state] = sigma * sigma;
         }
@@ -222,6 +225,15 @@ pub fn force_row(predicted: &Vector, direction: &Vector, attitude: &Rough) -> Ro
     });
     row[FORCE..FORCE + 3].copy_from_slice(&columns);
     row
+}
+
+/// How the velocity that a drive sums up comes to depend on φ and the accelerometers' biases on one axis,
+/// in a time, s, of a specific force; all on the start frame, `attitude` is that of the body.
+#[must_use]
+pub fn velocity_row(force: &Vector, axis: usize, attitude: &Rough, seconds: f64) -> Row {
+    let mut direction = [0.0; 3];
+    direction[axis] = seconds;
+    force_row(force, &direction, attitude)
 }
 
 /// A measurement of what φ gained over a stop in which the Earth turned by `earth`, on one axis.

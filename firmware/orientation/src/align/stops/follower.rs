@@ -6,7 +6,7 @@
 
 use heapless::{Deque, Vec};
 
-use super::block::{Block, Blocks};
+use super::block::{AT_REST, Block, Blocks, DRIVEN};
 use super::stop::{STOPS, Second, Stop};
 use crate::math::rotation::{length, scaled};
 use crate::signal::InertialSample;
@@ -20,6 +20,10 @@ pub const WINDOW: usize = 10;
 const LATEST: usize = 2;
 /// Delay T₀ after which a vehicle that stopped no longer rocks, s.
 const DELAY: usize = 3;
+/// Length of a block at rest as long as there is room, s.
+const REST_SPAN: f32 = 5.0;
+/// Length of a block on the way as long as there is room, s.
+const DRIVE_SPAN: f32 = 15.0;
 /// Length of a second, µs.
 const SECOND: u64 = 1_000_000;
 /// Sample periods between two samples that make a gap: rotation is lost.
@@ -72,7 +76,8 @@ pub struct Follower {
     /// Whether the vehicle stands: the last stop still lasts.
     is_at_rest: bool,
     stops: Vec<Stop, STOPS>,
-    blocks: Blocks,
+    blocks: Blocks<AT_REST>,
+    drives: Blocks<DRIVEN>,
     /// Seconds at rest for which no stop was left.
     unused: u32,
     loss: Option<Loss>,
@@ -96,7 +101,8 @@ impl Follower {
             criteria: None,
             is_at_rest: false,
             stops: Vec::new(),
-            blocks: Blocks::default(),
+            blocks: Blocks::new(REST_SPAN),
+            drives: Blocks::new(DRIVE_SPAN),
             unused: 0,
             loss: None,
         }
@@ -172,26 +178,40 @@ impl Follower {
         self.strapdown.update(now);
         let second = self.whole_second(now);
         if self.window.is_full() {
-            self.window.pop_front();
+            self.leave();
         }
         // There is room now.
         let _ = self.window.push_back(second);
         self.criteria = self.judge();
         match &self.rests {
-            Rests::Whole => self.rest(&second, 0),
+            Rests::Whole => self.stay(Some(0)),
             Rests::Stated(stops) => {
                 let half = 0.5e-6 * self.period as f64;
                 let is_in =
                     |stop: &[f64; 2]| second.from >= stop[0] - half && second.to <= stop[1] + half;
-                let index = stops.iter().position(is_in);
-                self.is_at_rest = index.is_some();
-                if let Some(index) = index {
-                    self.rest(&second, index);
-                }
+                let stop = stops.iter().position(is_in);
+                self.stay(stop);
             }
             Rests::Found => self.find(),
         }
         self.restart(now);
+    }
+
+    /// Lets the oldest second of the window go: what belongs to no stop was driven.
+    fn leave(&mut self) {
+        let Some(second) = self.window.pop_front() else { return };
+        let begun = self.stops.iter().filter(|stop| stop.from <= second.from).count();
+        if let (false, Some(_), Some(stop)) = (second.is_rest, second.force, begun.checked_sub(1)) {
+            self.drives.push(block(&second, second.start_force, stop as u8));
+        }
+    }
+
+    /// Takes the latest second for one of a stop, if it is.
+    fn stay(&mut self, stop: Option<usize>) {
+        self.is_at_rest = stop.is_some();
+        if let Some(stop) = stop {
+            self.rest(self.window.len() - 1, stop);
+        }
     }
 
     /// What the second that ends now leaves.
@@ -207,6 +227,7 @@ impl Follower {
             force: (count > 0).then(|| forces.map(mean)),
             start_force: taken.sum.map(|sum| sum * inverse),
             is_blown: taken.is_blown,
+            is_rest: false,
             begin,
             end: *self.strapdown.carried(),
         }
@@ -233,13 +254,9 @@ impl Follower {
     /// Looks for the beginning or the end of a stop.
     fn find(&mut self) {
         let is_rest = self.criteria.is_some_and(|criteria| criteria.is_rest(&self.limits));
-        let Some(latest) = self.window.iter().rev().nth(LATEST).copied() else { return };
         match (self.is_at_rest, is_rest) {
             (false, true) => self.stand(),
-            (true, true) => {
-                let stop = self.stops.len().saturating_sub(1);
-                self.rest(&latest, stop);
-            }
+            (true, true) => self.rest(WINDOW - 1 - LATEST, self.stops.len().saturating_sub(1)),
             (_, false) => self.is_at_rest = false,
         }
     }
@@ -248,15 +265,16 @@ impl Follower {
     fn stand(&mut self) {
         self.is_at_rest = true;
         let stop = self.stops.len();
-        let seconds: Vec<Second, WINDOW> =
-            self.window.iter().skip(DELAY).take(WINDOW - DELAY - LATEST).copied().collect();
-        for second in &seconds {
-            self.rest(second, stop);
+        for index in DELAY..WINDOW - LATEST {
+            self.rest(index, stop);
         }
     }
 
-    /// Takes a second for one of a stop.
-    fn rest(&mut self, second: &Second, stop: usize) {
+    /// Takes a second of the window for one of a stop.
+    fn rest(&mut self, index: usize, stop: usize) {
+        let Some(second) = self.window.iter_mut().nth(index) else { return };
+        second.is_rest = true;
+        let second = *second;
         if stop >= self.stops.len() {
             let begun = Stop { from: second.from, begin: second.begin, ..Stop::default() };
             if self.stops.push(begun).is_err() {
@@ -265,9 +283,9 @@ impl Follower {
             }
         }
         let last = self.stops.len() - 1;
-        self.stops[last].take(second);
+        self.stops[last].take(&second);
         if let Some(force) = second.block_force() {
-            self.blocks.push(block(second, force, last as u8));
+            self.blocks.push(block(&second, force, last as u8));
         }
     }
 
@@ -304,8 +322,14 @@ impl Follower {
 
     /// The blocks at rest.
     #[must_use]
-    pub fn blocks(&self) -> &Blocks {
+    pub fn blocks(&self) -> &Blocks<AT_REST> {
         &self.blocks
+    }
+
+    /// The blocks on the way, each of which is that after a stop.
+    #[must_use]
+    pub fn drives(&self) -> &Blocks<DRIVEN> {
+        &self.drives
     }
 
     /// What made the carried attitude worthless first.

@@ -1,7 +1,7 @@
 //! All that is kept of a vehicle's way from its first stop to now.
 
 use super::Setting;
-use super::block::{Block, Blocks};
+use super::block::{AT_REST, Block, Blocks, DRIVEN};
 use super::place::Place;
 use super::stop::Stop;
 use crate::math::rotation::{Vector, difference, dot, transposed};
@@ -24,7 +24,9 @@ pub struct Path<'a> {
     /// The stops.
     pub stops: &'a [Stop],
     /// Means over the time at rest.
-    pub blocks: &'a Blocks,
+    pub blocks: &'a Blocks<AT_REST>,
+    /// Means over the drives.
+    pub drives: &'a Blocks<DRIVEN>,
     /// When the last sample ended, s.
     pub now: f64,
     /// What was carried then.
@@ -49,6 +51,17 @@ impl Path<'_> {
         }
         let unknown = setting.speed_sigma * (last.from - first.to).max(0.0);
         if last.displacement.is_some() { setting.displacement_sigma } else { unknown }
+    }
+
+    /// Where the vehicle is between two stops, taken to drive straight and evenly, m.
+    #[must_use]
+    pub fn underway(&self, stop: usize, at: f64) -> [f64; 2] {
+        let [Some(before), Some(after)] = [self.stops.get(stop), self.stops.get(stop + 1)] else {
+            return self.displaced(stop);
+        };
+        let part = (at - before.to) / (after.from - before.to).max(1.0);
+        let [from, to] = [self.displaced(stop), self.displaced(stop + 1)];
+        [from[0] + part * (to[0] - from[0]), from[1] + part * (to[1] - from[1])]
     }
 
     /// How far up at the last stop depends on scale errors of the gyros, by a rotation about this axis.

@@ -3,14 +3,16 @@
 use super::Setting;
 use super::block::Block;
 use super::filter::{
-    Filter, LATITUDE, Measurement, NOW, PLACE, START, STATES, force_row, rest_row,
+    Filter, LATITUDE, Measurement, NOW, PLACE, START, STATES, VELOCITY, force_row, rest_row,
+    velocity_row,
 };
 use super::path::Path;
 use super::place::{Place, up};
 use super::stop::Stop;
 use crate::earth::EARTH_RATE;
 use crate::math::rotation::{
-    Matrix, Vector, by, difference, dot, length, product, scaled, small, transposed, turned,
+    Matrix, Vector, by, cross, difference, dot, length, product, scaled, small, sum, transposed,
+    turned,
 };
 use crate::signal::strapdown::{Carried, Rough};
 
@@ -29,6 +31,12 @@ const LEAST_SWAY: f64 = 1e-14;
 const SLOW_SWAY: f64 = 4.0;
 /// Least angle random walk that is believed, rad/√s: 1e-5 °/√h.
 const LEAST_WALK: f64 = 2.9e-9;
+/// 1σ of what driving adds to an accelerometer's bias, m/s²: its scale and its axes under vibration, 0.1 mg.
+const DRIVING: f64 = 1e-3;
+/// How far a vehicle is from the straight way in the mean, of what it could have driven.
+const DETOUR: f64 = 0.1;
+/// Part of a drive that its blocks may miss.
+const COVERED: f64 = 0.002;
 /// Step by which the latitude's effect is found, rad.
 const LATITUDE_STEP: f64 = 1e-3;
 
@@ -57,6 +65,8 @@ pub struct Solution {
     pub left_out: u32,
     /// Stops at which the vehicle turned, whose rest rates are left out.
     pub turning: u32,
+    /// Drives that did not come to rest at their end, whose velocity is left out.
+    pub unsteady: u32,
 }
 
 /// What has been carried until a moment.
@@ -120,8 +130,15 @@ impl Solution {
             common.accelerometer_bias_sigma,
             common.latitude_sigma,
         );
-        let (chi_square, degrees, left_out, turning) = (0.0, 0.0, 0, 0);
-        let mut solution = Self { filter, frame: *frame, chi_square, degrees, left_out, turning };
+        let mut solution = Self {
+            filter,
+            frame: *frame,
+            chi_square: 0.0,
+            degrees: 0.0,
+            left_out: 0,
+            turning: 0,
+            unsteady: 0,
+        };
         let is_exact = common.latitude_sigma <= 0.0;
         let is_ideal = belief == Belief::Ideal;
         let mut run = Run {
@@ -145,10 +162,12 @@ impl Run<'_> {
     fn stop(&mut self, solution: &mut Solution, index: usize) {
         let stop = &self.path.stops[index];
         if index > 0 {
-            let drive = (stop.from - self.last.at).max(0.0);
+            let driven = (stop.from - self.last.at).max(0.0);
+            self.drive(solution, index, driven);
+            let (known, unknown) = (self.setting.displacement_sigma, self.setting.speed_sigma);
             match stop.displacement {
-                Some(_) => solution.filter.displace(self.setting.displacement_sigma),
-                None => solution.filter.stray(self.setting.speed_sigma * drive),
+                Some(_) => solution.filter.forget(PLACE..PLACE + 2, known),
+                None => solution.filter.stray(unknown * driven),
             }
         }
         self.carry(solution, Moment::of(stop.from, &stop.begin));
@@ -182,6 +201,67 @@ impl Run<'_> {
         k * k
             + 6.0 * core::f64::consts::LN_2 / core::f64::consts::PI * b * b / whole
             + 1.5 * r * r * whole
+    }
+
+    /// Takes it that a drive to a stop, of so many seconds, ends at rest as it began: what its forces sum up
+    /// to beyond gravity is the work of φ.
+    fn drive(&mut self, solution: &mut Solution, index: usize, driven: f64) {
+        let path = self.path;
+        solution.filter.forget(VELOCITY..VELOCITY + 3, 0.0);
+        let (mut gained, mut seconds) = ([0.0; 3], 0.0);
+        for block in path.drives.of(index - 1) {
+            self.carry(
+                solution,
+                Moment { at: block.middle, bias: block.bias, scale: self.last.scale },
+            );
+            let displaced = path.underway(index - 1, block.middle);
+            let above = up(&path.place.navigation(block.middle - path.start, displaced));
+            let predicted = scaled(&turned(&solution.frame, &above), path.gravity);
+            let length = f64::from(block.seconds);
+            let rows: [_; 3] = core::array::from_fn(|axis| {
+                velocity_row(&predicted, axis, &block.attitude, length)
+            });
+            solution.filter.add(VELOCITY, &rows);
+            let beyond = difference(&block.force.map(f64::from), &predicted);
+            gained = sum(&gained, &scaled(&beyond, length));
+            seconds += length;
+        }
+        self.carry(solution, Moment::of(path.stops[index].from, &path.stops[index].begin));
+        if (seconds - driven).abs() <= COVERED * driven {
+            self.come_to_rest(solution, index, &gained, driven);
+        }
+    }
+
+    /// Takes the velocity that a drive seems to have gained.
+    fn come_to_rest(&self, solution: &mut Solution, index: usize, gained: &Vector, driven: f64) {
+        let path = self.path;
+        let middle = path.stops[index].from - 0.5 * driven - path.start;
+        let navigation =
+            path.place.navigation(middle, path.underway(index - 1, middle + path.start));
+        let along = transposed(&navigation);
+        let [from, to] = [path.displaced(index - 1), path.displaced(index)];
+        let way = sum(&scaled(&along[0], to[0] - from[0]), &scaled(&along[1], to[1] - from[1]));
+        let turning = scaled(&cross(&path.place.axis(), &way), EARTH_RATE);
+        let beyond = difference(gained, &turned(&solution.frame, &turning));
+        let variance = self.velocity_variance(&path.stops[index], driven);
+        let measurements: [Measurement; 2] = core::array::from_fn(|axis| {
+            let direction = turned(&solution.frame, &along[axis]);
+            let mut row = [0.0; STATES];
+            row[VELOCITY..VELOCITY + 3].copy_from_slice(&direction);
+            Measurement { row, value: dot(&beyond, &direction), variance }
+        });
+        if self.take(&mut solution.filter, &measurements).is_none() {
+            solution.unsteady += 1;
+        }
+    }
+
+    /// Variance of the velocity that a drive seems to gain, (m/s)²: what driving adds to the accelerometers'
+    /// biases, their noise, and gravity's direction along an unknown way.
+    fn velocity_variance(&self, stop: &Stop, driven: f64) -> f64 {
+        let sigma = self.setting.speed_sigma * driven;
+        let astray = if stop.displacement.is_some() { DETOUR * sigma } else { sigma };
+        let direction = self.path.gravity * self.path.place.per_metre()[0] * astray;
+        (DRIVING * DRIVING + direction * direction) * driven * driven + self.density * driven
     }
 
     /// Takes the force of a block.

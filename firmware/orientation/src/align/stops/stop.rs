@@ -104,6 +104,8 @@ pub struct Second {
     pub start_force: [f32; 3],
     /// Whether a blow made it meaningless.
     pub is_blown: bool,
+    /// Whether it belongs to a stop.
+    pub is_rest: bool,
     /// What was carried when it began.
     pub begin: Carried,
     /// What was carried when it ended.
