@@ -319,7 +319,7 @@ fn still(rows: &[StageRow]) -> f64 {
 }
 
 /// The (upper) median in linear time; zero of none.
-fn median(values: &mut [f64]) -> f64 {
+pub(crate) fn median(values: &mut [f64]) -> f64 {
     let half = values.len() / 2;
     if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(half, f64::total_cmp).1 }
 }

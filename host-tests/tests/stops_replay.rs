@@ -219,7 +219,10 @@ fn an_independent_solution_of_the_drives_agrees_with_the_papers_method() {
         let plain = &found(conclusion(&replay)).plain;
         let apart = azimuth_error(degrees(plain.azimuth), independent);
         println!("{name}: {apart:+.1e}° from the independent solution");
-        assert!(apart.abs() < 1e-3, "{name}: {apart}°");
+        // The heading at the first stop is that of its middle here, a mean of all of it there: gyros that
+        // walk turn by 0.05 °/√h · √30 s = 0.005° between.
+        let same = if name == IDEAL { 1e-3 } else { 0.01 };
+        assert!(apart.abs() < same, "{name}: {apart}°");
     }
 }
 

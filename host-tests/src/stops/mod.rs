@@ -118,8 +118,10 @@ fn missing(body: &Body) -> ReplayError {
     }
 }
 
-/// Turn about the vertical by which a vehicle that drives differs from one that sways, rad: 5°.
+/// Turn about its vertical by which a vehicle that drives differs from one that sways, rad: 5°.
 const DROVE: f64 = 5.0 / 360.0 * std::f64::consts::TAU;
+/// Time whose median turn a sway or a slammed door does not move, s.
+const MEDIAN_S: f64 = 30.0;
 
 /// The method of a recording for which none was asked: where no stop is stated and it never turned about
 /// its vertical, it stood.
@@ -127,11 +129,17 @@ fn usual(header: &Header, rows: &[ImuRow], period_s: f64) -> Method {
     if header.stops_s.is_some() {
         return Method::Siap;
     }
-    let (mut heading, mut least, mut most) = (0.0_f64, 0.0_f64, 0.0_f64);
-    for row in rows {
-        heading += row.sample.rates_rad_s[2] * period_s;
-        (least, most) = (least.min(heading), most.max(heading));
-    }
+    let turned = rows.iter().scan(0.0, |turned, row| {
+        *turned += row.sample.rates_rad_s[2] * period_s;
+        Some(*turned)
+    });
+    let mut turned: Vec<f64> = turned.collect();
+    let size = ((MEDIAN_S / period_s) as usize).max(1);
+    let headings = turned.chunks_mut(size).map(replay::median);
+    let (least, most) = headings
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), heading| {
+            (least.min(heading), most.max(heading))
+        });
     if most - least > DROVE { Method::Siap } else { Method::Static }
 }
 

@@ -10,13 +10,9 @@ use crate::recording::{Body, ImuRow, ImuSample, StaticRow};
 /// Steps longer than so many periods have a sample missing.
 const LONGEST_STEP: f64 = 1.5;
 
-/// Greatest rate, rad/s, and force, m/s², below which a flat top is no sensor at its limit: 3 °/s is less
-/// than any gyro's range, 1.5 g than any accelerometer's.
-const SMALLEST_RANGES: [f64; 2] = [0.05, 15.0];
-/// Samples of a flat top: a signal that is not cut stands at its greatest value for one.
-const FLAT: usize = 3;
-/// Part of neighbours that may be equal to the last digit where a signal is not coarsely written.
-const COARSE: f64 = 0.05;
+/// How much longer than any other a standstill at the greatest value must be: where a smooth signal is
+/// coarsely written, its top is the longest by three.
+const LONGER: usize = 4;
 
 /// The rows of three gyros and three accelerometers, of whatever kind; none where one of them is missing.
 #[must_use]
@@ -114,27 +110,22 @@ fn limits(rows: &[ImuRow]) -> [f64; 6] {
     std::array::from_fn(|channel| {
         let values = || rows.iter().filter_map(|row| channels(row).nth(channel)).map(f64::abs);
         let greatest = values().fold(0.0, f64::max);
-        let smallest = SMALLEST_RANGES[channel / 3];
-        let is_cut = greatest > smallest && is_cut(values, greatest, smallest);
+        let is_cut = greatest > 0.0 && is_cut(values(), greatest);
         if is_cut { greatest } else { f64::INFINITY }
     })
 }
 
-/// Whether a signal stands at its greatest value for several samples, which others do not share. One that
+/// Whether a signal stands at its greatest value for far more samples on end than at any other. One that
 /// stands there most of the time is steady.
-fn is_cut<I: Iterator<Item = f64>>(values: impl Fn() -> I, greatest: f64, smallest: f64) -> bool {
-    let (mut run, mut longest, mut count) = (0, 0, 0);
-    let (mut equal, mut large) = (0.0, 0.0);
-    let mut before = 0.0;
-    for value in values() {
-        run = if value == greatest { run + 1 } else { 0 };
-        longest = longest.max(run);
-        count += 1;
-        if value > smallest && value < greatest {
-            large += 1.0;
-            equal += f64::from(u8::from(value == before));
-        }
+fn is_cut(values: impl Iterator<Item = f64>, greatest: f64) -> bool {
+    let (mut run, mut before) = (0, f64::NAN);
+    let (mut at_greatest, mut elsewhere, mut count) = (0, 0, 0);
+    for value in values {
+        run = if value == before { run + 1 } else { 1 };
         before = value;
+        let longest = if value == greatest { &mut at_greatest } else { &mut elsewhere };
+        *longest = run.max(*longest);
+        count += 1;
     }
-    longest >= FLAT && 2 * longest < count && equal <= COARSE * large
+    at_greatest > LONGER * elsewhere && 2 * at_greatest < count
 }
