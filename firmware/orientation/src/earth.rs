@@ -22,6 +22,9 @@ const ECCENTRICITY_SQUARED: f64 = 0.006_694_379_990_14;
 pub struct Latitude(f64);
 
 impl Latitude {
+    /// The equator's.
+    pub const EQUATOR: Self = Self(0.0);
+
     /// From degrees, north positive; `None` outside ±90° and for NaN.
     #[must_use]
     pub fn from_degrees(degrees: f64) -> Option<Self> {

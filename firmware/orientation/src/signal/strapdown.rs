@@ -12,65 +12,79 @@
 //! each, so that a drive of any length takes the same memory.
 
 use super::InertialSample;
-use crate::math::rotation::{Quaternion, cross, dot, sum, turned};
-use crate::units::{AngleIncrement, Instant, SpecificForce};
+use crate::math::rotation::{Quaternion, dot, sum, turned};
+use crate::units::{AngleIncrement, Instant};
 
 /// Time from one attitude to the next, µs: 50 Hz.
 const PERIOD: u64 = 20_000;
-/// Rotation after which the attitude is taken at once, rad: to it, the products of small rotations that
-/// are left out are 1e-6 of them.
+/// Rotation about an axis after which the attitude is taken at once, rad: up to it, the products of small
+/// rotations that are left out are 1e-6 of them.
 const LARGE: f32 = 0.02;
-/// Rotation of one sample up to which rates are taken to change steadily from sample to sample, rad: a
+/// The same in steps of an increment.
+const LARGE_STEPS: u32 = (LARGE / STEP) as u32;
+/// Rotation of one sample about an axis up to which rates are taken to change steadily from sample to sample, rad: a
 /// blow is no steady change.
 const STEADY: f32 = 0.1;
 /// How a sample that follows another is turned by the change of the axis between them (Savage's equation
 /// for rates that change linearly): 1/12.
 const CONING: f32 = 1.0 / 12.0;
 
+/// The same in steps of an increment.
+const STEADY_STEPS: u32 = (STEADY / STEP) as u32;
+/// One step of an increment, rad.
+const STEP: f32 = AngleIncrement::STEP as f32;
+
 /// A matrix in single precision.
 pub type Rough = [[f32; 3]; 3];
 
-/// The rotation since the last attitude.
+/// The rotation since the last attitude, in steps of an increment and their squares. Written out, for loops
+/// of three cost more than what they do.
 #[derive(Clone, Copy, Debug, Default)]
 struct Increment {
     /// Sums of the increments: exact, so that nothing is lost however long it takes.
-    sums: [i64; 3],
-    /// The same, rad, as the products of rotations need it.
-    rotation: [f32; 3],
-    /// What the order of rotations adds, rad.
+    sums: [i32; 3],
+    /// What the order of rotations adds.
     coning: [f32; 3],
-    /// The sample before, rad.
-    before: [f32; 3],
+    /// A twelfth of the sample before, or zero where that was a blow.
+    lead: [f32; 3],
 }
 
 impl Increment {
     #[inline]
-    fn push(&mut self, turned: &[AngleIncrement; 3]) {
-        let small = turned.map(|part| part.0 as f32 * AngleIncrement::STEP as f32);
-        let lead = if is_steady(&small) && is_steady(&self.before) { CONING } else { 0.0 };
-        let arm: [f32; 3] =
-            core::array::from_fn(|axis| 0.5 * self.rotation[axis] + lead * self.before[axis]);
-        let order = cross(&arm, &small);
-        for (whole, part) in self.sums.iter_mut().zip(turned) {
-            *whole += i64::from(part.0);
-        }
-        self.rotation = sum(&self.rotation, &small);
-        self.coning = sum(&self.coning, &order);
-        self.before = small;
+    fn push(&mut self, [a, b, c]: [AngleIncrement; 3]) {
+        let [x, y, z] = self.sums;
+        let [small_x, small_y, small_z] = [a.0 as f32, b.0 as f32, c.0 as f32];
+        let is_steady = a.0.unsigned_abs() < STEADY_STEPS
+            && b.0.unsigned_abs() < STEADY_STEPS
+            && c.0.unsigned_abs() < STEADY_STEPS;
+        let [lead_x, lead_y, lead_z] = if is_steady { self.lead } else { [0.0; 3] };
+        let arm_x = 0.5 * x as f32 + lead_x;
+        let arm_y = 0.5 * y as f32 + lead_y;
+        let arm_z = 0.5 * z as f32 + lead_z;
+        self.coning[0] += arm_y * small_z - arm_z * small_y;
+        self.coning[1] += arm_z * small_x - arm_x * small_z;
+        self.coning[2] += arm_x * small_y - arm_y * small_x;
+        self.sums = [x.saturating_add(a.0), y.saturating_add(b.0), z.saturating_add(c.0)];
+        let part = if is_steady { CONING } else { 0.0 };
+        self.lead = [part * small_x, part * small_y, part * small_z];
+    }
+
+    /// Whether the attitude is to be taken at once.
+    #[inline]
+    fn is_large(&self) -> bool {
+        let [x, y, z] = self.sums;
+        x.unsigned_abs().max(y.unsigned_abs()).max(z.unsigned_abs()) > LARGE_STEPS
     }
 
     /// The rotation vector, rad, whose sums then begin again.
     fn take(&mut self) -> [f64; 3] {
         let rotation = core::array::from_fn(|axis| {
-            self.sums[axis] as f64 * AngleIncrement::STEP + f64::from(self.coning[axis])
+            f64::from(self.sums[axis]) * AngleIncrement::STEP
+                + f64::from(self.coning[axis] * (STEP * STEP))
         });
-        *self = Self { before: self.before, ..Self::default() };
+        *self = Self { lead: self.lead, ..Self::default() };
         rotation
     }
-}
-
-fn is_steady(rotation: &[f32; 3]) -> bool {
-    dot(rotation, rotation) < STEADY * STEADY
 }
 
 /// Attitude, and what of it depends on the gyros' errors.
@@ -84,6 +98,21 @@ pub struct Carried {
     pub scale: Rough,
 }
 
+/// What was summed since it was taken last.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sums {
+    /// Angle increments.
+    pub turned: [i64; 3],
+    /// Specific forces on the body's axes, µm/s².
+    pub force: [i64; 3],
+    /// The same on the start's axes, m/s².
+    pub start_force: [f32; 3],
+    /// Of how many forces.
+    pub count: u32,
+    /// Whether a blow turned the body so quickly that the forces mean nothing.
+    pub is_blown: bool,
+}
+
 /// The strapdown at work.
 #[derive(Clone, Debug, Default)]
 pub struct Strapdown {
@@ -94,23 +123,10 @@ pub struct Strapdown {
     /// When the attitude was taken last.
     since: Instant,
     /// Sums of the forces since then, µm/s², and of how many.
-    forces: [i64; 3],
+    force: [i64; 3],
     count: u32,
-    /// Sums of the forces on the start's axes, m/s² times samples, and of how many samples.
-    turned_forces: [f32; 3],
-    turned_count: u32,
-    is_blown: bool,
-}
-
-/// Forces that were summed since they were taken last.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Forces {
-    /// Their sum on the start's axes, m/s².
-    pub sum: [f32; 3],
-    /// Of how many.
-    pub count: u32,
-    /// Whether a blow turned the body so quickly that they mean nothing.
-    pub is_blown: bool,
+    /// Sums until then.
+    sums: Sums,
 }
 
 impl Strapdown {
@@ -124,16 +140,15 @@ impl Strapdown {
     /// Takes a sample.
     #[inline]
     pub fn push(&mut self, sample: &InertialSample) {
-        self.increment.push(&sample.turned);
-        if let Some(force) = sample.force {
-            for (sum, SpecificForce(part)) in self.forces.iter_mut().zip(force) {
-                *sum += i64::from(part);
-            }
+        self.increment.push(sample.turned);
+        if let Some([x, y, z]) = sample.force {
+            self.force[0] += i64::from(x.0);
+            self.force[1] += i64::from(y.0);
+            self.force[2] += i64::from(z.0);
             self.count += 1;
         }
         let elapsed = sample.time.0.saturating_sub(self.since.0);
-        let rotation = &self.increment.rotation;
-        if elapsed >= PERIOD || dot(rotation, rotation) > LARGE * LARGE {
+        if elapsed >= PERIOD || self.increment.is_large() {
             self.update(sample.time);
         }
     }
@@ -143,7 +158,8 @@ impl Strapdown {
     pub fn update(&mut self, now: Instant) {
         let seconds = now.0.saturating_sub(self.since.0) as f32 * 1e-6;
         self.since = now;
-        let small = self.increment.rotation;
+        let steps = self.increment.sums;
+        let small = steps.map(|sum| sum as f32 * STEP);
         let carried = &mut self.carried;
         carried.attitude = carried.attitude.turned(&self.increment.take()).normalised();
         let after = carried.attitude.rough_matrix();
@@ -153,16 +169,19 @@ impl Strapdown {
         self.matrix = after;
         carried.bias = gained(&carried.bias, &middle, &[seconds; 3]);
         carried.scale = gained(&carried.scale, &middle, &small);
-        self.is_blown |= !is_steady(&small);
-        self.turn_forces(&middle);
+        self.sums.turned = sum(&self.sums.turned, &steps.map(i64::from));
+        self.sums.is_blown |= dot(&small, &small) > STEADY * STEADY;
+        self.turn_force(&middle);
     }
 
     /// Turns the forces since the last attitude to the start's axes.
-    fn turn_forces(&mut self, middle: &Rough) {
-        let force = self.forces.map(|sum| sum as f32 * 1e-6);
-        self.turned_forces = sum(&self.turned_forces, &turned(middle, &force));
-        self.turned_count += self.count;
-        (self.forces, self.count) = ([0; 3], 0);
+    fn turn_force(&mut self, middle: &Rough) {
+        let force = core::mem::take(&mut self.force);
+        let sums = &mut self.sums;
+        let turned = turned(middle, &force.map(|sum| sum as f32 * 1e-6));
+        sums.start_force = sum(&sums.start_force, &turned);
+        sums.force = sum(&sums.force, &force);
+        sums.count += core::mem::take(&mut self.count);
     }
 
     /// What is carried.
@@ -171,13 +190,9 @@ impl Strapdown {
         &self.carried
     }
 
-    /// The forces since they were taken last.
-    pub fn take_forces(&mut self) -> Forces {
-        Forces {
-            sum: core::mem::take(&mut self.turned_forces),
-            count: core::mem::take(&mut self.turned_count),
-            is_blown: core::mem::take(&mut self.is_blown),
-        }
+    /// What was summed until the last attitude, which then begins again.
+    pub fn take(&mut self) -> Sums {
+        core::mem::take(&mut self.sums)
     }
 }
 

@@ -189,29 +189,44 @@ impl Found {
     #[inline(never)]
     fn of(setting: &Setting, path: &Path) -> Self {
         let plain = Plain::of(setting, path);
-        let solution = Solution::of(setting, path, &plain.frame);
-        let filter = &solution.filter;
+        let mut solution = Solution::new(plain.frame);
+        solution.settle(setting, path);
         let end = End::of(path, &solution);
         let row = end.row(path);
+        let found = Self::shown(setting, path, &plain, &solution, &end);
+        solution.run(setting, path, Belief::Ideal);
+        Self { limit: libm::sqrt(solution.filter.variance(&row)), ..found }
+    }
+
+    /// All but the limit.
+    #[inline(never)]
+    fn shown(
+        setting: &Setting,
+        path: &Path,
+        plain: &Plain,
+        solution: &Solution,
+        end: &End,
+    ) -> Self {
+        let filter = &solution.filter;
+        let row = end.row(path);
         let start = Azimuth {
-            angle: azimuth_of(&start_attitude(&solution)),
-            sigma: libm::sqrt(filter.variance(&start_row(&solution))),
+            angle: azimuth_of(&start_attitude(solution)),
+            sigma: libm::sqrt(filter.variance(&start_row(solution))),
         };
         let sigma = libm::sqrt(filter.variance(&row));
-        let ideal = Solution::along(setting, path, &solution.frame, Belief::Ideal, false);
         let bias_sigmas: Vector =
             core::array::from_fn(|axis| libm::sqrt(filter.covariance[BIAS + axis][BIAS + axis]));
         let known = setting.bias_sigma();
         Self {
             azimuth: Azimuth { angle: azimuth_of(&end.attitude), sigma },
             start,
-            limit: libm::sqrt(ideal.filter.variance(&row)),
+            limit: 0.0,
             budget: budget(setting, path, &filter.covariances(&row), sigma),
             level: level_of(&end.attitude),
             biases: filter.three(BIAS),
             bias_sigmas,
             are_biases_observed: bias_sigmas.iter().all(|sigma| *sigma <= OBSERVED * known),
-            plain,
+            plain: *plain,
             chi_square: [solution.chi_square, solution.degrees],
             left_out: [solution.left_out, path.blocks.all().len() as u32],
             turning: solution.turning,

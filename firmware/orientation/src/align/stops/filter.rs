@@ -7,7 +7,8 @@
 //! between the beginning and the end of a stop the body turned with the Earth alone, so φ there differs by
 //! nothing but the sway. All is linear once the start is nearly known; repetition makes it known.
 
-use crate::math::rotation::{Matrix, Vector, cross};
+use crate::math::rotation::{Matrix, Vector, cross, dot};
+use crate::math::{cholesky, cholesky_solve};
 use crate::signal::strapdown::Rough;
 
 /// States: φ now, φ at the start, φ when the stop began, b, s, accelerometer biases, displacement beyond
@@ -57,25 +58,27 @@ pub struct Filter {
 }
 
 impl Filter {
-    /// Nothing measured: φ at the start has this covariance, the others these 1σ; all are zero.
-    #[must_use]
+    /// Of nothing.
+    pub const EMPTY: Self = Self { state: [0.0; STATES], covariance: [[0.0; STATES]; STATES] };
+
+    /// Begins anew: φ at the start has this covariance, the others these 1σ; all are zero.
     #[inline(never)]
-    pub fn new(start: &Matrix, bias: f64, scale: f64, force: f64, latitude: f64) -> Self {
-        let mut filter = Self { state: [0.0; STATES], covariance: [[0.0; STATES]; STATES] };
+    pub fn begin(&mut self, start: &Matrix, bias: f64, scale: f64, force: f64, latitude: f64) {
+        self.state = [0.0; STATES];
+        self.covariance = [[0.0; STATES]; STATES];
         for (row, values) in start.iter().enumerate() {
             for (column, value) in values.iter().enumerate() {
                 for (a, b) in [(NOW, NOW), (NOW, START), (START, NOW), (START, START)] {
-                    filter.covariance[a + row][b + column] = *value;
+                    self.covariance[a + row][b + column] = *value;
                 }
             }
         }
         for (first, sigma) in [(BIAS, bias), (SCALE, scale), (FORCE, force)] {
             for state in first..first + 3 {
-                filter.covariance[state][state] = sigma * sigma;
+                self.covariance[state][state] = sigma * sigma;
             }
         }
-        filter.covariance[LATITUDE][LATITUDE] = latitude * latitude;
-        filter
+        self.covariance[LATITUDE][LATITUDE] = latitude * latitude;
     }
 
     /// Carries φ on over a time in which it came to depend so much more on biases and scale errors, and
@@ -162,31 +165,61 @@ impl Filter {
         }
     }
 
-    /// Takes measurements in turn; the sum of the squares of what they bring beyond the expected, over their
-    /// variances: chi-square of as many degrees of freedom.
+    /// Takes measurements in turn.
     #[inline(never)]
-    pub fn measure(&mut self, measurements: &[Measurement]) -> f64 {
-        measurements.iter().map(|measurement| self.take(measurement)).sum()
+    pub fn measure(&mut self, measurements: &[Measurement]) {
+        for measurement in measurements {
+            self.take(measurement);
+        }
     }
 
-    fn take(&mut self, measurement: &Measurement) -> f64 {
+    /// What measurements, three at most, bring beyond the expected: chi-square of as many degrees of freedom.
+    #[must_use]
+    #[inline(never)]
+    pub fn surprise(&self, measurements: &[Measurement]) -> f64 {
+        let mut whole = [[0.0; 3]; 3];
+        let mut beyond = [0.0; 3];
+        for (index, measurement) in measurements.iter().enumerate() {
+            let spread = self.covariances(&measurement.row);
+            for (entry, other) in whole[index].iter_mut().zip(measurements) {
+                *entry = product(&spread, &other.row);
+            }
+            whole[index][index] += measurement.variance;
+            beyond[index] = measurement.value - product(&self.state, &measurement.row);
+        }
+        let size = measurements.len();
+        let mut weighted = beyond;
+        if !cholesky(&mut whole, size) {
+            return f64::INFINITY;
+        }
+        cholesky_solve(&whole, size, &mut weighted);
+        dot(&beyond, &weighted)
+    }
+
+    fn take(&mut self, measurement: &Measurement) {
         let Measurement { row, value, variance } = measurement;
-        let mut spread = [0.0; STATES];
-        for (spread, line) in spread.iter_mut().zip(&self.covariance) {
-            *spread = product(line, row);
-        }
-        let whole = product(&spread, row) + variance;
-        let surprise = value - product(&self.state, row);
-        for (state, spread) in self.state.iter_mut().zip(&spread) {
-            *state += spread * surprise / whole;
-        }
-        for (line, a) in self.covariance.iter_mut().zip(&spread) {
-            let gain = a / whole;
-            for (entry, b) in line.iter_mut().zip(&spread) {
-                *entry -= gain * b;
+        let spread = self.covariances(row);
+        let gain = 1.0 / (product(&spread, row) + variance);
+        let surprise = (value - product(&self.state, row)) * gain;
+        for (index, part) in spread.iter().enumerate().filter(|(_, part)| **part != 0.0) {
+            self.state[index] += part * surprise;
+            let part = part * gain;
+            for (other, entry) in spread[..=index].iter().zip(&mut self.covariance[index]) {
+                if *other != 0.0 {
+                    *entry -= part * other;
+                }
             }
         }
-        surprise * surprise / whole
+        self.mirror();
+    }
+
+    /// Copies the lower triangle, where products were taken, to the upper.
+    fn mirror(&mut self) {
+        for row in 1..STATES {
+            for column in 0..row {
+                self.covariance[column][row] = self.covariance[row][column];
+            }
+        }
     }
 
     /// Variance of a combination of the states.

@@ -8,10 +8,10 @@ use heapless::{Deque, Vec};
 
 use super::block::{AT_REST, Block, Blocks, DRIVEN};
 use super::stop::{STOPS, Second, Stop};
-use crate::math::rotation::{length, scaled};
+use crate::math::rotation::{length, scaled, sum};
 use crate::signal::InertialSample;
 use crate::signal::rest::{Criteria, Limits, Sensors};
-use crate::signal::strapdown::{Carried, Rough, Strapdown};
+use crate::signal::strapdown::{Carried, Rough, Strapdown, Sums};
 use crate::units::{AngleIncrement, Instant};
 
 /// Seconds in the low-pass average that the criteria judge: Szymanowski's need ten at least.
@@ -53,9 +53,6 @@ pub enum Loss {
 #[derive(Clone, Copy, Debug, Default)]
 struct Progress {
     since: Instant,
-    turned: [i64; 3],
-    forces: [i64; 3],
-    count: u32,
     begin: Carried,
 }
 
@@ -116,14 +113,8 @@ impl Follower {
         }
         self.watch(sample);
         self.strapdown.push(sample);
-        let progress = &mut self.progress;
-        add(&mut progress.turned, sample.turned.iter().map(|part| part.0));
-        if let Some(force) = sample.force {
-            add(&mut progress.forces, force.iter().map(|part| part.0));
-            progress.count += 1;
-        }
-        let is_over =
-            sample.time.0.saturating_sub(progress.since.0) >= SECOND || self.is_edge(sample.time);
+        let is_over = sample.time.0.saturating_sub(self.progress.since.0) >= SECOND
+            || self.is_edge(sample.time);
         if is_over {
             self.second(sample.time);
         }
@@ -143,16 +134,18 @@ impl Follower {
     /// Notices what makes the carried attitude worthless.
     fn watch(&mut self, sample: &InertialSample) {
         let elapsed = sample.time.0.saturating_sub(self.last.0);
-        let at = self.last.seconds();
-        self.last = sample.time;
-        if self.loss.is_some() {
-            return;
-        }
         if elapsed > self.gap {
-            self.loss = Some(Loss::Gap(at, elapsed as f64 * 1e-6));
+            self.lose(Loss::Gap(self.last.seconds(), elapsed as f64 * 1e-6));
         } else if sample.turned.iter().any(|turned| turned.is_saturated()) {
-            self.loss = Some(Loss::Saturated(sample.time.seconds()));
+            self.lose(Loss::Saturated(sample.time.seconds()));
         }
+        self.last = sample.time;
+    }
+
+    /// Keeps the first loss.
+    #[cold]
+    fn lose(&mut self, loss: Loss) {
+        self.loss.get_or_insert(loss);
     }
 
     /// Whether a stated stop begins or ends about now.
@@ -169,7 +162,7 @@ impl Follower {
     /// Begins a second.
     fn restart(&mut self, now: Instant) {
         let begin = *self.strapdown.carried();
-        self.progress = Progress { since: now, begin, ..Progress::default() };
+        self.progress = Progress { since: now, begin };
     }
 
     /// Ends the second, and judges by it.
@@ -216,17 +209,17 @@ impl Follower {
 
     /// What the second that ends now leaves.
     fn whole_second(&mut self, now: Instant) -> Second {
-        let Progress { since, turned, forces, count, begin } = self.progress;
-        let taken = self.strapdown.take_forces();
-        let inverse = 1.0 / taken.count.max(1) as f32;
+        let Progress { since, begin } = self.progress;
+        let Sums { turned, force, start_force, count, is_blown } = self.strapdown.take();
+        let inverse = 1.0 / count.max(1) as f32;
         let mean = |sum: i64| sum as f64 * 1e-6 / f64::from(count);
         Second {
             from: since.seconds(),
             to: now.seconds(),
             turned,
-            force: (count > 0).then(|| forces.map(mean)),
-            start_force: taken.sum.map(|sum| sum * inverse),
-            is_blown: taken.is_blown,
+            force: (count > 0).then(|| force.map(mean)),
+            start_force: start_force.map(|sum| sum * inverse),
+            is_blown,
             is_rest: false,
             begin,
             end: *self.strapdown.carried(),
@@ -237,13 +230,9 @@ impl Follower {
     fn judge(&self) -> Option<Criteria> {
         let (mut turned, mut seconds, mut force, mut count) = ([0i64; 3], 0.0, [0.0; 3], 0.0);
         for second in &self.window {
-            for (sum, part) in turned.iter_mut().zip(second.turned) {
-                *sum += part;
-            }
+            turned = sum(&turned, &second.turned);
             seconds += second.seconds();
-            for (sum, part) in force.iter_mut().zip(second.force.unwrap_or_default()) {
-                *sum += part;
-            }
+            force = sum(&force, &second.force.unwrap_or_default());
             count += f64::from(u8::from(second.force.is_some()));
         }
         let rate = length(&turned.map(|sum| sum as f64 * AngleIncrement::STEP)) / seconds;
@@ -361,13 +350,6 @@ fn block(second: &Second, force: [f32; 3], stop: u8) -> Block {
         attitude: mean(&begin.attitude.rough_matrix(), &end.attitude.rough_matrix()),
         bias: mean(&begin.bias, &end.bias),
         stop,
-    }
-}
-
-/// Adds three to three.
-fn add(sums: &mut [i64; 3], parts: impl Iterator<Item = i32>) {
-    for (sum, part) in sums.iter_mut().zip(parts) {
-        *sum += i64::from(part);
     }
 }
 

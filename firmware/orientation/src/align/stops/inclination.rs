@@ -5,11 +5,18 @@
 //! stop is all that is kept of it. A candidate enters by the start's attitude alone.
 
 use crate::math::brent::{self, Minimum};
+use crate::math::quick_root;
 use crate::math::rotation::{Matrix, Vector, about_down, transposed, turned, unit};
+use crate::math::turn::{high, sine_and_cosine};
 use crate::units::{TURN, wrapped};
 
 /// Chord up to which its angle is taken from a series, whose error is then below 1e-13 of it.
-const SHORT: f64 = 0.05;
+const SHORT: f64 = 0.02;
+/// Times which components are stored as integers, and their products with sines come out.
+const STORED: f64 = (1_u64 << 62) as f64;
+const TURNED: f64 = (1_u64 << 60) as f64;
+/// Steps of the stored angle's quarter in a radian.
+const QUARTER_STEPS: f64 = (1_u64 << 62) as f64 / TURN;
 /// Width of the search about the coarse minimum, rad; U falls only once within half a turn.
 const HALF_TURN: f64 = 0.5 * TURN;
 /// What the search is to find the azimuth to, rad: below 1e-8°.
@@ -28,6 +35,11 @@ pub struct Inclination {
     predicted: Vector,
     /// From those level axes to the body's at the last stop.
     body: Matrix,
+    /// Horizontal parts of the first, times 2⁶², and of the second, times 2⁶⁰.
+    stored: [i64; 2],
+    wanted: [i64; 2],
+    /// Square of the difference of their vertical parts.
+    away: f64,
 }
 
 impl Inclination {
@@ -35,21 +47,31 @@ impl Inclination {
     /// down, both of length one, and the rotation from those level axes to the body's at the last stop.
     #[must_use]
     pub fn new(levelled: Vector, predicted: Vector, body: Matrix) -> Self {
-        Self { levelled, predicted, body }
+        let [x, y, z] = levelled;
+        let [north, east, down] = predicted;
+        Self {
+            levelled,
+            predicted,
+            body,
+            stored: [x, y].map(|part| (part * STORED) as i64),
+            wanted: [north, east].map(|part| (part * TURNED) as i64),
+            away: (z - down) * (z - down),
+        }
     }
 
-    /// U for an azimuth at the first stop, rad: the angle between the carried and the levelled up.
+    /// U for an azimuth at the first stop, rad: the angle between the carried and the levelled up. To 1e-13
+    /// of it below 0.02 rad, beyond to 1e-7.
     #[must_use]
     #[inline(never)]
     pub fn angle(&self, azimuth: f64) -> f64 {
-        let (sine, cosine) = libm::sincos(azimuth);
-        let [x, y, z] = self.levelled;
-        let [north, east, down] = self.predicted;
+        let (sine, cosine) = sine_and_cosine(((azimuth * QUARTER_STEPS) as i64 as u64) << 2);
+        let [x, y] = self.stored;
+        let [north, east] = self.wanted;
         // Differences, not cosines, so that no digit is lost where the angle is small.
-        let along = cosine * x - sine * y - north;
-        let across = sine * x + cosine * y - east;
-        let away = z - down;
-        angle_of(libm::sqrt(along * along + across * across + away * away))
+        let along = (high(cosine, x) - high(sine, y) - north) as f64;
+        let across = (high(sine, x) + high(cosine, y) - east) as f64;
+        let square = (along * along + across * across) * (1.0 / (TURNED * TURNED));
+        angle_of(quick_root(square + self.away))
     }
 
     /// U in the paper's form: √(ΔΘ² + ΔΦ²) between carried and levelled pitch and roll, rad.
@@ -106,12 +128,13 @@ impl Inclination {
 
 /// The angle that a chord of the unit sphere spans, rad.
 fn angle_of(chord: f64) -> f64 {
-    let square = chord * chord;
     if chord < SHORT {
-        return chord
-            * (1.0 + square * (1.0 / 24.0 + square * (3.0 / 640.0 + square * (5.0 / 7168.0))));
+        let square = chord * chord;
+        return chord + chord * square * (1.0 / 24.0 + square * (3.0 / 640.0));
     }
-    2.0 * libm::asin((0.5 * chord).min(1.0))
+    let half = 0.5 * chord as f32;
+    // What the arc is longer than its chord is small, so single precision will do.
+    chord + f64::from(2.0 * (libm::asinf(half.min(1.0)) - half))
 }
 
 /// Pitch and roll of a body that feels this as up, rad.

@@ -87,7 +87,13 @@ impl Path<'_> {
             }
         }
         let scatter = if count < LEAST_TRIPLETS { 0.0 } else { power / count };
-        scatter.max(self.stated_density).max(LEAST_DENSITY)
+        scatter.max(self.least_density())
+    }
+
+    /// Power of the accelerometers' noise alone, (m/s²)²·s.
+    #[must_use]
+    pub fn least_density(&self) -> f64 {
+        self.stated_density.max(LEAST_DENSITY)
     }
 }
 

@@ -20,9 +20,9 @@ use crate::signal::strapdown::{Carried, Rough};
 const LEVEL_SIGMA: f64 = 0.1;
 /// 1σ of its azimuth, rad: unknown.
 const AZIMUTH_SIGMA: f64 = 3.0;
-/// Repetitions, and the correction below which no further one is needed, rad.
+/// Repetitions, and the correction below which no further one is needed, rad: what it leaves is its square.
 const REPETITIONS: u32 = 8;
-const SETTLED: f64 = 1e-8;
+const SETTLED: f64 = 1e-4;
 /// Chi-square beyond which a block, or the rest of a stop, is left out: one healthy block in three million.
 const OUTLIER: f64 = 30.0;
 /// Least variance of what a vehicle sways, rad²: 20 milliarcseconds.
@@ -45,7 +45,7 @@ const LATITUDE_STEP: f64 = 1e-3;
 pub enum Belief {
     /// What it shows.
     Shown,
-    /// That nothing sways, all is quiet, nothing is left out: the limit of any estimator.
+    /// That nothing sways, all is quiet, nothing is left out: the limit of any estimator, and where to begin.
     Ideal,
 }
 
@@ -92,69 +92,64 @@ struct Run<'a> {
     /// The place, a little farther north, where the latitude is not exact.
     north: Option<Place>,
     belief: Belief,
-    is_gated: bool,
     last: Moment,
 }
 
 impl Solution {
-    /// Solves from a start frame that is nearly right.
+    /// Of nothing, with a start frame that is nearly right.
     #[must_use]
-    pub fn of(setting: &Setting, path: &Path, frame: &Matrix) -> Self {
-        let mut solution = Self::along(setting, path, frame, Belief::Shown, false);
-        for _ in 1..REPETITIONS {
-            let correction = solution.filter.three(START);
-            let frame = product(&by(&correction), &solution.frame);
-            solution = Self::along(setting, path, &frame, Belief::Shown, true);
-            if length(&correction) < SETTLED {
-                break;
-            }
-        }
-        solution
-    }
-
-    /// One run along the path.
-    #[must_use]
-    #[inline(never)]
-    pub fn along(
-        setting: &Setting,
-        path: &Path,
-        frame: &Matrix,
-        belief: Belief,
-        is_gated: bool,
-    ) -> Self {
-        let common = &setting.common;
-        let filter = Filter::new(
-            &start_covariance(frame),
-            setting.bias_sigma(),
-            common.scale_sigma,
-            common.accelerometer_bias_sigma,
-            common.latitude_sigma,
-        );
-        let mut solution = Self {
-            filter,
-            frame: *frame,
+    pub const fn new(frame: Matrix) -> Self {
+        Self {
+            filter: Filter::EMPTY,
+            frame,
             chi_square: 0.0,
             degrees: 0.0,
             left_out: 0,
             turning: 0,
             unsteady: 0,
-        };
+        }
+    }
+
+    /// Runs along the path until the start frame stands still.
+    pub fn settle(&mut self, setting: &Setting, path: &Path) {
+        self.run(setting, path, Belief::Ideal);
+        for _ in 1..REPETITIONS {
+            let correction = self.filter.three(START);
+            self.frame = product(&by(&correction), &self.frame);
+            self.run(setting, path, Belief::Shown);
+            if length(&correction) < SETTLED {
+                break;
+            }
+        }
+    }
+
+    /// One run along the path.
+    #[inline(never)]
+    pub fn run(&mut self, setting: &Setting, path: &Path, belief: Belief) {
+        let common = &setting.common;
+        (self.chi_square, self.degrees) = (0.0, 0.0);
+        (self.left_out, self.turning, self.unsteady) = (0, 0, 0);
+        self.filter.begin(
+            &start_covariance(&self.frame),
+            setting.bias_sigma(),
+            common.scale_sigma,
+            common.accelerometer_bias_sigma,
+            common.latitude_sigma,
+        );
         let is_exact = common.latitude_sigma <= 0.0;
         let is_ideal = belief == Belief::Ideal;
         let mut run = Run {
             setting,
             path,
-            density: if is_ideal { path.stated_density } else { path.density() }.max(1e-12),
+            density: if is_ideal { path.least_density() } else { path.density() },
             north: (!is_exact).then(|| Place::moved(common.latitude, LATITUDE_STEP)),
             belief,
-            is_gated,
             last: Moment { at: path.start, ..Moment::default() },
         };
         for index in 0..path.stops.len() {
-            run.stop(&mut solution, index);
+            run.stop(self, index);
         }
-        run.carry(&mut solution, Moment::of(path.now, &path.carried));
-        solution
+        run.carry(self, Moment::of(path.now, &path.carried));
     }
 }
 
@@ -328,18 +323,14 @@ impl Run<'_> {
         })
     }
 
-    /// Takes measurements, unless they are outliers.
+    /// Takes measurements, unless they are outliers; what they brought beyond the expected.
     fn take(&self, filter: &mut Filter, measurements: &[Measurement]) -> Option<f64> {
-        if !self.is_gated || self.belief == Belief::Ideal {
-            return Some(filter.measure(measurements));
-        }
-        let before = filter.clone();
-        let chi_square = filter.measure(measurements);
-        if chi_square <= OUTLIER {
-            return Some(chi_square);
-        }
-        *filter = before;
-        None
+        let surprise = filter.surprise(measurements);
+        let is_taken = self.belief == Belief::Ideal || surprise <= OUTLIER;
+        is_taken.then(|| {
+            filter.measure(measurements);
+            surprise
+        })
     }
 }
 
