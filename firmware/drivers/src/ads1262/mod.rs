@@ -135,6 +135,23 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Ads1262<S, R, D> {
         codec::decode(frame)
     }
 
+    /// Ends conversions and makes ready for others, of a chip that was started: those of several chips
+    /// with one clock are then begun in step.
+    ///
+    /// # Errors
+    /// [`Fault::Bus`] and [`Fault::NotAsWritten`].
+    pub async fn arm(&mut self) -> Result<(), Fault> {
+        self.configure(&self.configuration.image()).await
+    }
+
+    /// Begins conversions.
+    ///
+    /// # Errors
+    /// [`Fault::Bus`].
+    pub fn begin(&mut self) -> impl Future<Output = Result<(), Fault>> {
+        self.write(&[registers::START1])
+    }
+
     async fn reset(&mut self) -> Result<(), Fault> {
         self.write(&[registers::RESET]).await?;
         pause(&mut self.delay, RESET).await;
@@ -171,14 +188,19 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Ads1262<S, R, D> {
         if is_near && !conversion.is_clipped { Ok(()) } else { Err(Fault::SelfTest) }
     }
 
-    /// Begins conversions with these registers and no others: a reset stops what ran before.
+    /// Begins conversions with these registers and no others.
     async fn run(&mut self, image: &Image) -> Result<(), Fault> {
+        self.configure(image).await?;
+        self.begin().await
+    }
+
+    /// Sets these registers and no others: a reset stops what ran before.
+    async fn configure(&mut self, image: &Image) -> Result<(), Fault> {
         self.reset().await?;
         self.write(&image.written()).await?;
         let mut bytes = registers::READ_BACK;
         self.transfer(&mut bytes).await?;
-        image.verify(&bytes)?;
-        self.write(&[registers::START1]).await
+        image.verify(&bytes)
     }
 
     async fn transfer(&mut self, bytes: &mut [u8]) -> Result<(), Fault> {

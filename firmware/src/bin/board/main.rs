@@ -44,7 +44,6 @@ use firmware::health::Health;
 use firmware::link;
 use firmware::log::DefmtLog;
 use firmware::run::acquire;
-use firmware::shared::Shared;
 use panic_probe as _;
 use static_cell::StaticCell;
 
@@ -52,7 +51,7 @@ use ports::{Inputs, Outputs};
 use wiring::SensorWires;
 
 /// The seams between the instrument's parts.
-type Seams = Shared<'static, DefmtLog>;
+type Seams = firmware::shared::Seams<'static, DefmtLog>;
 
 defmt::timestamp!("{=u64:us}", Instant::now().as_micros());
 
@@ -76,7 +75,7 @@ async fn main(spawner: Spawner) {
 /// The seams, with the sensors sampling into them.
 fn sample(spawner: Spawner, sensors: SensorWires) -> &'static Seams {
     static SEAMS: StaticCell<Seams> = StaticCell::new();
-    let seams: &'static Seams = SEAMS.init_with(|| Shared::new(&DefmtLog));
+    let seams: &'static Seams = SEAMS.init_with(|| Seams::new(&DefmtLog));
     spawner.spawn(defmt::unwrap!(acquisition(ports::inputs(sensors), seams)));
     seams
 }
@@ -93,6 +92,6 @@ async fn tell(health: &Health, outputs: &mut Outputs, seams: &'static Seams) -> 
     defmt::info!("board: done, {} faults on the way", health.faults());
     loop {
         Timer::after_secs(1).await;
-        link::send(&mut outputs.link, seams).await;
+        link::send(&mut outputs.link, &seams.shared).await;
     }
 }

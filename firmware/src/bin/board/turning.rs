@@ -50,6 +50,6 @@ async fn session(store: &mut Store, seams: &Seams) -> Option<&'static mut Sessio
         defmt::error!("board: no session: {}", error);
         return None;
     }
-    prepare(store, TODAY, (&mut setting, &mut procedure), seams).await;
+    prepare(store, TODAY, (&mut setting, &mut procedure), &seams.shared).await;
     Some(SESSION.init_with(|| Session::of(setting, procedure)))
 }
