@@ -141,8 +141,7 @@ impl<'a, G: InStep, A: Accelerometer, O: Observer> TriadAcquisition<'a, G, A, O>
         {
             let [first, second, third] = &arrivals;
             let [forward, right, down] = &mut self.gyros;
-            let all =
-                join3(arrive(forward, first), arrive(right, second), arrive(down, third));
+            let all = join3(arrive(forward, first), arrive(right, second), arrive(down, third));
             // Who did not come is seen below.
             let _ = with_timeout(self.silence, all).await;
         }

@@ -118,7 +118,8 @@ impl<W: Whereabouts, O: Observer> Conducted<O, InertialSample> for Stops<'_, W> 
     fn conclude(&self, shared: &Shared<'_, O>) -> Option<Result<[f64; 3], Refusal>> {
         let Conclusion { verdict, found } = self.session.conclusion()?;
         if let Some(found) = found.as_ref().filter(|found| found.are_biases_observed) {
-            for ((gyro, bias), sigma) in GYROS.into_iter().zip(found.biases).zip(found.bias_sigmas) {
+            for ((gyro, bias), sigma) in GYROS.into_iter().zip(found.biases).zip(found.bias_sigmas)
+            {
                 let [bias, sigma] = [bias, sigma].map(|rate| rate / DEGREE_PER_HOUR);
                 shared.tell(Event::Bias(gyro, bias, sigma));
             }

@@ -9,7 +9,7 @@ use orientation::align::stepwise::Fit;
 use orientation::error::Refusal;
 
 use super::json::{Excluded, earth_rate, excluded};
-use super::{azimuth_error, columns, degrees, degrees_per_hour, positive_zero};
+use super::{azimuth_error, columns, degrees, degrees_per_hour, parts, positive_zero};
 use crate::instrument::Run;
 use crate::positions::autocompensation;
 use crate::replay::{Method, Replay};
@@ -134,7 +134,7 @@ fn positions(out: &mut impl Write, replay: &Replay, conclusion: &Conclusion) -> 
 pub(super) fn budget(out: &mut impl Write, budget: &Budget) -> fmt::Result {
     let sigma = budget.sigma();
     writeln!(out, "\n  error budget (1σ of the azimuth)")?;
-    for (source, part) in budget.parts() {
+    for (source, part) in parts(budget) {
         let share = 100.0 * (part / sigma) * (part / sigma);
         writeln!(out, "    {:<28} {:>9.4}°  {share:>5.1} %", source.to_string(), degrees(part))?;
     }

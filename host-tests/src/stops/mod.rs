@@ -7,6 +7,7 @@ pub mod averaging;
 pub mod noise;
 pub mod samples;
 
+use firmware::ports::Recorder;
 use heapless::Vec as Few;
 use orientation::align::setting::Setting as Common;
 use orientation::align::stops::Setting;
@@ -104,8 +105,11 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
     }
     let setting = setting(header, common, &rows, period_s, method, &mut assumed);
     let procedure = Procedure { displacements, ..Procedure::recorded(rests, period_s) };
-    let mut session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
-    let criteria = follow(&mut session, samples::samples(&rows, period_s));
+    let session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
+    let mut watched = Watched::new(session);
+    samples::samples(&rows, period_s).for_each(|sample| watched.push(&sample));
+    let Watched { mut session, criteria } = watched;
+    session.handle(Event::End);
     check_displacements(&session)?;
     Ok(Replay { method, session, zero_s, criteria, assumed })
 }
@@ -203,20 +207,39 @@ fn setting(
     Setting { bias_sigma, force_noise: white.force, ..Setting::new(common) }
 }
 
-/// Feeds samples to a session until they end; the stop criteria over time.
-pub fn follow(
-    session: &mut Session,
-    samples: impl Iterator<Item = InertialSample>,
-) -> Vec<(f64, Criteria, Limits)> {
-    let mut seen: Vec<(f64, Criteria, Limits)> = Vec::new();
-    for sample in samples {
-        session.handle(Event::Sample(&sample));
-        if let Some((criteria, limits)) = session.criteria()
-            && seen.last().is_none_or(|(_, last, _)| *last != criteria)
+/// A session, and how its stop criteria went.
+#[derive(Clone, Debug)]
+pub struct Watched {
+    session: Session,
+    criteria: Vec<(f64, Criteria, Limits)>,
+}
+
+impl Watched {
+    /// A session that has not begun.
+    #[must_use]
+    pub fn new(session: Session) -> Self {
+        Self { session, criteria: Vec::new() }
+    }
+
+    /// Gives it a sample.
+    pub fn push(&mut self, sample: &InertialSample) {
+        self.session.handle(Event::Sample(sample));
+        if let Some((criteria, limits)) = self.session.criteria()
+            && self.criteria.last().is_none_or(|(_, last, _)| *last != criteria)
         {
-            seen.push((sample.time.seconds(), criteria, limits));
+            self.criteria.push((sample.time.seconds(), criteria, limits));
         }
     }
-    session.handle(Event::End);
-    seen
+
+    /// The criteria and what they are held to over the time, s.
+    #[must_use]
+    pub fn into_criteria(self) -> Vec<(f64, Criteria, Limits)> {
+        self.criteria
+    }
+}
+
+impl Recorder<InertialSample> for &mut Watched {
+    async fn record(&mut self, sample: &InertialSample) {
+        self.push(sample);
+    }
 }

@@ -2,7 +2,8 @@
 
 use bench::emulate::host;
 use bench::emulate::outcome::{
-    Bits, Difference, DwellBits, FIELDS, Outcome, STOP_FIELDS, StopBits, TURN_FIELDS, TurnBits, compare,
+    Bits, Difference, DwellBits, FIELDS, Outcome, STOP_FIELDS, StopBits, TURN_FIELDS, TurnBits,
+    compare,
 };
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;

@@ -58,7 +58,8 @@ pub fn turn(number: u32, turn: &Turn) {
 /// Logs a stop: from when to when, what was turned in it and felt, what had been turned before.
 #[inline(never)]
 pub fn stop(number: u32, stop: &Stop) {
-    let [turned, force] = [stop.turned.mean(), stop.force.mean()].map(|mean| mean.map(f64::to_bits));
+    let [turned, force] =
+        [stop.turned.mean(), stop.force.mean()].map(|mean| mean.map(f64::to_bits));
     println!(
         "stop number={=u32} from={=u64:x} to={=u64:x} turned_x={=u64:x} turned_y={=u64:x} \
          turned_z={=u64:x} force_x={=u64:x} force_y={=u64:x} force_z={=u64:x}",

@@ -143,10 +143,8 @@ impl VehicleScenario {
     /// What the board is told of place and instrument; none where the latitude is none.
     #[must_use]
     pub fn setting(&self) -> Option<Setting> {
-        let common = setting::Setting {
-            accelerometer_bias_sigma: FORCE_BIAS_SIGMA,
-            ..self.base.setting()?
-        };
+        let common =
+            setting::Setting { accelerometer_bias_sigma: FORCE_BIAS_SIGMA, ..self.base.setting()? };
         let displacement_sigma = match self.place {
             Place::Known { sigma_m } => sigma_m,
             Place::Unknown => 0.0,
