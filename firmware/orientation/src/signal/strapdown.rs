@@ -137,9 +137,9 @@ impl Strapdown {
         Self { since: time, matrix, ..Self::default() }
     }
 
-    /// Takes a sample.
+    /// Takes a sample; whether it made a new attitude, as any large rotation does.
     #[inline]
-    pub fn push(&mut self, sample: &InertialSample) {
+    pub fn push(&mut self, sample: &InertialSample) -> bool {
         self.increment.push(sample.turned);
         if let Some([x, y, z]) = sample.force {
             self.force[0] += i64::from(x.0);
@@ -148,9 +148,11 @@ impl Strapdown {
             self.count += 1;
         }
         let elapsed = sample.time.0.saturating_sub(self.since.0);
-        if elapsed >= PERIOD || self.increment.is_large() {
+        let is_due = elapsed >= PERIOD || self.increment.is_large();
+        if is_due {
             self.update(sample.time);
         }
+        is_due
     }
 
     /// Takes the attitude at a time, that of the last sample.
@@ -161,7 +163,7 @@ impl Strapdown {
         let steps = self.increment.sums;
         let small = steps.map(|sum| sum as f32 * STEP);
         let carried = &mut self.carried;
-        carried.attitude = carried.attitude.turned(&self.increment.take()).normalised();
+        carried.attitude = carried.attitude.turned(&self.increment.take());
         let after = carried.attitude.rough_matrix();
         let middle: Rough = core::array::from_fn(|row| {
             core::array::from_fn(|column| 0.5 * (self.matrix[row][column] + after[row][column]))
@@ -190,8 +192,10 @@ impl Strapdown {
         &self.carried
     }
 
-    /// What was summed until the last attitude, which then begins again.
+    /// What was summed until the last attitude, which then begins again. Call it now and then: rounding
+    /// changes the attitude's length by 1e-16 a rotation, which is mended here.
     pub fn take(&mut self) -> Sums {
+        self.carried.attitude = self.carried.attitude.normalised();
         core::mem::take(&mut self.sums)
     }
 }

@@ -68,9 +68,6 @@ fn sample(counter: &Counter, report: &mut Report) {
         let (cost, _) = counter.measure(|| push(&mut follower, &sample));
         total += cost;
         worst = worst.max(cost);
-        if index > 4000 && index < 4045 {
-            figure(format_args!("DBG {index}"), cost.instructions());
-        }
     }
     report.budget(
         format_args!("strapdown of three gyros, a sample at 2 kHz"),

@@ -190,24 +190,19 @@ impl Found {
     fn of(setting: &Setting, path: &Path) -> Self {
         let plain = Plain::of(setting, path);
         let mut solution = Solution::new(plain.frame);
-        solution.settle(setting, path);
-        let end = End::of(path, &solution);
-        let row = end.row(path);
-        let found = Self::shown(setting, path, &plain, &solution, &end);
         solution.run(setting, path, Belief::Ideal);
-        Self { limit: libm::sqrt(solution.filter.variance(&row)), ..found }
+        // How sure the azimuth is hardly depends on where it points.
+        let row = End::of(path, &solution).row(path);
+        let limit = libm::sqrt(solution.filter.variance(&row));
+        solution.settle(setting, path);
+        Self { limit, ..Self::shown(setting, path, &plain, &solution) }
     }
 
     /// All but the limit.
     #[inline(never)]
-    fn shown(
-        setting: &Setting,
-        path: &Path,
-        plain: &Plain,
-        solution: &Solution,
-        end: &End,
-    ) -> Self {
+    fn shown(setting: &Setting, path: &Path, plain: &Plain, solution: &Solution) -> Self {
         let filter = &solution.filter;
+        let end = End::of(path, solution);
         let row = end.row(path);
         let start = Azimuth {
             angle: azimuth_of(&start_attitude(solution)),

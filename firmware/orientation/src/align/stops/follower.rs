@@ -111,8 +111,11 @@ impl Follower {
         if self.begun.is_none() {
             self.begin(sample.time);
         }
-        self.watch(sample);
-        self.strapdown.push(sample);
+        self.watch(sample.time);
+        // A rotation that stands at its limit is large.
+        if self.strapdown.push(sample) && sample.turned.iter().any(|turned| turned.is_saturated()) {
+            self.lose(Loss::Saturated(sample.time.seconds()));
+        }
         let is_over = sample.time.0.saturating_sub(self.progress.since.0) >= SECOND
             || self.is_edge(sample.time);
         if is_over {
@@ -131,15 +134,13 @@ impl Follower {
         self.restart(start);
     }
 
-    /// Notices what makes the carried attitude worthless.
-    fn watch(&mut self, sample: &InertialSample) {
-        let elapsed = sample.time.0.saturating_sub(self.last.0);
+    /// Notices a gap.
+    fn watch(&mut self, now: Instant) {
+        let elapsed = now.0.saturating_sub(self.last.0);
         if elapsed > self.gap {
             self.lose(Loss::Gap(self.last.seconds(), elapsed as f64 * 1e-6));
-        } else if sample.turned.iter().any(|turned| turned.is_saturated()) {
-            self.lose(Loss::Saturated(sample.time.seconds()));
         }
-        self.last = sample.time;
+        self.last = now;
     }
 
     /// Keeps the first loss.

@@ -10,7 +10,7 @@ use crate::math::rotation::{Matrix, Vector, about_down, transposed, turned, unit
 use crate::math::turn::{high, sine_and_cosine};
 use crate::units::{TURN, wrapped};
 
-/// Chord up to which its angle is taken from a series, whose error is then below 1e-13 of it.
+/// Chord up to which its angle is taken from two terms of a series: the next is below 1e-9 of it.
 const SHORT: f64 = 0.02;
 /// Times which components are stored as integers, and their products with sines come out.
 const STORED: f64 = (1_u64 << 62) as f64;
@@ -59,8 +59,8 @@ impl Inclination {
         }
     }
 
-    /// U for an azimuth at the first stop, rad: the angle between the carried and the levelled up. To 1e-13
-    /// of it below 0.02 rad, beyond to 1e-7.
+    /// U for an azimuth at the first stop, rad: the angle between the carried and the levelled up; below
+    /// 0.02 rad to 1e-9 of it, beyond to 1e-7 rad.
     #[must_use]
     #[inline(never)]
     pub fn angle(&self, azimuth: f64) -> f64 {
@@ -129,11 +129,11 @@ impl Inclination {
 /// The angle that a chord of the unit sphere spans, rad.
 fn angle_of(chord: f64) -> f64 {
     if chord < SHORT {
-        let square = chord * chord;
-        return chord + chord * square * (1.0 / 24.0 + square * (3.0 / 640.0));
+        // What the arc is longer than its chord is 1e-5 of it, so single precision will do.
+        let (chord32, square) = (chord as f32, chord as f32 * chord as f32);
+        return chord + f64::from(chord32 * square * (1.0 / 24.0));
     }
     let half = 0.5 * chord as f32;
-    // What the arc is longer than its chord is small, so single precision will do.
     chord + f64::from(2.0 * (libm::asinf(half.min(1.0)) - half))
 }
 

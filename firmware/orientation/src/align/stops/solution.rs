@@ -20,9 +20,10 @@ use crate::signal::strapdown::{Carried, Rough};
 const LEVEL_SIGMA: f64 = 0.1;
 /// 1σ of its azimuth, rad: unknown.
 const AZIMUTH_SIGMA: f64 = 3.0;
-/// Repetitions, and the correction below which no further one is needed, rad: what it leaves is its square.
+/// Repetitions, and the correction below which no further one is needed, rad: half of its square is not
+/// seen, 1e-5°.
 const REPETITIONS: u32 = 8;
-const SETTLED: f64 = 1e-4;
+const SETTLED: f64 = 5e-4;
 /// Chi-square beyond which a block, or the rest of a stop, is left out: one healthy block in three million.
 const OUTLIER: f64 = 30.0;
 /// Least variance of what a vehicle sways, rad²: 20 milliarcseconds.
@@ -39,6 +40,9 @@ const DETOUR: f64 = 0.1;
 const COVERED: f64 = 0.002;
 /// Step by which the latitude's effect is found, rad.
 const LATITUDE_STEP: f64 = 1e-3;
+
+/// A matrix of nothing.
+const NOTHING: Matrix = [[0.0; 3]; 3];
 
 /// What is believed of the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -110,14 +114,12 @@ impl Solution {
         }
     }
 
-    /// Runs along the path until the start frame stands still.
+    /// Runs along the path until the start frame stands still; the first run must have been made.
     pub fn settle(&mut self, setting: &Setting, path: &Path) {
-        self.run(setting, path, Belief::Ideal);
-        for _ in 1..REPETITIONS {
-            let correction = self.filter.three(START);
-            self.frame = product(&by(&correction), &self.frame);
+        for _ in 0..REPETITIONS {
+            self.frame = product(&by(&self.filter.three(START)), &self.frame);
             self.run(setting, path, Belief::Shown);
-            if length(&correction) < SETTLED {
+            if length(&self.filter.three(START)) < SETTLED {
                 break;
             }
         }
@@ -182,7 +184,8 @@ impl Run<'_> {
         let noise = &self.setting.common.noise;
         let walk = noise.angle_random_walk.max(LEAST_WALK);
         let bias = gained(&to.bias, &self.last.bias);
-        let scale = gained(&to.scale, &self.last.scale);
+        let has_scale = self.setting.common.scale_sigma > 0.0;
+        let scale = if has_scale { gained(&to.scale, &self.last.scale) } else { NOTHING };
         solution.filter.carry(&bias, &scale, walk * walk * seconds);
         solution.filter.walk(self.bias_walk() * seconds);
         self.last = to;
@@ -325,9 +328,9 @@ impl Run<'_> {
 
     /// Takes measurements, unless they are outliers; what they brought beyond the expected.
     fn take(&self, filter: &mut Filter, measurements: &[Measurement]) -> Option<f64> {
-        let surprise = filter.surprise(measurements);
-        let is_taken = self.belief == Belief::Ideal || surprise <= OUTLIER;
-        is_taken.then(|| {
+        let is_ideal = self.belief == Belief::Ideal;
+        let surprise = if is_ideal { 0.0 } else { filter.surprise(measurements) };
+        (surprise <= OUTLIER).then(|| {
             filter.measure(measurements);
             surprise
         })
