@@ -72,6 +72,8 @@ pub struct Follower {
     criteria: Option<Criteria>,
     /// Whether the vehicle stands: the last stop still lasts.
     is_at_rest: bool,
+    /// Seconds for which the criteria held without a break.
+    held: usize,
     stops: Vec<Stop, STOPS>,
     blocks: Blocks<AT_REST>,
     drives: Blocks<DRIVEN>,
@@ -97,6 +99,7 @@ impl Follower {
             window: Deque::new(),
             criteria: None,
             is_at_rest: false,
+            held: 0,
             stops: Vec::new(),
             blocks: Blocks::new(REST_SPAN),
             drives: Blocks::new(DRIVE_SPAN),
@@ -194,9 +197,10 @@ impl Follower {
     /// Lets the oldest second of the window go: what belongs to no stop was driven.
     fn leave(&mut self) {
         let Some(second) = self.window.pop_front() else { return };
-        let begun = self.stops.iter().filter(|stop| stop.from <= second.from).count();
-        if let (false, Some(_), Some(stop)) = (second.is_rest, second.force, begun.checked_sub(1)) {
-            self.drives.push(block(&second, second.start_force, stop as u8));
+        let begun = self.stops.iter().take_while(|stop| stop.from <= second.from).count();
+        let Some((index, stop)) = self.stops.iter().enumerate().take(begun).last() else { return };
+        if !second.is_rest && second.force.is_some() && second.from >= stop.to {
+            self.drives.push(block(&second, second.start_force, index as u8));
         }
     }
 
@@ -244,22 +248,25 @@ impl Follower {
     /// Looks for the beginning or the end of a stop.
     fn find(&mut self) {
         let is_rest = self.criteria.is_some_and(|criteria| criteria.is_rest(&self.limits));
+        self.held = if is_rest { self.held + 1 } else { 0 };
         match (self.is_at_rest, is_rest) {
+            // A vehicle that rocks may have come back to where it was ten seconds before by chance.
+            (false, true) if self.held <= DELAY => {}
             (false, true) => self.stand(),
             (true, true) => self.rest(WINDOW - 1 - LATEST, self.stops.len().saturating_sub(1)),
             (_, false) => self.is_at_rest = false,
         }
     }
 
-    /// Begins a stop with what of the window is past the delay, or goes on with one that was not left:
+    /// Begins a stop with the window, which is past the delay, or goes on with one that was not left:
     /// nobody drives anywhere without failing the criteria for as long as they look.
     fn stand(&mut self) {
         self.is_at_rest = true;
         let now = self.window.back().map_or(0.0, |second| second.to);
         let last = self.stops.last().map_or(f64::NEG_INFINITY, |stop| stop.to);
-        let goes_on = now - last < (WINDOW + LATEST) as f64;
+        let goes_on = now - last < (WINDOW + DELAY + LATEST) as f64;
         let stop = self.stops.len() - usize::from(goes_on);
-        for index in DELAY..WINDOW - LATEST {
+        for index in 0..WINDOW - LATEST {
             let is_new = self.window.iter().nth(index).is_some_and(|second| second.from >= last);
             if is_new {
                 self.rest(index, stop);

@@ -1,0 +1,198 @@
+//! Drives simulated vehicles past a session.
+
+use hal_mock::noise::Generator;
+use hal_mock::vehicle::scenario::Scenario;
+use hal_mock::vehicle::{SensorFault, Vehicle, VehicleSample};
+use orientation::align::setting::Setting as Common;
+use orientation::align::stops::Setting;
+use orientation::align::stops::conclusion::{Conclusion, Found};
+use orientation::align::stops::follower::Rests;
+use orientation::align::stops::stop::Stop;
+use orientation::earth::Latitude;
+use orientation::noise::model::GyroNoise;
+use orientation::session::stops::{Event, Procedure, Session};
+use orientation::signal::InertialSample;
+use orientation::units::{AngleIncrement, DEGREE_PER_HOUR, Instant, SpecificForce};
+
+/// Stream of the errors of position fixes.
+const FIXES: u64 = 7001;
+
+/// What is told of where the vehicle stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Told {
+    /// Nothing.
+    Nothing,
+    /// The truth, with an error of this 1σ, m, on either axis.
+    Fix(f64),
+    /// The truth and so much, m, north and east, at every stop but the first.
+    Wrong([f64; 2]),
+}
+
+/// A simulated day and what is done with it.
+pub struct Day {
+    pub scenario: Scenario,
+    pub faults: Vec<SensorFault>,
+    pub seed: u64,
+    pub setting: Setting,
+    pub told: Told,
+    /// The stops of the scenario are stated, found, or all is one.
+    pub rests: Kind,
+}
+
+/// Where stops come from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    Found,
+    Stated,
+    Whole,
+}
+
+/// How it went.
+pub struct Outcome {
+    pub conclusion: Conclusion,
+    pub stops: Vec<Stop>,
+    /// True azimuth at the start and at the end, rad.
+    pub azimuths: [f64; 2],
+    /// True biases, rad/s.
+    pub biases: [f64; 3],
+}
+
+impl Outcome {
+    pub fn found(&self) -> &Found {
+        match &self.conclusion.found {
+            Some(found) if self.conclusion.verdict.is_ok() => found,
+            _ => panic!("{:?}", self.conclusion.verdict),
+        }
+    }
+
+    /// Errors of the azimuth at the start and at the end, rad.
+    pub fn errors(&self) -> [f64; 2] {
+        let found = self.found();
+        [apart(found.start.angle, self.azimuths[0]), apart(found.azimuth.angle, self.azimuths[1])]
+    }
+
+    /// The same over their σ.
+    pub fn ratios(&self) -> [f64; 2] {
+        let found = self.found();
+        let [start, end] = self.errors();
+        [start / found.start.sigma, end / found.azimuth.sigma]
+    }
+}
+
+/// The angle from b to a, rad, the short way.
+pub fn apart(a: f64, b: f64) -> f64 {
+    let turn = std::f64::consts::TAU;
+    (a - b + 0.5 * turn).rem_euclid(turn) - 0.5 * turn
+}
+
+/// What is known of [`hal_mock::vehicle::scenario::fog`] and `silicon` at a latitude, °.
+pub fn known(latitude_deg: f64, n_deg_sqrt_h: f64, bias_deg_h: Option<f64>) -> Setting {
+    let latitude = Latitude::from_degrees(latitude_deg).expect("a latitude");
+    let common = Common {
+        noise: GyroNoise::from_field_units(n_deg_sqrt_h, 0.0, 0.0, 0.0),
+        white_known: true,
+        ..Common::at(latitude)
+    };
+    Setting {
+        bias_sigma: bias_deg_h.map(|bias| bias * DEGREE_PER_HOUR),
+        force_noise: 0.002_828_427,
+        ..Setting::new(common)
+    }
+}
+
+impl Day {
+    /// A scenario whose sensors are known as they are; 25 samples a second suffice.
+    pub fn new(mut scenario: Scenario, seed: u64) -> Self {
+        scenario.vehicle.rate_hz = 25.0;
+        let [gyro, ..] = scenario.vehicle.gyros;
+        let bias = Some(gyro.bias_sigma_deg_h);
+        let setting = known(scenario.vehicle.latitude_deg, gyro.n_deg_sqrt_h, bias);
+        Self {
+            scenario,
+            faults: Vec::new(),
+            seed,
+            setting,
+            told: Told::Fix(5.0),
+            rests: Kind::Found,
+        }
+    }
+
+    /// Follows it to the end.
+    pub fn run(&self) -> Outcome {
+        self.run_through(|_| true)
+    }
+
+    /// The same with samples that something changes, or that are lost where it says false.
+    pub fn run_through(&self, mut change: impl FnMut(&mut VehicleSample) -> bool) -> Outcome {
+        let configuration = hal_mock::vehicle::VehicleConfiguration {
+            faults: &self.faults,
+            ..self.scenario.configuration()
+        };
+        let stops: Vec<[f64; 2]> = configuration.stops().collect();
+        let rests = match self.rests {
+            Kind::Found => Rests::Found,
+            Kind::Stated => Rests::Stated(stops.iter().copied().collect()),
+            Kind::Whole => Rests::Whole,
+        };
+        let period = 1.0 / configuration.rate_hz;
+        let procedure = Procedure::recorded(rests, period);
+        let mut session = Session::new(self.setting, procedure).expect("a procedure");
+        let mut vehicle = Vehicle::new(&configuration, self.seed);
+        let mut fixes = Generator::stream(self.seed, FIXES);
+        let mut carried = [0.0; 3];
+        let mut next = 0;
+        let start = vehicle.truth().attitude.azimuth_rad;
+        while let Some(mut sample) = vehicle.next_sample() {
+            if change(&mut sample) {
+                session.handle(Event::Sample(&converted(
+                    &sample,
+                    &mut carried,
+                    period,
+                    &configuration,
+                )));
+            }
+            if stops.get(next).is_some_and(|stop| sample.time_s + 0.5 * period >= stop[1]) {
+                if let Some(there) = self.fix(next, vehicle.truth().displacement_m, &mut fixes) {
+                    session.handle(Event::Displaced(there));
+                }
+                next += 1;
+            }
+        }
+        session.handle(Event::End);
+        let truth = vehicle.truth();
+        Outcome {
+            conclusion: session.conclusion().expect("it has ended").clone(),
+            stops: session.stops().to_vec(),
+            azimuths: [start, truth.attitude.azimuth_rad],
+            biases: truth.gyro_bias_rad_s,
+        }
+    }
+
+    fn fix(&self, stop: usize, there: [f64; 2], fixes: &mut Generator) -> Option<[f64; 2]> {
+        match self.told {
+            Told::Nothing => None,
+            _ if stop == 0 => Some([0.0; 2]),
+            Told::Fix(sigma) => Some(there.map(|part| part + sigma * fixes.gaussian())),
+            Told::Wrong(by) => Some([there[0] + by[0], there[1] + by[1]]),
+        }
+    }
+}
+
+/// A sample as the core takes it.
+fn converted(
+    sample: &VehicleSample,
+    carried: &mut [f64; 3],
+    period: f64,
+    configuration: &hal_mock::vehicle::VehicleConfiguration,
+) -> InertialSample {
+    let most = configuration.gyro_full_scale_rad_s * period;
+    let turned = std::array::from_fn(|axis| {
+        let angle = sample.turned_rad[axis];
+        let angle = if angle.abs() >= most { 1e3 * angle.signum() } else { angle };
+        AngleIncrement::from_rad(angle, &mut carried[axis])
+    });
+    let is_clipped = (sample.force_m_s2.iter())
+        .any(|force| force.abs() >= configuration.accelerometer_full_scale_m_s2);
+    let force = (!is_clipped).then(|| sample.force_m_s2.map(SpecificForce::from_m_per_s2));
+    InertialSample { time: Instant::from_seconds(sample.time_s), turned, force }
+}
