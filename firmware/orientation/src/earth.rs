@@ -8,6 +8,8 @@ pub const EARTH_RATE: f64 = 7.292_115e-5;
 /// Latitude beyond which the horizontal Earth rate is too small to point north, rad (85°).
 pub const HIGHEST_LATITUDE: f64 = 85.0 / 360.0 * TURN;
 
+/// Equatorial radius, m (WGS84).
+const SEMI_MAJOR_AXIS: f64 = 6_378_137.0;
 /// Normal gravity at the equator, m/s² (WGS84).
 const GRAVITY_EQUATOR: f64 = 9.780_325_335_9;
 /// Somigliana's constant k (WGS84).
@@ -20,6 +22,9 @@ const ECCENTRICITY_SQUARED: f64 = 0.006_694_379_990_14;
 pub struct Latitude(f64);
 
 impl Latitude {
+    /// The equator's.
+    pub const EQUATOR: Self = Self(0.0);
+
     /// From degrees, north positive; `None` outside ±90° and for NaN.
     #[must_use]
     pub fn from_degrees(degrees: f64) -> Option<Self> {
@@ -51,6 +56,15 @@ impl Latitude {
         let squared = sine * sine;
         GRAVITY_EQUATOR * (1.0 + SOMIGLIANA * squared)
             / libm::sqrt(1.0 - ECCENTRICITY_SQUARED * squared)
+    }
+
+    /// Radii of curvature of the ellipsoid along the meridian and across it, m (WGS84).
+    #[must_use]
+    pub fn radii(self) -> [f64; 2] {
+        let sine = libm::sin(self.0);
+        let part = 1.0 - ECCENTRICITY_SQUARED * sine * sine;
+        let across = SEMI_MAJOR_AXIS / libm::sqrt(part);
+        [across * (1.0 - ECCENTRICITY_SQUARED) / part, across]
     }
 
     /// Whether an azimuth can be asked for here: |φ| ≤ 85°.

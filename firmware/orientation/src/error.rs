@@ -25,6 +25,8 @@ pub enum Source {
     Scale,
     /// The temperature slope.
     Temperature,
+    /// Where a vehicle drove.
+    Displacement,
 }
 
 words! { Source:
@@ -36,6 +38,7 @@ words! { Source:
     Self::Latitude => "latitude";
     Self::Scale => "gyro scale factor";
     Self::Temperature => "temperature slope";
+    Self::Displacement => "displacement of the vehicle";
 }
 
 /// Why no azimuth is given. Angles in degrees, ready to print.
@@ -217,6 +220,59 @@ pub enum Refusal {
         /// That part.
         ratio: f64,
     },
+    /// The vehicle stood nowhere.
+    NoStop,
+    /// The vehicle stood once only, which this method cannot use.
+    OneStop {
+        /// From when, s.
+        from: f64,
+        /// To when, s.
+        to: f64,
+    },
+    /// A stop is too short.
+    StopTooShort {
+        /// Which, from one.
+        stop: usize,
+        /// Its length, s.
+        seconds: f64,
+        /// The least, s.
+        least: f64,
+    },
+    /// Between the first stop and the last the Earth turned too little.
+    DriveTooShort {
+        /// The time between their middles, s.
+        seconds: f64,
+        /// The least, s.
+        least: f64,
+    },
+    /// The vehicle moved where it was said to stand.
+    VehicleMoves {
+        /// At which stop, from one.
+        stop: usize,
+        /// How far its mean rate was from the Earth's, °/h.
+        rate: f64,
+        /// How far its mean force was from gravity, m/s².
+        force: f64,
+    },
+    /// Samples were missing, and with them a part of the rotation.
+    RotationMissing {
+        /// After which time, s.
+        at: f64,
+        /// For how long, s.
+        seconds: f64,
+    },
+    /// A gyro stood at the limit of its range, and a part of the rotation is lost.
+    RotationClipped {
+        /// At which time, s.
+        at: f64,
+    },
+    /// Most of the time at rest was disturbed.
+    RestDisturbed {
+        /// Means that were left out.
+        disturbed: u32,
+        /// Of how many.
+        of: u32,
+    },
     /// A device of the board failed.
     Device {
         /// Which.
@@ -309,5 +365,25 @@ words! { Refusal:
     Self::MolecularTooGreat { ratio } =>
         "g-sensitivity makes {} of what turns with the platform: level it, or turn faster",
         Rounded::<2>(ratio);
+    Self::NoStop => "the vehicle stood nowhere: stop it, engine off, for a minute";
+    Self::OneStop { from, to } =>
+        "the vehicle stood once only, from {} to {} s: drive and stop again, or align it as one that stands",
+        Rounded::<1>(from), Rounded::<1>(to);
+    Self::StopTooShort { stop, seconds, least } =>
+        "stop {} has {} s of rest: {} are needed", stop, Rounded::<1>(seconds), Rounded::<0>(least);
+    Self::DriveTooShort { seconds, least } =>
+        "{} s between the stops are too few for the Earth to turn: {} are needed",
+        Rounded::<1>(seconds), Rounded::<0>(least);
+    Self::VehicleMoves { stop, rate, force } =>
+        "the vehicle moves at stop {}: its rate is {} °/h from the Earth's, its force {} m/s² from gravity",
+        stop, Rounded::<2>(rate), Rounded::<3>(force);
+    Self::RotationMissing { at, seconds } =>
+        "samples are missing after {} s, for {} s: what the vehicle turned meanwhile is lost",
+        Rounded::<3>(at), Rounded::<3>(seconds);
+    Self::RotationClipped { at } =>
+        "a gyro stood at the limit of its range at {} s: what the vehicle turned beyond is lost",
+        Rounded::<3>(at);
+    Self::RestDisturbed { disturbed, of } =>
+        "{} of {} means at rest were disturbed: keep the vehicle still", disturbed, of;
     Self::Device { device, trouble } => "{}: {}", device, trouble;
 }

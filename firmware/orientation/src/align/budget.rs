@@ -21,12 +21,14 @@ pub struct Budget {
     pub scale: f64,
     /// What estimating a temperature slope costs.
     pub temperature: f64,
+    /// Where a vehicle drove meanwhile.
+    pub displacement: f64,
 }
 
 impl Budget {
     /// The parts with their names, in the order in which they are printed.
     #[must_use]
-    pub fn parts(&self) -> [(Source, f64); 8] {
+    pub fn parts(&self) -> [(Source, f64); 9] {
         [
             (Source::Noise, self.noise),
             (Source::Drift, self.drift),
@@ -36,6 +38,7 @@ impl Budget {
             (Source::Latitude, self.latitude),
             (Source::Scale, self.scale),
             (Source::Temperature, self.temperature),
+            (Source::Displacement, self.displacement),
         ]
     }
 

@@ -12,6 +12,7 @@ pub mod regression;
 pub mod rotating;
 pub mod setting;
 pub mod stepwise;
+pub mod stops;
 
 use crate::signal::dwell::Dwell;
 

@@ -14,6 +14,7 @@ mod prepared;
 pub mod procedure;
 pub mod rotating;
 pub mod schedule;
+pub mod stops;
 pub mod survey;
 
 pub use prepared::Prepared;

@@ -137,6 +137,8 @@ pub enum ProcedureError {
     NoPosition,
     /// A turning platform needs speeds above zero, two turns at least, and a modulation of its uneven turns.
     NoSpeed,
+    /// A vehicle's stops: no sample period, no length of a stop, one stop only, or too many.
+    NoStops,
     /// The etalon table in flash fails its CRC: flash the firmware again.
     TableCorrupt,
 }
@@ -148,6 +150,8 @@ words! { ProcedureError:
     Self::BeyondTravel(angle) =>
         "position {}° is beyond the stage's travel", Rounded::<2>(angle / TURN * 360.0);
     Self::NoPosition => "there is no position";
+    Self::NoStops =>
+        "stops need a sample period and a length above zero, and two to eight of them";
     Self::NoSpeed =>
         "a turning platform needs one or two speeds above zero, two turns in either sense, a modulation";
     Self::TableCorrupt => "the etalon table fails its checksum";

@@ -4,6 +4,8 @@ pub mod blocks;
 pub mod butterworth;
 pub mod dwell;
 pub mod phasor;
+pub mod rest;
+pub mod strapdown;
 pub mod sway;
 
 use crate::units::{Angle, AngleIncrement, AngularRate, Instant, SpecificForce, Temperature};
@@ -35,10 +37,10 @@ pub struct Sample {
 pub struct InertialSample {
     /// When it ended.
     pub time: Instant,
-    /// Angles turned about the axes: integrals of the rates, whatever the order of small rotations.
+    /// Angles turned about the axes: integrals of the rates, at the limit of their range
+    /// where a gyro stood at the limit of its own.
     pub turned: [AngleIncrement; 3],
-    /// Mean specific force since the last one, where a fresh reading came with this sample.
+    /// Mean specific force since the last one, where a fresh reading came with this sample; none where
+    /// it stood at the limit of the sensor's range.
     pub force: Option<[SpecificForce; 3]>,
-    /// Whether anything stood at the limit of a sensor's range.
-    pub is_clipped: bool,
 }

@@ -22,6 +22,7 @@ mod samples;
 mod scale;
 #[path = "../measure/stack.rs"]
 mod stack;
+mod stops;
 mod turning;
 mod yardsticks;
 
@@ -81,6 +82,7 @@ fn measure(report: &mut Report) -> Result<(), Failure> {
     heading("INSTRUCTIONS (not cycles) on a Cortex-M4F");
     samples::report(&counter, report)?;
     turning::report(&counter, report);
+    stops::report(&counter, report);
     matching::report(&counter, report)?;
     yardsticks::regression(&counter, report);
     conclusion::report(&counter, report)?;
@@ -106,9 +108,14 @@ fn sizes() -> Result<(), Failure> {
     figure(format_args!("stack of a conclusion of 60 dwells"), conclusion::stack()? as u64);
     figure(format_args!("stack of a noise fit of the full grid"), noise::stack() as u64);
     figure(format_args!("stack of a plan"), planning::stack() as u64);
+    figure(format_args!("stack of a conclusion of two stops"), stops::stack() as u64);
     figure(format_args!("stack of this image at its deepest"), stack::greatest_stack() as u64);
     figure(format_args!("a Session"), size_of::<Session>() as u64);
     figure(format_args!("a Session on a turning platform"), size_of::<rotating::Session>() as u64);
+    figure(
+        format_args!("a Session from stops"),
+        size_of::<orientation::session::stops::Session>() as u64,
+    );
     figure(format_args!("a Conclusion"), size_of::<Conclusion>() as u64);
     figure(format_args!("an Allan variance"), size_of::<Allan>() as u64);
     figure(format_args!("static memory of this image"), memory::statics() as u64);

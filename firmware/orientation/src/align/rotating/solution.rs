@@ -323,6 +323,7 @@ impl Problem<'_> {
             // A flat sensor's scale is found with the azimuth; an unknown gain needs none.
             scale: 0.0,
             temperature: 0.0,
+            displacement: 0.0,
         }
     }
 

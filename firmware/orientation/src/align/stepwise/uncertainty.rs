@@ -52,6 +52,7 @@ impl Problem<'_> {
             noise: libm::sqrt(noise),
             drift: libm::sqrt(drifting - noise),
             temperature: libm::sqrt(all - drifting),
+            displacement: 0.0,
             scale: libm::sqrt(amplitude * share),
             latitude: libm::sqrt(amplitude * (1.0 - share)),
             g_sensitivity: libm::sqrt(kappa),

@@ -1,0 +1,281 @@
+//! The filter that weighs everything that stops tell: gravity seen from inertial space, rest rates, what is
+//! known of the sensors.
+//!
+//! The carried frame errs by a small rotation φ that grows from an error at the start, from the gyros'
+//! biases b and scale errors s, and from their noise: φ' = ∂φ/∂b b' + ∂φ/∂s s' + w. At rest two things are
+//! measured: the specific force turned into the start frame is g up + φ × g up + accelerometer bias; and
+//! between the beginning and the end of a stop the body turned with the Earth alone, so φ there differs by
+//! nothing but the sway. All is linear once the start is nearly known; repetition makes it known.
+
+use crate::math::rotation::{Matrix, Vector, cross, dot};
+use crate::math::{cholesky, cholesky_solve};
+use crate::signal::strapdown::Rough;
+
+/// States: φ now, φ at the start, φ when the stop began, b, s, accelerometer biases, displacement beyond
+/// the stated one, latitude, velocity.
+pub const STATES: usize = 24;
+/// φ now, rad.
+pub const NOW: usize = 0;
+/// φ at the start, rad.
+pub const START: usize = 3;
+/// φ when the stop began, rad.
+const ANCHOR: usize = 6;
+/// Biases, rad/s.
+pub const BIAS: usize = 9;
+/// Relative scale errors.
+pub const SCALE: usize = 12;
+/// Accelerometer biases, m/s².
+pub const FORCE: usize = 15;
+/// Displacement north and east beyond the stated one, m.
+pub const PLACE: usize = 18;
+/// Latitude beyond the stated one, rad.
+pub const LATITUDE: usize = 20;
+
+/// What φ makes of the velocity that a drive sums up, m/s.
+pub const VELOCITY: usize = 21;
+
+/// A row that says which combination of the states is measured.
+pub type Row = [f64; STATES];
+
+/// Something measured.
+#[derive(Clone, Copy, Debug)]
+pub struct Measurement {
+    /// Of which combination.
+    pub row: Row,
+    /// What it is beyond what the nominal frame predicts.
+    pub value: f64,
+    /// Its variance.
+    pub variance: f64,
+}
+
+/// Estimates with their covariance.
+#[derive(Clone, Debug)]
+pub struct Filter {
+    /// Estimates.
+    pub state: Row,
+    /// Covariance.
+    pub covariance: [Row; STATES],
+}
+
+impl Filter {
+    /// Of nothing.
+    pub const EMPTY: Self = Self { state: [0.0; STATES], covariance: [[0.0; STATES]; STATES] };
+
+    /// Begins anew: φ at the start has this covariance, the others these 1σ; all are zero.
+    #[inline(never)]
+    pub fn begin(&mut self, start: &Matrix, bias: f64, scale: f64, force: f64, latitude: f64) {
+        self.state = [0.0; STATES];
+        self.covariance = [[0.0; STATES]; STATES];
+        for (row, values) in start.iter().enumerate() {
+            for (column, value) in values.iter().enumerate() {
+                for (a, b) in [(NOW, NOW), (NOW, START), (START, NOW), (START, START)] {
+                    self.covariance[a + row][b + column] = *value;
+                }
+            }
+        }
+        for (first, sigma) in [(BIAS, bias), (SCALE, scale), (FORCE, force)] {
+            for state in first..first + 3 {
+                self.covariance[state][state] = sigma * sigma;
+            }
+        }
+        self.covariance[LATITUDE][LATITUDE] = latitude * latitude;
+    }
+
+    /// Carries φ on over a time in which it came to depend so much more on biases and scale errors, and
+    /// by which noise widens it, rad².
+    pub fn carry(&mut self, bias: &Matrix, scale: &Matrix, noise: f64) {
+        let rows = core::array::from_fn(|axis| {
+            let mut row = [0.0; STATES];
+            row[BIAS..BIAS + 3].copy_from_slice(&bias[axis]);
+            row[SCALE..SCALE + 3].copy_from_slice(&scale[axis]);
+            row
+        });
+        self.add(NOW, &rows);
+        for axis in NOW..NOW + 3 {
+            self.covariance[axis][axis] += noise;
+        }
+    }
+
+    /// Adds combinations of the other states to three.
+    #[inline(never)]
+    pub fn add(&mut self, first: usize, rows: &[Row; 3]) {
+        for (axis, row) in rows.iter().enumerate() {
+            self.state[first + axis] += product(&self.state, row);
+        }
+        let mut gains = [[0.0; STATES]; 3];
+        for (gain, row) in gains.iter_mut().zip(rows) {
+            for (part, line) in row.iter().zip(&self.covariance).filter(|(part, _)| **part != 0.0) {
+                for (sum, entry) in gain.iter_mut().zip(line) {
+                    *sum += part * entry;
+                }
+            }
+        }
+        for (axis, gain) in gains.iter().enumerate() {
+            for (entry, part) in self.covariance[first + axis].iter_mut().zip(gain) {
+                *entry += part;
+            }
+        }
+        for line in &mut self.covariance {
+            let gains: Vector = core::array::from_fn(|axis| product(line, &rows[axis]));
+            for (entry, gain) in line[first..first + 3].iter_mut().zip(gains) {
+                *entry += gain;
+            }
+        }
+    }
+
+    /// Lets the biases walk by this variance, (rad/s)².
+    pub fn walk(&mut self, variance: f64) {
+        for axis in BIAS..BIAS + 3 {
+            self.covariance[axis][axis] += variance;
+        }
+    }
+
+    /// Remembers φ as it is when a stop begins.
+    #[inline(never)]
+    pub fn anchor(&mut self) {
+        for axis in 0..3 {
+            self.state[ANCHOR + axis] = self.state[NOW + axis];
+        }
+        for axis in 0..3 {
+            self.covariance[ANCHOR + axis] = self.covariance[NOW + axis];
+        }
+        for row in 0..STATES {
+            for axis in 0..3 {
+                self.covariance[row][ANCHOR + axis] = self.covariance[row][NOW + axis];
+            }
+        }
+    }
+
+    /// Forgets what is known of some states, whose 1σ is this from now on.
+    pub fn forget(&mut self, states: core::ops::Range<usize>, sigma: f64) {
+        for state in states {
+            self.state[state] = 0.0;
+            self.covariance[state] = [0.0; STATES];
+            for line in &mut self.covariance {
+                line[state] = 0.0;
+            }
+            self.covariance[state][state] = sigma * sigma;
+        }
+    }
+
+    /// Lets the displacement be off by so much more, 1σ, m.
+    pub fn stray(&mut self, sigma: f64) {
+        for state in PLACE..PLACE + 2 {
+            self.covariance[state][state] += sigma * sigma;
+        }
+    }
+
+    /// Takes measurements in turn.
+    #[inline(never)]
+    pub fn measure(&mut self, measurements: &[Measurement]) {
+        for measurement in measurements {
+            self.take(measurement);
+        }
+    }
+
+    /// What measurements, three at most, bring beyond the expected: chi-square of as many degrees of freedom.
+    #[must_use]
+    #[inline(never)]
+    pub fn surprise(&self, measurements: &[Measurement]) -> f64 {
+        let mut whole = [[0.0; 3]; 3];
+        let mut beyond = [0.0; 3];
+        for (index, measurement) in measurements.iter().enumerate() {
+            let spread = self.covariances(&measurement.row);
+            for (entry, other) in whole[index].iter_mut().zip(measurements) {
+                *entry = product(&spread, &other.row);
+            }
+            whole[index][index] += measurement.variance;
+            beyond[index] = measurement.value - product(&self.state, &measurement.row);
+        }
+        let size = measurements.len();
+        let mut weighted = beyond;
+        if !cholesky(&mut whole, size) {
+            return f64::INFINITY;
+        }
+        cholesky_solve(&whole, size, &mut weighted);
+        dot(&beyond, &weighted)
+    }
+
+    fn take(&mut self, measurement: &Measurement) {
+        let Measurement { row, value, variance } = measurement;
+        let spread = self.covariances(row);
+        let gain = 1.0 / (product(&spread, row) + variance);
+        let surprise = (value - product(&self.state, row)) * gain;
+        for (index, part) in spread.iter().enumerate().filter(|(_, part)| **part != 0.0) {
+            self.state[index] += part * surprise;
+            let part = part * gain;
+            for (other, entry) in spread[..=index].iter().zip(&mut self.covariance[index]) {
+                if *other != 0.0 {
+                    *entry -= part * other;
+                }
+            }
+        }
+        self.mirror();
+    }
+
+    /// Copies the lower triangle, where products were taken, to the upper.
+    fn mirror(&mut self) {
+        for row in 1..STATES {
+            for column in 0..row {
+                self.covariance[column][row] = self.covariance[row][column];
+            }
+        }
+    }
+
+    /// Variance of a combination of the states.
+    #[must_use]
+    pub fn variance(&self, row: &Row) -> f64 {
+        row.iter().zip(&self.covariance).map(|(part, line)| part * product(line, row)).sum()
+    }
+
+    /// Covariance of a combination with each of the states.
+    #[must_use]
+    pub fn covariances(&self, row: &Row) -> Row {
+        core::array::from_fn(|state| product(&self.covariance[state], row))
+    }
+
+    /// Three states from one on.
+    #[must_use]
+    pub fn three(&self, first: usize) -> Vector {
+        core::array::from_fn(|axis| self.state[first + axis])
+    }
+}
+
+/// Sum of products; most rows are mostly zero, and a soft product costs more than a look.
+fn product(a: &Row, b: &Row) -> f64 {
+    a.iter().zip(b).filter(|(_, b)| **b != 0.0).map(|(a, b)| a * b).sum()
+}
+
+/// A measurement of the specific force along a direction across the predicted one, both on the start frame;
+/// `attitude` is that of the body.
+#[must_use]
+pub fn force_row(predicted: &Vector, direction: &Vector, attitude: &Rough) -> Row {
+    let mut row = [0.0; STATES];
+    // (φ × f)·p = φ·(f × p).
+    row[NOW..NOW + 3].copy_from_slice(&cross(predicted, direction));
+    let columns: Vector = core::array::from_fn(|axis| {
+        (0..3).map(|part| direction[part] * f64::from(attitude[part][axis])).sum()
+    });
+    row[FORCE..FORCE + 3].copy_from_slice(&columns);
+    row
+}
+
+/// How the velocity that a drive sums up comes to depend on φ and the accelerometers' biases on one axis,
+/// in a time, s, of a specific force; all on the start frame, `attitude` is that of the body.
+#[must_use]
+pub fn velocity_row(force: &Vector, axis: usize, attitude: &Rough, seconds: f64) -> Row {
+    let mut direction = [0.0; 3];
+    direction[axis] = seconds;
+    force_row(force, &direction, attitude)
+}
+
+/// A measurement of what φ gained over a stop in which the Earth turned by `earth`, on one axis.
+#[must_use]
+pub fn rest_row(earth: &Matrix, axis: usize) -> Row {
+    let mut row = [0.0; STATES];
+    row[NOW + axis] = 1.0;
+    for column in 0..3 {
+        row[ANCHOR + column] = -earth[axis][column];
+    }
+    row
+}

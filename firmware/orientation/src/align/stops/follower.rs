@@ -1,0 +1,360 @@
+//! Follows a vehicle through its stops: carries the attitude, finds where it stands, keeps means of that.
+//!
+//! Samples become seconds, seconds a window of ten, whose average tells whether the vehicle stands. A stop
+//! begins T₀ after the first such window did, and ends before its last two seconds, which may have seen
+//! the vehicle set off.
+
+use heapless::{Deque, Vec};
+
+use super::block::{AT_REST, Block, Blocks, DRIVEN};
+use super::stop::{STOPS, Second, Stop};
+use crate::math::rotation::{length, scaled, sum};
+use crate::signal::InertialSample;
+use crate::signal::rest::{Criteria, Limits, Sensors};
+use crate::signal::strapdown::{Carried, Rough, Strapdown, Sums};
+use crate::units::{AngleIncrement, Instant};
+
+/// Seconds in the low-pass average that the criteria judge: Szymanowski's need ten at least.
+pub const WINDOW: usize = 10;
+/// Seconds at the end of a stop that may have seen the vehicle set off.
+const LATEST: usize = 2;
+/// Delay T₀ after which a vehicle that stopped no longer rocks, s.
+const DELAY: usize = 3;
+/// Length of a block at rest as long as there is room, s.
+const REST_SPAN: f32 = 5.0;
+/// Length of a block on the way as long as there is room, s.
+const DRIVE_SPAN: f32 = 15.0;
+/// Length of a second, µs.
+const SECOND: u64 = 1_000_000;
+/// Sample periods between two samples that make a gap: rotation is lost.
+const GAP: f64 = 1.6;
+
+/// Where the stops are.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Rests {
+    /// The criteria find them.
+    Found,
+    /// From when to when, s.
+    Stated(Vec<[f64; 2], STOPS>),
+    /// All of the time is one.
+    Whole,
+}
+
+/// What went wrong with samples while the vehicle was followed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Loss {
+    /// Samples were missing at a time, s, for so many seconds.
+    Gap(f64, f64),
+    /// A gyro stood at the limit of its range at a time, s.
+    Saturated(f64),
+}
+
+/// The second in progress.
+#[derive(Clone, Copy, Debug, Default)]
+struct Progress {
+    since: Instant,
+    begin: Carried,
+}
+
+/// Follows samples.
+#[derive(Clone, Debug)]
+pub struct Follower {
+    rests: Rests,
+    limits: Limits,
+    gravity: f64,
+    gap: u64,
+    period: u64,
+    strapdown: Strapdown,
+    begun: Option<Instant>,
+    last: Instant,
+    progress: Progress,
+    window: Deque<Second, WINDOW>,
+    criteria: Option<Criteria>,
+    /// Whether the vehicle stands: the last stop still lasts.
+    is_at_rest: bool,
+    stops: Vec<Stop, STOPS>,
+    blocks: Blocks<AT_REST>,
+    drives: Blocks<DRIVEN>,
+    /// Seconds at rest for which no stop was left.
+    unused: u32,
+    loss: Option<Loss>,
+}
+
+impl Follower {
+    /// Nothing seen; samples come every `sample_seconds`.
+    #[must_use]
+    pub fn new(rests: Rests, sensors: &Sensors, gravity: f64, sample_seconds: f64) -> Self {
+        Self {
+            rests,
+            limits: sensors.limits(WINDOW as f64),
+            gravity,
+            gap: libm::round(GAP * sample_seconds * 1e6) as u64,
+            period: libm::round(sample_seconds * 1e6) as u64,
+            strapdown: Strapdown::default(),
+            begun: None,
+            last: Instant::default(),
+            progress: Progress::default(),
+            window: Deque::new(),
+            criteria: None,
+            is_at_rest: false,
+            stops: Vec::new(),
+            blocks: Blocks::new(REST_SPAN),
+            drives: Blocks::new(DRIVE_SPAN),
+            unused: 0,
+            loss: None,
+        }
+    }
+
+    /// Takes a sample; whether a second ended with it.
+    #[inline]
+    pub fn push(&mut self, sample: &InertialSample) -> bool {
+        if self.begun.is_none() {
+            self.begin(sample.time);
+        }
+        self.watch(sample);
+        self.strapdown.push(sample);
+        let is_over = sample.time.0.saturating_sub(self.progress.since.0) >= SECOND
+            || self.is_edge(sample.time);
+        if is_over {
+            self.second(sample.time);
+        }
+        is_over
+    }
+
+    /// Freezes the start frame when the first sample began.
+    #[cold]
+    fn begin(&mut self, first: Instant) {
+        let start = Instant(first.0.saturating_sub(self.period));
+        self.begun = Some(start);
+        self.last = start;
+        self.strapdown = Strapdown::since(start);
+        self.restart(start);
+    }
+
+    /// Notices what makes the carried attitude worthless.
+    fn watch(&mut self, sample: &InertialSample) {
+        let elapsed = sample.time.0.saturating_sub(self.last.0);
+        if elapsed > self.gap {
+            self.lose(Loss::Gap(self.last.seconds(), elapsed as f64 * 1e-6));
+        } else if sample.turned.iter().any(|turned| turned.is_saturated()) {
+            self.lose(Loss::Saturated(sample.time.seconds()));
+        }
+        self.last = sample.time;
+    }
+
+    /// Keeps the first loss.
+    #[cold]
+    fn lose(&mut self, loss: Loss) {
+        self.loss.get_or_insert(loss);
+    }
+
+    /// Whether a stated stop begins or ends about now.
+    fn is_edge(&self, now: Instant) -> bool {
+        let Rests::Stated(stops) = &self.rests else { return false };
+        let (now, half) = (now.0, self.period / 2);
+        let is_near = |edge: &f64| {
+            let edge = Instant::from_seconds(*edge).0;
+            now + half >= edge && now + half < edge + self.period
+        };
+        stops.iter().flatten().any(is_near)
+    }
+
+    /// Begins a second.
+    fn restart(&mut self, now: Instant) {
+        let begin = *self.strapdown.carried();
+        self.progress = Progress { since: now, begin };
+    }
+
+    /// Ends the second, and judges by it.
+    #[inline(never)]
+    fn second(&mut self, now: Instant) {
+        self.strapdown.update(now);
+        let second = self.whole_second(now);
+        if self.window.is_full() {
+            self.leave();
+        }
+        // There is room now.
+        let _ = self.window.push_back(second);
+        self.criteria = self.judge();
+        match &self.rests {
+            Rests::Whole => self.stay(Some(0)),
+            Rests::Stated(stops) => {
+                let half = 0.5e-6 * self.period as f64;
+                let is_in =
+                    |stop: &[f64; 2]| second.from >= stop[0] - half && second.to <= stop[1] + half;
+                let stop = stops.iter().position(is_in);
+                self.stay(stop);
+            }
+            Rests::Found => self.find(),
+        }
+        self.restart(now);
+    }
+
+    /// Lets the oldest second of the window go: what belongs to no stop was driven.
+    fn leave(&mut self) {
+        let Some(second) = self.window.pop_front() else { return };
+        let begun = self.stops.iter().filter(|stop| stop.from <= second.from).count();
+        if let (false, Some(_), Some(stop)) = (second.is_rest, second.force, begun.checked_sub(1)) {
+            self.drives.push(block(&second, second.start_force, stop as u8));
+        }
+    }
+
+    /// Takes the latest second for one of a stop, if it is.
+    fn stay(&mut self, stop: Option<usize>) {
+        self.is_at_rest = stop.is_some();
+        if let Some(stop) = stop {
+            self.rest(self.window.len() - 1, stop);
+        }
+    }
+
+    /// What the second that ends now leaves.
+    fn whole_second(&mut self, now: Instant) -> Second {
+        let Progress { since, begin } = self.progress;
+        let Sums { turned, force, start_force, count, is_blown } = self.strapdown.take();
+        let inverse = 1.0 / count.max(1) as f32;
+        let mean = |sum: i64| sum as f64 * 1e-6 / f64::from(count);
+        Second {
+            from: since.seconds(),
+            to: now.seconds(),
+            turned,
+            force: (count > 0).then(|| force.map(mean)),
+            start_force: start_force.map(|sum| sum * inverse),
+            is_blown,
+            is_rest: false,
+            begin,
+            end: *self.strapdown.carried(),
+        }
+    }
+
+    /// The criteria of the window, once it is full and has forces.
+    fn judge(&self) -> Option<Criteria> {
+        let (mut turned, mut seconds, mut force, mut count) = ([0i64; 3], 0.0, [0.0; 3], 0.0);
+        for second in &self.window {
+            turned = sum(&turned, &second.turned);
+            seconds += second.seconds();
+            force = sum(&force, &second.force.unwrap_or_default());
+            count += f64::from(u8::from(second.force.is_some()));
+        }
+        let rate = length(&turned.map(|sum| sum as f64 * AngleIncrement::STEP)) / seconds;
+        let force = length(&scaled(&force, 1.0 / count));
+        (self.window.is_full() && count > 0.0).then(|| Criteria::of(rate, force, self.gravity))
+    }
+
+    /// Looks for the beginning or the end of a stop.
+    fn find(&mut self) {
+        let is_rest = self.criteria.is_some_and(|criteria| criteria.is_rest(&self.limits));
+        match (self.is_at_rest, is_rest) {
+            (false, true) => self.stand(),
+            (true, true) => self.rest(WINDOW - 1 - LATEST, self.stops.len().saturating_sub(1)),
+            (_, false) => self.is_at_rest = false,
+        }
+    }
+
+    /// Begins a stop with what of the window is past the delay.
+    fn stand(&mut self) {
+        self.is_at_rest = true;
+        let stop = self.stops.len();
+        for index in DELAY..WINDOW - LATEST {
+            self.rest(index, stop);
+        }
+    }
+
+    /// Takes a second of the window for one of a stop.
+    fn rest(&mut self, index: usize, stop: usize) {
+        let Some(second) = self.window.iter_mut().nth(index) else { return };
+        second.is_rest = true;
+        let second = *second;
+        if stop >= self.stops.len() {
+            let begun = Stop { from: second.from, begin: second.begin, ..Stop::default() };
+            if self.stops.push(begun).is_err() {
+                self.unused += 1;
+                return;
+            }
+        }
+        let last = self.stops.len() - 1;
+        self.stops[last].take(&second);
+        if let Some(force) = second.block_force() {
+            self.blocks.push(block(&second, force, last as u8));
+        }
+    }
+
+    /// Where the stops are.
+    #[must_use]
+    pub fn rests(&self) -> &Rests {
+        &self.rests
+    }
+
+    /// What the criteria say of the last ten seconds, and what they are held to.
+    #[must_use]
+    pub fn criteria(&self) -> Option<(Criteria, Limits)> {
+        self.criteria.map(|criteria| (criteria, self.limits))
+    }
+
+    /// Whether the vehicle stands now.
+    #[must_use]
+    pub fn is_at_rest(&self) -> bool {
+        self.is_at_rest
+    }
+
+    /// The stops so far; the last may last.
+    #[must_use]
+    pub fn stops(&self) -> &[Stop] {
+        &self.stops
+    }
+
+    /// Tells where the last stop is, north and east of the first, m.
+    pub fn displace(&mut self, displacement: [f64; 2]) {
+        if let Some(stop) = self.stops.last_mut() {
+            stop.displacement = Some(displacement);
+        }
+    }
+
+    /// The blocks at rest.
+    #[must_use]
+    pub fn blocks(&self) -> &Blocks<AT_REST> {
+        &self.blocks
+    }
+
+    /// The blocks on the way, each of which is that after a stop.
+    #[must_use]
+    pub fn drives(&self) -> &Blocks<DRIVEN> {
+        &self.drives
+    }
+
+    /// What made the carried attitude worthless first.
+    #[must_use]
+    pub fn loss(&self) -> Option<Loss> {
+        self.loss
+    }
+
+    /// When the first sample began, s.
+    #[must_use]
+    pub fn start(&self) -> f64 {
+        self.begun.map_or(0.0, Instant::seconds)
+    }
+
+    /// When the last sample ended, s, and what is carried then.
+    pub fn now(&mut self) -> (f64, Carried) {
+        self.strapdown.update(self.last);
+        (self.last.seconds(), *self.strapdown.carried())
+    }
+}
+
+/// A second as a block of a stop.
+fn block(second: &Second, force: [f32; 3], stop: u8) -> Block {
+    let Second { begin, end, .. } = second;
+    Block {
+        middle: 0.5 * (second.from + second.to),
+        seconds: second.seconds() as f32,
+        force,
+        attitude: mean(&begin.attitude.rough_matrix(), &end.attitude.rough_matrix()),
+        bias: mean(&begin.bias, &end.bias),
+        stop,
+    }
+}
+
+fn mean(a: &Rough, b: &Rough) -> Rough {
+    core::array::from_fn(|row| {
+        core::array::from_fn(|column| 0.5 * (a[row][column] + b[row][column]))
+    })
+}

@@ -1,0 +1,358 @@
+//! Runs the filter along a path, again and again until the start frame stands still.
+
+use super::Setting;
+use super::block::Block;
+use super::filter::{
+    Filter, LATITUDE, Measurement, NOW, PLACE, START, STATES, VELOCITY, force_row, rest_row,
+    velocity_row,
+};
+use super::path::Path;
+use super::place::{Place, up};
+use super::stop::Stop;
+use crate::earth::EARTH_RATE;
+use crate::math::rotation::{
+    Matrix, Vector, by, cross, difference, dot, length, product, scaled, small, sum, transposed,
+    turned,
+};
+use crate::signal::strapdown::{Carried, Rough};
+
+/// 1σ of the level that the first stop gives the start frame, rad; far above what it is.
+const LEVEL_SIGMA: f64 = 0.1;
+/// 1σ of its azimuth, rad: unknown.
+const AZIMUTH_SIGMA: f64 = 3.0;
+/// Repetitions, and the correction below which no further one is needed, rad: what it leaves is its square.
+const REPETITIONS: u32 = 8;
+const SETTLED: f64 = 1e-4;
+/// Chi-square beyond which a block, or the rest of a stop, is left out: one healthy block in three million.
+const OUTLIER: f64 = 30.0;
+/// Least variance of what a vehicle sways, rad²: 20 milliarcseconds.
+const LEAST_SWAY: f64 = 1e-14;
+/// How much slower than a second a sway may be: the power of its angle over that of its change in a second.
+const SLOW_SWAY: f64 = 4.0;
+/// Least angle random walk that is believed, rad/√s: 1e-5 °/√h.
+const LEAST_WALK: f64 = 2.9e-9;
+/// 1σ of what driving adds to an accelerometer's bias, m/s²: its scale and its axes under vibration, 0.1 mg.
+const DRIVING: f64 = 1e-3;
+/// How far a vehicle is from the straight way in the mean, of what it could have driven.
+const DETOUR: f64 = 0.1;
+/// Part of a drive that its blocks may miss.
+const COVERED: f64 = 0.002;
+/// Step by which the latitude's effect is found, rad.
+const LATITUDE_STEP: f64 = 1e-3;
+
+/// What is believed of the path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Belief {
+    /// What it shows.
+    Shown,
+    /// That nothing sways, all is quiet, nothing is left out: the limit of any estimator, and where to begin.
+    Ideal,
+}
+
+/// The filter at the end of the path.
+#[derive(Clone, Debug)]
+pub struct Solution {
+    /// States; of φ what is left when [`Self::frame`] is taken for the start frame.
+    pub filter: Filter,
+    /// From north, east, down at the start, frozen, to the start frame.
+    pub frame: Matrix,
+    /// Sum of squares of what blocks showed beyond the expected, over their variances, of so many degrees
+    /// of freedom.
+    pub chi_square: f64,
+    /// Those degrees.
+    pub degrees: f64,
+    /// Blocks left out.
+    pub left_out: u32,
+    /// Stops at which the vehicle turned, whose rest rates are left out.
+    pub turning: u32,
+    /// Drives that did not come to rest at their end, whose velocity is left out.
+    pub unsteady: u32,
+}
+
+/// What has been carried until a moment.
+#[derive(Clone, Copy, Debug, Default)]
+struct Moment {
+    at: f64,
+    bias: Rough,
+    scale: Rough,
+}
+
+impl Moment {
+    fn of(at: f64, carried: &Carried) -> Self {
+        Self { at, bias: carried.bias, scale: carried.scale }
+    }
+}
+
+/// A run along the path with one start frame.
+struct Run<'a> {
+    setting: &'a Setting,
+    path: &'a Path<'a>,
+    /// Power of the forces' noise, (m/s²)²·s.
+    density: f64,
+    /// The place, a little farther north, where the latitude is not exact.
+    north: Option<Place>,
+    belief: Belief,
+    last: Moment,
+}
+
+impl Solution {
+    /// Of nothing, with a start frame that is nearly right.
+    #[must_use]
+    pub const fn new(frame: Matrix) -> Self {
+        Self {
+            filter: Filter::EMPTY,
+            frame,
+            chi_square: 0.0,
+            degrees: 0.0,
+            left_out: 0,
+            turning: 0,
+            unsteady: 0,
+        }
+    }
+
+    /// Runs along the path until the start frame stands still.
+    pub fn settle(&mut self, setting: &Setting, path: &Path) {
+        self.run(setting, path, Belief::Ideal);
+        for _ in 1..REPETITIONS {
+            let correction = self.filter.three(START);
+            self.frame = product(&by(&correction), &self.frame);
+            self.run(setting, path, Belief::Shown);
+            if length(&correction) < SETTLED {
+                break;
+            }
+        }
+    }
+
+    /// One run along the path.
+    #[inline(never)]
+    pub fn run(&mut self, setting: &Setting, path: &Path, belief: Belief) {
+        let common = &setting.common;
+        (self.chi_square, self.degrees) = (0.0, 0.0);
+        (self.left_out, self.turning, self.unsteady) = (0, 0, 0);
+        self.filter.begin(
+            &start_covariance(&self.frame),
+            setting.bias_sigma(),
+            common.scale_sigma,
+            common.accelerometer_bias_sigma,
+            common.latitude_sigma,
+        );
+        let is_exact = common.latitude_sigma <= 0.0;
+        let is_ideal = belief == Belief::Ideal;
+        let mut run = Run {
+            setting,
+            path,
+            density: if is_ideal { path.least_density() } else { path.density() },
+            north: (!is_exact).then(|| Place::moved(common.latitude, LATITUDE_STEP)),
+            belief,
+            last: Moment { at: path.start, ..Moment::default() },
+        };
+        for index in 0..path.stops.len() {
+            run.stop(self, index);
+        }
+        run.carry(self, Moment::of(path.now, &path.carried));
+    }
+}
+
+impl Run<'_> {
+    fn stop(&mut self, solution: &mut Solution, index: usize) {
+        let stop = &self.path.stops[index];
+        if index > 0 {
+            let driven = (stop.from - self.last.at).max(0.0);
+            self.drive(solution, index, driven);
+            let (known, unknown) = (self.setting.displacement_sigma, self.setting.speed_sigma);
+            match stop.displacement {
+                Some(_) => solution.filter.forget(PLACE..PLACE + 2, known),
+                None => solution.filter.stray(unknown * driven),
+            }
+        }
+        self.carry(solution, Moment::of(stop.from, &stop.begin));
+        solution.filter.anchor();
+        for block in self.path.blocks.of(index) {
+            let scale = stop.begin.scale;
+            self.carry(solution, Moment { at: block.middle, bias: block.bias, scale });
+            self.block(solution, block, self.path.displaced(index));
+        }
+        self.carry(solution, Moment::of(stop.to, &stop.end));
+        self.rest(solution, stop);
+    }
+
+    /// Carries the filter on to a moment.
+    fn carry(&mut self, solution: &mut Solution, to: Moment) {
+        let seconds = (to.at - self.last.at).max(0.0);
+        let noise = &self.setting.common.noise;
+        let walk = noise.angle_random_walk.max(LEAST_WALK);
+        let bias = gained(&to.bias, &self.last.bias);
+        let scale = gained(&to.scale, &self.last.scale);
+        solution.filter.carry(&bias, &scale, walk * walk * seconds);
+        solution.filter.walk(self.bias_walk() * seconds);
+        self.last = to;
+    }
+
+    /// Power of the biases' walk, (rad/s)²/s. Flicker and ramp are taken for the walk that has their Allan
+    /// variance over the whole time.
+    fn bias_walk(&self) -> f64 {
+        let whole = (self.path.now - self.path.start).max(1.0);
+        let [_, _, b, k, r] = self.setting.common.noise.coefficients();
+        k * k
+            + 6.0 * core::f64::consts::LN_2 / core::f64::consts::PI * b * b / whole
+            + 1.5 * r * r * whole
+    }
+
+    /// Takes it that a drive to a stop, of so many seconds, ends at rest as it began: what its forces sum up
+    /// to beyond gravity is the work of φ.
+    fn drive(&mut self, solution: &mut Solution, index: usize, driven: f64) {
+        let path = self.path;
+        solution.filter.forget(VELOCITY..VELOCITY + 3, 0.0);
+        let (mut gained, mut seconds) = ([0.0; 3], 0.0);
+        for block in path.drives.of(index - 1) {
+            self.carry(
+                solution,
+                Moment { at: block.middle, bias: block.bias, scale: self.last.scale },
+            );
+            let displaced = path.underway(index - 1, block.middle);
+            let above = up(&path.place.navigation(block.middle - path.start, displaced));
+            let predicted = scaled(&turned(&solution.frame, &above), path.gravity);
+            let length = f64::from(block.seconds);
+            let rows: [_; 3] = core::array::from_fn(|axis| {
+                velocity_row(&predicted, axis, &block.attitude, length)
+            });
+            solution.filter.add(VELOCITY, &rows);
+            let beyond = difference(&block.force.map(f64::from), &predicted);
+            gained = sum(&gained, &scaled(&beyond, length));
+            seconds += length;
+        }
+        self.carry(solution, Moment::of(path.stops[index].from, &path.stops[index].begin));
+        if (seconds - driven).abs() <= COVERED * driven {
+            self.come_to_rest(solution, index, &gained, driven);
+        }
+    }
+
+    /// Takes the velocity that a drive seems to have gained.
+    fn come_to_rest(&self, solution: &mut Solution, index: usize, gained: &Vector, driven: f64) {
+        let path = self.path;
+        let middle = path.stops[index].from - 0.5 * driven - path.start;
+        let navigation =
+            path.place.navigation(middle, path.underway(index - 1, middle + path.start));
+        let along = transposed(&navigation);
+        let [from, to] = [path.displaced(index - 1), path.displaced(index)];
+        let way = sum(&scaled(&along[0], to[0] - from[0]), &scaled(&along[1], to[1] - from[1]));
+        let turning = scaled(&cross(&path.place.axis(), &way), EARTH_RATE);
+        let beyond = difference(gained, &turned(&solution.frame, &turning));
+        let variance = self.velocity_variance(&path.stops[index], driven);
+        let measurements: [Measurement; 2] = core::array::from_fn(|axis| {
+            let direction = turned(&solution.frame, &along[axis]);
+            let mut row = [0.0; STATES];
+            row[VELOCITY..VELOCITY + 3].copy_from_slice(&direction);
+            Measurement { row, value: dot(&beyond, &direction), variance }
+        });
+        if self.take(&mut solution.filter, &measurements).is_none() {
+            solution.unsteady += 1;
+        }
+    }
+
+    /// Variance of the velocity that a drive seems to gain, (m/s)²: what driving adds to the accelerometers'
+    /// biases, their noise, and gravity's direction along an unknown way.
+    fn velocity_variance(&self, stop: &Stop, driven: f64) -> f64 {
+        let sigma = self.setting.speed_sigma * driven;
+        let astray = if stop.displacement.is_some() { DETOUR * sigma } else { sigma };
+        let direction = self.path.gravity * self.path.place.per_metre()[0] * astray;
+        (DRIVING * DRIVING + direction * direction) * driven * driven + self.density * driven
+    }
+
+    /// Takes the force of a block.
+    fn block(&self, solution: &mut Solution, block: &Block, displaced: [f64; 2]) {
+        let elapsed = block.middle - self.path.start;
+        let navigation = self.path.place.navigation(elapsed, displaced);
+        let above = turned(&solution.frame, &up(&navigation));
+        let predicted = scaled(&above, self.path.gravity);
+        let force = block.force.map(f64::from);
+        let variance = self.density / f64::from(block.seconds);
+        let along = transposed(&navigation);
+        let farther = self.north.map(|place| {
+            let moved = up(&place.navigation(elapsed, displaced));
+            let change = difference(&moved, &up(&navigation));
+            turned(&solution.frame, &scaled(&change, self.path.gravity / LATITUDE_STEP))
+        });
+        let measurements: [Measurement; 2] = core::array::from_fn(|axis| {
+            let direction = turned(&solution.frame, &along[axis]);
+            let mut row = force_row(&predicted, &direction, &block.attitude);
+            row[PLACE + axis] = self.path.gravity * self.path.place.per_metre()[axis];
+            row[LATITUDE] = farther.map_or(0.0, |change| dot(&change, &direction));
+            let value = dot(&difference(&force, &predicted), &direction);
+            Measurement { row, value, variance }
+        });
+        match self.take(&mut solution.filter, &measurements) {
+            Some(chi_square) => {
+                solution.chi_square += chi_square;
+                solution.degrees += 2.0;
+            }
+            None => solution.left_out += 1,
+        }
+    }
+
+    /// Takes it that the body turned with the Earth alone during a stop.
+    fn rest(&self, solution: &mut Solution, stop: &Stop) {
+        let turn = EARTH_RATE * stop.seconds();
+        let earth = by(&scaled(&turned(&solution.frame, &self.path.place.axis()), turn));
+        let [begin, end] = [&stop.begin, &stop.end].map(|carried| carried.attitude.matrix());
+        let shown = product(&end, &transposed(&begin));
+        let beyond = small(&product(&shown, &transposed(&earth)));
+        let rows: [_; 3] = core::array::from_fn(|axis| rest_row(&earth, axis));
+        let sway = self.sway(stop);
+        // On the body's axes, which sway differently.
+        let measurements: [Measurement; 3] = core::array::from_fn(|axis| {
+            let direction: Vector = core::array::from_fn(|part| begin[part][axis]);
+            let row = core::array::from_fn::<f64, STATES, _>(|state| {
+                (0..3).map(|part| direction[part] * rows[part][state]).sum()
+            });
+            Measurement { row, value: dot(&direction, &beyond), variance: sway[axis] }
+        });
+        if self.take(&mut solution.filter, &measurements).is_none() {
+            solution.turning += 1;
+        }
+    }
+
+    /// Variance of what a body's axes sway between both ends of a stop, rad²: what its seconds turn beyond
+    /// the gyros' noise.
+    fn sway(&self, stop: &Stop) -> Vector {
+        let walk = self.setting.common.noise.angle_random_walk;
+        let is_ideal = self.belief == Belief::Ideal;
+        stop.turned.variance().map(|variance| {
+            let beyond = if is_ideal { 0.0 } else { (variance - walk * walk).max(0.0) };
+            SLOW_SWAY * beyond + LEAST_SWAY
+        })
+    }
+
+    /// Takes measurements, unless they are outliers; what they brought beyond the expected.
+    fn take(&self, filter: &mut Filter, measurements: &[Measurement]) -> Option<f64> {
+        let surprise = filter.surprise(measurements);
+        let is_taken = self.belief == Belief::Ideal || surprise <= OUTLIER;
+        is_taken.then(|| {
+            filter.measure(measurements);
+            surprise
+        })
+    }
+}
+
+/// Covariance of φ at the start: the level is nearly known, the azimuth is not.
+fn start_covariance(frame: &Matrix) -> Matrix {
+    let down: Vector = frame.map(|row| row[2]);
+    core::array::from_fn(|row| {
+        core::array::from_fn(|column| {
+            let level = if row == column { LEVEL_SIGMA * LEVEL_SIGMA } else { 0.0 };
+            level + AZIMUTH_SIGMA * AZIMUTH_SIGMA * down[row] * down[column]
+        })
+    })
+}
+
+fn gained(now: &Rough, before: &Rough) -> Matrix {
+    core::array::from_fn(|row| difference(&now[row].map(f64::from), &before[row].map(f64::from)))
+}
+
+/// How the state's rotation now turns something, as a row.
+#[must_use]
+pub fn now_row(gradient: &Vector) -> [f64; STATES] {
+    let mut row = [0.0; STATES];
+    row[NOW..NOW + 3].copy_from_slice(gradient);
+    row
+}

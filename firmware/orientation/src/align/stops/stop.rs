@@ -1,0 +1,127 @@
+//! A stop: what the gyros had carried when it began and when it ended, and how quiet it was.
+
+use crate::math::rotation::Vector;
+use crate::signal::strapdown::Carried;
+use crate::units::AngleIncrement;
+
+/// Most stops of a session.
+pub const STOPS: usize = 8;
+
+/// Sum and sum of squares of three quantities.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Scatter {
+    sum: Vector,
+    squares: Vector,
+    count: f64,
+}
+
+impl Scatter {
+    /// Takes a value of each.
+    pub fn push(&mut self, values: &Vector) {
+        for ((sum, square), value) in self.sum.iter_mut().zip(&mut self.squares).zip(values) {
+            *sum += value;
+            *square += value * value;
+        }
+        self.count += 1.0;
+    }
+
+    /// Their means; zero of none.
+    #[must_use]
+    pub fn mean(&self) -> Vector {
+        self.sum.map(|sum| sum / self.count.max(1.0))
+    }
+
+    /// Their variances; zero of fewer than two.
+    #[must_use]
+    pub fn variance(&self) -> Vector {
+        let mean = self.mean();
+        let free = (self.count - 1.0).max(1.0);
+        core::array::from_fn(|axis| {
+            ((self.squares[axis] - self.sum[axis] * mean[axis]) / free).max(0.0)
+        })
+    }
+}
+
+/// The vehicle stood from a time to a time.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Stop {
+    /// When it began and ended, s.
+    pub from: f64,
+    /// When it ended, or until when it lasts, s.
+    pub to: f64,
+    /// What was carried when it began.
+    pub begin: Carried,
+    /// What was carried when it ended.
+    pub end: Carried,
+    /// Displacement north and east from the first stop, m, where somebody told it.
+    pub displacement: Option<[f64; 2]>,
+    /// Angles turned in each second, rad.
+    pub turned: Scatter,
+    /// Mean specific force on the body's axes in each second, m/s².
+    pub force: Scatter,
+    /// Seconds that were left out, because something blew or the accelerometer was at its limit.
+    pub left_out: u32,
+}
+
+impl Stop {
+    /// Length, s.
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        self.to - self.from
+    }
+
+    /// Middle, s.
+    #[must_use]
+    pub fn middle(&self) -> f64 {
+        0.5 * (self.from + self.to)
+    }
+
+    /// Takes a second of it into account that ends with what is carried now.
+    pub fn take(&mut self, second: &Second) {
+        self.to = second.to;
+        self.end = second.end;
+        let turned = second.turned.map(|sum| sum as f64 * AngleIncrement::STEP / second.seconds());
+        self.turned.push(&turned);
+        if let Some(force) = second.force {
+            self.force.push(&force);
+        }
+        self.left_out += u32::from(second.block_force().is_none());
+    }
+}
+
+/// About a second of samples.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Second {
+    /// When it began, s.
+    pub from: f64,
+    /// When it ended, s.
+    pub to: f64,
+    /// Sums of the angle increments.
+    pub turned: [i64; 3],
+    /// Mean specific force on the body's axes, m/s², where there was one.
+    pub force: Option<Vector>,
+    /// Mean specific force on the start's axes, m/s².
+    pub start_force: [f32; 3],
+    /// Whether a blow made it meaningless.
+    pub is_blown: bool,
+    /// Whether it belongs to a stop.
+    pub is_rest: bool,
+    /// What was carried when it began.
+    pub begin: Carried,
+    /// What was carried when it ended.
+    pub end: Carried,
+}
+
+impl Second {
+    /// Length, s.
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        self.to - self.from
+    }
+
+    /// Mean specific force on the start's axes, m/s², where it means something.
+    #[must_use]
+    pub fn block_force(&self) -> Option<[f32; 3]> {
+        (self.force.is_some() && !self.is_blown).then_some(self.start_force)
+    }
+}

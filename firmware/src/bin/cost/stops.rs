@@ -1,0 +1,159 @@
+//! What azimuth from stops costs: the strapdown once per sample, U(azp) once per candidate, the search for
+//! its minimum, and the conclusion.
+
+use core::hint::black_box;
+
+use orientation::align::setting::Setting as Common;
+use orientation::align::stops::Setting;
+use orientation::align::stops::conclusion::Conclusion;
+use orientation::align::stops::follower::{Follower, Rests};
+use orientation::align::stops::inclination::Inclination;
+use orientation::earth::Latitude;
+use orientation::noise::model::GyroNoise;
+use orientation::signal::InertialSample;
+use orientation::units::{AngleIncrement, DEGREE, DEGREE_PER_HOUR, Instant, SpecificForce};
+
+use crate::budget::{INCLINATION_INSTRUCTIONS, STOPS_INSTRUCTIONS, STRAPDOWN_INSTRUCTIONS};
+use crate::counter::{Cost, Counter};
+use crate::report::{Report, figure};
+use crate::stack;
+
+/// Sample rate of the strapdown, Hz.
+const RATE_HZ: u64 = 2000;
+/// Samples of it: five seconds.
+const SAMPLES: u64 = 10_000;
+/// Sample rate of the drive, Hz: its conclusion does not depend on it.
+const DRIVE_HZ: u64 = 25;
+/// When the stops end and the drive ends, s.
+const DRIVE: [f64; 3] = [60.0, 960.0, 1020.0];
+/// Latitude, °, and azimuth at the start, rad.
+const LATITUDE: f64 = 52.0;
+const AZIMUTH: f64 = 72.0 * DEGREE;
+/// Rate of turn on the way, rad/s: 140° in all.
+const TURNING: f64 = 140.0 * DEGREE / 900.0;
+
+/// [`Follower::push`].
+type Push = fn(&mut Follower, &InertialSample) -> bool;
+/// [`Inclination::angle`].
+type Form = fn(&Inclination, f64) -> f64;
+
+/// Measures all of it.
+pub fn report(counter: &Counter, report: &mut Report) {
+    sample(counter, report);
+    let mut follower = drive();
+    let (cost, conclusion) = counter.measure(|| conclude(&mut follower));
+    let found = conclusion.found.filter(|_| conclusion.verdict.is_ok());
+    let is_right = found.is_some_and(|found| (found.start.angle - AZIMUTH).abs() < 0.01 * DEGREE);
+    report.require("the azimuth at the start is found from two stops", is_right);
+    report.budget(
+        format_args!("conclusion of two stops and a drive"),
+        cost.instructions(),
+        STOPS_INSTRUCTIONS,
+    );
+    if let Some(found) = found {
+        inclination(counter, report, &found.plain.inclination);
+    }
+}
+
+/// The mean of a sample, and the greatest: one that ends a second.
+fn sample(counter: &Counter, report: &mut Report) {
+    let mut follower = follower(RATE_HZ);
+    // A function that the optimiser cannot see is called, not inlined.
+    let push = black_box(Follower::push as Push);
+    let (mut total, mut worst) = (Cost::default(), Cost::default());
+    let mut carried = [0.0; 3];
+    for index in 0..SAMPLES {
+        let rates = [0.02, -0.03, 0.4].map(|rate| rate * libm::sin(index as f64 / 700.0));
+        let sample = inertial(index, RATE_HZ, rates, &mut carried);
+        let (cost, _) = counter.measure(|| push(&mut follower, &sample));
+        total += cost;
+        worst = worst.max(cost);
+        if index > 4000 && index < 4045 {
+            figure(format_args!("DBG {index}"), cost.instructions());
+        }
+    }
+    report.budget(
+        format_args!("strapdown of three gyros, a sample at 2 kHz"),
+        total.mean(SAMPLES),
+        STRAPDOWN_INSTRUCTIONS,
+    );
+    figure(format_args!("the same, a sample that ends a second"), worst.instructions());
+}
+
+/// The greatest cost of U over the circle, and that of the search.
+fn inclination(counter: &Counter, report: &mut Report, inclination: &Inclination) {
+    for (name, form) in [
+        ("U(azp), the angle, greatest", Inclination::angle as Form),
+        ("U(azp), the paper's form, greatest", Inclination::euler as Form),
+    ] {
+        let form = black_box(form);
+        let mut worst = Cost::default();
+        for step in 0..360 {
+            let azimuth = f64::from(step) * DEGREE;
+            worst = worst.max(counter.measure(|| form(inclination, azimuth)).0);
+        }
+        if name.contains("angle") {
+            report.budget(format_args!("{name}"), worst.instructions(), INCLINATION_INSTRUCTIONS);
+        } else {
+            figure(format_args!("{name}"), worst.instructions());
+        }
+    }
+    let (cost, minimum) = counter.measure(|| inclination.minimised(Inclination::angle));
+    let off = minimum.at - inclination.closed_form();
+    report.require("the search finds the closed form", off.abs() < 1e-6 * DEGREE);
+    figure(format_args!("search for the least U by Brent's method"), cost.instructions());
+}
+
+#[inline(never)]
+fn conclude(follower: &mut Follower) -> Conclusion {
+    Conclusion::of(&setting(), follower)
+}
+
+/// Stack of a conclusion, bytes.
+pub fn stack() -> usize {
+    let mut follower = drive();
+    stack::stack_of(|| black_box(conclude(&mut follower)).verdict.is_ok()).0
+}
+
+fn setting() -> Setting {
+    let latitude = Latitude::from_degrees(LATITUDE).unwrap_or(Latitude::EQUATOR);
+    let noise = GyroNoise::from_field_units(0.05, 0.0, 0.0, 0.0);
+    let common = Common { noise, white_known: true, ..Common::at(latitude) };
+    Setting { bias_sigma: Some(DEGREE_PER_HOUR), force_noise: 1e-3, ..Setting::new(common) }
+}
+
+fn follower(rate: u64) -> Follower {
+    let setting = setting();
+    let gravity = setting.common.latitude.gravity();
+    Follower::new(Rests::Found, &setting.sensors(), gravity, 1.0 / rate as f64)
+}
+
+/// A level vehicle that stands for a minute, turns for a quarter of an hour and stands again, without noise.
+fn drive() -> Follower {
+    let mut follower = follower(DRIVE_HZ);
+    let earth = setting().common.latitude;
+    let (mut azimuth, mut carried) = (AZIMUTH, [0.0; 3]);
+    for index in 0..(DRIVE[2] as u64) * DRIVE_HZ {
+        let time = index as f64 / DRIVE_HZ as f64;
+        let is_driving = (DRIVE[0]..DRIVE[1]).contains(&time);
+        let turning = if is_driving { TURNING } else { 0.0 };
+        let step = turning / DRIVE_HZ as f64;
+        let (sine, cosine) = libm::sincos(azimuth + 0.5 * step);
+        azimuth += step;
+        let north = earth.horizontal_rate();
+        let rates = [north * cosine, -north * sine, turning - earth.vertical_rate()];
+        follower.push(&inertial(index, DRIVE_HZ, rates, &mut carried));
+    }
+    follower
+}
+
+fn inertial(index: u64, rate: u64, rates: [f64; 3], carried: &mut [f64; 3]) -> InertialSample {
+    let gravity = setting().common.latitude.gravity();
+    InertialSample {
+        time: Instant((index + 1) * 1_000_000 / rate),
+        turned: core::array::from_fn(|axis| {
+            AngleIncrement::from_rad(rates[axis] / rate as f64, &mut carried[axis])
+        }),
+        force: Some([0.0, 0.0, -gravity].map(SpecificForce::from_m_per_s2)),
+    }
+}
