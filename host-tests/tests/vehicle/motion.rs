@@ -38,23 +38,23 @@ fn increments_lead_from_the_true_attitude_at_the_start_to_that_at_the_end() {
     let day = hard();
     let at = |rate_hz| attitude_error(&VehicleConfiguration { rate_hz, ..day.configuration() });
     // At 100 Hz what is left is the oracle's own coning term, which shrinks with its fourth power.
-    let (coarse, fine) = (at(100.0), at(800.0));
+    let (coarse, fine) = (at(100.0), at(400.0));
     assert!(coarse < 1e-6, "{coarse:e} rad");
-    assert!(fine < 1e-9, "{fine:e} rad");
+    assert!(fine < 2e-9, "{fine:e} rad");
 }
 
 #[test]
 fn increments_of_a_slow_sample_are_sums_of_those_of_quick_ones() {
     let day = hard();
     let at = |rate_hz| run(&VehicleConfiguration { rate_hz, ..day.configuration() }, 0).0;
-    let (slow, quick) = (at(25.0), at(1000.0));
+    let (slow, quick) = (at(25.0), at(500.0));
     let mut accumulated = [0.0; 3];
-    for (slow, quick) in slow.iter().zip(quick.chunks_exact(40)) {
+    for (slow, quick) in slow.iter().zip(quick.chunks_exact(20)) {
         for (axis, accumulated) in accumulated.iter_mut().enumerate() {
             let turned: f64 = quick.iter().map(|sample| sample.turned_rad[axis]).sum();
             *accumulated += slow.turned_rad[axis] - turned;
             let force: f64 = quick.iter().map(|sample| sample.force_m_s2[axis]).sum();
-            assert_near(slow.force_m_s2[axis], force / 40.0, 2e-5);
+            assert_near(slow.force_m_s2[axis], force / 20.0, 2e-5);
         }
         // A door that slams in the middle of a panel costs most.
         assert_vector(accumulated, [0.0; 3], 2e-7);
@@ -65,8 +65,8 @@ fn increments_of_a_slow_sample_are_sums_of_those_of_quick_ones() {
 /// asks for: brakes that come at once would give 1 m/s², weaving that does 0.1 rad/s.
 #[test]
 fn nothing_jumps() {
-    let mut day = hard();
-    day.events.clear();
+    let mut day = Scenario::stops(7, 3, 20.0, 180.0);
+    day.vehicle = VehicleConfiguration { lever_m: [0.3, -0.2, -1.0], ..Default::default() };
     let quick = VehicleConfiguration { rate_hz: 1000.0, ..day.configuration() };
     let mut vehicle = Vehicle::new(&quick, 0);
     let mut before = vehicle.next().unwrap();

@@ -15,7 +15,7 @@ fn slow(day: &Scenario) -> VehicleConfiguration<'_> {
 #[test]
 fn drives_go_some_kilometres_to_any_heading_between_tilted_stops() {
     let (mut far, mut headings) = (0, [0; 4]);
-    for seed in 0..60 {
+    for seed in 0..40 {
         let day = Scenario::siap(seed);
         let configuration = slow(&day);
         assert_near(configuration.seconds(), 1020.0, 1e-9);
@@ -39,8 +39,8 @@ fn drives_go_some_kilometres_to_any_heading_between_tilted_stops() {
         assert!(last.pitch_deg.abs() <= 3.0 && last.roll_deg.abs() <= 3.0);
         assert_near(truth.attitude.pitch_rad.to_degrees(), last.pitch_deg, 1e-6);
     }
-    assert!(far > 45, "{far} of 60 are a kilometre away");
-    assert!(headings.iter().all(|quarter| *quarter > 5), "{headings:?}");
+    assert!(far > 30, "{far} of 40 are a kilometre away");
+    assert!(headings.iter().all(|quarter| *quarter > 3), "{headings:?}");
 }
 
 #[test]
