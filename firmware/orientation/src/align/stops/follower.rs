@@ -198,7 +198,9 @@ impl Follower {
     fn leave(&mut self) {
         let Some(second) = self.window.pop_front() else { return };
         let begun = self.stops.iter().take_while(|stop| stop.from <= second.from).count();
-        let Some((index, stop)) = self.stops.iter().enumerate().take(begun).last() else { return };
+        let Some((index, stop)) = self.stops.iter().enumerate().take(begun).next_back() else {
+            return;
+        };
         if !second.is_rest && second.force.is_some() && second.from >= stop.to {
             self.drives.push(block(&second, second.start_force, index as u8));
         }
