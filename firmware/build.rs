@@ -10,6 +10,9 @@ use std::{env, fs, io};
 /// What the images may cost.
 const BUDGET: &str = "budget.toml";
 
+/// A linker script that refuses an image without its etalon table (`memory.x`).
+const ETALON: &str = "ASSERT(SIZEOF(.etalon) > 0, \"the etalon table is not in its section\");\n";
+
 fn main() -> io::Result<()> {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed={BUDGET}");
@@ -27,7 +30,11 @@ fn main() -> io::Result<()> {
     let budget = fs::read_to_string(BUDGET)?;
     fs::write(directory.join("budget.rs"), constants(&budget)?)?;
     fs::write(directory.join("budget.x"), limits(&budget)?)?;
+    fs::write(directory.join("etalon.x"), ETALON)?;
     println!("cargo::rustc-link-search={}", directory.display());
+    if env::var_os("CARGO_FEATURE_EMULATOR").is_some() {
+        println!("cargo::rustc-link-arg-bin=emulator=-Tetalon.x");
+    }
     if env::var_os("CARGO_FEATURE_BOARD").is_some() {
         println!("cargo::rustc-link-arg-bin=board=-Tbudget.x");
     }

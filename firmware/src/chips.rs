@@ -17,7 +17,7 @@ use orientation::signal::sway::CoarseSensors;
 use orientation::units::{Angle, AngularRate, TURN};
 
 use crate::ports::{
-    Accelerometer, Actuator, BaseReading, BaseSensors, Encoder, ForceReading, Gyro, Motion,
+    Accelerometer, Actuator, BaseReading, BaseSensors, Encoder, ForceReading, Gyro, InStep, Motion,
     RateReading, Startable,
 };
 
@@ -57,8 +57,18 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Gyro for AnalogueGyro<S, R, D> {
     }
 }
 
+impl<S: SpiDevice, R: Wait, D: DelayNs> InStep for AnalogueGyro<S, R, D> {
+    fn arm(&mut self) -> impl Future<Output = Result<(), Fault>> {
+        self.converter.arm()
+    }
+
+    fn begin(&mut self) -> impl Future<Output = Result<(), Fault>> {
+        self.converter.begin()
+    }
+}
+
 /// The accelerometer on the platform: its x along the sensitive axis, y 90° clockwise, z down. Of a
-/// two-frame mount it sits on the base: forward, right, down.
+/// two-frame mount it sits on the base, without a stage in the vehicle: forward, right, down.
 #[derive(Debug)]
 pub struct PlatformAccelerometer<S, D>(pub Adxl355<S, D>);
 

@@ -165,3 +165,37 @@ impl Configuration {
         libm::round(1e6 / self.sample_rate) as u32
     }
 }
+
+/// An instrument that is fixed to a vehicle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VehicleConfiguration {
+    /// Samples of each gyro a second, Hz.
+    pub sample_rate: f64,
+    /// The accelerometer is read with every so-manieth sample, ≥ 1.
+    pub force_divider: u32,
+    /// So many of its readings make the mean that the session gets, ≥ 1.
+    pub forces: u32,
+}
+
+/// Greatest rate at which the accelerometer of a vehicle is read, Hz: what it feels turns with the vehicle,
+/// so its filter may delay it by milliseconds only, and must not be too narrow.
+const VEHICLE_FORCE_RATE: f64 = 400.0;
+/// Rate at which the session gets their means, Hz, no more often than it carries the attitude on.
+const MEAN_FORCE_RATE: f64 = 100.0;
+
+impl VehicleConfiguration {
+    /// The default board with gyros of so many samples a second.
+    #[must_use]
+    pub fn at(sample_rate: f64) -> Self {
+        let ratio = |rate: f64, to: f64| (libm::round(rate / to) as u32).max(1);
+        let force_divider = ratio(sample_rate, VEHICLE_FORCE_RATE);
+        let forces = ratio(sample_rate / f64::from(force_divider), MEAN_FORCE_RATE);
+        Self { sample_rate, force_divider, forces }
+    }
+
+    /// The sample period, µs, to nearest.
+    #[must_use]
+    pub fn period(&self) -> u32 {
+        libm::round(1e6 / self.sample_rate) as u32
+    }
+}

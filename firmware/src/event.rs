@@ -31,6 +31,11 @@ pub enum Event {
         /// Latitude, °.
         latitude: f64,
     },
+    /// The instrument begins, in a vehicle that goes from stop to stop.
+    BegunStops {
+        /// Latitude, °.
+        latitude: f64,
+    },
     /// A device has passed identity and self-test and is configured.
     Started(Device),
     /// A reading was lost.
@@ -111,6 +116,16 @@ pub enum Event {
     Turned(u32, u32),
     /// So many turns are left out of the fit.
     TurnsLeftOut(u32, Sense),
+    /// The vehicle stands: which stop, after so many seconds of driving.
+    Stopped(usize, f64),
+    /// At this stop the vehicle stands so far north and east of the first one, m.
+    Displaced(usize, [f64; 2]),
+    /// A stop was long enough: which, its seconds, pitch and roll of the vehicle, °. It may drive on.
+    MayDrive(usize, f64, [f64; 2]),
+    /// The vehicle drives.
+    Driving,
+    /// The bias of a gyro as it was found, and its 1σ, °/h.
+    Bias(Device, f64, f64),
     /// The azimuth, its σ and the limit that no estimator can beat, °.
     Concluded(f64, f64, f64),
     /// There is no azimuth.
@@ -125,6 +140,8 @@ words! { Event:
         positions, Rounded::<1>(dwell), Rounded::<4>(latitude);
     Self::BegunTurning { turns, latitude } =>
         "begin: {} turns at latitude {}°", turns, Rounded::<4>(latitude);
+    Self::BegunStops { latitude } =>
+        "begin: level, drive, stop and level again, at latitude {}°", Rounded::<4>(latitude);
     Self::Started(device) => "{}: identity and self-test passed, configured", device;
     Self::Lost(device, symptom) => "{}: reading lost: {}", device, symptom;
     Self::Restarting(device, symptom) => "{}: {}: starting it again", device, symptom;
@@ -177,6 +194,17 @@ words! { Event:
     Self::Turned(number, of) => "turn {} of {}", number, of;
     Self::TurnsLeftOut(turns, sense) =>
         "{} turn(s) {} left out: something disturbed them", turns, sense;
+    Self::Stopped(number, seconds) =>
+        "stop {} found after {} s of driving", number, Rounded::<0>(seconds);
+    Self::Displaced(number, [north, east]) =>
+        "stop {} is {} m north and {} m east of the first",
+        number, Rounded::<1>(north), Rounded::<1>(east);
+    Self::MayDrive(number, seconds, [pitch, roll]) =>
+        "stop {} levelled for {} s: pitch {}°, roll {}°; the vehicle may drive",
+        number, Rounded::<0>(seconds), Rounded::<3>(pitch), Rounded::<3>(roll);
+    Self::Driving => "driving";
+    Self::Bias(gyro, bias, sigma) =>
+        "{}: bias {} °/h ± {} °/h (1σ)", gyro, Rounded::<4>(bias), Rounded::<4>(sigma);
     Self::Concluded(azimuth, sigma, limit) =>
         "azimuth {}° ± {}° (1σ), limit {}°",
         Rounded::<4>(azimuth), Rounded::<4>(sigma), Rounded::<4>(limit);

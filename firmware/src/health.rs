@@ -22,7 +22,8 @@ pub struct Health {
     pub late: u32,
     /// Samples that nobody took in time.
     pub overflowed: u32,
-    /// Readings lost, by device: gyro, accelerometer, encoder, stage, base; both frames together.
+    /// Readings lost, by device: gyro, accelerometer, encoder, stage, base; both frames together, and
+    /// three gyros.
     pub lost: [u16; 5],
     /// Restarts, by device.
     pub restarts: [u16; 5],
@@ -66,7 +67,7 @@ impl Health {
 
 fn count(counters: &mut [u16; 5], device: Device) {
     let counter = &mut counters[match device {
-        Device::Gyro => 0,
+        Device::Gyro | Device::ForwardGyro | Device::RightGyro | Device::DownGyro => 0,
         Device::Accelerometer => 1,
         Device::Encoder | Device::OuterEncoder | Device::InnerEncoder => 2,
         Device::Stage | Device::OuterFrame | Device::InnerFrame => 3,

@@ -41,6 +41,18 @@ pub enum Status {
         /// Dwells that are planned.
         of: u16,
     },
+    /// The vehicle levels at a stop.
+    Levelling {
+        /// Which stop.
+        stop: u16,
+    },
+    /// It has, and may drive.
+    MayDrive {
+        /// Which stop.
+        stop: u16,
+    },
+    /// It drives.
+    Driving,
     /// The azimuth is found.
     Concluded {
         /// Azimuth of body x.
@@ -75,6 +87,9 @@ impl fmt::Display for Status {
             Self::Homing => f.write_str("homing"),
             Self::Surveying => f.write_str("surveying"),
             Self::Measuring { done, of } => write!(f, "measuring {done}/{of}"),
+            Self::Levelling { stop } => write!(f, "levelling at stop {stop}"),
+            Self::MayDrive { stop } => write!(f, "stop {stop} done, may drive"),
+            Self::Driving => f.write_str("driving"),
             Self::Concluded { azimuth, sigma } => write!(
                 f,
                 "azimuth {}.{:03} sigma {}.{:03}",

@@ -23,6 +23,8 @@ pub enum Symptom {
     Slow,
     /// A reading that cannot be: too far from the one before.
     Jumped,
+    /// It converts at other times than those that it is to be in step with.
+    OutOfStep,
 }
 
 words! { Symptom:
@@ -31,6 +33,7 @@ words! { Symptom:
     Self::Stuck => "the same reading again and again";
     Self::Slow => "its bus hangs";
     Self::Jumped => "too far from the one before";
+    Self::OutOfStep => "out of step with the others";
 }
 
 impl From<Symptom> for Trouble {
@@ -46,6 +49,7 @@ impl From<Symptom> for Trouble {
             Symptom::Chip(Fault::NotReady) | Symptom::Silent => Self::Silent,
             Symptom::Stuck | Symptom::Jumped => Self::Stuck,
             Symptom::Slow => Self::Slow,
+            Symptom::OutOfStep => Self::OutOfStep,
         }
     }
 }

@@ -5,7 +5,7 @@
 use drivers::fault::Fault;
 use embassy_time::Instant;
 use orientation::align::rotating::coupling::BYTES;
-use orientation::session::{Session, rotating};
+use orientation::session::{Session, rotating, stops};
 use orientation::signal::Sample;
 use orientation::signal::sway::CoarseSensors;
 use orientation::units::{Angle, AngularRate, SpecificForce, Temperature};
@@ -36,6 +36,17 @@ pub trait Gyro: Startable {
 
     /// Reads that conversion.
     async fn read(&mut self) -> Result<RateReading, Fault>;
+}
+
+/// A gyro that converts in step with others: all are armed, then all begun, one right after the other.
+/// Their clocks are one.
+#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
+pub trait InStep: Gyro {
+    /// Ends conversions and makes ready for others, of a gyro that was started.
+    async fn arm(&mut self) -> Result<(), Fault>;
+
+    /// Begins conversions.
+    async fn begin(&mut self) -> Result<(), Fault>;
 }
 
 /// One reading of the accelerometer, in the axes of the platform, or of the base it is fixed to.
@@ -143,17 +154,34 @@ pub trait CalibrationStore {
 
 /// Where raw samples are kept. It may take its time: samples then queue.
 #[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
-pub trait Recorder {
+pub trait Recorder<S = Sample> {
     /// Keeps one sample.
-    async fn record(&mut self, sample: &Sample);
+    async fn record(&mut self, sample: &S);
 }
 
 /// A recorder that keeps nothing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoRecorder;
 
-impl Recorder for NoRecorder {
-    async fn record(&mut self, _: &Sample) {}
+impl<S> Recorder<S> for NoRecorder {
+    async fn record(&mut self, _: &S) {}
+}
+
+/// What knows where the vehicle is: a satellite receiver, an odometer, a map.
+pub trait Whereabouts {
+    /// How far north and east the vehicle stands of where it stood first, m; none where that is not
+    /// known, or not yet. Asked at every stop until it is.
+    fn displacement(&mut self) -> Option<[f64; 2]>;
+}
+
+/// Nobody knows where the vehicle is.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoWhereabouts;
+
+impl Whereabouts for NoWhereabouts {
+    fn displacement(&mut self) -> Option<[f64; 2]> {
+        None
+    }
 }
 
 /// Who is told what happens.
@@ -166,6 +194,9 @@ pub trait Observer {
 
     /// The session on a turning platform has taken one more turn.
     fn turned(&self, _: &rotating::Session) {}
+
+    /// The session in a vehicle has begun or ended a stop.
+    fn stopped(&self, _: &stops::Session) {}
 }
 
 /// Nobody is told.
@@ -184,6 +215,10 @@ impl<O: Observer> Observer for &O {
 
     fn turned(&self, session: &rotating::Session) {
         (**self).turned(session);
+    }
+
+    fn stopped(&self, session: &stops::Session) {
+        (**self).stopped(session);
     }
 }
 
@@ -222,6 +257,26 @@ impl<G, A, E> Sensors<G, A, E> {
         let Self { gyro, accelerometer, encoder, base: NoBase } = self;
         Sensors { gyro, accelerometer, encoder, base }
     }
+}
+
+/// The sensors that are fixed to a vehicle, which acquisition owns.
+#[derive(Debug)]
+pub struct VehicleSensors<G, A> {
+    /// Gyros about the axes forward, right, down.
+    pub gyros: [G; 3],
+    /// Accelerometers on the same axes.
+    pub accelerometer: A,
+}
+
+/// What else a board in a vehicle offers: there is nothing to turn, who drives is told by link and log.
+#[derive(Debug)]
+pub struct VehiclePorts<W, L, R> {
+    /// What knows where the vehicle is.
+    pub whereabouts: W,
+    /// Where status lines go.
+    pub link: L,
+    /// Where raw samples go.
+    pub recorder: R,
 }
 
 /// What else a board offers.

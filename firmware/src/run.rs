@@ -11,20 +11,23 @@ use embassy_futures::select::{select, select4};
 use embedded_io_async::Write;
 use orientation::device::Device;
 use orientation::error::Refusal;
-use orientation::session::{Session, rotating};
+use orientation::session::{Session, rotating, stops};
+use orientation::signal::InertialSample;
 
-use crate::acquire::Acquisition;
-use crate::conduct::{Conducted, Conductor, Rotating, Stepwise};
-use crate::configuration::{Configuration, FramesConfiguration, TurntableConfiguration};
+use crate::acquire::{Acquisition, TriadAcquisition};
+use crate::conduct::{Conducted, Conductor, Rotating, Stepwise, Stops};
+use crate::configuration::{
+    Configuration, FramesConfiguration, TurntableConfiguration, VehicleConfiguration,
+};
 use crate::gimbal::Gimbal;
 use crate::health::{self, Health};
 use crate::link;
 use crate::pointing::{FrameShafts, Shaft};
 use crate::ports::{
-    Accelerometer, Actuator, CalibrationStore, Encoder, Frames, Gyro, Observer, Ports, Recorder,
-    Sensors,
+    Accelerometer, Actuator, CalibrationStore, Encoder, Frames, Gyro, InStep, Observer, Ports,
+    Recorder, Sensors, VehiclePorts, VehicleSensors, Whereabouts,
 };
-use crate::shared::{LatestAngle, Shared};
+use crate::shared::{LatestAngle, Seams};
 use crate::stage::Stage;
 use crate::steady::Base;
 use crate::storage;
@@ -34,7 +37,7 @@ use crate::turntable::Turntable;
 pub async fn acquire<G, A, E, B, O>(
     sensors: &mut Sensors<G, A, E, B>,
     configuration: &Configuration,
-    shared: &Shared<'_, O>,
+    seams: &Seams<'_, O>,
 ) where
     G: Gyro,
     A: Accelerometer,
@@ -44,9 +47,9 @@ pub async fn acquire<G, A, E, B, O>(
 {
     let Sensors { gyro, accelerometer, encoder, base } = sensors;
     let harmonics = configuration.encoder;
-    let (name, latest) = (Device::Encoder, &shared.angle);
-    let shaft = Shaft::new(encoder, name, harmonics, configuration, latest, shared);
-    let reason = Acquisition::new(gyro, accelerometer, shaft, base.steady(), configuration, shared)
+    let (shared, latest) = (&seams.shared, &seams.shared.angle);
+    let shaft = Shaft::new(encoder, Device::Encoder, harmonics, configuration, latest, shared);
+    let reason = Acquisition::new(gyro, accelerometer, shaft, base.steady(), configuration, seams)
         .run()
         .await;
     shared.fail(reason);
@@ -59,7 +62,7 @@ pub async fn acquire_frames<G, A, E, B, O>(
     configuration: &Configuration,
     frames: &FramesConfiguration,
     latest: &Frames<LatestAngle>,
-    shared: &Shared<'_, O>,
+    seams: &Seams<'_, O>,
 ) where
     G: Gyro,
     A: Accelerometer,
@@ -68,12 +71,26 @@ pub async fn acquire_frames<G, A, E, B, O>(
     O: Observer,
 {
     let Sensors { gyro, accelerometer, encoder, base } = sensors;
-    let shafts = FrameShafts::new(encoder, configuration, frames, latest, shared);
-    let reason =
-        Acquisition::new(gyro, accelerometer, shafts, base.steady(), configuration, shared)
-            .run()
-            .await;
-    shared.fail(reason);
+    let shafts = FrameShafts::new(encoder, configuration, frames, latest, &seams.shared);
+    let reason = Acquisition::new(gyro, accelerometer, shafts, base.steady(), configuration, seams)
+        .run()
+        .await;
+    seams.shared.fail(reason);
+    pending::<()>().await;
+}
+
+/// The same for sensors that are fixed to a vehicle.
+pub async fn acquire_triad<G, A, O>(
+    sensors: &mut VehicleSensors<G, A>,
+    configuration: &VehicleConfiguration,
+    seams: &Seams<'_, O, InertialSample>,
+) where
+    G: InStep,
+    A: Accelerometer,
+    O: Observer,
+{
+    let reason = TriadAcquisition::new(sensors, configuration, seams).run().await;
+    seams.shared.fail(reason);
     pending::<()>().await;
 }
 
@@ -85,7 +102,7 @@ pub async fn run<M, L, R, O>(
     ports: &mut Ports<M, L, R>,
     configuration: &Configuration,
     session: &mut Session,
-    shared: &Shared<'_, O>,
+    seams: &Seams<'_, O>,
 ) -> Health
 where
     M: Actuator,
@@ -94,9 +111,9 @@ where
     O: Observer,
 {
     let Ports { actuator, link, recorder } = ports;
-    let mut stage = Stage::new(actuator, &configuration.stage, shared);
+    let mut stage = Stage::new(actuator, &configuration.stage, &seams.shared);
     let turning = pin!(stage.run());
-    beside(turning, link, recorder, &mut Stepwise::new(session), shared).await
+    beside(turning, link, recorder, &mut Stepwise::new(session), seams).await
 }
 
 /// The same on a platform that turns all the time. Whatever the end, the platform comes to rest.
@@ -104,7 +121,7 @@ pub async fn run_rotating<M, L, R, O>(
     ports: &mut Ports<M, L, R>,
     configuration: &TurntableConfiguration,
     session: &mut rotating::Session,
-    shared: &Shared<'_, O>,
+    seams: &Seams<'_, O>,
 ) -> Health
 where
     M: Actuator,
@@ -116,13 +133,13 @@ where
         session.handle(rotating::Event::Failed(Refusal::CouplingUnknown));
     }
     let Ports { actuator, link, recorder } = ports;
-    let mut turntable = Turntable::new(actuator, configuration, shared);
+    let mut turntable = Turntable::new(actuator, configuration, &seams.shared);
     let health = {
         let turning = pin!(turntable.run());
-        beside(turning, link, recorder, &mut Rotating::new(session), shared).await
+        beside(turning, link, recorder, &mut Rotating::new(session), seams).await
     };
     // Where that fails, too, the log has the reason.
-    select(turntable.rest(), discard(shared)).await;
+    select(turntable.rest(), discard(seams)).await;
     health
 }
 
@@ -141,7 +158,7 @@ pub async fn run_storing<M, L, R, S, O>(
     configuration: &TurntableConfiguration,
     session: &mut rotating::Session,
     store: &mut S,
-    shared: &Shared<'_, O>,
+    seams: &Seams<'_, O>,
 ) -> Health
 where
     M: Actuator,
@@ -150,8 +167,8 @@ where
     S: CalibrationStore,
     O: Observer,
 {
-    let health = run_rotating(ports, configuration, session, shared).await;
-    select(storage::conserve(store, session, shared), discard(shared)).await;
+    let health = run_rotating(ports, configuration, session, seams).await;
+    select(storage::conserve(store, session, &seams.shared), discard(seams)).await;
     health
 }
 
@@ -162,7 +179,7 @@ pub async fn run_frames<M, L, R, O>(
     frames: &FramesConfiguration,
     latest: &Frames<LatestAngle>,
     session: &mut Session,
-    shared: &Shared<'_, O>,
+    seams: &Seams<'_, O>,
 ) -> Health
 where
     M: Actuator,
@@ -171,39 +188,59 @@ where
     O: Observer,
 {
     let Ports { actuator, link, recorder } = ports;
-    let mut gimbal = Gimbal::new(actuator, frames, latest, shared);
+    let mut gimbal = Gimbal::new(actuator, frames, latest, &seams.shared);
     let health = {
         let turning = pin!(gimbal.run());
-        beside(turning, link, recorder, &mut Stepwise::new(session), shared).await
+        beside(turning, link, recorder, &mut Stepwise::new(session), seams).await
     };
     if session.conclusion().is_some_and(|conclusion| conclusion.verdict.is_ok()) {
         // Where that fails, the log has the reason; the azimuth stands all the same.
-        select(gimbal.store(), discard(shared)).await;
+        select(gimbal.store(), discard(seams)).await;
     }
     health
 }
 
+/// The same as [`run`] in a vehicle that somebody drives from stop to stop, when link and log say so.
+pub async fn run_stops<W, L, R, O>(
+    ports: &mut VehiclePorts<W, L, R>,
+    session: &mut stops::Session,
+    seams: &Seams<'_, O, InertialSample>,
+) -> Health
+where
+    W: Whereabouts,
+    L: Write,
+    R: Recorder<InertialSample>,
+    O: Observer,
+{
+    let VehiclePorts { whereabouts, link, recorder } = ports;
+    // There is no angle to find first, and nothing to turn.
+    seams.shared.homed.signal(());
+    let still = pin!(pending());
+    beside(still, link, recorder, &mut Stops::new(session, whereabouts), seams).await
+}
+
 /// Lets samples go by.
-async fn discard<O>(shared: &Shared<'_, O>) {
+async fn discard<O, S>(seams: &Seams<'_, O, S>) {
     loop {
-        shared.samples.receive().await;
+        seams.samples.receive().await;
     }
 }
 
 /// Joins the parts around what turns the gyro, which ends only with a reason to end everything.
-async fn beside<L, R, O>(
+async fn beside<L, R, O, S>(
     turning: Pin<&mut dyn Future<Output = Refusal>>,
     link: &mut L,
     recorder: &mut R,
-    session: &mut dyn Conducted<O>,
-    shared: &Shared<'_, O>,
+    session: &mut dyn Conducted<O, S>,
+    seams: &Seams<'_, O, S>,
 ) -> Health
 where
     L: Write,
-    R: Recorder,
+    R: Recorder<S>,
     O: Observer,
 {
-    let mut conductor = Conductor::new(session, recorder, shared);
+    let shared = &seams.shared;
+    let mut conductor = Conductor::new(session, recorder, seams);
     // Pinned here, each part lies in memory once.
     let conduct = pin!(conductor.run());
     let position = pin!(async {

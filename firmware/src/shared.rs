@@ -1,4 +1,4 @@
-//! What the parts of the instrument hand to each other: one bounded channel, two signals, some cells.
+//! What the parts of the instrument hand to each other: one bounded channel, some signals and cells.
 
 use core::cell::Cell;
 
@@ -21,19 +21,37 @@ use crate::ports::Observer;
 /// Samples that may wait for the session: 8 ms at 2 kHz.
 pub const QUEUE: usize = 16;
 
+/// Samples on their way from acquisition to the session.
+pub type Queue<S> = Channel<NoopRawMutex, S, QUEUE>;
+
+/// All seams of an instrument whose samples are of the kind `S`. Only acquisition and the session know the
+/// kind.
+pub struct Seams<'a, O, S = Sample> {
+    /// From acquisition to the session.
+    pub samples: Queue<S>,
+    /// The others.
+    pub shared: Shared<'a, O>,
+}
+
+impl<'a, O: Observer, S> Seams<'a, O, S> {
+    /// Nothing has happened yet.
+    pub const fn new(observer: &'a O) -> Self {
+        Self { samples: Queue::new(), shared: Shared::new(observer) }
+    }
+}
+
 /// The latest encoder angle of an axis, corrected, and when it was read.
 pub type LatestAngle = Cell<(Angle, Instant)>;
 
-/// The seams between the parts. All of them run in one executor, so nothing needs a lock.
+/// The seams between the parts, but for the samples. All of them run in one executor, so nothing needs a
+/// lock.
 pub struct Shared<'a, O> {
-    /// From acquisition to the session.
-    pub samples: Channel<NoopRawMutex, Sample, QUEUE>,
     /// From the session to what turns the gyro: where to stand, rad, or on a turntable how fast to
     /// turn, rad/s. The latest counts.
     pub wanted: Signal<NoopRawMutex, f64>,
     /// From acquisition to the stage: the sensors give data.
     pub sensing: Signal<NoopRawMutex, ()>,
-    /// From the stage to the session: angles mean something.
+    /// From the stage to the session: angles mean something. Without a stage they do from the beginning.
     pub homed: Signal<NoopRawMutex, ()>,
     /// From anybody to the session: it cannot go on.
     pub failure: Signal<NoopRawMutex, Refusal>,
@@ -54,7 +72,6 @@ impl<'a, O: Observer> Shared<'a, O> {
     /// Nothing has happened yet.
     pub const fn new(observer: &'a O) -> Self {
         Self {
-            samples: Channel::new(),
             wanted: Signal::new(),
             sensing: Signal::new(),
             homed: Signal::new(),

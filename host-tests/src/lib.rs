@@ -21,4 +21,5 @@ pub mod rotating;
 pub mod setting;
 pub mod simulate;
 pub mod spectrum;
+pub mod stops;
 pub mod virtual_time;

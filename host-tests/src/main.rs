@@ -37,7 +37,7 @@ struct CommandLine {
 enum Command {
     /// Runs the whole board application on simulated chips.
     Run(RunOptions),
-    /// Runs the alignment on a recording of kind `stage`, `dwells` or `rotating`.
+    /// Runs the alignment on a recording of kind `stage`, `dwells`, `rotating` or `imu`.
     Replay(ReplayOptions),
     /// Plans positions and dwells for a gyro's noise.
     Plan(PlanOptions),

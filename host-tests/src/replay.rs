@@ -121,6 +121,19 @@ pub enum ReplayError {
     NoDwell,
     /// More positions than a session holds.
     TooManyPositions(usize),
+    /// A kind without three gyros and three accelerometers.
+    NoVehicle(Kind),
+    /// A recording of kind `static` with one gyro.
+    OneGyro,
+    /// More stops than a session holds, and how many that is.
+    TooManyStops(usize, usize),
+    /// Displacements are not one for each stop.
+    Displacements {
+        /// How many were stated.
+        stated: usize,
+        /// How many stops there are.
+        stops: usize,
+    },
     /// The session cannot follow the recording.
     Procedure(ProcedureError),
 }
@@ -148,6 +161,19 @@ impl fmt::Display for ReplayError {
                      session holds: split the recording, or average neighbours into kind dwells"
                 )
             }
+            Self::NoVehicle(kind) => {
+                write!(f, "kind `{kind}` is no vehicle: no method siap and no method static")
+            }
+            Self::OneGyro => f.write_str(
+                "columns gx_rad_s to az_m_s2 are missing: method static needs three gyros and three \
+                 accelerometers",
+            ),
+            Self::TooManyStops(stops, most) => {
+                write!(f, "key stops_s: {stops} stops are more than the {most} that a session holds")
+            }
+            Self::Displacements { stated, stops } => {
+                write!(f, "{stated} displacements for {stops} stops: state one for each stop")
+            }
             Self::Procedure(error) => error.fmt(f),
         }
     }
@@ -166,7 +192,7 @@ pub fn replay(
     progress: impl FnMut(&Session),
 ) -> Result<Replay, ReplayError> {
     let stops = Stops::of(body)?;
-    let latitude = latitude(header, options)?;
+    let latitude = latitude(header, options.latitude)?;
     let Described { mut setting, mut assumed } = describe(header, body, latitude);
     setting.half = options.half;
     assumed.extend(options.half.map(|_| HALF.to_owned()));
@@ -200,9 +226,8 @@ impl<'a> Stops<'a> {
 ///
 /// # Errors
 /// Neither gives one.
-pub(crate) fn latitude(header: &Header, options: &Options) -> Result<Latitude, ReplayError> {
-    options
-        .latitude
+pub(crate) fn latitude(header: &Header, stated: Option<Latitude>) -> Result<Latitude, ReplayError> {
+    stated
         .or_else(|| header.latitude_deg.and_then(Latitude::from_degrees))
         .ok_or(ReplayError::NoLatitude)
 }
@@ -294,7 +319,7 @@ fn still(rows: &[StageRow]) -> f64 {
 }
 
 /// The (upper) median in linear time; zero of none.
-fn median(values: &mut [f64]) -> f64 {
+pub(crate) fn median(values: &mut [f64]) -> f64 {
     let half = values.len() / 2;
     if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(half, f64::total_cmp).1 }
 }

@@ -47,7 +47,11 @@ pub fn describe(header: &Header, body: &Body, latitude: Latitude) -> Described {
     if noise(header) == noise(header).white_part() {
         assumed.push("no gyro drift (B, K, R)".to_owned());
     }
-    assumed.push("latitude and encoder exact".to_owned());
+    let exact = match body {
+        Body::Imu(_) | Body::Static(_) => "latitude exact",
+        Body::Stage(_) | Body::Rotating(_) | Body::Dwells(_) => "latitude and encoder exact",
+    };
+    assumed.push(exact.to_owned());
     let kappa = header.g_sensitivity_deg_h_g.unwrap_or_default();
     let setting = Setting {
         noise: noise(header),

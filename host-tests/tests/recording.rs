@@ -6,6 +6,8 @@
 
 #[path = "recording/hostile.rs"]
 mod hostile;
+#[path = "recording/imu.rs"]
+mod imu;
 #[path = "recording/malformed.rs"]
 mod malformed;
 #[path = "recording/malformed_rows.rs"]
@@ -132,6 +134,9 @@ fn every_header_key_reaches_its_field() {
         g_sensitivity_deg_h_g: Some([8.5, -9.0]),
         g_sensitivity_sigma_deg_h_g: Some(10.0),
         sensor: Some(Sensor::Met),
+        // Those of a vehicle: no stage has them.
+        stops_s: None,
+        displacements_m: None,
     };
     assert_eq!(read(changed(STAGE, "# kind: stage", keys)).header, header);
     assert_eq!(read("# kind: dwells\n".to_owned() + &DWELLS[15..]).header, Header::default());

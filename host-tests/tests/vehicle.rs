@@ -1,13 +1,19 @@
 //! Holds the simulated vehicle to independent oracles: its increments integrated anew, closed forms at
 //! rest, Earth's rotation and displacement, coning, noise.
-#![allow(missing_docs)]
+#![allow(clippy::expect_used, reason = "a test that cannot go on has failed")]
 
+#[path = "vehicle/board.rs"]
+mod board;
 #[path = "vehicle/motion.rs"]
 mod motion;
+#[path = "vehicle/navigation.rs"]
+mod navigation;
 #[path = "vehicle/noise.rs"]
 mod noise;
 #[path = "vehicle/rest.rs"]
 mod rest;
+#[path = "vehicle/scenarios.rs"]
+mod scenarios;
 
 use hal_mock::plant::sway::{SwayComponent, SwayConfiguration};
 use hal_mock::vehicle::{Vehicle, VehicleConfiguration, VehicleSample, VehicleTruth};
@@ -49,6 +55,8 @@ fn run(configuration: &VehicleConfiguration, seed: u64) -> (Vec<VehicleSample>, 
 struct Quaternion([f64; 4]);
 
 impl Quaternion {
+    const NONE: Self = Self([1.0, 0.0, 0.0, 0.0]);
+
     /// The rotation by a rotation vector, rad.
     fn of(vector: [f64; 3]) -> Self {
         let angle = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -112,7 +120,7 @@ fn attitude_in_space(truth: &VehicleTruth, seconds: f64) -> Quaternion {
 /// cross products of each increment with the one before it (P. G. Savage 1998, eq. 48: a/12).
 fn integrated(samples: &[VehicleSample]) -> Quaternion {
     let mut before = [0.0; 3];
-    let mut attitude = Quaternion([1.0, 0.0, 0.0, 0.0]);
+    let mut attitude = Quaternion::NONE;
     for sample in samples {
         let coning = cross(before, sample.turned_rad).map(|x| x / 12.0);
         let turned = sample.turned_rad;

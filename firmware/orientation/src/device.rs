@@ -8,7 +8,13 @@ use crate::words::Rounded;
 pub enum Device {
     /// The precise gyro.
     Gyro,
-    /// The accelerometer on the platform.
+    /// Of three gyros in a vehicle, the one about its longitudinal axis.
+    ForwardGyro,
+    /// The one about its transverse axis.
+    RightGyro,
+    /// The one about its vertical axis.
+    DownGyro,
+    /// The accelerometer on the platform, or in the vehicle.
     Accelerometer,
     /// The encoder of the stage.
     Encoder,
@@ -28,6 +34,9 @@ pub enum Device {
 
 words! { Device:
     Self::Gyro => "gyro";
+    Self::ForwardGyro => "forward gyro";
+    Self::RightGyro => "right gyro";
+    Self::DownGyro => "down gyro";
     Self::Accelerometer => "accelerometer";
     Self::Encoder => "encoder";
     Self::Stage => "stage";
@@ -63,6 +72,8 @@ pub enum Trouble {
     Stuck,
     /// It stays at the limit of its range.
     Saturated,
+    /// It does not convert in step with the other gyros.
+    OutOfStep,
     /// It moves and does not come to rest.
     Restless,
     /// It does not turn on from this angle, °.
@@ -89,6 +100,7 @@ words! { Trouble:
     Self::Alarm => "it reports a bad supply, reference or magnet";
     Self::Stuck => "it gives the same reading for ever";
     Self::Saturated => "it stays at the limit of its range";
+    Self::OutOfStep => "it falls out of step with the others: check its clock";
     Self::Restless => "it does not come to rest";
     Self::Stalled(angle) => "it is blocked at {}°", Rounded::<1>(angle);
     Self::Disagrees(angle) => "motor and encoder disagree by {}°", Rounded::<2>(angle);

@@ -1,10 +1,13 @@
-//! Conducts a session: samples in, commands to what turns the gyro, and what comes of it told.
+//! Conducts a session: samples in, commands to what turns the gyro or to who drives, and what comes of it
+//! told.
 
 mod rotating;
 mod stepwise;
+mod stops;
 
 pub use rotating::Rotating;
 pub use stepwise::Stepwise;
+pub use stops::Stops;
 
 use core::future::pending;
 
@@ -12,14 +15,13 @@ use embassy_futures::select::{Either, select};
 use embassy_time::{Duration, Instant, Timer};
 use orientation::earth::Latitude;
 use orientation::error::Refusal;
-use orientation::signal::Sample;
 use orientation::signal::sway::SwayNoise;
 use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 
 use crate::event::Event;
 use crate::link::Status;
 use crate::ports::{Observer, Recorder};
-use crate::shared::Shared;
+use crate::shared::{Queue, Seams, Shared};
 
 /// Longest time until the stage is homed: six searches over the whole travel, with their rests.
 const HOMING: Duration = Duration::from_secs(900);
@@ -39,20 +41,20 @@ pub enum Step {
     Finish,
 }
 
-/// A session with what was told of it. The conductor knows no more of its kind, so that an image with
-/// two kinds has one conductor.
-pub trait Conducted<O> {
+/// A session of samples `S`, with what was told of it. The conductor knows no more of its kind, so that an
+/// image with two kinds of the same samples has one conductor.
+pub trait Conducted<O, S> {
     /// Where it is to find north.
     fn latitude(&self) -> Latitude;
 
     /// What there is to tell before it begins.
     fn outset(&self) -> Event;
 
-    /// Says what a sway that is subtracted leaves in the samples.
-    fn allow_for(&mut self, sway: SwayNoise);
+    /// Says what a sway that is subtracted leaves in the samples; nothing is where nothing turns the gyro.
+    fn allow_for(&mut self, _sway: SwayNoise) {}
 
     /// Takes a sample.
-    fn take(&mut self, sample: &Sample) -> Step;
+    fn take(&mut self, sample: &S) -> Step;
 
     /// Ends it with a reason.
     fn fail(&mut self, reason: Refusal);
@@ -66,25 +68,28 @@ pub trait Conducted<O> {
 }
 
 /// The session at work.
-pub struct Conductor<'a, R, O> {
-    session: &'a mut dyn Conducted<O>,
+pub struct Conductor<'a, R, O, S> {
+    session: &'a mut dyn Conducted<O, S>,
     recorder: &'a mut R,
+    samples: &'a Queue<S>,
     shared: &'a Shared<'a, O>,
 }
 
-impl<'a, R: Recorder, O: Observer> Conductor<'a, R, O> {
+impl<'a, R: Recorder<S>, O: Observer, S> Conductor<'a, R, O, S> {
     /// Takes a session that has not begun.
     pub fn new(
-        session: &'a mut dyn Conducted<O>,
+        session: &'a mut dyn Conducted<O, S>,
         recorder: &'a mut R,
-        shared: &'a Shared<'a, O>,
+        seams: &'a Seams<'a, O, S>,
     ) -> Self {
-        Self { session, recorder, shared }
+        Self { session, recorder, samples: &seams.samples, shared: &seams.shared }
     }
 
     /// Conducts the session to its conclusion, then waits for the link to tell of it.
     pub async fn run(&mut self) {
-        self.shared.status.set(Status::Homing);
+        if !self.shared.homed.signaled() {
+            self.shared.status.set(Status::Homing);
+        }
         self.shared.tell(self.session.outset());
         if let Err(reason) = self.conduct().await {
             self.session.fail(reason);
@@ -109,7 +114,7 @@ impl<'a, R: Recorder, O: Observer> Conductor<'a, R, O> {
                 Step::Move(to) => self.shared.wanted.signal(to),
                 Step::Finish => return Ok(()),
             }
-            if self.shared.samples.is_empty() {
+            if self.samples.is_empty() {
                 Timer::after(REST).await;
             }
         }
@@ -137,8 +142,8 @@ impl<'a, R: Recorder, O: Observer> Conductor<'a, R, O> {
     }
 
     /// The next sample, or why there will be none.
-    async fn sample(&self) -> Result<Sample, Refusal> {
-        match select(self.shared.failure.wait(), self.shared.samples.receive()).await {
+    async fn sample(&self) -> Result<S, Refusal> {
+        match select(self.shared.failure.wait(), self.samples.receive()).await {
             Either::First(reason) => Err(reason),
             Either::Second(sample) => Ok(sample),
         }

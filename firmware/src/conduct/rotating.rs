@@ -5,7 +5,6 @@ use orientation::earth::Latitude;
 use orientation::error::Refusal;
 use orientation::session::rotating::{Command, Event as SessionEvent, Phase, Session};
 use orientation::signal::Sample;
-use orientation::signal::sway::SwayNoise;
 use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 
 use super::{Conducted, Step, tell_level};
@@ -35,7 +34,7 @@ impl<'a> Rotating<'a> {
     }
 }
 
-impl<O: Observer> Conducted<O> for Rotating<'_> {
+impl<O: Observer> Conducted<O, Sample> for Rotating<'_> {
     fn latitude(&self) -> Latitude {
         self.session.setting().common.latitude
     }
@@ -47,9 +46,6 @@ impl<O: Observer> Conducted<O> for Rotating<'_> {
             latitude: self.session.setting().common.latitude.rad() * DEGREES,
         }
     }
-
-    /// A platform that turns has no sensors on its base.
-    fn allow_for(&mut self, _: SwayNoise) {}
 
     fn take(&mut self, sample: &Sample) -> Step {
         match self.session.handle(SessionEvent::Sample(sample)) {

@@ -40,7 +40,7 @@ impl<'a> Stepwise<'a> {
     }
 }
 
-impl<O: Observer> Conducted<O> for Stepwise<'_> {
+impl<O: Observer> Conducted<O, Sample> for Stepwise<'_> {
     fn latitude(&self) -> Latitude {
         self.session.setting().latitude
     }

@@ -10,7 +10,6 @@ use hal_mock::disturbance::Disturbance;
 use hal_mock::fault::{Blackout, BusFault, FaultPlan, FaultyReady, FaultySpi, When};
 use hal_mock::plant::StageFault;
 use heapless::Vec;
-use orientation::signal::Sample;
 use orientation::units::TURN;
 
 use super::Around;
@@ -54,6 +53,39 @@ pub enum Sickness {
     BusAlways,
     /// One transfer takes 300 ms.
     Hang,
+}
+
+/// Where a sickness shows.
+pub(super) enum Showing {
+    /// In a loss of supply, when it comes.
+    Supply,
+    /// On the data-ready line.
+    Ready(When),
+    /// On the bus.
+    Bus(FaultPlan),
+}
+
+impl Sickness {
+    /// Where it shows at a chip that has a data-ready line, or has none.
+    pub(super) fn showing(self, has_line: bool, middle: Instant) -> Showing {
+        let once = When::once(middle);
+        let always = When::always(middle);
+        let (fault, when) = match self {
+            Self::Reset => return Showing::Supply,
+            Self::Silent if has_line => return Showing::Ready(always),
+            Self::SilentOnce if has_line => return Showing::Ready(once),
+            Self::Identity => (BusFault::Missing { level: 0xff }, When::always(Instant::MIN)),
+            Self::ChecksumOnce => (BusFault::FlippedBit { seed: FLIP }, once),
+            Self::ChecksumAlways => (BusFault::FlippedBit { seed: FLIP }, always),
+            Self::Stuck => (BusFault::Stuck, always),
+            Self::Silent => (BusFault::Missing { level: 0x00 }, always),
+            Self::SilentOnce => (BusFault::Missing { level: 0x00 }, once),
+            Self::BusOnce => (BusFault::Error, once),
+            Self::BusAlways => (BusFault::Error, always),
+            Self::Hang => (BusFault::Hang, once),
+        };
+        Showing::Bus(FaultPlan { fault, when })
+    }
 }
 
 /// Something that goes wrong.
@@ -100,7 +132,7 @@ const CHIPS: [(Select, &str); 4] = [
     (Select::Actuator, "stage"),
 ];
 
-const SICKNESSES: [(Sickness, &str); 10] = [
+pub(super) const SICKNESSES: [(Sickness, &str); 10] = [
     (Sickness::Identity, "identity"),
     (Sickness::ChecksumOnce, "checksum-once"),
     (Sickness::ChecksumAlways, "checksum-always"),
@@ -154,12 +186,12 @@ impl fmt::Display for Fault {
 }
 
 /// The name that a table gives to a value; every value is in its table.
-fn name<T: PartialEq>(table: &[(T, &'static str)], value: &T) -> &'static str {
+pub(super) fn name<T: PartialEq>(table: &[(T, &'static str)], value: &T) -> &'static str {
     table.iter().find(|(entry, _)| entry == value).map_or("", |(_, name)| name)
 }
 
 /// What a fault does to the parts of the board.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Plan {
     /// Faults of the four buses: gyro, accelerometer, encoder, actuator.
     pub buses: [Option<FaultPlan>; 4],
@@ -178,6 +210,17 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// Nothing goes wrong.
+    pub const NONE: Self = Self {
+        buses: [None; 4],
+        ready: None,
+        blackouts: Vec::new(),
+        stage: Vec::new(),
+        disturbances: Vec::new(),
+        caught: None,
+        hang: None,
+    };
+
     /// The plan of a fault, or of none.
     #[must_use]
     pub fn of(fault: Option<Fault>) -> Self {
@@ -187,7 +230,7 @@ impl Plan {
     /// The same of one that comes in the middle at another time.
     #[must_use]
     pub fn at(fault: Option<Fault>, middle: Instant) -> Self {
-        let mut plan = Self::default();
+        let mut plan = Self::NONE;
         match fault {
             None => {}
             Some(Fault::Chip(select, sickness)) => plan.sicken(select, sickness, middle),
@@ -197,29 +240,13 @@ impl Plan {
     }
 
     fn sicken(&mut self, select: Select, sickness: Sickness, middle: Instant) {
-        let once = When::once(middle);
-        let always = When::always(middle);
-        let fault = match sickness {
-            Sickness::Reset => {
+        match sickness.showing(select == Select::Gyro, middle) {
+            Showing::Supply => {
                 self.blackouts = [Blackout { select, at: middle }].into_iter().collect();
-                return;
             }
-            Sickness::Silent | Sickness::SilentOnce if select == Select::Gyro => {
-                self.ready = Some(if sickness == Sickness::Silent { always } else { once });
-                return;
-            }
-            Sickness::Identity => (BusFault::Missing { level: 0xff }, When::always(Instant::MIN)),
-            Sickness::ChecksumOnce => (BusFault::FlippedBit { seed: FLIP }, once),
-            Sickness::ChecksumAlways => (BusFault::FlippedBit { seed: FLIP }, always),
-            Sickness::Stuck => (BusFault::Stuck, always),
-            Sickness::Silent => (BusFault::Missing { level: 0x00 }, always),
-            Sickness::SilentOnce => (BusFault::Missing { level: 0x00 }, once),
-            Sickness::BusOnce => (BusFault::Error, once),
-            Sickness::BusAlways => (BusFault::Error, always),
-            Sickness::Hang => (BusFault::Hang, once),
-        };
-        let (fault, when) = fault;
-        self.buses[place(select)] = Some(FaultPlan { fault, when });
+            Showing::Ready(when) => self.ready = Some(when),
+            Showing::Bus(plan) => self.buses[place(select)] = Some(plan),
+        }
     }
 
     fn disturb(&mut self, fault: Fault, middle: Instant) {
@@ -266,7 +293,7 @@ impl Around for Plan {
         FaultySpi::new(bus, self.buses[place(select)])
     }
 
-    fn line<W: Wait>(&self, line: W) -> FaultyReady<W> {
+    fn line<W: Wait>(&self, _: Select, line: W) -> FaultyReady<W> {
         FaultyReady::new(line, self.ready)
     }
 }
@@ -295,8 +322,8 @@ impl<R> FaultyRecorder<R> {
     }
 }
 
-impl<R: Recorder> Recorder for FaultyRecorder<R> {
-    async fn record(&mut self, sample: &Sample) {
+impl<S, R: Recorder<S>> Recorder<S> for FaultyRecorder<R> {
+    async fn record(&mut self, sample: &S) {
         if self.hang.take_if(|at| Instant::now() >= *at).is_some() {
             Timer::after(HANG).await;
         }

@@ -8,6 +8,7 @@ pub mod flash;
 pub mod mount;
 pub mod scenario;
 pub mod turntable;
+pub mod vehicle;
 
 use core::cell::RefCell;
 
@@ -81,8 +82,8 @@ pub trait Around {
     /// Puts it around the bus of a chip.
     fn spi<S: SpiDevice>(&self, select: Select, bus: S) -> Self::Spi<S>;
 
-    /// Puts it around the data-ready line of the gyro's converter.
-    fn line<W: Wait>(&self, line: W) -> Self::Line<W>;
+    /// Puts it around the data-ready line of a converter.
+    fn line<W: Wait>(&self, select: Select, line: W) -> Self::Line<W>;
 }
 
 /// A simulated bus with something around it.
@@ -126,7 +127,7 @@ fn sensors_with<'a, B: Rig, A: Around>(
 ) -> SimulatedSensors<'a, B, A> {
     let bus = |select, hertz| bus(board, around, select, hertz);
     let converter = bus(Select::Gyro, CONVERTER_HERTZ);
-    let ready = around.line(ReadyPin::new(board, Select::Gyro));
+    let ready = around.line(Select::Gyro, ReadyPin::new(board, Select::Gyro));
     let accelerometer = bus(Select::Accelerometer, adxl355::BUS_HERTZ);
     let accelerometer = Adxl355::new(accelerometer, Delay, force);
     let encoder = bus(Select::Encoder, mt6835::BUS_HERTZ);

@@ -30,9 +30,9 @@ const G_SENSITIVITY: [f64; 2] = [0.05, -0.03];
 /// 1σ of that calibration, °/h/g.
 pub(super) const G_SENSITIVITY_SIGMA: f64 = 0.002;
 /// 1σ of the gyro's scale factor.
-const SCALE_SIGMA: f64 = 5e-4;
+pub(super) const SCALE_SIGMA: f64 = 5e-4;
 /// Noise density of the ADXL355, 25 µg/√Hz (data sheet, table 1), m/s²/√Hz.
-const FORCE_NOISE: f64 = 25e-6 * 9.80665;
+pub(super) const FORCE_NOISE: f64 = 25e-6 * 9.80665;
 /// 1σ of the ADXL355's offset, 25 mg at most (data sheet, table 1), m/s².
 const FORCE_BIAS_SIGMA: f64 = 0.0083 * 9.80665;
 /// Magnet's eccentricity and ellipticity as the encoder shows them, rad: 0.05° and 0.02°.
@@ -54,7 +54,7 @@ pub const RATES: [DataRate; 7] = [
     DataRate::Sps2400,
 ];
 /// White noise of the converter, V RMS per conversion: 1 µV, below the gyro's own.
-const CONVERTER_NOISE: f64 = 1e-6;
+pub(super) const CONVERTER_NOISE: f64 = 1e-6;
 /// Play of the stage's gear, rad: 0.01°.
 const BACKLASH: f64 = 0.01 * DEGREE;
 /// How the stage rings after it has stopped.
@@ -73,9 +73,9 @@ const SHORTEST: f64 = 2.0;
 const ACCEPTED_SIGMA: f64 = 10.0 * DEGREE;
 
 /// Scale factor of the gyro, V per rad/s: 50 mV per °/s.
-const VOLTS: f64 = 0.05 / DEGREE;
+pub(super) const VOLTS: f64 = 0.05 / DEGREE;
 /// Rate at which the gyro's output clips, rad/s: 40 °/s, 2 V of the converter's 2.5 V.
-const FULL_SCALE: f64 = 40.0 * DEGREE;
+pub(super) const FULL_SCALE: f64 = 40.0 * DEGREE;
 /// What the board takes for clipped: 97 % of that.
 pub const LIMIT: AngularRate = AngularRate((0.97 * FULL_SCALE * 1e9) as i32);
 /// The same scale factor as the board knows it.

@@ -139,7 +139,7 @@ impl Ads1262 {
     }
 
     /// The level of the START pin changes at `at`: conversions begin with its rise, in one moment in all
-    /// chips that share the line, and end with its fall (section 9.5.1). Commands want it low.
+    /// chips that share the line, and end with its fall (Conversion Control). Commands want it low.
     pub fn set_start(&mut self, is_high: bool, at: Instant) {
         if at < self.operational {
             self.violations.record(Misuse::TooEarly, START1, at);

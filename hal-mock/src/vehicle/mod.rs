@@ -10,14 +10,17 @@ pub mod board;
 mod event;
 mod leg;
 pub mod motion;
+mod place;
 pub mod plant;
+mod route;
 pub mod scenario;
 mod sensors;
 mod smooth;
 
 pub use self::event::{Event, SensorFault};
 pub use self::leg::{Drive, Leg, Stop};
-use self::motion::{Integrals, Motion, Position};
+use self::motion::{Integrals, Motion};
+pub use self::place::Position;
 use self::sensors::Sensors;
 use self::smooth::Smooth;
 use crate::accelerometer::AccelerometerConfiguration;
@@ -221,7 +224,7 @@ impl Iterator for Vehicle<'_> {
 }
 
 /// How the vehicle moves at one moment, over the ground.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Pose {
     /// Attitude of the body, rad.
     azimuth: Smooth,
@@ -260,35 +263,30 @@ impl Pose {
         self.turn([0, 1, 2].map(|index| axis(index) * presence));
     }
 
-    /// Attitude and its rates.
-    fn base(&self) -> BaseMotion {
-        BaseMotion {
-            lean: Attitude {
-                azimuth_rad: self.azimuth.value,
-                pitch_rad: self.pitch.value,
-                roll_rad: self.roll.value,
-            },
-            rates_rad_s: [self.azimuth, self.pitch, self.roll].map(|angle| angle.rate),
+    /// Attitude of the body.
+    fn attitude(&self) -> Attitude {
+        Attitude {
+            azimuth_rad: self.azimuth.value,
+            pitch_rad: self.pitch.value,
+            roll_rad: self.roll.value,
         }
     }
 
-    /// Velocity north, east, down, m/s.
-    fn velocity_m_s(&self) -> [f64; 3] {
-        if self.speed == Smooth::default() {
-            return [0.0; 3];
-        }
-        let (sine, cosine) = libm::sincos(self.heading.value);
-        [self.speed.value * cosine, self.speed.value * sine, -(self.speed * self.slope).value]
+    /// Whether it goes nowhere.
+    fn stands(&self) -> bool {
+        self.speed == Smooth::default()
     }
 
-    /// Its derivative on axes that stay level and northward, m/s².
-    fn acceleration_m_s2(&self) -> [f64; 3] {
-        if self.speed == Smooth::default() {
-            return [0.0; 3];
+    /// Velocity, m/s, and its derivative on axes that stay level and northward, m/s²: north, east, down.
+    fn way(&self) -> [[f64; 3]; 2] {
+        if self.stands() {
+            return [[0.0; 3]; 2];
         }
         let (sine, cosine) = libm::sincos(self.heading.value);
-        let (along, across) = (self.speed.rate, self.speed.value * self.heading.rate);
-        let down = -(self.speed * self.slope).rate;
-        [along * cosine - across * sine, along * sine + across * cosine, down]
+        let Smooth { value: speed, rate: along } = self.speed;
+        let (across, climb) = (speed * self.heading.rate, self.speed * self.slope);
+        let velocity = [speed * cosine, speed * sine, -climb.value];
+        let north = along * cosine - across * sine;
+        [velocity, [north, along * sine + across * cosine, -climb.rate]]
     }
 }

@@ -8,89 +8,38 @@
 //!
 //! Height does not enter gravity or radii: 100 m of it change a transport rate by 2·10⁻⁵ of itself.
 
-use super::leg::{Leg, Neighbours};
+use super::leg::Leg;
+use super::place::{Place, Position};
+use super::route::Route;
 use super::sensors::Means;
 use super::{Event, Pose};
-use crate::earth::{
-    Attitude, apply_transposed, curvature_radii_m, earth_rate_rad_s, normal_gravity_m_s2,
-};
+use crate::earth::{Attitude, Matrix, apply_transposed};
 
 /// Longest panel of the quadrature, s: a tenth of a period of 10 Hz.
 const PANEL_S: f64 = 0.01;
 
-/// Nodes in [0, 1] and weights of Gauss and Legendre's quadrature of three points: exact to t⁵.
-const NODES: [(f64, f64); 3] = [
+/// Longest panel that takes two points, s: where three add nothing to f64's digits but a third of the
+/// work of an emulated board.
+const SHORT_PANEL_S: f64 = 0.005;
+
+/// Nodes in [0, 1] and weights of Gauss and Legendre's quadrature of two points: exact to t³.
+const TWO: [(f64, f64); 2] = [(0.211_324_865_405_187_1, 0.5), (0.788_675_134_594_812_9, 0.5)];
+
+/// The same of three points: exact to t⁵.
+const THREE: [(f64, f64); 3] = [
     (0.112_701_665_379_258_3, 5.0 / 18.0),
     (0.5, 8.0 / 18.0),
     (0.887_298_334_620_741_7, 5.0 / 18.0),
 ];
 
-/// Where the vehicle is.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Position {
-    /// Geodetic latitude, rad.
-    pub latitude_rad: f64,
-    /// Longitude from the start, rad, east positive.
-    pub longitude_rad: f64,
-}
-
-impl Position {
-    /// North and east from another position, m: differences of coordinates times the radii of
-    /// curvature at the mean latitude, as two position fixes give them.
-    #[must_use]
-    pub fn displacement_m(&self, from: &Self) -> [f64; 2] {
-        let mean_rad = 0.5 * (self.latitude_rad + from.latitude_rad);
-        let [meridian_m, transverse_m] = curvature_radii_m(mean_rad);
-        let east_rad = (self.longitude_rad - from.longitude_rad) * libm::cos(mean_rad);
-        [(self.latitude_rad - from.latitude_rad) * meridian_m, east_rad * transverse_m]
-    }
-}
-
-/// A vehicle's way through its legs.
+/// How the vehicle moves at one moment, and what sensors fixed to it feel of that.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Route<'a> {
-    legs: &'a [Leg],
-    events: &'a [Event],
-    /// Which leg, when it began, s, and the heading it began with, rad.
-    index: usize,
-    since_s: f64,
-    heading_rad: f64,
-}
-
-impl Route<'_> {
-    /// The motion at a time in s; ask in rising order. After the last leg the vehicle stays.
-    fn pose(&mut self, time_s: f64) -> Pose {
-        while let Some(leg) = self.legs.get(self.index)
-            && self.index + 1 < self.legs.len()
-            && time_s >= self.since_s + leg.seconds()
-        {
-            self.since_s += leg.seconds();
-            self.heading_rad += leg.heading_change_rad();
-            self.index += 1;
-        }
-        let mut pose = self.on_leg(time_s);
-        for event in self.events {
-            event.add(&mut pose, time_s);
-        }
-        pose
-    }
-
-    fn on_leg(&self, time_s: f64) -> Pose {
-        let leg_at = |index: usize| self.legs.get(index);
-        let before = self.index.checked_sub(1).and_then(leg_at);
-        let Some(leg) = leg_at(self.index) else { return Pose::facing(self.heading_rad) };
-        let neighbours = Neighbours { before, leg, after: leg_at(self.index + 1) };
-        neighbours.pose(self.heading_rad, time_s - self.since_s, time_s)
-    }
-}
-
-/// What sensors fixed to the vehicle feel at one moment.
-#[derive(Clone, Copy, Debug, Default)]
 struct Felt {
+    pose: Pose,
     rate_rad_s: [f64; 3],
     force_m_s2: [f64; 3],
-    /// Over the ground, north, east, down.
-    velocity_m_s: [f64; 3],
+    /// Rates of latitude and longitude.
+    travel_rad_s: [f64; 2],
 }
 
 /// Integrals since the start: what an ideal strapdown unit has summed up.
@@ -125,6 +74,10 @@ pub struct Motion<'a> {
     start: Position,
     position: Position,
     integrals: Integrals,
+    /// Earth in the middle of the latest panel: a vehicle goes less than a metre in one.
+    place: Place,
+    /// What was felt at the latest node.
+    felt: Felt,
     /// Angular rate at the latest moment, rad/s; kept for a lever only.
     rate_rad_s: [f64; 3],
 }
@@ -141,18 +94,19 @@ impl<'a> Motion<'a> {
         lever_m: [f64; 3],
     ) -> Self {
         let start = Position { latitude_rad, longitude_rad: 0.0 };
-        let route = Route { legs, events, index: 0, since_s: 0.0, heading_rad: azimuth_rad };
-        let mut motion = Self {
+        let (mut route, place) = (Route::new(legs, events, azimuth_rad), Place::at(latitude_rad));
+        let felt = felt_at(route.pose(0.0), &place, lever_m);
+        Self {
             route,
             lever_m,
             time_s: 0.0,
             start,
             position: start,
             integrals: Integrals::default(),
-            rate_rad_s: [0.0; 3],
-        };
-        motion.rate_rad_s = motion.felt(0.0).rate_rad_s;
-        motion
+            place,
+            felt,
+            rate_rad_s: felt.rate_rad_s,
+        }
     }
 
     /// Moves on to a time in s from the start; an earlier one changes nothing.
@@ -197,40 +151,46 @@ impl<'a> Motion<'a> {
     /// Attitude at the latest moment; the azimuth is not wrapped.
     #[must_use]
     pub fn attitude(&self) -> Attitude {
-        { self.route }.pose(self.time_s).base().lean
+        { self.route }.pose(self.time_s).attitude()
     }
 
     /// Velocity north, east, down at the latest moment, m/s.
     #[must_use]
     pub fn velocity_m_s(&self) -> [f64; 3] {
-        { self.route }.pose(self.time_s).velocity_m_s()
+        { self.route }.pose(self.time_s).way()[0]
     }
 
     /// One panel of the quadrature.
     fn panel(&mut self, until_s: f64) {
-        let (from_s, from, seconds) = (self.time_s, self.position, until_s - self.time_s);
-        let mut to = from;
-        for (node, weight) in NODES {
-            let felt = self.felt_from(&from, node * seconds, from_s + node * seconds);
-            let part_s = weight * seconds;
+        let (from_s, seconds) = (self.time_s, until_s - self.time_s);
+        self.look_around(0.5 * seconds);
+        let nodes: &[(f64, f64)] = if seconds > SHORT_PANEL_S { &THREE } else { &TWO };
+        for (node, weight) in nodes {
+            let (felt, part_s) = (self.felt(from_s + node * seconds), weight * seconds);
             add(&mut self.integrals.turned_rad, felt.rate_rad_s, part_s);
             add(&mut self.integrals.pushed_m_s, felt.force_m_s2, part_s);
-            to = moved(&to, &from, felt.velocity_m_s, part_s);
+            self.position.travel(felt.travel_rad_s, part_s);
         }
-        (self.position, self.time_s) = (to, until_s);
+        self.time_s = until_s;
         self.swing();
     }
 
-    /// What is felt at a time in s, so many seconds after the vehicle was at `from`.
-    fn felt_from(&mut self, from: &Position, after_s: f64, time_s: f64) -> Felt {
-        let pose = self.route.pose(time_s);
-        let here = moved(from, from, pose.velocity_m_s(), after_s);
-        felt_at(&pose, here.latitude_rad, self.lever_m)
+    /// Takes Earth for what it is where the vehicle will be in so many seconds.
+    fn look_around(&mut self, seconds: f64) {
+        let mut there = self.position;
+        there.travel(self.felt.travel_rad_s, seconds);
+        if there.latitude_rad != self.place.latitude_rad {
+            self.place = Place::at(there.latitude_rad);
+        }
     }
 
+    /// What is felt at a time in s; while nothing moves it is what it was.
     fn felt(&mut self, time_s: f64) -> Felt {
-        let here = self.position;
-        self.felt_from(&here, 0.0, time_s)
+        let pose = self.route.pose(time_s);
+        if pose != self.felt.pose || !pose.stands() {
+            self.felt = felt_at(pose, &self.place, self.lever_m);
+        }
+        self.felt
     }
 
     /// Adds the integral of ω̇ × r: (change of ω) × r, exactly.
@@ -245,50 +205,35 @@ impl<'a> Motion<'a> {
     }
 }
 
-/// A position moved by a velocity for some seconds, with the radii at another.
-fn moved(
-    position: &Position,
-    radii_at: &Position,
-    velocity_m_s: [f64; 3],
-    seconds: f64,
-) -> Position {
-    let [meridian_m, transverse_m] = curvature_radii_m(radii_at.latitude_rad);
-    let [north, east, _] = velocity_m_s;
-    let parallel_m = transverse_m * libm::cos(radii_at.latitude_rad);
-    Position {
-        latitude_rad: position.latitude_rad + north / meridian_m * seconds,
-        longitude_rad: position.longitude_rad + east / parallel_m * seconds,
+/// What is felt at a place, less the part of a lever that changes with ω̇.
+fn felt_at(pose: Pose, place: &Place, lever_m: [f64; 3]) -> Felt {
+    let [velocity_m_s, acceleration_m_s2] = pose.way();
+    let to_navigation = pose.attitude().body_to_navigation();
+    let transport = place.transport_rad_s(velocity_m_s);
+    let level = sum(place.earth_rad_s, transport);
+    let over_ground = turning_rad_s(&pose, &to_navigation);
+    let rate_rad_s = apply_transposed(&to_navigation, sum(level, over_ground));
+    let coriolis = cross(sum(level, place.earth_rad_s), velocity_m_s);
+    let [north, east, down] = sum(acceleration_m_s2, coriolis);
+    let force = apply_transposed(&to_navigation, [north, east, down - place.gravity_m_s2]);
+    let swung = cross(rate_rad_s, cross(rate_rad_s, lever_m));
+    Felt {
+        pose,
+        rate_rad_s,
+        force_m_s2: sum(sum(force, pose.force_m_s2), swung),
+        travel_rad_s: place.travel_rad_s(velocity_m_s),
     }
 }
 
-/// Rate and force at a latitude in rad, less the part of a lever that changes with ω̇.
-fn felt_at(pose: &Pose, latitude_rad: f64, lever_m: [f64; 3]) -> Felt {
-    let velocity_m_s = pose.velocity_m_s();
-    let base = pose.base();
-    let to_navigation = base.lean.body_to_navigation();
-    let earth = earth_rate_rad_s(latitude_rad);
-    let transport = transport_rad_s(latitude_rad, velocity_m_s);
-    let ground = apply_transposed(&to_navigation, sum(earth, transport));
-    let rate_rad_s = sum(base.body_rad_s(&base.lean), ground);
-    let force = free_force(pose, latitude_rad, sum(sum(earth, earth), transport));
-    let held = sum(apply_transposed(&to_navigation, force), pose.force_m_s2);
-    let swung = cross(rate_rad_s, cross(rate_rad_s, lever_m));
-    Felt { rate_rad_s, force_m_s2: sum(held, swung), velocity_m_s }
-}
-
-/// Specific force north, east, down, m/s², where the frame turns at `coriolis_rad_s`: twice Earth's
-/// rate and the transport rate.
-fn free_force(pose: &Pose, latitude_rad: f64, coriolis_rad_s: [f64; 3]) -> [f64; 3] {
-    let [north, east, down] =
-        sum(pose.acceleration_m_s2(), cross(coriolis_rad_s, pose.velocity_m_s()));
-    [north, east, down - normal_gravity_m_s2(latitude_rad)]
-}
-
-/// Rate at which the local level turns under a moving vehicle, north, east, down, rad/s.
-fn transport_rad_s(latitude_rad: f64, [north, east, _]: [f64; 3]) -> [f64; 3] {
-    let [meridian_m, transverse_m] = curvature_radii_m(latitude_rad);
-    let about_north = east / transverse_m;
-    [about_north, -north / meridian_m, -about_north * libm::tan(latitude_rad)]
+/// Rate of the body over the ground, north, east, down, rad/s: the azimuth turns about down, the pitch
+/// about the level axis to the right, the roll about forward.
+fn turning_rad_s(pose: &Pose, to_navigation: &Matrix) -> [f64; 3] {
+    let forward = [0, 1, 2].map(|row: usize| to_navigation[row][0]);
+    let level = libm::sqrt(forward[0] * forward[0] + forward[1] * forward[1]);
+    let pitch = pose.pitch.rate / level;
+    let mut turning = [-forward[1] * pitch, forward[0] * pitch, pose.azimuth.rate];
+    add(&mut turning, forward, pose.roll.rate);
+    turning
 }
 
 fn sum(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {

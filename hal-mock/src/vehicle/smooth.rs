@@ -30,7 +30,7 @@ impl Smooth {
         Self { value: amplitude * sine, rate: amplitude * angular * cosine }
     }
 
-    /// A spring that is struck: sin(2πft)·exp(−t/τ), whose first quarter of a period comes in gently.
+    /// A spring that is struck: sin(2πft)·exp(−t/τ), whose first half period comes in gently.
     pub(super) fn bounce(frequency_hz: f64, decay_s: f64, elapsed_s: f64) -> Self {
         // Twenty time constants leave 2·10⁻⁹.
         if !(0.0..20.0 * decay_s).contains(&elapsed_s) {
@@ -38,7 +38,7 @@ impl Smooth {
         }
         let left = libm::exp(-elapsed_s / decay_s);
         let dying = Self { value: left, rate: -left / decay_s };
-        let onset = Self::blend(0.0, 1.0, 0.25 / frequency_hz, elapsed_s);
+        let onset = Self::blend(0.0, 1.0, 0.5 / frequency_hz, elapsed_s);
         Self::wave(1.0, frequency_hz, 0.0, elapsed_s) * dying * onset
     }
 

@@ -81,6 +81,12 @@ pub fn rms(values: &[f64]) -> f64 {
     (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
 }
 
+/// The greatest absolute value; one that is missing is greater than all, of none it is zero.
+#[must_use]
+pub fn greatest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most, value| if value.abs() <= most { most } else { value.abs() })
+}
+
 /// The least absolute value; not a number of none.
 #[must_use]
 pub fn least(values: &[f64]) -> f64 {

@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use bench::campaign::burov::{classes, devices, drift};
 use bench::campaign::rotating::{molecular, refusals, stages};
 use bench::campaign::sokolov::{self, Turn};
+use bench::campaign::szymanowski::{drives, parked};
 use bench::campaign::{faults, instrument};
 use bench::output::progress::Progress;
 use bench::output::rotating::campaign as of_rotating;
 use bench::output::table;
-use bench::output::{burov as told, page};
+use bench::output::{burov as told, page, stops as of_stops};
 use clap::{Args, ValueEnum};
 use firmware::simulated::fault::Fault;
 use serde_json::json;
@@ -24,10 +25,10 @@ pub struct CampaignOptions {
     name: Campaign,
     /// How many runs: of sokolov on each schedule (5000), of burov on each schedule (5000)
     /// and for each class a tenth of it, of rotating in each table (500), of each of its refusals a
-    /// tenth of it, of instrument (500), of each fault (1).
+    /// tenth of it, of szymanowski in each row (500), of instrument (500), of each fault (1).
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     runs: Option<u32>,
-    /// Writes figures and tables as a page for a browser; of burov and rotating.
+    /// Writes figures and tables as a page for a browser; of burov, rotating and szymanowski.
     #[arg(long, value_name = "FILE.html")]
     report: Option<PathBuf>,
 }
@@ -40,6 +41,8 @@ enum Campaign {
     Burov,
     /// Papers/004: a platform that turns all the time, its errors and what is done about each.
     Rotating,
+    /// Azimuth from stops: Szymanowski's Table 1 over many drives, and vehicles that stand and sway.
+    Szymanowski,
     /// The whole instrument on simulated chips, over drawn sites and attitudes.
     Instrument,
     /// Every chip with every fault.
@@ -52,9 +55,10 @@ impl CampaignOptions {
     /// # Errors
     /// The options, and why.
     pub fn check(&self) -> Result<(), &'static str> {
-        let draws = matches!(self.name, Campaign::Burov | Campaign::Rotating);
+        use Campaign::{Burov, Rotating, Szymanowski};
+        let draws = matches!(self.name, Burov | Rotating | Szymanowski);
         if self.report.is_some() && !draws {
-            Err("--report: only burov and rotating draw")
+            Err("--report: only burov, rotating and szymanowski draw")
         } else {
             Ok(())
         }
@@ -68,6 +72,7 @@ pub fn run(options: &CampaignOptions, as_json: bool) -> Result<Told, String> {
         Campaign::Sokolov => sokolov(runs(5000), as_json),
         Campaign::Burov => burov(runs(5000), options.report.as_deref(), as_json),
         Campaign::Rotating => rotating(runs(500), options.report.as_deref(), as_json),
+        Campaign::Szymanowski => szymanowski(runs(500), options.report.as_deref(), as_json),
         Campaign::Instrument => instrument(runs(500), as_json),
         Campaign::Faults => faults(runs(1), as_json),
     }
@@ -149,6 +154,29 @@ fn rotating(runs: usize, report: Option<&Path>, as_json: bool) -> Result<Told, S
     let refusal = (!found).then(|| "a healthy run was refused, or a north was wrong".to_owned());
     let told = Told { refusal, ..told };
     Ok(told.with_page(report, || page::rotating::campaign::report(&stages, &molecular, &refusals)))
+}
+
+/// Drives between stops, and parked vehicles; a result where none was refused.
+fn szymanowski(runs: usize, report: Option<&Path>, as_json: bool) -> Result<Told, String> {
+    let progress = Progress::new(((drives::COUNT + parked::COUNT) * runs) as u64, "vehicles");
+    let tick = || progress.step();
+    let drives = drives::rows(runs, tick);
+    let parked = parked::rows(runs, tick);
+    progress.finish();
+    let driven = drives.iter().map(|row| &row.precision);
+    let mut all = driven.chain(parked.iter().map(|row| &row.precision));
+    let found = all.all(|row| row.refused == 0);
+    let status = if found { "ok" } else { "failed" };
+    let object = json!({
+        "campaign": "szymanowski", "status": status, "drives": drives, "parked": parked,
+    });
+    let told = Told::of(found, as_json, &object, |text| {
+        of_stops::campaign::drives(text, &drives)?;
+        of_stops::campaign::parked(text, &parked)
+    })?;
+    let refusal = (!found).then(|| "a healthy vehicle was refused".to_owned());
+    let told = Told { refusal, ..told };
+    Ok(told.with_page(report, || page::stops::campaign::report(&drives, &parked)))
 }
 
 /// The whole instrument over many seeds; a result where none was refused.

@@ -2,6 +2,7 @@
 
 pub mod allan;
 pub mod campaign;
+pub mod driving;
 pub mod emulate;
 pub mod plan;
 pub mod replay;

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use bench::output::progress::Progress;
-use bench::output::{json, page, rotating as of_rotating, text};
-use bench::recording::{self, Kind, Recording};
+use bench::output::{json, page, rotating as of_rotating, stops as of_stops, text};
+use bench::recording::{self, Body, Kind, Recording};
 use bench::replay::{self, Options, replay};
-use bench::rotating;
+use bench::{rotating, stops};
 use clap::{Args, ValueEnum};
 use orientation::align::criterion::Criterion;
 use orientation::earth::Latitude;
@@ -31,6 +31,10 @@ pub struct ReplayOptions {
     /// The half of the circle in which the azimuth is known to lie: two positions need it.
     #[arg(long, value_enum)]
     half: Option<Half>,
+    /// How far each stop of a vehicle lies from the first, north and east, in metres: `0,0;n,e;…`
+    /// instead of the recording's.
+    #[arg(long, value_name = "N,E;N,E", value_parser = displacements, allow_hyphen_values = true)]
+    displacements: Option<Displacements>,
     /// Greatest standard deviation that is accepted, in degrees (1σ).
     #[arg(long, value_name = "DEGREES", default_value = "10", value_parser = sigma)]
     require_sigma: f64,
@@ -47,13 +51,36 @@ enum Method {
     Positions,
     /// A platform that turns all the time.
     Rotating,
+    /// A vehicle: the azimuth from two stops and more.
+    Siap,
+    /// A vehicle at rest all the time, sway allowed.
+    Static,
+}
+
+impl Method {
+    /// Of a recording for which none was asked; a vehicle's shows which of both it needs.
+    fn of(body: &Body) -> Self {
+        match body.kind() {
+            Kind::Rotating => Self::Rotating,
+            _ if stops::samples::rows(body).is_some() => Self::Siap,
+            _ => Self::Stepwise,
+        }
+    }
+}
+
+/// One displacement for each stop, north and east, m; a list to the parser of the command line.
+#[derive(Clone, Debug)]
+struct Displacements(Vec<[f64; 2]>);
+
+fn displacements(text: &str) -> Result<Displacements, String> {
+    recording::displacements(text).map(Displacements).map_err(|problem| problem.to_string())
 }
 
 impl From<&ReplayOptions> for Options {
     fn from(options: &ReplayOptions) -> Self {
         let method = match options.method {
             Some(Method::Positions) => replay::Method::Positions,
-            Some(Method::Stepwise | Method::Rotating) | None => replay::Method::Stepwise,
+            _ => replay::Method::Stepwise,
         };
         Self {
             method,
@@ -65,24 +92,48 @@ impl From<&ReplayOptions> for Options {
     }
 }
 
+impl From<&ReplayOptions> for stops::Options {
+    fn from(options: &ReplayOptions) -> Self {
+        let method = match options.method {
+            Some(Method::Siap) => Some(stops::Method::Siap),
+            Some(Method::Static) => Some(stops::Method::Static),
+            _ => None,
+        };
+        let displacements_m = options.displacements.as_ref().map(|list| list.0.clone());
+        let required_sigma = Some(options.require_sigma);
+        Self { method, latitude: options.latitude, displacements_m, required_sigma }
+    }
+}
+
 impl ReplayOptions {
     /// What cannot go together.
     ///
     /// # Errors
     /// The options, and why.
     pub fn check(&self) -> Result<(), &'static str> {
-        let is_rotating = matches!(self.method, Some(Method::Rotating));
-        if is_rotating { self.check_rotating() } else { Ok(()) }
+        self.method.map_or(Ok(()), |method| self.check_method(method))
     }
 
-    /// The same for a platform that turns all the time.
-    fn check_rotating(&self) -> Result<(), &'static str> {
-        if self.criterion != Criterion::MaximumLikelihood {
-            return Err("--criterion: a platform that turns all the time has the one criterion");
-        }
-        match self.half {
-            Some(_) => Err("--half: a platform that turns all the time shows both halves"),
-            None => Ok(()),
+    /// What a method does not take.
+    fn check_method(&self, method: Method) -> Result<(), &'static str> {
+        let has_criterion = self.criterion != Criterion::MaximumLikelihood;
+        let is_displaced = self.displacements.is_some();
+        match method {
+            Method::Rotating if has_criterion => {
+                Err("--criterion: a platform that turns all the time has the one criterion")
+            }
+            Method::Rotating if self.half.is_some() => {
+                Err("--half: a platform that turns all the time shows both halves")
+            }
+            Method::Siap | Method::Static if has_criterion => {
+                Err("--criterion: a vehicle's stops have the one criterion")
+            }
+            Method::Siap | Method::Static if self.half.is_some() => {
+                Err("--half: a vehicle's gyros show both halves")
+            }
+            Method::Siap => Ok(()),
+            _ if is_displaced => Err("--displacements: only the stops of method siap have them"),
+            _ => Ok(()),
         }
     }
 }
@@ -91,12 +142,34 @@ impl ReplayOptions {
 pub fn run(options: &ReplayOptions, as_json: bool) -> Result<Told, String> {
     let recording = recording::read(&options.file).map_err(|error| error.to_string())?;
     let name = options.file.display().to_string();
-    let is_rotating = match options.method {
-        Some(method) => matches!(method, Method::Rotating),
-        None => recording.body.kind() == Kind::Rotating,
+    let method = options.method.unwrap_or_else(|| Method::of(&recording.body));
+    options.check_method(method)?;
+    let of = match method {
+        Method::Rotating => turning,
+        Method::Siap | Method::Static => vehicle,
+        Method::Stepwise | Method::Positions => stopping,
     };
-    let of = if is_rotating { turning } else { stopping };
     of(&name, recording, options, as_json)
+}
+
+/// Replays the recording of a vehicle.
+fn vehicle(
+    name: &str,
+    recording: Recording,
+    options: &ReplayOptions,
+    as_json: bool,
+) -> Result<Told, String> {
+    let (header, body, truth) = recording.into_parts();
+    let replay = stops::replay(&header, &body, &options.into())
+        .map_err(|error| format!("{name}: {error}"))?;
+    let conclusion = replay.conclusion().ok_or("the session did not end")?;
+    let object = of_stops::json::object(&replay, conclusion, &truth);
+    let told = Told::of(conclusion.verdict.is_ok(), as_json, &object, |block| {
+        of_stops::text::block(block, name, &replay, conclusion, &truth)
+    })?;
+    let refusal = conclusion.verdict.as_ref().err().map(|reason| format!("{name}: {reason}"));
+    let page = || page::stops::report(name, &replay, conclusion);
+    Ok(Told { refusal, ..told }.with_page(options.report.as_deref(), page))
 }
 
 /// Replays the recording of a platform that turns all the time.
@@ -106,7 +179,6 @@ fn turning(
     options: &ReplayOptions,
     as_json: bool,
 ) -> Result<Told, String> {
-    options.check_rotating()?;
     let (header, body, truth) = recording.into_parts();
     let replay = rotating::replay(&header, &body, &options.into())
         .map_err(|error| format!("{name}: {error}"))?;

@@ -17,10 +17,12 @@ use firmware::ports::{NoRecorder, Observer};
 use firmware::simulated::fault::Fault;
 use firmware::simulated::mount::{FramePlan, FramesScenario};
 use firmware::simulated::scenario::{Aim, GyroClass, RATES, Scenario};
-use orientation::session::{Session, rotating};
+use firmware::simulated::vehicle::fault::VehicleFault;
+use orientation::session::{Session, rotating, stops};
 use serde::Serialize;
 use serde_json::{Value, json};
 
+use super::driving::DrivingOptions;
 use super::turning::TurningOptions;
 use super::{Half, Told};
 
@@ -42,9 +44,9 @@ pub struct RunOptions {
     /// The precise gyro (fog).
     #[arg(long, value_enum)]
     gyro: Option<Gyro>,
-    /// Samples of the gyro a second: a data rate of its converter.
-    #[arg(long, value_name = "HERTZ", default_value = "400", value_parser = rate)]
-    rate: f64,
+    /// Samples of the gyro a second: a data rate of its converter (400; with --method siap 100).
+    #[arg(long, value_name = "HERTZ", value_parser = rate)]
+    rate: Option<f64>,
     /// The best schedule for the gyro in so many seconds, instead of positions on the full circle; with
     /// --sigma the time allowed.
     #[arg(long, value_name = "SECONDS", value_parser = allowed, conflicts_with_all = ["positions", "dwell"])]
@@ -72,6 +74,8 @@ pub struct RunOptions {
     dwell: Option<f64>,
     #[command(flatten)]
     turning: TurningOptions,
+    #[command(flatten)]
+    driving: DrivingOptions,
     /// Amplitude of the base's sway in degrees; brings a coarse IMU on the base with it.
     #[arg(long, value_name = "DEGREES", value_parser = sway, conflicts_with = "record")]
     sway: Option<f64>,
@@ -87,7 +91,7 @@ pub struct RunOptions {
     /// Method.
     #[arg(long, value_enum, default_value = "stepwise")]
     method: Method,
-    /// What goes wrong; `list` names the faults.
+    /// What goes wrong; `list` names the faults of the method.
     #[arg(long, value_name = "NAME", value_parser = fault)]
     fault: Option<Named>,
     /// Writes the samples that the session got as a recording for `replay`.
@@ -106,6 +110,8 @@ enum Method {
     Positions,
     /// A platform that turns all the time, on a slip ring.
     Rotating,
+    /// A vehicle that drives from stop to stop.
+    Siap,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -128,11 +134,12 @@ enum Gyro {
     Mems,
 }
 
-/// A fault by its name, or the wish to see the names.
+/// Faults by their name, or the wish to see the names.
 #[derive(Clone, Copy, Debug)]
 enum Named {
     List,
-    Fault(Fault),
+    /// Those that bear it: on a stage, in a vehicle.
+    Fault(Option<Fault>, Option<VehicleFault>),
 }
 
 fn within<const LIMIT: u16>(text: &str) -> Result<f64, String> {
@@ -187,8 +194,12 @@ fn fault(text: &str) -> Result<Named, String> {
     if text == "list" {
         return Ok(Named::List);
     }
-    let found = Fault::all().find(|fault| fault.to_string() == text);
-    found.map(Named::Fault).ok_or_else(|| "no such fault; `--fault list` names them".to_owned())
+    let on_stage = Fault::all().find(|fault| fault.to_string() == text);
+    let in_vehicle = VehicleFault::all().find(|fault| fault.to_string() == text);
+    if on_stage.is_none() && in_vehicle.is_none() {
+        return Err("no such fault; `--fault list` names them".to_owned());
+    }
+    Ok(Named::Fault(on_stage, in_vehicle))
 }
 
 impl From<Gyro> for GyroClass {
@@ -210,6 +221,8 @@ const DWELL: f64 = 10.0;
 const PASSES: usize = 6;
 /// Time of a plan where none is stated, s.
 const USUAL: f64 = 300.0;
+/// Samples a second where none are stated.
+const RATE: f64 = 400.0;
 /// Time allowed for an accuracy where none is stated, s.
 const ALLOWED: f64 = 1800.0;
 
@@ -220,7 +233,13 @@ impl RunOptions {
     /// The options, and why.
     pub fn check(&self) -> Result<(), &'static str> {
         let on_frames = self.mount == MountKind::TwoFrame;
+        self.check_fault()?;
         match () {
+            () if matches!(self.method, Method::Siap) => self.check_driving(on_frames),
+            () if self.driving.is_given() => Err(
+                "--stops, --stop-seconds, --drive-seconds, --no-displacement: they are those of --method \
+                 siap",
+            ),
             () if on_frames && self.record.is_some() => Err(
                 "--record: a two-frame mount is not recorded, since a recording knows no elevation",
             ),
@@ -238,13 +257,50 @@ impl RunOptions {
         }
     }
 
+    /// A fault must be one of the method.
+    fn check_fault(&self) -> Result<(), &'static str> {
+        match (self.fault, self.method) {
+            (Some(Named::Fault(_, None)), Method::Siap) => Err(
+                "--fault: no vehicle has it; `--method siap --fault list` names those that one has",
+            ),
+            (
+                Some(Named::Fault(None, _)),
+                Method::Stepwise | Method::Positions | Method::Rotating,
+            ) => Err("--fault: only a vehicle has it: --method siap"),
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether positions or a plan were asked for, which only a stage that stops has.
+    fn has_positions(&self) -> bool {
+        let stops = self.positions.is_some() || self.dwell.is_some() || self.survey.is_some();
+        stops || self.seconds.is_some() || self.sigma.is_some() || self.half.is_some()
+    }
+
+    /// What a vehicle cannot take.
+    fn check_driving(&self, on_frames: bool) -> Result<(), &'static str> {
+        match () {
+            () if on_frames => Err("--mount: in a vehicle three gyros are fixed to it"),
+            () if self.has_positions() => Err(
+                "--positions, --dwell, --survey, --seconds, --sigma, --half: a vehicle has --stops, \
+                 --stop-seconds and --drive-seconds",
+            ),
+            () if self.turning.is_given() => Err(
+                "--sensor, --speeds, --turns, --uneven-turns, --flash: they are those of --method rotating",
+            ),
+            () if self.sway.is_some() => {
+                Err("--sway: a vehicle that sways is --fault sway-at-stops")
+            }
+            () if self.record.is_some() => Err("--record: a vehicle is not recorded"),
+            () => Ok(()),
+        }
+    }
+
     /// What a platform that turns all the time cannot take.
     fn check_rotating(&self, on_frames: bool) -> Result<(), &'static str> {
-        let stops = self.positions.is_some() || self.dwell.is_some() || self.survey.is_some();
-        let plans = self.seconds.is_some() || self.sigma.is_some() || self.half.is_some();
         match () {
             () if on_frames => Err("--mount: two frames do not turn without end"),
-            () if stops || plans => Err(
+            () if self.has_positions() => Err(
                 "--positions, --dwell, --survey, --seconds, --sigma, --half: a platform that turns all \
                  the time has --speeds and --turns",
             ),
@@ -265,7 +321,7 @@ impl RunOptions {
         match (self.sigma, self.seconds) {
             (None, None) => match self.method {
                 Method::Stepwise => Aim::Circle,
-                Method::Positions | Method::Rotating => Aim::Time(USUAL),
+                Method::Positions | Method::Rotating | Method::Siap => Aim::Time(USUAL),
             },
             (None, Some(seconds)) => Aim::Time(seconds),
             (Some(sigma_deg), seconds) => {
@@ -284,7 +340,7 @@ impl From<&RunOptions> for Scenario {
             pitch_deg: options.pitch,
             roll_deg: options.roll,
             gyro: options.gyro.unwrap_or(Gyro::Fog).into(),
-            sample_rate_hz: options.rate,
+            sample_rate_hz: options.rate.unwrap_or(RATE),
             aim: options.aim(),
             survey_s: options.survey.unwrap_or(0.0),
             half: options.half.map(Into::into),
@@ -312,21 +368,26 @@ impl Observer for Terminal {
     }
 
     fn turned(&self, session: &rotating::Session) {
-        self.0.turns(session.turns());
+        self.0.steps(session.turns());
+    }
+
+    fn stopped(&self, session: &stops::Session) {
+        self.0.steps((session.stops().len() as u32, session.procedure().stops as u32));
     }
 }
 
 /// Runs the board and tells what came of it.
 pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
-    let fault = match options.fault {
-        Some(Named::List) => {
-            let names: Vec<String> = Fault::all().map(|fault| fault.to_string()).collect();
-            return Told::of(true, as_json, &names, |text| text.write_str(&names.join("\n")));
-        }
-        Some(Named::Fault(fault)) => Some(fault),
-        None => None,
+    let (fault, in_vehicle) = match options.fault {
+        Some(Named::List) => return list(options.method, as_json),
+        Some(Named::Fault(on_stage, in_vehicle)) => (on_stage, in_vehicle),
+        None => (None, None),
     };
     let scenario = Scenario::from(options);
+    if let Method::Siap = options.method {
+        let scenario = options.driving.scenario(&scenario, options.rate);
+        return super::driving::run(&scenario, in_vehicle, options.report.as_deref(), as_json);
+    }
     if let Method::Rotating = options.method {
         let scenario = options.turning.scenario(&scenario);
         let report = options.report.as_deref();
@@ -354,6 +415,15 @@ pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
     let page = || page::alignment::report("the simulated run", &run.replay, conclusion);
     let told = Told { found: refusal.is_none(), refusal, ..told };
     Ok(told.with_page(options.report.as_deref(), page))
+}
+
+/// Names the faults that a method can have.
+fn list(method: Method, as_json: bool) -> Result<Told, String> {
+    let names: Vec<String> = match method {
+        Method::Siap => VehicleFault::all().map(|fault| fault.to_string()).collect(),
+        _ => Fault::all().map(|fault| fault.to_string()).collect(),
+    };
+    Told::of(true, as_json, &names, |text| text.write_str(&names.join("\n")))
 }
 
 /// Runs the board with a two-frame mount and tells what came of it.

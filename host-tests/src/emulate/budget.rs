@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 /// The names of the limits.
-pub const NAMES: [&str; 16] = [
+pub const NAMES: [&str; 17] = [
     "filter_instructions",
     "filter_and_dwell_instructions",
     "match_instructions",
@@ -15,6 +15,7 @@ pub const NAMES: [&str; 16] = [
     "turning_instructions",
     "sample_instructions",
     "turning_sample_instructions",
+    "stops_sample_instructions",
     "poll_instructions",
     "survey_poll_instructions",
     "idle_percent",

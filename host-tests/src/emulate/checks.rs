@@ -45,17 +45,20 @@ pub struct Runs<'a> {
     pub survey: &'a Figures,
     /// The one on a platform that turns all the time, at the highest sample rate.
     pub turning: &'a Figures,
+    /// The one in a vehicle that goes from stop to stop.
+    pub stops: &'a Figures,
 }
 
 /// All checks, in the order of the printed table.
 #[must_use]
 pub fn all(runs: &Runs<'_>, memory: &Memory, budget: &Budget) -> Vec<Check> {
-    let Runs { figures, brief, survey, turning } = *runs;
+    let Runs { figures, brief, survey, turning, stops } = *runs;
     let most = |what, count, budget| Check { what, count, budget, at_least: false };
     let limited = |what, count, name| most(what, count, budget.limit(name));
     let worst = |of: &Figures| of.tasks.iter().map(|task| task.worst).max().unwrap_or(0);
     let least = |what, count, name| Check { at_least: true, ..limited(what, count, name) };
-    let stack = figures.stack_bytes.max(survey.stack_bytes).max(turning.stack_bytes);
+    let stack = [figures, survey, turning, stops].map(|run| run.stack_bytes);
+    let stack = stack.into_iter().max().unwrap_or(0);
     vec![
         limited(
             "instructions a sample at 2400 Hz, the whole instrument",
@@ -68,8 +71,13 @@ pub fn all(runs: &Runs<'_>, memory: &Memory, budget: &Budget) -> Vec<Check> {
             "turning_sample_instructions",
         ),
         limited(
+            "the same in a vehicle, three gyros at 50 Hz",
+            per_sample(stops),
+            "stops_sample_instructions",
+        ),
+        limited(
             "instructions of the longest poll of a task",
-            worst(figures).max(worst(turning)),
+            worst(figures).max(worst(turning)).max(worst(stops)),
             "poll_instructions",
         ),
         limited(

@@ -5,7 +5,9 @@
 use serde::Serialize;
 
 use super::decode::Line;
-use super::outcome::{DwellBits, FIELDS, Outcome, TURN_FIELDS, TurnBits};
+use super::outcome::{
+    Bits, DwellBits, FIELDS, Outcome, STOP_FIELDS, StopBits, TURN_FIELDS, TurnBits,
+};
 
 /// What the whole instrument took.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -42,6 +44,7 @@ pub struct Task {
 pub struct Collected {
     dwells: Vec<DwellBits>,
     turns: Vec<TurnBits>,
+    stops: Vec<StopBits>,
     outcome: Option<Outcome>,
     effort: bool,
     figures: Figures,
@@ -62,16 +65,9 @@ impl Collected {
     fn read(&mut self, words: &str) -> Option<()> {
         let number = |name| value(words, name)?.parse::<u64>().ok();
         match words.split(' ').next()? {
-            "dwell" => {
-                let is_next = number("number") == Some(self.dwells.len() as u64 + 1);
-                let dwell = DwellBits::parse(FIELDS, |name| value(words, name))?;
-                is_next.then(|| self.dwells.push(dwell))
-            }
-            "turn" => {
-                let is_next = number("number") == Some(self.turns.len() as u64 + 1);
-                let turn = TurnBits::parse(TURN_FIELDS, |name| value(words, name))?;
-                is_next.then(|| self.turns.push(turn))
-            }
+            "dwell" => next(&mut self.dwells, FIELDS, words),
+            "turn" => next(&mut self.turns, TURN_FIELDS, words),
+            "stop" => next(&mut self.stops, STOP_FIELDS, words),
             "outcome" => {
                 self.outcome = Some(outcome(words)?);
                 Some(())
@@ -115,9 +111,20 @@ impl Collected {
         if self.figures.stack_bytes == 0 {
             return Err(missing("stack"));
         }
-        let Self { dwells, turns, figures, .. } = self;
-        Ok((Outcome { dwells, turns, ..outcome }, figures))
+        let Self { dwells, turns, stops, figures, .. } = self;
+        Ok((Outcome { dwells, turns, stops, ..outcome }, figures))
     }
+}
+
+/// Takes a numbered line, which must come after those before it.
+fn next<const N: usize>(
+    rows: &mut Vec<Bits<N>>,
+    names: [&'static str; N],
+    words: &str,
+) -> Option<()> {
+    let number: usize = value(words, "number")?.parse().ok()?;
+    let row = Bits::parse(names, |name| value(words, name))?;
+    (number == rows.len() + 1).then(|| rows.push(row))
 }
 
 fn outcome(words: &str) -> Option<Outcome> {

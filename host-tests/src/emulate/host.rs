@@ -1,8 +1,12 @@
 //! The host's own runs of what the image `emulator` runs.
 
+use std::cell::RefCell;
+
 use firmware::ports::NoRecorder;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;
+use firmware::simulated::vehicle::fault::VehiclePlan;
+use firmware::simulated::vehicle::{BRIEF, VehicleScenario};
 use orientation::align::rotating::turn::Stretch;
 
 use super::outcome::Outcome;
@@ -31,6 +35,21 @@ pub fn turning(scenario: &TurntableScenario) -> Result<Outcome, String> {
     let stretches = run.replay.follower().stretches().iter();
     let turns = stretches.flat_map(Stretch::turns).map(Into::into).collect();
     Ok(Outcome { turns, ..Outcome::of(scenario.base.seed, &conclusion.verdict) })
+}
+
+/// The same in a vehicle that goes from stop to stop.
+///
+/// # Errors
+/// Where it comes to no end.
+pub fn stops(scenario: &VehicleScenario) -> Result<Outcome, String> {
+    let plan = VehiclePlan::NONE;
+    let board = RefCell::new(scenario.board(&BRIEF, &[], &plan));
+    let run = instrument::align_stops_on(&board, &plan, scenario, NoRecorder, &())
+        .map_err(|error| failed(&error))?
+        .run;
+    let conclusion = run.replay.conclusion().ok_or(NOTHING)?;
+    let stops = run.replay.stops().iter().map(Into::into).collect();
+    Ok(Outcome { stops, ..Outcome::of(scenario.base.seed, &conclusion.verdict) })
 }
 
 const NOTHING: &str = "the host's run found nothing";

@@ -26,6 +26,7 @@ use std::time::Duration;
 
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;
+use firmware::simulated::vehicle::VehicleScenario;
 
 use self::budget::Budget;
 use self::checks::Runs;
@@ -52,6 +53,8 @@ pub struct Emulation {
     pub survey: collect::Figures,
     /// What it took on a platform that turns all the time, at the highest sample rate.
     pub turning: collect::Figures,
+    /// What it took in a vehicle, from stop to stop.
+    pub stops: collect::Figures,
     /// Where its memory goes.
     pub memory: Memory,
     /// What the cores take.
@@ -86,18 +89,26 @@ pub fn emulate(seed: u64, mut tell: impl FnMut(&decode::Line)) -> Result<Emulati
     let (brief_outcome, brief) = run(&format!("{seed}/brief"))?;
     let (survey_outcome, survey) = run(&format!("{seed}/survey"))?;
     let (turning_outcome, turning) = run(&format!("{seed}/turning"))?;
+    let (stops_outcome, stops) = run(&format!("{seed}/stops"))?;
     let usual = outcome::compare(&emulated, &host::outcome(&Scenario::usual(seed))?);
     let in_brief = outcome::compare(&brief_outcome, &host::outcome(&Scenario::brief(seed))?);
     let surveyed = outcome::compare(&survey_outcome, &host::outcome(&Scenario::surveying(seed))?);
     let turned =
         outcome::compare(&turning_outcome, &host::turning(&TurntableScenario::brief(seed))?);
+    let driven = outcome::compare(&stops_outcome, &host::stops(&VehicleScenario::brief(seed))?);
     let memory = Memory::of(&elf)?;
     let (cost, cost_is_right) = cores(&images.cost)?;
     Ok(Emulation {
-        comparison: usual.and(in_brief).and(surveyed).and(turned),
+        comparison: usual.and(in_brief).and(surveyed).and(turned).and(driven),
         emulated,
         checks: checks::all(
-            &Runs { figures: &figures, brief: &brief, survey: &survey, turning: &turning },
+            &Runs {
+                figures: &figures,
+                brief: &brief,
+                survey: &survey,
+                turning: &turning,
+                stops: &stops,
+            },
             &memory,
             &budget,
         ),
@@ -105,6 +116,7 @@ pub fn emulate(seed: u64, mut tell: impl FnMut(&decode::Line)) -> Result<Emulati
         brief,
         survey,
         turning,
+        stops,
         memory,
         cost,
         cost_is_right,

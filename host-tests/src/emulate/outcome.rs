@@ -4,6 +4,7 @@ use std::fmt;
 
 use orientation::align::conclusion::Azimuth;
 use orientation::align::rotating::turn::Turn;
+use orientation::align::stops::stop::Stop;
 use orientation::error::Refusal;
 use orientation::signal::dwell::Dwell;
 
@@ -38,6 +39,10 @@ pub const TURN_FIELDS: [&str; 13] = [
     "speed",
 ];
 
+/// The numbers of a stop that are compared, by their names in the log.
+pub const STOP_FIELDS: [&str; 8] =
+    ["from", "to", "turned_x", "turned_y", "turned_z", "force_x", "force_y", "force_z"];
+
 /// The bits of what is absent: a NaN that no computation gives.
 const ABSENT: u64 = u64::MAX;
 
@@ -50,6 +55,9 @@ pub type DwellBits = Bits<{ FIELDS.len() }>;
 
 /// Of a turn, in the order of [`TURN_FIELDS`].
 pub type TurnBits = Bits<{ TURN_FIELDS.len() }>;
+
+/// Of a stop, in the order of [`STOP_FIELDS`].
+pub type StopBits = Bits<{ STOP_FIELDS.len() }>;
 
 impl<const N: usize> Bits<N> {
     /// From hexadecimal texts; [`None`] where one is missing or is no number.
@@ -97,6 +105,15 @@ impl From<&Turn> for TurnBits {
     }
 }
 
+impl From<&Stop> for StopBits {
+    fn from(stop: &Stop) -> Self {
+        let [x, y, z] = stop.turned.mean();
+        let [forward, right, down] = stop.force.mean();
+        let numbers = [stop.from, stop.to, x, y, z, forward, right, down];
+        Self(numbers.map(|value| Some(value.to_bits())))
+    }
+}
+
 /// What a run found.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Outcome {
@@ -112,6 +129,8 @@ pub struct Outcome {
     pub dwells: Vec<DwellBits>,
     /// The turns, of one on a platform that turns all the time.
     pub turns: Vec<TurnBits>,
+    /// The stops, of one in a vehicle.
+    pub stops: Vec<StopBits>,
 }
 
 impl Outcome {
@@ -139,7 +158,7 @@ pub enum Difference {
         /// The host's.
         host: u64,
     },
-    /// A number of a dwell or a turn.
+    /// A number of a dwell, a turn or a stop.
     Number {
         /// What it is of.
         of: &'static str,
@@ -152,7 +171,7 @@ pub enum Difference {
         /// Its bits on the host.
         host: Option<u64>,
     },
-    /// How many dwells or turns there were.
+    /// How many dwells, turns or stops there were.
     Count {
         /// Of what.
         of: &'static str,
@@ -225,6 +244,7 @@ pub fn compare(emulated: &Outcome, host: &Outcome) -> Result<(), Difference> {
     }
     rows("dwell", FIELDS, &emulated.dwells, &host.dwells)?;
     rows("turn", TURN_FIELDS, &emulated.turns, &host.turns)?;
+    rows("stop", STOP_FIELDS, &emulated.stops, &host.stops)?;
     result("azimuth", emulated.azimuth_bits, host.azimuth_bits)?;
     result("sigma", emulated.sigma_bits, host.sigma_bits)?;
     let [one, other] = [emulated, host].map(|run| run.reason.as_deref().map(short));
@@ -234,7 +254,7 @@ pub fn compare(emulated: &Outcome, host: &Outcome) -> Result<(), Difference> {
     Err(Difference::Reason { emulated: emulated.reason.clone(), host: host.reason.clone() })
 }
 
-/// Compares dwells, or turns, and how many there are.
+/// Compares dwells, turns or stops, and how many there are.
 fn rows<const N: usize>(
     of: &'static str,
     names: [&'static str; N],

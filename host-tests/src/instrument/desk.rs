@@ -7,10 +7,10 @@ use embedded_io_async::{ErrorType, Write};
 use firmware::event::Event;
 use firmware::health::Health;
 use firmware::ports::Observer;
-use firmware::shared::Shared;
+use firmware::shared::Seams;
 use hal_mock::chip::Select;
 use hal_mock::violation::Violation;
-use orientation::session::{Session, rotating};
+use orientation::session::{Session, rotating, stops};
 
 use super::{Run, RunError};
 use crate::virtual_time;
@@ -36,6 +36,10 @@ impl<W: Observer> Observer for Log<'_, W> {
 
     fn turned(&self, session: &rotating::Session) {
         self.watch.turned(session);
+    }
+
+    fn stopped(&self, session: &stops::Session) {
+        self.watch.stopped(session);
     }
 }
 
@@ -76,8 +80,8 @@ impl<'w, W: Observer> Desk<'w, W> {
     }
 
     /// The seams of the board's parts.
-    pub(super) fn seams(&self) -> Shared<'_, Log<'w, W>> {
-        Shared::new(&self.log)
+    pub(super) fn seams<S>(&self) -> Seams<'_, Log<'w, W>, S> {
+        Seams::new(&self.log)
     }
 
     /// The wire of its link.

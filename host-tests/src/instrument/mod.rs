@@ -6,10 +6,12 @@ pub mod flash_file;
 mod frames;
 pub mod recorder;
 mod turntable;
+mod vehicle;
 
 pub use bench::{align, align_on};
 pub use frames::{FramesRun, align_frames};
 pub use turntable::{Keeping, TurntableRun, align_turning, align_turning_again};
+pub use vehicle::{VehicleRun, align_stops, align_stops_on};
 
 use std::fmt;
 

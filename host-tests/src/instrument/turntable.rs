@@ -64,7 +64,7 @@ pub fn align_turning_again<R: Recorder, W: Observer>(
     let seams = desk.seams();
     if let Some(Keeping { store, today }) = &mut keeping {
         let told = (&mut setting, &mut procedure);
-        let prepared = virtual_time::run(prepare(store, *today, told, &seams));
+        let prepared = virtual_time::run(prepare(store, *today, told, &seams.shared));
         prepared.map_err(|_| RunError::Deadlock)?;
     }
     let mut session = rotating::Session::new(setting, procedure).map_err(RunError::Procedure)?;

@@ -73,6 +73,7 @@ fn tasks(out: &mut impl Write, emulation: &Emulation) -> fmt::Result {
     effort(out, "the same at 2400 Hz, in a brief run", &emulation.brief)?;
     effort(out, "the same at 100 Hz, after a survey of two minutes", &emulation.survey)?;
     effort(out, "from turn to turn at 2400 Hz, on a turning platform", &emulation.turning)?;
+    effort(out, "from stop to stop at 50 Hz, three gyros in a vehicle", &emulation.stops)?;
     writeln!(out, "(without bus drivers and interrupts, which are the board's own)")
 }
 

@@ -1,8 +1,9 @@
 //! One JSON object for each result.
 
 use orientation::align::budget::Budget;
-use orientation::align::conclusion::Conclusion;
+use orientation::align::conclusion::{Azimuth, Conclusion};
 use orientation::align::stepwise::Fit;
+use orientation::error::Refusal;
 use serde::Serialize;
 
 use super::{azimuth_error, columns, degrees};
@@ -16,20 +17,9 @@ pub struct AzimuthObject {
     pub method: &'static str,
     /// The criterion.
     pub criterion: String,
-    /// `ok` or `refused`.
-    pub status: &'static str,
-    /// Why it was refused.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub reason: Option<String>,
-    /// Azimuth of body x, [0, 360); only with `ok`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub azimuth_deg: Option<f64>,
-    /// Its standard deviation; only with `ok`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub sigma_deg: Option<f64>,
-    /// Azimuth less truth, where the recording carries one; only with `ok`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub error_deg: Option<f64>,
+    /// The azimuth, or why there is none.
+    #[serde(flatten)]
+    pub verdict: Verdict,
     /// Cramér–Rao bound, where the noise is known.
     pub limit_deg: Option<f64>,
     /// The 1σ parts, where there is a fit.
@@ -61,6 +51,41 @@ pub struct AzimuthObject {
     pub assumed: Vec<String>,
 }
 
+/// An azimuth, or why there is none.
+#[derive(Clone, Debug, Serialize)]
+pub struct Verdict {
+    /// `ok` or `refused`.
+    pub status: &'static str,
+    /// Why it was refused.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// Azimuth of body x, [0, 360); only with `ok`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub azimuth_deg: Option<f64>,
+    /// Its standard deviation; only with `ok`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sigma_deg: Option<f64>,
+    /// Azimuth less truth, where the recording carries one; only with `ok`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error_deg: Option<f64>,
+}
+
+impl Verdict {
+    /// Of a conclusion's verdict; `truth_deg` is for its error alone.
+    #[must_use]
+    pub fn of(verdict: &Result<Azimuth, Refusal>, truth_deg: Option<f64>) -> Self {
+        let azimuth = verdict.as_ref().ok();
+        let found = azimuth.map(|azimuth| degrees(azimuth.angle));
+        Self {
+            status: if verdict.is_ok() { "ok" } else { "refused" },
+            reason: verdict.as_ref().err().map(ToString::to_string),
+            azimuth_deg: found,
+            sigma_deg: azimuth.map(|azimuth| degrees(azimuth.sigma)),
+            error_deg: found.zip(truth_deg).map(|(azimuth, truth)| azimuth_error(azimuth, truth)),
+        }
+    }
+}
+
 /// The budget in degrees.
 #[derive(Clone, Debug, Serialize)]
 pub struct BudgetObject {
@@ -72,6 +97,9 @@ pub struct BudgetObject {
     latitude: f64,
     scale: f64,
     temperature: f64,
+    /// Of a vehicle that drove.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    displacement: Option<f64>,
 }
 
 /// A dwell left out.
@@ -100,6 +128,7 @@ impl From<&Budget> for BudgetObject {
             latitude: degrees(budget.latitude),
             scale: degrees(budget.scale),
             temperature: degrees(budget.temperature),
+            displacement: (budget.displacement > 0.0).then(|| degrees(budget.displacement)),
         }
     }
 }
@@ -109,8 +138,6 @@ impl From<&Budget> for BudgetObject {
 pub fn azimuth(replay: &Replay, conclusion: &Conclusion, truth_deg: Option<f64>) -> AzimuthObject {
     let fit = conclusion.fit.as_ref();
     let seen = fit.filter(|fit| !fit.model.is_single_axis);
-    let verdict = conclusion.verdict.as_ref();
-    let found = verdict.ok().map(|azimuth| degrees(azimuth.angle));
     let tilt = conclusion.tilt.measured.then_some(&conclusion.tilt);
     let kept = || {
         let dwells = replay.session.dwells().iter().zip(&conclusion.disturbances);
@@ -119,11 +146,7 @@ pub fn azimuth(replay: &Replay, conclusion: &Conclusion, truth_deg: Option<f64>)
     AzimuthObject {
         method: replay.method.name(),
         criterion: replay.criterion_name(),
-        status: if verdict.is_ok() { "ok" } else { "refused" },
-        reason: verdict.err().map(ToString::to_string),
-        azimuth_deg: found,
-        sigma_deg: verdict.ok().map(|azimuth| degrees(azimuth.sigma)),
-        error_deg: found.zip(truth_deg).map(|(azimuth, truth)| azimuth_error(azimuth, truth)),
+        verdict: Verdict::of(&conclusion.verdict, truth_deg),
         limit_deg: fit.filter(|_| replay.noise_is_known()).map(|fit| degrees(fit.limit)),
         budget: fit.map(|fit| (&fit.budget).into()),
         dominant: fit.and_then(|fit| fit.budget.dominant()).map(|source| source.to_string()),

@@ -8,13 +8,16 @@ pub mod page;
 pub mod plan;
 pub mod progress;
 pub mod rotating;
+pub mod stops;
 pub mod table;
 pub mod text;
 
 use std::io::{self, Write};
 
+use orientation::align::budget::Budget;
 use orientation::align::regression::Column;
 use orientation::align::stepwise::Fit;
+use orientation::error::Source;
 
 /// Writes a line to standard error. Where nobody reads it, it is lost, and that is no error of ours.
 pub fn say(line: &str) {
@@ -44,6 +47,18 @@ pub fn degrees_per_hour(rate: f64) -> f64 {
 pub fn azimuth_error(azimuth: f64, truth: f64) -> f64 {
     let turns = (azimuth - truth) / 360.0;
     (turns - turns.round()) * 360.0
+}
+
+/// The parts of a budget that have a line: a displacement only where a vehicle drove.
+pub fn parts(budget: &Budget) -> impl Iterator<Item = (Source, f64)> {
+    let is_shown = |(source, part): &(Source, f64)| *source != Source::Displacement || *part > 0.0;
+    budget.parts().into_iter().filter(is_shown)
+}
+
+/// Names as a table's head has them.
+#[must_use]
+pub fn named(head: &[&str]) -> Vec<String> {
+    head.iter().map(|name| (*name).to_owned()).collect()
 }
 
 /// The names of the columns that a fit used.

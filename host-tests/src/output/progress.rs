@@ -43,8 +43,8 @@ impl Progress {
         self.tell(|| so_far(session));
     }
 
-    /// Shows how many of the planned turns a platform has done.
-    pub fn turns(&self, (done, planned): (u32, u32)) {
+    /// Shows how many of the planned steps are done: a platform's turns, a vehicle's stops.
+    pub fn steps(&self, (done, planned): (u32, u32)) {
         self.bar.set_length(u64::from(planned));
         self.bar.set_position(u64::from(done));
         self.tell(String::new);

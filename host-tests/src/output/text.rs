@@ -4,11 +4,12 @@ use std::fmt::{self, Write};
 
 use firmware::simulated::scenario::Scenario;
 use orientation::align::budget::Budget;
-use orientation::align::conclusion::Conclusion;
+use orientation::align::conclusion::{Azimuth, Conclusion};
 use orientation::align::stepwise::Fit;
+use orientation::error::Refusal;
 
 use super::json::{Excluded, earth_rate, excluded};
-use super::{azimuth_error, columns, degrees, degrees_per_hour, positive_zero};
+use super::{azimuth_error, columns, degrees, degrees_per_hour, parts, positive_zero};
 use crate::instrument::Run;
 use crate::positions::autocompensation;
 use crate::replay::{Method, Replay};
@@ -24,7 +25,10 @@ pub fn block(
     conclusion: &Conclusion,
     truth_deg: Option<f64>,
 ) -> fmt::Result {
-    headline(out, name, replay, conclusion, truth_deg)?;
+    headline(out, name, &conclusion.verdict, truth_deg, |out| match &conclusion.fit {
+        Some(fit) => limit(out, replay, fit),
+        None => Ok(()),
+    })?;
     if conclusion.tilt.measured {
         let tilt = &conclusion.tilt;
         let [pitch, roll] = [tilt.pitch(), tilt.roll()].map(|a| positive_zero(degrees(a), 5e-5));
@@ -51,35 +55,29 @@ pub fn line(out: &mut impl Write, label: &str, value: fmt::Arguments<'_>) -> fmt
     writeln!(out, "  {label:<18} {value}")
 }
 
-fn headline(
-    out: &mut impl Write,
+/// Writes the azimuth, or why there is none; `more` follows an azimuth, then its error.
+pub(super) fn headline<W: Write>(
+    out: &mut W,
     name: &str,
-    replay: &Replay,
-    conclusion: &Conclusion,
+    verdict: &Result<Azimuth, Refusal>,
     truth_deg: Option<f64>,
+    more: impl FnOnce(&mut W) -> fmt::Result,
 ) -> fmt::Result {
-    match &conclusion.verdict {
+    let azimuth = match verdict {
+        Ok(azimuth) => azimuth,
         Err(reason) => {
             writeln!(out, "\nNo azimuth from {name}\n")?;
-            line(out, "reason", format_args!("{reason}"))
+            return line(out, "reason", format_args!("{reason}"));
         }
-        Ok(azimuth) => {
-            writeln!(out, "\nTrue north found in {name}\n")?;
-            let [angle, sigma] = [azimuth.angle, azimuth.sigma].map(degrees);
-            line(out, "azimuth of body x", format_args!("{angle:.4}° ± {sigma:.4}° (1σ)"))?;
-            if let Some(fit) = &conclusion.fit {
-                limit(out, replay, fit)?;
-            }
-            let Some(truth) = truth_deg else { return Ok(()) };
-            let error = azimuth_error(angle, truth);
-            let sigmas = error / sigma;
-            line(
-                out,
-                "truth",
-                format_args!("{truth:.4}°: the error is {error:+.4}°, {sigmas:+.2} σ"),
-            )
-        }
-    }
+    };
+    writeln!(out, "\nTrue north found in {name}\n")?;
+    let [angle, sigma] = [azimuth.angle, azimuth.sigma].map(degrees);
+    line(out, "azimuth of body x", format_args!("{angle:.4}° ± {sigma:.4}° (1σ)"))?;
+    more(out)?;
+    let Some(truth) = truth_deg else { return Ok(()) };
+    let error = azimuth_error(angle, truth);
+    let sigmas = error / sigma;
+    line(out, "truth", format_args!("{truth:.4}°: the error is {error:+.4}°, {sigmas:+.2} σ"))
 }
 
 fn limit(out: &mut impl Write, replay: &Replay, fit: &Fit) -> fmt::Result {
@@ -136,7 +134,7 @@ fn positions(out: &mut impl Write, replay: &Replay, conclusion: &Conclusion) -> 
 pub(super) fn budget(out: &mut impl Write, budget: &Budget) -> fmt::Result {
     let sigma = budget.sigma();
     writeln!(out, "\n  error budget (1σ of the azimuth)")?;
-    for (source, part) in budget.parts() {
+    for (source, part) in parts(budget) {
         let share = 100.0 * (part / sigma) * (part / sigma);
         writeln!(out, "    {:<28} {:>9.4}°  {share:>5.1} %", source.to_string(), degrees(part))?;
     }

@@ -6,6 +6,7 @@
 use super::error::Fault;
 use super::number::{Range, number};
 use super::problem::{HeaderProblem, Problem, SourceProblem, ValueProblem};
+use super::stops::{DISPLACEMENTS, STOPS};
 
 /// What the header says about the site and the instrument. A key that is absent is `None`: a noise
 /// coefficient is then estimated, an uncertainty taken as zero.
@@ -35,6 +36,10 @@ pub struct Header {
     pub g_sensitivity_sigma_deg_h_g: Option<f64>,
     /// The principle of the sensor.
     pub sensor: Option<Sensor>,
+    /// When the vehicle stood, from … to, s, one after the other; at least one.
+    pub stops_s: Option<Vec<[f64; 2]>>,
+    /// How far each stop lies from the first, north and east, m; as many as the stops where both are there.
+    pub displacements_m: Option<Vec<[f64; 2]>>,
 }
 
 /// The principle of the rate sensor.
@@ -52,6 +57,8 @@ pub enum Sensor {
 pub struct Truth {
     /// `truth_azimuth_deg`: azimuth of body x at the end, °; `None` when absent or `nan`.
     pub azimuth_deg: Option<f64>,
+    /// `truth_start_azimuth_deg`: the same at the beginning.
+    pub start_azimuth_deg: Option<f64>,
     /// The other `truth_*` keys and their text, in the order of the file.
     pub others: Vec<(String, String)>,
 }
@@ -60,7 +67,7 @@ pub struct Truth {
 const MAX_TRUTH_KEYS: usize = 1000;
 
 /// Keys whose value is not one number.
-const WORDS: [&str; 3] = ["kind", PAIR, "sensor"];
+const WORDS: [&str; 5] = ["kind", PAIR, "sensor", STOPS, DISPLACEMENTS];
 const PAIR: &str = "g_sensitivity_deg_h_g";
 
 /// Larger than any gyro that could find north, small enough that squares stay finite.
@@ -162,6 +169,11 @@ impl Collector {
         self.known.iter().find(|entry| entry.key == key).map(|e| (e.line, e.value.as_str()))
     }
 
+    /// The line of a known key; that of the file's beginning where it is absent.
+    pub fn line(&self, key: &str) -> u64 {
+        self.get(key).map_or(1, |(line, _)| line)
+    }
+
     /// What a solver may know.
     pub fn header(&self) -> Result<Header, Fault> {
         let mut header = Header::default();
@@ -177,18 +189,21 @@ impl Collector {
     pub fn truth(self) -> Result<Truth, Fault> {
         let mut truth = Truth::default();
         for Entry { line, key, value } in self.truth {
-            if key == "truth_azimuth_deg" {
-                truth.azimuth_deg =
-                    azimuth(&value).map_err(|problem| Fault::key(line, &key, problem))?;
-            } else {
-                truth.others.push((key, value));
-            }
+            let slot = match key.as_str() {
+                "truth_azimuth_deg" => &mut truth.azimuth_deg,
+                "truth_start_azimuth_deg" => &mut truth.start_azimuth_deg,
+                _ => {
+                    truth.others.push((key, value));
+                    continue;
+                }
+            };
+            *slot = azimuth(&value).map_err(|problem| Fault::key(line, &key, problem))?;
         }
         Ok(truth)
     }
 
     /// Parses a known key's value; `None` when the key is absent.
-    fn parse<T>(
+    pub fn parse<T>(
         &self,
         key: &str,
         parse: impl Fn(&str) -> Result<T, Problem>,

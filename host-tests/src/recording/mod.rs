@@ -17,6 +17,7 @@ mod number;
 mod problem;
 mod rows;
 mod spacing;
+mod stops;
 mod timing;
 
 use std::fmt;
@@ -28,9 +29,10 @@ pub use error::{Place, ReadError};
 pub use header::{Header, Sensor, Truth};
 pub use lines::{MAX_LINE_BYTES, MAX_ROWS};
 pub use number::Range;
-pub use problem::{HeaderProblem, Problem, SourceProblem, TimeProblem, ValueProblem};
-pub use rows::{DwellRow, ImuSample, RotatingRow, StageRow, StaticRow};
+pub use problem::{HeaderProblem, Problem, SourceProblem, StopProblem, TimeProblem, ValueProblem};
+pub use rows::{DwellRow, ImuRow, ImuSample, RotatingRow, StageRow, StaticRow};
 pub use spacing::{Gap, Spacing};
+pub use stops::displacements;
 
 use error::Fault;
 use header::Collector;
@@ -65,6 +67,8 @@ pub enum Body {
     Rotating(Vec<RotatingRow>),
     /// One row a position, already averaged.
     Dwells(Vec<DwellRow>),
+    /// Samples of three gyros and three accelerometers.
+    Imu(Vec<ImuRow>),
     /// Samples at rest; samples may be missing, as [`Spacing`] says.
     Static(Vec<StaticRow>),
 }
@@ -83,6 +87,7 @@ impl Body {
             Self::Stage(_) => Kind::Stage,
             Self::Rotating(_) => Kind::Rotating,
             Self::Dwells(_) => Kind::Dwells,
+            Self::Imu(_) => Kind::Imu,
             Self::Static(_) => Kind::Static,
         }
     }
@@ -95,7 +100,7 @@ pub enum Kind {
     Stage,
     /// One sensor on a stage that turns all the time; read here.
     Rotating,
-    /// Three gyros and three accelerometers.
+    /// Three gyros and three accelerometers fixed to a vehicle; read here.
     Imu,
     /// A body in fast rotation about its long axis.
     Spin,
@@ -168,15 +173,22 @@ fn parse(reader: impl Read) -> Result<Recording, Fault> {
         Kind::Stage => |lines, line, names| Ok(Body::Stage(rows::read(lines, line, names)?)),
         Kind::Rotating => |lines, line, names| Ok(Body::Rotating(rows::read(lines, line, names)?)),
         Kind::Dwells => |lines, line, names| Ok(Body::Dwells(rows::read(lines, line, names)?)),
+        Kind::Imu => |lines, line, names| Ok(Body::Imu(rows::read(lines, line, names)?)),
         Kind::Static => |lines, line, names| Ok(Body::Static(rows::read(lines, line, names)?)),
-        other => return Err(Fault::line(line, HeaderProblem::UnreadKind(other))),
+        Kind::Spin => return Err(Fault::line(line, HeaderProblem::UnreadKind(kind))),
     };
-    let header = entries.header()?;
+    let mut header = entries.header()?;
+    if kind == Kind::Imu {
+        stops::read(&entries, &mut header)?;
+    }
     let (line, names) =
         names.ok_or_else(|| Fault::line(lines.number(), HeaderProblem::NoColumnNames))?;
     let body = read_rows(&mut lines, line, &names)?;
     let rate = entries.get("rate_hz").map(|(line, _)| line).zip(header.rate_hz);
     check_times(&body, rate)?;
+    if let Body::Imu(rows) = &body {
+        stops::check_inside(&entries, &header, rows)?;
+    }
     Ok(Recording { header, body, truth: entries.truth()? })
 }
 
@@ -214,6 +226,9 @@ fn check_times(body: &Body, rate: Option<(u64, f64)>) -> Result<(), Fault> {
             Times { rows, stamp: |row| (row.line, row.time_s), column: "t_s" }.check(rate)
         }
         Body::Rotating(rows) => {
+            Times { rows, stamp: |row| (row.line, row.time_s), column: "t_s" }.check(rate)
+        }
+        Body::Imu(rows) => {
             Times { rows, stamp: |row| (row.line, row.time_s), column: "t_s" }.check(rate)
         }
         Body::Dwells(_) | Body::Static(_) => Ok(()),

@@ -18,6 +18,8 @@ pub enum Problem {
     Value(ValueProblem),
     /// The times contradict each other or the header.
     Time(TimeProblem),
+    /// The stops or their displacements do not do.
+    Stops(StopProblem),
 }
 
 /// Why the text cannot be had.
@@ -108,6 +110,37 @@ pub enum TimeProblem {
     Rate(f64, f64),
 }
 
+/// Why stops or their displacements do not do. Times in seconds, displacements in metres.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StopProblem {
+    /// Not two numbers with a minus.
+    NotAStop(String),
+    /// Not two numbers with a comma.
+    NotADisplacement(String),
+    /// More than this many.
+    TooMany(usize),
+    /// A stop that does not end after it begins.
+    Backwards(f64, f64),
+    /// A stop, and the next one, which begins before it ends.
+    Overlap([f64; 2], [f64; 2]),
+    /// The first stop is displaced from itself.
+    NotFromFirst([f64; 2]),
+    /// There is not one displacement for each stop.
+    Count {
+        /// Displacements.
+        displacements: usize,
+        /// Stops.
+        stops: usize,
+    },
+    /// A stop that the recording does not hold.
+    Outside {
+        /// The stop, from … to.
+        stop: [f64; 2],
+        /// Times of the first and the last row.
+        recording: [f64; 2],
+    },
+}
+
 impl From<SourceProblem> for Problem {
     fn from(problem: SourceProblem) -> Self {
         Self::Source(problem)
@@ -132,6 +165,12 @@ impl From<TimeProblem> for Problem {
     }
 }
 
+impl From<StopProblem> for Problem {
+    fn from(problem: StopProblem) -> Self {
+        Self::Stops(problem)
+    }
+}
+
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -139,6 +178,7 @@ impl fmt::Display for Problem {
             Self::Header(problem) => problem.fmt(f),
             Self::Value(problem) => problem.fmt(f),
             Self::Time(problem) => problem.fmt(f),
+            Self::Stops(problem) => problem.fmt(f),
         }
     }
 }
@@ -238,6 +278,39 @@ impl fmt::Display for TimeProblem {
             Self::Rate(header, times) => {
                 let times = Rounded(*times);
                 write!(f, "{header} Hz contradicts the times, which have {times} Hz; correct it")
+            }
+        }
+    }
+}
+
+impl fmt::Display for StopProblem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotAStop(text) => {
+                write!(f, "{} is not a stop; write from-to;from-to in seconds", quoted(text))
+            }
+            Self::NotADisplacement(text) => {
+                let text = quoted(text);
+                write!(f, "{text} is not a displacement; write north,east;north,east in metres")
+            }
+            Self::TooMany(limit) => write!(f, "more than {limit} of them; split the recording"),
+            Self::Backwards(from, to) => {
+                write!(f, "the stop {from}-{to} does not end after it begins; correct it")
+            }
+            Self::Overlap([from, to], [next_from, next_to]) => {
+                write!(f, "the stop {next_from}-{next_to} begins before {from}-{to} ends; ")?;
+                f.write_str("name the stops one after the other")
+            }
+            Self::NotFromFirst([north, east]) => {
+                write!(f, "the first stop lies {north},{east} m from itself; ")?;
+                f.write_str("displacements count from the first stop, which is at 0,0")
+            }
+            Self::Count { displacements, stops } => {
+                write!(f, "{displacements} for {stops} stops; give one for each stop")
+            }
+            Self::Outside { stop: [from, to], recording: [begin, end] } => {
+                write!(f, "the stop {from}-{to} lies outside of the recording, ")?;
+                write!(f, "which goes from {begin} s to {end} s; correct it")
             }
         }
     }

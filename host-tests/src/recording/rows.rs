@@ -11,11 +11,13 @@ use super::number::Range;
 use super::problem::{SourceProblem, TimeProblem, ValueProblem};
 
 /// Times, in seconds, that a double resolves to 2 µs.
-const TIME: Range = Range::symmetric(1e10, " s");
+pub(super) const TIME: Range = Range::symmetric(1e10, " s");
 /// Stage angles that [`orientation::units::Angle`] takes exactly: 10⁶ turns.
 const STAGE: Range = Range::symmetric(6.283_185e6, " rad");
 /// The range of [`orientation::units::AngularRate`].
 const RATE: Range = Range::symmetric(2.147_483_647, " rad/s");
+/// Rates of a vehicle's gyros, 5 700 °/s: beyond what any of them measures.
+const BODY_RATE: Range = Range::symmetric(100.0, " rad/s");
 /// Rates at which a stage can turn: 160 turns a second.
 const STAGE_RATE: Range = Range::symmetric(1e3, " rad/s");
 /// The range of [`orientation::units::SpecificForce`].
@@ -92,10 +94,22 @@ pub struct StaticRow {
     pub imu: Option<ImuSample>,
 }
 
+/// One sample of an `imu` recording.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImuRow {
+    /// The line of the file, from 1, for messages about this sample.
+    pub line: u64,
+    /// When the sample ended, s, later than in the row before; its zero is the recorder's and it may be
+    /// negative.
+    pub time_s: f64,
+    /// Means over the sample.
+    pub sample: ImuSample,
+}
+
 /// What an inertial measurement unit gives at a time, along body x (forward), y (right), z (down).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImuSample {
-    /// Rates, rad/s, ±2.147483647.
+    /// Rates, rad/s, ±100; at rest ±2.147483647.
     pub rates_rad_s: [f64; 3],
     /// Specific force, m/s², ±2147.483647.
     pub force_m_s2: [f64; 3],
@@ -184,6 +198,30 @@ impl Row for DwellRow {
     }
 }
 
+impl Row for ImuRow {
+    const COLUMNS: &'static [Column] = &[
+        Column::always("t_s", TIME),
+        Column::always(IMU[0], BODY_RATE),
+        Column::always(IMU[1], BODY_RATE),
+        Column::always(IMU[2], BODY_RATE),
+        Column::always(IMU[3], FORCE),
+        Column::always(IMU[4], FORCE),
+        Column::always(IMU[5], FORCE),
+    ];
+    const TIME: usize = 0;
+
+    fn from_values(values: &Values<'_>) -> Self {
+        let sample = imu_sample(values, 1);
+        Self { line: values.line, time_s: values.needed(0), sample }
+    }
+}
+
+/// The sample whose columns begin at this place.
+fn imu_sample(values: &Values<'_>, first: usize) -> ImuSample {
+    let three = |first: usize| [0, 1, 2].map(|axis| values.needed(first + axis));
+    ImuSample { rates_rad_s: three(first), force_m_s2: three(first + 3) }
+}
+
 impl Row for StaticRow {
     const COLUMNS: &'static [Column] = &[
         Column::always("t_s", TIME),
@@ -198,13 +236,11 @@ impl Row for StaticRow {
     const TIME: usize = 0;
 
     fn from_values(values: &Values<'_>) -> Self {
-        let three = |first: usize| [0, 1, 2].map(|axis| values.needed(first + axis));
-        let imu = ImuSample { rates_rad_s: three(2), force_m_s2: three(5) };
         Self {
             line: values.line,
             time_s: values.needed(0),
             rate_rad_s: values.optional(1),
-            imu: values.optional(2).map(|_| imu),
+            imu: values.optional(2).map(|_| imu_sample(values, 2)),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use bench::emulate::collect::{Collected, Figures, Task};
 use bench::emulate::decode::Line;
-use bench::emulate::outcome::{Bits, Outcome, TURN_FIELDS};
+use bench::emulate::outcome::{Bits, Outcome, STOP_FIELDS, TURN_FIELDS};
 
 fn printed(words: &str) -> Line {
     Line { time: "1.5".to_owned(), level: None, words: words.to_owned() }
@@ -67,6 +67,20 @@ fn turns_come_in_their_order_with_all_their_numbers() {
     log.remove(0);
     assert!(collect(&log).is_err(), "the first is missing");
     log[0] = format!("turn number=1 {}", names.replace("leak_sin=", "leak="));
+    assert!(collect(&log).is_err(), "a number is missing");
+}
+
+#[test]
+fn stops_come_in_their_order_with_all_their_numbers() {
+    let names = STOP_FIELDS.map(|name| format!("{name}=3fe0000000000000")).join(" ");
+    let mut log = whole_log();
+    log.drain(..2);
+    log.insert(0, format!("stop number=1 {names}"));
+    let (outcome, _) = collect(&log).expect("a whole log");
+    assert_eq!(outcome.stops, [Bits([Some(0.5_f64.to_bits()); STOP_FIELDS.len()])]);
+    log[0] = format!("stop number=2 {names}");
+    assert!(collect(&log).is_err(), "the first is missing");
+    log[0] = format!("stop number=1 {}", names.replace("turned_y=", "turned="));
     assert!(collect(&log).is_err(), "a number is missing");
 }
 

@@ -2,14 +2,17 @@
 
 use bench::emulate::host;
 use bench::emulate::outcome::{
-    Bits, Difference, DwellBits, FIELDS, Outcome, TURN_FIELDS, TurnBits, compare,
+    Bits, Difference, DwellBits, FIELDS, Outcome, STOP_FIELDS, StopBits, TURN_FIELDS, TurnBits,
+    compare,
 };
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;
+use firmware::simulated::vehicle::VehicleScenario;
 
 fn outcome() -> Outcome {
     let dwell = |rate: f64| -> DwellBits { Bits([Some(rate.to_bits()); FIELDS.len()]) };
     let turn = |rate: f64| -> TurnBits { Bits([Some(rate.to_bits()); TURN_FIELDS.len()]) };
+    let stop = |force: f64| -> StopBits { Bits([Some(force.to_bits()); STOP_FIELDS.len()]) };
     Outcome {
         seed: 7,
         azimuth_bits: Some(1.25_f64.to_bits()),
@@ -17,6 +20,7 @@ fn outcome() -> Outcome {
         reason: None,
         dwells: vec![dwell(1.0), dwell(2.0), dwell(3.0)],
         turns: vec![turn(4.0), turn(5.0)],
+        stops: vec![stop(6.0), stop(7.0)],
     }
 }
 
@@ -56,6 +60,17 @@ fn one_bit_of_any_number_of_a_turn_is_found_and_named() {
 }
 
 #[test]
+fn one_bit_of_any_number_of_a_stop_is_found_and_named() {
+    for (index, name) in STOP_FIELDS.into_iter().enumerate() {
+        let (host, mut emulated) = (outcome(), outcome());
+        let place = &mut emulated.stops[0].0[index];
+        *place = place.map(|bits| bits ^ 1);
+        let told = compare(&emulated, &host).expect_err("they differ").to_string();
+        assert!(told.starts_with(&format!("stop 1, {name}: ")), "{told}");
+    }
+}
+
+#[test]
 fn a_difference_is_told_with_both_values() {
     let (host, mut emulated) = (outcome(), outcome());
     emulated.dwells[1].0[4] = Some(2.5_f64.to_bits());
@@ -79,12 +94,13 @@ type Change = fn(&mut Outcome);
 
 #[test]
 fn seed_azimuth_sigma_and_the_number_of_dwells_are_compared() {
-    let changes: [(&str, Change); 5] = [
+    let changes: [(&str, Change); 6] = [
         ("seed", |run| run.seed = 8),
         ("azimuth", |run| run.azimuth_bits = None),
         ("sigma", |run| run.sigma_bits = Some(0)),
         ("dwells", |run| run.dwells.truncate(2)),
         ("turns", |run| run.turns.truncate(1)),
+        ("stops", |run| run.stops.truncate(1)),
     ];
     for (name, change) in changes {
         let mut emulated = outcome();
@@ -127,4 +143,12 @@ fn the_host_finds_the_same_turns_again_and_others_for_another_seed() {
     assert_eq!(compare(&run(3), &run(3)), Ok(()));
     assert_eq!((run(3).turns.len(), run(3).reason), (4, None));
     assert_ne!(run(3).turns, run(4).turns);
+}
+
+#[test]
+fn the_host_finds_the_same_stops_again_and_others_for_another_seed() {
+    let run = |seed| host::stops(&VehicleScenario::brief(seed)).expect("it ends");
+    assert_eq!(compare(&run(3), &run(3)), Ok(()));
+    assert_eq!((run(3).stops.len(), run(3).reason), (2, None));
+    assert_ne!(run(3).stops, run(4).stops);
 }

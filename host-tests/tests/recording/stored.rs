@@ -174,6 +174,53 @@ fn each_rotating_recording_has_its_rows_header_and_truth() {
     }
 }
 
+/// The vehicles: three that drove, and one that stood and swayed.
+fn vehicles() -> [Expected; 4] {
+    let drive = |name, n, bias, azimuth_deg, stops: &[[f64; 2]], displaced: &[[f64; 2]]| Expected {
+        name,
+        lines: 25_508 + [n, bias].iter().filter(|key: &&Option<f64>| key.is_some()).count(),
+        header_lines: 7 + [n, bias].iter().filter(|key: &&Option<f64>| key.is_some()).count(),
+        azimuth_deg,
+        header: Header {
+            gyro_n_deg_sqrt_h: n,
+            gyro_bias_deg_h: bias,
+            stops_s: Some(stops.to_vec()),
+            displacements_m: Some(displaced.to_vec()),
+            ..header(52.0, 25.0, 0.0)
+        },
+    };
+    let ends = [[0.0, 60.0], [960.0, 1020.0]];
+    let middle = [ends[0], [480.0, 540.0], ends[1]];
+    let [ideal, fog] = [[-2134.0, 2737.8], [-867.9, 3298.0]].map(|last| [[0.0; 2], last]);
+    let three = [[0.0; 2], [-470.4, 2239.7], [4.3, 2703.7]];
+    let parked = Header { gyro_bias_deg_h: Some(0.02), ..header(52.0, 25.0, 0.01) };
+    [
+        drive("drive-ideal", None, None, 212.5621, &ends, &ideal),
+        drive("drive-fog-1dph", Some(0.05), Some(1.0), 212.5621, &ends, &fog),
+        drive("drive-fog-three-stops", Some(0.03), Some(1.0), 12.5621, &middle, &three),
+        Expected {
+            name: "parked-swaying",
+            lines: 16_513,
+            header_lines: 7,
+            azimuth_deg: 72.5621,
+            header: parked,
+        },
+    ]
+}
+
+#[test]
+fn each_recording_of_a_vehicle_has_its_rows_header_and_truth() {
+    for expected in vehicles() {
+        let recording = stored(expected.name);
+        assert_eq!(recording.header, expected.header, "{}", expected.name);
+        assert_eq!(recording.truth.azimuth_deg, Some(expected.azimuth_deg), "{}", expected.name);
+        assert_eq!(recording.truth.start_azimuth_deg, Some(72.5621), "{}", expected.name);
+        let Body::Imu(rows) = recording.body else { panic!("is {}", recording.body.kind()) };
+        assert_eq!(rows.len(), expected.lines - expected.header_lines - 1, "{}", expected.name);
+        assert_eq!(rows.last().map(|row| row.line), Some(expected.lines as u64));
+    }
+}
+
 #[test]
 fn the_disturbances_are_known_to_the_truth_only() {
     for (name, span) in [("stepwise-bumped", "47-51"), ("stepwise-nudged", "79-83")] {
@@ -185,7 +232,9 @@ fn the_disturbances_are_known_to_the_truth_only() {
 #[test]
 fn the_table_of_the_data_agrees_with_the_files() {
     let table = include_str!("../../data/README.md");
-    for Expected { name, lines, header_lines, header, .. } in all().into_iter().chain(rotating()) {
+    for Expected { name, lines, header_lines, header, .. } in
+        all().into_iter().chain(rotating()).chain(vehicles())
+    {
         let row = table.lines().find(|line| line.contains(name)).or_else(|| {
             let series = name.rsplit_once('-').map_or(name, |(series, _)| series);
             table.lines().find(|line| line.contains(series))

@@ -142,6 +142,14 @@ fn five_stops_are_calibrated_too() {
 }
 
 #[test]
+fn stops_beyond_the_eighth_are_not_taken_for_the_eighth() {
+    let figures = Figures::of(8, |seed| Day::new(Scenario::stops(seed, 10, 40.0, 90.0), seed));
+    figures.assert_covered("ten stops");
+    assert!(figures.outcomes.iter().all(|outcome| outcome.stops.len() == 8));
+    assert!(figures.outcomes.iter().all(|outcome| outcome.stops[7].seconds() < 40.0));
+}
+
+#[test]
 fn stated_stops_do_as_well_as_found_ones() {
     let figures = Figures::of(60, |seed| Day { rests: Kind::Stated, ..two(seed) });
     figures.assert_calibrated("stated stops", 0.2);

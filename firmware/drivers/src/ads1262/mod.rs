@@ -84,12 +84,20 @@ pub struct Ads1262<S, R, D> {
     ready: R,
     delay: D,
     configuration: Configuration,
+    /// Whether its clock comes from outside.
+    is_clocked: bool,
 }
 
 impl<S, R, D> Ads1262<S, R, D> {
     /// A chip that has yet to be started. Its START pin is held low, its clock input grounded.
     pub const fn new(spi: S, ready: R, delay: D, configuration: Configuration) -> Self {
-        Self { spi, ready, delay, configuration }
+        Self { spi, ready, delay, configuration, is_clocked: false }
+    }
+
+    /// The same with 7.3728 MHz at its clock input: several chips on one clock convert in step.
+    #[must_use]
+    pub fn clocked(self) -> Self {
+        Self { is_clocked: true, ..self }
     }
 }
 
@@ -102,7 +110,7 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Ads1262<S, R, D> {
     /// [`Fault::Bus`]; [`Fault::Identity`] with ID, POWER and INTERFACE where another chip, none, or
     /// one that did not obey the reset answers; [`Fault::NotAsWritten`]; [`Fault::NotReady`] where it
     /// does not convert, [`Fault::SelfTest`] where it converts wrongly, [`Fault::Alarm`] where its
-    /// reference is low or its clock not its own.
+    /// reference is low or its clock another than stated.
     pub async fn start(&mut self) -> Result<(), Fault> {
         pause(&mut self.delay, POWER_UP).await;
         self.reset().await?;
@@ -135,6 +143,23 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Ads1262<S, R, D> {
         codec::decode(frame)
     }
 
+    /// Ends conversions and makes ready for others, of a chip that was started: those of several chips
+    /// with one clock are then begun in step.
+    ///
+    /// # Errors
+    /// [`Fault::Bus`] and [`Fault::NotAsWritten`].
+    pub async fn arm(&mut self) -> Result<(), Fault> {
+        self.configure(&self.configuration.image()).await
+    }
+
+    /// Begins conversions.
+    ///
+    /// # Errors
+    /// [`Fault::Bus`].
+    pub fn begin(&mut self) -> impl Future<Output = Result<(), Fault>> {
+        self.write(&[registers::START1])
+    }
+
     async fn reset(&mut self) -> Result<(), Fault> {
         self.write(&[registers::RESET]).await?;
         pause(&mut self.delay, RESET).await;
@@ -163,7 +188,7 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Ads1262<S, R, D> {
         if !conversion.is_new {
             return Err(Fault::NotReady);
         }
-        if conversion.status.is_clock_external() {
+        if conversion.status.is_clock_external() != self.is_clocked {
             return Err(Fault::Alarm { status: conversion.status.0 });
         }
         let expected = if sign == Sign::Plus { TEST_CODE } else { -TEST_CODE };
@@ -171,14 +196,19 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Ads1262<S, R, D> {
         if is_near && !conversion.is_clipped { Ok(()) } else { Err(Fault::SelfTest) }
     }
 
-    /// Begins conversions with these registers and no others: a reset stops what ran before.
+    /// Begins conversions with these registers and no others.
     async fn run(&mut self, image: &Image) -> Result<(), Fault> {
+        self.configure(image).await?;
+        self.begin().await
+    }
+
+    /// Sets these registers and no others: a reset stops what ran before.
+    async fn configure(&mut self, image: &Image) -> Result<(), Fault> {
         self.reset().await?;
         self.write(&image.written()).await?;
         let mut bytes = registers::READ_BACK;
         self.transfer(&mut bytes).await?;
-        image.verify(&bytes)?;
-        self.write(&[registers::START1]).await
+        image.verify(&bytes)
     }
 
     async fn transfer(&mut self, bytes: &mut [u8]) -> Result<(), Fault> {

@@ -6,10 +6,13 @@
 
 use super::setting::Setting;
 use super::{POSITIONS, level};
+use crate::math::rotation::length;
 use crate::math::{chi_square_tail, median};
 use crate::signal::blocks::Quietness;
 use crate::signal::dwell::{Dwell, SampleFault};
+use crate::signal::rest::{Criteria, Sensors};
 use crate::signal::sway::SwayNoise;
+use crate::units::DEGREE_PER_HOUR;
 use crate::words;
 use crate::words::Rounded;
 
@@ -26,6 +29,9 @@ pub enum Disturbance {
     Drift(f64),
     /// The accelerometer stood out: the platform moved.
     Moved(f64),
+    /// The vehicle drove or turned: what Kryt1 of the gyro's axis, °/h, or Kryt2, m/s², lie beyond rest
+    /// (Szymanowski's criteria).
+    Driving(f64, f64),
     /// Its mean does not fit the others.
     Outlier(f64),
 }
@@ -38,6 +44,9 @@ words! { Disturbance:
     Self::Step(x) => "stepped by {} σ within the dwell", Rounded::<1>(x);
     Self::Drift(x) => "drifted by {} σ within the dwell", Rounded::<1>(x);
     Self::Moved(x) => "platform moved by {} σ", Rounded::<1>(x);
+    Self::Driving(rate, force) =>
+        "the vehicle does not stand: {} °/h beyond the Earth rate, {} m/s² from gravity",
+        Rounded::<1>(rate), Rounded::<3>(force);
     Self::Outlier(x) => "residual of {} σ", Rounded::<1>(x);
 }
 
@@ -69,6 +78,11 @@ pub struct Norm {
     slope: f64,
     /// Variance of that slope, (rad/s²)².
     slope_variance: f64,
+    /// The dwells' usual rate, rad/s, and specific force, m/s².
+    rate: f64,
+    force: f64,
+    /// 1σ of what a rate may have drifted from the usual one, rad/s, and a force, m/s².
+    sensors: Sensors,
 }
 
 impl Norm {
@@ -87,6 +101,9 @@ impl Norm {
             walk: noise.rate_random_walk * noise.rate_random_walk,
             flicker: noise.bias_instability * noise.bias_instability / core::f64::consts::PI,
             slope: slope_median(dwells),
+            rate: median_of(dwells.iter().map(|dwell| dwell.rate)),
+            force: median_of(dwells.iter().filter_map(force_of)),
+            sensors: sensors(setting, dwells, white),
         }
     }
 
@@ -106,7 +123,10 @@ impl Norm {
         if self.white <= 0.0 {
             return None;
         }
-        self.unquiet(quietness).or_else(|| self.step(quietness)).or_else(|| self.drift(quietness))
+        self.unquiet(quietness)
+            .or_else(|| self.step(quietness))
+            .or_else(|| self.drift(quietness))
+            .or_else(|| self.driving(dwell))
     }
 
     /// Variance of one block about the dwell's line: white noise, and what of the drift a line
@@ -134,6 +154,15 @@ impl Norm {
         if expected > 0.0 { self.white * found / expected } else { self.white }
     }
 
+    /// Szymanowski's criteria, against what the dwells usually show: their biases are no motion.
+    fn driving(&self, dwell: &Dwell) -> Option<Disturbance> {
+        let force = force_of(dwell).unwrap_or(self.force);
+        let criteria = Criteria::of_axis(dwell.rate - self.rate, force, self.force);
+        let limits = self.sensors.limits(dwell.seconds);
+        let [rate, force] = [criteria.rate / DEGREE_PER_HOUR, criteria.force].map(f64::abs);
+        (!criteria.is_rest(&limits)).then_some(Disturbance::Driving(rate, force))
+    }
+
     fn unquiet(&self, quietness: &Quietness) -> Option<Disturbance> {
         let degrees = quietness.count() - 2.0;
         let chi_square = quietness.scatter / self.block_variance(quietness);
@@ -157,6 +186,34 @@ impl Norm {
         let slope = (quietness.slope - self.slope).abs() / libm::sqrt(variance);
         (slope > SLOPE_BOUND).then_some(Disturbance::Drift(slope))
     }
+}
+
+/// What the criteria are held to: the gyro's noise, what it may have drifted, how the forces scatter.
+fn sensors(setting: &Setting, dwells: &[Dwell], white: f64) -> Sensors {
+    let noise = &setting.noise;
+    let seconds = dwells.last().map_or(0.0, Dwell::end) - dwells.first().map_or(0.0, Dwell::start);
+    let walk = noise.rate_random_walk * libm::sqrt(seconds);
+    let drift = libm::hypot(walk, noise.rate_ramp * seconds);
+    let usual = median_of(dwells.iter().filter_map(force_of));
+    let deviations = dwells.iter().filter_map(force_of).map(|force| (force - usual).abs());
+    Sensors {
+        angle_random_walk: libm::sqrt(white),
+        bias_sigma: libm::hypot(drift, noise.bias_instability)
+            + libm::sqrt(setting.sway.mean_variance(1.0)),
+        force_noise: 0.0,
+        // A median of deviations is 0.67 of their σ.
+        force_bias_sigma: 1.5 * median_of(deviations),
+    }
+}
+
+/// Size of a dwell's mean specific force, m/s².
+fn force_of(dwell: &Dwell) -> Option<f64> {
+    dwell.force.map(|force| length(&force))
+}
+
+/// The median of one value a dwell.
+fn median_of(values: impl Iterator<Item = f64>) -> f64 {
+    median(&mut values.take(POSITIONS).collect::<heapless::Vec<f64, POSITIONS>>())
 }
 
 /// Marks the dwells whose accelerometer reading does not fit the tilt of the others.
@@ -207,9 +264,7 @@ fn white_median(dwells: &[Dwell]) -> f64 {
         };
         variance * quietness.block_seconds
     };
-    let mut values: heapless::Vec<f64, POSITIONS> =
-        dwells.iter().filter_map(|dwell| dwell.quietness.as_ref().map(estimate)).collect();
-    median(&mut values)
+    median_of(dwells.iter().filter_map(|dwell| dwell.quietness.as_ref().map(estimate)))
 }
 
 /// Variance of the shared slope for white noise of density one: a median of n values has π/2 of the

@@ -87,6 +87,14 @@ impl Criteria {
         Self { rate: EARTH_RATE - rate, force: gravity - force }
     }
 
+    /// The same of one axis, which is turned between averages, from how far its mean rate is from the usual
+    /// one, rad/s: at rest they differ by twice the Earth's at most, so less than that is no rate at all.
+    #[must_use]
+    pub fn of_axis(deviation: f64, force: f64, gravity: f64) -> Self {
+        let beyond = (deviation.abs() - 2.0 * EARTH_RATE).max(0.0);
+        Self { rate: -beyond, force: gravity - force }
+    }
+
     /// Whether the vehicle stands, by both.
     #[must_use]
     pub fn is_rest(&self, limits: &Limits) -> bool {

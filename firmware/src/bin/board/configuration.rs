@@ -2,12 +2,13 @@
 //!
 //! | what | where to get it |
 //! |---|---|
-//! | [`TURNS`] | what carries the gyro: a stage, or a platform on a slip ring |
+//! | [`CARRIER`] | what carries the gyro: a stage, a platform on a slip ring, or a vehicle with three |
 //! | [`LATITUDE`] | a map; 0.01° is near enough |
 //! | [`GYRO_SCALE`], [`GYRO_SCALE_SIGMA`], [`GYRO_LIMIT`] | the gyro's test sheet, and the amplifier between it and the converter |
 //! | [`GYRO_N`], [`GYRO_B`], [`GYRO_K`] | the gyro's data sheet; better `meridian allan` of a record at rest, or a [`SURVEY`] on the board |
 //! | [`G_SENSITIVITY`] | the test sheet, or a calibration with the axis up and down |
 //! | [`SPEEDS`], [`SENSOR`], [`UNEVEN_TURNS`] | of a turning platform: how fast it is to turn, and what turns |
+//! | [`STOPS`], [`BIAS_SIGMA`], [`FORCE_CALIBRATED_SIGMA`] | in a vehicle: how many stops, and what the test sheets promise |
 //! | [`ENCODER`] | a calibration of the stage; until then zero, a greater [`ENCODER_SIGMA`], and in [`instrument`] a greater `stage.agreement` |
 //!
 //! Too small a σ here is too small a σ of the azimuth: in doubt take the greater one.
@@ -15,9 +16,10 @@
 use drivers::ads1262::configuration::{Configuration as Converter, DataRate, Filter, Gain};
 use drivers::ads1262::scale::{INTERNAL_REFERENCE_VOLTS, Scale};
 use firmware::calibration::Harmonics;
-use firmware::configuration::{Configuration, TurntableConfiguration};
+use firmware::configuration::{Configuration, TurntableConfiguration, VehicleConfiguration};
 use orientation::align::rotating::{self, Sensor};
 use orientation::align::setting::Setting;
+use orientation::align::stops;
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
 use orientation::planner::Rotation;
@@ -25,12 +27,24 @@ use orientation::planner::order::Order;
 use orientation::session::procedure::Procedure;
 use orientation::session::rotating::Procedure as Turning;
 use orientation::session::schedule::Schedule;
+use orientation::session::stops::Procedure as Driving;
 use orientation::session::survey::Survey;
 use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR, TURN};
 
-/// Whether the platform turns all the time, on a slip ring; else a stage stands at positions. What the
-/// other needs is not in the image.
-pub const TURNS: bool = false;
+/// What carries the gyro.
+#[derive(Clone, Copy, PartialEq, Eq)]
+#[expect(dead_code, reason = "whoever edits this file chooses one")]
+pub enum Carrier {
+    /// A stage that stands at positions.
+    Stage,
+    /// A platform on a slip ring, which turns all the time.
+    Turntable,
+    /// A vehicle that goes from stop to stop, with three gyros.
+    Vehicle,
+}
+
+/// The one of this board. What the others need is not in the image.
+pub const CARRIER: Carrier = Carrier::Stage;
 
 /// Geodetic latitude, °, north positive; up to ±85°, beyond there is no north to find.
 const LATITUDE: f64 = 47.58;
@@ -160,4 +174,34 @@ pub fn turning_procedure() -> Turning {
 /// What the instrument is told of the platform.
 pub fn platform() -> TurntableConfiguration {
     TurntableConfiguration::default()
+}
+
+/// In a vehicle: stops after which it concludes, two at least; three with different headings tell the
+/// gyros' biases.
+const STOPS: usize = 3;
+/// 1σ of the gyros' biases from start to start, °/h.
+const BIAS_SIGMA: f64 = 0.5;
+/// 1σ of the accelerometers' biases once they are calibrated, m/s²: there they are tilt.
+const FORCE_CALIBRATED_SIGMA: f64 = 1e-4 * 9.80665;
+/// Noise of the accelerometers, m/s²/√Hz: 25 µg/√Hz (ADXL355 data sheet, table 1) and outputs not read.
+const FORCE_NOISE: f64 = 1.2 * 25e-6 * 9.80665;
+
+/// What is known of place and instrument in a vehicle.
+pub fn driving_setting() -> stops::Setting {
+    let common = Setting { accelerometer_bias_sigma: FORCE_CALIBRATED_SIGMA, ..setting() };
+    stops::Setting {
+        bias_sigma: Some(BIAS_SIGMA * DEGREE_PER_HOUR),
+        force_noise: FORCE_NOISE,
+        ..stops::Setting::new(common)
+    }
+}
+
+/// How the session goes about it there.
+pub fn driving_procedure() -> Driving {
+    Driving::new(STOPS, 1.0 / CONVERTER.rate.hertz())
+}
+
+/// What the instrument is told of its devices there.
+pub fn vehicle() -> VehicleConfiguration {
+    VehicleConfiguration::at(CONVERTER.rate.hertz())
 }

@@ -11,7 +11,11 @@
 //! | | 4, D11 | PA7 | SPI1 data out: ADS1262 DIN, ADXL355 MOSI |
 //! | | 3, D10 | PA2 | ADS1262 CS |
 //! | | 2, D9 | PA15 | ADXL355 CS |
+//! | | 1, D8 | PB2 | in a vehicle: right ADS1262 CS |
 //! | Arduino CN3 | 3, D2 | PD14 | ADS1262 DRDY |
+//! | | 4, D3 | PB0 | in a vehicle: right ADS1262 DRDY |
+//! | | 7, D6 | PB1 | in a vehicle: down ADS1262 DRDY |
+//! | | 8, D7 | PA4 | in a vehicle: down ADS1262 CS |
 //! | Arduino CN2 | 4, 5, 6 | | 3.3 V, 5 V, ground |
 //! | PMOD CN10 | 4 | PD1 | SPI2 clock: MT6835 SCK, TMC5160 SCK |
 //! | | 3 | PD3 | SPI2 data in: MT6835 MISO, TMC5160 SDO |
@@ -25,7 +29,9 @@
 //! Connectors after UM2153 rev. 5: Table 4 (Arduino), Table 10 (PMOD, solder bridges as delivered:
 //! SB14, 15, 18, 21 closed, SB12, 16, 19, 20 open), section 7.10 (virtual COM port). At the chips:
 //! ADS1262 START and CLKIN low, RESET/PWDN high, gyro between AIN0 and AIN1; TMC5160 CLK and
-//! `SD_MODE` low, `SPI_MODE` high, the index a normally open switch from `REFL_STEP` to its supply.
+//! `SD_MODE` low, `SPI_MODE` high, the index a normally open switch from `REFL_STEP` to its supply. In a
+//! vehicle there is no PMOD side; the ADS1262 on D10 has the forward gyro, and one oscillator of 7.3728 MHz
+//! is at the CLKIN of all three, so that they convert in step.
 #![no_std]
 #![no_main]
 
@@ -33,6 +39,7 @@ mod clock;
 mod configuration;
 mod ports;
 mod stepwise;
+mod stops;
 mod turning;
 mod watchdog;
 mod wiring;
@@ -48,11 +55,12 @@ use firmware::shared::Shared;
 use panic_probe as _;
 use static_cell::StaticCell;
 
-use ports::{Inputs, Outputs};
-use wiring::SensorWires;
+use configuration::Carrier;
+use ports::Inputs;
+use wiring::{Link, SensorWires};
 
 /// The seams between the instrument's parts.
-type Seams = Shared<'static, DefmtLog>;
+type Seams = firmware::shared::Seams<'static, DefmtLog>;
 
 defmt::timestamp!("{=u64:us}", Instant::now().as_micros());
 
@@ -65,18 +73,18 @@ async fn main(spawner: Spawner) {
     defmt::info!("board: started by {}, clock follows its crystal: {}", reason, has_crystal);
     spawner.spawn(defmt::unwrap!(watchdog::feed()));
     let wiring = defmt::unwrap!(wiring::connect(peripherals));
-    // The task that is never spawned is not in the image.
-    if configuration::TURNS {
-        spawner.spawn(defmt::unwrap!(turning::align(spawner, wiring)));
-    } else {
-        spawner.spawn(defmt::unwrap!(stepwise::align(spawner, wiring)));
+    // The tasks that are never spawned are not in the image.
+    match configuration::CARRIER {
+        Carrier::Stage => spawner.spawn(defmt::unwrap!(stepwise::align(spawner, wiring))),
+        Carrier::Turntable => spawner.spawn(defmt::unwrap!(turning::align(spawner, wiring))),
+        Carrier::Vehicle => spawner.spawn(defmt::unwrap!(stops::align(spawner, wiring))),
     }
 }
 
 /// The seams, with the sensors sampling into them.
 fn sample(spawner: Spawner, sensors: SensorWires) -> &'static Seams {
     static SEAMS: StaticCell<Seams> = StaticCell::new();
-    let seams: &'static Seams = SEAMS.init_with(|| Shared::new(&DefmtLog));
+    let seams: &'static Seams = SEAMS.init_with(|| Seams::new(&DefmtLog));
     spawner.spawn(defmt::unwrap!(acquisition(ports::inputs(sensors), seams)));
     seams
 }
@@ -89,10 +97,10 @@ async fn acquisition(mut inputs: Inputs, seams: &'static Seams) {
 
 /// Goes on telling the conclusion; never ends, because what is wired would be let go: the motor would
 /// lose its current and the link its last bytes.
-async fn tell(health: &Health, outputs: &mut Outputs, seams: &'static Seams) -> ! {
+async fn tell(health: &Health, link: &mut Link, shared: &Shared<'static, DefmtLog>) -> ! {
     defmt::info!("board: done, {} faults on the way", health.faults());
     loop {
         Timer::after_secs(1).await;
-        link::send(&mut outputs.link, seams).await;
+        link::send(link, shared).await;
     }
 }

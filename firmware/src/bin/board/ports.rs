@@ -8,34 +8,53 @@ use drivers::tmc5160::Tmc5160;
 use drivers::tmc5160::configuration::{Configuration as Motor, Switches};
 use embassy_time::Delay;
 use firmware::chips::{AnalogueGyro, PlatformAccelerometer, StageEncoder, StageMotor};
-use firmware::ports::{NoBase, NoRecorder, Ports, Sensors};
+use firmware::ports::{NoBase, NoRecorder, Ports, Sensors, VehicleSensors};
 
 use crate::configuration;
-use crate::wiring::{Device, Link, Ready, SensorWires};
+use crate::configuration::{CARRIER, Carrier};
+use crate::wiring::{ConverterWires, Device, Link, Ready, SensorWires};
 
-/// The sensors.
-pub type Inputs = Sensors<
-    AnalogueGyro<Device, Ready, Delay>,
-    PlatformAccelerometer<Device, Delay>,
-    StageEncoder<Device, Delay>,
->;
+/// A gyro behind its converter.
+type Gyro = AnalogueGyro<Device, Ready, Delay>;
+/// The accelerometer.
+type Accelerometer = PlatformAccelerometer<Device, Delay>;
+/// The sensors of a stage or a turning platform.
+pub type Inputs = Sensors<Gyro, Accelerometer, StageEncoder<Device, Delay>>;
+/// The sensors of a vehicle.
+pub type Triad = VehicleSensors<Gyro, Accelerometer>;
 /// The other ports.
 pub type Outputs = Ports<StageMotor<Device, Delay>, Link, NoRecorder>;
 
 /// The sensors on their wires.
 pub fn inputs(wires: SensorWires) -> Inputs {
-    let SensorWires { converter, ready, accelerometer, encoder } = wires;
-    let accelerometer = Adxl355::new(accelerometer, Delay, force());
+    let SensorWires { converter, others: _, accelerometer, encoder } = wires;
     Sensors {
-        gyro: AnalogueGyro {
-            converter: Ads1262::new(converter, ready, Delay, configuration::CONVERTER),
-            scale: configuration::SCALE,
-            limit: configuration::LIMIT,
-        },
-        accelerometer: PlatformAccelerometer(accelerometer),
+        gyro: gyro(self::converter(converter)),
+        accelerometer: self::accelerometer(accelerometer),
         encoder: StageEncoder(Mt6835::new(encoder, Delay, mt6835::Configuration::default())),
         base: NoBase,
     }
+}
+
+/// The sensors of a vehicle on their wires.
+pub fn triad(wires: SensorWires) -> Triad {
+    let SensorWires { converter, others: [right, down], accelerometer, encoder: _ } = wires;
+    VehicleSensors {
+        gyros: [converter, right, down].map(|wires| gyro(self::converter(wires).clocked())),
+        accelerometer: self::accelerometer(accelerometer),
+    }
+}
+
+fn converter(wires: ConverterWires) -> Ads1262<Device, Ready, Delay> {
+    Ads1262::new(wires.bus, wires.ready, Delay, configuration::CONVERTER)
+}
+
+fn gyro(converter: Ads1262<Device, Ready, Delay>) -> Gyro {
+    AnalogueGyro { converter, scale: configuration::SCALE, limit: configuration::LIMIT }
+}
+
+fn accelerometer(bus: Device) -> Accelerometer {
+    PlatformAccelerometer(Adxl355::new(bus, Delay, force()))
 }
 
 /// The other ports on their wires.
@@ -45,10 +64,13 @@ pub fn outputs(motor: Device, link: Link) -> Outputs {
 }
 
 /// The accelerometer. Its filter delays a force by two and a half outputs, in which a platform that turns
-/// is not to turn far.
+/// is not to turn far, nor a vehicle to sway; a vehicle's is read 400 times a second.
 fn force() -> adxl355::Configuration {
-    let usual = adxl355::Configuration::default();
-    let rate = if configuration::TURNS { OutputRate::Hz1000 } else { usual.rate };
+    let rate = match CARRIER {
+        Carrier::Stage => adxl355::Configuration::default().rate,
+        Carrier::Turntable => OutputRate::Hz1000,
+        Carrier::Vehicle => OutputRate::Hz500,
+    };
     adxl355::Configuration { rate }
 }
 
@@ -56,5 +78,5 @@ fn force() -> adxl355::Configuration {
 fn drive() -> Motor {
     let usual = Motor::default();
     let none = Switches { left: None, right: None };
-    Motor { switches: if configuration::TURNS { none } else { usual.switches }, ..usual }
+    Motor { switches: if CARRIER == Carrier::Turntable { none } else { usual.switches }, ..usual }
 }

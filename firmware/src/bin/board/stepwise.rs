@@ -20,7 +20,7 @@ pub async fn align(spawner: Spawner, wiring: Wiring) {
     let seams = sample(spawner, sensors);
     let mut outputs = ports::outputs(motor, link);
     let health = run(&mut outputs, &configuration::instrument(), session, seams).await;
-    tell(&health, &mut outputs, seams).await;
+    tell(&health, &mut outputs.link, &seams.shared).await;
 }
 
 /// The session, made where it stays.

@@ -33,7 +33,7 @@ pub async fn align(spawner: Spawner, wiring: Wiring) {
     let mut outputs = ports::outputs(motor, link);
     let platform = configuration::platform();
     let health = run_storing(&mut outputs, &platform, session, &mut store, seams).await;
-    tell(&health, &mut outputs, seams).await;
+    tell(&health, &mut outputs.link, &seams.shared).await;
 }
 
 fn store(flash: Peri<'static, FLASH>) -> Store {
@@ -50,6 +50,6 @@ async fn session(store: &mut Store, seams: &Seams) -> Option<&'static mut Sessio
         defmt::error!("board: no session: {}", error);
         return None;
     }
-    prepare(store, TODAY, (&mut setting, &mut procedure), seams).await;
+    prepare(store, TODAY, (&mut setting, &mut procedure), &seams.shared).await;
     Some(SESSION.init_with(|| Session::of(setting, procedure)))
 }

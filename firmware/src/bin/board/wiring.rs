@@ -10,7 +10,7 @@ use drivers::{ads1262, adxl355, mt6835};
 use embassy_embedded_hal::shared_bus::asynch::spi::SpiDeviceWithConfig;
 use embassy_stm32::exti::{self, ExtiInput};
 use embassy_stm32::gpio::{Level, Output, Pin, Pull, Speed};
-use embassy_stm32::interrupt::typelevel::EXTI15_10;
+use embassy_stm32::interrupt::typelevel::{EXTI0, EXTI1, EXTI15_10};
 use embassy_stm32::mode::Async;
 use embassy_stm32::peripherals::{DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA2_CH6, FLASH};
 use embassy_stm32::spi::mode::Master;
@@ -25,6 +25,8 @@ use static_cell::StaticCell;
 use crate::clock;
 
 bind_interrupts!(struct Interrupts {
+    EXTI0 => exti::InterruptHandler<EXTI0>;
+    EXTI1 => exti::InterruptHandler<EXTI1>;
     EXTI15_10 => exti::InterruptHandler<EXTI15_10>;
     DMA1_CHANNEL2 => dma::InterruptHandler<DMA1_CH2>;
     DMA1_CHANNEL3 => dma::InterruptHandler<DMA1_CH3>;
@@ -62,14 +64,22 @@ pub struct Wiring {
 
 /// The sensors' part of it.
 pub struct SensorWires {
-    /// ADS1262.
-    pub converter: Device,
-    /// Its data-ready line, low when a conversion is ready.
-    pub ready: Ready,
+    /// ADS1262; in a vehicle that of the forward gyro.
+    pub converter: ConverterWires,
+    /// In a vehicle those of the right and the down gyro.
+    pub others: [ConverterWires; 2],
     /// ADXL355.
     pub accelerometer: Device,
     /// MT6835.
     pub encoder: Device,
+}
+
+/// An ADS1262.
+pub struct ConverterWires {
+    /// The chip on its bus.
+    pub bus: Device,
+    /// Its data-ready line, low when a conversion is ready.
+    pub ready: Ready,
 }
 
 /// Connects everything.
@@ -84,8 +94,20 @@ pub fn connect(p: Peripherals) -> Result<Wiring, ConfigError> {
     let stage = STAGE.init(Mutex::new(stage));
     Ok(Wiring {
         sensors: SensorWires {
-            converter: device(sensors, p.PA2, low),
-            ready: ExtiInput::new(p.PD14, p.EXTI14, Pull::Up, Interrupts),
+            converter: ConverterWires {
+                bus: device(sensors, p.PA2, low),
+                ready: ExtiInput::new(p.PD14, p.EXTI14, Pull::Up, Interrupts),
+            },
+            others: [
+                ConverterWires {
+                    bus: device(sensors, p.PB2, low),
+                    ready: ExtiInput::new(p.PB0, p.EXTI0, Pull::Up, Interrupts),
+                },
+                ConverterWires {
+                    bus: device(sensors, p.PA4, low),
+                    ready: ExtiInput::new(p.PB1, p.EXTI1, Pull::Up, Interrupts),
+                },
+            ],
             accelerometer: device(sensors, p.PA15, settings(MODE_0, adxl355::BUS_HERTZ)),
             encoder: device(stage, p.PD0, settings(MODE_3, mt6835::BUS_HERTZ)),
         },

@@ -9,7 +9,7 @@
 //!
 //! `meridian emulate` builds and runs this image, reads its log, and compares what it found with its
 //! own run of the same seed. The log speaks of three things that the host parses: `outcome`,
-//! `dwell` and `turn` lines carry the bits of every number that was found, `effort` and `stack` lines what it
+//! `dwell`, `turn` and `stop` lines carry the bits of every number that was found, `effort` and `stack` lines what it
 //! took. Nothing here prints by semihosting: it would fall into the middle of the log.
 #![no_std]
 #![no_main]
@@ -23,22 +23,16 @@ mod meter;
 mod order;
 mod outside;
 mod results;
-mod sitting;
+mod setup;
 #[path = "../measure/stack.rs"]
 mod stack;
 
-use core::cell::{OnceCell, RefCell};
+use core::cell::OnceCell;
 use core::pin::pin;
 
 use cortex_m_rt::entry;
 use embassy_executor::SpawnError;
 use embassy_executor::raw::Executor;
-use firmware::configuration::Configuration;
-use firmware::ports::NoRecorder;
-use firmware::run::acquire;
-use firmware::shared::Shared;
-use firmware::simulated::fault::Plan;
-use firmware::simulated::{Chips, SimulatedPorts, SimulatedSensors};
 use semihosting::process::ExitCode;
 use static_cell::StaticCell;
 
@@ -46,8 +40,7 @@ use counter::Counter;
 use executor::Deadlock;
 use meter::{Meter, Task};
 use order::Order;
-use outside::{Log, Metering, NoLink};
-use sitting::Sitting;
+use setup::{Finished, Running, Sampling};
 
 /// Why nothing was found.
 #[derive(defmt::Format)]
@@ -84,26 +77,10 @@ struct Bench {
     acquisition: Task,
     instrument: Task,
     /// The session, once it has concluded.
-    finished: OnceCell<&'static Sitting>,
+    finished: OnceCell<Finished>,
 }
 
-/// The simulated board.
-type Rig = RefCell<Chips<'static>>;
-/// The seams between the instrument's parts.
-type Seams = Shared<'static, Log>;
-/// Its sensors.
-type Inputs = SimulatedSensors<'static, Chips<'static>, Metering>;
-/// Its other ports.
-type Outputs = SimulatedPorts<'static, Chips<'static>, Metering, NoLink, NoRecorder>;
-
-/// Nothing goes wrong here.
-static PLAN: StaticCell<Plan> = StaticCell::new();
-static RIG: StaticCell<Rig> = StaticCell::new();
 static BENCH: StaticCell<Bench> = StaticCell::new();
-static LOG: StaticCell<Log> = StaticCell::new();
-static SEAMS: StaticCell<Seams> = StaticCell::new();
-static INPUTS: StaticCell<Inputs> = StaticCell::new();
-static OUTPUTS: StaticCell<Outputs> = StaticCell::new();
 static EXECUTOR: StaticCell<Executor> = StaticCell::new();
 
 #[entry]
@@ -123,7 +100,6 @@ fn main() -> ! {
 fn run() -> Result<(), Failure> {
     let order = Order::from_host().ok_or(Failure::NoOrder)?;
     let peripherals = cortex_m::Peripherals::take().ok_or(Failure::NoTimer)?;
-    let session = order.session().ok_or(Failure::Session)?;
     let bench: &'static Bench = BENCH.init(Bench {
         meter: Meter::new(Counter::start(peripherals.SYST)),
         acquisition: Task::new("acquisition"),
@@ -131,59 +107,31 @@ fn run() -> Result<(), Failure> {
         finished: OnceCell::new(),
     });
     let executor: &'static Executor = EXECUTOR.init_with(executor::new);
-    spawn(executor, bench, &order, session)?;
+    let (sampling, running) = order.begin(&bench.meter).ok_or(Failure::Session)?;
+    let spawner = executor.spawner();
+    spawner.spawn(acquisition(bench, sampling)?);
+    spawner.spawn(instrument(bench, running)?);
     executor::run(executor, &bench.meter, || bench.finished.get().is_some())?;
-    let session = bench.finished.get().ok_or(Failure::NoConclusion)?;
-    session.log(order.base().seed).ok_or(Failure::NoConclusion)?;
+    let finished = bench.finished.get().ok_or(Failure::NoConclusion)?;
+    finished.log(order.base().seed).ok_or(Failure::NoConclusion)?;
     log::effort(&bench.meter, order.base().sample_rate_hz);
     log::task(&bench.acquisition);
     log::task(&bench.instrument);
     Ok(())
 }
 
-/// Builds the simulated board and gives acquisition and instrument a task each.
-fn spawn(
-    executor: &'static Executor,
-    bench: &'static Bench,
-    order: &Order,
-    session: &'static mut Sitting,
-) -> Result<(), Failure> {
-    let plan: &'static Plan = PLAN.init_with(|| Plan::of(None));
-    let rig: &'static Rig = RIG.init_with(|| RefCell::new(order.board(plan)));
-    let metering = Metering(&bench.meter);
-    let seams: &'static Seams = SEAMS.init_with(|| Shared::new(LOG.init(Log(&bench.meter))));
-    let inputs = INPUTS.init_with(|| order.inputs(rig, &metering));
-    let outputs = OUTPUTS.init_with(|| order.outputs(rig, &metering));
-    let configuration = order.configuration();
-    let spawner = executor.spawner();
-    spawner.spawn(acquisition(bench, inputs, configuration, seams)?);
-    spawner.spawn(instrument(bench, outputs, configuration, seams, session)?);
-    Ok(())
-}
-
 #[embassy_executor::task]
-async fn acquisition(
-    bench: &'static Bench,
-    inputs: &'static mut Inputs,
-    configuration: Configuration,
-    seams: &'static Seams,
-) {
-    let future = pin!(acquire(inputs, &configuration, seams));
+async fn acquisition(bench: &'static Bench, sampling: Sampling) {
+    let future = pin!(sampling.run());
     bench.acquisition.run(&bench.meter, future).await;
 }
 
 #[embassy_executor::task]
-async fn instrument(
-    bench: &'static Bench,
-    outputs: &'static mut Outputs,
-    configuration: Configuration,
-    seams: &'static Seams,
-    session: &'static mut Sitting,
-) {
+async fn instrument(bench: &'static Bench, running: Running) {
     let future = pin!(async {
-        session.run(outputs, &configuration, seams).await;
+        let finished = running.run().await;
         // It runs once: nothing has finished before.
-        let _ = bench.finished.set(session);
+        let _ = bench.finished.set(finished);
     });
     bench.instrument.run(&bench.meter, future).await;
 }

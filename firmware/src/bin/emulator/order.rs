@@ -1,24 +1,30 @@
 //! What to run, as the host says it in the last word of the image's command line: `SEED`, or
 //! `SEED/brief` for the short run at the highest sample rate, `SEED/survey` for one that learns its
-//! gyro's noise first, `SEED/turning` for one on a platform that turns all the time.
+//! gyro's noise first, `SEED/turning` for one on a platform that turns all the time, `SEED/stops` for one
+//! in a vehicle.
 
-use core::cell::RefCell;
 use core::mem::MaybeUninit;
 
-use firmware::configuration::Configuration;
-use firmware::ports::NoRecorder;
+use firmware::ports::{NoRecorder, VehiclePorts};
+use firmware::simulated;
 use firmware::simulated::fault::Plan;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::{self, TurntableScenario};
-use firmware::simulated::{self, Chips};
+use firmware::simulated::vehicle::fault::VehiclePlan;
+use firmware::simulated::vehicle::{self, KnownPlace, VehicleScenario};
 use semihosting::sys::arm_compat::sys_get_cmdline_uninit;
 
+use crate::meter::Meter;
 use crate::outside::{Metering, NoLink};
-use crate::sitting::Sitting;
-use crate::{Inputs, Outputs, Rig};
+use crate::setup::{self, Running, Sampling};
 
 /// Bytes of the longest command line; the emulator begins it with the image's path.
 const LONGEST: usize = 4096;
+
+/// Nothing goes wrong here.
+static PLAN: Plan = Plan::NONE;
+/// Nothing with a vehicle.
+static VEHICLE_PLAN: VehiclePlan = VehiclePlan::NONE;
 
 /// What to run.
 #[expect(clippy::large_enum_variant, reason = "there is one")]
@@ -27,6 +33,8 @@ pub enum Order {
     Stepwise(Scenario),
     /// One on a turning platform.
     Turning(TurntableScenario),
+    /// One in a vehicle.
+    Stops(VehicleScenario),
 }
 
 impl Order {
@@ -44,6 +52,7 @@ impl Order {
             "brief" => Some(Self::Stepwise(Scenario::brief(seed))),
             "survey" => Some(Self::Stepwise(Scenario::surveying(seed))),
             "turning" => Some(Self::Turning(TurntableScenario::brief(seed))),
+            "stops" => Some(Self::Stops(VehicleScenario::brief(seed))),
             _ => None,
         }
     }
@@ -53,48 +62,68 @@ impl Order {
         match self {
             Self::Stepwise(scenario) => scenario,
             Self::Turning(scenario) => &scenario.base,
+            Self::Stops(scenario) => &scenario.base,
         }
     }
 
-    /// What the board is told of its devices.
-    pub fn configuration(&self) -> Configuration {
+    /// Everything that is to run, made where it stays; `None` where the scenario lets it not begin.
+    pub fn begin(&self, meter: &'static Meter) -> Option<(Sampling, Running)> {
         match self {
-            Self::Stepwise(scenario) => scenario.configuration(),
-            Self::Turning(scenario) => scenario.configuration(),
+            Self::Stepwise(scenario) => stepwise(scenario, meter),
+            Self::Turning(scenario) => turning(scenario, meter),
+            Self::Stops(scenario) => driving(scenario, meter),
         }
     }
+}
 
-    /// The session, made where it stays; `None` where the scenario lets it not begin.
-    pub fn session(&self) -> Option<&'static mut Sitting> {
-        match self {
-            Self::Stepwise(scenario) => scenario.prepared().map(Sitting::stepwise),
-            Self::Turning(scenario) => {
-                scenario.checked().map(|(setting, procedure)| Sitting::turning(&setting, procedure))
-            }
-        }
-    }
+fn stepwise(scenario: &Scenario, meter: &'static Meter) -> Option<(Sampling, Running)> {
+    let session = setup::stepwise(scenario.prepared()?)?;
+    let around = Metering(meter);
+    let (inputs, outputs, seams) = setup::stage(
+        || simulated::board(scenario, &PLAN),
+        |rig| simulated::sensors(rig, scenario, &around),
+        |rig| simulated::ports(rig, &around, NoLink, NoRecorder),
+        meter,
+    )?;
+    let configuration = scenario.configuration();
+    Some((
+        Sampling::Stage(inputs, configuration, seams),
+        Running::Stepwise(session, outputs, configuration, seams),
+    ))
+}
 
-    /// The simulated board.
-    pub fn board(&self, plan: &'static Plan) -> Chips<'static> {
-        match self {
-            Self::Stepwise(scenario) => simulated::board(scenario, plan),
-            Self::Turning(scenario) => scenario.board(plan),
-        }
-    }
+fn turning(scenario: &TurntableScenario, meter: &'static Meter) -> Option<(Sampling, Running)> {
+    let (setting, procedure) = scenario.checked()?;
+    let session = setup::turning(&setting, procedure)?;
+    let around = Metering(meter);
+    let (inputs, outputs, seams) = setup::stage(
+        || scenario.board(&PLAN),
+        |rig| turntable::sensors(rig, scenario, &around),
+        |rig| turntable::ports(rig, &around, NoLink, NoRecorder),
+        meter,
+    )?;
+    Some((
+        Sampling::Stage(inputs, scenario.configuration(), seams),
+        Running::Turning(session, outputs, seams),
+    ))
+}
 
-    /// Its sensors.
-    pub fn inputs(&self, rig: &'static Rig, metering: &Metering) -> Inputs {
-        match self {
-            Self::Stepwise(scenario) => simulated::sensors(rig, scenario, metering),
-            Self::Turning(scenario) => turntable::sensors(rig, scenario, metering),
-        }
-    }
-
-    /// Its other ports.
-    pub fn outputs(&self, rig: &'static RefCell<Chips<'static>>, metering: &Metering) -> Outputs {
-        match self {
-            Self::Stepwise(_) => simulated::ports(rig, metering, NoLink, NoRecorder),
-            Self::Turning(_) => turntable::ports(rig, metering, NoLink, NoRecorder),
-        }
-    }
+fn driving(scenario: &VehicleScenario, meter: &'static Meter) -> Option<(Sampling, Running)> {
+    let (setting, procedure) = scenario.checked()?;
+    let session = setup::driving(&setting, procedure)?;
+    let around = Metering(meter);
+    let (inputs, outputs, seams) = setup::vehicle(
+        || scenario.board(&vehicle::BRIEF, &[], &VEHICLE_PLAN),
+        |rig| vehicle::sensors(rig, scenario, &around),
+        |rig| VehiclePorts {
+            whereabouts: KnownPlace::new(rig, scenario.place, scenario.base.seed),
+            link: NoLink,
+            recorder: NoRecorder,
+        },
+        meter,
+    )?;
+    Some((
+        Sampling::Vehicle(inputs, scenario.configuration(), seams),
+        Running::Stops(session, outputs, seams),
+    ))
 }

@@ -15,7 +15,7 @@ use firmware::log::DefmtLog;
 use firmware::ports::Observer;
 use firmware::simulated::Around;
 use hal_mock::chip::Select;
-use orientation::session::{Session, rotating};
+use orientation::session::{Session, rotating, stops};
 
 use crate::clock;
 use crate::meter::Meter;
@@ -38,7 +38,7 @@ impl Around for Metering {
         Outside { port, meter: self.0 }
     }
 
-    fn line<W: Wait>(&self, port: W) -> Outside<W> {
+    fn line<W: Wait>(&self, _: Select, port: W) -> Outside<W> {
         Outside { port, meter: self.0 }
     }
 }
@@ -101,6 +101,10 @@ impl Observer for Log {
     }
 
     fn turned(&self, _: &rotating::Session) {
+        self.0.mark(clock::now());
+    }
+
+    fn stopped(&self, _: &stops::Session) {
         self.0.mark(clock::now());
     }
 }

@@ -1,11 +1,12 @@
 //! What was found, bit by bit, for the host to compare with its own run.
 //!
-//! One line `dwell` for each dwell, or `turn` for each turn, and one `outcome`: `name=value` pairs, bits in hexadecimal, all
+//! One line `dwell` for each dwell, `turn` for each turn or `stop` for each stop, and one `outcome`: `name=value` pairs, bits in hexadecimal, all
 //! ones for what is absent (no computation gives that pattern). They are printed at every log level.
 
 use defmt::println;
 use orientation::align::conclusion::Azimuth;
 use orientation::align::rotating::turn::Turn;
+use orientation::align::stops::stop::Stop;
 use orientation::error::Refusal;
 use orientation::signal::dwell::Dwell;
 
@@ -51,6 +52,26 @@ pub fn turn(number: u32, turn: &Turn) {
         bits(turn.middle),
         bits(turn.seconds),
         bits(turn.speed)
+    );
+}
+
+/// Logs a stop: from when to when, what was turned in it and felt, what had been turned before.
+#[inline(never)]
+pub fn stop(number: u32, stop: &Stop) {
+    let [turned, force] =
+        [stop.turned.mean(), stop.force.mean()].map(|mean| mean.map(f64::to_bits));
+    println!(
+        "stop number={=u32} from={=u64:x} to={=u64:x} turned_x={=u64:x} turned_y={=u64:x} \
+         turned_z={=u64:x} force_x={=u64:x} force_y={=u64:x} force_z={=u64:x}",
+        number,
+        stop.from.to_bits(),
+        stop.to.to_bits(),
+        turned[0],
+        turned[1],
+        turned[2],
+        force[0],
+        force[1],
+        force[2]
     );
 }
 

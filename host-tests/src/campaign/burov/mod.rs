@@ -16,9 +16,9 @@ use orientation::session::Session;
 use orientation::session::procedure::Procedure;
 use orientation::session::schedule::Schedule;
 use orientation::units::DEGREE_PER_HOUR;
-use rayon::prelude::*;
 use serde::Serialize;
 
+use super::over;
 use super::statistics::Answer;
 use crate::planning::SHORTEST;
 use crate::simulate::run;
@@ -136,15 +136,6 @@ impl Trial {
         world.accelerometer.bias_sigma_m_s2 = FORCE_BIAS;
         world
     }
-}
-
-/// One result for each seed.
-fn over<T: Send>(runs: usize, tick: &(impl Fn() + Sync), of: impl Fn(u64) -> T + Sync) -> Vec<T> {
-    let of = |seed| {
-        tick();
-        of(seed)
-    };
-    (1..=runs as u64).into_par_iter().map(of).collect()
 }
 
 /// 3σ of an azimuth along one axis for a rate error in rad/s, at the equator, °; times sec φ elsewhere.

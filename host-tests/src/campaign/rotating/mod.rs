@@ -16,9 +16,9 @@ use orientation::error::Refusal;
 use orientation::noise::model::GyroNoise;
 use orientation::session::rotating::{Procedure, Session};
 use orientation::units::DEGREE_PER_HOUR;
-use rayon::prelude::*;
 
 use self::world::{LATITUDE_DEG, World};
+use super::over;
 use super::statistics::Answer;
 use crate::output::{azimuth_error, degrees};
 use crate::rotating::follow;
@@ -91,14 +91,4 @@ fn setting(world: &World, sensor: Sensor) -> Option<Setting> {
         ..Common::at(Latitude::from_degrees(LATITUDE_DEG)?)
     };
     Some(Setting::new(common, sensor))
-}
-
-/// One result for each seed.
-fn over<T: Send>(runs: usize, tick: &(impl Fn() + Sync), of: impl Fn(u64) -> T + Sync) -> Vec<T> {
-    let of = |seed| {
-        let result = of(seed);
-        tick();
-        result
-    };
-    (1..=runs as u64).into_par_iter().map(of).collect()
 }

@@ -11,8 +11,9 @@ use rustfft::num_complex::Complex;
 use serde::Serialize;
 
 use super::world::{COUPLING_DEG, Integrating, LATITUDE_DEG, TILT_DEG, World};
-use super::{Solved, over, solve};
-use crate::campaign::statistics::{Answer, Precision, rms};
+use super::{Solved, solve};
+use crate::campaign::over;
+use crate::campaign::statistics::{Answer, Precision, greatest, rms};
 use crate::output::azimuth_error;
 
 /// Both speeds, turns a second.
@@ -108,11 +109,6 @@ fn row(coupling_deg: f64, ratio: f64, runs: usize, tick: &(impl Fn() + Sync)) ->
         plain_limit_deg,
         precision,
     }
-}
-
-/// The greatest absolute value; one that is missing is greater than all.
-fn greatest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |most, value| if value.abs() <= most { most } else { value.abs() })
 }
 
 impl Draw {

@@ -3,6 +3,7 @@
 use crate::campaign::burov::classes;
 use crate::campaign::burov::devices::{Device, curve};
 use crate::campaign::burov::drift::{Comparison, Row};
+use crate::output::named;
 use crate::report::{Axis, Figure, Part, Report, Series, Style, Table};
 
 /// Positions that the figures show.
@@ -45,10 +46,6 @@ fn points(errors: &[(u32, f64)]) -> Vec<(f64, f64)> {
 /// The slope of Δω over n by differences, between the positions.
 fn change(errors: &[(u32, f64)]) -> Vec<(f64, f64)> {
     errors.windows(2).map(|pair| (f64::from(pair[0].0) + 0.5, pair[1].1 - pair[0].1)).collect()
-}
-
-fn named(head: &[&str]) -> Vec<String> {
-    head.iter().map(|name| (*name).to_owned()).collect()
 }
 
 fn device_table(devices: &[Device]) -> Table {

@@ -4,10 +4,11 @@ pub mod alignment;
 pub mod burov;
 pub mod plan;
 pub mod rotating;
+pub mod stops;
 
 use orientation::align::budget::Budget;
 
-use super::degrees;
+use super::{degrees, parts};
 use crate::report::Table;
 
 /// Where σ comes from.
@@ -19,6 +20,6 @@ fn budget(budget: &Budget) -> Table {
     Table {
         title: "Error budget (1σ of the azimuth)".to_owned(),
         head: ["source", "part, °", "share of the variance, %"].map(str::to_owned).to_vec(),
-        rows: budget.parts().map(|(source, part)| row((source, part))).to_vec(),
+        rows: parts(budget).map(row).collect(),
     }
 }

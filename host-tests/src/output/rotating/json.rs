@@ -7,8 +7,8 @@ use orientation::align::rotating::solution::Fit;
 use serde::Serialize;
 
 use super::{averages, columns, is_molecular, pitch_and_roll, tilt};
-use crate::output::json::BudgetObject;
-use crate::output::{azimuth_error, degrees};
+use crate::output::degrees;
+use crate::output::json::{BudgetObject, Verdict};
 use crate::rotating::Replay;
 
 /// The object; its keys are those of every method that gives an azimuth, then its own.
@@ -16,20 +16,9 @@ use crate::rotating::Replay;
 pub struct Object {
     /// `rotating`.
     pub method: &'static str,
-    /// `ok` or `refused`.
-    pub status: &'static str,
-    /// Why it was refused.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub reason: Option<String>,
-    /// Azimuth of body x, [0, 360); only with `ok`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub azimuth_deg: Option<f64>,
-    /// Its standard deviation; only with `ok`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub sigma_deg: Option<f64>,
-    /// Azimuth less truth, where the recording carries one; only with `ok`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub error_deg: Option<f64>,
+    /// The azimuth, or why there is none.
+    #[serde(flatten)]
+    pub verdict: Verdict,
     /// Cramér–Rao bound for the model's columns, where the noise is known.
     pub limit_deg: Option<f64>,
     /// The same for a sensor of known gain, lag and g-sensitivity.
@@ -183,8 +172,6 @@ pub(super) fn one_speed(replay: &Replay, conclusion: &Conclusion, fit: &Fit) -> 
 /// The object of a replay; `truth_deg` is for its error alone.
 #[must_use]
 pub fn object(replay: &Replay, conclusion: &Conclusion, truth_deg: Option<f64>) -> Object {
-    let verdict = conclusion.verdict.as_ref();
-    let found = verdict.ok().map(|azimuth| degrees(azimuth.angle));
     let fit = conclusion.fit.as_ref();
     let bounded = fit.filter(|_| replay.noise_is_known());
     let flat = fit.filter(|fit| fit.ratio_sigma.is_finite());
@@ -192,11 +179,7 @@ pub fn object(replay: &Replay, conclusion: &Conclusion, truth_deg: Option<f64>) 
     let coupling = conclusion.couplings.first();
     Object {
         method: "rotating",
-        status: if verdict.is_ok() { "ok" } else { "refused" },
-        reason: verdict.err().map(ToString::to_string),
-        azimuth_deg: found,
-        sigma_deg: verdict.ok().map(|azimuth| degrees(azimuth.sigma)),
-        error_deg: found.zip(truth_deg).map(|(azimuth, truth)| azimuth_error(azimuth, truth)),
+        verdict: Verdict::of(&conclusion.verdict, truth_deg),
         limit_deg: bounded.map(|fit| degrees(fit.limit)),
         plain_limit_deg: bounded.map(|fit| degrees(fit.plain_limit)),
         budget: fit.map(|fit| (&fit.budget).into()),

@@ -7,8 +7,8 @@ use orientation::align::rotating::solution::Fit;
 
 use super::json::{DISTURBED, Stages, Stretch, one_speed};
 use super::{averages, columns, is_molecular, pitch_and_roll, tilt};
-use crate::output::text::{budget, line};
-use crate::output::{azimuth_error, degrees, positive_zero};
+use crate::output::text::{budget, headline, line};
+use crate::output::{degrees, positive_zero};
 use crate::rotating::Replay;
 
 /// Writes the block for a replay of `name`; `truth_deg` is for its error alone.
@@ -22,7 +22,7 @@ pub fn block(
     conclusion: &Conclusion,
     truth_deg: Option<f64>,
 ) -> fmt::Result {
-    headline(out, name, conclusion, truth_deg)?;
+    headline(out, name, &conclusion.verdict, truth_deg, |_| Ok(()))?;
     if let Some(fit) = &conclusion.fit {
         limits(out, replay, fit)?;
         attitude(out, fit)?;
@@ -34,28 +34,6 @@ pub fn block(
     }
     line(out, "assumed", format_args!("{}", replay.assumed.join("; ")))?;
     stretches(out, conclusion)
-}
-
-fn headline(
-    out: &mut impl Write,
-    name: &str,
-    conclusion: &Conclusion,
-    truth_deg: Option<f64>,
-) -> fmt::Result {
-    let azimuth = match &conclusion.verdict {
-        Ok(azimuth) => azimuth,
-        Err(reason) => {
-            writeln!(out, "\nNo azimuth from {name}\n")?;
-            return line(out, "reason", format_args!("{reason}"));
-        }
-    };
-    writeln!(out, "\nTrue north found in {name}\n")?;
-    let [angle, sigma] = [azimuth.angle, azimuth.sigma].map(degrees);
-    line(out, "azimuth of body x", format_args!("{angle:.4}° ± {sigma:.4}° (1σ)"))?;
-    let Some(truth) = truth_deg else { return Ok(()) };
-    let error = azimuth_error(angle, truth);
-    let sigmas = error / sigma;
-    line(out, "truth", format_args!("{truth:.4}°: the error is {error:+.4}°, {sigmas:+.2} σ"))
 }
 
 fn limits(out: &mut impl Write, replay: &Replay, fit: &Fit) -> fmt::Result {

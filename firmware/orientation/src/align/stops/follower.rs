@@ -20,8 +20,6 @@ pub const WINDOW: usize = 10;
 const LATEST: usize = 2;
 /// Delay T₀ after which a vehicle that stopped no longer rocks, s.
 const DELAY: usize = 3;
-/// Time between two stops below which they are one, s: nobody drives anywhere.
-const RESUMED: f64 = 1.5;
 /// Length of a block at rest as long as there is room, s.
 const REST_SPAN: f32 = 5.0;
 /// Length of a block on the way as long as there is room, s.
@@ -202,9 +200,12 @@ impl Follower {
     /// Lets the oldest second of the window go: what belongs to no stop was driven.
     fn leave(&mut self) {
         let Some(second) = self.window.pop_front() else { return };
-        let begun = self.stops.iter().filter(|stop| stop.from <= second.from).count();
-        if let (false, Some(_), Some(stop)) = (second.is_rest, second.force, begun.checked_sub(1)) {
-            self.drives.push(block(&second, second.start_force, stop as u8));
+        let begun = self.stops.iter().take_while(|stop| stop.from <= second.from).count();
+        let Some((index, stop)) = self.stops.iter().enumerate().take(begun).next_back() else {
+            return;
+        };
+        if !second.is_rest && second.force.is_some() && second.from >= stop.to {
+            self.drives.push(block(&second, second.start_force, index as u8));
         }
     }
 
@@ -263,14 +264,18 @@ impl Follower {
         }
     }
 
-    /// Begins a stop with the window, which is past the delay, or goes on with one that somebody shook.
+    /// Begins a stop with the window, which is past the delay, or goes on with one that was not left:
+    /// nobody drives anywhere without failing the criteria for as long as they look.
     fn stand(&mut self) {
-        self.is_at_rest = true;
-        let from = self.window.front().map_or(0.0, |second| second.from);
-        let is_same = self.stops.last().is_some_and(|stop| from < stop.to + RESUMED);
-        let stop = self.stops.len() - usize::from(is_same);
+        let now = self.window.back().map_or(0.0, |second| second.to);
+        let last = self.stops.last().map_or(f64::NEG_INFINITY, |stop| stop.to);
+        let goes_on = now - last < (WINDOW + DELAY + LATEST) as f64;
+        let stop = self.stops.len() - usize::from(goes_on);
+        // The next seconds belong to the last stop, so there must be one for this.
+        self.is_at_rest = stop < STOPS;
         for index in 0..WINDOW - LATEST {
-            if self.window.iter().nth(index).is_some_and(|second| !second.is_rest) {
+            let is_new = self.window.iter().nth(index).is_some_and(|second| second.from >= last);
+            if is_new {
                 self.rest(index, stop);
             }
         }

@@ -99,7 +99,10 @@ impl Procedure {
     }
 
     /// Whether it can be gone about.
-    fn check(&self) -> Result<(), ProcedureError> {
+    ///
+    /// # Errors
+    /// As [`Session::new`].
+    pub fn check(&self) -> Result<(), ProcedureError> {
         let is_period = self.sample_seconds > 0.0 && self.sample_seconds.is_finite();
         let has_stops = self.stops <= STOPS && (self.stops != 1 || self.rests == Rests::Whole);
         if is_period && has_stops && self.stop_seconds > 0.0 {
@@ -130,12 +133,20 @@ impl Session {
     /// [`ProcedureError::NoStops`]: no sample period, no length of a stop, one stop only, or too many.
     pub fn new(setting: Setting, procedure: Procedure) -> Result<Self, ProcedureError> {
         procedure.check()?;
+        Ok(Self::of(setting, procedure))
+    }
+
+    /// The same of a procedure that was checked, made where it is to stay: it is too great for a small
+    /// stack.
+    #[must_use]
+    #[inline]
+    pub fn of(setting: Setting, procedure: Procedure) -> Self {
         let gravity = setting.common.latitude.gravity();
         let period = procedure.sample_seconds;
         let follower = Follower::new(procedure.rests.clone(), &setting.sensors(), gravity, period);
         let phase = Phase::Waiting;
         let (begun, is_told, conclusion) = (None, false, None);
-        Ok(Self { setting, procedure, follower, phase, begun, is_told, conclusion })
+        Self { setting, procedure, follower, phase, begun, is_told, conclusion }
     }
 
     /// Takes one event and answers what is to be done now.

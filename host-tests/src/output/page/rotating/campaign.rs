@@ -2,10 +2,10 @@
 //! and the tables.
 
 use super::figures;
-use super::named;
 use crate::campaign::rotating::world::{COUPLING_DEG, World, segments};
 use crate::campaign::rotating::{molecular, refusals, stages};
 use crate::campaign::statistics::Precision;
+use crate::output::named;
 use crate::report::{Axis, Figure, Part as OfPage, Report, Series, Style, Table};
 use crate::rotating::part::Part;
 

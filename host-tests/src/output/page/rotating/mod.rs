@@ -7,7 +7,7 @@ use orientation::align::rotating::conclusion::Conclusion;
 
 use super::budget;
 use crate::output::rotating::json::{Stages, Stretch};
-use crate::output::{azimuth_error, degrees};
+use crate::output::{azimuth_error, degrees, named};
 use crate::recording::RotatingRow;
 use crate::report::{Part as OfPage, Report, Table};
 use crate::rotating::Replay;
@@ -73,10 +73,6 @@ fn of_parts(parts: &[Part<'_>], freed: &[Part<'_>]) -> Vec<OfPage> {
     page.push(figures::plane(freed).into());
     page.push(figures::residuals(freed).into());
     page
-}
-
-fn named(head: &[&str]) -> Vec<String> {
-    head.iter().map(|name| (*name).to_owned()).collect()
 }
 
 fn stages(stages: &Stages) -> Table {

@@ -1,0 +1,76 @@
+//! A gyro's conversions: waited for, read, and judged.
+
+use drivers::fault::Fault;
+use embassy_time::{Duration, Instant, with_timeout};
+use orientation::device::{Device, Trouble};
+use orientation::error::Refusal;
+use orientation::units::AngularRate;
+
+use super::{Limit, Row, SILENCE, STUCK};
+use crate::guarded::Guarded;
+use crate::patience::Symptom;
+use crate::ports::{Gyro, Observer, RateReading};
+use crate::shared::Shared;
+
+/// A gyro at work.
+pub(super) struct Rates<'a, G> {
+    pub(super) gyro: Guarded<'a, G>,
+    pub(super) name: Device,
+    row: Row<AngularRate>,
+    limit: Limit,
+}
+
+/// Time without a conversion after which a gyro of that period, µs, is silent.
+pub(super) fn silence(period: u32) -> Duration {
+    Duration::from_micros(u64::from(period) * u64::from(SILENCE))
+}
+
+impl<'a, G: Gyro> Rates<'a, G> {
+    /// Takes a gyro of so many samples a second by its name in the log.
+    pub(super) fn new(gyro: &'a mut G, name: Device, sample_rate: f64) -> Self {
+        let limit = Limit::new(sample_rate);
+        Self { gyro: Guarded::new(gyro, name), name, row: Row::new(), limit }
+    }
+
+    /// Waits for a conversion for so long; its time, or what is to be mended.
+    pub(super) async fn conversion(&mut self, silence: Duration) -> Result<Instant, Symptom> {
+        match with_timeout(silence, self.gyro.device.ready()).await {
+            Ok(Ok(())) => Ok(Instant::now()),
+            Ok(Err(fault)) => Err(Symptom::Chip(fault)),
+            Err(_) => Err(Symptom::Silent),
+        }
+    }
+
+    /// A new rate, none where it is not new, or what is to be mended.
+    pub(super) async fn read<O: Observer>(
+        &mut self,
+        shared: &Shared<'_, O>,
+    ) -> Result<Result<Option<AngularRate>, Symptom>, Refusal> {
+        let begun = Instant::now();
+        let outcome = self.gyro.device.read().await;
+        self.judge(begun, outcome, shared)
+    }
+
+    fn judge<O: Observer>(
+        &mut self,
+        begun: Instant,
+        outcome: Result<RateReading, Fault>,
+        shared: &Shared<'_, O>,
+    ) -> Result<Result<Option<AngularRate>, Symptom>, Refusal> {
+        let RateReading { rate, is_new } = match self.gyro.checked(begun, outcome) {
+            Ok(reading) => reading,
+            Err(symptom) => return Ok(Err(symptom)),
+        };
+        if !is_new {
+            return Ok(Ok(None));
+        }
+        if self.limit.is_exceeded(rate.is_saturated(), 1) {
+            return Err(shared.give_up(self.name, Trouble::Saturated));
+        }
+        if self.row.push(rate) >= STUCK && !rate.is_saturated() {
+            self.row = Row::new();
+            return Ok(Err(Symptom::Stuck));
+        }
+        Ok(Ok(Some(rate)))
+    }
+}

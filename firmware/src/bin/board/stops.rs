@@ -1,0 +1,48 @@
+//! The board in a vehicle that goes from stop to stop.
+
+use embassy_executor::Spawner;
+use firmware::log::DefmtLog;
+use firmware::ports::{NoRecorder, NoWhereabouts, VehiclePorts};
+use firmware::run::{acquire_triad, run_stops};
+use firmware::shared::Seams;
+use orientation::session::procedure::ProcedureError;
+use orientation::session::stops::Session;
+use orientation::signal::InertialSample;
+use static_cell::StaticCell;
+
+use crate::ports::Triad;
+use crate::wiring::Wiring;
+use crate::{configuration, ports, tell};
+
+/// The seams between the instrument's parts.
+type VehicleSeams = Seams<'static, DefmtLog, InertialSample>;
+
+/// Runs the instrument to its conclusion and goes on telling it.
+#[embassy_executor::task]
+pub async fn align(spawner: Spawner, wiring: Wiring) {
+    static SEAMS: StaticCell<VehicleSeams> = StaticCell::new();
+    let session = match session() {
+        Ok(session) => session,
+        Err(error) => return defmt::error!("board: no session: {}", error),
+    };
+    let Wiring { sensors, link, motor: _, motor_enable: _, flash: _ } = wiring;
+    let seams: &'static VehicleSeams = SEAMS.init_with(|| Seams::new(&DefmtLog));
+    spawner.spawn(defmt::unwrap!(acquisition(ports::triad(sensors), seams)));
+    let mut outputs = VehiclePorts { whereabouts: NoWhereabouts, link, recorder: NoRecorder };
+    let health = run_stops(&mut outputs, session, seams).await;
+    tell(&health, &mut outputs.link, &seams.shared).await;
+}
+
+/// Samples for ever.
+#[embassy_executor::task]
+async fn acquisition(mut triad: Triad, seams: &'static VehicleSeams) {
+    acquire_triad(&mut triad, &configuration::vehicle(), seams).await;
+}
+
+/// The session, made where it stays.
+fn session() -> Result<&'static mut Session, ProcedureError> {
+    static SESSION: StaticCell<Session> = StaticCell::new();
+    let procedure = configuration::driving_procedure();
+    procedure.check()?;
+    Ok(SESSION.init_with(|| Session::of(configuration::driving_setting(), procedure)))
+}

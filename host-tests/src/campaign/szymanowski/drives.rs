@@ -1,0 +1,176 @@
+//! Drives between stops with gyros of the LN-200 class: the azimuth that averaging gave at the first stop,
+//! the paper's, and that of everything that is known.
+
+use hal_mock::vehicle::scenario::Scenario;
+use orientation::align::stops::follower::Rests;
+use orientation::align::stops::plain;
+use orientation::error::Refusal;
+use serde::Serialize;
+
+use super::world::{Day, Told, live};
+use crate::campaign::over;
+use crate::campaign::statistics::{Answer, Precision, greatest, rms};
+use crate::output::{azimuth_error, degrees, degrees_per_hour};
+
+/// Length of a stop, s.
+pub const STOP_S: f64 = 60.0;
+/// Driving in all, s.
+pub const DRIVE_S: f64 = 900.0;
+/// Latitude, °.
+pub const LATITUDE_DEG: f64 = 52.0;
+/// The gyros' N, °/√h, and 1σ of their biases, °/h.
+pub const GYRO: [f64; 2] = [0.05, 1.0];
+
+/// What a row's vehicles do, and what the session is told of it.
+#[derive(Clone, Copy, Debug)]
+struct Case {
+    name: &'static str,
+    stops: usize,
+    /// Whether the stops are stated; else the criteria find them.
+    is_stated: bool,
+    knows_displacement: bool,
+}
+
+const CASES: [Case; COUNT] = [
+    Case { name: "two stops", stops: 2, is_stated: true, knows_displacement: true },
+    Case {
+        name: "two stops, found by the criteria",
+        stops: 2,
+        is_stated: false,
+        knows_displacement: true,
+    },
+    Case {
+        name: "two stops, displacement not known",
+        stops: 2,
+        is_stated: true,
+        knows_displacement: false,
+    },
+    Case { name: "three stops", stops: 3, is_stated: true, knows_displacement: true },
+];
+
+/// How many rows there are.
+pub const COUNT: usize = 4;
+
+/// Many drives. Angles in degrees.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// What the vehicles did and what was known of it.
+    pub case: &'static str,
+    /// How many stops they made.
+    pub stops: usize,
+    /// Before: RMS error of averaging over the first stop, at the start.
+    pub averaging_rms_deg: f64,
+    /// RMS error of the paper's method at the start.
+    pub plain_rms_deg: f64,
+    /// RMS of the σ that goes with it.
+    pub plain_sigma_deg: f64,
+    /// Greatest difference between the closed form and Brent's search for the least angle.
+    pub brent_difference_deg: f64,
+    /// The same of the paper's Euler form.
+    pub euler_difference_deg: f64,
+    /// RMS of the biases' errors over their σ; not a number where no drive showed them.
+    pub bias_ratio: Option<f64>,
+    /// RMS of the biases' σ, °/h.
+    pub bias_sigma_dph: Option<f64>,
+    /// The azimuths at the end by everything that is known, against limit and σ.
+    #[serde(flatten)]
+    pub precision: Precision,
+    /// Of each drive: the error of averaging and that of the end's azimuth.
+    #[serde(skip)]
+    pub errors: Vec<(f64, f64)>,
+}
+
+/// One drive, °.
+#[derive(Clone, Debug)]
+struct Run {
+    averaging: f64,
+    plain: Option<Plain>,
+    /// Errors of the biases over their σ, and those σ, °/h.
+    biases: Option<[[f64; 2]; 3]>,
+    answer: Result<Answer, Refusal>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Plain {
+    error: f64,
+    sigma: f64,
+    brent: f64,
+    euler: f64,
+}
+
+/// Drives each case with seeds 1 to `runs`; `tick` after each.
+#[must_use]
+pub fn rows(runs: usize, tick: impl Fn() + Sync) -> Vec<Row> {
+    CASES.iter().map(|case| row(*case, runs, &tick)).collect()
+}
+
+fn row(case: Case, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
+    let runs = over(runs, tick, |seed| case.run(seed));
+    let plain = |of: fn(&Plain) -> f64| -> Vec<f64> {
+        runs.iter().filter_map(|run| run.plain.as_ref().map(of)).collect()
+    };
+    let biases: Vec<[f64; 2]> = runs.iter().filter_map(|run| run.biases).flatten().collect();
+    let of_biases = |part: usize| {
+        let column: Vec<f64> = biases.iter().map(|both| both[part]).collect();
+        (!column.is_empty()).then(|| rms(&column))
+    };
+    let averaging: Vec<f64> = runs.iter().map(|run| run.averaging).collect();
+    let errors = runs.iter().filter_map(|run| Some((run.averaging, run.answer.ok()?.error)));
+    Row {
+        case: case.name,
+        stops: case.stops,
+        averaging_rms_deg: rms(&averaging),
+        plain_rms_deg: rms(&plain(|plain| plain.error)),
+        plain_sigma_deg: rms(&plain(|plain| plain.sigma)),
+        brent_difference_deg: greatest(&plain(|plain| plain.brent)),
+        euler_difference_deg: greatest(&plain(|plain| plain.euler)),
+        bias_ratio: of_biases(0),
+        bias_sigma_dph: of_biases(1),
+        precision: Precision::of(&runs.iter().map(|run| run.answer).collect::<Vec<_>>()),
+        errors: errors.collect(),
+    }
+}
+
+impl Case {
+    fn run(&self, seed: u64) -> Run {
+        let drives = (self.stops - 1) as f64;
+        let stops = self.stops as f64;
+        // As long as two stops and one drive, whatever the number of stops.
+        let drive_s = (DRIVE_S - (stops - 2.0) * STOP_S) / drives;
+        let scenario = Scenario::stops(seed, self.stops, STOP_S, drive_s);
+        let stated = scenario.configuration().stops().collect();
+        let rests = if self.is_stated { Rests::Stated(stated) } else { Rests::Found };
+        let told = Told { rests, knows_displacement: self.knows_displacement };
+        Run::of(&live(&scenario, seed, told))
+    }
+}
+
+impl Run {
+    fn of(day: &Day) -> Self {
+        let averaging = azimuth_error(degrees(day.first.azimuth()), degrees(day.start));
+        let found = day.conclusion.found.as_ref();
+        Self {
+            averaging,
+            plain: found.map(|found| Plain::of(&found.plain, day.start)),
+            biases: found.filter(|found| found.are_biases_observed).map(|found| {
+                std::array::from_fn(|axis| {
+                    let sigma = found.bias_sigmas[axis];
+                    [(found.biases[axis] - day.biases[axis]) / sigma, degrees_per_hour(sigma)]
+                })
+            }),
+            answer: day.answer(),
+        }
+    }
+}
+
+impl Plain {
+    fn of(plain: &plain::Plain, start: f64) -> Self {
+        let from_closed = |azimuth: f64| azimuth_error(degrees(azimuth), degrees(plain.azimuth));
+        Self {
+            error: azimuth_error(degrees(plain.azimuth), degrees(start)),
+            sigma: degrees(plain.sigma),
+            brent: from_closed(plain.angle.at),
+            euler: from_closed(plain.euler.at),
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! A simulated vehicle's samples for the session, and the truth beside them.
+
+use hal_mock::accelerometer::AccelerometerConfiguration;
+use hal_mock::gyro::GyroConfiguration;
+use hal_mock::vehicle::scenario::Scenario;
+use hal_mock::vehicle::{Vehicle, VehicleSample};
+use orientation::align::setting::Setting as Common;
+use orientation::align::stops::Setting;
+use orientation::align::stops::conclusion::Conclusion;
+use orientation::align::stops::follower::Rests;
+use orientation::earth::Latitude;
+use orientation::error::Refusal;
+use orientation::noise::model::GyroNoise;
+use orientation::session::stops::{Event, Procedure, Session};
+use orientation::units::DEGREE_PER_HOUR;
+
+use crate::campaign::statistics::Answer;
+use crate::output::{azimuth_error, degrees};
+use crate::stops::averaging::Averages;
+use crate::stops::samples::Converter;
+
+/// Samples a second: enough for the motion of a body on a road.
+pub const RATE_HZ: f64 = 50.0;
+
+/// What one day gave.
+#[derive(Clone, Debug)]
+pub struct Day {
+    /// What the session made of it.
+    pub conclusion: Conclusion,
+    /// True azimuth at the first sample, rad.
+    pub start: f64,
+    /// True azimuth at the last sample, rad.
+    pub end: f64,
+    /// Averages over the first stop.
+    pub first: Averages,
+    /// Averages over the whole day.
+    pub whole: Averages,
+    /// True biases of the gyros, rad/s.
+    pub biases: [f64; 3],
+}
+
+impl Day {
+    /// The azimuth at the end against the truth.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn answer(&self) -> Result<Answer, Refusal> {
+        let azimuth = self.conclusion.verdict?;
+        let limit = self.conclusion.found.as_ref().map_or(f64::NAN, |found| found.limit);
+        Ok(Answer {
+            error: azimuth_error(degrees(azimuth.angle), degrees(self.end)),
+            sigma: degrees(azimuth.sigma),
+            limit: degrees(limit),
+        })
+    }
+}
+
+/// What the session is told of a day.
+#[derive(Clone, Debug)]
+pub struct Told {
+    /// Its stops.
+    pub rests: Rests,
+    /// Whether it is told how far they lie from each other.
+    pub knows_displacement: bool,
+}
+
+/// Lives through a day. The session knows the sensors' noise and the 1σ of their biases.
+#[must_use]
+pub fn live(day: &Scenario, seed: u64, told: Told) -> Day {
+    let day = at_rate(day);
+    let configuration = day.configuration();
+    let mut vehicle = Vehicle::new(&configuration, seed);
+    let mut session = setting(&day).and_then(|setting| {
+        let procedure = Procedure::recorded(told.rests, 1.0 / RATE_HZ);
+        Session::new(setting, procedure).ok()
+    });
+    let stops: Vec<[f64; 2]> = configuration.stops().collect();
+    let first_s = stops.first().map_or(0.0, |stop| stop[1]);
+    let mut middles = stops.iter().map(|[from, to]| 0.5 * (from + to)).peekable();
+    let (mut first, mut whole) = (Averages::default(), Averages::default());
+    let mut path = Converter::default();
+    let mut start = None;
+    while let Some(sample) = vehicle.next_sample() {
+        let truth = vehicle.truth();
+        start.get_or_insert(truth.attitude.azimuth_rad);
+        whole.push(sample.turned_rad, sample.force_m_s2);
+        if sample.time_s <= first_s {
+            first.push(sample.turned_rad, sample.force_m_s2);
+        }
+        let Some(session) = &mut session else { continue };
+        let VehicleSample { time_s, turned_rad, force_m_s2, .. } = sample;
+        session.handle(Event::Sample(&path.sample(time_s, turned_rad, force_m_s2)));
+        if middles.next_if(|middle| *middle <= sample.time_s).is_some() && told.knows_displacement {
+            session.handle(Event::Displaced(truth.displacement_m));
+        }
+    }
+    if let Some(session) = &mut session {
+        session.handle(Event::End);
+    }
+    let truth = vehicle.truth();
+    let conclusion = session.as_ref().and_then(Session::conclusion).cloned();
+    Day {
+        conclusion: conclusion.unwrap_or(Conclusion::refused(Refusal::TimeExhausted)),
+        start: start.unwrap_or(truth.attitude.azimuth_rad),
+        end: truth.attitude.azimuth_rad,
+        first,
+        whole,
+        biases: truth.gyro_bias_rad_s,
+    }
+}
+
+fn at_rate(day: &Scenario) -> Scenario {
+    let mut day = day.clone();
+    day.vehicle.rate_hz = RATE_HZ;
+    day
+}
+
+/// What the session is told of place and sensors.
+fn setting(day: &Scenario) -> Option<Setting> {
+    let [gyro, ..]: [GyroConfiguration; 3] = day.vehicle.gyros;
+    let accelerometer: AccelerometerConfiguration = day.vehicle.accelerometer;
+    let common = Common {
+        noise: GyroNoise::from_field_units(gyro.n_deg_sqrt_h, 0.0, 0.0, 0.0),
+        white_known: true,
+        accelerometer_bias_sigma: accelerometer.bias_sigma_m_s2,
+        ..Common::at(Latitude::from_degrees(day.vehicle.latitude_deg)?)
+    };
+    Some(Setting {
+        bias_sigma: Some(gyro.bias_sigma_deg_h * DEGREE_PER_HOUR),
+        force_noise: accelerometer.noise_m_s2_sqrt_hz,
+        ..Setting::new(common)
+    })
+}

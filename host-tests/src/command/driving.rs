@@ -1,0 +1,111 @@
+//! `meridian run --method siap`: the board in a vehicle that goes from stop to stop.
+
+use std::path::Path;
+use std::time::Instant as WallClock;
+
+use bench::instrument::{VehicleRun, align_stops};
+use bench::output::progress::Progress;
+use bench::output::{degrees, page, stops as told, text};
+use bench::recording::Truth;
+use bench::stops::{Method, Replay, Watched};
+use clap::Args;
+use firmware::simulated::scenario::Scenario;
+use firmware::simulated::vehicle::fault::VehicleFault;
+use firmware::simulated::vehicle::{Place, VehicleScenario};
+use orientation::session::stops::Session;
+
+use super::Told;
+use super::run::{Terminal, object};
+
+/// What a vehicle is asked for.
+#[derive(Args, Clone, Debug)]
+pub struct DrivingOptions {
+    /// With --method siap: how often the vehicle stops (3).
+    #[arg(long, value_parser = clap::value_parser!(u8).range(2..=8))]
+    stops: Option<u8>,
+    /// With --method siap: seconds for which the board levels at each stop (60).
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    stop_seconds: Option<f64>,
+    /// With --method siap: seconds of driving from stop to stop (600).
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    drive_seconds: Option<f64>,
+    /// With --method siap: nobody tells the board how far it has come.
+    #[arg(long)]
+    no_displacement: bool,
+}
+
+/// A time that a vehicle stands or drives.
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if (10.0..=3600.0).contains(&seconds) => Ok(seconds),
+        _ => Err("not a number of seconds from 10 to 3600".to_owned()),
+    }
+}
+
+impl DrivingOptions {
+    /// Whether any of them was given.
+    pub fn is_given(&self) -> bool {
+        let is_timed = self.stop_seconds.is_some() || self.drive_seconds.is_some();
+        self.stops.is_some() || is_timed || self.no_displacement
+    }
+
+    /// The scenario of a base, at the vehicle's own sample rate where none is stated.
+    pub fn scenario(&self, base: &Scenario, rate_hz: Option<f64>) -> VehicleScenario {
+        let usual = VehicleScenario::default();
+        let sample_rate_hz = rate_hz.unwrap_or(usual.base.sample_rate_hz);
+        VehicleScenario {
+            base: Scenario { sample_rate_hz, ..*base },
+            stops: self.stops.map_or(usual.stops, usize::from),
+            stop_s: self.stop_seconds.unwrap_or(usual.stop_s),
+            drive_s: self.drive_seconds.unwrap_or(usual.drive_s),
+            place: if self.no_displacement { Place::Unknown } else { usual.place },
+        }
+    }
+}
+
+/// What the pages and blocks call it.
+const NAME: &str = "the simulated drive";
+/// What a simulated board is told.
+const ASSUMED: &str = "what the board is told of place and instrument";
+
+/// Runs the board and tells what came of it.
+pub fn run(
+    scenario: &VehicleScenario,
+    fault: Option<VehicleFault>,
+    report: Option<&Path>,
+    as_json: bool,
+) -> Result<Told, String> {
+    let begun = WallClock::now();
+    let watch = Terminal(Progress::new(0, "stops"));
+    let setting = scenario.setting().ok_or("the latitude is outside ±90°")?;
+    let beside = Session::new(setting, scenario.procedure()).map_err(|error| error.to_string())?;
+    let mut watched = Watched::new(beside);
+    let run = align_stops(scenario, fault, &mut watched, &watch);
+    watch.0.finish();
+    let VehicleRun { run, truth } = run.map_err(|error| error.to_string())?;
+    let wall = begun.elapsed().as_secs_f64();
+    let criteria = watched.into_criteria();
+    let assumed = vec![ASSUMED.to_owned()];
+    let replay = Replay {
+        method: Method::Siap,
+        session: run.replay.clone(),
+        zero_s: 0.0,
+        criteria,
+        assumed,
+    };
+    let conclusion = replay.conclusion().ok_or("the session did not end")?;
+    let truth = Truth {
+        azimuth_deg: Some(degrees(truth.attitude.azimuth_rad).rem_euclid(360.0)),
+        start_azimuth_deg: Some(scenario.base.azimuth_deg),
+        ..Truth::default()
+    };
+    let found = told::json::object(&replay, conclusion, &truth);
+    let object = object(&run, &scenario.base, found)?;
+    let told = Told::of(conclusion.verdict.is_ok(), as_json, &object, |block| {
+        told::text::block(block, NAME, &replay, conclusion, &truth)?;
+        text::run(block, &run, &scenario.base, wall)
+    })?;
+    let refusal = conclusion.verdict.as_ref().err().map(ToString::to_string);
+    let page = || page::stops::report(NAME, &replay, conclusion);
+    Ok(Told { refusal, ..told }.with_page(report, page))
+}

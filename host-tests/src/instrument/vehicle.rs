@@ -1,0 +1,71 @@
+//! Wires one simulated board in a vehicle to the instrument and runs it.
+
+use std::cell::RefCell;
+
+use firmware::ports::{Observer, Recorder, VehiclePorts};
+use firmware::run::{acquire_triad, run_stops};
+use firmware::simulated::fault::FaultyRecorder;
+use firmware::simulated::vehicle::fault::VehicleFault;
+use firmware::simulated::vehicle::{self, KnownPlace, VehicleScenario};
+use hal_mock::vehicle::VehicleTruth;
+use hal_mock::vehicle::board::VehicleBoard;
+use orientation::session::stops;
+use orientation::signal::InertialSample;
+
+use super::desk::{self, Desk};
+use super::{Run, RunError};
+
+/// A finished run in a vehicle.
+#[derive(Clone, Debug)]
+pub struct VehicleRun {
+    /// As of any board.
+    pub run: Run<stops::Session>,
+    /// What was true at the end.
+    pub truth: VehicleTruth,
+}
+
+/// Runs a scenario in virtual time on this thread.
+///
+/// # Errors
+/// What keeps the session from beginning, and a deadlock. A refusal is the session's conclusion.
+pub fn align_stops<R: Recorder<InertialSample>, W: Observer>(
+    scenario: &VehicleScenario,
+    fault: Option<VehicleFault>,
+    recorder: R,
+    watch: &W,
+) -> Result<VehicleRun, RunError> {
+    let (day, plan) = (scenario.day(fault), scenario.plan(fault));
+    let board = RefCell::new(scenario.board(&day.legs, &day.events, &plan));
+    align_stops_on(&board, &plan, scenario, recorder, watch)
+}
+
+/// The same on a board to which something else may be done, with something around its ports.
+///
+/// # Errors
+/// Those of [`align_stops`].
+pub fn align_stops_on<R: Recorder<InertialSample>, W: Observer>(
+    board: &RefCell<VehicleBoard<'_>>,
+    plan: &vehicle::fault::VehiclePlan,
+    scenario: &VehicleScenario,
+    recorder: R,
+    watch: &W,
+) -> Result<VehicleRun, RunError> {
+    let setting = scenario.setting().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
+    let session = stops::Session::new(setting, scenario.procedure());
+    let mut session = session.map_err(RunError::Procedure)?;
+    let desk = Desk::new(watch);
+    let seams = desk.seams();
+    let mut sensors = vehicle::sensors(board, scenario, plan);
+    let mut ports = VehiclePorts {
+        whereabouts: KnownPlace::new(board, scenario.place, scenario.base.seed),
+        link: desk.wire(),
+        recorder: FaultyRecorder::new(recorder, plan.hang),
+    };
+    let ended = desk::run(
+        acquire_triad(&mut sensors, &scenario.configuration(), &seams),
+        run_stops(&mut ports, &mut session, &seams),
+    )?;
+    let truth = board.borrow().plant.truth();
+    let violations = desk::told(vehicle::violations(&board.borrow()));
+    Ok(VehicleRun { run: desk.clear(&ended, violations, session), truth })
+}

@@ -1,0 +1,149 @@
+//! The paper's figures: rate errors and W over the heading error (Figs. 4 and 5), both stop criteria over
+//! time (Figs. 6 and 7), U over the azimuth (Fig. 9).
+
+use orientation::align::stops::plain::Plain;
+use orientation::earth::Latitude;
+use orientation::signal::rest::{Criteria, Limits};
+use orientation::units::wrapped;
+
+use crate::output::stops::json::Object;
+use crate::output::{azimuth_error, degrees, degrees_per_hour};
+use crate::report::{Axis, Figure, Series, Style};
+use crate::stops::Replay;
+
+/// Places along a curve.
+const PLACES: i32 = 240;
+/// How far around the minimum the narrow figure of U reaches, in σ of the paper's method, and at least, °.
+const REACH_SIGMAS: f64 = 4.0;
+const LEAST_REACH_DEG: f64 = 0.02;
+
+/// The azimuths at the end by both methods; none where there is neither.
+pub fn azimuths(object: &Object) -> Option<Figure> {
+    let with_limits = |at: f64, angle: f64, sigma: f64| (at, angle, [angle - sigma, angle + sigma]);
+    let full = object.verdict.azimuth_deg.zip(object.verdict.sigma_deg);
+    let plain = object.plain.as_ref().map(|plain| (plain.azimuth_deg, plain.sigma_deg));
+    let (near, _) = full.or(plain)?;
+    let series = [("the paper's method", 1.0, plain), ("everything that is known", 2.0, full)];
+    let series = series.into_iter().filter_map(|(name, at, found)| {
+        let (angle, sigma) = found?;
+        let point = with_limits(at, near + azimuth_error(angle, near), sigma);
+        Some(Series::new(name, Style::Points, [point]))
+    });
+    Some(Figure {
+        title: "Azimuth at the end, with 1σ".to_owned(),
+        x: Axis::linear("method", ""),
+        y: Axis::linear("azimuth", "°"),
+        series: series.collect(),
+    })
+}
+
+/// U over the whole circle, and near its minimum.
+pub fn inclinations(plain: &Plain) -> [Figure; 2] {
+    let reach = (REACH_SIGMAS * degrees(plain.sigma)).clamp(LEAST_REACH_DEG, 90.0);
+    let minimum = degrees(plain.azimuth);
+    let near = (-PLACES..=PLACES).map(|i| minimum + reach * f64::from(i) / f64::from(PLACES));
+    let circle = (0..=PLACES).map(|i| 360.0 * f64::from(i) / f64::from(PLACES));
+    [
+        inclination(plain, "U over the azimuth at the start (Fig. 9)", circle.collect()),
+        inclination(plain, "U near its minimum", near.collect()),
+    ]
+}
+
+fn inclination(plain: &Plain, title: &str, azimuths_deg: Vec<f64>) -> Figure {
+    let curve = |of: &dyn Fn(f64) -> f64| {
+        let at = |azimuth: &f64| (*azimuth, degrees(of(wrapped(azimuth.to_radians()))));
+        azimuths_deg.iter().map(at).collect::<Vec<_>>()
+    };
+    let inclination = &plain.inclination;
+    let least = (degrees(plain.azimuth), degrees(inclination.angle(plain.azimuth)));
+    Figure {
+        title: title.to_owned(),
+        x: Axis::linear("azimuth azp at the start", "°"),
+        y: Axis::linear("U", "°"),
+        series: vec![
+            Series::new(
+                "angle between the verticals",
+                Style::Line,
+                curve(&|a| inclination.angle(a)),
+            ),
+            Series::new("√(ΔΘ² + ΔΦ²)", Style::Dashed, curve(&|a| inclination.euler(a))),
+            Series::new("closed form", Style::Points, [least]),
+        ],
+    }
+}
+
+/// Kryt1 and Kryt2 over time, with their thresholds and the stops; none where the session never had them.
+pub fn criteria(replay: &Replay) -> Vec<Figure> {
+    if replay.criteria.is_empty() {
+        return Vec::new();
+    }
+    let rate =
+        |criteria: &Criteria, limits: &Limits| [criteria.rate, limits.rate].map(degrees_per_hour);
+    let force = |criteria: &Criteria, limits: &Limits| [criteria.force, limits.force];
+    vec![
+        criterion(replay, ["Kryt1 = Ω − |ω| (Fig. 6)", "|Kryt1|", "°/h"], rate),
+        criterion(replay, ["Kryt2 = g − |f| (Fig. 7)", "|Kryt2|", "m/s²"], force),
+    ]
+}
+
+/// One criterion: its size and its threshold. On a logarithmic axis: while driving it is a thousand times
+/// as great as at rest.
+fn criterion(
+    replay: &Replay,
+    [title, label, unit]: [&str; 3],
+    of: impl Fn(&Criteria, &Limits) -> [f64; 2],
+) -> Figure {
+    let values: Vec<(f64, [f64; 2])> = replay
+        .criteria
+        .iter()
+        .map(|(time, criteria, limits)| (replay.zero_s + time, of(criteria, limits).map(f64::abs)))
+        .collect();
+    let sizes = || values.iter().map(|(_, [size, _])| *size).filter(|size| *size > 0.0);
+    let [low, high] = [sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max)];
+    let mut series = vec![
+        Series::new(label, Style::Line, values.iter().map(|(time, [size, _])| (*time, *size))),
+        Series::new(
+            "threshold",
+            Style::Dashed,
+            values.iter().map(|(time, [_, limit])| (*time, *limit)),
+        ),
+    ];
+    series.extend(replay.session.stops().iter().enumerate().map(|(index, stop)| {
+        let edge = |time: f64| (replay.zero_s + time, high, [low, high]);
+        let name = format!("stop {}", index + 1);
+        Series::new(&name, Style::Band, [edge(stop.from), edge(stop.to)])
+    }));
+    Figure {
+        title: title.to_owned(),
+        x: Axis::linear("time", "s"),
+        y: Axis::logarithmic(label, unit),
+        series,
+    }
+}
+
+/// What a wrong azimuth makes of level rates at a latitude: the paper's p′ and q′, and
+/// W = 2 Ω_h |sin(δ/2)|; beside it U of a drive over its seconds.
+pub fn heading_error(latitude: Latitude, drive: Option<(&Plain, f64)>) -> Figure {
+    let horizontal = degrees_per_hour(latitude.horizontal_rate());
+    let over = |of: &dyn Fn(f64) -> f64| {
+        let at = |i| 180.0 * f64::from(i) / f64::from(PLACES);
+        (-PLACES..=PLACES).map(at).map(|error| (error, of(error.to_radians()))).collect::<Vec<_>>()
+    };
+    let line = |name: &str, of: &dyn Fn(f64) -> f64| Series::new(name, Style::Line, over(of));
+    let mut series = vec![
+        line("p′ = Ω_h (1 − cos δ)", &|error| horizontal * (1.0 - error.cos())),
+        line("q′ = Ω_h sin δ", &|error| horizontal * error.sin()),
+        line("W = 2 Ω_h |sin(δ/2)|", &|error| 2.0 * horizontal * (0.5 * error).sin().abs()),
+    ];
+    series.extend(drive.map(|(plain, seconds)| {
+        let at = |error: f64| plain.inclination.angle(wrapped(plain.azimuth + error));
+        let of = |error: f64| degrees_per_hour(at(error) / seconds);
+        Series::new("U of this drive over its time", Style::Dashed, over(&of))
+    }));
+    Figure {
+        title: "Rate errors and W over the heading error δ (Figs. 4 and 5)".to_owned(),
+        x: Axis::linear("heading error δ", "°"),
+        y: Axis::linear("rate", "°/h"),
+        series,
+    }
+}

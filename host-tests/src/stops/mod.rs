@@ -1,0 +1,245 @@
+//! Recordings of vehicles: replay through the session that finds the azimuth from stops.
+//!
+//! The recording has driven where it drove: its stops are stated, or found by the stop criteria, and it
+//! is only followed. The types that come in here hold no truth.
+
+pub mod averaging;
+pub mod noise;
+pub mod samples;
+
+use firmware::ports::Recorder;
+use heapless::Vec as Few;
+use orientation::align::setting::Setting as Common;
+use orientation::align::stops::Setting;
+use orientation::align::stops::conclusion::Conclusion;
+use orientation::align::stops::follower::Rests;
+use orientation::align::stops::stop::STOPS;
+use orientation::earth::Latitude;
+use orientation::noise::model::GyroNoise;
+use orientation::session::stops::{Event, Procedure, Session};
+use orientation::signal::InertialSample;
+use orientation::signal::rest::{Criteria, Limits};
+use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
+
+use crate::recording::{Body, Header, ImuRow, Kind};
+use crate::replay::{self, ReplayError};
+use crate::setting::{Described, describe};
+
+/// How a vehicle's azimuth is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// From two stops and more: static initial azimuth update (Szymanowski 2003).
+    Siap,
+    /// At rest all the time, sway allowed.
+    Static,
+}
+
+impl Method {
+    /// Its name on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Siap => "siap",
+            Self::Static => "static",
+        }
+    }
+}
+
+/// What the user asked for.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// The method; else as the recording shows.
+    pub method: Option<Method>,
+    /// Latitude instead of the header's.
+    pub latitude: Option<Latitude>,
+    /// Displacements of the stops, north and east, m, instead of the header's.
+    pub displacements_m: Option<Vec<[f64; 2]>>,
+    /// Greatest accepted standard deviation, rad; `None` for the default.
+    pub required_sigma: Option<f64>,
+}
+
+/// A finished replay.
+#[derive(Clone, Debug)]
+pub struct Replay {
+    /// The method.
+    pub method: Method,
+    /// The session, with its conclusion.
+    pub session: Session,
+    /// What the recording's clock showed at the session's zero, s.
+    pub zero_s: f64,
+    /// The stop criteria and what they are held to over the time, s from the session's zero.
+    pub criteria: Vec<(f64, Criteria, Limits)>,
+    /// What had to be assumed.
+    pub assumed: Vec<String>,
+}
+
+impl Replay {
+    /// The conclusion; of a session that was given its end there is one.
+    #[must_use]
+    pub fn conclusion(&self) -> Option<&Conclusion> {
+        self.session.conclusion()
+    }
+
+    /// Whether the gyros' white noise was stated rather than estimated.
+    #[must_use]
+    pub fn noise_is_known(&self) -> bool {
+        self.session.setting().common.white_known
+    }
+}
+
+/// Replays the rows of a recording.
+///
+/// # Errors
+/// What keeps the session from beginning. A refusal is not an error but the session's conclusion.
+pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay, ReplayError> {
+    let rows = samples::rows(body).ok_or_else(|| missing(body))?;
+    let latitude = replay::latitude(header, options.latitude)?;
+    let period_s = samples::period(header.rate_hz, &rows);
+    let zero_s = samples::begin(&rows, period_s);
+    let method = options.method.unwrap_or_else(|| usual(header, &rows, period_s));
+    let rests = rests(header, method, zero_s)?;
+    let displacements = displacements(header, options)?;
+    let Described { setting: mut common, mut assumed } = describe(header, body, latitude);
+    if let Some(sigma) = options.required_sigma {
+        common.required_sigma = sigma;
+    }
+    let setting = setting(header, common, &rows, period_s, method, &mut assumed);
+    let procedure = Procedure { displacements, ..Procedure::recorded(rests, period_s) };
+    let session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
+    let mut watched = Watched::new(session);
+    samples::samples(&rows, period_s).for_each(|sample| watched.push(&sample));
+    let Watched { mut session, criteria } = watched;
+    session.handle(Event::End);
+    check_displacements(&session)?;
+    Ok(Replay { method, session, zero_s, criteria, assumed })
+}
+
+/// Why a recording has no rows for these methods.
+fn missing(body: &Body) -> ReplayError {
+    match body.kind() {
+        Kind::Static => ReplayError::OneGyro,
+        kind => ReplayError::NoVehicle(kind),
+    }
+}
+
+/// Turn about its vertical by which a vehicle that drives differs from one that sways, rad: 5°.
+const DROVE: f64 = 5.0 / 360.0 * std::f64::consts::TAU;
+/// Time whose median turn a sway or a slammed door does not move, s.
+const MEDIAN_S: f64 = 30.0;
+
+/// The method of a recording for which none was asked: where no stop is stated and it never turned about
+/// its vertical, it stood.
+fn usual(header: &Header, rows: &[ImuRow], period_s: f64) -> Method {
+    if header.stops_s.is_some() {
+        return Method::Siap;
+    }
+    let turned = rows.iter().scan(0.0, |turned, row| {
+        *turned += row.sample.rates_rad_s[2] * period_s;
+        Some(*turned)
+    });
+    let mut turned: Vec<f64> = turned.collect();
+    let size = ((MEDIAN_S / period_s) as usize).max(1);
+    let headings = turned.chunks_mut(size).map(replay::median);
+    let (least, most) = headings
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), heading| {
+            (least.min(heading), most.max(heading))
+        });
+    if most - least > DROVE { Method::Siap } else { Method::Static }
+}
+
+/// The stops as the session counts them.
+fn rests(header: &Header, method: Method, zero_s: f64) -> Result<Rests, ReplayError> {
+    match (method, &header.stops_s) {
+        (Method::Static, _) => Ok(Rests::Whole),
+        (Method::Siap, None) => Ok(Rests::Found),
+        (Method::Siap, Some(stated)) => {
+            let counted = stated.iter().map(|stop| stop.map(|time| time - zero_s));
+            let all = Few::<_, STOPS>::from_slice(&counted.collect::<Vec<_>>());
+            all.map(Rests::Stated).map_err(|_| ReplayError::TooManyStops(stated.len(), STOPS))
+        }
+    }
+}
+
+/// The user's displacements, or the header's; one for each stop where stops are stated.
+fn displacements(header: &Header, options: &Options) -> Result<Few<[f64; 2], STOPS>, ReplayError> {
+    let list = options.displacements_m.as_ref().or(header.displacements_m.as_ref());
+    let list = list.map_or(&[][..], Vec::as_slice);
+    let wrong = |stops| ReplayError::Displacements { stated: list.len(), stops };
+    match &header.stops_s {
+        Some(stops) if !list.is_empty() && stops.len() != list.len() => Err(wrong(stops.len())),
+        _ => Few::from_slice(list).map_err(|_| wrong(STOPS)),
+    }
+}
+
+/// Refuses displacements that are not one for each stop that was found.
+fn check_displacements(session: &Session) -> Result<(), ReplayError> {
+    let procedure = session.procedure();
+    let (stated, stops) = (procedure.displacements.len(), session.stops().len());
+    if stated == 0 || stated == stops || procedure.rests != Rests::Found {
+        Ok(())
+    } else {
+        Err(ReplayError::Displacements { stated, stops })
+    }
+}
+
+/// What is known of the vehicle's sensors; noise that nobody stated is estimated.
+fn setting(
+    header: &Header,
+    mut common: Common,
+    rows: &[ImuRow],
+    period_s: f64,
+    method: Method,
+    assumed: &mut Vec<String>,
+) -> Setting {
+    let stood = header.stops_s.as_deref().filter(|_| method == Method::Siap);
+    let white = noise::estimate(rows, stood, period_s);
+    if !common.white_known {
+        let walk = white.angle_random_walk / DEGREE_PER_SQRT_HOUR;
+        assumed.push(format!("gyro noise N {walk:.2e} °/√h as the recording shows it"));
+        common.noise = GyroNoise { angle_random_walk: white.angle_random_walk, ..common.noise };
+    }
+    let noise = white.force;
+    assumed.push(format!("accelerometer noise {noise:.2e} m/s²/√Hz as the recording shows it"));
+    let bias_sigma = header.gyro_bias_deg_h.map(|bias| bias * DEGREE_PER_HOUR);
+    if bias_sigma.is_none() {
+        assumed.push("gyro biases unknown".to_owned());
+    }
+    Setting { bias_sigma, force_noise: white.force, ..Setting::new(common) }
+}
+
+/// A session, and how its stop criteria went.
+#[derive(Clone, Debug)]
+pub struct Watched {
+    session: Session,
+    criteria: Vec<(f64, Criteria, Limits)>,
+}
+
+impl Watched {
+    /// A session that has not begun.
+    #[must_use]
+    pub fn new(session: Session) -> Self {
+        Self { session, criteria: Vec::new() }
+    }
+
+    /// Gives it a sample.
+    pub fn push(&mut self, sample: &InertialSample) {
+        self.session.handle(Event::Sample(sample));
+        if let Some((criteria, limits)) = self.session.criteria()
+            && self.criteria.last().is_none_or(|(_, last, _)| *last != criteria)
+        {
+            self.criteria.push((sample.time.seconds(), criteria, limits));
+        }
+    }
+
+    /// The criteria and what they are held to over the time, s.
+    #[must_use]
+    pub fn into_criteria(self) -> Vec<(f64, Criteria, Limits)> {
+        self.criteria
+    }
+}
+
+impl Recorder<InertialSample> for &mut Watched {
+    async fn record(&mut self, sample: &InertialSample) {
+        self.push(sample);
+    }
+}

@@ -1,0 +1,131 @@
+//! Rows of a vehicle's recording as the samples that the session takes.
+
+use std::borrow::Cow;
+
+use orientation::signal::InertialSample;
+use orientation::units::{AngleIncrement, Instant, SpecificForce};
+
+use crate::recording::{Body, ImuRow, ImuSample, StaticRow};
+
+/// Steps longer than so many periods have a sample missing.
+const LONGEST_STEP: f64 = 1.5;
+
+/// How much longer than any other a standstill at the greatest value must be: where a smooth signal is
+/// coarsely written, its top is the longest by three.
+const LONGER: usize = 4;
+
+/// The rows of three gyros and three accelerometers, of whatever kind; none where one of them is missing.
+#[must_use]
+pub fn rows(body: &Body) -> Option<Cow<'_, [ImuRow]>> {
+    match body {
+        Body::Imu(rows) => Some(Cow::Borrowed(rows)),
+        Body::Static(rows) => rows.iter().map(row).collect::<Option<Vec<_>>>().map(Cow::Owned),
+        Body::Stage(_) | Body::Rotating(_) | Body::Dwells(_) => None,
+    }
+}
+
+fn row(row: &StaticRow) -> Option<ImuRow> {
+    Some(ImuRow { line: row.line, time_s: row.time_s, sample: row.imu? })
+}
+
+/// The sample period, s: the header's, unless over all the rows it and the times come apart by more than
+/// a sample. Times may be rounded, so their mean counts, of the steps without a missing sample.
+#[must_use]
+pub fn period(rate_hz: Option<f64>, rows: &[ImuRow]) -> f64 {
+    let steps = || rows.windows(2).map(|pair| pair[1].time_s - pair[0].time_s);
+    let mut sorted: Vec<f64> = steps().collect();
+    let middle = sorted.len() / 2;
+    if sorted.is_empty() {
+        return rate_hz.map_or(1.0, |rate| 1.0 / rate);
+    }
+    let longest = LONGEST_STEP * *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let (sum, count) = steps()
+        .filter(|step| *step <= longest)
+        .fold((0.0, 0.0), |(sum, count), step| (sum + step, count + 1.0));
+    let stated = rate_hz.map(|rate| 1.0 / rate);
+    stated.filter(|stated| (sum - count * stated).abs() <= *stated).unwrap_or(sum / count)
+}
+
+/// Makes samples of what three gyros turned and three accelerometers felt; what rounding leaves over of a
+/// rotation goes to the next sample.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Converter {
+    carried: [f64; 3],
+}
+
+impl Converter {
+    /// The sample that ended at a time, s.
+    #[must_use]
+    pub fn sample(
+        &mut self,
+        time_s: f64,
+        turned_rad: [f64; 3],
+        force_m_s2: [f64; 3],
+    ) -> InertialSample {
+        let mut turned = [AngleIncrement::default(); 3];
+        for (axis, angle) in turned_rad.into_iter().enumerate() {
+            turned[axis] = AngleIncrement::from_rad(angle, &mut self.carried[axis]);
+        }
+        let force = Some(force_m_s2.map(SpecificForce::from_m_per_s2));
+        InertialSample { time: Instant::from_seconds(time_s), turned, force }
+    }
+}
+
+/// The samples of rows; their time counts from when the first one began.
+pub fn samples(rows: &[ImuRow], period_s: f64) -> impl Iterator<Item = InertialSample> + '_ {
+    let begin = begin(rows, period_s);
+    let limits = limits(rows);
+    let mut converter = Converter::default();
+    rows.iter().map(move |row| {
+        let ImuSample { rates_rad_s, force_m_s2 } = row.sample;
+        let turned_rad = rates_rad_s.map(|rate| rate * period_s);
+        let mut sample = converter.sample(row.time_s - begin, turned_rad, force_m_s2);
+        let mut cut = channels(row).zip(limits).map(|(value, limit)| value.abs() >= limit);
+        for turned in &mut sample.turned {
+            if cut.next() == Some(true) {
+                *turned = AngleIncrement(i32::MAX);
+            }
+        }
+        if cut.any(|is_cut| is_cut) {
+            sample.force = None;
+        }
+        sample
+    })
+}
+
+/// When the first sample began, s on the recorder's clock.
+#[must_use]
+pub fn begin(rows: &[ImuRow], period_s: f64) -> f64 {
+    rows.first().map_or(0.0, |row| row.time_s) - period_s
+}
+
+/// The three rates, then the three forces.
+fn channels(row: &ImuRow) -> impl Iterator<Item = f64> + '_ {
+    row.sample.rates_rad_s.into_iter().chain(row.sample.force_m_s2)
+}
+
+/// Where each channel is cut, infinite where it is not. A recording does not say what its sensors can
+/// measure, but a sensor at its limit shows one greatest value again and again.
+fn limits(rows: &[ImuRow]) -> [f64; 6] {
+    std::array::from_fn(|channel| {
+        let values = || rows.iter().filter_map(|row| channels(row).nth(channel)).map(f64::abs);
+        let greatest = values().fold(0.0, f64::max);
+        let is_cut = greatest > 0.0 && is_cut(values(), greatest);
+        if is_cut { greatest } else { f64::INFINITY }
+    })
+}
+
+/// Whether a signal stands at its greatest value for far more samples on end than at any other. One that
+/// stands there most of the time is steady.
+fn is_cut(values: impl Iterator<Item = f64>, greatest: f64) -> bool {
+    let (mut run, mut before) = (0, f64::NAN);
+    let (mut at_greatest, mut elsewhere, mut count) = (0, 0, 0);
+    for value in values {
+        run = if value == before { run + 1 } else { 1 };
+        before = value;
+        let longest = if value == greatest { &mut at_greatest } else { &mut elsewhere };
+        *longest = run.max(*longest);
+        count += 1;
+    }
+    at_greatest > LONGER * elsewhere && 2 * at_greatest < count
+}
