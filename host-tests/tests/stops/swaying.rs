@@ -71,4 +71,51 @@ fn sway_and_doors_cost_no_more_than_half_of_the_quiet_error() {
     assert!(swaying <= 1.5 * quiet, "{swaying}° {quiet}°");
     assert!(averaging > 2.0, "{averaging}°");
     assert_eq!(healthy, 0);
+    // One of 40 may sway so that its blocks look like no noise at all.
+    assert!(refused <= 1, "{refused}");
+}
+
+#[test]
+fn errors_of_a_swaying_vehicle_are_covered_by_sigma() {
+    let ratios: Vec<f64> = (100..140_u64)
+        .into_par_iter()
+        .filter_map(|seed| {
+            let outcome = parked(seed, true).run();
+            outcome.conclusion.verdict.is_ok().then(|| outcome.ratios()[1])
+        })
+        .collect();
+    let ratio = rms(ratios.iter().copied());
+    println!("parked and swaying: {ratio:.3} over σ, {} of 40 answered", ratios.len());
+    assert!(ratio < 1.2, "{ratio}");
+    assert!(ratios.iter().all(|ratio| ratio.abs() < 3.5), "{ratios:?}");
+}
+
+#[test]
+fn wrong_axes_of_a_parked_vehicle_are_never_silently_wrong() {
+    type Change = fn(&mut VehicleSample, usize);
+    let changes: [(&str, Change); 5] = [
+        ("sign of a gyro", |sample, axis| sample.turned_rad[axis] *= -1.0),
+        ("swapped gyros", |sample, axis| sample.turned_rad.swap(axis, (axis + 1) % 3)),
+        ("dead gyro", |sample, axis| sample.turned_rad[axis] = 0.0),
+        ("sign of an accelerometer", |sample, axis| sample.force_m_s2[axis] *= -1.0),
+        ("swapped accelerometers", |sample, axis| sample.force_m_s2.swap(axis, (axis + 1) % 3)),
+    ];
+    let mut wrong = Vec::new();
+    for (name, change) in changes {
+        for axis in 0..3 {
+            for seed in 0..4 {
+                for sways in [false, true] {
+                    let outcome = parked(seed, sways).run_through(|sample| {
+                        change(sample, axis);
+                        true
+                    });
+                    if outcome.conclusion.verdict.is_ok() && outcome.ratios()[1].abs() > 5.0 {
+                        let found = outcome.found();
+                        wrong.push((name, axis, seed, sways, outcome.ratios()[1], found.turning, found.chi_square));
+                    }
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }
