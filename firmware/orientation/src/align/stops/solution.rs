@@ -191,13 +191,16 @@ impl Run<'_> {
         self.last = to;
     }
 
-    /// Power of the biases' walk, (rad/s)²/s. Flicker and ramp are taken for the walk that has their Allan
-    /// variance over the whole time.
+    /// Power of the biases' walk, (rad/s)²/s. A ramp is taken for the walk that has its Allan variance over
+    /// the whole time, flicker for that which has it over a stop of mean length, whose rates are set against
+    /// the drives.
     fn bias_walk(&self) -> f64 {
         let whole = (self.path.now - self.path.start).max(1.0);
+        let stood: f64 = self.path.stops.iter().map(Stop::seconds).sum();
+        let part = (stood / self.path.stops.len() as f64).max(1.0);
         let [_, _, b, k, r] = self.setting.common.noise.coefficients();
         k * k
-            + 6.0 * core::f64::consts::LN_2 / core::f64::consts::PI * b * b / whole
+            + 6.0 * core::f64::consts::LN_2 / core::f64::consts::PI * b * b / part
             + 1.5 * r * r * whole
     }
 
