@@ -29,6 +29,8 @@ const LEAST_DRIVE: f64 = 1.0;
 const RATIO_TOLERANCE: f64 = 0.01;
 /// What is a difference and no chance, in σ.
 const DIFFERENT: f64 = 5.0;
+/// Least part of gravity along the body's down axis: no vehicle stands on its side.
+const UPRIGHT: f64 = 0.5;
 /// How far a body that sways may turn between both ends of a stop, rad: a degree and a bit.
 const SWAY: f64 = 0.02;
 /// How much more sway may scatter the blocks of a single stop than neighbours show, in power.
@@ -159,10 +161,15 @@ fn inspect_stop(
     if rest < LEAST_REST {
         return Err(Refusal::StopTooShort { stop: index + 1, seconds: rest, least: LEAST_REST });
     }
+    let gravity = setting.common.latitude.gravity();
+    let ratio = -stop.force.mean()[2] / gravity;
+    if ratio < UPRIGHT {
+        return Err(Refusal::AccelerometerImplausible { ratio });
+    }
     let mut limits = setting.sensors().limits(stop.seconds());
     limits.rate += SWAY / stop.seconds();
     let [rate, force] = [stop.turned.mean(), stop.force.mean()].map(|mean| length(&mean));
-    let criteria = Criteria::of(rate, force, setting.common.latitude.gravity());
+    let criteria = Criteria::of(rate, force, gravity);
     if criteria.is_rest(&limits) {
         return Ok(());
     }
