@@ -103,7 +103,7 @@ fn assert_never_silently_wrong(
     day: impl Fn(u64) -> Day,
     mut change: impl FnMut(&mut VehicleSample),
 ) {
-    for seed in 0..6 {
+    for seed in 0..4 {
         let outcome = day(seed).run_through(|sample| {
             change(sample);
             true
