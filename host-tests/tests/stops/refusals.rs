@@ -125,10 +125,10 @@ fn signs_and_axes_of_gyros_are_never_silently_wrong() {
         for axis in 0..3 {
             let next = (axis + 1) % 3;
             assert_never_silently_wrong("sign of a gyro", day, |sample| {
-                sample.turned_rad[axis] *= -1.0
+                sample.turned_rad[axis] *= -1.0;
             });
             assert_never_silently_wrong("swapped gyros", day, |sample| {
-                sample.turned_rad.swap(axis, next)
+                sample.turned_rad.swap(axis, next);
             });
             assert_never_silently_wrong("a dead gyro", day, |sample| sample.turned_rad[axis] = 0.0);
         }
@@ -142,10 +142,10 @@ fn signs_axes_and_biases_of_accelerometers_are_never_silently_wrong() {
             let next = (axis + 1) % 3;
             assert_never_silently_wrong("sign", day, |sample| sample.force_m_s2[axis] *= -1.0);
             assert_never_silently_wrong("swapped", day, |sample| {
-                sample.force_m_s2.swap(axis, next)
+                sample.force_m_s2.swap(axis, next);
             });
             assert_never_silently_wrong("5 mg that nobody stated", day, |sample| {
-                sample.force_m_s2[axis] += 0.05
+                sample.force_m_s2[axis] += 0.05;
             });
         }
     }

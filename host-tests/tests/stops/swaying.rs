@@ -1,5 +1,6 @@
 //! A vehicle that stands and sways: gravity seen from inertial space does not care, plain averaging does.
 
+use hal_mock::plant::sway::SwayConfiguration;
 use hal_mock::vehicle::scenario::Scenario;
 use hal_mock::vehicle::{Leg, VehicleSample};
 use orientation::error::Refusal;
@@ -19,7 +20,7 @@ fn parked(seed: u64, sways: bool) -> Day {
         scenario.events.clear();
         for leg in &mut scenario.legs {
             if let Leg::Stop(stop) = leg {
-                stop.sway = Default::default();
+                stop.sway = SwayConfiguration::default();
             }
         }
     }
@@ -99,8 +100,9 @@ fn accelerometers_that_stand_on_their_side_or_head_are_named() {
         |sample| sample.force_m_s2.swap(0, 2),
     ];
     for change in changes {
-        for day in [parked(1, false), parked(1, true), two(1)] {
-            let outcome = day.run_through(|sample| {
+        let days: [fn() -> Day; 3] = [|| parked(1, false), || parked(1, true), || two(1)];
+        for day in days {
+            let outcome = day().run_through(|sample| {
                 change(sample);
                 true
             });

@@ -27,7 +27,7 @@ proptest! {
     #[test]
     fn sines_are_those_of_f64(angle in any::<u64>()) {
         let (sine, cosine) = sine_and_cosine(angle);
-        let turns = (angle as i64) as f64 / (4.0 * ONE);
+        let turns = angle.cast_signed() as f64 / (4.0 * ONE);
         let (expected_sine, expected_cosine) = (std::f64::consts::TAU * turns).sin_cos();
         prop_assert!((sine as f64 / ONE - expected_sine).abs() < 6e-16);
         prop_assert!((cosine as f64 / ONE - expected_cosine).abs() < 6e-16);
