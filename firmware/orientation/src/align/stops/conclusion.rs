@@ -33,6 +33,9 @@ const DIFFERENT: f64 = 5.0;
 const SWAY: f64 = 0.02;
 /// Probability of healthy blocks' scatter below which they are refused.
 const SCATTER_PROBABILITY: f64 = 1e-6;
+/// How far the scatter that blocks are held to may be too small: it is taken from the same few blocks, and
+/// sway is not white.
+const UNSURE: f64 = 1.5;
 /// Part of the blocks that may be left out.
 const LEFT_OUT: u32 = 4;
 /// Part of what was known of a bias beforehand below which it counts as observed.
@@ -168,7 +171,7 @@ fn judge(setting: &Setting, found: &Found) -> Result<(), Refusal> {
         return Err(Refusal::RestDisturbed { disturbed: left_out, of: blocks });
     }
     let [chi_square, degrees] = found.chi_square;
-    if chi_square_tail(chi_square, degrees) < SCATTER_PROBABILITY {
+    if chi_square_tail(chi_square / UNSURE, degrees) < SCATTER_PROBABILITY {
         return Err(Refusal::ResidualsNotWhite { ratio: chi_square / degrees });
     }
     let Plain { ratio, ratio_sigma: sigma, .. } = found.plain;
