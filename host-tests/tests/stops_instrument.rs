@@ -79,8 +79,10 @@ fn the_log_tells_what_the_board_did_in_order() {
         "stop 3 found after 6",
         "stop 3 is ",
     ];
-    for (line, beginning) in lines.iter().zip(expected) {
-        assert!(line.starts_with(beginning), "{line}");
+    let mut following = lines.iter();
+    for beginning in expected {
+        let is_there = following.any(|line| line.starts_with(beginning));
+        assert!(is_there, "{beginning} is missing or late: {lines:?}");
     }
     assert!(lines.last().is_some_and(|line| line.starts_with("azimuth ")), "{lines:?}");
     let statuses = ["starting", "levelling at stop 1", "stop 1 done, may drive", "driving"];

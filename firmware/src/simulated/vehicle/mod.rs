@@ -40,7 +40,7 @@ use crate::ports::VehicleSensors;
 const FORCE_BIAS_SIGMA: f64 = 1e-4 * 9.80665;
 /// How long the board levels at the stops of a brief run, and how long it drives, s.
 const BRIEF_STOP_SECONDS: f64 = 15.0;
-const BRIEF_DRIVE_SECONDS: f64 = 30.0;
+const BRIEF_DRIVE_SECONDS: f64 = 45.0;
 /// What a stop that is too short lasts, s.
 const SHORT_SECONDS: f64 = 12.0;
 /// Amplitude of the sway at stops that sway, °, and its frequencies, Hz.
