@@ -198,6 +198,7 @@ impl VehicleScenario {
             Some(VehicleFault::NeverStops) => never_stop(&mut day),
             Some(VehicleFault::ShortStops) => {
                 stops_of(&mut day).skip(1).for_each(|stop| stop.seconds = SHORT_SECONDS);
+                drive_on(&mut day);
             }
             Some(VehicleFault::Sway) => stops_of(&mut day).for_each(|stop| stop.sway = sway()),
             Some(VehicleFault::Bumps) => bump(&mut day),
@@ -307,6 +308,14 @@ fn never_stop(day: &mut Day) {
     let Some(on) = day.legs.get(1).copied() else { return };
     for leg in day.legs.iter_mut().skip(1).filter(|leg| matches!(leg, Leg::Stop(_))) {
         *leg = on;
+    }
+}
+
+/// Has a vehicle drive on after its last stop.
+fn drive_on(day: &mut Day) {
+    if let Some(on) = day.legs.get(1).copied() {
+        // Where there is no room for it, the day ends with the stop.
+        let _ = day.legs.push(on);
     }
 }
 
