@@ -23,7 +23,7 @@ use hal_mock::spi::ReadyPin;
 use hal_mock::vehicle::board::{CHIPS, GYROS, VehicleBoard};
 use hal_mock::vehicle::plant::{VehiclePlant, VehiclePlantConfiguration};
 use hal_mock::vehicle::{self as world, Drive, Event, Leg, Stop, VehicleConfiguration};
-use hal_mock::violation::Violation;
+use hal_mock::violation::{Violation, Violations};
 use orientation::align::setting;
 use orientation::align::stops::Setting;
 use orientation::session::stops::Procedure;
@@ -375,7 +375,7 @@ pub fn sensors<'a, B: Rig, A: Around>(
 /// What the drivers did that a data sheet forbids.
 pub fn violations<'a>(board: &'a VehicleBoard) -> impl Iterator<Item = (Select, Violation)> + 'a {
     CHIPS.into_iter().flat_map(|select| {
-        let found = board.violations(select).into_iter().flat_map(|violations| violations.first());
+        let found = board.violations(select).into_iter().flat_map(Violations::first);
         found.map(move |violation| (select, *violation))
     })
 }
