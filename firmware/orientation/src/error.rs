@@ -273,6 +273,20 @@ pub enum Refusal {
         /// Of how many.
         of: u32,
     },
+    /// At most stops the gyros showed another rotation than the Earth's.
+    EarthNotFelt {
+        /// At how many.
+        stops: u32,
+        /// Of how many.
+        of: u32,
+    },
+    /// By the forces on the way, half of the drives or more do not end at rest.
+    DrivesDisagree {
+        /// How many.
+        drives: u32,
+        /// Of how many.
+        of: u32,
+    },
     /// A device of the board failed.
     Device {
         /// Which.
@@ -385,5 +399,11 @@ words! { Refusal:
         Rounded::<3>(at);
     Self::RestDisturbed { disturbed, of } =>
         "{} of {} means at rest were disturbed: keep the vehicle still", disturbed, of;
+    Self::EarthNotFelt { stops, of } =>
+        "at {} of {} stops the gyros turn otherwise than the Earth: check latitude, axes, signs and scale",
+        stops, of;
+    Self::DrivesDisagree { drives, of } =>
+        "{} of {} drives do not end at rest by their forces: check accelerometers, gyros and displacement",
+        drives, of;
     Self::Device { device, trouble } => "{}: {}", device, trouble;
 }

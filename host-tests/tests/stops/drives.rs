@@ -28,7 +28,9 @@ impl Figures {
     }
 
     fn greatest(&self) -> f64 {
-        (self.outcomes.iter()).flat_map(Outcome::ratios).fold(0.0, |most, ratio| most.max(ratio.abs()))
+        (self.outcomes.iter())
+            .flat_map(Outcome::ratios)
+            .fold(0.0, |most, ratio| most.max(ratio.abs()))
     }
 
     /// RMS of the error at the end over the least σ of any estimator.
@@ -84,7 +86,8 @@ impl Figures {
 }
 
 pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
-    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value * value, count + 1.0));
+    let (sum, count) =
+        values.fold((0.0, 0.0), |(sum, count), value| (sum + value * value, count + 1.0));
     f64::sqrt(sum / count)
 }
 
@@ -99,11 +102,16 @@ pub fn three(seed: u64) -> Day {
 }
 
 /// The same day with gyros a hundred times better, so that the rest shows.
-pub fn quiet(mut day: Day) -> Day {
+pub fn quiet(day: Day) -> Day {
+    with_gyros(day, 0.001, 0.005)
+}
+
+/// The same day with gyros of this N, °/√h, and 1σ of bias, °/h.
+pub fn with_gyros(mut day: Day, n: f64, bias: f64) -> Day {
     for gyro in &mut day.scenario.vehicle.gyros {
-        (gyro.n_deg_sqrt_h, gyro.bias_sigma_deg_h) = (0.001, 0.005);
+        (gyro.n_deg_sqrt_h, gyro.bias_sigma_deg_h) = (n, bias);
     }
-    day.setting = known(day.scenario.vehicle.latitude_deg, 0.001, Some(0.005));
+    day.setting = known(day.scenario.vehicle.latitude_deg, n, Some(bias));
     day
 }
 
@@ -116,7 +124,7 @@ fn two_stops_give_both_azimuths_as_well_as_sigma_says() {
 
 #[test]
 fn three_stops_at_different_headings_reach_the_limit_and_tell_the_biases() {
-    let figures = Figures::of(160, three);
+    let figures = Figures::of(160, |seed| three(1000 + seed));
     figures.assert_calibrated("three stops", 0.1);
     assert!(figures.over_limit() <= 1.1, "{}", figures.over_limit());
     let biases = figures.biases();
@@ -134,6 +142,14 @@ fn five_stops_are_calibrated_too() {
 }
 
 #[test]
+fn stops_beyond_the_eighth_are_not_taken_for_the_eighth() {
+    let figures = Figures::of(8, |seed| Day::new(Scenario::stops(seed, 10, 40.0, 90.0), seed));
+    figures.assert_covered("ten stops");
+    assert!(figures.outcomes.iter().all(|outcome| outcome.stops.len() == 8));
+    assert!(figures.outcomes.iter().all(|outcome| outcome.stops[7].seconds() < 40.0));
+}
+
+#[test]
 fn stated_stops_do_as_well_as_found_ones() {
     let figures = Figures::of(60, |seed| Day { rests: Kind::Stated, ..two(seed) });
     figures.assert_calibrated("stated stops", 0.2);
@@ -141,11 +157,12 @@ fn stated_stops_do_as_well_as_found_ones() {
 
 #[test]
 fn an_unknown_displacement_widens_sigma_as_far_as_the_vehicle_could_have_driven() {
-    let told = Figures::of(40, |seed| quiet(two(seed)));
-    told.assert_covered("quiet gyros, displacement told");
-    let untold = Figures::of(40, |seed| Day { told: Told::Nothing, ..quiet(two(seed)) });
-    untold.assert_covered("quiet gyros, displacement unknown");
-    assert!(untold.sigma() > 3.0 * told.sigma(), "{} {}", untold.sigma(), told.sigma());
+    let middling = |seed| with_gyros(two(seed), 0.01, 0.005);
+    let told = Figures::of(40, middling);
+    told.assert_covered("N 0.01 °/√h, displacement told");
+    let untold = Figures::of(40, |seed| Day { told: Told::Nothing, ..middling(seed) });
+    untold.assert_covered("N 0.01 °/√h, displacement unknown");
+    assert!(untold.sigma() > 1.3 * told.sigma(), "{} {}", untold.sigma(), told.sigma());
 }
 
 #[test]
@@ -173,16 +190,29 @@ fn scale_errors_are_covered_by_their_sigma() {
 }
 
 #[test]
-fn biases_that_walk_and_flicker_are_covered() {
+fn biases_that_walk_are_covered() {
     Figures::of(60, |seed| {
-        let mut day = quiet(three(seed));
+        let mut day = with_gyros(three(seed), 0.01, 1.0);
         for gyro in &mut day.scenario.vehicle.gyros {
-            (gyro.b_deg_h, gyro.k_deg_h_sqrt_h) = (0.1, 0.5);
+            gyro.k_deg_h_sqrt_h = 1.0;
         }
-        day.setting.common.noise = GyroNoise::from_field_units(0.001, 0.1, 0.5, 0.0);
+        day.setting.common.noise = GyroNoise::from_field_units(0.01, 0.0, 1.0, 0.0);
         day
     })
-    .assert_calibrated("B 0.1 °/h and K 0.5 °/h/√h", 0.2);
+    .assert_calibrated("K 1 °/h/√h", 0.2);
+}
+
+#[test]
+fn biases_that_flicker_are_covered() {
+    Figures::of(60, |seed| {
+        let mut day = with_gyros(three(seed), 0.01, 1.0);
+        for gyro in &mut day.scenario.vehicle.gyros {
+            gyro.b_deg_h = 0.3;
+        }
+        day.setting.common.noise = GyroNoise::from_field_units(0.01, 0.3, 0.0, 0.0);
+        day
+    })
+    .assert_calibrated("B 0.3 °/h", 0.25);
 }
 
 #[test]
@@ -206,7 +236,8 @@ fn a_latitude_known_badly_is_covered_by_its_sigma() {
     Figures::of(60, |seed| {
         let mut day = quiet(two(seed));
         // Errors of 1σ = 0.5°, the same for every tenth seed.
-        let error = 0.5 * [-1.6, -1.0, -0.7, -0.4, -0.1, 0.1, 0.4, 0.7, 1.0, 1.6][(seed % 10) as usize];
+        let error =
+            0.5 * [-1.6, -1.0, -0.7, -0.4, -0.1, 0.1, 0.4, 0.7, 1.0, 1.6][(seed % 10) as usize];
         day.setting.common.latitude = known(52.0 + error, 0.0, None).common.latitude;
         day.setting.common.latitude_sigma = 0.5f64.to_radians();
         day

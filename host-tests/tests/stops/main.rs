@@ -1,14 +1,18 @@
 //! Holds azimuth from stops (equations.md §5) to closed forms, to scipy, and to simulated vehicles.
 #![allow(missing_docs)]
+#![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
+mod criteria;
+mod drives;
 mod inclination;
 mod increments;
 mod minimum;
 mod place;
-#[cfg(test)]
-mod probe;
+mod refusals;
 mod rotations;
 mod strapdown;
+mod swaying;
+mod turns;
 mod world;
 
 #[track_caller]

@@ -44,6 +44,7 @@ pub struct Day {
 pub enum Kind {
     Found,
     Stated,
+    At(&'static [[f64; 2]]),
     Whole,
 }
 
@@ -123,7 +124,16 @@ impl Day {
     }
 
     /// The same with samples that something changes, or that are lost where it says false.
-    pub fn run_through(&self, mut change: impl FnMut(&mut VehicleSample) -> bool) -> Outcome {
+    pub fn run_through(&self, change: impl FnMut(&mut VehicleSample) -> bool) -> Outcome {
+        self.watch(change, |_, _| ())
+    }
+
+    /// The same, looking at the session after every sample, with its time, s.
+    pub fn watch(
+        &self,
+        mut change: impl FnMut(&mut VehicleSample) -> bool,
+        mut look: impl FnMut(&Session, f64),
+    ) -> Outcome {
         let configuration = hal_mock::vehicle::VehicleConfiguration {
             faults: &self.faults,
             ..self.scenario.configuration()
@@ -132,6 +142,7 @@ impl Day {
         let rests = match self.rests {
             Kind::Found => Rests::Found,
             Kind::Stated => Rests::Stated(stops.iter().copied().collect()),
+            Kind::At(stops) => Rests::Stated(stops.iter().copied().collect()),
             Kind::Whole => Rests::Whole,
         };
         let period = 1.0 / configuration.rate_hz;
@@ -151,6 +162,7 @@ impl Day {
                     &configuration,
                 )));
             }
+            look(&session, sample.time_s);
             if stops.get(next).is_some_and(|stop| sample.time_s + 0.5 * period >= stop[1]) {
                 if let Some(there) = self.fix(next, vehicle.truth().displacement_m, &mut fixes) {
                     session.handle(Event::Displaced(there));

@@ -94,6 +94,13 @@ impl<const N: usize> Blocks<N> {
         self.blocks.truncate(kept);
     }
 
+    /// Takes those of the last stop out, which is none.
+    pub fn forget(&mut self, stop: usize) {
+        while self.blocks.last().is_some_and(|block| usize::from(block.stop) == stop) {
+            self.blocks.pop();
+        }
+    }
+
     /// All of them.
     #[must_use]
     pub fn all(&self) -> &[Block] {

@@ -31,6 +31,8 @@ const RATIO_TOLERANCE: f64 = 0.01;
 const DIFFERENT: f64 = 5.0;
 /// How far a body that sways may turn between both ends of a stop, rad: a degree and a bit.
 const SWAY: f64 = 0.02;
+/// How much more sway may scatter the blocks of a single stop than neighbours show, in power.
+const MOST_SWAY: f64 = 10.0;
 /// Probability of healthy blocks' scatter below which they are refused.
 const SCATTER_PROBABILITY: f64 = 1e-6;
 /// How far the scatter that blocks are held to may be too small: it is taken from the same few blocks, and
@@ -103,7 +105,10 @@ impl Conclusion {
             stated_density: 0.5 * setting.force_noise * setting.force_noise,
         };
         let found = Found::of(setting, &path);
-        Self { verdict: judge(setting, &found).map(|()| found.azimuth), found: Some(found) }
+        Self {
+            verdict: judge(setting, &found, path.stops.len() as u32).map(|()| found.azimuth),
+            found: Some(found),
+        }
     }
 
     /// Of nothing but a reason.
@@ -121,10 +126,14 @@ fn inspect(setting: &Setting, follower: &Follower) -> Result<(), Refusal> {
         None => {}
     }
     let stops = follower.stops();
+    let is_whole = *follower.rests() == Rests::Whole;
+    let seconds = follower.fleeting();
+    if seconds > 0.0 && stops.len() < 2 {
+        return Err(Refusal::StopTooShort { stop: stops.len() + 1, seconds, least: LEAST_REST });
+    }
     let [Some(first), Some(last)] = [stops.first(), stops.last()] else {
         return Err(Refusal::NoStop);
     };
-    let is_whole = *follower.rests() == Rests::Whole;
     if !is_whole && stops.len() == 1 {
         return Err(Refusal::OneStop { from: first.from, to: first.to });
     }
@@ -164,8 +173,22 @@ fn inspect_stop(
     Err(Refusal::VehicleMoves { stop: index + 1, rate, force: criteria.force.abs() })
 }
 
+/// Whether what was left out contradicts what is left. A vehicle may be turned at a stop, and a drive may
+/// end by rolling; but where most of them tell something else, it is the rest that is wrong.
+fn agree(found: &Found, stops: u32) -> Result<(), Refusal> {
+    let drives = stops.saturating_sub(1);
+    if drives > 0 && 2 * found.turning > stops {
+        return Err(Refusal::EarthNotFelt { stops: found.turning, of: stops });
+    }
+    if drives > 0 && 2 * found.unsteady >= drives {
+        return Err(Refusal::DrivesDisagree { drives: found.unsteady, of: drives });
+    }
+    Ok(())
+}
+
 /// Whether what was found can be believed.
-fn judge(setting: &Setting, found: &Found) -> Result<(), Refusal> {
+fn judge(setting: &Setting, found: &Found, stops: u32) -> Result<(), Refusal> {
+    agree(found, stops)?;
     let [left_out, blocks] = found.left_out;
     if left_out * LEFT_OUT > blocks {
         return Err(Refusal::RestDisturbed { disturbed: left_out, of: blocks });
@@ -198,6 +221,12 @@ impl Found {
         let row = End::of(path, &solution).row(path);
         let limit = libm::sqrt(solution.filter.variance(&row));
         solution.settle(setting, path);
+        let scatter = solution.chi_square / solution.degrees;
+        if path.stops.len() == 1 && (1.0..MOST_SWAY).contains(&scatter) {
+            // Sway that beats with the blocks scatters them more than neighbours differ.
+            let stated_density = scatter * path.density();
+            solution.settle(setting, &Path { stated_density, ..*path });
+        }
         Self { limit, ..Self::shown(setting, path, &plain, &solution) }
     }
 

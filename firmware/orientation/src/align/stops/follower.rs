@@ -74,6 +74,8 @@ pub struct Follower {
     is_at_rest: bool,
     /// Seconds for which the criteria held without a break.
     held: usize,
+    /// Length of the longest halt that was too short for a stop, s.
+    fleeting: f64,
     stops: Vec<Stop, STOPS>,
     blocks: Blocks<AT_REST>,
     drives: Blocks<DRIVEN>,
@@ -100,6 +102,7 @@ impl Follower {
             criteria: None,
             is_at_rest: false,
             held: 0,
+            fleeting: 0.0,
             stops: Vec::new(),
             blocks: Blocks::new(REST_SPAN),
             drives: Blocks::new(DRIVE_SPAN),
@@ -256,23 +259,36 @@ impl Follower {
             (false, true) if self.held <= DELAY => {}
             (false, true) => self.stand(),
             (true, true) => self.rest(WINDOW - 1 - LATEST, self.stops.len().saturating_sub(1)),
-            (_, false) => self.is_at_rest = false,
+            (true, false) => self.set_off(),
+            (false, false) => {}
         }
     }
 
     /// Begins a stop with the window, which is past the delay, or goes on with one that was not left:
     /// nobody drives anywhere without failing the criteria for as long as they look.
     fn stand(&mut self) {
-        self.is_at_rest = true;
         let now = self.window.back().map_or(0.0, |second| second.to);
         let last = self.stops.last().map_or(f64::NEG_INFINITY, |stop| stop.to);
         let goes_on = now - last < (WINDOW + DELAY + LATEST) as f64;
         let stop = self.stops.len() - usize::from(goes_on);
+        // The next seconds belong to the last stop, so there must be one for this.
+        self.is_at_rest = stop < STOPS;
         for index in 0..WINDOW - LATEST {
             let is_new = self.window.iter().nth(index).is_some_and(|second| second.from >= last);
             if is_new {
                 self.rest(index, stop);
             }
+        }
+    }
+
+    /// Ends a stop, and forgets it if it was shorter than the criteria look: a halt at a crossing.
+    fn set_off(&mut self) {
+        self.is_at_rest = false;
+        let Some(last) = self.stops.last().map(Stop::seconds) else { return };
+        if last < WINDOW as f64 {
+            self.stops.pop();
+            self.blocks.forget(self.stops.len());
+            self.fleeting = self.fleeting.max(last);
         }
     }
 
@@ -317,6 +333,12 @@ impl Follower {
     #[must_use]
     pub fn stops(&self) -> &[Stop] {
         &self.stops
+    }
+
+    /// Length of the longest halt that was too short for a stop, s; zero where there was none.
+    #[must_use]
+    pub fn fleeting(&self) -> f64 {
+        self.fleeting
     }
 
     /// Tells where the last stop is, north and east of the first, m.

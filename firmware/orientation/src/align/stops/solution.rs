@@ -259,7 +259,7 @@ impl Run<'_> {
         let way = sum(&scaled(&along[0], to[0] - from[0]), &scaled(&along[1], to[1] - from[1]));
         let turning = scaled(&cross(&path.place.axis(), &way), EARTH_RATE);
         let beyond = difference(gained, &turned(&solution.frame, &turning));
-        let variance = self.velocity_variance(&path.stops[index], driven);
+        let variance = self.velocity_variance(index, driven);
         let measurements: [Measurement; 2] = core::array::from_fn(|axis| {
             let direction = turned(&solution.frame, &along[axis]);
             let mut row = [0.0; STATES];
@@ -272,12 +272,25 @@ impl Run<'_> {
     }
 
     /// Variance of the velocity that a drive seems to gain, (m/s)²: what driving adds to the accelerometers'
-    /// biases, their noise, and gravity's direction along an unknown way.
-    fn velocity_variance(&self, stop: &Stop, driven: f64) -> f64 {
-        let sigma = self.setting.speed_sigma * driven;
-        let astray = if stop.displacement.is_some() { DETOUR * sigma } else { sigma };
+    /// biases, their noise, gravity's direction along an unknown way and how the Earth turns that.
+    fn velocity_variance(&self, index: usize, driven: f64) -> f64 {
+        let astray = self.astray(index, driven);
         let direction = self.path.gravity * self.path.place.per_metre()[0] * astray;
-        (DRIVING * DRIVING + direction * direction) * driven * driven + self.density * driven
+        let turning = EARTH_RATE * astray;
+        (DRIVING * DRIVING + direction * direction) * driven * driven
+            + turning * turning
+            + self.density * driven
+    }
+
+    /// How far the way to a stop, driven in so many seconds, may be from what is taken for it, 1σ, m.
+    fn astray(&self, index: usize, driven: f64) -> f64 {
+        let stops = &self.path.stops;
+        let is_told = |stop: usize| stop == 0 || stops[stop].displacement.is_some();
+        let speed = self.setting.speed_sigma;
+        if is_told(index - 1) && is_told(index) {
+            return DETOUR * speed * driven;
+        }
+        speed * (stops[index].from - stops[0].to)
     }
 
     /// Takes the force of a block.
@@ -320,12 +333,18 @@ impl Run<'_> {
         let beyond = small(&product(&shown, &transposed(&earth)));
         let rows: [_; 3] = core::array::from_fn(|axis| rest_row(&earth, axis));
         let sway = self.sway(stop);
+        // Farther north the Earth's axis points elsewhere on the start frame.
+        let farther = self.north.map(|place| {
+            let change = difference(&place.axis(), &self.path.place.axis());
+            turned(&solution.frame, &scaled(&change, turn / LATITUDE_STEP))
+        });
         // On the body's axes, which sway differently.
         let measurements: [Measurement; 3] = core::array::from_fn(|axis| {
             let direction: Vector = core::array::from_fn(|part| begin[part][axis]);
-            let row = core::array::from_fn::<f64, STATES, _>(|state| {
+            let mut row = core::array::from_fn::<f64, STATES, _>(|state| {
                 (0..3).map(|part| direction[part] * rows[part][state]).sum()
             });
+            row[LATITUDE] = farther.map_or(0.0, |change| dot(&change, &direction));
             Measurement { row, value: dot(&direction, &beyond), variance: sway[axis] }
         });
         if self.take(&mut solution.filter, &measurements).is_none() {
