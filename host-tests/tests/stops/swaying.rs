@@ -111,7 +111,15 @@ fn wrong_axes_of_a_parked_vehicle_are_never_silently_wrong() {
                     });
                     if outcome.conclusion.verdict.is_ok() && outcome.ratios()[1].abs() > 5.0 {
                         let found = outcome.found();
-                        wrong.push((name, axis, seed, sways, outcome.ratios()[1], found.turning, found.chi_square));
+                        wrong.push((
+                            name,
+                            axis,
+                            seed,
+                            sways,
+                            outcome.ratios()[1],
+                            found.turning,
+                            found.chi_square,
+                        ));
                     }
                 }
             }

@@ -31,8 +31,6 @@ const RATIO_TOLERANCE: f64 = 0.01;
 const DIFFERENT: f64 = 5.0;
 /// How far a body that sways may turn between both ends of a stop, rad: a degree and a bit.
 const SWAY: f64 = 0.02;
-/// How much more sway may scatter the blocks of a single stop than neighbours show, in power.
-const MOST_SWAY: f64 = 10.0;
 /// Probability of healthy blocks' scatter below which they are refused.
 const SCATTER_PROBABILITY: f64 = 1e-6;
 /// How far the scatter that blocks are held to may be too small: it is taken from the same few blocks, and
@@ -221,12 +219,6 @@ impl Found {
         let row = End::of(path, &solution).row(path);
         let limit = libm::sqrt(solution.filter.variance(&row));
         solution.settle(setting, path);
-        let scatter = solution.chi_square / solution.degrees;
-        if path.stops.len() == 1 && (1.0..MOST_SWAY).contains(&scatter) {
-            // Sway that beats with the blocks scatters them more than neighbours differ.
-            let stated_density = scatter * path.density();
-            solution.settle(setting, &Path { stated_density, ..*path });
-        }
         Self { limit, ..Self::shown(setting, path, &plain, &solution) }
     }
 
