@@ -36,7 +36,7 @@ struct CommandLine {
 #[derive(Subcommand)]
 enum Command {
     /// Runs the whole board application on simulated chips.
-    Run(RunOptions),
+    Run(Box<RunOptions>),
     /// Runs the alignment on a recording of kind `stage`, `dwells`, `rotating` or `imu`.
     Replay(ReplayOptions),
     /// Plans positions and dwells for a gyro's noise.

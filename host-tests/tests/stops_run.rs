@@ -40,7 +40,7 @@ fn a_vehicle_finds_north_between_two_stops() {
 #[test]
 fn a_displacement_that_nobody_tells_costs_accuracy() {
     let (known, _) = short(&[]);
-    let (unknown, _) = short(&["--no-displacement", "--json"]);
+    let (unknown, _) = short(&["--no-displacement"]);
     assert!(unknown["stops"][1]["displacement_m"].is_null(), "{unknown}");
     let sigma = |object: &Value| object["sigma_deg"].as_f64();
     if let (Some(known), Some(unknown)) = (sigma(&known), sigma(&unknown)) {

@@ -159,8 +159,8 @@ impl<'a, G: InStep, A: Accelerometer, O: Observer> TriadAcquisition<'a, G, A, O>
     /// The rates of the conversions; all are read, whatever is wrong with one.
     async fn rates(&mut self) -> Result<Option<[AngularRate; 3]>, Refusal> {
         let mut rates = [None; 3];
-        for axis in 0..rates.len() {
-            rates[axis] = match self.gyros[axis].read(self.outlet.shared).await? {
+        for (axis, rate) in rates.iter_mut().enumerate() {
+            *rate = match self.gyros[axis].read(self.outlet.shared).await? {
                 Ok(rate) => rate,
                 Err(symptom) => self.mend(axis, symptom).await?,
             };

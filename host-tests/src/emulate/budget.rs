@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 /// The names of the limits.
-pub const NAMES: [&str; 17] = [
+pub const NAMES: [&str; 20] = [
     "filter_instructions",
     "filter_and_dwell_instructions",
     "match_instructions",
@@ -13,6 +13,9 @@ pub const NAMES: [&str; 17] = [
     "plan_instructions",
     "noise_fit_instructions",
     "turning_instructions",
+    "strapdown_instructions",
+    "inclination_instructions",
+    "stops_instructions",
     "sample_instructions",
     "turning_sample_instructions",
     "stops_sample_instructions",

@@ -156,6 +156,9 @@ impl Norm {
 
     /// Szymanowski's criteria, against what the dwells usually show: their biases are no motion.
     fn driving(&self, dwell: &Dwell) -> Option<Disturbance> {
+        if dwell.seconds <= 0.0 {
+            return None;
+        }
         let force = force_of(dwell).unwrap_or(self.force);
         let criteria = Criteria::of_axis(dwell.rate - self.rate, force, self.force);
         let limits = self.sensors.limits(dwell.seconds);

@@ -23,7 +23,7 @@ use hal_mock::spi::ReadyPin;
 use hal_mock::vehicle::board::{CHIPS, GYROS, VehicleBoard};
 use hal_mock::vehicle::plant::{VehiclePlant, VehiclePlantConfiguration};
 use hal_mock::vehicle::{self as world, Drive, Event, Leg, Stop, VehicleConfiguration};
-use hal_mock::violation::Violation;
+use hal_mock::violation::{Violation, Violations};
 use orientation::align::setting;
 use orientation::align::stops::Setting;
 use orientation::session::stops::Procedure;
@@ -40,7 +40,7 @@ use crate::ports::VehicleSensors;
 const FORCE_BIAS_SIGMA: f64 = 1e-4 * 9.80665;
 /// How long the board levels at the stops of a brief run, and how long it drives, s.
 const BRIEF_STOP_SECONDS: f64 = 15.0;
-const BRIEF_DRIVE_SECONDS: f64 = 30.0;
+const BRIEF_DRIVE_SECONDS: f64 = 45.0;
 /// What a stop that is too short lasts, s.
 const SHORT_SECONDS: f64 = 12.0;
 /// Amplitude of the sway at stops that sway, °, and its frequencies, Hz.
@@ -198,6 +198,7 @@ impl VehicleScenario {
             Some(VehicleFault::NeverStops) => never_stop(&mut day),
             Some(VehicleFault::ShortStops) => {
                 stops_of(&mut day).skip(1).for_each(|stop| stop.seconds = SHORT_SECONDS);
+                drive_on(&mut day);
             }
             Some(VehicleFault::Sway) => stops_of(&mut day).for_each(|stop| stop.sway = sway()),
             Some(VehicleFault::Bumps) => bump(&mut day),
@@ -310,6 +311,14 @@ fn never_stop(day: &mut Day) {
     }
 }
 
+/// Has a vehicle drive on after its last stop.
+fn drive_on(day: &mut Day) {
+    if let Some(on) = day.legs.get(1).copied() {
+        // Where there is no room for it, the day ends with the stop.
+        let _ = day.legs.push(on);
+    }
+}
+
 /// Doors fall shut at every stop, as long as there are events left.
 fn bump(day: &mut Day) {
     let stops: heapless::Vec<[f64; 2], 16> = day.configuration().stops().collect();
@@ -366,7 +375,7 @@ pub fn sensors<'a, B: Rig, A: Around>(
 /// What the drivers did that a data sheet forbids.
 pub fn violations<'a>(board: &'a VehicleBoard) -> impl Iterator<Item = (Select, Violation)> + 'a {
     CHIPS.into_iter().flat_map(|select| {
-        let found = board.violations(select).into_iter().flat_map(|violations| violations.first());
+        let found = board.violations(select).into_iter().flat_map(Violations::first);
         found.map(move |violation| (select, *violation))
     })
 }

@@ -33,10 +33,11 @@ const DIFFERENT: f64 = 5.0;
 const UPRIGHT: f64 = 0.5;
 /// How far a body that sways may turn between both ends of a stop, rad: a degree and a bit.
 const SWAY: f64 = 0.02;
-/// How much more sway may scatter the blocks of a single stop than neighbours show, in power.
-const MOST_SWAY: f64 = 10.0;
 /// Probability of healthy blocks' scatter below which they are refused.
 const SCATTER_PROBABILITY: f64 = 1e-6;
+/// How far the scatter that blocks are held to may be too small: it is taken from the same few blocks, and
+/// sway is not white.
+const UNSURE: f64 = 1.5;
 /// Part of the blocks that may be left out.
 const LEFT_OUT: u32 = 4;
 /// Part of what was known of a bias beforehand below which it counts as observed.
@@ -198,7 +199,7 @@ fn judge(setting: &Setting, found: &Found, stops: u32) -> Result<(), Refusal> {
         return Err(Refusal::RestDisturbed { disturbed: left_out, of: blocks });
     }
     let [chi_square, degrees] = found.chi_square;
-    if chi_square_tail(chi_square, degrees) < SCATTER_PROBABILITY {
+    if chi_square_tail(chi_square / UNSURE, degrees) < SCATTER_PROBABILITY {
         return Err(Refusal::ResidualsNotWhite { ratio: chi_square / degrees });
     }
     let Plain { ratio, ratio_sigma: sigma, .. } = found.plain;
@@ -225,12 +226,6 @@ impl Found {
         let row = End::of(path, &solution).row(path);
         let limit = libm::sqrt(solution.filter.variance(&row));
         solution.settle(setting, path);
-        let scatter = solution.chi_square / solution.degrees;
-        if path.stops.len() == 1 && (1.0..MOST_SWAY).contains(&scatter) {
-            // Sway that beats with the blocks scatters them more than neighbours differ.
-            let stated_density = scatter * path.density();
-            solution.settle(setting, &Path { stated_density, ..*path });
-        }
         Self { limit, ..Self::shown(setting, path, &plain, &solution) }
     }
 

@@ -97,13 +97,12 @@ impl Path<'_> {
     }
 }
 
-/// Power that three blocks in a row show: a line through them, as the Earth draws it, shows none.
+/// Power that three blocks in a row show across the vertical: a line through them, as the Earth draws it,
+/// shows none.
 fn second_difference(a: &Block, b: &Block, c: &Block) -> f64 {
-    let squares: f32 = (0..3)
-        .map(|axis| {
-            let bend = a.force[axis] - 2.0 * b.force[axis] + c.force[axis];
-            bend * bend
-        })
-        .sum();
-    f64::from(squares * b.seconds) / 18.0
+    let bend: [f32; 3] =
+        core::array::from_fn(|axis| a.force[axis] - 2.0 * b.force[axis] + c.force[axis]);
+    let upward = dot(&bend, &b.force);
+    let across = dot(&bend, &bend) - upward * upward / dot(&b.force, &b.force);
+    f64::from(across * b.seconds) / 12.0
 }

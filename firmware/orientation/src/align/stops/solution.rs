@@ -24,6 +24,9 @@ const AZIMUTH_SIGMA: f64 = 3.0;
 /// seen, 1e-5°.
 const REPETITIONS: u32 = 8;
 const SETTLED: f64 = 5e-4;
+/// Scatter over the believed one that is too much, and the most that is taken for a sway.
+const ROUGH: f64 = 1.5;
+const ROUGHEST: f64 = 6.0;
 /// Chi-square beyond which a block, or the rest of a stop, is left out: one healthy block in three million.
 const OUTLIER: f64 = 30.0;
 /// Least variance of what a vehicle sways, rad²: 20 milliarcseconds.
@@ -71,6 +74,8 @@ pub struct Solution {
     pub turning: u32,
     /// Drives that did not come to rest at their end, whose velocity is left out.
     pub unsteady: u32,
+    /// How much more than their neighbours say the blocks scatter: power over power, one or more.
+    pub roughness: f64,
 }
 
 /// What has been carried until a moment.
@@ -111,6 +116,7 @@ impl Solution {
             left_out: 0,
             turning: 0,
             unsteady: 0,
+            roughness: 1.0,
         }
     }
 
@@ -119,10 +125,22 @@ impl Solution {
         for _ in 0..REPETITIONS {
             self.frame = product(&by(&self.filter.three(START)), &self.frame);
             self.run(setting, path, Belief::Shown);
-            if length(&self.filter.three(START)) < SETTLED {
+            let is_settled = length(&self.filter.three(START)) < SETTLED;
+            if is_settled && !self.roughen() {
                 break;
             }
         }
+    }
+
+    /// Whether the blocks scatter more than was believed, by which they are then believed less: a sway that
+    /// is slower than two of them does not show in neighbours.
+    fn roughen(&mut self) -> bool {
+        let ratio = self.chi_square / self.degrees.max(1.0);
+        let is_rough = ratio > ROUGH && self.roughness * ratio < ROUGHEST;
+        if is_rough {
+            self.roughness *= ratio;
+        }
+        is_rough
     }
 
     /// One run along the path.
@@ -143,7 +161,7 @@ impl Solution {
         let mut run = Run {
             setting,
             path,
-            density: if is_ideal { path.least_density() } else { path.density() },
+            density: if is_ideal { path.least_density() } else { self.roughness * path.density() },
             north: (!is_exact).then(|| Place::moved(common.latitude, LATITUDE_STEP)),
             belief,
             last: Moment { at: path.start, ..Moment::default() },

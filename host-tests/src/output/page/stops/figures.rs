@@ -41,15 +41,16 @@ pub fn azimuths(object: &Object) -> Option<Figure> {
 pub fn inclinations(plain: &Plain) -> [Figure; 2] {
     let reach = (REACH_SIGMAS * degrees(plain.sigma)).clamp(LEAST_REACH_DEG, 90.0);
     let minimum = degrees(plain.azimuth);
-    let near = (-PLACES..=PLACES).map(|i| minimum + reach * f64::from(i) / f64::from(PLACES));
-    let circle = (0..=PLACES).map(|i| 360.0 * f64::from(i) / f64::from(PLACES));
+    let part = |i| f64::from(i) / f64::from(PLACES);
+    let near: Vec<f64> = (-PLACES..=PLACES).map(|i| minimum + reach * part(i)).collect();
+    let circle: Vec<f64> = (0..=PLACES).map(|i| 360.0 * part(i)).collect();
     [
-        inclination(plain, "U over the azimuth at the start (Fig. 9)", circle.collect()),
-        inclination(plain, "U near its minimum", near.collect()),
+        inclination(plain, "U over the azimuth at the start (Fig. 9)", &circle),
+        inclination(plain, "U near its minimum", &near),
     ]
 }
 
-fn inclination(plain: &Plain, title: &str, azimuths_deg: Vec<f64>) -> Figure {
+fn inclination(plain: &Plain, title: &str, azimuths_deg: &[f64]) -> Figure {
     let curve = |of: &dyn Fn(f64) -> f64| {
         let at = |azimuth: &f64| (*azimuth, degrees(of(wrapped(azimuth.to_radians()))));
         azimuths_deg.iter().map(at).collect::<Vec<_>>()
@@ -122,7 +123,7 @@ fn criterion(
 }
 
 /// What a wrong azimuth makes of level rates at a latitude: the paper's p′ and q′, and
-/// W = 2 Ω_h |sin(δ/2)|; beside it U of a drive over its seconds.
+/// `W = 2 Ω_h |sin(δ/2)|`; beside it U of a drive over its seconds.
 pub fn heading_error(latitude: Latitude, drive: Option<(&Plain, f64)>) -> Figure {
     let horizontal = degrees_per_hour(latitude.horizontal_rate());
     let over = |of: &dyn Fn(f64) -> f64| {
