@@ -129,7 +129,7 @@ fn what_run_cannot_do_is_misuse_in_one_line() {
         &["run", "--fault", "nothing"],
         &["run", "--positions", "1"],
         &["run", "--dwell", "0"],
-        &["run", "--method", "siap"],
+        &["run", "--method", "static"],
         &["run", "--seed", "-1"],
         &["run", "--azimuth", "nan"],
     ] {

@@ -101,10 +101,19 @@ struct Plain {
 /// Drives each case with seeds 1 to `runs`; `tick` after each.
 #[must_use]
 pub fn rows(runs: usize, tick: impl Fn() + Sync) -> Vec<Row> {
-    CASES.iter().map(|case| row(*case, runs, &tick)).collect()
+    (0..COUNT).map(|case| row(case, runs, &tick)).collect()
 }
 
-fn row(case: Case, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
+/// One of the cases alone.
+///
+/// # Panics
+/// Where the index is not below [`COUNT`].
+#[must_use]
+pub fn row(case: usize, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
+    drive(CASES[case], runs, tick)
+}
+
+fn drive(case: Case, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
     let runs = over(runs, tick, |seed| case.run(seed));
     let plain = |of: fn(&Plain) -> f64| -> Vec<f64> {
         runs.iter().filter_map(|run| run.plain.as_ref().map(of)).collect()

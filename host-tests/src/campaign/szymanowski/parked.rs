@@ -60,10 +60,19 @@ pub struct Row {
 /// Parks each case with seeds 1 to `runs`; `tick` after each.
 #[must_use]
 pub fn rows(runs: usize, tick: impl Fn() + Sync) -> Vec<Row> {
-    CASES.iter().map(|case| row(case, runs, &tick)).collect()
+    (0..COUNT).map(|case| row(case, runs, &tick)).collect()
 }
 
-fn row(case: &Case, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
+/// One of the cases alone.
+///
+/// # Panics
+/// Where the index is not below [`COUNT`].
+#[must_use]
+pub fn row(case: usize, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
+    park(&CASES[case], runs, tick)
+}
+
+fn park(case: &Case, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
     let days = over(runs, tick, |seed| {
         let told = Told { rests: Rests::Whole, knows_displacement: false };
         let day = live(&case.scenario(seed), seed, told);
