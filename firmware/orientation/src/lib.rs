@@ -14,6 +14,13 @@
 //!                              └─uneven turn─▶ coupling ──▲    accelerometer ─▶ tilt ──▲
 //! ```
 //!
+//! In a vehicle nothing turns the gyros: three carry the attitude from stop to stop.
+//!
+//! ```text
+//!  3 gyros ─▶ strapdown ─▶ frozen start frame ─▶ up at each stop ─▶ filter ─▶ azimuth ± σ
+//!  3 accelerometers ─▶ stop criteria ─▶ rest rates ────────────────▶ ▲ Earth rotation, displacement
+//! ```
+//!
 //! Time and numbers go in, results come out: there is no bus, clock, allocator or async here, so
 //! the whole procedure can be replayed from a recording.
 #![no_std]
