@@ -134,6 +134,15 @@ pub enum ReplayError {
         /// How many stops there are.
         stops: usize,
     },
+    /// A sensor stood still.
+    Stuck {
+        /// Its column.
+        column: &'static str,
+        /// The line where that begins.
+        line: u64,
+        /// For how long, s.
+        seconds: f64,
+    },
     /// The session cannot follow the recording.
     Procedure(ProcedureError),
 }
@@ -174,6 +183,10 @@ impl fmt::Display for ReplayError {
             Self::Displacements { stated, stops } => {
                 write!(f, "{stated} displacements for {stops} stops: state one for each stop")
             }
+            Self::Stuck { column, line, seconds } => write!(
+                f,
+                "column {column}: the same value for {seconds:.1} s from line {line} on: the sensor is stuck"
+            ),
             Self::Procedure(error) => error.fmt(f),
         }
     }

@@ -254,6 +254,11 @@ pub enum Refusal {
         /// How far its mean force was from gravity, m/s².
         force: f64,
     },
+    /// Gyros and accelerometers disagree about how a body sways.
+    AxesDisagree {
+        /// How much more the forces change when they are turned by what the gyros show, in power.
+        ratio: f64,
+    },
     /// Samples were missing, and with them a part of the rotation.
     RotationMissing {
         /// After which time, s.
@@ -391,6 +396,9 @@ words! { Refusal:
     Self::VehicleMoves { stop, rate, force } =>
         "the vehicle moves at stop {}: its rate is {} °/h from the Earth's, its force {} m/s² from gravity",
         stop, Rounded::<2>(rate), Rounded::<3>(force);
+    Self::AxesDisagree { ratio } =>
+        "turned by what the gyros show, the forces change {} times more: check axes and signs of both",
+        Rounded::<1>(ratio);
     Self::RotationMissing { at, seconds } =>
         "samples are missing after {} s, for {} s: what the vehicle turned meanwhile is lost",
         Rounded::<3>(at), Rounded::<3>(seconds);

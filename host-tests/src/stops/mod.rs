@@ -95,6 +95,7 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
     let rows = samples::rows(body).ok_or_else(|| missing(body))?;
     let latitude = replay::latitude(header, options.latitude)?;
     let period_s = samples::period(header.rate_hz, &rows);
+    check_stuck(&rows, period_s)?;
     let zero_s = samples::begin(&rows, period_s);
     let method = options.method.unwrap_or_else(|| usual(header, &rows, period_s));
     let rests = rests(header, method, zero_s)?;
@@ -112,6 +113,17 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
     session.handle(Event::End);
     check_displacements(&session)?;
     Ok(Replay { method, session, zero_s, criteria, assumed })
+}
+
+/// Refuses a recording in which a sensor stands still while the others have noise: a part of the rotation is
+/// lost, and nothing else tells.
+fn check_stuck(rows: &[ImuRow], period_s: f64) -> Result<(), ReplayError> {
+    let white = noise::estimate(rows, None, period_s);
+    if white.angle_random_walk <= 0.0 || white.force <= 0.0 {
+        return Ok(());
+    }
+    let Some((column, row, count)) = samples::stuck(rows) else { return Ok(()) };
+    Err(ReplayError::Stuck { column, line: row.line, seconds: count as f64 * period_s })
 }
 
 /// Why a recording has no rows for these methods.

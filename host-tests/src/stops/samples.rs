@@ -46,6 +46,28 @@ pub fn period(rate_hz: Option<f64>, rows: &[ImuRow]) -> f64 {
     stated.filter(|stated| (sum - count * stated).abs() <= *stated).unwrap_or(sum / count)
 }
 
+/// Equal values in a row that are no chance where there is noise.
+const STUCK: usize = 64;
+/// How much longer than any other such a run is: where noise is hardly written, many are long.
+const ALONE: usize = 4;
+/// The columns of the channels.
+const COLUMNS: [&str; 6] = ["gx_rad_s", "gy_rad_s", "gz_rad_s", "ax_m_s2", "ay_m_s2", "az_m_s2"];
+
+/// A channel that shows one value for far longer than any other: its column, the row where that begins,
+/// and of how many rows.
+#[must_use]
+pub fn stuck(rows: &[ImuRow]) -> Option<(&'static str, &ImuRow, usize)> {
+    COLUMNS.iter().enumerate().find_map(|(channel, column)| {
+        let value = |row: &ImuRow| channels(row).nth(channel).unwrap_or_default().to_bits();
+        let mut runs: Vec<&[ImuRow]> = rows.chunk_by(|a, b| value(a) == value(b)).collect();
+        runs.sort_by_key(|run| std::cmp::Reverse(run.len()));
+        let next = runs.get(1).map_or(0, |run| run.len());
+        let longest = runs.first()?;
+        let is_stuck = longest.len() >= STUCK && longest.len() >= ALONE * next;
+        is_stuck.then(|| (*column, &longest[0], longest.len()))
+    })
+}
+
 /// Makes samples of what three gyros turned and three accelerometers felt; what rounding leaves over of a
 /// rotation goes to the next sample.
 #[derive(Clone, Copy, Debug, Default)]

@@ -10,7 +10,8 @@ use super::solution::{Belief, Solution, now_row};
 use super::stop::Stop;
 use crate::align::budget::Budget;
 use crate::align::conclusion::Azimuth;
-use crate::error::Refusal;
+use crate::earth::EARTH_RATE;
+use crate::error::{Refusal, Source};
 use crate::math::chi_square_tail;
 use crate::math::rotation::{
     IDENTITY, Matrix, Vector, cross, difference, length, product, transposed,
@@ -38,6 +39,14 @@ const SCATTER_PROBABILITY: f64 = 1e-6;
 /// How far the scatter that blocks are held to may be too small: it is taken from the same few blocks, and
 /// sway is not white.
 const UNSURE: f64 = 1.5;
+/// How much more than on the body's axes the forces may change from second to second when they are turned
+/// by what the gyros show, in power: where both have their axes and signs right, sway is taken off.
+const DISAGREEMENT: f64 = 1.5;
+/// How fast a vehicle that only stands may have turned from its beginning to its end beside the Earth, rad/s:
+/// a fifth of the Earth rate.
+const CARRIED: f64 = 0.2 * EARTH_RATE;
+/// Correlation of neighbouring blocks that no noise has: something drifts that is not in the model.
+const CORRELATED: f64 = 0.6;
 /// Part of the blocks that may be left out.
 const LEFT_OUT: u32 = 4;
 /// Part of what was known of a bias beforehand below which it counts as observed.
@@ -75,10 +84,14 @@ pub struct Found {
     pub plain: Plain,
     /// Chi-square of the blocks, and its degrees of freedom.
     pub chi_square: [f64; 2],
+    /// Correlation of neighbouring blocks.
+    pub correlation: f64,
     /// Blocks left out, and of how many.
     pub left_out: [u32; 2],
     /// Stops at which the vehicle turned, whose rest rates are left out.
     pub turning: u32,
+    /// Greatest rate at which it turned there beside the Earth, rad/s.
+    pub turning_rate: f64,
     /// Drives that did not come to rest at their end, whose velocity is left out.
     pub unsteady: u32,
 }
@@ -162,6 +175,10 @@ fn inspect_stop(
     if rest < LEAST_REST {
         return Err(Refusal::StopTooShort { stop: index + 1, seconds: rest, least: LEAST_REST });
     }
+    let disagreement = stop.disagreement();
+    if disagreement > DISAGREEMENT {
+        return Err(Refusal::AxesDisagree { ratio: disagreement });
+    }
     let gravity = setting.common.latitude.gravity();
     let ratio = -stop.force.mean()[2] / gravity;
     if ratio < UPRIGHT {
@@ -182,7 +199,9 @@ fn inspect_stop(
 /// end by rolling; but where most of them tell something else, it is the rest that is wrong.
 fn agree(found: &Found, stops: u32) -> Result<(), Refusal> {
     let drives = stops.saturating_sub(1);
-    if drives > 0 && 2 * found.turning > stops {
+    // All there is of a vehicle that only stands: it may be trodden on, but not carried round.
+    let is_carried = drives == 0 && found.turning_rate > CARRIED;
+    if is_carried || drives > 0 && 2 * found.turning > stops {
         return Err(Refusal::EarthNotFelt { stops: found.turning, of: stops });
     }
     if drives > 0 && 2 * found.unsteady >= drives {
@@ -202,6 +221,10 @@ fn judge(setting: &Setting, found: &Found, stops: u32) -> Result<(), Refusal> {
     if chi_square_tail(chi_square / UNSURE, degrees) < SCATTER_PROBABILITY {
         return Err(Refusal::ResidualsNotWhite { ratio: chi_square / degrees });
     }
+    let correlation = found.correlation;
+    if correlation > CORRELATED {
+        return Err(Refusal::ResidualsCorrelated { correlation });
+    }
     let Plain { ratio, ratio_sigma: sigma, .. } = found.plain;
     if (ratio - 1.0).abs() > DIFFERENT * sigma + RATIO_TOLERANCE {
         return Err(Refusal::EarthRateMismatch { ratio, sigma });
@@ -212,7 +235,8 @@ fn judge(setting: &Setting, found: &Found, stops: u32) -> Result<(), Refusal> {
     if sigma <= required {
         return Ok(());
     }
-    let source = found.budget.greatest().0;
+    let is_unknown = setting.bias_sigma.is_none() && !found.are_biases_observed;
+    let source = if is_unknown { Source::Drift } else { found.budget.greatest().0 };
     Err(Refusal::BudgetNotMet { sigma: sigma * DEGREES, required: required * DEGREES, source })
 }
 
@@ -254,8 +278,10 @@ impl Found {
             are_biases_observed: bias_sigmas.iter().all(|sigma| *sigma <= OBSERVED * known),
             plain: *plain,
             chi_square: [solution.chi_square, solution.degrees],
+            correlation: solution.correlation(),
             left_out: [solution.left_out, path.blocks.all().len() as u32],
             turning: solution.turning,
+            turning_rate: solution.turning_rate,
             unsteady: solution.unsteady,
         }
     }
@@ -274,7 +300,10 @@ struct End {
 impl End {
     fn of(path: &Path, solution: &Solution) -> Self {
         let last = path.stops.len().saturating_sub(1);
-        let there = path.place.navigation(path.now - path.start, path.displaced(last));
+        let [north, east] = path.displaced(last);
+        let [farther_north, farther_east, ..] = solution.filter.three(PLACE);
+        let displaced = [north + farther_north, east + farther_east];
+        let there = path.place.navigation(path.now - path.start, displaced);
         let navigation = product(&transposed(&there), &transposed(&solution.frame));
         let error = solution.filter.three(super::filter::NOW);
         let body = product(&without(&error), &path.carried.attitude.matrix());

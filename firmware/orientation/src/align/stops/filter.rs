@@ -185,7 +185,7 @@ impl Filter {
                 *entry = product(&spread, &other.row);
             }
             whole[index][index] += measurement.variance;
-            beyond[index] = measurement.value - product(&self.state, &measurement.row);
+            beyond[index] = self.beyond(measurement);
         }
         let size = measurements.len();
         let mut weighted = beyond;
@@ -196,11 +196,17 @@ impl Filter {
         dot(&beyond, &weighted)
     }
 
+    /// What a measurement shows beyond the expected.
+    #[must_use]
+    pub fn beyond(&self, measurement: &Measurement) -> f64 {
+        measurement.value - product(&self.state, &measurement.row)
+    }
+
     fn take(&mut self, measurement: &Measurement) {
-        let Measurement { row, value, variance } = measurement;
+        let Measurement { row, variance, .. } = measurement;
         let spread = self.covariances(row);
         let gain = 1.0 / (product(&spread, row) + variance);
-        let surprise = (value - product(&self.state, row)) * gain;
+        let surprise = self.beyond(measurement) * gain;
         for (index, part) in spread.iter().enumerate().filter(|(_, part)| **part != 0.0) {
             self.state[index] += part * surprise;
             let part = part * gain;

@@ -298,7 +298,9 @@ impl Follower {
         second.is_rest = true;
         let second = *second;
         if stop >= self.stops.len() {
-            let begun = Stop { from: second.from, begin: second.begin, ..Stop::default() };
+            let displacement = self.stops.is_empty().then_some([0.0; 2]);
+            let (from, begin) = (second.from, second.begin);
+            let begun = Stop { from, begin, displacement, ..Stop::default() };
             if self.stops.push(begun).is_err() {
                 self.unused += 1;
                 return;

@@ -27,6 +27,8 @@ const SETTLED: f64 = 5e-4;
 /// Scatter over the believed one that is too much, and the most that is taken for a sway.
 const ROUGH: f64 = 1.5;
 const ROUGHEST: f64 = 6.0;
+/// Fewest degrees of freedom of which a correlation means something.
+const LEAST_DEGREES: f64 = 20.0;
 /// Chi-square beyond which a block, or the rest of a stop, is left out: one healthy block in three million.
 const OUTLIER: f64 = 30.0;
 /// Least variance of what a vehicle sways, rad²: 20 milliarcseconds.
@@ -39,6 +41,8 @@ const LEAST_WALK: f64 = 2.9e-9;
 const DRIVING: f64 = 1e-3;
 /// How far a vehicle is from the straight way in the mean, of what it could have driven.
 const DETOUR: f64 = 0.1;
+/// Time after a stop that may still be one, s: what the criteria hold back.
+const REMAINDER: f64 = 4.0;
 /// Part of a drive that its blocks may miss.
 const COVERED: f64 = 0.002;
 /// Step by which the latitude's effect is found, rad.
@@ -72,8 +76,12 @@ pub struct Solution {
     pub left_out: u32,
     /// Stops at which the vehicle turned, whose rest rates are left out.
     pub turning: u32,
+    /// Greatest rate at which it turned there beside the Earth, rad/s.
+    pub turning_rate: f64,
     /// Drives that did not come to rest at their end, whose velocity is left out.
     pub unsteady: u32,
+    /// Sums of what blocks showed beyond the expected, times the same of the block before, and squared.
+    pub neighbours: [f64; 2],
     /// How much more than their neighbours say the blocks scatter: power over power, one or more.
     pub roughness: f64,
 }
@@ -102,6 +110,8 @@ struct Run<'a> {
     north: Option<Place>,
     belief: Belief,
     last: Moment,
+    /// What the block before showed beyond the expected, m/s².
+    before: [f64; 2],
 }
 
 impl Solution {
@@ -115,7 +125,9 @@ impl Solution {
             degrees: 0.0,
             left_out: 0,
             turning: 0,
+            turning_rate: 0.0,
             unsteady: 0,
+            neighbours: [0.0; 2],
             roughness: 1.0,
         }
     }
@@ -130,6 +142,13 @@ impl Solution {
                 break;
             }
         }
+    }
+
+    /// Correlation of what neighbouring blocks showed beyond the expected.
+    #[must_use]
+    pub fn correlation(&self) -> f64 {
+        let [products, squares] = self.neighbours;
+        if self.degrees < LEAST_DEGREES { 0.0 } else { products / squares }
     }
 
     /// Whether the blocks scatter more than was believed, by which they are then believed less: a sway that
@@ -149,6 +168,8 @@ impl Solution {
         let common = &setting.common;
         (self.chi_square, self.degrees) = (0.0, 0.0);
         (self.left_out, self.turning, self.unsteady) = (0, 0, 0);
+        self.turning_rate = 0.0;
+        self.neighbours = [0.0; 2];
         self.filter.begin(
             &start_covariance(&self.frame),
             setting.bias_sigma(),
@@ -165,10 +186,14 @@ impl Solution {
             north: (!is_exact).then(|| Place::moved(common.latitude, LATITUDE_STEP)),
             belief,
             last: Moment { at: path.start, ..Moment::default() },
+            before: [0.0; 2],
         };
         for index in 0..path.stops.len() {
             run.stop(self, index);
         }
+        // Where a vehicle has driven since its last stop is not known.
+        let driven = path.stops.last().map_or(0.0, |stop| path.now - stop.to - REMAINDER);
+        self.filter.stray(setting.speed_sigma * driven.max(0.0));
         run.carry(self, Moment::of(path.now, &path.carried));
     }
 }
@@ -187,6 +212,7 @@ impl Run<'_> {
         }
         self.carry(solution, Moment::of(stop.from, &stop.begin));
         solution.filter.anchor();
+        self.before = [0.0; 2];
         for block in self.path.blocks.of(index) {
             let scale = stop.begin.scale;
             self.carry(solution, Moment { at: block.middle, bias: block.bias, scale });
@@ -297,7 +323,7 @@ impl Run<'_> {
     }
 
     /// Takes the force of a block.
-    fn block(&self, solution: &mut Solution, block: &Block, displaced: [f64; 2]) {
+    fn block(&mut self, solution: &mut Solution, block: &Block, displaced: [f64; 2]) {
         let elapsed = block.middle - self.path.start;
         let navigation = self.path.place.navigation(elapsed, displaced);
         let above = turned(&solution.frame, &up(&navigation));
@@ -318,13 +344,18 @@ impl Run<'_> {
             let value = dot(&difference(&force, &predicted), &direction);
             Measurement { row, value, variance }
         });
-        match self.take(&mut solution.filter, &measurements) {
-            Some(chi_square) => {
-                solution.chi_square += chi_square;
-                solution.degrees += 2.0;
-            }
-            None => solution.left_out += 1,
-        }
+        let beyond = measurements.map(|measurement| solution.filter.beyond(&measurement));
+        let Some(chi_square) = self.take(&mut solution.filter, &measurements) else {
+            solution.left_out += 1;
+            return;
+        };
+        solution.chi_square += chi_square;
+        solution.degrees += 2.0;
+        let [north, east] = beyond;
+        let before = core::mem::replace(&mut self.before, beyond);
+        let [products, squares] = &mut solution.neighbours;
+        *products += north * before[0] + east * before[1];
+        *squares += north * north + east * east;
     }
 
     /// Takes it that the body turned with the Earth alone during a stop.
@@ -352,6 +383,8 @@ impl Run<'_> {
         });
         if self.take(&mut solution.filter, &measurements).is_none() {
             solution.turning += 1;
+            let rate = length(&beyond) / stop.seconds();
+            solution.turning_rate = solution.turning_rate.max(rate);
         }
     }
 

@@ -1,11 +1,16 @@
 //! A stop: what the gyros had carried when it began and when it ended, and how quiet it was.
 
-use crate::math::rotation::Vector;
+use crate::math::rotation::{Vector, transposed, turned};
 use crate::signal::strapdown::Carried;
 use crate::units::AngleIncrement;
 
 /// Most stops of a session.
 pub const STOPS: usize = 8;
+
+/// Fewest seconds that can be compared.
+const LEAST_CHANGES: u32 = 20;
+/// Least change in a second that a sway makes, m/s²: ten times that of the Earth's turn.
+const LEAST_CHANGE: f32 = 4e-3;
 
 /// Sum and sum of squares of three quantities.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -59,6 +64,12 @@ pub struct Stop {
     pub turned: Scatter,
     /// Mean specific force on the body's axes in each second, m/s².
     pub force: Scatter,
+    /// Squares of what the force along and across changed from second to second, (m/s²)², as felt, and as
+    /// felt by a body that stays as it stood when the stop began; and how often. A sway that the gyros feel
+    /// rightly shows in the first alone.
+    pub changes: ([[f32; 2]; 2], u32),
+    /// Both forces of the last second, m/s².
+    pub latest: Option<[[f32; 2]; 2]>,
     /// Seconds that were left out, because something blew or the accelerometer was at its limit.
     pub left_out: u32,
 }
@@ -80,12 +91,43 @@ impl Stop {
     pub fn take(&mut self, second: &Second) {
         self.to = second.to;
         self.end = second.end;
-        let turned = second.turned.map(|sum| sum as f64 * AngleIncrement::STEP / second.seconds());
-        self.turned.push(&turned);
+        let rates = second.turned.map(|sum| sum as f64 * AngleIncrement::STEP / second.seconds());
+        self.turned.push(&rates);
         if let Some(force) = second.force {
             self.force.push(&force);
         }
         self.left_out += u32::from(second.block_force().is_none());
+        self.compare(second);
+    }
+
+    /// Compares how the forces change as felt and as turned.
+    fn compare(&mut self, second: &Second) {
+        let forces = second.block_force().zip(second.force).map(|(start, felt)| {
+            let stays = turned(&transposed(&self.begin.attitude.rough_matrix()), &start);
+            [[felt[0] as f32, felt[1] as f32], [stays[0], stays[1]]]
+        });
+        if let (Some(before), Some(now)) = (self.latest, forces) {
+            let (sums, count) = &mut self.changes;
+            let parts = before.as_flattened().iter().zip(now.as_flattened());
+            for (sum, (before, now)) in sums.as_flattened_mut().iter_mut().zip(parts) {
+                *sum += (now - before) * (now - before);
+            }
+            *count += 1;
+        }
+        self.latest = forces;
+    }
+
+    /// How much more the forces along or across change when they are turned by what the gyros show, in power;
+    /// zero where there is no sway to tell.
+    #[must_use]
+    pub fn disagreement(&self) -> f64 {
+        let ([felt, stays], count) = self.changes;
+        let least = LEAST_CHANGE * LEAST_CHANGE * count as f32;
+        let ratio = |axis: usize| {
+            let is_seen = count >= LEAST_CHANGES && felt[axis] > least;
+            if is_seen { stays[axis] / felt[axis] } else { 0.0 }
+        };
+        f64::from(ratio(0).max(ratio(1)))
     }
 }
 

@@ -222,7 +222,7 @@ impl Session {
             return self.conclude();
         }
         if now.seconds() - begun.seconds() > self.procedure.longest_seconds {
-            return self.finish(Conclusion::refused(Refusal::TimeExhausted));
+            return self.conclude();
         }
         self.stand(count)
     }
