@@ -24,10 +24,10 @@ enum End {
     Lost,
     /// A gyro clipped.
     Clipped,
-    /// Nothing came of it in the time allowed.
-    Late,
+    /// It did not stand, or drive, as it must: in the time allowed too few stops were found.
+    TooFewStops,
     /// The sensors could not tell rest from motion, or could: either is honest.
-    SurvivedOrLate,
+    SurvivedOrNot,
 }
 
 fn expected(fault: VehicleFault) -> End {
@@ -39,9 +39,9 @@ fn expected(fault: VehicleFault) -> End {
         VehicleFault::Overload => End::Named(Device::Accelerometer, Trouble::Saturated),
         VehicleFault::Overflow => End::Lost,
         VehicleFault::NeverDrives | VehicleFault::NeverStops | VehicleFault::ShortStops => {
-            End::Late
+            End::TooFewStops
         }
-        VehicleFault::Sway | VehicleFault::Bumps => End::SurvivedOrLate,
+        VehicleFault::Sway | VehicleFault::Bumps => End::SurvivedOrNot,
     }
 }
 
@@ -86,7 +86,9 @@ fn end(found: &VehicleRun) -> Option<End> {
         Err(Refusal::Device { device, trouble }) => Some(End::Named(device, trouble)),
         Err(Refusal::RotationMissing { .. }) => Some(End::Lost),
         Err(Refusal::RotationClipped { .. }) => Some(End::Clipped),
-        Err(Refusal::TimeExhausted) => Some(End::Late),
+        Err(Refusal::NoStop | Refusal::OneStop { .. } | Refusal::StopTooShort { .. }) => {
+            Some(End::TooFewStops)
+        }
         Err(_) => None,
     }
 }
@@ -97,7 +99,7 @@ fn every_fault_is_survived_or_refused_for_its_reason_and_nothing_hangs() {
         let found = run(fault);
         let (end, expected) = (end(&found), expected(fault));
         let is_right = match expected {
-            End::SurvivedOrLate => matches!(end, Some(End::Survived | End::Late)),
+            End::SurvivedOrNot => matches!(end, Some(End::Survived | End::TooFewStops)),
             expected => end == Some(expected),
         };
         assert!(is_right, "{fault}: {:?}, not {expected:?}", verdict(&found));

@@ -101,6 +101,9 @@ impl Scenario {
     }
 }
 
+/// Greatest mean rate at which a vehicle takes a turn, °/s: twice that stays below the gyros' full scale.
+const TURNING_DEG_S: f64 = 18.0;
+
 /// Draws what a day is like.
 struct Draw(Generator);
 
@@ -123,10 +126,13 @@ impl Draw {
     /// One of [`PARTS`] parts of a drive.
     fn drive(&mut self, seconds: f64) -> Leg {
         let seconds = seconds / PARTS as f64;
+        let wanted_deg = self.between(-150.0, 150.0);
+        let turn_s = seconds * self.between(0.1, 0.3);
+        let most_deg = TURNING_DEG_S * turn_s;
         Leg::Drive(Drive {
             seconds,
-            heading_change_deg: self.between(-150.0, 150.0),
-            turn_s: seconds * self.between(0.1, 0.3),
+            heading_change_deg: wanted_deg.max(-most_deg).min(most_deg),
+            turn_s,
             speed_m_s: self.between(6.0, 14.0),
             winding_deg: self.between(5.0, 20.0),
             winding_s: self.between(20.0, 50.0),

@@ -175,10 +175,6 @@ fn inspect_stop(
     if rest < LEAST_REST {
         return Err(Refusal::StopTooShort { stop: index + 1, seconds: rest, least: LEAST_REST });
     }
-    let disagreement = stop.disagreement();
-    if disagreement > DISAGREEMENT {
-        return Err(Refusal::AxesDisagree { ratio: disagreement });
-    }
     let gravity = setting.common.latitude.gravity();
     let ratio = -stop.force.mean()[2] / gravity;
     if ratio < UPRIGHT {
@@ -188,8 +184,9 @@ fn inspect_stop(
     limits.rate += SWAY / stop.seconds();
     let [rate, force] = [stop.turned.mean(), stop.force.mean()].map(|mean| length(&mean));
     let criteria = Criteria::of(rate, force, gravity);
+    let ratio = stop.disagreement();
     if criteria.is_rest(&limits) {
-        return Ok(());
+        return if ratio <= DISAGREEMENT { Ok(()) } else { Err(Refusal::AxesDisagree { ratio }) };
     }
     let rate = criteria.rate.abs() / DEGREE_PER_HOUR;
     Err(Refusal::VehicleMoves { stop: index + 1, rate, force: criteria.force.abs() })
