@@ -14,6 +14,8 @@ pub struct White {
     pub force: f64,
 }
 
+/// Rows for each fresh sample from which on a recorder is taken to hold them: noise repeats itself seldom.
+const HELD: f64 = 1.2;
 /// Samples of a stretch that is quiet or not.
 const STRETCH: usize = 1000;
 /// Stretches in the shortest recording.
@@ -23,32 +25,17 @@ const QUIET: usize = 10;
 /// Variance of a third difference of white noise of variance one: 1 + 9 + 9 + 1.
 const THIRD: f64 = 20.0;
 
-/// Samples of one gyro or accelerometer that are summed to see whether neighbours share their noise.
-const TOGETHER: usize = 4;
-
-/// Estimates the noise where the vehicle stood, or of all of the recording where that is not known. Held or
-/// smoothed samples share their noise with their neighbours, so it is the greater of that of samples and of
-/// four together.
+/// Estimates the noise where the vehicle stood, or of all of the recording where that is not known. Samples
+/// that a recorder held count once.
 #[must_use]
 pub fn estimate(rows: &[ImuRow], stops_s: Option<&[[f64; 2]]>, period_s: f64) -> White {
-    let alone = of_samples(rows, stops_s, period_s);
-    let means: Vec<ImuRow> = rows.chunks_exact(TOGETHER).map(mean).collect();
-    let together = of_samples(&means, stops_s, TOGETHER as f64 * period_s);
-    White {
-        angle_random_walk: alone.angle_random_walk.max(together.angle_random_walk),
-        force: alone.force.max(together.force),
+    let mut fresh = rows.to_vec();
+    fresh.dedup_by(|next, row| next.sample == row.sample);
+    let held = rows.len() as f64 / fresh.len().max(1) as f64;
+    if held < HELD {
+        return of_samples(rows, stops_s, period_s);
     }
-}
-
-/// The mean of some rows, at the last one's time.
-fn mean(rows: &[ImuRow]) -> ImuRow {
-    let mut mean = rows[rows.len() - 1];
-    let of = |value: fn(&ImuRow) -> [f64; 3], axis: usize| {
-        rows.iter().map(|row| value(row)[axis]).sum::<f64>() / rows.len() as f64
-    };
-    mean.sample.rates_rad_s = std::array::from_fn(|axis| of(|row| row.sample.rates_rad_s, axis));
-    mean.sample.force_m_s2 = std::array::from_fn(|axis| of(|row| row.sample.force_m_s2, axis));
-    mean
+    of_samples(&fresh, stops_s, held * period_s)
 }
 
 /// Estimates as if each sample had noise of its own.

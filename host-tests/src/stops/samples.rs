@@ -53,12 +53,12 @@ const ALONE: usize = 4;
 /// The columns of the channels.
 const COLUMNS: [&str; 6] = ["gx_rad_s", "gy_rad_s", "gz_rad_s", "ax_m_s2", "ay_m_s2", "az_m_s2"];
 
-/// A channel that shows one value for far longer than any other: its column, the row where that begins,
+/// A gyro that shows one value for far longer than any other: its column, the row where that begins,
 /// and of how many rows.
 #[must_use]
 pub fn stuck(rows: &[ImuRow]) -> Option<(&'static str, &ImuRow, usize)> {
-    COLUMNS.iter().enumerate().find_map(|(channel, column)| {
-        let value = |row: &ImuRow| channels(row).nth(channel).unwrap_or_default().to_bits();
+    GYROS.iter().enumerate().find_map(|(axis, column)| {
+        let value = |row: &ImuRow| row.sample.rates_rad_s[axis].to_bits();
         let mut runs: Vec<&[ImuRow]> = rows.chunk_by(|a, b| value(a) == value(b)).collect();
         runs.sort_by_key(|run| std::cmp::Reverse(run.len()));
         let next = runs.get(1).map_or(0, |run| run.len());

