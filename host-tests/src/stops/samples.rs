@@ -50,8 +50,8 @@ pub fn period(rate_hz: Option<f64>, rows: &[ImuRow]) -> f64 {
 const STUCK: usize = 64;
 /// How much longer than any other such a run is: where noise is hardly written, many are long.
 const ALONE: usize = 4;
-/// The columns of the channels.
-const COLUMNS: [&str; 6] = ["gx_rad_s", "gy_rad_s", "gz_rad_s", "ax_m_s2", "ay_m_s2", "az_m_s2"];
+/// The gyros' columns.
+const GYROS: [&str; 3] = ["gx_rad_s", "gy_rad_s", "gz_rad_s"];
 
 /// A gyro that shows one value for far longer than any other: its column, the row where that begins,
 /// and of how many rows.
