@@ -27,7 +27,6 @@ static PLAN: Plan = Plan::NONE;
 static VEHICLE_PLAN: VehiclePlan = VehiclePlan::NONE;
 
 /// What to run.
-#[expect(clippy::large_enum_variant, reason = "there is one")]
 pub enum Order {
     /// An alignment in positions.
     Stepwise(Scenario),
