@@ -7,7 +7,7 @@
 //!                     accelerometer ┘
 //! ```
 //!
-//! What a sensor's readings must pass is the same for both kinds: [`rates`] for a gyro, [`forces`] for the
+//! What a sensor's readings must pass is the same for both kinds: `rates` for a gyro, `forces` for the
 //! accelerometer. A sample goes out only whole, and its absence shows in the next one's time.
 
 mod forces;
