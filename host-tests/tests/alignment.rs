@@ -305,6 +305,30 @@ fn quiet_dwells_pass_and_kicks_nudges_and_slopes_do_not() {
 }
 
 #[test]
+fn the_stop_criteria_name_dwells_in_which_a_vehicle_turned_or_drove() {
+    let mut generator = Generator::new(9);
+    let dph = 1f64.to_radians() / 3600.0;
+    // A gyro of 40 °/h bias on a stage at 50°, an accelerometer 0.2 m/s² beside gravity: biases are no motion.
+    let mut dwell = |index: u32, rate: f64, force: f64| Dwell {
+        seconds: 10.0,
+        rate: (40.0 + 9.67 * f64::from(index * 15).to_radians().cos() + rate) * dph,
+        force: Some([0.1, -0.05, -9.81 - 0.2 - force]),
+        ..blocks(&mut generator, 1000, |_| 0.0)
+    };
+    let healthy: Vec<Dwell> = (0..24).map(|index| dwell(index, 0.0, 0.0)).collect();
+    let norm = Norm::of(&gyro(), &healthy);
+    for dwell in &healthy {
+        assert_eq!(norm.disturbance(dwell), None);
+    }
+    // Twice the Earth rate, and 2 °/h that wind leaves to a mean of 10 s: 45 °/h is more, 20 °/h may be less.
+    assert_eq!(norm.disturbance(&dwell(0, 20.0, 0.0)), None);
+    let turning = norm.disturbance(&dwell(0, 45.0, 0.0));
+    assert!(matches!(turning, Some(Disturbance::Driving(rate, _)) if rate > 10.0), "{turning:?}");
+    let driving = norm.disturbance(&dwell(0, 0.0, 0.05));
+    assert!(matches!(driving, Some(Disturbance::Driving(_, force)) if force > 0.04), "{driving:?}");
+}
+
+#[test]
 fn a_slope_that_all_dwells_share_is_no_disturbance() {
     let mut generator = Generator::new(6);
     let warming: Vec<Dwell> =
