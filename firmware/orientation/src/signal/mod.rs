@@ -3,12 +3,15 @@
 pub mod blocks;
 pub mod butterworth;
 pub mod dwell;
+pub(crate) mod increment;
 pub mod phasor;
 pub mod rest;
 pub mod strapdown;
 pub mod sway;
 
-use crate::units::{Angle, AngleIncrement, AngularRate, Instant, SpecificForce, Temperature};
+use crate::units::{
+    Angle, AngleIncrement, AngularRate, Instant, SpecificForce, SpinForce, Temperature,
+};
 
 /// One moment of the stage path: the precise gyro and what belongs to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -43,4 +46,16 @@ pub struct InertialSample {
     /// Mean specific force since the last one, where a fresh reading came with this sample; none where
     /// it stood at the limit of the sensor's range.
     pub force: Option<[SpecificForce; 3]>,
+}
+
+/// What three gyros and two accelerometers on a spinning body measured; axes as in Nekrasova's paper: x forward,
+/// along the spin, y up and z right at roll zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SpinSample {
+    /// When it was taken.
+    pub time: Instant,
+    /// Angles turned about the axes since the sample before.
+    pub turned: [AngleIncrement; 3],
+    /// Forces on y and z at this moment; none where a sensor stood at the limit of its range.
+    pub force: Option<[SpinForce; 2]>,
 }
