@@ -10,6 +10,7 @@ pub mod attitude;
 pub mod heading;
 pub mod keeper;
 pub mod restart;
+pub mod spin;
 pub mod stored;
 pub mod vertical;
 
