@@ -140,9 +140,14 @@ impl Keeper {
     /// Takes an azimuth of body x as it is now, in place of any before.
     pub fn hand_over(&mut self, handover: Handover) {
         let [.., gyro] = &self.setting.gyros;
+        let is_first = self.heading.is_none();
         self.heading = Some(Heading::begin(handover, gyro, &mut self.vertical));
         self.handed = self.vertical.time();
-        self.turn_frame();
+        if is_first {
+            self.vertical.find_north(self.frame_rate());
+        } else {
+            self.turn_frame();
+        }
     }
 
     /// Weighs a new alignment with what was kept. Where they disagree, there is no azimuth any more.
@@ -171,9 +176,13 @@ impl Keeper {
 
     /// Has the level frame turn as it does.
     fn turn_frame(&mut self) {
+        self.vertical.turn_frame(self.frame_rate());
+    }
+
+    /// How the level frame turns, rad/s.
+    fn frame_rate(&self) -> [f32; 3] {
         let north = self.heading.as_ref().map(Heading::frame);
-        let rate = frame_rate(self.setting.latitude, north, self.speed);
-        self.vertical.turn_frame(rate);
+        frame_rate(self.setting.latitude, north, self.speed)
     }
 
     /// What is known now.

@@ -89,14 +89,16 @@ impl Setting {
 
     /// What the filter expects of the gyros.
     fn expected(&self) -> Expected {
-        let scale = self.gyros[0].scale_sigma.max(self.gyros[1].scale_sigma) as f32;
         Expected {
             walk: self.gyros.map(|gyro| {
                 let walk = gyro.noise.angle_random_walk as f32;
                 walk * walk
             }),
             drift: self.gyros.map(|gyro| gyro.drift() as f32),
-            scale: scale * scale,
+            scale: self.gyros.map(|gyro| {
+                let scale = gyro.scale_sigma as f32;
+                scale * scale
+            }),
         }
     }
 }

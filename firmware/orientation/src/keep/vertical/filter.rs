@@ -48,8 +48,8 @@ pub struct Stretch {
     pub impulse: [f32; 3],
     /// For how much of it there were forces, s.
     pub forced: f32,
-    /// Integral of the squared rate, rad²/s.
-    pub rate_square: f32,
+    /// Integrals of the squared rates about the body's axes, rad²/s.
+    pub rate_squares: [f32; 3],
     /// Whether the body stands: it does not turn then, whatever the gyros show.
     pub is_rest: bool,
 }
@@ -62,7 +62,7 @@ pub struct Expected {
     /// What a bias drifts, squared, (rad/s)²/s.
     pub drift: [f32; 3],
     /// Scale and axes, squared.
-    pub scale: f32,
+    pub scale: [f32; 3],
 }
 
 /// The filter at work.
@@ -118,17 +118,23 @@ impl Filter {
             *velocity = *velocity * kept + impulse;
         }
         self.carry(stretch, kept);
-        // What the gyros add is turned only where they differ, which it is not worth to tell.
-        let [walk_x, walk_y, walk_z] = expected.walk;
-        let walk = walk_x.max(walk_y).max(walk_z) * stretch.seconds;
-        let tilted = walk + expected.scale * SWING * stretch.rate_square;
+        let strays: [f32; 3] = core::array::from_fn(|axis| {
+            let swung = SWING * expected.scale[axis] * stretch.rate_squares[axis];
+            expected.walk[axis] * stretch.seconds + swung
+        });
+        let [about_north, about_east, _] =
+            stretch.attitude.map(|row| weighed(&row, &strays, stretch));
+        // What the gyro of the down axis makes of the turn by its scale, who keeps the turn accounts for.
+        let [x, y, _] = strays;
+        let own = expected.walk[2] * stretch.seconds;
+        let about_down = weighed(&stretch.attitude[2], &[x, y, own], stretch);
+        let about_down = if stretch.is_rest { 0.0 } else { about_down };
         // A body that keeps its attitude shows the same error all the time: a tilt, not noise.
-        let rate = stretch.rate_square / stretch.seconds;
+        let rate = stretch.rate_squares.iter().sum::<f32>() / stretch.seconds;
         let strayed = FORCE_SCALE * FORCE_SCALE * SWING * (rate * SWING * SWING).min(1.0);
         let moved = (FORCE_NOISE * FORCE_NOISE + strayed) * stretch.seconds;
         let [x, y, z] = expected.drift.map(|drift| drift * stretch.seconds);
-        let about = if stretch.is_rest { 0.0 } else { tilted };
-        let more = [tilted, tilted, about, x, y, z, moved, moved];
+        let more = [about_north, about_east, about_down, x, y, z, moved, moved];
         for (place, more) in more.into_iter().enumerate() {
             self.covariance[place][place] += more;
         }
@@ -273,6 +279,13 @@ impl Filter {
     pub fn force(&self) -> f32 {
         libm::sqrtf(self.force)
     }
+}
+
+/// What strays about the body's axes, squared, as it adds up about an axis of the level frame.
+fn weighed(row: &[f32; 3], strays: &[f32; 3], stretch: &Stretch) -> f32 {
+    let part = 1.0 / (stretch.seconds * stretch.seconds);
+    let [x, y, z] = row.map(|cosine| cosine * cosine * part);
+    x * strays[0] + y * strays[1] + z * strays[2]
 }
 
 /// A row of the covariance after a stretch.

@@ -36,8 +36,10 @@ const START: f32 = 0.2;
 const START_TILT: f32 = 0.05;
 /// Tilt, 1σ, of a standing body by its mean force over a window, rad: wind and engine.
 const STANDING_TILT: f32 = 3e-4;
-/// What shakes a body that stands within a window, as a rate, rad/s.
-const SHAKING_RATE: f32 = 1e-4;
+/// How far wind and engine turn a body that stands, 1σ, rad: 4″.
+const SHAKING: f32 = 2e-5;
+/// Longest stretch of a rest whose mean rates are taken together, s.
+const LONGEST_REST: f32 = 64.0;
 /// Part of gravity below which a force is a free fall.
 const FREE: f32 = 0.3;
 /// Standard gravity, m/s².
@@ -92,6 +94,10 @@ pub struct Course {
 #[derive(Clone, Debug)]
 pub struct Vertical {
     expected: Expected,
+    /// Variances of the biases when the gyros are switched on, and of what the Earth's rate adds to them as long as
+    /// nobody knows where north is, (rad/s)².
+    priors: Vector,
+    unknown: f32,
     /// Greatest biases that are believed, rad/s.
     greatest: Vector,
     /// 1σ of the accelerometers' biases, as a tilt, rad.
@@ -109,6 +115,7 @@ pub struct Vertical {
     stretch: Stretch,
     window: Window,
     rest: RestWatch,
+    rested: Rested,
     before: Before,
     course: Course,
     /// When the latest attitude was taken.
@@ -139,6 +146,16 @@ struct Window {
     forced: f32,
 }
 
+/// What of a rest the biases have not been told yet: of every part the mean rate counts, each as long as all
+/// before, for what shakes the body turns it to and fro.
+#[derive(Clone, Copy, Debug, Default)]
+struct Rested {
+    seconds: f32,
+    /// Length of this part, s.
+    due: f32,
+    turned: Vector,
+}
+
 /// The sample before.
 #[derive(Clone, Copy, Debug, Default)]
 struct Before {
@@ -152,8 +169,14 @@ impl Vertical {
     /// Begins with these gyros at this place.
     #[must_use]
     pub fn new(setting: &Setting) -> Self {
-        let sigmas = setting.gyros.map(|gyro| gyro.bias_sigma as f32);
+        // As long as nobody knows where north is, a level axis may show the Earth's rate beside its bias.
+        let unknown = 0.5 * setting.latitude.horizontal_rate() * setting.latitude.horizontal_rate();
+        let sigmas = setting
+            .gyros
+            .map(|gyro| libm::sqrt(gyro.bias_sigma * gyro.bias_sigma + unknown) as f32);
         Self {
+            priors: setting.gyros.map(|gyro| (gyro.bias_sigma * gyro.bias_sigma) as f32),
+            unknown: unknown as f32,
             expected: setting.expected(),
             greatest: scaled(&sigmas, GREATEST_BIAS),
             force_tilt: setting.force_bias_sigma as f32 / GRAVITY,
@@ -168,6 +191,7 @@ impl Vertical {
             stretch: Stretch::default(),
             window: Window::default(),
             rest: RestWatch::default(),
+            rested: Rested::default(),
             before: Before::default(),
             course: Course::default(),
             since: Instant::default(),
@@ -241,6 +265,7 @@ impl Vertical {
         self.filter.doubt(1, variance);
         self.filter.doubt(TURN, variance);
         self.rest.disturb();
+        self.rested = Rested::default();
         self.window = Window::default();
     }
 
@@ -342,25 +367,44 @@ impl Vertical {
         let means = Means { rate, force };
         if !self.rest.push(means, self.bias, variances, self.expected.walk) {
             self.course.drive(&window);
+            self.learn_biases();
+            self.rested.due = 0.0;
             return;
         }
         self.course.stand(window.seconds);
-        self.stand(&rate, force, window.seconds);
+        self.stand(&window, force);
         // The body did not turn: what the gyro made of it is undone.
         self.attitude.correct(&[0.0, 0.0, -window.about]);
     }
 
-    fn stand(&mut self, rate: &Vector, force: Option<Vector>, seconds: f32) {
+    fn stand(&mut self, window: &Window, force: Option<Vector>) {
         self.filter.stand();
-        for (axis, off) in difference(rate, &self.bias).into_iter().enumerate() {
-            let variance = self.expected.walk[axis] / seconds + SHAKING_RATE * SHAKING_RATE;
-            self.filter.measure(Filter::bias(axis), off, variance);
+        self.rested.seconds += window.seconds;
+        self.rested.turned = sum(&self.rested.turned, &window.turned);
+        if self.rested.seconds >= self.rested.due {
+            self.rested.due = (2.0 * self.rested.seconds).min(LONGEST_REST);
+            self.learn_biases();
         }
         if let Some(force) = force {
             let [north, east, down] = turned(&self.matrix, &force);
             let variance = STANDING_TILT * STANDING_TILT;
             self.filter.measure(0, east / down, variance);
             self.filter.measure(1, -north / down, variance);
+        }
+    }
+
+    /// The mean rates of a rest are the biases.
+    fn learn_biases(&mut self) {
+        let Rested { seconds, turned, .. } = self.rested;
+        if seconds <= 0.0 {
+            return;
+        }
+        (self.rested.seconds, self.rested.turned) = (0.0, [0.0; 3]);
+        let off = difference(&scaled(&turned, 1.0 / seconds), &self.bias);
+        let shaking = SHAKING / seconds;
+        for (axis, off) in off.into_iter().enumerate() {
+            let variance = self.expected.walk[axis] / seconds + 2.0 * shaking * shaking;
+            self.filter.measure(Filter::bias(axis), off, variance);
         }
     }
 
@@ -454,25 +498,45 @@ impl Vertical {
         self.expected = setting.expected();
         let [.., down] = &setting.gyros;
         let sigma = down.bias_sigma as f32;
+        self.priors[2] = sigma * sigma;
         self.greatest[2] = GREATEST_BIAS * sigma;
         self.bias[2] = 0.0;
         self.filter.forget_bias(2, sigma * sigma);
+        self.rested = Rested::default();
         self.rest.disturb();
         self.window = Window::default();
     }
 
-    /// From now on the level frame turns so, rad/s. Biases that were learnt at rest held what of this
-    /// turn was not known.
+    /// From now on the level frame turns so, rad/s.
     pub fn turn_frame(&mut self, rate: Vector) {
-        let more = difference(&rate, &self.frame);
         self.frame = rate;
+    }
+
+    /// The same, and north is known for the first time: biases held the Earth's rate until now.
+    pub fn find_north(&mut self, rate: Vector) {
+        self.learn_biases();
+        self.correct();
+        let more = turned(&transposed(&self.matrix), &difference(&rate, &self.frame));
+        self.frame = rate;
+        self.window = Window::default();
         if self.is_at_rest() {
-            self.bias = difference(&self.bias, &turned(&transposed(&self.matrix), &more));
+            // What was learnt of the sum holds for the bias, of which more was known beforehand.
+            self.bias = difference(&self.bias, &more);
+            for (axis, bias) in self.bias.into_iter().enumerate() {
+                self.filter.measure(Filter::bias(axis), -bias, self.priors[axis]);
+            }
+            self.correct();
+        } else {
+            for axis in 0..3 {
+                self.filter.doubt(Filter::bias(axis), self.unknown);
+            }
         }
     }
 
     /// Counts from now on.
     pub fn begin_course(&mut self) {
+        self.learn_biases();
+        self.correct();
         self.filter.begin_turn();
         self.course = Course { stood: self.course.stood, ..Course::default() };
     }
@@ -520,7 +584,9 @@ impl Stretch {
         for (sums, row) in self.attitude.iter_mut().zip(attitude) {
             *sums = sum(sums, &scaled(row, seconds));
         }
-        self.rate_square += dot(rotation, rotation) / seconds;
+        let [x, y, z] = *rotation;
+        let squares = scaled(&[x * x, y * y, z * z], 1.0 / seconds);
+        self.rate_squares = sum(&self.rate_squares, &squares);
         self.seconds += seconds;
     }
 
