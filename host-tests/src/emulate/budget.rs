@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 /// The names of the limits.
-pub const NAMES: [&str; 20] = [
+pub const NAMES: [&str; 23] = [
     "filter_instructions",
     "filter_and_dwell_instructions",
     "match_instructions",
@@ -15,6 +15,9 @@ pub const NAMES: [&str; 20] = [
     "turning_instructions",
     "strapdown_instructions",
     "inclination_instructions",
+    "vertical_instructions",
+    "heading_instructions",
+    "spin_instructions",
     "stops_instructions",
     "sample_instructions",
     "turning_sample_instructions",

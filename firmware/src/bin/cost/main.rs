@@ -13,6 +13,7 @@ mod budget;
 mod conclusion;
 #[path = "../measure/counter.rs"]
 mod counter;
+mod keep;
 mod matching;
 mod memory;
 mod noise;
@@ -83,6 +84,7 @@ fn measure(report: &mut Report) -> Result<(), Failure> {
     samples::report(&counter, report)?;
     turning::report(&counter, report);
     stops::report(&counter, report);
+    keep::report(&counter, report);
     matching::report(&counter, report)?;
     yardsticks::regression(&counter, report);
     conclusion::report(&counter, report)?;
@@ -116,6 +118,8 @@ fn sizes() -> Result<(), Failure> {
         format_args!("a Session from stops"),
         size_of::<orientation::session::stops::Session>() as u64,
     );
+    figure(format_args!("a Keeper"), size_of::<orientation::keep::Keeper>() as u64);
+    figure(format_args!("a Spin"), size_of::<orientation::keep::spin::Spin>() as u64);
     figure(format_args!("a Conclusion"), size_of::<Conclusion>() as u64);
     figure(format_args!("an Allan variance"), size_of::<Allan>() as u64);
     figure(format_args!("static memory of this image"), memory::statics() as u64);

@@ -52,6 +52,8 @@ const GREATEST_BIAS: f32 = 5.0;
 const GAP_PART: f32 = 0.3;
 /// Time over which the rate lately fades, s.
 const GAP_WATCH: f32 = 1.0;
+/// Least rate that may be hidden behind a gyro's limit, rad/s.
+const LEAST_CLIPPED: f32 = 1.0;
 /// Tilt, 1σ, at which the level counts as lost, rad.
 const LOST: f32 = 0.1;
 /// For how long a rest is remembered, s.
@@ -163,6 +165,8 @@ struct Before {
     turned: [AngleIncrement; 3],
     /// Rate lately, rad/s.
     lately: f32,
+    /// What may have been lost since a gyro clips, rad.
+    clipped: f32,
 }
 
 impl Vertical {
@@ -213,6 +217,7 @@ impl Vertical {
         } else {
             self.increment.push(sample.turned);
             self.before.turned = sample.turned;
+            self.before.clipped = 0.0;
         }
         if let Some(force) = sample.force {
             self.force.push(force);
@@ -255,12 +260,18 @@ impl Vertical {
     #[inline(never)]
     fn clip(&mut self, now: Instant) {
         self.tick(now);
-        self.lose(self.before.lately.max(1.0) * self.period);
+        // What is lost of one clip goes one way: it adds up, not its squares.
+        let before = self.before.clipped;
+        self.before.clipped += self.before.lately.max(LEAST_CLIPPED) * self.period;
+        self.lose_square(self.before.clipped * self.before.clipped - before * before);
     }
 
     /// A rotation of this size, rad, may have been lost.
     fn lose(&mut self, angle: f32) {
-        let variance = angle * angle;
+        self.lose_square(angle * angle);
+    }
+
+    fn lose_square(&mut self, variance: f32) {
         self.filter.doubt(0, variance);
         self.filter.doubt(1, variance);
         self.filter.doubt(TURN, variance);

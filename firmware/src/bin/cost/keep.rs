@@ -1,0 +1,133 @@
+//! What keeping costs: pitch and roll from a coarse IMU, the heading from three precise gyros, the roll of a
+//! spinning body; once per sample, and the sample that costs most.
+
+use core::hint::black_box;
+
+use hal_mock::noise::Generator;
+use orientation::earth::Latitude;
+use orientation::keep::spin::{self, Signal, Spin};
+use orientation::keep::stored::Handover;
+use orientation::keep::{Gyro, Keeper, Setting};
+use orientation::noise::model::GyroNoise;
+use orientation::signal::{InertialSample, SpinSample};
+use orientation::units::{
+    AngleIncrement, DEGREE, DEGREE_PER_HOUR, Instant, SpecificForce, SpinForce, TURN,
+};
+
+use crate::budget::{HEADING_INSTRUCTIONS, SPIN_INSTRUCTIONS, VERTICAL_INSTRUCTIONS};
+use crate::counter::{Cost, Counter};
+use crate::report::{Report, figure};
+
+/// Output rate of the coarse IMU, Hz, and that of precise gyros.
+const COARSE_HZ: u64 = 416;
+const PRECISE_HZ: u64 = 2000;
+/// Seconds at rest, then of motion.
+const REST: u64 = 4;
+const MOTION: u64 = 8;
+/// Sample rate of a spinning body, Hz, its turns a second, and how long it spins, in samples.
+const SPIN_HZ: u64 = 10_000;
+const TURNS_HZ: f64 = 100.0;
+const SPUN: u64 = 5_000;
+/// Lift, pull of the spin, and noise of the forces, m/s².
+const LIFT: f64 = 30.0;
+const PULL: [f64; 2] = [-7954.0, -3977.0];
+const SPIN_NOISE: f64 = 1.5;
+/// Scale error of its gyro.
+const SCALE: f64 = 1e-3;
+/// Greatest rate about the vertical, rad/s, and how often it comes, Hz.
+const RATE: f64 = 0.6;
+const SWING_HZ: f64 = 0.4;
+/// Horizontal acceleration, m/s².
+const ACCELERATION: f64 = 1.0;
+
+/// [`Keeper::push`].
+type Push = fn(&mut Keeper, &InertialSample);
+/// [`Spin::push`].
+type PushSpin = fn(&mut Spin, &SpinSample) -> Option<Signal>;
+
+/// Measures all of it.
+pub fn report(counter: &Counter, report: &mut Report) {
+    let latitude = Latitude::from_degrees(52.0).unwrap_or(Latitude::EQUATOR);
+    let coarse = Setting::coarse(latitude, 1.0 / COARSE_HZ as f64);
+    let [mean, worst] = kept(counter, Keeper::new(&coarse), COARSE_HZ, report);
+    let name = format_args!("gyrovertical on a coarse IMU, a sample at 416 Hz");
+    report.budget(name, mean, VERTICAL_INSTRUCTIONS);
+    figure(format_args!("the same, the sample that costs most"), worst);
+    let noise = GyroNoise::from_field_units(0.001, 0.007, 0.0, 0.0);
+    let gyro = Gyro { noise, bias_sigma: DEGREE_PER_HOUR, scale_sigma: 1e-4 };
+    let mut keeper = Keeper::new(&Setting::precise(latitude, 1.0 / PRECISE_HZ as f64, gyro));
+    keeper.hand_over(Handover { azimuth: 1.0, sigma: 0.1 * DEGREE });
+    let [mean, worst] = kept(counter, keeper, PRECISE_HZ, report);
+    let name = format_args!("heading from three precise gyros, a sample at 2 kHz");
+    report.budget(name, mean, HEADING_INSTRUCTIONS);
+    figure(format_args!("the same, the sample that costs most"), worst);
+    spun(counter, report);
+}
+
+/// Mean and greatest instructions of a sample of a body that stands and then moves.
+fn kept(counter: &Counter, mut keeper: Keeper, rate: u64, report: &mut Report) -> [u64; 2] {
+    let mut noise = Generator::new(3);
+    // A function that the optimiser cannot see is called, not inlined.
+    let push = black_box(Keeper::push as Push);
+    let (mut total, mut worst, mut carried) = (Cost::default(), Cost::default(), [0.0; 3]);
+    let samples = (REST + MOTION) * rate;
+    for index in 0..samples {
+        let sample = moving(index, rate, &mut noise, &mut carried);
+        let (cost, ()) = counter.measure(|| push(&mut keeper, &sample));
+        total += cost;
+        worst = worst.max(cost);
+    }
+    let kept = keeper.report();
+    let is_level = libm::hypot(kept.pitch, kept.roll) < DEGREE;
+    report.require("the body is level to a degree", is_level);
+    [total.mean(samples), worst.instructions()]
+}
+
+/// A body that stands, then turns to and fro about the vertical and shakes.
+fn moving(index: u64, rate: u64, noise: &mut Generator, carried: &mut [f64; 3]) -> InertialSample {
+    let seconds = index as f64 / rate as f64;
+    let is_moving = index >= REST * rate;
+    let swing = if is_moving { libm::sin(TURN * SWING_HZ * seconds) } else { 0.0 };
+    let rates = [0.0, 0.0, RATE * swing];
+    let force = [ACCELERATION * swing, 0.0, -9.81];
+    InertialSample {
+        time: Instant((index + 1) * 1_000_000 / rate),
+        turned: core::array::from_fn(|axis| {
+            let angle = (rates[axis] + 1e-5 * noise.gaussian()) / rate as f64;
+            AngleIncrement::from_rad(angle, &mut carried[axis])
+        }),
+        force: Some(force.map(|f| SpecificForce::from_m_per_s2(f + 1e-3 * noise.gaussian()))),
+    }
+}
+
+/// A spinning body with noise, its phase locked.
+fn spun(counter: &Counter, report: &mut Report) {
+    let mut noise = Generator::new(4);
+    let mut spin = Spin::new(&spin::Setting::new(1.0 / SPIN_HZ as f64));
+    let push = black_box(Spin::push as PushSpin);
+    let (mut total, mut worst, mut carried) = (Cost::default(), Cost::default(), 0.0);
+    let mut roll = 0.0;
+    for index in 0..SPUN {
+        roll += TURN * TURNS_HZ / SPIN_HZ as f64;
+        let sample = spinning(index, roll, &mut noise, &mut carried);
+        let (cost, _) = counter.measure(|| push(&mut spin, &sample));
+        total += cost;
+        worst = worst.max(cost);
+    }
+    let off = spin.roll().rad() - roll;
+    report.require("the roll is found to a degree, its turns counted", off.abs() < DEGREE);
+    let name = format_args!("roll of a spinning body, a sample at 10 kHz");
+    report.budget(name, total.mean(SPUN), SPIN_INSTRUCTIONS);
+    figure(format_args!("the same, a sample that ends four turns"), worst.instructions());
+}
+
+fn spinning(index: u64, roll: f64, noise: &mut Generator, carried: &mut f64) -> SpinSample {
+    let (sine, cosine) = libm::sincos(roll);
+    let step = TURN * TURNS_HZ / SPIN_HZ as f64 * (1.0 + SCALE);
+    let force = [PULL[0] + LIFT * cosine, PULL[1] - LIFT * sine];
+    SpinSample {
+        time: Instant((index + 1) * 1_000_000 / SPIN_HZ),
+        turned: [AngleIncrement::from_rad(step, carried), AngleIncrement(0), AngleIncrement(0)],
+        force: Some(force.map(|f| SpinForce::from_m_per_s2(f + SPIN_NOISE * noise.gaussian()))),
+    }
+}
