@@ -222,6 +222,24 @@ fn each_recording_of_a_vehicle_has_its_rows_header_and_truth() {
 }
 
 #[test]
+fn each_recording_of_a_spinning_body_has_its_rows_and_the_true_roll_of_each() {
+    for (name, first, last) in
+        [("spin-100rps", 0.4, 630.980_24), ("spin-80rps-noisy", 0.0, 510.660_7)]
+    {
+        let recording = stored(name);
+        assert_eq!(recording.header, Header { rate_hz: Some(10_000.0), ..Header::default() });
+        assert_eq!(recording.truth.others, [("truth_scale_error".to_owned(), "0.001".to_owned())]);
+        let rolls = &recording.truth.roll_rad;
+        assert_eq!((rolls.len(), rolls[0], rolls[9_999]), (10_000, first, last), "{name}");
+        assert_eq!(recording.body.spin().len(), 10_000);
+        let table = include_str!("../../data/README.md");
+        let row = table.lines().find(|line| line.contains(name));
+        let row = row.unwrap_or_else(|| panic!("{name} is not in the table"));
+        assert!(row.contains("| 10000 | 10000 | - |"), "{row}");
+    }
+}
+
+#[test]
 fn the_disturbances_are_known_to_the_truth_only() {
     for (name, span) in [("stepwise-bumped", "47-51"), ("stepwise-nudged", "79-83")] {
         let expected = [("truth_disturbed_s".to_owned(), span.to_owned())];
