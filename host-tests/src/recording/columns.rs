@@ -12,7 +12,7 @@ use super::number::{Range, number};
 use super::problem::{HeaderProblem, ValueProblem};
 
 /// Most columns that a kind can know.
-pub(super) const MAX_COLUMNS: usize = 8;
+pub(super) const MAX_COLUMNS: usize = 12;
 
 /// What the names of columns begin with that only a check may know; they may hold `nan`.
 const TRUTH: &str = "truth_";

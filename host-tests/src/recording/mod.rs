@@ -181,36 +181,40 @@ fn parse(reader: impl Read) -> Result<Recording, Fault> {
     }
     let (line, names) =
         names.ok_or_else(|| Fault::line(lines.number(), HeaderProblem::NoColumnNames))?;
-    let (body, roll_rad) = body(kind, &mut lines, line, &names)?;
+    let (body, Truth { roll_rad, attitude, .. }) = body(kind, &mut lines, line, &names)?;
     let rate = entries.get("rate_hz").map(|(line, _)| line).zip(header.rate_hz);
     check_times(&body, rate)?;
     if let Body::Imu(rows) = &body {
         stops::check_inside(&entries, &header, rows)?;
     }
-    Ok(Recording { header, body, truth: Truth { roll_rad, ..entries.truth()? } })
+    Ok(Recording { header, body, truth: Truth { roll_rad, attitude, ..entries.truth()? } })
 }
 
-/// The rows of a kind below the column names, which stand in line `line`, and the true roll of each where
-/// the recording has it, rad.
-fn body(
-    kind: Kind,
-    lines: &mut Lines<'_>,
-    line: u64,
-    names: &str,
-) -> Result<(Body, Vec<f64>), Fault> {
+/// The rows of a kind below the column names, which stand in line `line`, and what of the truth is in them.
+fn body(kind: Kind, lines: &mut Lines<'_>, line: u64, names: &str) -> Result<(Body, Truth), Fault> {
+    let mut truth = Truth::default();
     let body = match kind {
         Kind::Stage => Body::Stage(rows::read(lines, line, names)?),
         Kind::Rotating => Body::Rotating(rows::read(lines, line, names)?),
         Kind::Dwells => Body::Dwells(rows::read(lines, line, names)?),
-        Kind::Imu => Body::Imu(rows::read(lines, line, names)?),
         Kind::Static => Body::Static(rows::read(lines, line, names)?),
+        Kind::Imu => {
+            let (rows, known) = parted(rows::read(lines, line, names)?);
+            truth.attitude = known.into_iter().flatten().collect();
+            Body::Imu(rows)
+        }
         Kind::Spin => {
-            let rows: Vec<(SpinRow, Option<f64>)> = rows::read(lines, line, names)?;
-            let roll_rad = rows.iter().filter_map(|(_, roll)| *roll).collect();
-            return Ok((Body::Spin(rows.into_iter().map(|(row, _)| row).collect()), roll_rad));
+            let (rows, known) = parted(rows::read(lines, line, names)?);
+            truth.roll_rad = known.into_iter().flatten().collect();
+            Body::Spin(rows)
         }
     };
-    Ok((body, Vec::new()))
+    Ok((body, truth))
+}
+
+/// Rows, and apart from them what only a check may know of each.
+fn parted<R, T>(rows: Vec<(R, T)>) -> (Vec<R>, Vec<T>) {
+    rows.into_iter().unzip()
 }
 
 /// The line of column names: its number and text.

@@ -30,6 +30,12 @@ const SPIN_RATE: Range = Range::symmetric(1e4, " rad/s");
 const SPIN_FORCE: Range = Range::symmetric(21_474.836_47, " m/s²");
 /// Rolls in which a double resolves 1 nrad: 10⁶ turns.
 const ROLL: Range = Range::symmetric(6.283_185e6, " rad");
+/// The parts of a quaternion of length one, which rounding may exceed.
+const QUATERNION: Range = Range::symmetric(1.001, "");
+/// Square of its length below which it is none.
+const LEAST_SQUARE: f64 = 0.9;
+/// Whether something holds: 0 or 1.
+const FLAG: Range = Range::from_zero(1.0, "");
 /// The force columns of a dwell come together or not at all.
 const FORCES: [&str; 3] = ["fx_m_s2", "fy_m_s2", "fz_m_s2"];
 /// So do those of an inertial measurement unit.
@@ -217,7 +223,11 @@ impl Row for DwellRow {
     }
 }
 
-impl Row for ImuRow {
+/// Forward, right, down to north, east, down; what has no length is no attitude.
+type TrueAttitude = Option<[f64; 4]>;
+
+/// A sample, and the true attitude where the recording has that column; none within where it does not count.
+impl Row for (ImuRow, Option<TrueAttitude>) {
     const COLUMNS: &'static [Column] = &[
         Column::always("t_s", TIME),
         Column::always(IMU[0], BODY_RATE),
@@ -226,13 +236,27 @@ impl Row for ImuRow {
         Column::always(IMU[3], FORCE),
         Column::always(IMU[4], FORCE),
         Column::always(IMU[5], FORCE),
+        Column { name: "truth_qw", need: Need::Optional, range: QUATERNION },
+        Column { name: "truth_qx", need: Need::Optional, range: QUATERNION },
+        Column { name: "truth_qy", need: Need::Optional, range: QUATERNION },
+        Column { name: "truth_qz", need: Need::Optional, range: QUATERNION },
+        Column { name: "moving", need: Need::Optional, range: FLAG },
     ];
     const TIME: usize = 0;
 
     fn from_values(values: &Values<'_>) -> Self {
         let sample = imu_sample(values, 1);
-        Self { line: values.line, time_s: values.needed(0), sample }
+        (ImuRow { line: values.line, time_s: values.needed(0), sample }, true_attitude(values))
     }
+}
+
+/// The quaternion in columns 7 to 10, where all of it is there.
+fn true_attitude(values: &Values<'_>) -> Option<TrueAttitude> {
+    let [w, x, y, z] = [7, 8, 9, 10].map(|column| values.optional(column));
+    let parts = [w?, x?, y?, z?];
+    let square: f64 = parts.iter().map(|part| part * part).sum();
+    let counts = values.optional(11).is_none_or(|moving| moving > 0.0);
+    Some((counts && square > LEAST_SQUARE).then_some(parts))
 }
 
 /// The sample whose columns begin at this place.
