@@ -65,7 +65,8 @@ pub fn describe(header: &Header, body: &Body, latitude: Latitude) -> Described {
     Described { setting, assumed }
 }
 
-fn noise(header: &Header) -> GyroNoise {
+/// The gyro's noise as the header has it; what is absent is zero.
+pub(crate) fn noise(header: &Header) -> GyroNoise {
     GyroNoise::from_field_units(
         header.gyro_n_deg_sqrt_h.unwrap_or(0.0),
         header.gyro_b_deg_h.unwrap_or(0.0),

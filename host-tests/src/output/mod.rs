@@ -11,6 +11,7 @@ pub mod rotating;
 pub mod stops;
 pub mod table;
 pub mod text;
+pub mod vertical;
 
 use std::io::{self, Write};
 

@@ -5,6 +5,7 @@ pub mod burov;
 pub mod plan;
 pub mod rotating;
 pub mod stops;
+pub mod vertical;
 
 use orientation::align::budget::Budget;
 
