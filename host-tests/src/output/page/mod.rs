@@ -2,6 +2,7 @@
 
 pub mod alignment;
 pub mod burov;
+pub mod keep;
 pub mod plan;
 pub mod rotating;
 pub mod stops;
