@@ -22,4 +22,5 @@ pub mod setting;
 pub mod simulate;
 pub mod spectrum;
 pub mod stops;
+pub mod vertical;
 pub mod virtual_time;

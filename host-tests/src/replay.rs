@@ -171,14 +171,17 @@ impl fmt::Display for ReplayError {
                 )
             }
             Self::NoVehicle(kind) => {
-                write!(f, "kind `{kind}` is no vehicle: no method siap and no method static")
+                write!(f, "kind `{kind}` is no vehicle: no method siap, static or vertical")
             }
             Self::OneGyro => f.write_str(
-                "columns gx_rad_s to az_m_s2 are missing: method static needs three gyros and three \
+                "columns gx_rad_s to az_m_s2 are missing: this method needs three gyros and three \
                  accelerometers",
             ),
             Self::TooManyStops(stops, most) => {
-                write!(f, "key stops_s: {stops} stops are more than the {most} that a session holds")
+                write!(
+                    f,
+                    "key stops_s: {stops} stops are more than the {most} that a session holds"
+                )
             }
             Self::Displacements { stated, stops } => {
                 write!(f, "{stated} displacements for {stops} stops: state one for each stop")

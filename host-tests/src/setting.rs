@@ -48,7 +48,7 @@ pub fn describe(header: &Header, body: &Body, latitude: Latitude) -> Described {
         assumed.push("no gyro drift (B, K, R)".to_owned());
     }
     let exact = match body {
-        Body::Imu(_) | Body::Static(_) => "latitude exact",
+        Body::Imu(_) | Body::Static(_) | Body::Spin(_) => "latitude exact",
         Body::Stage(_) | Body::Rotating(_) | Body::Dwells(_) => "latitude and encoder exact",
     };
     assumed.push(exact.to_owned());
@@ -65,7 +65,8 @@ pub fn describe(header: &Header, body: &Body, latitude: Latitude) -> Described {
     Described { setting, assumed }
 }
 
-fn noise(header: &Header) -> GyroNoise {
+/// The gyro's noise as the header has it; what is absent is zero.
+pub(crate) fn noise(header: &Header) -> GyroNoise {
     GyroNoise::from_field_units(
         header.gyro_n_deg_sqrt_h.unwrap_or(0.0),
         header.gyro_b_deg_h.unwrap_or(0.0),

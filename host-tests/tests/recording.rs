@@ -14,6 +14,8 @@ mod malformed;
 mod malformed_rows;
 #[path = "recording/rotating.rs"]
 mod rotating;
+#[path = "recording/spin.rs"]
+mod spin;
 #[path = "recording/stored.rs"]
 mod stored;
 

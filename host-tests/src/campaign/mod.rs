@@ -3,6 +3,7 @@
 pub mod burov;
 pub mod faults;
 pub mod instrument;
+pub mod keep;
 pub mod rotating;
 pub mod sokolov;
 pub mod statistics;

@@ -6,11 +6,11 @@ use bench::campaign::burov::{classes, devices, drift};
 use bench::campaign::rotating::{molecular, refusals, stages};
 use bench::campaign::sokolov::{self, Turn};
 use bench::campaign::szymanowski::{drives, parked};
-use bench::campaign::{faults, instrument};
+use bench::campaign::{faults, instrument, keep};
 use bench::output::progress::Progress;
 use bench::output::rotating::campaign as of_rotating;
 use bench::output::table;
-use bench::output::{burov as told, page, stops as of_stops};
+use bench::output::{burov as told, keep as of_keep, page, stops as of_stops};
 use clap::{Args, ValueEnum};
 use firmware::simulated::fault::Fault;
 use serde_json::json;
@@ -25,10 +25,11 @@ pub struct CampaignOptions {
     name: Campaign,
     /// How many runs: of sokolov on each schedule (5000), of burov on each schedule (5000)
     /// and for each class a tenth of it, of rotating in each table (500), of each of its refusals a
-    /// tenth of it, of szymanowski in each row (500), of instrument (500), of each fault (1).
+    /// tenth of it, of szymanowski in each row (500), of keep in each row (500), of instrument (500), of each
+    /// fault (1).
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     runs: Option<u32>,
-    /// Writes figures and tables as a page for a browser; of burov, rotating and szymanowski.
+    /// Writes figures and tables as a page for a browser; of burov, keep, rotating and szymanowski.
     #[arg(long, value_name = "FILE.html")]
     report: Option<PathBuf>,
 }
@@ -43,6 +44,8 @@ enum Campaign {
     Rotating,
     /// Azimuth from stops: Szymanowski's Table 1 over many drives, and vehicles that stand and sway.
     Szymanowski,
+    /// Storage of the azimuth, pitch and roll in vehicles that drive: Burov's classes.
+    Keep,
     /// The whole instrument on simulated chips, over drawn sites and attitudes.
     Instrument,
     /// Every chip with every fault.
@@ -55,10 +58,10 @@ impl CampaignOptions {
     /// # Errors
     /// The options, and why.
     pub fn check(&self) -> Result<(), &'static str> {
-        use Campaign::{Burov, Rotating, Szymanowski};
-        let draws = matches!(self.name, Burov | Rotating | Szymanowski);
+        use Campaign::{Burov, Keep, Rotating, Szymanowski};
+        let draws = matches!(self.name, Burov | Keep | Rotating | Szymanowski);
         if self.report.is_some() && !draws {
-            Err("--report: only burov, rotating and szymanowski draw")
+            Err("--report: only burov, keep, rotating and szymanowski draw")
         } else {
             Ok(())
         }
@@ -73,6 +76,7 @@ pub fn run(options: &CampaignOptions, as_json: bool) -> Result<Told, String> {
         Campaign::Burov => burov(runs(5000), options.report.as_deref(), as_json),
         Campaign::Rotating => rotating(runs(500), options.report.as_deref(), as_json),
         Campaign::Szymanowski => szymanowski(runs(500), options.report.as_deref(), as_json),
+        Campaign::Keep => keep(runs(500), options.report.as_deref(), as_json),
         Campaign::Instrument => instrument(runs(500), as_json),
         Campaign::Faults => faults(runs(1), as_json),
     }
@@ -177,6 +181,21 @@ fn szymanowski(runs: usize, report: Option<&Path>, as_json: bool) -> Result<Told
     let refusal = (!found).then(|| "a healthy vehicle was refused".to_owned());
     let told = Told { refusal, ..told };
     Ok(told.with_page(report, || page::stops::campaign::report(&drives, &parked)))
+}
+
+/// Azimuth, pitch and roll through half an hour of driving; a result where every row that is to be met is.
+fn keep(runs: usize, report: Option<&Path>, as_json: bool) -> Result<Told, String> {
+    let progress = Progress::new((keep::COUNT * runs) as u64, "vehicles");
+    let rows = keep::rows(runs, || progress.step());
+    progress.finish();
+    let found = rows.iter().all(|row| row.is_met || !row.is_wanted);
+    let status = if found { "ok" } else { "failed" };
+    let object = json!({ "campaign": "keep", "status": status, "classes": rows });
+    let told = Told::of(found, as_json, &object, |text| of_keep::rows(text, &rows))?;
+    let refusal = (!found)
+        .then(|| "a class does not meet its row; with few runs that may be chance".to_owned());
+    let told = Told { refusal, ..told };
+    Ok(told.with_page(report, || page::keep::report(&rows)))
 }
 
 /// The whole instrument over many seeds; a result where none was refused.

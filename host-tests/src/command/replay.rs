@@ -3,10 +3,13 @@
 use std::path::PathBuf;
 
 use bench::output::progress::Progress;
-use bench::output::{json, page, rotating as of_rotating, stops as of_stops, text};
+use bench::output::{
+    json, page, rotating as of_rotating, stops as of_stops, text, vertical as vertical_told,
+};
 use bench::recording::{self, Body, Kind, Recording};
 use bench::replay::{self, Options, replay};
-use bench::{rotating, stops};
+use bench::vertical::errors::Errors;
+use bench::{rotating, stops, vertical as of_vertical};
 use clap::{Args, ValueEnum};
 use orientation::align::criterion::Criterion;
 use orientation::earth::Latitude;
@@ -38,6 +41,10 @@ pub struct ReplayOptions {
     /// Greatest standard deviation that is accepted, in degrees (1σ).
     #[arg(long, value_name = "DEGREES", default_value = "10", value_parser = sigma)]
     require_sigma: f64,
+    /// Writes the attitude after each sample, body to north, east, down up to a constant heading:
+    /// `t_s,qw,qx,qy,qz`.
+    #[arg(long, value_name = "FILE.csv")]
+    attitude_out: Option<PathBuf>,
     /// Writes figures and tables as a page for a browser.
     #[arg(long, value_name = "FILE.html")]
     report: Option<PathBuf>,
@@ -55,6 +62,8 @@ enum Method {
     Siap,
     /// A vehicle at rest all the time, sway allowed.
     Static,
+    /// Pitch and roll, and the turn about the vertical, kept from the beginning to the end.
+    Vertical,
 }
 
 impl Method {
@@ -105,6 +114,12 @@ impl From<&ReplayOptions> for stops::Options {
     }
 }
 
+impl From<&ReplayOptions> for of_vertical::Options {
+    fn from(options: &ReplayOptions) -> Self {
+        Self { latitude: options.latitude, required_sigma: Some(options.require_sigma) }
+    }
+}
+
 impl ReplayOptions {
     /// What cannot go together.
     ///
@@ -118,7 +133,11 @@ impl ReplayOptions {
     fn check_method(&self, method: Method) -> Result<(), &'static str> {
         let has_criterion = self.criterion != Criterion::MaximumLikelihood;
         let is_displaced = self.displacements.is_some();
+        let has_attitude = self.attitude_out.is_some();
         match method {
+            _ if has_attitude && !matches!(method, Method::Vertical) => {
+                Err("--attitude-out: only method vertical keeps an attitude")
+            }
             Method::Rotating if has_criterion => {
                 Err("--criterion: a platform that turns all the time has the one criterion")
             }
@@ -130,6 +149,9 @@ impl ReplayOptions {
             }
             Method::Siap | Method::Static if self.half.is_some() => {
                 Err("--half: a vehicle's gyros show both halves")
+            }
+            Method::Vertical if has_criterion || self.half.is_some() => {
+                Err("--criterion, --half: method vertical finds no azimuth")
             }
             Method::Siap => Ok(()),
             _ if is_displaced => Err("--displacements: only the stops of method siap have them"),
@@ -147,6 +169,7 @@ pub fn run(options: &ReplayOptions, as_json: bool) -> Result<Told, String> {
     let of = match method {
         Method::Rotating => turning,
         Method::Siap | Method::Static => vehicle,
+        Method::Vertical => vertical,
         Method::Stepwise | Method::Positions => stopping,
     };
     of(&name, recording, options, as_json)
@@ -169,6 +192,30 @@ fn vehicle(
     })?;
     let refusal = conclusion.verdict.as_ref().err().map(|reason| format!("{name}: {reason}"));
     let page = || page::stops::report(name, &replay, conclusion);
+    Ok(Told { refusal, ..told }.with_page(options.report.as_deref(), page))
+}
+
+/// Replays a recording through the gyrovertical.
+fn vertical(
+    name: &str,
+    recording: Recording,
+    options: &ReplayOptions,
+    as_json: bool,
+) -> Result<Told, String> {
+    let (header, body, truth) = recording.into_parts();
+    let replay = of_vertical::replay(&header, &body, &options.into())
+        .map_err(|error| format!("{name}: {error}"))?;
+    let errors = Errors::of(&replay.moments, &truth.attitude);
+    let object = vertical_told::json::object(&replay, errors.as_ref());
+    let told = Told::of(replay.refusal.is_none(), as_json, &object, |block| {
+        vertical_told::text::block(block, name, &object)
+    })?;
+    if let Some(path) = &options.attitude_out {
+        of_vertical::write_attitude(path, &replay.moments)
+            .map_err(|error| format!("{}: cannot be written: {error}", path.display()))?;
+    }
+    let refusal = replay.refusal.as_ref().map(|reason| format!("{name}: {reason}"));
+    let page = || page::vertical::report(name, &replay, errors.as_ref(), &object);
     Ok(Told { refusal, ..told }.with_page(options.report.as_deref(), page))
 }
 

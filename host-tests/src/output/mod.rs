@@ -4,6 +4,7 @@ pub mod allan;
 pub mod burov;
 pub mod emulation;
 pub mod json;
+pub mod keep;
 pub mod page;
 pub mod plan;
 pub mod progress;
@@ -11,6 +12,7 @@ pub mod rotating;
 pub mod stops;
 pub mod table;
 pub mod text;
+pub mod vertical;
 
 use std::io::{self, Write};
 

@@ -1,7 +1,8 @@
 //! Columns: which of a line's fields are needed, and their numbers.
 //!
 //! Fields are plain numbers between commas, so a line is split at its commas and nothing is ever
-//! quoted. A column that the kind does not know, `truth_*` above all, is never parsed.
+//! quoted. A column that the kind does not know is never parsed; a kind that knows a `truth_*` column
+//! keeps it from the rows.
 
 use std::collections::HashSet;
 
@@ -11,7 +12,10 @@ use super::number::{Range, number};
 use super::problem::{HeaderProblem, ValueProblem};
 
 /// Most columns that a kind can know.
-pub(super) const MAX_COLUMNS: usize = 8;
+pub(super) const MAX_COLUMNS: usize = 12;
+
+/// What the names of columns begin with that only a check may know; they may hold `nan`.
+const TRUTH: &str = "truth_";
 
 /// When a column must be there.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -122,8 +126,10 @@ impl Layout {
         for (field, place) in line.text.split(',').zip(&self.fields) {
             let Some(place) = *place else { continue };
             let Column { name, range, .. } = &self.columns[place];
-            numbers[place] = number(field.trim_ascii(), range)
-                .map_err(|problem| Fault::column(line.number, name, problem))?;
+            numbers[place] = match number(field.trim_ascii(), range) {
+                Err(ValueProblem::Nan(_)) if name.starts_with(TRUTH) => f64::NAN,
+                read => read.map_err(|problem| Fault::column(line.number, name, problem))?,
+            };
         }
         Ok(Values { line: line.number, numbers, present: &self.present })
     }

@@ -59,6 +59,13 @@ pub struct Truth {
     pub azimuth_deg: Option<f64>,
     /// `truth_start_azimuth_deg`: the same at the beginning.
     pub start_azimuth_deg: Option<f64>,
+    /// `truth_roll_rad`: the roll of a spinning body at each row, whole turns counted, rad; not a number where
+    /// it is not known, empty where the recording has no such column.
+    pub roll_rad: Vec<f64>,
+    /// `truth_qw`, `truth_qx`, `truth_qy`, `truth_qz`: the attitude at each row of kind `imu`, forward, right,
+    /// down to north, east, down up to a constant heading; none where it is not known or where `moving` is 0,
+    /// empty where the recording has no such columns.
+    pub attitude: Vec<Option<[f64; 4]>>,
     /// The other `truth_*` keys and their text, in the order of the file.
     pub others: Vec<(String, String)>,
 }

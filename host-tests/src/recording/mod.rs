@@ -30,7 +30,7 @@ pub use header::{Header, Sensor, Truth};
 pub use lines::{MAX_LINE_BYTES, MAX_ROWS};
 pub use number::Range;
 pub use problem::{HeaderProblem, Problem, SourceProblem, StopProblem, TimeProblem, ValueProblem};
-pub use rows::{DwellRow, ImuRow, ImuSample, RotatingRow, StageRow, StaticRow};
+pub use rows::{DwellRow, ImuRow, ImuSample, RotatingRow, SpinRow, StageRow, StaticRow};
 pub use spacing::{Gap, Spacing};
 pub use stops::displacements;
 
@@ -69,6 +69,8 @@ pub enum Body {
     Dwells(Vec<DwellRow>),
     /// Samples of three gyros and three accelerometers.
     Imu(Vec<ImuRow>),
+    /// Samples of a body in fast rotation about its long axis.
+    Spin(Vec<SpinRow>),
     /// Samples at rest; samples may be missing, as [`Spacing`] says.
     Static(Vec<StaticRow>),
 }
@@ -80,6 +82,12 @@ impl Body {
         if let Self::Rotating(rows) = self { rows } else { &[] }
     }
 
+    /// The rows of a spinning body; none of another kind.
+    #[must_use]
+    pub fn spin(&self) -> &[SpinRow] {
+        if let Self::Spin(rows) = self { rows } else { &[] }
+    }
+
     /// The kind of its recording.
     #[must_use]
     pub fn kind(&self) -> Kind {
@@ -88,6 +96,7 @@ impl Body {
             Self::Rotating(_) => Kind::Rotating,
             Self::Dwells(_) => Kind::Dwells,
             Self::Imu(_) => Kind::Imu,
+            Self::Spin(_) => Kind::Spin,
             Self::Static(_) => Kind::Static,
         }
     }
@@ -102,7 +111,7 @@ pub enum Kind {
     Rotating,
     /// Three gyros and three accelerometers fixed to a vehicle; read here.
     Imu,
-    /// A body in fast rotation about its long axis.
+    /// A body in fast rotation about its long axis; read here.
     Spin,
     /// A gyro at rest, for Allan variance; read here.
     Static,
@@ -160,36 +169,52 @@ pub fn read_from(name: &str, reader: impl Read) -> Result<Recording, ReadError> 
     parse(reader).map_err(|fault| fault.in_file(name))
 }
 
-/// Reads a kind's rows below the column names: their line and text.
-type ReadRows = fn(&mut Lines<'_>, u64, &str) -> Result<Body, Fault>;
-
 /// Reads a recording. Another kind is another arm here, and one each in [`Body`] and
 /// [`check_times`], beside its row.
 fn parse(reader: impl Read) -> Result<Recording, Fault> {
     let mut lines = Lines::new(reader)?;
     let (entries, names) = preamble(&mut lines)?;
-    let (line, kind) = kind(&entries)?;
-    let read_rows: ReadRows = match kind {
-        Kind::Stage => |lines, line, names| Ok(Body::Stage(rows::read(lines, line, names)?)),
-        Kind::Rotating => |lines, line, names| Ok(Body::Rotating(rows::read(lines, line, names)?)),
-        Kind::Dwells => |lines, line, names| Ok(Body::Dwells(rows::read(lines, line, names)?)),
-        Kind::Imu => |lines, line, names| Ok(Body::Imu(rows::read(lines, line, names)?)),
-        Kind::Static => |lines, line, names| Ok(Body::Static(rows::read(lines, line, names)?)),
-        Kind::Spin => return Err(Fault::line(line, HeaderProblem::UnreadKind(kind))),
-    };
+    let kind = kind(&entries)?;
     let mut header = entries.header()?;
     if kind == Kind::Imu {
         stops::read(&entries, &mut header)?;
     }
     let (line, names) =
         names.ok_or_else(|| Fault::line(lines.number(), HeaderProblem::NoColumnNames))?;
-    let body = read_rows(&mut lines, line, &names)?;
+    let (body, Truth { roll_rad, attitude, .. }) = body(kind, &mut lines, line, &names)?;
     let rate = entries.get("rate_hz").map(|(line, _)| line).zip(header.rate_hz);
     check_times(&body, rate)?;
     if let Body::Imu(rows) = &body {
         stops::check_inside(&entries, &header, rows)?;
     }
-    Ok(Recording { header, body, truth: entries.truth()? })
+    Ok(Recording { header, body, truth: Truth { roll_rad, attitude, ..entries.truth()? } })
+}
+
+/// The rows of a kind below the column names, which stand in line `line`, and what of the truth is in them.
+fn body(kind: Kind, lines: &mut Lines<'_>, line: u64, names: &str) -> Result<(Body, Truth), Fault> {
+    let mut truth = Truth::default();
+    let body = match kind {
+        Kind::Stage => Body::Stage(rows::read(lines, line, names)?),
+        Kind::Rotating => Body::Rotating(rows::read(lines, line, names)?),
+        Kind::Dwells => Body::Dwells(rows::read(lines, line, names)?),
+        Kind::Static => Body::Static(rows::read(lines, line, names)?),
+        Kind::Imu => {
+            let (rows, known) = parted(rows::read(lines, line, names)?);
+            truth.attitude = known.into_iter().flatten().collect();
+            Body::Imu(rows)
+        }
+        Kind::Spin => {
+            let (rows, known) = parted(rows::read(lines, line, names)?);
+            truth.roll_rad = known.into_iter().flatten().collect();
+            Body::Spin(rows)
+        }
+    };
+    Ok((body, truth))
+}
+
+/// Rows, and apart from them what only a check may know of each.
+fn parted<R, T>(rows: Vec<(R, T)>) -> (Vec<R>, Vec<T>) {
+    rows.into_iter().unzip()
 }
 
 /// The line of column names: its number and text.
@@ -209,13 +234,12 @@ fn preamble(lines: &mut Lines<'_>) -> Result<(Collector, Names), Fault> {
     if is_empty { Err(Fault::new(Place::Whole, SourceProblem::Empty)) } else { Ok((entries, None)) }
 }
 
-/// The kind that the header names, and the line where it does.
-fn kind(entries: &Collector) -> Result<(u64, Kind), Fault> {
+/// The kind that the header names.
+fn kind(entries: &Collector) -> Result<Kind, Fault> {
     let missing = || Fault::new(Place::Whole, HeaderProblem::NoKind);
     let (line, text) = entries.get("kind").ok_or_else(missing)?;
     let unknown = || Fault::key(line, "kind", HeaderProblem::UnknownKind(text.to_owned()));
-    let kind = Kind::ALL.into_iter().find(|kind| kind.name() == text).ok_or_else(unknown)?;
-    Ok((line, kind))
+    Kind::ALL.into_iter().find(|kind| kind.name() == text).ok_or_else(unknown)
 }
 
 /// Refuses gaps and a rate (its line, and Hz) that the times contradict. Dwells have no rate; what
@@ -229,6 +253,9 @@ fn check_times(body: &Body, rate: Option<(u64, f64)>) -> Result<(), Fault> {
             Times { rows, stamp: |row| (row.line, row.time_s), column: "t_s" }.check(rate)
         }
         Body::Imu(rows) => {
+            Times { rows, stamp: |row| (row.line, row.time_s), column: "t_s" }.check(rate)
+        }
+        Body::Spin(rows) => {
             Times { rows, stamp: |row| (row.line, row.time_s), column: "t_s" }.check(rate)
         }
         Body::Dwells(_) | Body::Static(_) => Ok(()),

@@ -3,9 +3,9 @@
 use std::fmt;
 use std::io;
 
+use super::KINDS;
 use super::error::{printable, quoted};
 use super::number::Range;
-use super::{KINDS, Kind};
 
 /// What is wrong with a recording.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,8 +44,6 @@ pub enum HeaderProblem {
     NoKind,
     /// A kind that the format does not have.
     UnknownKind(String),
-    /// A kind of the format that this reader leaves to others.
-    UnreadKind(Kind),
     /// A key given twice: the value here, the value before and its line.
     Contradiction(String, String, u64),
     /// A key that matters, below the line of column names.
@@ -221,7 +219,6 @@ impl fmt::Display for HeaderProblem {
                 write!(f, "the header does not name the kind; add a line `# kind: …` with {KINDS}")
             }
             Self::UnknownKind(text) => write!(f, "{} is not a kind; use {KINDS}", quoted(text)),
-            Self::UnreadKind(kind) => write!(f, "kind `{kind}` is not read by this command"),
             Self::Contradiction(here, before, line) => {
                 let (here, before) = (quoted(here), quoted(before));
                 write!(f, "{here} contradicts {before} of line {line}; keep one of them")

@@ -24,6 +24,18 @@ const STAGE_RATE: Range = Range::symmetric(1e3, " rad/s");
 const FORCE: Range = Range::symmetric(2_147.483_647, " m/s²");
 /// The range of [`orientation::units::Temperature`].
 const TEMPERATURE: Range = Range::symmetric(2_147_483.647, " °C");
+/// Rates about the axes of a body in fast rotation: 1 600 turns a second.
+const SPIN_RATE: Range = Range::symmetric(1e4, " rad/s");
+/// The range of [`orientation::units::SpinForce`].
+const SPIN_FORCE: Range = Range::symmetric(21_474.836_47, " m/s²");
+/// Rolls in which a double resolves 1 nrad: 10⁶ turns.
+const ROLL: Range = Range::symmetric(6.283_185e6, " rad");
+/// The parts of a quaternion of length one, which rounding may exceed.
+const QUATERNION: Range = Range::symmetric(1.001, "");
+/// Square of its length below which it is none.
+const LEAST_SQUARE: f64 = 0.9;
+/// Whether something holds: 0 or 1.
+const FLAG: Range = Range::from_zero(1.0, "");
 /// The force columns of a dwell come together or not at all.
 const FORCES: [&str; 3] = ["fx_m_s2", "fy_m_s2", "fz_m_s2"];
 /// So do those of an inertial measurement unit.
@@ -104,6 +116,19 @@ pub struct ImuRow {
     pub time_s: f64,
     /// Means over the sample.
     pub sample: ImuSample,
+}
+
+/// One sample of a `spin` recording: what a body in fast rotation shows at that moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpinRow {
+    /// The line of the file, from 1, for messages about this sample.
+    pub line: u64,
+    /// Time, s, later than in the row before; its zero is the recorder's and it may be negative.
+    pub time_s: f64,
+    /// Rate about the long axis, rad/s, ±10000.
+    pub rate_rad_s: f64,
+    /// Specific force along body y (up at roll zero) and z (right there), m/s², ±21474.83647.
+    pub force_m_s2: [f64; 2],
 }
 
 /// What an inertial measurement unit gives at a time, along body x (forward), y (right), z (down).
@@ -198,7 +223,11 @@ impl Row for DwellRow {
     }
 }
 
-impl Row for ImuRow {
+/// Forward, right, down to north, east, down; what has no length is no attitude.
+type TrueAttitude = Option<[f64; 4]>;
+
+/// A sample, and the true attitude where the recording has that column; none within where it does not count.
+impl Row for (ImuRow, Option<TrueAttitude>) {
     const COLUMNS: &'static [Column] = &[
         Column::always("t_s", TIME),
         Column::always(IMU[0], BODY_RATE),
@@ -207,19 +236,55 @@ impl Row for ImuRow {
         Column::always(IMU[3], FORCE),
         Column::always(IMU[4], FORCE),
         Column::always(IMU[5], FORCE),
+        Column { name: "truth_qw", need: Need::Optional, range: QUATERNION },
+        Column { name: "truth_qx", need: Need::Optional, range: QUATERNION },
+        Column { name: "truth_qy", need: Need::Optional, range: QUATERNION },
+        Column { name: "truth_qz", need: Need::Optional, range: QUATERNION },
+        Column { name: "moving", need: Need::Optional, range: FLAG },
     ];
     const TIME: usize = 0;
 
     fn from_values(values: &Values<'_>) -> Self {
         let sample = imu_sample(values, 1);
-        Self { line: values.line, time_s: values.needed(0), sample }
+        (ImuRow { line: values.line, time_s: values.needed(0), sample }, true_attitude(values))
     }
+}
+
+/// The quaternion in columns 7 to 10, where all of it is there.
+fn true_attitude(values: &Values<'_>) -> Option<TrueAttitude> {
+    let [w, x, y, z] = [7, 8, 9, 10].map(|column| values.optional(column));
+    let parts = [w?, x?, y?, z?];
+    let square: f64 = parts.iter().map(|part| part * part).sum();
+    let counts = values.optional(11).is_none_or(|moving| moving > 0.0);
+    Some((counts && square > LEAST_SQUARE).then_some(parts))
 }
 
 /// The sample whose columns begin at this place.
 fn imu_sample(values: &Values<'_>, first: usize) -> ImuSample {
     let three = |first: usize| [0, 1, 2].map(|axis| values.needed(first + axis));
     ImuSample { rates_rad_s: three(first), force_m_s2: three(first + 3) }
+}
+
+/// A sample, and the true roll, rad, where the recording has it.
+impl Row for (SpinRow, Option<f64>) {
+    const COLUMNS: &'static [Column] = &[
+        Column::always("t_s", TIME),
+        Column::always("gx_rad_s", SPIN_RATE),
+        Column::always("ay_m_s2", SPIN_FORCE),
+        Column::always("az_m_s2", SPIN_FORCE),
+        Column { name: "truth_roll_rad", need: Need::Optional, range: ROLL },
+    ];
+    const TIME: usize = 0;
+
+    fn from_values(values: &Values<'_>) -> Self {
+        let row = SpinRow {
+            line: values.line,
+            time_s: values.needed(0),
+            rate_rad_s: values.needed(1),
+            force_m_s2: [2, 3].map(|column| values.needed(column)),
+        };
+        (row, values.optional(4))
+    }
 }
 
 impl Row for StaticRow {

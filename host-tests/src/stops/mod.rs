@@ -117,7 +117,7 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
 
 /// Refuses a recording in which a sensor stands still while the others have noise: a part of the rotation is
 /// lost, and nothing else tells.
-fn check_stuck(rows: &[ImuRow], period_s: f64) -> Result<(), ReplayError> {
+pub(crate) fn check_stuck(rows: &[ImuRow], period_s: f64) -> Result<(), ReplayError> {
     let white = noise::estimate(rows, None, period_s);
     if white.angle_random_walk <= 0.0 || white.force <= 0.0 {
         return Ok(());
@@ -127,7 +127,7 @@ fn check_stuck(rows: &[ImuRow], period_s: f64) -> Result<(), ReplayError> {
 }
 
 /// Why a recording has no rows for these methods.
-fn missing(body: &Body) -> ReplayError {
+pub(crate) fn missing(body: &Body) -> ReplayError {
     match body.kind() {
         Kind::Static => ReplayError::OneGyro,
         kind => ReplayError::NoVehicle(kind),

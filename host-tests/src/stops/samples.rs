@@ -20,7 +20,7 @@ pub fn rows(body: &Body) -> Option<Cow<'_, [ImuRow]>> {
     match body {
         Body::Imu(rows) => Some(Cow::Borrowed(rows)),
         Body::Static(rows) => rows.iter().map(row).collect::<Option<Vec<_>>>().map(Cow::Owned),
-        Body::Stage(_) | Body::Rotating(_) | Body::Dwells(_) => None,
+        Body::Stage(_) | Body::Rotating(_) | Body::Dwells(_) | Body::Spin(_) => None,
     }
 }
 

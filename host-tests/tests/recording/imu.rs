@@ -235,6 +235,31 @@ fn both_truths_are_parted_from_what_a_solver_gets() {
     assert!(!given.contains("212.25") && !given.contains("72.125"));
 }
 
+/// With a true attitude in three rows, of which one is not known and one does not count.
+const TRUE: &str = "\
+# kind: imu
+t_s,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s2,ay_m_s2,az_m_s2,truth_qw,truth_qx,truth_qy,truth_qz,moving
+0.02,0,0,0,0,0,-9.8,0.8,0.6,0,0,1
+0.04,0,0,0,0,0,-9.8,nan,nan,nan,nan,1
+0.06,0,0,0,0,0,-9.8,0.96,0,0,0.28,0
+";
+
+#[test]
+fn the_true_attitude_is_parted_too_and_only_where_it_counts() {
+    let (header, body, truth) = read(TRUE).into_parts();
+    assert_eq!(truth.attitude, [Some([0.8, 0.6, 0.0, 0.0]), None, None]);
+    assert!(!format!("{header:?}{body:?}").contains("0.6,"));
+    let all = read(TRUE.replace(",moving", ",still")).truth.attitude;
+    assert_eq!(all[2], Some([0.96, 0.0, 0.0, 0.28]));
+    assert!(read(TRUE.replace("truth_qz", "truth_z")).truth.attitude.is_empty());
+    // A quaternion without a length is no attitude.
+    assert_eq!(read(changed(TRUE, "0.8,0.6", "0,0")).truth.attitude[0], None);
+    assert_eq!(
+        message(changed(TRUE, "0.8,0.6", "1.8,0.6")),
+        "walk.csv: line 3, column truth_qw: \"1.8\" is outside the range of ±1.001; check the unit"
+    );
+}
+
 #[test]
 fn a_stop_problem_can_be_told_from_others() {
     let text = changed(IMU, "0-0.04;0.06-0.10", "0.04-0");

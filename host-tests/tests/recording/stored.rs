@@ -222,6 +222,49 @@ fn each_recording_of_a_vehicle_has_its_rows_header_and_truth() {
 }
 
 #[test]
+fn each_recording_of_a_spinning_body_has_its_rows_and_the_true_roll_of_each() {
+    for (name, first, last) in
+        [("spin-100rps", 0.4, 630.980_24), ("spin-80rps-noisy", 0.0, 510.660_7)]
+    {
+        let recording = stored(name);
+        assert_eq!(recording.header, Header { rate_hz: Some(10_000.0), ..Header::default() });
+        assert_eq!(recording.truth.others, [("truth_scale_error".to_owned(), "0.001".to_owned())]);
+        let rolls = &recording.truth.roll_rad;
+        assert_eq!((rolls.len(), rolls[0], rolls[9_999]), (10_000, first, last), "{name}");
+        assert_eq!(recording.body.spin().len(), 10_000);
+        let text = include_str!("../../data/README.md");
+        let table = || text.lines().filter(|line| line.starts_with('|'));
+        let row = table().find(|line| line.contains(name));
+        let row = row.unwrap_or_else(|| panic!("{name} is not in the table"));
+        assert!(row.contains("| 10000 | 10000 | - |"), "{row}");
+    }
+}
+
+/// The two of BROAD, which know neither latitude nor noise.
+fn broad() -> [Expected; 2] {
+    ["imu-broad-06", "imu-broad-24"].map(|name| Expected {
+        name,
+        lines: 20_006,
+        header_lines: 5,
+        azimuth_deg: f64::NAN,
+        header: Header { rate_hz: Some(285.714_286), ..Header::default() },
+    })
+}
+
+#[test]
+fn the_recordings_of_broad_know_the_attitude_where_errors_count() {
+    for (expected, known) in broad().into_iter().zip([9230, 7198]) {
+        let recording = stored(expected.name);
+        assert_eq!(recording.header, expected.header, "{}", expected.name);
+        let attitude = &recording.truth.attitude;
+        assert_eq!(attitude.iter().flatten().count(), known, "{}", expected.name);
+        let Body::Imu(rows) = recording.body else { panic!("is {}", recording.body.kind()) };
+        assert_eq!(rows.len(), expected.lines - expected.header_lines - 1, "{}", expected.name);
+        assert_eq!(attitude.len(), rows.len());
+    }
+}
+
+#[test]
 fn the_disturbances_are_known_to_the_truth_only() {
     for (name, span) in [("stepwise-bumped", "47-51"), ("stepwise-nudged", "79-83")] {
         let expected = [("truth_disturbed_s".to_owned(), span.to_owned())];
@@ -231,13 +274,14 @@ fn the_disturbances_are_known_to_the_truth_only() {
 
 #[test]
 fn the_table_of_the_data_agrees_with_the_files() {
-    let table = include_str!("../../data/README.md");
+    let text = include_str!("../../data/README.md");
+    let table = || text.lines().filter(|line| line.starts_with('|'));
     for Expected { name, lines, header_lines, header, .. } in
-        all().into_iter().chain(rotating()).chain(vehicles())
+        all().into_iter().chain(rotating()).chain(vehicles()).chain(broad())
     {
-        let row = table.lines().find(|line| line.contains(name)).or_else(|| {
+        let row = table().find(|line| line.contains(name)).or_else(|| {
             let series = name.rsplit_once('-').map_or(name, |(series, _)| series);
-            table.lines().find(|line| line.contains(series))
+            table().find(|line| line.contains(series))
         });
         let row = row.unwrap_or_else(|| panic!("{name} is not in the table"));
         let cells: Vec<&str> = row.split('|').map(str::trim).collect();

@@ -171,6 +171,6 @@ fn what_keeps_a_replay_from_beginning_is_told() {
     let error = replay(&nowhere.header, &dwells, &Options::default()).expect_err("another kind");
     assert_eq!(
         error.to_string(),
-        "kind `dwells` is no vehicle: no method siap and no method static"
+        "kind `dwells` is no vehicle: no method siap, static or vertical"
     );
 }

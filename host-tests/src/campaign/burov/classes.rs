@@ -5,7 +5,7 @@
 
 use hal_mock::gyro::Gyro;
 use orientation::keep::stored::{Handover, Keeper, Rest, StoredAzimuth};
-use orientation::planner::{Rotation, for_time};
+use orientation::planner::{Plan, Rotation, for_time};
 use orientation::units::{AngularRate, DEGREE_PER_HOUR};
 use serde::Serialize;
 
@@ -22,7 +22,7 @@ const REST: f64 = 20.0;
 
 /// How a class comes to its azimuth.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Way {
+pub(crate) enum Way {
     /// It finds north itself.
     Gyrocompassing,
     /// An azimuth is handed over with this 1σ, °, and stored.
@@ -31,22 +31,27 @@ enum Way {
 
 /// A class of the paper's Table 1, and the gyro that is to meet it.
 #[derive(Clone, Copy, Debug)]
-struct Class {
-    name: &'static str,
+pub(crate) struct Class {
+    pub(crate) name: &'static str,
     /// Azimuth, °, 3σ.
     wanted_deg: f64,
     minutes: f64,
-    gyro: &'static str,
-    grade: Grade,
-    way: Way,
+    /// Azimuth after half an hour of storage, and pitch and roll meanwhile, °, 1σ.
+    pub(crate) stored_deg: f64,
+    pub(crate) level_deg: f64,
+    pub(crate) gyro: &'static str,
+    pub(crate) grade: Grade,
+    pub(crate) way: Way,
 }
 
 /// The five rows.
-const CLASSES: [Class; 5] = [
+pub(crate) const CLASSES: [Class; 5] = [
     Class {
         name: "very lightweight",
         wanted_deg: 0.60,
         minutes: 1.0,
+        stored_deg: 1.20,
+        level_deg: 0.60,
         gyro: "MEMS",
         grade: grade(0.15, 0.5, 2.0, 0.0),
         way: Way::HandedOver(0.15),
@@ -55,6 +60,8 @@ const CLASSES: [Class; 5] = [
         name: "light",
         wanted_deg: 0.48,
         minutes: 5.0,
+        stored_deg: 0.60,
+        level_deg: 0.36,
         gyro: "good MEMS or small fibre-optic",
         grade: grade(0.03, 0.2, 0.2, 0.0),
         way: Way::HandedOver(0.12),
@@ -63,6 +70,8 @@ const CLASSES: [Class; 5] = [
         name: "light reconnaissance",
         wanted_deg: 0.36,
         minutes: 5.0,
+        stored_deg: 0.36,
+        level_deg: 0.24,
         gyro: "fibre-optic",
         grade: grade(0.003, 0.01, 0.0, 0.1),
         way: Way::Gyrocompassing,
@@ -71,6 +80,8 @@ const CLASSES: [Class; 5] = [
         name: "average multifunctional",
         wanted_deg: 0.24,
         minutes: 5.0,
+        stored_deg: 0.15,
+        level_deg: 0.12,
         gyro: "fibre-optic, OIUS-1000",
         grade: grade(0.001, 0.007, 0.0, 0.127),
         way: Way::Gyrocompassing,
@@ -79,6 +90,8 @@ const CLASSES: [Class; 5] = [
         name: "remote-control station",
         wanted_deg: 0.48,
         minutes: 6.0,
+        stored_deg: 0.18,
+        level_deg: 0.12,
         gyro: "fibre-optic",
         grade: grade(0.004, 0.015, 0.0, 0.1),
         way: Way::Gyrocompassing,
@@ -150,10 +163,19 @@ impl Class {
         }
     }
 
-    /// North by the best schedule for the time that is left.
+    /// The best schedule for the time that is left.
+    fn plan(&self) -> Option<Plan> {
+        for_time(&self.grade.conditions(STAGE), 60.0 * self.minutes - OVERHEAD).ok()
+    }
+
+    /// 1σ of the azimuth that it finds, as planned, °.
+    pub(crate) fn planned_sigma_deg(&self) -> Option<f64> {
+        self.plan().map(|plan| degrees(plan.sigma(latitude())))
+    }
+
+    /// North by that schedule.
     fn found(&self, runs: usize, tick: &(impl Fn() + Sync)) -> (String, Precision) {
-        let conditions = self.grade.conditions(STAGE);
-        let Ok(plan) = for_time(&conditions, 60.0 * self.minutes - OVERHEAD) else {
+        let Some(plan) = self.plan() else {
             return ("no schedule fits".to_owned(), Precision::of(&[]));
         };
         let trial = Trial { grade: self.grade, plan, rotation: STAGE };

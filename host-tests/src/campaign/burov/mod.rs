@@ -30,7 +30,7 @@ const RATE_HZ: f64 = 12.5;
 /// Upper cut-off of the flicker, Hz: below half the sample rate, above all that a dwell lets pass.
 const FLICKER_HIGH_HZ: f64 = 5.0;
 /// Turn-on bias, °/h.
-const BIAS_DEG_H: f64 = 1.0;
+pub(crate) const BIAS_DEG_H: f64 = 1.0;
 /// 1σ of either accelerometer bias, m/s²: a good 1 mg.
 const FORCE_BIAS: f64 = 0.01;
 /// Golden angle, °: azimuths of successive seeds fill the circle evenly.
@@ -69,7 +69,7 @@ impl Grade {
     }
 
     /// The same for the simulation, whose ramp is R to the full.
-    fn simulated(&self) -> GyroConfiguration {
+    pub(crate) fn simulated(&self) -> GyroConfiguration {
         GyroConfiguration {
             n_deg_sqrt_h: self.n_deg_sqrt_h,
             b_deg_h: self.b_deg_h,

@@ -2,9 +2,11 @@
 
 pub mod alignment;
 pub mod burov;
+pub mod keep;
 pub mod plan;
 pub mod rotating;
 pub mod stops;
+pub mod vertical;
 
 use orientation::align::budget::Budget;
 

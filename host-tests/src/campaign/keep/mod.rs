@@ -1,0 +1,226 @@
+//! Burov's Table 1, what it says of keeping: the azimuth stored for half an hour, pitch and roll meanwhile.
+//!
+//! The classes and their gyros are those of [`classes`]; each is driven without a halt, after an alignment
+//! as good as its gyro allows or with an azimuth from outside.
+
+pub mod world;
+
+use orientation::keep::stored::adjacent_variance;
+use serde::Serialize;
+
+use self::world::{Fitting, MARK_S, Mark, Mount, Pair, STORED_S};
+use super::burov::classes::{CLASSES, Class, Way};
+use super::burov::{BIAS_DEG_H, Grade};
+use super::over;
+use super::statistics::{coverage, rms};
+use crate::output::degrees;
+
+/// A class, and what it is fitted with.
+struct Case {
+    class: usize,
+    mount: Mount,
+    /// 1σ of the gyro's bias, °/h, and of its scale.
+    bias_deg_h: f64,
+    scale_sigma: f64,
+    /// 1σ of the accelerometers' biases, m/s².
+    force_bias_m_s2: f64,
+    /// Whether the row is to be met; else it stands beside one that is.
+    is_wanted: bool,
+}
+
+/// Bias of tactical micromechanical gyros, 1σ, °/h, and their scale: STIM300 (data sheet TS1524, ±500 ppm), after
+/// it has warmed up.
+const TACTICAL: [f64; 2] = [5.0, 5e-4];
+/// The same of fibre-optic gyros that were calibrated: 1 °/h as for [`classes`](super::burov::classes), 100 ppm.
+const FIBRE: [f64; 2] = [BIAS_DEG_H, 1e-4];
+/// Biases of accelerometers, 1σ, m/s²: 0.75 mg of STIM300 from start to start; half a milli-g once calibrated.
+const FORCE: [f64; 2] = [7.5e-3, 5e-3];
+
+/// The rows, then what stands beside them.
+const CASES: [Case; COUNT] = [
+    Case::wanted(0, Mount::Strapdown, TACTICAL, FORCE[0]),
+    Case::wanted(1, Mount::Strapdown, [BIAS_DEG_H, 2e-4], FORCE[1]),
+    Case::wanted(2, Mount::TwoFrame(Pair::Tactical), FIBRE, FORCE[1]),
+    Case::wanted(3, Mount::TwoFrame(Pair::Tactical), FIBRE, FORCE[1]),
+    Case::wanted(4, Mount::TwoFrame(Pair::Tactical), FIBRE, FORCE[1]),
+    Case { is_wanted: false, ..Case::wanted(2, Mount::TwoFrame(Pair::Coarse), FIBRE, FORCE[1]) },
+    Case { is_wanted: false, ..Case::wanted(3, Mount::Strapdown, FIBRE, FORCE[1]) },
+];
+
+/// How many rows there are.
+pub const COUNT: usize = 7;
+/// Rest before the azimuth is handed over, s.
+const REST_S: f64 = 60.0;
+
+/// Errors and their 1σ over many runs, °.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Spread {
+    /// RMS of the errors.
+    pub rms_deg: f64,
+    /// RMS of the σ that goes with them.
+    pub sigma_deg: f64,
+    /// Per cent of errors within 1, 2 and 3 σ.
+    pub coverage_percent: [f64; 3],
+}
+
+/// The errors so many seconds after the azimuth was handed over.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Growth {
+    /// How long.
+    pub seconds: f64,
+    /// Of the azimuth.
+    pub azimuth: Spread,
+    /// Of pitch and roll.
+    pub level: Spread,
+}
+
+/// A row of the table.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// The class.
+    pub class: &'static str,
+    /// What its azimuth may be off after the half hour, 1σ, °.
+    pub wanted_azimuth_deg: f64,
+    /// What its pitch and roll may be off, 1σ, °.
+    pub wanted_level_deg: f64,
+    /// The gyro in words.
+    pub gyro: &'static str,
+    /// The gyro.
+    pub grade: Grade,
+    /// How it sits.
+    pub mount: String,
+    /// 1σ of the accelerometers' biases.
+    pub force_bias_m_s2: f64,
+    /// How it came to its azimuth.
+    pub way: String,
+    /// Runs.
+    pub runs: usize,
+    /// Runs in which the azimuth was lost.
+    pub lost: usize,
+    /// The azimuth after the half hour.
+    pub azimuth: Spread,
+    /// What its start and the gyro after its rest leave at least.
+    pub azimuth_limit_deg: f64,
+    /// Pitch and roll after the half hour, at rest.
+    pub level_at_rest: Spread,
+    /// Pitch and roll on the way.
+    pub level: Spread,
+    /// Minute by minute.
+    pub growth: Vec<Growth>,
+    /// Whether the row is to be met.
+    pub is_wanted: bool,
+    /// Whether it is met.
+    pub is_met: bool,
+}
+
+/// All rows over `runs` runs each; `tick` after each run.
+#[must_use]
+pub fn rows(runs: usize, tick: impl Fn() + Sync) -> Vec<Row> {
+    CASES.iter().map(|case| case.row(runs, &tick)).collect()
+}
+
+impl Spread {
+    /// Of errors with their σ.
+    fn of(pairs: &[[f64; 2]]) -> Self {
+        let errors: Vec<f64> = pairs.iter().map(|[error, _]| *error).collect();
+        let sigmas: Vec<f64> = pairs.iter().map(|[_, sigma]| *sigma).collect();
+        Self {
+            rms_deg: rms(&errors),
+            sigma_deg: rms(&sigmas),
+            coverage_percent: coverage(&errors, &sigmas),
+        }
+    }
+
+    fn azimuth<'a>(marks: impl Iterator<Item = &'a Mark>) -> Self {
+        Self::of(&marks.filter_map(|mark| mark.azimuth).collect::<Vec<_>>())
+    }
+
+    fn level<'a>(marks: impl Iterator<Item = &'a Mark>) -> Self {
+        let both = marks.flat_map(|mark| mark.level.map(|error| [error, mark.level_sigma]));
+        Self::of(&both.collect::<Vec<_>>())
+    }
+}
+
+impl Case {
+    const fn wanted(
+        class: usize,
+        mount: Mount,
+        [bias_deg_h, scale_sigma]: [f64; 2],
+        force_bias_m_s2: f64,
+    ) -> Self {
+        Self { class, mount, bias_deg_h, scale_sigma, force_bias_m_s2, is_wanted: true }
+    }
+
+    fn row(&self, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
+        let class = &CLASSES[self.class];
+        let (way, azimuth_sigma_deg) = start(class);
+        let fitting = self.fitting(class, azimuth_sigma_deg);
+        let days = over(runs, tick, |seed| fitting.live(seed));
+        let last = || days.iter().filter_map(|day| day.last());
+        let on_way = days.iter().flat_map(|day| day.split_last().map_or(&[][..], |(_, way)| way));
+        let (azimuth, level) = (Spread::azimuth(last()), Spread::level(on_way));
+        let lost = last().filter(|mark| mark.azimuth.is_none()).count();
+        let is_good = azimuth.rms_deg <= class.stored_deg && level.rms_deg <= class.level_deg;
+        Row {
+            class: class.name,
+            wanted_azimuth_deg: class.stored_deg,
+            wanted_level_deg: class.level_deg,
+            gyro: class.gyro,
+            grade: class.grade,
+            mount: self.mount.to_string(),
+            force_bias_m_s2: self.force_bias_m_s2,
+            way,
+            runs,
+            lost,
+            azimuth,
+            azimuth_limit_deg: limit_deg(&fitting),
+            level_at_rest: Spread::level(last()),
+            level,
+            growth: growth(&days),
+            is_wanted: self.is_wanted,
+            is_met: lost == 0 && is_good,
+        }
+    }
+
+    fn fitting(&self, class: &Class, azimuth_sigma_deg: f64) -> Fitting {
+        Fitting {
+            grade: class.grade,
+            bias_deg_h: self.bias_deg_h,
+            scale_sigma: self.scale_sigma,
+            mount: self.mount,
+            force_bias_m_s2: self.force_bias_m_s2,
+            azimuth_sigma_deg,
+            rest_s: REST_S,
+        }
+    }
+}
+
+/// How a class comes to its azimuth, and 1σ of that, °.
+fn start(class: &Class) -> (String, f64) {
+    match (class.way, class.planned_sigma_deg()) {
+        (Way::HandedOver(sigma), _) => (format!("handed over with 1σ {sigma}°"), sigma),
+        (Way::Gyrocompassing, Some(sigma)) => (format!("aligned to 1σ {sigma:.3}°"), sigma),
+        (Way::Gyrocompassing, None) => ("no schedule fits".to_owned(), f64::NAN),
+    }
+}
+
+/// 1σ of the azimuth after the half hour, °, that the start and the gyro's N, B, K and R leave after its rest:
+/// a base that does not move, a scale without error.
+fn limit_deg(fitting: &Fitting) -> f64 {
+    let variance = adjacent_variance(&fitting.grade.noise(), fitting.learnt_s(), STORED_S);
+    fitting.azimuth_sigma_deg.hypot(degrees(STORED_S * variance.sqrt()))
+}
+
+/// What the errors were minute by minute.
+fn growth(days: &[Vec<Mark>]) -> Vec<Growth> {
+    let minutes = (STORED_S / MARK_S) as usize;
+    let of = |index: usize| {
+        let marks = || days.iter().filter_map(move |day| day.get(index));
+        Growth {
+            seconds: (index + 1) as f64 * MARK_S,
+            azimuth: Spread::azimuth(marks()),
+            level: Spread::level(marks()),
+        }
+    };
+    (0..minutes).map(of).collect()
+}

@@ -1,0 +1,280 @@
+//! A vehicle that drives for half an hour with an azimuth that was handed over, and what its keeper makes of it.
+
+use std::fmt;
+
+use hal_mock::accelerometer::AccelerometerConfiguration;
+use hal_mock::gyro::{Gyro as Simulated, GyroConfiguration};
+use hal_mock::noise::Generator;
+use hal_mock::vehicle::scenario::Scenario;
+use hal_mock::vehicle::{Leg, Vehicle, VehicleConfiguration, VehicleSample};
+use orientation::earth::Latitude;
+use orientation::keep::{Gyro, Handover, Keeper, Setting};
+use orientation::units::DEGREE_PER_HOUR;
+
+use crate::campaign::burov::{Grade, LATITUDE_DEG, latitude};
+use crate::output::{azimuth_error, degrees};
+use crate::stops::samples::Converter;
+
+/// Samples a second: enough for the motion of a body on a road.
+pub const RATE_HZ: f64 = 50.0;
+/// Time of storage, s: Burov's half hour.
+pub const STORED_S: f64 = 1800.0;
+/// Time from one mark to the next, s.
+pub const MARK_S: f64 = 60.0;
+/// Rest at the end, which belongs to the half hour, s.
+const LAST_STOP_S: f64 = 30.0;
+/// Drives of six parts each that are joined to one without a halt.
+const DRIVES: usize = 3;
+/// Upper cut-off of the flicker, Hz: below half the sample rate.
+const FLICKER_HIGH_HZ: f64 = 10.0;
+/// Part of the rest in which the precise gyro of a two-frame mount still lies level.
+const LEVEL: f64 = 0.5;
+/// Stream of the seed from which the error of what is handed over is drawn.
+const HANDED: u64 = 1 << 20;
+/// Stream of the seed for the coarse gyro beside the precise one.
+const BESIDE: u64 = 1 << 21;
+
+/// How the gyros sit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mount {
+    /// Three equal gyros fixed to the vehicle.
+    Strapdown,
+    /// The precise gyro, turned vertical for storage, and a pair of others for the level axes.
+    TwoFrame(Pair),
+}
+
+/// The gyros of the level axes beside a precise one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pair {
+    /// Of the class of LSM6DSL, as [`Gyro::coarse`] has it.
+    Coarse,
+    /// Of the class of STIM300.
+    Tactical,
+}
+
+impl fmt::Display for Mount {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Strapdown => "three of them",
+            Self::TwoFrame(Pair::Tactical) => "vertical, with a tactical pair",
+            Self::TwoFrame(Pair::Coarse) => "vertical, with a coarse pair",
+        })
+    }
+}
+
+/// What the vehicle keeps its attitude with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fitting {
+    /// The gyro that stores the azimuth.
+    pub grade: Grade,
+    /// 1σ of its bias from start to start, °/h.
+    pub bias_deg_h: f64,
+    /// 1σ of its scale factor.
+    pub scale_sigma: f64,
+    /// How it sits.
+    pub mount: Mount,
+    /// 1σ of the biases of the accelerometers, m/s².
+    pub force_bias_m_s2: f64,
+    /// 1σ of the azimuth that is handed over, °.
+    pub azimuth_sigma_deg: f64,
+    /// Rest before that, s, in which the biases are learnt.
+    pub rest_s: f64,
+}
+
+/// The errors at one moment of storage, °.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Mark {
+    /// Since the azimuth was handed over, s.
+    pub seconds: f64,
+    /// Of the azimuth, and its 1σ; none where it was lost.
+    pub azimuth: Option<[f64; 2]>,
+    /// Of pitch and of roll.
+    pub level: [f64; 2],
+    /// 1σ of either.
+    pub level_sigma: f64,
+}
+
+/// A gyro as its data sheet has it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Sheet {
+    grade: Grade,
+    /// 1σ of the bias from start to start, °/h.
+    bias_deg_h: f64,
+    /// 1σ of the scale factor.
+    scale_sigma: f64,
+}
+
+impl Pair {
+    /// The gyro of which it is a pair.
+    const fn sheet(self) -> Sheet {
+        let (n_deg_sqrt_h, b_deg_h, k_deg_h_sqrt_h, bias_deg_h, scale_sigma) = match self {
+            Self::Coarse => (0.4, 10.0, 10.0, 1800.0, 5e-3),
+            Self::Tactical => (0.15, 0.5, 2.0, 5.0, 5e-4),
+        };
+        let grade = Grade { n_deg_sqrt_h, b_deg_h, k_deg_h_sqrt_h, r_deg_h2: 0.0 };
+        Sheet { grade, bias_deg_h, scale_sigma }
+    }
+}
+
+impl Sheet {
+    /// As it is simulated.
+    fn simulated(&self) -> GyroConfiguration {
+        GyroConfiguration {
+            flicker_high_hz: FLICKER_HIGH_HZ,
+            bias_sigma_deg_h: self.bias_deg_h,
+            scale_sigma: self.scale_sigma,
+            ..self.grade.simulated()
+        }
+    }
+
+    /// As the keeper is told of it.
+    fn told(&self) -> Gyro {
+        Gyro {
+            noise: self.grade.noise(),
+            bias_sigma: self.bias_deg_h * DEGREE_PER_HOUR,
+            scale_sigma: self.scale_sigma,
+        }
+    }
+}
+
+impl Fitting {
+    /// The gyro that stores the azimuth.
+    fn precise(&self) -> Sheet {
+        let Self { grade, bias_deg_h, scale_sigma, .. } = *self;
+        Sheet { grade, bias_deg_h, scale_sigma }
+    }
+
+    /// The gyros forward, right, down while the azimuth is stored.
+    fn gyros(&self) -> [Sheet; 3] {
+        let precise = self.precise();
+        match self.mount {
+            Mount::Strapdown => [precise; 3],
+            Mount::TwoFrame(pair) => [pair.sheet(), pair.sheet(), precise],
+        }
+    }
+
+    /// What the keeper is told at first: on a two-frame mount the third of the pair's kind shows the down axis.
+    fn setting(&self, latitude: Latitude) -> Setting {
+        let [level, ..] = self.gyros().map(|sheet| sheet.told());
+        let setting = Setting::precise(latitude, 1.0 / RATE_HZ, level);
+        Setting { force_bias_sigma: self.force_bias_m_s2, ..setting }
+    }
+
+    /// For how long the precise gyro rests as it will store, s.
+    #[must_use]
+    pub fn learnt_s(&self) -> f64 {
+        match self.mount {
+            Mount::Strapdown => self.rest_s,
+            Mount::TwoFrame(_) => (1.0 - LEVEL) * self.rest_s,
+        }
+    }
+
+    /// A day: a rest, half an hour of driving without a halt, a rest at its end.
+    fn day(&self, seed: u64) -> Scenario {
+        let drive_s = (STORED_S - LAST_STOP_S) / DRIVES as f64;
+        let mut day = Scenario::stops(seed, 1 + DRIVES, LAST_STOP_S, drive_s);
+        let last = day.legs.len() - 1;
+        let mut index = 0;
+        day.legs.retain_mut(|leg| {
+            let (is_first, is_last) = (index == 0, index == last);
+            index += 1;
+            match leg {
+                Leg::Stop(stop) if is_first => stop.seconds = self.rest_s,
+                Leg::Stop(_) => return is_last,
+                Leg::Drive(_) => {}
+            }
+            true
+        });
+        day.vehicle = VehicleConfiguration {
+            latitude_deg: LATITUDE_DEG,
+            rate_hz: RATE_HZ,
+            gyros: self.gyros().map(|sheet| sheet.simulated()),
+            accelerometer: AccelerometerConfiguration {
+                bias_sigma_m_s2: self.force_bias_m_s2,
+                ..day.vehicle.accelerometer
+            },
+            ..day.vehicle
+        };
+        day
+    }
+
+    /// Lives through a day; a mark each minute of storage.
+    #[must_use]
+    pub fn live(&self, seed: u64) -> Vec<Mark> {
+        let day = self.day(seed);
+        let configuration = day.configuration();
+        let mut vehicle = Vehicle::new(&configuration, seed);
+        let mut board = Board::new(self, seed);
+        let mut marks = Vec::new();
+        let mut is_handed = false;
+        let mut next_s = self.rest_s + MARK_S;
+        while let Some(sample) = vehicle.next_sample() {
+            board.push(&sample);
+            if !is_handed && sample.time_s >= self.rest_s {
+                is_handed = true;
+                board.hand_over(self, seed, vehicle.truth().attitude.azimuth_rad);
+            }
+            if sample.time_s >= next_s - 0.5 / RATE_HZ {
+                let seconds = sample.time_s - self.rest_s;
+                marks.push(board.mark(seconds, &vehicle));
+                next_s += MARK_S;
+            }
+        }
+        marks
+    }
+}
+
+/// The keeper and what feeds it.
+struct Board {
+    keeper: Keeper,
+    path: Converter,
+    /// While the precise gyro lies level, a coarse one shows the down axis; when that is over, s.
+    coarse: Option<(Simulated, f64)>,
+    precise: Gyro,
+}
+
+impl Board {
+    fn new(fitting: &Fitting, seed: u64) -> Self {
+        let coarse = match fitting.mount {
+            Mount::Strapdown => None,
+            Mount::TwoFrame(pair) => {
+                let seed = Generator::stream(seed, BESIDE).next_u64();
+                let gyro = Simulated::new(&pair.sheet().simulated(), RATE_HZ, seed);
+                Some((gyro, LEVEL * fitting.rest_s))
+            }
+        };
+        let keeper = Keeper::new(&fitting.setting(latitude()));
+        Self { keeper, path: Converter::default(), coarse, precise: fitting.precise().told() }
+    }
+
+    fn push(&mut self, sample: &VehicleSample) {
+        let VehicleSample { time_s, mut turned_rad, force_m_s2, .. } = *sample;
+        if self.coarse.as_ref().is_some_and(|(_, until_s)| time_s > *until_s) {
+            self.coarse = None;
+            self.keeper.exchange_down(self.precise);
+        }
+        if let Some((gyro, _)) = &mut self.coarse {
+            // At rest nearly nothing but the Earth turns it.
+            let steady = gyro.steady(-latitude().vertical_rate(), [0.0; 2]);
+            turned_rad[2] = gyro.sample(steady, time_s, 25.0) / RATE_HZ;
+        }
+        self.keeper.push(&self.path.sample(time_s, turned_rad, force_m_s2));
+    }
+
+    fn hand_over(&mut self, fitting: &Fitting, seed: u64, azimuth: f64) {
+        let sigma = fitting.azimuth_sigma_deg.to_radians();
+        let error = sigma * Generator::stream(seed, HANDED).gaussian();
+        self.keeper.hand_over(Handover { azimuth: azimuth + error, sigma });
+    }
+
+    fn mark(&self, seconds: f64, vehicle: &Vehicle) -> Mark {
+        let report = self.keeper.report();
+        let truth = vehicle.truth().attitude;
+        let azimuth = report.azimuth.map(|azimuth| {
+            let error = azimuth_error(degrees(azimuth.angle), degrees(truth.azimuth_rad));
+            [error, degrees(azimuth.sigma)]
+        });
+        let level = [report.pitch - truth.pitch_rad, report.roll - truth.roll_rad].map(degrees);
+        Mark { seconds, azimuth, level, level_sigma: degrees(report.level_sigma) }
+    }
+}

@@ -1,0 +1,231 @@
+//! Recordings of kind `imu`: pitch, roll and the turn about the vertical, kept from the first sample to the last.
+//!
+//! The keeper gets the samples as the board gives them to it, and no truth; [`errors`] holds what it said
+//! against what was true.
+
+pub mod errors;
+
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+use orientation::earth::Latitude;
+use orientation::keep::{Gyro, Keeper, Report, Setting, State};
+use orientation::noise::model::GyroNoise;
+use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
+
+use crate::output::{azimuth_error, degrees};
+use crate::recording::{Body, Header};
+use crate::replay::ReplayError;
+use crate::setting::noise;
+use crate::stops::{check_stuck, missing, samples};
+
+/// Latitude where none is known, °: the Earth's rate about the vertical is then off by 15 °/h at most.
+const LATITUDE_DEG: f64 = 45.0;
+
+/// What the user asked for.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Options {
+    /// Latitude instead of the header's.
+    pub latitude: Option<Latitude>,
+    /// Greatest accepted standard deviation of pitch and roll, rad; `None` for any.
+    pub required_sigma: Option<f64>,
+}
+
+/// What the keeper said after a sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// Time on the recording's clock, s.
+    pub time_s: f64,
+    /// Quaternion (w, x, y, z) from body axes to north, east, down up to a constant heading.
+    pub attitude: [f64; 4],
+    /// 1σ of pitch and of roll, rad.
+    pub level_sigma: f64,
+    /// Biases of the gyros, rad/s.
+    pub biases: [f64; 3],
+    /// Their 1σ, rad/s.
+    pub bias_sigmas: [f64; 3],
+}
+
+/// A state, and for how long it was met, s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Met {
+    /// In words, as the board has them, without the time they hold.
+    pub state: &'static str,
+    /// How long, s.
+    pub seconds: f64,
+}
+
+/// A finished replay.
+#[derive(Clone, Debug)]
+pub struct Replay {
+    /// After each sample.
+    pub moments: Vec<Moment>,
+    /// The last report.
+    pub last: Report,
+    /// The states in the order in which they were first met.
+    pub states: Vec<Met>,
+    /// Turn about the vertical since the first sample, rad, whole turns included.
+    pub turned: f64,
+    /// Length of the recording, s.
+    pub seconds: f64,
+    /// What had to be assumed.
+    pub assumed: Vec<String>,
+    /// Why there is no result.
+    pub refusal: Option<String>,
+}
+
+/// Replays the rows of a recording.
+///
+/// # Errors
+/// What keeps the keeper from beginning.
+pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay, ReplayError> {
+    let rows = samples::rows(body).ok_or_else(|| missing(body))?;
+    let period_s = samples::period(header.rate_hz, &rows);
+    check_stuck(&rows, period_s)?;
+    let mut assumed = Vec::new();
+    let latitude = latitude(header, options, &mut assumed);
+    let mut keeper = Keeper::new(&setting(header, latitude, period_s, &mut assumed));
+    let mut watched = Watched::new(keeper.report(), period_s);
+    for (sample, row) in samples::samples(&rows, period_s).zip(rows.iter()) {
+        keeper.push(&sample);
+        watched.push(row.time_s, &keeper.report());
+    }
+    Ok(watched.ended(assumed, options.required_sigma))
+}
+
+/// The user's latitude, the header's, or the one that is assumed.
+fn latitude(header: &Header, options: &Options, assumed: &mut Vec<String>) -> Latitude {
+    let stated = header.latitude_deg.and_then(Latitude::from_degrees);
+    options.latitude.or(stated).unwrap_or_else(|| {
+        assumed.push(format!("latitude {LATITUDE_DEG}°: none is stated"));
+        Latitude::from_degrees(LATITUDE_DEG).unwrap_or_else(|| unreachable!())
+    })
+}
+
+/// What is known of the sensors: a coarse unit's, where the header does not say otherwise.
+fn setting(
+    header: &Header,
+    latitude: Latitude,
+    period_s: f64,
+    assumed: &mut Vec<String>,
+) -> Setting {
+    let coarse = Setting::coarse(latitude, period_s);
+    let gyros = coarse.gyros.map(|gyro| known(header, gyro));
+    let [gyro, ..] = gyros;
+    if header.gyro_n_deg_sqrt_h.is_none() {
+        let walk = gyro.noise.angle_random_walk / DEGREE_PER_SQRT_HOUR;
+        assumed.push(format!("gyro noise of a coarse unit: N {walk:.2} °/√h"));
+    }
+    if header.gyro_bias_deg_h.is_none() {
+        let bias = gyro.bias_sigma / DEGREE_PER_HOUR;
+        assumed.push(format!("gyro biases of a coarse unit: {bias:.0} °/h"));
+    }
+    let force_bias_sigma = header.accelerometer_bias_m_s2.unwrap_or(coarse.force_bias_sigma);
+    if header.accelerometer_bias_m_s2.is_none() {
+        assumed.push(format!("accelerometer biases of a coarse unit: {force_bias_sigma} m/s²"));
+    }
+    Setting { gyros, force_bias_sigma, ..coarse }
+}
+
+/// The gyro as the header knows it.
+fn known(header: &Header, gyro: Gyro) -> Gyro {
+    let noise = match header.gyro_n_deg_sqrt_h {
+        Some(_) => noise(header),
+        None => GyroNoise { ..gyro.noise },
+    };
+    let bias = header.gyro_bias_deg_h.map(|bias| bias * DEGREE_PER_HOUR);
+    Gyro {
+        noise,
+        bias_sigma: bias.unwrap_or(gyro.bias_sigma),
+        scale_sigma: header.gyro_scale_sigma.unwrap_or(gyro.scale_sigma),
+    }
+}
+
+/// What the keeper says, sample by sample.
+struct Watched {
+    moments: Vec<Moment>,
+    last: Report,
+    states: Vec<Met>,
+    turned: f64,
+    period_s: f64,
+}
+
+impl Watched {
+    fn new(first: Report, period_s: f64) -> Self {
+        Self { moments: Vec::new(), last: first, states: Vec::new(), turned: 0.0, period_s }
+    }
+
+    fn push(&mut self, time_s: f64, report: &Report) {
+        let seconds = self.moments.last().map_or(self.period_s, |before| time_s - before.time_s);
+        self.meet(name(report.state), seconds);
+        if let Some(before) = self.moments.last().filter(|_| self.last.state != State::Starting) {
+            let [from, to] = [before.attitude, report.attitude].map(|q| degrees(heading(q)));
+            self.turned += azimuth_error(to, from).to_radians();
+        }
+        self.moments.push(Moment {
+            time_s,
+            attitude: report.attitude,
+            level_sigma: report.level_sigma,
+            biases: report.biases,
+            bias_sigmas: report.bias_sigmas,
+        });
+        self.last = *report;
+    }
+
+    fn meet(&mut self, state: &'static str, seconds: f64) {
+        match self.states.iter_mut().find(|met| met.state == state) {
+            Some(met) => met.seconds += seconds,
+            None => self.states.push(Met { state, seconds }),
+        }
+    }
+
+    fn ended(self, assumed: Vec<String>, required_sigma: Option<f64>) -> Replay {
+        let Self { moments, last, states, turned, .. } = self;
+        let refusal = refusal(&last, required_sigma);
+        let seconds = states.iter().map(|met| met.seconds).sum();
+        Replay { moments, last, states, turned, seconds, assumed, refusal }
+    }
+}
+
+/// Why the last report is no result.
+fn refusal(last: &Report, required_sigma: Option<f64>) -> Option<String> {
+    let sigma = degrees(last.level_sigma);
+    match (last.state, required_sigma.map(degrees)) {
+        (State::Starting, _) => Some("no level was found".to_owned()),
+        (State::RotationLost { .. }, _) => Some(format!("at the end, {}", last.state)),
+        (_, Some(most)) if !(sigma <= most) => {
+            Some(format!("pitch and roll are good to {sigma:.2}° only, {most:.2}° is wanted"))
+        }
+        _ => None,
+    }
+}
+
+/// A state without the time that it holds.
+fn name(state: State) -> &'static str {
+    match state {
+        State::Starting => "starting",
+        State::Level => "level",
+        State::Coasting { .. } => "coasting",
+        State::FreeFall { .. } => "free fall",
+        State::NoForce { .. } => "no force",
+        State::RotationLost { .. } => "rotation lost",
+    }
+}
+
+/// Heading of body x, rad.
+fn heading([w, x, y, z]: [f64; 4]) -> f64 {
+    f64::atan2(2.0 * (x * y + w * z), 1.0 - 2.0 * (y * y + z * z))
+}
+
+/// Writes the attitude after each sample: `t_s,qw,qx,qy,qz`.
+///
+/// # Errors
+/// Those of the file.
+pub fn write_attitude(path: &Path, moments: &[Moment]) -> io::Result<()> {
+    let mut file = BufWriter::new(std::fs::File::create(path)?);
+    writeln!(file, "t_s,qw,qx,qy,qz")?;
+    for Moment { time_s, attitude: [w, x, y, z], .. } in moments {
+        writeln!(file, "{time_s},{w:.9},{x:.9},{y:.9},{z:.9}")?;
+    }
+    file.flush()
+}
