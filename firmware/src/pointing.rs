@@ -47,8 +47,14 @@ pub trait Pointing {
     /// What the encoders show.
     type Shown;
 
+    /// Whether the accelerometer sits on the base, and not beside the gyro.
+    const FORCE_ON_BASE: bool;
+
     /// Starts the encoders.
     async fn start(&mut self) -> Result<(), Refusal>;
+
+    /// Has all patience with them again.
+    fn renew(&mut self);
 
     /// What the encoders show, read anew with every so-manieth sample; none where a reading was lost.
     async fn read(&mut self) -> Result<Option<Self::Shown>, Refusal>;
@@ -145,8 +151,14 @@ impl<'a, E: Encoder, O: Observer> Shaft<'a, E, O> {
 impl<E: Encoder, O: Observer> Pointing for Shaft<'_, E, O> {
     type Shown = Angle;
 
+    const FORCE_ON_BASE: bool = false;
+
     async fn start(&mut self) -> Result<(), Refusal> {
         self.encoder.start(self.shared).await
+    }
+
+    fn renew(&mut self) {
+        self.encoder.renew();
     }
 
     async fn read(&mut self) -> Result<Option<Angle>, Refusal> {
@@ -245,9 +257,16 @@ impl<'a, E: Encoder, O: Observer> FrameShafts<'a, E, O> {
 impl<E: Encoder, O: Observer> Pointing for FrameShafts<'_, E, O> {
     type Shown = Frames<Angle>;
 
+    const FORCE_ON_BASE: bool = true;
+
     async fn start(&mut self) -> Result<(), Refusal> {
         self.shafts.outer.start().await?;
         self.shafts.inner.start().await
+    }
+
+    fn renew(&mut self) {
+        self.shafts.outer.renew();
+        self.shafts.inner.renew();
     }
 
     async fn read(&mut self) -> Result<Option<Frames<Angle>>, Refusal> {

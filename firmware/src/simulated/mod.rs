@@ -5,6 +5,7 @@
 pub mod base;
 pub mod fault;
 pub mod flash;
+pub mod keep;
 pub mod mount;
 pub mod scenario;
 pub mod turntable;

@@ -59,6 +59,7 @@ impl DrivingOptions {
             stop_s: self.stop_seconds.unwrap_or(usual.stop_s),
             drive_s: self.drive_seconds.unwrap_or(usual.drive_s),
             place: if self.no_displacement { Place::Unknown } else { usual.place },
+            hold: usual.hold,
         }
     }
 }
@@ -82,7 +83,7 @@ pub fn run(
     let mut watched = Watched::new(beside);
     let run = align_stops(scenario, fault, &mut watched, &watch);
     watch.0.finish();
-    let VehicleRun { run, truth } = run.map_err(|error| error.to_string())?;
+    let VehicleRun { run, truth, kept: _ } = run.map_err(|error| error.to_string())?;
     let wall = begun.elapsed().as_secs_f64();
     let criteria = watched.into_criteria();
     let assumed = vec![ASSUMED.to_owned()];

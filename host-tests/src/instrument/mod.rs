@@ -4,6 +4,7 @@ mod bench;
 mod desk;
 pub mod flash_file;
 mod frames;
+pub mod kept;
 pub mod recorder;
 mod turntable;
 mod vehicle;
@@ -20,6 +21,7 @@ use firmware::event::Event;
 use firmware::health::Health;
 use orientation::align::conclusion::Conclusion;
 use orientation::align::mount::MountError;
+use orientation::keep::Report;
 use orientation::session::procedure::ProcedureError;
 
 use crate::replay::Replay;
@@ -31,6 +33,8 @@ pub struct Run<R = Replay> {
     pub replay: R,
     /// What the board told, in order.
     pub events: Vec<(Instant, Event)>,
+    /// What the keeper reported, once a second.
+    pub reports: Vec<Report>,
     /// What the link carried.
     pub lines: String,
     /// Virtual time from power-on to the end, s.
