@@ -231,6 +231,9 @@ pub struct KeepConfiguration {
     pub hold: Duration,
     /// What is done at stops.
     pub realignment: Realignment,
+    /// Whether the session itself knows when the vehicle stands, as that from stop to stop does. Any other
+    /// one is of no use where the vehicle drives on before it is over.
+    pub knows_stops: bool,
     /// What is done where the azimuth is known from elsewhere.
     pub alignment: Alignment,
     /// The gyro about the down axis beside the two others.

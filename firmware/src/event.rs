@@ -243,6 +243,8 @@ words! { Event:
     Self::NoMotion => "keeping: no motion is measured any more";
     Self::AzimuthLost => "keeping: the azimuth is lost until it is found or handed over again";
     Self::DownGyro(Down::Beside) => "keeping: the coarse gyro shows how the base turns about down";
+    Self::DownGyro(Down::Compared) =>
+        "keeping: the coarse gyro, as it was compared, shows how the base turns about down";
     Self::DownGyro(Down::Precise) => "keeping: the precise gyro shows how the base turns about down";
     Self::Realigning => "the vehicle stands: aligning anew";
     Self::HeadingRecalled(azimuth, sigma) =>

@@ -137,6 +137,8 @@ pub struct Steadied<'a, B> {
     readings: Row<[AngularRate; 3]>,
     /// The latest reading, for whoever keeps.
     fresh: Option<(Instant, BaseReading)>,
+    /// The same where it was not held yet.
+    held: Option<BaseReading>,
     /// Stage angle of [`Self::axis`].
     stage: Angle,
     /// Cosine and sine of that angle.
@@ -157,6 +159,7 @@ impl<'a, B: BaseSensors> Steadied<'a, B> {
             silent: Instant::MIN,
             readings: Row::new(),
             fresh: None,
+            held: None,
             stage: Angle(0),
             axis: [1.0, 0.0],
             is_lost: false,
@@ -175,7 +178,18 @@ impl<'a, B: BaseSensors> Steadied<'a, B> {
         match self.base.checked(begun, outcome)? {
             Some(reading) => self.push(begun, reading),
             None if (begun - self.silent).as_micros() > SILENCE => Err(Symptom::Silent),
-            None => Ok(()),
+            None => {
+                self.hold(begun);
+                Ok(())
+            }
+        }
+    }
+
+    /// Goes on with the latest rates where one output falls between two readings, as it does now and then
+    /// where both have nearly one rate; once, and without a force.
+    fn hold(&mut self, at: Instant) {
+        if let Some(reading) = self.held.take() {
+            self.fresh = Some((at, BaseReading { is_clipped: true, ..reading }));
         }
     }
 
@@ -188,6 +202,7 @@ impl<'a, B: BaseSensors> Steadied<'a, B> {
             return Err(Symptom::Stuck);
         }
         self.fresh = Some((at, reading));
+        self.held = Some(reading);
         if !is_clipped {
             self.turn(at, rate, force);
         }

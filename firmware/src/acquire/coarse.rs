@@ -16,6 +16,46 @@ const TOLERANCE: u32 = (0.1 / 360.0 * 4_294_967_296.0) as u32;
 /// Periods that a reading may stand for: where more are missing, nobody knows what was turned.
 const LONGEST: u64 = 3;
 
+/// Samples over which the coarse gyro is compared with the precise one, and as many as tell enough: two
+/// minutes and ten seconds at 200 Hz.
+const COMPARED: u32 = 24_000;
+const ENOUGH: u32 = 2_000;
+
+/// What the coarse gyro about the down axis shows more than the precise one, in steps a sample.
+#[derive(Clone, Copy, Debug, Default)]
+struct Excess {
+    mean: f32,
+    count: u32,
+    /// What was left over of whole steps.
+    carried: f32,
+}
+
+impl Excess {
+    fn push(&mut self, coarse: AngleIncrement, precise: AngleIncrement) {
+        if coarse.is_saturated() || precise.is_saturated() {
+            return;
+        }
+        self.count = (self.count + 1).min(COMPARED);
+        self.mean += ((coarse.0 - precise.0) as f32 - self.mean) / self.count as f32;
+    }
+
+    /// Whether it is known.
+    fn is_known(&self) -> bool {
+        self.count >= ENOUGH
+    }
+
+    /// Takes it off, where it is known.
+    fn less(&mut self, coarse: AngleIncrement) -> AngleIncrement {
+        if !self.is_known() || coarse.is_saturated() {
+            return coarse;
+        }
+        let whole = self.mean + self.carried;
+        let steps = whole as i32;
+        self.carried = whole - steps as f32;
+        AngleIncrement(coarse.0.saturating_sub(steps))
+    }
+}
+
 /// One sensor's time, and rounding that is carried on.
 #[derive(Clone, Copy, Debug)]
 struct Pace {
@@ -61,6 +101,7 @@ pub(super) struct Coarse {
     /// Whether there is such an accelerometer.
     is_felt: bool,
     down: Down,
+    excess: Excess,
 }
 
 impl Coarse {
@@ -81,6 +122,7 @@ impl Coarse {
             force: None,
             is_felt: false,
             down: Down::Beside,
+            excess: Excess::default(),
         }
     }
 
@@ -142,9 +184,13 @@ impl Coarse {
             AngleIncrement::of_rate(about_right, lasted, right),
             AngleIncrement::of_rate(about_down, lasted, down),
         ];
-        if let Some(precise) = self.take_precise(shared) {
-            turned[2] = precise;
-        }
+        turned[2] = match self.take_precise(shared) {
+            Some(precise) => {
+                self.excess.push(turned[2], precise);
+                precise
+            }
+            None => self.excess.less(turned[2]),
+        };
         let coarse = (!reading.is_clipped && !self.is_felt).then_some(reading.force);
         let time = orientation::units::Instant(at.as_micros());
         let force = self.force.take().or(coarse);
@@ -154,7 +200,11 @@ impl Coarse {
     /// What the precise gyro has turned about down since the latest reading, where it was vertical.
     fn take_precise<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Option<AngleIncrement> {
         let precise = &mut self.precise;
-        let down = if precise.is_vertical { Down::Precise } else { Down::Beside };
+        let down = match (precise.is_vertical, self.excess.is_known()) {
+            (true, _) => Down::Precise,
+            (false, true) => Down::Compared,
+            (false, false) => Down::Beside,
+        };
         let (turned, is_whole) = (precise.turned, precise.is_whole);
         precise.is_vertical = precise.sense != 0;
         (precise.turned, precise.is_whole) = (0, true);

@@ -39,6 +39,8 @@ pub(crate) const RETRY: Duration = Duration::from_secs(10);
 pub enum Down {
     /// The one beside the other two.
     Beside,
+    /// The same, whose bias was found beside the precise one.
+    Compared,
     /// The precise one, which a mount has turned to the vertical.
     Precise,
 }

@@ -6,7 +6,7 @@ use embassy_futures::select::select;
 use embassy_time::{Duration, Instant, Timer};
 use orientation::error::Refusal;
 use orientation::keep::{self, Handover, Keeper, Realigned, Report, State};
-use orientation::units::{self, DEGREES_PER_RADIAN as DEGREES};
+use orientation::units::{self, DEGREE_PER_HOUR, DEGREES_PER_RADIAN as DEGREES};
 
 use super::memory::Memory;
 use super::{Down, Kept, Motion};
@@ -23,6 +23,12 @@ const LOOK: Duration = Duration::from_millis(100);
 const LOOKS: u8 = 10;
 /// Time without any motion after which there is none.
 const SILENCE: Duration = Duration::from_secs(1);
+/// 1σ of the bias of a coarse gyro that was compared with a precise one over some ten seconds at least:
+/// its own flicker, and scale errors of what was turned meanwhile, rad/s.
+const COMPARED_SIGMA: f64 = 30.0 * DEGREE_PER_HOUR;
+/// How long a body may not rest, though it did before, until its alignment is of no use: a slammed door is
+/// over by then.
+const RESTLESS: Duration = Duration::from_secs(5);
 /// How long it must go on, s, that a vehicle speeds up until it is told.
 const TOLD_SECONDS: f64 = 3.0;
 
@@ -59,8 +65,9 @@ struct Told {
     found: Option<(units::Instant, Handover)>,
     is_recalled: bool,
     has_azimuth: bool,
-    /// Since when the body has rested, and whether it was realigned there.
+    /// Since when the body has rested, and since when not any more; whether it was realigned there.
     rests: Option<Instant>,
+    moves: Option<Instant>,
     is_realigned: bool,
     /// Whether there was no session at the last look.
     is_idle: bool,
@@ -84,6 +91,7 @@ impl<'k, H: Outside, M: HeadingStore> Keeping<'k, H, M> {
             is_recalled: false,
             has_azimuth: false,
             rests: None,
+            moves: None,
             is_realigned: true,
             is_idle: false,
             since: None,
@@ -130,6 +138,10 @@ impl<'k, H: Outside, M: HeadingStore> Keeping<'k, H, M> {
                 let KeepConfiguration { beside, precise, .. } = self.configuration;
                 self.keeper.exchange_down(match down {
                     Down::Beside => beside,
+                    Down::Compared => {
+                        let bias_sigma = COMPARED_SIGMA.min(beside.bias_sigma);
+                        keep::Gyro { bias_sigma, ..beside }
+                    }
                     Down::Precise => precise,
                 });
                 shared.tell(Event::DownGyro(down));
@@ -139,9 +151,19 @@ impl<'k, H: Outside, M: HeadingStore> Keeping<'k, H, M> {
 
     /// Hands a found azimuth over before a motion of this time, if it belongs to one before.
     fn take_azimuth<O: Observer>(&mut self, before: units::Instant, shared: &Shared<'_, O>) {
-        if let Some((_, handover)) = self.told.found.take_if(|(at, _)| *at < before) {
+        let Some((_, handover)) = self.told.found.take_if(|(at, _)| *at < before) else { return };
+        if self.has_set_off() {
+            shared.tell(Event::Refused(Refusal::DroveOn));
+        } else {
             self.align(handover, shared);
         }
+    }
+
+    /// Whether a base that rested has been on its way for so long that its alignment is of no use. In a
+    /// vehicle the session itself knows stops from drives.
+    fn has_set_off(&self) -> bool {
+        !self.configuration.knows_stops
+            && self.told.moves.is_some_and(|since| since.elapsed() >= RESTLESS)
     }
 
     /// Takes an azimuth, beside one that is known already.
@@ -210,10 +232,13 @@ impl<'k, H: Outside, M: HeadingStore> Keeping<'k, H, M> {
     /// Notes since when the body rests.
     fn rest(&mut self, is_at_rest: bool) {
         if !is_at_rest {
-            self.told.rests = None;
+            if self.told.rests.take().is_some() {
+                self.told.moves = Some(Instant::now());
+            }
             self.told.is_realigned = false;
         } else if self.told.rests.is_none() {
             self.told.rests = Some(Instant::now());
+            self.told.moves = None;
         }
     }
 
@@ -253,26 +278,24 @@ impl<'k, H: Outside, M: HeadingStore> Keeping<'k, H, M> {
             self.told.since.get_or_insert(Instant::now());
             shared.keep.store.signal(());
         }
-        let stood = self.told.rests.map_or(Duration::MIN, |since| since.elapsed());
         match self.configuration.realignment {
-            Realignment::Never => {}
-            Realignment::BetweenStops => {
-                if is_idle {
-                    shared.keep.again.signal(());
-                }
-            }
-            Realignment::AtStops { after } => {
-                if is_idle && !self.told.is_realigned && stood >= after {
-                    self.told.is_realigned = true;
-                    shared.tell(Event::Realigning);
-                    shared.wanted.signal(0.0);
-                    shared.keep.again.signal(());
-                }
-                let is_moved = self.told.rests.is_none() && self.told.since.is_some();
-                if !is_idle && is_moved {
-                    shared.fail(Refusal::DroveOn);
-                }
-            }
+            Realignment::BetweenStops if is_idle => shared.keep.again.signal(()),
+            Realignment::AtStops { after } if is_idle => self.begin_at_stop(after, shared),
+            _ => {}
+        }
+        if !is_idle && self.has_set_off() {
+            shared.fail(Refusal::DroveOn);
+        }
+    }
+
+    /// Has a session begin where the body has stood for so long, once at each stop.
+    fn begin_at_stop<O: Observer>(&mut self, after: Duration, shared: &Shared<'_, O>) {
+        let stood = self.told.rests.map_or(Duration::MIN, |since| since.elapsed());
+        if !self.told.is_realigned && stood >= after {
+            self.told.is_realigned = true;
+            shared.tell(Event::Realigning);
+            shared.wanted.signal(0.0);
+            shared.keep.again.signal(());
         }
     }
 

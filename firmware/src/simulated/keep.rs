@@ -3,15 +3,24 @@
 use core::cell::Cell;
 
 use embassy_time::{Duration, Instant};
+use hal_mock::plant::journey::{BaseFault, JourneyConfiguration};
+use hal_mock::vehicle::{Leg, Stop};
+use orientation::earth::Latitude;
 use orientation::keep::{self, Handover};
+use orientation::session::procedure::Procedure;
 use orientation::units::{DEGREE, DEGREE_PER_HOUR};
 
+use super::base;
 use super::scenario::{self, Scenario};
 use crate::configuration::{Alignment, KeepConfiguration, Realignment};
 use crate::ports::Outside;
 
 /// How long a vehicle stands before it is aligned anew on a stage, s.
 const STAND_SECONDS: u64 = 30;
+/// What a movement of a stage takes at most on a usual schedule, s; the way back from the last position is one.
+const MOVEMENT_SECONDS: f64 = 1.7;
+/// From power-on to the first position, and from the last one until the vehicle sets off, s.
+const SETTING_OUT_SECONDS: f64 = 50.0;
 
 /// How a run goes on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,17 +62,12 @@ impl Hold {
         let is_told = self.handover.is_some();
         KeepConfiguration {
             hold: Duration::from_micros((self.seconds * 1e6) as u64),
+            knows_stops: realignment == Realignment::BetweenStops,
             realignment: if self.realigns { realignment } else { Realignment::Never },
             alignment: if is_told { Alignment::UnlessKnown } else { Alignment::Always },
             beside,
             precise,
         }
-    }
-
-    /// The same on a stage or two frames, which are aligned anew where the vehicle stands.
-    pub(super) fn on_base(&self, beside: keep::Gyro, precise: keep::Gyro) -> KeepConfiguration {
-        let after = Duration::from_secs(STAND_SECONDS);
-        self.configuration(Realignment::AtStops { after }, beside, precise)
     }
 
     /// Who tells the board what it cannot measure.
@@ -104,4 +108,50 @@ impl Scenario {
             scale_sigma: scenario::SCALE_SIGMA,
         }
     }
+
+    /// What the keeper on a base is told of place and gyros; none where the latitude is none.
+    #[must_use]
+    pub fn keeper(&self) -> Option<keep::Setting> {
+        let latitude = Latitude::from_degrees(self.latitude_deg)?;
+        Some(keep::Setting::coarse(latitude, base::period(self)))
+    }
+
+    /// How the instrument on a base goes on; none where the latitude is none.
+    #[must_use]
+    pub fn keeping(&self) -> Option<KeepConfiguration> {
+        let [_, _, down] = self.keeper()?.gyros;
+        let after = Duration::from_secs(STAND_SECONDS);
+        let realignment = Realignment::AtStops { after };
+        Some(self.hold.configuration(realignment, down, self.precise()))
+    }
+
+    /// Where the base goes after the alignment on a stage.
+    #[must_use]
+    pub fn day(&self) -> Day {
+        self.day_of(&self.procedure(), scenario::ROTATION.rest + scenario::RINGS_SECONDS)
+    }
+
+    /// The same where each movement takes about so many seconds beside the ramp.
+    pub(super) fn day_of(&self, procedure: &Procedure, rest_s: f64) -> Day {
+        let schedule = &procedure.schedule;
+        let movements = schedule.len() as f64 * (rest_s + MOVEMENT_SECONDS);
+        let seconds = SETTING_OUT_SECONDS + self.survey_s + schedule.seconds() + movements;
+        let Self { pitch_deg, roll_deg, latitude_deg, azimuth_deg, .. } = *self;
+        let stop = Stop { seconds, pitch_deg, roll_deg, ..Stop::default() };
+        let mut day = Day::standing(latitude_deg, azimuth_deg, stop);
+        let Hold { seconds, drive_s, stop_s, .. } = self.hold;
+        day.go_on(self.seed, seconds, drive_s, stop_s);
+        day
+    }
+}
+
+/// A day of a vehicle that carries a base.
+pub type Day = hal_mock::vehicle::scenario::Scenario;
+
+/// The way of a base on such a day, with what goes wrong with its coarse sensors.
+#[must_use]
+pub fn journey<'a>(day: &'a Day, faults: &'a [BaseFault]) -> JourneyConfiguration<'a> {
+    let stands_s = day.legs.first().map_or(0.0, Leg::seconds);
+    let departs_s = stands_s - 1.0;
+    JourneyConfiguration { departs_s, legs: &day.legs, events: &day.events, faults }
 }

@@ -101,6 +101,15 @@ impl Scenario {
         day
     }
 
+    /// A vehicle that stands and faces an azimuth, for now.
+    #[must_use]
+    pub fn standing(latitude_deg: f64, azimuth_deg: f64, stop: Stop) -> Self {
+        let vehicle =
+            VehicleConfiguration { latitude_deg, azimuth_deg, ..VehicleConfiguration::default() };
+        let legs = core::iter::once(Leg::Stop(stop)).collect();
+        Self { vehicle, legs, events: Vec::new() }
+    }
+
     /// The day as a vehicle's configuration.
     #[must_use]
     pub fn configuration(&self) -> VehicleConfiguration<'_> {

@@ -59,7 +59,6 @@ impl DrivingOptions {
             stop_s: self.stop_seconds.unwrap_or(usual.stop_s),
             drive_s: self.drive_seconds.unwrap_or(usual.drive_s),
             place: if self.no_displacement { Place::Unknown } else { usual.place },
-            hold: usual.hold,
         }
     }
 }

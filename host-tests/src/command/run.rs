@@ -434,7 +434,7 @@ fn run_frames(base: &Scenario, options: &RunOptions, as_json: bool) -> Result<To
     let watch = Terminal(Progress::new(0, "positions"));
     let frames = instrument::align_frames(&scenario, &FramePlan::default(), &watch);
     watch.0.finish();
-    let FramesRun { run, axis: [forward, right, down] } =
+    let FramesRun { run, axis: [forward, right, down], kept: _ } =
         frames.map_err(|error| error.to_string())?;
     let wall = begun.elapsed().as_secs_f64();
     let conclusion = run.conclusion().ok_or("the session did not end")?;

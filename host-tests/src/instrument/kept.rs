@@ -2,9 +2,58 @@
 
 use std::f64::consts::{PI, TAU};
 
+use firmware::simulated::fault::{Fault, Plan};
+use firmware::simulated::keep::Day;
+use firmware::simulated::mount::FramePlan;
 use hal_mock::earth::Attitude;
+use hal_mock::fault::When;
+use hal_mock::plant::journey::BaseFault;
+use hal_mock::vehicle::Event;
 use hal_mock::vehicle::motion::Motion;
 use orientation::keep::Report;
+
+use super::Run;
+
+/// What goes wrong with a board on a base, in the middle of its alignment or later.
+#[derive(Clone, Debug)]
+pub struct KeptPlan {
+    /// With the chips of a stage.
+    pub chips: Plan,
+    /// With the frames of a mount and their chips.
+    pub frames: FramePlan,
+    /// With what the coarse sensors feel.
+    pub base: Vec<BaseFault>,
+    /// When the bus of the coarse sensors is lost.
+    pub imu: Option<When>,
+    /// What else happens on the way.
+    pub events: Vec<Event>,
+}
+
+impl KeptPlan {
+    /// The plan of a fault of a stage's chips, or of none.
+    #[must_use]
+    pub fn of(fault: Option<Fault>) -> Self {
+        let (frames, base, events) = (FramePlan::default(), Vec::new(), Vec::new());
+        Self { chips: Plan::of(fault), frames, base, imu: None, events }
+    }
+
+    /// A day with what happens on the way; of too many events the first ones.
+    pub(super) fn day(&self, day: Day) -> Day {
+        let mut day = day;
+        let room = self.events.len().min(day.events.capacity() - day.events.len());
+        day.events.extend(self.events.iter().take(room).copied());
+        day
+    }
+}
+
+/// A finished run on a stage that went on keeping.
+#[derive(Clone, Debug)]
+pub struct KeptRun {
+    /// As of any board.
+    pub run: Run,
+    /// What was kept, with the truth.
+    pub kept: Kept,
+}
 
 /// The true attitude at rising times.
 pub trait Truths {

@@ -95,7 +95,7 @@ fn align_on<R: Recorder<InertialSample>, W: Observer>(
     };
     let setting = scenario.keeper().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
     let mut keeper = Keeper::new(&setting);
-    let outside = scenario.hold.outside();
+    let outside = scenario.base.hold.outside();
     let mut keeping = Keeping::new(&mut keeper, &scenario.keeping(), outside, store);
     let ended = desk::run(
         acquire_triad(&mut sensors, &scenario.configuration(), &seams),

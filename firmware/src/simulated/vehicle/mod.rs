@@ -112,8 +112,6 @@ pub struct VehicleScenario {
     pub drive_s: f64,
     /// Who knows how far it has come.
     pub place: Place,
-    /// How the day goes on after the alignment.
-    pub hold: Hold,
 }
 
 impl Default for VehicleScenario {
@@ -126,7 +124,6 @@ impl Default for VehicleScenario {
             stop_s: 60.0,
             drive_s: 600.0,
             place: Place::Known { sigma_m: 2.0 },
-            hold: Hold::default(),
         }
     }
 }
@@ -199,7 +196,11 @@ impl VehicleScenario {
     /// How the instrument goes on after its alignment.
     #[must_use]
     pub fn keeping(&self) -> KeepConfiguration {
-        self.hold.configuration(Realignment::BetweenStops, self.base.precise(), self.base.precise())
+        self.base.hold.configuration(
+            Realignment::BetweenStops,
+            self.base.precise(),
+            self.base.precise(),
+        )
     }
 
     /// What the board is told of its devices.
@@ -213,7 +214,7 @@ impl VehicleScenario {
     pub fn day(&self, fault: Option<VehicleFault>) -> Day {
         let mut day = Day::stops(self.base.seed, self.stops, self.standing_s(), self.drive_s);
         day.vehicle = self.vehicle();
-        let Hold { seconds, drive_s, stop_s, .. } = self.hold;
+        let Hold { seconds, drive_s, stop_s, .. } = self.base.hold;
         day.go_on(self.base.seed, seconds, drive_s, stop_s);
         match fault {
             Some(VehicleFault::NeverDrives) => day.legs.truncate(1),
