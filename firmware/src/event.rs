@@ -237,7 +237,7 @@ words! { Event:
         "realigned: azimuth {}° ± {}° (1σ) agrees with what was kept, by {} σ",
         Rounded::<4>(azimuth), Rounded::<4>(sigma), Rounded::<1>(sigmas);
     Self::HandedOver(azimuth, sigma, Realigned::Disagrees { sigmas }) =>
-        "azimuth {}° ± {}° (1σ) disagrees with what is kept, by {} σ: it is not taken",
+        "azimuth {}° ± {}° (1σ) disagrees with what was kept, by {} σ: neither is believed",
         Rounded::<4>(azimuth), Rounded::<4>(sigma), Rounded::<1>(sigmas);
     Self::Keeping(state) => "keeping: {}", state;
     Self::NoMotion => "keeping: no motion is measured any more";

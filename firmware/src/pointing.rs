@@ -61,6 +61,11 @@ pub trait Pointing {
 
     /// Where the axis points when the encoders show this.
     fn aim(&mut self, shown: Self::Shown) -> Aim;
+
+    /// Elevation of an axis that stands, where it can leave the base's plane.
+    fn elevation(&self) -> Option<Angle> {
+        None
+    }
 }
 
 /// Says yes at first, then every so-manieth time.
@@ -284,6 +289,10 @@ impl<E: Encoder, O: Observer> Pointing for FrameShafts<'_, E, O> {
         }
         self.jump ^= QUARTER_TURN;
         Aim { heading: Angle(self.aim.heading.0.wrapping_add(self.jump)), ..self.aim }
+    }
+
+    fn elevation(&self) -> Option<Angle> {
+        self.aim.elevation.filter(|_| self.since.elapsed() >= self.rest)
     }
 }
 

@@ -9,6 +9,13 @@ use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::vehicle::VehicleScenario;
 
+#[test]
+fn probe_vehicle() {
+    let base = Scenario { hold: Hold::of(600.0), ..VehicleScenario::usual(1).base };
+    let found = run(&VehicleScenario { base, ..VehicleScenario::usual(1) });
+    show(&found.run, &found.kept);
+}
+
 fn run(scenario: &VehicleScenario) -> VehicleRun {
     align_stops(scenario, None, NoRecorder, &()).expect("the scenario is possible")
 }
@@ -49,7 +56,7 @@ fn probe_stage() {
 #[test]
 fn probe_frames() {
     let base = Scenario {
-        hold: Hold { realigns: true, ..Hold::of(500.0) },
+        hold: Hold { realigns: true, stop_s: 240.0, ..Hold::of(700.0) },
         has_base_imu: true,
         dwell_s: 5.0,
         ..Scenario::usual(1)

@@ -138,17 +138,10 @@ impl Coarse {
         precise.turned += i64::from(turned.0) * i64::from(precise.sense);
     }
 
-    /// Where the precise gyro's axis points from now on: its elevation, if it leaves the level at all.
+    /// Where the precise gyro's axis points from now on: its elevation, if it stands and can leave the
+    /// base's plane at all.
     pub(super) fn point(&mut self, elevation: Option<Angle>) {
-        let Some(elevation) = elevation else { return };
-        let off = |quarter: Angle| (elevation - quarter).0.cast_signed().unsigned_abs();
-        let sense = if off(Angle(QUARTER_TURN.wrapping_neg())) <= TOLERANCE {
-            1
-        } else if off(Angle(QUARTER_TURN)) <= TOLERANCE {
-            -1
-        } else {
-            0
-        };
+        let sense = elevation.map_or(0, sense);
         if sense != self.precise.sense {
             self.precise.sense = sense;
             self.precise.is_vertical = false;
@@ -214,4 +207,11 @@ impl Coarse {
         let steps = i32::try_from(turned).ok().filter(|_| is_whole).unwrap_or(i32::MAX);
         (down == Down::Precise).then_some(AngleIncrement(steps))
     }
+}
+
+/// Sense of an axis of this elevation: +1 down, −1 up, 0 neither.
+fn sense(elevation: Angle) -> i32 {
+    let is_near =
+        |quarter: u32| (elevation - Angle(quarter)).0.cast_signed().unsigned_abs() <= TOLERANCE;
+    i32::from(is_near(QUARTER_TURN.wrapping_neg())) - i32::from(is_near(QUARTER_TURN))
 }

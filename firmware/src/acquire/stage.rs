@@ -148,7 +148,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: Steady, O: Observer>
         let (Some(rate), Some(shown)) = (rate, shown) else { return Ok(None) };
         self.outlet.judge(time);
         let aim = self.pointing.aim(shown);
-        self.coarse.point(aim.elevation);
+        self.coarse.point(self.pointing.elevation());
         Ok(Some(Sample {
             time: orientation::units::Instant(time.as_micros()),
             stage: aim.heading,

@@ -73,7 +73,7 @@ impl<M: HeadingStore> Memory<M> {
         let Some(found) = &self.found else { return false };
         let outcome = keeper.recall(found);
         match outcome {
-            Err(Doubt::NotAtRest) => return false,
+            Err(Doubt::NotAtRest { .. }) => return false,
             Err(doubt) => shared.tell(Event::Doubted(doubt)),
             Ok(()) => {}
         }

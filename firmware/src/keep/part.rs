@@ -229,16 +229,18 @@ impl<'k, H: Outside, M: HeadingStore> Keeping<'k, H, M> {
         }
     }
 
-    /// Notes since when the body rests.
+    /// Notes since when the body rests. What is shorter than a slammed door is no motion.
     fn rest(&mut self, is_at_rest: bool) {
-        if !is_at_rest {
-            if self.told.rests.take().is_some() {
-                self.told.moves = Some(Instant::now());
+        let told = &mut self.told;
+        if is_at_rest {
+            told.moves = None;
+            told.rests.get_or_insert(Instant::now());
+        } else if told.rests.is_some() {
+            let moves = *told.moves.get_or_insert(Instant::now());
+            if moves.elapsed() >= RESTLESS {
+                told.rests = None;
+                told.is_realigned = false;
             }
-            self.told.is_realigned = false;
-        } else if self.told.rests.is_none() {
-            self.told.rests = Some(Instant::now());
-            self.told.moves = None;
         }
     }
 

@@ -15,7 +15,10 @@ use hal_mock::plant::base::{Base, CoarseConfiguration};
 use hal_mock::plant::journey::JourneyConfiguration;
 use hal_mock::plant::sway::{SwayComponent, SwayConfiguration};
 use hal_mock::violation::Violation;
+use orientation::keep;
+use orientation::noise::model::GyroNoise;
 use orientation::signal::sway::CoarseSensors;
+use orientation::units::DEGREE;
 
 use super::scenario::Scenario;
 use crate::chips::BaseImu;
@@ -28,6 +31,8 @@ const CLOCK: f64 = 1.015;
 const RATE_BIAS: f64 = 3.0;
 /// 1σ of the accelerometers' offset, mg: ±40 mg (data sheet, `LA_TyOff`) at two σ.
 const FORCE_BIAS: f64 = 20.0;
+/// The same once they are calibrated, as they are where they keep pitch and roll.
+const CALIBRATED: f64 = 2.0;
 /// 1σ of the scale of each axis: ±1 % at two σ, as later chips of the family state it.
 const SCALE: f64 = 0.005;
 /// From the point that the base sways about to the chip, body axes, m: it stands above it.
@@ -83,7 +88,7 @@ pub fn rig<'a>(scenario: &Scenario, journey: Option<&JourneyConfiguration<'a>>) 
         rate_noise_mdps_sqrt_hz: scenario.coarse.rate_mdps_sqrt_hz,
         rate_bias_sigma_deg_s: RATE_BIAS,
         force_noise_ug_sqrt_hz: scenario.coarse.force_ug_sqrt_hz,
-        force_bias_sigma_mg: FORCE_BIAS,
+        force_bias_sigma_mg: if journey.is_some() { CALIBRATED } else { FORCE_BIAS },
         scale_sigma: SCALE,
         lever_m: LEVER,
     };
@@ -149,6 +154,19 @@ fn sensors(scenario: &Scenario) -> CoarseSensors {
 
 /// Seconds between two readings, as the keeper is told.
 #[must_use]
-pub fn period(scenario: &Scenario) -> f64 {
+pub(super) fn period(scenario: &Scenario) -> f64 {
     f64::from(divider(scenario)) / scenario.sample_rate_hz
+}
+
+/// The coarse gyros as the keeper is told, and 1σ of the accelerometers' offsets, m/s².
+pub(super) fn gyros(scenario: &Scenario) -> ([keep::Gyro; 3], f64) {
+    let walk = STATED * scenario.coarse.rate_mdps_sqrt_hz * 1e-3 * 60.0;
+    let class = keep::Gyro::coarse();
+    let noise = GyroNoise::from_field_units(walk, 0.0, 0.0, 0.0);
+    let gyro = keep::Gyro {
+        noise: GyroNoise { angle_random_walk: noise.angle_random_walk, ..class.noise },
+        bias_sigma: RATE_BIAS * DEGREE,
+        scale_sigma: SCALE,
+    };
+    ([gyro; 3], CALIBRATED * 1e-3 * 9.80665)
 }

@@ -113,7 +113,9 @@ impl Scenario {
     #[must_use]
     pub fn keeper(&self) -> Option<keep::Setting> {
         let latitude = Latitude::from_degrees(self.latitude_deg)?;
-        Some(keep::Setting::coarse(latitude, base::period(self)))
+        let (gyros, force_bias_sigma) = base::gyros(self);
+        let sample_seconds = base::period(self);
+        Some(keep::Setting { latitude, gyros, force_bias_sigma, sample_seconds })
     }
 
     /// How the instrument on a base goes on; none where the latitude is none.

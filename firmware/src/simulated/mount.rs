@@ -210,7 +210,8 @@ impl FramesScenario {
     /// What the keeper is told of place and gyros; none where the latitude is none.
     #[must_use]
     pub fn keeper(&self) -> Option<keep::Setting> {
-        self.base.keeper()
+        let keeper = self.base.keeper()?;
+        Some(keep::Setting { force_bias_sigma: FORCE_BIAS_SIGMA, ..keeper })
     }
 
     /// Where the base goes after the alignment.
