@@ -164,6 +164,16 @@ pub trait HeadingStore {
     async fn save_heading(&mut self, bytes: &[u8; Remembered::BYTES]) -> Result<(), Fault>;
 }
 
+impl<H: HeadingStore> HeadingStore for &mut H {
+    async fn load_heading(&mut self) -> Result<Option<[u8; Remembered::BYTES]>, Fault> {
+        (**self).load_heading().await
+    }
+
+    async fn save_heading(&mut self, bytes: &[u8; Remembered::BYTES]) -> Result<(), Fault> {
+        (**self).save_heading(bytes).await
+    }
+}
+
 /// Nothing is kept over a loss of supply.
 impl HeadingStore for () {
     async fn load_heading(&mut self) -> Result<Option<[u8; Remembered::BYTES]>, Fault> {

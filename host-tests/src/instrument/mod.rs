@@ -12,7 +12,9 @@ mod vehicle;
 pub use bench::{align, align_and_keep, align_on};
 pub use frames::{FramesRun, align_frames, align_frames_and_keep};
 pub use turntable::{Keeping, TurntableRun, align_turning, align_turning_again};
-pub use vehicle::{VehicleRun, align_stops, align_stops_on, align_stops_storing};
+pub use vehicle::{
+    VehicleRun, align_stops, align_stops_along, align_stops_on, align_stops_storing,
+};
 
 use std::fmt;
 

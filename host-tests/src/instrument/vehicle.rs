@@ -7,7 +7,7 @@ use firmware::ports::{HeadingStore, Observer, Recorder, VehiclePorts};
 use firmware::run::{acquire_triad, run_stops_and_keep};
 use firmware::simulated::fault::FaultyRecorder;
 use firmware::simulated::vehicle::fault::VehicleFault;
-use firmware::simulated::vehicle::{self, KnownPlace, VehicleScenario};
+use firmware::simulated::vehicle::{self, Day, KnownPlace, VehicleScenario};
 use hal_mock::vehicle::VehicleTruth;
 use hal_mock::vehicle::board::VehicleBoard;
 use orientation::keep::Keeper;
@@ -54,8 +54,23 @@ pub fn align_stops_storing<R: Recorder<InertialSample>, W: Observer>(
     store: impl HeadingStore,
 ) -> Result<VehicleRun, RunError> {
     let (day, plan) = (scenario.day(fault), scenario.plan(fault));
-    let board = RefCell::new(scenario.board(&day.legs, &day.events, &plan));
-    let found = align_on(&board, &plan, scenario, recorder, watch, store)?;
+    align_stops_along(&day, &plan, scenario, recorder, watch, store)
+}
+
+/// The same on a given day, with what goes wrong.
+///
+/// # Errors
+/// Those of [`align_stops`].
+pub fn align_stops_along<R: Recorder<InertialSample>, W: Observer>(
+    day: &Day,
+    plan: &vehicle::fault::VehiclePlan,
+    scenario: &VehicleScenario,
+    recorder: R,
+    watch: &W,
+    store: impl HeadingStore,
+) -> Result<VehicleRun, RunError> {
+    let board = RefCell::new(scenario.board(&day.legs, &day.events, plan));
+    let found = align_on(&board, plan, scenario, recorder, watch, store)?;
     let kept = Kept::of(&found.run.reports, day.configuration().motion());
     Ok(VehicleRun { kept, ..found })
 }

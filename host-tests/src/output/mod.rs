@@ -4,6 +4,7 @@ pub mod allan;
 pub mod burov;
 pub mod emulation;
 pub mod json;
+pub mod kept;
 pub mod page;
 pub mod plan;
 pub mod progress;
