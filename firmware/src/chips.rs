@@ -90,6 +90,9 @@ impl<S: SpiDevice, D: DelayNs> Accelerometer for PlatformAccelerometer<S, D> {
     }
 }
 
+/// Rates of which one at least is beyond the range.
+const CLIPPED: [AngularRate; 3] = [AngularRate(i32::MAX); 3];
+
 /// The coarse IMU on the base, mounted with its x forward, y right, z down.
 #[derive(Debug)]
 pub struct BaseImu<I, D> {
@@ -111,7 +114,8 @@ impl<I: I2c, D: DelayNs> BaseSensors for BaseImu<I, D> {
     async fn read(&mut self) -> Result<Option<BaseReading>, Fault> {
         let reading = self.chip.read().await?;
         Ok(reading.map(|reading| BaseReading {
-            rate: reading.rate,
+            // Which axis clips is not told.
+            rate: if reading.is_rate_clipped { CLIPPED } else { reading.rate },
             force: reading.force,
             is_clipped: reading.is_rate_clipped || reading.is_force_clipped,
         }))

@@ -2,6 +2,7 @@
 
 use embassy_time::Duration;
 use orientation::align::mount::{FrameAngles, LIMIT, MountError, Station, TwoFrame};
+use orientation::keep;
 use orientation::units::DEGREE;
 
 use crate::calibration::Harmonics;
@@ -198,4 +199,45 @@ impl VehicleConfiguration {
     pub fn period(&self) -> u32 {
         libm::round(1e6 / self.sample_rate) as u32
     }
+}
+
+/// What is done about the azimuth once it is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Realignment {
+    /// It ages until somebody hands another over.
+    Never,
+    /// On a stage or two frames: wherever the vehicle has stood for so long, it is aligned anew.
+    AtStops {
+        /// How long.
+        after: Duration,
+    },
+    /// In a vehicle: the stop that ended one session begins the next.
+    BetweenStops,
+}
+
+/// Whether north is looked for where the azimuth is known already: handed over, or recalled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Alignment {
+    /// It is; what is found is compared with what is known.
+    Always,
+    /// It is not.
+    UnlessKnown,
+}
+
+/// How the instrument goes on after its alignment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KeepConfiguration {
+    /// For how long; zero for not at all, [`Duration::MAX`] for ever.
+    pub hold: Duration,
+    /// What is done at stops.
+    pub realignment: Realignment,
+    /// Whether the session itself knows when the vehicle stands, as that from stop to stop does. Any other
+    /// one is of no use where the vehicle drives on before it is over.
+    pub knows_stops: bool,
+    /// What is done where the azimuth is known from elsewhere.
+    pub alignment: Alignment,
+    /// The gyro about the down axis beside the two others.
+    pub beside: keep::Gyro,
+    /// The precise gyro, which shows the down axis once a mount has turned it to the vertical.
+    pub precise: keep::Gyro,
 }

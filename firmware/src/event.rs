@@ -5,10 +5,14 @@ use orientation::align::quality::Disturbance;
 use orientation::align::rotating::turn::Sense;
 use orientation::device::{Device, Trouble};
 use orientation::error::Refusal;
+use orientation::keep::restart::Doubt;
+use orientation::keep::{Handover, Realigned, State};
 use orientation::noise::fit::{Coefficient, Estimate};
+use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 use orientation::words;
 use orientation::words::Rounded;
 
+use crate::keep::Down;
 use crate::patience::Symptom;
 use crate::storage::Remembered;
 
@@ -130,6 +134,24 @@ pub enum Event {
     Concluded(f64, f64, f64),
     /// There is no azimuth.
     Refused(Refusal),
+    /// An azimuth and its 1σ are handed to the keeper, °, and what it does with them.
+    HandedOver(f64, f64, Realigned),
+    /// The keeper's state has changed.
+    Keeping(State),
+    /// No motion is measured any more.
+    NoMotion,
+    /// The azimuth is not known any more.
+    AzimuthLost,
+    /// Which gyro shows the down axis from now on.
+    DownGyro(Down),
+    /// The vehicle stands: its azimuth is found anew.
+    Realigning,
+    /// The vehicle stands as it stood before the restart: azimuth and its 1σ, °.
+    HeadingRecalled(f64, f64),
+    /// The heading of before the restart is not believed.
+    Doubted(Doubt),
+    /// The heading cannot be kept for the next start.
+    HeadingNotKept(Fault),
     /// The link does not take status lines.
     LinkSilent,
 }
@@ -209,5 +231,35 @@ words! { Event:
         "azimuth {}° ± {}° (1σ), limit {}°",
         Rounded::<4>(azimuth), Rounded::<4>(sigma), Rounded::<4>(limit);
     Self::Refused(reason) => "no azimuth: {}", reason;
+    Self::HandedOver(azimuth, sigma, Realigned::Taken) =>
+        "azimuth {}° ± {}° (1σ) handed over: it is kept", Rounded::<4>(azimuth), Rounded::<4>(sigma);
+    Self::HandedOver(azimuth, sigma, Realigned::Fused { sigmas }) =>
+        "realigned: azimuth {}° ± {}° (1σ) agrees with what was kept, by {} σ",
+        Rounded::<4>(azimuth), Rounded::<4>(sigma), Rounded::<1>(sigmas);
+    Self::HandedOver(azimuth, sigma, Realigned::Disagrees { sigmas }) =>
+        "azimuth {}° ± {}° (1σ) disagrees with what was kept, by {} σ: neither is believed",
+        Rounded::<4>(azimuth), Rounded::<4>(sigma), Rounded::<1>(sigmas);
+    Self::Keeping(state) => "keeping: {}", state;
+    Self::NoMotion => "keeping: no motion is measured any more";
+    Self::AzimuthLost => "keeping: the azimuth is lost until it is found or handed over again";
+    Self::DownGyro(Down::Beside) => "keeping: the coarse gyro shows how the base turns about down";
+    Self::DownGyro(Down::Compared) =>
+        "keeping: the coarse gyro, as it was compared, shows how the base turns about down";
+    Self::DownGyro(Down::Precise) => "keeping: the precise gyro shows how the base turns about down";
+    Self::Realigning => "the vehicle stands: aligning anew";
+    Self::HeadingRecalled(azimuth, sigma) =>
+        "the vehicle stands as it stood before the restart: azimuth {}° ± {}° (1σ) recalled",
+        Rounded::<4>(azimuth), Rounded::<4>(sigma);
+    Self::Doubted(doubt) => "the heading of before the restart is not believed: {}", doubt;
+    Self::HeadingNotKept(fault) => "the heading cannot be kept for the next start: {}", fault;
     Self::LinkSilent => "link: takes no status lines";
+}
+
+impl Event {
+    /// What becomes of an azimuth that is handed over.
+    #[must_use]
+    pub fn handed_over(handover: &Handover, outcome: Realigned) -> Self {
+        let [azimuth, sigma] = [handover.azimuth, handover.sigma].map(|angle| angle * DEGREES);
+        Self::HandedOver(azimuth, sigma, outcome)
+    }
 }

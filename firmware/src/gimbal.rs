@@ -7,6 +7,7 @@
 use core::convert::Infallible;
 
 use embassy_futures::join::join;
+use embassy_futures::select::{Either, select};
 use orientation::align::mount::Station;
 use orientation::device::{Device, Trouble};
 use orientation::error::Refusal;
@@ -77,7 +78,12 @@ impl<'a, M: Actuator, O: Observer> Gimbal<'a, M, O> {
         self.go_to(Station::Forward).await?;
         self.shared.homed.signal(());
         loop {
-            let heading = self.shared.wanted.wait().await;
+            let Either::First(heading) =
+                select(self.shared.wanted.wait(), self.shared.keep.store.wait()).await
+            else {
+                self.store().await?;
+                continue;
+            };
             let station = Station::at_heading(heading).map_err(|_| {
                 self.shared.give_up(Device::Stage, Trouble::BeyondTravel(heading * DEGREES))
             })?;

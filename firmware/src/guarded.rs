@@ -59,6 +59,11 @@ impl<'a, D: Startable> Guarded<'a, D> {
         self.guard.patience.restarts()
     }
 
+    /// Has all patience with it again.
+    pub fn renew(&mut self) {
+        self.guard.patience = Patience::default();
+    }
+
     /// Starts the device, several times where it must be.
     ///
     /// # Errors

@@ -22,6 +22,8 @@ pub struct Health {
     pub late: u32,
     /// Samples that nobody took in time.
     pub overflowed: u32,
+    /// The same of those for the keeper.
+    pub unkept: u32,
     /// Readings lost, by device: gyro, accelerometer, encoder, stage, base; both frames together, and
     /// three gyros.
     pub lost: [u16; 5],
@@ -38,6 +40,7 @@ impl Health {
         missing: 0,
         late: 0,
         overflowed: 0,
+        unkept: 0,
         lost: [0; 5],
         restarts: [0; 5],
         unsent: 0,
@@ -61,6 +64,7 @@ impl Health {
             .saturating_add(self.missing)
             .saturating_add(self.late)
             .saturating_add(self.overflowed)
+            .saturating_add(self.unkept)
             .saturating_add(self.unsent)
     }
 }

@@ -33,6 +33,7 @@ pub mod timeline;
 
 pub mod conduct;
 pub mod gimbal;
+pub mod keep;
 pub mod motor;
 pub mod stage;
 pub mod turntable;

@@ -47,14 +47,25 @@ pub trait Pointing {
     /// What the encoders show.
     type Shown;
 
+    /// Whether the accelerometer sits on the base, and not beside the gyro.
+    const FORCE_ON_BASE: bool;
+
     /// Starts the encoders.
     async fn start(&mut self) -> Result<(), Refusal>;
+
+    /// Has all patience with them again.
+    fn renew(&mut self);
 
     /// What the encoders show, read anew with every so-manieth sample; none where a reading was lost.
     async fn read(&mut self) -> Result<Option<Self::Shown>, Refusal>;
 
     /// Where the axis points when the encoders show this.
     fn aim(&mut self, shown: Self::Shown) -> Aim;
+
+    /// Elevation of an axis that stands, where it can leave the base's plane.
+    fn elevation(&self) -> Option<Angle> {
+        None
+    }
 }
 
 /// Says yes at first, then every so-manieth time.
@@ -145,8 +156,14 @@ impl<'a, E: Encoder, O: Observer> Shaft<'a, E, O> {
 impl<E: Encoder, O: Observer> Pointing for Shaft<'_, E, O> {
     type Shown = Angle;
 
+    const FORCE_ON_BASE: bool = false;
+
     async fn start(&mut self) -> Result<(), Refusal> {
         self.encoder.start(self.shared).await
+    }
+
+    fn renew(&mut self) {
+        self.encoder.renew();
     }
 
     async fn read(&mut self) -> Result<Option<Angle>, Refusal> {
@@ -245,9 +262,16 @@ impl<'a, E: Encoder, O: Observer> FrameShafts<'a, E, O> {
 impl<E: Encoder, O: Observer> Pointing for FrameShafts<'_, E, O> {
     type Shown = Frames<Angle>;
 
+    const FORCE_ON_BASE: bool = true;
+
     async fn start(&mut self) -> Result<(), Refusal> {
         self.shafts.outer.start().await?;
         self.shafts.inner.start().await
+    }
+
+    fn renew(&mut self) {
+        self.shafts.outer.renew();
+        self.shafts.inner.renew();
     }
 
     async fn read(&mut self) -> Result<Option<Frames<Angle>>, Refusal> {
@@ -265,6 +289,10 @@ impl<E: Encoder, O: Observer> Pointing for FrameShafts<'_, E, O> {
         }
         self.jump ^= QUARTER_TURN;
         Aim { heading: Angle(self.aim.heading.0.wrapping_add(self.jump)), ..self.aim }
+    }
+
+    fn elevation(&self) -> Option<Angle> {
+        self.aim.elevation.filter(|_| self.since.elapsed() >= self.rest)
     }
 }
 

@@ -5,6 +5,8 @@
 use drivers::fault::Fault;
 use embassy_time::Instant;
 use orientation::align::rotating::coupling::BYTES;
+use orientation::keep::restart::Remembered;
+use orientation::keep::{Handover, Report};
 use orientation::session::{Session, rotating, stops};
 use orientation::signal::Sample;
 use orientation::signal::sway::CoarseSensors;
@@ -152,6 +154,61 @@ pub trait CalibrationStore {
     async fn save(&mut self, slot: u8, bytes: &[u8; BYTES]) -> Result<(), Fault>;
 }
 
+/// Where the heading of a vehicle at rest is kept over a loss of supply.
+#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
+pub trait HeadingStore {
+    /// What was kept last, if anything was.
+    async fn load_heading(&mut self) -> Result<Option<[u8; Remembered::BYTES]>, Fault>;
+
+    /// Keeps something. Where the supply is lost meanwhile, there is what was there or what was to be.
+    async fn save_heading(&mut self, bytes: &[u8; Remembered::BYTES]) -> Result<(), Fault>;
+}
+
+impl<H: HeadingStore> HeadingStore for &mut H {
+    async fn load_heading(&mut self) -> Result<Option<[u8; Remembered::BYTES]>, Fault> {
+        (**self).load_heading().await
+    }
+
+    async fn save_heading(&mut self, bytes: &[u8; Remembered::BYTES]) -> Result<(), Fault> {
+        (**self).save_heading(bytes).await
+    }
+}
+
+/// Nothing is kept over a loss of supply.
+impl HeadingStore for () {
+    async fn load_heading(&mut self) -> Result<Option<[u8; Remembered::BYTES]>, Fault> {
+        Ok(None)
+    }
+
+    async fn save_heading(&mut self, _: &[u8; Remembered::BYTES]) -> Result<(), Fault> {
+        Ok(())
+    }
+}
+
+/// Who tells the keeper what it cannot measure: an operator, another vehicle's instrument, an odometer.
+/// Asked once a second.
+pub trait Outside {
+    /// An azimuth of body x at this moment, with its 1σ, where there is one that was not told before.
+    fn azimuth(&mut self) -> Option<Handover>;
+
+    /// Speed over the ground north and east, m/s, where it is known.
+    fn velocity(&mut self) -> Option<[f64; 2]>;
+}
+
+/// Nobody tells anything.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoOutside;
+
+impl Outside for NoOutside {
+    fn azimuth(&mut self) -> Option<Handover> {
+        None
+    }
+
+    fn velocity(&mut self) -> Option<[f64; 2]> {
+        None
+    }
+}
+
 /// Where raw samples are kept. It may take its time: samples then queue.
 #[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait Recorder<S = Sample> {
@@ -197,6 +254,9 @@ pub trait Observer {
 
     /// The session in a vehicle has begun or ended a stop.
     fn stopped(&self, _: &stops::Session) {}
+
+    /// What the keeper reports, once a second.
+    fn kept(&self, _: &Report) {}
 }
 
 /// Nobody is told.
@@ -219,6 +279,10 @@ impl<O: Observer> Observer for &O {
 
     fn stopped(&self, session: &stops::Session) {
         (**self).stopped(session);
+    }
+
+    fn kept(&self, report: &Report) {
+        (**self).kept(report);
     }
 }
 

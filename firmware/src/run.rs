@@ -7,7 +7,7 @@
 use core::future::pending;
 use core::pin::{Pin, pin};
 
-use embassy_futures::select::{select, select4};
+use embassy_futures::select::{select, select5};
 use embedded_io_async::Write;
 use orientation::device::Device;
 use orientation::error::Refusal;
@@ -21,6 +21,7 @@ use crate::configuration::{
 };
 use crate::gimbal::Gimbal;
 use crate::health::{self, Health};
+use crate::keep::Keep;
 use crate::link;
 use crate::pointing::{FrameShafts, Shaft};
 use crate::ports::{
@@ -33,7 +34,8 @@ use crate::steady::Base;
 use crate::storage;
 use crate::turntable::Turntable;
 
-/// Samples until a sensor is given up, which the session is told; never ends.
+/// Samples until a sensor is given up, which the session is told; where an azimuth is kept, tries again
+/// later. Never ends.
 pub async fn acquire<G, A, E, B, O>(
     sensors: &mut Sensors<G, A, E, B>,
     configuration: &Configuration,
@@ -49,11 +51,8 @@ pub async fn acquire<G, A, E, B, O>(
     let harmonics = configuration.encoder;
     let (shared, latest) = (&seams.shared, &seams.shared.angle);
     let shaft = Shaft::new(encoder, Device::Encoder, harmonics, configuration, latest, shared);
-    let reason = Acquisition::new(gyro, accelerometer, shaft, base.steady(), configuration, seams)
-        .run()
-        .await;
-    shared.fail(reason);
-    pending::<()>().await;
+    let steady = base.steady();
+    Acquisition::new(gyro, accelerometer, shaft, steady, configuration, seams).run_for_ever().await;
 }
 
 /// The same for a mount with two frames, whose latest angles go to `latest`.
@@ -72,11 +71,10 @@ pub async fn acquire_frames<G, A, E, B, O>(
 {
     let Sensors { gyro, accelerometer, encoder, base } = sensors;
     let shafts = FrameShafts::new(encoder, configuration, frames, latest, &seams.shared);
-    let reason = Acquisition::new(gyro, accelerometer, shafts, base.steady(), configuration, seams)
-        .run()
+    let steady = base.steady();
+    Acquisition::new(gyro, accelerometer, shafts, steady, configuration, seams)
+        .run_for_ever()
         .await;
-    seams.shared.fail(reason);
-    pending::<()>().await;
 }
 
 /// The same for sensors that are fixed to a vehicle.
@@ -89,9 +87,7 @@ pub async fn acquire_triad<G, A, O>(
     A: Accelerometer,
     O: Observer,
 {
-    let reason = TriadAcquisition::new(sensors, configuration, seams).run().await;
-    seams.shared.fail(reason);
-    pending::<()>().await;
+    TriadAcquisition::new(sensors, configuration, seams).run_for_ever().await;
 }
 
 /// Runs an alignment from power-on to its conclusion, which is then in the session; gives what went
@@ -110,10 +106,29 @@ where
     R: Recorder,
     O: Observer,
 {
+    run_and_keep(ports, configuration, session, &mut (), seams).await
+}
+
+/// The same, and goes on keeping what was found.
+pub async fn run_and_keep<M, L, R, K, O>(
+    ports: &mut Ports<M, L, R>,
+    configuration: &Configuration,
+    session: &mut Session,
+    keeping: &mut K,
+    seams: &Seams<'_, O>,
+) -> Health
+where
+    M: Actuator,
+    L: Write,
+    R: Recorder,
+    K: Keep,
+    O: Observer,
+{
     let Ports { actuator, link, recorder } = ports;
     let mut stage = Stage::new(actuator, &configuration.stage, &seams.shared);
     let turning = pin!(stage.run());
-    beside(turning, link, recorder, &mut Stepwise::new(session), seams).await
+    let kept = pin!(keeping.run(&seams.shared));
+    keep_beside(turning, kept, link, recorder, &mut Stepwise::new(session), seams).await
 }
 
 /// The same on a platform that turns all the time. Whatever the end, the platform comes to rest.
@@ -187,12 +202,35 @@ where
     R: Recorder,
     O: Observer,
 {
+    run_frames_and_keep(ports, frames, latest, session, &mut (), seams).await
+}
+
+/// The same, and goes on keeping what was found, by the precise gyro once its axis is vertical.
+pub async fn run_frames_and_keep<M, L, R, K, O>(
+    ports: &mut Ports<Frames<M>, L, R>,
+    frames: &FramesConfiguration,
+    latest: &Frames<LatestAngle>,
+    session: &mut Session,
+    keeping: &mut K,
+    seams: &Seams<'_, O>,
+) -> Health
+where
+    M: Actuator,
+    L: Write,
+    R: Recorder,
+    K: Keep,
+    O: Observer,
+{
     let Ports { actuator, link, recorder } = ports;
     let mut gimbal = Gimbal::new(actuator, frames, latest, &seams.shared);
     let health = {
         let turning = pin!(gimbal.run());
-        beside(turning, link, recorder, &mut Stepwise::new(session), seams).await
+        let kept = pin!(keeping.run(&seams.shared));
+        keep_beside(turning, kept, link, recorder, &mut Stepwise::new(session), seams).await
     };
+    if seams.shared.keep.is_wanted.get() {
+        return health;
+    }
     if session.conclusion().is_some_and(|conclusion| conclusion.verdict.is_ok()) {
         // Where that fails, the log has the reason; the azimuth stands all the same.
         select(gimbal.store(), discard(seams)).await;
@@ -212,11 +250,30 @@ where
     R: Recorder<InertialSample>,
     O: Observer,
 {
+    run_stops_and_keep(ports, session, &mut (), seams).await
+}
+
+/// The same, and goes on keeping what was found.
+pub async fn run_stops_and_keep<W, L, R, K, O>(
+    ports: &mut VehiclePorts<W, L, R>,
+    session: &mut stops::Session,
+    keeping: &mut K,
+    seams: &Seams<'_, O, InertialSample>,
+) -> Health
+where
+    W: Whereabouts,
+    L: Write,
+    R: Recorder<InertialSample>,
+    K: Keep,
+    O: Observer,
+{
     let VehiclePorts { whereabouts, link, recorder } = ports;
     // There is no angle to find first, and nothing to turn.
     seams.shared.homed.signal(());
     let still = pin!(pending());
-    beside(still, link, recorder, &mut Stops::new(session, whereabouts), seams).await
+    let kept = pin!(keeping.run(&seams.shared));
+    let mut session = Stops::new(session, whereabouts);
+    keep_beside(still, kept, link, recorder, &mut session, seams).await
 }
 
 /// Lets samples go by.
@@ -239,6 +296,23 @@ where
     R: Recorder<S>,
     O: Observer,
 {
+    keep_beside(turning, pin!(pending()), link, recorder, session, seams).await
+}
+
+/// The same with what keeps, whose end is that of everything.
+async fn keep_beside<L, R, O, S>(
+    turning: Pin<&mut dyn Future<Output = Refusal>>,
+    kept: Pin<&mut dyn Future<Output = ()>>,
+    link: &mut L,
+    recorder: &mut R,
+    session: &mut dyn Conducted<O, S>,
+    seams: &Seams<'_, O, S>,
+) -> Health
+where
+    L: Write,
+    R: Recorder<S>,
+    O: Observer,
+{
     let shared = &seams.shared;
     let mut conductor = Conductor::new(session, recorder, seams);
     // Pinned here, each part lies in memory once.
@@ -249,6 +323,7 @@ where
     });
     let tell = pin!(link::run(link, shared));
     let watch = pin!(health::watch(shared));
-    select4(conduct, position, tell, watch).await;
+    // The keeper comes last: it takes what the session has taken.
+    select5(conduct, position, tell, watch, kept).await;
     shared.health.get()
 }

@@ -14,6 +14,7 @@ use orientation::units::Angle;
 
 use crate::event::Event;
 use crate::health::Health;
+use crate::keep::Seam;
 use crate::link::Status;
 use crate::patience::Symptom;
 use crate::ports::Observer;
@@ -61,6 +62,8 @@ pub struct Shared<'a, O> {
     pub angle: LatestAngle,
     /// What a subtracted sway leaves in the samples; decided before the stage is homed.
     pub sway: Cell<SwayNoise>,
+    /// What acquisition and the session hand to the keeper, and it to them.
+    pub keep: Seam,
     /// What went wrong so far.
     pub health: Cell<Health>,
     /// What the link tells.
@@ -79,6 +82,7 @@ impl<'a, O: Observer> Shared<'a, O> {
             concluded: Signal::new(),
             angle: Cell::new((Angle(0), Instant::MIN)),
             sway: Cell::new(SwayNoise::NONE),
+            keep: Seam::new(),
             health: Cell::new(Health::EMPTY),
             status: Cell::new(Status::Starting),
             observer,

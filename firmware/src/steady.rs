@@ -4,6 +4,8 @@
 //! sway was watched for long enough nothing is decided, and the stage is not told to begin. Then the
 //! whole session is measured as it was decided.
 //!
+//! Every reading also goes to whoever keeps attitude and azimuth.
+//!
 //! A base IMU that is lost is started again like any other device. Where it is given up, a session
 //! that does not need it goes on without it.
 
@@ -19,6 +21,7 @@ use orientation::units::{Angle, AngularRate, DEGREES_PER_RADIAN as DEGREES, Spec
 use crate::acquire::{Row, STUCK};
 use crate::event::Event;
 use crate::guarded::Guarded;
+use crate::keep::RETRY;
 use crate::patience::Symptom;
 use crate::pointing::Every;
 use crate::ports::{BaseReading, BaseSensors, NoBase, Observer};
@@ -55,6 +58,15 @@ pub trait Steady {
     /// Reads what it needs; called with every sample.
     async fn follow<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal>;
 
+    /// What the latest [`Self::follow`] has read, and when; each reading once.
+    fn reading(&mut self) -> Option<(Instant, BaseReading)>;
+
+    /// Time between two readings, µs, of a precise gyro of that sample period, µs.
+    fn period(&self, sample: u32) -> u32;
+
+    /// Has all patience with it again.
+    fn renew(&mut self);
+
     /// The rate along a level axis at this heading, less the sway.
     fn steadied(&mut self, rate: AngularRate, heading: Angle) -> AngularRate;
 }
@@ -87,6 +99,16 @@ impl Steady for NoBase {
         ready(Ok(()))
     }
 
+    fn reading(&mut self) -> Option<(Instant, BaseReading)> {
+        None
+    }
+
+    fn period(&self, sample: u32) -> u32 {
+        sample
+    }
+
+    fn renew(&mut self) {}
+
     fn steadied(&mut self, rate: AngularRate, _: Angle) -> AngularRate {
         rate
     }
@@ -113,12 +135,17 @@ pub struct Steadied<'a, B> {
     /// Since when none has come: that time, or the latest start.
     silent: Instant,
     readings: Row<[AngularRate; 3]>,
+    /// The latest reading, for whoever keeps.
+    fresh: Option<(Instant, BaseReading)>,
+    /// The same where it was not held yet.
+    held: Option<BaseReading>,
     /// Stage angle of [`Self::axis`].
     stage: Angle,
     /// Cosine and sine of that angle.
     axis: [f32; 2],
-    /// Whether it was given up.
+    /// Whether it was given up, and when.
     is_lost: bool,
+    lost: Instant,
 }
 
 impl<'a, B: BaseSensors> Steadied<'a, B> {
@@ -131,9 +158,12 @@ impl<'a, B: BaseSensors> Steadied<'a, B> {
             latest: Instant::MIN,
             silent: Instant::MIN,
             readings: Row::new(),
+            fresh: None,
+            held: None,
             stage: Angle(0),
             axis: [1.0, 0.0],
             is_lost: false,
+            lost: Instant::MIN,
         }
     }
 
@@ -148,7 +178,18 @@ impl<'a, B: BaseSensors> Steadied<'a, B> {
         match self.base.checked(begun, outcome)? {
             Some(reading) => self.push(begun, reading),
             None if (begun - self.silent).as_micros() > SILENCE => Err(Symptom::Silent),
-            None => Ok(()),
+            None => {
+                self.hold(begun);
+                Ok(())
+            }
+        }
+    }
+
+    /// Goes on with the latest rates where one output falls between two readings, as it does now and then
+    /// where both have nearly one rate; once, and without a force.
+    fn hold(&mut self, at: Instant) {
+        if let Some(reading) = self.held.take() {
+            self.fresh = Some((at, BaseReading { is_clipped: true, ..reading }));
         }
     }
 
@@ -160,6 +201,8 @@ impl<'a, B: BaseSensors> Steadied<'a, B> {
             self.readings = Row::new();
             return Err(Symptom::Stuck);
         }
+        self.fresh = Some((at, reading));
+        self.held = Some(reading);
         if !is_clipped {
             self.turn(at, rate, force);
         }
@@ -184,13 +227,22 @@ impl<'a, B: BaseSensors> Steadied<'a, B> {
             self.silent = Instant::now();
         }
         match outcome {
-            Err(reason) if self.is_swaying() => Err(reason),
+            Err(reason) if self.is_swaying() && !shared.keep.is_kept.get() => Err(reason),
             Err(_) => {
                 self.is_lost = true;
+                self.lost = Instant::now();
                 Ok(())
             }
             Ok(()) => Ok(()),
         }
+    }
+
+    /// Whether it is done without; while an azimuth is kept, it is tried again now and then.
+    fn is_absent<O: Observer>(&mut self, shared: &Shared<'_, O>) -> bool {
+        if self.is_lost && shared.keep.is_kept.get() && self.lost.elapsed() >= RETRY {
+            self.renew();
+        }
+        self.is_lost
     }
 
     /// Tells what was decided, once.
@@ -233,7 +285,7 @@ impl<B: BaseSensors> Steady for Steadied<'_, B> {
     }
 
     async fn follow<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal> {
-        if self.is_lost || !self.due.is_due() {
+        if self.is_absent(shared) || !self.due.is_due() {
             return Ok(());
         }
         let was_decided = self.is_decided();
@@ -244,6 +296,19 @@ impl<B: BaseSensors> Steady for Steadied<'_, B> {
             self.tell(shared);
         }
         Ok(())
+    }
+
+    fn reading(&mut self) -> Option<(Instant, BaseReading)> {
+        self.fresh.take()
+    }
+
+    fn period(&self, sample: u32) -> u32 {
+        self.due.divider * sample
+    }
+
+    fn renew(&mut self) {
+        self.base.renew();
+        self.is_lost = false;
     }
 
     fn steadied(&mut self, rate: AngularRate, heading: Angle) -> AngularRate {

@@ -1,5 +1,5 @@
 //! What is kept over a loss of supply: how the gyro feels the platform's own rate, one coupling for each
-//! speed, with date and temperature.
+//! speed, with date and temperature; and the heading of a vehicle at rest.
 //!
 //! A coupling is found by uneven turns. One that is fresh enough spares them. Images that keep nothing
 //! pay nothing for it.
@@ -9,6 +9,7 @@ use embedded_storage_async::nor_flash::NorFlash;
 use orientation::align::rotating::Setting;
 use orientation::align::rotating::coupling::{BYTES, Coupling};
 use orientation::align::rotating::solution::SPEEDS;
+use orientation::keep;
 use orientation::session::rotating::{Procedure, Session};
 use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 use orientation::words;
@@ -18,11 +19,15 @@ use sequential_storage::map::{MapConfig, MapStorage};
 
 use crate::date::Day;
 use crate::event::Event;
-use crate::ports::{CalibrationStore, Observer};
+use crate::ports::{CalibrationStore, HeadingStore, Observer};
 use crate::shared::Shared;
 
-/// Bytes for the longest item: key and coupling, in whole words of flash.
-const BUFFER: usize = (1 + BYTES).next_multiple_of(32);
+/// Bytes for the longest item: key and coupling or heading, in whole words of flash.
+const BUFFER: usize = (1 + LONGEST).next_multiple_of(32);
+/// Bytes of the longer of both.
+const LONGEST: usize = if BYTES > HEADING_BYTES { BYTES } else { HEADING_BYTES };
+/// Bytes of a heading.
+const HEADING_BYTES: usize = keep::restart::Remembered::BYTES;
 
 /// Couplings in the pages of a flash that are set aside for them. What is written comes beside what was
 /// there before: until it is there whole, the old one counts.
@@ -52,6 +57,21 @@ impl<F: NorFlash> CalibrationStore for FlashStore<F> {
 
     async fn save(&mut self, slot: u8, bytes: &[u8; BYTES]) -> Result<(), Fault> {
         let kept = self.map.store_item(&mut self.buffer, &slot, bytes).await;
+        kept.map_err(|_| Fault::Bus)
+    }
+}
+
+/// The slot of the heading, beside those of the speeds.
+const HEADING: u8 = 0x80;
+
+impl<F: NorFlash> HeadingStore for FlashStore<F> {
+    async fn load_heading(&mut self) -> Result<Option<[u8; HEADING_BYTES]>, Fault> {
+        let found = self.map.fetch_item::<[u8; HEADING_BYTES]>(&mut self.buffer, &HEADING);
+        found.await.map_err(|_| Fault::Bus)
+    }
+
+    async fn save_heading(&mut self, bytes: &[u8; HEADING_BYTES]) -> Result<(), Fault> {
+        let kept = self.map.store_item(&mut self.buffer, &HEADING, bytes).await;
         kept.map_err(|_| Fault::Bus)
     }
 }

@@ -11,6 +11,7 @@ use crate::earth::{Attitude, PlatformInput, Site};
 use crate::gyro::{Gyro, GyroConfiguration};
 use crate::stage::{EncoderConfiguration, StageState};
 use crate::temperature::{TemperatureConfiguration, Thermometer};
+use crate::vehicle::Means;
 
 /// Where the base stands and what is mounted on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -212,6 +213,18 @@ impl Instruments {
         };
         let site = self.site.with_attitude(&attitude);
         self.pose.felt = self.felt_at(&site, stage, motion.body_rad_s(&attitude));
+    }
+
+    /// Has everything feel what a base on its way feels, in the mean.
+    pub fn ride(&mut self, stage: StageState, means: &Means) {
+        self.turn(stage);
+        let [x, y, z] = about_stage(means.rate_rad_s, stage.angle_rad);
+        let force_m_s2 = about_stage(means.force_m_s2, stage.angle_rad);
+        let axis_rad_s = self.gyro.along_axis([x, y, z + stage.rate_rad_s]);
+        let gravity = self.site.gravity_m_s2();
+        let force_g = [force_m_s2[0] / gravity, force_m_s2[1] / gravity];
+        let steady_rad_s = self.gyro.steady(axis_rad_s, force_g);
+        self.pose.felt = Felt { axis_rad_s, steady_rad_s, force_m_s2, force_g };
     }
 
     /// Reads everything once, `time_s` after the first sample. Call `rate_hz` times a second.

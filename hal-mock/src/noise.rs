@@ -160,4 +160,6 @@ pub(crate) mod source {
     pub const VEHICLE_GYROS: [u64; 3] = [12, 13, 14];
     /// What a drawn day of a vehicle is like.
     pub const VEHICLE_SCENARIO: u64 = 15;
+    /// How that day goes on.
+    pub const VEHICLE_AFTERWARDS: u64 = 16;
 }

@@ -254,6 +254,8 @@ pub enum Refusal {
         /// How far its mean force was from gravity, m/s².
         force: f64,
     },
+    /// The vehicle drove on before the alignment was over.
+    DroveOn,
     /// Gyros and accelerometers disagree about how a body sways.
     AxesDisagree {
         /// How much more the forces change when they are turned by what the gyros show, in power.
@@ -396,6 +398,7 @@ words! { Refusal:
     Self::VehicleMoves { stop, rate, force } =>
         "the vehicle moves at stop {}: its rate is {} °/h from the Earth's, its force {} m/s² from gravity",
         stop, Rounded::<2>(rate), Rounded::<3>(force);
+    Self::DroveOn => "the vehicle drove on before it was aligned";
     Self::AxesDisagree { ratio } =>
         "turned by what the gyros show, the forces change {} times more: check axes and signs of both",
         Rounded::<1>(ratio);

@@ -8,6 +8,7 @@ use orientation::units::SpecificForce;
 
 use super::{Limit, Row, STUCK};
 use crate::guarded::Guarded;
+use crate::keep::RETRY;
 use crate::patience::Symptom;
 use crate::pointing::Every;
 use crate::ports::{Accelerometer, ForceReading, Observer};
@@ -19,6 +20,8 @@ pub(super) struct Forces<'a, A> {
     due: Every,
     row: Row<[SpecificForce; 3]>,
     limit: Limit,
+    /// Until when it is done without, where it was given up while an azimuth is kept.
+    absent: Option<Instant>,
 }
 
 impl<'a, A: Accelerometer> Forces<'a, A> {
@@ -29,7 +32,15 @@ impl<'a, A: Accelerometer> Forces<'a, A> {
             due: Every::new(divider),
             row: Row::new(),
             limit: Limit::new(sample_rate),
+            absent: None,
         }
+    }
+
+    /// Has all patience with it again.
+    pub(super) fn renew(&mut self) {
+        self.accelerometer.renew();
+        self.limit.samples = 0;
+        self.absent = None;
     }
 
     /// Starts it, several times where it must be.
@@ -46,15 +57,32 @@ impl<'a, A: Accelerometer> Forces<'a, A> {
         &mut self,
         shared: &Shared<'_, O>,
     ) -> Result<Option<ForceReading>, Refusal> {
-        if !self.due.is_due() {
+        if !self.due.is_due() || self.is_absent(shared) {
             return Ok(None);
         }
         let begun = Instant::now();
         let outcome = self.accelerometer.device.read().await;
-        match self.judge(begun, outcome, shared)? {
-            Ok(reading) => Ok(reading.is_new.then_some(reading)),
-            Err(symptom) => self.accelerometer.mend(symptom, shared).await.map(|()| None),
+        let outcome = match self.judge(begun, outcome, shared) {
+            Ok(Ok(reading)) => Ok(reading.is_new.then_some(reading)),
+            Ok(Err(symptom)) => self.accelerometer.mend(symptom, shared).await.map(|()| None),
+            Err(reason) => Err(reason),
+        };
+        if outcome.is_err() && shared.keep.is_kept.get() {
+            self.absent = Some(Instant::now() + RETRY);
+            return Ok(None);
         }
+        outcome
+    }
+
+    /// Whether it is done without. While an azimuth is kept, gyros alone carry the attitude on; it is
+    /// tried again at a rest, where what is missed meanwhile is known to be nothing.
+    fn is_absent<O: Observer>(&mut self, shared: &Shared<'_, O>) -> bool {
+        let Some(until) = self.absent else { return false };
+        let is_tried = Instant::now() >= until && shared.keep.is_at_rest.get();
+        if is_tried {
+            self.renew();
+        }
+        !is_tried
     }
 
     /// A reading, or what is to be mended. Old outputs and equal ones show an accelerometer that has

@@ -10,6 +10,7 @@
 //! What a sensor's readings must pass is the same for both kinds: `rates` for a gyro, `forces` for the
 //! accelerometer. A sample goes out only whole, and its absence shows in the next one's time.
 
+mod coarse;
 mod forces;
 mod outlet;
 mod rates;

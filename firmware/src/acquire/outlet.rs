@@ -29,7 +29,8 @@ impl<'a, O: Observer, S> Outlet<'a, O, S> {
 
     /// Queues a sample for the session, and tells of it where it cannot.
     pub(super) fn hand_over(&mut self, sample: S) {
-        self.shared.count(|health| health.samples += 1);
+        self.shared.count(|health| health.samples = health.samples.saturating_add(1));
+        self.shared.keep.is_behind.set(true);
         if self.queue.try_send(sample).is_err() {
             self.overflowed += 1;
             self.shared.count(|health| health.overflowed += 1);

@@ -32,6 +32,12 @@ impl<'a, G: Gyro> Rates<'a, G> {
         Self { gyro: Guarded::new(gyro, name), name, row: Row::new(), limit }
     }
 
+    /// Has all patience with it again.
+    pub(super) fn renew(&mut self) {
+        self.gyro.renew();
+        self.limit.samples = 0;
+    }
+
     /// Waits for a conversion for so long; its time, or what is to be mended.
     pub(super) async fn conversion(&mut self, silence: Duration) -> Result<Instant, Symptom> {
         match with_timeout(silence, self.gyro.device.ready()).await {

@@ -6,16 +6,18 @@
 
 use core::convert::Infallible;
 
-use embassy_time::Duration;
+use embassy_time::{Duration, Instant, Ticker};
 use orientation::device::Device;
 use orientation::error::Refusal;
 use orientation::signal::Sample;
 use orientation::units::AngularRate;
 
+use super::coarse::Coarse;
 use super::forces::Forces;
 use super::outlet::Outlet;
 use super::rates::{Rates, silence};
 use crate::configuration::Configuration;
+use crate::keep::RETRY;
 use crate::pointing::Pointing;
 use crate::ports::{Accelerometer, Gyro, Observer};
 use crate::shared::Seams;
@@ -27,8 +29,11 @@ pub struct Acquisition<'a, G, A, P, S, O> {
     forces: Forces<'a, A>,
     pointing: P,
     steady: S,
+    coarse: Coarse,
     outlet: Outlet<'a, O, Sample>,
     silence: Duration,
+    /// Of the precise gyro's samples.
+    period: Duration,
 }
 
 impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: Steady, O: Observer>
@@ -45,22 +50,35 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: Steady, O: Observer>
     ) -> Self {
         let period = configuration.period();
         let Configuration { sample_rate, force_divider, .. } = *configuration;
+        let coarse = Coarse::new(steady.period(period), period);
         Self {
             rates: Rates::new(gyro, Device::Gyro, sample_rate),
             forces: Forces::new(accelerometer, force_divider, sample_rate),
             pointing,
             steady,
+            coarse,
             outlet: Outlet::new(period, seams),
             silence: silence(period),
+            period: Duration::from_micros(period.into()),
         }
     }
 
-    /// Samples until a sensor is given up; gives the reason.
-    pub async fn run(&mut self) -> Refusal {
-        match self.sample_for_ever().await {
-            Ok(never) => match never {},
-            Err(reason) => reason,
+    /// Samples; where a sensor is given up, tells why and tries again later if anybody keeps.
+    pub async fn run_for_ever(&mut self) {
+        loop {
+            let Err(reason) = self.sample_for_ever().await;
+            self.outlet.shared.fail(reason);
+            self.outlet.shared.keep.rest().await;
+            self.renew();
+            self.steady.renew();
         }
+    }
+
+    /// Has all patience with the precise gyro and what belongs to it again.
+    fn renew(&mut self) {
+        self.rates.renew();
+        self.forces.renew();
+        self.pointing.renew();
     }
 
     async fn sample_for_ever(&mut self) -> Result<Infallible, Refusal> {
@@ -70,9 +88,40 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: Steady, O: Observer>
         self.steady.start(shared).await?;
         self.rates.gyro.start(shared).await?;
         loop {
-            if let Some(sample) = self.sample().await? {
-                self.outlet.hand_over(sample);
+            match self.sample().await {
+                Ok(Some(sample)) => self.outlet.hand_over(sample),
+                Ok(None) => {}
+                Err(reason) if shared.keep.is_kept.get() => self.go_on_coarse(reason).await?,
+                Err(reason) => return Err(reason),
             }
+        }
+    }
+
+    /// While an azimuth is kept, goes on with the coarse sensors alone until the body rests and the others
+    /// may be tried again.
+    async fn go_on_coarse(&mut self, reason: Refusal) -> Result<(), Refusal> {
+        let shared = self.outlet.shared;
+        self.coarse.lose_precise();
+        let until = Instant::now() + RETRY;
+        let mut ticker = Ticker::every(self.period);
+        while Instant::now() < until || !shared.keep.is_at_rest.get() {
+            ticker.next().await;
+            self.steady.follow(shared).await?;
+            self.pass_on();
+            shared.count(|health| health.samples = health.samples.saturating_add(1));
+            if !shared.keep.is_idle.get() {
+                shared.fail(reason);
+            }
+        }
+        self.renew();
+        Ok(())
+    }
+
+    /// Passes a coarse reading on to whoever keeps.
+    fn pass_on(&mut self) {
+        let shared = self.outlet.shared;
+        if let Some((at, reading)) = self.steady.reading() {
+            self.coarse.pass_on(at, &reading, shared);
         }
     }
 
@@ -85,15 +134,21 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: Steady, O: Observer>
         };
         let rate = self.rate().await?;
         self.steady.follow(shared).await?;
+        self.coarse.turn(time, rate);
+        self.pass_on();
         if !self.steady.is_decided() {
             shared.count(|health| health.samples += 1);
             return Ok(None);
         }
         let shown = self.pointing.read().await?;
         let force = self.forces.read(shared).await?.filter(|reading| !reading.is_clipped);
+        if P::FORCE_ON_BASE {
+            self.coarse.feel(force.map(|reading| reading.force));
+        }
         let (Some(rate), Some(shown)) = (rate, shown) else { return Ok(None) };
         self.outlet.judge(time);
         let aim = self.pointing.aim(shown);
+        self.coarse.point(self.pointing.elevation());
         Ok(Some(Sample {
             time: orientation::units::Instant(time.as_micros()),
             stage: aim.heading,

@@ -20,6 +20,7 @@ use super::forces::Forces;
 use super::outlet::Outlet;
 use super::rates::{Rates, silence};
 use crate::configuration::VehicleConfiguration;
+use crate::keep::Motion;
 use crate::patience::Symptom;
 use crate::ports::{Accelerometer, ForceReading, InStep, Observer, VehicleSensors};
 use crate::shared::Seams;
@@ -78,11 +79,14 @@ impl<'a, G: InStep, A: Accelerometer, O: Observer> TriadAcquisition<'a, G, A, O>
         }
     }
 
-    /// Samples until a sensor is given up; gives the reason.
-    pub async fn run(&mut self) -> Refusal {
-        match self.sample_for_ever().await {
-            Ok(never) => match never {},
-            Err(reason) => reason,
+    /// Samples; where a sensor is given up, tells why and tries again later if anybody keeps.
+    pub async fn run_for_ever(&mut self) {
+        loop {
+            let Err(reason) = self.sample_for_ever().await;
+            self.outlet.shared.fail(reason);
+            self.outlet.shared.keep.rest().await;
+            self.forces.renew();
+            self.gyros.iter_mut().for_each(|rates| rates.renew());
         }
     }
 
@@ -95,6 +99,7 @@ impl<'a, G: InStep, A: Accelerometer, O: Observer> TriadAcquisition<'a, G, A, O>
         self.begin().await;
         loop {
             if let Some(sample) = self.sample().await? {
+                shared.move_on(Motion::Moved(sample));
                 self.outlet.hand_over(sample);
             }
         }

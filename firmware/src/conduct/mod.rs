@@ -9,14 +9,16 @@ pub use rotating::Rotating;
 pub use stepwise::Stepwise;
 pub use stops::Stops;
 
+use core::convert::Infallible;
 use core::future::pending;
 
-use embassy_futures::select::{Either, select};
+use embassy_futures::select::{Either, Either3, select, select3};
 use embassy_time::{Duration, Instant, Timer};
 use orientation::earth::Latitude;
 use orientation::error::Refusal;
+use orientation::keep::Handover;
 use orientation::signal::sway::SwayNoise;
-use orientation::units::DEGREES_PER_RADIAN as DEGREES;
+use orientation::units::{self, DEGREES_PER_RADIAN as DEGREES};
 
 use crate::event::Event;
 use crate::link::Status;
@@ -59,6 +61,14 @@ pub trait Conducted<O, S> {
     /// Ends it with a reason.
     fn fail(&mut self, reason: Refusal);
 
+    /// When a sample was taken; none where nobody can keep what is found.
+    fn time(&self, _sample: &S) -> Option<units::Instant> {
+        None
+    }
+
+    /// Begins anew, in the same memory.
+    fn renew(&mut self) {}
+
     /// Tells what the last sample changed.
     fn follow(&mut self, shared: &Shared<'_, O>);
 
@@ -73,6 +83,22 @@ pub struct Conductor<'a, R, O, S> {
     recorder: &'a mut R,
     samples: &'a Queue<S>,
     shared: &'a Shared<'a, O>,
+    /// When the latest sample was taken that the session has.
+    taken: Option<units::Instant>,
+}
+
+/// Why a session comes to no conclusion of its own.
+enum Break {
+    /// It cannot go on.
+    Refused(Refusal),
+    /// Nobody needs it: the azimuth is known.
+    Spared,
+}
+
+impl From<Refusal> for Break {
+    fn from(reason: Refusal) -> Self {
+        Self::Refused(reason)
+    }
 }
 
 impl<'a, R: Recorder<S>, O: Observer, S> Conductor<'a, R, O, S> {
@@ -82,31 +108,58 @@ impl<'a, R: Recorder<S>, O: Observer, S> Conductor<'a, R, O, S> {
         recorder: &'a mut R,
         seams: &'a Seams<'a, O, S>,
     ) -> Self {
-        Self { session, recorder, samples: &seams.samples, shared: &seams.shared }
+        Self { session, recorder, samples: &seams.samples, shared: &seams.shared, taken: None }
     }
 
-    /// Conducts the session to its conclusion, then waits for the link to tell of it.
-    pub async fn run(&mut self) {
+    /// Conducts the session to its conclusion, and others when the keeper wants them.
+    pub async fn run(&mut self) -> Infallible {
         if !self.shared.homed.signaled() {
             self.shared.status.set(Status::Homing);
         }
-        self.shared.tell(self.session.outset());
-        if let Err(reason) = self.conduct().await {
-            self.session.fail(reason);
+        loop {
+            self.shared.tell(self.session.outset());
+            match self.conduct().await {
+                Ok(()) | Err(Break::Spared) => {}
+                Err(Break::Refused(reason)) => self.session.fail(reason),
+            }
+            self.conclude();
+            self.shared.concluded.signal(());
+            self.wait_for_another().await;
+            self.session.renew();
         }
-        self.conclude();
-        self.shared.concluded.signal(());
-        // The link ends the run once it has told the last status.
-        pending::<()>().await;
     }
 
-    async fn conduct(&mut self) -> Result<(), Refusal> {
+    /// Lets samples go by until the keeper wants another session. Where nobody keeps, the link ends the
+    /// run once it has told the last status.
+    async fn wait_for_another(&mut self) {
+        let keep = &self.shared.keep;
+        if !keep.is_wanted.get() {
+            pending::<()>().await;
+        }
+        keep.is_idle.set(true);
+        keep.is_kept.set(true);
+        if self.samples.is_empty() {
+            keep.catch_up();
+        }
+        while let Either::Second(_) = select(keep.again.wait(), self.samples.receive()).await {
+            if self.samples.is_empty() {
+                keep.catch_up();
+                Timer::after(REST).await;
+            }
+        }
+        keep.is_idle.set(false);
+        // What went wrong before is over, or comes again.
+        self.shared.failure.reset();
+    }
+
+    async fn conduct(&mut self) -> Result<(), Break> {
         self.check_place()?;
         self.wait_for_home().await?;
         self.session.allow_for(self.shared.sway.get());
         loop {
             let sample = self.sample().await?;
             self.recorder.record(&sample).await;
+            self.taken = self.session.time(&sample);
             let step = self.session.take(&sample);
             self.session.follow(self.shared);
             match step {
@@ -115,6 +168,7 @@ impl<'a, R: Recorder<S>, O: Observer, S> Conductor<'a, R, O, S> {
                 Step::Finish => return Ok(()),
             }
             if self.samples.is_empty() {
+                self.shared.keep.catch_up();
                 Timer::after(REST).await;
             }
         }
@@ -130,22 +184,27 @@ impl<'a, R: Recorder<S>, O: Observer, S> Conductor<'a, R, O, S> {
     }
 
     /// Lets samples go by until angles mean something.
-    async fn wait_for_home(&self) -> Result<(), Refusal> {
+    async fn wait_for_home(&self) -> Result<(), Break> {
         let deadline = Instant::now() + HOMING;
         while !self.shared.homed.signaled() {
             self.sample().await?;
+            if self.samples.is_empty() {
+                self.shared.keep.catch_up();
+            }
             if Instant::now() > deadline {
-                return Err(Refusal::TimeExhausted);
+                return Err(Refusal::TimeExhausted.into());
             }
         }
         Ok(())
     }
 
     /// The next sample, or why there will be none.
-    async fn sample(&self) -> Result<S, Refusal> {
-        match select(self.shared.failure.wait(), self.samples.receive()).await {
-            Either::First(reason) => Err(reason),
-            Either::Second(sample) => Ok(sample),
+    async fn sample(&self) -> Result<S, Break> {
+        let Shared { failure, keep, .. } = self.shared;
+        match select3(failure.wait(), self.samples.receive(), keep.spare.wait()).await {
+            Either3::First(reason) => Err(reason.into()),
+            Either3::Second(sample) => Ok(sample),
+            Either3::Third(()) => Err(Break::Spared),
         }
     }
 
@@ -156,6 +215,10 @@ impl<'a, R: Recorder<S>, O: Observer, S> Conductor<'a, R, O, S> {
                 let [angle, sigma, limit] = found.map(|angle| angle * DEGREES);
                 self.shared.tell(Event::Concluded(angle, sigma, limit));
                 self.shared.status.set(Status::concluded(angle, sigma));
+                let [azimuth, sigma, _] = found;
+                if let Some(taken) = self.taken {
+                    self.shared.keep.found.signal((taken, Handover { azimuth, sigma }));
+                }
             }
             Some(Err(reason)) => {
                 self.shared.tell(Event::Refused(reason));

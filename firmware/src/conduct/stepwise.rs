@@ -7,7 +7,7 @@ use orientation::session::schedule::Schedule;
 use orientation::session::{Command, Event as SessionEvent, Phase, Session};
 use orientation::signal::Sample;
 use orientation::signal::sway::SwayNoise;
-use orientation::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN as DEGREES};
+use orientation::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN as DEGREES, Instant};
 
 use super::{Conducted, Step, tell_level};
 use crate::event::Event;
@@ -65,6 +65,23 @@ impl<O: Observer> Conducted<O, Sample> for Stepwise<'_> {
 
     fn fail(&mut self, reason: Refusal) {
         self.session.handle(SessionEvent::Failed(reason));
+    }
+
+    fn time(&self, sample: &Sample) -> Option<Instant> {
+        Some(sample.time)
+    }
+
+    // Not inlined: what it is made of on the stack is not to stay there.
+    #[inline(never)]
+    fn renew(&mut self) {
+        self.told = Told::default();
+        let mut procedure = self.session.procedure().clone();
+        // What a survey found is in the setting and the schedule.
+        procedure.survey = None;
+        // A procedure that was possible is possible again.
+        if let Ok(session) = Session::new(*self.session.setting(), procedure) {
+            *self.session = session;
+        }
     }
 
     fn follow(&mut self, shared: &Shared<'_, O>) {

@@ -25,6 +25,8 @@ const GYROS: [Device; 3] = [Device::ForwardGyro, Device::RightGyro, Device::Down
 pub struct Stops<'a, W> {
     session: &'a mut Session,
     whereabouts: &'a mut W,
+    /// Where the first stop is; none where a later session does not know it yet.
+    origin: Option<[f64; 2]>,
     told: Told,
 }
 
@@ -43,27 +45,39 @@ struct Told {
     may_drive: bool,
 }
 
-impl<'a, W: Whereabouts> Stops<'a, W> {
-    /// A session of which nothing was told.
-    pub fn new(session: &'a mut Session, whereabouts: &'a mut W) -> Self {
-        let told = Told {
+impl Told {
+    /// Nothing yet of a session that has not begun.
+    fn of(session: &Session) -> Self {
+        Self {
             phase: session.phase(),
             since: Instant::default(),
             now: Instant::default(),
             placed: 0,
             place: None,
             may_drive: false,
-        };
-        Self { session, whereabouts, told }
+        }
+    }
+}
+
+impl<'a, W: Whereabouts> Stops<'a, W> {
+    /// A session of which nothing was told.
+    pub fn new(session: &'a mut Session, whereabouts: &'a mut W) -> Self {
+        let told = Told::of(session);
+        Self { session, whereabouts, origin: Some([0.0; 2]), told }
     }
 
     /// Tells the session where it stands, as soon as that is known.
     fn place(&mut self) {
         let Phase::Standing(index) = self.session.phase() else { return };
+        if index == 0 && self.origin.is_none() {
+            self.origin = self.whereabouts.displacement();
+        }
         if index <= self.told.placed {
             return;
         }
-        self.told.place = self.whereabouts.displacement();
+        let here = self.whereabouts.displacement();
+        self.told.place =
+            here.zip(self.origin).map(|(here, origin)| [here[0] - origin[0], here[1] - origin[1]]);
         if let Some(place) = self.told.place {
             self.told.placed = index;
             self.session.handle(SessionEvent::Displaced(place));
@@ -96,6 +110,19 @@ impl<W: Whereabouts, O: Observer> Conducted<O, InertialSample> for Stops<'_, W> 
 
     fn fail(&mut self, reason: Refusal) {
         self.session.handle(SessionEvent::Failed(reason));
+    }
+
+    fn time(&self, sample: &InertialSample) -> Option<Instant> {
+        Some(sample.time)
+    }
+
+    // Not inlined: what it is made of on the stack is not to stay there.
+    #[inline(never)]
+    fn renew(&mut self) {
+        let (setting, procedure) = (*self.session.setting(), self.session.procedure().clone());
+        *self.session = Session::of(setting, procedure);
+        self.told = Told::of(self.session);
+        self.origin = None;
     }
 
     fn follow(&mut self, shared: &Shared<'_, O>) {

@@ -8,12 +8,17 @@ use drivers::lsm6dsl::registers::{ADDRESS_LOW, OutputRate};
 use drivers::lsm6dsl::{self, Lsm6dsl};
 use embassy_time::{Delay, Instant};
 use hal_mock::chip::Single;
+use hal_mock::fault::{FaultyI2c, When};
 use hal_mock::i2c::{I2cChip, I2cPort};
 use hal_mock::lsm6dsl::Lsm6dsl as SimulatedImu;
 use hal_mock::plant::base::{Base, CoarseConfiguration};
+use hal_mock::plant::journey::JourneyConfiguration;
 use hal_mock::plant::sway::{SwayComponent, SwayConfiguration};
 use hal_mock::violation::Violation;
+use orientation::keep;
+use orientation::noise::model::GyroNoise;
 use orientation::signal::sway::CoarseSensors;
+use orientation::units::DEGREE;
 
 use super::scenario::Scenario;
 use crate::chips::BaseImu;
@@ -26,6 +31,8 @@ const CLOCK: f64 = 1.015;
 const RATE_BIAS: f64 = 3.0;
 /// 1σ of the accelerometers' offset, mg: ±40 mg (data sheet, `LA_TyOff`) at two σ.
 const FORCE_BIAS: f64 = 20.0;
+/// The same once they are calibrated, as they are where they keep pitch and roll.
+const CALIBRATED: f64 = 2.0;
 /// 1σ of the scale of each axis: ±1 % at two σ, as later chips of the family state it.
 const SCALE: f64 = 0.005;
 /// From the point that the base sways about to the chip, body axes, m: it stands above it.
@@ -53,7 +60,7 @@ impl CoarseClass {
 }
 
 /// A base IMU and the base under it.
-pub type Rig = Single<SimulatedImu, Base>;
+pub type Rig<'a> = Single<SimulatedImu, Base<'a>>;
 
 /// The sway of a scenario: roll and pitch of its amplitude, azimuth of half of it, at frequencies
 /// that fall into no step with each other and phases that depend on the seed.
@@ -75,24 +82,33 @@ pub fn sway(scenario: &Scenario) -> SwayConfiguration {
 
 /// The base IMU of a scenario, which gets its supply when the clock begins.
 #[must_use]
-pub fn rig(scenario: &Scenario) -> Rig {
+pub fn rig<'a>(scenario: &Scenario, journey: Option<&JourneyConfiguration<'a>>) -> Rig<'a> {
     let coarse = CoarseConfiguration {
         rate_hz: f64::from(output(scenario).hertz()) * CLOCK,
         rate_noise_mdps_sqrt_hz: scenario.coarse.rate_mdps_sqrt_hz,
         rate_bias_sigma_deg_s: RATE_BIAS,
         force_noise_ug_sqrt_hz: scenario.coarse.force_ug_sqrt_hz,
-        force_bias_sigma_mg: FORCE_BIAS,
+        force_bias_sigma_mg: if journey.is_some() { CALIBRATED } else { FORCE_BIAS },
         scale_sigma: SCALE,
         lever_m: LEVER,
     };
-    let environment = Base::new(&scenario.instruments(), &sway(scenario), &coarse, scenario.seed);
+    let instruments = scenario.instruments();
+    let base = Base::new(&instruments, &sway(scenario), &coarse, scenario.seed);
+    let environment = match journey {
+        Some(journey) => base.riding(journey, &instruments),
+        None => base,
+    };
     Single { chip: SimulatedImu::new(Instant::MIN, ADDRESS_LOW, CLOCK), environment }
 }
 
-/// The port of a base IMU.
+/// The port of a base IMU, whose bus is lost at some time.
 #[must_use]
-pub fn imu<'a>(rig: &'a RefCell<Rig>, scenario: &Scenario) -> BaseImu<I2cPort<'a, Rig>, Delay> {
-    let bus = I2cPort::new(rig, lsm6dsl::BUS_HERTZ);
+pub fn imu<'r, 'a>(
+    rig: &'r RefCell<Rig<'a>>,
+    scenario: &Scenario,
+    lost: Option<When>,
+) -> BaseImu<FaultyI2c<I2cPort<'r, Rig<'a>>>, Delay> {
+    let bus = FaultyI2c::new(I2cPort::new(rig, lsm6dsl::BUS_HERTZ), lost);
     let configuration =
         lsm6dsl::Configuration { output: output(scenario), ..lsm6dsl::Configuration::default() };
     BaseImu {
@@ -104,7 +120,7 @@ pub fn imu<'a>(rig: &'a RefCell<Rig>, scenario: &Scenario) -> BaseImu<I2cPort<'a
 
 /// What the driver did that the data sheet forbids.
 #[must_use]
-pub fn violations(rig: &Rig) -> &[Violation] {
+pub fn violations<'r>(rig: &'r Rig<'_>) -> &'r [Violation] {
     I2cChip::<Base>::violations(&rig.chip).first()
 }
 
@@ -134,4 +150,23 @@ fn sensors(scenario: &Scenario) -> CoarseSensors {
         lever: 0.4,
         ..CoarseSensors::of_densities(rate_mdps_sqrt_hz * lost, force_ug_sqrt_hz * lost)
     }
+}
+
+/// Seconds between two readings, as the keeper is told.
+#[must_use]
+pub(super) fn period(scenario: &Scenario) -> f64 {
+    f64::from(divider(scenario)) / scenario.sample_rate_hz
+}
+
+/// The coarse gyros as the keeper is told, and 1σ of the accelerometers' offsets, m/s².
+pub(super) fn gyros(scenario: &Scenario) -> ([keep::Gyro; 3], f64) {
+    let walk = STATED * scenario.coarse.rate_mdps_sqrt_hz * 1e-3 * 60.0;
+    let class = keep::Gyro::coarse();
+    let noise = GyroNoise::from_field_units(walk, 0.0, 0.0, 0.0);
+    let gyro = keep::Gyro {
+        noise: GyroNoise { angle_random_walk: noise.angle_random_walk, ..class.noise },
+        bias_sigma: RATE_BIAS * DEGREE,
+        scale_sigma: SCALE,
+    };
+    ([gyro; 3], CALIBRATED * 1e-3 * 9.80665)
 }

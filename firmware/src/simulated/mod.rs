@@ -5,6 +5,7 @@
 pub mod base;
 pub mod fault;
 pub mod flash;
+pub mod keep;
 pub mod mount;
 pub mod scenario;
 pub mod turntable;
@@ -25,6 +26,7 @@ use hal_mock::adxl355::Adxl355 as SimulatedAccelerometer;
 use hal_mock::board::Board;
 use hal_mock::chip::{Rig, Select};
 use hal_mock::mt6835::Mt6835 as SimulatedEncoder;
+use hal_mock::plant::journey::JourneyConfiguration;
 use hal_mock::plant::train::StageConfiguration;
 use hal_mock::plant::{Plant, PlantConfiguration};
 use hal_mock::spi::{ReadyPin, SpiPort};
@@ -50,6 +52,17 @@ pub type Chips<'a> =
 #[must_use]
 pub fn board<'a>(scenario: &Scenario, plan: &'a Plan) -> Chips<'a> {
     board_around(&scenario.plant(), scenario.seed, plan)
+}
+
+/// The same on a base that drives off.
+#[must_use]
+pub fn board_riding<'a>(
+    scenario: &Scenario,
+    journey: JourneyConfiguration<'a>,
+    plan: &'a Plan,
+) -> Chips<'a> {
+    let plant = PlantConfiguration { journey: Some(journey), ..scenario.plant() };
+    board_around(&plant, scenario.seed, plan)
 }
 
 /// The same around any plant.

@@ -11,9 +11,11 @@ use drivers::mt6835::{self, Mt6835};
 use drivers::tmc5160::{self, Tmc5160};
 use embassy_time::Delay;
 use hal_mock::chip::Select;
+use hal_mock::fault::{FaultPlan, FaultySpi};
 use hal_mock::gimbal::board::{CHIPS, GimbalBoard};
 use hal_mock::gimbal::{FrameConfiguration, Gimbal, GimbalConfiguration, Misalignment};
 use hal_mock::noise::Generator;
+use hal_mock::plant::journey::JourneyConfiguration;
 use hal_mock::plant::train::StageConfiguration;
 use hal_mock::plant::{PlantConfiguration, StageFault};
 use hal_mock::spi::{ReadyPin, SpiPort};
@@ -21,12 +23,14 @@ use hal_mock::violation::Violation;
 use orientation::align::POSITIONS;
 use orientation::align::mount::{ARRIVAL, MountError, TWO_FRAMES, TwoFrame, azimuth_sigma};
 use orientation::align::setting::Setting;
+use orientation::keep;
 use orientation::planner::Rotation;
 use orientation::planner::order::Order;
 use orientation::session::procedure::Procedure;
 use orientation::session::schedule::{Position, Schedule};
 use orientation::units::DEGREE;
 
+use super::keep::Day;
 use super::scenario::{self, Scenario, Turning};
 use super::{CONVERTER_HERTZ, OSCILLATOR};
 use crate::chips;
@@ -42,6 +46,9 @@ const FORCE_BIAS_SIGMA: f64 = 1e-4 * 9.80665;
 const ROTATION: Rotation =
     Rotation { rest: scenario::ROTATION.rest + 1.5, speed: 0.35, wraps: true };
 
+/// What a movement of the frames takes, s, more than a usual one of a stage: half a turn is the longest.
+const FRAMES_SECONDS: f64 = 7.0;
+
 /// The headings of a pass in their order, °: opposite ones follow each other, so that drift cancels.
 const PASS: [f64; 4] = [0.0, 180.0, 90.0, 270.0];
 
@@ -55,6 +62,10 @@ pub struct FramePlan {
     pub outer: heapless::Vec<StageFault, 2>,
     /// Of the inner one.
     pub inner: heapless::Vec<StageFault, 2>,
+    /// What goes wrong with the bus of the gyro's converter.
+    pub gyro: Option<FaultPlan>,
+    /// The same of the accelerometer's.
+    pub accelerometer: Option<FaultPlan>,
 }
 
 /// A simulated alignment on a two-frame mount.
@@ -143,6 +154,16 @@ impl FramesScenario {
     /// What is true of everything that the chips feel and move.
     #[must_use]
     pub fn gimbal<'a>(&self, plan: &'a FramePlan) -> GimbalConfiguration<'a> {
+        self.gimbal_riding(plan, None)
+    }
+
+    /// The same on a base that drives off.
+    #[must_use]
+    pub fn gimbal_riding<'a>(
+        &self,
+        plan: &'a FramePlan,
+        journey: Option<JourneyConfiguration<'a>>,
+    ) -> GimbalConfiguration<'a> {
         let mut chance = Generator::stream(self.base.seed, STREAM);
         let mut left = |sigma: f64| sigma * chance.gaussian();
         let told = &self.calibrated;
@@ -152,7 +173,7 @@ impl FramesScenario {
             frames_rad: told.frames + left(self.orthogonality_sigma),
             gyro_rad: told.gyro + left(self.orthogonality_sigma),
         };
-        let mut plant = self.base.plant();
+        let mut plant = PlantConfiguration { journey, ..self.base.plant() };
         plant.instruments.accelerometer.bias_sigma_m_s2 = FORCE_BIAS_SIGMA;
         let sigma = scenario::G_SENSITIVITY_SIGMA;
         for part in &mut plant.instruments.gyro.g_sensitivity_deg_h_g {
@@ -172,7 +193,31 @@ impl FramesScenario {
     /// The simulated board.
     #[must_use]
     pub fn board<'a>(&self, plan: &'a FramePlan) -> GimbalBoard<'a> {
-        GimbalBoard::new(Gimbal::new(&self.gimbal(plan), self.base.seed), OSCILLATOR)
+        self.board_riding(plan, None)
+    }
+
+    /// The same on a base that drives off.
+    #[must_use]
+    pub fn board_riding<'a>(
+        &self,
+        plan: &'a FramePlan,
+        journey: Option<JourneyConfiguration<'a>>,
+    ) -> GimbalBoard<'a> {
+        let gimbal = Gimbal::new(&self.gimbal_riding(plan, journey), self.base.seed);
+        GimbalBoard::new(gimbal, OSCILLATOR)
+    }
+
+    /// What the keeper is told of place and gyros; none where the latitude is none.
+    #[must_use]
+    pub fn keeper(&self) -> Option<keep::Setting> {
+        let keeper = self.base.keeper()?;
+        Some(keep::Setting { force_bias_sigma: FORCE_BIAS_SIGMA, ..keeper })
+    }
+
+    /// Where the base goes after the alignment.
+    #[must_use]
+    pub fn day(&self) -> Day {
+        self.base.day_of(&self.procedure(), ROTATION.rest + FRAMES_SECONDS)
     }
 }
 
@@ -194,31 +239,33 @@ fn frame<'a>(
 }
 
 /// The bus of a chip on the simulated board.
-type Bus<'a> = SpiPort<'a, GimbalBoard<'a>>;
+type Bus<'r, 'a> = FaultySpi<SpiPort<'r, GimbalBoard<'a>>>;
 
 /// The sensors of the simulated board.
-pub type FrameSensors<'a> = Sensors<
-    chips::AnalogueGyro<Bus<'a>, ReadyPin<'a, GimbalBoard<'a>>, Delay>,
-    chips::PlatformAccelerometer<Bus<'a>, Delay>,
-    Frames<chips::StageEncoder<Bus<'a>, Delay>>,
+pub type FrameSensors<'r, 'a> = Sensors<
+    chips::AnalogueGyro<Bus<'r, 'a>, ReadyPin<'r, GimbalBoard<'a>>, Delay>,
+    chips::PlatformAccelerometer<Bus<'r, 'a>, Delay>,
+    Frames<chips::StageEncoder<Bus<'r, 'a>, Delay>>,
 >;
 
 /// Its other ports.
-pub type FramePorts<'a, L, R> = Ports<Frames<chips::StageMotor<Bus<'a>, Delay>>, L, R>;
+pub type FramePorts<'r, 'a, L, R> = Ports<Frames<chips::StageMotor<Bus<'r, 'a>, Delay>>, L, R>;
 
 /// The sensors of a simulated board.
 #[must_use]
-pub fn sensors<'a>(
-    board: &'a RefCell<GimbalBoard<'a>>,
+pub fn sensors<'r, 'a>(
+    board: &'r RefCell<GimbalBoard<'a>>,
     scenario: &FramesScenario,
-) -> FrameSensors<'a> {
+    plan: &FramePlan,
+) -> FrameSensors<'r, 'a> {
+    let bus = |select, hertz, fault| FaultySpi::new(SpiPort::new(board, select, hertz), fault);
     let encoder = |select| {
-        let bus = SpiPort::new(board, select, mt6835::BUS_HERTZ);
+        let bus = bus(select, mt6835::BUS_HERTZ, None);
         chips::StageEncoder(Mt6835::new(bus, Delay, mt6835::Configuration::default()))
     };
-    let converter = SpiPort::new(board, Select::Gyro, CONVERTER_HERTZ);
+    let converter = bus(Select::Gyro, CONVERTER_HERTZ, plan.gyro);
     let ready = ReadyPin::new(board, Select::Gyro);
-    let accelerometer = SpiPort::new(board, Select::Accelerometer, adxl355::BUS_HERTZ);
+    let accelerometer = bus(Select::Accelerometer, adxl355::BUS_HERTZ, plan.accelerometer);
     let accelerometer = Adxl355::new(accelerometer, Delay, scenario::accelerometer());
     Sensors {
         gyro: chips::AnalogueGyro {
@@ -233,13 +280,13 @@ pub fn sensors<'a>(
 }
 
 /// The other ports of a simulated board.
-pub fn ports<'a, L, R>(
-    board: &'a RefCell<GimbalBoard<'a>>,
+pub fn ports<'r, 'a, L, R>(
+    board: &'r RefCell<GimbalBoard<'a>>,
     link: L,
     recorder: R,
-) -> FramePorts<'a, L, R> {
+) -> FramePorts<'r, 'a, L, R> {
     let motor = |select| {
-        let bus = SpiPort::new(board, select, tmc5160::BUS_HERTZ);
+        let bus = FaultySpi::new(SpiPort::new(board, select, tmc5160::BUS_HERTZ), None);
         let configuration = tmc5160::configuration::Configuration::default();
         chips::StageMotor(Tmc5160::new(bus, Delay, configuration))
     };

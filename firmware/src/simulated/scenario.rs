@@ -22,6 +22,7 @@ use orientation::session::survey::Survey;
 use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR};
 
 use super::base::{self, CoarseClass};
+use super::keep::Hold;
 use crate::calibration::Harmonics;
 use crate::configuration::Configuration;
 
@@ -177,6 +178,8 @@ pub struct Scenario {
     pub has_base_imu: bool,
     /// Its class.
     pub coarse: CoarseClass,
+    /// How it goes on after the alignment.
+    pub hold: Hold,
 }
 
 impl Default for Scenario {
@@ -201,6 +204,7 @@ impl Default for Scenario {
             sway_hz: 0.5,
             has_base_imu: false,
             coarse: CoarseClass::LSM6DSL,
+            hold: Hold::default(),
         }
     }
 }

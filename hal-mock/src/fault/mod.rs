@@ -9,11 +9,13 @@
 //! passes everything on unchanged. A fault of the stage is a [`crate::plant::StageFault`], a rate
 //! beyond the gyro's range or a slammed door a [`crate::disturbance::Disturbance`].
 
+mod i2c;
 mod ready;
 mod spi;
 
 use embassy_time::{Duration, Instant};
 
+pub use self::i2c::FaultyI2c;
 pub use self::ready::FaultyReady;
 pub use self::spi::{BusFault, FaultPlan, FaultySpi};
 use crate::chip::Select;

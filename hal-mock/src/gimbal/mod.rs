@@ -22,6 +22,7 @@ use crate::gyro::{DEGREE_PER_HOUR, Gyro};
 use crate::instruments::BaseMotion;
 use crate::noise::{White, source};
 use crate::plant::drive::Drive;
+use crate::plant::journey::Journey;
 use crate::plant::sway::SwayConfiguration;
 use crate::plant::train::StageConfiguration;
 use crate::plant::{PlantConfiguration, STANDARD_GRAVITY_M_S2, StageFault, seconds};
@@ -134,6 +135,9 @@ pub struct Gimbal<'a> {
     attitude: Attitude,
     site: Site,
     sway: Option<SwayConfiguration>,
+    journey: Option<Journey<'a>>,
+    /// Periods of the gyro's converter and of the accelerometer, s.
+    periods_s: [f64; 2],
     gyro: Gyro,
     accelerometer: Accelerometer,
     temperature: TemperatureConfiguration,
@@ -192,6 +196,11 @@ impl<'a> Gimbal<'a> {
             attitude,
             site: Site::new(instruments.latitude_deg.to_radians(), &attitude),
             sway: Some(configuration.plant.sway).filter(SwayConfiguration::is_active),
+            journey: configuration.plant.journey.map(|journey| {
+                let latitude_rad = instruments.latitude_deg.to_radians();
+                Journey::new(&journey, latitude_rad, attitude.azimuth_rad, [0.0; 3])
+            }),
+            periods_s: [1.0 / instruments.rate_hz, 1.0 / accelerometer_hz],
             gyro: Gyro::new(&instruments.gyro, instruments.rate_hz, seed),
             accelerometer: Accelerometer::new(&instruments.accelerometer, accelerometer_hz, seed),
             temperature: instruments.temperature,
@@ -226,9 +235,15 @@ impl<'a> Gimbal<'a> {
         Side { gimbal: self, is_inner: true }
     }
 
-    fn felt(&mut self, now: Instant) -> Felt {
+    /// What is felt by the gyro's converter, 0, or by the accelerometer, 1.
+    fn felt(&mut self, chip: usize, now: Instant) -> Felt {
         self.advance(now);
         let frames = self.frames();
+        let (time_s, period_s) = (seconds(now), self.periods_s[chip]);
+        if let Some(means) = self.journey.as_mut().and_then(|way| way.felt(chip, time_s, period_s))
+        {
+            return self.felt_of(means.rate_rad_s, means.force_m_s2, frames);
+        }
         if let Some(sway) = &self.sway {
             let motion = sway.at(seconds(now));
             return self.felt_on(&motion, frames);
@@ -247,22 +262,25 @@ impl<'a> Gimbal<'a> {
             roll_rad: self.attitude.roll_rad + motion.lean.roll_rad,
         };
         let base = self.site.with_attitude(&attitude).on_platform(0.0);
+        let own = motion.body_rad_s(&attitude);
+        let rate_rad_s = core::array::from_fn(|i| base.rate_rad_s[i] + own[i]);
+        self.felt_of(rate_rad_s, base.force_m_s2, frames)
+    }
+
+    /// What is felt where the base turns and feels a force like this, on its axes.
+    fn felt_of(&self, turn: [f64; 3], force_m_s2: [f64; 3], frames: [StageState; 2]) -> Felt {
         let [outer, inner] = frames;
         let axes = self.misalignment.axes(outer.angle_rad, inner.angle_rad);
-        let own = motion.body_rad_s(&attitude);
         let rate: [f64; 3] = core::array::from_fn(|i| {
-            base.rate_rad_s[i]
-                + own[i]
-                + outer.rate_rad_s * axes.outer[i]
-                + inner.rate_rad_s * axes.inner[i]
+            turn[i] + outer.rate_rad_s * axes.outer[i] + inner.rate_rad_s * axes.inner[i]
         });
         let gravity = self.site.gravity_m_s2();
-        let [along, inner_g, third_g] = [axes.sensitive, axes.inner, axes.third]
-            .map(|axis| dot(axis, base.force_m_s2) / gravity);
+        let [along, inner_g, third_g] =
+            [axes.sensitive, axes.inner, axes.third].map(|axis| dot(axis, force_m_s2) / gravity);
         let force_g = [along, inner_g];
         let steady_rad_s =
             self.gyro.steady(dot(axes.sensitive, rate), force_g) + third_g * self.third_rad_s;
-        Felt { frames, steady_rad_s, force_g, force_m_s2: base.force_m_s2 }
+        Felt { frames, steady_rad_s, force_g, force_m_s2 }
     }
 
     fn effect(&self, now: Instant) -> Effect {
@@ -281,7 +299,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 impl AnalogueInput for Gimbal<'_> {
     fn volts(&mut self, now: Instant) -> f64 {
-        let (felt, added) = (self.felt(now), self.effect(now).rate_rad_s);
+        let (felt, added) = (self.felt(0, now), self.effect(now).rate_rad_s);
         let temperature_c = self.temperature.at(seconds(now));
         let elapsed_s = seconds(now);
         let rate_rad_s = self.gyro.sample_under(
@@ -298,7 +316,7 @@ impl AnalogueInput for Gimbal<'_> {
 /// The accelerometer's axes are those of the base: forward, right, down.
 impl ForceInput for Gimbal<'_> {
     fn force_g(&mut self, now: Instant) -> [f64; 3] {
-        let (force, effect) = (self.felt(now).force_m_s2, self.effect(now).force_m_s2);
+        let (force, effect) = (self.felt(1, now).force_m_s2, self.effect(now).force_m_s2);
         let felt = core::array::from_fn(|i| force[i] + effect[i]);
         self.accelerometer.sample(felt).map(|force| force / STANDARD_GRAVITY_M_S2)
     }

@@ -7,11 +7,15 @@
 use embassy_time::Instant;
 
 use super::STANDARD_GRAVITY_M_S2;
+use super::journey::{BaseFault, Journey, JourneyConfiguration};
 use super::sway::SwayConfiguration;
 use crate::earth::{Attitude, Site};
 use crate::environment::{ForceInput, MotionInput};
 use crate::instruments::InstrumentsConfiguration;
 use crate::noise::{Generator, White, source};
+
+/// A rate beyond any range of a coarse gyro, rad/s.
+const BEYOND_RAD_S: f64 = 100.0;
 
 /// Half the time over which the angular acceleration is taken, s: sways are slower by far.
 const HALF_STEP_S: f64 = 1e-3;
@@ -37,7 +41,12 @@ pub struct CoarseConfiguration {
 
 /// The base at work under its coarse sensors.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Base {
+pub struct Base<'a> {
+    journey: Option<Journey<'a>>,
+    faults: &'a [BaseFault],
+    /// What was shown last: rates, rad/s, and forces, g.
+    shown: [[f64; 3]; 2],
+    period_s: f64,
     attitude: Attitude,
     site: Site,
     sway: SwayConfiguration,
@@ -69,7 +78,41 @@ impl Errors {
     }
 }
 
-impl Base {
+impl<'a> Base<'a> {
+    /// The same base, which drives off.
+    #[must_use]
+    pub fn riding(
+        mut self,
+        journey: &JourneyConfiguration<'a>,
+        instruments: &InstrumentsConfiguration,
+    ) -> Self {
+        let latitude_rad = instruments.latitude_deg.to_radians();
+        let azimuth_rad = instruments.attitude().azimuth_rad;
+        self.journey = Some(Journey::new(journey, latitude_rad, azimuth_rad, [0.0; 3]));
+        self.faults = journey.faults;
+        self
+    }
+
+    /// What is shown instead of `values`, the `index`-th sensor's, at a time in s.
+    fn spoilt(&mut self, index: usize, time_s: f64, values: [f64; 3]) -> [f64; 3] {
+        let mut shown = values;
+        for fault in self.faults {
+            match *fault {
+                BaseFault::Clipped { from_s, until_s }
+                    if index == 0 && (from_s..until_s).contains(&time_s) =>
+                {
+                    shown = [BEYOND_RAD_S; 3];
+                }
+                BaseFault::Stuck { from_s, until_s } if (from_s..until_s).contains(&time_s) => {
+                    shown = self.shown[index];
+                }
+                _ => {}
+            }
+        }
+        self.shown[index] = shown;
+        shown
+    }
+
     /// The base of these instruments, swaying like this, with sensors of such errors.
     #[must_use]
     pub fn new(
@@ -87,6 +130,10 @@ impl Base {
         let white = |sigma, source| White::new(sigma, seed, source);
         let mut errors = |bias, white| Errors::new(&mut start, coarse.scale_sigma, bias, white);
         Self {
+            journey: None,
+            faults: &[],
+            shown: [[0.0; 3]; 2],
+            period_s: 1.0 / coarse.rate_hz,
             attitude,
             site: Site::new(instruments.latitude_deg.to_radians(), &attitude),
             sway: *sway,
@@ -124,9 +171,13 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-impl ForceInput for Base {
+impl ForceInput for Base<'_> {
     fn force_g(&mut self, now: Instant) -> [f64; 3] {
-        let time_s = super::seconds(now);
+        let (time_s, period_s) = (super::seconds(now), self.period_s);
+        if let Some(felt) = self.journey.as_mut().and_then(|way| way.felt(1, time_s, period_s)) {
+            let shown = self.sensors[1].show(felt.force_m_s2);
+            return self.spoilt(1, time_s, shown.map(|force| force / STANDARD_GRAVITY_M_S2));
+        }
         let (attitude, turning) = self.motion(time_s);
         let standing = self.site.with_attitude(&attitude).on_platform(0.0).force_m_s2;
         let lever = self.lever_m_s2(time_s, turning);
@@ -140,9 +191,14 @@ impl ForceInput for Base {
     }
 }
 
-impl MotionInput for Base {
+impl MotionInput for Base<'_> {
     fn rate_rad_s(&mut self, now: Instant) -> [f64; 3] {
-        let (attitude, turning) = self.motion(super::seconds(now));
+        let (time_s, period_s) = (super::seconds(now), self.period_s);
+        if let Some(felt) = self.journey.as_mut().and_then(|way| way.felt(0, time_s, period_s)) {
+            let shown = self.sensors[0].show(felt.rate_rad_s);
+            return self.spoilt(0, time_s, shown);
+        }
+        let (attitude, turning) = self.motion(time_s);
         let earth = self.site.with_attitude(&attitude).on_platform(0.0).rate_rad_s;
         self.sensors[0].show([0, 1, 2].map(|i| earth[i] + turning[i]))
     }

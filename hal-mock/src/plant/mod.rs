@@ -14,6 +14,7 @@
 
 pub mod base;
 pub(crate) mod drive;
+pub mod journey;
 mod ringing;
 pub mod sway;
 pub mod train;
@@ -26,6 +27,7 @@ use crate::environment::{AnalogueInput, ForceInput, Mechanics, ShaftAngle};
 use crate::instruments::{Instruments, InstrumentsConfiguration, Truth};
 use crate::noise::{White, source};
 use drive::Drive;
+use journey::{Journey, JourneyConfiguration};
 use sway::SwayConfiguration;
 use train::StageConfiguration;
 
@@ -87,6 +89,8 @@ pub struct PlantConfiguration<'a> {
     pub stage: StageConfiguration,
     /// Sway of the base.
     pub sway: SwayConfiguration,
+    /// Where the base goes, if it leaves.
+    pub journey: Option<JourneyConfiguration<'a>>,
     /// Bumps, nudges and overloads; their times count from the start of the clock.
     pub disturbances: &'a [Disturbance],
     /// Faults of the stage, in any order.
@@ -105,6 +109,7 @@ impl Default for PlantConfiguration<'_> {
             converter_noise_v: 0.0,
             stage: StageConfiguration::default(),
             sway: SwayConfiguration::default(),
+            journey: None,
             disturbances: &[],
             faults: &[],
         }
@@ -118,6 +123,9 @@ pub struct Plant<'a> {
     drive: Drive<'a>,
     /// The base's sway, where it sways.
     sway: Option<SwayConfiguration>,
+    journey: Option<Journey<'a>>,
+    /// Periods of the gyro's converter and of the accelerometer, s.
+    periods_s: [f64; 2],
     /// Moment of the latest pose on a swaying base.
     swayed_at: Option<Instant>,
     lever: Lever,
@@ -140,6 +148,12 @@ impl<'a> Plant<'a> {
             instruments: Instruments::with_accelerometer_at(&c.instruments, accelerometer_hz, seed),
             drive: Drive::new(&c.stage, c.faults),
             sway: c.sway.is_active().then_some(c.sway),
+            journey: c.journey.map(|journey| {
+                let latitude_rad = c.instruments.latitude_deg.to_radians();
+                let azimuth_rad = c.instruments.attitude().azimuth_rad;
+                Journey::new(&journey, latitude_rad, azimuth_rad, [0.0; 3])
+            }),
+            periods_s: [1.0 / c.instruments.rate_hz, 1.0 / accelerometer_hz],
             swayed_at: None,
             lever: Lever::new(c.accelerometer_lever_m),
             converter: White::new(c.converter_noise_v, seed, source::CONVERTER),
@@ -183,6 +197,17 @@ impl<'a> Plant<'a> {
         }
     }
 
+    /// The same for the reading of the gyro's converter, 0, or of the accelerometer, 1.
+    #[inline]
+    fn feel(&mut self, chip: usize, now: Instant) {
+        self.look(now);
+        let period_s = self.periods_s[chip];
+        let journey = self.journey.as_mut();
+        if let Some(means) = journey.and_then(|way| way.felt(chip, seconds(now), period_s)) {
+            self.instruments.ride(self.drive.state(), &means);
+        }
+    }
+
     /// What the disturbances add at `now`.
     #[inline]
     fn effect(&self, now: Instant) -> Effect {
@@ -200,7 +225,7 @@ pub(crate) fn seconds(now: Instant) -> f64 {
 
 impl AnalogueInput for Plant<'_> {
     fn volts(&mut self, now: Instant) -> f64 {
-        self.look(now);
+        self.feel(0, now);
         let effect = self.effect(now);
         let limit = self.gyro_full_scale_rad_s;
         let rate_rad_s = self.instruments.rate(seconds(now), &effect).max(-limit).min(limit);
@@ -211,7 +236,7 @@ impl AnalogueInput for Plant<'_> {
 /// The accelerometer's axes are those of the platform: x along the gyro's axis, z down.
 impl ForceInput for Plant<'_> {
     fn force_g(&mut self, now: Instant) -> [f64; 3] {
-        self.look(now);
+        self.feel(1, now);
         let mut effect = self.effect(now);
         self.lever.add(&mut effect, seconds(now), self.drive.state().rate_rad_s);
         self.instruments.force(&effect).map(|force| force / STANDARD_GRAVITY_M_S2)

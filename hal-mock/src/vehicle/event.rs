@@ -30,9 +30,19 @@ pub enum Event {
         /// Change of roll, °.
         roll_deg: f64,
     },
+    /// The vehicle falls: nothing is felt but what its slope leaves.
+    Fall {
+        /// When it begins, s from the start.
+        at_s: f64,
+        /// How long it takes, s.
+        seconds: f64,
+    },
 }
 
 impl Event {
+    /// What a fall does to the force, m/s²: of a body that is nearly level.
+    const WEIGHTLESS: [f64; 3] = [0.0, 0.0, 9.806_65];
+
     /// A car door: 8 Hz for some tenths of a second, a hundredth of a degree, a tenth of a m/s².
     #[must_use]
     pub const fn door_slam(at_s: f64) -> Self {
@@ -69,6 +79,12 @@ impl Event {
                 let [pitch, roll] =
                     [pitch_deg, roll_deg].map(|angle| sunk.times(angle.to_radians()));
                 pose.turn([Smooth::default(), pitch, roll]);
+            }
+            Self::Fall { at_s, seconds } => {
+                if (at_s..at_s + seconds).contains(&time_s) {
+                    pose.force_m_s2 =
+                        [0, 1, 2].map(|axis: usize| pose.force_m_s2[axis] + Self::WEIGHTLESS[axis]);
+                }
             }
         }
     }

@@ -6,6 +6,7 @@
 //! integrals of the body's inertial rate, not a rotation vector, so that coning is left to who uses
 //! them. Time counts from the start; the first sample ends one period after it.
 
+pub(crate) mod averaged;
 pub mod board;
 mod event;
 mod leg;
@@ -21,6 +22,7 @@ pub use self::event::{Event, SensorFault};
 pub use self::leg::{Drive, Leg, Stop};
 use self::motion::{Integrals, Motion};
 pub use self::place::Position;
+pub use self::sensors::Means;
 use self::sensors::Sensors;
 use self::smooth::Smooth;
 use crate::accelerometer::AccelerometerConfiguration;

@@ -4,14 +4,13 @@
 //!  motion ─∫ω─▶ gyro ─volts─▶ its converter, three of them      ∫f ─force─▶ accelerometer
 //! ```
 //!
-//! A sigma-delta converter and the filter of an accelerometer average: every reading is the mean since
-//! the reading before it by the same chip, or over one period where that is long ago. Chips that run in
-//! step so see the same stretches of time, others each its own. Time counts from the start of the
+//! Every reading is a mean ([`super::averaged`]): chips that run in step see the same stretches of time,
+//! others each its own. Time counts from the start of the
 //! clock and must not fall.
 
 use embassy_time::Instant;
 
-use super::motion::{Integrals, Motion};
+use super::averaged::Averaged;
 use super::sensors::{Means, Sensors, gyro_seeds};
 use super::{VehicleConfiguration, VehicleTruth};
 use crate::environment::{AnalogueInput, ForceInput};
@@ -21,9 +20,6 @@ use crate::temperature::{TemperatureConfiguration, Thermometer};
 
 /// Whose reading of the accelerometer is marked, behind the three gyros.
 const ACCELEROMETER: usize = 3;
-
-/// Periods after which a reading no longer reaches back to the one before it.
-const LONG_AGO: f64 = 1.5;
 
 /// A vehicle with the analogue electronics of its gyros.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,24 +50,16 @@ impl Default for VehiclePlantConfiguration<'_> {
     }
 }
 
-/// What had been integrated when a chip read last.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Mark {
-    time_s: f64,
-    integrals: Integrals,
-}
-
 /// The plant at work.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VehiclePlant<'a> {
-    motion: Motion<'a>,
+    /// For each gyro's converter and for the accelerometer.
+    motion: Averaged<'a, 4>,
     sensors: Sensors<'a>,
     temperature: TemperatureConfiguration,
     thermometer: Thermometer,
     converters: [White; 3],
     volts_per_rad_s: f64,
-    /// Of each gyro's converter and of the accelerometer.
-    marks: [Mark; 4],
     /// Of a converter and of the accelerometer, s.
     periods_s: [f64; 2],
 }
@@ -84,13 +72,12 @@ impl<'a> VehiclePlant<'a> {
         let c = configuration;
         let converter = |own| White::new(c.converter_noise_v, own, source::CONVERTER);
         Self {
-            motion: c.vehicle.motion(),
+            motion: Averaged::new(c.vehicle.motion()),
             sensors: Sensors::new(&c.vehicle, c.accelerometer_hz, seed),
             temperature: c.vehicle.temperature,
             thermometer: Thermometer::new(&c.vehicle.temperature, seed),
             converters: gyro_seeds(seed).map(converter),
             volts_per_rad_s: c.gyro_volts_per_rad_s,
-            marks: [Mark::default(); 4],
             periods_s: [1.0 / c.vehicle.rate_hz, 1.0 / c.accelerometer_hz],
         }
     }
@@ -98,13 +85,13 @@ impl<'a> VehiclePlant<'a> {
     /// What the sensors cannot know, as of the latest reading.
     #[must_use]
     pub fn truth(&self) -> VehicleTruth {
-        VehicleTruth::of(&self.motion, &self.sensors)
+        VehicleTruth::of(self.motion.motion(), &self.sensors)
     }
 
     /// The truth at `now`, which is not before the latest reading.
     #[must_use]
     pub fn truth_at(&self, now: Instant) -> VehicleTruth {
-        let mut motion = self.motion.clone();
+        let mut motion = self.motion.motion().clone();
         motion.advance(seconds(now));
         VehicleTruth::of(&motion, &self.sensors)
     }
@@ -116,19 +103,7 @@ impl<'a> VehiclePlant<'a> {
 
     /// Means over the sample of a chip that ends at a time in s.
     fn felt(&mut self, chip: usize, time_s: f64) -> Means {
-        let period_s = self.periods_s[chip / ACCELEROMETER];
-        if time_s - self.marks[chip].time_s > LONG_AGO * period_s {
-            self.motion.advance(time_s - period_s);
-            self.marks[chip] = self.mark();
-        }
-        self.motion.advance(time_s);
-        let (from, to) = (self.marks[chip], self.mark());
-        self.marks[chip] = to;
-        to.integrals.means(&from.integrals, to.time_s - from.time_s)
-    }
-
-    fn mark(&self) -> Mark {
-        Mark { time_s: self.motion.time_s(), integrals: *self.motion.integrals() }
+        self.motion.felt(chip, time_s, self.periods_s[chip / ACCELEROMETER])
     }
 }
 

@@ -67,6 +67,24 @@ impl Scenario {
         day
     }
 
+    /// The day goes on for at least so many seconds (as far as there is room for legs): drives of about
+    /// `drive_s` seconds with stops of `stop_s` between them. What came before stays as it was.
+    pub fn go_on(&mut self, seed: u64, seconds: f64, drive_s: f64, stop_s: f64) {
+        let mut draw = Draw::of(seed, source::VEHICLE_AFTERWARDS);
+        let mut left_s = seconds;
+        while left_s > 0.0 {
+            let legs = [
+                draw.drive_of(0.5 * drive_s),
+                draw.drive_of(0.5 * drive_s),
+                draw.stop(stop_s, SwayConfiguration::default()),
+            ];
+            if self.legs.extend_from_slice(&legs).is_err() {
+                break;
+            }
+            left_s -= drive_s + stop_s;
+        }
+    }
+
     /// Parked for so many seconds: three sinusoids of roll and pitch of 0.1 to 2 Hz with amplitudes that
     /// come to 0.5° together, sensors 1 m above the axis, a slammed door every 60 s or so.
     #[must_use]
@@ -81,6 +99,15 @@ impl Scenario {
         }
         day.vehicle.lever_m = [0.0, 0.0, -1.0];
         day
+    }
+
+    /// A vehicle that stands and faces an azimuth, for now.
+    #[must_use]
+    pub fn standing(latitude_deg: f64, azimuth_deg: f64, stop: Stop) -> Self {
+        let vehicle =
+            VehicleConfiguration { latitude_deg, azimuth_deg, ..VehicleConfiguration::default() };
+        let legs = core::iter::once(Leg::Stop(stop)).collect();
+        Self { vehicle, legs, events: Vec::new() }
     }
 
     /// The day as a vehicle's configuration.
@@ -109,7 +136,11 @@ struct Draw(Generator);
 
 impl Draw {
     fn new(seed: u64) -> Self {
-        Self(Generator::stream(seed, source::VEHICLE_SCENARIO))
+        Self::of(seed, source::VEHICLE_SCENARIO)
+    }
+
+    fn of(seed: u64, stream: u64) -> Self {
+        Self(Generator::stream(seed, stream))
     }
 
     /// Uniform.
@@ -125,7 +156,11 @@ impl Draw {
 
     /// One of [`PARTS`] parts of a drive.
     fn drive(&mut self, seconds: f64) -> Leg {
-        let seconds = seconds / PARTS as f64;
+        self.drive_of(seconds / PARTS as f64)
+    }
+
+    /// A drive of so many seconds with one turn.
+    fn drive_of(&mut self, seconds: f64) -> Leg {
         let wanted_deg = self.between(-150.0, 150.0);
         let turn_s = seconds * self.between(0.1, 0.3);
         let most_deg = TURNING_DEG_S * turn_s;

@@ -9,9 +9,11 @@ use crate::temperature::TemperatureConfiguration;
 
 /// Means of the true rate, rad/s, and specific force, m/s², over a sample; what sensors show of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Means {
-    pub(super) rate_rad_s: [f64; 3],
-    pub(super) force_m_s2: [f64; 3],
+pub struct Means {
+    /// About forward, right, down.
+    pub rate_rad_s: [f64; 3],
+    /// Along them.
+    pub force_m_s2: [f64; 3],
 }
 
 /// A seed for each of the three gyros, so that none shares a stream with another.

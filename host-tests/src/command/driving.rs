@@ -3,19 +3,23 @@
 use std::path::Path;
 use std::time::Instant as WallClock;
 
-use bench::instrument::{VehicleRun, align_stops};
+use bench::instrument::kept::{Kept, Point};
+use bench::instrument::{Run, VehicleRun, align_stops};
 use bench::output::progress::Progress;
-use bench::output::{degrees, page, stops as told, text};
+use bench::output::{degrees, kept, page, stops as told, text};
 use bench::recording::Truth;
 use bench::stops::{Method, Replay, Watched};
 use clap::Args;
+use firmware::event::Event;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::vehicle::fault::VehicleFault;
 use firmware::simulated::vehicle::{Place, VehicleScenario};
+use hal_mock::vehicle::VehicleTruth;
 use orientation::session::stops::Session;
+use serde_json::json;
 
-use super::Told;
 use super::run::{Terminal, object};
+use super::{Told, keeping};
 
 /// What a vehicle is asked for.
 #[derive(Args, Clone, Debug)]
@@ -82,7 +86,7 @@ pub fn run(
     let mut watched = Watched::new(beside);
     let run = align_stops(scenario, fault, &mut watched, &watch);
     watch.0.finish();
-    let VehicleRun { run, truth } = run.map_err(|error| error.to_string())?;
+    let VehicleRun { run, truth, kept } = run.map_err(|error| error.to_string())?;
     let wall = begun.elapsed().as_secs_f64();
     let criteria = watched.into_criteria();
     let assumed = vec![ASSUMED.to_owned()];
@@ -93,19 +97,35 @@ pub fn run(
         criteria,
         assumed,
     };
-    let conclusion = replay.conclusion().ok_or("the session did not end")?;
+    let Some(conclusion) = replay.conclusion() else {
+        let mut object = object(&run, &scenario.base, json!({}))?;
+        let of_kept = keeping::object(&run, &kept, &mut object)?;
+        return keeping::told(NAME, &object, of_kept.as_ref(), as_json);
+    };
     let truth = Truth {
-        azimuth_deg: Some(degrees(truth.attitude.azimuth_rad).rem_euclid(360.0)),
+        azimuth_deg: Some(degrees(concluded(&run, &kept, truth)).rem_euclid(360.0)),
         start_azimuth_deg: Some(scenario.base.azimuth_deg),
         ..Truth::default()
     };
     let found = told::json::object(&replay, conclusion, &truth);
-    let object = object(&run, &scenario.base, found)?;
+    let mut object = object(&run, &scenario.base, found)?;
+    let of_kept = keeping::object(&run, &kept, &mut object)?;
     let told = Told::of(conclusion.verdict.is_ok(), as_json, &object, |block| {
         told::text::block(block, NAME, &replay, conclusion, &truth)?;
+        of_kept.as_ref().map_or(Ok(()), |of_kept| kept::block(block, of_kept))?;
         text::run(block, &run, &scenario.base, wall)
     })?;
     let refusal = conclusion.verdict.as_ref().err().map(ToString::to_string);
-    let page = || page::stops::report(NAME, &replay, conclusion);
+    let page = || keeping::page(page::stops::report(NAME, &replay, conclusion), &kept);
     Ok(Told { refusal, ..told }.with_page(report, page))
+}
+
+/// The true azimuth when the session concluded, rad: at the end, unless the vehicle went on.
+fn concluded<R>(run: &Run<R>, kept: &Kept, truth: VehicleTruth) -> f64 {
+    let is_conclusion = |event: &Event| matches!(event, Event::Concluded(..));
+    let at = run.events.iter().find(|(_, event)| is_conclusion(event)).map(|(at, _)| *at);
+    let later =
+        |point: &&Point| at.is_some_and(|at| point.seconds() * 1e6 >= at.as_micros() as f64);
+    let point = kept.points.iter().find(later);
+    point.map_or(truth.attitude.azimuth_rad, |point| point.truth.azimuth_rad)
 }

@@ -4,17 +4,19 @@ use std::fmt::Write;
 use std::path::PathBuf;
 use std::time::Instant as WallClock;
 
+use bench::instrument::kept::{Kept, KeptPlan, KeptRun};
 use bench::instrument::recorder::CsvRecorder;
-use bench::instrument::{self, FramesRun, Run};
-use bench::output::json;
+use bench::instrument::{self, FramesRun, Run, RunError};
 use bench::output::progress::Progress;
 use bench::output::{degrees, page, text};
+use bench::output::{json, kept};
 use clap::{Args, ValueEnum};
 use drivers::ads1262::configuration::DataRate;
 use embassy_time::Instant;
 use firmware::event::Event;
-use firmware::ports::{NoRecorder, Observer};
+use firmware::ports::{NoRecorder, Observer, Recorder};
 use firmware::simulated::fault::Fault;
+use firmware::simulated::keep::Hold;
 use firmware::simulated::mount::{FramePlan, FramesScenario};
 use firmware::simulated::scenario::{Aim, GyroClass, RATES, Scenario};
 use firmware::simulated::vehicle::fault::VehicleFault;
@@ -23,6 +25,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::driving::DrivingOptions;
+use super::keeping::{self, KeepingOptions};
 use super::turning::TurningOptions;
 use super::{Half, Told};
 
@@ -76,6 +79,8 @@ pub struct RunOptions {
     turning: TurningOptions,
     #[command(flatten)]
     driving: DrivingOptions,
+    #[command(flatten)]
+    keeping: KeepingOptions,
     /// Amplitude of the base's sway in degrees; brings a coarse IMU on the base with it.
     #[arg(long, value_name = "DEGREES", value_parser = sway, conflicts_with = "record")]
     sway: Option<f64>,
@@ -235,6 +240,15 @@ impl RunOptions {
         let on_frames = self.mount == MountKind::TwoFrame;
         self.check_fault()?;
         match () {
+            () if matches!(self.method, Method::Rotating) && self.keeping.is_given() => Err(
+                "--hold, --realign, --handover: a platform that turns all the time keeps nothing",
+            ),
+            () if self.keeping.is_given() && self.record.is_some() => {
+                Err("--record: what a base with coarse sensors shows is not recorded")
+            }
+            () if self.keeping.is_given() && self.no_base_imu => {
+                Err("--no-base-imu: without coarse sensors nothing is kept")
+            }
             () if matches!(self.method, Method::Siap) => self.check_driving(on_frames),
             () if self.driving.is_given() => Err(
                 "--stops, --stop-seconds, --drive-seconds, --no-displacement: they are those of --method \
@@ -331,8 +345,20 @@ impl RunOptions {
     }
 }
 
+impl RunOptions {
+    /// How the run goes on. A recording is to be replayed, and a fault seen, as it ever was.
+    fn hold(&self) -> Hold {
+        let is_plain = self.record.is_some() || self.fault.is_some() || self.no_base_imu;
+        match self.method {
+            Method::Rotating => Hold::default(),
+            _ => self.keeping.hold(is_plain),
+        }
+    }
+}
+
 impl From<&RunOptions> for Scenario {
     fn from(options: &RunOptions) -> Self {
+        let hold = options.hold();
         Self {
             seed: options.seed,
             latitude_deg: options.latitude,
@@ -348,7 +374,8 @@ impl From<&RunOptions> for Scenario {
             dwell_s: options.dwell.unwrap_or(DWELL),
             sway_deg: options.sway.unwrap_or(0.0),
             sway_hz: options.sway_hertz,
-            has_base_imu: options.sway.is_some() && !options.no_base_imu,
+            has_base_imu: (options.sway.is_some() || hold.seconds > 0.0) && !options.no_base_imu,
+            hold,
             ..Self::default()
         }
     }
@@ -397,24 +424,44 @@ pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
         return run_frames(&scenario, options, as_json);
     }
     let begun = WallClock::now();
-    let (run, recorded) = simulate(&scenario, fault, options)?;
+    let (KeptRun { run, kept }, recorded) = simulate(&scenario, fault, options)?;
     let wall = begun.elapsed().as_secs_f64();
-    let conclusion = run.conclusion().ok_or("the session did not end")?;
+    let Some(conclusion) = run.conclusion() else {
+        return without_session("the simulated run", &run, &scenario, &kept, as_json);
+    };
     let truth = Some(scenario.azimuth_deg);
     let mut object = object(&run, &scenario, json::azimuth(&run.replay, conclusion, truth))?;
+    let of_kept = keeping::object(&run, &kept, &mut object)?;
     if let Err(reason) = &recorded {
         object["status"] = "failed".into();
         object["reason"] = reason.as_str().into();
     }
     let told = Told::of(conclusion.verdict.is_ok(), as_json, &object, |block| {
         text::block(block, "the simulated run", &run.replay, conclusion, truth)?;
+        of_kept.as_ref().map_or(Ok(()), |of_kept| kept::block(block, of_kept))?;
         text::run(block, &run, &scenario, wall)
     })?;
     // A recording that failed is a failure, but the azimuth is not lost with it.
     let refusal = conclusion.verdict.as_ref().err().map(ToString::to_string).or(recorded.err());
-    let page = || page::alignment::report("the simulated run", &run.replay, conclusion);
+    let page = || {
+        let page = page::alignment::report("the simulated run", &run.replay, conclusion);
+        keeping::page(page, &kept)
+    };
     let told = Told { found: refusal.is_none(), refusal, ..told };
     Ok(told.with_page(options.report.as_deref(), page))
+}
+
+/// What is told of a run whose azimuth came from outside.
+fn without_session(
+    name: &str,
+    run: &Run,
+    scenario: &Scenario,
+    kept: &Kept,
+    as_json: bool,
+) -> Result<Told, String> {
+    let mut object = object(run, scenario, json!({}))?;
+    let of_kept = keeping::object(run, kept, &mut object)?;
+    keeping::told(name, &object, of_kept.as_ref(), as_json)
 }
 
 /// Names the faults that a method can have.
@@ -434,24 +481,30 @@ fn run_frames(base: &Scenario, options: &RunOptions, as_json: bool) -> Result<To
     let watch = Terminal(Progress::new(0, "positions"));
     let frames = instrument::align_frames(&scenario, &FramePlan::default(), &watch);
     watch.0.finish();
-    let FramesRun { run, axis: [forward, right, down] } =
+    let FramesRun { run, axis: [forward, right, down], kept } =
         frames.map_err(|error| error.to_string())?;
     let wall = begun.elapsed().as_secs_f64();
-    let conclusion = run.conclusion().ok_or("the session did not end")?;
+    let Some(conclusion) = run.conclusion() else {
+        return without_session("the simulated run on two frames", &run, base, &kept, as_json);
+    };
     let truth = Some(base.azimuth_deg);
     let stored = run.events.iter().any(|(_, event)| matches!(event, Event::Stored(..)));
     let off_vertical = degrees(forward.hypot(right).atan2(down));
     let mut object = object(&run, base, json::azimuth(&run.replay, conclusion, truth))?;
     object["stored"] = stored.into();
     object["truth_off_vertical_deg"] = off_vertical.into();
+    let of_kept = keeping::object(&run, &kept, &mut object)?;
     let told = Told::of(conclusion.verdict.is_ok(), as_json, &object, |block| {
         text::block(block, "the simulated run on two frames", &run.replay, conclusion, truth)?;
+        of_kept.as_ref().map_or(Ok(()), |of_kept| kept::block(block, of_kept))?;
         text::run(block, &run, base, wall)?;
         text::stored(block, stored, off_vertical)
     })?;
     let refusal = conclusion.verdict.as_ref().err().map(ToString::to_string);
-    let page =
-        || page::alignment::report("the simulated run on two frames", &run.replay, conclusion);
+    let page = || {
+        let name = "the simulated run on two frames";
+        keeping::page(page::alignment::report(name, &run.replay, conclusion), &kept)
+    };
     Ok(Told { refusal, ..told }.with_page(options.report.as_deref(), page))
 }
 
@@ -470,6 +523,7 @@ pub(super) fn object<R>(
         "missing": health.missing,
         "late": health.late,
         "overflowed": health.overflowed,
+        "unkept": health.unkept,
         "lost": health.lost,
         "restarts": health.restarts,
         "violations": run.violations,
@@ -477,25 +531,40 @@ pub(super) fn object<R>(
     Ok(object)
 }
 
-/// Runs the board; the run, and whether its recording is whole.
+/// Runs the board; the run with what it kept, and whether its recording is whole.
 fn simulate(
     scenario: &Scenario,
     fault: Option<Fault>,
     options: &RunOptions,
-) -> Result<(Run, Result<(), String>), String> {
+) -> Result<(KeptRun, Result<(), String>), String> {
     let watch = Terminal(Progress::new(0, "positions"));
     let mut recorded = Ok(());
     let run = match &options.record {
-        None => instrument::align(scenario, fault, NoRecorder, &watch),
+        None => align(scenario, fault, NoRecorder, &watch),
         Some(path) => {
             let failed = |error: std::io::Error| format!("{}: {error}", path.display());
             let setting = scenario.setting().ok_or("the latitude is outside ±90°")?;
             let mut recorder = CsvRecorder::create(path, scenario, &setting).map_err(failed)?;
-            let run = instrument::align(scenario, fault, &mut recorder, &watch);
+            let run = align(scenario, fault, &mut recorder, &watch);
             recorded = recorder.finish().map_err(failed);
             run
         }
     };
     watch.0.finish();
     run.map(|run| (run, recorded)).map_err(|error| error.to_string())
+}
+
+/// Runs it on a base with sensors, or without.
+fn align<R: Recorder>(
+    scenario: &Scenario,
+    fault: Option<Fault>,
+    recorder: R,
+    watch: &Terminal,
+) -> Result<KeptRun, RunError> {
+    if scenario.has_base_imu {
+        let plan = KeptPlan::of(fault);
+        return instrument::align_and_keep(scenario, &plan, recorder, watch, ());
+    }
+    let run = instrument::align(scenario, fault, recorder, watch)?;
+    Ok(KeptRun { run, kept: Kept::default() })
 }

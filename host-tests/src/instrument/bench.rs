@@ -2,16 +2,21 @@
 
 use std::cell::RefCell;
 
-use firmware::ports::{NoBase, Observer, Recorder};
-use firmware::run::{acquire, run};
+use firmware::keep::Keeping;
+use firmware::ports::{HeadingStore, NoBase, Observer, Recorder};
+use firmware::run::{acquire, run_and_keep};
 use firmware::simulated;
+use firmware::simulated::Chips;
 use firmware::simulated::base;
 use firmware::simulated::fault::{Fault, FaultyRecorder, Plan};
+use firmware::simulated::keep::journey;
 use firmware::simulated::scenario::Scenario;
 use firmware::steady::Base;
+use orientation::keep::Keeper;
 use orientation::session::Session;
 
 use super::desk::{self, ASSUMED, Desk};
+use super::kept::{Kept, KeptPlan, KeptRun};
 use super::{Run, RunError};
 use crate::replay::{HALF, Method, Replay};
 
@@ -28,12 +33,37 @@ pub fn align<R: Recorder, W: Observer>(
     if !scenario.has_base_imu {
         return align_on(NoBase, scenario, fault, recorder, watch);
     }
-    let rig = RefCell::new(base::rig(scenario));
-    let mut run = align_on(base::imu(&rig, scenario), scenario, fault, recorder, watch)?;
+    align_and_keep(scenario, &KeptPlan::of(fault), recorder, watch, ()).map(|kept| kept.run)
+}
+
+/// The same on a base with sensors, and goes on as the scenario says; with a store of the heading over a
+/// loss of supply.
+///
+/// # Errors
+/// Those of [`align`].
+pub fn align_and_keep<R: Recorder, W: Observer>(
+    scenario: &Scenario,
+    plan: &KeptPlan,
+    recorder: R,
+    watch: &W,
+    store: impl HeadingStore,
+) -> Result<KeptRun, RunError> {
+    let day = plan.day(scenario.day());
+    let journey = journey(&day, &plan.base);
+    let is_riding = scenario.hold.seconds > 0.0;
+    let rig = RefCell::new(base::rig(scenario, is_riding.then_some(&journey)));
+    let imu = base::imu(&rig, scenario, plan.imu);
+    let board = RefCell::new(if is_riding {
+        simulated::board_riding(scenario, journey, &plan.chips)
+    } else {
+        simulated::board(scenario, &plan.chips)
+    });
+    let mut run = align_with(&board, imu, scenario, &plan.chips, recorder, watch, store)?;
     let rig = rig.borrow();
     run.violations
         .extend(base::violations(&rig).iter().map(|violation| format!("Base: {violation}")));
-    Ok(run)
+    let kept = Kept::of(&run.reports, day.configuration().motion());
+    Ok(KeptRun { run, kept })
 }
 
 /// The same with these sensors on the base.
@@ -47,19 +77,35 @@ pub fn align_on<B: Base, R: Recorder, W: Observer>(
     recorder: R,
     watch: &W,
 ) -> Result<Run, RunError> {
-    let setting = scenario.setting().ok_or(RunError::Latitude(scenario.latitude_deg))?;
-    let mut session = Session::new(setting, scenario.procedure()).map_err(RunError::Procedure)?;
     let plan = Plan::of(fault);
     let board = RefCell::new(simulated::board(scenario, &plan));
+    align_with(&board, base, scenario, &plan, recorder, watch, ())
+}
+
+fn align_with<B: Base, R: Recorder, W: Observer>(
+    board: &RefCell<Chips<'_>>,
+    base: B,
+    scenario: &Scenario,
+    plan: &Plan,
+    recorder: R,
+    watch: &W,
+    store: impl HeadingStore,
+) -> Result<Run, RunError> {
+    let outside = || RunError::Latitude(scenario.latitude_deg);
+    let setting = scenario.setting().ok_or_else(outside)?;
+    let mut session = Session::new(setting, scenario.procedure()).map_err(RunError::Procedure)?;
     let desk = Desk::new(watch);
     let seams = desk.seams();
     let configuration = scenario.configuration();
-    let mut sensors = simulated::sensors(&board, scenario, &plan).with_base(base);
+    let mut sensors = simulated::sensors(board, scenario, plan).with_base(base);
     let recorder = FaultyRecorder::new(recorder, plan.hang);
-    let mut ports = simulated::ports(&board, &plan, desk.wire(), recorder);
+    let mut ports = simulated::ports(board, plan, desk.wire(), recorder);
+    let mut keeper = Keeper::new(&scenario.keeper().ok_or_else(outside)?);
+    let keep = scenario.keeping().ok_or_else(outside)?;
+    let mut keeping = Keeping::new(&mut keeper, &keep, scenario.hold.outside(), store);
     let ended = desk::run(
         acquire(&mut sensors, &configuration, &seams),
-        run(&mut ports, &configuration, &mut session, &seams),
+        run_and_keep(&mut ports, &configuration, &mut session, &mut keeping, &seams),
     )?;
     let assumed = [ASSUMED].into_iter().chain(scenario.half.map(|_| HALF));
     let replay = Replay {

@@ -10,6 +10,7 @@ use firmware::ports::Observer;
 use firmware::shared::Seams;
 use hal_mock::chip::Select;
 use hal_mock::violation::Violation;
+use orientation::keep::Report;
 use orientation::session::{Session, rotating, stops};
 
 use super::{Run, RunError};
@@ -21,6 +22,7 @@ pub(super) const ASSUMED: &str = "latitude exact, calibrations as stated";
 /// Keeps what the board tells and passes it on.
 pub(super) struct Log<'w, W> {
     events: RefCell<Vec<(Instant, Event)>>,
+    reports: RefCell<Vec<Report>>,
     watch: &'w W,
 }
 
@@ -40,6 +42,11 @@ impl<W: Observer> Observer for Log<'_, W> {
 
     fn stopped(&self, session: &stops::Session) {
         self.watch.stopped(session);
+    }
+
+    fn kept(&self, report: &Report) {
+        self.reports.borrow_mut().push(*report);
+        self.watch.kept(report);
     }
 }
 
@@ -76,7 +83,8 @@ pub(super) struct Ended {
 impl<'w, W: Observer> Desk<'w, W> {
     /// An empty one; what a board tells goes on to `watch`.
     pub(super) fn new(watch: &'w W) -> Self {
-        Self { log: Log { events: RefCell::default(), watch }, bytes: RefCell::default() }
+        let (events, reports) = (RefCell::default(), RefCell::default());
+        Self { log: Log { events, reports, watch }, bytes: RefCell::default() }
     }
 
     /// The seams of the board's parts.
@@ -94,6 +102,7 @@ impl<'w, W: Observer> Desk<'w, W> {
         Run {
             replay,
             events: self.log.events.into_inner(),
+            reports: self.log.reports.into_inner(),
             lines: String::from_utf8_lossy(&self.bytes.into_inner()).into_owned(),
             seconds: ended.at.as_micros() as f64 * 1e-6,
             health: ended.health,

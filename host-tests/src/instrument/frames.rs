@@ -2,14 +2,19 @@
 
 use std::cell::RefCell;
 
-use firmware::ports::{Frames, NoBase, NoRecorder, Observer};
-use firmware::run::{acquire_frames, run_frames};
+use firmware::keep::Keeping;
+use firmware::ports::{Frames, HeadingStore, NoBase, NoRecorder, Observer};
+use firmware::run::{acquire_frames, run_frames_and_keep};
 use firmware::simulated::base;
+use firmware::simulated::keep::journey;
 use firmware::simulated::mount::{self, FramePlan, FramesScenario};
 use firmware::steady::Base;
+use hal_mock::gimbal::board::GimbalBoard;
+use orientation::keep::Keeper;
 use orientation::session::Session;
 
 use super::desk::{self, ASSUMED, Desk};
+use super::kept::{Kept, KeptPlan};
 use super::{Run, RunError};
 use crate::replay::{Method, Replay};
 
@@ -20,6 +25,8 @@ pub struct FramesRun {
     pub run: Run,
     /// The true direction of the gyro's axis at the end: forward, right, down in the base.
     pub axis: [f64; 3],
+    /// What was kept, with the truth.
+    pub kept: Kept,
 }
 
 /// Runs a scenario in virtual time on this thread.
@@ -32,36 +39,63 @@ pub fn align_frames<W: Observer>(
     watch: &W,
 ) -> Result<FramesRun, RunError> {
     if !scenario.base.has_base_imu {
-        return align_frames_on(NoBase, scenario, plan, watch);
+        let board = RefCell::new(scenario.board(plan));
+        return align_with(&board, NoBase, scenario, plan, watch, ());
     }
-    let rig = RefCell::new(base::rig(&scenario.base));
-    let mut frames = align_frames_on(base::imu(&rig, &scenario.base), scenario, plan, watch)?;
+    let plan = KeptPlan { frames: plan.clone(), ..KeptPlan::of(None) };
+    align_frames_and_keep(scenario, &plan, watch, ())
+}
+
+/// The same on a base with sensors, and goes on as the scenario says; with a store of the heading over a
+/// loss of supply.
+///
+/// # Errors
+/// Those of [`align_frames`].
+pub fn align_frames_and_keep<W: Observer>(
+    scenario: &FramesScenario,
+    plan: &KeptPlan,
+    watch: &W,
+    store: impl HeadingStore,
+) -> Result<FramesRun, RunError> {
+    let day = plan.day(scenario.day());
+    let journey = journey(&day, &plan.base);
+    let journey = (scenario.base.hold.seconds > 0.0).then_some(journey);
+    let rig = RefCell::new(base::rig(&scenario.base, journey.as_ref()));
+    let imu = base::imu(&rig, &scenario.base, plan.imu);
+    let board = RefCell::new(scenario.board_riding(&plan.frames, journey));
+    let mut frames = align_with(&board, imu, scenario, &plan.frames, watch, store)?;
     let rig = rig.borrow();
     let violations = base::violations(&rig).iter();
     frames.run.violations.extend(violations.map(|violation| format!("Base: {violation}")));
+    frames.kept = Kept::of(&frames.run.reports, day.configuration().motion());
     Ok(frames)
 }
 
 /// The same with these sensors on the base.
-fn align_frames_on<B: Base, W: Observer>(
+fn align_with<B: Base, W: Observer>(
+    board: &RefCell<GimbalBoard<'_>>,
     base: B,
     scenario: &FramesScenario,
     plan: &FramePlan,
     watch: &W,
+    store: impl HeadingStore,
 ) -> Result<FramesRun, RunError> {
-    let setting = scenario.setting().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
+    let outside = || RunError::Latitude(scenario.base.latitude_deg);
+    let setting = scenario.setting().ok_or_else(outside)?;
     let mut session = Session::new(setting, scenario.procedure()).map_err(RunError::Procedure)?;
     let frames = scenario.frames().map_err(RunError::Mount)?;
-    let board = RefCell::new(scenario.board(plan));
     let desk = Desk::new(watch);
     let seams = desk.seams();
     let latest = Frames::unread();
     let configuration = scenario.base.configuration();
-    let mut sensors = mount::sensors(&board, scenario).with_base(base);
-    let mut ports = mount::ports(&board, desk.wire(), NoRecorder);
+    let mut sensors = mount::sensors(board, scenario, plan).with_base(base);
+    let mut ports = mount::ports(board, desk.wire(), NoRecorder);
+    let mut keeper = Keeper::new(&scenario.keeper().ok_or_else(outside)?);
+    let keep = scenario.base.keeping().ok_or_else(outside)?;
+    let mut keeping = Keeping::new(&mut keeper, &keep, scenario.base.hold.outside(), store);
     let ended = desk::run(
         acquire_frames(&mut sensors, &configuration, &frames, &latest, &seams),
-        run_frames(&mut ports, &frames, &latest, &mut session, &seams),
+        run_frames_and_keep(&mut ports, &frames, &latest, &mut session, &mut keeping, &seams),
     )?;
     let [outer, inner] = board.borrow().gimbal.frames();
     let misalignment = scenario.gimbal(plan).misalignment;
@@ -73,5 +107,6 @@ fn align_frames_on<B: Base, W: Observer>(
         assumed: vec![ASSUMED.to_owned()],
     };
     let violations = desk::told(mount::violations(&board.borrow()));
-    Ok(FramesRun { run: desk.clear(&ended, violations, replay), axis })
+    let run = desk.clear(&ended, violations, replay);
+    Ok(FramesRun { run, axis, kept: Kept::default() })
 }

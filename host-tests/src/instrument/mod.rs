@@ -4,14 +4,17 @@ mod bench;
 mod desk;
 pub mod flash_file;
 mod frames;
+pub mod kept;
 pub mod recorder;
 mod turntable;
 mod vehicle;
 
-pub use bench::{align, align_on};
-pub use frames::{FramesRun, align_frames};
+pub use bench::{align, align_and_keep, align_on};
+pub use frames::{FramesRun, align_frames, align_frames_and_keep};
 pub use turntable::{Keeping, TurntableRun, align_turning, align_turning_again};
-pub use vehicle::{VehicleRun, align_stops, align_stops_on};
+pub use vehicle::{
+    VehicleRun, align_stops, align_stops_along, align_stops_on, align_stops_storing,
+};
 
 use std::fmt;
 
@@ -20,6 +23,7 @@ use firmware::event::Event;
 use firmware::health::Health;
 use orientation::align::conclusion::Conclusion;
 use orientation::align::mount::MountError;
+use orientation::keep::Report;
 use orientation::session::procedure::ProcedureError;
 
 use crate::replay::Replay;
@@ -31,6 +35,8 @@ pub struct Run<R = Replay> {
     pub replay: R,
     /// What the board told, in order.
     pub events: Vec<(Instant, Event)>,
+    /// What the keeper reported, once a second.
+    pub reports: Vec<Report>,
     /// What the link carried.
     pub lines: String,
     /// Virtual time from power-on to the end, s.

@@ -2,17 +2,20 @@
 
 use std::cell::RefCell;
 
-use firmware::ports::{Observer, Recorder, VehiclePorts};
-use firmware::run::{acquire_triad, run_stops};
+use firmware::keep::Keeping;
+use firmware::ports::{HeadingStore, Observer, Recorder, VehiclePorts};
+use firmware::run::{acquire_triad, run_stops_and_keep};
 use firmware::simulated::fault::FaultyRecorder;
 use firmware::simulated::vehicle::fault::VehicleFault;
-use firmware::simulated::vehicle::{self, KnownPlace, VehicleScenario};
+use firmware::simulated::vehicle::{self, Day, KnownPlace, VehicleScenario};
 use hal_mock::vehicle::VehicleTruth;
 use hal_mock::vehicle::board::VehicleBoard;
+use orientation::keep::Keeper;
 use orientation::session::stops;
 use orientation::signal::InertialSample;
 
 use super::desk::{self, Desk};
+use super::kept::Kept;
 use super::{Run, RunError};
 
 /// A finished run in a vehicle.
@@ -22,6 +25,8 @@ pub struct VehicleRun {
     pub run: Run<stops::Session>,
     /// What was true at the end.
     pub truth: VehicleTruth,
+    /// What was kept, with the truth.
+    pub kept: Kept,
 }
 
 /// Runs a scenario in virtual time on this thread.
@@ -34,9 +39,40 @@ pub fn align_stops<R: Recorder<InertialSample>, W: Observer>(
     recorder: R,
     watch: &W,
 ) -> Result<VehicleRun, RunError> {
+    align_stops_storing(scenario, fault, recorder, watch, ())
+}
+
+/// The same with a store of the heading over a loss of supply.
+///
+/// # Errors
+/// Those of [`align_stops`].
+pub fn align_stops_storing<R: Recorder<InertialSample>, W: Observer>(
+    scenario: &VehicleScenario,
+    fault: Option<VehicleFault>,
+    recorder: R,
+    watch: &W,
+    store: impl HeadingStore,
+) -> Result<VehicleRun, RunError> {
     let (day, plan) = (scenario.day(fault), scenario.plan(fault));
-    let board = RefCell::new(scenario.board(&day.legs, &day.events, &plan));
-    align_stops_on(&board, &plan, scenario, recorder, watch)
+    align_stops_along(&day, &plan, scenario, recorder, watch, store)
+}
+
+/// The same on a given day, with what goes wrong.
+///
+/// # Errors
+/// Those of [`align_stops`].
+pub fn align_stops_along<R: Recorder<InertialSample>, W: Observer>(
+    day: &Day,
+    plan: &vehicle::fault::VehiclePlan,
+    scenario: &VehicleScenario,
+    recorder: R,
+    watch: &W,
+    store: impl HeadingStore,
+) -> Result<VehicleRun, RunError> {
+    let board = RefCell::new(scenario.board(&day.legs, &day.events, plan));
+    let found = align_on(&board, plan, scenario, recorder, watch, store)?;
+    let kept = Kept::of(&found.run.reports, day.configuration().motion());
+    Ok(VehicleRun { kept, ..found })
 }
 
 /// The same on a board to which something else may be done, with something around its ports.
@@ -50,6 +86,17 @@ pub fn align_stops_on<R: Recorder<InertialSample>, W: Observer>(
     recorder: R,
     watch: &W,
 ) -> Result<VehicleRun, RunError> {
+    align_on(board, plan, scenario, recorder, watch, ())
+}
+
+fn align_on<R: Recorder<InertialSample>, W: Observer>(
+    board: &RefCell<VehicleBoard<'_>>,
+    plan: &vehicle::fault::VehiclePlan,
+    scenario: &VehicleScenario,
+    recorder: R,
+    watch: &W,
+    store: impl HeadingStore,
+) -> Result<VehicleRun, RunError> {
     let setting = scenario.setting().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
     let session = stops::Session::new(setting, scenario.procedure());
     let mut session = session.map_err(RunError::Procedure)?;
@@ -61,11 +108,16 @@ pub fn align_stops_on<R: Recorder<InertialSample>, W: Observer>(
         link: desk.wire(),
         recorder: FaultyRecorder::new(recorder, plan.hang),
     };
+    let setting = scenario.keeper().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
+    let mut keeper = Keeper::new(&setting);
+    let outside = scenario.base.hold.outside();
+    let mut keeping = Keeping::new(&mut keeper, &scenario.keeping(), outside, store);
     let ended = desk::run(
         acquire_triad(&mut sensors, &scenario.configuration(), &seams),
-        run_stops(&mut ports, &mut session, &seams),
+        run_stops_and_keep(&mut ports, &mut session, &mut keeping, &seams),
     )?;
     let truth = board.borrow().plant.truth();
     let violations = desk::told(vehicle::violations(&board.borrow()));
-    Ok(VehicleRun { run: desk.clear(&ended, violations, session), truth })
+    let run = desk.clear(&ended, violations, session);
+    Ok(VehicleRun { run, truth, kept: Kept::default() })
 }

@@ -5,6 +5,7 @@ pub mod burov;
 pub mod emulation;
 pub mod json;
 pub mod keep;
+pub mod kept;
 pub mod page;
 pub mod plan;
 pub mod progress;

@@ -33,7 +33,10 @@ pub struct Increment {
 
 impl Increment {
     /// Adds a sample.
-    #[expect(clippy::inline_always, reason = "a call with nine numbers costs a tenth of the sample")]
+    #[expect(
+        clippy::inline_always,
+        reason = "a call with nine numbers costs a tenth of the sample"
+    )]
     #[inline(always)]
     pub fn push(&mut self, [a, b, c]: [AngleIncrement; 3]) {
         let [x, y, z] = self.sums;

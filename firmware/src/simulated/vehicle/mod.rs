@@ -26,14 +26,17 @@ use hal_mock::vehicle::{self as world, Drive, Event, Leg, Stop, VehicleConfigura
 use hal_mock::violation::{Violation, Violations};
 use orientation::align::setting;
 use orientation::align::stops::Setting;
+use orientation::earth::Latitude;
+use orientation::keep;
 use orientation::session::stops::Procedure;
 use orientation::units::DEGREE_PER_HOUR;
 
 use self::fault::{VehicleFault, VehiclePlan};
+use super::keep::Hold;
 use super::scenario::{self, Scenario};
 use super::{Around, Bus, CONVERTER_HERTZ, bus};
 use crate::chips;
-use crate::configuration;
+use crate::configuration::{self, KeepConfiguration, Realignment};
 use crate::ports::VehicleSensors;
 
 /// 1σ of the accelerometers, m/s²: in a vehicle their biases are tilt, so they are calibrated, to 0.1 mg.
@@ -182,6 +185,24 @@ impl VehicleScenario {
         Some((self.setting()?, procedure))
     }
 
+    /// What the keeper is told of place and gyros; none where the latitude is none.
+    #[must_use]
+    pub fn keeper(&self) -> Option<keep::Setting> {
+        let latitude = Latitude::from_degrees(self.base.latitude_deg)?;
+        let period = 1.0 / self.base.sample_rate_hz;
+        Some(keep::Setting::precise(latitude, period, self.base.precise()))
+    }
+
+    /// How the instrument goes on after its alignment.
+    #[must_use]
+    pub fn keeping(&self) -> KeepConfiguration {
+        self.base.hold.configuration(
+            Realignment::BetweenStops,
+            self.base.precise(),
+            self.base.precise(),
+        )
+    }
+
     /// What the board is told of its devices.
     #[must_use]
     pub fn configuration(&self) -> configuration::VehicleConfiguration {
@@ -193,6 +214,8 @@ impl VehicleScenario {
     pub fn day(&self, fault: Option<VehicleFault>) -> Day {
         let mut day = Day::stops(self.base.seed, self.stops, self.standing_s(), self.drive_s);
         day.vehicle = self.vehicle();
+        let Hold { seconds, drive_s, stop_s, .. } = self.base.hold;
+        day.go_on(self.base.seed, seconds, drive_s, stop_s);
         match fault {
             Some(VehicleFault::NeverDrives) => day.legs.truncate(1),
             Some(VehicleFault::NeverStops) => never_stop(&mut day),

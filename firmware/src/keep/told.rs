@@ -1,0 +1,65 @@
+//! What the link tells while the keeper works.
+
+use core::fmt;
+
+use orientation::keep::{Report, State};
+use orientation::units::DEGREES_PER_RADIAN as DEGREES;
+
+/// Attitude as it is told, in thousandths of a degree.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kept {
+    /// Azimuth of body x and its 1σ, rounded up; none where it is not known.
+    pub azimuth: Option<[u32; 2]>,
+    /// Pitch and roll.
+    pub level: [i32; 2],
+    /// What the keeper is about; none where no motion is measured any more.
+    pub state: Option<State>,
+    /// Whether the azimuth is remembered from before the supply was lost.
+    pub is_recalled: bool,
+}
+
+/// Thousandths, to nearest.
+fn thousandths(angle: f64) -> i32 {
+    libm::round(angle * DEGREES * 1e3) as i32
+}
+
+impl Kept {
+    /// What a report says.
+    pub(super) fn of(report: &Report, is_recalled: bool) -> Self {
+        let azimuth = report.azimuth.map(|azimuth| {
+            let angle = thousandths(azimuth.angle).rem_euclid(360_000).unsigned_abs();
+            // σ never rounds to less than it is.
+            [angle, libm::ceil(azimuth.sigma * DEGREES * 1e3) as u32]
+        });
+        let level = [report.pitch, report.roll].map(thousandths);
+        Self { azimuth, level, state: Some(report.state), is_recalled }
+    }
+}
+
+/// Writes a number of thousandths.
+fn write(f: &mut fmt::Formatter<'_>, name: &str, value: i32) -> fmt::Result {
+    let sign = if value < 0 { "-" } else { "" };
+    let size = value.unsigned_abs();
+    write!(f, "{name} {sign}{}.{:03} ", size / 1000, size % 1000)
+}
+
+impl fmt::Display for Kept {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.azimuth {
+            Some(both) => {
+                let [angle, sigma] = both.map(u32::cast_signed);
+                write(f, "azimuth", angle)?;
+                write(f, "sigma", sigma)?;
+            }
+            None => f.write_str("no azimuth, ")?,
+        }
+        let [pitch, roll] = self.level;
+        write(f, "pitch", pitch)?;
+        write(f, "roll", roll)?;
+        match self.state {
+            Some(state) => state.fmt(f)?,
+            None => f.write_str("no motion measured")?,
+        }
+        if self.is_recalled { f.write_str(", recalled") } else { Ok(()) }
+    }
+}

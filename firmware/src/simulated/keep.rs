@@ -1,0 +1,159 @@
+//! How a simulated run goes on after its alignment: what the vehicle does, what it is told.
+
+use core::cell::Cell;
+
+use embassy_time::{Duration, Instant};
+use hal_mock::plant::journey::{BaseFault, JourneyConfiguration};
+use hal_mock::vehicle::{Leg, Stop};
+use orientation::earth::Latitude;
+use orientation::keep::{self, Handover};
+use orientation::session::procedure::Procedure;
+use orientation::units::{DEGREE, DEGREE_PER_HOUR};
+
+use super::base;
+use super::scenario::{self, Scenario};
+use crate::configuration::{Alignment, KeepConfiguration, Realignment};
+use crate::ports::Outside;
+
+/// How long a vehicle stands before it is aligned anew on a stage, s.
+const STAND_SECONDS: u64 = 30;
+/// What a movement of a stage takes at most on a usual schedule, s; the way back from the last position is one.
+const MOVEMENT_SECONDS: f64 = 1.7;
+/// From power-on to the first position, and from the last one until the vehicle sets off, s.
+const SETTING_OUT_SECONDS: f64 = 50.0;
+
+/// How a run goes on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hold {
+    /// For how long, s; zero for not at all.
+    pub seconds: f64,
+    /// Whether it is aligned anew at stops.
+    pub realigns: bool,
+    /// Length of a drive and of a stop, s.
+    pub drive_s: f64,
+    /// The same of a stop.
+    pub stop_s: f64,
+    /// An azimuth that is handed over from outside, with its 1σ, °, and when, s.
+    pub handover: Option<([f64; 2], f64)>,
+}
+
+impl Default for Hold {
+    /// Not at all; else drives of two minutes and stops of one.
+    fn default() -> Self {
+        Self { seconds: 0.0, realigns: false, drive_s: 120.0, stop_s: 60.0, handover: None }
+    }
+}
+
+impl Hold {
+    /// The default for so many seconds.
+    #[must_use]
+    pub fn of(seconds: f64) -> Self {
+        Self { seconds, ..Self::default() }
+    }
+
+    /// What the instrument is told, with what realigns it where it may, and the gyros about down: beside
+    /// the two others, and the precise one.
+    pub(super) fn configuration(
+        &self,
+        realignment: Realignment,
+        beside: keep::Gyro,
+        precise: keep::Gyro,
+    ) -> KeepConfiguration {
+        let is_told = self.handover.is_some();
+        KeepConfiguration {
+            hold: Duration::from_micros((self.seconds * 1e6) as u64),
+            knows_stops: realignment == Realignment::BetweenStops,
+            realignment: if self.realigns { realignment } else { Realignment::Never },
+            alignment: if is_told { Alignment::UnlessKnown } else { Alignment::Always },
+            beside,
+            precise,
+        }
+    }
+
+    /// Who tells the board what it cannot measure.
+    #[must_use]
+    pub fn outside(&self) -> Teller {
+        Teller { told: Cell::new(self.handover) }
+    }
+}
+
+/// Tells one azimuth, once it is time.
+#[derive(Debug)]
+pub struct Teller {
+    told: Cell<Option<([f64; 2], f64)>>,
+}
+
+impl Outside for Teller {
+    fn azimuth(&mut self) -> Option<Handover> {
+        let ([azimuth, sigma], at_s) = self.told.get()?;
+        if Instant::now().as_micros() as f64 * 1e-6 < at_s {
+            return None;
+        }
+        self.told.set(None);
+        Some(Handover { azimuth: azimuth * DEGREE, sigma: sigma * DEGREE })
+    }
+
+    fn velocity(&mut self) -> Option<[f64; 2]> {
+        None
+    }
+}
+
+impl Scenario {
+    /// What the board is told of its precise gyro.
+    #[must_use]
+    pub fn precise(&self) -> keep::Gyro {
+        keep::Gyro {
+            noise: self.gyro.noise(),
+            bias_sigma: self.gyro.bias_sigma_deg_h * DEGREE_PER_HOUR,
+            scale_sigma: scenario::SCALE_SIGMA,
+        }
+    }
+
+    /// What the keeper on a base is told of place and gyros; none where the latitude is none.
+    #[must_use]
+    pub fn keeper(&self) -> Option<keep::Setting> {
+        let latitude = Latitude::from_degrees(self.latitude_deg)?;
+        let (gyros, force_bias_sigma) = base::gyros(self);
+        let sample_seconds = base::period(self);
+        Some(keep::Setting { latitude, gyros, force_bias_sigma, sample_seconds })
+    }
+
+    /// How the instrument on a base goes on; none where the latitude is none.
+    #[must_use]
+    pub fn keeping(&self) -> Option<KeepConfiguration> {
+        let [_, _, down] = self.keeper()?.gyros;
+        let after = Duration::from_secs(STAND_SECONDS);
+        let realignment = Realignment::AtStops { after };
+        Some(self.hold.configuration(realignment, down, self.precise()))
+    }
+
+    /// Where the base goes after the alignment on a stage.
+    #[must_use]
+    pub fn day(&self) -> Day {
+        self.day_of(&self.procedure(), scenario::ROTATION.rest + scenario::RINGS_SECONDS)
+    }
+
+    /// The same where each movement takes about so many seconds beside the ramp.
+    pub(super) fn day_of(&self, procedure: &Procedure, rest_s: f64) -> Day {
+        let schedule = &procedure.schedule;
+        let movements = schedule.len() as f64 * (rest_s + MOVEMENT_SECONDS);
+        let seconds = SETTING_OUT_SECONDS + self.survey_s + schedule.seconds() + movements;
+        let Self { pitch_deg, roll_deg, latitude_deg, azimuth_deg, .. } = *self;
+        let stop = Stop { seconds, pitch_deg, roll_deg, ..Stop::default() };
+        let mut day = Day::standing(latitude_deg, azimuth_deg, stop);
+        let Hold { seconds, drive_s, stop_s, .. } = self.hold;
+        day.go_on(self.seed, seconds, drive_s, stop_s);
+        day
+    }
+}
+
+/// A day of a vehicle that carries a base.
+pub type Day = hal_mock::vehicle::scenario::Scenario;
+
+/// The way of a base on such a day, with what goes wrong with its coarse sensors.
+#[must_use]
+pub fn journey<'a>(day: &'a Day, faults: &'a [BaseFault]) -> JourneyConfiguration<'a> {
+    let stands_s = day.legs.first().map_or(0.0, Leg::seconds);
+    let departs_s = stands_s - 1.0;
+    JourneyConfiguration { departs_s, legs: &day.legs, events: &day.events, faults }
+}

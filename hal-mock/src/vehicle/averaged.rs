@@ -1,0 +1,52 @@
+//! A vehicle's motion as chips see it that average.
+//!
+//! A sigma-delta converter and the filter of an accelerometer average: every reading is the mean since
+//! the reading before it by the same chip, or over one period where that is long ago.
+
+use super::motion::{Integrals, Motion};
+use super::sensors::Means;
+
+/// Periods after which a reading no longer reaches back to the one before it.
+const LONG_AGO: f64 = 1.5;
+
+/// What had been integrated when a chip read last.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Mark {
+    time_s: f64,
+    integrals: Integrals,
+}
+
+/// A motion with what each of so many chips has seen of it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Averaged<'a, const CHIPS: usize> {
+    motion: Motion<'a>,
+    marks: [Mark; CHIPS],
+}
+
+impl<'a, const CHIPS: usize> Averaged<'a, CHIPS> {
+    /// Nothing of it was seen yet.
+    pub(crate) fn new(motion: Motion<'a>) -> Self {
+        Self { motion, marks: [Mark::default(); CHIPS] }
+    }
+
+    /// The motion at the latest reading.
+    pub(crate) fn motion(&self) -> &Motion<'a> {
+        &self.motion
+    }
+
+    /// Means over the sample of a chip with a period in s that ends at a time in s.
+    pub(crate) fn felt(&mut self, chip: usize, time_s: f64, period_s: f64) -> Means {
+        if time_s - self.marks[chip].time_s > LONG_AGO * period_s {
+            self.motion.advance(time_s - period_s);
+            self.marks[chip] = self.mark();
+        }
+        self.motion.advance(time_s);
+        let (from, to) = (self.marks[chip], self.mark());
+        self.marks[chip] = to;
+        to.integrals.means(&from.integrals, to.time_s - from.time_s)
+    }
+
+    fn mark(&self) -> Mark {
+        Mark { time_s: self.motion.time_s(), integrals: *self.motion.integrals() }
+    }
+}

@@ -1,0 +1,99 @@
+//! How `meridian run` goes on after its alignment.
+
+use bench::instrument::Run;
+use bench::instrument::kept::Kept;
+use bench::output::kept::{self, Object};
+use bench::report::Report;
+use clap::Args;
+use firmware::simulated::keep::Hold;
+use serde_json::Value;
+
+use super::Told;
+
+/// How long a run goes on where nothing is said, s.
+const USUAL: f64 = 60.0;
+/// When an azimuth from outside comes, s from power-on.
+const HANDED: f64 = 20.0;
+
+/// What is asked of keeping.
+#[derive(Args, Clone, Debug)]
+pub struct KeepingOptions {
+    /// Seconds for which the azimuth is kept, while the vehicle drives and stops; 0 for not at all (60;
+    /// with --record or --fault 0).
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    hold: Option<f64>,
+    /// While the azimuth is kept, aligns anew at stops.
+    #[arg(long)]
+    realign: bool,
+    /// An azimuth that is handed over from outside instead of an alignment, and its 1σ, in degrees.
+    #[arg(long, value_name = "DEGREES,SIGMA", value_parser = handover, allow_negative_numbers = true)]
+    handover: Option<[f64; 2]>,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if (0.0..=14_400.0).contains(&seconds) => Ok(seconds),
+        _ => Err("not a number of seconds from 0 to 14400".to_owned()),
+    }
+}
+
+fn handover(text: &str) -> Result<[f64; 2], String> {
+    let wrong = || "not an azimuth within ±360° and a σ up to 30°, as 213.7,0.1".to_owned();
+    let (azimuth, sigma) = text.split_once(',').ok_or_else(wrong)?;
+    match (azimuth.parse::<f64>(), sigma.parse::<f64>()) {
+        (Ok(azimuth), Ok(sigma)) if azimuth.abs() <= 360.0 && sigma > 0.0 && sigma <= 30.0 => {
+            Ok([azimuth.rem_euclid(360.0), sigma])
+        }
+        _ => Err(wrong()),
+    }
+}
+
+impl KeepingOptions {
+    /// Whether any of them was given.
+    pub fn is_given(&self) -> bool {
+        self.hold.is_some() || self.realign || self.handover.is_some()
+    }
+
+    /// How the run goes on; one that is to be the same as ever does not unless it is asked to.
+    pub fn hold(&self, is_plain: bool) -> Hold {
+        let usual = if is_plain { 0.0 } else { USUAL };
+        Hold {
+            realigns: self.realign,
+            handover: self.handover.map(|handover| (handover, HANDED)),
+            ..Hold::of(self.hold.unwrap_or(usual))
+        }
+    }
+}
+
+/// The object of what was kept, set into that of the run.
+pub fn object<R>(run: &Run<R>, kept: &Kept, into: &mut Value) -> Result<Option<Object>, String> {
+    let object = kept::object(run, kept);
+    if let Some(object) = &object {
+        into["kept"] = serde_json::to_value(object).map_err(|error| error.to_string())?;
+    }
+    Ok(object)
+}
+
+/// What is told of a run that needed no alignment: its azimuth came from outside.
+pub fn told(
+    name: &str,
+    object: &Value,
+    kept: Option<&Object>,
+    as_json: bool,
+) -> Result<Told, String> {
+    let is_known = kept.is_some_and(|kept| kept.azimuth_deg.is_some());
+    let told = Told::of(is_known, as_json, object, |text| {
+        use std::fmt::Write;
+        writeln!(text, "\nAzimuth handed over in {name}: no alignment")?;
+        kept.map_or(Ok(()), |object| kept::block(text, object))
+    })?;
+    let refusal = (!is_known).then(|| "the azimuth is not known any more".to_owned());
+    Ok(Told { refusal, ..told })
+}
+
+/// A page with the figures of what was kept.
+pub fn page(report: Report, kept: &Kept) -> Report {
+    let mut report = report;
+    report.parts.extend(kept::figures(kept));
+    report
+}

@@ -1,0 +1,132 @@
+//! What a board kept after its alignment, beside the truth.
+
+use std::f64::consts::{PI, TAU};
+
+use firmware::simulated::fault::{Fault, Plan};
+use firmware::simulated::keep::Day;
+use firmware::simulated::mount::FramePlan;
+use hal_mock::earth::Attitude;
+use hal_mock::fault::When;
+use hal_mock::plant::journey::BaseFault;
+use hal_mock::vehicle::Event;
+use hal_mock::vehicle::motion::Motion;
+use orientation::keep::Report;
+
+use super::Run;
+
+/// What goes wrong with a board on a base, in the middle of its alignment or later.
+#[derive(Clone, Debug)]
+pub struct KeptPlan {
+    /// With the chips of a stage.
+    pub chips: Plan,
+    /// With the frames of a mount and their chips.
+    pub frames: FramePlan,
+    /// With what the coarse sensors feel.
+    pub base: Vec<BaseFault>,
+    /// When the bus of the coarse sensors is lost.
+    pub imu: Option<When>,
+    /// What else happens on the way.
+    pub events: Vec<Event>,
+}
+
+impl KeptPlan {
+    /// The plan of a fault of a stage's chips, or of none.
+    #[must_use]
+    pub fn of(fault: Option<Fault>) -> Self {
+        let (frames, base, events) = (FramePlan::default(), Vec::new(), Vec::new());
+        Self { chips: Plan::of(fault), frames, base, imu: None, events }
+    }
+
+    /// A day with what happens on the way; of too many events the first ones.
+    pub(super) fn day(&self, day: Day) -> Day {
+        let mut day = day;
+        let room = self.events.len().min(day.events.capacity() - day.events.len());
+        day.events.extend(self.events.iter().take(room).copied());
+        day
+    }
+}
+
+/// A finished run on a stage that went on keeping.
+#[derive(Clone, Debug)]
+pub struct KeptRun {
+    /// As of any board.
+    pub run: Run,
+    /// What was kept, with the truth.
+    pub kept: Kept,
+}
+
+/// The true attitude at rising times.
+pub trait Truths {
+    /// At a time in s from the start.
+    fn at(&mut self, time_s: f64) -> Attitude;
+}
+
+impl Truths for Motion<'_> {
+    fn at(&mut self, time_s: f64) -> Attitude {
+        self.advance(time_s);
+        self.attitude()
+    }
+}
+
+/// Something that was kept at one moment, with its truth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// What the keeper reported.
+    pub report: Report,
+    /// What was true.
+    pub truth: Attitude,
+}
+
+/// An angle the short way, (−π, π].
+fn short(angle: f64) -> f64 {
+    PI - (PI - angle).rem_euclid(TAU)
+}
+
+impl Point {
+    /// Time, s from power-on.
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        self.report.time.seconds()
+    }
+
+    /// Error of the azimuth and its stated 1σ, rad; none where it is not known.
+    #[must_use]
+    pub fn azimuth_error(&self) -> Option<[f64; 2]> {
+        let azimuth = self.report.azimuth?;
+        Some([short(azimuth.angle - self.truth.azimuth_rad), azimuth.sigma])
+    }
+
+    /// Errors of pitch and roll, rad.
+    #[must_use]
+    pub fn level_error(&self) -> [f64; 2] {
+        let Report { pitch, roll, .. } = self.report;
+        [short(pitch - self.truth.pitch_rad), short(roll - self.truth.roll_rad)]
+    }
+}
+
+/// What was kept, once a second.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Kept {
+    /// In rising order of time.
+    pub points: Vec<Point>,
+}
+
+impl Kept {
+    /// Reports with the truth of their moments.
+    pub(super) fn of(reports: &[Report], mut truths: impl Truths) -> Self {
+        let point =
+            |report: &Report| Point { report: *report, truth: truths.at(report.time.seconds()) };
+        Self { points: reports.iter().map(point).collect() }
+    }
+
+    /// What was kept at last.
+    #[must_use]
+    pub fn last(&self) -> Option<&Point> {
+        self.points.last()
+    }
+
+    /// Those from an azimuth on.
+    pub fn with_azimuth(&self) -> impl Iterator<Item = (&Point, [f64; 2])> {
+        self.points.iter().filter_map(|point| Some((point, point.azimuth_error()?)))
+    }
+}

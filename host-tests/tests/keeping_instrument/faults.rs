@@ -1,0 +1,118 @@
+//! Something goes wrong while an azimuth is kept: the state says so, the recovery is automatic, and no error
+//! is greater than is said.
+
+use super::{at, departure, frames, keep, sigmas, told};
+use bench::instrument::FramesRun;
+use bench::instrument::kept::KeptPlan;
+use embassy_time::{Duration, Instant};
+use firmware::simulated::keep::Hold;
+use firmware::simulated::mount::{FramePlan, FramesScenario};
+use hal_mock::fault::{BusFault, FaultPlan, When};
+use hal_mock::plant::journey::BaseFault;
+use hal_mock::vehicle::Event;
+
+/// How long after its departure something goes wrong with a base, s.
+const AFTER: f64 = 60.0;
+
+fn scenario() -> FramesScenario {
+    frames(1, Hold::of(300.0))
+}
+
+fn moment(seconds: f64) -> Instant {
+    Instant::from_micros((seconds * 1e6) as u64)
+}
+
+fn lost(seconds: f64, for_s: u64) -> When {
+    When::during(moment(seconds), Duration::from_secs(for_s))
+}
+
+/// No error is greater than is said, and the level is found again at the end.
+fn check(found: &FramesRun) {
+    let [worst, within] = sigmas(&found.kept);
+    assert!(worst < 4.5 && within > 0.98, "{worst} σ, {within}: {:#?}", told(&found.run));
+    let last = found.kept.last().expect("it was kept");
+    let [pitch, roll] = last.level_error().map(f64::to_degrees);
+    assert!(pitch.abs().max(roll.abs()) < 2.0, "{pitch}°, {roll}°");
+}
+
+fn has(found: &FramesRun, words: &str) -> bool {
+    told(&found.run).iter().any(|line| line.contains(words))
+}
+
+#[test]
+fn coarse_sensors_that_are_lost_at_rest_cost_nothing() {
+    let scenario = scenario();
+    let stands = departure(&scenario) - 25.0;
+    let plan = KeptPlan { imu: Some(lost(stands, 2)), ..KeptPlan::of(None) };
+    let found = keep(&scenario, &plan);
+    assert!(has(&found, "no motion is measured"), "{:#?}", told(&found.run));
+    assert!(!has(&found, "the azimuth is lost"), "{:#?}", told(&found.run));
+    check(&found);
+}
+
+#[test]
+fn coarse_sensors_that_are_lost_on_the_way_come_back_and_nothing_wrong_is_told() {
+    let scenario = scenario();
+    let plan = KeptPlan { imu: Some(lost(departure(&scenario) + AFTER, 3)), ..KeptPlan::of(None) };
+    let found = keep(&scenario, &plan);
+    assert!(has(&found, "no motion is measured"), "{:#?}", told(&found.run));
+    check(&found);
+}
+
+#[test]
+fn coarse_gyros_that_clip_are_told_and_the_level_comes_back() {
+    let scenario = scenario();
+    let from_s = departure(&scenario) + AFTER;
+    let base = vec![BaseFault::Clipped { from_s, until_s: from_s + 1.0 }];
+    let found = keep(&scenario, &KeptPlan { base, ..KeptPlan::of(None) });
+    assert!(has(&found, "rotation was lost"), "{:#?}", told(&found.run));
+    check(&found);
+}
+
+#[test]
+fn coarse_sensors_that_are_stuck_are_started_again() {
+    let scenario = scenario();
+    let from_s = departure(&scenario) + AFTER;
+    let base = vec![BaseFault::Stuck { from_s, until_s: from_s + 3.0 }];
+    let found = keep(&scenario, &KeptPlan { base, ..KeptPlan::of(None) });
+    assert!(has(&found, "base: the same reading again and again"), "{:#?}", told(&found.run));
+    check(&found);
+}
+
+#[test]
+fn where_the_precise_gyro_is_lost_the_coarse_one_goes_on() {
+    let scenario = scenario();
+    let when = When::always(moment(departure(&scenario) + AFTER));
+    let gyro = Some(FaultPlan { fault: BusFault::Error, when });
+    let frames = FramePlan { gyro, ..FramePlan::default() };
+    let found = keep(&scenario, &KeptPlan { frames, ..KeptPlan::of(None) });
+    assert!(has(&found, "the coarse gyro, as it was compared, shows"), "{:#?}", told(&found.run));
+    assert!(found.kept.last().is_some_and(|point| point.report.time.seconds() > 400.0));
+    check(&found);
+}
+
+#[test]
+fn without_the_accelerometer_the_gyros_carry_the_level_on() {
+    let scenario = scenario();
+    let begins = departure(&scenario) + 10.0;
+    let fault = BusFault::Error;
+    let accelerometer = Some(FaultPlan { fault, when: lost(begins, 20) });
+    let frames = FramePlan { accelerometer, ..FramePlan::default() };
+    let found = keep(&scenario, &KeptPlan { frames, ..KeptPlan::of(None) });
+    assert!(has(&found, "accelerometer: given up"), "{:#?}", told(&found.run));
+    assert!(has(&found, "without forces"), "{:#?}", told(&found.run));
+    assert!(has(&found, "keeping: level"), "{:#?}", told(&found.run));
+    check(&found);
+}
+
+#[test]
+fn a_free_fall_is_told_and_over_at_once() {
+    let scenario = scenario();
+    let at_s = departure(&scenario) + AFTER;
+    let events = vec![Event::Fall { at_s, seconds: 0.6 }];
+    let found = keep(&scenario, &KeptPlan { events, ..KeptPlan::of(None) });
+    assert!(has(&found, "falling freely"), "{:#?}", told(&found.run));
+    let [_, _, level] = at(&found.kept, at_s + 20.0);
+    assert!(level.is_some_and(|level| level < 1.5), "{level:?}°");
+    check(&found);
+}

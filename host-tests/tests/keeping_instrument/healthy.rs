@@ -1,0 +1,99 @@
+//! Nothing goes wrong.
+
+use super::{drive, frames, keep, sigmas, told, vehicle, when};
+use bench::instrument::align_and_keep;
+use bench::instrument::kept::KeptPlan;
+use firmware::event::Event;
+use firmware::ports::NoRecorder;
+use firmware::simulated::keep::Hold;
+use firmware::simulated::scenario::Scenario;
+
+#[test]
+fn thirty_minutes_of_driving_in_a_vehicle_stay_within_three_sigma() {
+    for seed in 1..=3 {
+        let found = drive(&vehicle(seed, Hold::of(1800.0)));
+        let [worst, within] = sigmas(&found.kept);
+        assert!(worst < 4.0 && within > 0.99, "seed {seed}: {worst} σ, {within}");
+        let (last, [error, sigma]) = found.kept.with_azimuth().last().expect("it is kept");
+        assert!(last.report.seconds > 1790.0, "{} s", last.report.seconds);
+        // Gyros of 0.001 °/√h and 0.5 °/h, whose biases the alignment and the stops tell.
+        assert!(error.abs().to_degrees() < 0.6, "seed {seed}: {}°", error.to_degrees());
+        assert!(sigma.to_degrees() < 0.5, "seed {seed}: {}°", sigma.to_degrees());
+        assert_eq!(found.run.violations, [""; 0], "seed {seed}");
+        assert_eq!(found.run.health.faults(), 0, "seed {seed}");
+    }
+}
+
+#[test]
+fn thirty_minutes_of_driving_on_two_frames_stay_within_three_sigma() {
+    let found = keep(&frames(1, Hold::of(1800.0)), &KeptPlan::of(None));
+    let [worst, within] = sigmas(&found.kept);
+    assert!(worst < 4.0 && within > 0.99, "{worst} σ, {within}");
+    let (_, [error, _]) = found.kept.with_azimuth().last().expect("it is kept");
+    assert!(error.abs().to_degrees() < 1.0, "{}°", error.to_degrees());
+    for point in &found.kept.points[60..] {
+        let [pitch, roll] = point.level_error().map(f64::to_degrees);
+        assert!(pitch.abs().max(roll.abs()) < 3.0, "{} s: {pitch}°, {roll}°", point.seconds());
+    }
+    assert_eq!(found.run.violations, [""; 0]);
+    assert_eq!(found.run.health.unkept, 0);
+}
+
+#[test]
+fn a_stage_keeps_by_its_coarse_gyros_alone_and_says_how_well() {
+    let base = Scenario { positions: 8, dwell_s: 5.0, sample_rate_hz: 100.0, ..Scenario::usual(2) };
+    let scenario = Scenario { hold: Hold::of(600.0), has_base_imu: true, ..base };
+    let plan = KeptPlan::of(None);
+    let found = align_and_keep(&scenario, &plan, NoRecorder, &(), ()).expect("possible");
+    let [worst, within] = sigmas(&found.kept);
+    assert!(worst < 4.0 && within > 0.99, "{worst} σ, {within}");
+    let (_, [_, sigma]) = found.kept.with_azimuth().last().expect("it is kept");
+    // Micromechanical gyros: tenths of a degree after ten minutes, not hundredths.
+    assert!((0.1..5.0).contains(&sigma.to_degrees()), "{}°", sigma.to_degrees());
+}
+
+#[test]
+fn keeping_changes_nothing_of_what_the_session_finds() {
+    let verdict = |hold| {
+        let found = drive(&vehicle(5, hold));
+        found.run.replay.conclusion().expect("it concludes").verdict.expect("a healthy run")
+    };
+    let (alone, kept) = (verdict(Hold::default()), verdict(Hold::of(60.0)));
+    assert_eq!(alone.angle.to_bits(), kept.angle.to_bits());
+    assert_eq!(alone.sigma.to_bits(), kept.sigma.to_bits());
+}
+
+#[test]
+fn the_link_tells_attitude_once_a_second_and_no_line_is_cut() {
+    let found = drive(&vehicle(1, Hold::of(120.0)));
+    let lines: Vec<&str> = found.run.lines.lines().collect();
+    assert!(lines.iter().all(|line| line.ends_with(", faults 0")), "{lines:?}");
+    let kept = lines.iter().filter(|line| line.contains(" pitch ")).count();
+    assert!((118..=122).contains(&kept), "{kept} lines");
+    assert!(lines.iter().any(|line| line.contains("azimuth ") && line.contains(" level,")));
+}
+
+#[test]
+fn the_frames_turn_the_precise_gyro_vertical_and_the_keeper_takes_it_there() {
+    let found = keep(&frames(1, Hold::of(60.0)), &KeptPlan::of(None));
+    let lines = told(&found.run);
+    let place = |words: &str| {
+        let line = lines.iter().position(|line| line.contains(words));
+        line.unwrap_or_else(|| panic!("{words} is told: {lines:#?}"))
+    };
+    assert!(place("handed over") < place("gyro vertical"));
+    assert!(place("gyro vertical") < place("the precise gyro shows"));
+}
+
+#[test]
+fn an_azimuth_from_outside_spares_the_alignment() {
+    let azimuth = Scenario::default().azimuth_deg;
+    let hold = Hold { handover: Some(([azimuth + 0.1, 0.16], 30.0)), ..Hold::of(300.0) };
+    let found = keep(&frames(3, hold), &KeptPlan::of(None));
+    assert!(found.run.conclusion().is_none(), "no session has concluded");
+    let handed = when(&found.run, |event| matches!(event, Event::HandedOver(..)));
+    assert!(handed.is_some_and(|at| (30.0..32.0).contains(&at)), "{handed:?}");
+    let [worst, _] = sigmas(&found.kept);
+    assert!(worst < 3.5, "{worst} σ");
+    assert!(told(&found.run).iter().any(|line| line.contains("the precise gyro shows")));
+}

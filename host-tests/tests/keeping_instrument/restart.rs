@@ -1,0 +1,138 @@
+//! The supply is lost, and comes back.
+
+use super::{told, vehicle};
+use bench::instrument::{VehicleRun, align_stops_along, align_stops_storing};
+use firmware::event::Event;
+use firmware::ports::{HeadingStore, NoRecorder};
+use firmware::simulated::flash::Flash;
+use firmware::simulated::keep::Hold;
+use firmware::simulated::scenario::{GyroClass, Scenario};
+use firmware::simulated::vehicle::fault::VehiclePlan;
+use firmware::simulated::vehicle::{Day, VehicleScenario};
+use firmware::storage::FlashStore;
+use hal_mock::vehicle::Stop;
+use orientation::keep::restart::{Doubt, Remembered};
+
+/// Gyros whose biases come back to 0.01 °/h: only such ones can tell whether a vehicle was turned.
+const STEADY: GyroClass =
+    GyroClass { n_deg_sqrt_h: 0.001, b_deg_h: 0.007, k_deg_h_sqrt_h: 0.0, bias_sigma_deg_h: 0.01 };
+
+fn scenario(seed: u64, seconds: f64, gyro: GyroClass) -> VehicleScenario {
+    let usual = vehicle(seed, Hold::of(seconds));
+    VehicleScenario { base: Scenario { gyro, ..usual.base }, stops: 2, drive_s: 300.0, ..usual }
+}
+
+/// The first run: it aligns itself, and the supply is lost so many seconds later.
+fn first(seconds: f64, gyro: GyroClass, store: &mut FlashStore<Flash>) -> VehicleRun {
+    let scenario = scenario(1, seconds, gyro);
+    align_stops_storing(&scenario, None, NoRecorder, &(), store).expect("possible")
+}
+
+/// The second: the vehicle stands as it stood, but for these degrees of azimuth and pitch.
+fn second(
+    before: &VehicleRun,
+    [azimuth, pitch]: [f64; 2],
+    gyro: GyroClass,
+    store: &mut impl HeadingStore,
+) -> VehicleRun {
+    // Another seed draws other biases, as a start does.
+    let scenario = scenario(2, 20.0, gyro);
+    let truth = before.kept.last().expect("it was kept").truth;
+    let stop = Stop {
+        seconds: 90.0,
+        pitch_deg: truth.pitch_rad.to_degrees() + pitch,
+        roll_deg: truth.roll_rad.to_degrees(),
+        ..Stop::default()
+    };
+    let latitude = scenario.base.latitude_deg;
+    let day = Day::standing(latitude, truth.azimuth_rad.to_degrees() + azimuth, stop);
+    let scenario = VehicleScenario {
+        base: Scenario { azimuth_deg: truth.azimuth_rad.to_degrees() + azimuth, ..scenario.base },
+        ..scenario
+    };
+    align_stops_along(&day, &VehiclePlan::NONE, &scenario, NoRecorder, &(), store)
+        .expect("possible")
+}
+
+fn doubt(run: &VehicleRun) -> Option<Doubt> {
+    run.run.events.iter().find_map(|(_, event)| match event {
+        Event::Doubted(doubt) => Some(*doubt),
+        _ => None,
+    })
+}
+
+fn is_recalled(run: &VehicleRun) -> bool {
+    run.run.events.iter().any(|(_, event)| matches!(event, Event::HeadingRecalled(..)))
+}
+
+#[test]
+fn a_restart_without_motion_keeps_the_heading() {
+    let mut store = Flash::default().store();
+    let before = first(15.0, STEADY, &mut store);
+    let after = second(&before, [0.0, 0.0], STEADY, &mut store);
+    assert!(is_recalled(&after), "{:#?}", told(&after.run));
+    let (point, [error, sigma]) = after.kept.with_azimuth().next().expect("it is known at once");
+    assert!(point.seconds() < 20.0, "after {} s", point.seconds());
+    assert!(error.abs() < 3.0 * sigma, "{error} of {sigma} rad");
+    assert!(after.run.lines.contains(", recalled"), "{}", after.run.lines);
+}
+
+#[test]
+fn a_vehicle_that_was_turned_while_it_was_switched_off_is_not_believed() {
+    let mut store = Flash::default().store();
+    let before = first(15.0, STEADY, &mut store);
+    for turned in [30.0, 180.0, -90.0] {
+        let after = second(&before, [turned, 0.0], STEADY, &mut store);
+        assert!(matches!(doubt(&after), Some(Doubt::Turned { .. })), "{:?}", doubt(&after));
+        assert_eq!(after.kept.with_azimuth().count(), 0);
+    }
+}
+
+#[test]
+fn a_vehicle_that_was_tilted_while_it_was_switched_off_is_not_believed() {
+    let mut store = Flash::default().store();
+    let before = first(15.0, STEADY, &mut store);
+    let after = second(&before, [0.0, 0.3], STEADY, &mut store);
+    assert!(matches!(doubt(&after), Some(Doubt::Tilted { .. })), "{:?}", doubt(&after));
+    assert_eq!(after.kept.with_azimuth().count(), 0);
+}
+
+#[test]
+fn gyros_that_cannot_tell_a_turn_recall_nothing() {
+    let mut store = Flash::default().store();
+    let before = first(15.0, GyroClass::FIBRE_OPTIC, &mut store);
+    let after = second(&before, [0.0, 0.0], GyroClass::FIBRE_OPTIC, &mut store);
+    assert!(matches!(doubt(&after), Some(Doubt::CannotTell { .. })), "{:?}", doubt(&after));
+}
+
+#[test]
+fn a_vehicle_that_has_set_off_since_is_forgotten() {
+    let mut store = Flash::default().store();
+    // The supply is lost amid a drive.
+    let before = first(90.0, STEADY, &mut store);
+    let after = second(&before, [0.0, 0.0], STEADY, &mut store);
+    assert!(!is_recalled(&after) && doubt(&after).is_none(), "{:#?}", told(&after.run));
+}
+
+#[test]
+fn a_power_cut_amid_the_writing_leaves_a_heading_that_is_whole_or_none() {
+    for words in 0..24 {
+        let mut flash = Flash::default();
+        flash.left = Some(words);
+        let mut store = flash.store();
+        let before = first(15.0, STEADY, &mut store);
+        let mut flash = store.into_flash();
+        flash.left = None;
+        let mut store = flash.store();
+        let kept = bench::virtual_time::run(store.load_heading()).expect("no deadlock");
+        let kept = kept.ok().flatten().and_then(|bytes| Remembered::from_bytes(&bytes));
+        let truth = before.kept.last().expect("it was kept").report;
+        if let (Some(kept), Some(azimuth)) = (kept, truth.azimuth) {
+            assert!((kept.azimuth - azimuth.angle).abs() < 1e-3, "{words} words");
+        }
+        if words < 2 {
+            let told = told(&before.run);
+            assert!(told.iter().any(|line| line.contains("cannot be kept")), "{told:#?}");
+        }
+    }
+}
