@@ -7,7 +7,7 @@
 //! hand that shakes and a vehicle that takes a bend each get the trust they deserve. A lasting velocity
 //! fades from the state, for it says nothing of the tilt.
 
-use crate::keep::attitude::Matrix;
+use super::stretch::Stretch;
 use crate::math::rotation::turned;
 
 /// Number of states.
@@ -36,23 +36,6 @@ const FORCE_SCALE: f32 = 0.1;
 const SWING: f32 = 0.5;
 /// A vector of all states.
 type States = [f32; STATES];
-
-/// What happened since the last step.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Stretch {
-    /// Its length, s.
-    pub seconds: f32,
-    /// Integral of the attitude's matrix, s.
-    pub attitude: Matrix,
-    /// Integral of the force on the level frame, north, east, down, m/s.
-    pub impulse: [f32; 3],
-    /// For how much of it there were forces, s.
-    pub forced: f32,
-    /// Integrals of the squared rates about the body's axes, rad²/s.
-    pub rate_squares: [f32; 3],
-    /// Whether the body stands: it does not turn then, whatever the gyros show.
-    pub is_rest: bool,
-}
 
 /// What of the gyros is to be expected, 1σ.
 #[derive(Clone, Copy, Debug, Default)]

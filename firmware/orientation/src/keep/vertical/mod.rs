@@ -10,56 +10,43 @@
 //! gravity is told from acceleration is the filter's (compare D. Laidig and T. Seel, VQF, Information
 //! Fusion 2023, which filters the forces in an inertial frame for the same reason).
 
+mod course;
 mod filter;
+mod gap;
+mod judge;
 mod rest;
+mod stretch;
+mod sums;
 
+pub use self::course::Course;
 pub use self::filter::Expected;
-use self::filter::{Filter, Stretch, TURN};
-use self::rest::{Means, RestWatch, WINDOW};
+use self::filter::Filter;
+use self::judge::STRETCH;
+use self::rest::RestWatch;
+use self::stretch::Stretch;
+use self::sums::{Before, Rested, Sums, Window};
 use super::Setting;
 use super::attitude::{Attitude, Matrix};
 use crate::math::rotation::{difference, dot, scaled, sum, transposed, turned};
 use crate::signal::InertialSample;
-use crate::signal::increment::{Increment, STEP};
-use crate::units::{AngleIncrement, Instant, SpecificForce};
+use crate::signal::increment::Increment;
+use crate::units::Instant;
 
 /// A vector in single precision.
 type Vector = [f32; 3];
 
 /// Time from one attitude to the next, µs: 50 Hz.
 const TICK: u64 = 20_000;
-/// Time from one step of the filter to the next, s.
-const STRETCH: f32 = 0.1;
-/// Time over which the first forces are averaged to begin with, s.
-const START: f32 = 0.2;
 /// 1σ of the tilt with which it begins, rad: nobody says that the body stands.
 const START_TILT: f32 = 0.05;
-/// Tilt, 1σ, of a standing body by its mean force over a window, rad: wind and engine.
-const STANDING_TILT: f32 = 3e-4;
-/// How far wind and engine turn a body that stands, 1σ, rad: 4″.
-const SHAKING: f32 = 2e-5;
-/// Longest stretch of a rest whose mean rates are taken together, s.
-const LONGEST_REST: f32 = 64.0;
-/// Part of gravity below which a force is a free fall.
-const FREE: f32 = 0.3;
 /// Standard gravity, m/s².
 const GRAVITY: f32 = 9.806_65;
 /// Part of its period by which a sample may come late.
 const LATE: f32 = 0.5;
 /// Greatest bias that is believed, in 1σ of what was stated.
 const GREATEST_BIAS: f32 = 5.0;
-/// Part of the rate lately that a rate within a gap may be beside the mean of its ends.
-const GAP_PART: f32 = 0.3;
 /// Time over which the rate lately fades, s.
 const GAP_WATCH: f32 = 1.0;
-/// Least rate that may be hidden behind a gyro's limit, rad/s.
-const LEAST_CLIPPED: f32 = 1.0;
-/// Tilt, 1σ, at which the level counts as lost, rad.
-const LOST: f32 = 0.1;
-/// For how long a rest is remembered, s.
-const MEMORY: f32 = 600.0;
-/// Acceleration, RMS, at which gravity is hardly told from it, m/s².
-const COASTING: f32 = 1.0;
 
 /// Whether the level can be trusted, and what keeps it from that.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -77,19 +64,6 @@ pub enum Trust {
     NoForce,
     /// A part of the rotation was lost, and the level with it.
     RotationLost,
-}
-
-/// What the body did since its heading was handed over.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Course {
-    /// Turned about the vertical, rad, whole turns included.
-    pub turned: f32,
-    /// For how long it has moved since it stood last, s.
-    pub moved: f32,
-    /// For how long it stood then, s, ten minutes at most.
-    pub stood: f32,
-    /// What a bias that grows by 1 rad/s² has turned unseen, rad.
-    pub ramp: f32,
 }
 
 /// The gyrovertical at work.
@@ -123,50 +97,6 @@ pub struct Vertical {
     /// When the latest attitude was taken.
     since: Instant,
     trust: Trust,
-    /// For how long there was no force, s.
-    unforced: f32,
-}
-
-/// Forces since the latest attitude.
-#[derive(Clone, Copy, Debug, Default)]
-struct Sums {
-    /// µm/s².
-    sums: [i32; 3],
-    count: u32,
-}
-
-/// What a window of the rest watch sums.
-#[derive(Clone, Copy, Debug, Default)]
-struct Window {
-    seconds: f32,
-    /// What the body turned against the Earth, about its axes, with its biases, rad.
-    turned: Vector,
-    /// Turned about the vertical, rad.
-    about: f32,
-    /// Integral of the force on the body's axes, m/s.
-    impulse: Vector,
-    forced: f32,
-}
-
-/// What of a rest the biases have not been told yet: of every part the mean rate counts, each as long as all
-/// before, for what shakes the body turns it to and fro.
-#[derive(Clone, Copy, Debug, Default)]
-struct Rested {
-    seconds: f32,
-    /// Length of this part, s.
-    due: f32,
-    turned: Vector,
-}
-
-/// The sample before.
-#[derive(Clone, Copy, Debug, Default)]
-struct Before {
-    time: Option<Instant>,
-    turned: [AngleIncrement; 3],
-    /// Rate lately, rad/s.
-    lately: f32,
-    /// What may have been lost since a gyro clips, rad.
-    clipped: f32,
 }
 
 impl Vertical {
@@ -200,7 +130,6 @@ impl Vertical {
             course: Course::default(),
             since: Instant::default(),
             trust: Trust::Starting,
-            unforced: 0.0,
         }
     }
 
@@ -237,47 +166,6 @@ impl Vertical {
         }
         self.since = Instant(now.0.saturating_sub((self.period * 1e6) as u64));
         self.period
-    }
-
-    /// Samples are missing: the rate between is taken for the mean of those at either end.
-    #[inline(never)]
-    fn bridge(&mut self, elapsed: f32, sample: &InertialSample) {
-        let missing = elapsed - self.period;
-        let end = Instant(sample.time.0.saturating_sub((self.period * 1e6) as u64));
-        self.tick(Instant(end.0.saturating_sub((missing * 1e6) as u64)));
-        let rate =
-            |turned: &[AngleIncrement; 3]| turned.map(|part| part.0 as f32 * STEP / self.period);
-        let (before, after) = (rate(&self.before.turned), rate(&sample.turned));
-        let mean = scaled(&sum(&before, &after), 0.5);
-        let jump = difference(&after, &before);
-        let lost = 0.5 * libm::sqrtf(dot(&jump, &jump)) + GAP_PART * self.before.lately;
-        self.advance(&scaled(&mean, missing), missing);
-        self.since = end;
-        self.lose(lost * missing);
-    }
-
-    /// A gyro stood at the limit of its range: what it turned beyond is not known.
-    #[inline(never)]
-    fn clip(&mut self, now: Instant) {
-        self.tick(now);
-        // What is lost of one clip goes one way: it adds up, not its squares.
-        let before = self.before.clipped;
-        self.before.clipped += self.before.lately.max(LEAST_CLIPPED) * self.period;
-        self.lose_square(self.before.clipped * self.before.clipped - before * before);
-    }
-
-    /// A rotation of this size, rad, may have been lost.
-    fn lose(&mut self, angle: f32) {
-        self.lose_square(angle * angle);
-    }
-
-    fn lose_square(&mut self, variance: f32) {
-        self.filter.doubt(0, variance);
-        self.filter.doubt(1, variance);
-        self.filter.doubt(TURN, variance);
-        self.rest.disturb();
-        self.rested = Rested::default();
-        self.window = Window::default();
     }
 
     /// Takes the attitude.
@@ -318,119 +206,6 @@ impl Vertical {
             self.step();
         }
     }
-
-    /// Lets the filter look at what happened.
-    #[inline(never)]
-    fn step(&mut self) {
-        if self.trust == Trust::Starting {
-            return self.start();
-        }
-        let mut stretch = core::mem::take(&mut self.stretch);
-        stretch.is_rest = self.rest.is_at_rest();
-        self.filter.step(&stretch, &self.expected);
-        self.judge(&stretch);
-        if self.window.seconds >= WINDOW {
-            self.look();
-        }
-        self.correct();
-        self.attitude.normalise();
-    }
-
-    /// Takes the first forces for gravity.
-    fn start(&mut self) {
-        if self.window.forced < START {
-            self.stretch = Stretch::default();
-            return;
-        }
-        let force = scaled(&self.window.impulse, 1.0 / self.window.forced);
-        self.attitude = Attitude::levelled(&force);
-        self.matrix = self.attitude.matrix();
-        self.stretch = Stretch::default();
-        self.window = Window::default();
-        self.trust = Trust::Level;
-    }
-
-    /// Says what of the level can be trusted.
-    fn judge(&mut self, stretch: &Stretch) {
-        let is_forced = stretch.forced > 0.5 * stretch.seconds;
-        self.unforced = if is_forced { 0.0 } else { self.unforced + stretch.seconds };
-        let force = self.filter.force();
-        self.trust = if self.filter.tilt_sigma() > LOST {
-            Trust::RotationLost
-        } else if !is_forced {
-            Trust::NoForce
-        } else if stretch.force() < FREE * GRAVITY {
-            Trust::FreeFall
-        } else if force > COASTING {
-            Trust::Coasting
-        } else {
-            Trust::Level
-        };
-    }
-
-    /// Looks whether the body stands; if so, its rates are the biases and its force is gravity.
-    fn look(&mut self) {
-        let window = core::mem::take(&mut self.window);
-        let per_second = 1.0 / window.seconds;
-        let rate = scaled(&window.turned, per_second);
-        let force = (window.forced > 0.0).then(|| scaled(&window.impulse, 1.0 / window.forced));
-        let variances = self.filter.bias_variances();
-        let means = Means { rate, force };
-        if !self.rest.push(means, self.bias, variances, self.expected.walk) {
-            self.course.drive(&window);
-            self.learn_biases();
-            self.rested.due = 0.0;
-            return;
-        }
-        self.course.stand(window.seconds);
-        self.stand(&window, force);
-        // The body did not turn: what the gyro made of it is undone.
-        self.attitude.correct(&[0.0, 0.0, -window.about]);
-    }
-
-    fn stand(&mut self, window: &Window, force: Option<Vector>) {
-        self.filter.stand();
-        self.rested.seconds += window.seconds;
-        self.rested.turned = sum(&self.rested.turned, &window.turned);
-        if self.rested.seconds >= self.rested.due {
-            self.rested.due = (2.0 * self.rested.seconds).min(LONGEST_REST);
-            self.learn_biases();
-        }
-        if let Some(force) = force {
-            let [north, east, down] = turned(&self.matrix, &force);
-            let variance = STANDING_TILT * STANDING_TILT;
-            self.filter.measure(0, east / down, variance);
-            self.filter.measure(1, -north / down, variance);
-        }
-    }
-
-    /// The mean rates of a rest are the biases.
-    fn learn_biases(&mut self) {
-        let Rested { seconds, turned, .. } = self.rested;
-        if seconds <= 0.0 {
-            return;
-        }
-        (self.rested.seconds, self.rested.turned) = (0.0, [0.0; 3]);
-        let off = difference(&scaled(&turned, 1.0 / seconds), &self.bias);
-        let shaking = SHAKING / seconds;
-        for (axis, off) in off.into_iter().enumerate() {
-            let variance = self.expected.walk[axis] / seconds + 2.0 * shaking * shaking;
-            self.filter.measure(Filter::bias(axis), off, variance);
-        }
-    }
-
-    /// Puts attitude and biases right.
-    fn correct(&mut self) {
-        let [rotation, bias] = self.filter.take();
-        self.attitude.correct(&rotation);
-        self.matrix = self.attitude.matrix();
-        self.bias = bounded(&sum(&self.bias, &bias), &self.greatest);
-    }
-}
-
-/// The vector with each component within its bound.
-fn bounded(vector: &Vector, bounds: &Vector) -> Vector {
-    core::array::from_fn(|axis| vector[axis].max(-bounds[axis]).min(bounds[axis]))
 }
 
 /// What is asked of it.
@@ -550,65 +325,5 @@ impl Vertical {
         self.correct();
         self.filter.begin_turn();
         self.course = Course { stood: self.course.stood, ..Course::default() };
-    }
-}
-
-impl Course {
-    fn drive(&mut self, window: &Window) {
-        self.turned += window.about;
-        self.moved += window.seconds;
-        self.ramp += window.seconds * (self.moved + 0.5 * self.stood);
-    }
-
-    fn stand(&mut self, seconds: f32) {
-        if self.moved > 0.0 {
-            (self.moved, self.stood) = (0.0, 0.0);
-        }
-        self.stood = (self.stood + seconds).min(MEMORY);
-    }
-}
-
-impl Sums {
-    #[inline]
-    fn push(&mut self, [x, y, z]: [SpecificForce; 3]) {
-        // Sixteenths of a µm/s² would not fit; whole ones of ±2147 m/s² do not add up either: halves of
-        // what is summed are far below every noise.
-        self.sums[0] = self.sums[0].saturating_add(x.0 >> SHIFT);
-        self.sums[1] = self.sums[1].saturating_add(y.0 >> SHIFT);
-        self.sums[2] = self.sums[2].saturating_add(z.0 >> SHIFT);
-        self.count += 1;
-    }
-
-    /// The mean, m/s², which begins again.
-    fn take(&mut self) -> Option<Vector> {
-        let Self { sums, count } = core::mem::take(self);
-        let part = 1e-6 * (1 << SHIFT) as f32 / count as f32;
-        (count > 0).then(|| [sums[0] as f32 * part, sums[1] as f32 * part, sums[2] as f32 * part])
-    }
-}
-
-/// Bits by which forces are rounded before they are summed, so that 128 of them fit at full range: 64 µm/s².
-const SHIFT: u32 = 6;
-
-impl Stretch {
-    fn turn(&mut self, attitude: &Matrix, rotation: &Vector, seconds: f32) {
-        for (sums, row) in self.attitude.iter_mut().zip(attitude) {
-            *sums = sum(sums, &scaled(row, seconds));
-        }
-        let [x, y, z] = *rotation;
-        let squares = scaled(&[x * x, y * y, z * z], 1.0 / seconds);
-        self.rate_squares = sum(&self.rate_squares, &squares);
-        self.seconds += seconds;
-    }
-
-    /// A force on the level frame.
-    fn push(&mut self, force: &Vector, seconds: f32) {
-        self.impulse = sum(&self.impulse, &scaled(force, seconds));
-        self.forced += seconds;
-    }
-
-    /// The mean force's size, m/s².
-    fn force(&self) -> f32 {
-        libm::sqrtf(dot(&self.impulse, &self.impulse)) / self.forced
     }
 }

@@ -1,0 +1,45 @@
+//! What happened since the filter's last step.
+
+use super::Vector;
+use crate::keep::attitude::Matrix;
+use crate::math::rotation::{dot, scaled, sum};
+
+/// What happened since the last step.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Stretch {
+    /// Its length, s.
+    pub seconds: f32,
+    /// Integral of the attitude's matrix, s.
+    pub attitude: Matrix,
+    /// Integral of the force on the level frame, north, east, down, m/s.
+    pub impulse: [f32; 3],
+    /// For how much of it there were forces, s.
+    pub forced: f32,
+    /// Integrals of the squared rates about the body's axes, rad²/s.
+    pub rate_squares: [f32; 3],
+    /// Whether the body stands: it does not turn then, whatever the gyros show.
+    pub is_rest: bool,
+}
+
+impl Stretch {
+    pub(super) fn turn(&mut self, attitude: &Matrix, rotation: &Vector, seconds: f32) {
+        for (sums, row) in self.attitude.iter_mut().zip(attitude) {
+            *sums = sum(sums, &scaled(row, seconds));
+        }
+        let [x, y, z] = *rotation;
+        let squares = scaled(&[x * x, y * y, z * z], 1.0 / seconds);
+        self.rate_squares = sum(&self.rate_squares, &squares);
+        self.seconds += seconds;
+    }
+
+    /// A force on the level frame.
+    pub(super) fn push(&mut self, force: &Vector, seconds: f32) {
+        self.impulse = sum(&self.impulse, &scaled(force, seconds));
+        self.forced += seconds;
+    }
+
+    /// The mean force's size, m/s².
+    pub(super) fn force(&self) -> f32 {
+        libm::sqrtf(dot(&self.impulse, &self.impulse)) / self.forced
+    }
+}
