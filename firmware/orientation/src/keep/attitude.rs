@@ -35,14 +35,13 @@ impl Attitude {
         Self(parts.map(|part| libm::round(part * ONE as f64) as i64))
     }
 
-    /// Level by what the body feels as up, its x in the frame's vertical plane of x; nothing that is felt leaves
-    /// it unturned.
+    /// Level by what the body feels as up, on this course, rad.
     #[must_use]
-    pub fn levelled(force: &[f32; 3]) -> Self {
+    pub fn levelled(force: &[f32; 3], course: f64) -> Self {
         let [x, y, z] = force.map(f64::from);
         let pitch = libm::atan2(x, libm::sqrt(y * y + z * z));
         let roll = libm::atan2(-y, -z);
-        Self::new(quaternion([0.0, pitch, roll]))
+        Self::new(quaternion([course, pitch, roll]))
     }
 
     /// The quaternion (w, x, y, z).
@@ -59,9 +58,10 @@ impl Attitude {
         if square <= LARGEST * LARGEST {
             return self.turn_little(x, y, z, square);
         }
-        let pieces = 1 + ((libm::sqrtf(square) / LARGEST) as u32).min(PIECES);
-        let part = 1.0 / pieces as f32;
-        for _ in 0..pieces {
+        let length = libm::sqrtf(square);
+        let pieces = 1 + (length / LARGEST) as u32;
+        let part = if pieces > PIECES { LARGEST / length } else { 1.0 / pieces as f32 };
+        for _ in 0..pieces.min(PIECES) {
             self.turn_little(part * x, part * y, part * z, part * part * square);
         }
     }

@@ -54,7 +54,7 @@ pub struct InertialSample {
 pub struct SpinSample {
     /// When it was taken.
     pub time: Instant,
-    /// Angles turned about the axes since the sample before.
+    /// Angles turned about the axes since the sample before, in one sample period: after a gap the last period's.
     pub turned: [AngleIncrement; 3],
     /// Forces on y and z at this moment; none where a sensor stood at the limit of its range.
     pub force: Option<[SpinForce; 2]>,

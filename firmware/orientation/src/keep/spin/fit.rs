@@ -110,6 +110,12 @@ impl Sums {
         self.samples
     }
 
+    /// What part of them comes after the middle, where the fit tells the phase.
+    pub(super) fn part_after_middle(&self) -> f32 {
+        let samples = self.samples as f32;
+        (samples - 1.0 - self.half) / samples
+    }
+
     /// Those that had a force.
     pub(super) fn count(&self) -> u32 {
         self.count

@@ -128,7 +128,8 @@ impl Lock {
         let samples = self.sums.samples() as f32 / self.wanted as f32;
         let angle = f64::from(Wheel::between(self.told, wheel.whole()));
         self.carry(angle, f64::from(self.since) * self.period);
-        let half = 0.5 * f64::from(Wheel::between(self.begun, wheel.whole()));
+        let half = f64::from(self.sums.part_after_middle())
+            * f64::from(Wheel::between(self.begun, wheel.whole()));
         let trouble = if is_whole { self.use_turn(half, wheel) } else { Trouble::TooSlow };
         self.note(trouble, now);
         self.wanted = TURN_STEPS * u64::from(if self.is_found { TOGETHER } else { 1 });
@@ -146,7 +147,7 @@ impl Lock {
         self.angle = self.angle.min(TURN * TURN);
     }
 
-    /// Learns from a turn; the middle of it is half its angle ago, rad.
+    /// Learns from turns; the middle of them is so far ago, rad.
     fn use_turn(&mut self, half: f64, wheel: &mut Wheel) -> Trouble {
         if self.sums.count() * 2 < self.sums.samples() {
             return Trouble::NoForce;

@@ -34,6 +34,9 @@ const FORCE_SCALE: f32 = 0.1;
 
 /// For how long a body turns one way before it turns back, s: errors of scale and axes add up until then.
 const SWING: f32 = 0.5;
+/// Part of a variance that rounding may make of it.
+const ROUNDING: f32 = 1e-6;
+
 /// A vector of all states.
 type States = [f32; STATES];
 
@@ -64,13 +67,13 @@ pub struct Filter {
 }
 
 impl Filter {
-    /// With these 1σ of the tilt, rad, and of the gyros' biases, rad/s.
+    /// With these 1σ of the gyros' biases, rad/s; the level is not taken yet.
     #[must_use]
-    pub fn new(tilt: f32, biases: [f32; 3]) -> Self {
+    pub fn new(biases: [f32; 3]) -> Self {
         let mut covariance = [[0.0; STATES]; STATES];
         let speed = LEAST_SPEED * LEAST_SPEED;
         let [x, y, z] = biases;
-        let start = [tilt, tilt, 0.0, x, y, z, LEAST_SPEED, LEAST_SPEED];
+        let start = [0.0, 0.0, 0.0, x, y, z, LEAST_SPEED, LEAST_SPEED];
         for (place, sigma) in start.into_iter().enumerate() {
             covariance[place][place] = sigma * sigma;
         }
@@ -183,10 +186,15 @@ impl Filter {
         for row in 0..STATES {
             let gain = column[row] / whole;
             self.correction[row] += gain * off;
+            let before = self.covariance[row][row];
             for (part, other) in self.covariance[row].iter_mut().zip(column) {
                 *part -= gain * other;
             }
+            // Of what is learnt at once almost to the end, rounding must not leave less than nothing.
+            let least = ROUNDING * before;
+            self.covariance[row][row] = self.covariance[row][row].max(least);
         }
+        self.covariance[place][place] = column[place] * (variance / whole);
     }
 
     /// The body stands: whatever velocity it had is over.
@@ -232,6 +240,21 @@ impl Filter {
     #[must_use]
     pub fn turn_variance(&self) -> f32 {
         self.covariance[TURN][TURN].max(0.0)
+    }
+
+    /// The level was taken anew, with this 1σ, rad.
+    pub fn relevel(&mut self, sigma: f32) {
+        for place in 0..TURN {
+            self.clear(place);
+            self.covariance[place][place] = sigma * sigma;
+        }
+        self.stand();
+    }
+
+    /// A bias is known to no better than this variance, (rad/s)².
+    pub fn limit_bias(&mut self, axis: usize, variance: f32) {
+        let place = BIAS + axis;
+        self.covariance[place][place] = self.covariance[place][place].max(variance);
     }
 
     /// Makes a state less certain by a variance.

@@ -1,8 +1,8 @@
 //! What becomes of rotation that nobody saw: samples that are missing, and gyros at the limit of their range.
 
-use super::Vertical;
 use super::filter::TURN;
 use super::sums::{Rested, Window};
+use super::{Trust, Vertical};
 use crate::math::rotation::{difference, dot, scaled, sum};
 use crate::signal::InertialSample;
 use crate::signal::increment::STEP;
@@ -10,6 +10,8 @@ use crate::units::{AngleIncrement, Instant};
 
 /// Part of the rate lately that a rate within a gap may be beside the mean of its ends.
 const GAP_PART: f32 = 0.3;
+/// Tilt, 1σ, with which nothing of the level is left, rad: it is taken from the forces anew.
+const ALL: f32 = 0.3;
 /// Least rate that may be hidden behind a gyro's limit, rad/s.
 const LEAST_CLIPPED: f32 = 1.0;
 
@@ -50,6 +52,10 @@ impl Vertical {
         self.filter.doubt(0, variance);
         self.filter.doubt(1, variance);
         self.filter.doubt(TURN, variance);
+        if self.filter.tilt_sigma() > ALL && self.trust != Trust::Starting {
+            self.is_lost = true;
+            self.trust = Trust::RotationLost;
+        }
         self.rest.disturb();
         self.rested = Rested::default();
         self.window = Window::default();

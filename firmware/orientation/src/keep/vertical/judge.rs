@@ -5,13 +5,16 @@ use super::rest::{Means, WINDOW};
 use super::stretch::Stretch;
 use super::sums::{Rested, Window};
 use super::{GRAVITY, Trust, Vector, Vertical};
-use crate::keep::attitude::Attitude;
+use crate::keep::attitude::{self, Attitude};
 use crate::math::rotation::{difference, scaled, sum, turned};
 
 /// Time from one step of the filter to the next, s.
 pub(super) const STRETCH: f32 = 0.1;
 /// Time over which the first forces are averaged to begin with, s.
 const START: f32 = 0.2;
+/// 1σ of the tilt with which it begins, rad, and of that on the way: nobody says that the body stands.
+const START_TILT: f32 = 0.05;
+const MOVING_TILT: f32 = 0.2;
 /// Tilt, 1σ, of a standing body by its mean force over a window, rad: wind and engine.
 const STANDING_TILT: f32 = 3e-4;
 /// How far wind and engine turn a body that stands, 1σ, rad: 4″.
@@ -29,7 +32,7 @@ impl Vertical {
     /// Lets the filter look at what happened.
     #[inline(never)]
     pub(super) fn step(&mut self) {
-        if self.trust == Trust::Starting {
+        if self.trust == Trust::Starting || self.is_lost {
             return self.start();
         }
         let mut stretch = core::mem::take(&mut self.stretch);
@@ -43,17 +46,20 @@ impl Vertical {
         self.attitude.normalise();
     }
 
-    /// Takes the first forces for gravity.
+    /// Takes the first forces for gravity, and those after all of the level was lost.
     fn start(&mut self) {
+        self.stretch = Stretch::default();
         if self.window.forced < START {
-            self.stretch = Stretch::default();
             return;
         }
         let force = scaled(&self.window.impulse, 1.0 / self.window.forced);
-        self.attitude = Attitude::levelled(&force);
-        self.matrix = self.attitude.matrix();
-        self.stretch = Stretch::default();
         self.window = Window::default();
+        let [course, ..] = attitude::angles(self.attitude.parts());
+        self.attitude = Attitude::levelled(&force, course);
+        self.matrix = self.attitude.matrix();
+        let is_first = self.trust == Trust::Starting;
+        self.filter.relevel(if is_first { START_TILT } else { MOVING_TILT });
+        self.is_lost = false;
         self.trust = Trust::Level;
     }
 
@@ -117,10 +123,26 @@ impl Vertical {
         }
         (self.rested.seconds, self.rested.turned) = (0.0, [0.0; 3]);
         let off = difference(&scaled(&turned, 1.0 / seconds), &self.bias);
-        let shaking = SHAKING / seconds;
         for (axis, off) in off.into_iter().enumerate() {
-            let variance = self.expected.walk[axis] / seconds + 2.0 * shaking * shaking;
+            let variance = self.rest_variance(axis, seconds);
             self.filter.measure(Filter::bias(axis), off, variance);
+        }
+        if !self.knows_north {
+            self.doubt_level_biases();
+        }
+    }
+
+    /// Variance of a mean rate over so many seconds of a rest, (rad/s)².
+    pub(super) fn rest_variance(&self, axis: usize, seconds: f32) -> f32 {
+        let shaking = SHAKING / seconds;
+        self.expected.walk[axis] / seconds + 2.0 * shaking * shaking
+    }
+
+    /// As long as nobody knows where north is, what rests show of a bias has the Earth's level rate in it, and at
+    /// another heading another part of it.
+    fn doubt_level_biases(&mut self) {
+        for (axis, cosine) in self.matrix[2].into_iter().enumerate() {
+            self.filter.limit_bias(axis, self.unknown * (1.0 - cosine * cosine));
         }
     }
 

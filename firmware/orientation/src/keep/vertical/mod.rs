@@ -37,8 +37,6 @@ type Vector = [f32; 3];
 
 /// Time from one attitude to the next, µs: 50 Hz.
 const TICK: u64 = 20_000;
-/// 1σ of the tilt with which it begins, rad: nobody says that the body stands.
-const START_TILT: f32 = 0.05;
 /// Standard gravity, m/s².
 const GRAVITY: f32 = 9.806_65;
 /// Part of its period by which a sample may come late.
@@ -97,6 +95,9 @@ pub struct Vertical {
     /// When the latest attitude was taken.
     since: Instant,
     trust: Trust,
+    /// Whether nothing of the level is left.
+    is_lost: bool,
+    knows_north: bool,
 }
 
 impl Vertical {
@@ -121,7 +122,7 @@ impl Vertical {
             attitude: Attitude::default(),
             matrix: Attitude::default().matrix(),
             bias: [0.0; 3],
-            filter: Filter::new(START_TILT, sigmas),
+            filter: Filter::new(sigmas),
             stretch: Stretch::default(),
             window: Window::default(),
             rest: RestWatch::default(),
@@ -130,6 +131,8 @@ impl Vertical {
             course: Course::default(),
             since: Instant::default(),
             trust: Trust::Starting,
+            is_lost: false,
+            knows_north: false,
         }
     }
 
@@ -298,25 +301,31 @@ impl Vertical {
         self.frame = rate;
     }
 
-    /// The same, and north is known for the first time: biases held the Earth's rate until now.
+    /// The same, and north is known for the first time, or again: biases held the Earth's level rate until now.
     pub fn find_north(&mut self, rate: Vector) {
         self.learn_biases();
         self.correct();
         let more = turned(&transposed(&self.matrix), &difference(&rate, &self.frame));
         self.frame = rate;
+        self.knows_north = true;
         self.window = Window::default();
-        if self.is_at_rest() {
-            // What was learnt of the sum holds for the bias, of which more was known beforehand.
-            self.bias = difference(&self.bias, &more);
-            for (axis, bias) in self.bias.into_iter().enumerate() {
-                self.filter.measure(Filter::bias(axis), -bias, self.priors[axis]);
-            }
-            self.correct();
-        } else {
-            for axis in 0..3 {
-                self.filter.doubt(Filter::bias(axis), self.unknown);
-            }
+        if !self.is_at_rest() {
+            return;
         }
+        // What this rest has shown was the sum.
+        self.bias = difference(&self.bias, &more);
+        for (axis, bias) in self.bias.into_iter().enumerate() {
+            let learnt = self.rest_variance(axis, self.course.stood);
+            self.filter.forget_bias(axis, learnt);
+            self.filter.measure(Filter::bias(axis), -bias, self.priors[axis]);
+        }
+        self.correct();
+    }
+
+    /// North is not known any more.
+    pub fn lose_north(&mut self, rate: Vector) {
+        self.frame = rate;
+        self.knows_north = false;
     }
 
     /// Counts from now on.
