@@ -6,7 +6,8 @@ use serde::Serialize;
 
 use super::decode::Line;
 use super::outcome::{
-    Bits, DwellBits, FIELDS, Outcome, STOP_FIELDS, StopBits, TURN_FIELDS, TurnBits,
+    Bits, DwellBits, FIELDS, KEPT_FIELDS, KeptBits, Outcome, STOP_FIELDS, StopBits, TURN_FIELDS,
+    TurnBits,
 };
 
 /// What the whole instrument took.
@@ -45,6 +46,7 @@ pub struct Collected {
     dwells: Vec<DwellBits>,
     turns: Vec<TurnBits>,
     stops: Vec<StopBits>,
+    kept: Vec<KeptBits>,
     outcome: Option<Outcome>,
     effort: bool,
     figures: Figures,
@@ -68,6 +70,10 @@ impl Collected {
             "dwell" => next(&mut self.dwells, FIELDS, words),
             "turn" => next(&mut self.turns, TURN_FIELDS, words),
             "stop" => next(&mut self.stops, STOP_FIELDS, words),
+            "kept" => {
+                self.kept.push(Bits::parse(KEPT_FIELDS, |name| value(words, name))?);
+                Some(())
+            }
             "outcome" => {
                 self.outcome = Some(outcome(words)?);
                 Some(())
@@ -111,8 +117,8 @@ impl Collected {
         if self.figures.stack_bytes == 0 {
             return Err(missing("stack"));
         }
-        let Self { dwells, turns, stops, figures, .. } = self;
-        Ok((Outcome { dwells, turns, stops, ..outcome }, figures))
+        let Self { dwells, turns, stops, kept, figures, .. } = self;
+        Ok((Outcome { dwells, turns, stops, kept, ..outcome }, figures))
     }
 }
 

@@ -49,7 +49,8 @@ pub fn stops(scenario: &VehicleScenario) -> Result<Outcome, String> {
         .run;
     let conclusion = run.replay.conclusion().ok_or(NOTHING)?;
     let stops = run.replay.stops().iter().map(Into::into).collect();
-    Ok(Outcome { stops, ..Outcome::of(scenario.base.seed, &conclusion.verdict) })
+    let kept = run.reports.iter().map(Into::into).collect();
+    Ok(Outcome { stops, kept, ..Outcome::of(scenario.base.seed, &conclusion.verdict) })
 }
 
 const NOTHING: &str = "the host's run found nothing";

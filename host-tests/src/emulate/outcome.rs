@@ -6,6 +6,7 @@ use orientation::align::conclusion::Azimuth;
 use orientation::align::rotating::turn::Turn;
 use orientation::align::stops::stop::Stop;
 use orientation::error::Refusal;
+use orientation::keep::Report;
 use orientation::signal::dwell::Dwell;
 
 /// The numbers of a dwell that are compared, by their names in the log.
@@ -43,6 +44,10 @@ pub const TURN_FIELDS: [&str; 13] = [
 pub const STOP_FIELDS: [&str; 8] =
     ["from", "to", "turned_x", "turned_y", "turned_z", "force_x", "force_y", "force_z"];
 
+/// The numbers that are kept, of which one is whole, by their names in the log.
+pub const KEPT_FIELDS: [&str; 9] =
+    ["time", "azimuth", "sigma", "pitch", "roll", "w", "x", "y", "z"];
+
 /// The bits of what is absent: a NaN that no computation gives.
 const ABSENT: u64 = u64::MAX;
 
@@ -58,6 +63,9 @@ pub type TurnBits = Bits<{ TURN_FIELDS.len() }>;
 
 /// Of a stop, in the order of [`STOP_FIELDS`].
 pub type StopBits = Bits<{ STOP_FIELDS.len() }>;
+
+/// Of what is kept, in the order of [`KEPT_FIELDS`].
+pub type KeptBits = Bits<{ KEPT_FIELDS.len() }>;
 
 impl<const N: usize> Bits<N> {
     /// From hexadecimal texts; [`None`] where one is missing or is no number.
@@ -114,6 +122,16 @@ impl From<&Stop> for StopBits {
     }
 }
 
+impl From<&Report> for KeptBits {
+    fn from(report: &Report) -> Self {
+        let azimuth = report.azimuth.map(|azimuth| azimuth.angle.to_bits());
+        let sigma = report.azimuth.map(|azimuth| azimuth.sigma.to_bits());
+        let [pitch, roll] = [report.pitch, report.roll].map(|angle| Some(angle.to_bits()));
+        let [w, x, y, z] = report.attitude.map(|part| Some(part.to_bits()));
+        Self([Some(report.time.0), azimuth, sigma, pitch, roll, w, x, y, z])
+    }
+}
+
 /// What a run found.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Outcome {
@@ -131,6 +149,8 @@ pub struct Outcome {
     pub turns: Vec<TurnBits>,
     /// The stops, of one in a vehicle.
     pub stops: Vec<StopBits>,
+    /// What was kept after it, second by second.
+    pub kept: Vec<KeptBits>,
 }
 
 impl Outcome {
@@ -158,7 +178,7 @@ pub enum Difference {
         /// The host's.
         host: u64,
     },
-    /// A number of a dwell, a turn or a stop.
+    /// A number of a dwell, a turn, a stop or a report.
     Number {
         /// What it is of.
         of: &'static str,
@@ -228,7 +248,7 @@ impl fmt::Display for Difference {
 fn shown(field: &str, bits: Option<u64>) -> String {
     match bits {
         None => "none".to_owned(),
-        Some(bits) if ["stage", "samples"].contains(&field) => format!("{bits:#x}"),
+        Some(bits) if ["stage", "samples", "time"].contains(&field) => format!("{bits:#x}"),
         Some(bits) => format!("{bits:#018x} ({:e})", f64::from_bits(bits)),
     }
 }
@@ -245,6 +265,7 @@ pub fn compare(emulated: &Outcome, host: &Outcome) -> Result<(), Difference> {
     rows("dwell", FIELDS, &emulated.dwells, &host.dwells)?;
     rows("turn", TURN_FIELDS, &emulated.turns, &host.turns)?;
     rows("stop", STOP_FIELDS, &emulated.stops, &host.stops)?;
+    rows("report", KEPT_FIELDS, &emulated.kept, &host.kept)?;
     result("azimuth", emulated.azimuth_bits, host.azimuth_bits)?;
     result("sigma", emulated.sigma_bits, host.sigma_bits)?;
     let [one, other] = [emulated, host].map(|run| run.reason.as_deref().map(short));

@@ -68,7 +68,7 @@ fn is_recalled(run: &VehicleRun) -> bool {
 #[test]
 fn a_restart_without_motion_keeps_the_heading() {
     let mut store = Flash::default().store();
-    let before = first(15.0, STEADY, &mut store);
+    let before = first(8.0, STEADY, &mut store);
     let after = second(&before, [0.0, 0.0], STEADY, &mut store);
     assert!(is_recalled(&after), "{:#?}", told(&after.run));
     let (point, [error, sigma]) = after.kept.with_azimuth().next().expect("it is known at once");
@@ -80,7 +80,7 @@ fn a_restart_without_motion_keeps_the_heading() {
 #[test]
 fn a_vehicle_that_was_turned_while_it_was_switched_off_is_not_believed() {
     let mut store = Flash::default().store();
-    let before = first(15.0, STEADY, &mut store);
+    let before = first(8.0, STEADY, &mut store);
     for turned in [30.0, 180.0, -90.0] {
         let after = second(&before, [turned, 0.0], STEADY, &mut store);
         assert!(matches!(doubt(&after), Some(Doubt::Turned { .. })), "{:?}", doubt(&after));
@@ -91,7 +91,7 @@ fn a_vehicle_that_was_turned_while_it_was_switched_off_is_not_believed() {
 #[test]
 fn a_vehicle_that_was_tilted_while_it_was_switched_off_is_not_believed() {
     let mut store = Flash::default().store();
-    let before = first(15.0, STEADY, &mut store);
+    let before = first(8.0, STEADY, &mut store);
     let after = second(&before, [0.0, 0.3], STEADY, &mut store);
     assert!(matches!(doubt(&after), Some(Doubt::Tilted { .. })), "{:?}", doubt(&after));
     assert_eq!(after.kept.with_azimuth().count(), 0);
@@ -100,7 +100,7 @@ fn a_vehicle_that_was_tilted_while_it_was_switched_off_is_not_believed() {
 #[test]
 fn gyros_that_cannot_tell_a_turn_recall_nothing() {
     let mut store = Flash::default().store();
-    let before = first(15.0, GyroClass::FIBRE_OPTIC, &mut store);
+    let before = first(8.0, GyroClass::FIBRE_OPTIC, &mut store);
     let after = second(&before, [0.0, 0.0], GyroClass::FIBRE_OPTIC, &mut store);
     assert!(matches!(doubt(&after), Some(Doubt::CannotTell { .. })), "{:?}", doubt(&after));
 }
@@ -120,7 +120,7 @@ fn a_power_cut_amid_the_writing_leaves_a_heading_that_is_whole_or_none() {
         let mut flash = Flash::default();
         flash.left = Some(words);
         let mut store = flash.store();
-        let before = first(15.0, STEADY, &mut store);
+        let before = first(8.0, STEADY, &mut store);
         let mut flash = store.into_flash();
         flash.left = None;
         let mut store = flash.store();

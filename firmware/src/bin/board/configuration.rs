@@ -9,18 +9,24 @@
 //! | [`G_SENSITIVITY`] | the test sheet, or a calibration with the axis up and down |
 //! | [`SPEEDS`], [`SENSOR`], [`UNEVEN_TURNS`] | of a turning platform: how fast it is to turn, and what turns |
 //! | [`STOPS`], [`BIAS_SIGMA`], [`FORCE_CALIBRATED_SIGMA`] | in a vehicle: how many stops, and what the test sheets promise |
+//! | [`REALIGNS`], [`ALIGNS_ALWAYS`] | in a vehicle, once the azimuth is known: a choice |
 //! | [`ENCODER`] | a calibration of the stage; until then zero, a greater [`ENCODER_SIGMA`], and in [`instrument`] a greater `stage.agreement` |
 //!
 //! Too small a σ here is too small a σ of the azimuth: in doubt take the greater one.
 
 use drivers::ads1262::configuration::{Configuration as Converter, DataRate, Filter, Gain};
 use drivers::ads1262::scale::{INTERNAL_REFERENCE_VOLTS, Scale};
+use embassy_time::Duration;
 use firmware::calibration::Harmonics;
-use firmware::configuration::{Configuration, TurntableConfiguration, VehicleConfiguration};
+use firmware::configuration::{
+    Alignment, Configuration, KeepConfiguration, Realignment, TurntableConfiguration,
+    VehicleConfiguration,
+};
 use orientation::align::rotating::{self, Sensor};
 use orientation::align::setting::Setting;
 use orientation::align::stops;
 use orientation::earth::Latitude;
+use orientation::keep;
 use orientation::noise::model::GyroNoise;
 use orientation::planner::Rotation;
 use orientation::planner::order::Order;
@@ -204,4 +210,41 @@ pub fn driving_procedure() -> Driving {
 /// What the instrument is told of its devices there.
 pub fn vehicle() -> VehicleConfiguration {
     VehicleConfiguration::at(CONVERTER.rate.hertz())
+}
+
+/// In a vehicle, once the azimuth is known: whether the board aligns itself anew, every stop that ends an
+/// alignment being the first of the next.
+const REALIGNS: bool = true;
+/// Whether it looks for north where it knows it already, because it stands as it stood before a restart.
+const ALIGNS_ALWAYS: bool = true;
+
+/// What the keeper is told of place and gyros.
+pub fn keeper() -> keep::Setting {
+    let latitude = defmt::unwrap!(Latitude::from_degrees(LATITUDE));
+    let period = 1.0 / CONVERTER.rate.hertz();
+    keep::Setting {
+        force_bias_sigma: FORCE_CALIBRATED_SIGMA,
+        ..keep::Setting::precise(latitude, period, kept_gyro())
+    }
+}
+
+/// A gyro as the keeper knows it.
+fn kept_gyro() -> keep::Gyro {
+    keep::Gyro {
+        noise: GyroNoise::from_field_units(GYRO_N, GYRO_B, GYRO_K, 0.0),
+        bias_sigma: BIAS_SIGMA * DEGREE_PER_HOUR,
+        scale_sigma: GYRO_SCALE_SIGMA,
+    }
+}
+
+/// How the instrument goes on after its alignment: for ever.
+pub fn keeping() -> KeepConfiguration {
+    KeepConfiguration {
+        hold: Duration::MAX,
+        realignment: if REALIGNS { Realignment::BetweenStops } else { Realignment::Never },
+        knows_stops: true,
+        alignment: if ALIGNS_ALWAYS { Alignment::Always } else { Alignment::UnlessKnown },
+        beside: kept_gyro(),
+        precise: kept_gyro(),
+    }
 }

@@ -37,6 +37,7 @@
 
 mod clock;
 mod configuration;
+mod flash;
 mod ports;
 mod stepwise;
 mod stops;

@@ -1,15 +1,18 @@
-//! The board in a vehicle that goes from stop to stop.
+//! The board in a vehicle that goes from stop to stop, and keeps azimuth, pitch and roll ever after.
 
 use embassy_executor::Spawner;
+use firmware::keep::Keeping;
 use firmware::log::DefmtLog;
-use firmware::ports::{NoRecorder, NoWhereabouts, VehiclePorts};
-use firmware::run::{acquire_triad, run_stops};
+use firmware::ports::{NoOutside, NoRecorder, NoWhereabouts, VehiclePorts};
+use firmware::run::{acquire_triad, run_stops_and_keep};
 use firmware::shared::Seams;
+use orientation::keep::Keeper;
 use orientation::session::procedure::ProcedureError;
 use orientation::session::stops::Session;
 use orientation::signal::InertialSample;
 use static_cell::StaticCell;
 
+use crate::flash::store;
 use crate::ports::Triad;
 use crate::wiring::Wiring;
 use crate::{configuration, ports, tell};
@@ -17,7 +20,7 @@ use crate::{configuration, ports, tell};
 /// The seams between the instrument's parts.
 type VehicleSeams = Seams<'static, DefmtLog, InertialSample>;
 
-/// Runs the instrument to its conclusion and goes on telling it.
+/// Runs the instrument: it aligns itself, then keeps what it found for ever, and over a loss of supply.
 #[embassy_executor::task]
 pub async fn align(spawner: Spawner, wiring: Wiring) {
     static SEAMS: StaticCell<VehicleSeams> = StaticCell::new();
@@ -25,11 +28,13 @@ pub async fn align(spawner: Spawner, wiring: Wiring) {
         Ok(session) => session,
         Err(error) => return defmt::error!("board: no session: {}", error),
     };
-    let Wiring { sensors, link, motor: _, motor_enable: _, flash: _ } = wiring;
+    let Wiring { sensors, link, motor: _, motor_enable: _, flash } = wiring;
     let seams: &'static VehicleSeams = SEAMS.init_with(|| Seams::new(&DefmtLog));
     spawner.spawn(defmt::unwrap!(acquisition(ports::triad(sensors), seams)));
     let mut outputs = VehiclePorts { whereabouts: NoWhereabouts, link, recorder: NoRecorder };
-    let health = run_stops(&mut outputs, session, seams).await;
+    let configuration = configuration::keeping();
+    let mut keeping = Keeping::new(keeper(), &configuration, NoOutside, store(flash));
+    let health = run_stops_and_keep(&mut outputs, session, &mut keeping, seams).await;
     tell(&health, &mut outputs.link, &seams.shared).await;
 }
 
@@ -37,6 +42,12 @@ pub async fn align(spawner: Spawner, wiring: Wiring) {
 #[embassy_executor::task]
 async fn acquisition(mut triad: Triad, seams: &'static VehicleSeams) {
     acquire_triad(&mut triad, &configuration::vehicle(), seams).await;
+}
+
+/// The keeper, made where it stays.
+fn keeper() -> &'static mut Keeper {
+    static KEEPER: StaticCell<Keeper> = StaticCell::new();
+    KEEPER.init_with(|| Keeper::new(&configuration::keeper()))
 }
 
 /// The session, made where it stays.

@@ -58,7 +58,7 @@ pub struct Wiring {
     pub motor_enable: Output<'static>,
     /// Where status lines go.
     pub link: Link,
-    /// The controller's own flash, where a turning platform keeps what it found.
+    /// The controller's own flash: a turning platform keeps there what it found, a vehicle how it stands.
     pub flash: Peri<'static, FLASH>,
 }
 

@@ -9,7 +9,7 @@
 //!
 //! `meridian emulate` builds and runs this image, reads its log, and compares what it found with its
 //! own run of the same seed. The log speaks of three things that the host parses: `outcome`,
-//! `dwell`, `turn` and `stop` lines carry the bits of every number that was found, `effort` and `stack` lines what it
+//! `dwell`, `turn`, `stop` and `kept` lines carry the bits of every number that was found, `effort` and `stack` lines what it
 //! took. Nothing here prints by semihosting: it would fall into the middle of the log.
 #![no_std]
 #![no_main]

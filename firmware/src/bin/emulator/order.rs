@@ -1,7 +1,7 @@
 //! What to run, as the host says it in the last word of the image's command line: `SEED`, or
 //! `SEED/brief` for the short run at the highest sample rate, `SEED/survey` for one that learns its
 //! gyro's noise first, `SEED/turning` for one on a platform that turns all the time, `SEED/stops` for one
-//! in a vehicle.
+//! in a vehicle, which goes on keeping what it found.
 
 use core::mem::MaybeUninit;
 
@@ -110,6 +110,7 @@ fn turning(scenario: &TurntableScenario, meter: &'static Meter) -> Option<(Sampl
 fn driving(scenario: &VehicleScenario, meter: &'static Meter) -> Option<(Sampling, Running)> {
     let (setting, procedure) = scenario.checked()?;
     let session = setup::driving(&setting, procedure)?;
+    let keeping = setup::keeping(&scenario.keeper()?, &scenario.keeping());
     let around = Metering(meter);
     let (inputs, outputs, seams) = setup::vehicle(
         || scenario.board(&vehicle::BRIEF, &[], &VEHICLE_PLAN),
@@ -123,6 +124,6 @@ fn driving(scenario: &VehicleScenario, meter: &'static Meter) -> Option<(Samplin
     )?;
     Some((
         Sampling::Vehicle(inputs, scenario.configuration(), seams),
-        Running::Stops(session, outputs, seams),
+        Running::Stops(session, outputs, keeping, seams),
     ))
 }

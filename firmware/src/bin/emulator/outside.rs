@@ -15,10 +15,12 @@ use firmware::log::DefmtLog;
 use firmware::ports::Observer;
 use firmware::simulated::Around;
 use hal_mock::chip::Select;
+use orientation::keep::Report;
 use orientation::session::{Session, rotating, stops};
 
 use crate::clock;
 use crate::meter::Meter;
+use crate::results;
 
 /// A simulated port whose work is not the instrument's: the board's bus drivers and their interrupts
 /// are others, so what this one takes says nothing of the board.
@@ -106,6 +108,10 @@ impl Observer for Log {
 
     fn stopped(&self, _: &stops::Session) {
         self.0.mark(clock::now());
+    }
+
+    fn kept(&self, report: &Report) {
+        self.0.outside(|| results::kept(report));
     }
 }
 

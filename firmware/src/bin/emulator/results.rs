@@ -1,6 +1,7 @@
 //! What was found, bit by bit, for the host to compare with its own run.
 //!
-//! One line `dwell` for each dwell, `turn` for each turn or `stop` for each stop, and one `outcome`: `name=value` pairs, bits in hexadecimal, all
+//! One line `dwell` for each dwell, `turn` for each turn or `stop` for each stop, one `outcome`, and `kept`
+//! for every second of keeping: `name=value` pairs, bits in hexadecimal, all
 //! ones for what is absent (no computation gives that pattern). They are printed at every log level.
 
 use defmt::println;
@@ -8,6 +9,7 @@ use orientation::align::conclusion::Azimuth;
 use orientation::align::rotating::turn::Turn;
 use orientation::align::stops::stop::Stop;
 use orientation::error::Refusal;
+use orientation::keep::Report;
 use orientation::signal::dwell::Dwell;
 
 /// The bits of what is absent.
@@ -72,6 +74,28 @@ pub fn stop(number: u32, stop: &Stop) {
         force[0],
         force[1],
         force[2]
+    );
+}
+
+/// Logs what was kept after the alignment.
+#[inline(never)]
+pub fn kept(report: &Report) {
+    let azimuth = report
+        .azimuth
+        .map_or([ABSENT; 2], |azimuth| [azimuth.angle, azimuth.sigma].map(f64::to_bits));
+    let attitude = report.attitude.map(f64::to_bits);
+    println!(
+        "kept time={=u64:x} azimuth={=u64:x} sigma={=u64:x} pitch={=u64:x} roll={=u64:x} \
+         w={=u64:x} x={=u64:x} y={=u64:x} z={=u64:x}",
+        report.time.0,
+        azimuth[0],
+        azimuth[1],
+        report.pitch.to_bits(),
+        report.roll.to_bits(),
+        attitude[0],
+        attitude[1],
+        attitude[2],
+        attitude[3]
     );
 }
 

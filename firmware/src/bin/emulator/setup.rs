@@ -3,9 +3,12 @@
 
 use core::cell::RefCell;
 
-use firmware::configuration::{Configuration, TurntableConfiguration, VehicleConfiguration};
-use firmware::ports::{NoRecorder, VehiclePorts};
-use firmware::run::{acquire, acquire_triad, run, run_rotating, run_stops};
+use firmware::configuration::{
+    Configuration, KeepConfiguration, TurntableConfiguration, VehicleConfiguration,
+};
+use firmware::keep::Keeping;
+use firmware::ports::{NoOutside, NoRecorder, VehiclePorts};
+use firmware::run::{acquire, acquire_triad, run, run_rotating, run_stops_and_keep};
 use firmware::shared::Seams;
 use firmware::simulated::vehicle::{KnownPlace, SimulatedTriad};
 use firmware::simulated::{Chips, SimulatedPorts, SimulatedSensors};
@@ -13,6 +16,7 @@ use hal_mock::vehicle::board::VehicleBoard;
 use orientation::align;
 use orientation::align::rotating::Setting;
 use orientation::align::rotating::turn::Stretch;
+use orientation::keep::{self, Keeper};
 use orientation::session::{Prepared, Session, rotating, stops};
 use orientation::signal::InertialSample;
 use static_cell::StaticCell;
@@ -33,6 +37,8 @@ pub type StageOutputs = SimulatedPorts<'static, Chips<'static>, Metering, NoLink
 pub type VehicleInputs = SimulatedTriad<'static, VehicleBoard<'static>, Metering>;
 /// Its other ports.
 pub type VehicleOutputs = VehiclePorts<KnownPlace<'static, 'static>, NoLink, NoRecorder>;
+/// What keeps in a vehicle.
+pub type VehicleKeeping = Keeping<'static, NoOutside, ()>;
 /// The seams of a stage.
 type StageSeams = Seams<'static, Log>;
 /// The seams of a vehicle.
@@ -63,6 +69,7 @@ static RIG: StaticCell<Rig> = StaticCell::new();
 static LOG: StaticCell<Log> = StaticCell::new();
 static PARTS: StaticCell<Parts> = StaticCell::new();
 static SITTING: StaticCell<Sitting> = StaticCell::new();
+static KEEPER: StaticCell<Keeper> = StaticCell::new();
 
 /// The board of a stage with its ports.
 #[inline(never)]
@@ -122,6 +129,12 @@ pub fn driving(
     if let Sitting::Stops(session) = SITTING.init_with(session) { Some(session) } else { None }
 }
 
+/// What keeps in a vehicle.
+#[inline(never)]
+pub fn keeping(setting: &keep::Setting, configuration: &KeepConfiguration) -> VehicleKeeping {
+    Keeping::new(KEEPER.init_with(|| Keeper::new(setting)), configuration, NoOutside, ())
+}
+
 /// Sensors that sample.
 pub enum Sampling {
     /// Of a stage, or a turning platform.
@@ -151,7 +164,12 @@ pub enum Running {
     /// On a turning platform.
     Turning(&'static mut rotating::Session, &'static mut StageOutputs, &'static StageSeams),
     /// In a vehicle.
-    Stops(&'static mut stops::Session, &'static mut VehicleOutputs, &'static VehicleSeams),
+    Stops(
+        &'static mut stops::Session,
+        &'static mut VehicleOutputs,
+        VehicleKeeping,
+        &'static VehicleSeams,
+    ),
 }
 
 impl Running {
@@ -166,8 +184,8 @@ impl Running {
                 run_rotating(outputs, &TurntableConfiguration::default(), session, seams).await;
                 Finished::Turning(session)
             }
-            Self::Stops(session, outputs, seams) => {
-                run_stops(outputs, session, seams).await;
+            Self::Stops(session, outputs, mut keeping, seams) => {
+                run_stops_and_keep(outputs, session, &mut keeping, seams).await;
                 Finished::Stops(session)
             }
         }

@@ -44,6 +44,8 @@ const FORCE_BIAS_SIGMA: f64 = 1e-4 * 9.80665;
 /// How long the board levels at the stops of a brief run, and how long it drives, s.
 const BRIEF_STOP_SECONDS: f64 = 15.0;
 const BRIEF_DRIVE_SECONDS: f64 = 45.0;
+/// For how long it then keeps what it found, s: from amid the last stop into another drive.
+const BRIEF_KEPT_SECONDS: f64 = 30.0;
 /// What a stop that is too short lasts, s.
 const SHORT_SECONDS: f64 = 12.0;
 /// Amplitude of the sway at stops that sway, °, and its frequencies, Hz.
@@ -70,7 +72,7 @@ const STILL: SwayConfiguration = SwayConfiguration {
     }; 3],
 };
 
-/// A stop on ground that is inclined by so many degrees, and a way round a corner.
+/// A stop on ground that is inclined by so many degrees.
 const fn stop(pitch_deg: f64, roll_deg: f64) -> Leg {
     let sway = STILL;
     let settling_deg = [0.2, 0.05];
@@ -78,12 +80,11 @@ const fn stop(pitch_deg: f64, roll_deg: f64) -> Leg {
     Leg::Stop(Stop { seconds, pitch_deg, roll_deg, sway, settling_deg })
 }
 
-/// What the vehicle of [`VehicleScenario::brief`] does: there is little memory where that runs.
-pub static BRIEF: [Leg; 3] = [
-    stop(1.2, -0.7),
+/// A way round a corner.
+const fn drive(seconds: f64, heading_change_deg: f64) -> Leg {
     Leg::Drive(Drive {
-        seconds: BRIEF_DRIVE_SECONDS,
-        heading_change_deg: 130.0,
+        seconds,
+        heading_change_deg,
         turn_s: 15.0,
         speed_m_s: 9.0,
         winding_deg: 0.0,
@@ -92,8 +93,15 @@ pub static BRIEF: [Leg; 3] = [
         hills_s: 20.0,
         weaving: STILL,
         vibration_m_s2: 0.3,
-    }),
+    })
+}
+
+/// What the vehicle of [`VehicleScenario::brief`] does: there is little memory where that runs.
+pub static BRIEF: [Leg; 4] = [
+    stop(1.2, -0.7),
+    drive(BRIEF_DRIVE_SECONDS, 130.0),
     stop(-0.4, 1.5),
+    drive(BRIEF_KEPT_SECONDS, -70.0),
 ];
 
 /// A day of a vehicle, as it is drawn from a seed.
@@ -141,7 +149,8 @@ impl VehicleScenario {
     #[must_use]
     pub fn brief(seed: u64) -> Self {
         let usual = Self::usual(seed);
-        let base = Scenario { sample_rate_hz: 50.0, ..usual.base };
+        let hold = Hold::of(BRIEF_KEPT_SECONDS);
+        let base = Scenario { sample_rate_hz: 50.0, hold, ..usual.base };
         Self { base, stops: 2, stop_s: BRIEF_STOP_SECONDS, drive_s: BRIEF_DRIVE_SECONDS, ..usual }
     }
 
