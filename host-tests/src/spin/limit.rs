@@ -7,7 +7,7 @@
 
 use orientation::align::regression::{Column, Regression};
 use orientation::signal::SpinSample;
-use orientation::units::TURN;
+use orientation::units::{SpinForce, TURN};
 
 /// Columns of the fit of one turn: 1, u, u², cos, sin, u cos, u sin.
 const COLUMNS: usize = 7;
@@ -70,7 +70,7 @@ impl Turns {
 fn of_turn(samples: &[SpinSample]) -> Option<[f64; 2]> {
     let forces: Vec<[f64; 2]> = samples
         .iter()
-        .map(|sample| sample.force.map(|f| f.map(|f| f.m_per_s2())))
+        .map(|sample| sample.force.map(|force| force.map(SpinForce::m_per_s2)))
         .collect::<Option<_>>()?;
     let first = *forces.first().filter(|_| forces.len() >= FEWEST)?;
     let mut fits = [Regression::<COLUMNS>::default(), Regression::default()];

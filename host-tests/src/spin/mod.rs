@@ -90,20 +90,39 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
     let Body::Spin(rows) = body else { return Err(ReplayError::NoSpin(body.kind())) };
     let period_s = period(header.rate_hz, rows).ok_or(ReplayError::TooFewSamples(rows.len()))?;
     let samples: Vec<SpinSample> = samples::samples(rows, period_s).collect();
-    let turns = Turns::of(&samples);
     let (setting, assumed) = setting(header, rows, period_s);
+    let required_sigma = options.required_sigma.unwrap_or(f64::INFINITY);
+    Ok(follow(&samples, Known { setting, required_sigma, assumed }))
+}
+
+/// What is known of a body and asked for, beside its samples.
+#[derive(Clone, Debug)]
+pub struct Known {
+    /// The sample period and the gyro; the method is not looked at.
+    pub setting: Setting,
+    /// Greatest accepted standard deviation, rad.
+    pub required_sigma: f64,
+    /// What had to be assumed.
+    pub assumed: Vec<String>,
+}
+
+/// Follows samples by all methods.
+#[must_use]
+pub fn follow(samples: &[SpinSample], known: Known) -> Replay {
+    let Known { setting, required_sigma, assumed } = known;
+    let turns = Turns::of(samples);
     let noise = Noise { force: turns.force_noise, angle_random_walk: setting.angle_random_walk };
     let is_told = !turns.lifts.is_empty();
     let bounds = is_told
-        .then(|| limit::bounds(&samples, noise, setting.scale_sigma, |index| turns.lift(index)));
-    Ok(Replay {
-        tracks: METHODS.map(|method| Track::of(&Setting { method, ..setting }, &samples)),
-        period_s,
+        .then(|| limit::bounds(samples, noise, setting.scale_sigma, |index| turns.lift(index)));
+    Replay {
+        tracks: METHODS.map(|method| Track::of(&Setting { method, ..setting }, samples)),
+        period_s: setting.sample_seconds,
         noise,
         bounds,
-        required_sigma: options.required_sigma.unwrap_or(f64::INFINITY),
+        required_sigma,
         assumed,
-    })
+    }
 }
 
 /// How far the header's rate may be off before the times are believed instead.

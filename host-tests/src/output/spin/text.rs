@@ -16,12 +16,11 @@ use crate::spin::Replay;
 /// Those of the writer.
 pub fn block(out: &mut impl Write, name: &str, replay: &Replay, truth: &Truth) -> fmt::Result {
     let object = object(replay, truth);
-    match object.roll_rad_end.zip(object.sigma_deg) {
-        Some((roll, sigma)) => found(out, name, &object, roll, sigma)?,
-        None => {
-            writeln!(out, "\nNo roll at the end of {name}\n")?;
-            line(out, "reason", format_args!("{}", object.reason.as_deref().unwrap_or_default()))?;
-        }
+    if let Some((roll, sigma)) = object.roll_rad_end.zip(object.sigma_deg) {
+        found(out, name, &object, roll, sigma)?;
+    } else {
+        writeln!(out, "\nNo roll at the end of {name}\n")?;
+        line(out, "reason", format_args!("{}", object.reason.as_deref().unwrap_or_default()))?;
     }
     line(out, "state", format_args!("{}", object.state))?;
     if let Some(lift) = object.lift {

@@ -1,7 +1,7 @@
 //! The page of a spinning body's roll: errors of the methods, lift, scale error with its σ.
 
 pub mod campaign;
-pub mod figures;
+mod figures;
 
 use crate::output::named;
 use crate::output::spin::json::{MethodObject, Object, object};
