@@ -5,8 +5,13 @@ use orientation::units::TURN;
 use super::track::Track;
 use crate::campaign::statistics::rms;
 
-/// Time after which a method must have found the roll, s.
+/// Time from the first sample after which a method must have found the roll, s.
 pub const SETTLED_S: f64 = 0.1;
+
+/// From when on, s, the errors of a track count.
+fn settled_s(track: &Track) -> f64 {
+    track.times_s.first().copied().unwrap_or_default() + SETTLED_S
+}
 
 /// The errors of a track.
 #[derive(Clone, Debug)]
@@ -32,9 +37,10 @@ impl Errors {
         let whole: Vec<f64> =
             track.rolls_rad.iter().zip(truth_rad).map(|(roll, truth)| roll - truth).collect();
         let wrapped_rad: Vec<f64> = whole.iter().map(|error| wrapped(*error)).collect();
+        let from_s = settled_s(track);
         let settled = || {
             let both = whole.iter().zip(&wrapped_rad).zip(&track.times_s);
-            both.filter(|((error, _), time_s)| **time_s >= SETTLED_S && error.is_finite())
+            both.filter(move |((error, _), time_s)| **time_s >= from_s && error.is_finite())
         };
         let turns: Vec<f64> =
             settled().map(|((whole, wrapped), _)| ((whole - wrapped) / TURN).round()).collect();
@@ -56,9 +62,9 @@ impl Errors {
 /// RMS of the bounds after [`SETTLED_S`], rad.
 #[must_use]
 pub fn bound_rms(track: &Track, bounds: &[f64]) -> Option<f64> {
-    let both = bounds.iter().zip(&track.times_s);
+    let (both, from_s) = (bounds.iter().zip(&track.times_s), settled_s(track));
     let settled: Vec<f64> =
-        both.filter(|(_, time_s)| **time_s >= SETTLED_S).map(|(bound, _)| *bound).collect();
+        both.filter(|(_, time_s)| **time_s >= from_s).map(|(bound, _)| *bound).collect();
     (!settled.is_empty()).then(|| rms(&settled))
 }
 

@@ -78,12 +78,12 @@ fn between(seen: &[Seen], from_s: f64, to_s: f64) -> impl Iterator<Item = &Seen>
 
 /// That the roll is locked from a time on, s, and its σ true.
 fn assert_back(seen: &[Seen], from_s: f64) {
-    let mut after = between(seen, from_s, f64::INFINITY);
-    let is_good = |seen: &&Seen| {
+    let after: Vec<&Seen> = between(seen, from_s, f64::INFINITY).collect();
+    let is_good = |seen: &&&Seen| {
         seen.state == State::Locked && seen.sigma_rad.is_some_and(|s| s < 0.02) && seen.is_covered()
     };
-    assert!(after.clone().count() > 1000);
-    assert_eq!(after.find(|seen| !is_good(seen)).map(|seen| format!("{seen:?}")), None);
+    assert!(after.len() > 1000);
+    assert_eq!(after.iter().find(|seen| !is_good(seen)).map(|seen| format!("{seen:?}")), None);
 }
 
 /// That a state was told between two times.
