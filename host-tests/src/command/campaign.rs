@@ -11,9 +11,7 @@ use bench::campaign::{faults, instrument, keep};
 use bench::output::progress::Progress;
 use bench::output::rotating::campaign as of_rotating;
 use bench::output::table;
-use bench::output::{
-    burov as told, keep as of_keep, page, spin as of_spin, stops as of_stops,
-};
+use bench::output::{burov as told, keep as of_keep, page, spin as of_spin, stops as of_stops};
 use clap::{Args, ValueEnum};
 use firmware::simulated::fault::Fault;
 use serde_json::json;
