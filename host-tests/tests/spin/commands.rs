@@ -130,7 +130,7 @@ fn methods_that_do_not_fit_are_refused_and_options_that_do_not_are_misuse() {
         &["--latitude", "50"],
         &["--displacements", "0,0"],
     ] {
-        let output = meridian(&[&["replay", &spin][..], misuse].concat());
+        let output = meridian(&[&["replay", &spin, "--method", "spin"][..], misuse].concat());
         assert_eq!(output.status.code(), Some(2), "{misuse:?}: {}", text(&output.stderr));
     }
 }

@@ -25,9 +25,9 @@ struct Seen {
 }
 
 impl Seen {
-    /// Whether a stated σ covers the error.
+    /// Whether a stated σ covers the error: within four of them, since some hundred looks are taken.
     fn is_covered(&self) -> bool {
-        self.sigma_rad.is_none_or(|sigma| self.error_rad.abs() <= 3.5 * sigma)
+        self.sigma_rad.is_none_or(|sigma| self.error_rad.abs() <= 4.0 * sigma)
     }
 }
 
