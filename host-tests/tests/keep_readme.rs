@@ -6,6 +6,9 @@ use std::path::Path;
 
 use bench::campaign::keep::{self, Row, Spread};
 use bench::campaign::statistics::NORMAL_COVERAGE;
+use bench::recording;
+use bench::vertical::errors::Errors;
+use bench::vertical::{Options, replay};
 
 /// Vehicles of each class: the RMS is then known to 5 %, the coverage of all to 1.5 points.
 const RUNS: usize = 200;
@@ -52,8 +55,34 @@ fn each_class_keeps_azimuth_pitch_and_roll_as_its_row_wants_and_sigma_covers_the
             assert!((covered - normal).abs() <= 3.0, "{covered} {normal}");
         }
     }
+    assert_in_readme(&lines);
+}
+
+/// Trials of BROAD: what was done, and inclination and heading RMSE of VQF, ° (`tests/vertical_replay.rs`).
+const TRIALS: [(&str, &str, [f64; 2]); 2] = [
+    ("imu-broad-06", "06, fast rotation", [0.445, 0.299]),
+    ("imu-broad-24", "24, tapping", [0.494, 0.476]),
+];
+
+#[test]
+fn the_readme_has_the_errors_against_cameras_beside_those_of_vqf() {
+    let rows = TRIALS.map(|(file, name, [inclination, heading])| {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/recordings");
+        let recording = recording::read(&folder.join(file).with_extension("csv.gz"));
+        let (header, body, truth) = recording.expect("it reads").into_parts();
+        let replay = replay(&header, &body, &Options::default()).expect("it replays");
+        let errors = Errors::of(&replay.moments, &truth.attitude).expect("it carries a truth");
+        let Errors { inclination_rmse_deg, heading_rmse_deg, .. } = errors;
+        format!(
+            "| {name} | {inclination_rmse_deg:.3}° | {inclination:.3}° | {heading_rmse_deg:.3}° | {heading:.3}° |"
+        )
+    });
+    assert_in_readme(&rows);
+}
+
+fn assert_in_readme(rows: &[String]) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md");
     let readme = fs::read_to_string(path).expect("the README is there");
-    let lacks: Vec<&String> = lines.iter().filter(|row| !readme.contains(row.as_str())).collect();
+    let lacks: Vec<&String> = rows.iter().filter(|row| !readme.contains(row.as_str())).collect();
     assert!(lacks.is_empty(), "the README lacks {lacks:#?}");
 }
