@@ -82,7 +82,7 @@ impl<'a, C: InStep<Code>, O: Observer> SpinAcquisition<'a, C, O> {
         }
         let Some(codes) = codes else { return Ok(None) };
         self.outlet.judge(time);
-        let half = Duration::from_micros(u64::from(self.configuration.period() / 2));
+        let half = Duration::from_micros(self.configuration.half_period().into());
         let time = Instant((time - half).as_micros());
         Ok(Some(SpinSample { time, turned: self.turned(&codes), force: self.force(&codes) }))
     }

@@ -74,4 +74,10 @@ impl SpinConfiguration {
     pub fn period(&self) -> u32 {
         libm::round(1e6 / self.sample_rate) as u32
     }
+
+    /// From the middle of a conversion to its end, µs, to nearest.
+    #[must_use]
+    pub fn half_period(&self) -> u32 {
+        libm::round(0.5e6 / self.sample_rate) as u32
+    }
 }

@@ -8,6 +8,7 @@ use firmware::simulated::spin::fault::SpinFault;
 use firmware::simulated::spin::{self, SpinScenario};
 use firmware::spin::Flight;
 use hal_mock::spin::SpinTruth;
+use hal_mock::spin::plant::SpinPlant;
 use orientation::signal::SpinSample;
 use orientation::units::Instant;
 
@@ -23,7 +24,9 @@ pub struct SpinRun {
     pub samples: Vec<SpinSample>,
     /// The true roll at each of them, rad.
     pub rolls_rad: Vec<f64>,
-    /// What was true at the end.
+    /// What was true at the first sample.
+    pub start: SpinTruth,
+    /// What was true at the last.
     pub truth: SpinTruth,
 }
 
@@ -60,10 +63,15 @@ pub fn follow_spin<W: Observer>(
     )?;
     drop(seams);
     let violations = desk::told(spin::violations(&board.borrow()));
-    let plant = &board.borrow().plant;
-    let at = |time: Instant| plant.truth_at(embassy_time::Instant::from_micros(time.0));
-    let rolls_rad = kept.0.iter().map(|sample| at(sample.time).roll_rad).collect();
-    let truth = at(kept.0.last().map_or(Instant::default(), |sample| sample.time));
+    // Another body of the same course, which has not flown yet.
+    let fresh = scenario.board(&course, &plan).plant;
+    let at = |plant: &SpinPlant, time: Instant| {
+        plant.truth_at(embassy_time::Instant::from_micros(time.0))
+    };
+    let time = |sample: Option<&SpinSample>| sample.map_or(Instant::default(), |s| s.time);
+    let (start, flown) = (at(&fresh, time(kept.0.first())), &board.borrow().plant);
+    let rolls_rad = kept.0.iter().map(|sample| at(flown, sample.time).roll_rad).collect();
+    let truth = at(flown, time(kept.0.last()));
     let run = desk.clear(&ended, violations, flight);
-    Ok(SpinRun { run, samples: kept.0, rolls_rad, truth })
+    Ok(SpinRun { run, samples: kept.0, rolls_rad, start, truth })
 }
