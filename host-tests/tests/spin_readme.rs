@@ -29,7 +29,7 @@ fn the_papers_second_gives_its_figures() {
     assert!(paper.scale_miss.abs() < 1e-7, "{paper:?}");
     assert_in_readme(&[format!(
         "36.1° after a second without correction, {extrema:.2}° RMS with corrections at bare extrema, {interpolated:.3}° \
-         interpolated, {locked:.4}° by phase lock"
+         interpolated, {locked:.5}° by phase lock"
     )]);
 }
 
