@@ -1,7 +1,7 @@
 //! The accelerometer's readings: taken with every so-manieth sample, and judged.
 
 use drivers::fault::Fault;
-use embassy_time::Instant;
+use embassy_time::{Duration, Instant};
 use orientation::device::{Device, Trouble};
 use orientation::error::Refusal;
 use orientation::units::SpecificForce;
@@ -13,6 +13,15 @@ use crate::patience::Symptom;
 use crate::pointing::Every;
 use crate::ports::{Accelerometer, ForceReading, Observer};
 use crate::shared::Shared;
+
+/// For how long an accelerometer that fails on the way is done without.
+const PAUSE: Duration = Duration::from_secs(1);
+
+/// Whether an azimuth is kept and the body moves: whatever it turns while a device is started again is
+/// lost, so the gyros alone carry the attitude on, and the accelerometer is mended at the next rest.
+fn is_on_the_way<O: Observer>(shared: &Shared<'_, O>) -> bool {
+    shared.keep.is_kept.get() && !shared.keep.is_at_rest.get()
+}
 
 /// The accelerometer at work.
 pub(super) struct Forces<'a, A> {
@@ -57,32 +66,30 @@ impl<'a, A: Accelerometer> Forces<'a, A> {
         &mut self,
         shared: &Shared<'_, O>,
     ) -> Result<Option<ForceReading>, Refusal> {
-        if !self.due.is_due() || self.is_absent(shared) {
+        if !self.due.is_due() || self.absent.is_some_and(|until| Instant::now() < until) {
             return Ok(None);
         }
         let begun = Instant::now();
         let outcome = self.accelerometer.device.read().await;
         let outcome = match self.judge(begun, outcome, shared) {
-            Ok(Ok(reading)) => Ok(reading.is_new.then_some(reading)),
+            Ok(Ok(reading)) => {
+                self.absent = None;
+                Ok(reading.is_new.then_some(reading))
+            }
+            Ok(Err(symptom)) if is_on_the_way(shared) => {
+                shared.lose(Device::Accelerometer, symptom);
+                self.absent = Some(Instant::now() + PAUSE);
+                Ok(None)
+            }
             Ok(Err(symptom)) => self.accelerometer.mend(symptom, shared).await.map(|()| None),
             Err(reason) => Err(reason),
         };
         if outcome.is_err() && shared.keep.is_kept.get() {
+            self.renew();
             self.absent = Some(Instant::now() + RETRY);
             return Ok(None);
         }
         outcome
-    }
-
-    /// Whether it is done without. While an azimuth is kept, gyros alone carry the attitude on; it is
-    /// tried again at a rest, where what is missed meanwhile is known to be nothing.
-    fn is_absent<O: Observer>(&mut self, shared: &Shared<'_, O>) -> bool {
-        let Some(until) = self.absent else { return false };
-        let is_tried = Instant::now() >= until && shared.keep.is_at_rest.get();
-        if is_tried {
-            self.renew();
-        }
-        !is_tried
     }
 
     /// A reading, or what is to be mended. Old outputs and equal ones show an accelerometer that has

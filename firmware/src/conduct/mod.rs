@@ -150,6 +150,7 @@ impl<'a, R: Recorder<S>, O: Observer, S> Conductor<'a, R, O, S> {
         keep.is_idle.set(false);
         // What went wrong before is over, or comes again.
         self.shared.failure.reset();
+        keep.spare.reset();
     }
 
     async fn conduct(&mut self) -> Result<(), Break> {

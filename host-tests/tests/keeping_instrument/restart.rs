@@ -13,9 +13,9 @@ use firmware::storage::FlashStore;
 use hal_mock::vehicle::Stop;
 use orientation::keep::restart::{Doubt, Remembered};
 
-/// Gyros whose biases come back to 0.01 °/h: only such ones can tell whether a vehicle was turned.
+/// Gyros whose biases come back to 0.03 °/h: only such ones can tell whether a vehicle was turned.
 const STEADY: GyroClass =
-    GyroClass { n_deg_sqrt_h: 0.001, b_deg_h: 0.007, k_deg_h_sqrt_h: 0.0, bias_sigma_deg_h: 0.01 };
+    GyroClass { n_deg_sqrt_h: 0.001, b_deg_h: 0.007, k_deg_h_sqrt_h: 0.0, bias_sigma_deg_h: 0.03 };
 
 fn scenario(seed: u64, seconds: f64, gyro: GyroClass) -> VehicleScenario {
     let usual = vehicle(seed, Hold::of(seconds));
