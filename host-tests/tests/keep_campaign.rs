@@ -4,8 +4,8 @@
 use std::f64::consts::{LN_2, PI};
 use std::process::Command;
 
+use bench::campaign::keep;
 use bench::campaign::keep::limit::{adjacent_variance, stored_sigma};
-use bench::campaign::keep::{self};
 use bench::output::azimuth_error;
 use bench::stops::samples::Converter;
 use orientation::earth::Latitude;
