@@ -126,9 +126,14 @@ impl Keeper {
         let is_nowhere = |heading: &Heading| heading.azimuth(&self.vertical).sigma > NOWHERE;
         // Looked at only where something was lost: the filter's σ grows slowly else.
         if self.trust == Trust::RotationLost && self.heading.as_ref().is_some_and(is_nowhere) {
-            self.heading = None;
-            self.turn_frame();
+            self.withdraw();
         }
+    }
+
+    /// There is no azimuth any more.
+    fn withdraw(&mut self) {
+        self.heading = None;
+        self.vertical.lose_north(self.frame_rate());
     }
 
     /// From now on another gyro shows the axis down.
@@ -160,10 +165,7 @@ impl Keeper {
         match realigned {
             Realigned::Taken => self.hand_over(handover),
             Realigned::Fused { .. } => self.turn_frame(),
-            Realigned::Disagrees { .. } => {
-                self.heading = None;
-                self.turn_frame();
-            }
+            Realigned::Disagrees { .. } => self.withdraw(),
         }
         realigned
     }

@@ -34,6 +34,8 @@ const FORCE_SCALE: f32 = 0.1;
 
 /// For how long a body turns one way before it turns back, s: errors of scale and axes add up until then.
 const SWING: f32 = 0.5;
+/// Variance of an angle of which nothing is known, rad²: a turn's square. More would only cost digits.
+const ANY_ANGLE: f32 = 40.0;
 /// A vector of all states.
 type States = [f32; STATES];
 
@@ -251,9 +253,11 @@ impl Filter {
         self.covariance[TURN][TURN].max(0.0)
     }
 
-    /// Makes a state less certain by a variance.
+    /// Makes a state less certain by a variance; an angle until it may be any.
     pub fn doubt(&mut self, place: usize, variance: f32) {
-        self.covariance[place][place] += variance;
+        let own = &mut self.covariance[place][place];
+        let room = if place <= TURN { (ANY_ANGLE - *own).max(0.0) } else { variance };
+        *own += variance.min(room);
     }
 
     /// 1σ of the greater tilt, rad.

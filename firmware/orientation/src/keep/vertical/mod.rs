@@ -15,7 +15,7 @@ mod rest;
 
 pub use self::filter::Expected;
 use self::filter::{Filter, Stretch, TURN};
-use self::rest::{Means, RestWatch, WINDOW};
+use self::rest::{Known, Means, RestWatch, WINDOW};
 use super::Setting;
 use super::attitude::{Attitude, Matrix};
 use crate::math::rotation::{difference, dot, scaled, sum, transposed, turned};
@@ -44,6 +44,16 @@ const LONGEST_REST: f32 = 64.0;
 const FREE: f32 = 0.3;
 /// Standard gravity, m/s².
 const GRAVITY: f32 = 9.806_65;
+/// How far gravity may be from that, m/s²: 9.78 on the equator, 9.83 at the poles.
+const GRAVITY_CHANGE: f32 = 0.03;
+/// Standard deviations of the level by which a force at rest may be beside gravity.
+const SIGMAS: f32 = 4.0;
+/// Part of gravity by which a force points down where the level stands on its head, and for how long, s: a body that
+/// is pushed down so hard falls 29 m meanwhile.
+const UPSIDE_DOWN: f32 = 0.5;
+const HEADLONG: f32 = 2.0;
+/// Part of gravity by which the first forces may differ from it.
+const BEGINNING: f32 = 0.5;
 /// Part of its period by which a sample may come late.
 const LATE: f32 = 0.5;
 /// Greatest bias that is believed, in 1σ of what was stated.
@@ -108,6 +118,7 @@ pub struct Vertical {
     period: f32,
     /// How the level frame turns, rad/s: with the Earth, and on the way over it.
     frame: Vector,
+    is_north_known: bool,
     increment: Increment,
     force: Sums,
     attitude: Attitude,
@@ -125,6 +136,8 @@ pub struct Vertical {
     trust: Trust,
     /// For how long there was no force, s.
     unforced: f32,
+    /// For how long the force has pointed down, s.
+    headlong: f32,
 }
 
 /// Forces since the latest attitude.
@@ -186,6 +199,7 @@ impl Vertical {
             force_tilt: setting.force_bias_sigma as f32 / GRAVITY,
             period: setting.sample_seconds as f32,
             frame: [0.0, 0.0, -(setting.latitude.vertical_rate() as f32)],
+            is_north_known: false,
             increment: Increment::default(),
             force: Sums::default(),
             attitude: Attitude::default(),
@@ -201,6 +215,7 @@ impl Vertical {
             since: Instant::default(),
             trust: Trust::Starting,
             unforced: 0.0,
+            headlong: 0.0,
         }
     }
 
@@ -219,7 +234,9 @@ impl Vertical {
             self.before.turned = sample.turned;
             self.before.clipped = 0.0;
         }
-        if let Some(force) = sample.force {
+        if let Some(force) =
+            sample.force.filter(|force| !force.iter().any(|part| part.is_saturated()))
+        {
             self.force.push(force);
         }
         let is_due = sample.time.0.saturating_sub(self.since.0) >= TICK;
@@ -233,7 +250,11 @@ impl Vertical {
     #[inline]
     fn elapsed(&mut self, now: Instant) -> f32 {
         if let Some(before) = self.before.time.replace(now) {
-            return now.0.saturating_sub(before.0) as u32 as f32 * 1e-6;
+            if now < before {
+                // A clock that was set back: what was measured since the latest attitude counts from now.
+                self.since = now;
+            }
+            return seconds_between(before, now);
         }
         self.since = Instant(now.0.saturating_sub((self.period * 1e6) as u64));
         self.period
@@ -283,7 +304,7 @@ impl Vertical {
     /// Takes the attitude.
     #[inline(never)]
     fn tick(&mut self, now: Instant) {
-        let seconds = now.0.saturating_sub(self.since.0) as u32 as f32 * 1e-6;
+        let seconds = seconds_between(self.since, now);
         self.since = now;
         let rotation = self.increment.take_rough();
         if seconds > 0.0 {
@@ -329,6 +350,7 @@ impl Vertical {
         stretch.is_rest = self.rest.is_at_rest();
         self.filter.step(&stretch, &self.expected);
         self.judge(&stretch);
+        self.check_head(&stretch);
         if self.window.seconds >= WINDOW {
             self.look();
         }
@@ -343,10 +365,14 @@ impl Vertical {
             return;
         }
         let force = scaled(&self.window.impulse, 1.0 / self.window.forced);
-        self.attitude = Attitude::levelled(&force);
-        self.matrix = self.attitude.matrix();
         self.stretch = Stretch::default();
         self.window = Window::default();
+        // A body that falls or is thrown shows no level.
+        if (libm::sqrtf(dot(&force, &force)) - GRAVITY).abs() > BEGINNING * GRAVITY {
+            return;
+        }
+        self.attitude = Attitude::levelled(&force);
+        self.matrix = self.attitude.matrix();
         self.trust = Trust::Level;
     }
 
@@ -374,18 +400,59 @@ impl Vertical {
         let per_second = 1.0 / window.seconds;
         let rate = scaled(&window.turned, per_second);
         let force = (window.forced > 0.0).then(|| scaled(&window.impulse, 1.0 / window.forced));
-        let variances = self.filter.bias_variances();
-        let means = Means { rate, force };
-        if !self.rest.push(means, self.bias, variances, self.expected.walk) {
+        let known = Known {
+            biases: self.bias,
+            variances: self.filter.bias_variances(),
+            walk: self.expected.walk,
+        };
+        let is_gravity = force.is_some_and(|force| self.is_gravity(&force));
+        let was_rest = self.is_at_rest();
+        if !self.rest.push(Means { rate, force, is_gravity }, &known) {
             self.course.drive(&window);
             self.learn_biases();
             self.rested.due = 0.0;
+            if was_rest {
+                self.leave();
+            }
             return;
+        }
+        if let Some(force) = force.filter(|_| !was_rest && !is_gravity) {
+            self.lose_level(&force);
         }
         self.course.stand(window.seconds);
         self.stand(&window, force);
         // The body did not turn: what the gyro made of it is undone.
         self.attitude.correct(&[0.0, 0.0, -window.about]);
+    }
+
+    /// Whether a mean force is gravity as the attitude has it, as far as that can be told.
+    fn is_gravity(&self, force: &Vector) -> bool {
+        let [.., down] = &self.matrix;
+        let off = sum(force, &scaled(down, GRAVITY));
+        let bound = SIGMAS * GRAVITY * self.sigma() + GRAVITY_CHANGE;
+        dot(&off, &off) <= bound * bound
+    }
+
+    /// The level is not where it was believed to be, but where this force says.
+    fn lose_level(&mut self, force: &Vector) {
+        let [about_north, about_east] = tilt(&turned(&self.matrix, force));
+        let square = about_north * about_north + about_east * about_east;
+        self.filter.doubt(0, square);
+        self.filter.doubt(1, square);
+    }
+
+    /// The body goes. As long as nobody knows where north is, the biases hold what the Earth turned it by at rest,
+    /// which is another rate as soon as it turns.
+    fn leave(&mut self) {
+        if !self.is_north_known {
+            self.doubt_biases();
+        }
+    }
+
+    fn doubt_biases(&mut self) {
+        for axis in 0..3 {
+            self.filter.doubt(Filter::bias(axis), 2.0 * self.unknown);
+        }
     }
 
     fn stand(&mut self, window: &Window, force: Option<Vector>) {
@@ -397,10 +464,30 @@ impl Vertical {
             self.learn_biases();
         }
         if let Some(force) = force {
-            let [north, east, down] = turned(&self.matrix, &force);
-            let variance = STANDING_TILT * STANDING_TILT;
-            self.filter.measure(0, east / down, variance);
-            self.filter.measure(1, -north / down, variance);
+            self.take_for_gravity(&turned(&self.matrix, &force));
+        }
+    }
+
+    /// A force on the level frame is gravity.
+    fn take_for_gravity(&mut self, force: &Vector) {
+        let variance = STANDING_TILT * STANDING_TILT;
+        for (place, off) in tilt(force).into_iter().enumerate() {
+            self.filter.measure(place, off, variance);
+        }
+    }
+
+    /// Looks whether the level stands on its head: no vehicle is pushed down for so long.
+    fn check_head(&mut self, stretch: &Stretch) {
+        let [.., down] = stretch.impulse;
+        let is_wrong = down > UPSIDE_DOWN * GRAVITY * stretch.seconds;
+        self.headlong = if is_wrong { self.headlong + stretch.seconds } else { 0.0 };
+        if self.headlong > HEADLONG {
+            self.headlong = 0.0;
+            let force = turned(&transposed(&self.matrix), &stretch.impulse);
+            self.lose_level(&force);
+            self.take_for_gravity(&stretch.impulse);
+            self.filter.doubt(0, START_TILT * START_TILT);
+            self.filter.doubt(1, START_TILT * START_TILT);
         }
     }
 
@@ -411,6 +498,7 @@ impl Vertical {
             return;
         }
         (self.rested.seconds, self.rested.turned) = (0.0, [0.0; 3]);
+        self.rest.learnt();
         let off = difference(&scaled(&turned, 1.0 / seconds), &self.bias);
         let shaking = SHAKING / seconds;
         for (axis, off) in off.into_iter().enumerate() {
@@ -426,6 +514,20 @@ impl Vertical {
         self.matrix = self.attitude.matrix();
         self.bias = bounded(&sum(&self.bias, &bias), &self.greatest);
     }
+}
+
+/// By how much a force on the level frame shows that it is turned, about north and east, rad: up to half a turn.
+fn tilt([north, east, down]: &Vector) -> [f32; 2] {
+    let across = libm::sqrtf(north * north + east * east);
+    let angle = libm::atan2f(across, -down);
+    let part = if across > 0.0 { angle / across } else { 0.0 };
+    [-part * east, part * north]
+}
+
+/// Time from one moment to the next, s, an hour at most; none where it runs backwards.
+#[inline]
+fn seconds_between(before: Instant, now: Instant) -> f32 {
+    now.0.saturating_sub(before.0).min(u64::from(u32::MAX)) as u32 as f32 * 1e-6
 }
 
 /// The vector with each component within its bound.
@@ -523,12 +625,20 @@ impl Vertical {
         self.frame = rate;
     }
 
+    /// The same, and nobody knows any more where north is: biases may hold the Earth's rate from now on.
+    pub fn lose_north(&mut self, rate: Vector) {
+        self.frame = rate;
+        self.is_north_known = false;
+        self.doubt_biases();
+    }
+
     /// The same, and north is known for the first time: biases held the Earth's rate until now.
     pub fn find_north(&mut self, rate: Vector) {
         self.learn_biases();
         self.correct();
         let more = turned(&transposed(&self.matrix), &difference(&rate, &self.frame));
         self.frame = rate;
+        self.is_north_known = true;
         self.window = Window::default();
         if self.is_at_rest() {
             // What was learnt of the sum holds for the bias, of which more was known beforehand.
