@@ -135,6 +135,12 @@ impl SpecificForce {
     pub fn m_per_s2(self) -> f64 {
         f64::from(self.0) * 1e-6
     }
+
+    /// Whether the value stands at a limit of its range, where a sensor or a conversion clips.
+    #[must_use]
+    pub fn is_saturated(self) -> bool {
+        self.0 == i32::MAX || self.0 == i32::MIN
+    }
 }
 
 /// Force on a spinning body, 1 LSB = 10 µm/s², range ±21 474 m/s²: a turn of 100 Hz pulls 8000 m/s² two

@@ -14,6 +14,8 @@ const FINE: f32 = (1u64 << 35) as f32;
 const LARGEST: f32 = 0.1;
 /// Most pieces of a rotation: a turn and a half.
 const PIECES: u32 = 100;
+/// How far from the vertical a body stands on end, rad: there rounding leaves 1e-8 of course and of roll.
+const ON_END: f64 = 1e-8;
 
 /// The rotation from body axes (forward, right, down) to those of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +41,9 @@ impl Attitude {
     #[must_use]
     pub fn levelled(force: &[f32; 3], course: f64) -> Self {
         let [x, y, z] = force.map(f64::from);
+        if [x, y, z] == [0.0; 3] {
+            return Self::default();
+        }
         let pitch = libm::atan2(x, libm::sqrt(y * y + z * z));
         let roll = libm::atan2(-y, -z);
         Self::new(quaternion([course, pitch, roll]))
@@ -129,11 +134,17 @@ impl Attitude {
     }
 }
 
-/// Course, pitch and roll, rad, of a quaternion (w, x, y, z) from body axes to north, east, down.
+/// Course, pitch and roll, rad, of a quaternion (w, x, y, z) from body axes to north, east, down. Of a body that
+/// stands on end, whose course and roll are one angle, the roll is zero.
 #[must_use]
 pub fn angles([w, x, y, z]: [f64; 4]) -> [f64; 3] {
-    let course = libm::atan2(2.0 * (x * y + w * z), 1.0 - 2.0 * (y * y + z * z));
+    let (east, north) = (2.0 * (x * y + w * z), 1.0 - 2.0 * (y * y + z * z));
     let pitch = libm::asin(bounded(2.0 * (w * y - x * z)));
+    if east * east + north * north < ON_END * ON_END {
+        let course = libm::atan2(2.0 * (w * z - x * y), 1.0 - 2.0 * (x * x + z * z));
+        return [course, pitch, 0.0];
+    }
+    let course = libm::atan2(east, north);
     let roll = libm::atan2(2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y));
     [course, pitch, roll]
 }

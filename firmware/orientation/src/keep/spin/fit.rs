@@ -121,11 +121,16 @@ impl Sums {
         self.count
     }
 
+    /// Passes over samples that are missing: they have no force.
+    pub(super) fn pass(&mut self, samples: u32) {
+        self.samples = self.samples.saturating_add(samples);
+    }
+
     /// Adds a sample. Written out: this is the sample's whole cost.
     #[inline]
     pub(super) fn push(&mut self, angle: Angle, force: Option<[SpinForce; 2]>) {
         let place = (self.samples as f32 - self.half) * self.scale;
-        self.samples += 1;
+        self.samples = self.samples.saturating_add(1);
         let Some([y, z]) = force.filter(|[y, z]| !y.is_saturated() && !z.is_saturated()) else {
             return;
         };

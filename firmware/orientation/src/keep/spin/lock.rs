@@ -25,12 +25,18 @@ const USED: f32 = 3.0;
 const BOUND: f64 = 4.0;
 /// Turns in a row that are off by more until all is searched anew.
 const PATIENCE: u32 = 8;
+/// 1σ of the scale where what was known of it has proved wrong: the most that leaves four turns in step.
+const WRONG: f64 = 0.03;
 /// Looks over which the noise is averaged.
 const NOISE_LOOKS: f32 = 8.0;
+/// By how much a look may be noisier than those before and count fully: one blow does not make all that follows noisy.
+const NOISE_RISE: f32 = 4.0;
 /// How the scale wanders, 1/√s: with the gyro's temperature.
 const SCALE_WALK: f64 = 1e-6;
 /// Part of the rate by which it may have changed where samples are missing.
 const CHANGE: f32 = 0.01;
+/// What may be lost of the rotation within turns that are used, rad: it bends their phase by half of that.
+const BROKEN: f32 = 0.01;
 /// 1σ of the angle that says nothing any more, rad: that of any angle at all.
 const NOTHING: f64 = 1.8;
 /// 1σ of the angle for which a phase near half a turn off is a lift that pushes down, rad.
@@ -52,6 +58,8 @@ pub(super) struct Lock {
     /// N², rad²/s, and the sample period, s.
     walk: f64,
     period: f64,
+    /// Variance of the scale to begin with.
+    first: f64,
     /// Variances of angle, rad², and scale, and what they share.
     angle: f64,
     scale: f64,
@@ -59,6 +67,8 @@ pub(super) struct Lock {
     /// The scale error.
     error: f64,
     sums: Sums,
+    /// Whether too much of the rotation was lost since then for the turns to be used.
+    is_broken: bool,
     /// The angle at which the turn began, and at which the states were told last.
     begun: i64,
     told: i64,
@@ -80,11 +90,13 @@ impl Lock {
         Self {
             walk: setting.angle_random_walk * setting.angle_random_walk,
             period: setting.sample_seconds,
+            first: setting.scale_sigma * setting.scale_sigma,
             angle: TURN * TURN,
             scale: setting.scale_sigma * setting.scale_sigma,
             shared: 0.0,
             error: 0.0,
             sums: Sums::of(USUAL),
+            is_broken: false,
             begun: 0,
             told: 0,
             wanted: TURN_STEPS,
@@ -109,12 +121,14 @@ impl Lock {
         }
     }
 
-    /// So many samples of about that increment, in its steps, were lost, which changed by so much meanwhile.
-    pub(super) fn lose(&mut self, mean: f32, change: f32, samples: f32) {
-        let lost = samples * (0.5 * change + CHANGE * mean.abs()) * AngleIncrement::STEP as f32;
+    /// So many samples are missing, and of so many the increment is lost: about this one, in its steps, which changed by
+    /// so much meanwhile.
+    pub(super) fn lose(&mut self, missing: f32, lost: f32, mean: f32, change: f32) {
+        self.since = self.since.saturating_add(missing as u32);
+        self.sums.pass(missing as u32);
+        let lost = lost * (0.5 * change + CHANGE * mean.abs()) * AngleIncrement::STEP as f32;
         self.angle += f64::from(lost) * f64::from(lost);
-        // The turn ends here without being used.
-        self.sums = Sums::of(2.0 * LONGEST as f32);
+        self.is_broken |= lost > BROKEN;
         if self.angle > SURE * SURE {
             self.trouble = Trouble::NoRotation;
         }
@@ -125,12 +139,16 @@ impl Lock {
     fn finish(&mut self, now: Instant, wheel: &mut Wheel) {
         let turned = wheel.whole().wrapping_sub(self.begun).unsigned_abs();
         let is_whole = turned >= self.wanted;
-        let samples = self.sums.samples() as f32 / self.wanted as f32;
+        let samples = self.sums.samples() as f32 / turned as f32;
         let angle = f64::from(Wheel::between(self.told, wheel.whole()));
         self.carry(angle, f64::from(self.since) * self.period);
         let half = f64::from(self.sums.part_after_middle())
             * f64::from(Wheel::between(self.begun, wheel.whole()));
-        let trouble = if is_whole { self.use_turn(half, wheel) } else { Trouble::TooSlow };
+        let trouble = match (is_whole, core::mem::take(&mut self.is_broken)) {
+            (false, _) => Trouble::TooSlow,
+            (true, true) => Trouble::None,
+            (true, false) => self.use_turn(half, wheel),
+        };
         self.note(trouble, now);
         self.wanted = TURN_STEPS * u64::from(if self.is_found { TOGETHER } else { 1 });
         self.sums = Sums::of(if is_whole { samples * self.wanted as f32 } else { USUAL });
@@ -144,7 +162,15 @@ impl Lock {
         self.angle += angle * (angle * self.scale - 2.0 * self.shared) + self.walk * seconds;
         self.shared -= angle * self.scale;
         self.scale += SCALE_WALK * SCALE_WALK * seconds;
-        self.angle = self.angle.min(TURN * TURN);
+        if self.angle > TURN * TURN {
+            self.forget_angle();
+        }
+    }
+
+    /// Any angle is possible: it shares nothing with the scale any more, for nobody counted its turns.
+    fn forget_angle(&mut self) {
+        self.angle = TURN * TURN;
+        self.shared = 0.0;
     }
 
     /// Learns from turns; the middle of them is so far ago, rad.
@@ -169,12 +195,13 @@ impl Lock {
         Trouble::None
     }
 
-    /// The noise of the forces, averaged over turns.
+    /// The noise of the forces, averaged over turns, or that of these where it is greater: a blow, or forces that the
+    /// fit does not describe.
     fn noise(&mut self, fit: &Fit) -> f32 {
         let before = self.noise.unwrap_or(fit.noise);
-        let noise = before + (fit.noise - before) / NOISE_LOOKS;
+        let noise = before + (fit.noise.min(NOISE_RISE * before) - before) / NOISE_LOOKS;
         self.noise = Some(noise);
-        noise
+        noise.max(fit.noise)
     }
 
     fn learn(&mut self, phase: f64, variance: f64, half: f64, wheel: &mut Wheel) {
@@ -212,8 +239,8 @@ impl Lock {
         self.strays += 1;
         if self.strays >= PATIENCE {
             self.strays = 0;
-            self.angle = TURN * TURN;
-            self.shared = 0.0;
+            self.forget_angle();
+            self.scale = self.first.max(WRONG * WRONG);
         }
     }
 

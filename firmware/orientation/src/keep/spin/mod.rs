@@ -183,7 +183,7 @@ impl Spin {
         let lost = missing + if is_clipped { 1.0 } else { 0.0 };
         match &mut self.corrector {
             Corrector::Extrema(extrema) => extrema.disturb(),
-            Corrector::Lock(lock) => lock.lose(mean, change, lost),
+            Corrector::Lock(lock) => lock.lose(missing, lost, mean, change),
         }
     }
 }

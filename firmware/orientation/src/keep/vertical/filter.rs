@@ -36,6 +36,8 @@ const FORCE_SCALE: f32 = 0.1;
 const SWING: f32 = 0.5;
 /// Part of a variance that rounding may make of it.
 const ROUNDING: f32 = 1e-6;
+/// Variance of an angle of which nothing is known, rad²: a turn's square. More would only cost digits.
+const ANY_ANGLE: f32 = 40.0;
 
 /// A vector of all states.
 type States = [f32; STATES];
@@ -251,15 +253,11 @@ impl Filter {
         self.stand();
     }
 
-    /// A bias is known to no better than this variance, (rad/s)².
-    pub fn limit_bias(&mut self, axis: usize, variance: f32) {
-        let place = BIAS + axis;
-        self.covariance[place][place] = self.covariance[place][place].max(variance);
-    }
-
-    /// Makes a state less certain by a variance.
+    /// Makes a state less certain by a variance; an angle until it may be any.
     pub fn doubt(&mut self, place: usize, variance: f32) {
-        self.covariance[place][place] += variance;
+        let own = &mut self.covariance[place][place];
+        let room = if place <= TURN { (ANY_ANGLE - *own).max(0.0) } else { variance };
+        *own += variance.min(room);
     }
 
     /// 1σ of the greater tilt, rad.

@@ -30,7 +30,7 @@ use super::attitude::{Attitude, Matrix};
 use crate::math::rotation::{difference, dot, scaled, sum, transposed, turned};
 use crate::signal::InertialSample;
 use crate::signal::increment::Increment;
-use crate::units::Instant;
+use crate::units::{Instant, SpecificForce};
 
 /// A vector in single precision.
 type Vector = [f32; 3];
@@ -98,6 +98,8 @@ pub struct Vertical {
     /// Whether nothing of the level is left.
     is_lost: bool,
     knows_north: bool,
+    /// For how long the force has pointed down, s.
+    headlong: f32,
 }
 
 impl Vertical {
@@ -133,6 +135,7 @@ impl Vertical {
             trust: Trust::Starting,
             is_lost: false,
             knows_north: false,
+            headlong: 0.0,
         }
     }
 
@@ -151,7 +154,8 @@ impl Vertical {
             self.before.turned = sample.turned;
             self.before.clipped = 0.0;
         }
-        if let Some(force) = sample.force {
+        let is_clipped = |force: &[SpecificForce; 3]| force.iter().any(|part| part.is_saturated());
+        if let Some(force) = sample.force.filter(|force| !is_clipped(force)) {
             self.force.push(force);
         }
         let is_due = sample.time.0.saturating_sub(self.since.0) >= TICK;
@@ -165,7 +169,11 @@ impl Vertical {
     #[inline]
     fn elapsed(&mut self, now: Instant) -> f32 {
         if let Some(before) = self.before.time.replace(now) {
-            return now.0.saturating_sub(before.0) as u32 as f32 * 1e-6;
+            if now < before {
+                // A clock that was set back: what was measured since the latest attitude counts from now.
+                self.since = now;
+            }
+            return seconds_between(before, now);
         }
         self.since = Instant(now.0.saturating_sub((self.period * 1e6) as u64));
         self.period
@@ -174,7 +182,7 @@ impl Vertical {
     /// Takes the attitude.
     #[inline(never)]
     fn tick(&mut self, now: Instant) {
-        let seconds = now.0.saturating_sub(self.since.0) as u32 as f32 * 1e-6;
+        let seconds = seconds_between(self.since, now);
         self.since = now;
         let rotation = self.increment.take_rough();
         if seconds > 0.0 {
@@ -312,20 +320,19 @@ impl Vertical {
         if !self.is_at_rest() {
             return;
         }
-        // What this rest has shown was the sum.
+        // What was learnt of the sum holds for the bias, of which more was known beforehand.
         self.bias = difference(&self.bias, &more);
         for (axis, bias) in self.bias.into_iter().enumerate() {
-            let learnt = self.rest_variance(axis, self.course.stood);
-            self.filter.forget_bias(axis, learnt);
             self.filter.measure(Filter::bias(axis), -bias, self.priors[axis]);
         }
         self.correct();
     }
 
-    /// North is not known any more.
+    /// North is not known any more: biases may hold the Earth's rate from now on.
     pub fn lose_north(&mut self, rate: Vector) {
         self.frame = rate;
         self.knows_north = false;
+        self.doubt_biases();
     }
 
     /// Counts from now on.
@@ -335,4 +342,10 @@ impl Vertical {
         self.filter.begin_turn();
         self.course = Course { stood: self.course.stood, ..Course::default() };
     }
+}
+
+/// Time from one moment to the next, s, an hour at most; none where it runs backwards.
+#[inline]
+fn seconds_between(before: Instant, now: Instant) -> f32 {
+    now.0.saturating_sub(before.0).min(u64::from(u32::MAX)) as u32 as f32 * 1e-6
 }
