@@ -17,8 +17,8 @@ const START_TILT: f32 = 0.05;
 const MOVING_TILT: f32 = 0.2;
 /// Tilt, 1σ, of a standing body by its mean force over a window, rad: wind and engine.
 const STANDING_TILT: f32 = 3e-4;
-/// How far wind and engine turn a body that stands, 1σ, rad: 4″.
-const SHAKING: f32 = 2e-5;
+/// How far wind turns a body that stands, its engine off, 1σ, rad: 2″.
+const SHAKING: f32 = 1e-5;
 /// Longest stretch of a rest whose mean rates are taken together, s.
 const LONGEST_REST: f32 = 64.0;
 /// Part of gravity below which a force is a free fall.
