@@ -86,7 +86,7 @@ impl<'a, G: InStep, A: Accelerometer, O: Observer> TriadAcquisition<'a, G, A, O>
             self.outlet.shared.fail(reason);
             self.outlet.shared.keep.rest().await;
             self.forces.renew();
-            self.gyros.iter_mut().for_each(|rates| rates.renew());
+            self.gyros.iter_mut().for_each(Rates::renew);
         }
     }
 
