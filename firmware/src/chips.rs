@@ -17,8 +17,8 @@ use orientation::signal::sway::CoarseSensors;
 use orientation::units::{Angle, AngularRate, TURN};
 
 use crate::ports::{
-    Accelerometer, Actuator, BaseReading, BaseSensors, Encoder, ForceReading, Gyro, InStep, Motion,
-    RateReading, Startable,
+    Accelerometer, Actuator, BaseReading, BaseSensors, Code, Encoder, ForceReading, Gyro, InStep,
+    Motion, RateReading, Startable,
 };
 
 /// A gyro with a voltage for its rate, behind its converter.
@@ -64,6 +64,42 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> InStep for AnalogueGyro<S, R, D> {
 
     fn begin(&mut self) -> impl Future<Output = Result<(), Fault>> {
         self.converter.begin()
+    }
+}
+
+/// Any sensor with a voltage, behind its converter: what it shows is the code.
+#[derive(Debug)]
+pub struct AnalogueSensor<S, R, D>(pub Ads1262<S, R, D>);
+
+impl<S: SpiDevice, R: Wait, D: DelayNs> Startable for AnalogueSensor<S, R, D> {
+    fn start(&mut self) -> impl Future<Output = Result<(), Fault>> {
+        self.0.start()
+    }
+}
+
+impl<S: SpiDevice, R: Wait, D: DelayNs> Gyro<Code> for AnalogueSensor<S, R, D> {
+    fn ready(&mut self) -> impl Future<Output = Result<(), Fault>> {
+        self.0.ready()
+    }
+
+    async fn read(&mut self) -> Result<RateReading<Code>, Fault> {
+        let conversion = self.0.read().await?;
+        let code = match (conversion.is_clipped, conversion.code < 0) {
+            (false, _) => conversion.code,
+            (true, false) => i32::MAX,
+            (true, true) => i32::MIN,
+        };
+        Ok(RateReading { rate: Code(code), is_new: conversion.is_new })
+    }
+}
+
+impl<S: SpiDevice, R: Wait, D: DelayNs> InStep<Code> for AnalogueSensor<S, R, D> {
+    fn arm(&mut self) -> impl Future<Output = Result<(), Fault>> {
+        self.0.arm()
+    }
+
+    fn begin(&mut self) -> impl Future<Output = Result<(), Fault>> {
+        self.0.begin()
     }
 }
 

@@ -6,7 +6,7 @@ use orientation::align::rotating::turn::Sense;
 use orientation::device::{Device, Trouble};
 use orientation::error::Refusal;
 use orientation::keep::restart::Doubt;
-use orientation::keep::{Handover, Realigned, State};
+use orientation::keep::{Handover, Realigned, State, spin};
 use orientation::noise::fit::{Coefficient, Estimate};
 use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 use orientation::words;
@@ -152,6 +152,23 @@ pub enum Event {
     Doubted(Doubt),
     /// The heading cannot be kept for the next start.
     HeadingNotKept(Fault),
+    /// The instrument begins, on a spinning body.
+    BegunSpin,
+    /// What the roll of a spinning body rests on from now on.
+    Roll(spin::State),
+    /// The lift shows the roll again, after so many seconds.
+    LiftBack(f64),
+    /// The roll is followed no more: a sensor is given up.
+    RollEnded(Refusal),
+    /// The flight is over.
+    Flown {
+        /// Whole turns since the first sample.
+        turns: i32,
+        /// The roll, °.
+        roll: f64,
+        /// Its 1σ, °, where it is known.
+        sigma: Option<f64>,
+    },
     /// The link does not take status lines.
     LinkSilent,
 }
@@ -252,6 +269,14 @@ words! { Event:
         Rounded::<4>(azimuth), Rounded::<4>(sigma);
     Self::Doubted(doubt) => "the heading of before the restart is not believed: {}", doubt;
     Self::HeadingNotKept(fault) => "the heading cannot be kept for the next start: {}", fault;
+    Self::BegunSpin => "begin: following the roll of a spinning body";
+    Self::Roll(state) => "roll: {}", state;
+    Self::LiftBack(seconds) => "roll: locked, the lift is back after {} s", Rounded::<2>(seconds);
+    Self::RollEnded(reason) => "no roll: {}", reason;
+    Self::Flown { turns, roll, sigma: Some(sigma) } =>
+        "flown: {} turns and {}° ± {}° (1σ)", turns, Rounded::<4>(roll), Rounded::<4>(sigma);
+    Self::Flown { turns, roll, sigma: None } =>
+        "flown: {} turns and {}°, not known", turns, Rounded::<1>(roll);
     Self::LinkSilent => "link: takes no status lines";
 }
 

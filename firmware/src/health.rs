@@ -71,8 +71,12 @@ impl Health {
 
 fn count(counters: &mut [u16; 5], device: Device) {
     let counter = &mut counters[match device {
-        Device::Gyro | Device::ForwardGyro | Device::RightGyro | Device::DownGyro => 0,
-        Device::Accelerometer => 1,
+        Device::Gyro
+        | Device::ForwardGyro
+        | Device::RightGyro
+        | Device::DownGyro
+        | Device::UpGyro => 0,
+        Device::Accelerometer | Device::UpAccelerometer | Device::RightAccelerometer => 1,
         Device::Encoder | Device::OuterEncoder | Device::InnerEncoder => 2,
         Device::Stage | Device::OuterFrame | Device::InnerFrame => 3,
         Device::Base => 4,

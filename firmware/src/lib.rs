@@ -10,7 +10,8 @@
 //! A two-frame mount has two encoders and two motors: [`pointing`] and [`gimbal`] stand for encoder and
 //! stage then. On a platform that turns all the time, the [`turntable`] stands for the stage, and commands
 //! are rates. In a vehicle nothing turns the gyros: three of them and the accelerometer make the samples, and
-//! the session tells who drives when to stop and go.
+//! the session tells who drives when to stop and go. On a [`spin`]ning body nothing looks for north: its roll
+//! is followed.
 //!
 //! [`run::acquire`] samples, [`run::run`] joins the other parts in fixed order; they know no pin, no
 //! bus and no clock but `embassy-time`'s. What they need from the outside are the traits of [`ports`];
@@ -46,6 +47,7 @@ pub mod link;
 pub mod configuration;
 pub mod run;
 pub mod shared;
+pub mod spin;
 pub mod storage;
 
 #[cfg(feature = "defmt")]

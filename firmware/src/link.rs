@@ -63,6 +63,15 @@ pub enum Status {
     },
     /// There is none; the log tells why.
     Refused,
+    /// The roll of a spinning body is followed.
+    Rolling {
+        /// Roll and its 1σ, rounded up; none where it is not known.
+        roll: Option<[u32; 2]>,
+        /// What it rests on.
+        state: &'static str,
+    },
+    /// It is followed no more; the log tells why.
+    RollEnded,
 }
 
 impl Status {
@@ -77,7 +86,7 @@ impl Status {
     /// Whether nothing follows.
     #[must_use]
     pub fn is_last(&self) -> bool {
-        matches!(self, Self::Concluded { .. } | Self::Refused)
+        matches!(self, Self::Concluded { .. } | Self::Refused | Self::RollEnded)
     }
 }
 
@@ -100,6 +109,16 @@ impl fmt::Display for Status {
                 sigma % 1000
             ),
             Self::Refused => f.write_str("no azimuth"),
+            Self::Rolling { roll: Some([roll, sigma]), state } => write!(
+                f,
+                "roll {}.{:03} sigma {}.{:03} {state}",
+                roll / 1000,
+                roll % 1000,
+                sigma / 1000,
+                sigma % 1000
+            ),
+            Self::Rolling { roll: None, state } => write!(f, "roll unknown, {state}"),
+            Self::RollEnded => f.write_str("no roll"),
         }
     }
 }

@@ -21,29 +21,51 @@ pub trait Startable {
     async fn start(&mut self) -> Result<(), Fault>;
 }
 
-/// One conversion of the precise gyro.
+/// What a converter shows: a rate, or a code where its unit belongs to somebody else.
+pub trait Quantity: Copy + Default + PartialEq {
+    /// Whether the value stands at a limit of its range, where a sensor or its converter clips.
+    fn is_saturated(self) -> bool;
+}
+
+impl Quantity for AngularRate {
+    fn is_saturated(self) -> bool {
+        self.is_saturated()
+    }
+}
+
+/// A converter's own code; at a limit where it clipped.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Code(pub i32);
+
+impl Quantity for Code {
+    fn is_saturated(self) -> bool {
+        self.0 == i32::MAX || self.0 == i32::MIN
+    }
+}
+
+/// One conversion of the precise gyro, or of another sensor behind a converter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RateReading {
+pub struct RateReading<V = AngularRate> {
     /// The rate; at a limit of its range where the converter clipped.
-    pub rate: AngularRate,
+    pub rate: V,
     /// Whether nobody has read this conversion before.
     pub is_new: bool,
 }
 
-/// The precise gyro.
+/// The precise gyro, or another sensor behind a converter.
 #[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
-pub trait Gyro: Startable {
+pub trait Gyro<V = AngularRate>: Startable {
     /// Waits until a conversion is ready. Safe to drop.
     async fn ready(&mut self) -> Result<(), Fault>;
 
     /// Reads that conversion.
-    async fn read(&mut self) -> Result<RateReading, Fault>;
+    async fn read(&mut self) -> Result<RateReading<V>, Fault>;
 }
 
 /// A gyro that converts in step with others: all are armed, then all begun, one right after the other.
 /// Their clocks are one.
 #[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
-pub trait InStep: Gyro {
+pub trait InStep<V = AngularRate>: Gyro<V> {
     /// Ends conversions and makes ready for others, of a gyro that was started.
     async fn arm(&mut self) -> Result<(), Fault>;
 
@@ -330,6 +352,23 @@ pub struct VehicleSensors<G, A> {
     pub gyros: [G; 3],
     /// Accelerometers on the same axes.
     pub accelerometer: A,
+}
+
+/// The sensors that are fixed to a spinning body, which acquisition owns.
+#[derive(Debug)]
+pub struct SpinSensors<C>(
+    /// Converters of the gyros about x (forward), y (up at roll zero) and z (right there), then of the
+    /// accelerometers along y and z.
+    pub [C; 5],
+);
+
+/// What else a board on a spinning body offers.
+#[derive(Debug)]
+pub struct SpinPorts<L, R> {
+    /// Where status lines go.
+    pub link: L,
+    /// Where raw samples go.
+    pub recorder: R,
 }
 
 /// What else a board in a vehicle offers: there is nothing to turn, who drives is told by link and log.

@@ -7,14 +7,14 @@
 use core::future::pending;
 use core::pin::{Pin, pin};
 
-use embassy_futures::select::{select, select5};
+use embassy_futures::select::{select, select3, select5};
 use embedded_io_async::Write;
 use orientation::device::Device;
 use orientation::error::Refusal;
 use orientation::session::{Session, rotating, stops};
-use orientation::signal::InertialSample;
+use orientation::signal::{InertialSample, SpinSample};
 
-use crate::acquire::{Acquisition, TriadAcquisition};
+use crate::acquire::{Acquisition, SpinAcquisition, TriadAcquisition};
 use crate::conduct::{Conducted, Conductor, Rotating, Stepwise, Stops};
 use crate::configuration::{
     Configuration, FramesConfiguration, TurntableConfiguration, VehicleConfiguration,
@@ -25,10 +25,12 @@ use crate::keep::Keep;
 use crate::link;
 use crate::pointing::{FrameShafts, Shaft};
 use crate::ports::{
-    Accelerometer, Actuator, CalibrationStore, Encoder, Frames, Gyro, InStep, Observer, Ports,
-    Recorder, Sensors, VehiclePorts, VehicleSensors, Whereabouts,
+    Accelerometer, Actuator, CalibrationStore, Code, Encoder, Frames, Gyro, InStep, Observer,
+    Ports, Recorder, Sensors, SpinPorts, SpinSensors, VehiclePorts, VehicleSensors, Whereabouts,
 };
 use crate::shared::{LatestAngle, Seams};
+use crate::spin::configuration::SpinConfiguration;
+use crate::spin::{self, Flight};
 use crate::stage::Stage;
 use crate::steady::Base;
 use crate::storage;
@@ -88,6 +90,20 @@ pub async fn acquire_triad<G, A, O>(
     O: Observer,
 {
     TriadAcquisition::new(sensors, configuration, seams).run_for_ever().await;
+}
+
+/// The same for sensors that are fixed to a spinning body.
+pub async fn acquire_spin<C, O>(
+    sensors: &mut SpinSensors<C>,
+    configuration: &SpinConfiguration,
+    seams: &Seams<'_, O, SpinSample>,
+) where
+    C: InStep<Code>,
+    O: Observer,
+{
+    let reason = SpinAcquisition::new(sensors, configuration, seams).run().await;
+    seams.shared.fail(reason);
+    pending::<()>().await;
 }
 
 /// Runs an alignment from power-on to its conclusion, which is then in the session; gives what went
@@ -274,6 +290,30 @@ where
     let kept = pin!(keeping.run(&seams.shared));
     let mut session = Stops::new(session, whereabouts);
     keep_beside(still, kept, link, recorder, &mut session, seams).await
+}
+
+/// Follows the roll of a spinning body until the flight's time is over, or a sensor is given up.
+pub async fn run_spin<L, R, O>(
+    ports: &mut SpinPorts<L, R>,
+    flight: &mut Flight,
+    seams: &Seams<'_, O, SpinSample>,
+) -> Health
+where
+    L: Write,
+    R: Recorder<SpinSample>,
+    O: Observer,
+{
+    let (SpinPorts { link, recorder }, shared) = (ports, &seams.shared);
+    {
+        let tell = pin!(async {
+            link::run(link, shared).await;
+            pending::<()>().await;
+        });
+        let watch = pin!(health::watch(shared));
+        select3(spin::follow(flight, recorder, seams), tell, watch).await;
+    }
+    link::send(link, shared).await;
+    shared.health.get()
 }
 
 /// Lets samples go by.

@@ -90,19 +90,19 @@ where
 
     fn chip(&self, select: Select) -> &dyn SpiChip<Plant<'a>> {
         match select {
-            Select::Gyro | Select::GyroRight | Select::GyroDown => &self.gyro,
             Select::Accelerometer => &self.accelerometer,
             Select::Encoder | Select::InnerEncoder => &self.encoder,
             Select::Actuator | Select::InnerActuator => &self.actuator,
+            _ => &self.gyro,
         }
     }
 
     fn chip_and_plant(&mut self, select: Select) -> (&mut dyn SpiChip<Plant<'a>>, &mut Plant<'a>) {
         let chip: &mut dyn SpiChip<Plant<'a>> = match select {
-            Select::Gyro | Select::GyroRight | Select::GyroDown => &mut self.gyro,
             Select::Accelerometer => &mut self.accelerometer,
             Select::Encoder | Select::InnerEncoder => &mut self.encoder,
             Select::Actuator | Select::InnerActuator => &mut self.actuator,
+            _ => &mut self.gyro,
         };
         (chip, &mut self.plant)
     }

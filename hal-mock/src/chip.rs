@@ -7,12 +7,18 @@ use crate::violation::Violations;
 /// The select line of one chip on the board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Select {
-    /// The converter of the precise gyro; of a vehicle's three, that of the one forward.
+    /// The converter of the precise gyro; of several on one body, that of the one forward.
     Gyro,
-    /// The converter of a vehicle's gyro to the right.
+    /// The converter of a body's gyro to the right.
     GyroRight,
     /// The converter of a vehicle's gyro down.
     GyroDown,
+    /// The converter of a spinning body's gyro upwards.
+    GyroUp,
+    /// The converter of a spinning body's accelerometer upwards.
+    ForceUp,
+    /// The converter of a spinning body's accelerometer to the right.
+    ForceRight,
     /// The accelerometer on the platform.
     Accelerometer,
     /// The encoder of the stage.

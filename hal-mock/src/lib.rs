@@ -21,6 +21,13 @@
 //!  legs, events ─▶ route ─▶ motion on the rotating ellipsoid ─∫ω, ∫f─▶ gyros, accelerometers ─▶ sample
 //! ```
 //!
+//! Or a body that flies and turns fast about its long axis ([`spin`]), with three gyros and two
+//! accelerometers fixed to it:
+//!
+//! ```text
+//!  lift, spin ─▶ flight ─▶ ω, q in the body's axes, ρω² ─▶ gyros, accelerometers ─▶ sample
+//! ```
+//!
 //! Or around a firmware that turns the stage itself, in virtual time, at the level of registers:
 //!
 //! ```text
@@ -32,7 +39,8 @@
 //! ```
 //!
 //! A two-frame mount ([`gimbal`]) has six chips around a plant of its own, a vehicle
-//! ([`vehicle::board`]) three converters and an accelerometer.
+//! ([`vehicle::board`]) three converters and an accelerometer, a spinning body ([`spin::board`]) five
+//! converters.
 //!
 //! This crate is an oracle. It carries its own reading of the physics, by full rotation matrices, and
 //! never depends on the `orientation` crate, so that it can catch that crate's mistakes.
@@ -69,6 +77,7 @@ pub mod mt6835;
 pub mod noise;
 pub mod plant;
 pub mod spi;
+pub mod spin;
 pub mod stage;
 pub mod temperature;
 pub mod tmc5160;

@@ -158,6 +158,8 @@ pub(crate) mod source {
     pub const COARSE_FORCE: u64 = 11;
     /// The seeds of the three gyros of a vehicle: each has all of the streams above to itself.
     pub const VEHICLE_GYROS: [u64; 3] = [12, 13, 14];
+    /// The seeds of the three gyros of a spinning body, as those of a vehicle.
+    pub const SPIN_GYROS: [u64; 3] = [16, 17, 18];
     /// What a drawn day of a vehicle is like.
     pub const VEHICLE_SCENARIO: u64 = 15;
     /// How that day goes on.

@@ -21,6 +21,7 @@ pub mod rotating;
 pub mod setting;
 pub mod simulate;
 pub mod spectrum;
+pub mod spin;
 pub mod stops;
 pub mod vertical;
 pub mod virtual_time;

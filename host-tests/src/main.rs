@@ -37,7 +37,8 @@ struct CommandLine {
 enum Command {
     /// Runs the whole board application on simulated chips.
     Run(Box<RunOptions>),
-    /// Runs the alignment on a recording of kind `stage`, `dwells`, `rotating` or `imu`.
+    /// Runs the alignment on a recording of kind `stage`, `dwells`, `rotating` or `imu`, or finds
+    /// the roll of a spinning body on one of kind `spin`.
     Replay(ReplayOptions),
     /// Plans positions and dwells for a gyro's noise.
     Plan(PlanOptions),

@@ -123,6 +123,10 @@ pub enum ReplayError {
     TooManyPositions(usize),
     /// A kind without three gyros and three accelerometers.
     NoVehicle(Kind),
+    /// A kind without a body in fast rotation.
+    NoSpin(Kind),
+    /// Fewer samples than a rate has.
+    TooFewSamples(usize),
     /// A recording of kind `static` with one gyro.
     OneGyro,
     /// More stops than a session holds, and how many that is.
@@ -172,6 +176,10 @@ impl fmt::Display for ReplayError {
             }
             Self::NoVehicle(kind) => {
                 write!(f, "kind `{kind}` is no vehicle: no method siap, static or vertical")
+            }
+            Self::NoSpin(kind) => write!(f, "kind `{kind}` has no spinning body: no method spin"),
+            Self::TooFewSamples(count) => {
+                write!(f, "column t_s: {count} sample(s) have no rate: record for longer")
             }
             Self::OneGyro => f.write_str(
                 "columns gx_rad_s to az_m_s2 are missing: this method needs three gyros and three \

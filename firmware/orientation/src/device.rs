@@ -14,6 +14,12 @@ pub enum Device {
     RightGyro,
     /// The one about its vertical axis.
     DownGyro,
+    /// Of three gyros on a spinning body, the one about the axis that is up at roll zero.
+    UpGyro,
+    /// The accelerometer along that axis.
+    UpAccelerometer,
+    /// The one along the axis that is right there.
+    RightAccelerometer,
     /// The accelerometer on the platform, or in the vehicle.
     Accelerometer,
     /// The encoder of the stage.
@@ -37,6 +43,9 @@ words! { Device:
     Self::ForwardGyro => "forward gyro";
     Self::RightGyro => "right gyro";
     Self::DownGyro => "down gyro";
+    Self::UpGyro => "up gyro";
+    Self::UpAccelerometer => "up accelerometer";
+    Self::RightAccelerometer => "right accelerometer";
     Self::Accelerometer => "accelerometer";
     Self::Encoder => "encoder";
     Self::Stage => "stage";

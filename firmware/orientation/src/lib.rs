@@ -21,6 +21,14 @@
 //!  3 accelerometers ─▶ stop criteria ─▶ rest rates ────────────────▶ ▲ Earth rotation, displacement
 //! ```
 //!
+//! What was found is kept, and pitch and roll with it; the roll of a spinning body is followed apart.
+//!
+//! ```text
+//!  gyros, accelerometers ─▶ attitude ─▶ level ± σ ─────▶ azimuth ± σ(t)
+//!                             ▲ biases ◀─ rest?  alignment ─▲
+//!  spinning: gyro ─▶ angle ──▲── phase, scale ◀─ sums of turns ◀─ accelerometers
+//! ```
+//!
 //! Time and numbers go in, results come out: there is no bus, clock, allocator or async here, so
 //! the whole procedure can be replayed from a recording.
 #![no_std]

@@ -3,8 +3,10 @@
 //! ```text
 //!  stage, turntable   gyro ─────────┬─▶ Sample          ─┐
 //!                     encoder ──────┤                    ├─▶ outlet ─▶ session
-//!  vehicle            three gyros ──┼─▶ InertialSample  ─┘
-//!                     accelerometer ┘
+//!  vehicle            three gyros ──┼─▶ InertialSample  ─┤
+//!                     accelerometer ┘                    │
+//!  spinning body      three gyros ──┼─▶ SpinSample      ─┘
+//!                     two forces ───┘
 //! ```
 //!
 //! What a sensor's readings must pass is the same for both kinds: `rates` for a gyro, `forces` for the
@@ -12,11 +14,14 @@
 
 mod coarse;
 mod forces;
+mod in_step;
 mod outlet;
 mod rates;
+mod spin;
 mod stage;
 mod triad;
 
+pub use spin::SpinAcquisition;
 pub use stage::Acquisition;
 pub use triad::TriadAcquisition;
 

@@ -9,14 +9,14 @@ use orientation::units::AngularRate;
 use super::{Limit, Row, SILENCE, STUCK};
 use crate::guarded::Guarded;
 use crate::patience::Symptom;
-use crate::ports::{Gyro, Observer, RateReading};
+use crate::ports::{Gyro, Observer, Quantity, RateReading};
 use crate::shared::Shared;
 
 /// A gyro at work.
-pub(super) struct Rates<'a, G> {
+pub(super) struct Rates<'a, G, V = AngularRate> {
     pub(super) gyro: Guarded<'a, G>,
     pub(super) name: Device,
-    row: Row<AngularRate>,
+    row: Row<V>,
     limit: Limit,
 }
 
@@ -25,7 +25,7 @@ pub(super) fn silence(period: u32) -> Duration {
     Duration::from_micros(u64::from(period) * u64::from(SILENCE))
 }
 
-impl<'a, G: Gyro> Rates<'a, G> {
+impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
     /// Takes a gyro of so many samples a second by its name in the log.
     pub(super) fn new(gyro: &'a mut G, name: Device, sample_rate: f64) -> Self {
         let limit = Limit::new(sample_rate);
@@ -51,7 +51,7 @@ impl<'a, G: Gyro> Rates<'a, G> {
     pub(super) async fn read<O: Observer>(
         &mut self,
         shared: &Shared<'_, O>,
-    ) -> Result<Result<Option<AngularRate>, Symptom>, Refusal> {
+    ) -> Result<Result<Option<V>, Symptom>, Refusal> {
         let begun = Instant::now();
         let outcome = self.gyro.device.read().await;
         self.judge(begun, outcome, shared)
@@ -60,9 +60,9 @@ impl<'a, G: Gyro> Rates<'a, G> {
     fn judge<O: Observer>(
         &mut self,
         begun: Instant,
-        outcome: Result<RateReading, Fault>,
+        outcome: Result<RateReading<V>, Fault>,
         shared: &Shared<'_, O>,
-    ) -> Result<Result<Option<AngularRate>, Symptom>, Refusal> {
+    ) -> Result<Result<Option<V>, Symptom>, Refusal> {
         let RateReading { rate, is_new } = match self.gyro.checked(begun, outcome) {
             Ok(reading) => reading,
             Err(symptom) => return Ok(Err(symptom)),

@@ -301,7 +301,12 @@ impl Around for Plan {
 /// The place of a chip in [`Plan::buses`].
 fn place(select: Select) -> usize {
     match select {
-        Select::Gyro | Select::GyroRight | Select::GyroDown => 0,
+        Select::Gyro
+        | Select::GyroUp
+        | Select::GyroRight
+        | Select::GyroDown
+        | Select::ForceUp
+        | Select::ForceRight => 0,
         Select::Accelerometer => 1,
         Select::Encoder | Select::InnerEncoder => 2,
         Select::Actuator | Select::InnerActuator => 3,

@@ -8,6 +8,7 @@ pub mod flash;
 pub mod keep;
 pub mod mount;
 pub mod scenario;
+pub mod spin;
 pub mod turntable;
 pub mod vehicle;
 

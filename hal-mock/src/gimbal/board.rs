@@ -52,14 +52,12 @@ impl<'a> GimbalBoard<'a> {
     #[must_use]
     pub fn violations(&self, select: Select) -> &Violations {
         match select {
-            Select::Gyro | Select::GyroRight | Select::GyroDown => {
-                SpiChip::<Gimbal>::violations(&self.gyro)
-            }
             Select::Accelerometer => SpiChip::<Gimbal>::violations(&self.accelerometer),
             Select::Encoder => SpiChip::<super::Side>::violations(&self.encoders[0]),
             Select::InnerEncoder => SpiChip::<super::Side>::violations(&self.encoders[1]),
             Select::Actuator => SpiChip::<super::Side>::violations(&self.actuators[0]),
             Select::InnerActuator => SpiChip::<super::Side>::violations(&self.actuators[1]),
+            _ => SpiChip::<Gimbal>::violations(&self.gyro),
         }
     }
 
@@ -83,7 +81,7 @@ impl Assembly for GimbalBoard<'_> {
             Select::InnerEncoder => task.perform(inner_encoder, &mut gimbal.inner()),
             Select::Actuator => task.perform(outer_actuator, &mut gimbal.outer()),
             Select::InnerActuator => task.perform(inner_actuator, &mut gimbal.inner()),
-            Select::GyroRight | Select::GyroDown => {}
+            _ => {}
         }
     }
 

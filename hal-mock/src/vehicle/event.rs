@@ -110,6 +110,15 @@ pub enum SensorFault {
         /// End, s.
         until_s: f64,
     },
+    /// What a sensor shows is not a number.
+    NotANumber {
+        /// Which one.
+        channel: usize,
+        /// Beginning, s.
+        from_s: f64,
+        /// End, s.
+        until_s: f64,
+    },
     /// A sensor repeats its last value.
     Stuck {
         /// Which one.
@@ -123,22 +132,34 @@ pub enum SensorFault {
 
 impl SensorFault {
     /// Whether the sample that ends at a time in s is missing.
-    pub(super) fn loses(&self, time_s: f64) -> bool {
+    pub(crate) fn loses(&self, time_s: f64) -> bool {
         matches!(*self, Self::Gap { from_s, until_s } if (from_s..until_s).contains(&time_s))
     }
 
-    /// What a channel shows at a time in s instead of `value`, after `last`, with such a full scale.
-    pub(super) fn shown(&self, time_s: f64, at: usize, value: f64, last: f64, full: f64) -> f64 {
+    /// What a channel shows of a value at a time in s, after the last one, with faults and full scale on it.
+    pub(crate) fn spoilt(
+        faults: &[Self],
+        channel: usize,
+        time_s: f64,
+        [value, last]: [f64; 2],
+        full: f64,
+    ) -> f64 {
+        let shown = |value, fault: &Self| fault.shown(time_s, channel, [value, last], full);
+        let shown = faults.iter().fold(value, shown);
+        // Full scale leaves what is not a number as it is.
+        if shown.abs() > full { libm::copysign(full, shown) } else { shown }
+    }
+
+    /// What a channel shows instead of a value, after the last one, with such a full scale.
+    fn shown(&self, time_s: f64, at: usize, [value, last]: [f64; 2], full: f64) -> f64 {
+        let is_on = |channel: usize, from_s: f64, until_s: f64| {
+            channel == at && (from_s..until_s).contains(&time_s)
+        };
         match *self {
-            Self::Saturated { channel, from_s, until_s }
-                if channel == at && (from_s..until_s).contains(&time_s) =>
-            {
-                full
-            }
-            Self::Stuck { channel, from_s, until_s }
-                if channel == at && (from_s..until_s).contains(&time_s) =>
-            {
-                last
+            Self::Saturated { channel, from_s, until_s } if is_on(channel, from_s, until_s) => full,
+            Self::Stuck { channel, from_s, until_s } if is_on(channel, from_s, until_s) => last,
+            Self::NotANumber { channel, from_s, until_s } if is_on(channel, from_s, until_s) => {
+                f64::NAN
             }
             _ => value,
         }

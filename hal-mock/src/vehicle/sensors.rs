@@ -64,7 +64,8 @@ impl<'a> Sensors<'a> {
         let steady_rad_s = gyro.steady(felt.rate_rad_s[axis], force_g);
         let value = gyro.sample(steady_rad_s, time_s, temperature_c);
         let last = self.last.rate_rad_s[axis];
-        let shown = self.spoilt(axis, time_s, [value, last], self.rate_limit_rad_s);
+        let shown =
+            SensorFault::spoilt(self.faults, axis, time_s, [value, last], self.rate_limit_rad_s);
         self.last.rate_rad_s[axis] = shown;
         shown
     }
@@ -73,8 +74,9 @@ impl<'a> Sensors<'a> {
     pub(super) fn force(&mut self, time_s: f64, felt: &Means) -> [f64; 3] {
         let (values, last) = (self.accelerometer.sample(felt.force_m_s2), self.last.force_m_s2);
         let limit = self.force_limit_m_s2;
-        self.last.force_m_s2 =
-            [0, 1, 2].map(|i: usize| self.spoilt(3 + i, time_s, [values[i], last[i]], limit));
+        self.last.force_m_s2 = [0, 1, 2].map(|i: usize| {
+            SensorFault::spoilt(self.faults, 3 + i, time_s, [values[i], last[i]], limit)
+        });
         self.last.force_m_s2
     }
 
@@ -98,13 +100,5 @@ impl<'a> Sensors<'a> {
     /// Scale factor errors of the gyros, 1.
     pub(super) fn scale_errors(&self) -> [f64; 3] {
         [0, 1, 2].map(|axis: usize| self.gyros[axis].scale_error())
-    }
-
-    /// A value, after the last one, with faults and full scale on it.
-    fn spoilt(&self, channel: usize, time_s: f64, [value, last]: [f64; 2], full: f64) -> f64 {
-        let faults = self.faults.iter();
-        let shown =
-            faults.fold(value, |value, fault| fault.shown(time_s, channel, value, last, full));
-        shown.max(-full).min(full)
     }
 }

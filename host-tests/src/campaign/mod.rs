@@ -6,6 +6,7 @@ pub mod instrument;
 pub mod keep;
 pub mod rotating;
 pub mod sokolov;
+pub mod spin;
 pub mod statistics;
 pub mod szymanowski;
 

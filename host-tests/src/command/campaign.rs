@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 use bench::campaign::burov::{classes, devices, drift};
 use bench::campaign::rotating::{molecular, refusals, stages};
 use bench::campaign::sokolov::{self, Turn};
+use bench::campaign::spin::{cases, paper};
 use bench::campaign::szymanowski::{drives, parked};
 use bench::campaign::{faults, instrument, keep};
 use bench::output::progress::Progress;
 use bench::output::rotating::campaign as of_rotating;
 use bench::output::table;
-use bench::output::{burov as told, keep as of_keep, page, stops as of_stops};
+use bench::output::{burov as told, keep as of_keep, page, spin as of_spin, stops as of_stops};
 use clap::{Args, ValueEnum};
 use firmware::simulated::fault::Fault;
 use serde_json::json;
@@ -25,11 +26,11 @@ pub struct CampaignOptions {
     name: Campaign,
     /// How many runs: of sokolov on each schedule (5000), of burov on each schedule (5000)
     /// and for each class a tenth of it, of rotating in each table (500), of each of its refusals a
-    /// tenth of it, of szymanowski in each row (500), of keep in each row (500), of instrument (500), of each
+    /// tenth of it, of szymanowski, keep and spin in each row (500), of instrument (500), of each
     /// fault (1).
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     runs: Option<u32>,
-    /// Writes figures and tables as a page for a browser; of burov, keep, rotating and szymanowski.
+    /// Writes figures and tables as a page for a browser; of burov, keep, rotating, spin and szymanowski.
     #[arg(long, value_name = "FILE.html")]
     report: Option<PathBuf>,
 }
@@ -42,6 +43,8 @@ enum Campaign {
     Burov,
     /// Papers/004: a platform that turns all the time, its errors and what is done about each.
     Rotating,
+    /// The roll of a spinning body: the figures of Nekrasova 2017, then noise, and a lift that fades.
+    Spin,
     /// Azimuth from stops: Szymanowski's Table 1 over many drives, and vehicles that stand and sway.
     Szymanowski,
     /// Storage of the azimuth, pitch and roll in vehicles that drive: Burov's classes.
@@ -58,10 +61,10 @@ impl CampaignOptions {
     /// # Errors
     /// The options, and why.
     pub fn check(&self) -> Result<(), &'static str> {
-        use Campaign::{Burov, Keep, Rotating, Szymanowski};
-        let draws = matches!(self.name, Burov | Keep | Rotating | Szymanowski);
+        use Campaign::{Burov, Keep, Rotating, Spin, Szymanowski};
+        let draws = matches!(self.name, Burov | Keep | Rotating | Spin | Szymanowski);
         if self.report.is_some() && !draws {
-            Err("--report: only burov, keep, rotating and szymanowski draw")
+            Err("--report: only burov, keep, rotating, spin and szymanowski draw")
         } else {
             Ok(())
         }
@@ -75,6 +78,7 @@ pub fn run(options: &CampaignOptions, as_json: bool) -> Result<Told, String> {
         Campaign::Sokolov => sokolov(runs(5000), as_json),
         Campaign::Burov => burov(runs(5000), options.report.as_deref(), as_json),
         Campaign::Rotating => rotating(runs(500), options.report.as_deref(), as_json),
+        Campaign::Spin => spin(runs(500), options.report.as_deref(), as_json),
         Campaign::Szymanowski => szymanowski(runs(500), options.report.as_deref(), as_json),
         Campaign::Keep => keep(runs(500), options.report.as_deref(), as_json),
         Campaign::Instrument => instrument(runs(500), as_json),
@@ -158,6 +162,24 @@ fn rotating(runs: usize, report: Option<&Path>, as_json: bool) -> Result<Told, S
     let refusal = (!found).then(|| "a healthy run was refused, or a north was wrong".to_owned());
     let told = Told { refusal, ..told };
     Ok(told.with_page(report, || page::rotating::campaign::report(&stages, &molecular, &refusals)))
+}
+
+/// The paper's second, and flights with noise; a result where no roll was lost and no turn miscounted.
+fn spin(runs: usize, report: Option<&Path>, as_json: bool) -> Result<Told, String> {
+    let progress = Progress::new((cases::COUNT * runs) as u64, "flights");
+    let paper = paper::paper();
+    let rows = cases::rows(runs, || progress.step());
+    progress.finish();
+    let found = rows.iter().all(|row| row.lost == 0 && row.miscounted == 0);
+    let status = if found { "ok" } else { "failed" };
+    let object = json!({ "campaign": "spin", "status": status, "paper": paper, "flights": rows });
+    let told = Told::of(found, as_json, &object, |text| {
+        of_spin::campaign::paper(text, &paper)?;
+        of_spin::campaign::cases(text, &rows)
+    })?;
+    let refusal = (!found).then(|| "a roll was lost, or a turn miscounted".to_owned());
+    let told = Told { refusal, ..told };
+    Ok(told.with_page(report, || page::spin::campaign::report(&paper, &rows)))
 }
 
 /// Drives between stops, and parked vehicles; a result where none was refused.

@@ -8,6 +8,7 @@ pub mod keeping;
 pub mod plan;
 pub mod replay;
 pub mod run;
+pub mod spinning;
 pub mod turning;
 
 use std::fmt;

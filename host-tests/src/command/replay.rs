@@ -4,12 +4,13 @@ use std::path::PathBuf;
 
 use bench::output::progress::Progress;
 use bench::output::{
-    json, page, rotating as of_rotating, stops as of_stops, text, vertical as vertical_told,
+    json, page, rotating as of_rotating, spin as of_spin, stops as of_stops, text,
+    vertical as vertical_told,
 };
 use bench::recording::{self, Body, Kind, Recording};
 use bench::replay::{self, Options, replay};
 use bench::vertical::errors::Errors;
-use bench::{rotating, stops, vertical as of_vertical};
+use bench::{rotating, spin, stops, vertical as of_vertical};
 use clap::{Args, ValueEnum};
 use orientation::align::criterion::Criterion;
 use orientation::earth::Latitude;
@@ -64,6 +65,8 @@ enum Method {
     Static,
     /// Pitch and roll, and the turn about the vertical, kept from the beginning to the end.
     Vertical,
+    /// The roll of a body in fast rotation, from the extrema of its accelerometers and by phase lock.
+    Spin,
 }
 
 impl Method {
@@ -71,6 +74,7 @@ impl Method {
     fn of(body: &Body) -> Self {
         match body.kind() {
             Kind::Rotating => Self::Rotating,
+            Kind::Spin => Self::Spin,
             _ if stops::samples::rows(body).is_some() => Self::Siap,
             _ => Self::Stepwise,
         }
@@ -153,6 +157,11 @@ impl ReplayOptions {
             Method::Vertical if has_criterion || self.half.is_some() => {
                 Err("--criterion, --half: method vertical finds no azimuth")
             }
+            Method::Spin if has_criterion => Err("--criterion: a spinning body's roll has none"),
+            Method::Spin if self.half.is_some() => Err("--half: a spinning body has no azimuth"),
+            Method::Spin if self.latitude.is_some() => {
+                Err("--latitude: a spinning body's roll does not depend on it")
+            }
             Method::Siap => Ok(()),
             _ if is_displaced => Err("--displacements: only the stops of method siap have them"),
             _ => Ok(()),
@@ -170,6 +179,7 @@ pub fn run(options: &ReplayOptions, as_json: bool) -> Result<Told, String> {
         Method::Rotating => turning,
         Method::Siap | Method::Static => vehicle,
         Method::Vertical => vertical,
+        Method::Spin => spinning,
         Method::Stepwise | Method::Positions => stopping,
     };
     of(&name, recording, options, as_json)
@@ -192,6 +202,26 @@ fn vehicle(
     })?;
     let refusal = conclusion.verdict.as_ref().err().map(|reason| format!("{name}: {reason}"));
     let page = || page::stops::report(name, &replay, conclusion);
+    Ok(Told { refusal, ..told }.with_page(options.report.as_deref(), page))
+}
+
+/// Replays the recording of a spinning body.
+fn spinning(
+    name: &str,
+    recording: Recording,
+    options: &ReplayOptions,
+    as_json: bool,
+) -> Result<Told, String> {
+    let (header, body, truth) = recording.into_parts();
+    let wanted = spin::Options { required_sigma: Some(options.require_sigma) };
+    let replay =
+        spin::replay(&header, &body, &wanted).map_err(|error| format!("{name}: {error}"))?;
+    let object = of_spin::json::object(&replay, &truth);
+    let told = Told::of(object.reason.is_none(), as_json, &object, |block| {
+        of_spin::text::block(block, name, &replay, &truth)
+    })?;
+    let refusal = object.reason.as_ref().map(|reason| format!("{name}: {reason}"));
+    let page = || page::spin::report(name, &replay, &truth);
     Ok(Told { refusal, ..told }.with_page(options.report.as_deref(), page))
 }
 

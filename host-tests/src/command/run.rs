@@ -19,6 +19,7 @@ use firmware::simulated::fault::Fault;
 use firmware::simulated::keep::Hold;
 use firmware::simulated::mount::{FramePlan, FramesScenario};
 use firmware::simulated::scenario::{Aim, GyroClass, RATES, Scenario};
+use firmware::simulated::spin::fault::SpinFault;
 use firmware::simulated::vehicle::fault::VehicleFault;
 use orientation::session::{Session, rotating, stops};
 use serde::Serialize;
@@ -26,6 +27,7 @@ use serde_json::{Value, json};
 
 use super::driving::DrivingOptions;
 use super::keeping::{self, KeepingOptions};
+use super::spinning::SpinningOptions;
 use super::turning::TurningOptions;
 use super::{Half, Told};
 
@@ -81,6 +83,8 @@ pub struct RunOptions {
     driving: DrivingOptions,
     #[command(flatten)]
     keeping: KeepingOptions,
+    #[command(flatten)]
+    spinning: SpinningOptions,
     /// Amplitude of the base's sway in degrees; brings a coarse IMU on the base with it.
     #[arg(long, value_name = "DEGREES", value_parser = sway, conflicts_with = "record")]
     sway: Option<f64>,
@@ -117,6 +121,8 @@ enum Method {
     Rotating,
     /// A vehicle that drives from stop to stop.
     Siap,
+    /// The roll of a body in fast rotation.
+    Spin,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -143,8 +149,8 @@ enum Gyro {
 #[derive(Clone, Copy, Debug)]
 enum Named {
     List,
-    /// Those that bear it: on a stage, in a vehicle.
-    Fault(Option<Fault>, Option<VehicleFault>),
+    /// Those that bear it: on a stage, in a vehicle, on a spinning body.
+    Fault(Option<Fault>, Option<VehicleFault>, Option<SpinFault>),
 }
 
 fn within<const LIMIT: u16>(text: &str) -> Result<f64, String> {
@@ -201,10 +207,11 @@ fn fault(text: &str) -> Result<Named, String> {
     }
     let on_stage = Fault::all().find(|fault| fault.to_string() == text);
     let in_vehicle = VehicleFault::all().find(|fault| fault.to_string() == text);
-    if on_stage.is_none() && in_vehicle.is_none() {
+    let in_flight = SpinFault::all().find(|fault| fault.to_string() == text);
+    if on_stage.is_none() && in_vehicle.is_none() && in_flight.is_none() {
         return Err("no such fault; `--fault list` names them".to_owned());
     }
-    Ok(Named::Fault(on_stage, in_vehicle))
+    Ok(Named::Fault(on_stage, in_vehicle, in_flight))
 }
 
 impl From<Gyro> for GyroClass {
@@ -240,6 +247,10 @@ impl RunOptions {
         let on_frames = self.mount == MountKind::TwoFrame;
         self.check_fault()?;
         match () {
+            () if matches!(self.method, Method::Spin) => self.check_spinning(on_frames),
+            () if self.spinning.is_given() => {
+                Err("--flight-seconds, --turns-per-second: they are those of --method spin")
+            }
             () if matches!(self.method, Method::Rotating) && self.keeping.is_given() => Err(
                 "--hold, --realign, --handover: a platform that turns all the time keeps nothing",
             ),
@@ -274,13 +285,20 @@ impl RunOptions {
     /// A fault must be one of the method.
     fn check_fault(&self) -> Result<(), &'static str> {
         match (self.fault, self.method) {
-            (Some(Named::Fault(_, None)), Method::Siap) => Err(
+            (Some(Named::Fault(_, _, None)), Method::Spin) => Err(
+                "--fault: no spinning body has it; `--method spin --fault list` names those that one has",
+            ),
+            (Some(Named::Fault(_, None, _)), Method::Siap) => Err(
                 "--fault: no vehicle has it; `--method siap --fault list` names those that one has",
             ),
             (
-                Some(Named::Fault(None, _)),
+                Some(Named::Fault(None, in_vehicle, _)),
                 Method::Stepwise | Method::Positions | Method::Rotating,
-            ) => Err("--fault: only a vehicle has it: --method siap"),
+            ) => Err(if in_vehicle.is_some() {
+                "--fault: only a vehicle has it: --method siap"
+            } else {
+                "--fault: only a spinning body has it: --method spin"
+            }),
             _ => Ok(()),
         }
     }
@@ -289,6 +307,26 @@ impl RunOptions {
     fn has_positions(&self) -> bool {
         let stops = self.positions.is_some() || self.dwell.is_some() || self.survey.is_some();
         stops || self.seconds.is_some() || self.sigma.is_some() || self.half.is_some()
+    }
+
+    /// What a spinning body cannot take.
+    fn check_spinning(&self, on_frames: bool) -> Result<(), &'static str> {
+        match () {
+            () if on_frames => Err("--mount: on a spinning body the sensors are fixed to it"),
+            () if self.has_positions() || self.gyro.is_some() || self.rate.is_some() => Err(
+                "--positions, --dwell, --survey, --seconds, --sigma, --half, --gyro, --rate: a spinning body \
+                 has --flight-seconds and --turns-per-second",
+            ),
+            () if self.keeping.is_given() => {
+                Err("--hold, --realign, --handover: a spinning body keeps nothing but its roll")
+            }
+            () if self.turning.is_given() || self.driving.is_given() => {
+                Err("--method spin: neither a platform that turns nor a vehicle that stops")
+            }
+            () if self.sway.is_some() => Err("--sway: a spinning body has no base"),
+            () if self.record.is_some() => Err("--record: a spinning body is not recorded"),
+            () => Ok(()),
+        }
     }
 
     /// What a vehicle cannot take.
@@ -335,7 +373,7 @@ impl RunOptions {
         match (self.sigma, self.seconds) {
             (None, None) => match self.method {
                 Method::Stepwise => Aim::Circle,
-                Method::Positions | Method::Rotating | Method::Siap => Aim::Time(USUAL),
+                _ => Aim::Time(USUAL),
             },
             (None, Some(seconds)) => Aim::Time(seconds),
             (Some(sigma_deg), seconds) => {
@@ -405,12 +443,16 @@ impl Observer for Terminal {
 
 /// Runs the board and tells what came of it.
 pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
-    let (fault, in_vehicle) = match options.fault {
+    let (fault, in_vehicle, in_flight) = match options.fault {
         Some(Named::List) => return list(options.method, as_json),
-        Some(Named::Fault(on_stage, in_vehicle)) => (on_stage, in_vehicle),
-        None => (None, None),
+        Some(Named::Fault(on_stage, in_vehicle, in_flight)) => (on_stage, in_vehicle, in_flight),
+        None => (None, None, None),
     };
     let scenario = Scenario::from(options);
+    if let Method::Spin = options.method {
+        let scenario = options.spinning.scenario(options.seed);
+        return super::spinning::run(&scenario, in_flight, options.report.as_deref(), as_json);
+    }
     if let Method::Siap = options.method {
         let scenario = options.driving.scenario(&scenario, options.rate);
         return super::driving::run(&scenario, in_vehicle, options.report.as_deref(), as_json);
@@ -467,6 +509,7 @@ fn without_session(
 /// Names the faults that a method can have.
 fn list(method: Method, as_json: bool) -> Result<Told, String> {
     let names: Vec<String> = match method {
+        Method::Spin => SpinFault::all().map(|fault| fault.to_string()).collect(),
         Method::Siap => VehicleFault::all().map(|fault| fault.to_string()).collect(),
         _ => Fault::all().map(|fault| fault.to_string()).collect(),
     };

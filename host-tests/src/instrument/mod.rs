@@ -6,6 +6,7 @@ pub mod flash_file;
 mod frames;
 pub mod kept;
 pub mod recorder;
+pub mod spinning;
 mod turntable;
 mod vehicle;
 
@@ -64,6 +65,8 @@ pub enum RunError {
     Procedure(ProcedureError),
     /// The mount's calibration is impossible.
     Mount(MountError),
+    /// A sensor has a scale factor that is none.
+    Scale,
     /// Everything waited and nothing would have come.
     Deadlock,
 }
@@ -74,6 +77,7 @@ impl fmt::Display for RunError {
             Self::Latitude(latitude) => write!(f, "latitude {latitude}° is outside ±90°"),
             Self::Procedure(error) => error.fmt(f),
             Self::Mount(error) => error.fmt(f),
+            Self::Scale => f.write_str("a sensor's scale factor is none"),
             Self::Deadlock => f.write_str("the instrument waits for something that never comes"),
         }
     }

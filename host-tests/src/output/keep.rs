@@ -24,6 +24,7 @@ pub fn rows(out: &mut impl Write, rows: &[Row]) -> fmt::Result {
         let (wanted, limit) = (row.wanted_azimuth_deg, row.azimuth_limit_deg);
         let azimuth = format!("{wanted:.2}° wanted, limit {limit:.3}°");
         spread(out, "azimuth after 0.5 h", &row.azimuth, &azimuth)?;
+        spread(out, "azimuth while driving", &row.azimuth_driving, "")?;
         let level = format!("{:.2}° wanted", row.wanted_level_deg);
         spread(out, "pitch, roll on the way", &row.level, &level)?;
         spread(out, "pitch, roll at rest", &row.level_at_rest, "")?;

@@ -10,6 +10,7 @@ pub mod page;
 pub mod plan;
 pub mod progress;
 pub mod rotating;
+pub mod spin;
 pub mod stops;
 pub mod table;
 pub mod text;

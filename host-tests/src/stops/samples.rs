@@ -139,7 +139,7 @@ fn limits(rows: &[ImuRow]) -> [f64; 6] {
 
 /// Whether a signal stands at its greatest value for far more samples on end than at any other. One that
 /// stands there most of the time is steady.
-fn is_cut(values: impl Iterator<Item = f64>, greatest: f64) -> bool {
+pub(crate) fn is_cut(values: impl Iterator<Item = f64>, greatest: f64) -> bool {
     let (mut run, mut before) = (0, f64::NAN);
     let (mut at_greatest, mut elsewhere, mut count) = (0, 0, 0);
     for value in values {

@@ -10,7 +10,6 @@ use std::path::Path;
 
 use orientation::earth::Latitude;
 use orientation::keep::{Gyro, Keeper, Report, Setting, State};
-use orientation::noise::model::GyroNoise;
 use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 
 use crate::output::{azimuth_error, degrees};
@@ -131,7 +130,7 @@ fn setting(
 fn known(header: &Header, gyro: Gyro) -> Gyro {
     let noise = match header.gyro_n_deg_sqrt_h {
         Some(_) => noise(header),
-        None => GyroNoise { ..gyro.noise },
+        None => gyro.noise,
     };
     let bias = header.gyro_bias_deg_h.map(|bias| bias * DEGREE_PER_HOUR);
     Gyro {
@@ -193,7 +192,7 @@ fn refusal(last: &Report, required_sigma: Option<f64>) -> Option<String> {
     match (last.state, required_sigma.map(degrees)) {
         (State::Starting, _) => Some("no level was found".to_owned()),
         (State::RotationLost { .. }, _) => Some(format!("at the end, {}", last.state)),
-        (_, Some(most)) if !(sigma <= most) => {
+        (_, Some(most)) if sigma > most || sigma.is_nan() => {
             Some(format!("pitch and roll are good to {sigma:.2}° only, {most:.2}° is wanted"))
         }
         _ => None,

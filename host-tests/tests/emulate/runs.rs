@@ -2,8 +2,8 @@
 
 use bench::emulate::host;
 use bench::emulate::outcome::{
-    Bits, Difference, DwellBits, FIELDS, Outcome, STOP_FIELDS, StopBits, TURN_FIELDS, TurnBits,
-    compare,
+    Bits, Difference, DwellBits, FIELDS, KEPT_FIELDS, KeptBits, Outcome, STOP_FIELDS, StopBits,
+    TURN_FIELDS, TurnBits, compare,
 };
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;
@@ -13,6 +13,7 @@ fn outcome() -> Outcome {
     let dwell = |rate: f64| -> DwellBits { Bits([Some(rate.to_bits()); FIELDS.len()]) };
     let turn = |rate: f64| -> TurnBits { Bits([Some(rate.to_bits()); TURN_FIELDS.len()]) };
     let stop = |force: f64| -> StopBits { Bits([Some(force.to_bits()); STOP_FIELDS.len()]) };
+    let kept = |angle: f64| -> KeptBits { Bits([Some(angle.to_bits()); KEPT_FIELDS.len()]) };
     Outcome {
         seed: 7,
         azimuth_bits: Some(1.25_f64.to_bits()),
@@ -21,6 +22,7 @@ fn outcome() -> Outcome {
         dwells: vec![dwell(1.0), dwell(2.0), dwell(3.0)],
         turns: vec![turn(4.0), turn(5.0)],
         stops: vec![stop(6.0), stop(7.0)],
+        kept: vec![kept(8.0), kept(9.0)],
     }
 }
 
@@ -45,6 +47,17 @@ fn one_bit_anywhere_is_found_and_named() {
                 }
             }
         }
+    }
+}
+
+#[test]
+fn one_bit_of_any_number_that_is_kept_is_found_and_named() {
+    for (index, name) in KEPT_FIELDS.into_iter().enumerate() {
+        let (host, mut emulated) = (outcome(), outcome());
+        let place = &mut emulated.kept[1].0[index];
+        *place = place.map(|bits| bits ^ (1 << 7));
+        let told = compare(&emulated, &host).expect_err("they differ").to_string();
+        assert!(told.starts_with(&format!("report 2, {name}: ")), "{told}");
     }
 }
 

@@ -1,4 +1,4 @@
-//! From the converter's code to the gyro's rate: one integer multiplication.
+//! From the converter's code to what a sensor measures: one integer multiplication.
 
 use orientation::units::AngularRate;
 
@@ -14,7 +14,7 @@ const LEAST_MULTIPLIER: f64 = 1_073_741_824.0;
 /// Greatest shift for which the sum of product and rounding fits 64 bits.
 const GREATEST_SHIFT: u32 = 62;
 
-/// Rate of one code as multiplier / 2^shift, in nrad/s.
+/// What one code stands for as multiplier / 2^shift: in nrad/s, or in steps of any unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scale {
     multiplier: i32,
@@ -31,8 +31,14 @@ impl Scale {
     /// exists (zero, not finite) or one code is outside 2⁻³² … 2³⁰ nrad/s.
     #[must_use]
     pub const fn new(volts_per_rad_per_s: f64, reference_volts: f64, gain: Gain) -> Option<Self> {
+        Self::of_steps(volts_per_rad_per_s * 1e-9, reference_volts, gain)
+    }
+
+    /// The same for a sensor of `volts_per_step` V per step of its own unit.
+    #[must_use]
+    pub const fn of_steps(volts_per_step: f64, reference_volts: f64, gain: Gain) -> Option<Self> {
         let volts_per_code = reference_volts / (gain.factor() * CODES);
-        let factor = volts_per_code / volts_per_rad_per_s * 1e9;
+        let factor = volts_per_code / volts_per_step;
         let Some((magnitude, shift)) = normalised(factor.abs()) else { return None };
         let multiplier = if factor < 0.0 { -magnitude } else { magnitude };
         Some(Self { multiplier, shift, half: 1 << (shift - 1) })
@@ -43,13 +49,19 @@ impl Scale {
     /// Some 30 instructions of a Cortex-M4.
     #[must_use]
     pub const fn rate(self, code: i32) -> AngularRate {
-        let rate = (code as i64 * self.multiplier as i64 + self.half) >> self.shift;
-        if rate > i32::MAX as i64 {
-            AngularRate(i32::MAX)
-        } else if rate < i32::MIN as i64 {
-            AngularRate(i32::MIN)
+        AngularRate(self.steps(code))
+    }
+
+    /// The steps of a code, rounded and saturated in the same way.
+    #[must_use]
+    pub const fn steps(self, code: i32) -> i32 {
+        let steps = (code as i64 * self.multiplier as i64 + self.half) >> self.shift;
+        if steps > i32::MAX as i64 {
+            i32::MAX
+        } else if steps < i32::MIN as i64 {
+            i32::MIN
         } else {
-            AngularRate(rate as i32)
+            steps as i32
         }
     }
 }

@@ -4,7 +4,6 @@
 //! is that of A₀; what noise and biases have turned since, which the filter of the gyrovertical carries; the
 //! gyro's scale error over the turn that is left; a ramp of its bias; and what gaps hid.
 
-use super::stored::Handover;
 use super::vertical::Vertical;
 use super::{Gyro, attitude};
 use crate::earth::Latitude;
@@ -12,6 +11,15 @@ use crate::units::{TURN, wrapped};
 
 /// Standard deviations by which an alignment and what was kept may differ.
 const BOUND: f64 = 4.0;
+
+/// An azimuth with its standard deviation, as it is handed over by an alignment or from outside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Handover {
+    /// Azimuth of body x, rad.
+    pub azimuth: f64,
+    /// Its 1σ, rad.
+    pub sigma: f64,
+}
 
 /// What became of a new alignment.
 #[derive(Clone, Copy, Debug, PartialEq)]

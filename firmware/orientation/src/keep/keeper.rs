@@ -1,8 +1,7 @@
 //! Gyrovertical and heading keeper as one: samples in, from switch-on; pitch, roll and azimuth out.
 
-use super::heading::{Heading, Realigned, difference, frame_rate};
+use super::heading::{Handover, Heading, Realigned, difference, frame_rate};
 use super::restart::{self, Doubt, Remembered};
-use super::stored::Handover;
 use super::vertical::{Trust, Vertical};
 use super::{Gyro, Setting, attitude};
 use crate::signal::InertialSample;

@@ -11,12 +11,10 @@ pub mod heading;
 pub mod keeper;
 pub mod restart;
 pub mod spin;
-pub mod stored;
 pub mod vertical;
 
-pub use heading::Realigned;
+pub use heading::{Handover, Realigned};
 pub use keeper::{Azimuth, Keeper, Report, State};
-pub use stored::Handover;
 
 use crate::earth::Latitude;
 use crate::noise::model::GyroNoise;
@@ -48,7 +46,7 @@ pub struct Setting {
 }
 
 /// Time over which flicker noise is taken for a walk of the rate, s: what it does in a half hour after a rest of
-/// some minutes ([`stored::adjacent_variance`]).
+/// some minutes.
 const FLICKER_SECONDS: f64 = 600.0;
 
 impl Gyro {

@@ -2,7 +2,7 @@
 //!
 //! | what | where to get it |
 //! |---|---|
-//! | [`CARRIER`] | what carries the gyro: a stage, a platform on a slip ring, or a vehicle with three |
+//! | [`CARRIER`] | what carries the gyro: a stage, a platform on a slip ring, a vehicle with three, or a spinning body with three |
 //! | [`LATITUDE`] | a map; 0.01° is near enough |
 //! | [`GYRO_SCALE`], [`GYRO_SCALE_SIGMA`], [`GYRO_LIMIT`] | the gyro's test sheet, and the amplifier between it and the converter |
 //! | [`GYRO_N`], [`GYRO_B`], [`GYRO_K`] | the gyro's data sheet; better `meridian allan` of a record at rest, or a [`SURVEY`] on the board |
@@ -10,6 +10,7 @@
 //! | [`SPEEDS`], [`SENSOR`], [`UNEVEN_TURNS`] | of a turning platform: how fast it is to turn, and what turns |
 //! | [`STOPS`], [`BIAS_SIGMA`], [`FORCE_CALIBRATED_SIGMA`] | in a vehicle: how many stops, and what the test sheets promise |
 //! | [`REALIGNS`], [`ALIGNS_ALWAYS`] | in a vehicle, once the azimuth is known: a choice |
+//! | [`SPIN_GYROS`], [`SPIN_FORCES`], [`SPIN_WALK`], [`SPIN_SCALE_SIGMA`] | on a spinning body: the test sheets of its analogue sensors |
 //! | [`ENCODER`] | a calibration of the stage; until then zero, a greater [`ENCODER_SIGMA`], and in [`instrument`] a greater `stage.agreement` |
 //!
 //! Too small a σ here is too small a σ of the azimuth: in doubt take the greater one.
@@ -22,11 +23,12 @@ use firmware::configuration::{
     Alignment, Configuration, KeepConfiguration, Realignment, TurntableConfiguration,
     VehicleConfiguration,
 };
+use firmware::spin::configuration::{Channel, SpinConfiguration};
 use orientation::align::rotating::{self, Sensor};
 use orientation::align::setting::Setting;
 use orientation::align::stops;
 use orientation::earth::Latitude;
-use orientation::keep;
+use orientation::keep::{self, spin};
 use orientation::noise::model::GyroNoise;
 use orientation::planner::Rotation;
 use orientation::planner::order::Order;
@@ -35,7 +37,7 @@ use orientation::session::rotating::Procedure as Turning;
 use orientation::session::schedule::Schedule;
 use orientation::session::stops::Procedure as Driving;
 use orientation::session::survey::Survey;
-use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR, TURN};
+use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, TURN};
 
 /// What carries the gyro.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -47,6 +49,8 @@ pub enum Carrier {
     Turntable,
     /// A vehicle that goes from stop to stop, with three gyros.
     Vehicle,
+    /// A body in fast rotation about its long axis, with three gyros and two accelerometers.
+    SpinningBody,
 }
 
 /// The one of this board. What the others need is not in the image.
@@ -247,4 +251,42 @@ pub fn keeping() -> KeepConfiguration {
         beside: kept_gyro(),
         precise: kept_gyro(),
     }
+}
+
+/// On a spinning body: V per rad/s of the gyros about x, y and z, and the rates beyond which they may clip,
+/// rad/s.
+const SPIN_GYROS: [(f64, f64); 3] = [(2.0 / 700.0, 680.0), (0.1, 19.0), (0.1, 19.0)];
+/// V per m/s² of the accelerometers along y and z, and the forces beyond which they may clip, m/s².
+const SPIN_FORCES: [(f64, f64); 2] = [(2e-4, 9700.0); 2];
+/// N of the gyro about x, °/√h, and 1σ of its scale factor.
+const SPIN_WALK: f64 = 0.5;
+const SPIN_SCALE_SIGMA: f64 = 1e-3;
+/// Course and pitch when the flight begins, °: nothing on the body tells them.
+const LAUNCH: [f64; 2] = [0.0, 0.0];
+
+/// The converters of a spinning body: the next rate above the paper's 10 kHz.
+pub const SPIN_CONVERTER: Converter =
+    Converter { rate: DataRate::Sps14400, filter: Filter::Sinc1, gain: Gain::X1 };
+
+/// What is known of its gyro about x.
+pub fn spin_setting() -> spin::Setting {
+    spin::Setting {
+        sample_seconds: 1.0 / SPIN_CONVERTER.rate.hertz(),
+        angle_random_walk: SPIN_WALK * DEGREE_PER_SQRT_HOUR,
+        scale_sigma: SPIN_SCALE_SIGMA,
+        method: spin::Method::PhaseLocked,
+    }
+}
+
+/// Course and pitch at first, rad.
+pub fn launch() -> [f64; 2] {
+    LAUNCH.map(|angle| angle * DEGREE)
+}
+
+/// What the instrument is told of its sensors; none where a scale factor is none.
+pub fn spinning() -> Option<SpinConfiguration> {
+    let sample_rate = SPIN_CONVERTER.rate.hertz();
+    let [x, y, z] = SPIN_GYROS.map(|(volts, limit)| Channel::gyro(volts, limit, sample_rate));
+    let [up, right] = SPIN_FORCES.map(|(volts, limit)| Channel::accelerometer(volts, limit));
+    Some(SpinConfiguration { sample_rate, gyros: [x?, y?, z?], accelerometers: [up?, right?] })
 }

@@ -14,8 +14,12 @@
 //! | | 1, D8 | PB2 | in a vehicle: right ADS1262 CS |
 //! | Arduino CN3 | 3, D2 | PD14 | ADS1262 DRDY |
 //! | | 4, D3 | PB0 | in a vehicle: right ADS1262 DRDY |
+//! | | 5, D4 | PA3 | on a spinning body: CS of the ADS1262 of the accelerometer up |
+//! | | 6, D5 | PB4 | on a spinning body: CS of that of the accelerometer to the right |
 //! | | 7, D6 | PB1 | in a vehicle: down ADS1262 DRDY |
 //! | | 8, D7 | PA4 | in a vehicle: down ADS1262 CS |
+//! | Arduino CN4 | 2, A1 | PC4 | on a spinning body: DRDY of the accelerometer up |
+//! | | 3, A2 | PC3 | on a spinning body: DRDY of the accelerometer to the right |
 //! | Arduino CN2 | 4, 5, 6 | | 3.3 V, 5 V, ground |
 //! | PMOD CN10 | 4 | PD1 | SPI2 clock: MT6835 SCK, TMC5160 SCK |
 //! | | 3 | PD3 | SPI2 data in: MT6835 MISO, TMC5160 SDO |
@@ -31,7 +35,9 @@
 //! ADS1262 START and CLKIN low, RESET/PWDN high, gyro between AIN0 and AIN1; TMC5160 CLK and
 //! `SD_MODE` low, `SPI_MODE` high, the index a normally open switch from `REFL_STEP` to its supply. In a
 //! vehicle there is no PMOD side; the ADS1262 on D10 has the forward gyro, and one oscillator of 7.3728 MHz
-//! is at the CLKIN of all three, so that they convert in step.
+//! is at the CLKIN of all three, so that they convert in step. On a spinning body there are five so: those
+//! of a vehicle for the gyros forward, right and up (in the place of down), and two for accelerometers, each
+//! sensor between AIN0 and AIN1 of its own; up and right are those of the body at roll zero.
 #![no_std]
 #![no_main]
 
@@ -39,6 +45,7 @@ mod clock;
 mod configuration;
 mod flash;
 mod ports;
+mod spinning;
 mod stepwise;
 mod stops;
 mod turning;
@@ -78,6 +85,7 @@ async fn main(spawner: Spawner) {
     match configuration::CARRIER {
         Carrier::Stage => spawner.spawn(defmt::unwrap!(stepwise::align(spawner, wiring))),
         Carrier::Turntable => spawner.spawn(defmt::unwrap!(turning::align(spawner, wiring))),
+        Carrier::SpinningBody => spawner.spawn(defmt::unwrap!(spinning::follow(spawner, wiring))),
         Carrier::Vehicle => spawner.spawn(defmt::unwrap!(stops::align(spawner, wiring))),
     }
 }

@@ -7,8 +7,10 @@ use drivers::mt6835::{self, Mt6835};
 use drivers::tmc5160::Tmc5160;
 use drivers::tmc5160::configuration::{Configuration as Motor, Switches};
 use embassy_time::Delay;
-use firmware::chips::{AnalogueGyro, PlatformAccelerometer, StageEncoder, StageMotor};
-use firmware::ports::{NoBase, NoRecorder, Ports, Sensors, VehicleSensors};
+use firmware::chips::{
+    AnalogueGyro, AnalogueSensor, PlatformAccelerometer, StageEncoder, StageMotor,
+};
+use firmware::ports::{NoBase, NoRecorder, Ports, Sensors, SpinSensors, VehicleSensors};
 
 use crate::configuration;
 use crate::configuration::{CARRIER, Carrier};
@@ -22,12 +24,14 @@ type Accelerometer = PlatformAccelerometer<Device, Delay>;
 pub type Inputs = Sensors<Gyro, Accelerometer, StageEncoder<Device, Delay>>;
 /// The sensors of a vehicle.
 pub type Triad = VehicleSensors<Gyro, Accelerometer>;
+/// The sensors of a spinning body.
+pub type Spinning = SpinSensors<AnalogueSensor<Device, Ready, Delay>>;
 /// The other ports.
 pub type Outputs = Ports<StageMotor<Device, Delay>, Link, NoRecorder>;
 
 /// The sensors on their wires.
 pub fn inputs(wires: SensorWires) -> Inputs {
-    let SensorWires { converter, others: _, accelerometer, encoder } = wires;
+    let SensorWires { converter, others: _, more: _, accelerometer, encoder } = wires;
     Sensors {
         gyro: gyro(self::converter(converter)),
         accelerometer: self::accelerometer(accelerometer),
@@ -38,11 +42,22 @@ pub fn inputs(wires: SensorWires) -> Inputs {
 
 /// The sensors of a vehicle on their wires.
 pub fn triad(wires: SensorWires) -> Triad {
-    let SensorWires { converter, others: [right, down], accelerometer, encoder: _ } = wires;
+    let SensorWires { converter, others: [right, down], more: _, accelerometer, encoder: _ } =
+        wires;
     VehicleSensors {
         gyros: [converter, right, down].map(|wires| gyro(self::converter(wires).clocked())),
         accelerometer: self::accelerometer(accelerometer),
     }
+}
+
+/// The sensors of a spinning body on their wires: gyros about x, y and z, accelerometers along y and z.
+pub fn spinning(wires: SensorWires) -> Spinning {
+    let SensorWires { converter, others: [right, up], more, accelerometer: _, encoder: _ } = wires;
+    let [force_up, force_right] = more.connect();
+    SpinSensors([converter, up, right, force_up, force_right].map(|wires| {
+        let rate = configuration::SPIN_CONVERTER;
+        AnalogueSensor(Ads1262::new(wires.bus, wires.ready, Delay, rate).clocked())
+    }))
 }
 
 fn converter(wires: ConverterWires) -> Ads1262<Device, Ready, Delay> {
@@ -67,7 +82,7 @@ pub fn outputs(motor: Device, link: Link) -> Outputs {
 /// is not to turn far, nor a vehicle to sway; a vehicle's is read 400 times a second.
 fn force() -> adxl355::Configuration {
     let rate = match CARRIER {
-        Carrier::Stage => adxl355::Configuration::default().rate,
+        Carrier::Stage | Carrier::SpinningBody => adxl355::Configuration::default().rate,
         Carrier::Turntable => OutputRate::Hz1000,
         Carrier::Vehicle => OutputRate::Hz500,
     };

@@ -10,9 +10,11 @@ use drivers::{ads1262, adxl355, mt6835};
 use embassy_embedded_hal::shared_bus::asynch::spi::SpiDeviceWithConfig;
 use embassy_stm32::exti::{self, ExtiInput};
 use embassy_stm32::gpio::{Level, Output, Pin, Pull, Speed};
-use embassy_stm32::interrupt::typelevel::{EXTI0, EXTI1, EXTI15_10};
+use embassy_stm32::interrupt::typelevel::{EXTI0, EXTI1, EXTI3, EXTI4, EXTI15_10};
 use embassy_stm32::mode::Async;
-use embassy_stm32::peripherals::{DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA2_CH6, FLASH};
+use embassy_stm32::peripherals::{
+    self, DMA1_CH2, DMA1_CH3, DMA1_CH4, DMA1_CH5, DMA2_CH6, FLASH, PA3, PB4, PC3, PC4,
+};
 use embassy_stm32::spi::mode::Master;
 use embassy_stm32::spi::{self, MODE_0, MODE_1, MODE_3, Mode, Spi};
 use embassy_stm32::time::Hertz;
@@ -27,6 +29,8 @@ use crate::clock;
 bind_interrupts!(struct Interrupts {
     EXTI0 => exti::InterruptHandler<EXTI0>;
     EXTI1 => exti::InterruptHandler<EXTI1>;
+    EXTI3 => exti::InterruptHandler<EXTI3>;
+    EXTI4 => exti::InterruptHandler<EXTI4>;
     EXTI15_10 => exti::InterruptHandler<EXTI15_10>;
     DMA1_CHANNEL2 => dma::InterruptHandler<DMA1_CH2>;
     DMA1_CHANNEL3 => dma::InterruptHandler<DMA1_CH3>;
@@ -66,8 +70,10 @@ pub struct Wiring {
 pub struct SensorWires {
     /// ADS1262; in a vehicle that of the forward gyro.
     pub converter: ConverterWires,
-    /// In a vehicle those of the right and the down gyro.
+    /// In a vehicle those of the right and the down gyro; on a spinning body of the right and the up gyro.
     pub others: [ConverterWires; 2],
+    /// On a spinning body two more.
+    pub more: MoreWires,
     /// ADXL355.
     pub accelerometer: Device,
     /// MT6835.
@@ -80,6 +86,32 @@ pub struct ConverterWires {
     pub bus: Device,
     /// Its data-ready line, low when a conversion is ready.
     pub ready: Ready,
+}
+
+/// What two more converters are connected to, as long as nobody needs them: a pin takes no memory.
+pub struct MoreWires {
+    bus: &'static Bus,
+    selects: (Peri<'static, PA3>, Peri<'static, PB4>),
+    ready: (Peri<'static, PC4>, Peri<'static, PC3>),
+    lines: (Peri<'static, peripherals::EXTI4>, Peri<'static, peripherals::EXTI3>),
+}
+
+impl MoreWires {
+    /// Those of the accelerometers up and to the right.
+    pub fn connect(self) -> [ConverterWires; 2] {
+        let Self { bus, selects, ready, lines } = self;
+        let settings = settings(MODE_1, ads1262::GREATEST_BUS_HERTZ);
+        [
+            ConverterWires {
+                bus: device(bus, selects.0, settings),
+                ready: ExtiInput::new(ready.0, lines.0, Pull::Up, Interrupts),
+            },
+            ConverterWires {
+                bus: device(bus, selects.1, settings),
+                ready: ExtiInput::new(ready.1, lines.1, Pull::Up, Interrupts),
+            },
+        ]
+    }
 }
 
 /// Connects everything.
@@ -108,6 +140,12 @@ pub fn connect(p: Peripherals) -> Result<Wiring, ConfigError> {
                     ready: ExtiInput::new(p.PB1, p.EXTI1, Pull::Up, Interrupts),
                 },
             ],
+            more: MoreWires {
+                bus: sensors,
+                selects: (p.PA3, p.PB4),
+                ready: (p.PC4, p.PC3),
+                lines: (p.EXTI4, p.EXTI3),
+            },
             accelerometer: device(sensors, p.PA15, settings(MODE_0, adxl355::BUS_HERTZ)),
             encoder: device(stage, p.PD0, settings(MODE_3, mt6835::BUS_HERTZ)),
         },

@@ -5,8 +5,8 @@ use core::hint::black_box;
 
 use hal_mock::noise::Generator;
 use orientation::earth::Latitude;
+use orientation::keep::Handover;
 use orientation::keep::spin::{self, Signal, Spin};
-use orientation::keep::stored::Handover;
 use orientation::keep::{Gyro, Keeper, Setting};
 use orientation::noise::model::GyroNoise;
 use orientation::signal::{InertialSample, SpinSample};

@@ -4,14 +4,17 @@
 //! two lightest an azimuth is handed over from outside and stored by the gyro until the time is over.
 
 use hal_mock::gyro::Gyro;
-use orientation::keep::stored::{Handover, Keeper, Rest, StoredAzimuth};
+use orientation::keep::{Gyro as Known, Handover, Keeper, Setting};
 use orientation::planner::{Plan, Rotation, for_time};
-use orientation::units::{AngularRate, DEGREE_PER_HOUR};
+use orientation::signal::InertialSample;
+use orientation::units::DEGREE_PER_HOUR;
 use serde::Serialize;
 
 use super::{BIAS_DEG_H, Grade, RATE_HZ, Trial, latitude, over};
+use crate::campaign::keep::limit::stored_sigma;
 use crate::campaign::statistics::{Answer, Precision};
 use crate::output::{azimuth_error, degrees};
+use crate::stops::samples::Converter;
 
 /// How long the stage turns: its motor driver's ramp at 0.35 rad/s, with slopes and rest.
 const STAGE: Rotation = Rotation { rest: 0.7, speed: 0.35, wraps: false };
@@ -197,38 +200,64 @@ impl Class {
 
     /// One azimuth of zero, handed over with an error of its own and kept on a base that turns.
     fn keep(&self, sigma_deg: f64, seed: u64) -> Answer {
-        let mut gyro = Gyro::new(&self.grade.simulated(), RATE_HZ, seed);
         let mut handed = hal_mock::noise::Generator::stream(seed, 1 << 20);
         let azimuth = (sigma_deg * handed.gaussian()).to_radians();
-        let keeper = Keeper {
-            noise: self.grade.noise(),
-            bias_sigma: BIAS_DEG_H * DEGREE_PER_HOUR,
-            latitude: latitude(),
-            sample_seconds: 1.0 / RATE_HZ,
-        };
-        let vertical = -latitude().vertical_rate();
-        let mut index = 0;
-        let mut shown = |rate: f64| {
-            let elapsed = f64::from(index) / RATE_HZ;
-            index += 1;
-            AngularRate::from_rad_per_s(gyro.sample(gyro.steady(rate, [0.0; 2]), elapsed, 25.0))
-        };
-        let mut rest = Rest::default();
+        let sigma = sigma_deg.to_radians();
+        let mut base = Base::new(&self.grade, seed);
+        let mut keeper = Keeper::new(&self.setting());
         for _ in 0..(REST * RATE_HZ) as u32 {
-            rest.push(shown(vertical));
+            keeper.push(&base.sample(0.0));
         }
-        let handover = Handover { azimuth, sigma: sigma_deg.to_radians() };
-        let mut stored = StoredAzimuth::begin(keeper, handover, &rest);
+        keeper.hand_over(Handover { azimuth, sigma });
         let samples = ((60.0 * self.minutes - REST) * RATE_HZ) as u32;
         // The vehicle turns by a turn and a half in all: an azimuth of 180° at the end.
         let turning = 3.0 * std::f64::consts::PI / (f64::from(samples) / RATE_HZ);
         for _ in 0..samples {
-            stored.push(shown(vertical + turning));
+            keeper.push(&base.sample(turning));
         }
-        Answer {
-            error: azimuth_error(degrees(stored.azimuth()), 180.0),
-            sigma: degrees(stored.sigma()),
-            limit: degrees(stored.sigma()),
-        }
+        let stored = f64::from(samples) / RATE_HZ;
+        let limit = degrees(stored_sigma(&self.grade.noise(), sigma, REST, stored));
+        let azimuth = keeper.report().azimuth;
+        let [angle, sigma] = azimuth.map_or([f64::NAN; 2], |a| [a.angle, a.sigma].map(degrees));
+        Answer { error: azimuth_error(angle, 180.0), sigma, limit }
+    }
+
+    /// What the keeper is told: the class's gyro about the axis down, coarse ones beside it.
+    fn setting(&self) -> Setting {
+        Setting::coarse(latitude(), 1.0 / RATE_HZ).with_down(Known {
+            noise: self.grade.noise(),
+            bias_sigma: BIAS_DEG_H * DEGREE_PER_HOUR,
+            scale_sigma: 0.0,
+        })
+    }
+}
+
+/// A level base whose gyro down is simulated and whose other sensors are perfect.
+struct Base {
+    gyro: Gyro,
+    path: Converter,
+    azimuth: f64,
+    index: u32,
+}
+
+impl Base {
+    fn new(grade: &Grade, seed: u64) -> Self {
+        let gyro = Gyro::new(&grade.simulated(), RATE_HZ, seed);
+        Self { gyro, path: Converter::default(), azimuth: 0.0, index: 0 }
+    }
+
+    /// The next sample, the base turning at a rate, rad/s.
+    fn sample(&mut self, turning: f64) -> InertialSample {
+        let seconds = 1.0 / RATE_HZ;
+        let elapsed = f64::from(self.index) * seconds;
+        self.index += 1;
+        let middle = self.azimuth + 0.5 * turning * seconds;
+        self.azimuth += turning * seconds;
+        let level = latitude().horizontal_rate();
+        let steady = self.gyro.steady(turning - latitude().vertical_rate(), [0.0; 2]);
+        let down = self.gyro.sample(steady, elapsed, 25.0);
+        let rates = [level * middle.cos(), -level * middle.sin(), down];
+        let force = [0.0, 0.0, -latitude().gravity()];
+        self.path.sample(elapsed + seconds, rates.map(|rate| rate * seconds), force)
     }
 }

@@ -3,11 +3,12 @@
 //! The classes and their gyros are those of [`classes`]; each is driven without a halt, after an alignment
 //! as good as its gyro allows or with an azimuth from outside.
 
+pub mod limit;
 pub mod world;
 
-use orientation::keep::stored::adjacent_variance;
 use serde::Serialize;
 
+use self::limit::stored_sigma;
 use self::world::{Fitting, MARK_S, Mark, Mount, Pair, STORED_S};
 use super::burov::classes::{CLASSES, Class, Way};
 use super::burov::{BIAS_DEG_H, Grade};
@@ -97,8 +98,10 @@ pub struct Row {
     pub runs: usize,
     /// Runs in which the azimuth was lost.
     pub lost: usize,
-    /// The azimuth after the half hour.
+    /// The azimuth after the half hour, at rest.
     pub azimuth: Spread,
+    /// The azimuth when the vehicle stops driving.
+    pub azimuth_driving: Spread,
     /// What its start and the gyro after its rest leave at least.
     pub azimuth_limit_deg: f64,
     /// Pitch and roll after the half hour, at rest.
@@ -116,7 +119,16 @@ pub struct Row {
 /// All rows over `runs` runs each; `tick` after each run.
 #[must_use]
 pub fn rows(runs: usize, tick: impl Fn() + Sync) -> Vec<Row> {
-    CASES.iter().map(|case| case.row(runs, &tick)).collect()
+    (0..COUNT).map(|case| row(case, runs, &tick)).collect()
+}
+
+/// One of the rows alone; those that are to be met come first.
+///
+/// # Panics
+/// Where the index is not below [`COUNT`].
+#[must_use]
+pub fn row(case: usize, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
+    CASES[case].row(runs, tick)
 }
 
 impl Spread {
@@ -155,10 +167,13 @@ impl Case {
         let class = &CLASSES[self.class];
         let (way, azimuth_sigma_deg) = start(class);
         let fitting = self.fitting(class, azimuth_sigma_deg);
-        let days = over(runs, tick, |seed| fitting.live(seed));
+        // No row shares its draws with another.
+        let first = (self.class as u64 * 2 + u64::from(self.is_wanted)) << 32;
+        let days = over(runs, tick, |seed| fitting.live(first + seed));
         let last = || days.iter().filter_map(|day| day.last());
         let on_way = days.iter().flat_map(|day| day.split_last().map_or(&[][..], |(_, way)| way));
         let (azimuth, level) = (Spread::azimuth(last()), Spread::level(on_way));
+        let driving = days.iter().filter_map(|day| day.iter().nth_back(1));
         let lost = last().filter(|mark| mark.azimuth.is_none()).count();
         let is_good = azimuth.rms_deg <= class.stored_deg && level.rms_deg <= class.level_deg;
         Row {
@@ -173,6 +188,7 @@ impl Case {
             runs,
             lost,
             azimuth,
+            azimuth_driving: Spread::azimuth(driving),
             azimuth_limit_deg: limit_deg(&fitting),
             level_at_rest: Spread::level(last()),
             level,
@@ -204,11 +220,10 @@ fn start(class: &Class) -> (String, f64) {
     }
 }
 
-/// 1σ of the azimuth after the half hour, °, that the start and the gyro's N, B, K and R leave after its rest:
-/// a base that does not move, a scale without error.
+/// 1σ of the azimuth after the half hour, °, that the start and the gyro's N, B, K and R leave after its rest.
 fn limit_deg(fitting: &Fitting) -> f64 {
-    let variance = adjacent_variance(&fitting.grade.noise(), fitting.learnt_s(), STORED_S);
-    fitting.azimuth_sigma_deg.hypot(degrees(STORED_S * variance.sqrt()))
+    let start = fitting.azimuth_sigma_deg.to_radians();
+    degrees(stored_sigma(&fitting.grade.noise(), start, fitting.learnt_s(), STORED_S))
 }
 
 /// What the errors were minute by minute.

@@ -5,6 +5,7 @@ use std::fmt;
 use hal_mock::accelerometer::AccelerometerConfiguration;
 use hal_mock::gyro::{Gyro as Simulated, GyroConfiguration};
 use hal_mock::noise::Generator;
+use hal_mock::plant::sway::{SwayComponent, SwayConfiguration};
 use hal_mock::vehicle::scenario::Scenario;
 use hal_mock::vehicle::{Leg, Vehicle, VehicleConfiguration, VehicleSample};
 use orientation::earth::Latitude;
@@ -34,6 +35,9 @@ const HANDED: u64 = 1 << 20;
 /// Stream of the seed for the coarse gyro beside the precise one.
 const BESIDE: u64 = 1 << 21;
 
+/// Stream of the seed for the wind.
+const WIND: u64 = 1 << 22;
+
 /// How the gyros sit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mount {
@@ -60,6 +64,26 @@ impl fmt::Display for Mount {
             Self::TwoFrame(Pair::Coarse) => "vertical, with a coarse pair",
         })
     }
+}
+
+/// How far a light wind turns a vehicle that stands, RMS about each axis, °: 4″.
+const WIND_DEG: f64 = 4.0 / 3600.0;
+/// How often, Hz.
+const WIND_HZ: [(f64, f64); 3] = [(0.1, 0.3), (0.4, 0.9), (1.0, 2.0)];
+
+/// The sway of a vehicle that stands.
+fn wind(seed: u64) -> SwayConfiguration {
+    let mut draw = Generator::stream(seed, WIND);
+    // Three waves make up the RMS together.
+    let amplitude = WIND_DEG * (2.0 / 3.0_f64).sqrt();
+    let components = WIND_HZ.map(|(low, high)| SwayComponent {
+        azimuth_deg: amplitude,
+        pitch_deg: amplitude,
+        roll_deg: -amplitude,
+        frequency_hz: low + (high - low) * draw.uniform(),
+        phase_rad: std::f64::consts::TAU * draw.uniform(),
+    });
+    SwayConfiguration { components }
 }
 
 /// What the vehicle keeps its attitude with.
@@ -175,7 +199,11 @@ impl Fitting {
         let mut day = Scenario::stops(seed, 1 + DRIVES, LAST_STOP_S, drive_s);
         let last = day.legs.len() - 1;
         let mut index = 0;
+        let sway = wind(seed);
         day.legs.retain_mut(|leg| {
+            if let Leg::Stop(stop) = leg {
+                stop.sway = sway;
+            }
             let (is_first, is_last) = (index == 0, index == last);
             index += 1;
             match leg {

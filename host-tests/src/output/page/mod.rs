@@ -5,6 +5,7 @@ pub mod burov;
 pub mod keep;
 pub mod plan;
 pub mod rotating;
+pub mod spin;
 pub mod stops;
 pub mod vertical;
 

@@ -1,0 +1,46 @@
+//! The board on a body in fast rotation.
+
+use embassy_executor::Spawner;
+use firmware::log::DefmtLog;
+use firmware::ports::{NoRecorder, SpinPorts};
+use firmware::run::{acquire_spin, run_spin};
+use firmware::shared::Seams;
+use firmware::spin::Flight;
+use firmware::spin::configuration::SpinConfiguration;
+use orientation::signal::SpinSample;
+use static_cell::StaticCell;
+
+use crate::ports::Spinning;
+use crate::wiring::Wiring;
+use crate::{configuration, ports, tell};
+
+/// The seams between the instrument's parts.
+type SpinSeams = Seams<'static, DefmtLog, SpinSample>;
+
+/// Follows the roll for as long as the sensors give data, and goes on telling how it ended.
+#[embassy_executor::task]
+pub async fn follow(spawner: Spawner, wiring: Wiring) {
+    static SEAMS: StaticCell<SpinSeams> = StaticCell::new();
+    static FLIGHT: StaticCell<Flight> = StaticCell::new();
+    let Some(sensors) = configuration::spinning() else {
+        return defmt::error!("board: a sensor's scale factor is none");
+    };
+    let Wiring { sensors: wires, link, motor: _, motor_enable: _, flash: _ } = wiring;
+    let seams: &'static SpinSeams = SEAMS.init_with(|| Seams::new(&DefmtLog));
+    let (setting, launch) = (configuration::spin_setting(), configuration::launch());
+    let flight = FLIGHT.init_with(|| Flight::new(&setting, launch, None));
+    spawner.spawn(defmt::unwrap!(acquisition(ports::spinning(wires), sensors, seams)));
+    let mut outputs = SpinPorts { link, recorder: NoRecorder };
+    let health = run_spin(&mut outputs, flight, seams).await;
+    tell(&health, &mut outputs.link, &seams.shared).await;
+}
+
+/// Samples for ever.
+#[embassy_executor::task]
+async fn acquisition(
+    mut sensors: Spinning,
+    configuration: SpinConfiguration,
+    seams: &'static SpinSeams,
+) {
+    acquire_spin(&mut sensors, &configuration, seams).await;
+}

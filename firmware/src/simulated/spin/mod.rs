@@ -1,0 +1,197 @@
+//! One simulated flight of a body in fast rotation: what is true, what the board is told.
+
+pub mod fault;
+
+use core::cell::RefCell;
+
+use drivers::ads1262::configuration::{Configuration as Converter, DataRate};
+use drivers::ads1262::{Ads1262, GREATEST_BUS_HERTZ};
+use embassy_time::Delay;
+use hal_mock::accelerometer::AccelerometerConfiguration;
+use hal_mock::ads1262::Ads1262 as SimulatedConverter;
+use hal_mock::chip::{Rig, Select};
+use hal_mock::gyro::GyroConfiguration;
+use hal_mock::spi::ReadyPin;
+use hal_mock::spin::SpinConfiguration as World;
+use hal_mock::spin::board::{CHIPS, SpinBoard};
+use hal_mock::spin::plant::{SpinPlant, SpinPlantConfiguration};
+use hal_mock::spin::profile::Profile;
+use hal_mock::violation::{Violation, Violations};
+use orientation::keep::spin::{Method, Setting};
+use orientation::units::{DEGREE_PER_SQRT_HOUR, TURN};
+
+use self::fault::{SpinFault, SpinPlan};
+use super::{Around, Bus, bus, scenario};
+use crate::chips::AnalogueSensor;
+use crate::ports::SpinSensors;
+use crate::spin::Flight;
+use crate::spin::budget::SAMPLE_HERTZ;
+use crate::spin::configuration::{Channel, SpinConfiguration};
+
+/// Conversions a second, Hz.
+pub const SAMPLE_RATE: f64 = SAMPLE_HERTZ as f64;
+/// Rates, rad/s, and force, m/s², at which the sensors clip; at 2 V each.
+const FULL_SCALES: [f64; 3] = [700.0, 20.0, 20.0];
+const FORCE_FULL_SCALE: f64 = 10_000.0;
+const FULL_VOLTS: f64 = 2.0;
+/// Part of a full scale beyond which the board takes a sensor for clipped.
+const LIMIT: f64 = 0.97;
+/// How long the board starts before samples come, s: reset, self-test and reference of five converters.
+const STARTING_SECONDS: f64 = 0.6;
+
+/// A simulated flight. How the body spins and what holds it is for the simulation alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpinScenario {
+    /// What fixes everything random.
+    pub seed: u64,
+    /// How long the roll is followed, s.
+    pub seconds: f64,
+    /// Turns a second.
+    pub turns_per_s: f64,
+    /// The lift, m/s².
+    pub lift_m_s2: f64,
+    /// Noise of an accelerometer in a sample, m/s².
+    pub force_noise_m_s2: f64,
+    /// N of the gyros, °/√h.
+    pub gyro_n_deg_sqrt_h: f64,
+    /// 1σ of their scale factors.
+    pub scale_sigma: f64,
+}
+
+impl Default for SpinScenario {
+    /// Two seconds at 100 turns a second on a lift of 30 m/s²; accelerometers with a twentieth of it as noise,
+    /// micromechanical gyros of 0.5 °/√h, good to 0.1 %.
+    fn default() -> Self {
+        Self {
+            seed: 1,
+            seconds: 2.0,
+            turns_per_s: 100.0,
+            lift_m_s2: 30.0,
+            force_noise_m_s2: 1.5,
+            gyro_n_deg_sqrt_h: 0.5,
+            scale_sigma: 1e-3,
+        }
+    }
+}
+
+/// How spin and lift go over the time of a flight: rad/s and m/s² at some times, s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Course {
+    spin: [(f64, f64); 4],
+    lift: [(f64, f64); 4],
+}
+
+impl SpinScenario {
+    /// What the board is told of the gyro about x.
+    #[must_use]
+    pub fn setting(&self) -> Setting {
+        Setting {
+            sample_seconds: 1.0 / SAMPLE_RATE,
+            angle_random_walk: self.gyro_n_deg_sqrt_h * DEGREE_PER_SQRT_HOUR,
+            scale_sigma: self.scale_sigma,
+            method: Method::PhaseLocked,
+        }
+    }
+
+    /// The flight as the board follows it: level, northwards.
+    #[must_use]
+    pub fn flight(&self) -> Flight {
+        Flight::new(&self.setting(), [0.0; 2], Some(self.seconds))
+    }
+
+    /// What the board is told of its devices; none where a scale factor is none.
+    #[must_use]
+    pub fn configuration(&self) -> Option<SpinConfiguration> {
+        let gyro = |full: f64| Channel::gyro(FULL_VOLTS / full, LIMIT * full, SAMPLE_RATE);
+        let force = FULL_VOLTS / FORCE_FULL_SCALE;
+        let accelerometer = Channel::accelerometer(force, LIMIT * FORCE_FULL_SCALE)?;
+        let [about_x, about_y, about_z] = FULL_SCALES.map(gyro);
+        Some(SpinConfiguration {
+            sample_rate: SAMPLE_RATE,
+            gyros: [about_x?, about_y?, about_z?],
+            accelerometers: [accelerometer; 2],
+        })
+    }
+
+    /// When a fault shows that comes in the middle, s from power-on.
+    #[must_use]
+    pub fn middle_s(&self) -> f64 {
+        STARTING_SECONDS + 0.5 * self.seconds
+    }
+
+    /// How the body flies, where nothing or something is wrong with that.
+    #[must_use]
+    pub fn course(&self, fault: Option<SpinFault>) -> Course {
+        let (spin, middle) = (self.turns_per_s * TURN, self.middle_s());
+        fault::course(fault, spin, self.lift_m_s2, middle)
+    }
+
+    /// A plan of a fault that comes in the middle.
+    #[must_use]
+    pub fn plan(&self, fault: Option<SpinFault>) -> SpinPlan {
+        SpinPlan::at(fault, self.middle_s())
+    }
+
+    /// The simulated board of a body that flies so, with a plan of what goes wrong.
+    #[must_use]
+    pub fn board<'a>(&self, course: &'a Course, plan: &'a SpinPlan) -> SpinBoard<'a> {
+        let mut body = World {
+            rate_hz: SAMPLE_RATE,
+            spin_rad_s: Profile(&course.spin),
+            gyros: [self.gyro(); 3],
+            gyro_full_scale_rad_s: FULL_SCALES,
+            accelerometer: AccelerometerConfiguration {
+                noise_m_s2_sqrt_hz: self.force_noise_m_s2 / libm::sqrt(0.5 * SAMPLE_RATE),
+                ..AccelerometerConfiguration::default()
+            },
+            accelerometer_full_scale_m_s2: FORCE_FULL_SCALE,
+            faults: &plan.sensors,
+            ..World::default()
+        };
+        body.forces.lift_m_s2 = Profile(&course.lift);
+        let plant = SpinPlantConfiguration {
+            body,
+            gyro_volts_per_rad_s: FULL_SCALES.map(|full| FULL_VOLTS / full),
+            volts_per_m_s2: FULL_VOLTS / FORCE_FULL_SCALE,
+            converter_noise_v: scenario::CONVERTER_NOISE,
+        };
+        let mut board = SpinBoard::new(SpinPlant::new(&plant, self.seed));
+        board.blackouts = &plan.blackouts;
+        // One oscillator for all five.
+        board.converters.iter_mut().for_each(SimulatedConverter::clock_externally);
+        board
+    }
+
+    fn gyro(&self) -> GyroConfiguration {
+        GyroConfiguration {
+            n_deg_sqrt_h: self.gyro_n_deg_sqrt_h,
+            scale_sigma: self.scale_sigma,
+            ..GyroConfiguration::default()
+        }
+    }
+}
+
+/// The sensors of a spinning body on simulated chips.
+pub type SimulatedSpin<'a, B, A> =
+    SpinSensors<AnalogueSensor<Bus<'a, B, A>, <A as Around>::Line<ReadyPin<'a, B>>, Delay>>;
+
+/// The sensors of its simulated board.
+pub fn sensors<'a, B: Rig, A: Around>(
+    board: &'a RefCell<B>,
+    around: &A,
+) -> SimulatedSpin<'a, B, A> {
+    let converter = Converter { rate: DataRate::Sps14400, ..Converter::default() };
+    SpinSensors(CHIPS.map(|select| {
+        let bus = bus(board, around, select, GREATEST_BUS_HERTZ);
+        let ready = around.line(select, ReadyPin::new(board, select));
+        AnalogueSensor(Ads1262::new(bus, ready, Delay, converter).clocked())
+    }))
+}
+
+/// What the drivers did that a data sheet forbids.
+pub fn violations<'a>(board: &'a SpinBoard) -> impl Iterator<Item = (Select, Violation)> + 'a {
+    CHIPS.into_iter().flat_map(|select| {
+        let found = board.violations(select).into_iter().flat_map(Violations::first);
+        found.map(move |violation| (select, *violation))
+    })
+}

@@ -1,0 +1,54 @@
+//! The instrument on a body in fast rotation: no session, its roll is followed for as long as it flies.
+//!
+//! ```text
+//!  three gyros ───────┬─▶ acquire ─sample─▶ flight: roll from the extrema, by phase lock ─▶ roll ± σ ─▶ link
+//!  two accelerometers ┘                         └─▶ attitude: course and pitch by the gyros
+//! ```
+
+pub mod budget;
+pub mod configuration;
+mod flight;
+
+pub use flight::Flight;
+
+use embassy_futures::select::{Either, select};
+use orientation::signal::SpinSample;
+
+use crate::event::Event;
+use crate::link::Status;
+use crate::ports::{Observer, Recorder};
+use crate::shared::Seams;
+
+/// Follows a flight until its time is over, or until acquisition gives a sensor up, and tells of it.
+pub(crate) async fn follow<R, O>(
+    flight: &mut Flight,
+    recorder: &mut R,
+    seams: &Seams<'_, O, SpinSample>,
+) where
+    R: Recorder<SpinSample>,
+    O: Observer,
+{
+    let shared = &seams.shared;
+    shared.tell(Event::BegunSpin);
+    while !flight.is_over() {
+        match select(seams.samples.receive(), shared.failure.wait()).await {
+            Either::First(sample) => {
+                recorder.record(&sample).await;
+                flight.push(&sample);
+                if let Some(news) = flight.news() {
+                    shared.tell(news);
+                }
+                if flight.is_status_due() {
+                    shared.status.set(flight.status());
+                }
+            }
+            Either::Second(reason) => {
+                shared.tell(Event::RollEnded(reason));
+                shared.status.set(Status::RollEnded);
+                return;
+            }
+        }
+    }
+    shared.tell(flight.ending());
+    shared.status.set(flight.status());
+}

@@ -1,0 +1,199 @@
+//! A body that flies and turns fast about its long axis, with three gyros and two accelerometers fixed to
+//! it (Nekrasova 2017): sample by sample, as a recording of kind `spin` and more.
+//!
+//! Axes as in the paper: body x forward, y up and z right at roll zero; the roll γ is right-handed about
+//! x. Forward, right and down of this crate are x, z and −y. A sample carries what the sensors show at its
+//! moment, not means. Accelerometers at the distances ρ from the axis feel
+//!
+//! ```text
+//!  a_y =  q cos γ + s sin γ − ρ_y ω²
+//!  a_z = −q sin γ + s cos γ − ρ_z ω²
+//! ```
+//!
+//! of a lift q and a side force s, with which pitch and course change too ([`trajectory`]). Time counts
+//! from the start; the first sample is taken there.
+
+pub mod board;
+mod body;
+pub mod plant;
+pub mod profile;
+mod sensors;
+pub mod trajectory;
+
+use self::body::Body;
+use self::profile::Profile;
+use self::sensors::Sensors;
+use self::trajectory::{Flight, Forces};
+use crate::accelerometer::AccelerometerConfiguration;
+use crate::gyro::GyroConfiguration;
+use crate::stage::first_sample;
+use crate::vehicle::SensorFault;
+
+/// Standard gravity, m/s².
+const GRAVITY_M_S2: f64 = 9.806_65;
+
+/// A spinning body, its flight, its sensors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpinConfiguration<'a> {
+    /// Samples per second, Hz, > 0.
+    pub rate_hz: f64,
+    /// Length of the run, s.
+    pub seconds: f64,
+    /// Speed at the start, m/s, > 0; it must stay above zero.
+    pub speed_m_s: f64,
+    /// Pitch at the start, °, up positive; it must stay within ±90.
+    pub pitch_deg: f64,
+    /// Course at the start, °, clockwise from north.
+    pub course_deg: f64,
+    /// Roll at the start, rad.
+    pub roll_rad: f64,
+    /// What acts on the body.
+    pub forces: Forces<'a>,
+    /// Rate of the roll over the time, rad/s.
+    pub spin_rad_s: Profile<'a>,
+    /// Distances of the accelerometers along y and z from the axis of rotation, m.
+    pub radius_m: [f64; 2],
+    /// The gyros about x, y and z; each draws for itself. Elevation, g-sensitivity, temperature and the
+    /// dynamics of a sensor on a stage are not looked at.
+    pub gyros: [GyroConfiguration; 3],
+    /// Rates at which the gyros clip, rad/s (default never).
+    pub gyro_full_scale_rad_s: [f64; 3],
+    /// The accelerometers; of the three, those along y and z.
+    pub accelerometer: AccelerometerConfiguration,
+    /// Force at which an accelerometer clips, m/s² (default never).
+    pub accelerometer_full_scale_m_s2: f64,
+    /// What goes wrong with the sensors, in any order; channels 0 to 2 are the gyros about x, y and z, 3
+    /// and 4 the accelerometers along y and z.
+    pub faults: &'a [SensorFault],
+}
+
+impl Default for SpinConfiguration<'_> {
+    /// The paper's body with perfect sensors: 100 turns a second, read at 10 kHz for a second, in level
+    /// flight northwards at 300 m/s with a lift that holds it up.
+    fn default() -> Self {
+        Self {
+            rate_hz: 10_000.0,
+            seconds: 1.0,
+            speed_m_s: 300.0,
+            pitch_deg: 0.0,
+            course_deg: 0.0,
+            roll_rad: 0.0,
+            forces: Forces {
+                gravity_m_s2: GRAVITY_M_S2,
+                drag_per_s: 0.0,
+                lift_m_s2: Profile(&[(0.0, GRAVITY_M_S2)]),
+                side_m_s2: Profile(&[]),
+            },
+            spin_rad_s: Profile(&[(0.0, 200.0 * core::f64::consts::PI)]),
+            radius_m: [0.02, 0.01],
+            gyros: [GyroConfiguration::default(); 3],
+            gyro_full_scale_rad_s: [f64::INFINITY; 3],
+            accelerometer: AccelerometerConfiguration::default(),
+            accelerometer_full_scale_m_s2: f64::INFINITY,
+            faults: &[],
+        }
+    }
+}
+
+/// What the sensors show at one moment; not a number where one fails so.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SpinSample {
+    /// When, s from the start.
+    pub time_s: f64,
+    /// Rates about body x, y and z, rad/s.
+    pub rate_rad_s: [f64; 3],
+    /// Specific force along body y and z, m/s².
+    pub force_m_s2: [f64; 2],
+}
+
+/// What the sensors cannot know, at one moment; for checking only.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpinTruth {
+    /// Roll, rad, whole turns counted.
+    pub roll_rad: f64,
+    /// Its rate, rad/s.
+    pub spin_rad_s: f64,
+    /// Speed, pitch, course and place.
+    pub flight: Flight,
+    /// The lift, m/s².
+    pub lift_m_s2: f64,
+    /// Scale factor errors of the gyros, 1.
+    pub gyro_scale_error: [f64; 3],
+}
+
+impl SpinTruth {
+    fn of(body: &Body, sensors: &Sensors, time_s: f64) -> Self {
+        Self {
+            roll_rad: body.roll_rad(time_s),
+            spin_rad_s: body.spin_rad_s(time_s),
+            flight: *body.flight(),
+            lift_m_s2: body.lift_m_s2(time_s),
+            gyro_scale_error: sensors.scale_errors(),
+        }
+    }
+}
+
+/// A spinning body at work; an iterator of samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpinWorld<'a> {
+    rate_hz: f64,
+    body: Body<'a>,
+    sensors: Sensors<'a>,
+    faults: &'a [SensorFault],
+    time_s: f64,
+    taken: u64,
+    count: u64,
+}
+
+impl<'a> SpinWorld<'a> {
+    /// The world of a configuration; the seed fixes everything random in it.
+    #[must_use]
+    pub fn new(configuration: &SpinConfiguration<'a>, seed: u64) -> Self {
+        Self {
+            rate_hz: configuration.rate_hz,
+            body: Body::new(configuration),
+            sensors: Sensors::new(configuration, seed),
+            faults: configuration.faults,
+            time_s: 0.0,
+            taken: 0,
+            count: first_sample(configuration.seconds, configuration.rate_hz),
+        }
+    }
+
+    /// The next sample that is not missing; none after the end.
+    pub fn next_sample(&mut self) -> Option<SpinSample> {
+        loop {
+            let sample = self.take()?;
+            if !self.faults.iter().any(|fault| fault.loses(sample.time_s)) {
+                return Some(sample);
+            }
+        }
+    }
+
+    /// The truth behind the latest sample.
+    #[must_use]
+    pub fn truth(&self) -> SpinTruth {
+        SpinTruth::of(&self.body, &self.sensors, self.time_s)
+    }
+
+    /// The next sample, missing or not.
+    fn take(&mut self) -> Option<SpinSample> {
+        if self.taken == self.count {
+            return None;
+        }
+        let time_s = self.taken as f64 / self.rate_hz;
+        self.taken += 1;
+        self.time_s = time_s;
+        self.body.advance(time_s);
+        let shown = self.sensors.sample(time_s, &self.body.felt(time_s));
+        Some(SpinSample { time_s, rate_rad_s: shown.rate_rad_s, force_m_s2: shown.force_m_s2 })
+    }
+}
+
+impl Iterator for SpinWorld<'_> {
+    type Item = SpinSample;
+
+    fn next(&mut self) -> Option<SpinSample> {
+        self.next_sample()
+    }
+}

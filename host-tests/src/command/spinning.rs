@@ -1,0 +1,101 @@
+//! `meridian run --method spin`: the board on a body in fast rotation.
+
+use std::path::Path;
+use std::time::Instant as WallClock;
+
+use bench::instrument::spinning::{SpinRun, follow_spin};
+use bench::output::progress::Progress;
+use bench::output::{page, spin as told, text};
+use bench::recording::Truth;
+use bench::spin::{Known, follow};
+use clap::Args;
+use firmware::simulated::scenario::Scenario;
+use firmware::simulated::spin::fault::SpinFault;
+use firmware::simulated::spin::{SAMPLE_RATE, SpinScenario};
+use orientation::units::DEGREE;
+
+use super::Told;
+use super::run::{Terminal, object};
+
+/// What a flight is asked for.
+#[derive(Args, Clone, Debug)]
+pub struct SpinningOptions {
+    /// With --method spin: seconds for which the roll is followed (2).
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    flight_seconds: Option<f64>,
+    /// With --method spin: turns a second (100).
+    #[arg(long, value_name = "TURNS", value_parser = turns)]
+    turns_per_second: Option<f64>,
+}
+
+/// A time of flight.
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if (0.5..=60.0).contains(&seconds) => Ok(seconds),
+        _ => Err("not a number of seconds from 0.5 to 60".to_owned()),
+    }
+}
+
+/// A spin within what the gyro measures.
+fn turns(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(turns) if (20.0..=105.0).contains(&turns) => Ok(turns),
+        _ => Err("not a number of turns a second from 20 to 105".to_owned()),
+    }
+}
+
+impl SpinningOptions {
+    /// Whether any of them was given.
+    pub fn is_given(&self) -> bool {
+        self.flight_seconds.is_some() || self.turns_per_second.is_some()
+    }
+
+    /// The scenario of a seed.
+    pub fn scenario(&self, seed: u64) -> SpinScenario {
+        let usual = SpinScenario::default();
+        SpinScenario {
+            seed,
+            seconds: self.flight_seconds.unwrap_or(usual.seconds),
+            turns_per_s: self.turns_per_second.unwrap_or(usual.turns_per_s),
+            ..usual
+        }
+    }
+}
+
+/// What the pages and blocks call it.
+const NAME: &str = "the simulated flight";
+/// What a simulated board is told.
+const ASSUMED: &str = "what the board is told of its gyros";
+
+/// Greatest 1σ of a roll that is one, rad: 10°, as a replay has it.
+const REQUIRED_SIGMA: f64 = 10.0 * DEGREE;
+
+/// Runs the board and tells what came of it.
+pub fn run(
+    scenario: &SpinScenario,
+    fault: Option<SpinFault>,
+    report: Option<&Path>,
+    as_json: bool,
+) -> Result<Told, String> {
+    let begun = WallClock::now();
+    let watch = Terminal(Progress::new(0, "samples"));
+    let flown = follow_spin(scenario, fault, &watch);
+    watch.0.finish();
+    let SpinRun { run, samples, rolls_rad, .. } = flown.map_err(|error| error.to_string())?;
+    let wall = begun.elapsed().as_secs_f64();
+    let assumed = vec![ASSUMED.to_owned()];
+    let known = Known { setting: scenario.setting(), required_sigma: REQUIRED_SIGMA, assumed };
+    let replay = follow(&samples, known);
+    let truth = Truth { roll_rad: rolls_rad, ..Truth::default() };
+    let found = told::json::object(&replay, &truth);
+    let refusal = found.reason.clone();
+    // The board's clock and seed, in the words of any simulated run.
+    let base = Scenario { seed: scenario.seed, sample_rate_hz: SAMPLE_RATE, ..Scenario::default() };
+    let object = object(&run, &base, found)?;
+    let told = Told::of(refusal.is_none(), as_json, &object, |block| {
+        told::text::block(block, NAME, &replay, &truth)?;
+        text::run(block, &run, &base, wall)
+    })?;
+    let page = || page::spin::report(NAME, &replay, &truth);
+    Ok(Told { refusal, ..told }.with_page(report, page))
+}

@@ -1,0 +1,77 @@
+//! Wires one simulated board on a spinning body to the instrument and runs it.
+
+use std::cell::RefCell;
+
+use firmware::ports::{Observer, Recorder, SpinPorts};
+use firmware::run::{acquire_spin, run_spin};
+use firmware::simulated::spin::fault::SpinFault;
+use firmware::simulated::spin::{self, SpinScenario};
+use firmware::spin::Flight;
+use hal_mock::spin::SpinTruth;
+use hal_mock::spin::plant::SpinPlant;
+use orientation::signal::SpinSample;
+use orientation::units::Instant;
+
+use super::desk::{self, Desk};
+use super::{Run, RunError};
+
+/// A finished flight.
+#[derive(Clone, Debug)]
+pub struct SpinRun {
+    /// As of any board.
+    pub run: Run<Flight>,
+    /// The samples that the board made.
+    pub samples: Vec<SpinSample>,
+    /// The true roll at each of them, rad.
+    pub rolls_rad: Vec<f64>,
+    /// What was true at the first sample.
+    pub start: SpinTruth,
+    /// What was true at the last.
+    pub truth: SpinTruth,
+}
+
+/// Keeps samples.
+#[derive(Debug, Default)]
+struct Kept(Vec<SpinSample>);
+
+impl Recorder<SpinSample> for &mut Kept {
+    async fn record(&mut self, sample: &SpinSample) {
+        self.0.push(*sample);
+    }
+}
+
+/// Runs a scenario in virtual time on this thread.
+///
+/// # Errors
+/// A scale factor that is none, and a deadlock.
+pub fn follow_spin<W: Observer>(
+    scenario: &SpinScenario,
+    fault: Option<SpinFault>,
+    watch: &W,
+) -> Result<SpinRun, RunError> {
+    let (course, plan) = (scenario.course(fault), scenario.plan(fault));
+    let configuration = scenario.configuration().ok_or(RunError::Scale)?;
+    let board = RefCell::new(scenario.board(&course, &plan));
+    let (mut flight, mut kept) = (scenario.flight(), Kept::default());
+    let desk = Desk::new(watch);
+    let seams = desk.seams();
+    let mut sensors = spin::sensors(&board, &plan);
+    let mut ports = SpinPorts { link: desk.wire(), recorder: &mut kept };
+    let ended = desk::run(
+        acquire_spin(&mut sensors, &configuration, &seams),
+        run_spin(&mut ports, &mut flight, &seams),
+    )?;
+    drop(seams);
+    let violations = desk::told(spin::violations(&board.borrow()));
+    // Another body of the same course, which has not flown yet.
+    let fresh = scenario.board(&course, &plan).plant;
+    let at = |plant: &SpinPlant, time: Instant| {
+        plant.truth_at(embassy_time::Instant::from_micros(time.0))
+    };
+    let time = |sample: Option<&SpinSample>| sample.map_or(Instant::default(), |s| s.time);
+    let (start, flown) = (at(&fresh, time(kept.0.first())), &board.borrow().plant);
+    let rolls_rad = kept.0.iter().map(|sample| at(flown, sample.time).roll_rad).collect();
+    let truth = at(flown, time(kept.0.last()));
+    let run = desk.clear(&ended, violations, flight);
+    Ok(SpinRun { run, samples: kept.0, rolls_rad, start, truth })
+}

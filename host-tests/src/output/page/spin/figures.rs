@@ -1,0 +1,109 @@
+//! Figures of a spinning body over the time.
+
+use crate::output::degrees;
+use crate::recording::Truth;
+use crate::report::{Axis, Figure, Series, Style};
+use crate::spin::errors::Errors;
+use crate::spin::track::{Point, Track};
+use crate::spin::{Replay, name};
+
+/// Points of a curve at most.
+const POINTS: usize = 2000;
+/// Length of the fragment between corrections, s: the paper's Fig. 8.
+const FRAGMENT_S: f64 = 0.03;
+
+/// Roll errors of the methods over the time, then a fragment at the end; none without the truth.
+pub fn errors(replay: &Replay, truth: &Truth) -> Vec<Figure> {
+    let end_s = replay.answer().end.time_s;
+    let whole = figure(replay, truth, "Roll error of the methods over the time", 0.0);
+    let fragment = figure(
+        replay,
+        truth,
+        "The same between corrections (Fig. 8)",
+        (end_s - FRAGMENT_S).max(0.0),
+    );
+    [whole, fragment].into_iter().flatten().collect()
+}
+
+fn figure(replay: &Replay, truth: &Truth, title: &str, from_s: f64) -> Option<Figure> {
+    let series: Vec<Series> =
+        replay.tracks.iter().filter_map(|track| curve(track, truth, from_s)).collect();
+    (!series.is_empty()).then(|| Figure {
+        title: title.to_owned(),
+        x: Axis::linear("time", "s"),
+        y: Axis::linear("roll error", "°"),
+        series,
+    })
+}
+
+fn curve(track: &Track, truth: &Truth, from_s: f64) -> Option<Series> {
+    let errors = Errors::of(track, &truth.roll_rad)?;
+    let all: Vec<(f64, f64)> = track
+        .times_s
+        .iter()
+        .copied()
+        .zip(errors.wrapped_rad.iter().copied().map(degrees))
+        .collect();
+    let from = all.partition_point(|(time_s, _)| *time_s < from_s);
+    let every = ((all.len() - from) / POINTS).max(1);
+    let points = all.iter().skip(from).step_by(every).copied();
+    Some(Series::new(name(track.method), Style::Line, points))
+}
+
+/// σ of the answer, the bound, and the size of the error where the truth is there.
+pub fn sigmas(replay: &Replay, truth: &Truth) -> Figure {
+    let answer = replay.answer();
+    let stated = answer.points.iter().filter_map(|p| Some((p.time_s, degrees(p.sigma_rad?))));
+    let mut series = Vec::new();
+    if let Some(errors) = Errors::of(answer, &truth.roll_rad) {
+        let every = (errors.wrapped_rad.len() / POINTS).max(1);
+        let sizes = errors.wrapped_rad.iter().map(|error| degrees(error.abs()));
+        let points = answer.times_s.iter().copied().zip(sizes).step_by(every);
+        series.push(Series::new("size of the error", Style::Line, points));
+    }
+    series.push(Series::new("σ of the phase lock", Style::Line, stated));
+    if let Some(bounds) = &replay.bounds {
+        let every = (bounds.len() / POINTS).max(1);
+        let limits = answer.times_s.iter().copied().zip(bounds.iter().copied().map(degrees));
+        series.push(Series::new("limit (Cramér–Rao)", Style::Dashed, limits.step_by(every)));
+    }
+    Figure {
+        title: "σ of the roll".to_owned(),
+        x: Axis::linear("time", "s"),
+        y: Axis::logarithmic("roll", "°"),
+        series,
+    }
+}
+
+/// The lift over the time.
+pub fn lift(replay: &Replay) -> Figure {
+    let points = replay.answer().points.iter();
+    let lifts = points.filter_map(|point| Some((point.time_s, point.lift?)));
+    Figure {
+        title: "Lift".to_owned(),
+        x: Axis::linear("time", "s"),
+        y: Axis::linear("lift", "m/s²"),
+        series: vec![Series::new("lift", Style::Line, lifts)],
+    }
+}
+
+/// The scale error over the time, within its σ.
+pub fn scale(replay: &Replay) -> Figure {
+    let found = |point: &Point| {
+        let [scale, sigma] = point.scale?;
+        Some((point.time_s, scale, [scale - sigma, scale + sigma]))
+    };
+    let points: Vec<_> = replay.answer().points.iter().filter_map(found).collect();
+    // What is not known yet would hide what is found.
+    let settled = points.len() / 20;
+    let shown = points.iter().skip(settled).copied();
+    Figure {
+        title: "Scale error of the gyro, after the first twentieth".to_owned(),
+        x: Axis::linear("time", "s"),
+        y: Axis::linear("gyro/true − 1", ""),
+        series: vec![
+            Series::new("within 1σ", Style::Band, shown.clone()),
+            Series::new("scale error", Style::Line, shown.map(|(time, scale, _)| (time, scale))),
+        ],
+    }
+}

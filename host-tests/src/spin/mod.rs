@@ -1,0 +1,162 @@
+//! Recordings of spinning bodies: replay through the three methods of the core, and what the data can tell
+//! at best.
+//!
+//! The types that come in here hold no truth; [`errors`] compares with it afterwards.
+
+pub mod errors;
+pub mod limit;
+pub mod samples;
+pub mod track;
+
+use orientation::keep::spin::{Method, Setting};
+use orientation::signal::SpinSample;
+use orientation::units::DEGREE_PER_SQRT_HOUR;
+
+use self::limit::{Noise, Turns};
+use self::track::Track;
+use crate::recording::{Body, Header, SpinRow};
+use crate::replay::{ReplayError, median};
+
+/// 1σ of a gyro's scale error of which the header says nothing: 1 %.
+pub const SCALE_SIGMA: f64 = 0.01;
+
+/// The methods in the order in which they are told; the last one is the answer.
+pub const METHODS: [Method; 3] = [Method::Extrema, Method::Interpolated, Method::PhaseLocked];
+
+/// The name of a method in tables.
+#[must_use]
+pub fn name(method: Method) -> &'static str {
+    match method {
+        Method::Extrema => "extrema",
+        Method::Interpolated => "interpolated",
+        Method::PhaseLocked => "phase-locked",
+    }
+}
+
+/// What the user asked for.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Options {
+    /// Greatest accepted standard deviation, rad; none where any will do.
+    pub required_sigma: Option<f64>,
+}
+
+/// A finished replay.
+#[derive(Clone, Debug)]
+pub struct Replay {
+    /// What each of [`METHODS`] made of it.
+    pub tracks: [Track; 3],
+    /// Sample period, s.
+    pub period_s: f64,
+    /// The noise, as stated and as the recording shows it.
+    pub noise: Noise,
+    /// The Cramér–Rao bound at each sample, rad (1σ); none where no turn shows the noise.
+    pub bounds: Option<Vec<f64>>,
+    /// Greatest accepted standard deviation, rad.
+    pub required_sigma: f64,
+    /// What had to be assumed.
+    pub assumed: Vec<String>,
+}
+
+impl Replay {
+    /// The answer's track.
+    #[must_use]
+    pub fn answer(&self) -> &Track {
+        let [.., answer] = &self.tracks;
+        answer
+    }
+
+    /// Why there is no roll at the end, if there is none.
+    #[must_use]
+    pub fn refusal(&self) -> Option<String> {
+        let end = &self.answer().end;
+        match end.sigma_rad {
+            None => Some(format!("the roll is not known at the end: {}", end.state)),
+            Some(sigma) if sigma > self.required_sigma => Some(format!(
+                "σ of the roll at the end is {:.3}°, more than the {:.3}° asked for: {}",
+                sigma.to_degrees(),
+                self.required_sigma.to_degrees(),
+                end.state
+            )),
+            Some(_) => None,
+        }
+    }
+}
+
+/// Replays the rows of a recording.
+///
+/// # Errors
+/// A recording of another kind, or of less than two samples.
+pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay, ReplayError> {
+    let Body::Spin(rows) = body else { return Err(ReplayError::NoSpin(body.kind())) };
+    let period_s = period(header.rate_hz, rows).ok_or(ReplayError::TooFewSamples(rows.len()))?;
+    let samples: Vec<SpinSample> = samples::samples(rows, period_s).collect();
+    let (setting, assumed) = setting(header, rows, period_s);
+    let required_sigma = options.required_sigma.unwrap_or(f64::INFINITY);
+    Ok(follow(&samples, Known { setting, required_sigma, assumed }))
+}
+
+/// What is known of a body and asked for, beside its samples.
+#[derive(Clone, Debug)]
+pub struct Known {
+    /// The sample period and the gyro; the method is not looked at.
+    pub setting: Setting,
+    /// Greatest accepted standard deviation, rad.
+    pub required_sigma: f64,
+    /// What had to be assumed.
+    pub assumed: Vec<String>,
+}
+
+/// Follows samples by all methods.
+#[must_use]
+pub fn follow(samples: &[SpinSample], known: Known) -> Replay {
+    let Known { setting, required_sigma, assumed } = known;
+    let turns = Turns::of(samples);
+    let noise = Noise { force: turns.force_noise, angle_random_walk: setting.angle_random_walk };
+    let is_told = !turns.lifts.is_empty();
+    let bounds = is_told
+        .then(|| limit::bounds(samples, noise, setting.scale_sigma, |index| turns.lift(index)));
+    Replay {
+        tracks: METHODS.map(|method| Track::of(&Setting { method, ..setting }, samples)),
+        period_s: setting.sample_seconds,
+        noise,
+        bounds,
+        required_sigma,
+        assumed,
+    }
+}
+
+/// How far the header's rate may be off before the times are believed instead.
+const RATE_TOLERANCE: f64 = 0.01;
+
+/// The sample period, s: the header's, unless the times say otherwise; none of fewer than two rows.
+fn period(rate_hz: Option<f64>, rows: &[SpinRow]) -> Option<f64> {
+    let mut steps: Vec<f64> = rows.windows(2).map(|pair| pair[1].time_s - pair[0].time_s).collect();
+    if steps.is_empty() {
+        return None;
+    }
+    let step_s = median(&mut steps);
+    let stated = rate_hz.filter(|rate| (step_s * rate - 1.0).abs() <= RATE_TOLERANCE);
+    Some(stated.map_or(step_s, |rate| 1.0 / rate))
+}
+
+/// What is known of the gyro; what nobody stated is taken from the rows or assumed.
+fn setting(header: &Header, rows: &[SpinRow], period_s: f64) -> (Setting, Vec<String>) {
+    let mut assumed = Vec::new();
+    let angle_random_walk = header.gyro_n_deg_sqrt_h.map_or_else(
+        || {
+            let rates: Vec<f64> = rows.iter().map(|row| row.rate_rad_s).collect();
+            let walk = limit::gyro_walk(&rates, period_s);
+            let field = walk / DEGREE_PER_SQRT_HOUR;
+            assumed.push(format!("gyro noise N {field:.2e} °/√h as the recording shows it"));
+            walk
+        },
+        |n| n * DEGREE_PER_SQRT_HOUR,
+    );
+    let scale_sigma = header.gyro_scale_sigma.unwrap_or_else(|| {
+        assumed.push(format!("gyro scale to {SCALE_SIGMA} (1σ)"));
+        SCALE_SIGMA
+    });
+    assumed.push("no rates across the axis; lift in the vertical plane".to_owned());
+    let method = Method::PhaseLocked;
+    (Setting { sample_seconds: period_s, angle_random_walk, scale_sigma, method }, assumed)
+}

@@ -1,0 +1,73 @@
+//! Rows of a spinning body's recording as the samples that the core takes.
+
+use orientation::signal::SpinSample;
+use orientation::units::{AngleIncrement, Instant, SpinForce};
+
+use crate::recording::SpinRow;
+use crate::stops::samples::is_cut;
+
+/// Makes samples of what the sensors of a spinning body show at moments; what rounding leaves over of a
+/// rotation goes to the next sample.
+#[derive(Clone, Copy, Debug)]
+pub struct Converter {
+    period_s: f64,
+    carried: [f64; 3],
+    /// Rates of the sample before, rad/s.
+    before: Option<[f64; 3]>,
+}
+
+impl Converter {
+    /// Of samples with such a period, s.
+    #[must_use]
+    pub fn new(period_s: f64) -> Self {
+        Self { period_s, carried: [0.0; 3], before: None }
+    }
+
+    /// The sample of a time, s: rates about body x, y and z, rad/s, forces along y and z, m/s². Between two
+    /// moments a rate is taken to change evenly; before the first one nothing has turned, and of a gap only
+    /// its last period is told, as on a board. What is not a number goes out as a sensor at its limit, a force
+    /// as none.
+    #[must_use]
+    pub fn sample(&mut self, time_s: f64, rates: [f64; 3], force: [f64; 2]) -> SpinSample {
+        let earlier = self.before.replace(rates);
+        let mut turned = [AngleIncrement::default(); 3];
+        for (axis, turned) in turned.iter_mut().enumerate() {
+            let mean = |earlier: [f64; 3]| 0.5 * (rates[axis] + earlier[axis]);
+            let angle = earlier.map_or(0.0, mean) * self.period_s;
+            *turned = AngleIncrement::from_rad(angle, &mut self.carried[axis]);
+        }
+        let is_known = force.iter().all(|force| force.is_finite());
+        let force = is_known.then(|| force.map(SpinForce::from_m_per_s2));
+        SpinSample { time: Instant::from_seconds(time_s), turned, force }
+    }
+}
+
+/// The samples of rows; their time counts from the first one. Times may be rounded, so it is whole periods,
+/// s, that pass between them. The rates across are not recorded: they are taken as zero.
+pub fn samples(rows: &[SpinRow], period_s: f64) -> impl Iterator<Item = SpinSample> + '_ {
+    let begin = rows.first().map_or(0.0, |row| row.time_s);
+    let limits = limits(rows);
+    let mut converter = Converter::new(period_s);
+    rows.iter().map(move |row| {
+        let time_s = ((row.time_s - begin) / period_s).round() * period_s;
+        let mut cut = channels(row).zip(limits).map(|(value, limit)| value.abs() >= limit);
+        let spin = if cut.next() == Some(true) { f64::NAN } else { row.rate_rad_s };
+        let force = if cut.any(|is_cut| is_cut) { [f64::NAN; 2] } else { row.force_m_s2 };
+        converter.sample(time_s, [spin, 0.0, 0.0], force)
+    })
+}
+
+/// The rate, then both forces.
+fn channels(row: &SpinRow) -> impl Iterator<Item = f64> + '_ {
+    [row.rate_rad_s].into_iter().chain(row.force_m_s2)
+}
+
+/// Where each channel is cut, infinite where it is not: a sensor at its limit shows one greatest value again
+/// and again.
+fn limits(rows: &[SpinRow]) -> [f64; 3] {
+    std::array::from_fn(|channel| {
+        let values = || rows.iter().filter_map(|row| channels(row).nth(channel)).map(f64::abs);
+        let greatest = values().fold(0.0, f64::max);
+        if greatest > 0.0 && is_cut(values(), greatest) { greatest } else { f64::INFINITY }
+    })
+}

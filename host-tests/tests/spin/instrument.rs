@@ -1,0 +1,123 @@
+//! The instrument on a spinning body: five converters in step at 14 400 samples a second, its log, its link,
+//! and every fault in the catalogue.
+
+use bench::instrument::spinning::{SpinRun, follow_spin};
+use bench::spin::errors::wrapped;
+use bench::spin::{Known, follow};
+use firmware::event::Event;
+use firmware::simulated::spin::SpinScenario;
+use firmware::simulated::spin::fault::SpinFault;
+use orientation::keep::spin::State;
+
+fn flown(scenario: &SpinScenario, fault: Option<SpinFault>) -> SpinRun {
+    follow_spin(scenario, fault, &()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A flight of one second.
+fn short() -> SpinScenario {
+    SpinScenario { seconds: 1.0, ..SpinScenario::default() }
+}
+
+/// Error of the roll at the end, rad.
+fn error(run: &SpinRun) -> f64 {
+    wrapped(run.run.replay.spin().roll().rad() - run.truth.roll_rad)
+}
+
+#[test]
+fn it_follows_the_roll_of_a_healthy_body_and_carries_course_and_pitch_on() {
+    let run = flown(&SpinScenario::default(), None);
+    let flight = &run.run.replay;
+    let sigma = flight.spin().sigma().expect("it is locked");
+    assert!(error(&run).abs() < 4.0 * sigma, "{} {sigma}", error(&run));
+    assert!(sigma.to_degrees() < 0.3, "{sigma}");
+    let [scale, of_scale] = flight.spin().scale().expect("two seconds tell it");
+    assert!((scale - run.truth.gyro_scale_error[0]).abs() < 4.0 * of_scale, "{scale}");
+    // More lift than weight bends the flight upwards, and nothing to the side.
+    let risen = run.truth.flight.pitch_rad - run.start.flight.pitch_rad;
+    let pitch = flight.attitude().pitch() - risen;
+    let course = wrapped(flight.attitude().course() - run.truth.flight.course_rad);
+    assert!(risen.to_degrees() > 5.0, "{risen}");
+    assert!(pitch.abs().to_degrees() < 0.3 && course.abs().to_degrees() < 0.3, "{pitch} {course}");
+    let health = run.run.health;
+    assert_eq!((health.faults(), run.run.violations.len()), (0, 0), "{health:?}");
+    // Two seconds at 14 400 samples a second.
+    assert!((run.samples.len() as i64 - 28_800).abs() < 10, "{}", run.samples.len());
+}
+
+#[test]
+fn it_tells_when_it_locks_and_what_the_roll_was_at_the_end() {
+    let run = flown(&short(), None).run;
+    let events: Vec<Event> = run.events.iter().map(|(_, event)| *event).collect();
+    assert!(events.contains(&Event::BegunSpin));
+    assert!(events.contains(&Event::Roll(State::Locked)), "{events:?}");
+    assert!(matches!(events.last(), Some(Event::Flown { sigma: Some(_), .. })), "{events:?}");
+    let last = run.lines.lines().last().unwrap_or_default();
+    assert!(last.starts_with("roll ") && last.ends_with(" locked, faults 0"), "{}", run.lines);
+}
+
+#[test]
+fn the_board_and_a_replay_of_its_samples_agree_to_the_last_bit() {
+    let scenario = short();
+    let run = flown(&scenario, None);
+    let known =
+        Known { setting: scenario.setting(), required_sigma: f64::INFINITY, assumed: Vec::new() };
+    let replay = follow(&run.samples, known);
+    let end = &replay.answer().end;
+    let flight = run.run.replay.spin();
+    assert_eq!(end.roll_rad.to_bits(), flight.roll().rad().to_bits());
+    assert_eq!(end.sigma_rad.map(f64::to_bits), flight.sigma().map(f64::to_bits));
+    // One seed gives one run.
+    assert_eq!(flown(&scenario, None).samples, run.samples);
+}
+
+#[test]
+fn it_holds_the_roll_while_there_is_no_lift_and_tells_when_it_is_back() {
+    let run = flown(&SpinScenario::default(), Some(SpinFault::LiftFades));
+    let events: Vec<Event> = run.run.events.iter().map(|(_, event)| *event).collect();
+    let holds = |event: &Event| matches!(event, Event::Roll(State::Holding { .. }));
+    assert!(events.iter().any(holds), "{events:?}");
+    let back = events.iter().find_map(|event| match event {
+        Event::LiftBack(seconds) => Some(*seconds),
+        _ => None,
+    });
+    assert!(back.is_some_and(|seconds| (0.2..0.6).contains(&seconds)), "{events:?}");
+    let sigma = run.run.replay.spin().sigma().expect("it is back");
+    assert!(error(&run).abs() < 4.0 * sigma);
+}
+
+#[test]
+fn a_spin_that_stops_is_told() {
+    let run = flown(&SpinScenario::default(), Some(SpinFault::SpinStops));
+    let told = |(_, event): &(_, Event)| {
+        matches!(event, Event::Roll(State::NotSpinning { .. } | State::RotationLost { .. }))
+    };
+    assert!(run.run.events.iter().any(told), "{:?}", run.run.events);
+}
+
+#[test]
+fn no_fault_makes_a_roll_that_its_sigma_does_not_cover() {
+    let scenario = short();
+    for fault in SpinFault::all() {
+        let run = flown(&scenario, Some(fault));
+        let Some(sigma) = run.run.replay.spin().sigma() else { continue };
+        // Held on the gyro alone, that is what its scale leaves.
+        assert!(error(&run).abs() < 5.0 * sigma, "{fault}: {} {sigma}", error(&run));
+    }
+}
+
+#[test]
+fn a_chip_that_fails_for_good_ends_the_flight_with_its_name() {
+    let scenario = short();
+    for fault in SpinFault::all().filter(|fault| {
+        let name = fault.to_string();
+        name.ends_with("-silent") || name.ends_with("bus-always") || name.ends_with("identity")
+    }) {
+        let run = flown(&SpinScenario { seconds: 3.0, ..scenario }, Some(fault)).run;
+        let ended = run.events.iter().any(|(_, event)| matches!(event, Event::RollEnded(_)));
+        assert!(ended, "{fault}: {:?}", run.events.last());
+        assert!(
+            run.lines.lines().last().is_some_and(|line| line.starts_with("no roll")),
+            "{fault}"
+        );
+    }
+}
