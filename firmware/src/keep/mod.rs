@@ -108,7 +108,7 @@ impl Seam {
         if self.is_wanted.get() {
             Timer::after(RETRY).await;
         } else {
-            pending().await
+            pending::<()>().await;
         }
     }
 

@@ -42,7 +42,7 @@ pub trait Keep {
 /// Nothing is kept.
 impl Keep for () {
     async fn run<O: Observer>(&mut self, _: &Shared<'_, O>) {
-        pending().await
+        pending::<()>().await;
     }
 }
 
@@ -56,6 +56,7 @@ pub struct Keeping<'k, H, M> {
 }
 
 /// What was told, and what is to be done.
+#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own; all combine")]
 struct Told {
     state: Option<State>,
     /// The clock when the latest motion came.
@@ -324,7 +325,7 @@ impl<'k, H: Outside, M: HeadingStore> Keeping<'k, H, M> {
 impl<H: Outside, M: HeadingStore> Keep for Keeping<'_, H, M> {
     async fn run<O: Observer>(&mut self, shared: &Shared<'_, O>) {
         if self.configuration.hold == Duration::MIN {
-            pending().await
+            pending::<()>().await;
         }
         shared.keep.is_wanted.set(true);
         self.memory.load(shared).await;
