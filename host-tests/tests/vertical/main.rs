@@ -3,6 +3,8 @@
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
 mod attitude;
+mod faults;
+mod world;
 
 #[track_caller]
 fn assert_near(value: f64, expected: f64, tolerance: f64) {
