@@ -106,9 +106,11 @@ fn what_is_no_rotation_at_all_leaves_it_a_rotation() {
 }
 
 #[test]
-fn nothing_that_is_felt_leaves_it_unturned() {
-    assert_eq!(Attitude::levelled(&[0.0; 3]), Attitude::default());
-    assert_eq!(Attitude::levelled(&[-0.0, 0.0, -0.0]), Attitude::default());
+fn a_body_that_feels_nothing_is_upright_on_its_course() {
+    assert_eq!(Attitude::levelled(&[0.0; 3], 0.0), Attitude::default());
+    let [course, pitch, roll] = angles(Attitude::levelled(&[-0.0, 0.0, -0.0], 0.7).parts());
+    assert_near(course, 0.7, 1e-12);
+    assert_near(pitch.abs() + roll.abs(), 0.0, 1e-12);
 }
 
 #[test]

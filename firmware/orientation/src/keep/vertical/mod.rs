@@ -147,8 +147,8 @@ impl Vertical {
             self.bridge(elapsed, sample);
         }
         let [x, y, z] = sample.turned;
-        let is_clipped = x.is_saturated() || y.is_saturated() || z.is_saturated();
-        if is_clipped {
+        let is_lost = x.is_saturated() || y.is_saturated() || z.is_saturated();
+        if is_lost {
             self.clip(sample.time);
         } else {
             self.increment.push(sample.turned);
@@ -163,7 +163,7 @@ impl Vertical {
         if is_due || self.increment.is_large() {
             self.tick(sample.time);
         }
-        is_due || is_clipped
+        is_due || is_lost
     }
 
     /// Time since the sample before, s.
