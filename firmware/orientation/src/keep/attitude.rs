@@ -64,7 +64,7 @@ impl Attitude {
             return self.turn_little(x, y, z, square);
         }
         let length = libm::sqrtf(square);
-        let pieces = 1 + (length / LARGEST) as u32;
+        let pieces = ((length / LARGEST) as u32).saturating_add(1);
         let part = if pieces > PIECES { LARGEST / length } else { 1.0 / pieces as f32 };
         for _ in 0..pieces.min(PIECES) {
             self.turn_little(part * x, part * y, part * z, part * part * square);
