@@ -37,12 +37,12 @@ impl Attitude {
         Self(parts.map(|part| libm::round(part * ONE as f64) as i64))
     }
 
-    /// Level by what the body feels as up, on this course, rad.
+    /// Level by what the body feels as up, on this course, rad; upright where it feels nothing.
     #[must_use]
     pub fn levelled(force: &[f32; 3], course: f64) -> Self {
         let [x, y, z] = force.map(f64::from);
         if [x, y, z] == [0.0; 3] {
-            return Self::default();
+            return Self::new(quaternion([course, 0.0, 0.0]));
         }
         let pitch = libm::atan2(x, libm::sqrt(y * y + z * z));
         let roll = libm::atan2(-y, -z);
@@ -64,7 +64,7 @@ impl Attitude {
             return self.turn_little(x, y, z, square);
         }
         let length = libm::sqrtf(square);
-        let pieces = 1 + (length / LARGEST) as u32;
+        let pieces = ((length / LARGEST) as u32).saturating_add(1);
         let part = if pieces > PIECES { LARGEST / length } else { 1.0 / pieces as f32 };
         for _ in 0..pieces.min(PIECES) {
             self.turn_little(part * x, part * y, part * z, part * part * square);

@@ -139,7 +139,7 @@ impl Vertical {
         }
     }
 
-    /// Takes a sample; whether it made a new attitude.
+    /// Takes a sample; whether it made a new attitude, or lost one.
     #[inline]
     pub fn push(&mut self, sample: &InertialSample) -> bool {
         let elapsed = self.elapsed(sample.time);
@@ -147,7 +147,8 @@ impl Vertical {
             self.bridge(elapsed, sample);
         }
         let [x, y, z] = sample.turned;
-        if x.is_saturated() || y.is_saturated() || z.is_saturated() {
+        let is_lost = x.is_saturated() || y.is_saturated() || z.is_saturated();
+        if is_lost {
             self.clip(sample.time);
         } else {
             self.increment.push(sample.turned);
@@ -162,7 +163,7 @@ impl Vertical {
         if is_due || self.increment.is_large() {
             self.tick(sample.time);
         }
-        is_due
+        is_due || is_lost
     }
 
     /// Time since the sample before, s.

@@ -1,0 +1,12 @@
+//! Holds pitch, roll and the kept azimuth (equations.md §3, §7) to closed forms and to what may go wrong.
+#![allow(missing_docs)]
+#![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
+
+mod attitude;
+mod faults;
+mod world;
+
+#[track_caller]
+fn assert_near(value: f64, expected: f64, tolerance: f64) {
+    assert!((value - expected).abs() <= tolerance, "{value} is not {expected} ± {tolerance}");
+}
