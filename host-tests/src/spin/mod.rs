@@ -10,7 +10,7 @@ pub mod track;
 
 use orientation::keep::spin::{Method, Setting};
 use orientation::signal::SpinSample;
-use orientation::units::DEGREE_PER_SQRT_HOUR;
+use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 
 use self::limit::{Noise, Turns};
 use self::track::Track;
@@ -157,6 +157,14 @@ fn setting(header: &Header, rows: &[SpinRow], period_s: f64) -> (Setting, Vec<St
         SCALE_SIGMA
     });
     assumed.push("no rates across the axis; lift in the vertical plane".to_owned());
-    let method = Method::PhaseLocked;
-    (Setting { sample_seconds: period_s, angle_random_walk, scale_sigma, method }, assumed)
+    let usual = Setting::new(period_s);
+    let bias_sigma = header.gyro_bias_deg_h.map_or_else(
+        || {
+            let field = usual.bias_sigma / DEGREE_PER_HOUR;
+            assumed.push(format!("gyro bias to {field:.0} °/h (1σ)"));
+            usual.bias_sigma
+        },
+        |bias| bias * DEGREE_PER_HOUR,
+    );
+    (Setting { angle_random_walk, scale_sigma, bias_sigma, ..usual }, assumed)
 }

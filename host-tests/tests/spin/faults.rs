@@ -8,7 +8,7 @@ use hal_mock::accelerometer::AccelerometerConfiguration;
 use hal_mock::spin::profile::Profile;
 use hal_mock::spin::{SpinConfiguration, SpinWorld};
 use hal_mock::vehicle::SensorFault;
-use orientation::keep::spin::{Method, Setting, Spin, State};
+use orientation::keep::spin::{Setting, Spin, State};
 
 /// 80 turns a second.
 const SPIN: f64 = 160.0 * std::f64::consts::PI;
@@ -53,10 +53,9 @@ fn followed(body: &SpinConfiguration, seed: u64) -> Vec<Seen> {
     let mut world = SpinWorld::new(body, seed);
     let mut converter = Converter::new(1.0 / RATE_HZ);
     let mut spin = Spin::new(&Setting {
-        sample_seconds: 1.0 / RATE_HZ,
         angle_random_walk: 1e-5,
         scale_sigma: 0.01,
-        method: Method::PhaseLocked,
+        ..Setting::new(1.0 / RATE_HZ)
     });
     let mut seen = Vec::new();
     while let Some(sample) = world.next_sample() {

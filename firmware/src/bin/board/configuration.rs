@@ -10,7 +10,7 @@
 //! | [`SPEEDS`], [`SENSOR`], [`UNEVEN_TURNS`] | of a turning platform: how fast it is to turn, and what turns |
 //! | [`STOPS`], [`BIAS_SIGMA`], [`FORCE_CALIBRATED_SIGMA`] | in a vehicle: how many stops, and what the test sheets promise |
 //! | [`REALIGNS`], [`ALIGNS_ALWAYS`] | in a vehicle, once the azimuth is known: a choice |
-//! | [`SPIN_GYROS`], [`SPIN_FORCES`], [`SPIN_WALK`], [`SPIN_SCALE_SIGMA`] | on a spinning body: the test sheets of its analogue sensors |
+//! | [`SPIN_GYROS`], [`SPIN_FORCES`], [`SPIN_WALK`], [`SPIN_SCALE_SIGMA`], [`SPIN_BIAS_SIGMA`] | on a spinning body: the test sheets of its analogue sensors |
 //! | [`ENCODER`] | a calibration of the stage; until then zero, a greater [`ENCODER_SIGMA`], and in [`instrument`] a greater `stage.agreement` |
 //!
 //! Too small a σ here is too small a σ of the azimuth: in doubt take the greater one.
@@ -258,9 +258,10 @@ pub fn keeping() -> KeepConfiguration {
 const SPIN_GYROS: [(f64, f64); 3] = [(2.0 / 700.0, 680.0), (0.1, 19.0), (0.1, 19.0)];
 /// V per m/s² of the accelerometers along y and z, and the forces beyond which they may clip, m/s².
 const SPIN_FORCES: [(f64, f64); 2] = [(2e-4, 9700.0); 2];
-/// N of the gyro about x, °/√h, and 1σ of its scale factor.
+/// N of the gyro about x, °/√h, 1σ of its scale factor, and of its bias, °/h.
 const SPIN_WALK: f64 = 0.5;
 const SPIN_SCALE_SIGMA: f64 = 1e-3;
+const SPIN_BIAS_SIGMA: f64 = 200.0;
 /// Course and pitch when the flight begins, °: nothing on the body tells them.
 const LAUNCH: [f64; 2] = [0.0, 0.0];
 
@@ -274,6 +275,7 @@ pub fn spin_setting() -> spin::Setting {
         sample_seconds: 1.0 / SPIN_CONVERTER.rate.hertz(),
         angle_random_walk: SPIN_WALK * DEGREE_PER_SQRT_HOUR,
         scale_sigma: SPIN_SCALE_SIGMA,
+        bias_sigma: SPIN_BIAS_SIGMA * DEGREE_PER_HOUR,
         method: spin::Method::PhaseLocked,
     }
 }

@@ -90,6 +90,7 @@ impl SpinScenario {
             angle_random_walk: self.gyro_n_deg_sqrt_h * DEGREE_PER_SQRT_HOUR,
             scale_sigma: self.scale_sigma,
             method: Method::PhaseLocked,
+            ..Setting::new(1.0 / SAMPLE_RATE)
         }
     }
 

@@ -71,10 +71,10 @@ pub fn paper() -> Paper {
 /// A method over a flight.
 pub(super) fn track(method: Method, recorded: &Recorded) -> Track {
     let setting = Setting {
-        sample_seconds: 1.0 / RATE_HZ,
         angle_random_walk: recorded.noise.angle_random_walk,
         scale_sigma: SCALE_SIGMA,
         method,
+        ..Setting::new(1.0 / RATE_HZ)
     };
     Track::of(&setting, &recorded.samples)
 }

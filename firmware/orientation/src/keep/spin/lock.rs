@@ -33,6 +33,8 @@ const NOISE_LOOKS: f32 = 8.0;
 const NOISE_RISE: f32 = 4.0;
 /// How the scale wanders, 1/√s: with the gyro's temperature.
 const SCALE_WALK: f64 = 1e-6;
+/// Rate below which a body does not spin, rad/s.
+const SLOWEST: f64 = 1.0;
 /// Part of the rate by which it may have changed where samples are missing.
 const CHANGE: f32 = 0.01;
 /// What may be lost of the rotation within turns that are used, rad: it bends their phase by half of that.
@@ -58,6 +60,11 @@ pub(super) struct Lock {
     /// N², rad²/s, and the sample period, s.
     walk: f64,
     period: f64,
+    /// 1σ of the gyro's bias, rad/s.
+    bias: f64,
+    /// Seconds a radian, lately, and for how long the body does not spin, s.
+    slowness: Option<f64>,
+    still: f64,
     /// Variance of the scale to begin with.
     first: f64,
     /// Variances of angle, rad², and scale, and what they share.
@@ -90,6 +97,9 @@ impl Lock {
         Self {
             walk: setting.angle_random_walk * setting.angle_random_walk,
             period: setting.sample_seconds,
+            bias: setting.bias_sigma,
+            slowness: None,
+            still: 0.0,
             first: setting.scale_sigma * setting.scale_sigma,
             angle: TURN * TURN,
             scale: setting.scale_sigma * setting.scale_sigma,
@@ -162,8 +172,25 @@ impl Lock {
         self.angle += angle * (angle * self.scale - 2.0 * self.shared) + self.walk * seconds;
         self.shared -= angle * self.scale;
         self.scale += SCALE_WALK * SCALE_WALK * seconds;
+        self.stray_by_bias(angle, seconds);
         if self.angle > TURN * TURN {
             self.forget_angle();
+        }
+    }
+
+    /// What an unknown bias does: on a body that spins it is a scale error that changes with the rate, and on one that does
+    /// not it turns the angle.
+    fn stray_by_bias(&mut self, angle: f64, seconds: f64) {
+        let square = |part: f64| part * part;
+        let slowness = seconds / angle.abs().max(SLOWEST * seconds);
+        let before = self.slowness.replace(slowness).unwrap_or(slowness);
+        self.scale += square(self.bias * (slowness - before));
+        if slowness * SLOWEST >= 1.0 {
+            let still = self.still + seconds;
+            self.angle += square(self.bias) * (square(still) - square(self.still));
+            self.still = still;
+        } else {
+            self.still = 0.0;
         }
     }
 

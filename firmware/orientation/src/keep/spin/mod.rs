@@ -50,18 +50,21 @@ pub struct Setting {
     pub angle_random_walk: f64,
     /// 1σ of its scale factor.
     pub scale_sigma: f64,
+    /// 1σ of its bias, rad/s.
+    pub bias_sigma: f64,
     /// How the roll is corrected.
     pub method: Method,
 }
 
 impl Setting {
-    /// A gyro of 0.06 °/√s, its scale known to 1 %, its phase locked.
+    /// A gyro of 0.06 °/√s, its scale known to 1 %, its bias to 0.06 °/s, its phase locked.
     #[must_use]
     pub fn new(sample_seconds: f64) -> Self {
         Self {
             sample_seconds,
             angle_random_walk: 1e-3,
             scale_sigma: 0.01,
+            bias_sigma: 1e-3,
             method: Method::PhaseLocked,
         }
     }
@@ -120,6 +123,10 @@ pub struct Spin {
     before: AngleIncrement,
 }
 
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is no heap, and the large one is the usual one"
+)]
 #[derive(Clone, Debug)]
 enum Corrector {
     Extrema(Extrema),

@@ -1,25 +1,35 @@
 //! What becomes of rotation that nobody saw: samples that are missing, and gyros at the limit of their range.
 
-use super::filter::TURN;
-use super::sums::{Rested, Window};
+use super::filter::{Filter, TURN};
+use super::stretch::Stretch;
+use super::sums::{Rested, Sums, Window};
 use super::{Trust, Vertical};
 use crate::math::rotation::{difference, dot, scaled, sum};
 use crate::signal::InertialSample;
-use crate::signal::increment::STEP;
+use crate::signal::increment::{Increment, STEP};
 use crate::units::{AngleIncrement, Instant};
 
 /// Part of the rate lately that a rate within a gap may be beside the mean of its ends.
 const GAP_PART: f32 = 0.3;
 /// Tilt, 1σ, with which nothing of the level is left, rad: it is taken from the forces anew.
 const ALL: f32 = 0.3;
-/// Least rate that may be hidden behind a gyro's limit, rad/s.
-const LEAST_CLIPPED: f32 = 1.0;
+/// Rate that may be hidden behind a gyro's limit: at least so much, rad/s, a blow's, and so many times the rate
+/// lately.
+const LEAST_CLIPPED: f32 = 10.0;
+const CLIPPED_TIMES: f32 = 2.0;
+/// Longest gap that is bridged, s.
+const LONGEST: f32 = 60.0;
+/// An angle of which nothing is known, 1σ, rad.
+const ANY_ANGLE: f32 = 6.3;
 
 impl Vertical {
     /// Samples are missing: the rate between is taken for the mean of those at either end.
     #[inline(never)]
     pub(super) fn bridge(&mut self, elapsed: f32, sample: &InertialSample) {
         let missing = elapsed - self.period;
+        if missing > LONGEST {
+            return self.forget(sample.time);
+        }
         let end = Instant(sample.time.0.saturating_sub((self.period * 1e6) as u64));
         self.tick(Instant(end.0.saturating_sub((missing * 1e6) as u64)));
         let rate =
@@ -33,13 +43,25 @@ impl Vertical {
         self.lose(lost * missing);
     }
 
+    /// So much is missing that nothing but the biases is worth keeping, and those as if they had been switched on.
+    fn forget(&mut self, now: Instant) {
+        let sigmas = self.priors.map(|prior| libm::sqrtf(prior + self.unknown));
+        self.filter = Filter::new(sigmas);
+        self.increment = Increment::default();
+        self.force = Sums::default();
+        self.stretch = Stretch::default();
+        self.since = Instant(now.0.saturating_sub((self.period * 1e6) as u64));
+        self.lose(ANY_ANGLE);
+    }
+
     /// A gyro stood at the limit of its range: what it turned beyond is not known.
     #[inline(never)]
     pub(super) fn clip(&mut self, now: Instant) {
         self.tick(now);
         // What is lost of one clip goes one way: it adds up, not its squares.
         let before = self.before.clipped;
-        self.before.clipped += self.before.lately.max(LEAST_CLIPPED) * self.period;
+        self.before.clipped +=
+            (CLIPPED_TIMES * self.before.lately).max(LEAST_CLIPPED) * self.period;
         self.lose_square(self.before.clipped * self.before.clipped - before * before);
     }
 
