@@ -136,6 +136,7 @@ impl Filter {
             }
             self.transpose();
         }
+        self.even_out();
     }
 
     fn transpose(&mut self) {
@@ -144,6 +145,17 @@ impl Filter {
                 let other = self.covariance[column][row];
                 self.covariance[column][row] = self.covariance[row][column];
                 self.covariance[row][column] = other;
+            }
+        }
+    }
+
+    /// Makes both halves the same again: no measurement ever shrinks what rounding makes them differ by.
+    fn even_out(&mut self) {
+        for row in 1..STATES {
+            for column in 0..row {
+                let mean = 0.5 * (self.covariance[column][row] + self.covariance[row][column]);
+                self.covariance[column][row] = mean;
+                self.covariance[row][column] = mean;
             }
         }
     }
@@ -196,7 +208,12 @@ impl Filter {
             let least = ROUNDING * before;
             self.covariance[row][row] = self.covariance[row][row].max(least);
         }
-        self.covariance[place][place] = column[place] * (variance / whole);
+        // What is left of the measured state is a difference of nearly equal numbers: written as a product.
+        for (row, before) in column.into_iter().enumerate() {
+            let left = before * (variance / whole);
+            self.covariance[row][place] = left;
+            self.covariance[place][row] = left;
+        }
     }
 
     /// The body stands: whatever velocity it had is over.
