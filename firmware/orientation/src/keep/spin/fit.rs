@@ -63,6 +63,8 @@ const LEAST: u32 = 16;
 const UNKNOWNS: f32 = 4.0;
 /// How much of the turning part must be its own: samples that do not go round cannot tell it from a force.
 const GOING_ROUND: f32 = 0.01;
+/// Part of the forces' power that sums in single precision may make of what is left of it.
+const PRECISION: f32 = 2e-7;
 /// What the rounding of the forces leaves at least, (m/s²)².
 const ROUNDING: f32 = STEP * STEP / 6.0;
 
@@ -191,7 +193,8 @@ impl Sums {
         let lift = (r1.scaled(m22) - m12.times(r2)).scaled(1.0 / whole);
         let change = (r2.scaled(m11) - m12.against(r1)).scaled(1.0 / whole);
         let explained = both(own[0], own[1], &self.force).real + both(lift, change, &[r1, r2]).real;
-        let noise = ((self.power - explained) / (count - UNKNOWNS)).max(ROUNDING);
+        let least = ROUNDING + PRECISION * self.power / count;
+        let noise = ((self.power - explained) / (count - UNKNOWNS)).max(least);
         let change = libm::sqrtf(change.power());
         Some(Fit { lift, change, noise, share: 0.5 * m22 / whole })
     }
