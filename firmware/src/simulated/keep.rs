@@ -38,7 +38,7 @@ pub struct Hold {
 }
 
 impl Default for Hold {
-    /// Not at all; else drives of two minutes and stops of one.
+    /// Not at all; else drives of four minutes and stops of one.
     fn default() -> Self {
         Self { seconds: 0.0, realigns: false, drive_s: 240.0, stop_s: 60.0, handover: None }
     }

@@ -9,7 +9,7 @@ use orientation::align::regression::{Column, Regression};
 use orientation::signal::SpinSample;
 use orientation::units::{SpinForce, TURN};
 
-/// Columns of the fit of one turn: 1, u, u², cos, sin, u cos, u sin.
+/// Columns of the fit of one turn: 1, u, cos, sin, u cos, u sin. A parabola would be mistaken for a turn.
 const COLUMNS: usize = 6;
 /// Fewest samples of a turn from which noise is told.
 const FEWEST: usize = 2 * COLUMNS;
