@@ -98,9 +98,8 @@ pub fn run(
         assumed,
     };
     let Some(conclusion) = replay.conclusion() else {
-        let mut object = object(&run, &scenario.base, json!({}))?;
-        let of_kept = keeping::object(&run, &kept, &mut object)?;
-        return keeping::told(NAME, &object, of_kept.as_ref(), as_json);
+        let object = object(&run, &scenario.base, json!({}))?;
+        return keeping::told(NAME, &run, &kept, object, report, as_json);
     };
     let truth = Truth {
         azimuth_deg: Some(degrees(concluded(&run, &kept, truth)).rem_euclid(360.0)),

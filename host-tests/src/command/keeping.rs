@@ -1,5 +1,7 @@
 //! How `meridian run` goes on after its alignment.
 
+use std::path::Path;
+
 use bench::instrument::Run;
 use bench::instrument::kept::Kept;
 use bench::output::kept::{self, Object};
@@ -74,21 +76,32 @@ pub fn object<R>(run: &Run<R>, kept: &Kept, into: &mut Value) -> Result<Option<O
     Ok(object)
 }
 
-/// What is told of a run that needed no alignment: its azimuth came from outside.
-pub fn told(
+/// What is told of a run whose azimuth is kept and no alignment's conclusion stands: it came from outside, or the
+/// session was begun anew at a stop. The azimuth is the one that is kept at the end.
+pub fn told<R>(
     name: &str,
-    object: &Value,
-    kept: Option<&Object>,
+    run: &Run<R>,
+    kept: &Kept,
+    mut object: Value,
+    report: Option<&Path>,
     as_json: bool,
 ) -> Result<Told, String> {
-    let is_known = kept.is_some_and(|kept| kept.azimuth_deg.is_some());
-    let told = Told::of(is_known, as_json, object, |text| {
+    let of_kept = self::object(run, kept, &mut object)?;
+    let azimuth = of_kept.as_ref().and_then(|kept| kept.azimuth_deg);
+    let refusal = azimuth.is_none().then(|| "the azimuth is not known any more".to_owned());
+    object["method"] = "kept".into();
+    object["status"] = if azimuth.is_some() { "ok" } else { "refused" }.into();
+    object["reason"] = refusal.clone().into();
+    object["azimuth_deg"] = azimuth.into();
+    object["sigma_deg"] = of_kept.as_ref().and_then(|kept| kept.sigma_deg).into();
+    let told = Told::of(azimuth.is_some(), as_json, &object, |text| {
         use std::fmt::Write;
-        writeln!(text, "\nAzimuth handed over in {name}: no alignment")?;
-        kept.map_or(Ok(()), |object| kept::block(text, object))
+        writeln!(text, "\nAzimuth kept in {name}, handed over from outside or aligned anew")?;
+        of_kept.as_ref().map_or(Ok(()), |object| kept::block(text, object))
     })?;
-    let refusal = (!is_known).then(|| "the azimuth is not known any more".to_owned());
-    Ok(Told { refusal, ..told })
+    let title = format!("Azimuth kept in {name}");
+    let page = || page(Report { title, subtitle: Vec::new(), parts: Vec::new() }, kept);
+    Ok(Told { refusal, ..told }.with_page(report, page))
 }
 
 /// A page with the figures of what was kept.

@@ -469,7 +469,8 @@ pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
     let (KeptRun { run, kept }, recorded) = simulate(&scenario, fault, options)?;
     let wall = begun.elapsed().as_secs_f64();
     let Some(conclusion) = run.conclusion() else {
-        return without_session("the simulated run", &run, &scenario, &kept, as_json);
+        let (object, report) = (object(&run, &scenario, json!({}))?, options.report.as_deref());
+        return keeping::told("the simulated run", &run, &kept, object, report, as_json);
     };
     let truth = Some(scenario.azimuth_deg);
     let mut object = object(&run, &scenario, json::azimuth(&run.replay, conclusion, truth))?;
@@ -491,19 +492,6 @@ pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
     };
     let told = Told { found: refusal.is_none(), refusal, ..told };
     Ok(told.with_page(options.report.as_deref(), page))
-}
-
-/// What is told of a run whose azimuth came from outside.
-fn without_session(
-    name: &str,
-    run: &Run,
-    scenario: &Scenario,
-    kept: &Kept,
-    as_json: bool,
-) -> Result<Told, String> {
-    let mut object = object(run, scenario, json!({}))?;
-    let of_kept = keeping::object(run, kept, &mut object)?;
-    keeping::told(name, &object, of_kept.as_ref(), as_json)
 }
 
 /// Names the faults that a method can have.
@@ -528,7 +516,9 @@ fn run_frames(base: &Scenario, options: &RunOptions, as_json: bool) -> Result<To
         frames.map_err(|error| error.to_string())?;
     let wall = begun.elapsed().as_secs_f64();
     let Some(conclusion) = run.conclusion() else {
-        return without_session("the simulated run on two frames", &run, base, &kept, as_json);
+        let (object, report) = (object(&run, base, json!({}))?, options.report.as_deref());
+        let name = "the simulated run on two frames";
+        return keeping::told(name, &run, &kept, object, report, as_json);
     };
     let truth = Some(base.azimuth_deg);
     let stored = run.events.iter().any(|(_, event)| matches!(event, Event::Stored(..)));
