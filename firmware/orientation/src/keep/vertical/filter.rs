@@ -36,6 +36,8 @@ const FORCE_SCALE: f32 = 0.1;
 const SWING: f32 = 0.5;
 /// Part of a variance that rounding may make of it.
 const ROUNDING: f32 = 1e-6;
+/// For how long a bend lasts, s.
+const BEND: f32 = 10.0;
 /// Variance of an angle of which nothing is known, rad²: a turn's square. More would only cost digits.
 const ANY_ANGLE: f32 = 40.0;
 
@@ -116,7 +118,7 @@ impl Filter {
         let [x, y, _] = strays;
         let own = expected.walk[2] * stretch.seconds;
         let about_down = weighed(&stretch.attitude[2], &[x, y, own], stretch);
-        let about_down = if stretch.is_rest { 0.0 } else { about_down };
+        let about_down = if stretch.is_rest { 0.0 } else { about_down + self.slanted(stretch) };
         // A body that keeps its attitude shows the same error all the time: a tilt, not noise.
         let rate = stretch.rate_squares.iter().sum::<f32>() / stretch.seconds;
         let strayed = FORCE_SCALE * FORCE_SCALE * SWING * (rate * SWING * SWING).min(1.0);
@@ -126,6 +128,13 @@ impl Filter {
         for (place, more) in more.into_iter().enumerate() {
             self.covariance[place][place] += more;
         }
+    }
+
+    /// What a wrong level makes of a turn: half its square is missing of it, the same way round for as long as a bend
+    /// lasts.
+    fn slanted(&self, stretch: &Stretch) -> f32 {
+        let square = self.covariance[0][0].max(self.covariance[1][1]);
+        0.25 * square * square * BEND * stretch.rate_squares.iter().sum::<f32>()
     }
 
     /// Carries the covariance on: tilt changes by the biases, velocity by the tilt.

@@ -13,10 +13,11 @@ use crate::units::{AngleIncrement, Instant};
 const GAP_PART: f32 = 0.3;
 /// Tilt, 1σ, with which nothing of the level is left, rad: it is taken from the forces anew.
 const ALL: f32 = 0.3;
-/// Rate that may be hidden behind a gyro's limit: at least so much, rad/s, a blow's, and so many times the rate
-/// lately.
-const LEAST_CLIPPED: f32 = 10.0;
-const CLIPPED_TIMES: f32 = 2.0;
+/// Rate that a blow may hide behind a gyro's limit, rad/s. Where the body turned already, by so much at least, the
+/// limit is about that rate, and a part of it may be hidden.
+const BLOW: f32 = 10.0;
+const TURNING: f32 = 0.2;
+const HIDDEN: f32 = 0.5;
 /// Longest gap that is bridged, s.
 const LONGEST: f32 = 60.0;
 /// An angle of which nothing is known, 1σ, rad.
@@ -60,8 +61,9 @@ impl Vertical {
         self.tick(now);
         // What is lost of one clip goes one way: it adds up, not its squares.
         let before = self.before.clipped;
-        self.before.clipped +=
-            (CLIPPED_TIMES * self.before.lately).max(LEAST_CLIPPED) * self.period;
+        let lately = self.before.lately;
+        let hidden = if lately > TURNING { HIDDEN * lately } else { BLOW };
+        self.before.clipped += hidden * self.period;
         self.lose_square(self.before.clipped * self.before.clipped - before * before);
     }
 

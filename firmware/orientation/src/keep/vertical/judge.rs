@@ -14,7 +14,7 @@ pub(super) const STRETCH: f32 = 0.1;
 const START: f32 = 0.2;
 /// 1σ of the tilt with which it begins, rad, and of that on the way: nobody says that the body stands.
 const START_TILT: f32 = 0.05;
-const MOVING_TILT: f32 = 0.2;
+const MOVING_TILT: f32 = 0.4;
 /// Tilt, 1σ, of a standing body by its mean force over a window, rad: wind and engine.
 const STANDING_TILT: f32 = 3e-4;
 /// How far wind turns a body that stands, its engine off, 1σ, rad: 2″.
