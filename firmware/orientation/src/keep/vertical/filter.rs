@@ -36,6 +36,8 @@ const FORCE_SCALE: f32 = 0.1;
 const SWING: f32 = 0.5;
 /// Part of a variance that rounding may make of it.
 const ROUNDING: f32 = 1e-6;
+/// Time in which a body that turns quickly shows all of the Earth's rate on every axis, s.
+const TURNING: f32 = 30.0;
 /// For how long a bend lasts, s.
 const BEND: f32 = 10.0;
 /// Variance of an angle of which nothing is known, rad²: a turn's square. More would only cost digits.
@@ -123,7 +125,11 @@ impl Filter {
         let rate = stretch.rate_squares.iter().sum::<f32>() / stretch.seconds;
         let strayed = FORCE_SCALE * FORCE_SCALE * SWING * (rate * SWING * SWING).min(1.0);
         let moved = (FORCE_NOISE * FORCE_NOISE + strayed) * stretch.seconds;
-        let [x, y, z] = expected.drift.map(|drift| drift * stretch.seconds);
+        // A body that turns to and fro quickly leaves of it only its mean.
+        let turned = BEND * stretch.rate_squares.iter().sum::<f32>();
+        let turned = turned.min(stretch.seconds / TURNING);
+        let [x, y, z] =
+            expected.drift.map(|drift| drift * stretch.seconds + stretch.hidden * turned);
         let more = [about_north, about_east, about_down, x, y, z, moved, moved];
         for (place, more) in more.into_iter().enumerate() {
             self.covariance[place][place] += more;

@@ -48,6 +48,7 @@ impl Vertical {
         }
         let mut stretch = core::mem::take(&mut self.stretch);
         stretch.is_rest = self.rest.is_at_rest();
+        stretch.hidden = if self.knows_north { 0.0 } else { 2.0 * self.unknown };
         self.filter.step(&stretch, &self.expected);
         self.judge(&stretch);
         self.check_head(&stretch);

@@ -17,6 +17,9 @@ pub struct Stretch {
     pub forced: f32,
     /// Integrals of the squared rates about the body's axes, rad²/s.
     pub rate_squares: [f32; 3],
+    /// What the Earth's level rate may hide in the biases, (rad/s)²: nothing once north is known. As the body turns, it
+    /// goes from one to another.
+    pub hidden: f32,
     /// Whether the body stands: it does not turn then, whatever the gyros show.
     pub is_rest: bool,
 }
