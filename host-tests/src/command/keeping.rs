@@ -21,7 +21,7 @@ const HANDED: f64 = 20.0;
 #[derive(Args, Clone, Debug)]
 pub struct KeepingOptions {
     /// Seconds for which the azimuth is kept, while the vehicle drives and stops; 0 for not at all (60;
-    /// with --record or --fault 0).
+    /// with --record, --fault or --sigma 0).
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     hold: Option<f64>,
     /// While the azimuth is kept, aligns anew at stops.

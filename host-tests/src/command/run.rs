@@ -384,9 +384,11 @@ impl RunOptions {
 }
 
 impl RunOptions {
-    /// How the run goes on. A recording is to be replayed, and a fault seen, as it ever was.
+    /// How the run goes on. A recording is to be replayed, and a fault seen, as it ever was; and where nobody knows
+    /// how long the alignment takes, the base must not drive off.
     fn hold(&self) -> Hold {
-        let is_plain = self.record.is_some() || self.fault.is_some() || self.no_base_imu;
+        let is_watched = self.record.is_some() || self.fault.is_some();
+        let is_plain = is_watched || self.no_base_imu || self.sigma.is_some();
         match self.method {
             Method::Rotating => Hold::default(),
             _ => self.keeping.hold(is_plain),
