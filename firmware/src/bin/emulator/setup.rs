@@ -45,7 +45,6 @@ type StageSeams = Seams<'static, Log>;
 type VehicleSeams = Seams<'static, Log, InertialSample>;
 
 /// A board.
-#[expect(clippy::large_enum_variant, reason = "there is one, in static memory")]
 enum Rig {
     Stage(StageRig),
     Vehicle(VehicleRig),
@@ -158,6 +157,7 @@ impl Sampling {
 }
 
 /// An instrument that runs.
+#[expect(clippy::large_enum_variant, reason = "there is one, in static memory")]
 pub enum Running {
     /// On a stage.
     Stepwise(&'static mut Session, &'static mut StageOutputs, Configuration, &'static StageSeams),

@@ -1,6 +1,6 @@
 //! Burov's Table 1, what it says of keeping: the azimuth stored for half an hour, pitch and roll meanwhile.
 //!
-//! The classes and their gyros are those of [`classes`]; each is driven without a halt, after an alignment
+//! The classes and their gyros are those of [`crate::campaign::burov::classes`]; each is driven without a halt, after an alignment
 //! as good as its gyro allows or with an azimuth from outside.
 
 pub mod limit;
