@@ -4,7 +4,7 @@
 //!  motion ─∫ω─▶ gyro ─volts─▶ its converter, three of them      ∫f ─force─▶ accelerometer
 //! ```
 //!
-//! Every reading is a mean ([`super::averaged`]): chips that run in step see the same stretches of time,
+//! Every reading is a mean (module `averaged`): chips that run in step see the same stretches of time,
 //! others each its own. Time counts from the start of the
 //! clock and must not fall.
 
