@@ -12,17 +12,14 @@ use crate::output::text::line;
 /// Those of the writer.
 pub fn block(out: &mut impl Write, name: &str, object: &Object) -> fmt::Result {
     let sigma = object.sigma_deg;
-    match (object.pitch_deg, object.roll_deg) {
-        (Some(pitch), Some(roll)) => {
-            let [pitch, roll] = [pitch, roll].map(|angle| positive_zero(angle, 5e-5));
-            writeln!(out, "\nPitch and roll kept in {name}\n")?;
-            line(out, "pitch, roll", format_args!("{pitch:.4}°, {roll:.4}° ± {sigma:.4}° (1σ)"))?;
-        }
-        _ => {
-            writeln!(out, "\nNo pitch and roll from {name}\n")?;
-            let reason = object.reason.as_deref().unwrap_or_default();
-            line(out, "reason", format_args!("{reason}"))?;
-        }
+    if let (Some(pitch), Some(roll)) = (object.pitch_deg, object.roll_deg) {
+        let [pitch, roll] = [pitch, roll].map(|angle| positive_zero(angle, 5e-5));
+        writeln!(out, "\nPitch and roll kept in {name}\n")?;
+        line(out, "pitch, roll", format_args!("{pitch:.4}°, {roll:.4}° ± {sigma:.4}° (1σ)"))?;
+    } else {
+        writeln!(out, "\nNo pitch and roll from {name}\n")?;
+        let reason = object.reason.as_deref().unwrap_or_default();
+        line(out, "reason", format_args!("{reason}"))?;
     }
     let turned = positive_zero(object.turned_deg, 5e-5);
     line(out, "turned", format_args!("{turned:+.4}° about the vertical since the beginning"))?;
