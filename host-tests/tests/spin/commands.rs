@@ -96,7 +96,8 @@ fn a_body_without_lift_is_refused_with_exit_code_1_and_the_reason() {
     let mut rows = "# kind: spin\n# rate_hz: 10000\nt_s,gx_rad_s,ay_m_s2,az_m_s2\n".to_owned();
     for index in 0..3000 {
         let noise = f64::from((index * 7919) % 997) / 997.0;
-        rows += &format!("{:.4},500,{:.3},{:.3}\n", f64::from(index) * 1e-4, noise, 1.0 - noise);
+        let row = format!("{:.4},500,{:.3},{:.3}\n", f64::from(index) * 1e-4, noise, 1.0 - noise);
+        rows.push_str(&row);
     }
     std::fs::write(&file, rows).expect("there is room");
     let output = meridian(&["replay", &file.display().to_string(), "--json"]);

@@ -41,7 +41,7 @@ fn it_follows_the_roll_of_a_healthy_body_and_carries_course_and_pitch_on() {
     let health = run.run.health;
     assert_eq!((health.faults(), run.run.violations.len()), (0, 0), "{health:?}");
     // Two seconds at 14 400 samples a second.
-    assert!((run.samples.len() as i64 - 28_800).abs() < 10, "{}", run.samples.len());
+    assert!(run.samples.len().abs_diff(28_800) < 10, "{}", run.samples.len());
 }
 
 #[test]

@@ -84,7 +84,9 @@ fn a_walk_of_the_gyro_sets_a_floor_to_the_bound() {
 #[test]
 fn without_lift_or_forces_the_bound_learns_nothing() {
     let mut blind = samples(100);
-    blind.iter_mut().for_each(|sample| sample.force = None);
+    for sample in &mut blind {
+        sample.force = None;
+    }
     let noise = Noise { force: NOISE, angle_random_walk: 0.0 };
     let circle = std::f64::consts::TAU / 12.0_f64.sqrt();
     let of_blind = bounds(&blind, noise, 0.0, |_| LIFT);

@@ -81,7 +81,7 @@ fn a_free_fall_is_told_and_over_at_once() {
     let acceleration =
         |time: f64| if (50.0..60.0).contains(&time) { [0.0, 0.0, 9.815] } else { [0.0; 3] };
     let attitude = |time: f64| [0.5, 0.03 + (time - 50.0).clamp(0.0, 10.0), -0.02];
-    let known = keep(&Body { acceleration, attitude, ..coarse(90.0) }, |_, _| true);
+    let known = keep(&Body { attitude, acceleration, ..coarse(90.0) }, |_, _| true);
     assert!(matches!(at(&known, 55.0).report.state, State::FreeFall { .. }));
     assert_eq!(at(&known, 60.4).report.state, State::Level);
     assert!(worst(&known, 10.0..90.0) < 3.0, "{} σ", worst(&known, 10.0..90.0));
@@ -91,7 +91,7 @@ fn a_free_fall_is_told_and_over_at_once() {
 fn a_body_that_falls_when_it_is_switched_on_has_no_level_yet() {
     let acceleration = |time: f64| if time < 5.0 { [0.0, 0.0, 9.815] } else { [0.0; 3] };
     let attitude = |_| [0.5, 0.4, 0.7];
-    let known = keep(&Body { acceleration, attitude, ..coarse(30.0) }, |_, _| true);
+    let known = keep(&Body { attitude, acceleration, ..coarse(30.0) }, |_, _| true);
     assert_eq!(at(&known, 4.0).report.state, State::Starting);
     assert!(worst(&known, 5.5..30.0) < 3.0, "{} σ", worst(&known, 5.5..30.0));
 }
