@@ -137,6 +137,6 @@ fn course(vertical: &Vertical) -> f64 {
 }
 
 /// The difference of two angles, rad, in [−π, π).
-pub(super) fn difference(a: f64, b: f64) -> f64 {
+fn difference(a: f64, b: f64) -> f64 {
     wrapped(a - b + 0.5 * TURN) - 0.5 * TURN
 }

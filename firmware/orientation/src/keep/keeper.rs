@@ -1,11 +1,11 @@
 //! Gyrovertical and heading keeper as one: samples in, from switch-on; pitch, roll and azimuth out.
 
-use super::heading::{Handover, Heading, Realigned, difference, frame_rate};
+use super::heading::{Handover, Heading, Realigned, frame_rate};
 use super::restart::{self, Doubt, Remembered};
 use super::vertical::{Trust, Vertical};
 use super::{Gyro, Setting, attitude};
 use crate::signal::InertialSample;
-use crate::units::{DEGREES_PER_RADIAN as DEGREES, Instant};
+use crate::units::Instant;
 use crate::words;
 use crate::words::Rounded;
 
@@ -249,12 +249,5 @@ impl Keeper {
         restart::check(remembered, &now, &self.setting)?;
         self.hand_over(Handover { azimuth: remembered.azimuth, sigma: remembered.sigma });
         Ok(())
-    }
-
-    /// How far an azimuth, rad, is from the one that is kept, °; none without.
-    #[must_use]
-    pub fn away(&self, azimuth: f64) -> Option<f64> {
-        let kept = self.report().azimuth?;
-        Some(difference(azimuth, kept.angle) * DEGREES)
     }
 }
