@@ -240,11 +240,19 @@ fn each_recording_of_a_spinning_body_has_its_rows_and_the_true_roll_of_each() {
     }
 }
 
-/// The two of BROAD, which know neither latitude nor noise.
-fn broad() -> [Expected; 2] {
-    ["imu-broad-06", "imu-broad-24"].map(|name| Expected {
+/// Those of BROAD, which know neither latitude nor noise.
+fn broad() -> [Expected; 6] {
+    [
+        ("imu-broad-01", 31_434),
+        ("imu-broad-06", 20_006),
+        ("imu-broad-08", 31_434),
+        ("imu-broad-11", 28_577),
+        ("imu-broad-21", 28_577),
+        ("imu-broad-24", 20_006),
+    ]
+    .map(|(name, lines)| Expected {
         name,
-        lines: 20_006,
+        lines,
         header_lines: 5,
         azimuth_deg: f64::NAN,
         header: Header { rate_hz: Some(285.714_286), ..Header::default() },
@@ -253,7 +261,7 @@ fn broad() -> [Expected; 2] {
 
 #[test]
 fn the_recordings_of_broad_know_the_attitude_where_errors_count() {
-    for (expected, known) in broad().into_iter().zip([9230, 7198]) {
+    for (expected, known) in broad().into_iter().zip([21_708, 9230, 16_655, 19_201, 18_074, 7198]) {
         let recording = stored(expected.name);
         assert_eq!(recording.header, expected.header, "{}", expected.name);
         let attitude = &recording.truth.attitude;
