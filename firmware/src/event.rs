@@ -142,6 +142,8 @@ pub enum Event {
     NoMotion,
     /// The azimuth is not known any more.
     AzimuthLost,
+    /// A gyro's bias is beyond what was stated of it.
+    BiasBeyondStated,
     /// Which gyro shows the down axis from now on.
     DownGyro(Down),
     /// The vehicle stands: its azimuth is found anew.
@@ -259,6 +261,8 @@ words! { Event:
     Self::Keeping(state) => "keeping: {}", state;
     Self::NoMotion => "keeping: no motion is measured any more";
     Self::AzimuthLost => "keeping: the azimuth is lost until it is found or handed over again";
+    Self::BiasBeyondStated =>
+        "keeping: a gyro's bias is beyond five of the 1σ stated for it: nothing stated of the biases is believed";
     Self::DownGyro(Down::Beside) => "keeping: the coarse gyro shows how the base turns about down";
     Self::DownGyro(Down::Compared) =>
         "keeping: the coarse gyro, as it was compared, shows how the base turns about down";

@@ -59,8 +59,12 @@ fn each_class_keeps_azimuth_pitch_and_roll_as_its_row_wants_and_sigma_covers_the
 }
 
 /// Trials of BROAD: what was done, and inclination and heading RMSE of VQF, ° (`tests/vertical_replay.rs`).
-const TRIALS: [(&str, &str, [f64; 2]); 2] = [
+const TRIALS: [(&str, &str, [f64; 2]); 6] = [
+    ("imu-broad-01", "01, slow rotation", [0.517, 2.387]),
     ("imu-broad-06", "06, fast rotation", [0.445, 0.299]),
+    ("imu-broad-08", "08, fast rotation with breaks", [1.958, 5.775]),
+    ("imu-broad-11", "11, slow translation", [0.417, 0.304]),
+    ("imu-broad-21", "21, fast, both", [1.607, 3.949]),
     ("imu-broad-24", "24, tapping", [0.494, 0.476]),
 ];
 

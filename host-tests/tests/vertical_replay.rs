@@ -13,14 +13,20 @@ mod spoilt;
 use std::path::{Path, PathBuf};
 
 use bench::recording::{self, Body, Header, ImuRow};
-use bench::vertical::errors::Errors;
+use bench::vertical::errors::{Errors, Off};
 use bench::vertical::{Moment, Options, Replay, replay};
 
-/// The trials, and inclination and heading RMSE of VQF, °.
-const TRIALS: [(&str, [f64; 2]); 2] =
-    [("imu-broad-06", [0.445, 0.299]), ("imu-broad-24", [0.494, 0.476])];
-/// How much worse the inclination may be.
-const MARGIN: f64 = 1.02;
+/// The trials, and inclination and heading RMSE of VQF, ° (`compare_vqf.py excerpts`).
+const TRIALS: [(&str, [f64; 2]); 6] = [
+    ("imu-broad-01", [0.517, 2.387]),
+    ("imu-broad-06", [0.445, 0.299]),
+    ("imu-broad-08", [1.958, 5.775]),
+    ("imu-broad-11", [0.417, 0.304]),
+    ("imu-broad-21", [1.607, 3.949]),
+    ("imu-broad-24", [0.494, 0.476]),
+];
+/// How much worse the inclination of one trial may be; over all it may not.
+const MARGIN: f64 = 1.2;
 
 /// A recording, its truth apart.
 struct Recorded {
@@ -54,23 +60,56 @@ impl Recorded {
 }
 
 #[test]
-fn inclination_is_as_good_as_that_of_vqf_and_heading_no_worse() {
+fn inclination_is_better_than_that_of_vqf_over_all_and_no_heading_is_worse() {
+    let mut sums = [0.0; 2];
     for (name, [inclination, heading]) in TRIALS {
         let recorded = recorded(name);
-        let replay = recorded.replayed();
-        let errors = recorded.errors(&replay);
-        let Errors { inclination_rmse_deg, heading_rmse_deg, coverage_percent, .. } = errors;
-        println!(
-            "{name}: inclination {inclination_rmse_deg:.4}°, heading {heading_rmse_deg:.4}°, \
-             {coverage_percent:.1?} %"
-        );
+        let errors = recorded.errors(&recorded.replayed());
+        let Errors { inclination_rmse_deg, heading_rmse_deg, .. } = errors;
+        println!("{name}: inclination {inclination_rmse_deg:.4}°, heading {heading_rmse_deg:.4}°");
         assert!(inclination_rmse_deg <= MARGIN * inclination, "{name}: {inclination_rmse_deg}°");
         assert!(heading_rmse_deg <= heading, "{name}: {heading_rmse_deg}°");
-        // An honest σ: no less than a normal distribution's within three of it, and not a wide guess.
-        assert!(coverage_percent[2] >= 98.0, "{name}: {coverage_percent:?}");
-        let sigmas: Vec<f64> = errors.off.iter().map(|off| off.sigma_deg).collect();
-        let sigma = bench::campaign::statistics::rms(&sigmas);
-        assert!(sigma <= 3.0 * inclination_rmse_deg, "{name}: σ {sigma}°");
+        sums = [sums[0] + inclination_rmse_deg, sums[1] + inclination];
+    }
+    // 0.677° against 0.906°.
+    assert!(sums[0] <= 0.8 * sums[1], "{sums:?}");
+}
+
+#[test]
+fn sigma_covers_the_inclination_and_is_no_wide_guess() {
+    // Inclination by √2 σ: two equal Gaussian tilts are below 1, 2, 3 of it in 63, 98, 100 %.
+    let mut ratios = Vec::new();
+    for (name, _) in TRIALS {
+        let recorded = recorded(name);
+        let errors = recorded.errors(&recorded.replayed());
+        let of = |off: &Off| off.inclination_deg / (2.0_f64.sqrt() * off.sigma_deg);
+        ratios.extend(errors.off.iter().map(of));
+    }
+    let rms = bench::campaign::statistics::rms(&ratios);
+    assert!((0.5..=1.2).contains(&rms), "{rms}");
+    for (bound, least) in [(1.0, 0.60), (2.0, 0.93), (3.0, 0.98)] {
+        let within = ratios.iter().filter(|ratio| **ratio <= bound).count();
+        let part = within as f64 / ratios.len() as f64;
+        assert!(part >= least, "{part} within {bound}");
+    }
+}
+
+#[test]
+fn a_bias_stated_ten_times_too_small_is_told_and_costs_no_level() {
+    for (name, _) in TRIALS {
+        let mut recorded = recorded(name);
+        // The biases of these units are about half a degree a second, and 1σ of a coarse class is that.
+        recorded.header.gyro_bias_deg_h = Some(180.0);
+        for row in &mut recorded.rows {
+            for (rate, more) in row.sample.rates_rad_s.iter_mut().zip([0.5_f64, -0.4, 0.3]) {
+                *rate += more.to_radians();
+            }
+        }
+        let replay = recorded.replayed();
+        let Errors { inclination_rmse_deg, .. } = recorded.errors(&replay);
+        println!("{name}: inclination {inclination_rmse_deg:.4}°");
+        assert!(inclination_rmse_deg < 3.0, "{name}: {inclination_rmse_deg}°");
+        assert!(replay.last.is_bias_beyond_stated, "{name}");
     }
 }
 

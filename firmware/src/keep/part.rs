@@ -66,6 +66,7 @@ struct Told {
     found: Option<(units::Instant, Handover)>,
     is_recalled: bool,
     has_azimuth: bool,
+    is_bias_beyond_stated: bool,
     /// Since when the body has rested, and since when not any more; whether it was realigned there.
     rests: Option<Instant>,
     moves: Option<Instant>,
@@ -91,6 +92,7 @@ impl<'k, H: Outside, M: HeadingStore> Keeping<'k, H, M> {
             found: None,
             is_recalled: false,
             has_azimuth: false,
+            is_bias_beyond_stated: false,
             rests: None,
             moves: None,
             is_realigned: true,
@@ -192,6 +194,7 @@ impl<'k, H: Outside, M: HeadingStore> Keeping<'k, H, M> {
         shared.keep.is_at_rest.set(is_at_rest);
         self.tell_state((!is_silent).then_some(report.state), shared);
         self.tell_loss(&report, shared);
+        self.tell_biases(&report, shared);
         self.rest(is_at_rest);
         self.told.looks += 1;
         if self.told.looks >= LOOKS {
@@ -218,6 +221,14 @@ impl<'k, H: Outside, M: HeadingStore> Keeping<'k, H, M> {
             Some(state) => shared.tell(Event::Keeping(state)),
             None if self.told.moved == Instant::MIN => {}
             None => shared.tell(Event::NoMotion),
+        }
+    }
+
+    /// Tells that what was stated of the biases is not believed any more.
+    fn tell_biases<O: Observer>(&mut self, report: &Report, shared: &Shared<'_, O>) {
+        let is_beyond = report.is_bias_beyond_stated;
+        if is_beyond && !core::mem::replace(&mut self.told.is_bias_beyond_stated, true) {
+            shared.tell(Event::BiasBeyondStated);
         }
     }
 

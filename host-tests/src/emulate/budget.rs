@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 /// The names of the limits.
-pub const NAMES: [&str; 23] = [
+pub const NAMES: [&str; 24] = [
     "filter_instructions",
     "filter_and_dwell_instructions",
     "match_instructions",
@@ -16,6 +16,7 @@ pub const NAMES: [&str; 23] = [
     "strapdown_instructions",
     "inclination_instructions",
     "vertical_instructions",
+    "vertical_greatest_instructions",
     "heading_instructions",
     "spin_instructions",
     "stops_instructions",

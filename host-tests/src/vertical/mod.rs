@@ -216,15 +216,15 @@ fn heading([w, x, y, z]: [f64; 4]) -> f64 {
     f64::atan2(2.0 * (x * y + w * z), 1.0 - 2.0 * (y * y + z * z))
 }
 
-/// Writes the attitude after each sample: `t_s,qw,qx,qy,qz`.
+/// Writes the attitude after each sample and 1σ of either tilt: `t_s,qw,qx,qy,qz,sigma_tilt_rad`.
 ///
 /// # Errors
 /// Those of the file.
 pub fn write_attitude(path: &Path, moments: &[Moment]) -> io::Result<()> {
     let mut file = BufWriter::new(std::fs::File::create(path)?);
-    writeln!(file, "t_s,qw,qx,qy,qz")?;
-    for Moment { time_s, attitude: [w, x, y, z], .. } in moments {
-        writeln!(file, "{time_s},{w:.9},{x:.9},{y:.9},{z:.9}")?;
+    writeln!(file, "t_s,qw,qx,qy,qz,sigma_tilt_rad")?;
+    for Moment { time_s, attitude: [w, x, y, z], level_sigma, .. } in moments {
+        writeln!(file, "{time_s},{w:.9},{x:.9},{y:.9},{z:.9},{level_sigma:.7}")?;
     }
     file.flush()
 }

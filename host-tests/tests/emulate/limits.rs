@@ -68,19 +68,19 @@ fn a_budget_that_is_not_well_formed_says_where() {
     let whole = NAMES.map(|name| format!("{name} = 1 # why\n")).concat();
     assert!(Budget::parse(&format!("# remark\n\n{whole}")).is_ok());
     let error = |text: String| Budget::parse(&text).expect_err("not well formed");
-    assert_eq!(error(format!("{whole}speed = 1")), "line 24: `speed` is no limit");
+    assert_eq!(error(format!("{whole}speed = 1")), "line 25: `speed` is no limit");
     assert_eq!(error(format!("speed\n{whole}")), "line 1: not `name = number`");
-    assert_eq!(error(format!("{whole}flash_bytes = 2")), "line 24: flash_bytes stands twice");
+    assert_eq!(error(format!("{whole}flash_bytes = 2")), "line 25: flash_bytes stands twice");
     assert_eq!(
         error(whole.replace("stack_bytes = 1", "stack_bytes = -1")),
-        "line 23: the limit of stack_bytes is no whole number"
+        "line 24: the limit of stack_bytes is no whole number"
     );
     assert_eq!(error(whole.replace("idle_percent = 1", "")), "idle_percent is missing");
 }
 
 fn budget() -> Budget {
     let values = [
-        0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 4000, 4000, 4000, 500, 500, 90, 135_668, 3040,
+        0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 4000, 4000, 4000, 500, 500, 90, 135_668, 3040,
         4096,
     ];
     let lines = NAMES.iter().zip(values).map(|(name, value)| format!("{name} = {value}"));

@@ -4,6 +4,7 @@
 
 mod attitude;
 mod faults;
+mod honesty;
 mod world;
 
 #[track_caller]

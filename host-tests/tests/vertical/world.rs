@@ -20,6 +20,8 @@ pub struct Body {
     /// Biases of the gyros, rad/s, and of the accelerometers, m/s².
     pub biases: Vector,
     pub force_biases: Vector,
+    /// By how much the gyros are noisier than the setting has it.
+    pub noise: f64,
     pub attitude: fn(f64) -> Vector,
     /// North, east, down, m/s².
     pub acceleration: fn(f64) -> Vector,
@@ -28,14 +30,17 @@ pub struct Body {
     pub seed: u64,
 }
 
-/// A coarse IMU at 55°, at rest.
+/// A coarse IMU of which the data sheet is right, at 55°, at rest: N 0.4 °/√h, B 10 °/h, K 10 °/h/√h, scale 0.2 %.
 pub fn coarse(seconds: f64) -> Body {
+    let noise = GyroNoise::from_field_units(0.4, 10.0, 10.0, 0.0);
+    let gyro = Gyro { noise, bias_sigma: 0.5 * DEGREE, scale_sigma: 2e-3 };
     Body {
-        setting: Setting::coarse(latitude(55.0), 0.01),
+        setting: Setting { gyros: [gyro; 3], ..Setting::coarse(latitude(55.0), 0.01) },
         latitude: 55.0,
         seconds,
         biases: [0.4 * DEGREE, -0.3 * DEGREE, 0.2 * DEGREE],
         force_biases: [0.02, -0.01, 0.0],
+        noise: 1.0,
         attitude: |_| [0.5, 0.03, -0.02],
         acceleration: |_| [0.0; 3],
         handed: None,
@@ -139,7 +144,8 @@ impl<'a> Sensors<'a> {
         let [north, east, down] = (body.acceleration)(time - 0.5 * period);
         let force = applied(&middle, &[north, east, down - place.gravity()]);
         let turned = core::array::from_fn(|axis| {
-            let walk = body.setting.gyros[axis].noise.angle_random_walk * period.sqrt();
+            let walk = body.setting.gyros[axis].noise.angle_random_walk;
+            let walk = body.noise * walk * period.sqrt();
             let rate = earth[axis] + body.biases[axis];
             let angle = turned[axis] + rate * period + walk * self.noise.gaussian();
             AngleIncrement::from_rad(angle, &mut self.carried[axis])

@@ -57,14 +57,15 @@ fn the_attitude_is_written_for_every_sample_and_has_the_errors_that_are_told() {
         let written = std::fs::read_to_string(&path).expect("it was written");
         std::fs::remove_file(&path).expect("it is ours");
         let mut lines = written.lines();
-        assert_eq!(lines.next(), Some("t_s,qw,qx,qy,qz"));
+        assert_eq!(lines.next(), Some("t_s,qw,qx,qy,qz,sigma_tilt_rad"));
         let truth = recording::read(&file(name)).expect("it reads").truth.attitude;
         let mut squares = Vec::new();
         for (line, truth) in lines.by_ref().zip(&truth) {
             let fields: Vec<f64> = line.split(',').filter_map(|field| field.parse().ok()).collect();
-            let [_, w, x, y, z] = fields[..] else { panic!("{line}") };
+            let [_, w, x, y, z, sigma] = fields[..] else { panic!("{line}") };
             let length: f64 = [w, x, y, z].iter().map(|part| part * part).sum();
             assert!((length - 1.0).abs() < 1e-6, "{line}");
+            assert!(sigma > 0.0 && sigma < 1.0, "{line}");
             squares.extend(
                 truth.map(|truth| inclination_deg(down([w, x, y, z]), down(truth)).powi(2)),
             );

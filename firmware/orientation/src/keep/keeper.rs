@@ -21,7 +21,7 @@ pub enum State {
     Starting,
     /// Level, by gravity.
     Level,
-    /// The body accelerates or vibrates: gravity counts for little.
+    /// The body moves so that gravity tells hardly anything of the level, which the gyros alone carry on: its σ grows.
     Coasting {
         /// For how long, s.
         seconds: f64,
@@ -46,7 +46,7 @@ pub enum State {
 words! { State:
     Self::Starting => "starting";
     Self::Level => "level";
-    Self::Coasting { seconds } => "coasting for {} s: gravity counts for little", Rounded::<1>(seconds);
+    Self::Coasting { seconds } => "coasting for {} s: the gyros alone carry the level", Rounded::<1>(seconds);
     Self::FreeFall { seconds } => "falling freely for {} s", Rounded::<1>(seconds);
     Self::NoForce { seconds } => "without forces for {} s", Rounded::<1>(seconds);
     Self::RotationLost { seconds } => "finding the level again for {} s: rotation was lost", Rounded::<1>(seconds);
@@ -75,6 +75,8 @@ pub struct Report {
     pub biases: [f64; 3],
     /// Their 1σ, rad/s.
     pub bias_sigmas: [f64; 3],
+    /// Whether a bias showed to be beyond five of the 1σ stated for it: nothing stated of the biases is believed then.
+    pub is_bias_beyond_stated: bool,
     /// For how long the azimuth was kept, s; zero without.
     pub seconds: f64,
 }
@@ -206,6 +208,7 @@ impl Keeper {
             is_at_rest: vertical.is_at_rest(),
             biases: vertical.biases().map(f64::from),
             bias_sigmas: vertical.bias_sigmas().map(f64::from),
+            is_bias_beyond_stated: vertical.is_bias_beyond_stated(),
             seconds,
         }
     }

@@ -50,12 +50,12 @@ pub struct Setting {
 const FLICKER_SECONDS: f64 = 600.0;
 
 impl Gyro {
-    /// A micromechanical gyro of the class of LSM6DSL: N 0.4 °/√h, B 10 °/h, K 10 °/h/√h, 0.5 °/s when it is
-    /// switched on, scale and axes to 0.2 %.
+    /// An uncalibrated micromechanical gyro of the class of LSM6DSL: N 2.5 °/√h in motion (0.3 to 2 at rest), B 10 °/h,
+    /// K 10 °/h/√h, turn-on bias 0.5 °/s, scale factor and axis alignment 0.5 %; each 1σ.
     #[must_use]
     pub fn coarse() -> Self {
-        let noise = GyroNoise::from_field_units(0.4, 10.0, 10.0, 0.0);
-        Self { noise, bias_sigma: 0.5 * DEGREE, scale_sigma: 2e-3 }
+        let noise = GyroNoise::from_field_units(2.5, 10.0, 10.0, 0.0);
+        Self { noise, bias_sigma: 0.5 * DEGREE, scale_sigma: 5e-3 }
     }
 
     /// Variance that a bias gains in a second, (rad/s)².

@@ -37,6 +37,8 @@ pub struct Object {
     pub bias_dph: [f64; 3],
     /// Their 1σ, °/h.
     pub bias_sigma_dph: [f64; 3],
+    /// Whether a bias is beyond five of the 1σ stated or assumed for it, which is not believed any more then.
+    pub bias_beyond_stated: bool,
     /// The errors, where the recording carries a truth.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub errors: Option<ErrorObject>,
@@ -100,6 +102,7 @@ pub fn object(replay: &Replay, errors: Option<&Errors>) -> Object {
         seconds: replay.seconds,
         bias_dph: biases.map(degrees_per_hour),
         bias_sigma_dph: bias_sigmas.map(degrees_per_hour),
+        bias_beyond_stated: replay.last.is_bias_beyond_stated,
         errors: errors.map(ErrorObject::from),
         assumed: replay.assumed.clone(),
     }

@@ -24,6 +24,13 @@ pub fn block(out: &mut impl Write, name: &str, object: &Object) -> fmt::Result {
     let turned = positive_zero(object.turned_deg, 5e-5);
     line(out, "turned", format_args!("{turned:+.4}° about the vertical since the beginning"))?;
     biases(out, object)?;
+    if object.bias_beyond_stated {
+        line(
+            out,
+            "  beyond",
+            format_args!("five of the 1σ stated for them, which is not believed any more"),
+        )?;
+    }
     line(out, "state at the end", format_args!("{}", object.state))?;
     for met in &object.states {
         line(out, "  met", format_args!("{}, {:.2} s in all", met.state, met.seconds))?;

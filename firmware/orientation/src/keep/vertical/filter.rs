@@ -1,38 +1,41 @@
-//! What gravity tells of tilt and biases: a Kalman filter of eight states, ten times a second.
+//! What gravity tells of tilt, biases and axes: a Kalman filter of seventeen states, ten times a second.
 //!
-//! The states are errors: of the attitude about north, east and down, of the three gyros' biases on
-//! the body's axes, and of the velocity, north and east, that the forces add up to. A body goes
-//! nowhere for long, so its velocity is about zero, to within what it lately showed: that is all that tells
-//! gravity from acceleration. How fast the body moves and how quickly that changes are watched, so that a
-//! hand that shakes and a vehicle that takes a bend each get the trust they deserve. A lasting velocity
-//! fades from the state, for it says nothing of the tilt.
+//! The states are errors: of the attitude about north, east and down; of the three gyros' biases on the body's
+//! axes; of their scale factors and the directions of their axes, nine numbers; and of the velocity, north and east, that
+//! the forces add up to. A body goes nowhere for long, so its velocity is about zero, to within what it lately showed:
+//! that is all that tells gravity from acceleration ([`super::motion`]). A lasting velocity fades from the state, for it
+//! says nothing of the tilt.
+//!
+//! Errors of scale and axes add up as long as a body turns one way, and come back when it turns back: they are no noise,
+//! but a state that gravity shows. They are learnt for the level only. Gravity knows nothing of the heading, and what
+//! motion makes it say wrongly of the axes would be carried there for good.
 
+use super::motion::{LEAST_SPEED, Motion};
 use super::stretch::Stretch;
-use crate::math::rotation::turned;
 
 /// Number of states.
-const STATES: usize = 8;
+const STATES: usize = 17;
 /// Where the turn about the vertical stands.
 pub const TURN: usize = 2;
 /// Where the biases begin.
 const BIAS: usize = 3;
+/// Where scale factors and axes begin: by how much of the turn about each axis each gyro shows too much, row by row.
+const AXES: usize = 6;
 /// Where the velocity begins.
-const VELOCITY: usize = 6;
+const VELOCITY: usize = 15;
 /// Time after which a velocity has faded, s: longer than hands and wheels take to come back.
 const FADING: f32 = 10.0;
-/// Time over which velocities are averaged to see the slow ones, s.
-const SLOW: f32 = 3.0;
-/// Time over which motion is watched, s.
-const WATCH: f32 = 5.0;
-/// Least speed that is allowed for, m/s, and least acceleration, m/s²: those of a body that stands.
-const LEAST_SPEED: f32 = 0.03;
-const LEAST_FORCE: f32 = 0.03;
 /// Noise of the forces, m/s²/√Hz: 100 µg.
 const FORCE_NOISE: f32 = 1e-3;
 /// Error of the accelerometers that changes as the body turns, m/s²: 1 % of gravity, by scale and axes.
 const FORCE_SCALE: f32 = 0.1;
 
-/// For how long a body turns one way before it turns back, s: errors of scale and axes add up until then.
+/// Part of a gyro's stated error of scale and axes that is the same all the time and can be learnt; the rest changes
+/// with rate, acceleration and temperature.
+const LASTING: f32 = 0.4;
+/// Time over which an error of scale and axes is renewed, s.
+const RENEWAL: f32 = 1000.0;
+/// For how long a body turns one way before it turns back, s: what changes of scale and axes adds up until then.
 const SWING: f32 = 0.5;
 /// Part of a variance that rounding may make of it.
 const ROUNDING: f32 = 1e-6;
@@ -42,6 +45,11 @@ const TURNING: f32 = 30.0;
 const BEND: f32 = 10.0;
 /// Variance of an angle of which nothing is known, rad²: a turn's square. More would only cost digits.
 const ANY_ANGLE: f32 = 40.0;
+/// Time over which it is watched what gravity takes from the level's variance and what the gyros add, s.
+const WATCH: f32 = 5.0;
+
+/// The states that a stretch changes: tilt, turn and velocity.
+const CARRIED: [usize; 5] = [0, 1, TURN, VELOCITY, VELOCITY + 1];
 
 /// A vector of all states.
 type States = [f32; STATES];
@@ -57,82 +65,153 @@ pub struct Expected {
     pub scale: [f32; 3],
 }
 
+/// What is to be put right.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Correction {
+    /// Of the attitude, about north, east and down, rad.
+    pub(super) rotation: [f32; 3],
+    /// Of the biases, rad/s.
+    pub(super) bias: [f32; 3],
+    /// Of scale factors and axes, a row a gyro.
+    pub(super) axes: [[f32; 3]; 3],
+}
+
+/// What happened to the level's variance lately, rad²/s.
+#[derive(Clone, Copy, Debug, Default)]
+struct Balance {
+    /// What the gyros' errors added.
+    grown: f32,
+    /// What gravity took.
+    gained: f32,
+}
+
 /// The filter at work.
 #[derive(Clone, Debug)]
 pub struct Filter {
     covariance: [States; STATES],
     velocity: [f32; 2],
-    /// What the forces alone add up to, fading, m/s, and its mean over [`SLOW`].
-    shown: [f32; 2],
-    slow: [f32; 2],
-    /// Mean squares of the velocity, m²/s², and of the horizontal force, m²/s⁴, lately.
-    speed: f32,
-    force: f32,
+    motion: Motion,
+    balance: Balance,
     /// Corrections that are still to be taken.
     correction: States,
 }
 
+/// Setting up, and a step.
 impl Filter {
     /// With these 1σ of the gyros' biases, rad/s; the level is not taken yet.
     #[must_use]
-    pub fn new(biases: [f32; 3]) -> Self {
-        let mut covariance = [[0.0; STATES]; STATES];
-        let speed = LEAST_SPEED * LEAST_SPEED;
-        let [x, y, z] = biases;
-        let start = [0.0, 0.0, 0.0, x, y, z, LEAST_SPEED, LEAST_SPEED];
-        for (place, sigma) in start.into_iter().enumerate() {
-            covariance[place][place] = sigma * sigma;
-        }
-        let force = LEAST_FORCE * LEAST_FORCE;
-        Self {
-            covariance,
+    pub fn new(biases: [f32; 3], expected: &Expected) -> Self {
+        let mut filter = Self {
+            covariance: [[0.0; STATES]; STATES],
             velocity: [0.0; 2],
-            slow: [0.0; 2],
-            shown: [0.0; 2],
-            speed,
-            force,
+            motion: Motion::default(),
+            balance: Balance::default(),
             correction: [0.0; STATES],
+        };
+        for (axis, bias) in biases.into_iter().enumerate() {
+            filter.forget_bias(axis, bias * bias);
+            filter.forget_axis(axis, expected.scale[axis]);
+        }
+        filter.stand();
+        filter
+    }
+
+    /// What the stretch adds to the errors, first half: how the tilt goes along with each error.
+    pub fn carry(&mut self, stretch: &Stretch) {
+        let (levels, turn) = stretch.couplings();
+        let (tilts, others) = self.covariance.split_at_mut(BIAS);
+        for (tilt, coupling) in tilts.iter_mut().zip(&levels) {
+            for (factor, other) in coupling.iter().zip(&*others) {
+                subtract(tilt, *factor, other);
+            }
+        }
+        if !stretch.is_rest {
+            for (factor, other) in turn.iter().zip(&*others) {
+                subtract(&mut tilts[TURN], *factor, other);
+            }
         }
     }
 
-    /// What the stretch adds to the errors, and what the forces say of them.
-    pub fn step(&mut self, stretch: &Stretch, expected: &Expected) {
-        self.predict(stretch, expected);
-        if stretch.forced > 0.0 {
-            self.watch(stretch);
-            self.stay(stretch.seconds);
-        }
-    }
-
-    fn predict(&mut self, stretch: &Stretch, expected: &Expected) {
+    /// The second half: how the velocity goes along, all of it as the other way round, and what is new.
+    pub fn spread(&mut self, stretch: &Stretch, expected: &Expected) {
         let kept = 1.0 - stretch.seconds / FADING;
         for (velocity, impulse) in self.velocity.iter_mut().zip(stretch.impulse) {
             *velocity = *velocity * kept + impulse;
         }
-        self.carry(stretch, kept);
+        let [.., down] = stretch.impulse;
+        let (tilts, others) = self.covariance.split_at_mut(BIAS);
+        let velocities = &mut others[VELOCITY - BIAS..];
+        for (velocity, (tilt, force)) in velocities.iter_mut().zip([(1, down), (0, -down)]) {
+            for part in velocity.iter_mut() {
+                *part *= kept;
+            }
+            subtract(velocity, -force, &tilts[tilt]);
+        }
+        let before = self.level_variance();
+        self.even_out(stretch, kept);
+        self.add_noise(stretch, expected);
+        let grown = (self.level_variance() - before) / stretch.seconds;
+        let part = (stretch.seconds / WATCH).min(1.0);
+        self.balance.grown += part * (grown.max(0.0) - self.balance.grown);
+        self.balance.gained -= part * self.balance.gained;
+    }
+
+    /// Carries the errors of tilt and velocity with each other, whose rows alone are carried yet, and makes the columns
+    /// like the rows.
+    fn even_out(&mut self, stretch: &Stretch, kept: f32) {
+        let (levels, turn) = stretch.couplings();
+        let [.., down] = stretch.impulse;
+        for row in CARRIED {
+            let row = &mut self.covariance[row];
+            for (tilt, coupling) in levels.iter().enumerate() {
+                row[tilt] -= product(coupling, &row[BIAS..VELOCITY]);
+            }
+            if !stretch.is_rest {
+                row[TURN] -= product(&turn, &row[BIAS..AXES]);
+            }
+            row[VELOCITY] = kept * row[VELOCITY] + down * row[1];
+            row[VELOCITY + 1] = kept * row[VELOCITY + 1] - down * row[0];
+        }
+        for row in CARRIED {
+            let carried = self.covariance[row];
+            for (other, value) in self.covariance.iter_mut().zip(&carried) {
+                other[row] = *value;
+            }
+        }
+    }
+
+    fn add_noise(&mut self, stretch: &Stretch, expected: &Expected) {
+        let seconds = stretch.seconds;
         let strays: [f32; 3] = core::array::from_fn(|axis| {
             let swung = SWING * expected.scale[axis] * stretch.rate_squares[axis];
-            expected.walk[axis] * stretch.seconds + swung
+            expected.walk[axis] * seconds + swung
         });
         let [about_north, about_east, _] =
             stretch.attitude.map(|row| weighed(&row, &strays, stretch));
         // What the gyro of the down axis makes of the turn by its scale, who keeps the turn accounts for.
         let [x, y, _] = strays;
-        let own = expected.walk[2] * stretch.seconds;
+        let own = expected.walk[2] * seconds;
         let about_down = weighed(&stretch.attitude[2], &[x, y, own], stretch);
         let about_down = if stretch.is_rest { 0.0 } else { about_down + self.slanted(stretch) };
-        // A body that keeps its attitude shows the same error all the time: a tilt, not noise.
-        let rate = stretch.rate_squares.iter().sum::<f32>() / stretch.seconds;
-        let strayed = FORCE_SCALE * FORCE_SCALE * SWING * (rate * SWING * SWING).min(1.0);
-        let moved = (FORCE_NOISE * FORCE_NOISE + strayed) * stretch.seconds;
-        // A body that turns to and fro quickly leaves of it only its mean.
-        let turned = BEND * stretch.rate_squares.iter().sum::<f32>();
-        let turned = turned.min(stretch.seconds / TURNING);
-        let [x, y, z] =
-            expected.drift.map(|drift| drift * stretch.seconds + stretch.hidden * turned);
-        let more = [about_north, about_east, about_down, x, y, z, moved, moved];
-        for (place, more) in more.into_iter().enumerate() {
+        for (place, more) in [about_north, about_east, about_down].into_iter().enumerate() {
             self.covariance[place][place] += more;
+        }
+        let squares = stretch.rate_squares.iter().sum::<f32>();
+        // A body that turns to and fro quickly leaves of it only its mean.
+        let turned = (BEND * squares).min(seconds / TURNING);
+        for axis in 0..3 {
+            let more = expected.drift[axis] * seconds + stretch.hidden * turned;
+            self.covariance[BIAS + axis][BIAS + axis] += more;
+            let renewed = lasting(expected.scale[axis]) * (seconds / RENEWAL);
+            for place in axes(axis) {
+                self.covariance[place][place] += renewed;
+            }
+        }
+        // A body that keeps its attitude shows the same error all the time: a tilt, not noise.
+        let turned = (squares / seconds * SWING * SWING).min(1.0);
+        let strayed = FORCE_SCALE * FORCE_SCALE * SWING * turned;
+        for place in [VELOCITY, VELOCITY + 1] {
+            self.covariance[place][place] += (FORCE_NOISE * FORCE_NOISE + strayed) * seconds;
         }
     }
 
@@ -143,65 +222,20 @@ impl Filter {
         0.25 * square * square * BEND * stretch.rate_squares.iter().sum::<f32>()
     }
 
-    /// Carries the covariance on: tilt changes by the biases, velocity by the tilt.
-    fn carry(&mut self, stretch: &Stretch, kept: f32) {
-        for _ in 0..2 {
-            for row in &mut self.covariance {
-                *row = carried(row, stretch, kept);
-            }
-            self.transpose();
-        }
-        self.even_out();
+    /// Looks how the body moves; where the floor is beside the level, that is less sure from now on.
+    pub fn watch(&mut self, stretch: &Stretch) {
+        self.motion.watch(stretch);
+        let tilt = 0.5 * self.level_variance();
+        let more = self.motion.disagreement(tilt, stretch.seconds);
+        self.doubt_level(more);
     }
 
-    fn transpose(&mut self) {
-        for row in 1..STATES {
-            for column in 0..row {
-                let other = self.covariance[column][row];
-                self.covariance[column][row] = self.covariance[row][column];
-                self.covariance[row][column] = other;
-            }
-        }
-    }
-
-    /// Makes both halves the same again: no measurement ever shrinks what rounding makes them differ by.
-    fn even_out(&mut self) {
-        for row in 1..STATES {
-            for column in 0..row {
-                let mean = 0.5 * (self.covariance[column][row] + self.covariance[row][column]);
-                self.covariance[column][row] = mean;
-                self.covariance[row][column] = mean;
-            }
-        }
-    }
-
-    /// Watches how fast it moves. Velocities that come and go within a second hide no tilt, so the slow ones
-    /// count.
-    fn watch(&mut self, stretch: &Stretch) {
-        let (part, kept) = (stretch.seconds / SLOW, 1.0 - stretch.seconds / FADING);
-        for axis in 0..2 {
-            self.shown[axis] = self.shown[axis] * kept + stretch.impulse[axis];
-            self.slow[axis] += part * (self.shown[axis] - self.slow[axis]);
-        }
-        let [north, east] = self.slow;
-        let [force_north, force_east, _] = stretch.impulse.map(|part| part / stretch.forced);
-        let part = stretch.seconds / WATCH;
-        let speed = 0.5 * (north * north + east * east);
-        let force = 0.5 * (force_north * force_north + force_east * force_east);
-        self.speed += part * (speed - self.speed);
-        self.force += part * (force - self.force);
-    }
-
-    /// The body stays where it is, nearly.
-    fn stay(&mut self, seconds: f32) {
-        let [north, east] = self.slow;
-        let now = north * north + east * east;
-        let speed = self.speed.max(now).max(LEAST_SPEED * LEAST_SPEED);
-        // As white noise of the density that slow velocities have.
-        let variance = speed * 2.0 * SLOW / seconds;
-        let [north, east] = self.velocity;
-        self.measure(VELOCITY, -north, variance);
-        self.measure(VELOCITY + 1, -east, variance);
+    /// The body stays where it is, nearly: what its velocity north (0) or east (1) says, over so many seconds.
+    pub fn stay(&mut self, axis: usize, seconds: f32) {
+        let before = self.level_variance();
+        let density = self.motion.density(0.5 * before);
+        self.measure(VELOCITY + axis, -self.velocity[axis], density / seconds);
+        self.balance.gained += (before - self.level_variance()) / WATCH;
     }
 
     /// Takes a measurement of one state: by how much it is off, and that number's variance.
@@ -211,78 +245,87 @@ impl Filter {
         if whole <= 0.0 {
             return;
         }
-        let off = off - self.correction[place];
-        for row in 0..STATES {
-            let gain = column[row] / whole;
-            self.correction[row] += gain * off;
-            let before = self.covariance[row][row];
-            for (part, other) in self.covariance[row].iter_mut().zip(column) {
-                *part -= gain * other;
-            }
+        let part = 1.0 / whole;
+        let off = (off - self.correction[place]) * part;
+        subtract(&mut self.correction, -off, &column);
+        for (row, covariance) in self.covariance.iter_mut().enumerate() {
+            let before = covariance[row];
+            subtract(covariance, column[row] * part, &column);
             // Of what is learnt at once almost to the end, rounding must not leave less than nothing.
-            let least = ROUNDING * before;
-            self.covariance[row][row] = self.covariance[row][row].max(least);
+            covariance[row] = covariance[row].max(ROUNDING * before);
         }
         // What is left of the measured state is a difference of nearly equal numbers: written as a product.
-        for (row, before) in column.into_iter().enumerate() {
-            let left = before * (variance / whole);
-            self.covariance[row][place] = left;
-            self.covariance[place][row] = left;
+        let left = variance * part;
+        for (row, before) in column.iter().enumerate() {
+            self.covariance[row][place] = before * left;
+            self.covariance[place][row] = before * left;
         }
     }
+}
 
+/// What becomes of the states from outside.
+impl Filter {
     /// The body stands: whatever velocity it had is over.
     pub fn stand(&mut self) {
         self.velocity = [0.0; 2];
-        self.slow = [0.0; 2];
-        self.shown = [0.0; 2];
+        self.motion.stand();
         for place in VELOCITY..STATES {
-            self.clear(place);
-            self.covariance[place][place] = LEAST_SPEED * LEAST_SPEED;
+            self.forget(place, LEAST_SPEED * LEAST_SPEED);
         }
     }
 
-    /// How far the attitude, about north, east and down, rad, and the biases, rad/s, are to be put right.
-    pub fn take(&mut self) -> [[f32; 3]; 2] {
-        let [a, b, c, x, y, z, north, east] = core::mem::take(&mut self.correction);
+    /// What is to be put right, which is known from now on.
+    pub(super) fn take(&mut self) -> Correction {
+        let [a, b, c, x, y, z, axes @ .., north, east] = core::mem::take(&mut self.correction);
         self.velocity[0] += north;
         self.velocity[1] += east;
-        [[a, b, c], [x, y, z]]
+        let [xx, xy, xz, yx, yy, yz, zx, zy, zz] = axes;
+        Correction {
+            rotation: [a, b, c],
+            bias: [x, y, z],
+            axes: [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]],
+        }
     }
 
     /// Counts the error of the turn about the vertical from now on.
     pub fn begin_turn(&mut self) {
-        self.clear(TURN);
+        self.forget(TURN, 0.0);
     }
 
     /// Forgets a bias but for this variance, (rad/s)².
     pub fn forget_bias(&mut self, axis: usize, variance: f32) {
-        self.clear(BIAS + axis);
-        self.covariance[BIAS + axis][BIAS + axis] = variance;
+        self.forget(BIAS + axis, variance);
     }
 
-    /// Forgets all of a state.
-    fn clear(&mut self, place: usize) {
+    /// Forgets a gyro's scale and axis but for what is stated of them, squared.
+    pub fn forget_axis(&mut self, axis: usize, scale: f32) {
+        for place in axes(axis) {
+            self.forget(place, lasting(scale));
+        }
+    }
+
+    /// Forgets all of a state but for its variance.
+    fn forget(&mut self, place: usize, variance: f32) {
         for other in 0..STATES {
             self.covariance[place][other] = 0.0;
             self.covariance[other][place] = 0.0;
         }
+        self.covariance[place][place] = variance;
         self.correction[place] = 0.0;
-    }
-
-    /// Variance of the turn about the vertical, rad².
-    #[must_use]
-    pub fn turn_variance(&self) -> f32 {
-        self.covariance[TURN][TURN].max(0.0)
     }
 
     /// The level was taken anew, with this 1σ, rad.
     pub fn relevel(&mut self, sigma: f32) {
         for place in 0..TURN {
-            self.clear(place);
-            self.covariance[place][place] = sigma * sigma;
+            self.forget(place, sigma * sigma);
         }
+        self.begin_balance();
         self.stand();
+    }
+
+    /// Watches from now on what gravity takes of what the gyros add, as if it had taken all until now.
+    pub fn begin_balance(&mut self) {
+        self.balance.gained = self.balance.grown;
     }
 
     /// Makes a state less certain by a variance; an angle until it may be any.
@@ -290,6 +333,26 @@ impl Filter {
         let own = &mut self.covariance[place][place];
         let room = if place <= TURN { (ANY_ANGLE - *own).max(0.0) } else { variance };
         *own += variance.min(room);
+    }
+
+    /// Makes both tilts less certain by a variance, rad².
+    pub fn doubt_level(&mut self, variance: f32) {
+        self.doubt(0, variance);
+        self.doubt(1, variance);
+    }
+}
+
+/// What is asked of it.
+impl Filter {
+    /// Variance of the turn about the vertical, rad².
+    #[must_use]
+    pub fn turn_variance(&self) -> f32 {
+        self.covariance[TURN][TURN].max(0.0)
+    }
+
+    /// Variances of both tilts together, rad².
+    fn level_variance(&self) -> f32 {
+        self.covariance[0][0] + self.covariance[1][1]
     }
 
     /// 1σ of the greater tilt, rad.
@@ -310,11 +373,23 @@ impl Filter {
         BIAS + axis
     }
 
-    /// RMS of the horizontal acceleration lately, m/s².
+    /// What part gravity lately took of what the gyros' errors added to the level's variance; one where they added
+    /// nothing.
     #[must_use]
-    pub fn force(&self) -> f32 {
-        libm::sqrtf(self.force)
+    pub fn share_of_gravity(&self) -> f32 {
+        let Balance { grown, gained } = self.balance;
+        if grown > 0.0 { gained / grown } else { 1.0 }
     }
+}
+
+/// Where scale factor and axis of a gyro stand among the states.
+fn axes(axis: usize) -> core::ops::Range<usize> {
+    AXES + 3 * axis..AXES + 3 * axis + 3
+}
+
+/// Variance of what lasts of an error of scale and axes, from the whole.
+fn lasting(scale: f32) -> f32 {
+    LASTING * LASTING * scale
 }
 
 /// What strays about the body's axes, squared, as it adds up about an axis of the level frame.
@@ -324,15 +399,24 @@ fn weighed(row: &[f32; 3], strays: &[f32; 3], stretch: &Stretch) -> f32 {
     x * strays[0] + y * strays[1] + z * strays[2]
 }
 
-/// A row of the covariance after a stretch.
-fn carried(row: &States, stretch: &Stretch, kept: f32) -> States {
-    let [a, b, c, x, y, z, north, east] = *row;
-    let [by_north, by_east, by_down] = turned(&stretch.attitude, &[x, y, z]);
-    let (new_a, new_b) = (a - by_north, b - by_east);
-    let new_c = if stretch.is_rest { c } else { c - by_down };
-    let down = stretch.impulse[2];
-    // Half of what the biases turn comes to count within the stretch.
-    let north = kept * north + 0.5 * down * (b + new_b);
-    let east = kept * east - 0.5 * down * (a + new_a);
-    [new_a, new_b, new_c, x, y, z, north, east]
+/// Takes a multiple of another row from a row: four numbers at a time, for a loop costs as much as what it does.
+#[inline(never)]
+fn subtract(row: &mut States, factor: f32, other: &States) {
+    let (fours, rest) = row.as_chunks_mut::<4>();
+    let (other_fours, other_rest) = other.as_chunks::<4>();
+    for ([a, b, c, d], [e, f, g, h]) in fours.iter_mut().zip(other_fours) {
+        *a -= factor * e;
+        *b -= factor * f;
+        *c -= factor * g;
+        *d -= factor * h;
+    }
+    for (part, other) in rest.iter_mut().zip(other_rest) {
+        *part -= factor * other;
+    }
+}
+
+/// Scalar product of as many numbers as the shorter has.
+#[inline(never)]
+fn product(one: &[f32], other: &[f32]) -> f32 {
+    one.iter().zip(other).map(|(one, other)| one * other).sum()
 }

@@ -1,6 +1,7 @@
 //! What becomes of rotation that nobody saw: samples that are missing, and gyros at the limit of their range.
 
 use super::filter::{Filter, TURN};
+use super::judge::{Findings, Task};
 use super::stretch::Stretch;
 use super::sums::{Rested, Sums, Window};
 use super::{Trust, Vertical};
@@ -47,7 +48,10 @@ impl Vertical {
     /// So much is missing that nothing but the biases is worth keeping, and those as if they had been switched on.
     fn forget(&mut self, now: Instant) {
         let sigmas = self.priors.map(|prior| libm::sqrtf(prior + self.unknown));
-        self.filter = Filter::new(sigmas);
+        self.filter = Filter::new(sigmas, &self.expected);
+        self.axes = [[0.0; 3]; 3];
+        self.task = Task::Nothing;
+        self.findings = Findings::default();
         self.increment = Increment::default();
         self.force = Sums::default();
         self.stretch = Stretch::default();
@@ -73,8 +77,7 @@ impl Vertical {
     }
 
     fn lose_square(&mut self, variance: f32) {
-        self.filter.doubt(0, variance);
-        self.filter.doubt(1, variance);
+        self.filter.doubt_level(variance);
         self.filter.doubt(TURN, variance);
         if self.filter.tilt_sigma() > ALL && self.trust != Trust::Starting {
             self.is_lost = true;

@@ -1,11 +1,10 @@
 //! Looks at what happened: ten times a second at the forces, twice a second for a rest.
 
-use super::filter::Filter;
-use super::rest::{Known, Means, WINDOW};
+use super::filter::{Correction, Filter};
+use super::rest::{Found, Known, Means, WINDOW};
 use super::stretch::Stretch;
 use super::sums::{Rested, Window};
 use super::{GRAVITY, Trust, Vector, Vertical};
-use crate::keep::attitude::{self, Attitude};
 use crate::math::rotation::{difference, dot, scaled, sum, turned};
 
 /// Time from one step of the filter to the next, s.
@@ -25,8 +24,14 @@ const LONGEST_REST: f32 = 64.0;
 const FREE: f32 = 0.3;
 /// Tilt, 1σ, at which the level counts as lost, rad.
 const LOST: f32 = 0.1;
-/// Acceleration, RMS, at which gravity is hardly told from it, m/s².
-const COASTING: f32 = 1.0;
+/// Part that gravity takes of what the gyros' errors add to the level's variance, below which they carry it alone.
+const COASTING: f32 = 0.25;
+/// Bias, in 1σ of what was stated, beyond which that is not believed.
+const GREATEST_BIAS: f32 = 5.0;
+/// Greatest factor by which what was stated is widened at once, and the variance of a bias that is stated to be
+/// nothing, (rad/s)²: 0.002 °/h.
+const WIDEST: f32 = 100.0;
+const LEAST_PRIOR: f32 = 1e-16;
 
 /// How far gravity may be from the standard, m/s²: 9.78 on the equator, 9.83 at the poles.
 const GRAVITY_CHANGE: f32 = 0.03;
@@ -39,40 +44,154 @@ const HEADLONG: f32 = 2.0;
 /// Part of gravity by which the first forces may differ from it.
 const BEGINNING: f32 = 0.5;
 
+/// What is to be done for a stretch: a part with each sample, so that none takes long.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Task {
+    /// All is done.
+    #[default]
+    Nothing,
+    /// The filter's errors are carried on: rows, then columns.
+    Carry,
+    Spread,
+    /// The velocity north (0) and east (1) is about zero.
+    Stay(usize),
+    /// What can be trusted, and whether the body stands.
+    Judge,
+    /// The mean rate of a rest is the bias of an axis.
+    Learn(usize),
+    /// The mean force of a rest is gravity, about north (0) and east (1).
+    Level(usize),
+    /// What was found is put right.
+    Correct,
+}
+
+/// Parts that a stretch has at most, and those that the samples which make an attitude leave to others.
+const TASKS: f32 = 24.0;
+
+/// What a look at a rest found, to be told to the filter.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Findings {
+    /// By how much the biases are off, rad/s, and the variances of that.
+    biases: Option<[Vector; 2]>,
+    /// By how much the level is off, rad.
+    level: Option<[f32; 2]>,
+    /// Whether the biases are to be doubted then: what they hold of the Earth's rate is another as the body turns.
+    is_doubted: bool,
+}
+
 impl Vertical {
-    /// Lets the filter look at what happened.
+    /// How many parts of a stretch's work fall to a sample.
+    pub(super) fn pace(period: f32) -> u32 {
+        (TASKS * period / STRETCH) as u32 + 1
+    }
+
+    /// A stretch is over: what is left of the one before is done, and its own work begins.
     #[inline(never)]
     pub(super) fn step(&mut self) {
+        self.finish();
+        let stretch = core::mem::take(&mut self.stretch);
         if self.trust == Trust::Starting || self.is_lost {
             return self.start();
         }
-        let mut stretch = core::mem::take(&mut self.stretch);
-        stretch.is_rest = self.rest.is_at_rest();
-        stretch.hidden = if self.knows_north { 0.0 } else { 2.0 * self.unknown };
-        self.filter.step(&stretch, &self.expected);
-        self.judge(&stretch);
-        self.check_head(&stretch);
-        if self.window.seconds >= WINDOW {
-            self.look();
+        let hidden = 2.0 * self.hidden();
+        self.block = Stretch { is_rest: self.rest.is_at_rest(), hidden, ..stretch };
+        self.task = Task::Carry;
+    }
+
+    /// Does all that is left to be done.
+    pub(super) fn finish(&mut self) {
+        while self.task != Task::Nothing {
+            self.work();
         }
-        self.correct();
-        self.attitude.normalise();
+    }
+
+    /// Does a part of what is to be done.
+    #[inline(never)]
+    pub(super) fn work(&mut self) {
+        self.task = match self.task {
+            Task::Nothing => Task::Nothing,
+            Task::Carry => {
+                self.filter.carry(&self.block);
+                Task::Spread
+            }
+            Task::Spread => {
+                self.filter.spread(&self.block, &self.expected);
+                if self.block.forced > 0.0 { Task::Stay(0) } else { Task::Judge }
+            }
+            Task::Stay(axis) => {
+                if axis == 0 {
+                    self.filter.watch(&self.block);
+                }
+                self.filter.stay(axis, self.block.seconds);
+                if axis == 0 { Task::Stay(1) } else { Task::Judge }
+            }
+            Task::Judge => {
+                self.judge();
+                self.check_head();
+                if self.window.seconds >= WINDOW {
+                    self.look();
+                }
+                self.after_look()
+            }
+            Task::Learn(axis) => self.learn(axis),
+            Task::Level(place) => self.level(place),
+            Task::Correct => {
+                self.correct();
+                self.attitude.normalise();
+                Task::Nothing
+            }
+        }
+    }
+
+    /// What comes after a look.
+    fn after_look(&self) -> Task {
+        match self.findings {
+            Findings { biases: Some(_), .. } => Task::Learn(0),
+            Findings { level: Some(_), .. } => Task::Level(0),
+            _ => Task::Correct,
+        }
+    }
+
+    /// The mean rates of a rest are the biases.
+    fn learn(&mut self, axis: usize) -> Task {
+        if let Some([off, variance]) = self.findings.biases {
+            self.filter.measure(Filter::bias(axis), off[axis], variance[axis]);
+        }
+        if axis < 2 {
+            return Task::Learn(axis + 1);
+        }
+        self.findings.biases = None;
+        if core::mem::take(&mut self.findings.is_doubted) {
+            self.doubt_biases();
+        }
+        self.after_look()
+    }
+
+    /// The mean force of a rest is gravity.
+    fn level(&mut self, place: usize) -> Task {
+        if let Some(off) = self.findings.level {
+            self.filter.measure(place, off[place], STANDING_TILT * STANDING_TILT);
+        }
+        if place == 0 {
+            return Task::Level(1);
+        }
+        self.findings.level = None;
+        Task::Correct
     }
 
     /// Takes the first forces for gravity, and those after all of the level was lost.
     fn start(&mut self) {
-        self.stretch = Stretch::default();
         if self.window.forced < START {
             return;
         }
-        let force = scaled(&self.window.impulse, 1.0 / self.window.forced);
+        let Some(force) = self.window.force() else { return };
         self.window = Window::default();
         // A body that falls or is thrown shows no level.
         if (libm::sqrtf(dot(&force, &force)) - GRAVITY).abs() > BEGINNING * GRAVITY {
             return;
         }
-        let [course, ..] = attitude::angles(self.attitude.parts());
-        self.attitude = Attitude::levelled(&force, course);
+        let [about_north, about_east] = tilt(&turned(&self.matrix, &force));
+        self.attitude.correct(&[about_north, about_east, 0.0]);
         self.matrix = self.attitude.matrix();
         let is_first = self.trust == Trust::Starting;
         self.filter.relevel(if is_first { START_TILT } else { MOVING_TILT });
@@ -81,15 +200,21 @@ impl Vertical {
     }
 
     /// Says what of the level can be trusted.
-    fn judge(&mut self, stretch: &Stretch) {
-        let is_forced = stretch.forced > 0.5 * stretch.seconds;
+    fn judge(&mut self) {
+        let block = &self.block;
+        let is_forced = block.forced > 0.5 * block.seconds;
+        let is_free = is_forced && block.force() < FREE * GRAVITY;
+        if !is_forced || is_free {
+            // What gravity could not take meanwhile says nothing of whether it can afterwards.
+            self.filter.begin_balance();
+        }
         self.trust = if self.filter.tilt_sigma() > LOST {
             Trust::RotationLost
         } else if !is_forced {
             Trust::NoForce
-        } else if stretch.force() < FREE * GRAVITY {
+        } else if is_free {
             Trust::FreeFall
-        } else if self.filter.force() > COASTING {
+        } else if !block.is_rest && self.filter.share_of_gravity() < COASTING {
             Trust::Coasting
         } else {
             Trust::Level
@@ -99,36 +224,55 @@ impl Vertical {
     /// Looks whether the body stands; if so, its rates are the biases and its force is gravity.
     fn look(&mut self) {
         let window = core::mem::take(&mut self.window);
-        let per_second = 1.0 / window.seconds;
-        let rate = scaled(&window.turned, per_second);
-        let force = (window.forced > 0.0).then(|| scaled(&window.impulse, 1.0 / window.forced));
-        let known = Known {
+        let force = window.force();
+        let means = Means {
+            rate: window.rate(),
+            force,
+            walk: window.walk(),
+            acceleration: force.and_then(|force| self.acceleration(&force)),
+        };
+        let was_rest = self.is_at_rest();
+        match self.rest.push(means, &self.known()) {
+            Found::Rest => self.stand(&window, was_rest),
+            Found::Motion => self.move_on(&window, was_rest),
+            Found::StrangeBias => {
+                self.move_on(&window, was_rest);
+                self.widen_biases(&difference(&means.rate, &self.bias));
+            }
+        }
+    }
+
+    /// What is known of the gyros.
+    fn known(&self) -> Known {
+        Known {
             biases: self.bias,
             variances: self.filter.bias_variances(),
             walk: self.expected.walk,
-        };
-        let is_gravity = force.is_some_and(|force| self.is_gravity(&force));
-        let was_rest = self.is_at_rest();
-        if !self.rest.push(Means { rate, force, is_gravity }, &known) {
-            return self.move_on(&window, was_rest);
         }
-        if let Some(force) = force.filter(|_| !was_rest && !is_gravity) {
-            self.lose_level(&turned(&self.matrix, &force));
-        }
-        self.course.stand(window.seconds);
-        self.stand(&window, force);
-        // The body did not turn: what the gyro made of it is undone.
-        self.attitude.correct(&[0.0, 0.0, -window.about]);
+    }
+
+    /// Variance of what the Earth's rate may hide in a bias, (rad/s)².
+    fn hidden(&self) -> f32 {
+        if self.knows_north { 0.0 } else { self.unknown }
+    }
+
+    /// Variances of the biases as they were stated, with what the Earth's rate may hide in them, (rad/s)².
+    fn stated(&self) -> Vector {
+        let hidden = self.hidden();
+        self.priors.map(|prior| (prior + hidden).max(LEAST_PRIOR))
     }
 
     /// The body goes, or goes on. As long as nobody knows where north is, the biases hold what the Earth turned it by at
     /// rest, which is another rate as soon as it turns.
     fn move_on(&mut self, window: &Window, was_rest: bool) {
         self.course.drive(window);
-        self.learn_biases();
+        self.findings.biases = self.rested_biases();
         self.rested.due = 0.0;
         if was_rest && !self.knows_north {
-            self.doubt_biases();
+            match self.findings.biases {
+                Some(_) => self.findings.is_doubted = true,
+                None => self.doubt_biases(),
+            }
         }
     }
 
@@ -138,6 +282,20 @@ impl Vertical {
         }
     }
 
+    /// The biases are off by so much, rad/s, more than what was stated of them allows: it is believed of none of the gyros
+    /// any more, for who is wrong about one is wrong about its like.
+    fn widen_biases(&mut self, off: &Vector) {
+        let stated = self.stated();
+        let squares = (0..3).map(|axis| off[axis] * off[axis] / stated[axis]);
+        let ratio = squares.fold(1.0, f32::max).min(WIDEST * WIDEST);
+        self.priors = scaled(&stated, ratio);
+        for (axis, prior) in self.priors.into_iter().enumerate() {
+            self.filter.doubt(Filter::bias(axis), prior);
+        }
+        self.rest.learnt();
+        self.is_bias_beyond_stated = true;
+    }
+
     /// Whether a mean force is gravity as the attitude has it, as far as that can be told.
     fn is_gravity(&self, force: &Vector) -> bool {
         let off = sum(force, &scaled(&self.matrix[2], GRAVITY));
@@ -145,59 +303,83 @@ impl Vertical {
         dot(&off, &off) <= bound * bound
     }
 
+    /// The acceleration that a steady force may show, m/s²: where it is beside gravity as the attitude has it, and either
+    /// holds the body up as gravity would, as in a steady acceleration on a level road, or is not of gravity's size.
+    fn acceleration(&self, force: &Vector) -> Option<f32> {
+        let tolerance = SIGMAS * GRAVITY * self.force_tilt + GRAVITY_CHANGE;
+        let size = libm::sqrtf(dot(force, force));
+        let support = -dot(&self.matrix[2], force);
+        let across = libm::sqrtf((size * size - support * support).max(0.0));
+        let holds_up = (support - GRAVITY).abs() <= tolerance + SIGMAS * self.sigma() * across;
+        let other = (size - GRAVITY).abs();
+        let is_possible = !self.is_gravity(force) && (holds_up || other > tolerance);
+        is_possible.then(|| across.max(other))
+    }
+
     /// The level is not where it was believed to be, but where this force on it says.
     fn lose_level(&mut self, force: &Vector) {
         let [about_north, about_east] = tilt(force);
         let square = about_north * about_north + about_east * about_east;
-        self.filter.doubt(0, square);
-        self.filter.doubt(1, square);
+        self.filter.doubt_level(square);
     }
 
     /// Looks whether the level stands on its head: no vehicle is pushed down for so long.
-    fn check_head(&mut self, stretch: &Stretch) {
-        let is_wrong = stretch.impulse[2] > UPSIDE_DOWN * GRAVITY * stretch.seconds;
-        self.headlong = if is_wrong { self.headlong + stretch.seconds } else { 0.0 };
+    fn check_head(&mut self) {
+        let [.., down] = self.block.impulse;
+        let is_wrong = down > UPSIDE_DOWN * GRAVITY * self.block.seconds;
+        self.headlong = if is_wrong { self.headlong + self.block.seconds } else { 0.0 };
         if self.headlong > HEADLONG {
             self.headlong = 0.0;
-            self.lose_level(&stretch.impulse);
-            self.take_for_gravity(&stretch.impulse);
-            self.filter.doubt(0, START_TILT * START_TILT);
-            self.filter.doubt(1, START_TILT * START_TILT);
+            let force = self.block.impulse;
+            self.lose_level(&force);
+            for (place, off) in tilt(&force).into_iter().enumerate() {
+                self.filter.measure(place, off, STANDING_TILT * STANDING_TILT);
+                self.filter.doubt(place, START_TILT * START_TILT);
+            }
         }
     }
 
-    fn stand(&mut self, window: &Window, force: Option<Vector>) {
+    /// The body stands: its rates are the biases, and its force is gravity.
+    fn stand(&mut self, window: &Window, was_rest: bool) {
         self.filter.stand();
+        self.course.stand(window.seconds);
         self.rested.seconds += window.seconds;
         self.rested.turned = sum(&self.rested.turned, &window.turned);
         if self.rested.seconds >= self.rested.due {
             self.rested.due = (2.0 * self.rested.seconds).min(LONGEST_REST);
-            self.learn_biases();
+            self.findings.biases = self.rested_biases();
         }
-        if let Some(force) = force {
-            self.take_for_gravity(&turned(&self.matrix, &force));
+        if let Some(force) = window.force() {
+            let is_beside = !was_rest && !self.is_gravity(&force);
+            let force = turned(&self.matrix, &force);
+            if is_beside {
+                self.lose_level(&force);
+            }
+            self.findings.level = Some(tilt(&force));
         }
+        // The body did not turn: what the gyro made of it is undone.
+        self.attitude.correct(&[0.0, 0.0, -window.about]);
     }
 
-    /// A force on the level frame is gravity.
-    fn take_for_gravity(&mut self, force: &Vector) {
-        for (place, off) in tilt(force).into_iter().enumerate() {
-            self.filter.measure(place, off, STANDING_TILT * STANDING_TILT);
-        }
-    }
-
-    /// The mean rates of a rest are the biases.
-    pub(super) fn learn_biases(&mut self) {
+    /// What the rest says of the biases that it has not said yet.
+    fn rested_biases(&mut self) -> Option<[Vector; 2]> {
         let Rested { seconds, turned, .. } = self.rested;
         if seconds <= 0.0 {
-            return;
+            return None;
         }
         (self.rested.seconds, self.rested.turned) = (0.0, [0.0; 3]);
         self.rest.learnt();
         let off = difference(&scaled(&turned, 1.0 / seconds), &self.bias);
-        for (axis, off) in off.into_iter().enumerate() {
-            let variance = self.rest_variance(axis, seconds);
-            self.filter.measure(Filter::bias(axis), off, variance);
+        Some([off, core::array::from_fn(|axis| self.rest_variance(axis, seconds))])
+    }
+
+    /// Tells the filter at once what the rest says of the biases.
+    pub(super) fn learn_biases(&mut self) {
+        self.finish();
+        self.findings.biases = self.rested_biases();
+        if self.findings.biases.is_some() {
+            self.task = Task::Learn(0);
+            self.finish();
         }
     }
 
@@ -207,24 +389,28 @@ impl Vertical {
         self.expected.walk[axis] / seconds + 2.0 * shaking * shaking
     }
 
-    /// Puts attitude and biases right.
+    /// Puts attitude, biases and axes right.
     pub(super) fn correct(&mut self) {
-        let [rotation, bias] = self.filter.take();
+        let Correction { rotation, bias, axes } = self.filter.take();
         self.attitude.correct(&rotation);
         self.matrix = self.attitude.matrix();
-        self.bias = bounded(&sum(&self.bias, &bias), &self.greatest);
+        self.bias = sum(&self.bias, &bias);
+        for (row, more) in self.axes.iter_mut().zip(axes) {
+            *row = sum(row, &more);
+        }
+        let stated = self.stated();
+        let most = GREATEST_BIAS * GREATEST_BIAS;
+        let bias = self.bias;
+        if (0..3).any(|axis| bias[axis] * bias[axis] > most * stated[axis]) {
+            self.widen_biases(&bias);
+        }
     }
 }
 
-/// By how much a force on the level frame shows that it is turned, about north and east, rad: up to half a turn.
+/// By how much a force on the level frame shows that it is turned, about north and east, rad: up to half a turn, which is
+/// about north.
 fn tilt([north, east, down]: &Vector) -> [f32; 2] {
     let across = libm::sqrtf(north * north + east * east);
     let angle = libm::atan2f(across, -down);
-    let part = if across > 0.0 { angle / across } else { 0.0 };
-    [-part * east, part * north]
-}
-
-/// The vector with each component within its bound.
-fn bounded(vector: &Vector, bounds: &Vector) -> Vector {
-    core::array::from_fn(|axis| vector[axis].max(-bounds[axis]).min(bounds[axis]))
+    if across > 0.0 { [-angle * east / across, angle * north / across] } else { [angle, 0.0] }
 }

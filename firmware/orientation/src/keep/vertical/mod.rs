@@ -14,6 +14,7 @@ mod course;
 mod filter;
 mod gap;
 mod judge;
+mod motion;
 mod rest;
 mod stretch;
 mod sums;
@@ -21,8 +22,8 @@ mod sums;
 pub use self::course::Course;
 pub use self::filter::Expected;
 use self::filter::Filter;
-use self::judge::STRETCH;
-use self::rest::RestWatch;
+use self::judge::{Findings, STRETCH, Task};
+use self::rest::ZeroVelocityDetector;
 use self::stretch::Stretch;
 use self::sums::{Before, Rested, Sums, Window};
 use super::Setting;
@@ -41,8 +42,8 @@ const TICK: u64 = 20_000;
 const GRAVITY: f32 = 9.806_65;
 /// Part of its period by which a sample may come late.
 const LATE: f32 = 0.5;
-/// Greatest bias that is believed, in 1σ of what was stated.
-const GREATEST_BIAS: f32 = 5.0;
+/// Force that no accelerometer for a vehicle or a hand shows, µm/s²: 100 g; what is beyond is clipped or no force at all.
+const GREATEST_FORCE: u32 = 980_665_000;
 /// Time over which the rate lately fades, s.
 const GAP_WATCH: f32 = 1.0;
 
@@ -54,7 +55,7 @@ pub enum Trust {
     Starting,
     /// Nothing is the matter.
     Level,
-    /// The body moves so that gravity can hardly be told from acceleration.
+    /// The body moves so that gravity takes less than a quarter of what the gyros' errors add: they alone carry the level.
     Coasting,
     /// The body falls freely.
     FreeFall,
@@ -72,8 +73,8 @@ pub struct Vertical {
     /// nobody knows where north is, (rad/s)².
     priors: Vector,
     unknown: f32,
-    /// Greatest biases that are believed, rad/s.
-    greatest: Vector,
+    /// Whether a bias showed to be beyond what was stated.
+    is_bias_beyond_stated: bool,
     /// 1σ of the accelerometers' biases, as a tilt, rad.
     force_tilt: f32,
     /// Sample period, s.
@@ -85,10 +86,17 @@ pub struct Vertical {
     attitude: Attitude,
     matrix: Matrix,
     bias: Vector,
+    /// Of the turn about each axis, what each gyro shows too much: its scale and the direction of its axis.
+    axes: Matrix,
     filter: Filter,
     stretch: Stretch,
+    /// The stretch that is being worked on, what of that is to be done next, and how many parts a sample.
+    block: Stretch,
+    task: Task,
+    pace: u32,
+    findings: Findings,
     window: Window,
-    rest: RestWatch,
+    rest: ZeroVelocityDetector,
     rested: Rested,
     before: Before,
     course: Course,
@@ -111,23 +119,30 @@ impl Vertical {
         let sigmas = setting
             .gyros
             .map(|gyro| libm::sqrt(gyro.bias_sigma * gyro.bias_sigma + unknown) as f32);
+        let expected = setting.expected();
+        let period = setting.sample_seconds as f32;
         Self {
             priors: setting.gyros.map(|gyro| (gyro.bias_sigma * gyro.bias_sigma) as f32),
             unknown: unknown as f32,
-            expected: setting.expected(),
-            greatest: scaled(&sigmas, GREATEST_BIAS),
+            is_bias_beyond_stated: false,
             force_tilt: setting.force_bias_sigma as f32 / GRAVITY,
-            period: setting.sample_seconds as f32,
+            period,
             frame: [0.0, 0.0, -(setting.latitude.vertical_rate() as f32)],
             increment: Increment::default(),
             force: Sums::default(),
             attitude: Attitude::default(),
             matrix: Attitude::default().matrix(),
             bias: [0.0; 3],
-            filter: Filter::new(sigmas),
+            axes: [[0.0; 3]; 3],
+            filter: Filter::new(sigmas, &expected),
+            expected,
             stretch: Stretch::default(),
+            block: Stretch::default(),
+            task: Task::Nothing,
+            pace: Self::pace(period),
+            findings: Findings::default(),
             window: Window::default(),
-            rest: RestWatch::default(),
+            rest: ZeroVelocityDetector::default(),
             rested: Rested::default(),
             before: Before::default(),
             course: Course::default(),
@@ -155,13 +170,19 @@ impl Vertical {
             self.before.turned = sample.turned;
             self.before.clipped = 0.0;
         }
-        let is_clipped = |force: &[SpecificForce; 3]| force.iter().any(|part| part.is_saturated());
-        if let Some(force) = sample.force.filter(|force| !is_clipped(force)) {
+        let is_felt = |force: &[SpecificForce; 3]| {
+            force.iter().all(|part| part.0.unsigned_abs() < GREATEST_FORCE)
+        };
+        if let Some(force) = sample.force.filter(is_felt) {
             self.force.push(force);
         }
         let is_due = sample.time.0.saturating_sub(self.since.0) >= TICK;
         if is_due || self.increment.is_large() {
             self.tick(sample.time);
+        }
+        // A sample that makes an attitude does enough already, if there are others.
+        for _ in u32::from(is_due)..self.pace {
+            self.work();
         }
         is_due || is_lost
     }
@@ -198,15 +219,14 @@ impl Vertical {
     fn advance(&mut self, rotation: &Vector, seconds: f32) {
         let frame = turned(&transposed(&self.matrix), &scaled(&self.frame, seconds));
         let shown = difference(rotation, &frame);
-        let rotation = difference(&shown, &scaled(&self.bias, seconds));
+        let rotation = self.rotation(&difference(&shown, &scaled(&self.bias, seconds)));
         self.attitude.turn(&rotation);
         let after = self.attitude.matrix();
         let middle: Matrix = core::array::from_fn(|row| {
             core::array::from_fn(|column| 0.5 * (self.matrix[row][column] + after[row][column]))
         });
         self.matrix = after;
-        self.window.seconds += seconds;
-        self.window.turned = sum(&self.window.turned, &shown);
+        self.window.turn(&shown, seconds);
         self.window.about += dot(&middle[2], &rotation);
         self.stretch.turn(&middle, &rotation, seconds);
         if let Some(force) = self.force.take() {
@@ -218,11 +238,20 @@ impl Vertical {
             self.step();
         }
     }
+
+    /// What the body turned, from what the gyros show of it without their biases: what is known of their axes is put
+    /// right in the level, and not in the heading.
+    fn rotation(&self, shown: &Vector) -> Vector {
+        let [.., down] = &self.matrix;
+        let off = turned(&self.axes, shown);
+        let level = difference(&off, &scaled(down, dot(down, &off)));
+        difference(shown, &level)
+    }
 }
 
 /// What is asked of it.
 impl Vertical {
-    /// From body axes to the level frame, whose x was in the body's vertical plane when it began; at the
+    /// From body axes to the level frame, on a course that is zero for a body that was level when it began; at the
     /// latest sample.
     #[must_use]
     pub fn attitude(&self) -> Attitude {
@@ -252,6 +281,12 @@ impl Vertical {
     #[must_use]
     pub fn bias_sigmas(&self) -> Vector {
         self.filter.bias_variances().map(libm::sqrtf)
+    }
+
+    /// Whether a gyro's bias showed to be beyond what was stated, so that nothing stated of them is believed.
+    #[must_use]
+    pub fn is_bias_beyond_stated(&self) -> bool {
+        self.is_bias_beyond_stated
     }
 
     /// Whether the level can be trusted.
@@ -293,15 +328,17 @@ impl Vertical {
 
     /// From now on another gyro shows the axis down: nothing is known of its bias.
     pub fn exchange_down(&mut self, setting: &Setting) {
+        self.finish();
         self.expected = setting.expected();
         let [.., down] = &setting.gyros;
         let sigma = down.bias_sigma as f32;
         self.priors[2] = sigma * sigma;
-        self.greatest[2] = GREATEST_BIAS * sigma;
         self.bias[2] = 0.0;
+        self.axes[2] = [0.0; 3];
         self.filter.forget_bias(2, sigma * sigma);
+        self.filter.forget_axis(2, self.expected.scale[2]);
         self.rested = Rested::default();
-        self.rest.disturb();
+        self.rest.exchange(2, self.expected.walk[2]);
         self.window = Window::default();
     }
 
@@ -313,7 +350,6 @@ impl Vertical {
     /// The same, and north is known for the first time, or again: biases held the Earth's level rate until now.
     pub fn find_north(&mut self, rate: Vector) {
         self.learn_biases();
-        self.correct();
         let more = turned(&transposed(&self.matrix), &difference(&rate, &self.frame));
         self.frame = rate;
         self.knows_north = true;
@@ -339,7 +375,6 @@ impl Vertical {
     /// Counts from now on.
     pub fn begin_course(&mut self) {
         self.learn_biases();
-        self.correct();
         self.filter.begin_turn();
         self.course = Course { stood: self.course.stood, ..Course::default() };
     }

@@ -1,10 +1,20 @@
-//! Whether the body stands, by the gyros' noise and what is known of their biases.
+//! Whether the body stands: a zero-velocity detector that knows its gyros' noise from what they show.
 //!
-//! Half a second is quiet if the mean rates are the biases' within their uncertainty, and rates and forces are
-//! those of the half second before within their noise. Three in a row are a rest, if what the body turned in all of
-//! them is the biases' as well, and if the force is gravity as the attitude has it: a vehicle that speeds up steadily on a
-//! straight road is quiet too. A turn that is as even as a bias and smaller than what is still possible for one can be told
-//! from it by nobody; once biases are known that is no turn at all.
+//! Half a second is steady if its mean rates and forces are those of the half second before within the gyros' noise,
+//! and quiet if the rates are the biases' as well, within their uncertainty, in it alone and in all that it follows. Three
+//! quiet ones in a row are a rest. The attitude is not asked; only where the force is not gravity as the attitude has
+//! it, and a steady acceleration would look just so, a rest must last for a minute, or until that would have made the
+//! body too fast: a vehicle that speeds up steadily on a straight road is quiet too.
+//!
+//! Rates that are steady but not the biases' are a turn, or biases beyond what was stated. A turn about a level axis
+//! would carry the force along, which shows at once which it is. A steady turn about the vertical and the bias of a gyro
+//! that has never rested look alike: rates that stay even for a minute are taken for a bias.
+//!
+//! The stop criteria of [`crate::signal::rest`] ask another question: whether the rate is the Earth's, of gyros that
+//! show it. They judge an average on its own and need no one before it, which coarse gyros cannot.
+
+use super::Vector;
+use crate::math::rotation::{cross, difference, dot, scaled, sum};
 
 /// Standard deviations that a mean may be off.
 const BOUND: f32 = 4.0;
@@ -12,76 +22,153 @@ const BOUND: f32 = 4.0;
 pub const WINDOW: f32 = 0.5;
 /// Quiet windows that make a rest.
 const ENOUGH: u32 = 3;
-/// Quiet windows that make one although the force is not where the attitude has it: a minute, in which a vehicle that
-/// speeds up enough to be seen becomes too fast to be one. The attitude is wrong then.
+/// Windows that make one where a steady acceleration, or a steady turn, would look just so: a minute.
 const PATIENCE: u32 = 120;
+/// Speed of which no vehicle is that has been speeding up steadily all the time, m/s.
+const TOO_FAST: f32 = 60.0;
 /// How far wind and engine turn a body that stands within a window, rad: 20″.
 const SHAKING: f32 = 1e-4;
 /// How much a mean force may change at rest, m/s²: 3 mg.
 const FORCE_CHANGE: f32 = 0.03;
+/// Least force that a body feels which does not fall, m/s²: half of gravity.
+const LEAST_FORCE: f32 = 4.9;
+/// Changes of the force by which a turn must have carried it along to be denied by its standing still.
+const DENIED: f32 = 3.0;
+/// Greatest and least noise that is believed, squared, in those of what was stated: five times, a tenth.
+const GREATEST_NOISE: f32 = 25.0;
+const LEAST_NOISE: f32 = 0.01;
+/// How much of the way to a lower noise one window goes, to a higher one at rest, and how much may be added by a
+/// window on the move.
+const LOWER: f32 = 0.5;
+const HIGHER: f32 = 0.125;
+const ADDED: f32 = 0.03;
 
 /// What a window shows.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Means {
     /// Mean rates less what the Earth turns, rad/s.
-    pub rate: [f32; 3],
+    pub rate: Vector,
     /// Mean forces, m/s²; none where there was none.
-    pub force: Option<[f32; 3]>,
-    /// Whether that is gravity by the attitude.
-    pub is_gravity: bool,
+    pub force: Option<Vector>,
+    /// Angle random walk as the rates within the window show it, squared, rad²/s.
+    pub walk: Vector,
+    /// Acceleration that the force may show although nothing changes, if the attitude is right, m/s²; none where it is
+    /// gravity.
+    pub acceleration: Option<f32>,
 }
 
 /// What is known of the gyros.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Known {
     /// Biases, rad/s, and their variances.
-    pub biases: [f32; 3],
-    pub variances: [f32; 3],
-    /// Angle random walk, squared, rad²/s.
-    pub walk: [f32; 3],
+    pub biases: Vector,
+    pub variances: Vector,
+    /// Angle random walk as it was stated, squared, rad²/s.
+    pub walk: Vector,
 }
 
-/// Watches for rests.
+/// What a window belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Found {
+    /// The body moves, or may.
+    Motion,
+    /// The body stands.
+    Rest,
+    /// It stands, but its rates are no biases that were to be expected.
+    StrangeBias,
+}
+
+/// The detector at work.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct RestWatch {
+pub struct ZeroVelocityDetector {
     before: Option<Means>,
+    /// Noise of the gyros as they show it, squared, rad²/s; none before the first window.
+    walk: Option<Vector>,
     quiet: u32,
-    /// What the body has turned beside the biases since it is quiet or the biases were learnt, rad, and for how long, s.
-    turned: [f32; 3],
+    /// What the body has turned beside the biases since it is steady or the biases were learnt, rad, and for how long, s.
+    turned: Vector,
     seconds: f32,
+    steady: Steady,
     is_at_rest: bool,
+    /// Whether each gyro has rested since it is switched on.
+    has_rested: [bool; 3],
 }
 
-impl RestWatch {
-    /// Takes a window; whether it belongs to a rest.
-    pub fn push(&mut self, means: Means, known: &Known) -> bool {
-        let before = self.before.replace(means);
-        if before.is_some_and(|before| self.is_quiet(&means, &before, known)) {
-            self.quiet = self.quiet.saturating_add(1);
-            let enough = if self.is_at_rest || means.is_gravity { ENOUGH } else { PATIENCE };
-            self.is_at_rest = self.quiet >= enough;
-        } else {
-            *self = Self { before: self.before, ..Self::default() };
+/// Windows in a row that are steady, though not quiet.
+#[derive(Clone, Copy, Debug, Default)]
+struct Steady {
+    windows: u32,
+    /// What the body would have turned beside the biases meanwhile, rad.
+    turned: Vector,
+    /// The force in the first of them, m/s².
+    force: Vector,
+}
+
+impl ZeroVelocityDetector {
+    /// Takes a window, and says what it belongs to.
+    pub fn push(&mut self, means: Means, known: &Known) -> Found {
+        let walk = self.learn_noise(&means, known);
+        let Some(before) = self.before.replace(means) else { return self.moves() };
+        let Some(force) = steady_force(&means, &before, &walk) else { return self.moves() };
+        if !self.is_quiet(&means, known, &walk) {
+            self.steady.push(scaled(&difference(&means.rate, &known.biases), WINDOW), force);
+            let is_strange = self.steady.denies_turn(&force) || self.outlasts_turn(known);
+            (self.quiet, self.is_at_rest) = (0, false);
+            return if is_strange { Found::StrangeBias } else { Found::Motion };
         }
-        self.is_at_rest
+        self.steady = Steady::default();
+        self.quiet = self.quiet.saturating_add(1);
+        self.is_at_rest = self.quiet >= if self.is_at_rest { ENOUGH } else { enough(&means) };
+        if !self.is_at_rest {
+            return Found::Motion;
+        }
+        self.has_rested = [true; 3];
+        Found::Rest
     }
 
-    fn is_quiet(&mut self, means: &Means, before: &Means, known: &Known) -> bool {
+    /// The gyros' noise as they show it: the least of lately, for motion only adds to it.
+    fn learn_noise(&mut self, means: &Means, known: &Known) -> Vector {
+        let walk = core::array::from_fn(|axis| {
+            let most = GREATEST_NOISE * known.walk[axis];
+            let before = self.walk.map_or(most, |walk| walk[axis]);
+            let part = if means.walk[axis] < before { LOWER } else { HIGHER };
+            let towards = before + part * (means.walk[axis] - before);
+            let least_more = before * (1.0 + ADDED);
+            let after = if self.is_at_rest { towards } else { towards.min(least_more) };
+            after.min(most).max(LEAST_NOISE * known.walk[axis])
+        });
+        self.walk = Some(walk);
+        walk
+    }
+
+    fn is_quiet(&mut self, means: &Means, known: &Known, walk: &Vector) -> bool {
         self.seconds += WINDOW;
-        let noise_and_bias = |axis: usize, seconds: f32| {
-            let noise = known.walk[axis] * seconds + known.variances[axis] * seconds * seconds;
-            BOUND * libm::sqrtf(noise) + SHAKING
-        };
-        let mut is_quiet = is_steady(means, before);
-        for axis in 0..3 {
+        let mut is_quiet = true;
+        for (axis, walk) in walk.iter().enumerate() {
+            let bound = |seconds: f32| greatest_turn(*walk, known.variances[axis], seconds);
             let away = WINDOW * (means.rate[axis] - known.biases[axis]);
-            let change = WINDOW * (means.rate[axis] - before.rate[axis]);
             self.turned[axis] += away;
-            is_quiet &= away.abs() <= noise_and_bias(axis, WINDOW)
-                && self.turned[axis].abs() <= noise_and_bias(axis, self.seconds)
-                && change.abs() <= BOUND * libm::sqrtf(2.0 * known.walk[axis] * WINDOW) + SHAKING;
+            is_quiet &= away.abs() <= bound(WINDOW);
+            is_quiet &= self.turned[axis].abs() <= bound(self.seconds);
         }
         is_quiet
+    }
+
+    fn moves(&mut self) -> Found {
+        self.steady = Steady::default();
+        (self.quiet, self.is_at_rest) = (0, false);
+        self.learnt();
+        Found::Motion
+    }
+
+    /// Whether the rates have been even for longer than a turn can be, about axes whose gyros have never rested.
+    fn outlasts_turn(&self, known: &Known) -> bool {
+        let seconds = self.steady.windows as f32 * WINDOW;
+        self.steady.windows >= PATIENCE
+            && (0..3).all(|axis| {
+                let bound = greatest_turn(known.walk[axis], known.variances[axis], seconds);
+                self.steady.turned[axis].abs() <= bound || !self.has_rested[axis]
+            })
     }
 
     /// The biases were learnt: what the body has turned beside them counts anew.
@@ -95,13 +182,65 @@ impl RestWatch {
         self.is_at_rest
     }
 
-    /// Begins anew.
+    /// Begins anew, but for what is known of the gyros.
     pub fn disturb(&mut self) {
-        *self = Self::default();
+        *self = Self { walk: self.walk, has_rested: self.has_rested, ..Self::default() };
+    }
+
+    /// Begins anew with another gyro about an axis: nothing is known of its noise.
+    pub fn exchange(&mut self, axis: usize, walk: f32) {
+        self.disturb();
+        self.has_rested[axis] = false;
+        if let Some(known) = &mut self.walk {
+            known[axis] = GREATEST_NOISE * walk;
+        }
     }
 }
 
-fn is_steady(now: &Means, before: &Means) -> bool {
-    let (Some(now), Some(before)) = (now.force, before.force) else { return false };
-    (0..3).all(|axis| (now[axis] - before[axis]).abs() <= FORCE_CHANGE)
+impl Steady {
+    fn push(&mut self, turned: Vector, force: Vector) {
+        if self.windows == 0 {
+            self.force = force;
+        }
+        self.windows = self.windows.saturating_add(1);
+        self.turned = sum(&self.turned, &turned);
+    }
+
+    /// Whether the force would have been carried along by the turn that the rates show, and stands. In a bend it is carried
+    /// with the body and stands too, so only a turn that is rather about level axes is denied.
+    fn denies_turn(&self, force: &Vector) -> bool {
+        let carried = cross(&self.turned, force);
+        let moved = difference(force, &self.force);
+        let (carried, moved) = (dot(&carried, &carried), dot(&moved, &moved));
+        let along = dot(&self.turned, force);
+        let bound = DENIED * FORCE_CHANGE;
+        carried > bound * bound && carried > along * along && moved * (DENIED * DENIED) < carried
+    }
+}
+
+/// How far a body that stands may seem to turn beside the bias in so many seconds, rad: by noise (angle random walk,
+/// squared, rad²/s), by what the bias is uncertain (its variance, (rad/s)²), and by wind.
+fn greatest_turn(walk: f32, variance: f32, seconds: f32) -> f32 {
+    BOUND * libm::sqrtf(walk * seconds + variance * seconds * seconds) + SHAKING
+}
+
+/// Quiet windows that make a rest.
+fn enough(means: &Means) -> u32 {
+    let patience = |acceleration: f32| (TOO_FAST / (acceleration * WINDOW)) as u32;
+    means.acceleration.map_or(ENOUGH, |acceleration| patience(acceleration).clamp(ENOUGH, PATIENCE))
+}
+
+/// The force of a window whose means are those of the one before within the noise; none where they are not, or where
+/// the body fell or its force was not known.
+fn steady_force(now: &Means, before: &Means, walk: &Vector) -> Option<Vector> {
+    let (force, force_before) = (now.force?, before.force?);
+    if dot(&force, &force) < LEAST_FORCE * LEAST_FORCE {
+        return None;
+    }
+    let is_steady = (0..3).all(|axis| {
+        let change = WINDOW * (now.rate[axis] - before.rate[axis]);
+        let bound = BOUND * libm::sqrtf(2.0 * walk[axis] * WINDOW) + SHAKING;
+        change.abs() <= bound && (force[axis] - force_before[axis]).abs() <= FORCE_CHANGE
+    });
+    is_steady.then_some(force)
 }

@@ -15,6 +15,8 @@ pub struct Stretch {
     pub impulse: [f32; 3],
     /// For how much of it there were forces, s.
     pub forced: f32,
+    /// What the body turned about its axes, rad.
+    pub turned: Vector,
     /// Integrals of the squared rates about the body's axes, rad²/s.
     pub rate_squares: [f32; 3],
     /// What the Earth's level rate may hide in the biases, (rad/s)²: nothing once north is known. As the body turns, it
@@ -32,6 +34,7 @@ impl Stretch {
         let [x, y, z] = *rotation;
         let squares = scaled(&[x * x, y * y, z * z], 1.0 / seconds);
         self.rate_squares = sum(&self.rate_squares, &squares);
+        self.turned = sum(&self.turned, rotation);
         self.seconds += seconds;
     }
 
@@ -39,6 +42,19 @@ impl Stretch {
     pub(super) fn push(&mut self, force: &Vector, seconds: f32) {
         self.impulse = sum(&self.impulse, &scaled(force, seconds));
         self.forced += seconds;
+    }
+
+    /// By how much the tilts about north and east change with each bias, s, and each error of scale and axes, rad, row
+    /// by row; and the turn about the vertical with each bias.
+    pub(super) fn couplings(&self) -> ([[f32; 12]; 2], Vector) {
+        let [north, east, down] = &self.attitude;
+        let rates = scaled(&self.turned, 1.0 / self.seconds);
+        let coupling = |row: &Vector| {
+            let [[a, b, c], [d, e, f], [g, h, i]] = row.map(|part| scaled(&rates, part));
+            let [x, y, z] = *row;
+            [x, y, z, a, b, c, d, e, f, g, h, i]
+        };
+        ([coupling(north), coupling(east)], *down)
     }
 
     /// The mean force's size, m/s².

@@ -1,6 +1,7 @@
 //! What is summed between two looks.
 
 use super::Vector;
+use crate::math::rotation::{difference, scaled, sum};
 use crate::units::{AngleIncrement, Instant, SpecificForce};
 
 /// Bits by which forces are rounded down before they are summed, so that 64 of them fit at full range; 64 µm/s² are
@@ -26,6 +27,41 @@ pub(super) struct Window {
     /// Integral of the force on the body's axes, m/s.
     pub(super) impulse: Vector,
     pub(super) forced: f32,
+    /// What the rates differ by from one attitude to the next, as half their squares by time, rad²/s, summed.
+    scatter: Vector,
+    steps: u32,
+    latest: Option<Vector>,
+}
+
+impl Window {
+    /// Takes what the body turned in that time, s, with its biases, rad.
+    pub(super) fn turn(&mut self, turned: &Vector, seconds: f32) {
+        self.seconds += seconds;
+        self.turned = sum(&self.turned, turned);
+        let rate = scaled(turned, 1.0 / seconds);
+        if let Some(before) = self.latest.replace(rate) {
+            let [x, y, z] = difference(&rate, &before);
+            let squares = scaled(&[x * x, y * y, z * z], 0.5 * seconds);
+            self.scatter = sum(&self.scatter, &squares);
+            self.steps += 1;
+        }
+    }
+
+    /// Angle random walk, squared, as the rates scatter from one attitude to the next, rad²/s: whatever turns the body
+    /// evenly does not count.
+    pub(super) fn walk(&self) -> Vector {
+        scaled(&self.scatter, 1.0 / self.steps.max(1) as f32)
+    }
+
+    /// Mean rates about the body's axes, rad/s.
+    pub(super) fn rate(&self) -> Vector {
+        scaled(&self.turned, 1.0 / self.seconds)
+    }
+
+    /// Mean force, m/s²; none where there was none.
+    pub(super) fn force(&self) -> Option<Vector> {
+        (self.forced > 0.0).then(|| scaled(&self.impulse, 1.0 / self.forced))
+    }
 }
 
 /// What of a rest the biases have not been told yet: of every part the mean rate counts, each as long as all
