@@ -11,12 +11,14 @@ use embedded_io_async::{ErrorKind, ErrorType, Write};
 use firmware::calibration::{Calibration, Harmonics};
 use firmware::event::Event;
 use firmware::health::Health;
+use firmware::keep::Kept;
 use firmware::link::{self, Status};
 use firmware::patience::{Patience, Remedy, Symptom};
 use firmware::ports::Observer;
 use firmware::shared::Shared;
 use firmware::timeline::{Arrival, Timeline};
 use orientation::device::{Device, Trouble};
+use orientation::keep::State;
 use orientation::units::Angle;
 use proptest::prelude::*;
 
@@ -183,5 +185,49 @@ fn a_sick_link_costs_its_lines_and_is_told_once() {
         .expect("time wakes everybody");
         assert_eq!(shared.health.get().unsent, 3);
         assert_eq!(*told.0.borrow(), [Event::LinkSilent]);
+    }
+}
+
+/// A link that keeps what it is sent.
+#[derive(Default)]
+struct Heard(Vec<u8>);
+
+impl ErrorType for Heard {
+    type Error = ErrorKind;
+}
+
+impl Write for Heard {
+    async fn write(&mut self, bytes: &[u8]) -> Result<usize, ErrorKind> {
+        self.0.extend(bytes);
+        Ok(bytes.len())
+    }
+
+    async fn flush(&mut self) -> Result<(), ErrorKind> {
+        Ok(())
+    }
+}
+
+#[test]
+fn the_line_of_an_attitude_is_whole_in_every_state_after_a_year_with_every_fault_counted() {
+    let seconds = 3.2e7;
+    let states = [
+        State::Starting,
+        State::Level,
+        State::Coasting { seconds },
+        State::FreeFall { seconds },
+        State::NoForce { seconds },
+        State::RotationLost { seconds },
+    ];
+    let told = Told::default();
+    let shared = Shared::new(&told);
+    shared.count(|health| health.unsent = u32::MAX);
+    for state in states.map(Some).into_iter().chain([None]) {
+        let level = [-90_000, -180_000];
+        let kept = Kept { azimuth: Some([359_999, 180_000]), level, state, is_recalled: true };
+        shared.keep.told.set(Some(kept));
+        let mut heard = Heard::default();
+        virtual_time::run(link::send(&mut heard, &shared)).expect("time wakes everybody");
+        let line = String::from_utf8(heard.0).expect("text");
+        assert!(line.ends_with(", recalled, faults 4294967295\r\n"), "{line}");
     }
 }
