@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """The gyrovertical beside VQF, on recordings of a hand-held sensor with cameras as truth.
 
-usage: compare_vqf.py excerpts MERIDIAN           the excerpts kept in data/recordings/imu-broad-*.csv.gz
+usage: compare_vqf.py excerpts MERIDIAN [LIMIT]     the excerpts kept in data/recordings/imu-broad-*.csv.gz
        compare_vqf.py trials BROAD MERIDIAN [HALF]  all trials of a clone of https://github.com/dlaidig/broad (CC BY 4.0)
 
-MERIDIAN is the built command (target/release/meridian). HALF is a or b (places 1, 3, 5... and 2, 4, 6... of the trials that can be
+LIMIT, rad/s, makes the gyros soft: they show LIMIT tanh(rate / LIMIT). MERIDIAN is the built command (target/release/meridian). HALF is a or b (places 1, 3, 5... and 2, 4, 6... of the trials that can be
 read), or all. Needs numpy, scipy and vqf (2.1, MIT): the class VQF in its default setting, 6 axes, sample by sample as a board could
 run it. Both get the same samples and nothing but the sample rate.
 
@@ -94,10 +94,12 @@ def kept(meridian, rate, time, rates, forces):
     return matrices(table[:, 1:5]), np.degrees(table[:, 5])
 
 
-def compare(recordings, meridian):
+def compare(recordings, meridian, limit=None):
     from vqf import VQF
     rows, pooled = [], []
     for name, rate, time, rates, forces, truth, counts in recordings:
+        if limit:
+            rates = limit * np.tanh(rates / limit)
         ours, sigma = kept(meridian, rate, time, rates, forces)
         theirs = VQF(1 / rate).updateBatch(*(np.ascontiguousarray(part * FLIP) for part in (rates, forces)))['quat6D']
         # VQF's quaternions are from forward, left, up to a level frame whose z is up.
@@ -116,7 +118,7 @@ def compare(recordings, meridian):
 
 
 if __name__ == '__main__' and len(sys.argv) > 2 and sys.argv[1] == 'excerpts':
-    compare(excerpts(), sys.argv[2])
+    compare(excerpts(), sys.argv[2], *map(float, sys.argv[3:]))
 elif __name__ == '__main__' and len(sys.argv) > 3 and sys.argv[1] == 'trials':
     compare(trials(sys.argv[2], (sys.argv + ['all'])[4]), sys.argv[3])
 else:

@@ -1,7 +1,7 @@
 //! What may go wrong: the state says so, σ covers it, and it comes back by itself.
 
 use orientation::keep::State;
-use orientation::units::{AngleIncrement, DEGREE, SpecificForce};
+use orientation::units::{AngleIncrement, DEGREE, SpecificForce, TURN};
 
 use super::world::{Body, Known, coarse, keep, precise};
 
@@ -26,6 +26,48 @@ fn a_vehicle_that_speeds_up_steadily_does_not_stand() {
             assert!(worst(&known, 10.0..160.0) < 3.0, "{} σ", worst(&known, 10.0..160.0));
             assert!(!at(&known, 55.0).report.is_at_rest);
             assert!(at(&known, 130.0).report.is_at_rest);
+        }
+    }
+}
+
+/// Loops of an aeroplane, one after the other, at so many rad/s: what it has turned, rad.
+fn looped(time: f64, rate: f64, loops: f64) -> f64 {
+    rate * (time - 60.0).clamp(0.0, loops * TURN / rate)
+}
+
+/// Acceleration towards the middle of a loop, north, east, down, m/s², on a course of 0.5 rad.
+fn towards_middle(turned: f64, size: f64) -> [f64; 3] {
+    let along = -size * turned.sin();
+    [along * 0.5_f64.cos(), along * 0.5_f64.sin(), -size * turned.cos()]
+}
+
+#[test]
+fn loops_that_are_flown_cost_no_level() {
+    // Two quick ones at 30 m/s and 4 g, a slow one at 2.5 g: the force never points up.
+    let quick = Body {
+        attitude: |time| [0.5, 0.03 + looped(time, 1.3, 2.0), -0.02],
+        acceleration: |time| match looped(time, 1.3, 2.0) {
+            turned if turned > 0.0 && turned < 2.0 * TURN => towards_middle(turned, 39.0),
+            _ => [0.0; 3],
+        },
+        ..coarse(120.0)
+    };
+    let slow = Body {
+        attitude: |time| [0.5, 0.03 + looped(time, 0.8, 1.0), -0.02],
+        acceleration: |time| match looped(time, 0.8, 1.0) {
+            turned if turned > 0.0 && turned < TURN => towards_middle(turned, 24.0),
+            _ => [0.0; 3],
+        },
+        ..coarse(120.0)
+    };
+    for body in [quick, slow] {
+        let of_precise =
+            Body { attitude: body.attitude, acceleration: body.acceleration, ..precise(120.0) };
+        for body in [body, of_precise] {
+            let known = keep(&body, |_, _| true);
+            assert!(worst(&known, 10.0..120.0) < 3.0, "{} σ", worst(&known, 10.0..120.0));
+            let tilt = known.iter().filter(|known| known.time > 10.0).map(|known| known.tilt);
+            assert!(tilt.fold(0.0, f64::max) < 0.5 * DEGREE);
         }
     }
 }

@@ -26,8 +26,8 @@ fn shaking(time: f64) -> [f64; 3] {
 }
 
 #[test]
-fn after_thirty_degrees_of_unseen_turn_a_rest_levels_the_body_within_five_seconds() {
-    for degrees in [30.0, -30.0, 90.0, 170.0] {
+fn after_any_unseen_turn_a_rest_levels_the_body_within_five_seconds() {
+    for degrees in [3.0, 6.0, 10.0, 15.0, 30.0, -30.0, 90.0, 170.0] {
         for body in [coarse(75.0), precise(75.0)] {
             let known =
                 keep(&Body { attitude: hand, acceleration: shaking, ..body }, |time, sample| {
@@ -73,6 +73,40 @@ fn biases_ten_times_as_large_as_stated_are_told_and_learnt_at_rest() {
     for (found, bias) in last.biases.iter().zip(body.biases) {
         // The Earth turns the body by 0.004°/s at most.
         assert!((found - bias).abs() < 0.02 * DEGREE, "{found} {bias}");
+    }
+}
+
+/// A hand that has turned and shaken the body since before the gyros were switched on, and never rests.
+fn restless(time: f64) -> [f64; 3] {
+    let swing = |rate: f64, angle: f64| angle * (rate * time).sin();
+    [0.5 + swing(1.7, 0.6), 0.03 + swing(2.3, 0.5), -0.02 + swing(3.1, 0.7)]
+}
+
+fn shaken(time: f64) -> [f64; 3] {
+    [2.0, 1.5, 2.5].map(|force| force * (force * 2.2 * time).sin())
+}
+
+#[test]
+fn biases_ten_times_as_large_as_stated_are_told_by_a_body_that_never_rests() {
+    for seed in 1..=3 {
+        let body = understated(120.0);
+        let known =
+            keep(&Body { attitude: restless, acceleration: shaken, seed, ..body }, |_, _| true);
+        assert!(after(&known, 70.0).all(|known| known.report.is_bias_beyond_stated), "{seed}");
+        assert!(worst_tilt(&known, 80.0) < 3.0, "{seed}: {}°", worst_tilt(&known, 80.0));
+        // For the first minute the level is off by more than its σ, for nobody knows better; from then on it says so.
+        let worst = after(&known, 60.0).map(Known::in_sigmas).fold(0.0, f64::max);
+        assert!(worst < 4.0, "{seed}: {worst} σ");
+    }
+}
+
+#[test]
+fn a_body_that_moves_as_it_is_switched_on_says_how_little_it_knows() {
+    for body in [coarse(60.0), precise(60.0)] {
+        let known = keep(&Body { attitude: restless, acceleration: shaken, ..body }, |_, _| true);
+        let worst = known.iter().map(Known::in_sigmas).fold(0.0, f64::max);
+        assert!(worst < 4.0 && worst_tilt(&known, 0.0) > 10.0, "{worst} σ");
+        assert!(worst_tilt(&known, 20.0) < 1.0, "{}°", worst_tilt(&known, 20.0));
     }
 }
 

@@ -37,18 +37,6 @@ impl Attitude {
         Self(parts.map(|part| libm::round(part * ONE as f64) as i64))
     }
 
-    /// Level by what the body feels as up, on this course, rad; upright where it feels nothing.
-    #[must_use]
-    pub fn levelled(force: &[f32; 3], course: f64) -> Self {
-        let [x, y, z] = force.map(f64::from);
-        if [x, y, z] == [0.0; 3] {
-            return Self::new(quaternion([course, 0.0, 0.0]));
-        }
-        let pitch = libm::atan2(x, libm::sqrt(y * y + z * z));
-        let roll = libm::atan2(-y, -z);
-        Self::new(quaternion([course, pitch, roll]))
-    }
-
     /// The quaternion (w, x, y, z).
     #[must_use]
     pub fn parts(&self) -> [f64; 4] {

@@ -10,6 +10,8 @@
 //! but a state that gravity shows. They are learnt for the level only. Gravity knows nothing of the heading, and what
 //! motion makes it say wrongly of the axes would be carried there for good.
 
+use super::Vector;
+use super::floor::{Floor, Verdict};
 use super::motion::{LEAST_SPEED, Motion};
 use super::stretch::Stretch;
 
@@ -45,6 +47,8 @@ const TURNING: f32 = 30.0;
 const BEND: f32 = 10.0;
 /// Variance of an angle of which nothing is known, rad²: a turn's square. More would only cost digits.
 const ANY_ANGLE: f32 = 40.0;
+/// Time in which a bias that the floor shows becomes less certain by a factor of e in its variance, s.
+const WIDENING: f32 = 4.0;
 /// Time over which it is watched what gravity takes from the level's variance and what the gyros add, s.
 const WATCH: f32 = 5.0;
 
@@ -91,6 +95,7 @@ pub struct Filter {
     covariance: [States; STATES],
     velocity: [f32; 2],
     motion: Motion,
+    floor: Floor,
     balance: Balance,
     /// Corrections that are still to be taken.
     correction: States,
@@ -105,6 +110,7 @@ impl Filter {
             covariance: [[0.0; STATES]; STATES],
             velocity: [0.0; 2],
             motion: Motion::default(),
+            floor: Floor::default(),
             balance: Balance::default(),
             correction: [0.0; STATES],
         };
@@ -112,6 +118,8 @@ impl Filter {
             filter.forget_bias(axis, bias * bias);
             filter.forget_axis(axis, expected.scale[axis]);
         }
+        filter.forget(0, ANY_ANGLE);
+        filter.forget(1, ANY_ANGLE);
         filter.stand();
         filter
     }
@@ -182,8 +190,9 @@ impl Filter {
 
     fn add_noise(&mut self, stretch: &Stretch, expected: &Expected) {
         let seconds = stretch.seconds;
+        let scale = SWING * self.floor.strain();
         let strays: [f32; 3] = core::array::from_fn(|axis| {
-            let swung = SWING * expected.scale[axis] * stretch.rate_squares[axis];
+            let swung = scale * expected.scale[axis] * stretch.rate_squares[axis];
             expected.walk[axis] * seconds + swung
         });
         let [about_north, about_east, _] =
@@ -222,12 +231,21 @@ impl Filter {
         0.25 * square * square * BEND * stretch.rate_squares.iter().sum::<f32>()
     }
 
-    /// Looks how the body moves; where the floor is beside the level, that is less sure from now on.
-    pub fn watch(&mut self, stretch: &Stretch) {
-        self.motion.watch(stretch);
+    /// Looks how the body moves, and where the floor has its vertical: the mean force on the level frame, m/s², where the
+    /// filter's has nothing to do with it.
+    pub fn watch(&mut self, stretch: &Stretch) -> Option<Vector> {
+        let size = stretch.force();
+        self.motion.watch(stretch, size, &self.floor.mean());
+        self.floor.watch(stretch, size);
         let tilt = 0.5 * self.level_variance();
-        let more = self.motion.disagreement(tilt, stretch.seconds);
+        let Verdict { more, is_biased } = self.floor.compare(tilt, &self.motion, stretch.seconds);
         self.doubt_level(more);
+        if is_biased {
+            for place in BIAS..AXES {
+                self.covariance[place][place] *= 1.0 + stretch.seconds / WIDENING;
+            }
+        }
+        self.floor.take_level()
     }
 
     /// The body stays where it is, nearly: what its velocity north (0) or east (1) says, over so many seconds.
@@ -269,6 +287,7 @@ impl Filter {
     pub fn stand(&mut self) {
         self.velocity = [0.0; 2];
         self.motion.stand();
+        self.floor.stand();
         for place in VELOCITY..STATES {
             self.forget(place, LEAST_SPEED * LEAST_SPEED);
         }
@@ -323,6 +342,11 @@ impl Filter {
         self.stand();
     }
 
+    /// The body may be moving, and nobody has seen yet how much.
+    pub fn expect_motion(&mut self) {
+        self.motion.expect();
+    }
+
     /// Watches from now on what gravity takes of what the gyros add, as if it had taken all until now.
     pub fn begin_balance(&mut self) {
         self.balance.gained = self.balance.grown;
@@ -365,6 +389,12 @@ impl Filter {
     #[must_use]
     pub fn bias_variances(&self) -> [f32; 3] {
         core::array::from_fn(|axis| self.covariance[BIAS + axis][BIAS + axis].max(0.0))
+    }
+
+    /// Whether the body is tumbled about, as no vehicle on wheels is.
+    #[must_use]
+    pub fn is_tumbled(&self) -> bool {
+        self.motion.is_tumbled()
     }
 
     /// Where the bias of an axis stands among the states.

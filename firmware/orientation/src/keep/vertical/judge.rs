@@ -14,6 +14,9 @@ const START: f32 = 0.2;
 /// 1σ of the tilt with which it begins, rad, and of that on the way: nobody says that the body stands.
 const START_TILT: f32 = 0.05;
 const MOVING_TILT: f32 = 0.4;
+/// Rate, rad/s, and force beside gravity, m/s², below which the body may stand as it begins: an engine's and the wind's.
+const CALM_RATE: f32 = 0.2;
+const CALM_FORCE: f32 = 0.5;
 /// Tilt, 1σ, of a standing body by its mean force over a window, rad: wind and engine.
 const STANDING_TILT: f32 = 3e-4;
 /// How far wind turns a body that stands, its engine off, 1σ, rad: 2″.
@@ -28,6 +31,8 @@ const LOST: f32 = 0.1;
 const COASTING: f32 = 0.25;
 /// Bias, in 1σ of what was stated, beyond which that is not believed.
 const GREATEST_BIAS: f32 = 5.0;
+/// Standard deviations of what is known of it by which it must be beyond that.
+const SURE: f32 = 3.0;
 /// Greatest factor by which what was stated is widened at once, and the variance of a bias that is stated to be
 /// nothing, (rad/s)²: 0.002 °/h.
 const WIDEST: f32 = 100.0;
@@ -37,10 +42,6 @@ const LEAST_PRIOR: f32 = 1e-16;
 const GRAVITY_CHANGE: f32 = 0.03;
 /// Standard deviations of the level by which a force at rest may be beside gravity.
 const SIGMAS: f32 = 4.0;
-/// Part of gravity by which a force points down where the level stands on its head, and for how long, s: a body that
-/// is pushed down so hard falls 29 m meanwhile.
-const UPSIDE_DOWN: f32 = 0.5;
-const HEADLONG: f32 = 2.0;
 /// Part of gravity by which the first forces may differ from it.
 const BEGINNING: f32 = 0.5;
 
@@ -119,15 +120,16 @@ impl Vertical {
                 if self.block.forced > 0.0 { Task::Stay(0) } else { Task::Judge }
             }
             Task::Stay(axis) => {
-                if axis == 0 {
-                    self.filter.watch(&self.block);
+                if axis == 0
+                    && let Some(force) = self.filter.watch(&self.block)
+                {
+                    self.take_level(&force);
                 }
                 self.filter.stay(axis, self.block.seconds);
                 if axis == 0 { Task::Stay(1) } else { Task::Judge }
             }
             Task::Judge => {
                 self.judge();
-                self.check_head();
                 if self.window.seconds >= WINDOW {
                     self.look();
                 }
@@ -185,16 +187,22 @@ impl Vertical {
             return;
         }
         let Some(force) = self.window.force() else { return };
+        let rate = self.window.rate();
         self.window = Window::default();
         // A body that falls or is thrown shows no level.
-        if (libm::sqrtf(dot(&force, &force)) - GRAVITY).abs() > BEGINNING * GRAVITY {
+        let beside = (libm::sqrtf(dot(&force, &force)) - GRAVITY).abs();
+        if beside > BEGINNING * GRAVITY {
             return;
         }
+        let is_calm = beside < CALM_FORCE && dot(&rate, &rate) < CALM_RATE * CALM_RATE;
         let [about_north, about_east] = tilt(&turned(&self.matrix, &force));
         self.attitude.correct(&[about_north, about_east, 0.0]);
         self.matrix = self.attitude.matrix();
         let is_first = self.trust == Trust::Starting;
-        self.filter.relevel(if is_first { START_TILT } else { MOVING_TILT });
+        self.filter.relevel(if is_first && is_calm { START_TILT } else { MOVING_TILT });
+        if !is_calm {
+            self.filter.expect_motion();
+        }
         self.is_lost = false;
         self.trust = Trust::Level;
     }
@@ -306,6 +314,10 @@ impl Vertical {
     /// The acceleration that a steady force may show, m/s²: where it is beside gravity as the attitude has it, and either
     /// holds the body up as gravity would, as in a steady acceleration on a level road, or is not of gravity's size.
     fn acceleration(&self, force: &Vector) -> Option<f32> {
+        // Nobody who turns a body over speeds it up steadily for as long as a rest takes to be seen.
+        if self.filter.is_tumbled() {
+            return None;
+        }
         let tolerance = SIGMAS * GRAVITY * self.force_tilt + GRAVITY_CHANGE;
         let size = libm::sqrtf(dot(force, force));
         let support = -dot(&self.matrix[2], force);
@@ -323,19 +335,12 @@ impl Vertical {
         self.filter.doubt_level(square);
     }
 
-    /// Looks whether the level stands on its head: no vehicle is pushed down for so long.
-    fn check_head(&mut self) {
-        let [.., down] = self.block.impulse;
-        let is_wrong = down > UPSIDE_DOWN * GRAVITY * self.block.seconds;
-        self.headlong = if is_wrong { self.headlong + self.block.seconds } else { 0.0 };
-        if self.headlong > HEADLONG {
-            self.headlong = 0.0;
-            let force = self.block.impulse;
-            self.lose_level(&force);
-            for (place, off) in tilt(&force).into_iter().enumerate() {
-                self.filter.measure(place, off, STANDING_TILT * STANDING_TILT);
-                self.filter.doubt(place, START_TILT * START_TILT);
-            }
+    /// Takes the level from this force on it, for it stood where no vertical is.
+    fn take_level(&mut self, force: &Vector) {
+        self.lose_level(force);
+        for (place, off) in tilt(force).into_iter().enumerate() {
+            self.filter.measure(place, off, STANDING_TILT * STANDING_TILT);
+            self.filter.doubt(place, MOVING_TILT * MOVING_TILT);
         }
     }
 
@@ -399,9 +404,11 @@ impl Vertical {
             *row = sum(row, &more);
         }
         let stated = self.stated();
-        let most = GREATEST_BIAS * GREATEST_BIAS;
+        let known = self.filter.bias_variances();
+        let most =
+            |axis: usize| GREATEST_BIAS * GREATEST_BIAS * stated[axis] + SURE * SURE * known[axis];
         let bias = self.bias;
-        if (0..3).any(|axis| bias[axis] * bias[axis] > most * stated[axis]) {
+        if (0..3).any(|axis| bias[axis] * bias[axis] > most(axis)) {
             self.widen_biases(&bias);
         }
     }

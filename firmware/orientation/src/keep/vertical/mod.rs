@@ -12,6 +12,7 @@
 
 mod course;
 mod filter;
+mod floor;
 mod gap;
 mod judge;
 mod motion;
@@ -106,8 +107,6 @@ pub struct Vertical {
     /// Whether nothing of the level is left.
     is_lost: bool,
     knows_north: bool,
-    /// For how long the force has pointed down, s.
-    headlong: f32,
 }
 
 impl Vertical {
@@ -150,7 +149,6 @@ impl Vertical {
             trust: Trust::Starting,
             is_lost: false,
             knows_north: false,
-            headlong: 0.0,
         }
     }
 

@@ -4,7 +4,8 @@
 //! and quiet if the rates are the biases' as well, within their uncertainty, in it alone and in all that it follows. Three
 //! quiet ones in a row are a rest. The attitude is not asked; only where the force is not gravity as the attitude has
 //! it, and a steady acceleration would look just so, a rest must last for a minute, or until that would have made the
-//! body too fast: a vehicle that speeds up steadily on a straight road is quiet too.
+//! body too fast: a vehicle that speeds up steadily on a straight road is quiet too. A body that was just tumbled about
+//! does not do that, and a force that is felt as at the latest rest is gravity as it was there.
 //!
 //! Rates that are steady but not the biases' are a turn, or biases beyond what was stated. A turn about a level axis
 //! would carry the force along, which shows at once which it is. A steady turn about the vertical and the bias of a gyro
@@ -53,7 +54,7 @@ pub struct Means {
     /// Angle random walk as the rates within the window show it, squared, rad²/s.
     pub walk: Vector,
     /// Acceleration that the force may show although nothing changes, if the attitude is right, m/s²; none where it is
-    /// gravity.
+    /// gravity, or where the body does not speed up steadily.
     pub acceleration: Option<f32>,
 }
 
@@ -90,6 +91,8 @@ pub struct ZeroVelocityDetector {
     seconds: f32,
     steady: Steady,
     is_at_rest: bool,
+    /// Mean force of the latest rest, m/s².
+    force: Option<Vector>,
     /// Whether each gyro has rested since it is switched on.
     has_rested: [bool; 3],
 }
@@ -118,11 +121,12 @@ impl ZeroVelocityDetector {
         }
         self.steady = Steady::default();
         self.quiet = self.quiet.saturating_add(1);
-        self.is_at_rest = self.quiet >= if self.is_at_rest { ENOUGH } else { enough(&means) };
+        self.is_at_rest = self.quiet >= self.enough(&means, &force);
         if !self.is_at_rest {
             return Found::Motion;
         }
         self.has_rested = [true; 3];
+        self.force = Some(force);
         Found::Rest
     }
 
@@ -152,6 +156,15 @@ impl ZeroVelocityDetector {
             is_quiet &= self.turned[axis].abs() <= bound(self.seconds);
         }
         is_quiet
+    }
+
+    /// Quiet windows that make a rest. A force that is felt as at the latest rest is gravity as it was there.
+    fn enough(&self, means: &Means, force: &Vector) -> u32 {
+        let Some(acceleration) = means.acceleration else { return ENOUGH };
+        if self.is_at_rest || self.force.is_some_and(|rested| is_steady(force, &rested)) {
+            return ENOUGH;
+        }
+        ((TOO_FAST / (acceleration * WINDOW)) as u32).clamp(ENOUGH, PATIENCE)
     }
 
     fn moves(&mut self) -> Found {
@@ -184,7 +197,12 @@ impl ZeroVelocityDetector {
 
     /// Begins anew, but for what is known of the gyros.
     pub fn disturb(&mut self) {
-        *self = Self { walk: self.walk, has_rested: self.has_rested, ..Self::default() };
+        *self = Self {
+            walk: self.walk,
+            force: self.force,
+            has_rested: self.has_rested,
+            ..Self::default()
+        };
     }
 
     /// Begins anew with another gyro about an axis: nothing is known of its noise.
@@ -224,12 +242,6 @@ fn greatest_turn(walk: f32, variance: f32, seconds: f32) -> f32 {
     BOUND * libm::sqrtf(walk * seconds + variance * seconds * seconds) + SHAKING
 }
 
-/// Quiet windows that make a rest.
-fn enough(means: &Means) -> u32 {
-    let patience = |acceleration: f32| (TOO_FAST / (acceleration * WINDOW)) as u32;
-    means.acceleration.map_or(ENOUGH, |acceleration| patience(acceleration).clamp(ENOUGH, PATIENCE))
-}
-
 /// The force of a window whose means are those of the one before within the noise; none where they are not, or where
 /// the body fell or its force was not known.
 fn steady_force(now: &Means, before: &Means, walk: &Vector) -> Option<Vector> {
@@ -240,7 +252,12 @@ fn steady_force(now: &Means, before: &Means, walk: &Vector) -> Option<Vector> {
     let is_steady = (0..3).all(|axis| {
         let change = WINDOW * (now.rate[axis] - before.rate[axis]);
         let bound = BOUND * libm::sqrtf(2.0 * walk[axis] * WINDOW) + SHAKING;
-        change.abs() <= bound && (force[axis] - force_before[axis]).abs() <= FORCE_CHANGE
+        change.abs() <= bound
     });
-    is_steady.then_some(force)
+    (is_steady && self::is_steady(&force, &force_before)).then_some(force)
+}
+
+/// Whether two mean forces are the same, as far as they are at rest.
+fn is_steady(one: &Vector, other: &Vector) -> bool {
+    one.iter().zip(other).all(|(one, other)| (one - other).abs() <= FORCE_CHANGE)
 }

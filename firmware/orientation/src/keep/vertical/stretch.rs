@@ -57,6 +57,14 @@ impl Stretch {
         ([coupling(north), coupling(east)], *down)
     }
 
+    /// Square of the mean rate about level axes, rad²/s².
+    pub(super) fn level_rate_square(&self) -> f32 {
+        let part = 1.0 / self.seconds;
+        let about_down = dot(&self.attitude[2], &self.turned) * part;
+        let square = dot(&self.turned, &self.turned) - about_down * about_down;
+        square.max(0.0) * part * part
+    }
+
     /// The mean force's size, m/s².
     pub(super) fn force(&self) -> f32 {
         libm::sqrtf(dot(&self.impulse, &self.impulse)) / self.forced
