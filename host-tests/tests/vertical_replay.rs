@@ -94,21 +94,41 @@ fn sigma_covers_the_inclination_and_is_no_wide_guess() {
     }
 }
 
+/// Adds biases that enlarge those of the unit, °/s.
+fn enlarge_biases(recorded: &mut Recorded, more_deg_s: [f64; 3]) {
+    let own = recorded.replayed().last.biases;
+    for row in &mut recorded.rows {
+        for (axis, rate) in row.sample.rates_rad_s.iter_mut().enumerate() {
+            *rate += more_deg_s[axis].to_radians().copysign(own[axis]);
+        }
+    }
+}
+
 #[test]
-fn a_bias_stated_ten_times_too_small_is_told_and_costs_no_level() {
+fn a_bias_ten_times_as_large_as_stated_is_told_and_costs_no_level() {
     for (name, _) in TRIALS {
         let mut recorded = recorded(name);
-        // The biases of these units are about half a degree a second, and 1σ of a coarse class is that.
-        recorded.header.gyro_bias_deg_h = Some(180.0);
-        for row in &mut recorded.rows {
-            for (rate, more) in row.sample.rates_rad_s.iter_mut().zip([0.5_f64, -0.4, 0.3]) {
-                *rate += more.to_radians();
-            }
-        }
+        enlarge_biases(&mut recorded, [0.5, 0.4, 0.3]);
+        recorded.header.gyro_bias_deg_h = Some(0.05 * 3600.0);
         let replay = recorded.replayed();
         let Errors { inclination_rmse_deg, .. } = recorded.errors(&replay);
         println!("{name}: inclination {inclination_rmse_deg:.4}°");
-        assert!(inclination_rmse_deg < 3.0, "{name}: {inclination_rmse_deg}°");
+        assert!(inclination_rmse_deg < 1.5, "{name}: {inclination_rmse_deg}°");
+        assert!(replay.last.is_bias_beyond_stated, "{name}");
+    }
+}
+
+#[test]
+fn a_tenth_of_the_own_bias_stated_costs_no_level() {
+    for (name, _) in TRIALS {
+        let mut recorded = recorded(name);
+        let own = recorded.replayed().last.biases.map(f64::abs);
+        let greatest = own.into_iter().fold(0.0, f64::max).to_degrees();
+        recorded.header.gyro_bias_deg_h = Some(0.1 * greatest * 3600.0);
+        let replay = recorded.replayed();
+        let Errors { inclination_rmse_deg, .. } = recorded.errors(&replay);
+        println!("{name}: {inclination_rmse_deg:.4}°, {}", replay.last.is_bias_beyond_stated);
+        assert!(inclination_rmse_deg < 1.5, "{name}: {inclination_rmse_deg}°");
         assert!(replay.last.is_bias_beyond_stated, "{name}");
     }
 }

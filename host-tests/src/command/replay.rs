@@ -43,7 +43,7 @@ pub struct ReplayOptions {
     #[arg(long, value_name = "DEGREES", default_value = "10", value_parser = sigma)]
     require_sigma: f64,
     /// Writes the attitude after each sample, body to north, east, down up to a constant heading:
-    /// `t_s,qw,qx,qy,qz`.
+    /// `t_s,qw,qx,qy,qz,sigma_tilt_rad`, the last 1σ of either tilt.
     #[arg(long, value_name = "FILE.csv")]
     attitude_out: Option<PathBuf>,
     /// Writes figures and tables as a page for a browser.

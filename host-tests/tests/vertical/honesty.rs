@@ -1,7 +1,7 @@
 //! What the filter may not be too sure of: its level, the biases and the noise that were stated.
 
 use orientation::keep::{Gyro, Setting};
-use orientation::units::{AngleIncrement, DEGREE};
+use orientation::units::{AngleIncrement, DEGREE, TURN};
 
 use super::world::{Body, Known, coarse, keep, precise};
 
@@ -41,6 +41,45 @@ fn after_any_unseen_turn_a_rest_levels_the_body_within_five_seconds() {
             assert!(worst_tilt(&known, 65.0) < 1.0, "{degrees}°: {}°", worst_tilt(&known, 65.0));
             assert!(known.last().is_some_and(|last| last.report.is_at_rest), "{degrees}°");
         }
+    }
+}
+
+#[test]
+fn after_an_unseen_turn_a_body_that_only_rocks_is_level_within_ten_seconds() {
+    // Rocking of a degree, nothing accelerates: no rest, and no turn that a hand would make.
+    let attitude =
+        |time: f64| [0.5, 0.03 + DEGREE * time.sin(), -0.02 + DEGREE * (0.8 * time).sin()];
+    for degrees in [5.0, 10.0, 26.0, 60.0] {
+        for body in [coarse(100.0), precise(100.0)] {
+            let known = keep(&Body { attitude, ..body }, |time, sample| {
+                if (60.0..60.1).contains(&time) {
+                    let turned = sample.turned[0].rad() + 0.1 * degrees * DEGREE;
+                    sample.turned[0] = AngleIncrement::from_rad(turned, &mut 0.0);
+                }
+                true
+            });
+            let worst = worst_tilt(&known, 70.0);
+            assert!(worst < 1.0, "{degrees}°: {worst}°");
+            let sigmas = after(&known, 67.0).map(Known::in_sigmas).fold(0.0, f64::max);
+            assert!(sigmas < 4.0, "{degrees}°: {sigmas} σ");
+        }
+    }
+}
+
+#[test]
+fn a_vehicle_that_is_shaken_at_random_hides_no_bias_that_is_told() {
+    // A straight level road; sines without a common period, 0.2° together.
+    fn shake(time: f64, phase: f64) -> f64 {
+        let sines = [0.53, 0.91, 1.37, 1.73, 2.19, 2.71, 3.29, 3.83];
+        let sum =
+            sines.map(|rate| (TURN * rate * time + phase * 10.0 * rate).sin()).iter().sum::<f64>();
+        0.1 * DEGREE * sum * (time - 30.0).clamp(0.0, 1.0)
+    }
+    let attitude = |time: f64| [0.5, 0.02 + shake(time, 1.0), -0.03 + shake(time, 2.0)];
+    for seed in 1..=3 {
+        let known = keep(&Body { attitude, seed, ..coarse(300.0) }, |_, _| true);
+        assert!(known.iter().all(|known| !known.report.is_bias_beyond_stated), "{seed}");
+        assert!(worst_tilt(&known, 10.0) < 1.5, "{seed}: {}°", worst_tilt(&known, 10.0));
     }
 }
 

@@ -81,7 +81,8 @@ fn gyros_that_are_soft_at_their_limit_err_like_the_floor_and_are_doubted() {
         let replay = recorded.replayed();
         let inclination = recorded.errors(&replay).inclination_rmse_deg;
         println!("{name}: {inclination:.3}°, VQF {floor}°");
-        assert!(inclination < 1.6 * floor, "{name}: {inclination}°");
+        // Where the floor itself is lost, σ alone is asked for.
+        assert!(floor > 10.0 || inclination < 1.2 * floor, "{name}: {inclination}°");
         within.push(covered(&recorded, &replay, [0.0, f64::INFINITY]));
     }
     let within = within.iter().sum::<f64>() / within.len() as f64;

@@ -12,7 +12,7 @@
 
 use super::Vector;
 use super::floor::{Floor, Verdict};
-use super::motion::{LEAST_SPEED, Motion};
+use super::motion::{FADING, LEAST_SPEED, Motion};
 use super::stretch::Stretch;
 
 /// Number of states.
@@ -25,8 +25,6 @@ const BIAS: usize = 3;
 const AXES: usize = 6;
 /// Where the velocity begins.
 const VELOCITY: usize = 15;
-/// Time after which a velocity has faded, s: longer than hands and wheels take to come back.
-const FADING: f32 = 10.0;
 /// Noise of the forces, m/s²/√Hz: 100 µg.
 const FORCE_NOISE: f32 = 1e-3;
 /// Error of the accelerometers that changes as the body turns, m/s²: 1 % of gravity, by scale and axes.
@@ -245,7 +243,7 @@ impl Filter {
                 self.covariance[place][place] *= 1.0 + stretch.seconds / WIDENING;
             }
         }
-        self.floor.take_level()
+        if self.motion.is_tumbled() { self.floor.take_level() } else { None }
     }
 
     /// The body stays where it is, nearly: what its velocity north (0) or east (1) says, over so many seconds.
@@ -391,7 +389,7 @@ impl Filter {
         core::array::from_fn(|axis| self.covariance[BIAS + axis][BIAS + axis].max(0.0))
     }
 
-    /// Whether the body is tumbled about, as no vehicle on wheels is.
+    /// Whether the body is tumbled about, or was lately turned as no vehicle on wheels is.
     #[must_use]
     pub fn is_tumbled(&self) -> bool {
         self.motion.is_tumbled()

@@ -4,20 +4,18 @@
 //! the floor on which the filter stands. Where it is beside the filter's vertical by more than motion and the level's σ
 //! explain, the gyros are worse than they are stated to be, or a turn was not seen, and σ grows until it covers that.
 //!
-//! A body on wheels may also be in a bend, so its σ grows slowly. A body that is tumbled about, in a hand or by waves, is
-//! in none, and its gyros are worked hardest: its level is at once as uncertain as the two are apart, for half a minute the
+//! A body on wheels may also be in a bend, so its σ grows slowly. A body that is tumbled about, in a hand or by waves, or
+//! that was seen to turn at once, is in none, and its gyros are worked hardest: its level is at once as uncertain as the two are apart, for half a minute the
 //! gyros' scale is believed no more than gravity shows of it, and what leans for long is a bias. Where hardly any of the
 //! mean force holds the body up, the filter's vertical is none, and the floor's takes its place.
 //!
 //! Source of the low-pass in the gyros' frame: D. Laidig and T. Seel, VQF, Information Fusion 2023.
 
-use super::motion::Motion;
+use super::motion::{BAND, Motion};
 use super::stretch::Stretch;
 use super::{GRAVITY, Vector};
 use crate::math::rotation::dot;
 
-/// Time over which the mean force is taken, s.
-const BAND: f32 = 7.0;
 /// Standard deviations by which the floor may be beside the filter's vertical.
 const FLOOR: f32 = 5.0;
 /// Mean square that they may be apart at most, of a body that is tumbled about, in those of gravity: one that gained 70 m/s on a

@@ -25,6 +25,8 @@ const SHAKING: f32 = 1e-5;
 const LONGEST_REST: f32 = 64.0;
 /// Part of gravity below which a force is a free fall.
 const FREE: f32 = 0.3;
+/// Tilt, 1σ, beyond which a steady force is rather gravity than an acceleration, rad: 0.2 m/s².
+const UNSURE: f32 = 0.02;
 /// Tilt, 1σ, at which the level counts as lost, rad.
 const LOST: f32 = 0.1;
 /// Part that gravity takes of what the gyros' errors add to the level's variance, below which they carry it alone.
@@ -245,7 +247,7 @@ impl Vertical {
             Found::Motion => self.move_on(&window, was_rest),
             Found::StrangeBias => {
                 self.move_on(&window, was_rest);
-                self.widen_biases(&difference(&means.rate, &self.bias));
+                self.widen_biases(&difference(&means.rate, &self.bias), &means.rate);
             }
         }
     }
@@ -290,18 +292,24 @@ impl Vertical {
         }
     }
 
-    /// The biases are off by so much, rad/s, more than what was stated of them allows: it is believed of none of the gyros
-    /// any more, for who is wrong about one is wrong about its like.
-    fn widen_biases(&mut self, off: &Vector) {
+    /// The biases are off by so much, rad/s, for they are found to be these: what is known of them is forgotten. Where one
+    /// is beyond what was stated, that is believed of none of the gyros any more, for who is wrong about one is wrong about
+    /// its like.
+    fn widen_biases(&mut self, off: &Vector, found: &Vector) {
         let stated = self.stated();
-        let squares = (0..3).map(|axis| off[axis] * off[axis] / stated[axis]);
-        let ratio = squares.fold(1.0, f32::max).min(WIDEST * WIDEST);
-        self.priors = scaled(&stated, ratio);
-        for (axis, prior) in self.priors.into_iter().enumerate() {
-            self.filter.doubt(Filter::bias(axis), prior);
+        let ratio = |biases: &Vector| {
+            let squares = (0..3).map(|axis| biases[axis] * biases[axis] / stated[axis]);
+            squares.fold(1.0, f32::max).min(WIDEST * WIDEST)
+        };
+        for (axis, variance) in scaled(&stated, ratio(off)).into_iter().enumerate() {
+            self.filter.doubt(Filter::bias(axis), variance);
         }
         self.rest.learnt();
-        self.is_bias_beyond_stated = true;
+        let beyond = ratio(found);
+        if beyond > GREATEST_BIAS * GREATEST_BIAS {
+            self.priors = scaled(&stated, beyond);
+            self.is_bias_beyond_stated = true;
+        }
     }
 
     /// Whether a mean force is gravity as the attitude has it, as far as that can be told.
@@ -314,8 +322,9 @@ impl Vertical {
     /// The acceleration that a steady force may show, m/s²: where it is beside gravity as the attitude has it, and either
     /// holds the body up as gravity would, as in a steady acceleration on a level road, or is not of gravity's size.
     fn acceleration(&self, force: &Vector) -> Option<f32> {
-        // Nobody who turns a body over speeds it up steadily for as long as a rest takes to be seen.
-        if self.filter.is_tumbled() {
+        // Nobody who turns a body over speeds it up steadily for as long as a rest takes to be seen; and against a level
+        // that is not sure of itself no force is an acceleration.
+        if self.filter.is_tumbled() || self.sigma() > UNSURE {
             return None;
         }
         let tolerance = SIGMAS * GRAVITY * self.force_tilt + GRAVITY_CHANGE;
@@ -409,7 +418,7 @@ impl Vertical {
             |axis: usize| GREATEST_BIAS * GREATEST_BIAS * stated[axis] + SURE * SURE * known[axis];
         let bias = self.bias;
         if (0..3).any(|axis| bias[axis] * bias[axis] > most(axis)) {
-            self.widen_biases(&bias);
+            self.widen_biases(&bias, &bias);
         }
     }
 }

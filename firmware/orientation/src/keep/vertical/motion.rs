@@ -15,11 +15,11 @@ use super::stretch::Stretch;
 use super::{GRAVITY, Vector};
 
 /// Time over which the band's speed fades, s: as that of the mean which is taken from the force.
-const BAND: f32 = 7.0;
+pub(super) const BAND: f32 = 7.0;
 /// Time over which the band's speeds are averaged, s: quicker ones hide no tilt.
 const QUICK: f32 = 1.5;
 /// Time after which the speed of slow motion fades, and over which it is averaged, s.
-const FADING: f32 = 10.0;
+pub(super) const FADING: f32 = 10.0;
 const SLOW: f32 = 3.0;
 /// Time over which mean squares of speeds and rates are taken, s, and for how long the greatest is remembered, s.
 const WATCH: f32 = 5.0;
@@ -34,6 +34,10 @@ const EXPLAINED: f32 = 2.0;
 const GREATEST_DRIFT: f32 = 10.0;
 /// Mean square of the rate about level axes from which a body is tumbled about, rad²/s²: wheels do not turn so.
 const TUMBLING: f32 = 0.25;
+/// The same of a rate about one level axis within half a second, rad/s, and for how long that is remembered, s.
+const QUICK_ROLL: f32 = 0.15;
+const ROLLING: f32 = 0.5;
+const TUMBLED: f32 = 60.0;
 /// Greatest mean square of a swing, in those of the heave, of a body that is tumbled about; and the square that is not
 /// asked for one, m²/s².
 const GREATEST_SWING: f32 = 4.0;
@@ -61,6 +65,9 @@ pub(super) struct Motion {
     greatest: f32,
     /// Mean square of the rate about level axes, rad²/s².
     tumbling: f32,
+    /// Mean rate about north and east within half a second, rad/s, and for how long the body counts as tumbled, s.
+    rolling: [f32; 2],
+    tumbled: f32,
 }
 
 impl<const AXES: usize> Default for Speed<AXES> {
@@ -108,6 +115,16 @@ impl Motion {
         self.size = before + (size - before) * (seconds / BAND);
         self.heave.push([(size - self.size) * seconds], seconds, BAND, QUICK);
         self.tumbling += (stretch.level_rate_square() - self.tumbling) * (seconds / WATCH);
+        let [about_north, about_east] = stretch.level_turn();
+        for (rolling, turned) in self.rolling.iter_mut().zip([about_north, about_east]) {
+            *rolling += (turned - *rolling * seconds) * (1.0 / ROLLING);
+        }
+        let [a, b] = self.rolling;
+        self.tumbled = if a * a + b * b > QUICK_ROLL * QUICK_ROLL {
+            TUMBLED
+        } else {
+            (self.tumbled - seconds).max(0.0)
+        };
         let faded = self.greatest * (1.0 - (seconds / MEMORY).min(1.0));
         self.greatest = faded.max(self.swing());
     }
@@ -135,9 +152,9 @@ impl Motion {
         self.greatest.max(LEAST_SPEED * LEAST_SPEED)
     }
 
-    /// Whether the body is tumbled about, as no vehicle on wheels is.
+    /// Whether the body is tumbled about, or was lately turned as no vehicle on wheels is.
     pub(super) fn is_tumbled(&self) -> bool {
-        self.tumbling > TUMBLING
+        self.tumbling > TUMBLING || self.tumbled > 0.0
     }
 
     /// Density of the speed about zero, m²/s, where the level is good to this variance, rad².

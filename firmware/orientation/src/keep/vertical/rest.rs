@@ -9,7 +9,7 @@
 //!
 //! Rates that are steady but not the biases' are a turn, or biases beyond what was stated. A turn about a level axis
 //! would carry the force along, which shows at once which it is. A steady turn about the vertical and the bias of a gyro
-//! that has never rested look alike: rates that stay even for a minute are taken for a bias.
+//! that has never rested look alike: rates that stay even for 20 s are taken for a bias.
 //!
 //! The stop criteria of [`crate::signal::rest`] ask another question: whether the rate is the Earth's, of gyros that
 //! show it. They judge an average on its own and need no one before it, which coarse gyros cannot.
@@ -23,8 +23,10 @@ const BOUND: f32 = 4.0;
 pub const WINDOW: f32 = 0.5;
 /// Quiet windows that make a rest.
 const ENOUGH: u32 = 3;
-/// Windows that make one where a steady acceleration, or a steady turn, would look just so: a minute.
+/// Windows that make one where a steady acceleration would look just so: a minute.
 const PATIENCE: u32 = 120;
+/// Windows for which no turn is even, but a gyro's bias: 20 s.
+const EVEN: u32 = 40;
 /// Speed of which no vehicle is that has been speeding up steadily all the time, m/s.
 const TOO_FAST: f32 = 60.0;
 /// How far wind and engine turn a body that stands within a window, rad: 20″.
@@ -35,6 +37,8 @@ const FORCE_CHANGE: f32 = 0.03;
 const LEAST_FORCE: f32 = 4.9;
 /// Changes of the force by which a turn must have carried it along to be denied by its standing still.
 const DENIED: f32 = 3.0;
+/// Windows that a turn must last to be denied: what shakes the body turns it back within them.
+const DENYING: u32 = 6;
 /// Greatest and least noise that is believed, squared, in those of what was stated: five times, a tenth.
 const GREATEST_NOISE: f32 = 25.0;
 const LEAST_NOISE: f32 = 0.01;
@@ -115,7 +119,7 @@ impl ZeroVelocityDetector {
         let Some(force) = steady_force(&means, &before, &walk) else { return self.moves() };
         if !self.is_quiet(&means, known, &walk) {
             self.steady.push(scaled(&difference(&means.rate, &known.biases), WINDOW), force);
-            let is_strange = self.steady.denies_turn(&force) || self.outlasts_turn(known);
+            let is_strange = self.steady.denies_turn(&force, &walk) || self.outlasts_turn(known);
             (self.quiet, self.is_at_rest) = (0, false);
             return if is_strange { Found::StrangeBias } else { Found::Motion };
         }
@@ -177,7 +181,7 @@ impl ZeroVelocityDetector {
     /// Whether the rates have been even for longer than a turn can be, about axes whose gyros have never rested.
     fn outlasts_turn(&self, known: &Known) -> bool {
         let seconds = self.steady.windows as f32 * WINDOW;
-        self.steady.windows >= PATIENCE
+        self.steady.windows >= EVEN
             && (0..3).all(|axis| {
                 let bound = greatest_turn(known.walk[axis], known.variances[axis], seconds);
                 self.steady.turned[axis].abs() <= bound || !self.has_rested[axis]
@@ -226,7 +230,13 @@ impl Steady {
 
     /// Whether the force would have been carried along by the turn that the rates show, and stands. In a bend it is carried
     /// with the body and stands too, so only a turn that is rather about level axes is denied.
-    fn denies_turn(&self, force: &Vector) -> bool {
+    fn denies_turn(&self, force: &Vector, walk: &Vector) -> bool {
+        let seconds = self.windows as f32 * WINDOW;
+        let is_noise =
+            |axis: usize| self.turned[axis].abs() <= greatest_turn(walk[axis], 0.0, seconds);
+        if self.windows < DENYING || (0..3).all(is_noise) {
+            return false;
+        }
         let carried = cross(&self.turned, force);
         let moved = difference(force, &self.force);
         let (carried, moved) = (dot(&carried, &carried), dot(&moved, &moved));
