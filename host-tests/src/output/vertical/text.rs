@@ -28,7 +28,7 @@ pub fn block(out: &mut impl Write, name: &str, object: &Object) -> fmt::Result {
         line(
             out,
             "  beyond",
-            format_args!("five of the 1σ stated for them, which is not believed any more"),
+            format_args!("five of the 1σ stated or assumed, which are not believed any more"),
         )?;
     }
     line(out, "state at the end", format_args!("{}", object.state))?;

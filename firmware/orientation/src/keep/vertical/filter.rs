@@ -14,6 +14,7 @@ use super::Vector;
 use super::floor::{Floor, Verdict};
 use super::motion::{FADING, LEAST_SPEED, Motion};
 use super::stretch::Stretch;
+use crate::math::rotation::dot;
 
 /// Number of states.
 const STATES: usize = 17;
@@ -122,18 +123,21 @@ impl Filter {
         filter
     }
 
-    /// What the stretch adds to the errors, first half: how the tilt goes along with each error.
+    /// What the stretch adds to the errors, first half: how the tilt goes along with what each gyro shows too much, by
+    /// its bias, and by its scale and axis of every rate.
     pub fn carry(&mut self, stretch: &Stretch) {
-        let (levels, turn) = stretch.couplings();
+        let rates = stretch.rates();
         let (tilts, others) = self.covariance.split_at_mut(BIAS);
-        for (tilt, coupling) in tilts.iter_mut().zip(&levels) {
-            for (factor, other) in coupling.iter().zip(&*others) {
-                subtract(tilt, *factor, other);
+        let [north, east, down] = &stretch.attitude;
+        for axis in 0..3 {
+            let mut excess = others[axis];
+            for (rate, place) in rates.iter().zip(axes(axis)) {
+                subtract(&mut excess, -rate, &others[place - BIAS]);
             }
-        }
-        if !stretch.is_rest {
-            for (factor, other) in turn.iter().zip(&*others) {
-                subtract(&mut tilts[TURN], *factor, other);
+            subtract(&mut tilts[0], north[axis], &excess);
+            subtract(&mut tilts[1], east[axis], &excess);
+            if !stretch.is_rest {
+                subtract(&mut tilts[TURN], down[axis], &others[axis]);
             }
         }
     }
@@ -165,15 +169,21 @@ impl Filter {
     /// Carries the errors of tilt and velocity with each other, whose rows alone are carried yet, and makes the columns
     /// like the rows.
     fn even_out(&mut self, stretch: &Stretch, kept: f32) {
-        let (levels, turn) = stretch.couplings();
+        let rates = stretch.rates();
+        let [about_north, about_east, about_down] = &stretch.attitude;
         let [.., down] = stretch.impulse;
         for row in CARRIED {
             let row = &mut self.covariance[row];
-            for (tilt, coupling) in levels.iter().enumerate() {
-                row[tilt] -= product(coupling, &row[BIAS..VELOCITY]);
-            }
+            let [x, y, z, a, b, c, d, e, f, g, h, i] = row[BIAS..VELOCITY] else { return };
+            let excess = [
+                x + dot(&rates, &[a, b, c]),
+                y + dot(&rates, &[d, e, f]),
+                z + dot(&rates, &[g, h, i]),
+            ];
+            row[0] -= dot(about_north, &excess);
+            row[1] -= dot(about_east, &excess);
             if !stretch.is_rest {
-                row[TURN] -= product(&turn, &row[BIAS..AXES]);
+                row[TURN] -= dot(about_down, &[x, y, z]);
             }
             row[VELOCITY] = kept * row[VELOCITY] + down * row[1];
             row[VELOCITY + 1] = kept * row[VELOCITY + 1] - down * row[0];
@@ -441,10 +451,4 @@ fn subtract(row: &mut States, factor: f32, other: &States) {
     for (part, other) in rest.iter_mut().zip(other_rest) {
         *part -= factor * other;
     }
-}
-
-/// Scalar product of as many numbers as the shorter has.
-#[inline(never)]
-fn product(one: &[f32], other: &[f32]) -> f32 {
-    one.iter().zip(other).map(|(one, other)| one * other).sum()
 }

@@ -44,17 +44,9 @@ impl Stretch {
         self.forced += seconds;
     }
 
-    /// By how much the tilts about north and east change with each bias, s, and each error of scale and axes, rad, row
-    /// by row; and the turn about the vertical with each bias.
-    pub(super) fn couplings(&self) -> ([[f32; 12]; 2], Vector) {
-        let [north, east, down] = &self.attitude;
-        let rates = scaled(&self.turned, 1.0 / self.seconds);
-        let coupling = |row: &Vector| {
-            let [[a, b, c], [d, e, f], [g, h, i]] = row.map(|part| scaled(&rates, part));
-            let [x, y, z] = *row;
-            [x, y, z, a, b, c, d, e, f, g, h, i]
-        };
-        ([coupling(north), coupling(east)], *down)
+    /// Mean rates about the body's axes, rad/s.
+    pub(super) fn rates(&self) -> Vector {
+        scaled(&self.turned, 1.0 / self.seconds)
     }
 
     /// What the body turned about north and east, rad.
