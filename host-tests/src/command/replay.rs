@@ -1,6 +1,6 @@
 //! `meridian replay`: the alignment on a recording.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use bench::output::progress::Progress;
 use bench::output::{
@@ -133,6 +133,22 @@ impl ReplayOptions {
         self.method.map_or(Ok(()), |method| self.check_method(method))
     }
 
+    /// What would be written over what is read, or over what was just written.
+    fn check_files(&self) -> Result<(), String> {
+        let [attitude, report] =
+            [&self.attitude_out, &self.report].map(|path| path.as_deref().map(place));
+        let recording = place(&self.file);
+        for (option, path) in [("--attitude-out", &attitude), ("--report", &report)] {
+            if path.as_ref() == Some(&recording) {
+                return Err(format!("{option}: {} is the recording itself", recording.display()));
+            }
+        }
+        match attitude.filter(|path| report.as_ref() == Some(path)) {
+            Some(path) => Err(format!("--report: {} takes the attitude already", path.display())),
+            None => Ok(()),
+        }
+    }
+
     /// What a method does not take.
     fn check_method(&self, method: Method) -> Result<(), &'static str> {
         let has_criterion = self.criterion != Criterion::MaximumLikelihood;
@@ -169,8 +185,14 @@ impl ReplayOptions {
     }
 }
 
+/// Where a file is, whatever it is called; its name where it is not there yet.
+fn place(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| path.to_path_buf())
+}
+
 /// Replays a recording.
 pub fn run(options: &ReplayOptions, as_json: bool) -> Result<Told, String> {
+    options.check_files()?;
     let recording = recording::read(&options.file).map_err(|error| error.to_string())?;
     let name = options.file.display().to_string();
     let method = options.method.unwrap_or_else(|| Method::of(&recording.body));

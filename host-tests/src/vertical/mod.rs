@@ -119,6 +119,10 @@ fn setting(
         let bias = gyro.bias_sigma / DEGREE_PER_HOUR;
         assumed.push(format!("gyro biases of a coarse unit: {bias:.0} °/h"));
     }
+    if header.gyro_scale_sigma.is_none() {
+        let percent = 100.0 * gyro.scale_sigma;
+        assumed.push(format!("gyro scale and axes of a coarse unit: {percent:.1} %"));
+    }
     let force_bias_sigma = header.accelerometer_bias_m_s2.unwrap_or(coarse.force_bias_sigma);
     if header.accelerometer_bias_m_s2.is_none() {
         assumed.push(format!("accelerometer biases of a coarse unit: {force_bias_sigma} m/s²"));

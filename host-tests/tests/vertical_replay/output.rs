@@ -105,6 +105,7 @@ fn the_block_tells_level_turn_biases_states_and_what_was_assumed() {
         "against the truth, in 9230 samples",
         "latitude 45°: none is stated",
         "gyro noise of a coarse unit",
+        "gyro scale and axes of a coarse unit: 0.5 %",
     ] {
         assert!(block.contains(words), "{words}: {block}");
     }
@@ -114,6 +115,32 @@ fn the_block_tells_level_turn_biases_states_and_what_was_assumed() {
     let fog = text(&replayed("drive-fog-1dph", &[]));
     assert!(!fog.contains("gyro noise of") && !fog.contains("gyro biases of"), "{fog}");
     assert!(fog.contains("accelerometer biases of a coarse unit"), "{fog}");
+}
+
+#[test]
+fn a_recording_is_not_written_over_and_no_output_over_another() {
+    let path = std::env::temp_dir().join(format!("kept-{}.csv.gz", std::process::id()));
+    std::fs::copy(file("imu-broad-24"), &path).expect("it is copied");
+    let before = std::fs::read(&path).expect("it is there");
+    let text = path.display().to_string();
+    let replay = |options: &[&str]| {
+        let meridian = Command::new(env!("CARGO_BIN_EXE_meridian"))
+            .args(["replay", &text, "--method", "vertical"])
+            .args(options)
+            .output()
+            .expect("it runs");
+        (meridian.status.success(), String::from_utf8_lossy(&meridian.stderr).into_owned())
+    };
+    for (options, words) in [
+        (["--attitude-out", &text, "--report", "x.html"], "--attitude-out"),
+        (["--attitude-out", "x.csv", "--report", &text], "--report"),
+        (["--attitude-out", "x.csv", "--report", "x.csv"], "takes the attitude already"),
+    ] {
+        let (is_done, told) = replay(&options);
+        assert!(!is_done && told.contains(words), "{told}");
+    }
+    assert_eq!(std::fs::read(&path).expect("it is there"), before);
+    std::fs::remove_file(&path).expect("it is ours");
 }
 
 #[test]

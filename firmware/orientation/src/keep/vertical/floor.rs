@@ -2,10 +2,10 @@
 //!
 //! It errs by what the body accelerates, and by what the gyros turn too much within seconds, but it never strays farther:
 //! the floor on which the filter stands. Where it is beside the filter's vertical by more than motion and the level's σ
-//! explain, the gyros are worse than they are stated to be, or a turn was not seen, and σ grows until it covers that.
+//! explain, the gyros are worse than they are stated to be, or a turn was not seen, and σ grows.
 //!
-//! A body on wheels may also be in a bend, so its σ grows slowly. A body that is tumbled about, in a hand or by waves, or
-//! that was seen to turn at once, is in none, and its gyros are worked hardest: its level is at once as uncertain as the two are apart, for half a minute the
+//! A body on wheels may also be in a bend: its σ grows within seconds, to a fifth of what the two are apart. A body that is tumbled about, in a hand or by waves, or
+//! that was seen to turn quicker than wheels turn it, is in none, and its gyros are worked hardest: its level is at once as uncertain as the two are apart, for half a minute the
 //! gyros' scale is believed no more than gravity shows of it, and what leans for long is a bias. Where hardly any of the
 //! mean force holds the body up, the filter's vertical is none, and the floor's takes its place.
 //!
@@ -26,7 +26,7 @@ const LASTING: f32 = 2.5;
 /// Part of gravity that may be missing in the mean of what holds the body up, before the level is taken from the floor: a
 /// loop that is flown misses less.
 const MISSING: f32 = 0.5;
-/// Time in which the level of a body that is not tumbled about becomes as uncertain as the floor says, s.
+/// Time in which the variance of a level that is not tumbled about grows by what the floor is beside it unexplained, s.
 const WIDENING: f32 = 2.0;
 /// For how long a doubt lasts, s.
 const DOUBT: f32 = 30.0;
@@ -63,7 +63,7 @@ impl Floor {
             *mean += impulse * (1.0 / BAND) - part * *mean;
         }
         let [.., down] = stretch.impulse;
-        // A body that falls misses nothing; what is felt beside gravity holds nobody up.
+        // What holds the body up should be gravity, or what it feels at all: a body that falls misses nothing.
         let missing = size.min(GRAVITY) + down / stretch.forced;
         self.missing += part * (missing * (1.0 / GRAVITY) - self.missing);
     }

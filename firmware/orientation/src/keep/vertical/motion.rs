@@ -3,8 +3,8 @@
 //! A level that is tilted by δ shows a steady level force g·δ, which adds up to a speed; a body that moves shows a
 //! force that comes and goes. So the level force is taken less its own mean: what is left of it, added up, is the speed
 //! in the band that hides tilt (`swing`). Slower motion, as a vehicle's, is seen only in the sum of the force itself
-//! (`drift`), which counts as far as the tilt's own uncertainty does not explain it, and not beyond ten times the
-//! swing: a body that never swings does not drift.
+//! (`drift`), which counts as far as the tilt's own uncertainty does not explain it, and not beyond three times
+//! the swing of lately: a body that never swings does not drift.
 //!
 //! A level that errs more each moment, behind gyros that are worse than stated, would imitate a swing. It does not change
 //! the force's size: what that adds up to is a speed as well (`heave`). A body that is tumbled about, in a hand or

@@ -2,7 +2,7 @@
 //!
 //! Half a second is steady if its mean rates and forces are those of the half second before within the gyros' noise,
 //! and quiet if the rates are the biases' as well, within their uncertainty, in it alone and in all that it follows. Three
-//! quiet ones in a row are a rest. The attitude is not asked; only where the force is not gravity as the attitude has
+//! quiet ones in a row are a rest. Noise decides, not the attitude; but where the force is not gravity as the attitude has
 //! it, and a steady acceleration would look just so, a rest must last for a minute, or until that would have made the
 //! body too fast: a vehicle that speeds up steadily on a straight road is quiet too. A body that was just tumbled about
 //! does not do that, and a force that is felt as at the latest rest is gravity as it was there.
