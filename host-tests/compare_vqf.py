@@ -4,8 +4,10 @@
 usage: compare_vqf.py excerpts MERIDIAN [LIMIT]     the excerpts kept in data/recordings/imu-broad-*.csv.gz
        compare_vqf.py trials BROAD MERIDIAN [HALF]  all trials of a clone of https://github.com/dlaidig/broad (CC BY 4.0)
 
-LIMIT, rad/s, makes the gyros soft: they show LIMIT tanh(rate / LIMIT). MERIDIAN is the built command (target/release/meridian). HALF is a or b (places 1, 3, 5... and 2, 4, 6... of the trials that can be
-read), or all. Needs numpy, scipy and vqf (2.1, MIT): the class VQF in its default setting, 6 axes, sample by sample as a board could
+MERIDIAN is the built command (target/release/meridian). LIMIT, rad/s, makes the gyros soft: they show
+LIMIT tanh(rate / LIMIT). HALF is a or b (places 1, 3, 5... and 2, 4, 6... of the trials that can be read), apart (b without those of the
+excerpts), or all, as without it.
+Needs numpy, scipy and vqf (2.1, MIT): the class VQF in its default setting, 6 axes, sample by sample as a board could
 run it. Both get the same samples and nothing but the sample rate.
 
 Errors as BROAD defines them: the angle between the verticals, and the turn about the vertical after one constant offset; RMS over the
@@ -63,13 +65,16 @@ def trials(folder, half):
     """The same of the whole trials in a clone, as far as their files are there."""
     from scipy.io import loadmat
     listed = subprocess.run(['git', '-C', folder, 'ls-tree', '--name-only', 'HEAD', 'data_mat/'], capture_output=True, check=True)
+    kept = [name[-2:] for name, *_ in excerpts()]
     place = 0
     for path in sorted(listed.stdout.decode().split()):
         stored = subprocess.run(['git', '-C', folder, 'show', 'HEAD:' + path], capture_output=True)
         if not path.endswith('.mat') or stored.returncode:
             continue
         place += 1
-        if half in 'ab' and (place - 1) % 2 != 'ab'.index(half):
+        side = 'ab'[(place - 1) % 2]
+        is_apart = side == 'b' and os.path.basename(path)[:2] not in kept
+        if half not in ('all', side) and not (half == 'apart' and is_apart):
             continue
         data = loadmat(io.BytesIO(stored.stdout), squeeze_me=True)
         rate = float(data['sampling_rate'])
@@ -117,9 +122,10 @@ def compare(recordings, meridian, limit=None):
     print(f'within 1, 2, 3 sigma {within} %; RMS of error / (sqrt(2) sigma) {rms(pooled):.2f}')
 
 
+HALF = (sys.argv + ['all'])[4] if len(sys.argv) > 3 else 'all'
 if __name__ == '__main__' and len(sys.argv) > 2 and sys.argv[1] == 'excerpts':
     compare(excerpts(), sys.argv[2], *map(float, sys.argv[3:]))
-elif __name__ == '__main__' and len(sys.argv) > 3 and sys.argv[1] == 'trials':
-    compare(trials(sys.argv[2], (sys.argv + ['all'])[4]), sys.argv[3])
+elif __name__ == '__main__' and len(sys.argv) > 3 and sys.argv[1] == 'trials' and HALF in ('a', 'b', 'apart', 'all'):
+    compare(trials(sys.argv[2], HALF), sys.argv[3])
 else:
     sys.exit(__doc__)

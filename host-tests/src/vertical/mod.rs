@@ -10,6 +10,7 @@ use std::path::Path;
 
 use orientation::earth::Latitude;
 use orientation::keep::{Gyro, Keeper, Report, Setting, State};
+use orientation::noise::model::GyroNoise;
 use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 
 use crate::output::{azimuth_error, degrees};
@@ -132,15 +133,25 @@ fn setting(
 
 /// The gyro as the header knows it.
 fn known(header: &Header, gyro: Gyro) -> Gyro {
-    let noise = match header.gyro_n_deg_sqrt_h {
-        Some(_) => noise(header),
-        None => gyro.noise,
-    };
     let bias = header.gyro_bias_deg_h.map(|bias| bias * DEGREE_PER_HOUR);
     Gyro {
-        noise,
+        noise: known_noise(header, gyro.noise),
         bias_sigma: bias.unwrap_or(gyro.bias_sigma),
         scale_sigma: header.gyro_scale_sigma.unwrap_or(gyro.scale_sigma),
+    }
+}
+
+/// Its noise as the header knows it; what is stated beside an N that is not counts all the same.
+fn known_noise(header: &Header, assumed: GyroNoise) -> GyroNoise {
+    let stated = noise(header);
+    if header.gyro_n_deg_sqrt_h.is_some() {
+        return stated;
+    }
+    let [b, k] = [header.gyro_b_deg_h, header.gyro_k_deg_h_sqrt_h];
+    GyroNoise {
+        bias_instability: b.map_or(assumed.bias_instability, |_| stated.bias_instability),
+        rate_random_walk: k.map_or(assumed.rate_random_walk, |_| stated.rate_random_walk),
+        ..assumed
     }
 }
 

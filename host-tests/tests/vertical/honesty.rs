@@ -133,7 +133,7 @@ fn biases_ten_times_as_large_as_stated_are_told_by_a_body_that_never_rests() {
             keep(&Body { attitude: restless, acceleration: shaken, seed, ..body }, |_, _| true);
         assert!(after(&known, 70.0).all(|known| known.report.is_bias_beyond_stated), "{seed}");
         assert!(worst_tilt(&known, 80.0) < 3.0, "{seed}: {}°", worst_tilt(&known, 80.0));
-        // For the first minute the level is off by more than its σ, for nobody knows better; from then on it says so.
+        // For the first minute the level is off by more than its σ, as nothing shows the biases yet.
         let worst = after(&known, 60.0).map(Known::in_sigmas).fold(0.0, f64::max);
         assert!(worst < 4.0, "{seed}: {worst} σ");
     }

@@ -5,6 +5,7 @@
 mod attitude;
 mod faults;
 mod honesty;
+mod rest;
 mod world;
 
 #[track_caller]

@@ -350,9 +350,9 @@ impl Filter {
         self.stand();
     }
 
-    /// The body may be moving, and nobody has seen yet how much.
+    /// The body may be moving, at a speed that is not known yet.
     pub fn expect_motion(&mut self) {
-        self.motion.expect();
+        self.motion.expect_motion();
     }
 
     /// Watches from now on what gravity takes of what the gyros add, as if it had taken all until now.

@@ -4,10 +4,11 @@
 //! the floor on which the filter stands. Where it is beside the filter's vertical by more than motion and the level's σ
 //! explain, the gyros are worse than they are stated to be, or a turn was not seen, and σ grows.
 //!
-//! A body on wheels may also be in a bend: its σ grows within seconds, to a fifth of what the two are apart. A body that is tumbled about, in a hand or by waves, or
-//! that was seen to turn quicker than wheels turn it, is in none, and its gyros are worked hardest: its level is at once as uncertain as the two are apart, for half a minute the
-//! gyros' scale is believed no more than gravity shows of it, and what leans for long is a bias. Where hardly any of the
-//! mean force holds the body up, the filter's vertical is none, and the floor's takes its place.
+//! A body on wheels may also be in a bend: its σ grows within seconds, to a fifth of what the two are apart. A body that
+//! is tumbled about, in a hand or by waves, or that was seen to turn quicker than wheels turn it, is in none, and its
+//! gyros are worked hardest: its level is at once as uncertain as the two are apart, for half a minute the gyros' scale
+//! is believed no more than gravity shows of it, and what leans for long is a bias. Where hardly any of the mean force
+//! holds the body up, the filter's vertical is none, and the floor's takes its place.
 //!
 //! Source of the low-pass in the gyros' frame: D. Laidig and T. Seel, VQF, Information Fusion 2023.
 
@@ -18,13 +19,13 @@ use crate::math::rotation::dot;
 
 /// Standard deviations by which the floor may be beside the filter's vertical.
 const FLOOR: f32 = 5.0;
-/// Mean square that they may be apart at most, of a body that is tumbled about, in those of gravity: one that gained 70 m/s on a
-/// level course within the band is no such body.
+/// Mean square that they may be apart at most, of a body that is tumbled about, in those of gravity: one that gained
+/// 70 m/s on a level course within the band is no such body.
 const FARTHEST: f32 = 0.5;
 /// Standard deviations that are too many if they last: those of a bias.
 const LASTING: f32 = 2.5;
-/// Part of gravity that may be missing in the mean of what holds the body up, before the level is taken from the floor: a
-/// loop that is flown misses less.
+/// Part of gravity that may be missing in the mean of what holds the body up, before the level is taken from the floor:
+/// a loop that is flown misses less.
 const MISSING: f32 = 0.5;
 /// Time in which the variance of a level that is not tumbled about grows by what the floor is beside it unexplained, s.
 const WIDENING: f32 = 2.0;

@@ -43,7 +43,7 @@ const LEAST_PRIOR: f32 = 1e-16;
 /// How far gravity may be from the standard, m/s²: 9.78 on the equator, 9.83 at the poles.
 const GRAVITY_CHANGE: f32 = 0.03;
 /// Standard deviations of the level by which a force at rest may be beside gravity.
-const SIGMAS: f32 = 4.0;
+const SIGMAS: f32 = 5.0;
 /// Part of gravity by which the first forces may differ from it.
 const BEGINNING: f32 = 0.5;
 
@@ -293,8 +293,7 @@ impl Vertical {
     }
 
     /// The biases are off by so much, rad/s, for they are found to be these: what is known of them is forgotten. Where one
-    /// is beyond what was stated, that is believed of none of the gyros any more, for who is wrong about one is wrong about
-    /// its like.
+    /// is beyond what was stated, that is believed of none of the gyros any more, for they are of one kind.
     fn widen_biases(&mut self, off: &Vector, found: &Vector) {
         let stated = self.stated();
         let ratio = |biases: &Vector| {
@@ -322,8 +321,8 @@ impl Vertical {
     /// The acceleration that a steady force may show, m/s²: where it is beside gravity as the attitude has it, and either
     /// holds the body up as gravity would, as in a steady acceleration on a level road, or is not of gravity's size.
     fn acceleration(&self, force: &Vector) -> Option<f32> {
-        // Nobody who turns a body over speeds it up steadily for as long as a rest takes to be seen; and against a level
-        // that is not sure of itself no force is an acceleration.
+        // A body that is turned over does not speed up steadily for as long as a rest takes to be seen; and against a
+        // level that is not sure of itself no force is an acceleration.
         if self.filter.is_tumbled() || self.sigma() > UNSURE {
             return None;
         }

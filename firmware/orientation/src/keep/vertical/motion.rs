@@ -129,8 +129,8 @@ impl Motion {
         self.greatest = faded.max(self.swing());
     }
 
-    /// The body may be moving, and nobody has seen yet how much.
-    pub(super) fn expect(&mut self) {
+    /// The body may be moving, at a speed that is not known yet.
+    pub(super) fn expect_motion(&mut self) {
         let square = EXPECTED * EXPECTED;
         for lately in [&mut self.swing.square, &mut self.heave.square, &mut self.greatest] {
             *lately = lately.max(square);

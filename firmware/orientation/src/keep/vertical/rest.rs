@@ -35,18 +35,20 @@ const SHAKING: f32 = 1e-4;
 const FORCE_CHANGE: f32 = 0.03;
 /// Least force that a body feels which does not fall, m/s²: half of gravity.
 const LEAST_FORCE: f32 = 4.9;
-/// Changes of the force by which a turn must have carried it along to be denied by its standing still.
+/// How much farther a turn must have carried the force along than it moved to be denied by its standing still, and how
+/// far it may have moved unseen, m/s²: 1 mg.
 const DENIED: f32 = 3.0;
+const UNSEEN: f32 = 0.01;
 /// Windows that a turn must last to be denied: what shakes the body turns it back within them.
 const DENYING: u32 = 6;
 /// Greatest and least noise that is believed, squared, in those of what was stated: five times, a tenth.
 const GREATEST_NOISE: f32 = 25.0;
 const LEAST_NOISE: f32 = 0.01;
-/// How much of the way to a lower noise one window goes, to a higher one at rest, and how much may be added by a
-/// window on the move.
-const LOWER: f32 = 0.5;
-const HIGHER: f32 = 0.125;
-const ADDED: f32 = 0.03;
+/// How much of the way to what is shown one window goes at rest, and how much may be added by a window on the move.
+const AVERAGED: f32 = 0.125;
+const ADDED: f32 = 0.01;
+/// Part of its noise to which a gyro falls as a motion ends.
+const SETTLED: f32 = 0.5;
 
 /// What a window shows.
 #[derive(Clone, Copy, Debug, Default)]
@@ -107,8 +109,9 @@ struct Steady {
     windows: u32,
     /// What the body would have turned beside the biases meanwhile, rad.
     turned: Vector,
-    /// The force in the first of them, m/s².
+    /// The force in the first of them, m/s², and how far it was from that at most, squared.
     force: Vector,
+    moved: f32,
 }
 
 impl ZeroVelocityDetector {
@@ -118,8 +121,8 @@ impl ZeroVelocityDetector {
         let Some(before) = self.before.replace(means) else { return self.moves() };
         let Some(force) = steady_force(&means, &before, &walk) else { return self.moves() };
         if !self.is_quiet(&means, known, &walk) {
-            self.steady.push(scaled(&difference(&means.rate, &known.biases), WINDOW), force);
-            let is_strange = self.steady.denies_turn(&force, &walk) || self.outlasts_turn(known);
+            self.steady.push(&scaled(&difference(&means.rate, &known.biases), WINDOW), force);
+            let is_strange = self.steady.denies_turn(&walk) || self.outlasts_turn(known);
             (self.quiet, self.is_at_rest) = (0, false);
             return if is_strange { Found::StrangeBias } else { Found::Motion };
         }
@@ -139,13 +142,16 @@ impl ZeroVelocityDetector {
         let walk = core::array::from_fn(|axis| {
             let most = GREATEST_NOISE * known.walk[axis];
             let before = self.walk.map_or(most, |walk| walk[axis]);
-            let part = if means.walk[axis] < before { LOWER } else { HIGHER };
-            let towards = before + part * (means.walk[axis] - before);
-            let least_more = before * (1.0 + ADDED);
-            let after = if self.is_at_rest { towards } else { towards.min(least_more) };
+            let latest = self.before.map_or(most, |latest| latest.walk[axis]);
+            let towards = before + AVERAGED * (means.walk[axis].min(2.0 * before) - before);
+            let rising = if self.is_at_rest { towards } else { before * (1.0 + ADDED) };
+            let after = rising.min(means.walk[axis].max(latest));
             after.min(most).max(LEAST_NOISE * known.walk[axis])
         });
-        self.walk = Some(walk);
+        let has_fallen = |before: Vector| (0..3).any(|axis| walk[axis] < SETTLED * before[axis]);
+        if self.walk.replace(walk).is_none_or(has_fallen) {
+            self.learnt();
+        }
         walk
     }
 
@@ -153,11 +159,11 @@ impl ZeroVelocityDetector {
         self.seconds += WINDOW;
         let mut is_quiet = true;
         for (axis, walk) in walk.iter().enumerate() {
-            let bound = |seconds: f32| greatest_turn(*walk, known.variances[axis], seconds);
+            let variance = known.variances[axis];
             let away = WINDOW * (means.rate[axis] - known.biases[axis]);
             self.turned[axis] += away;
-            is_quiet &= away.abs() <= bound(WINDOW);
-            is_quiet &= self.turned[axis].abs() <= bound(self.seconds);
+            is_quiet &= away.abs() <= greatest_turn(*walk, variance, WINDOW);
+            is_quiet &= self.turned[axis].abs() <= greatest_turn(*walk, variance, self.seconds);
         }
         is_quiet
     }
@@ -220,29 +226,29 @@ impl ZeroVelocityDetector {
 }
 
 impl Steady {
-    fn push(&mut self, turned: Vector, force: Vector) {
+    fn push(&mut self, turned: &Vector, force: Vector) {
         if self.windows == 0 {
-            self.force = force;
+            (self.force, self.moved) = (force, UNSEEN * UNSEEN);
         }
+        let moved = difference(&force, &self.force);
+        self.moved = self.moved.max(dot(&moved, &moved));
         self.windows = self.windows.saturating_add(1);
-        self.turned = sum(&self.turned, &turned);
+        self.turned = sum(&self.turned, turned);
     }
 
     /// Whether the force would have been carried along by the turn that the rates show, and stands. In a bend it is carried
     /// with the body and stands too, so only a turn that is rather about level axes is denied.
-    fn denies_turn(&self, force: &Vector, walk: &Vector) -> bool {
+    fn denies_turn(&self, walk: &Vector) -> bool {
         let seconds = self.windows as f32 * WINDOW;
         let is_noise =
             |axis: usize| self.turned[axis].abs() <= greatest_turn(walk[axis], 0.0, seconds);
         if self.windows < DENYING || (0..3).all(is_noise) {
             return false;
         }
-        let carried = cross(&self.turned, force);
-        let moved = difference(force, &self.force);
-        let (carried, moved) = (dot(&carried, &carried), dot(&moved, &moved));
-        let along = dot(&self.turned, force);
-        let bound = DENIED * FORCE_CHANGE;
-        carried > bound * bound && carried > along * along && moved * (DENIED * DENIED) < carried
+        let carried = cross(&self.turned, &self.force);
+        let carried = dot(&carried, &carried);
+        let along = dot(&self.turned, &self.force);
+        carried > DENIED * DENIED * self.moved && carried > along * along
     }
 }
 

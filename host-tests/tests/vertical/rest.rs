@@ -1,0 +1,93 @@
+//! When a body is found to stand: whatever its motion left behind, and never while it only moves quietly.
+
+use orientation::keep::{Gyro, Setting};
+use orientation::units::{AngleIncrement, DEGREE, DEGREE_PER_HOUR, TURN};
+
+use super::world::{Body, Known, coarse, keep, precise};
+
+/// From when on the body counted as standing until the end, s.
+fn rests_from(known: &[Known]) -> f64 {
+    let last = known.iter().rev().find(|known| !known.report.is_at_rest);
+    last.map_or(0.0, |known| known.time)
+}
+
+fn rests_within(known: &[Known], times: std::ops::Range<f64>) -> bool {
+    known.iter().any(|known| times.contains(&known.time) && known.report.is_at_rest)
+}
+
+/// A drive from 60 s to 120 s that rolls and pitches a little, and its springs, which settle in so many tenths of a second.
+fn drive<const TENTHS: u32>(time: f64) -> [f64; 3] {
+    let size = (time - 60.0).clamp(0.0, 1.0) * (120.0 - time).clamp(0.0, 1.0);
+    let bounced =
+        if time < 120.0 { 0.0 } else { (-(time - 120.0) / (0.1 * f64::from(TENTHS))).exp() };
+    let swing = |rate: f64| 0.02 * size * (rate * time).sin() + 0.01 * bounced;
+    [0.5 + 0.3 * size * (0.2 * time).sin(), 0.03 + swing(2.3), -0.02 + swing(3.1)]
+}
+
+fn pulling(time: f64) -> [f64; 3] {
+    let size = if (61.0..119.0).contains(&time) { 1.0 } else { 0.0 };
+    [0.9, 0.7, 1.5].map(|force| size * force * (force * time).sin())
+}
+
+#[test]
+fn a_body_that_settles_as_it_stops_stands_within_ten_seconds() {
+    let springs: [fn(f64) -> [f64; 3]; 4] = [drive::<1>, drive::<3>, drive::<5>, drive::<8>];
+    for (place, attitude) in springs.into_iter().enumerate() {
+        for seed in 1..=5 {
+            for body in [coarse(135.0), precise(135.0)] {
+                let body = Body { attitude, acceleration: pulling, seed, ..body };
+                let known = keep(&body, |_, _| true);
+                assert!(!rests_within(&known, 65.0..120.0), "spring {place}, seed {seed}");
+                let from = rests_from(&known);
+                assert!(from < 130.0, "spring {place}, seed {seed}: {from} s");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_level_gyro_whose_bias_moved_on_the_way_hides_the_rest_for_twenty_seconds_at_most() {
+    let bodies: [(f64, fn(f64) -> Body); 4] =
+        [(60.0, coarse), (-90.0, coarse), (60.0, precise), (300.0, precise)];
+    for (moved, body) in bodies {
+        for seed in 1..=3 {
+            let body = Body { attitude: drive::<1>, acceleration: pulling, seed, ..body(150.0) };
+            let more = moved * DEGREE_PER_HOUR * body.setting.sample_seconds;
+            let mut carried = 0.0;
+            let known = keep(&body, |time, sample| {
+                if time > 90.0 {
+                    let turned = sample.turned[1].rad() + more;
+                    sample.turned[1] = AngleIncrement::from_rad(turned, &mut carried);
+                }
+                true
+            });
+            let from = rests_from(&known);
+            assert!(from < 140.0, "{moved} °/h, seed {seed}: {from} s");
+        }
+    }
+}
+
+#[test]
+fn a_shaken_vehicle_that_speeds_up_steadily_does_not_stand_though_its_gyros_are_quieter_than_stated()
+ {
+    // Sines without a common period, 0.2° together: what shakes it is five times what is stated of the gyros' noise.
+    fn shake(time: f64, phase: f64) -> f64 {
+        let sines = [0.53, 0.91, 1.37, 1.73, 2.19, 2.71, 3.29, 3.83];
+        let sum =
+            sines.map(|rate| (TURN * rate * time + phase * 10.0 * rate).sin()).iter().sum::<f64>();
+        0.1 * DEGREE * sum * (time - 30.0).clamp(0.0, 1.0)
+    }
+    let attitude = |time: f64| [0.5, 0.02 + shake(time, 1.0), -0.03 + shake(time, 2.0)];
+    let acceleration =
+        |time: f64| if (30.0..80.0).contains(&time) { [0.5, 0.0, 0.0] } else { [0.0; 3] };
+    // What is assumed where nothing is stated.
+    let gyros = [Gyro::coarse(); 3];
+    for seed in 1..=5 {
+        let body = coarse(240.0);
+        let setting = Setting { gyros, ..body.setting };
+        let body = Body { attitude, acceleration, setting, noise: 0.2, seed, ..body };
+        let known = keep(&body, |_, _| true);
+        assert!(rests_within(&known, 20.0..30.0), "{seed}");
+        assert!(!rests_within(&known, 32.0..240.0), "{seed}");
+    }
+}
