@@ -2,11 +2,11 @@
 """The gyrovertical beside VQF, on recordings of a hand-held sensor with cameras as truth.
 
 usage: compare_vqf.py excerpts MERIDIAN [LIMIT]     the excerpts kept in data/recordings/imu-broad-*.csv.gz
-       compare_vqf.py trials BROAD MERIDIAN [HALF]  all trials of a clone of https://github.com/dlaidig/broad (CC BY 4.0)
+       compare_vqf.py trials BROAD MERIDIAN [HALF]  the trials in a clone of https://github.com/dlaidig/broad (CC BY 4.0)
 
 MERIDIAN is the built command (target/release/meridian). LIMIT, rad/s, makes the gyros soft: they show
-LIMIT tanh(rate / LIMIT). HALF is a or b (places 1, 3, 5... and 2, 4, 6... of the trials that can be read), apart (b without those of the
-excerpts), or all, as without it.
+LIMIT tanh(rate / LIMIT). HALF is a or b (places 1, 3, 5... and 2, 4, 6... of the trials that can be read), apart (b
+without those of the excerpts), or all, as without it.
 Needs numpy, scipy and vqf (2.1, MIT): the class VQF in its default setting, 6 axes, sample by sample as a board could
 run it. Both get the same samples and nothing but the sample rate.
 

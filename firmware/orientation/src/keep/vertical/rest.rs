@@ -44,8 +44,10 @@ const DENYING: u32 = 6;
 /// Greatest and least noise that is believed, squared, in those of what was stated: five times, a tenth.
 const GREATEST_NOISE: f32 = 25.0;
 const LEAST_NOISE: f32 = 0.01;
-/// How much of the way to what is shown one window goes at rest, and how much may be added by a window on the move.
+/// How much of the way to what is shown one window goes at rest, where it counts as no more than so many times what was
+/// known, for it may be a motion's first; and how much may be added by a window on the move.
 const AVERAGED: f32 = 0.125;
+const GREATEST_RISE: f32 = 2.0;
 const ADDED: f32 = 0.01;
 /// Part of its noise to which a gyro falls as a motion ends.
 const SETTLED: f32 = 0.5;
@@ -137,13 +139,15 @@ impl ZeroVelocityDetector {
         Found::Rest
     }
 
-    /// The gyros' noise as they show it: the least of lately, for motion only adds to it.
+    /// The gyros' noise as they show it: the least of lately, for motion only adds to it. As it falls, a motion ends, and
+    /// what the body turned until then says nothing of its rest.
     fn learn_noise(&mut self, means: &Means, known: &Known) -> Vector {
         let walk = core::array::from_fn(|axis| {
             let most = GREATEST_NOISE * known.walk[axis];
             let before = self.walk.map_or(most, |walk| walk[axis]);
             let latest = self.before.map_or(most, |latest| latest.walk[axis]);
-            let towards = before + AVERAGED * (means.walk[axis].min(2.0 * before) - before);
+            let towards =
+                before + AVERAGED * (means.walk[axis].min(GREATEST_RISE * before) - before);
             let rising = if self.is_at_rest { towards } else { before * (1.0 + ADDED) };
             let after = rising.min(means.walk[axis].max(latest));
             after.min(most).max(LEAST_NOISE * known.walk[axis])
