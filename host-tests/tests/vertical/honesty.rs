@@ -1,9 +1,9 @@
 //! What the filter may not be too sure of: its level, the biases and the noise that were stated.
 
 use orientation::keep::{Gyro, Setting};
-use orientation::units::{AngleIncrement, DEGREE, TURN};
+use orientation::units::{AngleIncrement, DEGREE};
 
-use super::world::{Body, Known, coarse, keep, precise};
+use super::world::{Body, Known, coarse, keep, precise, shaken};
 
 fn after(known: &[Known], time: f64) -> impl Iterator<Item = &Known> {
     known.iter().filter(move |known| known.time > time)
@@ -68,16 +68,8 @@ fn after_an_unseen_turn_a_body_that_only_rocks_is_level_within_ten_seconds() {
 
 #[test]
 fn a_vehicle_that_is_shaken_at_random_hides_no_bias_that_is_told() {
-    // A straight level road; sines without a common period, 0.2° together.
-    fn shake(time: f64, phase: f64) -> f64 {
-        let sines = [0.53, 0.91, 1.37, 1.73, 2.19, 2.71, 3.29, 3.83];
-        let sum =
-            sines.map(|rate| (TURN * rate * time + phase * 10.0 * rate).sin()).iter().sum::<f64>();
-        0.1 * DEGREE * sum * (time - 30.0).clamp(0.0, 1.0)
-    }
-    let attitude = |time: f64| [0.5, 0.02 + shake(time, 1.0), -0.03 + shake(time, 2.0)];
     for seed in 1..=3 {
-        let known = keep(&Body { attitude, seed, ..coarse(300.0) }, |_, _| true);
+        let known = keep(&Body { attitude: shaken, seed, ..coarse(300.0) }, |_, _| true);
         assert!(known.iter().all(|known| !known.report.is_bias_beyond_stated), "{seed}");
         assert!(worst_tilt(&known, 10.0) < 1.5, "{seed}: {}°", worst_tilt(&known, 10.0));
     }
@@ -121,7 +113,7 @@ fn restless(time: f64) -> [f64; 3] {
     [0.5 + swing(1.7, 0.6), 0.03 + swing(2.3, 0.5), -0.02 + swing(3.1, 0.7)]
 }
 
-fn shaken(time: f64) -> [f64; 3] {
+fn pushed(time: f64) -> [f64; 3] {
     [2.0, 1.5, 2.5].map(|force| force * (force * 2.2 * time).sin())
 }
 
@@ -130,7 +122,7 @@ fn biases_ten_times_as_large_as_stated_are_told_by_a_body_that_never_rests() {
     for seed in 1..=3 {
         let body = understated(120.0);
         let known =
-            keep(&Body { attitude: restless, acceleration: shaken, seed, ..body }, |_, _| true);
+            keep(&Body { attitude: restless, acceleration: pushed, seed, ..body }, |_, _| true);
         assert!(after(&known, 70.0).all(|known| known.report.is_bias_beyond_stated), "{seed}");
         assert!(worst_tilt(&known, 80.0) < 3.0, "{seed}: {}°", worst_tilt(&known, 80.0));
         // For the first minute the level is off by more than its σ, as nothing shows the biases yet.
@@ -142,7 +134,7 @@ fn biases_ten_times_as_large_as_stated_are_told_by_a_body_that_never_rests() {
 #[test]
 fn a_body_that_moves_as_it_is_switched_on_says_how_little_it_knows() {
     for body in [coarse(60.0), precise(60.0)] {
-        let known = keep(&Body { attitude: restless, acceleration: shaken, ..body }, |_, _| true);
+        let known = keep(&Body { attitude: restless, acceleration: pushed, ..body }, |_, _| true);
         let worst = known.iter().map(Known::in_sigmas).fold(0.0, f64::max);
         assert!(worst < 4.0 && worst_tilt(&known, 0.0) > 10.0, "{worst} σ");
         assert!(worst_tilt(&known, 20.0) < 1.0, "{}°", worst_tilt(&known, 20.0));

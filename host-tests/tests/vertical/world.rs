@@ -60,6 +60,17 @@ pub fn precise(seconds: f64) -> Body {
     }
 }
 
+/// A vehicle on a straight level road that is shaken at random from 30 s on: sines without a common period, 0.2° together.
+pub fn shaken(time: f64) -> Vector {
+    let shake = |phase: f64| {
+        let sines = [0.53, 0.91, 1.37, 1.73, 2.19, 2.71, 3.29, 3.83];
+        let sum =
+            sines.map(|rate| (TURN * rate * time + phase * 10.0 * rate).sin()).iter().sum::<f64>();
+        0.1 * DEGREE * sum * (time - 30.0).clamp(0.0, 1.0)
+    };
+    [0.5, 0.02 + shake(1.0), -0.03 + shake(2.0)]
+}
+
 fn latitude(degrees: f64) -> Latitude {
     Latitude::from_degrees(degrees).expect("a latitude")
 }

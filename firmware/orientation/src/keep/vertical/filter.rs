@@ -196,39 +196,50 @@ impl Filter {
         }
     }
 
+    /// What the stretch adds that is new.
     fn add_noise(&mut self, stretch: &Stretch, expected: &Expected) {
-        let seconds = stretch.seconds;
+        self.add_turn_noise(stretch, expected);
+        let square = stretch.rate_squares.iter().sum::<f32>();
+        self.add_drift(stretch, expected, square);
+        // A body that keeps its attitude shows the same error all the time: a tilt, not noise.
+        let turned = (square / stretch.seconds * SWING * SWING).min(1.0);
+        let strayed = FORCE_SCALE * FORCE_SCALE * SWING * turned;
+        for place in [VELOCITY, VELOCITY + 1] {
+            self.covariance[place][place] +=
+                (FORCE_NOISE * FORCE_NOISE + strayed) * stretch.seconds;
+        }
+    }
+
+    /// Of the attitude: the gyros' random walk, and what changes of their scale and axes.
+    fn add_turn_noise(&mut self, stretch: &Stretch, expected: &Expected) {
         let scale = SWING * self.floor.strain();
         let strays: [f32; 3] = core::array::from_fn(|axis| {
             let swung = scale * expected.scale[axis] * stretch.rate_squares[axis];
-            expected.walk[axis] * seconds + swung
+            expected.walk[axis] * stretch.seconds + swung
         });
         let [about_north, about_east, _] =
             stretch.attitude.map(|row| weighed(&row, &strays, stretch));
         // What the gyro of the down axis makes of the turn by its scale, who keeps the turn accounts for.
         let [x, y, _] = strays;
-        let own = expected.walk[2] * seconds;
+        let own = expected.walk[2] * stretch.seconds;
         let about_down = weighed(&stretch.attitude[2], &[x, y, own], stretch);
         let about_down = if stretch.is_rest { 0.0 } else { about_down + self.slanted(stretch) };
         for (place, more) in [about_north, about_east, about_down].into_iter().enumerate() {
             self.covariance[place][place] += more;
         }
-        let squares = stretch.rate_squares.iter().sum::<f32>();
+    }
+
+    /// Of biases and axes, of a body whose squared rates add up to this, rad²/s.
+    fn add_drift(&mut self, stretch: &Stretch, expected: &Expected, square: f32) {
         // A body that turns to and fro quickly leaves of it only its mean.
-        let turned = (BEND * squares).min(seconds / TURNING);
+        let turned = (BEND * square).min(stretch.seconds / TURNING);
         for axis in 0..3 {
-            let more = expected.drift[axis] * seconds + stretch.hidden * turned;
+            let more = expected.drift[axis] * stretch.seconds + stretch.hidden * turned;
             self.covariance[BIAS + axis][BIAS + axis] += more;
-            let renewed = lasting(expected.scale[axis]) * (seconds / RENEWAL);
+            let renewed = lasting(expected.scale[axis]) * (stretch.seconds / RENEWAL);
             for place in axes(axis) {
                 self.covariance[place][place] += renewed;
             }
-        }
-        // A body that keeps its attitude shows the same error all the time: a tilt, not noise.
-        let turned = (squares / seconds * SWING * SWING).min(1.0);
-        let strayed = FORCE_SCALE * FORCE_SCALE * SWING * turned;
-        for place in [VELOCITY, VELOCITY + 1] {
-            self.covariance[place][place] += (FORCE_NOISE * FORCE_NOISE + strayed) * seconds;
         }
     }
 

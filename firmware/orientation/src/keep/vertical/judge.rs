@@ -121,15 +121,7 @@ impl Vertical {
                 self.filter.spread(&self.block, &self.expected);
                 if self.block.forced > 0.0 { Task::Stay(0) } else { Task::Judge }
             }
-            Task::Stay(axis) => {
-                if axis == 0
-                    && let Some(force) = self.filter.watch(&self.block)
-                {
-                    self.take_level(&force);
-                }
-                self.filter.stay(axis, self.block.seconds);
-                if axis == 0 { Task::Stay(1) } else { Task::Judge }
-            }
+            Task::Stay(axis) => self.stay(axis),
             Task::Judge => {
                 self.judge();
                 if self.window.seconds >= WINDOW {
@@ -145,6 +137,17 @@ impl Vertical {
                 Task::Nothing
             }
         }
+    }
+
+    /// The body stays where it is, nearly; its motion is watched before that counts.
+    fn stay(&mut self, axis: usize) -> Task {
+        if axis == 0
+            && let Some(force) = self.filter.watch(&self.block)
+        {
+            self.take_level(&force);
+        }
+        self.filter.stay(axis, self.block.seconds);
+        if axis == 0 { Task::Stay(1) } else { Task::Judge }
     }
 
     /// What comes after a look.
