@@ -1,7 +1,7 @@
 //! When a body is found to stand: whatever its motion left behind, and never while it only moves quietly.
 
 use orientation::keep::{Gyro, Setting};
-use orientation::units::{AngleIncrement, DEGREE_PER_HOUR};
+use orientation::units::{AngleIncrement, DEGREE, DEGREE_PER_HOUR};
 
 use super::world::{Body, Known, coarse, keep, precise, shaken};
 
@@ -83,5 +83,45 @@ fn a_shaken_vehicle_that_speeds_up_does_not_stand_though_its_gyros_are_quieter_t
         let known = keep(&body, |_, _| true);
         assert!(rests_within(&known, 20.0..30.0), "{seed}");
         assert!(!rests_within(&known, 32.0..240.0), "{seed}");
+    }
+}
+
+/// Turns about the vertical as it is switched on, by so many tenths of a degree a second for so many seconds.
+fn turned_at_first<const TENTHS: u32, const SECONDS: u32>(time: f64) -> [f64; 3] {
+    let turned = 0.1 * f64::from(TENTHS) * DEGREE * time.min(f64::from(SECONDS));
+    [0.5 + turned, 0.03, -0.02]
+}
+
+#[test]
+fn a_turn_that_was_taken_for_a_bias_at_first_is_found_out_as_the_body_stands() {
+    let turns: [fn(f64) -> [f64; 3]; 4] = [
+        turned_at_first::<10, 3>,
+        turned_at_first::<5, 3>,
+        turned_at_first::<1, 10>,
+        turned_at_first::<10, 10>,
+    ];
+    for (place, attitude) in turns.into_iter().enumerate() {
+        for seed in 1..=3 {
+            let body = Body { attitude, seed, ..coarse(240.0) };
+            let known = keep(&body, |_, _| true);
+            let from = rests_from(&known);
+            assert!(from < 120.0, "turn {place}, seed {seed}: {from} s");
+            let [.., down] = known.last().expect("samples").report.biases;
+            // The Earth turns the body by 0.004°/s at most.
+            assert!((down - body.biases[2]).abs() < 0.01 * DEGREE, "turn {place}: {down} rad/s");
+        }
+    }
+}
+
+#[test]
+fn an_even_turn_after_a_rest_of_seconds_is_a_turn() {
+    let attitude = |time: f64| [0.5 + 3.0 * DEGREE * (time - 5.0).clamp(0.0, 120.0), 0.03, -0.02];
+    for seed in 1..=3 {
+        let known = keep(&Body { attitude, handed: Some(4.0), seed, ..coarse(160.0) }, |_, _| true);
+        assert!(!rests_within(&known, 6.0..124.0), "{seed}");
+        let last = known.last().expect("samples");
+        let sigma = last.report.azimuth.expect("an azimuth").sigma;
+        assert!(last.azimuth.expect("an azimuth").abs() < 3.0 * sigma, "{seed}");
+        assert!(sigma < 10.0 * DEGREE && rests_from(&known) < 130.0, "{seed}: {sigma} rad");
     }
 }

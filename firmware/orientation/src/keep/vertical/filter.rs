@@ -33,7 +33,7 @@ const FORCE_SCALE: f32 = 0.1;
 
 /// Part of a gyro's stated error of scale and axes that is the same all the time and can be learnt; the rest changes
 /// with rate, acceleration and temperature.
-const LASTING: f32 = 0.4;
+const CONSTANT_PART: f32 = 0.4;
 /// Time over which an error of scale and axes is renewed, s.
 const RENEWAL: f32 = 1000.0;
 /// For how long a body turns one way before it turns back, s: what changes of scale and axes adds up until then.
@@ -390,7 +390,13 @@ impl Filter {
     /// Variance of the turn about the vertical, rad².
     #[must_use]
     pub fn turn_variance(&self) -> f32 {
-        self.covariance[TURN][TURN].max(0.0)
+        self.variance(TURN)
+    }
+
+    /// Variance of a state as it stands: what is still to be put right counts as an error.
+    fn variance(&self, place: usize) -> f32 {
+        let correction = self.correction[place];
+        self.covariance[place][place].max(0.0) + correction * correction
     }
 
     /// Variances of both tilts together, rad².
@@ -401,7 +407,7 @@ impl Filter {
     /// 1σ of the greater tilt, rad.
     #[must_use]
     pub fn tilt_sigma(&self) -> f32 {
-        libm::sqrtf(self.covariance[0][0].max(self.covariance[1][1]).max(0.0))
+        libm::sqrtf(self.variance(0).max(self.variance(1)))
     }
 
     /// Variances of the biases, (rad/s)².
@@ -438,7 +444,7 @@ fn axes(axis: usize) -> core::ops::Range<usize> {
 
 /// Variance of what lasts of an error of scale and axes, from the whole.
 fn lasting(scale: f32) -> f32 {
-    LASTING * LASTING * scale
+    CONSTANT_PART * CONSTANT_PART * scale
 }
 
 /// What strays about the body's axes, squared, as it adds up about an axis of the level frame.

@@ -23,7 +23,7 @@ const FLOOR: f32 = 5.0;
 /// 70 m/s on a level course within the band is no such body.
 const FARTHEST: f32 = 0.5;
 /// Standard deviations that are too many if they last: those of a bias.
-const LASTING: f32 = 2.5;
+const BIAS_SIGMAS: f32 = 2.5;
 /// Part of gravity that may be missing in the mean of what holds the body up, before the level is taken from the floor:
 /// a loop that is flown misses less.
 const MISSING: f32 = 0.5;
@@ -84,7 +84,7 @@ impl Floor {
         if beside > most.min(FARTHEST) {
             self.doubt = self.doubt.max(beside);
         }
-        let is_biased = beside > LASTING * LASTING * explained;
+        let is_biased = beside > BIAS_SIGMAS * BIAS_SIGMAS * explained;
         Verdict { more: (self.doubt - tilt).max(0.0), is_biased }
     }
 

@@ -1,6 +1,6 @@
 //! Looks at what happened: ten times a second at the forces, twice a second for a rest.
 
-use super::filter::{Correction, Filter};
+use super::filter::{Correction, Filter, TURN};
 use super::rest::{Found, Known, Means, WINDOW};
 use super::stretch::Stretch;
 use super::sums::{Rested, Window};
@@ -68,7 +68,7 @@ pub(super) enum Task {
     Correct,
 }
 
-/// Parts that a stretch has at most, and those that the samples which make an attitude leave to others.
+/// Greatest number of tasks of a stretch, with as many more as the samples leave that make an attitude and do none.
 const TASKS: f32 = 24.0;
 
 /// What a look at a rest found, to be told to the filter.
@@ -241,7 +241,7 @@ impl Vertical {
         let means = Means {
             rate: window.rate(),
             force,
-            walk: window.walk(),
+            walk: window.walk().unwrap_or(self.expected.walk),
             acceleration: force.and_then(|force| self.acceleration(&force)),
         };
         let was_rest = self.is_at_rest();
@@ -250,6 +250,9 @@ impl Vertical {
             Found::Motion => self.move_on(&window, was_rest),
             Found::StrangeBias => {
                 self.move_on(&window, was_rest);
+                // Even rates were taken for a turn until now.
+                let turned = dot(&self.matrix[2], &self.rest.turned_evenly());
+                self.filter.doubt(TURN, turned * turned);
                 self.widen_biases(&difference(&means.rate, &self.bias), &means.rate);
             }
         }
@@ -260,6 +263,7 @@ impl Vertical {
         Known {
             biases: self.bias,
             variances: self.filter.bias_variances(),
+            stated: self.stated(),
             walk: self.expected.walk,
         }
     }
@@ -306,7 +310,7 @@ impl Vertical {
         for (axis, variance) in scaled(&stated, ratio(off)).into_iter().enumerate() {
             self.filter.doubt(Filter::bias(axis), variance);
         }
-        self.rest.learnt();
+        self.rest.count_anew();
         let beyond = ratio(found);
         if beyond > GREATEST_BIAS * GREATEST_BIAS {
             self.priors = scaled(&stated, beyond);
@@ -384,7 +388,7 @@ impl Vertical {
             return None;
         }
         (self.rested.seconds, self.rested.turned) = (0.0, [0.0; 3]);
-        self.rest.learnt();
+        self.rest.count_anew();
         let off = difference(&scaled(&turned, 1.0 / seconds), &self.bias);
         Some([off, core::array::from_fn(|axis| self.rest_variance(axis, seconds))])
     }

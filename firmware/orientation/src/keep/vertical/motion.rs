@@ -34,7 +34,7 @@ const EXPLAINED: f32 = 2.0;
 const GREATEST_DRIFT: f32 = 10.0;
 /// Mean square of the rate about level axes from which a body is tumbled about, rad²/s²: wheels do not turn so.
 const TUMBLING: f32 = 0.25;
-/// The same of a rate about one level axis within half a second, rad/s, and for how long that is remembered, s.
+/// Mean rate about a level axis over half a second from which a body counts as tumbled, rad/s, and for how long, s.
 const QUICK_ROLL: f32 = 0.15;
 const ROLLING: f32 = 0.5;
 const TUMBLED: f32 = 60.0;

@@ -8,8 +8,10 @@
 //! does not do that, and a force that is felt as at the latest rest is gravity as it was there.
 //!
 //! Rates that are steady but not the biases' are a turn, or biases beyond what was stated. A turn about a level axis
-//! would carry the force along, which shows at once which it is. A steady turn about the vertical and the bias of a gyro
-//! that has never rested look alike: rates that stay even for 20 s are taken for a bias.
+//! would carry the force along, which shows at once which it is. A steady turn about the vertical and a bias look alike:
+//! within what was stated of the bias, a rest is believed; beyond that, rates that stay even for 20 s, of a gyro that has
+//! never rested. Of one that rested only for seconds, that rest may have been a turn itself: even rates are believed in its
+//! place if they last longer and make the biases less.
 //!
 //! The stop criteria of [`crate::signal::rest`] ask another question: whether the rate is the Earth's, of gyros that
 //! show it. They judge an average on its own and need no one before it, which coarse gyros cannot.
@@ -25,18 +27,20 @@ pub const WINDOW: f32 = 0.5;
 const ENOUGH: u32 = 3;
 /// Windows that make one where a steady acceleration would look just so: a minute.
 const PATIENCE: u32 = 120;
-/// Windows for which no turn is even, but a gyro's bias: 20 s.
+/// Windows for which no turn is even, but the bias of a gyro that has never rested: 20 s.
 const EVEN: u32 = 40;
-/// Speed of which no vehicle is that has been speeding up steadily all the time, m/s.
-const TOO_FAST: f32 = 60.0;
-/// How far wind and engine turn a body that stands within a window, rad: 20″.
+/// Windows more for each in which it rested for less than that, with a bias that was greater.
+const OUTLASTING: u32 = 3;
+/// Greatest speed to which a vehicle is taken to speed up steadily, m/s: a take-off's.
+const TOO_FAST: f32 = 100.0;
+/// How far wind and engine turn a body that stands within a window at most, rad: 20″.
 const SHAKING: f32 = 1e-4;
 /// How much a mean force may change at rest, m/s²: 3 mg.
 const FORCE_CHANGE: f32 = 0.03;
 /// Least force that a body feels which does not fall, m/s²: half of gravity.
 const LEAST_FORCE: f32 = 4.9;
-/// How much farther a turn must have carried the force along than it moved to be denied by its standing still, and how
-/// far it may have moved unseen, m/s²: 1 mg.
+/// A turn is denied if it would have moved the force by so many times what that moved, and what it moved at least as far
+/// as can be told, m/s²: 1 mg.
 const DENIED: f32 = 3.0;
 const UNSEEN: f32 = 0.01;
 /// Windows that a turn must last to be denied: what shakes the body turns it back within them.
@@ -44,12 +48,13 @@ const DENYING: u32 = 6;
 /// Greatest and least noise that is believed, squared, in those of what was stated: five times, a tenth.
 const GREATEST_NOISE: f32 = 25.0;
 const LEAST_NOISE: f32 = 0.01;
-/// How much of the way to what is shown one window goes at rest, where it counts as no more than so many times what was
-/// known, for it may be a motion's first; and how much may be added by a window on the move.
+/// Weight of one window in the mean noise at rest.
 const AVERAGED: f32 = 0.125;
+/// Greatest noise that one window counts with, squared, in that known before: it may be a motion's first.
 const GREATEST_RISE: f32 = 2.0;
+/// Part by which the squared noise may rise from window to window in motion.
 const ADDED: f32 = 0.01;
-/// Part of its noise to which a gyro falls as a motion ends.
+/// Part of its squared noise to which a gyro falls as a motion ends.
 const SETTLED: f32 = 0.5;
 
 /// What a window shows.
@@ -72,7 +77,8 @@ pub struct Known {
     /// Biases, rad/s, and their variances.
     pub biases: Vector,
     pub variances: Vector,
-    /// Angle random walk as it was stated, squared, rad²/s.
+    /// Variances of the biases, (rad/s)², and angle random walk, squared, rad²/s, as they were stated.
+    pub stated: Vector,
     pub walk: Vector,
 }
 
@@ -101,8 +107,8 @@ pub struct ZeroVelocityDetector {
     is_at_rest: bool,
     /// Mean force of the latest rest, m/s².
     force: Option<Vector>,
-    /// Whether each gyro has rested since it is switched on.
-    has_rested: [bool; 3],
+    /// Windows in which each gyro has rested with its bias, up to [`EVEN`].
+    rested: [u32; 3],
 }
 
 /// Windows in a row that are steady, though not quiet.
@@ -120,13 +126,16 @@ impl ZeroVelocityDetector {
     /// Takes a window, and says what it belongs to.
     pub fn push(&mut self, means: Means, known: &Known) -> Found {
         let walk = self.learn_noise(&means, known);
-        let Some(before) = self.before.replace(means) else { return self.moves() };
-        let Some(force) = steady_force(&means, &before, &walk) else { return self.moves() };
+        let Some(before) = self.before.replace(means) else { return self.begin_motion() };
+        let Some(force) = steady_force(&means, &before, &walk) else { return self.begin_motion() };
         if !self.is_quiet(&means, known, &walk) {
             self.steady.push(&scaled(&difference(&means.rate, &known.biases), WINDOW), force);
-            let is_strange = self.steady.denies_turn(&walk) || self.outlasts_turn(known);
             (self.quiet, self.is_at_rest) = (0, false);
-            return if is_strange { Found::StrangeBias } else { Found::Motion };
+            if self.outlasts_turn(known) {
+                self.rested = [0; 3];
+                return Found::StrangeBias;
+            }
+            return if self.steady.denies_turn(&walk) { Found::StrangeBias } else { Found::Motion };
         }
         self.steady = Steady::default();
         self.quiet = self.quiet.saturating_add(1);
@@ -134,7 +143,7 @@ impl ZeroVelocityDetector {
         if !self.is_at_rest {
             return Found::Motion;
         }
-        self.has_rested = [true; 3];
+        self.rested = self.rested.map(|windows| (windows + 1).min(EVEN));
         self.force = Some(force);
         Found::Rest
     }
@@ -154,7 +163,7 @@ impl ZeroVelocityDetector {
         });
         let has_fallen = |before: Vector| (0..3).any(|axis| walk[axis] < SETTLED * before[axis]);
         if self.walk.replace(walk).is_none_or(has_fallen) {
-            self.learnt();
+            self.count_anew();
         }
         walk
     }
@@ -181,25 +190,38 @@ impl ZeroVelocityDetector {
         ((TOO_FAST / (acceleration * WINDOW)) as u32).clamp(ENOUGH, PATIENCE)
     }
 
-    fn moves(&mut self) -> Found {
+    fn begin_motion(&mut self) -> Found {
         self.steady = Steady::default();
         (self.quiet, self.is_at_rest) = (0, false);
-        self.learnt();
+        self.count_anew();
         Found::Motion
     }
 
-    /// Whether the rates have been even for longer than a turn can be, about axes whose gyros have never rested.
+    /// Whether the rates have been even for longer than a turn lasts: about axes whose gyros have never rested, or so
+    /// shortly that this may have been a turn itself, if what they show now is less beside what was stated of them.
     fn outlasts_turn(&self, known: &Known) -> bool {
-        let seconds = self.steady.windows as f32 * WINDOW;
-        self.steady.windows >= EVEN
+        let Steady { windows, turned, .. } = self.steady;
+        let seconds = windows as f32 * WINDOW;
+        let biases = sum(&known.biases, &scaled(&turned, 1.0 / seconds));
+        let part = |axis: usize, bias: &Vector| bias[axis] * bias[axis] / known.stated[axis];
+        let less: f32 = (0..3).map(|axis| part(axis, &known.biases) - part(axis, &biases)).sum();
+        windows >= EVEN
             && (0..3).all(|axis| {
                 let bound = greatest_turn(known.walk[axis], known.variances[axis], seconds);
-                self.steady.turned[axis].abs() <= bound || !self.has_rested[axis]
+                let rested = self.rested[axis];
+                let is_longer = rested < EVEN && windows >= EVEN + OUTLASTING * rested;
+                turned[axis].abs() <= bound || rested == 0 || (is_longer && less > 0.0)
             })
     }
 
-    /// The biases were learnt: what the body has turned beside them counts anew.
-    pub fn learnt(&mut self) {
+    /// What the body would have turned beside the biases while its rates were even, rad.
+    #[must_use]
+    pub fn turned_evenly(&self) -> Vector {
+        self.steady.turned
+    }
+
+    /// What the body turns beside the biases counts from now on: they were learnt, or a motion ended.
+    pub fn count_anew(&mut self) {
         (self.turned, self.seconds) = ([0.0; 3], 0.0);
     }
 
@@ -211,18 +233,13 @@ impl ZeroVelocityDetector {
 
     /// Begins anew, but for what is known of the gyros.
     pub fn disturb(&mut self) {
-        *self = Self {
-            walk: self.walk,
-            force: self.force,
-            has_rested: self.has_rested,
-            ..Self::default()
-        };
+        *self = Self { walk: self.walk, force: self.force, rested: self.rested, ..Self::default() };
     }
 
     /// Begins anew with another gyro about an axis: nothing is known of its noise.
     pub fn exchange(&mut self, axis: usize, walk: f32) {
         self.disturb();
-        self.has_rested[axis] = false;
+        self.rested[axis] = 0;
         if let Some(known) = &mut self.walk {
             known[axis] = GREATEST_NOISE * walk;
         }

@@ -8,6 +8,9 @@ use crate::units::{AngleIncrement, Instant, SpecificForce};
 /// 7 µrad of tilt.
 const SHIFT: u32 = 6;
 
+/// Differences from attitude to attitude by which noise can be told.
+const FEWEST: u32 = 4;
+
 /// Forces since the latest attitude.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sums {
@@ -48,9 +51,9 @@ impl Window {
     }
 
     /// Angle random walk, squared, as the rates scatter from one attitude to the next, rad²/s: whatever turns the body
-    /// evenly does not count.
-    pub(super) fn walk(&self) -> Vector {
-        scaled(&self.scatter, 1.0 / self.steps.max(1) as f32)
+    /// evenly does not count. None where they are too few to tell.
+    pub(super) fn walk(&self) -> Option<Vector> {
+        (self.steps >= FEWEST).then(|| scaled(&self.scatter, 1.0 / self.steps as f32))
     }
 
     /// Mean rates about the body's axes, rad/s.
