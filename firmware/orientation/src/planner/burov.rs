@@ -22,6 +22,8 @@ const MOST: u32 = 100_000;
 pub const LONGEST: f64 = 86_400.0;
 /// Halvings of an interval of time: from a day to a nanosecond.
 const HALVINGS: usize = 48;
+/// Thirds that are cut from it until as much is left.
+const THIRDS: usize = 82;
 
 /// The best that turning between positions can do.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,22 +73,46 @@ pub fn best(noise: &GyroNoise, seconds: f64, rotation: f64) -> Option<Autocompen
     Some(Autocompensation { positions: low, dwell, seconds, rate_error })
 }
 
-/// The shortest total time in which Δω comes down to `wanted` rad/s, with its best number of
-/// positions; `Err` with the least Δω where a day does not do.
+/// The shortest total time in which Δω comes down to `wanted` rad/s, with its best number of positions; `Err` with the
+/// least Δω where no time up to a day does.
+///
+/// More time is not always better: between one number of positions and the next a random walk adds to the error. For each
+/// number Δω² is convex in the time, so the first time that does is found for each, and the first of all is taken.
 pub fn least_time(noise: &GyroNoise, wanted: f64, rotation: f64) -> Result<Autocompensation, f64> {
-    let longest = best(noise, LONGEST, rotation).ok_or(f64::INFINITY)?;
-    if longest.rate_error > wanted {
-        return Err(longest.rate_error);
-    }
-    let (mut low, mut high) = (rotation, longest);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high.seconds);
-        match best(noise, middle, rotation) {
-            Some(found) if found.rate_error <= wanted => high = found,
-            _ => low = middle,
+    let (mut longest, mut least, mut found) = (LONGEST, f64::INFINITY, None);
+    for positions in FEWEST..=MOST {
+        let turning = f64::from(positions - 1) * rotation;
+        if turning >= longest {
+            break;
+        }
+        let of = |seconds| rate_error(noise, positions, seconds, rotation).unwrap_or(f64::INFINITY);
+        let lowest = lowest(of, turning, longest);
+        least = least.min(of(lowest));
+        if of(lowest) <= wanted {
+            longest = first(|seconds| of(seconds) <= wanted, turning, lowest);
+            found = best(noise, longest, rotation);
         }
     }
-    Ok(high)
+    found.ok_or(least)
+}
+
+/// Where a convex function is lowest between two times, s.
+fn lowest(of: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+    for _ in 0..THIRDS {
+        let third = (high - low) / 3.0;
+        let (left, right) = (low + third, high - third);
+        if of(left) <= of(right) { high = right } else { low = left }
+    }
+    high
+}
+
+/// The first time, s, from which something is true: not yet at `low`, but at `high`.
+fn first(is_true: impl Fn(f64) -> bool, mut low: f64, mut high: f64) -> f64 {
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if is_true(middle) { high = middle } else { low = middle }
+    }
+    high
 }
 
 /// What bias instability adds to a rate whatever is turned, B√(2 ln 2/π), rad/s.
