@@ -38,6 +38,9 @@ pub struct GyroConfiguration {
     pub r_deg_h2: f64,
     /// Q, quantisation, arcsec RMS: the output angle has a least step of √12·Q.
     pub q_arcsec: f64,
+    /// Noise of the angle itself, arcsec, 1σ of a sample: what a dithered laser gyro leaves of its dither. The
+    /// rate shows its differences, and no rotation is lost to it.
+    pub dither_arcsec: f64,
     /// Turn-on bias, °/h: the fixed part.
     pub bias_deg_h: f64,
     /// Turn-on bias, °/h: 1σ of the part drawn anew for every seed.
@@ -68,6 +71,7 @@ impl Default for GyroConfiguration {
             k_deg_h_sqrt_h: 0.0,
             r_deg_h2: 0.0,
             q_arcsec: 0.0,
+            dither_arcsec: 0.0,
             bias_deg_h: 0.0,
             bias_sigma_deg_h: 0.0,
             scale_error: 0.0,
@@ -111,6 +115,7 @@ pub struct Gyro {
     walk: White,
     walked_rad_s: f64,
     flicker: Flicker,
+    dither: Dither,
     quantiser: Quantiser,
     molecular: Option<Molecular>,
 }
@@ -136,6 +141,7 @@ impl Gyro {
             walk: White::new(c.walk_sigma_rad_s(rate_hz), seed, source::GYRO_WALK),
             walked_rad_s: 0.0,
             flicker: Flicker::new(b, c.flicker_low_hz, c.flicker_high_hz, rate_hz, noise),
+            dither: Dither::new(c.dither_arcsec * ARCSECOND, rate_hz, seed),
             quantiser: Quantiser::new(c.q_arcsec * ARCSECOND, rate_hz),
             molecular: c.molecular.map(|dynamics| Molecular::new(&dynamics, rate_hz)),
         }
@@ -201,7 +207,30 @@ impl Gyro {
                 dynamics.sample(felt_rad_s, white, force_g) + self.bias_rad_s + slow
             }
         };
-        self.quantiser.sample(shown)
+        self.quantiser.sample(shown + self.dither.sample())
+    }
+}
+
+/// White noise of the angle, as the rate shows it: each sample takes back what the one before it had.
+#[derive(Clone, Debug, PartialEq)]
+struct Dither {
+    white: White,
+    /// The last one, rad/s over one sample.
+    last_rad_s: f64,
+}
+
+impl Dither {
+    /// Noise of `sigma_rad` of the angle at `rate_hz`.
+    fn new(sigma_rad: f64, rate_hz: f64, seed: u64) -> Self {
+        let white = White::new(sigma_rad * rate_hz, seed, source::GYRO_DITHER);
+        Self { white, last_rad_s: 0.0 }
+    }
+
+    /// What it adds to the next rate, rad/s.
+    #[inline]
+    fn sample(&mut self) -> f64 {
+        let now_rad_s = self.white.sample();
+        now_rad_s - core::mem::replace(&mut self.last_rad_s, now_rad_s)
     }
 }
 

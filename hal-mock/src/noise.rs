@@ -164,4 +164,6 @@ pub(crate) mod source {
     pub const VEHICLE_SCENARIO: u64 = 15;
     /// How that day goes on.
     pub const VEHICLE_AFTERWARDS: u64 = 16;
+    /// What is left of a laser gyro's dither.
+    pub const GYRO_DITHER: u64 = 21;
 }

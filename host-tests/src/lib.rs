@@ -6,6 +6,7 @@
 
 pub mod allan;
 pub mod campaign;
+pub mod cause;
 pub mod criterion;
 pub mod emulate;
 pub mod instrument;

@@ -10,7 +10,7 @@ mod command;
 use std::process::ExitCode;
 
 use bench::output::say;
-use clap::{FromArgMatches, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::command::allan::AllanOptions;
 use crate::command::campaign::CampaignOptions;
@@ -18,7 +18,8 @@ use crate::command::emulate::EmulateOptions;
 use crate::command::plan::PlanOptions;
 use crate::command::replay::ReplayOptions;
 use crate::command::run::RunOptions;
-use crate::command::{Told, print};
+use crate::command::suits::Given;
+use crate::command::{Failure, print};
 
 /// Finds true north from a precise gyro on a rotation stage, with its standard deviation.
 ///
@@ -51,40 +52,69 @@ enum Command {
     Emulate(EmulateOptions),
 }
 
+/// What was asked, and which options stand on the command line.
+struct Asked {
+    as_json: bool,
+    command: Command,
+    given: Given,
+}
+
 /// The command line; without a command it is `run` with all its defaults.
-fn parse() -> Result<(bool, Command), clap::Error> {
-    let CommandLine { json, command } = CommandLine::try_parse()?;
+fn parse() -> Result<Asked, clap::Error> {
+    let matches = taking_negative_numbers(CommandLine::command()).try_get_matches()?;
+    let given = matches.subcommand().map_or_else(Given::nothing, |(_, options)| Given::of(options));
+    let CommandLine { json: as_json, command } = CommandLine::from_arg_matches(&matches)?;
     if let Some(command) = command {
-        return Ok((json, command));
+        return Ok(Asked { as_json, command, given });
     }
     let matches = Command::augment_subcommands(clap::Command::new("meridian"))
         .try_get_matches_from(["meridian", "run"])?;
-    Ok((json, Command::from_arg_matches(&matches)?))
+    Ok(Asked { as_json, command: Command::from_arg_matches(&matches)?, given })
+}
+
+/// The same where what begins with a minus is the value of an option that takes a number: what it may be, its
+/// parser knows.
+fn taking_negative_numbers(program: clap::Command) -> clap::Command {
+    program.mut_subcommands(|command| {
+        command.mut_args(|arg| {
+            let is_number = takes_number(&arg);
+            arg.allow_hyphen_values(is_number)
+        })
+    })
+}
+
+/// Whether an argument is an option whose value is no name of a file or of anything else.
+fn takes_number(arg: &clap::Arg) -> bool {
+    let takes = arg.get_long().is_some() && arg.get_action().takes_values();
+    let mut names = arg.get_value_names().unwrap_or_default().iter();
+    let is_name = names.any(|name| name.starts_with("FILE") || name.as_str() == "NAME");
+    takes && !is_name && arg.get_possible_values().is_empty()
 }
 
 fn main() -> ExitCode {
-    let (as_json, command) = match parse() {
-        Ok(parsed) => parsed,
+    let Asked { as_json, command, given } = match parse() {
+        Ok(asked) => asked,
         Err(error) => return misuse(&error),
     };
-    if let Err(wrong) = check(&command) {
-        say(&format!("error: {wrong}"));
-        return ExitCode::from(2);
+    if let Err(wrong) = check(&command, &given) {
+        return misused(&wrong);
     }
-    match tell(&command, as_json) {
+    match tell(&command, &given, as_json) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
-        Err(message) => failed(&message, as_json),
+        Err(failure) => failed(&failure, as_json),
     }
 }
 
 /// What cannot go together in a command's options.
-fn check(command: &Command) -> Result<(), &'static str> {
+fn check(command: &Command, given: &Given) -> Result<(), String> {
     match command {
-        Command::Run(options) => options.check(),
+        Command::Run(options) => options.check(given),
         Command::Campaign(options) => options.check(),
-        Command::Replay(options) => options.check(),
-        Command::Allan(_) | Command::Plan(_) | Command::Emulate(_) => Ok(()),
+        Command::Replay(options) => options.check(given),
+        Command::Allan(options) => options.check(),
+        Command::Plan(options) => options.check(),
+        Command::Emulate(_) => Ok(()),
     }
 }
 
@@ -100,34 +130,57 @@ fn misuse(error: &clap::Error) -> ExitCode {
     let message: Vec<&str> = lines
         .filter(|line| !line.is_empty() && !line.starts_with("For more information"))
         .collect();
-    say(&message.join(" "));
+    let message = message.join(" ");
+    misused(message.strip_prefix("error: ").unwrap_or(&message))
+}
+
+/// Says what is wrong with the options.
+fn misused(wrong: &str) -> ExitCode {
+    say(&one_line(&format!("error: {wrong}")));
     ExitCode::from(2)
 }
 
+/// The text without what would break its line: a name may hold anything.
+fn one_line(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }).collect()
+}
+
 /// Says why there is no result, as JSON too where that was asked for.
-fn failed(message: &str, as_json: bool) -> ExitCode {
+fn failed(Failure { reason, warnings }: &Failure, as_json: bool) -> ExitCode {
     if as_json {
-        let object = serde_json::json!({ "status": "failed", "reason": message });
+        let mut object = serde_json::json!({ "status": "failed", "reason": reason });
+        if !warnings.is_empty() {
+            object["warnings"] = serde_json::json!(warnings);
+        }
         // The reason goes to standard error all the same.
         let _ = print(&object.to_string());
     }
-    say(&format!("meridian: {message}"));
+    warn(warnings);
+    say(&one_line(&format!("meridian: {reason}")));
     ExitCode::from(1)
 }
 
-/// Runs the command and prints what came of it; whether there was a result.
-fn tell(command: &Command, as_json: bool) -> Result<bool, String> {
-    let Told { found, output, refusal } = match command {
-        Command::Run(options) => command::run::run(options, as_json),
-        Command::Replay(options) => command::replay::run(options, as_json),
-        Command::Plan(options) => command::plan::run(options, as_json),
-        Command::Allan(options) => command::allan::run(options, as_json),
-        Command::Campaign(options) => command::campaign::run(options, as_json),
-        Command::Emulate(options) => command::emulate::run(options, as_json),
-    }?;
-    print(&output)?;
-    if let Some(reason) = refusal {
-        say(&format!("meridian: {reason}"));
+/// Says what there is to be said beside the result.
+fn warn(warnings: &[String]) {
+    for warning in warnings {
+        say(&one_line(&format!("warning: {warning}")));
     }
-    Ok(found)
+}
+
+/// Runs the command and prints what came of it; whether there was a result.
+fn tell(command: &Command, given: &Given, as_json: bool) -> Result<bool, Failure> {
+    let told = match command {
+        Command::Run(options) => command::run::run(options, as_json)?,
+        Command::Replay(options) => command::replay::run(options, given, as_json)?,
+        Command::Plan(options) => command::plan::run(options, as_json)?,
+        Command::Allan(options) => command::allan::run(options, as_json)?,
+        Command::Campaign(options) => command::campaign::run(options, as_json)?,
+        Command::Emulate(options) => command::emulate::run(options, as_json)?,
+    };
+    print(&told.printed())?;
+    warn(&told.warnings);
+    if let Some(reason) = &told.refusal {
+        say(&one_line(&format!("meridian: {reason}")));
+    }
+    Ok(told.found)
 }

@@ -6,7 +6,7 @@
 //! (Burov's autocompensation needs no more); where the order does not, the two come apart.
 
 use orientation::align::conclusion::Conclusion;
-use orientation::align::regression::{COLUMNS, Column, Regression};
+use orientation::align::regression::{Column, Regression};
 use orientation::session::Session;
 use orientation::units::wrapped;
 use serde::Serialize;
@@ -61,16 +61,15 @@ pub fn autocompensation(session: &Session, conclusion: &Conclusion) -> Autocompe
 fn shift(session: &Session, conclusion: &Conclusion) -> Option<f64> {
     let rate = session.setting().latitude.horizontal_rate();
     let fit = conclusion.fit.as_ref()?;
-    let mut regression = Regression::<COLUMNS>::default();
+    let mut regression = Regression::<3>::default();
     let dwells = session.dwells().iter().zip(&conclusion.residuals);
     for ((dwell, residual), why) in dwells.zip(&conclusion.disturbances) {
         if why.is_none() {
             let (sine, cosine) = dwell.stage.rad().sin_cos();
-            regression.push(&[cosine, -sine, 1.0, 0.0, 0.0], residual.rate / rate);
+            regression.push(&[cosine, -sine, 1.0], residual.rate / rate);
         }
     }
-    let columns = [Column::Free, Column::Free, Column::Free, Column::Absent, Column::Absent];
-    let [north, east, ..] = regression.solve(&columns)?.coefficients;
+    let [north, east, ..] = regression.solve(&[Column::Free; 3])?.coefficients;
     let (sine, cosine) = fit.direction.azimuth.sin_cos();
     Some((cosine * east - sine * north) / fit.direction.amplitude)
 }

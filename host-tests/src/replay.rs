@@ -19,6 +19,7 @@ use orientation::units::{Angle, AngularRate, Instant, SpecificForce, TURN, Tempe
 
 use crate::recording::{Body, DwellRow, Header, Kind, StageRow};
 use crate::setting::{Described, describe};
+use crate::stops::samples::is_cut;
 
 /// By which of its names an alignment in positions is called; the fit is the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -147,6 +148,25 @@ pub enum ReplayError {
         /// For how long, s.
         seconds: f64,
     },
+    /// The header's rate is not that of the times.
+    Rate {
+        /// As stated, Hz.
+        stated_hz: f64,
+        /// As the times have it, Hz.
+        found_hz: f64,
+    },
+    /// The gyros' rate at rest is so many times the Earth's: that of a degree in radians.
+    DegreesPerSecond {
+        /// How many times.
+        times: f64,
+    },
+    /// No displacement lies far from the first stop, but a thousand times as far there is an azimuth.
+    Kilometres {
+        /// The greatest part of one, as stated.
+        greatest: f64,
+    },
+    /// Nobody stated the gyros' noise, and there are too few samples at rest to estimate it from.
+    NoiseUnknown,
     /// The session cannot follow the recording.
     Procedure(ProcedureError),
 }
@@ -155,8 +175,14 @@ impl fmt::Display for ReplayError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoLatitude => {
-                f.write_str("key latitude_deg is missing: add it or give --latitude")
+                f.write_str(
+                    "key latitude_deg is missing: add it or give --latitude; of kind imu --method vertical \
+                     gives pitch and roll without it",
+                )
             }
+            Self::Kind(Kind::Static) => f.write_str(
+                "kind `static` has no positions to align from: `meridian allan` finds the gyro's noise in it",
+            ),
             Self::Kind(kind) => write!(f, "kind `{kind}` has no positions to align from"),
             Self::Stops(kind) => {
                 write!(
@@ -183,7 +209,7 @@ impl fmt::Display for ReplayError {
             }
             Self::OneGyro => f.write_str(
                 "columns gx_rad_s to az_m_s2 are missing: this method needs three gyros and three \
-                 accelerometers",
+                 accelerometers; `meridian allan` finds the noise of the one",
             ),
             Self::TooManyStops(stops, most) => {
                 write!(
@@ -196,7 +222,28 @@ impl fmt::Display for ReplayError {
             }
             Self::Stuck { column, line, seconds } => write!(
                 f,
-                "column {column}: the same value for {seconds:.1} s from line {line} on: the sensor is stuck"
+                "column {column}: the same value for {seconds:.1} s from line {line} on: the sensor is stuck; \
+                 check its supply and cable, then record again or cut the recording off before"
+            ),
+            Self::Rate { stated_hz, found_hz } => write!(
+                f,
+                "key rate_hz: {stated_hz} Hz, but the times of column t_s make it {found_hz:.3} Hz, {:.1} % apart: \
+                 correct the one that is wrong",
+                100.0 * (stated_hz / found_hz - 1.0).abs()
+            ),
+            Self::DegreesPerSecond { times } => write!(
+                f,
+                "columns gx_rad_s to gz_rad_s: at rest they show {times:.1} times the Earth rate, which is 1 in \
+                 rad/s and 57.3 in °/s: convert them to rad/s"
+            ),
+            Self::Kilometres { greatest } => write!(
+                f,
+                "key displacements_north_east_m: with {greatest} m at the most there is no azimuth, with as many \
+                 kilometres there is: state them in metres"
+            ),
+            Self::NoiseUnknown => f.write_str(
+                "key gyro_N_deg_sqrt_h is missing, and the samples at rest are too few to estimate it from: \
+                 state it, or stand for longer",
             ),
             Self::Procedure(error) => error.fmt(f),
         }
@@ -270,8 +317,28 @@ fn stage(
     let procedure = Procedure { still, ..followed };
     let mut session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
     let begin = rows.first().map_or(0.0, |row| row.time_s);
-    drive(&mut session, rows.iter().map(|row| sample(row, begin)), progress);
+    let limits = limits(rows);
+    let shown = |row: &StageRow| {
+        let mut sample = sample(row, begin);
+        if row.rate_rad_s <= limits[0] || row.rate_rad_s >= limits[1] {
+            sample.rate = AngularRate(i32::MAX);
+        }
+        sample
+    };
+    drive(&mut session, rows.iter().map(shown), progress);
     Ok(session)
+}
+
+/// Between which rates a gyro's column is not cut, rad/s: a recording does not say what its gyro can measure, but
+/// one at its limit shows the same greatest rate, or least, again and again.
+fn limits(rows: &[StageRow]) -> [f64; 2] {
+    let rates = || rows.iter().map(|row| row.rate_rad_s);
+    let (least, greatest) =
+        (rates().fold(f64::INFINITY, f64::min), rates().fold(f64::NEG_INFINITY, f64::max));
+    [
+        if is_cut(rates(), least) { least } else { f64::NEG_INFINITY },
+        if is_cut(rates(), greatest) { greatest } else { f64::INFINITY },
+    ]
 }
 
 /// The procedure that goes where a recording went.
@@ -391,19 +458,10 @@ fn standstills(
     Ok(runs.into_iter().map(position).collect())
 }
 
-/// How far the header's rate may be off before the times are believed instead.
-const RATE_TOLERANCE: f64 = 0.01;
-
-/// The sample period, s: the header's, unless the times say otherwise.
+/// The sample period, s: the header's, else the times' median step. The session compares it with the times.
 fn sample_seconds(header: &Header, rows: &[StageRow]) -> f64 {
     let mut steps: Vec<f64> = rows.windows(2).map(|pair| pair[1].time_s - pair[0].time_s).collect();
-    let whole: f64 = steps.iter().sum();
-    let mean = whole / steps.len().max(1) as f64;
-    match header.rate_hz {
-        Some(rate) if (mean * rate - 1.0).abs() <= RATE_TOLERANCE => 1.0 / rate,
-        Some(_) => mean.max(1e-6),
-        None => median(&mut steps).max(1e-6),
-    }
+    header.rate_hz.map_or_else(|| median(&mut steps).max(1e-6), |rate| 1.0 / rate)
 }
 
 fn dwells(

@@ -16,24 +16,37 @@ pub struct Described {
     pub assumed: Vec<String>,
 }
 
+/// 1σ of a scale factor of which nothing is known, relative: between fibre-optic and micromachined gyros.
+const SCALE_SIGMA: f64 = 0.01;
+/// 1σ of an accelerometer bias of which nothing is known, m/s²: 25 mg, the offset that an ADXL355 may have.
+const FORCE_BIAS_SIGMA: f64 = 0.25;
+
 /// Builds the setting for a latitude from the header's keys.
 #[must_use]
 pub fn describe(header: &Header, body: &Body, latitude: Latitude) -> Described {
     let mut assumed = Vec::new();
-    let mut or_zero = |value: Option<f64>, words: &str| {
+    let mut or_class = |value: Option<f64>, class: f64, words: &str| {
         value.unwrap_or_else(|| {
             assumed.push(words.to_owned());
-            0.0
+            class
         })
     };
-    let scale_sigma = or_zero(header.gyro_scale_sigma, "gyro scale factor exact");
-    let accelerometer_bias_sigma =
-        or_zero(header.accelerometer_bias_m_s2, "accelerometer free of bias");
-    let kappa_sigma = if header.g_sensitivity_deg_h_g.is_some() {
-        or_zero(header.g_sensitivity_sigma_deg_h_g, "g-sensitivity exact")
-    } else {
-        or_zero(header.g_sensitivity_sigma_deg_h_g, "no g-sensitivity")
-    };
+    let scale_sigma = or_class(
+        header.gyro_scale_sigma,
+        SCALE_SIGMA,
+        "gyro scale factor to 1 % (gyro_scale_sigma)",
+    );
+    let accelerometer_bias_sigma = or_class(
+        header.accelerometer_bias_m_s2,
+        FORCE_BIAS_SIGMA,
+        "accelerometer bias to 0.25 m/s² (accelerometer_bias_m_s2)",
+    );
+    let kappa_known = header.g_sensitivity_sigma_deg_h_g.is_some();
+    let kappa_sigma = or_class(
+        header.g_sensitivity_sigma_deg_h_g,
+        0.0,
+        "g-sensitivity to 50000 °/h/g for each (°/√h)² of N, 100 °/h/g at most (g_sensitivity_sigma_deg_h_g)",
+    );
     let white_known = header.gyro_n_deg_sqrt_h.is_some_and(|n| n > 0.0);
     match body {
         Body::Stage(_) if !white_known => {
@@ -59,6 +72,7 @@ pub fn describe(header: &Header, body: &Body, latitude: Latitude) -> Described {
         scale_sigma,
         g_sensitivity: kappa.map(|part| part * DEGREE_PER_HOUR),
         g_sensitivity_sigma: kappa_sigma * DEGREE_PER_HOUR,
+        g_sensitivity_known: kappa_known,
         accelerometer_bias_sigma,
         ..Setting::at(latitude)
     };

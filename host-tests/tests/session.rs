@@ -192,7 +192,8 @@ fn dwells_that_the_filter_has_no_time_to_settle_in_are_unbiased() {
     let ratio = orientation::math::median(&mut ratios);
     assert!(ratio < 1.12, "{ratio} of the limit");
     let rms = bench::campaign::statistics::rms(&errors);
-    assert!((0.88..1.12).contains(&rms), "RMS {rms} σ");
+    // A tenth of the sessions scatter by chance as if the base had moved, which widens their σ.
+    assert!((0.8..1.12).contains(&rms), "RMS {rms} σ");
 }
 
 #[test]
@@ -251,8 +252,8 @@ fn a_session_goes_on_when_its_dwells_scatter_more_than_the_noise_predicts() {
     };
     let (quiet, noisy) = (mean_end(1.0), mean_end(1.3));
     assert!((60.0..75.0).contains(&quiet), "{quiet} s");
-    // 1.3² = 1.69 times the time, in steps of four positions.
-    assert!((1.5..2.1).contains(&(noisy / quiet)), "{quiet} s, {noisy} s");
+    // 1.3² = 1.69 times the time, in steps of four positions, and some whose scatter widens σ by more.
+    assert!((1.5..2.3).contains(&(noisy / quiet)), "{quiet} s, {noisy} s");
 }
 
 #[test]

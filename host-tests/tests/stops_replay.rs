@@ -263,9 +263,9 @@ fn what_is_not_known_is_said() {
         "gyro noise N",
         "accelerometer noise",
         "gyro biases unknown",
-        "gyro scale factor exact",
-        "accelerometer free of bias",
-        "no g-sensitivity",
+        "gyro scale errors unknown",
+        "accelerometer biases unknown",
+        "g-sensitivity unknown",
         "latitude exact",
     ] {
         assert!(says(words), "{words}: {:?}", replay.assumed);

@@ -111,6 +111,32 @@ pub enum Refusal {
     },
     /// The rate drifts, and these positions cannot tell the drift from the Earth rate.
     TrendNotSeparable,
+    /// The heading of the platform stepped between two dwells.
+    HeadingStepped {
+        /// By how much, °.
+        angle: f64,
+        /// After which time, s.
+        after: f64,
+    },
+    /// The tilt that the accelerometer shows stepped between two dwells.
+    TiltStepped {
+        /// By how much, thousandths of gravity.
+        change: f64,
+        /// After which time, s.
+        after: f64,
+    },
+    /// Dwells at the beginning or the end do not fit the others.
+    EndAstray {
+        /// How many.
+        dwells: usize,
+        /// After which time the others end or these begin, s.
+        after: f64,
+    },
+    /// The gyro's rate follows the stage late.
+    GyroLags {
+        /// By how much, s.
+        seconds: f64,
+    },
     /// The accelerometer does not turn with the stage as its encoder does.
     AccelerometerAstray {
         /// RMS of what no tilt explains, in thousandths of gravity.
@@ -127,6 +153,11 @@ pub enum Refusal {
         ratio: f64,
         /// 1σ of the ratio.
         sigma: f64,
+    },
+    /// All dwells scatter alike, as white noise does, but not as the noise that was stated.
+    NoiseNotAsStated {
+        /// Their noise power over the stated one.
+        ratio: f64,
     },
     /// More dwells were disturbed than may be left out.
     Disturbed {
@@ -268,6 +299,13 @@ pub enum Refusal {
         /// For how long, s.
         seconds: f64,
     },
+    /// Samples come at another pace than was told.
+    PeriodContradicted {
+        /// The period that was told, ms.
+        told: f64,
+        /// That of their times, ms.
+        found: f64,
+    },
     /// A gyro stood at the limit of its range, and a part of the rotation is lost.
     RotationClipped {
         /// At which time, s.
@@ -335,6 +373,18 @@ words! { Refusal:
         "residuals are not white: neighbours correlate by {}", Rounded::<2>(correlation);
     Self::TrendNotSeparable =>
         "the rate drifts, and these positions cannot tell it from the Earth rate: turn a full circle";
+    Self::HeadingStepped { angle, after } =>
+        "the heading steps by {}° after {} s: the encoder slipped, or the base was turned",
+        Rounded::<2>(angle), Rounded::<1>(after);
+    Self::TiltStepped { change, after } =>
+        "the tilt steps by {} mg after {} s: the encoder slipped, or the platform was moved",
+        Rounded::<2>(change), Rounded::<1>(after);
+    Self::EndAstray { dwells, after } =>
+        "{} dwell(s) at the beginning or the end do not fit the others: after {} s the encoder slipped, or the base was turned",
+        dwells, Rounded::<1>(after);
+    Self::GyroLags { seconds } =>
+        "the gyro follows the stage {} s late: check its filter, and the times of its column",
+        Rounded::<2>(seconds);
     Self::AccelerometerImplausible { ratio } =>
         "the accelerometer feels {} of gravity: check its axes, signs and units",
         Rounded::<3>(ratio);
@@ -344,6 +394,9 @@ words! { Refusal:
     Self::EarthRateMismatch { ratio, sigma } =>
         "Earth rate found is {} ± {} of the expected: check latitude and gyro scale",
         Rounded::<3>(ratio), Rounded::<3>(sigma);
+    Self::NoiseNotAsStated { ratio } =>
+        "all dwells scatter alike, with {} times the stated noise power: check N, and the unit of the rates",
+        Rounded::<1>(ratio);
     Self::Disturbed { disturbed, positions } =>
         "{} of {} dwells were disturbed: keep the platform still", disturbed, positions;
     Self::TurnsDisturbed { disturbed, turns } =>
@@ -405,6 +458,9 @@ words! { Refusal:
     Self::RotationMissing { at, seconds } =>
         "samples are missing after {} s, for {} s: what the vehicle turned meanwhile is lost",
         Rounded::<3>(at), Rounded::<3>(seconds);
+    Self::PeriodContradicted { told, found } =>
+        "samples come every {} ms, not every {} ms as was told: correct the sample rate or the times",
+        Rounded::<3>(found), Rounded::<3>(told);
     Self::RotationClipped { at } =>
         "a gyro stood at the limit of its range at {} s: what the vehicle turned beyond is lost",
         Rounded::<3>(at);

@@ -12,12 +12,18 @@ use crate::patience::Symptom;
 use crate::ports::{Gyro, Observer, Quantity, RateReading};
 use crate::shared::Shared;
 
+/// Part of a period within which a conversion that was awaited was there before.
+const AT_ONCE: u32 = 16;
+
 /// A gyro at work.
 pub(super) struct Rates<'a, G, V = AngularRate> {
     pub(super) gyro: Guarded<'a, G>,
     pub(super) name: Device,
     row: Row<V>,
     limit: Limit,
+    period: Duration,
+    /// When the latest conversion ended.
+    latest: Option<Instant>,
 }
 
 /// Time without a conversion after which a gyro of that period, µs, is silent.
@@ -29,7 +35,8 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
     /// Takes a gyro of so many samples a second by its name in the log.
     pub(super) fn new(gyro: &'a mut G, name: Device, sample_rate: f64) -> Self {
         let limit = Limit::new(sample_rate);
-        Self { gyro: Guarded::new(gyro, name), name, row: Row::new(), limit }
+        let period = Duration::from_micros((1e6 / sample_rate + 0.5) as u64);
+        Self { gyro: Guarded::new(gyro, name), name, row: Row::new(), limit, period, latest: None }
     }
 
     /// Has all patience with it again.
@@ -38,12 +45,29 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
         self.limit.samples = 0;
     }
 
-    /// Waits for a conversion for so long; its time, or what is to be mended.
+    /// Waits for a conversion for so long; when it ended, or what is to be mended.
     pub(super) async fn conversion(&mut self, silence: Duration) -> Result<Instant, Symptom> {
+        let asked = Instant::now();
         match with_timeout(silence, self.gyro.device.ready()).await {
-            Ok(Ok(())) => Ok(Instant::now()),
+            Ok(Ok(())) => {
+                let ended = self.ended(asked, Instant::now());
+                self.latest = Some(ended);
+                Ok(ended)
+            }
             Ok(Err(fault)) => Err(Symptom::Chip(fault)),
             Err(_) => Err(Symptom::Silent),
+        }
+    }
+
+    /// When a conversion ended that was awaited from `asked` on and is there `now`. One for which nobody had to
+    /// wait ended before, while another bus was read: it ended when it was due after the one before.
+    fn ended(&self, asked: Instant, now: Instant) -> Instant {
+        match self.latest {
+            Some(latest) if now - asked < self.period / AT_ONCE => {
+                let periods = (now - latest).as_micros() / self.period.as_micros();
+                now.min(latest + self.period * (periods.max(1) as u32))
+            }
+            _ => now,
         }
     }
 

@@ -29,6 +29,9 @@ const COMPARED_SIGMA: f64 = 30.0 * DEGREE_PER_HOUR;
 /// How long a body may not rest, though it did before, until its alignment is of no use: a slammed door is
 /// over by then.
 const RESTLESS: Duration = Duration::from_secs(5);
+/// How long it must have rested for that. Biases that were learnt in less may be off by what noise makes of one
+/// run in two hundred, and show a motion where there is none, until rates that stay even for as long deny it.
+const LEARNING: Duration = Duration::from_secs(20);
 /// How long it must go on, s, that a vehicle speeds up until it is told.
 const TOLD_SECONDS: f64 = 3.0;
 
@@ -70,6 +73,8 @@ struct Told {
     /// Since when the body has rested, and since when not any more; whether it was realigned there.
     rests: Option<Instant>,
     moves: Option<Instant>,
+    /// How long it may move until it has set off.
+    patience: Duration,
     is_realigned: bool,
     /// Whether there was no session at the last look.
     is_idle: bool,
@@ -95,6 +100,7 @@ impl<'k, H: Outside, M: HeadingStore> Keeping<'k, H, M> {
             is_bias_beyond_stated: false,
             rests: None,
             moves: None,
+            patience: RESTLESS,
             is_realigned: true,
             is_idle: false,
             since: None,
@@ -166,7 +172,7 @@ impl<'k, H: Outside, M: HeadingStore> Keeping<'k, H, M> {
     /// vehicle the session itself knows stops from drives.
     fn has_set_off(&self) -> bool {
         !self.configuration.knows_stops
-            && self.told.moves.is_some_and(|since| since.elapsed() >= RESTLESS)
+            && self.told.moves.is_some_and(|since| since.elapsed() >= self.told.patience)
     }
 
     /// Takes an azimuth, beside one that is known already.
@@ -247,9 +253,10 @@ impl<'k, H: Outside, M: HeadingStore> Keeping<'k, H, M> {
         if is_at_rest {
             told.moves = None;
             told.rests.get_or_insert(Instant::now());
-        } else if told.rests.is_some() {
+        } else if let Some(rests) = told.rests {
             let moves = *told.moves.get_or_insert(Instant::now());
-            if moves.elapsed() >= RESTLESS {
+            told.patience = RESTLESS + LEARNING - (moves - rests).min(LEARNING);
+            if moves.elapsed() >= told.patience {
                 told.rests = None;
                 told.is_realigned = false;
             }

@@ -43,6 +43,9 @@ const LEVER: [f64; 3] = [0.1, 0.0, -0.4];
 /// less with that of the dwell before than the whitening believes (4 % of σ on a circle of 24).
 const STATED: f64 = 1.2;
 
+/// How many seeds have phases of their own: more than this, and a phase of so many turns loses its digits.
+const PHASES: u64 = 1 << 32;
+
 /// A class of coarse sensors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoarseClass {
@@ -67,7 +70,8 @@ pub type Rig<'a> = Single<SimulatedImu, Base<'a>>;
 #[must_use]
 pub fn sway(scenario: &Scenario) -> SwayConfiguration {
     let Scenario { sway_deg, sway_hz, .. } = *scenario;
-    let phase = |step: u64| (scenario.seed * 7 + step * 3) as f64 * 2.399_963;
+    let seed = scenario.seed % PHASES;
+    let phase = |step: u64| (seed * 7 + step * 3) as f64 * 2.399_963;
     let still = SwayComponent::default();
     let roll = SwayComponent { roll_deg: sway_deg, frequency_hz: sway_hz, ..still };
     let pitch = SwayComponent { pitch_deg: sway_deg, frequency_hz: 0.83 * sway_hz, ..still };

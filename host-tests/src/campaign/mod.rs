@@ -1,6 +1,7 @@
 //! Monte-Carlo campaigns: many simulated alignments, told as tables.
 
 pub mod burov;
+pub mod disturbed;
 pub mod faults;
 pub mod instrument;
 pub mod keep;

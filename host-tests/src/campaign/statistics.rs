@@ -1,5 +1,7 @@
 //! What many errors amount to.
 
+use std::fmt::Display;
+
 use orientation::align::conclusion::Conclusion;
 use orientation::error::Refusal;
 use serde::Serialize;
@@ -54,15 +56,16 @@ pub struct Precision {
 impl Precision {
     /// Of these answers.
     #[must_use]
-    pub fn of(answers: &[Result<Answer, Refusal>]) -> Self {
-        let given: Vec<Answer> = answers.iter().filter_map(|answer| answer.ok()).collect();
+    pub fn of<E: Display>(answers: &[Result<Answer, E>]) -> Self {
+        let given: Vec<Answer> =
+            answers.iter().filter_map(|answer| answer.as_ref().ok().copied()).collect();
         let column = |of: fn(&Answer) -> f64| given.iter().map(of).collect::<Vec<f64>>();
         let [errors, sigmas, limits] =
             [column(|a| a.error), column(|a| a.sigma), column(|a| a.limit)];
         Self {
             runs: answers.len(),
             refused: answers.len() - given.len(),
-            first_reason: answers.iter().find_map(|a| a.err()).map(|reason| reason.to_string()),
+            first_reason: answers.iter().find_map(|a| a.as_ref().err()).map(ToString::to_string),
             rms_deg: rms(&errors),
             limit_deg: rms(&limits),
             ratio: rms(&column(|answer| answer.error / answer.limit)),

@@ -6,11 +6,11 @@ use bench::allan::analysis::{Analysis, Rest};
 use bench::allan::speed;
 use bench::output::allan::Shown;
 use bench::planning::Suggestion;
-use bench::recording;
+use bench::recording::{self, Recording};
 use clap::Args;
 use orientation::noise::fit::FitError;
 
-use super::Told;
+use super::{Failure, Told, files};
 
 /// Which recording, and what of it.
 #[derive(Args)]
@@ -25,9 +25,28 @@ pub struct AllanOptions {
     report: Option<PathBuf>,
 }
 
+impl AllanOptions {
+    /// What cannot go together.
+    ///
+    /// # Errors
+    /// The option, and why.
+    pub fn check(&self) -> Result<(), String> {
+        let report = files::written("--report", "the page", self.report.as_ref());
+        files::check(Some(&self.file), &[report])
+    }
+}
+
 /// Analyses a recording.
-pub fn run(options: &AllanOptions, as_json: bool) -> Result<Told, String> {
-    let recording = recording::read(&options.file).map_err(|error| error.to_string())?;
+pub fn run(options: &AllanOptions, as_json: bool) -> Result<Told, Failure> {
+    let recording = recording::read(&options.file).map_err(|error| error.told())?;
+    let warnings = recording.told_warnings(&options.file);
+    analyse(options, recording, as_json)
+        .map_err(|reason| Failure { reason, warnings: warnings.clone() })
+        .map(|told| told.with_warnings(warnings))
+}
+
+/// Analyses what was read.
+fn analyse(options: &AllanOptions, recording: Recording, as_json: bool) -> Result<Told, String> {
     let name = options.file.display().to_string();
     let (header, body, _) = recording.into_parts();
     let rest = Rest::take(&header, &body, options.column.as_deref())
@@ -41,18 +60,9 @@ pub fn run(options: &AllanOptions, as_json: bool) -> Result<Told, String> {
         comparison: found.map(|_| speed::compare(&rest)),
         schedule: found.and_then(|analysis| Suggestion::of(analysis.fit.noise())),
     };
-    let report = |path: &PathBuf| shown.report().write(path).map_err(|error| error.to_string());
-    let written = options.report.as_ref().map_or(Ok(()), report);
-    let mut object = shown.object();
-    if let Err(reason) = &written {
-        object["status"] = "failed".into();
-        object["reason"] = reason.as_str().into();
-    }
-    let told = Told::of(true, as_json, &object, |out| shown.text(out))?;
-    // A page that failed is a failure, but the numbers are not lost with it.
     let refusal = analysis.as_ref().err().map(|reason| refusal(&name, &rest, reason));
-    let refusal = refusal.or(written.err());
-    Ok(Told { found: refusal.is_none(), refusal, ..told })
+    let told = Told::of(refusal.is_none(), as_json, &shown.object(), |out| shown.text(out))?;
+    Ok(Told { refusal, ..told }.with_page(options.report.as_deref(), || shown.report()))
 }
 
 /// Why there is no noise, with what is to be known of the record.

@@ -7,16 +7,19 @@ use bench::campaign::rotating::{molecular, refusals, stages};
 use bench::campaign::sokolov::{self, Turn};
 use bench::campaign::spin::{cases, paper};
 use bench::campaign::szymanowski::{drives, parked};
-use bench::campaign::{faults, instrument, keep};
+use bench::campaign::{disturbed, faults, instrument, keep};
 use bench::output::progress::Progress;
 use bench::output::rotating::campaign as of_rotating;
 use bench::output::table;
-use bench::output::{burov as told, keep as of_keep, page, spin as of_spin, stops as of_stops};
+use bench::output::{
+    burov as told, disturbed as of_disturbed, keep as of_keep, page, spin as of_spin,
+    stops as of_stops,
+};
 use clap::{Args, ValueEnum};
 use firmware::simulated::fault::Fault;
 use serde_json::json;
 
-use super::Told;
+use super::{Told, files, whole};
 
 /// Which campaign, how long.
 #[derive(Args)]
@@ -27,12 +30,15 @@ pub struct CampaignOptions {
     /// How many runs: of sokolov on each schedule (5000), of burov on each schedule (5000)
     /// and for each class a tenth of it, of rotating in each table (500), of each of its refusals a
     /// tenth of it, of szymanowski, keep and spin in each row (500), of instrument (500), of each
-    /// fault (1).
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    runs: Option<u32>,
+    /// fault (1), of each class of disturbed (200).
+    #[arg(long, value_parser = whole::<1, 1_000_000>)]
+    runs: Option<u64>,
     /// Writes figures and tables as a page for a browser; of burov, keep, rotating, spin and szymanowski.
     #[arg(long, value_name = "FILE.html")]
     report: Option<PathBuf>,
+    /// The only class to run, of disturbed.
+    #[arg(long, value_name = "NAME")]
+    class: Option<String>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -53,6 +59,8 @@ enum Campaign {
     Instrument,
     /// Every chip with every fault.
     Faults,
+    /// Recordings with faults of any severity: what gets past, and what is refused without need.
+    Disturbed,
 }
 
 impl CampaignOptions {
@@ -60,20 +68,39 @@ impl CampaignOptions {
     ///
     /// # Errors
     /// The options, and why.
-    pub fn check(&self) -> Result<(), &'static str> {
+    pub fn check(&self) -> Result<(), String> {
         use Campaign::{Burov, Keep, Rotating, Spin, Szymanowski};
+        if self.class.is_some() && !matches!(self.name, Campaign::Disturbed) {
+            return Err(format!(
+                "--class: {} does not take it: only disturbed has classes",
+                self.campaign()
+            ));
+        }
+        if let Some(class) = &self.class
+            && disturbed::classes().all(|of| of.name != class)
+        {
+            let names: Vec<_> = disturbed::classes().map(|class| class.name).collect();
+            return Err(format!("--class: the classes are {}", names.join(", ")));
+        }
         let draws = matches!(self.name, Burov | Keep | Rotating | Spin | Szymanowski);
         if self.report.is_some() && !draws {
-            Err("--report: only burov, keep, rotating, spin and szymanowski draw")
-        } else {
-            Ok(())
+            let campaign = self.campaign();
+            let why = "only burov, keep, rotating, spin and szymanowski draw";
+            return Err(format!("--report: {campaign} does not take it: {why}"));
         }
+        files::check(None, &[files::written("--report", "the page", self.report.as_ref())])
+    }
+
+    /// The campaign's name on the command line.
+    fn campaign(&self) -> String {
+        let value = self.name.to_possible_value();
+        format!("campaign {}", value.as_ref().map_or("", |value| value.get_name()))
     }
 }
 
 /// Runs a campaign.
 pub fn run(options: &CampaignOptions, as_json: bool) -> Result<Told, String> {
-    let runs = |usual: u32| options.runs.unwrap_or(usual) as usize;
+    let runs = |usual: u64| options.runs.unwrap_or(usual) as usize;
     match options.name {
         Campaign::Sokolov => sokolov(runs(5000), as_json),
         Campaign::Burov => burov(runs(5000), options.report.as_deref(), as_json),
@@ -83,6 +110,7 @@ pub fn run(options: &CampaignOptions, as_json: bool) -> Result<Told, String> {
         Campaign::Keep => keep(runs(500), options.report.as_deref(), as_json),
         Campaign::Instrument => instrument(runs(500), as_json),
         Campaign::Faults => faults(runs(1), as_json),
+        Campaign::Disturbed => disturbed(runs(200), options.class.as_deref(), as_json),
     }
 }
 
@@ -228,7 +256,9 @@ fn instrument(runs: usize, as_json: bool) -> Result<Told, String> {
     let found = row.precision.refused == 0;
     let status = if found { "ok" } else { "failed" };
     let object = json!({ "campaign": "instrument", "status": status, "precision": row });
-    Told::of(found, as_json, &object, |text| table::instrument(text, &row))
+    let told = Told::of(found, as_json, &object, |text| table::instrument(text, &row))?;
+    let refusal = (!found).then(|| "a healthy board was refused".to_owned());
+    Ok(Told { refusal, ..told })
 }
 
 /// Every fault with every seed; a result where no north was wrong.
@@ -240,5 +270,36 @@ fn faults(runs: usize, as_json: bool) -> Result<Told, String> {
     let found = rows.iter().all(|row| row.outcome != faults::WRONG);
     let status = if found { "ok" } else { "failed" };
     let object = json!({ "campaign": "faults", "status": status, "faults": rows });
-    Told::of(found, as_json, &object, |text| table::faults(text, &rows))
+    let told = Told::of(found, as_json, &object, |text| table::faults(text, &rows))?;
+    let refusal = (!found).then(|| "a north was wrong".to_owned());
+    Ok(Told { refusal, ..told })
+}
+
+/// Healthy recordings for each run of a class.
+const HEALTHY: usize = 15;
+
+/// Every class of faults in recordings; a result where each passes.
+fn disturbed(runs: usize, class: Option<&str>, as_json: bool) -> Result<Told, String> {
+    let chosen: Vec<_> =
+        disturbed::classes().filter(|of| class.is_none_or(|name| of.name == name)).collect();
+    let progress = Progress::new((chosen.len() * runs) as u64, "recordings");
+    let tick = || progress.step();
+    let healthy = match class {
+        None => disturbed::healthy(HEALTHY * runs, &tick),
+        Some(_) => Vec::new(),
+    };
+    let rows: Vec<_> = chosen.into_iter().map(|class| disturbed::row(class, runs, &tick)).collect();
+    progress.finish();
+    let found = rows.iter().all(|row| row.is_met);
+    let status = if found { "ok" } else { "failed" };
+    let object = json!({
+        "campaign": "disturbed", "status": status, "healthy": healthy, "classes": rows,
+    });
+    let told = Told::of(found, as_json, &object, |text| {
+        of_disturbed::healthy(text, &healthy)?;
+        of_disturbed::rows(text, &rows)
+    })?;
+    let refusal =
+        (!found).then(|| "a class of faults gets past, or is refused without need".to_owned());
+    Ok(Told { refusal, ..told })
 }

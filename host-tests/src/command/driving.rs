@@ -19,14 +19,14 @@ use orientation::session::stops::Session;
 use serde_json::json;
 
 use super::run::{Terminal, object};
-use super::{Told, keeping};
+use super::{Told, keeping, whole};
 
 /// What a vehicle is asked for.
 #[derive(Args, Clone, Debug)]
 pub struct DrivingOptions {
     /// With --method siap: how often the vehicle stops (3).
-    #[arg(long, value_parser = clap::value_parser!(u8).range(2..=8))]
-    stops: Option<u8>,
+    #[arg(long, value_parser = whole::<2, 8>)]
+    stops: Option<u64>,
     /// With --method siap: seconds for which the board levels at each stop (60).
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     stop_seconds: Option<f64>,
@@ -47,19 +47,13 @@ fn seconds(text: &str) -> Result<f64, String> {
 }
 
 impl DrivingOptions {
-    /// Whether any of them was given.
-    pub fn is_given(&self) -> bool {
-        let is_timed = self.stop_seconds.is_some() || self.drive_seconds.is_some();
-        self.stops.is_some() || is_timed || self.no_displacement
-    }
-
     /// The scenario of a base, at the vehicle's own sample rate where none is stated.
     pub fn scenario(&self, base: &Scenario, rate_hz: Option<f64>) -> VehicleScenario {
         let usual = VehicleScenario::default();
         let sample_rate_hz = rate_hz.unwrap_or(usual.base.sample_rate_hz);
         VehicleScenario {
             base: Scenario { sample_rate_hz, ..*base },
-            stops: self.stops.map_or(usual.stops, usize::from),
+            stops: self.stops.map_or(usual.stops, |stops| stops as usize),
             stop_s: self.stop_seconds.unwrap_or(usual.stop_s),
             drive_s: self.drive_seconds.unwrap_or(usual.drive_s),
             place: if self.no_displacement { Place::Unknown } else { usual.place },

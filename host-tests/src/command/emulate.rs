@@ -10,7 +10,7 @@ use super::Told;
 #[derive(Args)]
 pub struct EmulateOptions {
     /// What fixes everything random in the simulated world.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = super::seed)]
     seed: u64,
 }
 
@@ -18,5 +18,8 @@ pub struct EmulateOptions {
 pub fn run(options: &EmulateOptions, as_json: bool) -> Result<Told, String> {
     let found = emulate(options.seed, |line| say(&line.to_string()))?;
     let object = emulation::object(&found);
-    Told::of(found.is_right(), as_json, &object, |text| emulation::tables(text, &found))
+    let told =
+        Told::of(found.is_right(), as_json, &object, |text| emulation::tables(text, &found))?;
+    let refusal = (!found.is_right()).then(|| "not all is as it must be".to_owned());
+    Ok(Told { refusal, ..told })
 }

@@ -28,7 +28,7 @@ pub struct KeepingOptions {
     #[arg(long)]
     realign: bool,
     /// An azimuth that is handed over from outside instead of an alignment, and its 1σ, in degrees.
-    #[arg(long, value_name = "DEGREES,SIGMA", value_parser = handover, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEGREES,SIGMA", value_parser = handover)]
     handover: Option<[f64; 2]>,
 }
 
@@ -51,11 +51,6 @@ fn handover(text: &str) -> Result<[f64; 2], String> {
 }
 
 impl KeepingOptions {
-    /// Whether any of them was given.
-    pub fn is_given(&self) -> bool {
-        self.hold.is_some() || self.realign || self.handover.is_some()
-    }
-
     /// How the run goes on; one that is to be the same as ever does not unless it is asked to.
     pub fn hold(&self, is_plain: bool) -> Hold {
         let usual = if is_plain { 0.0 } else { USUAL };

@@ -4,31 +4,60 @@ pub mod allan;
 pub mod campaign;
 pub mod driving;
 pub mod emulate;
+pub mod files;
 pub mod keeping;
 pub mod plan;
 pub mod replay;
 pub mod run;
 pub mod spinning;
+pub mod suits;
 pub mod turning;
 
 use std::fmt;
 use std::io::Write;
 use std::path::Path;
 
+use bench::output::text::line;
 use bench::report::Report;
 use clap::ValueEnum;
 use orientation::align::setting;
 use orientation::earth::Latitude;
 use serde::Serialize;
+use serde_json::{Value, json};
 
 /// What came of a command, ready to print.
 pub struct Told {
     /// Whether there was a result.
     pub found: bool,
     /// For standard output.
-    pub output: String,
+    pub output: Output,
     /// Why there was none.
     pub refusal: Option<String>,
+    /// What there is to be said beside that: a line each.
+    pub warnings: Vec<String>,
+}
+
+/// What goes to standard output.
+pub enum Output {
+    /// For people.
+    Text(String),
+    /// One object, with `--json`.
+    Object(Value),
+}
+
+/// Why a command came to nothing.
+#[derive(Debug)]
+pub struct Failure {
+    /// The reason.
+    pub reason: String,
+    /// The warnings that came before it.
+    pub warnings: Vec<String>,
+}
+
+impl From<String> for Failure {
+    fn from(reason: String) -> Self {
+        Self { reason, warnings: Vec::new() }
+    }
 }
 
 impl Told {
@@ -39,15 +68,89 @@ impl Told {
         object: &impl Serialize,
         text: impl FnOnce(&mut String) -> fmt::Result,
     ) -> Result<Self, String> {
-        let mut output = String::new();
-        if as_json {
-            output = serde_json::to_string_pretty(object).map_err(|error| error.to_string())?;
+        let output = if as_json {
+            Output::Object(serde_json::to_value(object).map_err(|error| error.to_string())?)
         } else {
+            let mut output = String::new();
             text(&mut output).map_err(|error| error.to_string())?;
+            Output::Text(output)
+        };
+        Ok(Self { found, output, refusal: None, warnings: Vec::new() })
+    }
+
+    /// What goes to standard output: an object says `ok` where there was a result, and nowhere else.
+    pub fn printed(&self) -> String {
+        match &self.output {
+            Output::Text(text) => text.clone(),
+            Output::Object(object) => format!("{:#}", self.agreeing(object.clone())),
         }
-        Ok(Self { found, output, refusal: None })
+    }
+
+    /// The object with a status that is that of the exit code, its reason, and the warnings.
+    fn agreeing(&self, mut object: Value) -> Value {
+        let says_ok = object["status"] == "ok";
+        if !object.is_object() || (self.found && says_ok && self.warnings.is_empty()) {
+            return object;
+        }
+        if self.found {
+            object["status"] = "ok".into();
+        } else if says_ok || object["status"].is_null() {
+            object["status"] = "failed".into();
+        }
+        if let Some(reason) = self.refusal.as_ref().filter(|_| object["reason"].is_null()) {
+            object["reason"] = reason.as_str().into();
+        }
+        if !self.warnings.is_empty() {
+            object["warnings"] = json!(self.warnings);
+        }
+        object
+    }
+
+    /// The same with what was to be said before.
+    fn with_warnings(mut self, before: Vec<String>) -> Self {
+        self.warnings.splice(..0, before);
+        self
+    }
+
+    /// The same with the likely cause of its refusal, which takes the place of the remedy.
+    fn because(mut self, cause: Option<String>) -> Self {
+        let (Some(cause), Some(refusal)) = (cause, &self.refusal) else { return self };
+        match &mut self.output {
+            Output::Object(object) => {
+                let reason = object["reason"].as_str().map(|reason| explained(reason, &cause));
+                object["reason"] = reason.into();
+            }
+            Output::Text(text) => {
+                // Nothing fails to be written into memory.
+                let _ = line(text, "likely cause", format_args!("{cause}"));
+            }
+        }
+        self.refusal = Some(explained(refusal, &cause));
+        self
+    }
+
+    /// The same with what was written beside: where that failed, the command did, but the rest is not lost
+    /// with it, nor is why there was no result.
+    fn with_written(mut self, written: Result<(), String>) -> Self {
+        let Err(reason) = written else { return self };
+        self.found = false;
+        match &self.refusal {
+            Some(_) => self.warnings.push(reason),
+            None => self.refusal = Some(reason),
+        }
+        self
     }
 }
+
+/// What was found, without the usual remedy for it, and what it is likely to come from.
+fn explained(reason: &str, cause: &str) -> String {
+    let remedies = REMEDIES.iter().find_map(|remedy| reason.strip_suffix(remedy));
+    format!("{}; {cause}", remedies.unwrap_or(reason))
+}
+
+/// What the platform is told to do where it is not at fault.
+const REMEDIES: [&str; 3] =
+    [": keep the platform still", ": keep the base still, let the sensor settle", ": level it"];
 
 /// The half of the circle in which an azimuth lies.
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -73,6 +176,17 @@ fn latitude(text: &str) -> Result<Latitude, String> {
     Latitude::from_degrees(degrees).ok_or_else(|| "outside ±90°".to_owned())
 }
 
+/// A whole number from `LEAST` to `MOST`.
+fn whole<const LEAST: u64, const MOST: u64>(text: &str) -> Result<u64, String> {
+    let number = text.parse::<u64>().ok().filter(|number| (LEAST..=MOST).contains(number));
+    number.ok_or_else(|| format!("not a whole number from {LEAST} to {MOST}"))
+}
+
+/// A seed: any that 64 bits hold.
+fn seed(text: &str) -> Result<u64, String> {
+    whole::<0, { u64::MAX }>(text)
+}
+
 /// A standard deviation in degrees, as radians.
 fn sigma(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
@@ -85,12 +199,8 @@ impl Told {
     /// The same with a page for `--report`, where one was asked for. A page that cannot be written is a
     /// failure, but the rest is not lost with it.
     fn with_page(self, path: Option<&Path>, page: impl FnOnce() -> Report) -> Self {
-        match path.map(|path| page().write(path)) {
-            Some(Err(error)) => {
-                Self { found: false, refusal: self.refusal.or(Some(error.to_string())), ..self }
-            }
-            _ => self,
-        }
+        let write = |path: &Path| page().write(path).map_err(|error| error.to_string());
+        self.with_written(path.map_or(Ok(()), write))
     }
 }
 

@@ -9,7 +9,7 @@ use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
 use serde_json::{Map, Value, json};
 
-use super::{Told, latitude};
+use super::{Told, files, latitude};
 
 /// The gyro, the place, the stage, and what is asked.
 #[derive(Args)]
@@ -31,7 +31,7 @@ pub struct PlanOptions {
     #[arg(long, value_name = "Q", default_value = "0", value_parser = coefficient)]
     quantisation: f64,
     /// Latitude in degrees, north positive.
-    #[arg(long, value_name = "DEGREES", value_parser = latitude, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEGREES", value_parser = latitude)]
     latitude: Latitude,
     /// Total time for everything, rotations included, s.
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
@@ -60,6 +60,16 @@ fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value <= 86_400.0 => Ok(value),
         _ => Err("not a number of seconds above 0, at most 86400".to_owned()),
+    }
+}
+
+impl PlanOptions {
+    /// What cannot go together.
+    ///
+    /// # Errors
+    /// The option, and why.
+    pub fn check(&self) -> Result<(), String> {
+        files::check(None, &[files::written("--report", "the page", self.report.as_ref())])
     }
 }
 

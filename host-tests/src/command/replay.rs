@@ -1,6 +1,6 @@
 //! `meridian replay`: the alignment on a recording.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use bench::output::progress::Progress;
 use bench::output::{
@@ -10,12 +10,13 @@ use bench::output::{
 use bench::recording::{self, Body, Kind, Recording};
 use bench::replay::{self, Options, replay};
 use bench::vertical::errors::Errors;
-use bench::{rotating, spin, stops, vertical as of_vertical};
+use bench::{cause, rotating, spin, stops, vertical as of_vertical};
 use clap::{Args, ValueEnum};
 use orientation::align::criterion::Criterion;
 use orientation::earth::Latitude;
 
-use super::{Half, Told, latitude, sigma};
+use super::suits::{self, Given, method};
+use super::{Failure, Half, Told, files, latitude, sigma};
 
 /// Which recording, and how it is taken.
 #[derive(Args)]
@@ -26,7 +27,7 @@ pub struct ReplayOptions {
     #[arg(long, value_enum)]
     method: Option<Method>,
     /// Latitude in degrees, north positive, instead of the recording's.
-    #[arg(long, value_name = "DEGREES", value_parser = latitude, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEGREES", value_parser = latitude)]
     latitude: Option<Latitude>,
     /// How the azimuth is found: ml, table (ml over the etalon table), least-squares, least-absolute, within-squares=A1 in (°/h)²,
     /// within-absolute=A in °/h.
@@ -37,7 +38,7 @@ pub struct ReplayOptions {
     half: Option<Half>,
     /// How far each stop of a vehicle lies from the first, north and east, in metres: `0,0;n,e;…`
     /// instead of the recording's.
-    #[arg(long, value_name = "N,E;N,E", value_parser = displacements, allow_hyphen_values = true)]
+    #[arg(long, value_name = "N,E;N,E", value_parser = displacements)]
     displacements: Option<Displacements>,
     /// Greatest standard deviation that is accepted, in degrees (1σ).
     #[arg(long, value_name = "DEGREES", default_value = "10", value_parser = sigma)]
@@ -70,6 +71,19 @@ enum Method {
 }
 
 impl Method {
+    /// As it is asked for.
+    fn named(self) -> suits::Named {
+        match self {
+            Self::Stepwise => method::STEPWISE,
+            Self::Positions => method::POSITIONS,
+            Self::Rotating => method::ROTATING,
+            Self::Siap => method::SIAP,
+            Self::Static => method::STATIC,
+            Self::Vertical => method::VERTICAL,
+            Self::Spin => method::SPIN,
+        }
+    }
+
     /// Of a recording for which none was asked; a vehicle's shows which of both it needs.
     fn of(body: &Body) -> Self {
         match body.kind() {
@@ -129,74 +143,36 @@ impl ReplayOptions {
     ///
     /// # Errors
     /// The options, and why.
-    pub fn check(&self) -> Result<(), &'static str> {
-        self.method.map_or(Ok(()), |method| self.check_method(method))
-    }
-
-    /// What would be written over what is read, or over what was just written.
-    fn check_files(&self) -> Result<(), String> {
-        let [attitude, report] =
-            [&self.attitude_out, &self.report].map(|path| path.as_deref().map(place));
-        let recording = place(&self.file);
-        for (option, path) in [("--attitude-out", &attitude), ("--report", &report)] {
-            if path.as_ref() == Some(&recording) {
-                return Err(format!("{option}: {} is the recording itself", recording.display()));
-            }
+    pub fn check(&self, given: &Given) -> Result<(), String> {
+        if let Some(method) = self.method {
+            suits::check(suits::REPLAY, given, &method.named())?;
         }
-        match attitude.filter(|path| report.as_ref() == Some(path)) {
-            Some(path) => Err(format!("--report: {} takes the attitude already", path.display())),
-            None => Ok(()),
-        }
+        let attitude = files::written("--attitude-out", "the attitude", self.attitude_out.as_ref());
+        let report = files::written("--report", "the page", self.report.as_ref());
+        files::check(Some(&self.file), &[attitude, report])
     }
-
-    /// What a method does not take.
-    fn check_method(&self, method: Method) -> Result<(), &'static str> {
-        let has_criterion = self.criterion != Criterion::MaximumLikelihood;
-        let is_displaced = self.displacements.is_some();
-        let has_attitude = self.attitude_out.is_some();
-        match method {
-            _ if has_attitude && !matches!(method, Method::Vertical) => {
-                Err("--attitude-out: only method vertical keeps an attitude")
-            }
-            Method::Rotating if has_criterion => {
-                Err("--criterion: a platform that turns all the time has the one criterion")
-            }
-            Method::Rotating if self.half.is_some() => {
-                Err("--half: a platform that turns all the time shows both halves")
-            }
-            Method::Siap | Method::Static if has_criterion => {
-                Err("--criterion: a vehicle's stops have the one criterion")
-            }
-            Method::Siap | Method::Static if self.half.is_some() => {
-                Err("--half: a vehicle's gyros show both halves")
-            }
-            Method::Vertical if has_criterion || self.half.is_some() => {
-                Err("--criterion, --half: method vertical finds no azimuth")
-            }
-            Method::Spin if has_criterion => Err("--criterion: a spinning body's roll has none"),
-            Method::Spin if self.half.is_some() => Err("--half: a spinning body has no azimuth"),
-            Method::Spin if self.latitude.is_some() => {
-                Err("--latitude: a spinning body's roll does not depend on it")
-            }
-            Method::Siap => Ok(()),
-            _ if is_displaced => Err("--displacements: only the stops of method siap have them"),
-            _ => Ok(()),
-        }
-    }
-}
-
-/// Where a file is, whatever it is called; its name where it is not there yet.
-fn place(path: &Path) -> PathBuf {
-    path.canonicalize().unwrap_or_else(|_| path.to_path_buf())
 }
 
 /// Replays a recording.
-pub fn run(options: &ReplayOptions, as_json: bool) -> Result<Told, String> {
-    options.check_files()?;
-    let recording = recording::read(&options.file).map_err(|error| error.to_string())?;
+pub fn run(options: &ReplayOptions, given: &Given, as_json: bool) -> Result<Told, Failure> {
+    let recording = recording::read(&options.file).map_err(|error| error.told())?;
+    let warnings = recording.told_warnings(&options.file);
+    replay_read(options, recording, given, as_json)
+        .map_err(|reason| Failure { reason, warnings: warnings.clone() })
+        .map(|told| told.with_warnings(warnings))
+}
+
+/// Replays what was read.
+fn replay_read(
+    options: &ReplayOptions,
+    recording: Recording,
+    given: &Given,
+    as_json: bool,
+) -> Result<Told, String> {
     let name = options.file.display().to_string();
     let method = options.method.unwrap_or_else(|| Method::of(&recording.body));
-    options.check_method(method)?;
+    // Without a method stated, that the options do not suit is of the recording's making.
+    suits::check(suits::REPLAY, given, &method.named())?;
     let of = match method {
         Method::Rotating => turning,
         Method::Siap | Method::Static => vehicle,
@@ -262,13 +238,13 @@ fn vertical(
     let told = Told::of(replay.refusal.is_none(), as_json, &object, |block| {
         vertical_told::text::block(block, name, &object)
     })?;
-    if let Some(path) = &options.attitude_out {
+    let written = options.attitude_out.as_ref().map_or(Ok(()), |path| {
         of_vertical::write_attitude(path, &replay.moments)
-            .map_err(|error| format!("{}: cannot be written: {error}", path.display()))?;
-    }
+            .map_err(|error| format!("{}: cannot be written: {error}", path.display()))
+    });
     let refusal = replay.refusal.as_ref().map(|reason| format!("{name}: {reason}"));
     let page = || page::vertical::report(name, &replay, errors.as_ref(), &object);
-    Ok(Told { refusal, ..told }.with_page(options.report.as_deref(), page))
+    Ok(Told { refusal, ..told }.with_written(written).with_page(options.report.as_deref(), page))
 }
 
 /// Replays the recording of a platform that turns all the time.
@@ -287,8 +263,9 @@ fn turning(
         of_rotating::text::block(block, name, &replay, conclusion, truth.azimuth_deg)
     })?;
     let refusal = conclusion.verdict.as_ref().err().map(|reason| format!("{name}: {reason}"));
+    let cause = refusal.as_ref().and_then(|_| cause::of_turning(&header, &body, &options.into()));
     let page = || page::rotating::report(name, &replay, conclusion, body.rotating());
-    Ok(Told { refusal, ..told }.with_page(options.report.as_deref(), page))
+    Ok(Told { refusal, ..told }.because(cause).with_page(options.report.as_deref(), page))
 }
 
 /// Replays a recording whose stage stops.
@@ -309,6 +286,8 @@ fn stopping(
         text::block(block, name, &replay, conclusion, truth.azimuth_deg)
     })?;
     let refusal = conclusion.verdict.as_ref().err().map(|reason| format!("{name}: {reason}"));
+    let refused = conclusion.verdict.as_ref().err();
+    let cause = refused.and_then(|why| cause::of_stopping(&header, &body, &options.into(), why));
     let page = || page::alignment::report(name, &replay, conclusion);
-    Ok(Told { refusal, ..told }.with_page(options.report.as_deref(), page))
+    Ok(Told { refusal, ..told }.because(cause).with_page(options.report.as_deref(), page))
 }

@@ -28,23 +28,24 @@ use serde_json::{Value, json};
 use super::driving::DrivingOptions;
 use super::keeping::{self, KeepingOptions};
 use super::spinning::SpinningOptions;
+use super::suits::{self, Given, carrier};
 use super::turning::TurningOptions;
-use super::{Half, Told};
+use super::{Half, Told, files, whole};
 
 /// What can be said of a simulated alignment.
 #[derive(Args, Clone, Debug)]
 pub struct RunOptions {
     /// Latitude in degrees, north positive.
-    #[arg(long, value_name = "DEGREES", default_value = "47.58", value_parser = within::<90>, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEGREES", default_value = "47.58", value_parser = within::<90>)]
     latitude: f64,
     /// True azimuth of body x in degrees; the board is not told.
-    #[arg(long, value_name = "DEGREES", default_value = "213.7", value_parser = within::<360>, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEGREES", default_value = "213.7", value_parser = within::<360>)]
     azimuth: f64,
     /// True pitch of the base in degrees, nose up positive.
-    #[arg(long, value_name = "DEGREES", default_value = "0.6", value_parser = within::<90>, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEGREES", default_value = "0.6", value_parser = within::<90>)]
     pitch: f64,
     /// True roll of the base in degrees, right side down positive.
-    #[arg(long, value_name = "DEGREES", default_value = "-0.4", value_parser = within::<180>, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEGREES", default_value = "-0.4", value_parser = within::<180>)]
     roll: f64,
     /// The precise gyro (fog).
     #[arg(long, value_enum)]
@@ -66,14 +67,14 @@ pub struct RunOptions {
     #[arg(long, value_enum, default_value = "stage")]
     mount: MountKind,
     /// With two frames: how often the four headings are visited (6).
-    #[arg(long, value_name = "PASSES", value_parser = clap::value_parser!(u8).range(1..=16), conflicts_with_all = ["seconds", "sigma"])]
-    passes: Option<u8>,
+    #[arg(long, value_name = "PASSES", value_parser = whole::<1, 16>, conflicts_with_all = ["seconds", "sigma"])]
+    passes: Option<u64>,
     /// The half of the circle in which the board is told that the azimuth lies: two positions need it.
     #[arg(long, value_enum)]
     half: Option<Half>,
     /// On a stage: positions on the full circle (24).
-    #[arg(long, value_parser = clap::value_parser!(u8).range(2..=64))]
-    positions: Option<u8>,
+    #[arg(long, value_parser = whole::<2, 64>)]
+    positions: Option<u64>,
     /// Seconds at each position (10).
     #[arg(long, value_name = "SECONDS", value_parser = dwell)]
     dwell: Option<f64>,
@@ -95,7 +96,7 @@ pub struct RunOptions {
     #[arg(long, requires = "sway")]
     no_base_imu: bool,
     /// What fixes everything random.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = super::seed)]
     seed: u64,
     /// Method.
     #[arg(long, value_enum, default_value = "stepwise")]
@@ -243,42 +244,77 @@ impl RunOptions {
     ///
     /// # Errors
     /// The options, and why.
-    pub fn check(&self) -> Result<(), &'static str> {
-        let on_frames = self.mount == MountKind::TwoFrame;
+    pub fn check(&self, given: &Given) -> Result<(), String> {
+        if let Some(Named::List) = self.fault {
+            return match given.beside(&["fault", "method"]) {
+                Some(option) => Err(format!("{}: --fault list runs nothing", suits::long(option))),
+                None => Ok(()),
+            };
+        }
+        suits::check(suits::RUN, given, &self.carrier())?;
         self.check_fault()?;
-        match () {
-            () if matches!(self.method, Method::Spin) => self.check_spinning(on_frames),
-            () if self.spinning.is_given() => {
-                Err("--flight-seconds, --turns-per-second: they are those of --method spin")
+        self.check_plan(given)?;
+        self.check_keeping(given)?;
+        if self.turning.is_molecular() && self.gyro.is_some() {
+            return Err(
+                "--gyro: a molecular-electronic sensor takes its place; leave out --sensor met"
+                    .into(),
+            );
+        }
+        let record = files::written("--record", "the recording", self.record.as_ref());
+        let report = files::written("--report", "the page", self.report.as_ref());
+        let [flash, beside] = self.turning.files();
+        files::check(None, &[record, flash, beside, report])
+    }
+
+    /// What carries the gyro.
+    fn carrier(&self) -> suits::Named {
+        match (self.method, self.mount) {
+            (Method::Spin, _) => carrier::BODY,
+            (Method::Siap, _) => carrier::VEHICLE,
+            (Method::Rotating, _) => carrier::TURNTABLE,
+            (Method::Stepwise, MountKind::TwoFrame) => carrier::FRAMES,
+            (Method::Stepwise, MountKind::Stage) => carrier::STAGE,
+            (Method::Positions, _) => carrier::PLANNED,
+        }
+    }
+
+    /// What two frames cannot take, however their positions come about.
+    fn check_plan(&self, given: &Given) -> Result<(), String> {
+        let on_frames = self.mount == MountKind::TwoFrame;
+        match given.first(&["record", "fault"]).filter(|_| on_frames) {
+            Some(option) => Err(format!(
+                "{}: --mount two-frame does not take it: it is one of a stage",
+                suits::long(option)
+            )),
+            None => Ok(()),
+        }
+    }
+
+    /// What keeping an azimuth needs, and what it takes the place of.
+    fn check_keeping(&self, given: &Given) -> Result<(), String> {
+        let asked = given.first(&["realign", "handover"]);
+        match given.first(&["hold", "realign", "handover"]) {
+            Some(_) if self.record.is_some() => {
+                return Err(
+                    "--record: what a base with coarse sensors shows is not recorded".into()
+                );
             }
-            () if matches!(self.method, Method::Rotating) && self.keeping.is_given() => Err(
-                "--hold, --realign, --handover: a platform that turns all the time keeps nothing",
-            ),
-            () if self.keeping.is_given() && self.record.is_some() => {
-                Err("--record: what a base with coarse sensors shows is not recorded")
+            Some(_) if self.no_base_imu => {
+                return Err("--no-base-imu: without coarse sensors nothing is kept".into());
             }
-            () if self.keeping.is_given() && self.no_base_imu => {
-                Err("--no-base-imu: without coarse sensors nothing is kept")
-            }
-            () if matches!(self.method, Method::Siap) => self.check_driving(on_frames),
-            () if self.driving.is_given() => Err(
-                "--stops, --stop-seconds, --drive-seconds, --no-displacement: they are those of --method \
-                 siap",
-            ),
-            () if on_frames && self.record.is_some() => Err(
-                "--record: a two-frame mount is not recorded, since a recording knows no elevation",
-            ),
-            () if on_frames && self.fault.is_some() => {
-                Err("--fault: the faults are those of a stage; leave out --mount two-frame")
-            }
-            () if !on_frames && self.passes.is_some() => {
-                Err("--passes: they are those of two frames; a stage has --positions")
-            }
-            () if matches!(self.method, Method::Rotating) => self.check_rotating(on_frames),
-            () if self.turning.is_given() => Err(
-                "--sensor, --speeds, --turns, --uneven-turns, --flash: they are those of --method rotating",
-            ),
-            () => Ok(()),
+            _ => {}
+        }
+        if let Some(option) = asked.filter(|_| self.hold().seconds <= 0.0) {
+            let option = suits::long(option);
+            return Err(format!("{option}: nothing is kept after this run; add --hold SECONDS"));
+        }
+        match given.first(&["positions", "dwell", "passes", "seconds", "sigma", "survey", "half"]) {
+            Some(option) if given.has("handover") && !given.has("realign") => Err(format!(
+                "{}: --handover takes the place of the alignment; add --realign or leave one out",
+                suits::long(option)
+            )),
+            _ => Ok(()),
         }
     }
 
@@ -300,72 +336,6 @@ impl RunOptions {
                 "--fault: only a spinning body has it: --method spin"
             }),
             _ => Ok(()),
-        }
-    }
-
-    /// Whether positions or a plan were asked for, which only a stage that stops has.
-    fn has_positions(&self) -> bool {
-        let stops = self.positions.is_some() || self.dwell.is_some() || self.survey.is_some();
-        stops || self.seconds.is_some() || self.sigma.is_some() || self.half.is_some()
-    }
-
-    /// What a spinning body cannot take.
-    fn check_spinning(&self, on_frames: bool) -> Result<(), &'static str> {
-        match () {
-            () if on_frames => Err("--mount: on a spinning body the sensors are fixed to it"),
-            () if self.has_positions() || self.gyro.is_some() || self.rate.is_some() => Err(
-                "--positions, --dwell, --survey, --seconds, --sigma, --half, --gyro, --rate: a spinning body \
-                 has --flight-seconds and --turns-per-second",
-            ),
-            () if self.keeping.is_given() => {
-                Err("--hold, --realign, --handover: a spinning body keeps nothing but its roll")
-            }
-            () if self.turning.is_given() || self.driving.is_given() => {
-                Err("--method spin: neither a platform that turns nor a vehicle that stops")
-            }
-            () if self.sway.is_some() => Err("--sway: a spinning body has no base"),
-            () if self.record.is_some() => Err("--record: a spinning body is not recorded"),
-            () => Ok(()),
-        }
-    }
-
-    /// What a vehicle cannot take.
-    fn check_driving(&self, on_frames: bool) -> Result<(), &'static str> {
-        match () {
-            () if on_frames => Err("--mount: in a vehicle three gyros are fixed to it"),
-            () if self.has_positions() => Err(
-                "--positions, --dwell, --survey, --seconds, --sigma, --half: a vehicle has --stops, \
-                 --stop-seconds and --drive-seconds",
-            ),
-            () if self.turning.is_given() => Err(
-                "--sensor, --speeds, --turns, --uneven-turns, --flash: they are those of --method rotating",
-            ),
-            () if self.sway.is_some() => {
-                Err("--sway: a vehicle that sways is --fault sway-at-stops")
-            }
-            () if self.record.is_some() => Err("--record: a vehicle is not recorded"),
-            () => Ok(()),
-        }
-    }
-
-    /// What a platform that turns all the time cannot take.
-    fn check_rotating(&self, on_frames: bool) -> Result<(), &'static str> {
-        match () {
-            () if on_frames => Err("--mount: two frames do not turn without end"),
-            () if self.has_positions() => Err(
-                "--positions, --dwell, --survey, --seconds, --sigma, --half: a platform that turns all \
-                 the time has --speeds and --turns",
-            ),
-            () if self.sway.is_some() => {
-                Err("--sway: a platform that turns all the time stands on a base at rest")
-            }
-            () if self.record.is_some() => {
-                Err("--record: a platform that turns all the time is not recorded")
-            }
-            () if self.turning.is_molecular() && self.gyro.is_some() => {
-                Err("--gyro: a molecular-electronic sensor takes its place; leave out --sensor met")
-            }
-            () => Ok(()),
         }
     }
 
@@ -410,7 +380,7 @@ impl From<&RunOptions> for Scenario {
             aim: options.aim(),
             survey_s: options.survey.unwrap_or(0.0),
             half: options.half.map(Into::into),
-            positions: options.positions.map_or(POSITIONS, usize::from),
+            positions: options.positions.map_or(POSITIONS, |count| count as usize),
             dwell_s: options.dwell.unwrap_or(DWELL),
             sway_deg: options.sway.unwrap_or(0.0),
             sway_hz: options.sway_hertz,
@@ -472,27 +442,23 @@ pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
     let wall = begun.elapsed().as_secs_f64();
     let Some(conclusion) = run.conclusion() else {
         let (object, report) = (object(&run, &scenario, json!({}))?, options.report.as_deref());
-        return keeping::told("the simulated run", &run, &kept, object, report, as_json);
+        let told = keeping::told("the simulated run", &run, &kept, object, report, as_json)?;
+        return Ok(told.with_written(recorded));
     };
     let truth = Some(scenario.azimuth_deg);
     let mut object = object(&run, &scenario, json::azimuth(&run.replay, conclusion, truth))?;
     let of_kept = keeping::object(&run, &kept, &mut object)?;
-    if let Err(reason) = &recorded {
-        object["status"] = "failed".into();
-        object["reason"] = reason.as_str().into();
-    }
     let told = Told::of(conclusion.verdict.is_ok(), as_json, &object, |block| {
         text::block(block, "the simulated run", &run.replay, conclusion, truth)?;
         of_kept.as_ref().map_or(Ok(()), |of_kept| kept::block(block, of_kept))?;
         text::run(block, &run, &scenario, wall)
     })?;
-    // A recording that failed is a failure, but the azimuth is not lost with it.
-    let refusal = conclusion.verdict.as_ref().err().map(ToString::to_string).or(recorded.err());
+    let refusal = conclusion.verdict.as_ref().err().map(ToString::to_string);
     let page = || {
         let page = page::alignment::report("the simulated run", &run.replay, conclusion);
         keeping::page(page, &kept)
     };
-    let told = Told { found: refusal.is_none(), refusal, ..told };
+    let told = Told { refusal, ..told }.with_written(recorded);
     Ok(told.with_page(options.report.as_deref(), page))
 }
 
@@ -503,12 +469,13 @@ fn list(method: Method, as_json: bool) -> Result<Told, String> {
         Method::Siap => VehicleFault::all().map(|fault| fault.to_string()).collect(),
         _ => Fault::all().map(|fault| fault.to_string()).collect(),
     };
-    Told::of(true, as_json, &names, |text| text.write_str(&names.join("\n")))
+    let object = json!({ "status": "ok", "faults": names });
+    Told::of(true, as_json, &object, |text| text.write_str(&names.join("\n")))
 }
 
 /// Runs the board with a two-frame mount and tells what came of it.
 fn run_frames(base: &Scenario, options: &RunOptions, as_json: bool) -> Result<Told, String> {
-    let passes = options.passes.map_or(PASSES, usize::from);
+    let passes = options.passes.map_or(PASSES, |count| count as usize);
     let scenario = FramesScenario { base: *base, passes, ..FramesScenario::default() };
     let begun = WallClock::now();
     let watch = Terminal(Progress::new(0, "positions"));

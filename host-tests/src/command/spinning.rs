@@ -45,11 +45,6 @@ fn turns(text: &str) -> Result<f64, String> {
 }
 
 impl SpinningOptions {
-    /// Whether any of them was given.
-    pub fn is_given(&self) -> bool {
-        self.flight_seconds.is_some() || self.turns_per_second.is_some()
-    }
-
     /// The scenario of a seed.
     pub fn scenario(&self, seed: u64) -> SpinScenario {
         let usual = SpinScenario::default();

@@ -18,8 +18,9 @@ use firmware::simulated::turntable::TurntableScenario;
 use firmware::storage::{Remembered, Today};
 use serde_json::{Value, json};
 
-use super::Told;
+use super::files::{self, Written};
 use super::run::{Terminal, object};
+use super::{Told, whole};
 
 /// What a platform that turns all the time is asked for.
 #[derive(Args, Clone, Debug)]
@@ -31,8 +32,8 @@ pub struct TurningOptions {
     #[arg(long, value_name = "HERTZ[,HERTZ]", value_parser = speeds)]
     speeds: Option<[f64; 2]>,
     /// With --method rotating: whole turns each way at the slowest speed.
-    #[arg(long, value_parser = clap::value_parser!(u32).range(2..=1000))]
-    turns: Option<u32>,
+    #[arg(long, value_parser = whole::<2, 1000>)]
+    turns: Option<u64>,
     /// With --method rotating: uneven turns before them, 0 where what --flash keeps is to do (12).
     #[arg(long, value_name = "TURNS", value_parser = uneven_turns)]
     uneven_turns: Option<u32>,
@@ -90,10 +91,11 @@ fn speeds(text: &str) -> Result<[f64; 2], String> {
 const LEAST_RATIO: f64 = 1.2;
 
 impl TurningOptions {
-    /// Whether any of them was given.
-    pub fn is_given(&self) -> bool {
-        let is_shaped = self.sensor.is_some() || self.speeds.is_some() || self.turns.is_some();
-        is_shaped || self.uneven_turns.is_some() || self.flash.is_some()
+    /// The file of the flash, and the one in which it is written first.
+    pub fn files(&self) -> [Option<Written>; 2] {
+        let beside = self.flash.as_deref().map(flash_file::beside);
+        [self.flash.as_ref(), beside.as_ref()]
+            .map(|path| files::written("--flash", "the flash", path))
     }
 
     /// Whether the sensor is a molecular-electronic one.
@@ -113,7 +115,7 @@ impl TurningOptions {
         TurntableScenario {
             speeds_hz: self.speeds.unwrap_or(usual.speeds_hz),
             uneven_turns: self.uneven_turns.unwrap_or(usual.uneven_turns),
-            turns: self.turns.unwrap_or(usual.turns),
+            turns: self.turns.map_or(usual.turns, |turns| turns as u32),
             ..usual
         }
     }
@@ -167,11 +169,9 @@ pub fn run(
             .try_for_each(|coupling| text::line(block, "recalled", format_args!("{coupling}")))?;
         text::run(block, &run, &scenario.base, wall)
     })?;
-    // A flash that could not be written is a failure, but the azimuth is not lost with it.
-    let refusal = conclusion.verdict.as_ref().err().map(ToString::to_string).or(put_away.err());
+    let refusal = conclusion.verdict.as_ref().err().map(ToString::to_string);
     let page = || page::rotating::report(NAME, &replay, conclusion, recorder.rows());
-    let told = Told { found: refusal.is_none(), refusal, ..told };
-    Ok(told.with_page(report, page))
+    Ok(Told { refusal, ..told }.with_written(put_away).with_page(report, page))
 }
 
 /// The stored couplings that the board used.

@@ -4,7 +4,7 @@
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use firmware::simulated::flash::{BYTES, Flash};
 use flate2::Compression;
@@ -33,13 +33,20 @@ fn read(file: File) -> io::Result<[u8; BYTES]> {
     bytes.try_into().map_err(wrong)
 }
 
+/// The file beside a flash in which it is written first.
+#[must_use]
+pub fn beside(path: &Path) -> PathBuf {
+    let mut beside = path.as_os_str().to_owned();
+    beside.push(".new");
+    beside.into()
+}
+
 /// Writes a flash to a file, beside the old one until it is whole.
 ///
 /// # Errors
 /// A file that cannot be written; the words name it.
 pub fn save(path: &Path, flash: &Flash) -> Result<(), String> {
-    let mut beside = path.as_os_str().to_owned();
-    beside.push(".new");
+    let beside = beside(path);
     let write = || {
         let mut file = GzEncoder::new(File::create(&beside)?, Compression::best());
         file.write_all(flash.bytes())?;

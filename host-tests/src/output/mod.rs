@@ -2,6 +2,7 @@
 
 pub mod allan;
 pub mod burov;
+pub mod disturbed;
 pub mod emulation;
 pub mod json;
 pub mod keep;

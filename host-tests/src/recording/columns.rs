@@ -10,12 +10,16 @@ use super::error::Fault;
 use super::lines::Line;
 use super::number::{Range, number};
 use super::problem::{HeaderProblem, ValueProblem};
+use super::resemblance::resembled;
+use super::warning::{About, Warning};
 
 /// Most columns that a kind can know.
 pub(super) const MAX_COLUMNS: usize = 12;
 
 /// What the names of columns begin with that only a check may know; they may hold `nan`.
 const TRUTH: &str = "truth_";
+/// The columns of a true attitude, which come together.
+const QUATERNION: [&str; 4] = ["truth_qw", "truth_qx", "truth_qy", "truth_qz"];
 
 /// When a column must be there.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -53,6 +57,8 @@ pub(super) struct Layout {
     /// For each field, the place of its column in `columns`.
     fields: Vec<Option<usize>>,
     present: [bool; MAX_COLUMNS],
+    /// Columns of a truth that the kind does not know: their fields and names.
+    truths: Vec<(usize, String)>,
 }
 
 /// The numbers of one row.
@@ -78,18 +84,51 @@ impl Values<'_> {
 impl Layout {
     /// Reads the line of column names. `columns` has no more than [`MAX_COLUMNS`].
     pub fn new(columns: &'static [Column], line: u64, names: &str) -> Result<Self, Fault> {
-        let mut layout = Self { columns, fields: Vec::new(), present: [false; MAX_COLUMNS] };
+        let present = [false; MAX_COLUMNS];
+        let mut layout = Self { columns, fields: Vec::new(), present, truths: Vec::new() };
         let mut seen = HashSet::new();
         for (index, name) in names.split(',').map(str::trim_ascii).enumerate() {
             check_name(line, index, name, seen.insert(name))?;
             let place = columns.iter().position(|column| column.name == name);
             layout.fields.push(place);
-            if let Some(place) = place {
-                layout.present[place] = true;
+            match place {
+                Some(place) => layout.present[place] = true,
+                None if name.starts_with(TRUTH) => layout.truths.push((index, name.to_owned())),
+                None => {}
             }
         }
         layout.check_needs(line)?;
         Ok(layout)
+    }
+
+    /// Warns of unknown columns that resemble one that is not there, and of a true attitude in parts.
+    pub fn warn(&self, line: u64, names: &str, warnings: &mut Vec<Warning>) {
+        let absent = self.columns.iter().filter(|column| !self.has(column.name));
+        let absent = absent.map(|column| column.name);
+        for name in names.split(',').map(str::trim_ascii) {
+            let is_known = self.columns.iter().any(|column| column.name == name);
+            if let Some(known) = resembled(name, absent.clone()).filter(|_| !is_known) {
+                let about = About::Column(name.to_owned(), known);
+                warnings.push(Warning { line, about });
+            }
+        }
+        let missing = QUATERNION.into_iter().find(|name| !self.has(name));
+        if let Some(missing) = missing.filter(|_| QUATERNION.iter().any(|name| self.has(name))) {
+            warnings.push(Warning { line, about: About::PartOfTruth(missing) });
+        }
+    }
+
+    /// Warns of the first field of each unknown truth that is no number.
+    pub fn warn_of_truth(&mut self, line: &Line<'_>, warnings: &mut Vec<Warning>) {
+        self.truths.retain(|(index, name)| {
+            let field = line.text.split(',').nth(*index).unwrap_or_default().trim_ascii();
+            let is_number = field.parse::<f64>().is_ok();
+            if !is_number {
+                let about = About::NoTruth(name.clone(), field.to_owned());
+                warnings.push(Warning { line: line.number, about });
+            }
+            is_number
+        });
     }
 
     /// Whether every needed column is there.

@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::fmt;
 
-use super::problem::Problem;
+use super::problem::{Problem, ValueProblem};
 
 /// Longest excerpt of a recording that a message quotes, in characters.
 const EXCERPT: usize = 40;
@@ -18,6 +18,19 @@ pub struct ReadError {
     pub place: Place,
     /// What is wrong, and the remedy.
     pub problem: Problem,
+}
+
+impl ReadError {
+    /// The same line with the unit in which a number beyond its range is likely to stand.
+    #[must_use]
+    pub fn told(&self) -> String {
+        match &self.problem {
+            Problem::Value(ValueProblem::OutOfRange(_, range)) => {
+                format!("{self}{}", range.mistaken())
+            }
+            _ => self.to_string(),
+        }
+    }
 }
 
 /// Where in a recording something is wrong. Lines count from 1, of the text after decompression.
@@ -93,7 +106,7 @@ pub(super) fn printable(text: &str) -> String {
 }
 
 /// The text in one line and no longer than a message bears.
-fn shortened(text: &str) -> String {
+pub(super) fn shortened(text: &str) -> String {
     match text.char_indices().nth(EXCERPT) {
         Some((end, _)) => printable(&text[..end]) + "…",
         None => printable(text),

@@ -6,7 +6,9 @@
 use super::error::Fault;
 use super::number::{Range, number};
 use super::problem::{HeaderProblem, Problem, SourceProblem, ValueProblem};
+use super::resemblance::resembled;
 use super::stops::{DISPLACEMENTS, STOPS};
+use super::warning::{self, About, Warning};
 
 /// What the header says about the site and the instrument. A key that is absent is `None`: a noise
 /// coefficient is then estimated, an uncertainty taken as zero.
@@ -76,6 +78,8 @@ const MAX_TRUTH_KEYS: usize = 1000;
 /// Keys whose value is not one number.
 const WORDS: [&str; 5] = ["kind", PAIR, "sensor", STOPS, DISPLACEMENTS];
 const PAIR: &str = "g_sensitivity_deg_h_g";
+/// Keys of the truth that are looked at.
+const TRUTHS: [&str; 2] = ["truth_azimuth_deg", "truth_start_azimuth_deg"];
 
 /// Larger than any gyro that could find north, small enough that squares stay finite.
 const LARGEST: f64 = 1e6;
@@ -130,6 +134,8 @@ struct Entry {
 pub(super) struct Collector {
     known: Vec<Entry>,
     truth: Vec<Entry>,
+    /// Unknown keys, each with its line and the known one that it resembles.
+    resembling: Vec<(u64, String, &'static str)>,
 }
 
 /// The key and value of a comment line, without its `#`; `None` for a plain remark.
@@ -141,6 +147,11 @@ fn key_and_value(comment: &str) -> Option<(&str, &str)> {
 /// Whether the key bears on how a recording is read.
 fn is_known(key: &str) -> bool {
     WORDS.contains(&key) || NUMBERS.iter().any(|number| number.name == key)
+}
+
+/// The names of all keys that are looked at.
+fn names() -> impl Iterator<Item = &'static str> + Clone {
+    WORDS.into_iter().chain(TRUTHS).chain(NUMBERS.iter().map(|number| number.name))
 }
 
 /// Refuses a comment below the column names that says what only the header may say: skipping it
@@ -156,6 +167,10 @@ impl Collector {
     /// Takes one comment line of the header.
     pub fn add(&mut self, line: u64, comment: &str) -> Result<(), Fault> {
         let Some((key, value)) = key_and_value(comment) else { return Ok(()) };
+        if !is_known(key) && self.resembling.len() < warning::MOST {
+            let resembled = resembled(key, names());
+            self.resembling.extend(resembled.map(|known| (line, key.to_owned(), known)));
+        }
         let entries = match key {
             _ if is_known(key) => &mut self.known,
             _ if key.starts_with("truth_") => &mut self.truth,
@@ -179,6 +194,21 @@ impl Collector {
     /// The line of a known key; that of the file's beginning where it is absent.
     pub fn line(&self, key: &str) -> u64 {
         self.get(key).map_or(1, |(line, _)| line)
+    }
+
+    /// The unknown key that resembles this one, and its line.
+    pub fn resembling(&self, known: &str) -> Option<(u64, &str)> {
+        let found = self.resembling.iter().find(|(.., resembled)| *resembled == known);
+        found.map(|(line, key, _)| (*line, key.as_str()))
+    }
+
+    /// What is to be said of unknown keys.
+    pub fn warnings(&self) -> Vec<Warning> {
+        let warning = |(line, key, known): &(u64, String, &'static str)| Warning {
+            line: *line,
+            about: About::Key(key.clone(), known),
+        };
+        self.resembling.iter().map(warning).collect()
     }
 
     /// What a solver may know.

@@ -4,7 +4,8 @@
 //! [`Recording`] or one line that says what is wrong and where. Nothing is guessed: a number that
 //! is missing, not finite, outside the range of its quantity or out of order is an error. Tolerated
 //! are CRLF line ends, blank lines, spaces around fields, a byte order mark, unknown keys, comments
-//! and columns that the kind does not know.
+//! and columns that the kind does not know. What of these resembles something that is known, and a truth that is
+//! none, is passed over with a [`Warning`].
 //!
 //! What a simulator knows goes to [`Truth`] while the file is read; [`Recording::into_parts`] takes
 //! it off, and a solver is given only a [`Header`] and a [`Body`], which cannot hold it.
@@ -15,10 +16,12 @@ mod header;
 mod lines;
 mod number;
 mod problem;
+mod resemblance;
 mod rows;
 mod spacing;
 mod stops;
 mod timing;
+mod warning;
 
 use std::fmt;
 use std::fs::File;
@@ -33,6 +36,7 @@ pub use problem::{HeaderProblem, Problem, SourceProblem, StopProblem, TimeProble
 pub use rows::{DwellRow, ImuRow, ImuSample, RotatingRow, SpinRow, StageRow, StaticRow};
 pub use spacing::{Gap, Spacing};
 pub use stops::displacements;
+pub use warning::{About, Warning};
 
 use error::Fault;
 use header::Collector;
@@ -48,6 +52,8 @@ pub struct Recording {
     pub body: Body,
     /// What only a check may know.
     pub truth: Truth,
+    /// What was passed over although it looks as if it was meant.
+    pub warnings: Vec<Warning>,
 }
 
 impl Recording {
@@ -55,6 +61,13 @@ impl Recording {
     #[must_use]
     pub fn into_parts(self) -> (Header, Body, Truth) {
         (self.header, self.body, self.truth)
+    }
+
+    /// The warnings in words, a line each, of a recording in this file.
+    #[must_use]
+    pub fn told_warnings(&self, file: &Path) -> Vec<String> {
+        let file = error::printable(&file.display().to_string());
+        self.warnings.iter().map(|warning| format!("{file}: {warning}")).collect()
     }
 }
 
@@ -181,30 +194,43 @@ fn parse(reader: impl Read) -> Result<Recording, Fault> {
     }
     let (line, names) =
         names.ok_or_else(|| Fault::line(lines.number(), HeaderProblem::NoColumnNames))?;
-    let (body, Truth { roll_rad, attitude, .. }) = body(kind, &mut lines, line, &names)?;
+    let mut warnings = entries.warnings();
+    let (body, Truth { roll_rad, attitude, .. }) =
+        body(kind, &mut lines, line, &names, &mut warnings)?;
     let rate = entries.get("rate_hz").map(|(line, _)| line).zip(header.rate_hz);
     check_times(&body, rate)?;
     if let Body::Imu(rows) = &body {
         stops::check_inside(&entries, &header, rows)?;
     }
-    Ok(Recording { header, body, truth: Truth { roll_rad, attitude, ..entries.truth()? } })
+    let truth = Truth { roll_rad, attitude, ..entries.truth()? };
+    warnings.truncate(warning::MOST);
+    Ok(Recording { header, body, truth, warnings })
 }
 
 /// The rows of a kind below the column names, which stand in line `line`, and what of the truth is in them.
-fn body(kind: Kind, lines: &mut Lines<'_>, line: u64, names: &str) -> Result<(Body, Truth), Fault> {
+fn body(
+    kind: Kind,
+    lines: &mut Lines<'_>,
+    line: u64,
+    names: &str,
+    warnings: &mut Vec<Warning>,
+) -> Result<(Body, Truth), Fault> {
     let mut truth = Truth::default();
     let body = match kind {
-        Kind::Stage => Body::Stage(rows::read(lines, line, names)?),
-        Kind::Rotating => Body::Rotating(rows::read(lines, line, names)?),
-        Kind::Dwells => Body::Dwells(rows::read(lines, line, names)?),
-        Kind::Static => Body::Static(rows::read(lines, line, names)?),
+        Kind::Stage => Body::Stage(rows::read(lines, line, names, warnings)?),
+        Kind::Rotating => Body::Rotating(rows::read(lines, line, names, warnings)?),
+        Kind::Dwells => Body::Dwells(rows::read(lines, line, names, warnings)?),
+        Kind::Static => Body::Static(rows::read(lines, line, names, warnings)?),
         Kind::Imu => {
-            let (rows, known) = parted(rows::read(lines, line, names)?);
+            let (rows, known) = parted(rows::read(lines, line, names, warnings)?);
             truth.attitude = known.into_iter().flatten().collect();
+            if !truth.attitude.is_empty() && truth.attitude.iter().all(Option::is_none) {
+                warnings.push(Warning { line, about: About::NoAttitude });
+            }
             Body::Imu(rows)
         }
         Kind::Spin => {
-            let (rows, known) = parted(rows::read(lines, line, names)?);
+            let (rows, known) = parted(rows::read(lines, line, names, warnings)?);
             truth.roll_rad = known.into_iter().flatten().collect();
             Body::Spin(rows)
         }
@@ -236,7 +262,10 @@ fn preamble(lines: &mut Lines<'_>) -> Result<(Collector, Names), Fault> {
 
 /// The kind that the header names.
 fn kind(entries: &Collector) -> Result<Kind, Fault> {
-    let missing = || Fault::new(Place::Whole, HeaderProblem::NoKind);
+    let missing = || match entries.resembling("kind") {
+        Some((line, name)) => Fault::key(line, name, HeaderProblem::NoKind),
+        None => Fault::new(Place::Whole, HeaderProblem::NoKind),
+    };
     let (line, text) = entries.get("kind").ok_or_else(missing)?;
     let unknown = || Fault::key(line, "kind", HeaderProblem::UnknownKind(text.to_owned()));
     Kind::ALL.into_iter().find(|kind| kind.name() == text).ok_or_else(unknown)

@@ -32,6 +32,18 @@ impl Range {
         Self { low: 0.0, high, above_low: true, unit }
     }
 
+    /// In which other unit a number beyond the range may stand.
+    pub(super) fn mistaken(&self) -> &'static str {
+        match self.unit {
+            " rad/s" => ": °/s or °/h?",
+            " rad" => ": degrees?",
+            " m/s²" => ": mg?",
+            " m" => ": mm?",
+            " s" => ": ms or µs?",
+            _ => "",
+        }
+    }
+
     /// Whether the value lies inside; NaN does not.
     #[must_use]
     pub fn contains(&self, value: f64) -> bool {

@@ -9,6 +9,7 @@ use super::header::check_late;
 use super::lines::{Lines, MAX_ROWS};
 use super::number::Range;
 use super::problem::{SourceProblem, TimeProblem, ValueProblem};
+use super::warning::Warning;
 
 /// Times, in seconds, that a double resolves to 2 µs.
 pub(super) const TIME: Range = Range::symmetric(1e10, " s");
@@ -311,9 +312,15 @@ impl Row for StaticRow {
 }
 
 /// Reads all rows below the column names, which stand in line `line`.
-pub(super) fn read<T: Row>(lines: &mut Lines<'_>, line: u64, names: &str) -> Result<Vec<T>, Fault> {
+pub(super) fn read<T: Row>(
+    lines: &mut Lines<'_>,
+    line: u64,
+    names: &str,
+    warnings: &mut Vec<Warning>,
+) -> Result<Vec<T>, Fault> {
     const { assert!(T::COLUMNS.len() <= MAX_COLUMNS && T::TIME < T::COLUMNS.len()) };
-    let layout = Layout::new(T::COLUMNS, line, names)?;
+    let mut layout = Layout::new(T::COLUMNS, line, names)?;
+    layout.warn(line, names, warnings);
     let mut rows = Vec::new();
     let mut before = None;
     while let Some(line) = lines.next()? {
@@ -327,6 +334,7 @@ pub(super) fn read<T: Row>(lines: &mut Lines<'_>, line: u64, names: &str) -> Res
         let values = layout.values(&line)?;
         before = later::<T>(before, &values)?;
         rows.push(T::from_values(&values));
+        layout.warn_of_truth(&line, warnings);
     }
     if rows.is_empty() { Err(Fault::line(line, ValueProblem::NoRows)) } else { Ok(rows) }
 }

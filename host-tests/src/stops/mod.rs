@@ -4,6 +4,8 @@
 //! is only followed. The types that come in here hold no truth.
 
 pub mod averaging;
+pub mod floor;
+pub mod grade;
 pub mod noise;
 pub mod samples;
 
@@ -14,13 +16,13 @@ use orientation::align::stops::Setting;
 use orientation::align::stops::conclusion::Conclusion;
 use orientation::align::stops::follower::Rests;
 use orientation::align::stops::stop::STOPS;
-use orientation::earth::Latitude;
-use orientation::noise::model::GyroNoise;
+use orientation::earth::{EARTH_RATE, Latitude};
 use orientation::session::stops::{Event, Procedure, Session};
 use orientation::signal::InertialSample;
 use orientation::signal::rest::{Criteria, Limits};
-use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
+use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, DEGREES_PER_RADIAN};
 
+use self::noise::White;
 use crate::recording::{Body, Header, ImuRow, Kind};
 use crate::replay::{self, ReplayError};
 use crate::setting::{Described, describe};
@@ -90,21 +92,61 @@ impl Replay {
 /// Replays the rows of a recording.
 ///
 /// # Errors
-/// What keeps the session from beginning. A refusal is not an error but the session's conclusion.
+/// What keeps the session from beginning, or makes it refuse: displacements in kilometres. Another refusal is
+/// not an error but the session's conclusion.
 pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay, ReplayError> {
+    let replay = follow(header, body, options)?;
+    check_kilometres(header, body, options, &replay)?;
+    Ok(replay)
+}
+
+/// Displacements whose greatest part is below this may be kilometres, m.
+const KILOMETRES: f64 = 100.0;
+/// Metres of a kilometre.
+const KILOMETRE: f64 = 1e3;
+
+/// Refuses displacements with which there is no azimuth, but with a thousand times as much.
+fn check_kilometres(
+    header: &Header,
+    body: &Body,
+    options: &Options,
+    replay: &Replay,
+) -> Result<(), ReplayError> {
+    let stated = options.displacements_m.as_ref().or(header.displacements_m.as_ref());
+    let is_answered = |replay: &Replay| replay.conclusion().is_some_and(|it| it.verdict.is_ok());
+    let greatest =
+        stated.iter().flat_map(|list| list.as_flattened()).fold(0.0, |a: f64, b| a.max(b.abs()));
+    let (Some(list), false) = (stated, is_answered(replay)) else { return Ok(()) };
+    if greatest <= 0.0 || greatest >= KILOMETRES {
+        return Ok(());
+    }
+    let displacements_m =
+        Some(list.iter().map(|place| place.map(|part| KILOMETRE * part)).collect());
+    let farther = follow(header, body, &Options { displacements_m, ..options.clone() })?;
+    if is_answered(&farther) { Err(ReplayError::Kilometres { greatest }) } else { Ok(()) }
+}
+
+/// Drives the session with the rows.
+fn follow(header: &Header, body: &Body, options: &Options) -> Result<Replay, ReplayError> {
     let rows = samples::rows(body).ok_or_else(|| missing(body))?;
     let latitude = replay::latitude(header, options.latitude)?;
     let period_s = samples::period(header.rate_hz, &rows);
+    check_rate(header.rate_hz, &rows)?;
     check_stuck(&rows, period_s)?;
+    check_unit(header, &rows, period_s)?;
     let zero_s = samples::begin(&rows, period_s);
     let method = options.method.unwrap_or_else(|| usual(header, &rows, period_s));
     let rests = rests(header, method, zero_s)?;
     let displacements = displacements(header, options)?;
+    let mut told = Vec::new();
+    let header = &grade::filled(header, &mut told);
     let Described { setting: mut common, mut assumed } = describe(header, body, latitude);
+    assumed.append(&mut told);
     if let Some(sigma) = options.required_sigma {
         common.required_sigma = sigma;
     }
-    let setting = setting(header, common, &rows, period_s, method, &mut assumed);
+    common.scale_sigma = common.scale_sigma.hypot(astray(header.rate_hz, period_s));
+    let setting = setting(header, common, &rows, period_s, method, &mut assumed)?;
     let procedure = Procedure { displacements, ..Procedure::recorded(rests, period_s) };
     let session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
     let mut watched = Watched::new(session);
@@ -194,7 +236,48 @@ fn check_displacements(session: &Session) -> Result<(), ReplayError> {
     }
 }
 
-/// What is known of the vehicle's sensors; noise that nobody stated is estimated.
+/// By how much a stated rate misses the times, relative, where they tell.
+fn astray(rate_hz: Option<f64>, period_s: f64) -> f64 {
+    rate_hz.map_or(0.0, |rate| (rate * period_s - 1.0).abs())
+}
+
+/// How far a stated rate may be from that of the times: no crystal is worse, and within it the difference is a
+/// scale error of every rotation.
+const RATE_TOLERANCE: f64 = 0.01;
+
+/// Refuses a stated rate that the times contradict: one of both is wrong, and every rotation with it.
+fn check_rate(rate_hz: Option<f64>, rows: &[ImuRow]) -> Result<(), ReplayError> {
+    let found = samples::mean_step(rows).map(|step| 1.0 / step);
+    let (Some(stated_hz), Some(found_hz)) = (rate_hz, found) else { return Ok(()) };
+    if (stated_hz / found_hz - 1.0).abs() <= RATE_TOLERANCE {
+        return Ok(());
+    }
+    Err(ReplayError::Rate { stated_hz, found_hz })
+}
+
+/// Part by which the rate at rest may miss the Earth's in a unit that is wrong: biases.
+const UNIT_TOLERANCE: f64 = 0.15;
+
+/// Refuses gyros that show the Earth rate in °/s.
+fn check_unit(header: &Header, rows: &[ImuRow], period_s: f64) -> Result<(), ReplayError> {
+    let rates = noise::rest_rates(rows, header.stops_s.as_deref(), period_s);
+    let times = rates.map(|rate| rate / EARTH_RATE);
+    let is_off = |times: &f64| (times / DEGREES_PER_RADIAN - 1.0).abs() <= UNIT_TOLERANCE;
+    if times.iter().all(is_off) {
+        return Err(ReplayError::DegreesPerSecond { times: times[0] });
+    }
+    Ok(())
+}
+
+/// How much more noise than was stated a recording must show, in 1σ of what it shows and in all, to be believed.
+const MORE_SIGMAS: f64 = 3.0;
+const MORE: f64 = 1.1;
+
+/// Least N that is believed of a recording, rad/√s: 0.001 °/√h, a laser gyro's; who has a better one states it.
+const LEAST_WALK: f64 = 1e-3 * DEGREE_PER_SQRT_HOUR;
+
+/// What is known of the vehicle's sensors; noise that nobody stated is estimated, and noise that was stated too
+/// small is taken as the recording shows it.
 fn setting(
     header: &Header,
     mut common: Common,
@@ -202,21 +285,46 @@ fn setting(
     period_s: f64,
     method: Method,
     assumed: &mut Vec<String>,
-) -> Setting {
+) -> Result<Setting, ReplayError> {
     let stood = header.stops_s.as_deref().filter(|_| method == Method::Siap);
-    let white = noise::estimate(rows, stood, period_s);
-    if !common.white_known {
-        let walk = white.angle_random_walk / DEGREE_PER_SQRT_HOUR;
-        assumed.push(format!("gyro noise N {walk:.2e} °/√h as the recording shows it"));
-        common.noise = GyroNoise { angle_random_walk: white.angle_random_walk, ..common.noise };
-    }
-    let noise = white.force;
-    assumed.push(format!("accelerometer noise {noise:.2e} m/s²/√Hz as the recording shows it"));
-    let bias_sigma = header.gyro_bias_deg_h.map(|bias| bias * DEGREE_PER_HOUR);
+    let whole = [[f64::NEG_INFINITY, f64::INFINITY]];
+    let stood = if method == Method::Static { Some(&whole[..]) } else { stood };
+    let white = noise::at_rest(rows, stood, period_s);
+    common.noise.angle_random_walk = walk(&common, white.as_ref(), assumed)?;
+    let force_noise = white.unwrap_or_default().force;
+    assumed
+        .push(format!("accelerometer noise {force_noise:.2e} m/s²/√Hz as the recording shows it"));
+    let kappa = grade::g_sensitivity(header);
+    let bias_sigma = header.gyro_bias_deg_h.map(|bias| (bias * DEGREE_PER_HOUR).hypot(kappa));
     if bias_sigma.is_none() {
         assumed.push("gyro biases unknown".to_owned());
     }
-    Setting { bias_sigma, force_noise: white.force, ..Setting::new(common) }
+    Ok(Setting { bias_sigma, force_noise, ..Setting::new(common) })
+}
+
+/// The gyros' N, rad/√s: as stated, or as the recording shows it.
+fn walk(
+    common: &Common,
+    white: Option<&White>,
+    assumed: &mut Vec<String>,
+) -> Result<f64, ReplayError> {
+    let stated = common.noise.angle_random_walk;
+    let Some(White { angle_random_walk: shown, relative_sigma, .. }) = white.copied() else {
+        return if common.white_known { Ok(stated) } else { Err(ReplayError::NoiseUnknown) };
+    };
+    let walk = shown / DEGREE_PER_SQRT_HOUR;
+    if !common.white_known {
+        assumed.push(format!("gyro noise N {walk:.2e} °/√h as the recording shows it"));
+        return Ok((shown * (1.0 + relative_sigma)).max(LEAST_WALK));
+    }
+    if shown * (1.0 - MORE_SIGMAS * relative_sigma) <= MORE * stated {
+        return Ok(stated);
+    }
+    let stated = stated / DEGREE_PER_SQRT_HOUR;
+    assumed.push(format!(
+        "gyro noise N {walk:.2e} °/√h as the recording shows it, which is more than the stated {stated:.2e}"
+    ));
+    Ok(shown)
 }
 
 /// A session, and how its stop criteria went.

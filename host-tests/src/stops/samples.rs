@@ -6,6 +6,7 @@ use orientation::signal::InertialSample;
 use orientation::units::{AngleIncrement, Instant, SpecificForce};
 
 use crate::recording::{Body, ImuRow, ImuSample, StaticRow};
+use crate::replay;
 
 /// Steps longer than so many periods have a sample missing.
 const LONGEST_STEP: f64 = 1.5;
@@ -32,18 +33,27 @@ fn row(row: &StaticRow) -> Option<ImuRow> {
 /// a sample. Times may be rounded, so their mean counts, of the steps without a missing sample.
 #[must_use]
 pub fn period(rate_hz: Option<f64>, rows: &[ImuRow]) -> f64 {
+    let stated = rate_hz.map(|rate| 1.0 / rate);
+    let Some((sum, count)) = steps(rows) else { return stated.unwrap_or(1.0) };
+    stated.filter(|stated| (sum - count * stated).abs() <= *stated).unwrap_or(sum / count)
+}
+
+/// The mean step of the times, s, where samples are; none of fewer than two rows.
+#[must_use]
+pub fn mean_step(rows: &[ImuRow]) -> Option<f64> {
+    steps(rows).map(|(sum, count)| sum / count)
+}
+
+/// The sum of the steps without a missing sample, s, and how many they are.
+fn steps(rows: &[ImuRow]) -> Option<(f64, f64)> {
     let steps = || rows.windows(2).map(|pair| pair[1].time_s - pair[0].time_s);
     let mut sorted: Vec<f64> = steps().collect();
-    let middle = sorted.len() / 2;
     if sorted.is_empty() {
-        return rate_hz.map_or(1.0, |rate| 1.0 / rate);
+        return None;
     }
-    let longest = LONGEST_STEP * *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;
-    let (sum, count) = steps()
-        .filter(|step| *step <= longest)
-        .fold((0.0, 0.0), |(sum, count), step| (sum + step, count + 1.0));
-    let stated = rate_hz.map(|rate| 1.0 / rate);
-    stated.filter(|stated| (sum - count * stated).abs() <= *stated).unwrap_or(sum / count)
+    let longest = LONGEST_STEP * replay::median(&mut sorted);
+    let add = |(sum, count), step| (sum + step, count + 1.0);
+    Some(steps().filter(|step| *step <= longest).fold((0.0, 0.0), add))
 }
 
 /// Equal values in a row that are no chance where there is noise.

@@ -7,7 +7,8 @@ use crate::error::Source;
 pub struct Budget {
     /// White noise of the gyro.
     pub noise: f64,
-    /// Bias instability, random walk and ramp of the gyro, and what estimating a trend costs.
+    /// Bias instability, random walk and ramp of the gyro, and what estimating a trend costs; what a base that
+    /// turns or tilts, or may, does.
     pub drift: f64,
     /// Unknown part of the g-sensitivity, times the tilt.
     pub g_sensitivity: f64,

@@ -2,11 +2,12 @@
 
 use heapless::Vec;
 
+use super::cause;
 use super::criterion::{self, Criterion};
 use super::level::{self, Tilt};
 use super::quality::{self, Disturbance, Norm};
 use super::setting::Setting;
-use super::stepwise::{FEW_DEGREES, Fit, Found, Problem, Residual};
+use super::stepwise::{FEW_DEGREES, Fit, Found, HeadingStep, Problem, Residual};
 use super::{POSITIONS, different_positions};
 use crate::error::Refusal;
 use crate::math::chi_square_tail;
@@ -21,6 +22,10 @@ const OUTLIER_BOUND: f64 = 4.2;
 const WHITENESS_PROBABILITY: [f64; 2] = [1e-3, 1e-6];
 /// Chi-square by which a trend that the azimuth cannot afford may explain the dwells (6e-5).
 const HIDDEN_TREND: f64 = 16.0;
+/// By how much more one dwell must explain than a step of the heading, in chi-square.
+const SINGLE: f64 = 1.2;
+/// Most that dwells which were left out raise σ by: what a chi-square at the edge of refusal amounts to.
+const GREATEST_EXCESS: f64 = 2.0;
 /// Bound of the correlation of neighbouring residuals, in its standard deviation 1/√n.
 const CORRELATION_BOUND: f64 = 5.0;
 /// Chi-square by which the second-best azimuth must be worse than the best (4σ).
@@ -28,13 +33,16 @@ const SECOND_MINIMUM: f64 = 16.0;
 /// RMS of the dwells' mean forces about any tilt, g, beyond which the accelerometer and the encoder do
 /// not turn alike: ten times what the worst accelerometer's scale makes of 5°.
 const STRAYING: f64 = 3e-3;
+/// Size of the phasor of the forces that turns against the stage, over that which turns with it, beyond which
+/// the encoder counts the wrong way: an accelerometer whose axes differ by 20 % makes a tenth.
+const COUNTER: f64 = 0.3;
 /// Of the tangent of the angle from the axis of two positions, what σ may be at most, rad: the second
 /// order is then a tenth of the first.
 const STEEPNESS: f64 = 0.2;
 /// Bound of the Earth-rate ratio in its σ.
-const RATIO_BOUND: f64 = 5.0;
-/// What the Earth-rate ratio may be off beyond its σ: scale errors that no data sheet excludes and
-/// that turn no azimuth.
+const RATIO_BOUND: f64 = 4.0;
+/// What the Earth-rate ratio may be off beyond its σ where the scale is said to be exact: scale errors that no
+/// data sheet excludes and that turn no azimuth.
 const RATIO_TOLERANCE: f64 = 0.005;
 /// What the accelerometer may read off gravity beyond five of its bias's σ: scale and altitude.
 const GRAVITY_TOLERANCE: f64 = 0.05;
@@ -90,11 +98,13 @@ impl Conclusion {
 
     /// The same in place of a [`Self::default`]: 3 KB that need not stand on a small stack.
     pub fn draw(&mut self, setting: &Setting, dwells: &[Dwell], criterion: Criterion) {
-        self.begin(setting, dwells);
-        self.verdict = if setting.latitude.has_north() {
-            self.decide(setting, dwells, criterion)
-        } else {
-            Err(Refusal::LatitudeTooHigh { latitude: degrees(setting.latitude.rad()) })
+        let lag = self.begin(setting, dwells);
+        self.verdict = match lag {
+            _ if !setting.latitude.has_north() => {
+                Err(Refusal::LatitudeTooHigh { latitude: degrees(setting.latitude.rad()) })
+            }
+            Some(seconds) => Err(Refusal::GyroLags { seconds }),
+            None => self.decide(setting, dwells, criterion),
         };
     }
 
@@ -110,9 +120,10 @@ impl Conclusion {
         self.azimuth(setting, dwells, fit, criterion)
     }
 
-    /// The judgement of each dwell by itself, and the tilt from those that passed.
+    /// The judgement of each dwell by itself, and the tilt from those that passed; by how much the gyro lags, s, if
+    /// it does.
     #[inline(never)]
-    fn begin(&mut self, setting: &Setting, dwells: &[Dwell]) {
+    fn begin(&mut self, setting: &Setting, dwells: &[Dwell]) -> Option<f64> {
         let norm = Norm::of(setting, dwells);
         self.angle_random_walk = libm::sqrt(norm.white());
         for dwell in dwells {
@@ -123,6 +134,7 @@ impl Conclusion {
         self.level(setting, dwells);
         quality::moved(setting, dwells, &self.tilt, &mut self.disturbances);
         self.level(setting, dwells);
+        quality::lag(&norm, dwells, &self.disturbances)
     }
 
     fn level(&mut self, setting: &Setting, dwells: &[Dwell]) {
@@ -136,9 +148,11 @@ impl Conclusion {
     /// Not inlined, nor are the other steps: their stacks need not stand on top of each other.
     #[inline(never)]
     fn fit_undisturbed(&mut self, setting: &Setting, dwells: &[Dwell]) -> Result<(), Refusal> {
+        let mut scatter: f64 = 1.0;
         loop {
             let kept: Vec<&Dwell, POSITIONS> = self.kept(dwells).map(|(_, dwell)| dwell).collect();
-            Self::enough(setting, dwells.len(), &kept)?;
+            Self::enough(setting, dwells.len(), &kept)
+                .map_err(|why| cause::of(why, setting, dwells))?;
             if !setting.white_known {
                 self.angle_random_walk = libm::sqrt(white_of(&kept));
             }
@@ -152,18 +166,49 @@ impl Conclusion {
             let fit = self.fit.insert(found.0);
             let (degrees, ratio) = (fit.degrees, excess(fit));
             let hidden = fit.model.rejected_trend > HIDDEN_TREND;
+            let step = fit.step;
+            // What was left out counts: it is part of how the dwells scatter.
+            scatter = scatter.max(fit.excess.min(GREATEST_EXCESS));
+            fit.allow_for(scatter);
             // With few degrees of freedom the worst residual need not be the disturbed dwell's.
             let removable =
                 self.outliers() < allowed_outliers(dwells.len()) && degrees > FEW_DEGREES;
-            let (worst, residual) = match self.worst() {
+            let worst = self.worst();
+            if let Some(step) = step.filter(|step| !explains(worst, step)) {
+                let angle = step.angle / TURN * 360.0;
+                return Err(Refusal::HeadingStepped { angle, after: step.after });
+            }
+            let (worst, residual) = match worst {
                 Some(worst) if removable => worst,
                 _ if hidden => return Err(Refusal::TrendNotSeparable),
                 Some(_) => return Err(Refusal::ResidualsNotWhite { ratio }),
-                None => return Ok(()),
+                None => {
+                    if let Some(fit) = &mut self.fit {
+                        problem.allow_for_drift(fit);
+                    }
+                    return self.judge_ends(dwells);
+                }
             };
             self.disturbances[worst] = Some(Disturbance::Outlier(residual));
             self.level(setting, dwells);
         }
+    }
+
+    /// Refuses where the dwells that do not fit the others begin or end the session: then it was not they who
+    /// were disturbed, but the heading or the encoder is another one since.
+    fn judge_ends(&self, dwells: &[Dwell]) -> Result<(), Refusal> {
+        let is_astray = |why: &&Option<Disturbance>| {
+            matches!(why, Some(Disturbance::Outlier(_) | Disturbance::Moved(_)))
+        };
+        let first = self.disturbances.iter().take_while(is_astray).count();
+        let last = self.disturbances.iter().rev().take_while(is_astray).count();
+        let at = match (first, last) {
+            (0, 0) => return Ok(()),
+            (first, 0) => first,
+            (_, last) => dwells.len() - last,
+        };
+        let after = dwells.get(at.max(1) - 1).map_or(0.0, Dwell::end);
+        Err(Refusal::EndAstray { dwells: first.max(last), after })
     }
 
     /// The dwells that take part, with their indices.
@@ -223,7 +268,8 @@ impl Conclusion {
         let (ratio, sigma) = (fit.ratio, fit.ratio_sigma);
         // Two positions take the Earth rate for granted.
         let is_seen = !fit.model.is_single_axis;
-        if is_seen && (ratio - 1.0).abs() > RATIO_BOUND * sigma + RATIO_TOLERANCE {
+        let tolerance = if setting.scale_sigma > 0.0 { 0.0 } else { RATIO_TOLERANCE };
+        if is_seen && (ratio - 1.0).abs() > RATIO_BOUND * sigma + tolerance {
             return Err(Refusal::EarthRateMismatch { ratio, sigma });
         }
         Ok(())
@@ -252,8 +298,13 @@ impl Conclusion {
         if sigma > required {
             return Err(Refusal::TiltTooUncertain { sigma, required });
         }
-        let scatter = self.tilt.scatter;
-        if scatter > STRAYING {
+        if let Some((after, change)) = self.tilt.step {
+            return Err(Refusal::TiltStepped { change: change * 1e3, after });
+        }
+        let Tilt { counter, scatter, .. } = self.tilt;
+        let is_countering = counter > COUNTER * self.tilt.magnitude();
+        if is_countering || scatter > STRAYING {
+            let scatter = if is_countering { counter } else { scatter };
             return Err(Refusal::AccelerometerAstray { scatter: scatter * 1e3 });
         }
         Ok(())
@@ -324,6 +375,12 @@ fn allowed(positions: usize) -> usize {
 /// How many may be left out for their residual alone: a tenth, and one.
 fn allowed_outliers(positions: usize) -> usize {
     (positions / 10).max(1)
+}
+
+/// Whether one dwell by itself, its index and studentised residual, explains more than a step of the heading; at
+/// either end of the session both are the same, and a step may not be passed over.
+fn explains(worst: Option<(usize, f64)>, step: &HeadingStep) -> bool {
+    worst.is_some_and(|(_, residual)| residual * residual > SINGLE * step.gain)
 }
 
 /// Chi-square over its degrees of freedom.

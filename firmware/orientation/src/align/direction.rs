@@ -53,6 +53,13 @@ pub struct Direction {
 }
 
 impl Direction {
+    /// The Earth rate's components north and east along body x, in units of `Ω_h`.
+    #[must_use]
+    pub fn along(&self) -> [f64; 2] {
+        let (sine, cosine) = libm::sincos(self.azimuth);
+        [self.amplitude * cosine, self.amplitude * sine]
+    }
+
     /// Covariance that knowing of ρ leaves to the components.
     #[must_use]
     pub fn components_covariance(&self, vertical: [f64; 2]) -> [[f64; 2]; 2] {

@@ -4,29 +4,63 @@
 //! `f_y/g = −Im(F e^{jθ}) + b_y`. The tilt phasor F and both biases are fitted
 //! together: over a full circle F comes out free of bias; over a short arc, or from an accelerometer
 //! on the base, the bias's stated uncertainty goes into F's.
+//!
+//! Three more phasors tell what is wrong. One that grows with time, t·F′, is a base that tilts: it turns the
+//! gyro by F′ as the Earth does, 1 °/h of it by 6° at 50° of latitude. One that turns the other way,
+//! `G e^{−jθ}`, is an encoder that counts against the stage. One that is there from some dwell on is an encoder
+//! that slipped, or a platform that was moved.
 
+use super::direction::{inverted, quadratic};
 use super::regression::{COLUMNS, Column, Regression};
 use super::setting::Mount;
 use crate::signal::dwell::Dwell;
+use crate::units::DEGREE_PER_HOUR;
 
 /// The tilt phasor in g: real part along body x, imaginary part to its quadrature.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tilt {
-    /// Real part of F, sin(pitch).
+    /// Real part of F, sin(pitch), at [`Self::time`].
     pub real: f64,
-    /// Imaginary part of F, sin(roll)·cos(pitch).
+    /// Imaginary part of F, sin(roll)·cos(pitch), at [`Self::time`].
     pub imaginary: f64,
-    /// Covariance of the two, g².
+    /// When F is so, s: the end of the last dwell.
+    pub time: f64,
+    /// How fast F changes, 1/s: zero of a base that stands as far as its forces tell.
+    pub rate: [f64; 2],
+    /// Covariance of the true rate about that one, 1/s².
+    pub rate_covariance: [[f64; 2]; 2],
+    /// Covariance of the two parts of F, g².
     pub covariance: [[f64; 2]; 2],
     /// Accelerometer biases along its x and y, g.
     pub bias: [f64; 2],
     /// RMS of the dwells' forces about any tilt and any bias, g.
     pub scatter: f64,
+    /// Size of the phasor that turns against the stage, g; zero where it may be chance.
+    pub counter: f64,
+    /// After which time, s, F became another one, and by how much, g.
+    pub step: Option<(f64, f64)>,
+    /// RMS that this tilt and rate leave of the forces, g.
+    pub left: f64,
     /// Whether it was measured; else the platform is taken as level.
     pub measured: bool,
 }
 
 impl Tilt {
+    /// The tilt at another time, s.
+    #[must_use]
+    pub fn at(&self, time: f64) -> Self {
+        let elapsed = time - self.time;
+        let [real, imaginary] = self.rate.map(|rate| rate * elapsed);
+        Self { real: self.real + real, imaginary: self.imaginary + imaginary, time, ..*self }
+    }
+
+    /// What a base that tilts turns about its axes forward and right, rad/s, for a rate of F in 1/s.
+    #[must_use]
+    pub fn turning(&self, [real, imaginary]: [f64; 2]) -> [f64; 2] {
+        let upward = self.upward();
+        [imaginary / upward, real / upward]
+    }
+
     /// |F|, the sine of the tilt angle.
     #[must_use]
     pub fn magnitude(&self) -> f64 {
@@ -90,6 +124,22 @@ const ANY_BIAS: f64 = 1.0;
 /// Scatter with which the first fit is weighted, and the least that the second believes, g.
 const SCATTER: [f64; 2] = [1e-4, 1e-8];
 
+/// Squared significance from which a tilt rate or a counter-turning phasor is believed: two parts of which
+/// one of ten thousand healthy sessions has so much.
+const BELIEVED: f64 = 18.4;
+/// The same of a step, which may be at any of sixty places.
+const STEP_BELIEVED: f64 = 22.0;
+/// What a scatter that is itself estimated adds to that bound, over its degrees of freedom (F instead of
+/// chi-square: 29 for ten of them, 18 for forty).
+const FEW: f64 = 11.0;
+/// 1σ of how fast a base tilts that does, 1/s: 3 °/h.
+const FASTEST: f64 = 3.0 * DEGREE_PER_HOUR;
+/// Part of the sessions whose base is taken to tilt before its forces are looked at: what they do not tell is
+/// weighed with it in σ; and where nothing in them speaks for it.
+const TILTING: [f64; 2] = [0.003, 0.0003];
+/// Squared significance from which it is doubtful whether a base stands (p = 0.01, two parts).
+const DOUBTFUL: f64 = 9.21;
+
 /// Fits the tilt to the dwells' mean forces, for gravity in m/s² and the 1σ of each accelerometer
 /// bias in m/s² (zero: taken as free of bias).
 ///
@@ -113,13 +163,27 @@ pub fn tilt_in<'a>(
     bias_sigma: f64,
 ) -> Tilt {
     let bias = (bias_sigma / gravity).max(EXACT_BIAS);
-    let first = fit(mount, dwells.clone(), gravity, bias, SCATTER[0]);
-    let second = first
-        .and_then(|(_, scatter)| fit(mount, dwells.clone(), gravity, bias, scatter.max(SCATTER[1])))
-        .or(first);
-    let any_bias = fit(mount, dwells, gravity, ANY_BIAS, SCATTER[0]);
-    let scatter = any_bias.map_or(0.0, |(_, scatter)| scatter);
-    second.map_or_else(Tilt::default, |(tilt, _)| Tilt { scatter, ..tilt })
+    let time = dwells.clone().last().map_or(0.0, Dwell::end);
+    let forces = Forces { mount, dwells, gravity, time };
+    let any = forces.fit(ANY_BIAS, SCATTER[0], Beside::Nothing).map_or(0.0, |fit| fit.scatter);
+    let Some(standing) = forces.weighted(bias, Beside::Nothing) else { return Tilt::default() };
+    let mut tilt = standing.tilt(time, any);
+    let after = forces.likeliest_step(&standing);
+    if let Some(tilting) = forces.weighted(bias, Beside::Rate) {
+        tilt = tilting.believed(tilt);
+    }
+    let step = forces.weighted(bias, Beside::Step(after));
+    // A step is searched for at many places, and there is one more thing to believe in.
+    let step = step.filter(|fit| fit.significance() > STEP_BELIEVED && fit.scatter < tilt.left);
+    tilt.step = step.map(|fit| (after, libm::hypot(fit.beside[0], fit.beside[1])));
+    let countering = |rate| {
+        let counter = forces.weighted(bias, Beside::Counter(rate));
+        counter.filter(|fit| fit.significance() > BELIEVED)
+    };
+    let alone = countering([0.0; 2]).filter(|fit| fit.scatter < tilt.left);
+    let counter = alone.or_else(|| countering(tilt.rate));
+    tilt.counter = counter.map_or(0.0, |fit| libm::hypot(fit.beside[0], fit.beside[1]));
+    tilt
 }
 
 /// Mean specific force over gravity, positive where it points up through the platform, as at rest;
@@ -135,31 +199,177 @@ pub fn gravity_ratio<'a>(dwells: impl Iterator<Item = &'a Dwell>, gravity: f64) 
     (count > 0.0).then(|| sum / count / gravity)
 }
 
-/// One fit whose noise is `sigma` g; also the scatter found.
-fn fit<'a>(
-    mount: &Mount,
-    dwells: impl Iterator<Item = &'a Dwell>,
+/// A phasor that is fitted beside the tilt's.
+#[derive(Clone, Copy)]
+enum Beside {
+    Nothing,
+    /// One that grows with the time: F′, 1/s.
+    Rate,
+    /// One that turns against the stage, of a base that tilts by so much, 1/s.
+    Counter([f64; 2]),
+    /// One that is there after a time, s.
+    Step(f64),
+}
+
+/// The mean forces of dwells.
+struct Forces<'m, D> {
+    mount: &'m Mount,
+    dwells: D,
     gravity: f64,
-    bias_sigma: f64,
-    sigma: f64,
-) -> Option<(Tilt, f64)> {
-    let mut regression = Regression::<COLUMNS>::default();
-    let mut rows: f64 = 0.0;
-    let weight = 1.0 / sigma;
-    for dwell in dwells {
-        let Some([x, y, _]) = dwell.force else { continue };
-        let (sine, cosine) = libm::sincos(mount.accelerometer_turn(dwell));
-        let [cosine, sine] = [cosine * weight, sine * weight];
-        regression.push(&[cosine, -sine, weight, 0.0, 0.0], x / gravity * weight);
-        regression.push(&[-sine, -cosine, 0.0, weight, 0.0], y / gravity * weight);
-        rows += 2.0;
+    /// Since when the time of a rate counts, s.
+    time: f64,
+}
+
+/// What a fit of the forces found, in g.
+struct Found {
+    phasor: [f64; 2],
+    covariance: [[f64; 2]; 2],
+    bias: [f64; 2],
+    beside: [f64; 2],
+    beside_covariance: [[f64; 2]; 2],
+    scatter: f64,
+    freedom: f64,
+}
+
+impl<'a, D: Iterator<Item = &'a Dwell> + Clone> Forces<'_, D> {
+    /// Fits with the scatter that a first fit shows.
+    #[inline(never)]
+    fn weighted(&self, bias_sigma: f64, beside: Beside) -> Option<Found> {
+        let first = self.fit(bias_sigma, SCATTER[0], beside)?;
+        let scatter = first.scatter.max(SCATTER[1]);
+        Some(self.fit(bias_sigma, scatter, beside).unwrap_or(first))
     }
-    let bias = Column::Prior(bias_sigma);
-    let solution = regression.solve(&[Column::Free, Column::Free, bias, bias, Column::Absent])?;
-    let [real, imaginary, bias_x, bias_y, _] = solution.coefficients;
-    let [[a, b, ..], [c, d, ..], ..] = solution.covariance;
-    let covariance = [[a, b], [c, d]];
-    let scatter = sigma * libm::sqrt(solution.chi_square / (rows - 4.0).max(1.0));
-    let bias = [bias_x, bias_y];
-    Some((Tilt { real, imaginary, covariance, bias, scatter, measured: true }, scatter))
+
+    /// After which time, s, the forces show another tilt most: the greatest sum of what is left of them, turned
+    /// back by the stage, on either side.
+    fn likeliest_step(&self, standing: &Found) -> f64 {
+        let count = self.dwells.clone().filter(|dwell| dwell.force.is_some()).count() as f64;
+        let (mut sum, mut behind, mut before) = ([0.0; 2], 0.0, None);
+        let mut best = (0.0, 0.0);
+        for dwell in self.dwells.clone() {
+            let Some([x, y, _]) = dwell.force else { continue };
+            if let Some(last) = before {
+                let gain = (sum[0] * sum[0] + sum[1] * sum[1]) / (behind * (1.0 - behind / count));
+                if gain > best.0 {
+                    best = (gain, 0.5 * (last + dwell.middle));
+                }
+            }
+            let (sine, cosine) = libm::sincos(self.mount.accelerometer_turn(dwell));
+            let [real, imaginary] = standing.phasor;
+            let left_x = x / self.gravity - standing.bias[0] - (real * cosine - imaginary * sine);
+            let left_y = y / self.gravity - standing.bias[1] + real * sine + imaginary * cosine;
+            sum[0] += left_x * cosine - left_y * sine;
+            sum[1] -= left_x * sine + left_y * cosine;
+            behind += 1.0;
+            before = Some(dwell.middle);
+        }
+        best.1
+    }
+
+    /// One fit whose noise is `sigma` g.
+    #[inline(never)]
+    fn fit(&self, bias_sigma: f64, sigma: f64, beside: Beside) -> Option<Found> {
+        let mut regression = Regression::<COLUMNS>::default();
+        let mut rows: f64 = 0.0;
+        for dwell in self.dwells.clone() {
+            let Some([x, y, _]) = dwell.force else { continue };
+            let (sine, cosine) = libm::sincos(self.mount.accelerometer_turn(dwell));
+            let elapsed = dwell.middle - self.time;
+            let (mut across, mut along) = ([0.0; 2], [0.0; 2]);
+            let (mut left_x, mut left_y) = (x / self.gravity, y / self.gravity);
+            match beside {
+                Beside::Rate => {
+                    along = [cosine * elapsed, -sine * elapsed];
+                    across = [-sine * elapsed, -cosine * elapsed];
+                }
+                Beside::Step(after) if dwell.middle > after => {
+                    along = [cosine, -sine];
+                    across = [-sine, -cosine];
+                }
+                Beside::Counter([real, imaginary]) => {
+                    left_x -= (real * cosine - imaginary * sine) * elapsed;
+                    left_y += (real * sine + imaginary * cosine) * elapsed;
+                    along = [cosine, sine];
+                    across = [sine, -cosine];
+                }
+                Beside::Nothing | Beside::Step(_) => {}
+            }
+            let mut push = |row: [f64; COLUMNS], left: f64| {
+                regression.push(&row.map(|value| value / sigma), left / sigma);
+            };
+            push([cosine, -sine, 1.0, 0.0, 0.0, along[0], along[1]], left_x);
+            push([-sine, -cosine, 0.0, 1.0, 0.0, across[0], across[1]], left_y);
+            rows += 2.0;
+        }
+        let bias = Column::Prior(bias_sigma);
+        let (extra, parameters) = match beside {
+            Beside::Nothing => (Column::Absent, 4.0),
+            Beside::Rate | Beside::Counter(_) | Beside::Step(_) => (Column::Free, 6.0),
+        };
+        let model = [Column::Free, Column::Free, bias, bias, Column::Absent, extra, extra];
+        let solution = regression.solve(&model)?;
+        let [real, imaginary, bias_x, bias_y, _, beside_real, beside_imaginary] =
+            solution.coefficients;
+        let covariance = &solution.covariance;
+        let freedom = (rows - parameters).max(1.0);
+        Some(Found {
+            phasor: [real, imaginary],
+            covariance: square(covariance, 0),
+            bias: [bias_x, bias_y],
+            beside: [beside_real, beside_imaginary],
+            beside_covariance: square(covariance, 5),
+            scatter: sigma * libm::sqrt(solution.chi_square / freedom),
+            freedom,
+        })
+    }
+}
+
+/// Two neighbouring columns' part of a covariance.
+fn square(covariance: &[[f64; COLUMNS]; COLUMNS], from: usize) -> [[f64; 2]; 2] {
+    [0, 1].map(|i| [0, 1].map(|j| covariance[from + i][from + j]))
+}
+
+impl Found {
+    fn tilt(&self, time: f64, scatter: f64) -> Tilt {
+        let [real, imaginary] = self.phasor;
+        Tilt {
+            real,
+            imaginary,
+            time,
+            covariance: self.covariance,
+            bias: self.bias,
+            scatter,
+            left: self.scatter,
+            measured: true,
+            ..Tilt::default()
+        }
+    }
+
+    /// Squared significance of what was fitted beside, as [`BELIEVED`] counts it.
+    fn significance(&self) -> f64 {
+        let known = 1.0 + FEW / self.freedom;
+        inverted(&self.beside_covariance)
+            .map_or(0.0, |information| quadratic(&information, self.beside) / known)
+    }
+
+    /// The tilt where this one changes: believed where it is significant, else in σ by the probability that
+    /// the base tilts nevertheless.
+    fn believed(&self, standing: Tilt) -> Tilt {
+        let significance = self.significance();
+        if significance > BELIEVED {
+            let tilting = self.tilt(standing.time, standing.scatter);
+            return Tilt { rate: self.beside, rate_covariance: self.beside_covariance, ..tilting };
+        }
+        let prior = TILTING[usize::from(significance < DOUBTFUL)];
+        let odds = prior * libm::exp(0.5 * significance);
+        let probability = odds / (1.0 + odds);
+        let [[a, _], [_, b]] = self.beside_covariance;
+        let possible = 1.0 / (1.0 + 0.5 * (a + b) / (FASTEST * FASTEST));
+        let square = |i: usize, j: usize| {
+            probability
+                * possible
+                * (self.beside[i] * self.beside[j] + self.beside_covariance[i][j])
+        };
+        Tilt { rate_covariance: [0, 1].map(|i| [0, 1].map(|j| square(i, j))), ..standing }
+    }
 }

@@ -1,6 +1,7 @@
 //! From dwell averages, or the turns of a platform, to an azimuth with its standard deviation.
 
 pub mod budget;
+pub mod cause;
 pub mod conclusion;
 pub mod criterion;
 pub mod direction;

@@ -180,14 +180,19 @@ impl Norm {
 
     /// A random walk over T has a slope of variance 6K²/(5T); flicker one of about 6B²/(πT²).
     fn drift(&self, quietness: &Quietness) -> Option<Disturbance> {
+        let slope =
+            (quietness.slope - self.slope).abs() / libm::sqrt(self.slope_variance(quietness));
+        (slope > SLOPE_BOUND).then_some(Disturbance::Drift(slope))
+    }
+
+    /// Variance of a dwell's slope about that which they share, (rad/s²)².
+    fn slope_variance(&self, quietness: &Quietness) -> f64 {
         let seconds = quietness.count() * quietness.block_seconds;
         let unit = quietness.slope_unit();
-        let variance = self.own_variance(quietness) * unit * unit
+        self.own_variance(quietness) * unit * unit
             + 1.2 * self.walk / seconds
             + 6.0 * self.flicker / (seconds * seconds)
-            + self.slope_variance;
-        let slope = (quietness.slope - self.slope).abs() / libm::sqrt(variance);
-        (slope > SLOPE_BOUND).then_some(Disturbance::Drift(slope))
+            + self.slope_variance
     }
 }
 
@@ -215,7 +220,7 @@ fn force_of(dwell: &Dwell) -> Option<f64> {
 }
 
 /// The median of one value a dwell.
-fn median_of(values: impl Iterator<Item = f64>) -> f64 {
+pub(super) fn median_of(values: impl Iterator<Item = f64>) -> f64 {
     median(&mut values.take(POSITIONS).collect::<heapless::Vec<f64, POSITIONS>>())
 }
 
@@ -247,10 +252,40 @@ pub fn moved(
     }
 }
 
+/// How many dwells tell whether the gyro lags.
+const LAGGING_DWELLS: usize = 4;
+/// Significance, σ, of a lag that is believed.
+const LAG_BOUND: f64 = 5.0;
+
+/// By how much the gyro follows the stage late, s, by the dwells that nothing disturbed; `None` where it may be
+/// chance.
+///
+/// A gyro that lags by τ, or whose column is late by τ, brings into each dwell of T a part of the one before:
+/// its mean moves by Δ·τ/T for a difference Δ of both rates, and its slope by −6 Δ τ/T².
+#[must_use]
+#[inline(never)]
+pub fn lag(norm: &Norm, dwells: &[Dwell], marks: &[Option<Disturbance>]) -> Option<f64> {
+    let (mut power, mut shared, mut count) = (0.0, 0.0, 0);
+    for (pair, marks) in dwells.windows(2).zip(marks.windows(2)) {
+        let is_still = marks.iter().all(Option::is_none);
+        let Some(quietness) = pair[1].quietness.as_ref().filter(|_| is_still) else { continue };
+        let variance = norm.slope_variance(quietness);
+        if variance <= 0.0 {
+            continue;
+        }
+        let per_second = -6.0 * (pair[0].rate - pair[1].rate) / (pair[1].seconds * pair[1].seconds);
+        power += per_second * per_second / variance;
+        shared += per_second * (quietness.slope - norm.slope) / variance;
+        count += 1;
+    }
+    let is_late = count >= LAGGING_DWELLS && shared > LAG_BOUND * libm::sqrt(power);
+    is_late.then(|| shared / power)
+}
+
 /// How a dwell's mean force differs from that of the tilt and the biases, g.
 fn off_level(setting: &Setting, dwell: &Dwell, force: [f64; 3], tilt: &level::Tilt) -> [f64; 2] {
     let gravity = setting.latitude.gravity();
-    let expected = tilt.force(setting.mount.accelerometer_turn(dwell));
+    let expected = tilt.at(dwell.middle).force(setting.mount.accelerometer_turn(dwell));
     [0, 1].map(|i| force[i] / gravity - expected[i] - tilt.bias[i])
 }
 

@@ -7,7 +7,7 @@
 use crate::math::{Scalar, cholesky, cholesky_solve};
 
 /// Columns of the regressions on a board: one size for all, so that one copy in flash serves them.
-pub const COLUMNS: usize = 5;
+pub const COLUMNS: usize = 7;
 
 /// Sums of products of `P` columns and the left side.
 #[derive(Clone, Debug)]

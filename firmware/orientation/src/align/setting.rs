@@ -1,11 +1,12 @@
 //! What is known before an alignment begins: the place, the gyro, the platform, and what is asked.
 
+use super::direction::Amplitude;
 use super::level::Tilt;
 use crate::earth::Latitude;
 use crate::noise::model::GyroNoise;
 use crate::signal::dwell::Dwell;
 use crate::signal::sway::SwayNoise;
-use crate::units::TURN;
+use crate::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, TURN};
 
 /// The half of the circle in which an azimuth is known to lie, which is all that two opposite
 /// positions cannot tell.
@@ -84,6 +85,8 @@ pub struct Setting {
     pub g_sensitivity: [f64; 2],
     /// 1σ of either part of κ, rad/s per g; in two frames of the third one too, which is taken as zero.
     pub g_sensitivity_sigma: f64,
+    /// Whether κ and its σ are known; else κ is taken as zero and its σ by the gyro's noise.
+    pub g_sensitivity_known: bool,
     /// 1σ of each accelerometer bias, m/s².
     pub accelerometer_bias_sigma: f64,
     /// 1σ of the encoder's zero and harmonics, as they turn the azimuth, rad; in two frames with what
@@ -101,6 +104,13 @@ pub struct Setting {
 /// Relative uncertainty of the Earth rate below which it is exact: no azimuth shows it.
 const EXACT_AMPLITUDE: f64 = 1e-9;
 
+/// 1σ of a g-sensitivity of which nothing is known, rad/s per g for each (rad/√s)² of N²: 50 000 °/h/g for each
+/// (°/√h)², which is 0.05 °/h/g for a fibre-optic gyro of 0.001 °/√h and 20 °/h/g for a micromachined one of 0.02.
+const KAPPA_OF_NOISE: f64 =
+    50_000.0 * DEGREE_PER_HOUR / (DEGREE_PER_SQRT_HOUR * DEGREE_PER_SQRT_HOUR);
+/// The most of it, rad/s per g: 100 °/h/g, half of what data sheets of micromachined gyros allow at most.
+const GREATEST_KAPPA: f64 = 100.0 * DEGREE_PER_HOUR;
+
 impl Setting {
     /// An ideal instrument at a latitude: nothing is uncertain, N is to be estimated, an azimuth
     /// of 10° (1σ) and a tilt of 15° are accepted.
@@ -116,11 +126,28 @@ impl Setting {
             scale_sigma: 0.0,
             g_sensitivity: [0.0; 2],
             g_sensitivity_sigma: 0.0,
+            g_sensitivity_known: true,
             accelerometer_bias_sigma: 0.0,
             encoder_sigma: 0.0,
             half: None,
             required_sigma: 10.0 / 360.0 * TURN,
             allowed_tilt: 15.0 / 360.0 * TURN,
+        }
+    }
+
+    /// The horizontal Earth rate as it is known beforehand.
+    #[must_use]
+    pub fn known_amplitude(&self) -> Amplitude {
+        Amplitude::Known(self.amplitude_sigma())
+    }
+
+    /// 1σ of either part of κ, rad/s per g, for a gyro of this N, rad/√s.
+    #[must_use]
+    pub fn kappa_sigma(&self, angle_random_walk: f64) -> f64 {
+        if self.g_sensitivity_known {
+            self.g_sensitivity_sigma
+        } else {
+            (KAPPA_OF_NOISE * angle_random_walk * angle_random_walk).min(GREATEST_KAPPA)
         }
     }
 

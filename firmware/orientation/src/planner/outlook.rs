@@ -66,12 +66,13 @@ pub fn rate_sigma(
         let mut row = [cosine, -sine, 1.0, elapsed * HOURS];
         whitener.whiten(start, start + seconds, own.variance(noise, seconds), &mut row);
         let [north, east, constant, hours] = row;
-        regression.push(&[north, east, constant, hours, 0.0], 0.0);
+        regression.push(&[north, east, constant, hours, 0.0, 0.0, 0.0], 0.0);
     }
     let ramp = noise.rate_ramp * (3600.0 * PER_HOUR);
     let time = if ramp > 0.0 { Column::Prior(ramp) } else { Column::Absent };
     let free = Column::Free;
-    let solution = regression.solve(&[free, free, free, time, Column::Absent])?;
+    let absent = Column::Absent;
+    let solution = regression.solve(&[free, free, free, time, absent, absent, absent])?;
     let [[north, ..], [_, east, ..], ..] = solution.covariance;
     Some(libm::sqrt(0.5 * (north + east)) * DEGREE_PER_HOUR)
 }

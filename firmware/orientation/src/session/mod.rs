@@ -290,6 +290,9 @@ impl Session {
     /// Takes the dwell in progress, or has it repeated. One that the stage cut short by moving of
     /// itself is begun again where it was meant to be.
     fn complete(&mut self, now: Instant) -> Command {
+        if let Some(reason) = self.wrong_period() {
+            return self.conclude(Some(reason));
+        }
         let finished = self
             .average
             .take()
@@ -302,6 +305,13 @@ impl Session {
             Some(why) if self.tries < self.procedure.retries => self.repeat(why),
             _ => self.go_on(now),
         }
+    }
+
+    /// Why the samples are not those of the period that was told.
+    fn wrong_period(&self) -> Option<Refusal> {
+        let Procedure { sample_seconds, period_tolerance, .. } = self.procedure;
+        let step = self.average.as_ref().and_then(DwellAverage::step)?;
+        procedure::contradiction(sample_seconds, step, period_tolerance)
     }
 
     /// Drops the last dwell; the stage stays and the next sample begins it anew.

@@ -4,6 +4,7 @@ use super::schedule::{Schedule, StopRule};
 use super::survey::Survey;
 use crate::align::POSITIONS;
 use crate::align::criterion::Criterion;
+use crate::error::Refusal;
 use crate::signal::butterworth::DesignError;
 use crate::units::TURN;
 use crate::words;
@@ -19,6 +20,16 @@ const LOWEST_CUTOFF: f64 = 2.5e-4;
 /// Change of the encoder angle that still counts as standing, rad: seven steps of a 21-bit encoder.
 pub const STILL: f64 = 20e-6;
 
+/// How far the samples' times may be off their period where nobody says otherwise, relative: a recorder's clock
+/// is far better, a converter's own oscillator is not.
+pub(super) const PERIOD_TOLERANCE: f64 = 0.01;
+
+/// Refuses samples that take `found` s by their times where they take `told` s as told, beyond a tolerance.
+pub(super) fn contradiction(told: f64, found: f64, tolerance: f64) -> Option<Refusal> {
+    let is_off = (found / told - 1.0).abs() > tolerance;
+    is_off.then_some(Refusal::PeriodContradicted { told: 1e3 * told, found: 1e3 * found })
+}
+
 /// How the session goes about it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Procedure {
@@ -32,6 +43,8 @@ pub struct Procedure {
     pub criterion: Criterion,
     /// Sample period, s.
     pub sample_seconds: f64,
+    /// How far the mean step of the samples' times may be off that period, relative.
+    pub period_tolerance: f64,
     /// How long the platform is levelled before the first dwell counts, s; these samples belong to
     /// that dwell all the same.
     pub level_seconds: f64,
@@ -67,6 +80,7 @@ impl Procedure {
             stop: StopRule::AllPositions,
             criterion: Criterion::MaximumLikelihood,
             sample_seconds,
+            period_tolerance: PERIOD_TOLERANCE,
             level_seconds,
             settle_seconds: 0.0,
             retries: 2,

@@ -109,6 +109,9 @@ const FORCE_STEP: f64 = 1e-6;
 /// Sample periods without a sample that a dwell bears: two samples in a row may be lost.
 const LONGEST_GAP: f64 = 3.5;
 
+/// Longest step over the mean one of samples none of which is missing.
+const REGULAR: f64 = 1.5;
+
 /// The fewest samples that make a dwell: four times the filter's lag, and eight.
 #[must_use]
 pub fn shortest<const SECTIONS: usize>(coefficients: &Coefficients<SECTIONS>) -> u32 {
@@ -232,6 +235,14 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
     #[must_use]
     pub fn count(&self) -> u32 {
         self.blocks.count()
+    }
+
+    /// Mean step of the samples' times, s, where none is missing; `None` of fewer than two.
+    #[must_use]
+    pub fn step(&self) -> Option<f64> {
+        let steps = f64::from(self.count().checked_sub(1).filter(|steps| *steps > 0)?);
+        let step = (self.last.seconds() - self.first.seconds()) / steps;
+        (self.longest_gap as f64 * 1e-6 <= REGULAR * step).then_some(step)
     }
 
     /// Mean specific force so far, m/s²; `None` while no sample brought one.

@@ -4,6 +4,7 @@
 //! two lightest an azimuth is handed over from outside and stored by the gyro until the time is over.
 
 use hal_mock::gyro::Gyro;
+use orientation::error::Refusal;
 use orientation::keep::{Gyro as Known, Handover, Keeper, Setting};
 use orientation::planner::{Plan, Rotation, for_time};
 use orientation::signal::InertialSample;
@@ -179,7 +180,7 @@ impl Class {
     /// North by that schedule.
     fn found(&self, runs: usize, tick: &(impl Fn() + Sync)) -> (String, Precision) {
         let Some(plan) = self.plan() else {
-            return ("no schedule fits".to_owned(), Precision::of(&[]));
+            return ("no schedule fits".to_owned(), Precision::of::<Refusal>(&[]));
         };
         let trial = Trial { grade: self.grade, plan, rotation: STAGE };
         let answers = over(runs, tick, |seed| trial.answer(seed));
@@ -195,7 +196,7 @@ impl Class {
         tick: &(impl Fn() + Sync),
     ) -> (String, Precision) {
         let answers = over(runs, tick, |seed| Ok(self.keep(sigma_deg, seed)));
-        (format!("handed over with 1σ {sigma_deg}°, stored"), Precision::of(&answers))
+        (format!("handed over with 1σ {sigma_deg}°, stored"), Precision::of::<Refusal>(&answers))
     }
 
     /// One azimuth of zero, handed over with an error of its own and kept on a base that turns.

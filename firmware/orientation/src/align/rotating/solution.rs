@@ -314,7 +314,7 @@ impl Problem<'_> {
             noise: libm::sqrt(turned.noise * white),
             drift: libm::sqrt(turned.noise * (1.0 - white)),
             g_sensitivity: libm::hypot(
-                common.g_sensitivity_sigma * size / horizontal,
+                common.kappa_sigma(common.noise.angle_random_walk) * size / horizontal,
                 libm::sqrt(turned.left),
             ),
             accelerometer: self.per_tilt(1.0).size() * fit.tilt_sigma / horizontal,

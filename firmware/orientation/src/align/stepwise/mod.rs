@@ -5,14 +5,16 @@
 //! needed time and temperature. Nothing is differenced. The rows are whitened for the gyro's
 //! noise, so the covariance of the fit is the Cramér–Rao bound of what went in.
 
+mod hypothesis;
 mod model;
 mod uncertainty;
 
+pub use hypothesis::{HeadingStep, Hypothesis};
 pub use model::Model;
 pub use uncertainty::FEW_DEGREES;
 
 use super::budget::Budget;
-use super::direction::{Amplitude, Components, Direction, dot, inverted, product};
+use super::direction::{Amplitude, Components, Direction, dot, inverted, product, quadratic};
 use super::level::Tilt;
 use super::regression::{COLUMNS, Regression, Solution};
 use super::setting::Setting;
@@ -23,7 +25,8 @@ use crate::signal::sway::SwayNoise;
 use uncertainty::Covariance;
 
 /// A dwell in the regression: north and east part of the sensitive axis, constant, time since the
-/// first dwell (h), temperature above that of the first dwell (°C) and, last, the left side.
+/// first dwell (h), temperature above that of the first dwell (°C), two of a [`Hypothesis`] and, last, the
+/// left side.
 type Row = [f64; COLUMNS + 1];
 
 /// An azimuth with all that is known about it.
@@ -47,7 +50,41 @@ pub struct Fit {
     pub chi_square: f64,
     /// Its degrees of freedom.
     pub degrees: usize,
+    /// By how much more than their noise the dwells scatter, as a factor that is in the budget.
+    pub excess: f64,
+    /// A step of the heading that the dwells show.
+    pub step: Option<HeadingStep>,
+    /// Chi-square with the Earth rate free, where that was asked for.
+    free_chi_square: f64,
     coefficients: [f64; COLUMNS],
+    /// What the columns of its hypothesis follow.
+    bent: Bent,
+}
+
+/// Fewest dwells that tell one hypothesis from another.
+const FEWEST: usize = 8;
+/// Rounds in which a hypothesis follows the azimuth that it changes: each leaves the square of the change.
+const ROUNDS: usize = 3;
+
+/// What the columns of a hypothesis follow.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Bent {
+    hypothesis: Hypothesis,
+    /// The azimuth of a fit, as the Earth rate's components north and east along body x, in units of `Ω_h`.
+    along: [f64; 2],
+    /// Rate at which the base is known to turn about the vertical, rad/h.
+    rate: f64,
+}
+
+/// What a model makes of the dwells.
+#[derive(Clone, Copy)]
+pub(super) struct Trial {
+    direction: Direction,
+    amplitude: Amplitude,
+    chi_square: f64,
+    degrees: usize,
+    /// The first coefficient of the hypothesis.
+    coefficient: f64,
 }
 
 /// A fit, and what only its residuals need: the covariance of its coefficients.
@@ -82,24 +119,101 @@ impl Problem<'_> {
     #[must_use]
     #[inline(never)]
     pub fn fit(&self) -> Option<Found> {
-        let regression = self.regression(&self.setting.noise, Dwell::taper_factor);
+        let regression = self.steady();
         let model = self.choose(&regression)?;
+        let mut found = self.fit_model(&regression, &model, &Bent::default())?;
+        // On an arc, and with few dwells, any of them looks like any other.
+        if model.amplitude != Amplitude::Free || self.dwells.len() < FEWEST {
+            return Some(found);
+        }
+        let known = Model { amplitude: self.setting.known_amplitude(), ..model };
+        let open = Model { amplitude: Amplitude::Free, ..model };
+        let trials = self.trial(&regression, &known).zip(self.trial(&regression, &open));
+        let Some((steady, free)) = trials else { return Some(found) };
+        found.0.free_chi_square = free.chi_square;
+        match self.weigh(&mut found.0, &steady) {
+            Some((model, beside)) => {
+                let under = self.fit_under(&model, &found.0);
+                let mut found = under.unwrap_or(found);
+                found.0.budget.drift = libm::hypot(found.0.budget.drift, libm::sqrt(beside));
+                Some(found)
+            }
+            None => Some(found),
+        }
+    }
+
+    /// The regression of a base that stands.
+    fn steady(&self) -> Regression<COLUMNS> {
+        self.regression(&self.setting.noise, Dwell::taper_factor, &Bent::default())
+    }
+
+    /// Fits with a hypothesis, again and again: its columns follow the azimuth and the rate, which it changes.
+    #[inline(never)]
+    fn fit_under(&self, model: &Model, steady: &Fit) -> Option<Found> {
+        let mut bent = Bent { hypothesis: model.hypothesis, ..steady.bent };
+        for _ in 0..ROUNDS {
+            let regression = self.regression(&self.setting.noise, Dwell::taper_factor, &bent);
+            let trial = self.trial(&regression, model)?;
+            bent.along = trial.direction.along();
+            if model.hypothesis == Hypothesis::Yawing {
+                bent.rate += trial.coefficient;
+            }
+        }
+        let regression = self.regression(&self.setting.noise, Dwell::taper_factor, &bent);
+        let found = self.fit_model(&regression, &self.freed(&regression, model)?, &bent)?;
+        Some((Fit { step: steady.step, ..found.0 }, found.1))
+    }
+
+    /// What a model makes of the dwells; nothing where they do not determine it.
+    #[inline(never)]
+    fn trial(&self, regression: &Regression<COLUMNS>, model: &Model) -> Option<Trial> {
+        let solution = regression.solve(&model.columns())?;
+        let components = self.components(&solution);
+        let direction = components.direction(model.amplitude)?;
+        let (sine, cosine) = libm::sincos(direction.azimuth);
+        let wanted = direction.components([cosine, sine], components.vertical);
+        let change = [0, 1].map(|i| wanted[i] - components.value[i]);
+        let information = inverted(&components.covariance)?;
+        Some(Trial {
+            direction,
+            amplitude: model.amplitude,
+            chi_square: solution.chi_square + quadratic(&information, change),
+            degrees: model.degrees(&solution),
+            coefficient: solution.coefficients[COLUMNS - 2],
+        })
+    }
+
+    /// The fit of a model.
+    #[inline(never)]
+    fn fit_model(
+        &self,
+        regression: &Regression<COLUMNS>,
+        model: &Model,
+        bent: &Bent,
+    ) -> Option<Found> {
         let mut solution = regression.solve(&model.columns())?;
         let components = self.components(&solution);
         let direction = components.direction(model.amplitude)?;
         let free = components.free()?;
-        let [limit, limit_free] = self.limits(&model)?;
+        let [limit, limit_free] = self.limits(model, bent)?;
         let mut fit = Fit {
-            model,
+            model: *model,
             direction,
-            budget: self.budget(&regression, &model, &direction)?,
+            budget: self.budget(regression, model, &direction, bent)?,
             limit,
             limit_free,
             ratio: free.amplitude,
             ratio_sigma: self.ratio_sigma(&free),
             chi_square: 0.0,
             degrees: 0,
+            excess: 1.0,
+            free_chi_square: 0.0,
+            step: None,
             coefficients: solution.coefficients,
+            bent: match model.hypothesis {
+                Hypothesis::Steady => Bent { along: direction.along(), ..*bent },
+                _ => *bent,
+            },
         };
         let noise = self.noise_components(&solution);
         fit.constrain(&mut solution, &components, &noise);
@@ -110,7 +224,8 @@ impl Problem<'_> {
     /// Gives each dwell its residual, in their order, for what [`Self::fit`] found.
     pub fn residuals(&self, (fit, covariance): &Found, mut each: impl FnMut(Residual)) {
         let horizontal = self.setting.latitude.horizontal_rate();
-        self.whiten(&self.setting.noise, Dwell::taper_factor, &mut |row, white| {
+        let bent = fit.bent(fit.model.hypothesis);
+        self.whiten(&self.setting.noise, Dwell::taper_factor, &bent, &mut |row, white| {
             let rate = remainder(row, &fit.coefficients) * horizontal;
             let normalised = remainder(white, &fit.coefficients);
             let leverage = leverage(white, covariance);
@@ -119,19 +234,36 @@ impl Problem<'_> {
         });
     }
 
-    /// The row of a dwell: its columns and, last, its left side, all in units of `Ω_h`.
-    fn row(&self, dwell: &Dwell) -> Row {
+    /// The row of a dwell: its columns and, last, its left side, all in units of `Ω_h`; and what turning the
+    /// azimuth does to the rate, ∂/∂A, in these units.
+    fn row(&self, dwell: &Dwell, bent: &Bent) -> (Row, f64) {
         let mount = &self.setting.mount;
-        let axis = (mount.axis)(self.tilt, dwell);
-        let force = (mount.force)(self.tilt, dwell);
+        let tilt = self.tilt.at(dwell.middle);
+        let axis = (mount.axis)(&tilt, dwell);
+        let force = (mount.force)(&tilt, dwell);
         let latitude = self.setting.latitude;
         let first = self.dwells[0];
+        let [forward, right] = tilt.turning(tilt.rate);
         let left = dwell.rate - first.rate + latitude.vertical_rate() * axis[2]
-            - dot(self.setting.g_sensitivity, force);
+            - dot(self.setting.g_sensitivity, force)
+            - (axis[0] * forward + axis[1] * right);
+        let yaw = bent.rate * self.hours_to_end(dwell);
+        let left = left - bent.rate / 3600.0 * axis[2];
+        let axis = turned(axis, yaw);
         let celsius = |dwell: &Dwell| dwell.temperature.get().unwrap_or(0.0);
         let warmer = celsius(dwell) - celsius(first);
         let hours = (dwell.middle - first.middle) / 3600.0;
-        [axis[0], -axis[1], 1.0, hours, warmer, left / latitude.horizontal_rate()]
+        let [north, east] = bent.along;
+        let turning = -east * axis[0] - north * axis[1];
+        let [one, other] = bent.hypothesis.row(self, dwell, axis, turning);
+        let left = left / latitude.horizontal_rate();
+        ([axis[0], -axis[1], 1.0, hours, warmer, one, other, left], turning)
+    }
+
+    /// Time from the end of the last dwell to a dwell, h; negative.
+    fn hours_to_end(&self, dwell: &Dwell) -> f64 {
+        let end = self.dwells.last().map_or(0.0, |last| last.end());
+        (dwell.middle - end) / 3600.0
     }
 
     /// The two components of the Earth rate in a solution, and the vertical one's, as noise alone
@@ -170,7 +302,8 @@ impl Problem<'_> {
         let (sine, cosine) = libm::sincos(dwell.stage.rad());
         let Direction { azimuth, amplitude, .. } = fit.direction;
         let (east, north) = libm::sincos(azimuth);
-        remainder(&self.row(dwell), &fit.coefficients) + amplitude * (north * cosine - east * sine)
+        remainder(&self.row(dwell, &fit.bent(fit.model.hypothesis)).0, &fit.coefficients)
+            + amplitude * (north * cosine - east * sine)
     }
 
     /// Variance of an untapered mean that no other dwell shares, (rad/s)²: white noise, and what a
@@ -205,29 +338,40 @@ impl Problem<'_> {
         &self,
         noise: &GyroNoise,
         taper: fn(&Dwell) -> f64,
+        bent: &Bent,
         each: &mut dyn FnMut(&Row, &Row),
     ) {
         let rate = self.setting.latitude.horizontal_rate();
         let mut whitener = self.whitener(noise);
         for dwell in self.dwells {
             let own = self.own_variance(dwell) * taper(dwell);
-            let row = self.row(dwell);
+            let (row, _) = self.row(dwell, bent);
             let mut white = row;
             whitener.whiten(dwell.start(), dwell.end(), own / (rate * rate), &mut white);
             each(&row, &white);
         }
     }
 
-    fn regression(&self, noise: &GyroNoise, taper: fn(&Dwell) -> f64) -> Regression<COLUMNS> {
+    fn regression(
+        &self,
+        noise: &GyroNoise,
+        taper: fn(&Dwell) -> f64,
+        bent: &Bent,
+    ) -> Regression<COLUMNS> {
         let mut regression = Regression::default();
-        self.whiten(noise, taper, &mut |_, &[a, b, c, d, e, left]| {
-            regression.push(&[a, b, c, d, e], left);
+        self.whiten(noise, taper, bent, &mut |_, &[a, b, c, d, e, f, g, left]| {
+            regression.push(&[a, b, c, d, e, f, g], left);
         });
         regression
     }
 }
 
 impl Fit {
+    /// A hypothesis about this fit's azimuth.
+    fn bent(&self, hypothesis: Hypothesis) -> Bent {
+        Bent { hypothesis, ..self.bent }
+    }
+
     /// Standard deviation of the azimuth, rad.
     #[must_use]
     pub fn sigma(&self) -> f64 {
@@ -283,6 +427,15 @@ fn tighten(solution: &mut Solution<COLUMNS>, noise: &Components, amplitude: Ampl
             *value -= dot(left, product(&lost, right));
         }
     }
+}
+
+/// An axis of a base that is turned by `yaw`, rad clockwise: as seen from where it stands in the end.
+fn turned([forward, right, down]: [f64; 3], yaw: f64) -> [f64; 3] {
+    if yaw == 0.0 {
+        return [forward, right, down];
+    }
+    let (sine, cosine) = libm::sincos(yaw);
+    [cosine * forward - sine * right, sine * forward + cosine * right, down]
 }
 
 /// Left side less the columns' part of it.

@@ -4,7 +4,7 @@
 use super::super::different_positions;
 use super::super::direction::Amplitude;
 use super::super::regression::{COLUMNS, Column, Regression, Solution};
-use super::Problem;
+use super::{Hypothesis, Problem, Trial};
 
 /// Chi-square of one degree of freedom that noise exceeds with a probability of 0.001.
 const TREND_CHI_SQUARE: f64 = 10.83;
@@ -34,35 +34,35 @@ pub struct Model {
     /// By how much a trend that the azimuth cannot afford would lower chi-square; zero where there
     /// is none.
     pub rejected_trend: f64,
+    /// What moves beside the stage.
+    pub hypothesis: Hypothesis,
 }
 
-/// What a model makes of the dwells.
-#[derive(Clone, Copy)]
-struct Outcome {
-    chi_square: f64,
-    degrees: usize,
-    variance: f64,
-    amplitude: f64,
-}
-
-impl Outcome {
+impl Trial {
     /// The azimuth's variance for one amplitude: that a weak Earth rate has a wide azimuth is no
     /// reason to believe in a strong one.
     fn cost(&self) -> f64 {
-        self.variance * self.amplitude * self.amplitude
+        self.direction.variance * self.direction.amplitude * self.direction.amplitude
     }
 
-    /// Whether the azimuth can afford what a trend has made of the outcome without it.
+    /// Whether the azimuth can afford what a trend has made of the trial without it.
     fn is_affordable(&self, before: &Self) -> bool {
-        self.variance <= TREND_COST * TREND_COST * before.variance && self.degrees >= TREND_DEGREES
+        let most = TREND_COST * TREND_COST * before.direction.variance;
+        self.direction.variance <= most && self.degrees >= TREND_DEGREES
     }
 }
 
 impl Model {
+    /// Whether it has no trend that another has not.
+    pub(super) fn is_as_plain_as(&self, other: &Self) -> bool {
+        self.time == other.time && self.temperature == other.temperature
+    }
+
     pub(super) fn columns(&self) -> [Column; COLUMNS] {
         let component =
             if self.is_single_axis { Column::Prior(UNKNOWN_COMPONENT) } else { Column::Free };
-        [component, component, Column::Free, self.time, self.temperature]
+        let [one, other] = self.hypothesis.columns();
+        [component, component, Column::Free, self.time, self.temperature, one, other]
     }
 
     /// Degrees of freedom of a solution for these columns. Two positions show one component of two;
@@ -77,42 +77,37 @@ impl Model {
 }
 
 impl Problem<'_> {
-    /// What a model makes of the dwells; nothing where they do not determine it. One copy in flash
-    /// serves every model that is compared.
-    #[inline(never)]
-    fn outcome(&self, regression: &Regression<COLUMNS>, model: &Model) -> Option<Outcome> {
-        let solution = regression.solve(&model.columns())?;
-        let direction = self.components(&solution).direction(model.amplitude)?;
-        Some(Outcome {
-            chi_square: solution.chi_square,
-            degrees: solution.degrees,
-            variance: direction.variance,
-            amplitude: direction.amplitude,
-        })
-    }
-
     /// Chooses the columns and whether the Earth rate stays free.
     #[inline(never)]
     pub(super) fn choose(&self, regression: &Regression<COLUMNS>) -> Option<Model> {
-        let mut model = self.base();
+        // A trend is looked for with the Earth rate free where that costs nothing: a scale or latitude that is
+        // wrong is no trend.
+        let mut model = self.freed(regression, &self.base())?;
         self.add_trend(regression, &mut model)?;
-        let free = Model { amplitude: Amplitude::Free, ..model };
-        let known = self.outcome(regression, &model)?.cost();
-        match self.outcome(regression, &free) {
-            Some(outcome) if outcome.cost() <= FREE_COST * FREE_COST * known => Some(free),
-            _ => Some(model),
+        self.freed(regression, &model)
+    }
+
+    /// The model with the Earth rate free where that costs nothing, else with what is known of it.
+    pub(super) fn freed(&self, regression: &Regression<COLUMNS>, model: &Model) -> Option<Model> {
+        let held = Model { amplitude: self.setting.known_amplitude(), ..*model };
+        let free = Model { amplitude: Amplitude::Free, ..*model };
+        let known = self.trial(regression, &held)?.cost();
+        match self.trial(regression, &free) {
+            Some(trial) if trial.cost() <= FREE_COST * FREE_COST * known => Some(free),
+            _ => Some(held),
         }
     }
 
     /// The model before any trend is looked for: a known ramp enters with its prior.
-    fn base(&self) -> Model {
+    pub(super) fn base(&self) -> Model {
         let ramp = self.setting.noise.rate_ramp * 3600.0 / self.setting.latitude.horizontal_rate();
         Model {
             time: if ramp > LEAST_RAMP { Column::Prior(ramp) } else { Column::Absent },
             temperature: Column::Absent,
-            amplitude: Amplitude::Known(self.setting.amplitude_sigma()),
+            amplitude: self.setting.known_amplitude(),
             is_single_axis: different_positions(self.dwells) < 3,
             rejected_trend: 0.0,
+            hypothesis: Hypothesis::Steady,
         }
     }
 
@@ -121,17 +116,17 @@ impl Problem<'_> {
     fn add_trend(&self, regression: &Regression<COLUMNS>, model: &mut Model) -> Option<()> {
         let is_warm = self.is_warm();
         for _ in 0..2 {
-            let before = self.outcome(regression, model)?;
-            let mut best: Option<(Model, Outcome, f64)> = None;
+            let before = self.trial(regression, model)?;
+            let mut best: Option<(Model, Trial, f64)> = None;
             for candidate in candidates(model, is_warm).into_iter().flatten() {
-                let Some(outcome) = self.outcome(regression, &candidate) else { continue };
-                let gain = before.chi_square - outcome.chi_square;
+                let Some(trial) = self.trial(regression, &candidate) else { continue };
+                let gain = before.chi_square - trial.chi_square;
                 if gain > TREND_CHI_SQUARE && best.is_none_or(|(.., most)| gain >= most) {
-                    best = Some((candidate, outcome, gain));
+                    best = Some((candidate, trial, gain));
                 }
             }
             match best {
-                Some((trend, outcome, _)) if outcome.is_affordable(&before) => *model = trend,
+                Some((trend, trial, _)) if trial.is_affordable(&before) => *model = trend,
                 Some((.., gain)) => model.rejected_trend = gain,
                 None => {}
             }

@@ -80,7 +80,7 @@ impl<const N: usize> Blocks<N> {
     }
 
     /// Joins neighbours of a stop.
-    fn halve(&mut self) {
+    pub fn halve(&mut self) {
         self.span *= 2.0;
         let mut kept: usize = 0;
         let mut next = 0;

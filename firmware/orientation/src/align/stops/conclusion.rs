@@ -17,6 +17,7 @@ use crate::math::rotation::{
     IDENTITY, Matrix, Vector, cross, difference, length, product, transposed,
 };
 use crate::signal::rest::Criteria;
+use crate::signal::strapdown::Carried;
 use crate::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN as DEGREES, wrapped};
 
 /// Least time at rest that makes a stop, s: as long as the criteria look.
@@ -46,7 +47,12 @@ const DISAGREEMENT: f64 = 1.5;
 /// a fifth of the Earth rate.
 const CARRIED: f64 = 0.2 * EARTH_RATE;
 /// Correlation of neighbouring blocks that no noise has: something drifts that is not in the model.
-const CORRELATED: f64 = 0.6;
+const CORRELATED: f64 = 0.75;
+/// Correlation of neighbouring blocks that sway makes which is quicker than they are long: longer ones feel it
+/// less.
+const SWAYS: f64 = -0.3;
+/// Fewest blocks that may be joined in pairs.
+const MANY: usize = 16;
 /// Part of the blocks that may be left out.
 const LEFT_OUT: u32 = 4;
 /// Part of what was known of a bias beforehand below which it counts as observed.
@@ -70,6 +76,8 @@ pub struct Found {
     pub start: Azimuth,
     /// Least 1σ of the azimuth at the end that any estimator reaches with these columns, rad.
     pub limit: f64,
+    /// Azimuth of body x at the end when nothing is checked or left out, rad: for campaigns.
+    pub unchecked: f64,
     /// Where σ comes from.
     pub budget: Budget,
     /// Pitch and roll at the end, rad.
@@ -80,6 +88,8 @@ pub struct Found {
     pub bias_sigmas: Vector,
     /// Whether the stops tell all of them: their 1σ is half of what was known before, or less.
     pub are_biases_observed: bool,
+    /// How many times greater than was known the biases are, and are taken to be; one where they are not.
+    pub widening: f64,
     /// Szymanowski's own method.
     pub plain: Plain,
     /// Chi-square of the blocks, and its degrees of freedom.
@@ -102,24 +112,16 @@ impl Conclusion {
     #[inline(never)]
     pub fn of(setting: &Setting, follower: &mut Follower) -> Self {
         let now = follower.now();
-        let follower = &*follower;
         if let Err(reason) = inspect(setting, follower) {
             return Self { verdict: Err(reason), found: None };
         }
-        let path = Path {
-            place: Place::new(setting.common.latitude),
-            gravity: setting.common.latitude.gravity(),
-            start: follower.start(),
-            stops: follower.stops(),
-            blocks: follower.blocks(),
-            drives: follower.drives(),
-            now: now.0,
-            carried: now.1,
-            stated_density: 0.5 * setting.force_noise * setting.force_noise,
-        };
-        let found = Found::of(setting, &path);
+        let mut found = Found::of(setting, &path(setting, follower, &now));
+        while found.correlation < SWAYS && follower.blocks().all().len() >= MANY {
+            follower.coarsen();
+            found = Found::of(setting, &path(setting, follower, &now));
+        }
         Self {
-            verdict: judge(setting, &found, path.stops.len() as u32).map(|()| found.azimuth),
+            verdict: judge(setting, &found, follower.stops().len() as u32).map(|()| found.azimuth),
             found: Some(found),
         }
     }
@@ -128,6 +130,21 @@ impl Conclusion {
     #[must_use]
     pub const fn refused(reason: Refusal) -> Self {
         Self { verdict: Err(reason), found: None }
+    }
+}
+
+/// The path until now, when so much is carried.
+fn path<'a>(setting: &Setting, follower: &'a Follower, now: &(f64, Carried)) -> Path<'a> {
+    Path {
+        place: Place::new(setting.common.latitude),
+        gravity: setting.common.latitude.gravity(),
+        start: follower.start(),
+        stops: follower.stops(),
+        blocks: follower.blocks(),
+        drives: follower.drives(),
+        now: now.0,
+        carried: now.1,
+        stated_density: 0.5 * setting.force_noise * setting.force_noise,
     }
 }
 
@@ -223,7 +240,7 @@ fn judge(setting: &Setting, found: &Found, stops: u32) -> Result<(), Refusal> {
         return Err(Refusal::ResidualsCorrelated { correlation });
     }
     let Plain { ratio, ratio_sigma: sigma, .. } = found.plain;
-    if (ratio - 1.0).abs() > DIFFERENT * sigma + RATIO_TOLERANCE {
+    if (ratio - 1.0).abs() > DIFFERENT * found.widening * sigma + RATIO_TOLERANCE {
         return Err(Refusal::EarthRateMismatch { ratio, sigma });
     }
     let required = setting.common.required_sigma;
@@ -244,10 +261,11 @@ impl Found {
         let mut solution = Solution::new(plain.frame);
         solution.run(setting, path, Belief::Ideal);
         // How sure the azimuth is hardly depends on where it points.
-        let row = End::of(path, &solution).row(path);
-        let limit = libm::sqrt(solution.filter.variance(&row));
+        let end = End::of(path, &solution);
+        let limit = libm::sqrt(solution.filter.variance(&end.row(path)));
+        let unchecked = azimuth_of(&end.attitude);
         solution.settle(setting, path);
-        Self { limit, ..Self::shown(setting, path, &plain, &solution) }
+        Self { limit, unchecked, ..Self::shown(setting, path, &plain, &solution) }
     }
 
     /// All but the limit.
@@ -268,11 +286,13 @@ impl Found {
             azimuth: Azimuth { angle: azimuth_of(&end.attitude), sigma },
             start,
             limit: 0.0,
-            budget: budget(setting, path, &filter.covariances(&row), sigma),
+            unchecked: 0.0,
+            budget: budget(setting, path, &filter.covariances(&row), sigma, solution.widening),
             level: level_of(&end.attitude),
             biases: filter.three(BIAS),
             bias_sigmas,
             are_biases_observed: bias_sigmas.iter().all(|sigma| *sigma <= OBSERVED * known),
+            widening: solution.widening,
             plain: *plain,
             chi_square: [solution.chi_square, solution.degrees],
             correlation: solution.correlation(),
@@ -356,7 +376,7 @@ fn level_of(attitude: &Matrix) -> [f64; 2] {
 
 /// The parts of σ: of what was known beforehand each keeps (covariance with the azimuth)² over its own
 /// variance before; the rest is noise. Their squares add up.
-fn budget(setting: &Setting, path: &Path, covariances: &Row, sigma: f64) -> Budget {
+fn budget(setting: &Setting, path: &Path, covariances: &Row, sigma: f64, widening: f64) -> Budget {
     let part = |states: core::ops::Range<usize>, sigma: f64| {
         let together = length(&core::array::from_fn(|axis| {
             states.clone().nth(axis).map_or(0.0, |state| covariances[state])
@@ -365,7 +385,7 @@ fn budget(setting: &Setting, path: &Path, covariances: &Row, sigma: f64) -> Budg
     };
     let common = &setting.common;
     let mut budget = Budget {
-        drift: part(BIAS..BIAS + 3, setting.bias_sigma()),
+        drift: part(BIAS..BIAS + 3, widening * setting.bias_sigma()),
         scale: part(SCALE..SCALE + 3, common.scale_sigma),
         accelerometer: part(FORCE..FORCE + 3, common.accelerometer_bias_sigma),
         latitude: part(LATITUDE..LATITUDE + 1, common.latitude_sigma),

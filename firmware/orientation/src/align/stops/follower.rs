@@ -356,6 +356,18 @@ impl Follower {
         &self.blocks
     }
 
+    /// Joins the blocks at rest in pairs, for what sways quicker than they are long.
+    pub fn coarsen(&mut self) {
+        self.blocks.halve();
+    }
+
+    /// Time from when the first sample began to when the last one ended, s; zero of none.
+    #[must_use]
+    pub fn elapsed(&self) -> f64 {
+        let begun = self.begun.unwrap_or(self.last);
+        self.last.0.saturating_sub(begun.0) as f64 * 1e-6
+    }
+
     /// The blocks on the way, each of which is that after a stop.
     #[must_use]
     pub fn drives(&self) -> &Blocks<DRIVEN> {

@@ -3,13 +3,14 @@
 use super::Setting;
 use super::block::Block;
 use super::filter::{
-    Filter, LATITUDE, Measurement, NOW, PLACE, START, STATES, VELOCITY, force_row, rest_row,
+    BIAS, Filter, LATITUDE, Measurement, NOW, PLACE, START, STATES, VELOCITY, force_row, rest_row,
     velocity_row,
 };
 use super::path::Path;
 use super::place::{Place, up};
 use super::stop::Stop;
 use crate::earth::EARTH_RATE;
+use crate::math::chi_square_tail;
 use crate::math::rotation::{
     Matrix, Vector, by, cross, difference, dot, length, product, scaled, small, sum, transposed,
     turned,
@@ -22,11 +23,25 @@ const LEVEL_SIGMA: f64 = 0.1;
 const AZIMUTH_SIGMA: f64 = 3.0;
 /// Repetitions, and the correction below which no further one is needed, rad: half of its square is not
 /// seen, 1e-5°.
-const REPETITIONS: u32 = 8;
+const REPETITIONS: u32 = 16;
 const SETTLED: f64 = 5e-4;
 /// Scatter over the believed one that is too much, and the most that is taken for a sway.
 const ROUGH: f64 = 1.5;
 const ROUGHEST: f64 = 6.0;
+/// Correlation of neighbouring blocks from which on they are believed less, in its 1σ of white blocks.
+const COLOURED: f64 = 3.0;
+/// Probability of biases as great as those found below which what was known of them is not believed.
+const FALSE_BIAS: f64 = 0.05;
+/// How much greater than believed, in power, biases still are once they are believed as great as they are.
+const BELIEVED: f64 = 1.1;
+/// 1σ of biases, rad/s, beyond which and beyond so many times what was known they are none: a fifth of the Earth
+/// rate is what a wrong latitude or axis makes.
+const GREATEST_BIAS: f64 = 0.2 * EARTH_RATE;
+const GREATEST_WIDENING: f64 = 3.0;
+/// Least part of the biases' variance that must be observed before they are judged.
+const LEAST_SEEN: f64 = 0.1;
+/// Longest time in which a vehicle at rest is turned by hand, s: a rate that is there all the time is a bias.
+const TURNED_BY_HAND: f64 = 5.0;
 /// Fewest degrees of freedom of which a correlation means something.
 const LEAST_DEGREES: f64 = 20.0;
 /// Chi-square beyond which a block, or the rest of a stop, is left out: one healthy block in three million.
@@ -84,6 +99,12 @@ pub struct Solution {
     pub neighbours: [f64; 2],
     /// How much more than their neighbours say the blocks scatter: power over power, one or more.
     pub roughness: f64,
+    /// The same of blocks that go together with their neighbours; one until that is known.
+    pub colour: f64,
+    /// How much greater than is known the biases are taken to be; one or more.
+    pub widening: f64,
+    /// Greatest rate beside the Earth's that was there all through a stop whose rest was left out, rad/s.
+    pub steady: f64,
 }
 
 /// What has been carried until a moment.
@@ -129,6 +150,9 @@ impl Solution {
             unsteady: 0,
             neighbours: [0.0; 2],
             roughness: 1.0,
+            colour: 1.0,
+            widening: 1.0,
+            steady: 0.0,
         }
     }
 
@@ -138,7 +162,7 @@ impl Solution {
             self.frame = product(&by(&self.filter.three(START)), &self.frame);
             self.run(setting, path, Belief::Shown);
             let is_settled = length(&self.filter.three(START)) < SETTLED;
-            if is_settled && !self.roughen() {
+            if is_settled && !self.widen(setting) && !self.roughen() {
                 break;
             }
         }
@@ -151,9 +175,44 @@ impl Solution {
         if self.degrees < LEAST_DEGREES { 0.0 } else { products / squares }
     }
 
+    /// Whether the biases are greater than was known of them by more than chance, which is then not believed:
+    /// their 1σ is what they show where they do. What they are along east no rest shows.
+    fn widen(&mut self, setting: &Setting) -> bool {
+        let sigma = self.widening * setting.bias_sigma();
+        let before = sigma * sigma;
+        let left =
+            |axis: usize| (self.filter.covariance[BIAS + axis][BIAS + axis] / before).min(1.0);
+        let seen = 3.0 - left(0) - left(1) - left(2);
+        let found = self.filter.three(BIAS);
+        let power = dot(&found, &found) / before;
+        let ratio = if seen < LEAST_SEEN { 0.0 } else { power / seen };
+        let ratio = ratio.max(self.steady * self.steady / (3.0 * before));
+        let degrees = libm::round(seen).max(1.0);
+        let is_chance = if self.widening > 1.0 {
+            ratio < BELIEVED
+        } else {
+            chi_square_tail(ratio * degrees, degrees) > FALSE_BIAS
+        };
+        let wider = libm::sqrt(ratio);
+        let greatest = GREATEST_BIAS.max(GREATEST_WIDENING * setting.bias_sigma());
+        if is_chance || wider * sigma > greatest {
+            return false;
+        }
+        self.widening *= wider;
+        (self.roughness, self.colour) = (1.0, 1.0);
+        true
+    }
+
     /// Whether the blocks scatter more than was believed, by which they are then believed less: a sway that
-    /// is slower than two of them does not show in neighbours.
+    /// is slower than two of them does not show in neighbours, and what goes together means less.
     fn roughen(&mut self) -> bool {
+        let correlation = self.correlation();
+        let is_coloured = correlation * libm::sqrt(self.degrees) > COLOURED;
+        if is_coloured && self.colour <= 1.0 {
+            // The mean of values that go together from one to the next scatters by so much more.
+            self.colour = (1.0 + correlation) / (1.0 - correlation);
+            return true;
+        }
         let ratio = self.chi_square / self.degrees.max(1.0);
         let is_rough = ratio > ROUGH && self.roughness * ratio < ROUGHEST;
         if is_rough {
@@ -168,11 +227,11 @@ impl Solution {
         let common = &setting.common;
         (self.chi_square, self.degrees) = (0.0, 0.0);
         (self.left_out, self.turning, self.unsteady) = (0, 0, 0);
-        self.turning_rate = 0.0;
+        (self.turning_rate, self.steady) = (0.0, 0.0);
         self.neighbours = [0.0; 2];
         self.filter.begin(
             &start_covariance(&self.frame),
-            setting.bias_sigma(),
+            self.widening * setting.bias_sigma(),
             common.scale_sigma,
             common.accelerometer_bias_sigma,
             common.latitude_sigma,
@@ -182,7 +241,11 @@ impl Solution {
         let mut run = Run {
             setting,
             path,
-            density: if is_ideal { path.least_density() } else { self.roughness * path.density() },
+            density: if is_ideal {
+                path.least_density()
+            } else {
+                self.roughness * self.colour * path.density()
+            },
             north: (!is_exact).then(|| Place::moved(common.latitude, LATITUDE_STEP)),
             belief,
             last: Moment { at: path.start, ..Moment::default() },
@@ -385,18 +448,28 @@ impl Run<'_> {
             solution.turning += 1;
             let rate = length(&beyond) / stop.seconds();
             solution.turning_rate = solution.turning_rate.max(rate);
+            // A turn that takes little time makes these seconds stand out of the others.
+            let excess: f64 = self.excess(stop).iter().sum();
+            if rate * rate * stop.seconds() > TURNED_BY_HAND * excess {
+                solution.steady = solution.steady.max(rate);
+            }
         }
     }
 
     /// Variance of what a body's axes sway between both ends of a stop, rad²: what its seconds turn beyond
     /// the gyros' noise.
     fn sway(&self, stop: &Stop) -> Vector {
-        let walk = self.setting.common.noise.angle_random_walk;
         let is_ideal = self.belief == Belief::Ideal;
-        stop.turned.variance().map(|variance| {
-            let beyond = if is_ideal { 0.0 } else { (variance - walk * walk).max(0.0) };
+        self.excess(stop).map(|excess| {
+            let beyond = if is_ideal { 0.0 } else { excess };
             SLOW_SWAY * beyond + LEAST_SWAY
         })
+    }
+
+    /// Variance of what the seconds of a stop turn beyond the gyros' noise, (rad/s)².
+    fn excess(&self, stop: &Stop) -> Vector {
+        let walk = self.setting.common.noise.angle_random_walk;
+        stop.turned.variance().map(|variance| (variance - walk * walk).max(0.0))
     }
 
     /// Takes measurements, unless they are outliers; what they brought beyond the expected.

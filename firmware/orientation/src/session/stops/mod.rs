@@ -9,7 +9,7 @@
 
 use heapless::Vec;
 
-use super::procedure::ProcedureError;
+use super::procedure::{PERIOD_TOLERANCE, ProcedureError, contradiction};
 use crate::align::stops::Setting;
 use crate::align::stops::conclusion::Conclusion;
 use crate::align::stops::follower::{Follower, Rests};
@@ -69,12 +69,18 @@ pub struct Procedure {
     pub longest_seconds: f64,
     /// Sample period, s.
     pub sample_seconds: f64,
+    /// By how much the samples' times may contradict it, relative: what turned between two of them is wrong by
+    /// as much.
+    pub period_tolerance: f64,
     /// Displacements of the stops from the first, north and east, m, where they are known beforehand.
     pub displacements: Vec<[f64; 2], STOPS>,
 }
 
 /// Default length of a stop, s: Szymanowski's short levelling.
 const STOP_SECONDS: f64 = 60.0;
+/// By how much the ADS1262's own oscillator may be off, 2 % (data sheet SBAS661C, §7.5: internal oscillator
+/// accuracy): what a board's samples keep to.
+const CONVERTER_TOLERANCE: f64 = 0.02;
 /// Longest time for everything, s.
 const LONGEST_SECONDS: f64 = 6.0 * 3600.0;
 
@@ -88,6 +94,7 @@ impl Procedure {
             stop_seconds: STOP_SECONDS,
             longest_seconds: LONGEST_SECONDS,
             sample_seconds,
+            period_tolerance: CONVERTER_TOLERANCE,
             displacements: Vec::new(),
         }
     }
@@ -95,7 +102,12 @@ impl Procedure {
     /// Whatever a recording with this sample period shows.
     #[must_use]
     pub fn recorded(rests: Rests, sample_seconds: f64) -> Self {
-        Self { rests, longest_seconds: f64::INFINITY, ..Self::new(0, sample_seconds) }
+        Self {
+            rests,
+            longest_seconds: f64::INFINITY,
+            period_tolerance: PERIOD_TOLERANCE,
+            ..Self::new(0, sample_seconds)
+        }
     }
 
     /// Whether it can be gone about.
@@ -121,6 +133,8 @@ pub struct Session {
     follower: Follower,
     phase: Phase,
     begun: Option<Instant>,
+    /// Samples so far.
+    samples: u32,
     /// Whether this stop was said to be long enough.
     is_told: bool,
     conclusion: Option<Conclusion>,
@@ -145,8 +159,8 @@ impl Session {
         let period = procedure.sample_seconds;
         let follower = Follower::new(procedure.rests.clone(), &setting.sensors(), gravity, period);
         let phase = Phase::Waiting;
-        let (begun, is_told, conclusion) = (None, false, None);
-        Self { setting, procedure, follower, phase, begun, is_told, conclusion }
+        let (begun, samples, is_told, conclusion) = (None, 0, false, None);
+        Self { setting, procedure, follower, phase, begun, samples, is_told, conclusion }
     }
 
     /// Takes one event and answers what is to be done now.
@@ -201,6 +215,7 @@ impl Session {
 
     #[inline]
     fn sample(&mut self, sample: &InertialSample) -> Command {
+        self.samples += 1;
         if self.follower.push(sample) { self.second(sample.time) } else { Command::Wait }
     }
 
@@ -248,8 +263,20 @@ impl Session {
 
     #[inline(never)]
     fn conclude(&mut self) -> Command {
-        let conclusion = Conclusion::of(&self.setting, &mut self.follower);
+        let conclusion = match self.contradiction() {
+            Some(reason) => Conclusion::refused(reason),
+            None => Conclusion::of(&self.setting, &mut self.follower),
+        };
         self.finish(conclusion)
+    }
+
+    /// Whether the samples come at another pace than was told.
+    fn contradiction(&self) -> Option<Refusal> {
+        let Procedure { sample_seconds: told, period_tolerance, .. } = self.procedure;
+        let found = self.follower.elapsed() / f64::from(self.samples.max(1));
+        // What is missing is told as such.
+        let is_whole = self.samples > 0 && self.follower.loss().is_none();
+        contradiction(told, found, period_tolerance).filter(|_| is_whole)
     }
 
     fn finish(&mut self, conclusion: Conclusion) -> Command {

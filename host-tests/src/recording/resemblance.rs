@@ -1,0 +1,60 @@
+//! Names that are not known but resemble one that is: a slip of the pen, another unit, or none.
+
+/// Most characters by which two names may differ.
+const MOST: usize = 2;
+/// A name may differ by one character in so many, its first not counted: short ones resemble too much.
+const PART: usize = 4;
+/// What stands at the end of a name for its unit.
+const UNITS: [&str; 18] = [
+    "deg", "rad", "arcsec", "h", "h2", "hz", "khz", "sqrt", "s", "ms", "s2", "m", "km", "g", "mg",
+    "c", "sigma", "min",
+];
+
+/// The known name that this one resembles, the nearest one; none of a known name itself.
+pub(super) fn resembled(
+    name: &str,
+    known: impl Iterator<Item = &'static str> + Clone,
+) -> Option<&'static str> {
+    if known.clone().any(|other| other == name) {
+        return None;
+    }
+    let far = known.clone().map(str::len).max().unwrap_or(0) + MOST;
+    if name.len() > 2 * far {
+        return None;
+    }
+    let lower = name.to_ascii_lowercase();
+    let distance = |other: &&'static str| distance(&lower, &other.to_ascii_lowercase());
+    let nearest = known.clone().min_by_key(distance)?;
+    if distance(&nearest) <= MOST.min((nearest.len() - 1) / PART) {
+        return Some(nearest);
+    }
+    let mut known = known;
+    known.find(|other| stem(&lower) == stem(&other.to_ascii_lowercase()))
+}
+
+/// A name without its unit.
+fn stem(name: &str) -> &str {
+    let mut stem = name;
+    while let Some((before, last)) = stem.rsplit_once('_') {
+        if !UNITS.contains(&last) {
+            break;
+        }
+        stem = before;
+    }
+    stem
+}
+
+/// How many characters must be put in, left out or exchanged to make one text the other (Levenshtein).
+fn distance(one: &str, other: &str) -> usize {
+    let other: Vec<char> = other.chars().collect();
+    let mut row: Vec<usize> = (0..=other.len()).collect();
+    for (i, a) in one.chars().enumerate() {
+        let mut corner = std::mem::replace(&mut row[0], i + 1);
+        for (j, b) in other.iter().enumerate() {
+            let exchanged = corner + usize::from(a != *b);
+            corner = row[j + 1];
+            row[j + 1] = exchanged.min(corner + 1).min(row[j] + 1);
+        }
+    }
+    row.last().copied().unwrap_or(0)
+}
