@@ -24,5 +24,6 @@ pub mod simulate;
 pub mod spectrum;
 pub mod spin;
 pub mod stops;
+pub mod untold;
 pub mod vertical;
 pub mod virtual_time;

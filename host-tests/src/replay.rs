@@ -20,6 +20,7 @@ use orientation::units::{Angle, AngularRate, Instant, SpecificForce, TURN, Tempe
 use crate::recording::{Body, DwellRow, Header, Kind, StageRow};
 use crate::setting::{Described, describe};
 use crate::stops::samples::is_cut;
+use crate::untold;
 
 /// By which of its names an alignment in positions is called; the fit is the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -274,6 +275,7 @@ pub fn replay(
         Stops::Samples(rows) => stage(header, rows, setting, options.criterion, progress),
         Stops::Averages(rows) => dwells(rows, setting, options.criterion, progress),
     }?;
+    assumed.extend(untold::of(&session));
     Ok(Replay { method: options.method, session, setting, assumed })
 }
 

@@ -225,3 +225,17 @@ fn rows_of_averaged_dwells_give_the_same_north_as_their_samples() {
     let (a, b) = (conclusion.verdict.expect("ok"), sampled.conclusion().verdict.expect("ok"));
     assert!((a.angle - b.angle).abs() < 1e-9 && (a.sigma - b.sigma).abs() < 1e-9, "{a:?} {b:?}");
 }
+
+#[test]
+fn what_no_dwell_can_tell_is_assumed() {
+    let assumes = |name: &str, words: &str| {
+        replayed(name).replay.assumed.iter().any(|assumed| assumed.contains(words))
+    };
+    for name in ["stepwise-circle", "stepwise-paper-1", "positions-four-fog"] {
+        assert!(assumes(name, "drift in step with the turn"), "{name}");
+        assert!(assumes(name, "last quarter of the dwells"), "{name}");
+    }
+    assert!(assumes("stepwise-paper-1", "scale of the gyro, which no arc shows"));
+    assert!(!assumes("stepwise-circle", "scale of the gyro, which no arc shows"));
+    assert!(!assumes("stepwise-tilted-drift", "sense of the stage"));
+}

@@ -380,7 +380,7 @@ words! { Refusal:
         "the tilt steps by {} mg after {} s: the encoder slipped, or the platform was moved",
         Rounded::<2>(change), Rounded::<1>(after);
     Self::EndAstray { dwells, after } =>
-        "{} dwell(s) at the beginning or the end do not fit the others: after {} s the encoder slipped, or the base was turned",
+        "{} dwell(s) at the beginning or the end do not fit the others: after {} s the encoder slipped, the base was turned, or the gyro settled",
         dwells, Rounded::<1>(after);
     Self::GyroLags { seconds } =>
         "the gyro follows the stage {} s late: check its filter, and the times of its column",

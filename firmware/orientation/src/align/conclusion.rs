@@ -22,8 +22,9 @@ const OUTLIER_BOUND: f64 = 4.2;
 const WHITENESS_PROBABILITY: [f64; 2] = [1e-3, 1e-6];
 /// Chi-square by which a trend that the azimuth cannot afford may explain the dwells (6e-5).
 const HIDDEN_TREND: f64 = 16.0;
-/// By how much more one dwell must explain than a step of the heading, in chi-square.
-const SINGLE: f64 = 1.2;
+/// By how much more one dwell must explain than a step of the heading, in chi-square: else that may be what shows
+/// in it.
+const CLEARLY: f64 = 10.0;
 /// Most that dwells which were left out raise σ by: what a chi-square at the edge of refusal amounts to.
 const GREATEST_EXCESS: f64 = 2.0;
 /// Bound of the correlation of neighbouring residuals, in its standard deviation 1/√n.
@@ -39,8 +40,8 @@ const COUNTER: f64 = 0.3;
 /// Of the tangent of the angle from the axis of two positions, what σ may be at most, rad: the second
 /// order is then a tenth of the first.
 const STEEPNESS: f64 = 0.2;
-/// Bound of the Earth-rate ratio in its σ.
-const RATIO_BOUND: f64 = 4.0;
+/// Bound of the Earth-rate ratio in its σ (p = 0.001).
+const RATIO_BOUND: f64 = 3.3;
 /// What the Earth-rate ratio may be off beyond its σ where the scale is said to be exact: scale errors that no
 /// data sheet excludes and that turn no azimuth.
 const RATIO_TOLERANCE: f64 = 0.005;
@@ -171,10 +172,13 @@ impl Conclusion {
             scatter = scatter.max(fit.excess.min(GREATEST_EXCESS));
             fit.allow_for(scatter);
             // With few degrees of freedom the worst residual need not be the disturbed dwell's.
-            let removable =
-                self.outliers() < allowed_outliers(dwells.len()) && degrees > FEW_DEGREES;
+            let outliers = self.outliers();
+            let removable = outliers < allowed_outliers(dwells.len()) && degrees > FEW_DEGREES;
             let worst = self.worst();
-            if let Some(step) = step.filter(|step| !explains(worst, step)) {
+            let is_stepped = |step: &HeadingStep| {
+                (step.is_believed || worst.is_some()) && !explains(worst, step)
+            };
+            if let Some(step) = step.filter(is_stepped) {
                 let angle = step.angle / TURN * 360.0;
                 return Err(Refusal::HeadingStepped { angle, after: step.after });
             }
@@ -184,7 +188,7 @@ impl Conclusion {
                 Some(_) => return Err(Refusal::ResidualsNotWhite { ratio }),
                 None => {
                     if let Some(fit) = &mut self.fit {
-                        problem.allow_for_drift(fit);
+                        problem.protect(fit, outliers > 0);
                     }
                     return self.judge_ends(dwells);
                 }
@@ -197,11 +201,8 @@ impl Conclusion {
     /// Refuses where the dwells that do not fit the others begin or end the session: then it was not they who
     /// were disturbed, but the heading or the encoder is another one since.
     fn judge_ends(&self, dwells: &[Dwell]) -> Result<(), Refusal> {
-        let is_astray = |why: &&Option<Disturbance>| {
-            matches!(why, Some(Disturbance::Outlier(_) | Disturbance::Moved(_)))
-        };
-        let first = self.disturbances.iter().take_while(is_astray).count();
-        let last = self.disturbances.iter().rev().take_while(is_astray).count();
+        let first = astray(self.disturbances.iter());
+        let last = astray(self.disturbances.iter().rev());
         let at = match (first, last) {
             (0, 0) => return Ok(()),
             (first, 0) => first,
@@ -380,12 +381,24 @@ fn allowed_outliers(positions: usize) -> usize {
 /// Whether one dwell by itself, its index and studentised residual, explains more than a step of the heading; at
 /// either end of the session both are the same, and a step may not be passed over.
 fn explains(worst: Option<(usize, f64)>, step: &HeadingStep) -> bool {
-    worst.is_some_and(|(_, residual)| residual * residual > SINGLE * step.gain)
+    worst.is_some_and(|(_, residual)| residual * residual > step.gain + CLEARLY)
 }
 
 /// Chi-square over its degrees of freedom.
 fn excess(fit: &Fit) -> f64 {
     fit.chi_square / fit.degrees.max(1) as f64
+}
+
+/// How many dwells at an end do not fit the others. One that was disturbed within itself may have had a blow.
+fn astray<'a>(from: impl Iterator<Item = &'a Option<Disturbance>>) -> usize {
+    use Disturbance::{Drift, Step, Unquiet};
+    let run = from.map_while(|why| why.filter(|why| !matches!(why, Disturbance::Samples(_))));
+    let (mut count, mut within) = (0, 0);
+    for why in run {
+        count += 1;
+        within += usize::from(matches!(why, Unquiet(_) | Step(_) | Drift(_)));
+    }
+    if count == 1 && within == 1 { 0 } else { count }
 }
 
 /// N² from the scatter inside the dwells, each weighted by its degrees of freedom.

@@ -25,10 +25,10 @@ pub struct Tilt {
     pub imaginary: f64,
     /// When F is so, s: the end of the last dwell.
     pub time: f64,
-    /// How fast F changes, 1/s: zero of a base that stands as far as its forces tell.
-    pub rate: [f64; 2],
-    /// Covariance of the true rate about that one, 1/s².
-    pub rate_covariance: [[f64; 2]; 2],
+    /// How fast F changes: zero of a base that stands as far as its forces tell.
+    pub rate: TiltRate,
+    /// How fast it may change nevertheless: what the forces show but do not prove.
+    pub unproven: TiltRate,
     /// Covariance of the two parts of F, g².
     pub covariance: [[f64; 2]; 2],
     /// Accelerometer biases along its x and y, g.
@@ -45,12 +45,21 @@ pub struct Tilt {
     pub measured: bool,
 }
 
+/// How fast a tilt phasor changes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TiltRate {
+    /// F′, 1/s.
+    pub value: [f64; 2],
+    /// Its covariance, 1/s².
+    pub covariance: [[f64; 2]; 2],
+}
+
 impl Tilt {
     /// The tilt at another time, s.
     #[must_use]
     pub fn at(&self, time: f64) -> Self {
         let elapsed = time - self.time;
-        let [real, imaginary] = self.rate.map(|rate| rate * elapsed);
+        let [real, imaginary] = self.rate.value.map(|rate| rate * elapsed);
         Self { real: self.real + real, imaginary: self.imaginary + imaginary, time, ..*self }
     }
 
@@ -134,11 +143,28 @@ const STEP_BELIEVED: f64 = 22.0;
 const FEW: f64 = 11.0;
 /// 1σ of how fast a base tilts that does, 1/s: 3 °/h.
 const FASTEST: f64 = 3.0 * DEGREE_PER_HOUR;
-/// Part of the sessions whose base is taken to tilt before its forces are looked at: what they do not tell is
-/// weighed with it in σ; and where nothing in them speaks for it.
-const TILTING: [f64; 2] = [0.003, 0.0003];
-/// Squared significance from which it is doubtful whether a base stands (p = 0.01, two parts).
-const DOUBTFUL: f64 = 9.21;
+/// Squared significance from which a tilt rate is more than chance: two of five healthy sessions have so much.
+const SHOWN: f64 = 1.0;
+/// Part of a tilt rate's variance that counts where it shows no more than chance.
+const UNSEEN: f64 = 0.4;
+
+impl TiltRate {
+    /// The same, for a base that tilts no faster than [`FASTEST`].
+    fn possible(&self) -> Self {
+        let [[a, _], [_, b]] = self.covariance;
+        let part = 1.0 / (1.0 + 0.5 * (a + b) / (FASTEST * FASTEST));
+        Self {
+            value: self.value.map(|value| value * libm::sqrt(part)),
+            covariance: self.covariance.map(|row| row.map(|value| value * part)),
+        }
+    }
+
+    /// The same where nothing shows.
+    fn unseen(&self) -> Self {
+        let covariance = self.covariance.map(|row| row.map(|value| value * UNSEEN));
+        Self { value: [0.0; 2], covariance }
+    }
+}
 
 /// Fits the tilt to the dwells' mean forces, for gravity in m/s² and the 1σ of each accelerometer
 /// bias in m/s² (zero: taken as free of bias).
@@ -181,7 +207,7 @@ pub fn tilt_in<'a>(
         counter.filter(|fit| fit.significance() > BELIEVED)
     };
     let alone = countering([0.0; 2]).filter(|fit| fit.scatter < tilt.left);
-    let counter = alone.or_else(|| countering(tilt.rate));
+    let counter = alone.or_else(|| countering(tilt.rate.value));
     tilt.counter = counter.map_or(0.0, |fit| libm::hypot(fit.beside[0], fit.beside[1]));
     tilt
 }
@@ -352,24 +378,15 @@ impl Found {
             .map_or(0.0, |information| quadratic(&information, self.beside) / known)
     }
 
-    /// The tilt where this one changes: believed where it is significant, else in σ by the probability that
-    /// the base tilts nevertheless.
+    /// The tilt where this one changes: believed where it is significant, else unproven.
     fn believed(&self, standing: Tilt) -> Tilt {
         let significance = self.significance();
+        let found = TiltRate { value: self.beside, covariance: self.beside_covariance };
         if significance > BELIEVED {
-            let tilting = self.tilt(standing.time, standing.scatter);
-            return Tilt { rate: self.beside, rate_covariance: self.beside_covariance, ..tilting };
+            return Tilt { rate: found, ..self.tilt(standing.time, standing.scatter) };
         }
-        let prior = TILTING[usize::from(significance < DOUBTFUL)];
-        let odds = prior * libm::exp(0.5 * significance);
-        let probability = odds / (1.0 + odds);
-        let [[a, _], [_, b]] = self.beside_covariance;
-        let possible = 1.0 / (1.0 + 0.5 * (a + b) / (FASTEST * FASTEST));
-        let square = |i: usize, j: usize| {
-            probability
-                * possible
-                * (self.beside[i] * self.beside[j] + self.beside_covariance[i][j])
-        };
-        Tilt { rate_covariance: [0, 1].map(|i| [0, 1].map(|j| square(i, j))), ..standing }
+        let unproven = found.possible();
+        let unproven = if significance > SHOWN { unproven } else { unproven.unseen() };
+        Tilt { unproven, ..standing }
     }
 }

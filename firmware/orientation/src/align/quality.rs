@@ -253,33 +253,56 @@ pub fn moved(
 }
 
 /// How many dwells tell whether the gyro lags.
-const LAGGING_DWELLS: usize = 4;
-/// Significance, σ, of a lag that is believed.
-const LAG_BOUND: f64 = 5.0;
+const LAGGING_DWELLS: i32 = 4;
+/// Significance, σ, of a lag that is believed (3e-5).
+const LAG_BOUND: f64 = 4.0;
 
-/// By how much the gyro follows the stage late, s, by the dwells that nothing disturbed; `None` where it may be
-/// chance.
+/// By how much the gyro follows the stage late, s, by the dwells whose platform stood; `None` where it
+/// may be chance.
 ///
 /// A gyro that lags by τ, or whose column is late by τ, brings into each dwell of T a part of the one before:
 /// its mean moves by Δ·τ/T for a difference Δ of both rates, and its slope by −6 Δ τ/T².
 #[must_use]
 #[inline(never)]
 pub fn lag(norm: &Norm, dwells: &[Dwell], marks: &[Option<Disturbance>]) -> Option<f64> {
-    let (mut power, mut shared, mut count) = (0.0, 0.0, 0);
-    for (pair, marks) in dwells.windows(2).zip(marks.windows(2)) {
-        let is_still = marks.iter().all(Option::is_none);
-        let Some(quietness) = pair[1].quietness.as_ref().filter(|_| is_still) else { continue };
-        let variance = norm.slope_variance(quietness);
-        if variance <= 0.0 {
-            continue;
-        }
-        let per_second = -6.0 * (pair[0].rate - pair[1].rate) / (pair[1].seconds * pair[1].seconds);
-        power += per_second * per_second / variance;
-        shared += per_second * (quietness.slope - norm.slope) / variance;
+    let (mut power, mut shared, mut total, mut count) = (0.0, 0.0, 0.0, 0);
+    for [expected, found] in slopes(norm, dwells, marks) {
+        power += expected * expected;
+        shared += expected * found;
+        total += found * found;
         count += 1;
     }
-    let is_late = count >= LAGGING_DWELLS && shared > LAG_BOUND * libm::sqrt(power);
-    is_late.then(|| shared / power)
+    if count < LAGGING_DWELLS {
+        return None;
+    }
+    // A drift that no key states makes slopes, too: they are weighed by what the lag leaves of them.
+    let left = ((total - shared * shared / power) / f64::from(count - 1)).max(1.0);
+    (shared > LAG_BOUND * libm::sqrt(power * left)).then(|| shared / power)
+}
+
+/// For each dwell that follows another the slope that a lag of one second gives it, and that which it has, in σ. A
+/// blow to one dwell shows no lag: what each has is bounded.
+fn slopes<'a>(
+    norm: &'a Norm,
+    dwells: &'a [Dwell],
+    marks: &'a [Option<Disturbance>],
+) -> impl Iterator<Item = [f64; 2]> + 'a {
+    dwells.windows(2).zip(marks.windows(2)).filter_map(|(pair, marks)| {
+        let quietness = pair[1].quietness.as_ref()?;
+        let sigma = libm::sqrt(norm.slope_variance(quietness));
+        if sigma <= 0.0 || marks.iter().flatten().any(is_moved) {
+            return None;
+        }
+        let per_second = -6.0 * (pair[0].rate - pair[1].rate) / (pair[1].seconds * pair[1].seconds);
+        let found = (quietness.slope - norm.slope) / sigma;
+        Some([per_second / sigma, found.clamp(-SLOPE_BOUND, SLOPE_BOUND)])
+    })
+}
+
+/// Whether a dwell's samples are sick, or its platform moved.
+fn is_moved(mark: &Disturbance) -> bool {
+    use Disturbance::{Driving, Moved, Samples};
+    matches!(mark, Samples(_) | Moved(_) | Driving(..))
 }
 
 /// How a dwell's mean force differs from that of the tilt and the biases, g.

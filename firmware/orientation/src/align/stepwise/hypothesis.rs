@@ -2,13 +2,13 @@
 //! an encoder that slipped, an encoder that errs twice a turn, a drift that bends.
 //!
 //! Each adds columns that follow the azimuth's own, ∂/∂A, of the steady fit. Where chi-square says so they are
-//! used or, where nobody can say which side of a step is right, refused. Where it does not, they are weighed:
-//! σ grows by what each would change, times its probability.
+//! used or, where either side of a step may be the right one, refused. Where it does not, σ allows for each by
+//! solution separation: how far its azimuth lies from the one given, and how much farther it may lie unseen.
 
 use super::super::different_positions;
 use super::super::direction::Amplitude;
-use super::super::regression::Column;
-use super::{Fit, Model, Problem, Row, Trial};
+use super::super::regression::{COLUMNS, Column, Regression};
+use super::{Fit, Model, Problem, ROUNDS, Row, Trial};
 use crate::math::chi_square_tail;
 use crate::signal::dwell::Dwell;
 
@@ -40,18 +40,12 @@ pub struct HeadingStep {
     pub angle: f64,
     /// By how much it lowers chi-square.
     pub gain: f64,
+    /// Whether that is no chance.
+    pub is_believed: bool,
 }
 
-/// Part of the sessions in which a hypothesis holds, before the dwells are looked at.
-const PRIOR: f64 = 0.005;
-/// The same of one that nothing in the dwells speaks for.
-const UNSEEN: f64 = 3e-4;
-/// The same of a drift that bends, where the dwells show one that no key states.
-const BENDING: f64 = 0.5;
 /// Degrees of freedom that a hypothesis must leave to be believed: with fewer, anything fits.
 const FREEDOM: usize = 6;
-/// What one doubt may add to the azimuth's variance, in units of it: σ is then twice as great.
-const DOUBT: f64 = 3.0;
 /// Probability that it must leave to the residuals: it is not the explanation where much remains to explain.
 const LEFT: f64 = 0.01;
 /// Part of a step's information that is left where the model's columns take all of it.
@@ -62,16 +56,15 @@ const CLEARLY: f64 = 10.0;
 const SPARED: f64 = 6.0;
 /// Gain of chi-square from which one more column is believed (p = 0.0001), and two.
 const BELIEVED: [f64; 2] = [15.1, 18.4];
-/// Gain of chi-square from which one more column is doubtful (p = 0.01), and two.
-const DOUBTFUL: [f64; 2] = [6.63, 9.21];
-/// The same of a step for each place at which it may be (p = 0.01 over all of them).
-const STEP_DOUBTFUL: f64 = 6.63;
 /// Gain from which a step is believed for each place at which it may be: p = 0.001 over all of them.
 const STEP_BELIEVED: f64 = 10.8;
 /// By how much a hypothesis may raise the variance of the azimuth; beyond, the dwells do not show it.
-const OBSERVABLE: f64 = 100.0;
-/// The same of a step: a circle in which it lies in the middle makes it four times.
-const STEP_OBSERVABLE: f64 = 25.0;
+pub(super) const OBSERVABLE: f64 = 100.0;
+/// σ of an alternative's azimuth by which it may be farther away than it shows: one of fifty is.
+pub(super) const MISSED: f64 = 1.8;
+/// Change of heading, rad, from which a step is followed again with its exact turn: its square is then a tenth
+/// of a step that is just seen.
+const TURNED: f64 = 0.003;
 /// Fewest positions of a circle that show an elliptic encoder: of four the third harmonic looks like the first.
 const ELLIPSE_POSITIONS: usize = 5;
 /// The same of an elliptic encoder, which four positions and arcs do not show: a circle doubles it.
@@ -125,13 +118,12 @@ impl Hypothesis {
         }
     }
 
-    /// Gain from which it is doubtful whether it does not hold (p = 0.01), of so many dwells. A base that turns and a
-    /// drift that bends are always: they may change the azimuth by far more than they show.
+    /// Gain below which it is passed over, of so many dwells. One of many places shows a step by chance alone, of
+    /// about this gain; a base that turns may change the azimuth by far more than it shows.
     fn doubtful(self, dwells: usize) -> f64 {
         match self {
-            Self::Steady | Self::Yawing | Self::Curved => 0.0,
-            Self::Elliptic => DOUBTFUL[1],
-            Self::Stepped { .. } => STEP_DOUBTFUL + 2.0 * libm::log(dwells as f64),
+            Self::Stepped { .. } => 2.0 * libm::log(dwells as f64),
+            _ => 0.0,
         }
     }
 
@@ -139,10 +131,19 @@ impl Hypothesis {
     fn observable(self) -> f64 {
         match self {
             Self::Elliptic => ELLIPSE_OBSERVABLE,
-            Self::Stepped { .. } => STEP_OBSERVABLE,
             _ => OBSERVABLE,
         }
     }
+}
+
+/// How far the azimuth may be off under the alternatives, rad: its protection level, over which integrity
+/// monitoring takes the greatest of all (solution separation).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Protection {
+    /// Under those that may hide in any session.
+    pub always: f64,
+    /// Under these and those that only show where something is astray.
+    pub astray: f64,
 }
 
 /// A hypothesis against the steady fit.
@@ -153,52 +154,41 @@ struct Weighed {
     gain: f64,
     /// The gain with the Earth rate free, over that from which the hypothesis is believed.
     belief: f64,
-    /// By how much it moves the azimuth, rad, and widens its variance, rad².
-    shift: f64,
-    widening: f64,
+    /// The azimuth under it, rad, and its 1σ.
+    azimuth: f64,
+    sigma: f64,
     /// Its first coefficient.
     coefficient: f64,
 }
 
 impl Weighed {
-    /// What the azimuth's variance lacks while the hypothesis is not believed, rad².
-    fn variance(&self, dwells: usize) -> f64 {
-        if self.gain < self.model.hypothesis.doubtful(dwells) {
-            return 0.0;
+    /// How far an azimuth with its 1σ may be off under it, rad: of a step either side may be the right one.
+    fn protection(&self, azimuth: f64, sigma: f64) -> f64 {
+        let after = separation(self.azimuth, azimuth) + MISSED * self.sigma;
+        if self.is_model() {
+            return after;
         }
-        let prior = match self.model.hypothesis {
-            // It may be at any of many places, which share the probability.
-            Hypothesis::Stepped { .. } => PRIOR / dwells as f64,
-            Hypothesis::Curved => BENDING,
-            _ if self.gain < DOUBTFUL[0] => UNSEEN,
-            _ => PRIOR,
-        };
-        let odds = prior * libm::exp(0.5 * self.gain.min(50.0));
-        odds / (1.0 + odds) * (self.shift * self.shift + self.widening)
+        let before = separation(self.azimuth - self.coefficient, azimuth) + MISSED * sigma;
+        after.max(before)
     }
 
-    /// What the azimuth's variance lacks where another hypothesis is believed that explains more, rad².
-    fn variance_beside(&self, best: &Self) -> f64 {
-        let odds = libm::exp(0.5 * (self.gain - best.gain).min(0.0));
-        let apart = self.shift - best.shift;
-        if self.model.hypothesis == best.model.hypothesis {
-            0.0
-        } else {
-            odds / (1.0 + odds) * apart * apart
-        }
-    }
-
-    /// Whether the azimuth can be found with it: of a step nobody knows which side is right.
+    /// Whether the azimuth can be found with it: of a step either side may be the right one.
     fn is_model(&self) -> bool {
         !matches!(self.model.hypothesis, Hypothesis::Stepped { .. })
     }
 
-    /// The step of the heading that it is, where that is believed.
+    /// The step of the heading that it is.
     fn step(&self) -> Option<HeadingStep> {
         let Hypothesis::Stepped { after } = self.model.hypothesis else { return None };
         let (angle, gain) = (self.coefficient, self.gain);
-        (self.belief >= 1.0).then_some(HeadingStep { after, angle, gain })
+        Some(HeadingStep { after, angle, gain, is_believed: self.belief >= 1.0 })
     }
+}
+
+/// How far two azimuths lie from each other, rad.
+pub(super) fn separation(one: f64, other: f64) -> f64 {
+    let (sine, cosine) = libm::sincos(one - other);
+    libm::atan2(sine, cosine).abs()
 }
 
 /// The one that explains most.
@@ -210,10 +200,36 @@ fn greatest<'a>(of: impl Iterator<Item = &'a Weighed>) -> Option<&'a Weighed> {
 }
 
 impl Problem<'_> {
-    /// Weighs every hypothesis against a steady fit; gives the model to fit with, and what the others leave
-    /// to the azimuth's variance beside it, rad².
+    /// Weighs every hypothesis against a steady fit, whose step and protection it tells; gives the model to fit
+    /// with where one is believed.
     #[inline(never)]
-    pub(super) fn weigh(&self, fit: &mut Fit, steady: &Trial) -> Option<(Model, f64)> {
+    pub(super) fn weigh(&self, fit: &mut Fit, steady: &Trial, is_circle: bool) -> Option<Model> {
+        let weighed = self.candidates(fit).map(|candidate| self.weighed(candidate, fit, steady));
+        let all = || weighed.iter().flatten();
+        let is_believed = |one: &&Weighed| is_circle && one.is_model() && one.belief >= 1.0;
+        let best = greatest(all().filter(is_believed));
+        let step = greatest(all().filter(|one| is_circle && one.step().is_some()));
+        let is_beaten = |one: &Weighed| best.is_some_and(|best| best.gain > one.gain + CLEARLY);
+        fit.step = step.filter(|step| !is_beaten(step)).and_then(Weighed::step);
+        let azimuth = best.map_or(steady.direction.azimuth, |best| best.azimuth);
+        let sigma = libm::sqrt(steady.direction.variance);
+        let used = best.map_or(Hypothesis::Steady, |best| best.model.hypothesis);
+        fit.protection = Protection::default();
+        for one in all().filter(|one| one.model.hypothesis != used && !is_beaten(one)) {
+            let level = one.protection(azimuth, sigma);
+            let doubtful = one.model.hypothesis.doubtful(self.dwells.len());
+            if one.gain >= 0.5 * doubtful {
+                fit.protection.astray = fit.protection.astray.max(level);
+            }
+            if is_circle && one.gain >= doubtful {
+                fit.protection.always = fit.protection.always.max(level);
+            }
+        }
+        best.map(|best| Model { amplitude: fit.model.amplitude, ..best.model })
+    }
+
+    /// What may be the matter; [`Hypothesis::Steady`] where there is nothing to weigh.
+    fn candidates(&self, fit: &Fit) -> [Hypothesis; 5] {
         let step = |model: &Model| match self.likeliest_step(model, fit) {
             Some(after) => Hypothesis::Stepped { after },
             None => Hypothesis::Steady,
@@ -222,26 +238,7 @@ impl Problem<'_> {
             if fit.model.time == Column::Free { Hypothesis::Curved } else { Hypothesis::Steady };
         let [with, without] = [step(&fit.model), step(&self.base())];
         let without = if with == without { Hypothesis::Steady } else { without };
-        let weighed = [Hypothesis::Yawing, Hypothesis::Elliptic, drift, with, without]
-            .map(|hypothesis| self.weighed(hypothesis, fit, steady));
-        let all = || weighed.iter().flatten();
-        let best = greatest(all().filter(|one| one.is_model() && one.belief >= 1.0));
-        let step = greatest(all().filter(|one| one.step().is_some()));
-        let is_passed = |step: &&Weighed| best.is_some_and(|best| best.gain > step.gain + CLEARLY);
-        fit.step = step.filter(|step| !is_passed(step)).and_then(Weighed::step);
-        if let Some(best) = best {
-            let beside = all().map(|other| other.variance_beside(best)).sum();
-            return Some((Model { amplitude: fit.model.amplitude, ..best.model }, beside));
-        }
-        for one in all().filter(|one| one.belief < 1.0) {
-            let part = match one.model.hypothesis {
-                Hypothesis::Elliptic => &mut fit.budget.encoder,
-                _ => &mut fit.budget.drift,
-            };
-            let most = DOUBT * steady.direction.variance;
-            *part = libm::hypot(*part, libm::sqrt(one.variance(self.dwells.len()).min(most)));
-        }
-        None
+        [Hypothesis::Yawing, Hypothesis::Elliptic, drift, with, without]
     }
 
     /// One hypothesis, with the trends of the steady fit or without those that it spares.
@@ -268,32 +265,43 @@ impl Problem<'_> {
         if hypothesis == Hypothesis::Steady || is_hidden {
             return None;
         }
-        let bent = fit.bent(hypothesis);
-        let regression = self.regression(&self.setting.noise, Dwell::taper_factor, &bent);
-        let trial = self.trial(&regression, &Model { amplitude: steady.amplitude, ..*model })?;
-        let free = self.trial(&regression, &Model { amplitude: Amplitude::Free, ..*model })?;
+        let model = Model { amplitude: steady.amplitude, ..*model };
+        let (regression, trial) = self.followed(&model, fit)?;
+        let free = self.trial(&regression, &Model { amplitude: Amplitude::Free, ..model })?;
         let most = hypothesis.observable() * steady.direction.variance;
         if trial.degrees == 0 || trial.direction.variance > most {
             return None;
-        }
-        let mut shift = trial.direction.azimuth - steady.direction.azimuth;
-        if let Hypothesis::Stepped { .. } = hypothesis {
-            // Either side may be the right one.
-            let before = shift - trial.coefficient;
-            shift = if before.abs() > shift.abs() { before } else { shift };
         }
         let is_trusted = !matches!(hypothesis, Hypothesis::Stepped { .. });
         let is_vague = is_trusted && (free.degrees < FREEDOM || free.probability() < LEFT);
         let believed =
             if is_vague { f64::INFINITY } else { hypothesis.believed(self.dwells.len()) };
         Some(Weighed {
-            model: *model,
+            model,
             gain: trial.gain(steady.chi_square),
             belief: free.gain(fit.free_chi_square) / believed,
-            shift,
-            widening: (trial.direction.variance - steady.direction.variance).max(0.0),
+            azimuth: trial.direction.azimuth,
+            sigma: libm::sqrt(trial.direction.variance),
             coefficient: trial.coefficient,
         })
+    }
+
+    /// The regression with a hypothesis and what it gives; of a step with its exact turn, not with ∂/∂A alone.
+    fn followed(&self, model: &Model, fit: &Fit) -> Option<(Regression<COLUMNS>, Trial)> {
+        let mut bent = fit.bent(model.hypothesis);
+        let is_step = matches!(model.hypothesis, Hypothesis::Stepped { .. });
+        let mut rounds = 0;
+        loop {
+            let regression = self.regression(&self.setting.noise, Dwell::taper_factor, &bent);
+            let trial = self.trial(&regression, model)?;
+            if !is_step || rounds == ROUNDS || trial.coefficient.abs() < TURNED {
+                let coefficient = trial.coefficient + bent.turn;
+                return Some((regression, Trial { coefficient, ..trial }));
+            }
+            bent.turn += trial.coefficient;
+            bent.along = trial.direction.along();
+            rounds += 1;
+        }
     }
 
     /// After which time the heading most likely stepped, s: where the residuals of a model show most of the
@@ -301,7 +309,8 @@ impl Problem<'_> {
     #[inline(never)]
     fn likeliest_step(&self, model: &Model, fit: &Fit) -> Option<f64> {
         let bent = fit.bent(Hypothesis::Steady);
-        let regression = self.regression(&self.setting.noise, Dwell::taper_factor, &bent);
+        let noise = self.setting.noise.white_part();
+        let regression = self.regression(&noise, Dwell::taper_factor, &bent);
         let solution = regression.solve(&model.columns())?;
         let (mut power, mut score, mut shared) = (0.0, 0.0, Row::default());
         let mut best = (0.0, 0.0);

@@ -9,7 +9,7 @@ mod hypothesis;
 mod model;
 mod uncertainty;
 
-pub use hypothesis::{HeadingStep, Hypothesis};
+pub use hypothesis::{HeadingStep, Hypothesis, Protection};
 pub use model::Model;
 pub use uncertainty::FEW_DEGREES;
 
@@ -52,8 +52,10 @@ pub struct Fit {
     pub degrees: usize,
     /// By how much more than their noise the dwells scatter, as a factor that is in the budget.
     pub excess: f64,
-    /// A step of the heading that the dwells show.
+    /// The step of the heading that the dwells show most.
     pub step: Option<HeadingStep>,
+    /// How far the azimuth may be off under what else may explain the dwells.
+    pub protection: Protection,
     /// Chi-square with the Earth rate free, where that was asked for.
     free_chi_square: f64,
     coefficients: [f64; COLUMNS],
@@ -74,6 +76,18 @@ pub(super) struct Bent {
     along: [f64; 2],
     /// Rate at which the base is known to turn about the vertical, rad/h.
     rate: f64,
+    /// By how much the heading is known to step, rad.
+    turn: f64,
+}
+
+impl Bent {
+    /// What the heading of a dwell lacks of the last dwell's for the step, rad.
+    fn turn_before(&self, dwell: &Dwell) -> f64 {
+        match self.hypothesis {
+            Hypothesis::Stepped { after } if dwell.middle < after => self.turn,
+            _ => 0.0,
+        }
+    }
 }
 
 /// What a model makes of the dwells.
@@ -122,8 +136,8 @@ impl Problem<'_> {
         let regression = self.steady();
         let model = self.choose(&regression)?;
         let mut found = self.fit_model(&regression, &model, &Bent::default())?;
-        // On an arc, and with few dwells, any of them looks like any other.
-        if model.amplitude != Amplitude::Free || self.dwells.len() < FEWEST {
+        // With few dwells any of them looks like any other.
+        if self.dwells.len() < FEWEST || model.is_single_axis {
             return Some(found);
         }
         let known = Model { amplitude: self.setting.known_amplitude(), ..model };
@@ -131,15 +145,10 @@ impl Problem<'_> {
         let trials = self.trial(&regression, &known).zip(self.trial(&regression, &open));
         let Some((steady, free)) = trials else { return Some(found) };
         found.0.free_chi_square = free.chi_square;
-        match self.weigh(&mut found.0, &steady) {
-            Some((model, beside)) => {
-                let under = self.fit_under(&model, &found.0);
-                let mut found = under.unwrap_or(found);
-                found.0.budget.drift = libm::hypot(found.0.budget.drift, libm::sqrt(beside));
-                Some(found)
-            }
-            None => Some(found),
-        }
+        // On an arc, too: none is believed, nor doubted in a sound session. What a trend costs makes no arc.
+        let is_circle = self.freed(&regression, &self.base())?.amplitude == Amplitude::Free;
+        let model = self.weigh(&mut found.0, &steady, is_circle);
+        Some(model.and_then(|model| self.fit_under(&model, &found.0)).unwrap_or(found))
     }
 
     /// The regression of a base that stands.
@@ -161,7 +170,8 @@ impl Problem<'_> {
         }
         let regression = self.regression(&self.setting.noise, Dwell::taper_factor, &bent);
         let found = self.fit_model(&regression, &self.freed(&regression, model)?, &bent)?;
-        Some((Fit { step: steady.step, ..found.0 }, found.1))
+        let Fit { step, protection, .. } = *steady;
+        Some((Fit { step, protection, ..found.0 }, found.1))
     }
 
     /// What a model makes of the dwells; nothing where they do not determine it.
@@ -209,6 +219,7 @@ impl Problem<'_> {
             excess: 1.0,
             free_chi_square: 0.0,
             step: None,
+            protection: Protection::default(),
             coefficients: solution.coefficients,
             bent: match model.hypothesis {
                 Hypothesis::Steady => Bent { along: direction.along(), ..*bent },
@@ -243,11 +254,11 @@ impl Problem<'_> {
         let force = (mount.force)(&tilt, dwell);
         let latitude = self.setting.latitude;
         let first = self.dwells[0];
-        let [forward, right] = tilt.turning(tilt.rate);
+        let [forward, right] = tilt.turning(tilt.rate.value);
         let left = dwell.rate - first.rate + latitude.vertical_rate() * axis[2]
             - dot(self.setting.g_sensitivity, force)
             - (axis[0] * forward + axis[1] * right);
-        let yaw = bent.rate * self.hours_to_end(dwell);
+        let yaw = bent.rate * self.hours_to_end(dwell) - bent.turn_before(dwell);
         let left = left - bent.rate / 3600.0 * axis[2];
         let axis = turned(axis, yaw);
         let celsius = |dwell: &Dwell| dwell.temperature.get().unwrap_or(0.0);

@@ -2,8 +2,10 @@
 
 use super::super::budget::Budget;
 use super::super::direction::{Amplitude, Direction, dot, product, quadratic};
+use super::super::level::TiltRate;
 use super::super::regression::{COLUMNS, Column, Regression};
-use super::{Bent, Fit, Model, Problem, Trial, block};
+use super::hypothesis::{MISSED, OBSERVABLE, separation};
+use super::{Bent, FEWEST, Fit, Hypothesis, Model, Problem, Protection, Trial, block};
 use crate::math::chi_square_tail;
 use crate::noise::model::GyroNoise;
 use crate::signal::dwell::Dwell;
@@ -89,13 +91,14 @@ impl Problem<'_> {
             let half = product(&self.tilt.covariance, row);
             [dot(rows[0], half), dot(rows[1], half)]
         });
-        [[[kappa * kappa, 0.0], [0.0, kappa * kappa]], tilt, self.tilting(rate)]
+        let base = self.tilting(&self.tilt.rate.covariance);
+        [[[kappa * kappa, 0.0], [0.0, kappa * kappa]], tilt, base]
     }
 
-    /// Covariance of the components from what a base that tilts may turn beyond the rate found: forward by the
-    /// imaginary part of F′ and right by its real part, which is west of the column.
-    fn tilting(&self, rate: f64) -> Covariance {
-        let [[a, b], [_, d]] = self.tilt.rate_covariance;
+    /// Covariance of the components from that of a base's tilt rate: it turns forward by the imaginary part of F′ and
+    /// right by its real part, which is west of the column.
+    fn tilting(&self, [[a, b], [_, d]]: &Covariance) -> Covariance {
+        let rate = self.setting.latitude.horizontal_rate();
         let scale = 1.0 / (rate * rate * self.tilt.upward() * self.tilt.upward());
         [[d * scale, -b * scale], [-b * scale, a * scale]]
     }
@@ -107,30 +110,69 @@ impl Problem<'_> {
     }
 }
 
-/// Probability of the residuals below which a drift that no key states is sought for them.
-const DRIFT_PROBABILITY: f64 = 0.01;
+/// Multiple of σ beyond which an azimuth is wrong: σ is no less than this part of its protection level.
+const WRONG: f64 = 5.0;
+/// Probability of the residuals below which something is astray.
+const ASTRAY_PROBABILITY: f64 = 0.05;
+/// What the Earth-rate ratio may be off in its σ before something is (p = 0.01).
+const ASTRAY_RATIO: f64 = 2.58;
 /// Rounds in which a drift is sought that explains the residuals: each doubles or halves the step of its K.
 const DRIFT_ROUNDS: usize = 12;
 
 impl Problem<'_> {
-    /// Raises σ where the dwells scatter more than their noise says and a drift that no key states explains it: a
-    /// random walk stands out in the residuals least where it turns the azimuth most. The azimuth is then that which
-    /// such a walk leaves.
+    /// Raises σ to what the azimuth may be off under every alternative, over [`WRONG`]. Where something is astray (an
+    /// outlier was left out, the residuals or the Earth rate are unlikely, a trend shows that no key states), those
+    /// that only then show count too: a random walk, and another Earth rate.
     #[inline(never)]
-    pub fn allow_for_drift(&self, fit: &mut Fit) {
-        // On an arc any drift looks like the Earth.
-        let is_likely = fit.earth_rate_is_free() && fit.probability() < DRIFT_PROBABILITY;
-        let Some(trial) = is_likely.then(|| self.drifting(fit)).flatten() else { return };
-        let more = trial.direction.variance - fit.sigma() * fit.sigma();
-        if more > 0.0 {
+    pub fn protect(&self, fit: &mut Fit, has_outliers: bool) {
+        let Protection { always, astray } = fit.protection;
+        let is_astray = has_outliers || fit.is_astray();
+        let mut level = self.tilting_protection(fit).max(if is_astray { astray } else { always });
+        if is_astray && self.dwells.len() >= FEWEST {
+            for trial in [self.drifting(fit), self.with_any_earth_rate(fit)].into_iter().flatten() {
+                let apart = separation(trial.direction.azimuth, fit.direction.azimuth);
+                level = level.max(apart + MISSED * libm::sqrt(trial.direction.variance));
+            }
+        }
+        let (least, sigma) = (level / WRONG, fit.sigma());
+        if least > sigma {
+            let more = least * least - sigma * sigma;
             fit.budget.drift = libm::sqrt(fit.budget.drift * fit.budget.drift + more);
-            fit.direction.azimuth = trial.direction.azimuth;
         }
     }
 
-    /// The fit under the random walk that makes chi-square what it should be.
-    fn drifting(&self, fit: &Fit) -> Option<Trial> {
+    /// How far the azimuth may be off for a base that tilts as its forces show but do not prove, rad.
+    fn tilting_protection(&self, fit: &Fit) -> f64 {
+        let TiltRate { value: [real, imaginary], covariance } = self.tilt.unproven;
+        let rate = self.setting.latitude.horizontal_rate();
+        let scale = 1.0 / (rate * self.tilt.upward());
+        let apart = dot(fit.direction.gain, [imaginary * scale, -real * scale]).abs();
+        let variance = quadratic(&self.tilting(&covariance), fit.direction.gain).max(0.0);
+        apart + MISSED * libm::sqrt(variance + fit.direction.variance)
+    }
+
+    /// The same fit without what is known of the Earth rate, where the dwells show it.
+    fn with_any_earth_rate(&self, fit: &Fit) -> Option<Trial> {
+        if fit.model.is_single_axis {
+            return None;
+        }
         let bent = fit.bent(fit.model.hypothesis);
+        let regression = self.regression(&self.setting.noise, Dwell::taper_factor, &bent);
+        let free = Model { amplitude: Amplitude::Free, ..fit.model };
+        let trial = self.trial(&regression, &free)?;
+        let most = OBSERVABLE * fit.direction.variance;
+        (trial.direction.variance < most).then_some(trial)
+    }
+
+    /// The fit of a base that stands under the random walk that makes chi-square what it should be: a drift that no
+    /// key states.
+    fn drifting(&self, fit: &Fit) -> Option<Trial> {
+        let (model, bent) = if fit.model.hypothesis == Hypothesis::Steady {
+            (fit.model, fit.bent)
+        } else {
+            let model = Model { amplitude: fit.model.amplitude, ..self.base() };
+            (model, Bent { along: fit.bent.along, ..Bent::default() })
+        };
         let span = self.dwells.last()?.end() - self.dwells.first()?.start();
         let rate = self.setting.latitude.horizontal_rate();
         let own = self.white_variance(self.dwells.first()?) * rate * rate / span;
@@ -140,8 +182,7 @@ impl Problem<'_> {
         for _ in 0..DRIFT_ROUNDS {
             let walk = libm::sqrt(stated.rate_random_walk * stated.rate_random_walk + power);
             let noise = GyroNoise { rate_random_walk: walk, ..stated };
-            let trial =
-                self.trial(&self.regression(&noise, Dwell::taper_factor, &bent), &fit.model)?;
+            let trial = self.trial(&self.regression(&noise, Dwell::taper_factor, &bent), &model)?;
             let is_enough = trial.chi_square <= trial.degrees as f64;
             if is_enough {
                 found = Some(trial);
@@ -169,6 +210,14 @@ impl Fit {
     pub(super) fn allow_for_excess(&mut self) {
         self.excess = 1.0;
         self.allow_for(excess(self.chi_square, self.degrees));
+    }
+
+    /// Whether more than noise shows in the residuals, the Earth rate or the model.
+    fn is_astray(&self) -> bool {
+        self.model.time == Column::Free
+            || self.model.hypothesis != Hypothesis::Steady
+            || self.probability() < ASTRAY_PROBABILITY
+            || (self.ratio - 1.0).abs() > ASTRAY_RATIO * self.ratio_sigma
     }
 
     /// Probability of the residuals.

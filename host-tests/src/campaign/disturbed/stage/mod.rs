@@ -150,10 +150,13 @@ impl Bench {
         self.stops.iter().enumerate().take(index + 1).map(through).sum()
     }
 
-    /// A rotation with two dwells or more on either side: one alone may stand where it shows nothing.
+    /// A rotation with a quarter of the dwells or more on either side: in fewer, of some headings, neither the
+    /// heading before nor that after shows.
     fn some_departure(&self, chance: &mut Chance) -> f64 {
-        let last = self.stops.len() - 3;
-        let index = (chance.between(1.0, last as f64 + 1.0) as usize).min(last);
+        let dwells = self.stops.len();
+        let quarter = dwells.div_ceil(4);
+        let (first, last) = (quarter - 1, dwells - 1 - quarter);
+        let index = (chance.between(first as f64, last as f64 + 1.0) as usize).min(last);
         self.departure(index) + 0.5 * self.stops[index + 1].rotation_s
     }
 
@@ -213,7 +216,7 @@ impl Bench {
     }
 }
 
-/// Where the stage goes: a circle, or an arc, there and sometimes back to the first position.
+/// Where the stage goes: a circle, or an arc, and back to the first position.
 fn stops(chance: &mut Chance, circles: f64) -> Vec<Stop> {
     let positions = chance.one_of(&[8, 12, 16, 24]);
     let (dwell_s, rotation_s) = (chance.between(5.0, 12.0), chance.between(1.0, 2.5));
@@ -222,9 +225,7 @@ fn stops(chance: &mut Chance, circles: f64) -> Vec<Stop> {
     let start = chance.between(0.0, TAU);
     let step = whole / f64::from(positions);
     let mut list: Vec<f64> = (0..positions).map(|k| start + f64::from(k) * step).collect();
-    if chance.happens(0.5) {
-        list.push(start);
-    }
+    list.push(start);
     list.into_iter().map(|angle| Stop::new(angle, dwell_s).after(rotation_s)).collect()
 }
 
