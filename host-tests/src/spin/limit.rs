@@ -118,7 +118,8 @@ pub fn gyro_walk(rates: &[f64], period_s: f64) -> f64 {
 const LONGER: usize = 10;
 
 /// Where a gyro is stuck; nowhere of one that is always so, or often for about as long: it is coarse.
-fn stuck(rates: &[f64]) -> Range<usize> {
+#[must_use]
+pub(super) fn stuck(rates: &[f64]) -> Range<usize> {
     let (mut from, mut longest, mut second) = (0, 0..0, 0);
     let ends = (1..=rates.len()).filter(|to| rates.get(*to) != rates.get(to - 1));
     for to in ends {

@@ -106,12 +106,14 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
 /// Noise of the forces from which sensors are no ideal ones, m/s²: those that turn so fast measure thousands.
 const REAL_NOISE: f64 = 0.005;
 
-/// A gyro that shows one rate from the first row to the last, beside forces that have noise.
+/// A gyro that shows one rate for most of the time, beside forces that have noise.
 fn stuck_gyro(rows: &[SpinRow], noise: Noise) -> Option<String> {
-    let is_one = rows.windows(2).all(|pair| pair[0].rate_rad_s == pair[1].rate_rad_s);
-    (is_one && noise.force > REAL_NOISE).then(|| {
-        "column gx_rad_s shows one value from the first row to the last: stuck or dead, check its supply and wires"
-            .to_owned()
+    let rates: Vec<f64> = rows.iter().map(|row| row.rate_rad_s).collect();
+    let is_one = rates.windows(2).all(|pair| pair[0] == pair[1]);
+    let stuck = if is_one { rows.len() } else { limit::stuck(&rates).len() };
+    (2 * stuck > rows.len() && noise.force > REAL_NOISE).then(|| {
+        let percent = 100 * stuck / rows.len();
+        format!("column gx_rad_s shows one value in {percent} % of the rows: stuck or dead, check its supply and wires")
     })
 }
 

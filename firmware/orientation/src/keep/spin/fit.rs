@@ -47,10 +47,9 @@ pub(super) struct Sums {
     turning: [Complex; 3],
     force: [Complex; 2],
     turned_force: [Complex; 2],
-    power: f32,
+    /// Of either force, the base taken off.
+    power: [f32; 2],
     harmonics: Harmonics,
-    /// Bits of either force that were not always those of the base.
-    changed: [i32; 2],
 }
 
 /// What a turn shows.
@@ -120,8 +119,6 @@ impl Sums {
         }
         self.count += 1;
         let [sine, cosine] = sine_and_cosine(angle);
-        self.changed[0] |= y.0 ^ self.base[0];
-        self.changed[1] |= z.0 ^ self.base[1];
         let real = y.0.wrapping_sub(self.base[0]) as f32 * STEP;
         let imaginary = self.base[1].wrapping_sub(z.0) as f32 * STEP;
         // s e^{−jγ̂}
@@ -144,18 +141,18 @@ impl Sums {
         self.turned_force[0].imaginary += turned_imaginary;
         self.turned_force[1].real += place * turned_real;
         self.turned_force[1].imaginary += place * turned_imaginary;
-        self.power += real * real + imaginary * imaginary;
-        let round = Complex { real: cosine, imaginary: sine };
-        self.harmonics.push(place, round, Complex { real, imaginary });
+        self.power[0] += real * real;
+        self.power[1] += imaginary * imaginary;
+        self.harmonics.push(place, [cosine, sine], [real, imaginary]);
     }
 
     /// The accelerometers that showed one value all the time.
     pub(super) fn stuck(&self) -> Option<Accelerometer> {
-        match self.changed {
-            [0, 0] => Some(Accelerometer::Both),
-            [0, _] => Some(Accelerometer::Y),
-            [_, 0] => Some(Accelerometer::Z),
-            _ => None,
+        match self.power.map(|power| power > 0.0) {
+            [false, false] => Some(Accelerometer::Both),
+            [false, true] => Some(Accelerometer::Y),
+            [true, false] => Some(Accelerometer::Z),
+            [true, true] => None,
         }
     }
 
@@ -177,8 +174,9 @@ impl Sums {
             );
         }
         let explained = solved.explained + self.harmonics.explained(&ripple, count);
-        let least = ROUNDING + PRECISION * self.power / count;
-        let noise = ((self.power - explained) / (count - UNKNOWNS)).max(least);
+        let power = self.power[0] + self.power[1];
+        let least = ROUNDING + PRECISION * power / count;
+        let noise = ((power - explained) / (count - UNKNOWNS)).max(least);
         let [_, _, lift, change] = solved.model;
         let change = libm::sqrtf(change.power());
         let share = normal.share() * (1.0 + CROWDED / (turns * turns) as f32);

@@ -44,22 +44,36 @@ pub(super) struct Harmonics {
 }
 
 impl Harmonics {
-    /// Adds a sample: its place, its angle's cosine and sine, its force.
-    #[inline]
-    pub(super) fn push(&mut self, place: f32, round: Complex, force: Complex) {
-        let second = Complex {
-            real: 1.0 - 2.0 * round.imaginary * round.imaginary,
-            imaginary: 2.0 * round.imaginary * round.real,
-        };
-        let third = second.times(round);
-        self.second[0] += second;
-        self.second[1] += second.scaled(place);
-        self.third[0] += third;
-        self.third[1] += third.scaled(place);
-        self.force[0] += force.times(round);
-        self.force[1] += second.against(force);
-        self.force[2] += force.times(second);
-        self.force[3] += third.against(force);
+    /// Adds a sample: its place, its angle's cosine and sine, its force. Written out, as what calls it.
+    #[inline(always)]
+    pub(super) fn push(
+        &mut self,
+        place: f32,
+        [cosine, sine]: [f32; 2],
+        [real, imaginary]: [f32; 2],
+    ) {
+        let twice = sine + sine;
+        let (cosine_2, sine_2) = (1.0 - twice * sine, twice * cosine);
+        let cosine_3 = cosine_2 * cosine - sine_2 * sine;
+        let sine_3 = cosine_2 * sine + sine_2 * cosine;
+        self.second[0].real += cosine_2;
+        self.second[0].imaginary += sine_2;
+        self.second[1].real += place * cosine_2;
+        self.second[1].imaginary += place * sine_2;
+        self.third[0].real += cosine_3;
+        self.third[0].imaginary += sine_3;
+        self.third[1].real += place * cosine_3;
+        self.third[1].imaginary += place * sine_3;
+        self.force[0].real += real * cosine - imaginary * sine;
+        self.force[0].imaginary += real * sine + imaginary * cosine;
+        let (direct, crossed) = (real * cosine_2, imaginary * sine_2);
+        let (straight, across) = (imaginary * cosine_2, real * sine_2);
+        self.force[1].real += direct + crossed;
+        self.force[1].imaginary += straight - across;
+        self.force[2].real += direct - crossed;
+        self.force[2].imaginary += straight + across;
+        self.force[3].real += real * cosine_3 + imaginary * sine_3;
+        self.force[3].imaginary += imaginary * cosine_3 - real * sine_3;
     }
 
     /// Of `e^{jkγ̂}` and that times the place, k from −3 to 3; `even` and `first` are those of k = 0 and 1.

@@ -34,8 +34,6 @@ const WRONG: f64 = 0.1;
 const AMBIGUOUS: f64 = 0.785;
 /// How far the turns that are looked at together may get out of step, 1σ, rad.
 const IN_STEP: f64 = 0.4;
-/// Part of what they are out of step by that their phase may be off.
-const OUT_OF_STEP: f64 = 0.05;
 /// Looks in a row that must agree before the roll is told, and those that must not before the scale is doubted.
 const AGREED: u8 = 3;
 const DISAGREED: u32 = 3;
@@ -104,7 +102,7 @@ pub(super) struct Lock {
     angle: f64,
     scale: f64,
     shared: f64,
-    /// The scale error.
+    /// By what part of what the gyro shows that is too much: s/(1 + s) of a scale error s, in which phases are linear.
     error: f64,
     sums: Sums,
     /// Variance of the rotation that was lost since then, rad².
@@ -225,7 +223,7 @@ impl Lock {
     fn together(&self) -> u32 {
         let one = TURN * libm::sqrt(self.scale);
         match self.agreed {
-            1.. if f64::from(TOGETHER) * one < IN_STEP => TOGETHER,
+            AGREED.. if f64::from(TOGETHER) * one < IN_STEP => TOGETHER,
             1.. if 2.0 * one < IN_STEP => 2,
             _ => 1,
         }
@@ -287,10 +285,9 @@ impl Lock {
         }
         let phase = f64::from(libm::atan2f(fit.lift.imaginary, fit.lift.real));
         let square = |part: f64| part * part;
-        // A lift that changes while the scale is not known yet shows a phase of its own, and turns that are out of step
-        // are not told apart well.
-        let change = square(f64::from(fit.change / lift)) + OUT_OF_STEP * OUT_OF_STEP;
-        let bent = self.scale * square(half) * change + square(f64::from(fit.crowded() / lift));
+        // A lift that changes while the scale is not known yet shows a phase of its own.
+        let bent = self.scale * square(half) * square(f64::from(fit.change / lift))
+            + square(f64::from(fit.crowded() / lift));
         self.lift = Some(lift);
         let variance = square(f64::from(sigma / lift)) + bent + self.lost;
         let is_used = self.learn(phase, variance, half, wheel);
@@ -440,7 +437,7 @@ impl Lock {
 
     /// The scale error and its 1σ.
     pub(super) fn scale(&self) -> [f64; 2] {
-        [self.error, libm::sqrt(self.scale)]
+        [self.error / (1.0 - self.error), libm::sqrt(self.scale)]
     }
 
     pub(super) fn lift(&self) -> Option<f64> {

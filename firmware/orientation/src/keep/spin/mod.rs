@@ -27,7 +27,7 @@ pub use self::wheel::Roll;
 
 use self::extrema::Extrema;
 use self::lock::Lock;
-use self::pace::{Believed, Pace};
+use self::pace::Pace;
 use self::wheel::Wheel;
 use crate::signal::SpinSample;
 use crate::units::{AngleIncrement, Instant};
@@ -211,10 +211,9 @@ impl Spin {
         let missing = self.missing(sample.time);
         let [turned, ..] = sample.turned;
         let before = self.pace.before();
-        let believed = self.pace.take(turned);
-        let turned = believed.turned;
-        if missing > 0.0 || believed.lost[1] > 0 {
-            self.bridge(missing, before, &believed);
+        let turned = self.pace.take(turned);
+        if missing > 0.0 || self.pace.is_lost() {
+            self.bridge(missing, [before, turned]);
         }
         self.wheel.turn(turned);
         match &mut self.corrector {
@@ -237,18 +236,17 @@ impl Spin {
 
     /// The body goes on turning as it did while samples are missing, or their gyro is not believed.
     #[inline(never)]
-    fn bridge(&mut self, missing: f32, before: AngleIncrement, believed: &Believed) {
-        let [before, now] = [before, believed.turned].map(|turned| turned.0 as f32);
+    fn bridge(&mut self, missing: f32, turned: [AngleIncrement; 2]) {
+        let [before, now] = turned.map(|turned| turned.0 as f32);
         let mean = 0.5 * (before + now);
         self.wheel.pass(mean, missing);
+        let is_stuck = self.pace.is_stuck();
         match &mut self.corrector {
             Corrector::Extrema(extrema) => extrema.disturb(),
             Corrector::Lock(lock) => {
-                let [known, lost] = believed
-                    .lost
-                    .map(f32::from)
-                    .map(|samples| if believed.is_stuck { lock.strayed(samples) } else { samples });
-                let change = (now - before).abs() + believed.off as f32;
+                let strayed = |samples| if is_stuck { lock.strayed(samples) } else { samples };
+                let [known, lost] = self.pace.lost().map(strayed);
+                let change = (now - before).abs() + self.pace.off();
                 lock.lose(missing, [known, lost + missing], mean, change);
             }
         }
