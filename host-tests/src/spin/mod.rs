@@ -163,7 +163,7 @@ fn period(rate_hz: Option<f64>, rows: &[SpinRow]) -> Option<f64> {
     Some(stated.map_or(step_s, |rate| 1.0 / rate))
 }
 
-/// What is known of the gyro; what nobody stated is taken from the rows or assumed.
+/// What is known of the gyro; what is not stated is taken from the rows or assumed.
 fn setting(header: &Header, rows: &[SpinRow], period_s: f64) -> (Setting, Vec<String>) {
     let (mut assumed, usual) = (Vec::new(), Setting::new(period_s));
     let angle_random_walk = header.gyro_n_deg_sqrt_h.map_or_else(

@@ -188,10 +188,10 @@ impl Lock {
         }
     }
 
-    /// So many samples of a gyro that is stuck, in samples of which nothing is known: its rate was right, and the body
-    /// leaves that no faster than it did lately, twice over.
+    /// So many samples on end that the gyro does not tell, in samples of which nothing is known: the body leaves the rate
+    /// that it had as fast as it lately changed it, and a little.
     pub(super) fn strayed(&self, samples: f32) -> f32 {
-        let left = (2.0 * self.quickening + QUICKENING) * samples * self.period as f32;
+        let left = (self.quickening + QUICKENING) * samples * self.period as f32;
         samples * (0.5 * left / CHANGE).min(1.0)
     }
 
@@ -257,7 +257,7 @@ impl Lock {
         }
     }
 
-    /// Any angle is possible: it shares nothing with the scale any more, for nobody counted its turns.
+    /// Any angle is possible: it shares nothing with the scale any more, since its turns were not counted.
     fn forget_angle(&mut self) {
         self.angle = TURN * TURN;
         self.shared = 0.0;
@@ -291,8 +291,8 @@ impl Lock {
         self.lift = Some(lift);
         let variance = square(f64::from(sigma / lift)) + bent + self.lost;
         let is_used = self.learn(phase, variance, half, wheel);
-        if !is_used && noise > NOISE_RISE * quiet {
-            // The forces are to blame, not the gyro.
+        if !is_used && (noise > NOISE_RISE * quiet || lift < FOUND * sigma) {
+            // The forces are to blame, or chance, not the gyro.
             self.stray = 0.0;
         }
         // What was lost after the middle is still to be known.

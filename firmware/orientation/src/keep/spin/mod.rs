@@ -240,13 +240,14 @@ impl Spin {
         let [before, now] = turned.map(|turned| turned.0 as f32);
         let mean = 0.5 * (before + now);
         self.wheel.pass(mean, missing);
-        let is_stuck = self.pace.is_stuck();
         match &mut self.corrector {
             Corrector::Extrema(extrema) => extrema.disturb(),
             Corrector::Lock(lock) => {
-                let strayed = |samples| if is_stuck { lock.strayed(samples) } else { samples };
+                let off = self.pace.off();
+                // A jump may be right at once; what clips or sticks was right before.
+                let strayed = |samples| if off > 0.0 { samples } else { lock.strayed(samples) };
                 let [known, lost] = self.pace.lost().map(strayed);
-                let change = (now - before).abs() + self.pace.off();
+                let change = (now - before).abs() + off;
                 lock.lose(missing, [known, lost + missing], mean, change);
             }
         }
