@@ -114,5 +114,10 @@ fn word(state: &State) -> &'static str {
         State::NotSpinning { .. } => "not spinning",
         State::ForceLost { .. } => "force lost",
         State::RotationLost { .. } => "rotation lost",
+        State::AccelerometerStuck { .. } => "accelerometer stuck",
+        State::GyroStuck { .. } => "gyro stuck",
+        State::Mirrored { .. } => "forces mirrored",
+        State::Elliptic { .. } => "forces elliptic",
+        State::Contradicted { .. } => "forces contradict",
     }
 }

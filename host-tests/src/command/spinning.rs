@@ -3,15 +3,18 @@
 use std::path::Path;
 use std::time::Instant as WallClock;
 
+use bench::instrument::Run;
 use bench::instrument::spinning::{SpinRun, follow_spin};
 use bench::output::progress::Progress;
 use bench::output::{page, spin as told, text};
 use bench::recording::Truth;
-use bench::spin::{Known, follow};
+use bench::spin::{Known, Replay, follow};
 use clap::Args;
+use firmware::event::Event;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::spin::fault::SpinFault;
 use firmware::simulated::spin::{SAMPLE_RATE, SpinScenario};
+use firmware::spin::Flight;
 use orientation::units::DEGREE;
 
 use super::Told;
@@ -80,7 +83,7 @@ pub fn run(
     let wall = begun.elapsed().as_secs_f64();
     let assumed = vec![ASSUMED.to_owned()];
     let known = Known { setting: scenario.setting(), required_sigma: REQUIRED_SIGMA, assumed };
-    let replay = follow(&samples, known);
+    let replay = Replay { ended: ended(&run), ..follow(&samples, known) };
     let truth = Truth { roll_rad: rolls_rad, ..Truth::default() };
     let found = told::json::object(&replay, &truth);
     let refusal = found.reason.clone();
@@ -93,4 +96,12 @@ pub fn run(
     })?;
     let page = || page::spin::report(NAME, &replay, &truth);
     Ok(Told { refusal, ..told }.with_page(report, page))
+}
+
+/// Why the board gave the roll up, if it did: what it had by then is none of the end.
+fn ended(run: &Run<Flight>) -> Option<String> {
+    run.events.iter().find_map(|(_, event)| match event {
+        Event::RollEnded(_) => Some(event.to_string()),
+        _ => None,
+    })
 }

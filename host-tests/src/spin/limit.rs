@@ -5,6 +5,8 @@
 //! whose forces have the noise σ on a lift q is worth q²/σ² of the roll; between samples the gyro's noise
 //! adds its own, and the scale error is not known. Lift and centripetal part count as known.
 
+use std::ops::Range;
+
 use orientation::align::regression::{Column, Regression};
 use orientation::signal::SpinSample;
 use orientation::units::{SpinForce, TURN};
@@ -97,16 +99,39 @@ fn of_turn(samples: &[SpinSample]) -> Option<[f64; 2]> {
 }
 
 /// Angle random walk of the gyro, rad/√s, where only its rates, rad/s, tell: sixth differences leave
-/// nothing of a rate that changes slowly.
+/// nothing of a rate that changes slowly. A stretch over which it is stuck tells nothing.
 #[must_use]
 pub fn gyro_walk(rates: &[f64], period_s: f64) -> f64 {
     const WEIGHTS: [f64; 7] = [1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0];
     let difference = |window: &[f64]| -> f64 {
         window.iter().zip(WEIGHTS).map(|(rate, weight)| rate * weight).sum()
     };
-    let mut squares: Vec<f64> = rates.windows(7).map(|window| difference(window).powi(2)).collect();
+    let stuck = stuck(rates);
+    let windows = rates.windows(WEIGHTS.len()).enumerate();
+    let lives = windows.filter(|(from, _)| !stuck.contains(from));
+    let mut squares: Vec<f64> = lives.map(|(_, window)| difference(window).powi(2)).collect();
     // Of a normal variable's square the median is 0.455 of the mean.
     (crate::replay::median(&mut squares) / 0.455 / SIXTH * period_s).sqrt()
+}
+
+/// How many times as long as any other a stretch of one rate is over which a gyro is stuck.
+const LONGER: usize = 10;
+
+/// Where a gyro is stuck; nowhere of one that is always so, or often for about as long: it is coarse.
+#[must_use]
+pub(super) fn stuck(rates: &[f64]) -> Range<usize> {
+    let (mut from, mut longest, mut second) = (0, 0..0, 0);
+    let ends = (1..=rates.len()).filter(|to| rates.get(*to) != rates.get(to - 1));
+    for to in ends {
+        if to - from > longest.len() {
+            second = longest.len();
+            longest = from..to;
+        } else {
+            second = second.max(to - from);
+        }
+        from = to;
+    }
+    if second > 0 && longest.len() > LONGER * second { longest } else { 0..0 }
 }
 
 /// The bound of the roll at each sample, rad (1σ), from that sample and all before: with such a noise, with

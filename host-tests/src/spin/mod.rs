@@ -55,6 +55,10 @@ pub struct Replay {
     pub required_sigma: f64,
     /// What had to be assumed.
     pub assumed: Vec<String>,
+    /// Why the board that took the samples gave its roll up, if it did.
+    pub ended: Option<String>,
+    /// What the recording as a whole shows that forbids to believe a roll.
+    pub doubt: Option<String>,
 }
 
 impl Replay {
@@ -69,6 +73,9 @@ impl Replay {
     #[must_use]
     pub fn refusal(&self) -> Option<String> {
         let end = &self.answer().end;
+        if let Some(reason) = &self.ended {
+            return Some(reason.clone());
+        }
         match end.sigma_rad {
             None => Some(format!("the roll is not known at the end: {}", end.state)),
             Some(sigma) if sigma > self.required_sigma => Some(format!(
@@ -77,7 +84,7 @@ impl Replay {
                 self.required_sigma.to_degrees(),
                 end.state
             )),
-            Some(_) => None,
+            Some(_) => self.doubt.clone(),
         }
     }
 }
@@ -92,7 +99,22 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
     let samples: Vec<SpinSample> = samples::samples(rows, period_s).collect();
     let (setting, assumed) = setting(header, rows, period_s);
     let required_sigma = options.required_sigma.unwrap_or(f64::INFINITY);
-    Ok(follow(&samples, Known { setting, required_sigma, assumed }))
+    let replay = follow(&samples, Known { setting, required_sigma, assumed });
+    Ok(Replay { doubt: stuck_gyro(rows, replay.noise), ..replay })
+}
+
+/// Noise of the forces from which sensors are no ideal ones, m/s²: those that turn so fast measure thousands.
+const REAL_NOISE: f64 = 0.005;
+
+/// A gyro that shows one rate for most of the time, beside forces that have noise.
+fn stuck_gyro(rows: &[SpinRow], noise: Noise) -> Option<String> {
+    let rates: Vec<f64> = rows.iter().map(|row| row.rate_rad_s).collect();
+    let is_one = rates.windows(2).all(|pair| pair[0] == pair[1]);
+    let stuck = if is_one { rows.len() } else { limit::stuck(&rates).len() };
+    (2 * stuck > rows.len() && noise.force > REAL_NOISE).then(|| {
+        let percent = 100 * stuck / rows.len();
+        format!("column gx_rad_s shows one value in {percent} % of the rows: stuck or dead, check its supply and wires")
+    })
 }
 
 /// What is known of a body and asked for, beside its samples.
@@ -122,6 +144,8 @@ pub fn follow(samples: &[SpinSample], known: Known) -> Replay {
         bounds,
         required_sigma,
         assumed,
+        ended: None,
+        doubt: None,
     }
 }
 
@@ -139,9 +163,9 @@ fn period(rate_hz: Option<f64>, rows: &[SpinRow]) -> Option<f64> {
     Some(stated.map_or(step_s, |rate| 1.0 / rate))
 }
 
-/// What is known of the gyro; what nobody stated is taken from the rows or assumed.
+/// What is known of the gyro; what is not stated is taken from the rows or assumed.
 fn setting(header: &Header, rows: &[SpinRow], period_s: f64) -> (Setting, Vec<String>) {
-    let mut assumed = Vec::new();
+    let (mut assumed, usual) = (Vec::new(), Setting::new(period_s));
     let angle_random_walk = header.gyro_n_deg_sqrt_h.map_or_else(
         || {
             let rates: Vec<f64> = rows.iter().map(|row| row.rate_rad_s).collect();
@@ -157,7 +181,6 @@ fn setting(header: &Header, rows: &[SpinRow], period_s: f64) -> (Setting, Vec<St
         SCALE_SIGMA
     });
     assumed.push("no rates across the axis; lift in the vertical plane".to_owned());
-    let usual = Setting::new(period_s);
     let bias_sigma = header.gyro_bias_deg_h.map_or_else(
         || {
             let field = usual.bias_sigma / DEGREE_PER_HOUR;

@@ -7,6 +7,7 @@
 
 mod axes;
 mod chance;
+pub mod spin;
 pub mod stage;
 pub mod vehicle;
 
@@ -85,7 +86,7 @@ pub struct Class {
 
 /// Every class, method by method.
 pub fn classes() -> impl Iterator<Item = &'static Class> {
-    stage::CLASSES.iter().chain(vehicle::CLASSES)
+    stage::CLASSES.iter().chain(vehicle::CLASSES).chain(spin::CLASSES)
 }
 
 /// Healthy recordings of a method.
@@ -98,7 +99,10 @@ pub struct Healthy {
 }
 
 /// The methods whose healthy recordings are drawn.
-pub const HEALTHY: [Healthy; 1] = [Healthy { name: "stage", draw: stage::healthy }];
+pub const HEALTHY: [Healthy; 2] = [
+    Healthy { name: "stage", draw: stage::healthy },
+    Healthy { name: "spin", draw: spin::healthy },
+];
 
 /// What healthy recordings gave.
 #[derive(Clone, Debug, Serialize)]

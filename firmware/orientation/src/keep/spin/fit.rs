@@ -2,65 +2,28 @@
 //!
 //! `s = a_y − j a_z = c₀ + c₁τ + (Q₀ + Q₁τ) e^{jγ̂}`, γ̂ being the angle that is believed and τ the place in the turn
 //! from −1 to 1. What the accelerometers feel of the spin itself, −ρω², and its slow change are c; the lift and
-//! its change, Q. The phase of Q₀ is by how much γ̂ is behind at the middle.
+//! its change, Q. The phase of Q₀ is by how much γ̂ is behind at the middle. What goes round otherwise is taken out
+//! ([`super::harmonics`]), in turns with the rest.
 
-use core::ops::{Add, Sub};
-
+use super::Accelerometer;
+use super::complex::Complex;
+use super::harmonics::{Harmonics, PARTS, Ripple};
 use super::wheel::sine_and_cosine;
 use crate::units::{Angle, SpinForce};
-
-/// A complex number.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Complex {
-    pub(super) real: f32,
-    pub(super) imaginary: f32,
-}
-
-impl Complex {
-    /// The conjugate of this, times another.
-    fn against(self, other: Self) -> Self {
-        Self {
-            real: self.real * other.real + self.imaginary * other.imaginary,
-            imaginary: self.real * other.imaginary - self.imaginary * other.real,
-        }
-    }
-
-    fn times(self, other: Self) -> Self {
-        Self { real: self.real, imaginary: -self.imaginary }.against(other)
-    }
-
-    fn scaled(self, factor: f32) -> Self {
-        Self { real: factor * self.real, imaginary: factor * self.imaginary }
-    }
-
-    /// Its square.
-    pub(super) fn power(self) -> f32 {
-        self.real * self.real + self.imaginary * self.imaginary
-    }
-}
-
-impl Add for Complex {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        Self { real: self.real + other.real, imaginary: self.imaginary + other.imaginary }
-    }
-}
-
-impl Sub for Complex {
-    type Output = Self;
-
-    fn sub(self, other: Self) -> Self {
-        self + other.scaled(-1.0)
-    }
-}
 
 /// One step of a force, m/s².
 const STEP: f32 = 1e-5;
 /// Least samples of a fit: twice its eight real unknowns.
 const LEAST: u32 = 16;
 /// Complex unknowns of a fit.
-const UNKNOWNS: f32 = 4.0;
+const UNKNOWNS: f32 = 4.0 + PARTS as f32;
+/// How often the rest is fitted after what goes round otherwise, over one turn: each leaves two fifths, and of four turns
+/// a fortieth.
+const PASSES: u32 = 8;
+/// By what that raises the variance of the lift of one turn.
+const CROWDED: f32 = 0.3;
+/// Part of what goes round otherwise that one turn does not tell from the lift.
+const HIDDEN: f32 = 0.25;
 /// How much of the turning part must be its own: samples that do not go round cannot tell it from a force.
 const GOING_ROUND: f32 = 0.01;
 /// Part of the forces' power that sums in single precision may make of what is left of it.
@@ -84,7 +47,9 @@ pub(super) struct Sums {
     turning: [Complex; 3],
     force: [Complex; 2],
     turned_force: [Complex; 2],
-    power: f32,
+    /// Of either force, the base taken off.
+    power: [f32; 2],
+    harmonics: Harmonics,
 }
 
 /// What a turn shows.
@@ -98,6 +63,19 @@ pub(super) struct Fit {
     pub(super) noise: f32,
     /// By which that counts in either part of the lift.
     pub(super) share: f32,
+    /// What goes round otherwise, m/s².
+    pub(super) ripple: Ripple,
+    /// Samples, and turns.
+    pub(super) count: f32,
+    pub(super) turns: u32,
+}
+
+impl Fit {
+    /// What goes round otherwise may hide of the lift, m/s²: of one turn a quarter, of more the less.
+    pub(super) fn crowded(&self) -> f32 {
+        let turns = self.turns as f32;
+        HIDDEN * self.ripple.size() / (turns * turns)
+    }
 }
 
 impl Sums {
@@ -163,40 +141,111 @@ impl Sums {
         self.turned_force[0].imaginary += turned_imaginary;
         self.turned_force[1].real += place * turned_real;
         self.turned_force[1].imaginary += place * turned_imaginary;
-        self.power += real * real + imaginary * imaginary;
+        self.power[0] += real * real;
+        self.power[1] += imaginary * imaginary;
+        self.harmonics.push(place, [cosine, sine], [real, imaginary]);
     }
 
-    /// What the samples show; none where they are too few, or do not go round.
-    pub(super) fn fit(&self) -> Option<Fit> {
-        if self.count < LEAST {
+    /// The accelerometers that showed one value all the time.
+    pub(super) fn stuck(&self) -> Option<Accelerometer> {
+        match self.power.map(|power| power > 0.0) {
+            [false, false] => Some(Accelerometer::Both),
+            [false, true] => Some(Accelerometer::Y),
+            [true, false] => Some(Accelerometer::Z),
+            [true, true] => None,
+        }
+    }
+
+    /// What the samples of so many turns show; none where they are too few, or do not go round.
+    pub(super) fn fit(&self, turns: u32) -> Option<Fit> {
+        let normal = Normal::of(self)?;
+        let count = self.count as f32;
+        let even = [count, self.place];
+        let first = [self.turning[0], self.turning[1]];
+        let mut ripple = Ripple::default();
+        let mut solved = normal.solve(self.force, self.turned_force);
+        for _ in 0..PASSES / turns {
+            self.harmonics.approach(&mut ripple, even, first, &solved.model);
+            let [force, placed, turned, turned_placed] =
+                self.harmonics.shares(&ripple, even, first);
+            solved = normal.solve(
+                [self.force[0] - force, self.force[1] - placed],
+                [self.turned_force[0] - turned, self.turned_force[1] - turned_placed],
+            );
+        }
+        let explained = solved.explained + self.harmonics.explained(&ripple, count);
+        let power = self.power[0] + self.power[1];
+        let least = ROUNDING + PRECISION * power / count;
+        let noise = ((power - explained) / (count - UNKNOWNS)).max(least);
+        let [_, _, lift, change] = solved.model;
+        let change = libm::sqrtf(change.power());
+        let share = normal.share() * (1.0 + CROWDED / (turns * turns) as f32);
+        Some(Fit { lift, change, noise, share, ripple, count, turns })
+    }
+}
+
+/// The normal equations of what is steady and of the lift.
+struct Normal {
+    /// A⁻¹ of the steady part, its upper triangle.
+    inverse: [f32; 3],
+    /// The turning part's columns B, and A⁻¹B.
+    turning: [Complex; 3],
+    first: [Complex; 2],
+    second: [Complex; 2],
+    /// What is left to the turning part: A − B*A⁻¹B, Hermitian, and its determinant.
+    m11: f32,
+    m12: Complex,
+    m22: f32,
+    whole: f32,
+}
+
+/// A solution.
+struct Solved {
+    /// Steady force, its change, lift, its change.
+    model: [Complex; 4],
+    /// Power that it explains.
+    explained: f32,
+}
+
+impl Normal {
+    /// Of sums; none where the samples are too few, or do not go round.
+    fn of(sums: &Sums) -> Option<Self> {
+        if sums.count < LEAST {
             return None;
         }
-        let count = self.count as f32;
-        let determinant = count * self.place_square - self.place * self.place;
+        let count = sums.count as f32;
+        let determinant = count * sums.place_square - sums.place * sums.place;
         let inverse =
-            [self.place_square / determinant, -self.place / determinant, count / determinant];
-        let [e0, e1, e2] = self.turning;
-        // A⁻¹B and A⁻¹r of the steady part, by columns.
+            [sums.place_square / determinant, -sums.place / determinant, count / determinant];
+        let turning = sums.turning;
+        let [e0, e1, e2] = turning;
         let first = steady(&inverse, e0, e1);
         let second = steady(&inverse, e1, e2);
-        let own = steady(&inverse, self.force[0], self.force[1]);
-        // What is left to the turning part: A − B*A⁻¹B, Hermitian, and r − B*A⁻¹r.
         let m11 = count - both(e0, e1, &first).real;
-        let m12 = Complex { real: self.place, imaginary: 0.0 } - both(e0, e1, &second);
-        let m22 = self.place_square - both(e1, e2, &second).real;
-        let r1 = self.turned_force[0] - both(e0, e1, &own);
-        let r2 = self.turned_force[1] - both(e1, e2, &own);
+        let m12 = Complex { real: sums.place, imaginary: 0.0 } - both(e0, e1, &second);
+        let m22 = sums.place_square - both(e1, e2, &second).real;
         let whole = m11 * m22 - m12.power();
-        if whole < GOING_ROUND * m11 * m22 || m11 <= 0.0 {
-            return None;
-        }
-        let lift = (r1.scaled(m22) - m12.times(r2)).scaled(1.0 / whole);
-        let change = (r2.scaled(m11) - m12.against(r1)).scaled(1.0 / whole);
-        let explained = both(own[0], own[1], &self.force).real + both(lift, change, &[r1, r2]).real;
-        let least = ROUNDING + PRECISION * self.power / count;
-        let noise = ((self.power - explained) / (count - UNKNOWNS)).max(least);
-        let change = libm::sqrtf(change.power());
-        Some(Fit { lift, change, noise, share: 0.5 * m22 / whole })
+        let goes_round = whole >= GOING_ROUND * m11 * m22 && m11 > 0.0;
+        goes_round.then_some(Self { inverse, turning, first, second, m11, m12, m22, whole })
+    }
+
+    /// Of the force's sums, and of those turned back.
+    fn solve(&self, force: [Complex; 2], turned: [Complex; 2]) -> Solved {
+        let [e0, e1, e2] = self.turning;
+        let own = steady(&self.inverse, force[0], force[1]);
+        let r1 = turned[0] - both(e0, e1, &own);
+        let r2 = turned[1] - both(e1, e2, &own);
+        let lift = (r1.scaled(self.m22) - self.m12.times(r2)).scaled(1.0 / self.whole);
+        let change = (r2.scaled(self.m11) - self.m12.against(r1)).scaled(1.0 / self.whole);
+        let explained = both(own[0], own[1], &force).real + both(lift, change, &[r1, r2]).real;
+        let [steady, its_change] = [0, 1]
+            .map(|i: usize| own[i] - self.first[i].times(lift) - self.second[i].times(change));
+        Solved { model: [steady, its_change, lift, change], explained }
+    }
+
+    /// By which a sample's noise counts in either part of the lift.
+    fn share(&self) -> f32 {
+        0.5 * self.m22 / self.whole
     }
 }
 

@@ -3,14 +3,17 @@
 //! Two states, the angle's error and the scale's, in a Kalman filter over the turns. Where the lift is below the
 //! noise nothing is learnt: the gyro holds the angle, its scale known, and σ grows by what is not known of it.
 
+use super::circle::Circle;
 use super::fit::{Fit, Sums};
 use super::wheel::Wheel;
-use super::{Setting, State};
+use super::{Accelerometer, Setting, State};
 use crate::signal::SpinSample;
 use crate::units::{AngleIncrement, Instant, TURN};
 
 /// One turn in steps of the angle.
 const TURN_STEPS: u64 = 1 << 40;
+/// What is passed over first: sensors may begin with anything.
+const SKIPPED: u64 = TURN_STEPS / 4;
 /// Turns that are looked at together. Of one turn alone, a slow change of the forces takes three fifths of what
 /// tells the phase (6/π² of a ramp turns with it), of four it takes 4 %.
 const TOGETHER: u32 = 4;
@@ -25,24 +28,46 @@ const USED: f32 = 3.0;
 const BOUND: f64 = 4.0;
 /// Turns in a row that are off by more until all is searched anew.
 const PATIENCE: u32 = 8;
-/// 1σ of the scale where what was known of it has proved wrong: the most that leaves four turns in step.
-const WRONG: f64 = 0.03;
+/// 1σ of the scale where what was known of it has proved wrong.
+const WRONG: f64 = 0.1;
+/// 1σ of the angle, rad, from which a phase may be a turn off: it tells the angle anew, and nothing of the scale.
+const AMBIGUOUS: f64 = 0.785;
+/// How far the turns that are looked at together may get out of step, 1σ, rad.
+const IN_STEP: f64 = 0.4;
+/// Looks in a row that must agree before the roll is told, and those that must not before the scale is doubted.
+const AGREED: u8 = 3;
+const DISAGREED: u32 = 3;
+/// Part of the lift, beside the noise, that may go round against it.
+const ELLIPTIC: f32 = 0.2;
+/// Looks over which what they add to the filter is averaged, the greatest mean in standard deviations and the greatest
+/// mean square that chance makes, and by how much the variances are too small where it is more.
+const CALM_LOOKS: f32 = 16.0;
+const CALM_MEAN: f32 = 0.75;
+const CALM_SQUARE: f32 = 2.75;
+const FADE: f64 = 4.0;
 /// Looks over which the noise is averaged.
 const NOISE_LOOKS: f32 = 8.0;
 /// By how much a look may be noisier than those before and count fully: one blow does not make all that follows noisy.
 const NOISE_RISE: f32 = 4.0;
+/// Standard deviations by which a look is noisier than those before by more than chance: of n samples on two axes one is
+/// 1/√n of the noise's square.
+const NOISE_SIGMAS: f32 = 4.0;
 /// How the scale wanders, 1/√s: with the gyro's temperature.
 const SCALE_WALK: f64 = 1e-6;
 /// Rate below which a body does not spin, rad/s.
 const SLOWEST: f64 = 1.0;
 /// Part of the rate by which it may have changed where samples are missing.
 const CHANGE: f32 = 0.01;
-/// What may be lost of the rotation within turns that are used, rad: it bends their phase by half of that.
-const BROKEN: f32 = 0.01;
+/// Part of its rate by which that may change in a second, beside what it does.
+const QUICKENING: f32 = 0.02;
+/// What may be lost of the rotation within turns that are used, rad (1σ).
+const BROKEN: f64 = 0.01;
 /// 1σ of the angle that says nothing any more, rad: that of any angle at all.
 const NOTHING: f64 = 1.8;
-/// 1σ of the angle for which a phase near half a turn off is a lift that pushes down, rad.
+/// 1σ of the angle beyond which the rotation is lost, rad.
 const SURE: f64 = 0.4;
+/// 1σ of the angle for which a phase near half a turn off is a lift that pushes down, rad.
+const UPRIGHT: f64 = 0.1;
 
 /// What kept the latest turn from being used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,6 +77,10 @@ enum Trouble {
     TooSlow,
     NoForce,
     NoRotation,
+    Stuck(Accelerometer),
+    Mirrored,
+    Elliptic,
+    Contradicted,
 }
 
 /// The lock at work.
@@ -65,17 +94,19 @@ pub(super) struct Lock {
     /// Seconds a radian, lately, and for how long the body does not spin, s.
     slowness: Option<f64>,
     still: f64,
+    /// Part of its rate by which that changes in a second, either way.
+    quickening: f32,
     /// Variance of the scale to begin with.
     first: f64,
     /// Variances of angle, rad², and scale, and what they share.
     angle: f64,
     scale: f64,
     shared: f64,
-    /// The scale error.
+    /// By what part of what the gyro shows that is too much: s/(1 + s) of a scale error s, in which phases are linear.
     error: f64,
     sums: Sums,
-    /// Whether too much of the rotation was lost since then for the turns to be used.
-    is_broken: bool,
+    /// Variance of the rotation that was lost since then, rad².
+    lost: f64,
     /// The angle at which the turn began, and at which the states were told last.
     begun: i64,
     told: i64,
@@ -87,7 +118,14 @@ pub(super) struct Lock {
     noise: Option<f32>,
     lift: Option<f32>,
     is_found: bool,
+    /// Looks that have agreed with each other, and those on end that have not.
+    agreed: u8,
     strays: u32,
+    /// The phase of the latest one that has not, rad: either it is wrong, or the roll.
+    stray: f32,
+    /// Mean and mean square of what looks add, in standard deviations.
+    calm: [f32; 2],
+    circle: Circle,
     trouble: Trouble,
     troubled: Option<Instant>,
 }
@@ -100,21 +138,26 @@ impl Lock {
             bias: setting.bias_sigma,
             slowness: None,
             still: 0.0,
+            quickening: 0.0,
             first: setting.scale_sigma * setting.scale_sigma,
             angle: TURN * TURN,
             scale: setting.scale_sigma * setting.scale_sigma,
             shared: 0.0,
             error: 0.0,
             sums: Sums::of(USUAL),
-            is_broken: false,
+            lost: f64::INFINITY,
             begun: 0,
             told: 0,
-            wanted: TURN_STEPS,
+            wanted: SKIPPED,
             since: 0,
             noise: None,
             lift: None,
             is_found: false,
+            agreed: 0,
             strays: 0,
+            stray: 0.0,
+            calm: [0.0, 1.0],
+            circle: Circle::default(),
             trouble: Trouble::None,
             troubled: None,
         }
@@ -131,17 +174,25 @@ impl Lock {
         }
     }
 
-    /// So many samples are missing, and of so many the increment is lost: about this one, in its steps, which changed by
-    /// so much meanwhile.
-    pub(super) fn lose(&mut self, missing: f32, lost: f32, mean: f32, change: f32) {
+    /// So many samples are missing, and of so many on end, before and now, the increment is lost: about this one, in its
+    /// steps, which changed by so much meanwhile.
+    pub(super) fn lose(&mut self, missing: f32, [known, lost]: [f32; 2], mean: f32, change: f32) {
         self.since = self.since.saturating_add(missing as u32);
         self.sums.pass(missing as u32);
-        let lost = lost * (0.5 * change + CHANGE * mean.abs()) * AngleIncrement::STEP as f32;
-        self.angle += f64::from(lost) * f64::from(lost);
-        self.is_broken |= lost > BROKEN;
+        let each = (0.5 * change + CHANGE * mean.abs()) * AngleIncrement::STEP as f32;
+        let variance = f64::from(each) * f64::from(each) * f64::from(lost * lost - known * known);
+        self.angle += variance;
+        self.lost += variance;
         if self.angle > SURE * SURE {
             self.trouble = Trouble::NoRotation;
         }
+    }
+
+    /// So many samples on end that the gyro does not tell, in samples of which nothing is known: the body leaves the rate
+    /// that it had as fast as it lately changed it, and a little.
+    pub(super) fn strayed(&self, samples: f32) -> f32 {
+        let left = (self.quickening + QUICKENING) * samples * self.period as f32;
+        samples * (0.5 * left / CHANGE).min(1.0)
     }
 
     /// The turns are over.
@@ -154,17 +205,28 @@ impl Lock {
         self.carry(angle, f64::from(self.since) * self.period);
         let half = f64::from(self.sums.part_after_middle())
             * f64::from(Wheel::between(self.begun, wheel.whole()));
-        let trouble = match (is_whole, core::mem::take(&mut self.is_broken)) {
+        let trouble = match (is_whole, self.lost > BROKEN * BROKEN) {
             (false, _) => Trouble::TooSlow,
             (true, true) => Trouble::None,
             (true, false) => self.use_turn(half, wheel),
         };
+        self.lost = 0.0;
         self.note(trouble, now);
-        self.wanted = TURN_STEPS * u64::from(if self.is_found { TOGETHER } else { 1 });
+        self.wanted = TURN_STEPS * u64::from(self.together());
         self.sums = Sums::of(if is_whole { samples * self.wanted as f32 } else { USUAL });
         self.begun = wheel.whole();
         self.told = self.begun;
         self.since = 0;
+    }
+
+    /// Turns that stay in step, whatever the scale.
+    fn together(&self) -> u32 {
+        let one = TURN * libm::sqrt(self.scale);
+        match self.agreed {
+            AGREED.. if f64::from(TOGETHER) * one < IN_STEP => TOGETHER,
+            1.. if 2.0 * one < IN_STEP => 2,
+            _ => 1,
+        }
     }
 
     /// The states after the body has turned by an angle, rad, in that time, s.
@@ -185,6 +247,7 @@ impl Lock {
         let slowness = seconds / angle.abs().max(SLOWEST * seconds);
         let before = self.slowness.replace(slowness).unwrap_or(slowness);
         self.scale += square(self.bias * (slowness - before));
+        self.quickening = ((slowness - before) / (slowness * seconds)).abs() as f32;
         if slowness * SLOWEST >= 1.0 {
             let still = self.still + seconds;
             self.angle += square(self.bias) * (square(still) - square(self.still));
@@ -194,10 +257,11 @@ impl Lock {
         }
     }
 
-    /// Any angle is possible: it shares nothing with the scale any more, for nobody counted its turns.
+    /// Any angle is possible: it shares nothing with the scale any more, since its turns were not counted.
     fn forget_angle(&mut self) {
         self.angle = TURN * TURN;
         self.shared = 0.0;
+        self.agreed = 0;
     }
 
     /// Learns from turns; the middle of them is so far ago, rad.
@@ -205,43 +269,85 @@ impl Lock {
         if self.sums.count() * 2 < self.sums.samples() {
             return Trouble::NoForce;
         }
-        let Some(fit) = self.sums.fit() else { return Trouble::NoForce };
+        if let Some(which) = self.sums.stuck() {
+            return Trouble::Stuck(which);
+        }
+        let turns = (self.wanted / TURN_STEPS).max(1) as u32;
+        let Some(fit) = self.sums.fit(turns) else { return Trouble::NoForce };
+        let quiet = self.noise.unwrap_or(fit.noise);
         let noise = self.noise(&fit);
         let sigma = libm::sqrtf(noise * fit.share);
         let lift = libm::sqrtf(fit.lift.power());
-        if lift < sigma * if self.is_found { USED } else { FOUND } {
+        let trouble = self.judge(lift, libm::sqrtf(fit.ripple.against().power()), sigma);
+        if trouble != Trouble::None {
             self.lift = Some(0.0);
-            return Trouble::NoLift;
+            return trouble;
         }
         let phase = f64::from(libm::atan2f(fit.lift.imaginary, fit.lift.real));
         let square = |part: f64| part * part;
         // A lift that changes while the scale is not known yet shows a phase of its own.
-        let bent = self.scale * square(half) * square(f64::from(fit.change / lift));
+        let bent = self.scale * square(half) * square(f64::from(fit.change / lift))
+            + square(f64::from(fit.crowded() / lift));
         self.lift = Some(lift);
-        self.learn(phase, square(f64::from(sigma / lift)) + bent, half, wheel);
-        Trouble::None
+        let variance = square(f64::from(sigma / lift)) + bent + self.lost;
+        let is_used = self.learn(phase, variance, half, wheel);
+        if !is_used && (noise > NOISE_RISE * quiet || lift < FOUND * sigma) {
+            // The forces are to blame, or chance, not the gyro.
+            self.stray = 0.0;
+        }
+        // What was lost after the middle is still to be known.
+        self.angle += self.lost;
+        if is_used && self.agreed >= AGREED {
+            self.circle.take(&fit, noise);
+        }
+        if self.stray != 0.0 { Trouble::Contradicted } else { Trouble::None }
     }
 
-    /// The noise of the forces, averaged over turns, or that of these where it is greater: a blow, or forces that the
-    /// fit does not describe.
+    /// Whether a lift can be believed, beside what goes round against it and the noise of either part, m/s².
+    fn judge(&self, lift: f32, against: f32, sigma: f32) -> Trouble {
+        let felt = sigma * if self.agreed > 0 { USED } else { FOUND };
+        if lift.max(against) < felt {
+            Trouble::NoLift
+        } else if against > lift {
+            Trouble::Mirrored
+        } else if against > ELLIPTIC * lift + BOUND as f32 * sigma {
+            Trouble::Elliptic
+        } else if lift < felt {
+            Trouble::NoLift
+        } else {
+            Trouble::None
+        }
+    }
+
+    /// The noise of the forces, averaged over turns, or that of these where it is greater by more than chance: a blow, or
+    /// forces that the fit does not describe.
     fn noise(&mut self, fit: &Fit) -> f32 {
-        let before = self.noise.unwrap_or(fit.noise);
+        let before = self.noise.unwrap_or(fit.noise).min(NOISE_RISE * fit.noise);
         let noise = before + (fit.noise.min(NOISE_RISE * before) - before) / NOISE_LOOKS;
         self.noise = Some(noise);
-        noise.max(fit.noise)
+        let chance = NOISE_SIGMAS / libm::sqrtf(fit.count);
+        if fit.noise > noise * (1.0 + chance) { fit.noise } else { noise }
     }
 
-    fn learn(&mut self, phase: f64, variance: f64, half: f64, wheel: &mut Wheel) {
+    /// Takes a phase of such a variance, that of the middle so far ago, rad; whether it could be.
+    fn learn(&mut self, phase: f64, variance: f64, half: f64, wheel: &mut Wheel) -> bool {
         // The phase is that at the middle: the angle's error now, and what the scale has made of it since.
         let with_angle = self.angle + half * self.shared;
         let with_scale = self.shared + half * self.scale;
         let whole = with_angle + half * with_scale + variance;
+        if self.agreed == 0 || whole > AMBIGUOUS * AMBIGUOUS {
+            self.begin(phase, variance, half, wheel);
+            return true;
+        }
         let phase = self.upright(phase, whole);
-        if phase * phase > BOUND * BOUND * whole && self.is_found {
-            return self.stray();
+        if phase * phase > BOUND * BOUND * whole {
+            self.disagree(phase, variance, half, wheel);
+            return false;
         }
         self.strays = 0;
-        self.is_found = true;
+        self.stray = 0.0;
+        self.agreed = self.agreed.saturating_add(1);
+        self.is_found |= self.agreed >= AGREED;
         let (angle_gain, scale_gain) = (with_angle / whole, with_scale / whole);
         self.angle -= angle_gain * with_angle;
         self.shared -= angle_gain * with_scale;
@@ -249,30 +355,70 @@ impl Lock {
         self.error += scale_gain * phase;
         wheel.correct(angle_gain * phase);
         wheel.scale(self.error);
+        self.watch((phase / libm::sqrt(whole)) as f32);
+        true
+    }
+
+    /// Takes the angle from a phase alone: whatever was known of it leaves open which turn it is.
+    fn begin(&mut self, phase: f64, variance: f64, half: f64, wheel: &mut Wheel) {
+        self.agreed = 1;
+        self.stray = 0.0;
+        self.calm = [0.0, 1.0];
+        self.angle = variance + half * half * self.scale;
+        self.shared = -half * self.scale;
+        wheel.correct(phase);
+    }
+
+    /// A phase that cannot be. Before the roll is told, that begins anew; afterwards, where too many come in a row.
+    fn disagree(&mut self, phase: f64, variance: f64, half: f64, wheel: &mut Wheel) {
+        self.strays += 1;
+        self.stray = phase as f32;
+        let is_told = self.agreed >= AGREED;
+        if self.strays >= if is_told { PATIENCE } else { DISAGREED } {
+            self.strays = 0;
+            self.scale = self.first.max(WRONG * WRONG);
+            self.forget_angle();
+            self.begin(phase, variance, half, wheel);
+        } else if !is_told {
+            self.begin(phase, variance, half, wheel);
+        } else if self.strays > 1 {
+            self.fade();
+        }
+    }
+
+    /// The variances are too small.
+    fn fade(&mut self) {
+        self.angle *= FADE;
+        self.shared *= FADE;
+        self.scale *= FADE;
+    }
+
+    /// What looks add must be chance: where it is not, the body turns as the filter does not expect, and more than the
+    /// variances say is open.
+    fn watch(&mut self, added: f32) {
+        let [mean, square] = &mut self.calm;
+        *mean += (added - *mean) / CALM_LOOKS;
+        *square += (added * added - *square) / CALM_LOOKS;
+        if mean.abs() > CALM_MEAN || *square > CALM_SQUARE {
+            self.calm = [0.0, 1.0];
+            self.fade();
+        }
     }
 
     /// A phase near half a turn off, where the angle is sure, is a lift that pushes down.
     fn upright(&mut self, phase: f64, variance: f64) -> f64 {
         let half = 0.5 * TURN;
-        if variance > SURE * SURE || phase.abs() < 0.5 * half {
+        let is_sure = self.agreed >= AGREED && variance < UPRIGHT * UPRIGHT;
+        if !is_sure || phase.abs() < 0.5 * half {
             return phase;
         }
         self.lift = self.lift.map(|lift| -lift);
         phase - libm::copysign(half, phase)
     }
 
-    /// A phase that cannot be: too many in a row, and everything is possible again.
-    fn stray(&mut self) {
-        self.strays += 1;
-        if self.strays >= PATIENCE {
-            self.strays = 0;
-            self.forget_angle();
-            self.scale = self.first.max(WRONG * WRONG);
-        }
-    }
-
     fn note(&mut self, trouble: Trouble, now: Instant) {
-        let is_lost = trouble == Trouble::None && self.angle > SURE * SURE;
+        let is_lost =
+            trouble == Trouble::None && (self.agreed < AGREED || self.angle > SURE * SURE);
         self.trouble = if is_lost { Trouble::NoRotation } else { trouble };
         let since = self.troubled.unwrap_or(now);
         self.troubled = (self.trouble != Trouble::None).then_some(since);
@@ -283,13 +429,15 @@ impl Lock {
         let angle = f64::from(Wheel::between(self.told, wheel.whole()));
         let seconds = f64::from(self.since) * self.period;
         let grown = angle * (angle * self.scale - 2.0 * self.shared) + self.walk * seconds;
-        let sigma = libm::sqrt(self.angle + grown);
-        (self.is_found && sigma < NOTHING).then_some(sigma)
+        let stray = f64::from(self.stray) * f64::from(self.stray);
+        let of_sensors = f64::from(self.circle.variance());
+        let sigma = libm::sqrt(self.angle + grown + stray + of_sensors);
+        (self.agreed >= AGREED && sigma < NOTHING).then_some(sigma)
     }
 
     /// The scale error and its 1σ.
     pub(super) fn scale(&self) -> [f64; 2] {
-        [self.error, libm::sqrt(self.scale)]
+        [self.error / (1.0 - self.error), libm::sqrt(self.scale)]
     }
 
     pub(super) fn lift(&self) -> Option<f64> {
@@ -300,6 +448,10 @@ impl Lock {
         let since = self.troubled.unwrap_or(now);
         let seconds = now.seconds() - since.seconds();
         match self.trouble {
+            Trouble::Stuck(which) => State::AccelerometerStuck { which, seconds },
+            Trouble::Mirrored => State::Mirrored { seconds },
+            Trouble::Elliptic => State::Elliptic { seconds },
+            Trouble::Contradicted => State::Contradicted { seconds },
             Trouble::TooSlow => State::NotSpinning { seconds },
             Trouble::NoForce => State::ForceLost { seconds },
             Trouble::NoRotation if self.is_found => State::RotationLost { seconds },

@@ -13,9 +13,13 @@
 //! the rest of this crate the force to the right is `a_z`, that downwards `−a_y`.
 
 pub mod attitude;
+mod circle;
+mod complex;
 mod extrema;
 mod fit;
+mod harmonics;
 mod lock;
+mod pace;
 mod wheel;
 
 pub use self::extrema::Signal;
@@ -23,6 +27,7 @@ pub use self::wheel::Roll;
 
 use self::extrema::Extrema;
 use self::lock::Lock;
+use self::pace::Pace;
 use self::wheel::Wheel;
 use crate::signal::SpinSample;
 use crate::units::{AngleIncrement, Instant};
@@ -70,6 +75,23 @@ impl Setting {
     }
 }
 
+/// Which accelerometer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Accelerometer {
+    /// That along y.
+    Y,
+    /// That along z.
+    Z,
+    /// Both.
+    Both,
+}
+
+words! { Accelerometer:
+    Self::Y => "the accelerometer along y shows";
+    Self::Z => "the accelerometer along z shows";
+    Self::Both => "both accelerometers show";
+}
+
 /// What the roll rests on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum State {
@@ -98,6 +120,33 @@ pub enum State {
         /// For how long.
         seconds: f64,
     },
+    /// An accelerometer shows one value all the time.
+    AccelerometerStuck {
+        /// Which one.
+        which: Accelerometer,
+        /// For how long.
+        seconds: f64,
+    },
+    /// The gyro about the long axis shows one rate all the time.
+    GyroStuck {
+        /// For how long.
+        seconds: f64,
+    },
+    /// The forces go round against the gyro.
+    Mirrored {
+        /// For how long.
+        seconds: f64,
+    },
+    /// The forces draw an ellipse, not a circle.
+    Elliptic {
+        /// For how long.
+        seconds: f64,
+    },
+    /// The forces turn otherwise than the gyro says.
+    Contradicted {
+        /// For how long.
+        seconds: f64,
+    },
 }
 
 words! { State:
@@ -107,6 +156,11 @@ words! { State:
     Self::NotSpinning { seconds } => "not spinning for {} s", Rounded::<2>(seconds);
     Self::ForceLost { seconds } => "without forces for {} s", Rounded::<2>(seconds);
     Self::RotationLost { seconds } => "rotation lost for {} s", Rounded::<2>(seconds);
+    Self::AccelerometerStuck { which, seconds } => "{} one value for {} s: stuck or dead, check supply and wires", which, Rounded::<2>(seconds);
+    Self::GyroStuck { seconds } => "the gyro about x shows one rate for {} s: stuck or dead, check supply and wires", Rounded::<2>(seconds);
+    Self::Mirrored { seconds } => "the forces go round against the gyro for {} s: swapped or turned round, check axes and signs", Rounded::<2>(seconds);
+    Self::Elliptic { seconds } => "the forces draw an ellipse for {} s: check scales and axes of the accelerometers", Rounded::<2>(seconds);
+    Self::Contradicted { seconds } => "the forces contradict the gyro for {} s: check its scale", Rounded::<2>(seconds);
 }
 
 /// Part of its period by which a sample may come late.
@@ -120,7 +174,7 @@ pub struct Spin {
     /// Sample period, µs.
     period: f32,
     latest: Option<Instant>,
-    before: AngleIncrement,
+    pace: Pace,
 }
 
 #[expect(
@@ -147,7 +201,7 @@ impl Spin {
             corrector,
             period: (setting.sample_seconds * 1e6) as f32,
             latest: None,
-            before: AngleIncrement(0),
+            pace: Pace::new(setting),
         }
     }
 
@@ -156,12 +210,11 @@ impl Spin {
     pub fn push(&mut self, sample: &SpinSample) -> Option<Signal> {
         let missing = self.missing(sample.time);
         let [turned, ..] = sample.turned;
-        let is_clipped = turned.is_saturated();
-        let turned = if is_clipped { self.before } else { turned };
-        if missing > 0.0 || is_clipped {
-            self.bridge(missing, turned, is_clipped);
+        let before = self.pace.before();
+        let turned = self.pace.take(turned);
+        if missing > 0.0 || self.pace.is_lost() {
+            self.bridge(missing, [before, turned]);
         }
-        self.before = turned;
         self.wheel.turn(turned);
         match &mut self.corrector {
             Corrector::Extrema(extrema) => extrema.push(sample.force, &mut self.wheel),
@@ -181,16 +234,22 @@ impl Spin {
         if missing > LATE * self.period { missing / self.period } else { 0.0 }
     }
 
-    /// The body goes on turning as it did while samples are missing or clipped.
+    /// The body goes on turning as it did while samples are missing, or their gyro is not believed.
     #[inline(never)]
-    fn bridge(&mut self, missing: f32, turned: AngleIncrement, is_clipped: bool) {
-        let mean = 0.5 * (self.before.0 as f32 + turned.0 as f32);
+    fn bridge(&mut self, missing: f32, turned: [AngleIncrement; 2]) {
+        let [before, now] = turned.map(|turned| turned.0 as f32);
+        let mean = 0.5 * (before + now);
         self.wheel.pass(mean, missing);
-        let change = (turned.0 as f32 - self.before.0 as f32).abs();
-        let lost = missing + if is_clipped { 1.0 } else { 0.0 };
         match &mut self.corrector {
             Corrector::Extrema(extrema) => extrema.disturb(),
-            Corrector::Lock(lock) => lock.lose(missing, lost, mean, change),
+            Corrector::Lock(lock) => {
+                let off = self.pace.off();
+                // A jump may be right at once; what clips or sticks was right before.
+                let strayed = |samples| if off > 0.0 { samples } else { lock.strayed(samples) };
+                let [known, lost] = self.pace.lost().map(strayed);
+                let change = (now - before).abs() + off;
+                lock.lose(missing, [known, lost + missing], mean, change);
+            }
         }
     }
 }
@@ -237,7 +296,12 @@ impl Spin {
         match &self.corrector {
             Corrector::Extrema(extrema) if extrema.has_corrected() => State::Locked,
             Corrector::Extrema(_) => State::Searching,
-            Corrector::Lock(lock) => lock.state(now),
+            Corrector::Lock(lock) => match self.pace.stuck() {
+                Some(samples) => {
+                    State::GyroStuck { seconds: f64::from(samples) * f64::from(self.period) * 1e-6 }
+                }
+                None => lock.state(now),
+            },
         }
     }
 

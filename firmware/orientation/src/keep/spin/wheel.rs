@@ -62,9 +62,9 @@ impl Wheel {
         self.angle = self.angle.wrapping_add((turns / f64::from(1 << CARRIED)) as i64);
     }
 
-    /// Takes off another scale error of the gyro, shown over true less one.
-    pub(super) fn scale(&mut self, error: f64) {
-        self.step = (STEP / (1.0 + error)) as i64;
+    /// Takes off another part of what the gyro shows.
+    pub(super) fn scale(&mut self, part: f64) {
+        self.step = (STEP * (1.0 - part)) as i64;
     }
 
     /// Turns further by an angle, rad.

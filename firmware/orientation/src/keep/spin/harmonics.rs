@@ -1,0 +1,132 @@
+//! What goes round in the forces otherwise than the lift: against it, twice and thrice a turn.
+//!
+//! `s = … + Σ Xₖ e^{jkγ̂}`, k = −1, 2, −2 and 3. Sensors as they should be show none of it. Taken out, it neither bends
+//! the lift's phase nor counts as noise; what it tells of the sensors is in [`super::circle`].
+
+use super::complex::Complex;
+
+/// The parts, by how often they go round in a turn.
+const ORDERS: [i32; PARTS] = [AGAINST, 2, -2, THRICE];
+const AGAINST: i32 = -1;
+const THRICE: i32 = 3;
+/// How many there are.
+pub(super) const PARTS: usize = 4;
+
+/// Amplitudes of the parts, m/s².
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Ripple(pub(super) [Complex; PARTS]);
+
+impl Ripple {
+    /// What goes round against the gyro.
+    pub(super) fn against(&self) -> Complex {
+        self.0[0]
+    }
+
+    /// Root of the power of all parts.
+    pub(super) fn size(&self) -> f32 {
+        libm::sqrtf(self.0.iter().map(|part| part.power()).sum())
+    }
+
+    /// What goes round three times a turn.
+    pub(super) fn thrice(&self) -> Complex {
+        self.0[3]
+    }
+}
+
+/// Sums over the samples of a look.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Harmonics {
+    /// Of `e^{2jγ̂}` and `e^{3jγ̂}`, and times the place.
+    second: [Complex; 2],
+    third: [Complex; 2],
+    /// Of the force, turned back by each of [`ORDERS`].
+    force: [Complex; PARTS],
+}
+
+impl Harmonics {
+    /// Adds a sample: its place, its angle's cosine and sine, its force. Written out, as what calls it.
+    #[inline(always)]
+    pub(super) fn push(
+        &mut self,
+        place: f32,
+        [cosine, sine]: [f32; 2],
+        [real, imaginary]: [f32; 2],
+    ) {
+        let twice = sine + sine;
+        let (cosine_2, sine_2) = (1.0 - twice * sine, twice * cosine);
+        let cosine_3 = cosine_2 * cosine - sine_2 * sine;
+        let sine_3 = cosine_2 * sine + sine_2 * cosine;
+        self.second[0].real += cosine_2;
+        self.second[0].imaginary += sine_2;
+        self.second[1].real += place * cosine_2;
+        self.second[1].imaginary += place * sine_2;
+        self.third[0].real += cosine_3;
+        self.third[0].imaginary += sine_3;
+        self.third[1].real += place * cosine_3;
+        self.third[1].imaginary += place * sine_3;
+        self.force[0].real += real * cosine - imaginary * sine;
+        self.force[0].imaginary += real * sine + imaginary * cosine;
+        let (direct, crossed) = (real * cosine_2, imaginary * sine_2);
+        let (straight, across) = (imaginary * cosine_2, real * sine_2);
+        self.force[1].real += direct + crossed;
+        self.force[1].imaginary += straight - across;
+        self.force[2].real += direct - crossed;
+        self.force[2].imaginary += straight + across;
+        self.force[3].real += real * cosine_3 + imaginary * sine_3;
+        self.force[3].imaginary += imaginary * cosine_3 - real * sine_3;
+    }
+
+    /// Of `e^{jkγ̂}` and that times the place, k from −3 to 3; `even` and `first` are those of k = 0 and 1.
+    fn round(&self, order: i32, even: [f32; 2], first: [Complex; 2]) -> [Complex; 2] {
+        let sums = match order.abs() {
+            0 => even.map(|real| Complex { real, imaginary: 0.0 }),
+            1 => first,
+            2 => self.second,
+            _ => self.third,
+        };
+        if order < 0 { sums.map(Complex::conjugate) } else { sums }
+    }
+
+    /// Goes nearer to the parts by what a fit of the rest leaves of the forces; `model` is that fit: steady, its change,
+    /// lift, its change.
+    pub(super) fn approach(
+        &self,
+        ripple: &mut Ripple,
+        even: [f32; 2],
+        first: [Complex; 2],
+        model: &[Complex; 4],
+    ) {
+        let [count, _] = even;
+        for (place, order) in ORDERS.into_iter().enumerate() {
+            let steady = self.round(-order, even, first);
+            let turning = self.round(1 - order, even, first);
+            let columns = [steady[0], steady[1], turning[0], turning[1]];
+            let shown = columns.iter().zip(model).map(|(column, part)| column.times(*part));
+            ripple.0[place] = (self.force[place] - shown.sum()).scaled(1.0 / count);
+        }
+    }
+
+    /// What the parts make of the sums of the force, of that times the place, and of both turned back once.
+    pub(super) fn shares(
+        &self,
+        ripple: &Ripple,
+        even: [f32; 2],
+        first: [Complex; 2],
+    ) -> [Complex; 4] {
+        let mut shares = [Complex::default(); 4];
+        for (part, order) in ripple.0.iter().zip(ORDERS) {
+            let [force, placed] = self.round(order, even, first);
+            let [turned, turned_placed] = self.round(order - 1, even, first);
+            for (share, sum) in shares.iter_mut().zip([force, placed, turned, turned_placed]) {
+                *share += part.times(sum);
+            }
+        }
+        shares
+    }
+
+    /// Power of the forces that the parts explain, beside what the fit of the rest does.
+    pub(super) fn explained(&self, ripple: &Ripple, count: f32) -> f32 {
+        let parts = ripple.0.iter().zip(&self.force);
+        parts.map(|(part, force)| 2.0 * part.against(*force).real - count * part.power()).sum()
+    }
+}

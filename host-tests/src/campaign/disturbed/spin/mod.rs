@@ -1,0 +1,180 @@
+//! A spinning body with one gyro and two accelerometers: drawn flights, and what goes wrong with their sensors.
+
+mod classes;
+mod plain;
+
+use std::f64::consts::TAU;
+
+use hal_mock::accelerometer::AccelerometerConfiguration;
+use hal_mock::gyro::GyroConfiguration;
+use hal_mock::spin::profile::Profile;
+use hal_mock::spin::{SpinConfiguration, SpinWorld};
+
+use super::Pair;
+use super::chance::Chance;
+use crate::campaign::statistics::Answer;
+use crate::output::degrees;
+use crate::recording::{Body, Header, SpinRow};
+use crate::spin::errors::wrapped;
+use crate::spin::{Options, Replay, replay};
+
+pub use classes::CLASSES;
+
+/// The random streams of a flight and of its fault: none of those that a world draws from.
+const DRAWN: u64 = 2_031;
+const FAULT: u64 = 2_032;
+
+/// A drawn flight; what is told of its gyro is true.
+#[derive(Clone, Debug)]
+struct Flight {
+    seed: u64,
+    seconds: f64,
+    rate_hz: f64,
+    roll_rad: f64,
+    /// Rate of the roll and lift, rad/s and m/s², at some times, s.
+    spin_rad_s: [(f64, f64); 3],
+    lift_m_s2: [(f64, f64); 3],
+    radius_m: [f64; 2],
+    noise_m_s2: f64,
+    gyro: GyroConfiguration,
+    header: Header,
+}
+
+impl Flight {
+    /// A healthy flight.
+    fn drawn(seed: u64) -> Self {
+        let mut chance = Chance::new(seed, DRAWN);
+        let (seconds, rate_hz) =
+            (chance.between(0.8, 2.0), chance.one_of(&[8_000.0, 10_000.0, 14_400.0]));
+        let spin = chance.sign() * TAU * chance.between(40.0, 100.0);
+        let lift = chance.scaled(8.0, 50.0);
+        let n = chance.scaled(0.05, 5.0);
+        let (bias, scale) = (chance.scaled(10.0, 200.0), chance.scaled(1e-3, 1e-2));
+        let gyro = GyroConfiguration {
+            n_deg_sqrt_h: n,
+            bias_sigma_deg_h: bias,
+            scale_sigma: scale,
+            ..GyroConfiguration::default()
+        };
+        let header = Header {
+            rate_hz: Some(rate_hz),
+            gyro_n_deg_sqrt_h: chance.happens(0.7).then_some(n),
+            gyro_bias_deg_h: Some(bias),
+            gyro_scale_sigma: Some(scale),
+            ..Header::default()
+        };
+        Self {
+            seed,
+            seconds,
+            rate_hz,
+            roll_rad: chance.between(0.0, TAU),
+            spin_rad_s: changing(&mut chance, seconds, spin, 0.05),
+            lift_m_s2: changing(&mut chance, seconds, lift, 0.2),
+            radius_m: [0, 1].map(|_| chance.between(-0.02, 0.02)),
+            noise_m_s2: lift * chance.scaled(3e-3, 0.1),
+            gyro,
+            header,
+        }
+    }
+
+    /// What its sensors show.
+    fn recorded(&self) -> Recorded {
+        let mut configuration = SpinConfiguration {
+            rate_hz: self.rate_hz,
+            seconds: self.seconds,
+            roll_rad: self.roll_rad,
+            spin_rad_s: Profile(&self.spin_rad_s),
+            radius_m: self.radius_m,
+            gyros: [self.gyro; 3],
+            accelerometer: AccelerometerConfiguration {
+                noise_m_s2_sqrt_hz: self.noise_m_s2 / (0.5 * self.rate_hz).sqrt(),
+                bias_sigma_m_s2: 0.1,
+                ..AccelerometerConfiguration::default()
+            },
+            ..SpinConfiguration::default()
+        };
+        configuration.forces.lift_m_s2 = Profile(&self.lift_m_s2);
+        let mut world = SpinWorld::new(&configuration, self.seed);
+        let (mut rows, mut rolls_rad) = (Vec::new(), Vec::new());
+        while let Some(sample) = world.next_sample() {
+            let [rate_rad_s, ..] = sample.rate_rad_s;
+            let (line, time_s) = (rows.len() as u64 + 1, sample.time_s);
+            rows.push(SpinRow { line, time_s, rate_rad_s, force_m_s2: sample.force_m_s2 });
+            rolls_rad.push(world.truth().roll_rad);
+        }
+        Recorded { rows, rolls_rad, lift_m_s2: self.lift_m_s2[0].1, header: self.header.clone() }
+    }
+
+    /// This flight with a fault and without.
+    fn pair(&self, spoil: impl FnOnce(&mut Recorded, &mut Chance)) -> Pair {
+        let recorded = self.recorded();
+        let healthy = recorded.answer();
+        let mut spoilt = recorded;
+        spoil(&mut spoilt, &mut Chance::new(self.seed, FAULT));
+        Pair {
+            healthy,
+            faulty: spoilt.answer(),
+            unchecked_deg: spoilt.unchecked_deg(),
+            is_few: false,
+        }
+    }
+}
+
+/// A value that changes by up to such a part of itself a second, another way after the middle.
+fn changing(chance: &mut Chance, seconds: f64, value: f64, part: f64) -> [(f64, f64); 3] {
+    let half = 0.5 * seconds;
+    let mut step = |before: f64| before * (1.0 + chance.between(-part, part) * half);
+    let middle = step(value);
+    [(0.0, value), (half, middle), (seconds, step(middle))]
+}
+
+/// A flight as it was recorded, and the true roll at each sample.
+#[derive(Clone, Debug)]
+struct Recorded {
+    rows: Vec<SpinRow>,
+    rolls_rad: Vec<f64>,
+    /// Lift at the start, m/s².
+    lift_m_s2: f64,
+    header: Header,
+}
+
+impl Recorded {
+    /// Error of a roll at the last sample, °.
+    fn error_deg(&self, roll_rad: f64) -> f64 {
+        degrees(wrapped(roll_rad - self.rolls_rad.last().copied().unwrap_or(f64::NAN)))
+    }
+
+    /// The roll at the end.
+    fn answer(&self) -> Result<Answer, String> {
+        let body = Body::Spin(self.rows.clone());
+        let replay = replay(&self.header, &body, &Options::default());
+        let replay = replay.map_err(|error| error.to_string())?;
+        self.told(&replay)
+    }
+
+    fn told(&self, replay: &Replay) -> Result<Answer, String> {
+        if let Some(reason) = replay.refusal() {
+            return Err(reason);
+        }
+        let end = &replay.answer().end;
+        let limit = replay.bounds.as_ref().and_then(|bounds| bounds.last()).copied();
+        Ok(Answer {
+            error: self.error_deg(end.roll_rad),
+            sigma: end.sigma_rad.map_or(f64::NAN, degrees),
+            limit: limit.map_or(f64::NAN, degrees),
+        })
+    }
+
+    /// Error of the roll when nothing is checked and nothing left out, °.
+    fn unchecked_deg(&self) -> Option<f64> {
+        plain::roll(&self.rows, &self.header).map(|roll_rad| self.error_deg(roll_rad))
+    }
+}
+
+/// The answer of a drawn flight without any fault.
+///
+/// # Errors
+/// Why there is none.
+pub fn healthy(seed: u64) -> Result<Answer, String> {
+    Flight::drawn(seed).recorded().answer()
+}

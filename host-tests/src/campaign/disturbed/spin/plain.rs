@@ -1,0 +1,113 @@
+//! The roll at the end of a recording when nothing is checked: the phase of the forces in every four turns of the
+//! gyro, and the filter of angle and scale over all of them, whatever they show.
+
+use std::f64::consts::TAU;
+
+use orientation::align::regression::{Column, Regression};
+use orientation::units::DEGREE_PER_SQRT_HOUR;
+
+use crate::recording::{Header, SpinRow};
+use crate::spin::errors::wrapped;
+use crate::spin::limit::gyro_walk;
+
+/// Turns that are looked at together, as the core does.
+const TOGETHER: f64 = 4.0;
+/// Columns of the fit of one force over them: 1, u, cos, sin, u cos, u sin.
+const COLUMNS: usize = 6;
+/// 1σ of a scale of which nothing is known.
+const ANY_SCALE: f64 = 0.1;
+
+/// What some turns show: by how much the gyro's angle is behind, rad, the variance of that, and the angle, rad, and
+/// time, s, of its middle.
+struct Look {
+    phase: f64,
+    variance: f64,
+    angle: f64,
+    time_s: f64,
+}
+
+/// The roll at the last row, rad; none where there are not that many turns.
+pub(super) fn roll(rows: &[SpinRow], header: &Header) -> Option<f64> {
+    let angles = angles(rows);
+    let looks = looks(rows, &angles);
+    let period_s = header.rate_hz.map(f64::recip)?;
+    let walk = header.gyro_n_deg_sqrt_h.map_or_else(
+        || gyro_walk(&rows.iter().map(|row| row.rate_rad_s).collect::<Vec<f64>>(), period_s),
+        |n| n * DEGREE_PER_SQRT_HOUR,
+    );
+    let end = *angles.last()?;
+    Some(end + filtered(&looks, walk * walk, header.gyro_scale_sigma?, end)?)
+}
+
+/// The gyro's angle at each row, rad, from zero.
+fn angles(rows: &[SpinRow]) -> Vec<f64> {
+    let mut angle = 0.0;
+    let steps = rows.windows(2).map(|pair| {
+        let seconds = pair[1].time_s - pair[0].time_s;
+        angle += 0.5 * (pair[0].rate_rad_s + pair[1].rate_rad_s) * seconds;
+        angle
+    });
+    [0.0].into_iter().chain(steps.collect::<Vec<f64>>()).collect()
+}
+
+/// All of them, of the same noise: that of the one in the middle of all.
+fn looks(rows: &[SpinRow], angles: &[f64]) -> Vec<Look> {
+    let (mut from, mut looks) = (0, Vec::new());
+    for (to, angle) in angles.iter().enumerate() {
+        if (angle - angles[from]).abs() >= TOGETHER * TAU {
+            looks.extend(look(&rows[from..to], &angles[from..to]));
+            from = to;
+        }
+    }
+    let mut variances: Vec<f64> = looks.iter().map(|look| look.variance).collect();
+    let variance = crate::replay::median(&mut variances);
+    looks.iter_mut().for_each(|look| look.variance = variance);
+    looks
+}
+
+fn look(rows: &[SpinRow], angles: &[f64]) -> Option<Look> {
+    let mut fits = [Regression::<COLUMNS>::default(), Regression::default()];
+    let first = rows.first()?.force_m_s2;
+    for (index, (row, angle)) in rows.iter().zip(angles).enumerate() {
+        let u = (index as f64 + 0.5) / rows.len() as f64 - 0.5;
+        let (sine, cosine) = angle.sin_cos();
+        let columns = [1.0, u, cosine, sine, u * cosine, u * sine];
+        for axis in [0, 1] {
+            fits[axis].push(&columns, row.force_m_s2[axis] - first[axis]);
+        }
+    }
+    let [y, z] = fits.map(|fit| fit.solve(&[Column::Free; COLUMNS]));
+    let (y, z) = (y?, z?);
+    let up = 0.5 * (y.coefficients[2] - z.coefficients[3]);
+    let across = -0.5 * (y.coefficients[3] + z.coefficients[2]);
+    let noise = (y.chi_square + z.chi_square) / (y.degrees + z.degrees) as f64;
+    let middle = angles.len() / 2;
+    Some(Look {
+        phase: across.atan2(up),
+        variance: noise / (rows.len() as f64 * (up * up + across * across)),
+        angle: angles[middle],
+        time_s: rows[middle].time_s,
+    })
+}
+
+/// By how much the gyro's angle is behind at an angle after all looks, rad: angle and scale error by a filter that
+/// knows the gyro's walk, rad²/s, and takes every phase for the nearest.
+fn filtered(looks: &[Look], walk: f64, scale_sigma: f64, end: f64) -> Option<f64> {
+    let first = looks.first()?;
+    let (mut behind, mut scale) = (first.phase, 0.0);
+    let known = scale_sigma.max(ANY_SCALE);
+    let (mut aa, mut ab, mut bb) = (first.variance, 0.0, known * known);
+    for pair in looks.windows(2) {
+        let (turned, seconds) = (pair[1].angle - pair[0].angle, pair[1].time_s - pair[0].time_s);
+        behind -= turned * scale;
+        aa += turned * (turned * bb - 2.0 * ab) + walk * seconds;
+        ab -= turned * bb;
+        let innovation = wrapped(pair[1].phase - behind);
+        let whole = aa + pair[1].variance;
+        behind += aa / whole * innovation;
+        scale += ab / whole * innovation;
+        bb -= ab * ab / whole;
+        (aa, ab) = (aa * pair[1].variance / whole, ab * pair[1].variance / whole);
+    }
+    Some(behind - (end - looks.last()?.angle) * scale)
+}
