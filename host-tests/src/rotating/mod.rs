@@ -16,6 +16,7 @@ use self::part::Part;
 use crate::recording::{self, Body, Header, RotatingRow};
 use crate::replay::{Options, ReplayError, latitude};
 use crate::setting::{Described, describe};
+use crate::stops::samples::is_cut;
 
 /// A finished replay.
 #[derive(Clone, Debug)]
@@ -80,9 +81,22 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
     }
     let sensor = sensor(header, &mut assumed);
     let rate = header.rate_hz.unwrap_or_else(|| turns::rate_hz(rows));
-    let session = follow(Setting::new(common, sensor), rows, 1.0 / rate.max(f64::MIN_POSITIVE));
+    let setting = with_encoder(header, Setting::new(common, sensor), &mut assumed);
+    let session = follow(setting, rows, 1.0 / rate.max(f64::MIN_POSITIVE));
     let zero_s = rows.first().map_or(0.0, |row| row.time_s);
     Ok(Replay { session: session.map_err(ReplayError::Procedure)?, zero_s, assumed })
+}
+
+/// 1σ of the zero of an encoder of which nothing is known, °: where one without an index is set by hand.
+const ZERO_SIGMA_DEG: f64 = 0.15;
+
+/// A setting with what the header says of the encoder, whose harmonics no key states.
+fn with_encoder(header: &Header, setting: Setting, assumed: &mut Vec<String>) -> Setting {
+    let zero_sigma_deg = header.encoder_zero_sigma_deg.unwrap_or_else(|| {
+        assumed.push("encoder zero to 0.15° (encoder_zero_sigma_deg)".to_owned());
+        ZERO_SIGMA_DEG
+    });
+    Setting { encoder_zero_sigma: zero_sigma_deg.to_radians(), harmonics_known: false, ..setting }
 }
 
 /// The kind of sensor that the header names.
@@ -108,22 +122,47 @@ pub fn follow(
 ) -> Result<Session, ProcedureError> {
     let mut session = Session::new(setting, Procedure::recorded(sample_seconds))?;
     let begin = rows.first().map_or(0.0, |row| row.time_s);
+    let limits = limits(rows);
     for row in rows {
-        session.handle(Event::Recorded(&sample(row, begin), row.stage_rate_rad_s as f32));
+        let mut sample = sample(row, begin);
+        if row.rate_rad_s <= limits[0] || row.rate_rad_s >= limits[1] {
+            sample.rate = AngularRate(i32::MAX);
+        }
+        session.handle(Event::Recorded(&sample, row.stage_rate_rad_s as f32));
     }
     session.handle(Event::End);
     Ok(session)
 }
 
+/// Part of a turn's samples that may stand at a limit: what so few peaks of the noise lack is nothing.
+const FEW_CUT: f64 = 0.003;
+
+/// Between which rates a gyro's column is not cut, rad/s: one at its limit shows the same greatest rate, or least,
+/// again and again.
+fn limits(rows: &[RotatingRow]) -> [f64; 2] {
+    let rates = || rows.iter().map(|row| row.rate_rad_s);
+    let extreme = |of: fn(f64, f64) -> f64| rates().reduce(of).unwrap_or_default();
+    let (least, greatest) = (extreme(f64::min), extreme(f64::max));
+    let is_limit = |limit: f64| {
+        let count = rates().filter(|rate| *rate == limit).count();
+        count as f64 > FEW_CUT * rows.len() as f64 && is_cut(rates(), limit)
+    };
+    [
+        if is_limit(least) { least } else { f64::NEG_INFINITY },
+        if is_limit(greatest) { greatest } else { f64::INFINITY },
+    ]
+}
+
 /// A row in the stage path's units, its time from `begin` on; rounding as in
-/// [`orientation::units`]. The force across the axis is not recorded, and nobody asks for it.
+/// [`orientation::units`]. A force across the axis that is not recorded is none.
 fn sample(row: &RotatingRow, begin: f64) -> Sample {
     let along = SpecificForce::from_m_per_s2(row.force_m_s2);
+    let across = row.across_m_s2.map_or(SpecificForce::default(), SpecificForce::from_m_per_s2);
     Sample {
         time: Instant::from_seconds(row.time_s - begin),
         stage: Angle::from_rad(row.stage_rad),
         rate: AngularRate::from_rad_per_s(row.rate_rad_s),
-        force: Some([along, SpecificForce::default(), SpecificForce::default()]),
+        force: Some([along, across, SpecificForce::default()]),
         ..Sample::default()
     }
 }

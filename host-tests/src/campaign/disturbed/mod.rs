@@ -8,6 +8,7 @@
 mod axes;
 mod chance;
 pub mod stage;
+pub mod turning;
 pub mod vehicle;
 
 use serde::Serialize;
@@ -85,7 +86,7 @@ pub struct Class {
 
 /// Every class, method by method.
 pub fn classes() -> impl Iterator<Item = &'static Class> {
-    stage::CLASSES.iter().chain(vehicle::CLASSES)
+    stage::CLASSES.iter().chain(vehicle::CLASSES).chain(turning::CLASSES)
 }
 
 /// Healthy recordings of a method.
@@ -98,7 +99,10 @@ pub struct Healthy {
 }
 
 /// The methods whose healthy recordings are drawn.
-pub const HEALTHY: [Healthy; 1] = [Healthy { name: "stage", draw: stage::healthy }];
+pub const HEALTHY: [Healthy; 2] = [
+    Healthy { name: "stage", draw: stage::healthy },
+    Healthy { name: "turning", draw: turning::healthy },
+];
 
 /// What healthy recordings gave.
 #[derive(Clone, Debug, Serialize)]

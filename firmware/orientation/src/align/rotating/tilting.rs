@@ -1,0 +1,130 @@
+//! A base that tilts slowly, by the forces of its turns: it turns the gyro as the Earth does, 1 °/h of it by 6° at
+//! 50° of latitude.
+
+use heapless::Vec;
+
+use super::change::{MARKS, Mark, Record, Shape};
+use super::level::Lean;
+use super::turn::{Sense, Stretch};
+use crate::align::regression::Column;
+use crate::math::Complex;
+use crate::units::DEGREE_PER_HOUR;
+
+/// 1σ of what both senses' forces may differ by: a delay of the accelerometer, g.
+const SENSES: f64 = 2e-6;
+/// Least scatter of a turn's force that is believed, g.
+const LEAST_SCATTER: f64 = 1e-8;
+/// Gain of chi-square from which a tilt rate is believed (two parts, p = 0.0001).
+const BELIEVED: f64 = 18.4;
+/// The same of a step, for each place at which it may be (p = 0.001 over all of them).
+const STEP_BELIEVED: f64 = 13.8;
+/// Gain from which it is doubtful whether a base stands (two parts, p = 0.01).
+const DOUBTFUL: f64 = 9.21;
+/// Part of the bases that tilt, before their forces are looked at: where these speak for it, and where not.
+const TILTING: [f64; 2] = [0.02, 0.0003];
+/// 1σ of how fast a base tilts that does, 1/s: 3 °/h.
+const FASTEST: f64 = 3.0 * DEGREE_PER_HOUR;
+
+/// How a base tilts.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Tilting {
+    /// How fast the force's phasor changes, g/s, as far as that is believed.
+    pub rate: Complex,
+    /// Variance of either part of the true rate about that one, (g/s)².
+    pub variance: f64,
+    /// Likeliest rate where none is believed, g/s, and how probable it is that there is one.
+    doubted: Complex,
+    probability: f64,
+    /// Middle of the turns, s: the mean force is that of this time.
+    since: f64,
+    /// What a changing tilt multiplies in the gyro, rad/s per g.
+    per_tilt: Complex,
+    /// After which time, s, the force's phasor is another one, and by how much, g, where that is believed.
+    pub step: Option<(f64, f64)>,
+}
+
+impl Tilting {
+    /// From the forces of all turns, for gravity in m/s² and what a tilt makes of the gyro's phasor, rad/s per g.
+    #[must_use]
+    #[inline(never)]
+    pub fn of(stretches: &[Stretch], gravity: f64, per_tilt: Complex) -> Self {
+        let marks = marks(stretches, gravity);
+        let turns: f64 = marks.iter().map(|mark| f64::from(mark.turns)).sum();
+        let moment: f64 =
+            marks.iter().map(|mark| f64::from(mark.turns) * f64::from(mark.time)).sum();
+        let since = moment / turns.max(1.0);
+        let places = 2.0 * libm::log(marks.len().max(1) as f64);
+        let record = Record::of_phasors(marks, Column::Prior(SENSES), LEAST_SCATTER);
+        let standing = Self { since, per_tilt, ..Self::default() };
+        let Some(steady) = record.steady() else { return standing };
+        let Some(found) = record.changing(Shape::Rate, &steady) else { return standing };
+        let step = record.likeliest_step().and_then(|shape| record.changing(shape, &steady));
+        let step = step.filter(|step| step.gain > (STEP_BELIEVED + places).max(found.gain));
+        if let Some((Shape::Step(after), [re, im])) = step.map(|step| (step.shape, step.change)) {
+            return Self { step: Some((after, libm::hypot(re, im))), ..standing };
+        }
+        let rate = Complex::new(found.change[0], found.change[1]);
+        if found.gain > BELIEVED {
+            return Self { rate, variance: found.change_variance, ..standing };
+        }
+        let prior = TILTING[usize::from(found.gain < DOUBTFUL)];
+        let odds = prior * libm::exp(0.5 * found.gain);
+        let possible = 1.0 / (1.0 + found.change_variance / (FASTEST * FASTEST));
+        let probability = odds / (1.0 + odds) * possible;
+        Self { doubted: rate, variance: found.change_variance, probability, ..standing }
+    }
+
+    /// By which angle an encoder slipped whose slip the step is, rad, for a tilt in g: what the azimuth may be off by.
+    /// Zero where there is none.
+    #[must_use]
+    pub fn slip(&self, tilt: f64) -> f64 {
+        self.step.map_or(0.0, |(_, change)| change / tilt.max(f64::MIN_POSITIVE))
+    }
+
+    /// What the gyro feels more at a time in s than in the middle of all turns, rad/s: the vertical Earth rate and its
+    /// g-sensitivity through a tilt that is another one.
+    #[must_use]
+    pub fn vertical_part(&self, time: f64) -> Complex {
+        self.per_tilt * self.rate.scaled(time - self.since)
+    }
+
+    /// By how much the tilt at a time in s is another one than in the middle of all turns, g.
+    #[must_use]
+    pub fn tilt_at(&self, time: f64) -> Complex {
+        self.rate.scaled(time - self.since)
+    }
+
+    /// What the tilting itself turns the gyro by, rad/s.
+    #[must_use]
+    pub fn turning(&self, lean: &Lean) -> Complex {
+        lean.turning(self.rate)
+    }
+
+    /// Variance of an azimuth in rad for what the forces do not tell, for a horizontal Earth rate in rad/s.
+    #[must_use]
+    pub fn doubt(&self, lean: &Lean, azimuth: f64, horizontal: f64) -> f64 {
+        if self.probability == 0.0 {
+            return self.variance / (horizontal * horizontal);
+        }
+        let across = (lean.turning(self.doubted) * Complex::unit(-azimuth)).im;
+        self.probability * (across * across + self.variance) / (horizontal * horizontal)
+    }
+}
+
+/// The forces' phasors over gravity, g.
+fn marks(stretches: &[Stretch], gravity: f64) -> Vec<Mark, MARKS> {
+    let mut marks = Vec::new();
+    for stretch in stretches {
+        let joined = stretch.count() as f32 / stretch.turns().len().max(1) as f32;
+        let since = stretch.since() as f64 * 1e-6;
+        let odd = if stretch.sense == Sense::Clockwise { 1.0 } else { -1.0 };
+        for turn in stretch.turns() {
+            let force = Complex::of_signal(turn.force).scaled(1.0 / gravity);
+            let time = (since + f64::from(turn.middle)) as f32;
+            let value = [force.re as f32, force.im as f32];
+            // There is room for every turn of every stretch.
+            let _ = marks.push(Mark { time, odd, is_second: false, turns: joined, value });
+        }
+    }
+    marks
+}
