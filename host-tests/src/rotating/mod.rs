@@ -4,9 +4,12 @@ pub mod part;
 pub mod recorder;
 pub mod turns;
 
+use std::f64::consts::{FRAC_1_SQRT_2, TAU};
+
 use orientation::align::rotating::conclusion::Conclusion;
 use orientation::align::rotating::turn::Stretch;
 use orientation::align::rotating::{Sensor, Setting};
+use orientation::align::setting::Setting as Common;
 use orientation::session::procedure::ProcedureError;
 use orientation::session::rotating::{Event, Procedure, Session};
 use orientation::signal::Sample;
@@ -14,7 +17,7 @@ use orientation::units::{Angle, AngularRate, Instant, SpecificForce};
 
 use self::part::Part;
 use crate::recording::{self, Body, Header, RotatingRow};
-use crate::replay::{Options, ReplayError, latitude};
+use crate::replay::{Options, ReplayError, latitude, median};
 use crate::setting::{Described, describe};
 use crate::stops::samples::is_cut;
 
@@ -81,10 +84,35 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
     }
     let sensor = sensor(header, &mut assumed);
     let rate = header.rate_hz.unwrap_or_else(|| turns::rate_hz(rows));
-    let setting = with_encoder(header, Setting::new(common, sensor), &mut assumed);
+    let rate_step = rounded(&mut common, rows, rate);
+    let setting = Setting { rate_step, ..Setting::new(common, sensor) };
+    let setting = with_encoder(header, setting, &mut assumed);
     let session = follow(setting, rows, 1.0 / rate.max(f64::MIN_POSITIVE));
     let zero_s = rows.first().map_or(0.0, |row| row.time_s);
     Ok(Replay { session: session.map_err(ReplayError::Procedure)?, zero_s, assumed })
+}
+
+/// Takes the steps of a gyro's column into its noise, and gives what of them its noise does not hide, rad/s: it smooths
+/// the staircase by e^(−2π²(σ/step)²).
+fn rounded(common: &mut Common, rows: &[RotatingRow], rate_hz: f64) -> f64 {
+    let mut rates: Vec<f64> = rows.iter().map(|row| row.rate_rad_s).collect();
+    rates.sort_unstable_by(f64::total_cmp);
+    let steps = rates.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.0);
+    let step = steps.reduce(f64::min).unwrap_or_default();
+    if step <= 0.0 {
+        return 0.0;
+    }
+    let walk = common.noise.angle_random_walk;
+    let sigma = if common.white_known { walk * rate_hz.sqrt() } else { of_neighbours(rows) };
+    let hidden = sigma / step;
+    common.noise.angle_random_walk = walk.hypot(step / (12.0 * rate_hz).sqrt());
+    step * (-0.5 * (TAU * hidden).powi(2)).exp()
+}
+
+/// 1σ of a rate's noise, rad/s, from the differences of neighbours: their median is 0.674 of their σ.
+fn of_neighbours(rows: &[RotatingRow]) -> f64 {
+    let differences = rows.windows(2).map(|pair| (pair[1].rate_rad_s - pair[0].rate_rad_s).abs());
+    median(&mut differences.collect::<Vec<f64>>()) / 0.674 * FRAC_1_SQRT_2
 }
 
 /// 1σ of the zero of an encoder of which nothing is known, °: where one without an index is set by hand.

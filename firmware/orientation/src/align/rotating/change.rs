@@ -48,8 +48,8 @@ const SECOND: usize = 2;
 const SECOND_ODD: usize = 3;
 const CHANGE: usize = 4;
 
-/// What a fit found. Variances are of either part.
-#[derive(Clone, Copy, Debug)]
+/// What a fit found. Variances are those of the part that is known less.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found {
     /// Which change it is.
     pub shape: Shape,
@@ -73,13 +73,15 @@ pub struct Found {
 #[derive(Clone, Debug)]
 pub struct Record {
     marks: Vec<Mark, MARKS>,
-    /// What is known of the part that changes with the sense.
-    odd: Column,
+    /// What is known of what changes with the sense, in either part.
+    odd: [Column; 2],
     /// Variance of either part of one turn's value; whether it is known, else as these turns show it.
     variance: f64,
     is_known: bool,
     /// How many parts the values have.
     parts: usize,
+    /// When a value that changes evenly is that of the end, s: then or, as a lever has it, before or after.
+    end: f64,
 }
 
 /// What a scatter that is itself estimated takes off a gain, over its degrees of freedom (F instead of chi-square).
@@ -94,23 +96,35 @@ const FEWEST: f64 = 2.0;
 impl Record {
     /// Marks of values with two parts whose noise their neighbours show.
     #[must_use]
-    pub fn of_phasors(marks: Vec<Mark, MARKS>, odd: Column, least: f64) -> Self {
-        let mut record = Self { marks, odd, variance: 0.0, is_known: false, parts: 2 };
+    pub fn of_phasors(marks: Vec<Mark, MARKS>, odd: [Column; 2], least: f64) -> Self {
+        let mut record = Self { marks, odd, variance: 0.0, is_known: false, parts: 2, end: 0.0 };
         record.in_order();
         record.variance = record.of_neighbours().max(least * least);
         record
     }
 
-    /// Marks of values with one part, of which one turn has this variance.
+    /// Marks of values with one part, of which one turn has this variance. One that changes evenly is at the end what it
+    /// would be so many seconds after it.
     #[must_use]
-    pub fn of_angles(marks: Vec<Mark, MARKS>, odd: Column, variance: f64, is_known: bool) -> Self {
-        let mut record = Self { marks, odd, variance, is_known, parts: 1 };
+    pub fn of_angles(
+        marks: Vec<Mark, MARKS>,
+        odd: Column,
+        (variance, is_known): (f64, bool),
+        lever: f64,
+    ) -> Self {
+        let odd = [odd; 2];
+        let mut record = Self { marks, odd, variance, is_known, parts: 1, end: 0.0 };
         record.in_order();
+        record.end += lever;
+        if !is_known {
+            record.variance *= record.scatter().unwrap_or(1.0);
+        }
         record
     }
 
     fn in_order(&mut self) {
         sort(&mut self.marks, |one, other| one.time < other.time);
+        self.end = self.marks.last().map_or(0.0, |mark| f64::from(mark.time));
     }
 
     /// Variance of either part of one turn's value, from neighbours in one sense.
@@ -128,10 +142,6 @@ impl Record {
         median(&mut squares) / MEDIAN_OF_NEIGHBOURS
     }
 
-    fn end(&self) -> f64 {
-        self.marks.last().map_or(0.0, |mark| f64::from(mark.time))
-    }
-
     /// The columns of a mark.
     fn row(&self, mark: &Mark, shape: Shape) -> [f64; COLUMNS] {
         let (time, odd) = (f64::from(mark.time), f64::from(mark.odd));
@@ -143,19 +153,20 @@ impl Record {
         row[SECOND_ODD] = second * odd;
         row[CHANGE] = match shape {
             Shape::Steady => 0.0,
-            Shape::Rate => time - self.end(),
+            Shape::Rate => time - self.end,
             Shape::Step(after) => -f64::from(u8::from(time < after)),
         };
         row
     }
 
-    fn model(&self, shape: Shape) -> [Column; COLUMNS] {
+    fn model(&self, shape: Shape, part: usize) -> [Column; COLUMNS] {
         let is_two = self.marks.iter().any(|mark| mark.is_second);
         // Of two speeds nothing is taken for granted where the senses' difference is free.
-        let second = if is_two && self.odd == Column::Free { Column::Free } else { Column::Absent };
+        let second =
+            if is_two && self.odd[part] == Column::Free { Column::Free } else { Column::Absent };
         let mut model = [Column::Absent; COLUMNS];
         model[ONE] = Column::Free;
-        model[ODD] = self.odd;
+        model[ODD] = self.odd[part];
         model[SECOND] = second;
         model[SECOND_ODD] = second;
         model[CHANGE] = if shape == Shape::Steady { Column::Absent } else { Column::Free };
@@ -171,7 +182,7 @@ impl Record {
             let row = self.row(mark, shape).map(|value| value * weight);
             regression.push(&row, f64::from(mark.value[part]) * weight);
         }
-        regression.solve(&self.model(shape))
+        regression.solve(&self.model(shape, part))
     }
 
     /// A fit without its gain.
@@ -182,23 +193,44 @@ impl Record {
             [Some(&first), second.as_ref()]
                 .map(|one| one.map_or(0.0, |one| one.coefficients[column]))
         };
+        let greater = |column: usize| {
+            let of = |one: &Solution<COLUMNS>| one.covariance[column][column];
+            of(&first).max(second.as_ref().map_or(0.0, of))
+        };
         let degrees = first.degrees + second.as_ref().map_or(0, |second| second.degrees);
         Some(Found {
             shape,
             at_end: both(ONE),
-            variance: first.covariance[ONE][ONE],
+            variance: greater(ONE),
             change: both(CHANGE),
-            change_variance: first.covariance[CHANGE][CHANGE],
+            change_variance: greater(CHANGE),
             chi_square: first.chi_square + second.map_or(0.0, |second| second.chi_square),
             degrees: degrees as f64,
             gain: 0.0,
         })
     }
 
+    /// By how much the marks scatter more than their variance says, in power, whatever changes evenly or with the sense.
+    fn scatter(&self) -> Option<f64> {
+        let free = Self { odd: [Column::Free; 2], ..self.clone() };
+        let found = free.found(Shape::Rate)?;
+        (found.degrees > 0.0 && found.chi_square > 0.0).then(|| found.chi_square / found.degrees)
+    }
+
     /// By how much the noise is greater than was thought, in power.
     fn excess(&self, found: &Found) -> f64 {
         let shown = found.chi_square / found.degrees.max(1.0);
-        if self.is_known { shown.max(1.0) } else { shown * (1.0 + FEW / found.degrees.max(1.0)) }
+        if self.is_known {
+            shown.max(1.0)
+        } else {
+            shown.max(1.0) * (1.0 + FEW / found.degrees.max(1.0))
+        }
+    }
+
+    /// From the first mark to the last, s.
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        self.marks.first().map_or(0.0, |mark| self.end - f64::from(mark.time))
     }
 
     /// The value that stays.
@@ -255,6 +287,15 @@ impl Record {
             }
         }
         found
+    }
+
+    /// A step where the platform turned back, if it did so once.
+    #[must_use]
+    pub fn change_of_sense(&self) -> Option<Shape> {
+        let is_turned = |pair: &&[Mark]| (pair[0].odd > 0.0) != (pair[1].odd > 0.0);
+        let mut turned = self.marks.windows(2).filter(is_turned);
+        let first = turned.next().filter(|_| turned.next().is_none())?;
+        Some(Shape::Step(0.5 * f64::from(first[0].time + first[1].time)))
     }
 
     /// Whether nothing but the sense tells what lies before a time from what lies after it.

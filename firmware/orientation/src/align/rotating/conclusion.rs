@@ -26,6 +26,10 @@ const SCATTER_PROBABILITY: f64 = 1e-6;
 const EXCESS_PROBABILITY: f64 = 0.05;
 /// Most that turns which were left out raise σ by.
 const GREATEST_EXCESS: f64 = 2.0;
+/// Slip of the encoder that the forces show and σ takes in, in σ.
+const SMALL_SLIP: f64 = 4.0;
+/// Part of such a slip that the azimuth is off by, 1σ: it is that of the turns before or after it.
+const OF_SLIP: f64 = 0.6;
 /// How many turns at an end of a stretch may be left out.
 const FEW_ASTRAY: u16 = 1;
 /// What is a difference and no chance, in σ.
@@ -104,7 +108,7 @@ impl Conclusion {
         let mut marks = Vec::new();
         self.pair(setting, follower.stretches(), &tilting, &mut marks)?;
         let drift = self.scatter(setting);
-        self.judge_left_out()?;
+        self.judge_left_out(setting)?;
         self.solve(setting, &tilting, follower.ellipse(), marks)?;
         self.judge_turns(setting, drift)?;
         let fit = self.fit.ok_or(Refusal::CouplingUnknown)?;
@@ -233,14 +237,17 @@ impl Conclusion {
 
     /// Refuses where too many turns were left out, or where those at an end were: then it was not they who were
     /// disturbed, but the heading or the encoder is another one since.
-    fn judge_left_out(&self) -> Result<(), Refusal> {
+    fn judge_left_out(&self, setting: &Setting) -> Result<(), Refusal> {
         let averages = || self.pairs.iter().flat_map(Pair::senses);
         let disturbed: u32 = averages().map(|average| average.left_out).sum();
         let turns: u32 = disturbed + averages().map(|average| average.turns).sum::<u32>();
         if 4 * disturbed > turns {
             return Err(Refusal::TurnsDisturbed { disturbed, turns });
         }
-        let astray = averages().flat_map(|average| average.ends).max().unwrap_or(0);
+        // A sensor that is not flat may still settle in the first turns of a stretch.
+        let from = usize::from(!setting.sensor.is_flat);
+        let astray = averages().flat_map(|average| average.ends.into_iter().skip(from));
+        let astray = astray.max().unwrap_or(0);
         if astray > FEW_ASTRAY {
             return Err(Refusal::TurnsAstray { turns: u32::from(astray) });
         }
@@ -331,11 +338,11 @@ impl Conclusion {
         let drift = fit.budget.drift * excess;
         fit.budget.drift = libm::sqrt(drift * drift + doubt.as_ref().map_or(0.0, |doubt| *doubt));
         let slip = tilting.slip(fit.tilt.size());
-        let is_small = slip <= fit.sigma();
-        fit.budget.encoder = libm::hypot(fit.budget.encoder, slip);
+        let is_small = slip <= SMALL_SLIP * fit.sigma();
+        fit.budget.encoder = libm::hypot(fit.budget.encoder, OF_SLIP * slip);
         self.fit = Some(fit);
         match tilting.step.filter(|_| !is_small) {
-            Some((after, change)) => Err(Refusal::TiltStepped { change: change * 1e3, after }),
+            Some(change) => Err(Refusal::TiltChanged { change: change * 1e3 }),
             None => doubt.map(|_| ()),
         }
     }
@@ -361,7 +368,9 @@ impl Conclusion {
             }
             let tilt = fit.tilt + tilting.tilt_at(average.middle);
             let apart = average.force.scaled(1.0 / gravity) - tilt;
-            if apart.size() > different * sigma + TILT_TOLERANCE {
+            // A step that is small enough is in σ.
+            let stepped = tilting.step.unwrap_or(0.0);
+            if apart.size() > different * sigma + TILT_TOLERANCE + stepped {
                 return Err(Refusal::TiltChanged { change: apart.size() * 1e3 });
             }
         }

@@ -19,15 +19,18 @@ use crate::units::DEGREES_PER_RADIAN as DEGREES;
 const BELIEVED: f64 = 15.1;
 /// The same of a step, for each place at which it may be (p = 0.001 over all of them).
 const STEP_BELIEVED: f64 = 10.8;
-/// Gain from which it is doubtful whether the direction stays (p = 0.01).
-const DOUBTFUL: f64 = 6.63;
-/// Part of the alignments in which the direction drifts, before their turns are looked at: where these speak for it,
+/// Gain from which it is doubtful whether the direction stays (p = 0.05), and what more it takes of a step at any of
+/// many places.
+const DOUBTFUL: f64 = 3.84;
+const STEP_DOUBTFUL: f64 = 2.2;
+/// Part of the alignments in which the direction changes, before their turns are looked at, where these speak for it;
 /// and where not.
-const DRIFTING: [f64; 2] = [0.02, 0.0003];
-/// The same of a step, at any of its places.
-const STEPPING: f64 = 0.02;
-/// By how much a step may raise the azimuth's variance; beyond, the turns do not show it.
-const OBSERVABLE: f64 = 25.0;
+const CHANGING: [f64; 2] = [0.03, 0.0003];
+/// What a doubt that is not about the senses may add to the azimuth's variance, in units of it: σ is then five times
+/// as great.
+const DOUBT: f64 = 24.0;
+/// σ of a drift within which it goes with the tilt's.
+const ALIKE: f64 = 3.0;
 
 /// The turns' phasors as directions.
 pub struct Directions<'a> {
@@ -46,7 +49,8 @@ impl Directions<'_> {
     /// marked with the sign of its sense.
     ///
     /// # Errors
-    /// [`Refusal::DirectionDrifts`], [`Refusal::HeadingStepped`] and [`Refusal::SensesDisagree`].
+    /// [`Refusal::DirectionDrifts`], [`Refusal::HeadingStepped`], [`Refusal::SensesDisagree`], and
+    /// [`Refusal::TiltChanged`] where the tilt's direction drifts as an encoder that creeps lets it.
     #[inline(never)]
     pub fn doubt(&self, mut marks: Vec<Mark, MARKS>) -> Result<f64, Refusal> {
         let Some(first) = self.problem.pairs.first() else { return Ok(0.0) };
@@ -61,28 +65,49 @@ impl Directions<'_> {
         }
         let odd = if self.is_flat() { Column::Prior(self.lag_sigma()) } else { Column::Free };
         let places = 2.0 * libm::log(marks.len().max(1) as f64);
-        let record = Record::of_angles(marks, odd, variance, self.is_known);
+        let record = Record::of_angles(marks, odd, (variance, self.is_known), self.lever());
         let Some(steady) = record.steady() else { return Ok(0.0) };
         let drift = record.changing(Shape::Rate, &steady);
         let step = record.likeliest_step().and_then(|shape| record.changing(shape, &steady));
-        let step = step.filter(|step| step.variance < OBSERVABLE * steady.variance);
+        // The senses change at one place alone.
+        let turn = record.change_of_sense().and_then(|shape| record.changing(shape, &steady));
         let gain = |found: &Option<Found>| found.map_or(0.0, |found| found.gain);
         let believed = [gain(&drift) - BELIEVED, gain(&step) - STEP_BELIEVED - places];
         if believed[1] > 0.0 && believed[1] >= believed[0] {
             return Err(stepped(&record, step));
         }
+        if gain(&turn) > BELIEVED {
+            return Err(Refusal::SensesDisagree { sigmas: libm::sqrt(gain(&turn)) });
+        }
         if believed[0] > 0.0 {
             return Err(Refusal::DirectionDrifts { sigmas: libm::sqrt(gain(&drift)) });
         }
-        let prior = DRIFTING[usize::from(gain(&drift) < DOUBTFUL)];
-        let drifting = drift.map_or(0.0, |drift| lacking(&drift, &steady, prior));
-        let prior =
-            if gain(&step) > DOUBTFUL + places { STEPPING * libm::exp(-0.5 * places) } else { 0.0 };
-        Ok(drifting + step.map_or(0.0, |step| lacking(&step, &steady, prior)))
+        if let (Some(drift), Some(creep)) = (drift, self.problem.tilting.creep(self.fit.tilt))
+            && (drift.change[0] - creep).abs() < ALIKE * libm::sqrt(drift.change_variance)
+        {
+            return Err(Refusal::TiltChanged { change: self.problem.tilting.change() * 1e3 });
+        }
+        let mut doubt = 0.0;
+        for (change, doubtful) in
+            [(drift, DOUBTFUL), (turn, DOUBTFUL), (step, STEP_DOUBTFUL + places)]
+        {
+            let prior = CHANGING[usize::from(gain(&change) < doubtful)];
+            let places = if doubtful > DOUBTFUL { libm::exp(-0.5 * places) } else { 1.0 };
+            let lacks = change.map_or(0.0, |change| lacking(&change, &steady, prior * places));
+            doubt += if change == turn { lacks } else { lacks.min(DOUBT * steady.variance) };
+        }
+        Ok(doubt)
     }
 
     fn is_flat(&self) -> bool {
         self.problem.setting.sensor.is_flat
+    }
+
+    /// Seconds by which a base that turns about the vertical must have turned for as much as its rate changes the
+    /// vertical Earth rate, which a tilt lets the gyro feel.
+    fn lever(&self) -> f64 {
+        let across = (self.fit.tilt * Complex::unit(-self.fit.azimuth)).im;
+        across / self.problem.earth()[0]
     }
 
     /// Variance of a turn's direction, rad².
@@ -145,5 +170,6 @@ fn lacking(change: &Found, steady: &Found, prior: f64) -> f64 {
     let is_step = matches!(change.shape, Shape::Step(_));
     let early = if is_step { late - change.change[0] } else { 0.0 };
     let shift = late.abs().max(early.abs());
-    odds / (1.0 + odds) * (shift * shift + (change.variance - steady.variance).max(0.0))
+    let lacks = shift * shift + (change.variance - steady.variance).max(0.0);
+    odds / (1.0 + odds) * lacks
 }

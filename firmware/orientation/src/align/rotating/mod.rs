@@ -67,6 +67,9 @@ pub struct Setting {
     /// Whether the encoder's error twice a turn is within [`Common::encoder_sigma`]; else what it shows of the
     /// platform's rate may be such an error.
     pub harmonics_known: bool,
+    /// Step of the gyro's rates, rad/s, as far as their noise does not hide it: what they are rounded by in step with
+    /// the turn is no noise.
+    pub rate_step: f64,
 }
 
 /// Default of [`Setting::coupling_limit`]: 2°.
@@ -83,6 +86,7 @@ impl Setting {
             coupling_limit: COUPLING_LIMIT,
             encoder_zero_sigma: 0.0,
             harmonics_known: true,
+            rate_step: 0.0,
         }
     }
 

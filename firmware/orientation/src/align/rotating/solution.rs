@@ -30,6 +30,12 @@ const ENCODER_HARMONIC: f64 = 2.0 * ARCSECOND;
 /// error as well: it is all of it or nothing.
 const ELLIPTIC: f64 = 0.6;
 
+/// 1σ of what rounding to a step leaves in the phasor of a signal that turns with the platform, over the step: 2/π of
+/// Bessel's function J₁, of any phase, in the mean of both senses.
+const ROUNDED: f64 = 0.32;
+/// Greatest value of that function.
+const BESSEL: f64 = 0.58;
+
 /// Most speeds.
 pub const SPEEDS: usize = 2;
 
@@ -251,7 +257,8 @@ impl Problem<'_> {
                 // What the platform's unevenness makes of it cancels between the senses.
                 None => self.setting.coupling_limit * pair.uneven().size() / horizontal,
             };
-            fit.senses_sigma = fit.senses_sigma.max(libm::hypot(sigma * pair.speed(), shown));
+            let known = libm::hypot(shown, self.rounded());
+            fit.senses_sigma = fit.senses_sigma.max(libm::hypot(sigma * pair.speed(), known));
             let lag = coupling.map_or(0.0, believed_lag);
             let tangent = libm::fabs(lag * pair.speed()) * (1.0 + LAG_LAW);
             fit.passed = fit.passed.min(1.0 / libm::hypot(1.0, tangent));
@@ -270,11 +277,28 @@ impl Problem<'_> {
             let others = self.per_tilt(fit.ratio) * fit.tilt + self.tilting.turning(&fit.lean);
             (angle, size) = fit.lean.azimuth(mean - others);
         }
-        fit.ratio_sigma = libm::sqrt(1.0 / information) / horizontal;
+        fit.ratio_sigma = libm::hypot(libm::sqrt(1.0 / information) / horizontal, self.rounded());
         // Q₊ − Q₋ is −2jγE′.
         let odd = self.slowest().map_or(Complex::default(), Pair::odd);
         fit.molecular = odd / mean * Complex::new(0.0, 1.0);
         Turned { angle, noise: 1.0 / information / (size * size), left: 0.0 }
+    }
+
+    /// 1σ of what rounding to steps adds along what turns with the platform, of the Earth rate.
+    fn rounded(&self) -> f64 {
+        let step = self.setting.rate_step / self.earth()[0];
+        // J₁ of 2π times the signal over the step falls as √(2/(πx)).
+        let falling = libm::sqrt(step / libm::hypot(1.0, self.beside())) / core::f64::consts::PI;
+        ROUNDED * step * falling.min(BESSEL)
+    }
+
+    /// What turns with the platform beside the Earth rate for its unevenness, of it.
+    fn beside(&self) -> f64 {
+        let of = |pair: &Pair| {
+            let coupling = coupling::nearest(self.couplings, pair.speed());
+            coupling.map_or(0.0, |found| found.sine.abs() * pair.uneven().size())
+        };
+        self.pairs.iter().map(of).fold(0.0, f64::max) / self.earth()[0]
     }
 
     /// The speed that shows an integrated g-sensitivity most.
@@ -346,8 +370,11 @@ impl Problem<'_> {
             accelerometer: self.per_tilt(1.0).size() * fit.tilt_sigma / horizontal,
             encoder: libm::hypot(self.encoder_sigma(turned.angle), self.coupling_sigma(fit)),
             latitude: across.abs() * common.latitude_sigma / (cosine * cosine),
-            // A flat sensor's scale is found with the azimuth; an unknown gain needs none.
-            scale: 0.0,
+            // A flat sensor's scale is found with the azimuth, but not for what a base that tilts turns it by.
+            scale: libm::hypot(
+                self.tilting.scale(common.scale_sigma, &fit.lean, turned.angle, horizontal),
+                self.rounded() * self.beside() / libm::hypot(1.0, self.beside()),
+            ),
             temperature: 0.0,
             displacement: 0.0,
         }

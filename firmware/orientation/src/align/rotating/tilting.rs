@@ -10,8 +10,10 @@ use crate::align::regression::Column;
 use crate::math::Complex;
 use crate::units::DEGREE_PER_HOUR;
 
-/// 1σ of what both senses' forces may differ by: a delay of the accelerometer, g.
+/// 1σ of what both senses' forces may differ by, g.
 const SENSES: f64 = 2e-6;
+/// 1σ of an accelerometer's delay, s: it turns the force with the sense.
+const DELAY: f64 = 5e-3;
 /// Least scatter of a turn's force that is believed, g.
 const LEAST_SCATTER: f64 = 1e-8;
 /// Gain of chi-square from which a tilt rate is believed (two parts, p = 0.0001).
@@ -25,6 +27,9 @@ const TILTING: [f64; 2] = [0.02, 0.0003];
 /// 1σ of how fast a base tilts that does, 1/s: 3 °/h.
 const FASTEST: f64 = 3.0 * DEGREE_PER_HOUR;
 
+/// σ of a change of the tilt's size within which it is none.
+const ALIKE: f64 = 3.0;
+
 /// How a base tilts.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Tilting {
@@ -35,12 +40,14 @@ pub struct Tilting {
     /// Likeliest rate where none is believed, g/s, and how probable it is that there is one.
     doubted: Complex,
     probability: f64,
+    /// From the first turn to the last, s.
+    seconds: f64,
     /// Middle of the turns, s: the mean force is that of this time.
     since: f64,
     /// What a changing tilt multiplies in the gyro, rad/s per g.
     per_tilt: Complex,
-    /// After which time, s, the force's phasor is another one, and by how much, g, where that is believed.
-    pub step: Option<(f64, f64)>,
+    /// By how much the force's phasor is another one from some time on, g, where that is believed.
+    pub step: Option<f64>,
 }
 
 impl Tilting {
@@ -48,22 +55,35 @@ impl Tilting {
     #[must_use]
     #[inline(never)]
     pub fn of(stretches: &[Stretch], gravity: f64, per_tilt: Complex) -> Self {
-        let marks = marks(stretches, gravity);
+        let mut marks = marks(stretches, gravity);
         let turns: f64 = marks.iter().map(|mark| f64::from(mark.turns)).sum();
         let moment: f64 =
             marks.iter().map(|mark| f64::from(mark.turns) * f64::from(mark.time)).sum();
         let since = moment / turns.max(1.0);
         let places = 2.0 * libm::log(marks.len().max(1) as f64);
-        let record = Record::of_phasors(marks, Column::Prior(SENSES), LEAST_SCATTER);
-        let standing = Self { since, per_tilt, ..Self::default() };
+        // Along the force, and across it, where a delay shows.
+        let along = direction(&marks);
+        let mut size: f64 = 0.0;
+        for mark in &mut marks {
+            let [re, im] = mark.value.map(f64::from);
+            let turned = Complex::new(re, im) * along.conjugate();
+            mark.value = [turned.re as f32, turned.im as f32];
+            size = size.max(turned.re);
+        }
+        let speed = stretches.iter().map(Stretch::speed).fold(0.0, f64::max);
+        let delayed = libm::hypot(SENSES, DELAY * speed * size);
+        let odd = [SENSES, delayed].map(Column::Prior);
+        let record = Record::of_phasors(marks, odd, LEAST_SCATTER);
+        let seconds = record.seconds();
+        let standing = Self { since, seconds, per_tilt, ..Self::default() };
         let Some(steady) = record.steady() else { return standing };
         let Some(found) = record.changing(Shape::Rate, &steady) else { return standing };
         let step = record.likeliest_step().and_then(|shape| record.changing(shape, &steady));
         let step = step.filter(|step| step.gain > (STEP_BELIEVED + places).max(found.gain));
-        if let Some((Shape::Step(after), [re, im])) = step.map(|step| (step.shape, step.change)) {
-            return Self { step: Some((after, libm::hypot(re, im))), ..standing };
+        if let Some([re, im]) = step.map(|step| step.change) {
+            return Self { step: Some(libm::hypot(re, im)), ..standing };
         }
-        let rate = Complex::new(found.change[0], found.change[1]);
+        let rate = Complex::new(found.change[0], found.change[1]) * along;
         if found.gain > BELIEVED {
             return Self { rate, variance: found.change_variance, ..standing };
         }
@@ -74,11 +94,27 @@ impl Tilting {
         Self { doubted: rate, variance: found.change_variance, probability, ..standing }
     }
 
-    /// By which angle an encoder slipped whose slip the step is, rad, for a tilt in g: what the azimuth may be off by.
-    /// Zero where there is none.
+    /// How fast an encoder creeps that lets the tilt's direction drift so, rad/s, for a tilt in g; none where no tilting is
+    /// believed, or where the tilt's size changes with it.
+    #[must_use]
+    pub fn creep(&self, tilt: Complex) -> Option<f64> {
+        let turned = self.rate * tilt.conjugate();
+        let is_turning = turned.re.abs() < ALIKE * libm::sqrt(self.variance) * tilt.size();
+        let is_believed = self.rate != Complex::default();
+        (is_believed && is_turning).then(|| turned.im / tilt.power())
+    }
+
+    /// By how much the tilt changed in all, g.
+    #[must_use]
+    pub fn change(&self) -> f64 {
+        self.rate.size() * self.seconds
+    }
+
+    /// By which angle an encoder slipped whose slip the step is, rad, for a tilt in g: the azimuth may be off by a part
+    /// of it. Zero where there is none.
     #[must_use]
     pub fn slip(&self, tilt: f64) -> f64 {
-        self.step.map_or(0.0, |(_, change)| change / tilt.max(f64::MIN_POSITIVE))
+        self.step.map_or(0.0, |change| change / tilt.max(f64::MIN_POSITIVE))
     }
 
     /// What the gyro feels more at a time in s than in the middle of all turns, rad/s: the vertical Earth rate and its
@@ -92,6 +128,12 @@ impl Tilting {
     #[must_use]
     pub fn tilt_at(&self, time: f64) -> Complex {
         self.rate.scaled(time - self.since)
+    }
+
+    /// How far that and all that is felt of it is off for a scale factor of this 1σ, as the azimuth shows it, rad.
+    #[must_use]
+    pub fn scale(&self, sigma: f64, lean: &Lean, azimuth: f64, horizontal: f64) -> f64 {
+        sigma * (self.turning(lean) * Complex::unit(-azimuth)).im.abs() / horizontal
     }
 
     /// What the tilting itself turns the gyro by, rad/s.
@@ -109,6 +151,15 @@ impl Tilting {
         let across = (lean.turning(self.doubted) * Complex::unit(-azimuth)).im;
         self.probability * (across * across + self.variance) / (horizontal * horizontal)
     }
+}
+
+/// Where the mean of all forces points, of size one.
+fn direction(marks: &[Mark]) -> Complex {
+    let of = |mark: &Mark| {
+        let [re, im] = mark.value.map(f64::from);
+        Complex::new(re, im).scaled(f64::from(mark.turns))
+    };
+    Complex::unit(marks.iter().map(of).fold(Complex::default(), |sum, part| sum + part).angle())
 }
 
 /// The forces' phasors over gravity, g.

@@ -230,14 +230,16 @@ impl Session {
         }
     }
 
-    /// Whether a recording's samples come at another pace than was told.
-    fn contradiction(&self) -> Option<Refusal> {
+    /// Whether a recording's samples up to its first turn come at another pace than was told.
+    fn contradiction(&mut self) -> Option<Refusal> {
+        if self.phase != Phase::Recorded || core::mem::replace(&mut self.turns, 1) > 0 {
+            return None;
+        }
         let (since, last) = (self.since?, self.last?);
         let elapsed = last.0.saturating_sub(since.0) as f64 * 1e-6;
         let found = elapsed / f64::from(self.samples.max(2) - 1);
         let told = self.procedure.sample_seconds;
-        let is_recorded = self.phase == Phase::Recorded;
-        contradiction(told, found, PERIOD_TOLERANCE).filter(|_| is_recorded)
+        contradiction(told, found, PERIOD_TOLERANCE)
     }
 
     /// Looks at the tilt at rest.
