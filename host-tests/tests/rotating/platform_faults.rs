@@ -150,6 +150,8 @@ fn a_creeping_encoder_is_refused_once_it_shows_above_the_noise() {
     let names = [
         "TiltChanged",
         "DirectionDrifts",
+        "HeadingStepped",
+        "TurnsAstray",
         "TurnsDisturbed",
         "SpeedsUnequal",
         "ResidualsNotWhite",

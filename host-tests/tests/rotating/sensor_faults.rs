@@ -90,6 +90,7 @@ fn an_accelerometer_that_saturates_sticks_or_is_dead_is_refused() {
 fn a_molecular_sensor_that_is_declared_a_gyro_is_refused_or_right() {
     let names = [
         "SensesDisagree",
+        "HeadingStepped",
         "TurnsDisturbed",
         "TurnsAstray",
         "ResidualsNotWhite",

@@ -108,7 +108,11 @@ impl Conclusion {
         let mut marks = Vec::new();
         self.pair(setting, follower.stretches(), &tilting, &mut marks)?;
         let drift = self.scatter(setting);
-        self.judge_left_out(setting)?;
+        let moved = |reason| {
+            let tilted = |change: f64| Refusal::TiltChanged { change: change * 1e3 };
+            tilting.step.map_or(reason, tilted)
+        };
+        self.judge_left_out(setting).map_err(moved)?;
         self.solve(setting, &tilting, follower.ellipse(), marks)?;
         self.judge_turns(setting, drift)?;
         let fit = self.fit.ok_or(Refusal::CouplingUnknown)?;
@@ -285,7 +289,9 @@ impl Conclusion {
                 || chi_square_tail(share * chi_square, share * degrees) >= EXCESS_PROBABILITY;
             if is_chance { 1.0 } else { libm::sqrt(chi_square / degrees) }
         };
-        of(false).max(of(true).min(GREATEST_EXCESS))
+        // Those of a sensor that is not flat may be left out for settling.
+        let of_all = if setting.sensor.is_flat { of(true) } else { 1.0 };
+        of(false).max(of_all.min(GREATEST_EXCESS))
     }
 
     /// Variance of either part of a mark's phasor, (rad/s)².
@@ -368,9 +374,7 @@ impl Conclusion {
             }
             let tilt = fit.tilt + tilting.tilt_at(average.middle);
             let apart = average.force.scaled(1.0 / gravity) - tilt;
-            // A step that is small enough is in σ.
-            let stepped = tilting.step.unwrap_or(0.0);
-            if apart.size() > different * sigma + TILT_TOLERANCE + stepped {
+            if apart.size() > different * sigma + TILT_TOLERANCE {
                 return Err(Refusal::TiltChanged { change: apart.size() * 1e3 });
             }
         }

@@ -87,9 +87,13 @@ impl Directions<'_> {
         {
             return Err(Refusal::TiltChanged { change: self.problem.tilting.change() * 1e3 });
         }
+        // A sensor that is not flat settles for long: its directions drift a little with it.
         let mut doubt = 0.0;
+        let doubted = usize::from(self.is_flat()) * 3;
         for (change, doubtful) in
             [(drift, DOUBTFUL), (turn, DOUBTFUL), (step, STEP_DOUBTFUL + places)]
+                .into_iter()
+                .take(doubted)
         {
             let prior = CHANGING[usize::from(gain(&change) < doubtful)];
             let places = if doubtful > DOUBTFUL { libm::exp(-0.5 * places) } else { 1.0 };

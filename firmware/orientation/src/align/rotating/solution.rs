@@ -17,7 +17,7 @@ const UNKNOWN_LAG: f64 = 0.01;
 pub const EXACT_LAG: f64 = 1e-6;
 
 /// What the law by which a lag follows from the uneven turn, that of one pole, may be wrong by, relative.
-pub const LAG_LAW: f64 = 0.1;
+pub const LAG_LAW: f64 = 0.15;
 
 /// What an uneven turn leaves untold of a sensor's phase at the turn, 1σ, rad: it is modulated over a band,
 /// and an integrated g-sensitivity answers to the modulation.
@@ -357,6 +357,8 @@ impl Problem<'_> {
         let white = self.pairs.first().map_or(1.0, |pair| self.white_part(pair));
         let across = (fit.tilt * Complex::unit(-turned.angle)).im;
         let cosine = libm::cos(common.latitude.rad());
+        // Rounding shows in the size of what either sense shows, too.
+        let shown = libm::hypot(fit.ratio - 1.0, fit.molecular.size()) + libm::sqrt(turned.noise);
         Budget {
             noise: libm::sqrt(turned.noise * white),
             drift: libm::sqrt(
@@ -373,7 +375,7 @@ impl Problem<'_> {
             // A flat sensor's scale is found with the azimuth, but not for what a base that tilts turns it by.
             scale: libm::hypot(
                 self.tilting.scale(common.scale_sigma, &fit.lean, turned.angle, horizontal),
-                self.rounded() * self.beside() / libm::hypot(1.0, self.beside()),
+                self.rounded().min(shown) * self.beside() / libm::hypot(1.0, self.beside()),
             ),
             temperature: 0.0,
             displacement: 0.0,
@@ -415,6 +417,7 @@ impl Problem<'_> {
 
 /// The lag of a flat sensor, s: as the uneven turn shows it, as far as that knows better than that it is
 /// small.
+#[must_use]
 pub fn believed_lag(coupling: &Coupling) -> f64 {
     let (known, sigma) = (UNKNOWN_LAG * UNKNOWN_LAG, coupling.lag_sigma());
     coupling.lag() * known / (known + sigma * sigma)

@@ -18,8 +18,8 @@ const DELAY: f64 = 5e-3;
 const LEAST_SCATTER: f64 = 1e-8;
 /// Gain of chi-square from which a tilt rate is believed (two parts, p = 0.0001).
 const BELIEVED: f64 = 18.4;
-/// The same of a step, for each place at which it may be (p = 0.001 over all of them).
-const STEP_BELIEVED: f64 = 13.8;
+/// The same of a step, for each place at which it may be (p = 0.0003 over all of them).
+const STEP_BELIEVED: f64 = 16.0;
 /// Gain from which it is doubtful whether a base stands (two parts, p = 0.01).
 const DOUBTFUL: f64 = 9.21;
 /// Part of the bases that tilt, before their forces are looked at: where these speak for it, and where not.
@@ -75,7 +75,7 @@ impl Tilting {
         let odd = [SENSES, delayed].map(Column::Prior);
         let record = Record::of_phasors(marks, odd, LEAST_SCATTER);
         let seconds = record.seconds();
-        let standing = Self { since, seconds, per_tilt, ..Self::default() };
+        let standing = Self { seconds, since, per_tilt, ..Self::default() };
         let Some(steady) = record.steady() else { return standing };
         let Some(found) = record.changing(Shape::Rate, &steady) else { return standing };
         let step = record.likeliest_step().and_then(|shape| record.changing(shape, &steady));
