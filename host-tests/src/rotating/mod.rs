@@ -85,8 +85,9 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
     let sensor = sensor(header, &mut assumed);
     let rate = header.rate_hz.unwrap_or_else(|| turns::rate_hz(rows));
     let rate_step = rounded(&mut common, rows, rate);
-    let setting = Setting { rate_step, ..Setting::new(common, sensor) };
-    let setting = with_encoder(header, setting, &mut assumed);
+    let encoder_zero_sigma = encoder_zero(header, &mut assumed);
+    let setting = Setting::new(common, sensor);
+    let setting = Setting { encoder_zero_sigma, harmonics_known: false, rate_step, ..setting };
     let session = follow(setting, rows, 1.0 / rate.max(f64::MIN_POSITIVE));
     let zero_s = rows.first().map_or(0.0, |row| row.time_s);
     Ok(Replay { session: session.map_err(ReplayError::Procedure)?, zero_s, assumed })
@@ -118,13 +119,13 @@ fn of_neighbours(rows: &[RotatingRow]) -> f64 {
 /// 1σ of the zero of an encoder of which nothing is known, °: where one without an index is set by hand.
 const ZERO_SIGMA_DEG: f64 = 0.15;
 
-/// A setting with what the header says of the encoder, whose harmonics no key states.
-fn with_encoder(header: &Header, setting: Setting, assumed: &mut Vec<String>) -> Setting {
-    let zero_sigma_deg = header.encoder_zero_sigma_deg.unwrap_or_else(|| {
+/// 1σ of the encoder's zero, rad; no key states its harmonics.
+fn encoder_zero(header: &Header, assumed: &mut Vec<String>) -> f64 {
+    let sigma_deg = header.encoder_zero_sigma_deg.unwrap_or_else(|| {
         assumed.push("encoder zero to 0.15° (encoder_zero_sigma_deg)".to_owned());
         ZERO_SIGMA_DEG
     });
-    Setting { encoder_zero_sigma: zero_sigma_deg.to_radians(), harmonics_known: false, ..setting }
+    sigma_deg.to_radians()
 }
 
 /// The kind of sensor that the header names.
