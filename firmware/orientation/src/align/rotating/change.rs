@@ -117,7 +117,9 @@ impl Record {
         record.in_order();
         record.end += lever;
         if !is_known {
+            record.odd = [Column::Free; 2];
             record.variance *= record.scatter().unwrap_or(1.0);
+            record.odd = odd;
         }
         record
     }
@@ -210,10 +212,9 @@ impl Record {
         })
     }
 
-    /// By how much the marks scatter more than their variance says, in power, whatever changes evenly or with the sense.
+    /// By how much the marks scatter more than their variance says, in power, whatever changes evenly.
     fn scatter(&self) -> Option<f64> {
-        let free = Self { odd: [Column::Free; 2], ..self.clone() };
-        let found = free.found(Shape::Rate)?;
+        let found = self.found(Shape::Rate)?;
         (found.degrees > 0.0 && found.chi_square > 0.0).then(|| found.chi_square / found.degrees)
     }
 
