@@ -7,7 +7,7 @@
 
 use crate::accelerometer::Lever;
 use crate::disturbance::{self, Disturbance};
-use crate::instruments::{Instruments, InstrumentsConfiguration, Truth};
+use crate::instruments::{BaseMotion, Instruments, InstrumentsConfiguration, Truth};
 use crate::stage::{StageState, Unevenness, first_sample};
 
 /// A stretch of time under one rate law of the motor: a ramp from the rate it had to
@@ -226,11 +226,26 @@ impl<'a> Turntable<'a> {
     /// The next sample; none after the last segment.
     #[inline]
     pub fn next_sample(&mut self) -> Option<TurningSample> {
+        self.next_on(|_, _| (None, 0.0))
+    }
+
+    /// The next sample on a base that may move, with a drift of the gyro, rad/s: both at a time, s, and a true
+    /// stage angle, rad.
+    #[inline]
+    pub fn next_on(
+        &mut self,
+        befalls: impl FnOnce(f64, f64) -> (Option<BaseMotion>, f64),
+    ) -> Option<TurningSample> {
         let stage = self.unevenness.stage(self.motor.state(self.next)?);
         let time_s = self.next as f64 / self.rate_hz;
         self.next += 1;
-        self.instruments.turn(stage);
+        let (motion, drift_rad_s) = befalls(time_s, stage.angle_rad);
+        match motion {
+            Some(motion) => self.instruments.turn_on(stage, &motion),
+            None => self.instruments.turn(stage),
+        }
         let mut effect = disturbance::total(self.disturbances, time_s);
+        effect.rate_rad_s += drift_rad_s;
         let rate_rad_s = self.instruments.rate(time_s, &effect);
         self.lever.add(&mut effect, time_s, stage.rate_rad_s);
         let limit = self.full_scale_m_s2;

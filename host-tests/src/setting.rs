@@ -61,8 +61,8 @@ pub fn describe(header: &Header, body: &Body, latitude: Latitude) -> Described {
         assumed.push("no gyro drift (B, K, R)".to_owned());
     }
     let exact = match body {
-        Body::Imu(_) | Body::Static(_) | Body::Spin(_) => "latitude exact",
-        Body::Stage(_) | Body::Rotating(_) | Body::Dwells(_) => "latitude and encoder exact",
+        Body::Imu(_) | Body::Static(_) | Body::Spin(_) | Body::Rotating(_) => "latitude exact",
+        Body::Stage(_) | Body::Dwells(_) => "latitude and encoder exact",
     };
     assumed.push(exact.to_owned());
     let kappa = header.g_sensitivity_deg_h_g.unwrap_or_default();

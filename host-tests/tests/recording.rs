@@ -122,7 +122,8 @@ fn every_header_key_reaches_its_field() {
     let keys = "# kind: stage\n# gyro_N_deg_sqrt_h: 1\n# gyro_B_deg_h: 2\n\
         # gyro_K_deg_h_sqrt_h: 3\n# gyro_R_deg_h2: 4\n# gyro_bias_deg_h: 5\n\
         # gyro_scale_sigma: 0.6\n# accelerometer_bias_m_s2: 7\n\
-        # g_sensitivity_deg_h_g: 8.5, -9\n# g_sensitivity_sigma_deg_h_g: 10\n# sensor: met";
+        # g_sensitivity_deg_h_g: 8.5, -9\n# g_sensitivity_sigma_deg_h_g: 10\n\
+        # encoder_zero_sigma_deg: 11\n# sensor: met";
     let header = Header {
         latitude_deg: Some(52.0),
         rate_hz: Some(50.0),
@@ -135,6 +136,7 @@ fn every_header_key_reaches_its_field() {
         accelerometer_bias_m_s2: Some(7.0),
         g_sensitivity_deg_h_g: Some([8.5, -9.0]),
         g_sensitivity_sigma_deg_h_g: Some(10.0),
+        encoder_zero_sigma_deg: Some(11.0),
         sensor: Some(Sensor::Met),
         // Those of a vehicle: no stage has them.
         stops_s: None,

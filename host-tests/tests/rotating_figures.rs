@@ -18,7 +18,15 @@ fn even_rows(speed: f64, count: u32) -> Vec<RotatingRow> {
         let signal = 3.0 * stage_rad.cos() - 4.0 * stage_rad.sin();
         let rate_rad_s = 100.0 + 0.01 * time_s + signal;
         let force_m_s2 = 0.0;
-        RotatingRow { line: 1, time_s, stage_rad, stage_rate_rad_s: speed, rate_rad_s, force_m_s2 }
+        RotatingRow {
+            line: 1,
+            time_s,
+            stage_rad,
+            stage_rate_rad_s: speed,
+            rate_rad_s,
+            force_m_s2,
+            across_m_s2: None,
+        }
     };
     (0..count).map(row).collect()
 }

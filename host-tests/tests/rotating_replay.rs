@@ -59,6 +59,12 @@ impl Recorded {
     }
 }
 
+/// The same with an encoder whose zero is stated to be exact, as nothing is otherwise.
+fn with_exact_zero(recorded: Recorded) -> Recorded {
+    let header = Header { encoder_zero_sigma_deg: Some(0.0), ..recorded.header };
+    Recorded { header, ..recorded }
+}
+
 fn conclusion(replay: &Replay) -> &Conclusion {
     replay.conclusion().expect("the session has ended")
 }
@@ -85,7 +91,7 @@ fn both_recordings_give_north_within_three_and_a_half_sigma() {
 #[test]
 fn sigma_is_that_of_the_noise_in_whole_turns_and_no_less_than_the_limit() {
     for name in [GYRO, MET] {
-        let replay = recorded(name).replayed();
+        let replay = with_exact_zero(recorded(name)).replayed();
         let fit = conclusion(&replay).fit.expect("there is a fit");
         let ratio = fit.sigma() / fit.limit;
         assert!((0.999..1.1).contains(&ratio), "{name}: σ is {ratio} of the limit");
@@ -182,6 +188,25 @@ fn what_is_not_known_is_said() {
     assert!(replay.assumed.iter().any(|words| words.contains("white noise as the turns show it")));
     let found = conclusion(&replay).angle_random_walk.to_degrees() * 60.0;
     assert!((found / 0.002 - 1.0).abs() < 0.4, "{found}");
+}
+
+#[test]
+fn an_encoder_whose_zero_is_not_stated_is_told_and_in_sigma() {
+    let recorded = recorded(GYRO);
+    let replay = recorded.replayed();
+    let is_told = |words: &String| words.contains("encoder zero to 0.15°");
+    assert!(replay.assumed.iter().any(is_told), "{:?}", replay.assumed);
+    let encoder = conclusion(&replay).fit.expect("there is a fit").budget.encoder.to_degrees();
+    assert!((encoder - 0.15).abs() < 0.01, "{encoder}");
+    let exact = with_exact_zero(recorded).replayed();
+    assert!(!exact.assumed.iter().any(is_told), "{:?}", exact.assumed);
+}
+
+#[test]
+fn a_rate_that_the_times_contradict_is_refused() {
+    let mut recorded = recorded(GYRO);
+    recorded.header.rate_hz = recorded.header.rate_hz.map(|rate| 1.02 * rate);
+    assert!(matches!(recorded.refusal(), Refusal::PeriodContradicted { .. }));
 }
 
 #[test]

@@ -173,6 +173,11 @@ pub enum Refusal {
         /// Of how many.
         turns: u32,
     },
+    /// Turns of a platform at the beginning or the end of a stretch do not fit the others.
+    TurnsAstray {
+        /// How many.
+        turns: u32,
+    },
     /// The stage did not come to stand where it was sent.
     StageNotThere {
         /// Where it was sent, °.
@@ -401,6 +406,9 @@ words! { Refusal:
         "{} of {} dwells were disturbed: keep the platform still", disturbed, positions;
     Self::TurnsDisturbed { disturbed, turns } =>
         "{} of {} turns were disturbed: keep the base still, let the sensor settle", disturbed, turns;
+    Self::TurnsAstray { turns } =>
+        "{} turn(s) at the beginning or the end of a stretch do not fit the others: the encoder slipped, the base was turned, or the gyro settles late",
+        turns;
     Self::StageNotThere { target, actual } =>
         "the stage was sent to {}° but stands at {}°", Rounded::<3>(target), Rounded::<3>(actual);
     Self::TimeExhausted => "the time allowed ran out";

@@ -48,6 +48,9 @@ pub const DYNAMICS: MolecularConfiguration =
 /// hundredth, is below what the Earth's is to be known to: e⁻¹⁴ is 10⁻⁶.
 const SETTLED: f64 = 14.0;
 
+/// 1σ of the encoder's zero, rad: a platform without an index was set by hand.
+const ENCODER_ZERO_SIGMA: f64 = 0.15 * DEGREE;
+
 /// Until the platform is ready to turn, s.
 const START_SECONDS: f64 = 1.0;
 
@@ -119,7 +122,7 @@ impl TurntableScenario {
     #[must_use]
     pub fn setting(&self) -> Option<Setting> {
         let setting = Setting::new(self.base.setting()?, self.sensor());
-        Some(Setting { couplings: self.stored, ..setting })
+        Some(Setting { couplings: self.stored, encoder_zero_sigma: ENCODER_ZERO_SIGMA, ..setting })
     }
 
     fn sensor(&self) -> Sensor {

@@ -36,6 +36,8 @@ pub struct Header {
     pub g_sensitivity_deg_h_g: Option<[f64; 2]>,
     /// 1σ of each of the two, °/h/g, ≥ 0.
     pub g_sensitivity_sigma_deg_h_g: Option<f64>,
+    /// 1σ of the stage encoder's zero, as it turns the azimuth, °, ≥ 0.
+    pub encoder_zero_sigma_deg: Option<f64>,
     /// The principle of the sensor.
     pub sensor: Option<Sensor>,
     /// When the vehicle stood, from … to, s, one after the other; at least one.
@@ -102,7 +104,7 @@ const fn key(
     NumberKey { name, range, slot }
 }
 
-static NUMBERS: [NumberKey; 10] = [
+static NUMBERS: [NumberKey; 11] = [
     key("latitude_deg", Range::symmetric(90.0, "°"), |h| &mut h.latitude_deg),
     key("rate_hz", Range::above_zero(1e6, " Hz"), |h| &mut h.rate_hz),
     key("gyro_N_deg_sqrt_h", Range::from_zero(LARGEST, " °/√h"), |h| &mut h.gyro_n_deg_sqrt_h),
@@ -119,6 +121,7 @@ static NUMBERS: [NumberKey; 10] = [
     key("g_sensitivity_sigma_deg_h_g", Range::from_zero(LARGEST, " °/h/g"), |h| {
         &mut h.g_sensitivity_sigma_deg_h_g
     }),
+    key("encoder_zero_sigma_deg", Range::from_zero(180.0, "°"), |h| &mut h.encoder_zero_sigma_deg),
 ];
 
 /// One header line.

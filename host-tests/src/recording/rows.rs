@@ -75,6 +75,8 @@ pub struct RotatingRow {
     pub rate_rad_s: f64,
     /// Specific force along the sensitive axis, in the platform's plane, m/s², ±2147.483647.
     pub force_m_s2: f64,
+    /// The same 90° clockwise of it, when recorded.
+    pub across_m_s2: Option<f64>,
 }
 
 /// One position of a `dwells` recording, already averaged.
@@ -183,6 +185,7 @@ impl Row for RotatingRow {
         Column::always("stage_rate_rad_s", STAGE_RATE),
         Column::always("g_rad_s", RATE),
         Column::always("a_m_s2", FORCE),
+        Column { name: "a_across_m_s2", need: Need::Optional, range: FORCE },
     ];
     const TIME: usize = 0;
 
@@ -194,6 +197,7 @@ impl Row for RotatingRow {
             stage_rate_rad_s: values.needed(2),
             rate_rad_s: values.needed(3),
             force_m_s2: values.needed(4),
+            across_m_s2: values.optional(5),
         }
     }
 }

@@ -4,9 +4,12 @@ pub mod part;
 pub mod recorder;
 pub mod turns;
 
+use std::f64::consts::{FRAC_1_SQRT_2, TAU};
+
 use orientation::align::rotating::conclusion::Conclusion;
 use orientation::align::rotating::turn::Stretch;
 use orientation::align::rotating::{Sensor, Setting};
+use orientation::align::setting::Setting as Common;
 use orientation::session::procedure::ProcedureError;
 use orientation::session::rotating::{Event, Procedure, Session};
 use orientation::signal::Sample;
@@ -14,8 +17,9 @@ use orientation::units::{Angle, AngularRate, Instant, SpecificForce};
 
 use self::part::Part;
 use crate::recording::{self, Body, Header, RotatingRow};
-use crate::replay::{Options, ReplayError, latitude};
+use crate::replay::{Options, ReplayError, latitude, median};
 use crate::setting::{Described, describe};
+use crate::stops::samples::is_cut;
 
 /// A finished replay.
 #[derive(Clone, Debug)]
@@ -80,9 +84,48 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
     }
     let sensor = sensor(header, &mut assumed);
     let rate = header.rate_hz.unwrap_or_else(|| turns::rate_hz(rows));
-    let session = follow(Setting::new(common, sensor), rows, 1.0 / rate.max(f64::MIN_POSITIVE));
+    let rate_step = rounded(&mut common, rows, rate);
+    let encoder_zero_sigma = encoder_zero(header, &mut assumed);
+    let setting = Setting::new(common, sensor);
+    let setting = Setting { encoder_zero_sigma, harmonics_known: false, rate_step, ..setting };
+    let session = follow(setting, rows, 1.0 / rate.max(f64::MIN_POSITIVE));
     let zero_s = rows.first().map_or(0.0, |row| row.time_s);
     Ok(Replay { session: session.map_err(ReplayError::Procedure)?, zero_s, assumed })
+}
+
+/// Takes the steps of a gyro's column into its noise, and gives what of them its noise does not hide, rad/s: it smooths
+/// the staircase by e^(−2π²(σ/step)²).
+fn rounded(common: &mut Common, rows: &[RotatingRow], rate_hz: f64) -> f64 {
+    let mut rates: Vec<f64> = rows.iter().map(|row| row.rate_rad_s).collect();
+    rates.sort_unstable_by(f64::total_cmp);
+    let steps = rates.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.0);
+    let step = steps.reduce(f64::min).unwrap_or_default();
+    if step <= 0.0 {
+        return 0.0;
+    }
+    let walk = common.noise.angle_random_walk;
+    let sigma = if common.white_known { walk * rate_hz.sqrt() } else { of_neighbours(rows) };
+    let hidden = sigma / step;
+    common.noise.angle_random_walk = walk.hypot(step / (12.0 * rate_hz).sqrt());
+    step * (-0.5 * (TAU * hidden).powi(2)).exp()
+}
+
+/// 1σ of a rate's noise, rad/s, from the differences of neighbours: their median is 0.674 of their σ.
+fn of_neighbours(rows: &[RotatingRow]) -> f64 {
+    let differences = rows.windows(2).map(|pair| (pair[1].rate_rad_s - pair[0].rate_rad_s).abs());
+    median(&mut differences.collect::<Vec<f64>>()) / 0.674 * FRAC_1_SQRT_2
+}
+
+/// 1σ of the zero of an encoder of which nothing is known, °: where one without an index is set by hand.
+const ZERO_SIGMA_DEG: f64 = 0.15;
+
+/// 1σ of the encoder's zero, rad; no key states its harmonics.
+fn encoder_zero(header: &Header, assumed: &mut Vec<String>) -> f64 {
+    let sigma_deg = header.encoder_zero_sigma_deg.unwrap_or_else(|| {
+        assumed.push("encoder zero to 0.15° (encoder_zero_sigma_deg)".to_owned());
+        ZERO_SIGMA_DEG
+    });
+    sigma_deg.to_radians()
 }
 
 /// The kind of sensor that the header names.
@@ -108,22 +151,47 @@ pub fn follow(
 ) -> Result<Session, ProcedureError> {
     let mut session = Session::new(setting, Procedure::recorded(sample_seconds))?;
     let begin = rows.first().map_or(0.0, |row| row.time_s);
+    let limits = limits(rows);
     for row in rows {
-        session.handle(Event::Recorded(&sample(row, begin), row.stage_rate_rad_s as f32));
+        let mut sample = sample(row, begin);
+        if row.rate_rad_s <= limits[0] || row.rate_rad_s >= limits[1] {
+            sample.rate = AngularRate(i32::MAX);
+        }
+        session.handle(Event::Recorded(&sample, row.stage_rate_rad_s as f32));
     }
     session.handle(Event::End);
     Ok(session)
 }
 
+/// Part of a turn's samples that may stand at a limit: what so few peaks of the noise lack is nothing.
+const FEW_CUT: f64 = 0.003;
+
+/// Between which rates a gyro's column is not cut, rad/s: one at its limit shows the same greatest rate, or least,
+/// again and again.
+fn limits(rows: &[RotatingRow]) -> [f64; 2] {
+    let rates = || rows.iter().map(|row| row.rate_rad_s);
+    let extreme = |of: fn(f64, f64) -> f64| rates().reduce(of).unwrap_or_default();
+    let (least, greatest) = (extreme(f64::min), extreme(f64::max));
+    let is_limit = |limit: f64| {
+        let count = rates().filter(|rate| *rate == limit).count();
+        count as f64 > FEW_CUT * rows.len() as f64 && is_cut(rates(), limit)
+    };
+    [
+        if is_limit(least) { least } else { f64::NEG_INFINITY },
+        if is_limit(greatest) { greatest } else { f64::INFINITY },
+    ]
+}
+
 /// A row in the stage path's units, its time from `begin` on; rounding as in
-/// [`orientation::units`]. The force across the axis is not recorded, and nobody asks for it.
+/// [`orientation::units`]. A force across the axis that is not recorded is none.
 fn sample(row: &RotatingRow, begin: f64) -> Sample {
     let along = SpecificForce::from_m_per_s2(row.force_m_s2);
+    let across = row.across_m_s2.map_or(SpecificForce::default(), SpecificForce::from_m_per_s2);
     Sample {
         time: Instant::from_seconds(row.time_s - begin),
         stage: Angle::from_rad(row.stage_rad),
         rate: AngularRate::from_rad_per_s(row.rate_rad_s),
-        force: Some([along, SpecificForce::default(), SpecificForce::default()]),
+        force: Some([along, across, SpecificForce::default()]),
         ..Sample::default()
     }
 }

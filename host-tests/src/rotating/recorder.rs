@@ -37,6 +37,7 @@ impl RowRecorder {
             stage_rate_rad_s: turned / seconds,
             rate_rad_s: sample.rate.rad_per_s(),
             force_m_s2: self.force_m_s2,
+            across_m_s2: None,
         });
     }
 }

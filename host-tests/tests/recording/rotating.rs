@@ -25,6 +25,7 @@ fn its_rows_come_with_their_lines_and_the_sensor_by_name() {
         stage_rate_rad_s: 0.87,
         rate_rad_s: -1.26e-2,
         force_m_s2: 0.126,
+        across_m_s2: None,
     };
     let read_rows = rows(ROTATING);
     assert_eq!((read_rows.len(), read_rows[1]), (3, second));

@@ -150,6 +150,8 @@ fn a_creeping_encoder_is_refused_once_it_shows_above_the_noise() {
     let names = [
         "TiltChanged",
         "DirectionDrifts",
+        "HeadingStepped",
+        "TurnsAstray",
         "TurnsDisturbed",
         "SpeedsUnequal",
         "ResidualsNotWhite",
@@ -187,8 +189,15 @@ fn a_tilt_that_changes_is_refused_or_leaves_the_azimuth_right() {
 
 #[test]
 fn a_base_that_turned_is_refused_or_stood_where_the_azimuth_says() {
-    let names =
-        ["TiltChanged", "DirectionDrifts", "ResidualsNotWhite", "TurnsDisturbed", "SensesDisagree"];
+    let names = [
+        "TiltChanged",
+        "DirectionDrifts",
+        "HeadingStepped",
+        "ResidualsNotWhite",
+        "TurnsAstray",
+        "TurnsDisturbed",
+        "SensesDisagree",
+    ];
     for change in [0.1, 1.0, 3.0_f64] {
         for place in [between_s(), clockwise_s(6.0)] {
             assert_never_wrong(&names, |seed, case| {

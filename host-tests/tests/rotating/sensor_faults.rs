@@ -88,7 +88,14 @@ fn an_accelerometer_that_saturates_sticks_or_is_dead_is_refused() {
 
 #[test]
 fn a_molecular_sensor_that_is_declared_a_gyro_is_refused_or_right() {
-    let names = ["SensesDisagree", "TurnsDisturbed", "ResidualsNotWhite", "EarthRateMismatch"];
+    let names = [
+        "SensesDisagree",
+        "HeadingStepped",
+        "TurnsDisturbed",
+        "TurnsAstray",
+        "ResidualsNotWhite",
+        "EarthRateMismatch",
+    ];
     let sensors = [
         (0.0, 0.05, 0.0),
         (0.0, 0.3, 0.0),

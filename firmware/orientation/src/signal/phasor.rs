@@ -267,6 +267,14 @@ impl Products {
     }
 }
 
+impl Products {
+    /// Sums of cosine and sine, in steps of their own.
+    #[must_use]
+    pub fn phasor(&self) -> [f32; 2] {
+        [COSINE, SINE].map(|signal| self.sums[signal * (signal + 1) / 2] as f32)
+    }
+}
+
 /// The same sums in SI units, for as long a time as it takes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Sums {

@@ -168,9 +168,13 @@ const SENSOR: Sensor = Sensor::GYRO;
 /// flash keeps of them is to do. `None`: as many as are usual.
 const UNEVEN_TURNS: Option<u32> = None;
 
+/// 1σ of the encoder's zero on a turning platform, as it turns the azimuth, rad: without an index no turn shows it.
+const ENCODER_ZERO_SIGMA: f64 = 0.15 * DEGREE;
+
 /// What is known of place and instrument on a turning platform.
 pub fn turning_setting() -> rotating::Setting {
-    rotating::Setting::new(setting(), SENSOR)
+    let encoder_zero_sigma = ENCODER_ZERO_SIGMA;
+    rotating::Setting { encoder_zero_sigma, ..rotating::Setting::new(setting(), SENSOR) }
 }
 
 /// How the session goes about it there.

@@ -9,6 +9,7 @@ mod axes;
 mod chance;
 pub mod spin;
 pub mod stage;
+pub mod turning;
 pub mod vehicle;
 
 use serde::Serialize;
@@ -86,7 +87,8 @@ pub struct Class {
 
 /// Every class, method by method.
 pub fn classes() -> impl Iterator<Item = &'static Class> {
-    stage::CLASSES.iter().chain(vehicle::CLASSES).chain(spin::CLASSES)
+    let of_carriers = stage::CLASSES.iter().chain(turning::CLASSES).chain(vehicle::CLASSES);
+    of_carriers.chain(spin::CLASSES)
 }
 
 /// Healthy recordings of a method.
@@ -99,8 +101,10 @@ pub struct Healthy {
 }
 
 /// The methods whose healthy recordings are drawn.
-pub const HEALTHY: [Healthy; 2] = [
+pub const HEALTHY: [Healthy; 4] = [
     Healthy { name: "stage", draw: stage::healthy },
+    Healthy { name: "turning", draw: turning::healthy },
+    Healthy { name: "vehicle", draw: vehicle::healthy },
     Healthy { name: "spin", draw: spin::healthy },
 ];
 

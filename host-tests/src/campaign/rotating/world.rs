@@ -202,6 +202,7 @@ impl World {
             stage_rate_rad_s: sample.stage_rate_rad_s,
             rate_rad_s: sample.rate_rad_s,
             force_m_s2: sample.force_m_s2[0],
+            across_m_s2: None,
         };
         Turntable::new(&configuration, seed).enumerate().map(row).collect()
     }

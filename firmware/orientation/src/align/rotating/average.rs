@@ -3,15 +3,19 @@
 use heapless::Vec;
 
 use super::coupling::{self, Coupling};
+use super::tilting::Tilting;
 use super::turn::{Sense, Stretch, TURNS, Turn};
 use crate::align::regression::{Column, Regression};
-use crate::math::{Complex, median};
+use crate::math::{Complex, chi_square_tail, median};
 
 /// Squared distance of a turn from the others, in variances of either part, beyond which it is left
 /// out (exp(−x/2): one healthy turn in 40 000).
 const OUTLIER: f64 = 21.0;
 /// Median of the squared distance of two neighbours over the variance of either part: 2 · 2 ln 2.
 const MEDIAN_OF_NEIGHBOURS: f64 = 2.772_588_722_239_781;
+
+/// Probability of a stretch's mean rates about a line below which its drift bends.
+const BENT: f64 = 1e-3;
 
 /// Number of differences of neighbours from which a variance comes out half too small at times.
 const FEW_NEIGHBOURS: f64 = 2.0;
@@ -27,8 +31,12 @@ pub struct Average {
     pub turns: u32,
     /// Turns left out.
     pub left_out: u32,
+    /// Of these, those before the first that counts, and those after the last.
+    pub ends: [u16; 2],
     /// Time in the turns that count, s.
     pub seconds: f64,
+    /// Their middle, s.
+    pub middle: f64,
     /// The gyro's rate as it came, rad/s.
     pub raw: Complex,
     /// The same without drift and coupling, Q₊ or Q₋.
@@ -47,6 +55,8 @@ pub struct Average {
     pub share: f64,
     /// Sum of the squared distances of the turns from their mean, (rad/s)².
     pub scatter: f64,
+    /// The same with the turns that were left out, about the mean of all.
+    pub scatter_of_all: f64,
     /// Squared drift of the phasor from turn to turn, over its variance where that of a turn is one,
     /// (rad/s)².
     pub trend: f64,
@@ -60,6 +70,8 @@ struct Turns<'a> {
     /// Part of the platform's steady rate that the gyro shows.
     steady: f64,
     phasors: Vec<Complex, TURNS>,
+    /// Drift that the phasors were freed of, rad/s².
+    slopes: [f32; TURNS],
     is_kept: [bool; TURNS],
 }
 
@@ -69,7 +81,8 @@ impl<'a> Turns<'a> {
         let coupling = coupling::nearest(couplings, frequency);
         let response = coupling.map_or(Complex::default(), |coupling| coupling.response(frequency));
         let (all, phasors) = (stretch.turns(), Vec::new());
-        let mut found = Self { all, steady, phasors, is_kept: [true; TURNS] };
+        let slopes = [0.0; TURNS];
+        let mut found = Self { all, steady, phasors, slopes, is_kept: [true; TURNS] };
         for turn in stretch.turns() {
             let turning = Complex::of_signal(turn.turning);
             // A stretch holds no more turns than these.
@@ -78,12 +91,38 @@ impl<'a> Turns<'a> {
         found
     }
 
-    /// Frees the phasors of a drift of the gyro, as the turns that count show it. It leaks into all of
-    /// them alike, so that it does not matter for which count.
-    fn free(&mut self) {
+    /// Frees the phasors of a drift of the gyro, as the turns that count show it: a line, and where their mean
+    /// rates bend by more than noise, of which a turn's has half a phasor's variance, what the neighbours show.
+    fn free(&mut self, variance: f64) {
         let slope = self.slope();
-        for (phasor, turn) in self.phasors.iter_mut().zip(self.all) {
-            *phasor = *phasor - Complex::of_signal(turn.leak).scaled(slope);
+        let degrees = self.count() as f64 - 2.0;
+        let chi_square = self.bend() * degrees / (0.5 * variance).max(f64::MIN_POSITIVE);
+        let is_bent = degrees > 1.0 && chi_square_tail(chi_square, degrees) < BENT;
+        for index in 0..self.all.len() {
+            let beyond = if is_bent { self.beyond(index, slope) } else { 0.0 };
+            let leak = Complex::of_signal(self.all[index].leak);
+            let more = slope + beyond - f64::from(self.slopes[index]);
+            self.phasors[index] = self.phasors[index] - leak.scaled(more);
+            self.slopes[index] = (slope + beyond) as f32;
+        }
+    }
+
+    /// Slope of the gyro's rate in a turn beyond one of all, rad/s²: the lesser of those from and to its neighbours,
+    /// none where they differ in sign. A step of the rate makes none in the turns beside it.
+    fn beyond(&self, index: usize, slope: f64) -> f64 {
+        let between = |one: usize, other: usize| {
+            let seconds = f64::from(self.all[other].middle - self.all[one].middle);
+            (self.own_rate(other) - self.own_rate(one)) / seconds - slope
+        };
+        let last = self.all.len() - 1;
+        let before = between(index.max(1) - 1, index.max(1));
+        let after = between(index.min(last - 1), index.min(last - 1) + 1);
+        if before * after <= 0.0 {
+            0.0
+        } else if before.abs() < after.abs() {
+            before
+        } else {
+            after
         }
     }
 
@@ -137,6 +176,13 @@ impl<'a> Turns<'a> {
         (self.phasors[index] - from).power()
     }
 
+    /// How many turns are left out before the first that counts, and after the last.
+    fn ends(&self) -> [u16; 2] {
+        let first = self.kept().next().unwrap_or(0);
+        let last = self.kept().last().unwrap_or(0);
+        [first, self.all.len() - 1 - last].map(|count| count as u16)
+    }
+
     /// Leaves out the turn that is furthest from the others while one is too far; at most a third.
     fn leave_out(&mut self, variance: f64) {
         for _ in 0..self.all.len() / 3 {
@@ -158,21 +204,35 @@ impl<'a> Turns<'a> {
 
 impl Average {
     /// The mean of a stretch whose turns have phasors of this variance in either part, (rad/s)²; `None`
-    /// without two turns. Of the platform's steady rate the gyro shows this part ([`steady_part`]).
+    /// without two turns. Of the platform's steady rate the gyro shows this part ([`steady_part`]). Each turn that
+    /// counts is shown with its phasor.
     #[must_use]
     pub fn of(
         stretch: &Stretch,
         couplings: &[Coupling],
         steady: f64,
         variance: f64,
+        tilting: &Tilting,
+        mut each: impl FnMut(&Turn, Complex),
     ) -> Option<Self> {
         let mut turns = Turns::of(stretch, couplings, steady);
+        let since = stretch.since() as f64 * 1e-6;
+        for (phasor, turn) in turns.phasors.iter_mut().zip(turns.all) {
+            *phasor = *phasor - tilting.vertical_part(since + f64::from(turn.middle));
+        }
+        if turns.count() < 2 {
+            return None;
+        }
+        turns.free(variance);
+        let mean = turns.mean_complex(|index| turns.phasors[index]);
+        let scatter_of_all = turns.kept().map(|index| turns.distance(index, mean)).sum();
         turns.leave_out(variance);
-        turns.free();
         let count = turns.count();
         if count < 2 {
             return None;
         }
+        turns.free(variance);
+        turns.kept().for_each(|index| each(&turns.all[index], turns.phasors[index]));
         let joined = stretch.count() / stretch.turns().len().max(1) as u32;
         let turn = |index: usize| &turns.all[index];
         let phasor = turns.mean_complex(|index| turns.phasors[index]);
@@ -185,7 +245,9 @@ impl Average {
             speed: stretch.speed(),
             turns: count as u32 * joined,
             left_out: (turns.all.len() - count) as u32 * joined,
+            ends: turns.ends(),
             seconds: turns.kept().map(|index| f64::from(turn(index).seconds)).sum(),
+            middle: since + turns.mean(|index| f64::from(turn(index).middle)),
             raw: turns.mean_complex(|index| Complex::of_signal(turn(index).rate)),
             phasor,
             turning: turns.mean_complex(|index| Complex::of_signal(turn(index).turning)),
@@ -195,6 +257,7 @@ impl Average {
             mean_force: turns.mean(|index| f64::from(turn(index).mean_force)),
             share: turns.share(square, variance) / f64::from(joined),
             scatter: turns.kept().map(|index| turns.distance(index, phasor)).sum(),
+            scatter_of_all,
             trend: (cosine * cosine + sine * sine) * square,
             degrees: 2 * (count as u32 - 1),
         })
@@ -219,7 +282,10 @@ impl Turns<'_> {
             return own;
         }
         let leak = self.mean_complex(|index| Complex::of_signal(self.all[index].leak)).size();
-        let offset = (self.bend() / variance.max(f64::MIN_POSITIVE)).max(0.5);
+        let is_bent = self.slopes.iter().take(self.all.len()).any(|slope| *slope != self.slopes[0]);
+        // Neighbours have shown how it bends.
+        let bend = if is_bent { 0.0 } else { self.bend() };
+        let offset = (bend / variance.max(f64::MIN_POSITIVE)).max(0.5);
         own + 0.5 * leak * leak * offset / square
     }
 

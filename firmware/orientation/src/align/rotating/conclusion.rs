@@ -4,10 +4,13 @@ use heapless::Vec;
 
 use super::Setting;
 use super::average::{Average, steady_part, typical_size, variance_of_neighbours};
+use super::change::{MARKS, Mark};
 use super::coupling::Coupling;
 use super::follower::{Follower, STRETCHES};
+use super::heading::Directions;
 use super::solution::{Fit, Pair, Problem, SPEEDS, force_density, of_turn};
-use super::turn::{Sense, Stretch};
+use super::tilting::Tilting;
+use super::turn::{Sense, Stretch, Turn};
 use crate::align::conclusion::Azimuth;
 use crate::device::Device;
 use crate::error::Refusal;
@@ -19,6 +22,16 @@ use crate::units::{DEGREES_PER_RADIAN as DEGREES, TURN};
 const EQUAL_SPEEDS: f64 = 0.01;
 /// Probability of healthy turns' scatter below which they are refused.
 const SCATTER_PROBABILITY: f64 = 1e-6;
+/// Probability of it below which it raises σ.
+const EXCESS_PROBABILITY: f64 = 0.05;
+/// Most that turns which were left out raise σ by.
+const GREATEST_EXCESS: f64 = 2.0;
+/// Slip of the encoder that the forces show and σ takes in, in σ.
+const SMALL_SLIP: f64 = 4.0;
+/// Part of such a slip that the azimuth is off by, 1σ: it is that of the turns before or after it.
+const OF_SLIP: f64 = 0.6;
+/// How many turns at an end of a stretch may be left out.
+const FEW_ASTRAY: u16 = 1;
 /// What is a difference and no chance, in σ.
 const DIFFERENT: f64 = 5.0;
 /// What both senses of a flat sensor may differ by beyond that, of the Earth rate: half of what the base
@@ -88,11 +101,22 @@ impl Conclusion {
         }
         self.couple(setting, follower)?;
         Self::judge_followed(follower)?;
-        self.pair(setting, follower.stretches())?;
-        self.judge_turns(setting)?;
-        let fit = self.solve(setting).ok_or(Refusal::CouplingUnknown)?;
-        self.fit = Some(fit);
-        self.judge_force(setting, &fit)?;
+        let common = &setting.common;
+        let [along, across] = common.g_sensitivity;
+        let per_tilt = Complex::new(latitude.vertical_rate() + along, across);
+        let tilting = Tilting::of(follower.stretches(), latitude.gravity(), per_tilt);
+        let mut marks = Vec::new();
+        self.pair(setting, follower.stretches(), &tilting, &mut marks)?;
+        let drift = self.scatter(setting);
+        let moved = |reason| {
+            let tilted = |change: f64| Refusal::TiltChanged { change: change * 1e3 };
+            tilting.step.map_or(reason, tilted)
+        };
+        self.judge_left_out(setting).map_err(moved)?;
+        self.solve(setting, &tilting, follower.ellipse(), marks)?;
+        self.judge_turns(setting, drift)?;
+        let fit = self.fit.ok_or(Refusal::CouplingUnknown)?;
+        self.judge_force(setting, &fit, &tilting)?;
         judge(setting, &fit, self.degrees)?;
         within_budget(setting, &fit)
     }
@@ -141,8 +165,14 @@ impl Conclusion {
 
     /// Finds both senses of every speed.
     #[inline(never)]
-    fn pair(&mut self, setting: &Setting, stretches: &[Stretch]) -> Result<(), Refusal> {
-        let averages = self.averages(setting, stretches);
+    fn pair(
+        &mut self,
+        setting: &Setting,
+        stretches: &[Stretch],
+        tilting: &Tilting,
+        marks: &mut Vec<Mark, MARKS>,
+    ) -> Result<(), Refusal> {
+        let averages = self.averages(setting, stretches, tilting, marks);
         let of = |sense: Sense| averages.iter().filter(move |average| average.sense == sense);
         for sense in [Sense::Clockwise, Sense::CounterClockwise] {
             if of(sense).next().is_none() {
@@ -169,11 +199,19 @@ impl Conclusion {
         }
     }
 
-    /// The means of the stretches, disturbed turns left out.
-    fn averages(&self, setting: &Setting, stretches: &[Stretch]) -> Vec<Average, STRETCHES> {
+    /// The means of the stretches, disturbed turns left out; the others' phasors are marked with the sign of their
+    /// sense.
+    fn averages(
+        &self,
+        setting: &Setting,
+        stretches: &[Stretch],
+        tilting: &Tilting,
+        marks: &mut Vec<Mark, MARKS>,
+    ) -> Vec<Average, STRETCHES> {
         let couplings = &self.couplings;
         let horizontal = setting.common.latitude.horizontal_rate();
         let steady = steady_part(stretches);
+        let slow = stretches.first().map_or(0.0, Stretch::speed);
         let mut averages = Vec::new();
         for stretch in stretches {
             let joined = stretch.count() / stretch.turns().len().max(1) as u32;
@@ -182,7 +220,17 @@ impl Conclusion {
             // What the sensor's gain makes of its noise, which counts at its input.
             let is_flat = setting.sensor.is_flat;
             let gain = if is_flat { 1.0 } else { typical_size(stretch, couplings) / horizontal };
-            let average = Average::of(stretch, couplings, steady, variance * gain * gain);
+            let since = stretch.since() as f64 * 1e-6;
+            let is_second = (speed - slow).abs() > EQUAL_SPEEDS * slow;
+            let mark = |turn: &Turn, phasor: Complex| {
+                let time = (since + f64::from(turn.middle)) as f32;
+                let odd = stretch.sense.signed(1.0) as f32;
+                let value = [phasor.re as f32, phasor.im as f32];
+                // There is room for every turn of every stretch.
+                let _ = marks.push(Mark { time, odd, is_second, turns: joined as f32, value });
+            };
+            let variance = variance * gain * gain;
+            let average = Average::of(stretch, couplings, steady, variance, tilting, mark);
             if let Some(average) = average {
                 // There are no more stretches than these.
                 let _ = averages.push(average);
@@ -191,16 +239,27 @@ impl Conclusion {
         averages
     }
 
-    /// Chi-square of the turns about their means, and their drift.
-    #[inline(never)]
-    fn judge_turns(&mut self, setting: &Setting) -> Result<(), Refusal> {
-        let drift = self.scatter(setting);
+    /// Refuses where too many turns were left out, or where those at an end were: then it was not they who were
+    /// disturbed, but the heading or the encoder is another one since.
+    fn judge_left_out(&self, setting: &Setting) -> Result<(), Refusal> {
         let averages = || self.pairs.iter().flat_map(Pair::senses);
-        let left_out: u32 = averages().map(|average| average.left_out).sum();
-        let turns: u32 = left_out + averages().map(|average| average.turns).sum::<u32>();
-        if 4 * left_out > turns {
-            return Err(Refusal::TurnsDisturbed { disturbed: left_out, turns });
+        let disturbed: u32 = averages().map(|average| average.left_out).sum();
+        let turns: u32 = disturbed + averages().map(|average| average.turns).sum::<u32>();
+        if 4 * disturbed > turns {
+            return Err(Refusal::TurnsDisturbed { disturbed, turns });
         }
+        // A sensor that is not flat may still settle in the first turns of a stretch.
+        let from = usize::from(!setting.sensor.is_flat);
+        let astray = averages().flat_map(|average| average.ends.into_iter().skip(from));
+        let astray = astray.max().unwrap_or(0);
+        if astray > FEW_ASTRAY {
+            return Err(Refusal::TurnsAstray { turns: u32::from(astray) });
+        }
+        Ok(())
+    }
+
+    /// Chi-square of the turns about their means, and their drift in σ.
+    fn judge_turns(&self, setting: &Setting, drift: f64) -> Result<(), Refusal> {
         let degrees = f64::from(self.degrees.max(1));
         let is_known = setting.common.white_known;
         if is_known && chi_square_tail(self.chi_square, degrees) < SCATTER_PROBABILITY {
@@ -213,36 +272,89 @@ impl Conclusion {
         Ok(())
     }
 
-    /// Sums up chi-square; the greatest drift of a stretch's phasor, in σ.
-    fn scatter(&mut self, setting: &Setting) -> f64 {
-        let horizontal = setting.common.latitude.horizontal_rate();
-        let (mut chi_square, mut degrees, mut drift) = (0.0, 0, 0.0f64);
-        for pair in &self.pairs {
-            let gain = if setting.sensor.is_flat { 1.0 } else { pair.gain(horizontal) };
-            for average in pair.senses() {
-                let one = self.of_one_turn(setting, average.speed) * gain * gain;
-                let variance = one / average.joined();
-                chi_square += average.scatter / variance;
-                degrees += average.degrees;
-                drift = drift.max(average.trend / variance);
+    /// By how much the turns scatter more than their noise says, as a factor of σ, with those that were left out: one
+    /// where that may be chance.
+    fn excess(&self, setting: &Setting) -> f64 {
+        let of = |of_all: bool| {
+            let (mut chi_square, mut degrees) = (0.0, 0.0);
+            for average in self.pairs.iter().flat_map(Pair::senses) {
+                chi_square += if of_all { average.scatter_of_all } else { average.scatter }
+                    / self.variance(setting, average);
+                let left_out = f64::from(average.left_out) / average.joined();
+                degrees += f64::from(average.degrees) + if of_all { 2.0 * left_out } else { 0.0 };
             }
+            // A variance that the same turns have shown is uncertain itself.
+            let share = if setting.common.white_known { 1.0 } else { 0.5 };
+            let is_chance = degrees == 0.0
+                || chi_square_tail(share * chi_square, share * degrees) >= EXCESS_PROBABILITY;
+            if is_chance { 1.0 } else { libm::sqrt(chi_square / degrees) }
+        };
+        // Those of a sensor that is not flat may be left out for settling.
+        let of_all = if setting.sensor.is_flat { of(true) } else { 1.0 };
+        of(false).max(of_all.min(GREATEST_EXCESS))
+    }
+
+    /// Variance of either part of a mark's phasor, (rad/s)².
+    fn variance(&self, setting: &Setting, average: &Average) -> f64 {
+        let horizontal = setting.common.latitude.horizontal_rate();
+        let is_it =
+            |pair: &&Pair| (pair.speed() - average.speed).abs() <= EQUAL_SPEEDS * average.speed;
+        let pair = self.pairs.iter().find(is_it).filter(|_| !setting.sensor.is_flat);
+        let gain = pair.map_or(1.0, |pair| pair.gain(horizontal));
+        self.of_one_turn(setting, average.speed) * gain * gain / average.joined()
+    }
+
+    /// Sums up chi-square; the greatest drift of a stretch's phasor, in σ.
+    #[inline(never)]
+    fn scatter(&mut self, setting: &Setting) -> f64 {
+        let (mut chi_square, mut degrees, mut drift) = (0.0, 0, 0.0f64);
+        for average in self.pairs.iter().flat_map(Pair::senses) {
+            let variance = self.variance(setting, average);
+            chi_square += average.scatter / variance;
+            degrees += average.degrees;
+            drift = drift.max(average.trend / variance);
         }
         (self.chi_square, self.degrees) = (chi_square, degrees);
         libm::sqrt(drift)
     }
 
+    /// Solves, and raises σ by how the turns scatter and by what may change from turn to turn.
     #[inline(never)]
-    fn solve(&self, setting: &Setting) -> Option<Fit> {
+    fn solve(
+        &mut self,
+        setting: &Setting,
+        tilting: &Tilting,
+        ellipse: Complex,
+        marks: Vec<Mark, MARKS>,
+    ) -> Result<(), Refusal> {
         let noise = self.noise(setting);
         let density = |speed: f64| noise.density_at(speed / TURN);
         let walk = self.angle_random_walk;
-        let white = if setting.common.white_known { walk * walk } else { 0.0 };
+        let is_known = setting.common.white_known;
+        let white = if is_known { walk * walk } else { 0.0 };
         let (pairs, couplings) = (&self.pairs, &self.couplings);
-        Problem { setting, pairs, couplings, density: &density, white }.solve()
+        let problem =
+            Problem { setting, pairs, couplings, density: &density, white, tilting, ellipse };
+        let mut fit = problem.solve().ok_or(Refusal::CouplingUnknown)?;
+        let of_turn = |speed: f64| self.of_one_turn(setting, speed);
+        let directions = Directions { problem: &problem, fit: &fit, of_turn: &of_turn, is_known };
+        let doubt = directions.doubt(marks);
+        let excess = self.excess(setting);
+        fit.budget.noise *= excess;
+        let drift = fit.budget.drift * excess;
+        fit.budget.drift = libm::sqrt(drift * drift + doubt.as_ref().map_or(0.0, |doubt| *doubt));
+        let slip = tilting.slip(fit.tilt.size());
+        let is_small = slip <= SMALL_SLIP * fit.sigma();
+        fit.budget.encoder = libm::hypot(fit.budget.encoder, OF_SLIP * slip);
+        self.fit = Some(fit);
+        match tilting.step.filter(|_| !is_small) {
+            Some(change) => Err(Refusal::TiltChanged { change: change * 1e3 }),
+            None => doubt.map(|_| ()),
+        }
     }
 
     /// Whether the accelerometer lies in the platform's plane and saw one tilt.
-    fn judge_force(&self, setting: &Setting, fit: &Fit) -> Result<(), Refusal> {
+    fn judge_force(&self, setting: &Setting, fit: &Fit, tilting: &Tilting) -> Result<(), Refusal> {
         let gravity = setting.common.latitude.gravity();
         let allowed = FORCE_TOLERANCE + DIFFERENT * setting.common.accelerometer_bias_sigma;
         let (density, degrees) = force_density(&self.pairs);
@@ -260,7 +372,8 @@ impl Conclusion {
             if average.across != Complex::default() && strays > allowed + TILT_TOLERANCE {
                 return Err(Refusal::AccelerometerAstray { scatter: strays * 1e3 });
             }
-            let apart = average.force.scaled(1.0 / gravity) - fit.tilt;
+            let tilt = fit.tilt + tilting.tilt_at(average.middle);
+            let apart = average.force.scaled(1.0 / gravity) - tilt;
             if apart.size() > different * sigma + TILT_TOLERANCE {
                 return Err(Refusal::TiltChanged { change: apart.size() * 1e3 });
             }
@@ -311,7 +424,10 @@ fn judge_flat(setting: &Setting, fit: &Fit, degrees: u32) -> Result<(), Refusal>
     }
     let (ratio, sigma) = (fit.ratio, fit.ratio_sigma);
     let sigma_and_scale = libm::hypot(sigma, setting.common.amplitude_sigma());
-    if (ratio - 1.0).abs() > DIFFERENT * sigma_and_scale + RATIO_TOLERANCE {
+    let tolerance = if setting.common.scale_sigma > 0.0 { 0.0 } else { RATIO_TOLERANCE };
+    let tolerance = DIFFERENT * sigma_and_scale + tolerance;
+    // A gyro that lags shows less, one that is late does not.
+    if ratio > 1.0 + tolerance || ratio < fit.passed * (1.0 - tolerance) {
         return Err(Refusal::EarthRateMismatch { ratio, sigma });
     }
     Ok(())

@@ -10,11 +10,12 @@
 
 use heapless::Vec;
 
-use super::part::{AXES, Broken, EIGHTH, Forces, Part, Uneven, is_jump};
+use super::part::{AXES, Broken, EIGHTH, Ellipse, Forces, Part, Uneven, is_jump};
 use super::solution::SPEEDS;
 use super::turn::{Sense, Stretch, Turn};
 use crate::align::etalon::Table;
 use crate::device::Trouble;
+use crate::math::Complex;
 use crate::signal::Sample;
 use crate::signal::phasor::{Block, Blocks, Reference, Sums};
 use crate::units::{Angle, SpecificForce, TURN as WHOLE_TURN};
@@ -68,7 +69,11 @@ pub struct Follower {
     turn: Sums,
     turn_forces: Forces,
     turn_seconds: f32,
+    turn_ellipse: Ellipse,
     eighths: u32,
+    /// What the eighths show of the encoder's error twice a turn, rad, summed over so many turns.
+    ellipse: Complex,
+    ellipse_turns: u32,
     /// Rate of the turn's first eighth, rad/s.
     speed: f32,
     uneven: Vec<Uneven, SPEEDS>,
@@ -98,7 +103,10 @@ impl Follower {
             turn: Sums::default(),
             turn_forces: Forces::default(),
             turn_seconds: 0.0,
+            turn_ellipse: Ellipse::default(),
             eighths: 0,
+            ellipse: Complex::default(),
+            ellipse_turns: 0,
             speed: 0.0,
             uneven: Vec::new(),
             is_settling: true,
@@ -134,6 +142,12 @@ impl Follower {
     #[must_use]
     pub fn slip(&self) -> f64 {
         self.slip
+    }
+
+    /// The error ε sin(2θ + ψ) of the encoder that would make the platform turn as evenly as can be, as ε e^{jψ}, rad.
+    #[must_use]
+    pub fn ellipse(&self) -> Complex {
+        self.ellipse.scaled(1.0 / f64::from(self.ellipse_turns.max(1)))
     }
 
     /// What is followed from now on.
@@ -313,6 +327,7 @@ impl Follower {
         self.turn.absorb(&part.products);
         self.turn_forces.add(&part.forces);
         self.turn_seconds += part.seconds;
+        self.turn_ellipse.push(part);
         self.eighths += 1;
         self.eighths == EIGHTHS && self.end_turn()
     }
@@ -327,6 +342,8 @@ impl Follower {
             self.begin_turn();
             return false;
         };
+        self.ellipse = self.ellipse + self.turn_ellipse.error(seconds);
+        self.ellipse_turns += 1;
         let since = self.stretches[stretch].since();
         let turn = Turn::of(&self.turn, &reference, since, seconds, &forces);
         self.begin_turn();
@@ -400,6 +417,7 @@ impl Follower {
         self.turn = Sums::default();
         self.turn_forces = Forces::default();
         self.turn_seconds = 0.0;
+        self.turn_ellipse = Ellipse::default();
         self.eighths = 0;
     }
 

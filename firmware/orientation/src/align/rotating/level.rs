@@ -24,6 +24,17 @@ impl Lean {
         Self { pitch, roll }
     }
 
+    /// What a rate of the force's phasor, g/s, says that the base turns, as it shows in the plane, rad/s: pitch about
+    /// the axis to the right, roll forward.
+    #[must_use]
+    pub fn turning(&self, rate: Complex) -> Complex {
+        let (sine_pitch, cosine_pitch) = libm::sincos(self.pitch);
+        let (sine_roll, cosine_roll) = libm::sincos(self.roll);
+        let pitching = rate.re / cosine_pitch;
+        let rolling = (rate.im + pitching * sine_pitch * sine_roll) / (cosine_roll * cosine_pitch);
+        Complex::new(rolling, -pitching * cosine_roll)
+    }
+
     /// a and b: what cosine and sine of the azimuth contribute.
     fn parts(&self) -> (Complex, f64) {
         let (sine, cosine) = libm::sincos(self.pitch);

@@ -11,13 +11,16 @@
 //! falls with the speed is told apart by a second speed; tilt is read by the accelerometer.
 
 pub mod average;
+pub mod change;
 pub mod conclusion;
 pub mod coupling;
 pub mod follower;
+pub mod heading;
 pub mod level;
 pub mod molecular;
 pub mod part;
 pub mod solution;
+pub mod tilting;
 pub mod turn;
 
 use self::coupling::Coupling;
@@ -59,16 +62,32 @@ pub struct Setting {
     pub couplings: [Option<Coupling>; SPEEDS],
     /// How far the sensitive axis may stand from the platform's plane, rad.
     pub coupling_limit: f64,
+    /// 1σ of the encoder's zero, as it turns the azimuth, rad: no turn shows it.
+    pub encoder_zero_sigma: f64,
+    /// Whether the encoder's error twice a turn is within [`Common::encoder_sigma`]; else what it shows of the
+    /// platform's rate may be such an error.
+    pub harmonics_known: bool,
+    /// Step of the gyro's rates, rad/s, as far as their noise does not hide it: what they are rounded by in step with
+    /// the turn is no noise.
+    pub rate_step: f64,
 }
 
 /// Default of [`Setting::coupling_limit`]: 2°.
 const COUPLING_LIMIT: f64 = 2.0 * DEGREE;
 
 impl Setting {
-    /// Nothing is known of the coupling.
+    /// Nothing is known of the coupling; the encoder is exact.
     #[must_use]
     pub const fn new(common: Common, sensor: Sensor) -> Self {
-        Self { common, sensor, couplings: [None; SPEEDS], coupling_limit: COUPLING_LIMIT }
+        Self {
+            common,
+            sensor,
+            couplings: [None; SPEEDS],
+            coupling_limit: COUPLING_LIMIT,
+            encoder_zero_sigma: 0.0,
+            harmonics_known: true,
+            rate_step: 0.0,
+        }
     }
 
     /// Whether the sensor is mounted well enough.

@@ -2,6 +2,7 @@
 
 use super::coupling::Coupling;
 use crate::align::regression::Regression;
+use crate::math::Complex;
 use crate::noise::model::GyroNoise;
 use crate::signal::phasor::{Block, COLUMNS, COSINE, ONE, Products, Reference, SINE, Sums};
 use crate::units::Angle;
@@ -103,6 +104,41 @@ impl Part {
     /// Whether the platform turned as fast as `speed`, rad/s.
     pub(super) fn is_alike(&self, speed: f32) -> bool {
         (self.speed() - speed).abs() <= ALIKE * speed.abs()
+    }
+}
+
+/// What the eighths of a turn show of an encoder's error twice a turn: how long they took, and how far they went,
+/// each with the angle at which they lie.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Ellipse {
+    seconds: [f32; 2],
+    turned: [f32; 2],
+    sum: f32,
+}
+
+impl Ellipse {
+    /// Part of an error twice a turn that its eighths show in a sum over them: eight times √2 over two.
+    const SHOWN: f64 = 4.0 * core::f64::consts::SQRT_2;
+
+    pub(super) fn push(&mut self, part: &Part) {
+        let [c, s] = part.products.phasor();
+        let power = (c * c + s * s).max(f32::MIN_POSITIVE);
+        let twice = [(c * c - s * s) / power, -2.0 * c * s / power];
+        let turned = part.turned as f32 * (Angle::STEP as f32);
+        for ((seconds, turns), part_of) in self.seconds.iter_mut().zip(&mut self.turned).zip(twice)
+        {
+            *seconds += part.seconds * part_of;
+            *turns += turned * part_of;
+        }
+        self.sum += turned;
+    }
+
+    /// The error as ε e^{jψ}, rad, of a platform that turned evenly for so many seconds.
+    pub(super) fn error(&self, seconds: f64) -> Complex {
+        let speed = f64::from(self.sum) / seconds;
+        let [re, im] =
+            [0, 1].map(|part| speed * f64::from(self.seconds[part]) - f64::from(self.turned[part]));
+        Complex::new(re, im).scaled(-libm::copysign(1.0, speed) / Self::SHOWN)
     }
 }
 

@@ -5,6 +5,7 @@ use super::average::Average;
 use super::coupling::{self, Coupling};
 use super::level::Lean;
 use super::molecular::{self, Freed, Halves};
+use super::tilting::Tilting;
 use crate::align::budget::Budget;
 use crate::math::Complex;
 use crate::units::{ARCSECOND, TURN, wrapped};
@@ -12,12 +13,28 @@ use crate::units::{ARCSECOND, TURN, wrapped};
 /// How far a flat sensor may lag behind the encoder, where no uneven turn has told, 1σ, s.
 const UNKNOWN_LAG: f64 = 0.01;
 
+/// Least 1σ of a lag, s: an encoder and a gyro are read no nearer to each other.
+pub const EXACT_LAG: f64 = 1e-6;
+
+/// What the law by which a lag follows from the uneven turn, that of one pole, may be wrong by, relative.
+pub const LAG_LAW: f64 = 0.15;
+
 /// What an uneven turn leaves untold of a sensor's phase at the turn, 1σ, rad: it is modulated over a band,
 /// and an integrated g-sensitivity answers to the modulation.
 const UNTOLD: f64 = 2.5e-3;
 
 /// What an encoder's harmonic may turn the angle by where nothing is stated, 1σ, rad: 2″.
 const ENCODER_HARMONIC: f64 = 2.0 * ARCSECOND;
+
+/// Part of an azimuth's error for which a platform's unevenness twice a turn counts, 1σ, where it may be the encoder's
+/// error as well: it is all of it or nothing.
+const ELLIPTIC: f64 = 0.6;
+
+/// 1σ of what rounding to a step leaves in the phasor of a signal that turns with the platform, over the step: 2/π of
+/// Bessel's function J₁, of any phase, in the mean of both senses.
+const ROUNDED: f64 = 0.32;
+/// Greatest value of that function.
+const BESSEL: f64 = 0.58;
 
 /// Most speeds.
 pub const SPEEDS: usize = 2;
@@ -136,6 +153,8 @@ pub struct Fit {
     pub ratio: f64,
     /// 1σ of that.
     pub ratio_sigma: f64,
+    /// Least part of it that a flat sensor passes which lags as the uneven turn shows.
+    pub passed: f64,
     /// The integrated g-sensitivity at the slower speed over the Earth rate that turns with it, γ.
     pub molecular: Complex,
     /// What the slower speed alone would be off by for it, rad.
@@ -171,6 +190,10 @@ pub struct Problem<'a> {
     pub density: &'a dyn Fn(f64) -> f64,
     /// Spectral density of its white noise; zero where it is not known.
     pub white: f64,
+    /// How the base tilts.
+    pub tilting: &'a Tilting,
+    /// The encoder's error twice a turn that would make the platform turn evenly, ε e^{jψ}, rad.
+    pub ellipse: Complex,
 }
 
 impl Problem<'_> {
@@ -180,7 +203,7 @@ impl Problem<'_> {
         let first = self.pairs.first()?;
         let (tilt, tilt_sigma) = self.tilt();
         let lean = Lean::of(tilt);
-        let mut fit = Fit { tilt, tilt_sigma, lean, ratio: 1.0, ..Fit::default() };
+        let mut fit = Fit { tilt, tilt_sigma, lean, ratio: 1.0, passed: 1.0, ..Fit::default() };
         fit.ratio_sigma = f64::INFINITY;
         let is_flat = self.setting.sensor.is_flat;
         let turned = if is_flat { self.flat(&mut fit) } else { self.lagging(&mut fit)? };
@@ -196,7 +219,8 @@ impl Problem<'_> {
     }
 
     /// Horizontal and vertical Earth rate as the axis can feel them, rad/s.
-    fn earth(&self) -> [f64; 2] {
+    #[must_use]
+    pub fn earth(&self) -> [f64; 2] {
         let latitude = self.setting.common.latitude;
         let along = self.couplings.first().map_or(1.0, |coupling| libm::cos(coupling.angle()));
         [latitude.horizontal_rate() * along, latitude.vertical_rate()]
@@ -233,8 +257,12 @@ impl Problem<'_> {
                 // What the platform's unevenness makes of it cancels between the senses.
                 None => self.setting.coupling_limit * pair.uneven().size() / horizontal,
             };
-            fit.senses_sigma = fit.senses_sigma.max(libm::hypot(sigma * pair.speed(), shown));
-            let pair = pair.without_lag(coupling.map_or(0.0, believed_lag));
+            let known = libm::hypot(shown, self.rounded());
+            fit.senses_sigma = fit.senses_sigma.max(libm::hypot(sigma * pair.speed(), known));
+            let lag = coupling.map_or(0.0, believed_lag);
+            let tangent = libm::fabs(lag * pair.speed()) * (1.0 + LAG_LAW);
+            fit.passed = fit.passed.min(1.0 / libm::hypot(1.0, tangent));
+            let pair = pair.without_lag(lag);
             let weight = pair.information((self.density)(pair.speed()), 1.0);
             sum = sum + pair.even().scaled(weight);
             information += weight;
@@ -246,13 +274,31 @@ impl Problem<'_> {
         // The tilt's part is small: a few rounds settle the ratio.
         for _ in 0..4 {
             fit.ratio = size / horizontal;
-            (angle, size) = fit.lean.azimuth(mean - self.per_tilt(fit.ratio) * fit.tilt);
+            let others = self.per_tilt(fit.ratio) * fit.tilt + self.tilting.turning(&fit.lean);
+            (angle, size) = fit.lean.azimuth(mean - others);
         }
-        fit.ratio_sigma = libm::sqrt(1.0 / information) / horizontal;
+        fit.ratio_sigma = libm::hypot(libm::sqrt(1.0 / information) / horizontal, self.rounded());
         // Q₊ − Q₋ is −2jγE′.
         let odd = self.slowest().map_or(Complex::default(), Pair::odd);
         fit.molecular = odd / mean * Complex::new(0.0, 1.0);
         Turned { angle, noise: 1.0 / information / (size * size), left: 0.0 }
+    }
+
+    /// 1σ of what rounding to steps adds along what turns with the platform, of the Earth rate.
+    fn rounded(&self) -> f64 {
+        let step = self.setting.rate_step / self.earth()[0];
+        // J₁ of 2π times the signal over the step falls as √(2/(πx)).
+        let falling = libm::sqrt(step / libm::hypot(1.0, self.beside())) / core::f64::consts::PI;
+        ROUNDED * step * falling.min(BESSEL)
+    }
+
+    /// What turns with the platform beside the Earth rate for its unevenness, of it.
+    fn beside(&self) -> f64 {
+        let of = |pair: &Pair| {
+            let coupling = coupling::nearest(self.couplings, pair.speed());
+            coupling.map_or(0.0, |found| found.sine.abs() * pair.uneven().size())
+        };
+        self.pairs.iter().map(of).fold(0.0, f64::max) / self.earth()[0]
     }
 
     /// The speed that shows an integrated g-sensitivity most.
@@ -283,7 +329,8 @@ impl Problem<'_> {
             *phase += freed.ratio.re * slowest / pair.speed();
         }
         let [horizontal, _] = self.earth();
-        let others = (self.per_tilt(1.0) * fit.tilt).scaled(1.0 / horizontal);
+        let others = self.per_tilt(1.0) * fit.tilt + self.tilting.turning(&fit.lean);
+        let others = others.scaled(1.0 / horizontal);
         let (angle, slope) = fit.lean.azimuth_towards(freed.angle, others)?;
         Some(Turned { angle, noise: freed.noise * slope * slope, left: freed.left * slope * slope })
     }
@@ -310,21 +357,40 @@ impl Problem<'_> {
         let white = self.pairs.first().map_or(1.0, |pair| self.white_part(pair));
         let across = (fit.tilt * Complex::unit(-turned.angle)).im;
         let cosine = libm::cos(common.latitude.rad());
+        // Rounding shows in the size of what either sense shows, too.
+        let shown = libm::hypot(fit.ratio - 1.0, fit.molecular.size()) + libm::sqrt(turned.noise);
         Budget {
             noise: libm::sqrt(turned.noise * white),
-            drift: libm::sqrt(turned.noise * (1.0 - white)),
+            drift: libm::sqrt(
+                turned.noise * (1.0 - white)
+                    + self.tilting.doubt(&fit.lean, turned.angle, horizontal),
+            ),
             g_sensitivity: libm::hypot(
                 common.kappa_sigma(common.noise.angle_random_walk) * size / horizontal,
                 libm::sqrt(turned.left),
             ),
             accelerometer: self.per_tilt(1.0).size() * fit.tilt_sigma / horizontal,
-            encoder: libm::hypot(common.encoder_sigma, self.coupling_sigma(fit)),
+            encoder: libm::hypot(self.encoder_sigma(turned.angle), self.coupling_sigma(fit)),
             latitude: across.abs() * common.latitude_sigma / (cosine * cosine),
-            // A flat sensor's scale is found with the azimuth; an unknown gain needs none.
-            scale: 0.0,
+            // A flat sensor's scale is found with the azimuth, but not for what a base that tilts turns it by.
+            scale: libm::hypot(
+                self.tilting.scale(common.scale_sigma, &fit.lean, turned.angle, horizontal),
+                self.rounded().min(shown) * self.beside() / libm::hypot(1.0, self.beside()),
+            ),
             temperature: 0.0,
             displacement: 0.0,
         }
+    }
+
+    /// What the encoder's errors turn the azimuth by, rad: of its zero, and where nothing is known of it twice a turn,
+    /// (ε/2) e^{j(ψ − 2A)} of the Earth rate.
+    fn encoder_sigma(&self, azimuth: f64) -> f64 {
+        let known = libm::hypot(self.setting.common.encoder_sigma, self.setting.encoder_zero_sigma);
+        if self.setting.harmonics_known {
+            return known;
+        }
+        let turned = 0.5 * (self.ellipse * Complex::unit(-2.0 * azimuth)).im;
+        libm::hypot(known, ELLIPTIC * turned)
     }
 
     /// What the coupling's uncertainty turns the azimuth by, rad. Of an unevenness that belongs to the
@@ -351,7 +417,8 @@ impl Problem<'_> {
 
 /// The lag of a flat sensor, s: as the uneven turn shows it, as far as that knows better than that it is
 /// small.
-fn believed_lag(coupling: &Coupling) -> f64 {
+#[must_use]
+pub fn believed_lag(coupling: &Coupling) -> f64 {
     let (known, sigma) = (UNKNOWN_LAG * UNKNOWN_LAG, coupling.lag_sigma());
     coupling.lag() * known / (known + sigma * sigma)
 }

@@ -11,7 +11,7 @@ mod procedure;
 
 pub use procedure::{Procedure, check};
 
-use super::procedure::ProcedureError;
+use super::procedure::{PERIOD_TOLERANCE, ProcedureError, contradiction};
 use crate::align::rotating::Setting;
 use crate::align::rotating::conclusion::Conclusion;
 use crate::align::rotating::coupling::Coupling;
@@ -80,6 +80,8 @@ pub struct Session {
     since: Option<Instant>,
     commanded: Instant,
     last: Option<Instant>,
+    /// Samples of this phase.
+    samples: u32,
     /// After how long in this phase the sensor has settled, and the phase ends, µs.
     settled: u64,
     end: u64,
@@ -125,6 +127,7 @@ impl Session {
             since: None,
             commanded: Instant::default(),
             last: None,
+            samples: 0,
             settled: 0,
             measured: None,
             rate: 0.0,
@@ -214,6 +217,10 @@ impl Session {
         let has_turned = self.follower.push(sample, turning);
         let since = *self.since.get_or_insert(now);
         let elapsed = now.0.saturating_sub(since.0);
+        self.samples = self.samples.saturating_add(1);
+        if has_turned && let Some(reason) = self.contradiction() {
+            return self.conclude(Some(reason));
+        }
         match self.phase {
             Phase::Level => self.level(sample, elapsed),
             Phase::Uneven(index) => self.uneven(index, sample, elapsed),
@@ -221,6 +228,18 @@ impl Session {
             Phase::Even(index, sense) => self.even(index, sense, has_turned, elapsed),
             Phase::Recorded | Phase::Done => Command::Wait,
         }
+    }
+
+    /// Whether a recording's samples up to its first turn come at another pace than was told.
+    fn contradiction(&mut self) -> Option<Refusal> {
+        if self.phase != Phase::Recorded || core::mem::replace(&mut self.turns, 1) > 0 {
+            return None;
+        }
+        let (since, last) = (self.since?, self.last?);
+        let elapsed = last.0.saturating_sub(since.0) as f64 * 1e-6;
+        let found = elapsed / f64::from(self.samples.max(2) - 1);
+        let told = self.procedure.sample_seconds;
+        contradiction(told, found, PERIOD_TOLERANCE)
     }
 
     /// Looks at the tilt at rest.
@@ -348,6 +367,7 @@ impl Session {
         self.settled = microseconds(self.settle_seconds());
         self.end = microseconds(self.longest(phase));
         self.since = None;
+        self.samples = 0;
         (self.measured, self.rate) = (None, 0.0);
         self.turns = 0;
         self.follower.follow(mode);

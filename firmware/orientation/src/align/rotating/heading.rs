@@ -1,0 +1,179 @@
+//! Whether the Earth rate comes from the same direction in all turns: a base that turns, or was turned, and an encoder
+//! that creeps, or slipped, change it.
+//!
+//! Where chi-square says that it changes there is no north, for nothing tells which of the two it was. Where it does
+//! not, σ grows by what a change would do to the azimuth, times its probability.
+
+use heapless::Vec;
+
+use super::change::{Found, MARKS, Mark, Record, Shape};
+use super::solution::{Fit, Pair, Problem, believed_lag};
+use super::turn::Sense;
+use super::{coupling, solution};
+use crate::align::regression::Column;
+use crate::error::Refusal;
+use crate::math::Complex;
+use crate::units::DEGREES_PER_RADIAN as DEGREES;
+
+/// Gain of chi-square from which a drift of the direction is believed (p = 0.0001).
+const BELIEVED: f64 = 15.1;
+/// The same of a step, for each place at which it may be (p = 0.001 over all of them).
+const STEP_BELIEVED: f64 = 10.8;
+/// Gain from which it is doubtful whether the direction stays (p = 0.05), and what more it takes of a step at any of
+/// many places.
+const DOUBTFUL: f64 = 3.84;
+const STEP_DOUBTFUL: f64 = 2.2;
+/// Part of the alignments in which the direction changes, before their turns are looked at, where these speak for it;
+/// and where not.
+const CHANGING: [f64; 2] = [0.03, 0.0003];
+/// What a doubt that is not about the senses may add to the azimuth's variance, in units of it: σ is then five times
+/// as great.
+const DOUBT: f64 = 24.0;
+/// σ of a drift within which it goes with the tilt's.
+const ALIKE: f64 = 3.0;
+
+/// The turns' phasors as directions.
+pub struct Directions<'a> {
+    /// What they were solved with.
+    pub problem: &'a Problem<'a>,
+    /// What came of it.
+    pub fit: &'a Fit,
+    /// Variance of either part of a turn's phasor at a speed in rad/s, (rad/s)², for a sensor of gain one.
+    pub of_turn: &'a dyn Fn(f64) -> f64,
+    /// Whether that is known.
+    pub is_known: bool,
+}
+
+impl Directions<'_> {
+    /// Variance that the azimuth lacks for a change that is not believed, rad², from the turns' phasors, rad/s, each
+    /// marked with the sign of its sense.
+    ///
+    /// # Errors
+    /// [`Refusal::DirectionDrifts`], [`Refusal::HeadingStepped`], [`Refusal::SensesDisagree`], and
+    /// [`Refusal::TiltChanged`] where the tilt's direction drifts as an encoder that creeps lets it.
+    #[inline(never)]
+    pub fn doubt(&self, mut marks: Vec<Mark, MARKS>) -> Result<f64, Refusal> {
+        let Some(first) = self.problem.pairs.first() else { return Ok(0.0) };
+        let variance = self.angle_variance(first);
+        for mark in &mut marks {
+            let pair = self.problem.pairs.get(usize::from(mark.is_second)).unwrap_or(first);
+            mark.turns *= (variance / self.angle_variance(pair)) as f32;
+            mark.value = [self.angle(mark, pair) as f32, 0.0];
+            if self.is_flat() {
+                mark.odd *= pair.speed() as f32;
+            }
+        }
+        let odd = if self.is_flat() { Column::Prior(self.lag_sigma()) } else { Column::Free };
+        let places = 2.0 * libm::log(marks.len().max(1) as f64);
+        let record = Record::of_angles(marks, odd, (variance, self.is_known), self.lever());
+        let Some(steady) = record.steady() else { return Ok(0.0) };
+        let drift = record.changing(Shape::Rate, &steady);
+        let step = record.likeliest_step().and_then(|shape| record.changing(shape, &steady));
+        // The senses change at one place alone.
+        let turn = record.change_of_sense().and_then(|shape| record.changing(shape, &steady));
+        let gain = |found: &Option<Found>| found.map_or(0.0, |found| found.gain);
+        let believed = [gain(&drift) - BELIEVED, gain(&step) - STEP_BELIEVED - places];
+        if believed[1] > 0.0 && believed[1] >= believed[0] {
+            return Err(stepped(&record, step));
+        }
+        if gain(&turn) > BELIEVED {
+            return Err(Refusal::SensesDisagree { sigmas: libm::sqrt(gain(&turn)) });
+        }
+        if believed[0] > 0.0 {
+            return Err(Refusal::DirectionDrifts { sigmas: libm::sqrt(gain(&drift)) });
+        }
+        if let (Some(drift), Some(creep)) = (drift, self.problem.tilting.creep(self.fit.tilt))
+            && (drift.change[0] - creep).abs() < ALIKE * libm::sqrt(drift.change_variance)
+        {
+            return Err(Refusal::TiltChanged { change: self.problem.tilting.change() * 1e3 });
+        }
+        // A sensor that is not flat settles for long: its directions drift a little with it.
+        let mut doubt = 0.0;
+        let doubted = usize::from(self.is_flat()) * 3;
+        for (change, doubtful) in
+            [(drift, DOUBTFUL), (turn, DOUBTFUL), (step, STEP_DOUBTFUL + places)]
+                .into_iter()
+                .take(doubted)
+        {
+            let prior = CHANGING[usize::from(gain(&change) < doubtful)];
+            let places = if doubtful > DOUBTFUL { libm::exp(-0.5 * places) } else { 1.0 };
+            let lacks = change.map_or(0.0, |change| lacking(&change, &steady, prior * places));
+            doubt += if change == turn { lacks } else { lacks.min(DOUBT * steady.variance) };
+        }
+        Ok(doubt)
+    }
+
+    fn is_flat(&self) -> bool {
+        self.problem.setting.sensor.is_flat
+    }
+
+    /// Seconds by which a base that turns about the vertical must have turned for as much as its rate changes the
+    /// vertical Earth rate, which a tilt lets the gyro feel.
+    fn lever(&self) -> f64 {
+        let across = (self.fit.tilt * Complex::unit(-self.fit.azimuth)).im;
+        across / self.problem.earth()[0]
+    }
+
+    /// Variance of a turn's direction, rad².
+    fn angle_variance(&self, pair: &Pair) -> f64 {
+        let size = self.reference(pair, Sense::Clockwise).size();
+        let gain = if self.is_flat() { 1.0 } else { pair.gain(self.problem.earth()[0]) };
+        (self.of_turn)(pair.speed()) * gain * gain / (size * size)
+    }
+
+    /// What a turn's phasor is compared with: the Earth rate, or what such turns show of it in the mean.
+    fn reference(&self, pair: &Pair, sense: Sense) -> Complex {
+        if self.is_flat() {
+            let size = self.fit.ratio * self.problem.earth()[0];
+            return Complex::unit(self.fit.azimuth).scaled(size);
+        }
+        if sense == Sense::Clockwise { pair.clockwise.phasor } else { pair.counter.phasor }
+    }
+
+    /// Direction of a turn's phasor from there, rad, as far as it is small.
+    fn angle(&self, mark: &Mark, pair: &Pair) -> f64 {
+        let sense = Sense::of(f64::from(mark.odd));
+        let lag = if self.is_flat() { self.lag(pair) } else { 0.0 };
+        let back = Complex::unit(libm::atan(sense.signed(pair.speed() * lag)));
+        let [re, im] = mark.value.map(f64::from);
+        let reference = self.reference(pair, sense);
+        (Complex::new(re, im) * back * reference.conjugate()).im / reference.power()
+    }
+
+    /// The lag that was taken off, s.
+    fn lag(&self, pair: &Pair) -> f64 {
+        coupling::nearest(self.problem.couplings, pair.speed()).map_or(0.0, believed_lag)
+    }
+
+    /// 1σ of the lag that was not, s.
+    fn lag_sigma(&self) -> f64 {
+        let of = |pair: &Pair| {
+            let law = solution::LAG_LAW * self.lag(pair).abs();
+            libm::hypot(law, self.fit.senses_sigma / pair.speed()).max(solution::EXACT_LAG)
+        };
+        self.problem.pairs.iter().map(of).fold(0.0, f64::max)
+    }
+}
+
+/// The refusal of a step.
+fn stepped(record: &Record, step: Option<Found>) -> Refusal {
+    let Some((Shape::Step(after), step)) = step.map(|step| (step.shape, step)) else {
+        return Refusal::DirectionDrifts { sigmas: 0.0 };
+    };
+    if record.is_between_senses(after) {
+        return Refusal::SensesDisagree { sigmas: libm::sqrt(step.gain) };
+    }
+    Refusal::HeadingStepped { angle: step.change[0] * DEGREES, after }
+}
+
+/// What the azimuth's variance lacks where a change of this probability is left out, rad²: at the end, or of a step
+/// on either side of it.
+fn lacking(change: &Found, steady: &Found, prior: f64) -> f64 {
+    let odds = prior * libm::exp(0.5 * change.gain.min(50.0));
+    let late = change.at_end[0] - steady.at_end[0];
+    let is_step = matches!(change.shape, Shape::Step(_));
+    let early = if is_step { late - change.change[0] } else { 0.0 };
+    let shift = late.abs().max(early.abs());
+    let lacks = shift * shift + (change.variance - steady.variance).max(0.0);
+    odds / (1.0 + odds) * lacks
+}

@@ -1,0 +1,86 @@
+//! What is wrong with a gyro that turns all the time: drift that no key states, and a column that lags or is cut.
+
+use std::collections::VecDeque;
+
+use hal_mock::noise::Generator;
+
+use super::{FAULT, RATE_HZ};
+
+/// A drift of the gyro's bias that no key states.
+#[derive(Clone, Debug)]
+pub(super) enum Drift {
+    /// A step, rad/s, at a time, s.
+    Step { at_s: f64, rate: f64 },
+    /// A random walk of this K, rad/s/√s.
+    Walk { density: f64 },
+    /// A warm-up: amplitude, rad/s, and time constant, s.
+    WarmUp { rate: f64, seconds: f64 },
+}
+
+/// Drifts at work.
+pub(super) struct Drifting {
+    chance: Generator,
+    walked: f64,
+}
+
+impl Drifting {
+    pub(super) fn new(seed: u64) -> Self {
+        Self { chance: Generator::stream(seed, FAULT + 1), walked: 0.0 }
+    }
+
+    /// The drift at a time, s; ask once a sample.
+    pub(super) fn rate(&mut self, drifts: &[Drift], time_s: f64) -> f64 {
+        let of = |drift: &Drift| match *drift {
+            Drift::Step { at_s, rate } if time_s >= at_s => rate,
+            Drift::Step { .. } => 0.0,
+            Drift::Walk { density } => {
+                self.walked += density * self.chance.gaussian() / RATE_HZ.sqrt();
+                self.walked
+            }
+            Drift::WarmUp { rate, seconds } => rate * (-time_s / seconds).exp(),
+        };
+        drifts.iter().map(of).sum()
+    }
+}
+
+/// What is wrong with the gyro's column.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct GyroFault {
+    /// Time constant of a lag, s.
+    pub(super) lag_s: f64,
+    /// By how much the column is late, s.
+    pub(super) late_s: f64,
+    /// Step of the column, rad/s.
+    pub(super) step: f64,
+    /// Greatest value that it shows, rad/s; none for no limit.
+    pub(super) limit: Option<f64>,
+}
+
+/// The gyro's column at work.
+pub(super) struct Column {
+    fault: GyroFault,
+    lagged: Option<f64>,
+    late: VecDeque<f64>,
+}
+
+impl Column {
+    pub(super) fn new(fault: &GyroFault) -> Self {
+        Self { fault: *fault, lagged: None, late: VecDeque::new() }
+    }
+
+    /// What the column shows of the next rate, rad/s.
+    pub(super) fn show(&mut self, rate: f64) -> f64 {
+        let GyroFault { lag_s, late_s, step, limit } = self.fault;
+        let before = self.lagged.unwrap_or(rate);
+        let follow = if lag_s > 0.0 { 1.0 - (-1.0 / (lag_s * RATE_HZ)).exp() } else { 1.0 };
+        let lagged = before + follow * (rate - before);
+        self.lagged = Some(lagged);
+        self.late.push_back(lagged);
+        if self.late.len() > (late_s * RATE_HZ) as usize + 1 {
+            self.late.pop_front();
+        }
+        let shown = self.late[0];
+        let shown = if step > 0.0 { (shown / step).round() * step } else { shown };
+        limit.map_or(shown, |limit| shown.min(limit))
+    }
+}
