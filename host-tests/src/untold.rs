@@ -16,7 +16,8 @@ pub fn of(session: &Session) -> Vec<String> {
     let Some((tilt, fit)) = found.and_then(|found| Some((&found.tilt, found.fit.as_ref()?))) else {
         return Vec::new();
     };
-    let is_level = tilt.magnitude() < LEVEL * tilt.covariance[0][0].max(tilt.covariance[1][1]).sqrt();
+    let is_level =
+        tilt.magnitude() < LEVEL * tilt.covariance[0][0].max(tilt.covariance[1][1]).sqrt();
     let few = session.dwells().len() < ENOUGH && !is_repeated(session);
     let untold = [
         (true, "no drift in step with the turn"),
