@@ -95,7 +95,9 @@ fn an_accelerometer_that_is_dead_is_named() {
     let named = [(0, Accelerometer::Y, "along y"), (1, Accelerometer::Z, "along z")];
     for (axis, stuck, words) in named {
         let mut rows = rows();
-        rows.iter_mut().for_each(|row| row.force_m_s2[axis] = 0.0);
+        for row in &mut rows {
+            row.force_m_s2[axis] = 0.0;
+        }
         let replay = replayed(rows);
         let reason = replay.refusal().expect("it is refused");
         assert!(reason.contains(words) && reason.contains("check supply"), "{reason}");
@@ -108,7 +110,9 @@ fn an_accelerometer_that_is_dead_is_named() {
 fn an_accelerometer_that_sticks_for_a_while_is_told_and_the_gyro_holds_the_roll() {
     let mut rows = rows();
     let stuck = rows[6000].force_m_s2[1];
-    rows[6000..8000].iter_mut().for_each(|row| row.force_m_s2[1] = stuck);
+    for row in &mut rows[6000..8000] {
+        row.force_m_s2[1] = stuck;
+    }
     let replay = replayed(rows.clone());
     let is_told = |(_, state): &(f64, State)| matches!(state, State::AccelerometerStuck { .. });
     assert!(replay.answer().states.iter().any(is_told));
@@ -121,7 +125,9 @@ fn forces_that_go_round_the_other_way_never_give_a_roll() {
         [|[y, z]| [z, y], |[y, z]| [-y, z], |[y, z]| [y, -z]];
     for mirrored in mirrors {
         let mut rows = rows();
-        rows.iter_mut().for_each(|row| row.force_m_s2 = mirrored(row.force_m_s2));
+        for row in &mut rows {
+            row.force_m_s2 = mirrored(row.force_m_s2);
+        }
         let replay = replayed(rows);
         // Not even in the first turns.
         assert!(replay.answer().sigmas_rad.iter().all(|sigma| sigma.is_nan()));
@@ -138,9 +144,11 @@ fn a_gyro_that_sticks_is_named_and_told_from_one_that_is_coarse() {
     let reason = replayed(stuck).refusal().expect("it is refused");
     assert!(reason.contains("gyro about x") && reason.contains("stuck"), "{reason}");
     let mut always = rows();
-    always.iter_mut().for_each(|row| row.rate_rad_s = rate);
+    for row in &mut always {
+        row.rate_rad_s = rate;
+    }
     let reason = replayed(always).refusal().expect("it is refused");
-    assert!(!reason.is_empty(), "{reason}");
+    assert!(reason.contains("gx_rad_s") && reason.contains("100 %"), "{reason}");
     // One that shows whole tenths of a rad/s stands for some fifty samples at each.
     let mut coarse = rows();
     for row in &mut coarse {
@@ -154,7 +162,9 @@ fn a_gyro_that_sticks_is_named_and_told_from_one_that_is_coarse() {
 fn a_gyro_that_is_dead_in_between_does_not_leave_half_a_turn_unsaid() {
     for (from, length) in [(3000, 40), (5000, 130), (7000, 700), (9000, 2000)] {
         let mut rows = rows();
-        rows[from..from + length].iter_mut().for_each(|row| row.rate_rad_s = 0.0);
+        for row in &mut rows[from..from + length] {
+            row.rate_rad_s = 0.0;
+        }
         let truth = rows.clone();
         let replay = replayed(rows);
         let answer = replay.answer();
@@ -162,8 +172,7 @@ fn a_gyro_that_is_dead_in_between_does_not_leave_half_a_turn_unsaid() {
             truth.iter().zip(answer.rolls_rad.iter().zip(&answer.sigmas_rad))
         {
             let error = wrapped(roll - roll_rad(row.time_s)).abs();
-            // While it is not yet known for dead, the time of three samples is lost.
-            assert!(sigma.is_nan() || error < 5.0 * sigma + 0.2, "{}: {error} {sigma}", row.line);
+            assert!(sigma.is_nan() || error < 5.0 * sigma, "{}: {error} {sigma}", row.line);
         }
         assert_true(&replay, &truth);
     }
@@ -173,7 +182,9 @@ fn a_gyro_that_is_dead_in_between_does_not_leave_half_a_turn_unsaid() {
 fn first_samples_that_are_zero_cost_a_turn_and_nothing_else() {
     for zeros in [1, 3, 10, 60] {
         let mut rows = rows();
-        rows[..zeros].iter_mut().for_each(|row| row.force_m_s2 = [0.0; 2]);
+        for row in &mut rows[..zeros] {
+            row.force_m_s2 = [0.0; 2];
+        }
         let replay = replayed(rows.clone());
         assert_true(&replay, &rows);
         let sigma = replay.answer().end.sigma_rad.expect("it is told");
@@ -194,7 +205,9 @@ fn an_axis_that_leans_widens_sigma_by_half_of_that_and_one_that_is_too_large_doe
     let sigma = replay.answer().end.sigma_rad.expect("it is told");
     assert!((sigma / (0.5 * lean) - 1.0).abs() < 0.1, "{sigma}");
     let mut large = rows();
-    large.iter_mut().for_each(|row| row.force_m_s2[1] *= 1.1);
+    for row in &mut large {
+        row.force_m_s2[1] *= 1.1;
+    }
     let replay = replayed(large.clone());
     assert_true(&replay, &large);
     let sigma = replay.answer().end.sigma_rad.expect("it is told");

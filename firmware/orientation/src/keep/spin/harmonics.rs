@@ -45,7 +45,7 @@ pub(super) struct Harmonics {
 
 impl Harmonics {
     /// Adds a sample: its place, its angle's cosine and sine, its force. Written out, as what calls it.
-    #[inline(always)]
+    #[inline]
     pub(super) fn push(
         &mut self,
         place: f32,

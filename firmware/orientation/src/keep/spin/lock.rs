@@ -300,7 +300,7 @@ impl Lock {
         if is_used && self.agreed >= AGREED {
             self.circle.take(&fit, noise);
         }
-        if self.stray != 0.0 { Trouble::Contradicted } else { Trouble::None }
+        if self.stray == 0.0 { Trouble::None } else { Trouble::Contradicted }
     }
 
     /// Whether a lift can be believed, beside what goes round against it and the noise of either part, m/s².

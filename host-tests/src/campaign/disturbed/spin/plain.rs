@@ -52,7 +52,7 @@ fn angles(rows: &[SpinRow]) -> Vec<f64> {
 
 /// All of them, of the same noise: that of the one in the middle of all.
 fn looks(rows: &[SpinRow], angles: &[f64]) -> Vec<Look> {
-    let (mut from, mut looks) = (0, Vec::new());
+    let (mut from, mut looks) = (0, Vec::<Look>::new());
     for (to, angle) in angles.iter().enumerate() {
         if (angle - angles[from]).abs() >= TOGETHER * TAU {
             looks.extend(look(&rows[from..to], &angles[from..to]));
@@ -61,8 +61,7 @@ fn looks(rows: &[SpinRow], angles: &[f64]) -> Vec<Look> {
     }
     let mut variances: Vec<f64> = looks.iter().map(|look| look.variance).collect();
     let variance = crate::replay::median(&mut variances);
-    looks.iter_mut().for_each(|look| look.variance = variance);
-    looks
+    looks.into_iter().map(|look| Look { variance, ..look }).collect()
 }
 
 fn look(rows: &[SpinRow], angles: &[f64]) -> Option<Look> {
