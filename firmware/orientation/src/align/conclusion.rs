@@ -40,8 +40,8 @@ const COUNTER: f64 = 0.3;
 /// Of the tangent of the angle from the axis of two positions, what σ may be at most, rad: the second
 /// order is then a tenth of the first.
 const STEEPNESS: f64 = 0.2;
-/// Bound of the Earth-rate ratio in its σ (p = 0.001).
-const RATIO_BOUND: f64 = 3.3;
+/// Bound of the Earth-rate ratio in its σ.
+const RATIO_BOUND: f64 = 4.0;
 /// What the Earth-rate ratio may be off beyond its σ where the scale is said to be exact: scale errors that no
 /// data sheet excludes and that turn no azimuth.
 const RATIO_TOLERANCE: f64 = 0.005;

@@ -143,10 +143,8 @@ const STEP_BELIEVED: f64 = 22.0;
 const FEW: f64 = 11.0;
 /// 1σ of how fast a base tilts that does, 1/s: 3 °/h.
 const FASTEST: f64 = 3.0 * DEGREE_PER_HOUR;
-/// Squared significance from which a tilt rate is more than chance: two of five healthy sessions have so much.
-const SHOWN: f64 = 1.0;
-/// Part of a tilt rate's variance that counts where it shows no more than chance.
-const UNSEEN: f64 = 0.4;
+/// Squared significance from which a tilt rate is more than chance: one of forty healthy sessions has so much.
+const SHOWN: f64 = 7.4;
 
 impl TiltRate {
     /// The same, for a base that tilts no faster than [`FASTEST`].
@@ -157,12 +155,6 @@ impl TiltRate {
             value: self.value.map(|value| value * libm::sqrt(part)),
             covariance: self.covariance.map(|row| row.map(|value| value * part)),
         }
-    }
-
-    /// The same where nothing shows.
-    fn unseen(&self) -> Self {
-        let covariance = self.covariance.map(|row| row.map(|value| value * UNSEEN));
-        Self { value: [0.0; 2], covariance }
     }
 }
 
@@ -385,8 +377,7 @@ impl Found {
         if significance > BELIEVED {
             return Tilt { rate: found, ..self.tilt(standing.time, standing.scatter) };
         }
-        let unproven = found.possible();
-        let unproven = if significance > SHOWN { unproven } else { unproven.unseen() };
+        let unproven = if significance > SHOWN { found.possible() } else { TiltRate::default() };
         Tilt { unproven, ..standing }
     }
 }

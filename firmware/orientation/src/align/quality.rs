@@ -254,8 +254,8 @@ pub fn moved(
 
 /// How many dwells tell whether the gyro lags.
 const LAGGING_DWELLS: i32 = 4;
-/// Significance, σ, of a lag that is believed (3e-5).
-const LAG_BOUND: f64 = 4.0;
+/// Significance, σ, of a lag that is believed: more than one dwell may show.
+const LAG_BOUND: f64 = 5.0;
 
 /// By how much the gyro follows the stage late, s, by the dwells whose platform stood; `None` where it
 /// may be chance.

@@ -60,6 +60,8 @@ const BELIEVED: [f64; 2] = [15.1, 18.4];
 const STEP_BELIEVED: f64 = 10.8;
 /// By how much a hypothesis may raise the variance of the azimuth; beyond, the dwells do not show it.
 pub(super) const OBSERVABLE: f64 = 100.0;
+/// Chi-square of one degree of freedom that noise exceeds with a probability of 0.025.
+const DOUBTFUL: f64 = 5.02;
 /// σ of an alternative's azimuth by which it may be farther away than it shows: one of fifty is.
 pub(super) const MISSED: f64 = 1.8;
 /// Change of heading, rad, from which a step is followed again with its exact turn: its square is then a tenth
@@ -118,12 +120,13 @@ impl Hypothesis {
         }
     }
 
-    /// Gain below which it is passed over, of so many dwells. One of many places shows a step by chance alone, of
-    /// about this gain; a base that turns may change the azimuth by far more than it shows.
+    /// Gain below which it is passed over in a session in which all else is well (p = 0.025; of a step by about what
+    /// one of so many dwells shows by chance alone).
     fn doubtful(self, dwells: usize) -> f64 {
         match self {
-            Self::Stepped { .. } => 2.0 * libm::log(dwells as f64),
-            _ => 0.0,
+            Self::Stepped { .. } => DOUBTFUL + 2.0 * libm::log(dwells as f64),
+            Self::Elliptic => DOUBTFUL + 2.0,
+            _ => DOUBTFUL,
         }
     }
 
@@ -203,12 +206,11 @@ impl Problem<'_> {
     /// Weighs every hypothesis against a steady fit, whose step and protection it tells; gives the model to fit
     /// with where one is believed.
     #[inline(never)]
-    pub(super) fn weigh(&self, fit: &mut Fit, steady: &Trial, is_circle: bool) -> Option<Model> {
+    pub(super) fn weigh(&self, fit: &mut Fit, steady: &Trial) -> Option<Model> {
         let weighed = self.candidates(fit).map(|candidate| self.weighed(candidate, fit, steady));
         let all = || weighed.iter().flatten();
-        let is_believed = |one: &&Weighed| is_circle && one.is_model() && one.belief >= 1.0;
-        let best = greatest(all().filter(is_believed));
-        let step = greatest(all().filter(|one| is_circle && one.step().is_some()));
+        let best = greatest(all().filter(|one| one.is_model() && one.belief >= 1.0));
+        let step = greatest(all().filter(|one| one.step().is_some()));
         let is_beaten = |one: &Weighed| best.is_some_and(|best| best.gain > one.gain + CLEARLY);
         fit.step = step.filter(|step| !is_beaten(step)).and_then(Weighed::step);
         let azimuth = best.map_or(steady.direction.azimuth, |best| best.azimuth);
@@ -221,7 +223,7 @@ impl Problem<'_> {
             if one.gain >= 0.5 * doubtful {
                 fit.protection.astray = fit.protection.astray.max(level);
             }
-            if is_circle && one.gain >= doubtful {
+            if one.gain >= doubtful {
                 fit.protection.always = fit.protection.always.max(level);
             }
         }

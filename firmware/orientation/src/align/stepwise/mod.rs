@@ -136,8 +136,8 @@ impl Problem<'_> {
         let regression = self.steady();
         let model = self.choose(&regression)?;
         let mut found = self.fit_model(&regression, &model, &Bent::default())?;
-        // With few dwells any of them looks like any other.
-        if self.dwells.len() < FEWEST || model.is_single_axis {
+        // On an arc, and with few dwells, any of them looks like any other.
+        if self.dwells.len() < FEWEST || !self.is_circle(&regression) {
             return Some(found);
         }
         let known = Model { amplitude: self.setting.known_amplitude(), ..model };
@@ -145,14 +145,18 @@ impl Problem<'_> {
         let trials = self.trial(&regression, &known).zip(self.trial(&regression, &open));
         let Some((steady, free)) = trials else { return Some(found) };
         found.0.free_chi_square = free.chi_square;
-        // On an arc, too: none is believed, nor doubted in a sound session. What a trend costs makes no arc.
-        let is_circle = self.freed(&regression, &self.base())?.amplitude == Amplitude::Free;
-        let model = self.weigh(&mut found.0, &steady, is_circle);
+        let model = self.weigh(&mut found.0, &steady);
         Some(model.and_then(|model| self.fit_under(&model, &found.0)).unwrap_or(found))
     }
 
+    /// Whether the positions show the Earth rate; what a trend costs does not matter.
+    pub(super) fn is_circle(&self, steady: &Regression<COLUMNS>) -> bool {
+        let model = self.freed(steady, &self.base());
+        model.is_some_and(|model| model.amplitude == Amplitude::Free)
+    }
+
     /// The regression of a base that stands.
-    fn steady(&self) -> Regression<COLUMNS> {
+    pub(super) fn steady(&self) -> Regression<COLUMNS> {
         self.regression(&self.setting.noise, Dwell::taper_factor, &Bent::default())
     }
 

@@ -113,7 +113,7 @@ impl Problem<'_> {
 /// Multiple of σ beyond which an azimuth is wrong: σ is no less than this part of its protection level.
 const WRONG: f64 = 5.0;
 /// Probability of the residuals below which something is astray.
-const ASTRAY_PROBABILITY: f64 = 0.05;
+const ASTRAY_PROBABILITY: f64 = 0.01;
 /// What the Earth-rate ratio may be off in its σ before something is (p = 0.01).
 const ASTRAY_RATIO: f64 = 2.58;
 /// Rounds in which a drift is sought that explains the residuals: each doubles or halves the step of its K.
@@ -129,7 +129,9 @@ impl Problem<'_> {
         let is_astray = has_outliers || fit.is_astray();
         let mut level = self.tilting_protection(fit).max(if is_astray { astray } else { always });
         if is_astray && self.dwells.len() >= FEWEST {
-            for trial in [self.drifting(fit), self.with_any_earth_rate(fit)].into_iter().flatten() {
+            let most = OBSERVABLE * fit.direction.variance;
+            let trials = [self.drifting(fit), self.with_any_earth_rate(fit)].into_iter().flatten();
+            for trial in trials.filter(|trial| trial.direction.variance < most) {
                 let apart = separation(trial.direction.azimuth, fit.direction.azimuth);
                 level = level.max(apart + MISSED * libm::sqrt(trial.direction.variance));
             }
@@ -151,7 +153,7 @@ impl Problem<'_> {
         apart + MISSED * libm::sqrt(variance + fit.direction.variance)
     }
 
-    /// The same fit without what is known of the Earth rate, where the dwells show it.
+    /// The same fit without what is known of the Earth rate; none of two positions, which do not show it.
     fn with_any_earth_rate(&self, fit: &Fit) -> Option<Trial> {
         if fit.model.is_single_axis {
             return None;
@@ -159,14 +161,16 @@ impl Problem<'_> {
         let bent = fit.bent(fit.model.hypothesis);
         let regression = self.regression(&self.setting.noise, Dwell::taper_factor, &bent);
         let free = Model { amplitude: Amplitude::Free, ..fit.model };
-        let trial = self.trial(&regression, &free)?;
-        let most = OBSERVABLE * fit.direction.variance;
-        (trial.direction.variance < most).then_some(trial)
+        self.trial(&regression, &free)
     }
 
     /// The fit of a base that stands under the random walk that makes chi-square what it should be: a drift that no
     /// key states.
     fn drifting(&self, fit: &Fit) -> Option<Trial> {
+        // On an arc any drift looks like the Earth.
+        if !self.is_circle(&self.steady()) {
+            return None;
+        }
         let (model, bent) = if fit.model.hypothesis == Hypothesis::Steady {
             (fit.model, fit.bent)
         } else {
