@@ -56,8 +56,8 @@ const CLEARLY: f64 = 10.0;
 const SPARED: f64 = 6.0;
 /// Gain of chi-square from which one more column is believed (p = 0.0001), and two.
 const BELIEVED: [f64; 2] = [15.1, 18.4];
-/// Gain from which a step is believed for each place at which it may be: p = 0.001 over all of them.
-const STEP_BELIEVED: f64 = 10.8;
+/// Gain from which a step is believed for each place at which it may be: p = 0.0002 over all of them.
+const STEP_BELIEVED: f64 = 13.8;
 /// By how much a hypothesis may raise the variance of the azimuth; beyond, the dwells do not show it.
 pub(super) const OBSERVABLE: f64 = 25.0;
 /// Chi-square of one degree of freedom that noise exceeds with a probability of 0.025.
@@ -165,14 +165,16 @@ struct Weighed {
 }
 
 impl Weighed {
-    /// How far an azimuth with its 1σ may be off under it, rad: of a step either side may be the right one.
+    /// How far an azimuth with its 1σ may be off under it, rad: no farther than its gain allows, and of a step either
+    /// side may be the right one.
     fn protection(&self, azimuth: f64, sigma: f64) -> f64 {
-        let after = separation(self.azimuth, azimuth) + MISSED * self.sigma;
+        let farthest = libm::sqrt(self.gain.max(0.0)) * self.sigma;
+        let apart = |other: f64| separation(other, azimuth).min(farthest);
+        let after = apart(self.azimuth) + MISSED * self.sigma;
         if self.is_model() {
             return after;
         }
-        let before = separation(self.azimuth - self.coefficient, azimuth) + MISSED * sigma;
-        after.max(before)
+        after.max(apart(self.azimuth - self.coefficient) + MISSED * sigma)
     }
 
     /// Whether the azimuth can be found with it: of a step either side may be the right one.
