@@ -7,9 +7,12 @@
 
 mod axes;
 mod chance;
+mod faults;
+mod gyro;
 pub mod spin;
 pub mod stage;
 pub mod turning;
+mod unit;
 pub mod vehicle;
 
 use serde::Serialize;

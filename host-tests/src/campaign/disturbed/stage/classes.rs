@@ -2,14 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use hal_mock::stage::Harmonic;
-use hal_mock::temperature::TemperatureConfiguration;
-
-use super::gyro::Drift;
-use super::{Bench, DEGREE_PER_HOUR, FAULT, RATE_HZ};
-use crate::campaign::disturbed::Class;
-use crate::campaign::disturbed::axes::TURNED;
+use super::Bench;
 use crate::campaign::disturbed::chance::Chance;
+use crate::campaign::disturbed::gyro::Drift;
+use crate::campaign::disturbed::unit::Rig;
+use crate::campaign::disturbed::{Class, faults};
 
 /// The classes of a stage that stops.
 pub const CLASSES: &[Class] = &[
@@ -19,13 +16,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.003, 90.0],
         unit: "°",
         wrong_allowed: 0.0,
-        draw: |seed, size| {
-            let bench = Bench::on_circle(seed);
-            bench.pair(|bench, chance| {
-                let at = bench.some_departure(chance);
-                bench.slips.push((at, chance.sign() * size.to_radians()));
-            })
-        },
+        draw: |seed, size| Bench::on_circle(seed).with(faults::encoder_slips, size),
     },
     Class {
         name: "base-turn",
@@ -33,12 +24,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.003, 20.0],
         unit: "°",
         wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::on_circle(seed).pair(|bench, chance| {
-                let at = bench.some_departure(chance);
-                bench.base.turns.push((at, chance.sign() * size.to_radians()));
-            })
-        },
+        draw: |seed, size| Bench::on_circle(seed).with(faults::base_turns, size),
     },
     Class {
         name: "stage-reversed",
@@ -48,9 +34,8 @@ pub const CLASSES: &[Class] = &[
         wrong_allowed: 0.0,
         draw: |seed, size| {
             let mut bench = Bench::drawn(seed);
-            let uphill = 360.0 * Chance::new(seed, FAULT).between(0.0, 1.0);
-            bench.instruments = bench.instruments.leaning(size, uphill);
-            bench.pair(|bench, _| bench.is_reversed = true)
+            faults::tilt(&mut bench, size);
+            bench.with(faults::encoder_is_reversed, size)
         },
     },
     Class {
@@ -59,13 +44,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.001, 30.0],
         unit: "°/h",
         wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::drawn(seed).pair(|bench, chance| {
-                let (sine, cosine) = chance.between(0.0, TAU).sin_cos();
-                bench.base.rates_rad_s =
-                    [0.0, cosine, sine].map(|part| part * size * DEGREE_PER_HOUR);
-            })
-        },
+        draw: |seed, size| Bench::drawn(seed).with(faults::base_tilts, size),
     },
     Class {
         name: "base-yawing",
@@ -73,11 +52,7 @@ pub const CLASSES: &[Class] = &[
         severity: [3e-4, 3.0],
         unit: "°/min",
         wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::drawn(seed).pair(|bench, chance| {
-                bench.base.rates_rad_s[0] = chance.sign() * size.to_radians() / 60.0;
-            })
-        },
+        draw: |seed, size| Bench::drawn(seed).with(faults::base_yaws, size),
     },
     Class {
         name: "bias-steps",
@@ -85,15 +60,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.1, 1000.0],
         unit: "σ of a dwell",
         wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::on_circle(seed).pair(|bench, chance| {
-                for _ in 0..2 {
-                    let at_s = bench.some_departure(chance);
-                    let rate = chance.sign() * size * bench.dwell_sigma();
-                    bench.drift.push(Drift::Step { at_s, rate });
-                }
-            })
-        },
+        draw: |seed, size| Bench::on_circle(seed).with(faults::bias_steps, size),
     },
     Class {
         name: "random-walk",
@@ -101,12 +68,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.1, 1000.0],
         unit: "σ of a dwell, over the recording",
         wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::on_circle(seed).pair(|bench, _| {
-                let density = size * bench.dwell_sigma() / bench.seconds().sqrt();
-                bench.drift.push(Drift::Walk { density });
-            })
-        },
+        draw: |seed, size| Bench::on_circle(seed).with(faults::bias_walks, size),
     },
     Class {
         name: "warm-up",
@@ -114,13 +76,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.1, 1000.0],
         unit: "σ of a dwell",
         wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::on_circle(seed).pair(|bench, chance| {
-                let rate = chance.sign() * size * bench.dwell_sigma();
-                let seconds = chance.scaled(0.1, 3.0) * bench.seconds();
-                bench.drift.push(Drift::WarmUp { rate, seconds });
-            })
-        },
+        draw: |seed, size| Bench::on_circle(seed).with(faults::gyro_warms_up, size),
     },
     Class {
         name: "temperature",
@@ -131,19 +87,8 @@ pub const CLASSES: &[Class] = &[
         draw: |seed, size| {
             let mut bench = Bench::on_circle(seed);
             bench.has_temperature = true;
-            let mut chance = Chance::new(seed, FAULT + 2);
-            bench.instruments.temperature = TemperatureConfiguration {
-                rise_c: chance.sign() * chance.scaled(1.0, 20.0),
-                time_constant_s: chance.scaled(0.1, 3.0) * bench.seconds(),
-                noise_c: 0.01,
-                ..TemperatureConfiguration::default()
-            };
-            bench.pair(|bench, chance| {
-                let rise = bench.instruments.temperature.at(bench.seconds())
-                    - bench.instruments.temperature.at(0.0);
-                let rate = chance.sign() * size * bench.dwell_sigma();
-                bench.instruments.gyro.temperature_deg_h_c = rate / rise / DEGREE_PER_HOUR;
-            })
+            faults::warm(&mut bench, 0.01);
+            bench.with(faults::bias_follows_temperature, size)
         },
     },
     Class {
@@ -152,12 +97,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.1, 1000.0],
         unit: "σ of a dwell, a turn",
         wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::on_circle(seed).pair(|bench, chance| {
-                let rate_per_rad = chance.sign() * size * bench.dwell_sigma() / TAU;
-                bench.drift.push(Drift::Cable { rate_per_rad });
-            })
-        },
+        draw: |seed, size| Bench::on_circle(seed).with(cables_pull, size),
     },
     Class {
         name: "gyro-lag",
@@ -165,7 +105,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.01, 10.0],
         unit: "s",
         wrong_allowed: 0.0,
-        draw: |seed, size| Bench::drawn(seed).pair(|bench, _| bench.gyro.lag_s = size),
+        draw: |seed, size| Bench::drawn(seed).with(faults::gyro_lags, size),
     },
     Class {
         name: "gyro-late",
@@ -173,7 +113,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.05, 4.5],
         unit: "s",
         wrong_allowed: 0.0,
-        draw: |seed, size| Bench::drawn(seed).pair(|bench, _| bench.gyro.late_s = size),
+        draw: |seed, size| Bench::drawn(seed).with(faults::gyro_is_late, size),
     },
     Class {
         name: "gyro-coarse",
@@ -181,9 +121,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.1, 100.0],
         unit: "σ of a sample",
         wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::drawn(seed).pair(|bench, _| bench.gyro.step = size * bench.sample_sigma())
-        },
+        draw: |seed, size| Bench::drawn(seed).with(faults::gyro_is_coarse, size),
     },
     Class {
         name: "gyro-clipped",
@@ -193,12 +131,9 @@ pub const CLASSES: &[Class] = &[
         wrong_allowed: 0.0,
         draw: |seed, size| {
             let bench = Bench::drawn(seed);
-            let greatest = bench.rows().iter().fold(f64::MIN, |most, row| most.max(row.rate_rad_s));
-            bench.pair(|bench, _| {
-                let earth =
-                    bench.instruments.latitude_deg.to_radians().cos() * 15.041 * DEGREE_PER_HOUR;
-                bench.gyro.limit = greatest - size * earth;
-            })
+            let rows = bench.rows();
+            let rates = rows.iter().map(|row| row.rate_rad_s);
+            bench.with(|bench, _, size| faults::gyro_clips(bench, size, rates), size)
         },
     },
     Class {
@@ -207,14 +142,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.003, 3.0],
         unit: "°",
         wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::drawn(seed).pair(|bench, chance| {
-                bench.instruments.encoder.second = Harmonic {
-                    amplitude_rad: size.to_radians(),
-                    phase_rad: chance.between(0.0, TAU),
-                };
-            })
-        },
+        draw: |seed, size| Bench::drawn(seed).with(faults::encoder_errs_twice, size),
     },
     Class {
         name: "accelerometer-axes",
@@ -222,20 +150,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.01, 5.0],
         unit: "° of tilt",
         wrong_allowed: 0.0,
-        draw: |seed, size| {
-            // As far as the Earth-rate ratio tells: what the wrong axes add lies along the Earth rate.
-            let mut bench = Bench::drawn(seed);
-            let mut chance = Chance::new(seed, FAULT);
-            let [flipped, right, left] = TURNED;
-            let (axes, turn) = chance.one_of(&[(flipped, 0.0), (right, -45.0), (left, 45.0)]);
-            let aside = chance.sign() * chance.between(25.0, 40.0);
-            let along = -bench.instruments.azimuth_deg + turn + aside;
-            bench.instruments = bench.instruments.leaning(size, along);
-            let scale_sigma = chance.scaled(1e-5, 1e-4);
-            bench.instruments.gyro.scale_sigma = scale_sigma;
-            bench.header.gyro_scale_sigma = Some(scale_sigma);
-            bench.pair(|bench, _| bench.axes = axes)
-        },
+        draw: |seed, size| faults::accelerometer_axes(Bench::drawn(seed), size),
     },
     Class {
         name: "period",
@@ -243,12 +158,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.0001, 2.0],
         unit: "of the rate",
         wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::drawn(seed).pair(|bench, chance| {
-                let wrong = if chance.happens(0.5) { 1.0 + size } else { 1.0 / (1.0 + size) };
-                bench.header.rate_hz = Some(RATE_HZ * wrong);
-            })
-        },
+        draw: |seed, size| Bench::drawn(seed).with(faults::period_is_wrong, size),
     },
     Class {
         name: "unstated-g-sensitivity",
@@ -258,14 +168,8 @@ pub const CLASSES: &[Class] = &[
         wrong_allowed: 0.0,
         draw: |seed, size| {
             let mut bench = Bench::drawn(seed);
-            bench.header.g_sensitivity_deg_h_g = None;
-            bench.header.g_sensitivity_sigma_deg_h_g = None;
-            bench.pair(|bench, chance| {
-                let (sine, cosine) = chance.between(0.0, TAU).sin_cos();
-                let n = bench.instruments.gyro.n_deg_sqrt_h;
-                let size = (size * 50_000.0 * n * n).min(212.0);
-                bench.instruments.gyro.g_sensitivity_deg_h_g = [size * cosine, size * sine];
-            })
+            faults::leave_g_sensitivity_unsaid(&mut bench);
+            bench.with(faults::g_sensitivity, size)
         },
     },
     Class {
@@ -276,11 +180,8 @@ pub const CLASSES: &[Class] = &[
         wrong_allowed: 0.0,
         draw: |seed, size| {
             let mut bench = Bench::drawn(seed);
-            bench.header.gyro_scale_sigma = None;
-            bench.instruments.gyro.scale_sigma = 0.0;
-            bench.pair(|bench, chance| {
-                bench.instruments.gyro.scale_error = chance.sign() * size;
-            })
+            faults::leave_scale_unsaid(&mut bench);
+            bench.with(faults::scale, size)
         },
     },
     Class {
@@ -291,12 +192,14 @@ pub const CLASSES: &[Class] = &[
         wrong_allowed: 0.0,
         draw: |seed, size| {
             let mut bench = Bench::drawn(seed);
-            bench.header.accelerometer_bias_m_s2 = None;
-            bench.instruments.accelerometer.bias_sigma_m_s2 = 0.0;
-            bench.pair(|bench, chance| {
-                bench.instruments.accelerometer.bias_m_s2 =
-                    [0, 1, 2].map(|_| chance.sign() * size * 9.81e-3);
-            })
+            faults::leave_accelerometer_bias_unsaid(&mut bench);
+            bench.with(faults::accelerometer_bias, size)
         },
     },
 ];
+
+/// The bias follows the angle of the cables, σ of a dwell a turn.
+fn cables_pull(bench: &mut Bench, chance: &mut Chance, size: f64) {
+    let rate_per_rad = chance.sign() * size * bench.mean_sigma() / TAU;
+    bench.unit.drift.push(Drift::Cable { rate_per_rad });
+}

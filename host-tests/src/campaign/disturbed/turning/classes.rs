@@ -1,15 +1,9 @@
 //! The faults of a platform that turns all the time, of its base, its gyro and its accelerometer.
 
-use std::f64::consts::TAU;
-
-use hal_mock::stage::Harmonic;
-use hal_mock::temperature::TemperatureConfiguration;
-
-use super::gyro::Drift;
-use super::{Bench, DEGREE_PER_HOUR, FAULT, RATE_HZ};
-use crate::campaign::disturbed::Class;
-use crate::campaign::disturbed::axes::TURNED;
+use super::{Bench, RAMP_SECONDS};
 use crate::campaign::disturbed::chance::Chance;
+use crate::campaign::disturbed::unit::Rig;
+use crate::campaign::disturbed::{Class, faults};
 
 /// The classes of a platform that turns all the time.
 pub const CLASSES: &[Class] = &[
@@ -19,13 +13,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.001, 30.0],
         unit: "°/h",
         wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::drawn(seed).pair(|bench, chance| {
-                let (sine, cosine) = chance.between(0.0, TAU).sin_cos();
-                bench.base.rates_rad_s =
-                    [0.0, cosine, sine].map(|part| part * size * DEGREE_PER_HOUR);
-            })
-        },
+        draw: |seed, size| Bench::drawn(seed).with(faults::base_tilts, size),
     },
     Class {
         name: "turning-base-yawing",
@@ -33,11 +21,7 @@ pub const CLASSES: &[Class] = &[
         severity: [3e-4, 3.0],
         unit: "°/min",
         wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::drawn(seed).pair(|bench, chance| {
-                bench.base.rates_rad_s[0] = chance.sign() * size.to_radians() / 60.0;
-            })
-        },
+        draw: |seed, size| Bench::drawn(seed).with(faults::base_yaws, size),
     },
     Class {
         name: "turning-base-turn",
@@ -45,12 +29,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.003, 20.0],
         unit: "°",
         wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::drawn(seed).pair(|bench, chance| {
-                let at = bench.some_time(chance);
-                bench.base.turn = Some((at, chance.sign() * size.to_radians()));
-            })
-        },
+        draw: |seed, size| Bench::drawn(seed).with(faults::base_turns, size),
     },
     Class {
         name: "turning-encoder-slip",
@@ -58,12 +37,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.003, 90.0],
         unit: "°",
         wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::drawn(seed).pair(|bench, chance| {
-                let at = bench.some_time(chance);
-                bench.slips.push((at, chance.sign() * size.to_radians()));
-            })
-        },
+        draw: |seed, size| Bench::drawn(seed).with(faults::encoder_slips, size),
     },
     Class {
         name: "turning-encoder-zero",
@@ -73,9 +47,9 @@ pub const CLASSES: &[Class] = &[
         wrong_allowed: 0.0,
         draw: |seed, size| {
             let mut bench = Bench::drawn(seed);
-            bench.header.encoder_zero_sigma_deg = None;
-            bench.slips.clear();
-            bench.pair(|bench, chance| bench.slips.push((0.0, chance.sign() * size.to_radians())))
+            bench.unit.header.encoder_zero_sigma_deg = None;
+            bench.unit.slips.clear();
+            bench.with(zero_is_off, size)
         },
     },
     Class {
@@ -84,15 +58,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.1, 1000.0],
         unit: "σ of a turn",
         wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::drawn(seed).pair(|bench, chance| {
-                for _ in 0..2 {
-                    let at_s = bench.some_time(chance);
-                    let rate = chance.sign() * size * bench.turn_sigma();
-                    bench.drift.push(Drift::Step { at_s, rate });
-                }
-            })
-        },
+        draw: |seed, size| Bench::drawn(seed).with(faults::bias_steps, size),
     },
     Class {
         name: "turning-random-walk",
@@ -100,12 +66,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.1, 1000.0],
         unit: "σ of a turn, over the recording",
         wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::drawn(seed).pair(|bench, _| {
-                let density = size * bench.turn_sigma() / bench.seconds().sqrt();
-                bench.drift.push(Drift::Walk { density });
-            })
-        },
+        draw: |seed, size| Bench::drawn(seed).with(faults::bias_walks, size),
     },
     Class {
         name: "turning-warm-up",
@@ -113,13 +74,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.1, 1000.0],
         unit: "σ of a turn",
         wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::drawn(seed).pair(|bench, chance| {
-                let rate = chance.sign() * size * bench.turn_sigma();
-                let seconds = chance.scaled(0.1, 3.0) * bench.seconds();
-                bench.drift.push(Drift::WarmUp { rate, seconds });
-            })
-        },
+        draw: |seed, size| Bench::drawn(seed).with(faults::gyro_warms_up, size),
     },
     Class {
         name: "turning-temperature",
@@ -129,18 +84,8 @@ pub const CLASSES: &[Class] = &[
         wrong_allowed: 0.0,
         draw: |seed, size| {
             let mut bench = Bench::drawn(seed);
-            let mut chance = Chance::new(seed, FAULT + 2);
-            bench.instruments.temperature = TemperatureConfiguration {
-                rise_c: chance.sign() * chance.scaled(1.0, 20.0),
-                time_constant_s: chance.scaled(0.1, 3.0) * bench.seconds(),
-                ..TemperatureConfiguration::default()
-            };
-            bench.pair(|bench, chance| {
-                let rise = bench.instruments.temperature.at(bench.seconds())
-                    - bench.instruments.temperature.at(0.0);
-                let rate = chance.sign() * size * bench.turn_sigma();
-                bench.instruments.gyro.temperature_deg_h_c = rate / rise / DEGREE_PER_HOUR;
-            })
+            faults::warm(&mut bench, 0.0);
+            bench.with(faults::bias_follows_temperature, size)
         },
     },
     Class {
@@ -149,7 +94,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.01, 10.0],
         unit: "s",
         wrong_allowed: 0.0,
-        draw: |seed, size| Bench::drawn(seed).pair(|bench, _| bench.gyro.lag_s = size),
+        draw: |seed, size| Bench::drawn(seed).with(faults::gyro_lags, size),
     },
     Class {
         name: "turning-gyro-late",
@@ -157,7 +102,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.02, 10.0],
         unit: "s",
         wrong_allowed: 0.0,
-        draw: |seed, size| Bench::drawn(seed).pair(|bench, _| bench.gyro.late_s = size),
+        draw: |seed, size| Bench::drawn(seed).with(faults::gyro_is_late, size),
     },
     Class {
         name: "turning-gyro-coarse",
@@ -165,9 +110,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.1, 100.0],
         unit: "σ of a sample",
         wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::drawn(seed).pair(|bench, _| bench.gyro.step = size * bench.sample_sigma())
-        },
+        draw: |seed, size| Bench::drawn(seed).with(faults::gyro_is_coarse, size),
     },
     Class {
         name: "turning-gyro-clipped",
@@ -177,15 +120,10 @@ pub const CLASSES: &[Class] = &[
         wrong_allowed: 0.0,
         draw: |seed, size| {
             let bench = Bench::drawn(seed);
-            let even = (bench.uneven_s + super::RAMP_SECONDS) * RATE_HZ;
+            let even = (bench.uneven_s + RAMP_SECONDS) * Bench::RATE_HZ;
             let rows = bench.rows();
             let rates = rows.iter().skip(even as usize).map(|row| row.rate_rad_s);
-            let greatest = rates.fold(f64::MIN, f64::max);
-            bench.pair(|bench, _| {
-                let earth =
-                    bench.instruments.latitude_deg.to_radians().cos() * 15.041 * DEGREE_PER_HOUR;
-                bench.gyro.limit = Some(greatest - size * earth);
-            })
+            bench.with(|bench, _, size| faults::gyro_clips(bench, size, rates), size)
         },
     },
     Class {
@@ -194,14 +132,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.003, 3.0],
         unit: "°",
         wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::drawn(seed).pair(|bench, chance| {
-                bench.instruments.encoder.second = Harmonic {
-                    amplitude_rad: size.to_radians(),
-                    phase_rad: chance.between(0.0, TAU),
-                };
-            })
-        },
+        draw: |seed, size| Bench::drawn(seed).with(faults::encoder_errs_twice, size),
     },
     Class {
         name: "turning-stage-reversed",
@@ -211,9 +142,8 @@ pub const CLASSES: &[Class] = &[
         wrong_allowed: 0.0,
         draw: |seed, size| {
             let mut bench = Bench::drawn(seed);
-            let uphill = 360.0 * Chance::new(seed, FAULT).between(0.0, 1.0);
-            bench.instruments = bench.instruments.leaning(size, uphill);
-            bench.pair(|bench, _| bench.is_reversed = true)
+            faults::tilt(&mut bench, size);
+            bench.with(faults::encoder_is_reversed, size)
         },
     },
     Class {
@@ -222,20 +152,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.01, 5.0],
         unit: "° of tilt",
         wrong_allowed: 0.0,
-        draw: |seed, size| {
-            // As far as the Earth-rate ratio tells: what the wrong axes add lies along the Earth rate.
-            let mut bench = Bench::drawn(seed);
-            let mut chance = Chance::new(seed, FAULT);
-            let [flipped, right, left] = TURNED;
-            let (axes, turn) = chance.one_of(&[(flipped, 0.0), (right, -45.0), (left, 45.0)]);
-            let aside = chance.sign() * chance.between(25.0, 40.0);
-            let along = -bench.instruments.azimuth_deg + turn + aside;
-            bench.instruments = bench.instruments.leaning(size, along);
-            let scale_sigma = chance.scaled(1e-5, 1e-4);
-            bench.instruments.gyro.scale_sigma = scale_sigma;
-            bench.header.gyro_scale_sigma = Some(scale_sigma);
-            bench.pair(|bench, _| bench.axes = axes)
-        },
+        draw: |seed, size| faults::accelerometer_axes(Bench::drawn(seed), size),
     },
     Class {
         name: "turning-period",
@@ -243,12 +160,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.0001, 2.0],
         unit: "of the rate",
         wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::drawn(seed).pair(|bench, chance| {
-                let wrong = if chance.happens(0.5) { 1.0 + size } else { 1.0 / (1.0 + size) };
-                bench.header.rate_hz = Some(RATE_HZ * wrong);
-            })
-        },
+        draw: |seed, size| Bench::drawn(seed).with(faults::period_is_wrong, size),
     },
     Class {
         name: "turning-unstated-g-sensitivity",
@@ -258,14 +170,8 @@ pub const CLASSES: &[Class] = &[
         wrong_allowed: 0.0,
         draw: |seed, size| {
             let mut bench = Bench::drawn(seed);
-            bench.header.g_sensitivity_deg_h_g = None;
-            bench.header.g_sensitivity_sigma_deg_h_g = None;
-            bench.pair(|bench, chance| {
-                let (sine, cosine) = chance.between(0.0, TAU).sin_cos();
-                let n = bench.instruments.gyro.n_deg_sqrt_h;
-                let size = (size * 50_000.0 * n * n).min(212.0);
-                bench.instruments.gyro.g_sensitivity_deg_h_g = [size * cosine, size * sine];
-            })
+            faults::leave_g_sensitivity_unsaid(&mut bench);
+            bench.with(faults::g_sensitivity, size)
         },
     },
     Class {
@@ -276,11 +182,8 @@ pub const CLASSES: &[Class] = &[
         wrong_allowed: 0.0,
         draw: |seed, size| {
             let mut bench = Bench::drawn(seed);
-            bench.header.gyro_scale_sigma = None;
-            bench.instruments.gyro.scale_sigma = 0.0;
-            bench.pair(|bench, chance| {
-                bench.instruments.gyro.scale_error = chance.sign() * size;
-            })
+            faults::leave_scale_unsaid(&mut bench);
+            bench.with(faults::scale, size)
         },
     },
     Class {
@@ -291,12 +194,13 @@ pub const CLASSES: &[Class] = &[
         wrong_allowed: 0.0,
         draw: |seed, size| {
             let mut bench = Bench::drawn(seed);
-            bench.header.accelerometer_bias_m_s2 = None;
-            bench.instruments.accelerometer.bias_sigma_m_s2 = 0.0;
-            bench.pair(|bench, chance| {
-                bench.instruments.accelerometer.bias_m_s2 =
-                    [0, 1, 2].map(|_| chance.sign() * size * 9.81e-3);
-            })
+            faults::leave_accelerometer_bias_unsaid(&mut bench);
+            bench.with(faults::accelerometer_bias, size)
         },
     },
 ];
+
+/// The encoder slipped before the platform turned, °.
+fn zero_is_off(bench: &mut Bench, chance: &mut Chance, size: f64) {
+    bench.unit.slips.push((0.0, chance.sign() * size.to_radians()));
+}

@@ -1,10 +1,8 @@
-//! What is wrong with the gyro: drift that no key states, and a column that lags or is cut.
+//! What may be wrong with a gyro: drift that no key states, and a column that lags or is cut.
 
 use std::collections::VecDeque;
 
 use hal_mock::noise::Generator;
-
-use super::{FAULT, RATE_HZ};
 
 /// A drift of the gyro's bias that no key states.
 #[derive(Clone, Debug)]
@@ -28,19 +26,21 @@ pub(super) struct GyroFault {
     pub(super) late_s: f64,
     /// Step of the column, rad/s.
     pub(super) step: f64,
-    /// Greatest value that it shows, rad/s; zero for none.
-    pub(super) limit: f64,
+    /// Greatest value that it shows, rad/s; none for no limit.
+    pub(super) limit: Option<f64>,
 }
 
 /// Drifts at work.
 pub(super) struct Drifting {
+    rate_hz: f64,
     chance: Generator,
     walked: f64,
 }
 
 impl Drifting {
-    pub(super) fn new(seed: u64) -> Self {
-        Self { chance: Generator::stream(seed, FAULT + 1), walked: 0.0 }
+    /// With the random stream of its walk.
+    pub(super) fn new(rate_hz: f64, chance: Generator) -> Self {
+        Self { rate_hz, chance, walked: 0.0 }
     }
 
     /// The drift at a time, s, and an unwrapped stage angle, rad; ask once a sample.
@@ -49,7 +49,7 @@ impl Drifting {
             Drift::Step { at_s, rate } if time_s >= at_s => rate,
             Drift::Step { .. } => 0.0,
             Drift::Walk { density } => {
-                self.walked += density * self.chance.gaussian() / RATE_HZ.sqrt();
+                self.walked += density * self.chance.gaussian() / self.rate_hz.sqrt();
                 self.walked
             }
             Drift::WarmUp { rate, seconds } => rate * (-time_s / seconds).exp(),
@@ -61,29 +61,30 @@ impl Drifting {
 
 /// The gyro's column at work.
 pub(super) struct Column {
+    rate_hz: f64,
     fault: GyroFault,
     lagged: Option<f64>,
     late: VecDeque<f64>,
 }
 
 impl Column {
-    pub(super) fn new(fault: &GyroFault) -> Self {
-        Self { fault: *fault, lagged: None, late: VecDeque::new() }
+    pub(super) fn new(rate_hz: f64, fault: &GyroFault) -> Self {
+        Self { rate_hz, fault: *fault, lagged: None, late: VecDeque::new() }
     }
 
     /// What the column shows of the next rate, rad/s.
     pub(super) fn show(&mut self, rate: f64) -> f64 {
         let GyroFault { lag_s, late_s, step, limit } = self.fault;
         let before = self.lagged.unwrap_or(rate);
-        let follow = if lag_s > 0.0 { 1.0 - (-1.0 / (lag_s * RATE_HZ)).exp() } else { 1.0 };
+        let follow = if lag_s > 0.0 { 1.0 - (-1.0 / (lag_s * self.rate_hz)).exp() } else { 1.0 };
         let lagged = before + follow * (rate - before);
         self.lagged = Some(lagged);
         self.late.push_back(lagged);
-        if self.late.len() > (late_s * RATE_HZ) as usize + 1 {
+        if self.late.len() > (late_s * self.rate_hz) as usize + 1 {
             self.late.pop_front();
         }
         let shown = self.late[0];
         let shown = if step > 0.0 { (shown / step).round() * step } else { shown };
-        if limit == 0.0 { shown } else { shown.min(limit) }
+        limit.map_or(shown, |limit| shown.min(limit))
     }
 }
