@@ -166,7 +166,7 @@ pub enum ReplayError {
         /// The greatest part of one, as stated.
         greatest: f64,
     },
-    /// Nobody stated the gyros' noise, and there are too few samples at rest to estimate it from.
+    /// The gyros' noise is not stated, and there are too few samples at rest to estimate it from.
     NoiseUnknown,
     /// The session cannot follow the recording.
     Procedure(ProcedureError),

@@ -59,7 +59,7 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
         }
     }
 
-    /// When a conversion ended that was awaited from `asked` on and is there `now`. One for which nobody had to
+    /// When a conversion ended that was awaited from `asked` on and is there `now`. One that was there without a
     /// wait ended before, while another bus was read: it ended when it was due after the one before.
     fn ended(&self, asked: Instant, now: Instant) -> Instant {
         match self.latest {

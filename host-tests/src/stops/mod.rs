@@ -276,7 +276,7 @@ const MORE: f64 = 1.1;
 /// Least N that is believed of a recording, rad/√s: 0.001 °/√h, a laser gyro's; who has a better one states it.
 const LEAST_WALK: f64 = 1e-3 * DEGREE_PER_SQRT_HOUR;
 
-/// What is known of the vehicle's sensors; noise that nobody stated is estimated, and noise that was stated too
+/// What is known of the vehicle's sensors; noise that is not stated is estimated, and noise that was stated too
 /// small is taken as the recording shows it.
 fn setting(
     header: &Header,

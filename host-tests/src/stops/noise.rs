@@ -1,4 +1,4 @@
-//! White noise of gyros and accelerometers as a recording shows it, where nobody stated it, or as a check of
+//! White noise of gyros and accelerometers as a recording shows it, where it is not stated, or as a check of
 //! what was stated.
 //!
 //! It is taken where the vehicle stood, from the spectrum of the rates: N² is what the noise that is noise of

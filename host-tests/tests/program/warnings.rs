@@ -1,4 +1,4 @@
-//! What a recording says that nobody listens to is told, and changes nothing.
+//! What a recording says to no purpose is told, and changes nothing.
 
 use std::fs;
 use std::path::Path;

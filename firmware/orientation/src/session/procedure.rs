@@ -20,7 +20,7 @@ const LOWEST_CUTOFF: f64 = 2.5e-4;
 /// Change of the encoder angle that still counts as standing, rad: seven steps of a 21-bit encoder.
 pub const STILL: f64 = 20e-6;
 
-/// How far the samples' times may be off their period where nobody says otherwise, relative: a recorder's clock
+/// How far the samples' times may be off their period where nothing else is stated, relative: a recorder's clock
 /// is far better, a converter's own oscillator is not.
 pub(super) const PERIOD_TOLERANCE: f64 = 0.01;
 

@@ -127,10 +127,10 @@ pub(super) struct Unit {
 
 impl Unit {
     /// With nothing wrong.
-    pub(super) fn new(seed: u64, instruments: InstrumentsConfiguration, header: Header) -> Self {
+    pub(super) fn new(seed: u64, instruments: &InstrumentsConfiguration, header: Header) -> Self {
         Self {
             seed,
-            instruments,
+            instruments: *instruments,
             header,
             base: BaseChange::default(),
             slips: Vec::new(),

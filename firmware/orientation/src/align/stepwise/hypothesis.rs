@@ -2,7 +2,7 @@
 //! an encoder that slipped, an encoder that errs twice a turn, a drift that bends.
 //!
 //! Each adds columns that follow the azimuth's own, ∂/∂A, of the steady fit. Where chi-square says so they are
-//! used or, where either side of a step may be the right one, refused. Where it does not, σ allows for each by
+//! used or, where either side of a step may be the right one, refused. Where it is in doubt, σ allows for each by
 //! solution separation: how far its azimuth lies from the one given, and how much farther it may lie unseen.
 
 use super::super::different_positions;

@@ -47,7 +47,7 @@ impl Bench {
         let instruments = grade.instruments(&mut chance, Self::RATE_HZ, kappa, level);
         let header = grade.header(Self::RATE_HZ, chance.happens(0.7));
         Self {
-            unit: Unit::new(seed, instruments, header),
+            unit: Unit::new(seed, &instruments, header),
             stops: stops(&mut chance, 0.9),
             has_temperature: chance.happens(0.3),
         }

@@ -70,7 +70,7 @@ impl Bench {
             ..grade.header(Self::RATE_HZ, chance.happens(0.7))
         };
         let mut bench = Self {
-            unit: Unit::new(seed, instruments, header),
+            unit: Unit::new(seed, &instruments, header),
             unevenness,
             start_rad: chance.between(0.0, TAU),
             uneven_s: UNEVEN.0 / turn_hz,
