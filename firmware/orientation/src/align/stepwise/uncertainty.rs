@@ -120,7 +120,7 @@ const ASTRAY_RATIO: f64 = 2.58;
 const DRIFT_ROUNDS: usize = 12;
 
 impl Problem<'_> {
-    /// Raises σ to what the azimuth may be off under every alternative, over [`WRONG`]. Where something is astray (an
+    /// Raises σ to what the azimuth may be off under every alternative, over five. Where something is astray (an
     /// outlier was left out, the residuals or the Earth rate are unlikely, a trend shows that no key states), those
     /// that only then show count too: a random walk, and another Earth rate.
     #[inline(never)]
