@@ -299,7 +299,9 @@ impl Conclusion {
         if sigma > required {
             return Err(Refusal::TiltTooUncertain { sigma, required });
         }
-        if let Some((after, change)) = self.tilt.step {
+        // An encoder that slips by an angle changes F by so much of it, and the azimuth at most by the angle.
+        let matters = |change: &(f64, f64)| change.1 > fit.sigma() * self.tilt.magnitude();
+        if let Some((after, change)) = self.tilt.step.filter(matters) {
             return Err(Refusal::TiltStepped { change: change * 1e3, after });
         }
         let Tilt { counter, scatter, .. } = self.tilt;

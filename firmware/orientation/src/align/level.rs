@@ -143,8 +143,6 @@ const STEP_BELIEVED: f64 = 22.0;
 const FEW: f64 = 11.0;
 /// 1σ of how fast a base tilts that does, 1/s: 3 °/h.
 const FASTEST: f64 = 3.0 * DEGREE_PER_HOUR;
-/// Squared significance from which a tilt rate is more than chance: one of forty healthy sessions has so much.
-const SHOWN: f64 = 7.4;
 
 impl TiltRate {
     /// The same, for a base that tilts no faster than [`FASTEST`].
@@ -330,13 +328,15 @@ impl<'a, D: Iterator<Item = &'a Dwell> + Clone> Forces<'_, D> {
             solution.coefficients;
         let covariance = &solution.covariance;
         let freedom = (rows - parameters).max(1.0);
+        // What the biases are, in their own σ, is no scatter of the dwells.
+        let biases = (bias_x * bias_x + bias_y * bias_y) / (bias_sigma * bias_sigma);
         Some(Found {
             phasor: [real, imaginary],
             covariance: square(covariance, 0),
             bias: [bias_x, bias_y],
             beside: [beside_real, beside_imaginary],
             beside_covariance: square(covariance, 5),
-            scatter: sigma * libm::sqrt(solution.chi_square / freedom),
+            scatter: sigma * libm::sqrt((solution.chi_square - biases).max(0.0) / freedom),
             freedom,
         })
     }
@@ -377,7 +377,6 @@ impl Found {
         if significance > BELIEVED {
             return Tilt { rate: found, ..self.tilt(standing.time, standing.scatter) };
         }
-        let unproven = if significance > SHOWN { found.possible() } else { TiltRate::default() };
-        Tilt { unproven, ..standing }
+        Tilt { unproven: found.possible(), ..standing }
     }
 }

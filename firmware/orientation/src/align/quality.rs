@@ -256,46 +256,98 @@ pub fn moved(
 const LAGGING_DWELLS: i32 = 4;
 /// Significance, σ, of a lag that is believed: more than one dwell may show.
 const LAG_BOUND: f64 = 5.0;
+/// Part of a slope that a lag may leave unexplained.
+const LAG_CURVE: f64 = 0.3;
 
 /// By how much the gyro follows the stage late, s, by the dwells whose platform stood; `None` where it
 /// may be chance.
 ///
 /// A gyro that lags by τ, or whose column is late by τ, brings into each dwell of T a part of the one before:
-/// its mean moves by Δ·τ/T for a difference Δ of both rates, and its slope by −6 Δ τ/T².
+/// its mean moves by Δ·τ/T for a difference Δ of both rates, and its slope by −6 Δ τ/T², beside the slope that all
+/// share. A blow to one dwell shows no lag, nor may it hide one: what each dwell has is bounded, and both all
+/// dwells and the quiet ones are asked; unbounded only where all agree.
 #[must_use]
 #[inline(never)]
 pub fn lag(norm: &Norm, dwells: &[Dwell], marks: &[Option<Disturbance>]) -> Option<f64> {
-    let (mut power, mut shared, mut total, mut count) = (0.0, 0.0, 0.0, 0);
-    for [expected, found] in slopes(norm, dwells, marks) {
-        power += expected * expected;
-        shared += expected * found;
-        total += found * found;
-        count += 1;
-    }
-    if count < LAGGING_DWELLS {
-        return None;
-    }
-    // A drift that no key states makes slopes, too: they are weighed by what the lag leaves of them.
-    let left = ((total - shared * shared / power) / f64::from(count - 1)).max(1.0);
-    (shared > LAG_BOUND * libm::sqrt(power * left)).then(|| shared / power)
+    let stood = |mark: &Disturbance| !is_moved(mark);
+    let of = |is_asked, bound| Lag::of(slopes(norm, dwells, marks, is_asked), bound).believed();
+    let agreed = || {
+        let lag = Lag::of(slopes(norm, dwells, marks, stood), f64::INFINITY);
+        let is_agreed = slopes(norm, dwells, marks, stood).all(|slope| lag.explains(slope));
+        lag.believed().filter(|_| is_agreed)
+    };
+    of(stood, SLOPE_BOUND).or_else(|| of(|_| false, SLOPE_BOUND)).or_else(agreed)
 }
 
-/// For each dwell that follows another the slope that a lag of one second gives it, and that which it has, in σ. A
-/// blow to one dwell shows no lag: what each has is bounded.
+/// A straight line through slopes against those that a lag of one second makes: sums about their means.
+#[derive(Default)]
+struct Lag {
+    count: i32,
+    expected: f64,
+    found: f64,
+    power: f64,
+    shared: f64,
+    total: f64,
+}
+
+impl Lag {
+    /// Of pairs expected and found, σ, of which what is found is bounded.
+    #[inline(never)]
+    fn of(slopes: impl Iterator<Item = [f64; 2]>, bound: f64) -> Self {
+        let mut lag = Self::default();
+        for [expected, found] in slopes {
+            let found = found.clamp(-bound, bound);
+            lag.count += 1;
+            let [x, y] = [expected - lag.expected, found - lag.found];
+            lag.expected += x / f64::from(lag.count);
+            lag.found += y / f64::from(lag.count);
+            let later = expected - lag.expected;
+            lag.power += x * later;
+            lag.shared += y * later;
+            lag.total += y * (found - lag.found);
+        }
+        lag
+    }
+
+    /// The lag, s.
+    fn seconds(&self) -> f64 {
+        self.shared / self.power
+    }
+
+    /// The lag, s, if it is no chance.
+    fn believed(&self) -> Option<f64> {
+        if self.count < LAGGING_DWELLS {
+            return None;
+        }
+        // A drift that no key states makes slopes, too: they are weighed by what the lag leaves of them.
+        let left = self.total - self.shared * self.seconds();
+        let left = (left / f64::from(self.count - 2)).max(1.0);
+        (self.shared > LAG_BOUND * libm::sqrt(self.power * left)).then(|| self.seconds())
+    }
+
+    /// Whether it explains a slope; of a long one only the greater part, for within the dwell it is a curve.
+    fn explains(&self, [expected, found]: [f64; 2]) -> bool {
+        let explained = self.seconds() * (expected - self.expected);
+        (found - self.found - explained).abs() <= SLOPE_BOUND + LAG_CURVE * explained.abs()
+    }
+}
+
+/// For each dwell that follows another the slope that a lag of one second gives it, and that which it has, in σ:
+/// of those whose disturbance, if there is one, may show the lag.
 fn slopes<'a>(
     norm: &'a Norm,
     dwells: &'a [Dwell],
     marks: &'a [Option<Disturbance>],
+    is_asked: fn(&Disturbance) -> bool,
 ) -> impl Iterator<Item = [f64; 2]> + 'a {
-    dwells.windows(2).zip(marks.windows(2)).filter_map(|(pair, marks)| {
+    dwells.windows(2).zip(marks.windows(2)).filter_map(move |(pair, marks)| {
         let quietness = pair[1].quietness.as_ref()?;
         let sigma = libm::sqrt(norm.slope_variance(quietness));
-        if sigma <= 0.0 || marks.iter().flatten().any(is_moved) {
+        if sigma <= 0.0 || !marks.iter().flatten().all(is_asked) {
             return None;
         }
         let per_second = -6.0 * (pair[0].rate - pair[1].rate) / (pair[1].seconds * pair[1].seconds);
-        let found = (quietness.slope - norm.slope) / sigma;
-        Some([per_second / sigma, found.clamp(-SLOPE_BOUND, SLOPE_BOUND)])
+        Some([per_second / sigma, (quietness.slope - norm.slope) / sigma])
     })
 }
 

@@ -21,6 +21,9 @@ use crate::recording::Header;
 /// Step of the encoder: 21 bit.
 const ENCODER_STEP_RAD: f64 = TAU / 2_097_152.0;
 
+/// N beside which an accelerometer of 10 to 30 µg/√Hz is built, °/√h: beside a better gyro there is a better one.
+const ORDINARY_N: f64 = 5e-3;
+
 /// Quality and place of an instrument.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Grade {
@@ -76,7 +79,7 @@ impl Grade {
                 ..GyroConfiguration::default()
             },
             accelerometer: AccelerometerConfiguration {
-                noise_m_s2_sqrt_hz: chance.scaled(1e-4, 3e-4),
+                noise_m_s2_sqrt_hz: chance.scaled(1e-4, 3e-4) * (self.n / ORDINARY_N).sqrt(),
                 bias_sigma_m_s2: self.bias_sigma,
                 ..AccelerometerConfiguration::default()
             },

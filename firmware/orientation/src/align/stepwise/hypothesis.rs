@@ -24,6 +24,8 @@ pub enum Hypothesis {
     Elliptic,
     /// A drift that no key states is no straight line: its coefficient is the curvature, in units of `Ω_h` per h².
     Curved,
+    /// It bends twice: the coefficients are the curvature and, per h³, how that changes.
+    Winding,
     /// The heading is another one after this time, s; its coefficient is the change, rad.
     Stepped {
         /// When, s.
@@ -59,13 +61,13 @@ const BELIEVED: [f64; 2] = [15.1, 18.4];
 /// Gain from which a step is believed for each place at which it may be: p = 0.0002 over all of them.
 const STEP_BELIEVED: f64 = 13.8;
 /// By how much a hypothesis may raise the variance of the azimuth; beyond, the dwells do not show it.
-pub(super) const OBSERVABLE: f64 = 25.0;
-/// Chi-square of one degree of freedom that noise exceeds with a probability of 0.025.
-const DOUBTFUL: f64 = 5.02;
+pub(super) const OBSERVABLE: f64 = 1000.0;
+/// Chi-square of one degree of freedom below which noise alone stays in two of three sessions.
+const DOUBTFUL: f64 = 1.0;
 /// σ of an alternative's azimuth by which it may be farther away than it shows: one of fifty is.
 pub(super) const MISSED: f64 = 1.8;
-/// Change of heading, rad, from which a step is followed again with its exact turn: its square is then a tenth
-/// of a step that is just seen.
+/// Change of heading, rad, from which a step or a base that turns is followed again with its exact turn: its square
+/// is then a tenth of a step that is just seen.
 const TURNED: f64 = 0.003;
 /// Fewest positions of a circle that show an elliptic encoder: of four the third harmonic looks like the first.
 const ELLIPSE_POSITIONS: usize = 5;
@@ -78,7 +80,7 @@ impl Hypothesis {
         match self {
             Self::Steady => [Column::Absent; 2],
             Self::Yawing | Self::Curved | Self::Stepped { .. } => [Column::Free, Column::Absent],
-            Self::Elliptic => [Column::Free; 2],
+            Self::Elliptic | Self::Winding => [Column::Free; 2],
         }
     }
 
@@ -97,10 +99,12 @@ impl Hypothesis {
                 let vertical = axis[2] / (3600.0 * problem.setting.latitude.horizontal_rate());
                 [problem.hours_to_end(dwell) * turning + vertical, 0.0]
             }
-            Self::Curved => {
+            Self::Curved | Self::Winding => {
                 let begin = problem.dwells.first().map_or(0.0, |first| first.middle);
-                let hours = (dwell.middle - begin) / 3600.0;
-                [hours * (hours + problem.hours_to_end(dwell)), 0.0]
+                let (hours, to_end) =
+                    ((dwell.middle - begin) / 3600.0, problem.hours_to_end(dwell));
+                let curve = hours * to_end;
+                [curve, curve * (hours + to_end)]
             }
             Self::Elliptic => {
                 let (sine, cosine) = libm::sincos(2.0 * dwell.stage.rad());
@@ -115,17 +119,16 @@ impl Hypothesis {
         match self {
             Self::Steady => f64::INFINITY,
             Self::Yawing | Self::Curved => BELIEVED[0],
-            Self::Elliptic => BELIEVED[1],
+            Self::Elliptic | Self::Winding => BELIEVED[1],
             Self::Stepped { .. } => STEP_BELIEVED + 2.0 * libm::log(dwells as f64),
         }
     }
 
-    /// Gain below which it is passed over in a session in which all else is well (p = 0.025; of a step by about what
-    /// one of so many dwells shows by chance alone).
+    /// Gain below which it is passed over in a session in which all else is well; of a step by about what one of so
+    /// many dwells shows by chance alone.
     fn doubtful(self, dwells: usize) -> f64 {
         match self {
             Self::Stepped { .. } => DOUBTFUL + 2.0 * libm::log(dwells as f64),
-            Self::Elliptic => DOUBTFUL + 2.0,
             _ => DOUBTFUL,
         }
     }
@@ -153,7 +156,11 @@ pub struct Protection {
 #[derive(Clone, Copy)]
 struct Weighed {
     model: Model,
-    /// Gain of chi-square, in the scatter that the hypothesis leaves.
+    /// By how much it lowers chi-square.
+    explained: f64,
+    /// Scatter that it leaves, as a part of the stated noise's variance; one at least.
+    scatter: f64,
+    /// What it explains, in the scatter that it leaves.
     gain: f64,
     /// The gain with the Earth rate free, over that from which the hypothesis is believed.
     belief: f64,
@@ -162,19 +169,27 @@ struct Weighed {
     sigma: f64,
     /// Its first coefficient.
     coefficient: f64,
+    /// Whether it has the trends of the steady fit, and only adds to them.
+    is_nested: bool,
 }
 
 impl Weighed {
-    /// How far an azimuth with its 1σ may be off under it, rad: no farther than its gain allows, and of a step either
-    /// side may be the right one.
+    /// How far an azimuth with its 1σ may be off under it, rad: no farther than its gain allows where it only adds to
+    /// the steady fit, and of a step either side may be the right one.
     fn protection(&self, azimuth: f64, sigma: f64) -> f64 {
-        let farthest = libm::sqrt(self.gain.max(0.0)) * self.sigma;
+        let allowed = libm::sqrt(self.gain.max(0.0)) * self.sigma;
+        let farthest = if self.is_nested { allowed } else { f64::INFINITY };
         let apart = |other: f64| separation(other, azimuth).min(farthest);
         let after = apart(self.azimuth) + MISSED * self.sigma;
         if self.is_model() {
             return after;
         }
         after.max(apart(self.azimuth - self.coefficient) + MISSED * sigma)
+    }
+
+    /// Whether it explains so much more than another that this one is passed over.
+    fn beats(&self, other: &Self) -> bool {
+        self.explained > other.explained + CLEARLY * self.scatter
     }
 
     /// Whether the azimuth can be found with it: of a step either side may be the right one.
@@ -199,7 +214,7 @@ pub(super) fn separation(one: f64, other: f64) -> f64 {
 /// The one that explains most.
 fn greatest<'a>(of: impl Iterator<Item = &'a Weighed>) -> Option<&'a Weighed> {
     of.fold(None, |best, one| match best {
-        Some(best) if best.gain >= one.gain => Some(best),
+        Some(best) if best.explained >= one.explained => Some(best),
         _ => Some(one),
     })
 }
@@ -213,19 +228,21 @@ impl Problem<'_> {
         let all = || weighed.iter().flatten();
         let best = greatest(all().filter(|one| one.is_model() && one.belief >= 1.0));
         let step = greatest(all().filter(|one| one.step().is_some()));
-        let is_beaten = |one: &Weighed| best.is_some_and(|best| best.gain > one.gain + CLEARLY);
+        let is_beaten = |one: &Weighed| best.is_some_and(|best| best.beats(one));
         fit.step = step.filter(|step| !is_beaten(step)).and_then(Weighed::step);
+        let winding = best.and_then(|bent| self.winding(bent, fit, steady));
+        let is_winding = winding.as_ref().is_some_and(|winding| winding.gain > BELIEVED[0]);
+        let best = if is_winding { winding.as_ref() } else { best };
         let azimuth = best.map_or(steady.direction.azimuth, |best| best.azimuth);
         let sigma = libm::sqrt(steady.direction.variance);
         let used = best.map_or(Hypothesis::Steady, |best| best.model.hypothesis);
-        fit.protection = Protection::default();
+        let beyond = winding.as_ref().filter(|_| !is_winding);
+        let beyond = beyond.map_or(0.0, |winding| winding.protection(azimuth, sigma));
+        fit.protection = Protection { always: beyond, astray: beyond };
         for one in all().filter(|one| one.model.hypothesis != used && !is_beaten(one)) {
             let level = one.protection(azimuth, sigma);
-            let doubtful = one.model.hypothesis.doubtful(self.dwells.len());
-            if one.gain >= 0.5 * doubtful {
-                fit.protection.astray = fit.protection.astray.max(level);
-            }
-            if one.gain >= doubtful {
+            fit.protection.astray = fit.protection.astray.max(level);
+            if one.gain >= one.model.hypothesis.doubtful(self.dwells.len()) {
                 fit.protection.always = fit.protection.always.max(level);
             }
         }
@@ -245,17 +262,34 @@ impl Problem<'_> {
         [Hypothesis::Yawing, Hypothesis::Elliptic, drift, with, without]
     }
 
+    /// A drift that bends twice, where one that bends once explains most: no warm-up is a parabola. Its gain is
+    /// over that one.
+    fn winding(&self, bent: &Weighed, fit: &Fit, steady: &Trial) -> Option<Weighed> {
+        if bent.model.hypothesis != Hypothesis::Curved {
+            return None;
+        }
+        let winding = self.weighed(Hypothesis::Winding, fit, steady)?;
+        let explained = winding.explained - bent.explained;
+        Some(Weighed { explained, gain: explained / winding.scatter, ..winding })
+    }
+
     /// One hypothesis, with the trends of the steady fit or without those that it spares.
     fn weighed(&self, hypothesis: Hypothesis, fit: &Fit, steady: &Trial) -> Option<Weighed> {
         let with = self.weighed_with(&Model { hypothesis, ..fit.model }, fit, steady);
         let plain = Model { hypothesis, ..self.base() };
-        if hypothesis == Hypothesis::Curved || fit.model.is_as_plain_as(&plain) {
+        if matches!(hypothesis, Hypothesis::Curved | Hypothesis::Winding)
+            || fit.model.is_as_plain_as(&plain)
+        {
             return with;
         }
         let spared = self.weighed_with(&plain, fit, steady);
-        let spared = spared.map(|weighed| Weighed { gain: weighed.gain + SPARED, ..weighed });
+        let spared = spared.map(|weighed| Weighed {
+            explained: weighed.explained + SPARED * weighed.scatter,
+            gain: weighed.gain + SPARED,
+            ..weighed
+        });
         match (with, spared) {
-            (Some(with), Some(spared)) if with.gain > spared.gain => Some(with),
+            (Some(with), Some(spared)) if with.explained > spared.explained => Some(with),
             (with, spared) => spared.or(with),
         }
     }
@@ -282,30 +316,38 @@ impl Problem<'_> {
             if is_vague { f64::INFINITY } else { hypothesis.believed(self.dwells.len()) };
         Some(Weighed {
             model,
+            explained: steady.chi_square - trial.chi_square,
+            scatter: trial.scatter(),
             gain: trial.gain(steady.chi_square),
             belief: free.gain(fit.free_chi_square) / believed,
             azimuth: trial.direction.azimuth,
             sigma: libm::sqrt(trial.direction.variance),
             coefficient: trial.coefficient,
+            is_nested: fit.model.is_as_plain_as(&model),
         })
     }
 
-    /// The regression with a hypothesis and what it gives; of a step with its exact turn, not with ∂/∂A alone.
+    /// The regression with a hypothesis and what it gives; where that turns the base by more than ∂/∂A describes, with
+    /// the exact turn.
     fn followed(&self, model: &Model, fit: &Fit) -> Option<(Regression<COLUMNS>, Trial)> {
         let mut bent = fit.bent(model.hypothesis);
-        let is_step = matches!(model.hypothesis, Hypothesis::Stepped { .. });
-        let mut rounds = 0;
-        loop {
+        let hours = -self.dwells.first().map_or(0.0, |first| self.hours_to_end(first));
+        for round in 0.. {
             let regression = self.regression(&self.setting.noise, Dwell::taper_factor, &bent);
             let trial = self.trial(&regression, model)?;
-            if !is_step || rounds == ROUNDS || trial.coefficient.abs() < TURNED {
-                let coefficient = trial.coefficient + bent.turn;
+            let (known, turn) = match model.hypothesis {
+                Hypothesis::Stepped { .. } => (&mut bent.turn, trial.coefficient),
+                Hypothesis::Yawing => (&mut bent.rate, trial.coefficient * hours),
+                _ => return Some((regression, trial)),
+            };
+            let coefficient = trial.coefficient + *known;
+            if round == ROUNDS || turn.abs() < TURNED {
                 return Some((regression, Trial { coefficient, ..trial }));
             }
-            bent.turn += trial.coefficient;
+            *known = coefficient;
             bent.along = trial.direction.along();
-            rounds += 1;
         }
+        None
     }
 
     /// After which time the heading most likely stepped, s: where the residuals of a model show most of the
@@ -344,6 +386,11 @@ impl Trial {
 
     /// By how much chi-square is less than `before`, in the scatter that is left.
     fn gain(&self, before: f64) -> f64 {
-        (before - self.chi_square) / (self.chi_square / self.degrees.max(1) as f64).max(1.0)
+        (before - self.chi_square) / self.scatter()
+    }
+
+    /// The scatter that is left, as a part of the stated noise's variance; one at least.
+    fn scatter(&self) -> f64 {
+        (self.chi_square / self.degrees.max(1) as f64).max(1.0)
     }
 }

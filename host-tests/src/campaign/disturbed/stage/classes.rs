@@ -52,7 +52,7 @@ pub const CLASSES: &[Class] = &[
         severity: [3e-4, 3.0],
         unit: "°/min",
         wrong_allowed: 0.0,
-        draw: |seed, size| Bench::drawn(seed).with(faults::base_yaws, size),
+        draw: |seed, size| Bench::on_circle(seed).with(faults::base_yaws, size),
     },
     Class {
         name: "bias-steps",
