@@ -131,7 +131,7 @@ const EXACT_BIAS: f64 = 1e-9;
 /// Uncertainty of a bias of which nothing is known, g.
 const ANY_BIAS: f64 = 1.0;
 /// Scatter with which the first fit is weighted, and the least that the second believes, g.
-const SCATTER: [f64; 2] = [1e-4, 1e-8];
+const SCATTER: [f64; 2] = [1e-4, 5e-6];
 
 /// Squared significance from which a tilt rate or a counter-turning phasor is believed: two parts of which
 /// one of ten thousand healthy sessions has so much.
@@ -139,10 +139,14 @@ const BELIEVED: f64 = 18.4;
 /// The same of a step, which may be at any of sixty places.
 const STEP_BELIEVED: f64 = 22.0;
 /// What a scatter that is itself estimated adds to that bound, over its degrees of freedom (F instead of
-/// chi-square: 29 for ten of them, 18 for forty).
+/// chi-square), and what it adds to the rarer step's.
 const FEW: f64 = 11.0;
+const STEP_FEW: f64 = 25.0;
 /// 1σ of how fast a base tilts that does, 1/s: 3 °/h.
 const FASTEST: f64 = 3.0 * DEGREE_PER_HOUR;
+
+/// Squared significance from which a tilt rate is more than chance: one of forty healthy sessions has so much.
+const SHOWN: f64 = 7.4;
 
 impl TiltRate {
     /// The same, for a base that tilts no faster than [`FASTEST`].
@@ -190,7 +194,9 @@ pub fn tilt_in<'a>(
     }
     let step = forces.weighted(bias, Beside::Step(after));
     // A step is searched for at many places, and there is one more thing to believe in.
-    let step = step.filter(|fit| fit.significance() > STEP_BELIEVED && fit.scatter < tilt.left);
+    let is_shown =
+        |fit: &Found| fit.significance() * fit.few(FEW) > STEP_BELIEVED * fit.few(STEP_FEW);
+    let step = step.filter(|fit| is_shown(fit) && fit.scatter < tilt.left);
     tilt.step = step.map(|fit| (after, libm::hypot(fit.beside[0], fit.beside[1])));
     let countering = |rate| {
         let counter = forces.weighted(bias, Beside::Counter(rate));
@@ -252,7 +258,7 @@ impl<'a, D: Iterator<Item = &'a Dwell> + Clone> Forces<'_, D> {
     #[inline(never)]
     fn weighted(&self, bias_sigma: f64, beside: Beside) -> Option<Found> {
         let first = self.fit(bias_sigma, SCATTER[0], beside)?;
-        let scatter = first.scatter.max(SCATTER[1]);
+        let scatter = first.scatter.max(SCATTER[1]) * libm::sqrt(first.few(FEW));
         Some(self.fit(bias_sigma, scatter, beside).unwrap_or(first))
     }
 
@@ -365,9 +371,13 @@ impl Found {
 
     /// Squared significance of what was fitted beside, as [`BELIEVED`] counts it.
     fn significance(&self) -> f64 {
-        let known = 1.0 + FEW / self.freedom;
         inverted(&self.beside_covariance)
-            .map_or(0.0, |information| quadratic(&information, self.beside) / known)
+            .map_or(0.0, |information| quadratic(&information, self.beside))
+    }
+
+    /// By how much a variance that rests on this scatter is greater for its few degrees of freedom.
+    fn few(&self, few: f64) -> f64 {
+        1.0 + few / self.freedom
     }
 
     /// The tilt where this one changes: believed where it is significant, else unproven.
@@ -377,6 +387,7 @@ impl Found {
         if significance > BELIEVED {
             return Tilt { rate: found, ..self.tilt(standing.time, standing.scatter) };
         }
-        Tilt { unproven: found.possible(), ..standing }
+        let unproven = if significance > SHOWN { found.possible() } else { TiltRate::default() };
+        Tilt { unproven, ..standing }
     }
 }
