@@ -61,7 +61,7 @@ const BELIEVED: [f64; 2] = [15.1, 18.4];
 /// Gain from which a step is believed for each place at which it may be: p = 0.0002 over all of them.
 const STEP_BELIEVED: f64 = 13.8;
 /// By how much a hypothesis may raise the variance of the azimuth; beyond, the dwells do not show it.
-pub(super) const OBSERVABLE: f64 = 1000.0;
+pub(super) const OBSERVABLE: f64 = 100.0;
 /// Chi-square of one degree of freedom that noise exceeds with a probability of 0.025.
 const DOUBTFUL: f64 = 5.02;
 /// σ of an alternative's azimuth by which it may be farther away than it shows: one of fifty is.
