@@ -144,7 +144,6 @@ const FEW: f64 = 11.0;
 const STEP_FEW: f64 = 25.0;
 /// 1σ of how fast a base tilts that does, 1/s: 3 °/h.
 const FASTEST: f64 = 3.0 * DEGREE_PER_HOUR;
-
 /// Squared significance from which a tilt rate is more than chance: one of forty healthy sessions has so much.
 const SHOWN: f64 = 7.4;
 

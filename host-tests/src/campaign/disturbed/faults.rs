@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use hal_mock::gyro::DEGREE_PER_HOUR;
 use hal_mock::stage::Harmonic;
 use hal_mock::temperature::TemperatureConfiguration;
 
@@ -10,8 +11,6 @@ use super::chance::Chance;
 use super::gyro::Drift;
 use super::unit::Rig;
 
-/// rad/s of one °/h.
-const DEGREE_PER_HOUR: f64 = TAU / 360.0 / 3600.0;
 /// m/s² of a thousandth of gravity.
 const MILLI_G: f64 = 9.81e-3;
 

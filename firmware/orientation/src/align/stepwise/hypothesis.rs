@@ -160,8 +160,6 @@ struct Weighed {
     explained: f64,
     /// Scatter that it leaves, as a part of the stated noise's variance; one at least.
     scatter: f64,
-    /// What it explains, in the scatter that it leaves.
-    gain: f64,
     /// The gain with the Earth rate free, over that from which the hypothesis is believed.
     belief: f64,
     /// The azimuth under it, rad, and its 1σ.
@@ -174,10 +172,15 @@ struct Weighed {
 }
 
 impl Weighed {
+    /// What it explains, in the scatter that it leaves.
+    fn gain(&self) -> f64 {
+        self.explained / self.scatter
+    }
+
     /// How far an azimuth with its 1σ may be off under it, rad: no farther than its gain allows where it only adds to
     /// the steady fit, and of a step either side may be the right one.
     fn protection(&self, azimuth: f64, sigma: f64) -> f64 {
-        let allowed = libm::sqrt(self.gain.max(0.0)) * self.sigma;
+        let allowed = libm::sqrt(self.gain().max(0.0)) * self.sigma;
         let farthest = if self.is_nested { allowed } else { f64::INFINITY };
         let apart = |other: f64| separation(other, azimuth).min(farthest);
         let after = apart(self.azimuth) + MISSED * self.sigma;
@@ -200,7 +203,7 @@ impl Weighed {
     /// The step of the heading that it is.
     fn step(&self) -> Option<HeadingStep> {
         let Hypothesis::Stepped { after } = self.model.hypothesis else { return None };
-        let (angle, gain) = (self.coefficient, self.gain);
+        let (angle, gain) = (self.coefficient, self.gain());
         Some(HeadingStep { after, angle, gain, is_believed: self.belief >= 1.0 })
     }
 }
@@ -231,7 +234,7 @@ impl Problem<'_> {
         let is_beaten = |one: &Weighed| best.is_some_and(|best| best.beats(one));
         fit.step = step.filter(|step| !is_beaten(step)).and_then(Weighed::step);
         let winding = best.and_then(|bent| self.winding(bent, fit, steady));
-        let is_winding = winding.as_ref().is_some_and(|winding| winding.gain > BELIEVED[0]);
+        let is_winding = winding.as_ref().is_some_and(|winding| winding.gain() > BELIEVED[0]);
         let best = if is_winding { winding.as_ref() } else { best };
         let azimuth = best.map_or(steady.direction.azimuth, |best| best.azimuth);
         let sigma = libm::sqrt(steady.direction.variance);
@@ -242,7 +245,7 @@ impl Problem<'_> {
         for one in all().filter(|one| one.model.hypothesis != used && !is_beaten(one)) {
             let level = one.protection(azimuth, sigma);
             fit.protection.astray = fit.protection.astray.max(level);
-            if one.gain >= one.model.hypothesis.doubtful(self.dwells.len()) {
+            if one.gain() >= one.model.hypothesis.doubtful(self.dwells.len()) {
                 fit.protection.always = fit.protection.always.max(level);
             }
         }
@@ -269,8 +272,7 @@ impl Problem<'_> {
             return None;
         }
         let winding = self.weighed(Hypothesis::Winding, fit, steady)?;
-        let explained = winding.explained - bent.explained;
-        Some(Weighed { explained, gain: explained / winding.scatter, ..winding })
+        Some(Weighed { explained: winding.explained - bent.explained, ..winding })
     }
 
     /// One hypothesis, with the trends of the steady fit or without those that it spares.
@@ -285,7 +287,6 @@ impl Problem<'_> {
         let spared = self.weighed_with(&plain, fit, steady);
         let spared = spared.map(|weighed| Weighed {
             explained: weighed.explained + SPARED * weighed.scatter,
-            gain: weighed.gain + SPARED,
             ..weighed
         });
         match (with, spared) {
@@ -318,7 +319,6 @@ impl Problem<'_> {
             model,
             explained: steady.chi_square - trial.chi_square,
             scatter: trial.scatter(),
-            gain: trial.gain(steady.chi_square),
             belief: free.gain(fit.free_chi_square) / believed,
             azimuth: trial.direction.azimuth,
             sigma: libm::sqrt(trial.direction.variance),
@@ -332,7 +332,8 @@ impl Problem<'_> {
     fn followed(&self, model: &Model, fit: &Fit) -> Option<(Regression<COLUMNS>, Trial)> {
         let mut bent = fit.bent(model.hypothesis);
         let hours = -self.dwells.first().map_or(0.0, |first| self.hours_to_end(first));
-        for round in 0.. {
+        let mut rounds = 0;
+        loop {
             let regression = self.regression(&self.setting.noise, Dwell::taper_factor, &bent);
             let trial = self.trial(&regression, model)?;
             let (known, turn) = match model.hypothesis {
@@ -341,13 +342,13 @@ impl Problem<'_> {
                 _ => return Some((regression, trial)),
             };
             let coefficient = trial.coefficient + *known;
-            if round == ROUNDS || turn.abs() < TURNED {
+            if rounds == ROUNDS || turn.abs() < TURNED {
                 return Some((regression, Trial { coefficient, ..trial }));
             }
             *known = coefficient;
             bent.along = trial.direction.along();
+            rounds += 1;
         }
-        None
     }
 
     /// After which time the heading most likely stepped, s: where the residuals of a model show most of the
