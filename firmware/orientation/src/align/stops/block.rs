@@ -2,13 +2,18 @@
 
 use heapless::Vec;
 
-use crate::math::rotation::sum;
+use crate::math::rotation::{dot, sum};
 use crate::signal::strapdown::Rough;
 
 /// Most blocks of all stops together.
 pub const AT_REST: usize = 64;
 /// Most blocks of all drives together.
 pub const DRIVEN: usize = 24;
+/// Least rows of three blocks from which their scatter is taken.
+const LEAST_TRIPLETS: f64 = 4.0;
+/// Variance of a velocity that comes and goes within a block, over the seconds of a block times what the scatter
+/// loses when blocks are joined: as second difference of its change, 20/6 of it over the seconds, half of which goes.
+const SWINGING: f64 = 0.6;
 
 /// Some time at rest, or on the way.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -54,13 +59,15 @@ impl Block {
 pub struct Blocks<const N: usize> {
     blocks: Vec<Block, N>,
     span: f32,
+    /// What [`Self::swing`] tells.
+    swing: f64,
 }
 
 impl<const N: usize> Blocks<N> {
     /// None, which last for so many seconds as long as there is room.
     #[must_use]
     pub const fn new(span: f32) -> Self {
-        Self { blocks: Vec::new(), span }
+        Self { blocks: Vec::new(), span, swing: 0.0 }
     }
 
     /// Takes the next, which comes later than all before it.
@@ -81,6 +88,7 @@ impl<const N: usize> Blocks<N> {
 
     /// Joins neighbours of a stop.
     pub fn halve(&mut self) {
+        let (span, scatter) = (f64::from(self.span), self.scatter());
         self.span *= 2.0;
         let mut kept: usize = 0;
         let mut next = 0;
@@ -92,6 +100,7 @@ impl<const N: usize> Blocks<N> {
             kept += 1;
         }
         self.blocks.truncate(kept);
+        self.swing = self.swing.max(SWINGING * span * (scatter - self.scatter()));
     }
 
     /// Takes those of the last stop out, which is none.
@@ -99,6 +108,26 @@ impl<const N: usize> Blocks<N> {
         while self.blocks.last().is_some_and(|block| usize::from(block.stop) == stop) {
             self.blocks.pop();
         }
+    }
+
+    /// Power of what moves the forces from block to block, (m/s²)²·s; zero of too few.
+    #[must_use]
+    pub fn scatter(&self) -> f64 {
+        let (mut power, mut count) = (0.0, 0.0);
+        for [a, b, c] in self.blocks.array_windows::<3>() {
+            if a.stop == c.stop {
+                power += second_difference(a, b, c);
+                count += 1.0;
+            }
+        }
+        if count < LEAST_TRIPLETS { 0.0 } else { power / count }
+    }
+
+    /// Variance of the velocity with which the body swayed, (m/s)², by what the blocks scattered less once they had
+    /// been joined: longer blocks may hide a sway, of which only the velocities at both ends of a stop remain.
+    #[must_use]
+    pub fn swing(&self) -> f64 {
+        self.swing
     }
 
     /// All of them.
@@ -111,4 +140,14 @@ impl<const N: usize> Blocks<N> {
     pub fn of(&self, stop: usize) -> impl Iterator<Item = &Block> + Clone {
         self.blocks.iter().filter(move |block| usize::from(block.stop) == stop)
     }
+}
+
+/// Power that three blocks in a row show across the vertical: a line through them, as the Earth draws it,
+/// shows none.
+fn second_difference(a: &Block, b: &Block, c: &Block) -> f64 {
+    let bend: [f32; 3] =
+        core::array::from_fn(|axis| a.force[axis] - 2.0 * b.force[axis] + c.force[axis]);
+    let upward = dot(&bend, &b.force);
+    let across = dot(&bend, &bend) - upward * upward / dot(&b.force, &b.force);
+    f64::from(across * b.seconds) / 12.0
 }

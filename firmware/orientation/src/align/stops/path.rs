@@ -1,7 +1,7 @@
 //! All that is kept of a vehicle's way from its first stop to now.
 
 use super::Setting;
-use super::block::{AT_REST, Block, Blocks, DRIVEN};
+use super::block::{AT_REST, Blocks, DRIVEN};
 use super::place::Place;
 use super::stop::Stop;
 use crate::math::rotation::{Vector, difference, dot, transposed};
@@ -9,8 +9,9 @@ use crate::signal::strapdown::Carried;
 
 /// Least power of the accelerometers' noise that is believed, (m/s²)²·s: 1 µg/√Hz.
 const LEAST_DENSITY: f64 = 1e-10;
-/// Least rows of three blocks from which their scatter is taken.
-const LEAST_TRIPLETS: f64 = 4.0;
+/// Power of white forces that blurs a slope over some seconds as much as the velocities at both ends do, over their
+/// variance and times those seconds: 12 of the slope's, 2 · 36 of the velocities'.
+const OF_ENDS: f64 = 6.0;
 
 /// A vehicle's way.
 #[derive(Clone, Copy, Debug)]
@@ -76,18 +77,12 @@ impl Path<'_> {
         transposed(&gained).map(|column| dot(about, &column))
     }
 
-    /// Power of what moves the forces from block to block, (m/s²)²·s: the accelerometers' noise, sway.
+    /// Power of what moves the forces, (m/s²)²·s: the accelerometers' noise, and sway.
     #[must_use]
     pub fn density(&self) -> f64 {
-        let (mut power, mut count) = (0.0, 0.0);
-        for [a, b, c] in self.blocks.all().array_windows::<3>() {
-            if a.stop == c.stop {
-                power += second_difference(a, b, c);
-                count += 1.0;
-            }
-        }
-        let scatter = if count < LEAST_TRIPLETS { 0.0 } else { power / count };
-        scatter.max(self.least_density())
+        let stood: f64 = self.stops.iter().map(Stop::seconds).sum();
+        let of_ends = OF_ENDS * self.blocks.swing() / stood.max(1.0);
+        self.blocks.scatter().max(of_ends).max(self.least_density())
     }
 
     /// Power of the accelerometers' noise alone, (m/s²)²·s.
@@ -95,14 +90,4 @@ impl Path<'_> {
     pub fn least_density(&self) -> f64 {
         self.stated_density.max(LEAST_DENSITY)
     }
-}
-
-/// Power that three blocks in a row show across the vertical: a line through them, as the Earth draws it,
-/// shows none.
-fn second_difference(a: &Block, b: &Block, c: &Block) -> f64 {
-    let bend: [f32; 3] =
-        core::array::from_fn(|axis| a.force[axis] - 2.0 * b.force[axis] + c.force[axis]);
-    let upward = dot(&bend, &b.force);
-    let across = dot(&bend, &bend) - upward * upward / dot(&b.force, &b.force);
-    f64::from(across * b.seconds) / 12.0
 }
