@@ -121,6 +121,14 @@ pub fn paper(random: &mut Random) -> Case {
     Case::clean(azimuth, 60, step).disturbed(random, 1.48e-3, 0.001)
 }
 
+/// A case of 127 to 1 024 positions, with noise from hardly any to what hides the signal.
+pub fn long(random: &mut Random) -> Case {
+    let (azimuth, count) = (std::f64::consts::TAU * random.unit(), random.integer(127, 1024));
+    let step = random.integer(1, 64_799) * (2 * random.integer(0, 1) - 1);
+    let (sigma, drift) = (10_f64.powf(8.0 * random.unit() - 6.0), random.normal());
+    Case::clean(azimuth, count, step).disturbed(random, sigma, drift)
+}
+
 /// A case made to break a search; `kind` is taken modulo 10.
 pub fn adversarial(random: &mut Random, kind: usize) -> Case {
     let grid = std::f64::consts::TAU / f64::from(TURN);

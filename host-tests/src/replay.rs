@@ -6,7 +6,7 @@
 
 use std::fmt;
 
-use orientation::align::POSITIONS;
+use orientation::align::CAPACITY;
 use orientation::align::criterion::Criterion;
 use orientation::align::setting::{Half, Setting};
 use orientation::earth::Latitude;
@@ -197,7 +197,7 @@ impl fmt::Display for ReplayError {
             Self::TooManyPositions(found) => {
                 write!(
                     f,
-                    "column stage_rad: {found} positions are more than the {POSITIONS} that a \
+                    "column stage_rad: {found} positions are more than the {CAPACITY} that a \
                      session holds: split the recording, or average neighbours into kind dwells"
                 )
             }

@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use bench::oracle::{
-    CRITERIA, Case, Outcome, Random, TURN, adversarial, compare, ordinary, paper, unfolded,
+    CRITERIA, Case, Outcome, Random, TURN, adversarial, compare, long, ordinary, paper, unfolded,
 };
 use orientation::align::etalon::series::CAPACITY;
 use orientation::align::etalon::table::{CHECKSUM, ENTRIES, QUARTER_COSINE};
@@ -152,6 +152,11 @@ fn the_papers_settings_give_the_answer_of_the_brute_force_with_few_evaluations()
 #[test]
 fn adversarial_series_give_the_answer_of_the_brute_force() {
     agree(400, adversarial);
+}
+
+#[test]
+fn more_positions_than_short_sums_can_hold_give_the_answer_of_the_brute_force() {
+    agree(24, |random, _| long(random));
 }
 
 #[test]

@@ -6,7 +6,8 @@ use std::path::Path;
 
 use bench::output::azimuth_error;
 use bench::recording::{self, Header};
-use bench::replay::{Options, Replay, replay};
+use bench::replay::{Options, Replay, ReplayError, replay};
+use hal_mock::noise::Generator;
 use orientation::align::conclusion::Conclusion;
 use orientation::align::criterion::Criterion;
 use orientation::align::quality::Disturbance;
@@ -224,6 +225,51 @@ fn rows_of_averaged_dwells_give_the_same_north_as_their_samples() {
     let conclusion = replay.session.conclusion().expect("it has ended");
     let (a, b) = (conclusion.verdict.expect("ok"), sampled.conclusion().verdict.expect("ok"));
     assert!((a.angle - b.angle).abs() < 1e-9 && (a.sigma - b.sigma).abs() < 1e-9, "{a:?} {b:?}");
+}
+
+/// A recording of so many dwells of 10 s in steps of 42° at 55.75°, whose noise is that of 0.001 °/√h, and its 1σ in
+/// rad/s.
+fn dwells(count: usize, azimuth_deg: f64) -> (String, f64) {
+    let sigma = 0.001_f64.to_radians() / 60.0 / 10.0_f64.sqrt();
+    let horizontal = 15.041_067_f64.to_radians() / 3600.0 * 55.75_f64.to_radians().cos();
+    let mut noise = Generator::stream(1, 1);
+    let mut text = String::from("# kind: dwells\n# latitude_deg: 55.75\n");
+    text += "# gyro_N_deg_sqrt_h: 0.001\n# gyro_B_deg_h: 0\n# gyro_K_deg_h_sqrt_h: 0\n";
+    text += "# gyro_R_deg_h2: 0\n# gyro_scale_sigma: 0.0001\n";
+    text += "stage_rad,rate_rad_s,sigma_rad_s,seconds\n";
+    for index in 0..count {
+        let stage = (42.0 * index as f64).rem_euclid(360.0).to_radians();
+        let rate = horizontal * (azimuth_deg.to_radians() + stage).cos() + sigma * noise.gaussian();
+        writeln!(text, "{stage:e},{:e},{sigma:e},10", rate + 1e-7).expect("strings take all");
+    }
+    (text, sigma / horizontal)
+}
+
+fn replayed_dwells(text: &str, options: &Options) -> Result<Replay, ReplayError> {
+    let recording = recording::read_from("dwells.csv", text.as_bytes()).expect("it reads");
+    let (header, body, _) = recording.into_parts();
+    replay(&header, &body, options, |_| {})
+}
+
+#[test]
+fn a_thousand_positions_are_one_alignment_and_one_more_is_refused() {
+    let azimuth_deg = 213.7;
+    let (text, sigma) = dwells(1024, azimuth_deg);
+    for criterion in [Criterion::MaximumLikelihood, Criterion::OnTable, Criterion::LeastAbsolute] {
+        let options = Options { criterion, ..Options::default() };
+        let replay = replayed_dwells(&text, &options).expect("it replays");
+        let conclusion = replay.session.conclusion().expect("it has ended");
+        let azimuth = conclusion.verdict.expect("there is an azimuth");
+        let error = azimuth_error(azimuth.angle.to_degrees(), azimuth_deg).to_radians();
+        assert!(error.abs() < 3.5 * azimuth.sigma, "{criterion:?}: {error} ± {}", azimuth.sigma);
+        // √(2/n) σ of a dwell over the Earth rate, for positions spread over the circle.
+        let limit = conclusion.fit.as_ref().expect("there is a fit").limit;
+        let expected = sigma * (2.0_f64 / 1024.0).sqrt();
+        assert!((limit / expected - 1.0).abs() < 0.02, "{criterion:?}: {limit} {expected}");
+    }
+    let (text, _) = dwells(1025, azimuth_deg);
+    let error = replayed_dwells(&text, &Options::default()).err().map(|error| error.to_string());
+    assert!(error.is_some_and(|words| words.contains("1025 positions are more than the 1024")));
 }
 
 #[test]

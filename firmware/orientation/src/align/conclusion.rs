@@ -8,7 +8,7 @@ use super::level::{self, Tilt};
 use super::quality::{self, Disturbance, Norm};
 use super::setting::Setting;
 use super::stepwise::{FEW_DEGREES, Fit, Found, HeadingStep, Problem, Residual};
-use super::{POSITIONS, different_positions};
+use super::{CAPACITY, different_positions};
 use crate::error::Refusal;
 use crate::math::chi_square_tail;
 use crate::signal::dwell::Dwell;
@@ -69,9 +69,9 @@ pub struct Conclusion {
     /// Angle random walk used, rad/√s.
     pub angle_random_walk: f64,
     /// For each dwell, why it was left out.
-    pub disturbances: Vec<Option<Disturbance>, POSITIONS>,
+    pub disturbances: Vec<Option<Disturbance>, CAPACITY>,
     /// For each dwell, its residual; zero where it was left out.
-    pub residuals: Vec<Residual, POSITIONS>,
+    pub residuals: Vec<Residual, CAPACITY>,
 }
 
 impl Default for Conclusion {
@@ -151,7 +151,7 @@ impl Conclusion {
     fn fit_undisturbed(&mut self, setting: &Setting, dwells: &[Dwell]) -> Result<(), Refusal> {
         let mut scatter: f64 = 1.0;
         loop {
-            let kept: Vec<&Dwell, POSITIONS> = self.kept(dwells).map(|(_, dwell)| dwell).collect();
+            let kept: Vec<&Dwell, CAPACITY> = self.kept(dwells).map(|(_, dwell)| dwell).collect();
             Self::enough(setting, dwells.len(), &kept)
                 .map_err(|why| cause::of(why, setting, dwells))?;
             if !setting.white_known {
@@ -334,7 +334,7 @@ impl Conclusion {
         if fit.degrees > 0 && chi_square_tail(fit.chi_square, degrees) < least {
             return Err(Refusal::ResidualsNotWhite { ratio: excess(fit) });
         }
-        let kept: Vec<f64, POSITIONS> = (self.residuals.iter().zip(&self.disturbances))
+        let kept: Vec<f64, CAPACITY> = (self.residuals.iter().zip(&self.disturbances))
             .filter(|(_, why)| why.is_none())
             .map(|(residual, _)| residual.normalised)
             .collect();
@@ -356,7 +356,7 @@ impl Conclusion {
         fit: &Fit,
         criterion: Criterion,
     ) -> Result<Azimuth, Refusal> {
-        let kept: Vec<&Dwell, POSITIONS> = self.kept(dwells).map(|(_, dwell)| dwell).collect();
+        let kept: Vec<&Dwell, CAPACITY> = self.kept(dwells).map(|(_, dwell)| dwell).collect();
         let white = self.angle_random_walk * self.angle_random_walk;
         let problem = Problem { setting, tilt: &self.tilt, white, dwells: &kept };
         let azimuth = match criterion {

@@ -6,7 +6,7 @@
 
 use heapless::Vec;
 
-use super::POSITIONS;
+use super::CAPACITY;
 use super::conclusion::Azimuth;
 use super::etalon::table::{ONE, STEP};
 use super::etalon::{self, Accepted, Limit, Series, Table};
@@ -36,7 +36,7 @@ pub enum Criterion {
 
 /// Dwells at equal steps, in the order of their angle.
 struct Row<'a> {
-    dwells: Vec<&'a Dwell, POSITIONS>,
+    dwells: Vec<&'a Dwell, CAPACITY>,
     /// Step in grid steps of 10″, clockwise positive.
     step: i32,
 }
@@ -94,7 +94,7 @@ fn accepted(series: &Series, limit: Limit) -> Result<(f64, f64), Refusal> {
 impl<'a> Row<'a> {
     /// The dwells as they came, or else sorted by angle; `None` where their steps are uneven.
     fn of(dwells: &[&'a Dwell]) -> Option<Self> {
-        let mut dwells: Vec<&Dwell, POSITIONS> = Vec::from_slice(dwells).ok()?;
+        let mut dwells: Vec<&Dwell, CAPACITY> = Vec::from_slice(dwells).ok()?;
         if let Some(step) = even_step(&dwells) {
             return Some(Self { dwells, step });
         }
@@ -106,7 +106,7 @@ impl<'a> Row<'a> {
     }
 
     /// What a change of azimuth does to each difference, ∂δ/∂A in units of `Ω_h`.
-    fn slopes(&self, first: f64) -> Vec<f64, POSITIONS> {
+    fn slopes(&self, first: f64) -> Vec<f64, CAPACITY> {
         let step = f64::from(self.step) * STEP;
         let sine = |index: usize| libm::sin(first + index as f64 * step);
         (1..self.dwells.len()).map(|index| sine(index - 1) - sine(index)).collect()

@@ -17,8 +17,11 @@ pub mod stops;
 
 use crate::signal::dwell::Dwell;
 
-/// Most positions that one alignment can hold.
+/// Most positions of a plan, and of an alignment on the board.
 pub const POSITIONS: usize = 64;
+/// Most dwells that an alignment can hold: those of the board, or with the feature `recordings` as many as a long
+/// recording has.
+pub const CAPACITY: usize = if cfg!(feature = "recordings") { 1024 } else { POSITIONS };
 
 /// Angles closer than this are the same position, rad.
 const SAME_POSITION: f64 = 1e-3;

@@ -5,7 +5,7 @@
 //! noise; where that is unknown, against the median of the dwells.
 
 use super::setting::Setting;
-use super::{POSITIONS, level};
+use super::{CAPACITY, level};
 use crate::math::rotation::length;
 use crate::math::{chi_square_tail, median};
 use crate::signal::blocks::Quietness;
@@ -221,7 +221,7 @@ fn force_of(dwell: &Dwell) -> Option<f64> {
 
 /// The median of one value a dwell.
 pub(super) fn median_of(values: impl Iterator<Item = f64>) -> f64 {
-    median(&mut values.take(POSITIONS).collect::<heapless::Vec<f64, POSITIONS>>())
+    median(&mut values.take(CAPACITY).collect::<heapless::Vec<f64, CAPACITY>>())
 }
 
 /// Marks the dwells whose accelerometer reading does not fit the tilt of the others.
@@ -235,11 +235,11 @@ pub fn moved(
     tilt: &level::Tilt,
     mark: &mut [Option<Disturbance>],
 ) {
-    let deviations: heapless::Vec<[f64; 2], POSITIONS> = dwells
+    let deviations: heapless::Vec<[f64; 2], CAPACITY> = dwells
         .iter()
         .map(|dwell| dwell.force.map_or([0.0; 2], |force| off_level(setting, dwell, force, tilt)))
         .collect();
-    let mut steps: heapless::Vec<f64, POSITIONS> = deviations
+    let mut steps: heapless::Vec<f64, CAPACITY> = deviations
         .windows(2)
         .map(|pair| libm::hypot(pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]))
         .collect();
@@ -386,7 +386,7 @@ fn slope_density(dwells: &[Dwell]) -> f64 {
     let density = |quietness: &Quietness| {
         quietness.slope_unit() * quietness.slope_unit() / quietness.block_seconds
     };
-    let mut values: heapless::Vec<f64, POSITIONS> =
+    let mut values: heapless::Vec<f64, CAPACITY> =
         dwells.iter().filter_map(|dwell| dwell.quietness.as_ref().map(density)).collect();
     if values.len() < 3 {
         return 0.0;
@@ -396,7 +396,7 @@ fn slope_density(dwells: &[Dwell]) -> f64 {
 
 /// The slope that the dwells share; with fewer than three, none is known to be shared.
 fn slope_median(dwells: &[Dwell]) -> f64 {
-    let mut slopes: heapless::Vec<f64, POSITIONS> =
+    let mut slopes: heapless::Vec<f64, CAPACITY> =
         dwells.iter().filter_map(|dwell| dwell.quietness.as_ref().map(|q| q.slope)).collect();
     if slopes.len() < 3 { 0.0 } else { median(&mut slopes) }
 }

@@ -2,7 +2,7 @@
 
 use heapless::Vec;
 
-use crate::align::POSITIONS;
+use crate::align::{CAPACITY, POSITIONS};
 use crate::planner::order::Order;
 use crate::planner::{FEWEST, Plan};
 use crate::signal::dwell::Dwell;
@@ -24,7 +24,7 @@ pub struct Position {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Schedule {
     /// These, in this order.
-    Listed(Vec<Position, POSITIONS>),
+    Listed(Vec<Position, CAPACITY>),
     /// What the planner made of the gyro's noise.
     Planned(Plan),
     /// Sokolov's: equal steps from `start` towards growing rate. The first steps go clockwise until
@@ -77,7 +77,7 @@ impl StopRule {
 const DIRECTION_BOUND: f64 = 3.0;
 
 impl Schedule {
-    /// These positions in this order; `None` where they are more than [`POSITIONS`].
+    /// These positions in this order; `None` where they are more than [`CAPACITY`].
     #[must_use]
     pub fn listed(positions: &[Position]) -> Option<Self> {
         Vec::from_slice(positions).ok().map(Self::Listed)
@@ -87,7 +87,7 @@ impl Schedule {
     #[must_use]
     pub fn circle(positions: usize, seconds: f64) -> Self {
         let step = core::f64::consts::TAU / positions.max(1) as f64;
-        let list = (0..positions.min(POSITIONS))
+        let list = (0..positions.min(CAPACITY))
             .map(|index| Position { angle: index as f64 * step, seconds })
             .collect();
         Self::Listed(list)

@@ -7,7 +7,7 @@ use super::prepared::designed;
 use super::procedure::ProcedureError;
 use super::schedule::{Schedule, StopRule};
 use super::{Command, Session};
-use crate::align::POSITIONS;
+use crate::align::CAPACITY;
 use crate::error::Refusal;
 use crate::noise::allan::Allan;
 use crate::noise::fit::{Estimate, FitError, NoiseFit};
@@ -41,7 +41,7 @@ pub struct Survey {
 #[derive(Clone, Debug)]
 pub(super) enum Store {
     Survey(Allan),
-    Dwells(Vec<Dwell, POSITIONS>),
+    Dwells(Vec<Dwell, CAPACITY>),
 }
 
 impl Store {

@@ -30,13 +30,17 @@ impl Squares {
 
     /// The objective up to which the short arithmetic is exact.
     ///
-    /// Differences: J = Σe² ≤ 2⁶² bounds every |e| by 2³¹. Centred: J/n = ‖d − mean‖² ≤ 2⁵⁶ bounds
-    /// every |dᵢ − d₀| by √2 · 2²⁸ and their sum of squares by (1 + n) 2⁵⁶ < 2⁶³.
+    /// Differences: J = Σe² ≤ 2⁶² bounds every |e| by 2³¹. Centred: J/n = ‖d − mean‖² ≤ b bounds every
+    /// |dᵢ − d₀| by √(2b) and their sum of squares by (1 + n) b, which is less than 2⁶³ with b = 2⁵⁶ up to
+    /// 126 positions, and with b = 2⁶²/(1 + n) beyond.
     pub(super) fn small_limit(self, count: f64) -> f64 {
         const TWO_56: f64 = 72_057_594_037_927_936.0;
+        const TWO_62: f64 = 64.0 * TWO_56;
+        const MANY: f64 = 126.0;
         match self {
-            Self::Centred => count * TWO_56,
-            Self::Differences => 64.0 * TWO_56,
+            Self::Centred if count <= MANY => count * TWO_56,
+            Self::Centred => count * (TWO_62 / (1.0 + count)),
+            Self::Differences => TWO_62,
         }
     }
 }
@@ -93,7 +97,7 @@ fn differences(table: Table, series: &Series, k: i32) -> u128 {
     squares
 }
 
-/// Σ|dᵢ₊₁ − dᵢ| at grid index `k`; at most 63 · 2⁴².
+/// Σ|dᵢ₊₁ − dᵢ| at grid index `k`; at most 1 023 · 2⁴².
 pub(super) fn absolute(table: Table, series: &Series, k: i32) -> u64 {
     let mut before = first(table, series, k);
     let mut sum = 0;

@@ -5,7 +5,7 @@ use heapless::Vec;
 use super::table::{HALF, ONE, TURN};
 
 /// The most positions one series can hold.
-pub const CAPACITY: usize = 64;
+pub use crate::align::CAPACITY;
 
 /// Values are limited to ±2⁴⁰ table units (512 times the horizontal Earth rate), so that every sum
 /// of the exact search stays within its integer type.

@@ -28,7 +28,7 @@ struct Term {
 #[derive(Clone, Copy, Debug)]
 struct Crossing {
     at: f64,
-    term: u8,
+    term: u16,
     rises: bool,
 }
 
@@ -86,7 +86,7 @@ fn circle(position: f64) -> f64 {
     if (0.0..CIRCLE).contains(&turned) { turned } else { 0.0 }
 }
 
-/// The terms, their crossings in order, and the sum's first piece (3.6 KiB).
+/// The terms, their crossings in order, and the sum's first piece (3.6 KiB on the board).
 pub(super) struct Sweep {
     terms: Vec<Term, CAPACITY>,
     crossings: Vec<Crossing, { 2 * CAPACITY }>,
@@ -131,8 +131,9 @@ impl Sweep {
             self.cross(fall, false);
         }
         self.start.turn(term, if positive { 1.0 } else { -1.0 });
-        // One unit for the two entries, and the rounding of 128 partial sums.
-        self.rounding += 1.0 + (radius + fabs(offset)) * (128.0 * f64::EPSILON);
+        // One unit for the two entries, and the rounding of as many partial sums as there may be crossings.
+        const PARTIAL: f64 = (2 * CAPACITY) as f64;
+        self.rounding += 1.0 + (radius + fabs(offset)) * (PARTIAL * f64::EPSILON);
         // The table's cos A and sin A on the piece's sinusoid.
         self.rounding += 0.7072 * radius / ONE;
         // A series holds fewer terms than the capacity.
@@ -142,7 +143,7 @@ impl Sweep {
     /// Notes a crossing of the term that is being added.
     fn cross(&mut self, at: f64, rises: bool) {
         // Two for each of fewer terms than the capacity always fit.
-        let _ = self.crossings.push(Crossing { at, term: self.terms.len() as u8, rises });
+        let _ = self.crossings.push(Crossing { at, term: self.terms.len() as u16, rises });
     }
 
     /// A bound on the difference between a piece at a grid index and the exact sum there.
@@ -153,7 +154,7 @@ impl Sweep {
     /// The pieces from index 0 round the circle, empty ones included.
     pub(super) fn pieces(&self) -> impl Iterator<Item = Piece> + '_ {
         let mut state = self.start;
-        let end = Crossing { at: CIRCLE, term: u8::MAX, rises: false };
+        let end = Crossing { at: CIRCLE, term: u16::MAX, rises: false };
         self.crossings.iter().copied().chain(core::iter::once(end)).map(move |crossing| {
             let piece = Piece { to: crossing.at, ..state };
             state.from = crossing.at;
