@@ -5,14 +5,16 @@ use bench::campaign::disturbed::{healthy, row, stage};
 /// Runs of each class; `meridian campaign disturbed` does ten times as many.
 const RUNS: usize = 20;
 
-/// The faults of a stage of which some still get past, when they are just too small to be seen.
-const PASSING: [&str; 3] = ["base-tilting", "bias-steps", "random-walk"];
+/// The faults of a stage of which some still get past, when they are just too small to be seen: a rate of the base that
+/// shifts the last heading by five σ is hardly more than its own σ.
+const PASSING: [&str; 4] = ["base-tilting", "base-yawing", "bias-steps", "random-walk"];
 
 #[test]
 fn a_fault_that_the_dwells_show_is_answered_within_its_sigma_or_refused() {
-    for class in stage::CLASSES.iter().filter(|class| !PASSING.contains(&class.name)) {
+    for class in stage::CLASSES {
         let found = row(class, RUNS, &|| ());
-        assert_eq!(found.wrong, 0, "{found:?}");
+        let allowed = usize::from(PASSING.contains(&class.name));
+        assert!(found.wrong <= allowed, "{found:?}");
         // With so few harmless runs one refusal more than a tenth is chance.
         assert!(10 * found.harmless_answered + 10 >= 9 * found.harmless, "{found:?}");
     }

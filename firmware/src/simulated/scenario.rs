@@ -16,7 +16,7 @@ use orientation::noise::model::GyroNoise;
 use orientation::planner::order::Order;
 use orientation::planner::{Conditions, FEWEST, Rotation, for_sigma, for_time};
 use orientation::session::Prepared;
-use orientation::session::procedure::Procedure;
+use orientation::session::procedure::{CONVERTER_TOLERANCE, Procedure};
 use orientation::session::schedule::Schedule;
 use orientation::session::survey::Survey;
 use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR};
@@ -250,14 +250,18 @@ impl Scenario {
     /// How the board goes about it.
     #[must_use]
     pub fn procedure(&self) -> Procedure {
-        let circle = Schedule::circle(self.positions, self.dwell_s);
+        let circle = Schedule::closed_circle(self.positions, self.dwell_s);
         self.procedure_on(&Turning { rotation: ROTATION, orders: &Order::COMPARED, usual: circle })
     }
 
     /// The same on any mount.
     pub(super) fn procedure_on(&self, turning: &Turning) -> Procedure {
         let procedure = Procedure::new(self.schedule(turning), 1.0 / self.sample_rate_hz);
-        let mut procedure = Procedure { settle_seconds: RINGS_SECONDS, ..procedure };
+        let mut procedure = Procedure {
+            settle_seconds: RINGS_SECONDS,
+            period_tolerance: CONVERTER_TOLERANCE,
+            ..procedure
+        };
         if self.survey_s > 0.0 {
             procedure = procedure.after(self.survey(turning));
         }

@@ -282,10 +282,11 @@ const HEALTHY: usize = 15;
 fn disturbed(runs: usize, class: Option<&str>, as_json: bool) -> Result<Told, String> {
     let chosen: Vec<_> =
         disturbed::classes().filter(|of| class.is_none_or(|name| of.name == name)).collect();
-    let progress = Progress::new((chosen.len() * runs) as u64, "recordings");
+    let healthy_runs = if class.is_none() { HEALTHY * runs } else { 0 };
+    let progress = Progress::new((chosen.len() * runs + healthy_runs) as u64, "recordings");
     let tick = || progress.step();
     let healthy = match class {
-        None => disturbed::healthy(HEALTHY * runs, &tick),
+        None => disturbed::healthy(healthy_runs, &tick),
         Some(_) => Vec::new(),
     };
     let rows: Vec<_> = chosen.into_iter().map(|class| disturbed::row(class, runs, &tick)).collect();

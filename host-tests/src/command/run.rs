@@ -72,7 +72,7 @@ pub struct RunOptions {
     /// The half of the circle in which the board is told that the azimuth lies: two positions need it.
     #[arg(long, value_enum)]
     half: Option<Half>,
-    /// On a stage: positions on the full circle (24).
+    /// On a stage: positions on the full circle (24), to the first of which it comes once more at the end.
     #[arg(long, value_parser = whole::<2, 64>)]
     positions: Option<u64>,
     /// Seconds at each position (10).

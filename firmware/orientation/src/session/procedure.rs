@@ -23,6 +23,9 @@ pub const STILL: f64 = 20e-6;
 /// How far the samples' times may be off their period where nothing else is stated, relative: a recorder's clock
 /// is far better, a converter's own oscillator is not.
 pub(super) const PERIOD_TOLERANCE: f64 = 0.01;
+/// By how much the ADS1262's own oscillator may be off, 2 % (data sheet SBAS661C, §7.5: internal oscillator
+/// accuracy): what a board's samples keep to.
+pub const CONVERTER_TOLERANCE: f64 = 0.02;
 
 /// Refuses samples that take `found` s by their times where they take `told` s as told, beyond a tolerance.
 pub(super) fn contradiction(told: f64, found: f64, tolerance: f64) -> Option<Refusal> {

@@ -93,6 +93,18 @@ impl Schedule {
         Self::Listed(list)
     }
 
+    /// The same, and at its end the first position once more, a whole turn on: what drifts or creeps in step with the
+    /// stage differs there from what it was at the beginning. Without the repeat where there is no room for it.
+    #[must_use]
+    pub fn closed_circle(positions: usize, seconds: f64) -> Self {
+        let mut schedule = Self::circle(positions, seconds);
+        if let Self::Listed(list) = &mut schedule {
+            // There is none where the list is full.
+            let _ = list.push(Position { angle: core::f64::consts::TAU, seconds });
+        }
+        schedule
+    }
+
     /// How many positions there are.
     #[must_use]
     pub fn len(&self) -> usize {

@@ -32,7 +32,7 @@ use orientation::keep::{self, spin};
 use orientation::noise::model::GyroNoise;
 use orientation::planner::Rotation;
 use orientation::planner::order::Order;
-use orientation::session::procedure::Procedure;
+use orientation::session::procedure::{CONVERTER_TOLERANCE, Procedure};
 use orientation::session::rotating::Procedure as Turning;
 use orientation::session::schedule::Schedule;
 use orientation::session::stops::Procedure as Driving;
@@ -107,7 +107,7 @@ const SURVEY: Option<f64> = None;
 /// 1σ of the azimuth until which it goes on, °, and the time allowed, s, from the end of the survey or
 /// else from the beginning. `None`: it ends with its schedule.
 const ACCURACY: Option<(f64, f64)> = None;
-/// Positions on the full circle.
+/// Positions on the full circle, to the first of which the stage comes once more at the end.
 const POSITIONS: usize = 24;
 /// Time at each, s.
 const DWELL: f64 = 10.0;
@@ -134,10 +134,11 @@ pub fn setting() -> Setting {
 
 /// How the session goes about it.
 pub fn procedure() -> Procedure {
-    let schedule = Schedule::circle(POSITIONS, DWELL);
+    let schedule = Schedule::closed_circle(POSITIONS, DWELL);
     let plan_seconds = schedule.seconds();
     let procedure = Procedure::new(schedule, 1.0 / CONVERTER.rate.hertz());
-    let mut procedure = Procedure { settle_seconds: RINGING, ..procedure };
+    let mut procedure =
+        Procedure { settle_seconds: RINGING, period_tolerance: CONVERTER_TOLERANCE, ..procedure };
     if let Some(seconds) = SURVEY {
         let orders = &Order::COMPARED;
         procedure = procedure.after(Survey {

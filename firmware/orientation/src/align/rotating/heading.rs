@@ -22,7 +22,7 @@ const STEP_BELIEVED: f64 = 10.8;
 /// Gain from which it is doubtful whether the direction stays (p = 0.05), and what more it takes of a step at any of
 /// many places.
 const DOUBTFUL: f64 = 3.84;
-const STEP_DOUBTFUL: f64 = 2.2;
+const STEP_DOUBTFUL: f64 = 3.8;
 /// Part of the alignments in which the direction changes, before their turns are looked at, where these speak for it;
 /// and where not.
 const CHANGING: [f64; 2] = [0.03, 0.0003];

@@ -12,8 +12,8 @@ pub const DRIVEN: usize = 24;
 /// Least rows of three blocks from which their scatter is taken.
 const LEAST_TRIPLETS: f64 = 4.0;
 /// Variance of a velocity that comes and goes within a block, over the seconds of a block times what the scatter
-/// loses when blocks are joined: as second difference of its change, 20/6 of it over the seconds, half of which goes.
-const SWINGING: f64 = 0.6;
+/// loses when blocks are joined and hide it: as second difference of its change, all of 20/6 of it over the seconds.
+const SWINGING: f64 = 0.3;
 
 /// Some time at rest, or on the way.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -9,7 +9,7 @@
 
 use heapless::Vec;
 
-use super::procedure::{PERIOD_TOLERANCE, ProcedureError, contradiction};
+use super::procedure::{CONVERTER_TOLERANCE, PERIOD_TOLERANCE, ProcedureError, contradiction};
 use crate::align::stops::Setting;
 use crate::align::stops::conclusion::Conclusion;
 use crate::align::stops::follower::{Follower, Rests};
@@ -78,9 +78,6 @@ pub struct Procedure {
 
 /// Default length of a stop, s: Szymanowski's short levelling.
 const STOP_SECONDS: f64 = 60.0;
-/// By how much the ADS1262's own oscillator may be off, 2 % (data sheet SBAS661C, §7.5: internal oscillator
-/// accuracy): what a board's samples keep to.
-const CONVERTER_TOLERANCE: f64 = 0.02;
 /// Longest time for everything, s.
 const LONGEST_SECONDS: f64 = 6.0 * 3600.0;
 
