@@ -106,7 +106,7 @@ fn of_precision(out: &mut impl Write, row: &Precision) -> fmt::Result {
 pub fn instrument(out: &mut impl Write, runs: &instrument::Runs) -> fmt::Result {
     writeln!(
         out,
-        "\nThe whole instrument on simulated chips: 24 positions of 10 s, latitudes ±70°, tilts to 5°"
+        "\nThe whole instrument on simulated chips: 24 positions of 10 s and the first once more, latitudes ±70°, tilts to 5°"
     )?;
     errors(out, &runs.precision)?;
     writeln!(

@@ -43,15 +43,21 @@ fn thirty_minutes_of_driving_on_two_frames_stay_within_three_sigma() {
 
 #[test]
 fn a_stage_keeps_by_its_coarse_gyros_alone_and_says_how_well() {
-    let base = Scenario { positions: 8, dwell_s: 5.0, sample_rate_hz: 100.0, ..Scenario::usual(2) };
-    let scenario = Scenario { hold: Hold::of(600.0), has_base_imu: true, ..base };
-    let plan = KeptPlan::of(None);
-    let found = align_and_keep(&scenario, &plan, NoRecorder, &(), ()).expect("possible");
-    let [worst, within] = sigmas(&found.kept);
-    assert!(worst < 4.0 && within > 0.99, "{worst} σ, {within}");
-    let (_, [_, sigma]) = found.kept.with_azimuth().last().expect("it is kept");
-    // Micromechanical gyros: tenths of a degree after ten minutes, not hundredths.
-    assert!((0.1..5.0).contains(&sigma.to_degrees()), "{}°", sigma.to_degrees());
+    let kept = |seed| {
+        let usual = Scenario::usual(seed);
+        let base = Scenario { positions: 8, dwell_s: 5.0, sample_rate_hz: 100.0, ..usual };
+        let scenario = Scenario { hold: Hold::of(600.0), has_base_imu: true, ..base };
+        let plan = KeptPlan::of(None);
+        let found = align_and_keep(&scenario, &plan, NoRecorder, &(), ()).expect("possible");
+        let (_, [_, sigma]) = found.kept.with_azimuth().last().expect("it is kept");
+        // Micromechanical gyros: tenths of a degree after ten minutes, not hundredths.
+        assert!((0.1..5.0).contains(&sigma.to_degrees()), "{}°", sigma.to_degrees());
+        sigmas(&found.kept)
+    };
+    let drives: Vec<[f64; 2]> = (1..=6).map(kept).collect();
+    // In about one drive of eight σ is too small, for minutes or more: what coarse gyros lose there is not all in it.
+    let right = drives.iter().filter(|[worst, within]| *worst < 4.0 && *within > 0.99).count();
+    assert!(right >= 4, "{drives:?}");
 }
 
 #[test]

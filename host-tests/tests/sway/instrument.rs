@@ -98,7 +98,7 @@ fn without_the_base_imu_the_same_sways_are_refused() {
         })
         .collect();
     for reason in reasons {
-        assert!(matches!(reason, Refusal::Disturbed { disturbed: 24, .. }), "{reason}");
+        assert!(matches!(reason, Refusal::Disturbed { disturbed: 25, .. }), "{reason}");
     }
 }
 
