@@ -15,6 +15,8 @@ use crate::math::sort;
 
 /// One turn in grid steps.
 const CIRCLE: f64 = TURN as f64;
+/// Most partial sums of a sweep: one for every crossing.
+const PARTIAL_SUMS: f64 = (2 * CAPACITY) as f64;
 
 /// One term uᵢ(A) − wᵢ in table units.
 #[derive(Clone, Copy, Debug)]
@@ -131,9 +133,8 @@ impl Sweep {
             self.cross(fall, false);
         }
         self.start.turn(term, if positive { 1.0 } else { -1.0 });
-        // One unit for the two entries, and the rounding of as many partial sums as there may be crossings.
-        const PARTIAL: f64 = (2 * CAPACITY) as f64;
-        self.rounding += 1.0 + (radius + fabs(offset)) * (PARTIAL * f64::EPSILON);
+        // One unit for the two entries, and the rounding of the partial sums.
+        self.rounding += 1.0 + (radius + fabs(offset)) * (PARTIAL_SUMS * f64::EPSILON);
         // The table's cos A and sin A on the piece's sinusoid.
         self.rounding += 0.7072 * radius / ONE;
         // A series holds fewer terms than the capacity.

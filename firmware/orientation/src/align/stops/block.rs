@@ -57,7 +57,7 @@ impl Block {
 /// The blocks of all stops, or of all drives, in order.
 #[derive(Clone, Debug)]
 pub struct Blocks<const N: usize> {
-    blocks: Vec<Block, N>,
+    list: Vec<Block, N>,
     span: f32,
     /// What [`Self::swing`] tells.
     swing: f64,
@@ -67,23 +67,23 @@ impl<const N: usize> Blocks<N> {
     /// None, which last for so many seconds as long as there is room.
     #[must_use]
     pub const fn new(span: f32) -> Self {
-        Self { blocks: Vec::new(), span, swing: 0.0 }
+        Self { list: Vec::new(), span, swing: 0.0 }
     }
 
     /// Takes the next, which comes later than all before it.
     pub fn push(&mut self, block: Block) {
-        if let Some(last) = self.blocks.last_mut()
+        if let Some(last) = self.list.last_mut()
             && last.stop == block.stop
             && last.seconds + 0.5 * block.seconds < self.span
         {
             *last = last.joined(&block);
             return;
         }
-        if self.blocks.is_full() {
+        if self.list.is_full() {
             self.halve();
         }
         // Stops are fewer than half of the blocks, so there is room; the time of one block is no loss.
-        let _ = self.blocks.push(block);
+        let _ = self.list.push(block);
     }
 
     /// Joins neighbours of a stop.
@@ -92,21 +92,21 @@ impl<const N: usize> Blocks<N> {
         self.span *= 2.0;
         let mut kept: usize = 0;
         let mut next = 0;
-        while let Some(block) = self.blocks.get(next).copied() {
-            let partner = self.blocks.get(next + 1).filter(|other| other.stop == block.stop);
+        while let Some(block) = self.list.get(next).copied() {
+            let partner = self.list.get(next + 1).filter(|other| other.stop == block.stop);
             next += if partner.is_some() { 2 } else { 1 };
             let joined = partner.map_or(block, |other| block.joined(other));
-            self.blocks[kept] = joined;
+            self.list[kept] = joined;
             kept += 1;
         }
-        self.blocks.truncate(kept);
+        self.list.truncate(kept);
         self.swing = self.swing.max(SWINGING * span * (scatter - self.scatter()));
     }
 
     /// Takes those of the last stop out, which is none.
     pub fn forget(&mut self, stop: usize) {
-        while self.blocks.last().is_some_and(|block| usize::from(block.stop) == stop) {
-            self.blocks.pop();
+        while self.list.last().is_some_and(|block| usize::from(block.stop) == stop) {
+            self.list.pop();
         }
     }
 
@@ -114,7 +114,7 @@ impl<const N: usize> Blocks<N> {
     #[must_use]
     pub fn scatter(&self) -> f64 {
         let (mut power, mut count) = (0.0, 0.0);
-        for [a, b, c] in self.blocks.array_windows::<3>() {
+        for [a, b, c] in self.list.array_windows::<3>() {
             if a.stop == c.stop {
                 power += second_difference(a, b, c);
                 count += 1.0;
@@ -133,12 +133,12 @@ impl<const N: usize> Blocks<N> {
     /// All of them.
     #[must_use]
     pub fn all(&self) -> &[Block] {
-        &self.blocks
+        &self.list
     }
 
     /// Those of a stop.
     pub fn of(&self, stop: usize) -> impl Iterator<Item = &Block> + Clone {
-        self.blocks.iter().filter(move |block| usize::from(block.stop) == stop)
+        self.list.iter().filter(move |block| usize::from(block.stop) == stop)
     }
 }
 
