@@ -121,7 +121,7 @@ fn the_log_tells_what_the_board_did_in_order() {
         );
     }
     assert!(run.events.is_sorted_by_key(|(at, _)| *at));
-    assert!(run.lines.contains("measuring 5/8"));
+    assert!(run.lines.contains("measuring 5/9"));
     assert!(run.lines.ends_with("faults 0\r\n"), "{}", run.lines);
 }
 

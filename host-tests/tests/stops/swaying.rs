@@ -1,6 +1,7 @@
 //! A vehicle that stands and sways: gravity seen from inertial space does not care, plain averaging does.
 
-use hal_mock::plant::sway::SwayConfiguration;
+use hal_mock::noise::Generator;
+use hal_mock::plant::sway::{SwayComponent, SwayConfiguration};
 use hal_mock::vehicle::scenario::Scenario;
 use hal_mock::vehicle::{Leg, VehicleSample};
 use orientation::error::Refusal;
@@ -90,6 +91,49 @@ fn errors_of_a_swaying_vehicle_are_covered_by_sigma() {
     println!("parked and swaying: {ratio:.3} over σ, {} of 40 answered", ratios.len());
     assert!(ratio < 1.2, "{ratio}");
     assert!(ratios.iter().all(|ratio| ratio.abs() < 3.5), "{ratios:?}");
+}
+
+/// One to two minutes with gyros of a navigation grade and a sway that goes on half a cycle from one block of 5 s to the
+/// next, so that blocks of 10 s hide it.
+fn hidden(seed: u64) -> Day {
+    let mut draw = Generator::stream(seed, 17);
+    let mut between = |from: f64, to: f64| from + (to - from) * draw.uniform();
+    let mut scenario = Scenario::parked(seed, between(80.0, 140.0));
+    scenario.events.clear();
+    for gyro in &mut scenario.vehicle.gyros {
+        (gyro.n_deg_sqrt_h, gyro.bias_sigma_deg_h) = (0.002, 0.005);
+    }
+    let mut components = [SwayComponent::default(); 3];
+    components[0] = SwayComponent {
+        pitch_deg: 0.3,
+        roll_deg: -0.3,
+        frequency_hz: (between(1.0, 8.0).floor() + between(0.45, 0.55)) / 5.0,
+        phase_rad: between(0.0, std::f64::consts::TAU),
+        ..SwayComponent::default()
+    };
+    for leg in &mut scenario.legs {
+        if let Leg::Stop(stop) = leg {
+            stop.sway = SwayConfiguration { components };
+        }
+    }
+    let mut day = Day { rests: Kind::Whole, ..Day::new(scenario, seed) };
+    day.setting = known(52.0, 0.002, Some(0.005));
+    day
+}
+
+#[test]
+fn a_sway_that_long_blocks_hide_is_in_sigma() {
+    let ratios: Vec<f64> = (0..60_u64)
+        .into_par_iter()
+        .filter_map(|seed| {
+            let outcome = hidden(seed).run();
+            outcome.conclusion.verdict.is_ok().then(|| outcome.ratios()[1])
+        })
+        .collect();
+    let ratio = rms(ratios.iter().copied());
+    println!("a hidden sway: {ratio:.3} over σ, {} of 60 answered", ratios.len());
+    assert!(ratios.len() >= 40 && ratio < 1.2, "{ratio}, {}", ratios.len());
+    assert!(ratios.iter().all(|ratio| ratio.abs() < 5.0), "{ratios:?}");
 }
 
 #[test]
