@@ -91,6 +91,9 @@ fn takes_number(arg: &clap::Arg) -> bool {
     takes && !is_name && arg.get_possible_values().is_empty()
 }
 
+/// Stack of a campaign's thread, bytes: a session on the host has room for 1 024 dwells and passes over it.
+const STACK: usize = 16 << 20;
+
 fn main() -> ExitCode {
     let Asked { as_json, command, given } = match parse() {
         Ok(asked) => asked,
@@ -99,6 +102,8 @@ fn main() -> ExitCode {
     if let Err(wrong) = check(&command, &given) {
         return misused(&wrong);
     }
+    // Where there is a pool already, or no room for another one, that one serves.
+    let _ = rayon::ThreadPoolBuilder::new().stack_size(STACK).build_global();
     match tell(&command, &given, as_json) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),

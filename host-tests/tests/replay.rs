@@ -11,6 +11,7 @@ use hal_mock::noise::Generator;
 use orientation::align::conclusion::Conclusion;
 use orientation::align::criterion::Criterion;
 use orientation::align::quality::Disturbance;
+use orientation::align::setting::Half;
 use orientation::earth::Latitude;
 use orientation::error::{Refusal, Source};
 
@@ -165,6 +166,25 @@ fn a_wrong_latitude_is_noticed_by_the_earth_rate() {
     let replayed = replayed_with("stepwise-circle.csv.gz", &options);
     let verdict = replayed.conclusion().verdict;
     assert!(matches!(verdict, Err(Refusal::EarthRateMismatch { .. })), "{verdict:?}");
+}
+
+#[test]
+fn the_wrong_half_of_the_circle_gives_no_azimuth_that_is_wrong() {
+    for name in ALL {
+        for half in [Half::East, Half::West] {
+            let options = Options { half: Some(half), ..Options::default() };
+            let replayed = replayed_with(&format!("{name}.csv.gz"), &options);
+            let conclusion = replayed.conclusion();
+            let is_right = half.contains(replayed.truth_deg.to_radians());
+            match conclusion.verdict {
+                Ok(_) => {
+                    let (error, sigma) = replayed.error_and_sigma();
+                    assert!(error.abs() < 4.0 * sigma, "{name}, {half:?}: {error}° ± {sigma}°");
+                }
+                Err(reason) => assert!(!is_right, "{name}, {half:?}: {reason}"),
+            }
+        }
+    }
 }
 
 #[test]

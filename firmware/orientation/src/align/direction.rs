@@ -85,6 +85,10 @@ impl Direction {
 /// Directions in which J is sampled before it is refined; two minima cannot hide between them.
 const SCAN: usize = 64;
 
+/// Chi-square by which an azimuth of the stated half may fit worse than one of the other (5 σ): two opposite positions
+/// fit both alike, and noise moves an azimuth little across the axis between the halves.
+const OTHER_HALF: f64 = 25.0;
+
 /// J(A) and its parts.
 struct Profile {
     information: [[f64; 2]; 2],
@@ -102,7 +106,7 @@ impl Components {
     }
 
     /// The most likely azimuth; `None` where the covariance is not positive, or where no azimuth of
-    /// the known half fits better than its neighbours.
+    /// the known half fits better than its neighbours, or nearly as well as the best of the other half.
     #[must_use]
     pub fn direction(&self, amplitude: Amplitude) -> Option<Direction> {
         let profile = Profile::new(self, amplitude)?;
@@ -154,16 +158,18 @@ impl Profile {
         let step = core::f64::consts::TAU / SCAN as f64;
         let sampled: [f64; SCAN] = core::array::from_fn(|k| self.towards(of_table(k)).0);
         let (mut best, mut second) = ((0.0, f64::INFINITY), f64::INFINITY);
+        let mut least = f64::INFINITY;
         for k in 0..SCAN {
             let (before, after) = (sampled[(k + SCAN - 1) % SCAN], sampled[(k + 1) % SCAN]);
             if sampled[k] > before || sampled[k] >= after {
                 continue;
             }
             let azimuth = self.refine(k as f64 * step, step);
+            let value = self.at(azimuth).0;
+            least = least.min(value);
             if self.half.is_some_and(|half| !half.contains(azimuth)) {
                 continue;
             }
-            let value = self.at(azimuth).0;
             if value < best.1 {
                 second = best.1;
                 best = (azimuth, value);
@@ -172,7 +178,8 @@ impl Profile {
             }
         }
         let margin = if second.is_finite() { second - best.1 } else { f64::INFINITY };
-        best.1.is_finite().then_some((best.0, margin))
+        let is_best = best.1.is_finite() && best.1 - least <= OTHER_HALF;
+        is_best.then_some((best.0, margin))
     }
 
     /// Follows the parabola through three points, halving its width, never further than `step`.
