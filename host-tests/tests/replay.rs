@@ -239,9 +239,7 @@ fn rows_of_averaged_dwells_give_the_same_north_as_their_samples() {
         writeln!(text, "{stage:e},{rate:e},{sigma:e},{seconds},{middle},{x:e},{y:e},{z:e}")
             .expect("strings take all");
     }
-    let (header, body, _) =
-        recording::read_from("dwells.csv", text.as_bytes()).expect("it reads").into_parts();
-    let replay = replay(&header, &body, &Options::default(), |_| {}).expect("it replays");
+    let replay = replayed_dwells(&text, &Options::default()).expect("it replays");
     let conclusion = replay.session.conclusion().expect("it has ended");
     let (a, b) = (conclusion.verdict.expect("ok"), sampled.conclusion().verdict.expect("ok"));
     assert!((a.angle - b.angle).abs() < 1e-9 && (a.sigma - b.sigma).abs() < 1e-9, "{a:?} {b:?}");

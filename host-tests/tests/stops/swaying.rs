@@ -18,16 +18,30 @@ fn parked(seed: u64, sways: bool) -> Day {
         (gyro.n_deg_sqrt_h, gyro.bias_sigma_deg_h) = (0.01, 0.02);
     }
     if !sways {
-        scenario.events.clear();
-        for leg in &mut scenario.legs {
-            if let Leg::Stop(stop) = leg {
-                stop.sway = SwayConfiguration::default();
-            }
-        }
+        undisturbed(&mut scenario, SwayConfiguration::default());
     }
     let mut day = Day { rests: Kind::Whole, ..Day::new(scenario, seed) };
     day.setting = known(52.0, 0.01, Some(0.02));
     day
+}
+
+/// Takes the doors out of a day, and gives its stops this sway.
+fn undisturbed(scenario: &mut Scenario, sway: SwayConfiguration) {
+    scenario.events.clear();
+    for leg in &mut scenario.legs {
+        if let Leg::Stop(stop) = leg {
+            stop.sway = sway;
+        }
+    }
+}
+
+/// Errors at the end over σ, of the days that are answered.
+fn answered(seeds: std::ops::Range<u64>, day: impl Fn(u64) -> Day + Sync) -> Vec<f64> {
+    let ratio = |seed| {
+        let outcome = day(seed).run();
+        outcome.conclusion.verdict.is_ok().then(|| outcome.ratios()[1])
+    };
+    seeds.into_par_iter().filter_map(ratio).collect()
 }
 
 /// Azimuth from the mean force and the mean rate, as if nothing moved.
@@ -80,13 +94,7 @@ fn sway_and_doors_cost_no_more_than_half_of_the_quiet_error() {
 
 #[test]
 fn errors_of_a_swaying_vehicle_are_covered_by_sigma() {
-    let ratios: Vec<f64> = (100..140_u64)
-        .into_par_iter()
-        .filter_map(|seed| {
-            let outcome = parked(seed, true).run();
-            outcome.conclusion.verdict.is_ok().then(|| outcome.ratios()[1])
-        })
-        .collect();
+    let ratios = answered(100..140, |seed| parked(seed, true));
     let ratio = rms(ratios.iter().copied());
     println!("parked and swaying: {ratio:.3} over σ, {} of 40 answered", ratios.len());
     assert!(ratio < 1.2, "{ratio}");
@@ -99,7 +107,6 @@ fn hidden(seed: u64) -> Day {
     let mut draw = Generator::stream(seed, 17);
     let mut between = |from: f64, to: f64| from + (to - from) * draw.uniform();
     let mut scenario = Scenario::parked(seed, between(80.0, 140.0));
-    scenario.events.clear();
     for gyro in &mut scenario.vehicle.gyros {
         (gyro.n_deg_sqrt_h, gyro.bias_sigma_deg_h) = (0.002, 0.005);
     }
@@ -111,11 +118,7 @@ fn hidden(seed: u64) -> Day {
         phase_rad: between(0.0, std::f64::consts::TAU),
         ..SwayComponent::default()
     };
-    for leg in &mut scenario.legs {
-        if let Leg::Stop(stop) = leg {
-            stop.sway = SwayConfiguration { components };
-        }
-    }
+    undisturbed(&mut scenario, SwayConfiguration { components });
     let mut day = Day { rests: Kind::Whole, ..Day::new(scenario, seed) };
     day.setting = known(52.0, 0.002, Some(0.005));
     day
@@ -123,13 +126,7 @@ fn hidden(seed: u64) -> Day {
 
 #[test]
 fn a_sway_that_long_blocks_hide_is_in_sigma() {
-    let ratios: Vec<f64> = (0..60_u64)
-        .into_par_iter()
-        .filter_map(|seed| {
-            let outcome = hidden(seed).run();
-            outcome.conclusion.verdict.is_ok().then(|| outcome.ratios()[1])
-        })
-        .collect();
+    let ratios = answered(0..60, hidden);
     let ratio = rms(ratios.iter().copied());
     println!("a hidden sway: {ratio:.3} over σ, {} of 60 answered", ratios.len());
     assert!(ratios.len() >= 40 && ratio < 1.2, "{ratio}, {}", ratios.len());
