@@ -275,7 +275,7 @@ pub fn replay(
         Stops::Samples(rows) => stage(header, rows, setting, options.criterion, progress),
         Stops::Averages(rows) => dwells(rows, setting, options.criterion, progress),
     }?;
-    assumed.extend(untold::of(&session));
+    assumed.extend(untold::of_stage(&session));
     Ok(Replay { method: options.method, session, setting, assumed })
 }
 

@@ -1,6 +1,14 @@
-//! What the dwells of a stage cannot tell, in words: every azimuth from them assumes it.
+//! What a recording cannot tell, in words: every azimuth from it assumes that.
 
-use orientation::session::Session;
+use std::f64::consts::TAU;
+
+use orientation::align::conclusion::Conclusion;
+use orientation::align::level::Tilt;
+use orientation::align::rotating::conclusion::Conclusion as PlatformConclusion;
+use orientation::align::rotating::solution::{Fit, Pair};
+use orientation::align::setting::Setting;
+use orientation::math::Complex;
+use orientation::session::{Session, rotating};
 
 /// Dwells from which drift and motion show beside the Earth rate, where none is a repeat.
 const ENOUGH: usize = 8;
@@ -8,26 +16,66 @@ const ENOUGH: usize = 8;
 const SAME_POSITION: f64 = 0.01;
 /// Tilt in its σ below which a stage is as good as level.
 const LEVEL: f64 = 5.0;
+/// Tilt of a platform that shows its sense at the least, g.
+const LEAST_TILT: f64 = 1e-5;
+/// How far the Earth-rate ratio may be off and still pass every test, in its σ.
+const UNNOTICED: f64 = 5.0;
+/// The same beyond that, where the gyro's scale is exact.
+const TOLERANCE: f64 = 0.005;
+/// Part of σ from which on an error that does not show is worth telling.
+const WORTH_TELLING: f64 = 0.3;
 
-/// What the azimuth of a session assumes that none of its data show; nothing where there is none.
+/// Of a platform whose accelerometer does not show its sense.
+const SENSE_OF_A_PLATFORM: &str =
+    "sense of the platform, which neither one axis of an accelerometer nor a level platform shows";
+/// Of three gyros and three accelerometers: nobody sees how they are built in.
+pub const AXES_OF_A_VEHICLE: &str = "axes forward, right and down, as the columns say";
+
+/// What the azimuth of a stage's session assumes that none of its data show; nothing where there is none.
 #[must_use]
-pub fn of(session: &Session) -> Vec<String> {
+pub fn of_stage(session: &Session) -> Vec<String> {
     let found = session.conclusion().filter(|conclusion| conclusion.verdict.is_ok());
-    let Some((tilt, fit)) = found.and_then(|found| Some((&found.tilt, found.fit.as_ref()?))) else {
+    let Some((conclusion, fit)) = found.and_then(|found| Some((found, found.fit.as_ref()?))) else {
         return Vec::new();
     };
+    let setting = session.setting();
+    let tilt = &conclusion.tilt;
     let is_level =
         tilt.magnitude() < LEVEL * tilt.covariance[0][0].max(tilt.covariance[1][1]).sqrt();
     let few = session.dwells().len() < ENOUGH && !is_repeated(session);
     let untold = [
         (true, "no drift in step with the turn"),
         (true, "no turn of the base or slip of the encoder in the last quarter of the dwells"),
-        (is_level, "sign of the gyro and sense of the stage, which no level stage shows"),
+        (is_level, "sense of the stage, which no level stage shows"),
         (!fit.earth_rate_is_free(), "scale of the gyro, which no arc shows"),
         (few, "no drift and no motion beyond what is stated, which few positions do not show"),
     ];
     let words = untold.into_iter().filter(|(is_untold, _)| *is_untold);
-    words.map(|(_, words)| words.to_owned()).collect()
+    let shown = shown_by_stage(setting, conclusion);
+    words.map(|(_, words)| words.to_owned()).chain(shown.iter().flat_map(Shown::untold)).collect()
+}
+
+/// What the azimuth of a turning platform assumes that none of its data show; nothing where there is none.
+#[must_use]
+pub fn of_platform(session: &rotating::Session) -> Vec<String> {
+    let Some(conclusion) = session.conclusion() else { return Vec::new() };
+    let (Some(fit), Ok(azimuth)) = (conclusion.fit, conclusion.verdict) else { return Vec::new() };
+    let shown = Shown {
+        azimuth: azimuth.angle,
+        sigma: azimuth.sigma,
+        ratio: fit.ratio,
+        unnoticed: UNNOTICED * fit.ratio_sigma + TOLERANCE,
+        felt: felt(&session.setting().common, fit.tilt),
+    };
+    let sense = (!shows_sense(conclusion, &fit)).then(|| SENSE_OF_A_PLATFORM.to_owned());
+    sense.into_iter().chain(shown.untold()).collect()
+}
+
+/// Whether the forces show which way a platform turns: on two axes, and by its tilt.
+fn shows_sense(conclusion: &PlatformConclusion, fit: &Fit) -> bool {
+    let averages = conclusion.pairs.iter().flat_map(Pair::senses);
+    let has_both_axes = averages.into_iter().any(|average| average.across != Complex::default());
+    has_both_axes && fit.tilt.size() > 2.0 * LEVEL * fit.tilt_sigma + LEAST_TILT
 }
 
 /// Whether the stage came to any position twice.
@@ -37,4 +85,73 @@ fn is_repeated(session: &Session) -> bool {
         (dwells[one].stage - dwells[other].stage).signed_rad().abs() < SAME_POSITION
     };
     (0..dwells.len()).any(|one| (0..one).any(|other| is_same(one, other)))
+}
+
+/// The Earth rate as a gyro on a tilted platform shows it, in units of its horizontal part.
+struct Shown {
+    /// Azimuth and its σ, rad.
+    azimuth: f64,
+    sigma: f64,
+    /// Earth rate found over the one expected, and by how much it may be another one unnoticed.
+    ratio: f64,
+    unnoticed: f64,
+    /// What the tilt lets the gyro feel in either hemisphere.
+    felt: [Complex; 2],
+}
+
+/// What a tilt, g, lets the gyro feel of the vertical Earth rate and by its g-sensitivity, over the horizontal Earth rate;
+/// in this hemisphere and in the other.
+fn felt(setting: &Setting, tilt: Complex) -> [Complex; 2] {
+    let [along, across] = setting.g_sensitivity;
+    let latitude = setting.latitude;
+    [latitude.vertical_rate(), -latitude.vertical_rate()].map(|vertical| {
+        let per_tilt = Complex::new(vertical + along, across);
+        (per_tilt * tilt).scaled(1.0 / latitude.horizontal_rate())
+    })
+}
+
+fn shown_by_stage(setting: &Setting, conclusion: &Conclusion) -> Option<Shown> {
+    let (fit, azimuth) = (conclusion.fit.as_ref()?, conclusion.verdict.ok()?);
+    let Tilt { real, imaginary, .. } = conclusion.tilt;
+    let tolerance = if setting.scale_sigma > 0.0 { 0.0 } else { TOLERANCE };
+    // Two positions take the Earth rate for granted.
+    let sigma = if fit.model.is_single_axis { f64::INFINITY } else { fit.ratio_sigma };
+    Some(Shown {
+        azimuth: azimuth.angle,
+        sigma: azimuth.sigma,
+        ratio: fit.direction.amplitude,
+        unnoticed: UNNOTICED * sigma + tolerance,
+        felt: felt(setting, Complex::new(real, imaginary)),
+    })
+}
+
+impl Shown {
+    /// What the Earth rate does not tell of how the sensors are built in, with what it would change.
+    fn untold(&self) -> impl Iterator<Item = String> {
+        let [here, mirrored] = self.felt;
+        let reversed = self.change(-1.0, here).map(|change| {
+            format!("sign of the gyro: with the other one {:.1}° away", change.to_degrees())
+        });
+        let turned = [0.25, 0.5, 0.75].map(|turn| Complex::unit(turn * TAU) * here);
+        let others = turned.into_iter().chain([mirrored]);
+        let changes = others.filter_map(|felt| self.change(1.0, felt));
+        let worth_telling = changes.filter(|change| *change > WORTH_TELLING * self.sigma);
+        let axes = worth_telling.reduce(f64::max).map(|change| {
+            format!(
+                "axes of the accelerometer and the hemisphere: turned by 90° or 180°, or in the other one, up to \
+                 {:.2}° away",
+                change.to_degrees()
+            )
+        });
+        reversed.into_iter().chain(axes)
+    }
+
+    /// How far away the azimuth would be, rad, were the gyro's sign this one and what the tilt lets it feel that; nothing
+    /// where the Earth rate would show it.
+    fn change(&self, sign: f64, felt: Complex) -> Option<f64> {
+        let shown = Complex::unit(self.azimuth).scaled(self.ratio) + self.felt[0];
+        let north = shown.scaled(sign) - felt;
+        let change = (north.angle() - self.azimuth + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU;
+        ((north.size() - 1.0).abs() <= self.unnoticed).then_some(change.abs())
+    }
 }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use bench::output::azimuth_error;
-use bench::recording::{self, Header};
+use bench::recording::{self, Body, Header, StageRow};
 use bench::replay::{Options, Replay, ReplayError, replay};
 use hal_mock::noise::Generator;
 use orientation::align::conclusion::Conclusion;
@@ -302,4 +302,63 @@ fn what_no_dwell_can_tell_is_assumed() {
     assert!(assumes("stepwise-paper-1", "scale of the gyro, which no arc shows"));
     assert!(!assumes("stepwise-circle", "scale of the gyro, which no arc shows"));
     assert!(!assumes("stepwise-tilted-drift", "sense of the stage"));
+    assert!(!assumes("stepwise-tilted-drift", "sign of the gyro"));
+}
+
+/// Ways in which a stage may be built otherwise than stated: what a row then shows.
+const OTHERWISE: [(&str, fn(&mut StageRow)); 4] = [
+    ("sign of the gyro", |row| row.rate_rad_s = -row.rate_rad_s),
+    ("axes of the accelerometer", |row| {
+        let [x, y, z] = row.force_m_s2;
+        row.force_m_s2 = [-x, -y, z];
+    }),
+    ("axes of the accelerometer", |row| {
+        let [x, y, z] = row.force_m_s2;
+        row.force_m_s2 = [y, -x, z];
+    }),
+    ("axes of the accelerometer", |row| {
+        let [x, y, z] = row.force_m_s2;
+        row.force_m_s2 = [-y, x, z];
+    }),
+];
+
+#[test]
+fn a_stage_that_is_built_otherwise_is_refused_or_stands_under_what_is_assumed_with_its_size() {
+    let mut told = 0;
+    for name in ALL {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/recordings").join(name);
+        let file = path.with_extension("csv.gz");
+        let (header, body, truth) = recording::read(&file).expect("it reads").into_parts();
+        let truth_deg = truth.azimuth_deg.expect("it carries a truth");
+        let Body::Stage(rows) = body else { continue };
+        for (words, change) in OTHERWISE {
+            let mut rows = rows.clone();
+            rows.iter_mut().for_each(change);
+            let options = Options::default();
+            let replay = replay(&header, &Body::Stage(rows), &options, |_| {}).expect("it replays");
+            let Ok(azimuth) = replay.session.conclusion().expect("it has ended").verdict else {
+                continue;
+            };
+            let error = azimuth_error(azimuth.angle.to_degrees(), truth_deg).abs();
+            let sigma = azimuth.sigma.to_degrees();
+            if error > 4.0 * sigma {
+                let size = size_of(&replay.assumed, words);
+                let size = size.unwrap_or_else(|| panic!("{name}, {words}: {error}° in silence"));
+                // The wrong gravity gives the other sensitivities another size, too.
+                assert!(
+                    error < 1.1 * size + 4.0 * sigma,
+                    "{name}, {words}: {error}° beyond {size}°"
+                );
+                told += 1;
+            }
+        }
+    }
+    assert!(told > 12, "only {told} are wrong at all");
+}
+
+/// The size in ° that what is assumed in these words has.
+fn size_of(assumed: &[String], words: &str) -> Option<f64> {
+    let line = assumed.iter().find(|line| line.starts_with(words))?;
+    let before = line.rsplit_once("° away")?.0;
+    before.rsplit_once(' ')?.1.parse().ok()
 }

@@ -223,3 +223,35 @@ fn without_a_latitude_or_on_another_kind_there_is_no_replay() {
         "kind `stage` has no platform that turns all the time: no method rotating"
     );
 }
+
+/// Ways in which a platform may be built otherwise than stated: what a row then shows.
+const OTHERWISE: [(&str, fn(&mut RotatingRow)); 3] = [
+    ("sign of the gyro", |row| row.rate_rad_s = -row.rate_rad_s),
+    ("axes of the accelerometer", |row| {
+        row.force_m_s2 = -row.force_m_s2;
+        row.across_m_s2 = row.across_m_s2.map(|force| -force);
+    }),
+    ("sense of the platform", |row| {
+        row.stage_rad = -row.stage_rad;
+        row.stage_rate_rad_s = -row.stage_rate_rad_s;
+    }),
+];
+
+#[test]
+fn a_platform_that_is_built_otherwise_is_refused_or_stands_under_what_is_assumed() {
+    let mut told = 0;
+    for name in ["rotating-gyro", "rotating-met-two-speeds"] {
+        for (words, change) in OTHERWISE {
+            let mut recorded = recorded(name);
+            recorded.rows.iter_mut().for_each(change);
+            let replay = recorded.replayed();
+            let Ok(azimuth) = conclusion(&replay).verdict else { continue };
+            let error = azimuth_error(azimuth.angle.to_degrees(), recorded.truth_deg).abs();
+            let is_told = replay.assumed.iter().any(|line| line.starts_with(words));
+            let is_wrong = error > 4.0 * azimuth.sigma.to_degrees();
+            assert!(is_told || !is_wrong, "{name}, {words}: {error}° in silence");
+            told += i32::from(is_wrong);
+        }
+    }
+    assert!(told >= 4, "only {told} are wrong at all");
+}

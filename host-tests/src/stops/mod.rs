@@ -26,6 +26,7 @@ use self::noise::White;
 use crate::recording::{Body, Header, ImuRow, Kind};
 use crate::replay::{self, ReplayError};
 use crate::setting::{Described, describe};
+use crate::untold;
 
 /// How a vehicle's azimuth is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -142,6 +143,7 @@ fn follow(header: &Header, body: &Body, options: &Options) -> Result<Replay, Rep
     let header = &grade::filled(header, &mut told);
     let Described { setting: mut common, mut assumed } = describe(header, body, latitude);
     assumed.append(&mut told);
+    assumed.push(untold::AXES_OF_A_VEHICLE.to_owned());
     if let Some(sigma) = options.required_sigma {
         common.required_sigma = sigma;
     }
