@@ -51,6 +51,12 @@ fn circle() -> Procedure {
     Procedure::new(Schedule::circle(12, 5.0), 0.01)
 }
 
+#[test]
+fn a_circle_repeats_its_first_position_where_a_board_has_room_for_it() {
+    let length = |positions| Schedule::closed_circle(positions, 1.0).len();
+    assert_eq!([4, 24, 63, 64, 100].map(length), [5, 25, 64, 64, 64]);
+}
+
 fn session(procedure: Procedure) -> Session {
     Session::new(setting(), procedure).expect("it begins")
 }

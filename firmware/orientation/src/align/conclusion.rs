@@ -383,7 +383,7 @@ fn allowed_outliers(positions: usize) -> usize {
 /// Whether one dwell by itself, its index and studentised residual, explains more than a step of the heading; at
 /// either end of the session both are the same, and a step may not be passed over.
 fn explains(worst: Option<(usize, f64)>, step: &HeadingStep) -> bool {
-    worst.is_some_and(|(_, residual)| residual * residual > step.gain + CLEARLY)
+    worst.is_some_and(|(_, residual)| residual * residual > step.explained + CLEARLY)
 }
 
 /// Chi-square over its degrees of freedom.

@@ -264,19 +264,38 @@ const LAG_CURVE: f64 = 0.3;
 ///
 /// A gyro that lags by τ, or whose column is late by τ, brings into each dwell of T a part of the one before:
 /// its mean moves by Δ·τ/T for a difference Δ of both rates, and its slope by −6 Δ τ/T², beside the slope that all
-/// share. A blow to one dwell shows no lag, nor may it hide one: what each dwell has is bounded, and both all
-/// dwells and the quiet ones are asked; unbounded only where all agree.
+/// share. One that is late by almost a dwell and the way to it brings the one before as a whole, and a part of the
+/// dwell's own rate at the end. A blow to one dwell shows no lag, nor may it hide one: what each dwell has is bounded,
+/// and both all dwells and the quiet ones are asked; unbounded only where all agree.
 #[must_use]
 #[inline(never)]
 pub fn lag(norm: &Norm, dwells: &[Dwell], marks: &[Option<Disturbance>]) -> Option<f64> {
     let stood = |mark: &Disturbance| !is_moved(mark);
-    let of = |is_asked, bound| Lag::of(slopes(norm, dwells, marks, is_asked), bound).believed();
+    let slopes = |is_asked, other| slopes(norm, dwells, marks, is_asked, other);
+    let of = |is_asked, bound, other| Lag::of(slopes(is_asked, other), bound).believed();
     let agreed = || {
-        let lag = Lag::of(slopes(norm, dwells, marks, stood), f64::INFINITY);
-        let is_agreed = slopes(norm, dwells, marks, stood).all(|slope| lag.explains(slope));
+        let lag = Lag::of(slopes(stood, Other::Before), f64::INFINITY);
+        let is_agreed = slopes(stood, Other::Before).all(|slope| lag.explains(slope));
         lag.believed().filter(|_| is_agreed)
     };
-    of(stood, SLOPE_BOUND).or_else(|| of(|_| false, SLOPE_BOUND)).or_else(agreed)
+    let whole = || {
+        let early = of(stood, SLOPE_BOUND, Other::After)?;
+        let spacing = dwells.windows(2).map(|pair| pair[1].start() - pair[0].start());
+        Some(median_of(spacing) - early)
+    };
+    of(stood, SLOPE_BOUND, Other::Before)
+        .or_else(|| of(|_| false, SLOPE_BOUND, Other::Before))
+        .or_else(agreed)
+        .or_else(whole)
+}
+
+/// Whose rate shows in a dwell beside its own.
+#[derive(Clone, Copy)]
+enum Other {
+    /// That of the dwell before, at its beginning.
+    Before,
+    /// That of the dwell after, at its end.
+    After,
 }
 
 /// A straight line through slopes against those that a lag of one second makes: sums about their means.
@@ -332,21 +351,26 @@ impl Lag {
     }
 }
 
-/// For each dwell that follows another the slope that a lag of one second gives it, and that which it has, in σ:
+/// For each dwell beside another the slope that one second of the other's rate gives it, and that which it has, in σ:
 /// of those whose disturbance, if there is one, may show the lag.
 fn slopes<'a>(
     norm: &'a Norm,
     dwells: &'a [Dwell],
     marks: &'a [Option<Disturbance>],
     is_asked: fn(&Disturbance) -> bool,
+    other: Other,
 ) -> impl Iterator<Item = [f64; 2]> + 'a {
     dwells.windows(2).zip(marks.windows(2)).filter_map(move |(pair, marks)| {
-        let quietness = pair[1].quietness.as_ref()?;
+        let dwell = match other {
+            Other::Before => &pair[1],
+            Other::After => &pair[0],
+        };
+        let quietness = dwell.quietness.as_ref()?;
         let sigma = libm::sqrt(norm.slope_variance(quietness));
         if sigma <= 0.0 || !marks.iter().flatten().all(is_asked) {
             return None;
         }
-        let per_second = -6.0 * (pair[0].rate - pair[1].rate) / (pair[1].seconds * pair[1].seconds);
+        let per_second = 6.0 * (pair[1].rate - pair[0].rate) / (dwell.seconds * dwell.seconds);
         Some([per_second / sigma, (quietness.slope - norm.slope) / sigma])
     })
 }

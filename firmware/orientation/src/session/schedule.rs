@@ -83,23 +83,25 @@ impl Schedule {
         Vec::from_slice(positions).ok().map(Self::Listed)
     }
 
-    /// Equal steps over the full circle, from zero, the last one step before a whole turn.
+    /// Equal steps over the full circle, from zero, the last one step before a whole turn; [`POSITIONS`] at most.
     #[must_use]
     pub fn circle(positions: usize, seconds: f64) -> Self {
         let step = core::f64::consts::TAU / positions.max(1) as f64;
-        let list = (0..positions.min(CAPACITY))
+        let list = (0..positions.min(POSITIONS))
             .map(|index| Position { angle: index as f64 * step, seconds })
             .collect();
         Self::Listed(list)
     }
 
     /// The same, and at its end the first position once more, a whole turn on: what drifts or creeps in step with the
-    /// stage differs there from what it was at the beginning. Without the repeat where there is no room for it.
+    /// stage differs there from what it was at the beginning. Without the repeat where [`POSITIONS`] are stated.
     #[must_use]
     pub fn closed_circle(positions: usize, seconds: f64) -> Self {
         let mut schedule = Self::circle(positions, seconds);
-        if let Self::Listed(list) = &mut schedule {
-            // There is none where the list is full.
+        if let Self::Listed(list) = &mut schedule
+            && list.len() < POSITIONS
+        {
+            // A list holds as many at least.
             let _ = list.push(Position { angle: core::f64::consts::TAU, seconds });
         }
         schedule

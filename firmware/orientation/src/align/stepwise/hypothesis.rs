@@ -41,7 +41,7 @@ pub struct HeadingStep {
     /// By how much, rad: the azimuth that the later dwells show less that of the earlier ones.
     pub angle: f64,
     /// By how much it lowers chi-square.
-    pub gain: f64,
+    pub explained: f64,
     /// Whether that is no chance.
     pub is_believed: bool,
 }
@@ -203,8 +203,8 @@ impl Weighed {
     /// The step of the heading that it is.
     fn step(&self) -> Option<HeadingStep> {
         let Hypothesis::Stepped { after } = self.model.hypothesis else { return None };
-        let (angle, gain) = (self.coefficient, self.gain());
-        Some(HeadingStep { after, angle, gain, is_believed: self.belief >= 1.0 })
+        let Self { coefficient: angle, explained, belief, .. } = *self;
+        Some(HeadingStep { after, angle, explained, is_believed: belief >= 1.0 })
     }
 }
 
