@@ -52,11 +52,20 @@ pub struct Failure {
     pub reason: String,
     /// The warnings that came before it.
     pub warnings: Vec<String>,
+    /// Whether the options are to blame.
+    pub is_misuse: bool,
+}
+
+impl Failure {
+    /// Of options that do not suit what was read.
+    pub fn misuse(reason: String) -> Self {
+        Self { reason, warnings: Vec::new(), is_misuse: true }
+    }
 }
 
 impl From<String> for Failure {
     fn from(reason: String) -> Self {
-        Self { reason, warnings: Vec::new() }
+        Self { reason, warnings: Vec::new(), is_misuse: false }
     }
 }
 

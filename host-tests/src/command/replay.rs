@@ -7,7 +7,7 @@ use bench::output::{
     json, page, rotating as of_rotating, spin as of_spin, stops as of_stops, text,
     vertical as vertical_told,
 };
-use bench::recording::{self, Body, Kind, Recording};
+use bench::recording::{self, Kind, Recording};
 use bench::replay::{self, Options, replay};
 use bench::vertical::errors::Errors;
 use bench::{cause, rotating, spin, stops, vertical as of_vertical};
@@ -85,12 +85,15 @@ impl Method {
     }
 
     /// Of a recording for which none was asked; a vehicle's shows which of both it needs.
-    fn of(body: &Body) -> Self {
+    fn of(Recording { header, body, .. }: &Recording) -> Self {
         match body.kind() {
             Kind::Rotating => Self::Rotating,
             Kind::Spin => Self::Spin,
-            _ if stops::samples::rows(body).is_some() => Self::Siap,
-            _ => Self::Stepwise,
+            _ => match stops::Method::of(header, body) {
+                Some(stops::Method::Siap) => Self::Siap,
+                Some(stops::Method::Static) => Self::Static,
+                None => Self::Stepwise,
+            },
         }
     }
 }
@@ -156,23 +159,23 @@ impl ReplayOptions {
 /// Replays a recording.
 pub fn run(options: &ReplayOptions, given: &Given, as_json: bool) -> Result<Told, Failure> {
     let recording = recording::read(&options.file).map_err(|error| error.told())?;
+    let method = options.method.unwrap_or_else(|| Method::of(&recording));
+    // Without a method stated, that the options do not suit shows only now.
+    suits::check(suits::REPLAY, given, &method.named()).map_err(Failure::misuse)?;
     let warnings = recording.told_warnings(&options.file);
-    replay_read(options, recording, given, as_json)
-        .map_err(|reason| Failure { reason, warnings: warnings.clone() })
+    replay_read(options, method, recording, as_json)
+        .map_err(|reason| Failure { warnings: warnings.clone(), ..reason.into() })
         .map(|told| told.with_warnings(warnings))
 }
 
 /// Replays what was read.
 fn replay_read(
     options: &ReplayOptions,
+    method: Method,
     recording: Recording,
-    given: &Given,
     as_json: bool,
 ) -> Result<Told, String> {
     let name = options.file.display().to_string();
-    let method = options.method.unwrap_or_else(|| Method::of(&recording.body));
-    // Without a method stated, that the options do not suit is of the recording's making.
-    suits::check(suits::REPLAY, given, &method.named())?;
     let of = match method {
         Method::Rotating => turning,
         Method::Siap | Method::Static => vehicle,

@@ -294,7 +294,8 @@ impl RunOptions {
     /// What keeping an azimuth needs, and what it takes the place of.
     fn check_keeping(&self, given: &Given) -> Result<(), String> {
         let asked = given.first(&["realign", "handover"]);
-        match given.first(&["hold", "realign", "handover"]) {
+        let keeps = given.has("hold") && self.hold().seconds > 0.0;
+        match asked.or(keeps.then_some("hold")) {
             Some(_) if self.record.is_some() => {
                 return Err(
                     "--record: what a base with coarse sensors shows is not recorded".into()

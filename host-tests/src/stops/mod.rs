@@ -37,6 +37,13 @@ pub enum Method {
 }
 
 impl Method {
+    /// That of a recording for which none was asked; none of a kind without three gyros and three accelerometers.
+    #[must_use]
+    pub fn of(header: &Header, body: &Body) -> Option<Self> {
+        let rows = samples::rows(body)?;
+        Some(usual(header, &rows, samples::period(header.rate_hz, &rows)))
+    }
+
     /// Its name on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {
