@@ -10,7 +10,7 @@ use bench::output::{
 use bench::recording::{self, Kind, Recording};
 use bench::replay::{self, Options, replay};
 use bench::vertical::errors::Errors;
-use bench::{cause, rotating, spin, stops, vertical as of_vertical};
+use bench::{cause, rotating, spin, stops, unwritten, vertical as of_vertical};
 use clap::{Args, ValueEnum};
 use orientation::align::criterion::Criterion;
 use orientation::earth::Latitude;
@@ -243,7 +243,7 @@ fn vertical(
     })?;
     let written = options.attitude_out.as_ref().map_or(Ok(()), |path| {
         of_vertical::write_attitude(path, &replay.moments)
-            .map_err(|error| format!("{}: cannot be written: {error}", path.display()))
+            .map_err(|error| unwritten::told("the attitude", path, &error))
     });
     let refusal = replay.refusal.as_ref().map(|reason| format!("{name}: {reason}"));
     let page = || page::vertical::report(name, &replay, errors.as_ref(), &object);
