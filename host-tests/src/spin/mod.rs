@@ -15,7 +15,8 @@ use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 use self::limit::{Noise, Turns};
 use self::track::Track;
 use crate::recording::{Body, Header, SpinRow};
-use crate::replay::{ReplayError, median};
+use crate::replay::ReplayError;
+use crate::stops::samples::mean_step;
 
 /// 1σ of a gyro's scale error of which the header says nothing: 1 %.
 pub const SCALE_SIGMA: f64 = 0.01;
@@ -149,18 +150,11 @@ pub fn follow(samples: &[SpinSample], known: Known) -> Replay {
     }
 }
 
-/// How far the header's rate may be off before the times are believed instead.
-const RATE_TOLERANCE: f64 = 0.01;
-
-/// The sample period, s: the header's, unless the times say otherwise; none of fewer than two rows.
+/// The sample period, s: the header's, which reading has held against the times, or theirs; none of fewer than two
+/// rows.
 fn period(rate_hz: Option<f64>, rows: &[SpinRow]) -> Option<f64> {
-    let mut steps: Vec<f64> = rows.windows(2).map(|pair| pair[1].time_s - pair[0].time_s).collect();
-    if steps.is_empty() {
-        return None;
-    }
-    let step_s = median(&mut steps);
-    let stated = rate_hz.filter(|rate| (step_s * rate - 1.0).abs() <= RATE_TOLERANCE);
-    Some(stated.map_or(step_s, |rate| 1.0 / rate))
+    let step_s = mean_step(rows, |row| row.time_s)?;
+    Some(rate_hz.map_or(step_s, |rate| 1.0 / rate))
 }
 
 /// What is known of the gyro; what is not stated is taken from the rows or assumed.

@@ -254,7 +254,8 @@ const RATE_TOLERANCE: f64 = 0.01;
 
 /// Refuses a stated rate that the times contradict: one of both is wrong, and every rotation with it.
 fn check_rate(rate_hz: Option<f64>, rows: &[ImuRow]) -> Result<(), ReplayError> {
-    let found = samples::mean_step(rows).map(|step| 1.0 / step);
+    let step_s = samples::mean_step(rows, |row| row.time_s);
+    let found = step_s.map(|step| 1.0 / step);
     let (Some(stated_hz), Some(found_hz)) = (rate_hz, found) else { return Ok(()) };
     if (stated_hz / found_hz - 1.0).abs() <= RATE_TOLERANCE {
         return Ok(());
