@@ -101,18 +101,23 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
     let (setting, assumed) = setting(header, rows, period_s);
     let required_sigma = options.required_sigma.unwrap_or(f64::INFINITY);
     let replay = follow(&samples, Known { setting, required_sigma, assumed });
-    Ok(Replay { doubt: stuck_gyro(rows, replay.noise), ..replay })
+    Ok(Replay { doubt: stuck_gyro(rows), ..replay })
 }
 
 /// Noise of the forces from which sensors are no ideal ones, m/s²: those that turn so fast measure thousands.
 const REAL_NOISE: f64 = 0.005;
 
-/// A gyro that shows one rate for most of the time, beside forces that have noise.
-fn stuck_gyro(rows: &[SpinRow], noise: Noise) -> Option<String> {
+/// A gyro that shows one rate for most of the time, beside forces that have noise: as they show it by themselves, for
+/// turns that are counted by a gyro which is wrong leave some of the lift over.
+fn stuck_gyro(rows: &[SpinRow]) -> Option<String> {
     let rates: Vec<f64> = rows.iter().map(|row| row.rate_rad_s).collect();
     let is_one = rates.windows(2).all(|pair| pair[0] == pair[1]);
     let stuck = if is_one { rows.len() } else { limit::stuck(&rates).len() };
-    (2 * stuck > rows.len() && noise.force > REAL_NOISE).then(|| {
+    let noise = [0, 1].map(|axis: usize| {
+        let forces: Vec<f64> = rows.iter().map(|row| row.force_m_s2[axis]).collect();
+        limit::white(&forces)
+    });
+    (2 * stuck > rows.len() && noise.into_iter().all(|noise| noise > REAL_NOISE)).then(|| {
         let percent = 100 * stuck / rows.len();
         format!("column gx_rad_s shows one value in {percent} % of the rows: stuck or dead, check its supply and wires")
     })
