@@ -136,7 +136,7 @@ fn check_kilometres(
 /// Drives the session with the rows.
 fn follow(header: &Header, body: &Body, options: &Options) -> Result<Replay, ReplayError> {
     let rows = samples::rows(body).ok_or_else(|| missing(body))?;
-    let latitude = replay::latitude(header, options.latitude)?;
+    let latitude = replay::latitude(header, body, options.latitude)?;
     let period_s = samples::period(header.rate_hz, &rows);
     check_rate(header.rate_hz, &rows)?;
     check_stuck(&rows, period_s)?;

@@ -1,6 +1,6 @@
 //! Recordings spoilt in one place are refused with the reason, or survive it.
 
-use bench::recording::{Body, ImuRow};
+use bench::recording::{Body, ImuRow, Kind};
 use bench::replay::ReplayError;
 use bench::stops::{Method, Options, replay};
 use orientation::error::Refusal;
@@ -158,7 +158,7 @@ fn what_keeps_a_replay_from_beginning_is_told() {
     let mut nowhere = recorded;
     nowhere.header.latitude_deg = None;
     let error = begin(&nowhere, &Options::default()).expect_err("no latitude");
-    assert_eq!(error, ReplayError::NoLatitude);
+    assert_eq!(error, ReplayError::NoLatitude(Kind::Imu));
 
     nowhere.header.latitude_deg = Some(52.0);
     nowhere.header.stops_s =
