@@ -20,6 +20,7 @@ use orientation::units::{Angle, AngularRate, Instant, SpecificForce, TURN, Tempe
 use crate::recording::{Body, DwellRow, Header, Kind, Short, StageRow};
 use crate::setting::{Described, describe};
 use crate::stops::samples::is_cut;
+use crate::stops::way::Slip;
 use crate::untold;
 
 /// By which of its names an alignment in positions is called; the fit is the same.
@@ -166,6 +167,17 @@ pub enum ReplayError {
         /// The greatest part of one, as stated.
         greatest: f64,
     },
+    /// The forces on the way to a stop contradict its displacement.
+    Way {
+        /// The stop before, from one.
+        stop: usize,
+        /// How far the next one lies from it as stated, north and east, m.
+        stated_m: [f64; 2],
+        /// How far by the forces.
+        driven_m: [f64; 2],
+        /// What the displacements are likely to be.
+        slip: Slip,
+    },
     /// The gyros' noise is not stated, and there are too few samples at rest to estimate it from.
     NoiseUnknown,
     /// The session cannot follow the recording.
@@ -246,6 +258,14 @@ impl fmt::Display for ReplayError {
                 "key displacements_north_east_m: with {greatest} m at the most there is no azimuth, with as many \
                  kilometres there is: state them in metres"
             ),
+            Self::Way { stop, stated_m, driven_m, slip } => {
+                let [[north, east], [driven_north, driven_east]] = [stated_m, driven_m];
+                write!(
+                    f,
+                    "key displacements_north_east_m: from stop {stop} to the next it says {north:.1} m north and \
+                     {east:.1} m east, the forces on the way say {driven_north:.0} m and {driven_east:.0} m: {slip}"
+                )
+            }
             Self::NoiseUnknown => f.write_str(
                 "key gyro_N_deg_sqrt_h is missing, and the samples at rest are too few to estimate it from: \
                  state it, or stand for longer",
