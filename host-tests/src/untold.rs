@@ -1,6 +1,6 @@
-//! What the dwells of a stage cannot tell, in words: every azimuth from them assumes it.
+//! What the dwells of a stage or the turns of a platform cannot tell, in words: every azimuth from them assumes it.
 
-use orientation::session::Session;
+use orientation::session::{Session, rotating};
 
 /// Dwells from which drift and motion show beside the Earth rate, where none is a repeat.
 const ENOUGH: usize = 8;
@@ -25,6 +25,28 @@ pub fn of(session: &Session) -> Vec<String> {
         (is_level, "sign of the gyro and sense of the stage, which no level stage shows"),
         (!fit.earth_rate_is_free(), "scale of the gyro, which no arc shows"),
         (few, "no drift and no motion beyond what is stated, which few positions do not show"),
+    ];
+    let words = untold.into_iter().filter(|(is_untold, _)| *is_untold);
+    words.map(|(_, words)| words.to_owned()).collect()
+}
+
+/// Sine of the tilt below which an accelerometer in g instead of m/s² shows no impossible one: 1.5°.
+const NEARLY_LEVEL: f64 = 0.026;
+
+/// The same of the session of a platform that turns all the time, with an accelerometer along one axis or two.
+#[must_use]
+pub fn of_platform(session: &rotating::Session, has_across: bool) -> Vec<String> {
+    let found = session.conclusion().filter(|conclusion| conclusion.verdict.is_ok());
+    let Some(fit) = found.and_then(|found| found.fit.as_ref()) else { return Vec::new() };
+    let untold = [
+        (
+            !has_across,
+            "sense of the platform's angle, clockwise from above, which one axis does not show",
+        ),
+        (
+            fit.tilt.size() < NEARLY_LEVEL,
+            "accelerometer in m/s², which a platform that is nearly level does not show",
+        ),
     ];
     let words = untold.into_iter().filter(|(is_untold, _)| *is_untold);
     words.map(|(_, words)| words.to_owned()).collect()

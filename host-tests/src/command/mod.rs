@@ -157,9 +157,14 @@ fn explained(reason: &str, cause: &str) -> String {
     format!("{}; {cause}", remedies.unwrap_or(reason))
 }
 
-/// What the platform is told to do where it is not at fault.
-const REMEDIES: [&str; 3] =
-    [": keep the platform still", ": keep the base still, let the sensor settle", ": level it"];
+/// What is to be done where the platform is at fault.
+const REMEDIES: [&str; 5] = [
+    ": keep the platform still",
+    ": keep the base still, let the sensor settle",
+    ": level it",
+    ": turn the stage over a longer arc",
+    "; turn a full circle or calibrate the accelerometer",
+];
 
 /// The half of the circle in which an azimuth lies.
 #[derive(Clone, Copy, Debug, ValueEnum)]

@@ -202,8 +202,10 @@ fn vehicle(
         of_stops::text::block(block, name, &replay, conclusion, &truth)
     })?;
     let refusal = conclusion.verdict.as_ref().err().map(|reason| format!("{name}: {reason}"));
+    let refused = conclusion.verdict.as_ref().err();
+    let cause = refused.and_then(|why| cause::of_vehicle(&header, &body, &options.into(), why));
     let page = || page::stops::report(name, &replay, conclusion);
-    Ok(Told { refusal, ..told }.with_page(options.report.as_deref(), page))
+    Ok(Told { refusal, ..told }.because(cause).with_page(options.report.as_deref(), page))
 }
 
 /// Replays the recording of a spinning body.
@@ -247,7 +249,9 @@ fn vertical(
     });
     let refusal = replay.refusal.as_ref().map(|reason| format!("{name}: {reason}"));
     let page = || page::vertical::report(name, &replay, errors.as_ref(), &object);
-    Ok(Told { refusal, ..told }.with_written(written).with_page(options.report.as_deref(), page))
+    let cause = refusal.as_ref().and_then(|_| cause::of_level(&body));
+    let told = Told { refusal, ..told }.because(cause).with_written(written);
+    Ok(told.with_page(options.report.as_deref(), page))
 }
 
 /// Replays the recording of a platform that turns all the time.
@@ -266,7 +270,8 @@ fn turning(
         of_rotating::text::block(block, name, &replay, conclusion, truth.azimuth_deg)
     })?;
     let refusal = conclusion.verdict.as_ref().err().map(|reason| format!("{name}: {reason}"));
-    let cause = refusal.as_ref().and_then(|_| cause::of_turning(&header, &body, &options.into()));
+    let refused = conclusion.verdict.as_ref().err();
+    let cause = refused.and_then(|why| cause::of_turning(&header, &body, &options.into(), why));
     let page = || page::rotating::report(name, &replay, conclusion, body.rotating());
     Ok(Told { refusal, ..told }.because(cause).with_page(options.report.as_deref(), page))
 }
@@ -290,7 +295,9 @@ fn stopping(
     })?;
     let refusal = conclusion.verdict.as_ref().err().map(|reason| format!("{name}: {reason}"));
     let refused = conclusion.verdict.as_ref().err();
-    let cause = refused.and_then(|why| cause::of_stopping(&header, &body, &options.into(), why));
+    let session = &replay.session;
+    let cause =
+        refused.and_then(|why| cause::of_stopping(&header, &body, &options.into(), session, why));
     let page = || page::alignment::report(name, &replay, conclusion);
     Ok(Told { refusal, ..told }.because(cause).with_page(options.report.as_deref(), page))
 }

@@ -20,6 +20,7 @@ use crate::recording::{self, Body, Header, RotatingRow};
 use crate::replay::{Options, ReplayError, latitude, median};
 use crate::setting::{Described, describe};
 use crate::stops::samples::is_cut;
+use crate::untold;
 
 /// A finished replay.
 #[derive(Clone, Debug)]
@@ -89,8 +90,11 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
     let setting = Setting::new(common, sensor);
     let setting = Setting { encoder_zero_sigma, harmonics_known: false, rate_step, ..setting };
     let session = follow(setting, rows, 1.0 / rate.max(f64::MIN_POSITIVE));
+    let session = session.map_err(ReplayError::Procedure)?;
+    let has_across = rows.iter().any(|row| row.across_m_s2.is_some());
+    assumed.extend(untold::of_platform(&session, has_across));
     let zero_s = rows.first().map_or(0.0, |row| row.time_s);
-    Ok(Replay { session: session.map_err(ReplayError::Procedure)?, zero_s, assumed })
+    Ok(Replay { session, zero_s, assumed })
 }
 
 /// Takes the steps of a gyro's column into its noise, and gives what of them its noise does not hide, rad/s: it smooths
