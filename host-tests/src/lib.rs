@@ -25,5 +25,6 @@ pub mod spectrum;
 pub mod spin;
 pub mod stops;
 pub mod untold;
+pub mod unwritten;
 pub mod vertical;
 pub mod virtual_time;

@@ -107,6 +107,7 @@ fn main() -> ExitCode {
     match tell(&command, &given, as_json) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
+        Err(failure) if failure.is_misuse => misused(&failure.reason),
         Err(failure) => failed(&failure, as_json),
     }
 }
@@ -151,7 +152,7 @@ fn one_line(text: &str) -> String {
 }
 
 /// Says why there is no result, as JSON too where that was asked for.
-fn failed(Failure { reason, warnings }: &Failure, as_json: bool) -> ExitCode {
+fn failed(Failure { reason, warnings, .. }: &Failure, as_json: bool) -> ExitCode {
     if as_json {
         let mut object = serde_json::json!({ "status": "failed", "reason": reason });
         if !warnings.is_empty() {

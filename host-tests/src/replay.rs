@@ -17,9 +17,10 @@ use orientation::signal::Sample;
 use orientation::signal::dwell::Dwell;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce, TURN, Temperature};
 
-use crate::recording::{Body, DwellRow, Header, Kind, StageRow};
+use crate::recording::{Body, DwellRow, Header, Kind, Short, StageRow};
 use crate::setting::{Described, describe};
 use crate::stops::samples::is_cut;
+use crate::stops::way::Slip;
 use crate::untold;
 
 /// By which of its names an alignment in positions is called; the fit is the same.
@@ -113,8 +114,8 @@ impl Replay {
 /// Why a recording that could be read cannot be replayed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ReplayError {
-    /// Neither the header nor the user gives a latitude.
-    NoLatitude,
+    /// Neither the header nor the user gives a latitude to a recording of this kind.
+    NoLatitude(Kind),
     /// A kind without positions.
     Kind(Kind),
     /// A kind whose stage does not turn all the time.
@@ -166,6 +167,17 @@ pub enum ReplayError {
         /// The greatest part of one, as stated.
         greatest: f64,
     },
+    /// The forces on the way to a stop contradict its displacement.
+    Way {
+        /// The stop before, from one.
+        stop: usize,
+        /// How far the next one lies from it as stated, north and east, m.
+        stated_m: [f64; 2],
+        /// How far by the forces.
+        driven_m: [f64; 2],
+        /// What the displacements are likely to be.
+        slip: Slip,
+    },
     /// The gyros' noise is not stated, and there are too few samples at rest to estimate it from.
     NoiseUnknown,
     /// The session cannot follow the recording.
@@ -175,11 +187,14 @@ pub enum ReplayError {
 impl fmt::Display for ReplayError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoLatitude => {
-                f.write_str(
-                    "key latitude_deg is missing: add it or give --latitude; of kind imu --method vertical \
-                     gives pitch and roll without it",
-                )
+            Self::NoLatitude(kind) => {
+                f.write_str("key latitude_deg is missing: add it or give --latitude")?;
+                match kind {
+                    Kind::Imu | Kind::Static => {
+                        f.write_str("; --method vertical gives pitch and roll without it")
+                    }
+                    _ => Ok(()),
+                }
             }
             Self::Kind(Kind::Static) => f.write_str(
                 "kind `static` has no positions to align from: `meridian allan` finds the gyro's noise in it",
@@ -228,8 +243,9 @@ impl fmt::Display for ReplayError {
             ),
             Self::Rate { stated_hz, found_hz } => write!(
                 f,
-                "key rate_hz: {stated_hz} Hz, but the times of column t_s make it {found_hz:.3} Hz, {:.1} % apart: \
+                "key rate_hz: {} Hz, but the times of column t_s make it {found_hz:.3} Hz, {:.1} % apart: \
                  correct the one that is wrong",
+                Short(*stated_hz),
                 100.0 * (stated_hz / found_hz - 1.0).abs()
             ),
             Self::DegreesPerSecond { times } => write!(
@@ -242,6 +258,14 @@ impl fmt::Display for ReplayError {
                 "key displacements_north_east_m: with {greatest} m at the most there is no azimuth, with as many \
                  kilometres there is: state them in metres"
             ),
+            Self::Way { stop, stated_m, driven_m, slip } => {
+                let [[north, east], [driven_north, driven_east]] = [stated_m, driven_m];
+                write!(
+                    f,
+                    "key displacements_north_east_m: from stop {stop} to the next it says {north:.1} m north and \
+                     {east:.1} m east, the forces on the way say {driven_north:.0} m and {driven_east:.0} m: {slip}"
+                )
+            }
             Self::NoiseUnknown => f.write_str(
                 "key gyro_N_deg_sqrt_h is missing, and the samples at rest are too few to estimate it from: \
                  state it, or stand for longer",
@@ -264,7 +288,7 @@ pub fn replay(
     progress: impl FnMut(&Session),
 ) -> Result<Replay, ReplayError> {
     let stops = Stops::of(body)?;
-    let latitude = latitude(header, options.latitude)?;
+    let latitude = latitude(header, body, options.latitude)?;
     let Described { mut setting, mut assumed } = describe(header, body, latitude);
     setting.half = options.half;
     assumed.extend(options.half.map(|_| HALF.to_owned()));
@@ -299,10 +323,14 @@ impl<'a> Stops<'a> {
 ///
 /// # Errors
 /// Neither gives one.
-pub(crate) fn latitude(header: &Header, stated: Option<Latitude>) -> Result<Latitude, ReplayError> {
+pub(crate) fn latitude(
+    header: &Header,
+    body: &Body,
+    stated: Option<Latitude>,
+) -> Result<Latitude, ReplayError> {
     stated
         .or_else(|| header.latitude_deg.and_then(Latitude::from_degrees))
-        .ok_or(ReplayError::NoLatitude)
+        .ok_or(ReplayError::NoLatitude(body.kind()))
 }
 
 fn stage(

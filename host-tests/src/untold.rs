@@ -25,9 +25,15 @@ const TOLERANCE: f64 = 0.005;
 /// Part of σ from which on an error that does not show is worth telling.
 const WORTH_TELLING: f64 = 0.3;
 
+/// Sine of the tilt below which an accelerometer in g instead of m/s² shows no impossible one: 1.5°.
+const NEARLY_LEVEL: f64 = 0.026;
+
 /// Of a platform whose accelerometer does not show its sense.
 const SENSE_OF_A_PLATFORM: &str =
     "sense of the platform, which neither one axis of an accelerometer nor a level platform shows";
+/// Of a platform that is nearly level.
+const UNIT_OF_A_PLATFORM: &str =
+    "accelerometer in m/s², which a platform that is nearly level does not show";
 /// Of three gyros and three accelerometers: nobody sees how they are built in.
 pub const AXES_OF_A_VEHICLE: &str = "axes forward, right and down, as the columns say";
 
@@ -50,9 +56,13 @@ pub fn of_stage(session: &Session) -> Vec<String> {
         (!fit.earth_rate_is_free(), "scale of the gyro, which no arc shows"),
         (few, "no drift and no motion beyond what is stated, which few positions do not show"),
     ];
-    let words = untold.into_iter().filter(|(is_untold, _)| *is_untold);
     let shown = shown_by_stage(setting, conclusion);
-    words.map(|(_, words)| words.to_owned()).chain(shown.iter().flat_map(Shown::untold)).collect()
+    words_of(&untold).chain(shown.iter().flat_map(Shown::untold)).collect()
+}
+
+/// The words of what is untold.
+fn words_of(untold: &[(bool, &str)]) -> impl Iterator<Item = String> {
+    untold.iter().filter(|(is_untold, _)| *is_untold).map(|(_, words)| (*words).to_owned())
 }
 
 /// What the azimuth of a turning platform assumes that none of its data show; nothing where there is none.
@@ -67,8 +77,11 @@ pub fn of_platform(session: &rotating::Session) -> Vec<String> {
         unnoticed: UNNOTICED * fit.ratio_sigma + TOLERANCE,
         felt: felt(&session.setting().common, fit.tilt),
     };
-    let sense = (!shows_sense(conclusion, &fit)).then(|| SENSE_OF_A_PLATFORM.to_owned());
-    sense.into_iter().chain(shown.untold()).collect()
+    let untold = [
+        (!shows_sense(conclusion, &fit), SENSE_OF_A_PLATFORM),
+        (fit.tilt.size() < NEARLY_LEVEL, UNIT_OF_A_PLATFORM),
+    ];
+    words_of(&untold).chain(shown.untold()).collect()
 }
 
 /// Whether the forces show which way a platform turns: on two axes, and by its tilt.

@@ -248,9 +248,10 @@ fn a_band_runs_along_its_lower_limits_and_back_along_the_upper_ones() {
 fn a_path_that_cannot_be_written_is_named() {
     let missing = Path::new("/no/such/folder/report.html");
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
-    for (path, reason) in
-        [(missing, "there is no such folder"), (folder, "it is a directory; name a file in it")]
-    {
+    for (path, reason) in [
+        (missing, "there is no such folder: /no/such/folder"),
+        (folder, "it is a directory; name a file in it"),
+    ] {
         let error = Report::default().write(path).expect_err("it cannot be written");
         let expected = format!("{}: the report cannot be written: {reason}", path.display());
         assert_eq!(error.to_string(), expected);

@@ -12,7 +12,7 @@ mod spoilt;
 use std::path::{Path, PathBuf};
 
 use bench::output::azimuth_error;
-use bench::recording::{self, Body, Header, RotatingRow};
+use bench::recording::{self, Body, Header, Kind, RotatingRow};
 use bench::replay::{Options, ReplayError};
 use bench::rotating::{Replay, replay};
 use orientation::align::rotating::conclusion::Conclusion;
@@ -215,7 +215,7 @@ fn without_a_latitude_or_on_another_kind_there_is_no_replay() {
     recorded.header.latitude_deg = None;
     let body = Body::Rotating(recorded.rows);
     let none = replay(&recorded.header, &body, &Options::default()).expect_err("no latitude");
-    assert_eq!(none, ReplayError::NoLatitude);
+    assert_eq!(none, ReplayError::NoLatitude(Kind::Rotating));
     let stage = recording::read(&file("stepwise-paper-1")).expect("it reads");
     let other = replay(&stage.header, &stage.body, &Options::default()).expect_err("another kind");
     assert_eq!(

@@ -15,7 +15,7 @@ use orientation::units::AngularRate;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::{Estimator, Record};
-use crate::recording::{Body, Header, Kind, Spacing, StaticRow};
+use crate::recording::{Body, Header, Kind, Short, Spacing, StaticRow};
 
 /// The part of a normal distribution below its mean less 1σ.
 const BELOW: f64 = 0.158_655_253_931_457_05;
@@ -107,7 +107,7 @@ impl Rest {
     pub fn notes(&self) -> Vec<String> {
         let Spacing { period_s, gaps, contradicted_rate_hz, .. } = &self.spacing;
         let rate = contradicted_rate_hz.map(|stated| {
-            let found = 1.0 / period_s;
+            let (stated, found) = (Short(stated), 1.0 / period_s);
             format!("the header's {stated} Hz contradicts the times, which have {found:.6} Hz: the times are believed")
         });
         let missing: f64 = gaps.iter().map(|gap| gap.seconds - period_s).sum();

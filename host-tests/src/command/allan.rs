@@ -41,7 +41,7 @@ pub fn run(options: &AllanOptions, as_json: bool) -> Result<Told, Failure> {
     let recording = recording::read(&options.file).map_err(|error| error.told())?;
     let warnings = recording.told_warnings(&options.file);
     analyse(options, recording, as_json)
-        .map_err(|reason| Failure { reason, warnings: warnings.clone() })
+        .map_err(|reason| Failure { warnings: warnings.clone(), ..reason.into() })
         .map(|told| told.with_warnings(warnings))
 }
 

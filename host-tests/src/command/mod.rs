@@ -52,11 +52,20 @@ pub struct Failure {
     pub reason: String,
     /// The warnings that came before it.
     pub warnings: Vec<String>,
+    /// Whether the options are to blame.
+    pub is_misuse: bool,
+}
+
+impl Failure {
+    /// Of options that do not suit what was read.
+    pub fn misuse(reason: String) -> Self {
+        Self { reason, warnings: Vec::new(), is_misuse: true }
+    }
 }
 
 impl From<String> for Failure {
     fn from(reason: String) -> Self {
-        Self { reason, warnings: Vec::new() }
+        Self { reason, warnings: Vec::new(), is_misuse: false }
     }
 }
 
@@ -148,9 +157,14 @@ fn explained(reason: &str, cause: &str) -> String {
     format!("{}; {cause}", remedies.unwrap_or(reason))
 }
 
-/// What the platform is told to do where it is not at fault.
-const REMEDIES: [&str; 3] =
-    [": keep the platform still", ": keep the base still, let the sensor settle", ": level it"];
+/// What is to be done where the platform is at fault.
+const REMEDIES: [&str; 5] = [
+    ": keep the platform still",
+    ": keep the base still, let the sensor settle",
+    ": level it",
+    ": turn the stage over a longer arc",
+    "; turn a full circle or calibrate the accelerometer",
+];
 
 /// The half of the circle in which an azimuth lies.
 #[derive(Clone, Copy, Debug, ValueEnum)]

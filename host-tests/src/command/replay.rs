@@ -7,10 +7,10 @@ use bench::output::{
     json, page, rotating as of_rotating, spin as of_spin, stops as of_stops, text,
     vertical as vertical_told,
 };
-use bench::recording::{self, Body, Kind, Recording};
+use bench::recording::{self, Kind, Recording};
 use bench::replay::{self, Options, replay};
 use bench::vertical::errors::Errors;
-use bench::{cause, rotating, spin, stops, vertical as of_vertical};
+use bench::{cause, rotating, spin, stops, unwritten, vertical as of_vertical};
 use clap::{Args, ValueEnum};
 use orientation::align::criterion::Criterion;
 use orientation::earth::Latitude;
@@ -85,12 +85,15 @@ impl Method {
     }
 
     /// Of a recording for which none was asked; a vehicle's shows which of both it needs.
-    fn of(body: &Body) -> Self {
+    fn of(Recording { header, body, .. }: &Recording) -> Self {
         match body.kind() {
             Kind::Rotating => Self::Rotating,
             Kind::Spin => Self::Spin,
-            _ if stops::samples::rows(body).is_some() => Self::Siap,
-            _ => Self::Stepwise,
+            _ => match stops::Method::of(header, body) {
+                Some(stops::Method::Siap) => Self::Siap,
+                Some(stops::Method::Static) => Self::Static,
+                None => Self::Stepwise,
+            },
         }
     }
 }
@@ -156,23 +159,23 @@ impl ReplayOptions {
 /// Replays a recording.
 pub fn run(options: &ReplayOptions, given: &Given, as_json: bool) -> Result<Told, Failure> {
     let recording = recording::read(&options.file).map_err(|error| error.told())?;
+    let method = options.method.unwrap_or_else(|| Method::of(&recording));
+    // Without a method stated, that the options do not suit shows only now.
+    suits::check(suits::REPLAY, given, &method.named()).map_err(Failure::misuse)?;
     let warnings = recording.told_warnings(&options.file);
-    replay_read(options, recording, given, as_json)
-        .map_err(|reason| Failure { reason, warnings: warnings.clone() })
+    replay_read(options, method, recording, as_json)
+        .map_err(|reason| Failure { warnings: warnings.clone(), ..reason.into() })
         .map(|told| told.with_warnings(warnings))
 }
 
 /// Replays what was read.
 fn replay_read(
     options: &ReplayOptions,
+    method: Method,
     recording: Recording,
-    given: &Given,
     as_json: bool,
 ) -> Result<Told, String> {
     let name = options.file.display().to_string();
-    let method = options.method.unwrap_or_else(|| Method::of(&recording.body));
-    // Without a method stated, that the options do not suit is of the recording's making.
-    suits::check(suits::REPLAY, given, &method.named())?;
     let of = match method {
         Method::Rotating => turning,
         Method::Siap | Method::Static => vehicle,
@@ -199,8 +202,10 @@ fn vehicle(
         of_stops::text::block(block, name, &replay, conclusion, &truth)
     })?;
     let refusal = conclusion.verdict.as_ref().err().map(|reason| format!("{name}: {reason}"));
+    let refused = conclusion.verdict.as_ref().err();
+    let cause = refused.and_then(|why| cause::of_vehicle(&header, &body, &options.into(), why));
     let page = || page::stops::report(name, &replay, conclusion);
-    Ok(Told { refusal, ..told }.with_page(options.report.as_deref(), page))
+    Ok(Told { refusal, ..told }.because(cause).with_page(options.report.as_deref(), page))
 }
 
 /// Replays the recording of a spinning body.
@@ -240,11 +245,13 @@ fn vertical(
     })?;
     let written = options.attitude_out.as_ref().map_or(Ok(()), |path| {
         of_vertical::write_attitude(path, &replay.moments)
-            .map_err(|error| format!("{}: cannot be written: {error}", path.display()))
+            .map_err(|error| unwritten::told("the attitude", path, &error))
     });
     let refusal = replay.refusal.as_ref().map(|reason| format!("{name}: {reason}"));
     let page = || page::vertical::report(name, &replay, errors.as_ref(), &object);
-    Ok(Told { refusal, ..told }.with_written(written).with_page(options.report.as_deref(), page))
+    let cause = refusal.as_ref().and_then(|_| cause::of_level(&body));
+    let told = Told { refusal, ..told }.because(cause).with_written(written);
+    Ok(told.with_page(options.report.as_deref(), page))
 }
 
 /// Replays the recording of a platform that turns all the time.
@@ -263,7 +270,8 @@ fn turning(
         of_rotating::text::block(block, name, &replay, conclusion, truth.azimuth_deg)
     })?;
     let refusal = conclusion.verdict.as_ref().err().map(|reason| format!("{name}: {reason}"));
-    let cause = refusal.as_ref().and_then(|_| cause::of_turning(&header, &body, &options.into()));
+    let refused = conclusion.verdict.as_ref().err();
+    let cause = refused.and_then(|why| cause::of_turning(&header, &body, &options.into(), why));
     let page = || page::rotating::report(name, &replay, conclusion, body.rotating());
     Ok(Told { refusal, ..told }.because(cause).with_page(options.report.as_deref(), page))
 }
@@ -287,7 +295,9 @@ fn stopping(
     })?;
     let refusal = conclusion.verdict.as_ref().err().map(|reason| format!("{name}: {reason}"));
     let refused = conclusion.verdict.as_ref().err();
-    let cause = refused.and_then(|why| cause::of_stopping(&header, &body, &options.into(), why));
+    let session = &replay.session;
+    let cause =
+        refused.and_then(|why| cause::of_stopping(&header, &body, &options.into(), session, why));
     let page = || page::alignment::report(name, &replay, conclusion);
     Ok(Told { refusal, ..told }.because(cause).with_page(options.report.as_deref(), page))
 }

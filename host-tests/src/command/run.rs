@@ -10,6 +10,7 @@ use bench::instrument::{self, FramesRun, Run, RunError};
 use bench::output::progress::Progress;
 use bench::output::{degrees, page, text};
 use bench::output::{json, kept};
+use bench::unwritten;
 use clap::{Args, ValueEnum};
 use drivers::ads1262::configuration::DataRate;
 use embassy_time::Instant;
@@ -294,7 +295,8 @@ impl RunOptions {
     /// What keeping an azimuth needs, and what it takes the place of.
     fn check_keeping(&self, given: &Given) -> Result<(), String> {
         let asked = given.first(&["realign", "handover"]);
-        match given.first(&["hold", "realign", "handover"]) {
+        let keeps = given.has("hold") && self.hold().seconds > 0.0;
+        match asked.or(keeps.then_some("hold")) {
             Some(_) if self.record.is_some() => {
                 return Err(
                     "--record: what a base with coarse sensors shows is not recorded".into()
@@ -544,7 +546,7 @@ fn simulate(
     let run = match &options.record {
         None => align(scenario, fault, NoRecorder, &watch),
         Some(path) => {
-            let failed = |error: std::io::Error| format!("{}: {error}", path.display());
+            let failed = |error: std::io::Error| unwritten::told("the recording", path, &error);
             let setting = scenario.setting().ok_or("the latitude is outside ±90°")?;
             let mut recorder = CsvRecorder::create(path, scenario, &setting).map_err(failed)?;
             let run = align(scenario, fault, &mut recorder, &watch);

@@ -11,6 +11,8 @@ use flate2::Compression;
 use flate2::read::GzDecoder;
 use flate2::write::GzEncoder;
 
+use crate::unwritten;
+
 /// The flash in a file; an erased one where there is no such file yet.
 ///
 /// # Errors
@@ -53,5 +55,5 @@ pub fn save(path: &Path, flash: &Flash) -> Result<(), String> {
         file.finish()?.sync_all()?;
         fs::rename(&beside, path)
     };
-    write().map_err(|error| format!("{}: {error}", path.display()))
+    write().map_err(|error| unwritten::told("the flash", path, &error))
 }

@@ -31,7 +31,7 @@ use std::path::Path;
 pub use error::{Place, ReadError};
 pub use header::{Header, Sensor, Truth};
 pub use lines::{MAX_LINE_BYTES, MAX_ROWS};
-pub use number::Range;
+pub use number::{Range, Short};
 pub use problem::{HeaderProblem, Problem, SourceProblem, StopProblem, TimeProblem, ValueProblem};
 pub use rows::{DwellRow, ImuRow, ImuSample, RotatingRow, SpinRow, StageRow, StaticRow};
 pub use spacing::{Gap, Spacing};

@@ -63,6 +63,21 @@ impl fmt::Display for Range {
     }
 }
 
+/// A number as a message bears it: one with very many zeros is written with an exponent.
+#[derive(Clone, Copy, Debug)]
+pub struct Short(pub f64);
+
+impl fmt::Display for Short {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(value) = self;
+        if *value == 0.0 || (1e-9..1e15).contains(&value.abs()) {
+            write!(f, "{value}")
+        } else {
+            write!(f, "{value:e}")
+        }
+    }
+}
+
 /// Reads a number inside the range. `nan`, `inf` and what overflows a double are refused by name.
 pub(super) fn number(text: &str, range: &'static Range) -> Result<f64, ValueProblem> {
     match text.parse::<f64>() {

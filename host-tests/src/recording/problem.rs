@@ -5,7 +5,7 @@ use std::io;
 
 use super::KINDS;
 use super::error::{printable, quoted};
-use super::number::Range;
+use super::number::{Range, Short};
 
 /// What is wrong with a recording.
 #[derive(Clone, Debug, PartialEq)]
@@ -265,7 +265,8 @@ impl fmt::Display for TimeProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotLater { time_s, before_s, before_line } => {
-                write!(f, "{time_s} s does not come after {before_s} s of line {before_line}")
+                let (time, before) = (Short(*time_s), Short(*before_s));
+                write!(f, "{time} s does not come after {before} s of line {before_line}")
             }
             Self::Gap { gap_s, before_line, period_s } => {
                 let (gap, period) = (Rounded(*gap_s), Rounded(*period_s));
@@ -273,7 +274,7 @@ impl fmt::Display for TimeProblem {
                 write!(f, "periods of {period} s; split the recording here")
             }
             Self::Rate(header, times) => {
-                let times = Rounded(*times);
+                let (header, times) = (Rounded(*header), Rounded(*times));
                 write!(f, "{header} Hz contradicts the times, which have {times} Hz; correct it")
             }
         }
@@ -292,13 +293,16 @@ impl fmt::Display for StopProblem {
             }
             Self::TooMany(limit) => write!(f, "more than {limit} of them; split the recording"),
             Self::Backwards(from, to) => {
+                let (from, to) = (Short(*from), Short(*to));
                 write!(f, "the stop {from}-{to} does not end after it begins; correct it")
             }
             Self::Overlap([from, to], [next_from, next_to]) => {
-                write!(f, "the stop {next_from}-{next_to} begins before {from}-{to} ends; ")?;
+                let [from, to, next, end] = [*from, *to, *next_from, *next_to].map(Short);
+                write!(f, "the stop {next}-{end} begins before {from}-{to} ends; ")?;
                 f.write_str("name the stops one after the other")
             }
             Self::NotFromFirst([north, east]) => {
+                let (north, east) = (Short(*north), Short(*east));
                 write!(f, "the first stop lies {north},{east} m from itself; ")?;
                 f.write_str("displacements count from the first stop, which is at 0,0")
             }
@@ -306,6 +310,7 @@ impl fmt::Display for StopProblem {
                 write!(f, "{displacements} for {stops} stops; give one for each stop")
             }
             Self::Outside { stop: [from, to], recording: [begin, end] } => {
+                let [from, to, begin, end] = [*from, *to, *begin, *end].map(Short);
                 write!(f, "the stop {from}-{to} lies outside of the recording, ")?;
                 write!(f, "which goes from {begin} s to {end} s; correct it")
             }
@@ -319,6 +324,6 @@ struct Rounded(f64);
 impl fmt::Display for Rounded {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let rounded = format!("{:.5e}", self.0).parse::<f64>().unwrap_or(self.0);
-        write!(f, "{rounded}")
+        Short(rounded).fmt(f)
     }
 }

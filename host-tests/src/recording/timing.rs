@@ -9,8 +9,11 @@ const GAP_PERIODS: f64 = 3.0;
 /// The part of a period by which times written with few digits may miss.
 const WRITING: f64 = 1e-3;
 
-/// The part by which the header's rate may miss that of the times.
-const RATE_TOLERANCE: f64 = 0.1;
+/// The part by which the header's rate may miss that of the times: no crystal is worse, and what turned is wrong by it.
+const RATE_TOLERANCE: f64 = 0.01;
+
+/// Steps longer than so many medians have a sample missing.
+const LONGEST_STEP: f64 = 1.75;
 
 /// The line and time, in seconds, of each sample; times increase.
 pub(super) struct Times<'a, T> {
@@ -27,10 +30,13 @@ impl<T> Times<'_, T> {
     pub fn check(&self, rate: Option<(u64, f64)>) -> Result<(), Fault> {
         let Some(median) = self.median_step() else { return Ok(()) };
         let Some((line, rate_hz)) = rate else { return self.check_gaps(median) };
-        let misses = |step: f64| (step * rate_hz - 1.0).abs() > RATE_TOLERANCE;
-        // Missing samples shift the mean, few digits in the times the median: a wrong rate, both.
-        if misses(median) && misses(self.mean_step()) {
-            return Err(Fault::key(line, "rate_hz", TimeProblem::Rate(rate_hz, 1.0 / median)));
+        let unbroken = Pace::of(self.steps().filter(|step| *step <= LONGEST_STEP * median));
+        // Missing samples slow all steps down, few digits in the times make some seem to miss one: a wrong rate
+        // shows both ways.
+        let paces = [Pace::of(self.steps()), unbroken];
+        if paces.iter().all(|pace| pace.contradicts(rate_hz, unbroken.spread())) {
+            let found_hz = unbroken.count / unbroken.sum_s;
+            return Err(Fault::key(line, "rate_hz", TimeProblem::Rate(rate_hz, found_hz)));
         }
         self.check_gaps(1.0 / rate_hz)
     }
@@ -51,16 +57,45 @@ impl<T> Times<'_, T> {
 
     /// The median of the steps (the lower one of two), in seconds; `None` with fewer than two rows.
     pub fn median_step(&self) -> Option<f64> {
-        let time = |row| (self.stamp)(row).1;
-        let mut steps: Vec<f64> =
-            self.rows.windows(2).map(|pair| time(&pair[1]) - time(&pair[0])).collect();
+        let mut steps: Vec<f64> = self.steps().collect();
         let middle = steps.len().checked_sub(1)? / 2;
         Some(*steps.select_nth_unstable_by(middle, f64::total_cmp).1)
     }
 
-    /// The mean of the steps, in seconds.
-    fn mean_step(&self) -> f64 {
-        let time = |row: Option<&T>| row.map_or(0.0, |row| (self.stamp)(row).1);
-        (time(self.rows.last()) - time(self.rows.first())) / (self.rows.len() - 1) as f64
+    /// The steps, in seconds.
+    fn steps(&self) -> impl Iterator<Item = f64> + '_ {
+        self.rows.windows(2).map(|pair| (self.stamp)(&pair[1]).1 - (self.stamp)(&pair[0]).1)
+    }
+}
+
+/// What steps amount to, in seconds.
+#[derive(Clone, Copy)]
+struct Pace {
+    sum_s: f64,
+    count: f64,
+    /// The shortest and the longest.
+    ends_s: [f64; 2],
+}
+
+impl Pace {
+    /// Of some steps.
+    fn of(steps: impl Iterator<Item = f64>) -> Self {
+        let none = Self { sum_s: 0.0, count: 0.0, ends_s: [f64::INFINITY, 0.0] };
+        steps.fold(none, |Self { sum_s, count, ends_s: [shortest, longest] }, step| Self {
+            sum_s: sum_s + step,
+            count: count + 1.0,
+            ends_s: [shortest.min(step), longest.max(step)],
+        })
+    }
+
+    /// By how much steps differ: so much may be missing at either end, by few digits or jitter.
+    fn spread(&self) -> f64 {
+        self.ends_s[1] - self.ends_s[0]
+    }
+
+    /// Whether the rate, Hz, is not theirs, where the ends are off by no more than this.
+    fn contradicts(&self, rate_hz: f64, ends_s: f64) -> bool {
+        let stated_s = self.count / rate_hz;
+        (self.sum_s - stated_s).abs() > RATE_TOLERANCE * self.sum_s + ends_s
     }
 }

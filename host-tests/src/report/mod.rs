@@ -10,8 +10,9 @@ mod span;
 
 use std::error::Error;
 use std::fmt;
-use std::io;
 use std::path::Path;
+
+use crate::unwritten;
 
 /// A whole report.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -195,16 +196,6 @@ impl Report {
     pub fn write(&self, path: &Path) -> Result<(), ReportError> {
         let refused = |reason| ReportError { file: path.display().to_string(), reason };
         let text = html::document(self).map_err(|error| refused(error.to_string()))?;
-        std::fs::write(path, text).map_err(|error| refused(words(&error)))
-    }
-}
-
-/// The system's refusals that a user meets have words of their own.
-fn words(error: &io::Error) -> String {
-    match error.kind() {
-        io::ErrorKind::NotFound => "there is no such folder".to_owned(),
-        io::ErrorKind::PermissionDenied => "the folder or file is protected".to_owned(),
-        io::ErrorKind::IsADirectory => "it is a directory; name a file in it".to_owned(),
-        _ => error.to_string(),
+        std::fs::write(path, text).map_err(|error| refused(unwritten::words(path, &error)))
     }
 }

@@ -78,7 +78,7 @@ fn span(stretch: &Stretch) -> Option<(f64, f64)> {
 /// What keeps the session from beginning. A refusal is not an error but the session's conclusion.
 pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay, ReplayError> {
     let Body::Rotating(rows) = body else { return Err(ReplayError::Stops(body.kind())) };
-    let latitude = latitude(header, options.latitude)?;
+    let latitude = latitude(header, body, options.latitude)?;
     let Described { setting: mut common, mut assumed } = describe(header, body, latitude);
     if let Some(sigma) = options.required_sigma {
         common.required_sigma = sigma;

@@ -98,10 +98,16 @@ fn of_turn(samples: &[SpinSample]) -> Option<[f64; 2]> {
     Some([(up * up + across * across - noise).max(0.0).sqrt(), variance])
 }
 
-/// Angle random walk of the gyro, rad/√s, where only its rates, rad/s, tell: sixth differences leave
-/// nothing of a rate that changes slowly. A stretch over which it is stuck tells nothing.
+/// Angle random walk of the gyro, rad/√s, where only its rates, rad/s, tell.
 #[must_use]
 pub fn gyro_walk(rates: &[f64], period_s: f64) -> f64 {
+    white(rates) * period_s.sqrt()
+}
+
+/// White noise of a signal, 1σ of a sample: sixth differences leave nothing of what changes slowly. A stretch over
+/// which it is stuck tells nothing.
+#[must_use]
+pub(super) fn white(rates: &[f64]) -> f64 {
     const WEIGHTS: [f64; 7] = [1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0];
     let difference = |window: &[f64]| -> f64 {
         window.iter().zip(WEIGHTS).map(|(rate, weight)| rate * weight).sum()
@@ -111,7 +117,7 @@ pub fn gyro_walk(rates: &[f64], period_s: f64) -> f64 {
     let lives = windows.filter(|(from, _)| !stuck.contains(from));
     let mut squares: Vec<f64> = lives.map(|(_, window)| difference(window).powi(2)).collect();
     // Of a normal variable's square the median is 0.455 of the mean.
-    (crate::replay::median(&mut squares) / 0.455 / SIXTH * period_s).sqrt()
+    (crate::replay::median(&mut squares) / 0.455 / SIXTH).sqrt()
 }
 
 /// How many times as long as any other a stretch of one rate is over which a gyro is stuck.

@@ -15,7 +15,8 @@ use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 use self::limit::{Noise, Turns};
 use self::track::Track;
 use crate::recording::{Body, Header, SpinRow};
-use crate::replay::{ReplayError, median};
+use crate::replay::ReplayError;
+use crate::stops::samples::mean_step;
 
 /// 1σ of a gyro's scale error of which the header says nothing: 1 %.
 pub const SCALE_SIGMA: f64 = 0.01;
@@ -100,18 +101,23 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
     let (setting, assumed) = setting(header, rows, period_s);
     let required_sigma = options.required_sigma.unwrap_or(f64::INFINITY);
     let replay = follow(&samples, Known { setting, required_sigma, assumed });
-    Ok(Replay { doubt: stuck_gyro(rows, replay.noise), ..replay })
+    Ok(Replay { doubt: stuck_gyro(rows), ..replay })
 }
 
 /// Noise of the forces from which sensors are no ideal ones, m/s²: those that turn so fast measure thousands.
 const REAL_NOISE: f64 = 0.005;
 
-/// A gyro that shows one rate for most of the time, beside forces that have noise.
-fn stuck_gyro(rows: &[SpinRow], noise: Noise) -> Option<String> {
+/// A gyro that shows one rate for most of the time, beside forces that have noise: as they show it by themselves, for
+/// turns that are counted by a gyro which is wrong leave some of the lift over.
+fn stuck_gyro(rows: &[SpinRow]) -> Option<String> {
     let rates: Vec<f64> = rows.iter().map(|row| row.rate_rad_s).collect();
     let is_one = rates.windows(2).all(|pair| pair[0] == pair[1]);
     let stuck = if is_one { rows.len() } else { limit::stuck(&rates).len() };
-    (2 * stuck > rows.len() && noise.force > REAL_NOISE).then(|| {
+    let noise = [0, 1].map(|axis: usize| {
+        let forces: Vec<f64> = rows.iter().map(|row| row.force_m_s2[axis]).collect();
+        limit::white(&forces)
+    });
+    (2 * stuck > rows.len() && noise.into_iter().all(|noise| noise > REAL_NOISE)).then(|| {
         let percent = 100 * stuck / rows.len();
         format!("column gx_rad_s shows one value in {percent} % of the rows: stuck or dead, check its supply and wires")
     })
@@ -149,18 +155,11 @@ pub fn follow(samples: &[SpinSample], known: Known) -> Replay {
     }
 }
 
-/// How far the header's rate may be off before the times are believed instead.
-const RATE_TOLERANCE: f64 = 0.01;
-
-/// The sample period, s: the header's, unless the times say otherwise; none of fewer than two rows.
+/// The sample period, s: the header's, which reading has held against the times, or theirs; none of fewer than two
+/// rows.
 fn period(rate_hz: Option<f64>, rows: &[SpinRow]) -> Option<f64> {
-    let mut steps: Vec<f64> = rows.windows(2).map(|pair| pair[1].time_s - pair[0].time_s).collect();
-    if steps.is_empty() {
-        return None;
-    }
-    let step_s = median(&mut steps);
-    let stated = rate_hz.filter(|rate| (step_s * rate - 1.0).abs() <= RATE_TOLERANCE);
-    Some(stated.map_or(step_s, |rate| 1.0 / rate))
+    let step_s = mean_step(rows, |row| row.time_s)?;
+    Some(rate_hz.map_or(step_s, |rate| 1.0 / rate))
 }
 
 /// What is known of the gyro; what is not stated is taken from the rows or assumed.

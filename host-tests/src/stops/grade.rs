@@ -6,7 +6,7 @@
 
 use orientation::units::DEGREE_PER_HOUR;
 
-use crate::recording::Header;
+use crate::recording::{Header, Short};
 
 /// Bias of gyros of which nothing is stated, °/h: a worse one hardly finds north.
 const UNKNOWN_DEG_H: f64 = 1.0;
@@ -27,7 +27,8 @@ pub fn filled(header: &Header, assumed: &mut Vec<String>) -> Header {
     let mut or = |value: Option<f64>, usual: f64, words: &str, unit: &str| {
         value.or_else(|| {
             assumed.push(format!(
-                "{words} unknown, {usual:.1e}{unit} (1σ) as usual beside gyros of {bias} °/h"
+                "{words} unknown, {usual:.1e}{unit} (1σ) as usual beside gyros of {} °/h",
+                Short(bias)
             ));
             Some(usual)
         })

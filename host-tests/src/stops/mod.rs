@@ -8,6 +8,7 @@ pub mod floor;
 pub mod grade;
 pub mod noise;
 pub mod samples;
+pub mod way;
 
 use firmware::ports::Recorder;
 use heapless::Vec as Few;
@@ -23,6 +24,7 @@ use orientation::signal::rest::{Criteria, Limits};
 use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, DEGREES_PER_RADIAN};
 
 use self::noise::White;
+use self::way::{Leg, Slip};
 use crate::recording::{Body, Header, ImuRow, Kind};
 use crate::replay::{self, ReplayError};
 use crate::setting::{Described, describe};
@@ -38,6 +40,13 @@ pub enum Method {
 }
 
 impl Method {
+    /// That of a recording for which none was asked; none of a kind without three gyros and three accelerometers.
+    #[must_use]
+    pub fn of(header: &Header, body: &Body) -> Option<Self> {
+        let rows = samples::rows(body)?;
+        Some(usual(header, &rows, samples::period(header.rate_hz, &rows)))
+    }
+
     /// Its name on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -98,8 +107,30 @@ impl Replay {
 pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay, ReplayError> {
     let replay = follow(header, body, options)?;
     check_kilometres(header, body, options, &replay)?;
+    check_way(body, header, replay)
+}
+
+/// Refuses displacements that the forces on the way contradict, and tells where they cannot.
+fn check_way(body: &Body, header: &Header, mut replay: Replay) -> Result<Replay, ReplayError> {
+    let found = replay.conclusion().filter(|it| it.verdict.is_ok()).and_then(|it| it.found);
+    let (Some(rows), Some(found)) = (samples::rows(body), found) else { return Ok(replay) };
+    let period_s = samples::period(header.rate_hz, &rows);
+    let common = &replay.session.setting().common;
+    let (stops, zero_s) = (replay.session.stops(), replay.zero_s);
+    let legs = way::legs(&rows, zero_s, period_s, stops, common, found.start.angle);
+    if let Some(leg) = legs.iter().position(|leg| !leg.is_as_stated()) {
+        let (Leg { stated_m, driven_m, .. }, slip) = (legs[leg], Slip::of(&legs));
+        return Err(ReplayError::Way { stop: leg + 1, stated_m, driven_m, slip });
+    }
+    if legs.iter().any(Leg::tells_nothing) {
+        replay.assumed.push(UNTOLD.to_owned());
+    }
     Ok(replay)
 }
+
+/// What is assumed of a way that the forces do not show.
+const UNTOLD: &str =
+    "displacements in metres north and east: the forces on the way show them too badly";
 
 /// Displacements whose greatest part is below this may be kilometres, m.
 const KILOMETRES: f64 = 100.0;
@@ -130,7 +161,7 @@ fn check_kilometres(
 /// Drives the session with the rows.
 fn follow(header: &Header, body: &Body, options: &Options) -> Result<Replay, ReplayError> {
     let rows = samples::rows(body).ok_or_else(|| missing(body))?;
-    let latitude = replay::latitude(header, options.latitude)?;
+    let latitude = replay::latitude(header, body, options.latitude)?;
     let period_s = samples::period(header.rate_hz, &rows);
     check_rate(header.rate_hz, &rows)?;
     check_stuck(&rows, period_s)?;
@@ -159,11 +190,14 @@ fn follow(header: &Header, body: &Body, options: &Options) -> Result<Replay, Rep
     Ok(Replay { method, session, zero_s, criteria, assumed })
 }
 
+/// N below which rates have no noise but rounding, rad/√s: 10⁻⁶ °/√h.
+const NO_WALK: f64 = 1e-3 * LEAST_WALK;
+
 /// Refuses a recording in which a sensor stands still while the others have noise: a part of the rotation is
 /// lost, and nothing else tells.
 pub(crate) fn check_stuck(rows: &[ImuRow], period_s: f64) -> Result<(), ReplayError> {
     let white = noise::estimate(rows, None, period_s);
-    if white.angle_random_walk <= 0.0 || white.force <= 0.0 {
+    if white.angle_random_walk <= NO_WALK || white.force <= 0.0 {
         return Ok(());
     }
     let Some((column, row, count)) = samples::stuck(rows) else { return Ok(()) };
@@ -249,7 +283,8 @@ const RATE_TOLERANCE: f64 = 0.01;
 
 /// Refuses a stated rate that the times contradict: one of both is wrong, and every rotation with it.
 fn check_rate(rate_hz: Option<f64>, rows: &[ImuRow]) -> Result<(), ReplayError> {
-    let found = samples::mean_step(rows).map(|step| 1.0 / step);
+    let step_s = samples::mean_step(rows, |row| row.time_s);
+    let found = step_s.map(|step| 1.0 / step);
     let (Some(stated_hz), Some(found_hz)) = (rate_hz, found) else { return Ok(()) };
     if (stated_hz / found_hz - 1.0).abs() <= RATE_TOLERANCE {
         return Ok(());

@@ -34,19 +34,19 @@ fn row(row: &StaticRow) -> Option<ImuRow> {
 #[must_use]
 pub fn period(rate_hz: Option<f64>, rows: &[ImuRow]) -> f64 {
     let stated = rate_hz.map(|rate| 1.0 / rate);
-    let Some((sum, count)) = steps(rows) else { return stated.unwrap_or(1.0) };
+    let Some((sum, count)) = steps(rows, |row| row.time_s) else { return stated.unwrap_or(1.0) };
     stated.filter(|stated| (sum - count * stated).abs() <= *stated).unwrap_or(sum / count)
 }
 
-/// The mean step of the times, s, where samples are; none of fewer than two rows.
+/// The mean step of the rows' times, s, where samples are; none of fewer than two rows.
 #[must_use]
-pub fn mean_step(rows: &[ImuRow]) -> Option<f64> {
-    steps(rows).map(|(sum, count)| sum / count)
+pub fn mean_step<R>(rows: &[R], time_s: fn(&R) -> f64) -> Option<f64> {
+    steps(rows, time_s).map(|(sum, count)| sum / count)
 }
 
 /// The sum of the steps without a missing sample, s, and how many they are.
-fn steps(rows: &[ImuRow]) -> Option<(f64, f64)> {
-    let steps = || rows.windows(2).map(|pair| pair[1].time_s - pair[0].time_s);
+fn steps<R>(rows: &[R], time_s: fn(&R) -> f64) -> Option<(f64, f64)> {
+    let steps = || rows.windows(2).map(|pair| time_s(&pair[1]) - time_s(&pair[0]));
     let mut sorted: Vec<f64> = steps().collect();
     if sorted.is_empty() {
         return None;

@@ -14,7 +14,7 @@ use orientation::noise::model::GyroNoise;
 use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 
 use crate::output::{azimuth_error, degrees};
-use crate::recording::{Body, Header};
+use crate::recording::{Body, Header, Short};
 use crate::replay::ReplayError;
 use crate::setting::noise;
 use crate::stops::{check_stuck, missing, samples};
@@ -126,7 +126,8 @@ fn setting(
     }
     let force_bias_sigma = header.accelerometer_bias_m_s2.unwrap_or(coarse.force_bias_sigma);
     if header.accelerometer_bias_m_s2.is_none() {
-        assumed.push(format!("accelerometer biases of a coarse unit: {force_bias_sigma} m/s²"));
+        let bias = Short(force_bias_sigma);
+        assumed.push(format!("accelerometer biases of a coarse unit: {bias} m/s²"));
     }
     Setting { gyros, force_bias_sigma, ..coarse }
 }

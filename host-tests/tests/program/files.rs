@@ -83,6 +83,32 @@ fn a_folder_is_no_file_and_neither_is_nothing() {
 }
 
 #[test]
+fn a_file_in_a_folder_that_is_not_there_is_refused_in_words_that_name_both() {
+    let scratch = Scratch::new("nowhere");
+    let (folder, beneath) = (scratch.path("none"), scratch.with("plain", ""));
+    let short = ["run", "--rate", "50", "--dwell", "2"];
+    let turning = ["run", "--method", "rotating", "--rate", "50", "--turns", "2"];
+    let imu = stored("imu-broad-24");
+    let vertical = ["replay", &imu, "--method", "vertical"];
+    for (arguments, option, what) in [
+        (&short[..], "--record", "the recording"),
+        (&short, "--report", "the report"),
+        (&turning, "--flash", "the flash"),
+        (&vertical, "--attitude-out", "the attitude"),
+    ] {
+        let file = format!("{folder}/x");
+        let output = meridian(&[arguments, &[option, &file]].concat());
+        let told = format!(
+            "meridian: {file}: {what} cannot be written: there is no such folder: {folder}"
+        );
+        assert_eq!((code(&output), reason(&output)), (1, told));
+    }
+    let file = format!("{beneath}/x");
+    let output = meridian(&[&short[..], &["--record", &file]].concat());
+    assert!(reason(&output).contains("a part of its path is a file"), "{}", reason(&output));
+}
+
+#[test]
 fn what_was_recorded_before_may_be_written_over_and_dev_null_takes_everything() {
     let scratch = Scratch::new("again");
     let first = recorded(&scratch);

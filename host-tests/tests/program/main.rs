@@ -2,6 +2,7 @@
 
 #![allow(clippy::expect_used, reason = "a test that cannot go on has failed")]
 
+mod causes;
 mod files;
 mod misuses;
 mod options;
@@ -88,6 +89,26 @@ fn recorded(scratch: &Scratch) -> String {
     let output = meridian(&["run", "--rate", "50", "--dwell", "2", "--record", &path]);
     assert_eq!(code(&output), 0, "{}", reason(&output));
     fs::read_to_string(path).expect("it was written")
+}
+
+/// A stored recording as text.
+fn unpacked(name: &str) -> String {
+    let file = fs::File::open(stored(name)).expect("it is there");
+    let mut text = String::new();
+    std::io::Read::read_to_string(&mut flate2::read::MultiGzDecoder::new(file), &mut text)
+        .expect("it is gzip");
+    text
+}
+
+/// The reason for which a recording is refused.
+fn refused(scratch: &Scratch, recording: &str) -> String {
+    let path = scratch.with("refused.csv", recording);
+    let output = meridian(&["replay", &path, "--json"]);
+    assert_eq!(code(&output), 1, "it is refused");
+    let why = object(&output)["reason"].as_str().expect("a reason").to_owned();
+    assert!(!why.contains("keep the"), "{why}");
+    assert!(reason(&output).contains(&why), "{}", reason(&output));
+    why
 }
 
 /// A recording with every value of some columns times a factor.

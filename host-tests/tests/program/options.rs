@@ -85,10 +85,55 @@ fn an_option_that_a_replay_ignores_is_refused_with_both_named() {
             assert_misuse(&["replay", &stage, "--method", method, option], &words);
         }
     }
-    // Where the method follows from the recording, so does the refusal.
-    let output = meridian(&["replay", &stage, "--attitude-out", "x"]);
-    assert_eq!(code(&output), 1);
-    assert!(reason(&output).contains("--attitude-out: --method stepwise does not take it"));
+}
+
+#[test]
+fn an_option_that_the_kind_of_a_recording_ignores_is_a_misuse_without_a_method_too() {
+    for (name, option, method) in [
+        ("stepwise-circle", "--attitude-out=x", "stepwise"),
+        ("positions-four-fog", "--displacements=0,0", "stepwise"),
+        ("rotating-gyro", "--criterion=ml", "rotating"),
+        ("drive-ideal", "--half=east", "siap"),
+        ("parked-swaying", "--displacements=0,0", "static"),
+        ("spin-100rps", "--latitude=1", "spin"),
+    ] {
+        let option_name = option.split('=').next().unwrap_or_default();
+        let words = format!("{option_name}: --method {method} does not take it: ");
+        let path = stored(name);
+        assert_misuse(&["replay", &path, option], &words);
+        assert_misuse(&["replay", &path, option, "--json"], &words);
+        assert_misuse(&["replay", &path, option, "--method", method], &words);
+    }
+}
+
+#[test]
+fn keeping_for_no_time_is_as_good_as_not_asking_for_it() {
+    let short = ["run", "--rate", "50", "--dwell", "2", "--record", "/dev/null"];
+    for hold in ["0", "0.0"] {
+        let output = meridian(&[&short[..], &["--hold", hold]].concat());
+        assert_eq!(code(&output), 0, "{}", reason(&output));
+    }
+    assert_misuse(&["run", "--hold", "0", "--realign", "--record", "x.csv"], "--record: ");
+}
+
+#[test]
+fn each_method_lists_its_own_faults_and_takes_every_one_of_them() {
+    let listed = |method: &str| {
+        let output = meridian(&["run", "--method", method, "--fault", "list"]);
+        let text = super::text(&output.stdout);
+        text.lines().map(str::to_owned).collect::<Vec<_>>()
+    };
+    let [stage, platform, vehicle, body] = ["stepwise", "rotating", "siap", "spin"].map(listed);
+    // Stage and platform are one board, whose chips fail alike; a vehicle and a spinning body have others.
+    assert_eq!(stage, platform);
+    assert_eq!((stage.len(), vehicle.len(), body.len()), (55, 51, 55));
+    for (method, own, other) in
+        [("siap", &vehicle, &stage), ("spin", &body, &vehicle), ("stepwise", &stage, &body)]
+    {
+        assert!(own != other, "{method}");
+        let alien = other.iter().find(|fault| !own.contains(fault)).expect("they differ");
+        assert_misuse(&["run", "--method", method, "--fault", alien], "--fault: ");
+    }
 }
 
 #[test]

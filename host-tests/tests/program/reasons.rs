@@ -2,21 +2,10 @@
 
 use std::fmt::Write;
 
-use super::{Scratch, code, mapped, meridian, object, reason, recorded, scaled, stored};
+use super::{Scratch, code, mapped, meridian, reason, recorded, refused, scaled, stored, unpacked};
 
 const FORCES: [&str; 3] = ["fx_m_s2", "fy_m_s2", "fz_m_s2"];
 const DEGREES: f64 = 57.295_779_513_082_32;
-
-/// The reason for which a recording is refused.
-fn refused(scratch: &Scratch, recording: &str) -> String {
-    let path = scratch.with("refused.csv", recording);
-    let output = meridian(&["replay", &path, "--json"]);
-    assert_eq!(code(&output), 1, "it is refused");
-    let why = object(&output)["reason"].as_str().expect("a reason").to_owned();
-    assert!(!why.contains("keep the"), "{why}");
-    assert!(reason(&output).contains(&why), "{}", reason(&output));
-    why
-}
 
 #[test]
 fn a_column_in_another_unit_is_named_with_the_factor_that_mends_it() {
@@ -115,15 +104,6 @@ fn averaged_dwells_in_other_units_are_named() {
         let why = refused(&scratch, &scaled(&dwells(), columns, factor));
         assert!(why.contains(words), "{why}");
     }
-}
-
-/// A stored recording as text.
-fn unpacked(name: &str) -> String {
-    let file = std::fs::File::open(stored(name)).expect("it is there");
-    let mut text = String::new();
-    std::io::Read::read_to_string(&mut flate2::read::MultiGzDecoder::new(file), &mut text)
-        .expect("it is gzip");
-    text
 }
 
 #[test]

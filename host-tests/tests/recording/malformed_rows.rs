@@ -112,7 +112,7 @@ fn a_gap_is_refused_with_its_length() {
 
 #[test]
 fn a_rate_that_contradicts_the_times_is_refused() {
-    for rate in ["100", "44", "56"] {
+    for rate in ["100", "44", "56", "49.4", "50.6"] {
         assert_eq!(
             stage("hz: 50", &format!("hz: {rate}")),
             format!(

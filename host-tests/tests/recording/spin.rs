@@ -115,3 +115,42 @@ fn times_that_run_back_jump_or_contradict_the_rate_are_refused() {
         "walk.csv: line 2, key rate_hz: 5000 Hz contradicts the times, which have 10000 Hz; correct it"
     );
 }
+
+/// A `spin` recording of so many samples at a rate, Hz, whose times have so many digits.
+fn recorded(rate_hz: f64, digits: usize, count: u32) -> String {
+    let rows = (0..count).map(|index| {
+        let time_s = f64::from(index) / rate_hz;
+        format!("{time_s:.digits$},600,-7900,-3900\n")
+    });
+    let head = "# kind: spin\n# rate_hz: 10000\nt_s,gx_rad_s,ay_m_s2,az_m_s2\n";
+    head.to_owned() + &rows.collect::<String>()
+}
+
+#[test]
+fn a_rate_more_than_one_per_cent_from_that_of_the_times_is_refused_with_both_figures() {
+    for (rate_hz, found) in [(9_850.0, "9850"), (10_150.0, "10150"), (9_880.0, "9880")] {
+        let why = message(recorded(rate_hz, 9, 500));
+        let both = format!("10000 Hz contradicts the times, which have {found} Hz; correct it");
+        assert_eq!(why, format!("walk.csv: line 2, key rate_hz: {both}"));
+    }
+    for rate_hz in [9_920.0, 10_000.0, 10_080.0] {
+        assert_eq!(rows(read(recorded(rate_hz, 9, 500))).len(), 500);
+    }
+}
+
+#[test]
+fn times_of_few_digits_hide_no_wrong_rate_and_make_none() {
+    // Steps of 0.09 and 0.1 ms, whose median alone says 10 000 Hz.
+    let why = message(recorded(10_200.0, 5, 500));
+    assert!(why.contains("10000 Hz contradicts the times, which have 10200"), "{why}");
+    assert_eq!(rows(read(recorded(10_050.0, 5, 500))).len(), 500);
+    assert_eq!(rows(read(recorded(10_000.0, 5, 12))).len(), 12);
+}
+
+#[test]
+fn missing_samples_make_no_wrong_rate() {
+    let text = recorded(10_000.0, 9, 500);
+    let kept = text.lines().enumerate().filter(|(index, _)| *index < 4 || index % 10 != 0);
+    let kept = kept.fold(String::new(), |all, (_, line)| all + line + "\n");
+    assert!(rows(read(kept)).len() < 460);
+}

@@ -1,11 +1,11 @@
 //! Recordings spoilt in one place are refused with the reason, or survive it.
 
-use bench::recording::{Body, ImuRow};
+use bench::recording::{Body, ImuRow, Kind};
 use bench::replay::ReplayError;
 use bench::stops::{Method, Options, replay};
 use orientation::error::Refusal;
 
-use super::{FOG, IDEAL, PARKED, Recorded, SIGMAS, conclusion, recorded};
+use super::{FOG, IDEAL, PARKED, Recorded, SIGMAS, THREE, conclusion, recorded};
 
 /// The fibre-optic drive with its rows changed.
 fn drive(change: impl FnOnce(&mut Vec<ImuRow>)) -> Recorded {
@@ -158,7 +158,7 @@ fn what_keeps_a_replay_from_beginning_is_told() {
     let mut nowhere = recorded;
     nowhere.header.latitude_deg = None;
     let error = begin(&nowhere, &Options::default()).expect_err("no latitude");
-    assert_eq!(error, ReplayError::NoLatitude);
+    assert_eq!(error, ReplayError::NoLatitude(Kind::Imu));
 
     nowhere.header.latitude_deg = Some(52.0);
     nowhere.header.stops_s =
@@ -173,4 +173,45 @@ fn what_keeps_a_replay_from_beginning_is_told() {
         error.to_string(),
         "kind `dwells` is no vehicle: no method siap, static or vertical"
     );
+}
+
+/// The refusal of a recording with other displacements, in words.
+fn misplaced(recorded: &Recorded, mend: fn([f64; 2]) -> [f64; 2]) -> String {
+    let stated = recorded.header.displacements_m.as_ref().expect("they are stated");
+    let options = Options {
+        displacements_m: Some(stated.iter().map(|place| mend(*place)).collect()),
+        ..Options::default()
+    };
+    let replayed = replay(&recorded.header, &Body::Imu(recorded.rows.clone()), &options);
+    replayed.map(|_| ()).expect_err("the forces contradict it").to_string()
+}
+
+#[test]
+fn displacements_that_the_forces_on_the_way_contradict_are_refused_with_their_likely_cause() {
+    for name in [FOG, THREE, IDEAL] {
+        let recorded = recorded(name);
+        for (mend, words) in [
+            ((|[n, e]| [1e-3 * n, 1e-3 * e]) as fn([f64; 2]) -> [f64; 2], "in kilometres"),
+            (|[n, e]| [e, n], "north and east are exchanged"),
+            (|[n, e]| [-n, -e], "their signs are reversed"),
+            (|_| [0.0; 2], "correct them, or leave them out"),
+        ] {
+            let why = misplaced(&recorded, mend);
+            let key = "key displacements_north_east_m: from stop 1 to the next it says ";
+            assert!(why.starts_with(key) && why.contains(words), "{name}: {why}");
+        }
+    }
+}
+
+#[test]
+fn a_displacement_that_the_forces_cannot_tell_is_told_as_assumed() {
+    let mut recorded = recorded(FOG);
+    let assumes = |recorded: &Recorded| {
+        let replay = recorded.replayed();
+        replay.assumed.iter().any(|line| line.starts_with("displacements in metres north and east"))
+    };
+    assert!(!assumes(&recorded));
+    // In the 900 s of the drive, 0.1 m/s² hide more than the 3.4 km of it: 40 km, were they even, and not taken off.
+    recorded.header.accelerometer_bias_m_s2 = Some(0.1);
+    assert!(assumes(&recorded));
 }

@@ -1,0 +1,115 @@
+//! What a refusal of a recording is likely to come from: a column in another unit, a noise that is not the gyro's, a
+//! sensor that is stuck, an encoder that slipped, a key that is missing.
+//!
+//! What the columns prove is named at once. Else the recording is tried as it may have been meant: where it then gives
+//! an azimuth that passes every test, that is named. The azimuth itself is not told: the recording is to be put right.
+//! A recording that is merely too short is not tried: almost anything would pass.
+
+mod keys;
+mod slip;
+mod stuck;
+mod units;
+mod vehicle;
+
+pub use vehicle::{of_level, of_vehicle};
+
+use orientation::error::Refusal;
+use orientation::session::Session;
+
+use crate::recording::{Body, Header, Short};
+use crate::replay::{self, Options};
+use crate::rotating;
+
+/// Times the stated noise power that no residuals are by chance or drift.
+const NO_NOISE: f64 = 100.0;
+/// Fewest dwells that a trial may be made with where they were too few.
+const FEW: usize = 5;
+
+/// The likely cause of a refusal of a recording whose stage stops, with its remedy.
+#[must_use]
+pub fn of_stopping(
+    header: &Header,
+    body: &Body,
+    options: &Options,
+    session: &Session,
+    refusal: &Refusal,
+) -> Option<String> {
+    let proven = stuck::of_stage(header, body).or_else(|| keys::impossible(body));
+    if proven.is_some() {
+        return proven;
+    }
+    let passes = |body: &Body| {
+        let replay = replay::replay(header, body, options, |_| {});
+        replay.is_ok_and(|replay| replay.session.conclusion().is_some_and(|c| c.verdict.is_ok()))
+    };
+    let force = units::force_unit(body);
+    if is_short(refusal) && session.dwells().len() < FEW {
+        return force.map(|unit| unit.told(units::force_columns(body)));
+    }
+    units::tried(body, force, &passes)
+        .or_else(|| force.map(|unit| unit.told(units::force_columns(body))))
+        .or_else(|| units::of_sigma(header, body, options))
+        .or_else(|| keys::noise(header, body, options))
+        .or_else(|| slip::of(session, refusal))
+        .or_else(|| keys::missing(header, body, options, refusal))
+        .or_else(|| too_much(body, refusal))
+}
+
+/// The same of one whose platform turns all the time.
+#[must_use]
+pub fn of_turning(
+    header: &Header,
+    body: &Body,
+    options: &Options,
+    refusal: &Refusal,
+) -> Option<String> {
+    let Body::Rotating(rows) = body else { return None };
+    let proven = stuck::of_platform(rows).or_else(|| units::of_platform_rate(rows));
+    let is_noisy = matches!(refusal, Refusal::BudgetNotMet { .. });
+    if proven.is_some() || is_short(refusal) && !is_noisy {
+        return proven;
+    }
+    let passes = |header: &Header, body: &Body| {
+        let replay = rotating::replay(header, body, options);
+        replay.is_ok_and(|replay| replay.conclusion().is_some_and(|c| c.verdict.is_ok()))
+    };
+    let noise = || {
+        let stated = Short(header.gyro_n_deg_sqrt_h?);
+        let silent = Header { gyro_n_deg_sqrt_h: None, ..header.clone() };
+        passes(&silent, body).then(|| {
+            format!("key gyro_N_deg_sqrt_h says {stated} °/√h, but the turns show another noise: leave it out")
+        })
+    };
+    units::tried(body, None, &|body| passes(header, body)).or_else(noise)
+}
+
+/// Whether there was too little to tell from, so that almost any other reading of it would pass.
+fn is_short(refusal: &Refusal) -> bool {
+    matches!(
+        refusal,
+        Refusal::TooFewPositions { .. }
+            | Refusal::ArcCannotTell
+            | Refusal::SignUnknown
+            | Refusal::NotInHalf
+            | Refusal::TrendNotSeparable
+            | Refusal::BudgetNotMet { .. }
+            | Refusal::TiltTooUncertain { .. }
+            | Refusal::TurnsTooFew { .. }
+            | Refusal::NoStop
+            | Refusal::OneStop { .. }
+            | Refusal::StopTooShort { .. }
+            | Refusal::DriveTooShort { .. }
+            | Refusal::LatitudeTooHigh { .. }
+    )
+}
+
+/// Residuals that are no noise of anything.
+fn too_much(body: &Body, refusal: &Refusal) -> Option<String> {
+    let Refusal::ResidualsNotWhite { ratio } = refusal else { return None };
+    let stated = if matches!(body, Body::Dwells(_)) { "sigma_rad_s" } else { "gyro_N_deg_sqrt_h" };
+    (*ratio > NO_NOISE).then(|| {
+        format!(
+            "so much is no noise: check the units of all columns, and {stated}, and whether the platform stood still"
+        )
+    })
+}

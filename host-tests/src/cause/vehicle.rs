@@ -1,0 +1,51 @@
+//! The same of three gyros and three accelerometers.
+
+use orientation::error::Refusal;
+
+use super::is_short;
+use super::units::{self, MOST_ROWS, RATES, Unit};
+use crate::recording::{Body, Header, ImuRow};
+use crate::stops::{self, Options, samples};
+
+/// The gyros' columns.
+const GYROS: &str = "columns gx_rad_s to gz_rad_s";
+
+/// The likely cause of a refusal of a vehicle's recording, with its remedy.
+#[must_use]
+pub fn of_vehicle(
+    header: &Header,
+    body: &Body,
+    options: &Options,
+    refusal: &Refusal,
+) -> Option<String> {
+    let force = units::force_unit(body);
+    let of_force = force.map(|unit| unit.told(units::force_columns(body)));
+    let rows = samples::rows(body).filter(|rows| rows.len() <= MOST_ROWS)?;
+    if is_short(refusal) {
+        return of_force;
+    }
+    let passes = |rate: &Unit| {
+        let body = Body::Imu(converted(&rows, rate.0, force.map_or(1.0, |unit| unit.0)));
+        let replay = stops::replay(header, &body, options);
+        replay.is_ok_and(|replay| replay.conclusion().is_some_and(|found| found.verdict.is_ok()))
+    };
+    let of_rates = RATES.into_iter().find(passes).map(|unit| unit.told(GYROS));
+    let told: Vec<String> = of_rates.into_iter().chain(of_force).collect();
+    (!told.is_empty()).then(|| told.join("; "))
+}
+
+/// The same where no level was found.
+#[must_use]
+pub fn of_level(body: &Body) -> Option<String> {
+    units::force_unit(body).map(|unit| unit.told(units::force_columns(body)))
+}
+
+/// The rows in other units.
+fn converted(rows: &[ImuRow], rate: f64, force: f64) -> Vec<ImuRow> {
+    let mut rows = rows.to_vec();
+    for row in &mut rows {
+        row.sample.rates_rad_s = row.sample.rates_rad_s.map(|part| part * rate);
+        row.sample.force_m_s2 = row.sample.force_m_s2.map(|part| part * force);
+    }
+    rows
+}
