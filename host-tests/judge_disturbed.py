@@ -13,9 +13,8 @@ KNOWN = {
     "encoder-slip": (2, 0.90),
     "base-turn": (3, 0.90),
     "base-tilting": (2, 0.90),
-    "base-yawing": (8, 0.90),
+    "base-yawing": (6, 0.90),
     "random-walk": (1, 0.85),
-    "gyro-lag": (1, 0.90),
     "turning-base-yawing": (3, 0.90),
     "turning-base-turn": (3, 0.90),
     "turning-gyro-late": (0, 0.85),
@@ -36,7 +35,7 @@ def judge(campaign):
         words = f"{row['class']}: {wrong} wrong of {row['answered']}, {answered} of {harmless} harmless ones answered"
         print("not met:", words)
         most, least = KNOWN.get(row["class"], (0, 0.9))
-        if wrong > most or answered < least * harmless or row["class"] not in KNOWN:
+        if wrong > most or answered < least * harmless:
             failed.append(words)
     coverage = next(row for row in campaign["healthy"] if row["method"] == "all")["coverage_percent"]
     print("healthy: within 1, 2, 3 σ are", ", ".join(f"{part:.1f} %" for part in coverage))
