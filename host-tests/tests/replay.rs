@@ -4,7 +4,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use bench::output::azimuth_error;
+use bench::output::{azimuth_error, columns};
 use bench::recording::{self, Body, Header, StageRow};
 use bench::replay::{Options, Replay, ReplayError, replay};
 use hal_mock::noise::Generator;
@@ -248,6 +248,16 @@ fn rows_of_averaged_dwells_give_the_same_north_as_their_samples() {
 /// A recording of so many dwells of 10 s in steps of 42° at 55.75°, whose noise is that of 0.001 °/√h, and its 1σ in
 /// rad/s.
 fn dwells(count: usize, azimuth_deg: f64) -> (String, f64) {
+    dwells_with(count, azimuth_deg, |_, _| [0.0; 2])
+}
+
+/// The same, with what turns the heading, rad, and adds to the rate, in the horizontal Earth rate, at a part of the time
+/// and a stage angle.
+fn dwells_with(
+    count: usize,
+    azimuth_deg: f64,
+    disturbed: fn(f64, f64) -> [f64; 2],
+) -> (String, f64) {
     let sigma = 0.001_f64.to_radians() / 60.0 / 10.0_f64.sqrt();
     let horizontal = 15.041_067_f64.to_radians() / 3600.0 * 55.75_f64.to_radians().cos();
     let mut noise = Generator::stream(1, 1);
@@ -257,7 +267,9 @@ fn dwells(count: usize, azimuth_deg: f64) -> (String, f64) {
     text += "stage_rad,rate_rad_s,sigma_rad_s,seconds\n";
     for index in 0..count {
         let stage = (42.0 * index as f64).rem_euclid(360.0).to_radians();
-        let rate = horizontal * (azimuth_deg.to_radians() + stage).cos() + sigma * noise.gaussian();
+        let [turned, added] = disturbed(index as f64 / count as f64, stage);
+        let heading = azimuth_deg.to_radians() + stage + turned;
+        let rate = horizontal * (heading.cos() + added) + sigma * noise.gaussian();
         writeln!(text, "{stage:e},{:e},{sigma:e},10", rate + 1e-7).expect("strings take all");
     }
     (text, sigma / horizontal)
@@ -288,6 +300,26 @@ fn a_thousand_positions_are_one_alignment_and_one_more_is_refused() {
     let (text, _) = dwells(1025, azimuth_deg);
     let error = replayed_dwells(&text, &Options::default()).err().map(|error| error.to_string());
     assert!(error.is_some_and(|words| words.contains("1025 positions are more than the 1024")));
+}
+
+#[test]
+fn what_explains_the_dwells_beside_the_earth_rate_stands_in_the_model_and_costs_no_truth() {
+    let disturbed: [(&str, fn(f64, f64) -> [f64; 2]); 4] = [
+        ("yaws", |part, _| [0.1 * (part - 1.0), 0.0]),
+        ("second harmonic", |_, stage| [0.02 * (2.0 * stage).sin(), 0.0]),
+        ("t²", |part, _| [0.0, 0.1 * part * part]),
+        ("t³", |part, _| [0.0, 0.08 * (-3.0 * part).exp()]),
+    ];
+    for (name, disturbed) in disturbed {
+        let (text, _) = dwells_with(45, 213.7, disturbed);
+        let replay = replayed_dwells(&text, &Options::default()).expect("it replays");
+        let conclusion = replay.session.conclusion().expect("it has ended");
+        let azimuth = conclusion.verdict.expect(name);
+        let model = columns(conclusion.fit.as_ref().expect("there is a fit"));
+        assert!(model.iter().any(|column| column.contains(name)), "{name}: {model:?}");
+        let error = azimuth_error(azimuth.angle.to_degrees(), 213.7).to_radians();
+        assert!(error.abs() < 4.0 * azimuth.sigma, "{name}: {error} ± {}", azimuth.sigma);
+    }
 }
 
 #[test]

@@ -21,7 +21,7 @@ use std::io::{self, Write};
 
 use orientation::align::budget::Budget;
 use orientation::align::regression::Column;
-use orientation::align::stepwise::Fit;
+use orientation::align::stepwise::{Fit, Hypothesis};
 use orientation::error::Source;
 
 /// Writes a line to standard error. Where nobody reads it, it is lost, and that is no error of ours.
@@ -76,5 +76,18 @@ pub fn columns(fit: &Fit) -> Vec<&'static str> {
     if fit.model.temperature != Column::Absent {
         names.push("temperature");
     }
+    names.extend(of_hypothesis(fit.model.hypothesis));
     names
+}
+
+/// The names of the columns of what moves beside the stage, or bends.
+fn of_hypothesis(hypothesis: Hypothesis) -> &'static [&'static str] {
+    match hypothesis {
+        Hypothesis::Steady => &[],
+        Hypothesis::Yawing => &["t·cos, t·sin of a base that yaws"],
+        Hypothesis::Elliptic => &["second harmonic of the encoder"],
+        Hypothesis::Curved => &["t²"],
+        Hypothesis::Winding => &["t²", "t³"],
+        Hypothesis::Stepped { .. } => &["step of the heading"],
+    }
 }
