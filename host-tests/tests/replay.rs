@@ -251,13 +251,12 @@ fn dwells(count: usize, azimuth_deg: f64) -> (String, f64) {
     dwells_with(count, azimuth_deg, |_, _| [0.0; 2])
 }
 
-/// The same, with what turns the heading, rad, and adds to the rate, in the horizontal Earth rate, at a part of the time
-/// and a stage angle.
-fn dwells_with(
-    count: usize,
-    azimuth_deg: f64,
-    disturbed: fn(f64, f64) -> [f64; 2],
-) -> (String, f64) {
+/// What turns the heading, rad, and adds to the rate, in the horizontal Earth rate, at a part of the time and a stage
+/// angle.
+type Disturbing = fn(f64, f64) -> [f64; 2];
+
+/// The same, disturbed.
+fn dwells_with(count: usize, azimuth_deg: f64, disturbed: Disturbing) -> (String, f64) {
     let sigma = 0.001_f64.to_radians() / 60.0 / 10.0_f64.sqrt();
     let horizontal = 15.041_067_f64.to_radians() / 3600.0 * 55.75_f64.to_radians().cos();
     let mut noise = Generator::stream(1, 1);
@@ -304,7 +303,7 @@ fn a_thousand_positions_are_one_alignment_and_one_more_is_refused() {
 
 #[test]
 fn what_explains_the_dwells_beside_the_earth_rate_stands_in_the_model_and_costs_no_truth() {
-    let disturbed: [(&str, fn(f64, f64) -> [f64; 2]); 4] = [
+    let disturbed: [(&str, Disturbing); 4] = [
         ("yaws", |part, _| [0.1 * (part - 1.0), 0.0]),
         ("second harmonic", |_, stage| [0.02 * (2.0 * stage).sin(), 0.0]),
         ("t²", |part, _| [0.0, 0.1 * part * part]),
@@ -337,8 +336,11 @@ fn what_no_dwell_can_tell_is_assumed() {
     assert!(!assumes("stepwise-tilted-drift", "sign of the gyro"));
 }
 
+/// What it does to a row.
+type Change = fn(&mut StageRow);
+
 /// Ways in which a stage may be built otherwise than stated: what a row then shows.
-const OTHERWISE: [(&str, fn(&mut StageRow)); 4] = [
+const OTHERWISE: [(&str, Change); 4] = [
     ("sign of the gyro", |row| row.rate_rad_s = -row.rate_rad_s),
     ("axes of the accelerometer", |row| {
         let [x, y, z] = row.force_m_s2;

@@ -224,8 +224,11 @@ fn without_a_latitude_or_on_another_kind_there_is_no_replay() {
     );
 }
 
+/// What it does to a row.
+type Change = fn(&mut RotatingRow);
+
 /// Ways in which a platform may be built otherwise than stated: what a row then shows.
-const OTHERWISE: [(&str, fn(&mut RotatingRow)); 3] = [
+const OTHERWISE: [(&str, Change); 3] = [
     ("sign of the gyro", |row| row.rate_rad_s = -row.rate_rad_s),
     ("axes of the accelerometer", |row| {
         row.force_m_s2 = -row.force_m_s2;
