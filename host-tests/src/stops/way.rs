@@ -35,7 +35,7 @@ const LEAST_M: f64 = 100.0;
 pub struct Leg {
     /// How far the vehicle came by its forces, north and east, m.
     pub driven_m: [f64; 2],
-    /// How much that may be off beside [`SCALE`], m.
+    /// How much that may be off beside a tenth of the way, m.
     pub off_m: f64,
     /// How far it came as stated, m.
     pub stated_m: [f64; 2],
