@@ -19,7 +19,7 @@ use orientation::units::{Angle, AngularRate, Instant, SpecificForce, TURN, Tempe
 
 use crate::recording::{Body, DwellRow, Header, Kind, Short, StageRow};
 use crate::setting::{Described, describe};
-use crate::stops::samples::is_cut;
+use crate::stops::samples::{dead_accelerometer, is_cut};
 use crate::stops::way::Slip;
 use crate::untold;
 
@@ -341,6 +341,11 @@ fn stage(
     progress: impl FnMut(&Session),
 ) -> Result<Session, ReplayError> {
     let sample_seconds = sample_seconds(header, rows);
+    if let Some(axis) = dead_accelerometer(rows, |row| row.force_m_s2) {
+        let column = ["fx_m_s2", "fy_m_s2"][axis];
+        let seconds = rows.len() as f64 * sample_seconds;
+        return Err(ReplayError::Stuck { column, line: rows[0].line, seconds });
+    }
     let still = still(rows);
     let positions = standstills(rows, sample_seconds, still)?;
     let followed = followed(&positions, sample_seconds, criterion)?;

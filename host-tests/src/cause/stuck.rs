@@ -47,13 +47,13 @@ pub fn of_platform(rows: &[RotatingRow]) -> Option<String> {
 
 /// The rows in which a value stands still for longest.
 fn longest<R>(rows: &[R], value: fn(&R) -> f64) -> &[R] {
-    let runs = rows.chunk_by(|a, b| value(a).to_bits() == value(b).to_bits());
+    let runs = rows.chunk_by(|a, b| value(a) == value(b));
     runs.max_by_key(|run| run.len()).unwrap_or_default()
 }
 
 /// The same where that is far longer than anywhere else.
 fn alone<R>(rows: &[R], value: fn(&R) -> f64) -> Option<&[R]> {
-    let runs = rows.chunk_by(|a, b| value(a).to_bits() == value(b).to_bits());
+    let runs = rows.chunk_by(|a, b| value(a) == value(b));
     let [longest, next] = runs.fold([&rows[..0]; 2], |[longest, next], run| {
         if run.len() > longest.len() {
             [run, longest]

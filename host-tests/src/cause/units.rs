@@ -78,10 +78,13 @@ impl Trial {
         let pairs = [alone, first].into_iter().chain(others).chain(rest).flatten();
         let trial =
             |(angle, rate)| Self { angle, rate, force: force.unwrap_or(SAME), together: true };
-        let platform = matches!(body, Body::Rotating(_));
         let heavy = FORCES.map(|force| Self { force, ..trial((SAME, SAME)) });
         let with = |trial: Self| [Some(trial), trial.apart(body)].into_iter().flatten();
-        pairs.map(trial).flat_map(with).chain(heavy.into_iter().filter(|_| platform)).collect()
+        pairs
+            .map(trial)
+            .flat_map(with)
+            .chain(heavy.into_iter().filter(|unit| is_heavy(body, unit.force)))
+            .collect()
     }
 
     /// The same where what goes with a column is as it should be; none where nothing does.
@@ -104,6 +107,9 @@ impl Trial {
         [angle, rate, force, companions[0], companions[1]]
     }
 }
+
+/// Swing of a platform's force, m/s², that a tilt of 6° makes.
+const HEAVY: f64 = 1.0;
 
 /// The columns of a kind, alone or with what goes with them.
 fn names(body: &Body, together: bool) -> Names {
@@ -132,6 +138,16 @@ pub fn force_columns(body: &Body) -> &'static str {
 pub fn tried(body: &Body, force: Option<Unit>, passes: &dyn Fn(&Body) -> bool) -> Option<String> {
     let is_meant = |trial: &Trial| converted(body, trial).is_some_and(|body| passes(&body));
     Trial::all(body, force).into_iter().find(is_meant).map(|trial| trial.told(body))
+}
+
+/// Whether the forces of a platform that turns may be in a unit of gravity: in its thousandths they swing by more than
+/// those of a platform in m/s², of which a smaller tilt would explain anything.
+fn is_heavy(body: &Body, Unit(factor, _): Unit) -> bool {
+    let Body::Rotating(rows) = body else { return false };
+    let count = rows.len().max(1) as f64;
+    let mean = rows.iter().map(|row| row.force_m_s2).sum::<f64>() / count;
+    let power = rows.iter().map(|row| (row.force_m_s2 - mean).powi(2)).sum::<f64>() / count;
+    factor > 1.0 || (2.0 * power).sqrt() > HEAVY
 }
 
 /// The angle over which a stage turned, rad, were its column in radians.

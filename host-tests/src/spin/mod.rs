@@ -16,7 +16,7 @@ use self::limit::{Noise, Turns};
 use self::track::Track;
 use crate::recording::{Body, Header, SpinRow};
 use crate::replay::ReplayError;
-use crate::stops::samples::mean_step;
+use crate::stops::samples::pace;
 
 /// 1σ of a gyro's scale error of which the header says nothing: 1 %.
 pub const SCALE_SIGMA: f64 = 0.01;
@@ -96,7 +96,8 @@ impl Replay {
 /// A recording of another kind, or of less than two samples.
 pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay, ReplayError> {
     let Body::Spin(rows) = body else { return Err(ReplayError::NoSpin(body.kind())) };
-    let period_s = period(header.rate_hz, rows).ok_or(ReplayError::TooFewSamples(rows.len()))?;
+    let period_s = pace(header.rate_hz, rows, |row| row.time_s);
+    let period_s = period_s.ok_or(ReplayError::TooFewSamples(rows.len()))?;
     let samples: Vec<SpinSample> = samples::samples(rows, period_s).collect();
     let (setting, assumed) = setting(header, rows, period_s);
     let required_sigma = options.required_sigma.unwrap_or(f64::INFINITY);
@@ -153,13 +154,6 @@ pub fn follow(samples: &[SpinSample], known: Known) -> Replay {
         ended: None,
         doubt: None,
     }
-}
-
-/// The sample period, s: the header's, which reading has held against the times, or theirs; none of fewer than two
-/// rows.
-fn period(rate_hz: Option<f64>, rows: &[SpinRow]) -> Option<f64> {
-    let step_s = mean_step(rows, |row| row.time_s)?;
-    Some(rate_hz.map_or(step_s, |rate| 1.0 / rate))
 }
 
 /// What is known of the gyro; what is not stated is taken from the rows or assumed.

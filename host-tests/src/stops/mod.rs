@@ -196,11 +196,12 @@ const NO_WALK: f64 = 1e-3 * LEAST_WALK;
 /// Refuses a recording in which a sensor stands still while the others have noise: a part of the rotation is
 /// lost, and nothing else tells.
 pub(crate) fn check_stuck(rows: &[ImuRow], period_s: f64) -> Result<(), ReplayError> {
+    let dead = samples::dead_accelerometer(rows, |row| row.sample.force_m_s2);
+    let dead = dead.map(|axis| (["ax_m_s2", "ay_m_s2"][axis], &rows[0], rows.len()));
     let white = noise::estimate(rows, None, period_s);
-    if white.angle_random_walk <= NO_WALK || white.force <= 0.0 {
-        return Ok(());
-    }
-    let Some((column, row, count)) = samples::stuck(rows) else { return Ok(()) };
+    let has_noise = white.angle_random_walk > NO_WALK && white.force > 0.0;
+    let stuck = || has_noise.then(|| samples::stuck(rows)).flatten();
+    let Some((column, row, count)) = dead.or_else(stuck) else { return Ok(()) };
     Err(ReplayError::Stuck { column, line: row.line, seconds: count as f64 * period_s })
 }
 

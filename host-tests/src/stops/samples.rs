@@ -29,13 +29,22 @@ fn row(row: &StaticRow) -> Option<ImuRow> {
     Some(ImuRow { line: row.line, time_s: row.time_s, sample: row.imu? })
 }
 
-/// The sample period, s: the header's, unless over all the rows it and the times come apart by more than
-/// a sample. Times may be rounded, so their mean counts, of the steps without a missing sample.
+/// The sample period, s, of [`pace`]; a second of nothing.
 #[must_use]
 pub fn period(rate_hz: Option<f64>, rows: &[ImuRow]) -> f64 {
+    let stated = || rate_hz.map(|rate| 1.0 / rate);
+    pace(rate_hz, rows, |row| row.time_s).or_else(stated).unwrap_or(1.0)
+}
+
+/// The time from sample to sample, s: the header's, unless over all the rows it and the times come apart by more than
+/// half a sample. Times may be rounded, so their mean counts, of the steps without a missing sample. None of fewer than
+/// two rows.
+#[must_use]
+pub fn pace<R>(rate_hz: Option<f64>, rows: &[R], time_s: fn(&R) -> f64) -> Option<f64> {
+    let (sum, count) = steps(rows, time_s)?;
     let stated = rate_hz.map(|rate| 1.0 / rate);
-    let Some((sum, count)) = steps(rows, |row| row.time_s) else { return stated.unwrap_or(1.0) };
-    stated.filter(|stated| (sum - count * stated).abs() <= *stated).unwrap_or(sum / count)
+    let is_theirs = |stated: &f64| (sum - count * stated).abs() <= 0.5 * stated;
+    Some(stated.filter(is_theirs).unwrap_or(sum / count))
 }
 
 /// The mean step of the rows' times, s, where samples are; none of fewer than two rows.
@@ -68,7 +77,7 @@ const GYROS: [&str; 3] = ["gx_rad_s", "gy_rad_s", "gz_rad_s"];
 #[must_use]
 pub fn stuck(rows: &[ImuRow]) -> Option<(&'static str, &ImuRow, usize)> {
     GYROS.iter().enumerate().find_map(|(axis, column)| {
-        let value = |row: &ImuRow| row.sample.rates_rad_s[axis].to_bits();
+        let value = |row: &ImuRow| row.sample.rates_rad_s[axis];
         let mut runs: Vec<&[ImuRow]> = rows.chunk_by(|a, b| value(a) == value(b)).collect();
         runs.sort_by_key(|run| std::cmp::Reverse(run.len()));
         let next = runs.get(1).map_or(0, |run| run.len());
@@ -76,6 +85,17 @@ pub fn stuck(rows: &[ImuRow]) -> Option<(&'static str, &ImuRow, usize)> {
         let is_stuck = longest.len() >= STUCK && longest.len() >= ALONE * next;
         is_stuck.then(|| (*column, &longest[0], longest.len()))
     })
+}
+
+/// Which of two accelerometers across the vertical, 0 or 1, shows one value all the time although the upright one has
+/// noise: it is dead, or its steps hide everything.
+#[must_use]
+pub fn dead_accelerometer<R>(rows: &[R], force_m_s2: fn(&R) -> [f64; 3]) -> Option<usize> {
+    let is_constant = |axis: usize| {
+        rows.windows(2).all(|pair| force_m_s2(&pair[0])[axis] == force_m_s2(&pair[1])[axis])
+    };
+    let is_asked = rows.len() >= STUCK && !is_constant(2);
+    [0, 1].into_iter().find(|axis| is_asked && is_constant(*axis))
 }
 
 /// Makes samples of what three gyros turned and three accelerometers felt; what rounding leaves over of a

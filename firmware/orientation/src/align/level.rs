@@ -8,7 +8,8 @@
 //! Three more phasors tell what is wrong. One that grows with time, t·F′, is a base that tilts: it turns the
 //! gyro by F′ as the Earth does, 1 °/h of it by 6° at 50° of latitude. One that turns the other way,
 //! `G e^{−jθ}`, is an encoder that counts against the stage. One that is there from some dwell on is an encoder
-//! that slipped, or a platform that was moved.
+//! that slipped, or a platform that was moved. Biases that grow with time are an accelerometer that warms up: they
+//! stay where they are while the stage turns.
 
 use super::direction::{inverted, quadratic};
 use super::regression::{COLUMNS, Column, Regression};
@@ -31,8 +32,10 @@ pub struct Tilt {
     pub unproven: TiltRate,
     /// Covariance of the two parts of F, g².
     pub covariance: [[f64; 2]; 2],
-    /// Accelerometer biases along its x and y, g.
+    /// Accelerometer biases along its x and y, g, at [`Self::time`].
     pub bias: [f64; 2],
+    /// How fast they change, 1/s: zero as far as the forces tell.
+    pub bias_rate: [f64; 2],
     /// RMS of the dwells' forces about any tilt and any bias, g.
     pub scatter: f64,
     /// Size of the phasor that turns against the stage, g; zero where it may be chance.
@@ -118,6 +121,13 @@ impl Tilt {
         libm::sqrt((1.0 - magnitude * magnitude).max(0.0))
     }
 
+    /// Accelerometer biases along its x and y, g, at another time, s.
+    #[must_use]
+    pub fn bias_at(&self, time: f64) -> [f64; 2] {
+        let [x, y] = self.bias_rate.map(|rate| rate * (time - self.time));
+        [self.bias[0] + x, self.bias[1] + y]
+    }
+
     /// Specific force along the sensitive axis and 90° clockwise of it, in g, free of bias.
     #[must_use]
     pub fn force(&self, theta: f64) -> [f64; 2] {
@@ -130,6 +140,8 @@ impl Tilt {
 const EXACT_BIAS: f64 = 1e-9;
 /// Uncertainty of a bias of which nothing is known, g.
 const ANY_BIAS: f64 = 1.0;
+/// Twice the logarithm of likelihoods by which one explanation is clearly better than another.
+const CLEARLY: f64 = 10.0;
 /// Scatter with which the first fit is weighted, and the least that the second believes, g.
 const SCATTER: [f64; 2] = [1e-4, 5e-6];
 
@@ -183,13 +195,27 @@ pub fn tilt_in<'a>(
 ) -> Tilt {
     let bias = (bias_sigma / gravity).max(EXACT_BIAS);
     let time = dwells.clone().last().map_or(0.0, Dwell::end);
-    let forces = Forces { mount, dwells, gravity, time };
+    let mut forces = Forces { mount, dwells, gravity, time, drift: [0.0; 2] };
+    let mut tilting = forces.weighted(bias, Beside::Rate);
+    let drifting = forces.weighted(bias, Beside::Drift);
+    let drifting = drifting.filter(|drifting| drifting.significance() > BELIEVED);
+    let explains = |one: &Option<Found>, other: &Option<Found>| match (one, other) {
+        (Some(one), Some(other)) => one.explains_more_than(other),
+        (one, None) => one.is_some(),
+        (None, Some(_)) => false,
+    };
+    let is_drifting = explains(&drifting, &tilting);
+    let is_doubtful = !is_drifting && drifting.is_some() && !explains(&tilting, &drifting);
+    if let Some(drifting) = drifting.filter(|_| is_drifting) {
+        forces.drift = drifting.beside;
+        tilting = forces.weighted(bias, Beside::Rate);
+    }
     let any = forces.fit(ANY_BIAS, SCATTER[0], Beside::Nothing).map_or(0.0, |fit| fit.scatter);
     let Some(standing) = forces.weighted(bias, Beside::Nothing) else { return Tilt::default() };
-    let mut tilt = standing.tilt(time, any);
+    let mut tilt = Tilt { bias_rate: forces.drift, ..standing.tilt(time, any) };
     let after = forces.likeliest_step(&standing);
-    if let Some(tilting) = forces.weighted(bias, Beside::Rate) {
-        tilt = tilting.believed(tilt);
+    if let Some(tilting) = tilting {
+        tilt = tilting.believed(tilt, is_doubtful);
     }
     let step = forces.weighted(bias, Beside::Step(after));
     // A step is searched for at many places, and there is one more thing to believe in.
@@ -226,6 +252,8 @@ enum Beside {
     Nothing,
     /// One that grows with the time: F′, 1/s.
     Rate,
+    /// None, but biases that change with the time, 1/s.
+    Drift,
     /// One that turns against the stage, of a base that tilts by so much, 1/s.
     Counter([f64; 2]),
     /// One that is there after a time, s.
@@ -239,6 +267,8 @@ struct Forces<'m, D> {
     gravity: f64,
     /// Since when the time of a rate counts, s.
     time: f64,
+    /// How fast the accelerometer's biases are known to change, 1/s.
+    drift: [f64; 2],
 }
 
 /// What a fit of the forces found, in g.
@@ -277,14 +307,21 @@ impl<'a, D: Iterator<Item = &'a Dwell> + Clone> Forces<'_, D> {
             }
             let (sine, cosine) = libm::sincos(self.mount.accelerometer_turn(dwell));
             let [real, imaginary] = standing.phasor;
-            let left_x = x / self.gravity - standing.bias[0] - (real * cosine - imaginary * sine);
-            let left_y = y / self.gravity - standing.bias[1] + real * sine + imaginary * cosine;
+            let [x, y] = self.steady([x, y], dwell);
+            let left_x = x - standing.bias[0] - (real * cosine - imaginary * sine);
+            let left_y = y - standing.bias[1] + real * sine + imaginary * cosine;
             sum[0] += left_x * cosine - left_y * sine;
             sum[1] -= left_x * sine + left_y * cosine;
             behind += 1.0;
             before = Some(dwell.middle);
         }
         best.1
+    }
+
+    /// A force, m/s², in g without what the biases are known to have changed.
+    fn steady(&self, [x, y]: [f64; 2], dwell: &Dwell) -> [f64; 2] {
+        let elapsed = dwell.middle - self.time;
+        [x / self.gravity - self.drift[0] * elapsed, y / self.gravity - self.drift[1] * elapsed]
     }
 
     /// One fit whose noise is `sigma` g.
@@ -297,12 +334,13 @@ impl<'a, D: Iterator<Item = &'a Dwell> + Clone> Forces<'_, D> {
             let (sine, cosine) = libm::sincos(self.mount.accelerometer_turn(dwell));
             let elapsed = dwell.middle - self.time;
             let (mut across, mut along) = ([0.0; 2], [0.0; 2]);
-            let (mut left_x, mut left_y) = (x / self.gravity, y / self.gravity);
+            let [mut left_x, mut left_y] = self.steady([x, y], dwell);
             match beside {
                 Beside::Rate => {
                     along = [cosine * elapsed, -sine * elapsed];
                     across = [-sine * elapsed, -cosine * elapsed];
                 }
+                Beside::Drift => (along, across) = ([elapsed, 0.0], [0.0, elapsed]),
                 Beside::Step(after) if dwell.middle > after => {
                     along = [cosine, -sine];
                     across = [-sine, -cosine];
@@ -325,7 +363,9 @@ impl<'a, D: Iterator<Item = &'a Dwell> + Clone> Forces<'_, D> {
         let bias = Column::Prior(bias_sigma);
         let (extra, parameters) = match beside {
             Beside::Nothing => (Column::Absent, 4.0),
-            Beside::Rate | Beside::Counter(_) | Beside::Step(_) => (Column::Free, 6.0),
+            Beside::Rate | Beside::Drift | Beside::Counter(_) | Beside::Step(_) => {
+                (Column::Free, 6.0)
+            }
         };
         let model = [Column::Free, Column::Free, bias, bias, Column::Absent, extra, extra];
         let solution = regression.solve(&model)?;
@@ -374,17 +414,24 @@ impl Found {
             .map_or(0.0, |information| quadratic(&information, self.beside))
     }
 
+    /// Whether it explains clearly more than another with as many parameters, by both likelihoods.
+    fn explains_more_than(&self, other: &Self) -> bool {
+        2.0 * self.freedom * libm::log(other.scatter / self.scatter) > CLEARLY
+    }
+
     /// By how much a variance that rests on this scatter is greater for its few degrees of freedom.
     fn few(&self, few: f64) -> f64 {
         1.0 + few / self.freedom
     }
 
-    /// The tilt where this one changes: believed where it is significant, else unproven.
-    fn believed(&self, standing: Tilt) -> Tilt {
+    /// The tilt where this one changes: believed where it is significant and nothing else may be what shows, else
+    /// unproven.
+    fn believed(&self, standing: Tilt, is_doubtful: bool) -> Tilt {
         let significance = self.significance();
         let found = TiltRate { value: self.beside, covariance: self.beside_covariance };
-        if significance > BELIEVED {
-            return Tilt { rate: found, ..self.tilt(standing.time, standing.scatter) };
+        if significance > BELIEVED && !is_doubtful {
+            let Tilt { time, scatter, bias_rate, .. } = standing;
+            return Tilt { rate: found, bias_rate, ..self.tilt(time, scatter) };
         }
         let unproven = if significance > SHOWN { found.possible() } else { TiltRate::default() };
         Tilt { unproven, ..standing }

@@ -385,7 +385,8 @@ fn is_moved(mark: &Disturbance) -> bool {
 fn off_level(setting: &Setting, dwell: &Dwell, force: [f64; 3], tilt: &level::Tilt) -> [f64; 2] {
     let gravity = setting.latitude.gravity();
     let expected = tilt.at(dwell.middle).force(setting.mount.accelerometer_turn(dwell));
-    [0, 1].map(|i| force[i] / gravity - expected[i] - tilt.bias[i])
+    let bias = tilt.bias_at(dwell.middle);
+    [0, 1].map(|i| force[i] / gravity - expected[i] - bias[i])
 }
 
 /// N² from the median of the dwells' own scatter; from their neighbouring blocks, which a slow
