@@ -390,6 +390,62 @@ fn a_stage_that_is_built_otherwise_is_refused_or_stands_under_what_is_assumed_wi
     assert!(told > 12, "only {told} are wrong at all");
 }
 
+#[test]
+fn accelerometer_biases_that_drift_are_told_from_a_base_that_tilts() {
+    let per_second = [3e-5, 1e-4, 1e-3].map(|per_minute| per_minute / 60.0);
+    let mut answered = 0;
+    for name in ["stepwise-circle", "positions-four-fog", "stepwise-tilted-drift", "stepwise-mems"]
+    {
+        for (rate, [x, y]) in
+            per_second.into_iter().flat_map(|rate| [(rate, [1.0, -1.0]), (rate, [0.5, 1.0])])
+        {
+            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/recordings").join(name);
+            let file = path.with_extension("csv.gz");
+            let (header, body, truth) = recording::read(&file).expect("it reads").into_parts();
+            let Body::Stage(mut rows) = body else { panic!("{name} is no stage") };
+            for row in &mut rows {
+                let drift = 9.81 * rate * row.time_s;
+                row.force_m_s2 = [
+                    row.force_m_s2[0] + x * drift,
+                    row.force_m_s2[1] + y * drift,
+                    row.force_m_s2[2],
+                ];
+            }
+            let options = Options::default();
+            let replay = replay(&header, &Body::Stage(rows), &options, |_| {}).expect("it replays");
+            let verdict = replay.session.conclusion().expect("it has ended").verdict;
+            let Ok(azimuth) = verdict else { continue };
+            let truth_deg = truth.azimuth_deg.expect("it carries a truth");
+            let error = azimuth_error(azimuth.angle.to_degrees(), truth_deg);
+            let sigma = azimuth.sigma.to_degrees();
+            assert!(error.abs() < 4.0 * sigma, "{name}, {rate} g/s: {error}° ± {sigma}°");
+            answered += 1;
+        }
+    }
+    assert!(answered >= 22, "only {answered} of 24 are answered");
+}
+
+#[test]
+fn a_dead_accelerometer_across_the_vertical_is_named() {
+    for axes in [vec![0], vec![1], vec![0, 1]] {
+        let path =
+            Path::new(env!("CARGO_MANIFEST_DIR")).join("data/recordings/stepwise-circle.csv.gz");
+        let (header, body, _) = recording::read(&path).expect("it reads").into_parts();
+        let Body::Stage(mut rows) = body else { panic!("it is a stage") };
+        for (index, row) in rows.iter_mut().enumerate() {
+            for axis in &axes {
+                row.force_m_s2[*axis] = if index % 2 == 0 { 0.0 } else { -0.0 };
+            }
+        }
+        let error = replay(&header, &Body::Stage(rows), &Options::default(), |_| {}).err();
+        let column = ["fx_m_s2", "fy_m_s2"][axes[0]];
+        assert!(
+            matches!(error, Some(ReplayError::Stuck { column: named, .. }) if named == column),
+            "{axes:?}: {error:?}"
+        );
+    }
+}
+
 /// The size in ° that what is assumed in these words has.
 fn size_of(assumed: &[String], words: &str) -> Option<f64> {
     let line = assumed.iter().find(|line| line.starts_with(words))?;

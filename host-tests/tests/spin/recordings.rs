@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use bench::recording::{Body, Recording, read};
+use bench::recording::{Body, Header, Recording, read};
 use bench::replay::ReplayError;
 use bench::spin::errors::Errors;
 use bench::spin::{Options, Replay, replay};
@@ -98,4 +98,20 @@ fn a_body_without_lift_has_no_roll() {
     let replay = replay(&header, &Body::Spin(rows), &Options::default()).expect("it can be read");
     let reason = replay.refusal().expect("there is no roll");
     assert!(reason.starts_with("the roll is not known at the end: searching"), "{reason}");
+}
+
+#[test]
+fn a_rate_a_little_off_the_times_loses_no_sample_and_no_roll() {
+    for name in ["spin-100rps", "spin-80rps-noisy"] {
+        let (header, body, truth) = stored(name).into_parts();
+        let rate_hz = header.rate_hz.expect("it is stated");
+        for part in [-9e-3, -1e-3, -1.6e-4, -3e-5, 3e-5, 1.6e-4, 1e-3, 9e-3] {
+            let header = Header { rate_hz: Some(rate_hz * (1.0 + part)), ..header.clone() };
+            let replay = replay(&header, &body, &Options::default()).expect("it can be read");
+            let errors =
+                Errors::of(&replay.tracks[2], &truth.roll_rad).expect("the truth is there");
+            let rms_rad = errors.rms_rad.expect("it is long enough");
+            assert!(rms_rad.to_degrees() < 0.2, "{name}, {part}: {rms_rad} rad");
+        }
+    }
 }

@@ -133,6 +133,36 @@ fn a_sway_that_long_blocks_hide_is_in_sigma() {
     assert!(ratios.iter().all(|ratio| ratio.abs() < 5.0), "{ratios:?}");
 }
 
+/// The same of a sway that comes back to where it was in nearly every second, so that its seconds hide it.
+fn hidden_by_seconds(seed: u64) -> Day {
+    let mut draw = Generator::stream(seed, 18);
+    let mut between = |from: f64, to: f64| from + (to - from) * draw.uniform();
+    let mut day = parked(seed, false);
+    let mut components = [SwayComponent::default(); 3];
+    components[0] = SwayComponent {
+        pitch_deg: 0.3,
+        roll_deg: -0.3,
+        frequency_hz: between(1.0, 4.0).floor() + between(-0.02, 0.02),
+        phase_rad: between(0.0, std::f64::consts::TAU),
+        ..SwayComponent::default()
+    };
+    undisturbed(&mut day.scenario, SwayConfiguration { components });
+    day
+}
+
+#[test]
+fn a_sway_that_seconds_hide_is_in_sigma_and_no_turn_of_the_vehicle() {
+    let verdict = |seed| hidden_by_seconds(seed).run().conclusion.verdict;
+    let is_turning = |seed: &u64| matches!(verdict(*seed), Err(Refusal::EarthNotFelt { .. }));
+    assert_eq!((0..60).into_par_iter().filter(is_turning).count(), 0);
+    // The forces of some go round so slowly that they look like a vehicle that moves.
+    let ratios = answered(0..60, hidden_by_seconds);
+    let ratio = rms(ratios.iter().copied());
+    println!("a sway of whole hertz: {ratio:.3} over σ, {} of 60 answered", ratios.len());
+    assert!(ratios.len() >= 30 && ratio < 1.2, "{ratio}, {}", ratios.len());
+    assert!(ratios.iter().all(|ratio| ratio.abs() < 4.0), "{ratios:?}");
+}
+
 #[test]
 fn accelerometers_that_stand_on_their_side_or_head_are_named() {
     let changes: [fn(&mut VehicleSample); 3] = [

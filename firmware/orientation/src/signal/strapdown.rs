@@ -37,6 +37,8 @@ pub struct Carried {
 pub struct Sums {
     /// Angle increments.
     pub turned: [i64; 3],
+    /// The least and the greatest that their sum had meanwhile; it began with zero.
+    pub extremes: [[i64; 3]; 2],
     /// Specific forces on the body's axes, µm/s².
     pub force: [i64; 3],
     /// The same on the start's axes, m/s².
@@ -105,7 +107,12 @@ impl Strapdown {
         self.matrix = after;
         carried.bias = gained(&carried.bias, &middle, &[seconds; 3]);
         carried.scale = gained(&carried.scale, &middle, &small);
-        self.sums.turned = sum(&self.sums.turned, &steps.map(i64::from));
+        let sums = &mut self.sums;
+        sums.turned = sum(&sums.turned, &steps.map(i64::from));
+        let [least, greatest] = &mut sums.extremes;
+        for ((least, greatest), turned) in least.iter_mut().zip(greatest).zip(sums.turned) {
+            (*least, *greatest) = (turned.min(*least), turned.max(*greatest));
+        }
         self.sums.is_blown |= dot(&small, &small) > STEADY * STEADY;
         self.turn_force(&middle);
     }

@@ -456,13 +456,17 @@ impl Run<'_> {
         }
     }
 
-    /// Variance of what a body's axes sway between both ends of a stop, rad²: what its seconds turn beyond
-    /// the gyros' noise.
+    /// Variance of what a body's axes sway between both ends of a stop, rad²: what its seconds turn beyond the gyros'
+    /// noise, or swing, if they come back to where they began: twice the variance of a swing is a quarter of its square.
     fn sway(&self, stop: &Stop) -> Vector {
-        let is_ideal = self.belief == Belief::Ideal;
-        self.excess(stop).map(|excess| {
-            let beyond = if is_ideal { 0.0 } else { excess };
-            SLOW_SWAY * beyond + LEAST_SWAY
+        if self.belief == Belief::Ideal {
+            return [LEAST_SWAY; 3];
+        }
+        let (excess, swung) = (self.excess(stop), stop.swung.mean());
+        let walk = self.setting.common.noise.angle_random_walk;
+        core::array::from_fn(|axis| {
+            let swinging = 0.25 * swung[axis] - walk * walk;
+            (SLOW_SWAY * excess[axis]).max(swinging).max(0.0) + LEAST_SWAY
         })
     }
 

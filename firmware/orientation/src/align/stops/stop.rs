@@ -62,6 +62,8 @@ pub struct Stop {
     pub displacement: Option<[f64; 2]>,
     /// Angles turned in each second, rad.
     pub turned: Scatter,
+    /// Squares of the angles over which each second swung there and back, rad².
+    pub swung: Scatter,
     /// Mean specific force on the body's axes in each second, m/s².
     pub force: Scatter,
     /// Squares of what the force along and across changed from second to second, (m/s²)², as felt, and as
@@ -93,6 +95,7 @@ impl Stop {
         self.end = second.end;
         let rates = second.turned.map(|sum| sum as f64 * AngleIncrement::STEP / second.seconds());
         self.turned.push(&rates);
+        self.swung.push(&second.swung.map(|angle| angle * angle));
         if let Some(force) = second.force {
             self.force.push(&force);
         }
@@ -140,6 +143,8 @@ pub struct Second {
     pub to: f64,
     /// Sums of the angle increments.
     pub turned: [i64; 3],
+    /// By how much more than it turned in all it swung there and back, rad.
+    pub swung: Vector,
     /// Mean specific force on the body's axes, m/s², where there was one.
     pub force: Option<Vector>,
     /// Mean specific force on the start's axes, m/s².
