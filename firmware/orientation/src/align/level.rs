@@ -197,7 +197,9 @@ pub fn tilt_in<'a>(
     let time = dwells.clone().last().map_or(0.0, Dwell::end);
     let mut forces = Forces { mount, dwells, gravity, time, drift: [0.0; 2] };
     let mut tilting = forces.weighted(bias, Beside::Rate);
-    let drifting = forces.weighted(bias, Beside::Drift);
+    // Biases that drift matter where they look like a base that tilts.
+    let is_shown = tilting.as_ref().is_some_and(|tilting| tilting.significance() > SHOWN);
+    let drifting = is_shown.then(|| forces.weighted(bias, Beside::Drift)).flatten();
     let drifting = drifting.filter(|drifting| drifting.significance() > BELIEVED);
     let explains = |one: &Option<Found>, other: &Option<Found>| match (one, other) {
         (Some(one), Some(other)) => one.explains_more_than(other),

@@ -37,8 +37,8 @@ pub struct Carried {
 pub struct Sums {
     /// Angle increments.
     pub turned: [i64; 3],
-    /// The least and the greatest that their sum had meanwhile; it began with zero.
-    pub extremes: [[i64; 3]; 2],
+    /// The same, rad, and the least and the greatest that they had meanwhile.
+    pub swept: [[f32; 3]; 3],
     /// Specific forces on the body's axes, µm/s².
     pub force: [i64; 3],
     /// The same on the start's axes, m/s².
@@ -47,6 +47,28 @@ pub struct Sums {
     pub count: u32,
     /// Whether a blow turned the body so quickly that the forces mean nothing.
     pub is_blown: bool,
+}
+
+impl Sums {
+    /// Follows where the body swings to.
+    fn sweep(&mut self, turned: &[f32; 3]) {
+        let [now, least, greatest] = &mut self.swept;
+        for (axis, turned) in turned.iter().enumerate() {
+            now[axis] += turned;
+            if now[axis] < least[axis] {
+                least[axis] = now[axis];
+            } else if now[axis] > greatest[axis] {
+                greatest[axis] = now[axis];
+            }
+        }
+    }
+
+    /// By how much more than it turned in all the body swung there and back, rad.
+    #[must_use]
+    pub fn swung(&self) -> [f32; 3] {
+        let [now, least, greatest] = &self.swept;
+        core::array::from_fn(|axis| greatest[axis] - least[axis] - now[axis].abs())
+    }
 }
 
 /// The strapdown at work.
@@ -107,12 +129,8 @@ impl Strapdown {
         self.matrix = after;
         carried.bias = gained(&carried.bias, &middle, &[seconds; 3]);
         carried.scale = gained(&carried.scale, &middle, &small);
-        let sums = &mut self.sums;
-        sums.turned = sum(&sums.turned, &steps.map(i64::from));
-        let [least, greatest] = &mut sums.extremes;
-        for ((least, greatest), turned) in least.iter_mut().zip(greatest).zip(sums.turned) {
-            (*least, *greatest) = (turned.min(*least), turned.max(*greatest));
-        }
+        self.sums.turned = sum(&self.sums.turned, &steps.map(i64::from));
+        self.sums.sweep(&small);
         self.sums.is_blown |= dot(&small, &small) > STEADY * STEADY;
         self.turn_force(&middle);
     }

@@ -220,17 +220,16 @@ impl Follower {
     /// What the second that ends now leaves.
     fn whole_second(&mut self, now: Instant) -> Second {
         let Progress { since, begin } = self.progress;
-        let Sums { turned, extremes, force, start_force, count, is_blown } = self.strapdown.take();
+        let sums = self.strapdown.take();
+        let (swung, Sums { turned, force, start_force, count, is_blown, .. }) =
+            (sums.swung(), sums);
         let inverse = 1.0 / count.max(1) as f32;
         let mean = |sum: i64| sum as f64 * 1e-6 / f64::from(count);
         Second {
             from: since.seconds(),
             to: now.seconds(),
             turned,
-            swung: core::array::from_fn(|axis| {
-                let [least, greatest] = extremes.map(|extreme| extreme[axis]);
-                (greatest - least - turned[axis].abs()) as f64 * AngleIncrement::STEP
-            }),
+            swung,
             force: (count > 0).then(|| force.map(mean)),
             start_force: start_force.map(|sum| sum * inverse),
             is_blown,

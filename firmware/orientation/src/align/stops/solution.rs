@@ -462,11 +462,11 @@ impl Run<'_> {
         if self.belief == Belief::Ideal {
             return [LEAST_SWAY; 3];
         }
-        let (excess, swung) = (self.excess(stop), stop.swung.mean());
+        let (excess, swinging) = (self.excess(stop), stop.swinging());
         let walk = self.setting.common.noise.angle_random_walk;
         core::array::from_fn(|axis| {
-            let swinging = 0.25 * swung[axis] - walk * walk;
-            (SLOW_SWAY * excess[axis]).max(swinging).max(0.0) + LEAST_SWAY
+            let swung = 0.25 * swinging[axis] - walk * walk;
+            (SLOW_SWAY * excess[axis]).max(swung).max(0.0) + LEAST_SWAY
         })
     }
 

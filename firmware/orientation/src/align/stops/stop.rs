@@ -1,6 +1,6 @@
 //! A stop: what the gyros had carried when it began and when it ended, and how quiet it was.
 
-use crate::math::rotation::{Vector, transposed, turned};
+use crate::math::rotation::{Vector, sum, transposed, turned};
 use crate::signal::strapdown::Carried;
 use crate::units::AngleIncrement;
 
@@ -62,8 +62,8 @@ pub struct Stop {
     pub displacement: Option<[f64; 2]>,
     /// Angles turned in each second, rad.
     pub turned: Scatter,
-    /// Squares of the angles over which each second swung there and back, rad².
-    pub swung: Scatter,
+    /// Sum of the squares of the angles over which each second swung there and back, rad².
+    pub swung: [f32; 3],
     /// Mean specific force on the body's axes in each second, m/s².
     pub force: Scatter,
     /// Squares of what the force along and across changed from second to second, (m/s²)², as felt, and as
@@ -95,12 +95,18 @@ impl Stop {
         self.end = second.end;
         let rates = second.turned.map(|sum| sum as f64 * AngleIncrement::STEP / second.seconds());
         self.turned.push(&rates);
-        self.swung.push(&second.swung.map(|angle| angle * angle));
+        self.swung = sum(&self.swung, &second.swung.map(|angle| angle * angle));
         if let Some(force) = second.force {
             self.force.push(&force);
         }
         self.left_out += u32::from(second.block_force().is_none());
         self.compare(second);
+    }
+
+    /// Mean square of the angles over which a second swung there and back, rad².
+    #[must_use]
+    pub fn swinging(&self) -> Vector {
+        self.swung.map(|sum| f64::from(sum) / self.turned.count.max(1.0))
     }
 
     /// Compares how the forces change as felt and as turned.
@@ -144,7 +150,7 @@ pub struct Second {
     /// Sums of the angle increments.
     pub turned: [i64; 3],
     /// By how much more than it turned in all it swung there and back, rad.
-    pub swung: Vector,
+    pub swung: [f32; 3],
     /// Mean specific force on the body's axes, m/s², where there was one.
     pub force: Option<Vector>,
     /// Mean specific force on the start's axes, m/s².
