@@ -13,7 +13,7 @@ KNOWN = {
     "encoder-slip": (2, 0.90),
     "base-turn": (3, 0.90),
     "base-tilting": (2, 0.90),
-    "base-yawing": (6, 0.90),
+    "base-yawing": (8, 0.90),
     "random-walk": (1, 0.85),
     "turning-base-yawing": (3, 0.90),
     "turning-base-turn": (3, 0.90),

@@ -62,8 +62,8 @@ const BELIEVED: [f64; 2] = [15.1, 18.4];
 const STEP_BELIEVED: f64 = 13.8;
 /// By how much a hypothesis may raise the variance of the azimuth; beyond, the dwells do not show it.
 pub(super) const OBSERVABLE: f64 = 100.0;
-/// Chi-square of one degree of freedom that noise exceeds with a probability of 0.05.
-const DOUBTFUL: f64 = 3.84;
+/// Chi-square of one degree of freedom that noise exceeds with a probability of 0.025.
+const DOUBTFUL: f64 = 5.02;
 /// σ of an alternative's azimuth by which it may be farther away than it shows: one of fifty is.
 pub(super) const MISSED: f64 = 1.8;
 /// Change of heading, rad, from which a step or a base that turns is followed again with its exact turn: its square

@@ -112,6 +112,8 @@ impl Problem<'_> {
 
 /// Multiple of σ beyond which an azimuth is wrong: σ is no less than this part of its protection level.
 const WRONG: f64 = 5.0;
+/// Probability of the residuals below which something is astray.
+const ASTRAY_PROBABILITY: f64 = 0.01;
 /// What the Earth-rate ratio may be off in its σ before something is (p = 0.01).
 const ASTRAY_RATIO: f64 = 2.58;
 /// Rounds in which a drift is sought that explains the residuals: each doubles or halves the step of its K.
@@ -119,7 +121,7 @@ const DRIFT_ROUNDS: usize = 12;
 
 impl Problem<'_> {
     /// Raises σ to what the azimuth may be off under every alternative, over five. Where something is astray (an
-    /// outlier was left out, the residuals raise σ, the Earth rate is unlikely, a trend shows that no key states), those
+    /// outlier was left out, the residuals or the Earth rate are unlikely, a trend shows that no key states), those
     /// that only then show count too: a random walk, and another Earth rate.
     #[inline(never)]
     pub fn protect(&self, fit: &mut Fit, has_outliers: bool) {
@@ -218,8 +220,13 @@ impl Fit {
     fn is_astray(&self) -> bool {
         self.model.time == Column::Free
             || self.model.hypothesis != Hypothesis::Steady
-            || self.excess > 1.0
+            || self.probability() < ASTRAY_PROBABILITY
             || (self.ratio - 1.0).abs() > ASTRAY_RATIO * self.ratio_sigma
+    }
+
+    /// Probability of the residuals.
+    fn probability(&self) -> f64 {
+        chi_square_tail(self.chi_square, self.degrees as f64)
     }
 
     /// Raises it by so much, as a factor, if that is not done yet.
