@@ -25,6 +25,8 @@ const HIDDEN_TREND: f64 = 16.0;
 /// By how much more one dwell must explain than a step of the heading, in chi-square: else that may be what shows
 /// in it.
 const CLEARLY: f64 = 10.0;
+/// Scatter that a step of the heading may leave where it is the explanation, over the noise's variance.
+const LEFT: f64 = 3.0;
 /// Most that dwells which were left out raise σ by: what a chi-square at the edge of refusal amounts to.
 const GREATEST_EXCESS: f64 = 2.0;
 /// Bound of the correlation of neighbouring residuals, in its standard deviation 1/√n.
@@ -383,7 +385,10 @@ fn allowed_outliers(positions: usize) -> usize {
 /// Whether one dwell by itself, its index and studentised residual, explains more than a step of the heading; at
 /// either end of the session both are the same, and a step may not be passed over.
 fn explains(worst: Option<(usize, f64)>, step: &HeadingStep) -> bool {
-    worst.is_some_and(|(_, residual)| residual * residual > step.explained + CLEARLY)
+    // A step that leaves a scatter that is no noise is not what explains it.
+    let is_enough = step.explained < LEFT * step.gain;
+    let explained = if is_enough { step.explained } else { step.gain };
+    worst.is_some_and(|(_, residual)| residual * residual > explained + CLEARLY)
 }
 
 /// Chi-square over its degrees of freedom.

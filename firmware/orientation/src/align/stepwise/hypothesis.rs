@@ -42,6 +42,8 @@ pub struct HeadingStep {
     pub angle: f64,
     /// By how much it lowers chi-square.
     pub explained: f64,
+    /// The same in the scatter that it leaves.
+    pub gain: f64,
     /// Whether that is no chance.
     pub is_believed: bool,
 }
@@ -204,7 +206,7 @@ impl Weighed {
     fn step(&self) -> Option<HeadingStep> {
         let Hypothesis::Stepped { after } = self.model.hypothesis else { return None };
         let Self { coefficient: angle, explained, belief, .. } = *self;
-        Some(HeadingStep { after, angle, explained, is_believed: belief >= 1.0 })
+        Some(HeadingStep { after, angle, explained, gain: self.gain(), is_believed: belief >= 1.0 })
     }
 }
 
