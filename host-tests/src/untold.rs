@@ -34,8 +34,11 @@ const SENSE_OF_A_PLATFORM: &str =
 /// Of a platform that is nearly level.
 const UNIT_OF_A_PLATFORM: &str =
     "accelerometer in m/s², which a platform that is nearly level does not show";
-/// Of three gyros and three accelerometers: nobody sees how they are built in.
+/// Of the gyros and accelerometers of a vehicle, whose mounting a vehicle at rest does not show.
 pub const AXES_OF_A_VEHICLE: &str = "axes forward, right and down, as the columns say";
+/// Of displacements whose size the forces on the way do not show.
+pub const WAY_OF_A_VEHICLE: &str =
+    "displacements in metres north and east: the forces on the way show them too badly";
 
 /// What the azimuth of a stage's session assumes that none of its data show; nothing where there is none.
 #[must_use]

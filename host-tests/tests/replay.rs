@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use bench::output::{azimuth_error, columns};
-use bench::recording::{self, Body, Header, StageRow};
+use bench::recording::{self, Body, Header, Recording, StageRow};
 use bench::replay::{Options, Replay, ReplayError, replay};
 use hal_mock::noise::Generator;
 use orientation::align::conclusion::Conclusion;
@@ -45,15 +45,19 @@ impl Replayed {
     }
 }
 
-fn replayed_with(name: &str, options: &Options) -> Replayed {
+fn stored(name: &str) -> Recording {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/recordings").join(name);
-    let (header, body, truth) = recording::read(&path).expect("it reads").into_parts();
+    recording::read(&path.with_extension("csv.gz")).expect("it reads")
+}
+
+fn replayed_with(name: &str, options: &Options) -> Replayed {
+    let (header, body, truth) = stored(name).into_parts();
     let replay = replay(&header, &body, options, |_| {}).expect("it replays");
     Replayed { replay, header, truth_deg: truth.azimuth_deg.expect("it carries a truth") }
 }
 
 fn replayed(name: &str) -> Replayed {
-    replayed_with(&format!("{name}.csv.gz"), &Options::default())
+    replayed_with(name, &Options::default())
 }
 
 const ALL: [&str; 10] = [
@@ -146,8 +150,7 @@ fn all_of_the_papers_criteria_answer_within_their_sigma() {
         for name in ["stepwise-circle", "stepwise-paper-1", "stepwise-paper-2", "stepwise-paper-3"]
         {
             let options = Options { criterion, ..Options::default() };
-            let (error, sigma) =
-                replayed_with(&format!("{name}.csv.gz"), &options).error_and_sigma();
+            let (error, sigma) = replayed_with(name, &options).error_and_sigma();
             assert!(error.abs() <= 3.5 * sigma, "{name} {criterion:?}: {error} ± {sigma}");
         }
     }
@@ -156,14 +159,14 @@ fn all_of_the_papers_criteria_answer_within_their_sigma() {
 #[test]
 fn a_left_out_dwell_makes_the_steps_uneven_for_the_papers_criteria() {
     let options = Options { criterion: Criterion::LeastSquares, ..Options::default() };
-    let replayed = replayed_with("stepwise-bumped.csv.gz", &options);
+    let replayed = replayed_with("stepwise-bumped", &options);
     assert_eq!(replayed.conclusion().verdict, Err(Refusal::StepsUneven));
 }
 
 #[test]
 fn a_wrong_latitude_is_noticed_by_the_earth_rate() {
     let options = Options { latitude: Latitude::from_degrees(60.0), ..Options::default() };
-    let replayed = replayed_with("stepwise-circle.csv.gz", &options);
+    let replayed = replayed_with("stepwise-circle", &options);
     let verdict = replayed.conclusion().verdict;
     assert!(matches!(verdict, Err(Refusal::EarthRateMismatch { .. })), "{verdict:?}");
 }
@@ -173,7 +176,7 @@ fn the_wrong_half_of_the_circle_gives_no_azimuth_that_is_wrong() {
     for name in ALL {
         for half in [Half::East, Half::West] {
             let options = Options { half: Some(half), ..Options::default() };
-            let replayed = replayed_with(&format!("{name}.csv.gz"), &options);
+            let replayed = replayed_with(name, &options);
             let conclusion = replayed.conclusion();
             let is_right = half.contains(replayed.truth_deg.to_radians());
             match conclusion.verdict {
@@ -190,7 +193,7 @@ fn the_wrong_half_of_the_circle_gives_no_azimuth_that_is_wrong() {
 #[test]
 fn beyond_eighty_five_degrees_north_is_refused() {
     let options = Options { latitude: Latitude::from_degrees(-85.5), ..Options::default() };
-    let replayed = replayed_with("stepwise-circle.csv.gz", &options);
+    let replayed = replayed_with("stepwise-circle", &options);
     let verdict = replayed.conclusion().verdict;
     assert!(matches!(verdict, Err(Refusal::LatitudeTooHigh { .. })), "{verdict:?}");
 }
@@ -199,7 +202,7 @@ fn beyond_eighty_five_degrees_north_is_refused() {
 fn a_demand_beyond_the_limit_is_refused_and_names_what_limits() {
     let required_sigma = Some(0.01_f64.to_radians());
     let options = Options { required_sigma, ..Options::default() };
-    let replayed = replayed_with("stepwise-circle.csv.gz", &options);
+    let replayed = replayed_with("stepwise-circle", &options);
     let verdict = replayed.conclusion().verdict;
     let Err(Refusal::BudgetNotMet { source, .. }) = verdict else { panic!("{verdict:?}") };
     assert_eq!(source, Source::Noise);
@@ -208,9 +211,7 @@ fn a_demand_beyond_the_limit_is_refused_and_names_what_limits() {
 #[test]
 fn noise_that_is_not_stated_is_estimated_from_the_dwells() {
     for name in ["stepwise-circle", "stepwise-tilted-drift"] {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/recordings");
-        let path = path.join(format!("{name}.csv.gz"));
-        let (mut header, body, truth) = recording::read(&path).expect("it reads").into_parts();
+        let (mut header, body, truth) = stored(name).into_parts();
         let stated = header.gyro_n_deg_sqrt_h.take().expect("N is stated");
         let replay = replay(&header, &body, &Options::default(), |_| {}).expect("it replays");
         let conclusion = replay.session.conclusion().expect("it has ended");
@@ -360,9 +361,7 @@ const OTHERWISE: [(&str, Change); 4] = [
 fn a_stage_that_is_built_otherwise_is_refused_or_stands_under_what_is_assumed_with_its_size() {
     let mut told = 0;
     for name in ALL {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/recordings").join(name);
-        let file = path.with_extension("csv.gz");
-        let (header, body, truth) = recording::read(&file).expect("it reads").into_parts();
+        let (header, body, truth) = stored(name).into_parts();
         let truth_deg = truth.azimuth_deg.expect("it carries a truth");
         let Body::Stage(rows) = body else { continue };
         for (words, change) in OTHERWISE {
@@ -399,9 +398,7 @@ fn accelerometer_biases_that_drift_are_told_from_a_base_that_tilts() {
         for (rate, [x, y]) in
             per_second.into_iter().flat_map(|rate| [(rate, [1.0, -1.0]), (rate, [0.5, 1.0])])
         {
-            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/recordings").join(name);
-            let file = path.with_extension("csv.gz");
-            let (header, body, truth) = recording::read(&file).expect("it reads").into_parts();
+            let (header, body, truth) = stored(name).into_parts();
             let Body::Stage(mut rows) = body else { panic!("{name} is no stage") };
             for row in &mut rows {
                 let drift = 9.81 * rate * row.time_s;
@@ -428,9 +425,7 @@ fn accelerometer_biases_that_drift_are_told_from_a_base_that_tilts() {
 #[test]
 fn a_dead_accelerometer_across_the_vertical_is_named() {
     for axes in [vec![0], vec![1], vec![0, 1]] {
-        let path =
-            Path::new(env!("CARGO_MANIFEST_DIR")).join("data/recordings/stepwise-circle.csv.gz");
-        let (header, body, _) = recording::read(&path).expect("it reads").into_parts();
+        let (header, body, _) = stored("stepwise-circle").into_parts();
         let Body::Stage(mut rows) = body else { panic!("it is a stage") };
         for (index, row) in rows.iter_mut().enumerate() {
             for axis in &axes {

@@ -201,8 +201,8 @@ fn vehicle(
     let told = Told::of(conclusion.verdict.is_ok(), as_json, &object, |block| {
         of_stops::text::block(block, name, &replay, conclusion, &truth)
     })?;
-    let refusal = conclusion.verdict.as_ref().err().map(|reason| format!("{name}: {reason}"));
     let refused = conclusion.verdict.as_ref().err();
+    let refusal = refused.map(|reason| format!("{name}: {reason}"));
     let cause = refused.and_then(|why| cause::of_vehicle(&header, &body, &options.into(), why));
     let page = || page::stops::report(name, &replay, conclusion);
     Ok(Told { refusal, ..told }.because(cause).with_page(options.report.as_deref(), page))
@@ -269,8 +269,8 @@ fn turning(
     let told = Told::of(conclusion.verdict.is_ok(), as_json, &object, |block| {
         of_rotating::text::block(block, name, &replay, conclusion, truth.azimuth_deg)
     })?;
-    let refusal = conclusion.verdict.as_ref().err().map(|reason| format!("{name}: {reason}"));
     let refused = conclusion.verdict.as_ref().err();
+    let refusal = refused.map(|reason| format!("{name}: {reason}"));
     let cause = refused.and_then(|why| cause::of_turning(&header, &body, &options.into(), why));
     let page = || page::rotating::report(name, &replay, conclusion, body.rotating());
     Ok(Told { refusal, ..told }.because(cause).with_page(options.report.as_deref(), page))
@@ -293,8 +293,8 @@ fn stopping(
     let told = Told::of(conclusion.verdict.is_ok(), as_json, &object, |block| {
         text::block(block, name, &replay, conclusion, truth.azimuth_deg)
     })?;
-    let refusal = conclusion.verdict.as_ref().err().map(|reason| format!("{name}: {reason}"));
     let refused = conclusion.verdict.as_ref().err();
+    let refusal = refused.map(|reason| format!("{name}: {reason}"));
     let session = &replay.session;
     let cause =
         refused.and_then(|why| cause::of_stopping(&header, &body, &options.into(), session, why));

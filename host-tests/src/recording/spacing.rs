@@ -8,7 +8,7 @@ use super::timing::Times;
 
 /// Samples are consecutive while the step between them is no more than so many periods: with one
 /// missing it is two, and clocks jitter.
-const LONGEST_STEP: f64 = 1.75;
+pub(super) const LONGEST_STEP: f64 = 1.75;
 
 /// The part by which the header's rate may miss that of the times before it is told.
 const RATE_TOLERANCE: f64 = 0.01;

@@ -2,6 +2,7 @@
 
 use super::error::Fault;
 use super::problem::TimeProblem;
+use super::spacing::LONGEST_STEP;
 
 /// A gap is a step longer than this many sample periods.
 const GAP_PERIODS: f64 = 3.0;
@@ -11,9 +12,6 @@ const WRITING: f64 = 1e-3;
 
 /// The part by which the header's rate may miss that of the times: no crystal is worse, and what turned is wrong by it.
 const RATE_TOLERANCE: f64 = 0.01;
-
-/// Steps longer than so many medians have a sample missing.
-const LONGEST_STEP: f64 = 1.75;
 
 /// The line and time, in seconds, of each sample; times increase.
 pub(super) struct Times<'a, T> {

@@ -123,14 +123,10 @@ fn check_way(body: &Body, header: &Header, mut replay: Replay) -> Result<Replay,
         return Err(ReplayError::Way { stop: leg + 1, stated_m, driven_m, slip });
     }
     if legs.iter().any(Leg::tells_nothing) {
-        replay.assumed.push(UNTOLD.to_owned());
+        replay.assumed.push(untold::WAY_OF_A_VEHICLE.to_owned());
     }
     Ok(replay)
 }
-
-/// What is assumed of a way that the forces do not show.
-const UNTOLD: &str =
-    "displacements in metres north and east: the forces on the way show them too badly";
 
 /// Displacements whose greatest part is below this may be kilometres, m.
 const KILOMETRES: f64 = 100.0;
@@ -284,8 +280,7 @@ const RATE_TOLERANCE: f64 = 0.01;
 
 /// Refuses a stated rate that the times contradict: one of both is wrong, and every rotation with it.
 fn check_rate(rate_hz: Option<f64>, rows: &[ImuRow]) -> Result<(), ReplayError> {
-    let step_s = samples::mean_step(rows, |row| row.time_s);
-    let found = step_s.map(|step| 1.0 / step);
+    let found = samples::pace(None, rows, |row| row.time_s).map(|step| 1.0 / step);
     let (Some(stated_hz), Some(found_hz)) = (rate_hz, found) else { return Ok(()) };
     if (stated_hz / found_hz - 1.0).abs() <= RATE_TOLERANCE {
         return Ok(());

@@ -47,12 +47,6 @@ pub fn pace<R>(rate_hz: Option<f64>, rows: &[R], time_s: fn(&R) -> f64) -> Optio
     Some(stated.filter(is_theirs).unwrap_or(sum / count))
 }
 
-/// The mean step of the rows' times, s, where samples are; none of fewer than two rows.
-#[must_use]
-pub fn mean_step<R>(rows: &[R], time_s: fn(&R) -> f64) -> Option<f64> {
-    steps(rows, time_s).map(|(sum, count)| sum / count)
-}
-
 /// The sum of the steps without a missing sample, s, and how many they are.
 fn steps<R>(rows: &[R], time_s: fn(&R) -> f64) -> Option<(f64, f64)> {
     let steps = || rows.windows(2).map(|pair| time_s(&pair[1]) - time_s(&pair[0]));
