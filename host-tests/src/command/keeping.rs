@@ -12,8 +12,9 @@ use serde_json::Value;
 
 use super::Told;
 
-/// How long a run goes on where nothing is said, s.
+/// How long a run goes on where nothing is said, s, and where it aligns anew at stops: several come then.
 const USUAL: f64 = 60.0;
+const REALIGNING: f64 = 1800.0;
 /// When an azimuth from outside comes, s from power-on.
 const HANDED: f64 = 20.0;
 
@@ -21,7 +22,7 @@ const HANDED: f64 = 20.0;
 #[derive(Args, Clone, Debug)]
 pub struct KeepingOptions {
     /// Seconds for which the azimuth is kept, while the vehicle drives and stops; 0 for not at all (60;
-    /// with --record, --fault or --sigma 0).
+    /// with --realign 1800; with --record, --fault or --sigma 0).
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     hold: Option<f64>,
     /// While the azimuth is kept, aligns anew at stops.
@@ -51,9 +52,18 @@ fn handover(text: &str) -> Result<[f64; 2], String> {
 }
 
 impl KeepingOptions {
+    /// Whether it aligns anew at stops.
+    pub fn realigns(&self) -> bool {
+        self.realign
+    }
+
     /// How the run goes on; one that is to be the same as ever does not unless it is asked to.
     pub fn hold(&self, is_plain: bool) -> Hold {
-        let usual = if is_plain { 0.0 } else { USUAL };
+        let usual = match (is_plain, self.realign) {
+            (true, _) => 0.0,
+            (false, true) => REALIGNING,
+            (false, false) => USUAL,
+        };
         Hold {
             realigns: self.realign,
             handover: self.handover.map(|handover| (handover, HANDED)),

@@ -311,12 +311,31 @@ impl RunOptions {
             let option = suits::long(option);
             return Err(format!("{option}: nothing is kept after this run; add --hold SECONDS"));
         }
-        match given.first(&["positions", "dwell", "passes", "seconds", "sigma", "survey", "half"]) {
-            Some(option) if given.has("handover") && !given.has("realign") => Err(format!(
+        let first = Hold::default().drive_s + Hold::default().stop_s;
+        if self.keeping.realigns() && self.hold().seconds < first {
+            return Err(format!(
+                "--realign: the first stop after the alignment ends after {first} s; add --hold of more"
+            ));
+        }
+        self.check_handover(given)
+    }
+
+    /// What an azimuth from outside takes the place of, unless the vehicle aligns itself anew later.
+    fn check_handover(&self, given: &Given) -> Result<(), String> {
+        let stopping = &["positions", "dwell", "passes", "seconds", "sigma", "survey", "half"][..];
+        // A stage keeps its azimuth by the coarse gyros alone.
+        let aligning = match (self.method, self.mount) {
+            (Method::Siap, _) => &["stops", "no_displacement"][..],
+            (_, MountKind::TwoFrame) => stopping,
+            (_, MountKind::Stage) => &[&["gyro"][..], stopping].concat(),
+        };
+        let is_alone = given.has("handover") && !self.keeping.realigns();
+        match given.first(aligning).filter(|_| is_alone) {
+            Some(option) => Err(format!(
                 "{}: --handover takes the place of the alignment; add --realign or leave one out",
                 suits::long(option)
             )),
-            _ => Ok(()),
+            None => Ok(()),
         }
     }
 

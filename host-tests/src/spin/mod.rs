@@ -174,6 +174,10 @@ fn setting(header: &Header, rows: &[SpinRow], period_s: f64) -> (Setting, Vec<St
         SCALE_SIGMA
     });
     assumed.push("no rates across the axis; lift in the vertical plane".to_owned());
+    assumed.push("forces and rates of the same moment".to_owned());
+    assumed.push(
+        "no gyro error that follows the roll, and a scale that is steady for some turns".to_owned(),
+    );
     let bias_sigma = header.gyro_bias_deg_h.map_or_else(
         || {
             let field = usual.bias_sigma / DEGREE_PER_HOUR;

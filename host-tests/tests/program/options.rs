@@ -64,6 +64,14 @@ fn keeping_and_handing_over_are_refused_where_nothing_comes_of_them() {
     assert_misuse(&["run", "--handover", "1,1", "--sigma", "0.1"], nothing);
     assert_misuse(&["run", "--realign", "--fault", "base-nudge"], nothing);
     assert_misuse(&["run", "--handover", "1,1", "--dwell", "3"], "--dwell: --handover takes");
+    assert_misuse(&["run", "--handover", "1,1", "--gyro", "mems"], "--gyro: --handover takes");
+    for option in ["--stops=7", "--no-displacement"] {
+        assert_misuse(
+            &["run", "--method", "siap", "--handover", "1,1", option],
+            "--handover takes",
+        );
+    }
+    assert_misuse(&["run", "--realign", "--hold", "299"], "--realign: the first stop");
     assert_misuse(&["run", "--hold", "9", "--record", "x.csv"], "--record: ");
 }
 
