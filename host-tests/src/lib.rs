@@ -10,6 +10,7 @@ pub mod cause;
 pub mod criterion;
 pub mod emulate;
 pub mod instrument;
+pub mod late;
 pub mod oracle;
 pub mod output;
 pub mod planning;

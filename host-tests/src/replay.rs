@@ -17,6 +17,7 @@ use orientation::signal::Sample;
 use orientation::signal::dwell::Dwell;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce, TURN, Temperature};
 
+use crate::late::{self, Late};
 use crate::recording::{Body, DwellRow, Header, Kind, Short, StageRow};
 use crate::setting::{Described, describe};
 use crate::stops::samples::{dead_accelerometer, is_cut};
@@ -150,6 +151,8 @@ pub enum ReplayError {
         /// For how long, s.
         seconds: f64,
     },
+    /// A column is not of the same moment as the others.
+    Late(Late),
     /// The header's rate is not that of the times.
     Rate {
         /// As stated, Hz.
@@ -270,6 +273,7 @@ impl fmt::Display for ReplayError {
                 "key gyro_N_deg_sqrt_h is missing, and the samples at rest are too few to estimate it from: \
                  state it, or stand for longer",
             ),
+            Self::Late(late) => late.fmt(f),
             Self::Procedure(error) => error.fmt(f),
         }
     }
@@ -300,6 +304,7 @@ pub fn replay(
         Stops::Averages(rows) => dwells(rows, setting, options.criterion, progress),
     }?;
     assumed.extend(untold::of_stage(&session));
+    assumed.extend(late::check_stage(&session).map_err(ReplayError::Late)?);
     Ok(Replay { method: options.method, session, setting, assumed })
 }
 
@@ -348,6 +353,8 @@ fn stage(
     }
     let still = still(rows);
     let positions = standstills(rows, sample_seconds, still)?;
+    let ends = [&positions[0], &positions[positions.len() - 1]].map(|position| position.seconds);
+    late::check_gyro(rows, sample_seconds, ends).map_err(ReplayError::Late)?;
     let followed = followed(&positions, sample_seconds, criterion)?;
     let procedure = Procedure { still, ..followed };
     let mut session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;

@@ -389,6 +389,62 @@ fn a_stage_that_is_built_otherwise_is_refused_or_stands_under_what_is_assumed_wi
     assert!(told > 12, "only {told} are wrong at all");
 }
 
+/// What makes a column of a recording's row that of another row.
+type Shift = fn(&mut StageRow, &StageRow);
+
+#[test]
+fn a_column_of_another_moment_is_refused_or_told_or_gives_a_true_azimuth() {
+    let columns: [(&str, Shift); 2] = [
+        ("g_rad_s", |row, other| row.rate_rad_s = other.rate_rad_s),
+        ("stage_rad", |row, other| row.stage_rad = other.stage_rad),
+    ];
+    for (name, (column, shift)) in ALL.iter().flat_map(|name| columns.map(|of| (name, of))) {
+        let (header, body, truth) = stored(name).into_parts();
+        let Body::Stage(rows) = body else { panic!("{name} is no stage") };
+        let dwell = rows.partition_point(|row| (row.stage_rad - rows[0].stage_rad).abs() < 1e-3);
+        let mut refused = 0;
+        for late in [0.02, 0.05, 0.5, 0.9, 1.0, 1.1, 1.5, 2.0, 3.0].map(|late| late * dwell as f64)
+        {
+            for late in [late, -late].map(|late| late as isize) {
+                let mut shifted = rows.clone();
+                for (index, row) in shifted.iter_mut().enumerate() {
+                    let other = index.saturating_add_signed(-late).min(rows.len() - 1);
+                    shift(row, &rows[other]);
+                }
+                let words = format!("{name}: {column} late by {late} of {dwell} rows");
+                let replay =
+                    match replay(&header, &Body::Stage(shifted), &Options::default(), |_| {}) {
+                        Ok(replay) => replay,
+                        Err(error) => {
+                            refused += 1;
+                            assert!(
+                                error.to_string().starts_with(&format!("column {column}: ")),
+                                "{words}: {error}"
+                            );
+                            continue;
+                        }
+                    };
+                let Ok(azimuth) = replay.session.conclusion().expect("it has ended").verdict else {
+                    refused += 1;
+                    continue;
+                };
+                let truth_deg = truth.azimuth_deg.expect("it carries a truth");
+                let error = azimuth_error(azimuth.angle.to_degrees(), truth_deg).to_radians();
+                let is_told =
+                    replay.assumed.iter().any(|words| words.contains("of the same moment"));
+                assert!(
+                    is_told || error.abs() < 5.0 * azimuth.sigma,
+                    "{words}: {error} ± {}",
+                    azimuth.sigma
+                );
+            }
+        }
+        let is_arc = name.starts_with("stepwise-paper");
+        let least = if is_arc && column == "stage_rad" { 1 } else { 12 };
+        assert!(refused >= least, "{name}, {column}: only {refused} of 18 refused");
+    }
+}
+
 #[test]
 fn accelerometer_biases_that_drift_are_told_from_a_base_that_tilts() {
     let per_second = [3e-5, 1e-4, 1e-3].map(|per_minute| per_minute / 60.0);

@@ -2,12 +2,11 @@
 
 use orientation::earth::{EARTH_RATE, Latitude};
 
+use crate::recording::repeated::alone;
 use crate::recording::{Body, Header, RotatingRow, StageRow};
 
 /// Fewest equal values in a row that are no chance.
 const FEWEST: usize = 64;
-/// How much longer than any other such a run is: where noise is hardly written, many are long.
-const ALONE: usize = 4;
 /// Part of a recording for which an angle must stand still to be looked at.
 const MOST: f64 = 0.5;
 /// Parts of a standstill whose mean rates are compared.
@@ -25,7 +24,7 @@ pub fn of_stage(header: &Header, body: &Body) -> Option<String> {
     let horizontal = header.latitude_deg.and_then(Latitude::from_degrees);
     let horizontal = horizontal.map_or(EARTH_RATE, Latitude::horizontal_rate);
     let line = |row: &StageRow| row.line;
-    let gyro = alone(rows, |row| row.rate_rad_s).map(|run| told("g_rad_s", run, line));
+    let gyro = alone(rows, FEWEST, |row| row.rate_rad_s).map(|run| told("g_rad_s", run, line));
     gyro.or_else(|| {
         let run = longest(rows, |row| row.stage_rad);
         let is_long = run.len() as f64 > MOST * rows.len() as f64;
@@ -36,7 +35,7 @@ pub fn of_stage(header: &Header, body: &Body) -> Option<String> {
 /// The same of a platform that turns all the time.
 pub fn of_platform(rows: &[RotatingRow]) -> Option<String> {
     let line = |row: &RotatingRow| row.line;
-    let gyro = alone(rows, |row| row.rate_rad_s).map(|run| told("g_rad_s", run, line));
+    let gyro = alone(rows, FEWEST, |row| row.rate_rad_s).map(|run| told("g_rad_s", run, line));
     gyro.or_else(|| {
         let run = longest(rows, |row| row.stage_rad);
         let turning = run.iter().filter(|row| row.stage_rate_rad_s.abs() > TURNS).count();
@@ -49,19 +48,6 @@ pub fn of_platform(rows: &[RotatingRow]) -> Option<String> {
 fn longest<R>(rows: &[R], value: fn(&R) -> f64) -> &[R] {
     let runs = rows.chunk_by(|a, b| value(a) == value(b));
     runs.max_by_key(|run| run.len()).unwrap_or_default()
-}
-
-/// The same where that is far longer than anywhere else.
-fn alone<R>(rows: &[R], value: fn(&R) -> f64) -> Option<&[R]> {
-    let runs = rows.chunk_by(|a, b| value(a) == value(b));
-    let [longest, next] = runs.fold([&rows[..0]; 2], |[longest, next], run| {
-        if run.len() > longest.len() {
-            [run, longest]
-        } else {
-            [longest, if run.len() > next.len() { run } else { next }]
-        }
-    });
-    (longest.len() >= FEWEST && longest.len() >= ALONE * next.len()).then_some(longest)
 }
 
 /// Whether the gyro shows that the stage turned meanwhile: the Earth rate along it is not the same in all parts.

@@ -16,6 +16,7 @@ mod header;
 mod lines;
 mod number;
 mod problem;
+pub mod repeated;
 mod resemblance;
 mod rows;
 mod spacing;

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use orientation::signal::InertialSample;
 use orientation::units::{AngleIncrement, Instant, SpecificForce};
 
+use crate::recording::repeated::alone;
 use crate::recording::{Body, ImuRow, ImuSample, StaticRow};
 use crate::replay;
 
@@ -61,8 +62,6 @@ fn steps<R>(rows: &[R], time_s: fn(&R) -> f64) -> Option<(f64, f64)> {
 
 /// Equal values in a row that are no chance where there is noise.
 const STUCK: usize = 64;
-/// How much longer than any other such a run is: where noise is hardly written, many are long.
-const ALONE: usize = 4;
 /// The gyros' columns.
 const GYROS: [&str; 3] = ["gx_rad_s", "gy_rad_s", "gz_rad_s"];
 
@@ -71,13 +70,8 @@ const GYROS: [&str; 3] = ["gx_rad_s", "gy_rad_s", "gz_rad_s"];
 #[must_use]
 pub fn stuck(rows: &[ImuRow]) -> Option<(&'static str, &ImuRow, usize)> {
     GYROS.iter().enumerate().find_map(|(axis, column)| {
-        let value = |row: &ImuRow| row.sample.rates_rad_s[axis];
-        let mut runs: Vec<&[ImuRow]> = rows.chunk_by(|a, b| value(a) == value(b)).collect();
-        runs.sort_by_key(|run| std::cmp::Reverse(run.len()));
-        let next = runs.get(1).map_or(0, |run| run.len());
-        let longest = runs.first()?;
-        let is_stuck = longest.len() >= STUCK && longest.len() >= ALONE * next;
-        is_stuck.then(|| (*column, &longest[0], longest.len()))
+        let run = alone(rows, STUCK, |row| row.sample.rates_rad_s[axis])?;
+        Some((*column, &run[0], run.len()))
     })
 }
 

@@ -1,0 +1,116 @@
+//! Columns of a stage's recording that are not of the same moment, as both of its ends tell.
+//!
+//! A column that is late repeats its first value, one that is early its last. A gyro that does so for a whole dwell shows
+//! at each position what belongs to another; a stage's column that does so makes the first dwell, or the last, longer
+//! than the others, and the rate steps within it. By less than a dwell, the dwells themselves tell.
+
+use std::fmt;
+
+use orientation::align::quality::Disturbance;
+use orientation::session::Session;
+
+use crate::recording::StageRow;
+use crate::recording::repeated::alone;
+use crate::replay::median;
+
+/// Fewest equal rates at an end of a recording that are no chance.
+const FEWEST_REPEATED: usize = 16;
+/// Part of a dwell that is all of it, but for a transient that the average may leave out.
+const WHOLE_DWELL: f64 = 0.9;
+/// By how much longer than usual a dwell is no longer as long as the others.
+const LONGER: f64 = 1.25;
+
+/// An end of a recording.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// Where it begins.
+    First,
+    /// Where it ends.
+    Last,
+}
+
+/// A column that is not of the same moment as the others, by so many seconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Late {
+    /// The gyro's.
+    Gyro(End, f64),
+    /// The stage's.
+    Stage(End, f64),
+}
+
+impl fmt::Display for End {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(if *self == Self::First { "first" } else { "last" })
+    }
+}
+
+impl fmt::Display for Late {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let (Self::Gyro(end, seconds) | Self::Stage(end, seconds)) = self;
+        let way = if *end == End::First { "late" } else { "early" };
+        match self {
+            Self::Gyro(..) => write!(
+                f,
+                "column g_rad_s: the {end} value again and again for {seconds:.1} s, a whole dwell: the column is \
+                 {way} by as long, or the gyro did not measure; record again"
+            ),
+            Self::Stage(..) => write!(
+                f,
+                "column stage_rad: the {end} dwell lasts {seconds:.1} s longer than the others, and the rate is not \
+                 the same all through it: the column is {way} by as long, or the platform moved; record again"
+            ),
+        }
+    }
+}
+
+/// Refuses a gyro's column that repeats its first or last value for a whole dwell there, of so many seconds each.
+///
+/// # Errors
+/// Which end, and for how long.
+pub fn check_gyro(
+    rows: &[StageRow],
+    sample_seconds: f64,
+    [first, last]: [f64; 2],
+) -> Result<(), Late> {
+    let run = alone(rows, FEWEST_REPEATED, |row| row.rate_rad_s).unwrap_or_default();
+    let seconds = run.len() as f64 * sample_seconds;
+    let is_at = |row: Option<&StageRow>, end: Option<&StageRow>| {
+        row.zip(end).is_some_and(|(row, end)| row.line == end.line)
+    };
+    if is_at(run.first(), rows.first()) && seconds > WHOLE_DWELL * first {
+        return Err(Late::Gyro(End::First, seconds));
+    }
+    if is_at(run.last(), rows.last()) && seconds > WHOLE_DWELL * last {
+        return Err(Late::Gyro(End::Last, seconds));
+    }
+    Ok(())
+}
+
+/// What an azimuth assumes where a dwell at an end is longer than the others.
+///
+/// # Errors
+/// The rate is not the same all through that dwell.
+pub fn check_stage(session: &Session) -> Result<Option<String>, Late> {
+    let found = session.conclusion().filter(|conclusion| conclusion.verdict.is_ok());
+    let Some(conclusion) = found else { return Ok(None) };
+    let mut lengths: Vec<f64> = session.dwells().iter().map(|d| d.end() - d.start()).collect();
+    let ends = [(End::First, lengths.first()), (End::Last, lengths.last())];
+    let ends = ends.map(|(end, length)| (end, length.copied().unwrap_or_default()));
+    let usual = median(&mut lengths);
+    let whys = [conclusion.disturbances.first(), conclusion.disturbances.last()];
+    let longer = ends.into_iter().zip(whys).filter(|((_, length), _)| *length > LONGER * usual);
+    let mut assumed = None;
+    for ((end, length), why) in longer {
+        let seconds = length - usual;
+        match why.copied().flatten() {
+            None => {
+                assumed = Some(format!(
+                    "gyro and stage of the same moment, though the {end} dwell is {seconds:.1} s longer than usual"
+                ));
+            }
+            Some(Disturbance::Samples(_) | Disturbance::Moved(_) | Disturbance::Driving(..)) => {}
+            Some(_) => return Err(Late::Stage(end, seconds)),
+        }
+    }
+    Ok(assumed)
+}
