@@ -101,6 +101,50 @@ fn errors_of_a_swaying_vehicle_are_covered_by_sigma() {
     assert!(ratios.iter().all(|ratio| ratio.abs() < 3.5), "{ratios:?}");
 }
 
+/// Two minutes of a vehicle that rocks about both axes, apart from each other, and its sensors up to 2 m off that in
+/// any direction, or on it.
+fn off_axis(seed: u64, is_off: bool) -> Day {
+    let mut draw = Generator::stream(seed, 19);
+    let mut between = |from: f64, to: f64| from + (to - from) * draw.uniform();
+    let mut day = parked(seed, true);
+    for gyro in &mut day.scenario.vehicle.gyros {
+        (gyro.n_deg_sqrt_h, gyro.bias_sigma_deg_h) = (0.002, 0.005);
+    }
+    day.setting = known(52.0, 0.002, Some(0.005));
+    let lever_m = [0; 3].map(|_| between(-1.2, 1.2));
+    day.scenario.vehicle.lever_m = if is_off { lever_m } else { [0.0; 3] };
+    let mut component = |pitch_deg: f64, roll_deg: f64| SwayComponent {
+        pitch_deg,
+        roll_deg,
+        frequency_hz: between(0.3, 2.0),
+        phase_rad: between(0.0, std::f64::consts::TAU),
+        ..SwayComponent::default()
+    };
+    let components = [component(0.3, 0.0), component(0.0, 0.3), SwayComponent::default()];
+    undisturbed(&mut day.scenario, SwayConfiguration { components });
+    if let Leg::Stop(stop) = &mut day.scenario.legs[0] {
+        stop.seconds = 120.0;
+    }
+    day
+}
+
+#[test]
+fn sensors_off_the_axis_of_the_sway_are_aligned_nearly_as_well_as_on_it() {
+    let sigma = |seed, is_off| {
+        let verdict = off_axis(seed, is_off).run().conclusion.verdict;
+        verdict.map_or(f64::INFINITY, |azimuth| azimuth.sigma)
+    };
+    let mut worse: Vec<f64> =
+        (0..60).into_par_iter().map(|seed| sigma(seed, true) / sigma(seed, false)).collect();
+    worse.sort_by(f64::total_cmp);
+    let ratios = answered(0..60, |seed| off_axis(seed, true));
+    let ratio = rms(ratios.iter().copied());
+    println!("off the axis: {ratio:.3} over σ, σ {:.3} times that on it at the median", worse[30]);
+    assert!(ratios.len() >= 57 && worse[30] < 1.2, "{}: {worse:?}", ratios.len());
+    assert!(ratio > 0.7 && ratio < 1.2, "{ratio}");
+    assert!(ratios.iter().all(|ratio| ratio.abs() < 4.0), "{ratios:?}");
+}
+
 /// One to two minutes with gyros of a navigation grade and a sway that goes on half a cycle from one block of 5 s to the
 /// next, so that blocks of 10 s hide it.
 fn hidden(seed: u64) -> Day {

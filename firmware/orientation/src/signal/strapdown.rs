@@ -76,6 +76,8 @@ impl Sums {
 pub struct Strapdown {
     increment: Increment,
     carried: Carried,
+    /// Mean rates between the last three attitudes, rad/s, the latest first.
+    rates: [[f32; 3]; 2],
     /// The attitude's matrix.
     matrix: Rough,
     /// When the attitude was taken last.
@@ -123,26 +125,36 @@ impl Strapdown {
         let carried = &mut self.carried;
         carried.attitude = carried.attitude.turned(&self.increment.take());
         let after = carried.attitude.rough_matrix();
-        let middle: Rough = core::array::from_fn(|row| {
-            core::array::from_fn(|column| 0.5 * (self.matrix[row][column] + after[row][column]))
-        });
+        // Twice that in the middle.
+        let both: Rough = core::array::from_fn(|row| sum(&self.matrix[row], &after[row]));
         self.matrix = after;
-        carried.bias = gained(&carried.bias, &middle, &[seconds; 3]);
-        carried.scale = gained(&carried.scale, &middle, &small);
+        carried.bias = gained(&carried.bias, &both, &[0.5 * seconds; 3]);
+        carried.scale = gained(&carried.scale, &both, &small.map(|turn| 0.5 * turn));
+        if seconds > 0.0 {
+            let inverse = 1.0 / seconds;
+            self.rates = [small.map(|turn| turn * inverse), self.rates[0]];
+        }
         self.sums.turned = sum(&self.sums.turned, &steps.map(i64::from));
         self.sums.sweep(&small);
         self.sums.is_blown |= dot(&small, &small) > STEADY * STEADY;
-        self.turn_force(&middle);
+        self.turn_force(&both);
     }
 
-    /// Turns the forces since the last attitude to the start's axes.
-    fn turn_force(&mut self, middle: &Rough) {
+    /// Turns the forces since the last attitude to the start's axes, by the sum of both attitudes.
+    fn turn_force(&mut self, both: &Rough) {
         let force = core::mem::take(&mut self.force);
         let sums = &mut self.sums;
-        let turned = turned(middle, &force.map(|sum| sum as f32 * 1e-6));
+        let turned = turned(both, &force.map(|sum| sum as f32 * 0.5e-6));
         sums.start_force = sum(&sums.start_force, &turned);
         sums.force = sum(&sums.force, &force);
         sums.count += core::mem::take(&mut self.count);
+    }
+
+    /// Rate at the last attitude, rad/s: as the mean rates before it go on.
+    #[must_use]
+    pub fn rate(&self) -> [f32; 3] {
+        let [latest, earlier] = self.rates;
+        core::array::from_fn(|axis| 1.5 * latest[axis] - 0.5 * earlier[axis])
     }
 
     /// What is carried.

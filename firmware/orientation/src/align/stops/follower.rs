@@ -7,6 +7,7 @@
 use heapless::{Deque, Vec};
 
 use super::block::{AT_REST, Block, Blocks, DRIVEN};
+use super::lever::Lever;
 use super::stop::{STOPS, Second, Stop};
 use crate::math::rotation::{length, scaled, sum};
 use crate::signal::InertialSample;
@@ -76,6 +77,7 @@ pub struct Follower {
     held: usize,
     /// Length of the longest halt that was too short for a stop, s.
     fleeting: f64,
+    lever: Lever,
     stops: Vec<Stop, STOPS>,
     blocks: Blocks<AT_REST>,
     drives: Blocks<DRIVEN>,
@@ -103,6 +105,7 @@ impl Follower {
             is_at_rest: false,
             held: 0,
             fleeting: 0.0,
+            lever: Lever::default(),
             stops: Vec::new(),
             blocks: Blocks::new(REST_SPAN),
             drives: Blocks::new(DRIVE_SPAN),
@@ -236,6 +239,7 @@ impl Follower {
             is_rest: false,
             begin,
             end: *self.strapdown.carried(),
+            rate: self.strapdown.rate(),
         }
     }
 
@@ -297,9 +301,13 @@ impl Follower {
 
     /// Takes a second of the window for one of a stop.
     fn rest(&mut self, index: usize, stop: usize) {
+        let before = index.checked_sub(1).and_then(|before| self.window.iter().nth(before));
+        let before = before.filter(|before| before.is_rest);
+        let begun = before.map(|before| (before.to, before.swing()));
         let Some(second) = self.window.iter_mut().nth(index) else { return };
         second.is_rest = true;
-        let second = *second;
+        let mut second = *second;
+        let is_relieved = self.lever.relieve(&mut second, begun);
         if stop >= self.stops.len() {
             let displacement = self.stops.is_empty().then_some([0.0; 2]);
             let (from, begin) = (second.from, second.begin);
@@ -311,7 +319,7 @@ impl Follower {
         }
         let last = self.stops.len() - 1;
         self.stops[last].take(&second);
-        if let Some(force) = second.block_force() {
+        if let Some(force) = second.block_force().filter(|_| is_relieved) {
             self.blocks.push(block(&second, force, last as u8));
         }
     }

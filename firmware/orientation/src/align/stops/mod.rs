@@ -2,7 +2,8 @@
 //!
 //! ```text
 //!  sample ─▶ follower ─┬─ stops: attitude carried from inertial space, rest rates ─▶ filter ─▶ azimuth ± σ
-//!                      └─ blocks: up in the frozen start frame ───────────────────────▲
+//!                      └─ lever: forces without what the sway makes of them
+//!                           └─ blocks: up in the frozen start frame ──────────────────▲
 //!                         Earth rotation, displacement ─▶ where up must be ───────────┘
 //! ```
 //!
@@ -14,6 +15,7 @@ pub mod conclusion;
 pub mod filter;
 pub mod follower;
 pub mod inclination;
+pub mod lever;
 pub mod path;
 pub mod place;
 pub mod plain;

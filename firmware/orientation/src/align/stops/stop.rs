@@ -1,7 +1,7 @@
 //! A stop: what the gyros had carried when it began and when it ended, and how quiet it was.
 
-use crate::math::rotation::{Vector, sum, transposed, turned};
-use crate::signal::strapdown::Carried;
+use crate::math::rotation::{Vector, dot, sum, transposed, turned};
+use crate::signal::strapdown::{Carried, Rough};
 use crate::units::AngleIncrement;
 
 /// Most stops of a session.
@@ -163,9 +163,20 @@ pub struct Second {
     pub begin: Carried,
     /// What was carried when it ended.
     pub end: Carried,
+    /// Rate then, on the body's axes, rad/s.
+    pub rate: [f32; 3],
 }
 
 impl Second {
+    /// Velocity at its end of a point that stands a metre off along each axis of the body, as columns, on the start's axes,
+    /// 1/s.
+    #[must_use]
+    pub fn swing(&self) -> Rough {
+        let [x, y, z] = self.rate;
+        let columns = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]];
+        self.end.attitude.rough_matrix().map(|row| columns.map(|column| dot(&row, &column)))
+    }
+
     /// Length, s.
     #[must_use]
     pub fn seconds(&self) -> f64 {
