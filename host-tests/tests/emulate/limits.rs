@@ -56,7 +56,7 @@ fn the_budget_of_the_firmware_has_a_limit_for_everything() {
     assert_eq!(budget.limit("filter_instructions"), 115);
     assert_eq!(budget.limit("filter_and_dwell_instructions"), 150);
     assert_eq!(budget.limit("match_instructions"), 310_000);
-    assert_eq!(budget.limit("flash_bytes"), 480 * 1024);
+    assert_eq!(budget.limit("flash_bytes"), 484 * 1024);
     assert_eq!(budget.limit("static_ram_bytes"), 32 * 1024);
     assert_eq!(budget.limit("idle_percent"), 90);
     assert_eq!(budget.limit("turning_instructions"), 250);
