@@ -20,9 +20,9 @@ KNOWN = {
     "turning-gyro-late": (0, 0.85),
     "turning-gyro-coarse": (0, 0.85),
 }
-# Percentage points by which the coverage of all healthy recordings, to a tenth, may be off a normal distribution's.
+# Percentage points by which the coverage of all healthy recordings may be off a normal distribution's.
 COVERAGE = 3.0
-NORMAL = (68.3, 95.4, 99.7)
+NORMAL = (68.27, 95.45, 99.73)
 
 
 def judge(campaign):
@@ -39,7 +39,7 @@ def judge(campaign):
             failed.append(words)
     coverage = next(row for row in campaign["healthy"] if row["method"] == "all")["coverage_percent"]
     print("healthy: within 1, 2, 3 σ are", ", ".join(f"{part:.1f} %" for part in coverage))
-    if any(round(abs(round(part, 1) - normal), 1) > COVERAGE for part, normal in zip(coverage, NORMAL)):
+    if any(abs(part - normal) > COVERAGE for part, normal in zip(coverage, NORMAL)):
         failed.append(f"coverage {coverage}")
     return failed
 

@@ -78,14 +78,15 @@ pub fn check_gyro(
         return Ok(());
     }
     let seconds = run.len() as f64 * sample_seconds;
-    let is_at = |row: Option<&StageRow>, end: Option<&StageRow>| {
-        row.zip(end).is_some_and(|(row, end)| row.line == end.line)
-    };
-    if is_at(run.first(), rows.first()) && seconds > WHOLE_DWELL * first {
-        return Err(Late::Gyro(End::First, seconds));
-    }
-    if is_at(run.last(), rows.last()) && seconds > WHOLE_DWELL * last {
-        return Err(Late::Gyro(End::Last, seconds));
+    let ends = [
+        (End::First, run.first(), rows.first(), first),
+        (End::Last, run.last(), rows.last(), last),
+    ];
+    for (end, repeated, row, dwell) in ends {
+        let is_there = repeated.zip(row).is_some_and(|(repeated, row)| repeated.line == row.line);
+        if is_there && seconds > WHOLE_DWELL * dwell {
+            return Err(Late::Gyro(end, seconds));
+        }
     }
     Ok(())
 }

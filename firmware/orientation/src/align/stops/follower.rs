@@ -77,6 +77,7 @@ pub struct Follower {
     held: usize,
     /// Length of the longest halt that was too short for a stop, s.
     fleeting: f64,
+    /// From where the vehicle rocks to its sensors.
     lever: Lever,
     stops: Vec<Stop, STOPS>,
     blocks: Blocks<AT_REST>,

@@ -14,7 +14,7 @@ use super::stop::Second;
 use crate::math::rotation::{difference, dot, scaled, sum, turned};
 use crate::signal::strapdown::Rough;
 
-/// 1σ of each part of the lever to begin with, m: nobody mounts sensors farther from where a vehicle rocks.
+/// 1σ of each component of the lever before any sway is seen, m: the size of a large vehicle.
 const FARTHEST: f32 = 3.0;
 /// Variance of what forces change from second to second beside, (m/s²)²: an accelerometer of 3 mm/s²/√Hz.
 const FORCE: f32 = 1e-5;
