@@ -13,11 +13,10 @@ KNOWN = {
     "encoder-slip": (2, 0.90),
     "base-turn": (3, 0.90),
     "base-tilting": (2, 0.90),
-    "base-yawing": (8, 0.90),
+    "base-yawing": (7, 0.90),
     "random-walk": (1, 0.85),
-    "turning-base-yawing": (3, 0.90),
-    "turning-base-turn": (3, 0.90),
-    "turning-gyro-late": (0, 0.85),
+    "turning-base-yawing": (1, 0.90),
+    "turning-base-turn": (1, 0.90),
     "turning-gyro-coarse": (0, 0.85),
 }
 # Percentage points by which the coverage of all healthy recordings may be off a normal distribution's.

@@ -39,12 +39,9 @@ fn under_drift_the_plan_reaches_the_limit_and_beats_a_single_pass() {
         let found = drift::compare(gyro, RUNS, || ()).expect("there is a plan");
         for row in [&found.planned, &found.one_pass] {
             let precision = &row.precision;
-            // One session in a thousand seems to have a heading that steps. With one degree of freedom one in a thousand is refused by chance, and with a σ of
-            // 3° one in a thousand exceeds 10°.
-            assert!(
-                precision.refused <= if row.positions > 4 { RUNS / 1000 } else { 12 },
-                "{row:?}"
-            );
+            // Three sessions in a thousand seem to have a heading that steps, or a base that turns, which raises a σ
+            // of 3° beyond 10°. With one degree of freedom as many are refused by chance.
+            assert!(precision.refused <= RUNS * 3 / 1000, "{row:?}");
             assert!(precision.ratio <= 1.05 && precision.ratio >= 0.95, "{row:?}");
             for (covered, normal) in precision.coverage_percent.iter().zip(NORMAL_COVERAGE) {
                 assert!((covered - normal).abs() <= 3.0, "{row:?}");

@@ -19,9 +19,9 @@ use crate::units::DEGREES_PER_RADIAN as DEGREES;
 const BELIEVED: f64 = 15.1;
 /// The same of a step, for each place at which it may be (p = 0.001 over all of them).
 const STEP_BELIEVED: f64 = 10.8;
-/// Gain from which it is doubtful whether the direction stays (p = 0.05), and what more it takes of a step at any of
+/// Gain from which it is doubtful whether the direction stays (p = 0.2), and what more it takes of a step at any of
 /// many places.
-const DOUBTFUL: f64 = 3.84;
+const DOUBTFUL: f64 = 1.64;
 const STEP_DOUBTFUL: f64 = 3.8;
 /// Part of the alignments in which the direction changes, before their turns are looked at, where these speak for it;
 /// and where not.

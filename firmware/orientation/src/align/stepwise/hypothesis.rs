@@ -8,6 +8,7 @@
 use super::super::different_positions;
 use super::super::direction::Amplitude;
 use super::super::regression::{COLUMNS, Column, Regression};
+use super::uncertainty::WRONG;
 use super::{Fit, Model, Problem, ROUNDS, Row, Trial};
 use crate::math::chi_square_tail;
 use crate::signal::dwell::Dwell;
@@ -64,8 +65,10 @@ const BELIEVED: [f64; 2] = [15.1, 18.4];
 const STEP_BELIEVED: f64 = 13.8;
 /// By how much a hypothesis may raise the variance of the azimuth; beyond, the dwells do not show it.
 pub(super) const OBSERVABLE: f64 = 100.0;
-/// Chi-square of one degree of freedom that noise exceeds with a probability of 0.025.
+/// Chi-square of one degree of freedom from which σ covers what is not believed: noise exceeds it with a probability of
+/// 0.025; with 0.1 where 1σ of it would put the azimuth wrong.
 const DOUBTFUL: f64 = 5.02;
+const FAR_DOUBTFUL: f64 = 2.71;
 /// σ of an alternative's azimuth by which it may be farther away than it shows: one of fifty is.
 pub(super) const MISSED: f64 = 1.8;
 /// Change of heading, rad, from which a step or a base that turns is followed again with its exact turn: its square
@@ -127,11 +130,12 @@ impl Hypothesis {
     }
 
     /// Gain below which it is passed over in a session in which all else is well; of a step by about what one of so
-    /// many dwells shows by chance alone.
-    fn doubtful(self, dwells: usize) -> f64 {
+    /// many dwells shows by chance alone. It is far where its 1σ would put the azimuth wrong.
+    fn doubtful(self, dwells: usize, is_far: bool) -> f64 {
+        let one = if is_far { FAR_DOUBTFUL } else { DOUBTFUL };
         match self {
-            Self::Stepped { .. } => DOUBTFUL + 2.0 * libm::log(dwells as f64),
-            _ => DOUBTFUL,
+            Self::Stepped { .. } => one + 2.0 * libm::log(dwells as f64),
+            _ => one,
         }
     }
 
@@ -247,7 +251,8 @@ impl Problem<'_> {
         for one in all().filter(|one| one.model.hypothesis != used && !is_beaten(one)) {
             let level = one.protection(azimuth, sigma);
             fit.protection.astray = fit.protection.astray.max(level);
-            if one.gain() >= one.model.hypothesis.doubtful(self.dwells.len()) {
+            let is_far = one.sigma > WRONG * sigma;
+            if one.gain() >= one.model.hypothesis.doubtful(self.dwells.len(), is_far) {
                 fit.protection.always = fit.protection.always.max(level);
             }
         }

@@ -111,7 +111,7 @@ impl Problem<'_> {
 }
 
 /// Multiple of σ beyond which an azimuth is wrong: σ is no less than this part of its protection level.
-const WRONG: f64 = 5.0;
+pub(super) const WRONG: f64 = 5.0;
 /// Probability of the residuals below which something is astray.
 const ASTRAY_PROBABILITY: f64 = 0.01;
 /// What the Earth-rate ratio may be off in its σ before something is (p = 0.01).
