@@ -39,9 +39,10 @@ fn under_drift_the_plan_reaches_the_limit_and_beats_a_single_pass() {
         let found = drift::compare(gyro, RUNS, || ()).expect("there is a plan");
         for row in [&found.planned, &found.one_pass] {
             let precision = &row.precision;
-            // Three sessions in a thousand seem to have a heading that steps, or a base that turns, which raises a σ
-            // of 3° beyond 10°. With one degree of freedom as many are refused by chance.
-            assert!(precision.refused <= RUNS * 3 / 1000, "{row:?}");
+            // One session in a thousand seems to have a heading that steps. Of four positions, which have one degree
+            // of freedom, more are refused by chance; where σ is 2°, a base that may turn raises more beyond 10°.
+            let is_sure = row.positions > 4 && precision.limit_deg < 1.0;
+            assert!(precision.refused <= if is_sure { RUNS / 1000 } else { 12 }, "{row:?}");
             assert!(precision.ratio <= 1.05 && precision.ratio >= 0.95, "{row:?}");
             for (covered, normal) in precision.coverage_percent.iter().zip(NORMAL_COVERAGE) {
                 assert!((covered - normal).abs() <= 3.0, "{row:?}");

@@ -109,10 +109,11 @@ fn a_stated_sigma_is_true_and_healthy_platforms_are_not_refused() {
     let colours = [Colour::White, Colour::Flicker, Colour::Walk, Colour::Ramp];
     for (start, colour) in (0..).step_by(1000).zip(colours) {
         let is_by_encoder = matches!(colour, Colour::White | Colour::Walk);
-        // 250 draws tell an RMS to 4.5 %. A heading that may drift as slowly as noise lets it is in every σ, which a
-        // ramp raises by a fifth.
         let found = campaign(start..start + 250, |seed| case(seed, colour, is_by_encoder));
-        assert_true(&format!("{colour:?}"), 0.82..1.13, found);
+        // 250 draws tell an RMS to 4.5 %. A heading that may drift as slowly as noise lets it is in every σ, which
+        // it raises by a fifth under a ramp.
+        let least = if matches!(colour, Colour::Ramp) { 0.82 } else { 0.87 };
+        assert_true(&format!("{colour:?}"), least..1.13, found);
     }
 }
 
