@@ -16,6 +16,7 @@ use bench::recording::{self, Body, Header, Kind, RotatingRow};
 use bench::replay::{Options, ReplayError};
 use bench::rotating::{Replay, replay};
 use orientation::align::rotating::conclusion::Conclusion;
+use orientation::earth::Latitude;
 use orientation::error::Refusal;
 
 use oracle::Known;
@@ -239,6 +240,44 @@ const OTHERWISE: [(&str, Change); 3] = [
         row.stage_rate_rad_s = -row.stage_rate_rad_s;
     }),
 ];
+
+/// Rates of a base that turns about the vertical, °/min.
+const SLOW_DEG_MIN: [f64; 8] = [0.003, -0.01, 0.03, -0.06, 0.1, -0.2, 0.5, -1.0];
+
+#[test]
+fn a_base_that_turns_slowly_is_seen_or_in_sigma_or_assumed_not_to_with_its_size() {
+    let mut told = 0;
+    let recorded = with_exact_zero(recorded(GYRO));
+    let latitude = Latitude::from_degrees(recorded.header.latitude_deg.expect("it has one"));
+    let horizontal = latitude.expect("it is one").horizontal_rate();
+    for rate_deg_min in SLOW_DEG_MIN {
+        let rate = (rate_deg_min / 60.0).to_radians();
+        let mut turning = recorded.clone();
+        let begin = turning.rows[0].time_s;
+        for row in &mut turning.rows {
+            let axis = recorded.truth_deg.to_radians() + row.stage_rad;
+            let turned = rate * (row.time_s - begin);
+            row.rate_rad_s += horizontal * ((axis + turned).cos() - axis.cos());
+            row.rate_rad_s -= rate * row.force_m_s2 / 9.81;
+        }
+        let seconds = turning.rows[turning.rows.len() - 1].time_s - begin;
+        let truth_deg = recorded.truth_deg + (rate * seconds).to_degrees();
+        let replay = turning.replayed();
+        let Ok(azimuth) = conclusion(&replay).verdict else { continue };
+        let error = azimuth_error(azimuth.angle.to_degrees(), truth_deg).abs();
+        let sigma = azimuth.sigma.to_degrees();
+        let line = replay.assumed.iter().find(|line| line.starts_with("no slow turn"));
+        eprintln!("{rate_deg_min} {error} {sigma} {line:?}");
+        if error > 5.0 * sigma {
+            let line = line.unwrap_or_else(|| panic!("{rate_deg_min}: {error}° in silence"));
+            let most = line.rsplit_once("° off").and_then(|(before, _)| before.rsplit_once(' '));
+            let most_deg: f64 = most.expect("it has a size").1.parse().expect("it is a number");
+            assert!(error < most_deg + 4.0 * sigma, "{rate_deg_min}: {error}°, {line}");
+        }
+        told += i32::from(line.is_some());
+    }
+    assert!(told > 2, "only {told} are answered with what they do not show");
+}
 
 #[test]
 fn a_platform_that_is_built_otherwise_is_refused_or_stands_under_what_is_assumed() {

@@ -228,10 +228,24 @@ impl Record {
         }
     }
 
+    /// What chance gains in chi-square by choosing among all places at which a step may be.
+    #[must_use]
+    pub fn places(&self) -> f64 {
+        2.0 * libm::log(self.marks.len().max(1) as f64)
+    }
+
     /// From the first mark to the last, s.
     #[must_use]
     pub fn seconds(&self) -> f64 {
         self.marks.first().map_or(0.0, |mark| self.end - f64::from(mark.time))
+    }
+
+    /// From the middle of all turns to the end, s.
+    #[must_use]
+    pub fn to_end(&self) -> f64 {
+        let turns = |mark: &Mark| f64::from(mark.turns);
+        let moment: f64 = self.marks.iter().map(|mark| turns(mark) * f64::from(mark.time)).sum();
+        self.end - moment / self.marks.iter().map(turns).sum::<f64>().max(f64::MIN_POSITIVE)
     }
 
     /// The value that stays.

@@ -12,6 +12,7 @@ use super::solution::{Fit, Pair, Problem, SPEEDS, force_density, of_turn};
 use super::tilting::Tilting;
 use super::turn::{Sense, Stretch, Turn};
 use crate::align::conclusion::Azimuth;
+use crate::align::slow_turn::SlowTurn;
 use crate::device::Device;
 use crate::error::Refusal;
 use crate::math::{Complex, chi_square_tail};
@@ -101,10 +102,7 @@ impl Conclusion {
         }
         self.couple(setting, follower)?;
         Self::judge_followed(follower)?;
-        let common = &setting.common;
-        let [along, across] = common.g_sensitivity;
-        let per_tilt = Complex::new(latitude.vertical_rate() + along, across);
-        let tilting = Tilting::of(follower.stretches(), latitude.gravity(), per_tilt);
+        let tilting = tilting(setting, follower);
         let mut marks = Vec::new();
         self.pair(setting, follower.stretches(), &tilting, &mut marks)?;
         let drift = self.scatter(setting);
@@ -329,14 +327,10 @@ impl Conclusion {
     ) -> Result<(), Refusal> {
         let noise = self.noise(setting);
         let density = |speed: f64| noise.density_at(speed / TURN);
-        let walk = self.angle_random_walk;
-        let is_known = setting.common.white_known;
-        let white = if is_known { walk * walk } else { 0.0 };
-        let (pairs, couplings) = (&self.pairs, &self.couplings);
-        let problem =
-            Problem { setting, pairs, couplings, density: &density, white, tilting, ellipse };
+        let problem = self.problem(setting, tilting, ellipse, &density);
         let mut fit = problem.solve().ok_or(Refusal::CouplingUnknown)?;
         let of_turn = |speed: f64| self.of_one_turn(setting, speed);
+        let is_known = setting.common.white_known;
         let directions = Directions { problem: &problem, fit: &fit, of_turn: &of_turn, is_known };
         let doubt = directions.doubt(marks);
         let excess = self.excess(setting);
@@ -351,6 +345,36 @@ impl Conclusion {
             Some(change) => Err(Refusal::TiltChanged { change: change * 1e3 }),
             None => doubt.map(|_| ()),
         }
+    }
+
+    /// What is to be solved, with the noise's spectral density at a speed in rad/s.
+    fn problem<'a>(
+        &'a self,
+        setting: &'a Setting,
+        tilting: &'a Tilting,
+        ellipse: Complex,
+        density: &'a dyn Fn(f64) -> f64,
+    ) -> Problem<'a> {
+        let walk = self.angle_random_walk;
+        let white = if setting.common.white_known { walk * walk } else { 0.0 };
+        let (pairs, couplings) = (&self.pairs, &self.couplings);
+        Problem { setting, pairs, couplings, density, white, tilting, ellipse }
+    }
+
+    /// What the turns show of a base that turns slowly about the vertical, from what this was drawn from; `None` where
+    /// there is no fit.
+    #[must_use]
+    pub fn slow_turn(&self, setting: &Setting, follower: &Follower) -> Option<SlowTurn> {
+        let fit = self.fit.as_ref()?;
+        let tilting = tilting(setting, follower);
+        let mut marks = Vec::new();
+        self.averages(setting, follower.stretches(), &tilting, &mut marks);
+        let noise = self.noise(setting);
+        let density = |speed: f64| noise.density_at(speed / TURN);
+        let problem = self.problem(setting, &tilting, follower.ellipse(), &density);
+        let of_turn = |speed: f64| self.of_one_turn(setting, speed);
+        let is_known = setting.common.white_known;
+        Directions { problem: &problem, fit, of_turn: &of_turn, is_known }.slow_turn(marks)
     }
 
     /// Whether the accelerometer lies in the platform's plane and saw one tilt.
@@ -380,6 +404,14 @@ impl Conclusion {
         }
         Ok(())
     }
+}
+
+/// What the forces show of a base that tilts.
+fn tilting(setting: &Setting, follower: &Follower) -> Tilting {
+    let latitude = setting.common.latitude;
+    let [along, across] = setting.common.g_sensitivity;
+    let per_tilt = Complex::new(latitude.vertical_rate() + along, across);
+    Tilting::of(follower.stretches(), latitude.gravity(), per_tilt)
 }
 
 /// N from the scatter of neighbouring turns, rad/√s.

@@ -11,6 +11,7 @@ use super::solution::{Fit, Pair, Problem, believed_lag};
 use super::turn::Sense;
 use super::{coupling, solution};
 use crate::align::regression::Column;
+use crate::align::slow_turn::SlowTurn;
 use crate::error::Refusal;
 use crate::math::Complex;
 use crate::units::DEGREES_PER_RADIAN as DEGREES;
@@ -52,8 +53,39 @@ impl Directions<'_> {
     /// [`Refusal::DirectionDrifts`], [`Refusal::HeadingStepped`], [`Refusal::SensesDisagree`], and
     /// [`Refusal::TiltChanged`] where the tilt's direction drifts as an encoder that creeps lets it.
     #[inline(never)]
-    pub fn doubt(&self, mut marks: Vec<Mark, MARKS>) -> Result<f64, Refusal> {
-        let Some(first) = self.problem.pairs.first() else { return Ok(0.0) };
+    pub fn doubt(&self, marks: Vec<Mark, MARKS>) -> Result<f64, Refusal> {
+        let Some(record) = self.record(marks) else { return Ok(0.0) };
+        let Some(steady) = record.steady() else { return Ok(0.0) };
+        let drift = record.changing(Shape::Rate, &steady);
+        let step = record.likeliest_step().and_then(|shape| record.changing(shape, &steady));
+        // The senses change at one place alone.
+        let turn = record.change_of_sense().and_then(|shape| record.changing(shape, &steady));
+        self.judge(&record, [drift, turn, step])?;
+        // A sensor that is not flat settles for long: its directions drift a little with it.
+        if !self.is_flat() {
+            return Ok(0.0);
+        }
+        let lacks = |change: Option<Found>, places: f64| {
+            change.map_or(0.0, |change| lacking(&change, &steady, places))
+        };
+        let most = DOUBT * steady.variance;
+        let [drift, step] = [lacks(drift, 0.0), lacks(step, record.places())];
+        Ok(drift.min(most) + lacks(turn, 0.0) + step.min(most))
+    }
+
+    /// What these turns show of a base that turns slowly about the vertical; `None` of no turns.
+    #[must_use]
+    pub fn slow_turn(&self, marks: Vec<Mark, MARKS>) -> Option<SlowTurn> {
+        let record = self.record(marks)?;
+        let steady = record.steady()?;
+        let drift = record.changing(Shape::Rate, &steady);
+        let variance = drift.map_or(f64::INFINITY, |drift| drift.change_variance);
+        Some(SlowTurn { sigma: libm::sqrt(variance), lever: record.to_end() })
+    }
+
+    /// The turns' directions, rad, as far as they differ from the Earth rate's.
+    fn record(&self, mut marks: Vec<Mark, MARKS>) -> Option<Record> {
+        let first = self.problem.pairs.first()?;
         let variance = self.angle_variance(first);
         for mark in &mut marks {
             let pair = self.problem.pairs.get(usize::from(mark.is_second)).unwrap_or(first);
@@ -64,17 +96,19 @@ impl Directions<'_> {
             }
         }
         let odd = if self.is_flat() { Column::Prior(self.lag_sigma()) } else { Column::Free };
-        let places = 2.0 * libm::log(marks.len().max(1) as f64);
-        let record = Record::of_angles(marks, odd, (variance, self.is_known), self.lever());
-        let Some(steady) = record.steady() else { return Ok(0.0) };
-        let drift = record.changing(Shape::Rate, &steady);
-        let step = record.likeliest_step().and_then(|shape| record.changing(shape, &steady));
-        // The senses change at one place alone.
-        let turn = record.change_of_sense().and_then(|shape| record.changing(shape, &steady));
+        Some(Record::of_angles(marks, odd, (variance, self.is_known), self.lever()))
+    }
+
+    /// Refuses a drift, a change with the sense or a step that is believed, or a drift that goes with the tilt's.
+    fn judge(
+        &self,
+        record: &Record,
+        [drift, turn, step]: [Option<Found>; 3],
+    ) -> Result<(), Refusal> {
         let gain = |found: &Option<Found>| found.map_or(0.0, |found| found.gain);
-        let believed = [gain(&drift) - BELIEVED, gain(&step) - STEP_BELIEVED - places];
+        let believed = [gain(&drift) - BELIEVED, gain(&step) - STEP_BELIEVED - record.places()];
         if believed[1] > 0.0 && believed[1] >= believed[0] {
-            return Err(stepped(&record, step));
+            return Err(stepped(record, step));
         }
         if gain(&turn) > BELIEVED {
             return Err(Refusal::SensesDisagree { sigmas: libm::sqrt(gain(&turn)) });
@@ -87,20 +121,7 @@ impl Directions<'_> {
         {
             return Err(Refusal::TiltChanged { change: self.problem.tilting.change() * 1e3 });
         }
-        // A sensor that is not flat settles for long: its directions drift a little with it.
-        let mut doubt = 0.0;
-        let doubted = usize::from(self.is_flat()) * 3;
-        for (change, doubtful) in
-            [(drift, DOUBTFUL), (turn, DOUBTFUL), (step, STEP_DOUBTFUL + places)]
-                .into_iter()
-                .take(doubted)
-        {
-            let prior = CHANGING[usize::from(gain(&change) < doubtful)];
-            let places = if doubtful > DOUBTFUL { libm::exp(-0.5 * places) } else { 1.0 };
-            let lacks = change.map_or(0.0, |change| lacking(&change, &steady, prior * places));
-            doubt += if change == turn { lacks } else { lacks.min(DOUBT * steady.variance) };
-        }
-        Ok(doubt)
+        Ok(())
     }
 
     fn is_flat(&self) -> bool {
@@ -166,10 +187,12 @@ fn stepped(record: &Record, step: Option<Found>) -> Refusal {
     Refusal::HeadingStepped { angle: step.change[0] * DEGREES, after }
 }
 
-/// What the azimuth's variance lacks where a change of this probability is left out, rad²: at the end, or of a step
-/// on either side of it.
-fn lacking(change: &Found, steady: &Found, prior: f64) -> f64 {
-    let odds = prior * libm::exp(0.5 * change.gain.min(50.0));
+/// What the azimuth's variance lacks where a change is left out that may be at one of several places, rad²: at the end, or
+/// of a step on either side of it. `places` is what chance gains by choosing among them, in chi-square.
+fn lacking(change: &Found, steady: &Found, places: f64) -> f64 {
+    let doubtful = if places > 0.0 { STEP_DOUBTFUL + places } else { DOUBTFUL };
+    let prior = CHANGING[usize::from(change.gain < doubtful)];
+    let odds = prior * libm::exp(0.5 * (change.gain.min(50.0) - places));
     let late = change.at_end[0] - steady.at_end[0];
     let is_step = matches!(change.shape, Shape::Step(_));
     let early = if is_step { late - change.change[0] } else { 0.0 };

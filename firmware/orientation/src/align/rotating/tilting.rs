@@ -60,7 +60,6 @@ impl Tilting {
         let moment: f64 =
             marks.iter().map(|mark| f64::from(mark.turns) * f64::from(mark.time)).sum();
         let since = moment / turns.max(1.0);
-        let places = 2.0 * libm::log(marks.len().max(1) as f64);
         // Along the force, and across it, where a delay shows.
         let along = direction(&marks);
         let mut size: f64 = 0.0;
@@ -79,7 +78,8 @@ impl Tilting {
         let Some(steady) = record.steady() else { return standing };
         let Some(found) = record.changing(Shape::Rate, &steady) else { return standing };
         let step = record.likeliest_step().and_then(|shape| record.changing(shape, &steady));
-        let step = step.filter(|step| step.gain > (STEP_BELIEVED + places).max(found.gain));
+        let step =
+            step.filter(|step| step.gain > (STEP_BELIEVED + record.places()).max(found.gain));
         if let Some([re, im]) = step.map(|step| step.change) {
             return Self { step: Some(libm::hypot(re, im)), ..standing };
         }

@@ -196,6 +196,12 @@ impl Weighed {
         after.max(apart(self.azimuth - self.coefficient) + MISSED * sigma)
     }
 
+    /// Whether the dwells do not show the azimuth with it: then it is no model, but where it explains them σ covers it.
+    fn is_lost(&self, steady: &Trial) -> bool {
+        let most = self.model.hypothesis.observable() * steady.direction.variance;
+        self.sigma * self.sigma > most
+    }
+
     /// Whether it explains so much more than another that this one is passed over.
     fn beats(&self, other: &Self) -> bool {
         self.explained > other.explained + CLEARLY * self.scatter
@@ -250,9 +256,14 @@ impl Problem<'_> {
         fit.protection = Protection { always: beyond, astray: beyond };
         for one in all().filter(|one| one.model.hypothesis != used && !is_beaten(one)) {
             let level = one.protection(azimuth, sigma);
-            fit.protection.astray = fit.protection.astray.max(level);
-            let is_far = one.sigma > WRONG * sigma;
-            if one.gain() >= one.model.hypothesis.doubtful(self.dwells.len(), is_far) {
+            let is_lost = one.is_lost(steady);
+            let is_far = one.sigma > WRONG * sigma && !is_lost;
+            let is_doubtful =
+                one.gain() >= one.model.hypothesis.doubtful(self.dwells.len(), is_far);
+            if is_doubtful || !is_lost {
+                fit.protection.astray = fit.protection.astray.max(level);
+            }
+            if is_doubtful {
                 fit.protection.always = fit.protection.always.max(level);
             }
         }
@@ -314,24 +325,23 @@ impl Problem<'_> {
         let model = Model { amplitude: steady.amplitude, ..*model };
         let (regression, trial) = self.followed(&model, fit)?;
         let free = self.trial(&regression, &Model { amplitude: Amplitude::Free, ..model })?;
-        let most = hypothesis.observable() * steady.direction.variance;
-        if trial.degrees == 0 || trial.direction.variance > most {
-            return None;
-        }
-        let is_trusted = !matches!(hypothesis, Hypothesis::Stepped { .. });
-        let is_vague = is_trusted && (free.degrees < FREEDOM || free.probability() < LEFT);
-        let believed =
-            if is_vague { f64::INFINITY } else { hypothesis.believed(self.dwells.len()) };
-        Some(Weighed {
+        let weighed = Weighed {
             model,
             explained: steady.chi_square - trial.chi_square,
             scatter: trial.scatter(),
-            belief: free.gain(fit.free_chi_square) / believed,
+            belief: free.gain(fit.free_chi_square) / hypothesis.believed(self.dwells.len()),
             azimuth: trial.direction.azimuth,
             sigma: libm::sqrt(trial.direction.variance),
             coefficient: trial.coefficient,
             is_nested: fit.model.is_as_plain_as(&model),
-        })
+        };
+        let is_lost = weighed.is_lost(steady);
+        if trial.degrees == 0 || is_lost && !weighed.is_model() {
+            return None;
+        }
+        let is_vague = free.degrees < FREEDOM || free.probability() < LEFT;
+        let is_no_model = weighed.is_model() && (is_lost || is_vague);
+        Some(if is_no_model { Weighed { belief: 0.0, ..weighed } } else { weighed })
     }
 
     /// The regression with a hypothesis and what it gives; where that turns the base by more than ∂/∂A describes, with

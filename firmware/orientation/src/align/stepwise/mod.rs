@@ -7,6 +7,7 @@
 
 mod hypothesis;
 mod model;
+mod slow_turn;
 mod uncertainty;
 
 pub use hypothesis::{HeadingStep, Hypothesis, Protection};

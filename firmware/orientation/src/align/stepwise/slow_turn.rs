@@ -1,0 +1,39 @@
+//! What dwells show of a base that turns slowly about the vertical.
+
+use super::{Bent, FEWEST, Fit, Hypothesis, Model, Problem};
+use crate::align::regression::COLUMNS;
+use crate::align::slow_turn::SlowTurn;
+use crate::signal::dwell::Dwell;
+
+/// A turn so slow that its azimuth follows it evenly, rad/h.
+const SLOW: f64 = 1e-4;
+
+impl Problem<'_> {
+    /// What these dwells show of a base that turns slowly about the vertical, beside what [`Self::fit`] made of them;
+    /// `None` where that has already taken such a turn off.
+    #[must_use]
+    pub fn slow_turn(&self, fit: &Fit) -> Option<SlowTurn> {
+        if fit.model.hypothesis == Hypothesis::Yawing {
+            return None;
+        }
+        let azimuth = |rate: f64| {
+            let bent = Bent { rate, ..fit.bent(fit.model.hypothesis) };
+            let regression = self.regression(&self.setting.noise, Dwell::taper_factor, &bent);
+            Some(self.trial(&regression, &fit.model)?.direction.azimuth)
+        };
+        let lever = (azimuth(SLOW)? - azimuth(-SLOW)?) / (2.0 * SLOW) * 3600.0;
+        let is_shown = self.dwells.len() >= FEWEST && self.is_circle(&self.steady());
+        let sigma = if is_shown { self.rate_sigma(fit) } else { None };
+        Some(SlowTurn { sigma: sigma.unwrap_or(f64::INFINITY), lever })
+    }
+
+    /// 1σ of the base's rate with the Earth rate free, rad/s; `None` where the dwells do not determine it.
+    fn rate_sigma(&self, fit: &Fit) -> Option<f64> {
+        let model = Model { hypothesis: Hypothesis::Yawing, ..fit.model };
+        let bent = fit.bent(Hypothesis::Yawing);
+        let regression = self.regression(&self.setting.noise, Dwell::taper_factor, &bent);
+        let solution = regression.solve(&model.columns())?;
+        let variance = solution.covariance[COLUMNS - 2][COLUMNS - 2];
+        Some(libm::sqrt(variance) * fit.excess / 3600.0)
+    }
+}
