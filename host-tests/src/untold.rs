@@ -1,5 +1,7 @@
 //! What a recording cannot tell, in words: every azimuth from it assumes that.
 
+pub mod slow_turn;
+
 use std::f64::consts::TAU;
 
 use orientation::align::conclusion::Conclusion;
@@ -7,11 +9,8 @@ use orientation::align::level::Tilt;
 use orientation::align::rotating::conclusion::Conclusion as PlatformConclusion;
 use orientation::align::rotating::solution::{Fit, Pair};
 use orientation::align::setting::Setting;
-use orientation::align::slow_turn::SlowTurn;
-use orientation::align::stepwise::Problem;
 use orientation::math::Complex;
 use orientation::session::{Session, rotating};
-use orientation::signal::dwell::Dwell;
 
 /// Dwells from which drift and motion show beside the Earth rate, where none is a repeat.
 const ENOUGH: usize = 8;
@@ -21,17 +20,12 @@ const SAME_POSITION: f64 = 0.01;
 const LEVEL: f64 = 5.0;
 /// Tilt of a platform that shows its sense at the least, g.
 const LEAST_TILT: f64 = 1e-5;
-/// How far the Earth-rate ratio may be off and still pass every test, in its σ; and an azimuth before it is wrong.
+/// How far the Earth-rate ratio may be off and still pass every test, in its σ.
 const UNNOTICED: f64 = 5.0;
 /// The same beyond that, where the gyro's scale is exact.
 const TOLERANCE: f64 = 0.005;
 /// Part of σ from which on an error that does not show is worth telling.
 const WORTH_TELLING: f64 = 0.3;
-
-/// 1σ of a slow turn of the base from which on one is told or taken off.
-const TOLD: f64 = 4.0;
-/// Seconds of a minute.
-const MINUTE: f64 = 60.0;
 
 /// Sine of the tilt below which an accelerometer in g instead of m/s² shows no impossible one: 1.5°.
 const NEARLY_LEVEL: f64 = 0.026;
@@ -68,45 +62,8 @@ pub fn of_stage(session: &Session) -> Vec<String> {
         (few, "no drift and no motion beyond what is stated, which few positions do not show"),
     ];
     let shown = shown_by_stage(setting, conclusion);
-    let turn = slow_turn_of_stage(session, conclusion);
-    let turn = turn.and_then(|turn| unseen(&turn, fit.sigma()));
+    let turn = slow_turn::of_stage(session).map(|turn| turn.to_string());
     words_of(&untold).chain(turn).chain(shown.iter().flat_map(Shown::untold)).collect()
-}
-
-/// What the dwells that took part show of a base that turns slowly.
-fn slow_turn_of_stage(session: &Session, conclusion: &Conclusion) -> Option<SlowTurn> {
-    let judged = session.dwells().iter().zip(&conclusion.disturbances);
-    let kept: Vec<&Dwell> =
-        judged.filter(|(_, why)| why.is_none()).map(|(dwell, _)| dwell).collect();
-    let white = conclusion.angle_random_walk * conclusion.angle_random_walk;
-    let setting = session.setting();
-    let problem = Problem { setting, tilt: &conclusion.tilt, white, dwells: &kept };
-    problem.slow_turn(conclusion.fit.as_ref()?)
-}
-
-/// How slowly the base may turn about the vertical unseen, and where that puts north, for an azimuth with this σ, rad;
-/// nothing where σ covers it.
-fn unseen(turn: &SlowTurn, sigma: f64) -> Option<String> {
-    let lever = turn.lever.abs();
-    let rate = TOLD * turn.sigma;
-    if rate.is_infinite() {
-        let shift = (0.01 * lever / MINUTE).min(180.0);
-        return Some(format!(
-            "no slow turn of the base, which these positions do not show: with 0.01 °/min north is {shift:.2}° off"
-        ));
-    }
-    let shift = rate * lever;
-    (shift > UNNOTICED * sigma).then(|| {
-        let per_minute = significant((rate * MINUTE).to_degrees());
-        let shift = shift.to_degrees().min(180.0);
-        format!("no slow turn of the base: up to {per_minute} °/min would not show, and put north {shift:.2}° off")
-    })
-}
-
-/// A number with two significant digits.
-fn significant(value: f64) -> String {
-    let digits = (1.0 - value.abs().max(f64::MIN_POSITIVE).log10().floor()).clamp(0.0, 9.0);
-    format!("{value:.0$}", digits as usize)
 }
 
 /// The words of what is untold.
@@ -130,8 +87,7 @@ pub fn of_platform(session: &rotating::Session) -> Vec<String> {
         (!shows_sense(conclusion, &fit), SENSE_OF_A_PLATFORM),
         (fit.tilt.size() < NEARLY_LEVEL, UNIT_OF_A_PLATFORM),
     ];
-    let turn = conclusion.slow_turn(session.setting(), session.follower());
-    let turn = turn.and_then(|turn| unseen(&turn, azimuth.sigma));
+    let turn = slow_turn::of_platform(session).map(|turn| turn.to_string());
     words_of(&untold).chain(turn).chain(shown.untold()).collect()
 }
 

@@ -1,6 +1,6 @@
 //! Recordings of a stage with faults of any severity: what must not get past, and what must not be refused.
 
-use bench::campaign::disturbed::{healthy, row, stage};
+use bench::campaign::disturbed::{classes, healthy, row, stage};
 
 /// Runs of each class; `meridian campaign disturbed` does ten times as many.
 const RUNS: usize = 20;
@@ -18,6 +18,20 @@ fn a_fault_that_the_dwells_show_is_answered_within_its_sigma_or_refused() {
         // With so few harmless runs one refusal more than a tenth is chance.
         assert!(10 * found.harmless_answered + 10 >= 9 * found.harmless, "{found:?}");
     }
+}
+
+/// Runs in which a base turns slowly: about one of fifty passes.
+const SLOW_RUNS: usize = 100;
+
+#[test]
+fn a_base_that_turns_too_slowly_to_be_seen_is_told_beside_the_azimuth_that_it_puts_off() {
+    let mut wrong = 0;
+    for class in classes().filter(|class| class.name.ends_with("base-yawing")) {
+        let found = row(class, SLOW_RUNS, &|| ());
+        assert_eq!(found.wrong_told, found.wrong, "{found:?}");
+        wrong += found.wrong;
+    }
+    assert!(wrong > 0, "none is wrong at all");
 }
 
 #[test]

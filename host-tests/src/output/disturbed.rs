@@ -48,18 +48,24 @@ pub fn rows(out: &mut impl Write, rows: &[Row]) -> fmt::Result {
     )?;
     writeln!(
         out,
-        "  {:<28} {:>5} {:>8} {:>12} {:>9} {:>20} {:>14}  severity",
-        "class", "runs", "answered", "wrong (few)", "worst", "harmless answered", "healthy refused"
+        "  {:<28} {:>5} {:>8} {:>17} {:>9} {:>20} {:>14}  severity",
+        "class",
+        "runs",
+        "answered",
+        "wrong (few, told)",
+        "worst",
+        "harmless answered",
+        "healthy refused"
     )?;
     for row in rows {
         let [low, high] = row.severity;
         writeln!(
             out,
-            "  {:<28} {:>5} {:>8} {:>12} {:>7.1} σ {:>20} {:>14}  {low} to {high} {}{}",
+            "  {:<28} {:>5} {:>8} {:>17} {:>7.1} σ {:>20} {:>14}  {low} to {high} {}{}",
             row.class,
             row.runs,
             row.answered,
-            format!("{} ({})", row.wrong, row.wrong_of_few),
+            format!("{} ({}, {})", row.wrong, row.wrong_of_few, row.wrong_told),
             row.worst_sigmas,
             format!("{} of {}", row.harmless_answered, row.harmless),
             row.healthy_refused,

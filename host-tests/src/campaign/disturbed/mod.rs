@@ -43,6 +43,8 @@ pub struct Pair {
     pub faulty: Result<Answer, String>,
     /// Error of the fault's recording when nothing is checked, °; none where even that has no answer.
     pub unchecked_deg: Option<f64>,
+    /// By how much a slow turn of the base may put the fault's answer off unseen, as is told beside it, °.
+    pub untold_deg: f64,
     /// Whether σ rests on fewer than [`FEW_RESIDUALS`] residuals.
     pub is_few: bool,
 }
@@ -60,6 +62,17 @@ impl Pair {
     fn sigmas(&self) -> Option<f64> {
         let sigmas = self.faulty.as_ref().ok().map(|answer| (answer.error / answer.sigma).abs());
         sigmas.map(|sigmas| if sigmas.is_nan() { f64::INFINITY } else { sigmas })
+    }
+
+    /// Whether the fault's answer is wrong, and by how much it may be is told beside it.
+    fn is_told(&self) -> bool {
+        let is_within = |answer: &Answer| answer.error.abs() <= self.untold_deg;
+        self.is_wrong() && self.faulty.as_ref().is_ok_and(is_within)
+    }
+
+    /// Whether the fault's answer is beyond [`WRONG_SIGMAS`].
+    fn is_wrong(&self) -> bool {
+        self.sigmas().is_some_and(|sigmas| sigmas > WRONG_SIGMAS)
     }
 
     /// Whether the fault's run was answered about as well as the healthy one.
@@ -153,6 +166,8 @@ pub struct Row {
     pub wrong: usize,
     /// Of the wrong answers those that rest on few residuals.
     pub wrong_of_few: usize,
+    /// Of the wrong answers those that are off by no more than a slow turn of the base is said to put them.
+    pub wrong_told: usize,
     /// The greatest error of an answer in its σ.
     pub worst_sigmas: f64,
     /// Seed, severity and error in σ of every wrong answer.
@@ -189,13 +204,13 @@ pub fn row(class: &'static Class, runs: usize, tick: &(impl Fn() + Sync)) -> Row
 
 fn summary(class: &'static Class, pairs: &[(u64, f64, Pair)]) -> Row {
     let count = |of: &dyn Fn(&Pair) -> bool| pairs.iter().filter(|(.., pair)| of(pair)).count();
-    let is_wrong = |pair: &Pair| pair.sigmas().is_some_and(|sigmas| sigmas > WRONG_SIGMAS);
     let answered = count(&|pair| pair.faulty.is_ok());
-    let (wrong, wrong_of_few) = (count(&is_wrong), count(&|pair| pair.is_few && is_wrong(pair)));
+    let (wrong, wrong_of_few) =
+        (count(&Pair::is_wrong), count(&|pair| pair.is_few && pair.is_wrong()));
     let harmless = count(&Pair::is_harmless);
     let harmless_answered = count(&|pair| pair.is_harmless() && pair.is_answered_well());
     let worst_sigmas = pairs.iter().filter_map(|(.., pair)| pair.sigmas()).fold(0.0, f64::max);
-    let wrong_runs = pairs.iter().filter(|(.., pair)| is_wrong(pair));
+    let wrong_runs = pairs.iter().filter(|(.., pair)| pair.is_wrong());
     let wrong_runs = wrong_runs
         .filter_map(|(seed, severity, pair)| Some((*seed, *severity, pair.sigmas()?)))
         .collect();
@@ -215,6 +230,7 @@ fn summary(class: &'static Class, pairs: &[(u64, f64, Pair)]) -> Row {
         answered,
         wrong,
         wrong_of_few,
+        wrong_told: count(&Pair::is_told),
         worst_sigmas,
         wrong_runs,
         lost_runs,

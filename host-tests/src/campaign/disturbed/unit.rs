@@ -17,6 +17,7 @@ use super::gyro::{Column, Drift, Drifting, GyroFault};
 use crate::campaign::statistics::Answer;
 use crate::output::{azimuth_error, degrees};
 use crate::recording::Header;
+use crate::untold::slow_turn::Unseen;
 
 /// Step of the encoder: 21 bit.
 const ENCODER_STEP_RAD: f64 = TAU / 2_097_152.0;
@@ -206,6 +207,9 @@ pub(super) trait Rig: Clone {
     /// The azimuth, °, when nothing is checked.
     fn unchecked_deg(session: &Self::Session) -> Option<f64>;
 
+    /// By how much a slow turn of the base may put its azimuth off unseen.
+    fn unseen(session: &Self::Session) -> Option<Unseen>;
+
     /// Whether σ rests on few residuals.
     fn is_few(&self) -> bool {
         false
@@ -237,6 +241,8 @@ pub(super) trait Rig: Clone {
         let (faulty, session) = spoilt.align();
         let unchecked = session.as_ref().and_then(Self::unchecked_deg);
         let unchecked_deg = unchecked.map(|azimuth| azimuth_error(azimuth, spoilt.truth_deg()));
-        Pair { healthy, faulty, unchecked_deg, is_few: self.is_few() }
+        let unseen = session.as_ref().and_then(Self::unseen);
+        let untold_deg = unseen.map_or(0.0, |unseen| unseen.shift().to_degrees());
+        Pair { healthy, faulty, unchecked_deg, untold_deg, is_few: self.is_few() }
     }
 }

@@ -115,6 +115,7 @@ impl Flight {
             healthy,
             faulty: spoilt.answer(),
             unchecked_deg: spoilt.unchecked_deg(),
+            untold_deg: 0.0,
             is_few: false,
         }
     }

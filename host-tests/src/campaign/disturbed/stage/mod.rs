@@ -21,6 +21,7 @@ use crate::campaign::statistics::Answer;
 use crate::output::degrees;
 use crate::recording::{Body, StageRow};
 use crate::replay::{Options, replay};
+use crate::untold::slow_turn::{self, Unseen};
 
 pub use classes::CLASSES;
 
@@ -132,6 +133,10 @@ impl Rig for Bench {
             Ok(replay) => (answer(&replay.session, self.truth_deg()), Some(replay.session)),
             Err(error) => (Err(error.to_string()), None),
         }
+    }
+
+    fn unseen(session: &Session) -> Option<Unseen> {
+        slow_turn::of_stage(session)
     }
 
     /// Plain least squares on all dwells: nothing is left out.

@@ -23,6 +23,7 @@ use crate::output::{azimuth_error, degrees};
 use crate::recording::{Body, Header, RotatingRow, Sensor};
 use crate::replay::Options;
 use crate::rotating::replay;
+use crate::untold::slow_turn::{self, Unseen};
 
 pub use classes::CLASSES;
 
@@ -170,6 +171,10 @@ impl Rig for Bench {
             Ok(replay) => (answer(&replay.session, self.truth_deg()), Some(replay.session)),
             Err(error) => (Err(error.to_string()), None),
         }
+    }
+
+    fn unseen(session: &Session) -> Option<Unseen> {
+        slow_turn::of_platform(session)
     }
 
     fn unchecked_deg(session: &Session) -> Option<f64> {

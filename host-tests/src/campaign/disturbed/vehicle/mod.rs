@@ -208,6 +208,7 @@ impl Bench {
             healthy: healthy.answer,
             faulty: faulty.answer,
             unchecked_deg: faulty.unchecked_deg,
+            untold_deg: 0.0,
             is_few: false,
         }
     }
