@@ -17,7 +17,6 @@ KNOWN = {
     "random-walk": (1, 0.85),
     "turning-base-yawing": (1, 0.90),
     "turning-base-turn": (1, 0.90),
-    "turning-gyro-coarse": (0, 0.85),
 }
 # Classes whose wrong answers must lie within what is told beside them.
 TOLD = ("base-yawing", "turning-base-yawing")

@@ -4,7 +4,7 @@ pub mod part;
 pub mod recorder;
 pub mod turns;
 
-use std::f64::consts::{FRAC_1_SQRT_2, TAU};
+use std::f64::consts::{FRAC_1_SQRT_2, PI, TAU};
 
 use orientation::align::rotating::conclusion::Conclusion;
 use orientation::align::rotating::turn::Stretch;
@@ -96,8 +96,11 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
     Ok(Replay { session, zero_s, assumed })
 }
 
+/// Part of the power of what rounding adds that is the first harmonic of its staircase, 6/π².
+const FIRST_HARMONIC: f64 = 6.0 / (PI * PI);
+
 /// Takes the steps of a gyro's column into its noise, and gives what of them its noise does not hide, rad/s: it smooths
-/// the staircase by e^(−2π²(σ/step)²).
+/// the staircase by e^(−2π²(σ/step)²). That part goes with the platform's turn and is no noise.
 fn rounded(common: &mut Common, rows: &[RotatingRow], rate_hz: f64) -> f64 {
     let mut rates: Vec<f64> = rows.iter().map(|row| row.rate_rad_s).collect();
     rates.sort_unstable_by(f64::total_cmp);
@@ -108,9 +111,10 @@ fn rounded(common: &mut Common, rows: &[RotatingRow], rate_hz: f64) -> f64 {
     }
     let walk = common.noise.angle_random_walk;
     let sigma = if common.white_known { walk * rate_hz.sqrt() } else { of_neighbours(rows) };
-    let hidden = sigma / step;
-    common.noise.angle_random_walk = walk.hypot(step / (12.0 * rate_hz).sqrt());
-    step * (-0.5 * (TAU * hidden).powi(2)).exp()
+    let smoothed = (-0.5 * (TAU * sigma / step).powi(2)).exp();
+    let scattered = 1.0 - FIRST_HARMONIC * smoothed * smoothed;
+    common.noise.angle_random_walk = walk.hypot(step * (scattered / (12.0 * rate_hz)).sqrt());
+    step * smoothed
 }
 
 /// 1σ of a rate's noise, rad/s, from the differences of neighbours: their median is 0.674 of their σ.
