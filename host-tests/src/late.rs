@@ -8,6 +8,7 @@ use std::fmt;
 
 use orientation::align::quality::Disturbance;
 use orientation::session::Session;
+use orientation::signal::dwell::Dwell;
 
 use crate::recording::StageRow;
 use crate::recording::repeated::alone;
@@ -91,31 +92,39 @@ pub fn check_gyro(
     Ok(())
 }
 
-/// What an azimuth assumes where a dwell at an end is longer than the others.
+/// What an azimuth from samples assumes of their columns: one that is early or late by whole dwells, and begins and ends
+/// as the others do, shows nothing of it.
+#[must_use]
+pub fn untold(session: &Session) -> Option<String> {
+    session.conclusion().filter(|conclusion| conclusion.verdict.is_ok())?;
+    let angle = |pair: &[Dwell]| (pair[1].stage - pair[0].stage).signed_rad().abs();
+    let mut steps: Vec<f64> = session.dwells().windows(2).map(angle).collect();
+    let step = median(&mut steps).to_degrees();
+    Some(format!(
+        "gyro and stage of the same moment: by each dwell that one is late north is {step:.1}° off"
+    ))
+}
+
+/// Refuses a first or last dwell that is longer than the others where the rate is not the same all through it.
 ///
 /// # Errors
-/// The rate is not the same all through that dwell.
-pub fn check_stage(session: &Session) -> Result<Option<String>, Late> {
+/// Which end, and by how long.
+pub fn check_stage(session: &Session) -> Result<(), Late> {
     let found = session.conclusion().filter(|conclusion| conclusion.verdict.is_ok());
-    let Some(conclusion) = found else { return Ok(None) };
+    let Some(conclusion) = found else { return Ok(()) };
     let mut lengths: Vec<f64> = session.dwells().iter().map(|d| d.end() - d.start()).collect();
     let ends = [(End::First, lengths.first()), (End::Last, lengths.last())];
     let ends = ends.map(|(end, length)| (end, length.copied().unwrap_or_default()));
     let usual = median(&mut lengths);
     let whys = [conclusion.disturbances.first(), conclusion.disturbances.last()];
     let longer = ends.into_iter().zip(whys).filter(|((_, length), _)| *length > LONGER * usual);
-    let mut assumed = None;
     for ((end, length), why) in longer {
         let seconds = length - usual;
         match why.copied().flatten() {
-            None => {
-                assumed = Some(format!(
-                    "gyro and stage of the same moment, though the {end} dwell is {seconds:.1} s longer than usual"
-                ));
-            }
-            Some(Disturbance::Samples(_) | Disturbance::Moved(_) | Disturbance::Driving(..)) => {}
+            None
+            | Some(Disturbance::Samples(_) | Disturbance::Moved(_) | Disturbance::Driving(..)) => {}
             Some(_) => return Err(Late::Stage(end, seconds)),
         }
     }
-    Ok(assumed)
+    Ok(())
 }

@@ -303,8 +303,9 @@ pub fn replay(
         Stops::Samples(rows) => stage(header, rows, setting, options.criterion, progress),
         Stops::Averages(rows) => dwells(rows, setting, options.criterion, progress),
     }?;
+    late::check_stage(&session).map_err(ReplayError::Late)?;
     assumed.extend(untold::of_stage(&session));
-    assumed.extend(late::check_stage(&session).map_err(ReplayError::Late)?);
+    assumed.extend(late::untold(&session).filter(|_| body.kind() == Kind::Stage));
     Ok(Replay { method: options.method, session, setting, assumed })
 }
 

@@ -1,6 +1,6 @@
 //! What a recording cannot tell, in words: every azimuth from it assumes that.
 
-pub mod slow_turn;
+pub mod unseen;
 
 use std::f64::consts::TAU;
 
@@ -59,11 +59,12 @@ pub fn of_stage(session: &Session) -> Vec<String> {
         (true, "no turn of the base or slip of the encoder in the last quarter of the dwells"),
         (is_level, "sense of the stage, which no level stage shows"),
         (!fit.earth_rate_is_free(), "scale of the gyro, which no arc shows"),
+        (!fit.earth_rate_is_free(), "no lag of the gyro, which an arc shows badly"),
         (few, "no drift and no motion beyond what is stated, which few positions do not show"),
     ];
     let shown = shown_by_stage(setting, conclusion);
-    let turn = slow_turn::of_stage(session).map(|turn| turn.to_string());
-    words_of(&untold).chain(turn).chain(shown.iter().flat_map(Shown::untold)).collect()
+    let unseen = unseen::of_stage(session).into_iter().map(|unseen| unseen.to_string());
+    words_of(&untold).chain(unseen).chain(shown.iter().flat_map(Shown::untold)).collect()
 }
 
 /// The words of what is untold.
@@ -87,7 +88,7 @@ pub fn of_platform(session: &rotating::Session) -> Vec<String> {
         (!shows_sense(conclusion, &fit), SENSE_OF_A_PLATFORM),
         (fit.tilt.size() < NEARLY_LEVEL, UNIT_OF_A_PLATFORM),
     ];
-    let turn = slow_turn::of_platform(session).map(|turn| turn.to_string());
+    let turn = unseen::of_platform(session).map(|turn| turn.to_string());
     words_of(&untold).chain(turn).chain(shown.untold()).collect()
 }
 
@@ -152,13 +153,13 @@ impl Shown {
         let reversed = self.change(-1.0, here).map(|change| {
             format!("sign of the gyro: with the other one {:.1}° away", change.to_degrees())
         });
-        let turned = [0.25, 0.5, 0.75].map(|turn| Complex::unit(turn * TAU) * here);
-        let others = turned.into_iter().chain([mirrored]);
+        let turned = (1..360_u16).map(|degrees| f64::from(degrees).to_radians());
+        let others = turned.map(|angle| Complex::unit(angle) * here).chain([mirrored]);
         let changes = others.filter_map(|felt| self.change(1.0, felt));
         let worth_telling = changes.filter(|change| *change > WORTH_TELLING * self.sigma);
         let axes = worth_telling.reduce(f64::max).map(|change| {
             format!(
-                "axes of the accelerometer and the hemisphere: turned by 90° or 180°, or in the other one, up to \
+                "axes of the accelerometer and the hemisphere: turned about the vertical, or in the other one, up to \
                  {:.2}° away",
                 change.to_degrees()
             )

@@ -1,6 +1,11 @@
 //! The recordings of an independent simulator, replayed through the session.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
+#[path = "replay/moment.rs"]
+mod moment;
+#[path = "replay/slow.rs"]
+mod slow;
+
 use std::fmt::Write;
 use std::path::Path;
 
@@ -389,119 +394,6 @@ fn a_stage_that_is_built_otherwise_is_refused_or_stands_under_what_is_assumed_wi
     assert!(told > 12, "only {told} are wrong at all");
 }
 
-/// Rates of a base that turns about the vertical, °/min.
-const SLOW_DEG_MIN: [f64; 8] = [0.003, -0.01, 0.03, -0.06, 0.1, -0.2, 0.5, -1.0];
-
-/// A base that turns about the vertical, its heading `turned` rad so far, at `rate` rad/s, in what a row shows: the
-/// horizontal Earth rate from another direction, and the rate along an axis that is not level.
-fn turning(row: &mut StageRow, azimuth: f64, horizontal: f64, turned: f64, rate: f64) {
-    let axis = azimuth + row.stage_rad;
-    row.rate_rad_s += horizontal * ((axis + turned).cos() - axis.cos());
-    row.rate_rad_s -= rate * row.force_m_s2[0] / 9.81;
-}
-
-/// The rows of a stage on a base that turns at this rate, and by how much it has turned in the end, °.
-fn on_turning_base(
-    header: &Header,
-    rows: &[StageRow],
-    truth_deg: f64,
-    rate_deg_min: f64,
-) -> (Vec<StageRow>, f64) {
-    let latitude_deg = header.latitude_deg.expect("it has a latitude");
-    let horizontal = Latitude::from_degrees(latitude_deg).expect("it is one").horizontal_rate();
-    let rate = (rate_deg_min / 60.0).to_radians();
-    let since = |row: &StageRow| row.time_s - rows[0].time_s;
-    let mut turned = rows.to_vec();
-    for row in &mut turned {
-        let seconds = since(row);
-        turning(row, truth_deg.to_radians(), horizontal, rate * seconds, rate);
-    }
-    (turned, (rate * since(&rows[rows.len() - 1])).to_degrees())
-}
-
-#[test]
-fn a_base_that_turns_slowly_is_seen_or_in_sigma_or_assumed_not_to_with_its_size() {
-    let mut told = 0;
-    for name in ALL {
-        let (header, body, truth) = stored(name).into_parts();
-        let truth_deg = truth.azimuth_deg.expect("it carries a truth");
-        let Body::Stage(rows) = body else { continue };
-        for rate in SLOW_DEG_MIN {
-            let (rows, turned_deg) = on_turning_base(&header, &rows, truth_deg, rate);
-            let body = Body::Stage(rows);
-            let replay = replay(&header, &body, &Options::default(), |_| {}).expect("it replays");
-            let Ok(azimuth) = replay.session.conclusion().expect("it has ended").verdict else {
-                continue;
-            };
-            let error = azimuth_error(azimuth.angle.to_degrees(), truth_deg + turned_deg).abs();
-            let sigma = azimuth.sigma.to_degrees();
-            if error > 5.0 * sigma {
-                let said = unseen_turn(&replay.assumed);
-                let most = said.unwrap_or_else(|| panic!("{name}, {rate}: {error}° in silence"));
-                assert!(error < most(rate.abs()) + 4.0 * sigma, "{name}, {rate}: {error}°");
-                told += 1;
-            }
-        }
-    }
-    assert!(told > 2, "only {told} are wrong at all");
-}
-
-/// What makes a column of a recording's row that of another row.
-type Shift = fn(&mut StageRow, &StageRow);
-
-#[test]
-fn a_column_of_another_moment_is_refused_or_told_or_gives_a_true_azimuth() {
-    let columns: [(&str, Shift); 2] = [
-        ("g_rad_s", |row, other| row.rate_rad_s = other.rate_rad_s),
-        ("stage_rad", |row, other| row.stage_rad = other.stage_rad),
-    ];
-    for (name, (column, shift)) in ALL.iter().flat_map(|name| columns.map(|of| (name, of))) {
-        let (header, body, truth) = stored(name).into_parts();
-        let Body::Stage(rows) = body else { panic!("{name} is no stage") };
-        let dwell = rows.partition_point(|row| (row.stage_rad - rows[0].stage_rad).abs() < 1e-3);
-        let mut refused = 0;
-        for late in [0.02, 0.05, 0.5, 0.9, 1.0, 1.1, 1.5, 2.0, 3.0].map(|late| late * dwell as f64)
-        {
-            for late in [late, -late].map(|late| late as isize) {
-                let mut shifted = rows.clone();
-                for (index, row) in shifted.iter_mut().enumerate() {
-                    let other = index.saturating_add_signed(-late).min(rows.len() - 1);
-                    shift(row, &rows[other]);
-                }
-                let words = format!("{name}: {column} late by {late} of {dwell} rows");
-                let replay =
-                    match replay(&header, &Body::Stage(shifted), &Options::default(), |_| {}) {
-                        Ok(replay) => replay,
-                        Err(error) => {
-                            refused += 1;
-                            assert!(
-                                error.to_string().starts_with(&format!("column {column}: ")),
-                                "{words}: {error}"
-                            );
-                            continue;
-                        }
-                    };
-                let Ok(azimuth) = replay.session.conclusion().expect("it has ended").verdict else {
-                    refused += 1;
-                    continue;
-                };
-                let truth_deg = truth.azimuth_deg.expect("it carries a truth");
-                let error = azimuth_error(azimuth.angle.to_degrees(), truth_deg).to_radians();
-                let is_told =
-                    replay.assumed.iter().any(|words| words.contains("of the same moment"));
-                assert!(
-                    is_told || error.abs() < 5.0 * azimuth.sigma,
-                    "{words}: {error} ± {}",
-                    azimuth.sigma
-                );
-            }
-        }
-        let is_arc = name.starts_with("stepwise-paper");
-        let least = if is_arc && column == "stage_rad" { 1 } else { 12 };
-        assert!(refused >= least, "{name}, {column}: only {refused} of 18 refused");
-    }
-}
-
 #[test]
 fn accelerometer_biases_that_drift_are_told_from_a_base_that_tilts() {
     let per_second = [3e-5, 1e-4, 1e-3].map(|per_minute| per_minute / 60.0);
@@ -552,21 +444,6 @@ fn a_dead_accelerometer_across_the_vertical_is_named() {
             "{axes:?}: {error:?}"
         );
     }
-}
-
-/// By how much, °, a slow turn of the base at a rate in °/min is said to put north off at the most.
-fn unseen_turn(assumed: &[String]) -> Option<impl Fn(f64) -> f64 + use<>> {
-    let line = assumed.iter().find(|line| line.starts_with("no slow turn of the base"))?;
-    let number = |from: &str, to: &str| -> Option<f64> {
-        line.split_once(from)?.1.split_once(to)?.0.parse().ok()
-    };
-    let bound = number("up to ", " °/min").zip(number("put north ", "° off"));
-    let each = number("north is ", "° off");
-    Some(move |rate_deg_min: f64| match (bound, each) {
-        (Some((_, most)), _) => most,
-        (_, Some(each)) => each * rate_deg_min / 0.01,
-        _ => 0.0,
-    })
 }
 
 /// The size in ° that what is assumed in these words has.

@@ -5,9 +5,9 @@ const MOST: usize = 2;
 /// A name may differ by one character in so many, its first not counted: short ones resemble too much.
 const PART: usize = 4;
 /// What stands at the end of a name for its unit.
-const UNITS: [&str; 18] = [
-    "deg", "rad", "arcsec", "h", "h2", "hz", "khz", "sqrt", "s", "ms", "s2", "m", "km", "g", "mg",
-    "c", "sigma", "min",
+const UNITS: [&str; 19] = [
+    "per", "deg", "rad", "arcsec", "h", "h2", "hz", "khz", "sqrt", "s", "ms", "s2", "m", "km", "g",
+    "mg", "c", "sigma", "min",
 ];
 
 /// The known name that this one resembles, the nearest one; none of a known name itself.
@@ -29,7 +29,25 @@ pub(super) fn resembled(
         return Some(nearest);
     }
     let mut known = known;
-    known.find(|other| stem(&lower) == stem(&other.to_ascii_lowercase()))
+    known.find(|other| is_alike(stem(&lower), stem(&other.to_ascii_lowercase())))
+}
+
+/// What a word of a name is also written as.
+const ALSO: [(&str, &str); 3] = [("noise", "n"), ("sampling", "sample"), ("sample_rate", "rate")];
+/// The name of an angle random walk elsewhere.
+const WALKS: [&str; 2] = ["arw", "angle_random_walk"];
+/// Fewest characters of a word that stand for the whole.
+const SHORT: usize = 3;
+
+/// Whether two names without their units say the same: word by word the same, or one cut short.
+fn is_alike(one: &str, known: &str) -> bool {
+    let plain = ALSO.iter().fold(one.to_owned(), |name, (other, word)| name.replace(other, word));
+    let is_cut = |one: &str, other: &str| one.len() >= SHORT && other.starts_with(one);
+    let is_walk = known == "gyro_n" && WALKS.iter().any(|walk| plain.ends_with(walk));
+    let (words, others) = (plain.split('_'), known.split('_'));
+    let is_same = words.clone().count() == others.clone().count()
+        && words.zip(others).all(|(a, b)| a == b || is_cut(a, b) || is_cut(b, a));
+    is_walk || is_same
 }
 
 /// A name without its unit.

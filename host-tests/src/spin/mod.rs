@@ -175,6 +175,7 @@ fn setting(header: &Header, rows: &[SpinRow], period_s: f64) -> (Setting, Vec<St
     });
     assumed.push("no rates across the axis; lift in the vertical plane".to_owned());
     assumed.push("forces and rates of the same moment".to_owned());
+    assumed.push("signs of both accelerometers: with the other ones 180° away".to_owned());
     assumed.push(
         "no gyro error that follows the roll, and a scale that is steady for some turns".to_owned(),
     );

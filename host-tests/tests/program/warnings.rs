@@ -28,12 +28,18 @@ fn an_unknown_key_that_resembles_a_known_one_is_told_with_its_line() {
         (2, "Latitude_deg", "latitude_deg"),
         (2, "latitude_rad", "latitude_deg"),
         (2, "lattitude_deg", "latitude_deg"),
+        (2, "lat_deg", "latitude_deg"),
         (3, "rate", "rate_hz"),
+        (3, "sample_rate_hz", "rate_hz"),
+        (4, "gyro_N_deg_per_sqrt_h", "gyro_N_deg_sqrt_h"),
+        (4, "gyro_noise_deg_sqrt_h", "gyro_N_deg_sqrt_h"),
+        (4, "arw_deg_sqrt_h", "gyro_N_deg_sqrt_h"),
         (4, "gyro_N", "gyro_N_deg_sqrt_h"),
         (4, "Gyro_n_deg_sqrt_h", "gyro_N_deg_sqrt_h"),
         (4, "gyro_N_deg_sqr_h", "gyro_N_deg_sqrt_h"),
         (8, "g_sensitivity_deg_h", "g_sensitivity_deg_h_g"),
         (10, "accelerometer_bias_mg", "accelerometer_bias_m_s2"),
+        (10, "accel_bias_m_s2", "accelerometer_bias_m_s2"),
         (11, "truth_azimuth", "truth_azimuth_deg"),
     ] {
         let changed = sound.replace(&format!("# {known}:"), &format!("# {key}:"));

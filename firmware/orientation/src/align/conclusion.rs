@@ -36,9 +36,6 @@ const SECOND_MINIMUM: f64 = 16.0;
 /// RMS of the dwells' mean forces about any tilt, g, beyond which the accelerometer and the encoder do
 /// not turn alike: ten times what the worst accelerometer's scale makes of 5°.
 const STRAYING: f64 = 3e-3;
-/// Size of the phasor of the forces that turns against the stage, over that which turns with it, beyond which
-/// the encoder counts the wrong way: an accelerometer whose axes differ by 20 % makes a tenth.
-const COUNTER: f64 = 0.3;
 /// Of the tangent of the angle from the axis of two positions, what σ may be at most, rad: the second
 /// order is then a tenth of the first.
 const STEEPNESS: f64 = 0.2;
@@ -307,9 +304,8 @@ impl Conclusion {
             return Err(Refusal::TiltStepped { change: change * 1e3, after });
         }
         let Tilt { counter, scatter, .. } = self.tilt;
-        let is_countering = counter > COUNTER * self.tilt.magnitude();
-        if is_countering || scatter > STRAYING {
-            let scatter = if is_countering { counter } else { scatter };
+        if counter > 0.0 || scatter > STRAYING {
+            let scatter = if counter > 0.0 { counter } else { scatter };
             return Err(Refusal::AccelerometerAstray { scatter: scatter * 1e3 });
         }
         Ok(())

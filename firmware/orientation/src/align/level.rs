@@ -38,7 +38,7 @@ pub struct Tilt {
     pub bias_rate: [f64; 2],
     /// RMS of the dwells' forces about any tilt and any bias, g.
     pub scatter: f64,
-    /// Size of the phasor that turns against the stage, g; zero where it may be chance.
+    /// Size of the phasor that turns against the stage, g; zero where it may be chance, or two axes that differ.
     pub counter: f64,
     /// After which time, s, F became another one, and by how much, g.
     pub step: Option<(f64, f64)>,
@@ -150,6 +150,9 @@ const SCATTER: [f64; 2] = [1e-4, 5e-6];
 const BELIEVED: f64 = 18.4;
 /// The same of a step, which may be at any of sixty places.
 const STEP_BELIEVED: f64 = 22.0;
+/// Size of the phasor of the forces that turns against the stage, over that which turns with it, beyond which
+/// the encoder counts the wrong way: an accelerometer whose axes differ by 20 % makes a tenth.
+const COUNTER: f64 = 0.3;
 /// What a scatter that is itself estimated adds to that bound, over its degrees of freedom (F instead of
 /// chi-square), and what it adds to the rarer step's.
 const FEW: f64 = 11.0;
@@ -196,6 +199,8 @@ pub fn tilt_in<'a>(
     let bias = (bias_sigma / gravity).max(EXACT_BIAS);
     let time = dwells.clone().last().map_or(0.0, Dwell::end);
     let mut forces = Forces { mount, dwells, gravity, time, drift: [0.0; 2] };
+    // On an arc biases that drift, and a base that tilts, look like an encoder that counts the other way.
+    let alone = forces.countering(bias, [0.0; 2]);
     let mut tilting = forces.weighted(bias, Beside::Rate);
     // Biases that drift matter where they look like a base that tilts.
     let is_shown = tilting.as_ref().is_some_and(|tilting| tilting.significance() > SHOWN);
@@ -225,14 +230,25 @@ pub fn tilt_in<'a>(
         |fit: &Found| fit.significance() * fit.few(FEW) > STEP_BELIEVED * fit.few(STEP_FEW);
     let step = step.filter(|fit| is_shown(fit) && fit.scatter < tilt.left);
     tilt.step = step.map(|fit| (after, libm::hypot(fit.beside[0], fit.beside[1])));
-    let countering = |rate| {
-        let counter = forces.weighted(bias, Beside::Counter(rate));
-        counter.filter(|fit| fit.significance() > BELIEVED)
-    };
-    let alone = countering([0.0; 2]).filter(|fit| fit.scatter < tilt.left);
-    let counter = alone.or_else(|| countering(tilt.rate.value));
+    let alone = alone.filter(|fit| !fit.is_beaten_by(tilt.left));
+    let counter = alone.or_else(|| forces.countering(bias, tilt.rate.value));
     tilt.counter = counter.map_or(0.0, |fit| libm::hypot(fit.beside[0], fit.beside[1]));
     tilt
+}
+
+/// How fast the forces show the base to tilt, proven or not; `None` where they show nothing of it.
+#[must_use]
+pub fn tilting<'a>(
+    mount: &Mount,
+    dwells: impl Iterator<Item = &'a Dwell> + Clone,
+    gravity: f64,
+    bias_sigma: f64,
+) -> Option<TiltRate> {
+    let bias = (bias_sigma / gravity).max(EXACT_BIAS);
+    let time = dwells.clone().last().map_or(0.0, Dwell::end);
+    let forces = Forces { mount, dwells, gravity, time, drift: [0.0; 2] };
+    let found = forces.weighted(bias, Beside::Rate)?;
+    Some(TiltRate { value: found.beside, covariance: found.beside_covariance })
 }
 
 /// Mean specific force over gravity, positive where it points up through the platform, as at rest;
@@ -291,6 +307,13 @@ impl<'a, D: Iterator<Item = &'a Dwell> + Clone> Forces<'_, D> {
         let first = self.fit(bias_sigma, SCATTER[0], beside)?;
         let scatter = first.scatter.max(SCATTER[1]) * libm::sqrt(first.few(FEW));
         Some(self.fit(bias_sigma, scatter, beside).unwrap_or(first))
+    }
+
+    /// A phasor that turns against the stage, of a base that tilts by so much, 1/s, where it is believed.
+    fn countering(&self, bias_sigma: f64, rate: [f64; 2]) -> Option<Found> {
+        let found = self.weighted(bias_sigma, Beside::Counter(rate))?;
+        let [counter, with] = [found.beside, found.phasor].map(|[a, b]| libm::hypot(a, b));
+        (found.significance() > BELIEVED && counter > COUNTER * with).then_some(found)
     }
 
     /// After which time, s, the forces show another tilt most: the greatest sum of what is left of them, turned
@@ -418,7 +441,12 @@ impl Found {
 
     /// Whether it explains clearly more than another with as many parameters, by both likelihoods.
     fn explains_more_than(&self, other: &Self) -> bool {
-        2.0 * self.freedom * libm::log(other.scatter / self.scatter) > CLEARLY
+        other.is_beaten_by(self.scatter)
+    }
+
+    /// Whether what leaves this scatter explains clearly more, with as many parameters.
+    fn is_beaten_by(&self, scatter: f64) -> bool {
+        2.0 * self.freedom * libm::log(self.scatter / scatter) > CLEARLY
     }
 
     /// By how much a variance that rests on this scatter is greater for its few degrees of freedom.

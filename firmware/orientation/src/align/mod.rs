@@ -12,7 +12,7 @@ pub mod quality;
 pub mod regression;
 pub mod rotating;
 pub mod setting;
-pub mod slow_turn;
+pub mod slow;
 pub mod stepwise;
 pub mod stops;
 

@@ -43,7 +43,7 @@ pub struct Pair {
     pub faulty: Result<Answer, String>,
     /// Error of the fault's recording when nothing is checked, °; none where even that has no answer.
     pub unchecked_deg: Option<f64>,
-    /// By how much a slow turn of the base may put the fault's answer off unseen, as is told beside it, °.
+    /// By how much a slow motion of the base may put the fault's answer off unseen, as is told beside it, °.
     pub untold_deg: f64,
     /// Whether σ rests on fewer than [`FEW_RESIDUALS`] residuals.
     pub is_few: bool,
@@ -166,7 +166,7 @@ pub struct Row {
     pub wrong: usize,
     /// Of the wrong answers those that rest on few residuals.
     pub wrong_of_few: usize,
-    /// Of the wrong answers those that are off by no more than a slow turn of the base is said to put them.
+    /// Of the wrong answers those that are off by no more than a slow motion of the base is said to put them.
     pub wrong_told: usize,
     /// The greatest error of an answer in its σ.
     pub worst_sigmas: f64,

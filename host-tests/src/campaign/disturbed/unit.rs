@@ -17,7 +17,7 @@ use super::gyro::{Column, Drift, Drifting, GyroFault};
 use crate::campaign::statistics::Answer;
 use crate::output::{azimuth_error, degrees};
 use crate::recording::Header;
-use crate::untold::slow_turn::Unseen;
+use crate::untold::unseen::Unseen;
 
 /// Step of the encoder: 21 bit.
 const ENCODER_STEP_RAD: f64 = TAU / 2_097_152.0;
@@ -207,8 +207,8 @@ pub(super) trait Rig: Clone {
     /// The azimuth, °, when nothing is checked.
     fn unchecked_deg(session: &Self::Session) -> Option<f64>;
 
-    /// By how much a slow turn of the base may put its azimuth off unseen.
-    fn unseen(session: &Self::Session) -> Option<Unseen>;
+    /// The slow motions of the base that may put its azimuth off unseen.
+    fn unseen(session: &Self::Session) -> Vec<Unseen>;
 
     /// Whether σ rests on few residuals.
     fn is_few(&self) -> bool {
@@ -241,8 +241,9 @@ pub(super) trait Rig: Clone {
         let (faulty, session) = spoilt.align();
         let unchecked = session.as_ref().and_then(Self::unchecked_deg);
         let unchecked_deg = unchecked.map(|azimuth| azimuth_error(azimuth, spoilt.truth_deg()));
-        let unseen = session.as_ref().and_then(Self::unseen);
-        let untold_deg = unseen.map_or(0.0, |unseen| unseen.shift().to_degrees());
+        let unseen = session.as_ref().map(Self::unseen).unwrap_or_default();
+        let untold_deg =
+            unseen.iter().map(|unseen| unseen.shift().to_degrees()).fold(0.0, f64::max);
         Pair { healthy, faulty, unchecked_deg, untold_deg, is_few: self.is_few() }
     }
 }

@@ -12,7 +12,7 @@ use super::solution::{Fit, Pair, Problem, SPEEDS, force_density, of_turn};
 use super::tilting::Tilting;
 use super::turn::{Sense, Stretch, Turn};
 use crate::align::conclusion::Azimuth;
-use crate::align::slow_turn::SlowTurn;
+use crate::align::slow::SlowMotion;
 use crate::device::Device;
 use crate::error::Refusal;
 use crate::math::{Complex, chi_square_tail};
@@ -364,7 +364,7 @@ impl Conclusion {
     /// What the turns show of a base that turns slowly about the vertical, from what this was drawn from; `None` where
     /// there is no fit.
     #[must_use]
-    pub fn slow_turn(&self, setting: &Setting, follower: &Follower) -> Option<SlowTurn> {
+    pub fn slow_turn(&self, setting: &Setting, follower: &Follower) -> Option<SlowMotion> {
         let fit = self.fit.as_ref()?;
         let tilting = tilting(setting, follower);
         let mut marks = Vec::new();

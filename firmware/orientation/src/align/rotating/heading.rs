@@ -11,7 +11,7 @@ use super::solution::{Fit, Pair, Problem, believed_lag};
 use super::turn::Sense;
 use super::{coupling, solution};
 use crate::align::regression::Column;
-use crate::align::slow_turn::SlowTurn;
+use crate::align::slow::SlowMotion;
 use crate::error::Refusal;
 use crate::math::Complex;
 use crate::units::DEGREES_PER_RADIAN as DEGREES;
@@ -75,12 +75,12 @@ impl Directions<'_> {
 
     /// What these turns show of a base that turns slowly about the vertical; `None` of no turns.
     #[must_use]
-    pub fn slow_turn(&self, marks: Vec<Mark, MARKS>) -> Option<SlowTurn> {
+    pub fn slow_turn(&self, marks: Vec<Mark, MARKS>) -> Option<SlowMotion> {
         let record = self.record(marks)?;
         let steady = record.steady()?;
         let drift = record.changing(Shape::Rate, &steady);
         let variance = drift.map_or(f64::INFINITY, |drift| drift.change_variance);
-        Some(SlowTurn { sigma: libm::sqrt(variance), lever: record.to_end() })
+        Some(SlowMotion { sigma: libm::sqrt(variance), lever: record.to_end() })
     }
 
     /// The turns' directions, rad, as far as they differ from the Earth rate's.

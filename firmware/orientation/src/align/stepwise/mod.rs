@@ -7,7 +7,7 @@
 
 mod hypothesis;
 mod model;
-mod slow_turn;
+mod slow;
 mod uncertainty;
 
 pub use hypothesis::{HeadingStep, Hypothesis, Protection};

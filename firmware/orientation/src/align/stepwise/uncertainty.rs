@@ -97,7 +97,7 @@ impl Problem<'_> {
 
     /// Covariance of the components from that of a base's tilt rate: it turns forward by the imaginary part of F′ and
     /// right by its real part, which is west of the column.
-    fn tilting(&self, [[a, b], [_, d]]: &Covariance) -> Covariance {
+    pub(super) fn tilting(&self, [[a, b], [_, d]]: &Covariance) -> Covariance {
         let rate = self.setting.latitude.horizontal_rate();
         let scale = 1.0 / (rate * rate * self.tilt.upward() * self.tilt.upward());
         [[d * scale, -b * scale], [-b * scale, a * scale]]

@@ -21,7 +21,7 @@ use crate::campaign::statistics::Answer;
 use crate::output::degrees;
 use crate::recording::{Body, StageRow};
 use crate::replay::{Options, replay};
-use crate::untold::slow_turn::{self, Unseen};
+use crate::untold::unseen::{self, Unseen};
 
 pub use classes::CLASSES;
 
@@ -135,8 +135,8 @@ impl Rig for Bench {
         }
     }
 
-    fn unseen(session: &Session) -> Option<Unseen> {
-        slow_turn::of_stage(session)
+    fn unseen(session: &Session) -> Vec<Unseen> {
+        unseen::of_stage(session)
     }
 
     /// Plain least squares on all dwells: nothing is left out.

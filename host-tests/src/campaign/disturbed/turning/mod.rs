@@ -23,7 +23,7 @@ use crate::output::{azimuth_error, degrees};
 use crate::recording::{Body, Header, RotatingRow, Sensor};
 use crate::replay::Options;
 use crate::rotating::replay;
-use crate::untold::slow_turn::{self, Unseen};
+use crate::untold::unseen::{self, Unseen};
 
 pub use classes::CLASSES;
 
@@ -173,8 +173,8 @@ impl Rig for Bench {
         }
     }
 
-    fn unseen(session: &Session) -> Option<Unseen> {
-        slow_turn::of_platform(session)
+    fn unseen(session: &Session) -> Vec<Unseen> {
+        unseen::of_platform(session).into_iter().collect()
     }
 
     fn unchecked_deg(session: &Session) -> Option<f64> {

@@ -1,8 +1,10 @@
-//! What dwells show of a base that turns slowly about the vertical.
+//! What dwells show of a base that moves slowly.
 
 use super::{Bent, FEWEST, Fit, Hypothesis, Model, Problem};
+use crate::align::direction::quadratic;
+use crate::align::level::TiltRate;
 use crate::align::regression::COLUMNS;
-use crate::align::slow_turn::SlowTurn;
+use crate::align::slow::SlowMotion;
 use crate::signal::dwell::Dwell;
 
 /// A turn so slow that its azimuth follows it evenly, rad/h.
@@ -12,7 +14,7 @@ impl Problem<'_> {
     /// What these dwells show of a base that turns slowly about the vertical, beside what [`Self::fit`] made of them;
     /// `None` where that has already taken such a turn off.
     #[must_use]
-    pub fn slow_turn(&self, fit: &Fit) -> Option<SlowTurn> {
+    pub fn slow_turn(&self, fit: &Fit) -> Option<SlowMotion> {
         if fit.model.hypothesis == Hypothesis::Yawing {
             return None;
         }
@@ -24,7 +26,7 @@ impl Problem<'_> {
         let lever = (azimuth(SLOW)? - azimuth(-SLOW)?) / (2.0 * SLOW) * 3600.0;
         let is_shown = self.dwells.len() >= FEWEST && self.is_circle(&self.steady());
         let sigma = if is_shown { self.rate_sigma(fit) } else { None };
-        Some(SlowTurn { sigma: sigma.unwrap_or(f64::INFINITY), lever })
+        Some(SlowMotion { sigma: sigma.unwrap_or(f64::INFINITY), lever })
     }
 
     /// 1σ of the base's rate with the Earth rate free, rad/s; `None` where the dwells do not determine it.
@@ -35,5 +37,22 @@ impl Problem<'_> {
         let solution = regression.solve(&model.columns())?;
         let variance = solution.covariance[COLUMNS - 2][COLUMNS - 2];
         Some(libm::sqrt(variance) * fit.excess / 3600.0)
+    }
+
+    /// What a tilt rate does that the forces show so well, none where there are no forces; `None` where it is known and
+    /// taken off.
+    #[must_use]
+    pub fn slow_tilting(&self, fit: &Fit, shown: Option<&TiltRate>) -> Option<SlowMotion> {
+        if self.tilt.rate != TiltRate::default() {
+            return None;
+        }
+        let Some(shown) = shown else {
+            let lever = 1.0 / self.setting.latitude.horizontal_rate();
+            return Some(SlowMotion { sigma: f64::INFINITY, lever });
+        };
+        let [[a, _], [_, b]] = shown.covariance;
+        let sigma = libm::sqrt(a.max(b)) / self.tilt.upward();
+        let shift = quadratic(&self.tilting(&shown.covariance), fit.direction.gain).max(0.0);
+        Some(SlowMotion { sigma, lever: libm::sqrt(shift) / sigma })
     }
 }
