@@ -19,7 +19,7 @@ KNOWN = {
     "turning-base-turn": (1, 0.90),
 }
 # Classes whose wrong answers must lie within what is told beside them.
-TOLD = ("base-yawing", "turning-base-yawing")
+TOLD = ("base-tilting", "base-yawing", "turning-base-yawing")
 # Percentage points by which the coverage of all healthy recordings may be off a normal distribution's.
 COVERAGE = 3.0
 NORMAL = (68.27, 95.45, 99.73)

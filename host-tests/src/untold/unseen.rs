@@ -11,8 +11,8 @@ use orientation::signal::dwell::Dwell;
 
 /// From how many of its σ on a slow motion of the base is told, or taken off.
 const TOLD: f64 = 5.0;
-/// Error of an azimuth in its σ that is worth telling.
-const WRONG: f64 = 5.0;
+/// By how much of its σ an azimuth may be off with which its noise makes it wrong, beyond five of them: worth telling.
+const WORTH_TELLING: f64 = 3.0;
 
 /// How a base moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,7 +33,7 @@ pub struct Unseen {
     lever: f64,
 }
 
-/// What a stage's session does not show, where an azimuth that it found would be wrong.
+/// What a stage's session does not show, where it may put the azimuth wrong.
 #[must_use]
 pub fn of_stage(session: &Session) -> Vec<Unseen> {
     let Some(conclusion) = session.conclusion() else { return Vec::new() };
@@ -66,7 +66,7 @@ impl Unseen {
     fn of(motion: Motion, slow: Option<SlowMotion>, sigma: f64) -> Option<Self> {
         let slow = slow?;
         let unseen = Self { motion, rate: TOLD * slow.sigma, lever: slow.lever.abs() };
-        (unseen.rate * unseen.lever > WRONG * sigma).then_some(unseen)
+        (unseen.rate * unseen.lever > WORTH_TELLING * sigma).then_some(unseen)
     }
 
     /// By how much it puts north off at the most, rad; infinite where the recording tells nothing of it.

@@ -39,6 +39,18 @@ pub const CLASSES: &[Class] = &[
         },
     },
     Class {
+        name: "stage-reversed-on-arc",
+        fault: "the encoder counts the other way, on an arc that does not come back",
+        severity: [0.01, 5.0],
+        unit: "° of tilt",
+        wrong_allowed: 0.0,
+        draw: |seed, size| {
+            let mut bench = Bench::one_way(seed);
+            faults::tilt(&mut bench, size);
+            bench.with(faults::encoder_is_reversed, size)
+        },
+    },
+    Class {
         name: "base-tilting",
         fault: "the base tilts slowly",
         severity: [0.001, 30.0],

@@ -60,6 +60,13 @@ impl Bench {
         Self { stops, ..Self::drawn(seed) }
     }
 
+    /// The same on an arc that does not come back.
+    fn one_way(seed: u64) -> Self {
+        let mut stops = stops(&mut Chance::new(seed, Self::FAULT + 3), 0.0);
+        stops.pop();
+        Self { stops, ..Self::drawn(seed) }
+    }
+
     /// When the stage leaves its `index`-th stop, s.
     fn departure(&self, index: usize) -> f64 {
         let through =
