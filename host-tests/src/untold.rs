@@ -63,7 +63,8 @@ pub fn of_stage(session: &Session) -> Vec<String> {
         (few, "no drift and no motion beyond what is stated, which few positions do not show"),
     ];
     let shown = shown_by_stage(setting, conclusion);
-    let unseen = unseen::of_stage(session).into_iter().map(|unseen| unseen.to_string());
+    let unseen = unseen::of_stage(session);
+    let unseen = unseen.iter().map(ToString::to_string);
     words_of(&untold).chain(unseen).chain(shown.iter().flat_map(Shown::untold)).collect()
 }
 
@@ -88,8 +89,9 @@ pub fn of_platform(session: &rotating::Session) -> Vec<String> {
         (!shows_sense(conclusion, &fit), SENSE_OF_A_PLATFORM),
         (fit.tilt.size() < NEARLY_LEVEL, UNIT_OF_A_PLATFORM),
     ];
-    let turn = unseen::of_platform(session).map(|turn| turn.to_string());
-    words_of(&untold).chain(turn).chain(shown.untold()).collect()
+    let unseen = unseen::of_platform(session);
+    let unseen = unseen.iter().map(ToString::to_string);
+    words_of(&untold).chain(unseen).chain(shown.untold()).collect()
 }
 
 /// Whether the forces show which way a platform turns: on two axes, and by its tilt.

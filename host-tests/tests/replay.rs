@@ -31,11 +31,16 @@ impl Replayed {
         self.replay.session.conclusion().expect("the session has ended")
     }
 
+    /// Error and σ, °; none where it is refused.
+    fn answer(&self) -> Option<(f64, f64)> {
+        let azimuth = self.conclusion().verdict.ok()?;
+        let error = azimuth_error(azimuth.angle.to_degrees(), self.truth_deg);
+        Some((error, azimuth.sigma.to_degrees()))
+    }
+
     /// Error and σ, °.
     fn error_and_sigma(&self) -> (f64, f64) {
-        let azimuth = self.conclusion().verdict.expect("there is an azimuth");
-        let error = azimuth_error(azimuth.angle.to_degrees(), self.truth_deg);
-        (error, azimuth.sigma.to_degrees())
+        self.answer().expect("there is an azimuth")
     }
 
     fn sigma_over_limit(&self) -> f64 {
@@ -59,6 +64,12 @@ fn replayed_with(name: &str, options: &Options) -> Replayed {
     let (header, body, truth) = stored(name).into_parts();
     let replay = replay(&header, &body, options, |_| {}).expect("it replays");
     Replayed { replay, header, truth_deg: truth.azimuth_deg.expect("it carries a truth") }
+}
+
+/// The rows of a stage, of which the truth is known.
+fn of_rows(header: &Header, rows: Vec<StageRow>, truth_deg: f64) -> Result<Replayed, ReplayError> {
+    let replay = replay(header, &Body::Stage(rows), &Options::default(), |_| {})?;
+    Ok(Replayed { replay, header: header.clone(), truth_deg })
 }
 
 fn replayed(name: &str) -> Replayed {
@@ -372,15 +383,11 @@ fn a_stage_that_is_built_otherwise_is_refused_or_stands_under_what_is_assumed_wi
         for (words, change) in OTHERWISE {
             let mut rows = rows.clone();
             rows.iter_mut().for_each(change);
-            let options = Options::default();
-            let replay = replay(&header, &Body::Stage(rows), &options, |_| {}).expect("it replays");
-            let Ok(azimuth) = replay.session.conclusion().expect("it has ended").verdict else {
-                continue;
-            };
-            let error = azimuth_error(azimuth.angle.to_degrees(), truth_deg).abs();
-            let sigma = azimuth.sigma.to_degrees();
+            let replayed = of_rows(&header, rows, truth_deg).expect("it replays");
+            let Some((error, sigma)) = replayed.answer() else { continue };
+            let error = error.abs();
             if error > 4.0 * sigma {
-                let size = size_of(&replay.assumed, words);
+                let size = size_of(&replayed.replay.assumed, words);
                 let size = size.unwrap_or_else(|| panic!("{name}, {words}: {error}° in silence"));
                 // The wrong gravity gives the other sensitivities another size, too.
                 assert!(

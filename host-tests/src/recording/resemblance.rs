@@ -10,6 +10,13 @@ const UNITS: [&str; 19] = [
     "mg", "c", "sigma", "min",
 ];
 
+/// What a word of a name is also written as.
+const ALSO: [(&str, &str); 3] = [("noise", "n"), ("sampling", "sample"), ("sample_rate", "rate")];
+/// The name of an angle random walk elsewhere.
+const WALKS: [&str; 2] = ["arw", "angle_random_walk"];
+/// Fewest characters of a word that stand for the whole.
+const SHORT: usize = 3;
+
 /// The known name that this one resembles, the nearest one; none of a known name itself.
 pub(super) fn resembled(
     name: &str,
@@ -31,13 +38,6 @@ pub(super) fn resembled(
     let mut known = known;
     known.find(|other| is_alike(stem(&lower), stem(&other.to_ascii_lowercase())))
 }
-
-/// What a word of a name is also written as.
-const ALSO: [(&str, &str); 3] = [("noise", "n"), ("sampling", "sample"), ("sample_rate", "rate")];
-/// The name of an angle random walk elsewhere.
-const WALKS: [&str; 2] = ["arw", "angle_random_walk"];
-/// Fewest characters of a word that stand for the whole.
-const SHORT: usize = 3;
 
 /// Whether two names without their units say the same: word by word the same, or one cut short.
 fn is_alike(one: &str, known: &str) -> bool {

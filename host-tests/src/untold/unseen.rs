@@ -3,11 +3,8 @@
 use std::f64::consts::FRAC_PI_4;
 use std::fmt;
 
-use orientation::align::level;
 use orientation::align::slow::SlowMotion;
-use orientation::align::stepwise::Problem;
 use orientation::session::{Session, rotating};
-use orientation::signal::dwell::Dwell;
 
 /// From how many of its σ on a slow motion of the base is told, or taken off.
 const TOLD: f64 = 5.0;
@@ -36,29 +33,20 @@ pub struct Unseen {
 /// What a stage's session does not show, where it may put the azimuth wrong.
 #[must_use]
 pub fn of_stage(session: &Session) -> Vec<Unseen> {
-    let Some(conclusion) = session.conclusion() else { return Vec::new() };
-    let (Some(fit), Ok(azimuth)) = (&conclusion.fit, conclusion.verdict) else { return Vec::new() };
-    let judged = session.dwells().iter().zip(&conclusion.disturbances);
-    let kept: Vec<&Dwell> =
-        judged.filter(|(_, why)| why.is_none()).map(|(dwell, _)| dwell).collect();
-    let white = conclusion.angle_random_walk * conclusion.angle_random_walk;
-    let (setting, tilt) = (session.setting(), &conclusion.tilt);
-    let problem = Problem { setting, tilt, white, dwells: &kept };
-    let (gravity, bias) = (setting.latitude.gravity(), setting.accelerometer_bias_sigma);
-    let tilting = level::tilting(&setting.mount, kept.iter().copied(), gravity, bias);
-    let tilting = tilting.filter(|_| tilt.measured);
-    let turn = Unseen::of(Motion::Turning, problem.slow_turn(fit), azimuth.sigma);
-    let tilting = problem.slow_tilting(fit, tilting.as_ref());
-    let tilting = Unseen::of(Motion::Tilting, tilting, azimuth.sigma);
-    turn.into_iter().chain(tilting).collect()
+    let found = session.conclusion().and_then(|found| Some((found, found.verdict.ok()?)));
+    let Some((conclusion, azimuth)) = found else { return Vec::new() };
+    let slow = conclusion.slow_motions(session.setting(), session.dwells());
+    let motions = [Motion::Turning, Motion::Tilting].into_iter().zip(slow);
+    motions.filter_map(|(motion, slow)| Unseen::of(motion, slow, azimuth.sigma)).collect()
 }
 
 /// The same of a turning platform's.
 #[must_use]
-pub fn of_platform(session: &rotating::Session) -> Option<Unseen> {
-    let conclusion = session.conclusion()?;
+pub fn of_platform(session: &rotating::Session) -> Vec<Unseen> {
+    let found = session.conclusion().and_then(|found| Some((found, found.verdict.ok()?)));
+    let Some((conclusion, azimuth)) = found else { return Vec::new() };
     let turn = conclusion.slow_turn(session.setting(), session.follower());
-    Unseen::of(Motion::Turning, turn, conclusion.verdict.ok()?.sigma)
+    Unseen::of(Motion::Turning, turn, azimuth.sigma).into_iter().collect()
 }
 
 impl Unseen {

@@ -1,10 +1,8 @@
 //! Columns of another moment: late or early, at the recording's ends filled up with their first or last value, or cut.
 
-use bench::output::azimuth_error;
 use bench::recording::{Body, Header, StageRow};
-use bench::replay::{Options, replay};
 
-use super::{ALL, stored};
+use super::{ALL, of_rows, stored};
 
 /// What makes a column of a recording's row that of another row.
 type Shift = fn(&mut StageRow, &StageRow);
@@ -62,8 +60,8 @@ fn refused(sound: &Sound, (column, shift): (&str, Shift), is_cut: bool) -> usize
     {
         let rows = shifted(&sound.rows, late as isize, shift, is_cut);
         let words = format!("{column} late by {late} of {} rows", sound.dwell);
-        let replay = match replay(&sound.header, &Body::Stage(rows), &Options::default(), |_| {}) {
-            Ok(replay) => replay,
+        let replayed = match of_rows(&sound.header, rows, sound.truth_deg) {
+            Ok(replayed) => replayed,
             Err(error) => {
                 refused += 1;
                 let named = format!("column {column}: ");
@@ -71,13 +69,12 @@ fn refused(sound: &Sound, (column, shift): (&str, Shift), is_cut: bool) -> usize
                 continue;
             }
         };
-        let Ok(azimuth) = replay.session.conclusion().expect("it has ended").verdict else {
+        let Some((error, sigma)) = replayed.answer() else {
             refused += 1;
             continue;
         };
-        let error = azimuth_error(azimuth.angle.to_degrees(), sound.truth_deg).abs();
-        let sigma = azimuth.sigma.to_degrees();
-        let each = each_deg(&replay.assumed).expect("it is told of each answer");
+        let error = error.abs();
+        let each = each_deg(&replayed.replay.assumed).expect("it is told of each answer");
         let dwells = (late.abs() / sound.period as f64).ceil();
         assert!(error < each * dwells + 5.0 * sigma, "{words}: {error}° ± {sigma}°, {each}° each");
     }

@@ -1,12 +1,10 @@
 //! A base that moves slowly, put into the recordings of one that stands.
 
-use bench::output::azimuth_error;
 use bench::recording::{Body, Header, StageRow};
-use bench::replay::{Options, replay};
 use hal_mock::noise::Generator;
 use orientation::earth::Latitude;
 
-use super::{ALL, stored};
+use super::{ALL, of_rows, stored};
 
 /// Standard gravity, m/s².
 const GRAVITY: f64 = 9.81;
@@ -100,15 +98,11 @@ fn assert_told(words: &str, rates: &[f64], rad_s: f64, moves: Moves, turned: f64
         for rate in rates {
             let (rows, seconds) = moved(&header, &rows, truth_deg, rate * rad_s, moves);
             let truth_deg = truth_deg + turned * (rate * rad_s * seconds).to_degrees();
-            let options = Options::default();
-            let replay = replay(&header, &Body::Stage(rows), &options, |_| {}).expect("it replays");
-            let Ok(azimuth) = replay.session.conclusion().expect("it has ended").verdict else {
-                continue;
-            };
-            let error = azimuth_error(azimuth.angle.to_degrees(), truth_deg).abs();
-            let sigma = azimuth.sigma.to_degrees();
+            let replayed = of_rows(&header, rows, truth_deg).expect("it replays");
+            let Some((error, sigma)) = replayed.answer() else { continue };
+            let error = error.abs();
             if error > 5.0 * sigma {
-                let most = most(&replay.assumed, words, rate.abs());
+                let most = most(&replayed.replay.assumed, words, rate.abs());
                 let most = most.unwrap_or_else(|| panic!("{name}, {rate}: {error}° in silence"));
                 assert!(error < most + 4.0 * sigma, "{name}, {rate}: {error}° beyond {most}°");
                 told += 1;

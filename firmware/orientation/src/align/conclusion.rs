@@ -7,6 +7,7 @@ use super::criterion::{self, Criterion};
 use super::level::{self, Tilt};
 use super::quality::{self, Disturbance, Norm};
 use super::setting::Setting;
+use super::slow::SlowMotion;
 use super::stepwise::{FEW_DEGREES, Fit, Found, HeadingStep, Problem, Residual};
 use super::{CAPACITY, different_positions};
 use crate::error::Refusal;
@@ -345,6 +346,22 @@ impl Conclusion {
         Ok(())
     }
 
+    /// What was solved, of the dwells that took part.
+    fn problem<'a>(&'a self, setting: &'a Setting, kept: &'a [&'a Dwell]) -> Problem<'a> {
+        let white = self.angle_random_walk * self.angle_random_walk;
+        Problem { setting, tilt: &self.tilt, white, dwells: kept }
+    }
+
+    /// What the dwells from which this was drawn show of a base that turns slowly about the vertical, and of one that
+    /// tilts; of either nothing where it is taken off.
+    #[must_use]
+    pub fn slow_motions(&self, setting: &Setting, dwells: &[Dwell]) -> [Option<SlowMotion>; 2] {
+        let Some(fit) = &self.fit else { return [None; 2] };
+        let kept: Vec<&Dwell, CAPACITY> = self.kept(dwells).map(|(_, dwell)| dwell).collect();
+        let problem = self.problem(setting, &kept);
+        [problem.slow_turn(fit), problem.slow_tilting(fit)]
+    }
+
     /// The azimuth by the chosen criterion.
     #[inline(never)]
     fn azimuth(
@@ -355,8 +372,7 @@ impl Conclusion {
         criterion: Criterion,
     ) -> Result<Azimuth, Refusal> {
         let kept: Vec<&Dwell, CAPACITY> = self.kept(dwells).map(|(_, dwell)| dwell).collect();
-        let white = self.angle_random_walk * self.angle_random_walk;
-        let problem = Problem { setting, tilt: &self.tilt, white, dwells: &kept };
+        let problem = self.problem(setting, &kept);
         let azimuth = match criterion {
             Criterion::MaximumLikelihood => {
                 Azimuth { angle: wrapped(fit.direction.azimuth), sigma: fit.sigma() }

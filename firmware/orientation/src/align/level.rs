@@ -197,8 +197,8 @@ pub fn tilt_in<'a>(
     bias_sigma: f64,
 ) -> Tilt {
     let bias = (bias_sigma / gravity).max(EXACT_BIAS);
-    let time = dwells.clone().last().map_or(0.0, Dwell::end);
-    let mut forces = Forces { mount, dwells, gravity, time, drift: [0.0; 2] };
+    let mut forces = Forces::new(mount, dwells, gravity);
+    let time = forces.time;
     // On an arc biases that drift, and a base that tilts, look like an encoder that counts the other way.
     let alone = forces.countering(bias, [0.0; 2]);
     let mut tilting = forces.weighted(bias, Beside::Rate);
@@ -245,9 +245,7 @@ pub fn tilting<'a>(
     bias_sigma: f64,
 ) -> Option<TiltRate> {
     let bias = (bias_sigma / gravity).max(EXACT_BIAS);
-    let time = dwells.clone().last().map_or(0.0, Dwell::end);
-    let forces = Forces { mount, dwells, gravity, time, drift: [0.0; 2] };
-    let found = forces.weighted(bias, Beside::Rate)?;
+    let found = Forces::new(mount, dwells, gravity).weighted(bias, Beside::Rate)?;
     Some(TiltRate { value: found.beside, covariance: found.beside_covariance })
 }
 
@@ -300,7 +298,13 @@ struct Found {
     freedom: f64,
 }
 
-impl<'a, D: Iterator<Item = &'a Dwell> + Clone> Forces<'_, D> {
+impl<'a, 'm, D: Iterator<Item = &'a Dwell> + Clone> Forces<'m, D> {
+    /// Rates count from the end of the last dwell.
+    fn new(mount: &'m Mount, dwells: D, gravity: f64) -> Self {
+        let time = dwells.clone().last().map_or(0.0, Dwell::end);
+        Self { mount, dwells, gravity, time, drift: [0.0; 2] }
+    }
+
     /// Fits with the scatter that a first fit shows.
     #[inline(never)]
     fn weighted(&self, bias_sigma: f64, beside: Beside) -> Option<Found> {

@@ -44,9 +44,10 @@ pub(super) fn encoder_errs_twice<R: Rig>(rig: &mut R, chance: &mut Chance, size:
         Harmonic { amplitude_rad: size.to_radians(), phase_rad: chance.between(0.0, TAU) };
 }
 
-/// The encoder counts the other way.
-pub(super) fn encoder_is_reversed<R: Rig>(rig: &mut R, _: &mut Chance, _: f64) {
-    rig.unit_mut().is_reversed = true;
+/// The encoder counts the other way, under so many degrees of tilt.
+pub(super) fn encoder_reversed<R: Rig>(mut rig: R, size: f64) -> super::Pair {
+    tilt(&mut rig, size);
+    rig.with(|rig, _, _| rig.unit_mut().is_reversed = true, size)
 }
 
 /// The gyro's bias steps, twice, σ of a mean.

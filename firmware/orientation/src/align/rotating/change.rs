@@ -240,12 +240,18 @@ impl Record {
         self.marks.first().map_or(0.0, |mark| self.end - f64::from(mark.time))
     }
 
-    /// From the middle of all turns to the end, s.
+    /// The middle of all turns, s.
     #[must_use]
-    pub fn to_end(&self) -> f64 {
+    pub fn middle(&self) -> f64 {
         let turns = |mark: &Mark| f64::from(mark.turns);
         let moment: f64 = self.marks.iter().map(|mark| turns(mark) * f64::from(mark.time)).sum();
-        self.end - moment / self.marks.iter().map(turns).sum::<f64>().max(f64::MIN_POSITIVE)
+        moment / self.marks.iter().map(turns).sum::<f64>().max(f64::MIN_POSITIVE)
+    }
+
+    /// From there to the end, s.
+    #[must_use]
+    pub fn to_end(&self) -> f64 {
+        self.end - self.middle()
     }
 
     /// The value that stays.

@@ -56,10 +56,6 @@ impl Tilting {
     #[inline(never)]
     pub fn of(stretches: &[Stretch], gravity: f64, per_tilt: Complex) -> Self {
         let mut marks = marks(stretches, gravity);
-        let turns: f64 = marks.iter().map(|mark| f64::from(mark.turns)).sum();
-        let moment: f64 =
-            marks.iter().map(|mark| f64::from(mark.turns) * f64::from(mark.time)).sum();
-        let since = moment / turns.max(1.0);
         // Along the force, and across it, where a delay shows.
         let along = direction(&marks);
         let mut size: f64 = 0.0;
@@ -73,7 +69,7 @@ impl Tilting {
         let delayed = libm::hypot(SENSES, DELAY * speed * size);
         let odd = [SENSES, delayed].map(Column::Prior);
         let record = Record::of_phasors(marks, odd, LEAST_SCATTER);
-        let seconds = record.seconds();
+        let (seconds, since) = (record.seconds(), record.middle());
         let standing = Self { seconds, since, per_tilt, ..Self::default() };
         let Some(steady) = record.steady() else { return standing };
         let Some(found) = record.changing(Shape::Rate, &steady) else { return standing };

@@ -2,7 +2,7 @@
 
 use super::{Bent, FEWEST, Fit, Hypothesis, Model, Problem};
 use crate::align::direction::quadratic;
-use crate::align::level::TiltRate;
+use crate::align::level::{self, TiltRate};
 use crate::align::regression::COLUMNS;
 use crate::align::slow::SlowMotion;
 use crate::signal::dwell::Dwell;
@@ -39,14 +39,16 @@ impl Problem<'_> {
         Some(libm::sqrt(variance) * fit.excess / 3600.0)
     }
 
-    /// What a tilt rate does that the forces show so well, none where there are no forces; `None` where it is known and
-    /// taken off.
+    /// What the forces of these dwells show of a base that tilts slowly; `None` where that is taken off.
     #[must_use]
-    pub fn slow_tilting(&self, fit: &Fit, shown: Option<&TiltRate>) -> Option<SlowMotion> {
+    pub fn slow_tilting(&self, fit: &Fit) -> Option<SlowMotion> {
         if self.tilt.rate != TiltRate::default() {
             return None;
         }
-        let Some(shown) = shown else {
+        let (gravity, bias) =
+            (self.setting.latitude.gravity(), self.setting.accelerometer_bias_sigma);
+        let shown = level::tilting(&self.setting.mount, self.dwells.iter().copied(), gravity, bias);
+        let Some(shown) = shown.filter(|_| self.tilt.measured) else {
             let lever = 1.0 / self.setting.latitude.horizontal_rate();
             return Some(SlowMotion { sigma: f64::INFINITY, lever });
         };

@@ -140,11 +140,7 @@ pub const CLASSES: &[Class] = &[
         severity: [0.01, 5.0],
         unit: "° of tilt",
         wrong_allowed: 0.0,
-        draw: |seed, size| {
-            let mut bench = Bench::drawn(seed);
-            faults::tilt(&mut bench, size);
-            bench.with(faults::encoder_is_reversed, size)
-        },
+        draw: |seed, size| faults::encoder_reversed(Bench::drawn(seed), size),
     },
     Class {
         name: "turning-accelerometer-axes",

@@ -174,7 +174,7 @@ impl Rig for Bench {
     }
 
     fn unseen(session: &Session) -> Vec<Unseen> {
-        unseen::of_platform(session).into_iter().collect()
+        unseen::of_platform(session)
     }
 
     fn unchecked_deg(session: &Session) -> Option<f64> {
