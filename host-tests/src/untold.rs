@@ -63,8 +63,12 @@ pub fn of_stage(session: &Session) -> Vec<String> {
         (few, "no drift and no motion beyond what is stated, which few positions do not show"),
     ];
     let shown = shown_by_stage(setting, conclusion);
+    let level = (!tilt.measured).then(|| {
+        let each = setting.latitude.rad().tan().abs();
+        format!("a level platform, for there are no forces: by each degree of tilt north is {each:.2}° off")
+    });
     let unseen = unseen::of_stage(session);
-    let unseen = unseen.iter().map(ToString::to_string);
+    let unseen = level.into_iter().chain(unseen.iter().map(ToString::to_string));
     words_of(&untold).chain(unseen).chain(shown.iter().flat_map(Shown::untold)).collect()
 }
 

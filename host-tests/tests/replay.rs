@@ -6,6 +6,7 @@ mod moment;
 #[path = "replay/slow.rs"]
 mod slow;
 
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -247,7 +248,7 @@ fn rows_of_averaged_dwells_give_the_same_north_as_their_samples() {
     text += "# gyro_K_deg_h_sqrt_h: 0.2\n# gyro_R_deg_h2: 2\n# g_sensitivity_deg_h_g: 9,-5\n";
     text += "# g_sensitivity_sigma_deg_h_g: 0.05\n# accelerometer_bias_m_s2: 0.05\n";
     text += "stage_rad,rate_rad_s,sigma_rad_s,seconds,mid_s,fx_m_s2,fy_m_s2,fz_m_s2\n";
-    let density = 0.004 * (std::f64::consts::PI / 180.0 / 60.0);
+    let density = 0.004 * (PI / 180.0 / 60.0);
     for dwell in sampled.replay.session.dwells() {
         let sigma = density / dwell.seconds.sqrt() * dwell.taper.sqrt();
         let [x, y, z] = dwell.force.expect("it was measured");
@@ -351,6 +352,23 @@ fn what_no_dwell_can_tell_is_assumed() {
     assert!(!assumes("stepwise-circle", "scale of the gyro, which no arc shows"));
     assert!(!assumes("stepwise-tilted-drift", "sense of the stage"));
     assert!(!assumes("stepwise-tilted-drift", "sign of the gyro"));
+}
+
+#[test]
+fn dwells_without_forces_are_told_to_be_taken_as_level() {
+    let mut text =
+        "# kind: dwells\n# latitude_deg: 45\nstage_rad,rate_rad_s,sigma_rad_s,seconds\n".to_owned();
+    for position in 0..9 {
+        let stage = f64::from(position) * 0.25 * PI;
+        let rate = 7.292_115e-5 * FRAC_1_SQRT_2 * (0.7 + stage).cos();
+        writeln!(text, "{stage},{rate},1e-8,60").expect("a String takes all");
+    }
+    let (header, body, _) =
+        recording::read_from("level", text.as_bytes()).expect("it reads").into_parts();
+    let replay = replay(&header, &body, &Options::default(), |_| {}).expect("it replays");
+    let level =
+        "a level platform, for there are no forces: by each degree of tilt north is 1.00° off";
+    assert!(replay.assumed.iter().any(|line| line == level), "{:?}", replay.assumed);
 }
 
 /// What it does to a row.

@@ -280,6 +280,28 @@ fn a_base_that_turns_slowly_is_seen_or_in_sigma_or_assumed_not_to_with_its_size(
 }
 
 #[test]
+fn a_gyro_whose_steps_are_as_coarse_as_the_earth_rate_is_refused_or_states_what_that_costs() {
+    let recorded = recorded(GYRO);
+    let latitude = Latitude::from_degrees(recorded.header.latitude_deg.expect("it has one"));
+    let horizontal = latitude.expect("it is one").horizontal_rate();
+    let mut sigmas = Vec::new();
+    for part in 1..=40 {
+        let step = 2.5 / 40.0 * f64::from(part) * horizontal;
+        let mut coarse = recorded.clone();
+        for row in &mut coarse.rows {
+            row.rate_rad_s = (row.rate_rad_s / step).round() * step;
+        }
+        let Ok(azimuth) = conclusion(&coarse.replayed()).verdict else { continue };
+        let error = azimuth_error(azimuth.angle.to_degrees(), recorded.truth_deg);
+        sigmas.push(error.to_radians() / azimuth.sigma);
+        assert!(sigmas[sigmas.len() - 1].abs() < 4.0, "step {step}: {error}°, {azimuth:?}");
+    }
+    let power: f64 = sigmas.iter().map(|sigma| sigma * sigma).sum();
+    let rms = (power / sigmas.len() as f64).sqrt();
+    assert!(sigmas.len() > 30 && rms < 1.6, "{} answered, RMS {rms}", sigmas.len());
+}
+
+#[test]
 fn a_platform_that_is_built_otherwise_is_refused_or_stands_under_what_is_assumed() {
     let mut told = 0;
     for name in ["rotating-gyro", "rotating-met-two-speeds"] {

@@ -36,7 +36,7 @@ const DEGREES: Unit = Unit(DEGREE, "in degrees, as it seems, not rad: multiply b
 const REVERSED: Unit = Unit(
     -1.0,
     "counted the other way, as it seems, not clockwise from above, or the forces have another sign across the \
-     sensitive axis: multiply by -1",
+     sensitive axis: multiply by -1 once that is sure, for on an arc an accelerometer that drifts looks alike",
 );
 /// Units of rates.
 pub const RATES: [Unit; 2] = [

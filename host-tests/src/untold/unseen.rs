@@ -80,10 +80,10 @@ impl fmt::Display for Unseen {
         let (name, unit, seconds, usual) = self.motion.words();
         let shift = self.shift().to_degrees();
         if shift.is_infinite() {
-            let shift = usual / seconds * self.lever;
+            let shift = significant(usual / seconds * self.lever);
             return write!(
                 f,
-                "no {name} of the base, which the recording does not show: with {usual} {unit} north is {shift:.2}° off"
+                "no {name} of the base, which the recording does not show: by each {usual} {unit} north is {shift}° off"
             );
         }
         let rate = significant((self.rate * seconds).to_degrees());

@@ -85,7 +85,7 @@ fn most(assumed: &[String], words: &str, rate: f64) -> Option<f64> {
         line.split_once(from)?.1.split_once(to)?.0.parse().ok()
     };
     number("put north ", "° off")
-        .or_else(|| Some(number("north is ", "° off")? * rate / number("with ", " ")?))
+        .or_else(|| Some(number("north is ", "° off")? * rate / number("by each ", " ")?))
 }
 
 /// Moves every recording's base at every rate: what is answered is right, or told with its size. How many were told.

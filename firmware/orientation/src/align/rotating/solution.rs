@@ -357,8 +357,6 @@ impl Problem<'_> {
         let white = self.pairs.first().map_or(1.0, |pair| self.white_part(pair));
         let across = (fit.tilt * Complex::unit(-turned.angle)).im;
         let cosine = libm::cos(common.latitude.rad());
-        // Rounding shows in the size of what either sense shows, too.
-        let shown = libm::hypot(fit.ratio - 1.0, fit.molecular.size()) + libm::sqrt(turned.noise);
         Budget {
             noise: libm::sqrt(turned.noise * white),
             drift: libm::sqrt(
@@ -375,7 +373,7 @@ impl Problem<'_> {
             // A flat sensor's scale is found with the azimuth, but not for what a base that tilts turns it by.
             scale: libm::hypot(
                 self.tilting.scale(common.scale_sigma, &fit.lean, turned.angle, horizontal),
-                self.rounded().min(shown) * self.beside() / libm::hypot(1.0, self.beside()),
+                self.rounded() * self.beside() / libm::hypot(1.0, self.beside()),
             ),
             temperature: 0.0,
             displacement: 0.0,
