@@ -394,7 +394,8 @@ words! { Refusal:
         "the accelerometer feels {} of gravity: check its axes, signs and units",
         Rounded::<3>(ratio);
     Self::AccelerometerAstray { scatter } =>
-        "the accelerometer strays by {} mg from any tilt: check which way the encoder counts, and the axes",
+        "the accelerometer strays by {} mg from any tilt: check which way the encoder counts, the axes, its noise, and \
+         whether it warms up",
         Rounded::<1>(scatter);
     Self::EarthRateMismatch { ratio, sigma } =>
         "Earth rate found is {} ± {} of the expected: check latitude and gyro scale",

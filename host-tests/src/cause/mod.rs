@@ -10,6 +10,7 @@ mod slip;
 mod stuck;
 mod units;
 mod vehicle;
+mod warming;
 
 pub use vehicle::{of_level, of_vehicle};
 
@@ -46,7 +47,13 @@ pub fn of_stopping(
     if is_short(refusal) && session.dwells().len() < FEW {
         return force.map(|unit| unit.told(units::force_columns(body)));
     }
-    units::tried(body, force, &passes)
+    let meant = units::tried(body, force, &passes);
+    let warming = || {
+        let is_possible = meant.as_ref().is_none_or(units::Trial::is_reversed);
+        is_possible.then(|| warming::of(session, refusal, meant.is_some())).flatten()
+    };
+    warming()
+        .or_else(|| meant.as_ref().map(|trial| trial.told(body)))
         .or_else(|| force.map(|unit| unit.told(units::force_columns(body))))
         .or_else(|| units::of_sigma(header, body, options))
         .or_else(|| keys::noise(header, body, options))
@@ -80,7 +87,9 @@ pub fn of_turning(
             format!("key gyro_N_deg_sqrt_h says {stated} °/√h, but the turns show another noise: leave it out")
         })
     };
-    units::tried(body, None, &|body| passes(header, body)).or_else(noise)
+    units::tried(body, None, &|body| passes(header, body))
+        .map(|trial| trial.told(body))
+        .or_else(noise)
 }
 
 /// Whether there was too little to tell from, so that almost any other reading of it would pass.

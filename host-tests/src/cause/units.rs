@@ -36,7 +36,7 @@ const DEGREES: Unit = Unit(DEGREE, "in degrees, as it seems, not rad: multiply b
 const REVERSED: Unit = Unit(
     -1.0,
     "counted the other way, as it seems, not clockwise from above, or the forces have another sign across the \
-     sensitive axis: multiply by -1 once that is sure, for on an arc an accelerometer that drifts looks alike",
+     sensitive axis: multiply by -1 once that is sure",
 );
 /// Units of rates.
 pub const RATES: [Unit; 2] = [
@@ -55,7 +55,7 @@ const TURN_RATES: [Unit; 3] = [
 
 /// What is tried: units of the stage angle, the rate and the forces.
 #[derive(Clone, Copy)]
-struct Trial {
+pub struct Trial {
     angle: Unit,
     rate: Unit,
     force: Unit,
@@ -87,13 +87,19 @@ impl Trial {
             .collect()
     }
 
+    /// Whether nothing but the sense of the stage is another.
+    pub fn is_reversed(&self) -> bool {
+        let Self { angle: Unit(angle, _), rate: Unit(rate, _), force: Unit(force, _), .. } = *self;
+        angle < 0.0 && rate == 1.0 && force == 1.0
+    }
+
     /// The same where what goes with a column is as it should be; none where nothing does.
     fn apart(self, body: &Body) -> Option<Self> {
         (!matches!(body, Body::Stage(_))).then_some(Self { together: false, ..self })
     }
 
     /// What is wrong with the columns, in words.
-    fn told(&self, body: &Body) -> String {
+    pub fn told(&self, body: &Body) -> String {
         let [angle, rate, force] = names(body, self.together);
         let units = [(angle, self.angle), (rate, self.rate), (force, self.force)];
         let told = units.into_iter().filter(|(_, Unit(_, words))| !words.is_empty());
@@ -134,10 +140,10 @@ pub fn force_columns(body: &Body) -> &'static str {
     }
 }
 
-/// The unit with which a recording passes, in words.
-pub fn tried(body: &Body, force: Option<Unit>, passes: &dyn Fn(&Body) -> bool) -> Option<String> {
+/// The units with which a recording passes.
+pub fn tried(body: &Body, force: Option<Unit>, passes: &dyn Fn(&Body) -> bool) -> Option<Trial> {
     let is_meant = |trial: &Trial| converted(body, trial).is_some_and(|body| passes(&body));
-    Trial::all(body, force).into_iter().find(is_meant).map(|trial| trial.told(body))
+    Trial::all(body, force).into_iter().find(is_meant)
 }
 
 /// Whether the forces of a platform that turns may be in a unit of gravity: in its thousandths they swing by more than

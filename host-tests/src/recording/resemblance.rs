@@ -12,8 +12,18 @@ const UNITS: [&str; 19] = [
 
 /// What a word of a name is also written as.
 const ALSO: [(&str, &str); 3] = [("noise", "n"), ("sampling", "sample"), ("sample_rate", "rate")];
-/// The name of an angle random walk elsewhere.
-const WALKS: [&str; 2] = ["arw", "angle_random_walk"];
+/// How the end of a name, without its unit, is called elsewhere, and the known one's.
+const ELSEWHERE: [(&str, &str); 9] = [
+    ("arw", "gyro_n"),
+    ("angle_random_walk", "gyro_n"),
+    ("bias_instability", "gyro_b"),
+    ("rrw", "gyro_k"),
+    ("rate_random_walk", "gyro_k"),
+    ("rate_ramp", "gyro_r"),
+    ("fs", "rate"),
+    ("dt", "rate"),
+    ("sample_period", "rate"),
+];
 /// Fewest characters of a word that stand for the whole.
 const SHORT: usize = 3;
 
@@ -43,11 +53,16 @@ pub(super) fn resembled(
 fn is_alike(one: &str, known: &str) -> bool {
     let plain = ALSO.iter().fold(one.to_owned(), |name, (other, word)| name.replace(other, word));
     let is_cut = |one: &str, other: &str| one.len() >= SHORT && other.starts_with(one);
-    let is_walk = known == "gyro_n" && WALKS.iter().any(|walk| plain.ends_with(walk));
+    let is_other = |(other, name): &(&str, &str)| *name == known && is_end(&plain, other);
     let (words, others) = (plain.split('_'), known.split('_'));
     let is_same = words.clone().count() == others.clone().count()
         && words.zip(others).all(|(a, b)| a == b || is_cut(a, b) || is_cut(b, a));
-    is_walk || is_same
+    is_same || ELSEWHERE.iter().any(is_other)
+}
+
+/// Whether a name ends with these words.
+fn is_end(name: &str, words: &str) -> bool {
+    name.strip_suffix(words).is_some_and(|before| before.is_empty() || before.ends_with('_'))
 }
 
 /// A name without its unit.

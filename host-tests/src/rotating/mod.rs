@@ -85,7 +85,7 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
     }
     let sensor = sensor(header, &mut assumed);
     let rate = header.rate_hz.unwrap_or_else(|| turns::rate_hz(rows));
-    let rate_step = rounded(&mut common, rows, rate);
+    let rate_step = rounded(&mut common, sensor.is_flat, rows, rate);
     let encoder_zero_sigma = encoder_zero(header, &mut assumed);
     let setting = Setting::new(common, sensor);
     let setting = Setting { encoder_zero_sigma, harmonics_known: false, rate_step, ..setting };
@@ -100,8 +100,9 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
 const FIRST_HARMONIC: f64 = 6.0 / (PI * PI);
 
 /// Takes the steps of a gyro's column into its noise, and gives what of them its noise does not hide, rad/s: it smooths
-/// the staircase by e^(−2π²(σ/step)²). That part goes with the platform's turn and is no noise.
-fn rounded(common: &mut Common, rows: &[RotatingRow], rate_hz: f64) -> f64 {
+/// the staircase by e^(−2π²(σ/step)²). That part goes with the platform's turn and is no noise. What is stated of it is the
+/// sensor's input, of which one that is not flat passes less.
+fn rounded(common: &mut Common, is_flat: bool, rows: &[RotatingRow], rate_hz: f64) -> f64 {
     let mut rates: Vec<f64> = rows.iter().map(|row| row.rate_rad_s).collect();
     rates.sort_unstable_by(f64::total_cmp);
     let steps = rates.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.0);
@@ -110,7 +111,8 @@ fn rounded(common: &mut Common, rows: &[RotatingRow], rate_hz: f64) -> f64 {
         return 0.0;
     }
     let walk = common.noise.angle_random_walk;
-    let sigma = if common.white_known { walk * rate_hz.sqrt() } else { of_neighbours(rows) };
+    let is_stated = common.white_known && is_flat;
+    let sigma = if is_stated { walk * rate_hz.sqrt() } else { of_neighbours(rows) };
     let smoothed = (-0.5 * (TAU * sigma / step).powi(2)).exp();
     let scattered = 1.0 - FIRST_HARMONIC * smoothed * smoothed;
     common.noise.angle_random_walk = walk.hypot(step * (scattered / (12.0 * rate_hz)).sqrt());

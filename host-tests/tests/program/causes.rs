@@ -4,7 +4,11 @@
 use std::cell::Cell;
 use std::fmt::Write;
 
-use super::{Scratch, code, mapped, meridian, reason, recorded, refused, scaled, stored, unpacked};
+use hal_mock::noise::Generator;
+
+use super::{
+    Scratch, code, mapped, meridian, reason, recorded, refused, scaled, stored, text, unpacked,
+};
 
 const DEGREES: f64 = 57.295_779_513_082_32;
 const IMU_FORCES: [&str; 3] = ["ax_m_s2", "ay_m_s2", "az_m_s2"];
@@ -67,6 +71,49 @@ fn a_stage_angle_that_counts_the_other_way_is_named() {
             "column stage_rad: counted the other way, as it seems, not clockwise from above";
         assert!(why.contains(words), "{name}: {why}");
     }
+}
+
+/// Dwells on an arc of so many degrees that does not come back, of a stage at 50° of latitude that is tilted by
+/// 0.06°; its accelerometer warms up by so much towards an angle, rad.
+fn warming_arc(arc_deg: f64, change_mg: f64, towards: f64) -> String {
+    const COUNT: u32 = 9;
+    const HORIZONTAL: f64 = 4.687e-5;
+    const VERTICAL: f64 = 5.586e-5;
+    const TILT: f64 = 1e-3;
+    let mut noise = Generator::stream(3, u64::from(arc_deg as u32));
+    let mut recording = "# kind: dwells\n# latitude_deg: 50\n# gyro_bias_deg_h: 10\n\
+        stage_rad,rate_rad_s,sigma_rad_s,seconds,mid_s,fx_m_s2,fy_m_s2,fz_m_s2\n"
+        .to_owned();
+    for dwell in 0..COUNT {
+        let part = f64::from(dwell) / f64::from(COUNT - 1);
+        let stage = part * arc_deg / DEGREES;
+        let [x, y] = [TILT * stage.cos(), -TILT * stage.sin()];
+        let rate = HORIZONTAL * (1.0 + stage).cos() + VERTICAL * x + 1e-7 * noise.gaussian();
+        let warm = 1e-3 * change_mg * (1.0 - (-3.0 * part).exp());
+        let [x, y] = [x + warm * towards.cos(), y + warm * towards.sin()]
+            .map(|force| (force + 3e-6 * noise.gaussian()) / IN_G);
+        let middle = 30.0 * part * f64::from(COUNT);
+        let _ = writeln!(recording, "{stage},{rate:e},1e-7,30,{middle},{x},{y},-9.81");
+    }
+    recording
+}
+
+#[test]
+fn an_accelerometer_that_warms_up_on_an_arc_is_named_and_no_sense_of_the_stage_is_blamed() {
+    let scratch = Scratch::new("warming");
+    let mut named = 0;
+    for arc_deg in [100.0, 120.0, 140.0, 160.0, 180.0] {
+        for change_mg in [1.0, 3.0, 6.0] {
+            for towards in [0.0, 1.0, 2.0, 3.0, 4.0, 5.0] {
+                let arc = warming_arc(arc_deg, change_mg, towards);
+                let output = meridian(&["replay", &scratch.with("arc.csv", &arc)]);
+                let why = text(&output.stderr);
+                assert!(!why.contains("multiply by -1"), "{arc_deg}°, {change_mg} mg: {why}");
+                named += usize::from(why.contains("as while it warms up, explain the forces"));
+            }
+        }
+    }
+    assert!(named > 5, "only {named} are named");
 }
 
 #[test]

@@ -37,6 +37,8 @@ fn an_unknown_key_that_resembles_a_known_one_is_told_with_its_line() {
         (4, "gyro_N", "gyro_N_deg_sqrt_h"),
         (4, "Gyro_n_deg_sqrt_h", "gyro_N_deg_sqrt_h"),
         (4, "gyro_N_deg_sqr_h", "gyro_N_deg_sqrt_h"),
+        (3, "fs_hz", "rate_hz"),
+        (3, "dt_s", "rate_hz"),
         (8, "g_sensitivity_deg_h", "g_sensitivity_deg_h_g"),
         (10, "accelerometer_bias_mg", "accelerometer_bias_m_s2"),
         (10, "accel_bias_m_s2", "accelerometer_bias_m_s2"),
@@ -47,6 +49,21 @@ fn an_unknown_key_that_resembles_a_known_one_is_told_with_its_line() {
         let told = warnings(&scratch, &changed);
         let words =
             format!("line {line}, key {key}: is not known and passed over; if {known} is meant");
+        assert!(told.iter().any(|line| line.contains(&words)), "{words}: {told:?}");
+    }
+}
+
+#[test]
+fn a_key_of_the_drift_that_is_called_otherwise_is_told() {
+    let scratch = Scratch::new("drift-keys");
+    for (key, known) in [
+        ("gyro_bias_instability_deg_h", "gyro_B_deg_h"),
+        ("rrw", "gyro_K_deg_h_sqrt_h"),
+        ("rate_random_walk_deg_h_sqrt_h", "gyro_K_deg_h_sqrt_h"),
+        ("rate_ramp_deg_h2", "gyro_R_deg_h2"),
+    ] {
+        let told = warnings(&scratch, &format!("# {key}: 0.01\n{}", recorded(&scratch)));
+        let words = format!("key {key}: is not known and passed over; if {known} is meant");
         assert!(told.iter().any(|line| line.contains(&words)), "{words}: {told:?}");
     }
 }

@@ -30,7 +30,7 @@ fn phasors(earth: Pair, response: Pair, [x, y]: Pair) -> [Pair; 2] {
 
 fn halves(speed: f64, phasors: [Pair; 2], variance: f64) -> Halves {
     let phasors = phasors.map(|[re, im]| Complex::new(re, im));
-    Halves::of(speed, phasors, [variance; 2])
+    Halves::of(speed, phasors, [variance; 2], 0.0)
 }
 
 fn away(angle: f64, from: f64) -> f64 {

@@ -30,24 +30,28 @@ pub struct Halves {
     pub excess: f64,
     /// Variance of `angle`, rad²; that of y is the same.
     pub variance: f64,
+    /// The part of it that is from rounding to steps, rad².
+    pub rounded: f64,
 }
 
 impl Halves {
-    /// From Q₊ and Q₋ with the variances of their parts.
+    /// From Q₊ and Q₋ with the variances of their parts, and the 1σ of what rounding to steps turns both by, rad.
     #[must_use]
-    pub fn of(speed: f64, phasors: [Complex; 2], variances: [f64; 2]) -> Self {
+    pub fn of(speed: f64, phasors: [Complex; 2], variances: [f64; 2], rounded: f64) -> Self {
         let [clockwise, counter] = phasors;
         let half = 0.5 * (clockwise * counter).angle();
         let off = |angle: f64| (clockwise * Complex::unit(-angle)).angle();
         let other = half + core::f64::consts::PI;
         let angle = if off(half).abs() <= off(other).abs() { half } else { other };
         let [more, less] = phasors.map(Complex::power);
+        let rounded = rounded * rounded;
         Self {
             speed,
             angle,
             phase: off(angle),
             excess: (more - less) / (more + less),
-            variance: 0.25 * (variances[0] / more + variances[1] / less),
+            variance: 0.25 * (variances[0] / more + variances[1] / less) + rounded,
+            rounded,
         }
     }
 
@@ -73,6 +77,8 @@ pub struct Freed {
     pub angle: f64,
     /// Its variance from the gyro's noise alone, rad².
     pub noise: f64,
+    /// Its 1σ from rounding to steps, rad.
+    pub rounded: f64,
     /// What a g-sensitivity that is not told apart adds to it, rad².
     pub left: f64,
     /// γ at the slower speed.
@@ -112,12 +118,19 @@ pub fn freed(halves: &[Halves], sigma: f64) -> Option<Freed> {
 /// The weighted mean of all speeds, where there is no such g-sensitivity.
 fn mean(halves: &[Halves]) -> Freed {
     let first = halves.first().map_or(0.0, |half| half.angle);
-    let (mut information, mut sum) = (0.0, 0.0);
+    let (mut information, mut sum, mut rounded) = (0.0, 0.0, 0.0);
     for half in halves {
         information += 1.0 / half.variance;
         sum += remainder(half.angle - first) / half.variance;
+        rounded += half.rounded / (half.variance * half.variance);
     }
-    Freed { angle: first + sum / information, noise: 1.0 / information, ..Freed::default() }
+    let rounded = rounded / (information * information);
+    Freed {
+        angle: first + sum / information,
+        noise: 1.0 / information - rounded,
+        rounded: libm::sqrt(rounded),
+        ..Freed::default()
+    }
 }
 
 /// y at the slower speed, from all speeds.
@@ -148,17 +161,21 @@ fn extrapolated(halves: &[Halves], slowest: f64, [x, y]: [f64; 2], spread: f64) 
         targets[1] += falls * angle / half.variance;
     }
     let determinant = one * two - both * both;
-    // What the half angles themselves weigh in the angle, squared and by their variances.
-    let noise = |half: &Halves| {
-        let scale = slowest / half.speed;
-        let weight = (two - both * scale * scale) / determinant;
-        weight * weight / half.variance
+    // What the half angles themselves weigh in the angle, squared, by a part of their variances.
+    let weighed = |part: fn(&Halves) -> f64| -> f64 {
+        let of = |half: &Halves| {
+            let scale = slowest / half.speed;
+            let weight = (two - both * scale * scale) / determinant / half.variance;
+            weight * weight * part(half)
+        };
+        halves.iter().map(of).sum()
     };
-    let noise: f64 = halves.iter().map(noise).sum();
+    let [all, rounded] = [weighed(|half| half.variance), weighed(|half| half.rounded)];
     Freed {
         angle: first + (two * targets[0] - both * targets[1]) / determinant,
-        noise,
-        left: (two / determinant - noise).max(0.0),
+        noise: all - rounded,
+        rounded: libm::sqrt(rounded),
+        left: (two / determinant - all).max(0.0),
         one_speed: (one * targets[1] - both * targets[0]) / determinant,
         ..Freed::default()
     }

@@ -257,7 +257,7 @@ impl Problem<'_> {
                 // What the platform's unevenness makes of it cancels between the senses.
                 None => self.setting.coupling_limit * pair.uneven().size() / horizontal,
             };
-            let known = libm::hypot(shown, self.rounded());
+            let known = libm::hypot(shown, self.rounded(1.0, self.beside()));
             fit.senses_sigma = fit.senses_sigma.max(libm::hypot(sigma * pair.speed(), known));
             let lag = coupling.map_or(0.0, believed_lag);
             let tangent = libm::fabs(lag * pair.speed()) * (1.0 + LAG_LAW);
@@ -277,28 +277,33 @@ impl Problem<'_> {
             let others = self.per_tilt(fit.ratio) * fit.tilt + self.tilting.turning(&fit.lean);
             (angle, size) = fit.lean.azimuth(mean - others);
         }
-        fit.ratio_sigma = libm::hypot(libm::sqrt(1.0 / information) / horizontal, self.rounded());
+        let rounded = self.rounded(1.0, self.beside());
+        fit.ratio_sigma = libm::hypot(libm::sqrt(1.0 / information) / horizontal, rounded);
         // Q₊ − Q₋ is −2jγE′.
         let odd = self.slowest().map_or(Complex::default(), Pair::odd);
         fit.molecular = odd / mean * Complex::new(0.0, 1.0);
-        Turned { angle, noise: 1.0 / information / (size * size), left: 0.0 }
+        let noise = 1.0 / information / (size * size);
+        Turned { angle, noise, rounded: of_turned(rounded, self.beside()), left: 0.0 }
     }
 
-    /// 1σ of what rounding to steps adds along what turns with the platform, of the Earth rate.
-    fn rounded(&self) -> f64 {
-        let step = self.setting.rate_step / self.earth()[0];
+    /// 1σ of what rounding to steps adds along what turns with the platform, of the Earth rate, for a sensor's gain and
+    /// what turns beside that rate, of it.
+    fn rounded(&self, gain: f64, beside: f64) -> f64 {
+        let step = self.setting.rate_step / self.earth()[0] / gain;
         // J₁ of 2π times the signal over the step falls as √(2/(πx)).
-        let falling = libm::sqrt(step / libm::hypot(1.0, self.beside())) / core::f64::consts::PI;
+        let falling = libm::sqrt(step / libm::hypot(1.0, beside)) / core::f64::consts::PI;
         ROUNDED * step * falling.min(BESSEL)
     }
 
-    /// What turns with the platform beside the Earth rate for its unevenness, of it.
+    /// What turns with the platform beside the Earth rate for its unevenness, of it, at the speed where it is most.
     fn beside(&self) -> f64 {
-        let of = |pair: &Pair| {
-            let coupling = coupling::nearest(self.couplings, pair.speed());
-            coupling.map_or(0.0, |found| found.sine.abs() * pair.uneven().size())
-        };
-        self.pairs.iter().map(of).fold(0.0, f64::max) / self.earth()[0]
+        self.pairs.iter().map(|pair| self.beside_at(pair)).fold(0.0, f64::max)
+    }
+
+    /// The same at one speed.
+    fn beside_at(&self, pair: &Pair) -> f64 {
+        let coupling = coupling::nearest(self.couplings, pair.speed());
+        coupling.map_or(0.0, |found| found.sine.abs() * pair.uneven().size()) / self.earth()[0]
     }
 
     /// The speed that shows an integrated g-sensitivity most.
@@ -308,7 +313,9 @@ impl Problem<'_> {
 
     fn halves(&self, pair: &Pair) -> Halves {
         let (gain, density) = (pair.gain(self.earth()[0]), (self.density)(pair.speed()));
-        Halves::of(pair.speed(), pair.phasors(), pair.variances(density, gain))
+        let beside = self.beside_at(pair);
+        let rounded = of_turned(self.rounded(gain, beside), beside);
+        Halves::of(pair.speed(), pair.phasors(), pair.variances(density, gain), rounded)
     }
 
     /// A sensor of unknown gain and lag: half of arg Q₊Q₋, then the tilt's part off the angle.
@@ -332,7 +339,8 @@ impl Problem<'_> {
         let others = self.per_tilt(1.0) * fit.tilt + self.tilting.turning(&fit.lean);
         let others = others.scaled(1.0 / horizontal);
         let (angle, slope) = fit.lean.azimuth_towards(freed.angle, others)?;
-        Some(Turned { angle, noise: freed.noise * slope * slope, left: freed.left * slope * slope })
+        let [noise, left] = [freed.noise, freed.left].map(|variance| variance * slope * slope);
+        Some(Turned { angle, noise, rounded: freed.rounded * slope.abs(), left })
     }
 
     /// The limit of a flat sensor of known g-sensitivity in the same time.
@@ -373,7 +381,7 @@ impl Problem<'_> {
             // A flat sensor's scale is found with the azimuth, but not for what a base that tilts turns it by.
             scale: libm::hypot(
                 self.tilting.scale(common.scale_sigma, &fit.lean, turned.angle, horizontal),
-                self.rounded() * self.beside() / libm::hypot(1.0, self.beside()),
+                turned.rounded,
             ),
             temperature: 0.0,
             displacement: 0.0,
@@ -433,12 +441,20 @@ pub fn force_density(pairs: &[Pair]) -> (f64, u32) {
     (sum / f64::from(degrees.max(1)), degrees)
 }
 
+/// 1σ of what rounding turns the angle of a phasor by, rad: along a signal that is all of what is rounded it adds
+/// nothing across.
+fn of_turned(rounded: f64, beside: f64) -> f64 {
+    rounded * beside / libm::hypot(1.0, beside)
+}
+
 /// An azimuth before it is judged.
 struct Turned {
     /// rad.
     angle: f64,
     /// Variance from the gyro's noise, rad².
     noise: f64,
+    /// 1σ from rounding to steps, rad.
+    rounded: f64,
     /// Variance from a g-sensitivity that was not told apart, rad².
     left: f64,
 }
