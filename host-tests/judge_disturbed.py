@@ -15,8 +15,6 @@ KNOWN = {
     "base-tilting": (2, 0.90),
     "base-yawing": (7, 0.90),
     "random-walk": (1, 0.85),
-    "turning-base-yawing": (1, 0.90),
-    "turning-base-turn": (1, 0.90),
 }
 # Classes whose wrong answers must lie within what is told beside them.
 TOLD = ("base-tilting", "base-yawing", "turning-base-yawing")

@@ -36,6 +36,9 @@ const SENSE_OF_A_PLATFORM: &str =
 /// Of a platform that is nearly level.
 const UNIT_OF_A_PLATFORM: &str =
     "accelerometer in m/s², which a platform that is nearly level does not show";
+/// Of a sensor of unknown lag that turns at one speed.
+const LAG_OF_ONE_SPEED: &str = "no turn of the base and no slip between the senses, which one speed of a sensor whose \
+                                lag is not known does not show";
 /// Of the gyros and accelerometers of a vehicle, whose mounting a vehicle at rest does not show.
 pub const AXES_OF_A_VEHICLE: &str = "axes forward, right and down, as the columns say";
 /// Of displacements whose size the forces on the way do not show.
@@ -89,7 +92,9 @@ pub fn of_platform(session: &rotating::Session) -> Vec<String> {
         unnoticed: UNNOTICED * fit.ratio_sigma + TOLERANCE,
         felt: felt(&session.setting().common, fit.tilt),
     };
+    let is_one_lag = !session.setting().sensor.is_flat && conclusion.pairs.len() < 2;
     let untold = [
+        (is_one_lag, LAG_OF_ONE_SPEED),
         (!shows_sense(conclusion, &fit), SENSE_OF_A_PLATFORM),
         (fit.tilt.size() < NEARLY_LEVEL, UNIT_OF_A_PLATFORM),
     ];
@@ -159,8 +164,8 @@ impl Shown {
         let reversed = self.change(-1.0, here).map(|change| {
             format!("sign of the gyro: with the other one {:.1}° away", change.to_degrees())
         });
-        let turned = (1..360_u16).map(|degrees| f64::from(degrees).to_radians());
-        let others = turned.map(|angle| Complex::unit(angle) * here).chain([mirrored]);
+        let turns = (0..360_u16).map(|degrees| Complex::unit(f64::from(degrees).to_radians()));
+        let others = turns.flat_map(|turn| [here, mirrored].map(|felt| turn * felt));
         let changes = others.filter_map(|felt| self.change(1.0, felt));
         let worth_telling = changes.filter(|change| *change > WORTH_TELLING * self.sigma);
         let axes = worth_telling.reduce(f64::max).map(|change| {

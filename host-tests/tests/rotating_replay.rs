@@ -16,6 +16,7 @@ use bench::recording::{self, Body, Header, Kind, RotatingRow};
 use bench::replay::{Options, ReplayError};
 use bench::rotating::{Replay, replay};
 use orientation::align::rotating::conclusion::Conclusion;
+use orientation::align::rotating::solution::Pair;
 use orientation::earth::Latitude;
 use orientation::error::Refusal;
 
@@ -277,6 +278,70 @@ fn a_base_that_turns_slowly_is_seen_or_in_sigma_or_assumed_not_to_with_its_size(
         told += i32::from(line.is_some());
     }
     assert!(told > 2, "only {told} are answered with what they do not show");
+}
+
+/// The recording of a molecular-electronic sensor whose base is turned by an angle, °, after one of its stretches.
+fn turned_after(
+    recorded: &Recorded,
+    found: &Conclusion,
+    stretch: usize,
+    turn_deg: f64,
+) -> Recorded {
+    let fit = found.fit.expect("there is a fit");
+    let latitude = Latitude::from_degrees(recorded.header.latitude_deg.expect("it has one"));
+    let horizontal = latitude.expect("it is one").horizontal_rate();
+    let averages: Vec<_> = found.pairs.iter().flat_map(Pair::senses).collect();
+    let mut middles: Vec<f64> = averages.iter().map(|average| average.middle).collect();
+    middles.sort_by(f64::total_cmp);
+    let after_s = recorded.rows[0].time_s + 0.5 * (middles[stretch] + middles[stretch + 1]);
+    let mut turned = recorded.clone();
+    turned.truth_deg += turn_deg;
+    for row in turned.rows.iter_mut().filter(|row| row.time_s > after_s) {
+        let speed = row.stage_rate_rad_s.abs();
+        let apart = |index: &usize| (found.pairs[*index].speed() - speed).abs();
+        let nearest = (0..found.pairs.len()).min_by(|a, b| apart(a).total_cmp(&apart(b)));
+        let pair = nearest.expect("there is one");
+        let phase = fit.phases[pair] * row.stage_rate_rad_s.signum();
+        let axis = recorded.truth_deg.to_radians() + row.stage_rad + phase;
+        let size = found.pairs[pair].gain(horizontal) * horizontal;
+        row.rate_rad_s += size * ((axis + turn_deg.to_radians()).cos() - axis.cos());
+    }
+    turned
+}
+
+#[test]
+fn a_base_that_is_turned_between_stretches_of_a_sensor_of_unknown_lag_is_not_taken_for_the_lag() {
+    let recorded = recorded(MET);
+    let healthy = recorded.replayed();
+    let mut refused = 0;
+    for stretch in 0..3 {
+        for turn_deg in [-20.0, -8.0, -3.0, -1.0, -0.3, 0.3, 1.0, 3.0, 8.0, 20.0] {
+            let turned = turned_after(&recorded, conclusion(&healthy), stretch, turn_deg);
+            let replay = turned.replayed();
+            let Ok(azimuth) = conclusion(&replay).verdict else {
+                refused += 1;
+                continue;
+            };
+            let error = azimuth_error(azimuth.angle.to_degrees(), turned.truth_deg);
+            let sigmas = error.abs() / azimuth.sigma.to_degrees();
+            assert!(sigmas < 5.0, "after {stretch}, {turn_deg}°: {error}°, {sigmas} σ");
+        }
+    }
+    assert!(refused >= 12, "only {refused} of 30 are refused");
+}
+
+#[test]
+fn of_one_speed_it_is_assumed_that_no_base_was_turned_between_the_senses() {
+    let words = "no turn of the base and no slip between the senses";
+    let is_told = |replay: &Replay| replay.assumed.iter().any(|line| line.starts_with(words));
+    let mut one = recorded(MET);
+    assert!(!is_told(&one.replayed()));
+    one.rows.retain(|row| row.time_s < 280.0);
+    one.header.g_sensitivity_deg_h_g = Some([0.0; 2]);
+    let options = Options { required_sigma: Some(0.5), ..Options::default() };
+    let replay = replay(&one.header, &Body::Rotating(one.rows), &options).expect("it replays");
+    assert!(conclusion(&replay).verdict.is_ok(), "{:?}", conclusion(&replay).verdict);
+    assert!(is_told(&replay), "{:?}", replay.assumed);
 }
 
 /// What is answered of a recording whose rates are rounded to 40 steps, up to two and a half times the horizontal Earth

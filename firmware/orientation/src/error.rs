@@ -436,7 +436,9 @@ words! { Refusal:
         "clockwise and counter-clockwise disagree by {} σ: this sensor is not flat, or lags",
         Rounded::<1>(sigmas);
     Self::SpeedsDisagree { sigmas } =>
-        "the two speeds disagree by {} σ about the sensor's g-sensitivity", Rounded::<1>(sigmas);
+        "the two speeds disagree by {} σ about the sensor's lag and g-sensitivity: keep the base still, and turn \
+         unevenly at both",
+        Rounded::<1>(sigmas);
     Self::TiltChanged { change } =>
         "the tilt changed by {} mg between senses or speeds: the base moved, or the encoder slipped",
         Rounded::<2>(change);

@@ -23,6 +23,8 @@ use crate::units::{DEGREES_PER_RADIAN as DEGREES, TURN};
 const EQUAL_SPEEDS: f64 = 0.01;
 /// Probability of healthy turns' scatter below which they are refused.
 const SCATTER_PROBABILITY: f64 = 1e-6;
+/// How many times the noise power that is, which σ takes in.
+const GREATEST_SCATTER: f64 = 3.0;
 /// Probability of it below which it raises σ.
 const EXCESS_PROBABILITY: f64 = 0.05;
 /// Most that turns which were left out raise σ by.
@@ -260,7 +262,8 @@ impl Conclusion {
     fn judge_turns(&self, setting: &Setting, drift: f64) -> Result<(), Refusal> {
         let degrees = f64::from(self.degrees.max(1));
         let is_known = setting.common.white_known;
-        if is_known && chi_square_tail(self.chi_square, degrees) < SCATTER_PROBABILITY {
+        let is_no_chance = chi_square_tail(self.chi_square, degrees) < SCATTER_PROBABILITY;
+        if is_known && is_no_chance && self.chi_square > GREATEST_SCATTER * degrees {
             return Err(Refusal::ResidualsNotWhite { ratio: self.chi_square / degrees });
         }
         let different = if is_known { DIFFERENT } else { different(self.degrees) };
@@ -355,10 +358,11 @@ impl Conclusion {
         ellipse: Complex,
         density: &'a dyn Fn(f64) -> f64,
     ) -> Problem<'a> {
-        let walk = self.angle_random_walk;
-        let white = if setting.common.white_known { walk * walk } else { 0.0 };
+        let angle_random_walk = self.angle_random_walk;
+        let is_known = setting.common.white_known;
+        let white = if is_known { angle_random_walk * angle_random_walk } else { 0.0 };
         let (pairs, couplings) = (&self.pairs, &self.couplings);
-        Problem { setting, pairs, couplings, density, white, tilting, ellipse }
+        Problem { setting, pairs, couplings, density, white, angle_random_walk, tilting, ellipse }
     }
 
     /// What the turns show of a base that turns slowly about the vertical, from what this was drawn from; `None` where
@@ -474,8 +478,9 @@ fn judge_lagging(setting: &Setting, fit: &Fit) -> Result<(), Refusal> {
     if setting.sensor.molecular_sigma == 0.0 {
         return Ok(());
     }
-    if fit.disagreement > DIFFERENT {
-        return Err(Refusal::SpeedsDisagree { sigmas: fit.disagreement });
+    let sigmas = fit.disagreement.max(fit.astray);
+    if sigmas > DIFFERENT {
+        return Err(Refusal::SpeedsDisagree { sigmas });
     }
     let ratio = fit.molecular.im.abs();
     if ratio > GREATEST_MOLECULAR {

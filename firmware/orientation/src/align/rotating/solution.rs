@@ -23,6 +23,9 @@ pub const LAG_LAW: f64 = 0.15;
 /// and an integrated g-sensitivity answers to the modulation.
 const UNTOLD: f64 = 2.5e-3;
 
+/// How far the frequency of a modulation may be from the speed that it stands for, relative.
+const SAME_SPEED: f64 = 0.3;
+
 /// What an encoder's harmonic may turn the angle by where nothing is stated, 1σ, rad: 2″.
 const ENCODER_HARMONIC: f64 = 2.0 * ARCSECOND;
 
@@ -161,6 +164,8 @@ pub struct Fit {
     pub one_speed: f64,
     /// How far both speeds disagree about it, in σ.
     pub disagreement: f64,
+    /// How far two speeds of a sensor of unknown lag stray from what the uneven turn shows of it, in σ.
+    pub astray: f64,
     /// Phase of the sensor at each speed, rad; zero for a flat one.
     pub phases: [f64; SPEEDS],
     /// How much both senses differ, squared and over the variance of either part; flat sensors alone.
@@ -190,6 +195,8 @@ pub struct Problem<'a> {
     pub density: &'a dyn Fn(f64) -> f64,
     /// Spectral density of its white noise; zero where it is not known.
     pub white: f64,
+    /// Its N, rad/√s: known, or as the turns show it.
+    pub angle_random_walk: f64,
     /// How the base tilts.
     pub tilting: &'a Tilting,
     /// The encoder's error twice a turn that would make the platform turn evenly, ε e^{jψ}, rad.
@@ -331,6 +338,7 @@ impl Problem<'_> {
         fit.molecular = freed.ratio;
         fit.one_speed = freed.one_speed;
         fit.disagreement = freed.disagreement;
+        fit.astray = self.astray(&halves, &freed, self.coupling_sigma(fit));
         let slowest = self.slowest()?.speed();
         for (phase, pair) in fit.phases.iter_mut().zip(self.pairs) {
             *phase += freed.ratio.re * slowest / pair.speed();
@@ -341,6 +349,41 @@ impl Problem<'_> {
         let (angle, slope) = fit.lean.azimuth_towards(freed.angle, others)?;
         let [noise, left] = [freed.noise, freed.left].map(|variance| variance * slope * slope);
         Some(Turned { angle, noise, rounded: freed.rounded * slope.abs(), left })
+    }
+
+    /// How far two speeds stray from the lag that the uneven turn shows, in σ: their own lags, and what the g-sensitivity
+    /// that follows from these does to the azimuth. A base that turns between the stretches does that.
+    fn astray(&self, halves: &[Halves], freed: &Freed, coupling_sigma: f64) -> f64 {
+        let [slow, quick] = halves else { return 0.0 };
+        let (slow, quick) = if quick.speed < slow.speed { (quick, slow) } else { (slow, quick) };
+        // What a phase lacks of the law's is −x, which falls as the speed grows.
+        let uneven = coupling_sigma * coupling_sigma;
+        let [(at_slow, slow_variance), (at_quick, quick_variance)] = [slow, quick].map(|half| {
+            let (law, sigma) = self.law(half.speed, freed.ratio.size());
+            (half.phase - law, half.variance + uneven + sigma * sigma)
+        });
+        let falls = slow.speed / quick.speed;
+        let lags = (at_quick - falls * at_slow)
+            / libm::sqrt(quick_variance + falls * falls * slow_variance);
+        let (y, span) = (freed.ratio.im, 1.0 - falls * falls);
+        let variance = (slow.variance + quick.variance + 2.0 * uneven) / (span * span);
+        let speeds = (freed.one_speed + at_slow * y) / libm::sqrt(variance + y * y * slow_variance);
+        lags.abs().max(speeds.abs())
+    }
+
+    /// Phase of the sensor at a speed in rad/s as the uneven turn shows its lag, and the 1σ of that, rad: an integrated
+    /// g-sensitivity of so much of the Earth rate answers to the modulation as well.
+    fn law(&self, speed: f64, molecular: f64) -> (f64, f64) {
+        let Some(found) = coupling::nearest(self.couplings, speed) else { return (0.0, TURN) };
+        let at = |speed: f64| found.response(speed).scaled(found.sine.signum()).angle();
+        let phase = at(speed);
+        // A pole and a high-pass together bend as either may; that one pole holds from speed to speed is what is asked.
+        let is_near = (speed / found.frequency - 1.0).abs() < SAME_SPEED;
+        let bent = if is_near { phase - at(found.frequency) } else { 0.0 };
+        let lag = speed * found.lag_sigma();
+        let beside = molecular * self.earth()[0] / (speed * found.sine).abs();
+        let sigma = libm::hypot(libm::hypot(lag, beside), bent).min(TURN);
+        (phase, libm::hypot(UNTOLD, sigma))
     }
 
     /// The limit of a flat sensor of known g-sensitivity in the same time.
@@ -372,7 +415,7 @@ impl Problem<'_> {
                     + self.tilting.doubt(&fit.lean, turned.angle, horizontal),
             ),
             g_sensitivity: libm::hypot(
-                common.kappa_sigma(common.noise.angle_random_walk) * size / horizontal,
+                common.kappa_sigma(self.angle_random_walk) * size / horizontal,
                 libm::sqrt(turned.left),
             ),
             accelerometer: self.per_tilt(1.0).size() * fit.tilt_sigma / horizontal,

@@ -148,7 +148,8 @@ pub const CLASSES: &[Class] = &[
         severity: [0.01, 5.0],
         unit: "° of tilt",
         wrong_allowed: 0.0,
-        draw: |seed, size| faults::accelerometer_axes(Bench::drawn(seed), size),
+        // Nothing tells them where the sensor's gain is not known.
+        draw: |seed, size| faults::accelerometer_axes(Bench::with_gyro(seed), size),
     },
     Class {
         name: "turning-period",

@@ -1,16 +1,19 @@
-//! A gyro on a platform that turns all the time: drawn instruments, and what goes wrong with platform, base, gyro
-//! and accelerometer.
+//! A gyro, or a molecular-electronic sensor, on a platform that turns all the time: drawn instruments, and what goes
+//! wrong with platform, base, sensor and accelerometer.
 
 mod classes;
 
 use std::f64::consts::TAU;
 
+use hal_mock::earth::EARTH_RATE_RAD_S;
+use hal_mock::molecular::MolecularConfiguration;
 use hal_mock::stage::{Ripple, Unevenness};
 use hal_mock::turntable::{EncoderSlip, Segment, TurningSample, Turntable, TurntableConfiguration};
 use orientation::align::rotating::coupling;
 use orientation::align::rotating::level::Lean;
+use orientation::align::rotating::molecular::{self, Halves};
 use orientation::align::rotating::solution::Fit;
-use orientation::align::rotating::turn::{Stretch, Turn};
+use orientation::align::rotating::turn::{Sense, Stretch, Turn};
 use orientation::math::Complex;
 use orientation::session::rotating::Session;
 
@@ -29,6 +32,9 @@ pub use classes::CLASSES;
 
 /// The random stream of an instrument: none of those that a world draws from.
 const DRAWN: u64 = 2_011;
+/// The random stream of what a molecular-electronic sensor is, and part of the instruments that have one.
+const MOLECULAR: u64 = 2_014;
+const MOLECULAR_PART: f64 = 0.25;
 /// N of its gyro, °/√h.
 const N: [f64; 2] = [1e-3, 2e-2];
 /// Turns of the uneven stretch, its depth, relative, and its frequency in turns.
@@ -48,11 +54,13 @@ struct Bench {
     speed: f64,
     /// Whether the stage's rate is the encoder's own.
     rate_is_encoders: bool,
+    /// How many times as fast the platform turns after that; none of a gyro.
+    second: Option<f64>,
 }
 
 impl Bench {
-    /// A healthy instrument at a drawn place; what it is told of itself is true.
-    fn drawn(seed: u64) -> Self {
+    /// A healthy gyro at a drawn place; what it is told of itself is true.
+    fn with_gyro(seed: u64) -> Self {
         let mut chance = Chance::new(seed, DRAWN);
         let grade = Grade::drawn(&mut chance, N);
         let zero_sigma_deg = chance.scaled(0.002, 0.05);
@@ -78,17 +86,51 @@ impl Bench {
             either_s: chance.between(120.0, 240.0),
             speed: TAU * turn_hz,
             rate_is_encoders: false,
+            second: None,
         };
         bench.unit.slips.push((0.0, zero_sigma_deg.to_radians() * chance.normal()));
         bench.rate_is_encoders = chance.happens(0.5);
         bench
     }
 
-    fn segments(&self) -> [Segment; 3] {
+    /// The same, but that one of four has a molecular-electronic sensor.
+    fn drawn(seed: u64) -> Self {
+        let mut chance = Chance::new(seed, MOLECULAR);
+        let mut bench = Self::with_gyro(seed);
+        if chance.happens(MOLECULAR_PART) {
+            bench.make_molecular(&mut chance);
+        }
+        bench
+    }
+
+    /// Puts a molecular-electronic sensor of unknown gain, lag and g-sensitivity in its place, which needs two speeds.
+    fn make_molecular(&mut self, chance: &mut Chance) {
+        let second = chance.between(1.6, 3.0);
+        let instruments = &mut self.unit.instruments;
+        let horizontal = EARTH_RATE_RAD_S * instruments.latitude_deg.to_radians().cos();
+        let [along, across] =
+            [instruments.pitch_deg, instruments.roll_deg].map(|angle| angle.to_radians().sin());
+        let ratio = chance.scaled(0.01, 0.3);
+        let size = ratio * self.speed * horizontal / along.hypot(across);
+        let (sine, cosine) = chance.between(0.0, TAU).sin_cos();
+        let tangent = chance.scaled(0.03, 1.0);
+        instruments.gyro.molecular = Some(MolecularConfiguration {
+            force_rad_s2_g: [size * cosine, size * sine],
+            high_pass_hz: 0.0,
+            lag_s: tangent / (second * self.speed),
+        });
+        self.unit.header.sensor = Some(Sensor::Met);
+        self.second = Some(second);
+    }
+
+    fn segments(&self) -> Vec<Segment> {
         let (_, depth, part) = UNEVEN;
         let uneven = Segment::steady(self.speed, self.uneven_s);
         let even = |rate: f64| Segment::steady(rate, self.either_s).after(RAMP_SECONDS);
-        [uneven.uneven(depth, part * self.speed / TAU), even(self.speed), even(-self.speed)]
+        let speeds = [Some(1.0), self.second].into_iter().flatten();
+        let first = uneven.uneven(depth, part * self.speed / TAU);
+        let both = speeds.flat_map(|times| [even(times * self.speed), even(-times * self.speed)]);
+        [first].into_iter().chain(both).collect()
     }
 
     /// The recording.
@@ -207,37 +249,58 @@ fn answer(session: &Session, truth_deg: f64) -> Result<Answer, String> {
     Ok(Answer { error, sigma: degrees(azimuth.sigma), limit })
 }
 
-/// Azimuth of the plain mean of all turns of both senses, °: nothing is checked, nothing left out.
+/// Variance that is taken for every phasor of a plain mean, (rad/s)²: so small that nothing counts as noise.
+const PLAIN_VARIANCE: f64 = 1e-20;
+
+/// Turns in which a sensor that is not flat settles.
+const SETTLING: usize = 2;
+
+/// Azimuth of the plain mean of all turns, °: nothing is checked, nothing left out.
 fn plain_deg(session: &Session) -> Option<f64> {
     let conclusion = session.conclusion()?;
-    let common = &session.setting().common;
-    let mean = |of: &dyn Fn(&Stretch) -> Complex| {
-        let stretches = session.follower().stretches();
-        let turned = |stretch: &&Stretch| !stretch.turns().is_empty();
-        let both = [-1.0, 1.0].map(|sense| {
-            stretches.iter().filter(turned).find(|stretch| stretch.sense.signed(sense) > 0.0)
-        });
-        let [counter, clockwise] = both.map(|stretch| stretch.map(of));
-        Some((counter? + clockwise?).scaled(0.5))
-    };
-    let rate = mean(&|stretch| {
+    let setting = session.setting();
+    let latitude = setting.common.latitude;
+    let settling = if setting.sensor.is_flat { 0 } else { SETTLING };
+    let turned = || session.follower().stretches().iter().filter(|one| !one.turns().is_empty());
+    let rate = |stretch: &Stretch| {
         let frequency = stretch.sense.signed(stretch.speed());
         let coupling = coupling::nearest(&conclusion.couplings, frequency);
         let response = coupling.map_or(Complex::default(), |found| found.response(frequency));
-        average(stretch, |turn| {
+        average(stretch, settling, |turn| {
             Complex::of_signal(turn.rate) - response * Complex::of_signal(turn.turning)
         })
-    })?;
-    let force = mean(&|stretch| average(stretch, |turn| Complex::of_signal(turn.force)))?;
-    let tilt = force.scaled(1.0 / common.latitude.gravity());
-    let vertical = common.latitude.vertical_rate();
-    let (azimuth, _) = Lean::of(tilt).azimuth(rate - tilt.scaled(vertical));
+    };
+    let force = |stretch: &Stretch| average(stretch, 0, |turn| Complex::of_signal(turn.force));
+    let of = |sense: Sense| turned().filter(move |stretch| stretch.sense == sense);
+    let pairs: Vec<[&Stretch; 2]> = of(Sense::Clockwise)
+        .zip(of(Sense::CounterClockwise))
+        .map(|(clockwise, counter)| [clockwise, counter])
+        .collect();
+    let first = *pairs.first()?;
+    let mean = |[one, other]: [Complex; 2]| (one + other).scaled(0.5);
+    let tilt = mean(first.map(force)).scaled(1.0 / latitude.gravity());
+    let others = tilt.scaled(latitude.vertical_rate());
+    if setting.sensor.is_flat {
+        let (azimuth, _) = Lean::of(tilt).azimuth(mean(first.map(rate)) - others);
+        return Some(degrees(azimuth));
+    }
+    let half = |pair: &[&Stretch; 2]| {
+        Halves::of(pair[0].speed(), pair.map(rate), [PLAIN_VARIANCE; 2], 0.0)
+    };
+    let halves: Vec<Halves> = pairs.iter().map(half).collect();
+    if halves.len() < turned().count() - halves.len() {
+        return None;
+    }
+    let angle = molecular::freed(&halves, setting.sensor.molecular_sigma)?.angle;
+    let others = others.scaled(1.0 / latitude.horizontal_rate());
+    let (azimuth, _) = Lean::of(tilt).azimuth_towards(angle, others)?;
     Some(degrees(azimuth))
 }
 
-/// The mean of something over a stretch's turns.
-fn average(stretch: &Stretch, of: impl Fn(&Turn) -> Complex) -> Complex {
+/// The mean of something over a stretch's turns, but the first ones.
+fn average(stretch: &Stretch, settling: usize, of: impl Fn(&Turn) -> Complex) -> Complex {
     let turns = stretch.turns();
+    let turns = turns.get(settling..).filter(|turns| !turns.is_empty()).unwrap_or(turns);
     let sum = turns.iter().map(of).fold(Complex::default(), |sum, part| sum + part);
     sum.scaled(1.0 / turns.len().max(1) as f64)
 }
