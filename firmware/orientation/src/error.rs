@@ -231,7 +231,7 @@ pub enum Refusal {
         /// Half of the difference, in σ.
         sigmas: f64,
     },
-    /// What two speeds show does not go together.
+    /// What two speeds show of a sensor's lag and g-sensitivity does not go together, or not with the uneven turn.
     SpeedsDisagree {
         /// By how much, in σ.
         sigmas: f64,
@@ -436,8 +436,8 @@ words! { Refusal:
         "clockwise and counter-clockwise disagree by {} σ: this sensor is not flat, or lags",
         Rounded::<1>(sigmas);
     Self::SpeedsDisagree { sigmas } =>
-        "the two speeds disagree by {} σ about the sensor's lag and g-sensitivity: keep the base still, and turn \
-         unevenly at both",
+        "the two speeds disagree by {} σ about the sensor's lag and g-sensitivity: the base was turned, or the \
+         lag is not that of one pole",
         Rounded::<1>(sigmas);
     Self::TiltChanged { change } =>
         "the tilt changed by {} mg between senses or speeds: the base moved, or the encoder slipped",

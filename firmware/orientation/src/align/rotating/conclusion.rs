@@ -23,7 +23,7 @@ use crate::units::{DEGREES_PER_RADIAN as DEGREES, TURN};
 const EQUAL_SPEEDS: f64 = 0.01;
 /// Probability of healthy turns' scatter below which they are refused.
 const SCATTER_PROBABILITY: f64 = 1e-6;
-/// How many times the noise power that is, which σ takes in.
+/// Times the stated noise power up to which σ grows by it instead.
 const GREATEST_SCATTER: f64 = 3.0;
 /// Probability of it below which it raises σ.
 const EXCESS_PROBABILITY: f64 = 0.05;
