@@ -7,6 +7,7 @@ use std::f64::consts::TAU;
 use orientation::align::conclusion::Conclusion;
 use orientation::align::level::Tilt;
 use orientation::align::rotating::conclusion::Conclusion as PlatformConclusion;
+use orientation::align::rotating::coupling;
 use orientation::align::rotating::solution::{Fit, Pair};
 use orientation::align::setting::Setting;
 use orientation::math::Complex;
@@ -27,6 +28,8 @@ const TOLERANCE: f64 = 0.005;
 /// Part of σ from which on an error that does not show is worth telling.
 const WORTH_TELLING: f64 = 0.3;
 
+/// How far the frequency of a modulation may be from the speed that it stands for, relative.
+const SAME_SPEED: f64 = 0.3;
 /// Sine of the tilt below which an accelerometer in g instead of m/s² shows no impossible one: 1.5°.
 const NEARLY_LEVEL: f64 = 0.026;
 
@@ -100,7 +103,27 @@ pub fn of_platform(session: &rotating::Session) -> Vec<String> {
     ];
     let unseen = unseen::of_platform(session);
     let unseen = unseen.iter().map(ToString::to_string);
-    words_of(&untold).chain(unseen).chain(shown.untold()).collect()
+    words_of(&untold).chain(pole(session, conclusion)).chain(unseen).chain(shown.untold()).collect()
+}
+
+/// What it rests on that a sensor of unknown lag lags at a speed without an uneven turn as one pole does.
+fn pole(session: &rotating::Session, conclusion: &PlatformConclusion) -> Option<String> {
+    let setting = session.setting();
+    let horizontal = setting.common.latitude.horizontal_rate();
+    let off = |pair: &Pair| {
+        let coupling = coupling::nearest(&conclusion.couplings, pair.speed())?;
+        let is_there = (coupling.frequency / pair.speed() - 1.0).abs() < SAME_SPEED;
+        let [clockwise, counter] = pair.senses().map(|average| average.turning);
+        let felt = coupling.sine.abs() * (clockwise - counter).size() * 0.5;
+        (!is_there).then_some(felt / horizontal)
+    };
+    let most = conclusion.pairs.iter().filter_map(off).reduce(f64::max);
+    most.filter(|_| !setting.sensor.is_flat).map(|off| {
+        format!(
+            "the lag of one pole at the speed without an uneven turn: by each degree of another one north is up to \
+             {off:.2}° off"
+        )
+    })
 }
 
 /// Whether the forces show which way a platform turns: on two axes, and by its tilt.

@@ -17,7 +17,7 @@ pub use vehicle::{of_level, of_vehicle};
 use orientation::error::Refusal;
 use orientation::session::Session;
 
-use crate::recording::{Body, Header, Short};
+use crate::recording::{Body, Header, Sensor, Short};
 use crate::replay::{self, Options};
 use crate::rotating;
 
@@ -47,7 +47,7 @@ pub fn of_stopping(
     if is_short(refusal) && session.dwells().len() < FEW {
         return force.map(|unit| unit.told(units::force_columns(body)));
     }
-    let meant = units::tried(body, force, &passes);
+    let meant = units::tried(body, force, true, &passes);
     let warming = || {
         let is_possible = meant.as_ref().is_none_or(units::Trial::is_reversed);
         is_possible.then(|| warming::of(session, refusal, meant.is_some())).flatten()
@@ -81,13 +81,14 @@ pub fn of_turning(
         replay.is_ok_and(|replay| replay.conclusion().is_some_and(|c| c.verdict.is_ok()))
     };
     let noise = || {
-        let stated = Short(header.gyro_n_deg_sqrt_h?);
+        let stated = header.gyro_n_deg_sqrt_h.filter(|_| is_scattered(refusal)).map(Short)?;
         let silent = Header { gyro_n_deg_sqrt_h: None, ..header.clone() };
         passes(&silent, body).then(|| {
             format!("key gyro_N_deg_sqrt_h says {stated} °/√h, but the turns show another noise: leave it out")
         })
     };
-    units::tried(body, None, &|body| passes(header, body))
+    let gain_is_known = header.sensor != Some(Sensor::Met);
+    units::tried(body, None, gain_is_known, &|body| passes(header, body))
         .map(|trial| trial.told(body))
         .or_else(noise)
 }
@@ -109,6 +110,17 @@ fn is_short(refusal: &Refusal) -> bool {
             | Refusal::StopTooShort { .. }
             | Refusal::DriveTooShort { .. }
             | Refusal::LatitudeTooHigh { .. }
+    )
+}
+
+/// Whether a platform's turns are too far from each other, as those of a gyro with another noise are.
+fn is_scattered(refusal: &Refusal) -> bool {
+    matches!(
+        refusal,
+        Refusal::ResidualsNotWhite { .. }
+            | Refusal::TurnsDisturbed { .. }
+            | Refusal::TurnsAstray { .. }
+            | Refusal::BudgetNotMet { .. }
     )
 }
 

@@ -140,10 +140,16 @@ pub fn force_columns(body: &Body) -> &'static str {
     }
 }
 
-/// The units with which a recording passes.
-pub fn tried(body: &Body, force: Option<Unit>, passes: &dyn Fn(&Body) -> bool) -> Option<Trial> {
+/// The units with which a recording passes; those of the rate only where the sensor's gain is known.
+pub fn tried(
+    body: &Body,
+    force: Option<Unit>,
+    gain_is_known: bool,
+    passes: &dyn Fn(&Body) -> bool,
+) -> Option<Trial> {
+    let is_possible = |trial: &Trial| gain_is_known || trial.rate.0 == 1.0;
     let is_meant = |trial: &Trial| converted(body, trial).is_some_and(|body| passes(&body));
-    Trial::all(body, force).into_iter().find(is_meant)
+    Trial::all(body, force).into_iter().filter(is_possible).find(is_meant)
 }
 
 /// Whether the forces of a platform that turns may be in a unit of gravity: in its thousandths they swing by more than

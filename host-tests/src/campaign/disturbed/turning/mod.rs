@@ -2,6 +2,7 @@
 //! wrong with platform, base, sensor and accelerometer.
 
 mod classes;
+mod plain;
 
 use std::f64::consts::TAU;
 
@@ -9,12 +10,7 @@ use hal_mock::earth::EARTH_RATE_RAD_S;
 use hal_mock::molecular::MolecularConfiguration;
 use hal_mock::stage::{Ripple, Unevenness};
 use hal_mock::turntable::{EncoderSlip, Segment, TurningSample, Turntable, TurntableConfiguration};
-use orientation::align::rotating::coupling;
-use orientation::align::rotating::level::Lean;
-use orientation::align::rotating::molecular::{self, Halves};
 use orientation::align::rotating::solution::Fit;
-use orientation::align::rotating::turn::{Sense, Stretch, Turn};
-use orientation::math::Complex;
 use orientation::session::rotating::Session;
 
 use super::axes::shown;
@@ -220,7 +216,7 @@ impl Rig for Bench {
     }
 
     fn unchecked_deg(session: &Session) -> Option<f64> {
-        plain_deg(session)
+        plain::azimuth_deg(session)
     }
 }
 
@@ -247,62 +243,6 @@ fn answer(session: &Session, truth_deg: f64) -> Result<Answer, String> {
     let limit = conclusion.fit.map_or(f64::NAN, limit);
     let error = azimuth_error(degrees(azimuth.angle), truth_deg);
     Ok(Answer { error, sigma: degrees(azimuth.sigma), limit })
-}
-
-/// Variance that is taken for every phasor of a plain mean, (rad/s)²: so small that nothing counts as noise.
-const PLAIN_VARIANCE: f64 = 1e-20;
-
-/// Turns in which a sensor that is not flat settles.
-const SETTLING: usize = 2;
-
-/// Azimuth of the plain mean of all turns, °: nothing is checked, nothing left out.
-fn plain_deg(session: &Session) -> Option<f64> {
-    let conclusion = session.conclusion()?;
-    let setting = session.setting();
-    let latitude = setting.common.latitude;
-    let settling = if setting.sensor.is_flat { 0 } else { SETTLING };
-    let turned = || session.follower().stretches().iter().filter(|one| !one.turns().is_empty());
-    let rate = |stretch: &Stretch| {
-        let frequency = stretch.sense.signed(stretch.speed());
-        let coupling = coupling::nearest(&conclusion.couplings, frequency);
-        let response = coupling.map_or(Complex::default(), |found| found.response(frequency));
-        average(stretch, settling, |turn| {
-            Complex::of_signal(turn.rate) - response * Complex::of_signal(turn.turning)
-        })
-    };
-    let force = |stretch: &Stretch| average(stretch, 0, |turn| Complex::of_signal(turn.force));
-    let of = |sense: Sense| turned().filter(move |stretch| stretch.sense == sense);
-    let pairs: Vec<[&Stretch; 2]> = of(Sense::Clockwise)
-        .zip(of(Sense::CounterClockwise))
-        .map(|(clockwise, counter)| [clockwise, counter])
-        .collect();
-    let first = *pairs.first()?;
-    let mean = |[one, other]: [Complex; 2]| (one + other).scaled(0.5);
-    let tilt = mean(first.map(force)).scaled(1.0 / latitude.gravity());
-    let others = tilt.scaled(latitude.vertical_rate());
-    if setting.sensor.is_flat {
-        let (azimuth, _) = Lean::of(tilt).azimuth(mean(first.map(rate)) - others);
-        return Some(degrees(azimuth));
-    }
-    let half = |pair: &[&Stretch; 2]| {
-        Halves::of(pair[0].speed(), pair.map(rate), [PLAIN_VARIANCE; 2], 0.0)
-    };
-    let halves: Vec<Halves> = pairs.iter().map(half).collect();
-    if halves.len() < turned().count() - halves.len() {
-        return None;
-    }
-    let angle = molecular::freed(&halves, setting.sensor.molecular_sigma)?.angle;
-    let others = others.scaled(1.0 / latitude.horizontal_rate());
-    let (azimuth, _) = Lean::of(tilt).azimuth_towards(angle, others)?;
-    Some(degrees(azimuth))
-}
-
-/// The mean of something over a stretch's turns, but the first ones.
-fn average(stretch: &Stretch, settling: usize, of: impl Fn(&Turn) -> Complex) -> Complex {
-    let turns = stretch.turns();
-    let turns = turns.get(settling..).filter(|turns| !turns.is_empty()).unwrap_or(turns);
-    let sum = turns.iter().map(of).fold(Complex::default(), |sum, part| sum + part);
-    sum.scaled(1.0 / turns.len().max(1) as f64)
 }
 
 /// The answer of a drawn instrument without any fault.
