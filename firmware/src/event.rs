@@ -12,8 +12,8 @@ use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 use orientation::words;
 use orientation::words::Rounded;
 
-use crate::keep::Down;
-use crate::patience::Symptom;
+use crate::keep::VerticalGyro;
+use crate::retry_budget::Symptom;
 use crate::storage::Remembered;
 
 /// Something that happened. Angles in degrees, rates in degrees per hour, times in seconds.
@@ -109,11 +109,11 @@ pub enum Event {
     /// None that is stored will do.
     NothingRecalled,
     /// What is stored cannot be read.
-    Forgotten(Fault),
+    CalibrationUnreadable(Fault),
     /// A coupling is stored for the next time.
-    Kept(Remembered),
+    CalibrationSaved(Remembered),
     /// It could not be stored.
-    NotKept(Fault),
+    CalibrationNotSaved(Fault),
     /// Turns count from here: which way, at this speed, °/s.
     Stretch(Sense, f64),
     /// A turn was taken: number, of how many.
@@ -145,7 +145,7 @@ pub enum Event {
     /// A gyro's bias is beyond what was stated of it.
     BiasBeyondStated,
     /// Which gyro shows the down axis from now on.
-    DownGyro(Down),
+    DownGyro(VerticalGyro),
     /// The vehicle stands: its azimuth is found anew.
     Realigning,
     /// The vehicle stands as it stood before the restart: azimuth and its 1σ, °.
@@ -227,9 +227,9 @@ words! { Event:
         "gyro's axis {}° ± {}° (1σ) above the platform", Rounded::<4>(angle), Rounded::<4>(sigma);
     Self::Recalled(coupling) => "coupling recalled: {}", coupling;
     Self::NothingRecalled => "no stored coupling is of these speeds, and fresh";
-    Self::Forgotten(fault) => "stored couplings cannot be read: {}", fault;
-    Self::Kept(coupling) => "coupling kept: {}", coupling;
-    Self::NotKept(fault) => "coupling lost, it could not be kept: {}", fault;
+    Self::CalibrationUnreadable(fault) => "stored couplings cannot be read: {}", fault;
+    Self::CalibrationSaved(coupling) => "coupling kept: {}", coupling;
+    Self::CalibrationNotSaved(fault) => "coupling lost, it could not be kept: {}", fault;
     Self::Stretch(sense, speed) =>
         "turns count from here: {}, {} °/s", sense, Rounded::<2>(speed);
     Self::Turned(number, of) => "turn {} of {}", number, of;
@@ -263,10 +263,10 @@ words! { Event:
     Self::AzimuthLost => "keeping: the azimuth is lost until it is found or handed over again";
     Self::BiasBeyondStated =>
         "keeping: a gyro's bias is beyond five of the 1σ stated for it: nothing stated of the biases is believed";
-    Self::DownGyro(Down::Beside) => "keeping: the coarse gyro shows how the base turns about down";
-    Self::DownGyro(Down::Compared) =>
+    Self::DownGyro(VerticalGyro::Coarse) => "keeping: the coarse gyro shows how the base turns about down";
+    Self::DownGyro(VerticalGyro::Calibrated) =>
         "keeping: the coarse gyro, as it was compared, shows how the base turns about down";
-    Self::DownGyro(Down::Precise) => "keeping: the precise gyro shows how the base turns about down";
+    Self::DownGyro(VerticalGyro::Precise) => "keeping: the precise gyro shows how the base turns about down";
     Self::Realigning => "the vehicle stands: aligning anew";
     Self::HeadingRecalled(azimuth, sigma) =>
         "the vehicle stands as it stood before the restart: azimuth {}° ± {}° (1σ) recalled",

@@ -1,4 +1,4 @@
-//! A device with the patience that is left for it: lost readings are counted, a lost device is
+//! A device with the retry budget that is left for it: lost readings are counted, a lost device is
 //! started again, a sick one given up.
 
 use drivers::fault::Fault;
@@ -7,8 +7,8 @@ use orientation::device::Device;
 use orientation::error::Refusal;
 
 use crate::event::Event;
-use crate::patience::{Patience, Remedy, Symptom};
 use crate::ports::{Observer, Startable};
+use crate::retry_budget::{Remedy, RetryBudget, Symptom};
 use crate::shared::Shared;
 
 /// Rest before a device is started again, so that a disturbed supply can recover.
@@ -29,7 +29,7 @@ pub struct Guarded<'a, D> {
 #[derive(Debug)]
 struct Guard {
     name: Device,
-    patience: Patience,
+    retry_budget: RetryBudget,
 }
 
 impl Guard {
@@ -39,7 +39,7 @@ impl Guard {
         symptom: Symptom,
         shared: &Shared<'_, O>,
     ) -> Result<bool, Refusal> {
-        match self.patience.failed(symptom) {
+        match self.retry_budget.failed(symptom) {
             Remedy::Drop => Ok(false),
             Remedy::Restart => Ok(true),
             Remedy::GiveUp(trouble) => Err(shared.give_up(self.name, trouble)),
@@ -50,18 +50,18 @@ impl Guard {
 impl<'a, D: Startable> Guarded<'a, D> {
     /// Guards a device.
     pub fn new(device: &'a mut D, name: Device) -> Self {
-        Self { device, guard: Guard { name, patience: Patience::default() } }
+        Self { device, guard: Guard { name, retry_budget: RetryBudget::default() } }
     }
 
     /// How often the device had to be started again.
     #[must_use]
     pub fn restarts(&self) -> u8 {
-        self.guard.patience.restarts()
+        self.guard.retry_budget.restarts()
     }
 
-    /// Has all patience with it again.
+    /// Has all retry budget with it again.
     pub fn renew(&mut self) {
-        self.guard.patience = Patience::default();
+        self.guard.retry_budget = RetryBudget::default();
     }
 
     /// Starts the device, several times where it must be.
@@ -107,7 +107,7 @@ impl<'a, D: Startable> Guarded<'a, D> {
             return Err(Symptom::Slow);
         }
         if outcome.is_ok() {
-            self.guard.patience.succeeded();
+            self.guard.retry_budget.succeeded();
         }
         outcome.map_err(Symptom::Chip)
     }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!  gyro ──────┐
-//!  encoder ───┼─▶ acquire ─sample─▶ conduct (filter, dwell, session) ─▶ azimuth ± σ ─▶ link
+//!  encoder ───┼─▶ acquire ─sample─▶ runner (filter, dwell, session) ─▶ azimuth ± σ ─▶ link
 //!  force ─────┘      │ angle           │ command                    └▶ observer (log)
 //!                    └────────────▶ stage ─▶ motor
 //! ```
@@ -27,15 +27,15 @@ pub mod chips;
 pub mod acquire;
 pub mod calibration;
 pub mod guarded;
-pub mod patience;
 pub mod pointing;
+pub mod retry_budget;
 pub mod steady;
 pub mod timeline;
 
-pub mod conduct;
 pub mod gimbal;
 pub mod keep;
 pub mod motor;
+pub mod runner;
 pub mod stage;
 pub mod turntable;
 

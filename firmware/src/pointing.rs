@@ -1,6 +1,6 @@
 //! Where the gyro's sensitive axis points, by the encoders: of a stage's one axis, or of two frames.
 //!
-//! Every encoder is guarded, its harmonics are taken off, and a reading further from the one before
+//! Decimator encoder is guarded, its harmonics are taken off, and a reading further from the one before
 //! than anything can turn is lost. Two frames give heading and elevation by their calibrated geometry.
 //! The session takes the axis to stand where its heading does; of two frames the heading does not tell,
 //! so while either moves, or the axis is not level, it is made to jump from sample to sample.
@@ -17,8 +17,8 @@ use orientation::units::{Angle, DEGREE};
 use crate::calibration::{Calibration, Harmonics};
 use crate::configuration::{Configuration, FramesConfiguration};
 use crate::guarded::Guarded;
-use crate::patience::Symptom;
 use crate::ports::{Encoder, Frames, Observer};
+use crate::retry_budget::Symptom;
 use crate::shared::{LatestAngle, Shared};
 
 /// Faster than any stage: a quarter of a turn a second, in steps of an [`Angle`] in a microsecond.
@@ -53,7 +53,7 @@ pub trait Pointing {
     /// Starts the encoders.
     async fn start(&mut self) -> Result<(), Refusal>;
 
-    /// Has all patience with them again.
+    /// Has all retry budget with them again.
     fn renew(&mut self);
 
     /// What the encoders show, read anew with every so-manieth sample; none where a reading was lost.
@@ -70,13 +70,13 @@ pub trait Pointing {
 
 /// Says yes at first, then every so-manieth time.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Every {
+pub(crate) struct Decimator {
     /// How many.
     pub(crate) divider: u32,
     left: u32,
 }
 
-impl Every {
+impl Decimator {
     pub(crate) fn new(divider: u32) -> Self {
         Self { divider: divider.max(1), left: 0 }
     }
@@ -106,7 +106,7 @@ pub struct Shaft<'a, E, O> {
     encoder: Guarded<'a, E>,
     name: Device,
     calibration: Calibration,
-    due: Every,
+    due: Decimator,
     /// The angle of the latest reading; none where it was lost.
     angle: Option<Angle>,
     latest: &'a LatestAngle,
@@ -128,7 +128,7 @@ impl<'a, E: Encoder, O: Observer> Shaft<'a, E, O> {
             encoder: Guarded::new(encoder, name),
             name,
             calibration: Calibration::new(harmonics),
-            due: Every::new(configuration.angle_divider),
+            due: Decimator::new(configuration.angle_divider),
             angle: None,
             latest,
             has_jumped: false,

@@ -209,7 +209,7 @@ impl HeadingStore for () {
 
 /// Who tells the keeper what it cannot measure: an operator, another vehicle's instrument, an odometer.
 /// Asked once a second.
-pub trait Outside {
+pub trait Aiding {
     /// An azimuth of body x at this moment, with its 1σ, where there is one that was not told before.
     fn azimuth(&mut self) -> Option<Handover>;
 
@@ -221,7 +221,7 @@ pub trait Outside {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoOutside;
 
-impl Outside for NoOutside {
+impl Aiding for NoOutside {
     fn azimuth(&mut self) -> Option<Handover> {
         None
     }
@@ -247,7 +247,7 @@ impl<S> Recorder<S> for NoRecorder {
 }
 
 /// What knows where the vehicle is: a satellite receiver, an odometer, a map.
-pub trait Whereabouts {
+pub trait PositionAiding {
     /// How far north and east the vehicle stands of where it stood first, m; none where that is not
     /// known, or not yet. Asked at every stop until it is.
     fn displacement(&mut self) -> Option<[f64; 2]>;
@@ -257,7 +257,7 @@ pub trait Whereabouts {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoWhereabouts;
 
-impl Whereabouts for NoWhereabouts {
+impl PositionAiding for NoWhereabouts {
     fn displacement(&mut self) -> Option<[f64; 2]> {
         None
     }
@@ -375,7 +375,7 @@ pub struct SpinPorts<L, R> {
 #[derive(Debug)]
 pub struct VehiclePorts<W, L, R> {
     /// What knows where the vehicle is.
-    pub whereabouts: W,
+    pub position_aiding: W,
     /// Where status lines go.
     pub link: L,
     /// Where raw samples go.

@@ -15,7 +15,6 @@ use orientation::session::{Session, rotating, stops};
 use orientation::signal::{InertialSample, SpinSample};
 
 use crate::acquire::{Acquisition, SpinAcquisition, TriadAcquisition};
-use crate::conduct::{Conducted, Conductor, Rotating, Stepwise, Stops};
 use crate::configuration::{
     Configuration, FramesConfiguration, TurntableConfiguration, VehicleConfiguration,
 };
@@ -26,9 +25,10 @@ use crate::link;
 use crate::pointing::{FrameShafts, Shaft};
 use crate::ports::{
     Accelerometer, Actuator, CalibrationStore, Code, Encoder, Frames, Gyro, InStep, Observer,
-    Ports, Recorder, Sensors, SpinPorts, SpinSensors, VehiclePorts, VehicleSensors, Whereabouts,
+    Ports, PositionAiding, Recorder, Sensors, SpinPorts, SpinSensors, VehiclePorts, VehicleSensors,
 };
-use crate::shared::{LatestAngle, Seams};
+use crate::runner::{AlignmentSession, Rotating, SessionRunner, Stepwise, Stops};
+use crate::shared::{Channels, LatestAngle};
 use crate::spin::configuration::SpinConfiguration;
 use crate::spin::{self, Flight};
 use crate::stage::Stage;
@@ -41,7 +41,7 @@ use crate::turntable::Turntable;
 pub async fn acquire<G, A, E, B, O>(
     sensors: &mut Sensors<G, A, E, B>,
     configuration: &Configuration,
-    seams: &Seams<'_, O>,
+    channels: &Channels<'_, O>,
 ) where
     G: Gyro,
     A: Accelerometer,
@@ -51,10 +51,12 @@ pub async fn acquire<G, A, E, B, O>(
 {
     let Sensors { gyro, accelerometer, encoder, base } = sensors;
     let harmonics = configuration.encoder;
-    let (shared, latest) = (&seams.shared, &seams.shared.angle);
+    let (shared, latest) = (&channels.shared, &channels.shared.angle);
     let shaft = Shaft::new(encoder, Device::Encoder, harmonics, configuration, latest, shared);
     let steady = base.steady();
-    Acquisition::new(gyro, accelerometer, shaft, steady, configuration, seams).run_for_ever().await;
+    Acquisition::new(gyro, accelerometer, shaft, steady, configuration, channels)
+        .run_for_ever()
+        .await;
 }
 
 /// The same for a mount with two frames, whose latest angles go to `latest`.
@@ -63,7 +65,7 @@ pub async fn acquire_frames<G, A, E, B, O>(
     configuration: &Configuration,
     frames: &FramesConfiguration,
     latest: &Frames<LatestAngle>,
-    seams: &Seams<'_, O>,
+    channels: &Channels<'_, O>,
 ) where
     G: Gyro,
     A: Accelerometer,
@@ -72,9 +74,9 @@ pub async fn acquire_frames<G, A, E, B, O>(
     O: Observer,
 {
     let Sensors { gyro, accelerometer, encoder, base } = sensors;
-    let shafts = FrameShafts::new(encoder, configuration, frames, latest, &seams.shared);
+    let shafts = FrameShafts::new(encoder, configuration, frames, latest, &channels.shared);
     let steady = base.steady();
-    Acquisition::new(gyro, accelerometer, shafts, steady, configuration, seams)
+    Acquisition::new(gyro, accelerometer, shafts, steady, configuration, channels)
         .run_for_ever()
         .await;
 }
@@ -83,26 +85,26 @@ pub async fn acquire_frames<G, A, E, B, O>(
 pub async fn acquire_triad<G, A, O>(
     sensors: &mut VehicleSensors<G, A>,
     configuration: &VehicleConfiguration,
-    seams: &Seams<'_, O, InertialSample>,
+    channels: &Channels<'_, O, InertialSample>,
 ) where
     G: InStep,
     A: Accelerometer,
     O: Observer,
 {
-    TriadAcquisition::new(sensors, configuration, seams).run_for_ever().await;
+    TriadAcquisition::new(sensors, configuration, channels).run_for_ever().await;
 }
 
 /// The same for sensors that are fixed to a spinning body.
 pub async fn acquire_spin<C, O>(
     sensors: &mut SpinSensors<C>,
     configuration: &SpinConfiguration,
-    seams: &Seams<'_, O, SpinSample>,
+    channels: &Channels<'_, O, SpinSample>,
 ) where
     C: InStep<Code>,
     O: Observer,
 {
-    let reason = SpinAcquisition::new(sensors, configuration, seams).run().await;
-    seams.shared.fail(reason);
+    let reason = SpinAcquisition::new(sensors, configuration, channels).run().await;
+    channels.shared.fail(reason);
     pending::<()>().await;
 }
 
@@ -114,7 +116,7 @@ pub async fn run<M, L, R, O>(
     ports: &mut Ports<M, L, R>,
     configuration: &Configuration,
     session: &mut Session,
-    seams: &Seams<'_, O>,
+    channels: &Channels<'_, O>,
 ) -> Health
 where
     M: Actuator,
@@ -122,7 +124,7 @@ where
     R: Recorder,
     O: Observer,
 {
-    run_and_keep(ports, configuration, session, &mut (), seams).await
+    run_and_keep(ports, configuration, session, &mut (), channels).await
 }
 
 /// The same, and goes on keeping what was found.
@@ -131,7 +133,7 @@ pub async fn run_and_keep<M, L, R, K, O>(
     configuration: &Configuration,
     session: &mut Session,
     keeping: &mut K,
-    seams: &Seams<'_, O>,
+    channels: &Channels<'_, O>,
 ) -> Health
 where
     M: Actuator,
@@ -141,10 +143,10 @@ where
     O: Observer,
 {
     let Ports { actuator, link, recorder } = ports;
-    let mut stage = Stage::new(actuator, &configuration.stage, &seams.shared);
+    let mut stage = Stage::new(actuator, &configuration.stage, &channels.shared);
     let turning = pin!(stage.run());
-    let kept = pin!(keeping.run(&seams.shared));
-    keep_beside(turning, kept, link, recorder, &mut Stepwise::new(session), seams).await
+    let kept = pin!(keeping.run(&channels.shared));
+    keep_beside(turning, kept, link, recorder, &mut Stepwise::new(session), channels).await
 }
 
 /// The same on a platform that turns all the time. Whatever the end, the platform comes to rest.
@@ -152,7 +154,7 @@ pub async fn run_rotating<M, L, R, O>(
     ports: &mut Ports<M, L, R>,
     configuration: &TurntableConfiguration,
     session: &mut rotating::Session,
-    seams: &Seams<'_, O>,
+    channels: &Channels<'_, O>,
 ) -> Health
 where
     M: Actuator,
@@ -164,13 +166,13 @@ where
         session.handle(rotating::Event::Failed(Refusal::CouplingUnknown));
     }
     let Ports { actuator, link, recorder } = ports;
-    let mut turntable = Turntable::new(actuator, configuration, &seams.shared);
+    let mut turntable = Turntable::new(actuator, configuration, &channels.shared);
     let health = {
         let turning = pin!(turntable.run());
-        beside(turning, link, recorder, &mut Rotating::new(session), seams).await
+        beside(turning, link, recorder, &mut Rotating::new(session), channels).await
     };
     // Where that fails, too, the log has the reason.
-    select(turntable.rest(), discard(seams)).await;
+    select(turntable.rest(), discard(channels)).await;
     health
 }
 
@@ -183,13 +185,13 @@ fn is_coupled(session: &rotating::Session) -> bool {
 }
 
 /// The same as [`run_rotating`], and keeps the couplings that it found. Those that were kept before must
-/// be in the session already, by [`storage::prepare`].
+/// be in the session already, by [`storage::load_calibration`].
 pub async fn run_storing<M, L, R, S, O>(
     ports: &mut Ports<M, L, R>,
     configuration: &TurntableConfiguration,
     session: &mut rotating::Session,
     store: &mut S,
-    seams: &Seams<'_, O>,
+    channels: &Channels<'_, O>,
 ) -> Health
 where
     M: Actuator,
@@ -198,8 +200,8 @@ where
     S: CalibrationStore,
     O: Observer,
 {
-    let health = run_rotating(ports, configuration, session, seams).await;
-    select(storage::conserve(store, session, &seams.shared), discard(seams)).await;
+    let health = run_rotating(ports, configuration, session, channels).await;
+    select(storage::save_calibration(store, session, &channels.shared), discard(channels)).await;
     health
 }
 
@@ -210,7 +212,7 @@ pub async fn run_frames<M, L, R, O>(
     frames: &FramesConfiguration,
     latest: &Frames<LatestAngle>,
     session: &mut Session,
-    seams: &Seams<'_, O>,
+    channels: &Channels<'_, O>,
 ) -> Health
 where
     M: Actuator,
@@ -218,7 +220,7 @@ where
     R: Recorder,
     O: Observer,
 {
-    run_frames_and_keep(ports, frames, latest, session, &mut (), seams).await
+    run_frames_and_keep(ports, frames, latest, session, &mut (), channels).await
 }
 
 /// The same, and goes on keeping what was found, by the precise gyro once its axis is vertical.
@@ -228,7 +230,7 @@ pub async fn run_frames_and_keep<M, L, R, K, O>(
     latest: &Frames<LatestAngle>,
     session: &mut Session,
     keeping: &mut K,
-    seams: &Seams<'_, O>,
+    channels: &Channels<'_, O>,
 ) -> Health
 where
     M: Actuator,
@@ -238,18 +240,18 @@ where
     O: Observer,
 {
     let Ports { actuator, link, recorder } = ports;
-    let mut gimbal = Gimbal::new(actuator, frames, latest, &seams.shared);
+    let mut gimbal = Gimbal::new(actuator, frames, latest, &channels.shared);
     let health = {
         let turning = pin!(gimbal.run());
-        let kept = pin!(keeping.run(&seams.shared));
-        keep_beside(turning, kept, link, recorder, &mut Stepwise::new(session), seams).await
+        let kept = pin!(keeping.run(&channels.shared));
+        keep_beside(turning, kept, link, recorder, &mut Stepwise::new(session), channels).await
     };
-    if seams.shared.keep.is_wanted.get() {
+    if channels.shared.keep.is_wanted.get() {
         return health;
     }
     if session.conclusion().is_some_and(|conclusion| conclusion.verdict.is_ok()) {
         // Where that fails, the log has the reason; the azimuth stands all the same.
-        select(gimbal.store(), discard(seams)).await;
+        select(gimbal.store(), discard(channels)).await;
     }
     health
 }
@@ -258,15 +260,15 @@ where
 pub async fn run_stops<W, L, R, O>(
     ports: &mut VehiclePorts<W, L, R>,
     session: &mut stops::Session,
-    seams: &Seams<'_, O, InertialSample>,
+    channels: &Channels<'_, O, InertialSample>,
 ) -> Health
 where
-    W: Whereabouts,
+    W: PositionAiding,
     L: Write,
     R: Recorder<InertialSample>,
     O: Observer,
 {
-    run_stops_and_keep(ports, session, &mut (), seams).await
+    run_stops_and_keep(ports, session, &mut (), channels).await
 }
 
 /// The same, and goes on keeping what was found.
@@ -274,52 +276,52 @@ pub async fn run_stops_and_keep<W, L, R, K, O>(
     ports: &mut VehiclePorts<W, L, R>,
     session: &mut stops::Session,
     keeping: &mut K,
-    seams: &Seams<'_, O, InertialSample>,
+    channels: &Channels<'_, O, InertialSample>,
 ) -> Health
 where
-    W: Whereabouts,
+    W: PositionAiding,
     L: Write,
     R: Recorder<InertialSample>,
     K: Keep,
     O: Observer,
 {
-    let VehiclePorts { whereabouts, link, recorder } = ports;
+    let VehiclePorts { position_aiding, link, recorder } = ports;
     // There is no angle to find first, and nothing to turn.
-    seams.shared.homed.signal(());
+    channels.shared.homed.signal(());
     let still = pin!(pending());
-    let kept = pin!(keeping.run(&seams.shared));
-    let mut session = Stops::new(session, whereabouts);
-    keep_beside(still, kept, link, recorder, &mut session, seams).await
+    let kept = pin!(keeping.run(&channels.shared));
+    let mut session = Stops::new(session, position_aiding);
+    keep_beside(still, kept, link, recorder, &mut session, channels).await
 }
 
 /// Follows the roll of a spinning body until the flight's time is over, or a sensor is given up.
 pub async fn run_spin<L, R, O>(
     ports: &mut SpinPorts<L, R>,
     flight: &mut Flight,
-    seams: &Seams<'_, O, SpinSample>,
+    channels: &Channels<'_, O, SpinSample>,
 ) -> Health
 where
     L: Write,
     R: Recorder<SpinSample>,
     O: Observer,
 {
-    let (SpinPorts { link, recorder }, shared) = (ports, &seams.shared);
+    let (SpinPorts { link, recorder }, shared) = (ports, &channels.shared);
     {
         let tell = pin!(async {
             link::run(link, shared).await;
             pending::<()>().await;
         });
         let watch = pin!(health::watch(shared));
-        select3(spin::follow(flight, recorder, seams), tell, watch).await;
+        select3(spin::follow(flight, recorder, channels), tell, watch).await;
     }
     link::send(link, shared).await;
     shared.health.get()
 }
 
 /// Lets samples go by.
-async fn discard<O, S>(seams: &Seams<'_, O, S>) {
+async fn discard<O, S>(channels: &Channels<'_, O, S>) {
     loop {
-        seams.samples.receive().await;
+        channels.samples.receive().await;
     }
 }
 
@@ -328,15 +330,15 @@ async fn beside<L, R, O, S>(
     turning: Pin<&mut dyn Future<Output = Refusal>>,
     link: &mut L,
     recorder: &mut R,
-    session: &mut dyn Conducted<O, S>,
-    seams: &Seams<'_, O, S>,
+    session: &mut dyn AlignmentSession<O, S>,
+    channels: &Channels<'_, O, S>,
 ) -> Health
 where
     L: Write,
     R: Recorder<S>,
     O: Observer,
 {
-    keep_beside(turning, pin!(pending()), link, recorder, session, seams).await
+    keep_beside(turning, pin!(pending()), link, recorder, session, channels).await
 }
 
 /// The same with what keeps, whose end is that of everything.
@@ -345,18 +347,18 @@ async fn keep_beside<L, R, O, S>(
     kept: Pin<&mut dyn Future<Output = ()>>,
     link: &mut L,
     recorder: &mut R,
-    session: &mut dyn Conducted<O, S>,
-    seams: &Seams<'_, O, S>,
+    session: &mut dyn AlignmentSession<O, S>,
+    channels: &Channels<'_, O, S>,
 ) -> Health
 where
     L: Write,
     R: Recorder<S>,
     O: Observer,
 {
-    let shared = &seams.shared;
-    let mut conductor = Conductor::new(session, recorder, seams);
+    let shared = &channels.shared;
+    let mut conductor = SessionRunner::new(session, recorder, channels);
     // Pinned here, each part lies in memory once.
-    let conduct = pin!(conductor.run());
+    let runner = pin!(conductor.run());
     let position = pin!(async {
         shared.fail(turning.await);
         pending::<()>().await;
@@ -364,6 +366,6 @@ where
     let tell = pin!(link::run(link, shared));
     let watch = pin!(health::watch(shared));
     // The keeper comes last: it takes what the session has taken.
-    select5(conduct, position, tell, watch, kept).await;
+    select5(runner, position, tell, watch, kept).await;
     shared.health.get()
 }

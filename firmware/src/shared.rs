@@ -14,10 +14,10 @@ use orientation::units::Angle;
 
 use crate::event::Event;
 use crate::health::Health;
-use crate::keep::Seam;
+use crate::keep::KeeperChannels;
 use crate::link::Status;
-use crate::patience::Symptom;
 use crate::ports::Observer;
+use crate::retry_budget::Symptom;
 
 /// Samples that may wait for the session: 8 ms at 2 kHz.
 pub const QUEUE: usize = 16;
@@ -25,16 +25,16 @@ pub const QUEUE: usize = 16;
 /// Samples on their way from acquisition to the session.
 pub type Queue<S> = Channel<NoopRawMutex, S, QUEUE>;
 
-/// All seams of an instrument whose samples are of the kind `S`. Only acquisition and the session know the
+/// All channels of an instrument whose samples are of the kind `S`. Only acquisition and the session know the
 /// kind.
-pub struct Seams<'a, O, S = Sample> {
+pub struct Channels<'a, O, S = Sample> {
     /// From acquisition to the session.
     pub samples: Queue<S>,
     /// The others.
     pub shared: Shared<'a, O>,
 }
 
-impl<'a, O: Observer, S> Seams<'a, O, S> {
+impl<'a, O: Observer, S> Channels<'a, O, S> {
     /// Nothing has happened yet.
     pub const fn new(observer: &'a O) -> Self {
         Self { samples: Queue::new(), shared: Shared::new(observer) }
@@ -44,7 +44,7 @@ impl<'a, O: Observer, S> Seams<'a, O, S> {
 /// The latest encoder angle of an axis, corrected, and when it was read.
 pub type LatestAngle = Cell<(Angle, Instant)>;
 
-/// The seams between the parts, but for the samples. All of them run in one executor, so nothing needs a
+/// The channels between the parts, but for the samples. All of them run in one executor, so nothing needs a
 /// lock.
 pub struct Shared<'a, O> {
     /// From the session to what turns the gyro: where to stand, rad, or on a turntable how fast to
@@ -63,7 +63,7 @@ pub struct Shared<'a, O> {
     /// What a subtracted sway leaves in the samples; decided before the stage is homed.
     pub sway: Cell<SwayNoise>,
     /// What acquisition and the session hand to the keeper, and it to them.
-    pub keep: Seam,
+    pub keep: KeeperChannels,
     /// What went wrong so far.
     pub health: Cell<Health>,
     /// What the link tells.
@@ -82,7 +82,7 @@ impl<'a, O: Observer> Shared<'a, O> {
             concluded: Signal::new(),
             angle: Cell::new((Angle(0), Instant::MIN)),
             sway: Cell::new(SwayNoise::NONE),
-            keep: Seam::new(),
+            keep: KeeperChannels::new(),
             health: Cell::new(Health::EMPTY),
             status: Cell::new(Status::Starting),
             observer,

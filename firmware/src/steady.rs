@@ -4,7 +4,7 @@
 //! sway was watched for long enough nothing is decided, and the stage is not told to begin. Then the
 //! whole session is measured as it was decided.
 //!
-//! Every reading also goes to whoever keeps attitude and azimuth.
+//! Decimator reading also goes to whoever keeps attitude and azimuth.
 //!
 //! A base IMU that is lost is started again like any other device. Where it is given up, a session
 //! that does not need it goes on without it.
@@ -18,13 +18,13 @@ use orientation::error::Refusal;
 use orientation::signal::sway::{Decision, Sway};
 use orientation::units::{Angle, AngularRate, DEGREES_PER_RADIAN as DEGREES, SpecificForce, TURN};
 
-use crate::acquire::{Row, STUCK};
+use crate::acquire::{RepeatCounter, STUCK};
 use crate::event::Event;
 use crate::guarded::Guarded;
 use crate::keep::RETRY;
-use crate::patience::Symptom;
-use crate::pointing::Every;
+use crate::pointing::Decimator;
 use crate::ports::{BaseReading, BaseSensors, NoBase, Observer};
+use crate::retry_budget::Symptom;
 use crate::shared::Shared;
 
 /// Time without a new reading after which the base IMU is silent, µs.
@@ -38,17 +38,17 @@ const KEPT: u32 = 1 << 18;
 /// Whatever stands on the base: sensors, or nothing.
 pub trait Base {
     /// What makes rates steady with it.
-    type Steady<'a>: Steady
+    type CompensatesSway<'a>: CompensatesSway
     where
         Self: 'a;
 
     /// Takes the sensors; nothing is started yet.
-    fn steady(&mut self) -> Self::Steady<'_>;
+    fn steady(&mut self) -> Self::CompensatesSway<'_>;
 }
 
 /// What makes rates steady.
 #[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
-pub trait Steady {
+pub trait CompensatesSway {
     /// Starts what it needs.
     async fn start<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal>;
 
@@ -64,7 +64,7 @@ pub trait Steady {
     /// Time between two readings, µs, of a precise gyro of that sample period, µs.
     fn period(&self, sample: u32) -> u32;
 
-    /// Has all patience with it again.
+    /// Has all retry budget with it again.
     fn renew(&mut self);
 
     /// The rate along a level axis at this heading, less the sway.
@@ -72,7 +72,7 @@ pub trait Steady {
 }
 
 impl Base for NoBase {
-    type Steady<'a> = NoBase;
+    type CompensatesSway<'a> = NoBase;
 
     fn steady(&mut self) -> NoBase {
         NoBase
@@ -80,7 +80,7 @@ impl Base for NoBase {
 }
 
 /// Rates are taken as they are.
-impl Steady for NoBase {
+impl CompensatesSway for NoBase {
     fn start<O: Observer>(
         &mut self,
         _: &Shared<'_, O>,
@@ -115,26 +115,26 @@ impl Steady for NoBase {
 }
 
 impl<B: BaseSensors> Base for B {
-    type Steady<'a>
-        = Steadied<'a, B>
+    type CompensatesSway<'a>
+        = SwayCompensation<'a, B>
     where
         B: 'a;
 
-    fn steady(&mut self) -> Steadied<'_, B> {
-        Steadied::new(self)
+    fn steady(&mut self) -> SwayCompensation<'_, B> {
+        SwayCompensation::new(self)
     }
 }
 
 /// Sensors on the base at work.
-pub struct Steadied<'a, B> {
+pub struct SwayCompensation<'a, B> {
     base: Guarded<'a, B>,
-    due: Every,
+    due: Decimator,
     sway: Sway,
     /// When the latest new reading came.
     latest: Instant,
     /// Since when none has come: that time, or the latest start.
     silent: Instant,
-    readings: Row<[AngularRate; 3]>,
+    readings: RepeatCounter<[AngularRate; 3]>,
     /// The latest reading, for whoever keeps.
     fresh: Option<(Instant, BaseReading)>,
     /// The same where it was not held yet.
@@ -148,16 +148,16 @@ pub struct Steadied<'a, B> {
     lost: Instant,
 }
 
-impl<'a, B: BaseSensors> Steadied<'a, B> {
+impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
     fn new(device: &'a mut B) -> Self {
         let (sensors, divider) = (device.sensors(), device.divider());
         Self {
             base: Guarded::new(device, Device::Base),
-            due: Every::new(divider),
+            due: Decimator::new(divider),
             sway: Sway::new(sensors),
             latest: Instant::MIN,
             silent: Instant::MIN,
-            readings: Row::new(),
+            readings: RepeatCounter::new(),
             fresh: None,
             held: None,
             stage: Angle(0),
@@ -198,7 +198,7 @@ impl<'a, B: BaseSensors> Steadied<'a, B> {
         let BaseReading { rate, force, is_clipped } = reading;
         self.silent = at;
         if self.readings.push(rate) >= STUCK {
-            self.readings = Row::new();
+            self.readings = RepeatCounter::new();
             return Err(Symptom::Stuck);
         }
         self.fresh = Some((at, reading));
@@ -273,7 +273,7 @@ impl<'a, B: BaseSensors> Steadied<'a, B> {
     }
 }
 
-impl<B: BaseSensors> Steady for Steadied<'_, B> {
+impl<B: BaseSensors> CompensatesSway for SwayCompensation<'_, B> {
     async fn start<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal> {
         self.is_lost = self.base.start(shared).await.is_err();
         self.silent = Instant::now();

@@ -144,7 +144,7 @@ pub async fn keep<S: CalibrationStore>(
 
 /// Before a session: dates what it will find and, where its procedure has no uneven turns, gives it what
 /// was kept. Tells what was recalled.
-pub async fn prepare<S: CalibrationStore, O: Observer>(
+pub async fn load_calibration<S: CalibrationStore, O: Observer>(
     store: &mut S,
     today: Today,
     (setting, procedure): (&mut Setting, &mut Procedure),
@@ -162,13 +162,13 @@ pub async fn prepare<S: CalibrationStore, O: Observer>(
             }
         }
         Ok(None) => shared.tell(Event::NothingRecalled),
-        Err(fault) => shared.tell(Event::Forgotten(fault)),
+        Err(fault) => shared.tell(Event::CalibrationUnreadable(fault)),
     }
 }
 
 /// After a session: keeps the couplings that it found, if north was found with them, and tells it. What
 /// could not be trusted for north is not trusted for the next time.
-pub async fn conserve<S: CalibrationStore, O: Observer>(
+pub async fn save_calibration<S: CalibrationStore, O: Observer>(
     store: &mut S,
     session: &Session,
     shared: &Shared<'_, O>,
@@ -178,9 +178,11 @@ pub async fn conserve<S: CalibrationStore, O: Observer>(
     }
     match keep(store, session.couplings()).await {
         Ok(()) => {
-            session.couplings().for_each(|found| shared.tell(Event::Kept((&found).into())));
+            session
+                .couplings()
+                .for_each(|found| shared.tell(Event::CalibrationSaved((&found).into())));
         }
-        Err(fault) => shared.tell(Event::NotKept(fault)),
+        Err(fault) => shared.tell(Event::CalibrationNotSaved(fault)),
     }
 }
 

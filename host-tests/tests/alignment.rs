@@ -5,7 +5,7 @@
 use hal_mock::noise::Generator;
 use orientation::align::direction::{Amplitude, Components};
 use orientation::align::level::tilt;
-use orientation::align::quality::{Disturbance, Norm};
+use orientation::align::quality::{Disturbance, ExpectedScatter};
 use orientation::align::regression::{Column, Regression};
 use orientation::align::setting::{Half, Setting};
 use orientation::earth::Latitude;
@@ -292,7 +292,7 @@ fn gyro() -> Setting {
 fn quiet_dwells_pass_and_kicks_nudges_and_slopes_do_not() {
     let mut generator = Generator::new(5);
     let healthy: Vec<Dwell> = (0..40).map(|_| blocks(&mut generator, 1000, |_| 0.0)).collect();
-    let norm = Norm::of(&gyro(), &healthy);
+    let norm = ExpectedScatter::of(&gyro(), &healthy);
     assert!(healthy.iter().all(|dwell| norm.disturbance(dwell).is_none()));
     let kick = blocks(&mut generator, 1000, |i| if i / 50 == 8 { 8.0 } else { 0.0 });
     assert!(norm.disturbance(&kick).is_some());
@@ -316,7 +316,7 @@ fn the_stop_criteria_name_dwells_in_which_a_vehicle_turned_or_drove() {
         ..blocks(&mut generator, 1000, |_| 0.0)
     };
     let healthy: Vec<Dwell> = (0..24).map(|index| dwell(index, 0.0, 0.0)).collect();
-    let norm = Norm::of(&gyro(), &healthy);
+    let norm = ExpectedScatter::of(&gyro(), &healthy);
     for dwell in &healthy {
         assert_eq!(norm.disturbance(dwell), None);
     }
@@ -333,7 +333,7 @@ fn a_slope_that_all_dwells_share_is_no_disturbance() {
     let mut generator = Generator::new(6);
     let warming: Vec<Dwell> =
         (0..24).map(|_| blocks(&mut generator, 1000, |i| 0.001 * f64::from(i))).collect();
-    let norm = Norm::of(&gyro(), &warming);
+    let norm = ExpectedScatter::of(&gyro(), &warming);
     let disturbed = warming.iter().filter(|dwell| norm.disturbance(dwell).is_some()).count();
     assert_eq!(disturbed, 0);
 }
@@ -341,7 +341,7 @@ fn a_slope_that_all_dwells_share_is_no_disturbance() {
 #[test]
 fn a_healthy_dwell_is_rejected_less_than_once_in_two_thousand() {
     let mut generator = Generator::new(7);
-    let norm = Norm::of(&gyro(), &[]);
+    let norm = ExpectedScatter::of(&gyro(), &[]);
     let rejected = (0..20_000)
         .filter(|_| {
             let dwell = blocks(&mut generator, 250, |_| 0.0);
@@ -356,6 +356,6 @@ fn an_unknown_noise_is_taken_from_the_dwells() {
     let mut generator = Generator::new(8);
     let dwells: Vec<Dwell> = (0..20).map(|_| blocks(&mut generator, 1000, |_| 0.0)).collect();
     let setting = Setting { white_known: false, ..gyro() };
-    let found = Norm::of(&setting, &dwells).white().sqrt();
+    let found = ExpectedScatter::of(&setting, &dwells).white().sqrt();
     assert!((found / 1e-7 - 1.0).abs() < 0.15, "{found}");
 }

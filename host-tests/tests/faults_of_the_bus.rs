@@ -332,8 +332,8 @@ fn a_transfer_hangs_once_and_one_that_is_given_up_has_sent_nothing() {
     run(async {
         let rig = rig();
         let mut device = device(&rig, BusFault::Hang, When::once(micros(0)));
-        let patience = Duration::from_millis(20);
-        assert!(with_timeout(patience, ask(&mut device, &SENT)).await.is_err());
+        let retry_budget = Duration::from_millis(20);
+        assert!(with_timeout(retry_budget, ask(&mut device, &SENT)).await.is_err());
         assert_eq!(heard(&rig), 0);
         assert!(is_healthy(&mut device, 1, &SENT).await);
         assert_eq!(Instant::now(), micros(20_003));

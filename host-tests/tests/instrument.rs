@@ -175,7 +175,7 @@ fn every_fault_of_every_chip_is_survived_or_refused_for_its_reason_and_nothing_h
     let rows = faults::rows(1..=2, || ()).expect("nothing waits for ever");
     assert_eq!(rows.len(), 2 * (4 * 10 + 15), "every chip with every sickness, and the rest");
     for row in &rows {
-        // The default session takes 276 s; what was lost is measured again, patience has its limits.
+        // The default session takes 276 s; what was lost is measured again, retry budget has its limits.
         assert!(row.seconds < 400.0, "{row:?} takes too long");
         match (expected(&row.fault), &row.reason) {
             (None, None) => {

@@ -13,8 +13,8 @@ use firmware::event::Event;
 use firmware::health::Health;
 use firmware::keep::Kept;
 use firmware::link::{self, Status};
-use firmware::patience::{Patience, Remedy, Symptom};
 use firmware::ports::Observer;
+use firmware::retry_budget::{Remedy, RetryBudget, Symptom};
 use firmware::shared::Shared;
 use firmware::timeline::{Arrival, Timeline};
 use orientation::device::{Device, Trouble};
@@ -53,9 +53,9 @@ fn every_missing_sample_is_counted_however_many() {
 
 #[test]
 fn a_failing_bus_costs_three_readings_before_the_device_is_started_again() {
-    let mut patience = Patience::default();
+    let mut retry_budget = RetryBudget::default();
     let bus = Symptom::Chip(Fault::Bus);
-    let remedies = [(); 5].map(|()| patience.failed(bus));
+    let remedies = [(); 5].map(|()| retry_budget.failed(bus));
     let [a, b, c, d, e] = remedies;
     assert_eq!([a, b, c], [Remedy::Drop; 3]);
     assert_eq!([d, e], [Remedy::Restart, Remedy::Drop]);
@@ -63,11 +63,11 @@ fn a_failing_bus_costs_three_readings_before_the_device_is_started_again() {
 
 #[test]
 fn a_good_reading_restores_the_patience_with_the_bus() {
-    let mut patience = Patience::default();
+    let mut retry_budget = RetryBudget::default();
     let checksum = Symptom::Chip(Fault::Checksum);
     for _ in 0..100 {
-        assert_eq!(patience.failed(checksum), Remedy::Drop);
-        patience.succeeded();
+        assert_eq!(retry_budget.failed(checksum), Remedy::Drop);
+        retry_budget.succeeded();
     }
 }
 
@@ -83,11 +83,11 @@ fn what_no_repetition_mends_restarts_five_times_and_then_is_given_up_for_its_rea
         (Symptom::Silent, Trouble::Silent),
         (Symptom::Stuck, Trouble::Stuck),
     ] {
-        let mut patience = Patience::default();
+        let mut retry_budget = RetryBudget::default();
         for _ in 0..5 {
-            assert_eq!(patience.failed(symptom), Remedy::Restart);
+            assert_eq!(retry_budget.failed(symptom), Remedy::Restart);
         }
-        assert_eq!(patience.failed(symptom), Remedy::GiveUp(trouble));
+        assert_eq!(retry_budget.failed(symptom), Remedy::GiveUp(trouble));
     }
 }
 

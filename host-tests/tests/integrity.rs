@@ -281,7 +281,7 @@ fn a_short_arc_about_the_turning_point_cannot_tell() {
     turned(&mut case, 6, 1.0);
     let verdict = verdict(&case, &[], 4);
     assert!(
-        matches!(verdict, Err(Refusal::ArcCannotTell | Refusal::BudgetNotMet { .. })),
+        matches!(verdict, Err(Refusal::AzimuthUnobservable | Refusal::BudgetNotMet { .. })),
         "{verdict:?}"
     );
 }

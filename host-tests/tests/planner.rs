@@ -10,7 +10,7 @@ use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
 use orientation::planner::burov::{self, Autocompensation};
 use orientation::planner::order::Order;
-use orientation::planner::outlook::{self, Visit};
+use orientation::planner::prediction::{self, Visit};
 use orientation::planner::{Conditions, Plan, PlanError, Rotation, for_sigma, for_time};
 use orientation::units::DEGREE_PER_HOUR;
 use proptest::prelude::*;
@@ -122,7 +122,7 @@ proptest! {
         let plan =
             Plan { order, passes, dwell, seconds: 0.0, rate_sigma: 0.0 };
         let visits: Vec<Visit> = plan.visits(&rotation).collect();
-        let found = outlook::rate_sigma(&noise, dwell, visits.iter().copied()).expect("it is determined");
+        let found = prediction::rate_sigma(&noise, dwell, visits.iter().copied()).expect("it is determined");
         let expected = rate_sigma(&noise, &visits);
         prop_assert!((found / expected - 1.0).abs() < 1e-3, "{found} against {expected}");
     }

@@ -12,7 +12,7 @@ use bench::stops::{Method, Options, Replay, grade, noise, replay};
 use hal_mock::noise::Generator;
 use orientation::align::setting::Setting as Common;
 use orientation::align::stops::Setting;
-use orientation::align::stops::follower::Rests;
+use orientation::align::stops::stop_detector::Rests;
 use orientation::earth::Latitude;
 use orientation::error::Refusal;
 use orientation::session::stops::{Event, Procedure, Session};

@@ -9,7 +9,7 @@
 //! A codec turns bytes into units and back without any bus, so it can be tested alone; a shell does
 //! the transfers on [`embedded_hal_async`] and nothing else. Every reading is either valid or a
 //! [`Fault`](fault::Fault) that names its remedy; a driver never blocks for ever and never retries by
-//! itself: patience is the instrument's business.
+//! itself: retry budget is the instrument's business.
 #![no_std]
 #![forbid(unsafe_code)]
 

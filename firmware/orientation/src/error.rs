@@ -59,7 +59,7 @@ pub enum Refusal {
     /// No azimuth of the half that was stated fits the dwells.
     NotInHalf,
     /// The measured positions do not determine the azimuth, or leave two of them.
-    ArcCannotTell,
+    AzimuthUnobservable,
     /// The standard deviation is greater than was asked for.
     BudgetNotMet {
         /// The standard deviation, °.
@@ -291,7 +291,7 @@ pub enum Refusal {
         force: f64,
     },
     /// The vehicle drove on before the alignment was over.
-    DroveOn,
+    MovedDuringAlignment,
     /// Gyros and accelerometers disagree about how a body sways.
     AxesDisagree {
         /// How much more the forces change when they are turned by what the gyros show, in power.
@@ -356,7 +356,7 @@ words! { Refusal:
         "two positions leave two azimuths: add a third, or state whether it points east or west";
     Self::NotInHalf =>
         "no azimuth of the stated half fits: it lies in the other one, or too near the axis between them";
-    Self::ArcCannotTell =>
+    Self::AzimuthUnobservable =>
         "the positions cannot tell the azimuth: turn the stage over a longer arc";
     Self::BudgetNotMet { sigma, required, source } =>
         "σ would be {}°, above the accepted {}°; {} contributes most",
@@ -462,7 +462,7 @@ words! { Refusal:
     Self::VehicleMoves { stop, rate, force } =>
         "the vehicle moves at stop {}: its rate is {} °/h from the Earth's, its force {} m/s² from gravity",
         stop, Rounded::<2>(rate), Rounded::<3>(force);
-    Self::DroveOn => "the vehicle drove on before it was aligned";
+    Self::MovedDuringAlignment => "the vehicle drove on before it was aligned";
     Self::AxesDisagree { ratio } =>
         "turned by what the gyros show, the forces change {} times more: check axes and signs of both",
         Rounded::<1>(ratio);

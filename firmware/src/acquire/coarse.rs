@@ -5,7 +5,7 @@ use embassy_time::Instant;
 use orientation::signal::InertialSample;
 use orientation::units::{Angle, AngleIncrement, AngularRate, SpecificForce};
 
-use crate::keep::{Down, Motion};
+use crate::keep::{Motion, VerticalGyro};
 use crate::ports::{BaseReading, Observer};
 use crate::shared::Shared;
 
@@ -58,13 +58,13 @@ impl Excess {
 
 /// One sensor's time, and rounding that is carried on.
 #[derive(Clone, Copy, Debug)]
-struct Pace {
+struct Timing {
     /// Nominal time between two readings, µs.
     period: u32,
     latest: Option<Instant>,
 }
 
-impl Pace {
+impl Timing {
     /// How long a reading of this time has lasted, µs: since the one before; a period where that is not
     /// known. And whether nothing is missing.
     fn lasted(&mut self, at: Instant) -> (u32, bool) {
@@ -79,7 +79,7 @@ impl Pace {
 /// The precise gyro's turn since the latest coarse reading.
 #[derive(Clone, Copy, Debug)]
 struct Precise {
-    pace: Pace,
+    pace: Timing,
     /// Sense of the axis: +1 down, −1 up, 0 neither.
     sense: i32,
     /// What it has turned, in steps of an increment, and what was left over of whole steps.
@@ -93,21 +93,21 @@ struct Precise {
 /// Samples from the base.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Coarse {
-    pace: Pace,
+    pace: Timing,
     carried: [i64; 3],
     precise: Precise,
     /// A force of a better accelerometer on the base; none where there was no new one.
     force: Option<[SpecificForce; 3]>,
     /// Whether there is such an accelerometer.
     is_felt: bool,
-    down: Down,
+    down: VerticalGyro,
     excess: Excess,
 }
 
 impl Coarse {
     /// Coarse readings and samples of the precise gyro with periods in µs.
     pub(super) fn new(coarse: u32, precise: u32) -> Self {
-        let pace = |period| Pace { period, latest: None };
+        let pace = |period| Timing { period, latest: None };
         Self {
             pace: pace(coarse),
             carried: [0; 3],
@@ -121,7 +121,7 @@ impl Coarse {
             },
             force: None,
             is_felt: false,
-            down: Down::Beside,
+            down: VerticalGyro::Coarse,
             excess: Excess::default(),
         }
     }
@@ -194,9 +194,9 @@ impl Coarse {
     fn take_precise<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Option<AngleIncrement> {
         let precise = &mut self.precise;
         let down = match (precise.is_vertical, self.excess.is_known()) {
-            (true, _) => Down::Precise,
-            (false, true) => Down::Compared,
-            (false, false) => Down::Beside,
+            (true, _) => VerticalGyro::Precise,
+            (false, true) => VerticalGyro::Calibrated,
+            (false, false) => VerticalGyro::Coarse,
         };
         let (turned, is_whole) = (precise.turned, precise.is_whole);
         precise.is_vertical = precise.sense != 0;
@@ -205,7 +205,7 @@ impl Coarse {
             shared.move_on(Motion::Exchanged(down));
         }
         let steps = i32::try_from(turned).ok().filter(|_| is_whole).unwrap_or(i32::MAX);
-        (down == Down::Precise).then_some(AngleIncrement(steps))
+        (down == VerticalGyro::Precise).then_some(AngleIncrement(steps))
     }
 }
 

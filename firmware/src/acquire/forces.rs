@@ -6,12 +6,12 @@ use orientation::device::{Device, Trouble};
 use orientation::error::Refusal;
 use orientation::units::SpecificForce;
 
-use super::{Limit, Row, STUCK};
+use super::{Limit, RepeatCounter, STUCK};
 use crate::guarded::Guarded;
 use crate::keep::RETRY;
-use crate::patience::Symptom;
-use crate::pointing::Every;
+use crate::pointing::Decimator;
 use crate::ports::{Accelerometer, ForceReading, Observer};
+use crate::retry_budget::Symptom;
 use crate::shared::Shared;
 
 /// For how long an accelerometer that fails on the way is done without.
@@ -26,8 +26,8 @@ fn is_on_the_way<O: Observer>(shared: &Shared<'_, O>) -> bool {
 /// The accelerometer at work.
 pub(super) struct Forces<'a, A> {
     accelerometer: Guarded<'a, A>,
-    due: Every,
-    row: Row<[SpecificForce; 3]>,
+    due: Decimator,
+    row: RepeatCounter<[SpecificForce; 3]>,
     limit: Limit,
     /// Until when it is done without, where it was given up while an azimuth is kept.
     absent: Option<Instant>,
@@ -38,14 +38,14 @@ impl<'a, A: Accelerometer> Forces<'a, A> {
     pub(super) fn new(accelerometer: &'a mut A, divider: u32, sample_rate: f64) -> Self {
         Self {
             accelerometer: Guarded::new(accelerometer, Device::Accelerometer),
-            due: Every::new(divider),
-            row: Row::new(),
+            due: Decimator::new(divider),
+            row: RepeatCounter::new(),
             limit: Limit::new(sample_rate),
             absent: None,
         }
     }
 
-    /// Has all patience with it again.
+    /// Has all retry budget with it again.
     pub(super) fn renew(&mut self) {
         self.accelerometer.renew();
         self.limit.samples = 0;
@@ -108,7 +108,7 @@ impl<'a, A: Accelerometer> Forces<'a, A> {
             return Err(shared.give_up(Device::Accelerometer, Trouble::Saturated));
         }
         if self.row.push(reading.force) >= STUCK && !reading.is_clipped {
-            self.row = Row::new();
+            self.row = RepeatCounter::new();
             return Ok(Err(Symptom::Stuck));
         }
         Ok(Ok(reading))

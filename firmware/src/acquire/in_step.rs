@@ -14,8 +14,8 @@ use orientation::math;
 use orientation::units::AngularRate;
 
 use super::rates::{Rates, silence};
-use crate::patience::Symptom;
 use crate::ports::{InStep, Observer, Quantity};
+use crate::retry_budget::Symptom;
 use crate::shared::Shared;
 
 /// Conversions in a row that may be out of step: one lost edge of a data-ready line is no reason to
@@ -67,7 +67,7 @@ impl<'a, C: InStep<V>, O: Observer, V: Quantity, const N: usize> Group<'a, C, O,
         Ok(())
     }
 
-    /// Has all patience with them again.
+    /// Has all retry budget with them again.
     pub(super) fn renew(&mut self) {
         self.converters.iter_mut().for_each(Rates::renew);
     }

@@ -34,12 +34,12 @@ const SILENCE: u32 = 8;
 
 /// How often something came in a row.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Row<T> {
+pub(crate) struct RepeatCounter<T> {
     last: Option<T>,
     count: u32,
 }
 
-impl<T: Copy + PartialEq> Row<T> {
+impl<T: Copy + PartialEq> RepeatCounter<T> {
     pub(crate) const fn new() -> Self {
         Self { last: None, count: 0 }
     }

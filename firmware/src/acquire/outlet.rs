@@ -4,7 +4,7 @@ use embassy_time::Instant;
 
 use crate::event::Event;
 use crate::ports::Observer;
-use crate::shared::{Queue, Seams, Shared};
+use crate::shared::{Channels, Queue, Shared};
 use crate::timeline::{Arrival, Timeline};
 
 /// The outlet of samples of the kind `S`.
@@ -18,10 +18,10 @@ pub(super) struct Outlet<'a, O, S> {
 
 impl<'a, O: Observer, S> Outlet<'a, O, S> {
     /// Of samples with a period in µs.
-    pub(super) fn new(period: u32, seams: &'a Seams<'a, O, S>) -> Self {
+    pub(super) fn new(period: u32, channels: &'a Channels<'a, O, S>) -> Self {
         Self {
-            queue: &seams.samples,
-            shared: &seams.shared,
+            queue: &channels.samples,
+            shared: &channels.shared,
             timeline: Timeline::new(period),
             overflowed: 0,
         }

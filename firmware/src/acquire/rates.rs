@@ -6,10 +6,10 @@ use orientation::device::{Device, Trouble};
 use orientation::error::Refusal;
 use orientation::units::AngularRate;
 
-use super::{Limit, Row, SILENCE, STUCK};
+use super::{Limit, RepeatCounter, SILENCE, STUCK};
 use crate::guarded::Guarded;
-use crate::patience::Symptom;
 use crate::ports::{Gyro, Observer, Quantity, RateReading};
+use crate::retry_budget::Symptom;
 use crate::shared::Shared;
 
 /// Part of a period within which a conversion that was awaited was there before.
@@ -19,7 +19,7 @@ const AT_ONCE: u32 = 16;
 pub(super) struct Rates<'a, G, V = AngularRate> {
     pub(super) gyro: Guarded<'a, G>,
     pub(super) name: Device,
-    row: Row<V>,
+    row: RepeatCounter<V>,
     limit: Limit,
     period: Duration,
     /// When the latest conversion ended.
@@ -36,10 +36,17 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
     pub(super) fn new(gyro: &'a mut G, name: Device, sample_rate: f64) -> Self {
         let limit = Limit::new(sample_rate);
         let period = Duration::from_micros((1e6 / sample_rate + 0.5) as u64);
-        Self { gyro: Guarded::new(gyro, name), name, row: Row::new(), limit, period, latest: None }
+        Self {
+            gyro: Guarded::new(gyro, name),
+            name,
+            row: RepeatCounter::new(),
+            limit,
+            period,
+            latest: None,
+        }
     }
 
-    /// Has all patience with it again.
+    /// Has all retry budget with it again.
     pub(super) fn renew(&mut self) {
         self.gyro.renew();
         self.limit.samples = 0;
@@ -98,7 +105,7 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
             return Err(shared.give_up(self.name, Trouble::Saturated));
         }
         if self.row.push(rate) >= STUCK && !rate.is_saturated() {
-            self.row = Row::new();
+            self.row = RepeatCounter::new();
             return Ok(Err(Symptom::Stuck));
         }
         Ok(Ok(Some(rate)))

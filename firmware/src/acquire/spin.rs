@@ -15,7 +15,7 @@ use orientation::units::{AngleIncrement, Instant, SpinForce};
 use super::in_step::{Group, middle};
 use super::outlet::Outlet;
 use crate::ports::{Code, InStep, Observer, Quantity, SpinSensors};
-use crate::shared::Seams;
+use crate::shared::Channels;
 use crate::spin::configuration::{CHANNELS, GYROS, SpinConfiguration};
 
 /// The sensors' names in the log.
@@ -43,13 +43,13 @@ impl<'a, C: InStep<Code>, O: Observer> SpinAcquisition<'a, C, O> {
     pub fn new(
         SpinSensors(converters): &'a mut SpinSensors<C>,
         configuration: &'a SpinConfiguration,
-        seams: &'a Seams<'a, O, SpinSample>,
+        channels: &'a Channels<'a, O, SpinSample>,
     ) -> Self {
         let (rate, period) = (configuration.sample_rate, configuration.period());
         Self {
-            converters: Group::new(converters, NAMES, rate, period, &seams.shared),
+            converters: Group::new(converters, NAMES, rate, period, &channels.shared),
             configuration,
-            outlet: Outlet::new(period, seams),
+            outlet: Outlet::new(period, channels),
             before: None,
             carried: [0; GYROS],
         }

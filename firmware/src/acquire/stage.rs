@@ -20,8 +20,8 @@ use crate::configuration::Configuration;
 use crate::keep::RETRY;
 use crate::pointing::Pointing;
 use crate::ports::{Accelerometer, Gyro, Observer};
-use crate::shared::Seams;
-use crate::steady::Steady;
+use crate::shared::Channels;
+use crate::steady::CompensatesSway;
 
 /// The sensors of the stage path at work.
 pub struct Acquisition<'a, G, A, P, S, O> {
@@ -36,7 +36,7 @@ pub struct Acquisition<'a, G, A, P, S, O> {
     period: Duration,
 }
 
-impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: Steady, O: Observer>
+impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway, O: Observer>
     Acquisition<'a, G, A, P, S, O>
 {
     /// Takes the sensors; nothing is started yet.
@@ -46,7 +46,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: Steady, O: Observer>
         pointing: P,
         steady: S,
         configuration: &Configuration,
-        seams: &'a Seams<'a, O>,
+        channels: &'a Channels<'a, O>,
     ) -> Self {
         let period = configuration.period();
         let Configuration { sample_rate, force_divider, .. } = *configuration;
@@ -57,7 +57,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: Steady, O: Observer>
             pointing,
             steady,
             coarse,
-            outlet: Outlet::new(period, seams),
+            outlet: Outlet::new(period, channels),
             silence: silence(period),
             period: Duration::from_micros(period.into()),
         }
@@ -74,7 +74,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: Steady, O: Observer>
         }
     }
 
-    /// Has all patience with the precise gyro and what belongs to it again.
+    /// Has all retry budget with the precise gyro and what belongs to it again.
     fn renew(&mut self) {
         self.rates.renew();
         self.forces.renew();

@@ -18,7 +18,7 @@ use super::outlet::Outlet;
 use crate::configuration::VehicleConfiguration;
 use crate::keep::Motion;
 use crate::ports::{Accelerometer, ForceReading, InStep, Observer, VehicleSensors};
-use crate::shared::Seams;
+use crate::shared::Channels;
 
 /// The gyros' names in the log, forward, right, down.
 const NAMES: [Device; 3] = [Device::ForwardGyro, Device::RightGyro, Device::DownGyro];
@@ -41,16 +41,16 @@ impl<'a, G: InStep, A: Accelerometer, O: Observer> TriadAcquisition<'a, G, A, O>
     pub fn new(
         sensors: &'a mut VehicleSensors<G, A>,
         configuration: &VehicleConfiguration,
-        seams: &'a Seams<'a, O, InertialSample>,
+        channels: &'a Channels<'a, O, InertialSample>,
     ) -> Self {
         let period = configuration.period();
         let VehicleConfiguration { sample_rate, force_divider, forces, .. } = *configuration;
         let VehicleSensors { gyros, accelerometer } = sensors;
         Self {
-            gyros: Group::new(gyros, NAMES, sample_rate, period, &seams.shared),
+            gyros: Group::new(gyros, NAMES, sample_rate, period, &channels.shared),
             forces: Forces::new(accelerometer, force_divider, sample_rate),
             mean: Mean::of(forces),
-            outlet: Outlet::new(period, seams),
+            outlet: Outlet::new(period, channels),
             period: Duration::from_micros(period.into()),
             carried: [0; 3],
             latest: None,

@@ -36,11 +36,11 @@ pub(crate) const RETRY: Duration = Duration::from_secs(10);
 
 /// Which gyro shows how the body turns about its down axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Down {
+pub enum VerticalGyro {
     /// The one beside the other two.
-    Beside,
+    Coarse,
     /// The same, whose bias was found beside the precise one.
-    Compared,
+    Calibrated,
     /// The precise one, which a mount has turned to the vertical.
     Precise,
 }
@@ -51,11 +51,11 @@ pub enum Motion {
     /// The body has moved.
     Moved(InertialSample),
     /// From the next sample on another gyro shows the down axis.
-    Exchanged(Down),
+    Exchanged(VerticalGyro),
 }
 
-/// The seam between the keeper and the others.
-pub struct Seam {
+/// The channel between the keeper and the others.
+pub struct KeeperChannels {
     /// From acquisition to the keeper.
     pub motions: Channel<NoopRawMutex, Motion, QUEUE>,
     /// Whether anybody keeps.
@@ -83,7 +83,7 @@ pub struct Seam {
     pub told: Cell<Option<Kept>>,
 }
 
-impl Seam {
+impl KeeperChannels {
     /// Nobody keeps yet.
     pub(crate) const fn new() -> Self {
         Self {

@@ -9,10 +9,10 @@ use orientation::keep::{self, Handover, Keeper, Realigned, Report, State};
 use orientation::units::{self, DEGREE_PER_HOUR, DEGREES_PER_RADIAN as DEGREES};
 
 use super::memory::Memory;
-use super::{Down, Kept, Motion};
+use super::{Kept, Motion, VerticalGyro};
 use crate::configuration::{Alignment, KeepConfiguration, Realignment};
 use crate::event::Event;
-use crate::ports::{HeadingStore, Observer, Outside};
+use crate::ports::{Aiding, HeadingStore, Observer};
 use crate::shared::Shared;
 
 /// How long motions may wait: half of what the channel holds at 2 kHz.
@@ -74,7 +74,7 @@ struct Told {
     rests: Option<Instant>,
     moves: Option<Instant>,
     /// How long it may move until it has set off.
-    patience: Duration,
+    retry_budget: Duration,
     is_realigned: bool,
     /// Whether there was no session at the last look.
     is_idle: bool,
@@ -82,7 +82,7 @@ struct Told {
     since: Option<Instant>,
 }
 
-impl<'k, H: Outside, M: HeadingStore> Keeping<'k, H, M> {
+impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
     /// Takes a keeper that has taken nothing.
     pub fn new(
         keeper: &'k mut Keeper,
@@ -100,7 +100,7 @@ impl<'k, H: Outside, M: HeadingStore> Keeping<'k, H, M> {
             is_bias_beyond_stated: false,
             rests: None,
             moves: None,
-            patience: RESTLESS,
+            retry_budget: RESTLESS,
             is_realigned: true,
             is_idle: false,
             since: None,
@@ -146,12 +146,12 @@ impl<'k, H: Outside, M: HeadingStore> Keeping<'k, H, M> {
             Motion::Exchanged(down) => {
                 let KeepConfiguration { beside, precise, .. } = self.configuration;
                 self.keeper.exchange_down(match down {
-                    Down::Beside => beside,
-                    Down::Compared => {
+                    VerticalGyro::Coarse => beside,
+                    VerticalGyro::Calibrated => {
                         let bias_sigma = COMPARED_SIGMA.min(beside.bias_sigma);
                         keep::Gyro { bias_sigma, ..beside }
                     }
-                    Down::Precise => precise,
+                    VerticalGyro::Precise => precise,
                 });
                 shared.tell(Event::DownGyro(down));
             }
@@ -162,7 +162,7 @@ impl<'k, H: Outside, M: HeadingStore> Keeping<'k, H, M> {
     fn take_azimuth<O: Observer>(&mut self, before: units::Instant, shared: &Shared<'_, O>) {
         let Some((_, handover)) = self.told.found.take_if(|(at, _)| *at < before) else { return };
         if self.has_set_off() {
-            shared.tell(Event::Refused(Refusal::DroveOn));
+            shared.tell(Event::Refused(Refusal::MovedDuringAlignment));
         } else {
             self.align(handover, shared);
         }
@@ -172,7 +172,7 @@ impl<'k, H: Outside, M: HeadingStore> Keeping<'k, H, M> {
     /// vehicle the session itself knows stops from drives.
     fn has_set_off(&self) -> bool {
         !self.configuration.knows_stops
-            && self.told.moves.is_some_and(|since| since.elapsed() >= self.told.patience)
+            && self.told.moves.is_some_and(|since| since.elapsed() >= self.told.retry_budget)
     }
 
     /// Takes an azimuth, beside one that is known already.
@@ -255,8 +255,8 @@ impl<'k, H: Outside, M: HeadingStore> Keeping<'k, H, M> {
             told.rests.get_or_insert(Instant::now());
         } else if let Some(rests) = told.rests {
             let moves = *told.moves.get_or_insert(Instant::now());
-            told.patience = RESTLESS + LEARNING - (moves - rests).min(LEARNING);
-            if moves.elapsed() >= told.patience {
+            told.retry_budget = RESTLESS + LEARNING - (moves - rests).min(LEARNING);
+            if moves.elapsed() >= told.retry_budget {
                 told.rests = None;
                 told.is_realigned = false;
             }
@@ -305,7 +305,7 @@ impl<'k, H: Outside, M: HeadingStore> Keeping<'k, H, M> {
             _ => {}
         }
         if !is_idle && self.has_set_off() {
-            shared.fail(Refusal::DroveOn);
+            shared.fail(Refusal::MovedDuringAlignment);
         }
     }
 
@@ -340,7 +340,7 @@ impl<'k, H: Outside, M: HeadingStore> Keeping<'k, H, M> {
     }
 }
 
-impl<H: Outside, M: HeadingStore> Keep for Keeping<'_, H, M> {
+impl<H: Aiding, M: HeadingStore> Keep for Keeping<'_, H, M> {
     async fn run<O: Observer>(&mut self, shared: &Shared<'_, O>) {
         if self.configuration.hold == Duration::MIN {
             pending::<()>().await;

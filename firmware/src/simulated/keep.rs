@@ -13,7 +13,7 @@ use orientation::units::{DEGREE, DEGREE_PER_HOUR};
 use super::base;
 use super::scenario::{self, Scenario};
 use crate::configuration::{Alignment, KeepConfiguration, Realignment};
-use crate::ports::Outside;
+use crate::ports::Aiding;
 
 /// How long a vehicle stands before it is aligned anew on a stage, s.
 const STAND_SECONDS: u64 = 30;
@@ -83,7 +83,7 @@ pub struct Teller {
     told: Cell<Option<([f64; 2], f64)>>,
 }
 
-impl Outside for Teller {
+impl Aiding for Teller {
     fn azimuth(&mut self) -> Option<Handover> {
         let ([azimuth, sigma], at_s) = self.told.get()?;
         if Instant::now().as_micros() as f64 * 1e-6 < at_s {

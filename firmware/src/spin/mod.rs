@@ -17,21 +17,21 @@ use orientation::signal::SpinSample;
 use crate::event::Event;
 use crate::link::Status;
 use crate::ports::{Observer, Recorder};
-use crate::shared::Seams;
+use crate::shared::Channels;
 
 /// Follows a flight until its time is over, or until acquisition gives a sensor up, and tells of it.
 pub(crate) async fn follow<R, O>(
     flight: &mut Flight,
     recorder: &mut R,
-    seams: &Seams<'_, O, SpinSample>,
+    channels: &Channels<'_, O, SpinSample>,
 ) where
     R: Recorder<SpinSample>,
     O: Observer,
 {
-    let shared = &seams.shared;
+    let shared = &channels.shared;
     shared.tell(Event::BegunSpin);
     while !flight.is_over() {
-        match select(seams.samples.receive(), shared.failure.wait()).await {
+        match select(channels.samples.receive(), shared.failure.wait()).await {
             Either::First(sample) => {
                 recorder.record(&sample).await;
                 flight.push(&sample);

@@ -98,7 +98,7 @@ fn is_short(refusal: &Refusal) -> bool {
     matches!(
         refusal,
         Refusal::TooFewPositions { .. }
-            | Refusal::ArcCannotTell
+            | Refusal::AzimuthUnobservable
             | Refusal::SignUnknown
             | Refusal::NotInHalf
             | Refusal::TrendNotSeparable

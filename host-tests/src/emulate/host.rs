@@ -32,7 +32,7 @@ pub fn turning(scenario: &TurntableScenario) -> Result<Outcome, String> {
         .map_err(|error| failed(&error))?
         .run;
     let conclusion = run.replay.conclusion().ok_or(NOTHING)?;
-    let stretches = run.replay.follower().stretches().iter();
+    let stretches = run.replay.turn_accumulator().stretches().iter();
     let turns = stretches.flat_map(Stretch::turns).map(Into::into).collect();
     Ok(Outcome { turns, ..Outcome::of(scenario.base.seed, &conclusion.verdict) })
 }

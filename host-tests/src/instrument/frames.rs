@@ -13,7 +13,7 @@ use hal_mock::gimbal::board::GimbalBoard;
 use orientation::keep::Keeper;
 use orientation::session::Session;
 
-use super::desk::{self, ASSUMED, Desk};
+use super::harness::{self, ASSUMED, Harness};
 use super::kept::{Kept, KeptPlan};
 use super::{Run, RunError};
 use crate::replay::{Method, Replay};
@@ -84,18 +84,18 @@ fn align_with<B: Base, W: Observer>(
     let setting = scenario.setting().ok_or_else(outside)?;
     let mut session = Session::new(setting, scenario.procedure()).map_err(RunError::Procedure)?;
     let frames = scenario.frames().map_err(RunError::Mount)?;
-    let desk = Desk::new(watch);
-    let seams = desk.seams();
+    let harness = Harness::new(watch);
+    let channels = harness.channels();
     let latest = Frames::unread();
     let configuration = scenario.base.configuration();
     let mut sensors = mount::sensors(board, scenario, plan).with_base(base);
-    let mut ports = mount::ports(board, desk.wire(), NoRecorder);
+    let mut ports = mount::ports(board, harness.wire(), NoRecorder);
     let mut keeper = Keeper::new(&scenario.keeper().ok_or_else(outside)?);
     let keep = scenario.base.keeping().ok_or_else(outside)?;
     let mut keeping = Keeping::new(&mut keeper, &keep, scenario.base.hold.outside(), store);
-    let ended = desk::run(
-        acquire_frames(&mut sensors, &configuration, &frames, &latest, &seams),
-        run_frames_and_keep(&mut ports, &frames, &latest, &mut session, &mut keeping, &seams),
+    let ended = harness::run(
+        acquire_frames(&mut sensors, &configuration, &frames, &latest, &channels),
+        run_frames_and_keep(&mut ports, &frames, &latest, &mut session, &mut keeping, &channels),
     )?;
     let [outer, inner] = board.borrow().gimbal.frames();
     let misalignment = scenario.gimbal(plan).misalignment;
@@ -106,7 +106,7 @@ fn align_with<B: Base, W: Observer>(
         session,
         assumed: vec![ASSUMED.to_owned()],
     };
-    let violations = desk::told(mount::violations(&board.borrow()));
-    let run = desk.clear(&ended, violations, replay);
+    let violations = harness::told(mount::violations(&board.borrow()));
+    let run = harness.clear(&ended, violations, replay);
     Ok(FramesRun { run, axis, kept: Kept::default() })
 }

@@ -1,17 +1,17 @@
 //! The whole instrument on simulated chips, in virtual time: one scenario in, one run out.
 
-mod bench;
-mod desk;
 pub mod flash_file;
 mod frames;
+mod harness;
 pub mod kept;
 pub mod recorder;
 pub mod spinning;
+mod stage;
 mod turntable;
 mod vehicle;
 
-pub use bench::{align, align_and_keep, align_on};
 pub use frames::{FramesRun, align_frames, align_frames_and_keep};
+pub use stage::{align, align_and_keep, align_on};
 pub use turntable::{Keeping, TurntableRun, align_turning, align_turning_again};
 pub use vehicle::{
     VehicleRun, align_stops, align_stops_along, align_stops_on, align_stops_storing,

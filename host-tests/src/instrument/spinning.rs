@@ -12,7 +12,7 @@ use hal_mock::spin::plant::SpinPlant;
 use orientation::signal::SpinSample;
 use orientation::units::Instant;
 
-use super::desk::{self, Desk};
+use super::harness::{self, Harness};
 use super::{Run, RunError};
 
 /// A finished flight.
@@ -53,16 +53,16 @@ pub fn follow_spin<W: Observer>(
     let configuration = scenario.configuration().ok_or(RunError::Scale)?;
     let board = RefCell::new(scenario.board(&course, &plan));
     let (mut flight, mut kept) = (scenario.flight(), Kept::default());
-    let desk = Desk::new(watch);
-    let seams = desk.seams();
+    let harness = Harness::new(watch);
+    let channels = harness.channels();
     let mut sensors = spin::sensors(&board, &plan);
-    let mut ports = SpinPorts { link: desk.wire(), recorder: &mut kept };
-    let ended = desk::run(
-        acquire_spin(&mut sensors, &configuration, &seams),
-        run_spin(&mut ports, &mut flight, &seams),
+    let mut ports = SpinPorts { link: harness.wire(), recorder: &mut kept };
+    let ended = harness::run(
+        acquire_spin(&mut sensors, &configuration, &channels),
+        run_spin(&mut ports, &mut flight, &channels),
     )?;
-    drop(seams);
-    let violations = desk::told(spin::violations(&board.borrow()));
+    drop(channels);
+    let violations = harness::told(spin::violations(&board.borrow()));
     // Another body of the same course, which has not flown yet.
     let fresh = scenario.board(&course, &plan).plant;
     let at = |plant: &SpinPlant, time: Instant| {
@@ -72,6 +72,6 @@ pub fn follow_spin<W: Observer>(
     let (start, flown) = (at(&fresh, time(kept.0.first())), &board.borrow().plant);
     let rolls_rad = kept.0.iter().map(|sample| at(flown, sample.time).roll_rad).collect();
     let truth = at(flown, time(kept.0.last()));
-    let run = desk.clear(&ended, violations, flight);
+    let run = harness.clear(&ended, violations, flight);
     Ok(SpinRun { run, samples: kept.0, rolls_rad, start, truth })
 }

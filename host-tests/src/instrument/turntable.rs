@@ -8,10 +8,10 @@ use firmware::simulated;
 use firmware::simulated::fault::{Fault, FaultyRecorder};
 use firmware::simulated::flash::Flash;
 use firmware::simulated::turntable::{self, TurntableScenario};
-use firmware::storage::{FlashStore, Today, prepare};
+use firmware::storage::{FlashStore, Today, load_calibration};
 use orientation::session::rotating;
 
-use super::desk::{self, Desk};
+use super::harness::{self, Harness};
 use super::{Run, RunError};
 use crate::virtual_time;
 
@@ -60,11 +60,11 @@ pub fn align_turning_again<R: Recorder, W: Observer>(
     let mut procedure = scenario.procedure();
     let plan = scenario.plan(fault);
     let board = RefCell::new(scenario.board(&plan));
-    let desk = Desk::new(watch);
-    let seams = desk.seams();
+    let harness = Harness::new(watch);
+    let channels = harness.channels();
     if let Some(Keeping { store, today }) = &mut keeping {
         let told = (&mut setting, &mut procedure);
-        let prepared = virtual_time::run(prepare(store, *today, told, &seams.shared));
+        let prepared = virtual_time::run(load_calibration(store, *today, told, &channels.shared));
         prepared.map_err(|_| RunError::Deadlock)?;
     }
     let mut session = rotating::Session::new(setting, procedure).map_err(RunError::Procedure)?;
@@ -72,17 +72,17 @@ pub fn align_turning_again<R: Recorder, W: Observer>(
     let platform = scenario.turntable();
     let mut sensors = turntable::sensors(&board, scenario, &plan);
     let recorder = FaultyRecorder::new(recorder, plan.hang);
-    let mut ports = turntable::ports(&board, &plan, desk.wire(), recorder);
+    let mut ports = turntable::ports(&board, &plan, harness.wire(), recorder);
     let instrument = async {
         match keeping {
-            None => run_rotating(&mut ports, &platform, &mut session, &seams).await,
+            None => run_rotating(&mut ports, &platform, &mut session, &channels).await,
             Some(Keeping { store, .. }) => {
-                run_storing(&mut ports, &platform, &mut session, store, &seams).await
+                run_storing(&mut ports, &platform, &mut session, store, &channels).await
             }
         }
     };
-    let ended = desk::run(acquire(&mut sensors, &configuration, &seams), instrument)?;
-    let violations = desk::told(simulated::violations(&board.borrow()));
+    let ended = harness::run(acquire(&mut sensors, &configuration, &channels), instrument)?;
+    let violations = harness::told(simulated::violations(&board.borrow()));
     let rate = board.borrow().plant.truth().stage.rate_rad_s;
-    Ok(TurntableRun { run: desk.clear(&ended, violations, session), rate })
+    Ok(TurntableRun { run: harness.clear(&ended, violations, session), rate })
 }

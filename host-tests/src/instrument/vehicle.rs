@@ -14,7 +14,7 @@ use orientation::keep::Keeper;
 use orientation::session::stops;
 use orientation::signal::InertialSample;
 
-use super::desk::{self, Desk};
+use super::harness::{self, Harness};
 use super::kept::Kept;
 use super::{Run, RunError};
 
@@ -100,24 +100,24 @@ fn align_on<R: Recorder<InertialSample>, W: Observer>(
     let setting = scenario.setting().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
     let session = stops::Session::new(setting, scenario.procedure());
     let mut session = session.map_err(RunError::Procedure)?;
-    let desk = Desk::new(watch);
-    let seams = desk.seams();
+    let harness = Harness::new(watch);
+    let channels = harness.channels();
     let mut sensors = vehicle::sensors(board, scenario, plan);
     let mut ports = VehiclePorts {
-        whereabouts: KnownPlace::new(board, scenario.place, scenario.base.seed),
-        link: desk.wire(),
+        position_aiding: KnownPlace::new(board, scenario.place, scenario.base.seed),
+        link: harness.wire(),
         recorder: FaultyRecorder::new(recorder, plan.hang),
     };
     let setting = scenario.keeper().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
     let mut keeper = Keeper::new(&setting);
     let outside = scenario.base.hold.outside();
     let mut keeping = Keeping::new(&mut keeper, &scenario.keeping(), outside, store);
-    let ended = desk::run(
-        acquire_triad(&mut sensors, &scenario.configuration(), &seams),
-        run_stops_and_keep(&mut ports, &mut session, &mut keeping, &seams),
+    let ended = harness::run(
+        acquire_triad(&mut sensors, &scenario.configuration(), &channels),
+        run_stops_and_keep(&mut ports, &mut session, &mut keeping, &channels),
     )?;
     let truth = board.borrow().plant.truth();
-    let violations = desk::told(vehicle::violations(&board.borrow()));
-    let run = desk.clear(&ended, violations, session);
+    let violations = harness::told(vehicle::violations(&board.borrow()));
+    let run = harness.clear(&ended, violations, session);
     Ok(VehicleRun { run, truth, kept: Kept::default() })
 }

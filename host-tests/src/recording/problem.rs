@@ -131,7 +131,7 @@ pub enum StopProblem {
         stops: usize,
     },
     /// A stop that the recording does not hold.
-    Outside {
+    Aiding {
         /// The stop, from … to.
         stop: [f64; 2],
         /// Times of the first and the last row.
@@ -309,7 +309,7 @@ impl fmt::Display for StopProblem {
             Self::Count { displacements, stops } => {
                 write!(f, "{displacements} for {stops} stops; give one for each stop")
             }
-            Self::Outside { stop: [from, to], recording: [begin, end] } => {
+            Self::Aiding { stop: [from, to], recording: [begin, end] } => {
                 let [from, to, begin, end] = [*from, *to, *begin, *end].map(Short);
                 write!(f, "the stop {from}-{to} lies outside of the recording, ")?;
                 write!(f, "which goes from {begin} s to {end} s; correct it")

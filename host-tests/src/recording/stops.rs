@@ -101,7 +101,7 @@ pub(super) fn check_inside(
         None => Ok(()),
         Some(stop) => {
             let problem =
-                StopProblem::Outside { stop: *stop, recording: [first.time_s, last.time_s] };
+                StopProblem::Aiding { stop: *stop, recording: [first.time_s, last.time_s] };
             Err(Fault::key(entries.line(STOPS), STOPS, problem))
         }
     }

@@ -28,10 +28,10 @@ impl<T> Times<'_, T> {
     pub fn check(&self, rate: Option<(u64, f64)>) -> Result<(), Fault> {
         let Some(median) = self.median_step() else { return Ok(()) };
         let Some((line, rate_hz)) = rate else { return self.check_gaps(median) };
-        let unbroken = Pace::of(self.steps().filter(|step| *step <= LONGEST_STEP * median));
+        let unbroken = Timing::of(self.steps().filter(|step| *step <= LONGEST_STEP * median));
         // Missing samples slow all steps down, few digits in the times make some seem to miss one: a wrong rate
         // shows both ways.
-        let paces = [Pace::of(self.steps()), unbroken];
+        let paces = [Timing::of(self.steps()), unbroken];
         if paces.iter().all(|pace| pace.contradicts(rate_hz, unbroken.spread())) {
             let found_hz = unbroken.count / unbroken.sum_s;
             return Err(Fault::key(line, "rate_hz", TimeProblem::Rate(rate_hz, found_hz)));
@@ -68,14 +68,14 @@ impl<T> Times<'_, T> {
 
 /// What steps amount to, in seconds.
 #[derive(Clone, Copy)]
-struct Pace {
+struct Timing {
     sum_s: f64,
     count: f64,
     /// The shortest and the longest.
     ends_s: [f64; 2],
 }
 
-impl Pace {
+impl Timing {
     /// Of some steps.
     fn of(steps: impl Iterator<Item = f64>) -> Self {
         let none = Self { sum_s: 0.0, count: 0.0, ends_s: [f64::INFINITY, 0.0] };

@@ -51,7 +51,7 @@ impl Replay {
     #[must_use]
     pub fn parts<'a>(&self, rows: &'a [RotatingRow]) -> Vec<Part<'a>> {
         let mut spans: Vec<(f64, f64)> =
-            self.session.follower().stretches().iter().filter_map(span).collect();
+            self.session.turn_accumulator().stretches().iter().filter_map(span).collect();
         spans.sort_by(|a, b| a.0.total_cmp(&b.0));
         let begin = spans.first().map_or(f64::INFINITY, |span| span.0);
         let between = |from: f64, to: f64, is_even| {

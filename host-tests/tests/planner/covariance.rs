@@ -6,7 +6,7 @@
 use std::f64::consts::PI;
 
 use orientation::noise::model::GyroNoise;
-use orientation::planner::outlook::Visit;
+use orientation::planner::prediction::Visit;
 
 /// 1σ of a component of the Earth rate by generalised least squares, RMS over the two, rad/s.
 pub fn rate_sigma(noise: &GyroNoise, visits: &[Visit]) -> f64 {

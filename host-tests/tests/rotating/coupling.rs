@@ -3,7 +3,7 @@
 use hal_mock::molecular::MolecularConfiguration;
 use hal_mock::turntable::{Segment, Turntable};
 use orientation::align::rotating::coupling::{BYTES, Coupling, nearest};
-use orientation::align::rotating::follower::{Follower, Mode};
+use orientation::align::rotating::turn_accumulator::{Mode, TurnAccumulator};
 use proptest::prelude::*;
 
 use super::outcome::{SPEED, healthy, turns_s};
@@ -17,12 +17,12 @@ fn found(seed: u64, lag_s: f64, segment: Segment) -> (Case, Option<Coupling>) {
     case.instruments.gyro.molecular = (lag_s > 0.0)
         .then_some(MolecularConfiguration { lag_s, ..MolecularConfiguration::default() });
     case.segments = vec![segment];
-    let mut follower = Follower::new(1, Mode::Uneven);
+    let mut turn_accumulator = TurnAccumulator::new(1, Mode::Uneven);
     for turning in Turntable::new(&case.configuration(), seed) {
         let turning_rate = (seed.is_multiple_of(2)).then_some(turning.stage_rate_rad_s as f32);
-        follower.push(&sample(&turning), turning_rate);
+        turn_accumulator.push(&sample(&turning), turning_rate);
     }
-    let coupling = follower.uneven()[0].coupling(&case.setting.common.noise);
+    let coupling = turn_accumulator.uneven()[0].coupling(&case.setting.common.noise);
     (case, coupling)
 }
 

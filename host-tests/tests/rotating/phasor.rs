@@ -2,7 +2,7 @@
 
 use hal_mock::noise::Generator;
 use orientation::align::regression::Column;
-use orientation::align::rotating::follower::{Follower, Mode};
+use orientation::align::rotating::turn_accumulator::{Mode, TurnAccumulator};
 use orientation::signal::Sample;
 use orientation::signal::phasor::{
     Block, Blocks, COLUMNS, Products, QUICKENING, RATE, Reference, Sums, TURNING,
@@ -207,7 +207,7 @@ fn the_products_hold_four_thousand_blocks_of_the_greatest_values() {
 
 #[test]
 fn angles_taken_for_rates_are_no_overflow() {
-    let mut follower = Follower::new(1, Mode::Recorded);
+    let mut turn_accumulator = TurnAccumulator::new(1, Mode::Recorded);
     for number in 0..20_000_u64 {
         let angle = 0.02 * number as f64;
         let sample = Sample {
@@ -217,7 +217,7 @@ fn angles_taken_for_rates_are_no_overflow() {
             ..Sample::default()
         };
         // Overflow panics in this profile.
-        follower.push(&sample, Some(angle as f32));
+        turn_accumulator.push(&sample, Some(angle as f32));
     }
-    assert!(follower.stretches().is_empty());
+    assert!(turn_accumulator.stretches().is_empty());
 }

@@ -10,7 +10,7 @@ use super::regression::{Column, Regression};
 use super::setting::Setting;
 use crate::device::{Device, Trouble};
 use crate::error::Refusal;
-use crate::signal::blocks::Quietness;
+use crate::signal::blocks::BlockStatistics;
 use crate::signal::dwell::{Dwell, SampleFault};
 
 /// Factor of its noise power within which a dwell scatters like the usual one: chance makes less of a dozen blocks.
@@ -60,18 +60,18 @@ fn noise(setting: &Setting, dwells: &[Dwell]) -> Option<f64> {
 }
 
 /// Noise power that was stated, with what a subtracted sway leaves, (rad/s)²·s.
-fn stated(setting: &Setting, quietness: &Quietness) -> f64 {
+fn stated(setting: &Setting, quietness: &BlockStatistics) -> f64 {
     let (walk, seconds) = (setting.noise.angle_random_walk, quietness.block_seconds);
     walk * walk + setting.sway.mean_variance(seconds) * seconds
 }
 
 /// Noise power that a dwell's blocks show, (rad/s)²·s.
-fn power(quietness: &Quietness) -> f64 {
+fn power(quietness: &BlockStatistics) -> f64 {
     quietness.scatter / (quietness.count() - 2.0) * quietness.block_seconds
 }
 
 /// Noise power that neighbouring blocks show over that of all: one where it is white.
-fn neighbours(quietness: &Quietness) -> f64 {
+fn neighbours(quietness: &BlockStatistics) -> f64 {
     let of_neighbours = quietness.neighbour_squares / (2.0 * (quietness.count() - 1.0));
     of_neighbours * quietness.block_seconds / power(quietness)
 }

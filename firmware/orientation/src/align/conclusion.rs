@@ -5,7 +5,7 @@ use heapless::Vec;
 use super::cause;
 use super::criterion::{self, Criterion};
 use super::level::{self, Tilt};
-use super::quality::{self, Disturbance, Norm};
+use super::quality::{self, Disturbance, ExpectedScatter};
 use super::setting::Setting;
 use super::slow::SlowMotion;
 use super::stepwise::{FEW_DEGREES, Fit, Found, HeadingStep, Problem, Residual};
@@ -116,7 +116,7 @@ impl Conclusion {
         criterion: Criterion,
     ) -> Result<Azimuth, Refusal> {
         self.fit_undisturbed(setting, dwells)?;
-        let Some(fit) = &self.fit else { return Err(Refusal::ArcCannotTell) };
+        let Some(fit) = &self.fit else { return Err(Refusal::AzimuthUnobservable) };
         self.judge(setting, dwells, fit)?;
         self.azimuth(setting, dwells, fit, criterion)
     }
@@ -125,7 +125,7 @@ impl Conclusion {
     /// it does.
     #[inline(never)]
     fn begin(&mut self, setting: &Setting, dwells: &[Dwell]) -> Option<f64> {
-        let norm = Norm::of(setting, dwells);
+        let norm = ExpectedScatter::of(setting, dwells);
         self.angle_random_walk = libm::sqrt(norm.white());
         for dwell in dwells {
             // A session holds no more dwells than these.
@@ -160,8 +160,11 @@ impl Conclusion {
             let white = self.angle_random_walk * self.angle_random_walk;
             let tilt = self.tilt;
             let problem = Problem { setting, tilt: &tilt, white, dwells: &kept };
-            let nothing =
-                if setting.half.is_some() { Refusal::NotInHalf } else { Refusal::ArcCannotTell };
+            let nothing = if setting.half.is_some() {
+                Refusal::NotInHalf
+            } else {
+                Refusal::AzimuthUnobservable
+            };
             let found = problem.fit().ok_or(nothing)?;
             self.keep_residuals(&problem, &found);
             let fit = self.fit.insert(found.0);
@@ -261,7 +264,7 @@ impl Conclusion {
         self.judge_accelerometer(setting, dwells)?;
         self.judge_tilt(setting, fit)?;
         if fit.direction.margin < SECOND_MINIMUM {
-            return Err(Refusal::ArcCannotTell);
+            return Err(Refusal::AzimuthUnobservable);
         }
         within_budget(setting, fit, fit.sigma())?;
         self.judge_single_axis(dwells, fit)?;
@@ -323,7 +326,7 @@ impl Conclusion {
         // The difference of two unit vectors stands at right angles to their mean.
         let axis = first.rad() + 0.5 * other + 0.25 * TURN;
         let slope = libm::tan(fit.direction.azimuth + axis).abs();
-        if fit.sigma() > STEEPNESS * slope { Err(Refusal::ArcCannotTell) } else { Ok(()) }
+        if fit.sigma() > STEEPNESS * slope { Err(Refusal::AzimuthUnobservable) } else { Ok(()) }
     }
 
     /// Chi-square of the residuals, and the correlation of neighbours.
@@ -410,12 +413,12 @@ fn excess(fit: &Fit) -> f64 {
 
 /// How many dwells at an end do not fit the others. One that was disturbed within itself may have had a blow.
 fn astray<'a>(from: impl Iterator<Item = &'a Option<Disturbance>>) -> usize {
-    use Disturbance::{Drift, Step, Unquiet};
+    use Disturbance::{Drift, NonStationary, Step};
     let run = from.map_while(|why| why.filter(|why| !matches!(why, Disturbance::Samples(_))));
     let (mut count, mut within) = (0, 0);
     for why in run {
         count += 1;
-        within += usize::from(matches!(why, Unquiet(_) | Step(_) | Drift(_)));
+        within += usize::from(matches!(why, NonStationary(_) | Step(_) | Drift(_)));
     }
     if count == 1 && within == 1 { 0 } else { count }
 }

@@ -8,7 +8,7 @@ use super::setting::Setting;
 use super::{CAPACITY, level};
 use crate::math::rotation::length;
 use crate::math::{chi_square_tail, median};
-use crate::signal::blocks::Quietness;
+use crate::signal::blocks::BlockStatistics;
 use crate::signal::dwell::{Dwell, SampleFault};
 use crate::signal::rest::{Criteria, Sensors};
 use crate::signal::sway::SwayNoise;
@@ -22,7 +22,7 @@ pub enum Disturbance {
     /// Its samples were sick.
     Samples(SampleFault),
     /// Its blocks scatter more than the noise: factor of the variance.
-    Unquiet(f64),
+    NonStationary(f64),
     /// Its rate stepped or was pushed for a while.
     Step(f64),
     /// Its rate drifted unlike that of the other dwells.
@@ -40,7 +40,7 @@ words! { Disturbance:
     Self::Samples(SampleFault::Saturated) => "gyro saturated";
     Self::Samples(SampleFault::Stuck) => "gyro stuck: every sample the same";
     Self::Samples(SampleFault::Missing) => "samples missing";
-    Self::Unquiet(x) => "not quiet: {} times the noise power", Rounded::<1>(x);
+    Self::NonStationary(x) => "not quiet: {} times the noise power", Rounded::<1>(x);
     Self::Step(x) => "stepped by {} σ within the dwell", Rounded::<1>(x);
     Self::Drift(x) => "drifted by {} σ within the dwell", Rounded::<1>(x);
     Self::Moved(x) => "platform moved by {} σ", Rounded::<1>(x);
@@ -65,7 +65,7 @@ const LEAST_SCATTER: f64 = 5e-5;
 
 /// What quiet dwells look like for this gyro.
 #[derive(Clone, Copy, Debug)]
-pub struct Norm {
+pub struct ExpectedScatter {
     /// White noise, (rad/s)²·s: N².
     white: f64,
     /// Random walk, (rad/s)²/s: K².
@@ -85,7 +85,7 @@ pub struct Norm {
     sensors: Sensors,
 }
 
-impl Norm {
+impl ExpectedScatter {
     /// From what is known of the gyro and from the dwells so far.
     #[must_use]
     #[inline(never)]
@@ -131,13 +131,13 @@ impl Norm {
 
     /// Variance of one block about the dwell's line: white noise, and what of the drift a line
     /// does not follow.
-    fn block_variance(&self, quietness: &Quietness) -> f64 {
+    fn block_variance(&self, quietness: &BlockStatistics) -> f64 {
         let seconds = quietness.count() * quietness.block_seconds;
         self.own_variance(quietness) + self.walk * seconds / 15.0 + 2.0 * self.flicker
     }
 
     /// Variance of one block that no other shares: white noise, and what a subtracted sway leaves.
-    fn own_variance(&self, quietness: &Quietness) -> f64 {
+    fn own_variance(&self, quietness: &BlockStatistics) -> f64 {
         let seconds = quietness.block_seconds;
         self.white / seconds + self.sway.mean_variance(seconds)
     }
@@ -166,27 +166,27 @@ impl Norm {
         (!criteria.is_rest(&limits)).then_some(Disturbance::Driving(rate, force))
     }
 
-    fn unquiet(&self, quietness: &Quietness) -> Option<Disturbance> {
+    fn unquiet(&self, quietness: &BlockStatistics) -> Option<Disturbance> {
         let degrees = quietness.count() - 2.0;
         let chi_square = quietness.scatter / self.block_variance(quietness);
         (chi_square_tail(chi_square, degrees) < SCATTER_PROBABILITY)
-            .then_some(Disturbance::Unquiet(chi_square / degrees))
+            .then_some(Disturbance::NonStationary(chi_square / degrees))
     }
 
-    fn step(&self, quietness: &Quietness) -> Option<Disturbance> {
+    fn step(&self, quietness: &BlockStatistics) -> Option<Disturbance> {
         let step = quietness.largest_step / libm::sqrt(self.block_variance(quietness));
         (step > STEP_BOUND).then_some(Disturbance::Step(step))
     }
 
     /// A random walk over T has a slope of variance 6K²/(5T); flicker one of about 6B²/(πT²).
-    fn drift(&self, quietness: &Quietness) -> Option<Disturbance> {
+    fn drift(&self, quietness: &BlockStatistics) -> Option<Disturbance> {
         let slope =
             (quietness.slope - self.slope).abs() / libm::sqrt(self.slope_variance(quietness));
         (slope > SLOPE_BOUND).then_some(Disturbance::Drift(slope))
     }
 
     /// Variance of a dwell's slope about that which they share, (rad/s²)².
-    fn slope_variance(&self, quietness: &Quietness) -> f64 {
+    fn slope_variance(&self, quietness: &BlockStatistics) -> f64 {
         let seconds = quietness.count() * quietness.block_seconds;
         let unit = quietness.slope_unit();
         self.own_variance(quietness) * unit * unit
@@ -269,7 +269,7 @@ const LAG_CURVE: f64 = 0.3;
 /// and both all dwells and the quiet ones are asked; unbounded only where all agree.
 #[must_use]
 #[inline(never)]
-pub fn lag(norm: &Norm, dwells: &[Dwell], marks: &[Option<Disturbance>]) -> Option<f64> {
+pub fn lag(norm: &ExpectedScatter, dwells: &[Dwell], marks: &[Option<Disturbance>]) -> Option<f64> {
     let stood = |mark: &Disturbance| !is_moved(mark);
     let slopes = |is_asked, other| slopes(norm, dwells, marks, is_asked, other);
     let of = |is_asked, bound, other| Lag::of(slopes(is_asked, other), bound).believed();
@@ -354,7 +354,7 @@ impl Lag {
 /// For each dwell beside another the slope that one second of the other's rate gives it, and that which it has, in σ:
 /// of those whose disturbance, if there is one, may show the lag.
 fn slopes<'a>(
-    norm: &'a Norm,
+    norm: &'a ExpectedScatter,
     dwells: &'a [Dwell],
     marks: &'a [Option<Disturbance>],
     is_asked: fn(&Disturbance) -> bool,
@@ -393,7 +393,7 @@ fn off_level(setting: &Setting, dwell: &Dwell, force: [f64; 3], tilt: &level::Ti
 /// disturbance leaves alone, while there are fewer than three dwells.
 fn white_median(dwells: &[Dwell]) -> f64 {
     let few = dwells.len() < 3;
-    let estimate = |quietness: &Quietness| {
+    let estimate = |quietness: &BlockStatistics| {
         let blocks = quietness.count();
         let variance = if few {
             quietness.neighbour_squares / (2.0 * (blocks - 1.0))
@@ -408,7 +408,7 @@ fn white_median(dwells: &[Dwell]) -> f64 {
 /// Variance of the shared slope for white noise of density one: a median of n values has π/2 of the
 /// variance of their mean.
 fn slope_density(dwells: &[Dwell]) -> f64 {
-    let density = |quietness: &Quietness| {
+    let density = |quietness: &BlockStatistics| {
         quietness.slope_unit() * quietness.slope_unit() / quietness.block_seconds
     };
     let mut values: heapless::Vec<f64, CAPACITY> =

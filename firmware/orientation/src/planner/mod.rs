@@ -7,14 +7,14 @@
 
 pub mod burov;
 pub mod order;
-pub mod outlook;
+pub mod prediction;
 
 use crate::align::POSITIONS;
 use crate::earth::Latitude;
 use crate::noise::model::GyroNoise;
 use crate::units::TURN;
 use order::{Order, PARTS};
-use outlook::{Visit, rate_sigma};
+use prediction::{Visit, rate_sigma};
 
 /// How long the stage takes to turn.
 #[derive(Clone, Copy, Debug, PartialEq)]

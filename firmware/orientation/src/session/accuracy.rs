@@ -4,10 +4,10 @@
 
 use super::{Command, Session};
 use crate::align::POSITIONS;
-use crate::align::quality::Norm;
+use crate::align::quality::ExpectedScatter;
 use crate::error::{Refusal, Source};
 use crate::noise::model::GyroNoise;
-use crate::planner::outlook::{Visit, rate_sigma};
+use crate::planner::prediction::{Visit, rate_sigma};
 use crate::signal::dwell::Dwell;
 use crate::units::{Angle, DEGREES_PER_RADIAN, Instant};
 
@@ -66,7 +66,7 @@ impl Session {
 
     /// The gyro's noise, N as it is stated or, where that is more, as the dwells show it.
     fn noise(&self) -> GyroNoise {
-        let norm = Norm::of(&self.setting, self.dwells());
+        let norm = ExpectedScatter::of(&self.setting, self.dwells());
         let white = norm.white().max(norm.observed_white(self.dwells()));
         GyroNoise { angle_random_walk: libm::sqrt(white), ..self.setting.noise }
     }

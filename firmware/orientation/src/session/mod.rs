@@ -21,13 +21,13 @@ pub use prepared::Prepared;
 
 use heapless::Vec;
 
-use self::pace::{Pace, Target};
+use self::pace::{Target, Timing};
 use self::procedure::{Procedure, ProcedureError};
 use self::schedule::{Position, StopRule};
 use self::survey::Store;
 use crate::align::conclusion::Conclusion;
 use crate::align::criterion::Criterion;
-use crate::align::quality::{Disturbance, Norm};
+use crate::align::quality::{Disturbance, ExpectedScatter};
 use crate::align::setting::Setting;
 use crate::error::Refusal;
 use crate::noise::fit::NoiseFit;
@@ -97,7 +97,7 @@ pub struct Session {
     setting: Setting,
     procedure: Procedure,
     coefficients: Coefficients<SECTIONS>,
-    pace: Pace,
+    pace: Timing,
     phase: Phase,
     target: Target,
     begun: Option<Instant>,
@@ -301,7 +301,7 @@ impl Session {
         if !self.store.push(dwell) {
             return self.conclude(None);
         }
-        match Norm::of(&self.setting, self.dwells()).disturbance(&dwell) {
+        match ExpectedScatter::of(&self.setting, self.dwells()).disturbance(&dwell) {
             Some(why) if self.tries < self.procedure.retries => self.repeat(why),
             _ => self.go_on(now),
         }
@@ -349,7 +349,7 @@ impl Session {
 
     /// Standard deviation of the difference of two dwells, rad/s.
     fn difference_sigma(&self) -> f64 {
-        let white = Norm::of(&self.setting, self.dwells()).white();
+        let white = ExpectedScatter::of(&self.setting, self.dwells()).white();
         libm::sqrt(2.0 * white / self.procedure.schedule.shortest())
     }
 

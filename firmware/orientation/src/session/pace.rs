@@ -21,7 +21,7 @@ impl Target {
 
 /// The procedure's times and angles in the units of the sample path, which knows no `f64`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pace {
+pub(super) struct Timing {
     /// Change of angle that still counts as standing.
     pub(super) still: Angle,
     /// Distance from the target that counts as arrived.
@@ -38,7 +38,7 @@ pub(super) struct Pace {
     pub(super) longest_rotation: u64,
 }
 
-impl Pace {
+impl Timing {
     pub(super) fn of(procedure: &Procedure) -> Self {
         let samples = |seconds| samples(seconds, procedure.sample_seconds);
         Self {

@@ -2,7 +2,7 @@
 
 use heapless::Vec;
 
-use super::pace::{Pace, Target, samples};
+use super::pace::{Target, Timing, samples};
 use super::procedure::{Procedure, ProcedureError};
 use super::survey::Store;
 use super::{Phase, SECTIONS, Session};
@@ -39,7 +39,7 @@ impl From<Prepared> for Session {
         Self {
             setting,
             target,
-            pace: Pace::of(&procedure),
+            pace: Timing::of(&procedure),
             store: Store::Dwells(Vec::new()),
             surveyed: None,
             procedure,

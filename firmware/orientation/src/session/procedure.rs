@@ -1,4 +1,4 @@
-//! How a session goes about it: schedule, patience, travel, and what makes a procedure impossible.
+//! How a session goes about it: schedule, retry budget, travel, and what makes a procedure impossible.
 
 use super::schedule::{Schedule, StopRule};
 use super::survey::Survey;
@@ -98,8 +98,8 @@ impl Procedure {
     /// The same, once the gyro's noise is known from a survey.
     #[must_use]
     pub fn after(self, survey: Survey) -> Self {
-        let patience = 2.0 * (survey.seconds + survey.plan_seconds) + 30.0 * POSITIONS as f64;
-        let longest_seconds = self.longest_seconds + patience;
+        let retry_budget = 2.0 * (survey.seconds + survey.plan_seconds) + 30.0 * POSITIONS as f64;
+        let longest_seconds = self.longest_seconds + retry_budget;
         Self { survey: Some(survey), longest_seconds, ..self }
     }
 
@@ -107,8 +107,8 @@ impl Procedure {
     /// so many seconds have passed.
     #[must_use]
     pub fn until_accurate(self, seconds: f64) -> Self {
-        let patience = 2.0 * seconds + 30.0 * POSITIONS as f64 + 60.0;
-        let longest_seconds = self.longest_seconds.max(patience);
+        let retry_budget = 2.0 * seconds + 30.0 * POSITIONS as f64 + 60.0;
+        let longest_seconds = self.longest_seconds.max(retry_budget);
         Self { stop: StopRule::Accuracy { seconds }, longest_seconds, ..self }
     }
 

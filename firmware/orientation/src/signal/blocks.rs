@@ -69,7 +69,7 @@ impl Blocks {
 
     /// The statistics of the full blocks; `None` for fewer than four.
     #[must_use]
-    pub fn quietness(&self, sample_seconds: f64) -> Option<Quietness> {
+    pub fn quietness(&self, sample_seconds: f64) -> Option<BlockStatistics> {
         let blocks = NonZero::new(self.full as u32).filter(|blocks| blocks.get() >= 4)?;
         let scale = 1e-9 / f64::from(self.length);
         let mut means = [0.0; BLOCKS];
@@ -81,13 +81,13 @@ impl Blocks {
         let all = self.sums[self.full - 1] + self.current;
         means[self.full - 1] = all as f64 * 1e-9 / f64::from(self.length + tail);
         let seconds = f64::from(self.length) * sample_seconds;
-        Some(Quietness::of(&means[..self.full], blocks, seconds))
+        Some(BlockStatistics::of(&means[..self.full], blocks, seconds))
     }
 }
 
 /// How still a dwell was, before it is known how noisy the gyro is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Quietness {
+pub struct BlockStatistics {
     /// Number of blocks; never zero, so that `None` takes no room of its own.
     pub blocks: NonZero<u32>,
     /// Length of a block, s.
@@ -104,7 +104,7 @@ pub struct Quietness {
     pub neighbour_squares: f64,
 }
 
-impl Quietness {
+impl BlockStatistics {
     /// Number of blocks.
     #[must_use]
     pub fn count(&self) -> f64 {

@@ -8,7 +8,7 @@
 //! the filter's settling W = n − D and Σ wⱼ² = n − 2D + E, with D the lag and E the lag power.
 
 use super::Sample;
-use super::blocks::{Blocks, Quietness};
+use super::blocks::{BlockStatistics, Blocks};
 use super::butterworth::{Coefficients, Filter};
 use crate::units::{Angle, AngularRate, Instant, Optional};
 
@@ -34,7 +34,7 @@ pub struct Dwell {
     /// Variance of the mean as its source states it, (rad/s)².
     pub stated_variance: Optional,
     /// Block statistics, where there were samples enough.
-    pub quietness: Option<Quietness>,
+    pub quietness: Option<BlockStatistics>,
     /// Mean specific force on the accelerometer's axes, m/s², where it was measured.
     pub force: Option<[f64; 3]>,
     /// Mean temperature, °C, where it was measured.

@@ -67,8 +67,8 @@ use configuration::Carrier;
 use ports::Inputs;
 use wiring::{Link, SensorWires};
 
-/// The seams between the instrument's parts.
-type Seams = firmware::shared::Seams<'static, DefmtLog>;
+/// The channels between the instrument's parts.
+type Channels = firmware::shared::Channels<'static, DefmtLog>;
 
 defmt::timestamp!("{=u64:us}", Instant::now().as_micros());
 
@@ -90,18 +90,18 @@ async fn main(spawner: Spawner) {
     }
 }
 
-/// The seams, with the sensors sampling into them.
-fn sample(spawner: Spawner, sensors: SensorWires) -> &'static Seams {
-    static SEAMS: StaticCell<Seams> = StaticCell::new();
-    let seams: &'static Seams = SEAMS.init_with(|| Seams::new(&DefmtLog));
-    spawner.spawn(defmt::unwrap!(acquisition(ports::inputs(sensors), seams)));
-    seams
+/// The channels, with the sensors sampling into them.
+fn sample(spawner: Spawner, sensors: SensorWires) -> &'static Channels {
+    static SEAMS: StaticCell<Channels> = StaticCell::new();
+    let channels: &'static Channels = SEAMS.init_with(|| Channels::new(&DefmtLog));
+    spawner.spawn(defmt::unwrap!(acquisition(ports::inputs(sensors), channels)));
+    channels
 }
 
 /// Samples for ever.
 #[embassy_executor::task]
-async fn acquisition(mut inputs: Inputs, seams: &'static Seams) {
-    acquire(&mut inputs, &configuration::instrument(), seams).await;
+async fn acquisition(mut inputs: Inputs, channels: &'static Channels) {
+    acquire(&mut inputs, &configuration::instrument(), channels).await;
 }
 
 /// Goes on telling the conclusion; never ends, because what is wired would be let go: the motor would

@@ -4,7 +4,7 @@ use embassy_executor::Spawner;
 use firmware::log::DefmtLog;
 use firmware::ports::{NoRecorder, SpinPorts};
 use firmware::run::{acquire_spin, run_spin};
-use firmware::shared::Seams;
+use firmware::shared::Channels;
 use firmware::spin::Flight;
 use firmware::spin::configuration::SpinConfiguration;
 use orientation::signal::SpinSample;
@@ -14,8 +14,8 @@ use crate::ports::Spinning;
 use crate::wiring::Wiring;
 use crate::{configuration, ports, tell};
 
-/// The seams between the instrument's parts.
-type SpinSeams = Seams<'static, DefmtLog, SpinSample>;
+/// The channels between the instrument's parts.
+type SpinSeams = Channels<'static, DefmtLog, SpinSample>;
 
 /// Follows the roll for as long as the sensors give data, and goes on telling how it ended.
 #[embassy_executor::task]
@@ -26,13 +26,13 @@ pub async fn follow(spawner: Spawner, wiring: Wiring) {
         return defmt::error!("board: a sensor's scale factor is none");
     };
     let Wiring { sensors: wires, link, motor: _, motor_enable: _, flash: _ } = wiring;
-    let seams: &'static SpinSeams = SEAMS.init_with(|| Seams::new(&DefmtLog));
+    let channels: &'static SpinSeams = SEAMS.init_with(|| Channels::new(&DefmtLog));
     let (setting, launch) = (configuration::spin_setting(), configuration::launch());
     let flight = FLIGHT.init_with(|| Flight::new(&setting, launch, None));
-    spawner.spawn(defmt::unwrap!(acquisition(ports::spinning(wires), sensors, seams)));
+    spawner.spawn(defmt::unwrap!(acquisition(ports::spinning(wires), sensors, channels)));
     let mut outputs = SpinPorts { link, recorder: NoRecorder };
-    let health = run_spin(&mut outputs, flight, seams).await;
-    tell(&health, &mut outputs.link, &seams.shared).await;
+    let health = run_spin(&mut outputs, flight, channels).await;
+    tell(&health, &mut outputs.link, &channels.shared).await;
 }
 
 /// Samples for ever.
@@ -40,7 +40,7 @@ pub async fn follow(spawner: Spawner, wiring: Wiring) {
 async fn acquisition(
     mut sensors: Spinning,
     configuration: SpinConfiguration,
-    seams: &'static SpinSeams,
+    channels: &'static SpinSeams,
 ) {
-    acquire_spin(&mut sensors, &configuration, seams).await;
+    acquire_spin(&mut sensors, &configuration, channels).await;
 }

@@ -17,10 +17,10 @@ pub async fn align(spawner: Spawner, wiring: Wiring) {
         Err(error) => return defmt::error!("board: no session: {}", error),
     };
     let Wiring { sensors, motor, link, motor_enable: _enabled, flash: _ } = wiring;
-    let seams = sample(spawner, sensors);
+    let channels = sample(spawner, sensors);
     let mut outputs = ports::outputs(motor, link);
-    let health = run(&mut outputs, &configuration::instrument(), session, seams).await;
-    tell(&health, &mut outputs.link, &seams.shared).await;
+    let health = run(&mut outputs, &configuration::instrument(), session, channels).await;
+    tell(&health, &mut outputs.link, &channels.shared).await;
 }
 
 /// The session, made where it stays.

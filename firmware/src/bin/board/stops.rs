@@ -5,7 +5,7 @@ use firmware::keep::Keeping;
 use firmware::log::DefmtLog;
 use firmware::ports::{NoOutside, NoRecorder, NoWhereabouts, VehiclePorts};
 use firmware::run::{acquire_triad, run_stops_and_keep};
-use firmware::shared::Seams;
+use firmware::shared::Channels;
 use orientation::keep::Keeper;
 use orientation::session::procedure::ProcedureError;
 use orientation::session::stops::Session;
@@ -17,8 +17,8 @@ use crate::ports::Triad;
 use crate::wiring::Wiring;
 use crate::{configuration, ports, tell};
 
-/// The seams between the instrument's parts.
-type VehicleSeams = Seams<'static, DefmtLog, InertialSample>;
+/// The channels between the instrument's parts.
+type VehicleSeams = Channels<'static, DefmtLog, InertialSample>;
 
 /// Runs the instrument: it aligns itself, then keeps what it found for ever, and over a loss of supply.
 #[embassy_executor::task]
@@ -29,19 +29,19 @@ pub async fn align(spawner: Spawner, wiring: Wiring) {
         Err(error) => return defmt::error!("board: no session: {}", error),
     };
     let Wiring { sensors, link, motor: _, motor_enable: _, flash } = wiring;
-    let seams: &'static VehicleSeams = SEAMS.init_with(|| Seams::new(&DefmtLog));
-    spawner.spawn(defmt::unwrap!(acquisition(ports::triad(sensors), seams)));
-    let mut outputs = VehiclePorts { whereabouts: NoWhereabouts, link, recorder: NoRecorder };
+    let channels: &'static VehicleSeams = SEAMS.init_with(|| Channels::new(&DefmtLog));
+    spawner.spawn(defmt::unwrap!(acquisition(ports::triad(sensors), channels)));
+    let mut outputs = VehiclePorts { position_aiding: NoWhereabouts, link, recorder: NoRecorder };
     let configuration = configuration::keeping();
     let mut keeping = Keeping::new(keeper(), &configuration, NoOutside, store(flash));
-    let health = run_stops_and_keep(&mut outputs, session, &mut keeping, seams).await;
-    tell(&health, &mut outputs.link, &seams.shared).await;
+    let health = run_stops_and_keep(&mut outputs, session, &mut keeping, channels).await;
+    tell(&health, &mut outputs.link, &channels.shared).await;
 }
 
 /// Samples for ever.
 #[embassy_executor::task]
-async fn acquisition(mut triad: Triad, seams: &'static VehicleSeams) {
-    acquire_triad(&mut triad, &configuration::vehicle(), seams).await;
+async fn acquisition(mut triad: Triad, channels: &'static VehicleSeams) {
+    acquire_triad(&mut triad, &configuration::vehicle(), channels).await;
 }
 
 /// The keeper, made where it stays.

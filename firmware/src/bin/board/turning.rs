@@ -2,13 +2,13 @@
 
 use embassy_executor::Spawner;
 use firmware::run::run_storing;
-use firmware::storage::{Today, prepare};
+use firmware::storage::{Today, load_calibration};
 use orientation::session::rotating::{Session, check};
 use static_cell::StaticCell;
 
 use crate::flash::{Store, store};
 use crate::wiring::Wiring;
-use crate::{Seams, configuration, ports, sample, tell};
+use crate::{Channels, configuration, ports, sample, tell};
 
 /// A board has no clock of the day: however old a coupling is, it is used.
 const TODAY: Today = Today { date: None, longest: None };
@@ -17,17 +17,17 @@ const TODAY: Today = Today { date: None, longest: None };
 #[embassy_executor::task]
 pub async fn align(spawner: Spawner, wiring: Wiring) {
     let Wiring { sensors, motor, link, motor_enable: _enabled, flash } = wiring;
-    let seams = sample(spawner, sensors);
+    let channels = sample(spawner, sensors);
     let mut store = store(flash);
-    let Some(session) = session(&mut store, seams).await else { return };
+    let Some(session) = session(&mut store, channels).await else { return };
     let mut outputs = ports::outputs(motor, link);
     let platform = configuration::platform();
-    let health = run_storing(&mut outputs, &platform, session, &mut store, seams).await;
-    tell(&health, &mut outputs.link, &seams.shared).await;
+    let health = run_storing(&mut outputs, &platform, session, &mut store, channels).await;
+    tell(&health, &mut outputs.link, &channels.shared).await;
 }
 
 /// The session, made where it stays, with what was kept for it.
-async fn session(store: &mut Store, seams: &Seams) -> Option<&'static mut Session> {
+async fn session(store: &mut Store, channels: &Channels) -> Option<&'static mut Session> {
     static SESSION: StaticCell<Session> = StaticCell::new();
     let mut setting = configuration::turning_setting();
     let mut procedure = configuration::turning_procedure();
@@ -35,6 +35,6 @@ async fn session(store: &mut Store, seams: &Seams) -> Option<&'static mut Sessio
         defmt::error!("board: no session: {}", error);
         return None;
     }
-    prepare(store, TODAY, (&mut setting, &mut procedure), &seams.shared).await;
+    load_calibration(store, TODAY, (&mut setting, &mut procedure), &channels.shared).await;
     Some(SESSION.init_with(|| Session::of(setting, procedure)))
 }

@@ -6,8 +6,8 @@ use core::hint::black_box;
 use orientation::align::setting::Setting as Common;
 use orientation::align::stops::Setting;
 use orientation::align::stops::conclusion::Conclusion;
-use orientation::align::stops::follower::{Follower, Rests};
 use orientation::align::stops::inclination::Inclination;
+use orientation::align::stops::stop_detector::{Rests, StopDetector};
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
 use orientation::signal::InertialSample;
@@ -32,16 +32,16 @@ const AZIMUTH: f64 = 72.0 * DEGREE;
 /// Rate of turn on the way, rad/s: 140° in all.
 const TURNING: f64 = 140.0 * DEGREE / 900.0;
 
-/// [`Follower::push`].
-type Push = fn(&mut Follower, &InertialSample) -> bool;
+/// [`StopDetector::push`].
+type Push = fn(&mut StopDetector, &InertialSample) -> bool;
 /// [`Inclination::angle`].
 type Form = fn(&Inclination, f64) -> f64;
 
 /// Measures all of it.
 pub fn report(counter: &Counter, report: &mut Report) {
     sample(counter, report);
-    let mut follower = drive();
-    let (cost, conclusion) = counter.measure(|| conclude(&mut follower));
+    let mut stop_detector = drive();
+    let (cost, conclusion) = counter.measure(|| conclude(&mut stop_detector));
     let found = conclusion.found.filter(|_| conclusion.verdict.is_ok());
     let is_right = found.is_some_and(|found| (found.start.angle - AZIMUTH).abs() < 0.01 * DEGREE);
     report.require("the azimuth at the start is found from two stops", is_right);
@@ -57,15 +57,15 @@ pub fn report(counter: &Counter, report: &mut Report) {
 
 /// The mean of a sample, and the greatest: one that ends a second.
 fn sample(counter: &Counter, report: &mut Report) {
-    let mut follower = follower(RATE_HZ);
+    let mut stop_detector = stop_detector(RATE_HZ);
     // A function that the optimiser cannot see is called, not inlined.
-    let push = black_box(Follower::push as Push);
+    let push = black_box(StopDetector::push as Push);
     let (mut total, mut worst) = (Cost::default(), Cost::default());
     let mut carried = [0.0; 3];
     for index in 0..SAMPLES {
         let rates = [0.02, -0.03, 0.4].map(|rate| rate * libm::sin(index as f64 / 700.0));
         let sample = inertial(index, RATE_HZ, rates, &mut carried);
-        let (cost, _) = counter.measure(|| push(&mut follower, &sample));
+        let (cost, _) = counter.measure(|| push(&mut stop_detector, &sample));
         total += cost;
         worst = worst.max(cost);
     }
@@ -102,14 +102,14 @@ fn inclination(counter: &Counter, report: &mut Report, inclination: &Inclination
 }
 
 #[inline(never)]
-fn conclude(follower: &mut Follower) -> Conclusion {
-    Conclusion::of(&setting(), follower)
+fn conclude(stop_detector: &mut StopDetector) -> Conclusion {
+    Conclusion::of(&setting(), stop_detector)
 }
 
 /// Stack of a conclusion, bytes.
 pub fn stack() -> usize {
-    let mut follower = drive();
-    stack::stack_of(|| black_box(conclude(&mut follower)).verdict.is_ok()).0
+    let mut stop_detector = drive();
+    stack::stack_of(|| black_box(conclude(&mut stop_detector)).verdict.is_ok()).0
 }
 
 fn setting() -> Setting {
@@ -119,15 +119,15 @@ fn setting() -> Setting {
     Setting { bias_sigma: Some(DEGREE_PER_HOUR), force_noise: 1e-3, ..Setting::new(common) }
 }
 
-fn follower(rate: u64) -> Follower {
+fn stop_detector(rate: u64) -> StopDetector {
     let setting = setting();
     let gravity = setting.common.latitude.gravity();
-    Follower::new(Rests::Found, &setting.sensors(), gravity, 1.0 / rate as f64)
+    StopDetector::new(Rests::Found, &setting.sensors(), gravity, 1.0 / rate as f64)
 }
 
 /// A level vehicle that stands for a minute, turns for a quarter of an hour and stands again, without noise.
-fn drive() -> Follower {
-    let mut follower = follower(DRIVE_HZ);
+fn drive() -> StopDetector {
+    let mut stop_detector = stop_detector(DRIVE_HZ);
     let earth = setting().common.latitude;
     let (mut azimuth, mut carried) = (AZIMUTH, [0.0; 3]);
     for index in 0..(DRIVE[2] as u64) * DRIVE_HZ {
@@ -139,9 +139,9 @@ fn drive() -> Follower {
         azimuth += step;
         let north = earth.horizontal_rate();
         let rates = [north * cosine, -north * sine, turning - earth.vertical_rate()];
-        follower.push(&inertial(index, DRIVE_HZ, rates, &mut carried));
+        stop_detector.push(&inertial(index, DRIVE_HZ, rates, &mut carried));
     }
-    follower
+    stop_detector
 }
 
 fn inertial(index: u64, rate: u64, rates: [f64; 3], carried: &mut [f64; 3]) -> InertialSample {

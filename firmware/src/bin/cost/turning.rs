@@ -3,7 +3,7 @@
 use core::hint::black_box;
 
 use hal_mock::noise::Generator;
-use orientation::align::rotating::follower::{Follower, Mode};
+use orientation::align::rotating::turn_accumulator::{Mode, TurnAccumulator};
 use orientation::signal::Sample;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce, TURN};
 
@@ -28,19 +28,19 @@ const SLOW: u64 = 20;
 /// Tilt of the platform, m/s², and white noise of a specific force.
 const FORCE: [f64; 2] = [0.1, 1e-3];
 
-/// [`Follower::push`].
-type Push = fn(&mut Follower, &Sample, Option<f32>) -> bool;
+/// [`TurnAccumulator::push`].
+type Push = fn(&mut TurnAccumulator, &Sample, Option<f32>) -> bool;
 
 /// Measures the mean of a sample, and the greatest: the one that ends a turn.
 pub fn report(counter: &Counter, report: &mut Report) {
     let mut noise = Generator::new(7);
-    let mut follower = Follower::new(PERIODS, Mode::Even);
+    let mut turn_accumulator = TurnAccumulator::new(PERIODS, Mode::Even);
     // A function that the optimiser cannot see is called, not inlined.
-    let push = black_box(Follower::push as Push);
+    let push = black_box(TurnAccumulator::push as Push);
     let (mut total, mut worst, mut turns) = (Cost::default(), Cost::default(), 0);
     for index in 0..SAMPLES {
         let sample = sample(index, &mut noise);
-        let (cost, has_turned) = counter.measure(|| push(&mut follower, &sample, None));
+        let (cost, has_turned) = counter.measure(|| push(&mut turn_accumulator, &sample, None));
         total += cost;
         worst = worst.max(cost);
         turns += u32::from(has_turned);

@@ -18,9 +18,9 @@ mod clock;
 #[path = "../measure/counter.rs"]
 mod counter;
 mod executor;
+mod job;
 mod log;
 mod meter;
-mod order;
 mod outside;
 mod results;
 mod setup;
@@ -38,8 +38,8 @@ use static_cell::StaticCell;
 
 use counter::Counter;
 use executor::Deadlock;
+use job::Job;
 use meter::{Meter, Task};
-use order::Order;
 use setup::{Finished, Running, Sampling};
 
 /// Why nothing was found.
@@ -98,7 +98,7 @@ fn main() -> ! {
 
 /// Runs the instrument to its end and logs what it found and what it took.
 fn run() -> Result<(), Failure> {
-    let order = Order::from_host().ok_or(Failure::NoOrder)?;
+    let job = Job::from_host().ok_or(Failure::NoOrder)?;
     let peripherals = cortex_m::Peripherals::take().ok_or(Failure::NoTimer)?;
     let bench: &'static Bench = BENCH.init(Bench {
         meter: Meter::new(Counter::start(peripherals.SYST)),
@@ -107,14 +107,14 @@ fn run() -> Result<(), Failure> {
         finished: OnceCell::new(),
     });
     let executor: &'static Executor = EXECUTOR.init_with(executor::new);
-    let (sampling, running) = order.begin(&bench.meter).ok_or(Failure::Session)?;
+    let (sampling, running) = job.begin(&bench.meter).ok_or(Failure::Session)?;
     let spawner = executor.spawner();
     spawner.spawn(acquisition(bench, sampling)?);
     spawner.spawn(instrument(bench, running)?);
     executor::run(executor, &bench.meter, || bench.finished.get().is_some())?;
     let finished = bench.finished.get().ok_or(Failure::NoConclusion)?;
-    finished.log(order.base().seed).ok_or(Failure::NoConclusion)?;
-    log::effort(&bench.meter, order.base().sample_rate_hz);
+    finished.log(job.base().seed).ok_or(Failure::NoConclusion)?;
+    log::effort(&bench.meter, job.base().sample_rate_hz);
     log::task(&bench.acquisition);
     log::task(&bench.instrument);
     Ok(())

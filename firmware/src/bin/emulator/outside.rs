@@ -24,7 +24,7 @@ use crate::results;
 
 /// A simulated port whose work is not the instrument's: the board's bus drivers and their interrupts
 /// are others, so what this one takes says nothing of the board.
-pub struct Outside<T> {
+pub struct Aiding<T> {
     port: T,
     meter: &'static Meter,
 }
@@ -33,15 +33,15 @@ pub struct Outside<T> {
 pub struct Metering(pub &'static Meter);
 
 impl Around for Metering {
-    type Spi<S: SpiDevice> = Outside<S>;
-    type Line<W: Wait> = Outside<W>;
+    type Spi<S: SpiDevice> = Aiding<S>;
+    type Line<W: Wait> = Aiding<W>;
 
-    fn spi<S: SpiDevice>(&self, _: Select, port: S) -> Outside<S> {
-        Outside { port, meter: self.0 }
+    fn spi<S: SpiDevice>(&self, _: Select, port: S) -> Aiding<S> {
+        Aiding { port, meter: self.0 }
     }
 
-    fn line<W: Wait>(&self, _: Select, port: W) -> Outside<W> {
-        Outside { port, meter: self.0 }
+    fn line<W: Wait>(&self, _: Select, port: W) -> Aiding<W> {
+        Aiding { port, meter: self.0 }
     }
 }
 
@@ -51,11 +51,11 @@ async fn outside<F: Future>(meter: &Meter, future: F) -> F::Output {
     poll_fn(|context| meter.outside(|| future.as_mut().poll(context))).await
 }
 
-impl<T: SpiErrorType> SpiErrorType for Outside<T> {
+impl<T: SpiErrorType> SpiErrorType for Aiding<T> {
     type Error = T::Error;
 }
 
-impl<T: SpiDevice> SpiDevice for Outside<T> {
+impl<T: SpiDevice> SpiDevice for Aiding<T> {
     async fn transaction(
         &mut self,
         operations: &mut [Operation<'_, u8>],
@@ -64,11 +64,11 @@ impl<T: SpiDevice> SpiDevice for Outside<T> {
     }
 }
 
-impl<T: PinErrorType> PinErrorType for Outside<T> {
+impl<T: PinErrorType> PinErrorType for Aiding<T> {
     type Error = T::Error;
 }
 
-impl<T: Wait> Wait for Outside<T> {
+impl<T: Wait> Wait for Aiding<T> {
     async fn wait_for_high(&mut self) -> Result<(), Self::Error> {
         outside(self.meter, self.port.wait_for_high()).await
     }

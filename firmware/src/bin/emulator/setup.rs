@@ -1,4 +1,4 @@
-//! What a run needs: the simulated board, its ports, the seams and the session, in one place in memory for
+//! What a run needs: the simulated board, its ports, the channels and the session, in one place in memory for
 //! every kind of run.
 
 use core::cell::RefCell;
@@ -9,7 +9,7 @@ use firmware::configuration::{
 use firmware::keep::Keeping;
 use firmware::ports::{NoOutside, NoRecorder, VehiclePorts};
 use firmware::run::{acquire, acquire_triad, run, run_rotating, run_stops_and_keep};
-use firmware::shared::Seams;
+use firmware::shared::Channels;
 use firmware::simulated::vehicle::{KnownPlace, SimulatedTriad};
 use firmware::simulated::{Chips, SimulatedPorts, SimulatedSensors};
 use hal_mock::vehicle::board::VehicleBoard;
@@ -39,10 +39,10 @@ pub type VehicleInputs = SimulatedTriad<'static, VehicleBoard<'static>, Metering
 pub type VehicleOutputs = VehiclePorts<KnownPlace<'static, 'static>, NoLink, NoRecorder>;
 /// What keeps in a vehicle.
 pub type VehicleKeeping = Keeping<'static, NoOutside, ()>;
-/// The seams of a stage.
-type StageSeams = Seams<'static, Log>;
-/// The seams of a vehicle.
-type VehicleSeams = Seams<'static, Log, InertialSample>;
+/// The channels of a stage.
+type StageSeams = Channels<'static, Log>;
+/// The channels of a vehicle.
+type VehicleSeams = Channels<'static, Log, InertialSample>;
 
 /// A board.
 #[expect(clippy::large_enum_variant, reason = "there is one, in static memory")]
@@ -51,7 +51,7 @@ enum Rig {
     Vehicle(VehicleRig),
 }
 
-/// Its ports, and the seams.
+/// Its ports, and the channels.
 enum Parts {
     Stage(StageInputs, StageOutputs, StageSeams),
     Vehicle(VehicleInputs, VehicleOutputs, VehicleSeams),
@@ -59,7 +59,7 @@ enum Parts {
 
 /// A session, the greatest piece of memory.
 #[expect(clippy::large_enum_variant, reason = "there is one, and it stays where it is")]
-enum Sitting {
+enum AnySession {
     Stepwise(Session),
     Turning(rotating::Session),
     Stops(stops::Session),
@@ -68,7 +68,7 @@ enum Sitting {
 static RIG: StaticCell<Rig> = StaticCell::new();
 static LOG: StaticCell<Log> = StaticCell::new();
 static PARTS: StaticCell<Parts> = StaticCell::new();
-static SITTING: StaticCell<Sitting> = StaticCell::new();
+static SITTING: StaticCell<AnySession> = StaticCell::new();
 static KEEPER: StaticCell<Keeper> = StaticCell::new();
 
 /// The board of a stage with its ports.
@@ -81,9 +81,9 @@ pub fn stage(
 ) -> Option<(&'static mut StageInputs, &'static mut StageOutputs, &'static StageSeams)> {
     let Rig::Stage(rig) = RIG.init_with(|| Rig::Stage(RefCell::new(board()))) else { return None };
     let log = LOG.init(Log(meter));
-    let parts = PARTS.init_with(|| Parts::Stage(inputs(rig), outputs(rig), Seams::new(log)));
-    let Parts::Stage(inputs, outputs, seams) = parts else { return None };
-    Some((inputs, outputs, seams))
+    let parts = PARTS.init_with(|| Parts::Stage(inputs(rig), outputs(rig), Channels::new(log)));
+    let Parts::Stage(inputs, outputs, channels) = parts else { return None };
+    Some((inputs, outputs, channels))
 }
 
 /// The board of a vehicle with its ports.
@@ -97,16 +97,16 @@ pub fn vehicle(
     let rig = RIG.init_with(|| Rig::Vehicle(RefCell::new(board())));
     let Rig::Vehicle(rig) = rig else { return None };
     let log = LOG.init(Log(meter));
-    let parts = PARTS.init_with(|| Parts::Vehicle(inputs(rig), outputs(rig), Seams::new(log)));
-    let Parts::Vehicle(inputs, outputs, seams) = parts else { return None };
-    Some((inputs, outputs, seams))
+    let parts = PARTS.init_with(|| Parts::Vehicle(inputs(rig), outputs(rig), Channels::new(log)));
+    let Parts::Vehicle(inputs, outputs, channels) = parts else { return None };
+    Some((inputs, outputs, channels))
 }
 
 /// A session in positions. Not inlined: what it is made of on the stack is not to stay there.
 #[inline(never)]
 pub fn stepwise(prepared: Prepared) -> Option<&'static mut Session> {
-    let sitting = SITTING.init_with(|| Sitting::Stepwise(Session::from(prepared)));
-    if let Sitting::Stepwise(session) = sitting { Some(session) } else { None }
+    let sitting = SITTING.init_with(|| AnySession::Stepwise(Session::from(prepared)));
+    if let AnySession::Stepwise(session) = sitting { Some(session) } else { None }
 }
 
 /// A session on a turning platform, whose procedure was checked.
@@ -115,8 +115,8 @@ pub fn turning(
     setting: &Setting,
     procedure: rotating::Procedure,
 ) -> Option<&'static mut rotating::Session> {
-    let session = || Sitting::Turning(rotating::Session::of(*setting, procedure));
-    if let Sitting::Turning(session) = SITTING.init_with(session) { Some(session) } else { None }
+    let session = || AnySession::Turning(rotating::Session::of(*setting, procedure));
+    if let AnySession::Turning(session) = SITTING.init_with(session) { Some(session) } else { None }
 }
 
 /// A session in a vehicle.
@@ -125,8 +125,8 @@ pub fn driving(
     setting: &align::stops::Setting,
     procedure: stops::Procedure,
 ) -> Option<&'static mut stops::Session> {
-    let session = || Sitting::Stops(stops::Session::of(*setting, procedure));
-    if let Sitting::Stops(session) = SITTING.init_with(session) { Some(session) } else { None }
+    let session = || AnySession::Stops(stops::Session::of(*setting, procedure));
+    if let AnySession::Stops(session) = SITTING.init_with(session) { Some(session) } else { None }
 }
 
 /// What keeps in a vehicle.
@@ -147,11 +147,11 @@ impl Sampling {
     /// Samples for ever.
     pub async fn run(self) {
         match self {
-            Self::Stage(inputs, configuration, seams) => {
-                acquire(inputs, &configuration, seams).await;
+            Self::Stage(inputs, configuration, channels) => {
+                acquire(inputs, &configuration, channels).await;
             }
-            Self::Vehicle(inputs, configuration, seams) => {
-                acquire_triad(inputs, &configuration, seams).await;
+            Self::Vehicle(inputs, configuration, channels) => {
+                acquire_triad(inputs, &configuration, channels).await;
             }
         }
     }
@@ -177,16 +177,16 @@ impl Running {
     /// Runs to the session's conclusion.
     pub async fn run(self) -> Finished {
         match self {
-            Self::Stepwise(session, outputs, configuration, seams) => {
-                run(outputs, &configuration, session, seams).await;
+            Self::Stepwise(session, outputs, configuration, channels) => {
+                run(outputs, &configuration, session, channels).await;
                 Finished::Stepwise(session)
             }
-            Self::Turning(session, outputs, seams) => {
-                run_rotating(outputs, &TurntableConfiguration::default(), session, seams).await;
+            Self::Turning(session, outputs, channels) => {
+                run_rotating(outputs, &TurntableConfiguration::default(), session, channels).await;
                 Finished::Turning(session)
             }
-            Self::Stops(session, outputs, mut keeping, seams) => {
-                run_stops_and_keep(outputs, session, &mut keeping, seams).await;
+            Self::Stops(session, outputs, mut keeping, channels) => {
+                run_stops_and_keep(outputs, session, &mut keeping, channels).await;
                 Finished::Stops(session)
             }
         }
@@ -214,7 +214,7 @@ impl Finished {
                 results::outcome(seed, &session.conclusion()?.verdict);
             }
             Self::Turning(session) => {
-                let stretches = session.follower().stretches().iter();
+                let stretches = session.turn_accumulator().stretches().iter();
                 stretches.flat_map(Stretch::turns).zip(1..).for_each(|(turn, number)| {
                     results::turn(number, turn);
                 });

@@ -6,7 +6,7 @@ use embassy_time::Instant;
 use hal_mock::noise::Generator;
 use hal_mock::vehicle::board::VehicleBoard;
 
-use crate::ports::Whereabouts;
+use crate::ports::PositionAiding;
 
 /// A stream of random numbers that no source of noise has.
 const STREAM: u64 = 1001;
@@ -38,7 +38,7 @@ impl<'r, 'a> KnownPlace<'r, 'a> {
     }
 }
 
-impl Whereabouts for KnownPlace<'_, '_> {
+impl PositionAiding for KnownPlace<'_, '_> {
     fn displacement(&mut self) -> Option<[f64; 2]> {
         let Place::Known { sigma_m } = self.place else { return None };
         let truth = self.board.borrow().plant.truth_at(Instant::now());

@@ -2,8 +2,8 @@
 //! the paper's, and that of everything that is known.
 
 use hal_mock::vehicle::scenario::Scenario;
-use orientation::align::stops::follower::Rests;
 use orientation::align::stops::plain;
+use orientation::align::stops::stop_detector::Rests;
 use orientation::error::Refusal;
 use serde::Serialize;
 

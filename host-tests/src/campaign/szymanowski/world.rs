@@ -7,7 +7,7 @@ use hal_mock::vehicle::{Vehicle, VehicleSample};
 use orientation::align::setting::Setting as Common;
 use orientation::align::stops::Setting;
 use orientation::align::stops::conclusion::Conclusion;
-use orientation::align::stops::follower::Rests;
+use orientation::align::stops::stop_detector::Rests;
 use orientation::earth::Latitude;
 use orientation::error::Refusal;
 use orientation::noise::model::GyroNoise;

@@ -7,8 +7,8 @@
 
 use heapless::Vec;
 
-use super::follower::STRETCHES;
 use super::turn::TURNS;
+use super::turn_accumulator::STRETCHES;
 use crate::align::regression::{COLUMNS, Column, Regression, Solution};
 use crate::math::{median, sort};
 

@@ -6,11 +6,11 @@ use super::Setting;
 use super::average::{Average, steady_part, typical_size, variance_of_neighbours};
 use super::change::{MARKS, Mark};
 use super::coupling::Coupling;
-use super::follower::{Follower, STRETCHES};
 use super::heading::Directions;
 use super::solution::{Fit, Pair, Problem, SPEEDS, force_density, of_turn};
 use super::tilting::Tilting;
 use super::turn::{Sense, Stretch, Turn};
+use super::turn_accumulator::{STRETCHES, TurnAccumulator};
 use crate::align::conclusion::Azimuth;
 use crate::align::slow::SlowMotion;
 use crate::device::Device;
@@ -92,28 +92,32 @@ impl Default for Conclusion {
 }
 
 impl Conclusion {
-    /// Judges what a follower has, solves, and decides, in place of a [`Self::default`].
-    pub fn draw(&mut self, setting: &Setting, follower: &Follower) {
-        self.verdict = self.decide(setting, follower);
+    /// Judges what a turn accumulator has, solves, and decides, in place of a [`Self::default`].
+    pub fn draw(&mut self, setting: &Setting, turn_accumulator: &TurnAccumulator) {
+        self.verdict = self.decide(setting, turn_accumulator);
     }
 
-    fn decide(&mut self, setting: &Setting, follower: &Follower) -> Result<Azimuth, Refusal> {
+    fn decide(
+        &mut self,
+        setting: &Setting,
+        turn_accumulator: &TurnAccumulator,
+    ) -> Result<Azimuth, Refusal> {
         let latitude = setting.common.latitude;
         if !latitude.has_north() {
             return Err(Refusal::LatitudeTooHigh { latitude: latitude.rad() * DEGREES });
         }
-        self.couple(setting, follower)?;
-        Self::judge_followed(follower)?;
-        let tilting = tilting(setting, follower);
+        self.couple(setting, turn_accumulator)?;
+        Self::judge_followed(turn_accumulator)?;
+        let tilting = tilting(setting, turn_accumulator);
         let mut marks = Vec::new();
-        self.pair(setting, follower.stretches(), &tilting, &mut marks)?;
+        self.pair(setting, turn_accumulator.stretches(), &tilting, &mut marks)?;
         let drift = self.scatter(setting);
         let moved = |reason| {
             let tilted = |change: f64| Refusal::TiltChanged { change: change * 1e3 };
             tilting.step.map_or(reason, tilted)
         };
         self.judge_left_out(setting).map_err(moved)?;
-        self.solve(setting, &tilting, follower.ellipse(), marks)?;
+        self.solve(setting, &tilting, turn_accumulator.ellipse(), marks)?;
         self.judge_turns(setting, drift)?;
         let fit = self.fit.ok_or(Refusal::CouplingUnknown)?;
         self.judge_force(setting, &fit, &tilting)?;
@@ -123,18 +127,22 @@ impl Conclusion {
 
     /// The couplings from the uneven turns, or the stored ones.
     #[inline(never)]
-    fn couple(&mut self, setting: &Setting, follower: &Follower) -> Result<(), Refusal> {
+    fn couple(
+        &mut self,
+        setting: &Setting,
+        turn_accumulator: &TurnAccumulator,
+    ) -> Result<(), Refusal> {
         let mut noise = setting.common.noise;
         if !setting.common.white_known {
-            noise.angle_random_walk = estimate(follower.stretches(), &self.couplings);
+            noise.angle_random_walk = estimate(turn_accumulator.stretches(), &self.couplings);
         }
-        let found = follower.uneven().iter().filter_map(|uneven| uneven.coupling(&noise));
+        let found = turn_accumulator.uneven().iter().filter_map(|uneven| uneven.coupling(&noise));
         self.couplings = found.collect();
         if self.couplings.is_empty() {
             self.couplings = setting.couplings.iter().flatten().copied().collect();
         }
         if !setting.common.white_known {
-            noise.angle_random_walk = estimate(follower.stretches(), &self.couplings);
+            noise.angle_random_walk = estimate(turn_accumulator.stretches(), &self.couplings);
         }
         self.angle_random_walk = noise.angle_random_walk;
         if self.couplings.is_empty() && !setting.sensor.is_flat {
@@ -143,12 +151,12 @@ impl Conclusion {
         self.couplings.iter().try_for_each(|coupling| setting.accept(coupling))
     }
 
-    fn judge_followed(follower: &Follower) -> Result<(), Refusal> {
-        if let Some(trouble) = follower.accelerometer() {
+    fn judge_followed(turn_accumulator: &TurnAccumulator) -> Result<(), Refusal> {
+        if let Some(trouble) = turn_accumulator.accelerometer() {
             return Err(Refusal::Device { device: Device::Accelerometer, trouble });
         }
-        if follower.slip() != 0.0 {
-            return Err(Refusal::EncoderSlipped { angle: follower.slip() * DEGREES });
+        if turn_accumulator.slip() != 0.0 {
+            return Err(Refusal::EncoderSlipped { angle: turn_accumulator.slip() * DEGREES });
         }
         Ok(())
     }
@@ -368,14 +376,18 @@ impl Conclusion {
     /// What the turns show of a base that turns slowly about the vertical, from what this was drawn from; `None` where
     /// there is no fit.
     #[must_use]
-    pub fn slow_turn(&self, setting: &Setting, follower: &Follower) -> Option<SlowMotion> {
+    pub fn slow_turn(
+        &self,
+        setting: &Setting,
+        turn_accumulator: &TurnAccumulator,
+    ) -> Option<SlowMotion> {
         let fit = self.fit.as_ref()?;
-        let tilting = tilting(setting, follower);
+        let tilting = tilting(setting, turn_accumulator);
         let mut marks = Vec::new();
-        self.averages(setting, follower.stretches(), &tilting, &mut marks);
+        self.averages(setting, turn_accumulator.stretches(), &tilting, &mut marks);
         let noise = self.noise(setting);
         let density = |speed: f64| noise.density_at(speed / TURN);
-        let problem = self.problem(setting, &tilting, follower.ellipse(), &density);
+        let problem = self.problem(setting, &tilting, turn_accumulator.ellipse(), &density);
         let of_turn = |speed: f64| self.of_one_turn(setting, speed);
         let is_known = setting.common.white_known;
         Directions { problem: &problem, fit, of_turn: &of_turn, is_known }.slow_turn(marks)
@@ -411,11 +423,11 @@ impl Conclusion {
 }
 
 /// What the forces show of a base that tilts.
-fn tilting(setting: &Setting, follower: &Follower) -> Tilting {
+fn tilting(setting: &Setting, turn_accumulator: &TurnAccumulator) -> Tilting {
     let latitude = setting.common.latitude;
     let [along, across] = setting.common.g_sensitivity;
     let per_tilt = Complex::new(latitude.vertical_rate() + along, across);
-    Tilting::of(follower.stretches(), latitude.gravity(), per_tilt)
+    Tilting::of(turn_accumulator.stretches(), latitude.gravity(), per_tilt)
 }
 
 /// N from the scatter of neighbouring turns, rad/√s.

@@ -1,7 +1,7 @@
 //! Azimuth from a platform that turns all the time (MET 2018; equations.md §4).
 //!
 //! ```text
-//!  sample ─▶ follower ─turns─▶ average (drift, coupling) ─Q₊, Q₋─▶ solution ─▶ azimuth ± σ
+//!  sample ─▶ turn accumulator ─turns─▶ average (drift, coupling) ─Q₊, Q₋─▶ solution ─▶ azimuth ± σ
 //!                └─uneven turn─▶ coupling ──▲   accelerometer ─F──▲
 //! ```
 //!
@@ -14,7 +14,6 @@ pub mod average;
 pub mod change;
 pub mod conclusion;
 pub mod coupling;
-pub mod follower;
 pub mod heading;
 pub mod level;
 pub mod molecular;
@@ -22,6 +21,7 @@ pub mod part;
 pub mod solution;
 pub mod tilting;
 pub mod turn;
+pub mod turn_accumulator;
 
 use self::coupling::Coupling;
 use self::solution::SPEEDS;

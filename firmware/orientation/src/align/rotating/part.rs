@@ -1,4 +1,4 @@
-//! What a follower gathers: the eighth of a turn in progress, its forces, an uneven stretch, a break.
+//! What a turn accumulator gathers: the eighth of a turn in progress, its forces, an uneven stretch, a break.
 
 use super::coupling::Coupling;
 use crate::align::regression::Regression;

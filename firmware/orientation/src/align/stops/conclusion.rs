@@ -2,12 +2,12 @@
 
 use super::Setting;
 use super::filter::{BIAS, FORCE, LATITUDE, PLACE, Row, SCALE, START};
-use super::follower::{Follower, Loss, Rests, WINDOW};
 use super::path::Path;
 use super::place::Place;
 use super::plain::Plain;
 use super::solution::{Belief, Solution, now_row};
 use super::stop::Stop;
+use super::stop_detector::{Loss, Rests, StopDetector, WINDOW};
 use crate::align::budget::Budget;
 use crate::align::conclusion::Azimuth;
 use crate::earth::EARTH_RATE;
@@ -107,21 +107,22 @@ pub struct Found {
 }
 
 impl Conclusion {
-    /// Judges what a follower has, solves, and decides.
+    /// Judges what a stop detector has, solves, and decides.
     #[must_use]
     #[inline(never)]
-    pub fn of(setting: &Setting, follower: &mut Follower) -> Self {
-        let now = follower.now();
-        if let Err(reason) = inspect(setting, follower) {
+    pub fn of(setting: &Setting, stop_detector: &mut StopDetector) -> Self {
+        let now = stop_detector.now();
+        if let Err(reason) = inspect(setting, stop_detector) {
             return Self { verdict: Err(reason), found: None };
         }
-        let mut found = Found::of(setting, &path(setting, follower, &now));
-        while found.correlation < SWAYS && follower.blocks().all().len() >= MANY {
-            follower.coarsen();
-            found = Found::of(setting, &path(setting, follower, &now));
+        let mut found = Found::of(setting, &path(setting, stop_detector, &now));
+        while found.correlation < SWAYS && stop_detector.blocks().all().len() >= MANY {
+            stop_detector.coarsen();
+            found = Found::of(setting, &path(setting, stop_detector, &now));
         }
         Self {
-            verdict: judge(setting, &found, follower.stops().len() as u32).map(|()| found.azimuth),
+            verdict: judge(setting, &found, stop_detector.stops().len() as u32)
+                .map(|()| found.azimuth),
             found: Some(found),
         }
     }
@@ -134,14 +135,14 @@ impl Conclusion {
 }
 
 /// The path until now, when so much is carried.
-fn path<'a>(setting: &Setting, follower: &'a Follower, now: &(f64, Carried)) -> Path<'a> {
+fn path<'a>(setting: &Setting, stop_detector: &'a StopDetector, now: &(f64, Carried)) -> Path<'a> {
     Path {
         place: Place::new(setting.common.latitude),
         gravity: setting.common.latitude.gravity(),
-        start: follower.start(),
-        stops: follower.stops(),
-        blocks: follower.blocks(),
-        drives: follower.drives(),
+        start: stop_detector.start(),
+        stops: stop_detector.stops(),
+        blocks: stop_detector.blocks(),
+        drives: stop_detector.drives(),
         now: now.0,
         carried: now.1,
         stated_density: 0.5 * setting.force_noise * setting.force_noise,
@@ -149,15 +150,15 @@ fn path<'a>(setting: &Setting, follower: &'a Follower, now: &(f64, Carried)) -> 
 }
 
 /// Whether there is something to solve.
-fn inspect(setting: &Setting, follower: &Follower) -> Result<(), Refusal> {
-    match follower.loss() {
+fn inspect(setting: &Setting, stop_detector: &StopDetector) -> Result<(), Refusal> {
+    match stop_detector.loss() {
         Some(Loss::Gap(at, seconds)) => return Err(Refusal::RotationMissing { at, seconds }),
         Some(Loss::Saturated(at)) => return Err(Refusal::RotationClipped { at }),
         None => {}
     }
-    let stops = follower.stops();
-    let is_whole = *follower.rests() == Rests::Whole;
-    let seconds = follower.fleeting();
+    let stops = stop_detector.stops();
+    let is_whole = *stop_detector.rests() == Rests::Whole;
+    let seconds = stop_detector.fleeting();
     if seconds > 0.0 && stops.len() < 2 {
         return Err(Refusal::StopTooShort { stop: stops.len() + 1, seconds, least: LEAST_REST });
     }
@@ -168,7 +169,7 @@ fn inspect(setting: &Setting, follower: &Follower) -> Result<(), Refusal> {
         return Err(Refusal::OneStop { from: first.from, to: first.to });
     }
     for (index, stop) in stops.iter().enumerate() {
-        inspect_stop(setting, follower, index, stop)?;
+        inspect_stop(setting, stop_detector, index, stop)?;
     }
     let driven = stops.windows(2).map(|pair| pair[1].from - pair[0].to);
     if let Some(seconds) = driven.into_iter().find(|seconds| *seconds < LEAST_DRIVE) {
@@ -184,11 +185,11 @@ fn inspect(setting: &Setting, follower: &Follower) -> Result<(), Refusal> {
 /// Whether a stop is long enough, and the vehicle stands there.
 fn inspect_stop(
     setting: &Setting,
-    follower: &Follower,
+    stop_detector: &StopDetector,
     index: usize,
     stop: &Stop,
 ) -> Result<(), Refusal> {
-    let rest: f64 = follower.blocks().of(index).map(|block| f64::from(block.seconds)).sum();
+    let rest: f64 = stop_detector.blocks().of(index).map(|block| f64::from(block.seconds)).sum();
     if rest < LEAST_REST {
         return Err(Refusal::StopTooShort { stop: index + 1, seconds: rest, least: LEAST_REST });
     }

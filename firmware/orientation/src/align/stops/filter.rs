@@ -147,7 +147,7 @@ impl Filter {
     }
 
     /// Forgets what is known of some states, whose 1σ is this from now on.
-    pub fn forget(&mut self, states: core::ops::Range<usize>, sigma: f64) {
+    pub fn reset(&mut self, states: core::ops::Range<usize>, sigma: f64) {
         for state in states {
             self.state[state] = 0.0;
             self.covariance[state] = [0.0; STATES];
@@ -159,7 +159,7 @@ impl Filter {
     }
 
     /// Lets the displacement be off by so much more, 1σ, m.
-    pub fn stray(&mut self, sigma: f64) {
+    pub fn add_process_noise(&mut self, sigma: f64) {
         for state in PLACE..PLACE + 2 {
             self.covariance[state][state] += sigma * sigma;
         }
@@ -176,7 +176,7 @@ impl Filter {
     /// What measurements, three at most, bring beyond the expected: chi-square of as many degrees of freedom.
     #[must_use]
     #[inline(never)]
-    pub fn surprise(&self, measurements: &[Measurement]) -> f64 {
+    pub fn normalised_innovation_squared(&self, measurements: &[Measurement]) -> f64 {
         let mut whole = [[0.0; 3]; 3];
         let mut beyond = [0.0; 3];
         for (index, measurement) in measurements.iter().enumerate() {
@@ -206,9 +206,9 @@ impl Filter {
         let Measurement { row, variance, .. } = measurement;
         let spread = self.covariances(row);
         let gain = 1.0 / (product(&spread, row) + variance);
-        let surprise = self.beyond(measurement) * gain;
+        let normalised_innovation_squared = self.beyond(measurement) * gain;
         for (index, part) in spread.iter().enumerate().filter(|(_, part)| **part != 0.0) {
-            self.state[index] += part * surprise;
+            self.state[index] += part * normalised_innovation_squared;
             let part = part * gain;
             for (other, entry) in spread[..=index].iter().zip(&mut self.covariance[index]) {
                 if *other != 0.0 {

@@ -1,7 +1,7 @@
 //! Azimuth from stops (Szymanowski 2003; equations.md §5), and of a vehicle that stands and sways.
 //!
 //! ```text
-//!  sample ─▶ follower ─┬─ stops: attitude carried from inertial space, rest rates ─▶ filter ─▶ azimuth ± σ
+//!  sample ─▶ stop detector ─┬─ stops: attitude carried from inertial space, rest rates ─▶ filter ─▶ azimuth ± σ
 //!                      └─ lever: forces without what the sway makes of them
 //!                           └─ blocks: up in the frozen start frame ──────────────────▲
 //!                         Earth rotation, displacement ─▶ where up must be ───────────┘
@@ -13,7 +13,6 @@
 pub mod block;
 pub mod conclusion;
 pub mod filter;
-pub mod follower;
 pub mod inclination;
 pub mod lever;
 pub mod path;
@@ -21,6 +20,7 @@ pub mod place;
 pub mod plain;
 pub mod solution;
 pub mod stop;
+pub mod stop_detector;
 
 use super::setting::Setting as Common;
 use crate::signal::rest::Sensors;

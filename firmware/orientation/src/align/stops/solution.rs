@@ -256,7 +256,7 @@ impl Solution {
         }
         // Where a vehicle has driven since its last stop is not known.
         let driven = path.stops.last().map_or(0.0, |stop| path.now - stop.to - REMAINDER);
-        self.filter.stray(setting.speed_sigma * driven.max(0.0));
+        self.filter.add_process_noise(setting.speed_sigma * driven.max(0.0));
         run.carry(self, Moment::of(path.now, &path.carried));
     }
 }
@@ -269,8 +269,8 @@ impl Run<'_> {
             self.drive(solution, index, driven);
             let (known, unknown) = (self.setting.displacement_sigma, self.setting.speed_sigma);
             match stop.displacement {
-                Some(_) => solution.filter.forget(PLACE..PLACE + 2, known),
-                None => solution.filter.stray(unknown * driven),
+                Some(_) => solution.filter.reset(PLACE..PLACE + 2, known),
+                None => solution.filter.add_process_noise(unknown * driven),
             }
         }
         self.carry(solution, Moment::of(stop.from, &stop.begin));
@@ -315,7 +315,7 @@ impl Run<'_> {
     /// to beyond gravity is the work of φ.
     fn drive(&mut self, solution: &mut Solution, index: usize, driven: f64) {
         let path = self.path;
-        solution.filter.forget(VELOCITY..VELOCITY + 3, 0.0);
+        solution.filter.reset(VELOCITY..VELOCITY + 3, 0.0);
         let (mut gained, mut seconds) = ([0.0; 3], 0.0);
         for block in path.drives.of(index - 1) {
             self.carry(
@@ -479,10 +479,11 @@ impl Run<'_> {
     /// Takes measurements, unless they are outliers; what they brought beyond the expected.
     fn take(&self, filter: &mut Filter, measurements: &[Measurement]) -> Option<f64> {
         let is_ideal = self.belief == Belief::Ideal;
-        let surprise = if is_ideal { 0.0 } else { filter.surprise(measurements) };
-        (surprise <= OUTLIER).then(|| {
+        let normalised_innovation_squared =
+            if is_ideal { 0.0 } else { filter.normalised_innovation_squared(measurements) };
+        (normalised_innovation_squared <= OUTLIER).then(|| {
             filter.measure(measurements);
-            surprise
+            normalised_innovation_squared
         })
     }
 }

@@ -2,7 +2,7 @@
 //! the corrected one, and course and pitch go on from the gyros.
 
 use super::Spin;
-use super::wheel::sine_and_cosine;
+use super::phase_accumulator::sine_and_cosine;
 use crate::signal::SpinSample;
 use crate::units::{Angle, AngleIncrement, wrapped};
 

@@ -4,7 +4,7 @@
 //! paper leaves the extremum at its sample, which is half a sample off at most; a parabola through it and
 //! its neighbours finds it between.
 
-use super::wheel::Wheel;
+use super::phase_accumulator::PhaseAccumulator;
 use crate::units::{Angle, SpinForce};
 
 /// A signal of correction, by the paper's names.
@@ -58,12 +58,12 @@ impl Extrema {
         self.latest = None;
     }
 
-    /// Takes forces; the wheel has turned already.
+    /// Takes forces; the phase accumulator has turned already.
     #[inline]
     pub(super) fn push(
         &mut self,
         force: Option<[SpinForce; 2]>,
-        wheel: &mut Wheel,
+        phase_accumulator: &mut PhaseAccumulator,
     ) -> Option<Signal> {
         let latest = core::mem::replace(&mut self.latest, force);
         let before = self.before.take();
@@ -73,8 +73,8 @@ impl Extrema {
         let (signal, [first, second, third]) = extremum(old, middle, now)?;
         let place = if self.is_interpolated { vertex(first, second, third) } else { 0.0 };
         // From the extremum to this sample.
-        let since = (1.0 - place) * wheel.step() as f32;
-        wheel.set(Angle(signal.roll().0.wrapping_add((since as i32).cast_unsigned())));
+        let since = (1.0 - place) * phase_accumulator.step() as f32;
+        phase_accumulator.set(Angle(signal.roll().0.wrapping_add((since as i32).cast_unsigned())));
         self.has_corrected = true;
         Some(signal)
     }

@@ -8,7 +8,7 @@
 use super::Accelerometer;
 use super::complex::Complex;
 use super::harmonics::{Harmonics, PARTS, Ripple};
-use super::wheel::sine_and_cosine;
+use super::phase_accumulator::sine_and_cosine;
 use crate::units::{Angle, SpinForce};
 
 /// One step of a force, m/s².

@@ -5,7 +5,7 @@
 
 use super::circle::Circle;
 use super::fit::{Fit, Sums};
-use super::wheel::Wheel;
+use super::phase_accumulator::PhaseAccumulator;
 use super::{Accelerometer, Setting, State};
 use crate::signal::SpinSample;
 use crate::units::{AngleIncrement, Instant, TURN};
@@ -163,14 +163,14 @@ impl Lock {
         }
     }
 
-    /// Takes a sample, by which the wheel has turned already.
+    /// Takes a sample, by which the phase accumulator has turned already.
     #[inline]
-    pub(super) fn push(&mut self, sample: &SpinSample, wheel: &mut Wheel) {
-        self.sums.push(wheel.angle(), sample.force);
+    pub(super) fn push(&mut self, sample: &SpinSample, phase_accumulator: &mut PhaseAccumulator) {
+        self.sums.push(phase_accumulator.angle(), sample.force);
         self.since += 1;
-        let turned = wheel.whole().wrapping_sub(self.begun).unsigned_abs();
+        let turned = phase_accumulator.whole().wrapping_sub(self.begun).unsigned_abs();
         if turned >= self.wanted || self.sums.samples() >= LONGEST {
-            self.finish(sample.time, wheel);
+            self.finish(sample.time, phase_accumulator);
         }
     }
 
@@ -197,24 +197,24 @@ impl Lock {
 
     /// The turns are over.
     #[inline(never)]
-    fn finish(&mut self, now: Instant, wheel: &mut Wheel) {
-        let turned = wheel.whole().wrapping_sub(self.begun).unsigned_abs();
+    fn finish(&mut self, now: Instant, phase_accumulator: &mut PhaseAccumulator) {
+        let turned = phase_accumulator.whole().wrapping_sub(self.begun).unsigned_abs();
         let is_whole = turned >= self.wanted;
         let samples = self.sums.samples() as f32 / turned as f32;
-        let angle = f64::from(Wheel::between(self.told, wheel.whole()));
+        let angle = f64::from(PhaseAccumulator::between(self.told, phase_accumulator.whole()));
         self.carry(angle, f64::from(self.since) * self.period);
         let half = f64::from(self.sums.part_after_middle())
-            * f64::from(Wheel::between(self.begun, wheel.whole()));
+            * f64::from(PhaseAccumulator::between(self.begun, phase_accumulator.whole()));
         let trouble = match (is_whole, self.lost > BROKEN * BROKEN) {
             (false, _) => Trouble::TooSlow,
             (true, true) => Trouble::None,
-            (true, false) => self.use_turn(half, wheel),
+            (true, false) => self.use_turn(half, phase_accumulator),
         };
         self.lost = 0.0;
         self.note(trouble, now);
         self.wanted = TURN_STEPS * u64::from(self.together());
         self.sums = Sums::of(if is_whole { samples * self.wanted as f32 } else { USUAL });
-        self.begun = wheel.whole();
+        self.begun = phase_accumulator.whole();
         self.told = self.begun;
         self.since = 0;
     }
@@ -265,7 +265,7 @@ impl Lock {
     }
 
     /// Learns from turns; the middle of them is so far ago, rad.
-    fn use_turn(&mut self, half: f64, wheel: &mut Wheel) -> Trouble {
+    fn use_turn(&mut self, half: f64, phase_accumulator: &mut PhaseAccumulator) -> Trouble {
         if self.sums.count() * 2 < self.sums.samples() {
             return Trouble::NoForce;
         }
@@ -290,7 +290,7 @@ impl Lock {
             + square(f64::from(fit.crowded() / lift));
         self.lift = Some(lift);
         let variance = square(f64::from(sigma / lift)) + bent + self.lost;
-        let is_used = self.learn(phase, variance, half, wheel);
+        let is_used = self.learn(phase, variance, half, phase_accumulator);
         if !is_used && (noise > NOISE_RISE * quiet || lift < FOUND * sigma) {
             // The forces are to blame, or chance, not the gyro.
             self.stray = 0.0;
@@ -330,18 +330,24 @@ impl Lock {
     }
 
     /// Takes a phase of such a variance, that of the middle so far ago, rad; whether it could be.
-    fn learn(&mut self, phase: f64, variance: f64, half: f64, wheel: &mut Wheel) -> bool {
+    fn learn(
+        &mut self,
+        phase: f64,
+        variance: f64,
+        half: f64,
+        phase_accumulator: &mut PhaseAccumulator,
+    ) -> bool {
         // The phase is that at the middle: the angle's error now, and what the scale has made of it since.
         let with_angle = self.angle + half * self.shared;
         let with_scale = self.shared + half * self.scale;
         let whole = with_angle + half * with_scale + variance;
         if self.agreed == 0 || whole > AMBIGUOUS * AMBIGUOUS {
-            self.begin(phase, variance, half, wheel);
+            self.begin(phase, variance, half, phase_accumulator);
             return true;
         }
         let phase = self.upright(phase, whole);
         if phase * phase > BOUND * BOUND * whole {
-            self.disagree(phase, variance, half, wheel);
+            self.disagree(phase, variance, half, phase_accumulator);
             return false;
         }
         self.strays = 0;
@@ -353,24 +359,36 @@ impl Lock {
         self.shared -= angle_gain * with_scale;
         self.scale -= scale_gain * with_scale;
         self.error += scale_gain * phase;
-        wheel.correct(angle_gain * phase);
-        wheel.scale(self.error);
+        phase_accumulator.correct(angle_gain * phase);
+        phase_accumulator.scale(self.error);
         self.watch((phase / libm::sqrt(whole)) as f32);
         true
     }
 
     /// Takes the angle from a phase alone: whatever was known of it leaves open which turn it is.
-    fn begin(&mut self, phase: f64, variance: f64, half: f64, wheel: &mut Wheel) {
+    fn begin(
+        &mut self,
+        phase: f64,
+        variance: f64,
+        half: f64,
+        phase_accumulator: &mut PhaseAccumulator,
+    ) {
         self.agreed = 1;
         self.stray = 0.0;
         self.calm = [0.0, 1.0];
         self.angle = variance + half * half * self.scale;
         self.shared = -half * self.scale;
-        wheel.correct(phase);
+        phase_accumulator.correct(phase);
     }
 
     /// A phase that cannot be. Before the roll is told, that begins anew; afterwards, where too many come in a row.
-    fn disagree(&mut self, phase: f64, variance: f64, half: f64, wheel: &mut Wheel) {
+    fn disagree(
+        &mut self,
+        phase: f64,
+        variance: f64,
+        half: f64,
+        phase_accumulator: &mut PhaseAccumulator,
+    ) {
         self.strays += 1;
         self.stray = phase as f32;
         let is_told = self.agreed >= AGREED;
@@ -378,9 +396,9 @@ impl Lock {
             self.strays = 0;
             self.scale = self.first.max(WRONG * WRONG);
             self.forget_angle();
-            self.begin(phase, variance, half, wheel);
+            self.begin(phase, variance, half, phase_accumulator);
         } else if !is_told {
-            self.begin(phase, variance, half, wheel);
+            self.begin(phase, variance, half, phase_accumulator);
         } else if self.strays > 1 {
             self.fade();
         }
@@ -425,8 +443,8 @@ impl Lock {
     }
 
     /// 1σ of the angle, rad; none where any is possible.
-    pub(super) fn sigma(&self, wheel: &Wheel) -> Option<f64> {
-        let angle = f64::from(Wheel::between(self.told, wheel.whole()));
+    pub(super) fn sigma(&self, phase_accumulator: &PhaseAccumulator) -> Option<f64> {
+        let angle = f64::from(PhaseAccumulator::between(self.told, phase_accumulator.whole()));
         let seconds = f64::from(self.since) * self.period;
         let grown = angle * (angle * self.scale - 2.0 * self.shared) + self.walk * seconds;
         let stray = f64::from(self.stray) * f64::from(self.stray);

@@ -20,15 +20,15 @@ mod fit;
 mod harmonics;
 mod lock;
 mod pace;
-mod wheel;
+mod phase_accumulator;
 
 pub use self::extrema::Signal;
-pub use self::wheel::Roll;
+pub use self::phase_accumulator::Roll;
 
 use self::extrema::Extrema;
 use self::lock::Lock;
-use self::pace::Pace;
-use self::wheel::Wheel;
+use self::pace::Timing;
+use self::phase_accumulator::PhaseAccumulator;
 use crate::signal::SpinSample;
 use crate::units::{AngleIncrement, Instant};
 use crate::words;
@@ -169,12 +169,12 @@ const LATE: f32 = 0.5;
 /// Follows the roll.
 #[derive(Clone, Debug)]
 pub struct Spin {
-    wheel: Wheel,
+    phase_accumulator: PhaseAccumulator,
     corrector: Corrector,
     /// Sample period, µs.
     period: f32,
     latest: Option<Instant>,
-    pace: Pace,
+    pace: Timing,
 }
 
 #[expect(
@@ -197,11 +197,11 @@ impl Spin {
             Method::PhaseLocked => Corrector::Lock(Lock::new(setting)),
         };
         Self {
-            wheel: Wheel::new(),
+            phase_accumulator: PhaseAccumulator::new(),
             corrector,
             period: (setting.sample_seconds * 1e6) as f32,
             latest: None,
-            pace: Pace::new(setting),
+            pace: Timing::new(setting),
         }
     }
 
@@ -215,11 +215,11 @@ impl Spin {
         if missing > 0.0 || self.pace.is_lost() {
             self.bridge(missing, [before, turned]);
         }
-        self.wheel.turn(turned);
+        self.phase_accumulator.turn(turned);
         match &mut self.corrector {
-            Corrector::Extrema(extrema) => extrema.push(sample.force, &mut self.wheel),
+            Corrector::Extrema(extrema) => extrema.push(sample.force, &mut self.phase_accumulator),
             Corrector::Lock(lock) => {
-                lock.push(sample, &mut self.wheel);
+                lock.push(sample, &mut self.phase_accumulator);
                 None
             }
         }
@@ -239,7 +239,7 @@ impl Spin {
     fn bridge(&mut self, missing: f32, turned: [AngleIncrement; 2]) {
         let [before, now] = turned.map(|turned| turned.0 as f32);
         let mean = 0.5 * (before + now);
-        self.wheel.pass(mean, missing);
+        self.phase_accumulator.pass(mean, missing);
         match &mut self.corrector {
             Corrector::Extrema(extrema) => extrema.disturb(),
             Corrector::Lock(lock) => {
@@ -259,7 +259,7 @@ impl Spin {
     /// The roll at the latest sample. Before the first correction it counts from zero at the first sample.
     #[must_use]
     pub fn roll(&self) -> Roll {
-        self.wheel.roll()
+        self.phase_accumulator.roll()
     }
 
     /// Its 1σ, rad; none where it is unknown, and of extrema, which do not tell.
@@ -267,7 +267,7 @@ impl Spin {
     pub fn sigma(&self) -> Option<f64> {
         match &self.corrector {
             Corrector::Extrema(_) => None,
-            Corrector::Lock(lock) => lock.sigma(&self.wheel),
+            Corrector::Lock(lock) => lock.sigma(&self.phase_accumulator),
         }
     }
 
@@ -307,6 +307,6 @@ impl Spin {
 
     /// By what the latest sample turned the body, corrected for scale, in 2⁻³² of a turn.
     pub(super) fn step(&self) -> i32 {
-        self.wheel.step()
+        self.phase_accumulator.step()
     }
 }

@@ -21,7 +21,7 @@ const JUMP_PART: u32 = 16;
 
 /// The gyro's increments, one after the other.
 #[derive(Clone, Debug)]
-pub(super) struct Pace {
+pub(super) struct Timing {
     /// The latest that was believed.
     before: AngleIncrement,
     /// The latest, believed or not, and how many were as it is.
@@ -44,7 +44,7 @@ pub(super) struct Pace {
     is_dull: bool,
 }
 
-impl Pace {
+impl Timing {
     pub(super) fn new(setting: &Setting) -> Self {
         let noise = setting.angle_random_walk * libm::sqrt(setting.sample_seconds);
         Self {

@@ -117,8 +117,8 @@ impl Filter {
             filter.forget_bias(axis, bias * bias);
             filter.forget_axis(axis, expected.scale[axis]);
         }
-        filter.forget(0, ANY_ANGLE);
-        filter.forget(1, ANY_ANGLE);
+        filter.reset(0, ANY_ANGLE);
+        filter.reset(1, ANY_ANGLE);
         filter.stand();
         filter
     }
@@ -308,7 +308,7 @@ impl Filter {
         self.motion.stand();
         self.floor.stand();
         for place in VELOCITY..STATES {
-            self.forget(place, LEAST_SPEED * LEAST_SPEED);
+            self.reset(place, LEAST_SPEED * LEAST_SPEED);
         }
     }
 
@@ -327,23 +327,23 @@ impl Filter {
 
     /// Counts the error of the turn about the vertical from now on.
     pub fn begin_turn(&mut self) {
-        self.forget(TURN, 0.0);
+        self.reset(TURN, 0.0);
     }
 
     /// Forgets a bias but for this variance, (rad/s)².
     pub fn forget_bias(&mut self, axis: usize, variance: f32) {
-        self.forget(BIAS + axis, variance);
+        self.reset(BIAS + axis, variance);
     }
 
     /// Forgets a gyro's scale and axis but for what is stated of them, squared.
     pub fn forget_axis(&mut self, axis: usize, scale: f32) {
         for place in axes(axis) {
-            self.forget(place, lasting(scale));
+            self.reset(place, lasting(scale));
         }
     }
 
     /// Forgets all of a state but for its variance.
-    fn forget(&mut self, place: usize, variance: f32) {
+    fn reset(&mut self, place: usize, variance: f32) {
         for other in 0..STATES {
             self.covariance[place][other] = 0.0;
             self.covariance[other][place] = 0.0;
@@ -355,7 +355,7 @@ impl Filter {
     /// The level was taken anew, with this 1σ, rad.
     pub fn relevel(&mut self, sigma: f32) {
         for place in 0..TURN {
-            self.forget(place, sigma * sigma);
+            self.reset(place, sigma * sigma);
         }
         self.begin_balance();
         self.stand();
@@ -372,7 +372,7 @@ impl Filter {
     }
 
     /// Makes a state less certain by a variance; an angle until it may be any.
-    pub fn doubt(&mut self, place: usize, variance: f32) {
+    pub fn inflate(&mut self, place: usize, variance: f32) {
         let own = &mut self.covariance[place][place];
         let room = if place <= TURN { (ANY_ANGLE - *own).max(0.0) } else { variance };
         *own += variance.min(room);
@@ -380,8 +380,8 @@ impl Filter {
 
     /// Makes both tilts less certain by a variance, rad².
     pub fn doubt_level(&mut self, variance: f32) {
-        self.doubt(0, variance);
-        self.doubt(1, variance);
+        self.inflate(0, variance);
+        self.inflate(1, variance);
     }
 }
 

@@ -78,7 +78,7 @@ impl Vertical {
 
     fn lose_square(&mut self, variance: f32) {
         self.filter.doubt_level(variance);
-        self.filter.doubt(TURN, variance);
+        self.filter.inflate(TURN, variance);
         if self.filter.tilt_sigma() > ALL && self.trust != Trust::Starting {
             self.is_lost = true;
             self.trust = Trust::RotationLost;

@@ -252,7 +252,7 @@ impl Vertical {
                 self.move_on(&window, was_rest);
                 // Even rates were taken for a turn until now.
                 let turned = dot(&self.matrix[2], &self.rest.turned_evenly());
-                self.filter.doubt(TURN, turned * turned);
+                self.filter.inflate(TURN, turned * turned);
                 self.widen_biases(&difference(&means.rate, &self.bias), &means.rate);
             }
         }
@@ -295,7 +295,7 @@ impl Vertical {
 
     pub(super) fn doubt_biases(&mut self) {
         for axis in 0..3 {
-            self.filter.doubt(Filter::bias(axis), 2.0 * self.unknown);
+            self.filter.inflate(Filter::bias(axis), 2.0 * self.unknown);
         }
     }
 
@@ -308,7 +308,7 @@ impl Vertical {
             squares.fold(1.0, f32::max).min(WIDEST * WIDEST)
         };
         for (axis, variance) in scaled(&stated, ratio(off)).into_iter().enumerate() {
-            self.filter.doubt(Filter::bias(axis), variance);
+            self.filter.inflate(Filter::bias(axis), variance);
         }
         self.rest.count_anew();
         let beyond = ratio(found);
@@ -355,7 +355,7 @@ impl Vertical {
         self.lose_level(force);
         for (place, off) in tilt(force).into_iter().enumerate() {
             self.filter.measure(place, off, STANDING_TILT * STANDING_TILT);
-            self.filter.doubt(place, MOVING_TILT * MOVING_TILT);
+            self.filter.inflate(place, MOVING_TILT * MOVING_TILT);
         }
     }
 

@@ -15,8 +15,8 @@ use super::procedure::{PERIOD_TOLERANCE, ProcedureError, contradiction};
 use crate::align::rotating::Setting;
 use crate::align::rotating::conclusion::Conclusion;
 use crate::align::rotating::coupling::Coupling;
-use crate::align::rotating::follower::{Follower, Mode};
 use crate::align::rotating::turn::{Sense, Stretch};
+use crate::align::rotating::turn_accumulator::{Mode, TurnAccumulator};
 use crate::error::Refusal;
 use crate::signal::Sample;
 use crate::units::{Angle, DEGREES_PER_RADIAN as DEGREES, Instant, TURN};
@@ -74,7 +74,7 @@ const GAP: f64 = 3.5;
 pub struct Session {
     setting: Setting,
     procedure: Procedure,
-    follower: Follower,
+    turn_accumulator: TurnAccumulator,
     phase: Phase,
     /// When the phase began, and when the last command was given.
     since: Option<Instant>,
@@ -122,7 +122,7 @@ impl Session {
         let mode = if is_recorded { Mode::Recorded } else { Mode::Ignore };
         Self {
             setting,
-            follower: Follower::new(procedure.periods(), mode),
+            turn_accumulator: TurnAccumulator::new(procedure.periods(), mode),
             phase: if is_recorded { Phase::Recorded } else { Phase::Level },
             since: None,
             commanded: Instant::default(),
@@ -171,14 +171,14 @@ impl Session {
 
     /// What the platform did so far.
     #[must_use]
-    pub fn follower(&self) -> &Follower {
-        &self.follower
+    pub fn turn_accumulator(&self) -> &TurnAccumulator {
+        &self.turn_accumulator
     }
 
     /// Even turns done, and planned.
     #[must_use]
     pub fn turns(&self) -> (u32, u32) {
-        let done = self.follower.stretches().iter().map(Stretch::count).sum();
+        let done = self.turn_accumulator.stretches().iter().map(Stretch::count).sum();
         let speeds = 0..self.procedure.speeds.len();
         (done, speeds.map(|index| 2 * self.procedure.turns_at(index)).sum())
     }
@@ -193,7 +193,7 @@ impl Session {
     /// The couplings that were found, with date and temperature: to be stored.
     pub fn couplings(&self) -> impl Iterator<Item = Coupling> {
         let temperature = self.level.temperature.unwrap_or(f32::NAN);
-        let found = self.follower.uneven().iter();
+        let found = self.turn_accumulator.uneven().iter();
         found
             .filter_map(|uneven| uneven.coupling(&self.setting.common.noise))
             .map(move |coupling| Coupling { date: self.procedure.date, temperature, ..coupling })
@@ -209,12 +209,12 @@ impl Session {
         let now = sample.time;
         let last = self.last.replace(now).unwrap_or(now);
         if now.0.saturating_sub(last.0) > self.gap {
-            self.follower.restart();
+            self.turn_accumulator.restart();
         }
         if let Some(temperature) = sample.temperature {
             self.level.temperature = Some(temperature.celsius() as f32);
         }
-        let has_turned = self.follower.push(sample, turning);
+        let has_turned = self.turn_accumulator.push(sample, turning);
         let since = *self.since.get_or_insert(now);
         let elapsed = now.0.saturating_sub(since.0);
         self.samples = self.samples.saturating_add(1);
@@ -286,8 +286,8 @@ impl Session {
             return Command::Wait;
         }
         self.commanded = sample.time;
-        if self.follower.mode() == Mode::Ignore && elapsed >= self.settled {
-            self.follower.follow_uneven(self.procedure.modulation_width());
+        if self.turn_accumulator.mode() == Mode::Ignore && elapsed >= self.settled {
+            self.turn_accumulator.follow_uneven(self.procedure.modulation_width());
         }
         let time = (elapsed as f64 - self.settled as f64) * 1e-6;
         Command::Turn(self.procedure.uneven_rate(self.speed(index), self.rate, time))
@@ -370,7 +370,7 @@ impl Session {
         self.samples = 0;
         (self.measured, self.rate) = (None, 0.0);
         self.turns = 0;
-        self.follower.follow(mode);
+        self.turn_accumulator.follow(mode);
     }
 
     /// A speed, rad/s.
@@ -402,8 +402,8 @@ impl Session {
         if let Some(reason) = reason {
             conclusion.verdict = Err(reason);
         } else {
-            self.follower.finish();
-            conclusion.draw(&self.setting, &self.follower);
+            self.turn_accumulator.finish();
+            conclusion.draw(&self.setting, &self.turn_accumulator);
         }
         self.phase = Phase::Done;
         Command::Finished

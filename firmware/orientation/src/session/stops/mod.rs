@@ -12,8 +12,8 @@ use heapless::Vec;
 use super::procedure::{CONVERTER_TOLERANCE, PERIOD_TOLERANCE, ProcedureError, contradiction};
 use crate::align::stops::Setting;
 use crate::align::stops::conclusion::Conclusion;
-use crate::align::stops::follower::{Follower, Rests};
 use crate::align::stops::stop::{STOPS, Stop};
+use crate::align::stops::stop_detector::{Rests, StopDetector};
 use crate::error::Refusal;
 use crate::signal::InertialSample;
 use crate::signal::rest::{Criteria, Limits};
@@ -127,7 +127,7 @@ impl Procedure {
 pub struct Session {
     setting: Setting,
     procedure: Procedure,
-    follower: Follower,
+    stop_detector: StopDetector,
     phase: Phase,
     begun: Option<Instant>,
     /// Samples so far.
@@ -154,10 +154,11 @@ impl Session {
     pub fn of(setting: Setting, procedure: Procedure) -> Self {
         let gravity = setting.common.latitude.gravity();
         let period = procedure.sample_seconds;
-        let follower = Follower::new(procedure.rests.clone(), &setting.sensors(), gravity, period);
+        let stop_detector =
+            StopDetector::new(procedure.rests.clone(), &setting.sensors(), gravity, period);
         let phase = Phase::Waiting;
         let (begun, samples, is_told, conclusion) = (None, 0, false, None);
-        Self { setting, procedure, follower, phase, begun, samples, is_told, conclusion }
+        Self { setting, procedure, stop_detector, phase, begun, samples, is_told, conclusion }
     }
 
     /// Takes one event and answers what is to be done now.
@@ -166,7 +167,7 @@ impl Session {
             _ if self.phase == Phase::Done => Command::Finished,
             Event::Sample(sample) => self.sample(sample),
             Event::Displaced(displacement) => {
-                self.follower.displace(displacement);
+                self.stop_detector.displace(displacement);
                 Command::Wait
             }
             Event::End => self.conclude(),
@@ -195,13 +196,13 @@ impl Session {
     /// The stops so far; the last may last.
     #[must_use]
     pub fn stops(&self) -> &[Stop] {
-        self.follower.stops()
+        self.stop_detector.stops()
     }
 
     /// The criteria of the last ten seconds, and what they are held to; new once a second.
     #[must_use]
     pub fn criteria(&self) -> Option<(Criteria, Limits)> {
-        self.follower.criteria()
+        self.stop_detector.criteria()
     }
 
     /// The conclusion, once the session has finished.
@@ -213,15 +214,15 @@ impl Session {
     #[inline]
     fn sample(&mut self, sample: &InertialSample) -> Command {
         self.samples += 1;
-        if self.follower.push(sample) { self.second(sample.time) } else { Command::Wait }
+        if self.stop_detector.push(sample) { self.second(sample.time) } else { Command::Wait }
     }
 
     /// Looks about once a second.
     fn second(&mut self, now: Instant) -> Command {
         let begun = *self.begun.get_or_insert(now);
         self.tell_displacements();
-        let count = self.follower.stops().len();
-        let phase = match (self.follower.is_at_rest(), count) {
+        let count = self.stop_detector.stops().len();
+        let phase = match (self.stop_detector.is_at_rest(), count) {
             (_, 0) => Phase::Waiting,
             (true, count) => Phase::Standing(count - 1),
             (false, count) => Phase::Driving(count),
@@ -230,7 +231,7 @@ impl Session {
             self.is_told = false;
             self.phase = phase;
         }
-        if self.procedure.stops > 0 && self.follower.loss().is_some() {
+        if self.procedure.stops > 0 && self.stop_detector.loss().is_some() {
             return self.conclude();
         }
         if now.seconds() - begun.seconds() > self.procedure.longest_seconds {
@@ -242,7 +243,7 @@ impl Session {
     /// Looks whether the vehicle stood for long enough.
     fn stand(&mut self, count: usize) -> Command {
         let Phase::Standing(_) = self.phase else { return Command::Wait };
-        let length = self.follower.stops().last().map_or(0.0, Stop::seconds);
+        let length = self.stop_detector.stops().last().map_or(0.0, Stop::seconds);
         if self.is_told || length < self.procedure.stop_seconds {
             return Command::Wait;
         }
@@ -252,9 +253,9 @@ impl Session {
 
     /// Where the last stop is, if that is known beforehand.
     fn tell_displacements(&mut self) {
-        let Some(last) = self.follower.stops().len().checked_sub(1) else { return };
+        let Some(last) = self.stop_detector.stops().len().checked_sub(1) else { return };
         if let Some(displacement) = self.procedure.displacements.get(last) {
-            self.follower.displace(*displacement);
+            self.stop_detector.displace(*displacement);
         }
     }
 
@@ -262,7 +263,7 @@ impl Session {
     fn conclude(&mut self) -> Command {
         let conclusion = match self.contradiction() {
             Some(reason) => Conclusion::refused(reason),
-            None => Conclusion::of(&self.setting, &mut self.follower),
+            None => Conclusion::of(&self.setting, &mut self.stop_detector),
         };
         self.finish(conclusion)
     }
@@ -270,9 +271,9 @@ impl Session {
     /// Whether the samples come at another pace than was told.
     fn contradiction(&self) -> Option<Refusal> {
         let Procedure { sample_seconds: told, period_tolerance, .. } = self.procedure;
-        let found = self.follower.elapsed() / f64::from(self.samples.max(1));
+        let found = self.stop_detector.elapsed() / f64::from(self.samples.max(1));
         // What is missing is told as such.
-        let is_whole = self.samples > 0 && self.follower.loss().is_none();
+        let is_whole = self.samples > 0 && self.stop_detector.loss().is_none();
         contradiction(told, found, period_tolerance).filter(|_| is_whole)
     }
 

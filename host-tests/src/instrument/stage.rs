@@ -15,7 +15,7 @@ use firmware::steady::Base;
 use orientation::keep::Keeper;
 use orientation::session::Session;
 
-use super::desk::{self, ASSUMED, Desk};
+use super::harness::{self, ASSUMED, Harness};
 use super::kept::{Kept, KeptPlan, KeptRun};
 use super::{Run, RunError};
 use crate::replay::{HALF, Method, Replay};
@@ -94,18 +94,18 @@ fn align_with<B: Base, R: Recorder, W: Observer>(
     let outside = || RunError::Latitude(scenario.latitude_deg);
     let setting = scenario.setting().ok_or_else(outside)?;
     let mut session = Session::new(setting, scenario.procedure()).map_err(RunError::Procedure)?;
-    let desk = Desk::new(watch);
-    let seams = desk.seams();
+    let harness = Harness::new(watch);
+    let channels = harness.channels();
     let configuration = scenario.configuration();
     let mut sensors = simulated::sensors(board, scenario, plan).with_base(base);
     let recorder = FaultyRecorder::new(recorder, plan.hang);
-    let mut ports = simulated::ports(board, plan, desk.wire(), recorder);
+    let mut ports = simulated::ports(board, plan, harness.wire(), recorder);
     let mut keeper = Keeper::new(&scenario.keeper().ok_or_else(outside)?);
     let keep = scenario.keeping().ok_or_else(outside)?;
     let mut keeping = Keeping::new(&mut keeper, &keep, scenario.hold.outside(), store);
-    let ended = desk::run(
-        acquire(&mut sensors, &configuration, &seams),
-        run_and_keep(&mut ports, &configuration, &mut session, &mut keeping, &seams),
+    let ended = harness::run(
+        acquire(&mut sensors, &configuration, &channels),
+        run_and_keep(&mut ports, &configuration, &mut session, &mut keeping, &channels),
     )?;
     let assumed = [ASSUMED].into_iter().chain(scenario.half.map(|_| HALF));
     let replay = Replay {
@@ -114,6 +114,6 @@ fn align_with<B: Base, R: Recorder, W: Observer>(
         session,
         assumed: assumed.map(str::to_owned).collect(),
     };
-    let violations = desk::told(simulated::violations(&board.borrow()));
-    Ok(desk.clear(&ended, violations, replay))
+    let violations = harness::told(simulated::violations(&board.borrow()));
+    Ok(harness.clear(&ended, violations, replay))
 }

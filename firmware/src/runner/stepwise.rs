@@ -9,7 +9,7 @@ use orientation::signal::Sample;
 use orientation::signal::sway::SwayNoise;
 use orientation::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN as DEGREES, Instant};
 
-use super::{Conducted, Step, tell_level};
+use super::{AlignmentSession, Step, tell_level};
 use crate::event::Event;
 use crate::link::Status;
 use crate::ports::Observer;
@@ -40,7 +40,7 @@ impl<'a> Stepwise<'a> {
     }
 }
 
-impl<O: Observer> Conducted<O, Sample> for Stepwise<'_> {
+impl<O: Observer> AlignmentSession<O, Sample> for Stepwise<'_> {
     fn latitude(&self) -> Latitude {
         self.session.setting().latitude
     }

@@ -7,7 +7,7 @@ use orientation::session::rotating::{Command, Event as SessionEvent, Phase, Sess
 use orientation::signal::Sample;
 use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 
-use super::{Conducted, Step, tell_level};
+use super::{AlignmentSession, Step, tell_level};
 use crate::event::Event;
 use crate::link::Status;
 use crate::ports::Observer;
@@ -34,7 +34,7 @@ impl<'a> Rotating<'a> {
     }
 }
 
-impl<O: Observer> Conducted<O, Sample> for Rotating<'_> {
+impl<O: Observer> AlignmentSession<O, Sample> for Rotating<'_> {
     fn latitude(&self) -> Latitude {
         self.session.setting().common.latitude
     }
@@ -67,7 +67,7 @@ impl<O: Observer> Conducted<O, Sample> for Rotating<'_> {
             told.phase = session.phase();
         }
         // With every sample, so it does not ask how many are planned.
-        let done = session.follower().stretches().iter().map(Stretch::count).sum();
+        let done = session.turn_accumulator().stretches().iter().map(Stretch::count).sum();
         if done > told.turns {
             told.turns = done;
             let (_, of) = session.turns();

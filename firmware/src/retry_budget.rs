@@ -65,9 +65,9 @@ pub enum Remedy {
     GiveUp(Trouble),
 }
 
-/// What is left of the patience with one device.
+/// What is left of the retry budget with one device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Patience {
+pub struct RetryBudget {
     lost: u8,
     restarts: u8,
     /// Whether it ever gave a good reading.
@@ -76,7 +76,7 @@ pub struct Patience {
     cause: Option<Symptom>,
 }
 
-impl Patience {
+impl RetryBudget {
     /// How often the device was to be started again.
     #[must_use]
     pub fn restarts(&self) -> u8 {

@@ -59,7 +59,7 @@ struct Progress {
 
 /// Follows samples.
 #[derive(Clone, Debug)]
-pub struct Follower {
+pub struct StopDetector {
     rests: Rests,
     limits: Limits,
     gravity: f64,
@@ -87,7 +87,7 @@ pub struct Follower {
     loss: Option<Loss>,
 }
 
-impl Follower {
+impl StopDetector {
     /// Nothing seen; samples come every `sample_seconds`.
     #[must_use]
     pub fn new(rests: Rests, sensors: &Sensors, gravity: f64, sample_seconds: f64) -> Self {

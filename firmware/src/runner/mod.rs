@@ -23,7 +23,7 @@ use orientation::units::{self, DEGREES_PER_RADIAN as DEGREES};
 use crate::event::Event;
 use crate::link::Status;
 use crate::ports::{Observer, Recorder};
-use crate::shared::{Queue, Seams, Shared};
+use crate::shared::{Channels, Queue, Shared};
 
 /// Longest time until the stage is homed: six searches over the whole travel, with their rests.
 const HOMING: Duration = Duration::from_secs(900);
@@ -45,7 +45,7 @@ pub enum Step {
 
 /// A session of samples `S`, with what was told of it. The conductor knows no more of its kind, so that an
 /// image with two kinds of the same samples has one conductor.
-pub trait Conducted<O, S> {
+pub trait AlignmentSession<O, S> {
     /// Where it is to find north.
     fn latitude(&self) -> Latitude;
 
@@ -78,8 +78,8 @@ pub trait Conducted<O, S> {
 }
 
 /// The session at work.
-pub struct Conductor<'a, R, O, S> {
-    session: &'a mut dyn Conducted<O, S>,
+pub struct SessionRunner<'a, R, O, S> {
+    session: &'a mut dyn AlignmentSession<O, S>,
     recorder: &'a mut R,
     samples: &'a Queue<S>,
     shared: &'a Shared<'a, O>,
@@ -101,14 +101,20 @@ impl From<Refusal> for Break {
     }
 }
 
-impl<'a, R: Recorder<S>, O: Observer, S> Conductor<'a, R, O, S> {
+impl<'a, R: Recorder<S>, O: Observer, S> SessionRunner<'a, R, O, S> {
     /// Takes a session that has not begun.
     pub fn new(
-        session: &'a mut dyn Conducted<O, S>,
+        session: &'a mut dyn AlignmentSession<O, S>,
         recorder: &'a mut R,
-        seams: &'a Seams<'a, O, S>,
+        channels: &'a Channels<'a, O, S>,
     ) -> Self {
-        Self { session, recorder, samples: &seams.samples, shared: &seams.shared, taken: None }
+        Self {
+            session,
+            recorder,
+            samples: &channels.samples,
+            shared: &channels.shared,
+            taken: None,
+        }
     }
 
     /// Conducts the session to its conclusion, and others when the keeper wants them.
@@ -118,7 +124,7 @@ impl<'a, R: Recorder<S>, O: Observer, S> Conductor<'a, R, O, S> {
         }
         loop {
             self.shared.tell(self.session.outset());
-            match self.conduct().await {
+            match self.runner().await {
                 Ok(()) | Err(Break::Spared) => {}
                 Err(Break::Refused(reason)) => self.session.fail(reason),
             }
@@ -153,7 +159,7 @@ impl<'a, R: Recorder<S>, O: Observer, S> Conductor<'a, R, O, S> {
         keep.spare.reset();
     }
 
-    async fn conduct(&mut self) -> Result<(), Break> {
+    async fn runner(&mut self) -> Result<(), Break> {
         self.check_place()?;
         self.wait_for_home().await?;
         self.session.allow_for(self.shared.sway.get());

@@ -12,10 +12,10 @@ use orientation::session::stops::{Command, Event as SessionEvent, Phase, Session
 use orientation::signal::InertialSample;
 use orientation::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN as DEGREES, Instant};
 
-use super::{Conducted, Step};
+use super::{AlignmentSession, Step};
 use crate::event::Event;
 use crate::link::Status;
-use crate::ports::{Observer, Whereabouts};
+use crate::ports::{Observer, PositionAiding};
 use crate::shared::Shared;
 
 /// The gyros, forward, right, down.
@@ -24,7 +24,7 @@ const GYROS: [Device; 3] = [Device::ForwardGyro, Device::RightGyro, Device::Down
 /// A session in a vehicle.
 pub struct Stops<'a, W> {
     session: &'a mut Session,
-    whereabouts: &'a mut W,
+    position_aiding: &'a mut W,
     /// Where the first stop is; none where a later session does not know it yet.
     origin: Option<[f64; 2]>,
     told: Told,
@@ -59,23 +59,23 @@ impl Told {
     }
 }
 
-impl<'a, W: Whereabouts> Stops<'a, W> {
+impl<'a, W: PositionAiding> Stops<'a, W> {
     /// A session of which nothing was told.
-    pub fn new(session: &'a mut Session, whereabouts: &'a mut W) -> Self {
+    pub fn new(session: &'a mut Session, position_aiding: &'a mut W) -> Self {
         let told = Told::of(session);
-        Self { session, whereabouts, origin: Some([0.0; 2]), told }
+        Self { session, position_aiding, origin: Some([0.0; 2]), told }
     }
 
     /// Tells the session where it stands, as soon as that is known.
     fn place(&mut self) {
         let Phase::Standing(index) = self.session.phase() else { return };
         if index == 0 && self.origin.is_none() {
-            self.origin = self.whereabouts.displacement();
+            self.origin = self.position_aiding.displacement();
         }
         if index <= self.told.placed {
             return;
         }
-        let here = self.whereabouts.displacement();
+        let here = self.position_aiding.displacement();
         self.told.place =
             here.zip(self.origin).map(|(here, origin)| [here[0] - origin[0], here[1] - origin[1]]);
         if let Some(place) = self.told.place {
@@ -85,7 +85,7 @@ impl<'a, W: Whereabouts> Stops<'a, W> {
     }
 }
 
-impl<W: Whereabouts, O: Observer> Conducted<O, InertialSample> for Stops<'_, W> {
+impl<W: PositionAiding, O: Observer> AlignmentSession<O, InertialSample> for Stops<'_, W> {
     fn latitude(&self) -> Latitude {
         self.session.setting().common.latitude
     }

@@ -27,7 +27,7 @@ static PLAN: Plan = Plan::NONE;
 static VEHICLE_PLAN: VehiclePlan = VehiclePlan::NONE;
 
 /// What to run.
-pub enum Order {
+pub enum Job {
     /// An alignment in positions.
     Stepwise(Scenario),
     /// One on a turning platform.
@@ -36,7 +36,7 @@ pub enum Order {
     Stops(VehicleScenario),
 }
 
-impl Order {
+impl Job {
     /// The host's; `None` where there is none.
     #[inline(never)]
     pub fn from_host() -> Option<Self> {
@@ -78,7 +78,7 @@ impl Order {
 fn stepwise(scenario: &Scenario, meter: &'static Meter) -> Option<(Sampling, Running)> {
     let session = setup::stepwise(scenario.prepared()?)?;
     let around = Metering(meter);
-    let (inputs, outputs, seams) = setup::stage(
+    let (inputs, outputs, channels) = setup::stage(
         || simulated::board(scenario, &PLAN),
         |rig| simulated::sensors(rig, scenario, &around),
         |rig| simulated::ports(rig, &around, NoLink, NoRecorder),
@@ -86,8 +86,8 @@ fn stepwise(scenario: &Scenario, meter: &'static Meter) -> Option<(Sampling, Run
     )?;
     let configuration = scenario.configuration();
     Some((
-        Sampling::Stage(inputs, configuration, seams),
-        Running::Stepwise(session, outputs, configuration, seams),
+        Sampling::Stage(inputs, configuration, channels),
+        Running::Stepwise(session, outputs, configuration, channels),
     ))
 }
 
@@ -95,15 +95,15 @@ fn turning(scenario: &TurntableScenario, meter: &'static Meter) -> Option<(Sampl
     let (setting, procedure) = scenario.checked()?;
     let session = setup::turning(&setting, procedure)?;
     let around = Metering(meter);
-    let (inputs, outputs, seams) = setup::stage(
+    let (inputs, outputs, channels) = setup::stage(
         || scenario.board(&PLAN),
         |rig| turntable::sensors(rig, scenario, &around),
         |rig| turntable::ports(rig, &around, NoLink, NoRecorder),
         meter,
     )?;
     Some((
-        Sampling::Stage(inputs, scenario.configuration(), seams),
-        Running::Turning(session, outputs, seams),
+        Sampling::Stage(inputs, scenario.configuration(), channels),
+        Running::Turning(session, outputs, channels),
     ))
 }
 
@@ -112,18 +112,18 @@ fn driving(scenario: &VehicleScenario, meter: &'static Meter) -> Option<(Samplin
     let session = setup::driving(&setting, procedure)?;
     let keeping = setup::keeping(&scenario.keeper()?, &scenario.keeping());
     let around = Metering(meter);
-    let (inputs, outputs, seams) = setup::vehicle(
+    let (inputs, outputs, channels) = setup::vehicle(
         || scenario.board(&vehicle::BRIEF, &[], &VEHICLE_PLAN),
         |rig| vehicle::sensors(rig, scenario, &around),
         |rig| VehiclePorts {
-            whereabouts: KnownPlace::new(rig, scenario.place, scenario.base.seed),
+            position_aiding: KnownPlace::new(rig, scenario.place, scenario.base.seed),
             link: NoLink,
             recorder: NoRecorder,
         },
         meter,
     )?;
     Some((
-        Sampling::Vehicle(inputs, scenario.configuration(), seams),
-        Running::Stops(session, outputs, keeping, seams),
+        Sampling::Vehicle(inputs, scenario.configuration(), channels),
+        Running::Stops(session, outputs, keeping, channels),
     ))
 }

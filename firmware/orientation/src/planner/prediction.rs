@@ -1,7 +1,7 @@
 //! What a fit will make of dwells at given angles and times, before an azimuth is fitted.
 //!
 //! The rows are those of the stepwise fit on a level stage, whitened by the same filter, all in single
-//! precision: an outlook over 60 dwells takes a hundredth of the instructions of a conclusion, and
+//! precision: an prediction over 60 dwells takes a hundredth of the instructions of a conclusion, and
 //! its standard deviation is right to a thousandth. It speaks of noise alone; what tilt, encoder and
 //! scale add is the conclusion's business.
 

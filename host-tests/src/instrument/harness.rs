@@ -7,7 +7,7 @@ use embedded_io_async::{ErrorType, Write};
 use firmware::event::Event;
 use firmware::health::Health;
 use firmware::ports::Observer;
-use firmware::shared::Seams;
+use firmware::shared::Channels;
 use hal_mock::chip::Select;
 use hal_mock::violation::Violation;
 use orientation::keep::Report;
@@ -68,8 +68,8 @@ impl Write for Wire<'_> {
     }
 }
 
-/// A desk on which a board is put.
-pub(super) struct Desk<'w, W> {
+/// A harness on which a board is put.
+pub(super) struct Harness<'w, W> {
     log: Log<'w, W>,
     bytes: RefCell<Vec<u8>>,
 }
@@ -80,16 +80,16 @@ pub(super) struct Ended {
     at: Instant,
 }
 
-impl<'w, W: Observer> Desk<'w, W> {
+impl<'w, W: Observer> Harness<'w, W> {
     /// An empty one; what a board tells goes on to `watch`.
     pub(super) fn new(watch: &'w W) -> Self {
         let (events, reports) = (RefCell::default(), RefCell::default());
         Self { log: Log { events, reports, watch }, bytes: RefCell::default() }
     }
 
-    /// The seams of the board's parts.
-    pub(super) fn seams<S>(&self) -> Seams<'_, Log<'w, W>, S> {
-        Seams::new(&self.log)
+    /// The channels of the board's parts.
+    pub(super) fn channels<S>(&self) -> Channels<'_, Log<'w, W>, S> {
+        Channels::new(&self.log)
     }
 
     /// The wire of its link.

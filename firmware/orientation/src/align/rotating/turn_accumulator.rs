@@ -57,9 +57,9 @@ pub enum Mode {
     Recorded,
 }
 
-/// The follower at work.
+/// The turn accumulator at work.
 #[derive(Clone, Debug)]
-pub struct Follower {
+pub struct TurnAccumulator {
     blocks: Blocks,
     mode: Mode,
     /// The two latest blocks: one is taken when the platform's acceleration in it is known.
@@ -90,8 +90,8 @@ pub struct Follower {
     clipped: u32,
 }
 
-impl Follower {
-    /// A follower with blocks of so many sample periods.
+impl TurnAccumulator {
+    /// A turn accumulator with blocks of so many sample periods.
     #[must_use]
     pub fn new(periods: u32, mode: Mode) -> Self {
         Self {

@@ -30,7 +30,7 @@ impl Roll {
 
 /// The angle at work.
 #[derive(Clone, Debug)]
-pub(super) struct Wheel {
+pub(super) struct PhaseAccumulator {
     /// 2⁻⁴⁰ of a turn.
     angle: i64,
     /// What is less, 2⁻⁶⁴ of a turn.
@@ -41,7 +41,7 @@ pub(super) struct Wheel {
     turned: i64,
 }
 
-impl Wheel {
+impl PhaseAccumulator {
     pub(super) fn new() -> Self {
         Self { angle: 0, carried: 0, step: STEP as i64, turned: 0 }
     }
