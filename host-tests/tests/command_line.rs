@@ -61,7 +61,7 @@ fn without_a_command_the_whole_board_finds_north_on_simulated_chips() {
         "azimuth of body x",
         "limit",
         "truth",
-        "error budget",
+        "Error budget",
         "times real time",
     ] {
         assert!(block.contains(part), "{part} is missing in {block}");

@@ -52,12 +52,12 @@ fn meridian(arguments: &[&str]) -> Output {
 /// The exit code, then what stands on standard output, without the times that a clock on the wall gave.
 fn printed(output: &Output) -> String {
     let code = output.status.code().expect("no signal ended it");
-    let text = String::from_utf8_lossy(&output.stdout);
-    let mut all = format!("exit {code}\n");
-    for line in text.lines() {
-        writeln!(all, "{}", masked(line)).expect("memory takes it");
-    }
-    all
+    format!("exit {code}\n{}", without_times(&String::from_utf8_lossy(&output.stdout)))
+}
+
+/// A text without what its lines tell of how quick something was.
+fn without_times(text: &str) -> String {
+    text.lines().flat_map(|line| [masked(line), "\n"]).collect()
 }
 
 /// The same of a JSON object, a key a line.
@@ -145,7 +145,7 @@ fn hold_family(family: &str) {
         let json = meridian(&[&arguments[..], &["--json"]].concat());
         hold(&format!("{name}.json"), &printed_object(&json), &mut differing);
         if let Ok(html) = fs::read_to_string(&page) {
-            hold(&format!("{name}.html.gz"), &html, &mut differing);
+            hold(&format!("{name}.html.gz"), &without_times(&html), &mut differing);
         }
         let _ = fs::remove_file(&page);
     }

@@ -10,8 +10,9 @@ use std::f64::consts::{FRAC_1_SQRT_2, PI};
 use std::fmt::Write;
 use std::path::Path;
 
+use bench::outcome::{self, Finished};
 use bench::output::{azimuth_error, columns};
-use bench::recording::{self, Body, Header, Recording, StageRow};
+use bench::recording::{self, Body, Header, Recording, StageRow, Truth};
 use bench::replay::{Options, Replay, ReplayError, replay};
 use hal_mock::noise::Generator;
 use orientation::align::conclusion::Conclusion;
@@ -140,9 +141,8 @@ fn an_unknown_g_sensitivity_dominates_and_is_said_to() {
     let replayed = replayed("stepwise-unknown-g");
     let fit = replayed.conclusion().fit.as_ref().expect("there is a fit");
     assert_eq!(fit.budget.dominant(), Some(Source::GSensitivity));
-    let mut block = String::new();
-    bench::output::text::block(&mut block, "x", &replayed.replay, replayed.conclusion(), None)
-        .expect("strings take all");
+    let (finished, truth) = (&replayed.replay, Truth::default());
+    let block = outcome::report("x", &finished.outcome(&truth), finished, Vec::new()).text();
     assert!(block.contains("g-sensitivity dominates: level the platform mechanically"), "{block}");
 }
 

@@ -9,7 +9,7 @@ use bench::campaign::spin::{cases, paper};
 use bench::campaign::szymanowski::{drives, parked};
 use bench::campaign::{disturbed, faults, instrument, keep};
 use bench::output::progress::Progress;
-use bench::output::rotating::campaign as of_rotating;
+use bench::output::rotating as of_rotating;
 use bench::output::table;
 use bench::output::{
     burov as told, disturbed as of_disturbed, keep as of_keep, page, spin as of_spin,
@@ -189,7 +189,7 @@ fn rotating(runs: usize, report: Option<&Path>, as_json: bool) -> Result<Told, S
     })?;
     let refusal = (!found).then(|| "a healthy run was refused, or a north was wrong".to_owned());
     let told = Told { refusal, ..told };
-    Ok(told.with_page(report, || page::rotating::campaign::report(&stages, &molecular, &refusals)))
+    Ok(told.with_page(report, || page::rotating::report(&stages, &molecular, &refusals)))
 }
 
 /// The paper's second, and flights with noise; a result where no roll was lost and no turn miscounted.
@@ -202,12 +202,12 @@ fn spin(runs: usize, report: Option<&Path>, as_json: bool) -> Result<Told, Strin
     let status = if found { "ok" } else { "failed" };
     let object = json!({ "campaign": "spin", "status": status, "paper": paper, "flights": rows });
     let told = Told::of(found, as_json, &object, |text| {
-        of_spin::campaign::paper(text, &paper)?;
-        of_spin::campaign::cases(text, &rows)
+        of_spin::paper(text, &paper)?;
+        of_spin::cases(text, &rows)
     })?;
     let refusal = (!found).then(|| "a roll was lost, or a turn miscounted".to_owned());
     let told = Told { refusal, ..told };
-    Ok(told.with_page(report, || page::spin::campaign::report(&paper, &rows)))
+    Ok(told.with_page(report, || page::spin::report(&paper, &rows)))
 }
 
 /// Drives between stops, and parked vehicles; a result where none was refused.
@@ -225,12 +225,12 @@ fn szymanowski(runs: usize, report: Option<&Path>, as_json: bool) -> Result<Told
         "campaign": "szymanowski", "status": status, "drives": drives, "parked": parked,
     });
     let told = Told::of(found, as_json, &object, |text| {
-        of_stops::campaign::drives(text, &drives)?;
-        of_stops::campaign::parked(text, &parked)
+        of_stops::drives(text, &drives)?;
+        of_stops::parked(text, &parked)
     })?;
     let refusal = (!found).then(|| "a healthy vehicle was refused".to_owned());
     let told = Told { refusal, ..told };
-    Ok(told.with_page(report, || page::stops::campaign::report(&drives, &parked)))
+    Ok(told.with_page(report, || page::stops::report(&drives, &parked)))
 }
 
 /// Azimuth, pitch and roll through half an hour of driving; a result where every row that is to be met is.

@@ -5,8 +5,10 @@ use std::time::Instant as WallClock;
 
 use bench::instrument::kept::{Kept, Point};
 use bench::instrument::{Run, VehicleRun, align_stops};
+use bench::outcome::Finished;
+use bench::outcome::run::{KeptAzimuth, RunDetails};
+use bench::output::degrees;
 use bench::output::progress::Progress;
-use bench::output::{degrees, kept, page, stops as told, text};
 use bench::recording::Truth;
 use bench::stops::{Method, Replay, Watched};
 use clap::Args;
@@ -16,10 +18,9 @@ use firmware::simulated::vehicle::fault::VehicleFault;
 use firmware::simulated::vehicle::{Place, VehicleScenario};
 use hal_mock::vehicle::VehicleTruth;
 use orientation::session::stops::Session;
-use serde_json::json;
 
-use super::run::{Terminal, object};
-use super::{Told, keeping, whole};
+use super::run::Terminal;
+use super::{Shown, Told, whole};
 
 /// What a vehicle is asked for.
 #[derive(Args, Clone, Debug)]
@@ -81,7 +82,7 @@ pub fn run(
     let run = align_stops(scenario, fault, &mut watched, &watch);
     watch.0.finish();
     let VehicleRun { run, truth, kept } = run.map_err(|error| error.to_string())?;
-    let wall = begun.elapsed().as_secs_f64();
+    let wall = begun.elapsed();
     let criteria = watched.into_criteria();
     let assumed = vec![ASSUMED.to_owned()];
     let replay = Replay {
@@ -91,26 +92,16 @@ pub fn run(
         criteria,
         assumed,
     };
-    let Some(conclusion) = replay.conclusion() else {
-        let object = object(&run, &scenario.base, json!({}))?;
-        return keeping::told(NAME, &run, &kept, object, report, as_json);
-    };
     let truth = Truth {
         azimuth_deg: Some(degrees(concluded(&run, &kept, truth)).rem_euclid(360.0)),
         start_azimuth_deg: Some(scenario.base.azimuth_deg),
         ..Truth::default()
     };
-    let found = told::json::object(&replay, conclusion, &truth);
-    let mut object = object(&run, &scenario.base, found)?;
-    let of_kept = keeping::object(&run, &kept, &mut object)?;
-    let told = Told::of(conclusion.verdict.is_ok(), as_json, &object, |block| {
-        told::text::block(block, NAME, &replay, conclusion, &truth)?;
-        of_kept.as_ref().map_or(Ok(()), |of_kept| kept::block(block, of_kept))?;
-        text::run(block, &run, &scenario.base, wall)
-    })?;
-    let refusal = conclusion.verdict.as_ref().err().map(ToString::to_string);
-    let page = || keeping::page(page::stops::report(NAME, &replay, conclusion), &kept);
-    Ok(Told { refusal, ..told }.with_page(report, page))
+    let details = RunDetails::of(&run, &kept, scenario.base.sample_rate_hz, wall);
+    let finished: &dyn Finished =
+        if replay.conclusion().is_some() { &replay } else { &KeptAzimuth };
+    let outcome = finished.outcome(&truth).of_run(scenario.base.seed, details);
+    Shown { name: NAME, outcome, finished, truth: &truth, body: None }.told(report, as_json)
 }
 
 /// The true azimuth when the session concluded, rad: at the end, unless the vehicle went on.

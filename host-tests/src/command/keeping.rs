@@ -1,16 +1,7 @@
 //! How `meridian run` goes on after its alignment.
 
-use std::path::Path;
-
-use bench::instrument::Run;
-use bench::instrument::kept::Kept;
-use bench::output::kept::{self, Object};
-use bench::report::Report;
 use clap::Args;
 use firmware::simulated::keep::Hold;
-use serde_json::Value;
-
-use super::Told;
 
 /// How long a run goes on where nothing is said, s, and where it aligns anew at stops: several come then.
 const USUAL: f64 = 60.0;
@@ -70,48 +61,4 @@ impl KeepingOptions {
             ..Hold::of(self.hold.unwrap_or(usual))
         }
     }
-}
-
-/// The object of what was kept, set into that of the run.
-pub fn object<R>(run: &Run<R>, kept: &Kept, into: &mut Value) -> Result<Option<Object>, String> {
-    let object = kept::object(run, kept);
-    if let Some(object) = &object {
-        into["kept"] = serde_json::to_value(object).map_err(|error| error.to_string())?;
-    }
-    Ok(object)
-}
-
-/// What is told of a run whose azimuth is kept and no alignment's conclusion stands: it came from outside, or the
-/// session was begun anew at a stop. The azimuth is the one that is kept at the end.
-pub fn told<R>(
-    name: &str,
-    run: &Run<R>,
-    kept: &Kept,
-    mut object: Value,
-    report: Option<&Path>,
-    as_json: bool,
-) -> Result<Told, String> {
-    let of_kept = self::object(run, kept, &mut object)?;
-    let azimuth = of_kept.as_ref().and_then(|kept| kept.azimuth_deg);
-    let refusal = azimuth.is_none().then(|| "the azimuth is not known any more".to_owned());
-    object["method"] = "kept".into();
-    object["status"] = if azimuth.is_some() { "ok" } else { "refused" }.into();
-    object["reason"] = refusal.clone().into();
-    object["azimuth_deg"] = azimuth.into();
-    object["sigma_deg"] = of_kept.as_ref().and_then(|kept| kept.sigma_deg).into();
-    let told = Told::of(azimuth.is_some(), as_json, &object, |text| {
-        use std::fmt::Write;
-        writeln!(text, "\nAzimuth kept in {name}, handed over from outside or aligned anew")?;
-        of_kept.as_ref().map_or(Ok(()), |object| kept::block(text, object))
-    })?;
-    let title = format!("Azimuth kept in {name}");
-    let page = || page(Report { title, subtitle: Vec::new(), parts: Vec::new() }, kept);
-    Ok(Told { refusal, ..told }.with_page(report, page))
-}
-
-/// A page with the figures of what was kept.
-pub fn page(report: Report, kept: &Kept) -> Report {
-    let mut report = report;
-    report.parts.extend(kept::figures(kept));
-    report
 }

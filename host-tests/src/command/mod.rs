@@ -17,7 +17,8 @@ use std::fmt;
 use std::io::Write;
 use std::path::Path;
 
-use bench::output::text::line;
+use bench::outcome::{self, Finished, Outcome};
+use bench::recording::{Body, Truth};
 use bench::report::Report;
 use clap::ValueEnum;
 use orientation::align::setting;
@@ -121,23 +122,6 @@ impl Told {
         self
     }
 
-    /// The same with the likely cause of its refusal, which takes the place of the remedy.
-    fn because(mut self, cause: Option<String>) -> Self {
-        let (Some(cause), Some(refusal)) = (cause, &self.refusal) else { return self };
-        match &mut self.output {
-            Output::Object(object) => {
-                let reason = object["reason"].as_str().map(|reason| explained(reason, &cause));
-                object["reason"] = reason.into();
-            }
-            Output::Text(text) => {
-                // Nothing fails to be written into memory.
-                let _ = line(text, "likely cause", format_args!("{cause}"));
-            }
-        }
-        self.refusal = Some(explained(refusal, &cause));
-        self
-    }
-
     /// The same with what was written beside: where that failed, the command did, but the rest is not lost
     /// with it, nor is why there was no result.
     fn with_written(mut self, written: Result<(), String>) -> Self {
@@ -148,6 +132,38 @@ impl Told {
             None => self.refusal = Some(reason),
         }
         self
+    }
+}
+
+/// A finished analysis with what it found, ready to be shown.
+pub struct Shown<'a> {
+    /// What texts and pages call it.
+    pub name: &'a str,
+    /// What was found.
+    pub outcome: Outcome,
+    /// The analysis.
+    pub finished: &'a dyn Finished,
+    /// The truth, for errors alone.
+    pub truth: &'a Truth,
+    /// The rows that were analysed, where there are any.
+    pub body: Option<&'a Body>,
+}
+
+impl Shown<'_> {
+    /// As one object or as text, and as a page where `--report` asks for one.
+    ///
+    /// # Errors
+    /// An object that cannot be serialised.
+    pub fn told(self, report: Option<&Path>, as_json: bool) -> Result<Told, String> {
+        let Self { name, outcome, finished, truth, body } = self;
+        let made = |figures| outcome::report(name, &outcome, finished, figures);
+        let told = Told::of(outcome.is_ok(), as_json, &outcome, |text| {
+            text.push_str(&made(Vec::new()).text());
+            Ok(())
+        })?;
+        let refusal = outcome.reason.clone();
+        let page = || made(finished.figures(&outcome, truth, body));
+        Ok(Told { refusal, ..told }.with_page(report, page))
     }
 }
 

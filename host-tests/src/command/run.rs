@@ -7,9 +7,11 @@ use std::time::Instant as WallClock;
 use bench::instrument::kept::{Kept, KeptPlan, KeptRun};
 use bench::instrument::recorder::CsvRecorder;
 use bench::instrument::{self, FramesRun, Run, RunError};
+use bench::outcome::Finished;
+use bench::outcome::run::{KeptAzimuth, RunDetails};
+use bench::output::degrees;
 use bench::output::progress::Progress;
-use bench::output::{degrees, page, text};
-use bench::output::{json, kept};
+use bench::recording::Truth;
 use bench::unwritten;
 use clap::{Args, ValueEnum};
 use drivers::ads1262::configuration::DataRate;
@@ -23,15 +25,14 @@ use firmware::simulated::scenario::{Aim, GyroClass, RATES, Scenario};
 use firmware::simulated::spin::fault::SpinFault;
 use firmware::simulated::vehicle::fault::VehicleFault;
 use orientation::session::{Session, rotating, stops};
-use serde::Serialize;
-use serde_json::{Value, json};
+use serde_json::json;
 
 use super::driving::DrivingOptions;
-use super::keeping::{self, KeepingOptions};
+use super::keeping::KeepingOptions;
 use super::spinning::SpinningOptions;
 use super::suits::{self, Given, carrier};
 use super::turning::TurningOptions;
-use super::{Half, Told, files, whole};
+use super::{Half, Shown, Told, files, whole};
 
 /// What can be said of a simulated alignment.
 #[derive(Args, Clone, Debug)]
@@ -460,27 +461,29 @@ pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
     }
     let begun = WallClock::now();
     let (KeptRun { run, kept }, recorded) = simulate(&scenario, fault, options)?;
-    let wall = begun.elapsed().as_secs_f64();
-    let Some(conclusion) = run.conclusion() else {
-        let (object, report) = (object(&run, &scenario, json!({}))?, options.report.as_deref());
-        let told = keeping::told("the simulated run", &run, &kept, object, report, as_json)?;
-        return Ok(told.with_written(recorded));
-    };
-    let truth = Some(scenario.azimuth_deg);
-    let mut object = object(&run, &scenario, json::azimuth(&run.replay, conclusion, truth))?;
-    let of_kept = keeping::object(&run, &kept, &mut object)?;
-    let told = Told::of(conclusion.verdict.is_ok(), as_json, &object, |block| {
-        text::block(block, "the simulated run", &run.replay, conclusion, truth)?;
-        of_kept.as_ref().map_or(Ok(()), |of_kept| kept::block(block, of_kept))?;
-        text::run(block, &run, &scenario, wall)
-    })?;
-    let refusal = conclusion.verdict.as_ref().err().map(ToString::to_string);
-    let page = || {
-        let page = page::alignment::report("the simulated run", &run.replay, conclusion);
-        keeping::page(page, &kept)
-    };
-    let told = Told { refusal, ..told }.with_written(recorded);
-    Ok(told.with_page(options.report.as_deref(), page))
+    let details = RunDetails::of(&run, &kept, scenario.sample_rate_hz, begun.elapsed());
+    let told = tell(NAME, &run, details, &scenario, options, as_json)?;
+    Ok(told.with_written(recorded))
+}
+
+/// What the pages and texts call a run.
+const NAME: &str = "the simulated run";
+
+/// Tells what came of a run at standstills; what it kept, where no alignment of it stands.
+fn tell(
+    name: &str,
+    run: &Run,
+    details: RunDetails,
+    scenario: &Scenario,
+    options: &RunOptions,
+    as_json: bool,
+) -> Result<Told, String> {
+    let truth = Truth { azimuth_deg: Some(scenario.azimuth_deg), ..Truth::default() };
+    let finished: &dyn Finished =
+        if run.conclusion().is_some() { &run.replay } else { &KeptAzimuth };
+    let outcome = finished.outcome(&truth).of_run(scenario.seed, details);
+    let shown = Shown { name, outcome, finished, truth: &truth, body: None };
+    shown.told(options.report.as_deref(), as_json)
 }
 
 /// Names the faults that a method can have.
@@ -504,54 +507,11 @@ fn run_frames(base: &Scenario, options: &RunOptions, as_json: bool) -> Result<To
     watch.0.finish();
     let FramesRun { run, axis: [forward, right, down], kept } =
         frames.map_err(|error| error.to_string())?;
-    let wall = begun.elapsed().as_secs_f64();
-    let Some(conclusion) = run.conclusion() else {
-        let (object, report) = (object(&run, base, json!({}))?, options.report.as_deref());
-        let name = "the simulated run on two frames";
-        return keeping::told(name, &run, &kept, object, report, as_json);
-    };
-    let truth = Some(base.azimuth_deg);
     let stored = run.events.iter().any(|(_, event)| matches!(event, Event::Stored(..)));
-    let off_vertical = degrees(forward.hypot(right).atan2(down));
-    let mut object = object(&run, base, json::azimuth(&run.replay, conclusion, truth))?;
-    object["stored"] = stored.into();
-    object["truth_off_vertical_deg"] = off_vertical.into();
-    let of_kept = keeping::object(&run, &kept, &mut object)?;
-    let told = Told::of(conclusion.verdict.is_ok(), as_json, &object, |block| {
-        text::block(block, "the simulated run on two frames", &run.replay, conclusion, truth)?;
-        of_kept.as_ref().map_or(Ok(()), |of_kept| kept::block(block, of_kept))?;
-        text::run(block, &run, base, wall)?;
-        text::stored(block, stored, off_vertical)
-    })?;
-    let refusal = conclusion.verdict.as_ref().err().map(ToString::to_string);
-    let page = || {
-        let name = "the simulated run on two frames";
-        keeping::page(page::alignment::report(name, &run.replay, conclusion), &kept)
-    };
-    Ok(Told { refusal, ..told }.with_page(options.report.as_deref(), page))
-}
-
-/// The object of a result, with what only a simulated run has.
-pub(super) fn object<R>(
-    run: &Run<R>,
-    scenario: &Scenario,
-    result: impl Serialize,
-) -> Result<Value, String> {
-    let mut object = serde_json::to_value(result).map_err(|error| error.to_string())?;
-    let health = &run.health;
-    object["seed"] = scenario.seed.into();
-    object["simulated_seconds"] = run.seconds.into();
-    object["health"] = json!({
-        "samples": health.samples,
-        "missing": health.missing,
-        "late": health.late,
-        "overflowed": health.overflowed,
-        "unkept": health.unkept,
-        "lost": health.lost,
-        "restarts": health.restarts,
-        "violations": run.violations,
-    });
-    Ok(object)
+    let mut details = RunDetails::of(&run, &kept, base.sample_rate_hz, begun.elapsed());
+    details.stored = Some(stored);
+    details.truth_off_vertical_deg = Some(degrees(forward.hypot(right).atan2(down)));
+    tell("the simulated run on two frames", &run, details, base, options, as_json)
 }
 
 /// Runs the board; the run with what it kept, and whether its recording is whole.

@@ -4,21 +4,22 @@ use std::path::Path;
 use std::time::Instant as WallClock;
 
 use bench::instrument::Run;
+use bench::instrument::kept::Kept;
 use bench::instrument::spinning::{SpinRun, follow_spin};
+use bench::outcome::Finished;
+use bench::outcome::run::RunDetails;
 use bench::output::progress::Progress;
-use bench::output::{page, spin as told, text};
 use bench::recording::Truth;
 use bench::spin::{Known, Replay, follow};
 use clap::Args;
 use firmware::event::Event;
-use firmware::simulated::scenario::Scenario;
 use firmware::simulated::spin::fault::SpinFault;
 use firmware::simulated::spin::{SAMPLE_RATE, SpinScenario};
 use firmware::spin::Flight;
 use orientation::units::DEGREE;
 
-use super::Told;
-use super::run::{Terminal, object};
+use super::run::Terminal;
+use super::{Shown, Told};
 
 /// What a flight is asked for.
 #[derive(Args, Clone, Debug)]
@@ -80,22 +81,14 @@ pub fn run(
     let flown = follow_spin(scenario, fault, &watch);
     watch.0.finish();
     let SpinRun { run, samples, rolls_rad, .. } = flown.map_err(|error| error.to_string())?;
-    let wall = begun.elapsed().as_secs_f64();
+    let details = RunDetails::of(&run, &Kept::default(), SAMPLE_RATE, begun.elapsed());
     let assumed = vec![ASSUMED.to_owned()];
     let known = Known { setting: scenario.setting(), required_sigma: REQUIRED_SIGMA, assumed };
     let replay = Replay { ended: ended(&run), ..follow(&samples, known) };
     let truth = Truth { roll_rad: rolls_rad, ..Truth::default() };
-    let found = told::json::object(&replay, &truth);
-    let refusal = found.reason.clone();
-    // The board's clock and seed, in the words of any simulated run.
-    let base = Scenario { seed: scenario.seed, sample_rate_hz: SAMPLE_RATE, ..Scenario::default() };
-    let object = object(&run, &base, found)?;
-    let told = Told::of(refusal.is_none(), as_json, &object, |block| {
-        told::text::block(block, NAME, &replay, &truth)?;
-        text::run(block, &run, &base, wall)
-    })?;
-    let page = || page::spin::report(NAME, &replay, &truth);
-    Ok(Told { refusal, ..told }.with_page(report, page))
+    let outcome = replay.outcome(&truth).of_run(scenario.seed, details);
+    let finished = &replay;
+    Shown { name: NAME, outcome, finished, truth: &truth, body: None }.told(report, as_json)
 }
 
 /// Why the board gave the roll up, if it did: what it had by then is none of the end.

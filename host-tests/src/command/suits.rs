@@ -1,5 +1,6 @@
 //! Which option suits which method: what a method or mount would ignore is refused, not passed over.
 
+use bench::methods::Method;
 use clap::ArgMatches;
 use clap::parser::ValueSource;
 
@@ -172,59 +173,29 @@ pub const RUN: &[Suit] = &[
     Suit("report", ALL, ""),
 ];
 
-/// The methods of `replay`.
-pub mod method {
-    use super::{Methods, Named};
-
-    const STEPWISE_BIT: Methods = 1;
-    const POSITIONS_BIT: Methods = 2;
-    const ROTATING_BIT: Methods = 4;
-    const SIAP_BIT: Methods = 8;
-    const STATIC_BIT: Methods = 16;
-    const VERTICAL_BIT: Methods = 32;
-    const SPIN_BIT: Methods = 64;
-    /// Stepwise gyrocompassing.
-    pub const STEPWISE: Named = Named(STEPWISE_BIT, "--method stepwise");
-    /// Autocompensated positions.
-    pub const POSITIONS: Named = Named(POSITIONS_BIT, "--method positions");
-    /// A platform that turns all the time.
-    pub const ROTATING: Named = Named(ROTATING_BIT, "--method rotating");
-    /// A vehicle that stops.
-    pub const SIAP: Named = Named(SIAP_BIT, "--method siap");
-    /// A vehicle that stands.
-    pub const STATIC: Named = Named(STATIC_BIT, "--method static");
-    /// Pitch and roll.
-    pub const VERTICAL: Named = Named(VERTICAL_BIT, "--method vertical");
-    /// A spinning body.
-    pub const SPIN: Named = Named(SPIN_BIT, "--method spin");
-
-    /// What stops at positions.
-    pub(super) const STOPPING: Methods = STEPWISE_BIT | POSITIONS_BIT;
-    /// All but a spinning body.
-    pub(super) const ON_EARTH: Methods =
-        STOPPING | ROTATING_BIT | SIAP_BIT | STATIC_BIT | VERTICAL_BIT;
-    /// What drives.
-    pub(super) const DRIVING: Methods = SIAP_BIT;
-    /// What keeps an attitude.
-    pub(super) const KEEPING: Methods = VERTICAL_BIT;
-}
-
-/// The options of `replay` that not every method takes.
-pub const REPLAY: &[Suit] = &[
-    Suit("latitude", method::ON_EARTH, ROLL),
-    Suit(
-        "criterion",
-        method::STOPPING,
-        "only a stage that stops has another criterion than the one",
-    ),
-    Suit(
-        "half",
-        method::STOPPING,
-        "only two positions of a stage leave the half of the circle open",
-    ),
-    Suit("displacements", method::DRIVING, "only the stops of method siap have them"),
-    Suit("attitude_out", method::KEEPING, "only method vertical keeps an attitude"),
+/// The options of `replay` that not every method takes, and why others do not.
+const REPLAY: &[(&str, &str)] = &[
+    ("latitude", ROLL),
+    ("criterion", "only a stage that stops has another criterion than the one"),
+    ("half", "only two positions of a stage leave the half of the circle open"),
+    ("displacements", "only the stops of method siap have them"),
+    ("attitude_out", "only method vertical keeps an attitude"),
 ];
+
+/// Refuses the first option that a method of `replay` does not take.
+///
+/// # Errors
+/// The option, the method, and why.
+pub fn check_replay(given: &Given, method: &Method) -> Result<(), String> {
+    let is_ignored =
+        |(option, _): &&(&str, &str)| given.has(option) && !method.takes.contains(option);
+    match REPLAY.iter().find(is_ignored) {
+        None => Ok(()),
+        Some((option, why)) => {
+            Err(format!("{}: --method {} does not take it: {why}", long(option), method.name))
+        }
+    }
+}
 
 /// Whether a table has the option.
 fn named(table: &[Suit], option: &str) -> bool {

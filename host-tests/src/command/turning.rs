@@ -3,10 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant as WallClock;
 
+use bench::instrument::kept::Kept;
 use bench::instrument::{Keeping, Run, TurntableRun, align_turning_again, flash_file};
+use bench::outcome::Finished;
+use bench::outcome::run::RunDetails;
 use bench::output::progress::Progress;
-use bench::output::text;
-use bench::output::{page, rotating as told};
+use bench::recording::{Body, Truth};
 use bench::rotating::Replay;
 use bench::rotating::recorder::RowRecorder;
 use clap::{Args, ValueEnum};
@@ -16,11 +18,10 @@ use firmware::simulated::fault::Fault;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;
 use firmware::storage::{Remembered, Today};
-use serde_json::{Value, json};
 
 use super::files::{self, Written};
-use super::run::{Terminal, object};
-use super::{Told, whole};
+use super::run::Terminal;
+use super::{Shown, Told, whole};
 
 /// What a platform that turns all the time is asked for.
 #[derive(Args, Clone, Debug)]
@@ -155,39 +156,24 @@ pub fn run(
     watch.0.finish();
     let TurntableRun { run, .. } = run.map_err(|error| error.to_string())?;
     let put_away = options.put_away(keeping);
-    let wall = begun.elapsed().as_secs_f64();
+    let rate_hz = scenario.base.sample_rate_hz;
+    let mut details = RunDetails::of(&run, &Kept::default(), rate_hz, begun.elapsed());
+    details.recalled = Some(recalled(&run).map(Into::into).collect());
     let replay =
         Replay { session: run.replay.clone(), zero_s: 0.0, assumed: vec![ASSUMED.to_owned()] };
-    let conclusion = replay.conclusion().ok_or("the session did not end")?;
-    let truth = Some(scenario.base.azimuth_deg);
-    let found = told::json::object(&replay, conclusion, truth);
-    let mut object = object(&run, &scenario.base, found)?;
-    object["recalled"] = recalled(&run).map(in_json).collect();
-    let told = Told::of(conclusion.verdict.is_ok(), as_json, &object, |block| {
-        told::text::block(block, NAME, &replay, conclusion, truth)?;
-        recalled(&run)
-            .try_for_each(|coupling| text::line(block, "recalled", format_args!("{coupling}")))?;
-        text::run(block, &run, &scenario.base, wall)
-    })?;
-    let refusal = conclusion.verdict.as_ref().err().map(ToString::to_string);
-    let page = || page::rotating::report(NAME, &replay, conclusion, recorder.rows());
-    Ok(Told { refusal, ..told }.with_written(put_away).with_page(report, page))
+    let truth = Truth { azimuth_deg: Some(scenario.base.azimuth_deg), ..Truth::default() };
+    let outcome = replay.outcome(&truth).of_run(scenario.base.seed, details);
+    let body = Body::Rotating(recorder.rows().to_vec());
+    let (finished, body) = (&replay, Some(&body));
+    let shown = Shown { name: NAME, outcome, finished, truth: &truth, body };
+    Ok(shown.told(report, as_json)?.with_written(put_away))
 }
 
-/// The stored couplings that the board used.
+/// The stored axis misalignments that the board used.
 fn recalled<R>(run: &Run<R>) -> impl Iterator<Item = &Remembered> {
     run.events.iter().filter_map(|(_, event)| match event {
         Event::Recalled(coupling) => Some(coupling),
         _ => None,
-    })
-}
-
-fn in_json(coupling: &Remembered) -> Value {
-    json!({
-        "coupling_deg": coupling.angle,
-        "speed_hz": coupling.rate / 360.0,
-        "date": coupling.day.to_string(),
-        "temperature_c": coupling.temperature,
     })
 }
 

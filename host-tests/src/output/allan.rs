@@ -9,7 +9,7 @@ use orientation::units::DEGREE_PER_HOUR;
 use serde_json::{Map, Value, json};
 
 use super::degrees_per_hour;
-use super::text::line;
+use super::line;
 use crate::allan::analysis::{Analysis, Confident, Rest};
 use crate::allan::speed::Comparison;
 use crate::planning::Suggestion;

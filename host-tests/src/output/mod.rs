@@ -1,12 +1,10 @@
-//! What the user sees: the result block, the JSON object, the progress bar.
+//! What the user sees of plans, noise analyses and campaigns, and the progress bar.
 
 pub mod allan;
 pub mod burov;
 pub mod disturbed;
 pub mod emulation;
-pub mod json;
 pub mod keep;
-pub mod kept;
 pub mod page;
 pub mod plan;
 pub mod progress;
@@ -14,15 +12,12 @@ pub mod rotating;
 pub mod spin;
 pub mod stops;
 pub mod table;
-pub mod text;
-pub mod vertical;
 
+use std::fmt;
 use std::io::{self, Write};
 
-use orientation::align::budget::Budget;
 use orientation::align::regression::Column;
 use orientation::align::stepwise::{Fit, Hypothesis};
-use orientation::error::Source;
 
 /// Writes a line to standard error. Where nobody reads it, it is lost, and that is no error of ours.
 pub fn say(line: &str) {
@@ -54,10 +49,12 @@ pub fn azimuth_error(azimuth: f64, truth: f64) -> f64 {
     (turns - turns.round()) * 360.0
 }
 
-/// The parts of a budget that have a line: a displacement only where a vehicle drove.
-pub fn parts(budget: &Budget) -> impl Iterator<Item = (Source, f64)> {
-    let is_shown = |(source, part): &(Source, f64)| *source != Source::Displacement || *part > 0.0;
-    budget.parts().into_iter().filter(is_shown)
+/// Writes what belongs to a label.
+///
+/// # Errors
+/// Those of the writer.
+pub fn line(out: &mut impl fmt::Write, label: &str, value: fmt::Arguments<'_>) -> fmt::Result {
+    writeln!(out, "  {label:<18} {value}")
 }
 
 /// Names as a table's head has them.

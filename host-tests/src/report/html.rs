@@ -1,7 +1,7 @@
 //! The page around figures and tables.
 
 use super::chart::{self, DrawError};
-use super::{Figure, Part, Report, Series, Style, Table};
+use super::{Figure, Lines, Part, Report, Series, Style, Table};
 
 /// Everything that is drawn stands in the file, so it names no font and no other file.
 const CSS: &str = "\
@@ -17,7 +17,7 @@ h2{font-size:1.15rem;margin:2.2rem 0 .6rem}
 .wide{overflow-x:auto}
 table{border-collapse:collapse;font-variant-numeric:tabular-nums}
 th,td{padding:.2rem .9rem .2rem 0;text-align:right;border-bottom:1px solid #ddd}
-th:first-child,td:first-child{text-align:left}
+th:first-child,td:first-child,.lines td{text-align:left}
 ";
 
 /// The whole page. It is well-formed XML as well, which is how the tests read it.
@@ -36,6 +36,7 @@ pub(super) fn document(report: &Report) -> Result<String, DrawError> {
         page += &match part {
             Part::Figure(figure) => of_figure(figure)?,
             Part::Table(table) => of_table(table),
+            Part::Lines(lines) => of_lines(lines),
         };
     }
     page += "</body>\n</html>\n";
@@ -72,6 +73,12 @@ fn entry(series: &Series, index: usize) -> String {
     };
     let name = escaped(&series.name);
     format!("<li><svg width=\"30\" height=\"14\">{sample}</svg>{name}</li>\n")
+}
+
+fn of_lines(Lines { title, lines }: &Lines) -> String {
+    let heading = if title.is_empty() { String::new() } else { element("h2", title) };
+    let rows: String = lines.iter().map(|line| row("td", line)).collect();
+    format!("{heading}<div class=\"wide\">\n<table class=\"lines\">\n{rows}</table>\n</div>\n")
 }
 
 fn of_table(table: &Table) -> String {

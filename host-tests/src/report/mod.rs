@@ -7,6 +7,7 @@
 mod chart;
 mod html;
 mod span;
+mod text;
 
 use std::error::Error;
 use std::fmt;
@@ -32,6 +33,30 @@ pub enum Part {
     Figure(Figure),
     /// Rows of text.
     Table(Table),
+    /// Labelled lines.
+    Lines(Lines),
+}
+
+/// Labelled lines under a heading.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Lines {
+    /// The heading; empty for lines that follow the report's own.
+    pub title: String,
+    /// Label and value of each line.
+    pub lines: Vec<[String; 2]>,
+}
+
+impl Lines {
+    /// Lines under a heading, none yet.
+    #[must_use]
+    pub fn new(title: &str) -> Self {
+        Self { title: title.to_owned(), lines: Vec::new() }
+    }
+
+    /// Adds a line.
+    pub fn add(&mut self, label: &str, value: impl Into<String>) {
+        self.lines.push([label.to_owned(), value.into()]);
+    }
 }
 
 /// Curves over common axes.
@@ -115,6 +140,15 @@ pub struct Table {
     pub rows: Vec<Vec<String>>,
 }
 
+impl Table {
+    /// A table with these columns, without rows yet.
+    #[must_use]
+    pub fn new(title: &str, head: &[&str]) -> Self {
+        let head = head.iter().map(|name| (*name).to_owned()).collect();
+        Self { title: title.to_owned(), head, rows: Vec::new() }
+    }
+}
+
 impl Axis {
     /// An axis on which equal differences are equally long; `unit` is empty for a plain number.
     #[must_use]
@@ -165,6 +199,12 @@ impl From<Figure> for Part {
     }
 }
 
+impl From<Lines> for Part {
+    fn from(lines: Lines) -> Self {
+        Self::Lines(lines)
+    }
+}
+
 impl From<Table> for Part {
     fn from(table: Table) -> Self {
         Self::Table(table)
@@ -189,6 +229,12 @@ impl fmt::Display for ReportError {
 impl Error for ReportError {}
 
 impl Report {
+    /// The report for a terminal: its lines and tables; figures are for a page.
+    #[must_use]
+    pub fn text(&self) -> String {
+        text::document(self)
+    }
+
     /// Writes the report to a file, over one that is there.
     ///
     /// # Errors

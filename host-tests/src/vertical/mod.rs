@@ -12,6 +12,7 @@ use orientation::earth::Latitude;
 use orientation::keep::{Gyro, Keeper, Report, Setting, State};
 use orientation::noise::model::GyroNoise;
 use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
+use serde::Serialize;
 
 use crate::output::{azimuth_error, degrees};
 use crate::recording::{Body, Header, Short};
@@ -47,7 +48,7 @@ pub struct Moment {
 }
 
 /// A state, and for how long it was met, s.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Met {
     /// In words, as the board has them, without the time they hold.
     pub state: &'static str,

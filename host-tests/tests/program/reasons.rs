@@ -35,7 +35,7 @@ fn the_text_for_people_names_the_likely_cause_too() {
     let path = scratch.with("x.csv", &scaled(&recorded(&scratch), &["stage_rad"], DEGREES));
     let output = meridian(&["replay", &path]);
     let told = super::text(&output.stdout);
-    assert!(told.contains("likely cause       column stage_rad: in degrees"), "{told}");
+    assert!(told.contains("; column stage_rad: in degrees"), "{told}");
 }
 
 #[test]

@@ -79,13 +79,13 @@ fn the_block_prints_the_limit_the_coupling_and_every_stage() {
     for words in [
         "azimuth of body x",
         "limit",
-        "coupling",
+        "axis misalignment",
         "raw, clockwise",
         "without the unevenness",
         "both senses",
         "everything",
-        "error budget",
-        "uneven by %",
+        "Error budget",
+        "uneven by, %",
     ] {
         assert!(text.contains(words), "{words}: {text}");
     }

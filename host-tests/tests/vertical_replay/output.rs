@@ -102,7 +102,7 @@ fn the_block_tells_level_turn_biases_states_and_what_was_assumed() {
         "about the vertical since the beginning",
         "°/h forward, right, down",
         "state at the end",
-        "against the truth, in 9230 samples",
+        "Against the truth, in 9230 samples",
         "latitude 45°: none is stated",
         "gyro noise of a coarse unit",
         "gyro scale and axes of a coarse unit: 0.5 %",
@@ -179,7 +179,7 @@ fn a_sigma_that_was_not_reached_is_refused_with_exit_one() {
     assert_eq!(output.status.code(), Some(1));
     let object = object(&output);
     assert_eq!(object["status"], "refused");
-    assert!(object.get("pitch_deg").is_none());
+    assert!(object["pitch_deg"].is_null());
     let reason = object["reason"].as_str().expect("a reason");
     assert!(reason.contains("0.01° is wanted"), "{reason}");
     let stage = file("stepwise-paper-1").display().to_string();

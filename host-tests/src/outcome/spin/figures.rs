@@ -13,7 +13,7 @@ const POINTS: usize = 2000;
 const FRAGMENT_S: f64 = 0.03;
 
 /// Roll errors of the methods over the time, then a fragment at the end; none without the truth.
-pub fn errors(replay: &Replay, truth: &Truth) -> Vec<Figure> {
+pub(crate) fn errors(replay: &Replay, truth: &Truth) -> Vec<Figure> {
     let end_s = replay.answer().end.time_s;
     let whole = figure(replay, truth, "Roll error of the methods over the time", 0.0);
     let fragment = figure(
@@ -51,7 +51,7 @@ fn curve(track: &Track, truth: &Truth, from_s: f64) -> Option<Series> {
 }
 
 /// σ of the answer, the bound, and the size of the error where the truth is there.
-pub fn sigmas(replay: &Replay, truth: &Truth) -> Figure {
+pub(crate) fn sigmas(replay: &Replay, truth: &Truth) -> Figure {
     let answer = replay.answer();
     let stated = answer.points.iter().filter_map(|p| Some((p.time_s, degrees(p.sigma_rad?))));
     let mut series = Vec::new();
@@ -76,7 +76,7 @@ pub fn sigmas(replay: &Replay, truth: &Truth) -> Figure {
 }
 
 /// The lift over the time.
-pub fn lift(replay: &Replay) -> Figure {
+pub(crate) fn lift(replay: &Replay) -> Figure {
     let points = replay.answer().points.iter();
     let lifts = points.filter_map(|point| Some((point.time_s, point.lift?)));
     Figure {
@@ -88,7 +88,7 @@ pub fn lift(replay: &Replay) -> Figure {
 }
 
 /// The scale error over the time, within its σ.
-pub fn scale(replay: &Replay) -> Figure {
+pub(crate) fn scale(replay: &Replay) -> Figure {
     let found = |point: &Point| {
         let [scale, sigma] = point.scale?;
         Some((point.time_s, scale, [scale - sigma, scale + sigma]))

@@ -1,7 +1,8 @@
-//! The figures: papers/004's profile of the uneven turn, its spectra, and the phasors of each turn.
+//! The figures: the profile of the rate-modulated turn, as in MET 2018, its spectra, and the phasors of each turn.
 
 use rustfft::num_complex::Complex;
 
+use super::TurnDetails;
 use crate::output::degrees_per_hour;
 use crate::recording::RotatingRow;
 use crate::report::{Axis, Figure, Series, Style};
@@ -14,7 +15,7 @@ const PROFILE_POINTS: usize = 1500;
 const MULTIPLES: f64 = 6.0;
 
 /// How the platform's rate went over time.
-pub fn profile(part: &Part<'_>) -> Figure {
+pub(crate) fn profile(part: &Part<'_>) -> Figure {
     let step = part.rows.len().div_ceil(PROFILE_POINTS).max(1);
     let points = part.rows.iter().step_by(step).map(|row| (row.time_s, row.stage_rate_rad_s));
     Figure {
@@ -36,7 +37,7 @@ fn lines(name: &str, style: Style, part: &Part<'_>, signal: Signal<'_>) -> Serie
 
 /// The sensor's spectrum before and after what it feels of the platform's rate is taken off it, and that
 /// part itself; `freed` has the rows after it.
-pub fn spectra(part: &Part<'_>, freed: &Part<'_>) -> Figure {
+pub(crate) fn spectra(part: &Part<'_>, freed: &Part<'_>) -> Figure {
     let felt: Vec<RotatingRow> = part.rows.iter().zip(freed.rows).map(difference).collect();
     let felt = Part { is_even: part.is_even, rows: &felt };
     let turn = turn_hz(part.rows).abs();
@@ -59,7 +60,7 @@ fn difference((row, other): (&RotatingRow, &RotatingRow)) -> RotatingRow {
 }
 
 /// The sensor's spectrum as it comes, of several parts at the same speed.
-pub fn compared(parts: &[Part<'_>], names: &[String]) -> Figure {
+pub(crate) fn compared(parts: &[Part<'_>], names: &[String]) -> Figure {
     let turn = parts.first().map_or(0.0, |part| turn_hz(part.rows).abs());
     let of = |(part, name): (&Part<'_>, &String)| {
         lines(name, Style::LineAndPoints, part, &|row| row.rate_rad_s)
@@ -73,7 +74,7 @@ pub fn compared(parts: &[Part<'_>], names: &[String]) -> Figure {
 }
 
 /// The spectrum of the platform's rate alone, in Hz.
-pub fn platform(parts: &[Part<'_>]) -> Figure {
+pub(crate) fn platform(parts: &[Part<'_>]) -> Figure {
     let of = |part: &Part<'_>| {
         let lines = spectrum(part.rows, &|row| row.stage_rate_rad_s);
         let points = lines.into_iter().map(|line| (line.frequency_hz, line.amplitude));
@@ -88,9 +89,9 @@ pub fn platform(parts: &[Part<'_>]) -> Figure {
 }
 
 /// The phasor of each turn of each even part in the complex plane.
-pub fn plane(parts: &[Part<'_>]) -> Figure {
+pub(crate) fn plane(parts: &[Part<'_>]) -> Figure {
     let of = |part: &Part<'_>| {
-        let Turns { near, .. } = Turns::of(part);
+        let Turns { near } = Turns::of(part);
         let points = near.into_iter().map(|(_, at)| (at.re, at.im));
         Series::new(&part.to_string(), Style::Points, points)
     };
@@ -102,23 +103,25 @@ pub fn plane(parts: &[Part<'_>]) -> Figure {
     }
 }
 
-/// By how much each turn's phasor differs from the mean of its part.
-pub fn residuals(parts: &[Part<'_>]) -> Figure {
-    let of = |part: &Part<'_>| {
-        let Turns { near, far } = Turns::of(part);
-        let mean = near.iter().map(|(_, at)| at).sum::<Complex<f64>>() / near.len().max(1) as f64;
-        let beyond = if far > 0 { format!(" ({far} far off, not shown)") } else { String::new() };
-        let side = |name: &str, of: fn(Complex<f64>) -> f64| {
-            let points = near.iter().map(|(time, at)| (*time, of(at - mean)));
-            Series::new(&format!("{name}, {part}{beyond}"), Style::LineAndPoints, points)
-        };
-        [side("cos θ", |at| at.re), side("−sin θ", |at| at.im)]
-    };
+/// What the mean of its stretch leaves of each turn, with the 1σ of white noise.
+pub(crate) fn residuals(turns: &[TurnDetails]) -> Figure {
+    let mut series = Vec::new();
+    for stretch in turns.chunk_by(|a, b| a.sense == b.sense && a.middle_s < b.middle_s) {
+        let speed = stretch[0].speed_hz;
+        for (part, name) in [(0, "cos θ"), (1, "sin θ")] {
+            let points = stretch.iter().map(|turn| {
+                let (residual, sigma) = (turn.residual_deg_h[part], turn.sigma_deg_h);
+                (turn.middle_s, residual, [residual - sigma, residual + sigma])
+            });
+            let name = format!("{name}, {} at {speed:.3} Hz", stretch[0].sense);
+            series.push(Series::new(&name, Style::LineAndPoints, points));
+        }
+    }
     Figure {
-        title: "Phasor of each turn less the mean of its stretch".to_owned(),
-        x: Axis::linear("time", "s"),
+        title: "Phasor of each turn less the mean of its stretch, with 1σ".to_owned(),
+        x: Axis::linear("time since the stretch began", "s"),
         y: Axis::linear("residual", "°/h"),
-        series: parts.iter().filter(|part| part.is_even).flat_map(of).collect(),
+        series,
     }
 }
 
@@ -128,8 +131,6 @@ const FAR: f64 = 20.0;
 /// Times and phasors of a part's turns, °/h.
 struct Turns {
     near: Vec<(f64, Complex<f64>)>,
-    /// How many are too far from these.
-    far: usize,
 }
 
 impl Turns {
@@ -140,8 +141,7 @@ impl Turns {
         let middle = Complex::new(middle_of(|at| at.re), middle_of(|at| at.im));
         let usual = median(all.iter().map(|(_, at)| (at - middle).norm()));
         let is_near = |(_, at): &(f64, Complex<f64>)| (at - middle).norm() <= FAR * usual;
-        let (near, far): (Vec<_>, Vec<_>) = all.iter().copied().partition(is_near);
-        Self { near, far: far.len() }
+        Self { near: all.iter().copied().filter(is_near).collect() }
     }
 }
 

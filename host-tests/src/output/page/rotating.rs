@@ -1,10 +1,10 @@
 //! The page of `campaign rotating`: where the raw error comes from, papers/004's spectra at two couplings,
 //! and the tables.
 
-use super::figures;
 use crate::campaign::rotating::world::{COUPLING_DEG, World, segments};
 use crate::campaign::rotating::{molecular, refusals, stages};
 use crate::campaign::statistics::Precision;
+use crate::outcome::rotating::figures;
 use crate::output::named;
 use crate::report::{Axis, Figure, Part as OfPage, Report, Series, Style, Table};
 use crate::rotating::part::Part;

@@ -6,7 +6,8 @@ use orientation::earth::Latitude;
 use orientation::signal::rest::{Criteria, Limits};
 use orientation::units::wrapped;
 
-use crate::output::stops::json::Object;
+use super::PlainDetails;
+use crate::outcome::Outcome;
 use crate::output::{azimuth_error, degrees, degrees_per_hour};
 use crate::report::{Axis, Figure, Series, Style};
 use crate::stops::Replay;
@@ -18,10 +19,10 @@ const REACH_SIGMAS: f64 = 4.0;
 const LEAST_REACH_DEG: f64 = 0.02;
 
 /// The azimuths at the end by both methods; none where there is neither.
-pub fn azimuths(object: &Object) -> Option<Figure> {
+pub(crate) fn azimuths(outcome: &Outcome, plain: Option<&PlainDetails>) -> Option<Figure> {
     let with_limits = |at: f64, angle: f64, sigma: f64| (at, angle, [angle - sigma, angle + sigma]);
-    let full = object.verdict.azimuth_deg.zip(object.verdict.sigma_deg);
-    let plain = object.plain.as_ref().map(|plain| (plain.azimuth_deg, plain.sigma_deg));
+    let full = outcome.azimuth_deg.zip(outcome.sigma_deg);
+    let plain = plain.map(|plain| (plain.azimuth_deg, plain.sigma_deg));
     let (near, _) = full.or(plain)?;
     let series = [("the paper's method", 1.0, plain), ("everything that is known", 2.0, full)];
     let series = series.into_iter().filter_map(|(name, at, found)| {
@@ -38,7 +39,7 @@ pub fn azimuths(object: &Object) -> Option<Figure> {
 }
 
 /// U over the whole circle, and near its minimum.
-pub fn inclinations(plain: &Plain) -> [Figure; 2] {
+pub(crate) fn inclinations(plain: &Plain) -> [Figure; 2] {
     let reach = (REACH_SIGMAS * degrees(plain.sigma)).clamp(LEAST_REACH_DEG, 90.0);
     let minimum = degrees(plain.azimuth);
     let part = |i| f64::from(i) / f64::from(PLACES);
@@ -74,7 +75,7 @@ fn inclination(plain: &Plain, title: &str, azimuths_deg: &[f64]) -> Figure {
 }
 
 /// Kryt1 and Kryt2 over time, with their thresholds and the stops; none where the session never had them.
-pub fn criteria(replay: &Replay) -> Vec<Figure> {
+pub(crate) fn criteria(replay: &Replay) -> Vec<Figure> {
     if replay.criteria.is_empty() {
         return Vec::new();
     }
@@ -124,7 +125,7 @@ fn criterion(
 
 /// What a wrong azimuth makes of level rates at a latitude: the paper's p′ and q′, and
 /// `W = 2 Ω_h |sin(δ/2)|`; beside it U of a drive over its seconds.
-pub fn heading_error(latitude: Latitude, drive: Option<(&Plain, f64)>) -> Figure {
+pub(crate) fn heading_error(latitude: Latitude, drive: Option<(&Plain, f64)>) -> Figure {
     let horizontal = degrees_per_hour(latitude.horizontal_rate());
     let over = |of: &dyn Fn(f64) -> f64| {
         let at = |i| 180.0 * f64::from(i) / f64::from(PLACES);

@@ -2,9 +2,9 @@
 
 use orientation::earth::Latitude;
 
-use super::figures;
 use crate::campaign::statistics::Precision;
 use crate::campaign::szymanowski::{drives, parked};
+use crate::outcome::stops::figures;
 use crate::output::named;
 use crate::report::{Axis, Figure, Part, Report, Series, Style, Table};
 

@@ -1,0 +1,172 @@
+//! The registry of methods: what `replay` can do with a recording, under which name, of which kinds.
+//!
+//! A further method is an entry here; its replay, its outcome and its causes stand in folders of their own.
+
+use orientation::align::criterion::Criterion;
+use orientation::align::setting::Half;
+use orientation::earth::Latitude;
+
+use crate::outcome::Finished;
+use crate::recording::{Body, Header, Kind, Recording};
+use crate::replay::{self, ReplayError};
+use crate::{rotating, spin, stops, vertical};
+
+/// What a user asks of a replay, whatever the method.
+#[derive(Clone, Debug)]
+pub struct Asked {
+    /// Latitude instead of the header's.
+    pub latitude: Option<Latitude>,
+    /// How the azimuth is found; of a stage that stops.
+    pub criterion: Criterion,
+    /// The half of the circle in which the azimuth lies, where that is known; of a stage that stops.
+    pub half: Option<Half>,
+    /// Displacements of the stops, north and east, m, instead of the header's; of a vehicle.
+    pub displacements_m: Option<Vec<[f64; 2]>>,
+    /// Greatest accepted 1σ, rad.
+    pub required_sigma: Option<f64>,
+}
+
+impl Default for Asked {
+    fn default() -> Self {
+        let criterion = Criterion::MaximumLikelihood;
+        let (latitude, half, displacements_m, required_sigma) = (None, None, None, None);
+        Self { latitude, criterion, half, displacements_m, required_sigma }
+    }
+}
+
+/// Told of each step of a replay: the session so far.
+pub type Watch<'a> = &'a dyn Fn(&orientation::session::Session);
+
+/// Replays a recording.
+type Replays = fn(&Header, &Body, &Asked, Watch<'_>) -> Result<Box<dyn Finished>, ReplayError>;
+
+/// A method of `replay`.
+pub struct Method {
+    /// Its name on the command line.
+    pub name: &'static str,
+    /// What it does, for the help.
+    pub meaning: &'static str,
+    /// Options of `replay`, by their names without dashes, that it takes beside those that every method takes.
+    pub takes: &'static [&'static str],
+    /// Replays a recording.
+    pub replay: Replays,
+}
+
+/// The methods, in the order of the help.
+pub static METHODS: [Method; 7] = [
+    Method {
+        name: "stepwise",
+        meaning: "Stepwise gyrocompassing",
+        takes: &["latitude", "criterion", "half"],
+        replay: |header, body, asked, watch| {
+            at_standstills(replay::Method::Stepwise, header, body, asked, watch)
+        },
+    },
+    Method {
+        name: "positions",
+        meaning: "Autocompensated positions, in passes",
+        takes: &["latitude", "criterion", "half"],
+        replay: |header, body, asked, watch| {
+            at_standstills(replay::Method::Positions, header, body, asked, watch)
+        },
+    },
+    Method {
+        name: "rotating",
+        meaning: "A platform that turns all the time",
+        takes: &["latitude"],
+        replay: |header, body, asked, _| boxed(rotating::replay(header, body, &asked.into())),
+    },
+    Method {
+        name: "siap",
+        meaning: "A vehicle: the azimuth from two stops and more",
+        takes: &["latitude", "displacements"],
+        replay: |header, body, asked, _| from_stops(stops::Method::Siap, header, body, asked),
+    },
+    Method {
+        name: "static",
+        meaning: "A vehicle at rest all the time, sway allowed",
+        takes: &["latitude"],
+        replay: |header, body, asked, _| from_stops(stops::Method::Static, header, body, asked),
+    },
+    Method {
+        name: "vertical",
+        meaning: "Pitch and roll, and the turn about the vertical, kept from the beginning to the end",
+        takes: &["latitude", "attitude_out"],
+        replay: |header, body, asked, _| boxed(vertical::replay(header, body, &asked.into())),
+    },
+    Method {
+        name: "spin",
+        meaning: "The roll of a body in fast rotation, from the extrema of its accelerometers and by phase lock",
+        takes: &[],
+        replay: |header, body, asked, _| boxed(spin::replay(header, body, &asked.into())),
+    },
+];
+
+/// The method of a name.
+#[must_use]
+pub fn named(name: &str) -> Option<&'static Method> {
+    METHODS.iter().find(|method| method.name == name)
+}
+
+/// Name of the method for a recording for which none was asked; a vehicle's shows which of both it needs.
+#[must_use]
+pub fn usual(Recording { header, body, .. }: &Recording) -> &'static str {
+    match body.kind() {
+        Kind::Rotating => "rotating",
+        Kind::Spin => "spin",
+        _ => stops::Method::of(header, body).map_or("stepwise", stops::Method::name),
+    }
+}
+
+fn boxed<F: Finished + 'static>(
+    replay: Result<F, ReplayError>,
+) -> Result<Box<dyn Finished>, ReplayError> {
+    replay.map(|finished| Box::new(finished) as Box<dyn Finished>)
+}
+
+fn at_standstills(
+    method: replay::Method,
+    header: &Header,
+    body: &Body,
+    asked: &Asked,
+    watch: Watch<'_>,
+) -> Result<Box<dyn Finished>, ReplayError> {
+    let options = replay::Options { method, ..asked.into() };
+    boxed(replay::replay(header, body, &options, watch))
+}
+
+fn from_stops(
+    method: stops::Method,
+    header: &Header,
+    body: &Body,
+    asked: &Asked,
+) -> Result<Box<dyn Finished>, ReplayError> {
+    let options = stops::Options { method: Some(method), ..asked.into() };
+    boxed(stops::replay(header, body, &options))
+}
+
+impl From<&Asked> for replay::Options {
+    fn from(asked: &Asked) -> Self {
+        let Asked { latitude, criterion, half, required_sigma, .. } = *asked;
+        Self { method: replay::Method::default(), half, latitude, criterion, required_sigma }
+    }
+}
+
+impl From<&Asked> for stops::Options {
+    fn from(asked: &Asked) -> Self {
+        let Asked { latitude, displacements_m, required_sigma, .. } = asked.clone();
+        Self { method: None, latitude, displacements_m, required_sigma }
+    }
+}
+
+impl From<&Asked> for vertical::Options {
+    fn from(asked: &Asked) -> Self {
+        Self { latitude: asked.latitude, required_sigma: asked.required_sigma }
+    }
+}
+
+impl From<&Asked> for spin::Options {
+    fn from(asked: &Asked) -> Self {
+        Self { required_sigma: asked.required_sigma }
+    }
+}

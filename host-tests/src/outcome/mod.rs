@@ -1,0 +1,419 @@
+//! What came of an alignment, as data: the keys that all methods share, once each, and what a method adds.
+//!
+//! Every method hands over a [`Finished`] analysis, of a recording or of a simulated run. From it come
+//! the JSON object, the text and the page; text and page are one [`Report`], whose figures only the page
+//! shows.
+
+pub mod rotating;
+pub mod run;
+pub mod spin;
+pub mod stage;
+pub mod stops;
+pub mod vertical;
+
+use orientation::align::budget::Budget;
+use orientation::align::conclusion::Azimuth;
+use orientation::error::{Refusal, Source as Part};
+use serde::{Serialize, Serializer};
+
+use self::run::RunDetails;
+use crate::methods::Asked;
+use crate::output::{azimuth_error, degrees, positive_zero};
+use crate::recording::{Body, Header, Truth};
+use crate::report::{Lines, Part as ReportPart, Report, Table};
+use crate::vertical::Moment;
+
+/// Version of the JSON object. A key that changes its meaning or its unit, or goes, raises it; a further key does not.
+pub const SCHEMA: u32 = 1;
+
+/// A finished analysis of a recording or of a simulated run, whatever the method.
+pub trait Finished {
+    /// What was found. The truth is for errors alone.
+    fn outcome(&self, truth: &Truth) -> Outcome;
+
+    /// Lines and tables beyond those that every method has.
+    fn parts(&self, outcome: &Outcome) -> Vec<ReportPart>;
+
+    /// Figures of the page. The truth is for errors alone; `body` holds the rows that were analysed, where
+    /// there are any.
+    fn figures(&self, outcome: &Outcome, truth: &Truth, body: Option<&Body>) -> Vec<ReportPart>;
+
+    /// The attitude after each sample, of a method that keeps one.
+    fn attitude(&self) -> Option<&[Moment]> {
+        None
+    }
+
+    /// What a refusal of a recording is likely to come from, with its remedy; `None` where nothing points
+    /// to a cause.
+    fn cause(&self, _header: &Header, _body: &Body, _asked: &Asked) -> Option<String> {
+        None
+    }
+}
+
+/// Where the samples came from.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Source {
+    /// A recording, by the name that the user gave.
+    File(String),
+    /// A simulated run, by its seed.
+    Seed(u64),
+}
+
+/// The result of any method on a recording or on a simulated run, as its JSON object has it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Outcome {
+    /// Version of the object, [`SCHEMA`].
+    pub schema: u32,
+    /// The recording's `file`, or the run's `seed`.
+    #[serde(flatten)]
+    pub source: Option<Source>,
+    /// Name of the method on the command line.
+    pub method: &'static str,
+    /// `ok` or `refused`.
+    pub status: &'static str,
+    /// Why the result is refused; only with `refused`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// Azimuth of body x at the end of the recording, from true north, clockwise from above, [0, 360) °; only
+    /// with `ok`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub azimuth_deg: Option<f64>,
+    /// 1σ, °, of what the method finds: the azimuth, the roll of a spinning body, either angle of the level.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sigma_deg: Option<f64>,
+    /// Found less true, within ±180 °, where the truth is known; only with `ok`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error_deg: Option<f64>,
+    /// Cramér–Rao bound of `sigma_deg`, °: for the columns of `model` and all samples at rest that took part;
+    /// null where the noise is not stated, or where there is no fit.
+    pub limit_deg: Option<f64>,
+    /// Pitch of the body at the end, nose up positive, °; null where it was not measured.
+    pub pitch_deg: Option<f64>,
+    /// Roll of the body at the end, right side down positive, °; null where it was not measured.
+    pub roll_deg: Option<f64>,
+    /// Time that took part, s: of dwells, whole turns or stops, or the whole recording.
+    pub seconds: f64,
+    /// What an azimuth rests on; only of methods that give one.
+    #[serde(flatten)]
+    pub fit: Option<FitDetails>,
+    /// What the method adds.
+    #[serde(flatten)]
+    pub details: Details,
+    /// What only a simulated run has.
+    #[serde(flatten)]
+    pub run: Option<RunDetails>,
+    /// What was assumed where nothing states it.
+    pub assumed: Vec<String>,
+}
+
+/// What an azimuth rests on.
+#[derive(Clone, Debug, Serialize)]
+pub struct FitDetails {
+    /// The 1σ parts of σ, °; null where there is no fit.
+    pub budget: Option<BudgetDetails>,
+    /// The greatest part beside noise, where it makes up more than half of the variance.
+    pub dominant: Option<String>,
+    /// Dwells, whole turns or stops that took part.
+    pub positions: usize,
+    /// Earth rate found over that expected, `Ω̂_h/Ω_h`; null where it is taken for granted.
+    pub earth_rate_ratio: Option<f64>,
+    /// 1σ of the ratio.
+    pub earth_rate_ratio_sigma: Option<f64>,
+    /// Columns of the model that was fitted.
+    pub model: Vec<&'static str>,
+    /// What was left out, and why.
+    pub excluded: Vec<Excluded>,
+}
+
+/// What a method adds to an outcome.
+#[derive(Clone, Debug, Serialize)]
+#[serde(untagged)]
+pub enum Details {
+    /// Stepwise gyrocompassing, or autocompensated positions.
+    Stage(stage::StageDetails),
+    /// Continuous rotation.
+    Rotating(rotating::RotatingDetails),
+    /// Stops of a vehicle.
+    Stops(Box<stops::StopsDetails>),
+    /// The level.
+    Vertical(vertical::VerticalDetails),
+    /// A spinning body.
+    Spin(spin::SpinDetails),
+    /// An azimuth that is kept without an alignment of its own.
+    Kept {},
+}
+
+/// The 1σ parts of σ, serialised in degrees under the names of [`BUDGET_KEYS`].
+#[derive(Clone, Copy, Debug)]
+pub struct BudgetDetails(Budget);
+
+/// Keys of the parts of a budget, in the order of [`Budget::parts`].
+pub const BUDGET_KEYS: [&str; 9] = [
+    "noise",
+    "drift",
+    "g_sensitivity",
+    "accelerometer",
+    "encoder",
+    "latitude",
+    "scale",
+    "temperature",
+    "displacement",
+];
+
+impl BudgetDetails {
+    /// The parts with key and name, rad; a displacement only where a vehicle drove.
+    fn shown(&self) -> impl Iterator<Item = (&'static str, Part, f64)> {
+        let all = BUDGET_KEYS.into_iter().zip(self.0.parts());
+        let named = all.map(|(key, (source, part))| (key, source, part));
+        named.filter(|(_, source, part)| *source != Part::Displacement || *part > 0.0)
+    }
+}
+
+impl Serialize for BudgetDetails {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.shown().map(|(key, _, part)| (key, degrees(part))))
+    }
+}
+
+/// A dwell, turns, or part of a stop that took no part.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Excluded {
+    /// Number of the dwell, from one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dwell: Option<usize>,
+    /// Its stage angle, °.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stage_deg: Option<f64>,
+    /// When it began, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from_s: Option<f64>,
+    /// When it ended, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub to_s: Option<f64>,
+    /// Sense of the turns.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sense: Option<String>,
+    /// Speed of the turns, turns a second.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_hz: Option<f64>,
+    /// How many turns.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub turns: Option<u32>,
+    /// Number of the stop, from one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stop: Option<usize>,
+    /// Why.
+    pub reason: String,
+}
+
+impl Excluded {
+    /// What was left out, in words.
+    fn place(&self) -> String {
+        let Self { dwell, stage_deg, from_s, to_s, sense, speed_hz, turns, stop, .. } = self;
+        if let (Some(dwell), Some(stage), Some(from), Some(to)) = (dwell, stage_deg, from_s, to_s) {
+            return format!("dwell {dwell}, {stage:.2}°, {from:.1}…{to:.1} s: ");
+        }
+        if let (Some(sense), Some(speed), Some(turns)) = (sense, speed_hz, turns) {
+            return format!("{turns} turn(s) {sense} at {speed:.5} Hz: ");
+        }
+        stop.map_or_else(String::new, |stop| format!("at stop {stop}, "))
+    }
+}
+
+impl FitDetails {
+    /// What an azimuth rests on, of the budget of its fit, where there is one.
+    #[must_use]
+    pub fn of(budget: Option<&Budget>, positions: usize) -> Self {
+        Self {
+            budget: budget.copied().map(BudgetDetails),
+            dominant: budget.and_then(Budget::dominant).map(|source| source.to_string()),
+            positions,
+            earth_rate_ratio: None,
+            earth_rate_ratio_sigma: None,
+            model: Vec::new(),
+            excluded: Vec::new(),
+        }
+    }
+}
+
+impl Outcome {
+    /// An outcome of a method, with nothing found yet.
+    #[must_use]
+    pub fn new(method: &'static str, details: Details) -> Self {
+        Self {
+            schema: SCHEMA,
+            source: None,
+            method,
+            status: "refused",
+            reason: None,
+            azimuth_deg: None,
+            sigma_deg: None,
+            error_deg: None,
+            limit_deg: None,
+            pitch_deg: None,
+            roll_deg: None,
+            seconds: 0.0,
+            fit: None,
+            details,
+            run: None,
+            assumed: Vec::new(),
+        }
+    }
+
+    /// The outcome of a session that was not given its end.
+    #[must_use]
+    pub fn unfinished(method: &'static str) -> Self {
+        Self::new(method, Details::Kept {}).settled(Some("the session did not end".to_owned()))
+    }
+
+    /// The outcome with the verdict of an alignment; `truth_deg` is for its error alone.
+    #[must_use]
+    pub fn judged(self, verdict: &Result<Azimuth, Refusal>, truth_deg: Option<f64>) -> Self {
+        let azimuth = verdict.as_ref().ok();
+        let found = azimuth.map(|azimuth| degrees(azimuth.angle));
+        Self {
+            azimuth_deg: found,
+            sigma_deg: azimuth.map(|azimuth| degrees(azimuth.sigma)),
+            error_deg: found.zip(truth_deg).map(|(azimuth, truth)| azimuth_error(azimuth, truth)),
+            ..self.settled(verdict.as_ref().err().map(ToString::to_string))
+        }
+    }
+
+    /// The outcome with its status: refused where there is a reason.
+    #[must_use]
+    pub fn settled(self, reason: Option<String>) -> Self {
+        Self { status: if reason.is_none() { "ok" } else { "refused" }, reason, ..self }
+    }
+
+    /// Whether there is a result.
+    #[must_use]
+    pub fn is_ok(&self) -> bool {
+        self.reason.is_none()
+    }
+}
+
+/// The report on an outcome of what `name` names: its lines and tables, then the figures.
+#[must_use]
+pub fn report(
+    name: &str,
+    outcome: &Outcome,
+    finished: &dyn Finished,
+    figures: Vec<ReportPart>,
+) -> Report {
+    let mut parts = vec![headline(outcome).into()];
+    parts.extend(finished.parts(outcome));
+    let budget = outcome.fit.as_ref().and_then(|fit| fit.budget.as_ref());
+    parts.extend(budget.map(budget_table).map(ReportPart::from));
+    parts.push(assumed(outcome).into());
+    parts.extend(outcome.run.iter().flat_map(RunDetails::parts));
+    parts.extend(figures);
+    parts.retain(|part| !matches!(part, ReportPart::Lines(lines) if lines.lines.is_empty()));
+    Report { title: title(name, outcome), subtitle: Vec::new(), parts }
+}
+
+fn title(name: &str, outcome: &Outcome) -> String {
+    let [found, refused] = match outcome.details {
+        Details::Vertical(_) => ["Pitch and roll kept in", "No pitch and roll from"],
+        Details::Spin(_) => ["Roll of the spinning body in", "No roll at the end of"],
+        Details::Kept {} => ["Azimuth kept in", "No azimuth kept in"],
+        _ => ["True north found in", "No azimuth from"],
+    };
+    format!("{} {name}", if outcome.is_ok() { found } else { refused })
+}
+
+/// What every method says first: the result or the reason, the limit, the truth, the level.
+fn headline(outcome: &Outcome) -> Lines {
+    let mut lines = Lines::default();
+    if let Some(reason) = &outcome.reason {
+        lines.add("reason", reason);
+    }
+    if let Some((azimuth, sigma)) = outcome.azimuth_deg.zip(outcome.sigma_deg) {
+        lines.add("azimuth of body x", format!("{azimuth:.4}° ± {sigma:.4}° (1σ)"));
+        error(&mut lines, outcome, azimuth, sigma);
+    }
+    if outcome.fit.is_some() {
+        limit(&mut lines, outcome);
+        level(&mut lines, outcome);
+    }
+    if let Some(fit) = &outcome.fit {
+        of_fit(&mut lines, fit);
+    }
+    lines
+}
+
+fn error(lines: &mut Lines, outcome: &Outcome, azimuth: f64, sigma: f64) {
+    let Some(error) = outcome.error_deg else { return };
+    let truth = (azimuth - error).rem_euclid(360.0);
+    let sigmas = error / sigma;
+    lines.add("truth", format!("{truth:.4}°: the error is {error:+.4}°, {sigmas:+.2} σ"));
+}
+
+fn limit(lines: &mut Lines, outcome: &Outcome) {
+    let text = match outcome.limit_deg {
+        Some(limit) => format!("{limit:.4}° (Cramér–Rao for the stated noise)"),
+        None if outcome.is_ok() => "none: the noise is estimated from the data".to_owned(),
+        None => return,
+    };
+    lines.add("limit", text);
+}
+
+fn level(lines: &mut Lines, outcome: &Outcome) {
+    let text = match outcome.pitch_deg.zip(outcome.roll_deg) {
+        Some(level) => {
+            let [pitch, roll] = [level.0, level.1].map(|angle| positive_zero(angle, 5e-5));
+            format!("{pitch:.4}°, {roll:.4}°")
+        }
+        None => "not measured".to_owned(),
+    };
+    lines.add("pitch, roll", text);
+}
+
+fn of_fit(lines: &mut Lines, fit: &FitDetails) {
+    if let Some((ratio, sigma)) = fit.earth_rate_ratio.zip(fit.earth_rate_ratio_sigma) {
+        lines.add("Earth rate", format!("{ratio:.4} ± {sigma:.4} of that expected"));
+    } else if fit.budget.is_some() {
+        lines.add("Earth rate", "taken for granted: the data do not show it");
+    }
+    if !fit.model.is_empty() {
+        lines.add("model", fit.model.join(", "));
+    }
+    for excluded in &fit.excluded {
+        lines.add("left out", format!("{}{}", excluded.place(), excluded.reason));
+    }
+}
+
+/// The parts of σ with each part's share of the variance.
+fn budget_table(BudgetDetails(budget): &BudgetDetails) -> Table {
+    let sigma = budget.sigma();
+    let row = |(_, source, part): (_, Part, f64)| {
+        let share = 100.0 * (part / sigma) * (part / sigma);
+        vec![source.to_string(), format!("{:.4}", degrees(part)), format!("{share:.1}")]
+    };
+    let sum =
+        vec!["root sum of squares".to_owned(), format!("{:.4}", degrees(sigma)), String::new()];
+    let dominant =
+        budget.dominant().map(|source| format!(": {source} dominates{}", remedy(source)));
+    let title = format!("Error budget (1σ of the azimuth){}", dominant.unwrap_or_default());
+    let table = Table::new(&title, &["source", "part, °", "share of the variance, %"]);
+    Table { rows: BudgetDetails(*budget).shown().map(row).chain([sum]).collect(), ..table }
+}
+
+/// What helps against a part that dominates.
+fn remedy(source: Part) -> &'static str {
+    match source {
+        Part::GSensitivity => ": level the platform mechanically, or calibrate κ at two tilts",
+        Part::Accelerometer => ": turn a full circle, or calibrate the accelerometer",
+        Part::Scale => ": turn a longer arc, or calibrate the scale factor",
+        Part::Drift | Part::Temperature => ": let the gyro settle, or repeat the circle faster",
+        _ => "",
+    }
+}
+
+fn assumed(outcome: &Outcome) -> Lines {
+    let mut lines = Lines::default();
+    if !outcome.assumed.is_empty() {
+        lines.add("assumed", outcome.assumed.join("; "));
+    }
+    lines
+}

@@ -1,0 +1,378 @@
+//! Continuous rotation: what an alignment on a platform that turns all the time found.
+
+pub(crate) mod figures;
+
+use std::f64::consts::TAU;
+
+use orientation::align::rotating::average::Average;
+use orientation::align::rotating::conclusion::Conclusion;
+use orientation::align::rotating::coupling::Coupling;
+use orientation::align::rotating::solution::Fit;
+use orientation::align::rotating::turn::{Stretch, Turn};
+use serde::Serialize;
+
+use super::{Details, Excluded, Finished, FitDetails, Outcome};
+use crate::cause;
+use crate::methods::Asked;
+use crate::output::{azimuth_error, degrees, degrees_per_hour};
+use crate::recording::{Body, Header, RotatingRow, Truth};
+use crate::report::{Lines, Part, Table};
+use crate::rotating::Replay;
+use crate::rotating::turns::freed;
+
+/// What an alignment on a turning platform adds.
+#[derive(Clone, Debug, Serialize)]
+pub struct RotatingDetails {
+    /// `gyro`, or `met` for a molecular-electronic sensor.
+    pub sensor: &'static str,
+    /// Cramér–Rao bound of a sensor whose gain, lag and g-sensitivity are known, °.
+    pub plain_limit_deg: Option<f64>,
+    /// Axis misalignment: how far the sensitive axis stands from the platform's plane, up positive, °; null
+    /// where no rate-modulated turn showed it.
+    pub coupling_deg: Option<f64>,
+    /// Its 1σ, °.
+    pub coupling_sigma_deg: Option<f64>,
+    /// By how much the sensor lags behind the encoder where the turn was rate-modulated, s.
+    pub lag_s: Option<f64>,
+    /// Tilt of the platform's axis, °.
+    pub tilt_deg: Option<f64>,
+    /// Integrated g-sensitivity over the Earth rate at the slower speed, ρ; of a molecular-electronic sensor.
+    pub met_ratio: Option<f64>,
+    /// What the slower speed alone is off by for that, °; its 1σ where there is only one speed.
+    pub one_speed_bias_deg: Option<f64>,
+    /// The azimuth after each stage of compensation.
+    pub stages: Option<Stages>,
+    /// Averages of both senses at each speed.
+    pub stretches: Vec<StretchDetails>,
+    /// Every turn, in the order of its stretch.
+    pub turns: Vec<TurnDetails>,
+    /// Axis misalignment and lag at each speed, for the text.
+    #[serde(skip)]
+    couplings: Vec<String>,
+}
+
+/// The azimuth after each stage of compensation, °.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Stages {
+    /// Clockwise at the first speed, as it came.
+    pub raw_deg: f64,
+    /// Without what the axis misalignment makes of the platform's unevenness.
+    pub without_unevenness_deg: f64,
+    /// Both senses together.
+    pub both_senses_deg: f64,
+    /// With all compensations.
+    pub full_deg: f64,
+}
+
+/// Turns in one sense at one speed.
+#[derive(Clone, Debug, Serialize)]
+pub struct StretchDetails {
+    /// `clockwise` or `counter-clockwise`.
+    pub sense: String,
+    /// Turns a second.
+    pub speed_hz: f64,
+    /// Turns that took part.
+    pub turns: u32,
+    /// Turns left out.
+    pub left_out: u32,
+    /// Time in those that took part, s.
+    pub seconds: f64,
+    /// Unevenness once per turn, relative to the speed.
+    pub unevenness: f64,
+}
+
+/// A turn of the platform, with what the mean of its stretch leaves of it.
+#[derive(Clone, Debug, Serialize)]
+pub struct TurnDetails {
+    /// `clockwise` or `counter-clockwise`.
+    pub sense: String,
+    /// Turns a second.
+    pub speed_hz: f64,
+    /// Its middle since the stretch began, s.
+    pub middle_s: f64,
+    /// Its length, s.
+    pub seconds: f64,
+    /// Phasor of the gyro's rate less the stretch's mean, axis misalignment compensated: in step with cos θ
+    /// and with sin θ, °/h.
+    pub residual_deg_h: [f64; 2],
+    /// 1σ of either part from white noise alone, °/h.
+    pub sigma_deg_h: f64,
+}
+
+/// Why turns are left out.
+const DISTURBED: &str = "disturbed: too far from the other turns";
+
+impl From<&Average> for StretchDetails {
+    fn from(average: &Average) -> Self {
+        Self {
+            sense: average.sense.to_string(),
+            speed_hz: average.speed / TAU,
+            turns: average.turns,
+            left_out: average.left_out,
+            seconds: average.seconds,
+            unevenness: average.turning.size() / average.speed,
+        }
+    }
+}
+
+impl Stages {
+    /// The stages in words, with their azimuths.
+    fn named(&self) -> [(&'static str, f64); 4] {
+        [
+            ("raw, clockwise", self.raw_deg),
+            ("without the unevenness", self.without_unevenness_deg),
+            ("both senses", self.both_senses_deg),
+            ("everything", self.full_deg),
+        ]
+    }
+}
+
+impl From<&Fit> for Stages {
+    fn from(fit: &Fit) -> Self {
+        Self {
+            raw_deg: degrees(fit.stages.raw),
+            without_unevenness_deg: degrees(fit.stages.coupling),
+            both_senses_deg: degrees(fit.stages.senses),
+            full_deg: degrees(fit.stages.full),
+        }
+    }
+}
+
+/// The averages of a conclusion, clockwise and counter-clockwise at each speed.
+fn averages(conclusion: &Conclusion) -> impl Iterator<Item = &Average> {
+    conclusion.pairs.iter().flat_map(|pair| [&pair.clockwise, &pair.counter])
+}
+
+/// Pitch and roll of the base, rad, from the tilt's phasor F = sin pitch + j sin roll cos pitch.
+fn pitch_and_roll(fit: &Fit) -> [f64; 2] {
+    let pitch = fit.tilt.re.clamp(-1.0, 1.0).asin();
+    [pitch, (fit.tilt.im / pitch.cos()).clamp(-1.0, 1.0).asin()]
+}
+
+impl Replay {
+    /// Whether the sensor may have a g-sensitivity that integrates acceleration.
+    fn is_molecular(&self) -> bool {
+        self.session.setting().sensor.molecular_sigma > 0.0
+    }
+
+    /// The names of the columns that the fits used.
+    fn columns(&self, conclusion: &Conclusion) -> Vec<&'static str> {
+        let mut names = vec!["cos", "sin", "1", "t"];
+        if conclusion.couplings.is_empty() {
+            return names;
+        }
+        names.extend(["stage rate", "stage acceleration"]);
+        if self.is_molecular() {
+            names.extend(["sensor's gain and lag", "g-sensitivity over speed"]);
+        }
+        names
+    }
+
+    /// What one speed leaves of an integrated g-sensitivity, rad: what the second speed showed, or the 1σ
+    /// that a single one leaves.
+    fn one_speed(&self, conclusion: &Conclusion, fit: &Fit) -> Option<f64> {
+        let has_two = conclusion.pairs.len() > 1;
+        let bias = if has_two { fit.one_speed } else { fit.budget.g_sensitivity };
+        self.is_molecular().then_some(bias)
+    }
+
+    /// The turns of all even stretches.
+    fn turns(&self, conclusion: &Conclusion) -> Vec<TurnDetails> {
+        let stretches = self.session.turn_accumulator().stretches().iter();
+        let walk = conclusion.angle_random_walk;
+        stretches
+            .flat_map(|stretch| of_stretch(stretch, conclusion.couplings.first(), walk))
+            .collect()
+    }
+
+    fn details(&self, conclusion: &Conclusion) -> RotatingDetails {
+        let fit = conclusion.fit.as_ref();
+        let bounded = fit.filter(|_| self.noise_is_known());
+        let coupling = conclusion.couplings.first();
+        RotatingDetails {
+            sensor: if self.session.setting().sensor.is_flat { "gyro" } else { "met" },
+            plain_limit_deg: bounded.map(|fit| degrees(fit.plain_limit)),
+            coupling_deg: coupling.map(|coupling| degrees(coupling.angle())),
+            coupling_sigma_deg: coupling.map(|coupling| degrees(coupling.sine_sigma)),
+            lag_s: coupling.map(Coupling::lag),
+            tilt_deg: fit.map(|fit| degrees(fit.tilt.size().min(1.0).asin())),
+            met_ratio: fit.filter(|_| self.is_molecular()).map(|fit| fit.molecular.size()),
+            one_speed_bias_deg: fit.and_then(|fit| self.one_speed(conclusion, fit)).map(degrees),
+            stages: fit.map(Into::into),
+            stretches: averages(conclusion).map(Into::into).collect(),
+            turns: self.turns(conclusion),
+            couplings: conclusion.couplings.iter().map(in_words).collect(),
+        }
+    }
+}
+
+/// An axis misalignment with its lag.
+fn in_words(coupling: &Coupling) -> String {
+    let [angle, sigma] = [coupling.angle(), coupling.sine_sigma].map(degrees);
+    let (lag, turn) = (1e3 * coupling.lag(), coupling.frequency / TAU);
+    format!("{angle:.5}° ± {sigma:.5}°, {lag:.2} ms late, at {turn:.3} Hz")
+}
+
+/// The turns of a stretch about their mean; a random walk in rad/√s gives either part of a phasor 1σ of
+/// N·√(2/T).
+fn of_stretch<'a>(
+    stretch: &'a Stretch,
+    coupling: Option<&'a Coupling>,
+    walk: f64,
+) -> impl Iterator<Item = TurnDetails> + 'a {
+    let phasors: Vec<[f64; 2]> =
+        stretch.turns().iter().map(|turn| compensated(turn, coupling)).collect();
+    let count = phasors.len().max(1) as f64;
+    let mean = [0, 1].map(|part: usize| phasors.iter().map(|at| at[part]).sum::<f64>() / count);
+    stretch.turns().iter().zip(phasors).map(move |(turn, phasor)| {
+        let sense = if turn.speed < 0.0 { "counter-clockwise" } else { "clockwise" };
+        let seconds = f64::from(turn.seconds);
+        TurnDetails {
+            sense: sense.to_owned(),
+            speed_hz: f64::from(turn.speed.abs()) / TAU,
+            middle_s: f64::from(turn.middle),
+            seconds,
+            residual_deg_h: [0, 1].map(|part: usize| degrees_per_hour(phasor[part] - mean[part])),
+            sigma_deg_h: degrees_per_hour(walk * (2.0 / seconds).sqrt()),
+        }
+    })
+}
+
+/// A turn's rate in step with cos θ and sin θ, rad/s, without what an axis misalignment shows of the platform's rate
+/// and acceleration.
+fn compensated(turn: &Turn, coupling: Option<&Coupling>) -> [f64; 2] {
+    let [rate, turning] = [turn.rate, turn.turning].map(|phasor| phasor.map(f64::from));
+    let (sine, quadrature) = coupling.map_or((0.0, 0.0), |found| (found.sine, found.quadrature));
+    let speed = f64::from(turn.speed);
+    let quickening = [speed * turning[1], -speed * turning[0]];
+    [0, 1].map(|part: usize| rate[part] - sine * turning[part] - quadrature * quickening[part])
+}
+
+impl Finished for Replay {
+    fn outcome(&self, truth: &Truth) -> Outcome {
+        let Some(conclusion) = self.conclusion() else { return Outcome::unfinished("rotating") };
+        let fit = conclusion.fit.as_ref();
+        let flat = fit.filter(|fit| fit.ratio_sigma.is_finite());
+        let attitude = fit.map(|fit| pitch_and_roll(fit).map(degrees));
+        let turns: u32 = averages(conclusion).map(|average| average.turns).sum();
+        let left_out = averages(conclusion).filter(|average| average.left_out > 0);
+        Outcome {
+            limit_deg: fit.filter(|_| self.noise_is_known()).map(|fit| degrees(fit.limit)),
+            pitch_deg: attitude.map(|[pitch, _]| pitch),
+            roll_deg: attitude.map(|[_, roll]| roll),
+            seconds: averages(conclusion).map(|average| average.seconds).sum(),
+            fit: Some(FitDetails {
+                earth_rate_ratio: flat.map(|fit| fit.ratio),
+                earth_rate_ratio_sigma: flat.map(|fit| fit.ratio_sigma),
+                model: self.columns(conclusion),
+                excluded: left_out.map(excluded).collect(),
+                ..FitDetails::of(fit.map(|fit| &fit.budget), turns as usize)
+            }),
+            assumed: self.assumed.clone(),
+            ..Outcome::new("rotating", Details::Rotating(self.details(conclusion)))
+        }
+        .judged(&conclusion.verdict, truth.azimuth_deg)
+    }
+
+    fn parts(&self, outcome: &Outcome) -> Vec<Part> {
+        let Details::Rotating(details) = &outcome.details else { return Vec::new() };
+        let stages = details.stages.as_ref().map(stages);
+        let parts = [Some(lines(details).into()), stages.map(Part::from)].into_iter().flatten();
+        parts.chain([stretches(&details.stretches).into()]).collect()
+    }
+
+    fn figures(&self, outcome: &Outcome, _: &Truth, body: Option<&Body>) -> Vec<Part> {
+        match body {
+            Some(Body::Rotating(rows)) => figures(self, outcome, rows),
+            _ => Vec::new(),
+        }
+    }
+
+    fn cause(&self, header: &Header, body: &Body, asked: &Asked) -> Option<String> {
+        let refusal = self.conclusion()?.verdict.as_ref().err()?;
+        cause::of_turning(header, body, &asked.into(), refusal)
+    }
+}
+
+fn excluded(average: &Average) -> Excluded {
+    let StretchDetails { sense, speed_hz, left_out, .. } = average.into();
+    let (sense, speed_hz, turns) = (Some(sense), Some(speed_hz), Some(left_out));
+    Excluded { sense, speed_hz, turns, reason: DISTURBED.to_owned(), ..Excluded::default() }
+}
+
+/// What turned: tilt, axis misalignment, g-sensitivity.
+fn lines(details: &RotatingDetails) -> Lines {
+    let mut lines = Lines::new("Platform and sensor");
+    if let Some(limit) = details.plain_limit_deg.filter(|_| details.sensor == "met") {
+        let known = "were the sensor's gain, lag and g-sensitivity known";
+        lines.add("limit", format!("{limit:.4}° {known}"));
+    }
+    if let Some(tilt) = details.tilt_deg {
+        lines.add("tilt", format!("{tilt:.4}° of the platform"));
+    }
+    details.couplings.iter().for_each(|coupling| lines.add("axis misalignment", coupling));
+    if let Some((ratio, bias)) = details.met_ratio.zip(details.one_speed_bias_deg) {
+        let is_one = details.stretches.len() < 3;
+        let seen =
+            if is_one { "of which one speed shows a part alone" } else { "at the slower speed" };
+        lines.add("g-sensitivity", format!("{ratio:.4} of the Earth rate, {seen}"));
+        let what = if is_one {
+            format!(
+                "the g-sensitivity turns the azimuth, by {bias:.4}° (1σ): turn at a second speed"
+            )
+        } else {
+            format!("would be off by {bias:+.4}° for the g-sensitivity")
+        };
+        lines.add("one speed alone", what);
+    }
+    lines
+}
+
+fn stages(stages: &Stages) -> Table {
+    let full = stages.full_deg;
+    let row = |(stage, azimuth): (&str, f64)| {
+        let off = azimuth_error(azimuth, full);
+        vec![stage.to_owned(), format!("{azimuth:.4}"), format!("{off:+.4}")]
+    };
+    let head = ["stage", "azimuth, °", "from the last, °"];
+    let table = Table::new("Azimuth after each stage of compensation", &head);
+    Table { rows: stages.named().map(row).to_vec(), ..table }
+}
+
+fn stretches(stretches: &[StretchDetails]) -> Table {
+    let row = |stretch: &StretchDetails| {
+        vec![
+            stretch.sense.clone(),
+            format!("{:.5}", stretch.speed_hz),
+            stretch.turns.to_string(),
+            stretch.left_out.to_string(),
+            format!("{:.2}", stretch.seconds),
+            format!("{:.4}", 100.0 * stretch.unevenness),
+        ]
+    };
+    let head = ["sense", "speed, Hz", "turns", "left out", "time, s", "uneven by, %"];
+    let table = Table::new("Even turns", &head);
+    Table { rows: stretches.iter().map(row).collect(), ..table }
+}
+
+/// Spectra of every part as it came and freed of the axis misalignment, then the phasors of its turns.
+fn figures(replay: &Replay, outcome: &Outcome, rows: &[RotatingRow]) -> Vec<Part> {
+    let Details::Rotating(details) = &outcome.details else { return Vec::new() };
+    let coupling = replay.conclusion().and_then(|conclusion| conclusion.couplings.first());
+    let without = match coupling {
+        Some(coupling) => freed(rows, coupling.sine, coupling.quadrature),
+        None => rows.to_vec(),
+    };
+    let (parts, freed) = (replay.parts(rows), replay.parts(&without));
+    let mut page: Vec<Part> = Vec::new();
+    for (part, freed) in parts.iter().zip(&freed) {
+        if !part.is_even {
+            page.push(figures::profile(part).into());
+        }
+        page.push(figures::spectra(part, freed).into());
+    }
+    page.push(figures::platform(&parts).into());
+    page.push(figures::plane(&freed).into());
+    page.push(figures::residuals(&details.turns).into());
+    page
+}

@@ -1,0 +1,268 @@
+//! Stepwise gyrocompassing and autocompensated positions: what an alignment at standstills found.
+
+use orientation::align::conclusion::Conclusion;
+use orientation::align::stepwise::Fit;
+use orientation::session::Session;
+use orientation::signal::dwell::Dwell;
+use serde::Serialize;
+
+use super::{Details, Excluded, Finished, FitDetails, Outcome};
+use crate::cause;
+use crate::methods::Asked;
+use crate::output::{columns, degrees, degrees_per_hour};
+use crate::positions::{Autocompensation, autocompensation};
+use crate::recording::{Body, Header, Truth};
+use crate::replay::{Method, Replay};
+use crate::report::{Axis, Figure, Lines, Part, Series, Style, Table};
+
+/// What an alignment at standstills adds.
+#[derive(Clone, Debug, Serialize)]
+pub struct StageDetails {
+    /// How the azimuth was found, as the command line names it.
+    pub criterion: String,
+    /// `free` where the Earth rate was estimated, `known` where it was taken from the latitude.
+    pub horizontal_earth_rate: Option<&'static str>,
+    /// N of the gyro, °/√h, that the fit was weighted by.
+    pub gyro_n_deg_sqrt_h: f64,
+    /// Where that comes from: `stated`, `estimated` or `surveyed`.
+    pub gyro_noise: &'static str,
+    /// Chi-square of the residuals.
+    pub chi_square: Option<f64>,
+    /// Its degrees of freedom.
+    pub degrees_of_freedom: Option<usize>,
+    /// The positions and what plain least squares makes of them; of method `positions`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub autocompensation: Option<Autocompensation>,
+    /// Every dwell in the order of time.
+    pub dwells: Vec<DwellDetails>,
+}
+
+/// A dwell, with what the fit leaves of it.
+#[derive(Clone, Debug, Serialize)]
+pub struct DwellDetails {
+    /// Stage angle, clockwise from above, °.
+    pub stage_deg: f64,
+    /// When the averaged time began, s.
+    pub from_s: f64,
+    /// Its length, s.
+    pub seconds: f64,
+    /// Mean rate about the sensitive axis, °/h.
+    pub rate_deg_h: f64,
+    /// 1σ of the mean rate from white noise alone, °/h.
+    pub sigma_deg_h: f64,
+    /// Measured less fitted, drift included, °/h; null where the dwell took no part.
+    pub residual_deg_h: Option<f64>,
+    /// What its predecessors do not explain of it, over its standard deviation, leverage allowed for; null
+    /// where the dwell took no part.
+    pub studentised: Option<f64>,
+    /// Why it took no part.
+    pub excluded: Option<String>,
+}
+
+impl DwellDetails {
+    /// The dwells of a session.
+    fn all(session: &Session, conclusion: &Conclusion) -> Vec<Self> {
+        let found = conclusion.disturbances.iter().zip(&conclusion.residuals);
+        let each = session.dwells().iter().zip(found).map(|(dwell, (why, residual))| {
+            let kept = why.is_none().then_some(residual);
+            Self {
+                stage_deg: degrees(dwell.stage.rad()),
+                from_s: dwell.start().max(0.0),
+                seconds: dwell.seconds,
+                rate_deg_h: degrees_per_hour(dwell.rate),
+                sigma_deg_h: degrees_per_hour(white_sigma(dwell, conclusion.angle_random_walk)),
+                residual_deg_h: kept.map(|residual| degrees_per_hour(residual.rate)),
+                studentised: kept.map(|residual| residual.studentised),
+                excluded: why.map(|why| why.to_string()),
+            }
+        });
+        each.collect()
+    }
+
+    fn row(&self, number: usize) -> Vec<String> {
+        let fixed = |value: Option<f64>, decimals: usize| {
+            value.map_or_else(|| "-".to_owned(), |value| format!("{value:.decimals$}"))
+        };
+        vec![
+            number.to_string(),
+            format!("{:.4}", self.stage_deg),
+            format!("{:.2}", self.from_s),
+            format!("{:.2}", self.seconds),
+            format!("{:.5}", self.rate_deg_h),
+            format!("{:.5}", self.sigma_deg_h),
+            fixed(self.residual_deg_h, 5),
+            fixed(self.studentised, 2),
+            self.excluded.clone().unwrap_or_default(),
+        ]
+    }
+}
+
+/// 1σ of a dwell's mean rate from white noise, rad/s, for a random walk in rad/√s: as stated, or N²/T times what the
+/// taper costs.
+fn white_sigma(dwell: &Dwell, angle_random_walk: f64) -> f64 {
+    let white = || angle_random_walk * angle_random_walk * dwell.taper / dwell.seconds;
+    dwell.stated_variance.get().unwrap_or_else(white).sqrt()
+}
+
+impl Replay {
+    /// Number, dwell and angle of each dwell that was left out.
+    fn excluded(&self, conclusion: &Conclusion) -> Vec<Excluded> {
+        let dwells = self.session.dwells().iter().zip(&conclusion.disturbances).enumerate();
+        let left_out = dwells.filter_map(|(index, (dwell, why))| {
+            why.map(|why| Excluded {
+                dwell: Some(index + 1),
+                stage_deg: Some(degrees(dwell.stage.rad())),
+                from_s: Some(dwell.start().max(0.0)),
+                to_s: Some(dwell.end()),
+                reason: why.to_string(),
+                ..Excluded::default()
+            })
+        });
+        left_out.collect()
+    }
+
+    fn details(&self, conclusion: &Conclusion) -> StageDetails {
+        let fit = conclusion.fit.as_ref();
+        let gyro_noise = match (self.session.surveyed(), self.noise_is_known()) {
+            (Some(_), _) => "surveyed",
+            (None, true) => "stated",
+            (None, false) => "estimated",
+        };
+        StageDetails {
+            criterion: self.criterion_name(),
+            horizontal_earth_rate: fit.map(earth_rate),
+            gyro_n_deg_sqrt_h: degrees(conclusion.angle_random_walk) * 60.0,
+            gyro_noise,
+            chi_square: fit.map(|fit| fit.chi_square),
+            degrees_of_freedom: fit.map(|fit| fit.degrees),
+            autocompensation: (self.method == Method::Positions)
+                .then(|| autocompensation(&self.session, conclusion)),
+            dwells: DwellDetails::all(&self.session, conclusion),
+        }
+    }
+}
+
+/// How the Earth rate entered a fit.
+fn earth_rate(fit: &Fit) -> &'static str {
+    if fit.earth_rate_is_free() { "free" } else { "known" }
+}
+
+impl Finished for Replay {
+    fn outcome(&self, truth: &Truth) -> Outcome {
+        let Some(conclusion) = self.session.conclusion() else {
+            return Outcome::unfinished(self.method.name());
+        };
+        let fit = conclusion.fit.as_ref();
+        let seen = fit.filter(|fit| !fit.model.is_single_axis);
+        let tilt = conclusion.tilt.measured.then_some(&conclusion.tilt);
+        let dwells = self.session.dwells().iter().zip(&conclusion.disturbances);
+        let kept: Vec<&Dwell> =
+            dwells.filter(|(_, why)| why.is_none()).map(|(dwell, _)| dwell).collect();
+        Outcome {
+            limit_deg: fit.filter(|_| self.noise_is_known()).map(|fit| degrees(fit.limit)),
+            pitch_deg: tilt.map(|tilt| degrees(tilt.pitch())),
+            roll_deg: tilt.map(|tilt| degrees(tilt.roll())),
+            seconds: kept.iter().map(|dwell| dwell.seconds).sum(),
+            fit: Some(FitDetails {
+                earth_rate_ratio: seen.map(|fit| fit.ratio),
+                earth_rate_ratio_sigma: seen.map(|fit| fit.ratio_sigma),
+                model: fit.map(columns).unwrap_or_default(),
+                excluded: self.excluded(conclusion),
+                ..FitDetails::of(fit.map(|fit| &fit.budget), kept.len())
+            }),
+            assumed: self.assumed.clone(),
+            ..Outcome::new(self.method.name(), Details::Stage(self.details(conclusion)))
+        }
+        .judged(&conclusion.verdict, truth.azimuth_deg)
+    }
+
+    fn parts(&self, outcome: &Outcome) -> Vec<Part> {
+        let Details::Stage(details) = &outcome.details else { return Vec::new() };
+        let mut lines = Lines::new("Fit");
+        lines.add("criterion", &details.criterion);
+        lines.add("Earth rate is", details.horizontal_earth_rate.unwrap_or("not fitted"));
+        let noise = details.gyro_n_deg_sqrt_h;
+        lines.add("gyro noise N", format!("{noise:.6} °/√h ({})", details.gyro_noise));
+        if let Some((chi, degrees)) = details.chi_square.zip(details.degrees_of_freedom) {
+            lines.add("residuals", format!("χ² {chi:.1} for {degrees} degrees of freedom"));
+        }
+        details.autocompensation.iter().for_each(|found| positions(&mut lines, found));
+        let head = [
+            "dwell",
+            "stage, °",
+            "from, s",
+            "for, s",
+            "rate, °/h",
+            "1σ, °/h",
+            "residual, °/h",
+            "studentised",
+            "left out",
+        ];
+        let rows = details.dwells.iter().enumerate().map(|(index, dwell)| dwell.row(index + 1));
+        vec![lines.into(), Table { rows: rows.collect(), ..Table::new("Dwells", &head) }.into()]
+    }
+
+    fn figures(&self, outcome: &Outcome, _: &Truth, _: Option<&Body>) -> Vec<Part> {
+        let Details::Stage(details) = &outcome.details else { return Vec::new() };
+        if details.chi_square.is_none() {
+            return Vec::new();
+        }
+        vec![rates(details).into(), residuals(details).into()]
+    }
+
+    fn cause(&self, header: &Header, body: &Body, asked: &Asked) -> Option<String> {
+        let refusal = self.session.conclusion()?.verdict.as_ref().err()?;
+        cause::of_stopping(header, body, &asked.into(), &self.session, refusal)
+    }
+}
+
+/// How often each position was visited, and what plain autocompensation gives.
+fn positions(lines: &mut Lines, found: &Autocompensation) {
+    let visited = found.angles_deg.iter().zip(&found.visits);
+    let list: Vec<String> =
+        visited.map(|(angle, times)| format!("{angle:.1}° × {times}")).collect();
+    lines.add("positions", list.join(", "));
+    if let Some((azimuth, off)) = found.plain_azimuth_deg.zip(found.plain_off_sigmas) {
+        let text = format!("{azimuth:.4}° by plain least squares, {off:+.2} σ from the azimuth");
+        lines.add("without weights", text);
+    }
+}
+
+/// The rates over the stage angle, with what the whole model of the fit makes of each.
+fn rates(details: &StageDetails) -> Figure {
+    let at = |dwell: &DwellDetails| (dwell.stage_deg, dwell.rate_deg_h);
+    let fitted =
+        |dwell: &DwellDetails| Some((dwell.stage_deg, dwell.rate_deg_h - dwell.residual_deg_h?));
+    let (kept, left_out): (Vec<_>, Vec<_>) =
+        details.dwells.iter().partition(|dwell| dwell.excluded.is_none());
+    let mut model: Vec<(f64, f64)> = kept.iter().filter_map(|dwell| fitted(dwell)).collect();
+    model.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut series = vec![
+        Series::new("the fit", Style::Line, model),
+        Series::new("dwells", Style::Points, kept.into_iter().map(at)),
+    ];
+    if !left_out.is_empty() {
+        series.push(Series::new("left out", Style::Points, left_out.into_iter().map(at)));
+    }
+    Figure {
+        title: "Mean rate of each dwell".to_owned(),
+        x: Axis::linear("stage angle", "°"),
+        y: Axis::linear("rate", "°/h"),
+        series,
+    }
+}
+
+/// What the fit leaves of each dwell over time, with the 1σ that white noise gives the dwell.
+fn residuals(details: &StageDetails) -> Figure {
+    let points = details.dwells.iter().filter_map(|dwell| {
+        let (residual, sigma) = (dwell.residual_deg_h?, dwell.sigma_deg_h);
+        let middle = dwell.from_s + 0.5 * dwell.seconds;
+        Some((middle, residual, [residual - sigma, residual + sigma]))
+    });
+    Figure {
+        title: "Residuals, drift included, with the 1σ of each dwell".to_owned(),
+        x: Axis::linear("time", "s"),
+        y: Axis::linear("residual", "°/h"),
+        series: vec![Series::new("measured less fitted", Style::LineAndPoints, points)],
+    }
+}

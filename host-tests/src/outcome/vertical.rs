@@ -1,0 +1,204 @@
+//! The level: pitch, roll and the turn about the vertical that a gyrovertical kept.
+
+use orientation::keep::attitude::angles;
+use serde::Serialize;
+
+use super::{Details, Finished, Outcome};
+use crate::cause;
+use crate::methods::Asked;
+use crate::output::{degrees, degrees_per_hour, positive_zero};
+use crate::recording::{Body, Header, Truth};
+use crate::report::{Axis, Figure, Lines, Part, Point, Series, Style, Table};
+use crate::vertical::errors::{Errors, Off};
+use crate::vertical::{Met, Moment, Replay};
+
+/// Most points of a curve.
+const POINTS: usize = 1500;
+
+/// What a kept level adds.
+#[derive(Clone, Debug, Serialize)]
+pub struct VerticalDetails {
+    /// Turned about the vertical since the first sample, clockwise from above, whole turns included, °.
+    pub turned_deg: f64,
+    /// The state at the end, in words.
+    pub state: String,
+    /// The states that were met, and for how long.
+    pub states: Vec<Met>,
+    /// Biases of the gyros forward, right, down, °/h.
+    pub bias_dph: [f64; 3],
+    /// Their 1σ, °/h.
+    pub bias_sigma_dph: [f64; 3],
+    /// Whether a bias is beyond five of the 1σ stated or assumed for it, which is not believed any more then.
+    pub bias_beyond_stated: bool,
+    /// The errors, where the recording carries a truth.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub errors: Option<ErrorDetails>,
+}
+
+/// The errors where the truth is known and counts.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct ErrorDetails {
+    /// RMS angle between the true vertical and the kept one, °.
+    pub inclination_rmse_deg: f64,
+    /// RMS error of the heading after one constant offset, °.
+    pub heading_rmse_deg: f64,
+    /// Per cent of the tilts within 1, 2 and 3 σ.
+    pub coverage_percent: [f64; 3],
+    /// Samples that counted.
+    pub samples: usize,
+}
+
+impl From<&Errors> for ErrorDetails {
+    fn from(errors: &Errors) -> Self {
+        let Errors { off, inclination_rmse_deg, heading_rmse_deg, coverage_percent } = errors;
+        Self {
+            inclination_rmse_deg: *inclination_rmse_deg,
+            heading_rmse_deg: *heading_rmse_deg,
+            coverage_percent: *coverage_percent,
+            samples: off.len(),
+        }
+    }
+}
+
+impl Finished for Replay {
+    fn outcome(&self, truth: &Truth) -> Outcome {
+        let (last, is_found) = (&self.last, self.refusal.is_none());
+        let details = VerticalDetails {
+            turned_deg: degrees(self.turned),
+            state: last.state.to_string(),
+            states: self.states.clone(),
+            bias_dph: last.biases.map(degrees_per_hour),
+            bias_sigma_dph: last.bias_sigmas.map(degrees_per_hour),
+            bias_beyond_stated: last.is_bias_beyond_stated,
+            errors: Errors::of(&self.moments, &truth.attitude).as_ref().map(Into::into),
+        };
+        Outcome {
+            sigma_deg: Some(degrees(last.level_sigma)),
+            pitch_deg: is_found.then(|| degrees(last.pitch)),
+            roll_deg: is_found.then(|| degrees(last.roll)),
+            seconds: self.seconds,
+            assumed: self.assumed.clone(),
+            ..Outcome::new("vertical", Details::Vertical(details))
+        }
+        .settled(self.refusal.clone())
+    }
+
+    fn parts(&self, outcome: &Outcome) -> Vec<Part> {
+        let Details::Vertical(details) = &outcome.details else { return Vec::new() };
+        let row = |met: &Met| vec![met.state.to_owned(), format!("{:.2}", met.seconds)];
+        let states = Table::new("States that were met", &["state", "time, s"]);
+        let states = Table { rows: details.states.iter().map(row).collect(), ..states };
+        let errors = details.errors.as_ref().map(of_errors);
+        let lines = [Some(lines(outcome, details)), errors].into_iter().flatten().map(Part::from);
+        lines.chain([states.into()]).collect()
+    }
+
+    fn figures(&self, _: &Outcome, truth: &Truth, _: Option<&Body>) -> Vec<Part> {
+        let first = match Errors::of(&self.moments, &truth.attitude) {
+            Some(errors) => vec![inclination(&errors.off), heading(&errors.off)],
+            None => vec![sigma(&self.moments)],
+        };
+        let figures = first.into_iter().chain([level(&self.moments), biases(&self.moments)]);
+        figures.map(Part::from).collect()
+    }
+
+    fn attitude(&self) -> Option<&[Moment]> {
+        Some(&self.moments)
+    }
+
+    fn cause(&self, _: &Header, body: &Body, _: &Asked) -> Option<String> {
+        self.refusal.as_ref().and_then(|_| cause::of_level(body))
+    }
+}
+
+fn lines(outcome: &Outcome, details: &VerticalDetails) -> Lines {
+    let mut lines = Lines::default();
+    let level = outcome.pitch_deg.zip(outcome.roll_deg).zip(outcome.sigma_deg);
+    if let Some(((pitch, roll), sigma)) = level {
+        let [pitch, roll] = [pitch, roll].map(|angle| positive_zero(angle, 5e-5));
+        lines.add("pitch, roll", format!("{pitch:.4}°, {roll:.4}° ± {sigma:.4}° (1σ)"));
+    }
+    let turned = positive_zero(details.turned_deg, 5e-5);
+    lines.add("turned", format!("{turned:+.4}° about the vertical since the beginning"));
+    let both = details.bias_dph.iter().zip(details.bias_sigma_dph);
+    let all: Vec<String> = both.map(|(bias, sigma)| format!("{bias:+.1} ± {sigma:.1}")).collect();
+    lines.add("gyro biases", format!("{} °/h forward, right, down", all.join(", ")));
+    if details.bias_beyond_stated {
+        let beyond = "five of the 1σ stated or assumed, which are not believed any more";
+        lines.add("  beyond", beyond);
+    }
+    lines.add("state at the end", &details.state);
+    lines
+}
+
+fn of_errors(errors: &ErrorDetails) -> Lines {
+    let ErrorDetails { inclination_rmse_deg, heading_rmse_deg, coverage_percent, samples } =
+        *errors;
+    let [one, two, three] = coverage_percent;
+    let mut lines = Lines::new(&format!("Against the truth, in {samples} samples"));
+    lines.add("inclination", format!("{inclination_rmse_deg:.4}° RMS"));
+    lines.add("heading", format!("{heading_rmse_deg:.4}° RMS after one constant offset"));
+    lines.add("within 1, 2, 3 σ", format!("{one:.1}, {two:.1}, {three:.1} % of the tilts"));
+    lines
+}
+
+/// A curve over the time with no more points than can be seen.
+fn curve<T, P: Into<Point>>(name: &str, style: Style, all: &[T], of: impl Fn(&T) -> P) -> Series {
+    Series::new(name, style, all.iter().step_by(1 + all.len() / POINTS).map(of))
+}
+
+fn over_time(title: &str, label: &str, unit: &str, series: Vec<Series>) -> Figure {
+    let (x, y) = (Axis::linear("time", "s"), Axis::linear(label, unit));
+    Figure { title: title.to_owned(), x, y, series }
+}
+
+fn inclination(off: &[Off]) -> Figure {
+    let tilt = |axis: usize| move |off: &Off| (off.time_s, off.tilts_deg[axis]);
+    let limits = |off: &Off| (off.time_s, 0.0, [-off.sigma_deg, off.sigma_deg]);
+    let series = vec![
+        curve("±σ", Style::Band, off, limits),
+        curve("about north of the level frame", Style::Line, off, tilt(1)),
+        curve("about east of the level frame", Style::Line, off, tilt(0)),
+        curve("inclination", Style::Dashed, off, |off| (off.time_s, off.inclination_deg)),
+    ];
+    over_time("Error of the vertical, where the truth counts", "tilt", "°", series)
+}
+
+fn heading(off: &[Off]) -> Figure {
+    let series = vec![curve("heading", Style::Line, off, |off| (off.time_s, off.heading_deg))];
+    over_time("Error of the heading after one constant offset", "heading", "°", series)
+}
+
+fn sigma(moments: &[Moment]) -> Figure {
+    let of = |moment: &Moment| (moment.time_s, degrees(moment.level_sigma));
+    let series = vec![curve("1σ of pitch and of roll", Style::Line, moments, of)];
+    over_time("How good pitch and roll are", "1σ", "°", series)
+}
+
+fn level(moments: &[Moment]) -> Figure {
+    let of = |index: usize| {
+        move |moment: &Moment| (moment.time_s, degrees(angles(moment.attitude)[index]))
+    };
+    let series = vec![
+        curve("pitch", Style::Line, moments, of(1)),
+        curve("roll", Style::Line, moments, of(2)),
+    ];
+    over_time("Pitch and roll", "angle", "°", series)
+}
+
+fn biases(moments: &[Moment]) -> Figure {
+    let axes = ["forward", "right", "down"].into_iter().enumerate();
+    let series = axes.flat_map(|(axis, name)| {
+        let bias = move |moment: &Moment| degrees_per_hour(moment.biases[axis]);
+        let sigma = move |moment: &Moment| degrees_per_hour(moment.bias_sigmas[axis]);
+        let limits = move |moment: &Moment| {
+            let (bias, sigma) = (bias(moment), sigma(moment));
+            (moment.time_s, bias, [bias - sigma, bias + sigma])
+        };
+        [
+            curve(&format!("{name} ±σ"), Style::Band, moments, limits),
+            curve(name, Style::Line, moments, move |moment| (moment.time_s, bias(moment))),
+        ]
+    });
+    over_time("Biases of the gyros as they were learnt", "bias", "°/h", series.collect())
+}
