@@ -1,6 +1,6 @@
 //! `meridian campaign`: many simulated alignments.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use bench::campaign::burov::{classes, devices, drift};
 use bench::campaign::rotating::{molecular, refusals, stages};
@@ -8,16 +8,13 @@ use bench::campaign::sokolov::{self, Turn};
 use bench::campaign::spin::{cases, paper};
 use bench::campaign::szymanowski::{drives, parked};
 use bench::campaign::{disturbed, faults, instrument, keep};
+use bench::output::campaign as reports;
 use bench::output::progress::Progress;
-use bench::output::rotating as of_rotating;
 use bench::output::table;
-use bench::output::{
-    burov as told, disturbed as of_disturbed, keep as of_keep, page, spin as of_spin,
-    stops as of_stops,
-};
+use bench::report::Report;
 use clap::{Args, ValueEnum};
 use firmware::simulated::fault::Fault;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::{Told, files, whole};
 
@@ -33,7 +30,7 @@ pub struct CampaignOptions {
     /// fault (1), of each class of disturbed (200).
     #[arg(long, value_parser = whole::<1, 1_000_000>)]
     runs: Option<u64>,
-    /// Writes figures and tables as a page for a browser; of burov, keep, rotating, spin and szymanowski.
+    /// Writes figures and tables as a page for a browser; of all but faults.
     #[arg(long, value_name = "FILE.html")]
     report: Option<PathBuf>,
     /// The only class to run, of disturbed.
@@ -47,7 +44,7 @@ enum Campaign {
     Sokolov,
     /// Burov's optimisation, his devices and classes, and schedules under drift.
     Burov,
-    /// Papers/004: a platform that turns all the time, its errors and what is done about each.
+    /// A platform that turns all the time (MET 2018), its errors and what is done about each.
     Rotating,
     /// The roll of a spinning body: the figures of Nekrasova 2017, then noise, and a lift that fades.
     Spin,
@@ -69,7 +66,6 @@ impl CampaignOptions {
     /// # Errors
     /// The options, and why.
     pub fn check(&self) -> Result<(), String> {
-        use Campaign::{Burov, Keep, Rotating, Spin, Szymanowski};
         if self.class.is_some() && !matches!(self.name, Campaign::Disturbed) {
             return Err(format!(
                 "--class: {} does not take it: only disturbed has classes",
@@ -82,11 +78,8 @@ impl CampaignOptions {
             let names: Vec<_> = disturbed::classes().map(|class| class.name).collect();
             return Err(format!("--class: the classes are {}", names.join(", ")));
         }
-        let draws = matches!(self.name, Burov | Keep | Rotating | Spin | Szymanowski);
-        if self.report.is_some() && !draws {
-            let campaign = self.campaign();
-            let why = "only burov, keep, rotating, spin and szymanowski draw";
-            return Err(format!("--report: {campaign} does not take it: {why}"));
+        if self.report.is_some() && matches!(self.name, Campaign::Faults) {
+            return Err("--report: campaign faults does not take it: it has no figures".to_owned());
         }
         files::check(None, &[files::written("--report", "the page", self.report.as_ref())])
     }
@@ -98,24 +91,48 @@ impl CampaignOptions {
     }
 }
 
+/// What a campaign gave, ready to be shown.
+struct Done {
+    /// Its JSON object but for the status.
+    object: Value,
+    /// Its text and page.
+    report: Report,
+    /// Why it is no result, where it is none.
+    refusal: Option<&'static str>,
+}
+
 /// Runs a campaign.
 pub fn run(options: &CampaignOptions, as_json: bool) -> Result<Told, String> {
     let runs = |usual: u64| options.runs.unwrap_or(usual) as usize;
-    match options.name {
-        Campaign::Sokolov => sokolov(runs(5000), as_json),
-        Campaign::Burov => burov(runs(5000), options.report.as_deref(), as_json),
-        Campaign::Rotating => rotating(runs(500), options.report.as_deref(), as_json),
-        Campaign::Spin => spin(runs(500), options.report.as_deref(), as_json),
-        Campaign::Szymanowski => szymanowski(runs(500), options.report.as_deref(), as_json),
-        Campaign::Keep => keep(runs(500), options.report.as_deref(), as_json),
-        Campaign::Instrument => instrument(runs(500), as_json),
-        Campaign::Faults => faults(runs(1), as_json),
-        Campaign::Disturbed => disturbed(runs(200), options.class.as_deref(), as_json),
-    }
+    let Done { mut object, report, refusal } = match options.name {
+        Campaign::Sokolov => sokolov(runs(5000))?,
+        Campaign::Burov => burov(runs(5000)),
+        Campaign::Rotating => rotating(runs(500)),
+        Campaign::Spin => spin(runs(500)),
+        Campaign::Szymanowski => szymanowski(runs(500)),
+        Campaign::Keep => keep(runs(500)),
+        Campaign::Instrument => instrument(runs(500))?,
+        Campaign::Faults => return faults(runs(1), as_json),
+        Campaign::Disturbed => disturbed(runs(200), options.class.as_deref()),
+    };
+    object["campaign"] =
+        options.name.to_possible_value().map_or(Value::Null, |name| name.get_name().into());
+    object["status"] = if refusal.is_none() { "ok" } else { "failed" }.into();
+    let told = Told::of(refusal.is_none(), as_json, &object, |text| {
+        text.push_str(&report.text());
+        Ok(())
+    })?;
+    let told = Told { refusal: refusal.map(str::to_owned), ..told };
+    Ok(told.with_page(options.report.as_deref(), || report))
+}
+
+/// A reason where something is not so.
+fn unless(found: bool, reason: &'static str) -> Option<&'static str> {
+    (!found).then_some(reason)
 }
 
 /// Both schedules: the paper's table, then the precision.
-fn sokolov(runs: usize, as_json: bool) -> Result<Told, String> {
+fn sokolov(runs: usize) -> Result<Done, String> {
     let turns = [Turn::Arc, Turn::Circle];
     let total = turns.len() * (3 * sokolov::TABLE_RUNS + runs);
     let progress = Progress::new(total as u64, "alignments");
@@ -125,15 +142,12 @@ fn sokolov(runs: usize, as_json: bool) -> Result<Told, String> {
     let precisions = turns.map(|turn| sokolov::precision(turn, runs, tick));
     let precisions = precisions.into_iter().collect::<Result<Vec<_>, _>>()?;
     progress.finish();
-    let object = json!({
-        "campaign": "sokolov", "status": "ok", "tables": tables, "precision": precisions,
-    });
-    Told::of(true, as_json, &object, |text| table::sokolov(text, &tables, &precisions))
+    let object = json!({ "tables": tables, "precision": precisions });
+    Ok(Done { object, report: reports::sokolov::report(&tables, &precisions), refusal: None })
 }
 
-/// The paper's example and devices, schedules under drift, the five classes; a result where every row
-/// is met.
-fn burov(runs: usize, report: Option<&Path>, as_json: bool) -> Result<Told, String> {
+/// The paper's example and devices, schedules under drift, the five classes; a result where every row is met.
+fn burov(runs: usize) -> Done {
     let of_class = (runs / 10).max(1);
     let total = 2 * drift::GYROS.len() * runs + classes::COUNT * of_class;
     let progress = Progress::new(total as u64, "alignments");
@@ -143,28 +157,21 @@ fn burov(runs: usize, report: Option<&Path>, as_json: bool) -> Result<Told, Stri
     let rows = classes::rows(of_class, tick);
     progress.finish();
     let (curve, devices) = (devices::curve(8..=14), devices::devices());
-    let found = rows.iter().all(|row| row.is_met);
-    let status = if found { "ok" } else { "failed" };
-    let object = json!({
-        "campaign": "burov", "status": status, "devices": devices, "rate_error_deg_h": curve,
-        "drift": compared, "classes": rows,
-    });
-    let told = Told::of(found, as_json, &object, |text| {
-        told::devices(text, &curve, &devices)?;
-        told::drift(text, &compared)?;
-        told::classes(text, &rows)
-    })?;
-    let refusal = (!found).then(|| {
-        "a class does not meet its row; with few runs (a tenth of --runs) that may be chance"
-            .to_owned()
-    });
-    let told = Told { refusal, ..told };
-    Ok(told.with_page(report, || page::burov::report(&devices, &compared, &rows)))
+    Done {
+        report: reports::burov::report(&devices, &compared, &rows),
+        refusal: unless(
+            rows.iter().all(|row| row.is_met),
+            "a class does not meet its row; with few runs (a tenth of --runs) that may be chance",
+        ),
+        object: json!({
+            "devices": devices, "rate_error_deg_h": curve, "drift": compared, "classes": rows,
+        }),
+    }
 }
 
-/// The stages of compensation, molecular-electronic sensors, and what must be refused; a result where no
-/// healthy run was refused and no north was wrong.
-fn rotating(runs: usize, report: Option<&Path>, as_json: bool) -> Result<Told, String> {
+/// The stages of compensation, molecular-electronic sensors, and what must be refused; a result where no healthy run
+/// was refused and no north was wrong.
+fn rotating(runs: usize) -> Done {
     let of_case = (runs / 10).max(1);
     let tables = stages::WALKS.len() + molecular::COUNT;
     let total = tables * runs + refusals::COUNT * of_case;
@@ -177,41 +184,29 @@ fn rotating(runs: usize, report: Option<&Path>, as_json: bool) -> Result<Told, S
     let healthy = stages.iter().map(|row| &row.precision);
     let mut healthy = healthy.chain(molecular.iter().map(|row| &row.precision));
     let found = healthy.all(|row| row.refused == 0) && refusals.iter().all(|row| row.wrong == 0);
-    let status = if found { "ok" } else { "failed" };
-    let object = json!({
-        "campaign": "rotating", "status": status, "stages": stages, "molecular": molecular,
-        "refusals": refusals,
-    });
-    let told = Told::of(found, as_json, &object, |text| {
-        of_rotating::stages(text, &stages)?;
-        of_rotating::molecular(text, &molecular)?;
-        of_rotating::refusals(text, &refusals)
-    })?;
-    let refusal = (!found).then(|| "a healthy run was refused, or a north was wrong".to_owned());
-    let told = Told { refusal, ..told };
-    Ok(told.with_page(report, || page::rotating::report(&stages, &molecular, &refusals)))
+    Done {
+        report: reports::rotating::report(&stages, &molecular, &refusals),
+        refusal: unless(found, "a healthy run was refused, or a north was wrong"),
+        object: json!({ "stages": stages, "molecular": molecular, "refusals": refusals }),
+    }
 }
 
 /// The paper's second, and flights with noise; a result where no roll was lost and no turn miscounted.
-fn spin(runs: usize, report: Option<&Path>, as_json: bool) -> Result<Told, String> {
+fn spin(runs: usize) -> Done {
     let progress = Progress::new((cases::COUNT * runs) as u64, "flights");
     let paper = paper::paper();
     let rows = cases::rows(runs, || progress.step());
     progress.finish();
     let found = rows.iter().all(|row| row.lost == 0 && row.miscounted == 0);
-    let status = if found { "ok" } else { "failed" };
-    let object = json!({ "campaign": "spin", "status": status, "paper": paper, "flights": rows });
-    let told = Told::of(found, as_json, &object, |text| {
-        of_spin::paper(text, &paper)?;
-        of_spin::cases(text, &rows)
-    })?;
-    let refusal = (!found).then(|| "a roll was lost, or a turn miscounted".to_owned());
-    let told = Told { refusal, ..told };
-    Ok(told.with_page(report, || page::spin::report(&paper, &rows)))
+    Done {
+        report: reports::spin::report(&paper, &rows),
+        refusal: unless(found, "a roll was lost, or a turn miscounted"),
+        object: json!({ "paper": paper, "flights": rows }),
+    }
 }
 
 /// Drives between stops, and parked vehicles; a result where none was refused.
-fn szymanowski(runs: usize, report: Option<&Path>, as_json: bool) -> Result<Told, String> {
+fn szymanowski(runs: usize) -> Done {
     let progress = Progress::new(((drives::COUNT + parked::COUNT) * runs) as u64, "vehicles");
     let tick = || progress.step();
     let drives = drives::rows(runs, tick);
@@ -219,46 +214,31 @@ fn szymanowski(runs: usize, report: Option<&Path>, as_json: bool) -> Result<Told
     progress.finish();
     let driven = drives.iter().map(|row| &row.precision);
     let mut all = driven.chain(parked.iter().map(|row| &row.precision));
-    let found = all.all(|row| row.refused == 0);
-    let status = if found { "ok" } else { "failed" };
-    let object = json!({
-        "campaign": "szymanowski", "status": status, "drives": drives, "parked": parked,
-    });
-    let told = Told::of(found, as_json, &object, |text| {
-        of_stops::drives(text, &drives)?;
-        of_stops::parked(text, &parked)
-    })?;
-    let refusal = (!found).then(|| "a healthy vehicle was refused".to_owned());
-    let told = Told { refusal, ..told };
-    Ok(told.with_page(report, || page::stops::report(&drives, &parked)))
+    Done {
+        refusal: unless(all.all(|row| row.refused == 0), "a healthy vehicle was refused"),
+        report: reports::szymanowski::report(&drives, &parked),
+        object: json!({ "drives": drives, "parked": parked }),
+    }
 }
 
 /// Azimuth, pitch and roll through half an hour of driving; a result where every row that is to be met is.
-fn keep(runs: usize, report: Option<&Path>, as_json: bool) -> Result<Told, String> {
+fn keep(runs: usize) -> Done {
     let progress = Progress::new((keep::COUNT * runs) as u64, "vehicles");
     let rows = keep::rows(runs, || progress.step());
     progress.finish();
     let found = rows.iter().all(|row| row.is_met || !row.is_wanted);
-    let status = if found { "ok" } else { "failed" };
-    let object = json!({ "campaign": "keep", "status": status, "classes": rows });
-    let told = Told::of(found, as_json, &object, |text| of_keep::rows(text, &rows))?;
-    let refusal = (!found)
-        .then(|| "a class does not meet its row; with few runs that may be chance".to_owned());
-    let told = Told { refusal, ..told };
-    Ok(told.with_page(report, || page::keep::report(&rows)))
+    let refusal = unless(found, "a class does not meet its row; with few runs that may be chance");
+    Done { report: reports::keep::report(&rows), refusal, object: json!({ "classes": rows }) }
 }
 
 /// The whole instrument over many seeds; a result where none was refused.
-fn instrument(runs: usize, as_json: bool) -> Result<Told, String> {
+fn instrument(runs: usize) -> Result<Done, String> {
     let progress = Progress::new(runs as u64, "alignments");
     let row = instrument::precision(runs, || progress.step()).map_err(|error| error.to_string())?;
     progress.finish();
-    let found = row.precision.refused == 0;
-    let status = if found { "ok" } else { "failed" };
-    let object = json!({ "campaign": "instrument", "status": status, "precision": row });
-    let told = Told::of(found, as_json, &object, |text| table::instrument(text, &row))?;
-    let refusal = (!found).then(|| "a healthy board was refused".to_owned());
-    Ok(Told { refusal, ..told })
+    let refusal = unless(row.precision.refused == 0, "a healthy board was refused");
+    let report = reports::instrument::report(&row);
+    Ok(Done { report, refusal, object: json!({ "precision": row }) })
 }
 
 /// Every fault with every seed; a result where no north was wrong.
@@ -279,7 +259,7 @@ fn faults(runs: usize, as_json: bool) -> Result<Told, String> {
 const HEALTHY: usize = 15;
 
 /// Every class of faults in recordings; a result where each passes.
-fn disturbed(runs: usize, class: Option<&str>, as_json: bool) -> Result<Told, String> {
+fn disturbed(runs: usize, class: Option<&str>) -> Done {
     let chosen: Vec<_> =
         disturbed::classes().filter(|of| class.is_none_or(|name| of.name == name)).collect();
     let healthy_runs = if class.is_none() { HEALTHY * runs } else { 0 };
@@ -291,16 +271,12 @@ fn disturbed(runs: usize, class: Option<&str>, as_json: bool) -> Result<Told, St
     };
     let rows: Vec<_> = chosen.into_iter().map(|class| disturbed::row(class, runs, &tick)).collect();
     progress.finish();
-    let found = rows.iter().all(|row| row.is_met);
-    let status = if found { "ok" } else { "failed" };
-    let object = json!({
-        "campaign": "disturbed", "status": status, "healthy": healthy, "classes": rows,
-    });
-    let told = Told::of(found, as_json, &object, |text| {
-        of_disturbed::healthy(text, &healthy)?;
-        of_disturbed::rows(text, &rows)
-    })?;
-    let refusal =
-        (!found).then(|| "a class of faults gets past, or is refused without need".to_owned());
-    Ok(Told { refusal, ..told })
+    Done {
+        report: reports::disturbed::report(&healthy, &rows),
+        refusal: unless(
+            rows.iter().all(|row| row.is_met),
+            "a class of faults gets past, or is refused without need",
+        ),
+        object: json!({ "healthy": healthy, "classes": rows }),
+    }
 }

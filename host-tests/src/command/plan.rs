@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use bench::output::{page, plan};
+use bench::output::plan;
 use bench::planning::{Request, Wanted};
 use clap::{ArgGroup, Args};
 use orientation::earth::Latitude;
@@ -107,7 +107,7 @@ pub fn run(options: &PlanOptions, as_json: bool) -> Result<Told, String> {
         object.extend(fields);
     }
     let told = Told::of(true, as_json, &object, |text| plan::block(text, &request, &planned))?;
-    Ok(told.with_page(options.report.as_deref(), || page::plan::report(&request, &planned)))
+    Ok(told.with_page(options.report.as_deref(), || plan::page::report(&request, &planned)))
 }
 
 /// No schedule, and why.

@@ -1,16 +1,10 @@
 //! What the user sees of plans, noise analyses and campaigns, and the progress bar.
 
 pub mod allan;
-pub mod burov;
-pub mod disturbed;
+pub mod campaign;
 pub mod emulation;
-pub mod keep;
-pub mod page;
 pub mod plan;
 pub mod progress;
-pub mod rotating;
-pub mod spin;
-pub mod stops;
 pub mod table;
 
 use std::fmt;

@@ -29,21 +29,20 @@ fn heading(title: &str) -> String {
     if title.is_empty() { "\n".to_owned() } else { format!("\n  {title}\n") }
 }
 
-/// Columns as wide as their widest cell, the first to the left, numbers to the right.
+/// Columns as wide as their widest cell: names and words to the left, numbers to the right.
 fn of_table(Table { title, head, rows }: &Table) -> String {
     let width = |column: usize| {
         let cells = rows.iter().chain([head]).filter_map(|row| row.get(column));
         cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
     };
     let widths: Vec<usize> = (0..head.len()).map(width).collect();
-    let last = head.len().saturating_sub(1);
-    let is_left = |column: usize| {
-        column == 0 || column == last && rows.iter().any(|row| is_prose(&row[column]))
-    };
+    let holds_words = |column: usize| rows.iter().any(|row| is_prose(&row[column]));
+    let is_left: Vec<bool> =
+        (0..head.len()).map(|column| column == 0 || holds_words(column)).collect();
     let mut text = heading(title);
     for row in [head].into_iter().chain(rows) {
         let cells = row.iter().zip(&widths).enumerate().map(|(column, (cell, width))| {
-            if is_left(column) { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+            if is_left[column] { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
         });
         text += format!("    {}", cells.collect::<Vec<_>>().join("  ")).trim_end();
         text += "\n";

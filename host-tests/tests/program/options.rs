@@ -146,10 +146,8 @@ fn each_method_lists_its_own_faults_and_takes_every_one_of_them() {
 
 #[test]
 fn a_campaign_refuses_what_it_ignores() {
-    for name in ["sokolov", "instrument", "faults", "disturbed"] {
-        let words = format!("--report: campaign {name} does not take it");
-        assert_misuse(&["campaign", name, "--report", "x.html"], &words);
-    }
+    let words = "--report: campaign faults does not take it";
+    assert_misuse(&["campaign", "faults", "--report", "x.html"], words);
     assert_misuse(&["campaign", "spin", "--class", "x"], "--class: campaign spin does not take it");
     assert_misuse(&["campaign", "disturbed", "--class", "x"], "--class: the classes are ");
 }

@@ -1,5 +1,7 @@
 //! Schedules, for people.
 
+pub mod page;
+
 use std::fmt::{self, Write};
 
 use orientation::planner::FEWEST;
