@@ -316,7 +316,9 @@ fn a_campaign_prints_its_tables_as_text_and_as_json() {
     let output = meridian(&["campaign", "sokolov", "--runs", "20"]);
     assert_eq!(code(&output), 0);
     let block = text(&output.stdout);
-    for part in ["28° arc", "full circle", "least-absolute", "7.3, 9.6, 6.0", "limit", "ratio"] {
+    for part in
+        ["28° arc", "full circle", "least-absolute", "7.3, 9.6, 6.0", "limit", "RMS / limit"]
+    {
         assert!(block.contains(part), "{part} is missing in {block}");
     }
     let object = object(&meridian(&["campaign", "sokolov", "--runs", "20", "--json"]));

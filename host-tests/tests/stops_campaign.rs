@@ -48,7 +48,7 @@ fn the_command_prints_both_tables_and_draws() {
     };
     let output = run(&["--report", path.as_str()]);
     let text = String::from_utf8_lossy(&output.stdout);
-    for words in ["before: averaging", "the paper's method", "Brent's search", "Parked for 660 s"] {
+    for words in ["before: averaging", "the paper's method", "Brent's search", "parked for 660 s"] {
         assert!(text.contains(words), "{words}: {text}");
     }
     let drawn = std::fs::read_to_string(&page).expect("it was written");

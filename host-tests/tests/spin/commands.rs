@@ -171,7 +171,8 @@ fn the_campaign_prints_the_papers_figures_and_draws_them() {
     let path = page.display().to_string();
     let output = meridian(&["campaign", "spin", "--runs", "2", "--report", &path]);
     let told = text(&output.stdout);
-    for words in ["Fig. 7", "Fig. 8", "corrections a turn", "noise of 1.5 m/s²", "limit"] {
+    for words in ["Fig. 7", "Fig. 8", "between corrections", "a turn", "noise of 1.5 m/s²", "limit"]
+    {
         assert!(told.contains(words), "{words}: {told}");
     }
     let drawn = std::fs::read_to_string(&page).expect("it was written");
