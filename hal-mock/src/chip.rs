@@ -52,7 +52,7 @@ pub struct ReadyLine {
 }
 
 /// A chip with serial interface in an environment `E`.
-pub trait SpiChip<E> {
+pub trait SpiChip<E: ?Sized> {
     /// When the chip next does something of itself, such as a conversion.
     fn next_event(&self) -> Option<Instant>;
 

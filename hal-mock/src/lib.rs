@@ -58,10 +58,11 @@
 pub mod accelerometer;
 pub mod ads1262;
 pub mod adxl355;
-mod assembly;
+pub mod assembly;
 pub mod board;
 pub mod chip;
 pub mod clock;
+pub mod converters;
 pub mod disturbance;
 pub mod earth;
 pub mod environment;

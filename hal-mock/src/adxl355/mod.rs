@@ -144,7 +144,7 @@ impl Adxl355 {
     }
 
     /// Takes the sample that is due.
-    fn convert(&mut self, environment: &mut impl ForceInput, mut measuring: Measuring) {
+    fn convert(&mut self, environment: &mut (impl ForceInput + ?Sized), mut measuring: Measuring) {
         let now = measuring.next();
         let force = environment.force_g(now);
         for (axis, force) in force.into_iter().enumerate() {
@@ -284,7 +284,7 @@ const fn data_bits(address: u8) -> u8 {
     }
 }
 
-impl<E: ForceInput> SpiChip<E> for Adxl355 {
+impl<E: ForceInput + ?Sized> SpiChip<E> for Adxl355 {
     fn next_event(&self) -> Option<Instant> {
         let next = self.measuring.map(|measuring| measuring.next());
         next.map(|at| self.pin_falls.map_or(at, |falls| falls.min(at)))

@@ -12,10 +12,12 @@
 
 use embassy_time::Instant;
 
+use super::board::CHIPS;
 use super::body::{Body, Felt};
 use super::sensors::{Sensors, gyro_seeds};
 use super::{SpinConfiguration, SpinTruth};
-use crate::environment::AnalogueInput;
+use crate::chip::Select;
+use crate::converters::Channels;
 use crate::noise::{White, source};
 use crate::plant::seconds;
 
@@ -107,12 +109,6 @@ impl<'a> SpinPlant<'a> {
         SpinTruth::of(&body, &self.sensors, time_s)
     }
 
-    /// One sensor as its converter sees it: 0 to 2 the gyros about x, y and z, 3 and 4 the accelerometers
-    /// along y and z.
-    pub fn channel(&mut self, channel: usize) -> SensorOutput<'_, 'a> {
-        SensorOutput { plant: self, channel }
-    }
-
     /// Means over the sample of a converter that ends at a time in s.
     fn felt(&mut self, channel: usize, time_s: f64) -> Felt {
         let mark_s = self.marks_s[channel];
@@ -148,16 +144,11 @@ impl<'a> SpinPlant<'a> {
     }
 }
 
-/// One sensor of the body: what its converter sees.
-#[derive(Debug)]
-pub struct SensorOutput<'p, 'a> {
-    plant: &'p mut SpinPlant<'a>,
-    channel: usize,
-}
+/// Channels 0 to 2 are the gyros about x, y and z, 3 and 4 the accelerometers along y and z.
+impl Channels<CHANNELS> for SpinPlant<'_> {
+    const CHIPS: &'static [Select] = &CHIPS;
 
-impl AnalogueInput for SensorOutput<'_, '_> {
-    fn volts(&mut self, now: Instant) -> f64 {
-        let Self { plant, channel } = self;
-        plant.shown(*channel, seconds(now)) + plant.converters[*channel].sample()
+    fn volts(&mut self, channel: usize, now: Instant) -> f64 {
+        self.shown(channel, seconds(now)) + self.converters[channel].sample()
     }
 }

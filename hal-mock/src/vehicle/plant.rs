@@ -11,9 +11,12 @@
 use embassy_time::Instant;
 
 use super::averaged::Averaged;
+use super::board::CHIPS;
 use super::sensors::{Means, Sensors, gyro_seeds};
 use super::{VehicleConfiguration, VehicleTruth};
-use crate::environment::{AnalogueInput, ForceInput};
+use crate::chip::Select;
+use crate::converters::Channels;
+use crate::environment::ForceInput;
 use crate::noise::{White, source};
 use crate::plant::{DEGREE_PER_SECOND, STANDARD_GRAVITY_M_S2, seconds};
 use crate::temperature::{TemperatureConfiguration, Thermometer};
@@ -96,11 +99,6 @@ impl<'a> VehiclePlant<'a> {
         VehicleTruth::of(&motion, &self.sensors)
     }
 
-    /// The gyro about one axis, 0 to 2 for forward, right, down, as its converter sees it.
-    pub fn gyro(&mut self, axis: usize) -> GyroOutput<'_, 'a> {
-        GyroOutput { plant: self, axis }
-    }
-
     /// Means over the sample of a chip that ends at a time in s.
     fn felt(&mut self, chip: usize, time_s: f64) -> Means {
         self.motion.felt(chip, time_s, self.periods_s[chip / ACCELEROMETER])
@@ -120,19 +118,18 @@ impl ForceInput for VehiclePlant<'_> {
     }
 }
 
-/// One gyro of the vehicle: what its converter sees.
-#[derive(Debug)]
-pub struct GyroOutput<'p, 'a> {
-    plant: &'p mut VehiclePlant<'a>,
-    axis: usize,
-}
+/// Channels 0 to 2 are the gyros forward, right, down.
+impl Channels<3> for VehiclePlant<'_> {
+    const CHIPS: &'static [Select] = &CHIPS;
 
-impl AnalogueInput for GyroOutput<'_, '_> {
-    fn volts(&mut self, now: Instant) -> f64 {
-        let Self { plant, axis } = self;
+    fn volts(&mut self, axis: usize, now: Instant) -> f64 {
         let time_s = seconds(now);
-        let felt = plant.felt(*axis, time_s);
-        let rate_rad_s = plant.sensors.rate(*axis, time_s, &felt);
-        rate_rad_s * plant.volts_per_rad_s + plant.converters[*axis].sample()
+        let felt = self.felt(axis, time_s);
+        let rate_rad_s = self.sensors.rate(axis, time_s, &felt);
+        rate_rad_s * self.volts_per_rad_s + self.converters[axis].sample()
+    }
+
+    fn force(&mut self) -> Option<&mut dyn ForceInput> {
+        Some(self)
     }
 }
