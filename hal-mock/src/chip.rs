@@ -1,6 +1,6 @@
 //! A chip on a serial bus: registers behind transactions, and a clock of its own.
 
-use embassy_time::Instant;
+use embassy_time::{Duration, Instant};
 
 use crate::violation::Violations;
 
@@ -40,6 +40,11 @@ pub struct Transaction<'a> {
     pub hertz: u32,
     /// The bytes from the controller.
     pub sent: &'a [u8],
+}
+
+/// Time that so many bytes take on a bus clocked at `hertz` (> 0), rounded up to microseconds.
+pub(crate) fn bus_time(bytes: usize, hertz: u32) -> Duration {
+    Duration::from_micros((bytes as u64 * 8_000_000).div_ceil(u64::from(hertz)))
 }
 
 /// A data-ready line.

@@ -14,12 +14,13 @@ use embassy_time::Instant;
 
 use super::board::CHIPS;
 use super::body::{Body, Felt};
-use super::sensors::{Sensors, gyro_seeds};
+use super::sensors::Sensors;
 use super::{SpinConfiguration, SpinTruth};
 use crate::chip::Select;
 use crate::converters::Channels;
 use crate::noise::{White, source};
 use crate::plant::seconds;
+use crate::strapdown::gyro_seeds;
 
 /// How many converters there are: of the gyros about x, y and z, of the accelerometers along y and z.
 pub const CHANNELS: usize = 5;
@@ -84,7 +85,7 @@ impl<'a> SpinPlant<'a> {
     #[inline(never)]
     pub fn new(configuration: &SpinPlantConfiguration<'a>, seed: u64) -> Self {
         let c = configuration;
-        let [x, y, z] = gyro_seeds(seed);
+        let [x, y, z] = gyro_seeds(seed, source::SPIN_GYROS);
         // Each converter a stream of its own, off those of the gyros.
         let converter = |own| White::new(c.converter_noise_v, own, source::CONVERTER);
         Self {

@@ -12,13 +12,14 @@ use embassy_time::Instant;
 
 use super::averaged::Averaged;
 use super::board::CHIPS;
-use super::sensors::{Means, Sensors, gyro_seeds};
+use super::sensors::{Means, Sensors};
 use super::{VehicleConfiguration, VehicleTruth};
 use crate::chip::Select;
 use crate::converters::Channels;
 use crate::environment::ForceInput;
 use crate::noise::{White, source};
 use crate::plant::{DEGREE_PER_SECOND, STANDARD_GRAVITY_M_S2, seconds};
+use crate::strapdown::gyro_seeds;
 use crate::temperature::{TemperatureConfiguration, Thermometer};
 
 /// Whose reading of the accelerometer is marked, behind the three gyros.
@@ -79,7 +80,7 @@ impl<'a> VehiclePlant<'a> {
             sensors: Sensors::new(&c.vehicle, c.accelerometer_hz, seed),
             temperature: c.vehicle.temperature,
             thermometer: Thermometer::new(&c.vehicle.temperature, seed),
-            converters: gyro_seeds(seed).map(converter),
+            converters: gyro_seeds(seed, source::VEHICLE_GYROS).map(converter),
             volts_per_rad_s: c.gyro_volts_per_rad_s,
             periods_s: [1.0 / c.vehicle.rate_hz, 1.0 / c.accelerometer_hz],
         }
@@ -88,7 +89,7 @@ impl<'a> VehiclePlant<'a> {
     /// What the sensors cannot know, as of the latest reading.
     #[must_use]
     pub fn truth(&self) -> VehicleTruth {
-        VehicleTruth::of(self.motion.motion(), &self.sensors)
+        self.sensors.truth(self.motion.motion())
     }
 
     /// The truth at `now`, which is not before the latest reading.
@@ -96,7 +97,7 @@ impl<'a> VehiclePlant<'a> {
     pub fn truth_at(&self, now: Instant) -> VehicleTruth {
         let mut motion = self.motion.motion().clone();
         motion.advance(seconds(now));
-        VehicleTruth::of(&motion, &self.sensors)
+        self.sensors.truth(&motion)
     }
 
     /// Means over the sample of a chip that ends at a time in s.
