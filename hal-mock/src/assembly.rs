@@ -1,32 +1,39 @@
 //! A board put together from several chips around one world: who acts when, and who answers.
 //!
-//! Before anybody touches a chip, every chip does what is due until that moment, in order of time, so
+//! Before a chip is touched, every chip does what is due until that moment, in order of time, so
 //! that a conversion sees the world as it was when the conversion ended. A supply that is lost at the
 //! moment of a chip's event is lost before it.
+//!
+//! A board says which chips it has and which environment each of them sees ([`Assembly::with`]); order,
+//! losses of supply and the bus ([`Rig`]) follow from that.
 
 use embassy_time::Instant;
 
 use crate::chip::{ReadyLine, Rig, Select, SpiChip, Transaction};
 use crate::fault::Blackout;
+use crate::violation::{Violation, Violations};
 
-/// Something that is done with any chip.
-pub(crate) trait Task {
-    /// Does it with a chip in its environment.
-    fn perform<E, C: SpiChip<E>>(&mut self, chip: &mut C, environment: &mut E);
+/// Something that is done with a chip of any type.
+pub trait Task {
+    /// Does it with a chip in the environment that the board gives it.
+    fn perform<E: ?Sized, C: SpiChip<E>>(&mut self, chip: &mut C, environment: &mut E);
 }
 
 /// Chips around a world.
-pub(crate) trait Assembly {
+pub trait Assembly {
     /// The chips, in the order in which they act at equal times.
     const CHIPS: &'static [Select];
 
-    /// Does something with a chip; nothing where the board has no such chip.
+    /// Performs a task with a chip, or nothing where the board has no such chip.
     fn with(&mut self, select: Select, task: &mut impl Task);
 
-    /// Moves the world on to `now`.
+    /// What was done to a chip that its data sheet forbids; none where the board has no such chip.
+    fn violations(&self, select: Select) -> Option<&Violations>;
+
+    /// Moves the world on to `now`, which is never before the time of an earlier call.
     fn move_on(&mut self, now: Instant);
 
-    /// What the world loses with the supply of a chip.
+    /// Takes from the world what it loses with the supply of a chip at `now`, as a motor's drive.
     fn lose(&mut self, _: Select, _: Instant) {}
 
     /// The losses of supply to come, in order of time.
@@ -34,8 +41,17 @@ pub(crate) trait Assembly {
         &[]
     }
 
-    /// The first of them has happened.
+    /// Strikes the first of [`Self::blackouts`], which has happened.
     fn drop_blackout(&mut self) {}
+
+    /// The forbidden accesses that are kept ([`Violations::first`]) with their chips, chip by chip in the
+    /// order of [`Self::CHIPS`].
+    fn recorded(&self) -> impl Iterator<Item = (Select, Violation)> + '_ {
+        Self::CHIPS.iter().flat_map(|select| {
+            let found = self.violations(*select).into_iter().flat_map(Violations::first);
+            found.map(|violation| (*select, *violation))
+        })
+    }
 
     /// Lets everything happen that is due until `now`, that moment included.
     fn advance(&mut self, now: Instant) {
@@ -57,7 +73,7 @@ pub(crate) trait Assembly {
         self.move_on(now);
     }
 
-    /// The chip that acts next, and when.
+    /// The chip that acts next, and when; of several at one time the first of [`Self::CHIPS`].
     fn next_event(&mut self) -> Option<(Instant, Select)> {
         let mut due = |select| {
             let mut next = Next(None);
@@ -67,7 +83,7 @@ pub(crate) trait Assembly {
         Self::CHIPS.iter().filter_map(|select| due(*select)).min_by_key(|(at, _)| *at)
     }
 
-    /// Takes a chip's supply away and gives it back.
+    /// Takes a chip's supply away at `now` and gives it back at once.
     fn restart(&mut self, select: Select, now: Instant) {
         self.lose(select, now);
         self.with(select, &mut Restart(now));
@@ -78,7 +94,7 @@ pub(crate) trait Assembly {
 struct Next(Option<Instant>);
 
 impl Task for Next {
-    fn perform<E, C: SpiChip<E>>(&mut self, chip: &mut C, _: &mut E) {
+    fn perform<E: ?Sized, C: SpiChip<E>>(&mut self, chip: &mut C, _: &mut E) {
         self.0 = chip.next_event();
     }
 }
@@ -87,7 +103,7 @@ impl Task for Next {
 struct Event;
 
 impl Task for Event {
-    fn perform<E, C: SpiChip<E>>(&mut self, chip: &mut C, environment: &mut E) {
+    fn perform<E: ?Sized, C: SpiChip<E>>(&mut self, chip: &mut C, environment: &mut E) {
         chip.event(environment);
     }
 }
@@ -96,7 +112,7 @@ impl Task for Event {
 struct Answer<'t, 'b>(&'t Transaction<'b>, &'t mut [u8]);
 
 impl Task for Answer<'_, '_> {
-    fn perform<E, C: SpiChip<E>>(&mut self, chip: &mut C, environment: &mut E) {
+    fn perform<E: ?Sized, C: SpiChip<E>>(&mut self, chip: &mut C, environment: &mut E) {
         chip.transact(environment, self.0, self.1);
     }
 }
@@ -105,7 +121,7 @@ impl Task for Answer<'_, '_> {
 struct Line(ReadyLine);
 
 impl Task for Line {
-    fn perform<E, C: SpiChip<E>>(&mut self, chip: &mut C, _: &mut E) {
+    fn perform<E: ?Sized, C: SpiChip<E>>(&mut self, chip: &mut C, _: &mut E) {
         self.0 = chip.ready_line();
     }
 }
@@ -114,7 +130,7 @@ impl Task for Line {
 struct Restart(Instant);
 
 impl Task for Restart {
-    fn perform<E, C: SpiChip<E>>(&mut self, chip: &mut C, _: &mut E) {
+    fn perform<E: ?Sized, C: SpiChip<E>>(&mut self, chip: &mut C, _: &mut E) {
         chip.power_cycle(self.0);
     }
 }

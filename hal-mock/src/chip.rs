@@ -1,6 +1,6 @@
 //! A chip on a serial bus: registers behind transactions, and a clock of its own.
 
-use embassy_time::Instant;
+use embassy_time::{Duration, Instant};
 
 use crate::violation::Violations;
 
@@ -42,6 +42,11 @@ pub struct Transaction<'a> {
     pub sent: &'a [u8],
 }
 
+/// Time that so many bytes take on a bus clocked at `hertz` (> 0), rounded up to microseconds.
+pub(crate) fn bus_time(bytes: usize, hertz: u32) -> Duration {
+    Duration::from_micros((bytes as u64 * 8_000_000).div_ceil(u64::from(hertz)))
+}
+
 /// A data-ready line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ReadyLine {
@@ -52,7 +57,7 @@ pub struct ReadyLine {
 }
 
 /// A chip with serial interface in an environment `E`.
-pub trait SpiChip<E> {
+pub trait SpiChip<E: ?Sized> {
     /// When the chip next does something of itself, such as a conversion.
     fn next_event(&self) -> Option<Instant>;
 

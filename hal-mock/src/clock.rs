@@ -56,6 +56,24 @@ impl Default for VirtualClock {
     }
 }
 
+/// Outputs of a chip at a frequency, one after the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Cadence {
+    /// From when periods are counted.
+    pub(crate) since: Instant,
+    /// How many periods after that the next output comes.
+    pub(crate) count: u64,
+    /// Outputs per second, Hz, > 0.
+    pub(crate) hertz: f64,
+}
+
+impl Cadence {
+    /// When the next output comes.
+    pub(crate) fn next(&self) -> Instant {
+        period(self.since, self.count, self.hertz)
+    }
+}
+
 /// The `count`-th period of a frequency in hertz after `start`, to the nearest microsecond; the
 /// rounding does not add up.
 #[must_use]

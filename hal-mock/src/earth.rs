@@ -167,3 +167,8 @@ pub(crate) fn apply_transposed(matrix: &Matrix, vector: [f64; 3]) -> [f64; 3] {
             + vector[2] * matrix[2][column]
     })
 }
+
+/// The vector product a × b.
+pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}

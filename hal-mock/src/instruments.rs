@@ -130,6 +130,16 @@ pub struct BaseMotion {
 }
 
 impl BaseMotion {
+    /// The attitude of a base that stands at `rest` without this motion.
+    #[must_use]
+    pub fn moved(&self, rest: &Attitude) -> Attitude {
+        Attitude {
+            azimuth_rad: rest.azimuth_rad + self.lean.azimuth_rad,
+            pitch_rad: rest.pitch_rad + self.lean.pitch_rad,
+            roll_rad: rest.roll_rad + self.lean.roll_rad,
+        }
+    }
+
     /// Rate of the base about its own axes forward, right, down, rad/s, at an attitude: kinematics of
     /// the turns azimuth, pitch, roll in this order.
     #[must_use]
@@ -206,11 +216,7 @@ impl Instruments {
     /// Moves the stage on a base that moves itself, which costs the whole geometry every time.
     pub fn turn_on(&mut self, stage: StageState, motion: &BaseMotion) {
         self.turn(stage);
-        let attitude = Attitude {
-            azimuth_rad: self.attitude.azimuth_rad + motion.lean.azimuth_rad,
-            pitch_rad: self.attitude.pitch_rad + motion.lean.pitch_rad,
-            roll_rad: self.attitude.roll_rad + motion.lean.roll_rad,
-        };
+        let attitude = motion.moved(&self.attitude);
         let site = self.site.with_attitude(&attitude);
         self.pose.felt = self.felt_at(&site, stage, motion.body_rad_s(&attitude));
     }

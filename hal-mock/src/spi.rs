@@ -11,7 +11,7 @@ use embedded_hal_async::digital::Wait;
 use embedded_hal_async::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
 use heapless::Vec;
 
-use crate::chip::{Rig, Select, Transaction};
+use crate::chip::{Rig, Select, Transaction, bus_time};
 
 /// Bytes of the longest transaction.
 const LONGEST: usize = 64;
@@ -43,15 +43,10 @@ impl<R: Rig> SpiDevice for SpiPort<'_, R> {
         let reply = &mut reply[..sent.len()];
         let transaction = Transaction { now: Instant::now(), hertz: self.hertz, sent: &sent };
         self.rig.borrow_mut().transact(self.select, &transaction, reply);
-        Timer::after(duration(sent.len(), self.hertz) + pause).await;
+        Timer::after(bus_time(sent.len(), self.hertz) + pause).await;
         distribute(operations, reply);
         Ok(())
     }
-}
-
-/// Time of so many bytes, rounded up to microseconds.
-fn duration(bytes: usize, hertz: u32) -> Duration {
-    Duration::from_micros((bytes as u64 * 8_000_000).div_ceil(u64::from(hertz)))
 }
 
 /// All bytes of a transaction in a row, and the pauses in it.

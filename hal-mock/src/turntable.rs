@@ -223,12 +223,6 @@ impl<'a> Turntable<'a> {
         }
     }
 
-    /// The next sample; none after the last segment.
-    #[inline]
-    pub fn next_sample(&mut self) -> Option<TurningSample> {
-        self.next_on(|_, _| (None, 0.0))
-    }
-
     /// The next sample on a base that may move, with a drift of the gyro, rad/s: both at a time, s, and a true
     /// stage angle, rad.
     #[inline]
@@ -277,7 +271,8 @@ impl<'a> Turntable<'a> {
 impl Iterator for Turntable<'_> {
     type Item = TurningSample;
 
+    #[inline]
     fn next(&mut self) -> Option<TurningSample> {
-        self.next_sample()
+        self.next_on(|_, _| (None, 0.0))
     }
 }

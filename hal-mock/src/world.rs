@@ -39,17 +39,6 @@ impl<'a> World<'a> {
         }
     }
 
-    /// The next sample; none after the last dwell.
-    #[inline]
-    pub fn next_sample(&mut self) -> Option<Sample> {
-        let stage = self.stage.state(self.next)?;
-        let time_s = self.next as f64 / self.rate_hz;
-        self.next += 1;
-        self.instruments.turn(stage);
-        let effect = disturbance::total(self.disturbances, time_s);
-        Some(self.instruments.sample(time_s, &effect))
-    }
-
     /// The truth behind the latest sample.
     #[must_use]
     pub fn truth(&self) -> Truth {
@@ -66,7 +55,13 @@ impl<'a> World<'a> {
 impl Iterator for World<'_> {
     type Item = Sample;
 
+    #[inline]
     fn next(&mut self) -> Option<Sample> {
-        self.next_sample()
+        let stage = self.stage.state(self.next)?;
+        let time_s = self.next as f64 / self.rate_hz;
+        self.next += 1;
+        self.instruments.turn(stage);
+        let effect = disturbance::total(self.disturbances, time_s);
+        Some(self.instruments.sample(time_s, &effect))
     }
 }

@@ -23,7 +23,7 @@ const G: f64 = 9.806_65;
 /// All samples of a body, each with its truth.
 fn flown(configuration: &SpinConfiguration, seed: u64) -> Vec<(SpinSample, SpinTruth)> {
     let mut world = SpinWorld::new(configuration, seed);
-    std::iter::from_fn(|| Some((world.next_sample()?, world.truth()))).collect()
+    std::iter::from_fn(|| Some((world.next()?, world.truth()))).collect()
 }
 
 /// The sample at a time in s, which is one of the body's.

@@ -360,7 +360,7 @@ fn a_tilted_gyro_shows_scale_bias_and_g_sensitivity_as_the_equations_say() {
         ..InstrumentsConfiguration::default()
     };
     let stops = [Stop::new(1.0, 1.0)];
-    let sample = world(&instruments, &stops).next_sample().unwrap();
+    let sample = world(&instruments, &stops).next().unwrap();
     let attitude = instruments.attitude();
     let at_stage = Site::new(47.6_f64.to_radians(), &attitude).on_platform(1.0);
     let gravity = normal_gravity_m_s2(47.6_f64.to_radians());
@@ -385,7 +385,7 @@ fn an_elevated_axis_couples_to_the_vertical_rate_less_the_stage_rate() {
     let latitude = 55.75_f64.to_radians();
     let (horizontal, vertical) =
         (EARTH_RATE_RAD_S * latitude.cos(), EARTH_RATE_RAD_S * latitude.sin());
-    while let Some(sample) = world.next_sample() {
+    while let Some(sample) = world.next() {
         let stage = world.truth().stage;
         let flat = horizontal * stage.angle_rad.cos();
         let expected = 0.014_f64.cos() * flat + 0.014_f64.sin() * (vertical - stage.rate_rad_s);

@@ -32,7 +32,6 @@ use hal_mock::plant::train::StageConfiguration;
 use hal_mock::plant::{Plant, PlantConfiguration};
 use hal_mock::spi::{ReadyPin, SpiPort};
 use hal_mock::tmc5160::{Oscillator, Tmc5160 as SimulatedMotorDriver};
-use hal_mock::violation::Violation;
 
 use self::fault::Plan;
 use self::scenario::Scenario;
@@ -178,12 +177,4 @@ fn ports_with<'a, B: Rig, A: Around, L, R>(
 ) -> SimulatedPorts<'a, B, A, L, R> {
     let bus = bus(board, around, Select::Actuator, tmc5160::BUS_HERTZ);
     Ports { actuator: chips::StageMotor(Tmc5160::new(bus, Delay, motor)), link, recorder }
-}
-
-/// What the drivers did that a data sheet forbids, in words.
-pub fn violations<'a>(board: &'a Chips) -> impl Iterator<Item = (Select, Violation)> + 'a {
-    let chips = [Select::Gyro, Select::Accelerometer, Select::Encoder, Select::Actuator];
-    chips.into_iter().flat_map(|select| {
-        board.violations(select).first().iter().map(move |violation| (select, *violation))
-    })
 }

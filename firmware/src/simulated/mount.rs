@@ -12,14 +12,13 @@ use drivers::tmc5160::{self, Tmc5160};
 use embassy_time::Delay;
 use hal_mock::chip::Select;
 use hal_mock::fault::{FaultPlan, FaultySpi};
-use hal_mock::gimbal::board::{CHIPS, GimbalBoard};
+use hal_mock::gimbal::board::GimbalBoard;
 use hal_mock::gimbal::{FrameConfiguration, Gimbal, GimbalConfiguration, Misalignment};
 use hal_mock::noise::Generator;
 use hal_mock::plant::journey::JourneyConfiguration;
 use hal_mock::plant::train::StageConfiguration;
 use hal_mock::plant::{PlantConfiguration, StageFault};
 use hal_mock::spi::{ReadyPin, SpiPort};
-use hal_mock::violation::Violation;
 use orientation::align::POSITIONS;
 use orientation::align::mount::{ARRIVAL, MountError, TWO_FRAMES, TwoFrame, azimuth_sigma};
 use orientation::align::setting::Setting;
@@ -292,13 +291,4 @@ pub fn ports<'r, 'a, L, R>(
     };
     let actuator = Frames { outer: motor(Select::Actuator), inner: motor(Select::InnerActuator) };
     Ports { actuator, link, recorder }
-}
-
-/// What the drivers did that a data sheet forbids, in words.
-pub fn violations<'a>(
-    board: &'a GimbalBoard<'_>,
-) -> impl Iterator<Item = (Select, Violation)> + 'a {
-    CHIPS.into_iter().flat_map(|select| {
-        board.violations(select).first().iter().map(move |violation| (select, *violation))
-    })
 }

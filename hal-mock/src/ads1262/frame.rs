@@ -3,6 +3,7 @@
 use heapless::Vec;
 
 use super::registers::Registers;
+use crate::checksum::remainder;
 
 /// Bytes of one conversion as far as they are sent.
 pub(super) type Frame = Vec<u8, 6>;
@@ -13,7 +14,7 @@ pub(super) fn frame(registers: &Registers, status: u8, code: i32) -> Frame {
     let status = registers.has_status().then_some(status);
     let check = match registers.checksum_form() {
         1 => Some(sum(data)),
-        2 => Some(remainder(data)),
+        2 => Some(remainder(u32::from_be_bytes(data))),
         _ => None,
     };
     status.into_iter().chain(data).chain(check).collect()
@@ -23,15 +24,4 @@ pub(super) fn frame(registers: &Registers, status: u8, code: i32) -> Frame {
 fn sum(data: [u8; 4]) -> u8 {
     let whole: u32 = data.iter().map(|&byte| u32::from(byte)).sum();
     ((whole + 0x9B) & 0xFF) as u8
-}
-
-/// Remainder of the division of the data, eight zeros behind them, by x⁸ + x² + x + 1, as the data
-/// sheet does it by hand (CRC mode).
-fn remainder(data: [u8; 4]) -> u8 {
-    let mut rest = u64::from(u32::from_be_bytes(data)) << 8;
-    while rest > 0xFF {
-        let align = 55 - rest.leading_zeros();
-        rest ^= 0b1_0000_0111 << align;
-    }
-    rest as u8
 }

@@ -18,7 +18,7 @@ mod transaction;
 use embassy_time::Instant;
 
 use crate::chip::{ReadyLine, SpiChip, Transaction};
-use crate::clock::period;
+use crate::clock::Cadence;
 use crate::environment::AnalogueInput;
 use crate::violation::{Misuse, Violations};
 use analogue::{Selected, Voltages};
@@ -29,23 +29,6 @@ const STATUS_NEW: u8 = 0x40;
 
 /// The command that stands for the START pin where it is misused.
 const START1: u8 = 0x08;
-
-/// Conversions under way.
-#[derive(Clone, Copy, Debug)]
-struct Running {
-    /// When the first one ends.
-    first: Instant,
-    /// How many have ended.
-    done: u64,
-    /// Conversions per second.
-    hertz: f64,
-}
-
-impl Running {
-    fn next(&self) -> Instant {
-        period(self.first, self.done, self.hertz)
-    }
-}
 
 /// The newest conversion.
 #[derive(Clone, Copy, Debug, Default)]
@@ -76,7 +59,8 @@ pub struct Ads1262 {
     operational: Instant,
     /// When the internal reference was switched on.
     reference_since: Instant,
-    running: Option<Running>,
+    /// Conversions under way, counted from the end of the first.
+    running: Option<Cadence>,
     holding: Holding,
     /// The data-ready line, and with it the shift register that is read directly.
     is_ready: bool,
@@ -191,7 +175,7 @@ impl Ads1262 {
         let hertz = timing::hertz(registers.rate());
         self.clear();
         if !self.sickness.is_dead {
-            self.running = Some(Running { first: at + latency, done: 0, hertz });
+            self.running = Some(Cadence { since: at + latency, count: 0, hertz });
         }
     }
 
@@ -229,7 +213,7 @@ impl<E: AnalogueInput> SpiChip<E> for Ads1262 {
             Selected::Gyro(sign) => sign * environment.volts(running.next()),
             Selected::Own(volts) => volts,
         };
-        running.done += 1;
+        running.count += 1;
         self.running = (!self.registers.is_one_shot()).then_some(running);
         self.overwritten += u64::from(self.holding.is_new);
         let (converted, alarms) = analogue::convert(&self.registers, self.voltages, volts);

@@ -1,10 +1,10 @@
 //! What the bytes between select low and select high do (SBAS661C figures 9-43, 9-44, table 9-33).
 
-use embassy_time::{Duration, Instant};
+use embassy_time::Instant;
 
 use super::frame::{Frame, frame};
 use super::{Ads1262, registers, timing};
-use crate::chip::Transaction;
+use crate::chip::{Transaction, bus_time};
 use crate::violation::Misuse;
 
 /// Where the chip is in a transaction.
@@ -55,16 +55,11 @@ pub(super) fn transact(chip: &mut Ads1262, transaction: &Transaction, reply: &mu
     let mut phase = Phase::Command;
     for (index, (&byte, out)) in sent.iter().zip(reply).enumerate() {
         *out = chip.output(&phase, &mut direct);
-        let span = [index, index + 1].map(|bytes| now + duration(bytes, hertz));
+        let span = [index, index + 1].map(|bytes| now + bus_time(bytes, hertz));
         phase = chip.input(phase, byte, span);
     }
     chip.holding.is_new &= !direct.is_read();
     chip.end(&phase, now);
-}
-
-/// Time of so many bytes, rounded up to microseconds.
-fn duration(bytes: usize, hertz: u32) -> Duration {
-    Duration::from_micros((bytes as u64 * 8_000_000).div_ceil(u64::from(hertz)))
 }
 
 impl Ads1262 {

@@ -16,7 +16,7 @@ mod registers;
 use embassy_time::{Duration, Instant};
 
 use crate::chip::{ReadyLine, SpiChip, Transaction};
-use crate::clock::period;
+use crate::clock::Cadence;
 use crate::environment::ForceInput;
 use crate::violation::{Misuse, Violations};
 use fifo::Fifo;
@@ -49,20 +49,6 @@ const FIFO_FULL: u8 = 0x02;
 const FIFO_OVR: u8 = 0x04;
 const NVM_BUSY: u8 = 0x10;
 
-/// The measuring of a chip that is not in standby.
-#[derive(Clone, Copy, Debug)]
-struct Measuring {
-    since: Instant,
-    samples: u64,
-    hertz: f64,
-}
-
-impl Measuring {
-    fn next(&self) -> Instant {
-        period(self.since, self.samples + 1, self.hertz)
-    }
-}
-
 /// The simulated chip.
 #[derive(Clone, Debug)]
 pub struct Adxl355 {
@@ -70,7 +56,8 @@ pub struct Adxl355 {
     shadow: [u8; 5],
     ready_at: Instant,
     is_powering_up: bool,
-    measuring: Option<Measuring>,
+    /// The samples of a chip that is not in standby.
+    measuring: Option<Cadence>,
     /// When the data-ready pin falls by itself; it is high until then.
     pin_falls: Option<Instant>,
     counts: [i32; 3],
@@ -144,7 +131,7 @@ impl Adxl355 {
     }
 
     /// Takes the sample that is due.
-    fn convert(&mut self, environment: &mut impl ForceInput, mut measuring: Measuring) {
+    fn convert(&mut self, environment: &mut (impl ForceInput + ?Sized), mut measuring: Cadence) {
         let now = measuring.next();
         let force = environment.force_g(now);
         for (axis, force) in force.into_iter().enumerate() {
@@ -157,7 +144,7 @@ impl Adxl355 {
         let is_lost = self.fifo.push(self.counts);
         let status = &mut self.registers[usize::from(STATUS)];
         *status |= DATA_RDY | if is_lost { FIFO_OVR } else { 0 };
-        measuring.samples += 1;
+        measuring.count += 1;
         self.pin_falls = Some(now + Duration::from_micros((0.5e6 / measuring.hertz) as u64));
         self.measuring = Some(measuring);
     }
@@ -237,7 +224,7 @@ impl Adxl355 {
     fn switch(&mut self, now: Instant) {
         if self.at(POWER_CTL) & STANDBY == 0 {
             let hertz = 4000.0 / f64::from(1_u32 << (self.at(FILTER) & 0x0F));
-            self.measuring.get_or_insert(Measuring { since: now, samples: 0, hertz });
+            self.measuring.get_or_insert(Cadence { since: now, count: 1, hertz });
         } else {
             self.measuring = None;
             self.pin_falls = None;
@@ -284,7 +271,7 @@ const fn data_bits(address: u8) -> u8 {
     }
 }
 
-impl<E: ForceInput> SpiChip<E> for Adxl355 {
+impl<E: ForceInput + ?Sized> SpiChip<E> for Adxl355 {
     fn next_event(&self) -> Option<Instant> {
         let next = self.measuring.map(|measuring| measuring.next());
         next.map(|at| self.pin_falls.map_or(at, |falls| falls.min(at)))

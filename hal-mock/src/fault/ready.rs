@@ -28,48 +28,43 @@ impl<W> FaultyReady<W> {
     }
 }
 
+impl<W: Wait> FaultyReady<W> {
+    /// Waits for what is wanted first, and where that is lost for the next edge, until one is not lost.
+    async fn wait(
+        &mut self,
+        wanted: impl AsyncFnOnce(&mut W) -> Result<(), W::Error>,
+        next: impl AsyncFn(&mut W) -> Result<(), W::Error>,
+    ) -> Result<(), W::Error> {
+        wanted(&mut self.line).await?;
+        while self.loses() {
+            next(&mut self.line).await?;
+        }
+        Ok(())
+    }
+}
+
 impl<W: ErrorType> ErrorType for FaultyReady<W> {
     type Error = W::Error;
 }
 
 impl<W: Wait> Wait for FaultyReady<W> {
     async fn wait_for_high(&mut self) -> Result<(), W::Error> {
-        self.line.wait_for_high().await?;
-        while self.loses() {
-            self.line.wait_for_rising_edge().await?;
-        }
-        Ok(())
+        self.wait(W::wait_for_high, W::wait_for_rising_edge).await
     }
 
     async fn wait_for_low(&mut self) -> Result<(), W::Error> {
-        self.line.wait_for_low().await?;
-        while self.loses() {
-            self.line.wait_for_falling_edge().await?;
-        }
-        Ok(())
+        self.wait(W::wait_for_low, W::wait_for_falling_edge).await
     }
 
     async fn wait_for_rising_edge(&mut self) -> Result<(), W::Error> {
-        self.line.wait_for_rising_edge().await?;
-        while self.loses() {
-            self.line.wait_for_rising_edge().await?;
-        }
-        Ok(())
+        self.wait(W::wait_for_rising_edge, W::wait_for_rising_edge).await
     }
 
     async fn wait_for_falling_edge(&mut self) -> Result<(), W::Error> {
-        self.line.wait_for_falling_edge().await?;
-        while self.loses() {
-            self.line.wait_for_falling_edge().await?;
-        }
-        Ok(())
+        self.wait(W::wait_for_falling_edge, W::wait_for_falling_edge).await
     }
 
     async fn wait_for_any_edge(&mut self) -> Result<(), W::Error> {
-        self.line.wait_for_any_edge().await?;
-        while self.loses() {
-            self.line.wait_for_any_edge().await?;
-        }
-        Ok(())
+        self.wait(W::wait_for_any_edge, W::wait_for_any_edge).await
     }
 }

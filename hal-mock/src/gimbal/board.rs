@@ -1,10 +1,8 @@
 //! The board of a two-frame mount: six chips on one bus around one gimbal.
-//!
-//! At equal times the actuators act first.
 
 use embassy_time::Instant;
 
-use super::Gimbal;
+use super::{Gimbal, Side};
 use crate::ads1262::Ads1262;
 use crate::adxl355::Adxl355;
 use crate::assembly::{Assembly, Task};
@@ -12,17 +10,6 @@ use crate::chip::{Select, SpiChip};
 use crate::mt6835::Mt6835;
 use crate::tmc5160::{Oscillator, Tmc5160};
 use crate::violation::Violations;
-
-/// The chips of the board, in the order in which they act at equal times: the frames move before they
-/// are measured.
-pub const CHIPS: [Select; 6] = [
-    Select::Actuator,
-    Select::InnerActuator,
-    Select::Gyro,
-    Select::Accelerometer,
-    Select::Encoder,
-    Select::InnerEncoder,
-];
 
 /// The gimbal with its chips; the outer frame has the encoder and the actuator of a stage.
 #[derive(Clone, Debug)]
@@ -47,28 +34,18 @@ impl<'a> GimbalBoard<'a> {
             actuators: [(); 2].map(|()| Tmc5160::new(oscillator, Instant::MIN)),
         }
     }
-
-    /// What was done to a chip that its data sheet forbids.
-    #[must_use]
-    pub fn violations(&self, select: Select) -> &Violations {
-        match select {
-            Select::Accelerometer => SpiChip::<Gimbal>::violations(&self.accelerometer),
-            Select::Encoder => SpiChip::<super::Side>::violations(&self.encoders[0]),
-            Select::InnerEncoder => SpiChip::<super::Side>::violations(&self.encoders[1]),
-            Select::Actuator => SpiChip::<super::Side>::violations(&self.actuators[0]),
-            Select::InnerActuator => SpiChip::<super::Side>::violations(&self.actuators[1]),
-            _ => SpiChip::<Gimbal>::violations(&self.gyro),
-        }
-    }
-
-    /// Lets everything happen that is due until `now`, that moment included.
-    pub fn advance(&mut self, now: Instant) {
-        Assembly::advance(self, now);
-    }
 }
 
 impl Assembly for GimbalBoard<'_> {
-    const CHIPS: &'static [Select] = &CHIPS;
+    // The frames move before they are measured.
+    const CHIPS: &'static [Select] = &[
+        Select::Actuator,
+        Select::InnerActuator,
+        Select::Gyro,
+        Select::Accelerometer,
+        Select::Encoder,
+        Select::InnerEncoder,
+    ];
 
     fn with(&mut self, select: Select, task: &mut impl Task) {
         let Self { gimbal, gyro, accelerometer, encoders, actuators } = self;
@@ -83,6 +60,18 @@ impl Assembly for GimbalBoard<'_> {
             Select::InnerActuator => task.perform(inner_actuator, &mut gimbal.inner()),
             _ => {}
         }
+    }
+
+    fn violations(&self, select: Select) -> Option<&Violations> {
+        Some(match select {
+            Select::Gyro => SpiChip::<Gimbal>::violations(&self.gyro),
+            Select::Accelerometer => SpiChip::<Gimbal>::violations(&self.accelerometer),
+            Select::Encoder => SpiChip::<Side>::violations(&self.encoders[0]),
+            Select::InnerEncoder => SpiChip::<Side>::violations(&self.encoders[1]),
+            Select::Actuator => SpiChip::<Side>::violations(&self.actuators[0]),
+            Select::InnerActuator => SpiChip::<Side>::violations(&self.actuators[1]),
+            _ => return None,
+        })
     }
 
     fn move_on(&mut self, now: Instant) {

@@ -256,11 +256,7 @@ impl<'a> Gimbal<'a> {
 
     /// What is felt on a base that moves.
     fn felt_on(&self, motion: &BaseMotion, frames: [StageState; 2]) -> Felt {
-        let attitude = Attitude {
-            azimuth_rad: self.attitude.azimuth_rad + motion.lean.azimuth_rad,
-            pitch_rad: self.attitude.pitch_rad + motion.lean.pitch_rad,
-            roll_rad: self.attitude.roll_rad + motion.lean.roll_rad,
-        };
+        let attitude = motion.moved(&self.attitude);
         let base = self.site.with_attitude(&attitude).on_platform(0.0);
         let own = motion.body_rad_s(&attitude);
         let rate_rad_s = core::array::from_fn(|i| base.rate_rad_s[i] + own[i]);

@@ -13,7 +13,7 @@ mod registers;
 
 use embassy_time::{Duration, Instant};
 
-use crate::clock::period;
+use crate::clock::Cadence;
 use crate::environment::MotionInput;
 use crate::i2c::{I2cChip, Transfer};
 use crate::violation::{Misuse, Violations};
@@ -43,16 +43,9 @@ const NEW: [u8; 2] = [0x01, 0x02];
 /// One sensor at work.
 #[derive(Clone, Copy, Debug)]
 struct Measuring {
-    since: Instant,
-    samples: u64,
-    hertz: f64,
+    outputs: Cadence,
+    /// From when on the outputs are good.
     settled: Instant,
-}
-
-impl Measuring {
-    fn next(&self) -> Instant {
-        period(self.since, self.samples + 1, self.hertz)
-    }
 }
 
 /// The two sensors, in the order of their control registers.
@@ -108,7 +101,7 @@ impl Lsm6dsl {
 
     /// The sensor that is due next.
     fn next(&self) -> Option<(Instant, usize)> {
-        let due = |sensor: usize| self.measuring[sensor].map(|m| (m.next(), sensor));
+        let due = |sensor: usize| self.measuring[sensor].map(|m| (m.outputs.next(), sensor));
         [FORCE, RATE].into_iter().filter_map(due).min()
     }
 
@@ -125,7 +118,7 @@ impl Lsm6dsl {
             environment.rate_rad_s(now).map(|rate| (rate.to_degrees() + pushed) * 1e3 / unit)
         };
         let Some(measuring) = &mut self.measuring[sensor] else { return };
-        measuring.samples += 1;
+        measuring.outputs.count += 1;
         let is_settled = now >= measuring.settled;
         let first = [OUTX_L_XL, OUTX_L_G][sensor];
         for (axis, count) in (0..).zip(counts) {
@@ -208,9 +201,7 @@ impl Lsm6dsl {
     fn switch(&mut self, sensor: usize, now: Instant) {
         let control = self.at([CTRL1_XL, CTRL2_G][sensor]);
         self.measuring[sensor] = hertz(control).map(|hertz| Measuring {
-            since: now,
-            samples: 0,
-            hertz: hertz * self.clock,
+            outputs: Cadence { since: now, count: 1, hertz: hertz * self.clock },
             settled: now + TURN_ON,
         });
     }

@@ -9,6 +9,7 @@ mod registers;
 
 use embassy_time::{Duration, Instant};
 
+use crate::checksum::remainder;
 use crate::chip::{SpiChip, Transaction};
 use crate::environment::ShaftAngle;
 use crate::violation::{Misuse, Violations};
@@ -197,18 +198,6 @@ impl Mt6835 {
         self.violations.record(misuse, command, transaction.now);
         false
     }
-}
-
-/// The remainder of a 24-bit message by x⁸ + x² + x + 1, by long division as on paper.
-fn remainder(message: u32) -> u8 {
-    const DIVISOR: u32 = 0x107;
-    let mut rest = message << 8;
-    for bit in (8..32).rev() {
-        if rest >> bit & 1 == 1 {
-            rest ^= DIVISOR << (bit - 8);
-        }
-    }
-    rest as u8
 }
 
 impl<E: ShaftAngle> SpiChip<E> for Mt6835 {

@@ -9,7 +9,7 @@ use embassy_time::Instant;
 use super::STANDARD_GRAVITY_M_S2;
 use super::journey::{BaseFault, Journey, JourneyConfiguration};
 use super::sway::SwayConfiguration;
-use crate::earth::{Attitude, Site};
+use crate::earth::{Attitude, Site, cross};
 use crate::environment::{ForceInput, MotionInput};
 use crate::instruments::InstrumentsConfiguration;
 use crate::noise::{Generator, White, source};
@@ -148,11 +148,7 @@ impl<'a> Base<'a> {
     /// Where the base leans, and how fast it turns about its own axes, rad/s.
     fn motion(&self, time_s: f64) -> (Attitude, [f64; 3]) {
         let motion = self.sway.at(time_s);
-        let attitude = Attitude {
-            azimuth_rad: self.attitude.azimuth_rad + motion.lean.azimuth_rad,
-            pitch_rad: self.attitude.pitch_rad + motion.lean.pitch_rad,
-            roll_rad: self.attitude.roll_rad + motion.lean.roll_rad,
-        };
+        let attitude = motion.moved(&self.attitude);
         (attitude, motion.body_rad_s(&attitude))
     }
 
@@ -165,10 +161,6 @@ impl<'a> Base<'a> {
         let centripetal = cross(turning, cross(turning, self.lever_m));
         [0, 1, 2].map(|i| tangential[i] + centripetal[i])
     }
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 impl ForceInput for Base<'_> {

@@ -26,11 +26,9 @@ use self::sensors::Sensors;
 use self::trajectory::{Flight, Forces};
 use crate::accelerometer::AccelerometerConfiguration;
 use crate::gyro::GyroConfiguration;
+use crate::plant::STANDARD_GRAVITY_M_S2;
 use crate::stage::first_sample;
 use crate::vehicle::SensorFault;
-
-/// Standard gravity, m/s².
-const GRAVITY_M_S2: f64 = 9.806_65;
 
 /// A spinning body, its flight, its sensors.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,9 +77,9 @@ impl Default for SpinConfiguration<'_> {
             course_deg: 0.0,
             roll_rad: 0.0,
             forces: Forces {
-                gravity_m_s2: GRAVITY_M_S2,
+                gravity_m_s2: STANDARD_GRAVITY_M_S2,
                 drag_per_s: 0.0,
-                lift_m_s2: Profile(&[(0.0, GRAVITY_M_S2)]),
+                lift_m_s2: Profile(&[(0.0, STANDARD_GRAVITY_M_S2)]),
                 side_m_s2: Profile(&[]),
             },
             spin_rad_s: Profile(&[(0.0, 200.0 * core::f64::consts::PI)]),
@@ -160,24 +158,14 @@ impl<'a> SpinWorld<'a> {
         }
     }
 
-    /// The next sample that is not missing; none after the end.
-    pub fn next_sample(&mut self) -> Option<SpinSample> {
-        loop {
-            let sample = self.take()?;
-            if !self.faults.iter().any(|fault| fault.loses(sample.time_s)) {
-                return Some(sample);
-            }
-        }
-    }
-
     /// The truth behind the latest sample.
     #[must_use]
     pub fn truth(&self) -> SpinTruth {
         SpinTruth::of(&self.body, &self.sensors, self.time_s)
     }
 
-    /// The next sample, missing or not.
-    fn take(&mut self) -> Option<SpinSample> {
+    /// The next sample, whether it is missing or not; none after the end.
+    fn sample(&mut self) -> Option<SpinSample> {
         if self.taken == self.count {
             return None;
         }
@@ -193,7 +181,10 @@ impl<'a> SpinWorld<'a> {
 impl Iterator for SpinWorld<'_> {
     type Item = SpinSample;
 
+    /// The next sample that is not missing.
     fn next(&mut self) -> Option<SpinSample> {
-        self.next_sample()
+        let faults = self.faults;
+        core::iter::from_fn(|| self.sample())
+            .find(|sample| !SensorFault::lost(faults, sample.time_s))
     }
 }

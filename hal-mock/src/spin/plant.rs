@@ -12,12 +12,15 @@
 
 use embassy_time::Instant;
 
+use super::board::CHIPS;
 use super::body::{Body, Felt};
-use super::sensors::{Sensors, gyro_seeds};
+use super::sensors::Sensors;
 use super::{SpinConfiguration, SpinTruth};
-use crate::environment::AnalogueInput;
+use crate::chip::Select;
+use crate::converters::Channels;
 use crate::noise::{White, source};
 use crate::plant::seconds;
+use crate::strapdown::gyro_seeds;
 
 /// How many converters there are: of the gyros about x, y and z, of the accelerometers along y and z.
 pub const CHANNELS: usize = 5;
@@ -82,7 +85,7 @@ impl<'a> SpinPlant<'a> {
     #[inline(never)]
     pub fn new(configuration: &SpinPlantConfiguration<'a>, seed: u64) -> Self {
         let c = configuration;
-        let [x, y, z] = gyro_seeds(seed);
+        let [x, y, z] = gyro_seeds(seed, source::SPIN_GYROS);
         // Each converter a stream of its own, off those of the gyros.
         let converter = |own| White::new(c.converter_noise_v, own, source::CONVERTER);
         Self {
@@ -105,12 +108,6 @@ impl<'a> SpinPlant<'a> {
         let mut body = self.body.clone();
         body.advance(time_s);
         SpinTruth::of(&body, &self.sensors, time_s)
-    }
-
-    /// One sensor as its converter sees it: 0 to 2 the gyros about x, y and z, 3 and 4 the accelerometers
-    /// along y and z.
-    pub fn channel(&mut self, channel: usize) -> SensorOutput<'_, 'a> {
-        SensorOutput { plant: self, channel }
     }
 
     /// Means over the sample of a converter that ends at a time in s.
@@ -148,16 +145,11 @@ impl<'a> SpinPlant<'a> {
     }
 }
 
-/// One sensor of the body: what its converter sees.
-#[derive(Debug)]
-pub struct SensorOutput<'p, 'a> {
-    plant: &'p mut SpinPlant<'a>,
-    channel: usize,
-}
+/// Channels 0 to 2 are the gyros about x, y and z, 3 and 4 the accelerometers along y and z.
+impl Channels<CHANNELS> for SpinPlant<'_> {
+    const CHIPS: &'static [Select] = &CHIPS;
 
-impl AnalogueInput for SensorOutput<'_, '_> {
-    fn volts(&mut self, now: Instant) -> f64 {
-        let Self { plant, channel } = self;
-        plant.shown(*channel, seconds(now)) + plant.converters[*channel].sample()
+    fn volts(&mut self, channel: usize, now: Instant) -> f64 {
+        self.shown(channel, seconds(now)) + self.converters[channel].sample()
     }
 }

@@ -131,9 +131,11 @@ pub enum SensorFault {
 }
 
 impl SensorFault {
-    /// Whether the sample that ends at a time in s is missing.
-    pub(crate) fn loses(&self, time_s: f64) -> bool {
-        matches!(*self, Self::Gap { from_s, until_s } if (from_s..until_s).contains(&time_s))
+    /// Whether one of some faults has the sample missing that ends at a time in s.
+    pub(crate) fn lost(faults: &[Self], time_s: f64) -> bool {
+        faults.iter().any(|fault| {
+            matches!(*fault, Self::Gap { from_s, until_s } if (from_s..until_s).contains(&time_s))
+        })
     }
 
     /// What a channel shows of a value at a time in s, after the last one, with faults and full scale on it.

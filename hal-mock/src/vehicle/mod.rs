@@ -142,22 +142,6 @@ pub struct VehicleTruth {
     pub accelerometer_bias_m_s2: [f64; 3],
 }
 
-impl VehicleTruth {
-    /// The truth of this moment.
-    fn of(motion: &Motion, sensors: &Sensors) -> Self {
-        let biases = sensors.biases();
-        Self {
-            attitude: motion.attitude(),
-            position: *motion.position(),
-            displacement_m: motion.displacement_m(),
-            velocity_m_s: motion.velocity_m_s(),
-            gyro_bias_rad_s: biases.rate_rad_s,
-            gyro_scale_error: sensors.scale_errors(),
-            accelerometer_bias_m_s2: biases.force_m_s2,
-        }
-    }
-}
-
 /// A vehicle at work; an iterator of samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vehicle<'a> {
@@ -185,24 +169,14 @@ impl<'a> Vehicle<'a> {
         }
     }
 
-    /// The next sample that is not missing; none after the last leg.
-    pub fn next_sample(&mut self) -> Option<VehicleSample> {
-        loop {
-            let sample = self.take()?;
-            if !self.faults.iter().any(|fault| fault.loses(sample.time_s)) {
-                return Some(sample);
-            }
-        }
-    }
-
     /// The truth behind the latest sample.
     #[must_use]
     pub fn truth(&self) -> VehicleTruth {
-        VehicleTruth::of(&self.motion, &self.sensors)
+        self.sensors.truth(&self.motion)
     }
 
-    /// The next sample, missing or not.
-    fn take(&mut self) -> Option<VehicleSample> {
+    /// The next sample, whether it is missing or not; none after the end.
+    fn sample(&mut self) -> Option<VehicleSample> {
         if self.taken == self.count {
             return None;
         }
@@ -220,8 +194,11 @@ impl<'a> Vehicle<'a> {
 impl Iterator for Vehicle<'_> {
     type Item = VehicleSample;
 
+    /// The next sample that is not missing.
     fn next(&mut self) -> Option<VehicleSample> {
-        self.next_sample()
+        let faults = self.faults;
+        core::iter::from_fn(|| self.sample())
+            .find(|sample| !SensorFault::lost(faults, sample.time_s))
     }
 }
 

@@ -13,7 +13,7 @@ use super::place::{Place, Position};
 use super::route::Route;
 use super::sensors::Means;
 use super::{Event, Pose};
-use crate::earth::{Attitude, Matrix, apply_transposed};
+use crate::earth::{Attitude, Matrix, apply_transposed, cross};
 
 /// Longest panel of the quadrature, s: a tenth of a period of 10 Hz.
 const PANEL_S: f64 = 0.01;
@@ -244,8 +244,4 @@ fn add(total: &mut [f64; 3], vector: [f64; 3], times: f64) {
     for (total, part) in total.iter_mut().zip(vector) {
         *total += part * times;
     }
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

@@ -11,11 +11,15 @@
 use embassy_time::Instant;
 
 use super::averaged::Averaged;
-use super::sensors::{Means, Sensors, gyro_seeds};
+use super::board::CHIPS;
+use super::sensors::{Means, Sensors};
 use super::{VehicleConfiguration, VehicleTruth};
-use crate::environment::{AnalogueInput, ForceInput};
+use crate::chip::Select;
+use crate::converters::Channels;
+use crate::environment::ForceInput;
 use crate::noise::{White, source};
 use crate::plant::{DEGREE_PER_SECOND, STANDARD_GRAVITY_M_S2, seconds};
+use crate::strapdown::gyro_seeds;
 use crate::temperature::{TemperatureConfiguration, Thermometer};
 
 /// Whose reading of the accelerometer is marked, behind the three gyros.
@@ -76,7 +80,7 @@ impl<'a> VehiclePlant<'a> {
             sensors: Sensors::new(&c.vehicle, c.accelerometer_hz, seed),
             temperature: c.vehicle.temperature,
             thermometer: Thermometer::new(&c.vehicle.temperature, seed),
-            converters: gyro_seeds(seed).map(converter),
+            converters: gyro_seeds(seed, source::VEHICLE_GYROS).map(converter),
             volts_per_rad_s: c.gyro_volts_per_rad_s,
             periods_s: [1.0 / c.vehicle.rate_hz, 1.0 / c.accelerometer_hz],
         }
@@ -85,7 +89,7 @@ impl<'a> VehiclePlant<'a> {
     /// What the sensors cannot know, as of the latest reading.
     #[must_use]
     pub fn truth(&self) -> VehicleTruth {
-        VehicleTruth::of(self.motion.motion(), &self.sensors)
+        self.sensors.truth(self.motion.motion())
     }
 
     /// The truth at `now`, which is not before the latest reading.
@@ -93,12 +97,7 @@ impl<'a> VehiclePlant<'a> {
     pub fn truth_at(&self, now: Instant) -> VehicleTruth {
         let mut motion = self.motion.motion().clone();
         motion.advance(seconds(now));
-        VehicleTruth::of(&motion, &self.sensors)
-    }
-
-    /// The gyro about one axis, 0 to 2 for forward, right, down, as its converter sees it.
-    pub fn gyro(&mut self, axis: usize) -> GyroOutput<'_, 'a> {
-        GyroOutput { plant: self, axis }
+        self.sensors.truth(&motion)
     }
 
     /// Means over the sample of a chip that ends at a time in s.
@@ -120,19 +119,18 @@ impl ForceInput for VehiclePlant<'_> {
     }
 }
 
-/// One gyro of the vehicle: what its converter sees.
-#[derive(Debug)]
-pub struct GyroOutput<'p, 'a> {
-    plant: &'p mut VehiclePlant<'a>,
-    axis: usize,
-}
+/// Channels 0 to 2 are the gyros forward, right, down.
+impl Channels<3> for VehiclePlant<'_> {
+    const CHIPS: &'static [Select] = &CHIPS;
 
-impl AnalogueInput for GyroOutput<'_, '_> {
-    fn volts(&mut self, now: Instant) -> f64 {
-        let Self { plant, axis } = self;
+    fn volts(&mut self, axis: usize, now: Instant) -> f64 {
         let time_s = seconds(now);
-        let felt = plant.felt(*axis, time_s);
-        let rate_rad_s = plant.sensors.rate(*axis, time_s, &felt);
-        rate_rad_s * plant.volts_per_rad_s + plant.converters[*axis].sample()
+        let felt = self.felt(axis, time_s);
+        let rate_rad_s = self.sensors.rate(axis, time_s, &felt);
+        rate_rad_s * self.volts_per_rad_s + self.converters[axis].sample()
+    }
+
+    fn force(&mut self) -> Option<&mut dyn ForceInput> {
+        Some(self)
     }
 }

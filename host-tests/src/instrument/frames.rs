@@ -106,7 +106,7 @@ fn align_with<B: Base, W: Observer>(
         session,
         assumed: vec![ASSUMED.to_owned()],
     };
-    let violations = harness::told(mount::violations(&board.borrow()));
+    let violations = harness::told(board);
     let run = harness.clear(&ended, violations, replay);
     Ok(FramesRun { run, axis, kept: Kept::default() })
 }

@@ -8,8 +8,7 @@ use firmware::event::Event;
 use firmware::health::Health;
 use firmware::ports::Observer;
 use firmware::shared::Channels;
-use hal_mock::chip::Select;
-use hal_mock::violation::Violation;
+use hal_mock::assembly::Assembly;
 use orientation::keep::Report;
 use orientation::session::{Session, rotating, stops};
 
@@ -123,7 +122,8 @@ pub(super) fn run(
     virtual_time::run_beside(acquisition, instrument).map_err(|_| RunError::Deadlock)
 }
 
-/// In words, what drivers did that a data sheet forbids.
-pub(super) fn told(violations: impl Iterator<Item = (Select, Violation)>) -> Vec<String> {
-    violations.map(|(select, violation)| format!("{select:?}: {violation}")).collect()
+/// In words, what drivers did to a board's chips that a data sheet forbids.
+pub(super) fn told(board: &RefCell<impl Assembly>) -> Vec<String> {
+    let board = board.borrow();
+    board.recorded().map(|(select, violation)| format!("{select:?}: {violation}")).collect()
 }

@@ -62,7 +62,7 @@ pub fn follow_spin<W: Observer>(
         run_spin(&mut ports, &mut flight, &channels),
     )?;
     drop(channels);
-    let violations = harness::told(spin::violations(&board.borrow()));
+    let violations = harness::told(&board);
     // Another body of the same course, which has not flown yet.
     let fresh = scenario.board(&course, &plan).plant;
     let at = |plant: &SpinPlant, time: Instant| {

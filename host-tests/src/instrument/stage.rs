@@ -114,6 +114,6 @@ fn align_with<B: Base, R: Recorder, W: Observer>(
         session,
         assumed: assumed.map(str::to_owned).collect(),
     };
-    let violations = harness::told(simulated::violations(&board.borrow()));
+    let violations = harness::told(board);
     Ok(harness.clear(&ended, violations, replay))
 }

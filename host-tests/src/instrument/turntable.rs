@@ -4,7 +4,6 @@ use std::cell::RefCell;
 
 use firmware::ports::{Observer, Recorder};
 use firmware::run::{acquire, run_rotating, run_storing};
-use firmware::simulated;
 use firmware::simulated::fault::{Fault, FaultyRecorder};
 use firmware::simulated::flash::Flash;
 use firmware::simulated::turntable::{self, TurntableScenario};
@@ -82,7 +81,7 @@ pub fn align_turning_again<R: Recorder, W: Observer>(
         }
     };
     let ended = harness::run(acquire(&mut sensors, &configuration, &channels), instrument)?;
-    let violations = harness::told(simulated::violations(&board.borrow()));
+    let violations = harness::told(&board);
     let rate = board.borrow().plant.truth().stage.rate_rad_s;
     Ok(TurntableRun { run: harness.clear(&ended, violations, session), rate })
 }

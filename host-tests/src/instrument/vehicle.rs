@@ -117,7 +117,7 @@ fn align_on<R: Recorder<InertialSample>, W: Observer>(
         run_stops_and_keep(&mut ports, &mut session, &mut keeping, &channels),
     )?;
     let truth = board.borrow().plant.truth();
-    let violations = harness::told(vehicle::violations(&board.borrow()));
+    let violations = harness::told(board);
     let run = harness.clear(&ended, violations, session);
     Ok(VehicleRun { run, truth, kept: Kept::default() })
 }

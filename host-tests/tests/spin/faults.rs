@@ -58,7 +58,7 @@ fn followed(body: &SpinConfiguration, seed: u64) -> Vec<Seen> {
         ..Setting::new(1.0 / RATE_HZ)
     });
     let mut seen = Vec::new();
-    while let Some(sample) = world.next_sample() {
+    while let Some(sample) = world.next() {
         spin.push(&converter.sample(sample.time_s, sample.rate_rad_s, sample.force_m_s2));
         seen.push(Seen {
             time_s: sample.time_s,

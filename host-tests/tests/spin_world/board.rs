@@ -7,10 +7,12 @@ use drivers::ads1262::Ads1262;
 use drivers::ads1262::configuration::{Configuration, DataRate};
 use embassy_time::{Delay, Duration, Instant, Timer};
 use embedded_hal::digital::OutputPin;
+use hal_mock::assembly::Assembly;
 use hal_mock::chip::{Rig, Select};
+use hal_mock::converters::StartPin;
 use hal_mock::fault::Blackout;
 use hal_mock::spi::{ReadyPin, SpiPort};
-use hal_mock::spin::board::{CHIPS, SpinBoard, StartPin};
+use hal_mock::spin::board::{CHIPS, SpinBoard};
 use hal_mock::spin::plant::{SpinPlant, SpinPlantConfiguration};
 use hal_mock::violation::Violations;
 

@@ -153,7 +153,7 @@ impl Day {
         let mut carried = [0.0; 3];
         let mut next = 0;
         let start = vehicle.truth().attitude.azimuth_rad;
-        while let Some(mut sample) = vehicle.next_sample() {
+        while let Some(mut sample) = vehicle.next() {
             if change(&mut sample) {
                 session.handle(Event::Sample(&converted(
                     &sample,

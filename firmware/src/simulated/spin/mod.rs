@@ -9,14 +9,13 @@ use drivers::ads1262::{Ads1262, GREATEST_BUS_HERTZ};
 use embassy_time::Delay;
 use hal_mock::accelerometer::AccelerometerConfiguration;
 use hal_mock::ads1262::Ads1262 as SimulatedConverter;
-use hal_mock::chip::{Rig, Select};
+use hal_mock::chip::Rig;
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::spi::ReadyPin;
 use hal_mock::spin::SpinConfiguration as World;
 use hal_mock::spin::board::{CHIPS, SpinBoard};
 use hal_mock::spin::plant::{SpinPlant, SpinPlantConfiguration};
 use hal_mock::spin::profile::Profile;
-use hal_mock::violation::{Violation, Violations};
 use orientation::keep::spin::{Method, Setting};
 use orientation::units::{DEGREE_PER_SQRT_HOUR, TURN};
 
@@ -187,12 +186,4 @@ pub fn sensors<'a, B: Rig, A: Around>(
         let ready = around.line(select, ReadyPin::new(board, select));
         AnalogueSensor(Ads1262::new(bus, ready, Delay, converter).clocked())
     }))
-}
-
-/// What the drivers did that a data sheet forbids.
-pub fn violations<'a>(board: &'a SpinBoard) -> impl Iterator<Item = (Select, Violation)> + 'a {
-    CHIPS.into_iter().flat_map(|select| {
-        let found = board.violations(select).into_iter().flat_map(Violations::first);
-        found.map(move |violation| (select, *violation))
-    })
 }

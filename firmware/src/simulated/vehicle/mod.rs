@@ -20,10 +20,9 @@ use hal_mock::chip::{Rig, Select};
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::plant::sway::{SwayComponent, SwayConfiguration};
 use hal_mock::spi::ReadyPin;
-use hal_mock::vehicle::board::{CHIPS, GYROS, VehicleBoard};
+use hal_mock::vehicle::board::{GYROS, VehicleBoard};
 use hal_mock::vehicle::plant::{VehiclePlant, VehiclePlantConfiguration};
 use hal_mock::vehicle::{self as world, Drive, Event, Leg, Stop, VehicleConfiguration};
-use hal_mock::violation::{Violation, Violations};
 use orientation::align::setting;
 use orientation::align::stops::Setting;
 use orientation::earth::Latitude;
@@ -264,7 +263,7 @@ impl VehicleScenario {
         let mut board = VehicleBoard::new(VehiclePlant::new(&plant, self.base.seed));
         board.blackouts = &plan.blackouts;
         // One oscillator for all three.
-        board.gyros.iter_mut().for_each(SimulatedConverter::clock_externally);
+        board.converters.iter_mut().for_each(SimulatedConverter::clock_externally);
         board
     }
 
@@ -402,12 +401,4 @@ pub fn sensors<'a, B: Rig, A: Around>(
         gyros: GYROS.map(gyro),
         accelerometer: chips::PlatformAccelerometer(Adxl355::new(accelerometer, Delay, rate)),
     }
-}
-
-/// What the drivers did that a data sheet forbids.
-pub fn violations<'a>(board: &'a VehicleBoard) -> impl Iterator<Item = (Select, Violation)> + 'a {
-    CHIPS.into_iter().flat_map(|select| {
-        let found = board.violations(select).into_iter().flat_map(Violations::first);
-        found.map(move |violation| (select, *violation))
-    })
 }

@@ -236,7 +236,7 @@ impl Fitting {
         let mut marks = Vec::new();
         let mut is_handed = false;
         let mut next_s = self.rest_s + MARK_S;
-        while let Some(sample) = vehicle.next_sample() {
+        while let Some(sample) = vehicle.next() {
             board.push(&sample);
             if !is_handed && sample.time_s >= self.rest_s {
                 is_handed = true;

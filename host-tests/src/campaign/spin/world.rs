@@ -59,7 +59,7 @@ impl Flight<'_> {
         let mut recorded =
             Recorded { samples: Vec::new(), rolls_rad: Vec::new(), lifts_m_s2: Vec::new(), noise };
         let mut converter = Converter::new(1.0 / RATE_HZ);
-        while let Some(Shown { time_s, rate_rad_s, force_m_s2 }) = world.next_sample() {
+        while let Some(Shown { time_s, rate_rad_s, force_m_s2 }) = world.next() {
             let truth = world.truth();
             recorded.samples.push(converter.sample(time_s, rate_rad_s, force_m_s2));
             recorded.rolls_rad.push(truth.roll_rad);

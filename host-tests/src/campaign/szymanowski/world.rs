@@ -80,7 +80,7 @@ pub fn live(day: &Scenario, seed: u64, told: Told) -> Day {
     let (mut first, mut whole) = (Averages::default(), Averages::default());
     let mut path = Converter::default();
     let mut start = None;
-    while let Some(sample) = vehicle.next_sample() {
+    while let Some(sample) = vehicle.next() {
         let truth = vehicle.truth();
         start.get_or_insert(truth.attitude.azimuth_rad);
         whole.push(sample.turned_rad, sample.force_m_s2);

@@ -96,7 +96,7 @@ impl Flight {
         configuration.forces.lift_m_s2 = Profile(&self.lift_m_s2);
         let mut world = SpinWorld::new(&configuration, self.seed);
         let (mut rows, mut rolls_rad) = (Vec::new(), Vec::new());
-        while let Some(sample) = world.next_sample() {
+        while let Some(sample) = world.next() {
             let [rate_rad_s, ..] = sample.rate_rad_s;
             let (line, time_s) = (rows.len() as u64 + 1, sample.time_s);
             rows.push(SpinRow { line, time_s, rate_rad_s, force_m_s2: sample.force_m_s2 });

@@ -163,7 +163,7 @@ impl Bench {
         let mut fixes = Chance::new(self.seed, FAULT + 1);
         let mut middles = stops.iter().map(|[from, to]| 0.5 * (from + to)).peekable();
         let (mut rows, mut places) = (Vec::new(), Vec::new());
-        while let Some(sample) = vehicle.next_sample() {
+        while let Some(sample) = vehicle.next() {
             let rates = sample.turned_rad.map(|angle| angle * configuration.rate_hz);
             rows.push(ImuRow {
                 line: rows.len() as u64 + 1,

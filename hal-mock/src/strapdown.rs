@@ -1,0 +1,111 @@
+//! Three gyros and up to three accelerometers fixed to a body, with their full scales and faults.
+
+use crate::accelerometer::{Accelerometer, AccelerometerConfiguration};
+use crate::gyro::{Gyro, GyroConfiguration};
+use crate::noise::Generator;
+use crate::vehicle::SensorFault;
+
+/// What is fixed to a body, and what goes wrong with it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StrapdownConfiguration<'a> {
+    /// The gyros; each draws for itself.
+    pub(crate) gyros: [GyroConfiguration; 3],
+    /// Readings of a gyro per second, Hz, > 0.
+    pub(crate) rate_hz: f64,
+    /// Rates at which the gyros clip, rad/s, > 0.
+    pub(crate) rate_limits_rad_s: [f64; 3],
+    /// The accelerometers.
+    pub(crate) accelerometer: AccelerometerConfiguration,
+    /// Readings of the accelerometers per second, Hz, > 0.
+    pub(crate) accelerometer_hz: f64,
+    /// Force at which an accelerometer clips, m/s², > 0.
+    pub(crate) force_limit_m_s2: f64,
+    /// What goes wrong, in any order; channels 0 to 2 are the gyros, those from 3 on the accelerometers.
+    pub(crate) faults: &'a [SensorFault],
+}
+
+/// A seed for each of three gyros, from as many streams of a seed: none shares a stream with another.
+pub(crate) fn gyro_seeds(seed: u64, streams: [u64; 3]) -> [u64; 3] {
+    streams.map(|index| Generator::stream(seed, index).next_u64())
+}
+
+/// The sensors at work, of which the last `N` axes of the accelerometer are looked at.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Strapdown<'a, const N: usize> {
+    gyros: [Gyro; 3],
+    accelerometer: Accelerometer,
+    rate_limits_rad_s: [f64; 3],
+    force_limit_m_s2: f64,
+    faults: &'a [SensorFault],
+    /// What was shown last: rates, rad/s, and forces, m/s².
+    rates_rad_s: [f64; 3],
+    forces_m_s2: [f64; N],
+}
+
+impl<'a, const N: usize> Strapdown<'a, N> {
+    /// Sensors whose gyros draw from the seeds of three streams of a seed.
+    pub(crate) fn new(c: &StrapdownConfiguration<'a>, seed: u64, streams: [u64; 3]) -> Self {
+        let seeds = gyro_seeds(seed, streams);
+        Self {
+            gyros: [0, 1, 2].map(|axis: usize| Gyro::new(&c.gyros[axis], c.rate_hz, seeds[axis])),
+            accelerometer: Accelerometer::new(&c.accelerometer, c.accelerometer_hz, seed),
+            rate_limits_rad_s: c.rate_limits_rad_s,
+            force_limit_m_s2: c.force_limit_m_s2,
+            faults: c.faults,
+            rates_rad_s: [0.0; 3],
+            forces_m_s2: [0.0; N],
+        }
+    }
+
+    /// What a gyro shows next, rad/s, of a rate about its axis in rad/s and a specific force along it and
+    /// along the next axis in g. Call at its rate.
+    pub(crate) fn rate(
+        &mut self,
+        axis: usize,
+        time_s: f64,
+        rate_rad_s: f64,
+        force_g: [f64; 2],
+        temperature_c: f64,
+    ) -> f64 {
+        let gyro = &mut self.gyros[axis];
+        let steady_rad_s = gyro.steady(rate_rad_s, force_g);
+        let value = gyro.sample(steady_rad_s, time_s, temperature_c);
+        let (last, full) = (self.rates_rad_s[axis], self.rate_limits_rad_s[axis]);
+        let shown = SensorFault::spoilt(self.faults, axis, time_s, [value, last], full);
+        self.rates_rad_s[axis] = shown;
+        shown
+    }
+
+    /// What the accelerometers show next, m/s², of a specific force in m/s². Call at their rate.
+    pub(crate) fn force(&mut self, time_s: f64, force_m_s2: [f64; 3]) -> [f64; N] {
+        let values = self.accelerometer.sample(force_m_s2);
+        let (last, full) = (self.forces_m_s2, self.force_limit_m_s2);
+        self.forces_m_s2 = core::array::from_fn(|index| {
+            let value = [values[3 - N + index], last[index]];
+            SensorFault::spoilt(self.faults, 3 + index, time_s, value, full)
+        });
+        self.forces_m_s2
+    }
+
+    /// Whether one of the latest outputs is at its full scale.
+    pub(crate) fn is_clipped(&self) -> bool {
+        let mut rates = self.rates_rad_s.iter().zip(self.rate_limits_rad_s);
+        rates.any(|(rate, limit)| rate.abs() >= limit)
+            || self.forces_m_s2.iter().any(|force| force.abs() >= self.force_limit_m_s2)
+    }
+
+    /// Turn-on biases of the gyros, rad/s.
+    pub(crate) fn gyro_biases_rad_s(&self) -> [f64; 3] {
+        [0, 1, 2].map(|axis: usize| self.gyros[axis].bias_rad_s())
+    }
+
+    /// Biases of the accelerometers, m/s², along all three axes.
+    pub(crate) fn accelerometer_biases_m_s2(&self) -> [f64; 3] {
+        self.accelerometer.bias_m_s2()
+    }
+
+    /// Scale factor errors of the gyros, 1.
+    pub(crate) fn scale_errors(&self) -> [f64; 3] {
+        [0, 1, 2].map(|axis: usize| self.gyros[axis].scale_error())
+    }
+}
