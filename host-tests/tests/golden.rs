@@ -6,6 +6,7 @@
 
 #![allow(clippy::expect_used, reason = "a test that cannot go on has failed")]
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::fs;
 use std::io::{Read, Write};
@@ -219,4 +220,53 @@ fn describe(text: &mut String, outcome: &Outcome) {
 fn hexadecimal(bits: &[Option<u64>]) -> String {
     let one = |bits: &Option<u64>| bits.map_or_else(|| "-".to_owned(), |bits| format!("{bits:x}"));
     bits.iter().map(one).collect::<Vec<_>>().join(" ")
+}
+
+/// The keys that `README.md` lists: what stands in the code marks of its tables.
+fn listed() -> BTreeSet<String> {
+    let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
+    let text = fs::read_to_string(readme).expect("the list is there");
+    let rows = text.lines().filter(|line| line.starts_with("| `"));
+    rows.flat_map(|row| row.split('`').skip(1).step_by(2)).map(str::to_owned).collect()
+}
+
+/// All keys of a value, those of what it holds too.
+fn keys(value: &Value, into: &mut BTreeSet<String>) {
+    match value {
+        Value::Object(fields) => {
+            for (key, value) in fields {
+                into.insert(key.clone());
+                keys(value, into);
+            }
+        }
+        Value::Array(values) => values.iter().for_each(|value| keys(value, into)),
+        _ => {}
+    }
+}
+
+#[test]
+fn every_object_of_a_run_or_replay_keeps_the_contract_of_the_readme() {
+    let (list, listed) = (fs::read_to_string(folder().join("commands.txt")), listed());
+    let list = list.expect("the list is there");
+    let mut found = BTreeSet::new();
+    for Golden { name, .. } in ["run", "replay"].iter().flat_map(|family| goldens(&list, family)) {
+        let file = folder().join(format!("{name}.json"));
+        let text = fs::read_to_string(file).expect("every command has its golden files");
+        let (exit, object) = text.split_once('\n').expect("the exit code stands first");
+        let object: Value = serde_json::from_str(object).expect("an object follows");
+        keys(&object, &mut found);
+        let is_ok = object["status"] == "ok";
+        assert_eq!(is_ok, exit == "exit 0", "{name}");
+        assert_eq!(is_ok, object.get("reason").is_none(), "{name}: a refusal has a reason");
+        if object["status"] == "failed" {
+            continue;
+        }
+        assert_eq!(object["schema"], 1, "{name}");
+        assert!(object["file"].is_string() != object["seed"].is_u64(), "{name}: one of both");
+        assert!(is_ok || object.get("azimuth_deg").is_none(), "{name}: none where refused");
+        let sigma = object.get("sigma_deg").and_then(Value::as_f64);
+        assert!(!is_ok || sigma.is_some_and(|sigma| sigma > 0.0), "{name}: a result has its σ");
+    }
+    let unlisted: Vec<_> = found.difference(&listed).collect();
+    assert!(unlisted.is_empty(), "not in README.md: {unlisted:?}");
 }
