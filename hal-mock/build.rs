@@ -51,7 +51,7 @@ fn solve() -> [f64; LAYERS + 1] {
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo::rerun-if-changed=build.rs");
     let edges = solve();
-    // Bit patterns are exact; nobody reads their digits.
+    // Bit patterns are exact; their digits are not for reading.
     let mut text = String::from("#[allow(clippy::unreadable_literal)]\n");
     writeln!(text, "static EDGES: [f64; {}] = [", edges.len())?;
     for edge in edges {

@@ -25,7 +25,9 @@ impl AccelerometerConfiguration {
 /// An accelerometer at work: what it drew at start and the state of its noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Accelerometer {
+    /// Biases of x, y, z as drawn at this start, m/s².
     bias_m_s2: [f64; 3],
+    /// White noise, m/s², drawn for x, y, z in turn.
     white: White,
 }
 
@@ -68,8 +70,11 @@ impl Accelerometer {
 /// output.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Lever {
+    /// From the axis to the accelerometer along the gyro's axis and 90° clockwise of it, m.
     arm_m: [f64; 2],
+    /// When the latest output came, s.
     seen_s: f64,
+    /// The stage's rate at the latest output, rad/s.
     seen_rad_s: f64,
 }
 

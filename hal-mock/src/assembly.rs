@@ -20,6 +20,9 @@ pub trait Task {
 }
 
 /// Chips around a world.
+///
+/// A board implements what names its parts; [`Assembly::advance`] and what it is made of are the same for
+/// every board. Times that boards are asked for never fall.
 pub trait Assembly {
     /// The chips, in the order in which they act at equal times.
     const CHIPS: &'static [Select];

@@ -1,4 +1,8 @@
 //! The board of a single-axis stage: four chips on one bus around one plant.
+//!
+//! The chips are of any type, so that a test can put its own in their place. At equal times the actuator
+//! acts first: the stage moves before it is measured, and a conversion sees it where it was when the
+//! conversion ended.
 
 use embassy_time::Instant;
 

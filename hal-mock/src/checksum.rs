@@ -1,4 +1,6 @@
 //! The checksum of the ADS1262 (CRC mode) and of the MT6835: both divide by x⁸ + x² + x + 1.
+//!
+//! Own reading, by long division: a driver's table or shift register is checked against it.
 
 /// The divisor x⁸ + x² + x + 1.
 const DIVISOR: u32 = 0x107;

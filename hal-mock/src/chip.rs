@@ -4,7 +4,8 @@ use embassy_time::{Duration, Instant};
 
 use crate::violation::Violations;
 
-/// The select line of one chip on the board.
+/// The select line of one chip on the board. Not every board has every line
+/// ([`crate::assembly::Assembly::CHIPS`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Select {
     /// The converter of the precise gyro; of several on one body, that of the one forward.
@@ -34,7 +35,7 @@ pub enum Select {
 /// One transaction as the chip sees it, from select low to select high.
 #[derive(Clone, Copy, Debug)]
 pub struct Transaction<'a> {
-    /// When select fell.
+    /// When the select line fell.
     pub now: Instant,
     /// Bus clock, Hz.
     pub hertz: u32,
@@ -42,17 +43,17 @@ pub struct Transaction<'a> {
     pub sent: &'a [u8],
 }
 
-/// Time that so many bytes take on a bus clocked at `hertz` (> 0), rounded up to microseconds.
+/// Time that `bytes` bytes take on a bus clocked at `hertz` (> 0), rounded up to microseconds.
 pub(crate) fn bus_time(bytes: usize, hertz: u32) -> Duration {
     Duration::from_micros((bytes as u64 * 8_000_000).div_ceil(u64::from(hertz)))
 }
 
-/// A data-ready line.
+/// A data-ready line of a chip at one moment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ReadyLine {
-    /// Whether the line is active: data that nobody has read.
+    /// Whether the line is active: there are data that the bus has not read.
     pub active: bool,
-    /// When it becomes active again, where it does of itself.
+    /// When the line becomes active again, where the chip brings that about without an access.
     pub next: Option<Instant>,
 }
 
@@ -73,10 +74,10 @@ pub trait SpiChip<E: ?Sized> {
         ReadyLine::default()
     }
 
-    /// Loses its supply for a moment and starts again at `now` with its reset values.
+    /// Loses the supply for a moment and starts again at `now` with its reset values.
     fn power_cycle(&mut self, now: Instant);
 
-    /// What was done to it that its data sheet forbids.
+    /// What was done to the chip that its data sheet forbids.
     fn violations(&self) -> &Violations;
 }
 
@@ -99,12 +100,12 @@ pub trait Rig {
     fn power_cycle(&mut self, select: Select, now: Instant);
 }
 
-/// One chip alone with its environment.
+/// One chip alone with its environment, on a bus of its own: it answers on every select line.
 #[derive(Clone, Debug)]
 pub struct Single<C, E> {
     /// The chip.
     pub chip: C,
-    /// What surrounds it.
+    /// What the chip measures or moves.
     pub environment: E,
 }
 

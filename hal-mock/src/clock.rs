@@ -11,7 +11,9 @@ use embassy_time_queue_utils::Queue;
 /// A clock of microseconds that stands still until it is advanced.
 #[derive(Debug)]
 pub struct VirtualClock {
+    /// Ticks since the start, µs.
     now: u64,
+    /// What is to be woken, and when.
     queue: Queue,
 }
 
@@ -28,7 +30,8 @@ impl VirtualClock {
         self.now
     }
 
-    /// Wakes the waker when the clock reaches `at`, in ticks; at once where it has.
+    /// Wakes the waker when the clock reaches `at`, in ticks (µs) since the start; at once where it has.
+    /// There is room for sixteen wakers (`generic-queue-16`).
     pub fn schedule_wake(&mut self, at: u64, waker: &Waker) {
         if at <= self.now {
             waker.wake_by_ref();
@@ -37,8 +40,8 @@ impl VirtualClock {
         }
     }
 
-    /// Jumps to the next moment for which somebody waits and wakes all who wait for it; `false`, and
-    /// no jump, where nobody does.
+    /// Jumps to the next moment for which a future waits and wakes all that wait for it. Without any it
+    /// stands still and returns `false`.
     pub fn advance(&mut self) -> bool {
         let next = self.queue.next_expiration(self.now);
         if next == u64::MAX {

@@ -39,7 +39,9 @@ pub trait Channels<const N: usize> {
 /// One channel of a plant: what its converter sees.
 #[derive(Debug)]
 pub struct Channel<'p, P, const N: usize> {
+    /// What all channels belong to.
     plant: &'p mut P,
+    /// Number of the channel, 0 to `N` − 1.
     channel: usize,
 }
 
@@ -71,7 +73,8 @@ impl<P: Channels<N>, const N: usize> ConverterBoard<'_, P, N> {
         Self { plant, converters, accelerometer, blackouts: &[] }
     }
 
-    /// The level of the converters' START line changes at `now`.
+    /// The level of the converters' START line changes at `now`: all of them begin to convert with its
+    /// rise and end with its fall. Everything that is due until then happens first.
     pub fn set_start(&mut self, is_high: bool, now: Instant) {
         self.advance(now);
         self.converters.iter_mut().for_each(|converter| converter.set_start(is_high, now));
@@ -120,6 +123,7 @@ impl<P: Channels<N>, const N: usize> Assembly for ConverterBoard<'_, P, N> {
 /// The line that starts all converters of a board.
 #[derive(Debug)]
 pub struct StartPin<'r, B> {
+    /// The board whose converters it starts.
     board: &'r RefCell<B>,
 }
 

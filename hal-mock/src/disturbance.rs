@@ -24,7 +24,7 @@ pub enum Disturbance {
     },
     /// A small steady rate, as of a base that sinks or is leant upon.
     Nudge {
-        /// Beginning, s from the first sample.
+        /// Beginning of the rate, s from the first sample.
         start_s: f64,
         /// Duration, s.
         seconds: f64,
@@ -33,7 +33,7 @@ pub enum Disturbance {
     },
     /// A steady force on the accelerometer.
     Push {
-        /// Beginning, s from the first sample.
+        /// Beginning of the force, s from the first sample.
         start_s: f64,
         /// Duration, s.
         seconds: f64,

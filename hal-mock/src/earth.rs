@@ -80,8 +80,11 @@ impl Attitude {
 /// A place on Earth and the attitude of the base that stands on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Site {
+    /// Matrix from body to navigation axes.
     body_to_navigation: Matrix,
+    /// Earth rate in north, east, down, rad/s.
     earth_rate_rad_s: [f64; 3],
+    /// Normal gravity there, m/s².
     gravity_m_s2: f64,
 }
 
@@ -96,7 +99,7 @@ impl Site {
         }
     }
 
-    /// The same place under a base of another attitude.
+    /// This place under a base of another attitude.
     #[must_use]
     pub fn with_attitude(&self, attitude: &Attitude) -> Self {
         Self { body_to_navigation: attitude.body_to_navigation(), ..*self }

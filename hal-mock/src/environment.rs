@@ -17,7 +17,7 @@ pub trait ForceInput {
     /// 9.80665 m/s².
     fn force_g(&mut self, now: Instant) -> [f64; 3];
 
-    /// Temperature, °C.
+    /// Temperature that the chip's thermometer shows at `now`, °C.
     fn temperature_c(&mut self, now: Instant) -> f64;
 }
 
@@ -40,10 +40,11 @@ pub trait ShaftAngle {
 
 /// What a stepper motor moves.
 pub trait Mechanics {
-    /// The motor's field stands at `microsteps` and turns at `microsteps_per_s` from `now` on.
+    /// The motor's field stands at `microsteps` (1/256 of a full step, from power-on) and turns at
+    /// `microsteps_per_s` from `now` on.
     fn drive(&mut self, now: Instant, microsteps: f64, microsteps_per_s: f64);
 
-    /// Whether the motor cannot follow.
+    /// Whether the motor cannot follow its field, as a stage that is held or stands at an end.
     fn is_blocked(&self) -> bool;
 
     /// Whether the left and the right reference switch are touched.

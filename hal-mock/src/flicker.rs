@@ -19,8 +19,11 @@ const HOLD: f64 = 1.0 / 16.0;
 /// One Gauss–Markov process with its exact discretisation: x ← keep·x + kick·w.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Process {
+    /// Where the process stands, in the unit of the noise.
     value: f64,
+    /// What is left of it after one step, 1.
     keep: f64,
+    /// Deviation of what a step adds, in the unit of the noise.
     kick: f64,
 }
 
@@ -32,7 +35,7 @@ impl Process {
         Self { value: sigma * noise.gaussian(), keep: libm::exp(-step), kick }
     }
 
-    /// Moves on by one hold; returns the change.
+    /// Moves on by one hold; returns by how much the value has changed.
     fn update(&mut self, noise: &mut Generator) -> f64 {
         let before = self.value;
         self.value = self.keep * before + self.kick * noise.gaussian();
@@ -40,8 +43,8 @@ impl Process {
     }
 }
 
-/// How often a process of corner `corner` in rad/s is updated that is sampled every `interval_s`: once
-/// in so many samples, as a power of two.
+/// How seldom a process of corner `corner` in rad/s is updated that is sampled every `interval_s`: once
+/// in 2ᵖ samples, of which this is the power p.
 fn hold(corner: f64, interval_s: f64) -> u8 {
     let mut power = 0;
     while 2.0 * (1_u64 << power) as f64 * corner * interval_s <= HOLD && power < 40 {
@@ -55,11 +58,15 @@ fn hold(corner: f64, interval_s: f64) -> u8 {
 pub struct Flicker {
     /// Fastest first, so that an update can stop at the first that is held.
     processes: [Process; MAXIMUM],
-    /// Each is updated when the counter ends in so many zero bits.
+    /// For each process the number of zero bits in which the counter of samples ends when it is updated.
     holds: [u8; MAXIMUM],
+    /// How many of the processes there are.
     count: usize,
+    /// Sum of all of them.
     sum: f64,
+    /// Samples that were taken.
     samples: u64,
+    /// Where the steps are drawn from.
     noise: Generator,
 }
 

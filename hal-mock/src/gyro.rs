@@ -103,20 +103,33 @@ impl GyroConfiguration {
 /// A gyro at work: what it drew at start, what of its errors is steady, and the state of its noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gyro {
+    /// g-sensitivity along the sensitive axis and 90° clockwise of it, °/h/g.
     g_sensitivity_deg_h_g: [f64; 2],
+    /// Rate ramp, °/h².
     r_deg_h2: f64,
+    /// Temperature coefficient of the bias, °/h/°C.
     temperature_deg_h_c: f64,
+    /// Temperature at which the bias is stated, °C.
     reference_c: f64,
     /// Sine and cosine of the axis's elevation.
     elevation: [f64; 2],
+    /// Turn-on bias of this start, rad/s.
     bias_rad_s: f64,
+    /// Scale factor error of this start, 1.
     scale_error: f64,
+    /// Angle random walk: white noise of the rate, rad/s.
     white: White,
+    /// Steps of the rate random walk, rad/s.
     walk: White,
+    /// Where the rate random walk stands, rad/s.
     walked_rad_s: f64,
+    /// Bias instability, rad/s.
     flicker: Flicker,
+    /// What is left of a laser gyro's dither.
     dither: Dither,
+    /// The least step of its angle.
     quantiser: Quantiser,
+    /// The dynamics of a molecular-electronic sensor.
     molecular: Option<Molecular>,
 }
 
@@ -184,8 +197,9 @@ impl Gyro {
         self.sample_under([0.0; 2], steady_rad_s, elapsed_s, temperature_c)
     }
 
-    /// The same under a specific force on platform x and y, g, which matters to a molecular-electronic
-    /// sensor beyond what [`Gyro::steady`] has of it. Call `rate_hz` times a second.
+    /// The next output, rad/s, as [`Gyro::sample`] gives it, under a specific force on platform x and y
+    /// in g: a molecular-electronic sensor answers to it beyond what [`Gyro::steady`] has of it. Call
+    /// `rate_hz` times a second.
     #[inline]
     pub fn sample_under(
         &mut self,
@@ -214,6 +228,7 @@ impl Gyro {
 /// White noise of the angle, as the rate shows it: each sample takes back what the one before it had.
 #[derive(Clone, Debug, PartialEq)]
 struct Dither {
+    /// Noise of the angle over one sample, rad/s.
     white: White,
     /// The last one, rad/s over one sample.
     last_rad_s: f64,

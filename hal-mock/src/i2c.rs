@@ -1,6 +1,6 @@
 //! The I²C side of the simulated chips: `embedded-hal-async` in front, transfers behind.
 //!
-//! A transfer takes the time of its bits at the bus clock; the chip sees it when it begins. Whoever
+//! A transfer takes the time of its bits at the bus clock; the chip sees it when it begins. A chip that
 //! is not addressed, or not ready, does not acknowledge.
 
 use core::cell::RefCell;
@@ -18,7 +18,7 @@ const LONGEST: usize = 64;
 /// One transfer as a chip sees it: bytes written, then, after a repeated start, bytes read.
 #[derive(Clone, Copy, Debug)]
 pub struct Transfer<'a> {
-    /// When it began.
+    /// When the start condition came.
     pub now: Instant,
     /// Bus clock, Hz.
     pub hertz: u32,
@@ -29,7 +29,7 @@ pub struct Transfer<'a> {
 }
 
 impl Transfer<'_> {
-    /// When the byte of this index of the reply goes over the bus, to the next microsecond.
+    /// When the reply's byte number `index`, from 0, goes over the bus, to the next microsecond.
     #[must_use]
     pub fn time_of(&self, index: usize) -> Instant {
         self.now + bits(bit_times(self.sent.len()) + bit_times(index), self.hertz)
@@ -44,20 +44,20 @@ pub trait I2cChip<E> {
     /// Does what is due at [`Self::next_event`].
     fn event(&mut self, environment: &mut E);
 
-    /// Takes a transfer and answers it into `reply`; whether it acknowledged. All events up to its
-    /// begin have happened.
+    /// Takes a transfer and answers it into `reply`; tells whether it acknowledged. All events up to the
+    /// beginning of the transfer have happened.
     fn transfer(&mut self, environment: &mut E, transfer: &Transfer, reply: &mut [u8]) -> bool;
 
     /// Loses its supply for a moment and starts again at `now` with its reset values.
     fn power_cycle(&mut self, now: Instant);
 
-    /// What was done to it that its data sheet forbids.
+    /// What was done to the chip that its data sheet forbids.
     fn violations(&self) -> &Violations;
 }
 
 /// Chips that can be addressed through [`I2cPort`].
 pub trait I2cRig {
-    /// Takes a transfer; whether anybody acknowledged.
+    /// Takes a transfer of any address; tells whether a chip acknowledged.
     fn transfer(&mut self, transfer: &Transfer, reply: &mut [u8]) -> bool;
 }
 
@@ -86,7 +86,9 @@ impl<C: I2cChip<E>, E> I2cRig for Single<C, E> {
 /// The bus of a rig.
 #[derive(Debug)]
 pub struct I2cPort<'a, R> {
+    /// The chips on the bus.
     rig: &'a RefCell<R>,
+    /// Bus clock, Hz.
     hertz: u32,
 }
 
@@ -124,12 +126,12 @@ impl<R: I2cRig> I2c for I2cPort<'_, R> {
     }
 }
 
-/// Bit times of a start, an address and so many bytes, each with its acknowledge.
+/// Bit times of a start, an address and `bytes` bytes, each with its acknowledge.
 const fn bit_times(bytes: usize) -> usize {
     1 + 9 * (1 + bytes)
 }
 
-/// Time of so many bits, rounded up to microseconds.
+/// Time of `count` bits, rounded up to microseconds.
 fn bits(count: usize, hertz: u32) -> Duration {
     Duration::from_micros((count as u64 * 1_000_000).div_ceil(u64::from(hertz)))
 }

@@ -54,7 +54,8 @@ impl Default for InstrumentsConfiguration {
 }
 
 impl InstrumentsConfiguration {
-    /// The same on a base that leans by `tilt_deg` with its axis at stage angle `uphill_deg` uphill
+    /// These instruments on a base that leans by `tilt_deg` with its axis at stage angle `uphill_deg`
+    /// uphill
     /// ([`Attitude::tilted`]), °.
     #[must_use]
     pub fn leaning(self, tilt_deg: f64, uphill_deg: f64) -> Self {
@@ -110,13 +111,21 @@ pub struct Truth {
 /// The instruments at work.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Instruments {
+    /// Attitude of the base at rest.
     attitude: Attitude,
+    /// Latitude and attitude at rest, with gravity and Earth rate.
     site: Site,
+    /// Errors of the encoder.
     encoder: EncoderConfiguration,
+    /// The warm-up.
     temperature: TemperatureConfiguration,
+    /// The precise gyro.
     gyro: Gyro,
+    /// The accelerometer beside it.
     accelerometer: Accelerometer,
+    /// The thermometer of the accelerometer.
     thermometer: Thermometer,
+    /// What the latest stage state gives.
     pose: Pose,
 }
 
@@ -159,16 +168,22 @@ impl BaseMotion {
 /// What one stage state gives without noise, computed once while the stage stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Pose {
+    /// The stage state that it belongs to.
     stage: StageState,
+    /// What the encoder shows there, rad.
     encoder_rad: f64,
+    /// What the sensors feel there.
     felt: Felt,
 }
 
 /// What the platform's sensors feel, less noise.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Felt {
+    /// Inertial rate along the gyro's sensitive axis, rad/s.
     axis_rad_s: f64,
+    /// What the gyro shows of that, less noise, rad/s.
     steady_rad_s: f64,
+    /// Specific force on platform x, y, z, m/s².
     force_m_s2: [f64; 3],
     /// Force on platform x and y in units of local gravity.
     force_g: [f64; 2],
@@ -181,8 +196,8 @@ impl Instruments {
         Self::with_accelerometer_at(configuration, configuration.rate_hz, seed)
     }
 
-    /// The same with an accelerometer read `accelerometer_hz` times a second (> 0), not at the rate of
-    /// the gyro.
+    /// Instruments whose accelerometer is read `accelerometer_hz` times a second (> 0), and whose gyro
+    /// `rate_hz` times.
     #[must_use]
     pub fn with_accelerometer_at(
         configuration: &InstrumentsConfiguration,

@@ -40,7 +40,13 @@
 //!
 //! A two-frame mount ([`gimbal`]) has six chips around a plant of its own, a vehicle
 //! ([`vehicle::board`]) three converters and an accelerometer, a spinning body ([`spin::board`]) five
-//! converters.
+//! converters. The latter two are one type of board ([`converters`]); what all boards have in common,
+//! order of events, losses of supply, the bus and the record of forbidden accesses, is an
+//! [`assembly::Assembly`].
+//!
+//! A chip behaves as its data sheet says, and where that promises nothing, it does the worst that is
+//! still allowed. What a driver does that the data sheet forbids is recorded ([`violation`]), so that a
+//! test can demand that there was nothing.
 //!
 //! This crate is an oracle. It carries its own reading of the physics, by full rotation matrices, and
 //! never depends on the `orientation` crate, so that it can catch that crate's mistakes.

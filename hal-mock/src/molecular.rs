@@ -13,8 +13,8 @@
 //!
 //! Between two samples the input of each filter is taken to be linear, and its response is exact. Of a
 //! sine at w this makes, at a sample period h, at most (w² + wω)h²/12 relative in a rate and w²h²/6 in
-//! a force: 2·10⁻⁵ at 1 rad/s and 100 Hz. White noise is felt, sample by sample, as the nodes of such lines; noise of the electronics
-//! behind, bias included, passes no filter.
+//! a force: 2·10⁻⁵ at 1 rad/s and 100 Hz. White noise is felt, sample by sample, as the nodes of such
+//! lines; noise of the electronics behind, bias included, passes no filter.
 
 /// Dynamics of a molecular-electronic sensor; the default adds nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -31,8 +31,11 @@ pub struct MolecularConfiguration {
 /// The sensor at work.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Molecular {
+    /// g-sensitivity along the sensitive axis and 90° clockwise of it, rad/s² per g.
     force_rad_s2_g: [f64; 2],
+    /// The high-pass, as the lag that is taken away, with the integral of the force.
     slow: Lag,
+    /// The low-pass.
     lag: Option<Lag>,
     /// Inputs of both lags at the latest sample; none before the first.
     before: Option<[f64; 2]>,
@@ -47,8 +50,8 @@ impl Molecular {
         Self { force_rad_s2_g: c.force_rad_s2_g, slow, lag, before: None }
     }
 
-    /// What it shows next, rad/s, of a felt rate and its noise, rad/s, and a force along and across, g.
-    /// The first sample finds it settled to what it feels, noise apart.
+    /// What the sensor shows next, rad/s, of a felt rate and its noise in rad/s and a specific force along
+    /// and across its axis in g. The first sample finds it settled to what it feels, noise apart.
     pub(crate) fn sample(&mut self, felt_rad_s: f64, noise_rad_s: f64, force_g: [f64; 2]) -> f64 {
         let [along, across] = self.force_rad_s2_g;
         let growth = along * force_g[0] + across * force_g[1];
@@ -83,9 +86,13 @@ impl Molecular {
 struct Lag {
     /// ω, rad/s.
     corner_rad_s: f64,
+    /// e^(−ωh), 1.
     keep: f64,
+    /// I₀ − I₁, s.
     from: f64,
+    /// I₁, s.
     to: f64,
+    /// x, rad/s.
     state: f64,
 }
 
@@ -93,7 +100,7 @@ struct Lag {
 const SMALL: f64 = 1e-5;
 
 impl Lag {
-    /// A lag at zero with a corner, rad/s, ≥ 0, and samples so many seconds apart.
+    /// A lag at zero with a corner in rad/s, ≥ 0, for samples `period_s` seconds apart.
     fn new(corner_rad_s: f64, period_s: f64) -> Self {
         let turn = corner_rad_s * period_s;
         let (whole, to) = if turn < SMALL {

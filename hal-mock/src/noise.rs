@@ -12,6 +12,7 @@ const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 /// One random stream: xoshiro256++, period 2²⁵⁶ − 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Generator {
+    /// The four words of xoshiro256++.
     state: [u64; 4],
 }
 
@@ -100,10 +101,13 @@ impl Generator {
     }
 }
 
-/// White noise of given deviation from a stream of its own; silent noise draws nothing.
+/// White noise of given deviation from a stream of its own; noise of zero deviation draws nothing, and so
+/// costs nothing.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct White {
+    /// Standard deviation, in the unit of the noise; zero for none.
     sigma: f64,
+    /// The stream that it draws from.
     noise: Generator,
 }
 

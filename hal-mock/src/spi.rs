@@ -19,8 +19,11 @@ const LONGEST: usize = 64;
 /// One chip of a rig behind its select line.
 #[derive(Debug)]
 pub struct SpiPort<'a, R> {
+    /// The chips on the bus.
     rig: &'a RefCell<R>,
+    /// Select line of the chip that answers.
     select: Select,
+    /// Bus clock, Hz.
     hertz: u32,
 }
 
@@ -100,12 +103,14 @@ fn distribute(operations: &mut [Operation<'_, u8>], reply: &[u8]) {
 /// The data-ready line of one chip of a rig.
 #[derive(Debug)]
 pub struct ReadyPin<'a, R> {
+    /// The chips of the board.
     rig: &'a RefCell<R>,
+    /// Whose line it is.
     select: Select,
 }
 
 impl<'a, R: Rig> ReadyPin<'a, R> {
-    /// The line of the chip at `select`.
+    /// The data-ready line of the chip at `select`, which is active low.
     #[must_use]
     pub const fn new(rig: &'a RefCell<R>, select: Select) -> Self {
         Self { rig, select }

@@ -24,7 +24,7 @@ impl Stop {
         Self { angle_rad, dwell_s, rotation_s: 0.0 }
     }
 
-    /// The same stop, entered by a rotation of `rotation_s` seconds.
+    /// This stop, entered by a rotation of `rotation_s` seconds, ≥ 0.
     #[must_use]
     pub const fn after(self, rotation_s: f64) -> Self {
         Self { rotation_s, ..self }
@@ -60,14 +60,19 @@ pub fn minimum_jerk(from: f64, to: f64, seconds: f64, elapsed_s: f64) -> StageSt
 /// A stage that follows a list of stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stage<'a> {
+    /// Positions in order.
     stops: &'a [Stop],
+    /// Samples per second, Hz.
     rate_hz: f64,
     /// Index of the stop stood at or rotated into.
     current: usize,
+    /// Angle from which it turns to that stop, rad.
     from_rad: f64,
+    /// When the stage left that angle, s from the first sample.
     departure_s: f64,
-    /// First sample at the current stop, and the first after it.
+    /// First sample at the current stop.
     arrival: u64,
+    /// First sample after the dwell at the current stop.
     departure: u64,
 }
 
@@ -155,9 +160,9 @@ impl Ripple {
 /// is even.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Unevenness {
-    /// Once per turn: eccentricity.
+    /// The harmonic once per turn, which eccentricity makes.
     pub first: Ripple,
-    /// Twice per turn: ellipticity.
+    /// The harmonic twice per turn, which ellipticity makes.
     pub second: Ripple,
 }
 
@@ -182,7 +187,7 @@ impl Unevenness {
 /// One harmonic of the encoder's error over a turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Harmonic {
-    /// Amplitude, rad.
+    /// Amplitude of the error, rad; zero for none.
     pub amplitude_rad: f64,
     /// Phase at stage angle zero, rad.
     pub phase_rad: f64,

@@ -1,4 +1,7 @@
 //! Three gyros and up to three accelerometers fixed to a body, with their full scales and faults.
+//!
+//! A true rate or force goes through the error model of its sensor, then through the faults, and clips
+//! last: a fault may show what no sensor would, but never more than the full scale.
 
 use crate::accelerometer::{Accelerometer, AccelerometerConfiguration};
 use crate::gyro::{Gyro, GyroConfiguration};
@@ -29,16 +32,23 @@ pub(crate) fn gyro_seeds(seed: u64, streams: [u64; 3]) -> [u64; 3] {
     streams.map(|index| Generator::stream(seed, index).next_u64())
 }
 
-/// The sensors at work, of which the last `N` axes of the accelerometer are looked at.
+/// The sensors at work, of which the last `N` axes of the accelerometer are looked at. Each keeps what it
+/// showed last, for a fault that repeats it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Strapdown<'a, const N: usize> {
+    /// The gyros.
     gyros: [Gyro; 3],
+    /// The accelerometers.
     accelerometer: Accelerometer,
+    /// Rates at which the gyros clip, rad/s.
     rate_limits_rad_s: [f64; 3],
+    /// Force at which an accelerometer clips, m/s².
     force_limit_m_s2: f64,
+    /// What goes wrong, in any order.
     faults: &'a [SensorFault],
     /// What was shown last: rates, rad/s, and forces, m/s².
     rates_rad_s: [f64; 3],
+    /// Forces that were shown last, m/s².
     forces_m_s2: [f64; N],
 }
 

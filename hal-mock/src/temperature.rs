@@ -36,11 +36,12 @@ impl TemperatureConfiguration {
 /// A thermometer: the state of its noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Thermometer {
+    /// White noise of a reading, °C.
     white: White,
 }
 
 impl Thermometer {
-    /// A thermometer with the noise of a configuration.
+    /// A thermometer with the noise of a configuration; the seed fixes its readings.
     #[must_use]
     pub fn new(configuration: &TemperatureConfiguration, seed: u64) -> Self {
         Self { white: White::new(configuration.noise_c, seed, source::THERMOMETER) }

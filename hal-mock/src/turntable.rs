@@ -18,7 +18,7 @@ pub struct Segment {
     pub rate_rad_s: f64,
     /// Depth of a deliberate unevenness, relative to the mean rate, 1; zero for none.
     pub depth: f64,
-    /// Its frequency f, Hz, > 0 where there is a depth.
+    /// Frequency f of that unevenness, Hz, > 0 where there is a depth.
     pub frequency_hz: f64,
     /// Time of the ramp, s, ≥ 0, within `seconds`; zero changes the rate at once.
     pub ramp_s: f64,
@@ -27,26 +27,27 @@ pub struct Segment {
 }
 
 impl Segment {
-    /// A steady rate, rad/s, for so many seconds, entered at once.
+    /// A steady rate in rad/s for `seconds`, entered at once.
     #[must_use]
     pub const fn steady(rate_rad_s: f64, seconds: f64) -> Self {
         Self { rate_rad_s, depth: 0.0, frequency_hz: 0.0, ramp_s: 0.0, seconds }
     }
 
-    /// The same, deliberately uneven.
+    /// This segment made uneven on purpose: by `depth` relative to the mean rate, 1, at `frequency_hz`,
+    /// > 0.
     #[must_use]
     pub const fn uneven(self, depth: f64, frequency_hz: f64) -> Self {
         Self { depth, frequency_hz, ..self }
     }
 
-    /// The same, entered by a ramp of `ramp_s` seconds, by which it lasts longer.
+    /// This segment entered by a ramp of `ramp_s` seconds, ≥ 0, by which it lasts longer.
     #[must_use]
     pub const fn after(self, ramp_s: f64) -> Self {
         Self { ramp_s, seconds: self.seconds + ramp_s, ..self }
     }
 
-    /// How far the motor has turned, rad, and its rate, rad/s, so many seconds after the beginning,
-    /// where it had a rate.
+    /// How far the motor has turned, rad, and its rate, rad/s, `elapsed_s` seconds after the beginning of
+    /// the segment, where it had the rate `before_rad_s`.
     fn at(&self, before_rad_s: f64, elapsed_s: f64) -> StageState {
         let gain_rad_s = self.rate_rad_s - before_rad_s;
         if elapsed_s < self.ramp_s {
@@ -64,7 +65,7 @@ impl Segment {
         if self.depth == 0.0 { even } else { self.modulate(even, elapsed_s - self.ramp_s) }
     }
 
-    /// An even motion with the unevenness of so many seconds.
+    /// An even motion with the unevenness of the `elapsed_s` seconds since the ramp ended.
     fn modulate(&self, even: StageState, elapsed_s: f64) -> StageState {
         let angular = core::f64::consts::TAU * self.frequency_hz;
         let (sine, cosine) = libm::sincos(angular * elapsed_s);
@@ -79,7 +80,7 @@ impl Segment {
 /// An encoder whose magnet slips once and creeps from then on; the default does neither.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EncoderSlip {
-    /// When it begins, s from the first sample.
+    /// When the magnet slips, s from the first sample.
     pub from_s: f64,
     /// What the encoder shows more from then on, rad.
     pub by_rad: f64,
@@ -143,16 +144,20 @@ pub struct TurningSample {
 /// The motor's way through its segments.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Motor<'a> {
+    /// The segments that are left, the current one first.
     segments: &'a [Segment],
+    /// Samples per second, Hz.
     rate_hz: f64,
-    /// When the first of the segments left began, and what the motor's angle and rate were then.
+    /// When the current segment began, s from the first sample.
     since_s: f64,
+    /// Angle and rate of the motor at that time.
     then: StageState,
     /// First sample after it.
     end: u64,
 }
 
 impl<'a> Motor<'a> {
+    /// A motor at rest at an angle in rad, before its first segment.
     fn new(segments: &'a [Segment], start_rad: f64, rate_hz: f64) -> Self {
         let then = StageState { angle_rad: start_rad, rate_rad_s: 0.0 };
         let seconds = segments.first().map_or(0.0, |segment| segment.seconds);
@@ -169,7 +174,7 @@ impl<'a> Motor<'a> {
         Some(self.after(self.segments.first()?, elapsed_s))
     }
 
-    /// State so many seconds into a segment.
+    /// State `elapsed_s` seconds into a segment.
     fn after(&self, segment: &Segment, elapsed_s: f64) -> StageState {
         let turned = segment.at(self.then.rate_rad_s, elapsed_s);
         StageState { angle_rad: self.then.angle_rad + turned.angle_rad, ..turned }
@@ -188,18 +193,29 @@ impl<'a> Motor<'a> {
     }
 }
 
-/// A turning platform at work; an iterator of samples that starts at t = 0.
+/// A turning platform at work: an iterator of samples that starts at t = 0 and ends after the last segment.
+/// Sample k is taken at k/`rate_hz`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Turntable<'a> {
+    /// Samples per second, Hz.
     rate_hz: f64,
+    /// The motor's way.
     motor: Motor<'a>,
+    /// Unevenness of the gear.
     unevenness: Unevenness,
+    /// What is mounted on the platform.
     instruments: Instruments,
+    /// Where the accelerometer sits.
     lever: Lever,
+    /// Force at which the accelerometer clips, m/s².
     full_scale_m_s2: f64,
+    /// What goes wrong with the encoder.
     slip: EncoderSlip,
+    /// How far the encoder has crept, rad.
     crept_rad: f64,
+    /// What disturbs the sensors, in any order.
     disturbances: &'a [Disturbance],
+    /// Number of the next sample.
     next: u64,
 }
 

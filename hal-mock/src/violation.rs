@@ -38,7 +38,7 @@ pub struct Violation {
     pub misuse: Misuse,
     /// The register's address, or the command byte.
     pub address: u8,
-    /// When, µs since the clock began; it stops at its limit after an hour.
+    /// Time of the access, µs since the clock began; it stops at its limit after an hour.
     pub microseconds: u32,
 }
 
@@ -49,15 +49,18 @@ impl fmt::Display for Violation {
     }
 }
 
-/// The forbidden accesses of one chip.
+/// The forbidden accesses of one chip. They survive a loss of supply: the record is the test's, not the
+/// chip's.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Violations {
+    /// The first of them, in order of time.
     first: Vec<Violation, KEPT>,
+    /// How many there were, kept or not.
     count: usize,
 }
 
 impl Violations {
-    /// Records one.
+    /// Records a forbidden access to a register, or of a command byte, at a moment.
     pub fn record(&mut self, misuse: Misuse, address: u8, at: Instant) {
         self.count += 1;
         let microseconds = u32::try_from(at.as_micros()).unwrap_or(u32::MAX);
@@ -65,13 +68,13 @@ impl Violations {
         let _ = self.first.push(Violation { misuse, address, microseconds });
     }
 
-    /// How many there were.
+    /// How many accesses were forbidden, those that are not kept included.
     #[must_use]
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// The first of them.
+    /// The first sixteen forbidden accesses, in order of time.
     #[must_use]
     pub fn first(&self) -> &[Violation] {
         &self.first

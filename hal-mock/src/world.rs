@@ -9,19 +9,25 @@ use crate::stage::{Stage, Stop};
 pub struct WorldConfiguration<'a> {
     /// Site, attitude, sensors.
     pub instruments: InstrumentsConfiguration,
-    /// Positions of the stage in order; the run ends with the last dwell.
+    /// Positions of the stage, in order; the run ends with the last dwell.
     pub stops: &'a [Stop],
     /// Events, in any order.
     pub disturbances: &'a [Disturbance],
 }
 
-/// A world at work; an iterator of samples that starts at t = 0.
+/// A world at work: an iterator of samples that starts at t = 0 and ends after the last dwell. Sample k is
+/// taken at k/`rate_hz`; the same configuration and seed give the same samples, bit for bit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct World<'a> {
+    /// Samples per second, Hz.
     rate_hz: f64,
+    /// The stage on its way.
     stage: Stage<'a>,
+    /// What disturbs the sensors, in any order.
     disturbances: &'a [Disturbance],
+    /// What is mounted on the stage.
     instruments: Instruments,
+    /// Number of the next sample.
     next: u64,
 }
 

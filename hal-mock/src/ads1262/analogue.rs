@@ -43,6 +43,7 @@ pub(super) fn selected(registers: &Registers, voltages: Voltages) -> Selected {
 
 /// A test voltage as part of the supply, by magnitude code (table 9-8, printed for 5 V).
 fn test_part(code: u8) -> f64 {
+    /// Distance of each magnitude code from the middle of the supply, V.
     const DISTANCE_VOLTS: [f64; 10] =
         [0.0, 0.007_812_5, 0.015_625, 0.031_25, 0.062_5, 0.125, 0.25, 0.5, 1.0, 2.0];
     let distance = DISTANCE_VOLTS.get(usize::from(code & 0x0F)).unwrap_or(&0.0);
@@ -73,6 +74,7 @@ pub(super) fn convert(registers: &Registers, voltages: Voltages, volts: f64) -> 
     (code as i32, alarms)
 }
 
+/// A code rounded and held within the converter's range.
 fn saturated(code: f64) -> f64 {
     libm::fmin(libm::fmax(libm::round(code), -CODES), CODES - 1.0)
 }

@@ -2,7 +2,7 @@
 //!
 //! Full register map of the 21 registers, commands, direct and commanded reading, all filters and
 //! data rates, calibration registers, test voltage, both checksum forms. Not modelled: chopping and
-//! the calibration commands (recorded as violations, so that nobody relies on them), pins other than
+//! the calibration commands (recorded as violations, so that no driver relies on them), pins other than
 //! AIN0 and AIN1 (0 V), supply and clock pins, noise of its own.
 //!
 //! Conversions end at the environment's time; the environment is asked only where the gyro's inputs
@@ -33,8 +33,11 @@ const START1: u8 = 0x08;
 /// The newest conversion.
 #[derive(Clone, Copy, Debug, Default)]
 struct Holding {
+    /// The code, two's complement of 32 bits.
     code: i32,
+    /// The alarm bits of the status byte (table 9-18).
     alarms: u8,
+    /// Whether the bus has not read it yet.
     is_new: bool,
 }
 
@@ -43,17 +46,22 @@ struct Holding {
 struct Sickness {
     /// The code that every conversion gives.
     stuck_at: Option<i32>,
+    /// Whether no conversion ends any more.
     is_dead: bool,
+    /// Whether the next frame that is read by command gets a wrong bit.
     corrupts_next: bool,
     /// A register that does not take what is written.
     broken_register: Option<u8>,
 }
 
-/// The chip.
+/// The chip with what is connected to it. Without a fault it converts exactly, to the nearest code.
 #[derive(Clone, Debug)]
 pub struct Ads1262 {
+    /// The register map as it stands.
     registers: Registers,
+    /// What the ID register holds.
     identity: u8,
+    /// What supply and reference are connected to.
     voltages: Voltages,
     /// Commands before this are too early.
     operational: Instant,
@@ -61,13 +69,17 @@ pub struct Ads1262 {
     reference_since: Instant,
     /// Conversions under way, counted from the end of the first.
     running: Option<Cadence>,
+    /// The newest conversion, which a command reads.
     holding: Holding,
     /// The data-ready line, and with it the shift register that is read directly.
     is_ready: bool,
+    /// Conversions that a newer one replaced before they were read.
     overwritten: u64,
     /// Whether a clock is found at the pins.
     has_external_clock: bool,
+    /// What is broken in this chip.
     sickness: Sickness,
+    /// What was done to the chip that its data sheet forbids.
     violations: Violations,
 }
 
@@ -91,12 +103,13 @@ impl Ads1262 {
         }
     }
 
-    /// From now on every conversion repeats the last code, and is signalled as new all the same.
+    /// From now on every conversion repeats the last code, and is signalled as new nevertheless.
     pub fn stick(&mut self) {
         self.stick_at(self.holding.code);
     }
 
-    /// From now on every conversion gives this code.
+    /// From now on every conversion gives this code of 32 bits, two's complement, whatever the input,
+    /// and is signalled as new.
     pub fn stick_at(&mut self, code: i32) {
         self.sickness.stuck_at = Some(code);
     }
@@ -107,12 +120,14 @@ impl Ads1262 {
         self.running = None;
     }
 
-    /// The next frame that is read by command has one wrong bit.
+    /// The next frame that is read by command has one wrong bit, in its third byte; frames that are read
+    /// directly stay whole.
     pub fn corrupt_next(&mut self) {
         self.sickness.corrupts_next = true;
     }
 
-    /// From now on this register keeps its value whatever is written.
+    /// From now on the register at this address, 0 to 20, keeps its value whatever is written; the write
+    /// is not recorded.
     pub fn break_register(&mut self, address: u8) {
         self.sickness.broken_register = Some(address);
     }
@@ -139,23 +154,25 @@ impl Ads1262 {
         self.sickness = Sickness::default();
     }
 
-    /// What the ID register says; zero is an ADS1262.
+    /// Sets what the ID register says (zero is an ADS1262 of revision 0) and resets all others.
     pub fn set_identity(&mut self, identity: u8) {
         self.identity = identity;
         self.registers = Registers::reset(identity);
     }
 
-    /// The internal reference's voltage, V.
+    /// Sets the internal reference's voltage, V (2.5 in a healthy chip); at 0.4 V or less the status byte
+    /// carries the alarm of a low reference.
     pub fn set_reference(&mut self, volts: f64) {
         self.voltages.reference = volts;
     }
 
-    /// The analogue supply's voltage, V.
+    /// Sets the analogue supply's voltage, V (5.0 in a healthy chip): test voltages and the amplifier's
+    /// range follow it.
     pub fn set_supply(&mut self, volts: f64) {
         self.voltages.supply = volts;
     }
 
-    /// Conversions that were overwritten before anybody read them.
+    /// Conversions that a newer one replaced before the bus read them.
     #[must_use]
     pub fn overwritten(&self) -> u64 {
         self.overwritten

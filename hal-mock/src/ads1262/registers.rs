@@ -5,11 +5,17 @@ use crate::violation::Misuse;
 /// Registers of an ADS1262 (an ADS1263 has six more).
 pub(super) const COUNT: usize = 21;
 
+/// Reference, level shift and reset flag (9.6, POWER).
 pub(super) const POWER: u8 = 0x01;
+/// Reference polarity, run mode, chopping and delay (9.6, MODE0).
 pub(super) const MODE0: u8 = 0x03;
+/// Filter and sensor bias (9.6, MODE1).
 pub(super) const MODE1: u8 = 0x04;
+/// Amplifier's bypass and gain, and the data rate (9.6, MODE2).
 pub(super) const MODE2: u8 = 0x05;
+/// Positive and negative input (9.6, INPMUX).
 pub(super) const INPMUX: u8 = 0x06;
+/// Positive and negative reference (9.6, REFMUX).
 pub(super) const REFMUX: u8 = 0x0F;
 
 /// Values after a reset and bits that must be written as zero, by address (table 9-34).
@@ -40,6 +46,7 @@ const MAP: [(u8, u8); COUNT] = [
 /// The registers of one chip.
 #[derive(Clone, Debug)]
 pub(super) struct Registers {
+    /// Values by address.
     values: [u8; COUNT],
 }
 
@@ -56,6 +63,7 @@ impl Registers {
         self.values.get(usize::from(address)).copied()
     }
 
+    /// The value at an address, zero beyond the last.
     fn at(&self, address: u8) -> u8 {
         self.get(address).unwrap_or(0)
     }

@@ -13,6 +13,7 @@ pub(super) const GREATEST_BUS_HERTZ: u32 = 8_000_000;
 
 /// Conversions per second by code of the data rate.
 pub(super) fn hertz(rate: u8) -> f64 {
+    /// Data rates in the order of their codes (9.6, MODE2), samples per second.
     const HERTZ: [f64; 16] = [
         2.5,
         5.0,
@@ -52,7 +53,8 @@ const LATENCY: [[u32; 13]; 5] = [
     ],
     [402_200, 202_200, 102_200, 0, 52_220, 0, 0, 0, 0, 0, 0, 0, 0],
 ];
-/// The same of the three data rates that the fifth-order stage gives alone.
+/// From start to the first conversion, µs, of the three data rates that the fifth-order stage gives
+/// alone, whatever the filter (table 9-13).
 const LATENCY_FAST: [u32; 3] = [424, 337, 207];
 /// Programmable delay before the first conversion, µs.
 const DELAY: [u32; 12] = [0, 9, 17, 35, 69, 139, 278, 555, 1100, 2200, 4400, 8800];

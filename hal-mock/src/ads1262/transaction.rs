@@ -25,11 +25,14 @@ enum Phase {
 /// What goes out while no command's answer does: the shift register, over and over, if it was loaded
 /// since the bus last moved (figure 9-43); otherwise zeros.
 struct Direct {
+    /// What the shift register was loaded with, empty where it was not.
     frame: Frame,
+    /// Bytes that have gone out, repetitions counted.
     sent: usize,
 }
 
 impl Direct {
+    /// The next byte that goes out.
     fn next(&mut self) -> u8 {
         let length = self.frame.len().max(1);
         let byte = self.frame.get(self.sent % length).copied().unwrap_or(0);
@@ -37,6 +40,7 @@ impl Direct {
         byte
     }
 
+    /// Whether a whole conversion has gone out.
     fn is_read(&self) -> bool {
         !self.frame.is_empty() && self.sent >= self.frame.len()
     }
@@ -63,10 +67,12 @@ pub(super) fn transact(chip: &mut Ads1262, transaction: &Transaction, reply: &mu
 }
 
 impl Ads1262 {
+    /// What is read without a command: the newest conversion, where it was not read before.
     fn shift_register(&self) -> Frame {
         if self.is_ready { self.frame() } else { Frame::new() }
     }
 
+    /// The newest conversion in the form that the registers ask for.
     fn frame(&self) -> Frame {
         frame(&self.registers, self.status(), self.holding.code)
     }
@@ -142,6 +148,7 @@ impl Ads1262 {
         Phase::Command
     }
 
+    /// Begins conversions by the START pin or a command; a reference that has not settled is recorded.
     pub(super) fn start(&mut self, command: u8, at: Instant) {
         if self.registers.references() == (0, 0) && at < self.reference_since + timing::REFERENCE {
             self.violations.record(Misuse::TooEarly, command, at);
@@ -152,6 +159,7 @@ impl Ads1262 {
         self.begin(at);
     }
 
+    /// Writes a register at the end of its byte, with what that starts anew.
     fn write(&mut self, address: u8, value: u8, at: Instant) {
         if self.sickness.broken_register == Some(address) {
             return;
@@ -168,7 +176,7 @@ impl Ads1262 {
         }
     }
 
-    /// Select high: what was not completed is given up, which nobody does on purpose.
+    /// Select high: what was not completed is given up, and recorded as a wrong length.
     fn end(&mut self, phase: &Phase, now: Instant) {
         let address = match phase {
             Phase::Command => return,

@@ -14,8 +14,11 @@ const EMPTY: u32 = 0b10;
 /// A FIFO in stream mode: new values push out the oldest.
 #[derive(Clone, Debug, Default)]
 pub struct Fifo {
+    /// Values of 20 bits, shifted up by four, with the mark of x, oldest first.
     values: Deque<u32, SIZE>,
+    /// The value that is going out.
     word: u32,
+    /// Bytes of that value that are still to go out.
     bytes_left: u8,
 }
 

@@ -44,26 +44,39 @@ const FACTORY: [u8; 5] = [0x3C, 0x81, 0x5A, 0x07, 0xE2];
 /// What wrongly loaded factory settings add to each axis, g.
 const SPOILED_BIAS: f64 = 0.1;
 
+/// A sample has come that was not read (STATUS, `DATA_RDY`).
 const DATA_RDY: u8 = 0x01;
+/// The FIFO holds as many values as its mark says (STATUS, `FIFO_FULL`).
 const FIFO_FULL: u8 = 0x02;
+/// The FIFO has lost values (STATUS, `FIFO_OVR`).
 const FIFO_OVR: u8 = 0x04;
+/// The factory settings are being loaded (STATUS, `NVM_BUSY`).
 const NVM_BUSY: u8 = 0x10;
 
 /// The simulated chip.
 #[derive(Clone, Debug)]
 pub struct Adxl355 {
+    /// The register map as it stands.
     registers: [u8; SIZE],
+    /// The factory settings as loaded, which the shadow registers show.
     shadow: [u8; 5],
+    /// From when on the chip listens.
     ready_at: Instant,
+    /// Whether that wait follows a loss of supply, not a reset.
     is_powering_up: bool,
     /// The samples of a chip that is not in standby.
     measuring: Option<Cadence>,
     /// When the data-ready pin falls by itself; it is high until then.
     pin_falls: Option<Instant>,
+    /// The latest sample of x, y, z, counts of 20 bits.
     counts: [i32; 3],
+    /// The samples that were not read through the FIFO yet.
     fifo: Fifo,
+    /// What a self-test adds to each axis, g.
     self_test_response: [f64; 3],
+    /// Software resets to come that load wrong factory settings.
     spoiled_resets: u32,
+    /// What was done to the chip that its data sheet forbids.
     violations: Violations,
 }
 
@@ -97,13 +110,15 @@ impl Adxl355 {
         self.self_test_response = response;
     }
 
-    /// Flips a bit of a register, as a disturbance of the chip would.
+    /// Flips a bit, 0 to 7, of the register at an address up to 0x2F, as a disturbance of the chip would;
+    /// beyond the last register it changes nothing.
     pub fn flip(&mut self, address: u8, bit: u8) {
         if let Some(register) = self.registers.get_mut(usize::from(address)) {
             *register ^= 1 << bit;
         }
     }
 
+    /// A software reset at `now`.
     fn restart(&mut self, now: Instant) {
         let spoiled = self.spoiled_resets > 0;
         *self = Self {
@@ -116,7 +131,7 @@ impl Adxl355 {
         self.registers[usize::from(STATUS)] = NVM_BUSY;
     }
 
-    /// The same chip as new, with its sicknesses and its record.
+    /// A chip as after a loss of supply at `now`, with the sicknesses and the record of this one.
     fn sane(&mut self, now: Instant) -> Self {
         Self {
             self_test_response: self.self_test_response,
@@ -126,6 +141,7 @@ impl Adxl355 {
         }
     }
 
+    /// What a register holds.
     fn at(&self, address: u8) -> u8 {
         self.registers[usize::from(address)]
     }
@@ -175,6 +191,7 @@ impl Adxl355 {
         }
     }
 
+    /// Reads the status, which clears it; the busy bit stays where settings are still being loaded.
     fn read_status(&mut self, now: Instant) -> u8 {
         let is_full = self.fifo.entries() >= self.at(FIFO_SAMPLES);
         let status = self.at(STATUS) | if is_full { FIFO_FULL } else { 0 };
@@ -205,6 +222,7 @@ impl Adxl355 {
         }
     }
 
+    /// Writes a register, or records why it must not be written.
     fn write(&mut self, address: u8, value: u8, now: Instant) {
         let held = self.registers.get(usize::from(address)).copied().unwrap_or(0);
         let is_measuring = self.measuring.is_some();
@@ -234,6 +252,7 @@ impl Adxl355 {
         }
     }
 
+    /// Records a bus clock beyond what the chip allows.
     fn judge_clock(&mut self, transaction: &Transaction, address: u8) {
         if transaction.hertz > *CLOCKS.end() {
             self.violations.record(Misuse::ClockTooFast, address, transaction.now);
@@ -253,7 +272,7 @@ impl Adxl355 {
     }
 }
 
-/// Whether a new sample lands before so many bytes of a transaction have passed.
+/// Whether a new sample lands before `bytes` bytes of a transaction have passed.
 fn has_landed(landing: Option<Instant>, transaction: &Transaction, bytes: usize) -> bool {
     landing.is_some_and(|at| {
         let wait = at.as_micros().saturating_sub(transaction.now.as_micros());
@@ -303,7 +322,8 @@ impl<E: ForceInput + ?Sized> SpiChip<E> for Adxl355 {
         }
     }
 
-    /// High where the data sheet has it high: a new sample that nobody has read, for half a period.
+    /// High where the data sheet has it high: for half a period after a new sample, unless that is read
+    /// before.
     fn ready_line(&self) -> ReadyLine {
         if self.at(POWER_CTL) & DRDY_OFF != 0 {
             return ReadyLine::default();

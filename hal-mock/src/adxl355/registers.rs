@@ -5,37 +5,37 @@ use crate::violation::Misuse;
 /// Addresses that hold something, up to the last.
 pub const SIZE: usize = 0x30;
 
-/// Status.
+/// Status: data ready, FIFO full or overrun, settings being loaded; a read clears it.
 pub const STATUS: u8 = 0x04;
 /// Number of values in the FIFO.
 pub const FIFO_ENTRIES: u8 = 0x05;
-/// Upper byte of the temperature.
+/// Upper four bits of the temperature.
 pub const TEMP2: u8 = 0x06;
 /// Lower byte of the temperature.
 pub const TEMP1: u8 = 0x07;
-/// First byte of x.
+/// Upper byte of the acceleration along x; each axis has three bytes, 20 bits from the left.
 pub const XDATA3: u8 = 0x08;
-/// Last byte of z.
+/// Lower byte of the acceleration along z, with four bits of data.
 pub const ZDATA1: u8 = 0x10;
-/// The FIFO's end.
+/// Where the FIFO is read, three bytes a value.
 pub const FIFO_DATA: u8 = 0x11;
-/// First byte of the offsets.
+/// Upper byte of the offset of x; each axis has two bytes, added to the upper 16 of its 20 bits.
 pub const OFFSET_X_H: u8 = 0x1E;
 /// High-pass corner and output data rate.
 pub const FILTER: u8 = 0x28;
-/// The FIFO's mark.
+/// Number of values, 1 to 96, from which on the FIFO counts as full.
 pub const FIFO_SAMPLES: u8 = 0x29;
-/// Interrupts.
+/// Which events go to the interrupt pins.
 pub const INT_MAP: u8 = 0x2A;
-/// Synchronisation.
+/// Synchronisation of the samples with an external clock.
 pub const SYNC: u8 = 0x2B;
-/// Range.
+/// Range in the lowest two bits (1 for 256 000 counts per g, halved by each further code).
 pub const RANGE: u8 = 0x2C;
-/// Power control.
+/// Power control: standby, and whether the data-ready pin is off.
 pub const POWER_CTL: u8 = 0x2D;
-/// Self-test.
+/// Self-test: mode and force, which both bits together switch on.
 pub const SELF_TEST: u8 = 0x2E;
-/// Software reset.
+/// Software reset, by writing [`RESET_CODE`].
 pub const RESET: u8 = 0x2F;
 /// First of the shadow registers.
 pub const SHADOW: u8 = 0x50;
@@ -63,7 +63,7 @@ pub const DEFAULTS: [u8; SIZE] = {
     values
 };
 
-/// Why a read of this address is forbidden, if it is.
+/// Why a read of an address is forbidden, or none where it is allowed.
 #[must_use]
 pub fn read_refusal(address: u8) -> Option<Misuse> {
     match address {
@@ -117,7 +117,7 @@ const fn is_forbidden(address: u8, value: u8) -> bool {
 }
 
 /// What may change while the chip measures (Register Map, note): the high-pass corner, interrupts,
-/// self-test and reset, and of course the power control.
+/// self-test, reset and the power control itself.
 const fn may_change_measuring(address: u8, value: u8, held: u8) -> bool {
     match address {
         FILTER => value & 0x0F == held & 0x0F,

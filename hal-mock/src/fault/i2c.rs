@@ -1,4 +1,4 @@
-//! An I²C bus on which nobody answers for some time.
+//! An I²C bus on which no device answers for some time.
 
 use embassy_time::Instant;
 use embedded_hal_async::i2c::{ErrorKind, ErrorType, I2c, NoAcknowledgeSource, Operation};
@@ -8,8 +8,11 @@ use super::When;
 /// A bus whose device is lost at some time.
 #[derive(Debug)]
 pub struct FaultyI2c<B> {
+    /// What it wraps.
     bus: B,
+    /// Whether the loss has shown, for one that shows once.
     lost: Option<When>,
+    /// Whether the loss has shown.
     has_shown: bool,
 }
 

@@ -23,9 +23,9 @@ use crate::chip::Select;
 /// A chip loses its supply for a moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Blackout {
-    /// Which chip.
+    /// The chip that loses its supply.
     pub select: Select,
-    /// When.
+    /// When it loses the supply; it has it again at once.
     pub at: Instant,
 }
 
@@ -43,32 +43,32 @@ pub enum Extent {
 /// When a fault shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct When {
-    /// Nothing is wrong before.
+    /// When the fault begins.
     pub start: Instant,
     /// For how long.
     pub extent: Extent,
 }
 
 impl When {
-    /// Once, the first time after `start`.
+    /// A fault that shows once, at the first access from `start` on.
     #[must_use]
     pub const fn once(start: Instant) -> Self {
         Self { start, extent: Extent::Once }
     }
 
-    /// From `start` on for `duration`, the end not included.
+    /// A fault that shows from `start` on for `duration`, the end not included.
     #[must_use]
     pub const fn during(start: Instant, duration: Duration) -> Self {
         Self { start, extent: Extent::For(duration) }
     }
 
-    /// From `start` on.
+    /// A fault that shows from `start` on for ever.
     #[must_use]
     pub const fn always(start: Instant) -> Self {
         Self { start, extent: Extent::Always }
     }
 
-    /// Whether it shows at `now`; `shown` remembers that it has.
+    /// Whether the fault shows at `now`; `shown` remembers that it has.
     fn shows(&self, now: Instant, shown: &mut bool) -> bool {
         let active = now >= self.start
             && match self.extent {

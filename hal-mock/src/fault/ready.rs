@@ -10,13 +10,16 @@ use super::When;
 /// brought, waits for the next edge.
 #[derive(Debug)]
 pub struct FaultyReady<W> {
+    /// What it wraps.
     line: W,
+    /// Whether an edge was lost, for a fault that shows once.
     when: Option<When>,
+    /// Whether one was.
     shown: bool,
 }
 
 impl<W> FaultyReady<W> {
-    /// The line with a time when it loses edges, or a healthy one.
+    /// The line with a time when it loses edges; without one it is healthy and passes all on.
     #[must_use]
     pub const fn new(line: W, when: Option<When>) -> Self {
         Self { line, when, shown: false }

@@ -16,6 +16,7 @@ const HANG: Duration = Duration::from_millis(300);
 
 /// Kinds of transactions whose latest reply is remembered, and the longest reply.
 const KINDS: usize = 4;
+/// Bytes of the longest reply that is remembered.
 const LONGEST: usize = 32;
 
 /// What is wrong with a bus.
@@ -32,7 +33,7 @@ pub enum BusFault {
     /// while the chip goes on. Replies are remembered for the four latest kinds of transactions of up
     /// to 32 bytes; others stay true.
     Stuck,
-    /// Nobody answers or hears: every bit of the reply is the same.
+    /// The chip is not there: no byte reaches it, and all bits of a reply have one level.
     Missing {
         /// 0xff or 0x00, where a line floats or is shorted.
         level: u8,
@@ -44,20 +45,24 @@ pub enum BusFault {
 /// A fault of a bus and its time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FaultPlan {
-    /// What is wrong.
+    /// What is wrong with the bus.
     pub fault: BusFault,
-    /// When.
+    /// When it shows.
     pub when: When,
 }
 
 /// A device on a bus that may fail.
 #[derive(Debug)]
 pub struct FaultySpi<S> {
+    /// What it wraps.
     device: S,
+    /// What goes wrong, and when.
     plan: Option<FaultPlan>,
+    /// Whether the fault has shown, for one that shows once.
     shown: bool,
     /// Chooses what is flipped.
     chance: Generator,
+    /// Replies that come again where the bus sticks.
     memory: Memory,
 }
 
@@ -191,7 +196,9 @@ fn replies<'b>(operations: &'b mut [Operation<'_, u8>]) -> impl Iterator<Item = 
 /// What transactions of one kind have in common.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Kind {
+    /// The first byte that is sent.
     first: u8,
+    /// Bytes on the wire.
     length: usize,
 }
 
@@ -211,6 +218,7 @@ impl Kind {
 /// The latest reply of each of the latest kinds, in the order in which they came.
 #[derive(Debug, Default)]
 struct Memory {
+    /// Kinds with their replies, oldest first.
     replies: Vec<(Kind, Vec<u8, LONGEST>), KINDS>,
 }
 

@@ -1,4 +1,7 @@
 //! The board of a two-frame mount: six chips on one bus around one gimbal.
+//!
+//! The outer frame has the select lines of a stage's encoder and actuator, the inner frame lines of its
+//! own. A motor driver that loses its supply stops its own frame alone.
 
 use embassy_time::Instant;
 
@@ -16,14 +19,19 @@ use crate::violation::Violations;
 pub struct GimbalBoard<'a> {
     /// What the chips measure and move.
     pub gimbal: Gimbal<'a>,
+    /// The converter of the gyro in the inner frame.
     gyro: Ads1262,
+    /// The accelerometer on the base.
     accelerometer: Adxl355,
+    /// The encoders of the outer and the inner frame.
     encoders: [Mt6835; 2],
+    /// The motor drivers of the outer and the inner frame.
     actuators: [Tmc5160; 2],
 }
 
 impl<'a> GimbalBoard<'a> {
-    /// A board that gets its supply at the start of the clock.
+    /// A board that gets its supply at the start of the clock and does not lose it; both motor drivers run
+    /// from an oscillator of this kind.
     #[must_use]
     pub fn new(gimbal: Gimbal<'a>, oscillator: Oscillator) -> Self {
         Self {

@@ -35,7 +35,7 @@ use crate::temperature::{TemperatureConfiguration, Thermometer};
 pub struct Misalignment {
     /// Turn of the outer axis from body x about body z, down.
     pub azimuth_rad: f64,
-    /// Then about body y, right.
+    /// Turn of the outer axis about body y, right, after that about z.
     pub pitch_rad: f64,
     /// Turn of the inner axis about z from the perpendicular to the outer axis.
     pub frames_rad: f64,
@@ -46,13 +46,13 @@ pub struct Misalignment {
 /// One frame: mechanics, encoder, faults.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameConfiguration<'a> {
-    /// Its drive; angles are true ones.
+    /// The drive of the frame; angles are true ones.
     pub stage: StageConfiguration,
-    /// Its encoder's errors; the chip has its own steps.
+    /// Errors of the encoder; the chip adds the steps of its own.
     pub encoder: EncoderConfiguration,
     /// What the encoder shows where the frame stands at zero, rad.
     pub zero_rad: f64,
-    /// What goes wrong with it.
+    /// What goes wrong with the frame, in any order.
     pub faults: &'a [StageFault],
 }
 
@@ -93,12 +93,16 @@ pub struct GimbalConfiguration<'a> {
 /// A frame at work.
 #[derive(Clone, Debug, PartialEq)]
 struct Frame<'a> {
+    /// The train that moves it, with its faults.
     drive: Drive<'a>,
+    /// Errors of its encoder.
     encoder: EncoderConfiguration,
+    /// What the encoder shows at zero, rad.
     zero_rad: f64,
 }
 
 impl<'a> Frame<'a> {
+    /// A frame at the start of the clock.
     fn new(configuration: &FrameConfiguration<'a>) -> Self {
         Self {
             drive: Drive::new(&configuration.stage, configuration.faults),
@@ -118,33 +122,52 @@ impl<'a> Frame<'a> {
 /// What the gyro and the accelerometer feel, less noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Felt {
+    /// Angles and rates of the outer and the inner frame.
     frames: [StageState; 2],
+    /// What the gyro shows of that, less noise, rad/s.
     steady_rad_s: f64,
-    /// Along the sensitive and the inner axis, g.
+    /// Specific force along the sensitive and the inner axis, g.
     force_g: [f64; 2],
+    /// Specific force on the base's axes, m/s².
     force_m_s2: [f64; 3],
 }
 
 /// The mount at work.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gimbal<'a> {
+    /// The outer frame.
     outer: Frame<'a>,
+    /// The inner frame.
     inner: Frame<'a>,
+    /// How the mechanism is misaligned.
     misalignment: Misalignment,
+    /// The g-sensitivity along the third axis, rad/s per g.
     third_rad_s: f64,
+    /// Attitude of the base at rest.
     attitude: Attitude,
+    /// Latitude and attitude at rest, with gravity and Earth rate.
     site: Site,
+    /// Sway of the base; none where it stands still.
     sway: Option<SwayConfiguration>,
+    /// Journey of the base; none where it stays.
     journey: Option<Journey<'a>>,
     /// Periods of the gyro's converter and of the accelerometer, s.
     periods_s: [f64; 2],
+    /// The gyro in the inner frame.
     gyro: Gyro,
+    /// The accelerometer on the base.
     accelerometer: Accelerometer,
+    /// The warm-up.
     temperature: TemperatureConfiguration,
+    /// The thermometer of the accelerometer.
     thermometer: Thermometer,
+    /// White noise of the converter, V.
     converter: White,
+    /// Scale factor of the gyro, V per rad/s.
     volts_per_rad_s: f64,
+    /// Rate at which the gyro's output clips, rad/s.
     full_scale_rad_s: f64,
+    /// What disturbs it, in any order.
     disturbances: &'a [disturbance::Disturbance],
     /// What was felt last, on a base at rest.
     felt: Option<Felt>,
@@ -279,6 +302,7 @@ impl<'a> Gimbal<'a> {
         Felt { frames, steady_rad_s, force_g, force_m_s2 }
     }
 
+    /// What the disturbances add at `now`.
     fn effect(&self, now: Instant) -> Effect {
         disturbance::total(self.disturbances, seconds(now))
     }
@@ -289,6 +313,7 @@ fn column(matrix: &Matrix, index: usize) -> [f64; 3] {
     [0, 1, 2].map(|row| matrix[row][index])
 }
 
+/// The scalar product a · b.
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
@@ -325,11 +350,14 @@ impl ForceInput for Gimbal<'_> {
 /// One frame of a mount: what its encoder and its motor driver see.
 #[derive(Debug)]
 pub struct Side<'g, 'a> {
+    /// The mount.
     gimbal: &'g mut Gimbal<'a>,
+    /// Whether this is its inner frame.
     is_inner: bool,
 }
 
 impl<'a> Side<'_, 'a> {
+    /// The frame.
     fn frame(&mut self) -> &mut Frame<'a> {
         if self.is_inner { &mut self.gimbal.inner } else { &mut self.gimbal.outer }
     }

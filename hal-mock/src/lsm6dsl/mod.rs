@@ -43,32 +43,41 @@ const NEW: [u8; 2] = [0x01, 0x02];
 /// One sensor at work.
 #[derive(Clone, Copy, Debug)]
 struct Measuring {
+    /// The outputs, counted from when the sensor was switched.
     outputs: Cadence,
     /// From when on the outputs are good.
     settled: Instant,
 }
 
-/// The two sensors, in the order of their control registers.
+/// The accelerometers, by [`CTRL1_XL`].
 const FORCE: usize = 0;
+/// The gyros, by [`CTRL2_G`].
 const RATE: usize = 1;
 
 /// The simulated chip.
 #[derive(Clone, Debug)]
 pub struct Lsm6dsl {
+    /// The 7-bit address that the chip answers to.
     address: u8,
+    /// The register map as it stands.
     registers: [u8; SIZE],
     /// Until when it does not listen, but for the bit that it clears itself.
     ready_at: Instant,
+    /// Whether that wait follows a loss of supply, not a reset or a boot.
     is_powering_up: bool,
+    /// Accelerometers and gyros, where they are on.
     measuring: [Option<Measuring>; 2],
     /// Ratio of its oscillator to the nominal one.
     clock: f64,
+    /// What a self-test adds to each axis: g, and °/s.
     self_test: (f64, f64),
+    /// What was done to the chip that its data sheet forbids.
     violations: Violations,
 }
 
 impl Lsm6dsl {
-    /// A chip at a 7-bit address that gets its supply at `now`, with an oscillator off by this ratio.
+    /// A chip at a 7-bit address that gets its supply at `now`. Its oscillator runs at `clock` times the
+    /// nominal frequency, > 0, and with it its output rates.
     #[must_use]
     pub fn new(now: Instant, address: u8, clock: f64) -> Self {
         Self {
@@ -88,13 +97,15 @@ impl Lsm6dsl {
         self.self_test = (force_g, rate_deg_s);
     }
 
-    /// Flips a bit of a register, as a disturbance of the chip would.
+    /// Flips a bit, 0 to 7, of the register at an address up to 0x75, as a disturbance of the chip would;
+    /// beyond the last register it changes nothing.
     pub fn flip(&mut self, address: u8, bit: u8) {
         if let Some(register) = self.registers.get_mut(usize::from(address)) {
             *register ^= 1 << bit;
         }
     }
 
+    /// What a register holds.
     fn at(&self, address: u8) -> u8 {
         self.registers[usize::from(address)]
     }
@@ -132,6 +143,7 @@ impl Lsm6dsl {
         self.registers[usize::from(STATUS)] |= NEW[sensor];
     }
 
+    /// Stores a word, lower byte first.
     fn put(&mut self, address: u8, word: i16) {
         let place = usize::from(address);
         self.registers[place..place + 2].copy_from_slice(&word.to_le_bytes());
@@ -150,6 +162,7 @@ impl Lsm6dsl {
         self.at(address)
     }
 
+    /// Reads registers in a row; samples that fall due meanwhile land between two bytes.
     fn read_row(
         &mut self,
         environment: &mut impl MotionInput,
@@ -170,6 +183,7 @@ impl Lsm6dsl {
         }
     }
 
+    /// Writes a register, or records why it must not be written.
     fn write(&mut self, address: u8, value: u8, now: Instant) {
         if let Some(misuse) = registers::write_refusal(address, value) {
             return self.violations.record(misuse, address, now);

@@ -6,19 +6,19 @@ use crate::violation::Misuse;
 /// Addresses up to the last.
 pub const SIZE: usize = 0x76;
 
-/// Identity.
+/// Identity of the chip, 0x6A.
 pub const WHO_AM_I: u8 = 0x0F;
-/// Accelerometer: rate, range.
+/// Output rate and range of the accelerometers.
 pub const CTRL1_XL: u8 = 0x10;
-/// Gyro: rate, range.
+/// Output rate and range of the gyros.
 pub const CTRL2_G: u8 = 0x11;
-/// Boot, block data update, increment, software reset.
+/// Common control: boot, block data update, address increment, software reset.
 pub const CTRL3_C: u8 = 0x12;
-/// Sleep, masks.
+/// Sleep mode of the gyros, and masks of interrupts.
 pub const CTRL4_C: u8 = 0x13;
-/// Rounding and self-test.
+/// Rounding of burst reads, and self-test of both sensors.
 pub const CTRL5_C: u8 = 0x14;
-/// Status.
+/// Status: which sensors have outputs that were not read.
 pub const STATUS: u8 = 0x1E;
 /// First of the outputs: temperature, gyro, accelerometer.
 pub const OUT_TEMP_L: u8 = 0x20;
@@ -31,11 +31,11 @@ pub const OUTZ_H_XL: u8 = 0x2D;
 
 /// Boot bit of [`CTRL3_C`].
 pub const BOOT: u8 = 0x80;
-/// Block data update.
+/// Block data update in [`CTRL3_C`]: an axis does not change between its two bytes.
 pub const BDU: u8 = 0x40;
-/// Address increment.
+/// Address increment in [`CTRL3_C`]: each byte of a transfer has the next address.
 pub const IF_INC: u8 = 0x04;
-/// Software reset.
+/// Software reset in [`CTRL3_C`]; the chip clears the bit when it has reset.
 pub const SW_RESET: u8 = 0x01;
 
 /// What power-up and software reset leave in the registers.
@@ -47,7 +47,7 @@ pub const DEFAULTS: [u8; SIZE] = {
     values
 };
 
-/// Why a read of this address is forbidden, if it is.
+/// Why a read of an address is forbidden, or none where it is allowed.
 #[must_use]
 pub fn read_refusal(address: u8) -> Option<Misuse> {
     let is_known = matches!(address,
@@ -55,7 +55,7 @@ pub fn read_refusal(address: u8) -> Option<Misuse> {
     (!is_known).then_some(Misuse::UnknownRegister)
 }
 
-/// Why this write is forbidden, if it is.
+/// Why a write of a value to an address is forbidden, or none where it is allowed.
 #[must_use]
 pub fn write_refusal(address: u8, value: u8) -> Option<Misuse> {
     match address {

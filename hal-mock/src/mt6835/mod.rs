@@ -42,17 +42,25 @@ const ACKNOWLEDGE: u8 = 0x55;
 /// The simulated chip.
 #[derive(Clone, Debug)]
 pub struct Mt6835 {
+    /// The registers that the chip works with.
     ram: [u8; SIZE],
+    /// What the registers are loaded with at power-up.
     eeprom: [u8; SIZE],
+    /// How often the EEPROM was programmed.
     programmings: u32,
+    /// From when on the chip listens.
     ready_at: Instant,
+    /// State of the self-calibration, 0 to 3.
     calibration: u8,
     /// Where the hysteresis holds the angle, turns.
     held: Option<f64>,
     /// When the shaft was last looked at, and where it was.
     seen: Option<(Instant, f64)>,
+    /// Whether the supply is too low.
     has_undervoltage: bool,
+    /// Bits of the next checksum that go out wrong.
     spoiled: u8,
+    /// What was done to the chip that its data sheet forbids.
     violations: Violations,
 }
 
@@ -86,7 +94,8 @@ impl Mt6835 {
         self.ram.get(usize::from(address)).copied().unwrap_or(0)
     }
 
-    /// Flips a bit of a register in RAM, as a disturbance of the chip would.
+    /// Flips a bit, 0 to 7, of a register in RAM at an address up to 0x0D2, as a disturbance of the chip
+    /// would; beyond the last register it changes nothing.
     pub fn flip(&mut self, address: u16, bit: u8) {
         if let Some(register) = self.ram.get_mut(usize::from(address)) {
             *register ^= 1 << bit;
@@ -138,6 +147,7 @@ impl Mt6835 {
         steps & 0x1F_FFFF
     }
 
+    /// What a read of a register gives.
     fn read(&mut self, environment: &mut impl ShaftAngle, address: u16, now: Instant) -> u8 {
         match address {
             ANGLE..=CRC => self.frame(environment, now)[usize::from(address - ANGLE)],
@@ -150,6 +160,7 @@ impl Mt6835 {
         }
     }
 
+    /// Writes a register in RAM, or records why it must not be written.
     fn write(&mut self, address: u16, value: u8, now: Instant) {
         let changed = value ^ self.register(address);
         let misuse = match writable(address) {
@@ -175,6 +186,7 @@ impl Mt6835 {
         ACKNOWLEDGE
     }
 
+    /// Copies the RAM to the EEPROM, which takes [`PROGRAMMING`].
     fn program(&mut self, now: Instant) -> u8 {
         self.eeprom = self.ram;
         self.programmings += 1;

@@ -7,15 +7,15 @@ pub const SIZE: usize = 0xD3;
 pub const USER_ID: u16 = 0x001;
 /// First byte of the angle; status and checksum follow within the next three.
 pub const ANGLE: u16 = 0x003;
-/// The checksum.
+/// The checksum over angle and status.
 pub const CRC: u16 = 0x006;
-/// Zero position, upper bits.
+/// Upper eight of the twelve bits of the zero position.
 pub const ZERO_HIGH: u16 = 0x009;
-/// Zero position, lower bits.
+/// Lower four of the twelve bits of the zero position, in the upper half of the byte.
 pub const ZERO_LOW: u16 = 0x00A;
-/// Direction and hysteresis.
+/// Direction of counting (bit 3) and hysteresis (bits 0 to 2).
 pub const DIRECTION: u16 = 0x00D;
-/// State of the self-calibration.
+/// State of the self-calibration, in the upper two bits.
 pub const CALIBRATION: u16 = 0x113;
 
 /// The EEPROM of a chip from the factory. Fields with a name hold their documented defaults

@@ -42,14 +42,21 @@ pub struct CoarseConfiguration {
 /// The base at work under its coarse sensors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Base<'a> {
+    /// Where the base goes, where it leaves.
     journey: Option<Journey<'a>>,
+    /// What goes wrong with the sensors on the way.
     faults: &'a [BaseFault],
     /// What was shown last: rates, rad/s, and forces, g.
     shown: [[f64; 3]; 2],
+    /// Time between two outputs, s.
     period_s: f64,
+    /// Attitude at rest.
     attitude: Attitude,
+    /// Latitude and attitude at rest, with gravity and Earth rate.
     site: Site,
+    /// How it sways.
     sway: SwayConfiguration,
+    /// From the point that it sways about to the sensors, body axes, m.
     lever_m: [f64; 3],
     /// Scale factor, bias and noise of gyros (rad/s) and accelerometers (m/s²).
     sensors: [Errors; 2],
@@ -58,17 +65,22 @@ pub struct Base<'a> {
 /// Errors of three equal axes.
 #[derive(Clone, Debug, PartialEq)]
 struct Errors {
+    /// Scale factors, 1.
     scale: [f64; 3],
+    /// Biases, in the unit of the sensors.
     bias: [f64; 3],
+    /// White noise, in the unit of the sensors.
     white: White,
 }
 
 impl Errors {
+    /// Draws scale factors of 1σ `scale` about one and biases of 1σ `bias`.
     fn new(start: &mut Generator, scale: f64, bias: f64, white: White) -> Self {
         let mut draw = |sigma: f64| [0; 3].map(|_| sigma * start.gaussian());
         Self { scale: draw(scale).map(|error| 1.0 + error), bias: draw(bias), white }
     }
 
+    /// What the three axes show next of a truth.
     fn show(&mut self, truth: [f64; 3]) -> [f64; 3] {
         let mut shown = truth;
         for (axis, value) in shown.iter_mut().enumerate() {
@@ -79,7 +91,8 @@ impl Errors {
 }
 
 impl<'a> Base<'a> {
-    /// The same base, which drives off.
+    /// This base on a journey: from its departure on the sensors feel the journey's motion, not the
+    /// sway.
     #[must_use]
     pub fn riding(
         mut self,

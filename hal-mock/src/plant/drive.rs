@@ -6,10 +6,13 @@ use super::StageFault;
 use super::train::{StageConfiguration, Train};
 use crate::stage::StageState;
 
-/// A train and its faults.
+/// A train and its faults. It goes through every beginning and end of a fault at its own time, so that the
+/// motion does not depend on how often it is looked at.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Drive<'a> {
+    /// The drive without faults.
     train: Train,
+    /// What goes wrong with it, in any order.
     faults: &'a [StageFault],
     /// When a fault next begins or ends.
     next_change: Instant,
@@ -98,12 +101,12 @@ impl<'a> Drive<'a> {
 }
 
 impl StageFault {
-    /// Whether it holds the stage at `now`.
+    /// Whether the fault holds the stage at `now`.
     fn blocks(&self, now: Instant) -> bool {
         matches!(*self, Self::Block { from, until } if (from..until).contains(&now))
     }
 
-    /// When it next begins or ends to act on the motion.
+    /// When the fault next begins or ends to act on the motion.
     fn change_after(&self, now: Instant) -> Option<Instant> {
         match *self {
             Self::Block { from, until } => [from, until].into_iter().filter(|at| *at > now).min(),

@@ -12,13 +12,14 @@ pub use crate::vehicle::Means;
 /// Where the base goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JourneyConfiguration<'a> {
-    /// When its motion begins to count, s from the start of the clock; the first leg, a stop, lasts longer.
+    /// When the sensors begin to feel the motion, s from the start of the clock; the first leg, a stop,
+    /// lasts longer.
     pub departs_s: f64,
-    /// What it does, from the start of the clock.
+    /// The stops and drives, in order, from the start of the clock.
     pub legs: &'a [Leg],
-    /// What happens to it on the way.
+    /// What happens to the base on the way, in any order.
     pub events: &'a [Event],
-    /// What goes wrong with coarse sensors on it.
+    /// What goes wrong with coarse sensors on the base, in any order.
     pub faults: &'a [BaseFault],
 }
 
@@ -27,16 +28,16 @@ pub struct JourneyConfiguration<'a> {
 pub enum BaseFault {
     /// The gyros show their full scale.
     Clipped {
-        /// Beginning, s.
+        /// Beginning of the overload, s from the start of the clock.
         from_s: f64,
-        /// End, s.
+        /// End of the fault, s from the start of the clock.
         until_s: f64,
     },
     /// Every sensor repeats its last value.
     Stuck {
-        /// Beginning, s.
+        /// Beginning of the repetition, s from the start of the clock.
         from_s: f64,
-        /// End, s.
+        /// End of the fault, s from the start of the clock.
         until_s: f64,
     },
 }
@@ -44,7 +45,9 @@ pub enum BaseFault {
 /// The base on its way.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Journey<'a> {
+    /// From when on the base feels its motion, s from the start of the clock.
     departs_s: f64,
+    /// The motion with what the gyro's and the accelerometer's chip have seen of it.
     motion: Averaged<'a, 2>,
 }
 

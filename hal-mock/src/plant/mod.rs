@@ -47,14 +47,14 @@ const _: () = assert!(size_of::<Plant>() <= LARGEST);
 pub enum StageFault {
     /// Something holds the stage from one moment until another; [`Instant::MAX`] for good.
     Block {
-        /// When it is caught.
+        /// When the stage is caught.
         from: Instant,
-        /// When it is let go.
+        /// When the stage is let go.
         until: Instant,
     },
     /// The encoder's magnet slips on its shaft.
     Slip {
-        /// When.
+        /// When it slips.
         at: Instant,
         /// What the encoder shows more from then on, rad.
         by_rad: f64,
@@ -119,26 +119,35 @@ impl Default for PlantConfiguration<'_> {
 /// The plant at work.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plant<'a> {
+    /// What is mounted on the stage.
     instruments: Instruments,
+    /// Motor, gear and stage, with their faults.
     drive: Drive<'a>,
     /// The base's sway, where it sways.
     sway: Option<SwayConfiguration>,
+    /// Where the base goes, where it leaves.
     journey: Option<Journey<'a>>,
     /// Periods of the gyro's converter and of the accelerometer, s.
     periods_s: [f64; 2],
     /// Moment of the latest pose on a swaying base.
     swayed_at: Option<Instant>,
+    /// Where the accelerometer sits.
     lever: Lever,
+    /// White noise of the converter, V.
     converter: White,
+    /// Scale factor of the gyro, V per rad/s.
     gyro_volts_per_rad_s: f64,
+    /// Rate at which the gyro's output clips, rad/s.
     gyro_full_scale_rad_s: f64,
+    /// What disturbs the sensors, in any order.
     disturbances: &'a [Disturbance],
 }
 
 impl<'a> Plant<'a> {
     /// A plant at the start of the clock; the seed fixes everything random in it.
     ///
-    /// Not inlined: in an image it is to be counted with the simulation, not with who calls it.
+    /// Not inlined, so that a size report of an image counts it with the simulation and not with the
+    /// caller.
     #[must_use]
     #[inline(never)]
     pub fn new(configuration: &PlantConfiguration<'a>, seed: u64) -> Self {
@@ -197,7 +206,8 @@ impl<'a> Plant<'a> {
         }
     }
 
-    /// The same for the reading of the gyro's converter, 0, or of the accelerometer, 1.
+    /// Brings the instruments to what they feel in a reading at `now`: of the gyro's converter with
+    /// `chip` 0, of the accelerometer with 1.
     #[inline]
     fn feel(&mut self, chip: usize, now: Instant) {
         self.look(now);

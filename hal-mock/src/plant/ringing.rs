@@ -15,7 +15,9 @@ pub(super) struct Ringing {
     decay_per_s: f64,
     /// ω√(1 − ζ²), rad/s.
     angular_rad_s: f64,
+    /// Offset r from where the gear holds the stage, rad.
     offset_rad: f64,
+    /// Rate r′ of the offset, rad/s.
     rate_rad_s: f64,
 }
 
@@ -33,7 +35,7 @@ impl Ringing {
         (self.offset_rad, self.rate_rad_s)
     }
 
-    /// Whether it rests.
+    /// Whether the stage neither is off nor moves against the gear.
     pub(super) fn is_at_rest(&self) -> bool {
         self.offset_rad == 0.0 && self.rate_rad_s == 0.0
     }
@@ -53,7 +55,7 @@ impl Ringing {
         (self.offset_rad, self.rate_rad_s) = (0.0, 0.0);
     }
 
-    /// Moves on by `seconds`, ≥ 0.
+    /// Moves the oscillator on by `seconds`, ≥ 0.
     pub(super) fn pass(&mut self, seconds: f64) {
         if self.is_at_rest() || seconds <= 0.0 {
             return;

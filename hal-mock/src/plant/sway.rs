@@ -24,7 +24,7 @@ pub struct SwayComponent {
 /// The sway of a base; the default stands still.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SwayConfiguration {
-    /// Its sinusoids, in any order.
+    /// The sinusoids, in any order; they add up.
     pub components: [SwayComponent; COMPONENTS],
 }
 

@@ -70,31 +70,40 @@ const NOW_S: f64 = 1e-6;
 /// A stretch of time in which the motor's field turns at one velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Segment {
+    /// When the segment began.
     since: Instant,
     /// Field at the beginning, microsteps.
     field: f64,
-    /// Rotor and stage at the beginning, rad at the stage.
+    /// Rotor at the beginning, rad at the stage.
     rotor_rad: f64,
+    /// Gear's output at the beginning, rad at the stage.
     output_rad: f64,
     /// Velocity of the field, rad/s at the stage.
     rate_rad_s: f64,
-    /// When the stage goes along and when it meets an end, s after the beginning; infinite for never.
+    /// When the stage goes along, s after the beginning; infinite for never.
     engaged_s: f64,
+    /// When the stage meets an end, s after the beginning; infinite for never.
     ended_s: f64,
 }
 
 /// The drive of the stage at work.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Train {
+    /// What the drive is like.
     configuration: StageConfiguration,
+    /// How far one microstep turns the stage, rad.
     rad_per_microstep: f64,
+    /// What goes on since the latest command.
     segment: Segment,
     /// Rotor less field, microsteps: steps lost.
     lost: f64,
+    /// Whether something holds the stage.
     held: bool,
+    /// How the stage rings behind the gear.
     ringing: Ringing,
     /// Until when the ringing is followed.
     now: Instant,
+    /// Stage angle and rate at that moment.
     state: StageState,
 }
 

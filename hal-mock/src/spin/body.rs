@@ -14,7 +14,7 @@ pub(super) struct Felt {
 }
 
 impl Felt {
-    /// This, and so much of another.
+    /// This, and `part` of another.
     fn plus(&self, part: f64, other: &Self) -> Self {
         Self {
             rate_rad_s: [0, 1, 2].map(|i: usize| self.rate_rad_s[i] + part * other.rate_rad_s[i]),
@@ -26,22 +26,30 @@ impl Felt {
 /// The body at work.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Body<'a> {
+    /// What acts on the body.
     forces: Forces<'a>,
+    /// Rate of the roll over the time, rad/s.
     spin: Profile<'a>,
+    /// Roll at the start, rad.
     first_roll_rad: f64,
+    /// Distances of the accelerometers along y and z from the axis, m.
     radius_m: [f64; 2],
+    /// Where the body is, as of the latest time.
     flight: Flight,
+    /// The latest time, s.
     time_s: f64,
 }
 
 /// Places and weights by which Gauss and Legendre integrate over [−½, ½], exact to the fifth power: over
 /// a sample in which the body turns by 5° to 10⁻¹¹.
 const GAUSS: [(f64, f64); 3] = {
+    /// √(3/5)/2.
     const PLACE: f64 = 0.387_298_334_620_741_7;
     [(-PLACE, 5.0 / 18.0), (0.0, 8.0 / 18.0), (PLACE, 5.0 / 18.0)]
 };
 
 impl<'a> Body<'a> {
+    /// A body at the start of its flight.
     pub(super) fn new(configuration: &SpinConfiguration<'a>) -> Self {
         let c = configuration;
         let flight = Flight {
@@ -78,7 +86,7 @@ impl<'a> Body<'a> {
         self.forces.lift_m_s2.value(time_s)
     }
 
-    /// Where it is, as of the latest time.
+    /// Place, direction and speed as of the latest time.
     pub(super) fn flight(&self) -> &Flight {
         &self.flight
     }

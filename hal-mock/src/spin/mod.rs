@@ -96,7 +96,7 @@ impl Default for SpinConfiguration<'_> {
 /// What the sensors show at one moment; not a number where one fails so.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SpinSample {
-    /// When, s from the start.
+    /// Moment of the sample, s from the start.
     pub time_s: f64,
     /// Rates about body x, y and z, rad/s.
     pub rate_rad_s: [f64; 3],
@@ -109,7 +109,7 @@ pub struct SpinSample {
 pub struct SpinTruth {
     /// Roll, rad, whole turns counted.
     pub roll_rad: f64,
-    /// Its rate, rad/s.
+    /// Rate of the roll, rad/s.
     pub spin_rad_s: f64,
     /// Speed, pitch, course and place.
     pub flight: Flight,
@@ -120,6 +120,7 @@ pub struct SpinTruth {
 }
 
 impl SpinTruth {
+    /// The truth at a time in s of a body that has flown there.
     fn of(body: &Body, sensors: &Sensors, time_s: f64) -> Self {
         Self {
             roll_rad: body.roll_rad(time_s),
@@ -131,15 +132,23 @@ impl SpinTruth {
     }
 }
 
-/// A spinning body at work; an iterator of samples.
+/// A spinning body at work: an iterator of samples that ends with the run. Sample k is taken at k/`rate_hz`,
+/// k from 0; samples in a gap are left out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpinWorld<'a> {
+    /// Samples per second, Hz.
     rate_hz: f64,
+    /// The body in flight.
     body: Body<'a>,
+    /// What is fixed to it.
     sensors: Sensors<'a>,
+    /// What goes wrong with the sensors.
     faults: &'a [SensorFault],
+    /// Time of the latest sample, s.
     time_s: f64,
+    /// Samples that were taken, missing ones counted.
     taken: u64,
+    /// Samples of the whole run.
     count: u64,
 }
 

@@ -65,11 +65,17 @@ impl Default for SpinPlantConfiguration<'_> {
 /// The plant at work.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpinPlant<'a> {
+    /// The body in flight.
     body: Body<'a>,
+    /// What is fixed to it.
     sensors: Sensors<'a>,
+    /// White noise of each converter, V.
     converters: [White; CHANNELS],
+    /// Scale factors of the gyros about x, y and z, V per rad/s.
     gyro_volts_per_rad_s: [f64; 3],
+    /// Scale factor of the accelerometers, V per m/s².
     volts_per_m_s2: f64,
+    /// Period of a conversion, s.
     period_s: f64,
     /// When each converter read last, s.
     marks_s: [f64; CHANNELS],

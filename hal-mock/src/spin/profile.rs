@@ -6,7 +6,7 @@
 pub struct Profile<'a>(pub &'a [(f64, f64)]);
 
 impl Profile<'_> {
-    /// Its value at a time in s.
+    /// Value of the quantity at a time in s; at a jump, of two points at one time, that of the later point.
     #[must_use]
     pub fn value(&self, time_s: f64) -> f64 {
         let after = self.0.partition_point(|(at_s, _)| *at_s <= time_s);

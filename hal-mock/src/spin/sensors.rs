@@ -13,6 +13,7 @@ const TEMPERATURE_C: f64 = 25.0;
 pub(super) struct Sensors<'a>(Strapdown<'a, 2>);
 
 impl<'a> Sensors<'a> {
+    /// The sensors of a body at the start of its flight.
     pub(super) fn new(configuration: &SpinConfiguration<'a>, seed: u64) -> Self {
         let c = configuration;
         let strapdown = StrapdownConfiguration {

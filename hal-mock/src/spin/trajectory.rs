@@ -60,7 +60,7 @@ impl Flight {
         }
     }
 
-    /// This flight after so many seconds at a derivative.
+    /// This flight after `seconds` at a derivative.
     fn after(&self, seconds: f64, derivative: &Self) -> Self {
         let [from, change] = [&self.position_m, &derivative.position_m];
         Self {
@@ -82,6 +82,7 @@ impl Flight {
         self
     }
 
+    /// One step of `step_s` from a time in s.
     fn step(&self, forces: &Forces, time_s: f64, step_s: f64) -> Self {
         let half_s = 0.5 * step_s;
         let first = self.derivative(forces, time_s);

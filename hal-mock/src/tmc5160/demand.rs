@@ -34,29 +34,43 @@ impl Segment {
 /// RAMPMODE.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Mode {
+    /// Ramps to XTARGET.
     #[default]
     Position,
+    /// Ramps to +VMAX by AMAX.
     Forward,
+    /// Ramps to −VMAX by AMAX.
     Backward,
+    /// Keeps the velocity.
     Hold,
 }
 
 /// What the registers ask for; velocities as fine as the ramp keeps them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Demand {
+    /// How the other registers are to be taken.
     pub mode: Mode,
+    /// XTARGET, microsteps.
     pub target: i32,
+    /// VSTART, 2⁻¹⁷ units.
     pub start: i64,
+    /// A1, change of the fine velocity per clock.
     first: i64,
+    /// V1, 2⁻¹⁷ units.
     knee: i64,
+    /// AMAX, change of the fine velocity per clock.
     acceleration: i64,
+    /// VMAX, 2⁻¹⁷ units.
     pub peak: i64,
+    /// DMAX, change of the fine velocity per clock.
     deceleration: i64,
+    /// D1, change of the fine velocity per clock.
     last: i64,
+    /// VSTOP, 2⁻¹⁷ units.
     pub stop: i64,
     /// Clocks of rest after a stop.
     pub rest: u32,
-    /// Beyond so many microsteps nobody needs to brake from VMAX.
+    /// Way to the target in microsteps beyond which a motor up to VMAX need not brake yet.
     zone: u64,
 }
 

@@ -6,10 +6,13 @@
 //! ```
 //!
 //! While the motor moves the chip looks at its surroundings every [`STEP`] (some 1 300 instructions of a
-//! Cortex-M4F): switches and stalls act with that granularity. Standing it has no events and looks at each transaction. Simplified: `SG_RESULT` is 0 where the motor is
-//! blocked and [`FREE_RUNNING`] otherwise, `CoolStep`, `DcStep`, `StealthChop` and the encoder input are
-//! registers without effect, `VSTART` acts in positioning mode only, and reading a write-only register
-//! (on which the data sheet is silent) gives zero and a violation.
+//! Cortex-M4F): switches and stalls act with that granularity. Standing it has no events and looks at
+//! each transaction.
+//!
+//! Simplified: `SG_RESULT` is 0 where the motor is blocked and [`FREE_RUNNING`] otherwise, `CoolStep`,
+//! `DcStep`, `StealthChop` and the encoder input are registers without effect, `VSTART` acts in
+//! positioning mode only, and reading a write-only register (on which the data sheet is silent) gives
+//! zero and a violation. A write-only register is not read back, but [`Tmc5160::register`] shows it.
 
 mod demand;
 mod map;
@@ -49,18 +52,18 @@ const FIELD_BITS: u32 = 20;
 pub enum Oscillator {
     /// The factory-calibrated one: 12 MHz, 11.5 … 12.5 MHz at 50 °C (28.2).
     Internal {
-        /// Its true frequency, Hz.
+        /// True frequency of the oscillator, Hz.
         hertz: u32,
     },
     /// A clock on CLK, 4 … 18 MHz.
     External {
-        /// Its frequency, Hz.
+        /// Frequency of the clock on CLK, Hz.
         hertz: u32,
     },
 }
 
 impl Oscillator {
-    /// Frequency, Hz, to the kilohertz below.
+    /// Frequency of the clock, Hz; the chip's time counts it to the kilohertz below.
     #[must_use]
     pub const fn hertz(self) -> u32 {
         match self {
@@ -80,7 +83,7 @@ impl Oscillator {
 /// What only a chip can suffer from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sickness {
-    /// It is well.
+    /// The chip is well.
     #[default]
     None,
     /// The bridges are too hot.
@@ -102,30 +105,41 @@ pub enum Sickness {
 /// The chip.
 #[derive(Clone, Debug)]
 pub struct Tmc5160 {
+    /// What it counts time with.
     oscillator: Oscillator,
     /// Microsteps per second in one unit of the ramp's velocity.
     per_second: f64,
+    /// What was written, and the latched flags, by address.
     registers: [u32; ADDRESSES],
+    /// The ramp generator with the motor's field.
     ramp: Ramp,
     /// Latched bits of `RAMP_STAT`.
     events: u32,
+    /// What the chip suffers from.
     sickness: Sickness,
     /// Levels of REFL and REFR.
     pins: [bool; 2],
     /// The active switches at the last look, left and right.
     stops_seen: u8,
+    /// Whether the target was reached at the last look.
     was_reached: bool,
     /// Whether TSTEP is below TCOOLTHRS.
     fast: bool,
+    /// Whether the motor could not follow at the last look.
     blocked: bool,
     /// Clocks since the last motion.
     still: u64,
+    /// When its supply came up.
     started: Instant,
+    /// Up to when its motion is done.
     at: Instant,
     /// Thousandths of a clock that are not yet a whole one.
     remainder: u32,
+    /// What the next datagram carries back (4.1.1).
     pending: u32,
+    /// The status byte of the next datagram (4.1.2).
     latched: u8,
+    /// What was done to the chip that its data sheet forbids.
     violations: Violations,
 }
 
@@ -159,7 +173,8 @@ impl Tmc5160 {
         chip
     }
 
-    /// Makes the chip sick, or well again.
+    /// Makes the chip sick, or well again; flags of errors that have been raised stay until they are
+    /// cleared. A loss of supply does not heal it.
     pub fn suffer(&mut self, sickness: Sickness) {
         self.sickness = sickness;
         self.catch_errors();
@@ -238,6 +253,7 @@ impl Tmc5160 {
         }
     }
 
+    /// Writes a register; a reserved or forbidden value is recorded and taken as far as bits exist.
     fn write(&mut self, address: u8, register: map::Register, data: u32) {
         if !register.access.can_write() {
             return self.violate(Misuse::ReadOnly, address);
@@ -267,6 +283,7 @@ impl Tmc5160 {
         }
     }
 
+    /// Records a forbidden access to a register.
     fn violate(&mut self, misuse: Misuse, address: u8) {
         self.violations.record(misuse, address, self.at);
     }

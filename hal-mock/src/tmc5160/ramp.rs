@@ -19,13 +19,16 @@ const MARGIN: i128 = 1 << (FRACTION_BITS - 2);
 /// Where the motor's field stands and how fast it turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Motion {
+    /// Where the field stands, whole microsteps.
     field: i64,
+    /// How far it stands beyond, 2⁻⁴² microsteps, ≥ 0.
     fraction: i64,
+    /// How fast it turns, 2⁻¹⁷ units of VACTUAL.
     velocity: i64,
 }
 
 impl Motion {
-    /// After so many clocks with a change of velocity per clock.
+    /// The motion after `clocks` clocks in which the velocity changes by `rate` each clock.
     fn after(self, clocks: u32, rate: i64) -> Self {
         let clocks = i64::from(clocks);
         let velocity = self.velocity + rate * clocks;
@@ -52,30 +55,40 @@ enum Corner {
 /// How near the target is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Approach {
+    /// The target is too far off to brake for it.
     #[default]
     Free,
     /// One more clock of acceleration would be one too many.
     Coasting,
+    /// The way left is what slowing down takes.
     Braking,
 }
 
 /// Which directions are shut by reference switches, and how they stop.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Stops {
+    /// The left switch shuts the way back.
     pub backward: bool,
+    /// The right switch shuts the way forward.
     pub forward: bool,
+    /// A shut direction is left by the ramp, not at once.
     pub soft: bool,
 }
 
 /// The ramp generator.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Ramp {
+    /// Where the field is, and how fast it turns.
     motion: Motion,
     /// The field where XACTUAL is 0.
     origin: i64,
+    /// What the registers ask for.
     demand: Demand,
+    /// What the switches shut.
     stops: Stops,
+    /// How near the target is.
     approach: Approach,
+    /// Clocks of rest that are left.
     resting: u32,
     /// The motor may not move until the stall is cleared.
     pub stalled: bool,
@@ -124,6 +137,7 @@ impl Ramp {
         (self.motion.velocity / (1 << VELOCITY_BITS)) as i32
     }
 
+    /// Whether XACTUAL is XTARGET.
     pub fn reached(&self) -> bool {
         self.distance(self.motion) == 0
     }
@@ -133,6 +147,7 @@ impl Ramp {
         self.motion.velocity.abs() == self.demand.peak
     }
 
+    /// Whether TZEROWAIT is being waited out.
     pub fn is_resting(&self) -> bool {
         self.resting > 0
     }
@@ -176,7 +191,7 @@ impl Ramp {
         self.resting = self.demand.rest;
     }
 
-    /// Lets so many clocks pass.
+    /// Lets `clocks` clocks pass.
     pub fn advance(&mut self, clocks: u32) {
         let mut left = clocks;
         let mut step = left;
@@ -246,10 +261,12 @@ impl Ramp {
         positioning && self.motion.velocity != 0 && self.way(self.motion) <= 0
     }
 
+    /// Whether a switch shuts a direction.
     fn is_shut(&self, direction: i64) -> bool {
         (direction < 0 && self.stops.backward) || (direction > 0 && self.stops.forward)
     }
 
+    /// The direction of motion, zero at rest.
     fn heading(&self) -> i64 {
         self.motion.velocity.signum()
     }
@@ -278,6 +295,7 @@ impl Ramp {
         if self.stalled || self.is_shut(direction) { 0 } else { direction }
     }
 
+    /// The slope that holds now, and the velocity at which it ends.
     fn segment(&self) -> Segment {
         let velocity = self.motion.velocity;
         let heading = if velocity == 0 { self.wanted() } else { velocity.signum() };

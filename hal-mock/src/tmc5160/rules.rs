@@ -30,6 +30,7 @@ fn cannot_end(registers: &[u32; ADDRESSES], mode: u32) -> bool {
     mode == 0 && (is_zero(address::D1) || is_zero(address::VSTOP))
 }
 
+/// Whether VMAX lets the motor move.
 fn is_under_way(registers: &[u32; ADDRESSES]) -> bool {
     registers[usize::from(address::VMAX)] != 0
 }

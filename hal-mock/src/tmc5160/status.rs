@@ -6,30 +6,46 @@ use super::{FREE_RUNNING, Sickness, Tmc5160};
 
 /// `RAMP_STAT` (6.3.2.2).
 mod ramp_stat {
+    /// The left switch is active.
     pub const STOP_L: u32 = 1;
+    /// The right switch is active.
     pub const STOP_R: u32 = 1 << 1;
+    /// XLATCH was taken at the left switch.
     pub const LATCH_L: u32 = 1 << 2;
+    /// XLATCH was taken at the right switch.
     pub const LATCH_R: u32 = 1 << 3;
+    /// The left switch stops the motor.
     pub const EVENT_STOP_L: u32 = 1 << 4;
+    /// The right switch stops the motor.
     pub const EVENT_STOP_R: u32 = 1 << 5;
+    /// A stall has stopped the motor.
     pub const EVENT_STOP_SG: u32 = 1 << 6;
+    /// The target was reached since the bit was cleared.
     pub const EVENT_POS_REACHED: u32 = 1 << 7;
+    /// The velocity is that of VMAX.
     pub const VELOCITY_REACHED: u32 = 1 << 8;
+    /// XACTUAL is XTARGET.
     pub const POSITION_REACHED: u32 = 1 << 9;
+    /// VACTUAL is zero.
     pub const VZERO: u32 = 1 << 10;
+    /// The rest after a stop lasts.
     pub const ZEROWAIT: u32 = 1 << 11;
+    /// The ramp had to turn back to reach the target.
     pub const SECOND_MOVE: u32 = 1 << 12;
+    /// The motor stalls.
     pub const STATUS_SG: u32 = 1 << 13;
     /// Bits that a written one clears.
     pub const CLEARABLE: u32 = LATCH_L | LATCH_R | EVENT_STOP_SG | EVENT_POS_REACHED | SECOND_MOVE;
 }
 
-/// Bits of GSTAT.
+/// A driver was switched off for an error (`drv_err`, 6.1).
 const DRV_ERR: u32 = 1 << 1;
+/// The charge pump's voltage is too low (`uv_cp`, 6.1).
 const UV_CP: u32 = 1 << 2;
 
-/// `DRV_STATUS` (6.5.5).
+/// The motor stalls (`StallGuard`, 6.5.5).
 const STALLED: u32 = 1 << 24;
+/// The motor has not moved for some time (stst).
 const STANDSTILL: u32 = 1 << 31;
 
 /// TSTEP at rest (6.2).
@@ -41,11 +57,13 @@ const STILL: [u64; 2] = [1 << 20, 1 << 18];
 /// TSTEP·velocity, with the ramp's fine velocity.
 const STEP_PRODUCT: u64 = 1 << 41;
 
+/// A bit where something holds, else zero.
 const fn flag(is_set: bool, bit: u32) -> u32 {
     if is_set { bit } else { 0 }
 }
 
 impl Tmc5160 {
+    /// What a register holds.
     fn written(&self, address: u8) -> u32 {
         self.registers[usize::from(address)]
     }
@@ -114,6 +132,7 @@ impl Tmc5160 {
         (low | middle | high) as u8
     }
 
+    /// The register `RAMP_STAT` of this moment.
     fn ramp_status(&self) -> u32 {
         use ramp_stat::{
             EVENT_STOP_L, EVENT_STOP_R, POSITION_REACHED, SECOND_MOVE, STATUS_SG, STOP_L, STOP_R,
@@ -133,6 +152,7 @@ impl Tmc5160 {
             | flag(self.is_stalling(), STATUS_SG)
     }
 
+    /// The register `DRV_STATUS` of this moment.
     fn driver_status(&self) -> u32 {
         let is_still = self.is_still();
         let load = if self.is_stalling() { 0 } else { FREE_RUNNING };
@@ -156,18 +176,22 @@ impl Tmc5160 {
         (if is_held { currents } else { currents >> 8 }) & 0x1F
     }
 
+    /// Clocks without a step after which the motor counts as standing.
     fn stillness(&self) -> u64 {
         STILL[(self.written(address::GCONF) >> 1 & 1) as usize]
     }
 
+    /// Whether the motor counts as standing.
     fn is_still(&self) -> bool {
         self.still >= self.stillness()
     }
 
+    /// Whether the bridges are on: an off time, and the enable pin.
     fn is_enabled(&self) -> bool {
         self.written(address::CHOPCONF) & 0xF != 0 && self.sickness != Sickness::Disabled
     }
 
+    /// The register IOIN of this moment.
     fn inputs(&self) -> u32 {
         let [left, right] = self.pins;
         let version = if self.sickness == Sickness::Foreign { 0x11 } else { 0x30 };
@@ -178,11 +202,13 @@ impl Tmc5160 {
             | version << 24
     }
 
+    /// The register TSTEP of this moment, clocks.
     fn step_time(&self) -> u32 {
         let speed = self.ramp.fine_velocity().unsigned_abs();
         STEP_PRODUCT.checked_div(speed).map_or(REST, |time| time.min(u64::from(REST)) as u32)
     }
 
+    /// The register MSCNT of this moment.
     fn wave_index(&self) -> u32 {
         self.field().rem_euclid(super::PERIOD) as u32
     }

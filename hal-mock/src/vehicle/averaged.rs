@@ -12,19 +12,23 @@ const LONG_AGO: f64 = 1.5;
 /// What had been integrated when a chip read last.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Mark {
+    /// When the chip read, s from the start.
     time_s: f64,
+    /// Integrals up to then.
     integrals: Integrals,
 }
 
-/// A motion with what each of so many chips has seen of it.
+/// A motion, with what each of its chips has seen of it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Averaged<'a, const CHIPS: usize> {
+    /// The motion up to the latest reading.
     motion: Motion<'a>,
+    /// The latest reading of each chip.
     marks: [Mark; CHIPS],
 }
 
 impl<'a, const CHIPS: usize> Averaged<'a, CHIPS> {
-    /// Nothing of it was seen yet.
+    /// A motion of which no chip has seen anything yet.
     pub(crate) fn new(motion: Motion<'a>) -> Self {
         Self { motion, marks: [Mark::default(); CHIPS] }
     }
@@ -46,6 +50,7 @@ impl<'a, const CHIPS: usize> Averaged<'a, CHIPS> {
         to.integrals.means(&from.integrals, to.time_s - from.time_s)
     }
 
+    /// What has been integrated by now.
     fn mark(&self) -> Mark {
         Mark { time_s: self.motion.time_s(), integrals: *self.motion.integrals() }
     }

@@ -1,4 +1,4 @@
-//! What people do to a vehicle, and what goes wrong with its sensors.
+//! Doors and passengers that shake a vehicle, falls, and what goes wrong with its sensors.
 
 use super::Pose;
 use super::smooth::Smooth;
@@ -8,20 +8,20 @@ use super::smooth::Smooth;
 pub enum Event {
     /// A door falls shut: body and force ring and die away.
     Slam {
-        /// When, s from the start.
+        /// When the door falls shut, s from the start.
         at_s: f64,
         /// Frequency of the ringing, Hz, > 0.
         frequency_hz: f64,
-        /// Its time constant, s, > 0.
+        /// Time constant of the ringing, s, > 0.
         decay_s: f64,
         /// Amplitude of azimuth, pitch and roll, °, before it dies away.
         angles_deg: [f64; 3],
-        /// The same of the specific force forward, right, down, m/s².
+        /// Amplitude of the specific force forward, right, down, m/s², before it dies away.
         force_m_s2: [f64; 3],
     },
-    /// Somebody gets in or out: the vehicle takes another level for good.
+    /// A person gets in or out: the vehicle takes another level for good.
     Boarding {
-        /// When it begins, s from the start.
+        /// When the vehicle begins to sink, s from the start.
         at_s: f64,
         /// How long it takes, s.
         seconds: f64,
@@ -32,7 +32,7 @@ pub enum Event {
     },
     /// The vehicle falls: nothing is felt but what its slope leaves.
     Fall {
-        /// When it begins, s from the start.
+        /// When the fall begins, s from the start.
         at_s: f64,
         /// How long it takes, s.
         seconds: f64,
@@ -90,42 +90,43 @@ impl Event {
     }
 }
 
-/// Something that goes wrong with the sensors, for [from, until) in s; `channel` 0 to 2 are the gyros
-/// forward, right, down, 3 to 5 the accelerometers.
+/// Something that goes wrong with the sensors, for [from, until) in s from the start. Channels 0 to 2 are
+/// the gyros forward, right, down, 3 to 5 the accelerometers; a spinning body has its own order
+/// ([`crate::spin::SpinConfiguration::faults`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SensorFault {
     /// Samples that end in this time are missing.
     Gap {
-        /// Beginning, s.
+        /// Beginning of the gap, s from the start.
         from_s: f64,
-        /// End, s.
+        /// End of the fault, s from the start.
         until_s: f64,
     },
     /// A sensor shows its full scale, as under an overload.
     Saturated {
-        /// Which one.
+        /// The channel, 0 to 5.
         channel: usize,
-        /// Beginning, s.
+        /// Beginning of the overload, s from the start.
         from_s: f64,
-        /// End, s.
+        /// End of the fault, s from the start.
         until_s: f64,
     },
     /// What a sensor shows is not a number.
     NotANumber {
-        /// Which one.
+        /// The channel, 0 to 5.
         channel: usize,
-        /// Beginning, s.
+        /// Beginning of the failure, s from the start.
         from_s: f64,
-        /// End, s.
+        /// End of the fault, s from the start.
         until_s: f64,
     },
     /// A sensor repeats its last value.
     Stuck {
-        /// Which one.
+        /// The channel, 0 to 5.
         channel: usize,
-        /// Beginning, s.
+        /// Beginning of the repetition, s from the start.
         from_s: f64,
-        /// End, s.
+        /// End of the fault, s from the start.
         until_s: f64,
     },
 }
@@ -138,7 +139,8 @@ impl SensorFault {
         })
     }
 
-    /// What a channel shows of a value at a time in s, after the last one, with faults and full scale on it.
+    /// What a channel shows at a time in s of a value, after the last one, both in its unit. Faults act in
+    /// their order, each on what the one before left; then the channel clips at ±`full`.
     pub(crate) fn spoilt(
         faults: &[Self],
         channel: usize,
@@ -152,7 +154,8 @@ impl SensorFault {
         if shown.abs() > full { libm::copysign(full, shown) } else { shown }
     }
 
-    /// What a channel shows instead of a value, after the last one, with such a full scale.
+    /// What the channel `at` shows under this fault at a time in s: its full scale, its last value, or the
+    /// value itself where the fault does not act on it then.
     fn shown(&self, time_s: f64, at: usize, [value, last]: [f64; 2], full: f64) -> f64 {
         let is_on = |channel: usize, from_s: f64, until_s: f64| {
             channel == at && (from_s..until_s).contains(&time_s)

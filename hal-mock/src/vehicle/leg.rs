@@ -62,9 +62,9 @@ pub struct Drive {
 /// A part of a vehicle's day. A drive that follows a drive goes on without a halt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Leg {
-    /// It stands.
+    /// The vehicle stands.
     Stop(Stop),
-    /// It drives.
+    /// The vehicle drives.
     Drive(Drive),
 }
 
@@ -78,7 +78,7 @@ impl Leg {
         }
     }
 
-    /// What it changes the heading by, rad.
+    /// By how much the leg changes the heading, rad, to the right positive.
     pub(super) fn heading_change_rad(&self) -> f64 {
         match self {
             Self::Stop(_) => 0.0,
@@ -114,8 +114,8 @@ pub(super) struct Neighbours<'a> {
 }
 
 impl Neighbours<'_> {
-    /// The motion so many seconds into the leg, `time_s` after the start, which it began heading for
-    /// `heading_rad`.
+    /// The motion `elapsed_s` seconds into the leg, which began with the heading `heading_rad`; `time_s`
+    /// counts from the start of the day.
     pub(super) fn pose(&self, heading_rad: f64, elapsed_s: f64, time_s: f64) -> Pose {
         let mut pose = Pose::default();
         match self.leg {
@@ -127,6 +127,7 @@ impl Neighbours<'_> {
         pose
     }
 
+    /// Sets the pose of a vehicle at rest.
     fn stand(&self, stop: &Stop, pose: &mut Pose, elapsed_s: f64, time_s: f64) {
         [pose.pitch, pose.roll] = self.ground(LEVELLING_S, elapsed_s);
         pose.sway(&stop.sway, self.presence(elapsed_s), time_s);
@@ -139,6 +140,7 @@ impl Neighbours<'_> {
         }
     }
 
+    /// Sets the pose of a vehicle on its way.
     fn drive(&self, drive: &Drive, pose: &mut Pose, elapsed_s: f64, time_s: f64) {
         let presence = self.presence(elapsed_s);
         pose.speed = self.speed(drive, elapsed_s);
@@ -163,7 +165,8 @@ impl Neighbours<'_> {
         gained + Smooth::blend(0.0, -own, seconds, elapsed_s - (drive.seconds - seconds))
     }
 
-    /// Pitch and roll of the ground, reached within so many seconds, rad.
+    /// Pitch and roll of the ground, rad, which the vehicle reaches `seconds` after the beginning of the
+    /// leg.
     fn ground(&self, seconds: f64, elapsed_s: f64) -> [Smooth; 2] {
         let to = self.leg.ground_rad(self.after);
         let from = match (self.before, self.leg) {

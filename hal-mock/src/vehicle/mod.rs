@@ -56,9 +56,9 @@ pub struct VehicleConfiguration<'a> {
     pub lever_m: [f64; 3],
     /// The warm-up.
     pub temperature: TemperatureConfiguration,
-    /// What the vehicle does, in order; the run ends with the last of it.
+    /// The stops and drives, in order; the run ends with the last.
     pub legs: &'a [Leg],
-    /// What people do to it, in any order.
+    /// What happens to the vehicle, in any order.
     pub events: &'a [Event],
     /// What goes wrong with the sensors, in any order.
     pub faults: &'a [SensorFault],
@@ -101,7 +101,7 @@ impl<'a> VehicleConfiguration<'a> {
         })
     }
 
-    /// The same vehicle without its sensors.
+    /// The motion of this vehicle, from its start, without sensors.
     #[must_use]
     pub fn motion(&self) -> Motion<'a> {
         let [latitude_rad, azimuth_rad] =
@@ -142,15 +142,23 @@ pub struct VehicleTruth {
     pub accelerometer_bias_m_s2: [f64; 3],
 }
 
-/// A vehicle at work; an iterator of samples.
+/// A vehicle at work: an iterator of samples that ends with the last leg. Sample k ends at k/`rate_hz`, k
+/// from 1; samples in a gap are left out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vehicle<'a> {
+    /// Samples per second, Hz.
     rate_hz: f64,
+    /// How the vehicle moves.
     motion: Motion<'a>,
+    /// What is fixed to it.
     sensors: Sensors<'a>,
+    /// What goes wrong with the sensors.
     faults: &'a [SensorFault],
+    /// Integrals at the end of the latest sample.
     before: Integrals,
+    /// Samples that were taken, missing ones counted.
     taken: u64,
+    /// Samples of the whole run.
     count: u64,
 }
 
@@ -205,15 +213,19 @@ impl Iterator for Vehicle<'_> {
 /// How the vehicle moves at one moment, over the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Pose {
-    /// Attitude of the body, rad.
+    /// Azimuth of the body, rad, clockwise from north.
     azimuth: Smooth,
+    /// Pitch of the body, rad, nose up positive.
     pitch: Smooth,
+    /// Roll of the body, rad, right side down positive.
     roll: Smooth,
-    /// Where the road leads, rad, how fast, m/s, and how steep, height per way.
+    /// Heading of the road, rad, clockwise from north.
     heading: Smooth,
+    /// Speed along the road, m/s.
     speed: Smooth,
+    /// Slope of the road, height per way, 1.
     slope: Smooth,
-    /// What shakes the accelerometers, m/s².
+    /// Specific force that shakes the accelerometers forward, right, down, m/s².
     force_m_s2: [f64; 3],
 }
 
@@ -231,7 +243,7 @@ impl Pose {
         self.roll = self.roll + roll;
     }
 
-    /// Turns the body by so much of a sway as there is at a time in s.
+    /// Turns the body by a sway at a time in s, of which `presence`, 0 to 1, is there.
     fn sway(&mut self, sway: &SwayConfiguration, presence: Smooth, time_s: f64) {
         if !sway.is_active() {
             return;
@@ -251,7 +263,7 @@ impl Pose {
         }
     }
 
-    /// Whether it goes nowhere.
+    /// Whether the vehicle stands.
     fn stands(&self) -> bool {
         self.speed == Smooth::default()
     }

@@ -25,7 +25,7 @@ const SHORT_PANEL_S: f64 = 0.005;
 /// Nodes in [0, 1] and weights of Gauss and Legendre's quadrature of two points: exact to t³.
 const TWO: [(f64, f64); 2] = [(0.211_324_865_405_187_1, 0.5), (0.788_675_134_594_812_9, 0.5)];
 
-/// The same of three points: exact to t⁵.
+/// Nodes in [0, 1] and weights of Gauss and Legendre's quadrature of three points: exact to t⁵.
 const THREE: [(f64, f64); 3] = [
     (0.112_701_665_379_258_3, 5.0 / 18.0),
     (0.5, 8.0 / 18.0),
@@ -35,8 +35,11 @@ const THREE: [(f64, f64); 3] = [
 /// How the vehicle moves at one moment, and what sensors fixed to it feel of that.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Felt {
+    /// The pose that it belongs to.
     pose: Pose,
+    /// Inertial angular rate about forward, right, down, rad/s.
     rate_rad_s: [f64; 3],
+    /// Specific force along forward, right, down, m/s².
     force_m_s2: [f64; 3],
     /// Rates of latitude and longitude.
     travel_rad_s: [f64; 2],
@@ -45,15 +48,15 @@ struct Felt {
 /// Integrals since the start: what an ideal strapdown unit has summed up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Integrals {
-    /// Of the inertial angular rate about forward, right, down, rad.
+    /// Integral of the inertial angular rate about forward, right, down, rad.
     pub turned_rad: [f64; 3],
-    /// Of the specific force along forward, right, down, m/s.
+    /// Integral of the specific force along forward, right, down, m/s.
     pub pushed_m_s: [f64; 3],
 }
 
 impl Integrals {
-    /// Mean rate and force since these were those, so many seconds ago; zero seconds have no mean, and
-    /// give zero.
+    /// Mean rate and force over the `seconds` since the integrals were `before`; zero seconds have no
+    /// mean, and give zero.
     pub(super) fn means(&self, before: &Self, seconds: f64) -> Means {
         let mean = |to: [f64; 3], from: [f64; 3]| {
             [0, 1, 2].map(|axis: usize| (to[axis] - from[axis]) / libm::fmax(seconds, 1e-9))
@@ -68,11 +71,17 @@ impl Integrals {
 /// A moving vehicle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion<'a> {
+    /// What the vehicle does.
     route: Route<'a>,
+    /// From the point of sway to the sensors, m, forward, right, down.
     lever_m: [f64; 3],
+    /// The latest moment, s from the start.
     time_s: f64,
+    /// Position at the start.
     start: Position,
+    /// Position at the latest moment.
     position: Position,
+    /// What an ideal strapdown unit has summed up.
     integrals: Integrals,
     /// Earth in the middle of the latest panel: a vehicle goes less than a metre in one.
     place: Place,
@@ -136,7 +145,7 @@ impl<'a> Motion<'a> {
         &self.integrals
     }
 
-    /// Where it is.
+    /// Position at the latest moment.
     #[must_use]
     pub fn position(&self) -> &Position {
         &self.position
@@ -175,7 +184,7 @@ impl<'a> Motion<'a> {
         self.swing();
     }
 
-    /// Takes Earth for what it is where the vehicle will be in so many seconds.
+    /// Takes Earth for what it is where the vehicle will be `seconds` later.
     fn look_around(&mut self, seconds: f64) {
         let mut there = self.position;
         there.travel(self.felt.travel_rad_s, seconds);
@@ -236,10 +245,12 @@ fn turning_rad_s(pose: &Pose, to_navigation: &Matrix) -> [f64; 3] {
     turning
 }
 
+/// The sum of two vectors.
 fn sum(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
+/// Adds `times` a vector to a total.
 fn add(total: &mut [f64; 3], vector: [f64; 3], times: f64) {
     for (total, part) in total.iter_mut().zip(vector) {
         *total += part * times;

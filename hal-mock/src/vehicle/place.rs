@@ -38,12 +38,14 @@ pub(super) struct Place {
     pub(super) gravity_m_s2: f64,
     /// Radii of curvature along the meridian and across it.
     radii_m: [f64; 2],
-    /// Tangent and cosine of the latitude.
+    /// Tangent of the latitude, 1.
     tangent: f64,
+    /// Cosine of the latitude, 1.
     cosine: f64,
 }
 
 impl Place {
+    /// Earth at a geodetic latitude in rad.
     pub(super) fn at(latitude_rad: f64) -> Self {
         Self {
             latitude_rad,

@@ -59,12 +59,17 @@ impl Default for VehiclePlantConfiguration<'_> {
 pub struct VehiclePlant<'a> {
     /// For each gyro's converter and for the accelerometer.
     motion: Averaged<'a, 4>,
+    /// What is fixed to the vehicle.
     sensors: Sensors<'a>,
+    /// The warm-up.
     temperature: TemperatureConfiguration,
+    /// The thermometer of the accelerometer.
     thermometer: Thermometer,
+    /// White noise of each converter, V.
     converters: [White; 3],
+    /// Scale factor of the gyros, V per rad/s.
     volts_per_rad_s: f64,
-    /// Of a converter and of the accelerometer, s.
+    /// Periods of a converter and of the accelerometer, s.
     periods_s: [f64; 2],
 }
 

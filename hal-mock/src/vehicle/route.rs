@@ -1,4 +1,4 @@
-//! A vehicle's way through its legs, and what people do to it on the way.
+//! A vehicle's way through its legs, and what happens to it on the way.
 
 use super::leg::{Leg, Neighbours};
 use super::{Event, Pose};
@@ -6,11 +6,15 @@ use super::{Event, Pose};
 /// The legs of a day, and where in them the vehicle is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Route<'a> {
+    /// What the vehicle does, in order.
     legs: &'a [Leg],
+    /// What happens to it, in any order.
     events: &'a [Event],
-    /// Which leg, when it began, s, and the heading it began with, rad.
+    /// Number of the current leg, from 0.
     index: usize,
+    /// When the current leg began, s from the start.
     since_s: f64,
+    /// Heading at the beginning of the current leg, rad.
     heading_rad: f64,
 }
 
@@ -37,6 +41,7 @@ impl<'a> Route<'a> {
         pose
     }
 
+    /// The motion of the current leg, without events, at a time in s.
     fn on_leg(&self, time_s: f64) -> Pose {
         let leg_at = |index: usize| self.legs.get(index);
         let before = self.index.checked_sub(1).and_then(leg_at);

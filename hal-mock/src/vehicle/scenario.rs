@@ -24,7 +24,7 @@ pub fn fog() -> GyroConfiguration {
     GyroConfiguration { n_deg_sqrt_h: 0.05, bias_sigma_deg_h: 1.0, ..GyroConfiguration::default() }
 }
 
-/// Its accelerometers: 0.01 m/s² of noise in a sample at 25 Hz, without bias.
+/// Accelerometers beside that gyro: 0.01 m/s² of noise in a sample at 25 Hz, without bias.
 #[must_use]
 pub fn silicon() -> AccelerometerConfiguration {
     // 0.01·√(2/25): half the sample rate is the band.
@@ -39,9 +39,9 @@ pub fn silicon() -> AccelerometerConfiguration {
 pub struct Scenario {
     /// Site, start azimuth and sensors; legs and events are the day's own.
     pub vehicle: VehicleConfiguration<'static>,
-    /// What the vehicle does.
+    /// The stops and drives of the vehicle, in order.
     pub legs: Vec<Leg, LEGS>,
-    /// What people do to it.
+    /// What happens to the vehicle, in any order.
     pub events: Vec<Event, EVENTS>,
 }
 
@@ -53,7 +53,8 @@ impl Scenario {
         Self::stops(seed, 2, 60.0, 900.0)
     }
 
-    /// So many stops (at most 10) of `stop_s` seconds with drives of `drive_s` between them.
+    /// A day of `count` stops (at most 10) of `stop_s` seconds each, with drives of `drive_s` seconds
+    /// between them.
     #[must_use]
     pub fn stops(seed: u64, count: usize, stop_s: f64, drive_s: f64) -> Self {
         let mut draw = Draw::new(seed);
@@ -67,7 +68,7 @@ impl Scenario {
         day
     }
 
-    /// The day goes on for at least so many seconds (as far as there is room for legs): drives of about
+    /// Lets the day go on for at least `seconds` (as far as there is room for legs): drives of about
     /// `drive_s` seconds with stops of `stop_s` between them. What came before stays as it was.
     pub fn go_on(&mut self, seed: u64, seconds: f64, drive_s: f64, stop_s: f64) {
         let mut draw = Draw::of(seed, source::VEHICLE_AFTERWARDS);
@@ -85,7 +86,8 @@ impl Scenario {
         }
     }
 
-    /// Parked for so many seconds: three sinusoids of roll and pitch of 0.1 to 2 Hz with amplitudes that
+    /// A vehicle parked for `seconds`: three sinusoids of roll and pitch of 0.1 to 2 Hz with amplitudes
+    /// that
     /// come to 0.5° together, sensors 1 m above the axis, a slammed door every 60 s or so.
     #[must_use]
     pub fn parked(seed: u64, seconds: f64) -> Self {
@@ -116,6 +118,7 @@ impl Scenario {
         VehicleConfiguration { legs: &self.legs, events: &self.events, ..self.vehicle }
     }
 
+    /// A day without legs, at 52° and at a drawn azimuth, with the gyros of [`fog`].
     fn empty(draw: &mut Draw) -> Self {
         let vehicle = VehicleConfiguration {
             latitude_deg: 52.0,
@@ -135,19 +138,22 @@ const TURNING_DEG_S: f64 = 18.0;
 struct Draw(Generator);
 
 impl Draw {
+    /// Draws the day of a seed.
     fn new(seed: u64) -> Self {
         Self::of(seed, source::VEHICLE_SCENARIO)
     }
 
+    /// Draws from a stream of a seed.
     fn of(seed: u64, stream: u64) -> Self {
         Self(Generator::stream(seed, stream))
     }
 
-    /// Uniform.
+    /// A number uniform between two limits.
     fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.0.uniform()
     }
 
+    /// A stop on ground that is drawn, with the rocking of an arrival.
     fn stop(&mut self, seconds: f64, sway: SwayConfiguration) -> Leg {
         let [pitch_deg, roll_deg] = [(); 2].map(|()| self.between(-3.0, 3.0));
         let settling_deg = [self.between(0.1, 0.4), self.between(-0.1, 0.1)];
@@ -159,7 +165,7 @@ impl Draw {
         self.drive_of(seconds / PARTS as f64)
     }
 
-    /// A drive of so many seconds with one turn.
+    /// A drive of `seconds` with one turn.
     fn drive_of(&mut self, seconds: f64) -> Leg {
         let wanted_deg = self.between(-150.0, 150.0);
         let turn_s = seconds * self.between(0.1, 0.3);

@@ -19,7 +19,9 @@ pub struct Means {
 /// The sensors at work.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sensors<'a> {
+    /// The gyros and accelerometers, with full scales and faults.
     strapdown: Strapdown<'a, 3>,
+    /// The warm-up.
     temperature: TemperatureConfiguration,
     /// Gravity at the start, the g of the g-sensitivity.
     gravity_m_s2: f64,

@@ -9,7 +9,7 @@ use crate::stage::minimum_jerk;
 pub(super) struct Smooth {
     /// The value, any unit.
     pub(super) value: f64,
-    /// Its change per second.
+    /// Change of the value per second.
     pub(super) rate: f64,
 }
 
@@ -42,7 +42,7 @@ impl Smooth {
         Self::wave(1.0, frequency_hz, 0.0, elapsed_s) * dying * onset
     }
 
-    /// So many times this.
+    /// This value and its rate times a constant factor.
     pub(super) fn times(self, factor: f64) -> Self {
         Self { value: self.value * factor, rate: self.rate * factor }
     }
