@@ -1,25 +1,27 @@
-//! The encoder's own error over a turn, as it was calibrated, taken off every reading.
+//! Correction of an encoder by its calibrated harmonic errors.
 //!
-//! Eccentricity of the magnet shows once per turn, ellipticity twice. The sines are micromath's: they
-//! err by less than 2·10⁻³, of a correction of at most some tenths of a degree that is 1″.
+//! An eccentric magnet gives an error once per turn, an elliptic field one twice per turn. The
+//! sines are computed by micromath in single precision with an absolute error below 2·10⁻³; of a
+//! correction of at most some tenths of a degree that is about 1″, far below the azimuth's σ.
 
 use micromath::F32Ext;
 use orientation::units::{Angle, TURN};
 
-/// Radians of one step of an [`Angle`].
+/// Size of one step of an [`Angle`], rad: 2π/2³².
 const STEP: f32 = (TURN / 4_294_967_296.0) as f32;
 /// Steps of an [`Angle`] in one radian.
 const STEPS: f32 = (4_294_967_296.0 / TURN) as f32;
-/// Change of the angle, in steps, below which the correction is kept: a turn's 2¹⁴-th part. A
-/// correction of 0.1° changes by less than 0.3″ over it.
+/// Change of the angle below which the last correction is used again, in steps: 2⁻¹⁴ of a turn,
+/// 79″. A correction with an amplitude of 0.1° changes by less than 0.3″ over it.
 const KEPT: u32 = 1 << 18;
 
-/// What the encoder shows beyond the true angle: Σ aₖ sin kθ + bₖ cos kθ, rad.
+/// Error of an encoder's reading against the true angle: Σ aₖ sin kθ + bₖ cos kθ, rad, k = 1, 2,
+/// with θ the angle that the encoder shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Harmonics {
-    /// a and b once per turn, rad.
+    /// Amplitudes a₁ and b₁ of the error once per turn, rad.
     pub first: [f32; 2],
-    /// a and b twice per turn, rad.
+    /// Amplitudes a₂ and b₂ of the error twice per turn, rad.
     pub second: [f32; 2],
 }
 
@@ -35,22 +37,26 @@ impl Harmonics {
     }
 }
 
-/// A calibrated encoder's correction, which is computed anew only when the angle has changed.
+/// The correction of a calibrated encoder. The sines are computed again only when the angle has
+/// changed by more than 79″.
 #[derive(Clone, Copy, Debug)]
 pub struct Calibration {
+    /// The calibrated error.
     harmonics: Harmonics,
+    /// The angle at which the error was computed last.
     at: Angle,
+    /// The error at that angle, in steps of an [`Angle`].
     error: i32,
 }
 
 impl Calibration {
-    /// The correction for these harmonics.
+    /// Creates the correction for a calibrated error.
     #[must_use]
     pub fn new(harmonics: Harmonics) -> Self {
         Self { harmonics, at: Angle(0), error: harmonics.error(Angle(0)) }
     }
 
-    /// The true angle of what the encoder shows.
+    /// The true angle that belongs to a reading of the encoder.
     pub fn correct(&mut self, shown: Angle) -> Angle {
         if (shown - self.at).0.cast_signed().unsigned_abs() > KEPT {
             self.at = shown;

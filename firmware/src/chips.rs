@@ -1,4 +1,5 @@
-//! The drivers as the instrument's ports: units, axes, and what counts as valid.
+//! Implements the instrument's [`ports`](crate::ports) by the chips' drivers: converts units,
+//! assigns axes, and decides which readings are valid.
 
 use drivers::ads1262::Ads1262;
 use drivers::ads1262::scale::Scale;
@@ -21,14 +22,15 @@ use crate::ports::{
     Motion, RateReading, Startable,
 };
 
-/// A gyro with a voltage for its rate, behind its converter.
+/// A gyro with an analogue rate output, behind its analogue-to-digital converter.
 #[derive(Debug)]
 pub struct AnalogueGyro<S, R, D> {
-    /// The converter.
+    /// The analogue-to-digital converter.
     pub converter: Ads1262<S, R, D>,
-    /// The gyro's scale factor.
+    /// The scale factor, which converts a code to an angular rate.
     pub scale: Scale,
-    /// Size of the rate beyond which the gyro's own output clips, while its converter may not.
+    /// Magnitude of the rate beyond which the gyro's own output saturates, though the converter may
+    /// not. Readings beyond it are reported as saturated.
     pub limit: AngularRate,
 }
 
@@ -44,6 +46,8 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Gyro for AnalogueGyro<S, R, D> {
     }
 
     async fn read(&mut self) -> Result<RateReading, Fault> {
+        // A saturated reading is set to the limit of the number range, so that its loss is visible
+        // downstream.
         let conversion = self.converter.read().await?;
         let rate = self.scale.rate(conversion.code);
         let is_clipped =
@@ -67,7 +71,8 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> InStep for AnalogueGyro<S, R, D> {
     }
 }
 
-/// Any sensor with a voltage, behind its converter: what it shows is the code.
+/// Any sensor with an analogue output behind a converter; its reading is the converter's code,
+/// without a unit.
 #[derive(Debug)]
 pub struct AnalogueSensor<S, R, D>(pub Ads1262<S, R, D>);
 
@@ -83,6 +88,7 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Gyro<Code> for AnalogueSensor<S, R, D> {
     }
 
     async fn read(&mut self) -> Result<RateReading<Code>, Fault> {
+        // A saturated conversion is set to the limit of the number range.
         let conversion = self.0.read().await?;
         let code = match (conversion.is_clipped, conversion.code < 0) {
             (false, _) => conversion.code,
@@ -103,8 +109,9 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> InStep<Code> for AnalogueSensor<S, R, D>
     }
 }
 
-/// The accelerometer on the platform: its x along the sensitive axis, y 90° clockwise, z down. Of a
-/// two-frame mount it sits on the base, without a stage in the vehicle: forward, right, down.
+/// The accelerometer on the platform: x along the gyro's sensitive axis, y 90° clockwise of it, z
+/// down. On a two-frame mount the accelerometer is fixed to the base, and in a vehicle without a
+/// stage to the body: x forward, y right, z down.
 #[derive(Debug)]
 pub struct PlatformAccelerometer<S, D>(pub Adxl355<S, D>);
 
@@ -126,17 +133,17 @@ impl<S: SpiDevice, D: DelayNs> Accelerometer for PlatformAccelerometer<S, D> {
     }
 }
 
-/// Rates of which one at least is beyond the range.
+/// Rates of which at least one is saturated.
 const CLIPPED: [AngularRate; 3] = [AngularRate(i32::MAX); 3];
 
-/// The coarse IMU on the base, mounted with its x forward, y right, z down.
+/// The coarse inertial measurement unit on the base, mounted with x forward, y right, z down.
 #[derive(Debug)]
 pub struct BaseImu<I, D> {
-    /// The chip.
+    /// The driver of the chip.
     pub chip: Lsm6dsl<I, D>,
-    /// What is stated of it.
+    /// The stated noise and biases of its sensors.
     pub sensors: CoarseSensors,
-    /// It is read with every so-manieth sample of the precise gyro.
+    /// Decimation: the unit is read once in this many samples of the precise gyro, ≥ 1.
     pub divider: u32,
 }
 
@@ -150,7 +157,7 @@ impl<I: I2c, D: DelayNs> BaseSensors for BaseImu<I, D> {
     async fn read(&mut self) -> Result<Option<BaseReading>, Fault> {
         let reading = self.chip.read().await?;
         Ok(reading.map(|reading| BaseReading {
-            // Which axis clips is not told.
+            // The chip does not report which axis saturates.
             rate: if reading.is_rate_clipped { CLIPPED } else { reading.rate },
             force: reading.force,
             is_clipped: reading.is_rate_clipped || reading.is_force_clipped,
@@ -166,7 +173,7 @@ impl<I: I2c, D: DelayNs> BaseSensors for BaseImu<I, D> {
     }
 }
 
-/// The encoder on the stage's axis, rising clockwise from above.
+/// The encoder on the axis of the stage; the angle grows clockwise as seen from above.
 #[derive(Debug)]
 pub struct StageEncoder<S, D>(pub Mt6835<S, D>);
 
@@ -182,11 +189,12 @@ impl<S: SpiDevice, D: DelayNs> Encoder for StageEncoder<S, D> {
     }
 }
 
-/// The motor behind its gear, positive clockwise from above.
+/// The stepper motor of the stage behind its gear; positive is clockwise as seen from above.
 #[derive(Debug)]
 pub struct StageMotor<S, D>(pub Tmc5160<S, D>);
 
-/// An angle of the stage, rad, in microsteps, to nearest; saturates at the driver's range.
+/// Converts an angle of the stage, rad, to microsteps, rounded to nearest; saturates at the range
+/// of 32 bits. The same factor converts a rate, rad/s, to microsteps/s.
 fn microsteps(angle: f64) -> i32 {
     libm::round(angle / TURN * f64::from(MICROSTEPS_PER_TURN)) as i32
 }

@@ -1,4 +1,8 @@
-//! What the instrument must know of its board before it begins.
+//! The configuration of the instrument: mechanics, sampling rates, and the policy after the
+//! alignment.
+//!
+//! All values are read once at the start. Angles are in rad, rates in rad/s, unless a line says
+//! otherwise.
 
 use embassy_time::Duration;
 use orientation::align::mount::{FrameAngles, LIMIT, MountError, Station, TwoFrame};
@@ -8,34 +12,39 @@ use orientation::units::DEGREE;
 use crate::calibration::Harmonics;
 use crate::ports::Frames;
 
-/// The stage's mechanics and how patiently it is driven.
+/// Mechanics of the stage, and tolerances and time limits of its movements.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StageConfiguration {
-    /// Stage angle at which the index switch closes, rad; it stays closed below.
+    /// Stage angle at which the index switch closes, rad; the switch stays closed below this angle.
     pub index: f64,
-    /// How far from there the encoder may stand after the stage has stopped, rad: what a wrong zero of
-    /// the encoder may cost in azimuth.
+    /// Largest difference between this angle and the encoder after homing, rad. It limits the error
+    /// of the encoder's zero, which goes into the azimuth in full.
     pub index_tolerance: f64,
-    /// Where the stage waits for the session, rad: the first position, so that no time is lost.
+    /// Angle at which the stage waits for the session, rad: the first position, so that the session
+    /// begins without a movement.
     pub home: f64,
-    /// Travel from lowest to highest angle, rad.
+    /// Lowest and highest permitted angle, rad.
     pub travel: [f64; 2],
     /// Rate of the search for the index, rad/s.
     pub seek_rate: f64,
-    /// Distance from the target that needs no correction, rad; less than the session's `arrival`.
+    /// Distance from the target that is not corrected, rad; must be less than the session's
+    /// `arrival`.
     pub tolerance: f64,
-    /// What motor and encoder may differ by, rad: backlash, the encoder's error, a step of either.
-    /// Less than the azimuth's σ lets pass, more than the backlash.
+    /// Largest permitted difference between motor and encoder, rad: backlash, error of the encoder
+    /// and one step of either. It must exceed the backlash and stay below what the azimuth's σ
+    /// permits.
     pub agreement: f64,
-    /// Rest after the motor has stopped, before the encoder is believed.
+    /// Time for vibrations to decay after the motor has stopped, before the encoder's angle is
+    /// used.
     pub settle: Duration,
-    /// Longest time for any single movement.
+    /// Time limit of any single movement; the stage is given up beyond it.
     pub longest: Duration,
 }
 
 impl Default for StageConfiguration {
-    /// Index at −5°, home at 0°, travel −10°…370° (cables wrap), search at 12°/s, within 0.03° of the
-    /// target, motor and encoder within 0.05°, a quarter of a second of rest, 60 s for any movement.
+    /// Index at −5°, home at 0°, travel from −10° to 370° (the cables are wound up by at most about
+    /// one turn), search at 12°/s, target reached within 0.03°, motor and encoder within 0.05°,
+    /// 0.25 s of settling, 60 s for any movement.
     fn default() -> Self {
         Self {
             index: -5.0 * DEGREE,
@@ -51,54 +60,61 @@ impl Default for StageConfiguration {
     }
 }
 
-/// A platform on a slip ring.
+/// Tolerances of a turntable, a platform that turns continuously on a slip ring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TurntableConfiguration {
-    /// What motor and encoder may differ by from one turn to the next, rad: play, what the encoder's
-    /// calibration leaves, the time between two readings. Less than the azimuth's σ lets pass is out of
-    /// reach here; the session finds slower and smaller slips by its turns.
+    /// Largest permitted change of the difference between motor and encoder from one turn to the
+    /// next, rad: backlash, the residual of the encoder's calibration, and the time between the two
+    /// readings. This check finds coarse slips only; slips as small as the azimuth's σ are found by
+    /// the session from the turns themselves.
     pub agreement: f64,
-    /// Rest after the motor has stopped, before the encoder is believed.
+    /// Time for vibrations to decay after the motor has stopped, before the encoder's angle is
+    /// used.
     pub settle: Duration,
 }
 
 impl Default for TurntableConfiguration {
-    /// Motor and encoder within 0.15°, a quarter of a second of rest.
+    /// Motor and encoder within 0.15°, 0.25 s of settling.
     fn default() -> Self {
         Self { agreement: 0.15 * DEGREE, settle: Duration::from_millis(250) }
     }
 }
 
-/// The two frames of a mount: geometry, encoders, drives.
+/// The two frames of a two-frame mount: geometry, encoders, drives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FramesConfiguration {
+    /// Calibrated geometry of the mount.
     geometry: TwoFrame,
+    /// Frame angles of each entry of [`STATIONS`], rad, computed once at the start.
     stations: [FrameAngles; STATIONS.len()],
-    /// What the encoders show beyond the true angles.
+    /// Harmonic errors of the two encoders.
     pub encoders: Frames<Harmonics>,
-    /// The drives; where they wait and how far they turn is the geometry's.
+    /// The two drives. The waiting position and the travel follow from the geometry.
     pub drives: Frames<StageConfiguration>,
-    /// For how long neither frame may have moved before samples count. Unlike a stage, the frames turn
-    /// the gyro about its own axis, so it feels how they ring long after the encoders do.
+    /// Time for which neither frame may have moved before samples are used. The frames turn the
+    /// gyro about its own sensitive axis, unlike a stage, so the gyro senses their ringing long
+    /// after the encoders resolve it.
     pub rest: Duration,
 }
 
-/// Where a mount stands.
+/// The orientations of the mount: four headings with a horizontal sensitive axis, and the vertical
+/// one in which the azimuth is stored.
 const STATIONS: [Station; 5] =
     [Station::Forward, Station::Right, Station::Backward, Station::Left, Station::Storage];
 
-/// The default rest: frames that ring at 15 Hz, damped by 0.08, then turn by less than 0.02 °/h.
+/// The default settling time: frames that ring at 15 Hz with a damping ratio of 0.08 then turn by
+/// less than 0.02 °/h.
 const FRAMES_REST: Duration = Duration::from_millis(1500);
 
-/// True angle at which a frame's index switch closes, rad; it stays closed below.
+/// True angle at which a frame's index switch closes, rad; the switch stays closed below it.
 const FRAME_INDEX: f64 = -95.0 * DEGREE;
 
 impl FramesConfiguration {
-    /// The default drives with encoders and a geometry as they are calibrated: index at −95°, travel
-    /// as [`LIMIT`] has it.
+    /// Default drives with a calibrated geometry and calibrated encoders: index at −95°, travel of
+    /// ±[`LIMIT`].
     ///
     /// # Errors
-    /// A geometry that does not let the axis stand where it must.
+    /// A geometry with which the sensitive axis cannot be brought to one of the orientations.
     pub fn new(geometry: TwoFrame, encoders: Frames<Harmonics>) -> Result<Self, MountError> {
         let drive = |zero| StageConfiguration {
             index: FRAME_INDEX + zero,
@@ -113,41 +129,41 @@ impl FramesConfiguration {
         Ok(Self { geometry, stations, encoders, drives: zeros.map(drive), rest: FRAMES_REST })
     }
 
-    /// How the mount is calibrated.
+    /// The calibrated geometry of the mount.
     #[must_use]
     pub fn geometry(&self) -> TwoFrame {
         self.geometry
     }
 
-    /// The angles of a station.
+    /// The frame angles of an orientation, rad.
     #[must_use]
     pub fn angles(&self, station: Station) -> FrameAngles {
         self.stations[station as usize]
     }
 }
 
-/// The instrument's configuration.
+/// The configuration of an instrument on a stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Configuration {
-    /// Samples of the precise gyro a second, Hz.
+    /// Sampling rate of the precise gyro, Hz.
     pub sample_rate: f64,
-    /// The accelerometer is read with every so-manieth sample, ≥ 1.
+    /// Decimation of the accelerometer: one reading in this many samples of the gyro, ≥ 1.
     pub force_divider: u32,
-    /// The encoder is read with every so-manieth sample, ≥ 1.
+    /// Decimation of the encoder: one reading in this many samples of the gyro, ≥ 1.
     pub angle_divider: u32,
-    /// What the encoder shows beyond the true angle.
+    /// Harmonic error of the encoder.
     pub encoder: Harmonics,
-    /// The stage.
+    /// Mechanics of the stage.
     pub stage: StageConfiguration,
 }
 
-/// Rate at which the accelerometer is read, Hz; its mean is all that an alignment needs.
+/// Rate at which the accelerometer is read, Hz. An alignment uses only the mean over a dwell.
 const FORCE_RATE: f64 = 100.0;
-/// Rate at which the encoder is read, Hz: the stage turns 0.1° between two readings.
+/// Rate at which the encoder is read, Hz. At 20 °/s the stage turns 0.1° between two readings.
 const ANGLE_RATE: f64 = 200.0;
 
 impl Configuration {
-    /// The default board with a gyro of so many samples a second.
+    /// The default board with a gyro of `sample_rate` samples per second, Hz.
     #[must_use]
     pub fn at(sample_rate: f64) -> Self {
         let divider = |rate: f64| (libm::round(sample_rate / rate) as u32).max(1);
@@ -160,32 +176,33 @@ impl Configuration {
         }
     }
 
-    /// The sample period, µs, to nearest.
+    /// The sampling period, µs, rounded to nearest.
     #[must_use]
     pub fn period(&self) -> u32 {
         libm::round(1e6 / self.sample_rate) as u32
     }
 }
 
-/// An instrument that is fixed to a vehicle.
+/// The configuration of a strapdown instrument in a vehicle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VehicleConfiguration {
-    /// Samples of each gyro a second, Hz.
+    /// Sampling rate of each gyro, Hz.
     pub sample_rate: f64,
-    /// The accelerometer is read with every so-manieth sample, ≥ 1.
+    /// Decimation of the accelerometer: one reading in this many samples of the gyros, ≥ 1.
     pub force_divider: u32,
-    /// So many of its readings make the mean that the session gets, ≥ 1.
+    /// Number of accelerometer readings that are averaged before the session gets them, ≥ 1.
     pub forces: u32,
 }
 
-/// Greatest rate at which the accelerometer of a vehicle is read, Hz: what it feels turns with the vehicle,
-/// so its filter may delay it by milliseconds only, and must not be too narrow.
+/// Highest rate at which the accelerometer of a vehicle is read, Hz. Its measurement turns with the
+/// vehicle, so its filter may delay it by milliseconds only and its bandwidth must not be narrow.
 const VEHICLE_FORCE_RATE: f64 = 400.0;
-/// Rate at which the session gets their means, Hz, no more often than it carries the attitude on.
+/// Rate at which the session gets averaged specific forces, Hz; not higher than the rate at which
+/// it integrates the attitude.
 const MEAN_FORCE_RATE: f64 = 100.0;
 
 impl VehicleConfiguration {
-    /// The default board with gyros of so many samples a second.
+    /// The default board with gyros of `sample_rate` samples per second, Hz.
     #[must_use]
     pub fn at(sample_rate: f64) -> Self {
         let ratio = |rate: f64, to: f64| (libm::round(rate / to) as u32).max(1);
@@ -194,50 +211,52 @@ impl VehicleConfiguration {
         Self { sample_rate, force_divider, forces }
     }
 
-    /// The sample period, µs, to nearest.
+    /// The sampling period, µs, rounded to nearest.
     #[must_use]
     pub fn period(&self) -> u32 {
         libm::round(1e6 / self.sample_rate) as u32
     }
 }
 
-/// What is done about the azimuth once it is kept.
+/// The policy that renews a kept azimuth, whose σ grows with time (heading hold).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Realignment {
-    /// It ages until somebody hands another over.
+    /// The azimuth is not renewed by the instrument; only a handover from outside renews it.
     Never,
-    /// On a stage or two frames: wherever the vehicle has stood for so long, it is aligned anew.
+    /// On a stage or a two-frame mount: a new alignment begins at every stop that lasts.
     AtStops {
-        /// How long.
+        /// Time at rest after which the alignment begins.
         after: Duration,
     },
-    /// In a vehicle: the stop that ended one session begins the next.
+    /// In a vehicle: a new session begins at the stop that ended the one before.
     BetweenStops,
 }
 
-/// Whether north is looked for where the azimuth is known already: handed over, or recalled.
+/// Whether an alignment runs although the azimuth is known already, by a handover or from before a
+/// restart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Alignment {
-    /// It is; what is found is compared with what is known.
+    /// An alignment runs, and its azimuth is compared with the known one.
     Always,
-    /// It is not.
+    /// The alignment is skipped.
     UnlessKnown,
 }
 
-/// How the instrument goes on after its alignment.
+/// Operation of the attitude keeper after, and beside, the alignment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KeepConfiguration {
-    /// For how long; zero for not at all, [`Duration::MAX`] for ever.
+    /// Duration of keeping after the first session; zero for none, [`Duration::MAX`] for ever.
     pub hold: Duration,
-    /// What is done at stops.
+    /// The policy at stops.
     pub realignment: Realignment,
-    /// Whether the session itself knows when the vehicle stands, as that from stop to stop does. Any other
-    /// one is of no use where the vehicle drives on before it is over.
+    /// Whether the session itself distinguishes rest from motion, as inertial-frame alignment from
+    /// stop to stop does. Any other session is aborted if the vehicle sets off before it concludes.
     pub knows_stops: bool,
-    /// What is done where the azimuth is known from elsewhere.
+    /// The policy where the azimuth is known already.
     pub alignment: Alignment,
-    /// The gyro about the down axis beside the two others.
+    /// Stated errors of the gyro about the down axis that is read beside the two others.
     pub beside: keep::Gyro,
-    /// The precise gyro, which shows the down axis once a mount has turned it to the vertical.
+    /// Stated errors of the precise gyro, which measures about the down axis once a mount has
+    /// turned it to the vertical.
     pub precise: keep::Gyro,
 }

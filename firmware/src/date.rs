@@ -1,20 +1,24 @@
-//! Days of the calendar, as dates are told and given.
+//! Calendar days, as the log and the tables write dates.
+//!
+//! The calendar is the Gregorian one, in coordinated universal time without leap seconds, as Unix
+//! time counts.
 
 use orientation::words;
 
-/// Seconds of a day.
+/// Seconds in a day.
 const DAY: u64 = 86_400;
-/// The first year that is counted from.
+/// The first year, in which the counting of seconds begins.
 const FIRST: u16 = 1970;
-/// The last year that has four digits; what lies beyond is told as its last day.
+/// The last year with four digits; later times are reported as its last day.
 const LAST: u16 = 9999;
 
-/// A day of the Gregorian calendar, of universal time; none where nobody knows.
+/// A day of the Gregorian calendar in universal time: year, month 1–12 and day 1–31; or an unknown
+/// day.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Day(Option<(u16, u8, u8)>);
 
 impl Day {
-    /// The day of a time in seconds since 1970; of zero, none.
+    /// The day of a time in seconds since 1970-01-01; zero means that the time is unknown.
     #[must_use]
     pub fn of(seconds: u64) -> Self {
         if seconds == 0 {
@@ -31,8 +35,8 @@ impl Day {
         Self(Some((LAST, 12, 31)))
     }
 
-    /// When a day begins, s since 1970; [`None`] where there is no such day, or its year has not four
-    /// digits or lies before 1970.
+    /// The begin of a day, s since 1970-01-01; [`None`] if the date does not exist, or if its year
+    /// is outside 1970–9999.
     #[must_use]
     pub fn begin(year: u16, month: u8, day: u8) -> Option<u64> {
         let is_year = (FIRST..=LAST).contains(&year) && (1..=12).contains(&month);
@@ -50,12 +54,12 @@ words! { Day:
     Self(Some((year, month, day))) => "{}-{:02}-{:02}", year, month, day;
 }
 
-/// All months from the first year to the last.
+/// All months from the first year to the last, in order.
 fn months() -> impl Iterator<Item = (u16, u8)> {
     (FIRST..=LAST).flat_map(|year| (1..=12).map(move |month| (year, month)))
 }
 
-/// Days of a month.
+/// Number of days in a month, 28–31.
 fn length(year: u16, month: u8) -> u64 {
     let is_leap = year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400));
     match month {

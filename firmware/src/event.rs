@@ -1,4 +1,5 @@
-//! What the instrument tells of itself: read in a row, these sentences say what it did and why.
+//! The events that the instrument reports. The log prints each as a sentence, so that a log, read
+//! in order, shows what the instrument did and why.
 
 use drivers::fault::Fault;
 use orientation::align::quality::Disturbance;
@@ -16,162 +17,173 @@ use crate::keep::VerticalGyro;
 use crate::retry_budget::Symptom;
 use crate::storage::Remembered;
 
-/// Something that happened. Angles in degrees, rates in degrees per hour, times in seconds.
+/// An event. Angles are in degrees, angular rates in degrees per hour, times in seconds, unless the
+/// variant states another unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
-    /// The instrument begins.
+    /// A multi-position alignment begins.
     Begun {
-        /// Positions that are planned.
+        /// Number of planned positions.
         positions: usize,
-        /// Time at each, s.
+        /// Duration of the dwell at each position, s.
         dwell: f64,
-        /// Latitude, °.
+        /// Latitude, °, north positive.
         latitude: f64,
     },
-    /// The instrument begins, on a platform that turns all the time.
+    /// An alignment by continuous rotation begins.
     BegunTurning {
-        /// Turns that are planned.
+        /// Number of planned turns.
         turns: u32,
-        /// Latitude, °.
+        /// Latitude, °, north positive.
         latitude: f64,
     },
-    /// The instrument begins, in a vehicle that goes from stop to stop.
+    /// An inertial-frame alignment from stop to stop begins in a vehicle.
     BegunStops {
-        /// Latitude, °.
+        /// Latitude, °, north positive.
         latitude: f64,
     },
-    /// A device has passed identity and self-test and is configured.
+    /// A device has passed identification and self-test and is configured.
     Started(Device),
-    /// A reading was lost.
+    /// A reading of a device was lost, with the symptom.
     Lost(Device, Symptom),
-    /// A device is started again.
+    /// A device is started again because of a symptom.
     Restarting(Device, Symptom),
-    /// A device is given up.
+    /// A device is given up: its retry budget is exhausted.
     GivenUp(Device, Trouble),
-    /// Samples are missing before this one.
+    /// The number of samples that are missing before the current one.
     Missing(u32),
-    /// A sample came at the wrong time, by so many µs.
+    /// A sample came at the wrong time: its deviation from the expected time, µs, late positive.
     Late(i32),
-    /// So many samples in a row were thrown away because nobody took them.
+    /// The number of consecutive samples that were discarded because the queue to the session was
+    /// full.
     Overflowed(u32),
-    /// The base hardly sways: RMS of its angle, °.
+    /// The base is nearly at rest, so its motion is not subtracted: RMS of its angle, °.
     BaseStill(f64),
-    /// The base sways, which is subtracted: RMS of its angle, °, its frequency, Hz, and the RMS of
-    /// what is left of the angle, °.
+    /// The base sways, and its motion is subtracted: RMS of its angle, °; its frequency, Hz; RMS of
+    /// the residual angle, °.
     BaseSways(f64, f64, f64),
-    /// An axis looks for its index.
+    /// An axis searches its index switch.
     Homing(Device),
-    /// An axis found its index at this angle, °.
+    /// An axis has found its index, at this encoder angle, °.
     Homed(Device, f64),
-    /// An axis is sent to this angle, °.
+    /// An axis begins to move to this angle, °.
     Turning(Device, f64),
-    /// An axis stands: at this angle, after so many seconds.
+    /// An axis has stopped: its angle, °, and the duration of the movement, s.
     Arrived(Device, f64, f64),
-    /// An axis stands beside its target by this angle, °, and goes again.
+    /// An axis has stopped beside its target by this angle, °, and is sent again.
     Corrected(Device, f64),
-    /// An axis begins to turn at this rate, °/s, clockwise positive, or is to come to rest.
+    /// An axis begins to turn at this rate, °/s, clockwise positive; zero means that it is brought
+    /// to rest.
     Revolving(Device, f64),
-    /// An axis is blocked and tries again.
+    /// An axis is blocked; the movement is tried again.
     Blocked(Device),
-    /// The gyro's axis stands vertical, to store the azimuth: angles of the outer and the inner frame.
+    /// The gyro's sensitive axis has been set vertical to hold the azimuth: angles of the outer and
+    /// the inner frame, °.
     Stored(f64, f64),
-    /// The platform is level enough: pitch and roll of the platform, °.
+    /// The platform is within its levelling limit: inclination along and across the gyro's
+    /// sensitive axis, °.
     Levelled(f64, f64),
-    /// The stage stands still for so many seconds, to know the gyro.
+    /// A survey of the gyro's noise begins; the stage stands still for this time, s.
     Surveying(f64),
-    /// A coefficient of the gyro's noise as the survey found it.
+    /// A noise coefficient of the gyro, estimated from the survey.
     Noise(Coefficient, Estimate),
-    /// The plan that follows from the noise.
+    /// The measuring plan that follows from the noise coefficients.
     Planned {
-        /// Positions.
+        /// Number of positions.
         positions: usize,
-        /// Time at each, s.
+        /// Duration of the dwell at each position, s.
         dwell: f64,
-        /// Time for all with the rotations, s.
+        /// Total duration with all movements, s.
         seconds: f64,
-        /// 1σ of the azimuth that it promises, °.
+        /// Predicted 1σ of the azimuth, °.
         sigma: f64,
     },
-    /// A dwell was taken: number, of how many, its mean rate.
+    /// A dwell was completed: its number from 1, the number of planned dwells, its mean rate, °/h.
     Dwelled(usize, usize, f64),
-    /// The dwell is shorter than planned, so many seconds: the stage moved of itself.
+    /// The dwell is shorter than planned because the stage moved without a command: its duration,
+    /// s.
     CutShort(f64),
-    /// A dwell is measured again.
+    /// A dwell is measured again: its number and the disturbance.
     Repeated(usize, Disturbance),
-    /// A dwell is left out of the fit.
+    /// A dwell is excluded from the fit: its number and the disturbance.
     LeftOut(usize, Disturbance),
-    /// The platform turns unevenly on purpose, at this mean rate, °/s.
+    /// The platform begins rate-modulated turns, which make the axis misalignment observable, at
+    /// this mean rate, °/s.
     Uneven(f64),
-    /// How far the gyro's axis stands from the platform's plane, and its 1σ, °.
+    /// The estimated axis misalignment, the elevation of the gyro's sensitive axis above the plane
+    /// of rotation, and its 1σ, °.
     Coupled(f64, f64),
-    /// A coupling that was stored is used again.
+    /// A stored axis misalignment is used.
     Recalled(Remembered),
-    /// None that is stored will do.
+    /// No stored axis misalignment fits the speeds of this session and is recent enough.
     NothingRecalled,
-    /// What is stored cannot be read.
+    /// The stored calibrations cannot be read.
     CalibrationUnreadable(Fault),
-    /// A coupling is stored for the next time.
+    /// An axis misalignment was stored for later sessions.
     CalibrationSaved(Remembered),
-    /// It could not be stored.
+    /// An axis misalignment could not be stored.
     CalibrationNotSaved(Fault),
-    /// Turns count from here: which way, at this speed, °/s.
+    /// Turns are evaluated from here on: sense of rotation and speed, °/s.
     Stretch(Sense, f64),
-    /// A turn was taken: number, of how many.
+    /// A turn was completed: its number from 1, the number of planned turns.
     Turned(u32, u32),
-    /// So many turns are left out of the fit.
+    /// The number of turns of one sense of rotation that are excluded from the fit.
     TurnsLeftOut(u32, Sense),
-    /// The vehicle stands: which stop, after so many seconds of driving.
+    /// A stop was detected: its number, and the duration of the drive before it, s.
     Stopped(usize, f64),
-    /// At this stop the vehicle stands so far north and east of the first one, m.
+    /// The displacement of a stop from the first one: its number, and metres north and east.
     Displaced(usize, [f64; 2]),
-    /// A stop was long enough: which, its seconds, pitch and roll of the vehicle, °. It may drive on.
+    /// The vehicle may drive on, because the stop was long enough: its number, its duration, s, and
+    /// pitch and roll of the vehicle, °.
     MayDrive(usize, f64, [f64; 2]),
-    /// The vehicle drives.
+    /// The vehicle has set off.
     Driving,
-    /// The bias of a gyro as it was found, and its 1σ, °/h.
+    /// The estimated bias of a gyro and its 1σ, °/h.
     Bias(Device, f64, f64),
-    /// The azimuth, its σ and the limit that no estimator can beat, °.
+    /// The alignment has concluded: azimuth, its 1σ, and the Cramér–Rao bound of that σ, °.
     Concluded(f64, f64, f64),
-    /// There is no azimuth.
+    /// The alignment has concluded without an azimuth, with the reason.
     Refused(Refusal),
-    /// An azimuth and its 1σ are handed to the keeper, °, and what it does with them.
+    /// An azimuth and its 1σ, °, are handed to the attitude keeper, with the keeper's decision.
     HandedOver(f64, f64, Realigned),
-    /// The keeper's state has changed.
+    /// The attitude keeper has changed its state.
     Keeping(State),
-    /// No motion is measured any more.
+    /// No inertial samples arrive any more.
     NoMotion,
-    /// The azimuth is not known any more.
+    /// The azimuth has become unknown; it must be found or handed over again.
     AzimuthLost,
-    /// A gyro's bias is beyond what was stated of it.
+    /// The estimated bias of a gyro exceeds five times its stated 1σ; the stated values are not
+    /// used any more.
     BiasBeyondStated,
-    /// Which gyro shows the down axis from now on.
+    /// The gyro that measures the rotation about the down axis from now on.
     DownGyro(VerticalGyro),
-    /// The vehicle stands: its azimuth is found anew.
+    /// The vehicle has come to rest, and a new alignment begins.
     Realigning,
-    /// The vehicle stands as it stood before the restart: azimuth and its 1σ, °.
+    /// The heading from before the restart is used again, since the vehicle has not moved: azimuth
+    /// and its 1σ, °.
     HeadingRecalled(f64, f64),
-    /// The heading of before the restart is not believed.
+    /// The heading from before the restart is rejected, with the reason.
     Doubted(Doubt),
-    /// The heading cannot be kept for the next start.
+    /// The heading cannot be stored for the next start.
     HeadingNotKept(Fault),
-    /// The instrument begins, on a spinning body.
+    /// Tracking of the roll angle of a spinning body begins.
     BegunSpin,
-    /// What the roll of a spinning body rests on from now on.
+    /// The source of the roll estimate from now on.
     Roll(spin::State),
-    /// The lift shows the roll again, after so many seconds.
+    /// The modulation of the lift is detected again, after this time, s.
     LiftBack(f64),
-    /// The roll is followed no more: a sensor is given up.
+    /// The tracking of the roll has ended, because a sensor was given up.
     RollEnded(Refusal),
     /// The flight is over.
     Flown {
-        /// Whole turns since the first sample.
+        /// Number of whole turns since the first sample, positive in the sense of positive roll.
         turns: i32,
-        /// The roll, °.
+        /// Roll angle, °.
         roll: f64,
-        /// Its 1σ, °, where it is known.
+        /// The 1σ of the roll, °; [`None`] if the roll is unknown.
         sigma: Option<f64>,
     },
-    /// The link does not take status lines.
+    /// The link does not accept status lines.
     LinkSilent,
 }
 
@@ -285,7 +297,7 @@ words! { Event:
 }
 
 impl Event {
-    /// What becomes of an azimuth that is handed over.
+    /// The event of an azimuth handed to the attitude keeper, with angles converted to degrees.
     #[must_use]
     pub fn handed_over(handover: &Handover, outcome: Realigned) -> Self {
         let [azimuth, sigma] = [handover.azimuth, handover.sigma].map(|angle| angle * DEGREES);

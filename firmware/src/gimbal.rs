@@ -1,8 +1,8 @@
-//! The two-frame mount under control: homes both frames, turns both at once to where the session wants
-//! the gyro's axis, and takes it to the vertical for the storage of azimuth.
+//! Control of a two-frame mount: homes both frames, turns them at the same time to the orientation
+//! that the session requests, and sets the gyro's sensitive axis vertical to hold the azimuth.
 //!
-//! Each frame is a [`Stage`] of its own: motor and encoder must agree after every movement, and what
-//! goes wrong is told with the frame's name.
+//! Each frame is a [`Stage`] of its own, so motor and encoder of each must agree after every
+//! movement. A failure is reported with the name of the frame.
 
 use core::convert::Infallible;
 
@@ -20,16 +20,22 @@ use crate::ports::{Actuator, Frames, Observer};
 use crate::shared::{LatestAngle, Shared};
 use crate::stage::Stage;
 
-/// The names of the two frames' devices.
+/// Names of the outer frame's drive and encoder in the log.
 const OUTER: Axis = Axis { drive: Device::OuterFrame, encoder: Device::OuterEncoder };
+/// Names of the inner frame's drive and encoder in the log.
 const INNER: Axis = Axis { drive: Device::InnerFrame, encoder: Device::InnerEncoder };
 
-/// Both frames.
+/// The two frames of a mount and their control.
 pub struct Gimbal<'a, M, O> {
+    /// Drive of the outer frame.
     outer: Stage<'a, M, O>,
+    /// Drive of the inner frame.
     inner: Stage<'a, M, O>,
+    /// Geometry and tolerances.
     configuration: &'a FramesConfiguration,
+    /// Latest encoder angles, written by acquisition.
     latest: &'a Frames<LatestAngle>,
+    /// Signals and counters that all parts share.
     shared: &'a Shared<'a, O>,
 }
 
@@ -52,7 +58,8 @@ impl<'a, M: Actuator, O: Observer> Gimbal<'a, M, O> {
         }
     }
 
-    /// Homes, then goes where it is sent until a frame must be given up; gives the reason.
+    /// Homes both frames, then serves the session's requests until a frame is given up; returns the
+    /// reason.
     pub async fn run(&mut self) -> Refusal {
         match self.serve().await {
             Ok(never) => match never {},
@@ -60,10 +67,10 @@ impl<'a, M: Actuator, O: Observer> Gimbal<'a, M, O> {
         }
     }
 
-    /// Takes the gyro's axis to the vertical.
+    /// Sets the gyro's sensitive axis vertical and reports the angles of both frames.
     ///
     /// # Errors
-    /// A frame that had to be given up on the way, which is told.
+    /// A frame that was given up during the movement; the log has its name and the reason.
     pub async fn store(&mut self) -> Result<(), Refusal> {
         self.go_to(Station::Storage).await?;
         let shown = |latest: &LatestAngle| latest.get().0.signed_rad() * DEGREES;
@@ -71,6 +78,8 @@ impl<'a, M: Actuator, O: Observer> Gimbal<'a, M, O> {
         Ok(())
     }
 
+    /// Starts the drives, waits for the first valid angles, homes, and then follows requests for a
+    /// heading or for the vertical.
     async fn serve(&mut self) -> Result<Infallible, Refusal> {
         both(self.outer.start(), self.inner.start()).await?;
         self.shared.sensing.wait().await;
@@ -84,6 +93,7 @@ impl<'a, M: Actuator, O: Observer> Gimbal<'a, M, O> {
                 self.store().await?;
                 continue;
             };
+            // A heading that is not a multiple of 90° lies beyond the travel of this mount.
             let station = Station::at_heading(heading).map_err(|_| {
                 self.shared.give_up(Device::Stage, Trouble::BeyondTravel(heading * DEGREES))
             })?;
@@ -91,13 +101,14 @@ impl<'a, M: Actuator, O: Observer> Gimbal<'a, M, O> {
         }
     }
 
+    /// Turns both frames to an orientation at the same time.
     async fn go_to(&mut self, station: Station) -> Result<(), Refusal> {
         let angles = self.configuration.angles(station);
         both(self.outer.turn_to(angles.outer), self.inner.turn_to(angles.inner)).await
     }
 }
 
-/// Both at once; the first reason why not.
+/// Runs two movements at the same time; the error is that of the outer frame if both fail.
 async fn both(
     outer: impl Future<Output = Result<(), Refusal>>,
     inner: impl Future<Output = Result<(), Refusal>>,

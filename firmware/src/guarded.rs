@@ -1,5 +1,5 @@
-//! A device with the retry budget that is left for it: lost readings are counted, a lost device is
-//! started again, a sick one given up.
+//! A device with its retry budget: lost readings are counted, a device that stays silent is started
+//! again, and one that fails too often is given up.
 
 use drivers::fault::Fault;
 use embassy_time::{Duration, Instant, Timer};
@@ -14,26 +14,32 @@ use crate::shared::Shared;
 /// Rest before a device is started again, so that a disturbed supply can recover.
 const REST: Duration = Duration::from_millis(20);
 
-/// An exchange of less than a millisecond that takes as long as this hangs.
+/// Duration of an exchange beyond which the bus counts as hanging; a regular exchange takes less
+/// than a millisecond.
 const SLOW: Duration = Duration::from_millis(50);
 
-/// A device under guard.
+/// A device with its retry budget.
 #[derive(Debug)]
 pub struct Guarded<'a, D> {
     /// The device.
     pub device: &'a mut D,
+    /// Name and retry budget.
     guard: Guard,
 }
 
-/// What guards a device: the same for every device, so that it is there once.
+/// Name and retry budget of a device. The type does not depend on the device, so that its code
+/// exists once.
 #[derive(Debug)]
 struct Guard {
+    /// Name of the device in the log.
     name: Device,
+    /// Failures that the device may still have.
     retry_budget: RetryBudget,
 }
 
 impl Guard {
-    /// Whether the device is to be started again after this, or only the reading is lost.
+    /// Charges a symptom to the budget: true if the device must be started again, false if only the
+    /// reading is lost.
     fn is_to_restart<O: Observer>(
         &mut self,
         symptom: Symptom,
@@ -48,26 +54,26 @@ impl Guard {
 }
 
 impl<'a, D: Startable> Guarded<'a, D> {
-    /// Guards a device.
+    /// Gives a device its full retry budget. The name identifies it in the log and in the counters.
     pub fn new(device: &'a mut D, name: Device) -> Self {
         Self { device, guard: Guard { name, retry_budget: RetryBudget::default() } }
     }
 
-    /// How often the device had to be started again.
+    /// Number of times that the device was started again since the budget was last restored.
     #[must_use]
     pub fn restarts(&self) -> u8 {
         self.guard.retry_budget.restarts()
     }
 
-    /// Has all retry budget with it again.
+    /// Restores the full retry budget.
     pub fn renew(&mut self) {
         self.guard.retry_budget = RetryBudget::default();
     }
 
-    /// Starts the device, several times where it must be.
+    /// Starts the device, several times if necessary.
     ///
     /// # Errors
-    /// It is given up.
+    /// The device is given up: it did not start within its retry budget.
     pub fn start<O: Observer>(
         &mut self,
         shared: &Shared<'_, O>,
@@ -75,7 +81,7 @@ impl<'a, D: Startable> Guarded<'a, D> {
         self.start_after(None, shared)
     }
 
-    /// Takes note of a symptom and mends it: the reading is lost, perhaps the device started again.
+    /// Handles a symptom: counts a lost reading or starts the device again.
     ///
     /// # Errors
     /// The device is given up.
@@ -91,12 +97,20 @@ impl<'a, D: Startable> Guarded<'a, D> {
         Ok(())
     }
 
-    /// The outcome of an exchange that was begun then, or what is to be mended.
+    /// Judges the outcome of an exchange that began at `begun` and ends now.
+    ///
+    /// # Errors
+    /// The driver's fault, or [`Symptom::Slow`] if the exchange took longer than 50 ms.
     pub fn checked<T>(&mut self, begun: Instant, outcome: Result<T, Fault>) -> Result<T, Symptom> {
         self.checked_at(Instant::now(), begun, outcome)
     }
 
-    /// The same of one that ended just now.
+    /// Judges the outcome of an exchange that began at `begun` and ended at `now`; the caller
+    /// supplies the end so that the clock is read once.
+    ///
+    /// # Errors
+    /// The driver's fault, or [`Symptom::Slow`] if the exchange took longer than 50 ms, even if it
+    /// succeeded.
     pub fn checked_at<T>(
         &mut self,
         now: Instant,
@@ -112,7 +126,8 @@ impl<'a, D: Startable> Guarded<'a, D> {
         outcome.map_err(Symptom::Chip)
     }
 
-    /// Starts the device until it has started, each time after a rest where something was wrong.
+    /// Starts the device until it succeeds, with a rest before every attempt that follows a
+    /// failure.
     async fn start_after<O: Observer>(
         &mut self,
         mut trouble: Option<Symptom>,

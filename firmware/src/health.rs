@@ -1,4 +1,5 @@
-//! What went wrong so far, counted: nothing is lost silently.
+//! Counters of all that went wrong, so that no loss goes unreported, and the supervision of the
+//! sample stream.
 
 use embassy_time::{Duration, Timer};
 use orientation::device::Device;
@@ -7,34 +8,34 @@ use orientation::error::Refusal;
 use crate::ports::Observer;
 use crate::shared::Shared;
 
-/// Time without any sample after which nothing more is expected: longer than all restarts of a
-/// sensor together.
+/// Time without samples after which the session is ended: longer than all restarts of a sensor
+/// together take.
 const SILENCE: Duration = Duration::from_secs(30);
 
-/// Counters since the start; all stop at their limits.
+/// Counters since the start; each saturates at the limit of its type.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Health {
-    /// Samples that were taken.
+    /// Samples that were acquired.
     pub samples: u32,
-    /// Samples that never came.
+    /// Samples that never came, by the gaps in the time of those that did.
     pub missing: u32,
-    /// Samples that came beside their time.
+    /// Samples that came at the wrong time.
     pub late: u32,
-    /// Samples that nobody took in time.
+    /// Samples that were discarded because the queue to the session was full.
     pub overflowed: u32,
-    /// The same of those for the keeper.
+    /// Samples that were discarded because the queue to the attitude keeper was full.
     pub unkept: u32,
-    /// Readings lost, by device: gyro, accelerometer, encoder, stage, base; both frames together, and
-    /// three gyros.
+    /// Lost readings by kind of device: gyros, accelerometers, encoders, drives, base sensors.
+    /// Devices of the same kind, as the two frames of a mount, share one counter.
     pub lost: [u16; 5],
-    /// Restarts, by device.
+    /// Restarts by kind of device, in the same order as `lost`.
     pub restarts: [u16; 5],
-    /// Status lines that the link did not take.
+    /// Status lines that the link did not accept in time.
     pub unsent: u32,
 }
 
 impl Health {
-    /// Nothing has gone wrong.
+    /// All counters at zero.
     pub const EMPTY: Self = Self {
         samples: 0,
         missing: 0,
@@ -46,17 +47,17 @@ impl Health {
         unsent: 0,
     };
 
-    /// A reading of a device was lost.
+    /// Counts a lost reading of a device.
     pub fn lose(&mut self, device: Device) {
         count(&mut self.lost, device);
     }
 
-    /// A device was started again.
+    /// Counts a restart of a device.
     pub fn restart(&mut self, device: Device) {
         count(&mut self.restarts, device);
     }
 
-    /// All faults together.
+    /// Sum of all faults; samples that were acquired do not count.
     #[must_use]
     pub fn faults(&self) -> u32 {
         let devices: u32 = self.lost.iter().chain(&self.restarts).map(|n| u32::from(*n)).sum();
@@ -69,6 +70,7 @@ impl Health {
     }
 }
 
+/// Increments the counter of a device's kind.
 fn count(counters: &mut [u16; 5], device: Device) {
     let counter = &mut counters[match device {
         Device::Gyro
@@ -84,7 +86,8 @@ fn count(counters: &mut [u16; 5], device: Device) {
     *counter = counter.saturating_add(1);
 }
 
-/// Ends the session where no sample comes any more, whatever the reason.
+/// Ends the session with [`Refusal::TimeExhausted`] when no samples arrive for 30 s, whatever the
+/// reason.
 pub async fn watch<O: Observer>(shared: &Shared<'_, O>) {
     loop {
         let before = shared.health.get().samples;

@@ -1,4 +1,4 @@
-//! The instrument: the same application on the board, in the emulator and on the host.
+//! The application of the instrument, the same on the board, in the emulator and on the host.
 //!
 //! ```text
 //!  gyro ──────┐
@@ -7,16 +7,16 @@
 //!                    └────────────▶ stage ─▶ motor
 //! ```
 //!
-//! A two-frame mount has two encoders and two motors: [`pointing`] and [`gimbal`] stand for encoder and
-//! stage then. On a platform that turns all the time, the [`turntable`] stands for the stage, and commands
-//! are rates. In a vehicle nothing turns the gyros: three of them and the accelerometer make the samples, and
-//! the session tells who drives when to stop and go. On a [`spin`]ning body nothing looks for north: its roll
-//! is followed.
+//! A two-frame mount has two encoders and two motors; [`pointing`] and [`gimbal`] take the place of
+//! encoder and stage then. On a platform in continuous rotation, the [`turntable`] takes the place
+//! of the stage, and the commands are rates. In a vehicle the gyros are fixed to the body: three
+//! gyros and the accelerometer give the samples, and the session asks the driver to stop and to
+//! drive on. On a [`spin`]ning body there is no alignment; its roll angle is tracked.
 //!
-//! [`run::acquire`] samples, [`run::run`] joins the other parts in fixed order; they know no pin, no
-//! bus and no clock but `embassy-time`'s. What they need from the outside are the traits of [`ports`];
-//! [`chips`] gives them to the drivers of the `drivers` crate. What happens is told once, as an
-//! [`event::Event`].
+//! [`run::acquire`] samples, and [`run::run`] joins the other parts in fixed order. They know no
+//! pin, no bus, and no clock other than `embassy-time`'s. The traits of [`ports`] describe what
+//! they need from outside; [`chips`] implements them by the drivers of the `drivers` crate.
+//! Whatever happens is reported once, as an [`event::Event`].
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! The status line: one line of text a second, for whoever listens.
+//! The status line: one line of text per second over the serial link.
 //!
 //! ```text
 //! measuring 5/24, faults 0
@@ -6,7 +6,7 @@
 //! azimuth 250.114 sigma 0.041 pitch 1.204 roll -0.310 level, faults 0
 //! ```
 //!
-//! Numbers are integers of thousandths inside, so that no float formatting is needed on the board.
+//! Numbers are kept as integers of thousandths, so that the board needs no formatting of floats.
 
 use core::fmt::{self, Write as _};
 
@@ -21,69 +21,71 @@ use crate::shared::Shared;
 
 /// Time between two lines.
 const PERIOD: Duration = Duration::from_secs(1);
-/// A link that does not take a line in this time loses it: 160 bytes take 167 ms at 9600 baud.
+/// Time limit for sending a line; the line is discarded beyond it. 160 bytes take 167 ms at 9600
+/// baud (10 bits per byte).
 const LONGEST: Duration = Duration::from_millis(500);
-/// Bytes that hold the longest line: an attitude whose level is being found again, remembered, with every fault counted.
+/// Capacity for the longest line, bytes: an attitude in the state with the longest name, recalled,
+/// with all digits of the fault counter.
 const LENGTH: usize = 160;
 
-/// What the instrument is about. Angles in thousandths of a degree.
+/// Status of the instrument. Angles are in thousandths of a degree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
-    /// Devices are started.
+    /// Devices are being started.
     Starting,
-    /// The stage looks for its index.
+    /// The stage searches its index.
     Homing,
-    /// The stage stands still to know the gyro.
+    /// The stage stands still for the survey of the gyro's noise.
     Surveying,
-    /// Dwells are measured.
+    /// Dwells, or turns, are being measured.
     Measuring {
-        /// Dwells that are taken.
+        /// Number of completed dwells or turns.
         done: u16,
-        /// Dwells that are planned.
+        /// Number of planned dwells or turns.
         of: u16,
     },
-    /// The vehicle levels at a stop.
+    /// The vehicle stands at a stop, whose inclination is being measured.
     Levelling {
-        /// Which stop.
+        /// Number of the stop, from 1.
         stop: u16,
     },
-    /// It has, and may drive.
+    /// The stop was long enough, and the vehicle may drive on.
     MayDrive {
-        /// Which stop.
+        /// Number of the stop, from 1.
         stop: u16,
     },
-    /// It drives.
+    /// The vehicle is in motion.
     Driving,
-    /// The azimuth is found.
+    /// The alignment has concluded with an azimuth.
     Concluded {
-        /// Azimuth of body x.
+        /// Azimuth of body x, clockwise from north, 0–359 999.
         azimuth: u32,
-        /// Its 1σ, rounded up.
+        /// The azimuth's 1σ, rounded up.
         sigma: u32,
     },
-    /// There is none; the log tells why.
+    /// The alignment has concluded without an azimuth; the log has the reason.
     Refused,
-    /// The roll of a spinning body is followed.
+    /// The roll angle of a spinning body is tracked.
     Rolling {
-        /// Roll and its 1σ, rounded up; none where it is not known.
+        /// Roll angle and its 1σ, rounded up; [`None`] if the roll is unknown.
         roll: Option<[u32; 2]>,
-        /// What it rests on.
+        /// The state of the tracking, in a word.
         state: &'static str,
     },
-    /// It is followed no more; the log tells why.
+    /// The tracking of the roll has ended; the log has the reason.
     RollEnded,
 }
 
 impl Status {
-    /// A found azimuth with its σ, both in degrees.
+    /// The status of a found azimuth with its 1σ, both in degrees.
     #[must_use]
     pub fn concluded(azimuth: f64, sigma: f64) -> Self {
-        // To nearest, wrapped at a full turn; σ never rounds to less than it is.
+        // The azimuth is rounded to nearest and wrapped at a full turn; the 1σ is rounded up.
         let azimuth = libm::round(azimuth * 1e3) as u32 % 360_000;
         Self::Concluded { azimuth, sigma: libm::ceil(sigma * 1e3) as u32 }
     }
 
-    /// Whether nothing follows.
+    /// Whether no other status follows.
     #[must_use]
     pub fn is_last(&self) -> bool {
         matches!(self, Self::Concluded { .. } | Self::Refused | Self::RollEnded)
@@ -123,7 +125,8 @@ impl fmt::Display for Status {
     }
 }
 
-/// Sends a status line every second until the session's end is told.
+/// Sends a status line every second until the conclusion of the session has been sent. Runs for
+/// ever beside a keeper.
 pub async fn run<L: Write, O: Observer>(link: &mut L, shared: &Shared<'_, O>) {
     loop {
         let is_last = shared.status.get().is_last() && !shared.keep.is_wanted.get();
@@ -135,12 +138,12 @@ pub async fn run<L: Write, O: Observer>(link: &mut L, shared: &Shared<'_, O>) {
     }
 }
 
-/// Sends one status line. A link that does not take it costs the line, which is counted, and told
-/// the first time.
+/// Sends one status line. If the link does not take the line in time, the line is discarded and
+/// counted; the first loss is also reported as an event.
 pub async fn send<L: Write, O: Observer>(link: &mut L, shared: &Shared<'_, O>) {
     let mut line = String::<LENGTH>::new();
     let faults = shared.health.get().faults();
-    // The longest line fits; a longer one would be cut.
+    // The capacity holds the longest line; a longer one would be cut.
     let _ = match shared.keep.told.get() {
         Some(kept) => write!(line, "{kept}, faults {faults}\r\n"),
         None => write!(line, "{}, faults {faults}\r\n", shared.status.get()),

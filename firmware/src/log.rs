@@ -1,16 +1,19 @@
-//! The observer that logs: every event once, by defmt, as a sentence that the host puts together.
+//! The observer that logs each event once by defmt. The image contains only an index and the
+//! values; the host composes the sentence.
 
 use embassy_time::Instant;
 
 use crate::event::Event;
 use crate::ports::Observer;
 
-/// Logs events at level info. The time is that of the log's own stamp, which the image defines.
+/// Logs events at level info. The time in the log is that of defmt's own stamp, which the image
+/// defines.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DefmtLog;
 
 impl Observer for DefmtLog {
-    // In one place: every part tells, and all sentences would be there again.
+    // Kept in one place: inlined, all sentences would be in the image once for each part that
+    // reports.
     #[inline(never)]
     fn event(&self, _: Instant, event: &Event) {
         defmt::info!("{}", event);

@@ -1,5 +1,5 @@
-//! The motor of an axis beside its encoder, as stage and turntable drive them: what is asked is
-//! repeated while only the bus fails, and what breaks a movement off has a name.
+//! The motor of an axis and its encoder, as used by stage and turntable. A request is repeated
+//! while only the bus fails; a movement that is broken off reports its cause.
 
 use drivers::fault::Fault;
 use embassy_time::{Duration, Instant, Timer};
@@ -12,37 +12,38 @@ use crate::guarded::Guarded;
 use crate::ports::{Actuator, Motion, Observer};
 use crate::shared::{LatestAngle, Shared};
 
-/// How often the motor is asked what it does.
+/// Period at which the motor's status is read.
 pub(crate) const POLL: Duration = Duration::from_millis(20);
-/// Rest after the first stall, so that what blocks the axis can go away; it doubles with each.
+/// Rest after the first stall, so that an obstacle can be removed; it doubles with every further
+/// stall.
 pub(crate) const STALL_REST: Duration = Duration::from_millis(500);
-/// Age beyond which the encoder's angle is none.
+/// Age beyond which the encoder's latest angle is not used.
 const STALE: Duration = Duration::from_millis(100);
-/// How long a fresh angle is waited for: sensors that are started again give none meanwhile.
+/// Longest wait for a recent angle: sensors that are being started again give none.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// An axis' devices, as the log names them.
+/// Names of an axis' devices in the log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Axis {
-    /// Motor and its driver.
+    /// Motor with its driver.
     pub drive: Device,
-    /// Encoder.
+    /// Encoder of the axis.
     pub encoder: Device,
 }
 
 impl Axis {
-    /// Of an instrument that has one.
+    /// The axis of an instrument with a single one.
     pub const ONLY: Self = Self { drive: Device::Stage, encoder: Device::Encoder };
 }
 
-/// What breaks a movement off.
+/// The cause that breaks off a movement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Break {
-    /// The motor is blocked.
+    /// The motor has stalled.
     Stalled,
-    /// The motor driver was started again: its count is lost.
+    /// The motor driver was started again, so its step count is lost.
     Lost,
-    /// Nothing helps.
+    /// The device is given up, and the session ends with this reason.
     Refused(Refusal),
 }
 
@@ -52,33 +53,36 @@ impl From<Refusal> for Break {
     }
 }
 
-/// What the motor driver is asked.
+/// A request to the motor driver.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Request {
-    /// To go to an angle, rad.
+    /// Move to an angle, rad.
     GoTo(f64),
-    /// To turn at a rate, rad/s.
+    /// Turn at a rate, rad/s, clockwise positive.
     Seek(f64),
-    /// To take this for the angle at which the motor stands, rad.
+    /// Set the step count to the angle at which the motor stands, rad.
     SetAngle(f64),
-    /// To stop, and to let a motor that stalled turn again.
+    /// Stop, and clear a stall so that the motor can turn again.
     Release,
-    /// What the motor does.
+    /// Read the motor's status.
     Look,
 }
 
-/// The motor of an axis under control.
+/// The motor of an axis with its retry budget, and the latest angle of its encoder.
 pub(crate) struct Motor<'a, M, O> {
+    /// Names in the log.
     axis: Axis,
+    /// The motor's driver with its retry budget.
     actuator: Guarded<'a, M>,
-    /// What it did when it was last looked at.
+    /// The motor's status at the latest reading.
     pub(crate) motion: Motion,
+    /// The encoder's latest angle and the time of its reading.
     latest: &'a LatestAngle,
     pub(crate) shared: &'a Shared<'a, O>,
 }
 
 impl<'a, M: Actuator, O: Observer> Motor<'a, M, O> {
-    /// Takes the motor of an axis whose encoder shows the `latest` angle; nothing moves yet.
+    /// Takes the motor of an axis whose encoder writes its angle to `latest`; nothing moves yet.
     pub(crate) fn new(
         axis: Axis,
         actuator: &'a mut M,
@@ -89,12 +93,15 @@ impl<'a, M: Actuator, O: Observer> Motor<'a, M, O> {
         Self { axis, actuator, motion: Motion::default(), latest, shared }
     }
 
-    /// Starts its driver.
+    /// Starts the motor's driver, within its retry budget.
     pub(crate) fn start(&mut self) -> impl Future<Output = Result<(), Refusal>> {
         self.actuator.start(self.shared)
     }
 
-    /// An exchange with its driver, repeated while only the bus fails.
+    /// Executes a request, and repeats it while only the bus fails.
+    ///
+    /// # Errors
+    /// [`Break::Lost`] if the driver had to be started again, [`Break::Refused`] if it is given up.
     pub(crate) async fn ask(&mut self, request: Request) -> Result<(), Break> {
         let restarts = self.actuator.restarts();
         loop {
@@ -108,6 +115,7 @@ impl<'a, M: Actuator, O: Observer> Motor<'a, M, O> {
         }
     }
 
+    /// One attempt of a request, without repetition.
     async fn exchange(&mut self, request: Request) -> Result<(), Fault> {
         let motor = &mut *self.actuator.device;
         match request {
@@ -119,13 +127,19 @@ impl<'a, M: Actuator, O: Observer> Motor<'a, M, O> {
         }
     }
 
-    /// Looks at the motor, which must not have stalled.
+    /// Reads the motor's status.
+    ///
+    /// # Errors
+    /// [`Break::Stalled`] if the motor has stalled, and the errors of [`Self::ask`].
     pub(crate) async fn look(&mut self) -> Result<(), Break> {
         self.ask(Request::Look).await?;
         if self.motion.is_stalled { Err(Break::Stalled) } else { Ok(()) }
     }
 
-    /// Watches the motor until it does what is waited for; `trouble` where it takes too long.
+    /// Reads the motor's status every 20 ms until the condition holds.
+    ///
+    /// # Errors
+    /// `trouble` if the condition does not hold within `longest`, and the errors of [`Self::look`].
     pub(crate) async fn follow(
         &mut self,
         trouble: Trouble,
@@ -143,18 +157,21 @@ impl<'a, M: Actuator, O: Observer> Motor<'a, M, O> {
         Err(self.fail(trouble).into())
     }
 
-    /// The latest encoder angle and when it was read, unless that is long ago.
+    /// The encoder's latest angle and the time of its reading; [`None`] if it is older than 100 ms.
     pub(crate) fn fresh(&self) -> Option<(Angle, Instant)> {
         Some(self.latest.get()).filter(|(_, read)| Instant::now() - *read <= STALE)
     }
 
-    /// The latest encoder angle, rad, in the turn around `near`, however old.
+    /// The encoder's latest angle, rad, on the turn nearest to `near`, regardless of its age.
     fn nearest_shown(&self, near: f64) -> f64 {
         let (shown, _) = self.latest.get();
         near + (shown - Angle::from_rad(near)).signed_rad()
     }
 
-    /// A fresh encoder angle, rad, in the turn around `near`.
+    /// A recent angle of the encoder, rad, on the turn nearest to `near`; waits up to 5 s for it.
+    ///
+    /// # Errors
+    /// The encoder is given up as silent.
     pub(crate) async fn shown_near(&self, near: f64) -> Result<f64, Refusal> {
         let deadline = Instant::now() + PATIENCE;
         while self.fresh().is_none() {
@@ -166,17 +183,17 @@ impl<'a, M: Actuator, O: Observer> Motor<'a, M, O> {
         Ok(self.nearest_shown(near))
     }
 
-    /// The trouble of an axis that stands where it stands.
+    /// The trouble of a stalled axis, with the angle at which it stands, °.
     pub(crate) fn blocked(&self) -> Trouble {
         Trouble::Stalled(self.nearest_shown(self.motion.angle) * DEGREES)
     }
 
-    /// Tells something of the motor, and with it its name.
+    /// Reports an event of this axis under the name of its drive.
     pub(crate) fn tell(&self, event: impl FnOnce(Device) -> Event) {
         self.shared.tell(event(self.axis.drive));
     }
 
-    /// Tells that the motor is given up, and why.
+    /// Reports that the motor is given up, and returns the reason for the session's end.
     pub(crate) fn fail(&self, trouble: Trouble) -> Refusal {
         self.shared.give_up(self.axis.drive, trouble)
     }

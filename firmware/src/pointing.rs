@@ -1,9 +1,13 @@
-//! Where the gyro's sensitive axis points, by the encoders: of a stage's one axis, or of two frames.
+//! Direction of the gyro's sensitive axis by the encoders: one angle of a stage, or the two angles
+//! of a two-frame mount.
 //!
-//! Decimator encoder is guarded, its harmonics are taken off, and a reading further from the one before
-//! than anything can turn is lost. Two frames give heading and elevation by their calibrated geometry.
-//! The session takes the axis to stand where its heading does; of two frames the heading does not tell,
-//! so while either moves, or the axis is not level, it is made to jump from sample to sample.
+//! Each encoder has a retry budget. Its harmonic errors are subtracted, and a reading that differs
+//! from the one before by more than any stage can turn is discarded. For two frames, heading and
+//! elevation follow from the calibrated geometry.
+//!
+//! The session detects a movement by changes of the heading. The heading of a two-frame mount need
+//! not change while a frame moves, so while either frame moves, or the axis is not level, the
+//! reported heading jumps by a quarter of a turn from sample to sample.
 
 use core::cell::Cell;
 
@@ -21,66 +25,78 @@ use crate::ports::{Encoder, Frames, Observer};
 use crate::retry_budget::Symptom;
 use crate::shared::{LatestAngle, Shared};
 
-/// Faster than any stage: a quarter of a turn a second, in steps of an [`Angle`] in a microsecond.
+/// Largest rate of any stage: a quarter of a turn per second, in steps of an [`Angle`] per
+/// microsecond.
 const FASTEST: u32 = (1 << 30) / 1_000_000 + 1;
-/// What a stage may jump by, in steps: a degree of play, ringing, a slipping magnet.
+/// Largest jump of an angle, in steps: one degree, for backlash, ringing and a slipping magnet.
 const PLAY: u32 = u32::MAX / 360;
-/// The longest time that counts, µs: after it a stage may stand anywhere.
+/// Longest interval that limits the change, µs: after it, a stage may stand anywhere.
 const LONGEST: u64 = 2_000_000;
 
-/// Elevation beyond which the axis is not where the frames were sent, rad: three times what a drive
-/// tolerates.
+/// Elevation beyond which the axis does not count as level, rad: three times the tolerance of a
+/// drive.
 const LEVEL: f64 = 0.1 * DEGREE;
 
-/// Where the axis points with one sample.
+/// Direction of the sensitive axis with one sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Aim {
-    /// Heading in the base plane.
+    /// Heading in the base's plane, clockwise from the base's forward axis.
     pub heading: Angle,
-    /// Elevation above it, where there can be one.
+    /// Elevation above the base's plane; [`None`] on a stage, where it is zero.
     pub elevation: Option<Angle>,
 }
 
-/// What knows where the axis points.
+/// The encoders as the source of the direction of the sensitive axis.
 #[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait Pointing {
-    /// What the encoders show.
+    /// The readings of the encoders.
     type Shown;
 
-    /// Whether the accelerometer sits on the base, and not beside the gyro.
+    /// Whether the accelerometer is fixed to the base rather than to the platform with the gyro.
     const FORCE_ON_BASE: bool;
 
     /// Starts the encoders.
+    ///
+    /// # Errors
+    /// An encoder is given up.
     async fn start(&mut self) -> Result<(), Refusal>;
 
-    /// Has all retry budget with them again.
+    /// Restores the full retry budget of the encoders.
     fn renew(&mut self);
 
-    /// What the encoders show, read anew with every so-manieth sample; none where a reading was lost.
+    /// Readings of the encoders, taken once in every `angle_divider` samples and repeated between;
+    /// [`None`] if a reading was lost.
+    ///
+    /// # Errors
+    /// An encoder is given up.
     async fn read(&mut self) -> Result<Option<Self::Shown>, Refusal>;
 
-    /// Where the axis points when the encoders show this.
+    /// The direction of the sensitive axis that belongs to readings of the encoders.
     fn aim(&mut self, shown: Self::Shown) -> Aim;
 
-    /// Elevation of an axis that stands, where it can leave the base's plane.
+    /// Elevation of the axis at rest; [`None`] while it moves, or if it cannot leave the base's
+    /// plane.
     fn elevation(&self) -> Option<Angle> {
         None
     }
 }
 
-/// Says yes at first, then every so-manieth time.
+/// A decimator: due at the first call, then at every `divider`-th.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Decimator {
-    /// How many.
+    /// The decimation, ≥ 1.
     pub(crate) divider: u32,
+    /// Calls until the next one that is due.
     left: u32,
 }
 
 impl Decimator {
+    /// Creates a decimator; a divider of zero counts as one.
     pub(crate) fn new(divider: u32) -> Self {
         Self { divider: divider.max(1), left: 0 }
     }
 
+    /// Counts a call, and returns whether it is due.
     pub(crate) fn is_due(&mut self) -> bool {
         let is_due = self.left == 0;
         self.left = if is_due { self.divider } else { self.left } - 1;
@@ -91,31 +107,38 @@ impl Decimator {
 /// A quarter of a turn in steps of an [`Angle`].
 const QUARTER_TURN: u32 = 1 << 30;
 
-/// How far apart two angles are, in steps.
+/// Distance of two angles on the circle, in steps.
 fn distance(a: Angle, b: Angle) -> u32 {
     (a - b).0.cast_signed().unsigned_abs()
 }
 
-/// How far an axis can turn in a time, in steps of an [`Angle`].
+/// Largest change of an angle in an interval, in steps of an [`Angle`].
 fn greatest_step(time: Duration) -> u32 {
     PLAY.saturating_add(time.as_micros().min(LONGEST) as u32 * FASTEST)
 }
 
-/// The encoder of one axis at work.
+/// The encoder of one axis: retry budget, calibration and check of its jumps.
 pub struct Shaft<'a, E, O> {
+    /// The encoder with its retry budget.
     encoder: Guarded<'a, E>,
+    /// Name of the encoder in the log.
     name: Device,
+    /// Correction of its harmonic errors.
     calibration: Calibration,
+    /// Decimation of the readings.
     due: Decimator,
-    /// The angle of the latest reading; none where it was lost.
+    /// The angle of the latest reading; [`None`] if it was lost.
     angle: Option<Angle>,
+    /// The cell for the latest valid angle, read by the motor's control.
     latest: &'a LatestAngle,
+    /// Whether the latest reading was discarded as a jump.
     has_jumped: bool,
     shared: &'a Shared<'a, O>,
 }
 
 impl<'a, E: Encoder, O: Observer> Shaft<'a, E, O> {
-    /// Takes an encoder by its name in the log; nothing is started yet. Good angles go to `latest`.
+    /// Takes an encoder with its name in the log; nothing is started yet. Valid angles are written
+    /// to `latest`.
     pub fn new(
         encoder: &'a mut E,
         name: Device,
@@ -136,8 +159,9 @@ impl<'a, E: Encoder, O: Observer> Shaft<'a, E, O> {
         }
     }
 
-    /// Takes an angle that was read now, unless it is further from the one before than the axis can turn: such a one is
-    /// lost, but the next is believed.
+    /// Accepts an angle that was read now, unless it differs from the one before by more than the
+    /// axis can turn: such a reading is discarded and counted. The next one is accepted in any
+    /// case, for the axis may really have moved.
     fn is_in_line(&mut self, angle: Angle, now: Instant) -> bool {
         let (last, read) = self.latest.get();
         let is_far = distance(angle, last) > greatest_step(now - read);
@@ -152,7 +176,8 @@ impl<'a, E: Encoder, O: Observer> Shaft<'a, E, O> {
     }
 }
 
-/// The one axis of a stage: the sensitive axis lies in its plane, and its angle is the heading.
+/// The one axis of a stage: the sensitive axis lies in the stage's plane, and its angle is the
+/// heading.
 impl<E: Encoder, O: Observer> Pointing for Shaft<'_, E, O> {
     type Shown = Angle;
 
@@ -185,28 +210,34 @@ impl<E: Encoder, O: Observer> Pointing for Shaft<'_, E, O> {
     }
 }
 
-/// The two frames of a mount.
+/// The encoders of the two frames of a mount.
 pub struct FrameShafts<'a, E, O> {
+    /// Encoders of the outer and the inner frame.
     shafts: Frames<Shaft<'a, E, O>>,
+    /// Calibrated geometry of the mount.
     geometry: TwoFrame,
+    /// Time without movement after which the frames count as at rest.
     rest: Duration,
-    /// Change of an angle that still counts as rest, and elevation that counts as level, in steps of an
-    /// [`Angle`].
+    /// Largest change of an angle that counts as rest, in steps of an [`Angle`].
     still: u32,
+    /// Largest elevation that counts as level, in steps of an [`Angle`].
     level: u32,
-    /// What the heading of an axis that does not stand is off by: nothing or a quarter of a turn, in
-    /// turns, so that no two samples show one angle.
+    /// Offset of the reported heading while the axis does not stand level: zero or a quarter of a
+    /// turn in alternation, in steps, so that consecutive samples never show the same angle.
     jump: u32,
-    /// Angles from which neither frame has moved, and since when.
+    /// Angles from which neither frame has moved.
     anchor: Frames<Angle>,
+    /// Since when neither frame has moved from there.
     since: Instant,
-    /// Angles that [`Self::aim`] is for: trigonometry is done only where they have changed.
+    /// Angles to which [`Self::aim`] belongs; the trigonometry is repeated only if they have
+    /// changed.
     seen: Option<Frames<Angle>>,
+    /// Direction of the axis at these angles.
     aim: Aim,
 }
 
 impl<'a, E: Encoder, O: Observer> FrameShafts<'a, E, O> {
-    /// Takes both encoders; nothing is started yet.
+    /// Takes the encoders of both frames; nothing is started yet.
     pub fn new(
         encoders: &'a mut Frames<E>,
         configuration: &Configuration,
@@ -236,7 +267,7 @@ impl<'a, E: Encoder, O: Observer> FrameShafts<'a, E, O> {
         }
     }
 
-    /// Whether both frames have rested.
+    /// Whether both frames have been at rest for long enough.
     fn has_rested(&mut self, angles: Frames<Angle>) -> bool {
         let has_moved = |now, then| distance(now, then) > self.still;
         if has_moved(angles.outer, self.anchor.outer) || has_moved(angles.inner, self.anchor.inner)
@@ -247,7 +278,7 @@ impl<'a, E: Encoder, O: Observer> FrameShafts<'a, E, O> {
         self.since.elapsed() >= self.rest
     }
 
-    /// The direction of the axis at these angles.
+    /// Computes the direction of the axis at these frame angles.
     fn point(&mut self, angles: Frames<Angle>) {
         if self.seen.replace(angles) == Some(angles) {
             return;
@@ -282,6 +313,7 @@ impl<E: Encoder, O: Observer> Pointing for FrameShafts<'_, E, O> {
 
     fn aim(&mut self, angles: Frames<Angle>) -> Aim {
         if self.has_rested(angles) {
+            // Only an axis at rest and level has a valid heading.
             self.point(angles);
             if self.aim.elevation.is_some_and(|up| distance(up, Angle(0)) <= self.level) {
                 return self.aim;
@@ -296,9 +328,9 @@ impl<E: Encoder, O: Observer> Pointing for FrameShafts<'_, E, O> {
     }
 }
 
-/// Latest angles of both frames that nobody has read yet.
+/// Latest angles of the two frames.
 impl Frames<LatestAngle> {
-    /// Nothing was read.
+    /// Angles without any reading yet.
     #[must_use]
     pub const fn unread() -> Self {
         Self {

@@ -1,6 +1,8 @@
-//! What the instrument needs from its board: the traits that chips, links and logs implement.
+//! The ports of the instrument: traits for all that it needs from its board, implemented by chips,
+//! links and logs.
 //!
-//! Nothing in here waits for ever but [`Gyro::ready`], which may be dropped at any time.
+//! Every exchange must end within bounded time, except [`Gyro::ready`], which may wait for ever and
+//! may be dropped at any time.
 
 use drivers::fault::Fault;
 use embassy_time::Instant;
@@ -14,16 +16,19 @@ use orientation::units::{Angle, AngularRate, SpecificForce, Temperature};
 
 use crate::event::Event;
 
-/// A device that can be started, and started again when it is lost.
+/// A device that can be started, and started again after a failure.
 #[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait Startable {
-    /// Resets, identifies, tests and configures the device, whatever state it is in.
+    /// Resets, identifies, tests and configures the device, regardless of its present state.
+    ///
+    /// # Errors
+    /// The driver's fault: bus, checksum, identity, self-test, or a register that was not written.
     async fn start(&mut self) -> Result<(), Fault>;
 }
 
-/// What a converter shows: a rate, or a code where its unit belongs to somebody else.
+/// The value of a converter: an angular rate, or a raw code whose unit another part knows.
 pub trait Quantity: Copy + Default + PartialEq {
-    /// Whether the value stands at a limit of its range, where a sensor or its converter clips.
+    /// Whether the value is at a limit of its range, the mark of a saturated sensor or converter.
     fn is_saturated(self) -> bool;
 }
 
@@ -33,7 +38,7 @@ impl Quantity for AngularRate {
     }
 }
 
-/// A converter's own code; at a limit where it clipped.
+/// A raw code of a converter; at a limit of its range if the converter was saturated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Code(pub i32);
 
@@ -46,143 +51,146 @@ impl Quantity for Code {
 /// One conversion of the precise gyro, or of another sensor behind a converter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RateReading<V = AngularRate> {
-    /// The rate; at a limit of its range where the converter clipped.
+    /// The rate, or the raw code; at a limit of its range if sensor or converter was saturated.
     pub rate: V,
-    /// Whether nobody has read this conversion before.
+    /// Whether this conversion has not been read before.
     pub is_new: bool,
 }
 
 /// The precise gyro, or another sensor behind a converter.
 #[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait Gyro<V = AngularRate>: Startable {
-    /// Waits until a conversion is ready. Safe to drop.
+    /// Waits until a conversion is ready. The future may be dropped at any time without loss.
     async fn ready(&mut self) -> Result<(), Fault>;
 
-    /// Reads that conversion.
+    /// Reads the conversion that is ready.
     async fn read(&mut self) -> Result<RateReading<V>, Fault>;
 }
 
-/// A gyro that converts in step with others: all are armed, then all begun, one right after the other.
-/// Their clocks are one.
+/// A gyro that converts synchronously with others on the same clock: first all are armed, then the
+/// conversions of all are begun one right after the other.
 #[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait InStep<V = AngularRate>: Gyro<V> {
-    /// Ends conversions and makes ready for others, of a gyro that was started.
+    /// Stops the conversions of a started gyro and prepares the synchronous begin.
     async fn arm(&mut self) -> Result<(), Fault>;
 
-    /// Begins conversions.
+    /// Begins the conversions.
     async fn begin(&mut self) -> Result<(), Fault>;
 }
 
-/// One reading of the accelerometer, in the axes of the platform, or of the base it is fixed to.
+/// One reading of the accelerometer, in the axes of the platform, or of the base to which it is
+/// fixed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ForceReading {
-    /// Specific force. On the platform x along the sensitive axis, y 90° clockwise of it, z down; on
-    /// the base forward, right, down.
+    /// Specific force, µm/s² in its integer unit. On the platform: x along the sensitive axis, y
+    /// 90° clockwise of it, z down. On the base: x forward, y right, z down.
     pub force: [SpecificForce; 3],
     /// Temperature of the chip.
     pub temperature: Temperature,
-    /// Whether it is new since the last reading.
+    /// Whether the reading is new since the one before.
     pub is_new: bool,
-    /// Whether an axis stood at the limit of its range.
+    /// Whether an axis was at the limit of its range.
     pub is_clipped: bool,
 }
 
-/// The accelerometer on the platform, or on the base.
+/// The accelerometer on the platform or on the base.
 #[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait Accelerometer: Startable {
     /// Reads the latest output.
     async fn read(&mut self) -> Result<ForceReading, Fault>;
 }
 
-/// The encoder of the stage.
+/// The absolute encoder of the stage.
 #[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait Encoder: Startable {
-    /// Reads the angle now.
+    /// Reads the present angle.
     async fn read(&mut self) -> Result<Angle, Fault>;
 }
 
-/// One reading of the coarse sensors on the base, on its axes forward, right, down.
+/// One reading of the coarse inertial sensors on the base, on the axes forward, right, down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BaseReading {
-    /// Rates about the axes.
+    /// Angular rates about the axes.
     pub rate: [AngularRate; 3],
-    /// Specific forces on the axes.
+    /// Specific forces along the axes.
     pub force: [SpecificForce; 3],
-    /// Whether anything stood at the limit of its range.
+    /// Whether any value was at the limit of its range.
     pub is_clipped: bool,
 }
 
-/// Coarse gyros and accelerometers on the base.
+/// Coarse gyros and accelerometers on the base, which measure its sway.
 #[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait BaseSensors: Startable {
-    /// Reads the latest output; none where it was read before.
+    /// Reads the latest output; [`None`] if it has been read before.
     async fn read(&mut self) -> Result<Option<BaseReading>, Fault>;
 
-    /// What is stated of them.
+    /// The stated noise and biases of these sensors.
     fn sensors(&self) -> CoarseSensors;
 
-    /// They are read with every so-manieth sample of the precise gyro, ≥ 1.
+    /// Decimation: they are read once in this many samples of the precise gyro, ≥ 1.
     fn divider(&self) -> u32;
 }
 
-/// A base without sensors: rates are taken as they are.
+/// A base without sensors: the gyro's rates are used without compensation of sway.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoBase;
 
-/// What the stage's motor does.
+/// The status of the stage's motor.
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own; all combine")]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
-    /// Stage angle by the motor's own count, rad, not wrapped.
+    /// Stage angle by the motor's step count, rad, not wrapped.
     pub angle: f64,
-    /// Whether the motor stands.
+    /// Whether the motor stands still.
     pub is_standing: bool,
-    /// Whether it stands at its target.
+    /// Whether the motor has reached its target.
     pub has_reached: bool,
-    /// Whether it was stopped by a stall.
+    /// Whether a stall has stopped the motor.
     pub is_stalled: bool,
-    /// Whether the index, the switch at the lower end, is touched.
+    /// Whether the index switch at the lower end of the travel is closed.
     pub at_index: bool,
 }
 
-/// The motor of the stage.
+/// The motor of the stage. Angles are clockwise positive as seen from above.
 #[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait Actuator: Startable {
-    /// Sends the stage to an angle, rad, not wrapped, by the motor's count.
+    /// Moves to an angle by the motor's step count, rad, not wrapped. Returns at once; the movement
+    /// goes on.
     async fn go_to(&mut self, angle: f64) -> Result<(), Fault>;
 
-    /// Turns at a rate, rad/s, clockwise positive, until it is told otherwise or touches an end; also
-    /// on the way. Zero has it come to rest by its ramp.
+    /// Turns at a rate, rad/s, clockwise positive, until another command or an end switch;
+    /// permitted during a movement. A rate of zero brings the motor to rest by its ramp.
     async fn seek(&mut self, rate: f64) -> Result<(), Fault>;
 
-    /// Declares the angle at which the motor stands, rad.
+    /// Sets the step count to the angle at which the motor stands, rad.
     async fn set_angle(&mut self, angle: f64) -> Result<(), Fault>;
 
-    /// Stops where it is, and lets a motor that stalled turn again.
+    /// Stops the motor, and clears a stall so that it can turn again.
     async fn release(&mut self) -> Result<(), Fault>;
 
-    /// What the motor does.
+    /// Reads the motor's status.
     async fn motion(&mut self) -> Result<Motion, Fault>;
 }
 
-/// Where calibrations are kept over a loss of supply.
+/// Non-volatile storage of calibrations.
 #[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait CalibrationStore {
-    /// What was kept last in a slot, if anything was.
+    /// The latest item of a slot; [`None`] if the slot is empty.
     async fn load(&mut self, slot: u8) -> Result<Option<[u8; BYTES]>, Fault>;
 
-    /// Keeps something in a slot. Where the supply is lost meanwhile, a slot has what it had or what it
-    /// was to have.
+    /// Stores an item in a slot. If the supply is lost during the write, the slot holds either the
+    /// old or the new item.
     async fn save(&mut self, slot: u8, bytes: &[u8; BYTES]) -> Result<(), Fault>;
 }
 
-/// Where the heading of a vehicle at rest is kept over a loss of supply.
+/// Non-volatile storage of the heading of a vehicle at rest.
 #[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait HeadingStore {
-    /// What was kept last, if anything was.
+    /// The latest item; [`None`] if nothing was stored.
     async fn load_heading(&mut self) -> Result<Option<[u8; Remembered::BYTES]>, Fault>;
 
-    /// Keeps something. Where the supply is lost meanwhile, there is what was there or what was to be.
+    /// Stores an item. If the supply is lost during the write, the store holds either the old or
+    /// the new item.
     async fn save_heading(&mut self, bytes: &[u8; Remembered::BYTES]) -> Result<(), Fault>;
 }
 
@@ -196,7 +204,7 @@ impl<H: HeadingStore> HeadingStore for &mut H {
     }
 }
 
-/// Nothing is kept over a loss of supply.
+/// A store that keeps nothing.
 impl HeadingStore for () {
     async fn load_heading(&mut self) -> Result<Option<[u8; Remembered::BYTES]>, Fault> {
         Ok(None)
@@ -207,17 +215,18 @@ impl HeadingStore for () {
     }
 }
 
-/// Who tells the keeper what it cannot measure: an operator, another vehicle's instrument, an odometer.
-/// Asked once a second.
+/// Aiding from outside, read once a second: quantities that the keeper cannot measure, from an
+/// operator, another vehicle's instrument or an odometer.
 pub trait Aiding {
-    /// An azimuth of body x at this moment, with its 1σ, where there is one that was not told before.
+    /// A new azimuth of body x at this moment with its 1σ; [`None`] if there is none since the last
+    /// call.
     fn azimuth(&mut self) -> Option<Handover>;
 
-    /// Speed over the ground north and east, m/s, where it is known.
+    /// Velocity over ground north and east, m/s; [`None`] if it is unknown.
     fn velocity(&mut self) -> Option<[f64; 2]>;
 }
 
-/// Nobody tells anything.
+/// No aiding from outside.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoOutside;
 
@@ -231,14 +240,14 @@ impl Aiding for NoOutside {
     }
 }
 
-/// Where raw samples are kept. It may take its time: samples then queue.
+/// A recorder of raw samples. A slow recorder delays the session; samples queue meanwhile.
 #[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait Recorder<S = Sample> {
-    /// Keeps one sample.
+    /// Records one sample.
     async fn record(&mut self, sample: &S);
 }
 
-/// A recorder that keeps nothing.
+/// A recorder that discards every sample.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoRecorder;
 
@@ -246,14 +255,14 @@ impl<S> Recorder<S> for NoRecorder {
     async fn record(&mut self, _: &S) {}
 }
 
-/// What knows where the vehicle is: a satellite receiver, an odometer, a map.
+/// Position aiding of a vehicle: a satellite receiver, an odometer, a map.
 pub trait PositionAiding {
-    /// How far north and east the vehicle stands of where it stood first, m; none where that is not
-    /// known, or not yet. Asked at every stop until it is.
+    /// Displacement of the vehicle from its first stop, north and east, m; [`None`] if it is
+    /// unknown. At every stop the session asks again until it is known.
     fn displacement(&mut self) -> Option<[f64; 2]>;
 }
 
-/// Nobody knows where the vehicle is.
+/// No position aiding.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoWhereabouts;
 
@@ -263,25 +272,25 @@ impl PositionAiding for NoWhereabouts {
     }
 }
 
-/// Who is told what happens.
+/// The observer of the instrument: a log, or a test.
 pub trait Observer {
-    /// Something happened.
+    /// An event at a time of the instrument's clock.
     fn event(&self, at: Instant, event: &Event);
 
-    /// The session has taken one more dwell.
+    /// The multi-position session has completed one more dwell.
     fn progress(&self, _: &Session) {}
 
-    /// The session on a turning platform has taken one more turn.
+    /// The session of continuous rotation has completed one more turn.
     fn turned(&self, _: &rotating::Session) {}
 
     /// The session in a vehicle has begun or ended a stop.
     fn stopped(&self, _: &stops::Session) {}
 
-    /// What the keeper reports, once a second.
+    /// The keeper's report, once a second.
     fn kept(&self, _: &Report) {}
 }
 
-/// Nobody is told.
+/// An observer that ignores everything.
 impl Observer for () {
     fn event(&self, _: Instant, _: &Event) {}
 }
@@ -308,87 +317,88 @@ impl<O: Observer> Observer for &O {
     }
 }
 
-/// What a two-frame mount has twice.
+/// A pair of values for the two frames of a mount.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Frames<T> {
-    /// Of the outer frame.
+    /// Value of the outer frame.
     pub outer: T,
-    /// Of the inner frame.
+    /// Value of the inner frame.
     pub inner: T,
 }
 
 impl<T> Frames<T> {
-    /// The same with something done to both.
+    /// Applies a function to the values of both frames.
     pub fn map<U>(self, change: impl Fn(T) -> U) -> Frames<U> {
         Frames { outer: change(self.outer), inner: change(self.inner) }
     }
 }
 
-/// The sensors of the stage path, which acquisition owns.
+/// The sensors of an instrument on a stage, owned by acquisition.
 #[derive(Debug)]
 pub struct Sensors<G, A, E, B = NoBase> {
     /// The precise gyro.
     pub gyro: G,
-    /// The accelerometer on the platform.
+    /// The accelerometer on the platform or on the base.
     pub accelerometer: A,
-    /// The encoder of the stage; [`Frames`] of a mount with two.
+    /// The encoder of the stage, or [`Frames`] of encoders on a two-frame mount.
     pub encoder: E,
-    /// Coarse sensors on the base, where there are any.
+    /// The coarse sensors on the base, or [`NoBase`].
     pub base: B,
 }
 
 impl<G, A, E> Sensors<G, A, E> {
-    /// The same with sensors on the base.
+    /// Adds coarse sensors on the base.
     pub fn with_base<B>(self, base: B) -> Sensors<G, A, E, B> {
         let Self { gyro, accelerometer, encoder, base: NoBase } = self;
         Sensors { gyro, accelerometer, encoder, base }
     }
 }
 
-/// The sensors that are fixed to a vehicle, which acquisition owns.
+/// The sensors fixed to a vehicle (strapdown), owned by acquisition.
 #[derive(Debug)]
 pub struct VehicleSensors<G, A> {
     /// Gyros about the axes forward, right, down.
     pub gyros: [G; 3],
-    /// Accelerometers on the same axes.
+    /// Accelerometers along the same axes.
     pub accelerometer: A,
 }
 
-/// The sensors that are fixed to a spinning body, which acquisition owns.
+/// The sensors fixed to a spinning body, owned by acquisition.
 #[derive(Debug)]
 pub struct SpinSensors<C>(
-    /// Converters of the gyros about x (forward), y (up at roll zero) and z (right there), then of the
-    /// accelerometers along y and z.
+    /// Converters of the gyros about x (forward), y (up at zero roll) and z (right at zero roll),
+    /// then of the accelerometers along y and z.
     pub [C; 5],
 );
 
-/// What else a board on a spinning body offers.
+/// The other ports of a board on a spinning body.
 #[derive(Debug)]
 pub struct SpinPorts<L, R> {
-    /// Where status lines go.
+    /// Destination of the status lines.
     pub link: L,
-    /// Where raw samples go.
+    /// Destination of the raw samples.
     pub recorder: R,
 }
 
-/// What else a board in a vehicle offers: there is nothing to turn, who drives is told by link and log.
+/// The other ports of a board in a vehicle. There is no motor; the driver is informed by link and
+/// log.
 #[derive(Debug)]
 pub struct VehiclePorts<W, L, R> {
-    /// What knows where the vehicle is.
+    /// Source of the vehicle's displacement.
     pub position_aiding: W,
-    /// Where status lines go.
+    /// Destination of the status lines.
     pub link: L,
-    /// Where raw samples go.
+    /// Destination of the raw samples.
     pub recorder: R,
 }
 
-/// What else a board offers.
+/// The other ports of a board with a stage, a turntable or a mount.
 #[derive(Debug)]
 pub struct Ports<M, L, R> {
-    /// The motor of the stage; [`Frames`] of a mount with two.
+    /// The motor of the stage, or [`Frames`] of motors on a two-frame mount.
     pub actuator: M,
-    /// Where status lines go.
+    /// Destination of the status lines.
     pub link: L,
-    /// Where raw samples go.
+    /// Destination of the raw samples.
     pub recorder: R,
 }

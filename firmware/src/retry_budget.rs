@@ -1,29 +1,30 @@
-//! How much a device may fail before it is started again, and before it is given up.
+//! The retry budget of a device: the failures after which it is started again, and after which it
+//! is given up.
 
 use drivers::fault::Fault;
 use orientation::device::Trouble;
 use orientation::words;
 
-/// Readings in a row that may be lost to the bus before the device is started again.
+/// Number of consecutive readings that may be lost on the bus before the device is started again.
 const LOST_IN_A_ROW: u8 = 3;
-/// How often a device may be started again in one session: a device that needs more is sick, and
-/// its gaps would cost more dwells than a session repeats.
+/// Number of restarts that a device may need in one session. A device that needs more is defective,
+/// and its gaps would cost more dwells than a session may repeat.
 const RESTARTS: u8 = 5;
 
-/// What a device shows.
+/// A symptom of a failing device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Symptom {
     /// The driver reports a fault.
     Chip(Fault),
-    /// It signals no more data.
+    /// The device does not signal new data.
     Silent,
-    /// It gives the same reading again and again.
+    /// The device repeats the same reading.
     Stuck,
-    /// Its bus takes far too long.
+    /// An exchange on the bus takes far too long.
     Slow,
-    /// A reading that cannot be: too far from the one before.
+    /// The reading is impossible, as it differs too much from the one before.
     Jumped,
-    /// It converts at other times than those that it is to be in step with.
+    /// The device does not convert synchronously with the others.
     OutOfStep,
 }
 
@@ -54,43 +55,46 @@ impl From<Symptom> for Trouble {
     }
 }
 
-/// What to do about a symptom.
+/// The reaction to a symptom.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Remedy {
-    /// Do without this reading.
+    /// Discard the reading.
     Drop,
     /// Start the device again.
     Restart,
-    /// Give the device up.
+    /// Give the device up, for this reason.
     GiveUp(Trouble),
 }
 
-/// What is left of the retry budget with one device.
+/// The failures of one device so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RetryBudget {
+    /// Consecutive readings lost on the bus.
     lost: u8,
+    /// Restarts so far.
     restarts: u8,
-    /// Whether it ever gave a good reading.
+    /// Whether the device has ever given a good reading.
     has_worked: bool,
-    /// What began the trouble that is going on.
+    /// The first symptom of the present failure.
     cause: Option<Symptom>,
 }
 
 impl RetryBudget {
-    /// How often the device was to be started again.
+    /// Number of restarts so far.
     #[must_use]
     pub fn restarts(&self) -> u8 {
         self.restarts
     }
 
-    /// A reading was good.
+    /// Records a good reading, which ends a failure.
     pub fn succeeded(&mut self) {
         self.lost = 0;
         self.has_worked = true;
         self.cause = None;
     }
 
-    /// A reading failed. Repeating helps against the bus, starting again against the rest.
+    /// Records a failed reading and returns the reaction: bus errors are repeated up to three
+    /// times, everything else needs a restart, at most five times.
     pub fn failed(&mut self, symptom: Symptom) -> Remedy {
         let cause = *self.cause.get_or_insert(symptom);
         let passing = matches!(symptom, Symptom::Chip(Fault::Bus | Fault::Checksum));
@@ -106,9 +110,10 @@ impl RetryBudget {
         Remedy::Restart
     }
 
-    /// Which of two symptoms tells more: a sick bus, or a device that fell silent or stuck, explains
-    /// all that follows; what else began the trouble is told better by what came last. A device that
-    /// has worked is no other one: it answers no more.
+    /// Selects the symptom that explains a failure best. A bus error, or a device that became
+    /// silent, stuck or slow, explains what follows, so the first symptom counts; in other cases
+    /// the last one counts. A wrong identity of a device that has worked means that it does not
+    /// answer any more.
     fn reason(&self, first: Symptom, last: Symptom) -> Symptom {
         match (first, last) {
             (

@@ -1,8 +1,10 @@
-//! The instrument: its parts joined in fixed order, so that one seed gives one run anywhere.
+//! Runs the instrument: joins its parts in fixed order, so that one seed gives the same run on
+//! every machine.
 //!
-//! Acquisition is a future of its own, beside [`run`]: it is woken several times for every sample and
-//! must not wait for a conclusion, so a board may give it a task, or an interrupt, of its own. Both
-//! are generic over their ports, and both end within a bounded time, whatever the devices do.
+//! Acquisition is a future of its own beside [`run`]. It is woken several times per sample and must
+//! not wait for the computation of a conclusion, so a board may give it a task or an interrupt of
+//! its own. All are generic over their ports. Acquisition never returns; the functions that run a
+//! session end within bounded time, whatever the devices do.
 
 use core::future::pending;
 use core::pin::{Pin, pin};
@@ -36,8 +38,8 @@ use crate::steady::Base;
 use crate::storage;
 use crate::turntable::Turntable;
 
-/// Samples until a sensor is given up, which the session is told; where an azimuth is kept, tries again
-/// later. Never ends.
+/// Acquires samples on a stage until a sensor is given up, and ends the session then. While an
+/// azimuth is kept, tries again later. Never returns.
 pub async fn acquire<G, A, E, B, O>(
     sensors: &mut Sensors<G, A, E, B>,
     configuration: &Configuration,
@@ -59,7 +61,8 @@ pub async fn acquire<G, A, E, B, O>(
         .await;
 }
 
-/// The same for a mount with two frames, whose latest angles go to `latest`.
+/// Acquires samples on a two-frame mount, as [`acquire`] does on a stage; the latest frame angles
+/// are written to `latest`.
 pub async fn acquire_frames<G, A, E, B, O>(
     sensors: &mut Sensors<G, A, Frames<E>, B>,
     configuration: &Configuration,
@@ -81,7 +84,8 @@ pub async fn acquire_frames<G, A, E, B, O>(
         .await;
 }
 
-/// The same for sensors that are fixed to a vehicle.
+/// Acquires samples in a vehicle from three gyros and an accelerometer fixed to the body. Never
+/// returns.
 pub async fn acquire_triad<G, A, O>(
     sensors: &mut VehicleSensors<G, A>,
     configuration: &VehicleConfiguration,
@@ -94,7 +98,8 @@ pub async fn acquire_triad<G, A, O>(
     TriadAcquisition::new(sensors, configuration, channels).run_for_ever().await;
 }
 
-/// The same for sensors that are fixed to a spinning body.
+/// Acquires samples on a spinning body until a sensor is given up, and ends the session then. Never
+/// returns.
 pub async fn acquire_spin<C, O>(
     sensors: &mut SpinSensors<C>,
     configuration: &SpinConfiguration,
@@ -108,10 +113,10 @@ pub async fn acquire_spin<C, O>(
     pending::<()>().await;
 }
 
-/// Runs an alignment from power-on to its conclusion, which is then in the session; gives what went
-/// wrong meanwhile.
+/// Runs a multi-position alignment from power-on to its conclusion, which is then in the session;
+/// returns the counters of faults.
 ///
-/// The session, the greatest piece of memory, belongs to the caller, who chooses where it lies.
+/// The session is the largest object in memory; the caller owns it and chooses its place.
 pub async fn run<M, L, R, O>(
     ports: &mut Ports<M, L, R>,
     configuration: &Configuration,
@@ -127,7 +132,8 @@ where
     run_and_keep(ports, configuration, session, &mut (), channels).await
 }
 
-/// The same, and goes on keeping what was found.
+/// Runs a multi-position alignment and then keeps its azimuth until the configured duration is
+/// over.
 pub async fn run_and_keep<M, L, R, K, O>(
     ports: &mut Ports<M, L, R>,
     configuration: &Configuration,
@@ -149,7 +155,11 @@ where
     keep_beside(turning, kept, link, recorder, &mut Stepwise::new(session), channels).await
 }
 
-/// The same on a platform that turns all the time. Whatever the end, the platform comes to rest.
+/// Runs an alignment by continuous rotation to its conclusion. Whatever the outcome, the platform
+/// comes to rest.
+///
+/// A sensor whose axis misalignment matters but is unknown is refused with
+/// [`Refusal::CouplingUnknown`].
 pub async fn run_rotating<M, L, R, O>(
     ports: &mut Ports<M, L, R>,
     configuration: &TurntableConfiguration,
@@ -171,21 +181,21 @@ where
         let turning = pin!(turntable.run());
         beside(turning, link, recorder, &mut Rotating::new(session), channels).await
     };
-    // Where that fails, too, the log has the reason.
+    // If the stop fails as well, the log has the reason.
     select(turntable.rest(), discard(channels)).await;
     health
 }
 
-/// Whether a session can tell how its sensor feels the platform: one that is not flat must know it, or
-/// be about to learn it.
+/// Whether the session knows the axis misalignment, or needs none: it is negligible by the sensor's
+/// statement, will be estimated by rate-modulated turns, or is known from a calibration.
 fn is_coupled(session: &rotating::Session) -> bool {
     let setting = session.setting();
     let is_known = setting.couplings.iter().any(Option::is_some);
     setting.sensor.is_flat || session.procedure().uneven_turns > 0 || is_known
 }
 
-/// The same as [`run_rotating`], and keeps the couplings that it found. Those that were kept before must
-/// be in the session already, by [`storage::load_calibration`].
+/// Runs an alignment by continuous rotation and stores the axis misalignments that it found. Those
+/// stored before must be in the session already, by [`storage::load_calibration`].
 pub async fn run_storing<M, L, R, S, O>(
     ports: &mut Ports<M, L, R>,
     configuration: &TurntableConfiguration,
@@ -205,8 +215,8 @@ where
     health
 }
 
-/// The same as [`run`] on a mount with two frames. After an azimuth it takes the gyro's axis to the vertical,
-/// where it can store it.
+/// Runs a multi-position alignment on a two-frame mount. After an azimuth was found, the gyro's
+/// sensitive axis is set vertical, where it can hold the azimuth.
 pub async fn run_frames<M, L, R, O>(
     ports: &mut Ports<Frames<M>, L, R>,
     frames: &FramesConfiguration,
@@ -223,7 +233,8 @@ where
     run_frames_and_keep(ports, frames, latest, session, &mut (), channels).await
 }
 
-/// The same, and goes on keeping what was found, by the precise gyro once its axis is vertical.
+/// Runs a multi-position alignment on a two-frame mount and then keeps its azimuth by the precise
+/// gyro, whose axis is set vertical.
 pub async fn run_frames_and_keep<M, L, R, K, O>(
     ports: &mut Ports<Frames<M>, L, R>,
     frames: &FramesConfiguration,
@@ -250,13 +261,14 @@ where
         return health;
     }
     if session.conclusion().is_some_and(|conclusion| conclusion.verdict.is_ok()) {
-        // Where that fails, the log has the reason; the azimuth stands all the same.
+        // If this fails, the log has the reason; the azimuth is valid nevertheless.
         select(gimbal.store(), discard(channels)).await;
     }
     health
 }
 
-/// The same as [`run`] in a vehicle that somebody drives from stop to stop, when link and log say so.
+/// Runs an inertial-frame alignment in a vehicle, which is driven from stop to stop as link and log
+/// request.
 pub async fn run_stops<W, L, R, O>(
     ports: &mut VehiclePorts<W, L, R>,
     session: &mut stops::Session,
@@ -271,7 +283,8 @@ where
     run_stops_and_keep(ports, session, &mut (), channels).await
 }
 
-/// The same, and goes on keeping what was found.
+/// Runs an inertial-frame alignment in a vehicle and then keeps its azimuth until the configured
+/// duration is over.
 pub async fn run_stops_and_keep<W, L, R, K, O>(
     ports: &mut VehiclePorts<W, L, R>,
     session: &mut stops::Session,
@@ -286,7 +299,7 @@ where
     O: Observer,
 {
     let VehiclePorts { position_aiding, link, recorder } = ports;
-    // There is no angle to find first, and nothing to turn.
+    // There is no index to find, and nothing to turn.
     channels.shared.homed.signal(());
     let still = pin!(pending());
     let kept = pin!(keeping.run(&channels.shared));
@@ -294,7 +307,8 @@ where
     keep_beside(still, kept, link, recorder, &mut session, channels).await
 }
 
-/// Follows the roll of a spinning body until the flight's time is over, or a sensor is given up.
+/// Tracks the roll of a spinning body until the duration of the flight is over or a sensor is given
+/// up.
 pub async fn run_spin<L, R, O>(
     ports: &mut SpinPorts<L, R>,
     flight: &mut Flight,
@@ -318,14 +332,14 @@ where
     shared.health.get()
 }
 
-/// Lets samples go by.
+/// Discards samples while another part finishes.
 async fn discard<O, S>(channels: &Channels<'_, O, S>) {
     loop {
         channels.samples.receive().await;
     }
 }
 
-/// Joins the parts around what turns the gyro, which ends only with a reason to end everything.
+/// Joins the parts with the control of the motor, which returns only to end the session.
 async fn beside<L, R, O, S>(
     turning: Pin<&mut dyn Future<Output = Refusal>>,
     link: &mut L,
@@ -341,7 +355,7 @@ where
     keep_beside(turning, pin!(pending()), link, recorder, session, channels).await
 }
 
-/// The same with what keeps, whose end is that of everything.
+/// Joins the parts with the control of the motor and with a keeper, whose end is the end of all.
 async fn keep_beside<L, R, O, S>(
     turning: Pin<&mut dyn Future<Output = Refusal>>,
     kept: Pin<&mut dyn Future<Output = ()>>,
@@ -357,7 +371,7 @@ where
 {
     let shared = &channels.shared;
     let mut conductor = SessionRunner::new(session, recorder, channels);
-    // Pinned here, each part lies in memory once.
+    // Each part is pinned here, so that it exists in memory once.
     let runner = pin!(conductor.run());
     let position = pin!(async {
         shared.fail(turning.await);
@@ -365,7 +379,7 @@ where
     });
     let tell = pin!(link::run(link, shared));
     let watch = pin!(health::watch(shared));
-    // The keeper comes last: it takes what the session has taken.
+    // The keeper is polled last, so that it takes only what the session has taken.
     select5(runner, position, tell, watch, kept).await;
     shared.health.get()
 }

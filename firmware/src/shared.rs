@@ -1,4 +1,5 @@
-//! What the parts of the instrument hand to each other: one bounded channel, some signals and cells.
+//! Communication between the parts of the instrument: one bounded queue of samples, signals and
+//! cells.
 
 use core::cell::Cell;
 
@@ -19,60 +20,61 @@ use crate::link::Status;
 use crate::ports::Observer;
 use crate::retry_budget::Symptom;
 
-/// Samples that may wait for the session: 8 ms at 2 kHz.
+/// Capacity of the queue of samples: 8 ms at 2 kHz.
 pub const QUEUE: usize = 16;
 
-/// Samples on their way from acquisition to the session.
+/// The queue of samples from acquisition to the session.
 pub type Queue<S> = Channel<NoopRawMutex, S, QUEUE>;
 
-/// All channels of an instrument whose samples are of the kind `S`. Only acquisition and the session know the
-/// kind.
+/// All channels of an instrument whose samples are of the type `S`. Only acquisition and the
+/// session depend on that type.
 pub struct Channels<'a, O, S = Sample> {
-    /// From acquisition to the session.
+    /// The samples from acquisition to the session.
     pub samples: Queue<S>,
-    /// The others.
+    /// All other signals and cells.
     pub shared: Shared<'a, O>,
 }
 
 impl<'a, O: Observer, S> Channels<'a, O, S> {
-    /// Nothing has happened yet.
+    /// Channels without any message; events go to the observer.
     pub const fn new(observer: &'a O) -> Self {
         Self { samples: Queue::new(), shared: Shared::new(observer) }
     }
 }
 
-/// The latest encoder angle of an axis, corrected, and when it was read.
+/// The latest corrected angle of an axis' encoder and the time of its reading.
 pub type LatestAngle = Cell<(Angle, Instant)>;
 
-/// The channels between the parts, but for the samples. All of them run in one executor, so nothing needs a
-/// lock.
+/// Signals and cells between the parts. All parts run in one executor, so no lock is needed.
 pub struct Shared<'a, O> {
-    /// From the session to what turns the gyro: where to stand, rad, or on a turntable how fast to
-    /// turn, rad/s. The latest counts.
+    /// From the session to the drive: the requested angle, rad, or on a turntable the requested
+    /// rate, rad/s. A new request replaces the one before.
     pub wanted: Signal<NoopRawMutex, f64>,
-    /// From acquisition to the stage: the sensors give data.
+    /// From acquisition to the drive: the sensors give data.
     pub sensing: Signal<NoopRawMutex, ()>,
-    /// From the stage to the session: angles mean something. Without a stage they do from the beginning.
+    /// From the drive to the session: the angles are valid. Without a stage they are valid from the
+    /// begin.
     pub homed: Signal<NoopRawMutex, ()>,
-    /// From anybody to the session: it cannot go on.
+    /// From any part to the session: the session cannot continue.
     pub failure: Signal<NoopRawMutex, Refusal>,
-    /// From the session to the link: the last status stands.
+    /// From the session to the link: the status is final.
     pub concluded: Signal<NoopRawMutex, ()>,
-    /// The stage's latest angle.
+    /// The latest angle of the stage's encoder.
     pub angle: LatestAngle,
-    /// What a subtracted sway leaves in the samples; decided before the stage is homed.
+    /// Noise that the compensated sway leaves in the samples, determined before the stage is homed.
     pub sway: Cell<SwayNoise>,
-    /// What acquisition and the session hand to the keeper, and it to them.
+    /// The channels between acquisition, session and attitude keeper.
     pub keep: KeeperChannels,
-    /// What went wrong so far.
+    /// Counters of faults.
     pub health: Cell<Health>,
-    /// What the link tells.
+    /// The status that the link reports.
     pub status: Cell<Status>,
+    /// Receiver of events.
     observer: &'a O,
 }
 
 impl<'a, O: Observer> Shared<'a, O> {
-    /// Nothing has happened yet.
+    /// Signals and cells without any message.
     pub const fn new(observer: &'a O) -> Self {
         Self {
             wanted: Signal::new(),
@@ -89,44 +91,45 @@ impl<'a, O: Observer> Shared<'a, O> {
         }
     }
 
-    /// Tells the session why it cannot go on; the first reason stands.
+    /// Ends the session with a reason. The first reason is kept.
     pub fn fail(&self, reason: Refusal) {
         if !self.failure.signaled() {
             self.failure.signal(reason);
         }
     }
 
-    /// Tells what happened. In one place: every part tells, and a clock and a log go with it.
+    /// Reports an event with the present time. Not inlined, since every part calls it and it
+    /// contains the clock and the log.
     #[inline(never)]
     pub fn tell(&self, event: Event) {
         self.observer.event(Instant::now(), &event);
     }
 
-    /// Who is told.
+    /// The observer.
     pub fn observer(&self) -> &O {
         self.observer
     }
 
-    /// Counts something.
+    /// Changes the counters of faults.
     pub fn count(&self, change: impl FnOnce(&mut Health)) {
         let mut health = self.health.get();
         change(&mut health);
         self.health.set(health);
     }
 
-    /// Counts and tells a lost reading.
+    /// Counts and reports a lost reading of a device.
     pub fn lose(&self, device: Device, symptom: Symptom) {
         self.count(|health| health.lose(device));
         self.tell(Event::Lost(device, symptom));
     }
 
-    /// Counts and tells that a device is started again.
+    /// Counts and reports the restart of a device.
     pub fn restart(&self, device: Device, symptom: Symptom) {
         self.count(|health| health.restart(device));
         self.tell(Event::Restarting(device, symptom));
     }
 
-    /// Tells that a device is given up, and gives the reason for the session's end.
+    /// Reports that a device is given up, and returns the refusal that ends the session.
     pub fn give_up(&self, device: Device, trouble: Trouble) -> Refusal {
         self.tell(Event::GivenUp(device, trouble));
         Refusal::Device { device, trouble }

@@ -1,9 +1,10 @@
-//! The stage: finds its index, goes where it is sent within its travel, and compares motor and
-//! encoder after every movement.
+//! Control of the stage: homes at the index switch, moves to requested angles within the travel,
+//! and compares motor and encoder after every movement.
 //!
-//! The encoder knows the angle but not the turn, the motor's count knows the turn but not the angle:
-//! at the index, a switch at the lower end of the travel, each learns from the other. From then on
-//! they must agree; where they do not, one of them is wrong and no azimuth may come of it.
+//! The encoder knows the angle but not the number of turns; the motor's step count knows the turns
+//! but not the angle. At the index, a switch at the lower end of the travel, each gets its missing
+//! part from the other. From then on the two must agree. If they do not, one of them is wrong, and
+//! no azimuth may be computed from either.
 
 use core::convert::Infallible;
 
@@ -18,15 +19,17 @@ use crate::motor::{Axis, Break, Motor, Request, STALL_REST};
 use crate::ports::{Actuator, Motion, Observer};
 use crate::shared::{LatestAngle, Shared};
 
-/// How often the search for the index is tried again while something blocks it.
+/// Number of repetitions of the search for the index after a stall.
 const RETRIES: u32 = 5;
-/// How often a movement is tried again: what blocks it twice after the stage has homed blocks it for
-/// good.
+/// Number of repetitions of a movement: an obstacle that is still there after the third attempt is
+/// taken as permanent.
 const MOVES: u32 = 2;
 
-/// The stage under control, or one frame of a mount with two.
+/// The control of a stage, or of one frame of a two-frame mount.
 pub struct Stage<'a, M, O> {
+    /// The motor and its encoder.
     motor: Motor<'a, M, O>,
+    /// Travel, tolerances and time limits.
     configuration: StageConfiguration,
 }
 
@@ -40,7 +43,7 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
         Self::of(Axis::ONLY, actuator, configuration, &shared.angle, shared)
     }
 
-    /// Takes the motor of an axis whose encoder shows the `latest` angle; nothing moves yet.
+    /// Takes the motor of an axis whose encoder writes its angle to `latest`; nothing moves yet.
     pub fn of(
         axis: Axis,
         actuator: &'a mut M,
@@ -52,7 +55,7 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
         Self { motor, configuration: *configuration }
     }
 
-    /// Homes, then goes where it is sent until it must be given up; gives the reason.
+    /// Homes, then executes requested movements until the stage is given up; returns the reason.
     pub async fn run(&mut self) -> Refusal {
         match self.serve().await {
             Ok(never) => match never {},
@@ -60,6 +63,10 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
         }
     }
 
+    /// Starts the driver, waits for the sensors, homes, and then follows requests for ever.
+    ///
+    /// # Errors
+    /// The stage or its encoder is given up.
     async fn serve(&mut self) -> Result<Infallible, Refusal> {
         let shared = self.motor.shared;
         self.start().await?;
@@ -78,7 +85,11 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
         self.motor.start()
     }
 
-    /// Finds the index and sets the motor's count by the encoder there.
+    /// Finds the index and sets the motor's step count by the encoder there. A stall is followed by
+    /// a rest of 0.5 s, doubled with each attempt.
+    ///
+    /// # Errors
+    /// The index was not found, or motor or encoder is given up.
     pub(crate) async fn home(&mut self) -> Result<(), Refusal> {
         self.motor.tell(Event::Homing);
         for attempt in 0..=RETRIES {
@@ -95,7 +106,8 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
         Err(self.motor.fail(self.motor.blocked()))
     }
 
-    /// Goes down to the index, always from above, and believes the encoder's angle there.
+    /// Approaches the index from above, so that backlash always has the same sign, and takes over
+    /// the encoder's angle there.
     async fn find_index(&mut self) -> Result<(), Break> {
         self.motor.ask(Request::Release).await?;
         self.motor.ask(Request::Look).await?;
@@ -110,12 +122,14 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
         self.adopt_index().await
     }
 
-    /// Turns up or down until the motor does what is waited for.
+    /// Turns up (`way` = 1) or down (−1) at the search rate until the condition holds.
     async fn seek(&mut self, way: f64, is_done: fn(&Motion) -> bool) -> Result<(), Break> {
         self.motor.ask(Request::Seek(way * self.configuration.seek_rate)).await?;
         self.motor.follow(Trouble::NoIndex, self.configuration.longest, is_done).await
     }
 
+    /// Compares the encoder at rest with the angle of the index, and sets the motor's step count to
+    /// it.
     async fn adopt_index(&mut self) -> Result<(), Break> {
         Timer::after(self.configuration.settle).await;
         let index = self.configuration.index;
@@ -128,7 +142,11 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
         Ok(())
     }
 
-    /// Goes to an angle, rad, and does not rest until the encoder shows it.
+    /// Moves to an angle, rad, and corrects until the encoder shows it within the tolerance.
+    ///
+    /// # Errors
+    /// The angle is beyond the travel, the stage does not arrive after three attempts, or motor and
+    /// encoder disagree.
     pub(crate) async fn turn_to(&mut self, target: f64) -> Result<(), Refusal> {
         let [low, high] = self.configuration.travel;
         if !(low..=high).contains(&target) {
@@ -159,8 +177,8 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
         Err(self.motor.fail(trouble.unwrap_or_else(|| self.motor.blocked())))
     }
 
-    /// One movement; how far the encoder then stands from the target, rad. Motor and encoder must
-    /// agree.
+    /// Makes one movement to `aim` and returns the distance of the encoder's angle from `target`,
+    /// rad. Motor and encoder must agree.
     async fn approach(&mut self, aim: f64, target: f64) -> Result<f64, Break> {
         let has_arrived = |motion: &Motion| motion.has_reached && motion.is_standing;
         self.motor.ask(Request::GoTo(aim)).await?;
@@ -174,8 +192,9 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
         Ok(shown - target)
     }
 
-    /// Makes the stage ready for another attempt. What the motor counts after a stall or a restart is
-    /// worth nothing, and the encoder alone proves nothing: both must meet at the index again.
+    /// Prepares the stage for another attempt. The motor's step count is invalid after a stall or a
+    /// restart, and the encoder has then nothing to agree with, so both are referenced at the index
+    /// again.
     async fn recover(&mut self, broken: Break, rest: Duration) -> Result<(), Refusal> {
         match broken {
             Break::Refused(reason) => Err(reason),

@@ -1,13 +1,14 @@
-//! Takes the base's sway off the precise gyro's rates, on instruments that have a coarse IMU there.
+//! Compensation of the base's sway: subtracts the base's rate from the precise gyro's, on
+//! instruments with a coarse inertial measurement unit on the base.
 //!
-//! The base IMU is read with every so-manieth sample; between, its latest rate is held. Before the
-//! sway was watched for long enough nothing is decided, and the stage is not told to begin. Then the
-//! whole session is measured as it was decided.
+//! The base unit is read once in every `divider` samples; between, its latest rate is held. Until
+//! the sway has been observed for long enough, no decision is taken and the session does not begin.
+//! The decision then holds for the whole session.
 //!
-//! Decimator reading also goes to whoever keeps attitude and azimuth.
+//! Each reading also goes to the attitude keeper.
 //!
-//! A base IMU that is lost is started again like any other device. Where it is given up, a session
-//! that does not need it goes on without it.
+//! A base unit that fails is started again as any other device. If it is given up, a session that
+//! does not need it continues without it.
 
 use core::future::ready;
 
@@ -27,17 +28,17 @@ use crate::ports::{BaseReading, BaseSensors, NoBase, Observer};
 use crate::retry_budget::Symptom;
 use crate::shared::Shared;
 
-/// Time without a new reading after which the base IMU is silent, µs.
+/// Time without a new reading after which the base unit counts as silent, µs.
 const SILENCE: u64 = 100_000;
-/// Radians of one step of an [`Angle`].
+/// Step of an [`Angle`], rad.
 const STEP: f32 = (TURN / 4_294_967_296.0) as f32;
-/// Change of the stage's angle, in steps, for which its sine is kept: 2⁻¹⁴ of a turn, which turns
-/// 0.04 % of a sway across the axis.
+/// Change of the stage's angle, in steps, below which its sine is not computed again: 2⁻¹⁴ of a
+/// turn, by which a sway across the axis is resolved with an error of 0.04 %.
 const KEPT: u32 = 1 << 18;
 
-/// Whatever stands on the base: sensors, or nothing.
+/// Equipment of the base: coarse sensors or none.
 pub trait Base {
-    /// What makes rates steady with it.
+    /// The type of the compensation with this equipment.
     type CompensatesSway<'a>: CompensatesSway
     where
         Self: 'a;
@@ -46,28 +47,34 @@ pub trait Base {
     fn steady(&mut self) -> Self::CompensatesSway<'_>;
 }
 
-/// What makes rates steady.
+/// The compensation of the base's sway.
 #[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait CompensatesSway {
-    /// Starts what it needs.
+    /// Starts the sensors.
+    ///
+    /// # Errors
+    /// A device without which the session cannot run is given up.
     async fn start<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal>;
 
-    /// Whether it is known what is to be done.
+    /// Whether the decision for or against the compensation has been taken.
     fn is_decided(&self) -> bool;
 
-    /// Reads what it needs; called with every sample.
+    /// Reads the sensors; called with every sample.
+    ///
+    /// # Errors
+    /// The sensors are given up while their readings are being subtracted.
     async fn follow<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal>;
 
-    /// What the latest [`Self::follow`] has read, and when; each reading once.
+    /// The reading of the latest [`Self::follow`] and its time; each reading is returned once.
     fn reading(&mut self) -> Option<(Instant, BaseReading)>;
 
-    /// Time between two readings, µs, of a precise gyro of that sample period, µs.
+    /// Time between two readings, µs, for a precise gyro with the sampling period `sample`, µs.
     fn period(&self, sample: u32) -> u32;
 
-    /// Has all retry budget with it again.
+    /// Restores the full retry budget of the sensors.
     fn renew(&mut self);
 
-    /// The rate along a level axis at this heading, less the sway.
+    /// The rate along a horizontal axis at this heading, less the sway.
     fn steadied(&mut self, rate: AngularRate, heading: Angle) -> AngularRate;
 }
 
@@ -79,7 +86,7 @@ impl Base for NoBase {
     }
 }
 
-/// Rates are taken as they are.
+/// No compensation: rates are used as measured.
 impl CompensatesSway for NoBase {
     fn start<O: Observer>(
         &mut self,
@@ -125,30 +132,36 @@ impl<B: BaseSensors> Base for B {
     }
 }
 
-/// Sensors on the base at work.
+/// The compensation of sway by coarse sensors on the base.
 pub struct SwayCompensation<'a, B> {
+    /// The base unit with its retry budget.
     base: Guarded<'a, B>,
+    /// Decimation of its readings.
     due: Decimator,
+    /// Estimator of the sway.
     sway: Sway,
-    /// When the latest new reading came.
+    /// Time of the latest new reading that was not saturated.
     latest: Instant,
-    /// Since when none has come: that time, or the latest start.
+    /// Begin of the present silence: the latest new reading or the latest start.
     silent: Instant,
+    /// Counter of identical readings, by which a stuck unit is found.
     readings: RepeatCounter<[AngularRate; 3]>,
-    /// The latest reading, for whoever keeps.
+    /// The latest reading with its time, for the attitude keeper.
     fresh: Option<(Instant, BaseReading)>,
-    /// The same where it was not held yet.
+    /// The latest reading, until it has been held once.
     held: Option<BaseReading>,
-    /// Stage angle of [`Self::axis`].
+    /// Stage angle to which `axis` belongs.
     stage: Angle,
     /// Cosine and sine of that angle.
     axis: [f32; 2],
-    /// Whether it was given up, and when.
+    /// Whether the base unit has been given up.
     is_lost: bool,
+    /// Time at which it was given up.
     lost: Instant,
 }
 
 impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
+    /// Takes the base unit; nothing is started yet.
     fn new(device: &'a mut B) -> Self {
         let (sensors, divider) = (device.sensors(), device.divider());
         Self {
@@ -167,11 +180,15 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
         }
     }
 
+    /// Whether the sway is being subtracted.
     fn is_swaying(&self) -> bool {
         matches!(self.sway.decision(), Decision::Swaying(..))
     }
 
-    /// Takes a reading where there is a new one; what is to be mended where there ought to be.
+    /// Takes a reading if there is a new one.
+    ///
+    /// # Errors
+    /// The symptom of a unit that gives no reading for 100 ms, fails on the bus, or is stuck.
     async fn read(&mut self) -> Result<(), Symptom> {
         let begun = Instant::now();
         let outcome = self.base.device.read().await;
@@ -185,15 +202,17 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
         }
     }
 
-    /// Goes on with the latest rates where one output falls between two readings, as it does now and then
-    /// where both have nearly one rate; once, and without a force.
+    /// Repeats the latest rates for the keeper where no new output falls between two readings,
+    /// which happens now and then when both rates are nearly equal. Repeats once only, and marks
+    /// the specific force as invalid.
     fn hold(&mut self, at: Instant) {
         if let Some(reading) = self.held.take() {
             self.fresh = Some((at, BaseReading { is_clipped: true, ..reading }));
         }
     }
 
-    /// A clipped reading is left out: the gap after it makes the estimate begin anew.
+    /// Passes a reading to the estimator of sway. A saturated reading is omitted; the gap after it
+    /// makes the estimator begin anew.
     fn push(&mut self, at: Instant, reading: BaseReading) -> Result<(), Symptom> {
         let BaseReading { rate, force, is_clipped } = reading;
         self.silent = at;
@@ -209,13 +228,18 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
         Ok(())
     }
 
+    /// Passes rates and specific forces to the estimator with the time since the reading before, s.
     fn turn(&mut self, at: Instant, rate: [AngularRate; 3], force: [SpecificForce; 3]) {
         let seconds = (at - self.latest).as_micros() as f32 * 1e-6;
         self.latest = at;
         self.sway.push(seconds, rate, force);
     }
 
-    /// Starts the sensors again where they must be; goes on without them where it can.
+    /// Starts the sensors again where necessary, and continues without them where the session
+    /// permits.
+    ///
+    /// # Errors
+    /// The sensors are given up although their readings are being subtracted in an alignment.
     async fn mend<O: Observer>(
         &mut self,
         symptom: Symptom,
@@ -237,7 +261,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
         }
     }
 
-    /// Whether it is done without; while an azimuth is kept, it is tried again now and then.
+    /// Whether the base unit is out of use. While an azimuth is kept, it is tried again every 10 s.
     fn is_absent<O: Observer>(&mut self, shared: &Shared<'_, O>) -> bool {
         if self.is_lost && shared.keep.is_kept.get() && self.lost.elapsed() >= RETRY {
             self.renew();
@@ -245,7 +269,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
         self.is_lost
     }
 
-    /// Tells what was decided, once.
+    /// Reports the decision; called when the decision may have been taken.
     fn tell<O: Observer>(&self, shared: &Shared<'_, O>) {
         match self.sway.decision() {
             Decision::Watching => {}
@@ -262,7 +286,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
         }
     }
 
-    /// What the sway adds at a stage angle, nrad/s.
+    /// Contribution of the sway to the gyro's rate at a stage angle, nrad/s.
     fn swaying(&mut self, stage: Angle) -> i32 {
         if (stage - self.stage).0.cast_signed().unsigned_abs() > KEPT {
             self.stage = stage;

@@ -1,8 +1,8 @@
-//! What is kept over a loss of supply: how the gyro feels the platform's own rate, one coupling for each
+//! Data kept over a loss of supply: the axis misalignment of the gyro on a turntable, one for each
 //! speed, with date and temperature; and the heading of a vehicle at rest.
 //!
-//! A coupling is found by uneven turns. One that is fresh enough spares them. Images that keep nothing
-//! pay nothing for it.
+//! The axis misalignment is estimated by rate-modulated turns; a recent one makes these turns
+//! unnecessary. Images without storage contain none of this code.
 
 use drivers::fault::Fault;
 use embedded_storage_async::nor_flash::NorFlash;
@@ -22,28 +22,30 @@ use crate::event::Event;
 use crate::ports::{CalibrationStore, HeadingStore, Observer};
 use crate::shared::Shared;
 
-/// Bytes for the longest item: key and coupling or heading, in whole words of flash.
+/// Size of the buffer for the longest item, bytes: key and data, in whole words of flash.
 const BUFFER: usize = (1 + LONGEST).next_multiple_of(32);
-/// Bytes of the longer of both.
+/// Size of the longer of the two kinds of item, bytes.
 const LONGEST: usize = if BYTES > HEADING_BYTES { BYTES } else { HEADING_BYTES };
-/// Bytes of a heading.
+/// Size of a heading, bytes.
 const HEADING_BYTES: usize = keep::restart::Remembered::BYTES;
 
-/// Couplings in the pages of a flash that are set aside for them. What is written comes beside what was
-/// there before: until it is there whole, the old one counts.
+/// A store in pages of a flash that are reserved for it. A new item is written beside the old one;
+/// until it is complete, the old one is valid.
 pub struct FlashStore<F: NorFlash> {
+    /// The log-structured map in the flash.
     map: MapStorage<u8, F, Cache<Uncached, Uncached, Uncached, u8>>,
+    /// Buffer for one item.
     buffer: [u8; BUFFER],
 }
 
 impl<F: NorFlash> FlashStore<F> {
-    /// Takes a flash with a range of at least two of its pages, which `MapConfig::new` checks, in a
-    /// constant when the image is built.
+    /// Takes a flash and a range of at least two of its pages. `MapConfig::new` checks the range in
+    /// a constant when the image is built.
     pub const fn new(flash: F, range: MapConfig<F>) -> Self {
         Self { map: MapStorage::new(flash, range, Cache::new_uncached()), buffer: [0; BUFFER] }
     }
 
-    /// The flash again.
+    /// Releases the flash.
     pub fn into_flash(self) -> F {
         self.map.destroy().0
     }
@@ -61,7 +63,7 @@ impl<F: NorFlash> CalibrationStore for FlashStore<F> {
     }
 }
 
-/// The slot of the heading, beside those of the speeds.
+/// The key of the heading; the keys of axis misalignments are the indices of speeds.
 const HEADING: u8 = 0x80;
 
 impl<F: NorFlash> HeadingStore for FlashStore<F> {
@@ -76,18 +78,18 @@ impl<F: NorFlash> HeadingStore for FlashStore<F> {
     }
 }
 
-/// What the outside says of the time.
+/// The date, and the permitted age of a calibration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Today {
-    /// Seconds since 1970; none where nobody knows.
+    /// Seconds since 1970-01-01; [`None`] if the date is unknown.
     pub date: Option<u64>,
-    /// How old a coupling may be, s; none for however old.
+    /// Largest age of an axis misalignment, s; [`None`] for any age.
     pub longest: Option<u64>,
 }
 
 impl Today {
-    /// Whether a coupling is fresh. One without date, or where today's is not known, is not, unless it may
-    /// be however old; one from the future never.
+    /// Whether an axis misalignment is recent enough. If its date or today's is unknown, only where
+    /// any age is permitted; one with a date in the future never is.
     #[must_use]
     pub fn is_fresh(&self, coupling: &Coupling) -> bool {
         let known = |date: u64| Some(date).filter(|date| *date > 0);
@@ -101,15 +103,15 @@ impl Today {
     }
 }
 
-/// How far from a speed a coupling may have been found, relative: the motor's clock is off by some
-/// hundredths, and not always by the same.
+/// Largest relative difference between the speed of a stored axis misalignment and the requested
+/// one. The motor's clock is off by some hundredths, and not constant.
 const SAME_SPEED: f64 = 0.1;
 
-/// The couplings of these speeds, rad/s, where for each of them one was kept that is sound, fresh and of
-/// that speed; else none: then the platform is to turn unevenly first.
+/// Reads the axis misalignments for these speeds, rad/s. [`None`] unless each speed has one that is
+/// intact, recent and of that speed; rate-modulated turns are needed then.
 ///
 /// # Errors
-/// The store's.
+/// The fault of the store.
 pub async fn recall<S: CalibrationStore>(
     store: &mut S,
     speeds: &[f64],
@@ -127,11 +129,11 @@ pub async fn recall<S: CalibrationStore>(
     Ok(Some(couplings))
 }
 
-/// Keeps the couplings that a session has found, by their speeds; those of a session that found none
-/// stay.
+/// Stores the axis misalignments of a session by the index of their speed. Without any, those
+/// stored before stay.
 ///
 /// # Errors
-/// The store's.
+/// The fault of the store.
 pub async fn keep<S: CalibrationStore>(
     store: &mut S,
     found: impl Iterator<Item = Coupling>,
@@ -142,8 +144,8 @@ pub async fn keep<S: CalibrationStore>(
     Ok(())
 }
 
-/// Before a session: dates what it will find and, where its procedure has no uneven turns, gives it what
-/// was kept. Tells what was recalled.
+/// Prepares a session: sets its date and, if its procedure has no rate-modulated turns, gives it
+/// the stored axis misalignments. Reports what is used.
 pub async fn load_calibration<S: CalibrationStore, O: Observer>(
     store: &mut S,
     today: Today,
@@ -166,8 +168,8 @@ pub async fn load_calibration<S: CalibrationStore, O: Observer>(
     }
 }
 
-/// After a session: keeps the couplings that it found, if north was found with them, and tells it. What
-/// could not be trusted for north is not trusted for the next time.
+/// Stores the axis misalignments of a session that has found an azimuth with them, and reports it.
+/// Those of a refused session are not stored.
 pub async fn save_calibration<S: CalibrationStore, O: Observer>(
     store: &mut S,
     session: &Session,
@@ -186,16 +188,16 @@ pub async fn save_calibration<S: CalibrationStore, O: Observer>(
     }
 }
 
-/// What is told of a stored coupling.
+/// A stored axis misalignment as it is reported.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Remembered {
-    /// How far the gyro's axis stands above the platform, °.
+    /// Elevation of the gyro's sensitive axis above the plane of rotation, °.
     pub angle: f64,
-    /// Rate of the platform at which it was found, °/s.
+    /// Rate of the platform during the estimation, °/s.
     pub rate: f64,
-    /// The day.
+    /// Date of the estimation.
     pub day: Day,
-    /// Temperature then, °C.
+    /// Temperature during the estimation, °C.
     pub temperature: f32,
 }
 

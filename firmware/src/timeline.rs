@@ -1,34 +1,38 @@
-//! Whether samples come when they should, judged by their time stamps alone.
+//! Supervision of the sampling: checks by their time stamps whether samples arrive at the sampling
+//! rate.
 
 use embassy_time::Instant;
 
-/// How one sample came after the one before.
+/// The arrival of a sample relative to the one before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arrival {
-    /// At its time.
+    /// The sample arrived in time.
     InTime,
-    /// Beside its time by so many µs, early negative, but none is missing.
+    /// The sample arrived at the wrong time, by this deviation, µs, early negative, but none is
+    /// missing.
     Late(i32),
-    /// So many are missing before it.
+    /// The number of samples that are missing before it.
     Missing(u32),
 }
 
-/// The times of a stream of samples.
+/// The time stamps of a stream of samples.
 #[derive(Clone, Copy, Debug)]
 pub struct Timeline {
+    /// Nominal sampling period, µs.
     period: u32,
+    /// Time of the latest sample.
     last: Option<Instant>,
 }
 
 impl Timeline {
-    /// A stream with a period in µs.
+    /// A stream with a nominal period in µs, ≥ 1.
     #[must_use]
     pub const fn new(period: u32) -> Self {
         Self { period, last: None }
     }
 
-    /// Judges the next sample. A quarter of a period is forgiven: the bus may be late, but a
-    /// converter's own clock is good to per cents.
+    /// Judges the next sample. A deviation of up to a quarter of the period is tolerated: the bus
+    /// may delay a reading, and the converter's own clock is accurate to some per cent.
     pub fn judge(&mut self, now: Instant) -> Arrival {
         let Some(last) = self.last.replace(now) else { return Arrival::InTime };
         let gap = u32::try_from((now - last).as_micros()).unwrap_or(u32::MAX);

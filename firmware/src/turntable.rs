@@ -1,11 +1,12 @@
-//! The turntable: a platform on a slip ring, which turns at the rate that it is told, either way and
-//! for as long as it is told.
+//! Control of the turntable: a platform on a slip ring, which turns at the requested rate in either
+//! sense without limit.
 //!
-//! There is no index: the absolute encoder's zero is the reference, and the motor's count is set by it
-//! where the platform stands. From then on the two are compared at every look. A gear is uneven and its
-//! platform runs ahead of the motor and behind it, but by the same in the same place of every turn; what
-//! differs from one turn to the next is an encoder that slips, a motor that loses steps, or either
-//! standing while the other turns.
+//! There is no index switch. The zero of the absolute encoder is the reference, and the motor's
+//! step count is set by it while the platform stands. From then on the two are compared at every
+//! reading of the motor's status. A gear is not uniform, so the platform runs ahead of the motor
+//! and behind it, but by the same amount at the same place of every turn. A change from one turn to
+//! the next means that the encoder slips, that the motor loses steps, or that one of them stands
+//! while the other turns.
 
 use core::convert::Infallible;
 
@@ -21,26 +22,31 @@ use crate::motor::{Axis, Break, Motor, POLL, Request, STALL_REST};
 use crate::ports::{Actuator, Observer};
 use crate::shared::Shared;
 
-/// How often in a session the platform may be blocked and turn on.
+/// Number of stalls in a session after which the platform may turn on.
 const BLOCKS: u32 = 1;
-/// Longest time to come to rest: 90°/s at the motor driver's 33°/s² is over in three seconds.
+/// Time limit for coming to rest: from 90°/s at the motor driver's deceleration of 33°/s² it takes
+/// three seconds.
 const LONGEST_STOP: Duration = Duration::from_secs(10);
 
-/// Parts of a turn in which motor and encoder are compared: within one, a gear of 0.5 % turns by
-/// 0.06° more or less than its motor.
+/// Sectors of a turn in which motor and encoder are compared. Within one sector, a gear with an
+/// error of 0.5 % turns by 0.06° more or less than its motor.
 const SECTORS: usize = 32;
-/// Bits of an [`Angle`] below its sector.
+/// Number of bits of an [`Angle`] below its sector.
 const SECTOR_BITS: u32 = u32::BITS - SECTORS.ilog2();
 
-/// The turntable under control.
+/// The control of a turntable.
 pub struct Turntable<'a, M, O> {
+    /// The motor and its encoder.
     motor: Motor<'a, M, O>,
+    /// Tolerance and settling time.
     configuration: TurntableConfiguration,
+    /// Differences of encoder and motor around a turn.
     comparison: Comparison,
-    /// When the motor was last looked at.
+    /// Time of the latest reading of the motor's status.
     looked: Instant,
-    /// The rate that it was told last, rad/s.
+    /// The rate requested last, rad/s, clockwise positive.
     rate: f64,
+    /// Number of stalls so far.
     blocks: u32,
 }
 
@@ -61,7 +67,7 @@ impl<'a, M: Actuator, O: Observer> Turntable<'a, M, O> {
         }
     }
 
-    /// Turns as it is told until it must be given up; gives the reason.
+    /// Turns at the requested rates until the turntable is given up; returns the reason.
     pub async fn run(&mut self) -> Refusal {
         match self.serve().await {
             Ok(never) => match never {},
@@ -69,21 +75,22 @@ impl<'a, M: Actuator, O: Observer> Turntable<'a, M, O> {
         }
     }
 
-    /// Has the platform come to rest.
+    /// Brings the platform to rest.
     ///
     /// # Errors
-    /// A motor that had to be given up meanwhile, which is told.
+    /// The motor is given up meanwhile; the log has the reason.
     pub async fn rest(&mut self) -> Result<(), Refusal> {
         for _ in 0..=BLOCKS {
             match self.stop().await {
                 Err(Break::Refused(reason)) => return Err(reason),
-                // A driver that was started again has stopped its motor; a stall has, too.
+                // A driver that was started again has stopped its motor, and so has a stall.
                 Ok(()) | Err(Break::Lost | Break::Stalled) => {}
             }
         }
         Ok(())
     }
 
+    /// Brings the platform to rest by the motor's ramp, within 10 s.
     async fn stop(&mut self) -> Result<(), Break> {
         self.motor.look().await?;
         if self.motor.motion.is_standing {
@@ -94,6 +101,7 @@ impl<'a, M: Actuator, O: Observer> Turntable<'a, M, O> {
         self.motor.follow(Trouble::Restless, LONGEST_STOP, |motion| motion.is_standing).await
     }
 
+    /// Starts the driver, waits for the sensors, and turns until the session has to end.
     async fn serve(&mut self) -> Result<Infallible, Refusal> {
         self.motor.start().await?;
         self.motor.shared.sensing.wait().await;
@@ -103,8 +111,8 @@ impl<'a, M: Actuator, O: Observer> Turntable<'a, M, O> {
         }
     }
 
-    /// Whether the platform may be turned on after this: where only the driver was started again, which
-    /// has its own limit, and where it was blocked for the first time.
+    /// Decides whether the platform may turn on after a break: after a restart of the driver, whose
+    /// number its own budget limits, and after the first stall.
     fn forgive(&mut self, broken: Break) -> Result<(), Refusal> {
         match broken {
             Break::Refused(reason) => return Err(reason),
@@ -120,7 +128,7 @@ impl<'a, M: Actuator, O: Observer> Turntable<'a, M, O> {
         Ok(())
     }
 
-    /// Turns from rest, as it is told meanwhile, until something breaks it off.
+    /// Turns from rest at the requested rates until a failure breaks it off.
     async fn turn(&mut self) -> Result<Infallible, Break> {
         self.align().await?;
         let shared = self.motor.shared;
@@ -134,8 +142,8 @@ impl<'a, M: Actuator, O: Observer> Turntable<'a, M, O> {
         }
     }
 
-    /// Sets the motor's count by the encoder where the platform stands. What was blocked gets its time
-    /// to come free; an encoder that moves meanwhile slips.
+    /// Sets the motor's step count by the encoder while the platform stands. Waits between two
+    /// readings, so that an obstacle can come free; an encoder that changes meanwhile slips.
     async fn align(&mut self) -> Result<(), Break> {
         self.motor.ask(Request::Release).await?;
         self.motor.follow(Trouble::Restless, LONGEST_STOP, |motion| motion.is_standing).await?;
@@ -151,9 +159,11 @@ impl<'a, M: Actuator, O: Observer> Turntable<'a, M, O> {
         Ok(())
     }
 
-    /// Turns at another rate from now on; zero has the platform come to rest.
+    /// Changes the rate, rad/s; zero brings the platform to rest. Reports only begins, ends and
+    /// reversals of the rotation.
     async fn turn_at(&mut self, rate: f64) -> Result<(), Break> {
-        // A stall is to be found here, where it has its name: the driver refuses to turn on after it.
+        // A stall must be detected here, where it can be named: the driver refuses to turn after
+        // it.
         self.watch().await?;
         if rate == 0.0 || rate * self.rate <= 0.0 {
             self.motor.tell(|axis| Event::Revolving(axis, rate * DEGREES));
@@ -162,13 +172,14 @@ impl<'a, M: Actuator, O: Observer> Turntable<'a, M, O> {
         self.motor.ask(Request::Seek(rate)).await
     }
 
-    /// Looks at the motor and compares it with the encoder. A platform that has not left where it was
-    /// aligned is blocked: its motor is too slow yet to know that it stalls.
+    /// Reads the motor's status and compares the motor with the encoder. A platform that has not
+    /// left the place where it was aligned counts as blocked: its motor is still too slow for the
+    /// driver's own detection of stalls.
     async fn watch(&mut self) -> Result<(), Break> {
         let before = (self.looked, self.motor.motion.angle);
         self.motor.look().await?;
         self.looked = Instant::now();
-        // Where there is no angle, acquisition knows why.
+        // If there is no recent angle, acquisition handles the failure of the encoder.
         let Some((shown, read)) = self.motor.fresh() else { return Ok(()) };
         let counted = at(read, before, (self.looked, self.motor.motion.angle));
         let apart = self.comparison.judge(shown, Angle::from_rad(counted));
@@ -178,12 +189,12 @@ impl<'a, M: Actuator, O: Observer> Turntable<'a, M, O> {
         self.check(apart)
     }
 
-    /// Whether angles that should be one are not, rad.
+    /// Whether two angles that should be equal differ by more than the tolerance, rad.
     fn is_far(&self, apart: f64) -> bool {
         apart.abs() > self.configuration.agreement
     }
 
-    /// Refuses to go on where motor and encoder differ by too much, rad.
+    /// Gives the turntable up if motor and encoder differ by more than the tolerance, rad.
     fn check(&self, apart: f64) -> Result<(), Break> {
         if self.is_far(apart) {
             return Err(self.motor.fail(Trouble::Disagrees(apart * DEGREES)).into());
@@ -192,39 +203,42 @@ impl<'a, M: Actuator, O: Observer> Turntable<'a, M, O> {
     }
 }
 
-/// An angle at a time, from two looks at it of different times; also beyond them.
+/// An angle at a time by linear interpolation, or extrapolation, of two readings at different
+/// times.
 fn at(time: Instant, before: (Instant, f64), after: (Instant, f64)) -> f64 {
     let micros = |time: Instant| time.as_micros() as f64;
     let part = (micros(after.0) - micros(time)) / (micros(after.0) - micros(before.0)).max(1.0);
     after.1 - (after.1 - before.1) * part
 }
 
-/// By what encoder and motor differ in each sector of a turn.
+/// The difference of encoder and motor in each sector of a turn.
 #[derive(Clone, Copy, Debug, Default)]
 struct Comparison {
-    /// Where both were one.
+    /// The angle at which encoder and motor were set equal.
     aligned: Angle,
-    /// As the sector was first entered.
+    /// Difference of encoder and motor when the sector was first entered.
     known: [Angle; SECTORS],
-    /// A bit for every sector that was.
+    /// One bit for each sector that has been entered.
     entered: u32,
+    /// Difference of encoder and motor at the latest reading.
     latest: Angle,
 }
 
 impl Comparison {
-    /// Of a motor whose count was set there.
+    /// The comparison of a motor whose count was set at this angle.
     fn at(aligned: Angle) -> Self {
         Self { aligned, ..Self::default() }
     }
 
-    /// How far the encoder has moved from there, rad: half a turn once it has moved by a sector.
+    /// Distance of the encoder from the angle of alignment, rad; reported as half a turn once a
+    /// second sector has been entered.
     fn way(&self, shown: Angle) -> f64 {
         let has_moved = self.entered.count_ones() > 1;
         if has_moved { TURN / 2.0 } else { (shown - self.aligned).signed_rad() }
     }
 
-    /// How much more they differ than when the platform first came by here, rad: where it has not been
-    /// before, than a look before.
+    /// Change of the difference since the platform first entered this sector, rad; in a new sector,
+    /// change since the reading before.
     fn judge(&mut self, shown: Angle, counted: Angle) -> f64 {
         let sector = shown.0 >> SECTOR_BITS;
         let known = &mut self.known[sector as usize % SECTORS];

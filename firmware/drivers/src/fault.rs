@@ -1,4 +1,4 @@
-//! Why a chip gave no reading, and what to do about it.
+//! The reasons why a chip gives no valid reading, with the remedy for each.
 
 use orientation::words;
 
@@ -13,21 +13,21 @@ pub enum Fault {
     Reset,
     /// Another chip answers, or none: check the wiring.
     Identity {
-        /// What the identity register held.
+        /// Content of the identity register.
         found: u32,
     },
     /// The chip's self-test failed: start it again, then replace it.
     SelfTest,
-    /// A register does not hold what was written to it: start the chip again.
+    /// A register does not hold the value that was written to it: start the chip again.
     NotAsWritten {
-        /// The register's address.
+        /// Address of the register.
         register: u8,
     },
-    /// The chip did not become ready in its time: start it again.
+    /// The chip did not become ready within its time limit: start it again.
     NotReady,
-    /// The chip reports that its supply, reference or magnet is bad: readings mean nothing.
+    /// The chip reports a bad supply, reference or magnet: its readings are invalid.
     Alarm {
-        /// The chip's own status bits.
+        /// The status bits of the chip.
         status: u8,
     },
 }

@@ -6,10 +6,10 @@
 //!  base ─────rates, forces─▶ lsm6dsl ─▶ sway
 //! ```
 //!
-//! A codec turns bytes into units and back without any bus, so it can be tested alone; a shell does
+//! A codec converts bytes to units and back without a bus, so it can be tested alone; a shell makes
 //! the transfers on [`embedded_hal_async`] and nothing else. Every reading is either valid or a
-//! [`Fault`](fault::Fault) that names its remedy; a driver never blocks for ever and never retries by
-//! itself: retry budget is the instrument's business.
+//! [`Fault`](fault::Fault) that names its remedy. A driver never blocks for ever and never repeats
+//! by itself: repetitions are limited by the instrument's retry budget.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -9,7 +9,7 @@ pub fn pause(delay: &mut impl DelayNs, time: Duration) -> impl Future<Output = (
     delay.delay_us(microseconds(time))
 }
 
-/// A time rounded up to whole microseconds; more than fit are as many as fit.
+/// Converts a time to whole microseconds, rounded up; saturates at the limit of 32 bits.
 fn microseconds(time: Duration) -> u32 {
     let whole =
         u32::try_from(time.as_secs()).ok().and_then(|seconds| seconds.checked_mul(1_000_000));

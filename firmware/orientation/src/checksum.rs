@@ -1,8 +1,12 @@
-//! The checksum of what lies in flash: CRC-32 (IEEE 802.3, reflected).
+//! Checksum of the data kept in flash: CRC-32 of IEEE 802.3 (reflected polynomial 0xEDB8 8320,
+//! initial value and final XOR all ones). The saved calibration, the reference table (etalon) and
+//! the stored heading are all guarded by it, so one routine serves every block.
 
-/// The remainders of the reflected IEEE 802.3 polynomial for four bits.
+/// Remainders of the reflected IEEE 802.3 polynomial for four bits: a table of 64 bytes, where one
+/// for whole bytes would take 1 KB of flash.
 const NIBBLE: [u32; 16] = nibble_remainders();
 
+/// Computes [`NIBBLE`] at compile time, bit by bit, from the definition of the polynomial.
 const fn nibble_remainders() -> [u32; 16] {
     let mut remainders = [0; 16];
     let mut nibble = 0;

@@ -1,40 +1,42 @@
-//! The devices that an alignment depends on, and what can go wrong with them for good.
+//! The devices that an alignment depends on, and the permanent failures that end it. A device fails
+//! for good only after the retries and restarts of its retry budget are used up; what a retry mends
+//! is logged and never becomes a [`Trouble`].
 
 use crate::words;
 use crate::words::Rounded;
 
-/// A device of the board.
+/// A sensor, actuator or sensor group of the board, as it is named in logs and refusals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Device {
     /// The precise gyro.
     Gyro,
-    /// Of three gyros in a vehicle, the one about its longitudinal axis.
+    /// Gyro about the longitudinal (forward, x) axis of a three-gyro set in a vehicle.
     ForwardGyro,
-    /// The one about its transverse axis.
+    /// Gyro about the transverse (right, y) axis of a three-gyro set in a vehicle.
     RightGyro,
-    /// The one about its vertical axis.
+    /// Gyro about the vertical (down, z) axis of a three-gyro set in a vehicle.
     DownGyro,
-    /// Of three gyros on a spinning body, the one about the axis that is up at roll zero.
+    /// Gyro of a spinning body about the transverse axis that points up at roll zero.
     UpGyro,
-    /// The accelerometer along that axis.
+    /// Accelerometer of a spinning body along the axis that points up at roll zero.
     UpAccelerometer,
-    /// The one along the axis that is right there.
+    /// Accelerometer of a spinning body along the axis that points right at roll zero.
     RightAccelerometer,
-    /// The accelerometer on the platform, or in the vehicle.
+    /// Precise accelerometer: on the platform beside the gyro, or fixed to the vehicle.
     Accelerometer,
-    /// The encoder of the stage.
+    /// Angle encoder of the rotary stage.
     Encoder,
-    /// The stage's motor and its driver; the mount as a whole where it has two frames.
+    /// Motor and motor driver of the stage; on a two-frame mount, the mount as a whole.
     Stage,
-    /// The encoder of a mount's outer frame.
+    /// Angle encoder of the outer frame of a two-frame mount.
     OuterEncoder,
-    /// The encoder of its inner frame.
+    /// Angle encoder of the inner frame of a two-frame mount.
     InnerEncoder,
-    /// The outer frame's motor and its driver.
+    /// Motor and motor driver of the outer frame.
     OuterFrame,
-    /// The inner frame's.
+    /// Motor and motor driver of the inner frame.
     InnerFrame,
-    /// The coarse sensors on the base.
+    /// Coarse gyros and accelerometers on the base, which measure its sway.
     Base,
 }
 
@@ -56,44 +58,45 @@ words! { Device:
     Self::Base => "base";
 }
 
-/// What is wrong with a device, where repeating and restarting did not mend it.
+/// Permanent failure of a device, one that neither repeated transfers nor a restart of the device
+/// cured. Angles are in degrees, ready to print.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Trouble {
-    /// Its bus fails.
+    /// Transfers on the device's bus fail.
     Bus,
-    /// Its readings fail their checksum.
+    /// The device's readings fail their checksum.
     Checksum,
-    /// It restarts again and again.
+    /// The device restarts again and again, for example because its supply is too weak.
     Resets,
-    /// Another chip answers, or none.
+    /// The identity register answers with another chip's value, or with none.
     Identity,
-    /// Its self-test fails.
+    /// The device's built-in self-test fails.
     SelfTest,
-    /// It does not keep what is written to it.
+    /// Registers read back differ from the values written to them.
     NotAsWritten,
-    /// It gives no more data.
+    /// The device delivers no more data.
     Silent,
-    /// Its bus takes far too long, again and again.
+    /// Transfers with the device repeatedly exceed their time limit.
     Slow,
-    /// It reports a bad supply, reference, magnet or driver.
+    /// The device reports a bad supply, reference, magnet or output driver.
     Alarm,
-    /// It gives the same reading for ever.
+    /// The device repeats one identical reading, without the noise that a live sensor shows.
     Stuck,
-    /// It stays at the limit of its range.
+    /// The device's reading stays at the limit of its range.
     Saturated,
-    /// It does not convert in step with the other gyros.
+    /// The gyro does not convert synchronously with the other gyros of its set.
     OutOfStep,
-    /// It moves and does not come to rest.
+    /// The mechanism moves and does not come to rest within its time limit.
     Restless,
-    /// It does not turn on from this angle, °.
+    /// The mechanism does not turn beyond this angle, °.
     Stalled(f64),
-    /// Motor and encoder disagree, by this angle, °.
+    /// Commanded motor position and encoder angle differ by this angle, °.
     Disagrees(f64),
-    /// The index was not found.
+    /// No index (zero) mark of the encoder was found in a full search.
     NoIndex,
-    /// It was sent beyond its travel, to this angle, °.
+    /// The mechanism was commanded to this angle, °, which lies outside its travel.
     BeyondTravel(f64),
-    /// It stands elsewhere than it was sent, by this angle, °.
+    /// The mechanism came to rest this far from the commanded angle, °.
     NotThere(f64),
 }
 

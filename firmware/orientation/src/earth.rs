@@ -1,14 +1,16 @@
-//! The Earth as the gyro and the accelerometer feel it: rotation and normal gravity at a latitude.
+//! The Earth as gyro and accelerometer measure it: rotation rate and normal gravity at a latitude
+//! (WGS84).
 
 use crate::units::TURN;
 
 /// Earth's rotation rate, rad/s (WGS84; 15.041067 °/h).
 pub const EARTH_RATE: f64 = 7.292_115e-5;
 
-/// Latitude beyond which the horizontal Earth rate is too small to point north, rad (85°).
+/// Greatest latitude at which an azimuth is determined, rad (85°): beyond it the horizontal Earth
+/// rate is below 9 % of the whole.
 pub const HIGHEST_LATITUDE: f64 = 85.0 / 360.0 * TURN;
 
-/// Equatorial radius, m (WGS84).
+/// Equatorial radius of the ellipsoid, m (WGS84).
 const SEMI_MAJOR_AXIS: f64 = 6_378_137.0;
 /// Normal gravity at the equator, m/s² (WGS84).
 const GRAVITY_EQUATOR: f64 = 9.780_325_335_9;
@@ -17,21 +19,21 @@ const SOMIGLIANA: f64 = 0.001_931_852_652_41;
 /// First eccentricity squared of the ellipsoid (WGS84).
 const ECCENTRICITY_SQUARED: f64 = 0.006_694_379_990_14;
 
-/// A geodetic latitude, rad, known to lie in ±90°.
+/// A geodetic latitude, rad, always within ±90°.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Latitude(f64);
 
 impl Latitude {
-    /// The equator's.
+    /// Latitude of the equator.
     pub const EQUATOR: Self = Self(0.0);
 
-    /// From degrees, north positive; `None` outside ±90° and for NaN.
+    /// Latitude from degrees, north positive; `None` outside ±90° and for NaN.
     #[must_use]
     pub fn from_degrees(degrees: f64) -> Option<Self> {
         (degrees.abs() <= 90.0).then_some(Self(degrees / 360.0 * TURN))
     }
 
-    /// In radians, north positive.
+    /// Latitude in radians, north positive.
     #[must_use]
     pub fn rad(self) -> f64 {
         self.0
@@ -58,7 +60,8 @@ impl Latitude {
             / libm::sqrt(1.0 - ECCENTRICITY_SQUARED * squared)
     }
 
-    /// Radii of curvature of the ellipsoid along the meridian and across it, m (WGS84).
+    /// Radii of curvature of the ellipsoid along the meridian and along the parallel's normal
+    /// section, m (WGS84), in this order.
     #[must_use]
     pub fn radii(self) -> [f64; 2] {
         let sine = libm::sin(self.0);
@@ -67,7 +70,7 @@ impl Latitude {
         [across * (1.0 - ECCENTRICITY_SQUARED) / part, across]
     }
 
-    /// Whether an azimuth can be asked for here: |φ| ≤ 85°.
+    /// Whether an azimuth can be determined here: |φ| ≤ 85°.
     #[must_use]
     pub fn has_north(self) -> bool {
         self.0.abs() <= HIGHEST_LATITUDE

@@ -1,4 +1,7 @@
-//! Why something ended without a result.
+//! Reasons for which an alignment ends without a result, with the sentences that are printed for
+//! them. A refusal carries the figures that decided it, so that the operator can see how far it
+//! missed and which remedy helps: level the platform, turn a longer arc, keep still, or check a
+//! sensor.
 
 use crate::align::rotating::turn::Sense;
 use crate::device::{Device, Trouble};
@@ -6,26 +9,27 @@ use crate::noise::fit::FitError;
 use crate::words;
 use crate::words::Rounded;
 
-/// Where the standard deviation of an azimuth comes from; see [`crate::align::budget::Budget`].
+/// Source of the uncertainty of an azimuth: one line of the error budget; see
+/// [`crate::align::budget::Budget`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// White noise of the gyro.
+    /// White noise (angle random walk) of the gyro.
     Noise,
     /// Bias instability, rate random walk and ramp of the gyro.
     Drift,
-    /// The gyro's sensitivity to acceleration, through the tilt.
+    /// Sensitivity of the gyro to specific force (g-sensitivity), acting through the tilt.
     GSensitivity,
-    /// The tilt as the accelerometer knows it.
+    /// Tilt as measured by the accelerometer: its noise and bias.
     Accelerometer,
-    /// The stage encoder.
+    /// Errors of the stage encoder: zero, first and second harmonic.
     Encoder,
-    /// The latitude.
+    /// Uncertainty of the latitude, which sets the horizontal Earth rate Ω cos φ.
     Latitude,
-    /// The gyro's scale factor.
+    /// Scale-factor error of the gyro.
     Scale,
-    /// The temperature slope.
+    /// Temperature slope of the gyro's bias.
     Temperature,
-    /// Where a vehicle drove.
+    /// Uncertainty of the distance and direction that a vehicle drove between stops.
     Displacement,
 }
 
@@ -41,307 +45,315 @@ words! { Source:
     Self::Displacement => "displacement of the vehicle";
 }
 
-/// Why no azimuth is given. Angles in degrees, ready to print.
+/// Reason for which no azimuth is given. Angles are in degrees and times in seconds, ready to
+/// print.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Refusal {
-    /// The latitude is within 5° of a pole.
+    /// The latitude is within 5° of a pole: the horizontal Earth rate is below 9 % of the whole.
     LatitudeTooHigh {
         /// The latitude, °.
         latitude: f64,
     },
-    /// Fewer than three different undisturbed positions.
+    /// Fewer than three different undisturbed positions remain.
     TooFewPositions {
-        /// How many were left.
+        /// Number of different positions that were left.
         positions: usize,
     },
-    /// Two positions leave two azimuths, and the half in which it lies was not stated.
+    /// Two positions 180° apart fit two azimuths (±A), and the half circle was not configured.
     SignUnknown,
-    /// No azimuth of the half that was stated fits the dwells.
+    /// No azimuth in the configured half circle fits the dwells.
     NotInHalf,
     /// The measured positions do not determine the azimuth, or leave two of them.
     AzimuthUnobservable,
-    /// The standard deviation is greater than was asked for.
+    /// The standard deviation of the azimuth is greater than the required one.
     BudgetNotMet {
-        /// The standard deviation, °.
+        /// Standard deviation that was reached, 1σ, °.
         sigma: f64,
-        /// The greatest that is accepted, °.
+        /// Greatest standard deviation that is accepted, 1σ, °.
         required: f64,
-        /// What contributes most.
+        /// Largest contribution to the error budget.
         source: Source,
     },
-    /// The standard deviation that was asked for cannot be reached in the time allowed.
+    /// The required standard deviation cannot be reached in the time allowed.
     OutOfReach {
-        /// The least that can be reached, °.
+        /// Least standard deviation that can be reached, 1σ, °.
         sigma: f64,
-        /// The one that was asked for, °.
+        /// Standard deviation that was required, 1σ, °.
         required: f64,
-        /// The time allowed, s.
+        /// Time allowed for the alignment, s.
         seconds: f64,
     },
-    /// The survey says nothing of the gyro's noise.
+    /// The survey (the recording at rest before the alignment) does not determine the gyro's noise.
     NoiseUnknown(FitError),
-    /// No schedule fits into the time.
+    /// No sequence of dwells and rotations fits into the time allowed.
     NoSchedule {
-        /// The time, s.
+        /// Time allowed for the alignment, s.
         seconds: f64,
     },
     /// The platform is inclined more than the method allows.
     TiltTooGreat {
-        /// The tilt, °.
+        /// Tilt of the platform that was measured, °.
         tilt: f64,
-        /// The greatest allowed, °.
+        /// Greatest tilt that the configuration allows, °.
         allowed: f64,
     },
-    /// The tilt's uncertainty alone exceeds the accepted standard deviation.
+    /// The uncertainty of the tilt alone exceeds the accepted standard deviation of the azimuth.
     TiltTooUncertain {
-        /// What it costs in azimuth, 1σ, °.
+        /// Contribution of the tilt's uncertainty to the azimuth, 1σ, °.
         sigma: f64,
-        /// The greatest that is accepted, °.
+        /// Greatest standard deviation of the azimuth that is accepted, 1σ, °.
         required: f64,
     },
-    /// The residuals are not those of the stated noise.
+    /// The residuals of the fit are larger than the stated noise of the gyro explains.
     ResidualsNotWhite {
-        /// Chi-square over its degrees of freedom.
+        /// Chi-square of the residuals over its degrees of freedom, near 1 for white noise as
+        /// stated.
         ratio: f64,
     },
-    /// Successive residuals go together: the model misses something that varies slowly.
+    /// Successive residuals correlate: the model lacks a term for something that varies slowly.
     ResidualsCorrelated {
-        /// Correlation of neighbours.
+        /// Correlation coefficient of neighbouring residuals, −1 to 1.
         correlation: f64,
     },
-    /// The rate drifts, and these positions cannot tell the drift from the Earth rate.
+    /// The gyro drifts, and these positions do not separate the drift from the Earth rate.
     TrendNotSeparable,
     /// The heading of the platform stepped between two dwells.
     HeadingStepped {
-        /// By how much, °.
+        /// Size of the heading step, °.
         angle: f64,
-        /// After which time, s.
+        /// Time at which the heading stepped, s after the first dwell began.
         after: f64,
     },
-    /// The tilt that the accelerometer shows stepped between two dwells.
+    /// The tilt measured by the accelerometer stepped between two dwells.
     TiltStepped {
-        /// By how much, thousandths of gravity.
+        /// Size of the tilt step, mg.
         change: f64,
-        /// After which time, s.
+        /// Time at which the tilt stepped, s after the first dwell began.
         after: f64,
     },
-    /// Dwells at the beginning or the end do not fit the others.
+    /// Dwells at the beginning or at the end are inconsistent with the others.
     EndAstray {
-        /// How many.
+        /// Number of inconsistent dwells.
         dwells: usize,
-        /// After which time the others end or these begin, s.
+        /// Time that separates the inconsistent dwells from the others, s.
         after: f64,
     },
-    /// The gyro's rate follows the stage late.
+    /// The measured rate lags behind the stage angle.
     GyroLags {
-        /// By how much, s.
+        /// Lag of the rate, s.
         seconds: f64,
     },
-    /// The accelerometer does not turn with the stage as its encoder does.
+    /// The accelerometer's readings do not turn with the stage angle that the encoder shows.
     AccelerometerAstray {
-        /// RMS of what no tilt explains, in thousandths of gravity.
+        /// RMS of the readings that no constant tilt explains, mg.
         scatter: f64,
     },
-    /// The accelerometer does not feel gravity.
+    /// The mean specific force on the vertical axis is not that of gravity.
     AccelerometerImplausible {
-        /// Its reading over gravity, downwards positive as at rest.
+        /// Measured specific force over normal gravity, positive where it has the sign of a sensor
+        /// at rest.
         ratio: f64,
     },
-    /// The horizontal Earth rate found is not that of the latitude and the gyro's scale.
+    /// The horizontal Earth rate found differs significantly from Ω cos φ times the gyro's scale.
     EarthRateMismatch {
-        /// Found over expected.
+        /// Horizontal Earth rate found over the expected one.
         ratio: f64,
-        /// 1σ of the ratio.
+        /// Standard deviation of the ratio, 1σ.
         sigma: f64,
     },
-    /// All dwells scatter alike, as white noise does, but not as the noise that was stated.
+    /// All dwells scatter alike, as white noise does, but with another power than the stated noise.
     NoiseNotAsStated {
-        /// Their noise power over the stated one.
+        /// Noise power found over the stated one.
         ratio: f64,
     },
-    /// More dwells were disturbed than may be left out.
+    /// More dwells were disturbed than may be excluded.
     Disturbed {
-        /// How many were disturbed.
+        /// Number of disturbed dwells.
         disturbed: usize,
-        /// Of how many.
+        /// Number of all dwells.
         positions: usize,
     },
-    /// More turns of a platform were disturbed than may be left out.
+    /// More turns of the rotating platform were disturbed than may be excluded.
     TurnsDisturbed {
-        /// How many were disturbed.
+        /// Number of disturbed turns.
         disturbed: u32,
-        /// Of how many.
+        /// Number of all turns.
         turns: u32,
     },
-    /// Turns of a platform at the beginning or the end of a stretch do not fit the others.
+    /// Turns of the platform at the beginning or end of a stretch are inconsistent with the others.
     TurnsAstray {
-        /// How many.
+        /// Number of inconsistent turns.
         turns: u32,
     },
-    /// The stage did not come to stand where it was sent.
+    /// The stage came to rest away from its commanded angle.
     StageNotThere {
-        /// Where it was sent, °.
+        /// Commanded stage angle, °.
         target: f64,
-        /// Where it stood, °.
+        /// Stage angle at which it came to rest, °.
         actual: f64,
     },
-    /// The time for the whole session ran out.
+    /// The time allowed for the whole session ran out.
     TimeExhausted,
-    /// The paper's criteria need equal steps that are a multiple of 10″.
+    /// The criteria of Sokolov 2019 need equal steps that are a multiple of 10″.
     StepsUneven,
-    /// No entry of the table lies within the given bound.
+    /// No azimuth of the reference table (etalon) meets the given bound.
     NothingAccepted,
-    /// Every entry of the table lies within the given bound.
+    /// Every azimuth of the reference table (etalon) meets the given bound.
     EverythingAccepted,
-    /// The platform did not turn round often enough in one sense.
+    /// The platform completed too few whole turns in one sense of rotation.
     TurnsTooFew {
-        /// Which.
+        /// Sense of rotation that lacks turns.
         sense: Sense,
-        /// Whole even turns in it that count.
+        /// Whole, undisturbed turns at constant rate in that sense.
         turns: u32,
     },
-    /// The platform turned in one sense faster than in the other.
+    /// The platform turned faster in one sense than in the other.
     SpeedsUnequal {
-        /// Speed clockwise, °/s.
+        /// Speed of clockwise rotation, °/s.
         clockwise: f64,
-        /// Speed counter-clockwise, °/s.
+        /// Speed of counter-clockwise rotation, °/s.
         counter: f64,
     },
-    /// The platform does not turn as it is told.
+    /// The platform does not turn at the commanded rate.
     PlatformStopped {
-        /// Speed that it was told, °/s, clockwise positive.
+        /// Commanded rate, °/s, clockwise positive.
         wanted: f64,
     },
-    /// The encoder moved against the platform.
+    /// The encoder angle moved relative to the platform.
     EncoderSlipped {
-        /// By how much, °.
+        /// Angle by which the encoder slipped, °.
         angle: f64,
     },
-    /// The sensitive axis stands too far from the platform's plane.
+    /// The gyro's sensitive axis is too far from the plane of rotation (axis misalignment).
     Misaligned {
-        /// How far, °.
+        /// Misalignment found, °.
         angle: f64,
-        /// The greatest accepted, °.
+        /// Greatest misalignment accepted, °.
         allowed: f64,
     },
-    /// Nothing is known of how the gyro feels the platform's own rate.
+    /// The axis misalignment is unknown: neither configured, nor measured by rate-modulated turns.
     CouplingUnknown,
-    /// What both senses show differs by more than a flat sensor lets them.
+    /// The phasors of both senses of rotation differ by more than a sensor of flat response allows.
     SensesDisagree {
-        /// Half of the difference, in σ.
+        /// Half of the difference, in standard deviations.
         sigmas: f64,
     },
-    /// What two speeds show of a sensor's lag and g-sensitivity does not go together, or not with the uneven turn.
+    /// The lag and g-sensitivity inferred from two speeds contradict each other, or contradict the
+    /// lag found from the rate-modulated turns (MET 2018).
     SpeedsDisagree {
-        /// By how much, in σ.
+        /// Size of the contradiction, in standard deviations.
         sigmas: f64,
     },
-    /// The tilt that the accelerometer shows changed between the senses or speeds.
+    /// The tilt measured by the accelerometer changed between senses of rotation or between speeds.
     TiltChanged {
-        /// By how much, thousandths of gravity.
+        /// Change of the tilt, mg.
         change: f64,
     },
-    /// The Earth rate's direction drifts from turn to turn.
+    /// The direction of the Earth-rate phasor drifts from turn to turn.
     DirectionDrifts {
-        /// By how much, in σ.
+        /// Size of the drift, in standard deviations.
         sigmas: f64,
     },
-    /// The sensor lags so far that north cannot be told from south.
+    /// The phase lag of the sensor is so large that an azimuth and its opposite cannot be
+    /// distinguished.
     PhaseAmbiguous {
-        /// Its phase, °.
+        /// Phase lag of the sensor, °.
         phase: f64,
     },
-    /// The integrated g-sensitivity is too large a part of what turns.
+    /// The integrated g-sensitivity of a molecular-electronic sensor is too large against the Earth
+    /// rate (MET 2018, ρ = |G|/(w Ω cos φ)).
     MolecularTooGreat {
-        /// That part.
+        /// Ratio of the integrated g-sensitivity to the rotating signal.
         ratio: f64,
     },
-    /// The vehicle stood nowhere.
+    /// No stop of the vehicle was detected.
     NoStop,
-    /// The vehicle stood once only, which this method cannot use.
+    /// A single stop was detected; the azimuth needs two stops (Szymanowski 2003).
     OneStop {
-        /// From when, s.
+        /// Beginning of the stop, s.
         from: f64,
-        /// To when, s.
+        /// End of the stop, s.
         to: f64,
     },
-    /// A stop is too short.
+    /// A stop of the vehicle is too short.
     StopTooShort {
-        /// Which, from one.
+        /// Number of the stop, counted from one.
         stop: usize,
-        /// Its length, s.
+        /// Length of the stop, s.
         seconds: f64,
-        /// The least, s.
+        /// Least length required, s.
         least: f64,
     },
-    /// Between the first stop and the last the Earth turned too little.
+    /// The Earth turned too little between the first and the last stop to show the azimuth.
     DriveTooShort {
-        /// The time between their middles, s.
+        /// Time between the middles of these stops, s.
         seconds: f64,
-        /// The least, s.
+        /// Least time required, s.
         least: f64,
     },
-    /// The vehicle moved where it was said to stand.
+    /// The vehicle moved during an interval that was configured as a stop.
     VehicleMoves {
-        /// At which stop, from one.
+        /// Number of the stop, counted from one.
         stop: usize,
-        /// How far its mean rate was from the Earth's, °/h.
+        /// Deviation of the mean rate from the Earth's, °/h.
         rate: f64,
-        /// How far its mean force was from gravity, m/s².
+        /// Deviation of the mean specific force from gravity, m/s².
         force: f64,
     },
-    /// The vehicle drove on before the alignment was over.
+    /// The vehicle drove on before the alignment was complete.
     MovedDuringAlignment,
-    /// Gyros and accelerometers disagree about how a body sways.
+    /// Gyros and accelerometers disagree on the sway of the body: an axis or a sign is wrong.
     AxesDisagree {
-        /// How much more the forces change when they are turned by what the gyros show, in power.
+        /// Power of the force changes after rotation by the gyros' angles over their power before
+        /// it; below 1 where the axes agree.
         ratio: f64,
     },
-    /// Samples were missing, and with them a part of the rotation.
+    /// Samples are missing, and the rotation during the gap is unknown.
     RotationMissing {
-        /// After which time, s.
+        /// Time at which the gap begins, s.
         at: f64,
-        /// For how long, s.
+        /// Length of the gap, s.
         seconds: f64,
     },
-    /// Samples come at another pace than was told.
+    /// The time stamps contradict the configured sample period.
     PeriodContradicted {
-        /// The period that was told, ms.
+        /// Configured sample period, ms.
         told: f64,
-        /// That of their times, ms.
+        /// Sample period found from the time stamps, ms.
         found: f64,
     },
-    /// A gyro stood at the limit of its range, and a part of the rotation is lost.
+    /// A gyro reached the limit of its range, and the rotation beyond it is unknown.
     RotationClipped {
-        /// At which time, s.
+        /// Time at which the gyro was saturated, s.
         at: f64,
     },
     /// Most of the time at rest was disturbed.
     RestDisturbed {
-        /// Means that were left out.
+        /// Number of short means that were excluded.
         disturbed: u32,
-        /// Of how many.
+        /// Number of all short means.
         of: u32,
     },
-    /// At most stops the gyros showed another rotation than the Earth's.
+    /// At most stops the gyros measured another rotation than the Earth's.
     EarthNotFelt {
-        /// At how many.
+        /// Number of stops with another rotation.
         stops: u32,
-        /// Of how many.
+        /// Number of all stops.
         of: u32,
     },
-    /// By the forces on the way, half of the drives or more do not end at rest.
+    /// Velocity integrated from the forces does not return to zero at the end of half of the drives
+    /// or more.
     DrivesDisagree {
-        /// How many.
+        /// Number of drives that do not end at rest.
         drives: u32,
-        /// Of how many.
+        /// Number of all drives.
         of: u32,
     },
-    /// A device of the board failed.
+    /// A device of the board failed permanently.
     Device {
-        /// Which.
+        /// Device that failed.
         device: Device,
-        /// What is wrong with it.
+        /// Failure of that device.
         trouble: Trouble,
     },
 }

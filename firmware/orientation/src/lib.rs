@@ -7,21 +7,22 @@
 //!  accelerometers ─▶ level ───────────────────────▶ (tilt enters the fit)
 //! ```
 //!
-//! On a platform that turns all the time the path is another, with the same ends:
+//! On a platform that rotates continuously the path is another, with the same ends:
 //!
 //! ```text
 //!  gyro, encoder ─▶ block ─▶ sums of a turn ─▶ Q₊, Q₋ ─both senses, one or two speeds─▶ azimuth ± σ
-//!                              └─uneven turn─▶ coupling ──▲    accelerometer ─▶ tilt ──▲
+//!                              └─modulated─▶ misalignment ▲    accelerometer ─▶ tilt ──▲
 //! ```
 //!
-//! In a vehicle nothing turns the gyros: three carry the attitude from stop to stop.
+//! In a vehicle nothing rotates the gyros: three of them carry the attitude from stop to stop.
 //!
 //! ```text
 //!  3 gyros ─▶ strapdown ─▶ frozen start frame ─▶ up at each stop ─▶ filter ─▶ azimuth ± σ
 //!  3 accelerometers ─▶ stop criteria ─▶ rest rates ────────────────▶ ▲ Earth rotation, displacement
 //! ```
 //!
-//! What was found is kept, and pitch and roll with it; the roll of a spinning body is followed apart.
+//! After the alignment pitch, roll and azimuth are propagated; the roll of a spinning body is
+//! estimated separately.
 //!
 //! ```text
 //!  gyros, accelerometers ─▶ attitude ─▶ level ± σ ─────▶ azimuth ± σ(t)
@@ -31,6 +32,38 @@
 //!
 //! Time and numbers go in, results come out: there is no bus, clock, allocator or async here, so
 //! the whole procedure can be replayed from a recording.
+//!
+//! # Conventions
+//! The navigation frame is north, east, down; the body frame is forward, right, down. An azimuth is
+//! that of body x from true north, clockwise from above. Angles are in rad and rates in rad/s
+//! unless a name or a doc line says otherwise; `1σ` is one standard deviation. Every conversion
+//! between integers and SI units is in [`units`].
+//!
+//! # Glossary
+//! The methods, and the terms of this crate, under their names in inertial navigation:
+//!
+//! | term | meaning here | module |
+//! |---|---|---|
+//! | multi-position static alignment, gyrocompassing | a gyro is turned to several positions and measures the horizontal Earth rate at each (Sokolov 2019, Burov) | [`align::stepwise`], [`session`] |
+//! | dwell | one standstill at a position; its averaged rate is one measurement | [`signal::dwell`] |
+//! | reference table (etalon) | Sokolov's table of expected rate differences for every azimuth on a 10″ grid, and the search for the best one | [`align::etalon`] |
+//! | continuous rotation, carouselling | the gyro rotates all the time and its rate is demodulated at the turn (MET 2018) | [`align::rotating`], [`session::rotating`] |
+//! | rate-modulated turns | turns with a deliberate modulation of the platform's rate, which show the axis misalignment and the lag of the gyro | [`align::rotating::coupling`] |
+//! | axis misalignment | angle between the sensitive axis and the plane of rotation; the identifier `Coupling` stands for it | [`align::rotating::coupling`] |
+//! | inertial-frame alignment | gravity, seen from a frame frozen in inertial space, rotates with the Earth and shows north (Szymanowski 2003) | [`align::stops`], [`session::stops`] |
+//! | strapdown | attitude by integrating the rates of gyros that are fixed to the body | [`signal::strapdown`], [`keep::attitude`] |
+//! | coning | rotation that the order of small rotations adds, and its compensation | [`signal::strapdown`] |
+//! | zero-velocity update | the knowledge that a body at rest has zero velocity and turns with the Earth alone, used as a measurement | [`signal::rest`], [`align::stops`], [`keep::vertical`] |
+//! | AHRS, gyrovertical | attitude and heading reference: pitch and roll from gyros and accelerometers, with the azimuth held | [`keep`], [`keep::vertical`] |
+//! | heading hold, storage of azimuth | propagation of a known azimuth by the gyros, with its growing σ (Burov) | [`keep::heading`] |
+//! | roll of a spinning body | phase of the lift in the transverse forces, as a correction of the gyro (Nekrasova 2017) | [`keep::spin`] |
+//! | g-sensitivity | response of a gyro to specific force, κ in rad/s per g; with a tilt it acts as an Earth rate | [`align::setting`], [`align::budget`] |
+//! | angle random walk | white noise N of a gyro, °/√h; with bias instability B, rate random walk K, rate ramp R and quantisation Q the noise model | [`noise::model`], [`noise::allan`] |
+//! | Cramér–Rao bound | least standard deviation that any estimator reaches with the same data and unknowns; the `limit` of every result | [`align::stepwise`], [`align::rotating::solution`] |
+//! | normalised innovation squared | squared difference between measurement and prediction over its variance, by which outliers are rejected | [`align::stops::filter`], [`noise::whitener`] |
+//! | sway compensation | subtraction of the base's motion, measured by coarse sensors, from the precise gyro's rate (Burov) | [`signal::sway`] |
+//! | error budget | contributions to the standard deviation of an azimuth; their root sum of squares is σ | [`align::budget`] |
+//! | autocompensation | cancelling a gyro's drift by turning it between positions, and the best schedule for that (Burov) | [`planner`], [`planner::burov`] |
 #![no_std]
 #![forbid(unsafe_code)]
 

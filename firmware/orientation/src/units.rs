@@ -4,9 +4,9 @@
 //! of body x from true north, clockwise from above. The stage angle is clockwise from above; the
 //! gyro's sensitive axis lies along body x at zero.
 //!
-//! Samples flow as integers in newtypes; what is computed once per dwell or per result is `f64` in
-//! SI units. Every conversion from `f64` rounds to nearest (ties away from zero) and saturates; NaN
-//! becomes zero, so readers of outside data must refuse NaN before they convert.
+//! Samples flow as integers in newtypes; values that are computed once per dwell or per result are
+//! `f64` in SI units. Every conversion from `f64` rounds to nearest (ties away from zero) and
+//! saturates; NaN becomes zero, so readers of external data must refuse NaN before they convert.
 
 use core::ops::Sub;
 
@@ -31,10 +31,10 @@ pub const DEGREE_PER_HOUR: f64 = TURN / 360.0 / 3600.0;
 /// One degree per square root of an hour (angle random walk), in rad/√s.
 pub const DEGREE_PER_SQRT_HOUR: f64 = TURN / 360.0 / 60.0;
 
-/// Steps of the 32-bit fraction in one turn.
+/// Steps of the 32-bit fraction in one turn, 2³².
 const STEPS_PER_TURN: f64 = 4_294_967_296.0;
 
-/// An angle in [0, 2π).
+/// Wraps an angle, rad, to [0, 2π).
 #[must_use]
 pub fn wrapped(angle: f64) -> f64 {
     let wrapped = angle - TURN * libm::floor(angle / TURN);
@@ -51,13 +51,13 @@ fn to_i32(value: f64) -> i32 {
 pub struct AngularRate(pub i32);
 
 impl AngularRate {
-    /// From rad/s.
+    /// Rate from rad/s, rounded to nearest and saturated.
     #[must_use]
     pub fn from_rad_per_s(rate: f64) -> Self {
         Self(to_i32(rate * 1e9))
     }
 
-    /// In rad/s, exact.
+    /// Rate in rad/s, exact.
     #[must_use]
     pub fn rad_per_s(self) -> f64 {
         f64::from(self.0) * 1e-9
@@ -72,8 +72,8 @@ impl AngularRate {
 
 /// Angle turned within one sample, 1 LSB = 4 nrad, range ±8.59 rad.
 ///
-/// What rounding leaves over is carried to the next sample, so that no rotation is ever lost: the sum of
-/// any number of them is off by one LSB at most.
+/// The remainder of rounding is carried to the next sample, so that no rotation is lost: the sum of
+/// any number of increments is off by at most one LSB.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct AngleIncrement(pub i32);
 
@@ -81,11 +81,11 @@ impl AngleIncrement {
     /// One step, rad.
     pub const STEP: f64 = 4e-9;
 
-    /// One step in nrad/s · µs, 10⁻¹⁵ rad.
+    /// One step in nrad/s · µs, which is 10⁻¹⁵ rad.
     const STEP_FEMTORADIANS: i64 = 4_000_000;
 
-    /// From rad; `carried`, rad, begins at zero and belongs to the axis. What is not a number is no
-    /// rotation that anybody knows: it becomes a limit.
+    /// Increment from rad; the remainder `carried`, rad, begins at zero and belongs to the axis.
+    /// NaN is an unknown rotation and becomes the upper limit.
     #[must_use]
     pub fn from_rad(angle: f64, carried: &mut f64) -> Self {
         let whole = if angle.is_nan() { f64::INFINITY } else { angle + *carried };
@@ -94,7 +94,8 @@ impl AngleIncrement {
         increment
     }
 
-    /// What a rate turns in so many µs; `carried`, 10⁻¹⁵ rad, begins at zero and belongs to the axis.
+    /// Increment of a rate over a time in µs; the remainder `carried`, 10⁻¹⁵ rad, begins at zero
+    /// and belongs to the axis. A saturated rate gives a saturated increment.
     #[must_use]
     pub fn of_rate(rate: AngularRate, microseconds: u32, carried: &mut i64) -> Self {
         let whole = i64::from(rate.0) * i64::from(microseconds) + *carried;
@@ -106,7 +107,7 @@ impl AngleIncrement {
         Self(steps.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32)
     }
 
-    /// In rad, exact.
+    /// Increment in rad, exact.
     #[must_use]
     pub fn rad(self) -> f64 {
         f64::from(self.0) * Self::STEP
@@ -124,13 +125,13 @@ impl AngleIncrement {
 pub struct SpecificForce(pub i32);
 
 impl SpecificForce {
-    /// From m/s².
+    /// Force from m/s², rounded to nearest and saturated.
     #[must_use]
     pub fn from_m_per_s2(force: f64) -> Self {
         Self(to_i32(force * 1e6))
     }
 
-    /// In m/s².
+    /// Force in m/s².
     #[must_use]
     pub fn m_per_s2(self) -> f64 {
         f64::from(self.0) * 1e-6
@@ -143,19 +144,19 @@ impl SpecificForce {
     }
 }
 
-/// Force on a spinning body, 1 LSB = 10 µm/s², range ±21 474 m/s²: a turn of 100 Hz pulls 8000 m/s² two
-/// centimetres off its axis.
+/// Specific force on a spinning body, 1 LSB = 10 µm/s², range ±21 474 m/s²: at 100 turns a second
+/// the centripetal force two centimetres off the axis is 8000 m/s².
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct SpinForce(pub i32);
 
 impl SpinForce {
-    /// From m/s²; what is not a number becomes a limit.
+    /// Force from m/s², rounded to nearest and saturated; NaN becomes the upper limit.
     #[must_use]
     pub fn from_m_per_s2(force: f64) -> Self {
         if force.is_nan() { Self(i32::MAX) } else { Self(to_i32(force * 1e5)) }
     }
 
-    /// In m/s².
+    /// Force in m/s².
     #[must_use]
     pub fn m_per_s2(self) -> f64 {
         f64::from(self.0) * 1e-5
@@ -173,28 +174,28 @@ impl SpinForce {
 pub struct Temperature(pub i32);
 
 impl Temperature {
-    /// From °C.
+    /// Temperature from °C, rounded to nearest and saturated.
     #[must_use]
     pub fn from_celsius(temperature: f64) -> Self {
         Self(to_i32(temperature * 1e3))
     }
 
-    /// In °C.
+    /// Temperature in °C.
     #[must_use]
     pub fn celsius(self) -> f64 {
         f64::from(self.0) * 1e-3
     }
 }
 
-/// A number that may be missing, in the room of a number: `Option<f64>` takes twice as much.
+/// A number that may be missing, in the memory of one number: `Option<f64>` takes twice as much.
 #[derive(Clone, Copy, Debug)]
 pub struct Optional(f64);
 
 impl Optional {
-    /// No number.
+    /// The missing number, stored as NaN.
     pub const NONE: Self = Self(f64::NAN);
 
-    /// The number, if there is one.
+    /// The number; `None` where it is missing.
     #[must_use]
     pub fn get(self) -> Option<f64> {
         (!self.0.is_nan()).then_some(self.0)
@@ -208,7 +209,7 @@ impl Default for Optional {
 }
 
 impl From<Option<f64>> for Optional {
-    /// Not a number becomes none.
+    /// Conversion in which NaN becomes a missing number.
     fn from(number: Option<f64>) -> Self {
         number.map_or(Self::NONE, Self)
     }
@@ -220,7 +221,7 @@ impl PartialEq for Optional {
     }
 }
 
-/// An angle as a 32-bit fraction of a turn (1 LSB = 1.46 nrad); it wraps by itself.
+/// An angle as a 32-bit fraction of a turn (1 LSB = 1.46 nrad); arithmetic wraps at whole turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Angle(pub u32);
 
@@ -228,7 +229,7 @@ impl Angle {
     /// One step, rad.
     pub const STEP: f64 = TURN / STEPS_PER_TURN;
 
-    /// From radians, any number of turns (exact to one LSB up to 10⁶ turns).
+    /// Angle from radians, any number of turns (exact to one LSB up to 10⁶ turns).
     #[must_use]
     pub fn from_rad(angle: f64) -> Self {
         let turns = angle / TURN;
@@ -236,13 +237,13 @@ impl Angle {
         Self(libm::round(fraction * STEPS_PER_TURN) as u64 as u32)
     }
 
-    /// In radians, [0, 2π).
+    /// Angle in radians, [0, 2π).
     #[must_use]
     pub fn rad(self) -> f64 {
         f64::from(self.0) * Self::STEP
     }
 
-    /// In radians, [−π, π).
+    /// Angle in radians, [−π, π).
     #[must_use]
     pub fn signed_rad(self) -> f64 {
         f64::from(self.0.cast_signed()) * Self::STEP
@@ -257,18 +258,18 @@ impl Sub for Angle {
     }
 }
 
-/// A point in time, 1 LSB = 1 µs since the session's clock began.
+/// A point in time, 1 LSB = 1 µs since the start of the session's clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Instant(pub u64);
 
 impl Instant {
-    /// From seconds; negative times become zero.
+    /// Time from seconds, rounded to nearest; negative times become zero.
     #[must_use]
     pub fn from_seconds(seconds: f64) -> Self {
         Self(libm::round(seconds * 1e6) as u64)
     }
 
-    /// In seconds.
+    /// Time in seconds.
     #[must_use]
     pub fn seconds(self) -> f64 {
         self.0 as f64 * 1e-6

@@ -1,11 +1,14 @@
-//! One wording for people, whether the text is made here or on the host that reads the log.
+//! One wording of every message for people, whether the text is rendered on the board or by the
+//! host that decodes its log.
 //!
 //! [`words!`](crate::words!) gives a type its [`core::fmt::Display`] and, with feature `defmt`, its
 //! `defmt::Format`, from the same sentences. Numbers go through [`Rounded`].
 
 use core::fmt;
 
-/// A number that is told with so many decimal places.
+/// A number that is printed with `PLACES` decimal places, rounded to nearest. Rendered as text the
+/// places are padded with zeros; in the `defmt` log the rounded value is sent and its trailing
+/// zeros are not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounded<const PLACES: usize>(pub f64);
 

@@ -1,5 +1,6 @@
-//! Motion of the base for whoever keeps attitude and azimuth: rates and forces of the coarse sensors there,
-//! about the down axis those of the precise gyro once a mount has turned it to the vertical.
+//! Motion of the base for attitude and heading: rates and forces of the coarse sensors there, with
+//! the rate about the down axis taken from the precise gyro once a mount has turned it to the
+//! vertical.
 
 use embassy_time::Instant;
 use orientation::signal::InertialSample;
@@ -9,28 +10,35 @@ use crate::keep::{Motion, VerticalGyro};
 use crate::ports::{BaseReading, Observer};
 use crate::shared::Shared;
 
-/// A quarter of a turn, and how far from it an axis is as good as vertical, 0.1°, in steps of an
-/// [`Angle`]: what it feels of other axes is below 0.02 °/h of the Earth's rate.
+/// Quarter of a turn, in steps of an [`Angle`].
 const QUARTER_TURN: u32 = 1 << 30;
+/// Greatest distance of a vertical axis from the vertical, 0.1°, in steps of an [`Angle`]: its
+/// response to other axes is then below 0.02 °/h of the Earth rate.
 const TOLERANCE: u32 = (0.1 / 360.0 * 4_294_967_296.0) as u32;
-/// Periods that a reading may stand for: where more are missing, nobody knows what was turned.
+/// Greatest number of periods for which a reading may stand: with more missing, the rotation is
+/// unknown.
 const LONGEST: u64 = 3;
 
-/// Samples over which the coarse gyro is compared with the precise one, and as many as tell enough: two
-/// minutes and ten seconds at 200 Hz.
+/// Greatest number of samples in the comparison of the coarse gyro with the precise one: two
+/// minutes at 200 Hz.
 const COMPARED: u32 = 24_000;
+/// Number of samples from which the comparison is used: ten seconds at 200 Hz.
 const ENOUGH: u32 = 2_000;
 
-/// What the coarse gyro about the down axis shows more than the precise one, in steps a sample.
+/// Excess of the coarse gyro about the down axis over the precise one, in steps of an increment per
+/// sample.
 #[derive(Clone, Copy, Debug, Default)]
 struct Excess {
+    /// Mean excess.
     mean: f32,
+    /// Number of samples compared.
     count: u32,
-    /// What was left over of whole steps.
+    /// Remainder of whole steps.
     carried: f32,
 }
 
 impl Excess {
+    /// Adds a pair of increments, unless one is saturated.
     fn push(&mut self, coarse: AngleIncrement, precise: AngleIncrement) {
         if coarse.is_saturated() || precise.is_saturated() {
             return;
@@ -39,12 +47,12 @@ impl Excess {
         self.mean += ((coarse.0 - precise.0) as f32 - self.mean) / self.count as f32;
     }
 
-    /// Whether it is known.
+    /// Whether enough samples were compared.
     fn is_known(&self) -> bool {
         self.count >= ENOUGH
     }
 
-    /// Takes it off, where it is known.
+    /// Subtracts the excess, where it is known.
     fn less(&mut self, coarse: AngleIncrement) -> AngleIncrement {
         if !self.is_known() || coarse.is_saturated() {
             return coarse;
@@ -56,17 +64,18 @@ impl Excess {
     }
 }
 
-/// One sensor's time, and rounding that is carried on.
+/// Time between the readings of one sensor.
 #[derive(Clone, Copy, Debug)]
 struct Timing {
     /// Nominal time between two readings, µs.
     period: u32,
+    /// Time of the latest reading.
     latest: Option<Instant>,
 }
 
 impl Timing {
-    /// How long a reading of this time has lasted, µs: since the one before; a period where that is not
-    /// known. And whether nothing is missing.
+    /// Interval of a reading at this time, µs: the time since the previous one, or the nominal
+    /// period where that is unknown; and whether no reading is missing.
     fn lasted(&mut self, at: Instant) -> (u32, bool) {
         let since = self.latest.replace(at).map(|latest| (at - latest).as_micros());
         match since {
@@ -76,36 +85,44 @@ impl Timing {
     }
 }
 
-/// The precise gyro's turn since the latest coarse reading.
+/// Rotation of the precise gyro since the latest coarse reading.
 #[derive(Clone, Copy, Debug)]
 struct Precise {
+    /// Time between conversions.
     pace: Timing,
     /// Sense of the axis: +1 down, −1 up, 0 neither.
     sense: i32,
-    /// What it has turned, in steps of an increment, and what was left over of whole steps.
+    /// Rotation in steps of an increment, and remainder of whole steps.
     turned: i64,
     carried: i64,
-    /// Whether it was vertical all the time, whether nothing of it is missing, and none clipped.
+    /// Whether the axis was vertical all the time, and whether no conversion is missing or
+    /// saturated.
     is_vertical: bool,
     is_whole: bool,
 }
 
-/// Samples from the base.
+/// Samples of the base's motion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Coarse {
+    /// Time between coarse readings.
     pace: Timing,
+    /// Remainders of whole steps.
     carried: [i64; 3],
+    /// Rotation of the precise gyro.
     precise: Precise,
-    /// A force of a better accelerometer on the base; none where there was no new one.
+    /// Latest force of the better accelerometer on the base; none without a new one.
     force: Option<[SpecificForce; 3]>,
-    /// Whether there is such an accelerometer.
+    /// Whether there is a better accelerometer.
     is_felt: bool,
+    /// Source of the rate about the down axis.
     down: VerticalGyro,
+    /// Comparison of the coarse gyro with the precise one.
     excess: Excess,
 }
 
 impl Coarse {
-    /// Coarse readings and samples of the precise gyro with periods in µs.
+    /// Motion before the first reading, for coarse readings and precise samples with these periods,
+    /// µs.
     pub(super) fn new(coarse: u32, precise: u32) -> Self {
         let pace = |period| Timing { period, latest: None };
         Self {
@@ -126,7 +143,7 @@ impl Coarse {
         }
     }
 
-    /// Takes a conversion of the precise gyro, if it was not lost.
+    /// Takes a conversion of the precise gyro; none where it was lost.
     pub(super) fn turn(&mut self, at: Instant, rate: Option<AngularRate>) {
         let precise = &mut self.precise;
         let Some(rate) = rate.filter(|_| precise.sense != 0) else {
@@ -138,8 +155,8 @@ impl Coarse {
         precise.turned += i64::from(turned.0) * i64::from(precise.sense);
     }
 
-    /// Where the precise gyro's axis points from now on: its elevation, if it stands and can leave the
-    /// base's plane at all.
+    /// Sets the direction of the precise gyro's axis: its elevation, where it stands and can leave
+    /// the base plane at all.
     pub(super) fn point(&mut self, elevation: Option<Angle>) {
         let sense = elevation.map_or(0, sense);
         if sense != self.precise.sense {
@@ -149,7 +166,7 @@ impl Coarse {
         }
     }
 
-    /// The precise gyro is given up.
+    /// Reports that the precise gyro has failed.
     pub(super) fn lose_precise(&mut self) {
         self.precise.sense = 0;
         self.precise.is_vertical = false;
@@ -161,8 +178,8 @@ impl Coarse {
         self.force = force.or(self.force);
     }
 
-    /// Makes a sample of a coarse reading and passes it on. What stood at a limit shows there; what is
-    /// missing shows in the times.
+    /// Converts a coarse reading to a sample and passes it on. Saturation is kept as such; missing
+    /// readings show in the times.
     pub(super) fn pass_on<O: Observer>(
         &mut self,
         at: Instant,
@@ -190,7 +207,8 @@ impl Coarse {
         shared.move_on(Motion::Moved(InertialSample { time, turned, force }));
     }
 
-    /// What the precise gyro has turned about down since the latest reading, where it was vertical.
+    /// Rotation of the precise gyro about down since the latest reading; `None` where it was not
+    /// vertical.
     fn take_precise<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Option<AngleIncrement> {
         let precise = &mut self.precise;
         let down = match (precise.is_vertical, self.excess.is_known()) {
@@ -209,7 +227,7 @@ impl Coarse {
     }
 }
 
-/// Sense of an axis of this elevation: +1 down, −1 up, 0 neither.
+/// Sense of an axis with this elevation: +1 down, −1 up, 0 neither.
 fn sense(elevation: Angle) -> i32 {
     let is_near =
         |quarter: u32| (elevation - Angle(quarter)).0.cast_signed().unsigned_abs() <= TOLERANCE;

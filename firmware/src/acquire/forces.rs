@@ -1,4 +1,4 @@
-//! The accelerometer's readings: taken with every so-manieth sample, and judged.
+//! Readings of the accelerometer: taken with every n-th sample, and checked.
 
 use drivers::fault::Fault;
 use embassy_time::{Duration, Instant};
@@ -14,27 +14,32 @@ use crate::ports::{Accelerometer, ForceReading, Observer};
 use crate::retry_budget::Symptom;
 use crate::shared::Shared;
 
-/// For how long an accelerometer that fails on the way is done without.
+/// Time for which a failing accelerometer is not read while the vehicle moves.
 const PAUSE: Duration = Duration::from_secs(1);
 
-/// Whether an azimuth is kept and the body moves: whatever it turns while a device is started again is
-/// lost, so the gyros alone carry the attitude on, and the accelerometer is mended at the next rest.
+/// Whether an azimuth is held and the body moves. Rotation during the restart of a device would be
+/// lost, so the gyros alone carry the attitude, and the accelerometer is repaired at the next rest.
 fn is_on_the_way<O: Observer>(shared: &Shared<'_, O>) -> bool {
     shared.keep.is_kept.get() && !shared.keep.is_at_rest.get()
 }
 
-/// The accelerometer at work.
+/// State of the accelerometer's readings.
 pub(super) struct Forces<'a, A> {
+    /// Accelerometer with its retry budget.
     accelerometer: Guarded<'a, A>,
+    /// Decimation of the sample rate.
     due: Decimator,
+    /// Counter of identical readings.
     row: RepeatCounter<[SpecificForce; 3]>,
+    /// Counter of saturated readings.
     limit: Limit,
-    /// Until when it is done without, where it was given up while an azimuth is kept.
+    /// Time until which it is not read, after a failure while an azimuth is held.
     absent: Option<Instant>,
 }
 
 impl<'a, A: Accelerometer> Forces<'a, A> {
-    /// Takes the accelerometer, to be read with every so-manieth of so many samples a second.
+    /// Takes the accelerometer, to be read with every `divider`-th of `sample_rate` samples per
+    /// second.
     pub(super) fn new(accelerometer: &'a mut A, divider: u32, sample_rate: f64) -> Self {
         Self {
             accelerometer: Guarded::new(accelerometer, Device::Accelerometer),
@@ -45,14 +50,14 @@ impl<'a, A: Accelerometer> Forces<'a, A> {
         }
     }
 
-    /// Has all retry budget with it again.
+    /// Restores the full retry budget.
     pub(super) fn renew(&mut self) {
         self.accelerometer.renew();
         self.limit.samples = 0;
         self.absent = None;
     }
 
-    /// Starts it, several times where it must be.
+    /// Starts the accelerometer, repeatedly within the retry budget.
     pub(super) fn start<O: Observer>(
         &mut self,
         shared: &Shared<'_, O>,
@@ -60,8 +65,8 @@ impl<'a, A: Accelerometer> Forces<'a, A> {
         self.accelerometer.start(shared)
     }
 
-    /// A new reading where one is due, perhaps a clipped one; none where it was lost. Called with every
-    /// sample.
+    /// Returns a new reading where one is due, possibly saturated; none where it was lost. It must
+    /// be called with every sample.
     pub(super) async fn read<O: Observer>(
         &mut self,
         shared: &Shared<'_, O>,
@@ -92,8 +97,8 @@ impl<'a, A: Accelerometer> Forces<'a, A> {
         outcome
     }
 
-    /// A reading, or what is to be mended. Old outputs and equal ones show an accelerometer that has
-    /// stopped; one that stays at its limit is of no use.
+    /// Checks a reading: a valid one, or the symptom to repair. Repeated outputs show an
+    /// accelerometer that has stopped; one that stays saturated is given up.
     fn judge<O: Observer>(
         &mut self,
         begun: Instant,

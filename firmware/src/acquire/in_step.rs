@@ -1,7 +1,8 @@
-//! Converters in step: waited for together, read one after the other, begun again where one strays.
+//! Converters in step: awaited together, read in succession, restarted where one loses synchronism.
 //!
-//! They have one clock and are begun one right after the other, again whenever one of them had to be
-//! started. What converts at other times than the rest is told by its data-ready line.
+//! They share one clock and are started in succession, again whenever one of them had to be
+//! restarted. A converter that converts at other times than the others is detected by its
+//! data-ready line.
 
 use core::cell::Cell;
 
@@ -18,25 +19,29 @@ use crate::ports::{InStep, Observer, Quantity};
 use crate::retry_budget::Symptom;
 use crate::shared::Shared;
 
-/// Conversions in a row that may be out of step: one lost edge of a data-ready line is no reason to
-/// start anything again.
+/// Number of successive conversions that may be out of step: a single lost edge of a data-ready
+/// line is no reason for a restart.
 const STRAYS: u8 = 3;
 
-/// What a conversion brought: when it ended, or what is wrong with the chip; none as long as it lasts.
+/// Arrival of a conversion: its end, or the fault of the chip; none while it is awaited.
 type Arrival = Cell<Option<Result<Instant, Fault>>>;
 
-/// `N` converters with sensors behind them that show values `V`.
+/// Group of `N` converters with sensors that measure values `V`.
 pub(super) struct Group<'a, C, O, const N: usize, V = AngularRate> {
+    /// Converters with their checks.
     converters: [Rates<'a, C, V>; N],
+    /// Channels to the other tasks.
     shared: &'a Shared<'a, O>,
+    /// Sample period.
     period: Duration,
+    /// Time without a conversion after which a converter counts as silent.
     silence: Duration,
-    /// Conversions in a row that were out of step.
+    /// Number of successive conversions that were out of step.
     strays: u8,
 }
 
 impl<'a, C: InStep<V>, O: Observer, V: Quantity, const N: usize> Group<'a, C, O, N, V> {
-    /// Takes converters with a period in µs, each by its name in the log; nothing is started yet.
+    /// Takes converters with a period in µs, each with its name in the log; nothing is started yet.
     pub(super) fn new(
         converters: &'a mut [C; N],
         names: [Device; N],
@@ -58,7 +63,7 @@ impl<'a, C: InStep<V>, O: Observer, V: Quantity, const N: usize> Group<'a, C, O,
         }
     }
 
-    /// Starts all of them, and their conversions in step.
+    /// Starts all converters, and their conversions in step.
     pub(super) async fn start(&mut self) -> Result<(), Refusal> {
         for converter in &mut self.converters {
             converter.gyro.start(self.shared).await?;
@@ -67,12 +72,12 @@ impl<'a, C: InStep<V>, O: Observer, V: Quantity, const N: usize> Group<'a, C, O,
         Ok(())
     }
 
-    /// Has all retry budget with them again.
+    /// Restores the full retry budget of all converters.
     pub(super) fn renew(&mut self) {
         self.converters.iter_mut().for_each(Rates::renew);
     }
 
-    /// Has all begin to convert in step. One that fails to will be found silent.
+    /// Starts the conversions of all converters in step. A failure shows as silence later.
     async fn begin(&mut self) {
         for converter in &mut self.converters {
             if let Err(fault) = converter.gyro.device.arm().await {
@@ -87,18 +92,18 @@ impl<'a, C: InStep<V>, O: Observer, V: Quantity, const N: usize> Group<'a, C, O,
         self.strays = 0;
     }
 
-    /// Waits for a conversion of every converter; when each ended.
+    /// Waits for a conversion of every converter; returns the end of each, or none after a fault.
     pub(super) async fn conversions(&mut self) -> Result<Option<[Instant; N]>, Refusal> {
         let arrivals = [const { Arrival::new(None) }; N];
         {
             let mut each = arrivals.iter();
-            // Nobody waits without an arrival: there are as many.
+            // There are as many arrivals as converters, so the default is never used.
             let none = Arrival::new(None);
             let waits = self
                 .converters
                 .each_mut()
                 .map(|converter| arrive(converter, each.next().unwrap_or(&none)));
-            // Who did not come is seen below.
+            // A missing conversion is detected below.
             let _ = with_timeout(self.silence, join_array(waits)).await;
         }
         let mut times = [Instant::MIN; N];
@@ -112,7 +117,7 @@ impl<'a, C: InStep<V>, O: Observer, V: Quantity, const N: usize> Group<'a, C, O,
         Ok(Some(times))
     }
 
-    /// The values of the conversions; all are read, whatever is wrong with one.
+    /// Values of the conversions; all are read, even if one fails.
     pub(super) async fn values(&mut self) -> Result<Option<[V; N]>, Refusal> {
         let mut values = [None; N];
         for (index, value) in values.iter_mut().enumerate() {
@@ -125,8 +130,8 @@ impl<'a, C: InStep<V>, O: Observer, V: Quantity, const N: usize> Group<'a, C, O,
         Ok(is_whole.then(|| values.map(Option::unwrap_or_default)))
     }
 
-    /// Takes note of what is wrong with a converter and mends it. One that had to be started again has lost
-    /// its step.
+    /// Logs a converter's symptom and repairs it. A restarted converter has lost its step, so all
+    /// are started again.
     async fn mend<T>(&mut self, index: usize, symptom: Symptom) -> Result<Option<T>, Refusal> {
         let device = &mut self.converters[index].gyro;
         let restarts = device.restarts();
@@ -137,8 +142,8 @@ impl<'a, C: InStep<V>, O: Observer, V: Quantity, const N: usize> Group<'a, C, O,
         Ok(None)
     }
 
-    /// Whether all converted in step. If not, all are read again half a period later, when no conversion is
-    /// near; where that does not help, the one that strays is started again.
+    /// Whether all converted in step. Otherwise all are read again half a period later, when no
+    /// conversion is near; if that does not help, the deviating one is restarted.
     pub(super) async fn are_in_step(
         &mut self,
         times: [Instant; N],
@@ -159,21 +164,21 @@ impl<'a, C: InStep<V>, O: Observer, V: Quantity, const N: usize> Group<'a, C, O,
         Ok(false)
     }
 
-    /// The converter whose conversion ended furthest from the middle one, where that is more than a quarter
-    /// of a period: those that agree are right.
+    /// Converter whose conversion ended furthest from the median, where that is more than a quarter
+    /// of a period: the majority is right.
     fn stray(&self, times: [Instant; N], middle: Instant) -> Option<usize> {
         let beside = |index: &usize| times[*index].max(middle) - times[*index].min(middle);
         (0..N).max_by_key(beside).filter(|index| beside(index) > self.period / 4)
     }
 }
 
-/// Notes when a conversion came.
+/// Stores the time at which a conversion ended.
 async fn arrive<C: InStep<V>, V: Quantity>(converter: &mut Rates<'_, C, V>, arrival: &Arrival) {
     let outcome = converter.gyro.device.ready().await;
     arrival.set(Some(outcome.map(|()| Instant::now())));
 }
 
-/// The middle one of an odd number of times.
+/// Median of an odd number of times.
 pub(super) fn middle<const N: usize>(mut times: [Instant; N]) -> Instant {
     math::sort(&mut times, |a, b| a < b);
     times[N / 2]

@@ -9,8 +9,9 @@
 //!                     two forces ───┘
 //! ```
 //!
-//! What a sensor's readings must pass is the same for both kinds: `rates` for a gyro, `forces` for the
-//! accelerometer. A sample goes out only whole, and its absence shows in the next one's time.
+//! Both kinds of platform share the checks of a sensor's readings: `rates` for a gyro, `forces` for
+//! the accelerometer. A sample is passed on only when it is complete, and a missing one shows in
+//! the next one's time.
 
 mod coarse;
 mod forces;
@@ -25,46 +26,52 @@ pub use spin::SpinAcquisition;
 pub use stage::Acquisition;
 pub use triad::TriadAcquisition;
 
-/// Equal readings in a row that are no chance: the last bits of all sensors are noise.
+/// Number of identical successive readings that is not chance: the last bits of all sensors are
+/// noise.
 pub(crate) const STUCK: u32 = 64;
 /// Longest time at the limit of the range, s: a slammed door is over by then.
 const SATURATED_SECONDS: f64 = 5.0;
-/// Periods without a conversion after which a gyro is silent.
+/// Number of periods without a conversion after which a gyro counts as silent.
 const SILENCE: u32 = 8;
 
-/// How often something came in a row.
+/// Counter of identical successive values.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RepeatCounter<T> {
+    /// Latest value.
     last: Option<T>,
+    /// Number of repetitions.
     count: u32,
 }
 
 impl<T: Copy + PartialEq> RepeatCounter<T> {
+    /// Counter before the first value.
     pub(crate) const fn new() -> Self {
         Self { last: None, count: 0 }
     }
 
-    /// How often this value has come in a row before.
+    /// Takes a value; returns how often it was repeated before in succession.
     pub(crate) fn push(&mut self, value: T) -> u32 {
         self.count = if self.last.replace(value) == Some(value) { self.count + 1 } else { 0 };
         self.count
     }
 }
 
-/// For how many samples a sensor stood at the limit of its range.
+/// Counter of successive samples at the limit of the range.
 #[derive(Clone, Copy, Debug)]
 struct Limit {
+    /// Successive samples at the limit.
     samples: u32,
+    /// Greatest number that is tolerated.
     longest: u32,
 }
 
 impl Limit {
-    /// Of a sensor of so many samples a second.
+    /// Counter for a sensor with this sample rate, Hz.
     fn new(sample_rate: f64) -> Self {
         Self { samples: 0, longest: (SATURATED_SECONDS * sample_rate) as u32 }
     }
 
-    /// Whether it has stood there for too long, after so many more samples.
+    /// Adds `samples` samples; returns whether the sensor has been at its limit for too long.
     fn is_exceeded(&mut self, is_there: bool, samples: u32) -> bool {
         self.samples = if is_there { self.samples + samples } else { 0 };
         self.samples > self.longest

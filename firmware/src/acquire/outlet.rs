@@ -1,4 +1,4 @@
-//! Where samples go out: queued for the session, counted, and told where they are missing or late.
+//! Outlet of samples: queued for the session, counted, and reported where they are missing or late.
 
 use embassy_time::Instant;
 
@@ -7,17 +7,20 @@ use crate::ports::Observer;
 use crate::shared::{Channels, Queue, Shared};
 use crate::timeline::{Arrival, Timeline};
 
-/// The outlet of samples of the kind `S`.
+/// Outlet of samples of kind `S`.
 pub(super) struct Outlet<'a, O, S> {
+    /// Queue to the session.
     queue: &'a Queue<S>,
+    /// Channels to the other tasks.
     pub(super) shared: &'a Shared<'a, O>,
+    /// Expected times of the samples.
     timeline: Timeline,
-    /// Samples lost in a row because nobody took them.
+    /// Number of successive samples lost because the queue was full.
     overflowed: u32,
 }
 
 impl<'a, O: Observer, S> Outlet<'a, O, S> {
-    /// Of samples with a period in µs.
+    /// Outlet of samples with this period, µs.
     pub(super) fn new(period: u32, channels: &'a Channels<'a, O, S>) -> Self {
         Self {
             queue: &channels.samples,
@@ -27,7 +30,7 @@ impl<'a, O: Observer, S> Outlet<'a, O, S> {
         }
     }
 
-    /// Queues a sample for the session, and tells of it where it cannot.
+    /// Queues a sample for the session, and reports an overflow of the queue.
     pub(super) fn hand_over(&mut self, sample: S) {
         self.shared.count(|health| health.samples = health.samples.saturating_add(1));
         self.shared.keep.is_behind.set(true);
@@ -40,7 +43,7 @@ impl<'a, O: Observer, S> Outlet<'a, O, S> {
         }
     }
 
-    /// Counts and tells samples that are missing before one of this time, or beside theirs.
+    /// Counts and reports samples that are missing before one of this time, or that are late.
     pub(super) fn judge(&mut self, time: Instant) {
         match self.timeline.judge(time) {
             Arrival::InTime => {}

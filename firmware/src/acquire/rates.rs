@@ -1,4 +1,4 @@
-//! A gyro's conversions: waited for, read, and judged.
+//! Conversions of a gyro: awaited, read, and checked.
 
 use drivers::fault::Fault;
 use embassy_time::{Duration, Instant, with_timeout};
@@ -12,27 +12,32 @@ use crate::ports::{Gyro, Observer, Quantity, RateReading};
 use crate::retry_budget::Symptom;
 use crate::shared::Shared;
 
-/// Part of a period within which a conversion that was awaited was there before.
+/// Divisor of a period: a conversion that is returned within this part of it had ended before.
 const AT_ONCE: u32 = 16;
 
-/// A gyro at work.
+/// State of a gyro's conversions.
 pub(super) struct Rates<'a, G, V = AngularRate> {
+    /// Gyro with its retry budget.
     pub(super) gyro: Guarded<'a, G>,
+    /// Name in the log.
     pub(super) name: Device,
+    /// Counter of identical readings.
     row: RepeatCounter<V>,
+    /// Counter of saturated readings.
     limit: Limit,
+    /// Sample period.
     period: Duration,
-    /// When the latest conversion ended.
+    /// End of the latest conversion.
     latest: Option<Instant>,
 }
 
-/// Time without a conversion after which a gyro of that period, µs, is silent.
+/// Time without a conversion after which a gyro with this period, µs, counts as silent.
 pub(super) fn silence(period: u32) -> Duration {
     Duration::from_micros(u64::from(period) * u64::from(SILENCE))
 }
 
 impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
-    /// Takes a gyro of so many samples a second by its name in the log.
+    /// Takes a gyro with this sample rate, Hz, by its name in the log.
     pub(super) fn new(gyro: &'a mut G, name: Device, sample_rate: f64) -> Self {
         let limit = Limit::new(sample_rate);
         let period = Duration::from_micros((1e6 / sample_rate + 0.5) as u64);
@@ -46,13 +51,13 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
         }
     }
 
-    /// Has all retry budget with it again.
+    /// Restores the full retry budget.
     pub(super) fn renew(&mut self) {
         self.gyro.renew();
         self.limit.samples = 0;
     }
 
-    /// Waits for a conversion for so long; when it ended, or what is to be mended.
+    /// Waits for a conversion, at most for `silence`; returns its end, or the symptom to repair.
     pub(super) async fn conversion(&mut self, silence: Duration) -> Result<Instant, Symptom> {
         let asked = Instant::now();
         match with_timeout(silence, self.gyro.device.ready()).await {
@@ -66,8 +71,9 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
         }
     }
 
-    /// When a conversion ended that was awaited from `asked` on and is there `now`. One that was there without a
-    /// wait ended before, while another bus was read: it ended when it was due after the one before.
+    /// End of a conversion that was awaited from `asked` on and is present at `now`. One that was
+    /// present without a wait ended before, while another bus was read: it ended when it was due
+    /// after the previous one.
     fn ended(&self, asked: Instant, now: Instant) -> Instant {
         match self.latest {
             Some(latest) if now - asked < self.period / AT_ONCE => {
@@ -78,7 +84,7 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
         }
     }
 
-    /// A new rate, none where it is not new, or what is to be mended.
+    /// Returns a new rate, none where it is not new, or the symptom to repair.
     pub(super) async fn read<O: Observer>(
         &mut self,
         shared: &Shared<'_, O>,
@@ -88,6 +94,7 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
         self.judge(begun, outcome, shared)
     }
 
+    /// Checks a reading for faults, saturation and repetition.
     fn judge<O: Observer>(
         &mut self,
         begun: Instant,

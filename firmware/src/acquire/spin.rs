@@ -1,8 +1,8 @@
 //! Samples of three gyros and two accelerometers on a body in fast rotation.
 //!
-//! All five are analogue sensors behind converters in step, so that forces and rates are of one moment: a
-//! conversion is a mean, and belongs to its middle. From middle to middle a gyro has turned by half of
-//! either conversion. A conversion that was lost shows in the next sample's time.
+//! All five are analogue sensors behind synchronised converters, so that forces and rates belong to
+//! one moment: a conversion is a mean, and belongs to its middle. From middle to middle a gyro has
+//! turned by half of either conversion. A lost conversion shows in the next sample's time.
 
 use core::convert::Infallible;
 
@@ -18,7 +18,7 @@ use crate::ports::{Code, InStep, Observer, Quantity, SpinSensors};
 use crate::shared::Channels;
 use crate::spin::configuration::{CHANNELS, GYROS, SpinConfiguration};
 
-/// The sensors' names in the log.
+/// Names of the sensors in the log.
 const NAMES: [Device; CHANNELS] = [
     Device::ForwardGyro,
     Device::UpGyro,
@@ -27,14 +27,17 @@ const NAMES: [Device; CHANNELS] = [
     Device::RightAccelerometer,
 ];
 
-/// The sensors of a spinning body at work.
+/// Acquisition of the sensors of a spinning body.
 pub struct SpinAcquisition<'a, C, O> {
+    /// Converters of all sensors.
     converters: Group<'a, C, O, CHANNELS, Code>,
+    /// Scale factors and rates.
     configuration: &'a SpinConfiguration,
+    /// Outlet of samples.
     outlet: Outlet<'a, O, SpinSample>,
-    /// What the gyros showed in the conversion before, in steps of an increment.
+    /// Rotation of the gyros in the previous conversion, in steps of an increment.
     before: Option<[i32; GYROS]>,
-    /// Half steps that are left over.
+    /// Remaining half steps.
     carried: [i64; GYROS],
 }
 
@@ -55,7 +58,7 @@ impl<'a, C: InStep<Code>, O: Observer> SpinAcquisition<'a, C, O> {
         }
     }
 
-    /// Samples until a sensor is given up; gives the reason.
+    /// Samples until a sensor is given up; returns the reason.
     pub async fn run(&mut self) -> Refusal {
         match self.sample_for_ever().await {
             Ok(never) => match never {},
@@ -63,6 +66,7 @@ impl<'a, C: InStep<Code>, O: Observer> SpinAcquisition<'a, C, O> {
         }
     }
 
+    /// Starts the sensors and samples without end.
     async fn sample_for_ever(&mut self) -> Result<Infallible, Refusal> {
         self.converters.start().await?;
         loop {
@@ -72,7 +76,7 @@ impl<'a, C: InStep<Code>, O: Observer> SpinAcquisition<'a, C, O> {
         }
     }
 
-    /// The next sample, or none where a reading was lost.
+    /// Takes the next sample; none where a reading was lost.
     async fn sample(&mut self) -> Result<Option<SpinSample>, Refusal> {
         let Some(times) = self.converters.conversions().await? else { return Ok(None) };
         let time = middle(times);
@@ -87,8 +91,8 @@ impl<'a, C: InStep<Code>, O: Observer> SpinAcquisition<'a, C, O> {
         Ok(Some(SpinSample { time, turned: self.turned(&codes), force: self.force(&codes) }))
     }
 
-    /// What the gyros turned since the middle of the conversion before; of the first one as much as in all
-    /// of it.
+    /// Rotation of the gyros since the middle of the previous conversion; for the first one as much
+    /// as in a whole conversion.
     fn turned(&mut self, codes: &[Code; CHANNELS]) -> [AngleIncrement; GYROS] {
         let mut steps = [0; GYROS];
         for (axis, steps) in steps.iter_mut().enumerate() {
@@ -102,7 +106,7 @@ impl<'a, C: InStep<Code>, O: Observer> SpinAcquisition<'a, C, O> {
         turned
     }
 
-    /// Both forces; none where one stands at its limit.
+    /// Specific forces up and right; [`None`] if one is saturated.
     fn force(&self, codes: &[Code; CHANNELS]) -> Option<[SpinForce; 2]> {
         let [_, _, _, up, right] = *codes;
         let [of_up, of_right] = &self.configuration.accelerometers;
@@ -111,7 +115,7 @@ impl<'a, C: InStep<Code>, O: Observer> SpinAcquisition<'a, C, O> {
     }
 }
 
-/// Half of two increments together; at the limit where one of them is.
+/// Half of the sum of two increments; saturated where one of them is.
 fn between(before: i32, now: i32, carried: &mut i64) -> AngleIncrement {
     for steps in [before, now] {
         if Code(steps).is_saturated() {

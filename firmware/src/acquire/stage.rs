@@ -1,8 +1,8 @@
-//! Samples of one gyro that a stage or a platform turns.
+//! Samples of one gyro on a stage or a rotating platform.
 //!
-//! The conversion sets the time; encoder and accelerometer are read right after it, with every
-//! so-manieth sample: between, the stage cannot have turned far, and the force is only averaged.
-//! Without a good rate and a good angle there is no sample.
+//! The conversion sets the time; encoder and accelerometer are read right after it, the
+//! accelerometer with every n-th sample: between, the stage cannot have turned far, and the force
+//! is only averaged. Without a valid rate and a valid angle there is no sample.
 
 use core::convert::Infallible;
 
@@ -23,7 +23,7 @@ use crate::ports::{Accelerometer, Gyro, Observer};
 use crate::shared::Channels;
 use crate::steady::CompensatesSway;
 
-/// The sensors of the stage path at work.
+/// Acquisition of the sensors of the stage path.
 pub struct Acquisition<'a, G, A, P, S, O> {
     rates: Rates<'a, G>,
     forces: Forces<'a, A>,
@@ -32,7 +32,7 @@ pub struct Acquisition<'a, G, A, P, S, O> {
     coarse: Coarse,
     outlet: Outlet<'a, O, Sample>,
     silence: Duration,
-    /// Of the precise gyro's samples.
+    /// Period of the precise gyro's samples.
     period: Duration,
 }
 
@@ -63,7 +63,8 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway, O: Observer
         }
     }
 
-    /// Samples; where a sensor is given up, tells why and tries again later if anybody keeps.
+    /// Samples without end; where a sensor is given up, reports the reason and, while an azimuth is
+    /// held, tries again later.
     pub async fn run_for_ever(&mut self) {
         loop {
             let Err(reason) = self.sample_for_ever().await;
@@ -74,13 +75,14 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway, O: Observer
         }
     }
 
-    /// Has all retry budget with the precise gyro and what belongs to it again.
+    /// Restores the full retry budget of the precise gyro and the sensors beside it.
     fn renew(&mut self) {
         self.rates.renew();
         self.forces.renew();
         self.pointing.renew();
     }
 
+    /// Starts the sensors and samples until one is given up.
     async fn sample_for_ever(&mut self) -> Result<Infallible, Refusal> {
         let shared = self.outlet.shared;
         self.forces.start(shared).await?;
@@ -97,8 +99,8 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway, O: Observer
         }
     }
 
-    /// While an azimuth is kept, goes on with the coarse sensors alone until the body rests and the others
-    /// may be tried again.
+    /// While an azimuth is held, continues with the coarse sensors alone until the body rests and
+    /// the others may be tried again.
     async fn go_on_coarse(&mut self, reason: Refusal) -> Result<(), Refusal> {
         let shared = self.outlet.shared;
         self.coarse.lose_precise();
@@ -117,7 +119,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway, O: Observer
         Ok(())
     }
 
-    /// Passes a coarse reading on to whoever keeps.
+    /// Passes a coarse reading on to attitude and heading.
     fn pass_on(&mut self) {
         let shared = self.outlet.shared;
         if let Some((at, reading)) = self.steady.reading() {
@@ -125,7 +127,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway, O: Observer
         }
     }
 
-    /// The next sample, or none where a reading was lost.
+    /// Takes the next sample; none where a reading was lost.
     async fn sample(&mut self) -> Result<Option<Sample>, Refusal> {
         let shared = self.outlet.shared;
         let time = match self.rates.conversion(self.silence).await {
@@ -159,6 +161,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway, O: Observer
         }))
     }
 
+    /// Reads the precise gyro; none where the reading was lost.
     async fn rate(&mut self) -> Result<Option<AngularRate>, Refusal> {
         let shared = self.outlet.shared;
         match self.rates.read(shared).await? {

@@ -1,8 +1,8 @@
 //! Samples of three gyros and three accelerometers that are fixed to a vehicle.
 //!
-//! A conversion of each gyro makes a sample, so the three convert in step. Whatever an axis has turned in a
-//! conversion that was lost is not known to anybody; such a sample does not go out, and the jump in time
-//! tells the session.
+//! A conversion of each gyro makes a sample, so the three are synchronised. The rotation during a
+//! lost conversion is unknown; such a sample is not passed on, and the jump in time reports the
+//! loss to the session.
 
 use core::convert::Infallible;
 
@@ -20,19 +20,19 @@ use crate::keep::Motion;
 use crate::ports::{Accelerometer, ForceReading, InStep, Observer, VehicleSensors};
 use crate::shared::Channels;
 
-/// The gyros' names in the log, forward, right, down.
+/// Names of the gyros in the log: forward, right, down.
 const NAMES: [Device; 3] = [Device::ForwardGyro, Device::RightGyro, Device::DownGyro];
 
-/// The sensors of a vehicle at work.
+/// Acquisition of the sensors of a vehicle.
 pub struct TriadAcquisition<'a, G, A, O> {
     gyros: Group<'a, G, O, 3>,
     forces: Forces<'a, A>,
     mean: Mean,
     outlet: Outlet<'a, O, InertialSample>,
     period: Duration,
-    /// What was left over of the rotation in whole steps, 10⁻¹⁵ rad.
+    /// Remainders of the rotation in whole steps, 10⁻¹⁵ rad.
     carried: [i64; 3],
-    /// When the latest conversions ended.
+    /// End of the latest conversions.
     latest: Option<Instant>,
 }
 
@@ -57,7 +57,8 @@ impl<'a, G: InStep, A: Accelerometer, O: Observer> TriadAcquisition<'a, G, A, O>
         }
     }
 
-    /// Samples; where a sensor is given up, tells why and tries again later if anybody keeps.
+    /// Samples without end; where a sensor is given up, reports the reason and, while an azimuth is
+    /// held, tries again later.
     pub async fn run_for_ever(&mut self) {
         loop {
             let Err(reason) = self.sample_for_ever().await;
@@ -68,6 +69,7 @@ impl<'a, G: InStep, A: Accelerometer, O: Observer> TriadAcquisition<'a, G, A, O>
         }
     }
 
+    /// Starts the sensors and samples until one is given up.
     async fn sample_for_ever(&mut self) -> Result<Infallible, Refusal> {
         self.forces.start(self.outlet.shared).await?;
         self.gyros.start().await?;
@@ -79,7 +81,7 @@ impl<'a, G: InStep, A: Accelerometer, O: Observer> TriadAcquisition<'a, G, A, O>
         }
     }
 
-    /// The next sample, or none where a reading was lost.
+    /// Takes the next sample; none where a reading was lost.
     async fn sample(&mut self) -> Result<Option<InertialSample>, Refusal> {
         let Some(times) = self.gyros.conversions().await? else { return Ok(None) };
         let time = middle(times);
@@ -99,8 +101,8 @@ impl<'a, G: InStep, A: Accelerometer, O: Observer> TriadAcquisition<'a, G, A, O>
         }))
     }
 
-    /// How long the conversions that ended then have lasted, µs: since the ones before, where those are
-    /// known.
+    /// Length of the conversions that ended at this time, µs: the time since the previous ones, or
+    /// the nominal period where that is unknown.
     fn lasted(&mut self, time: Instant) -> u32 {
         let since = self.latest.replace(time).map_or(Duration::MAX, |latest| time - latest);
         let beside = since.max(self.period) - since.min(self.period);
@@ -108,6 +110,7 @@ impl<'a, G: InStep, A: Accelerometer, O: Observer> TriadAcquisition<'a, G, A, O>
         lasted.as_micros() as u32
     }
 
+    /// Increments of the gyros' rates over a time, µs.
     fn turned(&mut self, rates: [AngularRate; 3], microseconds: u32) -> [AngleIncrement; 3] {
         let [forward, right, down] = &mut self.carried;
         let [about_forward, about_right, about_down] = rates;
@@ -119,23 +122,27 @@ impl<'a, G: InStep, A: Accelerometer, O: Observer> TriadAcquisition<'a, G, A, O>
     }
 }
 
-/// The mean of so many forces in a row.
+/// Mean of a fixed number of successive forces.
 #[derive(Clone, Copy, Debug)]
 struct Mean {
+    /// Number of forces of a mean.
     of: u32,
+    /// Number of forces so far.
     count: u32,
-    /// µm/s².
+    /// Sums of the forces, µm/s².
     sums: [i64; 3],
-    /// Whether one of them stood at the limit of the range.
+    /// Whether one of them was saturated.
     is_clipped: bool,
 }
 
 impl Mean {
+    /// Mean before the first force.
     fn of(forces: u32) -> Self {
         Self { of: forces.max(1), count: 0, sums: [0; 3], is_clipped: false }
     }
 
-    /// Adds a force; the mean, towards zero, once there are enough and none was clipped.
+    /// Adds a force; returns the mean, rounded towards zero, once there are enough forces and none
+    /// was saturated.
     fn push(&mut self, reading: ForceReading) -> Option<[SpecificForce; 3]> {
         for (sum, part) in self.sums.iter_mut().zip(reading.force) {
             *sum += i64::from(part.0);

@@ -1,10 +1,12 @@
-//! The heading over a loss of supply: stored at rest, forgotten when the vehicle sets off, believed again
-//! only where it is found to stand as it stood.
+//! Memory of the heading over a loss of supply. The heading is stored while the vehicle is at rest
+//! and erased when it sets off; after a restart it is used again only if the vehicle is found to
+//! stand as before.
 //!
-//! **How long the flash lasts.** An item is written when the vehicle has come to rest, when it sets off,
-//! and between them at most once a minute and only where azimuth or its σ have changed: some five in
-//! an hour of work. An item takes 80 bytes, so a page of 2 KiB holds 24; two pages of 10 000 erasures
-//! (STM32L475 data sheet, table 59) take 480 000 items, ten years of work around the clock.
+//! **Endurance of the flash.** An item is written when the vehicle has come to rest, when it sets
+//! off, and between them at most once a minute and only if azimuth or σ have changed: about five
+//! items per hour of operation. An item takes 80 bytes, so a page of 2 KiB holds 24. Two pages of
+//! 10 000 erase cycles (STM32L475 data sheet, table 59) take 480 000 items, about ten years of
+//! continuous operation.
 
 use drivers::fault::Fault;
 use embassy_time::{Duration, Instant};
@@ -16,35 +18,38 @@ use crate::event::Event;
 use crate::ports::{HeadingStore, Observer};
 use crate::shared::Shared;
 
-/// Least time between two writings.
+/// Least time between two writes of the same stop.
 const PERIOD: Duration = Duration::from_secs(60);
-/// Change of azimuth or σ that is worth writing, rad.
+/// Change of azimuth or σ that is worth a write, rad.
 const CHANGE: f64 = 0.01 * DEGREE;
-/// What is written where nothing is to be believed: its checksum is wrong.
+/// The item that invalidates the stored heading: its checksum is wrong.
 const NOTHING: [u8; Remembered::BYTES] = [0; Remembered::BYTES];
 
-/// What the flash holds, as far as this run knows.
+/// The stored heading, and the heading found at the start.
 pub(super) struct Memory<M> {
+    /// The non-volatile store.
     store: M,
-    /// What was there at the start and was not judged yet.
+    /// The heading found at the start, until it has been accepted or rejected.
     found: Option<Remembered>,
-    /// Azimuth and σ that are stored, rad, and since when.
+    /// Azimuth and σ that this run has stored, rad, and the time of the write.
     stored: Option<([f64; 2], Instant)>,
-    /// Whether it has failed, which is told once.
+    /// Whether the store has failed; a failure is reported once.
     has_failed: bool,
 }
 
 impl<M: HeadingStore> Memory<M> {
+    /// Wraps a store; nothing is read yet.
     pub(super) fn new(store: M) -> Self {
         Self { store, found: None, stored: None, has_failed: false }
     }
 
-    /// What it keeps it in.
+    /// The store.
     pub(super) fn store(&self) -> &M {
         &self.store
     }
 
-    /// Looks what was kept.
+    /// Reads the heading that was stored before the restart. An item with a wrong checksum counts
+    /// as absent.
     pub(super) async fn load<O: Observer>(&mut self, shared: &Shared<'_, O>) {
         match self.store.load_heading().await {
             Ok(bytes) => self.found = bytes.as_ref().and_then(|b| Remembered::from_bytes(b)),
@@ -52,19 +57,20 @@ impl<M: HeadingStore> Memory<M> {
         }
     }
 
+    /// Reports the first failure of the store.
     fn fail<O: Observer>(&mut self, fault: Fault, shared: &Shared<'_, O>) {
         if !core::mem::replace(&mut self.has_failed, true) {
             shared.tell(Event::HeadingNotKept(fault));
         }
     }
 
-    /// Nothing of before the restart counts any more.
+    /// Discards the heading from before the restart.
     pub(super) fn drop_found(&mut self) {
         self.found = None;
     }
 
-    /// Judges what was kept before the restart, once the vehicle has rested for long enough; whether it
-    /// is believed.
+    /// Decides on the heading from before the restart once the vehicle has rested long enough; true
+    /// if it is used. Until then it stays pending.
     pub(super) fn recall<O: Observer>(
         &mut self,
         keeper: &mut Keeper,
@@ -81,8 +87,8 @@ impl<M: HeadingStore> Memory<M> {
         outcome.is_ok()
     }
 
-    /// Keeps the heading of a body at rest, not too often, and forgets it when the body sets off. Before
-    /// what was found at the start is judged, it stays.
+    /// Stores the heading of a body at rest, at most once a minute, and erases it when the body
+    /// sets off. The item found at the start stays until it has been decided on.
     pub(super) async fn keep<O: Observer>(
         &mut self,
         keeper: &Keeper,
@@ -108,13 +114,14 @@ impl<M: HeadingStore> Memory<M> {
         }
     }
 
-    /// Whether this is worth writing, and may be written again.
+    /// Whether azimuth or σ have changed enough, and the last write is long enough ago.
     fn is_new(&self, now: [f64; 2]) -> bool {
         let Some((then, since)) = self.stored else { return true };
         let has_changed = (0..2).any(|index| (now[index] - then[index]).abs() > CHANGE);
         has_changed && since.elapsed() >= PERIOD
     }
 
+    /// Writes an item and reports the first failure.
     async fn write<O: Observer>(
         &mut self,
         bytes: &[u8; Remembered::BYTES],

@@ -1,4 +1,5 @@
-//! The keeper beside the session: pitch and roll from switch-on, azimuth from its alignment on.
+//! The attitude keeper beside the session: pitch and roll from switch-on, the azimuth from its
+//! alignment on (heading hold).
 //!
 //! ```text
 //!  acquire ─motion─▶ keeper ─report─▶ link, log        flash ◀─rest─┐
@@ -6,9 +7,10 @@
 //!  session ─azimuth────┘  └─azimuth, speed─ outside
 //! ```
 //!
-//! Motion has a channel of its own. The keeper takes what the session has had the chance to take, never
-//! more: so an azimuth, which belongs to the last sample of its session, is handed over between that
-//! sample and the next, and nothing that turns meanwhile is lost.
+//! Inertial samples reach the keeper through a channel of their own. The keeper never runs ahead of
+//! the session: it takes only samples that the session has had the chance to take. An azimuth
+//! belongs to the last sample of its session, so it is handed over exactly between that sample and
+//! the next, and no rotation during the computation is lost.
 
 mod memory;
 mod part;
@@ -34,57 +36,59 @@ use crate::shared::{QUEUE, Shared};
 /// Time after which a device that was given up is tried again while an azimuth is kept.
 pub(crate) const RETRY: Duration = Duration::from_secs(10);
 
-/// Which gyro shows how the body turns about its down axis.
+/// The gyro that measures the rotation about the body's down axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VerticalGyro {
-    /// The one beside the other two.
+    /// The coarse gyro that is read beside the other two.
     Coarse,
-    /// The same, whose bias was found beside the precise one.
+    /// The coarse gyro, whose bias was determined by comparison with the precise one.
     Calibrated,
-    /// The precise one, which a mount has turned to the vertical.
+    /// The precise gyro, whose sensitive axis a mount has turned to the vertical.
     Precise,
 }
 
-/// What acquisition tells the keeper.
+/// A message from acquisition to the keeper.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motion {
-    /// The body has moved.
+    /// An increment of rotation and velocity of the body.
     Moved(InertialSample),
-    /// From the next sample on another gyro shows the down axis.
+    /// From the next increment on, another gyro measures about the down axis.
     Exchanged(VerticalGyro),
 }
 
-/// The channel between the keeper and the others.
+/// The channels between the keeper and the other parts. All run in one executor, so no lock is
+/// needed.
 pub struct KeeperChannels {
-    /// From acquisition to the keeper.
+    /// From acquisition to the keeper: the inertial samples, in the order of time.
     pub motions: Channel<NoopRawMutex, Motion, QUEUE>,
-    /// Whether anybody keeps.
+    /// Whether a keeper runs.
     pub is_wanted: Cell<bool>,
-    /// Whether there are samples that the session was not given yet.
+    /// Whether there are samples that the session has not taken yet.
     pub is_behind: Cell<bool>,
-    /// From the session to the keeper: it has taken what there was.
+    /// From the session to the keeper: all samples of the queue have been taken.
     pub caught_up: Signal<NoopRawMutex, ()>,
-    /// From the session to the keeper: an azimuth, and the sample that it belongs to.
+    /// From the session to the keeper: an azimuth, and the time of the sample to which it belongs.
     pub found: Signal<NoopRawMutex, (Instant, Handover)>,
-    /// From the keeper to the session: the azimuth is known without it.
+    /// From the keeper to the session: the azimuth is known, so the alignment may be skipped.
     pub spare: Signal<NoopRawMutex, ()>,
-    /// From the keeper to the session: begin again.
+    /// From the keeper to the session: a new session is to begin.
     pub again: Signal<NoopRawMutex, ()>,
-    /// Whether there is no session: the last has ended and no other has begun.
+    /// Whether no session runs: the last one has ended, and no other has begun.
     pub is_idle: Cell<bool>,
-    /// Whether the first session has ended. Devices that are given up from then on are tried again
-    /// later, instead of ending everything.
+    /// Whether the first session has ended. From then on, a device that is given up does not end
+    /// the operation; it is tried again after a pause.
     pub is_kept: Cell<bool>,
-    /// From the keeper to a mount with two frames: the precise gyro to the vertical.
+    /// From the keeper to a two-frame mount: set the precise gyro's sensitive axis vertical.
     pub store: Signal<NoopRawMutex, ()>,
-    /// Whether the body rests, as the keeper sees it.
+    /// Whether the body is at rest, by the keeper's detection.
     pub is_at_rest: Cell<bool>,
-    /// What the link tells instead of the session's status.
+    /// The attitude that the link reports instead of the session's status; [`None`] before there is
+    /// any.
     pub told: Cell<Option<Kept>>,
 }
 
 impl KeeperChannels {
-    /// Nobody keeps yet.
+    /// Channels without a keeper and without messages.
     pub(crate) const fn new() -> Self {
         Self {
             motions: Channel::new(),
@@ -102,8 +106,8 @@ impl KeeperChannels {
         }
     }
 
-    /// Lets some time go by before sensors that were given up are tried again; for ever where nobody
-    /// keeps.
+    /// Waits before sensors that were given up are tried again: 10 s while a keeper runs, otherwise
+    /// for ever.
     pub(crate) async fn rest(&self) {
         if self.is_wanted.get() {
             Timer::after(RETRY).await;
@@ -112,7 +116,7 @@ impl KeeperChannels {
         }
     }
 
-    /// The session has taken what there was.
+    /// Signals the keeper that the session has taken all samples of the queue.
     pub(crate) fn catch_up(&self) {
         self.is_behind.set(false);
         self.caught_up.signal(());
@@ -120,8 +124,8 @@ impl KeeperChannels {
 }
 
 impl<O: Observer> Shared<'_, O> {
-    /// Queues a motion for the keeper, if there is one; counts it where it does not fit. What is missing
-    /// then shows in the times of those that do.
+    /// Queues an increment for the keeper, if one runs. If the queue is full, the increment is
+    /// discarded and counted; the keeper sees the gap in the time stamps.
     pub(crate) fn move_on(&self, motion: Motion) {
         if self.keep.is_wanted.get() && self.keep.motions.try_send(motion).is_err() {
             self.count(|health| health.unkept = health.unkept.saturating_add(1));

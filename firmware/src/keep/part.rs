@@ -1,4 +1,5 @@
-//! The keeper at work, a part of the instrument.
+//! The attitude keeper as a part of the running instrument: takes inertial samples, azimuths and
+//! aiding, and reports attitude and events.
 
 use core::future::pending;
 
@@ -15,75 +16,93 @@ use crate::event::Event;
 use crate::ports::{Aiding, HeadingStore, Observer};
 use crate::shared::Shared;
 
-/// How long motions may wait: half of what the channel holds at 2 kHz.
+/// Longest time for which inertial samples wait in the queue: half of the queue's capacity at 2
+/// kHz.
 const REST: Duration = Duration::from_millis(4);
-/// Time between two looks at the state.
+/// Period of the checks of the keeper's state.
 const LOOK: Duration = Duration::from_millis(100);
-/// Looks in a second, after which the outside is asked, the link told and the flash looked after.
+/// Number of state checks in one second. Once a second the keeper also reads the aiding, updates
+/// the link and maintains the flash.
 const LOOKS: u8 = 10;
-/// Time without any motion after which there is none.
+/// Time without any inertial sample after which the motion counts as unmeasured.
 const SILENCE: Duration = Duration::from_secs(1);
-/// 1σ of the bias of a coarse gyro that was compared with a precise one over some ten seconds at least:
-/// its own flicker, and scale errors of what was turned meanwhile, rad/s.
+/// 1σ of the bias of a coarse gyro after a comparison with the precise one over ten seconds or
+/// more, rad/s: its own bias instability, and scale-factor errors during the comparison.
 const COMPARED_SIGMA: f64 = 30.0 * DEGREE_PER_HOUR;
-/// How long a body may not rest, though it did before, until its alignment is of no use: a slammed door is
-/// over by then.
+/// Longest motion after a rest that does not end an alignment: a slammed door shakes a vehicle for
+/// less than this.
 const RESTLESS: Duration = Duration::from_secs(5);
-/// How long it must have rested for that. Biases that were learnt in less may be off by what noise makes of one
-/// run in two hundred, and show a motion where there is none, until rates that stay even for as long deny it.
+/// Duration of the rest from which on that limit holds; after a shorter rest, the limit is longer
+/// by the missing time. Biases estimated during a shorter rest may have an error that noise
+/// produces in one run of two hundred; they then indicate a motion that does not exist, until rates
+/// that stay constant for as long disprove it.
 const LEARNING: Duration = Duration::from_secs(20);
-/// How long it must go on, s, that a vehicle speeds up until it is told.
+/// Duration of an acceleration below which it is not reported as an event, s.
 const TOLD_SECONDS: f64 = 3.0;
 
-/// Something that keeps beside a session, or does not.
+/// The part of the instrument that keeps the attitude beside a session; the unit type keeps
+/// nothing.
 #[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait Keep {
-    /// Keeps until the time is over; never ends where nothing is kept.
+    /// Runs until the configured duration of keeping is over. Never returns if nothing is kept.
     async fn run<O: Observer>(&mut self, shared: &Shared<'_, O>);
 }
 
-/// Nothing is kept.
+/// An instrument without attitude keeping.
 impl Keep for () {
     async fn run<O: Observer>(&mut self, _: &Shared<'_, O>) {
         pending::<()>().await;
     }
 }
 
-/// A keeper with what it needs from the outside.
+/// The attitude keeper with its configuration, its aiding from outside, and its memory over a loss
+/// of supply.
 pub struct Keeping<'k, H, M> {
+    /// The estimator of the attitude.
     keeper: &'k mut Keeper,
+    /// Duration, policy at stops and stated errors of the gyros.
     configuration: KeepConfiguration,
+    /// Source of azimuths and velocities from outside.
     outside: H,
+    /// The stored heading.
     memory: Memory<M>,
+    /// The state of reports and pending actions.
     told: Told,
 }
 
-/// What was told, and what is to be done.
+/// The state of reports, so that each change is reported once, and pending actions.
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own; all combine")]
 struct Told {
+    /// The state that was reported last.
     state: Option<State>,
-    /// The clock when the latest motion came.
+    /// Time at which the latest inertial sample came, by the clock.
     moved: Instant,
+    /// State checks since the latest action of every second.
     looks: u8,
-    /// An azimuth that waits for the sample that it belongs to.
+    /// An azimuth that waits for the inertial sample of its time.
     found: Option<(units::Instant, Handover)>,
+    /// Whether the azimuth is that from before the restart.
     is_recalled: bool,
+    /// Whether the azimuth was known at the latest check.
     has_azimuth: bool,
+    /// Whether a bias beyond its stated σ has been reported.
     is_bias_beyond_stated: bool,
-    /// Since when the body has rested, and since when not any more; whether it was realigned there.
+    /// Since when the body has been at rest; [`None`] once it has set off.
     rests: Option<Instant>,
+    /// Since when the body has been in motion after that rest.
     moves: Option<Instant>,
-    /// How long it may move until it has set off.
+    /// Duration of motion after which the body counts as having set off.
     retry_budget: Duration,
+    /// Whether this stop has had its alignment.
     is_realigned: bool,
-    /// Whether there was no session at the last look.
+    /// Whether no session ran at the latest check.
     is_idle: bool,
-    /// When keeping began: the first session's end.
+    /// Begin of the keeping, the end of the first session.
     since: Option<Instant>,
 }
 
 impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
-    /// Takes a keeper that has taken nothing.
+    /// Takes an estimator that has had no sample.
     pub fn new(
         keeper: &'k mut Keeper,
         configuration: &KeepConfiguration,
@@ -109,19 +128,20 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
         Self { keeper, configuration: *configuration, outside, memory, told }
     }
 
-    /// What is kept now.
+    /// The attitude and azimuth now.
     #[must_use]
     pub fn report(&self) -> Report {
         self.keeper.report()
     }
 
-    /// What the heading is kept in over a loss of supply.
+    /// The non-volatile store of the heading.
     #[must_use]
     pub fn store(&self) -> &M {
         self.memory.store()
     }
 
-    /// Takes the motions that the session has had the chance to take.
+    /// Takes the inertial samples that the session has had the chance to take, and the session's
+    /// azimuth in its place among them.
     fn take<O: Observer>(&mut self, shared: &Shared<'_, O>) {
         if shared.keep.is_behind.get() {
             return;
@@ -132,10 +152,11 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
         while let Ok(motion) = shared.keep.motions.try_receive() {
             self.push(motion, shared);
         }
-        // The azimuth belongs to this sample, or to one that made no motion.
+        // The azimuth belongs to the latest sample, or to a sample without an increment.
         self.take_azimuth(units::Instant(u64::MAX), shared);
     }
 
+    /// Takes an increment, or a change of the gyro about the down axis.
     fn push<O: Observer>(&mut self, motion: Motion, shared: &Shared<'_, O>) {
         match motion {
             Motion::Moved(sample) => {
@@ -158,7 +179,8 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
         }
     }
 
-    /// Hands a found azimuth over before a motion of this time, if it belongs to one before.
+    /// Takes a found azimuth before an increment of the time `before`, if it belongs to an earlier
+    /// sample. It is refused if the body has set off meanwhile.
     fn take_azimuth<O: Observer>(&mut self, before: units::Instant, shared: &Shared<'_, O>) {
         let Some((_, handover)) = self.told.found.take_if(|(at, _)| *at < before) else { return };
         if self.has_set_off() {
@@ -168,14 +190,14 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
         }
     }
 
-    /// Whether a base that rested has been on its way for so long that its alignment is of no use. In a
-    /// vehicle the session itself knows stops from drives.
+    /// Whether a body that was at rest has been in motion for so long that an alignment of that
+    /// rest is invalid. In a vehicle with stops the session itself distinguishes rest from motion.
     fn has_set_off(&self) -> bool {
         !self.configuration.knows_stops
             && self.told.moves.is_some_and(|since| since.elapsed() >= self.told.retry_budget)
     }
 
-    /// Takes an azimuth, beside one that is known already.
+    /// Takes an azimuth: as the first one, or fused with the kept one by an innovation test.
     #[inline(never)]
     fn align<O: Observer>(&mut self, handover: Handover, shared: &Shared<'_, O>) {
         self.memory.drop_found();
@@ -192,7 +214,7 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
         self.told.has_azimuth = true;
     }
 
-    /// Looks about: the state, and once a second everything else.
+    /// Checks the state and reports its changes; once a second also does everything else.
     async fn look<O: Observer>(&mut self, shared: &Shared<'_, O>) {
         let report = self.keeper.report();
         let is_silent = self.told.moved.elapsed() >= SILENCE;
@@ -209,7 +231,7 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
         }
     }
 
-    /// Tells a state that is new. Speeding up is told only where it lasts.
+    /// Reports a state that has changed. An acceleration is reported only if it lasts.
     fn tell_state<O: Observer>(&mut self, state: Option<State>, shared: &Shared<'_, O>) {
         let is_told = match (state, self.told.state) {
             (Some(now), Some(then)) => {
@@ -230,7 +252,7 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
         }
     }
 
-    /// Tells that what was stated of the biases is not believed any more.
+    /// Reports once that the stated biases are not used any more.
     fn tell_biases<O: Observer>(&mut self, report: &Report, shared: &Shared<'_, O>) {
         let is_beyond = report.is_bias_beyond_stated;
         if is_beyond && !core::mem::replace(&mut self.told.is_bias_beyond_stated, true) {
@@ -238,7 +260,7 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
         }
     }
 
-    /// Tells that the azimuth was known and is not any more.
+    /// Reports that the azimuth has become unknown.
     fn tell_loss<O: Observer>(&mut self, report: &Report, shared: &Shared<'_, O>) {
         let had = core::mem::replace(&mut self.told.has_azimuth, report.azimuth.is_some());
         if had && report.azimuth.is_none() {
@@ -247,7 +269,8 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
         }
     }
 
-    /// Notes since when the body rests. What is shorter than a slammed door is no motion.
+    /// Tracks since when the body has been at rest. A motion as short as that of a slammed door
+    /// does not end the rest.
     fn rest(&mut self, is_at_rest: bool) {
         let told = &mut self.told;
         if is_at_rest {
@@ -263,6 +286,8 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
         }
     }
 
+    /// The actions of every second: reads velocity and azimuth from outside, decides on the stored
+    /// heading, stores the heading, starts a new alignment, and reports.
     async fn second<O: Observer>(&mut self, shared: &Shared<'_, O>) {
         self.keeper.move_at(self.outside.velocity());
         if let Some(handover) = self.outside.azimuth() {
@@ -284,14 +309,15 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
         self.tell(shared);
     }
 
-    /// The azimuth is known: the session may be spared.
+    /// Skips the running session where the azimuth is known and the configuration permits it.
     fn spare<O: Observer>(&self, shared: &Shared<'_, O>) {
         if self.configuration.alignment == Alignment::UnlessKnown && !shared.keep.is_idle.get() {
             shared.keep.spare.signal(());
         }
     }
 
-    /// Has a session begin, or end, as the body stands or moves.
+    /// Begins a new session, or aborts the running one, according to the rest and motion of the
+    /// body.
     fn realign<O: Observer>(&mut self, shared: &Shared<'_, O>) {
         let is_idle = shared.keep.is_idle.get();
         let was_idle = core::mem::replace(&mut self.told.is_idle, is_idle);
@@ -309,7 +335,7 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
         }
     }
 
-    /// Has a session begin where the body has stood for so long, once at each stop.
+    /// Begins a new session where the body has been at rest for `after`, once at each stop.
     fn begin_at_stop<O: Observer>(&mut self, after: Duration, shared: &Shared<'_, O>) {
         let stood = self.told.rests.map_or(Duration::MIN, |since| since.elapsed());
         if !self.told.is_realigned && stood >= after {
@@ -320,7 +346,8 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
         }
     }
 
-    /// Gives the link what it tells: the session's own status until something is kept.
+    /// Gives the link the attitude. Before the first session has ended, and without an azimuth, the
+    /// link reports the session's status.
     fn tell<O: Observer>(&self, shared: &Shared<'_, O>) {
         let report = self.keeper.report();
         shared.observer().kept(&report);
@@ -328,13 +355,14 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
             return;
         }
         let mut kept = Kept::of(&report, self.told.is_recalled);
+        // Without inertial samples the azimuth is not valid any more.
         if self.told.moved.elapsed() >= SILENCE {
             kept = Kept { azimuth: None, state: None, ..kept };
         }
         shared.keep.told.set(Some(kept));
     }
 
-    /// Whether the time is over.
+    /// Whether the configured duration of keeping is over.
     fn is_over(&self) -> bool {
         self.told.since.is_some_and(|since| since.elapsed() >= self.configuration.hold)
     }

@@ -1,34 +1,35 @@
-//! What the link tells while the keeper works.
+//! The attitude as the link reports it while the keeper runs.
 
 use core::fmt;
 
 use orientation::keep::{Report, State};
 use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 
-/// Attitude as it is told, in thousandths of a degree.
+/// Attitude as reported, in thousandths of a degree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kept {
-    /// Azimuth of body x and its 1σ, rounded up; none where it is not known.
+    /// Azimuth of body x, 0–359 999, and its 1σ, rounded up; [`None`] if the azimuth is unknown.
     pub azimuth: Option<[u32; 2]>,
     /// Pitch and roll.
     pub level: [i32; 2],
-    /// What the keeper is about; none where no motion is measured any more.
+    /// The keeper's state; [`None`] if no inertial samples arrive.
     pub state: Option<State>,
-    /// Whether the azimuth is remembered from before the supply was lost.
+    /// Whether the azimuth is that stored before the loss of supply.
     pub is_recalled: bool,
 }
 
-/// Thousandths, to nearest.
+/// An angle, rad, in thousandths of a degree, rounded to nearest.
 fn thousandths(angle: f64) -> i32 {
     libm::round(angle * DEGREES * 1e3) as i32
 }
 
 impl Kept {
-    /// What a report says.
+    /// Converts a report of the keeper.
     pub(super) fn of(report: &Report, is_recalled: bool) -> Self {
         let azimuth = report.azimuth.map(|azimuth| {
             let angle = thousandths(azimuth.angle).rem_euclid(360_000).unsigned_abs();
-            // σ never rounds to less than it is.
+            // The 1σ is rounded up, so that the reported value is never less than the estimated
+            // one.
             [angle, libm::ceil(azimuth.sigma * DEGREES * 1e3) as u32]
         });
         let level = [report.pitch, report.roll].map(thousandths);
@@ -36,7 +37,8 @@ impl Kept {
     }
 }
 
-/// Writes a number of thousandths.
+/// Writes a name and a number of thousandths as a decimal fraction. The sign is written apart,
+/// because −0.310 has a whole part of zero.
 fn write(f: &mut fmt::Formatter<'_>, name: &str, value: i32) -> fmt::Result {
     let sign = if value < 0 { "-" } else { "" };
     let size = value.unsigned_abs();

@@ -1,5 +1,5 @@
-//! Conducts a session: samples in, commands to what turns the gyro or to who drives, and what comes of it
-//! told.
+//! Runs a session: passes samples to it, executes its commands, which move the gyro or go to the
+//! driver, and reports its progress and result.
 
 mod rotating;
 mod stepwise;
@@ -25,73 +25,80 @@ use crate::link::Status;
 use crate::ports::{Observer, Recorder};
 use crate::shared::{Channels, Queue, Shared};
 
-/// Longest time until the stage is homed: six searches over the whole travel, with their rests.
+/// Longest time until the stage is homed, s: six searches over the whole travel with the rests
+/// between them.
 const HOMING: Duration = Duration::from_secs(900);
 
-/// Rest once all samples are taken: those of a quick gyro are then taken some at a time, because waking for
-/// each costs more than the sample. A quarter of what the queue holds at 2 kHz.
+/// Rest once the queue is empty. Samples of a fast gyro are then taken several at a time, because
+/// waking for each would cost more than processing it. A quarter of the queue's capacity at 2 kHz.
 const REST: Duration = Duration::from_millis(2);
 
-/// What a session wants done.
+/// The request of a session after a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
-    /// To go on sampling.
+    /// Continue sampling.
     Wait,
-    /// That the stage stands at this angle, rad, or that the platform turns at this rate, rad/s.
+    /// Move the stage to this angle, rad, or turn the platform at this rate, rad/s.
     Move(f64),
-    /// Nothing more.
+    /// End: the session has concluded.
     Finish,
 }
 
-/// A session of samples `S`, with what was told of it. The conductor knows no more of its kind, so that an
-/// image with two kinds of the same samples has one conductor.
+/// A session that consumes samples of the type `S`, with the state of its reports. The runner is
+/// not generic over the kind of session, so an image with two kinds of session for the same samples
+/// contains one runner.
 pub trait AlignmentSession<O, S> {
-    /// Where it is to find north.
+    /// The latitude of the site.
     fn latitude(&self) -> Latitude;
 
-    /// What there is to tell before it begins.
+    /// The event that reports the begin of the session.
     fn outset(&self) -> Event;
 
-    /// Says what a sway that is subtracted leaves in the samples; nothing is where nothing turns the gyro.
+    /// Informs the session of the noise that the compensated sway leaves in the samples. No effect
+    /// where no stage turns the gyro.
     fn allow_for(&mut self, _sway: SwayNoise) {}
 
-    /// Takes a sample.
+    /// Processes a sample.
     fn take(&mut self, sample: &S) -> Step;
 
-    /// Ends it with a reason.
+    /// Ends the session with a reason.
     fn fail(&mut self, reason: Refusal);
 
-    /// When a sample was taken; none where nobody can keep what is found.
+    /// The time of a sample; [`None`] for a session whose azimuth cannot be kept.
     fn time(&self, _sample: &S) -> Option<units::Instant> {
         None
     }
 
-    /// Begins anew, in the same memory.
+    /// Begins the session anew in the same memory.
     fn renew(&mut self) {}
 
-    /// Tells what the last sample changed.
+    /// Reports the changes of the last sample.
     fn follow(&mut self, shared: &Shared<'_, O>);
 
-    /// Tells what was left out, and gives the azimuth, its σ and its limit, rad, or the reason why there
-    /// is none; [`None`] before the end.
+    /// Reports what was excluded from the fit, and returns azimuth, its 1σ and the Cramér–Rao bound
+    /// of the σ, rad, or the reason of a refusal; [`None`] before the session has concluded.
     fn conclude(&self, shared: &Shared<'_, O>) -> Option<Result<[f64; 3], Refusal>>;
 }
 
-/// The session at work.
+/// The runner of a session.
 pub struct SessionRunner<'a, R, O, S> {
+    /// The session.
     session: &'a mut dyn AlignmentSession<O, S>,
+    /// Recorder of raw samples.
     recorder: &'a mut R,
+    /// The queue of samples from acquisition.
     samples: &'a Queue<S>,
+    /// Signals and counters that all parts share.
     shared: &'a Shared<'a, O>,
-    /// When the latest sample was taken that the session has.
+    /// Time of the latest sample that the session has taken.
     taken: Option<units::Instant>,
 }
 
-/// Why a session comes to no conclusion of its own.
+/// The cause that ends a session before its own conclusion.
 enum Break {
-    /// It cannot go on.
+    /// The session cannot continue.
     Refused(Refusal),
-    /// Nobody needs it: the azimuth is known.
+    /// The azimuth is known already, so the session is skipped.
     Spared,
 }
 
@@ -117,7 +124,7 @@ impl<'a, R: Recorder<S>, O: Observer, S> SessionRunner<'a, R, O, S> {
         }
     }
 
-    /// Conducts the session to its conclusion, and others when the keeper wants them.
+    /// Runs the session to its conclusion, and further sessions as the keeper requests them.
     pub async fn run(&mut self) -> Infallible {
         if !self.shared.homed.signaled() {
             self.shared.status.set(Status::Homing);
@@ -135,8 +142,8 @@ impl<'a, R: Recorder<S>, O: Observer, S> SessionRunner<'a, R, O, S> {
         }
     }
 
-    /// Lets samples go by until the keeper wants another session. Where nobody keeps, the link ends the
-    /// run once it has told the last status.
+    /// Discards samples until the keeper requests another session. Without a keeper it waits for
+    /// ever, and the link ends the run once it has sent the last status.
     async fn wait_for_another(&mut self) {
         let keep = &self.shared.keep;
         if !keep.is_wanted.get() {
@@ -154,11 +161,16 @@ impl<'a, R: Recorder<S>, O: Observer, S> SessionRunner<'a, R, O, S> {
             }
         }
         keep.is_idle.set(false);
-        // What went wrong before is over, or comes again.
+        // A failure of the session before is over, or will be reported again.
         self.shared.failure.reset();
         keep.spare.reset();
     }
 
+    /// Runs one session: checks the site, waits for homing, then processes samples until the
+    /// session has concluded.
+    ///
+    /// # Errors
+    /// A refusal, or the request of the keeper to skip the session.
     async fn runner(&mut self) -> Result<(), Break> {
         self.check_place()?;
         self.wait_for_home().await?;
@@ -181,7 +193,7 @@ impl<'a, R: Recorder<S>, O: Observer, S> SessionRunner<'a, R, O, S> {
         }
     }
 
-    /// Refuses a place where nothing could be found, before anything turns.
+    /// Refuses a latitude at which north cannot be found, before anything moves.
     fn check_place(&self) -> Result<(), Refusal> {
         let latitude = self.session.latitude();
         if latitude.has_north() {
@@ -190,7 +202,10 @@ impl<'a, R: Recorder<S>, O: Observer, S> SessionRunner<'a, R, O, S> {
         Err(Refusal::LatitudeTooHigh { latitude: latitude.rad() * DEGREES })
     }
 
-    /// Lets samples go by until angles mean something.
+    /// Discards samples until the stage is homed and its angles are valid.
+    ///
+    /// # Errors
+    /// [`Refusal::TimeExhausted`] after 15 minutes.
     async fn wait_for_home(&self) -> Result<(), Break> {
         let deadline = Instant::now() + HOMING;
         while !self.shared.homed.signaled() {
@@ -205,7 +220,10 @@ impl<'a, R: Recorder<S>, O: Observer, S> SessionRunner<'a, R, O, S> {
         Ok(())
     }
 
-    /// The next sample, or why there will be none.
+    /// The next sample.
+    ///
+    /// # Errors
+    /// The failure of another part, or the request to skip the session.
     async fn sample(&self) -> Result<S, Break> {
         let Shared { failure, keep, .. } = self.shared;
         match select3(failure.wait(), self.samples.receive(), keep.spare.wait()).await {
@@ -215,6 +233,8 @@ impl<'a, R: Recorder<S>, O: Observer, S> SessionRunner<'a, R, O, S> {
         }
     }
 
+    /// Reports the result, and hands an azimuth to the keeper with the time of the session's last
+    /// sample.
     fn conclude(&self) {
         match self.session.conclude(self.shared) {
             None => {}
@@ -235,7 +255,8 @@ impl<'a, R: Recorder<S>, O: Observer, S> SessionRunner<'a, R, O, S> {
     }
 }
 
-/// Tells the tilt of a platform at rest from the force that it feels there.
+/// Reports the inclination of a platform at rest along and across the sensitive axis, °, from its
+/// mean specific force.
 fn tell_level<O: Observer>([along, across, down]: [f64; 3], shared: &Shared<'_, O>) {
     let [along, across] = [along, across].map(|f| libm::atan2(f, -down) * DEGREES);
     shared.tell(Event::Levelled(along, across));

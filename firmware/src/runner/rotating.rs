@@ -1,4 +1,4 @@
-//! The session on a platform that turns all the time, as it is conducted.
+//! Runs a session of continuous rotation (carouselling).
 
 use orientation::align::rotating::turn::Stretch;
 use orientation::earth::Latitude;
@@ -13,21 +13,25 @@ use crate::link::Status;
 use crate::ports::Observer;
 use crate::shared::Shared;
 
-/// A session on a platform that turns all the time.
+/// A session of continuous rotation with the state of its reports.
 pub struct Rotating<'a> {
+    /// The session.
     session: &'a mut Session,
+    /// The state of its reports.
     told: Told,
 }
 
-/// What has been told of it.
+/// The part of the session's progress that has been reported.
 #[derive(Clone, Copy, Debug)]
 struct Told {
+    /// Phase that was reported last.
     phase: Phase,
+    /// Number of turns that were reported.
     turns: u32,
 }
 
 impl<'a> Rotating<'a> {
-    /// A session of which nothing was told.
+    /// Takes a session without any reported progress.
     pub fn new(session: &'a mut Session) -> Self {
         let told = Told { phase: session.phase(), turns: 0 };
         Self { session, told }
@@ -66,7 +70,7 @@ impl<O: Observer> AlignmentSession<O, Sample> for Rotating<'_> {
             tell_phase(session, shared);
             told.phase = session.phase();
         }
-        // With every sample, so it does not ask how many are planned.
+        // The number of planned turns is not computed here, as this runs with every sample.
         let done = session.turn_accumulator().stretches().iter().map(Stretch::count).sum();
         if done > told.turns {
             told.turns = done;
@@ -89,7 +93,8 @@ impl<O: Observer> AlignmentSession<O, Sample> for Rotating<'_> {
     }
 }
 
-/// What the phase that is over has found.
+/// Reports the result of the phase that has ended: inclination of the platform, or axis
+/// misalignment.
 fn tell_found<O: Observer>(session: &Session, phase: Phase, shared: &Shared<'_, O>) {
     match phase {
         Phase::Level => {
@@ -107,7 +112,7 @@ fn tell_found<O: Observer>(session: &Session, phase: Phase, shared: &Shared<'_, 
     }
 }
 
-/// What the phase that begins does.
+/// Reports the begin of a phase: rate-modulated turns, or turns that are evaluated.
 fn tell_phase<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
     let speed = |index: usize| session.procedure().speeds.get(index).map_or(0.0, |w| w * DEGREES);
     match session.phase() {
@@ -118,6 +123,7 @@ fn tell_phase<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
     tell_status(session, shared);
 }
 
+/// Updates the status line with completed and planned turns.
 fn tell_status<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
     let (done, of) = session.turns();
     shared.status.set(Status::Measuring { done: done as u16, of: of as u16 });

@@ -1,4 +1,4 @@
-//! The session in positions, as it is conducted.
+//! Runs a session of multi-position alignment.
 
 use orientation::earth::Latitude;
 use orientation::error::Refusal;
@@ -15,26 +15,32 @@ use crate::link::Status;
 use crate::ports::Observer;
 use crate::shared::Shared;
 
-/// Part of a dwell's time that is as good as all of it.
+/// Fraction of the planned dwell above which a dwell counts as complete.
 const WHOLE: f64 = 0.99;
 
-/// A session in positions.
+/// A session of multi-position alignment with the state of its reports.
 pub struct Stepwise<'a> {
+    /// The session.
     session: &'a mut Session,
+    /// The state of its reports.
     told: Told,
 }
 
-/// What has been told of it.
+/// The part of the session's progress that has been reported.
 #[derive(Clone, Copy, Debug, Default)]
 struct Told {
+    /// Number of dwells that were reported.
     dwells: usize,
+    /// Number of repeated dwells that were reported.
     repetitions: usize,
+    /// Whether the end of the levelling was reported.
     is_level: bool,
+    /// Whether the plan was reported.
     is_planned: bool,
 }
 
 impl<'a> Stepwise<'a> {
-    /// A session of which nothing was told.
+    /// Takes a session without any reported progress.
     pub fn new(session: &'a mut Session) -> Self {
         Self { session, told: Told::default() }
     }
@@ -71,14 +77,14 @@ impl<O: Observer> AlignmentSession<O, Sample> for Stepwise<'_> {
         Some(sample.time)
     }
 
-    // Not inlined: what it is made of on the stack is not to stay there.
+    // Not inlined, so that the temporary copies on the stack are gone when the session runs.
     #[inline(never)]
     fn renew(&mut self) {
         self.told = Told::default();
         let mut procedure = self.session.procedure().clone();
-        // What a survey found is in the setting and the schedule.
+        // The result of the survey is in the setting and the schedule already.
         procedure.survey = None;
-        // A procedure that was possible is possible again.
+        // A procedure that was valid is valid again.
         if let Ok(session) = Session::new(*self.session.setting(), procedure) {
             *self.session = session;
         }
@@ -118,6 +124,7 @@ impl<O: Observer> AlignmentSession<O, Sample> for Stepwise<'_> {
     }
 }
 
+/// Reports the inclination of the platform and the begin of a survey.
 fn tell_begun<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
     if let Some(force) = session.force() {
         tell_level(force, shared);
@@ -127,13 +134,13 @@ fn tell_begun<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
     }
 }
 
-/// What the survey found and what follows from it.
+/// Reports the noise coefficients of the survey and the plan that follows from them.
 fn tell_plan<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
     let found = session.surveyed().map(NoiseFit::in_field_units);
     for (coefficient, estimate) in found.into_iter().flatten() {
         shared.tell(Event::Noise(coefficient, estimate));
     }
-    // Where the survey ended in a refusal, the schedule is still the one before it.
+    // If the survey ended with a refusal, the schedule is still the original one.
     if session.phase() == Phase::Done {
         return;
     }
@@ -147,12 +154,14 @@ fn tell_plan<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
     }
 }
 
+/// Reports a dwell that is measured again, with the disturbance.
 fn tell_repetition<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
     if let Some(repetition) = session.repetitions().last() {
         shared.tell(Event::Repeated(repetition.position + 1, repetition.why));
     }
 }
 
+/// Reports a completed dwell, and whether it was shorter than planned.
 fn tell_dwell<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
     if let Some(dwell) = session.dwells().last() {
         let rate = dwell.rate / DEGREE_PER_HOUR;
@@ -164,6 +173,7 @@ fn tell_dwell<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
     shared.observer().progress(session);
 }
 
+/// Updates the status line with completed and planned dwells.
 fn tell_status<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
     if session.phase() == Phase::Survey {
         shared.status.set(Status::Surveying);

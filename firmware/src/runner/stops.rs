@@ -1,7 +1,7 @@
-//! The session in a vehicle that goes from stop to stop, as it is conducted.
+//! Runs a session of inertial-frame alignment in a vehicle that is driven from stop to stop.
 //!
-//! Its commands are for who drives. Where somebody knows how far the vehicle has come, the session is told
-//! at every stop.
+//! The session's commands are for the driver. If position aiding is available, the session gets the
+//! displacement of every stop from the first one.
 
 use orientation::align::stops::conclusion::Conclusion;
 use orientation::align::stops::inclination::pitch_and_roll;
@@ -18,35 +18,42 @@ use crate::link::Status;
 use crate::ports::{Observer, PositionAiding};
 use crate::shared::Shared;
 
-/// The gyros, forward, right, down.
+/// The gyros about the axes forward, right, down.
 const GYROS: [Device; 3] = [Device::ForwardGyro, Device::RightGyro, Device::DownGyro];
 
-/// A session in a vehicle.
+/// A session in a vehicle with the state of its reports.
 pub struct Stops<'a, W> {
+    /// The session.
     session: &'a mut Session,
+    /// Source of the vehicle's displacement.
     position_aiding: &'a mut W,
-    /// Where the first stop is; none where a later session does not know it yet.
+    /// Displacement of the session's first stop, m north and east; [`None`] while a later session
+    /// does not know it.
     origin: Option<[f64; 2]>,
+    /// The state of its reports.
     told: Told,
 }
 
-/// What has been told of it, and what is to be.
+/// The part of the session's progress that has been reported, and news to be reported.
 #[derive(Clone, Copy, Debug)]
 struct Told {
+    /// Phase that was reported last.
     phase: Phase,
-    /// When that phase began, and the latest sample.
+    /// Time at which that phase began.
     since: Instant,
+    /// Time of the latest sample.
     now: Instant,
-    /// Stops whose place the session knows; it takes the first one for the origin.
+    /// Index of the latest stop whose displacement the session knows; the first stop, 0, is the
+    /// origin.
     placed: usize,
-    /// Where the vehicle stands, if that is news.
+    /// The displacement of the present stop, m north and east, until it is reported.
     place: Option<[f64; 2]>,
-    /// Whether it may drive, if that is news.
+    /// Whether the permission to drive on is to be reported.
     may_drive: bool,
 }
 
 impl Told {
-    /// Nothing yet of a session that has not begun.
+    /// The state of a session that has not begun.
     fn of(session: &Session) -> Self {
         Self {
             phase: session.phase(),
@@ -60,13 +67,14 @@ impl Told {
 }
 
 impl<'a, W: PositionAiding> Stops<'a, W> {
-    /// A session of which nothing was told.
+    /// Takes a session without any reported progress. The first stop of the first session is the
+    /// origin of displacements.
     pub fn new(session: &'a mut Session, position_aiding: &'a mut W) -> Self {
         let told = Told::of(session);
         Self { session, position_aiding, origin: Some([0.0; 2]), told }
     }
 
-    /// Tells the session where it stands, as soon as that is known.
+    /// Informs the session of the displacement of the present stop as soon as it is known.
     fn place(&mut self) {
         let Phase::Standing(index) = self.session.phase() else { return };
         if index == 0 && self.origin.is_none() {
@@ -116,7 +124,7 @@ impl<W: PositionAiding, O: Observer> AlignmentSession<O, InertialSample> for Sto
         Some(sample.time)
     }
 
-    // Not inlined: what it is made of on the stack is not to stay there.
+    // Not inlined, so that the temporary copies on the stack are gone when the session runs.
     #[inline(never)]
     fn renew(&mut self) {
         let (setting, procedure) = (*self.session.setting(), self.session.procedure().clone());
@@ -156,7 +164,7 @@ impl<W: PositionAiding, O: Observer> AlignmentSession<O, InertialSample> for Sto
     }
 }
 
-/// What the phase that begins does.
+/// Reports the begin of a stop, with the duration of the drive before it, or of a drive.
 fn tell_phase<O: Observer>(phase: Phase, told: &Told, shared: &Shared<'_, O>) {
     match phase {
         Phase::Standing(index) => {
@@ -174,7 +182,7 @@ fn tell_phase<O: Observer>(phase: Phase, told: &Told, shared: &Shared<'_, O>) {
     }
 }
 
-/// That the stop was long enough.
+/// Reports that the stop was long enough, with the inclination of the vehicle.
 fn tell_levelled<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
     let Some(stop) = session.stops().last() else { return };
     let number = session.stops().len();

@@ -1,29 +1,33 @@
-//! What a sample of a spinning body takes of the bus: five converters on one SPI, against the time there is.
+//! Load of the bus on a spinning body: five converters share one SPI, whose transfers must fit in
+//! the sampling period.
 //!
-//! Arithmetic is counted apart, in instructions (`firmware/budget.toml`). The paper samples at 10 kHz; an
-//! ADS1262 gives 7 200 or 14 400 samples a second, so the next faster one is taken.
+//! The load of the processor is checked separately, in instructions (`firmware/budget.toml`).
+//! Burov's method is stated for 10 kHz; an ADS1262 gives 7 200 or 14 400 samples per second, so the
+//! next higher rate is taken.
 
 use drivers::ads1262::{self, BYTES_PER_SAMPLE, GREATEST_BUS_HERTZ};
 
 use super::configuration::CHANNELS;
 
-/// Samples a second that the paper's method is stated for, Hz.
+/// Sampling rate for which the method is stated (Burov), Hz.
 pub const PAPER_HERTZ: u32 = 10_000;
-/// Samples a second of an ADS1262 next to it, Hz (SBAS661C table 9-3).
+/// The next higher data rate of an ADS1262, Hz (SBAS661C, table 9-3).
 pub const SAMPLE_HERTZ: u32 = 14_400;
-/// The bus clock of the board, Hz: 80 MHz divided by a power of two, not above the converter's 8 MHz.
+/// Bus clock of the board, Hz: 80 MHz divided by a power of two, below the converter's limit of 8
+/// MHz.
 pub const BOARD_BUS_HERTZ: u32 = 5_000_000;
-/// Bytes on the bus for a sample of all converters.
+/// Bytes on the bus for one sample of all converters.
 pub const BYTES: usize = CHANNELS * BYTES_PER_SAMPLE;
 
-/// Per cent of the sample period, rounded up, that the bytes of five conversions take at a bus clock and a
-/// sample rate, Hz. What a controller adds between bytes and for each select comes on top.
+/// Share of the sampling period, %, rounded up, that the transfers of five conversions take at a
+/// bus clock and a sampling rate, Hz. Gaps between bytes and the selection of each converter come
+/// on top.
 #[must_use]
 pub const fn bus_percent(bus_hertz: u32, sample_hertz: u32) -> u32 {
     let nanoseconds = ads1262::bus_time(bus_hertz).as_nanos() as u64 * CHANNELS as u64;
     (nanoseconds * sample_hertz as u64).div_ceil(10_000_000) as u32
 }
 
-/// At the converter's own limit half of the time, on this board four fifths of it.
+/// At the converter's limit the transfers take half of the period, on this board four fifths.
 const _: () = assert!(bus_percent(GREATEST_BUS_HERTZ, SAMPLE_HERTZ) <= 51);
 const _: () = assert!(bus_percent(BOARD_BUS_HERTZ, SAMPLE_HERTZ) <= 81);

@@ -1,4 +1,4 @@
-//! The roll of a body while it flies, with course and pitch beside it.
+//! The roll angle of a spinning body during its flight, with course and pitch.
 
 use orientation::keep::spin::attitude::Attitude;
 use orientation::keep::spin::{Setting, Spin, State};
@@ -8,25 +8,32 @@ use orientation::units::{DEGREES_PER_RADIAN as DEGREES, Instant, TURN, wrapped};
 use crate::event::Event;
 use crate::link::Status;
 
-/// Samples between two statuses: the link tells one a second, and each costs some soft-float arithmetic.
+/// Samples between two updates of the status. The link sends one line per second, and an update
+/// costs arithmetic in software floating point.
 const STATUS_SAMPLES: u32 = 1024;
 
-/// A flight that is followed.
+/// A flight whose roll is tracked.
 #[derive(Clone, Debug)]
 pub struct Flight {
+    /// Estimator of the roll by phase lock.
     spin: Spin,
+    /// Attitude by integration of the gyros, its roll replaced by the estimate.
     attitude: Attitude,
-    /// How long it is followed, s; none for ever.
+    /// Duration of the tracking, s; [`None`] for ever.
     seconds: Option<f64>,
+    /// Time of the first sample.
     begun: Option<Instant>,
+    /// Time of the latest sample.
     now: Instant,
+    /// Number of samples, modulo 2³².
     samples: u32,
+    /// State that was reported last.
     told: State,
 }
 
 impl Flight {
-    /// A flight that begins with such a course and pitch, rad; it is followed for so many seconds, or for
-    /// ever.
+    /// A flight that begins with the given course and pitch, rad, and is tracked for `seconds`, or
+    /// for ever.
     #[must_use]
     pub fn new(setting: &Setting, [course, pitch]: [f64; 2], seconds: Option<f64>) -> Self {
         Self {
@@ -40,19 +47,19 @@ impl Flight {
         }
     }
 
-    /// The roll, as it is known.
+    /// The estimator of the roll.
     #[must_use]
     pub fn spin(&self) -> &Spin {
         &self.spin
     }
 
-    /// The attitude that the gyros carry on, its roll overridden.
+    /// The attitude by integration of the gyros, with the roll of the estimator.
     #[must_use]
     pub fn attitude(&self) -> &Attitude {
         &self.attitude
     }
 
-    /// Takes a sample.
+    /// Processes a sample.
     pub fn push(&mut self, sample: &SpinSample) {
         self.spin.push(sample);
         self.attitude.push(sample, &self.spin);
@@ -61,14 +68,15 @@ impl Flight {
         self.samples = self.samples.wrapping_add(1);
     }
 
-    /// Whether it has been followed for long enough.
+    /// Whether the duration of the tracking is over, by the time stamps of the samples.
     #[must_use]
     pub fn is_over(&self) -> bool {
         let elapsed = |begun: Instant| self.now.seconds() - begun.seconds();
         self.seconds.zip(self.begun).is_some_and(|(seconds, begun)| elapsed(begun) >= seconds)
     }
 
-    /// What the latest sample changed of the state, if that is news.
+    /// The event of a change of state by the latest sample; [`None`] if the state is the same.
+    /// Numbers within a state are not compared.
     pub(super) fn news(&mut self) -> Option<Event> {
         let state = self.spin.state();
         let before = core::mem::replace(&mut self.told, state);
@@ -81,12 +89,12 @@ impl Flight {
         })
     }
 
-    /// Whether it is time for another status.
+    /// Whether the status is due for an update.
     pub(super) fn is_status_due(&self) -> bool {
         self.samples % STATUS_SAMPLES == 1
     }
 
-    /// The status line's part.
+    /// The status for the link: roll angle and 1σ in thousandths of a degree, the 1σ rounded up.
     #[must_use]
     pub fn status(&self) -> Status {
         let thousandths = |angle: f64| libm::ceil(angle * DEGREES * 1e3) as u32;
@@ -95,7 +103,7 @@ impl Flight {
         Status::Rolling { roll: sigma.map(|sigma| [roll, sigma]), state: word(&self.spin.state()) }
     }
 
-    /// What there is to tell at its end.
+    /// The event that reports the end of the flight.
     #[must_use]
     pub fn ending(&self) -> Event {
         let roll = self.spin.roll().rad();
@@ -105,7 +113,7 @@ impl Flight {
     }
 }
 
-/// A state in a word, for the status line.
+/// The name of a state for the status line.
 fn word(state: &State) -> &'static str {
     match state {
         State::Searching => "searching",

@@ -1,4 +1,5 @@
-//! The instrument on a body in fast rotation: no session, its roll is followed for as long as it flies.
+//! The instrument on a body in fast rotation. There is no alignment: the roll angle is tracked for
+//! as long as the body flies.
 //!
 //! ```text
 //!  three gyros ───────┬─▶ acquire ─sample─▶ flight: roll from the extrema, by phase lock ─▶ roll ± σ ─▶ link
@@ -19,7 +20,7 @@ use crate::link::Status;
 use crate::ports::{Observer, Recorder};
 use crate::shared::Channels;
 
-/// Follows a flight until its time is over, or until acquisition gives a sensor up, and tells of it.
+/// Tracks a flight until its duration is over or acquisition gives a sensor up, and reports it.
 pub(crate) async fn follow<R, O>(
     flight: &mut Flight,
     recorder: &mut R,

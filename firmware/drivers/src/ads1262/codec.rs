@@ -1,4 +1,4 @@
-//! A data frame's bytes as a conversion, or why it is none (SBAS661C figures 9-43 to 9-48).
+//! Decodes a data frame into a conversion or a fault (SBAS661C figures 9-43 to 9-48).
 //!
 //! The frame is status, four data bytes, sum. Of the two forms of the checksum byte this driver
 //! takes the sum rather than the CRC:
@@ -72,16 +72,17 @@ impl Status {
     }
 }
 
-/// One conversion.
+/// One conversion of the input voltage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Conversion {
     /// Input voltage, 1 LSB = reference / (gain · 2³¹) (table 9-19).
     pub code: i32,
-    /// Whether it was not read before; otherwise the converter has nothing newer.
+    /// Whether the conversion is new; otherwise the converter has nothing newer than the one read
+    /// before.
     pub is_new: bool,
-    /// Whether the input left the range of the amplifier or of the code: the value means nothing.
+    /// Whether the input left the range of the amplifier or of the code; the value is invalid then.
     pub is_clipped: bool,
-    /// The chip's own flags.
+    /// The status byte of the frame.
     pub status: Status,
 }
 
@@ -93,11 +94,12 @@ pub const fn sum(data: [u8; 4]) -> u8 {
     SUM_OFFSET.wrapping_add(a).wrapping_add(b).wrapping_add(c).wrapping_add(d)
 }
 
-/// Reads a frame. The sum is judged first: of a broken transfer nothing else is believed.
+/// Decodes a frame. The checksum is verified first, since no other byte of a disturbed transfer can
+/// be trusted.
 ///
 /// # Errors
-/// [`Fault::Checksum`]; [`Fault::Reset`] where the chip has restarted; [`Fault::Alarm`] where its
-/// reference has failed.
+/// [`Fault::Checksum`] if the sum is wrong; [`Fault::Reset`] if the chip has restarted;
+/// [`Fault::Alarm`] if its reference has failed.
 pub const fn decode(frame: [u8; FRAME]) -> Result<Conversion, Fault> {
     let [status, a, b, c, d, received] = frame;
     let data = [a, b, c, d];

@@ -1,4 +1,5 @@
-//! What can be chosen: data rate, filter, gain; and what follows from it.
+//! The selectable data rate, filter and gain, with the register contents and times that follow from
+//! them.
 
 use core::time::Duration;
 
@@ -8,8 +9,8 @@ use super::registers::{self, Image};
 const MODULATOR_HERTZ: f64 = 921_600.0;
 /// Rate between the filter's stages at data rates up to 7200 SPS, Hz (table 9-3).
 const STAGE_HERTZ: u64 = 14_400;
-/// What the digital part adds to the first conversion, ns: the constant that makes the formula of
-/// [`Configuration::latency`] meet table 9-13 to its last digit.
+/// Delay that the digital part adds to the first conversion, ns: the constant with which
+/// [`Configuration::latency`] reproduces table 9-13 to its last digit.
 const OVERHEAD_NANOSECONDS: u64 = 76_800;
 
 /// Data rate, nominal: the internal oscillator is within 2 % (section 7.5), so measure it.
@@ -90,11 +91,11 @@ pub enum Filter {
     /// leaves: 0.9 % at 400 SPS, 2.9 % at 1200, 6.1 % at 2400, 24 % at 7200, 56 % above.
     #[default]
     Sinc1,
-    /// Two periods: steeper, and neighbours are correlated.
+    /// The mean over two conversion periods: steeper, and neighbouring conversions are correlated.
     Sinc2,
-    /// Three periods.
+    /// The mean over three conversion periods.
     Sinc3,
-    /// Four periods.
+    /// The mean over four conversion periods.
     Sinc4,
 }
 
@@ -102,30 +103,31 @@ pub enum Filter {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Gain {
-    /// 1: full scale is the reference.
+    /// Gain 1: full scale is the reference voltage.
     #[default]
     X1,
-    /// 2.
+    /// Gain 2.
     X2,
-    /// 4.
+    /// Gain 4.
     X4,
-    /// 8.
+    /// Gain 8.
     X8,
-    /// 16.
+    /// Gain 16.
     X16,
-    /// 32.
+    /// Gain 32.
     X32,
 }
 
 impl Gain {
-    /// As a number.
+    /// The gain as a factor, 1 … 32.
     #[must_use]
     pub const fn factor(self) -> f64 {
         (1_u8 << self as u8) as f64
     }
 }
 
-/// How the converter is to run; inputs AIN0 and AIN1, internal reference and oscillator.
+/// Configuration of the converter. Inputs are AIN0 and AIN1; reference and oscillator are the
+/// internal ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Configuration {
     /// Data rate.
@@ -185,7 +187,7 @@ impl Configuration {
     }
 }
 
-/// Which way the test voltage points.
+/// Polarity of the test voltage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sign {
     /// The positive input is higher.

@@ -17,10 +17,10 @@
 //! Time: at 400 SPS the first conversion comes 2.855 ms after the start, the others every 2.5 ms, and
 //! each shows the input as it was 1.4 ms before, in the mean ([`Configuration::latency`]).
 //!
-//! A data-ready line that stays silent can be a chip that has restarted, since a reset stops
-//! conversions: when a wait for [`Ads1262::ready`] is given up, [`Ads1262::read`] tells why
-//! ([`Fault::Reset`]), and [`Ads1262::start`] brings it back. After a wrong checksum the conversion
-//! is lost, for a second reading of it is not marked as new: wait for the next one.
+//! A data-ready line that stays silent may mean that the chip has restarted, since a reset stops
+//! conversions. If a wait for [`Ads1262::ready`] is given up, [`Ads1262::read`] reports the reason
+//! ([`Fault::Reset`]), and [`Ads1262::start`] restores the operation. After a wrong checksum the
+//! conversion is lost, because a second reading of it is not marked as new: wait for the next one.
 
 pub mod codec;
 pub mod configuration;
@@ -55,20 +55,20 @@ const POWER_UP: Duration = Duration::from_millis(10);
 /// From the reset command to the next one: 8 clocks, at the slowest clock of 1 MHz (table 9-32).
 const RESET: Duration = Duration::from_micros(8);
 
-/// Start of the internal reference with 1 µF to its last 10⁻⁵ (figure 7-33; TI's
-/// example code waits as long). Counted from the reset, for nobody knows how long the supply is up.
+/// Settling of the internal reference with 1 µF to within 10⁻⁵ (figure 7-33; TI's example code
+/// waits as long). Counted from the reset, because the time since the supply came up is unknown.
 const REFERENCE_SETTLING: Duration = Duration::from_millis(50);
 
-/// A test conversion is given its latency and one part in so many more, 5 %: the oscillator may be
+/// A test conversion is given its latency and a fraction of 1/20 of it, 5 %: the oscillator may be
 /// slow by 2 % (section 7.5).
 const OSCILLATOR_MARGIN: u32 = 20;
 
-/// What the test voltage converts to: 1 V of 2.5 V.
+/// Nominal code of the test voltage: 1 V of 2.5 V.
 const TEST_CODE: i32 = 858_993_459;
 
-/// How far the test voltage may be off, 10 %: it scales with the analogue supply (± 5 %, section
-/// 7.3), and its divider and the reference add little. Enough to find a dead or stuck modulator, a
-/// wrong gain, polarity, multiplexer or reference.
+/// Tolerance of the test voltage, 10 %: it scales with the analogue supply (± 5 %, section 7.3),
+/// and its divider and the reference add little. The tolerance is narrow enough to find a dead or
+/// stuck modulator, a wrong gain, polarity, multiplexer or reference.
 const TEST_TOLERANCE: u32 = 85_899_346;
 
 /// Time on the bus for one sample at a clock of `hertz` (> 0).
@@ -84,17 +84,19 @@ pub struct Ads1262<S, R, D> {
     ready: R,
     delay: D,
     configuration: Configuration,
-    /// Whether its clock comes from outside.
+    /// Whether the chip's clock is external.
     is_clocked: bool,
 }
 
 impl<S, R, D> Ads1262<S, R, D> {
-    /// A chip that has yet to be started. Its START pin is held low, its clock input grounded.
+    /// Creates the driver of a chip that has not been started, on its internal oscillator. The
+    /// START pin must be held low and the clock input grounded.
     pub const fn new(spi: S, ready: R, delay: D, configuration: Configuration) -> Self {
         Self { spi, ready, delay, configuration, is_clocked: false }
     }
 
-    /// The same with 7.3728 MHz at its clock input: several chips on one clock convert in step.
+    /// Creates the driver of a chip with 7.3728 MHz at its clock input: several chips on one clock
+    /// convert synchronously.
     #[must_use]
     pub fn clocked(self) -> Self {
         Self { is_clocked: true, ..self }
@@ -122,11 +124,11 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Ads1262<S, R, D> {
         self.run(&self.configuration.image()).await
     }
 
-    /// Waits for a conversion that nobody has read. May be dropped at any time without loss; has no
-    /// end of its own, so the caller sets one.
+    /// Waits until a conversion is ready that has not been read. The future may be dropped at any
+    /// time without loss. It has no time limit of its own, so the caller sets one.
     ///
     /// # Errors
-    /// [`Fault::Bus`] where the line cannot be observed.
+    /// [`Fault::Bus`] if the line cannot be observed.
     pub async fn ready(&mut self) -> Result<(), Fault> {
         self.ready.wait_for_low().await.map_err(|_| Fault::Bus)
     }
@@ -143,8 +145,8 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Ads1262<S, R, D> {
         codec::decode(frame)
     }
 
-    /// Ends conversions and makes ready for others, of a chip that was started: those of several chips
-    /// with one clock are then begun in step.
+    /// Stops the conversions of a started chip and prepares new ones: those of several chips on one
+    /// clock are then begun synchronously.
     ///
     /// # Errors
     /// [`Fault::Bus`] and [`Fault::NotAsWritten`].
@@ -166,8 +168,8 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Ads1262<S, R, D> {
         Ok(())
     }
 
-    /// An ADS1262 has the device number zero, and so has a dead line: only with the reset values of
-    /// the two registers behind it is it an identity.
+    /// An ADS1262 has the device number zero, which a dead line also gives; only together with the
+    /// reset values of the two following registers does it identify the chip.
     async fn identify(&mut self) -> Result<(), Fault> {
         let mut bytes = [registers::RREG | registers::ID, 2, 0, 0, 0];
         self.transfer(&mut bytes).await?;
@@ -196,13 +198,13 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Ads1262<S, R, D> {
         if is_near && !conversion.is_clipped { Ok(()) } else { Err(Fault::SelfTest) }
     }
 
-    /// Begins conversions with these registers and no others.
+    /// Begins conversions with these register contents.
     async fn run(&mut self, image: &Image) -> Result<(), Fault> {
         self.configure(image).await?;
         self.begin().await
     }
 
-    /// Sets these registers and no others: a reset stops what ran before.
+    /// Writes these register contents after a reset, which stops whatever ran before.
     async fn configure(&mut self, image: &Image) -> Result<(), Fault> {
         self.reset().await?;
         self.write(&image.written()).await?;

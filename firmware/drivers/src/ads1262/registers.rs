@@ -63,10 +63,10 @@ pub const TEST_HIGH: u8 = 0x07;
 /// TDACN: 2.0 V of a 5 V supply; each step less halves the distance from mid-supply.
 pub const TEST_LOW: u8 = 0x17;
 
-/// Registers that this driver writes: POWER to TDACN, all that bears on a conversion.
+/// Number of registers that this driver writes, POWER to TDACN: all that affect a conversion.
 pub const WRITTEN: usize = 17;
 
-/// Bytes of the commands that write or read them.
+/// Bytes of the command that writes or reads these registers.
 const COMMAND: usize = 2 + WRITTEN;
 
 /// The command that reads POWER to TDACN; the answer comes behind its first two bytes.
@@ -77,12 +77,13 @@ pub(super) const READ_BACK: [u8; COMMAND] = {
     command
 };
 
-/// What POWER to TDACN are to hold.
+/// Contents of the registers POWER to TDACN.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Image([u8; WRITTEN]);
 
 impl Image {
-    /// Status and sum, continuous, reference internal, no calibration, currents or test voltage.
+    /// Status byte and checksum as a sum, continuous conversions, internal reference; no
+    /// calibration, no excitation currents, no test voltage.
     #[must_use]
     pub const fn plain() -> Self {
         Self([0; WRITTEN])
@@ -94,7 +95,8 @@ impl Image {
             .with(IDACMUX, CURRENTS_NOWHERE)
     }
 
-    /// The same with another value at `address` (POWER to TDACN; others change nothing).
+    /// These contents with another value at `address`, which must be within POWER to TDACN; another
+    /// address changes nothing.
     #[must_use]
     pub const fn with(mut self, address: u8, value: u8) -> Self {
         let index = address.wrapping_sub(POWER) as usize;
@@ -104,13 +106,13 @@ impl Image {
         self
     }
 
-    /// The bytes from POWER on.
+    /// The bytes of the contents, from POWER on.
     #[must_use]
     pub const fn bytes(&self) -> &[u8; WRITTEN] {
         &self.0
     }
 
-    /// The command that writes them.
+    /// The command that writes the contents.
     pub(super) fn written(&self) -> [u8; COMMAND] {
         let mut command = [0; COMMAND];
         let head = [WREG | POWER, WRITTEN as u8 - 1];
@@ -118,7 +120,7 @@ impl Image {
         command
     }
 
-    /// Compares them with the answer to [`READ_BACK`].
+    /// Compares the contents with the answer to [`READ_BACK`].
     pub(super) fn verify(&self, [_, _, found @ ..]: &[u8; COMMAND]) -> Result<(), Fault> {
         for (register, (found, written)) in (POWER..).zip(found.iter().zip(&self.0)) {
             if found != written {

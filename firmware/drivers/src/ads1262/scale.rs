@@ -1,4 +1,4 @@
-//! From the converter's code to what a sensor measures: one integer multiplication.
+//! Conversion of the converter's code to the sensor's quantity by one integer multiplication.
 
 use orientation::units::AngularRate;
 
@@ -9,32 +9,33 @@ pub const INTERNAL_REFERENCE_VOLTS: f64 = 2.5;
 
 /// Codes in half of the full range.
 const CODES: f64 = 2_147_483_648.0;
-/// The multiplier has 31 bits: at least this much.
+/// Smallest multiplier: it has 31 significant bits.
 const LEAST_MULTIPLIER: f64 = 1_073_741_824.0;
 /// Greatest shift for which the sum of product and rounding fits 64 bits.
 const GREATEST_SHIFT: u32 = 62;
 
-/// What one code stands for as multiplier / 2^shift: in nrad/s, or in steps of any unit.
+/// The value of one code as multiplier / 2^shift, in nrad/s or in steps of another unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scale {
     multiplier: i32,
     shift: u32,
-    /// Half of what the shift drops.
+    /// Half of the last bit that remains after the shift, for rounding.
     half: i64,
 }
 
 impl Scale {
-    /// For a gyro of `volts_per_rad_per_s` V per rad/s (negative where it turns the other way) behind
-    /// a converter of `reference_volts` V and `gain`.
+    /// The scale of a gyro with a scale factor of `volts_per_rad_per_s` V per rad/s (negative for a
+    /// reversed axis), behind a converter with a reference of `reference_volts` V and `gain`.
     ///
-    /// The factor is rounded to nearest at 31 bits: relative error ≤ 2⁻³¹. `None` where no scale
+    /// The factor is rounded to nearest at 31 bits: relative error ≤ 2⁻³¹. `None` if no scale
     /// exists (zero, not finite) or one code is outside 2⁻³² … 2³⁰ nrad/s.
     #[must_use]
     pub const fn new(volts_per_rad_per_s: f64, reference_volts: f64, gain: Gain) -> Option<Self> {
         Self::of_steps(volts_per_rad_per_s * 1e-9, reference_volts, gain)
     }
 
-    /// The same for a sensor of `volts_per_step` V per step of its own unit.
+    /// The scale of a sensor with `volts_per_step` V per step of its own unit; `None` as for a
+    /// gyro.
     #[must_use]
     pub const fn of_steps(volts_per_step: f64, reference_volts: f64, gain: Gain) -> Option<Self> {
         let volts_per_code = reference_volts / (gain.factor() * CODES);
@@ -52,7 +53,7 @@ impl Scale {
         AngularRate(self.steps(code))
     }
 
-    /// The steps of a code, rounded and saturated in the same way.
+    /// Converts a code to steps of the sensor's unit, rounded to nearest and saturated at 32 bits.
     #[must_use]
     pub const fn steps(self, code: i32) -> i32 {
         let steps = (code as i64 * self.multiplier as i64 + self.half) >> self.shift;

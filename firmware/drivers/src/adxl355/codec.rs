@@ -1,36 +1,37 @@
-//! ADXL355: bytes to units, and what a right answer must look like.
+//! Conversion of the ADXL355's bytes to units, and checks of its answers.
 
 use orientation::units::{SpecificForce, Temperature};
 
 use super::registers::{OFFSET_X_H, OutputRate, POWER_CTL, RANGE_2_G, STANDBY, Status};
 use crate::fault::Fault;
 
-/// Registers in a burst, from the status to the last byte of z.
+/// Number of registers in a burst, from the status to the last byte of z.
 pub const BURST: usize = 13;
 
-/// Writable registers in a row, from the offsets to the self-test.
+/// Number of writable registers in a row, from the offsets to the self-test.
 pub const SETTINGS: usize = 17;
 
-/// Bits of a burst that the register map reserves as zero: all that the chip offers against a
-/// disturbed transfer. 19 of 104 bits; a line stuck high or slipped by a bit hardly keeps them zero.
+/// Bits of a burst that the register map reserves as zero, the only protection against a disturbed
+/// transfer. 19 of 104 bits; a line that is stuck high or slipped by a bit is unlikely to keep them
+/// zero.
 const RESERVED: [u8; BURST] =
     [0xE0, 0x80, 0xF0, 0x00, 0x00, 0x00, 0x0F, 0x00, 0x00, 0x0F, 0x00, 0x00, 0x0F];
 
-/// One sample as the chip sends it.
+/// One sample in the chip's format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame {
     /// The status register.
     pub status: Status,
     /// Temperature, 12 bits without sign.
     pub temperature: u16,
-    /// x, y, z; 20 bits two's complement.
+    /// Specific force on x, y, z; 20 bits, two's complement.
     pub counts: [i32; 3],
 }
 
-/// Takes a burst apart.
+/// Decodes a burst.
 ///
 /// # Errors
-/// [`Fault::Checksum`] where a bit is set that the chip keeps zero.
+/// [`Fault::Checksum`] if a bit is set that the chip keeps zero.
 pub fn frame(bytes: &[u8; BURST]) -> Result<Frame, Fault> {
     if bytes.iter().zip(RESERVED).any(|(byte, reserved)| byte & reserved != 0) {
         return Err(Fault::Checksum);
@@ -84,12 +85,12 @@ pub fn temperature(count: u16) -> Temperature {
 /// Counts per g at ±8 g, where the self-test runs.
 const COUNTS_PER_G_SELF_TEST: i64 = 64_000;
 
-/// Least and largest answer to the self-test force, thousandths of g (data sheet, Specifications:
-/// x and y 0.1 … 0.6 g, z 0.5 … 3.0 g).
+/// Smallest and largest response to the self-test force, thousandths of g (data sheet,
+/// Specifications: x and y 0.1 … 0.6 g, z 0.5 … 3.0 g).
 const SELF_TEST_LIMITS: [(i64, i64); 3] = [(100, 600), (100, 600), (500, 3000)];
 
-/// Whether the answer to the self-test force is within its limits: sums of `samples` counts at ±8 g
-/// without and with the force. What gravity and tilt add is in both, and falls out.
+/// Whether the response to the self-test force is within its limits: sums of `samples` counts at ±8
+/// g without and with the force. Gravity and tilt are in both sums and cancel.
 #[must_use]
 pub fn self_test_passes(without: [i32; 3], with: [i32; 3], samples: i32) -> bool {
     let unit = i64::from(samples) * COUNTS_PER_G_SELF_TEST;
@@ -100,7 +101,8 @@ pub fn self_test_passes(without: [i32; 3], with: [i32; 3], samples: i32) -> bool
     without.into_iter().zip(with).zip(SELF_TEST_LIMITS).all(within)
 }
 
-/// All writable registers of a measuring chip: reset values but for rate, range and power.
+/// Contents of all writable registers of a measuring chip: reset values except for rate, range and
+/// power.
 #[must_use]
 pub const fn settings(rate: OutputRate) -> [u8; SETTINGS] {
     // Offsets; activity detection with its count of 1; filter; FIFO mark at 96, interrupts and
@@ -108,11 +110,11 @@ pub const fn settings(rate: OutputRate) -> [u8; SETTINGS] {
     [0, 0, 0, 0, 0, 0, 0, 0, 0, 1, rate.filter(), 0x60, 0, 0, RANGE_2_G, 0, 0]
 }
 
-/// Compares the writable registers with what they ought to hold.
+/// Compares the writable registers with their required contents.
 ///
 /// # Errors
-/// [`Fault::Reset`] where the chip is in the standby that it wakes in, or silent (all bits alike, as
-/// while it powers up), else [`Fault::NotAsWritten`] with the first register that differs.
+/// [`Fault::Reset`] if the chip is in the standby that follows a reset, or silent (all bits alike,
+/// as while it powers up); otherwise [`Fault::NotAsWritten`] with the first register that differs.
 pub fn compare(found: &[u8; SETTINGS], expected: &[u8; SETTINGS]) -> Result<(), Fault> {
     let is_silent = *found == [0x00; SETTINGS] || *found == [0xFF; SETTINGS];
     if is_silent || found[usize::from(POWER_CTL - OFFSET_X_H)] == STANDBY {

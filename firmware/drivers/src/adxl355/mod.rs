@@ -1,10 +1,10 @@
 //! ADXL355: three-axis accelerometer on the platform (Analog Devices data sheet, rev. C). SPI mode 0.
 //!
 //! **One sample.** The data sheet ("Reading Acceleration or Temperature Data from the Interface")
-//! does not promise that the data registers of one burst belong to one sample: a sample that lands
-//! between two bytes tears it, even within an axis. So a burst from status to z is followed by a
-//! second look at the status. If a new sample came meanwhile the burst is repeated, right after that
-//! sample, when the next one is far away; at most [`ATTEMPTS`] times.
+//! does not promise that the data registers of one burst belong to one sample: a sample that
+//! completes between two bytes tears the reading, even within an axis. A burst from status to z is
+//! therefore followed by a second reading of the status. If a new sample came meanwhile, the burst
+//! is repeated, right after that sample, when the next one is far away; at most [`ATTEMPTS`] times.
 //!
 //! **What protects a reading.** The chip has no checksum. A burst has 19 bits that are always zero,
 //! which finds dead and slipped lines ([`Fault::Checksum`]); all writable registers are read back
@@ -12,14 +12,15 @@
 //! new ones; where a start has failed no reading passes. A single flipped data bit is not found: the
 //! instrument must judge plausibility.
 //!
-//! **A chip that has reset itself** wakes in standby and never has new data again, so the first
-//! reading after it is already not new, looks at the registers and tells [`Fault::Reset`].
+//! **A chip that has reset itself** is in standby and never has new data, so the first reading
+//! after the reset is not new; the registers are then read, and [`Fault::Reset`] is reported.
 //!
 //! **Not protected.** The temperature is not double-buffered and is refreshed at a rate that the data
 //! sheet does not give: rarely it may be off by 256 LSB = 28 °C, near 35.3 °C. Smooth it.
 //!
-//! The chip's own axes come out; which way they look is the instrument's business. A burst costs
-//! [`BYTES_PER_SAMPLE`] bytes on the bus, [`TIME_PER_SAMPLE`] at [`BUS_HERTZ`].
+//! Values are given on the chip's own axes; their direction on the platform is assigned by the
+//! instrument. A burst costs [`BYTES_PER_SAMPLE`] bytes on the bus, [`TIME_PER_SAMPLE`] at
+//! [`BUS_HERTZ`].
 
 pub mod codec;
 pub mod registers;
@@ -46,73 +47,78 @@ pub const BUS_HERTZ: u32 = 5_000_000;
 /// Bytes of one sample: command and burst, then command and status.
 pub const BYTES_PER_SAMPLE: usize = (1 + BURST) + (1 + 1);
 
-/// Bytes of a look at the writable registers, which a reading without a new sample adds.
+/// Bytes of a reading of the writable registers, which a burst without a new sample adds.
 pub const BYTES_PER_CHECK: usize = 1 + SETTINGS;
 
 /// Bus time of one sample.
 pub const TIME_PER_SAMPLE: Duration =
     Duration::from_nanos(BYTES_PER_SAMPLE as u64 * 8 * 1_000_000_000 / BUS_HERTZ as u64);
 
-/// Bursts before a reading is given up: each failure needs a new sample to land in it.
+/// Number of bursts before a reading is given up; each failure needs a new sample to complete
+/// within the burst.
 pub const ATTEMPTS: usize = 3;
 
-/// New samples after which the registers are looked at although all is well.
+/// Number of new samples after which the registers are read back in any case.
 pub const READS_UNCHECKED: u8 = 255;
 
-/// From power to standby (Specifications, Turn-On Time: below 10 ms).
+/// Time from power-up to standby (Specifications, Turn-On Time: below 10 ms).
 const POWER_UP: Duration = Duration::from_millis(10);
 
-/// From reset to loaded. The data sheet gives no time; Linux waits 5 ms, and the busy bit decides.
+/// Time from reset until the factory settings are loaded. The data sheet gives none; Linux waits 5
+/// ms, and the busy bit decides.
 const RESET_TIME: Duration = Duration::from_millis(5);
 
-/// Looks at the busy bit after a reset; the first look after loading still finds it set.
+/// Number of readings of the busy bit after a reset; the first one after loading still finds it
+/// set.
 const RESET_LOOKS: usize = 4;
 
-/// Resets before it is given up that the factory settings load rightly (Linux: 4).
+/// Number of resets before it is given up that the factory settings load correctly (Linux: 4).
 const RESETS: usize = 4;
 
-/// From standby, or a change of force, to 1 mg (Specifications, Turn-On Time: below 10 ms).
+/// Settling from standby, or after a change of the self-test force, to 1 mg (Specifications,
+/// Turn-On Time: below 10 ms).
 const SETTLING: Duration = Duration::from_millis(10);
 
-/// Samples of one half of the self-test: at 80 µg/√Hz and less this is far below its limits.
+/// Number of samples of one half of the self-test: at 80 µg/√Hz or less their noise is far below
+/// its limits.
 const SELF_TEST_SAMPLES: i32 = 16;
 
-/// Between the self-test's samples: four periods at 4 kHz.
+/// Time between two samples of the self-test: four periods at 4 kHz.
 const SELF_TEST_INTERVAL: Duration = Duration::from_millis(1);
 
-/// Output periods until the filter has forgotten what was before (Table "Digital Filter Group Delay
+/// Output periods until the filter has settled after a change (Table "Digital Filter Group Delay
 /// and Profile": at most 2.52 periods of delay, twice that to the end of a step).
 const FILTER_PERIODS: u32 = 5;
 
-/// What begins the two halves of the self-test, without and with the force.
+/// Register contents of the two halves of the self-test, without and with the force.
 const HALVES: &[&[(u8, u8)]] = &[
     &[(RANGE, RANGE_8_G), (SELF_TEST, SELF_TEST_MODE), (POWER_CTL, MEASURING)],
     &[(SELF_TEST, SELF_TEST_FORCE)],
 ];
 
-/// What ends it.
+/// Register content that ends the self-test.
 const AFTER_TEST: &[(u8, u8)] = &[(SELF_TEST, SELF_TEST_OFF), (POWER_CTL, STANDBY)];
 
-/// The copies of the factory settings.
+/// Copies of the factory settings.
 type Shadow = [u8; 5];
 
-/// What can be chosen.
+/// The selectable configuration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Configuration {
     /// Output data rate.
     pub rate: OutputRate,
 }
 
-/// One sample of the chip's own axes.
+/// One sample on the chip's own axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reading {
     /// Specific force on x, y, z, ±2.048 g.
     pub force: [SpecificForce; 3],
     /// Temperature of the chip, uncalibrated.
     pub temperature: Temperature,
-    /// Whether it was not there at the reading before.
+    /// Whether the sample is new since the reading before.
     pub is_fresh: bool,
-    /// Whether an axis stands at the limit of its range.
+    /// Whether an axis is at the limit of its range, ±2.048 g.
     pub is_clipped: bool,
 }
 
@@ -127,7 +133,7 @@ impl Reading {
     }
 }
 
-/// The accelerometer behind its bus.
+/// The driver of an accelerometer on its bus.
 #[derive(Debug)]
 pub struct Adxl355<S, D> {
     spi: S,
@@ -136,12 +142,12 @@ pub struct Adxl355<S, D> {
     /// The factory settings as the chip loaded them before the first software reset.
     shadow: Option<Shadow>,
     revision: u8,
-    /// New samples since all registers were right; at its limit until they are.
+    /// Number of new samples since all registers were found correct; at its limit until they are.
     reads_unchecked: u8,
 }
 
 impl<S: SpiDevice, D: DelayNs> Adxl355<S, D> {
-    /// The chip on `spi` (mode 0, at most 10 MHz); nothing is sent yet.
+    /// Creates the driver of a chip on `spi` (mode 0, at most 10 MHz); nothing is sent yet.
     pub const fn new(spi: S, delay: D, configuration: Configuration) -> Self {
         Self {
             spi,
@@ -153,7 +159,7 @@ impl<S: SpiDevice, D: DelayNs> Adxl355<S, D> {
         }
     }
 
-    /// The silicon's revision, known after [`Self::start`].
+    /// The revision of the silicon, known after [`Self::start`].
     #[must_use]
     pub const fn revision(&self) -> u8 {
         self.revision
@@ -204,7 +210,7 @@ impl<S: SpiDevice, D: DelayNs> Adxl355<S, D> {
         Ok(Reading::new(&frame, is_fresh))
     }
 
-    /// A burst in which no new sample landed, and whether it is new.
+    /// Reads a burst during which no new sample completed, and whether it is new.
     async fn sample(&mut self) -> Result<(Frame, bool), Fault> {
         let mut is_fresh = false;
         for _ in 0..ATTEMPTS {

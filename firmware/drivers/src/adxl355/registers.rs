@@ -21,7 +21,7 @@ pub const RESET: u8 = 0x2F;
 /// First of five copies of the factory settings (Reset Register, note on software resets).
 pub const SHADOW: u8 = 0x50;
 
-/// What [`RESET`] takes.
+/// The code that [`RESET`] takes.
 pub const RESET_CODE: u8 = 0x52;
 /// Maker, family and part of an ADXL355.
 pub const IDENTITY: [u8; 3] = [0xAD, 0x1D, 0xED];

@@ -1,4 +1,4 @@
-//! LSM6DSL: bytes to units, and what a healthy chip's registers hold.
+//! Conversion of the LSM6DSL's bytes to units, and the required register contents.
 
 use orientation::units::{AngularRate, DEGREE, SpecificForce, Temperature};
 
@@ -11,21 +11,21 @@ use crate::fault::Fault;
 /// Bytes of a burst: temperature, three axes of the gyro, three of the accelerometer.
 pub const BURST: usize = 14;
 
-/// Control registers that decide what a reading means, `CTRL1_XL` … `CTRL8_XL`.
+/// Number of control registers that determine the meaning of a reading, `CTRL1_XL` … `CTRL8_XL`.
 pub const SETTINGS: usize = 8;
 
-/// One sample as the chip sends it, in counts.
+/// One sample in the chip's format, in counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame {
     /// Temperature.
     pub temperature: i16,
-    /// x, y, z of the gyro.
+    /// Angular rate about x, y, z.
     pub rate: [i16; 3],
-    /// x, y, z of the accelerometer.
+    /// Specific force on x, y, z.
     pub force: [i16; 3],
 }
 
-/// Takes a burst apart: little-endian, lower byte first.
+/// Decodes a burst: little-endian, lower byte first.
 #[must_use]
 pub fn frame(bytes: &[u8; BURST]) -> Frame {
     let word = |index: usize| i16::from_le_bytes([bytes[2 * index], bytes[2 * index + 1]]);
@@ -45,7 +45,7 @@ const RATE_SCALE: i64 = (4.375e6 * DEGREE * (1 << SCALE_BITS) as f64) as i64;
 /// µm/s² per count at ±2 g: 0.061 mg (same table, `LA_So`), g = 9.80665 m/s².
 const FORCE_SCALE: i64 = (0.061e-3 * 9_806_650.0 * (1 << SCALE_BITS) as f64) as i64;
 
-/// A count in units of a scale, to nearest.
+/// A count in units of a scale factor, rounded to nearest.
 fn scaled(count: i16, scale: i64, shift: u32) -> i64 {
     (((i64::from(count) * scale) << shift) + (1 << (SCALE_BITS - 1))) >> SCALE_BITS
 }
@@ -71,33 +71,36 @@ pub fn temperature(count: i16) -> Temperature {
     Temperature(25_000 + ((i32::from(count) * 125) >> 5))
 }
 
-/// Counts of the gyro at its nominal range, the same for each: 125 °/s over 4.375 m°/s. Beyond, up
-/// to the limit of 16 bits, nothing is promised.
+/// Limit of the gyro's nominal range, counts, the same for all ranges: 125 °/s over 4.375 m°/s.
+/// Between it and the limit of 16 bits the data sheet specifies nothing.
 const RATE_LIMIT: u16 = 28_571;
 
-/// Whether a rate stands beyond the gyro's range.
+/// Whether a rate is beyond the gyro's nominal range.
 #[must_use]
 pub fn is_rate_clipped(count: i16) -> bool {
     count.unsigned_abs() >= RATE_LIMIT
 }
 
-/// Whether a force stands at a limit of its 16 bits, ±2 g of ±2 g.
+/// Whether a specific force is at the limit of its 16 bits, the nominal range.
 #[must_use]
 pub fn is_force_clipped(count: i16) -> bool {
     count.unsigned_abs() >= i16::MAX.unsigned_abs()
 }
 
-/// Least and greatest answer to the self-test force of the accelerometer at ±4 g, counts of
-/// 0.122 mg: 90 … 1700 mg (data sheet, Mechanical characteristics, Vst; ST's example tests the same).
+/// Smallest and largest response to the self-test force of the accelerometer at ±4 g, counts of
+/// 0.122 mg: 90 … 1700 mg (data sheet, Mechanical characteristics, Vst; ST's example tests the
+/// same).
 const FORCE_ANSWER: [i32; 2] = [738, 13_934];
-/// The same of the gyro at ±2000 °/s, counts of 70 m°/s: 150 … 700 °/s.
+/// Smallest and largest response to the self-test force of the gyro at ±2000 °/s, counts of 70
+/// m°/s: 150 … 700 °/s.
 const RATE_ANSWER: [i32; 2] = [2143, 10_000];
 
 /// Sums of counts of gyro and accelerometer.
 pub type Sums = [[i32; 3]; 2];
 
-/// Whether the answer to the self-test forces is within its limits: sums of so many samples without
-/// and with them. What Earth, tilt and sway add is in both, or small against the limits.
+/// Whether the responses to the self-test forces are within their limits, by sums of the same
+/// number of samples without and with the forces. Earth rate, tilt and sway are in both sums, or
+/// small against the limits.
 #[must_use]
 pub fn self_test_passes(without: &Sums, with: &Sums, samples: i32) -> bool {
     let within = |sensor: usize, [least, most]: [i32; 2]| {
@@ -118,10 +121,10 @@ pub const fn settings(configuration: &Configuration) -> [u8; SETTINGS] {
     [first, second, BLOCK_DATA_UPDATE | INCREMENT, 0, 0, 0, 0, 0]
 }
 
-/// Compares the control registers with what they ought to hold.
+/// Compares the control registers with their required contents.
 ///
 /// # Errors
-/// [`Fault::Reset`] where both sensors are off, as after a reset, or the line is dead, else
+/// [`Fault::Reset`] if both sensors are off, as after a reset, or the line is dead; otherwise
 /// [`Fault::NotAsWritten`] with the first register that differs.
 pub fn compare(found: &[u8; SETTINGS], expected: &[u8; SETTINGS]) -> Result<(), Fault> {
     if found[..2] == [0; 2] || *found == [0xFF; SETTINGS] {

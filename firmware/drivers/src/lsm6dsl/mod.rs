@@ -1,9 +1,9 @@
 //! LSM6DSL: three coarse gyros and accelerometers on the base (ST data sheet `DocID028475`). I²C.
 //!
 //! **One sample.** Gyro and accelerometer run at one rate and sample together. The chip holds the
-//! two bytes of an axis together (block data update), but a sample that lands in a burst leaves some
-//! axes older than others by one period: it shifts an axis by 5 ms, which whoever integrates rates
-//! counts as uncertain time.
+//! two bytes of an axis together (block data update), but if a sample completes within a burst,
+//! some axes are older than others by one period, 5 ms. An integration of the rates must count this
+//! as an uncertainty of time.
 //!
 //! **What protects a reading.** I²C has an acknowledge for every byte that is sent and nothing for
 //! those that are read; the chip has no checksum. The control registers are read back after `start`,
@@ -11,14 +11,16 @@
 //! where a start has failed no reading passes. A single flipped data bit is not found: the instrument
 //! must judge plausibility.
 //!
-//! **A chip that has reset itself** has both sensors off and never has new data again, so the second
-//! reading after it looks at the registers and tells [`Fault::Reset`].
+//! **A chip that has reset itself** has both sensors off and never has new data, so at the second
+//! reading after the reset the registers are read, and [`Fault::Reset`] is reported.
 //!
-//! **Sources differ** in how long a reset takes: the data sheet gives 50 µs, ST's example polls the
-//! bit, Linux waits 50 ms for the reset and again for the boot. Here the bits decide, within limits.
+//! **Sources differ** on the duration of a reset: the data sheet gives 50 µs, ST's example polls
+//! the bit, Linux waits 50 ms for the reset and again for the boot. This driver polls the bits,
+//! within limits.
 //!
-//! The chip's own axes come out; which way they look is the instrument's business. A reading costs
-//! [`BITS_PER_SAMPLE`] bit times on the bus, [`TIME_PER_SAMPLE`] at [`BUS_HERTZ`].
+//! Values are given on the chip's own axes; their direction on the base is assigned by the
+//! instrument. A reading costs [`BITS_PER_SAMPLE`] bit times on the bus, [`TIME_PER_SAMPLE`] at
+//! [`BUS_HERTZ`].
 
 pub mod codec;
 pub mod registers;
@@ -41,8 +43,8 @@ use registers::{
 /// Bus clock, Hz: the chip's fastest (I²C slave timing values, fast mode).
 pub const BUS_HERTZ: u32 = 400_000;
 
-/// Bit times of a read of so many bytes: nine for each byte, those of address, register and address
-/// again included, and start, repeated start and stop.
+/// Bit times of a read of `bytes` bytes: nine for each byte, those of address, register and
+/// repeated address included, and start, repeated start and stop.
 const fn bits(bytes: usize) -> usize {
     9 * (3 + bytes) + 3
 }
@@ -50,34 +52,36 @@ const fn bits(bytes: usize) -> usize {
 /// Bit times of one sample: status and burst.
 pub const BITS_PER_SAMPLE: usize = bits(1) + bits(BURST);
 
-/// Bit times of a look at the control registers.
+/// Bit times of a reading of the control registers.
 pub const BITS_PER_CHECK: usize = bits(SETTINGS);
 
 /// Bus time of one sample.
 pub const TIME_PER_SAMPLE: Duration =
     Duration::from_nanos(BITS_PER_SAMPLE as u64 * 1_000_000_000 / BUS_HERTZ as u64);
 
-/// New samples after which the registers are looked at although all is well.
+/// Number of new samples after which the registers are read back in any case.
 pub const READS_UNCHECKED: u8 = 255;
 
-/// From power to an answer (ST's example: boot time 15 ms), and from the boot bit to its end.
+/// Time from power-up to an answer (ST's example: boot time 15 ms), and from setting the boot bit
+/// to its end.
 const BOOT_TIME: Duration = Duration::from_millis(15);
 
-/// Between looks at a bit that clears itself.
+/// Time between two readings of a bit that clears itself.
 const LOOK: Duration = Duration::from_millis(5);
-/// Looks before it is given up: together Linux' 50 ms.
+/// Number of readings of that bit before it is given up: 50 ms in total, as in Linux.
 const LOOKS: usize = 10;
 
-/// From off, or a change of force, to settled data (ST's example: 150 ms for the gyro, the longest).
+/// Settling from power-off, or after a change of the self-test force, to valid data (ST's example:
+/// 150 ms for the gyro, the longest).
 const SETTLING: Duration = Duration::from_millis(150);
 
-/// Samples of one half of the self-test, as in ST's example.
+/// Number of samples of one half of the self-test, as in ST's example.
 const SELF_TEST_SAMPLES: i32 = 5;
 
-/// Between the self-test's samples: a period at 52 Hz and its tolerance.
+/// Time between two samples of the self-test: a period at 52 Hz and its tolerance.
 const SELF_TEST_INTERVAL: Duration = Duration::from_millis(22);
 
-/// What can be chosen.
+/// The selectable configuration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Configuration {
     /// Output data rate of both sensors.
@@ -88,7 +92,7 @@ pub struct Configuration {
     pub force: ForceRange,
 }
 
-/// One sample of the chip's own axes.
+/// One sample on the chip's own axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reading {
     /// Rates about x, y, z.
@@ -97,9 +101,9 @@ pub struct Reading {
     pub force: [SpecificForce; 3],
     /// Temperature of the chip, uncalibrated.
     pub temperature: Temperature,
-    /// Whether a rate stands beyond its range, or beyond that of its type.
+    /// Whether a rate is beyond its nominal range, or beyond the range of its type.
     pub is_rate_clipped: bool,
-    /// Whether a force stands at the limit of its range.
+    /// Whether a specific force is at the limit of its range.
     pub is_force_clipped: bool,
 }
 
@@ -117,32 +121,34 @@ impl Reading {
     }
 }
 
-/// The coarse gyros and accelerometers behind their bus.
+/// The driver of coarse gyros and accelerometers on their bus.
 #[derive(Debug)]
 pub struct Lsm6dsl<I, D> {
     bus: I,
     delay: D,
     address: u8,
     configuration: Configuration,
-    /// New samples since the registers were right; at its limit until they are.
+    /// Number of new samples since the registers were found correct; at its limit until they are.
     reads_unchecked: u8,
     /// Whether the latest reading was not new.
     was_stale: bool,
 }
 
 impl<I: I2c, D: DelayNs> Lsm6dsl<I, D> {
-    /// The chip at a 7-bit address on `bus` (at most 400 kHz); nothing is sent yet.
+    /// Creates the driver of a chip at a 7-bit address on `bus` (at most 400 kHz); nothing is sent
+    /// yet.
     pub const fn new(bus: I, delay: D, address: u8, configuration: Configuration) -> Self {
         let reads_unchecked = READS_UNCHECKED;
         Self { bus, delay, address, configuration, reads_unchecked, was_stale: false }
     }
 
-    /// Brings the chip from any state to measuring: identity, reset, boot, self-test, configuration,
-    /// read-back. Takes about 0.75 s, most of it the self-test; the base may sway meanwhile.
+    /// Brings the chip from any state to measuring: identity, reset, boot, self-test,
+    /// configuration, read-back. Takes about 0.75 s, most of it the self-test; the base may sway
+    /// meanwhile.
     ///
     /// # Errors
-    /// [`Fault::Bus`], also where nobody acknowledges; [`Fault::Identity`]; [`Fault::NotReady`] where
-    /// a reset does not end or no samples come; [`Fault::SelfTest`]; [`Fault::NotAsWritten`].
+    /// [`Fault::Bus`], also if no chip acknowledges; [`Fault::Identity`]; [`Fault::NotReady`] if a
+    /// reset does not end or no samples come; [`Fault::SelfTest`]; [`Fault::NotAsWritten`].
     pub async fn start(&mut self) -> Result<(), Fault> {
         self.reads_unchecked = READS_UNCHECKED;
         pause(&mut self.delay, BOOT_TIME).await;
@@ -156,7 +162,7 @@ impl<I: I2c, D: DelayNs> Lsm6dsl<I, D> {
         self.check().await
     }
 
-    /// Reads the newest sample; none where it was read before.
+    /// Reads the newest sample; `None` if it has been read before.
     ///
     /// # Errors
     /// [`Fault::Bus`]; [`Fault::Reset`]; [`Fault::NotAsWritten`] for a register that has changed.
@@ -198,7 +204,8 @@ impl<I: I2c, D: DelayNs> Lsm6dsl<I, D> {
         Err(Fault::NotReady)
     }
 
-    /// Self-test of both sensors together: the difference that their forces make.
+    /// Runs the self-test of both sensors together: measures the difference that the self-test
+    /// forces make.
     async fn test(&mut self) -> Result<(), Fault> {
         let begin = [
             (CTRL3_C, BLOCK_DATA_UPDATE | INCREMENT),
@@ -214,7 +221,7 @@ impl<I: I2c, D: DelayNs> Lsm6dsl<I, D> {
         if passes { Ok(()) } else { Err(Fault::SelfTest) }
     }
 
-    /// Adds some samples after settling; what came before is read and forgotten.
+    /// Sums samples after settling; the sample before is read and discarded.
     async fn sums(&mut self) -> Result<Sums, Fault> {
         pause(&mut self.delay, SETTLING).await;
         self.sample().await?;
@@ -235,7 +242,7 @@ impl<I: I2c, D: DelayNs> Lsm6dsl<I, D> {
         Ok(sums)
     }
 
-    /// Compares the control registers with what they ought to hold.
+    /// Compares the control registers with their required contents.
     async fn check(&mut self) -> Result<(), Fault> {
         let mut found = [0; SETTINGS];
         self.read_from(CTRL1_XL, &mut found).await?;

@@ -10,7 +10,8 @@ pub const ADDRESS_HIGH: u8 = 0x6B;
 
 /// Identity.
 pub const WHO_AM_I: u8 = 0x0F;
-/// What it holds. LSM6DSM, ISM330DLC and LSM6DS3TR-C hold the same and have the same registers.
+/// Content of the identity register. LSM6DSM, ISM330DLC and LSM6DS3TR-C have the same identity and
+/// the same registers.
 pub const IDENTITY: u8 = 0x6A;
 /// Rate and range of the accelerometer, first of the control registers.
 pub const CTRL1_XL: u8 = 0x10;
@@ -95,7 +96,7 @@ impl OutputRate {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum RateRange {
-    /// ±125 °/s: beyond it nothing sways.
+    /// ±125 °/s, more than the sway of any base.
     #[default]
     Dps125 = 0b001,
     /// ±250 °/s.
@@ -109,7 +110,7 @@ pub enum RateRange {
 }
 
 impl RateRange {
-    /// By how many powers of two a count is worth more than at ±125 °/s.
+    /// Binary logarithm of the value of a count relative to that at ±125 °/s.
     #[must_use]
     pub const fn shift(self) -> u32 {
         match self {
@@ -138,7 +139,7 @@ pub enum ForceRange {
 }
 
 impl ForceRange {
-    /// By how many powers of two a count is worth more than at ±2 g.
+    /// Binary logarithm of the value of a count relative to that at ±2 g.
     #[must_use]
     pub const fn shift(self) -> u32 {
         match self {

@@ -1,4 +1,4 @@
-//! MT6835: bytes to units, and the checksum.
+//! Conversion of the MT6835's bytes to units, and its checksum.
 
 use orientation::units::Angle;
 
@@ -8,19 +8,19 @@ use super::registers::{
 };
 use crate::fault::Fault;
 
-/// An angle with what the chip says of it.
+/// An angle with the warnings of the chip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame {
     /// The angle, exact: 21 bits are the upper ones of 32.
     pub angle: Angle,
-    /// Three warnings.
+    /// The three warning bits.
     pub status: u8,
 }
 
-/// Takes a burst apart: 21 bits of angle, 3 of status, 8 of checksum.
+/// Decodes a burst: 21 bits of angle, 3 of status, 8 of checksum.
 ///
 /// # Errors
-/// [`Fault::Checksum`].
+/// [`Fault::Checksum`] if the checksum is wrong.
 pub fn frame(bytes: [u8; 4]) -> Result<Frame, Fault> {
     let [high, middle, low, found] = bytes;
     if checksum(&[high, middle, low]) != found {
@@ -55,23 +55,23 @@ pub const fn write(register: u16, value: u8) -> [u8; 3] {
     [WRITE | (register >> 8) as u8, register as u8, value]
 }
 
-/// The direction register with direction and hysteresis exchanged, and the maker's bits kept.
+/// The direction register with new direction and hysteresis; the manufacturer's bits are kept.
 #[must_use]
 pub const fn direction(kept: u8, is_reversed: bool, hysteresis: Hysteresis) -> u8 {
     let direction = if is_reversed { REVERSED } else { 0 };
     kept & !DIRECTION_MASK | direction | hysteresis as u8
 }
 
-/// The bandwidth register with the bandwidth exchanged, and the maker's bits kept.
+/// The bandwidth register with a new bandwidth; the manufacturer's bits are kept.
 #[must_use]
 pub const fn bandwidth(kept: u8, bandwidth: Bandwidth) -> u8 {
     kept & !BANDWIDTH_MASK | bandwidth as u8
 }
 
-/// Whether the chip is fit by the state of its self-calibration: none made, or one that succeeded.
+/// Checks the state of the self-calibration: valid if none was made or if it succeeded.
 ///
 /// # Errors
-/// [`Fault::NotReady`] while it runs, [`Fault::SelfTest`] where it has failed.
+/// [`Fault::NotReady`] while it runs, [`Fault::SelfTest`] if it has failed.
 pub const fn calibration(register: u8) -> Result<(), Fault> {
     match register >> 6 {
         CALIBRATION_RUNS => Err(Fault::NotReady),

@@ -1,20 +1,21 @@
 //! MT6835: 21-bit angle encoder of the stage (`MagnTek` data sheet, rev. 1.3). SPI mode 3.
 //!
-//! **Identity.** The chip has no fixed number to know it by. `start` therefore writes three patterns
-//! to the byte that is free for the user and reads them back through the chip's 12-bit addresses;
-//! with the checksum of a burst that is as near to an identity as it offers. The last pattern stays.
+//! **Identity.** The chip has no fixed identification. `start` therefore writes three patterns to
+//! the byte that is free for the user and reads them back through the chip's 12-bit addresses;
+//! together with the checksum of a burst this is as near to an identification as the chip permits.
+//! The last pattern stays.
 //!
 //! **A chip that has reset itself** has loaded its registers from the EEPROM again and has lost the
 //! pattern. There is no status bit for it, so every reading also reads one register: the pattern at
-//! every other reading, between them the registers that the angle depends on, in turn. A reset is told
-//! by the second reading after it at the latest, another changed register within ten. A burst of
-//! zeros passes its checksum: it is believed only after the pattern was seen.
+//! every other reading, between them the registers that the angle depends on, in turn. A reset is
+//! reported by the second reading after it at the latest, another changed register within ten. A
+//! burst of zeros passes its checksum, so it is accepted only after the pattern has been read.
 //!
 //! **RAM only.** The EEPROM lasts for some thousand programmings and a wrong one stays; this driver
 //! has no way to send the commands for programming or for setting the zero.
 //!
-//! **No reset.** The chip knows no reset command; it restarts by its supply alone. `start` sets every
-//! register that the driver owns and keeps the maker's bits in them.
+//! **No reset.** The chip has no reset command; it restarts by its supply alone. `start` writes
+//! every register that the driver uses and keeps the manufacturer's bits in them.
 //!
 //! A reading costs [`BYTES_PER_READING`] bytes on the bus, [`TIME_PER_READING`] at [`BUS_HERTZ`].
 
@@ -44,52 +45,53 @@ pub const BYTES_PER_READING: usize = 6 + 3;
 pub const TIME_PER_READING: Duration =
     Duration::from_nanos(BYTES_PER_READING as u64 * 8 * 1_000_000_000 / BUS_HERTZ as u64);
 
-/// From power to angles. 64 ms by the data sheet (Electrical Characteristics, Power-up Time), as a
-/// public evaluation of the chip quotes it, and a margin of a tenth.
+/// Time from power-up to valid angles. 64 ms by the data sheet (Electrical Characteristics,
+/// Power-up Time), as a public evaluation of the chip quotes it, and a margin of a tenth.
 const POWER_UP: Duration = Duration::from_millis(70);
 
-/// What a started chip's user byte holds; neither what an empty EEPROM nor a dead line gives.
+/// Content of the user byte of a started chip; an empty EEPROM and a dead line give other values.
 const PATTERN: u8 = 0x4D;
 
-/// Written and read back in turn to know the chip by: each bit both ways, then the pattern that stays.
+/// Patterns that are written and read back in turn to identify the chip: each bit in both states,
+/// then the pattern that stays.
 const PATTERNS: [u8; 3] = [0xA5, 0x5A, PATTERN];
 
-/// The registers that the angle depends on.
+/// Addresses of the registers that the angle depends on.
 const WATCHED: [u16; 5] = [DIRECTION, BANDWIDTH, ZERO_HIGH, ZERO_LOW, CORRECTION];
 
-/// What can be chosen.
+/// The selectable configuration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Configuration {
-    /// Whether the angle is to fall where the chip by itself would let it rise. Which way that is
-    /// depends on the side that the chip is mounted on.
+    /// Whether the angle is to be reversed against the chip's own direction, which depends on the
+    /// side on which the chip is mounted.
     pub is_reversed: bool,
-    /// Hysteresis.
+    /// Hysteresis of the angle.
     pub hysteresis: Hysteresis,
-    /// Bandwidth.
+    /// Bandwidth of the angle filter.
     pub bandwidth: Bandwidth,
 }
 
-/// One angle.
+/// One reading of the angle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reading {
     /// The shaft's angle when the transfer began, in steps of 2⁻²¹ turn; the conversion is exact.
     pub angle: Angle,
 }
 
-/// The encoder behind its bus.
+/// The driver of an encoder on its bus.
 #[derive(Debug)]
 pub struct Mt6835<S, D> {
     spi: S,
     delay: D,
     configuration: Configuration,
-    /// What the watched registers held at the start; nothing before a start has come to its end.
+    /// Contents of the watched registers at the start; empty until a start has succeeded.
     expected: Option<[u8; WATCHED.len()]>,
-    /// Counts readings, modulo twice the watched registers.
+    /// Number of readings, modulo twice the number of watched registers.
     turn: usize,
 }
 
 impl<S: SpiDevice, D: DelayNs> Mt6835<S, D> {
-    /// The chip on `spi` (mode 3, at most 16 MHz); nothing is sent yet.
+    /// Creates the driver of a chip on `spi` (mode 3, at most 16 MHz); nothing is sent yet.
     pub const fn new(spi: S, delay: D, configuration: Configuration) -> Self {
         Self { spi, delay, configuration, expected: None, turn: 0 }
     }
@@ -134,7 +136,12 @@ impl<S: SpiDevice, D: DelayNs> Mt6835<S, D> {
         }
     }
 
-    /// Looks at the register whose turn it is, and at the pattern where there is doubt.
+    /// Reads the register whose turn it is. A doubtful burst, one of zeros, passes its checksum, so
+    /// the pattern is read as well.
+    ///
+    /// # Errors
+    /// [`Fault::Reset`] if the pattern is lost or no start has succeeded, [`Fault::NotAsWritten`]
+    /// if a register has changed.
     async fn watch(&mut self, is_doubtful: bool) -> Result<(), Fault> {
         let expected = self.expected.ok_or(Fault::Reset)?;
         let (index, is_pattern) = (self.turn / 2, self.turn.is_multiple_of(2));
@@ -177,8 +184,10 @@ impl<S: SpiDevice, D: DelayNs> Mt6835<S, D> {
         held(register, self.agreed(register).await?, value)
     }
 
-    /// A register that reads the same twice: single registers have no checksum, and what is read
-    /// here is written back.
+    /// Reads a register twice: single registers have no checksum, and the value is written back.
+    ///
+    /// # Errors
+    /// [`Fault::Checksum`] if the two readings differ.
     async fn agreed(&mut self, register: u16) -> Result<u8, Fault> {
         let value = self.register(register).await?;
         if self.register(register).await? == value { Ok(value) } else { Err(Fault::Checksum) }
@@ -206,7 +215,8 @@ impl<S: SpiDevice, D: DelayNs> Mt6835<S, D> {
     }
 }
 
-/// Whether a register holds what it ought to; registers above 0xFF are told by their lower byte.
+/// Whether a register holds its required content; a register above 0xFF is reported by its lower
+/// byte.
 fn held(register: u16, found: u8, expected: u8) -> Result<(), Fault> {
     let fault = Fault::NotAsWritten { register: register as u8 };
     if found == expected { Ok(()) } else { Err(fault) }

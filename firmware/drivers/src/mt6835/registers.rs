@@ -10,7 +10,7 @@ pub const WRITE: u8 = 0x60;
 /// Burst read of the angle, its status and checksum.
 pub const BURST: [u8; 2] = [0xA0, 0x03];
 
-/// A byte that is free for the user.
+/// The byte that is free for the user.
 pub const USER_ID: u16 = 0x001;
 /// Zero position, upper 8 of 12 bits.
 pub const ZERO_HIGH: u16 = 0x009;
@@ -45,7 +45,7 @@ pub const WEAK_MAGNET: u8 = 0b010;
 /// Status bits of a burst: the supply is too low.
 pub const UNDERVOLTAGE: u8 = 0b100;
 
-/// How far the shaft must turn back before the angle follows.
+/// Hysteresis: the angle by which the shaft must turn back before the reading follows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Hysteresis {
@@ -57,14 +57,15 @@ pub enum Hysteresis {
     Degrees0088 = 2,
     /// 0.176°.
     Degrees0176 = 3,
-    /// None: a stage that is asked where it stands must not answer where it stood.
+    /// No hysteresis: the reading of a stage at rest must not depend on the direction of the
+    /// approach.
     #[default]
     Off = 4,
     /// 0.003°.
     Degrees0003 = 5,
     /// 0.006°.
     Degrees0006 = 6,
-    /// 0.011°, the factory's.
+    /// 0.011°, the factory setting.
     Degrees0011 = 7,
 }
 
@@ -72,21 +73,21 @@ pub enum Hysteresis {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Bandwidth {
-    /// The narrowest, with the least noise: the stage is read at rest.
+    /// The narrowest bandwidth, with the least noise: the stage is read at rest.
     #[default]
     X1 = 0,
-    /// Twice.
+    /// Twice the narrowest bandwidth.
     X2 = 1,
-    /// 4 times.
+    /// 4 times the narrowest bandwidth.
     X4 = 2,
-    /// 8 times.
+    /// 8 times the narrowest bandwidth.
     X8 = 3,
-    /// 16 times.
+    /// 16 times the narrowest bandwidth.
     X16 = 4,
-    /// 32 times, the factory's.
+    /// 32 times the narrowest bandwidth, the factory setting.
     X32 = 5,
-    /// 64 times.
+    /// 64 times the narrowest bandwidth.
     X64 = 6,
-    /// 128 times.
+    /// 128 times the narrowest bandwidth.
     X128 = 7,
 }

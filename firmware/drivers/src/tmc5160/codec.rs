@@ -1,4 +1,4 @@
-//! Bytes and register values, without any bus.
+//! Datagrams and register contents, without a bus.
 
 use super::configuration::{Configuration, Currents, Polarity, Stall};
 use super::registers as register;
@@ -28,20 +28,20 @@ const FULL_SCALE_UV: u64 = 229_810;
 /// Slow enough for the open-load detector (11.3): one turn of the motor a second.
 const OPEN_LOAD_BELOW: Velocity = Velocity(200 * 256);
 
-/// A datagram that writes.
+/// The datagram that writes a register.
 #[must_use]
 pub fn write(address: Address, data: u32) -> [u8; DATAGRAM] {
     let [a, b, c, d] = data.to_be_bytes();
     [address.0 | register::WRITE, a, b, c, d]
 }
 
-/// A datagram that asks for a register; its content comes with the next one.
+/// The datagram that requests a register; its content comes with the next reply.
 #[must_use]
 pub fn read(address: Address) -> [u8; DATAGRAM] {
     [address.0, 0, 0, 0, 0]
 }
 
-/// The status byte and the data of a reply.
+/// Splits a reply into status byte and data.
 #[must_use]
 pub fn reply([status, a, b, c, d]: [u8; DATAGRAM]) -> (u8, u32) {
     (status, u32::from_be_bytes([a, b, c, d]))
@@ -85,17 +85,18 @@ impl Scales {
     }
 }
 
-/// What stops the motor: soft stops and stall stops exclude each other (6.3.2.1).
+/// The conditions that stop the motor. Soft stops and stall stops exclude each other (6.3.2.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Guard {
-    /// Switches stop by the ramp, a stall is not looked for.
+    /// Switches stop by the ramp; stalls are not detected.
     Soft,
     /// Stalls and switches stop at once.
     Stall,
 }
 
 impl Guard {
-    /// The guard of motions at a velocity: stalls where they can be told.
+    /// The stop conditions of a motion at a velocity: stalls are included where the velocity is
+    /// high enough to detect them.
     #[must_use]
     pub fn at(stall: Option<Stall>, velocity: Velocity) -> Self {
         let can_tell = |stall: Stall| velocity.0.unsigned_abs() > stall.above.0.unsigned_abs();
@@ -171,20 +172,20 @@ pub fn settings(configuration: &Configuration) -> [(Address, u32); 24] {
     ]
 }
 
-/// What is wrong with the bridges or the motor.
+/// A failure of the bridges or the motor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DriverError {
     /// The bridges are or were too hot: let them cool, then start the chip again.
     OverTemperature,
     /// A coil is short to ground or to the supply: check the wiring, then start the chip again.
     Short,
-    /// A coil is not connected: check the wiring. Told in slow motion only (11.3).
+    /// A coil is not connected: check the wiring. Valid only at low velocity (11.3).
     OpenLoad,
     /// The charge pump's voltage is or was low: check the supply, then start the chip again.
     ChargePump,
 }
 
-/// What the motor does.
+/// The state of the motor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(clippy::struct_excessive_bools, reason = "they are independent flags of the chip")]
 pub struct Status {
@@ -192,22 +193,22 @@ pub struct Status {
     pub position: i32,
     /// The ramp's velocity.
     pub velocity: Velocity,
-    /// The position is the target.
+    /// Whether the position equals the target.
     pub reached: bool,
-    /// The motor stands.
+    /// Whether the motor stands.
     pub standing: bool,
-    /// A stall has stopped it and waits to be acknowledged.
+    /// Whether a stall has stopped the motor and has not been acknowledged.
     pub stalled: bool,
-    /// The left switch is touched.
+    /// Whether the left switch is active.
     pub left_switch: bool,
-    /// The right switch is touched.
+    /// Whether the right switch is active.
     pub right_switch: bool,
-    /// What is wrong with the bridges or the motor.
+    /// The failure of the bridges or the motor, if there is one.
     pub driver_error: Option<DriverError>,
 }
 
 impl Status {
-    /// From `RAMP_STAT`, XACTUAL, VACTUAL, `DRV_STATUS` and GSTAT.
+    /// Decodes `RAMP_STAT`, XACTUAL, VACTUAL, `DRV_STATUS` and GSTAT.
     #[must_use]
     pub fn new(clock: Clock, [ramp, position, velocity, driver, global]: [u32; 5]) -> Self {
         let is_set = |bit: u32| ramp & bit != 0;

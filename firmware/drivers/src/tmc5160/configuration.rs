@@ -1,4 +1,5 @@
-//! What the motor driver is told: ramp, currents, stall, switches. The default is the stage's.
+//! Configuration of the motor driver: ramp, currents, stall detection and switches. The default is
+//! that of the stage.
 
 use core::time::Duration;
 
@@ -54,60 +55,60 @@ impl Ramp {
 /// Currents of the motor's coils.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Currents {
-    /// While it moves, mA rms.
+    /// Current during a motion, mA rms.
     pub run_ma: u16,
-    /// While it stands, mA rms; ≤ `run_ma`.
+    /// Current at rest, mA rms; ≤ `run_ma`.
     pub hold_ma: u16,
-    /// Sense resistors, mΩ, > 0.
+    /// Resistance of the sense resistors, mΩ, > 0.
     pub sense_milliohm: u16,
 }
 
-/// When the motor counts as blocked.
+/// Stall detection: the load at which the motor counts as blocked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stall {
-    /// SGT, −64 … 63: higher needs more load (13.1).
+    /// Threshold SGT, −64 … 63: a higher value needs more load (13.1).
     pub threshold: i8,
-    /// `StallGuard2` is silent below this velocity, where it cannot work (13.5).
+    /// Velocity below which `StallGuard2` is disabled, since it cannot work there (13.5).
     pub above: Velocity,
 }
 
-/// The level of a switch's input where it is touched.
+/// Polarity of a reference switch: the level of its input when active.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Polarity {
     /// A normally open switch to the supply.
     ActiveHigh,
-    /// A normally closed one: a broken wire counts as touched.
+    /// A normally closed switch: a broken wire counts as active.
     ActiveLow,
 }
 
-/// The reference switches; one that is not there does not stop.
+/// The reference switches; `None` for a switch that is not fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Switches {
-    /// At the lower end; it stops motions to the left.
+    /// The switch at the lower end; it stops motions to the left.
     pub left: Option<Polarity>,
-    /// At the upper end.
+    /// The switch at the upper end; it stops motions to the right.
     pub right: Option<Polarity>,
 }
 
-/// All of it.
+/// The complete configuration of the motor driver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Configuration {
-    /// The chip's clock.
+    /// Clock of the chip.
     pub clock: Clock,
-    /// How it moves to a position.
+    /// Ramp of a motion to a position.
     pub ramp: Ramp,
-    /// The coils' currents.
+    /// Currents of the coils.
     pub currents: Currents,
-    /// Whether a stall stops the motor.
+    /// Stall detection, if it is used.
     pub stall: Option<Stall>,
-    /// The reference switches.
+    /// Reference switches.
     pub switches: Switches,
-    /// The motor turns the other way.
+    /// Whether the motor's direction is reversed.
     pub reversed: bool,
 }
 
 impl Default for Ramp {
-    /// The stage's: at most 0.35 rad/s; 15° take 1.20 s and 360° 18.41 s.
+    /// The ramp of the stage: at most 0.35 rad/s; 15° take 1.20 s and 360° 18.41 s.
     fn default() -> Self {
         Self {
             start: Velocity(0),
@@ -123,8 +124,8 @@ impl Default for Ramp {
 }
 
 impl Default for Configuration {
-    /// The stage's: a motor of 1 A that is held with half of it, a stall stop from one turn of the
-    /// motor a second (13.5), a left switch.
+    /// The configuration of the stage: a motor of 1 A, held with half of its current; a stall stop
+    /// from one turn of the motor per second (13.5); a left switch.
     fn default() -> Self {
         Self {
             clock: Clock::default(),

@@ -1,4 +1,5 @@
-//! Datagrams on the bus: replies that come one late, and what they must hold.
+//! Transfer of datagrams: replies come one datagram late and are compared with their required
+//! contents.
 
 use embedded_hal_async::spi::{Operation, SpiDevice};
 
@@ -7,21 +8,23 @@ use super::configuration::Configuration;
 use super::registers::{Address, IOIN, spi_status};
 use crate::fault::Fault;
 
-/// One way through some registers: a datagram for each and one more, which fetches the last reply.
+/// A pass through a set of registers: a datagram for each, and one more, which fetches the last
+/// reply.
 #[derive(Debug)]
 pub(super) enum Pass<'a> {
-    /// Reads registers into these places.
+    /// Reads registers.
     Read(&'a [Address], &'a mut [u32]),
-    /// Writes contents; the chip must tell that it received them.
+    /// Writes contents; the chip must send back the data that it received.
     Write(&'a [(Address, u32)]),
-    /// Writes the settings of a configuration, each made when it is due: all take much room.
+    /// Writes the settings of a configuration. Each is computed when it is due, since all of them
+    /// together take much memory.
     Configure(&'a Configuration),
-    /// Reads registers, which must hold these contents.
+    /// Reads registers and compares them with these contents.
     Verify(&'a [(Address, u32)]),
 }
 
 impl Pass<'_> {
-    /// The datagram for the register in a place; none behind the last one.
+    /// The datagram for the register with this index; `None` behind the last one.
     fn datagram(&self, place: usize) -> Option<[u8; codec::DATAGRAM]> {
         match self {
             Self::Read(addresses, _) => addresses.get(place).map(|address| codec::read(*address)),
@@ -32,7 +35,7 @@ impl Pass<'_> {
         }
     }
 
-    /// What the register in a place is to hold.
+    /// The required content of the register with this index.
     fn content(&self, place: usize) -> Option<(Address, u32)> {
         match self {
             Self::Read(..) => None,
@@ -41,7 +44,8 @@ impl Pass<'_> {
         }
     }
 
-    /// Takes what came for the register in a place; its address where that is not what it ought to be.
+    /// Takes the reply for the register with this index; the register's address if the reply
+    /// differs from the required content.
     fn take(&mut self, place: usize, data: u32) -> Option<Address> {
         if let Self::Read(_, values) = self
             && let Some(value) = values.get_mut(place)
@@ -53,13 +57,13 @@ impl Pass<'_> {
     }
 }
 
-/// The bus with the chip on it.
+/// The chip on its bus.
 #[derive(Debug)]
 pub(super) struct Link<S>(pub S);
 
 impl<S: SpiDevice> Link<S> {
-    /// Makes passes one after another; all status bits that were set in any datagram on the way.
-    /// Ends after the first that tells of a reset, unless that may be.
+    /// Makes passes one after another and returns all status bits that were set in any of the
+    /// datagrams. Ends after the first datagram that reports a reset, unless a reset is permitted.
     pub async fn pass(&mut self, passes: &mut [Pass<'_>], may_be_reset: bool) -> Result<u8, Fault> {
         let mut seen = 0;
         for pass in passes {
@@ -73,7 +77,7 @@ impl<S: SpiDevice> Link<S> {
                 seen |= status;
                 let differs = place.checked_sub(1).and_then(|last| pass.take(last, data));
                 wrong = wrong.or(differs.map(|register| not_as_written(register, status)));
-                // What was not received as it was sent is no ground to send more on.
+                // After a datagram that was not received correctly, nothing more is sent.
                 if datagram.is_none() || wrong.is_some() && !matches!(pass, Pass::Verify(_)) {
                     break;
                 }
@@ -87,7 +91,7 @@ impl<S: SpiDevice> Link<S> {
     }
 }
 
-/// Why a register does not hold what it ought to.
+/// The fault of a register that does not hold its required content.
 const fn not_as_written(Address(register): Address, status: u8) -> Fault {
     if status & spi_status::RESET == 0 { Fault::NotAsWritten { register } } else { Fault::Reset }
 }

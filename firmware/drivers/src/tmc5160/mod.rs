@@ -3,7 +3,7 @@
 //! SPI mode 3, datagrams of 40 bits, at most 4 MHz with the internal oscillator (4.3). A read takes two
 //! datagrams, because a reply carries what the datagram before it asked for.
 //!
-//! There is no checksum. What stands in for one:
+//! The chip has no checksum. Other checks take its place:
 //! - after every write the chip sends back the data it received (4.1.1), and all of it is compared:
 //!   a bit that flips in the data is noticed, on the way in or out;
 //! - registers that can be read are read back: [`start`](Tmc5160::start) does so for `GCONF`, `CHOPCONF`,
@@ -14,8 +14,9 @@
 //!   same where the motor stands: dead lines and a flipped bit of a standing position are noticed. A
 //!   flipped bit of a moving position is not: the stage's encoder is the judge of that.
 //!
-//! Each status byte is looked at: a chip that has been reset is [`Fault::Reset`] in every function
-//! but `start`, and one that has shut its bridges down refuses motions with [`Fault::Alarm`].
+//! Each status byte is evaluated: a chip that has been reset is reported as [`Fault::Reset`] by
+//! every function except `start`, and one that has shut its bridges down refuses motions with
+//! [`Fault::Alarm`].
 //!
 //! | budget at [`BUS_HERTZ`] | datagrams | bytes | time |
 //! |---|--:|--:|--:|
@@ -61,10 +62,10 @@ pub const fn bus_time(bytes: usize) -> Duration {
 /// The reset ends 10 µs after the supply is there (28.2, typical only): a hundred times that.
 const POWER_UP: Duration = Duration::from_millis(1);
 
-/// Between two looks at a motor that is being stopped.
+/// Time between two readings of the state of a motor that is being stopped.
 const STOPPING: Duration = Duration::from_millis(20);
 
-/// Looks until a motor must stand: 2 s, three times the slowest default ramp.
+/// Number of readings until the motor must stand: 2 s, three times the slowest default ramp.
 const STOPPING_LOOKS: usize = 100;
 
 /// Between switching the bridges on and asking for shorts: some 50 chopper periods, in which the chip
@@ -74,10 +75,10 @@ const BRIDGE_TEST: Duration = Duration::from_millis(2);
 /// Slows down to rest.
 const STOP: [(Address, u32); 2] = [(registers::VMAX, 0), (registers::RAMPMODE, ramp_mode::FORWARD)];
 
-/// Stays at rest, whatever target and velocity are told.
+/// Holds the motor at rest, whatever target and velocity are set.
 const HOLD: [(Address, u32); 1] = [(registers::RAMPMODE, ramp_mode::HOLD)];
 
-/// Lets a motor that has stalled move again, but not yet.
+/// Clears a stall, so that the motor may move again, without starting it.
 const CLEAR_STALL: [(Address, u32); 3] = [
     (registers::VMAX, 0),
     (registers::RAMPMODE, ramp_mode::HOLD),
@@ -88,7 +89,7 @@ const CLEAR_STALL: [(Address, u32); 3] = [
 const CLEAR_ERRORS: [(Address, u32); 2] =
     [(registers::CHOPCONF, codec::CHOPPER_OFF), (registers::GSTAT, gstat::ALL)];
 
-/// What a status is made of; the version and the position again tell whether the rest is true.
+/// Registers of a status; version and position are read a second time to verify the rest.
 const LOOKED_AT: [Address; 7] = [
     registers::RAMP_STAT,
     registers::XACTUAL,
@@ -99,7 +100,7 @@ const LOOKED_AT: [Address; 7] = [
     registers::XACTUAL,
 ];
 
-/// The driver.
+/// The driver of a TMC5160 on its bus.
 #[derive(Debug)]
 pub struct Tmc5160<S, D> {
     link: Link<S>,
@@ -108,7 +109,7 @@ pub struct Tmc5160<S, D> {
 }
 
 impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
-    /// A chip that is not yet started.
+    /// Creates the driver of a chip that has not been started.
     #[must_use]
     pub const fn new(spi: S, delay: D, configuration: Configuration) -> Self {
         Self { link: Link(spi), delay, configuration }
@@ -134,11 +135,11 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
         self.test_bridges().await
     }
 
-    /// Moves to a position, microsteps, by the ramp; also on the fly. From rest the target is read back
-    /// before the motor leaves.
+    /// Moves to a position, microsteps, by the ramp; permitted during a motion. From rest the
+    /// target is read back before the motor leaves.
     ///
     /// # Errors
-    /// [`Fault::Alarm`] where a stall waits for [`Self::clear_stall`] or the bridges are shut down.
+    /// [`Fault::Alarm`] if a stall waits for [`Self::clear_stall`] or the bridges are shut down.
     pub async fn go_to(&mut self, microsteps: i32) -> Result<(), Fault> {
         let Configuration { clock, ramp, .. } = self.configuration;
         let target = (registers::XTARGET, microsteps.cast_unsigned());
@@ -148,11 +149,11 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
         self.depart(&first, &first, &last).await
     }
 
-    /// Moves on with a velocity, either way, until it is stopped: softly by switches where it is too
-    /// slow for stalls to be told, at once by stalls and switches where it is not.
+    /// Turns at a velocity in either direction until it is stopped: by switches along the ramp
+    /// where the velocity is too low to detect stalls, otherwise by stalls and switches at once.
     ///
     /// # Errors
-    /// As [`Self::go_to`].
+    /// The errors of [`Self::go_to`].
     pub async fn run(&mut self, velocity: Velocity) -> Result<(), Fault> {
         let is_forward = velocity.0 >= 0;
         let mode = if is_forward { ramp_mode::FORWARD } else { ramp_mode::BACKWARD };
@@ -168,7 +169,7 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
         self.pass(&mut [Pass::Write(&STOP)]).await.map(|_| ())
     }
 
-    /// Says where the standing motor is, microsteps.
+    /// Sets the position of the standing motor, microsteps.
     ///
     /// # Errors
     /// [`Fault::NotReady`] while it moves.
@@ -186,8 +187,8 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
         self.pass(&mut passes).await.map(|_| ())
     }
 
-    /// Where the left switch was met since the last [`Self::run`], microsteps; a soft stop leads
-    /// beyond it.
+    /// The position, microsteps, at which the left switch became active since the last
+    /// [`Self::run`]; a soft stop ends beyond it.
     pub async fn left_edge(&mut self) -> Result<Option<i32>, Fault> {
         let mut found = [0; 2];
         let addresses = [registers::RAMP_STAT, registers::XLATCH];
@@ -196,7 +197,8 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
         Ok((state & ramp_stat::LATCHED_LEFT != 0).then(|| edge.cast_signed()))
     }
 
-    /// Acknowledges a stall; the motor stays where it is. It has lost its position: home again.
+    /// Acknowledges a stall; the motor stays where it is. The position is lost, so the axis must be
+    /// homed again.
     pub async fn clear_stall(&mut self) -> Result<(), Fault> {
         let mut state = [0];
         let look = Pass::Read(&[registers::RAMP_STAT], &mut state);
@@ -207,11 +209,11 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
         Ok(())
     }
 
-    /// What the motor does.
+    /// Reads the state of the motor.
     ///
     /// # Errors
-    /// [`Fault::Checksum`] where two looks at a standing motor differ, [`Fault::Identity`] where the
-    /// version does not come back.
+    /// [`Fault::Checksum`] if two readings of a standing motor's position differ,
+    /// [`Fault::Identity`] if the version does not come back.
     pub async fn status(&mut self) -> Result<Status, Fault> {
         let mut found = [0; LOOKED_AT.len()];
         self.pass(&mut [Pass::Read(&LOOKED_AT, &mut found)]).await?;
@@ -225,24 +227,25 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
         Ok(status)
     }
 
-    /// Passes through a chip that must not have been reset.
+    /// Makes passes through a chip that must not have been reset.
     fn pass(&mut self, passes: &mut [Pass<'_>]) -> impl Future<Output = Result<u8, Fault>> {
         self.link.pass(passes, false)
     }
 
-    /// Passes through a chip that may have been reset.
+    /// Makes passes through a chip that may have been reset.
     fn pass_anyhow(&mut self, passes: &mut [Pass<'_>]) -> impl Future<Output = Result<u8, Fault>> {
         self.link.pass(passes, true)
     }
 
-    /// The stops that suit a velocity.
+    /// The stop conditions for a velocity.
     fn guard(&self, velocity: Velocity) -> (Address, u32) {
         let guard = Guard::at(self.configuration.stall, velocity);
         (registers::SW_MODE, codec::switch_mode(&self.configuration, guard))
     }
 
-    /// Begins a motion: what is written first, what of it must be found again, what is written then.
-    /// Refuses to move where the chip cannot, and has a standing motor stand until all is said.
+    /// Begins a motion: writes the preparation, reads back those registers that must be correct,
+    /// and writes the command. Refuses to move if the chip cannot, and holds a standing motor until
+    /// everything has been written.
     async fn depart(
         &mut self,
         first: &[(Address, u32)],
@@ -261,7 +264,8 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
         self.pass(passes.get_mut(moving..).unwrap_or_default()).await.map(|_| ())
     }
 
-    /// Whether the right chip is there, ready to move by itself. It may have been reset.
+    /// Verifies that the chip is a TMC5160 in the mode with its internal ramp generator. It may
+    /// have been reset.
     async fn identify(&mut self) -> Result<(), Fault> {
         let mut inputs = [0];
         self.pass_anyhow(&mut [Pass::Read(&[registers::IOIN], &mut inputs)]).await?;
@@ -276,7 +280,7 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
         Ok(())
     }
 
-    /// Stops whatever the motor did before, and holds it.
+    /// Stops the motor, whatever it did before, and holds it.
     async fn come_to_rest(&mut self) -> Result<(), Fault> {
         self.pass_anyhow(&mut [Pass::Write(&STOP)]).await?;
         for _ in 0..STOPPING_LOOKS {
@@ -290,7 +294,10 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
         Err(Fault::NotReady)
     }
 
-    /// Clears the global flags with the bridges off; what comes back is true.
+    /// Clears the global flags with the bridges off, and reads them back.
+    ///
+    /// # Errors
+    /// [`Fault::Alarm`] with flags that cannot be cleared.
     async fn clear_errors(&mut self) -> Result<(), Fault> {
         let mut errors = [0];
         let look = Pass::Read(&[registers::GSTAT], &mut errors);
@@ -302,8 +309,8 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
         Ok(())
     }
 
-    /// Has the motor stand where it is in position mode, switches the bridges on, and reads back
-    /// every register that can be.
+    /// Sets the target to the present position in position mode, switches the bridges on, and reads
+    /// back every readable register.
     async fn stand_ready(&mut self, [position]: [u32; 1]) -> Result<(), Fault> {
         let configuration = &self.configuration;
         let written = [
@@ -318,7 +325,7 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
         self.pass(&mut [Pass::Write(&last), Pass::Verify(&written)]).await.map(|_| ())
     }
 
-    /// Lets the bridges work and asks whether they have found a short.
+    /// Lets the bridges work and reads whether they have detected a short.
     async fn test_bridges(&mut self) -> Result<(), Fault> {
         pause(&mut self.delay, BRIDGE_TEST).await;
         let mut found = [0; 2];
@@ -332,12 +339,12 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
     }
 }
 
-/// Whether a register has a bit.
+/// Whether a bit of a register is set.
 const fn is_set([register]: [u32; 1], bit: u32) -> bool {
     register & bit != 0
 }
 
-/// Whether IOIN is this chip's.
+/// Whether IOIN is that of a TMC5160.
 const fn check_version(inputs: u32) -> Result<(), Fault> {
     if inputs >> ioin::VERSION_SHIFT == ioin::VERSION {
         Ok(())

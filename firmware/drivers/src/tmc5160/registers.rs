@@ -9,7 +9,7 @@ pub const WRITE: u8 = 0x80;
 
 /// Global configuration.
 pub const GCONF: Address = Address(0x00);
-/// Global status; a written one clears.
+/// Global status; writing a one clears a flag.
 pub const GSTAT: Address = Address(0x01);
 /// Pins and version, read.
 pub const IOIN: Address = Address(0x04);
@@ -29,7 +29,7 @@ pub const TPWMTHRS: Address = Address(0x13);
 pub const TCOOLTHRS: Address = Address(0x14);
 /// Lower velocity of full-stepping, write-only.
 pub const THIGH: Address = Address(0x15);
-/// What the ramp generator does.
+/// Mode of the ramp generator.
 pub const RAMPMODE: Address = Address(0x20);
 /// The step counter.
 pub const XACTUAL: Address = Address(0x21);
@@ -51,17 +51,17 @@ pub const DMAX: Address = Address(0x28);
 pub const D1: Address = Address(0x2A);
 /// Stop velocity.
 pub const VSTOP: Address = Address(0x2B);
-/// Rest after a stop.
+/// Pause after a stop.
 pub const TZEROWAIT: Address = Address(0x2C);
-/// The target; readable.
+/// The target; read and write.
 pub const XTARGET: Address = Address(0x2D);
 /// Lower velocity of `DcStep`, write-only.
 pub const VDCMIN: Address = Address(0x33);
 /// Reference switches and stall stop.
 pub const SW_MODE: Address = Address(0x34);
-/// State of the ramp; a written one clears an event.
+/// State of the ramp; writing a one clears an event.
 pub const RAMP_STAT: Address = Address(0x35);
-/// Where a switch was met, read-only.
+/// Position at which a switch became active, read-only.
 pub const XLATCH: Address = Address(0x36);
 /// The chopper.
 pub const CHOPCONF: Address = Address(0x6C);
@@ -84,9 +84,9 @@ pub mod spi_status {
 
 /// Bits of GCONF (6.1).
 pub mod gconf {
-    /// A motor stands after 2¹⁸ clocks.
+    /// The motor counts as standing after 2¹⁸ clocks.
     pub const FAST_STANDSTILL: u32 = 1 << 1;
-    /// As after a reset; only `StealthChop` with external steps uses it.
+    /// Value after a reset; only `StealthChop` with external steps uses it.
     pub const MULTISTEP_FILTER: u32 = 1 << 3;
     /// The motor turns the other way.
     pub const SHAFT: u32 = 1 << 4;
@@ -106,51 +106,51 @@ pub mod gstat {
 pub mod ioin {
     /// The bridges are switched off by the pin.
     pub const DISABLED: u32 = 1 << 4;
-    /// Steps come from outside.
+    /// External step pulses are selected.
     pub const STEP_MODE: u32 = 1 << 6;
-    /// Place of the version.
+    /// Position of the version in the register.
     pub const VERSION_SHIFT: u32 = 24;
-    /// The only version.
+    /// The only known version.
     pub const VERSION: u32 = 0x30;
 }
 
 /// Values of RAMPMODE (6.3.1).
 pub mod ramp_mode {
-    /// Towards XTARGET.
+    /// Position mode: towards XTARGET.
     pub const POSITION: u32 = 0;
-    /// Towards +VMAX.
+    /// Velocity mode: towards +VMAX.
     pub const FORWARD: u32 = 1;
-    /// Towards −VMAX.
+    /// Velocity mode: towards −VMAX.
     pub const BACKWARD: u32 = 2;
-    /// The velocity stays.
+    /// Hold mode: the velocity stays.
     pub const HOLD: u32 = 3;
 }
 
 /// Bits of `SW_MODE` (6.3.2.1).
 pub mod sw_mode {
-    /// The left switch stops.
+    /// The left switch stops the motor.
     pub const STOP_LEFT: u32 = 1;
-    /// The right switch stops.
+    /// The right switch stops the motor.
     pub const STOP_RIGHT: u32 = 1 << 1;
-    /// The left switch is low where it is touched.
+    /// The left switch is low when active.
     pub const LEFT_LOW: u32 = 1 << 2;
-    /// The right switch is low where it is touched.
+    /// The right switch is low when active.
     pub const RIGHT_LOW: u32 = 1 << 3;
-    /// XLATCH where the left switch becomes active.
+    /// XLATCH takes the position at which the left switch becomes active.
     pub const LATCH_LEFT: u32 = 1 << 5;
-    /// A stall stops.
+    /// A stall stops the motor.
     pub const STALL_STOP: u32 = 1 << 10;
-    /// Switches stop by the ramp.
+    /// Switches stop the motor by the ramp.
     pub const SOFT_STOP: u32 = 1 << 11;
 }
 
 /// Bits of `RAMP_STAT` (6.3.2.2).
 pub mod ramp_stat {
-    /// The left switch is touched.
+    /// The left switch is active.
     pub const LEFT: u32 = 1;
-    /// The right switch is touched.
+    /// The right switch is active.
     pub const RIGHT: u32 = 1 << 1;
-    /// XLATCH holds where the left switch was met.
+    /// XLATCH holds the position at which the left switch became active.
     pub const LATCHED_LEFT: u32 = 1 << 2;
     /// A stall has stopped the motor.
     pub const STALLED: u32 = 1 << 6;
@@ -158,7 +158,7 @@ pub mod ramp_stat {
     pub const REACHED: u32 = 1 << 9;
     /// VACTUAL is zero.
     pub const STANDING: u32 = 1 << 10;
-    /// All events that a written one clears.
+    /// All events that are cleared by writing a one.
     pub const EVENTS: u32 = 0x10CC;
 }
 
@@ -170,8 +170,8 @@ pub mod drv_status {
     pub const OVER_TEMPERATURE: u32 = 1 << 25;
     /// A coil is short to ground.
     pub const SHORT_TO_GROUND: u32 = 3 << 27;
-    /// A coil is not connected, perhaps.
+    /// A coil is possibly not connected.
     pub const OPEN_LOAD: u32 = 3 << 29;
-    /// What switches the bridges off.
+    /// The flags that switch the bridges off.
     pub const SHUT_DOWN: u32 = SHORT_TO_SUPPLY | OVER_TEMPERATURE | SHORT_TO_GROUND;
 }

@@ -1,12 +1,13 @@
-//! Velocity and acceleration in microsteps, and the chip's own units (data sheet, 12.1).
+//! Velocity and acceleration in microsteps, and in the chip's own units (data sheet, 12.1).
 
-/// What the chip counts time with.
+/// Clock of the chip, its unit of time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Clock {
-    /// The internal oscillator, 12 MHz ± 4 % (26.1): so uncertain are all velocities, not positions.
+    /// The internal oscillator, 12 MHz ± 4 % (26.1): velocities have this uncertainty, positions do
+    /// not.
     #[default]
     Internal,
-    /// 16 MHz on CLK.
+    /// An external clock of 16 MHz at CLK.
     External16MHz,
 }
 

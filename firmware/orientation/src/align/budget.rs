@@ -1,28 +1,31 @@
-//! The error budget: where the standard deviation of an azimuth comes from.
+//! Error budget: the contributions to the standard deviation of an azimuth. Every result prints it,
+//! because σ and the refusal of a poor azimuth both follow from it; an error source that is left
+//! out would show up as a wrong north with a small σ.
 
 use crate::error::Source;
 
-/// The 1σ parts of the azimuth's standard deviation, rad; their root sum of squares is σ.
+/// Contributions to the azimuth's standard deviation, 1σ, rad; their root sum of squares is σ.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Budget {
     /// White noise of the gyro.
     pub noise: f64,
-    /// Bias instability, random walk and ramp of the gyro, and what estimating a trend costs; what a base that
-    /// turns or tilts, or may, does.
+    /// Bias instability, random walk and ramp of the gyro, the cost of estimating a trend, and slow
+    /// rotation or tilting of the base.
     pub drift: f64,
-    /// Unknown part of the g-sensitivity, times the tilt.
+    /// Unknown part of the g-sensitivity times the tilt, over the horizontal Earth rate:
+    /// `σ_κ`·|F|/`Ω_h`.
     pub g_sensitivity: f64,
     /// Tilt error: the accelerometer's noise and bias.
     pub accelerometer: f64,
-    /// Encoder zero and harmonics.
+    /// Zero, first and second harmonic of the encoder.
     pub encoder: f64,
-    /// Latitude.
+    /// Uncertainty of the latitude.
     pub latitude: f64,
-    /// Gyro scale factor.
+    /// Uncertainty of the gyro's scale factor.
     pub scale: f64,
-    /// What estimating a temperature slope costs.
+    /// Cost of estimating a temperature slope of the bias.
     pub temperature: f64,
-    /// Where a vehicle drove meanwhile.
+    /// Uncertainty of the distance that a vehicle drove between stops.
     pub displacement: f64,
 }
 
@@ -43,26 +46,27 @@ impl Budget {
         ]
     }
 
-    /// Root sum of squares, rad.
+    /// Standard deviation of the azimuth: root sum of squares of all contributions, rad.
     #[must_use]
     pub fn sigma(&self) -> f64 {
         libm::sqrt(self.parts().iter().map(|(_, part)| part * part).sum())
     }
 
-    /// Root sum of squares of all parts but noise, rad.
+    /// Root sum of squares of all contributions except noise, rad.
     #[must_use]
     pub fn beside_noise(&self) -> f64 {
         Self { noise: 0.0, ..*self }.sigma()
     }
 
-    /// The part that contributes most.
+    /// Largest contribution and its source.
     #[must_use]
     pub fn greatest(&self) -> (Source, f64) {
         let parts = self.parts();
         parts.into_iter().fold(parts[0], |most, part| if part.1 > most.1 { part } else { most })
     }
 
-    /// The part that makes up more than half of the variance, if there is one beside noise.
+    /// Source that makes up more than half of the variance; `None` where it is noise or there is no
+    /// such source.
     #[must_use]
     pub fn dominant(&self) -> Option<Source> {
         let (source, part) = self.greatest();

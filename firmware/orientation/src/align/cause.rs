@@ -1,9 +1,9 @@
-//! What so many disturbed dwells have in common, where that is no platform that moves.
+//! Diagnosis of many disturbed dwells whose common cause is not a moving platform.
 //!
-//! A platform that is pushed or shaken disturbs dwells unlike each other. Where all scatter alike, and as white noise
-//! does, from block to block and from mean to mean, the noise that was stated is wrong, or the rates are in another
-//! unit. A platform that sways comes back to where it was, so the means of its dwells scatter by far less than that. And
-//! a gyro that is stuck is no platform.
+//! A platform that is pushed or shaken disturbs each dwell differently. If all dwells scatter
+//! alike, and white, from block to block and from mean to mean, then the configured noise is wrong
+//! or the rates are in another unit. A platform that sways returns to where it was, so the means of
+//! its dwells scatter far less than that. A gyro that is stuck is diagnosed as such.
 
 use super::quality::median_of;
 use super::regression::{Column, Regression};
@@ -13,20 +13,22 @@ use crate::error::Refusal;
 use crate::signal::blocks::BlockStatistics;
 use crate::signal::dwell::{Dwell, SampleFault};
 
-/// Factor of its noise power within which a dwell scatters like the usual one: chance makes less of a dozen blocks.
+/// Factor within which the noise power of a dwell counts as like the median one; chance makes less
+/// of a dozen blocks.
 const ALIKE: f64 = 3.0;
-/// Part of the dwells that must scatter alike.
+/// Least part of the dwells that must scatter alike.
 const MOST: f64 = 0.75;
-/// Least factor of the stated noise power that is no chance of so many dwells.
+/// Least factor of the configured noise power that chance does not explain for so many dwells.
 const LEAST: f64 = 2.0;
-/// How far neighbouring blocks may differ from what white noise makes of them: a sway makes less of them, or, where its
-/// period is two blocks, more.
+/// Range of the power between neighbouring blocks over that of white noise. A sway lowers it, or,
+/// where its period is two blocks, raises it.
 const WHITE: core::ops::Range<f64> = 0.7..1.3;
 
-/// Least part of white noise that the means of the dwells must show about the Earth rate.
+/// Least power of the dwell means about the Earth rate, as a part of that of white noise.
 const LEAST_MEANS: f64 = 0.2;
 
-/// The refusal of too many disturbed dwells, or what it is really about; any other refusal as it is.
+/// Replaces a refusal for too many disturbed dwells by its common cause, where there is one;
+/// returns any other refusal unchanged.
 #[must_use]
 pub fn of(refusal: Refusal, setting: &Setting, dwells: &[Dwell]) -> Refusal {
     match refusal {
@@ -40,13 +42,14 @@ pub fn of(refusal: Refusal, setting: &Setting, dwells: &[Dwell]) -> Refusal {
     }
 }
 
-/// Whether most dwells showed one value all the time.
+/// Whether most dwells showed one constant value.
 fn is_stuck(dwells: &[Dwell]) -> bool {
     let stuck = dwells.iter().filter(|dwell| dwell.fault == Some(SampleFault::Stuck));
     2 * stuck.count() > dwells.len()
 }
 
-/// By what factor of the stated noise power all dwells scatter, where they do so alike and as white noise does.
+/// Factor of the configured noise power by which the dwells scatter; `None` where they do not
+/// scatter alike and white.
 fn noise(setting: &Setting, dwells: &[Dwell]) -> Option<f64> {
     let quiet = || dwells.iter().filter_map(|dwell| dwell.quietness.as_ref());
     let ratios = || quiet().map(|quietness| power(quietness) / stated(setting, quietness));
@@ -59,25 +62,25 @@ fn noise(setting: &Setting, dwells: &[Dwell]) -> Option<f64> {
     (is_found && usual > LEAST && has_white_means()).then_some(usual)
 }
 
-/// Noise power that was stated, with what a subtracted sway leaves, (rad/s)²·s.
+/// Configured noise power plus the remainder of sway compensation, (rad/s)²·s.
 fn stated(setting: &Setting, quietness: &BlockStatistics) -> f64 {
     let (walk, seconds) = (setting.noise.angle_random_walk, quietness.block_seconds);
     walk * walk + setting.sway.mean_variance(seconds) * seconds
 }
 
-/// Noise power that a dwell's blocks show, (rad/s)²·s.
+/// Noise power of a dwell's block means, (rad/s)²·s.
 fn power(quietness: &BlockStatistics) -> f64 {
     quietness.scatter / (quietness.count() - 2.0) * quietness.block_seconds
 }
 
-/// Noise power that neighbouring blocks show over that of all: one where it is white.
+/// Noise power of neighbouring blocks over that of all blocks: one for white noise.
 fn neighbours(quietness: &BlockStatistics) -> f64 {
     let of_neighbours = quietness.neighbour_squares / (2.0 * (quietness.count() - 1.0));
     of_neighbours * quietness.block_seconds / power(quietness)
 }
 
-/// Noise power that the means of the dwells show about a cosine of the stage angle, over that inside them; none where
-/// there are too few.
+/// Noise power of the dwell means about a sinusoid of the stage angle, over the power within the
+/// dwells; `None` with too few dwells.
 fn means(dwells: &[Dwell]) -> Option<f64> {
     let mut regression = Regression::<3>::default();
     for dwell in dwells {

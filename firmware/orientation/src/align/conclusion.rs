@@ -1,4 +1,9 @@
-//! From a session's dwells to a verdict: an azimuth with σ, or the reason why there is none.
+//! Decision on the azimuth of a multi-position alignment: from the dwells to an azimuth with σ, or
+//! to a refusal.
+//!
+//! The order is: check each dwell by itself, fit all sound dwells, exclude outliers one by one,
+//! test what remains (tilt, residuals, Earth-rate ratio, budget), and only then give an azimuth.
+//! Every bound below is chosen so that a sound session is refused in about one of a thousand cases.
 
 use heapless::Vec;
 
@@ -15,37 +20,40 @@ use crate::math::chi_square_tail;
 use crate::signal::dwell::Dwell;
 use crate::units::{Angle, TURN, wrapped};
 
-/// Studentised residual beyond which a dwell is left out (2.7e-5 two-sided: one healthy session of
-/// 60 dwells in 600 loses one).
+/// Studentised residual beyond which a dwell is excluded (2.7e-5 two-sided: one sound session of 60
+/// dwells in 600 loses one).
 const OUTLIER_BOUND: f64 = 4.2;
-/// Probability of a healthy session's residuals below which they are refused: with few degrees of
+/// Probability of the chi-square below which the residuals are refused: with few degrees of
 /// freedom, and with more.
 const WHITENESS_PROBABILITY: [f64; 2] = [1e-3, 1e-6];
-/// Chi-square by which a trend that the azimuth cannot afford may explain the dwells (6e-5).
+/// Chi-square by which a trend that the azimuth cannot afford must explain the dwells to be refused
+/// (probability 6e-5).
 const HIDDEN_TREND: f64 = 16.0;
-/// By how much more one dwell must explain than a step of the heading, in chi-square: else that may be what shows
-/// in it.
+/// Chi-square by which one outlying dwell must explain more than a heading step; otherwise the step
+/// may be what shows in it.
 const CLEARLY: f64 = 10.0;
-/// Scatter that a step of the heading may leave where it is the explanation, over the noise's variance.
+/// Greatest scatter that is left about a heading step which counts as the explanation, over the
+/// noise's variance.
 const LEFT: f64 = 3.0;
-/// Most that dwells which were left out raise σ by: what a chi-square at the edge of refusal amounts to.
+/// Greatest factor by which excluded dwells raise σ: that of a chi-square at the edge of refusal.
 const GREATEST_EXCESS: f64 = 2.0;
-/// Bound of the correlation of neighbouring residuals, in its standard deviation 1/√n.
+/// Limit of the correlation of neighbouring residuals, in its standard deviation 1/√n.
 const CORRELATION_BOUND: f64 = 5.0;
-/// Chi-square by which the second-best azimuth must be worse than the best (4σ).
+/// Least chi-square by which the second-best azimuth must be worse than the best (4σ).
 const SECOND_MINIMUM: f64 = 16.0;
-/// RMS of the dwells' mean forces about any tilt, g, beyond which the accelerometer and the encoder do
-/// not turn alike: ten times what the worst accelerometer's scale makes of 5°.
+/// RMS of the dwells' mean forces about any tilt, g, beyond which accelerometer and encoder do not
+/// turn alike: ten times the effect of the worst accelerometer's scale error at 5° of tilt.
 const STRAYING: f64 = 3e-3;
-/// Of the tangent of the angle from the axis of two positions, what σ may be at most, rad: the second
-/// order is then a tenth of the first.
+/// Greatest σ, rad, over the tangent of the angle between the azimuth and the axis of two
+/// positions: the second-order error is then a tenth of the first-order one.
 const STEEPNESS: f64 = 0.2;
-/// Bound of the Earth-rate ratio in its σ.
+/// Limit of the Earth-rate ratio's deviation from one, in its σ.
 const RATIO_BOUND: f64 = 4.0;
-/// What the Earth-rate ratio may be off beyond its σ where the scale is said to be exact: scale errors that no
-/// data sheet excludes and that turn no azimuth.
+/// Additional tolerance of the Earth-rate ratio where the scale is configured as exact: scale
+/// errors that no data sheet excludes and that do not change the azimuth.
 const RATIO_TOLERANCE: f64 = 0.005;
-/// What the accelerometer may read off gravity beyond five of its bias's σ: scale and altitude.
+/// Relative tolerance of the measured gravity beyond five σ of the accelerometer's bias: scale and
+/// altitude.
 const GRAVITY_TOLERANCE: f64 = 0.05;
 
 /// An azimuth that passed every test.
@@ -53,29 +61,31 @@ const GRAVITY_TOLERANCE: f64 = 0.05;
 pub struct Azimuth {
     /// Azimuth of body x from true north, clockwise from above, rad, [0, 2π).
     pub angle: f64,
-    /// Its standard deviation, rad.
+    /// Standard deviation of the azimuth, 1σ, rad: the whole error budget.
     pub sigma: f64,
 }
 
-/// All that a session found.
+/// Complete result of a session.
 #[derive(Clone, Debug)]
 pub struct Conclusion {
-    /// The azimuth, or why there is none.
+    /// The azimuth, or the reason for refusing it.
     pub verdict: Result<Azimuth, Refusal>,
-    /// The tilt.
+    /// Tilt of the platform.
     pub tilt: Tilt,
-    /// The fit, where the positions determined one; its azimuth counts only with the verdict.
+    /// Fit of the dwells, where the positions determine one; its azimuth is valid only together
+    /// with the verdict.
     pub fit: Option<Fit>,
-    /// Angle random walk used, rad/√s.
+    /// Angle random walk N used, rad/√s: configured, or estimated from the scatter within the
+    /// dwells.
     pub angle_random_walk: f64,
-    /// For each dwell, why it was left out.
+    /// Reason for the exclusion of each dwell; none where it was used.
     pub disturbances: Vec<Option<Disturbance>, CAPACITY>,
-    /// For each dwell, its residual; zero where it was left out.
+    /// Residual of each dwell; zero where it was excluded.
     pub residuals: Vec<Residual, CAPACITY>,
 }
 
 impl Default for Conclusion {
-    /// Of nothing: refused.
+    /// Result without dwells: a refusal.
     fn default() -> Self {
         Self {
             verdict: Err(Refusal::TooFewPositions { positions: 0 }),
@@ -89,7 +99,7 @@ impl Default for Conclusion {
 }
 
 impl Conclusion {
-    /// Judges the dwells, fits the rest, and decides.
+    /// Checks the dwells, fits the sound ones, and decides.
     #[must_use]
     pub fn of(setting: &Setting, dwells: &[Dwell], criterion: Criterion) -> Self {
         let mut conclusion = Self::default();
@@ -97,7 +107,8 @@ impl Conclusion {
         conclusion
     }
 
-    /// The same in place of a [`Self::default`]: 3 KB that need not stand on a small stack.
+    /// Computes the conclusion in place of a [`Self::default`]: its 3 KB then need not pass through
+    /// a small stack.
     pub fn draw(&mut self, setting: &Setting, dwells: &[Dwell], criterion: Criterion) {
         let lag = self.begin(setting, dwells);
         self.verdict = match lag {
@@ -109,6 +120,7 @@ impl Conclusion {
         };
     }
 
+    /// Fit, tests and choice of the azimuth, in that order; the first failure is the refusal.
     fn decide(
         &mut self,
         setting: &Setting,
@@ -121,14 +133,14 @@ impl Conclusion {
         self.azimuth(setting, dwells, fit, criterion)
     }
 
-    /// The judgement of each dwell by itself, and the tilt from those that passed; by how much the gyro lags, s, if
-    /// it does.
+    /// Checks each dwell by itself and determines the tilt from those that passed; returns the lag
+    /// of the gyro, s, if there is one.
     #[inline(never)]
     fn begin(&mut self, setting: &Setting, dwells: &[Dwell]) -> Option<f64> {
         let norm = ExpectedScatter::of(setting, dwells);
         self.angle_random_walk = libm::sqrt(norm.white());
         for dwell in dwells {
-            // A session holds no more dwells than these.
+            // The vectors hold as many entries as a session has dwells, so the pushes cannot fail.
             let _ = self.disturbances.push(norm.disturbance(dwell));
             let _ = self.residuals.push(Residual::default());
         }
@@ -138,15 +150,16 @@ impl Conclusion {
         quality::lag(&norm, dwells, &self.disturbances)
     }
 
+    /// Tilt from the dwells that are not excluded.
     fn level(&mut self, setting: &Setting, dwells: &[Dwell]) {
         let kept = dwells.iter().zip(&self.disturbances).filter(|(_, why)| why.is_none());
         let (gravity, bias) = (setting.latitude.gravity(), setting.accelerometer_bias_sigma);
         self.tilt = level::tilt_in(&setting.mount, kept.map(|(dwell, _)| dwell), gravity, bias);
     }
 
-    /// Fits, and leaves out the dwell that stands out most, until none does.
+    /// Fits, and excludes the dwell with the largest residual, until none stands out.
     ///
-    /// Not inlined, nor are the other steps: their stacks need not stand on top of each other.
+    /// This step and the other steps are not inlined, so that their stack frames do not add up.
     #[inline(never)]
     fn fit_undisturbed(&mut self, setting: &Setting, dwells: &[Dwell]) -> Result<(), Refusal> {
         let mut scatter: f64 = 1.0;
@@ -171,10 +184,11 @@ impl Conclusion {
             let (degrees, ratio) = (fit.degrees, excess(fit));
             let hidden = fit.model.rejected_trend > HIDDEN_TREND;
             let step = fit.step;
-            // What was left out counts: it is part of how the dwells scatter.
+            // Excluded dwells count in the scatter: they are part of its distribution.
             scatter = scatter.max(fit.excess.min(GREATEST_EXCESS));
             fit.allow_for(scatter);
-            // With few degrees of freedom the worst residual need not be the disturbed dwell's.
+            // With few degrees of freedom the largest residual need not belong to the disturbed
+            // dwell.
             let outliers = self.outliers();
             let removable = outliers < allowed_outliers(dwells.len()) && degrees > FEW_DEGREES;
             let worst = self.worst();
@@ -201,8 +215,8 @@ impl Conclusion {
         }
     }
 
-    /// Refuses where the dwells that do not fit the others begin or end the session: then it was not they who
-    /// were disturbed, but the heading or the encoder is another one since.
+    /// Refuses where the inconsistent dwells begin or end the session: then they were not
+    /// disturbed, but the heading or the encoder changed.
     fn judge_ends(&self, dwells: &[Dwell]) -> Result<(), Refusal> {
         let first = astray(self.disturbances.iter());
         let last = astray(self.disturbances.iter().rev());
@@ -220,6 +234,7 @@ impl Conclusion {
         dwells.iter().enumerate().filter(|(index, _)| self.disturbances[*index].is_none())
     }
 
+    /// Checks that enough dwells at enough different positions are left.
     fn enough(setting: &Setting, positions: usize, kept: &[&Dwell]) -> Result<(), Refusal> {
         let different = different_positions(kept);
         let disturbed = positions - kept.len();
@@ -233,6 +248,7 @@ impl Conclusion {
         }
     }
 
+    /// Stores the residuals at the places of the dwells that took part.
     fn keep_residuals(&mut self, problem: &Problem, found: &Found) {
         let Self { residuals, disturbances, .. } = self;
         residuals.fill(Residual::default());
@@ -244,7 +260,7 @@ impl Conclusion {
         });
     }
 
-    /// The residual that stands out most, if one is beyond the bound.
+    /// Index and magnitude of the largest studentised residual, if it is beyond the bound.
     fn worst(&self) -> Option<(usize, f64)> {
         let sizes = self.residuals.iter().map(|residual| residual.studentised.abs());
         let (index, size) = sizes
@@ -253,12 +269,12 @@ impl Conclusion {
         (size > OUTLIER_BOUND).then_some((index, size))
     }
 
-    /// How many dwells were left out for their residual alone.
+    /// Number of dwells that were excluded for their residual alone.
     fn outliers(&self) -> usize {
         self.disturbances.iter().filter(|why| matches!(why, Some(Disturbance::Outlier(_)))).count()
     }
 
-    /// Every test that an azimuth must pass.
+    /// Applies every test that an azimuth must pass.
     #[inline(never)]
     fn judge(&self, setting: &Setting, dwells: &[Dwell], fit: &Fit) -> Result<(), Refusal> {
         self.judge_accelerometer(setting, dwells)?;
@@ -270,7 +286,7 @@ impl Conclusion {
         self.judge_single_axis(dwells, fit)?;
         self.judge_residuals(fit)?;
         let (ratio, sigma) = (fit.ratio, fit.ratio_sigma);
-        // Two positions take the Earth rate for granted.
+        // Two positions do not measure the Earth rate but assume it.
         let is_seen = !fit.model.is_single_axis;
         let tolerance = if setting.scale_sigma > 0.0 { 0.0 } else { RATIO_TOLERANCE };
         if is_seen && (ratio - 1.0).abs() > RATIO_BOUND * sigma + tolerance {
@@ -279,8 +295,8 @@ impl Conclusion {
         Ok(())
     }
 
-    /// Whether the accelerometer feels gravity: one that is dead, turned over or in other units
-    /// makes a tilt that is none.
+    /// Refuses an accelerometer that does not measure gravity: one that is dead, inverted or in
+    /// other units shows a false tilt.
     fn judge_accelerometer(&self, setting: &Setting, dwells: &[Dwell]) -> Result<(), Refusal> {
         let gravity = setting.latitude.gravity();
         let kept = self.kept(dwells).map(|(_, dwell)| dwell);
@@ -292,6 +308,7 @@ impl Conclusion {
         Ok(())
     }
 
+    /// Refuses a tilt that is too large, too uncertain, stepped, or inconsistent with the encoder.
     fn judge_tilt(&self, setting: &Setting, fit: &Fit) -> Result<(), Refusal> {
         let (tilt, allowed) = (libm::asin(self.tilt.magnitude().min(1.0)), setting.allowed_tilt);
         if tilt > allowed {
@@ -302,7 +319,8 @@ impl Conclusion {
         if sigma > required {
             return Err(Refusal::TiltTooUncertain { sigma, required });
         }
-        // An encoder that slips by an angle changes F by so much of it, and the azimuth at most by the angle.
+        // An encoder slip changes F by the same angle times its magnitude, and the azimuth by at
+        // most the slip.
         let matters = |change: &(f64, f64)| change.1 > fit.sigma() * self.tilt.magnitude();
         if let Some((after, change)) = self.tilt.step.filter(matters) {
             return Err(Refusal::TiltStepped { change: change * 1e3, after });
@@ -315,21 +333,21 @@ impl Conclusion {
         Ok(())
     }
 
-    /// Refuses what two positions say near their own axis, where the azimuth's error is not normal:
-    /// the cosine that they measure is flat there.
+    /// Refuses two positions near their own axis, where the error of the azimuth is not normal: the
+    /// cosine that they measure is flat there.
     fn judge_single_axis(&self, dwells: &[Dwell], fit: &Fit) -> Result<(), Refusal> {
         let mut angles = self.kept(dwells).map(|(_, dwell)| dwell.stage);
         let Some(first) = angles.next().filter(|_| fit.model.is_single_axis) else { return Ok(()) };
         let apart = |angle: Angle| (angle - first).signed_rad();
         let other =
             angles.map(apart).fold(0.0, |most: f64, x| if x.abs() > most.abs() { x } else { most });
-        // The difference of two unit vectors stands at right angles to their mean.
+        // The difference of two unit vectors is perpendicular to their mean.
         let axis = first.rad() + 0.5 * other + 0.25 * TURN;
         let slope = libm::tan(fit.direction.azimuth + axis).abs();
         if fit.sigma() > STEEPNESS * slope { Err(Refusal::AzimuthUnobservable) } else { Ok(()) }
     }
 
-    /// Chi-square of the residuals, and the correlation of neighbours.
+    /// Tests chi-square of the residuals, and the correlation of neighbours.
     fn judge_residuals(&self, fit: &Fit) -> Result<(), Refusal> {
         let degrees = fit.degrees as f64;
         let least = WHITENESS_PROBABILITY[usize::from(fit.degrees > FEW_DEGREES)];
@@ -349,14 +367,14 @@ impl Conclusion {
         Ok(())
     }
 
-    /// What was solved, of the dwells that took part.
+    /// Fit problem of the dwells that took part.
     fn problem<'a>(&'a self, setting: &'a Setting, kept: &'a [&'a Dwell]) -> Problem<'a> {
         let white = self.angle_random_walk * self.angle_random_walk;
         Problem { setting, tilt: &self.tilt, white, dwells: kept }
     }
 
-    /// What the dwells from which this was drawn show of a base that turns slowly about the vertical, and of one that
-    /// tilts; of either nothing where it is taken off.
+    /// Slow rotation of the base about the vertical and slow tilting of the base, as the dwells of
+    /// this conclusion show them; none where the model already contains it.
     #[must_use]
     pub fn slow_motions(&self, setting: &Setting, dwells: &[Dwell]) -> [Option<SlowMotion>; 2] {
         let Some(fit) = &self.fit else { return [None; 2] };
@@ -365,7 +383,7 @@ impl Conclusion {
         [problem.slow_turn(fit), problem.slow_tilting(fit)]
     }
 
-    /// The azimuth by the chosen criterion.
+    /// Azimuth by the chosen criterion, within the required σ.
     #[inline(never)]
     fn azimuth(
         &self,
@@ -387,20 +405,20 @@ impl Conclusion {
     }
 }
 
-/// How many of `positions` dwells may be left out: a third.
+/// Number of `positions` dwells that may be excluded in all: a third.
 fn allowed(positions: usize) -> usize {
     positions / 3
 }
 
-/// How many may be left out for their residual alone: a tenth, and one.
+/// Number of dwells that may be excluded for their residual alone: a tenth, and at least one.
 fn allowed_outliers(positions: usize) -> usize {
     (positions / 10).max(1)
 }
 
-/// Whether one dwell by itself, its index and studentised residual, explains more than a step of the heading; at
-/// either end of the session both are the same, and a step may not be passed over.
+/// Whether one outlying dwell (index and studentised residual) explains more than a heading step.
+/// At either end of the session both explanations coincide, and a step must not be overlooked.
 fn explains(worst: Option<(usize, f64)>, step: &HeadingStep) -> bool {
-    // A step that leaves a scatter that is no noise is not what explains it.
+    // A step that leaves more scatter than noise does not explain the dwells.
     let is_enough = step.explained < LEFT * step.gain;
     let explained = if is_enough { step.explained } else { step.gain };
     worst.is_some_and(|(_, residual)| residual * residual > explained + CLEARLY)
@@ -411,7 +429,8 @@ fn excess(fit: &Fit) -> f64 {
     fit.chi_square / fit.degrees.max(1) as f64
 }
 
-/// How many dwells at an end do not fit the others. One that was disturbed within itself may have had a blow.
+/// Number of inconsistent dwells at an end. A single dwell that was disturbed within itself may
+/// have been hit by a shock and does not count.
 fn astray<'a>(from: impl Iterator<Item = &'a Option<Disturbance>>) -> usize {
     use Disturbance::{Drift, NonStationary, Step};
     let run = from.map_while(|why| why.filter(|why| !matches!(why, Disturbance::Samples(_))));
@@ -423,7 +442,7 @@ fn astray<'a>(from: impl Iterator<Item = &'a Option<Disturbance>>) -> usize {
     if count == 1 && within == 1 { 0 } else { count }
 }
 
-/// N² from the scatter inside the dwells, each weighted by its degrees of freedom.
+/// Noise power N² from the scatter within the dwells, each weighted by its degrees of freedom.
 fn white_of(kept: &[&Dwell]) -> f64 {
     let (mut power, mut freedom) = (0.0, 0.0);
     for quietness in kept.iter().filter_map(|dwell| dwell.quietness.as_ref()) {
@@ -433,7 +452,7 @@ fn white_of(kept: &[&Dwell]) -> f64 {
     if freedom > 0.0 { power / freedom } else { 0.0 }
 }
 
-/// Refuses a standard deviation (rad) that is none, or more than is accepted.
+/// Refuses a standard deviation (rad) that is zero, not a number, or greater than accepted.
 fn within_budget(setting: &Setting, fit: &Fit, sigma: f64) -> Result<(), Refusal> {
     let (sigma, required) = (degrees(sigma), degrees(setting.required_sigma));
     if sigma > 0.0 && sigma <= required {
@@ -443,7 +462,7 @@ fn within_budget(setting: &Setting, fit: &Fit, sigma: f64) -> Result<(), Refusal
     Err(Refusal::BudgetNotMet { sigma, required, source })
 }
 
-/// Radians to degrees.
+/// Converts radians to degrees.
 fn degrees(angle: f64) -> f64 {
     angle / TURN * 360.0
 }

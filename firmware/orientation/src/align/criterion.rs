@@ -1,8 +1,9 @@
-//! How an azimuth is chosen: by maximum likelihood, or by one of Sokolov's criteria on the table.
+//! Choice of the azimuth: by maximum likelihood, or by one of the criteria of Sokolov 2019 on the
+//! reference table (etalon).
 //!
-//! The paper's criteria compare differences of neighbouring dwells with the etalon table. They are
-//! offered for comparison: differencing colours the noise, and so each of them does worse than the
-//! limit. Their standard deviation says so.
+//! The paper's criteria compare differences of neighbouring dwells with the table. They are offered
+//! for comparison: differencing colours the noise, so each of them is worse than the Cramér–Rao
+//! bound, and their standard deviations state it.
 
 use heapless::Vec;
 
@@ -16,7 +17,7 @@ use crate::math::sort;
 use crate::signal::dwell::Dwell;
 use crate::units::wrapped;
 
-/// How the azimuth is chosen.
+/// Criterion by which the azimuth is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Criterion {
     /// Generalised least squares on the dwells themselves.
@@ -24,30 +25,33 @@ pub enum Criterion {
     /// Mean-removed least squares over the table: maximum likelihood for white noise on a level
     /// stage, in integers.
     OnTable,
-    /// min Σ(δ^Et − δ)² over the table.
+    /// Least sum of squares of the differences over the table, min Σ(δ^Et − δ)² (Sokolov 2019).
     LeastSquares,
-    /// min Σ|δ^Et − δ| over the table.
+    /// Least sum of absolute values of the differences over the table, min Σ|δ^Et − δ| (Sokolov
+    /// 2019).
     LeastAbsolute,
-    /// The middle of what Σ(δ^Et − δ)² ≤ α₁ accepts; α₁ in (rad/s)².
+    /// Middle of the azimuths that Σ(δ^Et − δ)² ≤ α₁ accepts; α₁ in (rad/s)².
     WithinSquares(f64),
-    /// The middle of what Σ|δ^Et − δ| ≤ α accepts; α in rad/s.
+    /// Middle of the azimuths that Σ|δ^Et − δ| ≤ α accepts; α in rad/s.
     WithinAbsolute(f64),
 }
 
 /// Dwells at equal steps, in the order of their angle.
 struct Row<'a> {
+    /// Dwells in the order of the steps.
     dwells: Vec<&'a Dwell, CAPACITY>,
-    /// Step in grid steps of 10″, clockwise positive.
+    /// Step between positions in grid steps of 10″, clockwise positive.
     step: i32,
 }
 
-/// The azimuth by one of the paper's criteria; maximum likelihood is the fit's own.
+/// Azimuth by one of the paper's criteria; maximum likelihood is solved by the fit itself.
 ///
-/// The rates are first freed of what tilt does to them, to second order at the fit's azimuth, as
-/// the table knows only a level stage.
+/// The rates are first corrected for tilt, to second order at the fit's azimuth, because the table
+/// describes a level stage only. The uncertainty of an accepted arc adds width²/12 to the variance.
 ///
 /// # Errors
-/// [`Refusal::StepsUneven`], or a bound that accepts nothing or everything.
+/// [`Refusal::StepsUneven`] where the steps are unequal, or [`Refusal::NothingAccepted`] and
+/// [`Refusal::EverythingAccepted`] where the bound does not select an arc.
 pub fn azimuth(problem: &Problem, fit: &Fit, criterion: Criterion) -> Result<Azimuth, Refusal> {
     let row = Row::of(problem.dwells).ok_or(Refusal::StepsUneven)?;
     let ratios = row.dwells.iter().map(|dwell| problem.level_ratio(fit, dwell));
@@ -70,12 +74,12 @@ pub fn azimuth(problem: &Problem, fit: &Fit, criterion: Criterion) -> Result<Azi
     let start = row.dwells.first().map_or(0.0, |dwell| dwell.stage.rad());
     let variance = row.variance(problem, first, criterion) + width * width / 12.0;
     let others = fit.budget.beside_noise();
-    // No criterion on the same dwells can do better than maximum likelihood.
+    // No criterion on the same dwells can be better than maximum likelihood.
     let sigma = libm::sqrt(variance + others * others).max(fit.sigma());
     Ok(Azimuth { angle: wrapped(first - start), sigma })
 }
 
-/// The best azimuth of the first position, rad; no width.
+/// Best azimuth of the first position, rad, with a width of zero.
 fn searched(series: &Series, criterion: etalon::Criterion) -> (f64, f64) {
     (etalon::search(Table::built_in(), series, criterion).azimuth, 0.0)
 }
@@ -92,7 +96,8 @@ fn accepted(series: &Series, limit: Limit) -> Result<(f64, f64), Refusal> {
 }
 
 impl<'a> Row<'a> {
-    /// The dwells as they came, or else sorted by angle; `None` where their steps are uneven.
+    /// Takes the dwells in their order, or else sorted by angle; `None` where their steps are
+    /// unequal.
     fn of(dwells: &[&'a Dwell]) -> Option<Self> {
         let mut dwells: Vec<&Dwell, CAPACITY> = Vec::from_slice(dwells).ok()?;
         if let Some(step) = even_step(&dwells) {
@@ -105,14 +110,14 @@ impl<'a> Row<'a> {
         Some(Self { dwells, step })
     }
 
-    /// What a change of azimuth does to each difference, ∂δ/∂A in units of `Ω_h`.
+    /// Derivatives of the differences with respect to azimuth, ∂δ/∂A, in units of `Ω_h`.
     fn slopes(&self, first: f64) -> Vec<f64, CAPACITY> {
         let step = f64::from(self.step) * STEP;
         let sine = |index: usize| libm::sin(first + index as f64 * step);
         (1..self.dwells.len()).map(|index| sine(index - 1) - sine(index)).collect()
     }
 
-    /// Σ (∂z/∂A − mean)² over the dwells, in units of `Ω_h`².
+    /// Sum of squares of the mean-removed derivatives, Σ (∂z/∂A − mean)², in units of `Ω_h`².
     fn mean_removed_power(&self, first: f64) -> f64 {
         let step = f64::from(self.step) * STEP;
         let slope = |index: usize| -libm::sin(first + index as f64 * step);
@@ -149,7 +154,7 @@ impl<'a> Row<'a> {
     }
 }
 
-/// The step between neighbours in grid steps, where it is the same for all within one of them.
+/// Step between neighbours in grid steps of 10″, where all steps are equal within one grid step.
 fn even_step(dwells: &[&Dwell]) -> Option<i32> {
     let [first, second, ..] = dwells else { return None };
     let last = dwells.last()?;

@@ -1,4 +1,4 @@
-//! From the horizontal Earth rate's two components to an azimuth.
+//! Azimuth from the two horizontal components of the Earth rate.
 //!
 //! A regression gives β in units of the expected horizontal Earth rate `Ω_h`, with its covariance.
 //! On a level stage β = ρ(cos A, sin A), ρ being `Ω̂_h/Ω_h`: free, known exactly, or known within the
@@ -11,25 +11,25 @@ use super::etalon::Table;
 use super::etalon::table;
 use super::setting::Half;
 
-/// What is known beforehand of ρ, the Earth rate found over the Earth rate expected.
+/// Prior knowledge of ρ, the Earth rate found over the expected one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Amplitude {
-    /// Nothing: A = atan2(·,·).
+    /// No prior knowledge: A = atan2(·,·).
     Free,
-    /// One, with this standard deviation; zero: exactly one.
+    /// Expected value one with this standard deviation; zero means exactly one.
     Known(f64),
 }
 
-/// The two components with what weighs them.
+/// The two components with their covariance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Components {
     /// β: north and east component along body x, in units of `Ω_h`.
     pub value: [f64; 2],
-    /// Their covariance.
+    /// Covariance of the components.
     pub covariance: [[f64; 2]; 2],
-    /// f: the vertical Earth rate's components through the tilt, in units of `Ω_h`.
+    /// Components f of the vertical Earth rate through the tilt, in units of `Ω_h`.
     pub vertical: [f64; 2],
-    /// Where alone the azimuth is looked for.
+    /// Half circle to which the azimuth is restricted; none for the whole circle.
     pub half: Option<Half>,
 }
 
@@ -38,7 +38,7 @@ pub struct Components {
 pub struct Direction {
     /// Azimuth of body x, rad, [−π, π].
     pub azimuth: f64,
-    /// ρ of the solution.
+    /// Earth-rate ratio ρ of the solution.
     pub amplitude: f64,
     /// Variance of ρ.
     pub amplitude_variance: f64,
@@ -46,21 +46,21 @@ pub struct Direction {
     pub mixed_covariance: f64,
     /// Variance of the azimuth, rad².
     pub variance: f64,
-    /// How the azimuth follows the components, ∂A/∂β, rad.
+    /// Gain of the azimuth with respect to the components, ∂A/∂β, rad.
     pub gain: [f64; 2],
-    /// By how much chi-square at the next minimum exceeds that of the best.
+    /// Chi-square at the second minimum less that at the best; infinite without a second minimum.
     pub margin: f64,
 }
 
 impl Direction {
-    /// The Earth rate's components north and east along body x, in units of `Ω_h`.
+    /// Components of the Earth rate north and east along body x, in units of `Ω_h`.
     #[must_use]
     pub fn along(&self) -> [f64; 2] {
         let (sine, cosine) = libm::sincos(self.azimuth);
         [self.amplitude * cosine, self.amplitude * sine]
     }
 
-    /// Covariance that knowing of ρ leaves to the components.
+    /// Covariance of the components that the prior knowledge of ρ leaves, in units of `Ω_h`².
     #[must_use]
     pub fn components_covariance(&self, vertical: [f64; 2]) -> [[f64; 2]; 2] {
         let (sine, cosine) = libm::sincos(self.azimuth);
@@ -75,38 +75,46 @@ impl Direction {
         })
     }
 
-    /// β of this solution: ρ(e + f) − f, for the unit vector e of its azimuth.
+    /// Components β of this solution: ρ(e + f) − f, for the unit vector e of its azimuth.
     #[must_use]
     pub fn components(&self, unit: [f64; 2], vertical: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|i| self.amplitude * (unit[i] + vertical[i]) - vertical[i])
     }
 }
 
-/// Directions in which J is sampled before it is refined; two minima cannot hide between them.
+/// Number of directions at which J is sampled before it is refined; two minima cannot fall between
+/// them.
 const SCAN: usize = 64;
 
-/// Chi-square by which an azimuth of the stated half may fit worse than one of the other (5 σ): two opposite positions
-/// fit both alike, and noise moves an azimuth little across the axis between the halves.
+/// Chi-square by which an azimuth of the configured half may fit worse than one of the other (5σ):
+/// two opposite positions fit both alike, and noise moves an azimuth slightly across the axis
+/// between the halves.
 const OTHER_HALF: f64 = 25.0;
 
-/// J(A) and its parts.
+/// Chi-square profile J(A) and its parts.
 struct Profile {
+    /// Inverse of the components' covariance.
     information: [[f64; 2]; 2],
+    /// Product of the information matrix and β + f.
     target: [f64; 2],
+    /// Components f of the vertical Earth rate, in units of `Ω_h`.
     vertical: [f64; 2],
+    /// Half circle to which the azimuth is restricted.
     half: Option<Half>,
+    /// Prior knowledge of ρ.
     amplitude: Amplitude,
 }
 
 impl Components {
-    /// The direction that the components themselves show, Earth rate and half left open.
+    /// Direction of the components themselves, without prior knowledge of the Earth rate and the
+    /// half; `None` where the covariance is not positive.
     #[must_use]
     pub fn free(&self) -> Option<Direction> {
         Self { half: None, ..*self }.direction(Amplitude::Free)
     }
 
-    /// The most likely azimuth; `None` where the covariance is not positive, or where no azimuth of
-    /// the known half fits better than its neighbours, or nearly as well as the best of the other half.
+    /// Most likely azimuth; `None` where the covariance is not positive, where no minimum lies in
+    /// the configured half, or where it fits much worse than the best of the other half.
     #[must_use]
     pub fn direction(&self, amplitude: Amplitude) -> Option<Direction> {
         let profile = Profile::new(self, amplitude)?;
@@ -116,6 +124,7 @@ impl Components {
 }
 
 impl Profile {
+    /// Prepares the profile; `None` where the covariance is not positive.
     fn new(components: &Components, amplitude: Amplitude) -> Option<Self> {
         let information = inverted(&components.covariance)?;
         let [north, east] = components.vertical;
@@ -125,18 +134,18 @@ impl Profile {
         Some(Self { information, target, vertical, half, amplitude })
     }
 
-    /// What ρ multiplies: the unit vector of an azimuth and the vertical Earth rate's part.
+    /// Vector that ρ multiplies: the unit vector of an azimuth plus the vertical Earth rate's part.
     fn along(&self, [cosine, sine]: [f64; 2]) -> [f64; 2] {
         [cosine + self.vertical[0], sine + self.vertical[1]]
     }
 
-    /// Chi-square at a unit vector less that of β itself, and ρ there.
+    /// Chi-square at an azimuth, rad, less that of β itself, and the best ρ there.
     fn at(&self, azimuth: f64) -> (f64, f64) {
         let (sine, cosine) = libm::sincos(azimuth);
         self.towards([cosine, sine])
     }
 
-    /// The same for the unit vector of an azimuth.
+    /// Chi-square for the unit vector of an azimuth, less that of β itself, and the best ρ there.
     fn towards(&self, unit: [f64; 2]) -> (f64, f64) {
         let direction = self.along(unit);
         let power = quadratic(&self.information, direction);
@@ -153,7 +162,7 @@ impl Profile {
         }
     }
 
-    /// The azimuth of the least J, and how much greater the second minimum is.
+    /// Azimuth of the least J, rad, and the excess of the second minimum.
     fn minimise(&self) -> Option<(f64, f64)> {
         let step = core::f64::consts::TAU / SCAN as f64;
         let sampled: [f64; SCAN] = core::array::from_fn(|k| self.towards(of_table(k)).0);
@@ -182,7 +191,8 @@ impl Profile {
         is_best.then_some((best.0, margin))
     }
 
-    /// Follows the parabola through three points, halving its width, never further than `step`.
+    /// Refines a minimum by the parabola through three points, halving its width, never moving
+    /// further than `step` at once.
     fn refine(&self, start: f64, step: f64) -> f64 {
         let (mut azimuth, mut width) = (start, 0.5 * step);
         for _ in 0..24 {
@@ -197,7 +207,7 @@ impl Profile {
         azimuth
     }
 
-    /// Information of (A, ρ) at the solution, inverted for A.
+    /// Linearised covariance of (A, ρ) at the solution, from its inverted information.
     fn linearise(&self, azimuth: f64, margin: f64) -> Direction {
         let (sine, cosine) = libm::sincos(azimuth);
         let (_, amplitude) = self.at(azimuth);
@@ -231,32 +241,32 @@ impl Profile {
     }
 }
 
-/// The unit vector of the scan's direction `k`, from the etalon table.
+/// Unit vector of the scan's direction `k`, from the reference table (etalon).
 fn of_table(k: usize) -> [f64; 2] {
     let index = (k * (table::TURN as usize / SCAN)) as u32;
     let index = index.cast_signed();
     [Table::built_in().cos(index), Table::built_in().sin(index)].map(|x| x as f64 / table::ONE)
 }
 
-/// xᵀy.
+/// Scalar product xᵀy.
 #[must_use]
 pub fn dot(x: [f64; 2], y: [f64; 2]) -> f64 {
     x[0] * y[0] + x[1] * y[1]
 }
 
-/// M x.
+/// Matrix–vector product M x.
 #[must_use]
 pub fn product(matrix: &[[f64; 2]; 2], x: [f64; 2]) -> [f64; 2] {
     [dot(matrix[0], x), dot(matrix[1], x)]
 }
 
-/// xᵀM x.
+/// Quadratic form xᵀM x.
 #[must_use]
 pub fn quadratic(matrix: &[[f64; 2]; 2], x: [f64; 2]) -> f64 {
     dot(x, product(matrix, x))
 }
 
-/// The inverse of a symmetric matrix; `None` where it is not positive.
+/// Inverse of a symmetric matrix; `None` where it is not positive definite.
 #[must_use]
 pub fn inverted([[a, b], [_, d]]: &[[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
     let determinant = a * d - b * b;

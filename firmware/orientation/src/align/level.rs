@@ -1,15 +1,16 @@
-//! Tilt of the stage from the accelerometer that rides on it.
+//! Tilt of the stage from the accelerometer on its platform.
 //!
 //! Over the stage angle θ the readings are `f_x/g = Re(F e^{jθ}) + b_x` and
 //! `f_y/g = −Im(F e^{jθ}) + b_y`. The tilt phasor F and both biases are fitted
 //! together: over a full circle F comes out free of bias; over a short arc, or from an accelerometer
 //! on the base, the bias's stated uncertainty goes into F's.
 //!
-//! Three more phasors tell what is wrong. One that grows with time, t·F′, is a base that tilts: it turns the
-//! gyro by F′ as the Earth does, 1 °/h of it by 6° at 50° of latitude. One that turns the other way,
-//! `G e^{−jθ}`, is an encoder that counts against the stage. One that is there from some dwell on is an encoder
-//! that slipped, or a platform that was moved. Biases that grow with time are an accelerometer that warms up: they
-//! stay where they are while the stage turns.
+//! Three more phasors are fitted to detect faults. One that grows with time, t·F′, is a base that
+//! tilts: it turns the gyro by F′ just as the Earth does, and 1 °/h of it costs 6° of azimuth at
+//! 50° of latitude. One that rotates the other way, `G e^{−jθ}`, is an encoder that counts against
+//! the stage. One that is present only after some dwell is an encoder that slipped, or a platform
+//! that was moved. Biases that grow with time are an accelerometer that warms up: they do not
+//! rotate with the stage.
 
 use super::direction::{inverted, quadratic};
 use super::regression::{COLUMNS, Column, Regression};
@@ -17,48 +18,49 @@ use super::setting::Mount;
 use crate::signal::dwell::Dwell;
 use crate::units::DEGREE_PER_HOUR;
 
-/// The tilt phasor in g: real part along body x, imaginary part to its quadrature.
+/// Tilt of the platform as a phasor in g: real part along body x, imaginary part in quadrature.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tilt {
     /// Real part of F, sin(pitch), at [`Self::time`].
     pub real: f64,
     /// Imaginary part of F, sin(roll)·cos(pitch), at [`Self::time`].
     pub imaginary: f64,
-    /// When F is so, s: the end of the last dwell.
+    /// Time at which F holds, s: the end of the last dwell.
     pub time: f64,
-    /// How fast F changes: zero of a base that stands as far as its forces tell.
+    /// Rate of change of F; zero unless the forces prove one.
     pub rate: TiltRate,
-    /// How fast it may change nevertheless: what the forces show but do not prove.
+    /// Possible rate of change of F that the forces indicate but do not prove; it enters σ only.
     pub unproven: TiltRate,
     /// Covariance of the two parts of F, g².
     pub covariance: [[f64; 2]; 2],
     /// Accelerometer biases along its x and y, g, at [`Self::time`].
     pub bias: [f64; 2],
-    /// How fast they change, 1/s: zero as far as the forces tell.
+    /// Rate of change of the biases, 1/s; zero unless the forces prove one.
     pub bias_rate: [f64; 2],
-    /// RMS of the dwells' forces about any tilt and any bias, g.
+    /// RMS of the dwells' mean forces about any tilt and any bias, g.
     pub scatter: f64,
-    /// Size of the phasor that turns against the stage, g; zero where it may be chance, or two axes that differ.
+    /// Magnitude of the phasor that rotates against the stage, g; zero where it may be chance, or a
+    /// difference between the two axes.
     pub counter: f64,
-    /// After which time, s, F became another one, and by how much, g.
+    /// Time, s, after which F stepped, and size of the step, g; none without a significant step.
     pub step: Option<(f64, f64)>,
-    /// RMS that this tilt and rate leave of the forces, g.
+    /// RMS of the forces about this tilt and rate, g.
     pub left: f64,
-    /// Whether it was measured; else the platform is taken as level.
+    /// Whether the tilt was measured; otherwise the platform is taken as level.
     pub measured: bool,
 }
 
-/// How fast a tilt phasor changes.
+/// Rate of change of a tilt phasor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TiltRate {
-    /// F′, 1/s.
+    /// Rate F′, 1/s.
     pub value: [f64; 2],
-    /// Its covariance, 1/s².
+    /// Covariance of F′, 1/s².
     pub covariance: [[f64; 2]; 2],
 }
 
 impl Tilt {
-    /// The tilt at another time, s.
+    /// Tilt extrapolated to another time, s, with the proven rate.
     #[must_use]
     pub fn at(&self, time: f64) -> Self {
         let elapsed = time - self.time;
@@ -66,14 +68,14 @@ impl Tilt {
         Self { real: self.real + real, imaginary: self.imaginary + imaginary, time, ..*self }
     }
 
-    /// What a base that tilts turns about its axes forward and right, rad/s, for a rate of F in 1/s.
+    /// Rate of the base about its axes forward and right, rad/s, for a rate of F in 1/s.
     #[must_use]
     pub fn turning(&self, [real, imaginary]: [f64; 2]) -> [f64; 2] {
         let upward = self.upward();
         [imaginary / upward, real / upward]
     }
 
-    /// |F|, the sine of the tilt angle.
+    /// Magnitude |F|, the sine of the tilt angle.
     #[must_use]
     pub fn magnitude(&self) -> f64 {
         libm::hypot(self.real, self.imaginary)
@@ -92,7 +94,8 @@ impl Tilt {
         libm::asin((self.imaginary / cosine).clamp(-1.0, 1.0))
     }
 
-    /// The sensitive axis at stage angle `theta` (rad), in the levelled frame: forward, right, down.
+    /// Unit vector of the sensitive axis at stage angle `theta` (rad), in the levelled frame:
+    /// forward, right, down.
     #[must_use]
     pub fn sensitive_axis(&self, theta: f64) -> [f64; 3] {
         let (sine, cosine) = libm::sincos(theta);
@@ -106,7 +109,7 @@ impl Tilt {
         ]
     }
 
-    /// The base's downward axis, in the levelled frame.
+    /// Unit vector of the base's downward axis, in the levelled frame.
     #[must_use]
     pub fn down(&self) -> [f64; 3] {
         let (sine_roll, cosine_roll) = libm::sincos(self.roll());
@@ -114,21 +117,21 @@ impl Tilt {
         [self.real * cosine_roll, -sine_roll, cosine_pitch * cosine_roll]
     }
 
-    /// Specific force away from the base plane, up through it, in g.
+    /// Specific force perpendicular to the base plane, up positive, g.
     #[must_use]
     pub fn upward(&self) -> f64 {
         let magnitude = self.magnitude();
         libm::sqrt((1.0 - magnitude * magnitude).max(0.0))
     }
 
-    /// Accelerometer biases along its x and y, g, at another time, s.
+    /// Accelerometer biases along its x and y, g, extrapolated to another time, s.
     #[must_use]
     pub fn bias_at(&self, time: f64) -> [f64; 2] {
         let [x, y] = self.bias_rate.map(|rate| rate * (time - self.time));
         [self.bias[0] + x, self.bias[1] + y]
     }
 
-    /// Specific force along the sensitive axis and 90° clockwise of it, in g, free of bias.
+    /// Specific force along the sensitive axis and 90° clockwise of it, g, without bias.
     #[must_use]
     pub fn force(&self, theta: f64) -> [f64; 2] {
         let (sine, cosine) = libm::sincos(theta);
@@ -136,34 +139,35 @@ impl Tilt {
     }
 }
 
-/// Least uncertainty of a bias that is said to be exact, g.
+/// Least uncertainty of a bias that is configured as exact, g.
 const EXACT_BIAS: f64 = 1e-9;
-/// Uncertainty of a bias of which nothing is known, g.
+/// Uncertainty of a bias without prior knowledge, g.
 const ANY_BIAS: f64 = 1.0;
-/// Twice the logarithm of likelihoods by which one explanation is clearly better than another.
+/// Twice the log-likelihood ratio from which one explanation is clearly better than another.
 const CLEARLY: f64 = 10.0;
-/// Scatter with which the first fit is weighted, and the least that the second believes, g.
+/// Scatter with which the first fit is weighted, and least scatter of the second, g.
 const SCATTER: [f64; 2] = [1e-4, 5e-6];
 
-/// Squared significance from which a tilt rate or a counter-turning phasor is believed: two parts of which
-/// one of ten thousand healthy sessions has so much.
+/// Squared significance at which a tilt rate or a counter-rotating phasor is accepted: for two
+/// parts, one of ten thousand sound sessions exceeds it.
 const BELIEVED: f64 = 18.4;
-/// The same of a step, which may be at any of sixty places.
+/// Squared significance at which a step is accepted, which may be at any of sixty places.
 const STEP_BELIEVED: f64 = 22.0;
-/// Size of the phasor of the forces that turns against the stage, over that which turns with it, beyond which
-/// the encoder counts the wrong way: an accelerometer whose axes differ by 20 % makes a tenth.
+/// Ratio of the counter-rotating phasor to the one that rotates with the stage, beyond which the
+/// encoder counts the wrong way: an accelerometer whose axes differ by 20 % shows a tenth.
 const COUNTER: f64 = 0.3;
-/// What a scatter that is itself estimated adds to that bound, over its degrees of freedom (F instead of
-/// chi-square), and what it adds to the rarer step's.
+/// Increase of that threshold over the degrees of freedom, because the scatter is itself estimated
+/// (F instead of chi-square).
 const FEW: f64 = 11.0;
+/// Increase of the threshold of a step over the degrees of freedom.
 const STEP_FEW: f64 = 25.0;
-/// 1σ of how fast a base tilts that does, 1/s: 3 °/h.
+/// Standard deviation of the rate at which a moving base tilts, 1/s: 3 °/h.
 const FASTEST: f64 = 3.0 * DEGREE_PER_HOUR;
-/// Squared significance from which a tilt rate is more than chance: one of forty healthy sessions has so much.
+/// Squared significance at which a tilt rate is possible: one of forty sound sessions exceeds it.
 const SHOWN: f64 = 7.4;
 
 impl TiltRate {
-    /// The same, for a base that tilts no faster than [`FASTEST`].
+    /// Rate shrunk by the prior of a base that tilts no faster than [`FASTEST`].
     fn possible(&self) -> Self {
         let [[a, _], [_, b]] = self.covariance;
         let part = 1.0 / (1.0 + 0.5 * (a + b) / (FASTEST * FASTEST));
@@ -177,8 +181,8 @@ impl TiltRate {
 /// Fits the tilt to the dwells' mean forces, for gravity in m/s² and the 1σ of each accelerometer
 /// bias in m/s² (zero: taken as free of bias).
 ///
-/// The accelerometer rides on a stage. The scatter of the dwells about a first fit is the noise of the
-/// second. Dwells without force make the platform level and not measured.
+/// The accelerometer rides on a stage. The scatter of the dwells about a first fit weights the
+/// second. Without forces the platform is taken as level and the tilt as not measured.
 #[must_use]
 pub fn tilt<'a>(
     dwells: impl Iterator<Item = &'a Dwell> + Clone,
@@ -188,7 +192,7 @@ pub fn tilt<'a>(
     tilt_in(&Mount::STAGE, dwells, gravity, bias_sigma)
 }
 
-/// The same from the accelerometer of any mount.
+/// Fits the tilt to the dwells' mean forces as [`tilt`] does, for the accelerometer of any mount.
 #[must_use]
 pub fn tilt_in<'a>(
     mount: &Mount,
@@ -199,10 +203,10 @@ pub fn tilt_in<'a>(
     let bias = (bias_sigma / gravity).max(EXACT_BIAS);
     let mut forces = Forces::new(mount, dwells, gravity);
     let time = forces.time;
-    // On an arc biases that drift, and a base that tilts, look like an encoder that counts the other way.
+    // On an arc, drifting biases and a tilting base look like an encoder that counts the other way.
     let alone = forces.countering(bias, [0.0; 2]);
     let mut tilting = forces.weighted(bias, Beside::Rate);
-    // Biases that drift matter where they look like a base that tilts.
+    // Drifting biases matter only where they look like a tilting base.
     let is_shown = tilting.as_ref().is_some_and(|tilting| tilting.significance() > SHOWN);
     let drifting = is_shown.then(|| forces.weighted(bias, Beside::Drift)).flatten();
     let drifting = drifting.filter(|drifting| drifting.significance() > BELIEVED);
@@ -225,7 +229,7 @@ pub fn tilt_in<'a>(
         tilt = tilting.believed(tilt, is_doubtful);
     }
     let step = forces.weighted(bias, Beside::Step(after));
-    // A step is searched for at many places, and there is one more thing to believe in.
+    // A step is searched for at many places, and is one more hypothesis to accept.
     let is_shown =
         |fit: &Found| fit.significance() * fit.few(FEW) > STEP_BELIEVED * fit.few(STEP_FEW);
     let step = step.filter(|fit| is_shown(fit) && fit.scatter < tilt.left);
@@ -236,7 +240,7 @@ pub fn tilt_in<'a>(
     tilt
 }
 
-/// How fast the forces show the base to tilt, proven or not; `None` where they show nothing of it.
+/// Rate of tilt that the forces show, significant or not; `None` where they cannot determine it.
 #[must_use]
 pub fn tilting<'a>(
     mount: &Mount,
@@ -262,50 +266,61 @@ pub fn gravity_ratio<'a>(dwells: impl Iterator<Item = &'a Dwell>, gravity: f64) 
     (count > 0.0).then(|| sum / count / gravity)
 }
 
-/// A phasor that is fitted beside the tilt's.
+/// Phasor that is fitted in addition to the tilt's.
 #[derive(Clone, Copy)]
 enum Beside {
+    /// No additional phasor.
     Nothing,
-    /// One that grows with the time: F′, 1/s.
+    /// Phasor that grows with time: a tilting base, F′ in 1/s.
     Rate,
-    /// None, but biases that change with the time, 1/s.
+    /// No phasor, but biases that change with time, in 1/s.
     Drift,
-    /// One that turns against the stage, of a base that tilts by so much, 1/s.
+    /// Phasor that rotates against the stage, for a base that tilts at this rate, 1/s.
     Counter([f64; 2]),
-    /// One that is there after a time, s.
+    /// Phasor that is present after a time, s.
     Step(f64),
 }
 
-/// The mean forces of dwells.
+/// Mean forces of the dwells, as the fits use them.
 struct Forces<'m, D> {
+    /// Mount of the accelerometer.
     mount: &'m Mount,
+    /// Iterator over the dwells.
     dwells: D,
+    /// Local gravity, m/s².
     gravity: f64,
-    /// Since when the time of a rate counts, s.
+    /// Reference time of rates, s.
     time: f64,
-    /// How fast the accelerometer's biases are known to change, 1/s.
+    /// Known rate of change of the accelerometer's biases, 1/s.
     drift: [f64; 2],
 }
 
-/// What a fit of the forces found, in g.
+/// Result of a fit of the forces, in g.
 struct Found {
+    /// Tilt phasor F.
     phasor: [f64; 2],
+    /// Covariance of F, g².
     covariance: [[f64; 2]; 2],
+    /// Biases along x and y.
     bias: [f64; 2],
+    /// Additional phasor, in g or 1/s.
     beside: [f64; 2],
+    /// Covariance of the additional phasor.
     beside_covariance: [[f64; 2]; 2],
+    /// RMS of the residuals.
     scatter: f64,
+    /// Degrees of freedom.
     freedom: f64,
 }
 
 impl<'a, 'm, D: Iterator<Item = &'a Dwell> + Clone> Forces<'m, D> {
-    /// Rates count from the end of the last dwell.
+    /// Forces of these dwells, with rates counted from the end of the last dwell.
     fn new(mount: &'m Mount, dwells: D, gravity: f64) -> Self {
         let time = dwells.clone().last().map_or(0.0, Dwell::end);
         Self { mount, dwells, gravity, time, drift: [0.0; 2] }
     }
 
-    /// Fits with the scatter that a first fit shows.
+    /// Fits a second time, weighted by the scatter of the first fit.
     #[inline(never)]
     fn weighted(&self, bias_sigma: f64, beside: Beside) -> Option<Found> {
         let first = self.fit(bias_sigma, SCATTER[0], beside)?;
@@ -313,15 +328,16 @@ impl<'a, 'm, D: Iterator<Item = &'a Dwell> + Clone> Forces<'m, D> {
         Some(self.fit(bias_sigma, scatter, beside).unwrap_or(first))
     }
 
-    /// A phasor that turns against the stage, of a base that tilts by so much, 1/s, where it is believed.
+    /// Counter-rotating phasor for a base that tilts at this rate, 1/s, where it is significant and
+    /// large.
     fn countering(&self, bias_sigma: f64, rate: [f64; 2]) -> Option<Found> {
         let found = self.weighted(bias_sigma, Beside::Counter(rate))?;
         let [counter, with] = [found.beside, found.phasor].map(|[a, b]| libm::hypot(a, b));
         (found.significance() > BELIEVED && counter > COUNTER * with).then_some(found)
     }
 
-    /// After which time, s, the forces show another tilt most: the greatest sum of what is left of them, turned
-    /// back by the stage, on either side.
+    /// Time, s, after which the forces most likely show another tilt: the greatest sum of
+    /// residuals, rotated back by the stage angle, on either side.
     fn likeliest_step(&self, standing: &Found) -> f64 {
         let count = self.dwells.clone().filter(|dwell| dwell.force.is_some()).count() as f64;
         let (mut sum, mut behind, mut before) = ([0.0; 2], 0.0, None);
@@ -347,13 +363,13 @@ impl<'a, 'm, D: Iterator<Item = &'a Dwell> + Clone> Forces<'m, D> {
         best.1
     }
 
-    /// A force, m/s², in g without what the biases are known to have changed.
+    /// Force in g without the known drift of the biases, from m/s².
     fn steady(&self, [x, y]: [f64; 2], dwell: &Dwell) -> [f64; 2] {
         let elapsed = dwell.middle - self.time;
         [x / self.gravity - self.drift[0] * elapsed, y / self.gravity - self.drift[1] * elapsed]
     }
 
-    /// One fit whose noise is `sigma` g.
+    /// One fit with noise of `sigma` g.
     #[inline(never)]
     fn fit(&self, bias_sigma: f64, sigma: f64, beside: Beside) -> Option<Found> {
         let mut regression = Regression::<COLUMNS>::default();
@@ -402,7 +418,8 @@ impl<'a, 'm, D: Iterator<Item = &'a Dwell> + Clone> Forces<'m, D> {
             solution.coefficients;
         let covariance = &solution.covariance;
         let freedom = (rows - parameters).max(1.0);
-        // What the biases are, in their own σ, is no scatter of the dwells.
+        // The squares of the biases in their own σ belong to the prior, not to the scatter of the
+        // dwells.
         let biases = (bias_x * bias_x + bias_y * bias_y) / (bias_sigma * bias_sigma);
         Some(Found {
             phasor: [real, imaginary],
@@ -416,12 +433,13 @@ impl<'a, 'm, D: Iterator<Item = &'a Dwell> + Clone> Forces<'m, D> {
     }
 }
 
-/// Two neighbouring columns' part of a covariance.
+/// Covariance block of two neighbouring columns.
 fn square(covariance: &[[f64; COLUMNS]; COLUMNS], from: usize) -> [[f64; 2]; 2] {
     [0, 1].map(|i| [0, 1].map(|j| covariance[from + i][from + j]))
 }
 
 impl Found {
+    /// Tilt of this fit at a time, with the RMS about any bias.
     fn tilt(&self, time: f64, scatter: f64) -> Tilt {
         let [real, imaginary] = self.phasor;
         Tilt {
@@ -437,29 +455,29 @@ impl Found {
         }
     }
 
-    /// Squared significance of what was fitted beside, as [`BELIEVED`] counts it.
+    /// Squared significance of the additional phasor, to be compared with [`BELIEVED`].
     fn significance(&self) -> f64 {
         inverted(&self.beside_covariance)
             .map_or(0.0, |information| quadratic(&information, self.beside))
     }
 
-    /// Whether it explains clearly more than another with as many parameters, by both likelihoods.
+    /// Whether it is clearly more likely than another fit with as many parameters.
     fn explains_more_than(&self, other: &Self) -> bool {
         other.is_beaten_by(self.scatter)
     }
 
-    /// Whether what leaves this scatter explains clearly more, with as many parameters.
+    /// Whether a fit with this scatter and as many parameters is clearly more likely.
     fn is_beaten_by(&self, scatter: f64) -> bool {
         2.0 * self.freedom * libm::log(self.scatter / scatter) > CLEARLY
     }
 
-    /// By how much a variance that rests on this scatter is greater for its few degrees of freedom.
+    /// Factor on a variance that rests on this scatter, for its few degrees of freedom.
     fn few(&self, few: f64) -> f64 {
         1.0 + few / self.freedom
     }
 
-    /// The tilt where this one changes: believed where it is significant and nothing else may be what shows, else
-    /// unproven.
+    /// Tilt with this rate of change: adopted where it is significant and there is no other
+    /// explanation, otherwise kept as unproven.
     fn believed(&self, standing: Tilt, is_doubtful: bool) -> Tilt {
         let significance = self.significance();
         let found = TiltRate { value: self.beside, covariance: self.beside_covariance };

@@ -1,4 +1,5 @@
-//! From dwell averages, or the turns of a platform, to an azimuth with its standard deviation.
+//! Alignment methods: from dwell averages, the turns of a platform or the stops of a vehicle to an
+//! azimuth with its standard deviation.
 
 pub mod budget;
 pub mod cause;
@@ -18,16 +19,16 @@ pub mod stops;
 
 use crate::signal::dwell::Dwell;
 
-/// Most positions of a plan, and of an alignment on the board.
+/// Greatest number of positions of a plan, and of an alignment on the board.
 pub const POSITIONS: usize = 64;
-/// Most dwells that an alignment can hold: those of the board, or with the feature `recordings` as many as a long
-/// recording has.
+/// Greatest number of dwells of an alignment: that of the board, or with the feature `recordings`
+/// as many as a long recording has.
 pub const CAPACITY: usize = if cfg!(feature = "recordings") { 1024 } else { POSITIONS };
 
-/// Angles closer than this are the same position, rad.
+/// Angle below which two positions count as the same, rad.
 const SAME_POSITION: f64 = 1e-3;
 
-/// How many of the dwells stand at angles of their own.
+/// Number of different stage angles among the dwells.
 pub(crate) fn different_positions(kept: &[&Dwell]) -> usize {
     let is_new = |index: usize| {
         kept[..index]

@@ -1,15 +1,16 @@
-//! The two-frame mount (Burov, Fig. 2): where its two angles point the precise gyro, and which angles
-//! point it where it is wanted.
+//! The two-frame mount (Burov, Fig. 2): pointing of the precise gyro for two frame angles, and
+//! frame angles for a wanted pointing.
 //!
 //! ```text
 //!  base ─▶ outer frame, about body x ─▶ inner frame, across it ─▶ sensitive axis, perpendicular
 //!            right side down: +           forward from down: +      to the inner frame's axis
 //! ```
 //!
-//! With both angles zero the inner frame's axis lies along body y and the sensitive axis points down:
-//! the storage of azimuth. For gyrocompassing it lies in the base plane at one of four headings. The
-//! outer frame stands at zero where the axis lies along body x, so every way between two stations is
-//! straight in both angles, within their limits, and no frame turns further than the stations demand.
+//! With both angles zero the inner frame's axis lies along body y and the sensitive axis points
+//! down: the station for heading hold (storage of azimuth). For gyrocompassing the axis lies in the
+//! base plane at one of four headings. The outer frame stands at zero where the axis lies along
+//! body x, so every way between two stations is straight in both angles, within their limits, and
+//! no frame turns further than the stations demand.
 //!
 //! **g-sensitivity.** κ belongs to the gyro's case: `k_s` multiplies the specific force along the
 //! sensitive axis, `k_o` that along the inner frame's axis. That axis is horizontal at 0 and 180° but
@@ -24,26 +25,27 @@ use crate::units::{DEGREE, DEGREES_PER_RADIAN, wrapped};
 use crate::words;
 use crate::words::Rounded;
 
-/// Greatest angle of either frame, rad: ±90° (Burov, Fig. 2) and 2° for what its calibration corrects.
+/// Greatest angle of either frame, rad: ±90° (Burov, Fig. 2) and 2° for the corrections of its
+/// calibration.
 pub const LIMIT: f64 = 92.0 * DEGREE;
 
-/// Distance of a heading from its station that counts as arrived, rad: the mount's calibration turns
-/// headings off their nominal values, and each is known as it is.
+/// Distance of a heading from its station that counts as arrived, rad. The mount's calibration
+/// shifts headings off their nominal values, and each is known exactly.
 pub const ARRIVAL: f64 = 1.0 * DEGREE;
 
-/// A quarter turn, rad.
+/// Quarter turn, rad.
 const QUARTER: f64 = 90.0 * DEGREE;
 
-/// The angles of both frames, rad, as their encoders show them.
+/// Angles of both frames, rad, as their encoders show them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrameAngles {
-    /// Of the outer frame about the base's longitudinal axis, positive right side down.
+    /// Angle of the outer frame about the base's longitudinal axis, positive right side down.
     pub outer: f64,
-    /// Of the inner frame, positive where it takes the sensitive axis from down to forward.
+    /// Angle of the inner frame, positive where it takes the sensitive axis from down to forward.
     pub inner: f64,
 }
 
-/// Where the sensitive axis points.
+/// Direction of the sensitive axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pointing {
     /// Heading θ in the base plane, rad, [0, 2π): clockwise from above, zero along body x.
@@ -52,27 +54,27 @@ pub struct Pointing {
     pub elevation: f64,
 }
 
-/// Where the mount can be sent.
+/// Orientation to which the mount can be commanded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Station {
-    /// The axis along body x: heading 0°.
+    /// Sensitive axis along body x: heading 0°.
     Forward,
-    /// Along body y: 90°.
+    /// Sensitive axis along body y: heading 90°.
     Right,
-    /// Against body x: 180°.
+    /// Sensitive axis against body x: heading 180°.
     Backward,
-    /// Against body y: 270°.
+    /// Sensitive axis against body y: heading 270°.
     Left,
-    /// Down, perpendicular to the base: the storage of azimuth.
+    /// Sensitive axis down, perpendicular to the base: heading hold (storage of azimuth).
     Storage,
 }
 
-/// Why there are no frame angles.
+/// Reason for which there are no frame angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MountError {
     /// No station lies at this heading, rad.
     NoStation(f64),
-    /// With this calibration the axis does not get there.
+    /// This calibration does not let the axis reach the station.
     Unreachable(Station),
     /// A frame would turn beyond [`LIMIT`], to this angle, rad.
     BeyondLimit(f64),
@@ -95,13 +97,13 @@ words! { MountError:
         "a frame would turn to {}°, beyond its limit", Rounded::<2>(angle * DEGREES_PER_RADIAN);
 }
 
-/// The mount's calibration; the default is a perfect one. All angles in rad, right-handed about the
-/// named axis (clockwise from above about z), with the frames at zero.
+/// Calibration of the mount; the default is a perfect one. All angles in rad, right-handed about
+/// the named axis (clockwise from above about z), with the frames at zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TwoFrame {
-    /// Turn of the outer axis from body x about body z: positive to the right.
+    /// Rotation of the outer axis from body x about body z: positive to the right.
     pub azimuth: f64,
-    /// Turn of the outer axis from body x about body y: positive where its front is raised.
+    /// Rotation of the outer axis from body x about body y: positive where its front is raised.
     pub pitch: f64,
     /// ε, non-orthogonality of the frames: the inner axis is turned about z from the perpendicular to
     /// the outer one, positive where its right end goes back.
@@ -109,22 +111,25 @@ pub struct TwoFrame {
     /// δ, non-orthogonality of the gyro: the sensitive axis leans from the perpendicular to the inner
     /// axis towards that axis' right end.
     pub gyro: f64,
-    /// What the outer encoder shows where the outer frame stands at zero.
+    /// Reading of the outer encoder where the outer frame stands at zero.
     pub outer_zero: f64,
-    /// What the inner encoder shows where the inner frame stands at zero.
+    /// Reading of the inner encoder where the inner frame stands at zero.
     pub inner_zero: f64,
 }
 
 /// One of the two frames.
 #[derive(Clone, Copy)]
 enum Frame {
+    /// Outer frame, about body x.
     Outer,
+    /// Inner frame, across the outer one.
     Inner,
 }
 
 impl TwoFrame {
-    /// The sensitive axis at these angles: a unit vector forward, right, down. Exact rotations, no
-    /// small angles: `Rz(azimuth) Ry(pitch) Rx(outer) Rz(ε) Ry(inner) Rx(−δ)` turns it from down.
+    /// Sensitive axis at these angles: a unit vector forward, right, down. The rotations are exact,
+    /// not small-angle ones: `Rz(azimuth) Ry(pitch) Rx(outer) Rz(ε) Ry(inner) Rx(−δ)` takes down to
+    /// the axis.
     #[must_use]
     pub fn sensitive_axis(&self, shown: FrameAngles) -> [f64; 3] {
         let leaning = about_x([0.0, 0.0, 1.0], -self.gyro);
@@ -143,11 +148,12 @@ impl TwoFrame {
         }
     }
 
-    /// The angles at which the axis stands at a station: horizontal or vertical exactly. Its heading
-    /// is exact to the right and left; along body x the frames cannot change it.
+    /// Frame angles at which the axis stands at a station: exactly horizontal or vertical. The
+    /// heading is exact to the right and left; along body x the frames cannot change it.
     ///
     /// # Errors
-    /// A calibration with which a frame cannot take the axis there, or not within its limits.
+    /// [`MountError`] for a calibration with which a frame cannot take the axis there, or not
+    /// within its limits.
     pub fn angles(&self, station: Station) -> Result<FrameAngles, MountError> {
         const FORWARD: [f64; 3] = [1.0, 0.0, 0.0];
         const RIGHT: [f64; 3] = [0.0, 1.0, 0.0];
@@ -173,16 +179,16 @@ impl TwoFrame {
         within_limits(angles)
     }
 
-    /// What the encoders show at true angles.
+    /// Encoder readings at true frame angles.
     fn shown(&self, outer: f64, inner: f64) -> FrameAngles {
         FrameAngles { outer: outer + self.outer_zero, inner: inner + self.inner_zero }
     }
 
     /// Turns one frame to where the axis is perpendicular to a direction, the nearer of both such
-    /// angles; none where there is none.
+    /// angles; `None` where there is none.
     ///
-    /// Over the angle x of a frame any component of the axis is a + b cos x + c sin x: three looks
-    /// tell a, b and c.
+    /// Over the angle x of a frame any component of the axis is a + b cos x + c sin x, so three
+    /// evaluations determine a, b and c.
     fn perpendicular(&self, from: FrameAngles, frame: Frame, to: [f64; 3]) -> Option<FrameAngles> {
         let at = |turn: f64| match frame {
             Frame::Outer => FrameAngles { outer: from.outer + turn, ..from },
@@ -205,15 +211,15 @@ impl TwoFrame {
     }
 }
 
-/// Rounds in which both frames are set in turn: each leaves less than the calibration's angles times
-/// what was left before, so four of them reach 10⁻⁹ for angles of a degree.
+/// Number of rounds in which both frames are set in turn: each multiplies the error by less than
+/// the calibration's angles, so four of them reach 10⁻⁹ for angles of a degree.
 const ROUNDS: usize = 5;
 
 impl Station {
-    /// The station whose heading (rad, any number of turns) is within [`ARRIVAL`].
+    /// Station whose heading (rad, any number of turns) is within [`ARRIVAL`].
     ///
     /// # Errors
-    /// There is none.
+    /// [`MountError::NoStation`] where no station is so near.
     pub fn at_heading(heading: f64) -> Result<Self, MountError> {
         const ROUND: [Station; 4] =
             [Station::Forward, Station::Right, Station::Backward, Station::Left];
@@ -228,7 +234,7 @@ impl Station {
 pub const TWO_FRAMES: Mount =
     Mount { name: "two frames", is_on_base: true, axis: raised_axis, force: case_force };
 
-/// The sensitive axis of a dwell in the levelled frame: its heading and its elevation.
+/// Sensitive axis of a dwell in the levelled frame, from its heading and its elevation.
 fn raised_axis(tilt: &Tilt, dwell: &Dwell) -> [f64; 3] {
     let level = tilt.sensitive_axis(dwell.stage.rad());
     let down = tilt.down();
@@ -236,8 +242,8 @@ fn raised_axis(tilt: &Tilt, dwell: &Dwell) -> [f64; 3] {
     [0, 1, 2].map(|i| cosine * level[i] - sine * down[i])
 }
 
-/// Specific force along the sensitive axis and along the inner frame's axis of a dwell, in g, as a
-/// tilt makes it. The mount's non-orthogonality is of no account here.
+/// Specific force along the sensitive axis and along the inner frame's axis of a dwell, in g, for a
+/// tilt. The mount's non-orthogonality is negligible here.
 fn case_force(tilt: &Tilt, dwell: &Dwell) -> [f64; 2] {
     let theta = dwell.stage.rad();
     let (sine, cosine) = libm::sincos(f64::from(dwell.elevation));
@@ -248,41 +254,42 @@ fn case_force(tilt: &Tilt, dwell: &Dwell) -> [f64; 2] {
     [along, inner]
 }
 
-/// 1σ by which the mount turns the azimuth, rad, for 1σ of its non-orthogonalities after calibration
-/// and of each encoder, both in rad.
+/// Azimuth error due to the mount, 1σ, rad, for 1σ of its non-orthogonalities after calibration and
+/// of each encoder, both in rad.
 ///
-/// ε turns headings, δ raises the axis, and so does an encoder's error; an elevation turns the azimuth
-/// by tan φ of itself. Taken at the azimuths where they turn most: σ √(1 + tan² φ), and σ tan φ.
+/// ε changes headings; δ and the encoders' errors raise the axis, and an elevation changes the
+/// azimuth by tan φ of itself. The result holds at the azimuths of the greatest effect: σ √(1 +
+/// tan² φ), and σ tan φ.
 #[must_use]
 pub fn azimuth_sigma(orthogonality: f64, encoder: f64, latitude: Latitude) -> f64 {
     let slope = libm::tan(latitude.rad());
     libm::hypot(orthogonality * libm::hypot(1.0, slope), encoder * slope)
 }
 
-/// Angles that both frames reach.
+/// Checks that both frames reach the angles.
 fn within_limits(angles: FrameAngles) -> Result<FrameAngles, MountError> {
     let beyond = [angles.outer, angles.inner].into_iter().find(|angle| angle.abs() > LIMIT);
     beyond.map_or(Ok(angles), |angle| Err(MountError::BeyondLimit(angle)))
 }
 
-/// An angle in [−π, π).
+/// Reduces an angle to [−π, π), rad.
 fn signed(angle: f64) -> f64 {
     wrapped(angle + 2.0 * QUARTER) - 2.0 * QUARTER
 }
 
-/// A vector turned about x, right-handed.
+/// Vector rotated about x, right-handed.
 fn about_x([x, y, z]: [f64; 3], angle: f64) -> [f64; 3] {
     let (sine, cosine) = libm::sincos(angle);
     [x, cosine * y - sine * z, sine * y + cosine * z]
 }
 
-/// A vector turned about y, right-handed.
+/// Vector rotated about y, right-handed.
 fn about_y([x, y, z]: [f64; 3], angle: f64) -> [f64; 3] {
     let (sine, cosine) = libm::sincos(angle);
     [cosine * x + sine * z, y, cosine * z - sine * x]
 }
 
-/// A vector turned about z, right-handed.
+/// Vector rotated about z, right-handed.
 fn about_z([x, y, z]: [f64; 3], angle: f64) -> [f64; 3] {
     let (sine, cosine) = libm::sincos(angle);
     [cosine * x - sine * y, sine * x + cosine * y, z]

@@ -1,8 +1,8 @@
-//! Which dwells were disturbed: judged from inside each, before any azimuth is known.
+//! Detection of disturbed dwells, each checked by itself before any azimuth is known.
 //!
-//! A kick shows in the scatter of a dwell's blocks, a nudge as a step of any length inside it, a
-//! slow push as a slope that the other dwells do not share. All are measured against the gyro's
-//! noise; where that is unknown, against the median of the dwells.
+//! A shock shows in the scatter of a dwell's blocks, a nudge as a step of any length inside it, a
+//! slow push as a slope that the other dwells do not share. All are compared with the gyro's noise;
+//! where that is unknown, with the median of the dwells.
 
 use super::setting::Setting;
 use super::{CAPACITY, level};
@@ -16,23 +16,24 @@ use crate::units::DEGREE_PER_HOUR;
 use crate::words;
 use crate::words::Rounded;
 
-/// Why a dwell is left out of the fit. Numbers are in units of the expected standard deviation.
+/// Reason for which a dwell is excluded from the fit. Numbers are in units of the expected standard
+/// deviation unless stated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Disturbance {
-    /// Its samples were sick.
+    /// The samples were faulty.
     Samples(SampleFault),
-    /// Its blocks scatter more than the noise: factor of the variance.
+    /// The block means scatter more than the noise: factor of the variance.
     NonStationary(f64),
-    /// Its rate stepped or was pushed for a while.
+    /// The rate stepped, or was offset for a part of the dwell.
     Step(f64),
-    /// Its rate drifted unlike that of the other dwells.
+    /// The rate drifted unlike that of the other dwells.
     Drift(f64),
-    /// The accelerometer stood out: the platform moved.
+    /// The accelerometer reading stood out: the platform moved.
     Moved(f64),
-    /// The vehicle drove or turned: what Kryt1 of the gyro's axis, °/h, or Kryt2, m/s², lie beyond rest
-    /// (Szymanowski's criteria).
+    /// The vehicle drove or turned: deviation of the gyro's rate beyond rest, °/h (Kryt1), and of
+    /// the force from gravity, m/s² (Kryt2; Szymanowski 2003).
     Driving(f64, f64),
-    /// Its mean does not fit the others.
+    /// The mean rate does not fit the other dwells: studentised residual.
     Outlier(f64),
 }
 
@@ -50,43 +51,43 @@ words! { Disturbance:
     Self::Outlier(x) => "residual of {} σ", Rounded::<1>(x);
 }
 
-/// Probability with which the scatter test rejects a healthy dwell.
+/// Probability with which the scatter test rejects a sound dwell.
 const SCATTER_PROBABILITY: f64 = 1e-5;
-/// Bound of the step scan, σ: it searches 120 intervals, so a healthy dwell passes it with a
+/// Limit of the step scan, σ: it searches 120 intervals, so a sound dwell passes it with a
 /// probability of about 1 − 5e-5.
 const STEP_BOUND: f64 = 5.0;
-/// Bound of the slope test, σ (7e-6 two-sided).
+/// Limit of the slope test, σ (7e-6 two-sided).
 const SLOPE_BOUND: f64 = 4.5;
-/// Bound of the test of the accelerometer against the tilt, in the usual scatter of the dwells. Wide,
-/// for this scatter is itself estimated from few dwells.
+/// Limit of the accelerometer's deviation from the tilt, in the usual scatter of the dwells. It is
+/// wide because this scatter is itself estimated from few dwells.
 const MOVED_BOUND: f64 = 12.0;
-/// Scatter that no accelerometer is held below, g: the bound is then 0.03° of tilt.
+/// Least scatter that is assumed for an accelerometer, g: the limit is then 0.03° of tilt.
 const LEAST_SCATTER: f64 = 5e-5;
 
-/// What quiet dwells look like for this gyro.
+/// Expected statistics of undisturbed dwells for this gyro.
 #[derive(Clone, Copy, Debug)]
 pub struct ExpectedScatter {
-    /// White noise, (rad/s)²·s: N².
+    /// White noise N², (rad/s)²·s.
     white: f64,
-    /// Random walk, (rad/s)²/s: K².
+    /// Random walk K², (rad/s)²/s.
     walk: f64,
-    /// Flicker, (rad/s)²: B²/π.
+    /// Flicker B²/π, (rad/s)².
     flicker: f64,
-    /// What a subtracted sway leaves.
+    /// Noise that sway compensation leaves.
     sway: SwayNoise,
     /// Slope that the dwells share, rad/s².
     slope: f64,
     /// Variance of that slope, (rad/s²)².
     slope_variance: f64,
-    /// The dwells' usual rate, rad/s, and specific force, m/s².
+    /// Median rate of the dwells, rad/s, and median specific force, m/s².
     rate: f64,
     force: f64,
-    /// 1σ of what a rate may have drifted from the usual one, rad/s, and a force, m/s².
+    /// Allowed drift of a rate from the median, rad/s, and of a force, m/s², 1σ.
     sensors: Sensors,
 }
 
 impl ExpectedScatter {
-    /// From what is known of the gyro and from the dwells so far.
+    /// Expected statistics from the configured noise and from the dwells so far.
     #[must_use]
     #[inline(never)]
     pub fn of(setting: &Setting, dwells: &[Dwell]) -> Self {
@@ -107,13 +108,14 @@ impl ExpectedScatter {
         }
     }
 
-    /// White noise of the gyro, N², (rad/s)²·s.
+    /// White noise of the gyro N², (rad/s)²·s.
     #[must_use]
     pub fn white(&self) -> f64 {
         self.white
     }
 
-    /// What disturbed this dwell, if anything did.
+    /// Disturbance of this dwell, if there is one. The tests are applied in the order: sample
+    /// faults, scatter, step, drift, motion of the vehicle.
     #[must_use]
     pub fn disturbance(&self, dwell: &Dwell) -> Option<Disturbance> {
         if let Some(fault) = dwell.fault {
@@ -129,21 +131,22 @@ impl ExpectedScatter {
             .or_else(|| self.driving(dwell))
     }
 
-    /// Variance of one block about the dwell's line: white noise, and what of the drift a line
-    /// does not follow.
+    /// Variance of one block mean about the dwell's line, (rad/s)²: white noise, and the part of
+    /// the drift that a line does not follow.
     fn block_variance(&self, quietness: &BlockStatistics) -> f64 {
         let seconds = quietness.count() * quietness.block_seconds;
         self.own_variance(quietness) + self.walk * seconds / 15.0 + 2.0 * self.flicker
     }
 
-    /// Variance of one block that no other shares: white noise, and what a subtracted sway leaves.
+    /// Variance of one block mean that is independent of others, (rad/s)²: white noise, and the
+    /// remainder of sway compensation.
     fn own_variance(&self, quietness: &BlockStatistics) -> f64 {
         let seconds = quietness.block_seconds;
         self.white / seconds + self.sway.mean_variance(seconds)
     }
 
-    /// White noise as the scatter inside the dwells shows it, N², (rad/s)²·s: that of the gyro where
-    /// they scatter as its noise says.
+    /// White noise N² as the scatter inside the dwells shows it, (rad/s)²·s; equal to that of the
+    /// gyro where they scatter as expected.
     #[must_use]
     pub fn observed_white(&self, dwells: &[Dwell]) -> f64 {
         let (mut found, mut expected) = (0.0, 0.0);
@@ -154,7 +157,8 @@ impl ExpectedScatter {
         if expected > 0.0 { self.white * found / expected } else { self.white }
     }
 
-    /// Szymanowski's criteria, against what the dwells usually show: their biases are no motion.
+    /// Stop criteria (Szymanowski 2003) relative to the medians of the dwells, so that biases do
+    /// not count as motion.
     fn driving(&self, dwell: &Dwell) -> Option<Disturbance> {
         if dwell.seconds <= 0.0 {
             return None;
@@ -166,6 +170,7 @@ impl ExpectedScatter {
         (!criteria.is_rest(&limits)).then_some(Disturbance::Driving(rate, force))
     }
 
+    /// Chi-square test of the block means' scatter.
     fn unquiet(&self, quietness: &BlockStatistics) -> Option<Disturbance> {
         let degrees = quietness.count() - 2.0;
         let chi_square = quietness.scatter / self.block_variance(quietness);
@@ -173,19 +178,21 @@ impl ExpectedScatter {
             .then_some(Disturbance::NonStationary(chi_square / degrees))
     }
 
+    /// Test of the largest step.
     fn step(&self, quietness: &BlockStatistics) -> Option<Disturbance> {
         let step = quietness.largest_step / libm::sqrt(self.block_variance(quietness));
         (step > STEP_BOUND).then_some(Disturbance::Step(step))
     }
 
-    /// A random walk over T has a slope of variance 6K²/(5T); flicker one of about 6B²/(πT²).
+    /// Test of the slope. A random walk over T has a slope of variance 6K²/(5T); flicker one of
+    /// about 6B²/(πT²).
     fn drift(&self, quietness: &BlockStatistics) -> Option<Disturbance> {
         let slope =
             (quietness.slope - self.slope).abs() / libm::sqrt(self.slope_variance(quietness));
         (slope > SLOPE_BOUND).then_some(Disturbance::Drift(slope))
     }
 
-    /// Variance of a dwell's slope about that which they share, (rad/s²)².
+    /// Variance of a dwell's slope about the shared one, (rad/s²)².
     fn slope_variance(&self, quietness: &BlockStatistics) -> f64 {
         let seconds = quietness.count() * quietness.block_seconds;
         let unit = quietness.slope_unit();
@@ -196,7 +203,8 @@ impl ExpectedScatter {
     }
 }
 
-/// What the criteria are held to: the gyro's noise, what it may have drifted, how the forces scatter.
+/// Sensor properties for the stop criteria: the gyro's noise, its possible drift, and the scatter
+/// of the forces.
 fn sensors(setting: &Setting, dwells: &[Dwell], white: f64) -> Sensors {
     let noise = &setting.noise;
     let seconds = dwells.last().map_or(0.0, Dwell::end) - dwells.first().map_or(0.0, Dwell::start);
@@ -209,25 +217,25 @@ fn sensors(setting: &Setting, dwells: &[Dwell], white: f64) -> Sensors {
         bias_sigma: libm::hypot(drift, noise.bias_instability)
             + libm::sqrt(setting.sway.mean_variance(1.0)),
         force_noise: 0.0,
-        // A median of deviations is 0.67 of their σ.
+        // The median of absolute deviations is 0.67 of their σ.
         force_bias_sigma: 1.5 * median_of(deviations),
     }
 }
 
-/// Size of a dwell's mean specific force, m/s².
+/// Magnitude of a dwell's mean specific force, m/s².
 fn force_of(dwell: &Dwell) -> Option<f64> {
     dwell.force.map(|force| length(&force))
 }
 
-/// The median of one value a dwell.
+/// Median of one value for each dwell.
 pub(super) fn median_of(values: impl Iterator<Item = f64>) -> f64 {
     median(&mut values.take(CAPACITY).collect::<heapless::Vec<f64, CAPACITY>>())
 }
 
 /// Marks the dwells whose accelerometer reading does not fit the tilt of the others.
 ///
-/// What is usual comes from the differences of successive dwells, which a platform that moves once
-/// leaves alone however many dwells stand on either side.
+/// The usual scatter comes from the differences of successive dwells, which a platform that moves
+/// once affects at one place only, however many dwells stand on either side.
 #[inline(never)]
 pub fn moved(
     setting: &Setting,
@@ -252,21 +260,23 @@ pub fn moved(
     }
 }
 
-/// How many dwells tell whether the gyro lags.
+/// Least number of dwells that determine a lag of the gyro.
 const LAGGING_DWELLS: i32 = 4;
-/// Significance, σ, of a lag that is believed: more than one dwell may show.
+/// Significance, σ, at which a lag is accepted: more than one dwell alone may show.
 const LAG_BOUND: f64 = 5.0;
 /// Part of a slope that a lag may leave unexplained.
 const LAG_CURVE: f64 = 0.3;
 
-/// By how much the gyro follows the stage late, s, by the dwells whose platform stood; `None` where it
-/// may be chance.
+/// Lag of the gyro behind the stage, s, from the dwells whose platform stood; `None` where it may
+/// be chance.
 ///
-/// A gyro that lags by τ, or whose column is late by τ, brings into each dwell of T a part of the one before:
-/// its mean moves by Δ·τ/T for a difference Δ of both rates, and its slope by −6 Δ τ/T², beside the slope that all
-/// share. One that is late by almost a dwell and the way to it brings the one before as a whole, and a part of the
-/// dwell's own rate at the end. A blow to one dwell shows no lag, nor may it hide one: what each dwell has is bounded,
-/// and both all dwells and the quiet ones are asked; unbounded only where all agree.
+/// A gyro that lags by τ, or whose column is late by τ, brings into each dwell of length T a part
+/// of the one before: its mean moves by Δ·τ/T for a difference Δ of both rates, and its slope by −6
+/// Δ τ/T², in addition to the slope that all dwells share. A gyro that is late by almost a dwell
+/// and the rotation to it brings the previous dwell as a whole, and a part of the dwell's own rate
+/// at the end. A shock to one dwell must neither show as a lag nor hide one: each dwell's slope is
+/// clamped, and both all dwells and the undisturbed ones are tried; without clamping only where all
+/// agree.
 #[must_use]
 #[inline(never)]
 pub fn lag(norm: &ExpectedScatter, dwells: &[Dwell], marks: &[Option<Disturbance>]) -> Option<f64> {
@@ -289,28 +299,35 @@ pub fn lag(norm: &ExpectedScatter, dwells: &[Dwell], marks: &[Option<Disturbance
         .or_else(whole)
 }
 
-/// Whose rate shows in a dwell beside its own.
+/// Neighbouring dwell whose rate shows in a dwell beside its own.
 #[derive(Clone, Copy)]
 enum Other {
-    /// That of the dwell before, at its beginning.
+    /// The rate of the dwell before shows at the beginning.
     Before,
-    /// That of the dwell after, at its end.
+    /// The rate of the dwell after shows at the end.
     After,
 }
 
-/// A straight line through slopes against those that a lag of one second makes: sums about their means.
+/// Regression of measured slopes on those that a lag of one second makes: sums about their means.
 #[derive(Default)]
 struct Lag {
+    /// Number of dwells.
     count: i32,
+    /// Mean of the expected slopes.
     expected: f64,
+    /// Mean of the measured slopes.
     found: f64,
+    /// Sum of squares of the expected slopes.
     power: f64,
+    /// Sum of products of expected and measured slopes.
     shared: f64,
+    /// Sum of squares of the measured slopes.
     total: f64,
 }
 
 impl Lag {
-    /// Of pairs expected and found, σ, of which what is found is bounded.
+    /// Regression of pairs expected and measured, both in σ, with the measured ones clamped to
+    /// `bound`.
     #[inline(never)]
     fn of(slopes: impl Iterator<Item = [f64; 2]>, bound: f64) -> Self {
         let mut lag = Self::default();
@@ -328,31 +345,33 @@ impl Lag {
         lag
     }
 
-    /// The lag, s.
+    /// Estimated lag, s.
     fn seconds(&self) -> f64 {
         self.shared / self.power
     }
 
-    /// The lag, s, if it is no chance.
+    /// Estimated lag, s, if it is significant.
     fn believed(&self) -> Option<f64> {
         if self.count < LAGGING_DWELLS {
             return None;
         }
-        // A drift that no key states makes slopes, too: they are weighed by what the lag leaves of them.
+        // A drift that no configuration states also makes slopes, so the significance is weighted
+        // by the residual of the fit.
         let left = self.total - self.shared * self.seconds();
         let left = (left / f64::from(self.count - 2)).max(1.0);
         (self.shared > LAG_BOUND * libm::sqrt(self.power * left)).then(|| self.seconds())
     }
 
-    /// Whether it explains a slope; of a long one only the greater part, for within the dwell it is a curve.
+    /// Whether the lag explains a slope; of a long lag only the greater part, because the rate
+    /// within the dwell is then a curve.
     fn explains(&self, [expected, found]: [f64; 2]) -> bool {
         let explained = self.seconds() * (expected - self.expected);
         (found - self.found - explained).abs() <= SLOPE_BOUND + LAG_CURVE * explained.abs()
     }
 }
 
-/// For each dwell beside another the slope that one second of the other's rate gives it, and that which it has, in σ:
-/// of those whose disturbance, if there is one, may show the lag.
+/// Pairs of the slope that one second of lag makes and the measured slope, in σ, for each dwell
+/// beside another whose disturbance, if any, is admitted by `is_asked`.
 fn slopes<'a>(
     norm: &'a ExpectedScatter,
     dwells: &'a [Dwell],
@@ -375,13 +394,13 @@ fn slopes<'a>(
     })
 }
 
-/// Whether a dwell's samples are sick, or its platform moved.
+/// Whether the samples of a dwell were faulty, or its platform or vehicle moved.
 fn is_moved(mark: &Disturbance) -> bool {
     use Disturbance::{Driving, Moved, Samples};
     matches!(mark, Samples(_) | Moved(_) | Driving(..))
 }
 
-/// How a dwell's mean force differs from that of the tilt and the biases, g.
+/// Deviation of a dwell's mean force from that of the tilt and the biases, g.
 fn off_level(setting: &Setting, dwell: &Dwell, force: [f64; 3], tilt: &level::Tilt) -> [f64; 2] {
     let gravity = setting.latitude.gravity();
     let expected = tilt.at(dwell.middle).force(setting.mount.accelerometer_turn(dwell));
@@ -389,8 +408,8 @@ fn off_level(setting: &Setting, dwell: &Dwell, force: [f64; 3], tilt: &level::Ti
     [0, 1].map(|i| force[i] / gravity - expected[i] - bias[i])
 }
 
-/// N² from the median of the dwells' own scatter; from their neighbouring blocks, which a slow
-/// disturbance leaves alone, while there are fewer than three dwells.
+/// Noise power N² from the median of the dwells' own scatter, (rad/s)²·s; with fewer than three
+/// dwells from their neighbouring blocks, to which a slow disturbance contributes little.
 fn white_median(dwells: &[Dwell]) -> f64 {
     let few = dwells.len() < 3;
     let estimate = |quietness: &BlockStatistics| {
@@ -405,8 +424,8 @@ fn white_median(dwells: &[Dwell]) -> f64 {
     median_of(dwells.iter().filter_map(|dwell| dwell.quietness.as_ref().map(estimate)))
 }
 
-/// Variance of the shared slope for white noise of density one: a median of n values has π/2 of the
-/// variance of their mean.
+/// Variance of the shared slope for white noise of density one: the median of n values has π/2
+/// times the variance of their mean.
 fn slope_density(dwells: &[Dwell]) -> f64 {
     let density = |quietness: &BlockStatistics| {
         quietness.slope_unit() * quietness.slope_unit() / quietness.block_seconds
@@ -419,7 +438,7 @@ fn slope_density(dwells: &[Dwell]) -> f64 {
     core::f64::consts::FRAC_PI_2 / values.len() as f64 * median(&mut values)
 }
 
-/// The slope that the dwells share; with fewer than three, none is known to be shared.
+/// Slope that the dwells share, rad/s²; zero with fewer than three dwells.
 fn slope_median(dwells: &[Dwell]) -> f64 {
     let mut slopes: heapless::Vec<f64, CAPACITY> =
         dwells.iter().filter_map(|dwell| dwell.quietness.as_ref().map(|q| q.slope)).collect();

@@ -1,12 +1,13 @@
-//! The streaming normal-equation core that every alignment method shares.
+//! Streaming normal equations, which every alignment method shares.
 //!
-//! Rows of unit noise come in one at a time; only their products are kept. Columns are chosen when
-//! solving, so that one pass serves every model that is compared. A column may carry a prior: zero
-//! mean and a known standard deviation, entered as information on its diagonal.
+//! Rows of unit noise arrive one at a time; only their products are kept. Columns are selected when
+//! solving, so that one pass serves every model that is compared. A column may carry a prior of
+//! zero mean and known standard deviation, entered as information on its diagonal.
 
 use crate::math::{Scalar, cholesky, cholesky_solve};
 
-/// Columns of the regressions on a board: one size for all, so that one copy in flash serves them.
+/// Number of columns of the regressions on a board: one size for all, so that one copy of the code
+/// in flash serves them.
 pub const COLUMNS: usize = 7;
 
 /// Sums of products of `P` columns and the left side.
@@ -14,19 +15,22 @@ pub const COLUMNS: usize = 7;
 pub struct Regression<const P: usize, T = f64> {
     /// Products of the columns, lower triangle.
     products: [[T; P]; P],
+    /// Products of the columns with the left side.
     with_left: [T; P],
+    /// Sum of squares of the left side.
     left_squared: T,
+    /// Number of rows.
     rows: usize,
 }
 
-/// Which columns a solution uses and what is known of them beforehand.
+/// Use of a column in a solution, and prior knowledge of its coefficient.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Column {
-    /// Left out: the coefficient is zero.
+    /// The column is left out and its coefficient is zero.
     Absent,
-    /// Estimated freely.
+    /// The coefficient is estimated without prior knowledge.
     Free,
-    /// Estimated, with a prior of zero mean and this standard deviation.
+    /// The coefficient is estimated with a prior of zero mean and this standard deviation.
     Prior(f64),
 }
 
@@ -35,11 +39,11 @@ pub enum Column {
 pub struct Solution<const P: usize> {
     /// Coefficients in the units of left side over column.
     pub coefficients: [f64; P],
-    /// Their covariance, for rows of unit noise.
+    /// Covariance of the coefficients, for rows of unit noise.
     pub covariance: [[f64; P]; P],
-    /// Sum of squared residuals and of squared priors, in units of the noise.
+    /// Sum of squared residuals and of squared priors, in units of the noise variance.
     pub chi_square: f64,
-    /// Rows less freely estimated coefficients.
+    /// Number of rows less number of freely estimated coefficients.
     pub degrees: usize,
 }
 
@@ -64,7 +68,8 @@ impl<const P: usize, T: Scalar> Regression<P, T> {
         self.rows += 1;
     }
 
-    /// Solves for the chosen columns; `None` where they cannot be told apart or rows are too few.
+    /// Solves for the selected columns; `None` where they are linearly dependent or rows are too
+    /// few.
     #[must_use]
     pub fn solve(&self, model: &[Column; P]) -> Option<Solution<P>> {
         let (used, size) = used_columns(model);
@@ -97,15 +102,16 @@ impl<const P: usize, T: Scalar> Regression<P, T> {
 }
 
 impl<const P: usize> Regression<P> {
-    /// From sums that were gathered elsewhere: products of the columns, lower triangle, and of each
-    /// with the left side. Without the left side's own square, chi-square means nothing.
+    /// Regression from sums that were gathered elsewhere: products of the columns, lower triangle,
+    /// and of each with the left side. The square of the left side is missing, so chi-square is not
+    /// valid.
     #[must_use]
     pub fn of_products(products: [[f64; P]; P], with_left: [f64; P], rows: usize) -> Self {
         Self { products, with_left, left_squared: 0.0, rows }
     }
 }
 
-/// Indices of the columns in use, and how many there are.
+/// Indices of the columns in use, and their number.
 fn used_columns<const P: usize>(model: &[Column; P]) -> ([usize; P], usize) {
     let mut used = [0; P];
     let mut size = 0;
@@ -118,7 +124,7 @@ fn used_columns<const P: usize>(model: &[Column; P]) -> ([usize; P], usize) {
     (used, size)
 }
 
-/// Puts packed values back at their columns.
+/// Distributes packed values to the places of their columns.
 fn spread<const P: usize>(packed: &[f64; P], used: &[usize; P], size: usize) -> [f64; P] {
     let mut full = [0.0; P];
     for i in 0..size {
@@ -127,7 +133,7 @@ fn spread<const P: usize>(packed: &[f64; P], used: &[usize; P], size: usize) -> 
     full
 }
 
-/// The inverse of the factored matrix, at the places of its columns.
+/// Inverse of the factored matrix, at the places of its columns.
 fn inverse<const P: usize>(
     factor: &[[f64; P]; P],
     used: &[usize; P],

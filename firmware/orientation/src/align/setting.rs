@@ -1,4 +1,4 @@
-//! What is known before an alignment begins: the place, the gyro, the platform, and what is asked.
+//! Configuration of an alignment: site, gyro, platform and requirements.
 
 use super::direction::Amplitude;
 use super::level::Tilt;
@@ -8,41 +8,43 @@ use crate::signal::dwell::Dwell;
 use crate::signal::sway::SwayNoise;
 use crate::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, TURN};
 
-/// The half of the circle in which an azimuth is known to lie, which is all that two opposite
-/// positions cannot tell.
+/// Half circle in which the azimuth is known to lie: the ambiguity that two opposite positions
+/// leave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Half {
-    /// 0° to 180°.
+    /// Eastern half: 0° to 180°.
     East,
-    /// 180° to 360°.
+    /// Western half: 180° to 360°.
     West,
 }
 
 impl Half {
-    /// Whether an azimuth, rad, lies in it.
+    /// Whether an azimuth, rad, lies in this half.
     #[must_use]
     pub fn contains(self, azimuth: f64) -> bool {
         (libm::sin(azimuth) >= 0.0) == (self == Self::East)
     }
 }
 
-/// What carries the gyro, and where its accelerometer sits. A mount comes with its own geometry, so
-/// that the firmware of one holds nothing of another's.
+/// Mechanism that carries the gyro, and the place of its accelerometer. A mount brings its own
+/// geometry as functions, so that firmware for one mount contains no code for another.
 #[derive(Clone, Copy, Debug)]
 pub struct Mount {
-    /// Its name.
+    /// Name of the mount, by which mounts are compared.
     pub name: &'static str,
-    /// Whether the accelerometer sits on the base, so that its biases are tilt; else it rides beside
-    /// the gyro, and they average out over a circle.
+    /// Whether the accelerometer is fixed to the base, so that its biases act as tilt; otherwise it
+    /// rides beside the gyro, and they average out over a circle.
     pub is_on_base: bool,
-    /// The sensitive axis in a dwell, in the levelled frame: forward, right, down.
+    /// Function for the sensitive axis in a dwell: unit vector in the levelled frame, forward,
+    /// right, down.
     pub axis: fn(&Tilt, &Dwell) -> [f64; 3],
-    /// Specific force that κ multiplies in a dwell, in g.
+    /// Function for the specific force that κ multiplies in a dwell, g.
     pub force: fn(&Tilt, &Dwell) -> [f64; 2],
 }
 
 impl Mount {
-    /// The single-axis stage: the sensitive axis stays in its plane, the accelerometer rides on it.
+    /// Single-axis stage: the sensitive axis stays in the stage's plane, and the accelerometer
+    /// rides on the stage.
     pub const STAGE: Self = Self {
         name: "stage",
         is_on_base: false,
@@ -50,7 +52,7 @@ impl Mount {
         force: |tilt, dwell| tilt.force(dwell.stage.rad()),
     };
 
-    /// By how much a dwell has turned the accelerometer from the base's axes, rad.
+    /// Angle by which a dwell has turned the accelerometer from the base's axes, rad.
     #[must_use]
     pub fn accelerometer_turn(&self, dwell: &Dwell) -> f64 {
         if self.is_on_base { 0.0 } else { dwell.stage.rad() }
@@ -63,37 +65,39 @@ impl PartialEq for Mount {
     }
 }
 
-/// The place, the instrument and the demands. A standard deviation of zero says: exact.
+/// Site, instrument and requirements. A standard deviation of zero means exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
-    /// What carries the gyro.
+    /// Mechanism that carries the gyro.
     pub mount: Mount,
     /// Geodetic latitude.
     pub latitude: Latitude,
-    /// 1σ of the latitude, rad.
+    /// Standard deviation of the latitude, 1σ, rad.
     pub latitude_sigma: f64,
-    /// The gyro's drift and, where [`Self::white_known`], its white noise.
+    /// Drift of the gyro and, where [`Self::white_known`], its white noise.
     pub noise: GyroNoise,
-    /// Whether N is known; else it is estimated from the dwells.
+    /// Whether N is known; otherwise it is estimated from the dwells.
     pub white_known: bool,
-    /// What subtracting the base's sway leaves in the rates.
+    /// Noise that sway compensation leaves in the rates.
     pub sway: SwayNoise,
-    /// 1σ of the gyro's scale factor, relative.
+    /// Standard deviation of the gyro's scale factor, 1σ, relative.
     pub scale_sigma: f64,
-    /// g-sensitivity κ along the sensitive axis and 90° clockwise of it, rad/s per g; in two frames
-    /// along the inner frame's axis instead.
+    /// g-sensitivity κ along the sensitive axis and 90° clockwise of it, rad/s per g; on a
+    /// two-frame mount along the inner frame's axis instead.
     pub g_sensitivity: [f64; 2],
-    /// 1σ of either part of κ, rad/s per g; in two frames of the third one too, which is taken as zero.
+    /// Standard deviation of either part of κ, 1σ, rad/s per g; on a two-frame mount also of the
+    /// third part, which is taken as zero.
     pub g_sensitivity_sigma: f64,
-    /// Whether κ and its σ are known; else κ is taken as zero and its σ by the gyro's noise.
+    /// Whether κ and its σ are known; otherwise κ is taken as zero and its σ follows from the
+    /// gyro's noise ([`Self::kappa_sigma`]).
     pub g_sensitivity_known: bool,
-    /// 1σ of each accelerometer bias, m/s².
+    /// Standard deviation of each accelerometer bias, 1σ, m/s².
     pub accelerometer_bias_sigma: f64,
-    /// 1σ of the encoder's zero and harmonics, as they turn the azimuth, rad; in two frames with what
-    /// their calibration leaves ([`super::mount::azimuth_sigma`]).
+    /// Standard deviation of the azimuth due to the encoder's zero and harmonics, 1σ, rad; on a
+    /// two-frame mount including the residual of its calibration ([`super::mount::azimuth_sigma`]).
     pub encoder_sigma: f64,
-    /// The half of the circle in which the azimuth is known to lie, if that is known; two positions
-    /// need it, and no answer comes from the other half.
+    /// Half circle in which the azimuth is known to lie, if that is known. Two positions require
+    /// it, and no azimuth of the other half is returned.
     pub half: Option<Half>,
     /// Greatest standard deviation of the azimuth that is accepted, rad.
     pub required_sigma: f64,
@@ -101,19 +105,22 @@ pub struct Setting {
     pub allowed_tilt: f64,
 }
 
-/// Relative uncertainty of the Earth rate below which it is exact: no azimuth shows it.
+/// Relative uncertainty of the Earth rate below which it counts as exact: it has no effect on the
+/// azimuth.
 const EXACT_AMPLITUDE: f64 = 1e-9;
 
-/// 1σ of a g-sensitivity of which nothing is known, rad/s per g for each (rad/√s)² of N²: 50 000 °/h/g for each
-/// (°/√h)², which is 0.05 °/h/g for a fibre-optic gyro of 0.001 °/√h and 20 °/h/g for a micromachined one of 0.02.
+/// Standard deviation of an unknown g-sensitivity, rad/s per g for each (rad/√s)² of N²: 50 000
+/// °/h/g for each (°/√h)², which is 0.05 °/h/g for a fibre-optic gyro of 0.001 °/√h and 20 °/h/g
+/// for a micromachined one of 0.02 °/√h.
 const KAPPA_OF_NOISE: f64 =
     50_000.0 * DEGREE_PER_HOUR / (DEGREE_PER_SQRT_HOUR * DEGREE_PER_SQRT_HOUR);
-/// The most of it, rad/s per g: 100 °/h/g, half of what data sheets of micromachined gyros allow at most.
+/// Upper limit of that standard deviation, rad/s per g: 100 °/h/g, half of the greatest value in
+/// data sheets of micromachined gyros.
 const GREATEST_KAPPA: f64 = 100.0 * DEGREE_PER_HOUR;
 
 impl Setting {
-    /// An ideal instrument at a latitude: nothing is uncertain, N is to be estimated, an azimuth
-    /// of 10° (1σ) and a tilt of 15° are accepted.
+    /// Ideal instrument at a latitude: nothing is uncertain, N is estimated, an azimuth of 10° (1σ)
+    /// and a tilt of 15° are accepted.
     #[must_use]
     pub fn at(latitude: Latitude) -> Self {
         Self {
@@ -135,13 +142,13 @@ impl Setting {
         }
     }
 
-    /// The horizontal Earth rate as it is known beforehand.
+    /// Prior knowledge of the horizontal Earth rate.
     #[must_use]
     pub fn known_amplitude(&self) -> Amplitude {
         Amplitude::Known(self.amplitude_sigma())
     }
 
-    /// 1σ of either part of κ, rad/s per g, for a gyro of this N, rad/√s.
+    /// Standard deviation of either part of κ, 1σ, rad/s per g, for a gyro with this N, rad/√s.
     #[must_use]
     pub fn kappa_sigma(&self, angle_random_walk: f64) -> f64 {
         if self.g_sensitivity_known {
@@ -151,7 +158,7 @@ impl Setting {
         }
     }
 
-    /// Relative 1σ of the horizontal Earth rate as the gyro reads it: scale factor and latitude.
+    /// Relative 1σ of the horizontal Earth rate as the gyro measures it: scale factor and latitude.
     #[must_use]
     pub fn amplitude_sigma(&self) -> f64 {
         let latitude = libm::tan(self.latitude.rad()) * self.latitude_sigma;

@@ -1,13 +1,13 @@
-//! A base that moves slowly, which an alignment takes for one that stands where its data show too little of it: how
-//! slowly that is, and where it puts north.
+//! Slow motion of the base, which an alignment cannot distinguish from rest where its data do not
+//! show it: how well the data show it, and its effect on the azimuth.
 
-/// What the data of an alignment show of a slow motion of the base.
+/// Observability of a slow motion of the base in the data of an alignment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlowMotion {
-    /// 1σ of its rate as the data show it, rad/s; infinite where they do not.
+    /// Standard deviation of its rate from the data, 1σ, rad/s; infinite where they do not show it.
     pub sigma: f64,
-    /// By how much the azimuth at the end is off where that rate is taken for none, over it, s. Of a turn about the
-    /// vertical it is half the time for which the base turned, and what a tilt lets the gyro feel of the rate itself; of
-    /// a tilting, one over the horizontal Earth rate at the most.
+    /// Sensitivity of the azimuth at the end to a neglected rate, s (rad per rad/s). For rotation
+    /// about the vertical it is half of the time for which the base turned, plus the effect of the
+    /// rate itself through the tilt; for tilting, at most one over the horizontal Earth rate.
     pub lever: f64,
 }

@@ -1,27 +1,30 @@
-//! An attitude that is carried for hours in integers: a quaternion in steps of 2⁻⁶².
+//! Attitude that is propagated for hours in integers: a quaternion in steps of 2⁻⁶².
 //!
-//! A soft `f64` product takes ninety instructions on this core, one of 32 by 32 bits with a 64-bit sum takes
-//! one. A quaternion of `f32` would swallow every rotation below 6e-8, as the Earth makes one between two
-//! samples. Here a rotation comes in as `f32`, good to 6e-8 of itself, and nothing of it is lost.
+//! A software `f64` product takes ninety instructions on a Cortex-M4, a product of 32 by 32 bits
+//! with a 64-bit sum takes one. A quaternion of `f32` would lose every rotation below 6e-8, which
+//! is the size of the Earth's rotation between two samples. Here a rotation is given as `f32`, with
+//! a relative error of 6e-8, and nothing of it is lost.
 
-/// One, in steps of the stored parts.
+/// Value of one, in steps of the stored components.
 const ONE: i64 = 1 << 62;
-/// One step of the parts' upper words.
+/// Size of a step of the components' upper words.
 const UPPER: f32 = 1.0 / (1u32 << 30) as f32;
-/// Steps of a rotation's part in a radian.
+/// Steps of a rotation's components in a radian.
 const FINE: f32 = (1u64 << 35) as f32;
-/// Rotation that is made in one go, rad: up to it the series are good to 1e-11.
+/// Largest rotation applied at once, rad: up to it the series are accurate to 1e-11.
 const LARGEST: f32 = 0.1;
-/// Most pieces of a rotation: a turn and a half.
+/// Greatest number of pieces of a rotation: a turn and a half.
 const PIECES: u32 = 100;
-/// How far from the vertical a body stands on end, rad: there rounding leaves 1e-8 of course and of roll.
+/// Distance from the vertical within which a body counts as standing on end, rad: rounding then
+/// leaves 1e-8 of course and roll.
 const ON_END: f64 = 1e-8;
 
-/// The rotation from body axes (forward, right, down) to those of a frame.
+/// Rotation from body axes (forward, right, down) to those of a frame, as a quaternion (w, x, y,
+/// z).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Attitude([i64; 4]);
 
-/// A matrix in single precision, row by row.
+/// A 3×3 matrix in single precision, row by row.
 pub type Matrix = [[f32; 3]; 3];
 
 impl Default for Attitude {
@@ -31,20 +34,20 @@ impl Default for Attitude {
 }
 
 impl Attitude {
-    /// From a quaternion (w, x, y, z) of length one.
+    /// Attitude from a unit quaternion (w, x, y, z).
     #[must_use]
     pub fn new(parts: [f64; 4]) -> Self {
         Self(parts.map(|part| libm::round(part * ONE as f64) as i64))
     }
 
-    /// The quaternion (w, x, y, z).
+    /// Components of the quaternion (w, x, y, z).
     #[must_use]
     pub fn parts(&self) -> [f64; 4] {
         self.0.map(|part| part as f64 / ONE as f64)
     }
 
-    /// The body turns further, about its own axes, by a rotation vector, rad; beyond a turn and a half what is
-    /// more is left out.
+    /// Rotates the body about its own axes by a rotation vector, rad; rotation beyond a turn and a
+    /// half is ignored.
     pub fn turn(&mut self, rotation: &[f32; 3]) {
         let [x, y, z] = *rotation;
         let square = x * x + y * y + z * z;
@@ -59,6 +62,7 @@ impl Attitude {
         }
     }
 
+    /// Rotates by a small rotation vector, given its squared length.
     #[inline]
     fn turn_little(&mut self, x: f32, y: f32, z: f32, square: f32) {
         let factor = FINE * (0.5 - square * (1.0 / 48.0 - square * (1.0 / 3840.0)));
@@ -73,31 +77,33 @@ impl Attitude {
         *k += (times(a, z) + times(b, y) - times(c, x) - times(d, less)) >> 3;
     }
 
-    /// The frame turns by a small rotation on its own axes, rad: what was wrong with the attitude is put
-    /// right.
+    /// Rotates the frame by a small rotation vector on its own axes, rad, to correct an attitude
+    /// error.
     pub fn correct(&mut self, rotation: &[f32; 3]) {
         let mut inverse = self.inverted();
         inverse.turn(&rotation.map(|part| -part));
         *self = inverse.inverted();
     }
 
+    /// Inverse rotation.
     fn inverted(&self) -> Self {
         let Self([w, x, y, z]) = *self;
         Self([w, -x, -y, -z])
     }
 
-    /// Of length one again: rounding changes it by 1e-9 a rotation at most.
+    /// Renormalises the quaternion: rounding changes its norm by at most 1e-9 a rotation.
     pub fn normalise(&mut self) {
         let upper = self.upper();
         let square: i64 = upper.iter().map(|&part| i64::from(part) * i64::from(part)).sum();
-        // Half of what is missing, in steps of 2⁻³¹ up to ±2⁻⁵: more is never lost.
+        // Half of the deficit of the norm, in steps of 2⁻³¹ up to ±2⁻⁵; a larger deficit never
+        // occurs.
         let missing = (((1i64 << 60) - square) >> 30).clamp(-(1 << 26), 1 << 26) as i32;
         for (part, upper) in self.0.iter_mut().zip(upper) {
             *part += (i64::from(upper) * i64::from(missing)) << 1;
         }
     }
 
-    /// As a matrix, to 1e-7.
+    /// Rotation matrix, to 1e-7.
     #[must_use]
     pub fn matrix(&self) -> Matrix {
         let [w, x, y, z] = self.rough();
@@ -108,12 +114,13 @@ impl Attitude {
         ]
     }
 
+    /// Components in single precision.
     fn rough(&self) -> [f32; 4] {
         let [a, b, c, d] = self.upper();
         [a as f32 * UPPER, b as f32 * UPPER, c as f32 * UPPER, d as f32 * UPPER]
     }
 
-    /// The parts in steps of 2⁻³⁰, to nearest.
+    /// Components in steps of 2⁻³⁰, rounded to nearest.
     #[inline]
     fn upper(&self) -> [i32; 4] {
         let [w, x, y, z] = self.0;
@@ -122,8 +129,8 @@ impl Attitude {
     }
 }
 
-/// Course, pitch and roll, rad, of a quaternion (w, x, y, z) from body axes to north, east, down. Of a body that
-/// stands on end, whose course and roll are one angle, the roll is zero.
+/// Course, pitch and roll, rad, of a quaternion (w, x, y, z) from body axes to north, east, down.
+/// For a body that stands on end, where course and roll are one angle, the roll is zero.
 #[must_use]
 pub fn angles([w, x, y, z]: [f64; 4]) -> [f64; 3] {
     let (east, north) = (2.0 * (x * y + w * z), 1.0 - 2.0 * (y * y + z * z));
@@ -137,7 +144,7 @@ pub fn angles([w, x, y, z]: [f64; 4]) -> [f64; 3] {
     [course, pitch, roll]
 }
 
-/// The quaternion (w, x, y, z) of course, pitch and roll, rad.
+/// Quaternion (w, x, y, z) of course, pitch and roll, rad.
 #[must_use]
 pub fn quaternion(angles: [f64; 3]) -> [f64; 4] {
     let [(c, d), (e, f), (g, h)] = angles.map(|angle| {
@@ -147,7 +154,7 @@ pub fn quaternion(angles: [f64; 3]) -> [f64; 4] {
     [c * e * g + d * f * h, c * e * h - d * f * g, c * f * g + d * e * h, d * e * g - c * f * h]
 }
 
-/// Rounding may make a sine greater than one.
+/// Limits a sine to ±1, because rounding may exceed it.
 fn bounded(sine: f64) -> f64 {
     if sine.abs() > 1.0 { libm::copysign(1.0, sine) } else { sine }
 }

@@ -1,39 +1,41 @@
-//! The azimuth through motion: what the gyrovertical turns about the vertical, and how sure that is.
+//! Heading hold: propagation of the azimuth through motion, with its growing standard deviation.
 //!
-//! `A(t) = A₀ + ∫(ω_down + Ω_v) dt`, in any attitude and less the gyros' biases (Burov, section 2). Its variance
-//! is that of A₀; what noise and biases have turned since, which the filter of the gyrovertical carries; the
-//! gyro's scale error over the turn that is left; a ramp of its bias; and what gaps hid.
+//! The azimuth is `A(t) = A₀ + ∫(ω_down + Ω_v) dt`, in any attitude and with the gyros' biases
+//! subtracted (Burov, section 2, storage of azimuth). Its variance is the sum of those of A₀, of
+//! noise and biases since then (from the filter of the gyrovertical), of the gyro's scale error
+//! over the net turn, of a ramp of its bias, and of rotation during gaps.
 
 use super::vertical::Vertical;
 use super::{Gyro, attitude};
 use crate::earth::Latitude;
 use crate::units::{TURN, wrapped};
 
-/// Standard deviations by which an alignment and what was kept may differ.
+/// Significance, in σ, at which an alignment and the held azimuth contradict each other.
 const BOUND: f64 = 4.0;
 
-/// An azimuth with its standard deviation, as it is handed over by an alignment or from outside.
+/// An azimuth with its standard deviation, as an alignment or an external source hands it over.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Handover {
     /// Azimuth of body x, rad.
     pub azimuth: f64,
-    /// Its 1σ, rad.
+    /// Standard deviation of the azimuth, 1σ, rad.
     pub sigma: f64,
 }
 
-/// What became of a new alignment.
+/// Outcome of a new alignment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Realigned {
-    /// There was no azimuth before: it was taken.
+    /// There was no azimuth before, and the new one was adopted.
     Taken,
-    /// It was weighed with what was kept, from which it was so many σ away.
+    /// The new azimuth was combined with the held one, weighted by their variances.
     Fused {
-        /// How far.
+        /// Distance between the two, in σ.
         sigmas: f64,
     },
-    /// It differs from what was kept by so many σ: one of them is wrong, and the azimuth is withdrawn.
+    /// The new azimuth contradicts the held one: one of them is wrong, and the azimuth is
+    /// withdrawn.
     Disagrees {
-        /// How far.
+        /// Distance between the two, in σ.
         sigmas: f64,
     },
 }
@@ -41,26 +43,26 @@ pub enum Realigned {
 /// An azimuth with its standard deviation, rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Azimuth {
-    /// Of body x from north, clockwise from above, [0, 2π).
+    /// Azimuth of body x from north, clockwise from above, [0, 2π).
     pub angle: f64,
-    /// Its 1σ.
+    /// Standard deviation of the azimuth, 1σ.
     pub sigma: f64,
 }
 
-/// An azimuth that is kept.
+/// An azimuth that is held.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Heading {
     /// Azimuth of the level frame's x, rad.
     frame: f64,
-    /// Variance of what was handed over, rad².
+    /// Variance of the azimuth that was handed over, rad².
     variance: f64,
-    /// 1σ of the scale, and of an unknown ramp of the bias, rad/s².
+    /// Standard deviations of the gyro's scale factor, and of an unknown ramp of its bias, rad/s².
     scale: f64,
     ramp: f64,
 }
 
 impl Heading {
-    /// Begins with an azimuth of body x.
+    /// Begins with an azimuth of body x, and restarts the error of the turn.
     pub(super) fn begin(handover: Handover, gyro: &Gyro, vertical: &mut Vertical) -> Self {
         vertical.begin_course();
         Self {
@@ -71,7 +73,7 @@ impl Heading {
         }
     }
 
-    /// The azimuth of body x now.
+    /// Present azimuth of body x.
     pub(super) fn azimuth(&self, vertical: &Vertical) -> Azimuth {
         let angle = wrapped(self.frame + course(vertical));
         Azimuth { angle, sigma: libm::sqrt(self.variance(vertical)) }
@@ -82,6 +84,7 @@ impl Heading {
         self.frame
     }
 
+    /// Variance of the present azimuth, rad².
     fn variance(&self, vertical: &Vertical) -> f64 {
         let motion = vertical.course();
         let scale = self.scale * f64::from(motion.turned);
@@ -89,7 +92,7 @@ impl Heading {
         self.variance + f64::from(vertical.turn_variance()) + scale * scale + ramp * ramp
     }
 
-    /// Weighs a new alignment with what is kept.
+    /// Combines a new alignment with the held azimuth.
     pub(super) fn realign(
         &mut self,
         handover: Handover,
@@ -110,8 +113,9 @@ impl Heading {
     }
 }
 
-/// How the level frame turns, rad/s, on north, east and down, its x pointing so far from north: with the Earth
-/// and, where the speed north and east is known, m/s, with the way over it.
+/// Rate of the level frame, rad/s, about north, east and down of that frame, whose x has the
+/// azimuth `north`: rotation of the Earth and, where the speed north and east is known, m/s,
+/// transport rate.
 pub(super) fn frame_rate(
     latitude: Latitude,
     north: Option<f64>,
@@ -136,7 +140,7 @@ fn course(vertical: &Vertical) -> f64 {
     course
 }
 
-/// The difference of two angles, rad, in [−π, π).
+/// Difference of two angles, rad, in [−π, π).
 fn difference(a: f64, b: f64) -> f64 {
     wrapped(a - b + 0.5 * TURN) - 0.5 * TURN
 }

@@ -1,4 +1,5 @@
-//! Gyrovertical and heading keeper as one: samples in, from switch-on; pitch, roll and azimuth out.
+//! Attitude and heading reference (AHRS): gyrovertical and heading hold together. It takes samples
+//! from switch-on and reports pitch, roll and azimuth.
 
 use super::heading::{Handover, Heading, Realigned, frame_rate};
 use super::restart::{self, Doubt, Remembered};
@@ -11,34 +12,34 @@ use crate::words::Rounded;
 
 pub use super::heading::Azimuth;
 
-/// 1σ of an azimuth that points nowhere, rad: it is withdrawn.
+/// Standard deviation at which an azimuth carries no information, 1σ, rad: it is withdrawn.
 const NOWHERE: f64 = 0.5;
 
-/// How far the level can be trusted, and for how many seconds that has lasted.
+/// Reliability of the level, and the time for which that state has lasted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum State {
-    /// The first forces have not come.
+    /// No forces have been received yet.
     Starting,
-    /// Level, by gravity.
+    /// The level is corrected by gravity.
     Level,
-    /// The body moves so that gravity tells hardly anything of the level, which the gyros alone carry on: its σ grows.
+    /// The motion of the body hides gravity, so the gyros alone carry the level and its σ grows.
     Coasting {
-        /// For how long, s.
+        /// Duration of the state, s.
         seconds: f64,
     },
-    /// The body falls freely.
+    /// The body is in free fall.
     FreeFall {
-        /// For how long, s.
+        /// Duration of the state, s.
         seconds: f64,
     },
-    /// There are no forces.
+    /// There are no usable forces.
     NoForce {
-        /// For how long, s.
+        /// Duration of the state, s.
         seconds: f64,
     },
-    /// So much of the rotation was lost that the level must be found again.
+    /// Rotation was lost, and the level must be found again.
     RotationLost {
-        /// For how long, s.
+        /// Duration of the state, s.
         seconds: f64,
     },
 }
@@ -52,46 +53,53 @@ words! { State:
     Self::RotationLost { seconds } => "finding the level again for {} s: rotation was lost", Rounded::<1>(seconds);
 }
 
-/// What is known now.
+/// Present attitude with its uncertainties, as reported to the user.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
-    /// When the latest sample ended.
+    /// End of the latest sample.
     pub time: Instant,
     /// Pitch, nose up positive, rad.
     pub pitch: f64,
     /// Roll, right side down positive, rad.
     pub roll: f64,
-    /// 1σ of either, rad.
+    /// Standard deviation of pitch and of roll, 1σ, rad.
     pub level_sigma: f64,
-    /// The azimuth; none before one was handed over, or where it was withdrawn.
+    /// Azimuth; none before one was handed over, or after it was withdrawn.
     pub azimuth: Option<Azimuth>,
-    /// From body axes to north, east, down (w, x, y, z); up to a constant heading where there is no azimuth.
+    /// Attitude from body axes to north, east, down (w, x, y, z); up to a constant heading without
+    /// an azimuth.
     pub attitude: [f64; 4],
-    /// How far the level can be trusted.
+    /// Reliability of the level.
     pub state: State,
-    /// Whether the body stands.
+    /// Whether the body is at rest.
     pub is_at_rest: bool,
-    /// Biases of the gyros forward, right, down, rad/s.
+    /// Estimated biases of the gyros forward, right, down, rad/s.
     pub biases: [f64; 3],
-    /// Their 1σ, rad/s.
+    /// Standard deviations of the biases, 1σ, rad/s.
     pub bias_sigmas: [f64; 3],
-    /// Whether a bias showed to be beyond five of the 1σ stated for it: nothing stated of the biases is believed then.
+    /// Whether a bias exceeded five times its configured 1σ; the configured 1σ of all biases is
+    /// then inflated.
     pub is_bias_beyond_stated: bool,
-    /// For how long the azimuth was kept, s; zero without.
+    /// Time since the azimuth was handed over, s; zero without an azimuth.
     pub seconds: f64,
 }
 
-/// Keeps pitch, roll and azimuth.
+/// Propagates pitch, roll and azimuth.
 #[derive(Clone, Debug)]
 pub struct Keeper {
+    /// Configuration of the sensors.
     setting: Setting,
+    /// Gyrovertical.
     vertical: Vertical,
+    /// Azimuth that is held, if there is one.
     heading: Option<Heading>,
-    /// When the azimuth was handed over.
+    /// Time at which the azimuth was handed over.
     handed: Instant,
+    /// Speed north and east, m/s, where it is known.
     speed: Option<[f64; 2]>,
+    /// Reliability of the level.
     trust: Trust,
-    /// Since when it is so.
+    /// Time since which the reliability has been the same.
     since: Instant,
 }
 
@@ -110,7 +118,7 @@ impl Keeper {
         }
     }
 
-    /// Takes a sample: every one, from switch-on, while the alignment runs as well.
+    /// Takes a sample. Every sample from switch-on must be passed, also while an alignment runs.
     #[inline]
     pub fn push(&mut self, sample: &InertialSample) {
         if self.vertical.push(sample) {
@@ -118,6 +126,7 @@ impl Keeper {
         }
     }
 
+    /// Updates the reliability, and withdraws an azimuth that has become meaningless.
     #[inline(never)]
     fn judge(&mut self, now: Instant) {
         if self.trust != self.vertical.trust() {
@@ -125,25 +134,25 @@ impl Keeper {
             self.since = now;
         }
         let is_nowhere = |heading: &Heading| heading.azimuth(&self.vertical).sigma > NOWHERE;
-        // Looked at only where something was lost: the filter's σ grows slowly else.
+        // The test is made only after a loss of rotation: otherwise σ grows slowly.
         if self.trust == Trust::RotationLost && self.heading.as_ref().is_some_and(is_nowhere) {
             self.withdraw();
         }
     }
 
-    /// There is no azimuth any more.
+    /// Withdraws the azimuth.
     fn withdraw(&mut self) {
         self.heading = None;
         self.vertical.lose_north(self.frame_rate());
     }
 
-    /// From now on another gyro shows the axis down.
+    /// Replaces the gyro of the down axis by another one.
     pub fn exchange_down(&mut self, gyro: Gyro) {
         self.setting = self.setting.with_down(gyro);
         self.vertical.exchange_down(&self.setting);
     }
 
-    /// Takes an azimuth of body x as it is now, in place of any before.
+    /// Adopts an azimuth of body x at the present time, in place of any previous one.
     pub fn hand_over(&mut self, handover: Handover) {
         let [.., gyro] = &self.setting.gyros;
         let is_first = self.heading.is_none();
@@ -156,7 +165,8 @@ impl Keeper {
         }
     }
 
-    /// Weighs a new alignment with what was kept. Where they disagree, there is no azimuth any more.
+    /// Combines a new alignment with the held azimuth. Where they contradict each other the azimuth
+    /// is withdrawn.
     pub fn realign(&mut self, handover: Handover) -> Realigned {
         let [.., gyro] = &self.setting.gyros;
         let realigned = match &mut self.heading {
@@ -171,24 +181,24 @@ impl Keeper {
         realigned
     }
 
-    /// How fast the vehicle goes north and east, m/s, where that is known.
+    /// Sets the speed of the vehicle north and east, m/s; none where it is not known.
     pub fn move_at(&mut self, speed: Option<[f64; 2]>) {
         self.speed = speed;
         self.turn_frame();
     }
 
-    /// Has the level frame turn as it does.
+    /// Updates the rate of the level frame.
     fn turn_frame(&mut self) {
         self.vertical.turn_frame(self.frame_rate());
     }
 
-    /// How the level frame turns, rad/s.
+    /// Rate of the level frame, rad/s.
     fn frame_rate(&self) -> [f32; 3] {
         let north = self.heading.as_ref().map(Heading::frame);
         frame_rate(self.setting.latitude, north, self.speed)
     }
 
-    /// What is known now.
+    /// Present attitude with its uncertainties.
     #[must_use]
     pub fn report(&self) -> Report {
         let vertical = &self.vertical;
@@ -213,6 +223,7 @@ impl Keeper {
         }
     }
 
+    /// Reliability of the level with its duration.
     fn state(&self, now: Instant) -> State {
         let seconds = now.seconds() - self.since.seconds();
         match self.trust {
@@ -225,7 +236,7 @@ impl Keeper {
         }
     }
 
-    /// What is to be kept over a loss of supply: only at rest, and with an azimuth.
+    /// State to be saved against a loss of supply; only at rest, and with an azimuth.
     #[must_use]
     pub fn remember(&self) -> Option<Remembered> {
         let report = self.report();
@@ -240,10 +251,11 @@ impl Keeper {
         })
     }
 
-    /// Takes an azimuth from before a loss of supply, if the body has not moved since as far as can be told.
+    /// Adopts the azimuth saved before a loss of supply, if the body has not moved since as far as
+    /// the sensors show.
     ///
     /// # Errors
-    /// Why it is not believed.
+    /// Reason for which the saved azimuth is rejected.
     pub fn recall(&mut self, remembered: &Remembered) -> Result<(), Doubt> {
         let report = self.report();
         let rates = self.vertical.rest_rates().filter(|_| report.is_at_rest);

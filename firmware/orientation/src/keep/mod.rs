@@ -1,4 +1,4 @@
-//! What is known is kept: pitch, roll and azimuth through the time after the alignment.
+//! Attitude and heading after the alignment: pitch, roll and azimuth through any motion.
 //!
 //! ```text
 //!  coarse IMU, or three precise gyros ─▶ vertical ─pitch, roll, σ──────────┐
@@ -21,32 +21,33 @@ use crate::noise::model::GyroNoise;
 use crate::units::DEGREE;
 use vertical::Expected;
 
-/// A gyro as it is known beforehand.
+/// Configured properties of a gyro.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Gyro {
-    /// Its noise.
+    /// Noise model of the gyro.
     pub noise: GyroNoise,
-    /// 1σ of its bias when it is switched on, rad/s.
+    /// Standard deviation of the switch-on bias, 1σ, rad/s.
     pub bias_sigma: f64,
-    /// 1σ of its scale factor, and of the direction of its axis, rad.
+    /// Standard deviation of the scale factor (relative), and of the direction of the axis, rad,
+    /// 1σ.
     pub scale_sigma: f64,
 }
 
-/// Three gyros and accelerometers on a body, and where it is.
+/// Configuration of three gyros and accelerometers on a body, and its site.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
-    /// Where.
+    /// Geodetic latitude.
     pub latitude: Latitude,
-    /// The gyros forward, right, down.
+    /// Gyros about forward, right, down.
     pub gyros: [Gyro; 3],
-    /// 1σ of the accelerometers' biases, m/s².
+    /// Standard deviation of the accelerometers' biases, 1σ, m/s².
     pub force_bias_sigma: f64,
     /// Sample period, s.
     pub sample_seconds: f64,
 }
 
-/// Time over which flicker noise is taken for a walk of the rate, s: what it does in a half hour after a rest of
-/// some minutes.
+/// Time over which flicker noise is represented by a random walk of the rate, s: equivalent over
+/// half an hour after a rest of some minutes.
 const FLICKER_SECONDS: f64 = 600.0;
 
 impl Gyro {
@@ -58,7 +59,7 @@ impl Gyro {
         Self { noise, bias_sigma: 0.5 * DEGREE, scale_sigma: 5e-3 }
     }
 
-    /// Variance that a bias gains in a second, (rad/s)².
+    /// Variance that a bias gains per second, (rad/s)²/s.
     fn drift(&self) -> f64 {
         let (k, b) = (self.noise.rate_random_walk, self.noise.bias_instability);
         k * k + b * b / FLICKER_SECONDS
@@ -66,26 +67,26 @@ impl Gyro {
 }
 
 impl Setting {
-    /// A coarse IMU, its accelerometers calibrated to 2 mg.
+    /// Configuration of a coarse IMU whose accelerometers are calibrated to 2 mg.
     #[must_use]
     pub fn coarse(latitude: Latitude, sample_seconds: f64) -> Self {
         Self { latitude, gyros: [Gyro::coarse(); 3], force_bias_sigma: 0.02, sample_seconds }
     }
 
-    /// Three equal gyros, accelerometers calibrated to 0.1 mg.
+    /// Configuration of three equal gyros, with accelerometers calibrated to 0.1 mg.
     #[must_use]
     pub fn precise(latitude: Latitude, sample_seconds: f64, gyro: Gyro) -> Self {
         Self { latitude, gyros: [gyro; 3], force_bias_sigma: 1e-3, sample_seconds }
     }
 
-    /// The same with this gyro about the axis down.
+    /// Configuration with another gyro about the down axis.
     #[must_use]
     pub fn with_down(self, gyro: Gyro) -> Self {
         let [forward, right, _] = self.gyros;
         Self { gyros: [forward, right, gyro], ..self }
     }
 
-    /// What the filter expects of the gyros.
+    /// Noise parameters of the gyros for the filter.
     fn expected(&self) -> Expected {
         Expected {
             walk: self.gyros.map(|gyro| {

@@ -1,8 +1,9 @@
-//! An azimuth over a loss of supply: it still holds where the vehicle has not moved, which is checked.
+//! Azimuth across a loss of supply: it remains valid where the vehicle has not moved, which is
+//! checked.
 //!
-//! A vehicle that was moved stands otherwise: its pitch or roll differ, and the Earth turns its gyros
-//! otherwise. Gravity alone cannot tell a turn about the vertical, so gyros whose biases come back too badly
-//! tell nothing, and then the azimuth is not believed.
+//! A vehicle that was moved has another pitch or roll, and the Earth rate is distributed otherwise
+//! on its gyros. Gravity alone does not show a rotation about the vertical, so gyros whose biases
+//! do not repeat cannot confirm the heading, and then the azimuth is rejected.
 
 use super::Setting;
 use crate::checksum::crc32;
@@ -10,68 +11,74 @@ use crate::units::{DEGREE, DEGREES_PER_RADIAN as DEGREES};
 use crate::words;
 use crate::words::Rounded;
 
-/// Shortest rest by which it is judged, s.
+/// Shortest rest for the comparison, s.
 pub const REST_SECONDS: f64 = 10.0;
-/// How far pitch and roll may differ, rad: what temperature and tyres do to a vehicle that stands, 0.05°.
+/// Greatest change of pitch and roll, rad: the effect of temperature and tyres on a standing
+/// vehicle, 0.05°.
 const TILT: f64 = 0.05 * DEGREE;
-/// Standard deviations by which the rates may differ.
+/// Significance, in σ, at which the rates differ.
 const BOUND: f64 = 4.0;
-/// Greatest 1σ to which the gyros must be able to tell a turn, rad: 0.5°.
+/// Greatest 1σ with which the gyros must be able to determine a rotation about the vertical, rad:
+/// 0.5°.
 const TELLING: f64 = 0.5 * DEGREE;
-/// Version of what is stored.
+/// Version of the stored layout.
 const VERSION: u32 = 1;
-/// Numbers that are stored.
+/// Number of stored values.
 const NUMBERS: usize = 8;
-/// Words that are stored: version, numbers, checksum.
+/// Number of stored words: version, values, checksum.
 const WORDS: usize = 1 + 2 * NUMBERS + 1;
 
-/// What is kept over a loss of supply.
+/// State that is saved against a loss of supply.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Remembered {
     /// Azimuth of body x, rad.
     pub azimuth: f64,
-    /// Its 1σ, rad.
+    /// Standard deviation of the azimuth, 1σ, rad.
     pub sigma: f64,
-    /// Pitch, rad.
+    /// Pitch, rad, nose up positive.
     pub pitch: f64,
-    /// Roll, rad.
+    /// Roll, rad, right side down positive.
     pub roll: f64,
-    /// Mean rates at rest about forward, right, down, rad/s, the Earth's included.
+    /// Mean rates at rest about forward, right, down, rad/s, including the Earth rate.
     pub rates: [f64; 3],
-    /// For how long they were averaged, s.
+    /// Averaging time of these rates, s.
     pub rest: f64,
 }
 
-/// How the body stands now.
+/// Present state of the body, to be compared with the saved one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Now {
+    /// Pitch, rad.
     pub(super) pitch: f64,
+    /// Roll, rad.
     pub(super) roll: f64,
+    /// Mean rates at rest, rad/s; none where it moves.
     pub(super) rates: Option<[f64; 3]>,
+    /// Averaging time of these rates, s.
     pub(super) rest: f64,
 }
 
-/// Why a remembered azimuth is not believed.
+/// Reason for which a saved azimuth is rejected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Doubt {
-    /// The body does not stand, or not for long enough.
+    /// The body is not at rest, or not for long enough.
     NotAtRest {
-        /// For how long it stood, s.
+        /// Time at rest, s.
         seconds: f64,
     },
-    /// It stands otherwise.
+    /// Pitch or roll has changed.
     Tilted {
-        /// By how much pitch or roll differ, °.
+        /// Greatest change of pitch or roll, °.
         degrees: f64,
     },
-    /// The Earth turns it otherwise.
+    /// The rates at rest have changed.
     Turned {
-        /// By how much, in σ.
+        /// Greatest change of a rate, in σ.
         sigmas: f64,
     },
-    /// The gyros cannot tell whether it was turned.
+    /// The gyros cannot determine whether the body was turned.
     CannotTell {
-        /// To how much they could, 1σ, °.
+        /// Standard deviation with which they could, 1σ, °.
         sigma: f64,
     },
 }
@@ -85,7 +92,7 @@ words! { Doubt:
         Rounded::<2>(sigma);
 }
 
-/// Whether a body still stands as it did.
+/// Checks that a body is still in its saved attitude.
 pub(super) fn check(before: &Remembered, now: &Now, setting: &Setting) -> Result<(), Doubt> {
     let Some(rates) = now.rates.filter(|_| now.rest >= REST_SECONDS) else {
         return Err(Doubt::NotAtRest { seconds: now.rest });
@@ -111,8 +118,8 @@ pub(super) fn check(before: &Remembered, now: &Now, setting: &Setting) -> Result
     Ok(())
 }
 
-/// To how much, 1σ, rad, the gyros forward and right can tell a turn: it moves the Earth's horizontal rate
-/// from one to the other.
+/// Standard deviation, 1σ, rad, with which the gyros forward and right can determine a rotation
+/// about the vertical: it moves the horizontal Earth rate from one to the other.
 fn telling(before: &Remembered, setting: &Setting, sigmas: &[f64; 3]) -> f64 {
     let (sine, cosine) = libm::sincos(before.azimuth);
     let rate = setting.latitude.horizontal_rate();
@@ -122,10 +129,10 @@ fn telling(before: &Remembered, setting: &Setting, sigmas: &[f64; 3]) -> f64 {
 }
 
 impl Remembered {
-    /// Bytes of what is stored.
+    /// Size of the stored form, bytes.
     pub const BYTES: usize = 4 * WORDS;
 
-    /// As it is stored: version, numbers, CRC-32, little-endian.
+    /// Stored form: version, values, CRC-32, all little-endian.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; Self::BYTES] {
         let mut words = [VERSION; WORDS];
@@ -141,7 +148,7 @@ impl Remembered {
         bytes
     }
 
-    /// From what was stored; none where it is damaged, of another version, or no attitude.
+    /// Reads the stored form; `None` where it is damaged, of another version, or not finite.
     #[must_use]
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
         let bytes: &[u8; Self::BYTES] = bytes.try_into().ok()?;
@@ -161,11 +168,13 @@ impl Remembered {
         numbers.iter().all(|number| number.is_finite()).then(|| Self::of(numbers))
     }
 
+    /// Values in the order in which they are stored.
     fn numbers(&self) -> [f64; NUMBERS] {
         let [x, y, z] = self.rates;
         [self.azimuth, self.sigma, self.pitch, self.roll, x, y, z, self.rest]
     }
 
+    /// State from the values in the stored order.
     fn of([azimuth, sigma, pitch, roll, x, y, z, rest]: [f64; NUMBERS]) -> Self {
         Self { azimuth, sigma, pitch, roll, rates: [x, y, z], rest }
     }

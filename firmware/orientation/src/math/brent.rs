@@ -1,34 +1,34 @@
-//! Bounded minimisation of a function of one variable (R. P. Brent, Algorithms for Minimization without
-//! Derivatives, 1973, chapter 5): what Szymanowski's `fminbnd` does.
+//! Bounded minimisation of a function of one variable (R. P. Brent, Algorithms for Minimization
+//! without Derivatives, 1973, chapter 5): the method of `fminbnd`, which Szymanowski 2003 uses.
 
-/// Where a minimum was found.
+/// A minimum and the cost of finding it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Minimum {
-    /// The argument.
+    /// Argument of the minimum.
     pub at: f64,
-    /// The function there.
+    /// Value of the function at the minimum.
     pub value: f64,
-    /// How often the function was evaluated.
+    /// Number of evaluations of the function.
     pub evaluations: u32,
 }
 
-/// Part of an interval that a golden section takes: (3 − √5)/2.
+/// Fraction of an interval that a golden section takes: (3 − √5)/2.
 const GOLDEN: f64 = 0.381_966_011_250_105_1;
-/// Relative spacing of `f64`, with which rounding blurs any argument.
+/// Relative spacing of `f64`, below which rounding blurs any argument.
 const SPACING: f64 = 2.2e-16;
 
-/// Where the search stands: the three best arguments with their values, best first.
+/// State of the search: the bracket and the three best arguments with their values, best first.
 struct Search {
     lower: f64,
     upper: f64,
     best: [(f64, f64); 3],
-    /// The last step, and the one before it.
+    /// The latest step and the one before it.
     step: f64,
     before: f64,
 }
 
-/// Finds a minimum of a function in an interval, to within `tolerance`, in `limit` evaluations at most. A
-/// function that falls only once has no other.
+/// Finds a minimum of a function in an interval to within `tolerance`, with at most `limit`
+/// evaluations. For a function with a single minimum it is the global one.
 pub fn minimise(
     [lower, upper]: [f64; 2],
     tolerance: f64,
@@ -55,19 +55,20 @@ pub fn minimise(
 }
 
 impl Search {
-    /// The next argument: the parabola's minimum where it can be trusted, else a golden section.
+    /// Next argument: the parabola's minimum where it can be trusted, else a golden section.
     fn next(&mut self, middle: f64, reach: f64) -> f64 {
         let (at, _) = self.best[0];
         self.step = self.parabola(middle, reach).unwrap_or_else(|| {
             self.before = if at < middle { self.upper - at } else { self.lower - at };
             GOLDEN * self.before
         });
-        // Never nearer than rounding lets the values differ.
+        // The step is never smaller than rounding lets the values differ.
         at + if self.step.abs() >= reach { self.step } else { libm::copysign(reach, self.step) }
     }
 
-    /// The step to the minimum of the parabola through the three best, if it lies inside and shortens
-    /// the step before the last by half; not quite to the ends.
+    /// Step to the minimum of the parabola through the three best points, if it lies inside the
+    /// bracket and is shorter than half of the step before the last; kept a little away from the
+    /// ends.
     fn parabola(&mut self, middle: f64, reach: f64) -> Option<f64> {
         let [(x, fx), (w, fw), (v, fv)] = self.best;
         if self.before.abs() <= reach {
@@ -87,7 +88,7 @@ impl Search {
         Some(if is_near { libm::copysign(reach, middle - x) } else { p / q })
     }
 
-    /// Takes a value into account.
+    /// Updates bracket and best points with a new value.
     fn take(&mut self, at: f64, value: f64) {
         let [(x, fx), (w, fw), (v, fv)] = self.best;
         if value <= fx {

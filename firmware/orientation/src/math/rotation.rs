@@ -5,55 +5,55 @@ use core::ops::{Add, Mul, Sub};
 /// A vector: three components on the axes of some frame.
 pub type Vector = [f64; 3];
 
-/// A matrix, row by row; a rotation takes the components on one frame to those on another.
+/// A 3×3 matrix, row by row; a rotation matrix takes components on one frame to those on another.
 pub type Matrix = [Vector; 3];
 
-/// The matrix that changes nothing.
+/// The identity matrix.
 pub const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// Scalar product.
+/// Scalar product of two vectors.
 #[must_use]
 pub fn dot<T: Copy + Add<Output = T> + Mul<Output = T>>(a: &[T; 3], b: &[T; 3]) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Vector product.
+/// Vector product of two vectors.
 #[must_use]
 pub fn cross<T: Copy + Sub<Output = T> + Mul<Output = T>>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Sum.
+/// Sum of two vectors.
 #[must_use]
 pub fn sum<T: Copy + Add<Output = T>>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-/// Difference.
+/// Difference of two vectors.
 #[must_use]
 pub fn difference<T: Copy + Sub<Output = T>>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-/// So many times as long.
+/// Product of a vector with a scalar.
 #[must_use]
 pub fn scaled<T: Copy + Mul<Output = T>>(a: &[T; 3], factor: T) -> [T; 3] {
     a.map(|part| part * factor)
 }
 
-/// Length.
+/// Euclidean length of a vector.
 #[must_use]
 pub fn length(a: &Vector) -> f64 {
     libm::sqrt(dot(a, a))
 }
 
-/// The same direction with length one; zero, or what is not finite, becomes what is not finite.
+/// Unit vector of the same direction; components are not finite for the zero vector.
 #[must_use]
 pub fn unit(a: &Vector) -> Vector {
     scaled(a, 1.0 / length(a))
 }
 
-/// The vector on the other frame.
+/// Product of a rotation matrix with a vector: its components on the other frame.
 #[must_use]
 pub fn turned<T: Copy + Add<Output = T> + Mul<Output = T>>(
     rotation: &[[T; 3]; 3],
@@ -62,41 +62,43 @@ pub fn turned<T: Copy + Add<Output = T> + Mul<Output = T>>(
     [dot(&rotation[0], vector), dot(&rotation[1], vector), dot(&rotation[2], vector)]
 }
 
-/// Rows and columns exchanged: of a rotation, the way back.
+/// Transposed matrix; for a rotation it is the inverse.
 #[must_use]
 pub fn transposed<T: Copy>(matrix: &[[T; 3]; 3]) -> [[T; 3]; 3] {
     core::array::from_fn(|row| core::array::from_fn(|column| matrix[column][row]))
 }
 
-/// First the rotation `b`, then `a`.
+/// Matrix product: the rotation `b` first, then `a`.
 #[must_use]
 pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
     let columns = transposed(b);
     a.map(|row| columns.map(|column| dot(&row, &column)))
 }
 
-/// The rotation about z, down, by an angle, rad: from axes that have turned by it to those that have not.
+/// Rotation matrix about z (down) by an angle, rad: takes components on the rotated axes to those
+/// on the original ones.
 #[must_use]
 pub fn about_down(angle: f64) -> Matrix {
     let (sine, cosine) = libm::sincos(angle);
     [[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]]
 }
 
-/// The rotation about a fixed axis by the vector's length, rad.
+/// Rotation matrix of a rotation vector, whose length is the angle, rad.
 #[must_use]
 pub fn by(rotation: &Vector) -> Matrix {
     Quaternion::ONE.turned(rotation).matrix()
 }
 
-/// The axis of a rotation times the sine of its angle: the rotation vector of a small one.
+/// Axis of a rotation times the sine of its angle: the rotation vector of a small rotation.
 #[must_use]
 pub fn small(rotation: &Matrix) -> Vector {
     let [[_, b, c], [d, _, f], [g, h, _]] = *rotation;
     [0.5 * (h - f), 0.5 * (c - g), 0.5 * (d - b)]
 }
 
-/// Attitude of axes that level a body: from body axes (forward, right, down) to axes that are level and
-/// point where the body points, by what it feels as up, of length one.
+/// Levelling matrix from the measured up vector (unit length, body axes): takes body components
+/// (forward, right, down) to level axes whose x points along the horizontal projection of body x.
+/// Undefined where body x is vertical.
 #[must_use]
 pub fn levelled(up: &Vector) -> Matrix {
     let down = scaled(up, -1.0);
@@ -104,19 +106,19 @@ pub fn levelled(up: &Vector) -> Matrix {
     [cross(&right, &down), right, down]
 }
 
-/// An attitude: the rotation from body axes to those of a reference.
+/// Attitude as a unit quaternion: the rotation from body axes to those of a reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quaternion([f64; 4]);
 
 /// Angle up to which sine and cosine of its half are taken from their series, rad: their errors are
-/// below 1e-16.
+/// then below 1e-16.
 const SERIES: f64 = 0.02;
 
 impl Quaternion {
-    /// No rotation.
+    /// The identity rotation.
     pub const ONE: Self = Self([1.0, 0.0, 0.0, 0.0]);
 
-    /// After a further rotation of the body about one of its own axes, rad.
+    /// Attitude after a further rotation of the body by a rotation vector on its own axes, rad.
     #[must_use]
     #[inline(never)]
     pub fn turned(&self, rotation: &Vector) -> Self {
@@ -132,16 +134,16 @@ impl Quaternion {
         ])
     }
 
-    /// Of length one again: rounding changes it by 1e-16 a rotation.
+    /// Renormalised quaternion: rounding changes its norm by 1e-16 a rotation.
     #[must_use]
     pub fn normalised(&self) -> Self {
         let Self([w, x, y, z]) = *self;
-        // Newton's step towards 1/√: exact as long as the length is nearly one.
+        // One Newton step towards 1/√n: exact as long as the norm is nearly one.
         let factor = 1.5 - 0.5 * (w * w + x * x + y * y + z * z);
         Self([w * factor, x * factor, y * factor, z * factor])
     }
 
-    /// As a matrix.
+    /// Rotation matrix of the attitude.
     #[must_use]
     pub fn matrix(&self) -> Matrix {
         let Self([w, x, y, z]) = *self;
@@ -152,7 +154,7 @@ impl Quaternion {
         ]
     }
 
-    /// As a matrix, to 1e-7.
+    /// Rotation matrix of the attitude in single precision, to 1e-7.
     #[must_use]
     pub fn rough_matrix(&self) -> [[f32; 3]; 3] {
         let [w, x, y, z] = self.0.map(|part| part as f32);
@@ -170,7 +172,7 @@ impl Default for Quaternion {
     }
 }
 
-/// Cosine of half an angle, and its sine over the angle, by the angle's square.
+/// Cosine of half an angle, and sine of half the angle over the angle, from the angle's square.
 fn half(square: f64) -> (f64, f64) {
     if square < SERIES * SERIES {
         let cosine = 1.0 - square * (0.125 - square * (1.0 / 384.0 - square / 46080.0));

@@ -1,4 +1,5 @@
-//! What the gyro's noise is, how it is measured, and how a fit is weighted for it.
+//! Gyro noise: its model, its measurement by Allan variance, and the whitening of dwells for a
+//! weighted fit.
 
 pub mod allan;
 pub mod fit;

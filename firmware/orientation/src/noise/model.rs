@@ -1,9 +1,9 @@
-//! The gyro's noise in the field's terms: Q, N, B, K, R.
+//! Noise model of a gyro in the field's terms: Q, N, B, K, R (IEEE Std 952-1997).
 
 use crate::units::{ARCSECOND, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, TURN};
 
-/// Noise coefficients of a gyro in SI units (Allan variance
-/// 3Q²/τ² + N²/τ + (2 ln 2/π)B² + K²τ/3 + R²τ²/2). Zero means: not present.
+/// Noise coefficients of a gyro in SI units, for the Allan variance 3Q²/τ² + N²/τ + (2 ln 2/π)B² +
+/// K²τ/3 + R²τ²/2. A coefficient of zero is absent.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GyroNoise {
     /// Quantisation Q, rad: 1σ of the angle's rounding.
@@ -19,7 +19,7 @@ pub struct GyroNoise {
 }
 
 impl GyroNoise {
-    /// From N in °/√h, B in °/h, K in °/h/√h and R in °/h².
+    /// Model from N in °/√h, B in °/h, K in °/h/√h and R in °/h²; the quantisation is zero.
     #[must_use]
     pub fn from_field_units(n: f64, b: f64, k: f64, r: f64) -> Self {
         Self {
@@ -31,26 +31,26 @@ impl GyroNoise {
         }
     }
 
-    /// The same gyro with a quantisation of Q arc seconds.
+    /// The model with a quantisation of Q arc seconds.
     #[must_use]
     pub fn with_quantisation(self, q: f64) -> Self {
         Self { quantisation: q * ARCSECOND, ..self }
     }
 
-    /// Q, N, B, K and R, as the fields have them.
+    /// Coefficients Q, N, B, K and R in SI units, in that order.
     #[must_use]
     pub fn coefficients(&self) -> [f64; 5] {
         let Self { quantisation: q, angle_random_walk: n, bias_instability: b, .. } = *self;
         [q, n, b, self.rate_random_walk, self.rate_ramp]
     }
 
-    /// Variance of a mean over `seconds` that the white part leaves, (rad/s)².
+    /// Variance of a mean over `seconds` due to white noise, N²/T, (rad/s)².
     #[must_use]
     pub fn white_variance(&self, seconds: f64) -> f64 {
         self.angle_random_walk * self.angle_random_walk / seconds
     }
 
-    /// Variance that the rounding of the angle at either end leaves to a mean over `seconds`,
+    /// Variance of a mean over `seconds` due to rounding of the angle at either end, 2Q²/T²,
     /// (rad/s)².
     #[must_use]
     pub fn rounding_variance(&self, seconds: f64) -> f64 {
@@ -58,7 +58,7 @@ impl GyroNoise {
         2.0 * rounding * rounding
     }
 
-    /// Variance of a mean over `seconds` that it shares with no other, (rad/s)²: N and Q.
+    /// Variance of a mean over `seconds` that is independent of other means, (rad/s)²: N and Q.
     #[must_use]
     pub fn own_variance(&self, seconds: f64) -> f64 {
         self.white_variance(seconds) + self.rounding_variance(seconds)
@@ -72,21 +72,22 @@ impl GyroNoise {
         n * n + b * b / (TURN * frequency) + k * k
     }
 
-    /// The same as it scatters the line of one period about that of others: there the walk counts twice,
-    /// since what is its slope within a period has not been taken off.
+    /// Two-sided density as it scatters the phasors of single periods about those of others,
+    /// (rad/s)²/Hz. The random walk counts twice there, because its slope within a period is not
+    /// removed.
     #[must_use]
     pub fn density_of_period(&self, frequency: f64) -> f64 {
         let k = self.rate_random_walk / (TURN * frequency);
         self.density_at(frequency) + k * k
     }
 
-    /// Whether there is noise that one dwell shares with the next, beside a ramp.
+    /// Whether successive dwells share noise other than a ramp: B or K is present.
     #[must_use]
     pub fn is_coloured(&self) -> bool {
         self.bias_instability > 0.0 || self.rate_random_walk > 0.0
     }
 
-    /// The same gyro with its drift taken away: only N remains.
+    /// The model without drift: N alone remains.
     #[must_use]
     pub fn white_part(&self) -> Self {
         Self { angle_random_walk: self.angle_random_walk, ..Self::default() }

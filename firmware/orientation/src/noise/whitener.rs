@@ -1,27 +1,29 @@
-//! Turns dwell means with coloured noise into rows of unit white noise, in fixed memory.
+//! Whitening filter: turns dwell means with coloured noise into rows of unit white noise, in fixed
+//! memory.
 //!
 //! The noise of successive dwell means is white (N), plus a random walk (K), plus flicker (B) as a
 //! sum of Gauss–Markov processes, one for each factor of four in correlation time. A Kalman filter
 //! of these states alone predicts what each dwell mean has in common with its predecessors. The
-//! prediction is linear, so the same filter applied to every column of a regression and to its
-//! left side gives rows whose noise is independent with variance one: ordinary least squares on
-//! them is generalised least squares on the dwells. Each process is averaged exactly over a dwell;
-//! for K its variance is K²(a + T/3), a being the dwell's start and T its length. Of the angle error
-//! that a subtracted sway leaves a dwell sees the change over its time, divided by it.
+//! filter is linear, so applied to every column of a regression and to its left side it gives
+//! innovations that are independent with variance one: ordinary least squares on them is
+//! generalised least squares on the dwells. Each process is averaged exactly over a dwell; for K
+//! its variance is K²(a + T/3), a being the dwell's start and T its length. Of the angle error that
+//! sway compensation leaves, a dwell sees the change over its time, divided by it.
 
 use super::model::GyroNoise;
 use crate::math::Scalar;
 use crate::signal::sway::SwayNoise;
 
-/// Gauss–Markov processes that make up flicker noise.
+/// Number of Gauss–Markov processes that make up flicker noise.
 const FLICKER_STATES: usize = 7;
-/// Flicker processes and the random walk.
+/// Number of rate processes: flicker and the random walk.
 const RATES: usize = FLICKER_STATES + 1;
-/// The same and the angle error of a subtracted sway, which comes last and mostly is not there.
+/// Number of all states: the rate processes, and the angle error of sway compensation, which comes
+/// last and is usually absent.
 const STATES: usize = RATES + 1;
 /// Ratio of successive correlation times; the sum follows 1/f within ±2 % at this spacing.
 const SPACING: f64 = 4.0;
-/// ln 4.
+/// Natural logarithm of [`SPACING`].
 const LOG_SPACING: f64 = 1.386_294_361_119_890_6;
 
 /// One noise process: a Gauss–Markov process, or a random walk (infinite correlation time).
@@ -33,7 +35,7 @@ struct Process {
     drive: f64,
 }
 
-/// How one process passes through an interval: its end value and its mean over the interval.
+/// Transition of one process over an interval: its end value and its mean over the interval.
 #[derive(Clone, Copy, Debug, Default)]
 struct Step<T> {
     /// End value for a unit start value.
@@ -42,19 +44,20 @@ struct Step<T> {
     mean: T,
     /// Variance that the interval adds to the end value.
     end_variance: T,
-    /// Covariance that it adds between end value and mean.
+    /// Covariance that the interval adds between end value and mean.
     cross: T,
-    /// Variance that it adds to the mean.
+    /// Variance that the interval adds to the mean.
     mean_variance: T,
 }
 
 impl Process {
-    /// The step over an interval, for e₁ = 1 − e⁻ˣ with x the interval over the correlation time.
+    /// Transition over an interval, for e₁ = 1 − e⁻ˣ with x the interval over the correlation time.
     fn step<T: Scalar>(&self, seconds: f64, e1: f64) -> Step<T> {
         let x = seconds / self.correlation;
         let power = self.drive * seconds;
         let [end, mean, end_variance, cross, mean_variance] = if x < 1e-3 {
-            // The limits of a random walk, with the first-order decay.
+            // Short intervals take the limits of a random walk, with the first-order decay, because
+            // the closed forms cancel.
             [
                 1.0 - e1,
                 1.0 - 0.5 * x,
@@ -78,7 +81,7 @@ impl Process {
     }
 }
 
-/// How the angle error of a subtracted sway passes through an interval, as a rate: the parts of a
+/// Transition of the angle error of sway compensation over an interval, as a rate: the parts of a
 /// [`Step`] in their order.
 #[inline(never)]
 fn sway_step(sway: &SwayNoise, seconds: f64) -> [f64; 5] {
@@ -88,35 +91,41 @@ fn sway_step(sway: &SwayNoise, seconds: f64) -> [f64; 5] {
     [1.0 - e1, -e1 * rate, added, cross, cross * rate]
 }
 
-/// 1 − e⁻²ˣ from 1 − e⁻ˣ, to the last bits.
+/// Value 1 − e⁻²ˣ from 1 − e⁻ˣ, without cancellation.
 fn doubled(e1: f64) -> f64 {
     e1 * (2.0 - e1)
 }
 
-/// The processes and what is beside them.
+/// Model of the filter: the processes, and the parts outside them.
 #[derive(Clone, Copy, Debug)]
 struct Model {
+    /// Flicker processes from fast to slow, then the random walk.
     processes: [Process; RATES],
-    /// White density of the flicker that is faster than its processes, (rad/s)²·s.
+    /// White density of the flicker faster than the processes, (rad/s)²·s.
     fast: f64,
+    /// Noise that sway compensation leaves; zero without compensation.
     sway: SwayNoise,
 }
 
-/// The steps of all processes over the interval that was last asked for: dwells are mostly alike.
+/// Transitions of all processes over the latest interval, kept because dwells mostly have equal
+/// length.
 #[derive(Clone, Copy, Debug)]
 struct Steps<T> {
+    /// Length of the interval, s; NaN before the first.
     seconds: f64,
-    /// Variance that the flicker faster than all processes leaves to a mean, (rad/s)².
+    /// Variance that the flicker faster than all processes adds to a mean, (rad/s)².
     fast: f64,
+    /// Transition of each process.
     of: [Step<T>; STATES],
 }
 
 impl<T: Scalar> Steps<T> {
+    /// No transitions yet.
     fn none() -> Self {
         Self { seconds: f64::NAN, fast: 0.0, of: [Step::default(); STATES] }
     }
 
-    /// The steps over so many seconds.
+    /// Transitions over `seconds`, computed anew where the length changed.
     fn over(&mut self, model: &Model, seconds: f64) -> &[Step<T>; STATES] {
         if self.seconds != seconds {
             self.seconds = seconds;
@@ -125,13 +134,14 @@ impl<T: Scalar> Steps<T> {
         &self.of
     }
 
-    /// Variance that the flicker faster than all processes leaves to a mean, (rad/s)².
+    /// Variance that the flicker faster than all processes adds to a mean over `seconds`, (rad/s)².
     fn fast(&mut self, model: &Model, seconds: f64) -> f64 {
         self.over(model, seconds);
         self.fast
     }
 
-    /// Correlation times are in the ratio of [`SPACING`], so one exponential serves them all.
+    /// Computes the transitions. Correlation times are in the ratio of [`SPACING`], so one
+    /// exponential serves them all.
     #[inline(never)]
     fn renew(&mut self, model: &Model) {
         let (processes, seconds) = (&model.processes, self.seconds);
@@ -151,18 +161,19 @@ impl<T: Scalar> Steps<T> {
     }
 }
 
-/// What is believed of the states: their estimates for every column, and how sure they are.
+/// State of the Kalman filter: an estimate for every column, with one covariance for all.
 #[derive(Clone, Debug)]
 struct Belief<const COLUMNS: usize, T> {
-    /// How many of the states are there.
+    /// Number of states that are in use.
     active: usize,
     /// Covariance of the states, lower triangle.
     covariance: [[T; STATES]; STATES],
+    /// Estimates of the states, one for each column.
     state: [[T; COLUMNS]; STATES],
 }
 
 impl<const COLUMNS: usize, T: Scalar> Belief<COLUMNS, T> {
-    /// Carries the states over an interval.
+    /// Propagates the states over an interval.
     fn advance(&mut self, steps: &[Step<T>; STATES]) {
         for (i, step) in steps.iter().enumerate().take(self.active) {
             for value in &mut self.state[i] {
@@ -175,7 +186,7 @@ impl<const COLUMNS: usize, T: Scalar> Belief<COLUMNS, T> {
         }
     }
 
-    /// Takes off a row what the states predict of a mean.
+    /// Subtracts from a row the predicted mean: what remains is the innovation.
     fn surprise(&self, steps: &[Step<T>; STATES], row: &mut [T; COLUMNS]) {
         for (step, state) in steps.iter().zip(&self.state).take(self.active) {
             for (value, state) in row.iter_mut().zip(state) {
@@ -184,7 +195,7 @@ impl<const COLUMNS: usize, T: Scalar> Belief<COLUMNS, T> {
         }
     }
 
-    /// Learns from the surprise of a mean with this variance and covariance with the states.
+    /// Updates the states with an innovation of this variance and covariance with the states.
     fn learn(&mut self, cross: &[T; STATES], variance: T, surprise: &[T; COLUMNS]) {
         for i in 0..self.active {
             let gain = cross[i] / variance;
@@ -218,24 +229,30 @@ impl<const COLUMNS: usize, T: Scalar> Belief<COLUMNS, T> {
     }
 }
 
-/// The filter; `COLUMNS` counts the regression's columns and its left side.
+/// The whitening filter; `COLUMNS` counts the regression's columns and its left side.
 #[derive(Clone, Debug)]
 pub struct Whitener<const COLUMNS: usize, T = f64> {
+    /// Processes and their parameters.
     model: Model,
+    /// Estimated states.
     belief: Belief<COLUMNS, T>,
+    /// End of the latest dwell, s.
     end: Option<f64>,
+    /// Whether there is coloured noise; otherwise rows are only scaled.
     coloured: bool,
+    /// Transitions over the latest interval between dwells.
     gap: Steps<T>,
+    /// Transitions over the latest dwell.
     dwell: Steps<T>,
 }
 
 impl<const COLUMNS: usize, T: Scalar> Whitener<COLUMNS, T> {
-    /// For a gyro whose shortest dwell lasts `shortest` seconds.
+    /// Filter for a gyro whose shortest dwell lasts `shortest` seconds.
     ///
-    /// Flicker is modelled between correlation times of a third of that dwell and 4096/3 of it;
-    /// the low cut-off is therefore 1/(2π·1365·`shortest`) Hz. What is slower is a constant to the
-    /// regression, which has a column for it. What is faster averages like white noise: processes of
-    /// variance s² and correlation time τ leave 2s²τ/T, summed over τ/4, τ/16, …
+    /// Flicker is modelled between correlation times of a third of that dwell and 4096/3 of it; the
+    /// low cut-off is therefore 1/(2π·1365·`shortest`) Hz. Slower flicker is a constant to the
+    /// regression, which has a column for it. Faster flicker averages like white noise: processes
+    /// of variance s² and correlation time τ leave 2s²τ/T, summed over τ/4, τ/16, …
     #[must_use]
     pub fn new(noise: &GyroNoise, shortest: f64) -> Self {
         let zero = T::default();
@@ -262,7 +279,7 @@ impl<const COLUMNS: usize, T: Scalar> Whitener<COLUMNS, T> {
         Self { model, belief, end: None, coloured, gap: Steps::none(), dwell: Steps::none() }
     }
 
-    /// The same where a sway is subtracted, which leaves this error.
+    /// The filter with the noise that sway compensation leaves.
     #[must_use]
     pub fn with_sway(mut self, sway: &SwayNoise) -> Self {
         if sway.angle_variance > 0.0 {
@@ -275,7 +292,7 @@ impl<const COLUMNS: usize, T: Scalar> Whitener<COLUMNS, T> {
     }
 
     /// Whitens the row of a dwell mean over [`start`, `end`] (s) in place; `white` is the variance
-    /// that is this dwell's own, (rad/s)². Dwells come in the order of time.
+    /// that is independent of other dwells, (rad/s)². Dwells must come in the order of time.
     pub fn whiten(&mut self, start: f64, end: f64, white: f64, row: &mut [T; COLUMNS]) {
         if !self.coloured {
             scale(row, T::of(white));
@@ -288,14 +305,15 @@ impl<const COLUMNS: usize, T: Scalar> Whitener<COLUMNS, T> {
         self.observe(end - start, white, row);
     }
 
-    /// Carries the processes over a time without a measurement.
+    /// Propagates the processes over a time without a measurement.
     fn drift(&mut self, seconds: f64) {
         if seconds > 0.0 {
             self.belief.advance(self.gap.over(&self.model, seconds));
         }
     }
 
-    /// Predicts the dwell's mean, replaces the row by its normalised surprise and learns from it.
+    /// Predicts the dwell's mean, replaces the row by its normalised innovation, and updates the
+    /// states.
     fn observe(&mut self, seconds: f64, white: f64, row: &mut [T; COLUMNS]) {
         let Self { model, belief, dwell, .. } = self;
         let fast = dwell.fast(model, seconds);

@@ -1,45 +1,48 @@
-//! Burov's optimisation: how often to turn in a given time, and how long a wanted rate error takes.
+//! Burov's optimisation: the best number of positions in a given time, and the time for a wanted
+//! rate error.
 //!
-//! Source: Burov, eq. (1). A gyro is turned between n positions in a total time `t_GC`, each rotation
-//! taking `t_rot`; its error after autocompensation is
+//! Source: Burov, eq. (1). A gyro is turned between n positions in a total time `t_GC`, each
+//! rotation taking `t_rot`; its rate error after autocompensation is
 //!
 //! ```text
 //! Δω(n)² = R²(t_GC + t_rot)²/(2n²) + K²(t_GC + t_rot)/(3n) + N²/t_w + 3Q²/t_w²,
 //! t_w = t_GC − (n − 1) t_rot
 //! ```
 //!
-//! Δω is the error of a *rate*. A horizontal gyro that only has to tell its component along one axis
-//! has an azimuth error of `Δω/Ω_h`; a full azimuth needs two components in the same time, √2 of it.
-//! The paper leaves B out, which no turning changes in its model; it is added as B√(2 ln 2/π).
+//! Δω is the error of a *rate*. A horizontal gyro that measures its component along one axis only
+//! has an azimuth error of `Δω/Ω_h`; a full azimuth needs two components in the same time, √2 of
+//! it. The paper leaves out B, which no rotation reduces in its model; it is added as B√(2 ln 2/π).
+//! Noise coefficients are in SI units here. Check: N 0.001 °/√h, R 0.127 °/h², `t_rot` 2 s and
+//! `t_GC` 300 s give n = 11 and Δω = 3.6505e-3 °/h.
 
 use crate::noise::model::GyroNoise;
 
-/// Fewest positions that compensate anything.
+/// Fewest positions that compensate a bias.
 const FEWEST: u32 = 2;
-/// Most positions that are looked at: more than any stage turns to in a day.
+/// Most positions that are considered: more than any stage reaches in a day.
 const MOST: u32 = 100_000;
-/// Longest total time that is looked at, s: a day.
+/// Longest total time that is considered, s: a day.
 pub const LONGEST: f64 = 86_400.0;
-/// Halvings of an interval of time: from a day to a nanosecond.
+/// Number of bisections of an interval of time: from a day to below a nanosecond.
 const HALVINGS: usize = 48;
-/// Thirds that are cut from it until as much is left.
+/// Number of ternary-search steps with the same final width.
 const THIRDS: usize = 82;
 
-/// The best that turning between positions can do.
+/// Optimum of autocompensation by turning between positions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Autocompensation {
     /// Number of positions n.
     pub positions: u32,
-    /// Time in each, s: the total less the rotations, over n.
+    /// Time in each position, s: the total less the rotations, over n.
     pub dwell: f64,
     /// Total time `t_GC`, s.
     pub seconds: f64,
-    /// Δω(n), rad/s, 1σ.
+    /// Rate error Δω(n), rad/s, 1σ, without bias instability.
     pub rate_error: f64,
 }
 
-/// Δω(n), rad/s, for `positions` in `seconds` of total time with `rotation` seconds for each
-/// rotation; `None` where the rotations leave no time.
+/// Rate error Δω(n), rad/s, 1σ, for `positions` in `seconds` of total time with `rotation` seconds
+/// for each rotation; `None` for fewer than two positions, or where the rotations leave no time.
 #[must_use]
 pub fn rate_error(noise: &GyroNoise, positions: u32, seconds: f64, rotation: f64) -> Option<f64> {
     let n = f64::from(positions);
@@ -54,11 +57,11 @@ pub fn rate_error(noise: &GyroNoise, positions: u32, seconds: f64, rotation: f64
     (positions >= FEWEST && still > 0.0).then(|| libm::sqrt(square))
 }
 
-/// The number of positions with the least Δω in `seconds` of total time; `None` where not even one
+/// Number of positions with the least Δω in `seconds` of total time; `None` where not even one
 /// rotation fits in.
 ///
-/// Each term of Δω² is convex in n, so their sum is, and the sign of its change is bisected. Without
-/// noise that grows with the dwell two positions are best.
+/// Each term of Δω² is convex in n, so their sum is convex, and the sign of its change is bisected.
+/// Without noise that grows with the dwell, two positions are best.
 #[must_use]
 pub fn best(noise: &GyroNoise, seconds: f64, rotation: f64) -> Option<Autocompensation> {
     let of = |n| rate_error(noise, n, seconds, rotation).unwrap_or(f64::INFINITY);
@@ -73,11 +76,14 @@ pub fn best(noise: &GyroNoise, seconds: f64, rotation: f64) -> Option<Autocompen
     Some(Autocompensation { positions: low, dwell, seconds, rate_error })
 }
 
-/// The shortest total time in which Δω comes down to `wanted` rad/s, with its best number of positions; `Err` with the
-/// least Δω where no time up to a day does.
+/// Shortest total time in which Δω comes down to `wanted` rad/s, with its best number of positions.
 ///
-/// More time is not always better: between one number of positions and the next a random walk adds to the error. For each
-/// number Δω² is convex in the time, so the first time that does is found for each, and the first of all is taken.
+/// # Errors
+/// The least Δω, rad/s, where no time up to a day reaches `wanted`.
+///
+/// More time is not always better: between one number of positions and the next a random walk adds
+/// to the error. For each number Δω² is convex in the time, so the first sufficient time is found
+/// for each, and the shortest of all is taken.
 pub fn least_time(noise: &GyroNoise, wanted: f64, rotation: f64) -> Result<Autocompensation, f64> {
     let (mut longest, mut least, mut found) = (LONGEST, f64::INFINITY, None);
     for positions in FEWEST..=MOST {
@@ -96,7 +102,7 @@ pub fn least_time(noise: &GyroNoise, wanted: f64, rotation: f64) -> Result<Autoc
     found.ok_or(least)
 }
 
-/// Where a convex function is lowest between two times, s.
+/// Argument of the minimum of a convex function between two times, s, by ternary search.
 fn lowest(of: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     for _ in 0..THIRDS {
         let third = (high - low) / 3.0;
@@ -106,7 +112,8 @@ fn lowest(of: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     high
 }
 
-/// The first time, s, from which something is true: not yet at `low`, but at `high`.
+/// First time, s, from which a predicate holds, by bisection: it is false at `low` and true at
+/// `high`.
 fn first(is_true: impl Fn(f64) -> bool, mut low: f64, mut high: f64) -> f64 {
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
@@ -115,7 +122,8 @@ fn first(is_true: impl Fn(f64) -> bool, mut low: f64, mut high: f64) -> f64 {
     high
 }
 
-/// What bias instability adds to a rate whatever is turned, B√(2 ln 2/π), rad/s.
+/// Contribution of bias instability to a rate error, B√(2 ln 2/π), rad/s; no rotation schedule
+/// reduces it.
 #[must_use]
 pub fn flicker_floor(noise: &GyroNoise) -> f64 {
     noise.bias_instability * libm::sqrt(2.0 * core::f64::consts::LN_2 / core::f64::consts::PI)

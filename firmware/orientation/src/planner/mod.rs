@@ -1,9 +1,9 @@
-//! Which positions, in which order, for how long: what a gyro's noise makes best.
+//! Planner: which positions, in which order and for how long suit a gyro's noise best.
 //!
-//! [`burov`] is the paper's optimisation of autocompensation, exactly. [`for_time`] and
-//! [`for_sigma`] are the real optimum for this project's estimator: the covariance of the fit
-//! itself, under the measured noise, is compared over orders of positions, passes and the time that
-//! the stage needs to turn.
+//! [`burov`] is the paper's optimisation of autocompensation (Burov, eq. 1). [`for_time`] and
+//! [`for_sigma`] optimise this project's own estimator: the covariance of the fit itself, under the
+//! measured noise, is compared over orders of positions, passes and the time that the stage needs
+//! to turn.
 
 pub mod burov;
 pub mod order;
@@ -16,38 +16,39 @@ use crate::units::TURN;
 use order::{Order, PARTS};
 use prediction::{Visit, rate_sigma};
 
-/// How long the stage takes to turn.
+/// Time that the stage takes for a rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotation {
-    /// What every rotation takes, s, ≥ 0: slopes, settling.
+    /// Constant part of every rotation, s, ≥ 0: acceleration, deceleration and settling.
     pub rest: f64,
-    /// Rate between the slopes, rad/s, > 0; infinite where rotations of any angle take alike.
+    /// Rate between the ramps, rad/s, > 0; infinite where the time does not depend on the angle.
     pub speed: f64,
-    /// Whether it takes the shorter way round: with slip rings, or with two frames.
+    /// Whether the stage takes the shorter way round: with slip rings, or with two frames.
     pub wraps: bool,
 }
 
 impl Rotation {
-    /// Every rotation takes so many seconds.
+    /// Rotation time of a stage on which every rotation takes `seconds`, whatever the angle.
     #[must_use]
     pub fn fixed(seconds: f64) -> Self {
         Self { rest: seconds, speed: f64::INFINITY, wraps: false }
     }
 
-    /// Time from one position to another, s; positions in twenty-fourths of a turn, each of which takes
-    /// `per_part` seconds.
+    /// Time from one position to another, s, for positions in twenty-fourths of a turn, each of
+    /// which takes `per_part` seconds.
     fn between(&self, from: u8, to: u8, per_part: f64) -> f64 {
         let parts = to.abs_diff(from);
         let way = if self.wraps { parts.min(PARTS - parts) } else { parts };
         if parts == 0 { 0.0 } else { self.rest + f64::from(way) * per_part }
     }
 
-    /// Time for a twenty-fourth of a turn between the slopes, s.
+    /// Time for a twenty-fourth of a turn at full speed, s.
     fn part_seconds(&self) -> f64 {
         TURN / f64::from(PARTS) / self.speed
     }
 
-    /// Time for a rotation by `angle` rad, at most a turn; none for none.
+    /// Time for a rotation by `angle` rad, at most a turn in magnitude, s; zero for an angle of
+    /// zero.
     #[must_use]
     pub fn seconds(&self, angle: f64) -> f64 {
         let angle = angle.abs();
@@ -56,92 +57,96 @@ impl Rotation {
     }
 }
 
-/// What a plan is made for.
+/// Conditions that a plan is made for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditions {
-    /// The gyro's noise.
+    /// Noise model of the gyro.
     pub noise: GyroNoise,
-    /// How the stage turns.
+    /// Rotation time of the stage.
     pub rotation: Rotation,
-    /// Shortest dwell, s, > 0: what the filter needs.
+    /// Shortest dwell, s, > 0, which the filter's settling requires.
     pub shortest: f64,
-    /// Fewest positions, usually [`FEWEST`].
+    /// Fewest positions of a plan, usually [`FEWEST`].
     pub fewest: usize,
-    /// The orders that the stage can turn through.
+    /// Orders of positions that the stage can turn through.
     pub orders: &'static [Order],
 }
 
 impl Conditions {
-    /// Whether there is noise that a longer dwell averages, as far as single precision sees it.
+    /// Checks that there is noise that a longer dwell averages, within the resolution of single
+    /// precision.
     fn check(&self) -> Result<(), PlanError> {
         let has_noise = self.noise.own_variance(1.0) > LEAST_VARIANCE;
         if has_noise { Ok(()) } else { Err(PlanError::NoNoise) }
     }
 }
 
-/// Positions in their order, and what comes of them.
+/// A schedule of positions, with the accuracy that it will reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plan {
-    /// Their order.
+    /// Order of the positions.
     pub order: Order,
-    /// How often it is gone through.
+    /// Number of passes through the order.
     pub passes: usize,
     /// Time in each position, s.
     pub dwell: f64,
-    /// Total time with the rotations, s.
+    /// Total time including the rotations, s.
     pub seconds: f64,
-    /// 1σ that noise leaves to each horizontal component of the Earth rate, rad/s.
+    /// Standard deviation that noise leaves to each horizontal component of the Earth rate, 1σ,
+    /// rad/s.
     pub rate_sigma: f64,
 }
 
-/// Why there is no plan.
+/// Reason for which there is no plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlanError {
-    /// The time does not hold the fewest positions.
+    /// The time does not hold the fewest positions with the shortest dwell.
     TooShort,
-    /// The accuracy is out of reach; the least 1σ of a rate component within the time, rad/s.
+    /// The accuracy is out of reach; the value is the least 1σ of a rate component within the time,
+    /// rad/s.
     OutOfReach(f64),
-    /// Neither N nor Q is known: without noise of its own any dwell is long enough.
+    /// Neither N nor Q is known: without white noise any dwell is long enough.
     NoNoise,
 }
 
-/// Part of σ that another order must come down to, to be looked at in a second search.
+/// Ratio of σ below which another order is worth a second search.
 const WORTH_IT: f64 = 0.99;
-/// Fewest positions of a schedule: fewer leave too few degrees of freedom to notice a disturbed dwell.
+/// Fewest positions of a schedule: fewer leave too few degrees of freedom to detect a disturbed
+/// dwell.
 pub const FEWEST: usize = 8;
-/// Least variance of a mean over a second, (rad/s)²: 10⁻⁸ °/√h.
+/// Least variance of a mean over a second, (rad/s)²: that of 10⁻⁸ °/√h.
 const LEAST_VARIANCE: f64 = 1e-23;
-/// Passes that are tried before the best is refined; the positions bound them.
+/// Numbers of passes that are tried before the best is refined; [`POSITIONS`] bounds them.
 const PASSES: [usize; 8] = [1, 2, 3, 4, 6, 8, 11, 16];
 /// Time with which the search for a wanted accuracy begins, s.
 const USUAL: f64 = 300.0;
-/// Factor by which the time grows at least while the accuracy is not reached.
+/// Least factor by which the time grows while the accuracy is not reached.
 const STRIDE: f64 = 1.2;
-/// Most steps towards the time that a wanted accuracy takes.
+/// Greatest number of steps towards the time that a wanted accuracy takes.
 const STEPS: usize = 12;
-/// Time by which a plan may exceed the least that does, relative.
+/// Relative time by which a plan may exceed the least sufficient one.
 const CLOSE: f64 = 0.01;
 
 impl Plan {
-    /// Number of positions.
+    /// Number of positions in all passes.
     #[must_use]
     pub fn positions(&self) -> usize {
         self.passes * self.order.length()
     }
 
-    /// Stage angle of a position, rad.
+    /// Stage angle of the position with this index, rad, [0, 2π).
     #[must_use]
     pub fn angle(&self, index: usize) -> f64 {
         self.order.angle(index, self.passes)
     }
 
-    /// 1σ of a full azimuth at a latitude as noise leaves it, rad.
+    /// Standard deviation of a full azimuth at a latitude due to noise, 1σ, rad.
     #[must_use]
     pub fn sigma(&self, latitude: Latitude) -> f64 {
         self.rate_sigma / latitude.horizontal_rate()
     }
 
-    /// These passes in this total time; `None` where they do not fit.
+    /// Plan of `passes` of `order` in a total time, s; `None` where they do not fit.
     #[must_use]
     #[inline(never)]
     pub fn of(conditions: &Conditions, order: Order, passes: usize, seconds: f64) -> Option<Self> {
@@ -159,7 +164,7 @@ impl Plan {
         rate_sigma(&conditions.noise, dwell, visits).map(|rate_sigma| Self { rate_sigma, ..plan })
     }
 
-    /// The visits with their times.
+    /// Dwells of the plan with their times; the first begins at zero.
     pub fn visits<'a>(&'a self, rotation: &Rotation) -> impl Iterator<Item = Visit> + 'a {
         let (rotation, per_part) = (*rotation, rotation.part_seconds());
         let mut start = 0.0;
@@ -183,7 +188,7 @@ fn turning(rotation: &Rotation, order: Order, passes: usize) -> f64 {
     rotations.map(|index| rotation.between(part(index - 1), part(index), per_part)).sum()
 }
 
-/// The better of two plans.
+/// The plan of the smaller rate error, where there is one.
 fn better(one: Option<Plan>, other: Option<Plan>) -> Option<Plan> {
     match (one, other) {
         (Some(one), Some(other)) if other.rate_sigma < one.rate_sigma => Some(other),
@@ -192,8 +197,8 @@ fn better(one: Option<Plan>, other: Option<Plan>) -> Option<Plan> {
     }
 }
 
-/// The best of some passes of one order in a total time. σ² falls with the passes as drift cancels and
-/// rises with the rotations, so the first rise ends the search.
+/// Best number of passes of one order in a total time. σ² falls with the passes as drift cancels,
+/// and rises with the rotations, so the first rise ends the search.
 fn best_of(conditions: &Conditions, order: Order, seconds: f64) -> Option<Plan> {
     let mut best: Option<Plan> = None;
     for passes in PASSES {
@@ -207,7 +212,7 @@ fn best_of(conditions: &Conditions, order: Order, seconds: f64) -> Option<Plan> 
     best
 }
 
-/// The best passes next to `plan`'s in a total time, one step at a time.
+/// Best number of passes in a total time by local search from `plan`'s, one pass at a time.
 fn climbed(conditions: &Conditions, plan: &Plan, seconds: f64) -> Option<Plan> {
     let of = |passes| Plan::of(conditions, plan.order, passes, seconds);
     let mut best = of(plan.passes);
@@ -219,7 +224,7 @@ fn climbed(conditions: &Conditions, plan: &Plan, seconds: f64) -> Option<Plan> {
                 (Some(next), Some(least)) if next.rate_sigma < least.rate_sigma => {
                     best = Some(next);
                 }
-                // With less time the passes that were best may not fit.
+                // With less time the best number of passes of the other plan may not fit.
                 (Some(next), None) => best = Some(next),
                 (None, None) if step < 0 && passes > 0 => {}
                 _ => break,
@@ -232,7 +237,7 @@ fn climbed(conditions: &Conditions, plan: &Plan, seconds: f64) -> Option<Plan> {
     best
 }
 
-/// The schedule of the least σ in a total time.
+/// Schedule of the least σ in a total time, s.
 ///
 /// # Errors
 /// [`PlanError::TooShort`], [`PlanError::NoNoise`].
@@ -243,11 +248,11 @@ pub fn for_time(conditions: &Conditions, seconds: f64) -> Result<Plan, PlanError
     Ok(climbed(conditions, &best, seconds).unwrap_or(best))
 }
 
-/// The shortest schedule, at most `longest` seconds, whose 1σ of a rate component is `wanted` rad/s;
-/// a wanted azimuth times `Ω_h`. It takes at most 1 % longer than the least time of its order.
+/// Shortest schedule, at most `longest` seconds, whose 1σ of a rate component is `wanted` rad/s (a
+/// wanted azimuth times `Ω_h`). It takes at most 1 % longer than the least time of its order.
 ///
 /// # Errors
-/// [`PlanError::OutOfReach`] where `longest` does not do, and those of [`for_time`].
+/// [`PlanError::OutOfReach`] where `longest` is not enough, and the errors of [`for_time`].
 pub fn for_sigma(conditions: &Conditions, wanted: f64, longest: f64) -> Result<Plan, PlanError> {
     conditions.check()?;
     let usual = conditions.orders.first().copied();
@@ -255,7 +260,8 @@ pub fn for_sigma(conditions: &Conditions, wanted: f64, longest: f64) -> Result<P
     let begun = begun.map_or_else(|| for_time(conditions, longest), Ok)?;
     let enough = lengthened(conditions, begun, wanted, longest)?;
     let found = shortened(conditions, enough, wanted);
-    // What is best in one time need not be so in another.
+    // The order that is best in one time need not be best in another, so the others are tried in
+    // the time found.
     let orders = conditions.orders.iter().map(|order| Plan {
         order: *order,
         passes: (found.positions() / order.length()).max(1),
@@ -271,13 +277,13 @@ pub fn for_sigma(conditions: &Conditions, wanted: f64, longest: f64) -> Result<P
     })
 }
 
-/// Where white noise leads from a plan's time towards `wanted`, and a little further.
+/// Time at which white noise alone would bring the plan to `wanted`, and 0.5 % more, s.
 fn aimed(plan: &Plan, wanted: f64) -> f64 {
     let ratio = plan.rate_sigma / wanted;
     plan.seconds * ratio * ratio * (1.0 + 0.5 * CLOSE)
 }
 
-/// A plan that reaches `wanted`, in more and more time.
+/// Plan that reaches `wanted`, by increasing its time up to `longest`.
 fn lengthened(
     conditions: &Conditions,
     mut plan: Plan,
@@ -297,7 +303,7 @@ fn lengthened(
     Ok(plan)
 }
 
-/// The shortest plan of the same order that still reaches `wanted`, as `high` does.
+/// Shortest plan of the same order that still reaches `wanted`, as `high` does.
 fn shortened(conditions: &Conditions, mut high: Plan, wanted: f64) -> Plan {
     let mut low = 0.0;
     for _ in 0..STEPS {

@@ -1,49 +1,50 @@
-//! Orders in which positions are visited so that drift cancels.
+//! Orders in which positions are visited so that drift cancels (Burov).
 
 use crate::units::TURN;
 
-/// An order of positions; a *pass* is its least repeatable part.
+/// Order of positions; a *pass* is its smallest repeatable part.
 ///
-/// A sum over positions 180° apart that alternate keeps what turns with the stage and loses what
-/// drifts; mirrored orders lose a linear drift exactly.
+/// A sum over positions 180° apart, taken alternately, keeps the signal that turns with the stage
+/// and cancels drift; mirrored orders cancel a linear drift exactly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
-    /// 0°, 180°, 90°, 270°: Burov's four positions.
+    /// Order 0°, 180°, 90°, 270°: Burov's four positions.
     Quadrature,
-    /// 0°, 180°, 90°, 270° and back again; at the turning points nothing rotates.
+    /// Order 0°, 180°, 90°, 270° and back again; at its turning points the stage does not rotate.
     ThereAndBack,
-    /// 0°, 180°, 180°, 0°, 90°, 270°, 270°, 90°: each pair mirrored in itself.
+    /// Order 0°, 180°, 180°, 0°, 90°, 270°, 270°, 90°: each pair mirrored in itself.
     Mirrored,
-    /// 0°, 90°, 180°, 270° and back again: the least turning, for a slow stage.
+    /// Order 0°, 90°, 180°, 270° and back again: the least rotation, for a slow stage.
     Sweep,
-    /// 0° and 180° in turn for the first half, then 90° and 270°.
+    /// Order of 0° and 180° alternately for the first half, then of 90° and 270°.
     Pairs,
-    /// 0°, 120°, 240°: three positions.
+    /// Order 0°, 120°, 240°: three positions.
     Thirds,
-    /// Eight equal steps over the circle, again and again.
+    /// Order of eight equal steps over the circle, repeated.
     Eighths,
 }
 
-/// Parts of a turn in which every position is a whole number: halves, thirds, quarters and eighths.
+/// Number of parts of a turn in which every position is a whole number: halves, thirds, quarters
+/// and eighths.
 pub const PARTS: u8 = 24;
 
-/// Burov's four positions.
+/// Burov's four positions, in twenty-fourths of a turn.
 const QUADRATURE: [u8; 4] = [0, 12, 6, 18];
-/// There and back.
+/// Burov's positions and back, in twenty-fourths of a turn.
 const THERE_AND_BACK: [u8; 8] = [0, 12, 6, 18, 18, 6, 12, 0];
-/// Pairs, mirrored.
+/// Mirrored pairs, in twenty-fourths of a turn.
 const MIRRORED: [u8; 8] = [0, 12, 12, 0, 6, 18, 18, 6];
-/// In the order of their angle, there and back.
+/// Quarters in the order of their angle and back, in twenty-fourths of a turn.
 const SWEEP: [u8; 8] = [0, 6, 12, 18, 18, 12, 6, 0];
-/// A quarter apart, then the other two.
+/// The two pairs of opposite positions, in twenty-fourths of a turn.
 const PAIRS: [[u8; 2]; 2] = [[0, 12], [6, 18]];
-/// A third apart.
+/// Thirds, in twenty-fourths of a turn.
 const THIRDS: [u8; 3] = [0, 8, 16];
-/// An eighth apart.
+/// Eighths, in twenty-fourths of a turn.
 const EIGHTHS: [u8; 8] = [0, 3, 6, 9, 12, 15, 18, 21];
 
 impl Order {
-    /// The orders that the planner compares.
+    /// Orders that the planner compares.
     pub const COMPARED: [Self; 7] = [
         Self::Quadrature,
         Self::ThereAndBack,
@@ -54,11 +55,11 @@ impl Order {
         Self::Eighths,
     ];
 
-    /// Those of them that need four headings only, as two frames have.
+    /// Orders that need four headings only, as a two-frame mount has.
     pub const QUARTERS: [Self; 5] =
         [Self::Quadrature, Self::ThereAndBack, Self::Mirrored, Self::Sweep, Self::Pairs];
 
-    /// The positions of a pass in twenty-fourths of a turn; of [`Self::Pairs`] those of one of each.
+    /// Positions of a pass in twenty-fourths of a turn; for [`Self::Pairs`] one of each pair.
     const fn pass(self) -> &'static [u8] {
         match self {
             Self::Quadrature | Self::Pairs => &QUADRATURE,
@@ -70,13 +71,13 @@ impl Order {
         }
     }
 
-    /// Positions in a pass.
+    /// Number of positions in a pass.
     #[must_use]
     pub const fn length(self) -> usize {
         self.pass().len()
     }
 
-    /// A position in so many passes, in twenty-fourths of a turn, 0 to 23.
+    /// Position with this index in a schedule of `passes`, in twenty-fourths of a turn, 0 to 23.
     #[must_use]
     pub fn part(self, index: usize, passes: usize) -> u8 {
         if self == Self::Pairs {
@@ -87,13 +88,13 @@ impl Order {
         pass[index % pass.len()]
     }
 
-    /// Stage angle of a position in so many passes, rad, [0, 2π).
+    /// Stage angle of the position with this index in a schedule of `passes`, rad, [0, 2π).
     #[must_use]
     pub fn angle(self, index: usize, passes: usize) -> f64 {
         f64::from(self.part(index, passes)) * (TURN / f64::from(PARTS))
     }
 
-    /// Its name, as it is printed.
+    /// Name of the order, as it is printed.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

@@ -1,9 +1,9 @@
-//! What a fit will make of dwells at given angles and times, before an azimuth is fitted.
+//! Prediction of the accuracy of dwells at given angles and times, before an azimuth is fitted.
 //!
-//! The rows are those of the stepwise fit on a level stage, whitened by the same filter, all in single
-//! precision: an prediction over 60 dwells takes a hundredth of the instructions of a conclusion, and
-//! its standard deviation is right to a thousandth. It speaks of noise alone; what tilt, encoder and
-//! scale add is the conclusion's business.
+//! The rows are those of the stepwise fit on a level stage, whitened by the same filter, all in
+//! single precision: a prediction for 60 dwells takes a hundredth of the instructions of a
+//! conclusion, and its standard deviation is right to a thousandth. It covers noise alone; the
+//! contributions of tilt, encoder and scale belong to the conclusion.
 
 use super::order::PARTS;
 use crate::align::etalon::Table;
@@ -14,7 +14,7 @@ use crate::noise::whitener::Whitener;
 use crate::signal::dwell::Dwell;
 use crate::units::DEGREE_PER_HOUR;
 
-/// °/h in a rad/s.
+/// Degrees per hour in a rad/s.
 const PER_HOUR: f64 = 1.0 / DEGREE_PER_HOUR;
 /// Hours in a second.
 const HOURS: f32 = 1.0 / 3600.0;
@@ -24,14 +24,14 @@ const HOURS: f32 = 1.0 / 3600.0;
 pub struct Visit {
     /// Cosine and sine of the stage angle.
     pub unit: [f32; 2],
-    /// When it begins, s.
+    /// Beginning of the dwell, s.
     pub start: f64,
-    /// How long it lasts, s.
+    /// Length of the dwell, s.
     pub seconds: f64,
 }
 
 impl Visit {
-    /// At a planned position, in twenty-fourths of a turn.
+    /// Visit at a planned position, in twenty-fourths of a turn.
     #[must_use]
     pub fn planned(part: u8, start: f64, seconds: f64) -> Self {
         let index = i32::from(part) * (TURN / i32::from(PARTS));
@@ -48,9 +48,9 @@ impl From<&Dwell> for Visit {
     }
 }
 
-/// 1σ that noise leaves to either horizontal component of the Earth rate, RMS over their directions,
-/// rad/s; the azimuth's is this over `Ω_h`. For visits in the order of time, the shortest of which
-/// lasts `shortest` s; `None` where they do not tell two components.
+/// Standard deviation, 1σ, that noise leaves to either horizontal component of the Earth rate, RMS
+/// over their directions, rad/s; the azimuth's is this over `Ω_h`. Visits must be in the order of
+/// time, and the shortest lasts `shortest` s; `None` where they do not determine two components.
 #[must_use]
 #[inline(never)]
 pub fn rate_sigma(
@@ -77,8 +77,8 @@ pub fn rate_sigma(
     Some(libm::sqrt(0.5 * (north + east)) * DEGREE_PER_HOUR)
 }
 
-/// The variance that is a visit's own, kept while the visits last as long: a division in `f64` is long
-/// on this core.
+/// Variance that is independent of other visits, cached for visits of equal length: a division in
+/// `f64` takes long on a Cortex-M4.
 #[derive(Default)]
 struct Own {
     seconds: f64,
@@ -86,7 +86,7 @@ struct Own {
 }
 
 impl Own {
-    /// In (°/h)².
+    /// Variance for this length, (°/h)².
     fn variance(&mut self, noise: &GyroNoise, seconds: f64) -> f64 {
         if self.seconds != seconds {
             self.seconds = seconds;
@@ -96,6 +96,7 @@ impl Own {
     }
 }
 
+/// Noise model with rates in °/h instead of rad/s, without the white part.
 fn in_degrees_per_hour(noise: &GyroNoise) -> GyroNoise {
     GyroNoise {
         bias_instability: noise.bias_instability * PER_HOUR,

@@ -1,6 +1,6 @@
-//! Stopping by accuracy: the session ends when the standard deviation that noise predicts and the
-//! dwells show is that which was asked for, goes on while it is not, and gives up when it sees that
-//! the time allowed will not do.
+//! Stop rule by accuracy: the session ends when the standard deviation that noise predicts and the
+//! dwells confirm is the required one, continues while it is not, and gives up as soon as the time
+//! allowed cannot suffice.
 
 use super::{Command, Session};
 use crate::align::POSITIONS;
@@ -13,7 +13,7 @@ use crate::units::{Angle, DEGREES_PER_RADIAN, Instant};
 
 impl Session {
     /// Sends the stage to the next position, or concludes: with an azimuth, or because the time
-    /// allowed, `seconds`, is over or cannot do.
+    /// allowed, `seconds`, is over or cannot suffice.
     pub(super) fn go_on_until(&mut self, seconds: f64, now: Instant) -> Command {
         let begun = self.begun.map_or(0.0, Instant::seconds);
         let left = seconds - (now.seconds() - begun);
@@ -31,7 +31,7 @@ impl Session {
         }
     }
 
-    /// Concludes where the accuracy is reached or out of reach; else it is to go on.
+    /// Concludes where the accuracy is reached or out of reach; `None` to continue.
     #[inline(never)]
     fn weigh(&mut self, seconds: f64, left: f64) -> Option<Command> {
         let rate = self.setting.latitude.horizontal_rate();
@@ -48,7 +48,8 @@ impl Session {
         is_hopeless.then(|| self.conclude(Some(Refusal::OutOfReach { sigma, required, seconds })))
     }
 
-    /// Concludes, unless noise alone still makes the whole fit too uncertain and there is time left.
+    /// Concludes, unless noise alone still makes the complete fit too uncertain and there is time
+    /// left.
     fn try_to_conclude(&mut self, left: f64) -> Option<Command> {
         let command = self.conclude(None);
         let verdict = self.conclusion.as_ref().map(|conclusion| conclusion.verdict);
@@ -64,14 +65,15 @@ impl Session {
         }
     }
 
-    /// The gyro's noise, N as it is stated or, where that is more, as the dwells show it.
+    /// Noise model of the gyro, with N as configured or, where that is greater, as the dwells show
+    /// it.
     fn noise(&self) -> GyroNoise {
         let norm = ExpectedScatter::of(&self.setting, self.dwells());
         let white = norm.white().max(norm.observed_white(self.dwells()));
         GyroNoise { angle_random_walk: libm::sqrt(white), ..self.setting.noise }
     }
 
-    /// What all positions that still fit into the time left will bring, rad/s.
+    /// Rate uncertainty after all positions that still fit into the time left, 1σ, rad/s.
     fn least_rate_sigma(&self, noise: &GyroNoise, left: f64) -> Option<f64> {
         let (schedule, done) = (&self.procedure.schedule, self.dwells().len());
         let seconds = schedule.shortest();
@@ -91,7 +93,7 @@ impl Session {
         self.dwells().iter().map(|dwell| dwell.seconds).fold(f64::INFINITY, f64::min)
     }
 
-    /// Time from one dwell to the next so far, s.
+    /// Mean time from one dwell to the next so far, s.
     fn period(&self) -> f64 {
         let [first, .., last] = self.dwells() else { return 0.0 };
         (last.middle - first.middle) / (self.dwells().len() - 1) as f64

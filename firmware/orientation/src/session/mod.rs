@@ -1,12 +1,12 @@
-//! The alignment procedure as a state machine without I/O: an event in, a command out.
+//! Alignment procedure as a state machine without I/O: each event is answered by a command.
 //!
 //! ```text
 //!  level ─▶ (survey) ─▶ dwell ─▶ rotate ─▶ dwell ─▶ … ─▶ match ─▶ azimuth ± σ, or the reason for none
 //!                        ▲└─disturbed: again─┘
 //! ```
 //!
-//! The stage is judged by its encoder alone: a dwell is where the angle stands still, wherever the
-//! command came from. So a recording replays the same session that a board runs.
+//! The motion of the stage is taken from its encoder alone: a dwell is an interval of constant
+//! angle, whatever commanded it. So a recording replays the same session that a board runs.
 
 mod accuracy;
 mod pace;
@@ -37,88 +37,101 @@ use crate::signal::dwell::{Dwell, DwellAverage};
 use crate::signal::sway::SwayNoise;
 use crate::units::{Instant, TURN};
 
-/// Second-order sections of the stage filter: Sokolov's sixth order.
+/// Number of second-order sections of the stage filter: order six (Sokolov 2019).
 const SECTIONS: usize = 3;
 
-/// Most repetitions whose record is kept: two at each of twelve positions.
+/// Greatest number of repetitions that are recorded: two at each of twelve positions.
 const REPETITIONS: usize = 24;
 
-/// What happens to a session.
+/// Input of a session.
 #[derive(Clone, Copy, Debug)]
 pub enum Event<'a> {
     /// A sample of the stage path.
     Sample(&'a Sample),
-    /// A dwell that was averaged elsewhere.
+    /// A dwell that was averaged elsewhere, for example in a table of dwells.
     Averaged(&'a Dwell),
-    /// There will be no more.
+    /// The end of the recording: there are no more samples.
     End,
-    /// The instrument cannot go on.
+    /// A permanent failure of the instrument.
     Failed(Refusal),
 }
 
-/// What the session asks for.
+/// Output of a session.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
-    /// Go on sampling.
+    /// Continue sampling.
     Wait,
-    /// Send the stage to this angle, rad, not wrapped.
+    /// Send the stage to this angle, rad, not wrapped to one turn.
     Rotate(f64),
-    /// Nothing more: the conclusion stands.
+    /// The session is over and its conclusion is final.
     Finished,
 }
 
-/// Where the session is.
+/// State of the session.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Phase {
-    /// The tilt is looked at before anything turns.
+    /// The tilt is measured before anything turns.
     Level,
-    /// The stage stands still while the gyro's noise is learnt.
+    /// The stage stands still while the gyro's noise is surveyed.
     Survey,
     /// A dwell is being averaged.
     Dwell,
-    /// The stage is on its way since this time.
+    /// The stage has been rotating since this time.
     Rotate(Instant),
-    /// The conclusion stands.
+    /// The session is over.
     Done,
 }
 
-/// A dwell that was thrown away and measured again.
+/// Record of a dwell that was discarded and measured again.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Repetition {
     /// Index of the position.
     pub position: usize,
-    /// What disturbed it.
+    /// Disturbance of the discarded dwell.
     pub why: Disturbance,
 }
 
 /// One alignment from the first sample to its conclusion.
 #[derive(Clone, Debug)]
 pub struct Session {
+    /// Site, instrument and requirements.
     setting: Setting,
+    /// Procedure.
     procedure: Procedure,
+    /// Coefficients of the stage filter.
     coefficients: Coefficients<SECTIONS>,
+    /// Procedure in the units of the sample path.
     pace: Timing,
+    /// State of the session.
     phase: Phase,
+    /// Position to which the stage was sent.
     target: Target,
+    /// Time of the first sample.
     begun: Option<Instant>,
+    /// Average of the standstill in progress.
     average: Option<DwellAverage<SECTIONS>>,
+    /// Dwells, or the survey before them.
     store: Store,
+    /// Noise found by the survey.
     surveyed: Option<NoiseFit>,
+    /// Record of repeated dwells.
     repetitions: Vec<Repetition, REPETITIONS>,
+    /// Repetitions at the present position.
     tries: usize,
+    /// Conclusion, once the session is over.
     conclusion: Option<Conclusion>,
 }
 
 impl Session {
-    /// A session that has not begun; nothing moves yet.
+    /// Creates a session before its first event; nothing moves yet.
     ///
     /// # Errors
-    /// A procedure that the filter or the stage cannot follow.
+    /// [`ProcedureError`] for a procedure that the filter or the stage cannot follow.
     pub fn new(setting: Setting, procedure: Procedure) -> Result<Self, ProcedureError> {
         Prepared::new(setting, procedure).map(Self::from)
     }
 
-    /// Takes one event and answers what is to be done now.
+    /// Takes one event and returns the command that follows.
     pub fn handle(&mut self, event: Event) -> Command {
         match event {
             _ if self.phase == Phase::Done => Command::Finished,
@@ -129,49 +142,49 @@ impl Session {
         }
     }
 
-    /// What is known of place, instrument and demands.
+    /// Site, instrument and requirements.
     #[must_use]
     pub fn setting(&self) -> &Setting {
         &self.setting
     }
 
-    /// Says that the base's sway is subtracted from the rates, which leaves this noise. To be said
-    /// before the first dwell.
+    /// Reports that the base's sway is compensated in the rates, which leaves this noise. It must
+    /// be called before the first dwell.
     pub fn allow_for(&mut self, sway: SwayNoise) {
         self.setting.sway = sway;
     }
 
-    /// How the session goes about it.
+    /// Procedure of the session.
     #[must_use]
     pub fn procedure(&self) -> &Procedure {
         &self.procedure
     }
 
-    /// Mean specific force of the standstill in progress, m/s², where there was one.
+    /// Mean specific force of the standstill in progress, m/s²; none without force readings.
     #[must_use]
     pub fn force(&self) -> Option<[f64; 3]> {
         self.average.as_ref().and_then(DwellAverage::force)
     }
 
-    /// Where the session is.
+    /// State of the session.
     #[must_use]
     pub fn phase(&self) -> Phase {
         self.phase
     }
 
-    /// The dwells so far.
+    /// Dwells so far.
     #[must_use]
     pub fn dwells(&self) -> &[Dwell] {
         self.store.dwells()
     }
 
-    /// The dwells that were measured again; of more than 24 the first ones.
+    /// Dwells that were measured again; with more than 24 the first ones.
     #[must_use]
     pub fn repetitions(&self) -> &[Repetition] {
         &self.repetitions
     }
 
-    /// How many positions are planned.
+    /// Number of planned positions.
     #[must_use]
     pub fn planned(&self) -> usize {
         match self.procedure.stop {
@@ -180,24 +193,25 @@ impl Session {
         }
     }
 
-    /// How the azimuth is found.
+    /// Criterion by which the azimuth is chosen.
     #[must_use]
     pub fn criterion(&self) -> Criterion {
         self.procedure.criterion
     }
 
-    /// The conclusion, once the session has finished.
+    /// Conclusion; `None` until the session is over.
     #[must_use]
     pub fn conclusion(&self) -> Option<&Conclusion> {
         self.conclusion.as_ref()
     }
 
-    /// What the dwells so far would conclude: for progress and for stopping early.
+    /// Conclusion from the dwells so far, for reporting progress and for stopping early.
     #[must_use]
     pub fn preview(&self) -> Conclusion {
         Conclusion::of(&self.setting, self.dwells(), Criterion::MaximumLikelihood)
     }
 
+    /// Processes a sample.
     fn sample(&mut self, sample: &Sample) -> Command {
         let begun = *self.begun.get_or_insert(sample.time);
         if sample.time.0.saturating_sub(begun.0) > self.pace.longest {
@@ -215,7 +229,7 @@ impl Session {
         }
     }
 
-    /// Averages while the stage stands; where it moves, ends the dwell and begins again.
+    /// Averages while the stage stands; where it moves, ends the dwell and begins a new average.
     fn follow(&mut self, sample: &Sample) -> Option<Command> {
         let mut ended = None;
         match &mut self.average {
@@ -230,8 +244,7 @@ impl Session {
         ended
     }
 
-    /// Looks at the tilt once enough samples are in and one of them brought a force, then goes to the
-    /// first position.
+    /// Tests the tilt once there are enough samples and a force, then goes to the first position.
     fn level(&mut self, now: Instant) -> Command {
         let is_long = |average: &&DwellAverage<SECTIONS>| average.count() >= self.pace.level;
         let Some([x, y, _]) = self.average.as_ref().filter(is_long).and_then(DwellAverage::force)
@@ -262,7 +275,7 @@ impl Session {
         Command::Rotate(self.target.position.angle)
     }
 
-    /// Whether the running average began where the stage was sent.
+    /// Whether the running average began at the commanded angle.
     fn stands_at_target(&self) -> bool {
         let (stage, arrival) = (self.target.stage, self.pace.arrival);
         self.average.as_ref().is_some_and(|average| average.stands_at(stage, arrival))
@@ -274,7 +287,7 @@ impl Session {
         if count < self.target.samples { Command::Wait } else { self.complete(now) }
     }
 
-    /// Waits until the stage stands where it was sent.
+    /// Waits until the stage stands at the commanded angle; refuses when that takes too long.
     fn rotate(&mut self, sample: &Sample, since: Instant) -> Command {
         let count = self.average.as_ref().map_or(0, DwellAverage::count);
         if self.stands_at_target() && count > 1 && count >= self.pace.settle {
@@ -287,8 +300,8 @@ impl Session {
         Command::Wait
     }
 
-    /// Takes the dwell in progress, or has it repeated. One that the stage cut short by moving of
-    /// itself is begun again where it was meant to be.
+    /// Takes the dwell in progress, or orders its repetition. A dwell that an uncommanded motion of
+    /// the stage cut short is begun again at its position.
     fn complete(&mut self, now: Instant) -> Command {
         if let Some(reason) = self.wrong_period() {
             return self.conclude(Some(reason));
@@ -307,18 +320,18 @@ impl Session {
         }
     }
 
-    /// Why the samples are not those of the period that was told.
+    /// Refusal of samples whose time stamps contradict the configured period.
     fn wrong_period(&self) -> Option<Refusal> {
         let Procedure { sample_seconds, period_tolerance, .. } = self.procedure;
         let step = self.average.as_ref().and_then(DwellAverage::step)?;
         procedure::contradiction(sample_seconds, step, period_tolerance)
     }
 
-    /// Drops the last dwell; the stage stays and the next sample begins it anew.
+    /// Discards the last dwell; the stage stays, and the next sample begins the dwell anew.
     fn repeat(&mut self, why: Disturbance) -> Command {
         self.store.pop();
         self.tries += 1;
-        // A full log loses only the record of one more repetition, never a dwell.
+        // A full record omits one more repetition, never a dwell.
         let _ = self.repetitions.push(Repetition { position: self.dwells().len(), why });
         Command::Wait
     }
@@ -341,18 +354,19 @@ impl Session {
         }
     }
 
-    /// Takes a position for the next target and sends the stage there.
+    /// Makes a position the next target and sends the stage there.
     fn go_to(&mut self, position: Position, now: Instant) -> Command {
         self.target = Target::new(position, self.procedure.sample_seconds);
         self.send(now)
     }
 
-    /// Standard deviation of the difference of two dwells, rad/s.
+    /// Standard deviation of the difference of two dwells, 1σ, rad/s.
     fn difference_sigma(&self) -> f64 {
         let white = ExpectedScatter::of(&self.setting, self.dwells()).white();
         libm::sqrt(2.0 * white / self.procedure.schedule.shortest())
     }
 
+    /// Takes a dwell that was averaged elsewhere.
     fn averaged(&mut self, dwell: &Dwell) -> Command {
         let is_taken = self.store.push(*dwell);
         if is_taken && self.dwells().len() < self.planned() {
@@ -362,13 +376,13 @@ impl Session {
         }
     }
 
-    /// Takes back a conclusion that came too early.
+    /// Withdraws a conclusion that came too early.
     fn resume(&mut self) {
         self.conclusion = None;
         self.phase = Phase::Dwell;
     }
 
-    /// Ends the session with what there is, or with a reason that no dwell can mend.
+    /// Ends the session with the dwells so far, or with a reason that further dwells cannot remove.
     fn conclude(&mut self, reason: Option<Refusal>) -> Command {
         let conclusion = self.conclusion.insert(Conclusion::default());
         conclusion.draw(&self.setting, self.store.dwells(), self.procedure.criterion);

@@ -1,36 +1,40 @@
-//! The procedure in the units of the sample path: angles as fractions of a turn, times as counts.
+//! Procedure in the units of the sample path: angles as fractions of a turn, times as counts.
 
 use super::procedure::Procedure;
 use super::schedule::Position;
 use crate::units::{Angle, Instant};
 
-/// Where the stage is to stand and for how long, in the units of the sample path.
+/// Commanded position and length of its dwell, in the units of the sample path.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Target {
+    /// Position of the schedule.
     pub(super) position: Position,
+    /// Stage angle, wrapped to one turn.
     pub(super) stage: Angle,
+    /// Number of samples of the dwell.
     pub(super) samples: u32,
 }
 
 impl Target {
+    /// Target for a position and a sample period, s.
     pub(super) fn new(position: Position, sample_seconds: f64) -> Self {
         let samples = samples(position.seconds, sample_seconds);
         Self { position, stage: Angle::from_rad(position.angle), samples }
     }
 }
 
-/// The procedure's times and angles in the units of the sample path, which knows no `f64`.
+/// Times and angles of the procedure in the units of the sample path, which needs no `f64`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Timing {
-    /// Change of angle that still counts as standing.
+    /// Greatest change of angle that counts as standstill.
     pub(super) still: Angle,
-    /// Distance from the target that counts as arrived.
+    /// Greatest distance from the target that counts as arrived.
     pub(super) arrival: Angle,
-    /// Samples for the first look at the tilt.
+    /// Number of samples before the tilt is first tested.
     pub(super) level: u32,
-    /// Samples of a survey.
+    /// Number of samples of a survey.
     pub(super) survey: u32,
-    /// Samples of standing that make an arrival.
+    /// Number of samples of standstill that make an arrival.
     pub(super) settle: u32,
     /// Longest session, µs.
     pub(super) longest: u64,
@@ -39,6 +43,7 @@ pub(super) struct Timing {
 }
 
 impl Timing {
+    /// Timing of a procedure.
     pub(super) fn of(procedure: &Procedure) -> Self {
         let samples = |seconds| samples(seconds, procedure.sample_seconds);
         Self {
@@ -53,7 +58,7 @@ impl Timing {
     }
 }
 
-/// A time in samples, to nearest.
+/// Converts a time to samples, rounded to nearest.
 pub(super) fn samples(seconds: f64, sample_seconds: f64) -> u32 {
     libm::round(seconds / sample_seconds) as u32
 }

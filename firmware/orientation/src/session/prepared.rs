@@ -1,4 +1,4 @@
-//! What a session is made of: a procedure that was checked, with its filter.
+//! Prerequisites of a session: a procedure that was checked, with its filter.
 
 use heapless::Vec;
 
@@ -11,13 +11,17 @@ use crate::align::setting::Setting;
 use crate::signal::butterworth::Coefficients;
 use crate::signal::dwell;
 
-/// What a session needs before it begins: small, so that the session itself can be made where it
-/// is to lie.
+/// Prerequisites of a session. They are small, so that the session itself can be built at its final
+/// place in memory.
 #[derive(Clone, Debug)]
 pub struct Prepared {
+    /// Site, instrument and requirements.
     setting: Setting,
+    /// Procedure that was checked.
     procedure: Procedure,
+    /// Coefficients of its filter.
     coefficients: Coefficients<SECTIONS>,
+    /// First position.
     target: Target,
 }
 
@@ -25,7 +29,8 @@ impl Prepared {
     /// Checks a procedure and designs its filter.
     ///
     /// # Errors
-    /// A procedure that the filter or the stage cannot follow.
+    /// [`ProcedureError`] for a damaged reference table, or a procedure that the filter or the
+    /// stage cannot follow.
     pub fn new(setting: Setting, procedure: Procedure) -> Result<Self, ProcedureError> {
         Table::built_in().verify().map_err(|_| ProcedureError::TableCorrupt)?;
         let (coefficients, target) = designed(&procedure)?;
@@ -54,7 +59,7 @@ impl From<Prepared> for Session {
     }
 }
 
-/// The filter of a procedure and where it goes first.
+/// Filter of a procedure, and its first target.
 pub(super) fn designed(
     procedure: &Procedure,
 ) -> Result<(Coefficients<SECTIONS>, Target), ProcedureError> {

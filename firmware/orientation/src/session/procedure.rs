@@ -1,4 +1,5 @@
-//! How a session goes about it: schedule, retry budget, travel, and what makes a procedure impossible.
+//! Procedure of a session: schedule, retry budget, travel and tolerances, and the conditions that
+//! make one impossible.
 
 use super::schedule::{Schedule, StopRule};
 use super::survey::Survey;
@@ -10,51 +11,53 @@ use crate::units::TURN;
 use crate::words;
 use crate::words::Rounded;
 
-/// The filter's cut-off times the shortest dwell: its taper then costs 1.2 % of σ.
+/// Product of the filter's cut-off and the shortest dwell: the taper then costs 1.2 % of σ.
 const CUTOFF_DWELLS: f64 = 20.0;
-/// Highest cut-off over the sample rate, so that the filter still filters.
+/// Highest cut-off over the sample rate at which the filter still has an effect.
 const HIGHEST_CUTOFF: f64 = 0.2;
-/// Lowest cut-off over the sample rate at which the filter's coefficients are exact enough.
+/// Lowest cut-off over the sample rate at which the filter's coefficients are accurate enough.
 const LOWEST_CUTOFF: f64 = 2.5e-4;
 
-/// Change of the encoder angle that still counts as standing, rad: seven steps of a 21-bit encoder.
+/// Change of the encoder angle that counts as standstill, rad: seven steps of a 21-bit encoder.
 pub const STILL: f64 = 20e-6;
 
-/// How far the samples' times may be off their period where nothing else is stated, relative: a recorder's clock
+/// Default tolerance of the time stamps' mean step against the period, relative: a recorder's clock
 /// is far better, a converter's own oscillator is not.
 pub(super) const PERIOD_TOLERANCE: f64 = 0.01;
-/// By how much the ADS1262's own oscillator may be off, 2 % (data sheet SBAS661C, §7.5: internal oscillator
-/// accuracy): what a board's samples keep to.
+/// Tolerance of the ADS1262's internal oscillator, 2 % (data sheet SBAS661C, §7.5, internal
+/// oscillator accuracy), which holds for a board's samples.
 pub const CONVERTER_TOLERANCE: f64 = 0.02;
 
-/// Refuses samples that take `found` s by their times where they take `told` s as told, beyond a tolerance.
+/// Refuses samples whose time stamps show a period of `found` s where `told` s is configured,
+/// beyond a relative tolerance.
 pub(super) fn contradiction(told: f64, found: f64, tolerance: f64) -> Option<Refusal> {
     let is_off = (found / told - 1.0).abs() > tolerance;
     is_off.then_some(Refusal::PeriodContradicted { told: 1e3 * told, found: 1e3 * found })
 }
 
-/// How the session goes about it.
+/// Procedure of a session.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Procedure {
-    /// Where the stage goes.
+    /// Positions and dwells.
     pub schedule: Schedule,
-    /// What is learnt of the gyro first; the schedule is then made anew.
+    /// Survey of the gyro's noise before the dwells, after which the schedule is planned anew; none
+    /// without one.
     pub survey: Option<Survey>,
-    /// When it stops early.
+    /// Rule by which the session stops early.
     pub stop: StopRule,
-    /// How the azimuth is found.
+    /// Criterion by which the azimuth is chosen.
     pub criterion: Criterion,
     /// Sample period, s.
     pub sample_seconds: f64,
-    /// How far the mean step of the samples' times may be off that period, relative.
+    /// Tolerance of the time stamps' mean step against that period, relative.
     pub period_tolerance: f64,
-    /// How long the platform is levelled before the first dwell counts, s; these samples belong to
+    /// Time for which the platform is levelled before the first dwell, s; these samples are part of
     /// that dwell all the same.
     pub level_seconds: f64,
-    /// How long the stage must stand before it counts as arrived, s; these samples belong to the
-    /// dwell all the same. A stage that rings after it has stopped needs as long as it rings.
+    /// Time for which the stage must stand before it counts as arrived, s; these samples are part
+    /// of the dwell all the same. A stage that rings after its stop needs as long as it rings.
     pub settle_seconds: f64,
-    /// How often a disturbed dwell is repeated at its position.
+    /// Greatest number of repetitions of a disturbed dwell at its position.
     pub retries: usize,
     /// Longest time for the whole session, s.
     pub longest_seconds: f64,
@@ -62,17 +65,18 @@ pub struct Procedure {
     pub longest_rotation: f64,
     /// Stage travel from lowest to highest angle, rad.
     pub travel: [f64; 2],
-    /// Change of the encoder angle that still counts as standing, rad.
+    /// Change of the encoder angle that counts as standstill, rad.
     pub still: f64,
     /// Distance from the commanded angle that counts as arrived, rad.
     pub arrival: f64,
 }
 
 impl Procedure {
-    /// The default of the stage: a quarter of a dwell for the first look at the tilt, travel
-    /// −10°…370°, two repetitions, stand within 20 µrad (seven steps of a 21-bit encoder), arrive
-    /// within 0.05°, five minutes for a rotation, in which a stage can home again, and twice the
-    /// dwells' time, half a minute for each and a minute for everything.
+    /// Default procedure of the stage: a quarter of a dwell before the tilt is tested, travel
+    /// −10°…370°, two repetitions, standstill within 20 µrad (seven steps of a 21-bit encoder),
+    /// arrival within 0.05°, five minutes for a rotation (enough for a stage to home again), and
+    /// for the session twice the dwells' time, half a minute for each dwell and a minute for
+    /// everything else.
     #[must_use]
     pub fn new(schedule: Schedule, sample_seconds: f64) -> Self {
         let level_seconds = 0.25 * schedule.shortest();
@@ -95,7 +99,8 @@ impl Procedure {
         }
     }
 
-    /// The same, once the gyro's noise is known from a survey.
+    /// Procedure with a survey of the gyro's noise before the dwells; the longest time grows
+    /// accordingly.
     #[must_use]
     pub fn after(self, survey: Survey) -> Self {
         let retry_budget = 2.0 * (survey.seconds + survey.plan_seconds) + 30.0 * POSITIONS as f64;
@@ -103,8 +108,8 @@ impl Procedure {
         Self { survey: Some(survey), longest_seconds, ..self }
     }
 
-    /// The same, until the accuracy of [`crate::align::setting::Setting::required_sigma`] is reached or
-    /// so many seconds have passed.
+    /// Procedure that continues until the accuracy of
+    /// [`crate::align::setting::Setting::required_sigma`] is reached or `seconds` have passed.
     #[must_use]
     pub fn until_accurate(self, seconds: f64) -> Self {
         let retry_budget = 2.0 * seconds + 30.0 * POSITIONS as f64 + 60.0;
@@ -112,17 +117,17 @@ impl Procedure {
         Self { stop: StopRule::Accuracy { seconds }, longest_seconds, ..self }
     }
 
-    /// The filter's cut-off for this schedule, Hz.
+    /// Cut-off of the filter for this schedule, Hz.
     #[must_use]
     pub fn cutoff(&self) -> f64 {
         let rate = 1.0 / self.sample_seconds;
-        // `clamp` would bring a panic that formats floats, 15 KB of it.
+        // The method `clamp` would link a panic that formats floats, 15 KB of flash.
         (CUTOFF_DWELLS / self.schedule.shortest())
             .max(LOWEST_CUTOFF * rate)
             .min(HIGHEST_CUTOFF * rate)
     }
 
-    /// The first position that is beyond the stage's travel.
+    /// First position that lies beyond the stage's travel, rad.
     pub(super) fn beyond_travel(&self) -> Option<f64> {
         let [low, high] = self.travel;
         let outside = |angle: f64| !(low..=high).contains(&angle);
@@ -136,27 +141,29 @@ impl Procedure {
     }
 }
 
-/// Why a procedure cannot be begun.
+/// Reason for which a procedure cannot begin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ProcedureError {
     /// The filter cannot be designed for this sample rate.
     Filter(DesignError),
     /// Dwells of this many samples are too short for the filter's lag.
     DwellTooShort {
-        /// Samples of the shortest dwell.
+        /// Number of samples of the shortest dwell.
         samples: u32,
-        /// Samples that are needed.
+        /// Number of samples that the filter needs.
         needed: u32,
     },
     /// A position lies outside the stage's travel, rad.
     BeyondTravel(f64),
-    /// There is no position.
+    /// The schedule has no position.
     NoPosition,
-    /// A turning platform needs speeds above zero, two turns at least, and a modulation of its uneven turns.
+    /// A rotating platform lacks speeds above zero, two turns in each sense, or a modulation of its
+    /// rate-modulated turns.
     NoSpeed,
-    /// A vehicle's stops: no sample period, no length of a stop, one stop only, or too many.
+    /// The stops of a vehicle lack a sample period or a length, or there are fewer than two or too
+    /// many of them.
     NoStops,
-    /// The etalon table in flash fails its CRC: flash the firmware again.
+    /// The reference table (etalon) in flash fails its CRC: the firmware must be programmed again.
     TableCorrupt,
 }
 

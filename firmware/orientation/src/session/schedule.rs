@@ -1,4 +1,5 @@
-//! Where the stage goes and how long it stays.
+//! Schedule of the stage: positions and lengths of the dwells, and the rules by which it ends
+//! early.
 
 use heapless::Vec;
 
@@ -7,28 +8,29 @@ use crate::planner::order::Order;
 use crate::planner::{FEWEST, Plan};
 use crate::signal::dwell::Dwell;
 
-/// One position: a stage angle and how long to stay.
+/// One position: stage angle and length of the dwell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Position {
-    /// Stage angle, rad, not wrapped: the cables are.
+    /// Stage angle, rad, not wrapped to one turn: cables are not.
     pub angle: f64,
     /// Length of the dwell, s.
     pub seconds: f64,
 }
 
-/// Which positions to visit.
+/// Sequence of positions to visit.
 #[allow(
     clippy::large_enum_variant,
     reason = "without an allocator the list lives here; a session holds one schedule"
 )]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Schedule {
-    /// These, in this order.
+    /// A list of positions, visited in its order.
     Listed(Vec<Position, CAPACITY>),
-    /// What the planner made of the gyro's noise.
+    /// A plan that the planner made for the gyro's noise.
     Planned(Plan),
-    /// Sokolov's: equal steps from `start` towards growing rate. The first steps go clockwise until
-    /// the rate has changed significantly; where it fell, the rest go on from `start` the other way.
+    /// Search for the maximum (Sokolov 2019): equal steps from `start` towards growing rate. The
+    /// first steps go clockwise until the rate has changed significantly; if it fell, the rest
+    /// continue from `start` in the other direction.
     TowardMaximum {
         /// Angle of the first position, rad.
         start: f64,
@@ -41,28 +43,30 @@ pub enum Schedule {
     },
 }
 
-/// When to stop before the last position.
+/// Rule by which a session stops before the last position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum StopRule {
-    /// Never: all positions are visited.
+    /// All positions are visited.
     #[default]
     AllPositions,
-    /// Sokolov's: when the rate's difference to the previous position is negative. Noise alone makes
-    /// it fire early.
+    /// Stop when the rate's difference to the previous position is negative (Sokolov 2019). Noise
+    /// alone makes it fire early.
     SignChange,
-    /// When that difference is negative by this many of its standard deviations.
+    /// Stop when that difference is negative by this many of its standard deviations.
     Significant(f64),
-    /// When the standard deviation, as predicted from the gyro's noise and as observed in the dwells,
-    /// is that which was asked for. The session goes on beyond its schedule until then, and gives up
-    /// as soon as it sees that the time will not do.
+    /// Stop when the standard deviation, as predicted from the gyro's noise and as observed in the
+    /// dwells, is the required one. The session continues beyond its schedule until then, and gives
+    /// up as soon as the time cannot suffice.
     Accuracy {
-        /// Time allowed from the session's beginning or, where there is a survey, from its end, s.
+        /// Time allowed from the beginning of the session or, with a survey, from the survey's end,
+        /// s.
         seconds: f64,
     },
 }
 
 impl StopRule {
-    /// Whether to stop, for the last difference δ and its standard deviation, rad/s.
+    /// Whether the rule stops the session, for the last difference δ and its standard deviation,
+    /// both in rad/s.
     #[must_use]
     pub fn stops(self, difference: f64, sigma: f64) -> bool {
         match self {
@@ -73,17 +77,18 @@ impl StopRule {
     }
 }
 
-/// Significance, in σ, with which the direction of growing rate is decided.
+/// Significance, in σ, at which the direction of growing rate is decided.
 const DIRECTION_BOUND: f64 = 3.0;
 
 impl Schedule {
-    /// These positions in this order; `None` where they are more than [`CAPACITY`].
+    /// Schedule of these positions in this order; `None` with more than [`CAPACITY`].
     #[must_use]
     pub fn listed(positions: &[Position]) -> Option<Self> {
         Vec::from_slice(positions).ok().map(Self::Listed)
     }
 
-    /// Equal steps over the full circle, from zero, the last one step before a whole turn; [`POSITIONS`] at most.
+    /// Schedule of equal steps over the full circle from zero, the last one a step before a whole
+    /// turn; at most [`POSITIONS`].
     #[must_use]
     pub fn circle(positions: usize, seconds: f64) -> Self {
         let step = core::f64::consts::TAU / positions.max(1) as f64;
@@ -93,21 +98,22 @@ impl Schedule {
         Self::Listed(list)
     }
 
-    /// The same, and at its end the first position once more, a whole turn on: what drifts or creeps in step with the
-    /// stage differs there from what it was at the beginning. Without the repeat where [`POSITIONS`] are stated.
+    /// Schedule of [`Self::circle`] with the first position repeated at the end, a whole turn on: a
+    /// drift synchronous with the stage shows as the difference of the two. The repeat is omitted
+    /// where there is no room.
     #[must_use]
     pub fn closed_circle(positions: usize, seconds: f64) -> Self {
         let mut schedule = Self::circle(positions, seconds);
         if let Self::Listed(list) = &mut schedule
             && list.len() < POSITIONS
         {
-            // A list holds as many at least.
+            // The list has room for at least one more position.
             let _ = list.push(Position { angle: core::f64::consts::TAU, seconds });
         }
         schedule
     }
 
-    /// How many positions there are.
+    /// Number of positions.
     #[must_use]
     pub fn len(&self) -> usize {
         match self {
@@ -117,7 +123,8 @@ impl Schedule {
         }
     }
 
-    /// How many positions there are once so many dwells are done and it goes on: whole passes.
+    /// Number of positions when the session continues after this many dwells: whole passes, at most
+    /// [`POSITIONS`].
     #[must_use]
     pub fn len_beyond(&self, dwells: usize) -> usize {
         let length = self.len();
@@ -129,8 +136,8 @@ impl Schedule {
         (length + more.next_multiple_of(pass)).min(POSITIONS)
     }
 
-    /// Whether so many dwells make up whole passes, so that what has been seen so far is as good in
-    /// every direction and drift has been cancelled.
+    /// Whether this many dwells make up whole passes, so that the accuracy is equal in all
+    /// directions and drift has cancelled.
     #[must_use]
     pub fn is_balanced(&self, dwells: usize) -> bool {
         let pass = match self {
@@ -144,8 +151,8 @@ impl Schedule {
         }
     }
 
-    /// The position with this index; beyond the end a planned schedule goes on with 0, 180, 90, 270°
-    /// and a list begins anew.
+    /// Position with this index. Beyond the end a planned schedule continues with 0, 180, 90, 270°,
+    /// and a list begins anew; `None` for a search, whose positions depend on the dwells.
     #[must_use]
     pub fn position(&self, index: usize) -> Option<Position> {
         match self {
@@ -167,7 +174,7 @@ impl Schedule {
         self.len() == 0
     }
 
-    /// Shortest dwell, s.
+    /// Length of the shortest dwell, s.
     #[must_use]
     pub fn shortest(&self) -> f64 {
         match self {
@@ -177,7 +184,7 @@ impl Schedule {
         }
     }
 
-    /// Sum of all dwells, s.
+    /// Sum of all dwell lengths, s.
     #[must_use]
     pub fn seconds(&self) -> f64 {
         match self {
@@ -187,7 +194,8 @@ impl Schedule {
         }
     }
 
-    /// The position after these dwells; `sigma` is the standard deviation of a difference, rad/s.
+    /// Position after these dwells; `sigma` is the standard deviation of a difference, rad/s.
+    /// `None` at the end.
     #[must_use]
     pub fn next(&self, dwells: &[Dwell], sigma: f64) -> Option<Position> {
         match self {
@@ -202,8 +210,8 @@ impl Schedule {
         }
     }
 
-    /// The last difference δ in the direction of the turn; none where the last two dwells are not
-    /// neighbours.
+    /// Latest difference δ in the direction of motion, rad/s; `None` where the last two dwells are
+    /// not neighbours.
     #[must_use]
     pub fn last_difference(&self, dwells: &[Dwell], sigma: f64) -> Option<f64> {
         let [.., before, last] = dwells else { return None };
@@ -217,13 +225,13 @@ impl Schedule {
     }
 }
 
-/// Index of the first dwell whose rate differs significantly from that of the first.
+/// Index of the first dwell whose rate differs significantly from that of the first one.
 fn turning_point(dwells: &[Dwell], sigma: f64) -> Option<usize> {
     let first = dwells.first()?.rate;
     dwells.iter().position(|dwell| (dwell.rate - first).abs() > DIRECTION_BOUND * sigma)
 }
 
-/// In steps from the start, where to go next.
+/// Next position, in steps from the start.
 fn steps_towards(dwells: &[Dwell], sigma: f64) -> f64 {
     let visited = dwells.len() as f64;
     match turning_point(dwells, sigma) {

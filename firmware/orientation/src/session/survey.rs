@@ -1,5 +1,5 @@
-//! Knowing the gyro before aligning with it: the stage stands still while the Allan variance is
-//! taken, the noise is fitted to it, and the planner makes the schedule.
+//! Survey of the gyro before the alignment: the stage stands still while the Allan variance is
+//! measured, the noise model is fitted to it, and the planner makes the schedule.
 
 use heapless::Vec;
 
@@ -18,33 +18,36 @@ use crate::signal::Sample;
 use crate::signal::dwell::{Dwell, SampleFault};
 use crate::units::{AngularRate, DEGREES_PER_RADIAN, Instant};
 
-/// Part of the accuracy asked for that a plan leaves to what is not noise.
+/// Part of the required accuracy that a plan uses for noise; the rest is left to other errors.
 const RESERVE: f64 = 0.95;
 
-/// What is to be learnt of the gyro first, and what the plan is then made for.
+/// Survey of the gyro's noise, and conditions of the plan that follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Survey {
-    /// How long the stage stands still, s.
+    /// Time for which the stage stands still, s.
     pub seconds: f64,
-    /// How the stage turns.
+    /// Rotation time of the stage.
     pub rotation: Rotation,
-    /// The orders of positions that it can turn through.
+    /// Orders of positions that the stage can turn through.
     pub orders: &'static [Order],
-    /// Shortest dwell of the plan, s.
+    /// Length of the shortest dwell of the plan, s.
     pub shortest: f64,
-    /// Total time of the plan, s; with [`StopRule::Accuracy`] the accuracy rules instead.
+    /// Total time of the plan, s; with [`StopRule::Accuracy`] the accuracy decides instead.
     pub plan_seconds: f64,
 }
 
-/// What a session gathers: first the Allan variance, then dwells, in the same room.
+/// Data of a session: first the Allan variance, then dwells, in the same memory.
 #[allow(clippy::large_enum_variant, reason = "without an allocator both live in this one place")]
 #[derive(Clone, Debug)]
 pub(super) enum Store {
+    /// Allan variance of the survey in progress.
     Survey(Allan),
+    /// Dwells of the alignment.
     Dwells(Vec<Dwell, CAPACITY>),
 }
 
 impl Store {
+    /// Dwells so far; none during a survey.
     pub(super) fn dwells(&self) -> &[Dwell] {
         match self {
             Self::Survey(_) => &[],
@@ -52,7 +55,7 @@ impl Store {
         }
     }
 
-    /// Adds a dwell; whether there was room.
+    /// Adds a dwell; returns whether there was room.
     pub(super) fn push(&mut self, dwell: Dwell) -> bool {
         match self {
             Self::Survey(_) => false,
@@ -60,25 +63,28 @@ impl Store {
         }
     }
 
+    /// Removes the last dwell.
     pub(super) fn pop(&mut self) {
         if let Self::Dwells(dwells) = self {
             dwells.pop();
         }
     }
 
-    /// Begins a survey. Not inlined, nor is the next: what is new passes over the stack.
+    /// Begins a survey. This function and the next are not inlined, because the new value passes
+    /// over the stack.
     #[inline(never)]
     pub(super) fn begin_survey(&mut self) {
         *self = Self::Survey(Allan::new());
     }
 
-    /// Ends the survey.
+    /// Ends the survey and makes room for dwells.
     #[inline(never)]
     fn begin_dwells(&mut self) {
         *self = Self::Dwells(Vec::new());
     }
 
-    /// What the survey shows of the noise of a gyro that is sampled every `seconds`.
+    /// Noise of a gyro that was sampled every `seconds`, as the survey shows it; `None` without a
+    /// survey.
     #[inline(never)]
     fn fit(&self, seconds: f64) -> Option<Result<NoiseFit, FitError>> {
         match self {
@@ -87,7 +93,8 @@ impl Store {
         }
     }
 
-    /// Adds a sample to a survey, begun anew where it is the first; how many it has.
+    /// Adds a sample to a survey, which begins anew with the first one; returns the number of
+    /// samples.
     fn survey(&mut self, rate: AngularRate, is_first: bool) -> u32 {
         if is_first {
             self.begin_survey();
@@ -99,7 +106,7 @@ impl Store {
 }
 
 impl Session {
-    /// Takes a sample of the survey; a stage that moves begins it anew.
+    /// Takes a sample of the survey, which begins anew when the stage moves.
     pub(super) fn survey(&mut self, sample: &Sample) -> Command {
         let is_first = self.average.as_ref().is_none_or(|average| average.count() <= 1);
         if self.store.survey(sample.rate, is_first) < self.pace.survey {
@@ -111,7 +118,7 @@ impl Session {
         }
     }
 
-    /// Ends the survey: noise, plan, and off to its first position.
+    /// Ends the survey: fits the noise, makes the plan, and goes to its first position.
     #[inline(never)]
     fn learn(&mut self, now: Instant) -> Result<Command, Refusal> {
         if self.has_missed_samples() {
@@ -124,14 +131,14 @@ impl Session {
         self.setting.noise = known(&found, &self.setting.noise);
         self.setting.white_known = true;
         self.surveyed = Some(found);
-        // The time allowed counts from here.
+        // The time allowed counts from the end of the survey.
         self.begun = Some(now);
         self.plan()?;
         self.store.begin_dwells();
         Ok(self.send(now))
     }
 
-    /// Takes the standstill of the survey, and tells whether samples were missing in it.
+    /// Takes the standstill of the survey; returns whether samples were missing in it.
     #[inline(never)]
     fn has_missed_samples(&mut self) -> bool {
         let seconds = self.procedure.sample_seconds;
@@ -140,7 +147,7 @@ impl Session {
         dwell.is_some_and(|dwell| dwell.fault == Some(SampleFault::Missing))
     }
 
-    /// Plans for the noise that is now known.
+    /// Makes the plan for the noise that was found.
     #[inline(never)]
     fn plan(&mut self) -> Result<(), Refusal> {
         let Some(survey) = self.procedure.survey else { return Ok(()) };
@@ -169,7 +176,7 @@ impl Session {
             .map_err(|_: ProcedureError| Refusal::NoSchedule { seconds: allowed })
     }
 
-    /// Why there is no plan, in degrees.
+    /// Refusal for a planning error, with angles in degrees.
     fn unplanned(&self, error: PlanError, seconds: f64) -> Refusal {
         let degrees = |angle: f64| angle * DEGREES_PER_RADIAN;
         match error {
@@ -182,20 +189,20 @@ impl Session {
         }
     }
 
-    /// What the survey found of the gyro's noise, where there was one.
+    /// Noise found by the survey, where there was one.
     #[must_use]
     pub fn surveyed(&self) -> Option<&NoiseFit> {
         self.surveyed.as_ref()
     }
 
-    /// Whether there is to be a survey that has not been made.
+    /// Whether a survey is configured and has not been made.
     pub(super) fn must_survey(&self) -> bool {
         self.procedure.survey.is_some() && self.surveyed.is_none()
     }
 }
 
-/// The noise to go by: what was found, and of what was not observable what was stated, as far as the
-/// survey bears it out.
+/// Noise model for the alignment: coefficients that were found, and for those not observable the
+/// configured ones, limited to the survey's upper limits.
 fn known(found: &NoiseFit, stated: &GyroNoise) -> GyroNoise {
     let of = |estimate: Estimate, stated: f64| match estimate {
         Estimate::Found { value, .. } => value,

@@ -1,22 +1,26 @@
-//! Block means of one dwell, from which its quietness is judged.
+//! Block means of one dwell, from which its stationarity is judged.
 //!
-//! Sixteen sums hold the whole dwell, however long: when all are full, neighbours merge and the
-//! block length doubles, so a dwell ends with eight to sixteen equal blocks. They are taken before
-//! the filter, so white noise leaves them independent.
+//! Sixteen sums hold a dwell of any length: when all are full, neighbours merge and the block
+//! length doubles, so a dwell ends with eight to sixteen equal blocks. Blocks are formed before the
+//! low-pass filter, so that white noise leaves them independent.
 
 use core::num::NonZero;
 
-/// Most blocks that are kept.
+/// Greatest number of blocks that are kept.
 pub const BLOCKS: usize = 16;
 
-/// Block sums of the deviations from the dwell's first sample.
+/// Running block sums of the deviations of a rate from the dwell's first sample, nrad/s.
 #[derive(Clone, Debug)]
 pub struct Blocks {
+    /// Sums of the full blocks, nrad/s times samples; entries from `full` on are stale.
     sums: [i64; BLOCKS],
+    /// Number of full blocks, at most [`BLOCKS`].
     full: usize,
+    /// Sum of the block in progress, nrad/s times samples.
     current: i64,
-    /// Deviations that the current block still lacks.
+    /// Samples that the block in progress still lacks.
     lacking: u32,
+    /// Samples in a block: a power of two.
     length: u32,
 }
 
@@ -37,13 +41,14 @@ impl Blocks {
         }
     }
 
-    /// Takes the full block; once in a sixteenth to an eighth of the dwell.
+    /// Stores the full block. It runs once in a sixteenth to an eighth of the dwell, so it stays
+    /// out of the per-sample path.
     #[cold]
     #[inline(never)]
     fn close(&mut self) {
         if self.full == BLOCKS {
             self.merge();
-            // What was just filled is now half a block.
+            // The block just filled is now the first half of a block of the doubled length.
             self.lacking = self.length / 2;
             return;
         }
@@ -53,6 +58,7 @@ impl Blocks {
         self.lacking = self.length;
     }
 
+    /// Merges neighbouring blocks and doubles the block length.
     fn merge(&mut self) {
         for index in 0..BLOCKS / 2 {
             self.sums[index] = self.sums[2 * index] + self.sums[2 * index + 1];
@@ -61,13 +67,14 @@ impl Blocks {
         self.length *= 2;
     }
 
-    /// Deviations so far.
+    /// Number of deviations added so far.
     #[must_use]
     pub fn count(&self) -> u32 {
         (self.full as u32 + 1) * self.length - self.lacking
     }
 
-    /// The statistics of the full blocks; `None` for fewer than four.
+    /// Statistics of the full blocks, for a sample period in seconds; `None` with fewer than four
+    /// blocks. The samples of the incomplete block count as part of the last one.
     #[must_use]
     pub fn quietness(&self, sample_seconds: f64) -> Option<BlockStatistics> {
         let blocks = NonZero::new(self.full as u32).filter(|blocks| blocks.get() >= 4)?;
@@ -76,7 +83,8 @@ impl Blocks {
         for (mean, sum) in means.iter_mut().zip(self.sums) {
             *mean = sum as f64 * scale;
         }
-        // What did not fill a block belongs to the last one: no part of the dwell goes unjudged.
+        // Samples after the last full block are merged into it, so that no part of the dwell is
+        // left out.
         let tail = self.length - self.lacking;
         let all = self.sums[self.full - 1] + self.current;
         means[self.full - 1] = all as f64 * 1e-9 / f64::from(self.length + tail);
@@ -85,27 +93,27 @@ impl Blocks {
     }
 }
 
-/// How still a dwell was, before it is known how noisy the gyro is.
+/// Stationarity statistics of a dwell, independent of how noisy the gyro is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BlockStatistics {
-    /// Number of blocks; never zero, so that `None` takes no room of its own.
+    /// Number of blocks, 4 to 16; never zero, so that `None` takes no room of its own.
     pub blocks: NonZero<u32>,
     /// Length of a block, s.
     pub block_seconds: f64,
-    /// Slope of a straight line through the blocks, rad/s².
+    /// Slope of the least-squares line through the block means, rad/s².
     pub slope: f64,
-    /// Sum of squares about that line, (rad/s)²; `blocks` − 2 degrees of freedom.
+    /// Residual sum of squares about that line, (rad/s)², with `blocks` − 2 degrees of freedom.
     pub scatter: f64,
-    /// Largest step between an interval of blocks and the rest, about that line, in rad/s, scaled
-    /// so that a block standard deviation of one gives it variance one.
+    /// Largest normalised step, rad/s: over all intervals of blocks, the sum of the residuals in
+    /// the interval over its standard deviation for unit block noise (variance one).
     pub largest_step: f64,
-    /// Sum of squared differences of neighbouring blocks, (rad/s)²: twice their variance each, and
-    /// deaf to a slow disturbance.
+    /// Sum of squared differences of neighbouring block means, (rad/s)². Each has twice the
+    /// variance of a block and responds little to a slow disturbance.
     pub neighbour_squares: f64,
 }
 
 impl BlockStatistics {
-    /// Number of blocks.
+    /// Number of blocks as a floating-point number.
     #[must_use]
     pub fn count(&self) -> f64 {
         f64::from(self.blocks.get())
@@ -117,6 +125,7 @@ impl BlockStatistics {
         1.0 / (libm::sqrt(spread(self.count())) * self.block_seconds)
     }
 
+    /// Statistics of these block means, rad/s, each over `block_seconds`.
     fn of(means: &[f64], blocks: NonZero<u32>, block_seconds: f64) -> Self {
         let count = means.len() as f64;
         let centre = 0.5 * (count - 1.0);
@@ -138,12 +147,15 @@ impl BlockStatistics {
     }
 }
 
-/// Sum of the squared distances of `count` equidistant points from their middle.
+/// Sum of the squared distances of `count` equidistant points of spacing one from their middle:
+/// n(n² − 1)/12.
 fn spread(count: f64) -> f64 {
     count * (count * count - 1.0) / 12.0
 }
 
-/// The scan for a disturbance of any length: the greatest normalised difference of an interval.
+/// Greatest normalised sum of the residuals over any interval of blocks: a scan for disturbances of
+/// any length. A step of the mean in `inside` of `count` blocks has the variance inside (1 −
+/// inside/count).
 fn largest_step(rest: &[f64]) -> f64 {
     let count = rest.len() as f64;
     let mut largest: f64 = 0.0;

@@ -1,4 +1,4 @@
-//! The average of one dwell: filter, integrate, and judge what went in.
+//! Average of one dwell: the rate is filtered, integrated, and checked for disturbances.
 //!
 //! The filter starts at each arrival as if the first sample x₀ had stood for ever, so nothing of
 //! the previous position and of the rotation can smear into this one. The mean of its output over
@@ -12,75 +12,80 @@ use super::blocks::{BlockStatistics, Blocks};
 use super::butterworth::{Coefficients, Filter};
 use crate::units::{Angle, AngularRate, Instant, Optional};
 
-/// What one dwell leaves behind, whoever averaged it.
+/// Result of one dwell (a standstill of the stage), whether averaged here or read from a table.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Dwell {
-    /// Encoder angle: the heading of the sensitive axis in the base plane.
+    /// Encoder angle: heading of the sensitive axis in the base plane.
     pub stage: Angle,
     /// Mean elevation of the sensitive axis above the base plane, rad, up positive; zero where it lies
     /// in that plane. In single precision, which takes no room: 0.3° is kept to 10⁻⁴″.
     pub elevation: f32,
     /// Middle of the averaged time, s. (The taper's own middle lies half its lag earlier, in every
-    /// dwell alike, so it is of no consequence.)
+    /// dwell alike, so this offset does not affect the azimuth.)
     pub middle: f64,
     /// Length of the averaged time, s.
     pub seconds: f64,
-    /// Samples averaged; zero where that is not known.
+    /// Number of samples averaged; zero where it is unknown.
     pub samples: u32,
     /// Mean rate about the sensitive axis, rad/s.
     pub rate: f64,
-    /// White-noise variance of the mean over that of an average of all samples, ≥ 1.
+    /// Variance of the mean for white noise over that of a plain average of all samples, ≥ 1.
     pub taper: f64,
-    /// Variance of the mean as its source states it, (rad/s)².
+    /// Variance of the mean as configured by its source, (rad/s)²; none where it follows from the
+    /// noise model.
     pub stated_variance: Optional,
-    /// Block statistics, where there were samples enough.
+    /// Block statistics; none with too few samples for four blocks.
     pub quietness: Option<BlockStatistics>,
-    /// Mean specific force on the accelerometer's axes, m/s², where it was measured.
+    /// Mean specific force on the accelerometer's axes, m/s²; none where it was not measured.
     pub force: Option<[f64; 3]>,
-    /// Mean temperature, °C, where it was measured.
+    /// Mean temperature, °C; none where it was not measured.
     pub temperature: Optional,
-    /// What was wrong with samples.
+    /// Fault found in the samples; none where they are sound.
     pub fault: Option<SampleFault>,
 }
 
 impl Dwell {
-    /// When the averaged time began, s.
+    /// Beginning of the averaged time, s.
     #[must_use]
     pub fn start(&self) -> f64 {
         self.middle - 0.5 * self.seconds
     }
 
-    /// When the averaged time ended, s.
+    /// End of the averaged time, s.
     #[must_use]
     pub fn end(&self) -> f64 {
         self.middle + 0.5 * self.seconds
     }
 }
 
-/// A sickness of the samples of a dwell.
+/// Fault found in the samples of a dwell, in the order in which it is reported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SampleFault {
     /// A rate stood at the limit of its range.
     Saturated,
-    /// Every rate was the same: the gyro or its bus is stuck.
+    /// Every rate was identical: the gyro or its bus is stuck.
     Stuck,
-    /// Samples were missing: the times have a gap.
+    /// Samples were missing: the time stamps have a gap of more than 3.5 sample periods.
     Missing,
 }
 
-/// Means of quantities that come together and with some samples only, as plain sums; the first
-/// values are taken away at the end, so that the means keep their last bits.
+/// Means of quantities that arrive together and only with some samples, kept as integer sums. The
+/// first values are subtracted at the end, so that the means keep their last bits.
 #[derive(Clone, Copy, Debug)]
 struct Means<const N: usize> {
+    /// First values, subtracted before the division.
     origins: [i32; N],
+    /// Sums of all values.
     sums: [i64; N],
+    /// Number of values.
     count: u32,
 }
 
 impl<const N: usize> Means<N> {
-    /// Of nothing.
+    /// Means of no values yet.
     const EMPTY: Self = Self { origins: [0; N], sums: [0; N], count: 0 };
 
+    /// Adds one set of values.
     fn push(&mut self, values: [i32; N]) {
         if self.count == 0 {
             self.origins = values;
@@ -91,7 +96,7 @@ impl<const N: usize> Means<N> {
         }
     }
 
-    /// The means in units of `lsb`; `None` of nothing.
+    /// The means in units of `lsb`; `None` before the first value.
     fn get(&self, lsb: f64) -> Option<[f64; N]> {
         let count = i64::from(self.count);
         let mean = |index: usize| {
@@ -106,42 +111,54 @@ impl<const N: usize> Means<N> {
 /// One step of a [`SpecificForce`](crate::units::SpecificForce), m/s².
 const FORCE_STEP: f64 = 1e-6;
 
-/// Sample periods without a sample that a dwell bears: two samples in a row may be lost.
+/// Longest time without a sample that a dwell tolerates, in sample periods: two samples in a row
+/// may be lost.
 const LONGEST_GAP: f64 = 3.5;
 
-/// Longest step over the mean one of samples none of which is missing.
+/// Longest step of the time stamps over the mean step up to which no sample counts as missing.
 const REGULAR: f64 = 1.5;
 
-/// The fewest samples that make a dwell: four times the filter's lag, and eight.
+/// Fewest samples of a dwell: four times the filter's lag, and at least eight.
 #[must_use]
 pub fn shortest<const SECTIONS: usize>(coefficients: &Coefficients<SECTIONS>) -> u32 {
     (libm::ceil(4.0 * coefficients.lag()) as u32).max(8)
 }
 
-/// The running average of a dwell in progress.
+/// Running average of a dwell in progress. The work per sample is one integer filter update and a
+/// few additions; everything in floating point waits for [`DwellAverage::finish`].
 #[derive(Clone, Debug)]
 pub struct DwellAverage<const SECTIONS: usize> {
+    /// Time of the first sample.
     first: Instant,
+    /// Time of the latest sample.
     last: Instant,
+    /// Stage angle of the first sample, from which the mean angle is counted.
     anchor: Angle,
-    /// The raw rate of the first sample.
+    /// Raw rate of the first sample.
     origin: AngularRate,
-    /// Sum of the filtered rates; the origin is taken away at the end.
+    /// Sum of the filtered rates, nrad/s; the origin is subtracted at the end.
     filtered: i64,
+    /// Low-pass filter, started at rest at the first sample.
     filter: Filter<SECTIONS>,
-    /// Every bit that was set in the raw rate's deviation from the first.
+    /// Union of all bits ever set in the raw rate's deviation from the first sample: zero while
+    /// every rate is identical.
     changes: i32,
+    /// Block sums of the raw rate, for the stationarity statistics.
     blocks: Blocks,
+    /// Sum of the deviations of the stage angle from the anchor, in steps of an [`Angle`].
     stage: i64,
-    /// Specific force and, with it, the elevation.
+    /// Means of the specific force and, together with it, of the elevation.
     force: Means<4>,
+    /// Mean of the temperature, m°C.
     temperature: Means<1>,
+    /// Whether a rate stood at a limit of its range.
     saturated: bool,
+    /// Longest step of the time stamps, µs.
     longest_gap: u64,
 }
 
 impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
-    /// Begins at the first sample of a standstill, which counts.
+    /// Begins with the first sample of a standstill, which is included in the average.
     #[must_use]
     pub fn begin(coefficients: &Coefficients<SECTIONS>, sample: &Sample) -> Self {
         let mut average = Self {
@@ -165,7 +182,8 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
 
     /// Adds a sample of the same standstill.
     ///
-    /// The filter comes last: it needs all registers, and what is needed before it is then done.
+    /// The filter comes last: it needs all registers, and by then the other values of the sample
+    /// are no longer live.
     pub fn push(&mut self, coefficients: &Coefficients<SECTIONS>, sample: &Sample) {
         if sample.force.is_some() | sample.temperature.is_some() {
             self.push_slow(sample);
@@ -176,8 +194,8 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
         self.filtered += i64::from(self.filter.update(coefficients, sample.rate).0);
     }
 
-    /// Takes what only some samples bring. An elevation comes with a force: asking for it alone would
-    /// cost every sample a test.
+    /// Takes the quantities that only some samples carry. An elevation is taken together with a
+    /// force: a test of its own would cost every sample.
     #[cold]
     #[inline(never)]
     fn push_slow(&mut self, sample: &Sample) {
@@ -190,7 +208,7 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
         }
     }
 
-    /// Takes the rate as it came.
+    /// Takes the raw rate for the checks, before the filter smooths it.
     #[inline]
     fn push_raw(&mut self, rate: AngularRate) {
         let deviation = rate.0.saturating_sub(self.origin.0);
@@ -201,9 +219,10 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
         }
     }
 
+    /// Follows the longest step of the time stamps.
     #[inline]
     fn push_time(&mut self, time: Instant) {
-        // Wraps where time ran backwards, to more than any gap.
+        // The difference wraps where time ran backwards and then exceeds any gap.
         let gap = time.0.wrapping_sub(self.last.0);
         if gap > self.longest_gap {
             self.widen_gap(time);
@@ -211,6 +230,7 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
         self.last = time;
     }
 
+    /// Stores a longer step; a step backwards in time is ignored.
     #[cold]
     #[inline(never)]
     fn widen_gap(&mut self, time: Instant) {
@@ -219,25 +239,26 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
         }
     }
 
+    /// Notes a saturated rate, out of the per-sample path.
     #[cold]
     #[inline(never)]
     fn saturate(&mut self) {
         self.saturated = true;
     }
 
-    /// Whether a stage angle is that of the first sample, within `tolerance`.
+    /// Whether a stage angle agrees with that of the first sample within `tolerance`.
     #[must_use]
     pub fn stands_at(&self, stage: Angle, tolerance: Angle) -> bool {
         (stage - self.anchor).0.cast_signed().unsigned_abs() <= tolerance.0
     }
 
-    /// Samples so far.
+    /// Number of samples so far.
     #[must_use]
     pub fn count(&self) -> u32 {
         self.blocks.count()
     }
 
-    /// Mean step of the samples' times, s, where none is missing; `None` of fewer than two.
+    /// Mean step of the time stamps, s; `None` with fewer than two samples or with samples missing.
     #[must_use]
     pub fn step(&self) -> Option<f64> {
         let steps = f64::from(self.count().checked_sub(1).filter(|steps| *steps > 0)?);
@@ -256,7 +277,8 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
         self.force.get(Angle::STEP).map_or(0.0, |[.., elevation]| elevation as f32)
     }
 
-    /// The dwell, for a sample period in seconds; `None` while it is shorter than [`shortest`].
+    /// The finished dwell, for a sample period in seconds; `None` while it is shorter than
+    /// [`shortest`].
     #[must_use]
     pub fn finish(
         &self,
@@ -286,11 +308,12 @@ impl<const SECTIONS: usize> DwellAverage<SECTIONS> {
         })
     }
 
-    /// Sum of the filtered rates' deviations from the first raw one, nrad/s.
+    /// Sum of the filtered rates less the first raw rate times their number, nrad/s.
     fn deviation(&self) -> f64 {
         (self.filtered - i64::from(self.origin.0) * i64::from(self.count())) as f64
     }
 
+    /// First fault found: saturation, then a stuck reading, then missing samples.
     fn fault(&self, sample_seconds: f64) -> Option<SampleFault> {
         if self.saturated {
             Some(SampleFault::Saturated)

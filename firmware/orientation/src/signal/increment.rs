@@ -1,38 +1,39 @@
-//! The rotation since the last attitude: small rotations summed at the sample rate, with what their order adds
-//! (P. G. Savage, Strapdown Inertial Navigation Integration Algorithm Design, Part 1, 1998).
+//! Rotation since the last attitude update: small rotations summed at the sample rate, with the
+//! coning term for their order (P. G. Savage, Strapdown Inertial Navigation Integration Algorithm
+//! Design, Part 1, 1998).
 
 use crate::units::AngleIncrement;
 
-/// Rotation about an axis after which the attitude is taken at once, rad: up to it, the products of small
-/// rotations that are left out are 1e-6 of them.
+/// Rotation about one axis that triggers an attitude update at once, rad. Up to it, the products of
+/// small rotations that the coning sum neglects are 1e-6 of the rotation.
 const LARGE: f32 = 0.02;
-/// The same in steps of an increment.
+/// Threshold [`LARGE`] in steps of an increment.
 const LARGE_STEPS: u32 = (LARGE / STEP) as u32;
-/// Rotation of one sample about an axis up to which rates are taken to change steadily from sample to sample, rad: a
-/// blow is no steady change.
+/// Rotation of one sample about one axis up to which the rate is assumed to change linearly from
+/// sample to sample, rad; beyond it the sample is treated as a shock.
 pub const STEADY: f32 = 0.1;
-/// The same in steps of an increment.
+/// Threshold [`STEADY`] in steps of an increment.
 const STEADY_STEPS: u32 = (STEADY / STEP) as u32;
-/// How a sample that follows another is turned by the change of the axis between them (Savage's equation
-/// for rates that change linearly): 1/12.
+/// Weight of the cross product of two successive increments, for rates that change linearly in time
+/// (Savage 1998, coning equation): 1/12.
 const CONING: f32 = 1.0 / 12.0;
-/// One step of an increment, rad.
+/// One step of an angle increment, rad, in single precision.
 pub const STEP: f32 = AngleIncrement::STEP as f32;
 
-/// The rotation since the last attitude, in steps of an increment and their squares. Written out, for loops
-/// of three cost more than what they do.
+/// Rotation since the last attitude update, in steps of an increment and their squares. The
+/// components are written out, because loops over three cost more than their bodies.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Increment {
-    /// Sums of the increments: exact, so that nothing is lost however long it takes.
+    /// Sums of the increments: exact integers, so no rotation is lost over any time.
     sums: [i32; 3],
-    /// What the order of rotations adds.
+    /// Coning sums: contribution of the order of the rotations, in squared steps.
     coning: [f32; 3],
-    /// A twelfth of the sample before, or zero where that was a blow.
+    /// A twelfth of the previous sample, or zero where that was a shock.
     lead: [f32; 3],
 }
 
 impl Increment {
-    /// Adds a sample.
+    /// Adds one sample to the sums, which saturate instead of wrapping.
     #[expect(
         clippy::inline_always,
         reason = "a call with nine numbers costs a tenth of the sample"
@@ -56,7 +57,7 @@ impl Increment {
         self.lead = [part * small_x, part * small_y, part * small_z];
     }
 
-    /// Whether the attitude is to be taken at once.
+    /// Whether the rotation is large enough for an attitude update at once.
     #[must_use]
     #[inline]
     pub fn is_large(&self) -> bool {
@@ -64,14 +65,15 @@ impl Increment {
         x.unsigned_abs().max(y.unsigned_abs()).max(z.unsigned_abs()) > LARGE_STEPS
     }
 
-    /// Sums of the increments since the last attitude, in their steps.
+    /// Sums of the increments since the last attitude update, in steps of an increment.
     #[must_use]
     #[inline]
     pub fn steps(&self) -> [i32; 3] {
         self.sums
     }
 
-    /// The rotation vector, rad, whose sums then begin again.
+    /// Rotation vector since the last attitude update, rad, in double precision; the sums begin
+    /// again.
     #[inline]
     pub fn take(&mut self) -> [f64; 3] {
         let rotation = core::array::from_fn(|axis| {
@@ -82,7 +84,8 @@ impl Increment {
         rotation
     }
 
-    /// The same to 6e-8 of it.
+    /// Rotation vector since the last attitude update, rad, in single precision (relative error
+    /// 6e-8); the sums begin again.
     pub fn take_rough(&mut self) -> [f32; 3] {
         let ([x, y, z], [about_x, about_y, about_z]) = (self.sums, self.coning);
         self.restart();
@@ -93,6 +96,7 @@ impl Increment {
         ]
     }
 
+    /// Clears the sums and keeps the last sample for the next coning term.
     #[inline]
     fn restart(&mut self) {
         *self = Self { lead: self.lead, ..Self::default() };

@@ -1,4 +1,5 @@
-//! From raw samples to the average of one dwell, or to the phasors of a turning platform.
+//! Signal processing: from raw samples to the average of one dwell, to the phasors of a rotating
+//! platform, or to a strapdown attitude.
 
 pub mod blocks;
 pub mod butterworth;
@@ -13,15 +14,15 @@ use crate::units::{
     Angle, AngleIncrement, AngularRate, Instant, SpecificForce, SpinForce, Temperature,
 };
 
-/// One moment of the stage path: the precise gyro and what belongs to it.
+/// One sample of the stage path: the precise gyro and the values that belong to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sample {
-    /// When it was taken.
+    /// Time at which the sample was taken.
     pub time: Instant,
-    /// Encoder angle of the stage: the heading θ of the sensitive axis in the base plane. What does
-    /// not stand shows another angle with every sample.
+    /// Encoder angle of the stage: heading θ of the sensitive axis in the base plane. While the
+    /// stage moves, the angle differs from sample to sample.
     pub stage: Angle,
-    /// Rate about the gyro's sensitive axis.
+    /// Angular rate about the gyro's sensitive axis.
     pub rate: AngularRate,
     /// Accelerometer, where a fresh reading came with this sample (it is read less often than the
     /// gyro). On a stage's platform: x along the sensitive axis, y 90° clockwise of it, z down; on the
@@ -34,28 +35,30 @@ pub struct Sample {
     pub elevation: Option<Angle>,
 }
 
-/// What three gyros and three accelerometers, fixed to the vehicle, measured since the sample before;
-/// axes forward, right, down.
+/// Measurements of three gyros and three accelerometers fixed to the vehicle since the previous
+/// sample; axes forward, right, down.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct InertialSample {
-    /// When it ended.
+    /// Time at which the sample interval ended.
     pub time: Instant,
-    /// Angles turned about the axes: integrals of the rates, at the limit of their range
-    /// where a gyro stood at the limit of its own.
+    /// Angles turned about the axes, the integrals of the rates. A component stands at the limit of
+    /// its range where the gyro did.
     pub turned: [AngleIncrement; 3],
-    /// Mean specific force since the last one, where a fresh reading came with this sample; none where
-    /// it stood at the limit of the sensor's range.
+    /// Mean specific force since the last force reading, where a fresh reading came with this
+    /// sample; none where the accelerometer stood at the limit of its range.
     pub force: Option<[SpecificForce; 3]>,
 }
 
-/// What three gyros and two accelerometers on a spinning body measured; axes as in Nekrasova's paper: x forward,
-/// along the spin, y up and z right at roll zero.
+/// Measurements of three gyros and two accelerometers on a spinning body. Axes as in Nekrasova
+/// 2017: x forward along the spin axis, y up and z right at roll zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SpinSample {
-    /// When it was taken.
+    /// Time at which the sample was taken.
     pub time: Instant,
-    /// Angles turned about the axes since the sample before, in one sample period: after a gap the last period's.
+    /// Angles turned about the axes in one sample period; after a gap, those of the last period
+    /// only.
     pub turned: [AngleIncrement; 3],
-    /// Forces on y and z at this moment; none where a sensor stood at the limit of its range.
+    /// Specific forces on y and z at this moment; none where a sensor stood at the limit of its
+    /// range.
     pub force: Option<[SpinForce; 2]>,
 }

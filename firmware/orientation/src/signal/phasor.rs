@@ -5,96 +5,102 @@
 //! ```
 //!
 //! A block is the mean of the rate over some sample periods, by the trapezoidal rule from sample to
-//! sample, so that its platform rate is exactly what the encoder turned in that time: the encoder's steps
-//! then cancel from block to block. Cosine and sine are averaged over the same time from its ends and
-//! middle. What is fitted to what is chosen afterwards.
+//! sample. Its platform rate is exactly the angle that the encoder turned in that time, so the
+//! encoder's quantisation steps cancel from block to block. Cosine and sine are averaged over the
+//! same time from its ends and middle. Any regression on these columns can be formed afterwards
+//! from the sums of products (MET 2018: the phasor of a signal is its least-squares fit on 1, t,
+//! cos θ, sin θ over whole turns).
 
 use super::Sample;
 use crate::align::etalon::Table;
 use crate::align::regression::Regression;
 use crate::units::Angle;
 
-/// Columns that the gyro's rate may be fitted to.
+/// Number of columns that the gyro's rate may be fitted to.
 pub const COLUMNS: usize = 6;
 
-/// A constant.
+/// Column of the constant.
 pub const ONE: usize = 0;
-/// Cosine of the platform's angle.
+/// Column of the cosine of the platform angle.
 pub const COSINE: usize = 1;
-/// Its sine.
+/// Column of the sine of the platform angle.
 pub const SINE: usize = 2;
-/// Time since the reference, s.
+/// Column of the time since the reference, s.
 pub const TIME: usize = 3;
-/// Rate of the platform beyond the reference, rad/s.
+/// Column of the platform's rate beyond the reference, rad/s: shows the axis misalignment.
 pub const TURNING: usize = 4;
-/// Its derivative, rad/s².
+/// Column of the platform's angular acceleration, rad/s²: shows the lag of the sensor.
 pub const QUICKENING: usize = 5;
 
-/// Signals of a row: the columns, and the gyro's rate beyond the reference, rad/s.
+/// Signals of a row: the columns, then the gyro's rate beyond the reference, rad/s.
 const SIGNALS: usize = COLUMNS + 1;
-/// The gyro's rate among the signals.
+/// Index of the gyro's rate among the signals.
 pub const RATE: usize = COLUMNS;
 
-/// What one step of each signal in a row of integers is worth.
+/// Size of one integer step of each signal in a row, in the signal's unit.
 const STEPS: [f64; SIGNALS] = [1.0, TRIGONOMETRIC, TRIGONOMETRIC, 1e-3, 1e-6, 1e-6, 1e-9];
 /// Step of cosine and sine, 2⁻²².
 const TRIGONOMETRIC: f64 = 1.0 / 4_194_304.0;
-/// Step of the table's cosine, 2⁻³⁰, over that.
+/// Step of the table's cosine, 2⁻³⁰, over [`TRIGONOMETRIC`].
 const EXCESS: f32 = 1.0 / 256.0;
 
-/// Greatest distance of the gyro's rate from the reference, nrad/s: 1.9 °/s. What is further away is no
-/// Earth rate.
+/// Greatest deviation of the gyro's rate from the reference, nrad/s: 1.9 °/s. A larger one cannot
+/// be Earth rate and marks the products as out of range.
 const FURTHEST: i64 = 1 << 25;
 
-/// Greatest change of the platform's rate, rad/s, and of that in a second: no stage is so fast, and 4096
-/// squares of it fit.
+/// Greatest deviation of the platform's rate, rad/s, and greatest angular acceleration, rad/s²: no
+/// stage is so fast, and 4096 of their squares fit into 64 bits.
 const FASTEST: f32 = 16.0;
-/// Longest time from the reference, ms: nine hours, of which 4096 squares fit.
+/// Longest time from the reference, ms: nine hours, of which 4096 squares fit into 64 bits.
 const LONGEST: u64 = 1 << 25;
 
-/// The mean of a block.
+/// Mean values of one block.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Block {
-    /// Time of its middle, µs.
+    /// Time of the block's middle, µs.
     pub time: u64,
-    /// Its length, s.
+    /// Length of the block, s.
     pub seconds: f32,
-    /// Rate of the platform, rad/s.
+    /// Mean rate of the platform, rad/s, clockwise positive.
     pub turning: f32,
-    /// By how much the platform turned, steps of an [`Angle`].
+    /// Angle that the platform turned, in steps of an [`Angle`].
     pub turned: i64,
-    /// Mean cosine and sine, 2⁻²².
+    /// Mean cosine and sine of the platform angle, in steps of 2⁻²².
     phasor: [i32; 2],
     /// Mean rate of the gyro, nrad/s.
     pub rate: i32,
-    /// Whether a rate in it stood at the limit of its range.
+    /// Whether a rate within the block stood at the limit of its range.
     pub is_saturated: bool,
 }
 
 /// Averages samples into blocks.
 ///
-/// An encoder may be read less often than the gyro: a sample with the angle of the one before brings no
-/// new one, and a block begins, has its middle and ends where one does. Where none comes for two blocks
-/// the platform stands, which is a block too.
+/// An encoder may be read less often than the gyro: a sample that repeats the previous angle
+/// carries no new reading, and a block begins, has its middle and ends only at samples with a new
+/// angle. If none comes for two blocks the platform stands still, which makes a block too.
 #[derive(Clone, Copy, Debug)]
 pub struct Blocks {
-    /// Sample periods in a block, at least, and after how many its middle is looked for.
+    /// Least number of sample periods in a block, and the number after which its middle is taken.
     periods: u32,
     middle: u32,
+    /// Previous sample.
     last: Option<Point>,
-    /// Where the block began, if it has, and its angle's cosine and sine there and in the middle, 2⁻³⁰.
+    /// Sample at which the block began, if it has begun, and the cosine and sine of the angle there
+    /// and in the middle, in steps of 2⁻³⁰.
     begun: Option<Point>,
     phasors: [[i32; 2]; 2],
-    /// Time of the middle, µs; zero where there was none yet.
+    /// Time of the middle, µs; zero until it is taken.
     middle_time: u64,
+    /// Sample periods in the block so far.
     count: u32,
-    /// Sums over the periods of the values at both of their ends times their length, µs.
+    /// Sums over the periods of the values at both of their ends times the period's length, µs.
     turning: f32,
     rate: i64,
+    /// Whether a rate in the block stood at the limit of its range.
     is_saturated: bool,
 }
 
-/// What a sample brings.
+/// The values of one sample that the trapezoidal rule needs.
 #[derive(Clone, Copy, Debug)]
 struct Point {
     time: u64,
@@ -104,7 +110,8 @@ struct Point {
 }
 
 impl Blocks {
-    /// Blocks of so many sample periods: one, or an even number, so that a sample is their middle.
+    /// Averages into blocks of this many sample periods: one, or an even number, so that a sample
+    /// lies in the middle. An odd number is rounded down to even.
     #[must_use]
     pub fn of(periods: u32) -> Self {
         let middle = periods / 2;
@@ -122,13 +129,14 @@ impl Blocks {
         }
     }
 
-    /// Forgets the block in progress: what comes next does not join on to it.
+    /// Discards the block in progress, so that the next samples do not join on to it.
     pub fn restart(&mut self) {
         *self = Self::of(self.periods);
     }
 
-    /// Takes a sample, and the platform's rate in rad/s where something measured it; gives a block when
-    /// one is full. The platform must turn by less than half a turn in a block.
+    /// Takes a sample, and the platform's rate in rad/s where it was measured; returns a block when
+    /// one is complete. The platform must turn by less than half a turn within a block, else the
+    /// angle is ambiguous.
     #[inline]
     pub fn push(&mut self, sample: &Sample, turning: Option<f32>) -> Option<Block> {
         let (time, stage, rate) = (sample.time.0, sample.stage, sample.rate.0);
@@ -143,7 +151,7 @@ impl Blocks {
             return None;
         };
         self.count += 1;
-        // A period in which samples are missing counts for as long as it took.
+        // A period with missing samples counts with its full length.
         let period = time.saturating_sub(last.time) as u32;
         self.rate += (i64::from(rate) + i64::from(last.rate)) * i64::from(period);
         if let (Some(now), Some(before)) = (turning, last.turning) {
@@ -161,13 +169,13 @@ impl Blocks {
         None
     }
 
-    /// Begins a block at a sample, whose angle has this cosine and sine.
+    /// Begins a block at a sample whose angle has this cosine and sine, in steps of 2⁻³⁰.
     fn begin(&mut self, point: Point, phasor: [i32; 2]) {
         *self = Self { last: Some(point), begun: Some(point), ..Self::of(self.periods) };
         self.phasors[0] = phasor;
     }
 
-    /// The block that ends with this sample; the next one begins there.
+    /// The block that ends with this sample; the next block begins there.
     fn finish(&mut self, begun: &Point, end: Point) -> Block {
         let length = end.time.saturating_sub(begun.time).max(1);
         let seconds = length as f32 * 1e-6;
@@ -189,12 +197,13 @@ impl Blocks {
         block
     }
 
-    /// Mean cosine and sine, 2⁻²²: of the parabola through both ends and the middle, which is exact to 1e-7
-    /// for a tenth of a turn; of a line where the rate has no other points either.
+    /// Mean cosine and sine, in steps of 2⁻²²: of the parabola through both ends and the middle,
+    /// exact to 1e-7 for a tenth of a turn, or of a straight line where the middle is missing.
     fn mean_phasor(&self, begun: &Point, end: &Point, last: [i32; 2]) -> [i32; 2] {
         let [first, middle] = self.phasors;
         let share = |time: u64| time.saturating_sub(begun.time).max(1) as f32;
-        // Where the middle lies, of the whole: at a half unless samples are missing.
+        // Position of the middle within the block, as a fraction: one half unless samples are
+        // missing.
         let place = share(self.middle_time) / share(end.time);
         let weight =
             if self.middle_time == 0 { 0.0 } else { 1.0 / (6.0 * place * (1.0 - place)).max(0.5) };
@@ -208,39 +217,44 @@ impl Blocks {
     }
 }
 
-/// What time, rates and platform rate are counted from, so that their products stay small.
+/// Reference values from which time, gyro rate and platform rate are counted, so that their
+/// products stay small.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reference {
-    /// Time, µs.
+    /// Reference time, µs.
     pub time: u64,
-    /// Rate of the gyro, nrad/s.
+    /// Reference rate of the gyro, nrad/s.
     pub rate: i32,
-    /// Rate of the platform, rad/s.
+    /// Reference rate of the platform, rad/s.
     pub turning: f32,
 }
 
 impl Reference {
-    /// That of a block.
+    /// Takes the values of a block as reference.
     #[must_use]
     pub fn of(block: &Block) -> Self {
         Self { time: block.time, rate: block.rate, turning: block.turning }
     }
 }
 
-/// Products of the signals of some blocks, exact: to be emptied into [`Sums`] every few thousand.
+/// Exact integer products of the signals of some blocks. They must be emptied into [`Sums`] every
+/// 4096 blocks at the latest, before the 64-bit sums can overflow.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Products {
+    /// Lower triangle of the sums of products, row by row, without the square of the rate.
     sums: [i64; PRODUCTS],
+    /// Number of blocks.
     rows: u32,
-    /// Whether a rate was too far from the reference, or saturated.
+    /// Whether a rate was saturated or too far from the reference, so that its products were
+    /// clamped.
     pub is_astray: bool,
 }
 
-/// Products of two signals, less the square of the rate, which no fit needs.
+/// Number of products of two signals, without the square of the rate, which no fit needs.
 const PRODUCTS: usize = SIGNALS * (SIGNALS + 1) / 2 - 1;
 
 impl Products {
-    /// Adds a block with the derivative of its platform rate, rad/s².
+    /// Adds a block, with the angular acceleration of the platform, rad/s².
     #[inline]
     pub fn push(&mut self, block: &Block, quickening: f32, reference: &Reference) {
         let rate = i64::from(block.rate) - i64::from(reference.rate);
@@ -268,14 +282,15 @@ impl Products {
 }
 
 impl Products {
-    /// Sums of cosine and sine, in steps of their own.
+    /// Sums of cosine and sine over the blocks, in steps of 2⁻²².
     #[must_use]
     pub fn phasor(&self) -> [f32; 2] {
         [COSINE, SINE].map(|signal| self.sums[signal * (signal + 1) / 2] as f32)
     }
 }
 
-/// The same sums in SI units, for as long a time as it takes.
+/// Sums of products in double precision, for a recording of any length; [`Sums::product`] gives
+/// them in SI units.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Sums {
     products: [f64; PRODUCTS],
@@ -283,7 +298,7 @@ pub struct Sums {
 }
 
 impl Sums {
-    /// Takes the products of some blocks over.
+    /// Adds the exact products of some blocks.
     pub fn absorb(&mut self, products: &Products) {
         for (sum, &product) in self.products.iter_mut().zip(&products.sums) {
             *sum += product as f64;
@@ -291,7 +306,7 @@ impl Sums {
         self.rows += products.rows;
     }
 
-    /// Adds the same of other blocks with the same reference.
+    /// Adds the sums of other blocks that have the same reference.
     pub fn add(&mut self, other: &Self) {
         for (sum, product) in self.products.iter_mut().zip(other.products) {
             *sum += product;
@@ -299,26 +314,27 @@ impl Sums {
         self.rows += other.rows;
     }
 
-    /// How many blocks.
+    /// Number of blocks.
     #[must_use]
     pub fn rows(&self) -> u32 {
         self.rows
     }
 
-    /// Sum of the products of two signals, not both the rate, in their units.
+    /// Sum of the products of two signals, which must not both be the rate, in the product of their
+    /// units.
     #[must_use]
     pub fn product(&self, one: usize, other: usize) -> f64 {
         let (row, column) = (one.max(other), one.min(other));
         self.products[row * (row + 1) / 2 + column] * STEPS[row] * STEPS[column]
     }
 
-    /// Mean of a signal.
+    /// Mean of a signal, in its unit; zero without blocks.
     #[must_use]
     pub fn mean(&self, signal: usize) -> f64 {
         self.product(signal, ONE) / f64::from(self.rows.max(1))
     }
 
-    /// The regression of a signal on the columns.
+    /// Normal equations of the regression of the signal `left` on all columns.
     #[must_use]
     pub fn regression(&self, left: usize) -> Regression<COLUMNS> {
         let mut products = [[0.0; COLUMNS]; COLUMNS];

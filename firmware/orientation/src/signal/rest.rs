@@ -1,31 +1,33 @@
-//! Whether a vehicle stands: Szymanowski's criteria on low-pass averages (his eqs. 11 and 12).
+//! Zero-velocity detection: whether a vehicle stands, by the stop criteria of Szymanowski 2003 on
+//! low-pass averages (eqs. 11 and 12).
 //!
-//! Kryt1 = Ω − |ω| compares the mean rate with the Earth's, Kryt2 = g − |f| the mean specific force with
-//! gravity. Kryt2 alone takes steady driving for a stop, so both must hold, or Kryt1 alone. What they
-//! are held to follows from the noise and the biases of the sensors, and from the averaging time.
+//! Kryt1 = Ω − |ω| compares the mean rate with the Earth's, Kryt2 = g − |f| the mean specific force
+//! with gravity. Kryt2 alone takes steady driving for a stop, so either both must hold, or Kryt1
+//! alone. The limits follow from the noise and the biases of the sensors and from the averaging
+//! time.
 
 use crate::earth::EARTH_RATE;
 use crate::noise::model::GyroNoise;
 
-/// Standard deviations that a criterion may be off at rest.
+/// Limit of a criterion at rest, in standard deviations.
 const BOUND: f64 = 4.0;
-/// How far wind and engine turn a vehicle at rest between both ends of an average, rad: 20″.
+/// Rotation of a vehicle at rest by wind and engine between both ends of an average, rad: 20″.
 const SHAKING: f64 = 1e-4;
-/// How far gravity may be from the normal one, m/s²: 1.5 km of height.
+/// Deviation of gravity from normal gravity, m/s²: 1.5 km of height.
 const GRAVITY_TOLERANCE: f64 = 5e-3;
-/// Speed by which a vehicle at rest moves back and forth at both ends of an average, m/s.
+/// Speed at which a vehicle at rest rocks back and forth at both ends of an average, m/s.
 const SWINGING: f64 = 0.02;
 
-/// What the criteria are held to.
+/// Limits of the two stop criteria.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Limits {
-    /// EPSGM, of Kryt1, rad/s.
+    /// Limit EPSGM of Kryt1, rad/s.
     pub rate: f64,
-    /// EPS, of Kryt2, m/s².
+    /// Limit EPS of Kryt2, m/s².
     pub force: f64,
 }
 
-/// What is known of the sensors.
+/// Stated noise and biases of the sensors of a vehicle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sensors {
     /// Angle random walk N of each gyro, rad/√s.
@@ -39,8 +41,9 @@ pub struct Sensors {
 }
 
 impl Sensors {
-    /// Three gyros with this noise and these 1σ of their biases, rad/s, and accelerometers with this
-    /// noise, m/s²/√Hz, and these 1σ of biases, m/s².
+    /// Sensors from the noise model of each gyro, the 1σ of the gyros' biases, rad/s, the noise of
+    /// the accelerometers, m/s²/√Hz one-sided, and the 1σ of their biases, m/s². The bias
+    /// instability of the model is added to the bias, root sum square.
     #[must_use]
     pub fn new(
         noise: &GyroNoise,
@@ -57,7 +60,7 @@ impl Sensors {
         }
     }
 
-    /// What averages over so many seconds are held to.
+    /// Limits for averages over this many seconds (> 0).
     #[must_use]
     pub fn limits(&self, seconds: f64) -> Limits {
         let rate = libm::hypot(self.angle_random_walk / libm::sqrt(seconds), self.bias_sigma);
@@ -70,32 +73,33 @@ impl Sensors {
     }
 }
 
-/// Both criteria of one average.
+/// Values of the two criteria for one average.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Criteria {
-    /// Kryt1, rad/s.
+    /// Kryt1 = Ω − |ω|, rad/s.
     pub rate: f64,
-    /// Kryt2, m/s².
+    /// Kryt2 = g − |f|, m/s².
     pub force: f64,
 }
 
 impl Criteria {
-    /// From the lengths of the mean rate, rad/s, and of the mean specific force, m/s², where gravity is
-    /// so great, m/s².
+    /// Criteria from the magnitudes of the mean rate, rad/s, and of the mean specific force, m/s²,
+    /// for the local gravity, m/s².
     #[must_use]
     pub fn of(rate: f64, force: f64, gravity: f64) -> Self {
         Self { rate: EARTH_RATE - rate, force: gravity - force }
     }
 
-    /// The same of one axis, which is turned between averages, from how far its mean rate is from the usual
-    /// one, rad/s: at rest they differ by twice the Earth's at most, so less than that is no rate at all.
+    /// Criteria for a single gyro that is turned between averages, from the deviation of its mean
+    /// rate from its usual one, rad/s. At rest two such rates differ by at most twice the Earth's
+    /// rate, so only the excess over that counts.
     #[must_use]
     pub fn of_axis(deviation: f64, force: f64, gravity: f64) -> Self {
         let beyond = (deviation.abs() - 2.0 * EARTH_RATE).max(0.0);
         Self { rate: -beyond, force: gravity - force }
     }
 
-    /// Whether the vehicle stands, by both.
+    /// Whether the vehicle stands by both criteria.
     #[must_use]
     pub fn is_rest(&self, limits: &Limits) -> bool {
         self.rate.abs() <= limits.rate && self.force.abs() <= limits.force

@@ -1,56 +1,61 @@
-//! Strapdown attitude in inertial space: small rotations summed at the sample rate, attitude fifty times a
-//! second (equations.md §5; P. G. Savage, Strapdown Inertial Navigation Integration Algorithm Design,
-//! Part 1, 1998).
+//! Strapdown attitude in inertial space (inertial-frame alignment): small rotations are summed at
+//! the sample rate, the attitude is updated fifty times a second (Szymanowski 2003; P. G. Savage,
+//! Strapdown Inertial Navigation Integration Algorithm Design, Part 1, 1998).
 //!
 //! ```text
 //!  angle increments ─▶ sum, coning (integer, f32) ─50 Hz─▶ quaternion (f64) ─▶ frozen start frame
 //!  forces ────────────▶ mean ────────────────────────────▶ turned there      ─▶ sums
 //! ```
 //!
-//! The frame is that of the body at the first sample, held fixed in inertial space: no azimuth is needed
-//! to carry it. How errors of the gyros have turned it is carried beside it: ∂/∂bias and ∂/∂scale, 3×3
-//! each, so that a drive of any length takes the same memory.
+//! The reference frame is that of the body at the first sample, frozen in inertial space, so no
+//! azimuth is needed to carry the attitude. The sensitivity of the attitude to gyro errors is
+//! carried beside it: ∂/∂bias and ∂/∂scale, 3×3 each, so a drive of any length takes the same
+//! memory. Two rates are used because single-precision quaternion updates at 2 kHz lose about
+//! 0.005° in an hour.
 
 use super::InertialSample;
 use super::increment::{Increment, STEADY, STEP};
 use crate::math::rotation::{Quaternion, dot, sum, turned};
 use crate::units::Instant;
 
-/// Time from one attitude to the next, µs: 50 Hz.
+/// Time between attitude updates, µs: 50 Hz.
 const PERIOD: u64 = 20_000;
-/// A matrix in single precision.
+/// A 3×3 matrix in single precision, row by row.
 pub type Rough = [[f32; 3]; 3];
 
-/// Attitude, and what of it depends on the gyros' errors.
+/// Attitude, with its sensitivity to the gyros' errors.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Carried {
-    /// From body axes to the start's.
+    /// Rotation from the body axes to the frozen start axes.
     pub attitude: Quaternion,
-    /// Rotation of the start frame that a bias makes, rad per rad/s, on the start's axes by the body's.
+    /// Rotation of the start frame per gyro bias, rad per rad/s; rows are start axes, columns body
+    /// axes.
     pub bias: Rough,
-    /// The same of relative scale errors, rad.
+    /// Rotation of the start frame per relative scale-factor error, rad; rows are start axes,
+    /// columns body axes.
     pub scale: Rough,
 }
 
-/// What was summed since it was taken last.
+/// Sums since they were last taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sums {
-    /// Angle increments.
+    /// Sums of the angle increments, in steps of [`crate::units::AngleIncrement`].
     pub turned: [i64; 3],
-    /// The same, rad, and the least and the greatest that they had meanwhile.
+    /// Sums of the angle increments about the body axes, rad: the present, the least and the
+    /// greatest value.
     pub swept: [[f32; 3]; 3],
-    /// Specific forces on the body's axes, µm/s².
+    /// Sums of the specific forces on the body axes, µm/s².
     pub force: [i64; 3],
-    /// The same on the start's axes, m/s².
+    /// Sums of the specific forces on the frozen start axes, m/s².
     pub start_force: [f32; 3],
-    /// Of how many forces.
+    /// Number of force readings in these sums.
     pub count: u32,
-    /// Whether a blow turned the body so quickly that the forces mean nothing.
+    /// Whether a shock turned the body so quickly that the forces are not usable.
     pub is_blown: bool,
 }
 
 impl Sums {
-    /// Follows where the body swings to.
+    /// Updates the present, least and greatest angle about each axis.
     fn sweep(&mut self, turned: &[f32; 3]) {
         let [now, least, greatest] = &mut self.swept;
         for (axis, turned) in turned.iter().enumerate() {
@@ -63,7 +68,8 @@ impl Sums {
         }
     }
 
-    /// By how much more than it turned in all the body swung there and back, rad.
+    /// Angle of the sway about each axis beyond the net rotation, rad: the range less the magnitude
+    /// of the present value.
     #[must_use]
     pub fn swung(&self) -> [f32; 3] {
         let [now, least, greatest] = &self.swept;
@@ -71,33 +77,36 @@ impl Sums {
     }
 }
 
-/// The strapdown at work.
+/// State of the strapdown attitude computation.
 #[derive(Clone, Debug, Default)]
 pub struct Strapdown {
+    /// Rotation since the last attitude update.
     increment: Increment,
+    /// Attitude and sensitivities at the last update.
     carried: Carried,
-    /// Mean rates between the last three attitudes, rad/s, the latest first.
+    /// Mean rates between the last three attitude updates, rad/s, the latest first.
     rates: [[f32; 3]; 2],
-    /// The attitude's matrix.
+    /// Attitude of the last update as a matrix.
     matrix: Rough,
-    /// When the attitude was taken last.
+    /// Time of the last attitude update.
     since: Instant,
-    /// Sums of the forces since then, µm/s², and of how many.
+    /// Sums of the forces since that update, µm/s², and their number.
     force: [i64; 3],
     count: u32,
-    /// Sums until then.
+    /// Sums up to the last update.
     sums: Sums,
 }
 
 impl Strapdown {
-    /// Begins at a time: that at which the first sample began.
+    /// Begins at the given time, at which the interval of the first sample starts.
     #[must_use]
     pub fn since(time: Instant) -> Self {
         let matrix = Quaternion::ONE.rough_matrix();
         Self { since: time, matrix, ..Self::default() }
     }
 
-    /// Takes a sample; whether it made a new attitude, as any large rotation does.
+    /// Takes a sample; returns whether the attitude was updated, which is due every 20 ms and after
+    /// any large rotation.
     #[inline]
     pub fn push(&mut self, sample: &InertialSample) -> bool {
         self.increment.push(sample.turned);
@@ -115,7 +124,7 @@ impl Strapdown {
         is_due
     }
 
-    /// Takes the attitude at a time, that of the last sample.
+    /// Updates the attitude at the given time, which must be that of the last sample.
     #[inline(never)]
     pub fn update(&mut self, now: Instant) {
         let seconds = now.0.saturating_sub(self.since.0) as f32 * 1e-6;
@@ -125,7 +134,7 @@ impl Strapdown {
         let carried = &mut self.carried;
         carried.attitude = carried.attitude.turned(&self.increment.take());
         let after = carried.attitude.rough_matrix();
-        // Twice that in the middle.
+        // Sum of the attitudes at both ends: twice the one in the middle.
         let both: Rough = core::array::from_fn(|row| sum(&self.matrix[row], &after[row]));
         self.matrix = after;
         carried.bias = gained(&carried.bias, &both, &[0.5 * seconds; 3]);
@@ -140,7 +149,8 @@ impl Strapdown {
         self.turn_force(&both);
     }
 
-    /// Turns the forces since the last attitude to the start's axes, by the sum of both attitudes.
+    /// Transforms the forces since the last update to the start axes, with the mean of the
+    /// attitudes at both ends.
     fn turn_force(&mut self, both: &Rough) {
         let force = core::mem::take(&mut self.force);
         let sums = &mut self.sums;
@@ -150,28 +160,29 @@ impl Strapdown {
         sums.count += core::mem::take(&mut self.count);
     }
 
-    /// Rate at the last attitude, rad/s: as the mean rates before it go on.
+    /// Rate at the last attitude update, rad/s, extrapolated linearly from the two mean rates
+    /// before it.
     #[must_use]
     pub fn rate(&self) -> [f32; 3] {
         let [latest, earlier] = self.rates;
         core::array::from_fn(|axis| 1.5 * latest[axis] - 0.5 * earlier[axis])
     }
 
-    /// What is carried.
+    /// Attitude and sensitivities at the last update.
     #[must_use]
     pub fn carried(&self) -> &Carried {
         &self.carried
     }
 
-    /// What was summed until the last attitude, which then begins again. Call it now and then: rounding
-    /// changes the attitude's length by 1e-16 a rotation, which is mended here.
+    /// Takes the sums up to the last update, which begin again. It must be called now and then:
+    /// rounding changes the quaternion's norm by 1e-16 a rotation, and the norm is restored here.
     pub fn take(&mut self) -> Sums {
         self.carried.attitude = self.carried.attitude.normalised();
         core::mem::take(&mut self.sums)
     }
 }
 
-/// A sensitivity after a further time: each column of the attitude counts so much.
+/// Sensitivity after a further interval: each column of the attitude is added with its weight.
 fn gained(sensitivity: &Rough, attitude: &Rough, by: &[f32; 3]) -> Rough {
     core::array::from_fn(|row| {
         core::array::from_fn(|column| sensitivity[row][column] + attitude[row][column] * by[column])

@@ -1,15 +1,15 @@
-//! Clocks: 80 MHz from the internal oscillator, which follows the 32.768 kHz crystal.
+//! Clocks of the board: 80 MHz from the internal oscillator, locked to the 32.768 kHz crystal.
 
 use embassy_stm32::rcc::{LsConfig, MSIRange, Pll, PllMul, PllPreDiv, PllRDiv, PllSource, Sysclk};
 use embassy_stm32::{Config, Peripherals};
 
-/// Core and both peripheral buses, Hz. Trimmed by the crystal the oscillator makes 122 · 32 768 Hz
-/// of its 4 MHz: all times are then 0.06 % too short, always the same. Without the crystal it is
-/// good to about 1 %.
+/// Clock of the core and of both peripheral buses, Hz. Trimmed by the crystal, the oscillator runs
+/// at 122 · 32 768 Hz instead of 4 MHz: all times are then 0.06 % too short, with a constant ratio.
+/// Without the crystal it is accurate to about 1 %.
 pub const SYSTEM: u32 = 80_000_000;
 
-/// Starts the clocks, trimmed by the crystal X2 (UM2153, section 7.6) where `has_crystal`; else
-/// this would wait for it for ever.
+/// Starts the clocks, trimmed by the crystal X2 (UM2153, section 7.6) where `has_crystal`; without
+/// a crystal the start would wait for it for ever.
 pub fn start(has_crystal: bool) -> Peripherals {
     let mut configuration = Config::default();
     let rcc = &mut configuration.rcc;

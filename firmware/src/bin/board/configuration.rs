@@ -1,4 +1,5 @@
-//! What this board must be told before it is flashed: **edit this file**, the link takes no commands.
+//! Configuration of this board, to be set before it is flashed: **edit this file**, the link takes
+//! no commands.
 //!
 //! | what | where to get it |
 //! |---|---|
@@ -13,7 +14,7 @@
 //! | [`SPIN_GYROS`], [`SPIN_FORCES`], [`SPIN_WALK`], [`SPIN_SCALE_SIGMA`], [`SPIN_BIAS_SIGMA`] | on a spinning body: the test sheets of its analogue sensors |
 //! | [`ENCODER`] | a calibration of the stage; until then zero, a greater [`ENCODER_SIGMA`], and in [`instrument`] a greater `stage.agreement` |
 //!
-//! Too small a σ here is too small a σ of the azimuth: in doubt take the greater one.
+//! Too small a σ here makes σ of the azimuth too small: if it is uncertain, take the greater one.
 
 use drivers::ads1262::configuration::{Configuration as Converter, DataRate, Filter, Gain};
 use drivers::ads1262::scale::{INTERNAL_REFERENCE_VOLTS, Scale};
@@ -39,84 +40,85 @@ use orientation::session::stops::Procedure as Driving;
 use orientation::session::survey::Survey;
 use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, TURN};
 
-/// What carries the gyro.
+/// Platform that carries the gyro.
 #[derive(Clone, Copy, PartialEq, Eq)]
 #[expect(dead_code, reason = "whoever edits this file chooses one")]
 pub enum Carrier {
     /// A stage that stands at positions.
     Stage,
-    /// A platform on a slip ring, which turns all the time.
+    /// A platform on a slip ring that rotates continuously.
     Turntable,
-    /// A vehicle that goes from stop to stop, with three gyros.
+    /// A vehicle that drives from stop to stop, with three gyros.
     Vehicle,
-    /// A body in fast rotation about its long axis, with three gyros and two accelerometers.
+    /// A body in fast rotation about its longitudinal axis, with three gyros and two
+    /// accelerometers.
     SpinningBody,
 }
 
-/// The one of this board. What the others need is not in the image.
+/// Platform of this board. Code for the others is not in the image.
 pub const CARRIER: Carrier = Carrier::Stage;
 
-/// Geodetic latitude, °, north positive; up to ±85°, beyond there is no north to find.
+/// Geodetic latitude, °, north positive; up to ±85°, beyond which no azimuth is determined.
 const LATITUDE: f64 = 47.58;
 const _: () = assert!(-85.0 <= LATITUDE && LATITUDE <= 85.0);
 
-/// Rate beyond which the gyro's own output may clip, °/s: 97 % of its range.
+/// Rate beyond which the gyro's own output may saturate, °/s: 97 % of its range.
 const GYRO_LIMIT: f64 = 0.97 * 40.0;
-/// Scale factor of the gyro at the converter's input, V per °/s, negative where it is mounted upside
-/// down. The converter takes ±2.5 V.
+/// Scale factor of the gyro at the converter's input, V per °/s, negative where it is mounted
+/// upside down. The converter's range is ±2.5 V.
 const GYRO_SCALE: f64 = 0.05;
 
-/// N, angle random walk, °/√h (OIUS-1000 class).
+/// Angle random walk N of the gyro, °/√h (OIUS-1000 class).
 const GYRO_N: f64 = 0.001;
-/// B, bias instability, °/h.
+/// Bias instability B of the gyro, °/h.
 const GYRO_B: f64 = 0.007;
-/// K, rate random walk, °/h/√h.
+/// Rate random walk K of the gyro, °/h/√h.
 const GYRO_K: f64 = 0.0;
-/// 1σ of the scale factor, relative.
+/// Standard deviation of the gyro's scale factor, 1σ, relative.
 const GYRO_SCALE_SIGMA: f64 = 5e-4;
 /// g-sensitivity along the gyro's axis and 90° clockwise of it, °/h/g.
 const G_SENSITIVITY: [f64; 2] = [0.0, 0.0];
-/// 1σ of each, °/h/g.
+/// Standard deviation of each g-sensitivity, 1σ, °/h/g.
 const G_SENSITIVITY_SIGMA: f64 = 0.1;
 
-/// 1σ of the accelerometer's biases, m/s²: the ADXL355's offset is 25 mg at most (data sheet rev. C,
-/// table 1).
+/// Standard deviation of the accelerometer's biases, 1σ, m/s²: the ADXL355's offset is at most 25
+/// mg (data sheet rev. C, table 1).
 const FORCE_BIAS_SIGMA: f64 = 0.0083 * 9.80665;
 
-/// The encoder's error over a turn, rad.
+/// Harmonics of the encoder's error, rad.
 const ENCODER: Harmonics = Harmonics { first: [0.0; 2], second: [0.0; 2] };
-/// 1σ of what is left of it as it turns the azimuth, rad.
+/// Standard deviation of the remaining encoder error as it enters the azimuth, 1σ, rad.
 const ENCODER_SIGMA: f64 = 0.05 * DEGREE;
 
-/// The converter: samples a second, filter and gain.
+/// Configuration of the converter: sample rate, filter and gain.
 pub const CONVERTER: Converter =
     Converter { rate: DataRate::Sps400, filter: Filter::Sinc1, gain: Gain::X1 };
-/// The rate of the converter's codes; does not compile where the scale factor is none.
+/// Scale of the converter's codes; a scale factor of zero does not compile.
 pub const SCALE: Scale =
     match Scale::new(GYRO_SCALE / DEGREE, INTERNAL_REFERENCE_VOLTS, CONVERTER.gain) {
         Some(scale) => scale,
         None => unreachable!(),
     };
-/// The rate beyond which the gyro may clip.
+/// Rate beyond which the gyro may saturate.
 pub const LIMIT: AngularRate = AngularRate((GYRO_LIMIT * DEGREE * 1e9) as i32);
 
-/// How long the board stands still first to know its gyro, s: it then plans by what it found, for as
-/// long as the dwells below would take. `None`: it believes what stands above. An hour shows B and K,
-/// ten minutes N.
+/// Length of a survey at rest before the alignment, s, in which the gyro's noise is measured; the
+/// plan then follows from it, with the total time of the dwells below. `None`: the noise configured
+/// above is used. An hour shows B and K, ten minutes N.
 const SURVEY: Option<f64> = None;
-/// 1σ of the azimuth until which it goes on, °, and the time allowed, s, from the end of the survey or
-/// else from the beginning. `None`: it ends with its schedule.
+/// Required 1σ of the azimuth, °, and the time allowed, s, from the end of the survey or else from
+/// the beginning. `None`: the session ends with its schedule.
 const ACCURACY: Option<(f64, f64)> = None;
-/// Positions on the full circle, to the first of which the stage comes once more at the end.
+/// Positions on the full circle; the first is repeated at the end.
 const POSITIONS: usize = 24;
-/// Time at each, s.
+/// Time at each position, s.
 const DWELL: f64 = 10.0;
-/// How long the stage takes to turn: 1.20 s for 15°, 18.41 s for 360°, and a look around.
+/// Rotation time of the stage: 1.20 s for 15° and 18.41 s for 360°, plus the settling check.
 const ROTATION: Rotation = Rotation { rest: 0.75, speed: 0.35, wraps: false };
-/// For how long the stage rings after an arrival, s.
+/// Time for which the stage rings after an arrival, s.
 const RINGING: f64 = 0.25;
 
-/// What is known of place and instrument.
+/// Site and instrument, for the alignment.
 pub fn setting() -> Setting {
     let latitude = defmt::unwrap!(Latitude::from_degrees(LATITUDE));
     Setting {
@@ -132,7 +134,7 @@ pub fn setting() -> Setting {
     }
 }
 
-/// How the session goes about it.
+/// Procedure of the session on a stage.
 pub fn procedure() -> Procedure {
     let schedule = Schedule::closed_circle(POSITIONS, DWELL);
     let plan_seconds = schedule.seconds();
@@ -155,30 +157,32 @@ pub fn procedure() -> Procedure {
     }
 }
 
-/// What the instrument is told of its devices.
+/// Configuration of the stage's devices.
 pub fn instrument() -> Configuration {
     let rate = CONVERTER.rate.hertz();
     Configuration { encoder: ENCODER, ..Configuration::at(rate) }
 }
 
-/// On a turning platform: turns a second, one speed of a gyro, two of a molecular-electronic sensor.
+/// Speeds of a rotating platform, turns per second: one for a gyro, two for a molecular-electronic
+/// sensor.
 const SPEEDS: &[f64] = &[0.137];
-/// What kind of sensor turns: [`Sensor::GYRO`] or [`Sensor::MOLECULAR`].
+/// Kind of sensor on the platform: [`Sensor::GYRO`] or [`Sensor::MOLECULAR`].
 const SENSOR: Sensor = Sensor::GYRO;
-/// Uneven turns before the even ones, to know how the sensor feels the platform; none where what the
-/// flash keeps of them is to do. `None`: as many as are usual.
+/// Rate-modulated turns before those at constant rate, to measure the axis misalignment; zero to
+/// use the misalignment stored in flash. `None`: the default number.
 const UNEVEN_TURNS: Option<u32> = None;
 
-/// 1σ of the encoder's zero on a turning platform, as it turns the azimuth, rad: without an index no turn shows it.
+/// Standard deviation of the encoder's zero on a rotating platform, as it enters the azimuth, 1σ,
+/// rad: without an index no rotation shows it.
 const ENCODER_ZERO_SIGMA: f64 = 0.15 * DEGREE;
 
-/// What is known of place and instrument on a turning platform.
+/// Site and instrument on a rotating platform.
 pub fn turning_setting() -> rotating::Setting {
     let encoder_zero_sigma = ENCODER_ZERO_SIGMA;
     rotating::Setting { encoder_zero_sigma, ..rotating::Setting::new(setting(), SENSOR) }
 }
 
-/// How the session goes about it there.
+/// Procedure of the session on a rotating platform.
 pub fn turning_procedure() -> Turning {
     let mut speeds = [0.0; SPEEDS.len()];
     speeds.iter_mut().zip(SPEEDS).for_each(|(speed, hertz)| *speed = hertz * TURN);
@@ -186,22 +190,24 @@ pub fn turning_procedure() -> Turning {
     Turning { uneven_turns: UNEVEN_TURNS.unwrap_or(usual.uneven_turns), ..usual }
 }
 
-/// What the instrument is told of the platform.
+/// Configuration of the platform's devices.
 pub fn platform() -> TurntableConfiguration {
     TurntableConfiguration::default()
 }
 
-/// In a vehicle: stops after which it concludes, two at least; three with different headings tell the
-/// gyros' biases.
+/// Number of stops of a vehicle after which the session concludes, at least two; three with
+/// different headings make the gyros' biases observable.
 const STOPS: usize = 3;
-/// 1σ of the gyros' biases from start to start, °/h.
+/// Standard deviation of the gyros' biases from switch-on to switch-on, 1σ, °/h.
 const BIAS_SIGMA: f64 = 0.5;
-/// 1σ of the accelerometers' biases once they are calibrated, m/s²: there they are tilt.
+/// Standard deviation of the accelerometers' biases after calibration, 1σ, m/s²: in a vehicle they
+/// act as tilt.
 const FORCE_CALIBRATED_SIGMA: f64 = 1e-4 * 9.80665;
-/// Noise of the accelerometers, m/s²/√Hz: 25 µg/√Hz (ADXL355 data sheet, table 1) and outputs not read.
+/// Noise of the accelerometers, m/s²/√Hz: 25 µg/√Hz (ADXL355 data sheet, table 1), raised for the
+/// outputs that are not read.
 const FORCE_NOISE: f64 = 1.2 * 25e-6 * 9.80665;
 
-/// What is known of place and instrument in a vehicle.
+/// Site and instrument in a vehicle.
 pub fn driving_setting() -> stops::Setting {
     let common = Setting { accelerometer_bias_sigma: FORCE_CALIBRATED_SIGMA, ..setting() };
     stops::Setting {
@@ -211,23 +217,24 @@ pub fn driving_setting() -> stops::Setting {
     }
 }
 
-/// How the session goes about it there.
+/// Procedure of the session in a vehicle.
 pub fn driving_procedure() -> Driving {
     Driving::new(STOPS, 1.0 / CONVERTER.rate.hertz())
 }
 
-/// What the instrument is told of its devices there.
+/// Configuration of the vehicle's devices.
 pub fn vehicle() -> VehicleConfiguration {
     VehicleConfiguration::at(CONVERTER.rate.hertz())
 }
 
-/// In a vehicle, once the azimuth is known: whether the board aligns itself anew, every stop that ends an
-/// alignment being the first of the next.
+/// Whether a vehicle realigns once the azimuth is known; the last stop of an alignment is the first
+/// of the next.
 const REALIGNS: bool = true;
-/// Whether it looks for north where it knows it already, because it stands as it stood before a restart.
+/// Whether an alignment runs although the azimuth is known from before a restart, since when the
+/// vehicle has not moved.
 const ALIGNS_ALWAYS: bool = true;
 
-/// What the keeper is told of place and gyros.
+/// Site and gyros for attitude and heading.
 pub fn keeper() -> keep::Setting {
     let latitude = defmt::unwrap!(Latitude::from_degrees(LATITUDE));
     let period = 1.0 / CONVERTER.rate.hertz();
@@ -237,7 +244,7 @@ pub fn keeper() -> keep::Setting {
     }
 }
 
-/// A gyro as the keeper knows it.
+/// Properties of a gyro for attitude and heading.
 fn kept_gyro() -> keep::Gyro {
     keep::Gyro {
         noise: GyroNoise::from_field_units(GYRO_N, GYRO_B, GYRO_K, 0.0),
@@ -246,7 +253,7 @@ fn kept_gyro() -> keep::Gyro {
     }
 }
 
-/// How the instrument goes on after its alignment: for ever.
+/// Operation after the alignment: without end.
 pub fn keeping() -> KeepConfiguration {
     KeepConfiguration {
         hold: Duration::MAX,
@@ -258,23 +265,27 @@ pub fn keeping() -> KeepConfiguration {
     }
 }
 
-/// On a spinning body: V per rad/s of the gyros about x, y and z, and the rates beyond which they may clip,
-/// rad/s.
+/// Scale factors of a spinning body's gyros about x, y and z, V per rad/s, and rates beyond which
+/// they may saturate, rad/s.
 const SPIN_GYROS: [(f64, f64); 3] = [(2.0 / 700.0, 680.0), (0.1, 19.0), (0.1, 19.0)];
-/// V per m/s² of the accelerometers along y and z, and the forces beyond which they may clip, m/s².
+/// Scale factors of the accelerometers along y and z, V per m/s², and forces beyond which they may
+/// saturate, m/s².
 const SPIN_FORCES: [(f64, f64); 2] = [(2e-4, 9700.0); 2];
-/// N of the gyro about x, °/√h, 1σ of its scale factor, and of its bias, °/h.
+/// Angle random walk N of the gyro about x, °/√h.
 const SPIN_WALK: f64 = 0.5;
+/// Standard deviation of its scale factor, 1σ, relative.
 const SPIN_SCALE_SIGMA: f64 = 1e-3;
+/// Standard deviation of its bias, 1σ, °/h.
 const SPIN_BIAS_SIGMA: f64 = 200.0;
-/// Course and pitch when the flight begins, °: nothing on the body tells them.
+/// Course and pitch at the start of the flight, °: no sensor on the body measures them.
 const LAUNCH: [f64; 2] = [0.0, 0.0];
 
-/// The converters of a spinning body: the next rate above the paper's 10 kHz.
+/// Configuration of the converters of a spinning body: the next rate above the 10 kHz of Nekrasova
+/// 2017.
 pub const SPIN_CONVERTER: Converter =
     Converter { rate: DataRate::Sps14400, filter: Filter::Sinc1, gain: Gain::X1 };
 
-/// What is known of its gyro about x.
+/// Properties of the gyro about x, for the roll.
 pub fn spin_setting() -> spin::Setting {
     spin::Setting {
         sample_seconds: 1.0 / SPIN_CONVERTER.rate.hertz(),
@@ -285,12 +296,12 @@ pub fn spin_setting() -> spin::Setting {
     }
 }
 
-/// Course and pitch at first, rad.
+/// Course and pitch at the start, rad.
 pub fn launch() -> [f64; 2] {
     LAUNCH.map(|angle| angle * DEGREE)
 }
 
-/// What the instrument is told of its sensors; none where a scale factor is none.
+/// Configuration of the sensors; `None` where a scale factor is zero.
 pub fn spinning() -> Option<SpinConfiguration> {
     let sample_rate = SPIN_CONVERTER.rate.hertz();
     let [x, y, z] = SPIN_GYROS.map(|(volts, limit)| Channel::gyro(volts, limit, sample_rate));

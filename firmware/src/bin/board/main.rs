@@ -1,8 +1,8 @@
 //! The instrument on the board B-L475E-IOT01A (STM32L475VG, Cortex-M4F, 80 MHz).
 //!
-//! `cargo board` flashes it through the board's own ST-LINK and shows the log; the status lines come
-//! out of the virtual COM port, 115 200 baud. What must be told beforehand stands in
-//! [`configuration`]. This is the only place that names the controller.
+//! `cargo board` flashes it through the board's own ST-LINK and shows the log; the status lines are
+//! sent by the virtual COM port, 115 200 baud. The configuration is in [`configuration`]. This
+//! program is the only place that names the controller.
 //!
 //! | connector | pin | controller | signal |
 //! |---|---|---|---|
@@ -81,7 +81,7 @@ async fn main(spawner: Spawner) {
     defmt::info!("board: started by {}, clock follows its crystal: {}", reason, has_crystal);
     spawner.spawn(defmt::unwrap!(watchdog::feed()));
     let wiring = defmt::unwrap!(wiring::connect(peripherals));
-    // The tasks that are never spawned are not in the image.
+    // Tasks that are never spawned are not in the image.
     match configuration::CARRIER {
         Carrier::Stage => spawner.spawn(defmt::unwrap!(stepwise::align(spawner, wiring))),
         Carrier::Turntable => spawner.spawn(defmt::unwrap!(turning::align(spawner, wiring))),
@@ -90,7 +90,7 @@ async fn main(spawner: Spawner) {
     }
 }
 
-/// The channels, with the sensors sampling into them.
+/// Creates the channels, with the sensors sampling into them.
 fn sample(spawner: Spawner, sensors: SensorWires) -> &'static Channels {
     static SEAMS: StaticCell<Channels> = StaticCell::new();
     let channels: &'static Channels = SEAMS.init_with(|| Channels::new(&DefmtLog));
@@ -98,14 +98,14 @@ fn sample(spawner: Spawner, sensors: SensorWires) -> &'static Channels {
     channels
 }
 
-/// Samples for ever.
+/// Samples without end.
 #[embassy_executor::task]
 async fn acquisition(mut inputs: Inputs, channels: &'static Channels) {
     acquire(&mut inputs, &configuration::instrument(), channels).await;
 }
 
-/// Goes on telling the conclusion; never ends, because what is wired would be let go: the motor would
-/// lose its current and the link its last bytes.
+/// Reports the conclusion without end. It never returns, because the peripherals would be dropped:
+/// the motor would lose its current and the link its last bytes.
 async fn tell(health: &Health, link: &mut Link, shared: &Shared<'static, DefmtLog>) -> ! {
     defmt::info!("board: done, {} faults on the way", health.faults());
     loop {

@@ -16,20 +16,20 @@ use crate::configuration;
 use crate::configuration::{CARRIER, Carrier};
 use crate::wiring::{ConverterWires, Device, Link, Ready, SensorWires};
 
-/// A gyro behind its converter.
+/// Gyro behind its converter.
 type Gyro = AnalogueGyro<Device, Ready, Delay>;
-/// The accelerometer.
+/// Accelerometer on the platform, or in the vehicle.
 type Accelerometer = PlatformAccelerometer<Device, Delay>;
-/// The sensors of a stage or a turning platform.
+/// Sensors of a stage or a rotating platform.
 pub type Inputs = Sensors<Gyro, Accelerometer, StageEncoder<Device, Delay>>;
-/// The sensors of a vehicle.
+/// Sensors of a vehicle.
 pub type Triad = VehicleSensors<Gyro, Accelerometer>;
-/// The sensors of a spinning body.
+/// Sensors of a spinning body.
 pub type Spinning = SpinSensors<AnalogueSensor<Device, Ready, Delay>>;
-/// The other ports.
+/// Actuator, link and recorder.
 pub type Outputs = Ports<StageMotor<Device, Delay>, Link, NoRecorder>;
 
-/// The sensors on their wires.
+/// Connects the sensors of a stage to their wires.
 pub fn inputs(wires: SensorWires) -> Inputs {
     let SensorWires { converter, others: _, more: _, accelerometer, encoder } = wires;
     Sensors {
@@ -40,7 +40,7 @@ pub fn inputs(wires: SensorWires) -> Inputs {
     }
 }
 
-/// The sensors of a vehicle on their wires.
+/// Connects the sensors of a vehicle to their wires.
 pub fn triad(wires: SensorWires) -> Triad {
     let SensorWires { converter, others: [right, down], more: _, accelerometer, encoder: _ } =
         wires;
@@ -50,7 +50,8 @@ pub fn triad(wires: SensorWires) -> Triad {
     }
 }
 
-/// The sensors of a spinning body on their wires: gyros about x, y and z, accelerometers along y and z.
+/// Connects the sensors of a spinning body to their wires: gyros about x, y and z, accelerometers
+/// along y and z.
 pub fn spinning(wires: SensorWires) -> Spinning {
     let SensorWires { converter, others: [right, up], more, accelerometer: _, encoder: _ } = wires;
     let [force_up, force_right] = more.connect();
@@ -60,26 +61,29 @@ pub fn spinning(wires: SensorWires) -> Spinning {
     }))
 }
 
+/// Converter with its data-ready line.
 fn converter(wires: ConverterWires) -> Ads1262<Device, Ready, Delay> {
     Ads1262::new(wires.bus, wires.ready, Delay, configuration::CONVERTER)
 }
 
+/// Gyro with its scale and saturation limit.
 fn gyro(converter: Ads1262<Device, Ready, Delay>) -> Gyro {
     AnalogueGyro { converter, scale: configuration::SCALE, limit: configuration::LIMIT }
 }
 
+/// Accelerometer with the output rate of this carrier.
 fn accelerometer(bus: Device) -> Accelerometer {
     PlatformAccelerometer(Adxl355::new(bus, Delay, force()))
 }
 
-/// The other ports on their wires.
+/// Connects actuator and link to their wires.
 pub fn outputs(motor: Device, link: Link) -> Outputs {
     let motor = Tmc5160::new(motor, Delay, drive());
     Ports { actuator: StageMotor(motor), link, recorder: NoRecorder }
 }
 
-/// The accelerometer. Its filter delays a force by two and a half outputs, in which a platform that turns
-/// is not to turn far, nor a vehicle to sway; a vehicle's is read 400 times a second.
+/// Configuration of the accelerometer. Its filter delays a force by two and a half outputs, during
+/// which a platform must not turn far, nor a vehicle sway; a vehicle's is read 400 times a second.
 fn force() -> adxl355::Configuration {
     let rate = match CARRIER {
         Carrier::Stage | Carrier::SpinningBody => adxl355::Configuration::default().rate,
@@ -89,7 +93,7 @@ fn force() -> adxl355::Configuration {
     adxl355::Configuration { rate }
 }
 
-/// The motor driver. A platform that turns without end has no switches.
+/// Configuration of the motor driver. A platform that rotates without limit has no switches.
 fn drive() -> Motor {
     let usual = Motor::default();
     let none = Switches { left: None, right: None };

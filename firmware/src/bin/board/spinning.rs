@@ -1,4 +1,4 @@
-//! The board on a body in fast rotation.
+//! Program of the board on a body in fast rotation.
 
 use embassy_executor::Spawner;
 use firmware::log::DefmtLog;
@@ -14,10 +14,10 @@ use crate::ports::Spinning;
 use crate::wiring::Wiring;
 use crate::{configuration, ports, tell};
 
-/// The channels between the instrument's parts.
+/// Channels between the tasks of the instrument.
 type SpinSeams = Channels<'static, DefmtLog, SpinSample>;
 
-/// Follows the roll for as long as the sensors give data, and goes on telling how it ended.
+/// Estimates the roll for as long as the sensors give data, then reports how it ended.
 #[embassy_executor::task]
 pub async fn follow(spawner: Spawner, wiring: Wiring) {
     static SEAMS: StaticCell<SpinSeams> = StaticCell::new();
@@ -35,7 +35,7 @@ pub async fn follow(spawner: Spawner, wiring: Wiring) {
     tell(&health, &mut outputs.link, &channels.shared).await;
 }
 
-/// Samples for ever.
+/// Samples without end.
 #[embassy_executor::task]
 async fn acquisition(
     mut sensors: Spinning,

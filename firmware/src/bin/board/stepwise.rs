@@ -1,4 +1,4 @@
-//! The board on a stage that stands at positions.
+//! Program of the board on a stage that stands at positions.
 
 use embassy_executor::Spawner;
 use firmware::run::run;
@@ -9,7 +9,7 @@ use static_cell::StaticCell;
 use crate::wiring::Wiring;
 use crate::{configuration, ports, sample, tell};
 
-/// Runs the instrument to its conclusion and goes on telling it.
+/// Runs the instrument to its conclusion, then reports it without end.
 #[embassy_executor::task]
 pub async fn align(spawner: Spawner, wiring: Wiring) {
     let session = match session() {
@@ -23,7 +23,7 @@ pub async fn align(spawner: Spawner, wiring: Wiring) {
     tell(&health, &mut outputs.link, &channels.shared).await;
 }
 
-/// The session, made where it stays.
+/// Creates the session at its final place in memory.
 fn session() -> Result<&'static mut Session, ProcedureError> {
     static SESSION: StaticCell<Session> = StaticCell::new();
     let prepared = Prepared::new(configuration::setting(), configuration::procedure())?;

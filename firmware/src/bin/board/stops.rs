@@ -1,4 +1,5 @@
-//! The board in a vehicle that goes from stop to stop, and keeps azimuth, pitch and roll ever after.
+//! Program of the board in a vehicle that drives from stop to stop, and holds azimuth, pitch and
+//! roll afterwards.
 
 use embassy_executor::Spawner;
 use firmware::keep::Keeping;
@@ -17,10 +18,10 @@ use crate::ports::Triad;
 use crate::wiring::Wiring;
 use crate::{configuration, ports, tell};
 
-/// The channels between the instrument's parts.
+/// Channels between the tasks of the instrument.
 type VehicleSeams = Channels<'static, DefmtLog, InertialSample>;
 
-/// Runs the instrument: it aligns itself, then keeps what it found for ever, and over a loss of supply.
+/// Runs the instrument: it aligns, then holds the result without end, also across a loss of supply.
 #[embassy_executor::task]
 pub async fn align(spawner: Spawner, wiring: Wiring) {
     static SEAMS: StaticCell<VehicleSeams> = StaticCell::new();
@@ -38,19 +39,19 @@ pub async fn align(spawner: Spawner, wiring: Wiring) {
     tell(&health, &mut outputs.link, &channels.shared).await;
 }
 
-/// Samples for ever.
+/// Samples without end.
 #[embassy_executor::task]
 async fn acquisition(mut triad: Triad, channels: &'static VehicleSeams) {
     acquire_triad(&mut triad, &configuration::vehicle(), channels).await;
 }
 
-/// The keeper, made where it stays.
+/// Creates the attitude and heading keeper at its final place in memory.
 fn keeper() -> &'static mut Keeper {
     static KEEPER: StaticCell<Keeper> = StaticCell::new();
     KEEPER.init_with(|| Keeper::new(&configuration::keeper()))
 }
 
-/// The session, made where it stays.
+/// Creates the session at its final place in memory.
 fn session() -> Result<&'static mut Session, ProcedureError> {
     static SESSION: StaticCell<Session> = StaticCell::new();
     let procedure = configuration::driving_procedure();

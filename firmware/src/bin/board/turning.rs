@@ -1,4 +1,5 @@
-//! The board on a platform that turns all the time, with what it keeps in its flash.
+//! Program of the board on a platform that rotates continuously, with the axis misalignment stored
+//! in flash.
 
 use embassy_executor::Spawner;
 use firmware::run::run_storing;
@@ -10,10 +11,10 @@ use crate::flash::{Store, store};
 use crate::wiring::Wiring;
 use crate::{Channels, configuration, ports, sample, tell};
 
-/// A board has no clock of the day: however old a coupling is, it is used.
+/// Date of the day, which a board does not know: an axis misalignment of any age is used.
 const TODAY: Today = Today { date: None, longest: None };
 
-/// Runs the instrument to its conclusion and goes on telling it.
+/// Runs the instrument to its conclusion, then reports it without end.
 #[embassy_executor::task]
 pub async fn align(spawner: Spawner, wiring: Wiring) {
     let Wiring { sensors, motor, link, motor_enable: _enabled, flash } = wiring;
@@ -26,7 +27,7 @@ pub async fn align(spawner: Spawner, wiring: Wiring) {
     tell(&health, &mut outputs.link, &channels.shared).await;
 }
 
-/// The session, made where it stays, with what was kept for it.
+/// Creates the session at its final place in memory, with the stored axis misalignment.
 async fn session(store: &mut Store, channels: &Channels) -> Option<&'static mut Session> {
     static SESSION: StaticCell<Session> = StaticCell::new();
     let mut setting = configuration::turning_setting();

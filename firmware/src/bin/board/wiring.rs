@@ -1,10 +1,10 @@
 //! Pins, buses and DMA channels: from the controller's peripherals to the instrument's ports.
 //!
 //! **One clock polarity on each bus.** Between two transfers embassy switches the SPI off, and a
-//! pull resistor alone holds the clock where the bus was set up to idle (RM0351, SPI, clock phase
-//! and polarity). A device of the other polarity would see an edge more with its select low. So the
-//! ADS1262 and the ADXL355, which idle low, share one bus, the MT6835 and the TMC5160, which idle
-//! high, the other; the phases may differ.
+//! pull resistor alone holds the clock at its idle level (RM0351, SPI, clock phase and polarity). A
+//! device of the other polarity would see an additional edge while selected. So the ADS1262 and the
+//! ADXL355, which idle low, share one bus, the MT6835 and the TMC5160, which idle high, the other;
+//! the phases may differ.
 
 use drivers::{ads1262, adxl355, mt6835};
 use embassy_embedded_hal::shared_bus::asynch::spi::SpiDeviceWithConfig;
@@ -39,12 +39,12 @@ bind_interrupts!(struct Interrupts {
     DMA2_CHANNEL6 => dma::InterruptHandler<DMA2_CH6>;
 });
 
-/// Greatest clock of the TMC5160's bus with its own oscillator, Hz (data sheet rev. 1.14, 4.3).
+/// Greatest bus clock of the TMC5160 with its own oscillator, Hz (data sheet rev. 1.14, 4.3).
 const TMC5160_HERTZ: u32 = 4_000_000;
 
-/// A bus that several devices share. All of them belong to one executor: nothing needs a lock.
+/// A bus that several devices share. All of them belong to one executor, so it needs no lock.
 type Bus = Mutex<NoopRawMutex, Spi<'static, Async, Master>>;
-/// A device on it, with its own mode and clock.
+/// A device on a bus, with its own mode and clock.
 pub type Device =
     SpiDeviceWithConfig<'static, NoopRawMutex, Spi<'static, Async, Master>, Output<'static>>;
 /// A data-ready line.
@@ -52,43 +52,46 @@ pub type Ready = ExtiInput<'static, Async>;
 /// The virtual COM port.
 pub type Link = UartTx<'static, Async>;
 
-/// What is connected.
+/// All connections of the board.
 pub struct Wiring {
     /// All sensors.
     pub sensors: SensorWires,
-    /// TMC5160.
+    /// Motor driver TMC5160.
     pub motor: Device,
-    /// Its enable, low: without this pin, or while it is reset, the motor has no current.
+    /// Enable pin of the motor driver, active low: without it, or during a reset, the motor has no
+    /// current.
     pub motor_enable: Output<'static>,
-    /// Where status lines go.
+    /// Link for status lines.
     pub link: Link,
-    /// The controller's own flash: a turning platform keeps there what it found, a vehicle how it stands.
+    /// Flash of the controller: a rotating platform stores its axis misalignment there, a vehicle
+    /// its attitude.
     pub flash: Peri<'static, FLASH>,
 }
 
-/// The sensors' part of it.
+/// Connections of the sensors.
 pub struct SensorWires {
-    /// ADS1262; in a vehicle that of the forward gyro.
+    /// Converter ADS1262; in a vehicle that of the forward gyro.
     pub converter: ConverterWires,
-    /// In a vehicle those of the right and the down gyro; on a spinning body of the right and the up gyro.
+    /// Converters in a vehicle of the right and the down gyro; on a spinning body of the right and
+    /// the up gyro.
     pub others: [ConverterWires; 2],
-    /// On a spinning body two more.
+    /// Two further converters on a spinning body.
     pub more: MoreWires,
-    /// ADXL355.
+    /// Accelerometer ADXL355.
     pub accelerometer: Device,
-    /// MT6835.
+    /// Encoder MT6835.
     pub encoder: Device,
 }
 
-/// An ADS1262.
+/// Connections of an ADS1262.
 pub struct ConverterWires {
     /// The chip on its bus.
     pub bus: Device,
-    /// Its data-ready line, low when a conversion is ready.
+    /// Data-ready line of the chip, low when a conversion is ready.
     pub ready: Ready,
 }
 
-/// What two more converters are connected to, as long as nobody needs them: a pin takes no memory.
+/// Pins of two further converters, unconnected until they are needed: a pin takes no memory.
 pub struct MoreWires {
     bus: &'static Bus,
     selects: (Peri<'static, PA3>, Peri<'static, PB4>),
@@ -97,7 +100,7 @@ pub struct MoreWires {
 }
 
 impl MoreWires {
-    /// Those of the accelerometers up and to the right.
+    /// Connects the converters of the accelerometers up and to the right.
     pub fn connect(self) -> [ConverterWires; 2] {
         let Self { bus, selects, ready, lines } = self;
         let settings = settings(MODE_1, ads1262::GREATEST_BUS_HERTZ);
@@ -114,7 +117,10 @@ impl MoreWires {
     }
 }
 
-/// Connects everything.
+/// Connects all peripherals.
+///
+/// # Errors
+/// An invalid configuration of the serial port.
 pub fn connect(p: Peripherals) -> Result<Wiring, ConfigError> {
     static SENSORS: StaticCell<Bus> = StaticCell::new();
     static STAGE: StaticCell<Bus> = StaticCell::new();
@@ -156,13 +162,13 @@ pub fn connect(p: Peripherals) -> Result<Wiring, ConfigError> {
     })
 }
 
-/// A device on a bus, not selected.
+/// Creates a device on a bus, not selected.
 fn device(bus: &'static Bus, select: Peri<'static, impl Pin>, settings: spi::Config) -> Device {
     SpiDeviceWithConfig::new(bus, Output::new(select, Level::High, Speed::Medium), settings)
 }
 
-/// A device's mode, and the fastest clock not above its limit, Hz. With a broken line the bus reads
-/// ones: unlike zeros, no checksum takes them.
+/// Mode of a device, and the fastest clock not above its limit, Hz. A pull-up makes a broken line
+/// read as ones, which, unlike zeros, fail every checksum.
 fn settings(mode: Mode, limit: u32) -> spi::Config {
     let mut settings = spi::Config::default();
     settings.mode = mode;
@@ -172,8 +178,8 @@ fn settings(mode: Mode, limit: u32) -> spi::Config {
     settings
 }
 
-/// The fastest clock that a divider gives and that is not above the limit, Hz. embassy itself takes
-/// the nearest divider, which may be faster than asked.
+/// Fastest clock of a divider that is not above the limit, Hz. embassy itself takes the nearest
+/// divider, which may be faster than requested.
 const fn within(limit: u32) -> Hertz {
     let mut clock = clock::SYSTEM / 2;
     while clock > limit {

@@ -1,4 +1,4 @@
-//! The budget of `firmware/budget.toml`, as constants.
+//! Instruction budgets of `firmware/budget.toml`, as constants.
 
 #![allow(dead_code, reason = "the other limits are the host's to check")]
 

@@ -1,4 +1,5 @@
-//! What is done once per session: from the dwells to an azimuth with its standard deviation.
+//! Cost of the work done once per session: from the dwells to an azimuth with its standard
+//! deviation.
 
 use hal_mock::noise::Generator;
 use orientation::align::conclusion::Conclusion;
@@ -22,15 +23,15 @@ const LATITUDE_DEG: f64 = 47.0 + 35.0 / 60.0;
 const AZIMUTH: f64 = 0.5;
 /// Sample period, s.
 const SAMPLE_SECONDS: f64 = 0.01;
-/// Samples of a dwell.
+/// Number of samples of a dwell.
 const SAMPLES: u32 = 200;
 /// Time from one dwell to the next, samples.
 const PERIOD: u32 = 300;
-/// N of the default gyro, °/√h (OIUS-1000 class).
+/// Angle random walk N of the default gyro, °/√h (OIUS-1000 class).
 const WHITE: f64 = 0.001;
-/// B, °/h, and K, °/h/√h, where drift is set.
+/// Bias instability B, °/h, and rate random walk K, °/h/√h, where drift is set.
 const DRIFT: [f64; 2] = [0.007, 0.01];
-/// Most dwells that are tried.
+/// Greatest number of dwells that is measured.
 const MOST: usize = 60;
 
 /// Measures conclusions of 24 and 60 dwells, with white noise alone and with drift.
@@ -59,23 +60,25 @@ pub fn stack() -> Result<usize, DesignError> {
         .map_or(0, |setting| stack_of(|| conclude(&mut conclusion, &setting, dwells)).0))
 }
 
+/// Call that is measured, not inlined.
 #[inline(never)]
 fn conclude(conclusion: &mut Conclusion, setting: &Setting, dwells: &[Dwell]) {
     conclusion.draw(setting, dwells, Criterion::MaximumLikelihood);
 }
 
-/// Whether the azimuth is that of the simulated dwells within 5 σ.
+/// Whether the azimuth is that of the simulated dwells within 5σ.
 fn is_right(conclusion: &Conclusion) -> bool {
     conclusion.verdict.is_ok_and(|azimuth| (azimuth.angle - AZIMUTH).abs() < 5.0 * azimuth.sigma)
 }
 
+/// Configuration with this bias instability and rate random walk.
 fn setting([flicker, walk]: [f64; 2]) -> Option<Setting> {
     let noise = GyroNoise::from_field_units(WHITE, flicker, walk, 0.0);
     let latitude = Latitude::from_degrees(LATITUDE_DEG)?;
     Some(Setting { noise, white_known: true, ..Setting::at(latitude) })
 }
 
-/// Dwells over the full circle through the session's own average.
+/// Fills dwells over the full circle, through the session's own average.
 fn fill(dwells: &mut [Dwell]) -> Result<&[Dwell], DesignError> {
     let coefficients = Coefficients::<3>::low_pass(10.0, 1.0 / SAMPLE_SECONDS)?;
     let mut noise = Generator::new(4);

@@ -1,5 +1,5 @@
-//! What keeping costs: pitch and roll from a coarse IMU, the heading from three precise gyros, the roll of a
-//! spinning body; once per sample, and the sample that costs most.
+//! Cost of attitude and heading: pitch and roll from a coarse IMU, heading from three precise
+//! gyros, roll of a spinning body; the mean sample, and the most expensive one.
 
 use core::hint::black_box;
 
@@ -20,34 +20,41 @@ use crate::budget::{
 use crate::counter::{Cost, Counter};
 use crate::report::{Report, figure};
 
-/// Output rate of the coarse IMU, Hz, and that of precise gyros.
+/// Output rate of the coarse IMU, Hz.
 const COARSE_HZ: u64 = 416;
+/// Sample rate of precise gyros, Hz.
 const PRECISE_HZ: u64 = 2000;
-/// Seconds at rest, then of motion.
+/// Time at rest, s.
 const REST: u64 = 4;
+/// Time of motion, s.
 const MOTION: u64 = 8;
-/// Sample rate of a spinning body, Hz, its turns a second, and how long it spins, in samples.
+/// Sample rate of a spinning body, Hz.
 const SPIN_HZ: u64 = 10_000;
+/// Spin rate, turns per second.
 const TURNS_HZ: f64 = 100.0;
+/// Length of the spin, samples.
 const SPUN: u64 = 5_000;
-/// Lift, pull of the spin, and noise of the forces, m/s².
+/// Lift, m/s².
 const LIFT: f64 = 30.0;
+/// Centripetal forces on both axes, m/s².
 const PULL: [f64; 2] = [-7954.0, -3977.0];
+/// Noise of the forces, m/s².
 const SPIN_NOISE: f64 = 1.5;
-/// Scale error of its gyro.
+/// Scale error of the gyro of the spinning body, relative.
 const SCALE: f64 = 1e-3;
-/// Greatest rate about the vertical, rad/s, and how often it comes, Hz.
+/// Greatest rate about the vertical, rad/s.
 const RATE: f64 = 0.6;
+/// Frequency of that motion, Hz.
 const SWING_HZ: f64 = 0.4;
 /// Horizontal acceleration, m/s².
 const ACCELERATION: f64 = 1.0;
 
-/// [`Keeper::push`].
+/// Type of [`Keeper::push`].
 type Push = fn(&mut Keeper, &InertialSample);
-/// [`Spin::push`].
+/// Type of [`Spin::push`].
 type PushSpin = fn(&mut Spin, &SpinSample) -> Option<Signal>;
 
-/// Measures all of it.
+/// Measures all cases.
 pub fn report(counter: &Counter, report: &mut Report) {
     let latitude = Latitude::from_degrees(52.0).unwrap_or(Latitude::EQUATOR);
     let coarse = Setting::coarse(latitude, 1.0 / COARSE_HZ as f64);
@@ -67,10 +74,10 @@ pub fn report(counter: &Counter, report: &mut Report) {
     spun(counter, report);
 }
 
-/// Mean and greatest instructions of a sample of a body that stands and then moves.
+/// Mean and greatest number of instructions of a sample, for a body that stands and then moves.
 fn kept(counter: &Counter, mut keeper: Keeper, rate: u64, report: &mut Report) -> [u64; 2] {
     let mut noise = Generator::new(3);
-    // A function that the optimiser cannot see is called, not inlined.
+    // Through a pointer that is opaque to the optimiser the function is called, not inlined.
     let push = black_box(Keeper::push as Push);
     let (mut total, mut worst, mut carried) = (Cost::default(), Cost::default(), [0.0; 3]);
     let samples = (REST + MOTION) * rate;
@@ -86,7 +93,7 @@ fn kept(counter: &Counter, mut keeper: Keeper, rate: u64, report: &mut Report) -
     [total.mean(samples), worst.instructions()]
 }
 
-/// A body that stands, then turns to and fro about the vertical and shakes.
+/// Sample of a body that stands, then turns to and fro about the vertical and shakes.
 fn moving(index: u64, rate: u64, noise: &mut Generator, carried: &mut [f64; 3]) -> InertialSample {
     let seconds = index as f64 / rate as f64;
     let is_moving = index >= REST * rate;
@@ -103,7 +110,7 @@ fn moving(index: u64, rate: u64, noise: &mut Generator, carried: &mut [f64; 3]) 
     }
 }
 
-/// A spinning body with noise, its phase locked.
+/// Measures a spinning body with noise, in phase lock.
 fn spun(counter: &Counter, report: &mut Report) {
     let mut noise = Generator::new(4);
     let mut spin = Spin::new(&spin::Setting::new(1.0 / SPIN_HZ as f64));
@@ -124,6 +131,7 @@ fn spun(counter: &Counter, report: &mut Report) {
     figure(format_args!("the same, a sample that ends four turns"), worst.instructions());
 }
 
+/// Sample of a spinning body.
 fn spinning(index: u64, roll: f64, noise: &mut Generator, carried: &mut f64) -> SpinSample {
     let (sine, cosine) = libm::sincos(roll);
     let step = TURN * TURNS_HZ / SPIN_HZ as f64 * (1.0 + SCALE);

@@ -5,7 +5,7 @@
 //! branch takes more than one, flash has wait states, and a count here is a lower bound there. The
 //! figures repeat exactly, so that a change in them is a change of the code.
 //!
-//! The exit status is 0 only if the counter counts right and all budgets are kept.
+//! The exit status is 0 only if the counter is right and all budgets are kept.
 #![no_std]
 #![no_main]
 
@@ -41,7 +41,7 @@ use orientation::signal::butterworth::DesignError;
 use counter::Counter;
 use report::{Report, figure, heading};
 
-/// Why nothing was measured.
+/// Reason for which nothing was measured.
 #[derive(Debug)]
 #[expect(dead_code, reason = "the content is printed")]
 enum Failure {
@@ -75,7 +75,7 @@ fn main() -> ! {
     report.end()
 }
 
-/// Everything, in the order of the data path.
+/// Measures all cases, in the order of the data path.
 fn measure(report: &mut Report) -> Result<(), Failure> {
     let peripherals = cortex_m::Peripherals::take().ok_or(Failure::NoTimer)?;
     let counter = Counter::start(peripherals.SYST);
@@ -130,7 +130,7 @@ fn sizes() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Prints what went wrong and ends the emulator with an error.
+/// Prints the panic and ends the emulator with an error.
 #[panic_handler]
 fn panic(information: &PanicInfo) -> ! {
     hprintln!("{information}");

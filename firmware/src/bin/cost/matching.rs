@@ -1,4 +1,4 @@
-//! The match over the etalon table, in the setting of Sokolov (2019).
+//! Cost of the search of the reference table (etalon), in the setting of Sokolov 2019.
 
 use hal_mock::noise::Generator;
 use orientation::align::etalon::series::SeriesError;
@@ -11,22 +11,24 @@ use crate::report::{Report, figure};
 use crate::stack::stack_of;
 use crate::yardsticks;
 
-/// Positions n.
+/// Number of positions n.
 const POSITIONS: u32 = 60;
-/// Random series of each kind.
+/// Number of random series of each kind.
 const SERIES: usize = 100;
 /// White noise of a dwell of 1 s over the horizontal Earth rate: 0.015 °/h at 47°35′.
 const SIGMA: f64 = 1.48e-3;
 /// Constant drift over the horizontal Earth rate, 1σ: 0.01 °/h.
 const DRIFT_SIGMA: f64 = 9.9e-4;
-/// α₁ over the sum of squares that noise alone is expected to leave.
+/// Ratio of α₁ to the expected sum of squares of noise alone.
 const ACCEPTED_SQUARES: f64 = 1.5;
-/// α: 1.2 times what noise alone leaves, (n − 1)·√2·σ·√(2/π) over the horizontal Earth rate.
+/// Bound α: 1.2 times the expectation for noise alone, (n − 1)·√2·σ·√(2/π), over the horizontal
+/// Earth rate.
 const ACCEPTED_ABSOLUTE: f64 = 1.2 * 59.0 * 1.414 * SIGMA * 0.798;
 
-/// Where the stage goes.
+/// Schedule of the stage.
 #[derive(Clone, Copy)]
 struct Turn {
+    /// Name in the report.
     name: &'static str,
     /// Step in grid steps of 10″.
     step: i32,
@@ -36,7 +38,7 @@ struct Turn {
     range: f64,
 }
 
-/// 28′ towards north from 28° to 29°, and 6° from anywhere.
+/// Schedules of the paper: 28′ towards north from 28° to 29°, and 6° from any azimuth.
 const TURNS: [Turn; 2] = [
     Turn { name: "arc", step: -168, from: 10_080.0, range: 360.0 },
     Turn { name: "circle", step: 2160, from: 0.0, range: TURN as f64 },
@@ -56,11 +58,11 @@ impl Turn {
     }
 }
 
-/// Costs or counts of many series.
+/// Sorted costs or counts of many series.
 struct Spread([u64; SERIES]);
 
 impl Spread {
-    /// Of what `figure` says for each series.
+    /// Values of `figure` for each series.
     fn of(mut figure: impl FnMut(&Series) -> u64, turn: Turn) -> Result<Self, SeriesError> {
         let mut figures = [0; SERIES];
         for (seed, place) in (1..).zip(&mut figures) {
@@ -70,10 +72,12 @@ impl Spread {
         Ok(Self(figures))
     }
 
+    /// Median value.
     fn median(&self) -> u64 {
         self.0[SERIES / 2]
     }
 
+    /// Greatest value.
     fn greatest(&self) -> u64 {
         self.0[SERIES - 1]
     }
@@ -90,7 +94,7 @@ fn sort(figures: &mut [u64]) {
     }
 }
 
-/// Measures every criterion on both turns.
+/// Measures every criterion on both schedules.
 pub fn report(counter: &Counter, report: &mut Report) -> Result<(), SeriesError> {
     for turn in TURNS {
         quadratic(counter, report, turn, "maximum likelihood", Criterion::MaximumLikelihood)?;
@@ -103,7 +107,7 @@ pub fn report(counter: &Counter, report: &mut Report) -> Result<(), SeriesError>
     Ok(())
 }
 
-/// Tells the stack of each kind of match.
+/// Reports the stack of each kind of match.
 pub fn report_stack() -> Result<(), SeriesError> {
     let series = TURNS[0].series(1)?;
     let of = |criterion| stack_of(|| search(&series, criterion)).0 as u64;
@@ -114,22 +118,25 @@ pub fn report_stack() -> Result<(), SeriesError> {
     Ok(())
 }
 
+/// Search that is measured, not inlined.
 #[inline(never)]
 fn search(series: &Series, criterion: Criterion) -> Match {
     etalon::search(Table::built_in(), series, criterion)
 }
 
+/// Acceptance that is measured, not inlined.
 #[inline(never)]
 fn accepted(series: &Series, limit: Limit) -> Acceptance {
     etalon::accepted(Table::built_in(), series, limit)
 }
 
-/// α₁: so many times the n − 1 differences' noise, in squared table units.
+/// Bound α₁: a multiple of the n − 1 differences' noise, in squared table units.
 fn squares_limit() -> Limit {
     let expected = f64::from(POSITIONS - 1) * 2.0 * SIGMA * SIGMA;
     Limit::WithinSquares((ACCEPTED_SQUARES * expected * ONE * ONE) as u128)
 }
 
+/// Measures a quadratic criterion.
 fn quadratic(
     counter: &Counter,
     report: &mut Report,
@@ -142,6 +149,7 @@ fn quadratic(
     Ok(())
 }
 
+/// Measures the acceptance by a sum of squares.
 fn within(counter: &Counter, report: &mut Report, turn: Turn) -> Result<(), SeriesError> {
     let limit = squares_limit();
     let cost = |series: &Series| counter.measure(|| accepted(series, limit)).0.instructions();
@@ -149,6 +157,7 @@ fn within(counter: &Counter, report: &mut Report, turn: Turn) -> Result<(), Seri
     Ok(())
 }
 
+/// Measures the acceptance by a sum of absolute values.
 fn within_absolute(counter: &Counter, turn: Turn) -> Result<(), SeriesError> {
     let limit = Limit::WithinAbsolute((ACCEPTED_ABSOLUTE * ONE) as u64);
     let cost = |series: &Series| counter.measure(|| accepted(series, limit)).0.instructions();
@@ -161,6 +170,7 @@ fn within_absolute(counter: &Counter, turn: Turn) -> Result<(), SeriesError> {
     Ok(())
 }
 
+/// Measures the search for the least sum of absolute values.
 fn absolute(counter: &Counter, turn: Turn) -> Result<(), SeriesError> {
     let criterion = Criterion::LeastAbsolute;
     let cost = |series: &Series| counter.measure(|| search(series, criterion)).0.instructions();
@@ -176,7 +186,7 @@ fn absolute(counter: &Counter, turn: Turn) -> Result<(), SeriesError> {
     Ok(())
 }
 
-/// The two rows of a criterion that has a budget.
+/// Reports the two rows of a criterion with a budget.
 fn budgeted(report: &mut Report, turn: Turn, name: &str, spread: &Spread) {
     let turn = turn.name;
     figure(format_args!("match of 60, {turn}, {name}, median"), spread.median());

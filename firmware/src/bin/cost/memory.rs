@@ -1,8 +1,8 @@
-//! How much flash and static memory this image takes, as its linker says.
+//! Flash and static memory of this image, from its linker symbols.
 
 #![expect(unsafe_code, reason = "reads the linker's symbols")]
 
-/// Places that cortex-m-rt's `link.x` names; only their addresses mean something.
+/// Symbols of cortex-m-rt's `link.x`, of which only the addresses are meaningful.
 mod symbols {
     // SAFETY: the script defines every one of them, and nothing reads a value through them.
     unsafe extern "C" {
@@ -14,18 +14,18 @@ mod symbols {
     }
 }
 
-/// The address of a symbol.
+/// Address of a symbol.
 fn address(symbol: &'static u32) -> usize {
     (&raw const *symbol).expose_provenance()
 }
 
-/// Bytes of flash: vectors, code, constants, and the first values of variables.
+/// Size of the flash contents, bytes: vectors, code, constants, and initial values of variables.
 pub fn flash() -> usize {
     let variables = address(&symbols::__edata) - address(&symbols::__sdata);
     address(&symbols::__sidata) - address(&symbols::__vector_table) + variables
 }
 
-/// Bytes of static memory.
+/// Size of the static memory, bytes.
 pub fn statics() -> usize {
     address(&symbols::__ebss) - address(&symbols::__sdata)
 }

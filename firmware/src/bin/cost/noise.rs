@@ -1,4 +1,4 @@
-//! What it takes to know the gyro's noise: the Allan variance of each sample, and one fit.
+//! Cost of measuring the gyro's noise: the Allan variance of each sample, and one fit.
 
 use core::hint::black_box;
 
@@ -14,23 +14,23 @@ use crate::counter::{Cost, Counter};
 use crate::report::Report;
 use crate::stack::stack_of;
 
-/// Samples through the estimator.
+/// Number of samples through the estimator.
 const SAMPLES: u64 = 4096;
 /// White noise of a sample, rad/s: N = 0.02 °/√h at 10 Hz.
 const SIGMA: f64 = 1.8e-5;
-/// Samples in a second of the fitted records.
+/// Sample rate of the fitted records, Hz.
 const RATE_HZ: f64 = 2000.0;
-/// Samples of the longest record that the estimator resolves.
+/// Number of samples of the longest record that the estimator resolves.
 const LONGEST: f64 = 1e8;
-/// Samples of an hour of rest.
+/// Number of samples of an hour of rest.
 const HOUR: f64 = 3600.0 * RATE_HZ;
-/// N in °/√h, B in °/h and K in °/h/√h.
+/// Noise of the gyro: N in °/√h, B in °/h and K in °/h/√h.
 const GYRO: [f64; 3] = [0.02, 0.3, 2.0];
 
-/// [`Allan::push`].
+/// Type of [`Allan::push`].
 type Push = fn(&mut Allan, AngularRate);
 
-/// Measures a sample, and fits of an hour and of the full grid.
+/// Measures a sample, and the fits of an hour and of the full grid.
 pub fn report(counter: &Counter, report: &mut Report) {
     report.budget(format_args!("Allan variance, a sample"), sample(counter), ALLAN_INSTRUCTIONS);
     for (name, samples) in [("an hour at 2 kHz", HOUR), ("10^8 samples", LONGEST)] {
@@ -43,22 +43,23 @@ pub fn report(counter: &Counter, report: &mut Report) {
     }
 }
 
-/// Bytes of stack of a fit of the full grid.
+/// Stack of a fit of the full grid, bytes.
 pub fn stack() -> usize {
     let points = points(LONGEST);
     stack_of(|| fit(&points).is_ok()).0
 }
 
+/// Fit that is measured, not inlined.
 #[inline(never)]
 fn fit(points: &[Point]) -> Result<NoiseFit, FitError> {
     NoiseFit::of_points(points, 1.0 / RATE_HZ)
 }
 
-/// Mean instructions of a sample, call included.
+/// Mean number of instructions of a sample, call included.
 fn sample(counter: &Counter) -> u64 {
     let mut noise = Generator::new(5);
     let mut allan = Allan::new();
-    // A function that the optimiser cannot see is called, not inlined.
+    // Through a pointer that is opaque to the optimiser the function is called, not inlined.
     let push = black_box(Allan::push as Push);
     let mut total = Cost::default();
     for _ in 0..SAMPLES {
@@ -68,7 +69,8 @@ fn sample(counter: &Counter) -> u64 {
     total.mean(SAMPLES)
 }
 
-/// Points as a record of so many samples could give: the model's, with the scatter of white noise.
+/// Points as of a record with this many samples: those of the model, with the scatter of white
+/// noise.
 fn points(samples: f64) -> Vec<Point, MOST_POINTS> {
     let mut noise = Generator::new(6);
     let gyro = GyroNoise::from_field_units(GYRO[0], GYRO[1], GYRO[2], 0.0);

@@ -1,4 +1,4 @@
-//! What a plan takes: the best schedule for a time, and the time for a wanted σ.
+//! Cost of a plan: the best schedule for a time, and the time for a required σ.
 
 use orientation::noise::model::GyroNoise;
 use orientation::planner::order::Order;
@@ -9,16 +9,16 @@ use crate::counter::{Cost, Counter};
 use crate::report::Report;
 use crate::stack::stack_of;
 
-/// N in °/√h, B in °/h, K in °/h/√h and R in °/h² of the gyros that are planned for.
+/// Noise of the gyros that are planned for: N in °/√h, B in °/h, K in °/h/√h and R in °/h².
 const GYROS: [[f64; 4]; 2] = [[0.001, 0.007, 0.0, 0.127], [0.06, 1.0, 0.5, 2.0]];
 /// Total time, s.
 const SECONDS: f64 = 300.0;
-/// The wanted σ over that of this time: worse, so that less time does.
+/// Ratio of the required σ to that of this time: worse, so that less time suffices.
 const RELAXED: f64 = 1.3;
-/// Longest time that is looked at for a wanted σ, s.
+/// Longest time that is considered for a required σ, s.
 const LONGEST: f64 = 1800.0;
 
-/// Measures the greatest of the gyros for either question, and Burov's formula.
+/// Measures the greatest cost of the gyros for either question, and of Burov's formula.
 pub fn report(counter: &Counter, report: &mut Report) {
     let [time, sigma, burov] = GYROS
         .map(|gyro| costs(counter, gyro, report))
@@ -31,13 +31,13 @@ pub fn report(counter: &Counter, report: &mut Report) {
     report.budget(format_args!("Burov's best positions"), burov, PLAN_INSTRUCTIONS);
 }
 
-/// Bytes of stack of a plan.
+/// Stack of a plan, bytes.
 pub fn stack() -> usize {
     let conditions = conditions(GYROS[1]);
     stack_of(|| plan(&conditions).is_ok()).0
 }
 
-/// Instructions of a plan for a time, of one for a σ, and of Burov's.
+/// Instructions of a plan for a time, of one for a σ, and of Burov's formula.
 fn costs(counter: &Counter, gyro: [f64; 4], report: &mut Report) -> [u64; 3] {
     let conditions = conditions(gyro);
     let (time, planned) = counter.measure(|| plan(&conditions));
@@ -49,11 +49,13 @@ fn costs(counter: &Counter, gyro: [f64; 4], report: &mut Report) -> [u64; 3] {
     [time, sigma, burov].map(Cost::instructions)
 }
 
+/// Plan that is measured, not inlined.
 #[inline(never)]
 fn plan(conditions: &Conditions) -> Result<Plan, PlanError> {
     for_time(conditions, SECONDS)
 }
 
+/// Conditions for a gyro with this noise.
 fn conditions([n, b, k, r]: [f64; 4]) -> Conditions {
     Conditions {
         noise: GyroNoise::from_field_units(n, b, k, r),

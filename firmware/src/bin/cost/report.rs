@@ -1,33 +1,34 @@
-//! The printed table, and whether everything stayed within its budget.
+//! Printed table, with the check of every budget.
 
 use core::fmt::Arguments;
 
 use cortex_m::asm::wfi;
 use cortex_m_semihosting::{debug, hprintln};
 
-/// Parts in which a check may be off by one: one per cent.
+/// Divisor of the tolerance of a check: one per cent.
 const CHECK_PARTS: u64 = 100;
 
-/// Begins a table of this quantity.
+/// Begins a table of a quantity.
 pub fn heading(quantity: &str) {
     hprintln!("");
     hprintln!("{:>10} {:>10} {:5} {quantity}", "count", "budget", "");
 }
 
-/// A figure that is only told.
+/// Prints a figure without a budget.
 #[inline(never)]
 pub fn figure(name: Arguments, count: u64) {
     hprintln!("{count:>10} {:>10} {:5} {name}", "-", "");
 }
 
-/// Whether all figures so far are as they must be.
+/// Result of all checks so far.
 #[derive(Debug, Default)]
 pub struct Report {
+    /// Whether a check failed.
     failed: bool,
 }
 
 impl Report {
-    /// A figure that must not exceed its budget.
+    /// Prints a figure that must not exceed its budget.
     #[inline(never)]
     pub fn budget(&mut self, name: Arguments, count: u64, budget: u64) {
         let verdict = if count <= budget { "ok" } else { "OVER" };
@@ -35,7 +36,7 @@ impl Report {
         hprintln!("{count:>10} {budget:>10} {verdict:5} {name}");
     }
 
-    /// A figure that is known and must come out within one per cent.
+    /// Prints a figure with a known value, which must agree within one per cent.
     pub fn check(&mut self, name: Arguments, count: u64, known: u64) {
         let agrees = count.abs_diff(known) * CHECK_PARTS <= known;
         self.failed |= !agrees;
@@ -43,7 +44,7 @@ impl Report {
         hprintln!("{count:>10} {known:>10} {verdict:5} {name}");
     }
 
-    /// Something that must be true for the figures to mean what they say.
+    /// Requires a condition without which the figures are not valid.
     pub fn require(&mut self, what: &str, is_true: bool) {
         if !is_true {
             self.failed = true;

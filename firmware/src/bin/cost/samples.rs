@@ -1,4 +1,4 @@
-//! What is done once per sample.
+//! Cost of the work done once per sample.
 
 use core::hint::black_box;
 
@@ -12,28 +12,28 @@ use crate::budget::{FILTER_AND_DWELL_INSTRUCTIONS, FILTER_INSTRUCTIONS};
 use crate::counter::{Cost, Counter};
 use crate::report::{Report, figure};
 
-/// Sections of order 6.
+/// Sections of a filter of order 6.
 const SECTIONS: usize = 3;
-/// Samples through the filter alone.
+/// Number of samples through the filter alone.
 const FILTERED: u64 = 1000;
-/// Samples through filter and dwell: one second at [`RATE_HZ`].
+/// Number of samples through filter and dwell: one second at [`RATE_HZ`].
 const AVERAGED: u64 = 2000;
 /// The highest sample rate of the stage path, Hz.
 const RATE_HZ: f64 = 2000.0;
-/// A cut-off that follows from dwells of 10 s, Hz.
+/// Cut-off for dwells of 10 s, Hz.
 const CUTOFF_HZ: f64 = 2.0;
-/// White noise of a sample, rad/s: 0.15 °/h, the paper's.
+/// White noise of a sample, rad/s: 0.15 °/h (Sokolov 2019).
 const RATE_SIGMA: f64 = 7.3e-7;
-/// One sample in so many brings a specific force and a temperature.
+/// Interval of the samples that carry a specific force and a temperature.
 const SLOW: u64 = 16;
 /// Mean specific force, m/s².
 const FORCE: [f64; 3] = [0.01, -0.02, -9.81];
 /// White noise of a specific force, m/s².
 const FORCE_SIGMA: f64 = 1e-3;
 
-/// [`Filter::update`].
+/// Type of [`Filter::update`].
 type Update = fn(&mut Filter<SECTIONS>, &Coefficients<SECTIONS>, AngularRate) -> AngularRate;
-/// [`DwellAverage::push`].
+/// Type of [`DwellAverage::push`].
 type Push = fn(&mut DwellAverage<SECTIONS>, &Coefficients<SECTIONS>, &Sample);
 
 /// Measures filter, filter with dwell, and the filter's design.
@@ -54,16 +54,17 @@ pub fn report(counter: &Counter, report: &mut Report) -> Result<(), DesignError>
     Ok(())
 }
 
+/// Design that is measured, not inlined.
 #[inline(never)]
 fn design() -> Result<Coefficients<SECTIONS>, DesignError> {
     Coefficients::low_pass(black_box(CUTOFF_HZ), black_box(RATE_HZ))
 }
 
-/// Mean instructions of a sample through the filter, call included.
+/// Mean number of instructions of a sample through the filter, call included.
 fn filter(counter: &Counter, coefficients: &Coefficients<SECTIONS>) -> u64 {
     let mut noise = Generator::new(1);
     let mut filter = Filter::at_rest(AngularRate(0));
-    // A function that the optimiser cannot see is called, not inlined.
+    // Through a pointer that is opaque to the optimiser the function is called, not inlined.
     let update = black_box(Filter::update as Update);
     let mut total = Cost::default();
     for _ in 0..FILTERED {
@@ -73,7 +74,7 @@ fn filter(counter: &Counter, coefficients: &Coefficients<SECTIONS>) -> u64 {
     total.mean(FILTERED)
 }
 
-/// Mean instructions of a sample through filter and dwell, call included.
+/// Mean number of instructions of a sample through filter and dwell, call included.
 fn dwell(counter: &Counter, coefficients: &Coefficients<SECTIONS>) -> u64 {
     let mut noise = Generator::new(2);
     let mut average = DwellAverage::begin(coefficients, &sample(0, &mut noise));
@@ -86,7 +87,7 @@ fn dwell(counter: &Counter, coefficients: &Coefficients<SECTIONS>) -> u64 {
     total.mean(AVERAGED)
 }
 
-/// A noisy sample of a standstill.
+/// Noisy sample of a standstill.
 fn sample(index: u64, noise: &mut Generator) -> Sample {
     let is_slow = index.is_multiple_of(SLOW);
     Sample {

@@ -1,23 +1,23 @@
-//! Known loops, to prove that the counter counts instructions.
+//! Known loops, which prove that the counter counts instructions.
 
 #![expect(unsafe_code, reason = "only assembly has a known number of instructions")]
 
 use core::arch::asm;
 
-/// Instructions of [`thousand`].
+/// Number of instructions of [`thousand`].
 pub const THOUSAND: u64 = 1000;
-/// Rounds of [`long_loop`]: several wraps of the counter.
+/// Number of rounds of [`long_loop`]: several wraps of the counter.
 const ROUNDS: u32 = 5_000_000;
-/// Instructions of [`long_loop`].
+/// Number of instructions of [`long_loop`].
 pub const LONG_LOOP: u64 = 2 * ROUNDS as u64;
 
-/// A thousand instructions in a row.
+/// Executes a thousand instructions in a row.
 pub fn thousand() {
     // SAFETY: `nop` changes no register, flag or memory.
     unsafe { asm!(".rept 1000", "nop", ".endr", options(nomem, nostack, preserves_flags)) }
 }
 
-/// Ten million instructions in a loop.
+/// Executes ten million instructions in a loop.
 pub fn long_loop() {
     // SAFETY: counts the register that it is given down to zero; flags are declared as changed.
     unsafe {

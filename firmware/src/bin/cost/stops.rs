@@ -1,5 +1,5 @@
-//! What azimuth from stops costs: the strapdown once per sample, U(azp) once per candidate, the search for
-//! its minimum, and the conclusion.
+//! Cost of the azimuth from stops: the strapdown per sample, U(azp) per candidate, the search for
+//! its minimum, and the conclusion (Szymanowski 2003).
 
 use core::hint::black_box;
 
@@ -20,24 +20,25 @@ use crate::stack;
 
 /// Sample rate of the strapdown, Hz.
 const RATE_HZ: u64 = 2000;
-/// Samples of it: five seconds.
+/// Number of strapdown samples: five seconds.
 const SAMPLES: u64 = 10_000;
-/// Sample rate of the drive, Hz: its conclusion does not depend on it.
+/// Sample rate of the drive, Hz; the cost of its conclusion does not depend on it.
 const DRIVE_HZ: u64 = 25;
-/// When the stops end and the drive ends, s.
+/// Ends of the first stop, of the drive and of the second stop, s.
 const DRIVE: [f64; 3] = [60.0, 960.0, 1020.0];
-/// Latitude, °, and azimuth at the start, rad.
+/// Latitude, °.
 const LATITUDE: f64 = 52.0;
+/// Azimuth at the start, rad.
 const AZIMUTH: f64 = 72.0 * DEGREE;
-/// Rate of turn on the way, rad/s: 140° in all.
+/// Rate of rotation during the drive, rad/s: 140° in all.
 const TURNING: f64 = 140.0 * DEGREE / 900.0;
 
-/// [`StopDetector::push`].
+/// Type of [`StopDetector::push`].
 type Push = fn(&mut StopDetector, &InertialSample) -> bool;
-/// [`Inclination::angle`].
+/// Type of [`Inclination::angle`].
 type Form = fn(&Inclination, f64) -> f64;
 
-/// Measures all of it.
+/// Measures all cases.
 pub fn report(counter: &Counter, report: &mut Report) {
     sample(counter, report);
     let mut stop_detector = drive();
@@ -55,10 +56,10 @@ pub fn report(counter: &Counter, report: &mut Report) {
     }
 }
 
-/// The mean of a sample, and the greatest: one that ends a second.
+/// Measures the mean sample, and the most expensive one, which ends a second.
 fn sample(counter: &Counter, report: &mut Report) {
     let mut stop_detector = stop_detector(RATE_HZ);
-    // A function that the optimiser cannot see is called, not inlined.
+    // Through a pointer that is opaque to the optimiser the function is called, not inlined.
     let push = black_box(StopDetector::push as Push);
     let (mut total, mut worst) = (Cost::default(), Cost::default());
     let mut carried = [0.0; 3];
@@ -77,7 +78,7 @@ fn sample(counter: &Counter, report: &mut Report) {
     figure(format_args!("the same, a sample that ends a second"), worst.instructions());
 }
 
-/// The greatest cost of U over the circle, and that of the search.
+/// Measures the greatest cost of U over the circle, and that of the search.
 fn inclination(counter: &Counter, report: &mut Report, inclination: &Inclination) {
     for (name, form) in [
         ("U(azp), the angle, greatest", Inclination::angle as Form),
@@ -101,6 +102,7 @@ fn inclination(counter: &Counter, report: &mut Report, inclination: &Inclination
     figure(format_args!("search for the least U by Brent's method"), cost.instructions());
 }
 
+/// Conclusion that is measured, not inlined.
 #[inline(never)]
 fn conclude(stop_detector: &mut StopDetector) -> Conclusion {
     Conclusion::of(&setting(), stop_detector)
@@ -112,6 +114,7 @@ pub fn stack() -> usize {
     stack::stack_of(|| black_box(conclude(&mut stop_detector)).verdict.is_ok()).0
 }
 
+/// Configuration of the alignment.
 fn setting() -> Setting {
     let latitude = Latitude::from_degrees(LATITUDE).unwrap_or(Latitude::EQUATOR);
     let noise = GyroNoise::from_field_units(0.05, 0.0, 0.0, 0.0);
@@ -119,13 +122,15 @@ fn setting() -> Setting {
     Setting { bias_sigma: Some(DEGREE_PER_HOUR), force_noise: 1e-3, ..Setting::new(common) }
 }
 
+/// Stop detector at this sample rate, Hz.
 fn stop_detector(rate: u64) -> StopDetector {
     let setting = setting();
     let gravity = setting.common.latitude.gravity();
     StopDetector::new(Rests::Found, &setting.sensors(), gravity, 1.0 / rate as f64)
 }
 
-/// A level vehicle that stands for a minute, turns for a quarter of an hour and stands again, without noise.
+/// Recording of a level vehicle that stands for a minute, turns for a quarter of an hour and stands
+/// again, without noise.
 fn drive() -> StopDetector {
     let mut stop_detector = stop_detector(DRIVE_HZ);
     let earth = setting().common.latitude;
@@ -144,6 +149,7 @@ fn drive() -> StopDetector {
     stop_detector
 }
 
+/// Sample with these rates, rad/s, and gravity as the only force.
 fn inertial(index: u64, rate: u64, rates: [f64; 3], carried: &mut [f64; 3]) -> InertialSample {
     let gravity = setting().common.latitude.gravity();
     InertialSample {

@@ -1,4 +1,4 @@
-//! What is done once per sample of a platform that turns all the time: its demodulation.
+//! Cost per sample on a continuously rotating platform: its demodulation.
 
 use core::hint::black_box;
 
@@ -11,31 +11,31 @@ use crate::budget::TURNING_INSTRUCTIONS;
 use crate::counter::{Cost, Counter};
 use crate::report::{Report, figure};
 
-/// Samples a second.
+/// Sample rate, Hz.
 const RATE_HZ: f64 = 2000.0;
 /// Sample periods in a block of 20 ms.
 const PERIODS: u32 = 40;
-/// Turns of the platform a second.
+/// Speed of the platform, turns per second.
 const SPEED_HZ: f64 = 0.137;
-/// Samples: two whole turns and what settles.
+/// Number of samples: two whole turns and the settling before them.
 const SAMPLES: u64 = 30_000;
 /// White noise of a sample, rad/s.
 const RATE_SIGMA: f64 = 7.3e-7;
 /// Horizontal Earth rate at 48°, rad/s.
 const EARTH: f64 = 4.9e-5;
-/// One sample in so many brings a specific force.
+/// Interval of the samples that carry a specific force.
 const SLOW: u64 = 20;
-/// Tilt of the platform, m/s², and white noise of a specific force.
+/// Tilt of the platform and white noise of a specific force, both in m/s².
 const FORCE: [f64; 2] = [0.1, 1e-3];
 
-/// [`TurnAccumulator::push`].
+/// Type of [`TurnAccumulator::push`].
 type Push = fn(&mut TurnAccumulator, &Sample, Option<f32>) -> bool;
 
-/// Measures the mean of a sample, and the greatest: the one that ends a turn.
+/// Measures the mean sample, and the most expensive one, which ends a turn.
 pub fn report(counter: &Counter, report: &mut Report) {
     let mut noise = Generator::new(7);
     let mut turn_accumulator = TurnAccumulator::new(PERIODS, Mode::Even);
-    // A function that the optimiser cannot see is called, not inlined.
+    // Through a pointer that is opaque to the optimiser the function is called, not inlined.
     let push = black_box(TurnAccumulator::push as Push);
     let (mut total, mut worst, mut turns) = (Cost::default(), Cost::default(), 0);
     for index in 0..SAMPLES {
@@ -54,7 +54,7 @@ pub fn report(counter: &Counter, report: &mut Report) {
     figure(format_args!("the same, a sample that ends a turn"), worst.instructions());
 }
 
-/// A sample of a platform that turns clockwise.
+/// Sample of a platform that turns clockwise.
 fn sample(index: u64, noise: &mut Generator) -> Sample {
     let seconds = index as f64 / RATE_HZ;
     let angle = SPEED_HZ * TURN * seconds;

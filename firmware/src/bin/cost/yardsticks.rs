@@ -1,4 +1,5 @@
-//! What the fast search is measured against, and the regression under every fit.
+//! Reference costs: the exhaustive search that the fast one replaces, and the regression under
+//! every fit.
 
 use core::hint::black_box;
 
@@ -9,12 +10,13 @@ use orientation::align::regression::{Column, Regression, Solution};
 use crate::counter::Counter;
 use crate::report::{Report, figure};
 
-/// Dwells of the default schedule.
+/// Number of dwells of the default schedule.
 const DWELLS: u32 = 24;
-/// Columns of the regression: cosine, sine, constant, time, temperature.
+/// Number of columns of the regression: cosine, sine, constant, time, temperature.
 const COLUMNS: usize = 5;
 
-/// Measures an exhaustive search of the circle for a series, which must find what the fast one finds.
+/// Measures an exhaustive search of the circle for a series, whose result the fast search must
+/// equal.
 pub fn exhaustive(counter: &Counter, report: &mut Report, series: &Series) {
     let (cost, index) = counter.measure(|| least_squares(series));
     let fast = etalon::search(Table::built_in(), series, Criterion::LeastSquares).index;
@@ -25,7 +27,7 @@ pub fn exhaustive(counter: &Counter, report: &mut Report, series: &Series) {
     );
 }
 
-/// The lowest index with the least sum of squared differences, by trying all 129 600.
+/// Lowest index with the least sum of squared differences, by trying all 129 600.
 #[inline(never)]
 fn least_squares(series: &Series) -> i32 {
     let table = Table::built_in();
@@ -52,7 +54,7 @@ fn least_squares(series: &Series) -> i32 {
     best.1
 }
 
-/// Measures the sums and the solution of a regression over the default schedule.
+/// Measures sums and solution of a regression over the default schedule.
 pub fn regression(counter: &Counter, report: &mut Report) {
     let (cost, solution) = counter.measure(|| regress(black_box(DWELLS)));
     let found = solution.is_some_and(|found| (found.coefficients[0] - 1.0).abs() < 1e-9);

@@ -1,4 +1,4 @@
-//! The time driver: virtual time, which stands still while anything runs.
+//! Time driver of the emulated image: virtual time, which stands still while a task runs.
 
 use core::cell::RefCell;
 use core::task::Waker;
@@ -7,10 +7,11 @@ use critical_section::Mutex;
 use embassy_time_driver::Driver;
 use hal_mock::clock::VirtualClock;
 
-/// The one clock of the image.
+/// Clock of the image.
 struct Clock(Mutex<RefCell<VirtualClock>>);
 
 impl Clock {
+    /// Runs work on the clock in a critical section.
     fn with<T>(&self, work: impl FnOnce(&mut VirtualClock) -> T) -> T {
         critical_section::with(|section| work(&mut self.0.borrow_ref_mut(section)))
     }
@@ -35,7 +36,7 @@ pub fn now() -> u64 {
     CLOCK.now()
 }
 
-/// Jumps to the next moment for which somebody waits; `false` where nobody does.
+/// Advances to the next moment for which a task waits; `false` where none does.
 pub fn advance() -> bool {
     CLOCK.with(VirtualClock::advance)
 }

@@ -1,4 +1,4 @@
-//! Runs the tasks; when all of them wait, the clock jumps.
+//! Executor of the emulated image: when all tasks wait, the virtual clock advances.
 
 #![expect(unsafe_code, reason = "embassy's raw executor trusts whoever polls it")]
 
@@ -12,22 +12,25 @@ use crate::meter::Meter;
 /// Whether a task is to be polled.
 static PENDED: AtomicBool = AtomicBool::new(false);
 
-/// Called by the executor when a task was woken.
+/// Pender that the executor calls when a task was woken.
 // SAFETY: this is the symbol and the signature that embassy-executor asks for; nothing else has it.
 #[unsafe(export_name = "__pender")]
 fn pend(_: *mut ()) {
     PENDED.store(true, Ordering::Relaxed);
 }
 
-/// Every task waits for something that no time brings.
+/// Deadlock: every task waits for an event that no passage of time brings.
 pub struct Deadlock;
 
-/// An executor for [`run`].
+/// Creates an executor for [`run`].
 pub fn new() -> Executor {
     Executor::new(core::ptr::null_mut())
 }
 
-/// Polls until the application says that it is finished.
+/// Polls until the application reports that it has finished.
+///
+/// # Errors
+/// [`Deadlock`] where all tasks wait without a timer.
 pub fn run(
     executor: &'static Executor,
     meter: &Meter,

@@ -1,7 +1,7 @@
-//! What to run, as the host says it in the last word of the image's command line: `SEED`, or
-//! `SEED/brief` for the short run at the highest sample rate, `SEED/survey` for one that learns its
-//! gyro's noise first, `SEED/turning` for one on a platform that turns all the time, `SEED/stops` for one
-//! in a vehicle, which goes on keeping what it found.
+//! Job of the image, given by the host as the last word of the command line: `SEED`, or
+//! `SEED/brief` for the short run at the highest sample rate, `SEED/survey` for one with a noise
+//! survey first, `SEED/turning` for one on a continuously rotating platform, `SEED/stops` for one
+//! in a vehicle, which then holds its result.
 
 use core::mem::MaybeUninit;
 
@@ -18,26 +18,26 @@ use crate::meter::Meter;
 use crate::outside::{Metering, NoLink};
 use crate::setup::{self, Running, Sampling};
 
-/// Bytes of the longest command line; the emulator begins it with the image's path.
+/// Length of the longest command line, bytes; the emulator begins it with the image's path.
 const LONGEST: usize = 4096;
 
-/// Nothing goes wrong here.
+/// Fault plan without faults, for a stage or platform.
 static PLAN: Plan = Plan::NONE;
-/// Nothing with a vehicle.
+/// Fault plan without faults, for a vehicle.
 static VEHICLE_PLAN: VehiclePlan = VehiclePlan::NONE;
 
-/// What to run.
+/// Kind of run, with its scenario.
 pub enum Job {
-    /// An alignment in positions.
+    /// A multi-position alignment.
     Stepwise(Scenario),
-    /// One on a turning platform.
+    /// An alignment on a rotating platform.
     Turning(TurntableScenario),
-    /// One in a vehicle.
+    /// An alignment in a vehicle.
     Stops(VehicleScenario),
 }
 
 impl Job {
-    /// The host's; `None` where there is none.
+    /// Job that the host requests; `None` without a valid one.
     #[inline(never)]
     pub fn from_host() -> Option<Self> {
         let mut line = [MaybeUninit::uninit(); LONGEST];
@@ -56,7 +56,7 @@ impl Job {
         }
     }
 
-    /// Site, gyro and seed.
+    /// Scenario with site, gyro and seed.
     pub fn base(&self) -> &Scenario {
         match self {
             Self::Stepwise(scenario) => scenario,
@@ -65,7 +65,8 @@ impl Job {
         }
     }
 
-    /// Everything that is to run, made where it stays; `None` where the scenario lets it not begin.
+    /// Builds the whole run at its final place in memory; `None` where the scenario does not allow
+    /// a start.
     pub fn begin(&self, meter: &'static Meter) -> Option<(Sampling, Running)> {
         match self {
             Self::Stepwise(scenario) => stepwise(scenario, meter),
@@ -75,6 +76,7 @@ impl Job {
     }
 }
 
+/// Builds a run in positions.
 fn stepwise(scenario: &Scenario, meter: &'static Meter) -> Option<(Sampling, Running)> {
     let session = setup::stepwise(scenario.prepared()?)?;
     let around = Metering(meter);
@@ -91,6 +93,7 @@ fn stepwise(scenario: &Scenario, meter: &'static Meter) -> Option<(Sampling, Run
     ))
 }
 
+/// Builds a run on a rotating platform.
 fn turning(scenario: &TurntableScenario, meter: &'static Meter) -> Option<(Sampling, Running)> {
     let (setting, procedure) = scenario.checked()?;
     let session = setup::turning(&setting, procedure)?;
@@ -107,6 +110,7 @@ fn turning(scenario: &TurntableScenario, meter: &'static Meter) -> Option<(Sampl
     ))
 }
 
+/// Builds a run in a vehicle.
 fn driving(scenario: &VehicleScenario, meter: &'static Meter) -> Option<(Sampling, Running)> {
     let (setting, procedure) = scenario.checked()?;
     let session = setup::driving(&setting, procedure)?;

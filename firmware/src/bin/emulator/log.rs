@@ -1,4 +1,4 @@
-//! The log: defmt by semihosting, decoded on the host; and the image's end where something is wrong.
+//! Log by defmt over semihosting, decoded on the host; and the end of the image after a failure.
 
 #![expect(unsafe_code, reason = "a hard fault's handler is unsafe to define")]
 
@@ -15,8 +15,8 @@ use crate::meter::{Meter, Stretch, Task};
 
 defmt::timestamp!("{=u64:us}", clock::now());
 
-/// What the whole instrument took from its first dwell to its last, of a gyro with so many samples a
-/// second.
+/// Logs the cost of the whole instrument from its first dwell to its last, for a gyro with this
+/// sample rate, Hz.
 pub fn effort(meter: &Meter, sample_rate: f64) {
     let Stretch { instrument, simulation, microseconds } = meter.between_marks();
     println!(
@@ -28,7 +28,7 @@ pub fn effort(meter: &Meter, sample_rate: f64) {
     );
 }
 
-/// What a task took.
+/// Logs the cost of a task.
 pub fn task(task: &Task) {
     println!(
         "task polls={=u64} instructions={=u64} worst={=u64} name={=str}",
@@ -39,15 +39,15 @@ pub fn task(task: &Task) {
     );
 }
 
-/// Bytes of stack at the deepest.
+/// Logs the deepest stack, bytes.
 pub fn stack(bytes: usize) {
     println!("stack bytes={=usize}", bytes);
 }
 
-/// Whether the image is already ending because something is wrong.
+/// Whether the image is already ending after a failure.
 static ENDING: AtomicBool = AtomicBool::new(false);
 
-/// Ends the emulator with an error; logs why, but not why that failed.
+/// Ends the emulator with an error; logs the reason once, even if logging itself fails.
 fn end(why: impl FnOnce()) -> ! {
     if !ENDING.swap(true, Ordering::Relaxed) {
         why();
@@ -57,7 +57,7 @@ fn end(why: impl FnOnce()) -> ! {
 
 #[panic_handler]
 fn panic(information: &PanicInfo) -> ! {
-    // The place only: putting the words together here would take 4 KB.
+    // Only the place is logged: formatting the message here would take 4 KB.
     let place = information.location().map_or(("?", 0), |place| (place.file(), place.line()));
     end(|| error!("panic in {=str}, line {=u32}", place.0, place.1))
 }

@@ -7,10 +7,10 @@
 //!      └───────── results, costs ─────────┴─────▶ log (defmt by semihosting)
 //! ```
 //!
-//! `meridian emulate` builds and runs this image, reads its log, and compares what it found with its
-//! own run of the same seed. The log speaks of three things that the host parses: `outcome`,
-//! `dwell`, `turn`, `stop` and `kept` lines carry the bits of every number that was found, `effort` and `stack` lines what it
-//! took. Nothing here prints by semihosting: it would fall into the middle of the log.
+//! `meridian emulate` builds and runs this image, reads its log, and compares its results with its
+//! own run of the same seed. The host parses these lines of the log: `outcome`, `dwell`, `turn`,
+//! `stop` and `kept` lines carry the bits of every result, `effort` and `stack` lines the cost. No
+//! output goes directly to semihosting: it would fall into the middle of the log.
 #![no_std]
 #![no_main]
 
@@ -42,16 +42,16 @@ use job::Job;
 use meter::{Meter, Task};
 use setup::{Finished, Running, Sampling};
 
-/// Why nothing was found.
+/// Reason for which there is no result.
 #[derive(defmt::Format)]
 enum Failure {
     /// The core's peripherals were taken before.
     NoTimer,
-    /// The host did not say what to run.
+    /// The host requested no valid job.
     NoOrder,
-    /// The instrument's task could not be started.
+    /// The task of the instrument could not be started.
     NotStarted,
-    /// Every task waits for something that no time brings.
+    /// Every task waits for an event that no passage of time brings.
     Deadlock,
     /// The session cannot begin.
     Session,
@@ -71,12 +71,12 @@ impl From<Deadlock> for Failure {
     }
 }
 
-/// What the tasks share with [`main`].
+/// State that the tasks share with [`main`].
 struct Bench {
     meter: Meter,
     acquisition: Task,
     instrument: Task,
-    /// The session, once it has concluded.
+    /// Session, once it has concluded.
     finished: OnceCell<Finished>,
 }
 
@@ -96,7 +96,7 @@ fn main() -> ! {
     }
 }
 
-/// Runs the instrument to its end and logs what it found and what it took.
+/// Runs the instrument to its end and logs results and costs.
 fn run() -> Result<(), Failure> {
     let job = Job::from_host().ok_or(Failure::NoOrder)?;
     let peripherals = cortex_m::Peripherals::take().ok_or(Failure::NoTimer)?;
@@ -130,7 +130,7 @@ async fn acquisition(bench: &'static Bench, sampling: Sampling) {
 async fn instrument(bench: &'static Bench, running: Running) {
     let future = pin!(async {
         let finished = running.run().await;
-        // It runs once: nothing has finished before.
+        // The task runs once, so nothing was set before.
         let _ = bench.finished.set(finished);
     });
     bench.instrument.run(&bench.meter, future).await;

@@ -1,8 +1,8 @@
-//! What the instrument takes, without what the simulation beside it takes.
+//! Cost of the instrument, without that of the simulation beside it.
 //!
-//! All work is done inside of polls, and the simulated chips and world work inside of
-//! [`Meter::outside`], so the instrument's own instructions are the difference. Whatever a poll logs
-//! counts as the instrument's.
+//! All work is done within polls, and the simulated chips and world work within [`Meter::outside`],
+//! so the instrument's own instructions are the difference. Logging within a poll counts as the
+//! instrument's.
 
 use core::cell::Cell;
 use core::future::poll_fn;
@@ -10,42 +10,45 @@ use core::pin::Pin;
 
 use crate::counter::{Cost, Counter};
 
-/// How often nothing is put outside, to learn what that costs.
+/// Number of empty outside calls that calibrate their own cost.
 const CALIBRATIONS: u64 = 1000;
 
-/// The accounts at one moment.
+/// Accounts at one moment.
 #[derive(Clone, Copy, Default)]
 pub struct Mark {
+    /// Cost of the instrument.
     instrument: Cost,
+    /// Cost of the simulation.
     simulation: Cost,
+    /// Virtual time, µs.
     microseconds: u64,
 }
 
-/// What was taken between two moments.
+/// Cost between two moments.
 pub struct Stretch {
-    /// By the instrument.
+    /// Cost of the instrument.
     pub instrument: Cost,
-    /// By the simulation.
+    /// Cost of the simulation.
     pub simulation: Cost,
     /// Virtual time, µs.
     pub microseconds: u64,
 }
 
-/// The counter with its two accounts.
+/// Counter with its two accounts.
 pub struct Meter {
     counter: Counter,
-    /// Everything inside of polls.
+    /// Cost of all polls.
     all: Cell<Cost>,
-    /// Of that, the simulation and the metering of it.
+    /// Cost of the simulation and of its metering within these polls.
     outside: Cell<Cost>,
-    /// What putting something outside costs by itself.
+    /// Cost of an empty outside call.
     fee: Cost,
-    /// The accounts at the first mark and at the last.
+    /// Accounts at the first mark and at the last.
     marks: Cell<Option<[Mark; 2]>>,
 }
 
 impl Meter {
-    /// A meter that has learnt its own cost.
+    /// Creates a meter and calibrates its own cost.
     pub fn new(counter: Counter) -> Self {
         let [all, outside] = [Cost::default(); 2].map(Cell::new);
         let mut meter =
@@ -59,7 +62,7 @@ impl Meter {
         meter
     }
 
-    /// Polls the executor.
+    /// Polls the executor, metered.
     pub fn poll(&self, work: impl FnOnce()) {
         let (cost, ()) = self.counter.measure(work);
         self.all.set(self.all.get() + cost);
@@ -72,14 +75,14 @@ impl Meter {
         result
     }
 
-    /// Does work and tells what the instrument had of it.
+    /// Does work and returns the instrument's part of its cost.
     fn inside<T>(&self, work: impl FnOnce() -> T) -> (Cost, T) {
         let before = self.outside.get();
         let (cost, result) = self.counter.measure(work);
         (cost - (self.outside.get() - before), result)
     }
 
-    /// Marks this moment. The poll that is going on does not count yet.
+    /// Marks this moment. The poll in progress is not included.
     pub fn mark(&self, microseconds: u64) {
         let simulation = self.outside.get();
         let now = Mark { instrument: self.all.get() - simulation, simulation, microseconds };
@@ -87,7 +90,7 @@ impl Meter {
         self.marks.set(Some([first, now]));
     }
 
-    /// What was taken between the first mark and the last.
+    /// Cost between the first mark and the last.
     pub fn between_marks(&self) -> Stretch {
         let [first, last] = self.marks.get().unwrap_or_default();
         Stretch {
@@ -98,23 +101,27 @@ impl Meter {
     }
 }
 
-/// The polls of one task.
+/// Polls of one task.
 pub struct Task {
+    /// Name in the log.
     name: &'static str,
+    /// Number of polls.
     polls: Cell<u64>,
+    /// Cost of all polls.
     total: Cell<Cost>,
+    /// Cost of the most expensive poll.
     worst: Cell<Cost>,
 }
 
 impl Task {
-    /// A task that has not run.
+    /// Creates a task before its first poll.
     pub fn new(name: &'static str) -> Self {
         let [total, worst] = [Cost::default(); 2].map(Cell::new);
         Self { name, polls: Cell::new(0), total, worst }
     }
 
-    /// Runs a future and meters each of its polls. It hands over its results by itself: moving a
-    /// great one out of every poll would be metered, too.
+    /// Runs a future and meters each of its polls. The future must pass on its results by itself:
+    /// moving a large one out of every poll would be metered too.
     pub async fn run(&self, meter: &Meter, mut future: Pin<&mut impl Future<Output = ()>>) {
         poll_fn(|context| {
             let (cost, poll) = meter.inside(|| future.as_mut().poll(context));
@@ -124,28 +131,29 @@ impl Task {
         .await;
     }
 
+    /// Adds the cost of a poll.
     fn add(&self, cost: Cost) {
         self.polls.set(self.polls.get() + 1);
         self.total.set(self.total.get() + cost);
         self.worst.set(self.worst.get().max(cost));
     }
 
-    /// Its name in the log.
+    /// Name of the task in the log.
     pub fn name(&self) -> &'static str {
         self.name
     }
 
-    /// How often it was polled.
+    /// Number of polls.
     pub fn polls(&self) -> u64 {
         self.polls.get()
     }
 
-    /// All its polls together.
+    /// Cost of all polls.
     pub fn total(&self) -> Cost {
         self.total.get()
     }
 
-    /// Its longest poll.
+    /// Cost of the most expensive poll.
     pub fn worst(&self) -> Cost {
         self.worst.get()
     }

@@ -1,5 +1,9 @@
-//! What stands around the instrument here: metered ports of the simulated chips, its log, a link that nobody
-//! reads.
+//! The surroundings of the instrument in the emulator: metered ports of the simulated chips, the
+//! log, and a link that discards every line.
+//!
+//! The emulator counts the instructions of the instrument only. Whatever the simulation, its buses
+//! and the log execute is booked on a separate account (see [`Meter`]), so the counts can be
+//! compared with those of the board.
 
 use core::convert::Infallible;
 use core::future::poll_fn;
@@ -22,10 +26,13 @@ use crate::clock;
 use crate::meter::Meter;
 use crate::results;
 
-/// A simulated port whose work is not the instrument's: the board's bus drivers and their interrupts
-/// are others, so what this one takes says nothing of the board.
+/// A simulated port whose instructions are booked on the simulation's account: on the board, bus
+/// drivers and their interrupts take its place, so the cost of the simulated port says nothing
+/// about the board.
 pub struct Aiding<T> {
+    /// The wrapped port.
     port: T,
+    /// The meter that keeps the two accounts.
     meter: &'static Meter,
 }
 
@@ -90,10 +97,12 @@ impl<T: Wait> Wait for Aiding<T> {
     }
 }
 
-/// The log; printing by semihosting is the emulator's work.
+/// The observer of the emulated run: its printing by semihosting is booked on the emulator's
+/// account, and the progress of the session is marked in the meter.
 pub struct Log(pub &'static Meter);
 
 impl Observer for Log {
+    // Formatting and semihosting are booked on the simulation's account.
     fn event(&self, at: Instant, event: &Event) {
         self.0.outside(|| DefmtLog.event(at, event));
     }
@@ -115,7 +124,7 @@ impl Observer for Log {
     }
 }
 
-/// A link that takes everything.
+/// A link that accepts and discards every byte: the emulated board has no serial port.
 pub struct NoLink;
 
 impl ErrorType for NoLink {

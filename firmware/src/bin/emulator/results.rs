@@ -1,8 +1,10 @@
-//! What was found, bit by bit, for the host to compare with its own run.
+//! The results of a run as bit patterns, which the host compares with those of its own run.
 //!
-//! One line `dwell` for each dwell, `turn` for each turn or `stop` for each stop, one `outcome`, and `kept`
-//! for every second of keeping: `name=value` pairs, bits in hexadecimal, all
-//! ones for what is absent (no computation gives that pattern). They are printed at every log level.
+//! A run prints one line `dwell` for each dwell, `turn` for each turn or `stop` for each stop, one
+//! line `outcome`, and one line `kept` for each second of keeping. A line is a list of `name=value`
+//! pairs. Values are the bits of 64-bit floats in hexadecimal, without any rounding; an absent
+//! value has all bits set, a pattern that no computation yields. The lines are printed at every log
+//! level.
 
 use defmt::println;
 use orientation::align::conclusion::Azimuth;
@@ -12,10 +14,10 @@ use orientation::error::Refusal;
 use orientation::keep::Report;
 use orientation::signal::dwell::Dwell;
 
-/// The bits of what is absent.
+/// The bit pattern of an absent value.
 const ABSENT: u64 = u64::MAX;
 
-/// Logs the verdict.
+/// Logs the verdict: azimuth and 1σ in rad as bit patterns, or the reason of a refusal.
 #[inline(never)]
 pub fn outcome(seed: u64, verdict: &Result<Azimuth, Refusal>) {
     match verdict {
@@ -29,7 +31,8 @@ pub fn outcome(seed: u64, verdict: &Result<Azimuth, Refusal>) {
     }
 }
 
-/// Logs a turn, its numbers as wide as those of a dwell.
+/// Logs a turn of the continuous rotation. The 32-bit values are widened to 64 bits, which is
+/// exact, so the host parses one format.
 #[inline(never)]
 pub fn turn(number: u32, turn: &Turn) {
     let bits = |value: f32| f64::from(value).to_bits();
@@ -57,7 +60,8 @@ pub fn turn(number: u32, turn: &Turn) {
     );
 }
 
-/// Logs a stop: from when to when, what was turned in it and felt, what had been turned before.
+/// Logs a stop of the inertial-frame alignment: begin and end, s, the mean rotation vector within
+/// the stop, rad, and the mean specific force, as bit patterns.
 #[inline(never)]
 pub fn stop(number: u32, stop: &Stop) {
     let [turned, force] =
@@ -77,7 +81,7 @@ pub fn stop(number: u32, stop: &Stop) {
     );
 }
 
-/// Logs what was kept after the alignment.
+/// Logs one second of keeping: time, azimuth and 1σ, pitch, roll and the attitude quaternion.
 #[inline(never)]
 pub fn kept(report: &Report) {
     let azimuth = report
@@ -99,7 +103,8 @@ pub fn kept(report: &Report) {
     );
 }
 
-/// Logs a dwell.
+/// Logs a dwell: stage, middle and length of the dwell, samples, mean rate and taper, mean specific
+/// force and temperature.
 #[inline(never)]
 pub fn dwell(number: u32, dwell: &Dwell) {
     let force = dwell.force.map_or([ABSENT; 3], |force| force.map(f64::to_bits));

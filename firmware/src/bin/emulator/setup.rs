@@ -1,5 +1,8 @@
-//! What a run needs: the simulated board, its ports, the channels and the session, in one place in memory for
-//! every kind of run.
+//! The parts of a run in static memory: the simulated board, its ports, the channels and the
+//! session.
+//!
+//! Every kind of run has its variant of one `enum`, so the kinds share the same memory, and a part
+//! that is built lies where it stays.
 
 use core::cell::RefCell;
 
@@ -25,39 +28,39 @@ use crate::meter::Meter;
 use crate::outside::{Log, Metering, NoLink};
 use crate::results;
 
-/// The simulated board of a stage.
+/// The simulated board of an instrument on a stage or on a turntable.
 pub type StageRig = RefCell<Chips<'static>>;
-/// The simulated board of a vehicle.
+/// The simulated board of a strapdown instrument in a vehicle.
 pub type VehicleRig = RefCell<VehicleBoard<'static>>;
-/// The sensors of a stage.
+/// The sensors of an instrument on a stage or on a turntable.
 pub type StageInputs = SimulatedSensors<'static, Chips<'static>, Metering>;
-/// Its other ports.
+/// The motor, link and recorder of an instrument on a stage or on a turntable.
 pub type StageOutputs = SimulatedPorts<'static, Chips<'static>, Metering, NoLink, NoRecorder>;
-/// The sensors of a vehicle.
+/// The gyros and accelerometers of an instrument in a vehicle.
 pub type VehicleInputs = SimulatedTriad<'static, VehicleBoard<'static>, Metering>;
-/// Its other ports.
+/// The position aiding, link and recorder of an instrument in a vehicle.
 pub type VehicleOutputs = VehiclePorts<KnownPlace<'static, 'static>, NoLink, NoRecorder>;
-/// What keeps in a vehicle.
+/// The attitude keeper of a vehicle, without aiding and without memory over a loss of supply.
 pub type VehicleKeeping = Keeping<'static, NoOutside, ()>;
-/// The channels of a stage.
+/// The channels of an instrument on a stage or on a turntable.
 type StageSeams = Channels<'static, Log>;
-/// The channels of a vehicle.
+/// The channels of an instrument in a vehicle, which carry inertial samples.
 type VehicleSeams = Channels<'static, Log, InertialSample>;
 
-/// A board.
+/// The simulated board of either kind of run.
 #[expect(clippy::large_enum_variant, reason = "there is one, in static memory")]
 enum Rig {
     Stage(StageRig),
     Vehicle(VehicleRig),
 }
 
-/// Its ports, and the channels.
+/// The sensors, the other ports and the channels of either kind of run.
 enum Parts {
     Stage(StageInputs, StageOutputs, StageSeams),
     Vehicle(VehicleInputs, VehicleOutputs, VehicleSeams),
 }
 
-/// A session, the greatest piece of memory.
+/// The session of any kind of run, the largest object in memory.
 #[expect(clippy::large_enum_variant, reason = "there is one, and it stays where it is")]
 enum AnySession {
     Stepwise(Session),
@@ -65,13 +68,21 @@ enum AnySession {
     Stops(stops::Session),
 }
 
+/// The board of this run.
 static RIG: StaticCell<Rig> = StaticCell::new();
+/// The observer of this run.
 static LOG: StaticCell<Log> = StaticCell::new();
+/// Ports and channels of this run.
 static PARTS: StaticCell<Parts> = StaticCell::new();
+/// The session of this run.
 static SITTING: StaticCell<AnySession> = StaticCell::new();
+/// The attitude keeper of this run.
 static KEEPER: StaticCell<Keeper> = StaticCell::new();
 
-/// The board of a stage with its ports.
+/// Builds the board of a stage with its ports and channels in static memory; [`None`] if a board of
+/// another kind is there already.
+///
+/// May be called once: a second call panics, as the memory is taken.
 #[inline(never)]
 pub fn stage(
     board: impl FnOnce() -> Chips<'static>,
@@ -86,7 +97,10 @@ pub fn stage(
     Some((inputs, outputs, channels))
 }
 
-/// The board of a vehicle with its ports.
+/// Builds the board of a vehicle with its ports and channels in static memory; [`None`] if a board
+/// of another kind is there already.
+///
+/// May be called once: a second call panics, as the memory is taken.
 #[inline(never)]
 pub fn vehicle(
     board: impl FnOnce() -> VehicleBoard<'static>,
@@ -102,14 +116,15 @@ pub fn vehicle(
     Some((inputs, outputs, channels))
 }
 
-/// A session in positions. Not inlined: what it is made of on the stack is not to stay there.
+/// Builds a session of multi-position alignment in static memory. Not inlined, so that the
+/// temporary copy on the stack is gone when the session runs.
 #[inline(never)]
 pub fn stepwise(prepared: Prepared) -> Option<&'static mut Session> {
     let sitting = SITTING.init_with(|| AnySession::Stepwise(Session::from(prepared)));
     if let AnySession::Stepwise(session) = sitting { Some(session) } else { None }
 }
 
-/// A session on a turning platform, whose procedure was checked.
+/// Builds a session of continuous rotation in static memory; the procedure has been checked.
 #[inline(never)]
 pub fn turning(
     setting: &Setting,
@@ -119,7 +134,7 @@ pub fn turning(
     if let AnySession::Turning(session) = SITTING.init_with(session) { Some(session) } else { None }
 }
 
-/// A session in a vehicle.
+/// Builds a session of inertial-frame alignment in a vehicle in static memory.
 #[inline(never)]
 pub fn driving(
     setting: &align::stops::Setting,
@@ -129,22 +144,22 @@ pub fn driving(
     if let AnySession::Stops(session) = SITTING.init_with(session) { Some(session) } else { None }
 }
 
-/// What keeps in a vehicle.
+/// Builds the attitude keeper of a vehicle, without aiding from outside and without memory.
 #[inline(never)]
 pub fn keeping(setting: &keep::Setting, configuration: &KeepConfiguration) -> VehicleKeeping {
     Keeping::new(KEEPER.init_with(|| Keeper::new(setting)), configuration, NoOutside, ())
 }
 
-/// Sensors that sample.
+/// The sampling half of an instrument: sensors, configuration and channels.
 pub enum Sampling {
-    /// Of a stage, or a turning platform.
+    /// Sampling on a stage or on a turntable.
     Stage(&'static mut StageInputs, Configuration, &'static StageSeams),
-    /// Of a vehicle.
+    /// Sampling in a vehicle.
     Vehicle(&'static mut VehicleInputs, VehicleConfiguration, &'static VehicleSeams),
 }
 
 impl Sampling {
-    /// Samples for ever.
+    /// Samples for ever; never returns.
     pub async fn run(self) {
         match self {
             Self::Stage(inputs, configuration, channels) => {
@@ -157,14 +172,14 @@ impl Sampling {
     }
 }
 
-/// An instrument that runs.
+/// The processing half of an instrument: session, ports and channels.
 #[expect(clippy::large_enum_variant, reason = "there is one, in static memory")]
 pub enum Running {
-    /// On a stage.
+    /// Multi-position alignment on a stage.
     Stepwise(&'static mut Session, &'static mut StageOutputs, Configuration, &'static StageSeams),
-    /// On a turning platform.
+    /// Continuous rotation on a turntable.
     Turning(&'static mut rotating::Session, &'static mut StageOutputs, &'static StageSeams),
-    /// In a vehicle.
+    /// Inertial-frame alignment from stop to stop in a vehicle.
     Stops(
         &'static mut stops::Session,
         &'static mut VehicleOutputs,
@@ -174,7 +189,7 @@ pub enum Running {
 }
 
 impl Running {
-    /// Runs to the session's conclusion.
+    /// Runs the session to its conclusion and gives the session back.
     pub async fn run(self) -> Finished {
         match self {
             Self::Stepwise(session, outputs, configuration, channels) => {
@@ -195,16 +210,16 @@ impl Running {
 
 /// A session that has concluded.
 pub enum Finished {
-    /// In positions.
+    /// A session of multi-position alignment.
     Stepwise(&'static Session),
-    /// On a turning platform.
+    /// A session of continuous rotation.
     Turning(&'static rotating::Session),
-    /// In a vehicle.
+    /// A session of inertial-frame alignment.
     Stops(&'static stops::Session),
 }
 
 impl Finished {
-    /// Logs what was found; `None` where nothing was.
+    /// Logs the dwells, turns or stops and the outcome; [`None`] if the session has not concluded.
     pub fn log(&self, seed: u64) -> Option<()> {
         match self {
             Self::Stepwise(session) => {

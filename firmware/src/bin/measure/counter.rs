@@ -1,9 +1,10 @@
-//! Counts executed instructions with the core's own timer.
+//! Counts executed instructions with the system timer of the processor core.
 //!
-//! QEMU with `-icount shift=5` gives every instruction 32 ns of virtual time, whatever it does, and
-//! `SysTick` of its netduinoplus2 runs at 168 MHz: one instruction is 5.376 ticks. The timer is 24
-//! bits wide; its exception counts the wraps, one in 3.1 million instructions, and adds about ten
-//! instructions to what it interrupts.
+//! QEMU with `-icount shift=5` advances the virtual time by 32 ns for every instruction, whatever
+//! the instruction does, and `SysTick` of the emulated netduinoplus2 runs at 168 MHz: one
+//! instruction is 5.376 ticks. The timer is 24 bits wide. An exception counts its wraps, one in 3.1
+//! million instructions, and adds about ten instructions to the work that it interrupts, 3·10⁻⁶ of
+//! it.
 
 use core::hint::black_box;
 use core::ops::{Add, AddAssign, Div, Sub};
@@ -13,16 +14,16 @@ use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_rt::exception;
 
-/// Highest value of the timer, which counts down from it to zero.
+/// Reload value of the timer, which counts down from it to zero: the full 24 bits.
 const RELOAD: u32 = 0xFF_FFFF;
-/// Ticks of so many instructions …
+/// Numerator of the ratio of ticks to instructions: 672 ticks are 125 instructions.
 const TICKS: u64 = 672;
-/// … as these: 672/125 = 168 MHz · 32 ns.
+/// Denominator of the ratio: 672/125 = 5.376 = 168 MHz · 32 ns.
 const INSTRUCTIONS: u64 = 125;
-/// How often nothing is measured to learn what measuring costs.
+/// Number of empty measurements whose mean is the cost of a measurement itself.
 const CALIBRATIONS: u64 = 1000;
 
-/// How often the timer has passed zero.
+/// Number of times that the timer has passed zero.
 static WRAPS: AtomicU32 = AtomicU32::new(0);
 
 #[exception]
@@ -30,19 +31,21 @@ fn SysTick() {
     WRAPS.store(WRAPS.load(Ordering::Relaxed).wrapping_add(1), Ordering::Relaxed);
 }
 
-/// What a piece of work took.
+/// The cost of a piece of work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Cost {
+    /// Ticks of the timer; 5.376 for each instruction.
     ticks: u64,
 }
 
 impl Cost {
-    /// In instructions, rounded to nearest.
+    /// The number of instructions, rounded to nearest.
     pub fn instructions(self) -> u64 {
         self.mean(1)
     }
 
-    /// Instructions of one of `count` equal pieces, rounded to nearest.
+    /// The mean number of instructions of one of `count` equal pieces, rounded to nearest. `count`
+    /// must not be zero.
     pub fn mean(self, count: u64) -> u64 {
         let unit = TICKS * count;
         (self.ticks * INSTRUCTIONS + unit / 2) / unit
@@ -57,7 +60,7 @@ impl Add for Cost {
     }
 }
 
-/// What is left; nothing where more is taken away than there is.
+/// The difference of two costs, at least zero.
 impl Sub for Cost {
     type Output = Self;
 
@@ -66,7 +69,7 @@ impl Sub for Cost {
     }
 }
 
-/// One of so many equal pieces, rounded to nearest.
+/// The cost of one of `count` equal pieces, rounded to nearest ticks.
 impl Div<u64> for Cost {
     type Output = Self;
 
@@ -83,12 +86,12 @@ impl AddAssign for Cost {
 
 /// The running timer.
 pub struct Counter {
-    /// Ticks that a measurement of nothing shows.
+    /// Ticks of a measurement of no work, subtracted from every measurement.
     own: u64,
 }
 
 impl Counter {
-    /// Starts the timer and learns what a measurement costs.
+    /// Starts the timer and measures the cost of a measurement itself.
     pub fn start(mut timer: SYST) -> Self {
         timer.set_clock_source(SystClkSource::Core);
         timer.set_reload(RELOAD);
@@ -101,7 +104,8 @@ impl Counter {
         counter
     }
 
-    /// Does the work, which must be a call that is not inlined, and tells what it took.
+    /// Runs the work and returns its cost and its result. The work must be a call that is not
+    /// inlined, or the compiler may move parts of it out of the measurement.
     #[inline(never)]
     pub fn measure<T>(&self, work: impl FnOnce() -> T) -> (Cost, T) {
         let before = now();
@@ -111,7 +115,7 @@ impl Counter {
     }
 }
 
-/// Ticks since the start.
+/// Ticks since the start. Reads again if the timer wrapped between the two reads.
 #[inline(never)]
 fn now() -> u64 {
     loop {

@@ -1,4 +1,5 @@
-//! How much stack a piece of work uses.
+//! Measures the stack that a piece of work uses: paints the unused stack with a pattern, runs the
+//! work, and looks for the lowest word that has changed.
 
 #![expect(unsafe_code, reason = "reads the linker's symbols and the stack's unused memory")]
 
@@ -9,19 +10,20 @@ use core::sync::atomic::{AtomicUsize, Ordering};
 
 use cortex_m::register::msp;
 
-/// What unused stack holds.
+/// The pattern that marks unused stack.
 const PAINT: u32 = 0xC0DE_FACE;
-/// Bytes of a word.
+/// Size of a word, bytes.
 const WORD: usize = size_of::<u32>();
 
-/// Bytes next to the stack pointer that are not painted: the painter itself may save registers
-/// there after it has read the pointer. Uses of stack smaller than this show as this.
+/// Distance from the stack pointer below which the stack is not painted, bytes: the painting
+/// function itself may save registers there after it has read the pointer. A smaller use of stack
+/// is reported as this value.
 const MARGIN: usize = 128;
 
-/// Lowest address of the stack that was in use so far.
+/// Lowest address of the stack in use so far.
 static LOWEST: AtomicUsize = AtomicUsize::new(usize::MAX);
 
-/// Places that cortex-m-rt's `link.x` names; only their addresses mean something.
+/// Symbols of cortex-m-rt's `link.x`. Only their addresses have a meaning.
 mod symbols {
     // SAFETY: the script defines every one of them, and nothing reads a value through them.
     unsafe extern "C" {
@@ -35,7 +37,7 @@ fn address(symbol: &'static u32) -> usize {
     (&raw const *symbol).expose_provenance()
 }
 
-/// Does the work and tells how many bytes of stack it took below its caller.
+/// Runs the work and returns the bytes of stack below the caller that it used, and its result.
 #[inline(never)]
 pub fn stack_of<T>(work: impl FnOnce() -> T) -> (usize, T) {
     paint();
@@ -44,24 +46,25 @@ pub fn stack_of<T>(work: impl FnOnce() -> T) -> (usize, T) {
     (top - lowest(), result)
 }
 
-/// Bytes of stack at the deepest so far, as far as [`stack_of`] saw.
+/// Bytes of stack at the deepest point that any [`stack_of`] has seen, counted from the stack's
+/// start.
 pub fn greatest_stack() -> usize {
     address(&symbols::_stack_start) - LOWEST.load(Ordering::Relaxed)
 }
 
-/// Fills the stack below this call.
+/// Fills the unused stack below this call with the pattern.
 #[inline(never)]
 fn paint() {
     let top = msp::read() as usize - MARGIN;
     for place in (address(&symbols::_stack_end)..top).step_by(WORD) {
         // SAFETY: an aligned word of RAM above the statics and below all frames, this function's
-        // included (`MARGIN`): nobody's variable. An exception may use it meanwhile, but needs
+        // included (`MARGIN`): no variable lies there. An exception may use it meanwhile, but needs
         // nothing there once it has returned.
         unsafe { write_volatile(with_exposed_provenance_mut(place), PAINT) }
     }
 }
 
-/// The lowest address that lost its paint.
+/// The lowest address whose pattern has changed.
 #[inline(never)]
 fn lowest() -> usize {
     let mut place = address(&symbols::_stack_end);

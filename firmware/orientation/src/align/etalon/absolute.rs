@@ -1,8 +1,8 @@
-//! Exhaustive search of a sum of absolute values without the exhaustion.
+//! Exact minimum of a sum of absolute values over the table, without evaluating every index.
 //!
-//! On each piece between two zero crossings the continuous sum is one sinusoid; where it is below a
-//! level it touches an end of the piece or surrounds the sinusoid's minimum, so walks from those
-//! three places meet every index that can win.
+//! On each piece between two zero crossings the continuous sum is one sinusoid. The set where it is
+//! below a level touches an end of the piece or surrounds the sinusoid's minimum, so walks from
+//! those three places meet every index that can win.
 
 use libm::floor;
 
@@ -14,18 +14,26 @@ use super::table::{STEP, TURN, Table};
 use super::{Acceptance, Match};
 use crate::math::sort;
 
-/// The best index so far, and what a piece must stay below to be worth evaluating.
+/// Best index so far, and the level below which a piece is worth evaluating.
 struct Best<'a> {
+    /// Reference table.
     table: Table,
+    /// Measured series.
     series: &'a Series,
+    /// Bound on the difference between the continuous and the exact sum.
     rounding: f64,
+    /// Best index so far.
     index: i32,
+    /// Exact sum at the best index.
     objective: u64,
+    /// Greatest continuous sum whose exact value may still win.
     reach: f64,
+    /// Number of exact evaluations.
     evaluations: u32,
 }
 
 impl Best<'_> {
+    /// Evaluates an index exactly and keeps it if it is better, or equal and lower.
     fn offer(&mut self, k: i32) {
         let value = exact::absolute(self.table, self.series, k);
         self.evaluations += 1;
@@ -36,12 +44,12 @@ impl Best<'_> {
         }
     }
 
-    /// Evaluates from `from` towards `to`, both included, as far as the piece may compete; the
-    /// result is the index that may not, or the one beyond `to`.
+    /// Evaluates from `from` towards `to`, both included, as far as the piece can compete; returns
+    /// the first index that cannot, or the one beyond `to`.
     fn walk(&mut self, piece: &Piece, from: i32, to: i32, sign: i32) -> i32 {
         let mut k = from;
         while (to - k) * sign >= 0 && piece.at(self.table, k) <= self.reach {
-            // The first guess was evaluated already.
+            // The first guess was evaluated before, so it is skipped.
             if k != self.index {
                 self.offer(k);
             }
@@ -50,7 +58,7 @@ impl Best<'_> {
         k
     }
 
-    /// Evaluates all of the piece that may compete.
+    /// Evaluates every index of the piece that can compete.
     fn cover(&mut self, piece: &Piece) {
         let (first, last) = piece.indices();
         if first > last || !piece.dips_to(self.reach) {
@@ -69,7 +77,7 @@ impl Best<'_> {
     }
 }
 
-/// The grid index at which the continuous sum is least.
+/// Grid index at which the continuous sum is least.
 fn guess(table: Table, sweep: &Sweep) -> i32 {
     let (mut index, mut least) = (0, f64::INFINITY);
     for piece in sweep.pieces() {
@@ -88,7 +96,7 @@ fn guess(table: Table, sweep: &Sweep) -> i32 {
     index
 }
 
-/// The index of the least sum; see [`super::search`].
+/// Index of the least exact sum; see [`super::search`].
 #[inline(never)]
 pub(super) fn search(table: Table, series: &Series) -> Match {
     let mut sweep = Sweep::empty();
@@ -114,12 +122,12 @@ pub(super) fn search(table: Table, series: &Series) -> Match {
     }
 }
 
-/// Where within one step of index `k` the continuous sum is least, in grid steps.
+/// Place within one step of index `k` at which the continuous sum is least, in grid steps.
 fn refine(sweep: &Sweep, k: i32) -> f64 {
     let (mut place, mut least) = (f64::from(k), f64::INFINITY);
     for piece in sweep.pieces() {
         for turn in [-TURN, 0, TURN] {
-            // The stretch of the piece within one step of k, seen from this turn.
+            // Stretch of the piece within one step of k, for this number of turns.
             let from = piece.from.max(f64::from(k + turn - 1));
             let to = piece.to.min(f64::from(k + turn + 1));
             if from > to {
@@ -136,7 +144,7 @@ fn refine(sweep: &Sweep, k: i32) -> f64 {
     place
 }
 
-/// One piece's continuous sum against a limit.
+/// Comparison of one piece's continuous sum with a limit.
 struct Within<'a> {
     table: Table,
     series: &'a Series,
@@ -164,7 +172,7 @@ impl Judge for Within<'_> {
     }
 }
 
-/// The arc on which the sum is at most `limit`; see [`super::accepted`].
+/// Arc on which the sum is at most `limit`; see [`super::accepted`].
 #[inline(never)]
 pub(super) fn within(table: Table, series: &Series, limit: u64) -> Acceptance {
     let mut sweep = Sweep::empty();

@@ -2,18 +2,18 @@
 
 use super::{Accepted, table::TURN};
 
-/// Where a continuous objective puts one index against the limit.
+/// Side of the limit on which the continuous objective and its error bound put one index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Side {
-    /// Surely accepted.
+    /// The index is certainly accepted.
     Inside,
-    /// Too near to tell: evaluate exactly.
+    /// The index is too near the limit and must be evaluated exactly.
     Unsure,
-    /// Surely rejected.
+    /// The index is certainly rejected.
     Outside,
 }
 
-/// Judges single indices: by the continuous bound, and exactly.
+/// Comparison of single indices with a limit: by the continuous bound, and exactly.
 pub(super) trait Judge {
     /// The side on which the continuous objective and its error bound put index `k`.
     fn side(&self, k: i32) -> Side;
@@ -21,14 +21,18 @@ pub(super) trait Judge {
     fn accepts(&mut self, k: i32) -> bool;
 }
 
-/// The accepted indices seen so far, in increasing order from wherever the walk began.
+/// Accepted indices seen so far, in increasing order from the start of the walk.
 ///
 /// Indices are unwrapped: one walk covers one turn from any start.
 #[derive(Debug, Default)]
 pub(super) struct Cover {
+    /// First accepted index.
     first: Option<i32>,
+    /// Latest accepted index.
     last: i32,
+    /// Length of the largest gap so far.
     gap: i32,
+    /// Index at which the arc after that gap begins.
     start: i32,
 }
 
@@ -46,7 +50,7 @@ impl Cover {
         self.last = to;
     }
 
-    /// Ends the gap that runs up to the accepted index `next`; of equal gaps the one whose arc
+    /// Closes the gap that runs up to the accepted index `next`; of equal gaps the one whose arc
     /// begins at the lowest index is kept.
     fn close(&mut self, next: i32) {
         let (gap, start) = (next - self.last - 1, next.rem_euclid(TURN));
@@ -56,7 +60,7 @@ impl Cover {
         }
     }
 
-    /// Judges every index of `from` to `to` by itself.
+    /// Judges every index from `from` to `to` by itself.
     pub(super) fn judge_each(&mut self, judge: &mut impl Judge, from: i32, to: i32) {
         for k in from..=to {
             let inside = match judge.side(k) {
@@ -92,6 +96,7 @@ impl Cover {
         }
     }
 
+    /// Evaluates every index of a run exactly.
     fn accept_exactly(&mut self, judge: &mut impl Judge, from: i32, to: i32) {
         for k in from..=to {
             if judge.accepts(k) {
@@ -100,7 +105,7 @@ impl Cover {
         }
     }
 
-    /// The result once the whole turn has been walked.
+    /// Result after the walk once round the circle.
     pub(super) fn finish(mut self) -> Accepted {
         let Some(first) = self.first else { return Accepted::Nothing };
         self.close(first + TURN);
@@ -113,17 +118,17 @@ impl Cover {
     }
 }
 
-/// The last sure index, and the last that is not surely rejected, on the way from `near` (beyond
-/// the sure end) to `far` (beyond the other).
+/// Last certain index, and last index that is not certainly rejected, on the way from `near`
+/// (beyond the certain end) to `far` (beyond the other).
 fn crossing(judge: &impl Judge, near: i32, far: i32) -> (i32, i32) {
     let sure = last_within(|k| judge.side(k) == Side::Inside, near, far, TURN);
     (sure, last_within(|k| judge.side(k) != Side::Outside, sure, far, 1))
 }
 
-/// The last index that is `within` on the way from `near` (not asked, taken as within) to `far` (not
-/// asked, taken as beyond).
+/// Last index that is `within` on the way from `near` (not evaluated, taken as within) to `far`
+/// (not evaluated, taken as beyond).
 ///
-/// It takes ever longer strides from `near`, the first of length `stride`, then bisects.
+/// Strides from `near` double, beginning with `stride`, until an index is beyond; then it bisects.
 pub(super) fn last_within(within: impl Fn(i32) -> bool, near: i32, far: i32, stride: i32) -> i32 {
     let (mut near, mut far, mut stride) = (near, far, stride);
     while (far - near).abs() > 1 {

@@ -1,4 +1,5 @@
-//! The objectives in exact integers over the stored table: what every search must agree with.
+//! Objectives in exact integers over the stored table: the reference that every search must agree
+//! with.
 //!
 //! With d the table's cosines minus the measured values, an objective depends on d only through
 //! d − constant (the unknown drift). Near the answer those differences are small, so 32-bit
@@ -7,12 +8,12 @@
 
 use super::{series::Series, table::Table};
 
-/// Which sum of squares is minimised.
+/// Kind of the sum of squares that is minimised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Squares {
-    /// n Σd² − (Σd)²: n times the sum of squares about the mean.
+    /// Mean-removed squares, n Σd² − (Σd)²: n times the sum of squares about the mean.
     Centred,
-    /// Σ(dᵢ₊₁ − dᵢ)².
+    /// Squares of the differences, Σ(dᵢ₊₁ − dᵢ)².
     Differences,
 }
 
@@ -28,7 +29,7 @@ impl Squares {
         }
     }
 
-    /// The objective up to which the short arithmetic is exact.
+    /// Greatest objective for which the short arithmetic is exact.
     ///
     /// Differences: J = Σe² ≤ 2⁶² bounds every |e| by 2³¹. Centred: J/n = ‖d − mean‖² ≤ b bounds every
     /// |dᵢ − d₀| by √(2b) and their sum of squares by (1 + n) b, which is less than 2⁶³ with b = 2⁵⁶ up to
@@ -45,11 +46,12 @@ impl Squares {
     }
 }
 
-/// The first residual, from which the others are counted.
+/// First residual, from which the others are counted.
 fn first(table: Table, series: &Series, k: i32) -> i64 {
     table.cos(k) - series.values().first().copied().unwrap_or(0)
 }
 
+/// Mean-removed squares in 64-bit arithmetic.
 #[inline(never)]
 fn centred_small(table: Table, series: &Series, k: i32) -> u128 {
     let origin = first(table, series, k) as i32;
@@ -63,6 +65,7 @@ fn centred_small(table: Table, series: &Series, k: i32) -> u128 {
     (count * i128::from(squares) - i128::from(sum) * i128::from(sum)) as u128
 }
 
+/// Mean-removed squares in 128-bit arithmetic.
 #[inline(never)]
 fn centred(table: Table, series: &Series, k: i32) -> u128 {
     let (mut squares, mut sum) = (0_i128, 0_i128);
@@ -73,6 +76,7 @@ fn centred(table: Table, series: &Series, k: i32) -> u128 {
     (series.values().len() as i128 * squares - sum * sum) as u128
 }
 
+/// Squares of the differences in 64-bit arithmetic.
 #[inline(never)]
 fn differences_small(table: Table, series: &Series, k: i32) -> u128 {
     let mut before = first(table, series, k) as i32;
@@ -85,6 +89,7 @@ fn differences_small(table: Table, series: &Series, k: i32) -> u128 {
     squares as u128
 }
 
+/// Squares of the differences in 128-bit arithmetic.
 #[inline(never)]
 fn differences(table: Table, series: &Series, k: i32) -> u128 {
     let mut before = first(table, series, k);
@@ -97,7 +102,7 @@ fn differences(table: Table, series: &Series, k: i32) -> u128 {
     squares
 }
 
-/// Σ|dᵢ₊₁ − dᵢ| at grid index `k`; at most 1 023 · 2⁴².
+/// Sum of absolute differences Σ|dᵢ₊₁ − dᵢ| at grid index `k`; at most 1 023 · 2⁴².
 pub(super) fn absolute(table: Table, series: &Series, k: i32) -> u64 {
     let mut before = first(table, series, k);
     let mut sum = 0;

@@ -16,40 +16,42 @@ use super::exact::Squares;
 use super::series::Series;
 use super::table::{HALF, ONE, QUARTER, STEP, TURN, Table};
 
-/// The sums, means removed or differenced, scaled so that the table's integer cosines serve as
-/// they are: a soft-float multiplication costs more than a look-up.
+/// Five sums (and the square of z), means removed or differenced, scaled so that the table's
+/// integer cosines serve as they are: a soft-float multiplication costs more than a look-up.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Landscape {
-    /// Σp², Σq² and their difference.
+    /// Sums Σp², Σq² and their difference.
     pp: f64,
     qq: f64,
     spread: f64,
-    /// 2Σpq, 2Σpz, 2Σqz.
+    /// Sums 2Σpq, 2Σpz and 2Σqz.
     pq2: f64,
     pz2: f64,
     qz2: f64,
-    /// Σz².
+    /// Sum Σz².
     zz: f64,
 }
 
-/// Grid indices between which the objective turns, as the module describes.
+/// Grid indices that separate the stationary points of the objective, as the module describes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
-    /// The end of the major axis on the measured point's side, ψ = 0 after reflection.
+    /// End of the major axis on the measured point's side, ψ = 0 after reflection.
     major: i32,
-    /// The end of the minor axis on its side, ψ = π/2.
+    /// End of the minor axis on the measured point's side, ψ = π/2.
     minor: i32,
-    /// Between the minimum and the maximum of the fourth quadrant.
+    /// Index between the minimum and the maximum of the fourth quadrant.
     saddle: i32,
 }
 
-/// The exact integer sums of products of (p, q, z).
+/// Exact integer sums of the products of (p, q, z).
 #[derive(Default)]
 struct Sums {
+    /// Sums of pp, pq, qq, pz, qz and zz.
     products: [i128; 6],
 }
 
 impl Sums {
+    /// Adds the products of one position.
     fn add(&mut self, p: i64, q: i64, z: i64) {
         let pairs = [(p, p), (p, q), (q, q), (p, z), (q, z), (z, z)];
         for (sum, (a, b)) in self.products.iter_mut().zip(pairs) {
@@ -57,7 +59,7 @@ impl Sums {
         }
     }
 
-    /// Each sum times `count`, less the product of the totals.
+    /// Mean-removed sums: each times `count`, less the product of the totals.
     fn centred(mut self, count: i128, [p, q, z]: [i64; 3]) -> Self {
         let pairs = [(p, p), (p, q), (q, q), (p, z), (q, z), (z, z)];
         for (sum, (a, b)) in self.products.iter_mut().zip(pairs) {
@@ -70,7 +72,7 @@ impl Sums {
 impl Landscape {
     /// Sums `series` over the table; the sums are exact until they are rounded to `f64`.
     pub(super) fn new(table: Table, series: &Series, squares: Squares) -> Self {
-        // A power of two: the scaling is exact.
+        // The scale is a power of two, so the scaling is exact.
         const SCALE: f64 = 1.0 / ONE;
         let sums = match squares {
             Squares::Centred => centred_sums(table, series),
@@ -82,37 +84,38 @@ impl Landscape {
         Self { pp, qq, spread: pp - qq, pq2, pz2: pz * (2.0 * SCALE), qz2: qz * (2.0 * SCALE), zz }
     }
 
-    /// The objective at grid index `k`, cosine and sine from the table.
+    /// Continuous objective at grid index `k`, with cosine and sine from the table.
     pub(super) fn at(&self, table: Table, k: i32) -> f64 {
         let (c, s) = table.phasor(k);
         let cosine = c * self.pp - s * self.pq2 - self.pz2;
         self.zz + c * cosine + s * (s * self.qq + self.qz2)
     }
 
-    /// The objective's slope per radian, over 2³¹, at grid index `k`.
+    /// Slope of the objective per radian, over 2³¹, at grid index `k`.
     pub(super) fn slope(&self, table: Table, k: i32) -> f64 {
         let ((c, s), (c2, s2)) = (table.phasor(k), table.phasor(2 * k));
         (s * self.pz2 + c * self.qz2) * (1.0 / ONE) - s2 * self.spread - c2 * self.pq2
     }
 
-    /// How far [`Self::slope`] may be off: half a unit in each cosine, doubled for the arithmetic.
+    /// Error bound of [`Self::slope`]: half a unit in each cosine, doubled for the arithmetic.
     pub(super) fn slope_error(&self) -> f64 {
         let linear = (fabs(self.pz2) + fabs(self.qz2)) * (1.0 / ONE);
         linear + fabs(self.spread) + fabs(self.pq2)
     }
 
-    /// A bound on the `f64` rounding of [`Self::at`]: 16 roundings of the largest partial sum.
+    /// Bound on the `f64` rounding of [`Self::at`]: 16 roundings of the largest partial sum.
     pub(super) fn slack(&self) -> f64 {
         let squares = (self.pp + self.qq + fabs(self.pq2)) * (ONE * ONE);
         let linear = (fabs(self.pz2) + fabs(self.qz2)) * ONE;
         (self.zz + squares + linear) * (8.0 * f64::EPSILON)
     }
 
-    /// A bound on the error that table rounding makes in the root of the objective.
+    /// Bound on the error that table rounding makes in the root of the objective, for `count`
+    /// positions.
     ///
-    /// Per cosine 0.5 for the entry compared and 0.7072 for p and q, twice that per difference; the
-    /// root of n Σ(d − mean)² is √n times a norm. Then half a unit of cos A and of sin A on all of
-    /// p and q, which is little on a short arc.
+    /// The errors are, per cosine, 0.5 for the entry compared and 0.7072 for p and q, twice that
+    /// per difference; the root of n Σ(d − mean)² is √n times a norm. Half a unit of cos A and of
+    /// sin A on all of p and q is added, which is little on a short arc.
     pub(super) fn rounding(&self, count: f64, squares: Squares) -> f64 {
         const ENTRY: f64 = 1.2073;
         let entries = match squares {
@@ -122,7 +125,7 @@ impl Landscape {
         entries + 0.5001 * (sqrt(self.pp) + sqrt(self.qq))
     }
 
-    /// The bounds between which the objective turns.
+    /// Indices that separate the minima and maxima.
     pub(super) fn bounds(&self) -> Bounds {
         let axis = 0.5 * atan2(-self.pq2, self.spread);
         let (sine, cosine) = sincos(axis);
@@ -136,20 +139,21 @@ impl Landscape {
         }
     }
 
-    /// The global minimum, then the place of the other one if there is one; to within a step, or
-    /// where the objective is flat.
+    /// Global minimum, then the place of the other one if there is one; to within a step, or
+    /// anywhere where the objective is flat.
     pub(super) fn minima(&self, table: Table, bounds: &Bounds) -> [i32; 2] {
         let &Bounds { major, minor, saddle } = bounds;
         [self.turn(table, major, minor, 1.0), self.turn(table, minor + HALF, saddle, 1.0)]
     }
 
-    /// The maxima, likewise.
+    /// Maxima, to within a step, in the order of [`Self::minima`].
     pub(super) fn maxima(&self, table: Table, bounds: &Bounds) -> [i32; 2] {
         let &Bounds { major, minor, saddle } = bounds;
         [self.turn(table, major + HALF, minor + HALF, -1.0), self.turn(table, saddle, major, -1.0)]
     }
 
-    /// The index on the way from `from` to `to` at which `sign` · J stops falling.
+    /// Index on the way from `from` to `to` at which `sign` · J stops falling, by bisection of the
+    /// slope.
     fn turn(&self, table: Table, from: i32, to: i32, sign: f64) -> i32 {
         let way = (to - from + HALF).rem_euclid(TURN) - HALF;
         let sign = if way < 0 { -sign } else { sign };
@@ -162,8 +166,8 @@ impl Landscape {
         (from + near).rem_euclid(TURN)
     }
 
-    /// The azimuth in rad, [0, 2π), of the continuous minimum next to grid index `k`: Newton's
-    /// method on the slope, each step at most one grid step.
+    /// Azimuth, rad, [0, 2π), of the continuous minimum next to grid index `k`: Newton's method on
+    /// the slope, each step at most one grid step.
     pub(super) fn refine(&self, k: i32) -> f64 {
         const ENOUGH: f64 = 1e-10;
         let (pz, qz) = (self.pz2 * (1.0 / ONE), self.qz2 * (1.0 / ONE));
@@ -186,11 +190,13 @@ impl Landscape {
     }
 }
 
-/// ∛x to about 10⁻¹³, near enough for a grid step; the library's, exact to the last bit, takes 3 KB.
+/// Cube root to about 10⁻¹³, accurate enough for a grid step; the library's, exact to the last bit,
+/// takes 3 KB of flash.
 fn cube_root(x: f64) -> f64 {
     copysign(exp(log(fabs(x)) / 3.0), x)
 }
 
+/// Mean-removed sums of the series over the table.
 fn centred_sums(table: Table, series: &Series) -> Sums {
     let (mut sums, mut totals) = (Sums::default(), [0_i64; 3]);
     let mut index = 0;
@@ -205,6 +211,7 @@ fn centred_sums(table: Table, series: &Series) -> Sums {
     sums.centred(series.values().len() as i128, totals)
 }
 
+/// Sums of the differences of neighbours over the table.
 fn difference_sums(table: Table, series: &Series) -> Sums {
     let mut sums = Sums::default();
     let mut index = 0;

@@ -1,17 +1,18 @@
-//! The etalon table and the search of it: which azimuth best explains a series of dwells?
+//! Reference table (etalon) and its search: the azimuth that best explains a series of dwells.
 //!
 //! ```text
 //!  rates / Ω_h, step ─▶ Series ─┬─▶ search(Criterion) ─▶ Match: index, azimuth below the grid
 //!  QUARTER_COSINE ────▶ Table ──┴─▶ accepted(Limit) ───▶ Acceptance: arc of accepted indices
 //! ```
 //!
-//! The gyro dwells at n positions one uniform step apart; position i measures
-//! `Z_i` = `Ω_h` cos(A + iΔ) + S + noise, with an unknown constant drift S. Sokolov (2019) compares
-//! the differences of neighbours with a table of reference values for every azimuth on a 10″ grid
-//! and takes the best of them by brute force. Here the same answer, bit for bit that of a brute
-//! force in exact integers over the stored table with the lowest index on a tie, comes from a few
-//! exact evaluations: a continuous form of the objective and a rigorous bound on table rounding
-//! say which indices can win (`host-tests/tests/etalon.rs` holds it to the brute force).
+//! The gyro dwells at n positions one uniform step apart; position i measures `Z_i` = `Ω_h` cos(A +
+//! iΔ) + S + noise, with an unknown constant drift S. Sokolov 2019 compares the differences of
+//! neighbours with a table of reference values (the etalon series) for every azimuth on a 10″ grid
+//! and takes the best of them by exhaustive search. Here the same answer, bit for bit that of an
+//! exhaustive search in exact integers over the stored table with the lowest index on a tie, comes
+//! from a few exact evaluations: a continuous form of the objective and a rigorous bound on table
+//! rounding determine which indices can win (asserted against the exhaustive search in
+//! `host-tests/tests/etalon.rs`).
 //!
 //! * *Azimuth index* k, 0 to 129 599: the azimuth of the sensitive axis **at the first position**
 //!   is k · 10″, clockwise from north. The paper reports the n-th position: add (n − 1) Δ.
@@ -38,67 +39,68 @@ pub use table::Table;
 
 use exact::Squares;
 
-/// What is minimised, with d the table's cosines at a candidate azimuth minus the measured values.
+/// Objective that is minimised, with d the table's cosines at a candidate azimuth minus the
+/// measured values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Criterion {
-    /// n Σd² − (Σd)², the mean-removed least squares: the maximum-likelihood answer for white noise
-    /// and a constant drift, and the default.
+    /// Mean-removed least squares n Σd² − (Σd)²: the maximum-likelihood answer for white noise and
+    /// a constant drift, and the default.
     MaximumLikelihood,
-    /// Σ(dᵢ₊₁ − dᵢ)², the paper's sum of squares of differences (its section 2, after eq. 4).
+    /// Sum of squares of differences Σ(dᵢ₊₁ − dᵢ)² (Sokolov 2019, section 2, after eq. 4).
     LeastSquares,
-    /// Σ|dᵢ₊₁ − dᵢ|, the paper's sum of absolute differences.
+    /// Sum of absolute differences Σ|dᵢ₊₁ − dᵢ| (Sokolov 2019).
     LeastAbsolute,
 }
 
-/// Which azimuths are accepted (the paper's eq. 4).
+/// Limit by which azimuths are accepted (Sokolov 2019, eq. 4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Limit {
-    /// Σ(dᵢ₊₁ − dᵢ)² at most this many squared table units.
+    /// Limit on Σ(dᵢ₊₁ − dᵢ)², in squared table units.
     WithinSquares(u128),
-    /// Σ|dᵢ₊₁ − dᵢ| at most this many table units.
+    /// Limit on Σ|dᵢ₊₁ − dᵢ|, in table units.
     WithinAbsolute(u64),
 }
 
-/// The best azimuth.
+/// The best azimuth and the cost of finding it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Match {
     /// Azimuth of the first position in grid steps of 10″, 0 to 129 599; the lowest on a tie.
     pub index: i32,
-    /// The objective there, exact, in table units (squared for sums of squares).
+    /// Exact objective at that index, in table units (squared for sums of squares).
     pub objective: u128,
     /// Azimuth of the first position in rad, [0, 2π), interpolated below the grid: the minimum of
     /// the continuous objective (for [`Criterion::LeastAbsolute`] within one step of `index`).
-    /// Within 0.5″ of the truth without noise.
+    /// Without noise it is within 0.5″ of the truth.
     pub azimuth: f64,
-    /// How many indices were evaluated exactly.
+    /// Number of exact evaluations.
     pub evaluations: u32,
 }
 
-/// The accepted set's smallest covering arc.
+/// Smallest arc that covers the accepted set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Accepted {
-    /// No azimuth meets the limit: it is below the noise.
+    /// No azimuth meets the limit: the limit is below the noise.
     Nothing,
-    /// The smallest arc that covers the accepted indices (the complement of their largest gap; of
-    /// equal gaps the arc with the lowest first index).
+    /// Smallest arc that covers the accepted indices (the complement of their largest gap; of equal
+    /// gaps the arc with the lowest first index).
     Arc {
         /// First index of the arc, clockwise, in grid steps of 10″.
         first: i32,
-        /// Its middle, rounded towards the first index.
+        /// Middle of the arc, rounded towards the first index, in grid steps of 10″.
         middle: i32,
         /// Steps from the first to the last index; 0 when one index is accepted.
         width: i32,
     },
-    /// Every azimuth meets the limit: it says nothing.
+    /// Every azimuth meets the limit: the limit does not select one.
     Everything,
 }
 
-/// The accepted azimuths and what finding them took.
+/// Accepted azimuths and the cost of finding them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Acceptance {
     /// The accepted set.
     pub accepted: Accepted,
-    /// How many indices were evaluated exactly.
+    /// Number of exact evaluations.
     pub evaluations: u32,
 }
 

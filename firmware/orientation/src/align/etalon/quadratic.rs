@@ -1,8 +1,8 @@
-//! Exhaustive search of a sum of squares without the exhaustion.
+//! Exact minimum of a sum of squares over the table, without evaluating every index.
 //!
-//! The continuous objective's root is within a known bound of the exact one's, so only indices
-//! whose continuous root lies within that bound of the best exact root can win; they lie next to
-//! the (at most two) minima and are evaluated exactly.
+//! The root of the continuous objective is within a known bound of the root of the exact one, so
+//! only indices whose continuous root lies within that bound of the best exact root can win. They
+//! lie next to the (at most two) minima and are evaluated exactly.
 
 use libm::{fabs, sqrt};
 
@@ -14,15 +14,23 @@ use super::table::{TURN, Table};
 use super::{Acceptance, Match};
 use crate::math::sort;
 
-/// A sum of squares over one series, continuous and exact.
+/// Sum of squares over one series, in continuous and exact form.
 struct Objective<'a> {
+    /// Reference table.
     table: Table,
+    /// Measured series.
     series: &'a Series,
+    /// Kind of the sum.
     squares: Squares,
+    /// Continuous objective.
     landscape: Landscape,
+    /// Bound on the difference of the roots of both forms.
     rounding: f64,
+    /// Bound on the rounding of the continuous form.
     slack: f64,
+    /// Continuous value below which the short arithmetic is exact.
     small: f64,
+    /// Number of exact evaluations.
     evaluations: u32,
 }
 
@@ -42,6 +50,7 @@ impl<'a> Objective<'a> {
         }
     }
 
+    /// Continuous objective at index `k`.
     fn continuous(&self, k: i32) -> f64 {
         self.landscape.at(self.table, k)
     }
@@ -51,44 +60,50 @@ impl<'a> Objective<'a> {
         fabs(self.landscape.slope(self.table, k)) <= self.landscape.slope_error()
     }
 
-    /// The exact objective at `k`, where the continuous one is `near`.
+    /// Exact objective at `k`, where the continuous one is `near`.
     fn exact(&mut self, k: i32, near: f64) -> u128 {
         self.evaluations += 1;
         self.squares.at(self.table, self.series, k, near < self.small)
     }
 
-    /// The largest continuous value at which the exact one may still be `value`.
+    /// Largest continuous value at which the exact one may still be `value`.
     fn reach(&self, value: f64) -> f64 {
         let root = sqrt(value) + self.rounding;
         root * root + self.slack
     }
 
-    /// The largest continuous value at which the exact one is surely within `value`.
+    /// Largest continuous value at which the exact one is certainly within `value`.
     fn surety(&self, value: f64) -> f64 {
         let root = sqrt(value) - self.rounding;
         if root < 0.0 { f64::NEG_INFINITY } else { root * root - self.slack }
     }
 }
 
-/// The best index so far, and what an index must stay below to be worth evaluating.
+/// Best index so far, and the level below which an index is worth evaluating.
 struct Best {
+    /// Best index so far.
     index: i32,
+    /// Exact objective at the best index.
     objective: u128,
+    /// Minimum from which the walk to that index started.
     origin: i32,
+    /// Greatest continuous value whose exact value may still win.
     reach: f64,
 }
 
 impl Best {
+    /// Evaluates the first index.
     fn at(objective: &mut Objective, k: i32, near: f64) -> Self {
         let value = objective.exact(k, near);
         Self { index: k, objective: value, origin: k, reach: objective.reach(value as f64) }
     }
 
-    /// Evaluates `origin` + `sign`, + 2 `sign`, … below `limit` steps as far as they may compete;
-    /// the result is how far that is.
+    /// Evaluates `origin` + `sign`, + 2 `sign`, … below `limit` steps as far as they can compete;
+    /// returns how far that is.
     fn walk(&mut self, objective: &mut Objective, origin: i32, sign: i32, limit: i32) -> i32 {
         let place = |distance: i32| (origin + sign * distance).rem_euclid(TURN);
-        // The minimum may lie beyond, by the two steps of rounding or anywhere where it is flat.
+        // The minimum may lie beyond `origin`, by the two steps of rounding or anywhere where it is
+        // flat.
         let mut last = 0;
         while last + 1 < limit && (last < 2 || objective.is_flat(place(last))) {
             last += 1;
@@ -97,7 +112,7 @@ impl Best {
                 self.offer(objective, place(last), near, origin);
             }
         }
-        // From there the objective rises.
+        // Beyond that the objective rises.
         let (reach, flat) = (self.reach, last);
         last = last_within(|k| objective.continuous(place(k)) <= reach, flat, limit, 1);
         for distance in flat + 1..=last {
@@ -106,6 +121,7 @@ impl Best {
         last
     }
 
+    /// Evaluates an index exactly and keeps it if it is better, or equal and lower.
     fn offer(&mut self, objective: &mut Objective, k: i32, near: f64, origin: i32) {
         let value = objective.exact(k, near);
         if (value, k) < (self.objective, self.index) {
@@ -115,7 +131,7 @@ impl Best {
     }
 }
 
-/// The index of the least objective; see [`super::search`].
+/// Index of the least exact objective; see [`super::search`].
 pub(super) fn search(table: Table, series: &Series, squares: Squares) -> Match {
     let mut objective = Objective::new(table, series, squares);
     let bounds = objective.landscape.bounds();
@@ -143,7 +159,7 @@ pub(super) fn search(table: Table, series: &Series, squares: Squares) -> Match {
     }
 }
 
-/// The continuous objective against a limit.
+/// Comparison of the continuous objective with a limit.
 struct Within<'a> {
     objective: Objective<'a>,
     limit: u128,
@@ -169,7 +185,7 @@ impl Judge for Within<'_> {
     }
 }
 
-/// The arc on which the objective is at most `limit`; see [`super::accepted`].
+/// Arc on which the objective is at most `limit`; see [`super::accepted`].
 pub(super) fn within(table: Table, series: &Series, squares: Squares, limit: u128) -> Acceptance {
     let objective = Objective::new(table, series, squares);
     let bounds = objective.landscape.bounds();
@@ -187,10 +203,10 @@ pub(super) fn within(table: Table, series: &Series, squares: Squares, limit: u12
     Acceptance { accepted: cover.finish(), evaluations: judge.objective.evaluations }
 }
 
-/// Judges `from` to `to` − 1, between two turns of the objective: one by one where it is flat,
-/// by bisection between.
+/// Judges the indices `from` to `to` − 1 between two stationary points of the objective: one by one
+/// where it is flat, by bisection between.
 fn segment(cover: &mut Cover, judge: &mut Within, from: i32, to: i32) {
-    // A turn is known to a step, and its bounds were rounded by another.
+    // A stationary point is known to one step, and its bounds were rounded by another.
     let mut rise = (from + 2).min(to - 1);
     while rise < to - 1 && judge.objective.is_flat(rise) {
         rise += 1;

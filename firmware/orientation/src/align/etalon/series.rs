@@ -1,17 +1,17 @@
-//! The measured series: what the dwells gave, in the table's units.
+//! The measured series: the dwell rates in table units.
 
 use heapless::Vec;
 
 use super::table::{HALF, ONE, TURN};
 
-/// The most positions one series can hold.
+/// Greatest number of positions in one series.
 pub use crate::align::CAPACITY;
 
 /// Values are limited to ±2⁴⁰ table units (512 times the horizontal Earth rate), so that every sum
 /// of the exact search stays within its integer type.
 pub const LIMIT: i64 = 1 << 40;
 
-/// Why a series cannot be matched, each with its remedy.
+/// Reason for which a series cannot be matched, with its remedy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SeriesError {
     /// Fewer than three positions: two leave a mirrored azimuth, so measure at one more.
@@ -22,14 +22,16 @@ pub enum SeriesError {
     ZeroStep,
     /// The step is half a turn: azimuths A and −A give the same series, so choose another.
     MirrorTiedStep,
-    /// A rate is infinite or not a number: leave that dwell out before matching.
+    /// A rate is infinite or not a number: exclude that dwell before matching.
     NotFinite,
 }
 
 /// Dwell rates over the horizontal Earth rate, at positions one uniform step apart.
 #[derive(Clone, Debug)]
 pub struct Series {
+    /// Ratios in table units.
     values: Vec<i64, CAPACITY>,
+    /// Step in grid steps, within half a turn.
     step: i32,
 }
 
@@ -40,7 +42,7 @@ impl Series {
     /// Each ratio is rounded to the nearest 2⁻³¹ (ties away from zero) and clamped to ±[`LIMIT`].
     ///
     /// # Errors
-    /// [`SeriesError`] names what is wrong and what to do.
+    /// [`SeriesError`] names the fault and its remedy.
     pub fn new(ratios: impl IntoIterator<Item = f64>, step: i32) -> Result<Self, SeriesError> {
         let mut values = Vec::new();
         for ratio in ratios {
@@ -57,30 +59,30 @@ impl Series {
         }
     }
 
-    /// The values, 2³¹ = the horizontal Earth rate.
+    /// Values of the series in table units: 2³¹ is the horizontal Earth rate.
     #[must_use]
     pub fn values(&self) -> &[i64] {
         &self.values
     }
 
-    /// The step between positions in grid steps, reduced to less than half a turn either way.
+    /// Step between positions in grid steps, reduced to less than half a turn either way.
     #[must_use]
     pub fn step(&self) -> i32 {
         self.step
     }
 
-    /// The number of positions, 3 to [`CAPACITY`].
+    /// Number of positions, 3 to [`CAPACITY`], as a floating-point number.
     #[must_use]
     pub fn count(&self) -> f64 {
         self.values.len() as f64
     }
 }
 
-/// A ratio in table units, rounded and clamped.
+/// Converts a ratio to table units, rounded and clamped.
 fn to_units(ratio: f64) -> Result<i64, SeriesError> {
     if !ratio.is_finite() {
         return Err(SeriesError::NotFinite);
     }
-    // The cast saturates, so the clamp also holds for ratios beyond the range of i64.
+    // The cast saturates, so the clamp also holds for ratios beyond the range of `i64`.
     Ok((libm::round(ratio * ONE) as i64).clamp(-LIMIT, LIMIT))
 }

@@ -1,4 +1,4 @@
-//! The etalon table: one quarter of the cosine on a 10″ grid, made at build time.
+//! Reference table (etalon): one quarter of the cosine on a 10″ grid, made at build time.
 //!
 //! Entry `k` is 2³¹ cos(k · 10″) rounded to nearest, as `u32` because a signed 32-bit fraction
 //! cannot hold cos 0 = 1. By symmetry 129 604 bytes of flash serve the full circle, sine and cosine,
@@ -28,24 +28,26 @@ const STEP_IN_32_BITS: i64 = (STEP * 4_294_967_296.0) as i64;
 /// The value of cos 0 in table units.
 pub const ONE: f64 = 2_147_483_648.0;
 
-/// The table as built; a board that wants it in a flash section of its own copies it into a
-/// `static` there and hands that to [`Table::new`].
+/// The table as built. A board that wants it in a flash section of its own copies it into a
+/// `static` there and passes that to [`Table::new`].
 pub static QUARTER_COSINE: [u32; ENTRIES] =
     include!(concat!(env!("OUT_DIR"), "/quarter_cosine.rs"));
 
 /// CRC-32 (IEEE 802.3) of the entries as little-endian bytes, computed at build time.
 pub const CHECKSUM: u32 = include!(concat!(env!("OUT_DIR"), "/quarter_cosine_crc.rs"));
 
-/// The table's bits are not those that were built: the flash is damaged, program it again.
+/// Error of a table whose bits differ from those that were built: the flash is damaged and must be
+/// programmed again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ChecksumMismatch {
-    /// The CRC-32 of what was read.
+    /// CRC-32 of the entries that were read.
     pub found: u32,
 }
 
-/// Full-circle access to a quarter table that lies anywhere in memory.
+/// Full-circle access to a quarter table anywhere in memory.
 #[derive(Clone, Copy, Debug)]
 pub struct Table {
+    /// Entries of the quarter.
     quarter: &'static [u32; ENTRIES],
 }
 
@@ -56,7 +58,7 @@ impl Table {
         Self { quarter }
     }
 
-    /// The table as built, where the linker put it.
+    /// The built-in table, where the linker placed it.
     #[must_use]
     pub fn built_in() -> Self {
         Self::new(&QUARTER_COSINE)
@@ -71,8 +73,8 @@ impl Table {
         if found == CHECKSUM { Ok(()) } else { Err(ChecksumMismatch { found }) }
     }
 
-    /// 2³¹ cos(`index` · 10″), any index, within ±0.5 (+1e-6); the symmetries of the cosine hold
-    /// exactly.
+    /// Table value 2³¹ cos(`index` · 10″) for any index, within ±0.5 (+1e-6); the symmetries of the
+    /// cosine hold exactly.
     #[must_use]
     #[inline]
     pub fn cos(self, index: i32) -> i64 {
@@ -80,24 +82,24 @@ impl Table {
         self.quarter.get(run.index as usize).map_or(0, |&entry| run.signed(entry))
     }
 
-    /// 2³¹ sin(`index` · 10″), any index, within ±0.5 (+1e-6).
+    /// Table value 2³¹ sin(`index` · 10″) for any index, within ±0.5 (+1e-6).
     #[must_use]
     #[inline]
     pub fn sin(self, index: i32) -> i64 {
         self.cos(index.rem_euclid(TURN) - QUARTER)
     }
 
-    /// Cosine and sine of any angle in units of 2⁻³⁰, within ±2 (at most 1.7 were found): the grid's
-    /// values, carried on to the angle by each other. The second order, at most 0.32, is left out, and
-    /// what is less than a unit is cut off. Some 50 instructions.
+    /// Cosine and sine of any angle in units of 2⁻³⁰, within ±2 (at most 1.7 were found): the
+    /// grid's values, rotated to the angle to first order. The second order, at most 0.32, is
+    /// neglected, and fractions of a unit are cut off. Some 50 instructions.
     #[must_use]
     #[inline]
     pub fn at(self, angle: Angle) -> [i32; 2] {
         let steps = u64::from(angle.0) * TURN as u64;
         let index = ((steps + (1 << 31)) >> 32) as i32;
-        // How far beyond the grid's point, in 2⁻³² of a step: half a step at most, either way.
+        // Distance beyond the grid point, in 2⁻³² of a step: at most half a step either way.
         let beyond = steps.wrapping_sub((index as u64) << 32) as i32;
-        // In units of 2⁻³² rad.
+        // Distance in units of 2⁻³² rad.
         let beyond = (i64::from(beyond) * STEP_IN_32_BITS) >> 32;
         let quarter = if index < QUARTER { index + TURN - QUARTER } else { index - QUARTER };
         let (cosine, sine) = (self.on_circle(index), self.on_circle(quarter));
@@ -105,14 +107,14 @@ impl Table {
             .map(|value| value as i32)
     }
 
-    /// [`Self::cos`] of an index from 0 to [`TURN`].
+    /// Value of [`Self::cos`] for an index from 0 to [`TURN`].
     #[inline]
     fn on_circle(self, index: i32) -> i64 {
         let run = Run::at(if index == TURN { 0 } else { index });
         self.quarter.get(run.index as usize).map_or(0, |&entry| run.signed(entry))
     }
 
-    /// [`Self::cos`] and [`Self::sin`] as `f64`, exact.
+    /// Values of [`Self::cos`] and [`Self::sin`] as `f64`, exact.
     #[inline]
     pub(super) fn phasor(self, index: i32) -> (f64, f64) {
         (self.cos(index) as f64, self.sin(index) as f64)
@@ -144,7 +146,7 @@ impl Table {
     }
 }
 
-/// Where a walk over the circle stands in the quarter table.
+/// Position of a walk over the circle in the quarter table.
 struct Run {
     /// Index into the quarter; outside of it, also below zero, the quadrant has ended.
     index: i32,
@@ -152,12 +154,12 @@ struct Run {
     origin: i32,
     /// Whether the index falls as the position rises.
     mirrored: bool,
-    /// 0, or −1 where the cosine is negative.
+    /// Sign mask: 0, or −1 where the cosine is negative.
     sign: i64,
 }
 
 impl Run {
-    /// At `position` on the circle, 0 to [`TURN`] − 1.
+    /// Run that begins at `position` on the circle, 0 to [`TURN`] − 1.
     #[inline]
     fn at(position: i32) -> Self {
         let (origin, mirrored, sign) = match position / QUARTER {
@@ -169,12 +171,12 @@ impl Run {
         Self { index: (position - origin).abs(), origin, mirrored, sign }
     }
 
-    /// The position on the circle, perhaps outside of one turn.
+    /// Position on the circle, possibly outside of one turn.
     fn position(&self) -> i32 {
         if self.mirrored { self.origin - self.index } else { self.origin + self.index }
     }
 
-    /// The entry with the quadrant's sign.
+    /// Entry with the quadrant's sign.
     #[inline]
     fn signed(&self, entry: u32) -> i64 {
         (i64::from(entry) ^ self.sign) - self.sign

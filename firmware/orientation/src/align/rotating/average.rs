@@ -1,4 +1,5 @@
-//! The mean of a stretch: its turns freed of drift and coupling, disturbed ones left out.
+//! Mean of a stretch: the phasors of its turns are freed of drift and axis misalignment, and
+//! disturbed turns are excluded.
 
 use heapless::Vec;
 
@@ -8,73 +9,80 @@ use super::turn::{Sense, Stretch, TURNS, Turn};
 use crate::align::regression::{Column, Regression};
 use crate::math::{Complex, chi_square_tail, median};
 
-/// Squared distance of a turn from the others, in variances of either part, beyond which it is left
-/// out (exp(−x/2): one healthy turn in 40 000).
+/// Squared distance of a turn from the mean of the others, in variances of either part, beyond
+/// which it is excluded (exp(−x/2): one sound turn in 40 000).
 const OUTLIER: f64 = 21.0;
 /// Median of the squared distance of two neighbours over the variance of either part: 2 · 2 ln 2.
 const MEDIAN_OF_NEIGHBOURS: f64 = 2.772_588_722_239_781;
 
-/// Probability of a stretch's mean rates about a line below which its drift bends.
+/// Probability of the scatter of the turns' mean rates about a line, below which the drift counts
+/// as curved.
 const BENT: f64 = 1e-3;
 
-/// Number of differences of neighbours from which a variance comes out half too small at times.
+/// Number of neighbour differences at which the correction of a median for small samples doubles
+/// the variance.
 const FEW_NEIGHBOURS: f64 = 2.0;
 
-/// A stretch's phasors. A phasor a stands for the signal Re{a e^{jθ}}.
+/// Mean phasors of a stretch. A phasor a stands for the signal Re{a e^{jθ}}.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Average {
-    /// Which way the platform turned.
+    /// Sense of rotation.
     pub sense: Sense,
-    /// How fast, rad/s, > 0.
+    /// Mean speed, rad/s, > 0.
     pub speed: f64,
-    /// Turns that count, and those that were left out, in turns of the platform.
+    /// Number of turns of the platform that are used.
     pub turns: u32,
-    /// Turns left out.
+    /// Number of turns of the platform that are excluded.
     pub left_out: u32,
-    /// Of these, those before the first that counts, and those after the last.
+    /// Number of excluded entries before the first one used, and after the last one used.
     pub ends: [u16; 2],
-    /// Time in the turns that count, s.
+    /// Total time in the turns used, s.
     pub seconds: f64,
-    /// Their middle, s.
+    /// Middle of the turns used, s.
     pub middle: f64,
-    /// The gyro's rate as it came, rad/s.
+    /// Phasor of the gyro's rate as measured, rad/s.
     pub raw: Complex,
-    /// The same without drift and coupling, Q₊ or Q₋.
+    /// Phasor of the gyro's rate without drift and axis misalignment, rad/s: Q₊ or Q₋ (MET 2018).
     pub phasor: Complex,
-    /// The platform's rate, rad/s.
+    /// Phasor of the platform's rate, rad/s: its unevenness once per turn.
     pub turning: Complex,
-    /// The force along the sensitive axis, m/s².
+    /// Phasor of the force along the sensitive axis, m/s².
     pub force: Complex,
-    /// The force 90° clockwise of it, m/s²; zero where nothing reads that axis.
+    /// Phasor of the force 90° clockwise of the sensitive axis, m/s²; zero where that axis is not
+    /// measured.
     pub across: Complex,
     /// Sum of the squared distances of the turns' forces from their mean, (m/s²)².
     pub force_scatter: f64,
     /// Mean force along the sensitive axis, m/s².
     pub mean_force: f64,
-    /// Variance of either part of `phasor` where that of one turn of the platform is one.
+    /// Variance of either part of `phasor` in units of that of one turn of the platform.
     pub share: f64,
-    /// Sum of the squared distances of the turns from their mean, (rad/s)².
+    /// Sum of the squared distances of the turns' phasors from their mean, (rad/s)².
     pub scatter: f64,
-    /// The same with the turns that were left out, about the mean of all.
+    /// Sum of the squared distances including the excluded turns, about the mean of all, (rad/s)².
     pub scatter_of_all: f64,
-    /// Squared drift of the phasor from turn to turn, over its variance where that of a turn is one,
-    /// (rad/s)².
+    /// Squared linear drift of the phasor from turn to turn, over its variance in units of that of
+    /// a turn, (rad/s)².
     pub trend: f64,
     /// Degrees of freedom of `scatter` and `force_scatter`.
     pub degrees: u32,
 }
 
-/// The turns of a stretch as compensated phasors.
+/// Turns of a stretch as compensated phasors.
 struct Turns<'a> {
+    /// Turns as they were recorded.
     all: &'a [Turn],
     /// Part of the platform's steady rate that the gyro shows.
     steady: f64,
+    /// Compensated phasors, rad/s.
     phasors: Vec<Complex, TURNS>,
-    /// Drift that the phasors were freed of, rad/s².
+    /// Drift that was removed from each phasor, rad/s².
     slopes: [f32; TURNS],
+    /// Whether each turn is used.
     is_kept: [bool; TURNS],
 }
 
+/// Phasors of the turns without the response to the platform's unevenness.
 impl<'a> Turns<'a> {
     fn of(stretch: &'a Stretch, couplings: &[Coupling], steady: f64) -> Self {
         let frequency = stretch.sense.signed(stretch.speed());
@@ -85,14 +93,15 @@ impl<'a> Turns<'a> {
         let mut found = Self { all, steady, phasors, slopes, is_kept: [true; TURNS] };
         for turn in stretch.turns() {
             let turning = Complex::of_signal(turn.turning);
-            // A stretch holds no more turns than these.
+            // The vector holds as many turns as a stretch, so the push cannot fail.
             let _ = found.phasors.push(Complex::of_signal(turn.rate) - response * turning);
         }
         found
     }
 
-    /// Frees the phasors of a drift of the gyro, as the turns that count show it: a line, and where their mean
-    /// rates bend by more than noise, of which a turn's has half a phasor's variance, what the neighbours show.
+    /// Removes the gyro's drift from the phasors, as the turns used show it: a line, or where their
+    /// mean rates curve by more than noise (of which a turn's has half the variance of a phasor)
+    /// the local slope between neighbours.
     fn free(&mut self, variance: f64) {
         let slope = self.slope();
         let degrees = self.count() as f64 - 2.0;
@@ -107,8 +116,9 @@ impl<'a> Turns<'a> {
         }
     }
 
-    /// Slope of the gyro's rate in a turn beyond one of all, rad/s²: the lesser of those from and to its neighbours,
-    /// none where they differ in sign. A step of the rate makes none in the turns beside it.
+    /// Slope of the gyro's rate in a turn beyond the common one, rad/s²: the smaller of those from
+    /// and to its neighbours, zero where they differ in sign. A step of the rate makes no slope in
+    /// the turns beside it.
     fn beyond(&self, index: usize, slope: f64) -> f64 {
         let between = |one: usize, other: usize| {
             let seconds = f64::from(self.all[other].middle - self.all[one].middle);
@@ -126,25 +136,29 @@ impl<'a> Turns<'a> {
         }
     }
 
+    /// Indices of the turns used.
     fn kept(&self) -> impl Iterator<Item = usize> {
         (0..self.all.len()).filter(|&index| self.is_kept[index])
     }
 
+    /// Number of turns used.
     fn count(&self) -> usize {
         self.kept().count()
     }
 
-    /// Mean of something over the turns that count.
+    /// Mean of a real quantity over the turns used.
     fn mean(&self, of: impl Fn(usize) -> f64) -> f64 {
         self.kept().map(of).sum::<f64>() / self.count().max(1) as f64
     }
 
+    /// Mean of a complex quantity over the turns used.
     fn mean_complex(&self, of: impl Fn(usize) -> Complex) -> Complex {
         let sum = self.kept().map(of).fold(Complex::default(), |sum, part| sum + part);
         sum.scaled(1.0 / self.count().max(1) as f64)
     }
 
-    /// Least-squares slope of something over the times of the turns, and the times' sum of squares.
+    /// Least-squares slope of a quantity over the times of the turns, and the sum of squares of the
+    /// times about their mean.
     fn slope_of(&self, of: impl Fn(usize) -> f64) -> (f64, f64) {
         let time = |index: usize| f64::from(self.all[index].middle);
         let middle = self.mean(time);
@@ -157,8 +171,8 @@ impl<'a> Turns<'a> {
         (if square > 0.0 { product / square } else { 0.0 }, square)
     }
 
-    /// Drift of the gyro's rate, rad/s²: none is told by one turn. A platform that turned
-    /// quicker in one of them, as where it begins to, is no drift.
+    /// Drift of the gyro's rate, rad/s²; zero with a single turn. A change of the platform's speed,
+    /// as at its start, does not count as drift.
     fn slope(&self) -> f64 {
         if self.count() < 2 {
             return 0.0;
@@ -172,18 +186,20 @@ impl<'a> Turns<'a> {
         f64::from(turn.offset) - self.steady * f64::from(turn.speed)
     }
 
+    /// Squared distance of a turn's phasor from another, (rad/s)².
     fn distance(&self, index: usize, from: Complex) -> f64 {
         (self.phasors[index] - from).power()
     }
 
-    /// How many turns are left out before the first that counts, and after the last.
+    /// Number of entries excluded before the first one used, and after the last one used.
     fn ends(&self) -> [u16; 2] {
         let first = self.kept().next().unwrap_or(0);
         let last = self.kept().last().unwrap_or(0);
         [first, self.all.len() - 1 - last].map(|count| count as u16)
     }
 
-    /// Leaves out the turn that is furthest from the others while one is too far; at most a third.
+    /// Excludes the turn that is furthest from the mean while one is beyond the limit; at most a
+    /// third.
     fn leave_out(&mut self, variance: f64) {
         for _ in 0..self.all.len() / 3 {
             let mean = self.mean_complex(|index| self.phasors[index]);
@@ -193,7 +209,7 @@ impl<'a> Turns<'a> {
                 .kept()
                 .map(far)
                 .fold((0, 0.0), |most, next| if next.1 > most.1 { next } else { most });
-            // A turn's distance from the mean in which it takes part itself is shorter.
+            // The mean includes the turn itself, which shortens its distance by (n − 1)/n in power.
             if furthest.1 * count / (count - 1.0) <= OUTLIER * variance {
                 return;
             }
@@ -203,9 +219,9 @@ impl<'a> Turns<'a> {
 }
 
 impl Average {
-    /// The mean of a stretch whose turns have phasors of this variance in either part, (rad/s)²; `None`
-    /// without two turns. Of the platform's steady rate the gyro shows this part ([`steady_part`]). Each turn that
-    /// counts is shown with its phasor.
+    /// Mean of a stretch whose turns have phasors of this variance in either part, (rad/s)²; `None`
+    /// with fewer than two turns. The gyro shows the part `steady` of the platform's steady rate
+    /// ([`steady_part`]). Each turn that is used is passed to `each` with its phasor.
     #[must_use]
     pub fn of(
         stretch: &Stretch,
@@ -265,7 +281,7 @@ impl Average {
 }
 
 impl Average {
-    /// Turns that were joined to one.
+    /// Number of turns of the platform that were joined to one entry.
     #[must_use]
     pub fn joined(&self) -> f64 {
         f64::from(self.turns) / (0.5 * f64::from(self.degrees) + 1.0)
@@ -273,9 +289,9 @@ impl Average {
 }
 
 impl Turns<'_> {
-    /// Variance of either part of the mean where a turn's is one: what the drift's slope adds. Its own is
-    /// that of the turns' mean rates, half of a phasor's, or what they show where they do not lie on a
-    /// line, as after a bump of some turns.
+    /// Variance of either part of the mean in units of a turn's, including the contribution of the
+    /// drift's slope. The variance of the turns' mean rates is half that of a phasor, or what they
+    /// show where they do not lie on a line, as after a disturbance of some turns.
     fn share(&self, square: f64, variance: f64) -> f64 {
         let own = 1.0 / self.count() as f64;
         if self.count() < 2 || square <= 0.0 {
@@ -283,7 +299,7 @@ impl Turns<'_> {
         }
         let leak = self.mean_complex(|index| Complex::of_signal(self.all[index].leak)).size();
         let is_bent = self.slopes.iter().take(self.all.len()).any(|slope| *slope != self.slopes[0]);
-        // Neighbours have shown how it bends.
+        // The local slopes have already followed the curvature.
         let bend = if is_bent { 0.0 } else { self.bend() };
         let offset = (bend / variance.max(f64::MIN_POSITIVE)).max(0.5);
         own + 0.5 * leak * leak * offset / square
@@ -302,8 +318,9 @@ impl Turns<'_> {
     }
 }
 
-/// Part of the platform's steady rate that the gyro shows: the slope of its mean rates over the speeds
-/// of the stretches. A sensor that passes nothing steady shows none; one sense alone cannot tell.
+/// Part of the platform's steady rate that the gyro shows: the slope of its mean rates over the
+/// speeds of the stretches. It is zero for a sensor without response at zero frequency, and
+/// undetermined (zero) with one sense alone.
 #[must_use]
 pub fn steady_part(stretches: &[Stretch]) -> f64 {
     let mut regression = Regression::<2>::default();
@@ -317,7 +334,7 @@ pub fn steady_part(stretches: &[Stretch]) -> f64 {
     found.map_or(0.0, |found| found.coefficients[1])
 }
 
-/// Size of a turn's phasor, rad/s: the median, which disturbed turns hardly touch.
+/// Median magnitude of a turn's phasor, rad/s, which disturbed turns hardly affect.
 #[must_use]
 pub fn typical_size(stretch: &Stretch, couplings: &[Coupling]) -> f64 {
     let turns = Turns::of(stretch, couplings, 0.0);
@@ -325,15 +342,15 @@ pub fn typical_size(stretch: &Stretch, couplings: &[Coupling]) -> f64 {
     median(&mut sizes)
 }
 
-/// Variance of either part of a turn's phasor from the differences of neighbours, (rad/s)², which
-/// disturbed turns hardly touch, with what few of them make it uncertain; zero where there are none.
+/// Variance of either part of a turn's phasor from the differences of neighbours, (rad/s)², by a
+/// median, which disturbed turns hardly affect, raised for a small sample; zero without neighbours.
 #[must_use]
 pub fn variance_of_neighbours(stretches: &[Stretch], couplings: &[Coupling]) -> f64 {
     let mut squares: Vec<f64, { 4 * TURNS }> = Vec::new();
     for stretch in stretches {
         let turns = Turns::of(stretch, couplings, 0.0);
         for index in 1..turns.all.len() {
-            // Four stretches hold no more.
+            // Four stretches hold no more differences than the vector's capacity.
             let _ = squares.push(turns.distance(index, turns.phasors[index - 1]));
         }
     }

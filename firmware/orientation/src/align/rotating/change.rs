@@ -1,9 +1,12 @@
-//! What changes over the turns although it should stay: the Earth rate's direction, and the tilt.
+//! Detection of changes from turn to turn in quantities that should stay constant: the direction of
+//! the Earth rate, and the tilt.
 //!
-//! A base that turns about the vertical, or an encoder that creeps, lets the Earth rate's direction drift from turn
-//! to turn; a base that was turned, or an encoder that slipped, lets it step. A base that tilts lets the force's
-//! phasor drift. Each is fitted over the turns of both senses together, beside what changes with the sense alone, as
-//! a lag makes it: that much is known of a lag beforehand, the senses' change tells twice as much as their turns do.
+//! A base that turns about the vertical, or an encoder that creeps, makes the direction of the
+//! Earth rate drift from turn to turn; a base that was turned, or an encoder that slipped, makes it
+//! step. A base that tilts makes the force's phasor drift. Each is fitted over the turns of both
+//! senses together, beside the part that changes with the sense alone, such as a lag. The prior
+//! knowledge of the lag is used, because the change between the senses determines a lag twice as
+//! well as the turns within them.
 
 use heapless::Vec;
 
@@ -12,89 +15,99 @@ use super::turn_accumulator::STRETCHES;
 use crate::align::regression::{COLUMNS, Column, Regression, Solution};
 use crate::math::{median, sort};
 
-/// Most turns of all stretches.
+/// Greatest number of turns of all stretches.
 pub const MARKS: usize = STRETCHES * TURNS;
 
-/// What a turn shows of something that should stay.
+/// Value of a quantity in one turn that should stay constant.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Mark {
-    /// Its middle, s.
+    /// Middle of the turn, s.
     pub time: f32,
-    /// How what changes with the sense counts in it: its sign, or its signed speed.
+    /// Factor of the part that changes with the sense: its sign, or the signed speed.
     pub odd: f32,
-    /// Whether it is of the second speed.
+    /// Whether the turn belongs to the second speed.
     pub is_second: bool,
-    /// How many turns of the platform it stands for.
+    /// Number of turns of the platform that the mark stands for.
     pub turns: f32,
-    /// The value; the second part of one that has but one is zero.
+    /// The value; the second part is zero for a quantity with one part.
     pub value: [f32; 2],
 }
 
-/// How something that should stay may change.
+/// Hypothesis on the change of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
-    /// Not at all.
+    /// The quantity is constant.
     Steady,
-    /// Evenly with the time.
+    /// The quantity changes linearly with time.
     Rate,
-    /// At once, after a time, s.
+    /// The quantity steps after a time, s.
     Step(f64),
 }
 
-/// Columns of a fit: what stays, what changes with the sense, both at the second speed, the change.
+/// Column of the constant part. The columns of a fit are: constant, part that changes with the
+/// sense, both again for the second speed, change.
 const ONE: usize = 0;
+/// Column of the part that changes with the sense.
 const ODD: usize = 1;
+/// Column of the constant part at the second speed.
 const SECOND: usize = 2;
+/// Column of the part that changes with the sense, at the second speed.
 const SECOND_ODD: usize = 3;
+/// Column of the change.
 const CHANGE: usize = 4;
 
-/// What a fit found. Variances are those of the part that is known less.
+/// Result of a fit. Variances are those of the less certain part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found {
-    /// Which change it is.
+    /// Hypothesis that was fitted.
     pub shape: Shape,
-    /// The value at the end, and its variance.
+    /// Value at the end.
     pub at_end: [f64; 2],
-    /// Variance of that.
+    /// Variance of the value at the end.
     pub variance: f64,
-    /// The change: a rate, 1/s, or a step, later less earlier.
+    /// The change: a rate per second, or a step, later less earlier.
     pub change: [f64; 2],
-    /// Variance of that.
+    /// Variance of the change.
     pub change_variance: f64,
-    /// Chi-square of what is left.
+    /// Chi-square of the residuals.
     pub chi_square: f64,
-    /// Its degrees of freedom.
+    /// Degrees of freedom of chi-square.
     pub degrees: f64,
-    /// By how much it lowers chi-square beside a value that stays, in the scatter that it leaves.
+    /// Reduction of chi-square against a constant value, in units of the scatter that remains.
     pub gain: f64,
 }
 
-/// The turns, in the order of time.
+/// Marks of all turns in the order of time, with the prior knowledge for their fit.
 #[derive(Clone, Debug)]
 pub struct Record {
+    /// Marks in the order of time.
     marks: Vec<Mark, MARKS>,
-    /// What is known of what changes with the sense, in either part.
+    /// Prior knowledge of the part that changes with the sense, for each part of the value.
     odd: [Column; 2],
-    /// Variance of either part of one turn's value; whether it is known, else as these turns show it.
+    /// Variance of either part of one turn's value, and whether it is known independently of these
+    /// turns.
     variance: f64,
     is_known: bool,
-    /// How many parts the values have.
+    /// Number of parts of the values, one or two.
     parts: usize,
-    /// When a value that changes evenly is that of the end, s: then or, as a lever has it, before or after.
+    /// Time, s, to which the value of a linear change refers: the end, shifted by the lever.
     end: f64,
 }
 
-/// What a scatter that is itself estimated takes off a gain, over its degrees of freedom (F instead of chi-square).
+/// Increase of the scatter over the degrees of freedom, because it is itself estimated (F instead
+/// of chi-square).
 const FEW: f64 = 11.0;
-/// Median of the squared distance of two neighbours over the variance of either part, of two parts.
+/// Median of the squared distance of two neighbours over the variance of either part, for two
+/// parts.
 const MEDIAN_OF_NEIGHBOURS: f64 = 2.772_588_722_239_781;
-/// Information that is left where the other columns take all of it, relative.
+/// Least relative information of a step where the other columns explain it.
 const LEAST_INFORMATION: f64 = 1e-6;
-/// Turns that must lie on either side of a step.
+/// Least number of turns on either side of a step.
 const FEWEST: f64 = 2.0;
 
 impl Record {
-    /// Marks of values with two parts whose noise their neighbours show.
+    /// Record of values with two parts, whose noise follows from differences of neighbours and is
+    /// at least `least`.
     #[must_use]
     pub fn of_phasors(marks: Vec<Mark, MARKS>, odd: [Column; 2], least: f64) -> Self {
         let mut record = Self { marks, odd, variance: 0.0, is_known: false, parts: 2, end: 0.0 };
@@ -103,8 +116,8 @@ impl Record {
         record
     }
 
-    /// Marks of values with one part, of which one turn has this variance. One that changes evenly is at the end what it
-    /// would be so many seconds after it.
+    /// Record of values with one part and this variance for one turn. The value at the end of a
+    /// linear change is extrapolated by `lever` seconds beyond the end.
     #[must_use]
     pub fn of_angles(
         marks: Vec<Mark, MARKS>,
@@ -124,12 +137,13 @@ impl Record {
         record
     }
 
+    /// Sorts the marks by time and sets the end.
     fn in_order(&mut self) {
         sort(&mut self.marks, |one, other| one.time < other.time);
         self.end = self.marks.last().map_or(0.0, |mark| f64::from(mark.time));
     }
 
-    /// Variance of either part of one turn's value, from neighbours in one sense.
+    /// Variance of either part of one turn's value, from neighbours of the same sense and speed.
     fn of_neighbours(&self) -> f64 {
         let mut squares: Vec<f64, MARKS> = Vec::new();
         for pair in self.marks.windows(2) {
@@ -137,14 +151,14 @@ impl Record {
             if one.odd == other.odd && one.is_second == other.is_second {
                 let apart = [0, 1].map(|part| f64::from(one.value[part] - other.value[part]));
                 let square = apart[0] * apart[0] + apart[1] * apart[1];
-                // There are no more pairs than marks.
+                // There are fewer pairs than marks, so the push cannot fail.
                 let _ = squares.push(square * f64::from(one.turns.min(other.turns)));
             }
         }
         median(&mut squares) / MEDIAN_OF_NEIGHBOURS
     }
 
-    /// The columns of a mark.
+    /// Regression row of a mark.
     fn row(&self, mark: &Mark, shape: Shape) -> [f64; COLUMNS] {
         let (time, odd) = (f64::from(mark.time), f64::from(mark.odd));
         let second = f64::from(u8::from(mark.is_second));
@@ -161,9 +175,10 @@ impl Record {
         row
     }
 
+    /// Selection of the columns for one part of the value.
     fn model(&self, shape: Shape, part: usize) -> [Column; COLUMNS] {
         let is_two = self.marks.iter().any(|mark| mark.is_second);
-        // Of two speeds nothing is taken for granted where the senses' difference is free.
+        // With two speeds nothing is assumed in common where the difference of the senses is free.
         let second =
             if is_two && self.odd[part] == Column::Free { Column::Free } else { Column::Absent };
         let mut model = [Column::Absent; COLUMNS];
@@ -175,7 +190,7 @@ impl Record {
         model
     }
 
-    /// The fit of one part.
+    /// Fit of one part of the value.
     #[inline(never)]
     fn solution(&self, shape: Shape, part: usize) -> Option<Solution<COLUMNS>> {
         let mut regression = Regression::<COLUMNS>::default();
@@ -187,7 +202,7 @@ impl Record {
         regression.solve(&self.model(shape, part))
     }
 
-    /// A fit without its gain.
+    /// Fit of all parts, without its gain.
     fn found(&self, shape: Shape) -> Option<Found> {
         let first = self.solution(shape, 0)?;
         let second = if self.parts > 1 { Some(self.solution(shape, 1)?) } else { None };
@@ -212,13 +227,14 @@ impl Record {
         })
     }
 
-    /// By how much the marks scatter more than their variance says, in power, whatever changes evenly.
+    /// Ratio of the marks' scatter about a linear change to their variance; `None` without degrees
+    /// of freedom.
     fn scatter(&self) -> Option<f64> {
         let found = self.found(Shape::Rate)?;
         (found.degrees > 0.0 && found.chi_square > 0.0).then(|| found.chi_square / found.degrees)
     }
 
-    /// By how much the noise is greater than was thought, in power.
+    /// Factor by which the noise power exceeds the assumed one.
     fn excess(&self, found: &Found) -> f64 {
         let shown = found.chi_square / found.degrees.max(1.0);
         if self.is_known {
@@ -228,19 +244,19 @@ impl Record {
         }
     }
 
-    /// What chance gains in chi-square by choosing among all places at which a step may be.
+    /// Gain in chi-square that chance achieves by choosing among all places of a step.
     #[must_use]
     pub fn places(&self) -> f64 {
         2.0 * libm::log(self.marks.len().max(1) as f64)
     }
 
-    /// From the first mark to the last, s.
+    /// Time from the first mark to the last, s.
     #[must_use]
     pub fn seconds(&self) -> f64 {
         self.marks.first().map_or(0.0, |mark| self.end - f64::from(mark.time))
     }
 
-    /// The middle of all turns, s.
+    /// Weighted middle of all turns, s.
     #[must_use]
     pub fn middle(&self) -> f64 {
         let turns = |mark: &Mark| f64::from(mark.turns);
@@ -248,19 +264,20 @@ impl Record {
         moment / self.marks.iter().map(turns).sum::<f64>().max(f64::MIN_POSITIVE)
     }
 
-    /// From there to the end, s.
+    /// Time from the middle of all turns to the end, s.
     #[must_use]
     pub fn to_end(&self) -> f64 {
         self.end - self.middle()
     }
 
-    /// The value that stays.
+    /// Fit of a constant value.
     #[must_use]
     pub fn steady(&self) -> Option<Found> {
         self.found(Shape::Steady)
     }
 
-    /// How well a change explains the turns beside a value that stays; `None` where they cannot tell.
+    /// Fit of a change, with its gain against a constant value; `None` where the turns do not
+    /// determine it.
     #[must_use]
     pub fn changing(&self, shape: Shape, steady: &Found) -> Option<Found> {
         let found = self.found(shape).filter(|found| found.degrees > 0.0)?;
@@ -274,8 +291,8 @@ impl Record {
         })
     }
 
-    /// After which time a step is likeliest, s: the greatest sum of what is left behind it, less what the other
-    /// columns take of it.
+    /// Most likely step: the greatest sum of residuals after it, less the part that the other
+    /// columns explain.
     #[must_use]
     #[inline(never)]
     pub fn likeliest_step(&self) -> Option<Shape> {
@@ -310,7 +327,7 @@ impl Record {
         found
     }
 
-    /// A step where the platform turned back, if it did so once.
+    /// Step at the reversal of the platform, if it reversed exactly once.
     #[must_use]
     pub fn change_of_sense(&self) -> Option<Shape> {
         let is_turned = |pair: &&[Mark]| (pair[0].odd > 0.0) != (pair[1].odd > 0.0);
@@ -319,7 +336,7 @@ impl Record {
         Some(Shape::Step(0.5 * f64::from(first[0].time + first[1].time)))
     }
 
-    /// Whether nothing but the sense tells what lies before a time from what lies after it.
+    /// Whether a time separates exactly the two senses of rotation.
     #[must_use]
     pub fn is_between_senses(&self, after: f64) -> bool {
         let is_clockwise = |mark: &Mark| mark.odd > 0.0;
@@ -329,11 +346,12 @@ impl Record {
     }
 }
 
+/// Fitted value of a row.
 fn fitted(row: &[f64; COLUMNS], solution: &Solution<COLUMNS>) -> f64 {
     row.iter().zip(solution.coefficients).map(|(value, coefficient)| value * coefficient).sum()
 }
 
-/// How much of some columns' sums the fit takes: rowᵀ·covariance·row.
+/// Leverage of summed columns: rowᵀ·covariance·row.
 fn leverage(sums: &[f64; CHANGE], solution: &Solution<COLUMNS>) -> f64 {
     let of = |(index, one): (usize, &f64)| {
         let row = &solution.covariance[index];

@@ -1,4 +1,5 @@
-//! From what a platform's turns left to a verdict: an azimuth with σ, or the reason why there is none.
+//! Decision on the azimuth of a rotating platform: from its turns to an azimuth with σ, or to a
+//! refusal.
 
 use heapless::Vec;
 
@@ -19,65 +20,66 @@ use crate::math::{Complex, chi_square_tail};
 use crate::noise::model::GyroNoise;
 use crate::units::{DEGREES_PER_RADIAN as DEGREES, TURN};
 
-/// What the speeds of both senses may differ by, relative.
+/// Greatest relative difference between the speeds of both senses.
 const EQUAL_SPEEDS: f64 = 0.01;
-/// Probability of healthy turns' scatter below which they are refused.
+/// Probability of the scatter of sound turns below which they are refused.
 const SCATTER_PROBABILITY: f64 = 1e-6;
-/// Times the stated noise power up to which σ grows by it instead.
+/// Factor of the stated noise power up to which σ is raised instead of a refusal.
 const GREATEST_SCATTER: f64 = 3.0;
-/// Probability of it below which it raises σ.
+/// Probability of the scatter below which it raises σ.
 const EXCESS_PROBABILITY: f64 = 0.05;
-/// Most that turns which were left out raise σ by.
+/// Greatest factor by which excluded turns raise σ.
 const GREATEST_EXCESS: f64 = 2.0;
-/// Slip of the encoder that the forces show and σ takes in, in σ.
+/// Greatest encoder slip seen in the forces that is included in σ, in σ.
 const SMALL_SLIP: f64 = 4.0;
-/// Part of such a slip that the azimuth is off by, 1σ: it is that of the turns before or after it.
+/// Part of such a slip by which the azimuth is off, 1σ: it belongs to the turns before or after it.
 const OF_SLIP: f64 = 0.6;
-/// How many turns at an end of a stretch may be left out.
+/// Number of turns at an end of a stretch that may be excluded.
 const FEW_ASTRAY: u16 = 1;
-/// What is a difference and no chance, in σ.
+/// Difference that is not chance, in σ.
 const DIFFERENT: f64 = 5.0;
-/// What both senses of a flat sensor may differ by beyond that, of the Earth rate: half of what the base
-/// may have turned between them, in rad.
+/// Additional tolerance for the difference of the senses of a flat sensor, relative to the Earth
+/// rate: half of the angle, rad, that the base may have turned between them.
 const SENSES_TOLERANCE: f64 = 0.01;
-/// What the Earth-rate ratio may be off beyond five of its σ.
+/// Tolerance of the Earth-rate ratio beyond five σ.
 const RATIO_TOLERANCE: f64 = 0.005;
-/// What the accelerometer's two axes may differ by, of the force that turns with the platform: their
-/// scales, angles and delays.
+/// Greatest difference of the accelerometer's two axes, relative to the rotating force: scales,
+/// angles and delays.
 const STRAYING: f64 = 0.2;
-/// What the tilt may differ by between stretches beyond five σ, g.
+/// Tolerance of the tilt between stretches beyond five σ, g.
 const TILT_TOLERANCE: f64 = 1e-5;
-/// Degrees of freedom at which a bound on a scatter that is itself estimated doubles.
+/// Degrees of freedom at which a limit on an estimated scatter doubles.
 const FEW: f64 = 10.0;
-/// Mean force over whole turns beyond which an accelerometer does not lie in the platform's plane, m/s²,
-/// beyond five of its bias's σ.
+/// Greatest mean force over whole turns of an accelerometer in the platform's plane, m/s², beyond
+/// five σ of its bias.
 const FORCE_TOLERANCE: f64 = 1.0;
-/// Greatest phase of a sensor, rad: 60°.
+/// Greatest phase lag of a sensor, rad: 60°.
 const GREATEST_PHASE: f64 = TURN / 6.0;
-/// Greatest measured part of an integrated g-sensitivity.
+/// Greatest measured part of an integrated g-sensitivity, relative to the Earth rate.
 const GREATEST_MOLECULAR: f64 = 0.5;
 
-/// All that a turning platform found.
+/// Complete result of a rotating platform.
 #[derive(Clone, Debug)]
 pub struct Conclusion {
-    /// The azimuth, or why there is none.
+    /// The azimuth, or the reason for refusing it.
     pub verdict: Result<Azimuth, Refusal>,
-    /// The fit, where both senses were there; its azimuth counts only with the verdict.
+    /// The fit, where both senses were measured; its azimuth is valid only together with the
+    /// verdict.
     pub fit: Option<Fit>,
-    /// How the gyro feels the platform's rate, found or stored, at one speed or at each.
+    /// Axis misalignment of the gyro, measured or stored, at one speed or at each.
     pub couplings: Vec<Coupling, SPEEDS>,
-    /// Both senses at each speed.
+    /// Averages of both senses at each speed.
     pub pairs: Vec<Pair, SPEEDS>,
-    /// Angle random walk used, rad/√s: known, or from the scatter of the turns.
+    /// Angle random walk N used, rad/√s: known, or from the scatter of the turns.
     pub angle_random_walk: f64,
-    /// Scatter of the turns over what noise makes of it: chi-square and its degrees of freedom.
+    /// Chi-square of the turns about their means.
     pub chi_square: f64,
-    /// Degrees of freedom of that.
+    /// Degrees of freedom of chi-square.
     pub degrees: u32,
 }
 
 impl Default for Conclusion {
-    /// Of nothing: refused.
+    /// Result without turns: a refusal.
     fn default() -> Self {
         Self {
             verdict: Err(Refusal::TurnsTooFew { sense: Sense::Clockwise, turns: 0 }),
@@ -92,11 +94,13 @@ impl Default for Conclusion {
 }
 
 impl Conclusion {
-    /// Judges what a turn accumulator has, solves, and decides, in place of a [`Self::default`].
+    /// Checks the contents of a turn accumulator, solves, and decides, in place of a
+    /// [`Self::default`].
     pub fn draw(&mut self, setting: &Setting, turn_accumulator: &TurnAccumulator) {
         self.verdict = self.decide(setting, turn_accumulator);
     }
 
+    /// Sequence of checks and computations; the first failure is the refusal.
     fn decide(
         &mut self,
         setting: &Setting,
@@ -125,7 +129,7 @@ impl Conclusion {
         within_budget(setting, &fit)
     }
 
-    /// The couplings from the uneven turns, or the stored ones.
+    /// Determines the axis misalignments from the rate-modulated turns, or takes the stored ones.
     #[inline(never)]
     fn couple(
         &mut self,
@@ -151,6 +155,7 @@ impl Conclusion {
         self.couplings.iter().try_for_each(|coupling| setting.accept(coupling))
     }
 
+    /// Refuses a failed accelerometer and an encoder that slipped.
     fn judge_followed(turn_accumulator: &TurnAccumulator) -> Result<(), Refusal> {
         if let Some(trouble) = turn_accumulator.accelerometer() {
             return Err(Refusal::Device { device: Device::Accelerometer, trouble });
@@ -161,7 +166,7 @@ impl Conclusion {
         Ok(())
     }
 
-    /// The gyro's noise, with the N that is known or was found.
+    /// Noise model of the gyro, with the N that is known or was estimated.
     fn noise(&self, setting: &Setting) -> GyroNoise {
         GyroNoise { angle_random_walk: self.angle_random_walk, ..setting.common.noise }
     }
@@ -171,7 +176,7 @@ impl Conclusion {
         of_turn(speed, self.noise(setting).density_of_period(speed / TURN))
     }
 
-    /// Finds both senses of every speed.
+    /// Finds the averages of both senses for every speed.
     #[inline(never)]
     fn pair(
         &mut self,
@@ -196,7 +201,7 @@ impl Conclusion {
             if apart(counter) > EQUAL_SPEEDS * clockwise.speed {
                 return Err(unequal(clockwise, counter));
             }
-            // Four stretches hold no more than two of one sense that have a partner.
+            // Four stretches hold at most two of one sense with a partner, so the push cannot fail.
             let _ = self.pairs.push(Pair { clockwise: *clockwise, counter: *counter });
         }
         let alone = of(Sense::CounterClockwise)
@@ -207,8 +212,8 @@ impl Conclusion {
         }
     }
 
-    /// The means of the stretches, disturbed turns left out; the others' phasors are marked with the sign of their
-    /// sense.
+    /// Means of the stretches, without disturbed turns; the phasors of the others are added to
+    /// `marks` with the sign of their sense.
     fn averages(
         &self,
         setting: &Setting,
@@ -225,7 +230,7 @@ impl Conclusion {
             let joined = stretch.count() / stretch.turns().len().max(1) as u32;
             let speed = stretch.speed();
             let variance = self.of_one_turn(setting, speed) / f64::from(joined);
-            // What the sensor's gain makes of its noise, which counts at its input.
+            // Noise counts at the sensor's input, so the sensor's gain scales it.
             let is_flat = setting.sensor.is_flat;
             let gain = if is_flat { 1.0 } else { typical_size(stretch, couplings) / horizontal };
             let since = stretch.since() as f64 * 1e-6;
@@ -234,21 +239,21 @@ impl Conclusion {
                 let time = (since + f64::from(turn.middle)) as f32;
                 let odd = stretch.sense.signed(1.0) as f32;
                 let value = [phasor.re as f32, phasor.im as f32];
-                // There is room for every turn of every stretch.
+                // The vector has room for every turn of every stretch.
                 let _ = marks.push(Mark { time, odd, is_second, turns: joined as f32, value });
             };
             let variance = variance * gain * gain;
             let average = Average::of(stretch, couplings, steady, variance, tilting, mark);
             if let Some(average) = average {
-                // There are no more stretches than these.
+                // The vector has room for every stretch.
                 let _ = averages.push(average);
             }
         }
         averages
     }
 
-    /// Refuses where too many turns were left out, or where those at an end were: then it was not they who were
-    /// disturbed, but the heading or the encoder is another one since.
+    /// Refuses where too many turns were excluded, or those at an end: then they were not
+    /// disturbed, but the heading or the encoder changed.
     fn judge_left_out(&self, setting: &Setting) -> Result<(), Refusal> {
         let averages = || self.pairs.iter().flat_map(Pair::senses);
         let disturbed: u32 = averages().map(|average| average.left_out).sum();
@@ -266,7 +271,7 @@ impl Conclusion {
         Ok(())
     }
 
-    /// Chi-square of the turns about their means, and their drift in σ.
+    /// Tests chi-square of the turns about their means, and their drift in σ.
     fn judge_turns(&self, setting: &Setting, drift: f64) -> Result<(), Refusal> {
         let degrees = f64::from(self.degrees.max(1));
         let is_known = setting.common.white_known;
@@ -281,8 +286,8 @@ impl Conclusion {
         Ok(())
     }
 
-    /// By how much the turns scatter more than their noise says, as a factor of σ, with those that were left out: one
-    /// where that may be chance.
+    /// Factor of σ by which the turns, including the excluded ones, scatter more than their noise;
+    /// one where that may be chance.
     fn excess(&self, setting: &Setting) -> f64 {
         let of = |of_all: bool| {
             let (mut chi_square, mut degrees) = (0.0, 0.0);
@@ -292,13 +297,14 @@ impl Conclusion {
                 let left_out = f64::from(average.left_out) / average.joined();
                 degrees += f64::from(average.degrees) + if of_all { 2.0 * left_out } else { 0.0 };
             }
-            // A variance that the same turns have shown is uncertain itself.
+            // A variance estimated from the same turns is itself uncertain, so half of the degrees
+            // of freedom count.
             let share = if setting.common.white_known { 1.0 } else { 0.5 };
             let is_chance = degrees == 0.0
                 || chi_square_tail(share * chi_square, share * degrees) >= EXCESS_PROBABILITY;
             if is_chance { 1.0 } else { libm::sqrt(chi_square / degrees) }
         };
-        // Those of a sensor that is not flat may be left out for settling.
+        // Turns of a sensor that is not flat may be excluded because it settles, and do not count.
         let of_all = if setting.sensor.is_flat { of(true) } else { 1.0 };
         of(false).max(of_all.min(GREATEST_EXCESS))
     }
@@ -313,7 +319,7 @@ impl Conclusion {
         self.of_one_turn(setting, average.speed) * gain * gain / average.joined()
     }
 
-    /// Sums up chi-square; the greatest drift of a stretch's phasor, in σ.
+    /// Sums up chi-square; returns the greatest drift of a stretch's phasor, in σ.
     #[inline(never)]
     fn scatter(&mut self, setting: &Setting) -> f64 {
         let (mut chi_square, mut degrees, mut drift) = (0.0, 0, 0.0f64);
@@ -327,7 +333,7 @@ impl Conclusion {
         libm::sqrt(drift)
     }
 
-    /// Solves, and raises σ by how the turns scatter and by what may change from turn to turn.
+    /// Solves, and raises σ by the scatter of the turns and by possible changes from turn to turn.
     #[inline(never)]
     fn solve(
         &mut self,
@@ -358,7 +364,7 @@ impl Conclusion {
         }
     }
 
-    /// What is to be solved, with the noise's spectral density at a speed in rad/s.
+    /// Equations to be solved, with the noise's spectral density at a speed in rad/s.
     fn problem<'a>(
         &'a self,
         setting: &'a Setting,
@@ -373,8 +379,8 @@ impl Conclusion {
         Problem { setting, pairs, couplings, density, white, angle_random_walk, tilting, ellipse }
     }
 
-    /// What the turns show of a base that turns slowly about the vertical, from what this was drawn from; `None` where
-    /// there is no fit.
+    /// Observability of a slow rotation of the base about the vertical, from the turns of this
+    /// conclusion; `None` without a fit.
     #[must_use]
     pub fn slow_turn(
         &self,
@@ -393,7 +399,7 @@ impl Conclusion {
         Directions { problem: &problem, fit, of_turn: &of_turn, is_known }.slow_turn(marks)
     }
 
-    /// Whether the accelerometer lies in the platform's plane and saw one tilt.
+    /// Checks that the accelerometer lies in the platform's plane and measured one constant tilt.
     fn judge_force(&self, setting: &Setting, fit: &Fit, tilting: &Tilting) -> Result<(), Refusal> {
         let gravity = setting.common.latitude.gravity();
         let allowed = FORCE_TOLERANCE + DIFFERENT * setting.common.accelerometer_bias_sigma;
@@ -405,7 +411,7 @@ impl Conclusion {
                 return Err(Refusal::AccelerometerImplausible { ratio });
             }
             let sigma = libm::sqrt(density / average.seconds) / gravity;
-            // A quarter of a turn further the other axis feels the same.
+            // The other axis measures the same force a quarter of a turn later.
             let beside = average.across - Complex::new(0.0, 1.0) * average.force;
             let strays = beside.size() / gravity;
             let allowed = different * 2.0 * sigma + STRAYING * average.force.size() / gravity;
@@ -422,7 +428,7 @@ impl Conclusion {
     }
 }
 
-/// What the forces show of a base that tilts.
+/// Motion of a tilting base, as the forces show it.
 fn tilting(setting: &Setting, turn_accumulator: &TurnAccumulator) -> Tilting {
     let latitude = setting.common.latitude;
     let [along, across] = setting.common.g_sensitivity;
@@ -430,25 +436,26 @@ fn tilting(setting: &Setting, turn_accumulator: &TurnAccumulator) -> Tilting {
     Tilting::of(turn_accumulator.stretches(), latitude.gravity(), per_tilt)
 }
 
-/// N from the scatter of neighbouring turns, rad/√s.
+/// Angle random walk N from the scatter of neighbouring turns, rad/√s.
 fn estimate(stretches: &[Stretch], couplings: &[Coupling]) -> f64 {
     let variance = variance_of_neighbours(stretches, couplings);
     let speed = stretches.first().map_or(0.0, Stretch::speed);
     libm::sqrt(variance / of_turn(speed, 1.0).max(f64::MIN_POSITIVE))
 }
 
-/// What is a difference, in a σ that is itself known from so many degrees of freedom: from few it may be
-/// far too small.
+/// Significance limit for a σ that is itself estimated with so many degrees of freedom: with few it
+/// may be far too small.
 fn different(degrees: u32) -> f64 {
     DIFFERENT * (1.0 + FEW / f64::from(degrees.max(1)))
 }
 
+/// Refusal of unequal speeds, °/s.
 fn unequal(clockwise: &Average, counter: &Average) -> Refusal {
     let [clockwise, counter] = [clockwise, counter].map(|average| average.speed * DEGREES);
     Refusal::SpeedsUnequal { clockwise, counter }
 }
 
-/// Every test that a fit must pass by itself.
+/// Applies every test that a fit must pass by itself.
 fn judge(setting: &Setting, fit: &Fit, degrees: u32) -> Result<(), Refusal> {
     let (tilt, allowed) = (libm::asin(fit.tilt.size().min(1.0)), setting.common.allowed_tilt);
     if tilt > allowed {
@@ -462,6 +469,7 @@ fn judge(setting: &Setting, fit: &Fit, degrees: u32) -> Result<(), Refusal> {
     }
 }
 
+/// Tests of a flat sensor: the senses agree, and the Earth rate has the expected magnitude.
 fn judge_flat(setting: &Setting, fit: &Fit, degrees: u32) -> Result<(), Refusal> {
     let sigmas = libm::sqrt(fit.difference);
     let is_molecular = setting.sensor.molecular_sigma > 0.0;
@@ -474,13 +482,14 @@ fn judge_flat(setting: &Setting, fit: &Fit, degrees: u32) -> Result<(), Refusal>
     let sigma_and_scale = libm::hypot(sigma, setting.common.amplitude_sigma());
     let tolerance = if setting.common.scale_sigma > 0.0 { 0.0 } else { RATIO_TOLERANCE };
     let tolerance = DIFFERENT * sigma_and_scale + tolerance;
-    // A gyro that lags shows less, one that is late does not.
+    // A gyro that lags shows a smaller rate; one that is late does not.
     if ratio > 1.0 + tolerance || ratio < fit.passed * (1.0 - tolerance) {
         return Err(Refusal::EarthRateMismatch { ratio, sigma });
     }
     Ok(())
 }
 
+/// Tests of a sensor with unknown response: its phase, and the agreement of the speeds.
 fn judge_lagging(setting: &Setting, fit: &Fit) -> Result<(), Refusal> {
     let phase =
         fit.phases.iter().fold(0.0, |most: f64, x| if x.abs() > most.abs() { *x } else { most });
@@ -501,7 +510,7 @@ fn judge_lagging(setting: &Setting, fit: &Fit) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// The azimuth, unless its standard deviation is none, or more than is accepted.
+/// Azimuth of the fit, unless its standard deviation is greater than accepted.
 fn within_budget(setting: &Setting, fit: &Fit) -> Result<Azimuth, Refusal> {
     let (sigma, required) = (fit.sigma(), setting.common.required_sigma);
     if sigma <= required {

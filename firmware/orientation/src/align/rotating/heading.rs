@@ -1,8 +1,9 @@
-//! Whether the Earth rate comes from the same direction in all turns: a base that turns, or was turned, and an encoder
-//! that creeps, or slipped, change it.
+//! Test whether the direction of the Earth rate is constant over all turns. A base that turns or
+//! was turned, and an encoder that creeps or slipped, change it.
 //!
-//! Where chi-square says that it changes there is no north, for nothing tells which of the two it was. Where it does
-//! not, σ grows by what a change would do to the azimuth, times its probability.
+//! If chi-square shows a change the azimuth is refused, because the turns do not show which of the
+//! causes it was. Otherwise σ is inflated by the effect of a change on the azimuth, times its
+//! probability.
 
 use heapless::Vec;
 
@@ -16,38 +17,38 @@ use crate::error::Refusal;
 use crate::math::Complex;
 use crate::units::DEGREES_PER_RADIAN as DEGREES;
 
-/// Gain of chi-square from which a drift of the direction is believed (p = 0.0001).
+/// Gain of chi-square from which a drift of the direction is accepted (p = 0.0001).
 const BELIEVED: f64 = 15.1;
-/// The same of a step, for each place at which it may be (p = 0.001 over all of them).
+/// Gain of chi-square from which a step is accepted, for each place at which it may be (p = 0.001
+/// over all of them).
 const STEP_BELIEVED: f64 = 10.8;
-/// Gain from which it is doubtful whether the direction stays (p = 0.2), and what more it takes of a step at any of
-/// many places.
+/// Gain of chi-square from which a drift is possible (p = 0.2).
 const DOUBTFUL: f64 = 1.64;
+/// Gain of chi-square from which a step is possible, beyond that of the choice among its places.
 const STEP_DOUBTFUL: f64 = 3.8;
-/// Part of the alignments in which the direction changes, before their turns are looked at, where these speak for it;
-/// and where not.
+/// Prior probability of a changing direction: where the turns indicate one, and where they do not.
 const CHANGING: [f64; 2] = [0.03, 0.0003];
-/// What a doubt that is not about the senses may add to the azimuth's variance, in units of it: σ is then five times
-/// as great.
+/// Greatest inflation of the azimuth's variance for a change other than with the sense, in units of
+/// the variance: σ is then five times as great.
 const DOUBT: f64 = 24.0;
-/// σ of a drift within which it goes with the tilt's.
+/// Distance in σ within which a drift of the direction agrees with that of the tilt.
 const ALIKE: f64 = 3.0;
 
-/// The turns' phasors as directions.
+/// Phasors of the turns as directions.
 pub struct Directions<'a> {
-    /// What they were solved with.
+    /// Problem from which the fit was solved.
     pub problem: &'a Problem<'a>,
-    /// What came of it.
+    /// Fit of the azimuth.
     pub fit: &'a Fit,
     /// Variance of either part of a turn's phasor at a speed in rad/s, (rad/s)², for a sensor of gain one.
     pub of_turn: &'a dyn Fn(f64) -> f64,
-    /// Whether that is known.
+    /// Whether that variance is known independently of these turns.
     pub is_known: bool,
 }
 
 impl Directions<'_> {
-    /// Variance that the azimuth lacks for a change that is not believed, rad², from the turns' phasors, rad/s, each
-    /// marked with the sign of its sense.
+    /// Inflation of the azimuth's variance for a change that is possible but not accepted, rad²,
+    /// from the turns' phasors, rad/s, each marked with the sign of its sense.
     ///
     /// # Errors
     /// [`Refusal::DirectionDrifts`], [`Refusal::HeadingStepped`], [`Refusal::SensesDisagree`], and
@@ -58,10 +59,10 @@ impl Directions<'_> {
         let Some(steady) = record.steady() else { return Ok(0.0) };
         let drift = record.changing(Shape::Rate, &steady);
         let step = record.likeliest_step().and_then(|shape| record.changing(shape, &steady));
-        // The senses change at one place alone.
+        // The change with the sense has a single possible place, the reversal.
         let turn = record.change_of_sense().and_then(|shape| record.changing(shape, &steady));
         self.judge(&record, [drift, turn, step])?;
-        // A sensor that is not flat settles for long: its directions drift a little with it.
+        // A sensor that is not flat settles for long, and its directions drift slightly meanwhile.
         if !self.is_flat() {
             return Ok(0.0);
         }
@@ -73,7 +74,7 @@ impl Directions<'_> {
         Ok(drift.min(most) + lacks(turn, 0.0) + step.min(most))
     }
 
-    /// What these turns show of a base that turns slowly about the vertical; `None` of no turns.
+    /// Observability of a slow rotation of the base about the vertical; `None` without turns.
     #[must_use]
     pub fn slow_turn(&self, marks: Vec<Mark, MARKS>) -> Option<SlowMotion> {
         let record = self.record(marks)?;
@@ -83,7 +84,7 @@ impl Directions<'_> {
         Some(SlowMotion { sigma: libm::sqrt(variance), lever: record.to_end() })
     }
 
-    /// The turns' directions, rad, as far as they differ from the Earth rate's.
+    /// Directions of the turns, rad, relative to that of the Earth rate.
     fn record(&self, mut marks: Vec<Mark, MARKS>) -> Option<Record> {
         let first = self.problem.pairs.first()?;
         let variance = self.angle_variance(first);
@@ -99,7 +100,8 @@ impl Directions<'_> {
         Some(Record::of_angles(marks, odd, (variance, self.is_known), self.lever()))
     }
 
-    /// Refuses a drift, a change with the sense or a step that is believed, or a drift that goes with the tilt's.
+    /// Refuses a significant drift, change with the sense or step, and a drift that agrees with the
+    /// tilt's.
     fn judge(
         &self,
         record: &Record,
@@ -124,12 +126,13 @@ impl Directions<'_> {
         Ok(())
     }
 
+    /// Whether the sensor has a flat response.
     fn is_flat(&self) -> bool {
         self.problem.setting.sensor.is_flat
     }
 
-    /// Seconds by which a base that turns about the vertical must have turned for as much as its rate changes the
-    /// vertical Earth rate, which a tilt lets the gyro feel.
+    /// Time, s, that a rotating base must have turned for its angle to equal the effect of its rate
+    /// on the vertical Earth rate, which the gyro measures through the tilt.
     fn lever(&self) -> f64 {
         let across = (self.fit.tilt * Complex::unit(-self.fit.azimuth)).im;
         across / self.problem.earth()[0]
@@ -142,7 +145,8 @@ impl Directions<'_> {
         (self.of_turn)(pair.speed()) * gain * gain / (size * size)
     }
 
-    /// What a turn's phasor is compared with: the Earth rate, or what such turns show of it in the mean.
+    /// Reference phasor of a turn: the Earth rate, or the mean phasor of its sense for a sensor
+    /// that is not flat.
     fn reference(&self, pair: &Pair, sense: Sense) -> Complex {
         if self.is_flat() {
             let size = self.fit.ratio * self.problem.earth()[0];
@@ -151,7 +155,7 @@ impl Directions<'_> {
         if sense == Sense::Clockwise { pair.clockwise.phasor } else { pair.counter.phasor }
     }
 
-    /// Direction of a turn's phasor from there, rad, as far as it is small.
+    /// Direction of a turn's phasor relative to the reference, rad, for small angles.
     fn angle(&self, mark: &Mark, pair: &Pair) -> f64 {
         let sense = Sense::of(f64::from(mark.odd));
         let lag = if self.is_flat() { self.lag(pair) } else { 0.0 };
@@ -161,12 +165,12 @@ impl Directions<'_> {
         (Complex::new(re, im) * back * reference.conjugate()).im / reference.power()
     }
 
-    /// The lag that was taken off, s.
+    /// Lag that was compensated, s.
     fn lag(&self, pair: &Pair) -> f64 {
         coupling::nearest(self.problem.couplings, pair.speed()).map_or(0.0, believed_lag)
     }
 
-    /// 1σ of the lag that was not, s.
+    /// Standard deviation of the lag that was not compensated, 1σ, s.
     fn lag_sigma(&self) -> f64 {
         let of = |pair: &Pair| {
             let law = solution::LAG_LAW * self.lag(pair).abs();
@@ -176,7 +180,7 @@ impl Directions<'_> {
     }
 }
 
-/// The refusal of a step.
+/// Refusal of a step.
 fn stepped(record: &Record, step: Option<Found>) -> Refusal {
     let Some((Shape::Step(after), step)) = step.map(|step| (step.shape, step)) else {
         return Refusal::DirectionDrifts { sigmas: 0.0 };
@@ -187,8 +191,9 @@ fn stepped(record: &Record, step: Option<Found>) -> Refusal {
     Refusal::HeadingStepped { angle: step.change[0] * DEGREES, after }
 }
 
-/// What the azimuth's variance lacks where a change is left out that may be at one of several places, rad²: at the end, or
-/// of a step on either side of it. `places` is what chance gains by choosing among them, in chi-square.
+/// Variance that the azimuth lacks where a possible change is neglected, rad²: at the end, or of a
+/// step on either side of it. `places` is the gain in chi-square that chance achieves by choosing
+/// among them.
 fn lacking(change: &Found, steady: &Found, places: f64) -> f64 {
     let doubtful = if places > 0.0 { STEP_DOUBTFUL + places } else { DOUBTFUL };
     let prior = CHANGING[usize::from(change.gain < doubtful)];

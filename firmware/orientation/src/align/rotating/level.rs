@@ -1,4 +1,4 @@
-//! From what turns in the platform's plane to an azimuth on the horizon, exactly for any tilt.
+//! Azimuth on the horizon from the phasor in the platform's plane, exact for any tilt.
 //!
 //! The plane's axes are body x and y. With pitch p, roll r and azimuth A, the horizontal Earth rate turns
 //! with the platform as `Ω_h` (a cos A + j b sin A), a = cos p − j sin r sin p, b = cos r, and the
@@ -6,17 +6,17 @@
 
 use crate::math::Complex;
 
-/// How the platform leans.
+/// Inclination of the platform.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Lean {
     /// Pitch of body x, rad, up positive.
     pub pitch: f64,
-    /// Roll about it, rad.
+    /// Roll about body x, rad, positive right side down.
     pub roll: f64,
 }
 
 impl Lean {
-    /// From the phasor of the specific force in the plane, g.
+    /// Inclination from the phasor of the specific force in the plane, g.
     #[must_use]
     pub fn of(force: Complex) -> Self {
         let pitch = libm::asin(force.re.clamp(-1.0, 1.0));
@@ -24,8 +24,8 @@ impl Lean {
         Self { pitch, roll }
     }
 
-    /// What a rate of the force's phasor, g/s, says that the base turns, as it shows in the plane, rad/s: pitch about
-    /// the axis to the right, roll forward.
+    /// Rate of the base that a rate of the force's phasor, g/s, implies, as a phasor in the plane,
+    /// rad/s: pitch about the axis to the right, roll about the axis forward.
     #[must_use]
     pub fn turning(&self, rate: Complex) -> Complex {
         let (sine_pitch, cosine_pitch) = libm::sincos(self.pitch);
@@ -35,13 +35,13 @@ impl Lean {
         Complex::new(rolling, -pitching * cosine_roll)
     }
 
-    /// a and b: what cosine and sine of the azimuth contribute.
+    /// Coefficients a and b: the contributions of cosine and sine of the azimuth.
     fn parts(&self) -> (Complex, f64) {
         let (sine, cosine) = libm::sincos(self.pitch);
         (Complex::new(cosine, -libm::sin(self.roll) * sine), libm::cos(self.roll))
     }
 
-    /// Azimuth, rad, and size of the horizontal rate whose phasor in the plane this is.
+    /// Azimuth, rad, and magnitude of the horizontal rate with this phasor in the plane.
     #[must_use]
     pub fn azimuth(&self, horizontal: Complex) -> (f64, f64) {
         let (a, b) = self.parts();
@@ -50,13 +50,14 @@ impl Lean {
         (libm::atan2(east, north), libm::hypot(north, east))
     }
 
-    /// Azimuth near `angle`, rad, at which the horizontal rate of size one and `others`, what else turns
-    /// in the plane, point together at `angle`; and how it follows that angle. `None` where nothing does.
+    /// Azimuth near `angle`, rad, at which the horizontal rate of size one and `others`, the
+    /// further rotating terms in the plane, sum to the direction `angle`; and its derivative with
+    /// respect to that angle. `None` where there is no solution.
     #[must_use]
     pub fn azimuth_towards(&self, angle: f64, others: Complex) -> Option<(f64, f64)> {
         let (a, b) = self.parts();
         let back = Complex::unit(-angle);
-        // Across the angle the sum has no part: p cos A + q sin A = c.
+        // The sum has no component across the angle: p cos A + q sin A = c.
         let (p, q) = ((a * back).im, b * back.re);
         let (size, turned) = (libm::hypot(p, q), libm::atan2(q, p));
         let cosine = -(others * back).im / size;

@@ -1,14 +1,15 @@
-//! Azimuth from a platform that turns all the time (MET 2018; equations.md §4).
+//! Azimuth from a continuously rotating platform: carouselling (MET 2018).
 //!
 //! ```text
-//!  sample ─▶ turn accumulator ─turns─▶ average (drift, coupling) ─Q₊, Q₋─▶ solution ─▶ azimuth ± σ
-//!                └─uneven turn─▶ coupling ──▲   accelerometer ─F──▲
+//!  sample ─▶ turn accumulator ─turns─▶ average ─────────────Q₊, Q₋─▶ solution ─▶ azimuth ± σ
+//!                └─modulated─▶ misalignment ▲   accelerometer ─F────────▲
 //! ```
 //!
-//! The gyro's rate is demodulated at the turn: its phasor holds the horizontal Earth rate,
-//! E = `Ω_h` e^{jA}, and what turns with it. What the platform's own unevenness makes is taken off by
-//! the coupling; what changes its sign with the sense of rotation cancels between the senses; what
-//! falls with the speed is told apart by a second speed; tilt is read by the accelerometer.
+//! The gyro's rate is demodulated at the turn: its phasor contains the horizontal Earth rate, E =
+//! `Ω_h` e^{jA}, and everything else that rotates with the platform. The response to the platform's
+//! own unevenness is removed by the axis misalignment; what changes sign with the sense of rotation
+//! cancels between the senses; what falls with the speed is separated by a second speed; tilt is
+//! measured by the accelerometer.
 
 pub mod average;
 pub mod change;
@@ -29,46 +30,48 @@ use super::setting::Setting as Common;
 use crate::error::Refusal;
 use crate::units::{DEGREE, DEGREES_PER_RADIAN};
 
-/// What kind of sensor turns with the platform.
+/// Kind of sensor on the platform.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensor {
-    /// Whether it shows a rate at the platform's speed as it is; else with an unknown gain and lag, which
-    /// rotation in both senses tells.
+    /// Whether the response is flat: gain one and no lag at the platform's speed. Otherwise gain
+    /// and lag are unknown, and rotation in both senses determines them.
     pub is_flat: bool,
-    /// 1σ of either part of a g-sensitivity that integrates acceleration (molecular-electronic): what it
-    /// makes of the tilt times the platform's speed, over the horizontal Earth rate, rad/s. Zero for a
-    /// gyro without; infinite for one of which nothing is known, which takes two speeds.
+    /// Standard deviation, 1σ, of either part of a g-sensitivity that integrates acceleration
+    /// (molecular-electronic sensors): its effect of tilt times the platform's speed, over the
+    /// horizontal Earth rate, rad/s. Zero for a gyro without it; infinite where it is unknown,
+    /// which requires two speeds.
     pub molecular_sigma: f64,
-    /// How long its output needs after a change of speed, s.
+    /// Settling time of the output after a change of speed, s.
     pub settle_seconds: f64,
 }
 
 impl Sensor {
-    /// A gyro as such: flat, with an ordinary g-sensitivity alone.
+    /// Ordinary gyro: flat, with a g-sensitivity proportional to force only, settled within 1 s.
     pub const GYRO: Self = Self { is_flat: true, molecular_sigma: 0.0, settle_seconds: 1.0 };
-    /// A molecular-electronic sensor of which nothing is known.
+    /// Molecular-electronic sensor without prior knowledge, settled within 5 s.
     pub const MOLECULAR: Self =
         Self { is_flat: false, molecular_sigma: f64::INFINITY, settle_seconds: 5.0 };
 }
 
-/// What is known before a platform begins to turn.
+/// Configuration of an alignment on a rotating platform.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
-    /// The place, the gyro, the accelerometer, the demands.
+    /// Site, gyro, accelerometer and requirements.
     pub common: Common,
-    /// The kind of sensor.
+    /// Kind of sensor.
     pub sensor: Sensor,
-    /// The couplings as they were found before, one for each speed; uneven turns replace them.
+    /// Stored axis misalignments, one for each speed; rate-modulated turns replace them.
     pub couplings: [Option<Coupling>; SPEEDS],
-    /// How far the sensitive axis may stand from the platform's plane, rad.
+    /// Greatest misalignment of the sensitive axis from the platform's plane, rad.
     pub coupling_limit: f64,
-    /// 1σ of the encoder's zero, as it turns the azimuth, rad: no turn shows it.
+    /// Standard deviation of the encoder's zero, 1σ, rad. It enters the azimuth fully, and no
+    /// rotation shows it.
     pub encoder_zero_sigma: f64,
-    /// Whether the encoder's error twice a turn is within [`Common::encoder_sigma`]; else what it shows of the
-    /// platform's rate may be such an error.
+    /// Whether the encoder's error twice per turn is within [`Common::encoder_sigma`]; otherwise
+    /// modulation of the platform's rate at that frequency may be such an error.
     pub harmonics_known: bool,
-    /// Step of the gyro's rates, rad/s, as far as their noise does not hide it: what they are rounded by in step with
-    /// the turn is no noise.
+    /// Quantisation step of the gyro's rates, rad/s, as far as their noise does not hide it:
+    /// rounding that is synchronous with the turn does not average out.
     pub rate_step: f64,
 }
 
@@ -76,7 +79,7 @@ pub struct Setting {
 const COUPLING_LIMIT: f64 = 2.0 * DEGREE;
 
 impl Setting {
-    /// Nothing is known of the coupling; the encoder is exact.
+    /// Configuration without stored misalignments, for an exact encoder.
     #[must_use]
     pub const fn new(common: Common, sensor: Sensor) -> Self {
         Self {
@@ -90,10 +93,10 @@ impl Setting {
         }
     }
 
-    /// Whether the sensor is mounted well enough.
+    /// Checks that the axis misalignment is within its limit.
     ///
     /// # Errors
-    /// [`Refusal::Misaligned`]: align it mechanically.
+    /// [`Refusal::Misaligned`]: the sensor must be aligned mechanically.
     pub fn accept(&self, coupling: &Coupling) -> Result<(), Refusal> {
         let (angle, allowed) = (coupling.angle(), self.coupling_limit);
         if angle.abs() <= allowed {

@@ -1,41 +1,45 @@
-//! What both senses tell of a sensor whose gain and lag are unknown, and of its g-sensitivity G that
-//! integrates acceleration (equations.md §4, steps 4 and 5).
+//! Azimuth from both senses of rotation for a sensor of unknown gain and lag, and its g-sensitivity
+//! G that integrates acceleration (MET 2018, molecular-electronic sensors).
 //!
-//! With γ = x + jy = G/(w E′): Q₊ = H E′ (1 − jγ), Q₋ = H* E′ (1 + jγ). The half of arg Q₊Q₋ is free of
-//! H; beside arg E′ it holds xy and terms of fourth order. |Q₊/Q₋| gives y. Since γ falls as 1/w, two
-//! speeds tell the rest.
+//! With γ = x + jy = G/(w E′) the phasors are Q₊ = H E′ (1 − jγ) and Q₋ = H* E′ (1 + jγ). Half of
+//! arg Q₊Q₋ does not contain H; it is arg E′ plus xy and terms of fourth order. |Q₊/Q₋| gives y.
+//! Since γ falls as 1/w, a second speed determines the rest. With one speed the error of the
+//! azimuth is at most ρ²/2, ρ = |G|/(w `Ω_h`); with two speeds there is a noise penalty of about
+//! 2.3 against a sensor without G and H.
 
 use crate::math::Complex;
 
-/// Greatest part x of γ that is believed; what it is for is of fourth order.
+/// Greatest part x of γ that is used; it enters in fourth order only.
 const GREATEST: f64 = 0.5;
-/// Rounds in which x and y are made to agree.
+/// Number of rounds in which x and y are made consistent.
 const ROUNDS: usize = 4;
-/// What x may be where one speed alone is at hand and nothing is known of the sensor, 1σ: γ of 0.3.
+/// Assumed 1σ of x with a single speed and without prior knowledge of the sensor.
 const ASSUMED: f64 = 0.3;
 
-/// What y may differ by between the speeds: a coupling that changes with the frequency.
+/// Tolerance for the difference of y between the speeds: the axis misalignment changes with
+/// frequency.
 const TOLERANCE: f64 = 0.01;
 
-/// Both senses at one speed, without H.
+/// Half-angle quantities of both senses at one speed, which do not contain H.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Halves {
-    /// The speed, rad/s.
+    /// Speed of the platform, rad/s.
     pub speed: f64,
     /// Half of arg Q₊Q₋, on the side of Q₊, rad.
     pub angle: f64,
-    /// Lag of the sensor that this leaves, rad: arg H less x.
+    /// Phase lag of the sensor that remains, rad: arg H less x.
     pub phase: f64,
-    /// (|Q₊|² − |Q₋|²)/(|Q₊|² + |Q₋|²).
+    /// Relative excess of power (|Q₊|² − |Q₋|²)/(|Q₊|² + |Q₋|²).
     pub excess: f64,
-    /// Variance of `angle`, rad²; that of y is the same.
+    /// Variance of `angle`, rad²; the variance of y is equal to it.
     pub variance: f64,
-    /// The part of it that is from rounding to steps, rad².
+    /// Part of the variance that is due to quantisation, rad².
     pub rounded: f64,
 }
 
 impl Halves {
-    /// From Q₊ and Q₋ with the variances of their parts, and the 1σ of what rounding to steps turns both by, rad.
+    /// Half-angle quantities from Q₊ and Q₋ with the variances of their parts, (rad/s)², and the 1σ
+    /// rotation of both phasors by quantisation, rad.
     #[must_use]
     pub fn of(speed: f64, phasors: [Complex; 2], variances: [f64; 2], rounded: f64) -> Self {
         let [clockwise, counter] = phasors;
@@ -55,7 +59,7 @@ impl Halves {
         }
     }
 
-    /// y for an x: the smaller root of 2y = excess (1 + x² + y²).
+    /// Part y for a given x: the smaller root of 2y = excess (1 + x² + y²).
     fn sine_part(&self, x: f64) -> f64 {
         let m = self.excess;
         if m.abs() < 1e-9 {
@@ -65,32 +69,32 @@ impl Halves {
     }
 }
 
-/// What γ adds to the half angle, less its second order xy.
+/// Contribution of γ to the half angle, without its second order xy.
 fn fourth_order(x: f64, y: f64) -> f64 {
     -0.5 * (libm::atan2(x, 1.0 + y) - libm::atan2(x, 1.0 - y)) - x * y
 }
 
-/// arg E′ and what the integrated g-sensitivity is.
+/// Angle of E′ and the integrated g-sensitivity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Freed {
-    /// arg E′, rad.
+    /// Angle arg E′, rad.
     pub angle: f64,
-    /// Its variance from the gyro's noise alone, rad².
+    /// Variance of the angle from the gyro's noise alone, rad².
     pub noise: f64,
-    /// Its 1σ from rounding to steps, rad.
+    /// Standard deviation of the angle from quantisation, 1σ, rad.
     pub rounded: f64,
-    /// What a g-sensitivity that is not told apart adds to it, rad².
+    /// Variance that an unresolved g-sensitivity adds to the angle, rad².
     pub left: f64,
-    /// γ at the slower speed.
+    /// Ratio γ at the slower speed.
     pub ratio: Complex,
-    /// What one speed alone, the slower, would be off by, rad.
+    /// Error of the angle that the slower speed alone would have, rad.
     pub one_speed: f64,
-    /// How far the speeds disagree about y, over its standard deviation.
+    /// Difference between the speeds' values of y, over its standard deviation.
     pub disagreement: f64,
 }
 
-/// Frees one or two speeds of the g-sensitivity, whose x times the speed has this 1σ, rad/s: zero for
-/// none, infinite for unknown.
+/// Removes the g-sensitivity from one or two speeds; x times the speed has the prior 1σ `sigma`,
+/// rad/s: zero for none, infinite for unknown. `None` without a speed.
 #[must_use]
 pub fn freed(halves: &[Halves], sigma: f64) -> Option<Freed> {
     let slowest = halves.iter().copied().reduce(|a, b| if b.speed < a.speed { b } else { a })?;
@@ -103,10 +107,10 @@ pub fn freed(halves: &[Halves], sigma: f64) -> Option<Freed> {
     let mut found = Freed::default();
     for _ in 0..ROUNDS {
         let y = common_part(halves, slowest.speed, x);
-        // xy of the slower speed: known to be so small.
+        // The prior bounds xy at the slower speed.
         let spread = assumed * libm::hypot(y, libm::sqrt(slowest.variance));
         found = extrapolated(halves, slowest.speed, [x, y], spread);
-        // Where y is but noise, nothing is known of x.
+        // Where y is noise only, x is not observable and shrinks to zero.
         x = (found.one_speed * y / (y * y + slowest.variance)).clamp(-GREATEST, GREATEST);
         found.ratio = Complex::new(x, y);
     }
@@ -115,7 +119,7 @@ pub fn freed(halves: &[Halves], sigma: f64) -> Option<Freed> {
     Some(found)
 }
 
-/// The weighted mean of all speeds, where there is no such g-sensitivity.
+/// Weighted mean of all speeds, for a sensor without such a g-sensitivity.
 fn mean(halves: &[Halves]) -> Freed {
     let first = halves.first().map_or(0.0, |half| half.angle);
     let (mut information, mut sum, mut rounded) = (0.0, 0.0, 0.0);
@@ -133,7 +137,7 @@ fn mean(halves: &[Halves]) -> Freed {
     }
 }
 
-/// y at the slower speed, from all speeds.
+/// Part y at the slower speed, from all speeds.
 fn common_part(halves: &[Halves], slowest: f64, x: f64) -> f64 {
     let (mut information, mut sum) = (0.0, 0.0);
     for half in halves {
@@ -144,10 +148,11 @@ fn common_part(halves: &[Halves], slowest: f64, x: f64) -> f64 {
     sum / information
 }
 
-/// Least squares for arg E′ and the product xy at the slower speed, of which only `spread` is known.
+/// Least squares for arg E′ and the product xy at the slower speed, which has the prior 1σ
+/// `spread`.
 fn extrapolated(halves: &[Halves], slowest: f64, [x, y]: [f64; 2], spread: f64) -> Freed {
     let first = halves.first().map_or(0.0, |half| half.angle);
-    // Information of the angle, of both, of the product; and their targets.
+    // Information of the angle, of angle and product, of the product; then the right sides.
     let (mut one, mut both, mut two) = (0.0, 0.0, 1.0 / (spread * spread));
     let mut targets = [0.0; 2];
     for half in halves {
@@ -161,7 +166,7 @@ fn extrapolated(halves: &[Halves], slowest: f64, [x, y]: [f64; 2], spread: f64) 
         targets[1] += falls * angle / half.variance;
     }
     let determinant = one * two - both * both;
-    // What the half angles themselves weigh in the angle, squared, by a part of their variances.
+    // Squared weights of the half angles in the angle, times a part of their variances.
     let weighed = |part: fn(&Halves) -> f64| -> f64 {
         let of = |half: &Halves| {
             let scale = slowest / half.speed;
@@ -181,8 +186,8 @@ fn extrapolated(halves: &[Halves], slowest: f64, [x, y]: [f64; 2], spread: f64) 
     }
 }
 
-/// How far the speeds disagree about y beyond a tolerance, over its standard deviation: root of the sum
-/// of squares.
+/// Difference between the speeds' values of y beyond a tolerance, over its standard deviation: root
+/// of the sum of squares.
 fn disagreement(halves: &[Halves], slowest: f64, ratio: Complex) -> f64 {
     let squares = halves.iter().map(|half| {
         let scale = slowest / half.speed;
@@ -193,7 +198,7 @@ fn disagreement(halves: &[Halves], slowest: f64, ratio: Complex) -> f64 {
     libm::sqrt(squares.sum())
 }
 
-/// An angle in [−π, π].
+/// Reduces an angle to [−π, π], rad.
 fn remainder(angle: f64) -> f64 {
     Complex::unit(angle).angle()
 }

@@ -1,4 +1,5 @@
-//! What a turn accumulator gathers: the eighth of a turn in progress, its forces, an uneven stretch, a break.
+//! Parts of the turn accumulator: the eighth of a turn in progress, its forces, a rate-modulated
+//! stretch, an interruption.
 
 use super::coupling::Coupling;
 use crate::align::regression::Regression;
@@ -9,64 +10,76 @@ use crate::units::Angle;
 
 /// Steps of an [`Angle`] in an eighth of a turn.
 pub(super) const EIGHTH: i64 = 1 << 29;
-/// Range of the platform's rate within an eighth, over its mean, that still counts as even.
+/// Greatest range of the platform's rate within an eighth, over its mean, that counts as constant.
 const EVEN: f32 = 0.04;
-/// What the mean rates of a turn's eighths may differ by.
+/// Greatest relative difference between the mean rates of a turn's eighths.
 const ALIKE: f32 = 0.02;
-/// Change of the platform's rate from block to block, over its speed, that nobody commands: the platform
-/// took another speed there, or something touched it.
+/// Change of the platform's rate from block to block, over its speed, that no command produces: the
+/// platform changed speed there, or was touched.
 const JUMP: f32 = 0.02;
-/// The sums of an uneven stretch.
+/// Sums of a rate-modulated stretch.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Uneven {
     /// Products of all signals.
     pub sums: Sums,
-    /// Its length, s.
+    /// Length of the stretch, s.
     pub seconds: f64,
     /// Angle turned through, rad, clockwise positive.
     pub turned: f64,
-    /// Half the width of the modulation's line over its frequency, where it was commanded.
+    /// Half width of the modulation's spectral line over its frequency, as commanded; zero where it
+    /// is unknown.
     pub width: f64,
 }
 
 impl Uneven {
-    /// The coupling that it shows, if it was uneven enough.
+    /// Axis misalignment that the stretch shows, if the modulation was strong enough.
     #[must_use]
     pub fn coupling(&self, noise: &GyroNoise) -> Option<Coupling> {
         Coupling::of(&self.sums, self.seconds, self.turned, self.width, noise)
     }
 }
 
-/// A break of even turns: what the platform has turned in it, steps of an [`Angle`], and for how long, s.
+/// Interruption of constant rotation.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Broken {
+    /// Angle that the platform turned, steps of an [`Angle`].
     pub(super) turned: i64,
+    /// Length of the interruption, s.
     pub(super) seconds: f32,
 }
 
 impl Broken {
-    /// What it turned beyond a speed in rad/s, rad.
+    /// Angle beyond rotation at a speed in rad/s, rad.
     pub(super) fn slip(&self, speed: f32) -> f64 {
         self.turned as f64 * Angle::STEP - f64::from(speed) * f64::from(self.seconds)
     }
 }
 
-/// The part of a turn that is being gathered.
+/// The eighth of a turn in progress.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Part {
+    /// Products of all signals.
     pub(super) products: Products,
+    /// Products of the forces.
     pub(super) forces: Forces,
+    /// Angle turned, steps of an [`Angle`].
     pub(super) turned: i64,
-    /// How far beyond its eighth the one before went, steps of an [`Angle`].
+    /// Angle by which the previous eighth went beyond its end, steps of an [`Angle`].
     pub(super) ahead: i64,
+    /// Length so far, s.
     pub(super) seconds: f32,
+    /// Least rate of the platform, rad/s.
     pub(super) least: f32,
+    /// Greatest rate of the platform, rad/s.
     pub(super) greatest: f32,
+    /// Rate of the platform in the latest block, rad/s.
     pub(super) last: f32,
+    /// Number of blocks.
     pub(super) rows: u32,
 }
 
 impl Part {
+    /// Adds a block, with the platform's angular acceleration, rad/s².
     pub(super) fn push(&mut self, block: &Block, quickening: f32, reference: &Reference) {
         let turning = block.turning;
         if self.rows == 0 {
@@ -81,12 +94,12 @@ impl Part {
         self.rows += 1;
     }
 
-    /// Whether a rate of the platform does not go on from the last block.
+    /// Whether a rate of the platform jumps from that of the latest block.
     pub(super) fn jumps_to(&self, turning: f32) -> bool {
         self.rows > 0 && is_jump(self.last, turning)
     }
 
-    /// How far it has come, steps of an [`Angle`].
+    /// Angle reached, steps of an [`Angle`].
     pub(super) fn reached(&self) -> i64 {
         self.turned.abs() + self.ahead
     }
@@ -96,30 +109,35 @@ impl Part {
         self.turned as f32 * (Angle::STEP as f32) / self.seconds
     }
 
+    /// Whether the platform's rate was constant and the gyro's rate plausible.
     pub(super) fn is_even(&self) -> bool {
         let range = self.greatest - self.least;
         !self.products.is_astray && range <= EVEN * self.speed().abs()
     }
 
-    /// Whether the platform turned as fast as `speed`, rad/s.
+    /// Whether the platform turned at `speed`, rad/s, within 2 %.
     pub(super) fn is_alike(&self, speed: f32) -> bool {
         (self.speed() - speed).abs() <= ALIKE * speed.abs()
     }
 }
 
-/// What the eighths of a turn show of an encoder's error twice a turn: how long they took, and how far they went,
-/// each with the angle at which they lie.
+/// Sums over the eighths of a turn that show an encoder error twice per turn: their durations and
+/// their angles, each as a phasor of twice the angle at which they lie.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Ellipse {
+    /// Phasor of the durations, s.
     seconds: [f32; 2],
+    /// Phasor of the angles, rad.
     turned: [f32; 2],
+    /// Sum of the angles, rad.
     sum: f32,
 }
 
 impl Ellipse {
-    /// Part of an error twice a turn that its eighths show in a sum over them: eight times √2 over two.
+    /// Response of the sum over the eighths to an error twice per turn: eight times √2 over two.
     const SHOWN: f64 = 4.0 * core::f64::consts::SQRT_2;
 
+    /// Adds an eighth.
     pub(super) fn push(&mut self, part: &Part) {
         let [c, s] = part.products.phasor();
         let power = (c * c + s * s).max(f32::MIN_POSITIVE);
@@ -133,7 +151,7 @@ impl Ellipse {
         self.sum += turned;
     }
 
-    /// The error as ε e^{jψ}, rad, of a platform that turned evenly for so many seconds.
+    /// Encoder error as ε e^{jψ}, rad, for a platform that turned at constant rate for `seconds`.
     pub(super) fn error(&self, seconds: f64) -> Complex {
         let speed = f64::from(self.sum) / seconds;
         let [re, im] =
@@ -142,25 +160,27 @@ impl Ellipse {
     }
 }
 
-/// Whether a rate of the platform does not go on from the one before.
+/// Whether a rate of the platform jumps from the previous one, by more than 2 %.
 pub(super) fn is_jump(before: f32, after: f32) -> bool {
     (after - before).abs() > JUMP * after.abs().max(before.abs())
 }
 
-/// Axes of the accelerometer in the platform's plane: along the sensitive axis, and 90° clockwise of it.
+/// Number of accelerometer axes in the platform's plane: along the sensitive axis, and 90°
+/// clockwise of it.
 pub(super) const AXES: usize = 2;
 
 /// Products of cosine and sine with the forces in the platform's plane.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Forces {
-    /// 1·c, 1·s, c·c, c·s, s·s in 2⁻¹⁶.
+    /// Sums of 1·c, 1·s, c·c, c·s and s·s, with c and s in steps of 2⁻¹⁶.
     phasors: [i64; 5],
-    /// Each force in µm/s² with 1, c, s.
+    /// Sums of each force, µm/s², with 1, c and s.
     with_force: [[i64; 3]; AXES],
+    /// Number of forces.
     count: u32,
 }
 
-/// What a step of cosine or sine in [`Forces`] is worth.
+/// Size of a step of cosine or sine in [`Forces`].
 const FORCE_STEP: f64 = 1.0 / 65_536.0;
 
 impl Forces {
@@ -178,6 +198,7 @@ impl Forces {
         self.count += 1;
     }
 
+    /// Adds the sums of another part.
     pub(super) fn add(&mut self, other: &Self) {
         for (sum, term) in self.phasors.iter_mut().zip(other.phasors) {
             *sum += term;
@@ -190,7 +211,7 @@ impl Forces {
         self.count += other.count;
     }
 
-    /// The regression of one axis.
+    /// Regression of one axis's force, m/s², on constant, cosine and sine.
     pub(super) fn regression(&self, axis: usize) -> Regression<COLUMNS> {
         let [c, s, cc, cs, ss] = self.phasors.map(|sum| sum as f64);
         let [f, fc, fs] = self.with_force[axis].map(|sum| sum as f64);

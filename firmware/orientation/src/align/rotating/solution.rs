@@ -1,4 +1,8 @@
-//! From the phasors of both senses to an azimuth with its standard deviation (equations.md §4).
+//! Azimuth and its standard deviation from the phasors of both senses (MET 2018).
+//!
+//! The steps are: remove the response to the platform's rate (axis misalignment) and the known lag,
+//! take the mean of both senses (flat sensor) or half of arg Q₊Q₋ (unknown response), subtract the
+//! tilt's part (`Ω_v` + κ)F, and solve for the azimuth on the horizon.
 
 use super::Setting;
 use super::average::Average;
@@ -10,44 +14,44 @@ use crate::align::budget::Budget;
 use crate::math::Complex;
 use crate::units::{ARCSECOND, TURN, wrapped};
 
-/// How far a flat sensor may lag behind the encoder, where no uneven turn has told, 1σ, s.
+/// Standard deviation of a flat sensor's lag without a rate-modulated turn, 1σ, s.
 const UNKNOWN_LAG: f64 = 0.01;
 
-/// Least 1σ of a lag, s: an encoder and a gyro are read no nearer to each other.
+/// Least 1σ of a lag, s: encoder and gyro are not synchronised better.
 pub const EXACT_LAG: f64 = 1e-6;
 
-/// What the law by which a lag follows from the uneven turn, that of one pole, may be wrong by, relative.
+/// Relative error of the one-pole law by which the lag follows from the rate-modulated turn.
 pub const LAG_LAW: f64 = 0.15;
 
-/// What an uneven turn leaves untold of a sensor's phase at the turn, 1σ, rad: it is modulated over a band,
-/// and an integrated g-sensitivity answers to the modulation.
+/// Part of a sensor's phase at the turn rate that a rate-modulated turn does not determine, 1σ,
+/// rad: the modulation covers a band, and an integrated g-sensitivity responds to it.
 const UNTOLD: f64 = 2.5e-3;
 
-/// How far the frequency of a modulation may be from the speed that it stands for, relative.
+/// Greatest relative distance of a modulation's frequency from the speed that it represents.
 const SAME_SPEED: f64 = 0.3;
 
-/// What an encoder's harmonic may turn the angle by where nothing is stated, 1σ, rad: 2″.
+/// Encoder harmonic where none is configured, 1σ, rad: 2″.
 const ENCODER_HARMONIC: f64 = 2.0 * ARCSECOND;
 
-/// Part of an azimuth's error for which a platform's unevenness twice a turn counts, 1σ, where it may be the encoder's
-/// error as well: it is all of it or nothing.
+/// Weight of a platform's unevenness twice per turn in the azimuth's error, 1σ, where it may as
+/// well be an encoder error: the truth is all of it or none.
 const ELLIPTIC: f64 = 0.6;
 
-/// 1σ of what rounding to a step leaves in the phasor of a signal that turns with the platform, over the step: 2/π of
-/// Bessel's function J₁, of any phase, in the mean of both senses.
+/// Standard deviation, 1σ, that quantisation leaves in the phasor of a signal that rotates with the
+/// platform, over the step: 2/π of Bessel's function J₁, for any phase, in the mean of both senses.
 const ROUNDED: f64 = 0.32;
-/// Greatest value of that function.
+/// Greatest value of J₁.
 const BESSEL: f64 = 0.58;
 
-/// Most speeds.
+/// Greatest number of speeds.
 pub const SPEEDS: usize = 2;
 
-/// Both senses at one speed.
+/// Averages of both senses at one speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
-    /// Clockwise.
+    /// Average of the clockwise stretch.
     pub clockwise: Average,
-    /// Counter-clockwise.
+    /// Average of the counter-clockwise stretch.
     pub counter: Average,
 }
 
@@ -58,22 +62,24 @@ impl Pair {
         0.5 * (self.clockwise.speed + self.counter.speed)
     }
 
-    /// Both.
+    /// Averages of both senses, clockwise first.
     #[must_use]
     pub fn senses(&self) -> [&Average; 2] {
         [&self.clockwise, &self.counter]
     }
 
+    /// Phasors Q₊ and Q₋, rad/s.
     fn phasors(&self) -> [Complex; 2] {
         self.senses().map(|average| average.phasor)
     }
 
-    /// Half the difference of the platform's rates: an unevenness that belongs to the angle.
+    /// Half the difference of the platform's rate phasors: an unevenness that is fixed to the
+    /// angle.
     fn uneven(&self) -> Complex {
         (self.clockwise.turning - self.counter.turning).scaled(0.5)
     }
 
-    /// The same with the phasors turned back by what a lag of so many seconds makes of them.
+    /// Pair with its phasors rotated back by the effect of a lag, s.
     fn without_lag(mut self, lag: f64) -> Self {
         let back = Complex::unit(libm::atan(self.speed() * lag));
         self.clockwise.phasor = self.clockwise.phasor * back;
@@ -81,97 +87,101 @@ impl Pair {
         self
     }
 
-    /// Half the sum of both senses: what does not change its sign.
+    /// Half the sum of both senses' phasors: the part that does not change its sign with the sense.
     #[must_use]
     pub fn even(&self) -> Complex {
         (self.clockwise.phasor + self.counter.phasor).scaled(0.5)
     }
 
-    /// Half their difference: what does.
+    /// Half the difference of both senses' phasors: the part that changes its sign with the sense.
     #[must_use]
     pub fn odd(&self) -> Complex {
         (self.clockwise.phasor - self.counter.phasor).scaled(0.5)
     }
 
-    /// Gain of the sensor by the horizontal Earth rate that both senses show, without the tilt's part.
+    /// Gain of the sensor from the horizontal Earth rate that both senses show, neglecting the
+    /// tilt's part.
     #[must_use]
     pub fn gain(&self, horizontal: f64) -> f64 {
         let [clockwise, counter] = self.phasors();
         libm::sqrt((clockwise * counter).size()) / horizontal
     }
 
-    /// Variances of either part of Q₊ and Q₋ for a spectral density of the sensor's input.
+    /// Variances of either part of Q₊ and Q₋, (rad/s)², for a spectral density at the sensor's
+    /// input.
     fn variances(&self, density: f64, gain: f64) -> [f64; 2] {
         self.senses().map(|average| average.share * of_turn(average.speed, density) * gain * gain)
     }
 
-    /// One over the variance of either part of their mean.
+    /// Inverse variance of either part of the mean of both senses.
     fn information(&self, density: f64, gain: f64) -> f64 {
         let [clockwise, counter] = self.variances(density, gain);
         4.0 / (clockwise + counter)
     }
 }
 
-/// Variance of either part of one turn's phasor at a speed in rad/s, for a spectral density, (rad/s)².
+/// Variance of either part of one turn's phasor, (rad/s)², at a speed in rad/s, for a two-sided
+/// spectral density, (rad/s)²/Hz.
 #[must_use]
 pub fn of_turn(speed: f64, density: f64) -> f64 {
     2.0 * density * speed / TURN
 }
 
-/// The azimuth after each stage of compensation, rad, [0, 2π).
+/// Azimuth after each stage of compensation, rad, [0, 2π).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stages {
-    /// The raw phasor of the clockwise turns at the first speed.
+    /// Angle of the raw phasor of the clockwise turns at the first speed.
     pub raw: f64,
-    /// The same without the platform's own rate.
+    /// Angle after the axis misalignment is compensated.
     pub coupling: f64,
-    /// Both senses together.
+    /// Angle from both senses together.
     pub senses: f64,
-    /// Everything: tilt, g-sensitivity, second speed.
+    /// Azimuth after all compensations: tilt, g-sensitivity, second speed.
     pub full: f64,
 }
 
-/// What the phasors say.
+/// Result of the fit of the phasors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fit {
     /// Azimuth of body x from true north, clockwise from above, rad, [0, 2π).
     pub azimuth: f64,
-    /// Where its standard deviation comes from.
+    /// Error budget of the azimuth.
     pub budget: Budget,
-    /// Standard deviation that no estimator can beat which must find the same unknowns, rad; zero where
-    /// the gyro's noise is not known.
+    /// Cramér–Rao bound of the azimuth for the same unknowns, 1σ, rad; zero where the gyro's noise
+    /// is not known.
     pub limit: f64,
-    /// The same with gain, lag and integrated g-sensitivity known, rad.
+    /// Cramér–Rao bound with gain, lag and integrated g-sensitivity known, 1σ, rad.
     pub plain_limit: f64,
-    /// The azimuth after each stage.
+    /// Azimuth after each stage of compensation.
     pub stages: Stages,
-    /// Tilt of the platform as the accelerometer shows it, g: size and angle of its phasor.
+    /// Tilt phasor F of the platform from the accelerometer, g.
     pub tilt: Complex,
-    /// 1σ of either part of it, g.
+    /// Standard deviation of either part of the tilt phasor, 1σ, g.
     pub tilt_sigma: f64,
-    /// The same as pitch and roll of the body.
+    /// Inclination of the body as pitch and roll.
     pub lean: Lean,
-    /// Horizontal Earth rate found over expected, and its 1σ; one and infinite where the sensor's gain is
-    /// unknown.
+    /// Horizontal Earth rate found over the expected one; one where the sensor's gain is unknown.
     pub ratio: f64,
-    /// 1σ of that.
+    /// Standard deviation of the ratio, 1σ; infinite where the sensor's gain is unknown.
     pub ratio_sigma: f64,
-    /// Least part of it that a flat sensor passes which lags as the uneven turn shows.
+    /// Least ratio of a flat sensor with the lag that the rate-modulated turn shows.
     pub passed: f64,
-    /// The integrated g-sensitivity at the slower speed over the Earth rate that turns with it, γ.
+    /// Integrated g-sensitivity at the slower speed over the Earth rate, γ.
     pub molecular: Complex,
-    /// What the slower speed alone would be off by for it, rad.
+    /// Error of the slower speed alone due to the integrated g-sensitivity, rad.
     pub one_speed: f64,
-    /// How far both speeds disagree about it, in σ.
+    /// Disagreement of both speeds on the integrated g-sensitivity, in σ.
     pub disagreement: f64,
-    /// How far two speeds of a sensor of unknown lag stray from what the uneven turn shows of it, in σ.
+    /// Disagreement of two speeds with the lag from the rate-modulated turn, in σ; sensors of
+    /// unknown lag only.
     pub astray: f64,
     /// Phase of the sensor at each speed, rad; zero for a flat one.
     pub phases: [f64; SPEEDS],
-    /// How much both senses differ, squared and over the variance of either part; flat sensors alone.
+    /// Squared difference of both senses over the variance of either part; flat sensors only.
     pub difference: f64,
-    /// 1σ of half the difference that both senses of a flat sensor may show beside its noise, of the Earth
-    /// rate: its lag, as far as it is not known, and the encoder's harmonics through the coupling.
+    /// Standard deviation, 1σ, of half the difference between the senses of a flat sensor beyond
+    /// its noise, relative to the Earth rate: its unknown lag, and the encoder's harmonics through
+    /// the axis misalignment.
     pub senses_sigma: f64,
 }
 
@@ -183,28 +193,28 @@ impl Fit {
     }
 }
 
-/// What the phasors are solved with.
+/// Inputs of the solution.
 pub struct Problem<'a> {
-    /// What is known beforehand.
+    /// Configuration of the alignment.
     pub setting: &'a Setting,
-    /// The speeds, one or two.
+    /// Pairs of averages, one for each of one or two speeds.
     pub pairs: &'a [Pair],
-    /// How the gyro feels the platform's rate, at one speed or at each.
+    /// Axis misalignments, at one speed or at each.
     pub couplings: &'a [Coupling],
     /// Spectral density of the gyro's noise at a speed in rad/s, (rad/s)²/Hz.
     pub density: &'a dyn Fn(f64) -> f64,
-    /// Spectral density of its white noise; zero where it is not known.
+    /// Spectral density of the gyro's white noise, (rad/s)²/Hz; zero where it is not known.
     pub white: f64,
-    /// Its N, rad/√s: known, or as the turns show it.
+    /// Angle random walk N of the gyro, rad/√s: known, or estimated from the turns.
     pub angle_random_walk: f64,
-    /// How the base tilts.
+    /// Motion of a tilting base.
     pub tilting: &'a Tilting,
-    /// The encoder's error twice a turn that would make the platform turn evenly, ε e^{jψ}, rad.
+    /// Encoder error twice per turn that would make the platform's rotation uniform, ε e^{jψ}, rad.
     pub ellipse: Complex,
 }
 
 impl Problem<'_> {
-    /// Solves; `None` without a pair.
+    /// Solves for the azimuth; `None` without a pair, or without a solution on the horizon.
     #[must_use]
     pub fn solve(&self) -> Option<Fit> {
         let first = self.pairs.first()?;
@@ -225,7 +235,7 @@ impl Problem<'_> {
         Some(fit)
     }
 
-    /// Horizontal and vertical Earth rate as the axis can feel them, rad/s.
+    /// Horizontal and vertical Earth rate that the misaligned axis can measure, rad/s.
     #[must_use]
     pub fn earth(&self) -> [f64; 2] {
         let latitude = self.setting.common.latitude;
@@ -233,7 +243,7 @@ impl Problem<'_> {
         [latitude.horizontal_rate() * along, latitude.vertical_rate()]
     }
 
-    /// The tilt's phasor and the 1σ of its parts, g.
+    /// Tilt phasor and the 1σ of its parts, g.
     fn tilt(&self) -> (Complex, f64) {
         let gravity = self.setting.common.latitude.gravity();
         let (mut sum, mut seconds) = (Complex::default(), 0.0);
@@ -245,13 +255,13 @@ impl Problem<'_> {
         (sum.scaled(1.0 / seconds / gravity), libm::sqrt(variance) / gravity)
     }
 
-    /// What multiplies the tilt, rad/s per g: vertical Earth rate and ordinary g-sensitivity.
+    /// Factor of the tilt, rad/s per g: vertical Earth rate and ordinary g-sensitivity.
     fn per_tilt(&self, ratio: f64) -> Complex {
         let [along, across] = self.setting.common.g_sensitivity;
         Complex::new(ratio * self.earth()[1] + along, across)
     }
 
-    /// A flat sensor: what changes its sign with the sense cancels.
+    /// Solution of a flat sensor: terms that change sign with the sense cancel.
     fn flat(&self, fit: &mut Fit) -> Turned {
         let [horizontal, _] = self.earth();
         let (mut sum, mut information) = (Complex::default(), 0.0);
@@ -261,7 +271,8 @@ impl Problem<'_> {
             let harmonic = ENCODER_HARMONIC + self.setting.common.encoder_sigma;
             let shown = match coupling {
                 Some(coupling) => harmonic * coupling.sine.abs() * pair.speed() / horizontal,
-                // What the platform's unevenness makes of it cancels between the senses.
+                // Without a misalignment the response to the platform's unevenness cancels between
+                // the senses.
                 None => self.setting.coupling_limit * pair.uneven().size() / horizontal,
             };
             let known = libm::hypot(shown, self.rounded(1.0, self.beside()));
@@ -278,7 +289,7 @@ impl Problem<'_> {
         }
         let mean = sum.scaled(1.0 / information);
         let (mut angle, mut size) = (0.0, mean.size());
-        // The tilt's part is small: a few rounds settle the ratio.
+        // The tilt's part is small, so a few rounds settle the ratio.
         for _ in 0..4 {
             fit.ratio = size / horizontal;
             let others = self.per_tilt(fit.ratio) * fit.tilt + self.tilting.turning(&fit.lean);
@@ -286,38 +297,41 @@ impl Problem<'_> {
         }
         let rounded = self.rounded(1.0, self.beside());
         fit.ratio_sigma = libm::hypot(libm::sqrt(1.0 / information) / horizontal, rounded);
-        // Q₊ − Q₋ is −2jγE′.
+        // The difference Q₊ − Q₋ is −2jγE′.
         let odd = self.slowest().map_or(Complex::default(), Pair::odd);
         fit.molecular = odd / mean * Complex::new(0.0, 1.0);
         let noise = 1.0 / information / (size * size);
         Turned { angle, noise, rounded: of_turned(rounded, self.beside()), left: 0.0 }
     }
 
-    /// 1σ of what rounding to steps adds along what turns with the platform, of the Earth rate, for a sensor's gain and
-    /// what turns beside that rate, of it.
+    /// Standard deviation, 1σ, that quantisation adds along the rotating signal, relative to the
+    /// Earth rate, for a sensor's gain and for the further rotating signal `beside`, also relative
+    /// to it.
     fn rounded(&self, gain: f64, beside: f64) -> f64 {
         let step = self.setting.rate_step / self.earth()[0] / gain;
-        // J₁ of 2π times the signal over the step falls as √(2/(πx)).
+        // Bessel's function J₁ of 2π times the signal over the step falls as √(2/(πx)).
         let falling = libm::sqrt(step / libm::hypot(1.0, beside)) / core::f64::consts::PI;
         ROUNDED * step * falling.min(BESSEL)
     }
 
-    /// What turns with the platform beside the Earth rate for its unevenness, of it, at the speed where it is most.
+    /// Rotating signal due to the platform's unevenness, relative to the Earth rate, at the speed
+    /// where it is greatest.
     fn beside(&self) -> f64 {
         self.pairs.iter().map(|pair| self.beside_at(pair)).fold(0.0, f64::max)
     }
 
-    /// The same at one speed.
+    /// Rotating signal due to the platform's unevenness at one speed, relative to the Earth rate.
     fn beside_at(&self, pair: &Pair) -> f64 {
         let coupling = coupling::nearest(self.couplings, pair.speed());
         coupling.map_or(0.0, |found| found.sine.abs() * pair.uneven().size()) / self.earth()[0]
     }
 
-    /// The speed that shows an integrated g-sensitivity most.
+    /// Slowest speed, at which an integrated g-sensitivity is greatest.
     fn slowest(&self) -> Option<&Pair> {
         self.pairs.iter().reduce(|a, b| if b.speed() < a.speed() { b } else { a })
     }
 
+    /// Half-angle quantities of a pair.
     fn halves(&self, pair: &Pair) -> Halves {
         let (gain, density) = (pair.gain(self.earth()[0]), (self.density)(pair.speed()));
         let beside = self.beside_at(pair);
@@ -325,13 +339,14 @@ impl Problem<'_> {
         Halves::of(pair.speed(), pair.phasors(), pair.variances(density, gain), rounded)
     }
 
-    /// A sensor of unknown gain and lag: half of arg Q₊Q₋, then the tilt's part off the angle.
+    /// Solution of a sensor of unknown gain and lag: half of arg Q₊Q₋, then the tilt's part is
+    /// subtracted from the angle.
     fn lagging(&self, fit: &mut Fit) -> Option<Turned> {
         let mut halves: heapless::Vec<Halves, SPEEDS> = heapless::Vec::new();
         for (pair, phase) in self.pairs.iter().zip(&mut fit.phases) {
             let half = self.halves(pair);
             *phase = half.phase;
-            // There are no more pairs than speeds.
+            // There are no more pairs than speeds, so the push cannot fail.
             let _ = halves.push(half);
         }
         let freed: Freed = molecular::freed(&halves, self.setting.sensor.molecular_sigma)?;
@@ -351,12 +366,13 @@ impl Problem<'_> {
         Some(Turned { angle, noise, rounded: freed.rounded * slope.abs(), left })
     }
 
-    /// How far two speeds stray from the lag that the uneven turn shows, in σ: their own lags, and what the g-sensitivity
-    /// that follows from these does to the azimuth. A base that turns between the stretches does that.
+    /// Disagreement of two speeds with the lag from the rate-modulated turn, in σ: of their own
+    /// lags, and of the azimuth change by the g-sensitivity that follows from these. A base that
+    /// rotates between the stretches causes both.
     fn astray(&self, halves: &[Halves], freed: &Freed, coupling_sigma: f64) -> f64 {
         let [slow, quick] = halves else { return 0.0 };
         let (slow, quick) = if quick.speed < slow.speed { (quick, slow) } else { (slow, quick) };
-        // What a phase lacks of the law's is −x, which falls as the speed grows.
+        // The difference of a phase from the law's is −x, which falls as the speed grows.
         let uneven = coupling_sigma * coupling_sigma;
         let [(at_slow, slow_variance), (at_quick, quick_variance)] = [slow, quick].map(|half| {
             let (law, sigma) = self.law(half.speed, freed.ratio.size());
@@ -371,13 +387,15 @@ impl Problem<'_> {
         lags.abs().max(speeds.abs())
     }
 
-    /// Phase of the sensor at a speed in rad/s as the uneven turn shows its lag, and the 1σ of that, rad: an integrated
-    /// g-sensitivity of so much of the Earth rate answers to the modulation as well.
+    /// Phase of the sensor at a speed in rad/s from the lag of the rate-modulated turn, and its 1σ,
+    /// rad. An integrated g-sensitivity of this size relative to the Earth rate responds to the
+    /// modulation too.
     fn law(&self, speed: f64, molecular: f64) -> (f64, f64) {
         let Some(found) = coupling::nearest(self.couplings, speed) else { return (0.0, TURN) };
         let at = |speed: f64| found.response(speed).scaled(found.sine.signum()).angle();
         let phase = at(speed);
-        // A pole and a high-pass together bend as either may; that one pole holds from speed to speed is what is asked.
+        // A pole and a high-pass together curve as either may; the test is whether one pole holds
+        // from speed to speed.
         let is_near = (speed / found.frequency - 1.0).abs() < SAME_SPEED;
         let bent = if is_near { phase - at(found.frequency) } else { 0.0 };
         let lag = speed * found.lag_sigma();
@@ -386,7 +404,7 @@ impl Problem<'_> {
         (phase, libm::hypot(UNTOLD, sigma))
     }
 
-    /// The limit of a flat sensor of known g-sensitivity in the same time.
+    /// Cramér–Rao bound of a flat sensor of known g-sensitivity in the same time, 1σ, rad.
     fn plain_limit(&self) -> f64 {
         if self.white <= 0.0 {
             return 0.0;
@@ -396,11 +414,12 @@ impl Problem<'_> {
         1.0 / libm::sqrt(information) / self.earth()[0]
     }
 
-    /// The part of the noise that is white, of one; all of it where that is not known.
+    /// White part of the noise power, 0 to 1; one where it is not known.
     fn white_part(&self, pair: &Pair) -> f64 {
         if self.white > 0.0 { (self.white / (self.density)(pair.speed())).min(1.0) } else { 1.0 }
     }
 
+    /// Error budget of the azimuth.
     fn budget(&self, fit: &Fit, turned: &Turned) -> Budget {
         let common = &self.setting.common;
         let [horizontal, _] = self.earth();
@@ -421,7 +440,8 @@ impl Problem<'_> {
             accelerometer: self.per_tilt(1.0).size() * fit.tilt_sigma / horizontal,
             encoder: libm::hypot(self.encoder_sigma(turned.angle), self.coupling_sigma(fit)),
             latitude: across.abs() * common.latitude_sigma / (cosine * cosine),
-            // A flat sensor's scale is found with the azimuth, but not for what a base that tilts turns it by.
+            // A flat sensor's scale is estimated with the azimuth, but it still scales the rotation
+            // of a tilting base.
             scale: libm::hypot(
                 self.tilting.scale(common.scale_sigma, &fit.lean, turned.angle, horizontal),
                 turned.rounded,
@@ -431,8 +451,8 @@ impl Problem<'_> {
         }
     }
 
-    /// What the encoder's errors turn the azimuth by, rad: of its zero, and where nothing is known of it twice a turn,
-    /// (ε/2) e^{j(ψ − 2A)} of the Earth rate.
+    /// Contribution of the encoder to the azimuth, 1σ, rad: of its zero, and, where the harmonics
+    /// are unknown, of an error twice per turn, (ε/2) e^{j(ψ − 2A)} relative to the Earth rate.
     fn encoder_sigma(&self, azimuth: f64) -> f64 {
         let known = libm::hypot(self.setting.common.encoder_sigma, self.setting.encoder_zero_sigma);
         if self.setting.harmonics_known {
@@ -442,9 +462,10 @@ impl Problem<'_> {
         libm::hypot(known, ELLIPTIC * turned)
     }
 
-    /// What the coupling's uncertainty turns the azimuth by, rad. Of an unevenness that belongs to the
-    /// angle, hence changes its sign with the sense, the part in phase cancels but for what an integrated
-    /// g-sensitivity mixes in; the part in quadrature, a lag, does not.
+    /// Contribution of the misalignment's uncertainty to the azimuth, 1σ, rad. For an unevenness
+    /// that is fixed to the angle, and so changes its sign with the sense, the in-phase part
+    /// cancels except for what an integrated g-sensitivity mixes in; the quadrature part, a lag,
+    /// does not cancel.
     fn coupling_sigma(&self, fit: &Fit) -> f64 {
         let [horizontal, _] = self.earth();
         let worst = self.pairs.iter().map(|pair| {
@@ -455,7 +476,7 @@ impl Problem<'_> {
             let unknown = [limit, limit * UNKNOWN_LAG * pair.speed()];
             let [in_phase, lagging] = coupling.map_or(unknown, |found| found.sigmas(pair.speed()));
             let mixed = libm::hypot(even.size(), odd.size() * fit.molecular.size());
-            // A flat sensor has no dynamics of which the uneven turn could show but a part.
+            // A flat sensor has no dynamics that the rate-modulated turn could show in part only.
             let response = coupling.filter(|_| !self.setting.sensor.is_flat);
             let left = response.map_or(0.0, |found| UNTOLD * found.sine.abs());
             libm::hypot(in_phase * mixed, libm::hypot(lagging, left) * odd.size())
@@ -464,16 +485,16 @@ impl Problem<'_> {
     }
 }
 
-/// The lag of a flat sensor, s: as the uneven turn shows it, as far as that knows better than that it is
-/// small.
+/// Lag of a flat sensor, s: that of the rate-modulated turn, shrunk towards zero by the prior that
+/// a lag is small.
 #[must_use]
 pub fn believed_lag(coupling: &Coupling) -> f64 {
     let (known, sigma) = (UNKNOWN_LAG * UNKNOWN_LAG, coupling.lag_sigma());
     coupling.lag() * known / (known + sigma * sigma)
 }
 
-/// Variance of either part of a force's phasor times the time over which it was found, (m/s²)²·s, and the
-/// degrees of freedom from which this is known.
+/// Variance of either part of a force's phasor times the time over which it was measured,
+/// (m/s²)²·s, and the degrees of freedom of this estimate.
 #[must_use]
 pub fn force_density(pairs: &[Pair]) -> (f64, u32) {
     let (mut sum, mut degrees) = (0.0, 0);
@@ -484,20 +505,20 @@ pub fn force_density(pairs: &[Pair]) -> (f64, u32) {
     (sum / f64::from(degrees.max(1)), degrees)
 }
 
-/// 1σ of what rounding turns the angle of a phasor by, rad: along a signal that is all of what is rounded it adds
-/// nothing across.
+/// Rotation of a phasor's angle by quantisation, 1σ, rad: along a signal that alone is quantised
+/// there is no error across.
 fn of_turned(rounded: f64, beside: f64) -> f64 {
     rounded * beside / libm::hypot(1.0, beside)
 }
 
-/// An azimuth before it is judged.
+/// Azimuth before the tests.
 struct Turned {
-    /// rad.
+    /// Azimuth, rad.
     angle: f64,
     /// Variance from the gyro's noise, rad².
     noise: f64,
-    /// 1σ from rounding to steps, rad.
+    /// Standard deviation from quantisation, 1σ, rad.
     rounded: f64,
-    /// Variance from a g-sensitivity that was not told apart, rad².
+    /// Variance from an unresolved g-sensitivity, rad².
     left: f64,
 }

@@ -1,5 +1,5 @@
-//! A base that tilts slowly, by the forces of its turns: it turns the gyro as the Earth does, 1 °/h of it by 6° at
-//! 50° of latitude.
+//! Slow tilting of the base, from the forces of the turns: the tilting rate adds to the gyro's
+//! signal as the Earth rate does, and 1 °/h of it costs 6° of azimuth at 50° of latitude.
 
 use heapless::Vec;
 
@@ -10,53 +10,55 @@ use crate::align::regression::Column;
 use crate::math::Complex;
 use crate::units::DEGREE_PER_HOUR;
 
-/// 1σ of what both senses' forces may differ by, g.
+/// Prior 1σ of the difference between both senses' forces, g.
 const SENSES: f64 = 2e-6;
-/// 1σ of an accelerometer's delay, s: it turns the force with the sense.
+/// Prior 1σ of an accelerometer's delay, s: it rotates the force with the sense.
 const DELAY: f64 = 5e-3;
-/// Least scatter of a turn's force that is believed, g.
+/// Least scatter of a turn's force that is assumed, g.
 const LEAST_SCATTER: f64 = 1e-8;
-/// Gain of chi-square from which a tilt rate is believed (two parts, p = 0.0001).
+/// Gain of chi-square from which a tilt rate is accepted (two parts, p = 0.0001).
 const BELIEVED: f64 = 18.4;
-/// The same of a step, for each place at which it may be (p = 0.0003 over all of them).
+/// Gain of chi-square from which a step is accepted, for each place at which it may be (p = 0.0003
+/// over all of them).
 const STEP_BELIEVED: f64 = 16.0;
-/// Gain from which it is doubtful whether a base stands (two parts, p = 0.01).
+/// Gain of chi-square from which tilting is possible (two parts, p = 0.01).
 const DOUBTFUL: f64 = 9.21;
-/// Part of the bases that tilt, before their forces are looked at: where these speak for it, and where not.
+/// Prior probability of a tilting base: where the forces indicate it, and where they do not.
 const TILTING: [f64; 2] = [0.02, 0.0003];
-/// 1σ of how fast a base tilts that does, 1/s: 3 °/h.
+/// Standard deviation of the rate of a base that tilts, 1/s: 3 °/h.
 const FASTEST: f64 = 3.0 * DEGREE_PER_HOUR;
 
-/// σ of a change of the tilt's size within which it is none.
+/// Change of the tilt's magnitude, in σ, that counts as none.
 const ALIKE: f64 = 3.0;
 
-/// How a base tilts.
+/// Result of the test for tilting of the base.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Tilting {
-    /// How fast the force's phasor changes, g/s, as far as that is believed.
+    /// Rate of the force's phasor, g/s; zero unless it is accepted.
     pub rate: Complex,
-    /// Variance of either part of the true rate about that one, (g/s)².
+    /// Variance of either part of the true rate about `rate`, (g/s)².
     pub variance: f64,
-    /// Likeliest rate where none is believed, g/s, and how probable it is that there is one.
+    /// Most likely rate where none is accepted, g/s, and the probability that there is one.
     doubted: Complex,
     probability: f64,
-    /// From the first turn to the last, s.
+    /// Time from the first turn to the last, s.
     seconds: f64,
-    /// Middle of the turns, s: the mean force is that of this time.
+    /// Middle of the turns, s, to which the mean force refers.
     since: f64,
-    /// What a changing tilt multiplies in the gyro, rad/s per g.
+    /// Response of the gyro's phasor to a change of tilt, rad/s per g.
     per_tilt: Complex,
-    /// By how much the force's phasor is another one from some time on, g, where that is believed.
+    /// Size of a step of the force's phasor, g, where one is accepted.
     pub step: Option<f64>,
 }
 
 impl Tilting {
-    /// From the forces of all turns, for gravity in m/s² and what a tilt makes of the gyro's phasor, rad/s per g.
+    /// Tests the forces of all turns, for gravity in m/s² and the response of the gyro's phasor to
+    /// tilt, rad/s per g.
     #[must_use]
     #[inline(never)]
     pub fn of(stretches: &[Stretch], gravity: f64, per_tilt: Complex) -> Self {
         let mut marks = marks(stretches, gravity);
-        // Along the force, and across it, where a delay shows.
+        // The forces are resolved along their mean direction, and across it, where a delay shows.
         let along = direction(&marks);
         let mut size: f64 = 0.0;
         for mark in &mut marks {
@@ -90,8 +92,9 @@ impl Tilting {
         Self { doubted: rate, variance: found.change_variance, probability, ..standing }
     }
 
-    /// How fast an encoder creeps that lets the tilt's direction drift so, rad/s, for a tilt in g; none where no tilting is
-    /// believed, or where the tilt's size changes with it.
+    /// Rate of a creeping encoder that would explain the drift of the tilt's direction, rad/s, for
+    /// a tilt in g; `None` where no tilting is accepted, or where the tilt's magnitude changes as
+    /// well.
     #[must_use]
     pub fn creep(&self, tilt: Complex) -> Option<f64> {
         let turned = self.rate * tilt.conjugate();
@@ -100,45 +103,46 @@ impl Tilting {
         (is_believed && is_turning).then(|| turned.im / tilt.power())
     }
 
-    /// By how much the tilt changed in all, g.
+    /// Total change of the tilt, g.
     #[must_use]
     pub fn change(&self) -> f64 {
         self.rate.size() * self.seconds
     }
 
-    /// By which angle an encoder slipped whose slip the step is, rad, for a tilt in g: the azimuth may be off by a part
-    /// of it. Zero where there is none.
+    /// Angle of an encoder slip that would explain the step, rad, for a tilt in g: the azimuth may
+    /// be off by a part of it. Zero without a step.
     #[must_use]
     pub fn slip(&self, tilt: f64) -> f64 {
         self.step.map_or(0.0, |change| change / tilt.max(f64::MIN_POSITIVE))
     }
 
-    /// What the gyro feels more at a time in s than in the middle of all turns, rad/s: the vertical Earth rate and its
-    /// g-sensitivity through a tilt that is another one.
+    /// Change of the gyro's phasor from the middle of all turns to a time in s, rad/s: vertical
+    /// Earth rate and g-sensitivity through the changed tilt.
     #[must_use]
     pub fn vertical_part(&self, time: f64) -> Complex {
         self.per_tilt * self.rate.scaled(time - self.since)
     }
 
-    /// By how much the tilt at a time in s is another one than in the middle of all turns, g.
+    /// Change of the tilt from the middle of all turns to a time in s, g.
     #[must_use]
     pub fn tilt_at(&self, time: f64) -> Complex {
         self.rate.scaled(time - self.since)
     }
 
-    /// How far that and all that is felt of it is off for a scale factor of this 1σ, as the azimuth shows it, rad.
+    /// Azimuth error of the rotation of a tilting base for a scale factor with this 1σ, rad.
     #[must_use]
     pub fn scale(&self, sigma: f64, lean: &Lean, azimuth: f64, horizontal: f64) -> f64 {
         sigma * (self.turning(lean) * Complex::unit(-azimuth)).im.abs() / horizontal
     }
 
-    /// What the tilting itself turns the gyro by, rad/s.
+    /// Phasor of the rotation of the tilting base itself, rad/s.
     #[must_use]
     pub fn turning(&self, lean: &Lean) -> Complex {
         lean.turning(self.rate)
     }
 
-    /// Variance of an azimuth in rad for what the forces do not tell, for a horizontal Earth rate in rad/s.
+    /// Variance of an azimuth, rad², for the tilting that the forces leave open, for a horizontal
+    /// Earth rate in rad/s.
     #[must_use]
     pub fn doubt(&self, lean: &Lean, azimuth: f64, horizontal: f64) -> f64 {
         if self.probability == 0.0 {
@@ -149,7 +153,7 @@ impl Tilting {
     }
 }
 
-/// Where the mean of all forces points, of size one.
+/// Unit phasor of the mean of all forces.
 fn direction(marks: &[Mark]) -> Complex {
     let of = |mark: &Mark| {
         let [re, im] = mark.value.map(f64::from);
@@ -158,7 +162,7 @@ fn direction(marks: &[Mark]) -> Complex {
     Complex::unit(marks.iter().map(of).fold(Complex::default(), |sum, part| sum + part).angle())
 }
 
-/// The forces' phasors over gravity, g.
+/// Force phasors of all turns over gravity, g.
 fn marks(stretches: &[Stretch], gravity: f64) -> Vec<Mark, MARKS> {
     let mut marks = Vec::new();
     for stretch in stretches {

@@ -1,4 +1,4 @@
-//! One whole turn of the platform as phasors, and the stretch of turns at one speed in one sense.
+//! One whole turn of the platform as phasors, and a stretch of turns at one speed in one sense.
 
 use heapless::Vec;
 
@@ -6,35 +6,37 @@ use super::part::AXES;
 use crate::align::regression::{Column, Regression};
 use crate::signal::phasor::{COLUMNS, COSINE, ONE, RATE, Reference, SINE, Sums, TIME, TURNING};
 
-/// Most turns that are kept apart in a stretch; of more, neighbours are joined.
+/// Greatest number of entries in a stretch; with more turns, neighbours are joined.
 pub const TURNS: usize = 32;
 
-/// What one turn, or several neighbours, left.
+/// Averages of one turn, or of several neighbouring turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Turn {
     /// Coefficients of cosine and sine in the gyro's rate, rad/s.
     pub rate: [f32; 2],
-    /// In the platform's rate, rad/s.
+    /// Coefficients of cosine and sine in the platform's rate, rad/s.
     pub turning: [f32; 2],
-    /// In the time itself, s: what a slope of 1 rad/s² of the rate would add to `rate`.
+    /// Coefficients of cosine and sine in the time itself, s: the response of `rate` to a slope of
+    /// 1 rad/s².
     pub leak: [f32; 2],
-    /// In the force along the sensitive axis, m/s².
+    /// Coefficients of cosine and sine in the force along the sensitive axis, m/s².
     pub force: [f32; 2],
-    /// In the force 90° clockwise of it, m/s²; zeros where nothing reads that axis.
+    /// Coefficients of cosine and sine in the force 90° clockwise of it, m/s²; zeros where that
+    /// axis is not measured.
     pub across: [f32; 2],
     /// Mean force along the sensitive axis, m/s².
     pub mean_force: f32,
     /// Mean of the gyro's rate, rad/s.
     pub offset: f32,
-    /// Time of its middle since the stretch's first turn, s.
+    /// Time of the turn's middle since the stretch's first turn, s.
     pub middle: f32,
-    /// Its length, s.
+    /// Length of the turn, s.
     pub seconds: f32,
     /// Mean rate of the platform, rad/s, clockwise positive.
     pub speed: f32,
 }
 
-/// A constant, cosine and sine.
+/// Model of a phasor: constant, cosine and sine.
 const PHASOR: [Column; COLUMNS] = {
     let mut model = [Column::Absent; COLUMNS];
     model[ONE] = Column::Free;
@@ -43,7 +45,8 @@ const PHASOR: [Column; COLUMNS] = {
     model
 };
 
-/// Mean and coefficients of cosine and sine; `None` where the platform did not turn round.
+/// Mean of a signal and its coefficients of cosine and sine; `None` where the angles do not cover a
+/// turn.
 #[must_use]
 pub fn phasor(regression: &Regression<COLUMNS>) -> Option<(f64, [f32; 2])> {
     let found = regression.solve(&PHASOR)?.coefficients;
@@ -51,8 +54,8 @@ pub fn phasor(regression: &Regression<COLUMNS>) -> Option<(f64, [f32; 2])> {
 }
 
 impl Turn {
-    /// From the sums of a whole turn of `seconds` that began at `since` µs in its stretch, and the
-    /// regressions of its forces; `None` where either does not go round.
+    /// Turn from the sums of a whole turn of `seconds` that began at `since` µs in its stretch, and
+    /// the regressions of its forces; `None` where either does not cover a turn.
     #[must_use]
     pub fn of(
         sums: &Sums,
@@ -82,7 +85,7 @@ impl Turn {
         })
     }
 
-    /// This turn and another as one: means weighted by their lengths.
+    /// Average of this turn and another, weighted by their lengths.
     fn joined(&self, other: &Self) -> Self {
         let seconds = self.seconds + other.seconds;
         let share = other.seconds / seconds;
@@ -103,23 +106,23 @@ impl Turn {
     }
 }
 
-/// Which way the platform turns, seen from above.
+/// Sense of rotation, seen from above.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sense {
-    /// Angles rise.
+    /// Clockwise: encoder angles increase.
     Clockwise,
-    /// Angles fall.
+    /// Counter-clockwise: encoder angles decrease.
     CounterClockwise,
 }
 
 impl Sense {
-    /// That of a rate.
+    /// Sense of a rate; zero counts as clockwise.
     #[must_use]
     pub fn of(rate: f64) -> Self {
         if rate < 0.0 { Self::CounterClockwise } else { Self::Clockwise }
     }
 
-    /// A speed with its sign.
+    /// Rate of this sense for a speed.
     #[must_use]
     pub fn signed(self, speed: f64) -> f64 {
         if self == Self::Clockwise { speed } else { -speed }
@@ -134,12 +137,14 @@ crate::words! { Sense:
 /// Turns at one speed in one sense.
 #[derive(Clone, Debug)]
 pub struct Stretch {
-    /// Which way.
+    /// Sense of rotation.
     pub sense: Sense,
-    /// Time of its first reference, µs.
+    /// Time of the stretch's first reference, µs.
     since: u64,
+    /// Entries of the stretch.
     turns: Vec<Turn, TURNS>,
-    /// How many turns each of `turns` stands for; how many wait to be joined, and what they are so far.
+    /// Number of turns that each entry stands for; number of turns waiting to be joined, and their
+    /// average.
     joined: u32,
     waiting: u32,
     sum: Turn,
@@ -152,19 +157,19 @@ impl Stretch {
         Self { sense, since, turns: Vec::new(), joined: 1, waiting: 0, sum: Turn::default() }
     }
 
-    /// When it began, µs.
+    /// Beginning of the stretch, µs.
     #[must_use]
     pub const fn since(&self) -> u64 {
         self.since
     }
 
-    /// The turns, joined where there were many.
+    /// Entries of the stretch, joined where there were many turns.
     #[must_use]
     pub fn turns(&self) -> &[Turn] {
         &self.turns
     }
 
-    /// How many turns of the platform.
+    /// Number of turns of the platform.
     #[must_use]
     pub fn count(&self) -> u32 {
         self.turns.len() as u32 * self.joined
@@ -177,13 +182,14 @@ impl Stretch {
         (sum / self.turns.len().max(1) as f64).abs()
     }
 
-    /// Time in its turns, s.
+    /// Total time of the turns, s.
     #[must_use]
     pub fn seconds(&self) -> f64 {
         self.turns.iter().map(|turn| f64::from(turn.seconds)).sum()
     }
 
-    /// Takes one more turn. Where there is no room, neighbours are joined.
+    /// Adds one turn. Where there is no room, neighbours are joined, and each entry stands for
+    /// twice as many turns.
     pub fn push(&mut self, turn: Turn) {
         self.sum = if self.waiting == 0 { turn } else { self.sum.joined(&turn) };
         self.waiting += 1;
@@ -194,12 +200,12 @@ impl Stretch {
             self.halve();
         } else {
             self.waiting = 0;
-            // There is room: it was not full.
+            // The vector was not full, so the push cannot fail.
             let _ = self.turns.push(self.sum);
         }
     }
 
-    /// Joins every two neighbours; what waits is then half of one.
+    /// Joins every two neighbours; the turns waiting are then half of an entry.
     fn halve(&mut self) {
         let half = self.turns.len() / 2;
         for index in 0..half {

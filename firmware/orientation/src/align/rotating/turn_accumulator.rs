@@ -1,11 +1,12 @@
-//! Follows a turning platform by its encoder: what was an uneven turn, what was a whole even one.
+//! Segmentation of a rotating platform's recording by its encoder: into rate-modulated stretches
+//! and whole turns at constant rate.
 //!
 //! ```text
-//!  sample ─▶ block ─▶ eighth of a turn ─even, as before?─▶ turn ─▶ stretch (sense, speed)
-//!                                        └─no──▶ the uneven stretch, or nothing
+//!  sample ─▶ block ─▶ eighth of a turn ─same rate as before?─▶ turn ─▶ stretch (sense, speed)
+//!                                        └─no──▶ rate-modulated stretch, or discarded
 //! ```
 //!
-//! Only the encoder counts, wherever the command came from, so that a recording is followed as a
+//! Segmentation uses the encoder alone, not the commands, so that a recording is treated as a live
 //! platform is.
 
 use heapless::Vec;
@@ -20,78 +21,92 @@ use crate::signal::Sample;
 use crate::signal::phasor::{Block, Blocks, Reference, Sums};
 use crate::units::{Angle, SpecificForce, TURN as WHOLE_TURN};
 
-/// Most stretches: two speeds, both senses.
+/// Greatest number of stretches: two speeds, both senses.
 pub const STRETCHES: usize = 4;
 
-/// Eighths in a turn.
+/// Number of eighths in a turn.
 const EIGHTHS: u32 = 8;
-/// Blocks after which an eighth is given up: the platform stands.
+/// Number of blocks after which an eighth is abandoned: the platform stands.
 const LONGEST_EIGHTH: u32 = 4096;
-/// Part of an eighth with which the last one of a turn is whole enough: what is missing costs nothing,
-/// since the fit knows of it.
+/// Part of an eighth that suffices for the last one of a turn: the missing part costs nothing,
+/// because the fit takes the true angles.
 const NEARLY: f64 = 0.8;
-/// What the speeds of a stretch's turns may differ by.
+/// Greatest relative difference between the speeds of a stretch's turns.
 const SAME_SPEED: f64 = 0.03;
-/// By how much an encoder may have moved against the platform in what broke a turn, rad: 0.3°, twice
-/// what an unevenness of 0.2 % makes of a quarter turn.
+/// Least slip of the encoder that is detected in an interruption of a turn, rad: 0.3°, twice the
+/// effect of 0.2 % of unevenness over a quarter turn.
 const SLIP: f64 = 0.3 / 360.0 * WHOLE_TURN;
-/// Most that a slip breaks, rad, three eighths of a turn: after more the platform stood, or turned unevenly
-/// and took on the speed again.
+/// Longest interruption that counts as a slip, rad: three eighths of a turn. After a longer one the
+/// platform stood, or turned unevenly and regained its speed.
 const LONGEST_BREAK: f64 = 0.375 * WHOLE_TURN;
 
-/// Force at which an accelerometer of ±2 g clips, µm/s²: 97 % of it.
+/// Force at which an accelerometer of ±2 g clips, µm/s²: 97 % of its range.
 const FORCE_LIMIT: i32 = 19_000_000;
-/// Forces at the limit, or equal ones in a row, that may be chance.
+/// Number of forces at the limit, or equal in succession, that may be chance.
 const FEW_FORCES: u32 = 64;
 
-/// What is to be followed.
+/// Kind of motion that is accumulated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
-    /// Nothing: the platform starts, stops or reverses.
+    /// Nothing is accumulated: the platform starts, stops or reverses.
     Ignore,
-    /// A turn that is uneven on purpose.
+    /// A rate-modulated turn.
     Uneven,
-    /// Even turns.
+    /// Turns at constant rate.
     Even,
-    /// Whatever comes: an uneven stretch first, then even turns.
+    /// A recording: a rate-modulated stretch first, if there is one, then turns at constant rate.
     Recorded,
 }
 
-/// The turn accumulator at work.
+/// State of the segmentation.
 #[derive(Clone, Debug)]
 pub struct TurnAccumulator {
+    /// Averages samples into blocks.
     blocks: Blocks,
+    /// Kind of motion that is accumulated.
     mode: Mode,
-    /// The two latest blocks: one is taken when the platform's acceleration in it is known.
+    /// The two latest blocks: a block is used when the platform's acceleration in it is known.
     latest: [Option<Block>; 2],
+    /// Reference values of the turn in progress.
     reference: Option<Reference>,
+    /// Eighth in progress.
     part: Part,
+    /// Sums of the turn in progress.
     turn: Sums,
+    /// Force products of the turn in progress.
     turn_forces: Forces,
+    /// Length of the turn in progress, s.
     turn_seconds: f32,
+    /// Second-harmonic sums of the turn in progress.
     turn_ellipse: Ellipse,
+    /// Complete eighths of the turn in progress.
     eighths: u32,
-    /// What the eighths show of the encoder's error twice a turn, rad, summed over so many turns.
+    /// Encoder error twice per turn from the eighths, rad, summed over turns, and their number.
     ellipse: Complex,
     ellipse_turns: u32,
     /// Rate of the turn's first eighth, rad/s.
     speed: f32,
+    /// Rate-modulated stretches.
     uneven: Vec<Uneven, SPEEDS>,
-    /// Whether the next uneven eighth does not count: the sensor still answers to what was before.
+    /// Whether the next modulated eighth is skipped, because the sensor still responds to the
+    /// previous motion.
     is_settling: bool,
+    /// Stretches at constant rate.
     stretches: Vec<Stretch, STRETCHES>,
+    /// Interruption in progress.
     broken: Option<Broken>,
-    /// The greatest slip of the encoder, rad.
+    /// Greatest slip of the encoder so far, rad.
     slip: f64,
+    /// Latest force along the sensitive axis.
     last_force: SpecificForce,
-    /// Equal forces in a row, now and at most; forces at the limit.
+    /// Number of equal forces in succession, at present and at most; number of forces at the limit.
     repeated: u32,
     most_repeated: u32,
     clipped: u32,
 }
 
 impl TurnAccumulator {
-    /// A turn accumulator with blocks of so many sample periods.
+    /// Accumulator with blocks of this many sample periods.
     #[must_use]
     pub fn new(periods: u32, mode: Mode) -> Self {
         Self {
@@ -120,57 +135,59 @@ impl TurnAccumulator {
         }
     }
 
-    /// What is followed.
+    /// Kind of motion that is accumulated at present.
     #[must_use]
     pub fn mode(&self) -> Mode {
         self.mode
     }
 
-    /// The stretches of even turns so far.
+    /// Stretches at constant rate so far.
     #[must_use]
     pub fn stretches(&self) -> &[Stretch] {
         &self.stretches
     }
 
-    /// The uneven stretches so far, one for each speed.
+    /// Rate-modulated stretches so far, one for each speed.
     #[must_use]
     pub fn uneven(&self) -> &[Uneven] {
         &self.uneven
     }
 
-    /// By how much the encoder slipped, rad; zero where it did not.
+    /// Greatest slip of the encoder, rad; zero without a slip.
     #[must_use]
     pub fn slip(&self) -> f64 {
         self.slip
     }
 
-    /// The error ε sin(2θ + ψ) of the encoder that would make the platform turn as evenly as can be, as ε e^{jψ}, rad.
+    /// Encoder error ε sin(2θ + ψ) that would make the platform's rotation as uniform as possible,
+    /// as ε e^{jψ}, rad.
     #[must_use]
     pub fn ellipse(&self) -> Complex {
         self.ellipse.scaled(1.0 / f64::from(self.ellipse_turns.max(1)))
     }
 
-    /// What is followed from now on.
+    /// Changes the kind of motion that is accumulated, and discards what is in progress.
     pub fn follow(&mut self, mode: Mode) {
         self.mode = mode;
         self.restart();
     }
 
-    /// Follows another uneven stretch, modulated by a line of this half width over its frequency.
+    /// Begins another rate-modulated stretch, modulated by a spectral line of this half width over
+    /// its frequency.
     pub fn follow_uneven(&mut self, width: f64) {
         self.follow(Mode::Uneven);
-        // One beyond the speeds goes on with the last.
+        // With more stretches than speeds, the last one is continued.
         let _ = self.uneven.push(Uneven { width, ..Uneven::default() });
     }
 
-    /// There will be no more: a turn that lacks a little is whole enough.
+    /// Ends the recording: a turn that is nearly complete counts.
     pub fn finish(&mut self) {
         if self.is_nearly_whole() {
             self.end_part();
         }
     }
 
-    /// Forgets what is in progress: the next sample does not join on to the one before.
+    /// Discards the turn in progress, so that the next sample does not join on to the previous one.
     pub fn restart(&mut self) {
         self.blocks.restart();
         self.is_settling = true;
@@ -183,8 +200,8 @@ impl TurnAccumulator {
         }
     }
 
-    /// Takes a sample; whether it completed a turn. The platform's rate, rad/s, is that of the encoder's
-    /// angles unless it was measured by itself.
+    /// Takes a sample; returns whether it completed a turn. The platform's rate, rad/s, follows
+    /// from the encoder's angles unless it is given.
     #[inline]
     pub fn push(&mut self, sample: &Sample, turning: Option<f32>) -> bool {
         let block = self.blocks.push(sample, turning);
@@ -200,9 +217,9 @@ impl TurnAccumulator {
         block.is_some_and(|block| self.take(block, turning.is_some()))
     }
 
-    /// The block before the latest one, with its neighbours, once there are three. By how much the encoder
-    /// shows more or less in it alone than goes with its neighbours, and with its own rate where that was
-    /// measured, is a slip, in whatever mode.
+    /// The block before the latest one with its neighbours, once there are three. An encoder angle
+    /// that in this block alone differs from its neighbours' rates, and from its own measured rate,
+    /// is a slip, in any mode.
     fn latest(&mut self, next: Block, is_measured: bool) -> Option<[Block; 3]> {
         let [before, block] = self.latest;
         self.latest = [block, Some(next)];
@@ -220,6 +237,7 @@ impl TurnAccumulator {
         Some([before, block, next])
     }
 
+    /// Stores a slip, rad, if it is the greatest so far and beyond the limit.
     fn note_slip(&mut self, slip: f64) {
         if slip.abs() > SLIP.max(self.slip.abs()) {
             self.slip = slip;
@@ -240,7 +258,7 @@ impl TurnAccumulator {
         }
     }
 
-    /// What is wrong with the accelerometer, if anything is.
+    /// Fault of the accelerometer, if there is one: saturated or stuck.
     #[must_use]
     pub fn accelerometer(&self) -> Option<Trouble> {
         if self.clipped > FEW_FORCES {
@@ -252,13 +270,13 @@ impl TurnAccumulator {
         }
     }
 
-    /// Takes the block before the latest two, whose neighbours are both known.
+    /// Processes the block before the latest one, whose neighbours are both known.
     #[inline(never)]
     fn take(&mut self, next: Block, is_measured: bool) -> bool {
         let Some([before, block, next]) = self.latest(next, is_measured) else { return false };
         let seconds = block.seconds + 0.5 * (before.seconds + next.seconds);
         let quickening = (next.turning - before.turning) / seconds;
-        // A block beside a jump may hold a part of it.
+        // A block beside a jump of the rate may contain a part of it.
         let is_beside = is_jump(block.turning, next.turning);
         let has_turned = (is_beside || self.part.jumps_to(block.turning)) && self.cut();
         if is_beside {
@@ -276,8 +294,8 @@ impl TurnAccumulator {
         has_turned
     }
 
-    /// Ends the eighth in progress before the platform's rate jumps: it counts where it is the last of a
-    /// turn and nearly whole; whether that completed the turn.
+    /// Ends the eighth in progress before a jump of the platform's rate: it counts where it is the
+    /// last of a turn and nearly complete. Returns whether that completed the turn.
     fn cut(&mut self) -> bool {
         if self.is_nearly_whole() {
             return self.end_part();
@@ -293,13 +311,13 @@ impl TurnAccumulator {
         false
     }
 
-    /// Whether the eighth in progress is the last of a turn and lacks but a little.
+    /// Whether the eighth in progress is the last of a turn and nearly complete.
     fn is_nearly_whole(&self) -> bool {
         let reached = self.part.reached() as f64;
         self.eighths == EIGHTHS - 1 && reached > NEARLY * EIGHTH as f64
     }
 
-    /// Puts an eighth where it belongs; whether it completed a turn.
+    /// Assigns a complete eighth; returns whether it completed a turn.
     fn end_part(&mut self) -> bool {
         let ahead = (self.part.reached() - EIGHTH).max(0);
         let part = core::mem::replace(&mut self.part, Part { ahead, ..Part::default() });
@@ -319,7 +337,7 @@ impl TurnAccumulator {
         false
     }
 
-    /// Adds an even eighth to the turn; whether that completed it.
+    /// Adds an eighth at constant rate to the turn; returns whether it completed the turn.
     fn take_even(&mut self, part: &Part) -> bool {
         if self.eighths == 0 {
             self.speed = part.speed();
@@ -332,7 +350,7 @@ impl TurnAccumulator {
         self.eighths == EIGHTHS && self.end_turn()
     }
 
-    /// Completes a turn; whether it counts.
+    /// Completes a turn; returns whether it could be used.
     fn end_turn(&mut self) -> bool {
         let reference = self.reference.take().unwrap_or_default();
         let (sense, speed) = (Sense::of(f64::from(self.speed)), f64::from(self.speed.abs()));
@@ -352,7 +370,7 @@ impl TurnAccumulator {
         true
     }
 
-    /// The place of the stretch at a speed; `None` where there are too many.
+    /// Index of the stretch at a speed, created if necessary; `None` where there are too many.
     fn stretch(&mut self, sense: Sense, speed: f64, since: u64) -> Option<usize> {
         let is_it = |stretch: &Stretch| {
             let is_same = (stretch.speed() - speed).abs() <= SAME_SPEED * speed;
@@ -365,8 +383,8 @@ impl TurnAccumulator {
         })
     }
 
-    /// A turn that does not go on as it began: in a recording that has no turn yet it belongs to the
-    /// uneven stretch.
+    /// Abandons a turn that does not continue as it began. In a recording without complete turns it
+    /// belongs to the rate-modulated stretch.
     fn give_up_turn(&mut self) {
         if self.is_before_even() {
             let share = f64::from(self.eighths) / f64::from(EIGHTHS);
@@ -381,7 +399,7 @@ impl TurnAccumulator {
         self.begin_turn();
     }
 
-    /// Leaves an uneven eighth out, or keeps it with the uneven stretch.
+    /// Discards a modulated eighth, or adds it to the rate-modulated stretch.
     fn leave(&mut self, part: &Part) {
         if self.is_before_even() {
             self.take_uneven(part);
@@ -390,6 +408,8 @@ impl TurnAccumulator {
         }
     }
 
+    /// Adds an eighth to the rate-modulated stretch, unless the sensor settles or its rate is
+    /// implausible.
     fn take_uneven(&mut self, part: &Part) {
         if core::mem::take(&mut self.is_settling) || part.products.is_astray {
             return;
@@ -401,18 +421,21 @@ impl TurnAccumulator {
         }
     }
 
+    /// Rate-modulated stretch in progress, created if there is none.
     fn uneven_in_progress(&mut self) -> Option<&mut Uneven> {
         if self.uneven.is_empty() {
-            // There is room in an empty one.
+            // An empty vector has room, so the push cannot fail.
             let _ = self.uneven.push(Uneven::default());
         }
         self.uneven.last_mut()
     }
 
+    /// Whether a recording has not yet had a whole turn at constant rate.
     fn is_before_even(&self) -> bool {
         self.mode == Mode::Recorded && self.stretches.is_empty()
     }
 
+    /// Clears the sums of the turn.
     fn begin_turn(&mut self) {
         self.turn = Sums::default();
         self.turn_forces = Forces::default();
@@ -421,8 +444,8 @@ impl TurnAccumulator {
         self.eighths = 0;
     }
 
-    /// Where the platform goes on as before after something broke a turn, what the encoder shows beyond
-    /// that speed is a slip.
+    /// Detects a slip: where the platform continues at its speed after an interruption, the encoder
+    /// angle beyond that speed is a slip.
     fn judge_slip(&mut self, part: &Part, is_even: bool, is_alike: bool) {
         if is_even {
             let is_short =
@@ -435,7 +458,7 @@ impl TurnAccumulator {
         }
     }
 
-    /// Adds to what breaks the even turns, where there were any.
+    /// Extends the interruption, where there were turns at constant rate before.
     fn note_break(&mut self, turned: i64, seconds: f32) {
         if !self.stretches.is_empty() {
             let broken = self.broken.get_or_insert_default();

@@ -1,9 +1,10 @@
-//! What else than a base that stands may explain the dwells: a base that turns slowly, one that was turned or
-//! an encoder that slipped, an encoder that errs twice a turn, a drift that bends.
+//! Alternative explanations of the dwells beside a steady base: a base that rotates slowly, a
+//! heading step or encoder slip, an encoder error twice per turn, a curved drift.
 //!
-//! Each adds columns that follow the azimuth's own, ∂/∂A, of the steady fit. Where chi-square says so they are
-//! used or, where either side of a step may be the right one, refused. Where it is in doubt, σ allows for each by
-//! solution separation: how far its azimuth lies from the one given, and how much farther it may lie unseen.
+//! Each adds columns that follow the azimuth's own, ∂/∂A, of the steady fit. Where chi-square
+//! requires one it is used or, where either side of a step may be the right one, refused. Where it
+//! remains possible, σ covers it by solution separation, as in integrity monitoring: the distance
+//! of its azimuth from the one given, plus an allowance for what may remain unseen.
 
 use super::super::different_positions;
 use super::super::direction::Amplitude;
@@ -13,74 +14,84 @@ use super::{Fit, Model, Problem, ROUNDS, Row, Trial};
 use crate::math::chi_square_tail;
 use crate::signal::dwell::Dwell;
 
-/// What moves beside the stage.
+/// Motion or error in addition to the steps of the stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Hypothesis {
-    /// Nothing.
+    /// No additional motion: the base stands.
     #[default]
     Steady,
-    /// The base turns about the vertical; its coefficient is the rate, rad/h.
+    /// Rotation of the base about the vertical; the coefficient is its rate, rad/h.
     Yawing,
-    /// The encoder errs twice a turn; its coefficients are the error's parts along sin 2θ and cos 2θ, rad.
+    /// Encoder error twice per turn; the coefficients are its parts along sin 2θ and cos 2θ, rad.
     Elliptic,
-    /// A drift that no key states is no straight line: its coefficient is the curvature, in units of `Ω_h` per h².
+    /// Curved drift that is not configured; the coefficient is its curvature, in units of `Ω_h` per
+    /// h².
     Curved,
-    /// It bends twice: the coefficients are the curvature and, per h³, how that changes.
+    /// Drift with changing curvature; the coefficients are the curvature and, per h³, its change.
     Winding,
-    /// The heading is another one after this time, s; its coefficient is the change, rad.
+    /// Heading step after this time, s; the coefficient is its angle, rad.
     Stepped {
-        /// When, s.
+        /// Time of the step, s.
         after: f64,
     },
 }
 
-/// A change of heading between two dwells.
+/// Heading step between two dwells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeadingStep {
-    /// After which time, s.
+    /// Time of the step, s.
     pub after: f64,
-    /// By how much, rad: the azimuth that the later dwells show less that of the earlier ones.
+    /// Size of the step, rad: azimuth of the later dwells less that of the earlier ones.
     pub angle: f64,
-    /// By how much it lowers chi-square.
+    /// Reduction of chi-square by the step.
     pub explained: f64,
-    /// The same in the scatter that it leaves.
+    /// Reduction of chi-square in units of the scatter that remains.
     pub gain: f64,
-    /// Whether that is no chance.
+    /// Whether the step is significant.
     pub is_believed: bool,
 }
 
-/// Degrees of freedom that a hypothesis must leave to be believed: with fewer, anything fits.
+/// Degrees of freedom that must remain for a hypothesis to be accepted: with fewer, anything fits.
 const FREEDOM: usize = 6;
-/// Probability that it must leave to the residuals: it is not the explanation where much remains to explain.
+/// Least probability of the residuals under a hypothesis: it is not the explanation where much
+/// remains unexplained.
 const LEFT: f64 = 0.01;
-/// Part of a step's information that is left where the model's columns take all of it.
+/// Least relative information of a step where the model's columns explain it.
 const LEAST_INFORMATION: f64 = 1e-6;
-/// Chi-square by which another hypothesis must explain more than a step before the step is passed over.
+/// Chi-square by which another hypothesis must explain more than a step for the step to be
+/// disregarded.
 const CLEARLY: f64 = 10.0;
-/// Chi-square that a trend less is worth, where a hypothesis explains as much without it.
+/// Chi-square credited for one trend less, where a hypothesis explains as much without it.
 const SPARED: f64 = 6.0;
-/// Gain of chi-square from which one more column is believed (p = 0.0001), and two.
+/// Gain of chi-square from which one additional column is accepted (p = 0.0001), and two.
 const BELIEVED: [f64; 2] = [15.1, 18.4];
-/// Gain from which a step is believed for each place at which it may be: p = 0.0002 over all of them.
+/// Gain of chi-square from which a step is accepted for each place at which it may be: p = 0.0002
+/// over all of them.
 const STEP_BELIEVED: f64 = 13.8;
-/// By how much a hypothesis may raise the variance of the azimuth; beyond, the dwells do not show it.
+/// Greatest factor by which a hypothesis may raise the variance of the azimuth; beyond it the
+/// dwells do not determine both.
 pub(super) const OBSERVABLE: f64 = 100.0;
-/// Chi-square of one degree of freedom from which σ covers what is not believed: noise exceeds it with a probability of
-/// 0.025; with 0.1 where 1σ of it would put the azimuth wrong.
+/// Chi-square of one degree of freedom from which σ covers a hypothesis that is not accepted: noise
+/// exceeds it with a probability of 0.025.
 const DOUBTFUL: f64 = 5.02;
+/// Chi-square from which σ covers a hypothesis whose 1σ would put the azimuth wrong: noise exceeds
+/// it with a probability of 0.1.
 const FAR_DOUBTFUL: f64 = 2.71;
-/// σ of an alternative's azimuth by which it may be farther away than it shows: one of fifty is.
+/// Allowance, in σ of an alternative's azimuth, for its being further away than it shows: one of
+/// fifty is.
 pub(super) const MISSED: f64 = 1.8;
-/// Change of heading, rad, from which a step or a base that turns is followed again with its exact turn: its square
-/// is then a tenth of a step that is just seen.
+/// Change of heading, rad, from which a step or a rotation is fitted again with its exact angle:
+/// its square is then a tenth of a step that is just detected.
 const TURNED: f64 = 0.003;
-/// Fewest positions of a circle that show an elliptic encoder: of four the third harmonic looks like the first.
+/// Fewest positions on a circle that show an encoder error twice per turn: with four the third
+/// harmonic looks like the first.
 const ELLIPSE_POSITIONS: usize = 5;
-/// The same of an elliptic encoder, which four positions and arcs do not show: a circle doubles it.
+/// Greatest variance factor of the hypothesis of an encoder error, which four positions and arcs do
+/// not show: a circle doubles the variance.
 const ELLIPSE_OBSERVABLE: f64 = 4.0;
 
 impl Hypothesis {
-    /// How its columns enter.
+    /// Use of the two hypothesis columns.
     pub(super) fn columns(self) -> [Column; 2] {
         match self {
             Self::Steady => [Column::Absent; 2],
@@ -89,8 +100,9 @@ impl Hypothesis {
         }
     }
 
-    /// Its columns of a dwell, in units of `Ω_h`, for the sensitive axis in the levelled frame and what turning
-    /// the azimuth does to the rate, ∂/∂A. The azimuth is then that of the last dwell's end.
+    /// Columns of a dwell, in units of `Ω_h`, for the sensitive axis in the levelled frame and the
+    /// derivative of the rate with respect to azimuth, ∂/∂A. The azimuth is then that at the end of
+    /// the last dwell.
     pub(super) fn row(
         self,
         problem: &Problem,
@@ -119,7 +131,7 @@ impl Hypothesis {
         }
     }
 
-    /// Gain of chi-square from which it is believed, of so many dwells.
+    /// Gain of chi-square from which the hypothesis is accepted, for this number of dwells.
     fn believed(self, dwells: usize) -> f64 {
         match self {
             Self::Steady => f64::INFINITY,
@@ -129,8 +141,9 @@ impl Hypothesis {
         }
     }
 
-    /// Gain below which it is passed over in a session in which all else is well; of a step by about what one of so
-    /// many dwells shows by chance alone. It is far where its 1σ would put the azimuth wrong.
+    /// Gain below which the hypothesis is disregarded in a session without other anomalies; for a
+    /// step it is increased by the gain that chance achieves over so many dwells. `is_far` is set
+    /// where its 1σ would put the azimuth wrong.
     fn doubtful(self, dwells: usize, is_far: bool) -> f64 {
         let one = if is_far { FAR_DOUBTFUL } else { DOUBTFUL };
         match self {
@@ -139,7 +152,7 @@ impl Hypothesis {
         }
     }
 
-    /// How much wider its azimuth's variance may be.
+    /// Greatest factor on the azimuth's variance under the hypothesis.
     fn observable(self) -> f64 {
         match self {
             Self::Elliptic => ELLIPSE_OBSERVABLE,
@@ -148,43 +161,44 @@ impl Hypothesis {
     }
 }
 
-/// How far the azimuth may be off under the alternatives, rad: its protection level, over which integrity
-/// monitoring takes the greatest of all (solution separation).
+/// Greatest error of the azimuth under the alternatives, rad: its protection level, the maximum
+/// over all of them as in integrity monitoring (solution separation).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Protection {
-    /// Under those that may hide in any session.
+    /// Level under the alternatives that may remain hidden in any session.
     pub always: f64,
-    /// Under these and those that only show where something is astray.
+    /// Level that also includes the alternatives that matter only where an anomaly shows.
     pub astray: f64,
 }
 
-/// A hypothesis against the steady fit.
+/// Comparison of a hypothesis with the steady fit.
 #[derive(Clone, Copy)]
 struct Weighed {
+    /// Model with the hypothesis.
     model: Model,
-    /// By how much it lowers chi-square.
+    /// Reduction of chi-square.
     explained: f64,
-    /// Scatter that it leaves, as a part of the stated noise's variance; one at least.
+    /// Scatter that remains, in units of the stated noise's variance; at least one.
     scatter: f64,
-    /// The gain with the Earth rate free, over that from which the hypothesis is believed.
+    /// Gain with the Earth rate free, over the gain from which the hypothesis is accepted.
     belief: f64,
-    /// The azimuth under it, rad, and its 1σ.
+    /// Azimuth under the hypothesis, rad, and its 1σ.
     azimuth: f64,
     sigma: f64,
-    /// Its first coefficient.
+    /// First coefficient of the hypothesis.
     coefficient: f64,
-    /// Whether it has the trends of the steady fit, and only adds to them.
+    /// Whether the model keeps the trends of the steady fit and only adds to them.
     is_nested: bool,
 }
 
 impl Weighed {
-    /// What it explains, in the scatter that it leaves.
+    /// Reduction of chi-square in units of the scatter that remains.
     fn gain(&self) -> f64 {
         self.explained / self.scatter
     }
 
-    /// How far an azimuth with its 1σ may be off under it, rad: no farther than its gain allows where it only adds to
-    /// the steady fit, and of a step either side may be the right one.
+    /// Greatest error of an azimuth with its 1σ under the hypothesis, rad: limited by its gain
+    /// where it only adds to the steady fit; for a step either side may be the right one.
     fn protection(&self, azimuth: f64, sigma: f64) -> f64 {
         let allowed = libm::sqrt(self.gain().max(0.0)) * self.sigma;
         let farthest = if self.is_nested { allowed } else { f64::INFINITY };
@@ -196,23 +210,24 @@ impl Weighed {
         after.max(apart(self.azimuth - self.coefficient) + MISSED * sigma)
     }
 
-    /// Whether the dwells do not show the azimuth with it: then it is no model, but where it explains them σ covers it.
+    /// Whether the dwells do not determine the azimuth under the hypothesis: then it is no model,
+    /// but σ covers it where it explains them.
     fn is_lost(&self, steady: &Trial) -> bool {
         let most = self.model.hypothesis.observable() * steady.direction.variance;
         self.sigma * self.sigma > most
     }
 
-    /// Whether it explains so much more than another that this one is passed over.
+    /// Whether it explains so much more than another that the other is disregarded.
     fn beats(&self, other: &Self) -> bool {
         self.explained > other.explained + CLEARLY * self.scatter
     }
 
-    /// Whether the azimuth can be found with it: of a step either side may be the right one.
+    /// Whether the azimuth can be found with it; for a step it is undetermined which side is right.
     fn is_model(&self) -> bool {
         !matches!(self.model.hypothesis, Hypothesis::Stepped { .. })
     }
 
-    /// The step of the heading that it is.
+    /// Heading step of the hypothesis, if it is one.
     fn step(&self) -> Option<HeadingStep> {
         let Hypothesis::Stepped { after } = self.model.hypothesis else { return None };
         let Self { coefficient: angle, explained, belief, .. } = *self;
@@ -220,13 +235,13 @@ impl Weighed {
     }
 }
 
-/// How far two azimuths lie from each other, rad.
+/// Distance between two azimuths, rad, 0 to π.
 pub(super) fn separation(one: f64, other: f64) -> f64 {
     let (sine, cosine) = libm::sincos(one - other);
     libm::atan2(sine, cosine).abs()
 }
 
-/// The one that explains most.
+/// Comparison that explains most.
 fn greatest<'a>(of: impl Iterator<Item = &'a Weighed>) -> Option<&'a Weighed> {
     of.fold(None, |best, one| match best {
         Some(best) if best.explained >= one.explained => Some(best),
@@ -235,8 +250,8 @@ fn greatest<'a>(of: impl Iterator<Item = &'a Weighed>) -> Option<&'a Weighed> {
 }
 
 impl Problem<'_> {
-    /// Weighs every hypothesis against a steady fit, whose step and protection it tells; gives the model to fit
-    /// with where one is believed.
+    /// Compares every hypothesis with a steady fit and stores its step and protection level;
+    /// returns the model to fit with where one is accepted.
     #[inline(never)]
     pub(super) fn weigh(&self, fit: &mut Fit, steady: &Trial) -> Option<Model> {
         let weighed = self.candidates(fit).map(|candidate| self.weighed(candidate, fit, steady));
@@ -270,7 +285,7 @@ impl Problem<'_> {
         best.map(|best| Model { amplitude: fit.model.amplitude, ..best.model })
     }
 
-    /// What may be the matter; [`Hypothesis::Steady`] where there is nothing to weigh.
+    /// Hypotheses to be compared; [`Hypothesis::Steady`] fills unused places.
     fn candidates(&self, fit: &Fit) -> [Hypothesis; 5] {
         let step = |model: &Model| match self.likeliest_step(model, fit) {
             Some(after) => Hypothesis::Stepped { after },
@@ -283,8 +298,8 @@ impl Problem<'_> {
         [Hypothesis::Yawing, Hypothesis::Elliptic, drift, with, without]
     }
 
-    /// A drift that bends twice, where one that bends once explains most: no warm-up is a parabola. Its gain is
-    /// over that one.
+    /// Drift with changing curvature, where a curved drift explains most, because a warm-up is no
+    /// parabola. Its gain is counted from that of the curved drift.
     fn winding(&self, bent: &Weighed, fit: &Fit, steady: &Trial) -> Option<Weighed> {
         if bent.model.hypothesis != Hypothesis::Curved {
             return None;
@@ -293,7 +308,8 @@ impl Problem<'_> {
         Some(Weighed { explained: winding.explained - bent.explained, ..winding })
     }
 
-    /// One hypothesis, with the trends of the steady fit or without those that it spares.
+    /// Comparison of one hypothesis, with the trends of the steady fit or without those that it
+    /// replaces.
     fn weighed(&self, hypothesis: Hypothesis, fit: &Fit, steady: &Trial) -> Option<Weighed> {
         let with = self.weighed_with(&Model { hypothesis, ..fit.model }, fit, steady);
         let plain = Model { hypothesis, ..self.base() };
@@ -313,7 +329,7 @@ impl Problem<'_> {
         }
     }
 
-    /// A model with a hypothesis; none where the dwells cannot show it.
+    /// Comparison of one model with a hypothesis; `None` where the dwells cannot show it.
     #[inline(never)]
     fn weighed_with(&self, model: &Model, fit: &Fit, steady: &Trial) -> Option<Weighed> {
         let hypothesis = model.hypothesis;
@@ -344,8 +360,8 @@ impl Problem<'_> {
         Some(if is_no_model { Weighed { belief: 0.0, ..weighed } } else { weighed })
     }
 
-    /// The regression with a hypothesis and what it gives; where that turns the base by more than ∂/∂A describes, with
-    /// the exact turn.
+    /// Regression with a hypothesis and its result; repeated with the exact rotation where the base
+    /// turns by more than ∂/∂A describes.
     fn followed(&self, model: &Model, fit: &Fit) -> Option<(Regression<COLUMNS>, Trial)> {
         let mut bent = fit.bent(model.hypothesis);
         let hours = -self.dwells.first().map_or(0.0, |first| self.hours_to_end(first));
@@ -368,8 +384,9 @@ impl Problem<'_> {
         }
     }
 
-    /// After which time the heading most likely stepped, s: where the residuals of a model show most of the
-    /// azimuth behind it, less what the model's own columns take of that; each weighed as if it were white.
+    /// Time after which a heading step is most likely, s: the greatest correlation of a model's
+    /// residuals with the azimuth's column, corrected for the part that the model's columns
+    /// explain; dwells are weighted as if white.
     #[inline(never)]
     fn likeliest_step(&self, model: &Model, fit: &Fit) -> Option<f64> {
         let bent = fit.bent(Hypothesis::Steady);
@@ -397,17 +414,17 @@ impl Problem<'_> {
 }
 
 impl Trial {
-    /// Probability of the residuals.
+    /// Probability of the residuals' chi-square.
     fn probability(&self) -> f64 {
         chi_square_tail(self.chi_square, self.degrees as f64)
     }
 
-    /// By how much chi-square is less than `before`, in the scatter that is left.
+    /// Reduction of chi-square against `before`, in units of the scatter that remains.
     fn gain(&self, before: f64) -> f64 {
         (before - self.chi_square) / self.scatter()
     }
 
-    /// The scatter that is left, as a part of the stated noise's variance; one at least.
+    /// Scatter that remains, in units of the stated noise's variance; at least one.
     fn scatter(&self) -> f64 {
         (self.chi_square / self.degrees.max(1) as f64).max(1.0)
     }

@@ -1,9 +1,11 @@
-//! Maximum-likelihood azimuth from dwells at several stage angles.
+//! Maximum-likelihood azimuth from dwells at several stage angles: multi-position static alignment.
 //!
-//! Each dwell is a row: its mean rate, less the vertical Earth rate and the g-sensitivity that the
-//! tilt turns into it, on the sensitive axis' north and east parts, a constant, and where they are
-//! needed time and temperature. Nothing is differenced. The rows are whitened for the gyro's
-//! noise, so the covariance of the fit is the Cramér–Rao bound of what went in.
+//! Each dwell is a row: its mean rate, less the vertical Earth rate and the g-sensitivity that act
+//! through the tilt, on the sensitive axis' north and east parts, a constant, and where needed time
+//! and temperature (the measurement model of Sokolov 2019, Zᵢ = `Ω_h` cos(A + θᵢ) + S + Wᵢ,
+//! extended by tilt and trends). Nothing is differenced, because differencing colours the noise.
+//! The rows are whitened for the gyro's noise, so the covariance of the fit is the Cramér–Rao bound
+//! of its data.
 
 mod hypothesis;
 mod model;
@@ -25,64 +27,69 @@ use crate::signal::dwell::Dwell;
 use crate::signal::sway::SwayNoise;
 use uncertainty::Covariance;
 
-/// A dwell in the regression: north and east part of the sensitive axis, constant, time since the
-/// first dwell (h), temperature above that of the first dwell (°C), two of a [`Hypothesis`] and, last, the
-/// left side.
+/// Row of a dwell in the regression: north and east part of the sensitive axis, constant, time
+/// since the first dwell (h), temperature above that of the first dwell (°C), two columns of a
+/// [`Hypothesis`] and, last, the left side.
 type Row = [f64; COLUMNS + 1];
 
-/// An azimuth with all that is known about it.
+/// Fitted azimuth with its uncertainty and diagnostics.
 #[derive(Clone, Debug)]
 pub struct Fit {
-    /// Columns used.
+    /// Columns that were used.
     pub model: Model,
-    /// The solution.
+    /// Azimuth and Earth-rate ratio of the solution.
     pub direction: Direction,
-    /// Where its standard deviation comes from.
+    /// Error budget of the azimuth.
     pub budget: Budget,
-    /// Cramér–Rao bound of these columns for all stationary time of these dwells, rad.
+    /// Cramér–Rao bound for these columns and all stationary time of these dwells, 1σ, rad.
     pub limit: f64,
-    /// The same bound with the Earth rate free, rad.
+    /// Cramér–Rao bound with the Earth rate free, 1σ, rad.
     pub limit_free: f64,
-    /// `Ω̂_h/Ω_h` with the Earth rate free; of two positions, which do not show it, without meaning.
+    /// Earth-rate ratio `Ω̂_h/Ω_h` with the Earth rate free; not meaningful for two positions,
+    /// which do not determine it.
     pub ratio: f64,
     /// 1σ of the ratio: noise, tilt, g-sensitivity and scale.
     pub ratio_sigma: f64,
     /// Chi-square of the residuals.
     pub chi_square: f64,
-    /// Its degrees of freedom.
+    /// Degrees of freedom of chi-square.
     pub degrees: usize,
-    /// By how much more than their noise the dwells scatter, as a factor that is in the budget.
+    /// Factor by which the dwells scatter more than their noise; it is included in the budget.
     pub excess: f64,
-    /// The step of the heading that the dwells show most.
+    /// Most likely heading step in the dwells.
     pub step: Option<HeadingStep>,
-    /// How far the azimuth may be off under what else may explain the dwells.
+    /// Greatest error of the azimuth under alternative explanations of the dwells.
     pub protection: Protection,
-    /// Chi-square with the Earth rate free, where that was asked for.
+    /// Chi-square with the Earth rate free; zero where hypotheses were not compared.
     free_chi_square: f64,
+    /// Coefficients of the fit, in units of `Ω_h`.
     coefficients: [f64; COLUMNS],
-    /// What the columns of its hypothesis follow.
+    /// Linearisation point of the hypothesis columns.
     bent: Bent,
 }
 
-/// Fewest dwells that tell one hypothesis from another.
+/// Fewest dwells that distinguish between hypotheses.
 const FEWEST: usize = 8;
-/// Rounds in which a hypothesis follows the azimuth that it changes: each leaves the square of the change.
+/// Number of rounds in which a hypothesis is linearised at the azimuth that it changes: each leaves
+/// the square of the change.
 const ROUNDS: usize = 3;
 
-/// What the columns of a hypothesis follow.
+/// Linearisation point of the hypothesis columns.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Bent {
+    /// Hypothesis whose columns are formed.
     hypothesis: Hypothesis,
-    /// The azimuth of a fit, as the Earth rate's components north and east along body x, in units of `Ω_h`.
+    /// Components of the Earth rate north and east along body x at the azimuth of a fit, in units
+    /// of `Ω_h`.
     along: [f64; 2],
-    /// Rate at which the base is known to turn about the vertical, rad/h.
+    /// Rate of rotation of the base about the vertical that is already subtracted, rad/h.
     rate: f64,
-    /// By how much the heading is known to step, rad.
+    /// Heading step that is already subtracted, rad.
     turn: f64,
 }
 
 impl Bent {
-    /// What the heading of a dwell lacks of the last dwell's for the step, rad.
+    /// Heading of the last dwell less that of this dwell due to the step, rad.
     fn turn_before(&self, dwell: &Dwell) -> f64 {
         match self.hypothesis {
             Hypothesis::Stepped { after } if dwell.middle < after => self.turn,
@@ -91,41 +98,46 @@ impl Bent {
     }
 }
 
-/// What a model makes of the dwells.
+/// Result of one model.
 #[derive(Clone, Copy)]
 pub(super) struct Trial {
+    /// Azimuth and Earth-rate ratio.
     direction: Direction,
+    /// Prior knowledge of the Earth rate that was used.
     amplitude: Amplitude,
+    /// Chi-square of the residuals.
     chi_square: f64,
+    /// Degrees of freedom.
     degrees: usize,
-    /// The first coefficient of the hypothesis.
+    /// First coefficient of the hypothesis.
     coefficient: f64,
 }
 
-/// A fit, and what only its residuals need: the covariance of its coefficients.
+/// Fit with the covariance of its coefficients, which only its residuals need.
 pub type Found = (Fit, [[f64; COLUMNS]; COLUMNS]);
 
-/// A residual of one dwell.
+/// Residual of one dwell.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Residual {
-    /// Measured less fitted rate, with the drift still in it, rad/s.
+    /// Measured less fitted rate, including the correlated drift, rad/s.
     pub rate: f64,
-    /// What its predecessors do not explain, in its standard deviation.
+    /// Innovation of the whitening filter, normalised by its standard deviation.
     pub normalised: f64,
-    /// The same, allowing for what the dwell itself pulled the fit (leverage).
+    /// Innovation normalised with the dwell's own influence on the fit (leverage) taken into
+    /// account.
     pub studentised: f64,
 }
 
-/// The dwells of an alignment and what is known about them.
+/// Dwells of an alignment with everything that their fit needs.
 #[derive(Clone, Copy)]
 pub struct Problem<'a> {
-    /// The place and the instrument.
+    /// Site and instrument.
     pub setting: &'a Setting,
-    /// The tilt.
+    /// Tilt of the platform.
     pub tilt: &'a Tilt,
-    /// N², known or estimated, (rad/s)²·s.
+    /// White-noise power N², known or estimated, (rad/s)²·s.
     pub white: f64,
-    /// The dwells that take part, in the order of time.
+    /// Dwells that take part, in the order of time.
     pub dwells: &'a [&'a Dwell],
 }
 
@@ -137,7 +149,7 @@ impl Problem<'_> {
         let regression = self.steady();
         let model = self.choose(&regression)?;
         let mut found = self.fit_model(&regression, &model, &Bent::default())?;
-        // On an arc, and with few dwells, any of them looks like any other.
+        // On an arc, and with few dwells, the hypotheses cannot be distinguished.
         if self.dwells.len() < FEWEST || !self.is_circle(&regression) {
             return Some(found);
         }
@@ -150,18 +162,19 @@ impl Problem<'_> {
         Some(model.and_then(|model| self.fit_under(&model, &found.0)).unwrap_or(found))
     }
 
-    /// Whether the positions show the Earth rate; what a trend costs does not matter.
+    /// Whether the positions determine the Earth rate, regardless of the cost of a trend.
     pub(super) fn is_circle(&self, steady: &Regression<COLUMNS>) -> bool {
         let model = self.freed(steady, &self.base());
         model.is_some_and(|model| model.amplitude == Amplitude::Free)
     }
 
-    /// The regression of a base that stands.
+    /// Regression for a base that stands.
     pub(super) fn steady(&self) -> Regression<COLUMNS> {
         self.regression(&self.setting.noise, Dwell::taper_factor, &Bent::default())
     }
 
-    /// Fits with a hypothesis, again and again: its columns follow the azimuth and the rate, which it changes.
+    /// Fits with a hypothesis iteratively: its columns follow the azimuth and the rate, which it
+    /// changes.
     #[inline(never)]
     fn fit_under(&self, model: &Model, steady: &Fit) -> Option<Found> {
         let mut bent = Bent { hypothesis: model.hypothesis, ..steady.bent };
@@ -179,7 +192,7 @@ impl Problem<'_> {
         Some((Fit { step, protection, ..found.0 }, found.1))
     }
 
-    /// What a model makes of the dwells; nothing where they do not determine it.
+    /// Result of a model; `None` where the dwells do not determine it.
     #[inline(never)]
     fn trial(&self, regression: &Regression<COLUMNS>, model: &Model) -> Option<Trial> {
         let solution = regression.solve(&model.columns())?;
@@ -198,7 +211,7 @@ impl Problem<'_> {
         })
     }
 
-    /// The fit of a model.
+    /// Complete fit of a model.
     #[inline(never)]
     fn fit_model(
         &self,
@@ -237,7 +250,7 @@ impl Problem<'_> {
         Some((fit, solution.covariance))
     }
 
-    /// Gives each dwell its residual, in their order, for what [`Self::fit`] found.
+    /// Passes each dwell's residual to `each`, in their order, for the result of [`Self::fit`].
     pub fn residuals(&self, (fit, covariance): &Found, mut each: impl FnMut(Residual)) {
         let horizontal = self.setting.latitude.horizontal_rate();
         let bent = fit.bent(fit.model.hypothesis);
@@ -250,8 +263,8 @@ impl Problem<'_> {
         });
     }
 
-    /// The row of a dwell: its columns and, last, its left side, all in units of `Ω_h`; and what turning the
-    /// azimuth does to the rate, ∂/∂A, in these units.
+    /// Row of a dwell: its columns and, last, its left side, all in units of `Ω_h`; and the
+    /// derivative of the rate with respect to azimuth, ∂/∂A, in these units.
     fn row(&self, dwell: &Dwell, bent: &Bent) -> (Row, f64) {
         let mount = &self.setting.mount;
         let tilt = self.tilt.at(dwell.middle);
@@ -276,14 +289,14 @@ impl Problem<'_> {
         ([axis[0], -axis[1], 1.0, hours, warmer, one, other, left], turning)
     }
 
-    /// Time from the end of the last dwell to a dwell, h; negative.
+    /// Time from the end of the last dwell to the middle of a dwell, h; negative.
     fn hours_to_end(&self, dwell: &Dwell) -> f64 {
         let end = self.dwells.last().map_or(0.0, |last| last.end());
         (dwell.middle - end) / 3600.0
     }
 
-    /// The two components of the Earth rate in a solution, and the vertical one's, as noise alone
-    /// leaves them.
+    /// Components of the horizontal Earth rate in a solution, with the covariance from noise alone,
+    /// and those of the vertical one through the tilt.
     fn noise_components(&self, solution: &Solution<COLUMNS>) -> Components {
         let [a, b, ..] = solution.coefficients;
         let slope = libm::tan(self.setting.latitude.rad());
@@ -292,7 +305,7 @@ impl Problem<'_> {
         Components { value: [a, b], covariance, vertical, half: self.setting.half }
     }
 
-    /// The same, with what tilt and κ leave uncertain.
+    /// Components with the uncertainty of tilt and κ added to their covariance.
     fn components(&self, solution: &Solution<COLUMNS>) -> Components {
         let mut components = self.noise_components(solution);
         for errors in self.component_errors() {
@@ -312,8 +325,8 @@ impl Problem<'_> {
         (self.own_variance(dwell) * dwell.taper + sway) / (rate * rate)
     }
 
-    /// What the dwell would have measured on a level stage without the fit's trends, in units of
-    /// `Ω_h` and less a constant.
+    /// Rate that the dwell would have measured on a level stage without the fit's trends, in units
+    /// of `Ω_h` and less a constant.
     pub(super) fn level_ratio(&self, fit: &Fit, dwell: &Dwell) -> f64 {
         let (sine, cosine) = libm::sincos(dwell.stage.rad());
         let Direction { azimuth, amplitude, .. } = fit.direction;
@@ -322,8 +335,8 @@ impl Problem<'_> {
             + amplitude * (north * cosine - east * sine)
     }
 
-    /// Variance of an untapered mean that no other dwell shares, (rad/s)²: white noise, and what a
-    /// subtracted sway leaves.
+    /// Variance of an untapered mean that is independent of other dwells, (rad/s)²: white noise,
+    /// and the remainder of sway compensation.
     fn own_variance(&self, dwell: &Dwell) -> f64 {
         let seconds = dwell.seconds;
         let noise = || {
@@ -333,6 +346,7 @@ impl Problem<'_> {
         dwell.stated_variance.get().unwrap_or_else(noise)
     }
 
+    /// Whitening filter for this noise, in units of `Ω_h`.
     fn whitener(&self, noise: &GyroNoise) -> Whitener<{ COLUMNS + 1 }> {
         let scale = 1.0 / self.setting.latitude.horizontal_rate();
         let shortest = self.dwells.iter().map(|dwell| dwell.seconds).fold(f64::INFINITY, f64::min);
@@ -348,8 +362,8 @@ impl Problem<'_> {
         Whitener::new(&relative, shortest).with_sway(&sway)
     }
 
-    /// Gives the row of each dwell, and the same with its noise white. One copy in flash serves
-    /// all who want them.
+    /// Passes the row of each dwell, and the whitened row, to `each`. It is one function for all
+    /// callers, so that flash holds one copy.
     fn whiten(
         &self,
         noise: &GyroNoise,
@@ -368,6 +382,7 @@ impl Problem<'_> {
         }
     }
 
+    /// Regression of the whitened rows.
     fn regression(
         &self,
         noise: &GyroNoise,
@@ -383,7 +398,7 @@ impl Problem<'_> {
 }
 
 impl Fit {
-    /// A hypothesis about this fit's azimuth.
+    /// Linearisation point of a hypothesis at this fit's azimuth.
     fn bent(&self, hypothesis: Hypothesis) -> Bent {
         Bent { hypothesis, ..self.bent }
     }
@@ -394,8 +409,8 @@ impl Fit {
         self.budget.sigma()
     }
 
-    /// Puts the two components on the chosen direction and lets the other coefficients follow, as
-    /// far as noise and not tilt or κ explains the change.
+    /// Moves the two components onto the chosen direction and lets the other coefficients follow,
+    /// as far as noise, and not tilt or κ, explains the change.
     fn constrain(
         &mut self,
         solution: &mut Solution<COLUMNS>,
@@ -420,14 +435,14 @@ impl Fit {
 }
 
 impl Dwell {
-    /// The taper as a function, to choose between it and none.
+    /// Taper factor of the dwell, as a function that can be replaced by one.
     fn taper_factor(&self) -> f64 {
         self.taper
     }
 }
 
-/// Leaves the coefficients' covariance as it is once the components, as noise alone leaves them, may
-/// only move with azimuth and amplitude.
+/// Reduces the coefficients' covariance to that of components that, as far as noise goes, may only
+/// move with azimuth and amplitude.
 fn tighten(solution: &mut Solution<COLUMNS>, noise: &Components, amplitude: Amplitude) {
     let free = noise.covariance;
     let (Some(inverse), Some(direction)) = (inverted(&free), noise.direction(amplitude)) else {
@@ -445,7 +460,8 @@ fn tighten(solution: &mut Solution<COLUMNS>, noise: &Components, amplitude: Ampl
     }
 }
 
-/// An axis of a base that is turned by `yaw`, rad clockwise: as seen from where it stands in the end.
+/// Axis of a base that is turned by `yaw`, rad clockwise, in the frame in which the base stands at
+/// the end.
 fn turned([forward, right, down]: [f64; 3], yaw: f64) -> [f64; 3] {
     if yaw == 0.0 {
         return [forward, right, down];
@@ -454,19 +470,19 @@ fn turned([forward, right, down]: [f64; 3], yaw: f64) -> [f64; 3] {
     [cosine * forward - sine * right, sine * forward + cosine * right, down]
 }
 
-/// Left side less the columns' part of it.
+/// Left side less the fitted value.
 fn remainder(row: &Row, coefficients: &[f64; COLUMNS]) -> f64 {
     let fitted: f64 = row.iter().zip(coefficients).map(|(x, c)| x * c).sum();
     row[COLUMNS] - fitted
 }
 
-/// The block of the two components.
+/// Covariance block of the two components.
 fn block(covariance: &[[f64; COLUMNS]; COLUMNS]) -> Covariance {
     let [[a, b, ..], [c, d, ..], ..] = *covariance;
     [[a, b], [c, d]]
 }
 
-/// xᵀ Cov x of a whitened row.
+/// Leverage xᵀ Cov x of a whitened row.
 fn leverage(row: &Row, covariance: &[[f64; COLUMNS]; COLUMNS]) -> f64 {
     let mut sum = 0.0;
     for i in 0..COLUMNS {

@@ -1,5 +1,5 @@
-//! Which columns the fit uses: trends where the data ask for them, the Earth rate free where that
-//! costs nothing.
+//! Selection of the fit's columns: trends where the data require them, and the Earth rate free
+//! where that costs little.
 
 use super::super::different_positions;
 use super::super::direction::Amplitude;
@@ -8,39 +8,40 @@ use super::{Hypothesis, Problem, Trial};
 
 /// Chi-square of one degree of freedom that noise exceeds with a probability of 0.001.
 const TREND_CHI_SQUARE: f64 = 10.83;
-/// By how much a trend may raise the standard deviation of the azimuth.
+/// Greatest factor by which a trend may raise the standard deviation of the azimuth.
 const TREND_COST: f64 = 1.5;
-/// Degrees of freedom that must remain beside a trend: with fewer, one disturbed dwell looks alike.
+/// Degrees of freedom that must remain beside a trend: with fewer, one disturbed dwell looks the
+/// same.
 const TREND_DEGREES: usize = 3;
-/// Ramp below which there is none, in units of `Ω_h` per hour.
+/// Ramp below which it is neglected, in units of `Ω_h` per hour.
 const LEAST_RAMP: f64 = 1e-9;
-/// 1σ of either component of the Earth rate before two positions are looked at, in units of `Ω_h`:
-/// so wide that it says nothing, and yet a number.
+/// Prior 1σ of either component of the Earth rate with two positions, in units of `Ω_h`: wide
+/// enough to carry no information, yet finite.
 const UNKNOWN_COMPONENT: f64 = 100.0;
-/// By how much leaving the Earth rate free may raise the standard deviation of the azimuth.
+/// Greatest factor by which a free Earth rate may raise the standard deviation of the azimuth.
 const FREE_COST: f64 = 1.02;
 
-/// Which columns a fit used.
+/// Columns of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Model {
-    /// Time, with its prior where the ramp R is known.
+    /// Column of time, with its prior where the ramp R is configured.
     pub time: Column,
-    /// Temperature.
+    /// Column of temperature.
     pub temperature: Column,
-    /// The horizontal Earth rate.
+    /// Prior knowledge of the horizontal Earth rate that is used.
     pub amplitude: Amplitude,
-    /// Whether the dwells stand at two positions only, which show one component and the constant.
+    /// Whether the dwells stand at two positions only, which determine one component and the
+    /// constant.
     pub is_single_axis: bool,
-    /// By how much a trend that the azimuth cannot afford would lower chi-square; zero where there
-    /// is none.
+    /// Reduction of chi-square by a trend that the azimuth cannot afford; zero where there is none.
     pub rejected_trend: f64,
-    /// What moves beside the stage.
+    /// Additional motion or error that is fitted.
     pub hypothesis: Hypothesis,
 }
 
 impl Trial {
-    /// The azimuth's variance for one amplitude: that a weak Earth rate has a wide azimuth is no
-    /// reason to believe in a strong one.
+    /// Variance of the azimuth normalised to one amplitude, because a weak Earth rate has a wide
+    /// azimuth, which is no reason to prefer a strong one.
     fn cost(&self) -> f64 {
         self.direction.variance * self.direction.amplitude * self.direction.amplitude
     }
@@ -53,11 +54,12 @@ impl Trial {
 }
 
 impl Model {
-    /// Whether it has no trend that another has not.
+    /// Whether it has the same trends as another model.
     pub(super) fn is_as_plain_as(&self, other: &Self) -> bool {
         self.time == other.time && self.temperature == other.temperature
     }
 
+    /// Use of each column in the regression.
     pub(super) fn columns(&self) -> [Column; COLUMNS] {
         let component =
             if self.is_single_axis { Column::Prior(UNKNOWN_COMPONENT) } else { Column::Free };
@@ -65,8 +67,8 @@ impl Model {
         [component, component, Column::Free, self.time, self.temperature, one, other]
     }
 
-    /// Degrees of freedom of a solution for these columns. Two positions show one component of two;
-    /// a known Earth rate leaves one freedom to both.
+    /// Degrees of freedom of a solution for these columns. Two positions determine one component of
+    /// two; a known Earth rate leaves one degree of freedom to both.
     pub(super) fn degrees(&self, solution: &Solution<COLUMNS>) -> usize {
         match (self.is_single_axis, self.amplitude) {
             (true, _) => solution.degrees.saturating_sub(1),
@@ -77,17 +79,18 @@ impl Model {
 }
 
 impl Problem<'_> {
-    /// Chooses the columns and whether the Earth rate stays free.
+    /// Selects the columns, and whether the Earth rate stays free; `None` where the positions
+    /// determine nothing.
     #[inline(never)]
     pub(super) fn choose(&self, regression: &Regression<COLUMNS>) -> Option<Model> {
-        // A trend is looked for with the Earth rate free where that costs nothing: a scale or latitude that is
-        // wrong is no trend.
+        // Trends are tested with the Earth rate free where that costs little: a wrong scale or
+        // latitude is no trend.
         let mut model = self.freed(regression, &self.base())?;
         self.add_trend(regression, &mut model)?;
         self.freed(regression, &model)
     }
 
-    /// The model with the Earth rate free where that costs nothing, else with what is known of it.
+    /// Model with the Earth rate free where that costs little, otherwise with its prior.
     pub(super) fn freed(&self, regression: &Regression<COLUMNS>, model: &Model) -> Option<Model> {
         let held = Model { amplitude: self.setting.known_amplitude(), ..*model };
         let free = Model { amplitude: Amplitude::Free, ..*model };
@@ -98,7 +101,8 @@ impl Problem<'_> {
         }
     }
 
-    /// The model before any trend is looked for: a known ramp enters with its prior.
+    /// Model without trends that the data would have to show: a configured ramp enters with its
+    /// prior.
     pub(super) fn base(&self) -> Model {
         let ramp = self.setting.noise.rate_ramp * 3600.0 / self.setting.latitude.horizontal_rate();
         Model {
@@ -111,8 +115,8 @@ impl Problem<'_> {
         }
     }
 
-    /// Adds temperature and time where chi-square asks for them and the azimuth can afford them;
-    /// one that it cannot afford is kept in mind.
+    /// Adds temperature and time where chi-square requires them and the azimuth can afford them;
+    /// one that it cannot afford is stored in [`Model::rejected_trend`].
     fn add_trend(&self, regression: &Regression<COLUMNS>, model: &mut Model) -> Option<()> {
         let is_warm = self.is_warm();
         for _ in 0..2 {
@@ -140,7 +144,7 @@ impl Problem<'_> {
     }
 }
 
-/// The models with one more trend.
+/// Models with one additional trend.
 fn candidates(model: &Model, is_warm: bool) -> [Option<Model>; 2] {
     let cold = is_warm && model.temperature == Column::Absent;
     let steady = model.time == Column::Absent;

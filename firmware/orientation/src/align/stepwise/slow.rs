@@ -1,4 +1,4 @@
-//! What dwells show of a base that moves slowly.
+//! Observability of a slow motion of the base in the dwells.
 
 use super::{Bent, FEWEST, Fit, Hypothesis, Model, Problem};
 use crate::align::direction::quadratic;
@@ -7,12 +7,12 @@ use crate::align::regression::COLUMNS;
 use crate::align::slow::SlowMotion;
 use crate::signal::dwell::Dwell;
 
-/// A turn so slow that its azimuth follows it evenly, rad/h.
+/// Rotation rate so slow that the azimuth follows it linearly, rad/h.
 const SLOW: f64 = 1e-4;
 
 impl Problem<'_> {
-    /// What these dwells show of a base that turns slowly about the vertical, beside what [`Self::fit`] made of them;
-    /// `None` where that has already taken such a turn off.
+    /// Slow rotation of the base about the vertical beside the result of [`Self::fit`]; `None`
+    /// where the fit has already estimated such a rotation.
     #[must_use]
     pub fn slow_turn(&self, fit: &Fit) -> Option<SlowMotion> {
         if fit.model.hypothesis == Hypothesis::Yawing {
@@ -29,7 +29,8 @@ impl Problem<'_> {
         Some(SlowMotion { sigma: sigma.unwrap_or(f64::INFINITY), lever })
     }
 
-    /// 1σ of the base's rate with the Earth rate free, rad/s; `None` where the dwells do not determine it.
+    /// Standard deviation of the base's rate with the Earth rate free, 1σ, rad/s; `None` where the
+    /// dwells do not determine it.
     fn rate_sigma(&self, fit: &Fit) -> Option<f64> {
         let model = Model { hypothesis: Hypothesis::Yawing, ..fit.model };
         let bent = fit.bent(Hypothesis::Yawing);
@@ -39,7 +40,8 @@ impl Problem<'_> {
         Some(libm::sqrt(variance) * fit.excess / 3600.0)
     }
 
-    /// What the forces of these dwells show of a base that tilts slowly; `None` where that is taken off.
+    /// Slow tilting of the base in the forces of these dwells; `None` where a tilt rate is already
+    /// compensated.
     #[must_use]
     pub fn slow_tilting(&self, fit: &Fit) -> Option<SlowMotion> {
         if self.tilt.rate != TiltRate::default() {

@@ -1,4 +1,5 @@
-//! Where the standard deviation comes from: the limit, the budget, what tilt and κ leave.
+//! Standard deviation of the azimuth: its Cramér–Rao bound, its budget, and the contributions of
+//! tilt and κ.
 
 use super::super::budget::Budget;
 use super::super::direction::{Amplitude, Direction, dot, product, quadratic};
@@ -10,18 +11,18 @@ use crate::math::chi_square_tail;
 use crate::noise::model::GyroNoise;
 use crate::signal::dwell::Dwell;
 
-/// Probability of the residuals below which their excess over the stated noise raises σ: with few degrees of
-/// freedom, where it would do so by far, and with more.
+/// Probability of the residuals below which their excess over the stated noise raises σ: with few
+/// degrees of freedom, where the factor would be large, and with more.
 const EXCESS_PROBABILITY: [f64; 2] = [0.02, 0.05];
-/// Degrees of freedom that are few.
+/// Number of degrees of freedom up to which they count as few.
 pub const FEW_DEGREES: usize = 3;
 
 /// A symmetric 2×2 covariance of the components, in units of `Ω_h`².
 pub(super) type Covariance = [[f64; 2]; 2];
 
 impl Problem<'_> {
-    /// The bound that noise sets for these columns when all stationary time counts fully, and the
-    /// same with the Earth rate free.
+    /// Cramér–Rao bound for these columns when all stationary time counts fully, rad, and the bound
+    /// with the Earth rate free.
     #[inline(never)]
     pub(super) fn limits(&self, model: &Model, bent: &Bent) -> Option<[f64; 2]> {
         let regression = self.regression(&self.setting.noise, |_| 1.0, bent);
@@ -30,8 +31,8 @@ impl Problem<'_> {
         Some([components.direction(model.amplitude).map(sigma)?, components.free().map(sigma)?])
     }
 
-    /// Splits the variance: what the dwells' noise does through the gain, what tilt and κ do, and
-    /// the rest, which is the amplitude's prior.
+    /// Splits the variance into the dwells' noise through the gain, tilt and κ, and the rest, which
+    /// belongs to the amplitude's prior.
     #[inline(never)]
     pub(super) fn budget(
         &self,
@@ -65,17 +66,18 @@ impl Problem<'_> {
         })
     }
 
-    /// Which part of the amplitude's variance is the scale factor's.
+    /// Part of the amplitude's variance that is due to the scale factor.
     fn scale_share(&self) -> f64 {
         let share = self.setting.scale_sigma / self.setting.amplitude_sigma().max(1e-30);
         if self.setting.amplitude_sigma() > 0.0 { share * share } else { 1.0 }
     }
 
-    /// Covariance of the components from κ, from the tilt, and from a base that tilts: all turn with the stage
-    /// as the Earth rate does, so the dwells cannot tell them from it.
+    /// Covariances of the components from κ, from the tilt, and from a tilting base: all rotate
+    /// with the stage as the Earth rate does, so the dwells cannot separate them from it.
     ///
-    /// A tilt phasor F shifts them by `(Ω_v + κ)F/Ω_h`, as complex numbers. In two frames it meets
-    /// `k_s` alone; the other parts of κ meet the vertical force ([`super::super::mount`]).
+    /// A tilt phasor F shifts the components by `(Ω_v + κ)F/Ω_h`, as complex numbers. On a
+    /// two-frame mount it acts through `k_s` alone; the other parts of κ act on the vertical force
+    /// ([`super::super::mount`]).
     pub(super) fn component_errors(&self) -> [Covariance; 3] {
         let rate = self.setting.latitude.horizontal_rate();
         let (force, across) = if self.setting.mount.is_on_base {
@@ -95,34 +97,38 @@ impl Problem<'_> {
         [[[kappa * kappa, 0.0], [0.0, kappa * kappa]], tilt, base]
     }
 
-    /// Covariance of the components from that of a base's tilt rate: it turns forward by the imaginary part of F′ and
-    /// right by its real part, which is west of the column.
+    /// Covariance of the components from that of a base's tilt rate: the base rotates about forward
+    /// by the imaginary part of F′ and about right by its real part, which is opposite to the sign
+    /// of the east column.
     pub(super) fn tilting(&self, [[a, b], [_, d]]: &Covariance) -> Covariance {
         let rate = self.setting.latitude.horizontal_rate();
         let scale = 1.0 / (rate * rate * self.tilt.upward() * self.tilt.upward());
         [[d * scale, -b * scale], [-b * scale, a * scale]]
     }
 
-    /// 1σ of the Earth-rate ratio that `free` found: all of the components', scale and latitude.
+    /// Standard deviation, 1σ, of the Earth-rate ratio of `free`: that of the components, of scale
+    /// and of latitude.
     pub(super) fn ratio_sigma(&self, free: &Direction) -> f64 {
         let amplitude = self.setting.amplitude_sigma();
         libm::sqrt(free.amplitude_variance + amplitude * amplitude)
     }
 }
 
-/// Multiple of σ beyond which an azimuth is wrong: σ is no less than this part of its protection level.
+/// Multiple of σ beyond which an azimuth counts as wrong: σ is at least the protection level over
+/// this factor.
 pub(super) const WRONG: f64 = 5.0;
-/// Probability of the residuals below which something is astray.
+/// Probability of the residuals below which they count as an anomaly.
 const ASTRAY_PROBABILITY: f64 = 0.01;
-/// What the Earth-rate ratio may be off in its σ before something is (p = 0.01).
+/// Deviation of the Earth-rate ratio, in σ, that counts as an anomaly (p = 0.01).
 const ASTRAY_RATIO: f64 = 2.58;
-/// Rounds in which a drift is sought that explains the residuals: each doubles or halves the step of its K.
+/// Number of rounds in the search for a drift that explains the residuals: each doubles or halves
+/// the step of its K.
 const DRIFT_ROUNDS: usize = 12;
 
 impl Problem<'_> {
-    /// Raises σ to what the azimuth may be off under every alternative, over five. Where something is astray (an
-    /// outlier was left out, the residuals or the Earth rate are unlikely, a trend shows that no key states), those
-    /// that only then show count too: a random walk, and another Earth rate.
+    /// Raises σ to a fifth of the greatest error under every alternative. Where there is an anomaly
+    /// (an excluded outlier, unlikely residuals or Earth rate, an unconfigured trend), the
+    /// alternatives that matter only then count too: a random walk, and another Earth rate.
     #[inline(never)]
     pub fn protect(&self, fit: &mut Fit, has_outliers: bool) {
         let Protection { always, astray } = fit.protection;
@@ -143,7 +149,8 @@ impl Problem<'_> {
         }
     }
 
-    /// How far the azimuth may be off for a base that tilts as its forces show but do not prove, rad.
+    /// Greatest error of the azimuth for a tilting base that the forces indicate but do not prove,
+    /// rad.
     fn tilting_protection(&self, fit: &Fit) -> f64 {
         let TiltRate { value: [real, imaginary], covariance } = self.tilt.unproven;
         let rate = self.setting.latitude.horizontal_rate();
@@ -153,7 +160,8 @@ impl Problem<'_> {
         apart + MISSED * libm::sqrt(variance + fit.direction.variance)
     }
 
-    /// The same fit without what is known of the Earth rate; none of two positions, which do not show it.
+    /// Fit without prior knowledge of the Earth rate; `None` for two positions, which do not
+    /// determine it.
     fn with_any_earth_rate(&self, fit: &Fit) -> Option<Trial> {
         if fit.model.is_single_axis {
             return None;
@@ -164,10 +172,10 @@ impl Problem<'_> {
         self.trial(&regression, &free)
     }
 
-    /// The fit of a base that stands under the random walk that makes chi-square what it should be: a drift that no
-    /// key states.
+    /// Fit of a steady base under the random walk that brings chi-square to its expectation: an
+    /// unconfigured drift.
     fn drifting(&self, fit: &Fit) -> Option<Trial> {
-        // On an arc any drift looks like the Earth.
+        // On an arc any drift looks like the Earth rate.
         if !self.is_circle(&self.steady()) {
             return None;
         }
@@ -200,8 +208,8 @@ impl Problem<'_> {
     }
 }
 
-/// By how much residuals of this chi-square scatter more than the stated noise, as a factor of its
-/// standard deviation; one where that may be chance.
+/// Factor on the noise's standard deviation for residuals of this chi-square; one where the excess
+/// may be chance.
 fn excess(chi_square: f64, degrees: usize) -> f64 {
     let least = EXCESS_PROBABILITY[usize::from(degrees > FEW_DEGREES)];
     let freedom = degrees as f64;
@@ -210,13 +218,13 @@ fn excess(chi_square: f64, degrees: usize) -> f64 {
 }
 
 impl Fit {
-    /// Raises what the dwells' noise contributes where they scatter more than it explains.
+    /// Raises the noise contributions where the dwells scatter more than stated.
     pub(super) fn allow_for_excess(&mut self) {
         self.excess = 1.0;
         self.allow_for(excess(self.chi_square, self.degrees));
     }
 
-    /// Whether more than noise shows in the residuals, the Earth rate or the model.
+    /// Whether an anomaly shows in the residuals, the Earth rate or the model.
     fn is_astray(&self) -> bool {
         self.model.time == Column::Free
             || self.model.hypothesis != Hypothesis::Steady
@@ -224,12 +232,12 @@ impl Fit {
             || (self.ratio - 1.0).abs() > ASTRAY_RATIO * self.ratio_sigma
     }
 
-    /// Probability of the residuals.
+    /// Probability of the residuals' chi-square.
     fn probability(&self) -> f64 {
         chi_square_tail(self.chi_square, self.degrees as f64)
     }
 
-    /// Raises it by so much, as a factor, if that is not done yet.
+    /// Raises the noise contributions to this factor in all, if they are below it.
     pub fn allow_for(&mut self, excess: f64) {
         let more = (excess / self.excess).max(1.0);
         self.excess *= more;

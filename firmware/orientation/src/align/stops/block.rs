@@ -1,39 +1,40 @@
-//! What is kept of the way: means over blocks, which grow so that any time finds room.
+//! Averages of the drive in blocks, which grow so that any time fits into fixed memory.
 
 use heapless::Vec;
 
 use crate::math::rotation::{dot, sum};
 use crate::signal::strapdown::Rough;
 
-/// Most blocks of all stops together.
+/// Greatest number of blocks of all stops together.
 pub const AT_REST: usize = 64;
-/// Most blocks of all drives together.
+/// Greatest number of blocks of all drives together.
 pub const DRIVEN: usize = 24;
-/// Least rows of three blocks from which their scatter is taken.
+/// Least number of block triplets from which a scatter is computed.
 const LEAST_TRIPLETS: f64 = 4.0;
-/// Variance of a velocity that comes and goes within a block, over the seconds of a block times what the scatter
-/// loses when blocks are joined and hide it: as second difference of its change, all of 20/6 of it over the seconds.
+/// Factor from the scatter that joining blocks removes to the variance of a velocity that varies
+/// within a block, per second of block length: 20/6 of the second difference of its change, over
+/// the block length squared.
 const SWINGING: f64 = 0.3;
 
-/// Some time at rest, or on the way.
+/// Averages of an interval at rest, or of driving.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Block {
-    /// Its middle, s.
+    /// Middle of the interval, s.
     pub middle: f64,
-    /// Its length, s.
+    /// Length of the interval, s.
     pub seconds: f32,
     /// Mean specific force on the axes of the start frame, m/s².
     pub force: [f32; 3],
-    /// Mean attitude: from body axes to the start frame's.
+    /// Mean attitude: rotation from body axes to the start frame's.
     pub attitude: Rough,
-    /// Rotation of the start frame that a bias of the gyros makes until its middle, s.
+    /// Sensitivity of the start frame's rotation to gyro biases at its middle, s.
     pub bias: Rough,
-    /// The stop to which it belongs, or after which it was driven.
+    /// Number of the stop to which it belongs, or after which it was driven.
     pub stop: u8,
 }
 
 impl Block {
-    /// Both together.
+    /// Average of two blocks, weighted by their lengths.
     fn joined(&self, other: &Self) -> Self {
         let seconds = self.seconds + other.seconds;
         let [a, b] = [self.seconds / seconds, other.seconds / seconds];
@@ -57,20 +58,22 @@ impl Block {
 /// The blocks of all stops, or of all drives, in order.
 #[derive(Clone, Debug)]
 pub struct Blocks<const N: usize> {
+    /// Blocks in the order of time.
     list: Vec<Block, N>,
+    /// Greatest length of a block at present, s.
     span: f32,
-    /// What [`Self::swing`] tells.
+    /// Value of [`Self::swing`].
     swing: f64,
 }
 
 impl<const N: usize> Blocks<N> {
-    /// None, which last for so many seconds as long as there is room.
+    /// No blocks yet; each lasts `span` seconds as long as there is room.
     #[must_use]
     pub const fn new(span: f32) -> Self {
         Self { list: Vec::new(), span, swing: 0.0 }
     }
 
-    /// Takes the next, which comes later than all before it.
+    /// Adds the next block, which must be later than all before it.
     pub fn push(&mut self, block: Block) {
         if let Some(last) = self.list.last_mut()
             && last.stop == block.stop
@@ -82,11 +85,12 @@ impl<const N: usize> Blocks<N> {
         if self.list.is_full() {
             self.halve();
         }
-        // Stops are fewer than half of the blocks, so there is room; the time of one block is no loss.
+        // There are fewer stops than half of the blocks, so there is room; losing one block would
+        // do no harm.
         let _ = self.list.push(block);
     }
 
-    /// Joins neighbours of a stop.
+    /// Joins neighbouring blocks of each stop and doubles the block length.
     pub fn halve(&mut self) {
         let (span, scatter) = (f64::from(self.span), self.scatter());
         self.span *= 2.0;
@@ -103,14 +107,14 @@ impl<const N: usize> Blocks<N> {
         self.swing = self.swing.max(SWINGING * span * (scatter - self.scatter()));
     }
 
-    /// Takes those of the last stop out, which is none.
+    /// Removes the blocks of the last stop, where it turned out not to be one.
     pub fn forget(&mut self, stop: usize) {
         while self.list.last().is_some_and(|block| usize::from(block.stop) == stop) {
             self.list.pop();
         }
     }
 
-    /// Power of what moves the forces from block to block, (m/s²)²·s; zero of too few.
+    /// Power of the changes of the force from block to block, (m/s²)²·s; zero with too few blocks.
     #[must_use]
     pub fn scatter(&self) -> f64 {
         let (mut power, mut count) = (0.0, 0.0);
@@ -123,27 +127,28 @@ impl<const N: usize> Blocks<N> {
         if count < LEAST_TRIPLETS { 0.0 } else { power / count }
     }
 
-    /// Variance of the velocity with which the body swayed, (m/s)², by what the blocks scattered less once they had
-    /// been joined: longer blocks may hide a sway, of which only the velocities at both ends of a stop remain.
+    /// Variance of the velocity with which the body swayed, (m/s)², from the scatter that vanished
+    /// when blocks were joined: longer blocks may hide a sway, of which only the velocities at both
+    /// ends of a stop remain.
     #[must_use]
     pub fn swing(&self) -> f64 {
         self.swing
     }
 
-    /// All of them.
+    /// All blocks in the order of time.
     #[must_use]
     pub fn all(&self) -> &[Block] {
         &self.list
     }
 
-    /// Those of a stop.
+    /// Blocks of one stop.
     pub fn of(&self, stop: usize) -> impl Iterator<Item = &Block> + Clone {
         self.list.iter().filter(move |block| usize::from(block.stop) == stop)
     }
 }
 
-/// Power that three blocks in a row show across the vertical: a line through them, as the Earth draws it,
-/// shows none.
+/// Power that three successive blocks show across the vertical. A straight line through them, as
+/// Earth rotation draws it, contributes none.
 fn second_difference(a: &Block, b: &Block, c: &Block) -> f64 {
     let bend: [f32; 3] =
         core::array::from_fn(|axis| a.force[axis] - 2.0 * b.force[axis] + c.force[axis]);

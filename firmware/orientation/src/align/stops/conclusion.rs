@@ -1,4 +1,9 @@
-//! From what a vehicle's path left to a verdict: an azimuth with σ, or the reason why there is none.
+//! Decision on the azimuth of a vehicle: from the averages of its stops and drives to an azimuth
+//! with σ, or to a refusal.
+//!
+//! The sequence is: check that the rotation was recorded without loss and that there is something
+//! to solve, run the filter until the start frame is consistent, then test outliers, residuals, the
+//! Earth-rate ratio and the budget.
 
 use super::Setting;
 use super::filter::{BIAS, FORCE, LATITUDE, PLACE, Row, SCALE, START};
@@ -20,94 +25,96 @@ use crate::signal::rest::Criteria;
 use crate::signal::strapdown::Carried;
 use crate::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN as DEGREES, wrapped};
 
-/// Least time at rest that makes a stop, s: as long as the criteria look.
+/// Least time at rest of a stop, s: the length of the stop criteria's average.
 const LEAST_REST: f64 = WINDOW as f64;
-/// Least time between the middles of the first stop and the last, and least time of a rest that is all
-/// there is, s: the Earth turns by a quarter of a degree.
+/// Least time between the middles of the first and the last stop, and least length of a single
+/// rest, s: the Earth turns by a quarter of a degree.
 const LEAST_SECONDS: f64 = 60.0;
-/// Least length of a drive, s: a shorter one is none.
+/// Least length of a drive between two stops, s.
 const LEAST_DRIVE: f64 = 1.0;
-/// What the ratio of the Earth's turn may be off beyond five of its σ.
+/// Tolerance of the ratio of the Earth's rotation beyond five of its σ.
 const RATIO_TOLERANCE: f64 = 0.01;
-/// What is a difference and no chance, in σ.
+/// Difference that is not chance, in σ.
 const DIFFERENT: f64 = 5.0;
 /// Least part of gravity along the body's down axis: no vehicle stands on its side.
 const UPRIGHT: f64 = 0.5;
-/// How far a body that sways may turn between both ends of a stop, rad: a degree and a bit.
+/// Greatest rotation of a swaying body between both ends of a stop, rad: about one degree.
 const SWAY: f64 = 0.02;
-/// Probability of healthy blocks' scatter below which they are refused.
+/// Probability of the scatter of sound blocks below which they are refused.
 const SCATTER_PROBABILITY: f64 = 1e-6;
-/// How far the scatter that blocks are held to may be too small: it is taken from the same few blocks, and
-/// sway is not white.
+/// Factor by which the assumed scatter of the blocks may be too small: it is estimated from the
+/// same few blocks, and sway is not white.
 const UNSURE: f64 = 1.5;
-/// How much more than on the body's axes the forces may change from second to second when they are turned
-/// by what the gyros show, in power: where both have their axes and signs right, sway is taken off.
+/// Greatest power of the force changes after rotation to a frozen frame over that on the body's
+/// axes. Where axes and signs of gyros and accelerometers are right, this rotation removes the
+/// sway.
 const DISAGREEMENT: f64 = 1.5;
-/// How fast a vehicle that only stands may have turned from its beginning to its end beside the Earth, rad/s:
-/// a fifth of the Earth rate.
+/// Greatest rate of a vehicle that only stands, from its beginning to its end and relative to the
+/// Earth, rad/s: a fifth of the Earth rate.
 const CARRIED: f64 = 0.2 * EARTH_RATE;
-/// Correlation of neighbouring blocks that no noise has: something drifts that is not in the model.
+/// Correlation of neighbouring blocks beyond that of any noise: an unmodelled drift.
 const CORRELATED: f64 = 0.75;
-/// Correlation of neighbouring blocks that sway makes which is quicker than they are long: longer ones feel it
-/// less.
+/// Correlation of neighbouring blocks that a sway with a period shorter than two blocks makes;
+/// longer blocks respond less to it.
 const SWAYS: f64 = -0.3;
 /// Fewest blocks that may be joined in pairs.
 const MANY: usize = 16;
-/// Part of the blocks that may be left out.
+/// Reciprocal of the greatest part of the blocks that may be excluded.
 const LEFT_OUT: u32 = 4;
-/// Part of what was known of a bias beforehand below which it counts as observed.
+/// Part of a bias's prior 1σ below which the bias counts as observed.
 const OBSERVED: f64 = 0.5;
 
-/// All that stops told.
+/// Complete result of the stops.
 #[derive(Clone, Debug)]
 pub struct Conclusion {
-    /// The azimuth of body x at the end, or why there is none.
+    /// Azimuth of body x at the end, or the reason for refusing it.
     pub verdict: Result<Azimuth, Refusal>,
-    /// The rest, where there was something to solve; it counts only with the verdict.
+    /// Details, where there was something to solve; they are valid only together with the verdict.
     pub found: Option<Found>,
 }
 
-/// What was found.
+/// Details of the solution.
 #[derive(Clone, Copy, Debug)]
 pub struct Found {
-    /// Azimuth of body x at the end.
+    /// Azimuth of body x at the end, with σ.
     pub azimuth: Azimuth,
-    /// Azimuth of body x at the start.
+    /// Azimuth of body x at the start, with σ.
     pub start: Azimuth,
-    /// Least 1σ of the azimuth at the end that any estimator reaches with these columns, rad.
+    /// Cramér–Rao bound of the azimuth at the end for the same unknowns, 1σ, rad.
     pub limit: f64,
-    /// Azimuth of body x at the end when nothing is checked or left out, rad: for campaigns.
+    /// Azimuth of body x at the end from the first run, before outliers are excluded, rad; for
+    /// simulation campaigns.
     pub unchecked: f64,
-    /// Where σ comes from.
+    /// Error budget of the azimuth at the end.
     pub budget: Budget,
     /// Pitch and roll at the end, rad.
     pub level: [f64; 2],
-    /// Biases of the gyros, rad/s.
+    /// Estimated biases of the gyros, rad/s.
     pub biases: Vector,
-    /// Their 1σ, rad/s.
+    /// Standard deviations of the biases, 1σ, rad/s.
     pub bias_sigmas: Vector,
-    /// Whether the stops tell all of them: their 1σ is half of what was known before, or less.
+    /// Whether the stops determine all biases: the 1σ of each is at most half of the prior one.
     pub are_biases_observed: bool,
-    /// How many times greater than was known the biases are, and are taken to be; one where they are not.
+    /// Factor by which the prior 1σ of the biases had to be inflated; one where it was sufficient.
     pub widening: f64,
-    /// Szymanowski's own method.
+    /// Result of the original method (Szymanowski 2003).
     pub plain: Plain,
     /// Chi-square of the blocks, and its degrees of freedom.
     pub chi_square: [f64; 2],
     /// Correlation of neighbouring blocks.
     pub correlation: f64,
-    /// Blocks left out, and of how many.
+    /// Number of excluded blocks, and number of all blocks.
     pub left_out: [u32; 2],
-    /// Stops at which the vehicle turned, whose rest rates are left out.
+    /// Number of stops at which the vehicle turned, whose rest rates are excluded.
     pub turning: u32,
-    /// Greatest rate at which it turned there beside the Earth, rad/s.
+    /// Greatest rate at which it turned there relative to the Earth, rad/s.
     pub turning_rate: f64,
-    /// Drives that did not come to rest at their end, whose velocity is left out.
+    /// Number of drives that did not end at rest, whose velocity is excluded.
     pub unsteady: u32,
 }
 
 impl Conclusion {
-    /// Judges what a stop detector has, solves, and decides.
+    /// Checks the contents of a stop detector, solves, and decides.
     #[must_use]
     #[inline(never)]
     pub fn of(setting: &Setting, stop_detector: &mut StopDetector) -> Self {
@@ -127,14 +134,14 @@ impl Conclusion {
         }
     }
 
-    /// Of nothing but a reason.
+    /// Refusal without any details.
     #[must_use]
     pub const fn refused(reason: Refusal) -> Self {
         Self { verdict: Err(reason), found: None }
     }
 }
 
-/// The path until now, when so much is carried.
+/// Path of the vehicle until now, for the attitude carried at that time.
 fn path<'a>(setting: &Setting, stop_detector: &'a StopDetector, now: &(f64, Carried)) -> Path<'a> {
     Path {
         place: Place::new(setting.common.latitude),
@@ -149,7 +156,7 @@ fn path<'a>(setting: &Setting, stop_detector: &'a StopDetector, now: &(f64, Carr
     }
 }
 
-/// Whether there is something to solve.
+/// Refuses lost rotation, missing or short stops, and drives that are too short.
 fn inspect(setting: &Setting, stop_detector: &StopDetector) -> Result<(), Refusal> {
     match stop_detector.loss() {
         Some(Loss::Gap(at, seconds)) => return Err(Refusal::RotationMissing { at, seconds }),
@@ -182,7 +189,7 @@ fn inspect(setting: &Setting, stop_detector: &StopDetector) -> Result<(), Refusa
     Ok(())
 }
 
-/// Whether a stop is long enough, and the vehicle stands there.
+/// Checks that a stop is long enough, and that the vehicle stood.
 fn inspect_stop(
     setting: &Setting,
     stop_detector: &StopDetector,
@@ -210,11 +217,11 @@ fn inspect_stop(
     Err(Refusal::VehicleMoves { stop: index + 1, rate, force: criteria.force.abs() })
 }
 
-/// Whether what was left out contradicts what is left. A vehicle may be turned at a stop, and a drive may
-/// end by rolling; but where most of them tell something else, it is the rest that is wrong.
+/// Refuses where the excluded data contradict the rest. A vehicle may be turned at a stop, and a
+/// drive may end rolling; but where most of them deviate, the model is wrong.
 fn agree(found: &Found, stops: u32) -> Result<(), Refusal> {
     let drives = stops.saturating_sub(1);
-    // All there is of a vehicle that only stands: it may be trodden on, but not carried round.
+    // A single rest has no other data: the vehicle may be rocked, but not carried round.
     let is_carried = drives == 0 && found.turning_rate > CARRIED;
     if is_carried || drives > 0 && 2 * found.turning > stops {
         return Err(Refusal::EarthNotFelt { stops: found.turning, of: stops });
@@ -225,7 +232,7 @@ fn agree(found: &Found, stops: u32) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Whether what was found can be believed.
+/// Tests the plausibility of the result.
 fn judge(setting: &Setting, found: &Found, stops: u32) -> Result<(), Refusal> {
     agree(found, stops)?;
     let [left_out, blocks] = found.left_out;
@@ -246,7 +253,7 @@ fn judge(setting: &Setting, found: &Found, stops: u32) -> Result<(), Refusal> {
     }
     let required = setting.common.required_sigma;
     let sigma = found.azimuth.sigma;
-    // A σ that is not a number is not met either.
+    // A σ that is not a number does not pass either.
     if sigma <= required {
         return Ok(());
     }
@@ -256,12 +263,13 @@ fn judge(setting: &Setting, found: &Found, stops: u32) -> Result<(), Refusal> {
 }
 
 impl Found {
+    /// Solves the path and reports the result.
     #[inline(never)]
     fn of(setting: &Setting, path: &Path) -> Self {
         let plain = Plain::of(setting, path);
         let mut solution = Solution::new(plain.frame);
         solution.run(setting, path, Belief::Ideal);
-        // How sure the azimuth is hardly depends on where it points.
+        // The uncertainty of the azimuth hardly depends on the azimuth itself.
         let end = End::of(path, &solution);
         let limit = libm::sqrt(solution.filter.variance(&end.row(path)));
         let unchecked = azimuth_of(&end.attitude);
@@ -269,7 +277,7 @@ impl Found {
         Self { limit, unchecked, ..Self::shown(setting, path, &plain, &solution) }
     }
 
-    /// All but the limit.
+    /// Result without its limit.
     #[inline(never)]
     fn shown(setting: &Setting, path: &Path, plain: &Plain, solution: &Solution) -> Self {
         let filter = &solution.filter;
@@ -305,13 +313,13 @@ impl Found {
     }
 }
 
-/// Attitude and place at the end.
+/// Attitude and place at the end of the path.
 struct End {
-    /// From body axes to north, east, down.
+    /// Rotation from body axes to north, east, down.
     attitude: Matrix,
-    /// From the start frame to north, east, down.
+    /// Rotation from the start frame to north, east, down.
     navigation: Matrix,
-    /// Body x on the start frame.
+    /// Direction of body x on the start frame.
     forward: Vector,
 }
 
@@ -329,7 +337,8 @@ impl End {
         Self { attitude: product(&navigation, &body), navigation, forward }
     }
 
-    /// How the azimuth at the end depends on the states: on φ now, and on how far east the vehicle is.
+    /// Derivatives of the azimuth at the end with respect to the states: the rotation φ now, and
+    /// the displacement east.
     fn row(&self, path: &Path) -> Row {
         let mut row = now_row(&gradient(&self.navigation, &self.forward));
         row[PLACE + 1] = path.place.convergence();
@@ -337,17 +346,18 @@ impl End {
     }
 }
 
-/// The rotation that takes a small error off.
+/// Rotation that removes a small error φ.
 fn without(error: &Vector) -> Matrix {
     let columns = IDENTITY.map(|axis| difference(&axis, &cross(error, &axis)));
     transposed(&columns)
 }
 
-/// From body axes to north, east, down at the start.
+/// Attitude at the start: rotation from body axes to north, east, down.
 fn start_attitude(solution: &Solution) -> Matrix {
     product(&transposed(&solution.frame), &without(&solution.filter.three(START)))
 }
 
+/// Derivatives of the azimuth at the start with respect to the states.
 fn start_row(solution: &Solution) -> Row {
     let mut row = [0.0; super::filter::STATES];
     let gradient = gradient(&transposed(&solution.frame), &IDENTITY[0]);
@@ -355,7 +365,8 @@ fn start_row(solution: &Solution) -> Row {
     row
 }
 
-/// How the azimuth of an axis, given on the start frame, falls with a rotation φ of that frame.
+/// Derivative of the azimuth of an axis, given on the start frame, with respect to an error φ of
+/// that frame.
 fn gradient(navigation: &Matrix, axis: &Vector) -> Vector {
     let forward = crate::math::rotation::turned(navigation, axis);
     let square = forward[0] * forward[0] + forward[1] * forward[1];
@@ -365,18 +376,19 @@ fn gradient(navigation: &Matrix, axis: &Vector) -> Vector {
     })
 }
 
+/// Azimuth of body x for an attitude, rad, [0, 2π).
 fn azimuth_of(attitude: &Matrix) -> f64 {
     wrapped(libm::atan2(attitude[1][0], attitude[0][0]))
 }
 
-/// Pitch and roll, rad.
+/// Pitch and roll for an attitude, rad.
 fn level_of(attitude: &Matrix) -> [f64; 2] {
     let [x, y, z] = attitude[2];
     [libm::atan2(-x, libm::hypot(y, z)), libm::atan2(y, z)]
 }
 
-/// The parts of σ: of what was known beforehand each keeps (covariance with the azimuth)² over its own
-/// variance before; the rest is noise. Their squares add up.
+/// Contributions to σ: each group of states with prior knowledge contributes (covariance with the
+/// azimuth)² over its prior variance; the rest is noise. The squares add up to σ².
 fn budget(setting: &Setting, path: &Path, covariances: &Row, sigma: f64, widening: f64) -> Budget {
     let part = |states: core::ops::Range<usize>, sigma: f64| {
         let together = length(&core::array::from_fn(|axis| {

@@ -1,67 +1,69 @@
-//! The filter that weighs everything that stops tell: gravity seen from inertial space, rest rates, what is
-//! known of the sensors.
+//! Kalman filter that combines all information of the stops: gravity seen from inertial space, rest
+//! rates, and prior knowledge of the sensors.
 //!
-//! The carried frame errs by a small rotation φ that grows from an error at the start, from the gyros'
-//! biases b and scale errors s, and from their noise: φ' = ∂φ/∂b b' + ∂φ/∂s s' + w. At rest two things are
-//! measured: the specific force turned into the start frame is g up + φ × g up + accelerometer bias; and
-//! between the beginning and the end of a stop the body turned with the Earth alone, so φ there differs by
-//! nothing but the sway. All is linear once the start is nearly known; repetition makes it known.
+//! The carried frame is wrong by a small rotation φ that grows from an error at the start, from the
+//! gyros' biases b and scale errors s, and from their noise: φ' = ∂φ/∂b b' + ∂φ/∂s s' + w. Two
+//! things are measured at rest. The specific force turned into the start frame is g up + φ × g up +
+//! accelerometer bias. And between the beginning and the end of a stop the body turned with the
+//! Earth alone, so φ differs only by the sway (zero-velocity update of the rotation). The equations
+//! are linear once the start is nearly known, and iteration makes it known.
 
 use crate::math::rotation::{Matrix, Vector, cross, dot};
 use crate::math::{cholesky, cholesky_solve};
 use crate::signal::strapdown::Rough;
 
-/// States: φ now, φ at the start, φ when the stop began, b, s, accelerometer biases, displacement beyond
-/// the stated one, latitude, velocity.
+/// Number of states: φ now, φ at the start, φ at the beginning of the stop, b, s, accelerometer
+/// biases, displacement beyond the configured one, latitude, velocity.
 pub const STATES: usize = 24;
-/// φ now, rad.
+/// Index of φ now, rad.
 pub const NOW: usize = 0;
-/// φ at the start, rad.
+/// Index of φ at the start, rad.
 pub const START: usize = 3;
-/// φ when the stop began, rad.
+/// Index of φ at the beginning of the stop, rad.
 const ANCHOR: usize = 6;
-/// Biases, rad/s.
+/// Index of the gyro biases, rad/s.
 pub const BIAS: usize = 9;
-/// Relative scale errors.
+/// Index of the relative scale-factor errors of the gyros.
 pub const SCALE: usize = 12;
-/// Accelerometer biases, m/s².
+/// Index of the accelerometer biases, m/s².
 pub const FORCE: usize = 15;
-/// Displacement north and east beyond the stated one, m.
+/// Index of the displacement north and east beyond the configured one, m.
 pub const PLACE: usize = 18;
-/// Latitude beyond the stated one, rad.
+/// Index of the latitude beyond the configured one, rad.
 pub const LATITUDE: usize = 20;
 
-/// What φ makes of the velocity that a drive sums up, m/s.
+/// Index of the velocity error that φ makes in the integral of a drive's forces, m/s.
 pub const VELOCITY: usize = 21;
 
-/// A row that says which combination of the states is measured.
+/// Coefficients of a linear combination of the states.
 pub type Row = [f64; STATES];
 
-/// Something measured.
+/// A scalar measurement.
 #[derive(Clone, Copy, Debug)]
 pub struct Measurement {
-    /// Of which combination.
+    /// Combination of the states that is measured.
     pub row: Row,
-    /// What it is beyond what the nominal frame predicts.
+    /// Measured value less the one that the nominal frame predicts.
     pub value: f64,
-    /// Its variance.
+    /// Variance of the measurement noise.
     pub variance: f64,
 }
 
-/// Estimates with their covariance.
+/// State estimates with their covariance.
 #[derive(Clone, Debug)]
 pub struct Filter {
-    /// Estimates.
+    /// Estimates of the states, in the units of the indices above.
     pub state: Row,
-    /// Covariance.
+    /// Covariance of the states.
     pub covariance: [Row; STATES],
 }
 
 impl Filter {
-    /// Of nothing.
+    /// Filter with all states and covariances zero.
     pub const EMPTY: Self = Self { state: [0.0; STATES], covariance: [[0.0; STATES]; STATES] };
 
-    /// Begins anew: φ at the start has this covariance, the others these 1σ; all are zero.
+    /// Initialises the filter: φ at the start gets this covariance, rad², the other states these
+    /// 1σ; all estimates are zero.
     #[inline(never)]
     pub fn begin(&mut self, start: &Matrix, bias: f64, scale: f64, force: f64, latitude: f64) {
         self.state = [0.0; STATES];
@@ -81,8 +83,8 @@ impl Filter {
         self.covariance[LATITUDE][LATITUDE] = latitude * latitude;
     }
 
-    /// Carries φ on over a time in which it came to depend so much more on biases and scale errors, and
-    /// by which noise widens it, rad².
+    /// Propagates φ over an interval: `bias` and `scale` are the changes of its sensitivities, and
+    /// `noise` is the variance that the gyros' noise adds, rad².
     pub fn carry(&mut self, bias: &Matrix, scale: &Matrix, noise: f64) {
         let rows = core::array::from_fn(|axis| {
             let mut row = [0.0; STATES];
@@ -96,7 +98,7 @@ impl Filter {
         }
     }
 
-    /// Adds combinations of the other states to three.
+    /// Adds linear combinations of the other states to three successive states.
     #[inline(never)]
     pub fn add(&mut self, first: usize, rows: &[Row; 3]) {
         for (axis, row) in rows.iter().enumerate() {
@@ -123,14 +125,14 @@ impl Filter {
         }
     }
 
-    /// Lets the biases walk by this variance, (rad/s)².
+    /// Adds a random walk of this variance, (rad/s)², to the biases.
     pub fn walk(&mut self, variance: f64) {
         for axis in BIAS..BIAS + 3 {
             self.covariance[axis][axis] += variance;
         }
     }
 
-    /// Remembers φ as it is when a stop begins.
+    /// Stores φ at the beginning of a stop as the anchor.
     #[inline(never)]
     pub fn anchor(&mut self) {
         for axis in 0..3 {
@@ -146,7 +148,7 @@ impl Filter {
         }
     }
 
-    /// Forgets what is known of some states, whose 1σ is this from now on.
+    /// Resets states to zero with this 1σ, and removes their correlations.
     pub fn reset(&mut self, states: core::ops::Range<usize>, sigma: f64) {
         for state in states {
             self.state[state] = 0.0;
@@ -158,14 +160,14 @@ impl Filter {
         }
     }
 
-    /// Lets the displacement be off by so much more, 1σ, m.
+    /// Adds process noise of this 1σ, m, to the displacement.
     pub fn add_process_noise(&mut self, sigma: f64) {
         for state in PLACE..PLACE + 2 {
             self.covariance[state][state] += sigma * sigma;
         }
     }
 
-    /// Takes measurements in turn.
+    /// Updates the filter with measurements in succession.
     #[inline(never)]
     pub fn measure(&mut self, measurements: &[Measurement]) {
         for measurement in measurements {
@@ -173,7 +175,8 @@ impl Filter {
         }
     }
 
-    /// What measurements, three at most, bring beyond the expected: chi-square of as many degrees of freedom.
+    /// Normalised innovation squared of at most three measurements: chi-square distributed with as
+    /// many degrees of freedom. Infinite where the innovation covariance is not positive.
     #[must_use]
     #[inline(never)]
     pub fn normalised_innovation_squared(&self, measurements: &[Measurement]) -> f64 {
@@ -196,12 +199,13 @@ impl Filter {
         dot(&beyond, &weighted)
     }
 
-    /// What a measurement shows beyond the expected.
+    /// Innovation of a measurement: measured less predicted value.
     #[must_use]
     pub fn beyond(&self, measurement: &Measurement) -> f64 {
         measurement.value - product(&self.state, &measurement.row)
     }
 
+    /// Updates the filter with one measurement.
     fn take(&mut self, measurement: &Measurement) {
         let Measurement { row, variance, .. } = measurement;
         let spread = self.covariances(row);
@@ -219,7 +223,7 @@ impl Filter {
         self.mirror();
     }
 
-    /// Copies the lower triangle, where products were taken, to the upper.
+    /// Copies the lower triangle, which was computed, to the upper one.
     fn mirror(&mut self) {
         for row in 1..STATES {
             for column in 0..row {
@@ -240,24 +244,25 @@ impl Filter {
         core::array::from_fn(|state| product(&self.covariance[state], row))
     }
 
-    /// Three states from one on.
+    /// Three successive states, beginning with `first`.
     #[must_use]
     pub fn three(&self, first: usize) -> Vector {
         core::array::from_fn(|axis| self.state[first + axis])
     }
 }
 
-/// Sum of products; most rows are mostly zero, and a soft product costs more than a look.
+/// Sum of products; rows are mostly zero, and a software multiplication costs more than a test for
+/// zero.
 fn product(a: &Row, b: &Row) -> f64 {
     a.iter().zip(b).filter(|(_, b)| **b != 0.0).map(|(a, b)| a * b).sum()
 }
 
-/// A measurement of the specific force along a direction across the predicted one, both on the start frame;
-/// `attitude` is that of the body.
+/// Row of a measurement of the specific force along a direction perpendicular to the predicted one,
+/// both on the start frame; `attitude` is that of the body.
 #[must_use]
 pub fn force_row(predicted: &Vector, direction: &Vector, attitude: &Rough) -> Row {
     let mut row = [0.0; STATES];
-    // (φ × f)·p = φ·(f × p).
+    // Identity used: (φ × f)·p = φ·(f × p).
     row[NOW..NOW + 3].copy_from_slice(&cross(predicted, direction));
     let columns: Vector = core::array::from_fn(|axis| {
         (0..3).map(|part| direction[part] * f64::from(attitude[part][axis])).sum()
@@ -266,8 +271,9 @@ pub fn force_row(predicted: &Vector, direction: &Vector, attitude: &Rough) -> Ro
     row
 }
 
-/// How the velocity that a drive sums up comes to depend on φ and the accelerometers' biases on one axis,
-/// in a time, s, of a specific force; all on the start frame, `attitude` is that of the body.
+/// Row by which the velocity integral of a drive comes to depend on φ and the accelerometer biases
+/// on one axis, within `seconds` of a specific force; all on the start frame, `attitude` is that of
+/// the body.
 #[must_use]
 pub fn velocity_row(force: &Vector, axis: usize, attitude: &Rough, seconds: f64) -> Row {
     let mut direction = [0.0; 3];
@@ -275,7 +281,8 @@ pub fn velocity_row(force: &Vector, axis: usize, attitude: &Rough, seconds: f64)
     force_row(force, &direction, attitude)
 }
 
-/// A measurement of what φ gained over a stop in which the Earth turned by `earth`, on one axis.
+/// Row of a measurement of the increase of φ over a stop during which the Earth turned by `earth`,
+/// on one axis.
 #[must_use]
 pub fn rest_row(earth: &Matrix, axis: usize) -> Row {
     let mut row = [0.0; STATES];

@@ -1,8 +1,10 @@
-//! U(azp): how far the vertical that the gyros carried from the first stop is from the levelled one at the
-//! last, for any azimuth at the start (Szymanowski 2003, eqs. 9, 10 and 13; equations.md §5).
+//! Function U(azp): the angle between the vertical that the gyros carried from the first stop and
+//! the levelled one at the last, for any azimuth at the start (Szymanowski 2003, eqs. 9, 10 and
+//! 13).
 //!
-//! The drive is not stored: what the gyros turned does not depend on the azimuth, so one vector at either
-//! stop is all that is kept of it. A candidate enters by the start's attitude alone.
+//! The drive is not stored: the rotation measured by the gyros does not depend on the azimuth, so
+//! one vector for each of the two stops is all that is kept. A candidate azimuth enters through the
+//! start's attitude alone.
 
 use crate::math::brent::{self, Minimum};
 use crate::math::quick_root;
@@ -10,41 +12,45 @@ use crate::math::rotation::{Matrix, Vector, about_down, transposed, turned, unit
 use crate::math::turn::{high, sine_and_cosine};
 use crate::units::{TURN, wrapped};
 
-/// Chord up to which its angle is taken from two terms of a series: the next is below 1e-9 of it.
+/// Chord up to which its angle is taken from two terms of a series: the next term is below 1e-9 of
+/// it.
 const SHORT: f64 = 0.02;
-/// Times which components are stored as integers, and their products with sines come out.
+/// Factor of the components stored as integers.
 const STORED: f64 = (1_u64 << 62) as f64;
+/// Factor of their products with sines.
 const TURNED: f64 = (1_u64 << 60) as f64;
-/// Steps of the stored angle's quarter in a radian.
+/// Steps of a quarter of the integer angle in a radian.
 const QUARTER_STEPS: f64 = (1_u64 << 62) as f64 / TURN;
-/// Width of the search about the coarse minimum, rad; U falls only once within half a turn.
+/// Width of the search about the coarse minimum, rad; U has a single minimum within half a turn.
 const HALF_TURN: f64 = 0.5 * TURN;
-/// What the search is to find the azimuth to, rad: below 1e-8°.
+/// Tolerance of the azimuth in the search, rad: below 1e-8°.
 const TOLERANCE: f64 = 1e-10;
-/// Evaluations that it may take.
+/// Greatest number of evaluations in the search.
 const EVALUATIONS: u32 = 100;
 
-/// What two stops leave of a drive.
+/// Up-vectors of two stops, from which U is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inclination {
-    /// Up at the last stop as levelled there, on the level axes of the first stop that point where the
-    /// body pointed.
+    /// Up vector at the last stop as levelled there, on the first stop's level axes, whose x points
+    /// along the horizontal projection of body x.
     levelled: Vector,
-    /// Up at the last stop as Earth rotation and displacement turned it, on north, east, down of the
-    /// first stop.
+    /// Up vector at the last stop as predicted from Earth rotation and displacement, on north,
+    /// east, down of the first stop.
     predicted: Vector,
-    /// From those level axes to the body's at the last stop.
+    /// Rotation from those level axes to the body's at the last stop.
     body: Matrix,
-    /// Horizontal parts of the first, times 2⁶², and of the second, times 2⁶⁰.
+    /// Horizontal components of `levelled`, times 2⁶².
     stored: [i64; 2],
+    /// Horizontal components of `predicted`, times 2⁶⁰.
     wanted: [i64; 2],
-    /// Square of the difference of their vertical parts.
+    /// Square of the difference of the vertical components.
     away: f64,
 }
 
 impl Inclination {
-    /// From up at the last stop on the first stop's level axes, the same as predicted on its north, east,
-    /// down, both of length one, and the rotation from those level axes to the body's at the last stop.
+    /// Inclination from the levelled up vector at the last stop on the first stop's level axes, the
+    /// predicted one on its north, east, down (both of length one), and the rotation from those
+    /// level axes to the body's at the last stop.
     #[must_use]
     pub fn new(levelled: Vector, predicted: Vector, body: Matrix) -> Self {
         let [x, y, z] = levelled;
@@ -59,22 +65,23 @@ impl Inclination {
         }
     }
 
-    /// U for an azimuth at the first stop, rad: the angle between the carried and the levelled up; below
-    /// 0.02 rad to 1e-9 of it, beyond to 1e-7 rad.
+    /// Angle U for an azimuth at the first stop, rad: between the carried and the levelled up
+    /// vector; its error is 1e-9 relative below 0.02 rad, and 1e-7 rad beyond.
     #[must_use]
     #[inline(never)]
     pub fn angle(&self, azimuth: f64) -> f64 {
         let (sine, cosine) = sine_and_cosine(((azimuth * QUARTER_STEPS) as i64 as u64) << 2);
         let [x, y] = self.stored;
         let [north, east] = self.wanted;
-        // Differences, not cosines, so that no digit is lost where the angle is small.
+        // Differences are used instead of cosines, so that no digit is lost for small angles.
         let along = (high(cosine, x) - high(sine, y) - north) as f64;
         let across = (high(sine, x) + high(cosine, y) - east) as f64;
         let square = (along * along + across * across) * (1.0 / (TURNED * TURNED));
         angle_of(quick_root(square + self.away))
     }
 
-    /// U in the paper's form: √(ΔΘ² + ΔΦ²) between carried and levelled pitch and roll, rad.
+    /// Value of U in the paper's form: √(ΔΘ² + ΔΦ²) between carried and levelled pitch and roll,
+    /// rad (Szymanowski 2003).
     #[must_use]
     pub fn euler(&self, azimuth: f64) -> f64 {
         let carried = turned(&transposed(&about_down(azimuth)), &self.predicted);
@@ -83,8 +90,8 @@ impl Inclination {
         libm::hypot(carried[0] - levelled[0], apart(carried[1], levelled[1]))
     }
 
-    /// Azimuth at the first stop of the least angle, rad, [0, 2π), in closed form: the horizontal parts of
-    /// both vectors point the same way.
+    /// Azimuth at the first stop of the least angle, rad, [0, 2π), in closed form: the horizontal
+    /// components of both vectors are parallel.
     #[must_use]
     pub fn closed_form(&self) -> f64 {
         let [x, y, _] = self.levelled;
@@ -92,8 +99,8 @@ impl Inclination {
         wrapped(libm::atan2(east, north) - libm::atan2(y, x))
     }
 
-    /// The same by the paper's way: bounded minimisation of a form of U, after the least of eight azimuths
-    /// was taken for the middle of the interval.
+    /// Azimuth of the least U by the paper's way: bounded minimisation of a form of U. The interval
+    /// is centred on the best of eight azimuths.
     #[must_use]
     pub fn minimised(&self, form: fn(&Self, f64) -> f64) -> Minimum {
         let eighths = (0..8).map(|eighth| TURN * f64::from(eighth) / 8.0);
@@ -111,14 +118,15 @@ impl Inclination {
         Minimum { at: wrapped(minimum.at), evaluations: minimum.evaluations + 8, ..minimum }
     }
 
-    /// Sines of the angles by which up turned between the stops, as levelled and as predicted.
+    /// Sines of the angles by which the up vector turned between the stops, as levelled and as
+    /// predicted.
     #[must_use]
     pub fn turns(&self) -> [f64; 2] {
         [self.levelled, self.predicted].map(|[x, y, _]| libm::hypot(x, y))
     }
 
-    /// The direction in which up turned from the first stop to the last, horizontal, of length one, on the
-    /// first stop's level axes.
+    /// Horizontal unit vector in the direction in which the up vector turned from the first stop to
+    /// the last, on the first stop's level axes.
     #[must_use]
     pub fn direction(&self) -> Vector {
         let [x, y, _] = self.levelled;
@@ -126,10 +134,10 @@ impl Inclination {
     }
 }
 
-/// The angle that a chord of the unit sphere spans, rad.
+/// Angle that a chord of the unit sphere spans, rad.
 fn angle_of(chord: f64) -> f64 {
     if chord < SHORT {
-        // What the arc is longer than its chord is 1e-5 of it, so single precision will do.
+        // The arc exceeds its chord by 1e-5 of it, so single precision suffices for the difference.
         let (chord32, square) = (chord as f32, chord as f32 * chord as f32);
         return chord + f64::from(chord32 * square * (1.0 / 24.0));
     }
@@ -137,14 +145,14 @@ fn angle_of(chord: f64) -> f64 {
     chord + f64::from(2.0 * (libm::asinf(half.min(1.0)) - half))
 }
 
-/// Pitch and roll of a body that feels this as up, rad.
+/// Pitch and roll of a body with this up vector on its axes, rad.
 #[must_use]
 pub fn pitch_and_roll(up: &Vector) -> [f64; 2] {
     let [x, y, z] = *up;
     [libm::atan2(x, libm::hypot(y, z)), libm::atan2(-y, -z)]
 }
 
-/// The angle from one roll to another, rad, the short way.
+/// Signed angle from one roll to another, rad, the short way.
 fn apart(a: f64, b: f64) -> f64 {
     let turns = (a - b) / TURN;
     (turns - libm::round(turns)) * TURN

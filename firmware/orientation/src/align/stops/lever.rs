@@ -1,9 +1,12 @@
-//! The lever from where a vehicle rocks to where its sensors stand, found from the forces of its sway.
+//! Lever arm from the axis about which a vehicle sways to its sensors, estimated from the forces of
+//! the sway.
 //!
-//! Sensors that stand off the axis about which a body rocks move with it, and feel beside gravity how their velocity
-//! v = C (ω × l) changes: C the attitude, ω what the gyros show, l the lever. Over a second that is the difference of
-//! both ends, and linear in the lever. How the forces change from one second to the next tells it by recursive least
-//! squares; what it makes is then taken off, so that a vehicle that sways is aligned nearly as well as one that does not.
+//! Sensors off the axis of the sway move with the body, and measure the change of their velocity v
+//! = C (ω × l) in addition to gravity: C is the attitude, ω the gyros' rate, l the lever arm. Over
+//! a second the mean acceleration is the difference of both ends, and linear in the lever arm. The
+//! changes of the force from one second to the next estimate it by recursive least squares; its
+//! effect is then subtracted, so that a swaying vehicle is aligned nearly as well as one that
+//! stands still.
 //!
 //! ```text
 //!  second before ─▶ ┐ change of velocity over a second   ┌─▶ lever, covariance
@@ -14,24 +17,26 @@ use super::stop::Second;
 use crate::math::rotation::{difference, dot, scaled, sum, turned};
 use crate::signal::strapdown::Rough;
 
-/// 1σ of each component of the lever before any sway is seen, m: the size of a large vehicle.
+/// Prior 1σ of each component of the lever arm, m: the size of a large vehicle.
 const FARTHEST: f32 = 3.0;
-/// Variance of what forces change from second to second beside, (m/s²)²: an accelerometer of 3 mm/s²/√Hz.
+/// Variance of other changes of the force from second to second, (m/s²)²: an accelerometer noise of
+/// 3 mm/s²/√Hz.
 const FORCE: f32 = 1e-5;
 
-/// The lever as far as it is known.
+/// Recursive estimate of the lever arm.
 #[derive(Clone, Debug)]
 pub struct Lever {
-    /// From the axis of the sway to the sensors, on the body's axes, m.
+    /// Lever arm from the axis of the sway to the sensors, on the body's axes, m.
     arm: [f32; 3],
-    /// Covariance of that, m².
+    /// Covariance of the lever arm, m².
     covariance: Rough,
-    /// When the latest second ended, s, what a metre of lever made of its force, 1/s², and that force, m/s².
+    /// End of the latest second, s, the sensitivity of its force to the lever arm, 1/s², and that
+    /// force, m/s².
     latest: Option<(f64, Rough, [f32; 3])>,
 }
 
 impl Default for Lever {
-    /// Nothing known.
+    /// Estimate without any data: zero with the prior covariance.
     fn default() -> Self {
         const FIRST: f32 = FARTHEST * FARTHEST;
         Self {
@@ -43,8 +48,9 @@ impl Default for Lever {
 }
 
 impl Lever {
-    /// Takes off the force of a second at rest what the lever makes of it, and learns from it; `begun` is when the second
-    /// before it ended, s, and its [`Second::swing`], where that was at rest too. Whether what is left means something.
+    /// Subtracts the lever arm's effect from the force of a second at rest, and updates the
+    /// estimate. `begun` is the end of the previous second, s, and its [`Second::swing`], where
+    /// that was at rest too. Returns whether the corrected force is usable.
     pub fn relieve(&mut self, second: &mut Second, begun: Option<(f64, Rough)>) -> bool {
         let swing = second.swing();
         let Some((since, begun)) = begun else {
@@ -68,7 +74,8 @@ impl Lever {
         self.is_known(&made)
     }
 
-    /// Takes what the force along an axis changed, m/s², of which a metre of lever makes so much.
+    /// Updates the estimate with the change of the force along an axis, m/s², which has this
+    /// sensitivity to the lever arm.
     fn learn(&mut self, row: &[f32; 3], change: f32) {
         let with = turned(&self.covariance, row);
         let gain = with.map(|part| part / (dot(row, &with) + FORCE));
@@ -79,13 +86,13 @@ impl Lever {
         }
     }
 
-    /// Whether what a metre of lever makes is known with the lever better than a force.
+    /// Whether the lever arm's effect is known better than a force is.
     fn is_known(&self, made: &Rough) -> bool {
         made.iter().all(|row| dot(row, &turned(&self.covariance, row)) < FORCE)
     }
 }
 
-/// Whether a force, m/s², is below what forces change anyway.
+/// Whether a force, m/s², is below the usual change of forces.
 fn is_small(force: &[f32; 3]) -> bool {
     dot(force, force) < FORCE
 }

@@ -1,4 +1,5 @@
-//! Azimuth from stops (Szymanowski 2003; equations.md §5), and of a vehicle that stands and sways.
+//! Azimuth from stops of a vehicle by inertial-frame alignment (Szymanowski 2003), also for a
+//! single stop at which the vehicle sways.
 //!
 //! ```text
 //!  sample ─▶ stop detector ─┬─ stops: attitude carried from inertial space, rest rates ─▶ filter ─▶ azimuth ± σ
@@ -7,8 +8,10 @@
 //!                         Earth rotation, displacement ─▶ where up must be ───────────┘
 //! ```
 //!
-//! Gravity seen from inertial space turns with the Earth: where it pointed at one time and points at another
-//! tells where north is, whatever the vehicle did between, as long as its gyros carried the frame along.
+//! Gravity seen from inertial space turns with the Earth: its directions at two times show where
+//! north is, whatever the vehicle did between, as long as its gyros carried the frame along. The
+//! resolution is set by the gyros: an uncompensated bias B makes an azimuth error of up to B/`Ω_h`,
+//! which stops at different headings remove, because they make the biases observable.
 
 pub mod block;
 pub mod conclusion;
@@ -26,30 +29,32 @@ use super::setting::Setting as Common;
 use crate::signal::rest::Sensors;
 use crate::units::DEGREE_PER_HOUR;
 
-/// What is known before a vehicle is followed.
+/// Configuration of an alignment by stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
-    /// The place of the first stop, the gyros' noise, the accelerometers' biases, the demands.
+    /// Site of the first stop, the gyros' noise, the accelerometers' biases, and the requirements.
     pub common: Common,
-    /// 1σ of the gyros' biases from start to start, rad/s; none where nobody knows it.
+    /// Standard deviation of the gyros' biases from switch-on to switch-on, 1σ, rad/s; none where
+    /// it is unknown.
     pub bias_sigma: Option<f64>,
-    /// Noise of the accelerometers, one-sided, m/s²/√Hz.
+    /// Noise density of the accelerometers, one-sided, m/s²/√Hz.
     pub force_noise: f64,
-    /// 1σ of a displacement that was told, m.
+    /// Standard deviation of a reported displacement, 1σ, m.
     pub displacement_sigma: f64,
-    /// 1σ of the mean speed north and east of a drive whose displacement nobody told, m/s.
+    /// Standard deviation of the mean speed north and east of a drive without reported
+    /// displacement, 1σ, m/s.
     pub speed_sigma: f64,
 }
 
-/// 1σ of a bias of which nothing is known, rad/s: a gyro that is worse cannot find north this way.
+/// Prior 1σ of an unknown bias, rad/s: a worse gyro cannot find north by this method.
 const ANY_BIAS: f64 = 30.0 * DEGREE_PER_HOUR;
-/// Default of [`Setting::displacement_sigma`]: a position fix.
+/// Default of [`Setting::displacement_sigma`], m: that of a position fix.
 const DISPLACEMENT_SIGMA: f64 = 5.0;
-/// Default of [`Setting::speed_sigma`]: most vehicles get no farther in a straight line.
+/// Default of [`Setting::speed_sigma`], m/s: most vehicles do not get farther in a straight line.
 const SPEED_SIGMA: f64 = 10.0;
 
 impl Setting {
-    /// Nothing is known of the gyros' biases, accelerometers are quiet.
+    /// Configuration without knowledge of the gyros' biases, for noiseless accelerometers.
     #[must_use]
     pub const fn new(common: Common) -> Self {
         Self {
@@ -61,13 +66,13 @@ impl Setting {
         }
     }
 
-    /// 1σ of the gyros' biases, rad/s, instability included.
+    /// Prior 1σ of the gyros' biases, rad/s, bias instability included.
     #[must_use]
     pub fn bias_sigma(&self) -> f64 {
         libm::hypot(self.bias_sigma.unwrap_or(ANY_BIAS), self.common.noise.bias_instability)
     }
 
-    /// The sensors as the stop criteria see them.
+    /// Sensor properties for the stop criteria.
     #[must_use]
     pub fn sensors(&self) -> Sensors {
         let bias = self.bias_sigma.unwrap_or(ANY_BIAS);

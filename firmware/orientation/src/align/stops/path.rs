@@ -1,4 +1,4 @@
-//! All that is kept of a vehicle's way from its first stop to now.
+//! Path of a vehicle from its first stop until now: all data that are kept of it.
 
 use super::Setting;
 use super::block::{AT_REST, Blocks, DRIVEN};
@@ -7,43 +7,44 @@ use super::stop::Stop;
 use crate::math::rotation::{Vector, difference, dot, transposed};
 use crate::signal::strapdown::Carried;
 
-/// Least power of the accelerometers' noise that is believed, (m/s²)²·s: 1 µg/√Hz.
+/// Least noise power of the accelerometers that is assumed, (m/s²)²·s: 1 µg/√Hz.
 const LEAST_DENSITY: f64 = 1e-10;
-/// Power of white forces that blurs a slope over some seconds as much as the velocities at both ends do, over their
-/// variance and times those seconds: 12 of the slope's, 2 · 36 of the velocities'.
+/// Ratio of the white force noise that blurs a slope over some seconds as much as the velocities at
+/// both ends do, to the velocities' variance times those seconds: 12 for a slope, 2 · 36 for the
+/// velocities.
 const OF_ENDS: f64 = 6.0;
 
-/// A vehicle's way.
+/// Averages of a vehicle's path.
 #[derive(Clone, Copy, Debug)]
 pub struct Path<'a> {
-    /// The place of the first stop.
+    /// Place of the first stop.
     pub place: Place,
-    /// Gravity there, m/s².
+    /// Gravity at the first stop, m/s².
     pub gravity: f64,
-    /// When the start frame was frozen, s.
+    /// Time at which the start frame was frozen, s.
     pub start: f64,
-    /// The stops.
+    /// Stops in the order of time.
     pub stops: &'a [Stop],
-    /// Means over the time at rest.
+    /// Averages over the time at rest.
     pub blocks: &'a Blocks<AT_REST>,
-    /// Means over the drives.
+    /// Averages over the drives.
     pub drives: &'a Blocks<DRIVEN>,
-    /// When the last sample ended, s.
+    /// End of the last sample, s.
     pub now: f64,
-    /// What was carried then.
+    /// Attitude and sensitivities at that time.
     pub carried: Carried,
-    /// Power of the accelerometers' noise as it is stated, (m/s²)²·s.
+    /// Configured noise power of the accelerometers, (m/s²)²·s.
     pub stated_density: f64,
 }
 
 impl Path<'_> {
-    /// Where a stop is, north and east of the first, m; zero where nobody told.
+    /// Position of a stop, north and east of the first, m; zero where it was not reported.
     #[must_use]
     pub fn displaced(&self, stop: usize) -> [f64; 2] {
         self.stops.get(stop).and_then(|stop| stop.displacement).unwrap_or_default()
     }
 
-    /// 1σ of where the last stop is, m; with one stop there is nothing to know.
+    /// Standard deviation of the last stop's position, 1σ, m; zero with a single stop.
     #[must_use]
     pub fn displacement_sigma(&self, setting: &Setting) -> f64 {
         let [Some(first), Some(last)] = [self.stops.first(), self.stops.last()] else { return 0.0 };
@@ -54,7 +55,7 @@ impl Path<'_> {
         if last.displacement.is_some() { setting.displacement_sigma } else { unknown }
     }
 
-    /// Where the vehicle is between two stops, taken to drive straight and evenly, m.
+    /// Position between two stops, m, for a straight drive at constant speed.
     #[must_use]
     pub fn underway(&self, stop: usize, at: f64) -> [f64; 2] {
         let [Some(before), Some(after)] = [self.stops.get(stop), self.stops.get(stop + 1)] else {
@@ -65,7 +66,8 @@ impl Path<'_> {
         [from[0] + part * (to[0] - from[0]), from[1] + part * (to[1] - from[1])]
     }
 
-    /// How far up at the last stop depends on scale errors of the gyros, by a rotation about this axis.
+    /// Sensitivity of the up vector at the last stop to scale errors of the gyros, for rotation
+    /// about this axis.
     #[must_use]
     pub fn turned_about(&self, about: &Vector) -> Vector {
         let [Some(first), Some(last)] = [self.stops.first(), self.stops.last()] else {
@@ -77,7 +79,7 @@ impl Path<'_> {
         transposed(&gained).map(|column| dot(about, &column))
     }
 
-    /// Power of what moves the forces, (m/s²)²·s: the accelerometers' noise, and sway.
+    /// Power of the force noise, (m/s²)²·s: the accelerometers' noise, and sway.
     #[must_use]
     pub fn density(&self) -> f64 {
         let stood: f64 = self.stops.iter().map(Stop::seconds).sum();

@@ -1,29 +1,30 @@
-//! Where up points at a place that the Earth carries round, as seen from inertial space.
+//! Direction of the vertical at a place that rotates with the Earth, seen from inertial space.
 //!
-//! The frame is north, east, down of the first place at the start, held fixed: there the vertical of any
-//! later time and place is known, and no azimuth is needed for it.
+//! The frame is north, east, down of the first place at the start, frozen: in it the vertical of
+//! any later time and place is known without knowing any azimuth.
 
 use crate::earth::{EARTH_RATE, Latitude};
 use crate::math::rotation::{Matrix, Vector, product, scaled, transposed};
 
-/// The place of the first stop.
+/// Place of the first stop on the ellipsoid.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
+    /// Geodetic latitude, rad.
     latitude: f64,
-    /// From the Earth's axes to north, east, down at the start.
+    /// Rotation from the Earth's axes to north, east, down at the start.
     start: Matrix,
-    /// Radians of latitude and of longitude in a metre.
+    /// Change of latitude and of longitude per metre, rad/m.
     per_metre: [f64; 2],
 }
 
 impl Place {
-    /// A place at a latitude. Beyond 89.9° longitude means nothing.
+    /// Place at a latitude. Beyond 89.9° the longitude is not meaningful.
     #[must_use]
     pub fn new(latitude: Latitude) -> Self {
         Self::moved(latitude, 0.0)
     }
 
-    /// The same, farther north by an angle, rad.
+    /// Place displaced north by an angle, rad.
     #[must_use]
     pub fn moved(latitude: Latitude, by: f64) -> Self {
         let [along, across] = latitude.radii();
@@ -32,8 +33,8 @@ impl Place {
         Self { latitude, start, per_metre: [1.0 / along, 1.0 / (across * libm::cos(latitude))] }
     }
 
-    /// From north, east, down at a time, s from the start, and at a displacement north and east, m, to
-    /// the start's, frozen.
+    /// Rotation from north, east, down at a time, s from the start, and at a displacement north and
+    /// east, m, to the frozen axes of the start.
     #[must_use]
     pub fn navigation(&self, seconds: f64, [north, east]: [f64; 2]) -> Matrix {
         let [per_north, per_east] = self.per_metre;
@@ -41,34 +42,34 @@ impl Place {
         product(&self.start, &navigation(self.latitude + north * per_north, longitude))
     }
 
-    /// The Earth's axis, of length one, north positive.
+    /// Unit vector of the Earth's axis, north positive.
     #[must_use]
     pub fn axis(&self) -> Vector {
         self.start.map(|row| row[2])
     }
 
-    /// How far north and east turn in a metre north and a metre east, rad/m.
+    /// Rotation of the local level per metre north and per metre east, rad/m.
     #[must_use]
     pub fn per_metre(&self) -> [f64; 2] {
         let [north, east] = self.per_metre;
         [north, east * libm::cos(self.latitude)]
     }
 
-    /// By how much north has turned in a metre east, rad.
+    /// Convergence of the meridians: rotation of north per metre east, rad/m.
     #[must_use]
     pub fn convergence(&self) -> f64 {
         self.per_metre[1] * libm::sin(self.latitude)
     }
 }
 
-/// Up in a frame of which these are north, east and down.
+/// Up vector in a frame in which the columns are north, east and down.
 #[must_use]
 pub fn up(navigation: &Matrix) -> Vector {
     scaled(&navigation.map(|row| row[2]), -1.0)
 }
 
-/// From north, east, down at a place to axes through equator and zero meridian, equator and 90° east, and
-/// the pole.
+/// Rotation from north, east, down at a place to axes through equator and zero meridian, equator
+/// and 90° east, and the pole.
 fn navigation(latitude: f64, longitude: f64) -> Matrix {
     let (sine, cosine) = libm::sincos(latitude);
     let (east, along) = libm::sincos(longitude);

@@ -1,4 +1,5 @@
-//! Szymanowski's own method: the first stop and the last, and nothing else.
+//! Original method of Szymanowski 2003: the first stop and the last, without estimation of sensor
+//! errors.
 
 use super::Setting;
 use super::block::Block;
@@ -15,40 +16,46 @@ use crate::signal::strapdown::Rough;
 /// Part of a single stop that counts as its beginning, and as its end.
 const END: f64 = 1.0 / 3.0;
 
-/// What the method finds.
+/// Result of the method.
 #[derive(Clone, Copy, Debug)]
 pub struct Plain {
-    /// U for any azimuth.
+    /// Function U for any azimuth.
     pub inclination: Inclination,
     /// Azimuth of body x at the first stop by the closed form, rad.
     pub azimuth: f64,
-    /// Its 1σ, rad: all errors of the gyros stay in it.
+    /// Standard deviation of that azimuth, 1σ, rad; it contains all errors of the gyros.
     pub sigma: f64,
-    /// The azimuth by bounded minimisation of U as an angle, and that angle.
+    /// Minimum of U as an angle, by bounded minimisation.
     pub angle: Minimum,
-    /// The same in the paper's form.
+    /// Minimum of U in the paper's form, by bounded minimisation.
     pub euler: Minimum,
-    /// Angle by which up turned between the stops over that predicted.
+    /// Angle by which the up vector turned between the stops over the predicted one.
     pub ratio: f64,
-    /// 1σ of that ratio.
+    /// Standard deviation of that ratio, 1σ.
     pub ratio_sigma: f64,
-    /// From north, east, down at the start, frozen, to the start frame.
+    /// Rotation from the frozen north, east, down of the start to the start frame.
     pub frame: Matrix,
 }
 
-/// Mean of the blocks at either end.
+/// Averages of the blocks at one end of the path.
 #[derive(Clone, Copy, Debug, Default)]
 struct End {
+    /// Mean time, s.
     middle: f64,
+    /// Total length, s.
     seconds: f64,
     /// Sum of forces times seconds, on the start frame.
     force: Vector,
+    /// Mean attitude.
     attitude: Matrix,
+    /// Mean sensitivity to gyro biases.
     bias: Matrix,
+    /// Displacement from the first stop, m.
     displacement: [f64; 2],
 }
 
 impl End {
+    /// Averages of these blocks, weighted by their lengths.
     fn of<'a>(blocks: impl Iterator<Item = &'a Block>, displacement: [f64; 2]) -> Self {
         let mut end = Self { displacement, ..Self::default() };
         for block in blocks {
@@ -66,18 +73,20 @@ impl End {
         end
     }
 
+    /// Unit vector of the mean force.
     fn up(&self) -> Vector {
         unit(&self.force)
     }
 }
 
+/// Adds a weighted matrix.
 fn add(sums: &mut Matrix, part: &Rough, seconds: f64) {
     for (sums, part) in sums.iter_mut().zip(part) {
         *sums = sum(sums, &scaled(&part.map(f64::from), seconds));
     }
 }
 
-/// A mean of nearly equal rotations made a rotation again (Newton's step).
+/// Orthonormalises the mean of nearly equal rotations, by one Newton step.
 fn orthonormal(matrix: &Matrix) -> Matrix {
     let square = product(&product(matrix, &transposed(matrix)), matrix);
     core::array::from_fn(|row| {
@@ -86,13 +95,13 @@ fn orthonormal(matrix: &Matrix) -> Matrix {
 }
 
 impl Plain {
-    /// From the path of a vehicle that has blocks at both ends of it.
+    /// Applies the method to a path with blocks at both of its ends.
     #[must_use]
     #[inline(never)]
     pub fn of(setting: &Setting, path: &Path) -> Self {
         let (first, last) = ends(path);
         let level = levelled(&turned(&transposed(&first.attitude), &first.up()));
-        // From the start frame to the first stop's level axes.
+        // Rotation from the start frame to the first stop's level axes.
         let to_level = product(&level, &transposed(&first.attitude));
         let there = path.place.navigation(first.middle - path.start, first.displacement);
         let later = path.place.navigation(last.middle - path.start, last.displacement);
@@ -118,7 +127,7 @@ impl Plain {
     }
 }
 
-/// The first stop and the last, or both ends of the only one.
+/// Averages of the first stop and of the last, or of both ends of a single one.
 fn ends(path: &Path) -> (End, End) {
     let last = path.stops.len().saturating_sub(1);
     let whole = path.stops.first().map_or([0.0; 2], |stop| [stop.from, stop.to]);
@@ -137,12 +146,13 @@ fn ends(path: &Path) -> (End, End) {
     )
 }
 
-/// 1σ of the azimuth, rad, and of the ratio of the angles by which up turned, `turn` rad as predicted.
+/// Standard deviations, 1σ, of the azimuth, rad, and of the ratio of the up vector's rotation,
+/// which is predicted as `turn` rad.
 fn sigmas(setting: &Setting, path: &Path, first: &End, last: &End, turn: f64) -> (f64, f64) {
     let across = unit(&cross(&first.up(), &last.up()));
     let along = cross(&across, &last.up());
     let sigma = |direction: &Vector| {
-        // A rotation φ of the frame moves up along a direction p by φ·(up × p).
+        // A rotation φ of the frame moves the up vector along a direction p by φ·(up × p).
         let about = cross(&last.up(), direction);
         let common = &setting.common;
         let bias = setting.bias_sigma() * length(&weighted(&about, &last.bias, &first.bias));
@@ -160,7 +170,7 @@ fn sigmas(setting: &Setting, path: &Path, first: &End, last: &End, turn: f64) ->
     (sigma(&across), sigma(&along))
 }
 
-/// A direction by the difference of two matrices.
+/// Difference of two matrices, multiplied from the left by a direction.
 fn weighted(direction: &Vector, last: &Matrix, first: &Matrix) -> Vector {
     let columns = [transposed(last), transposed(first)];
     core::array::from_fn(|axis| {

@@ -1,4 +1,4 @@
-//! Runs the filter along a path, again and again until the start frame stands still.
+//! Iteration of the filter along a path until the start frame is consistent.
 
 use super::Setting;
 use super::block::Block;
@@ -17,126 +17,144 @@ use crate::math::rotation::{
 };
 use crate::signal::strapdown::{Carried, Rough};
 
-/// 1σ of the level that the first stop gives the start frame, rad; far above what it is.
+/// Prior 1σ of the start frame's level from the first stop, rad; far above the actual one.
 const LEVEL_SIGMA: f64 = 0.1;
-/// 1σ of its azimuth, rad: unknown.
+/// Prior 1σ of the start frame's azimuth, rad: unknown.
 const AZIMUTH_SIGMA: f64 = 3.0;
-/// Repetitions, and the correction below which no further one is needed, rad: half of its square is not
-/// seen, 1e-5°.
+/// Greatest number of iterations.
 const REPETITIONS: u32 = 16;
+/// Correction below which the iteration ends, rad: half of its square is below 1e-5°.
 const SETTLED: f64 = 5e-4;
-/// Scatter over the believed one that is too much, and the most that is taken for a sway.
+/// Ratio of the scatter to the assumed one from which it is too large.
 const ROUGH: f64 = 1.5;
+/// Greatest ratio that is attributed to a sway.
 const ROUGHEST: f64 = 6.0;
-/// Correlation of neighbouring blocks from which on they are believed less, in its 1σ of white blocks.
+/// Correlation of neighbouring blocks from which their weight is reduced, in its 1σ for white
+/// blocks.
 const COLOURED: f64 = 3.0;
-/// Probability of biases as great as those found below which what was known of them is not believed.
+/// Probability of the estimated biases below which their prior is inflated.
 const FALSE_BIAS: f64 = 0.05;
-/// How much greater than believed, in power, biases still are once they are believed as great as they are.
+/// Ratio, in power, of the biases to their inflated prior from which the prior is inflated further.
 const BELIEVED: f64 = 1.1;
-/// 1σ of biases, rad/s, beyond which and beyond so many times what was known they are none: a fifth of the Earth
-/// rate is what a wrong latitude or axis makes.
+/// Greatest 1σ of biases, rad/s, to which a prior is inflated: larger ones, a fifth of the Earth
+/// rate, are rather the effect of a wrong latitude or axis.
 const GREATEST_BIAS: f64 = 0.2 * EARTH_RATE;
+/// Greatest factor by which a prior is inflated in any case.
 const GREATEST_WIDENING: f64 = 3.0;
-/// Least part of the biases' variance that must be observed before they are judged.
+/// Least observed part of the biases' variance from which they are judged.
 const LEAST_SEEN: f64 = 0.1;
-/// Longest time in which a vehicle at rest is turned by hand, s: a rate that is there all the time is a bias.
+/// Longest time in which a vehicle at rest is turned by hand, s: a rate present all the time is a
+/// bias.
 const TURNED_BY_HAND: f64 = 5.0;
-/// Fewest degrees of freedom of which a correlation means something.
+/// Fewest degrees of freedom for a meaningful correlation.
 const LEAST_DEGREES: f64 = 20.0;
-/// Chi-square beyond which a block, or the rest of a stop, is left out: one healthy block in three million.
+/// Normalised innovation squared beyond which a block, or the rest of a stop, is excluded: one
+/// sound block in three million.
 const OUTLIER: f64 = 30.0;
-/// Least variance of what a vehicle sways, rad²: 20 milliarcseconds.
+/// Least variance of a vehicle's sway, rad²: 20 milliarcseconds.
 const LEAST_SWAY: f64 = 1e-14;
-/// How much slower than a second a sway may be: the power of its angle over that of its change in a second.
+/// Ratio of the power of a slow sway's angle to that of its change within a second.
 const SLOW_SWAY: f64 = 4.0;
-/// Least angle random walk that is believed, rad/√s: 1e-5 °/√h.
+/// Least angle random walk that is assumed, rad/√s: 1e-5 °/√h.
 const LEAST_WALK: f64 = 2.9e-9;
-/// 1σ of what driving adds to an accelerometer's bias, m/s²: its scale and its axes under vibration, 0.1 mg.
+/// Additional 1σ of an accelerometer's bias while driving, m/s²: scale and axes under vibration,
+/// 0.1 mg.
 const DRIVING: f64 = 1e-3;
-/// How far a vehicle is from the straight way in the mean, of what it could have driven.
+/// Mean distance of a vehicle from the straight way, relative to the distance that it could have
+/// driven.
 const DETOUR: f64 = 0.1;
-/// Time after a stop that may still be one, s: what the criteria hold back.
+/// Time after a stop that may still belong to it, s: the delay of the stop criteria.
 const REMAINDER: f64 = 4.0;
 /// Part of a drive that its blocks may miss.
 const COVERED: f64 = 0.002;
-/// Step by which the latitude's effect is found, rad.
+/// Step of the latitude in a numerical derivative, rad.
 const LATITUDE_STEP: f64 = 1e-3;
 
-/// A matrix of nothing.
+/// The zero matrix.
 const NOTHING: Matrix = [[0.0; 3]; 3];
 
-/// What is believed of the path.
+/// Assumptions of a run on disturbances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Belief {
-    /// What it shows.
+    /// Disturbances as the data show them.
     Shown,
-    /// That nothing sways, all is quiet, nothing is left out: the limit of any estimator, and where to begin.
+    /// No sway, no outliers, least noise: the Cramér–Rao bound, and the starting point of the
+    /// iteration.
     Ideal,
 }
 
-/// The filter at the end of the path.
+/// State of the filter at the end of the path, with statistics of the run.
 #[derive(Clone, Debug)]
 pub struct Solution {
-    /// States; of φ what is left when [`Self::frame`] is taken for the start frame.
+    /// Filter states; φ is the remaining error of [`Self::frame`].
     pub filter: Filter,
-    /// From north, east, down at the start, frozen, to the start frame.
+    /// Rotation from the frozen north, east, down of the start to the start frame.
     pub frame: Matrix,
-    /// Sum of squares of what blocks showed beyond the expected, over their variances, of so many degrees
-    /// of freedom.
+    /// Sum of the blocks' normalised innovations squared.
     pub chi_square: f64,
-    /// Those degrees.
+    /// Degrees of freedom of that sum.
     pub degrees: f64,
-    /// Blocks left out.
+    /// Number of excluded blocks.
     pub left_out: u32,
-    /// Stops at which the vehicle turned, whose rest rates are left out.
+    /// Number of stops at which the vehicle turned, whose rest rates are excluded.
     pub turning: u32,
-    /// Greatest rate at which it turned there beside the Earth, rad/s.
+    /// Greatest rate at which it turned there relative to the Earth, rad/s.
     pub turning_rate: f64,
-    /// Drives that did not come to rest at their end, whose velocity is left out.
+    /// Number of drives that did not end at rest, whose velocity is excluded.
     pub unsteady: u32,
-    /// Sums of what blocks showed beyond the expected, times the same of the block before, and squared.
+    /// Sum of products of successive blocks' innovations, and sum of their squares.
     pub neighbours: [f64; 2],
-    /// How much more than their neighbours say the blocks scatter: power over power, one or more.
+    /// Factor by which the blocks scatter more than their neighbours indicate, in power; at least
+    /// one.
     pub roughness: f64,
-    /// The same of blocks that go together with their neighbours; one until that is known.
+    /// Factor for the correlation of neighbouring blocks, in power; one until it is known.
     pub colour: f64,
-    /// How much greater than is known the biases are taken to be; one or more.
+    /// Factor on the prior 1σ of the biases; at least one.
     pub widening: f64,
-    /// Greatest rate beside the Earth's that was there all through a stop whose rest was left out, rad/s.
+    /// Greatest rate relative to the Earth that was present all through a stop whose rest was
+    /// excluded, rad/s.
     pub steady: f64,
 }
 
-/// What has been carried until a moment.
+/// Sensitivities carried up to a moment.
 #[derive(Clone, Copy, Debug, Default)]
 struct Moment {
+    /// Time, s.
     at: f64,
+    /// Sensitivity of the frame to gyro biases, s.
     bias: Rough,
+    /// Sensitivity of the frame to scale errors, rad.
     scale: Rough,
 }
 
 impl Moment {
+    /// Sensitivities of a carried attitude at a time, s.
     fn of(at: f64, carried: &Carried) -> Self {
         Self { at, bias: carried.bias, scale: carried.scale }
     }
 }
 
-/// A run along the path with one start frame.
+/// One run along the path with one start frame.
 struct Run<'a> {
+    /// Configuration of the alignment.
     setting: &'a Setting,
+    /// Path of the vehicle.
     path: &'a Path<'a>,
-    /// Power of the forces' noise, (m/s²)²·s.
+    /// Power of the force noise, (m/s²)²·s.
     density: f64,
-    /// The place, a little farther north, where the latitude is not exact.
+    /// Place slightly farther north, for the derivative with respect to latitude; none where the
+    /// latitude is exact.
     north: Option<Place>,
+    /// Assumptions on disturbances.
     belief: Belief,
+    /// Sensitivities at the latest step.
     last: Moment,
-    /// What the block before showed beyond the expected, m/s².
+    /// Innovation of the previous block, m/s².
     before: [f64; 2],
 }
 
 impl Solution {
-    /// Of nothing, with a start frame that is nearly right.
+    /// Solution before any run, with an approximate start frame.
     #[must_use]
     pub const fn new(frame: Matrix) -> Self {
         Self {
@@ -156,7 +174,8 @@ impl Solution {
         }
     }
 
-    /// Runs along the path until the start frame stands still; the first run must have been made.
+    /// Iterates along the path until the start frame is consistent; the first run must have been
+    /// made.
     pub fn settle(&mut self, setting: &Setting, path: &Path) {
         for _ in 0..REPETITIONS {
             self.frame = product(&by(&self.filter.three(START)), &self.frame);
@@ -168,15 +187,15 @@ impl Solution {
         }
     }
 
-    /// Correlation of what neighbouring blocks showed beyond the expected.
+    /// Correlation of neighbouring blocks' innovations; zero with too few degrees of freedom.
     #[must_use]
     pub fn correlation(&self) -> f64 {
         let [products, squares] = self.neighbours;
         if self.degrees < LEAST_DEGREES { 0.0 } else { products / squares }
     }
 
-    /// Whether the biases are greater than was known of them by more than chance, which is then not believed:
-    /// their 1σ is what they show where they do. What they are along east no rest shows.
+    /// Inflates the prior 1σ of the biases where their estimates exceed it by more than chance. The
+    /// component along east is not observable at rest. Returns whether the prior changed.
     fn widen(&mut self, setting: &Setting) -> bool {
         let sigma = self.widening * setting.bias_sigma();
         let before = sigma * sigma;
@@ -203,13 +222,14 @@ impl Solution {
         true
     }
 
-    /// Whether the blocks scatter more than was believed, by which they are then believed less: a sway that
-    /// is slower than two of them does not show in neighbours, and what goes together means less.
+    /// Inflates the blocks' noise where they scatter more than assumed: a sway slower than two
+    /// blocks does not show in neighbours, and correlated blocks carry less information. Returns
+    /// whether the noise changed.
     fn roughen(&mut self) -> bool {
         let correlation = self.correlation();
         let is_coloured = correlation * libm::sqrt(self.degrees) > COLOURED;
         if is_coloured && self.colour <= 1.0 {
-            // The mean of values that go together from one to the next scatters by so much more.
+            // The mean of correlated values has a variance larger by this factor.
             self.colour = (1.0 + correlation) / (1.0 - correlation);
             return true;
         }
@@ -221,7 +241,7 @@ impl Solution {
         is_rough
     }
 
-    /// One run along the path.
+    /// One run of the filter along the path.
     #[inline(never)]
     pub fn run(&mut self, setting: &Setting, path: &Path, belief: Belief) {
         let common = &setting.common;
@@ -254,7 +274,7 @@ impl Solution {
         for index in 0..path.stops.len() {
             run.stop(self, index);
         }
-        // Where a vehicle has driven since its last stop is not known.
+        // The distance driven since the last stop is not known.
         let driven = path.stops.last().map_or(0.0, |stop| path.now - stop.to - REMAINDER);
         self.filter.add_process_noise(setting.speed_sigma * driven.max(0.0));
         run.carry(self, Moment::of(path.now, &path.carried));
@@ -262,6 +282,7 @@ impl Solution {
 }
 
 impl Run<'_> {
+    /// Processes one stop, with the drive before it.
     fn stop(&mut self, solution: &mut Solution, index: usize) {
         let stop = &self.path.stops[index];
         if index > 0 {
@@ -285,7 +306,7 @@ impl Run<'_> {
         self.rest(solution, stop);
     }
 
-    /// Carries the filter on to a moment.
+    /// Propagates the filter to a moment.
     fn carry(&mut self, solution: &mut Solution, to: Moment) {
         let seconds = (to.at - self.last.at).max(0.0);
         let noise = &self.setting.common.noise;
@@ -298,9 +319,9 @@ impl Run<'_> {
         self.last = to;
     }
 
-    /// Power of the biases' walk, (rad/s)²/s. A ramp is taken for the walk that has its Allan variance over
-    /// the whole time, flicker for that which has it over a stop of mean length, whose rates are set against
-    /// the drives.
+    /// Power of the biases' random walk, (rad/s)²/s. A ramp is represented by the walk with its
+    /// Allan variance over the whole time, flicker by the walk with its Allan variance over a stop
+    /// of mean length, whose rates are compared with the drives.
     fn bias_walk(&self) -> f64 {
         let whole = (self.path.now - self.path.start).max(1.0);
         let stood: f64 = self.path.stops.iter().map(Stop::seconds).sum();
@@ -311,8 +332,8 @@ impl Run<'_> {
             + 1.5 * r * r * whole
     }
 
-    /// Takes it that a drive to a stop, of so many seconds, ends at rest as it began: what its forces sum up
-    /// to beyond gravity is the work of φ.
+    /// Applies the condition that a drive to a stop, of this many seconds, ends at rest as it began
+    /// (zero-velocity update): the integral of its forces beyond gravity is then due to φ.
     fn drive(&mut self, solution: &mut Solution, index: usize, driven: f64) {
         let path = self.path;
         solution.filter.reset(VELOCITY..VELOCITY + 3, 0.0);
@@ -340,7 +361,7 @@ impl Run<'_> {
         }
     }
 
-    /// Takes the velocity that a drive seems to have gained.
+    /// Updates the filter with the apparent velocity gained by a drive.
     fn come_to_rest(&self, solution: &mut Solution, index: usize, gained: &Vector, driven: f64) {
         let path = self.path;
         let middle = path.stops[index].from - 0.5 * driven - path.start;
@@ -363,8 +384,9 @@ impl Run<'_> {
         }
     }
 
-    /// Variance of the velocity that a drive seems to gain, (m/s)²: what driving adds to the accelerometers'
-    /// biases, their noise, gravity's direction along an unknown way and how the Earth turns that.
+    /// Variance of the apparent velocity gained by a drive, (m/s)²: the change of the
+    /// accelerometers' biases while driving, their noise, the direction of gravity along an unknown
+    /// way, and the Earth's rotation of it.
     fn velocity_variance(&self, index: usize, driven: f64) -> f64 {
         let astray = self.astray(index, driven);
         let direction = self.path.gravity * self.path.place.per_metre()[0] * astray;
@@ -374,7 +396,7 @@ impl Run<'_> {
             + self.density * driven
     }
 
-    /// How far the way to a stop, driven in so many seconds, may be from what is taken for it, 1σ, m.
+    /// Deviation of the way to a stop, driven in this many seconds, from the assumed one, 1σ, m.
     fn astray(&self, index: usize, driven: f64) -> f64 {
         let stops = &self.path.stops;
         let is_told = |stop: usize| stop == 0 || stops[stop].displacement.is_some();
@@ -385,7 +407,7 @@ impl Run<'_> {
         speed * (stops[index].from - stops[0].to)
     }
 
-    /// Takes the force of a block.
+    /// Updates the filter with the force of a block.
     fn block(&mut self, solution: &mut Solution, block: &Block, displaced: [f64; 2]) {
         let elapsed = block.middle - self.path.start;
         let navigation = self.path.place.navigation(elapsed, displaced);
@@ -421,7 +443,8 @@ impl Run<'_> {
         *squares += north * north + east * east;
     }
 
-    /// Takes it that the body turned with the Earth alone during a stop.
+    /// Updates the filter with the condition that the body turned with the Earth alone during a
+    /// stop (zero angular rate).
     fn rest(&self, solution: &mut Solution, stop: &Stop) {
         let turn = EARTH_RATE * stop.seconds();
         let earth = by(&scaled(&turned(&solution.frame, &self.path.place.axis()), turn));
@@ -430,12 +453,12 @@ impl Run<'_> {
         let beyond = small(&product(&shown, &transposed(&earth)));
         let rows: [_; 3] = core::array::from_fn(|axis| rest_row(&earth, axis));
         let sway = self.sway(stop);
-        // Farther north the Earth's axis points elsewhere on the start frame.
+        // Farther north the Earth's axis has another direction on the start frame.
         let farther = self.north.map(|place| {
             let change = difference(&place.axis(), &self.path.place.axis());
             turned(&solution.frame, &scaled(&change, turn / LATITUDE_STEP))
         });
-        // On the body's axes, which sway differently.
+        // The components are taken on the body's axes, which sway differently.
         let measurements: [Measurement; 3] = core::array::from_fn(|axis| {
             let direction: Vector = core::array::from_fn(|part| begin[part][axis]);
             let mut row = core::array::from_fn::<f64, STATES, _>(|state| {
@@ -448,7 +471,7 @@ impl Run<'_> {
             solution.turning += 1;
             let rate = length(&beyond) / stop.seconds();
             solution.turning_rate = solution.turning_rate.max(rate);
-            // A turn that takes little time makes these seconds stand out of the others.
+            // A rotation within a short time makes its seconds stand out of the others.
             let excess: f64 = self.excess(stop).iter().sum();
             if rate * rate * stop.seconds() > TURNED_BY_HAND * excess {
                 solution.steady = solution.steady.max(rate);
@@ -456,8 +479,9 @@ impl Run<'_> {
         }
     }
 
-    /// Variance of what a body's axes sway between both ends of a stop, rad²: what its seconds turn beyond the gyros'
-    /// noise, or swing, if they come back to where they began: twice the variance of a swing is a quarter of its square.
+    /// Variance of the sway of the body's axes between both ends of a stop, rad²: from the rotation
+    /// of its seconds beyond the gyros' noise, or from the swing within them if they return to
+    /// their beginning: twice the variance of a swing is a quarter of its square.
     fn sway(&self, stop: &Stop) -> Vector {
         if self.belief == Belief::Ideal {
             return [LEAST_SWAY; 3];
@@ -470,13 +494,14 @@ impl Run<'_> {
         })
     }
 
-    /// Variance of what the seconds of a stop turn beyond the gyros' noise, (rad/s)².
+    /// Variance of the rotation in the seconds of a stop beyond the gyros' noise, (rad/s)².
     fn excess(&self, stop: &Stop) -> Vector {
         let walk = self.setting.common.noise.angle_random_walk;
         stop.turned.variance().map(|variance| (variance - walk * walk).max(0.0))
     }
 
-    /// Takes measurements, unless they are outliers; what they brought beyond the expected.
+    /// Updates the filter with measurements unless they are outliers; returns their normalised
+    /// innovation squared.
     fn take(&self, filter: &mut Filter, measurements: &[Measurement]) -> Option<f64> {
         let is_ideal = self.belief == Belief::Ideal;
         let normalised_innovation_squared =
@@ -488,7 +513,7 @@ impl Run<'_> {
     }
 }
 
-/// Covariance of φ at the start: the level is nearly known, the azimuth is not.
+/// Prior covariance of φ at the start: the level is nearly known, the azimuth is not.
 fn start_covariance(frame: &Matrix) -> Matrix {
     let down: Vector = frame.map(|row| row[2]);
     core::array::from_fn(|row| {
@@ -499,11 +524,12 @@ fn start_covariance(frame: &Matrix) -> Matrix {
     })
 }
 
+/// Change of a sensitivity, in double precision.
 fn gained(now: &Rough, before: &Rough) -> Matrix {
     core::array::from_fn(|row| difference(&now[row].map(f64::from), &before[row].map(f64::from)))
 }
 
-/// How the state's rotation now turns something, as a row.
+/// Row of a quantity that depends on φ now with this gradient.
 #[must_use]
 pub fn now_row(gradient: &Vector) -> [f64; STATES] {
     let mut row = [0.0; STATES];

@@ -1,27 +1,32 @@
-//! A stop: what the gyros had carried when it began and when it ended, and how quiet it was.
+//! A stop of the vehicle: attitude and sensitivities at its beginning and end, and statistics of
+//! its motion.
 
 use crate::math::rotation::{Vector, dot, sum, transposed, turned};
 use crate::signal::strapdown::{Carried, Rough};
 use crate::units::AngleIncrement;
 
-/// Most stops of a session.
+/// Greatest number of stops of a session.
 pub const STOPS: usize = 8;
 
-/// Fewest seconds that can be compared.
+/// Fewest seconds whose force changes are compared.
 const LEAST_CHANGES: u32 = 20;
-/// Least change in a second that a sway makes, m/s²: ten times that of the Earth's turn.
+/// Least change of the force within a second by a sway, m/s²: ten times that by the Earth's
+/// rotation.
 const LEAST_CHANGE: f32 = 4e-3;
 
-/// Sum and sum of squares of three quantities.
+/// Sums and sums of squares of three quantities.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Scatter {
+    /// Sums.
     sum: Vector,
+    /// Sums of squares.
     squares: Vector,
+    /// Number of values.
     count: f64,
 }
 
 impl Scatter {
-    /// Takes a value of each.
+    /// Adds a value of each quantity.
     pub fn push(&mut self, values: &Vector) {
         for ((sum, square), value) in self.sum.iter_mut().zip(&mut self.squares).zip(values) {
             *sum += value;
@@ -30,13 +35,13 @@ impl Scatter {
         self.count += 1.0;
     }
 
-    /// Their means; zero of none.
+    /// Means; zero without values.
     #[must_use]
     pub fn mean(&self) -> Vector {
         self.sum.map(|sum| sum / self.count.max(1.0))
     }
 
-    /// Their variances; zero of fewer than two.
+    /// Variances; zero with fewer than two values.
     #[must_use]
     pub fn variance(&self) -> Vector {
         let mean = self.mean();
@@ -47,49 +52,50 @@ impl Scatter {
     }
 }
 
-/// The vehicle stood from a time to a time.
+/// Interval in which the vehicle stood.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Stop {
-    /// When it began and ended, s.
+    /// Beginning of the stop, s.
     pub from: f64,
-    /// When it ended, or until when it lasts, s.
+    /// End of the stop, or the present end while it lasts, s.
     pub to: f64,
-    /// What was carried when it began.
+    /// Attitude and sensitivities at the beginning.
     pub begin: Carried,
-    /// What was carried when it ended.
+    /// Attitude and sensitivities at the end.
     pub end: Carried,
-    /// Displacement north and east from the first stop, m, where somebody told it.
+    /// Displacement north and east from the first stop, m, where it was reported.
     pub displacement: Option<[f64; 2]>,
-    /// Angles turned in each second, rad.
+    /// Mean rates of the seconds about the body's axes, rad/s.
     pub turned: Scatter,
-    /// Sum of the squares of the angles over which each second swung there and back, rad².
+    /// Sum of the squared angles of back-and-forth motion within each second, rad².
     pub swung: [f32; 3],
     /// Mean specific force on the body's axes in each second, m/s².
     pub force: Scatter,
-    /// Squares of what the force along and across changed from second to second, (m/s²)², as felt, and as
-    /// felt by a body that stays as it stood when the stop began; and how often. A sway that the gyros feel
-    /// rightly shows in the first alone.
+    /// Sums of the squared changes of the force along and across from second to second, (m/s²)²: as
+    /// measured, and rotated to the attitude at the beginning of the stop; and the number of
+    /// changes. A sway that the gyros measure correctly shows in the first alone.
     pub changes: ([[f32; 2]; 2], u32),
-    /// Both forces of the last second, m/s².
+    /// Specific force along and across in the latest second, m/s²: as measured, and rotated to the
+    /// attitude at the beginning of the stop.
     pub latest: Option<[[f32; 2]; 2]>,
-    /// Seconds that were left out, because something blew or the accelerometer was at its limit.
+    /// Number of seconds excluded for a shock or a saturated accelerometer.
     pub left_out: u32,
 }
 
 impl Stop {
-    /// Length, s.
+    /// Length of the stop, s.
     #[must_use]
     pub fn seconds(&self) -> f64 {
         self.to - self.from
     }
 
-    /// Middle, s.
+    /// Middle of the stop, s.
     #[must_use]
     pub fn middle(&self) -> f64 {
         0.5 * (self.from + self.to)
     }
 
-    /// Takes a second of it into account that ends with what is carried now.
+    /// Adds a second to the stop, which then ends with that second.
     pub fn take(&mut self, second: &Second) {
         self.to = second.to;
         self.end = second.end;
@@ -103,13 +109,13 @@ impl Stop {
         self.compare(second);
     }
 
-    /// Mean square of the angles over which a second swung there and back, rad².
+    /// Mean square of the angles of back-and-forth motion within a second, rad².
     #[must_use]
     pub fn swinging(&self) -> Vector {
         self.swung.map(|sum| f64::from(sum) / self.turned.count.max(1.0))
     }
 
-    /// Compares how the forces change as felt and as turned.
+    /// Accumulates the changes of the force as measured and as rotated.
     fn compare(&mut self, second: &Second) {
         let forces = second.block_force().zip(second.force).map(|(start, felt)| {
             let stays = turned(&transposed(&self.begin.attitude.rough_matrix()), &start);
@@ -126,8 +132,8 @@ impl Stop {
         self.latest = forces;
     }
 
-    /// How much more the forces along or across change when they are turned by what the gyros show, in power;
-    /// zero where there is no sway to tell.
+    /// Ratio of the power of the force changes after rotation by the gyros' angles to that before,
+    /// the greater of both axes; zero without sufficient sway.
     #[must_use]
     pub fn disagreement(&self) -> f64 {
         let ([felt, stays], count) = self.changes;
@@ -140,36 +146,36 @@ impl Stop {
     }
 }
 
-/// About a second of samples.
+/// Averages of about one second of samples.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Second {
-    /// When it began, s.
+    /// Beginning, s.
     pub from: f64,
-    /// When it ended, s.
+    /// End, s.
     pub to: f64,
-    /// Sums of the angle increments.
+    /// Sums of the angle increments, in steps of [`AngleIncrement`].
     pub turned: [i64; 3],
-    /// By how much more than it turned in all it swung there and back, rad.
+    /// Angle of back-and-forth motion beyond the net rotation, rad.
     pub swung: [f32; 3],
-    /// Mean specific force on the body's axes, m/s², where there was one.
+    /// Mean specific force on the body's axes, m/s²; none without force readings.
     pub force: Option<Vector>,
-    /// Mean specific force on the start's axes, m/s².
+    /// Mean specific force on the frozen start axes, m/s².
     pub start_force: [f32; 3],
-    /// Whether a blow made it meaningless.
+    /// Whether a shock made the force unusable.
     pub is_blown: bool,
-    /// Whether it belongs to a stop.
+    /// Whether the second belongs to a stop.
     pub is_rest: bool,
-    /// What was carried when it began.
+    /// Attitude and sensitivities at the beginning.
     pub begin: Carried,
-    /// What was carried when it ended.
+    /// Attitude and sensitivities at the end.
     pub end: Carried,
-    /// Rate then, on the body's axes, rad/s.
+    /// Angular rate at the end, on the body's axes, rad/s.
     pub rate: [f32; 3],
 }
 
 impl Second {
-    /// Velocity at its end of a point that stands a metre off along each axis of the body, as columns, on the start's axes,
-    /// 1/s.
+    /// Velocity at the end per metre of lever arm along each axis of the body, as columns, on the
+    /// start's axes, 1/s.
     #[must_use]
     pub fn swing(&self) -> Rough {
         let [x, y, z] = self.rate;
@@ -183,7 +189,7 @@ impl Second {
         self.to - self.from
     }
 
-    /// Mean specific force on the start's axes, m/s², where it means something.
+    /// Mean specific force on the start's axes, m/s²; `None` where it is not usable.
     #[must_use]
     pub fn block_force(&self) -> Option<[f32; 3]> {
         (self.force.is_some() && !self.is_blown).then_some(self.start_force)

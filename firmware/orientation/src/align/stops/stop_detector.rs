@@ -1,8 +1,10 @@
-//! Follows a vehicle through its stops: carries the attitude, finds where it stands, keeps means of that.
+//! Detection of a vehicle's stops: carries the attitude, finds the intervals of rest, and keeps
+//! averages of them.
 //!
-//! Samples become seconds, seconds a window of ten, whose average tells whether the vehicle stands. A stop
-//! begins T₀ after the first such window did, and ends before its last two seconds, which may have seen
-//! the vehicle set off.
+//! Samples are averaged to seconds, seconds to a window of ten, whose average is tested by the stop
+//! criteria. A stop begins a delay T₀ after the first window that passes did, and ends two seconds
+//! before the window that fails, in which the vehicle may have set off (Szymanowski 2003, criteria
+//! Kryt1 and Kryt2).
 
 use heapless::{Deque, Vec};
 
@@ -15,80 +17,97 @@ use crate::signal::rest::{Criteria, Limits, Sensors};
 use crate::signal::strapdown::{Carried, Rough, Strapdown, Sums};
 use crate::units::{AngleIncrement, Instant};
 
-/// Seconds in the low-pass average that the criteria judge: Szymanowski's need ten at least.
+/// Length of the low-pass average for the criteria, s: at least ten (Szymanowski 2003).
 pub const WINDOW: usize = 10;
-/// Seconds at the end of a stop that may have seen the vehicle set off.
+/// Seconds at the end of a stop in which the vehicle may have set off.
 const LATEST: usize = 2;
 /// Delay T₀ after which a vehicle that stopped no longer rocks, s.
 const DELAY: usize = 3;
 /// Length of a block at rest as long as there is room, s.
 const REST_SPAN: f32 = 5.0;
-/// Length of a block on the way as long as there is room, s.
+/// Length of a block of a drive as long as there is room, s.
 const DRIVE_SPAN: f32 = 15.0;
-/// Length of a second, µs.
+/// Nominal length of a second, µs.
 const SECOND: u64 = 1_000_000;
-/// Sample periods between two samples that make a gap: rotation is lost.
+/// Distance of two samples, in sample periods, from which rotation counts as lost.
 const GAP: f64 = 1.6;
 
-/// Where the stops are.
+/// Source of the stops.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Rests {
-    /// The criteria find them.
+    /// The stop criteria find them.
     Found,
-    /// From when to when, s.
+    /// They are configured as intervals of time, s.
     Stated(Vec<[f64; 2], STOPS>),
-    /// All of the time is one.
+    /// The whole recording is one stop.
     Whole,
 }
 
-/// What went wrong with samples while the vehicle was followed.
+/// Loss of rotation in the samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Loss {
-    /// Samples were missing at a time, s, for so many seconds.
+    /// Samples were missing: time, s, and length of the gap, s.
     Gap(f64, f64),
-    /// A gyro stood at the limit of its range at a time, s.
+    /// A gyro stood at the limit of its range: time, s.
     Saturated(f64),
 }
 
 /// The second in progress.
 #[derive(Clone, Copy, Debug, Default)]
 struct Progress {
+    /// Beginning of the second.
     since: Instant,
+    /// Attitude and sensitivities at its beginning.
     begin: Carried,
 }
 
-/// Follows samples.
+/// State of the stop detection.
 #[derive(Clone, Debug)]
 pub struct StopDetector {
+    /// Source of the stops.
     rests: Rests,
+    /// Limits of the stop criteria.
     limits: Limits,
+    /// Local gravity, m/s².
     gravity: f64,
+    /// Least distance of two samples that counts as a gap, µs.
     gap: u64,
+    /// Sample period, µs.
     period: u64,
+    /// Strapdown attitude.
     strapdown: Strapdown,
+    /// Beginning of the first sample.
     begun: Option<Instant>,
+    /// End of the latest sample.
     last: Instant,
+    /// Second in progress.
     progress: Progress,
+    /// Latest seconds, whose average is tested.
     window: Deque<Second, WINDOW>,
+    /// Criteria of the window.
     criteria: Option<Criteria>,
-    /// Whether the vehicle stands: the last stop still lasts.
+    /// Whether the vehicle stands, and the last stop continues.
     is_at_rest: bool,
-    /// Seconds for which the criteria held without a break.
+    /// Seconds for which the criteria have held without interruption.
     held: usize,
     /// Length of the longest halt that was too short for a stop, s.
     fleeting: f64,
-    /// From where the vehicle rocks to its sensors.
+    /// Lever arm from the axis of the sway to the sensors.
     lever: Lever,
+    /// Stops so far.
     stops: Vec<Stop, STOPS>,
+    /// Averages at rest.
     blocks: Blocks<AT_REST>,
+    /// Averages of the drives.
     drives: Blocks<DRIVEN>,
-    /// Seconds at rest for which no stop was left.
+    /// Seconds at rest that found no room among the stops.
     unused: u32,
+    /// First loss of rotation.
     loss: Option<Loss>,
 }
 
 impl StopDetector {
-    /// Nothing seen; samples come every `sample_seconds`.
+    /// Detector before the first sample; samples come every `sample_seconds`, gravity in m/s².
     #[must_use]
     pub fn new(rests: Rests, sensors: &Sensors, gravity: f64, sample_seconds: f64) -> Self {
         Self {
@@ -115,14 +134,14 @@ impl StopDetector {
         }
     }
 
-    /// Takes a sample; whether a second ended with it.
+    /// Takes a sample; returns whether a second ended with it.
     #[inline]
     pub fn push(&mut self, sample: &InertialSample) -> bool {
         if self.begun.is_none() {
             self.begin(sample.time);
         }
         self.watch(sample.time);
-        // A rotation that stands at its limit is large.
+        // A rotation at its limit is large, so the strapdown has updated its attitude.
         if self.strapdown.push(sample) && sample.turned.iter().any(|turned| turned.is_saturated()) {
             self.lose(Loss::Saturated(sample.time.seconds()));
         }
@@ -134,7 +153,7 @@ impl StopDetector {
         is_over
     }
 
-    /// Freezes the start frame when the first sample began.
+    /// Freezes the start frame at the beginning of the first sample.
     #[cold]
     fn begin(&mut self, first: Instant) {
         let start = Instant(first.0.saturating_sub(self.period));
@@ -144,7 +163,7 @@ impl StopDetector {
         self.restart(start);
     }
 
-    /// Notices a gap.
+    /// Detects a gap.
     fn watch(&mut self, now: Instant) {
         let elapsed = now.0.saturating_sub(self.last.0);
         if elapsed > self.gap {
@@ -153,13 +172,13 @@ impl StopDetector {
         self.last = now;
     }
 
-    /// Keeps the first loss.
+    /// Stores the first loss.
     #[cold]
     fn lose(&mut self, loss: Loss) {
         self.loss.get_or_insert(loss);
     }
 
-    /// Whether a stated stop begins or ends about now.
+    /// Whether a configured stop begins or ends with this sample.
     fn is_edge(&self, now: Instant) -> bool {
         let Rests::Stated(stops) = &self.rests else { return false };
         let (now, half) = (now.0, self.period / 2);
@@ -176,7 +195,7 @@ impl StopDetector {
         self.progress = Progress { since: now, begin };
     }
 
-    /// Ends the second, and judges by it.
+    /// Ends the second, and tests the window.
     #[inline(never)]
     fn second(&mut self, now: Instant) {
         self.strapdown.update(now);
@@ -184,7 +203,7 @@ impl StopDetector {
         if self.window.is_full() {
             self.leave();
         }
-        // There is room now.
+        // The oldest second was removed, so the push cannot fail.
         let _ = self.window.push_back(second);
         self.criteria = self.judge();
         match &self.rests {
@@ -201,7 +220,8 @@ impl StopDetector {
         self.restart(now);
     }
 
-    /// Lets the oldest second of the window go: what belongs to no stop was driven.
+    /// Removes the oldest second of the window; if it belongs to no stop it becomes part of a
+    /// drive.
     fn leave(&mut self) {
         let Some(second) = self.window.pop_front() else { return };
         let begun = self.stops.iter().take_while(|stop| stop.from <= second.from).count();
@@ -213,7 +233,7 @@ impl StopDetector {
         }
     }
 
-    /// Takes the latest second for one of a stop, if it is.
+    /// Assigns the latest second to a stop, if it lies in one.
     fn stay(&mut self, stop: Option<usize>) {
         self.is_at_rest = stop.is_some();
         if let Some(stop) = stop {
@@ -221,7 +241,7 @@ impl StopDetector {
         }
     }
 
-    /// What the second that ends now leaves.
+    /// Averages of the second that ends now.
     fn whole_second(&mut self, now: Instant) -> Second {
         let Progress { since, begin } = self.progress;
         let sums = self.strapdown.take();
@@ -244,7 +264,7 @@ impl StopDetector {
         }
     }
 
-    /// The criteria of the window, once it is full and has forces.
+    /// Criteria of the window, once it is full and has forces.
     fn judge(&self) -> Option<Criteria> {
         let (mut turned, mut seconds, mut force, mut count) = ([0i64; 3], 0.0, [0.0; 3], 0.0);
         for second in &self.window {
@@ -258,12 +278,12 @@ impl StopDetector {
         (self.window.is_full() && count > 0.0).then(|| Criteria::of(rate, force, self.gravity))
     }
 
-    /// Looks for the beginning or the end of a stop.
+    /// Detects the beginning or the end of a stop.
     fn find(&mut self) {
         let is_rest = self.criteria.is_some_and(|criteria| criteria.is_rest(&self.limits));
         self.held = if is_rest { self.held + 1 } else { 0 };
         match (self.is_at_rest, is_rest) {
-            // A vehicle that rocks may have come back to where it was ten seconds before by chance.
+            // A rocking vehicle may by chance be back at its attitude of ten seconds before.
             (false, true) if self.held <= DELAY => {}
             (false, true) => self.stand(),
             (true, true) => self.rest(WINDOW - 1 - LATEST, self.stops.len().saturating_sub(1)),
@@ -272,14 +292,14 @@ impl StopDetector {
         }
     }
 
-    /// Begins a stop with the window, which is past the delay, or goes on with one that was not left:
-    /// nobody drives anywhere without failing the criteria for as long as they look.
+    /// Begins a stop with the window, which is past the delay, or continues the previous one: a
+    /// drive fails the criteria for at least their averaging time.
     fn stand(&mut self) {
         let now = self.window.back().map_or(0.0, |second| second.to);
         let last = self.stops.last().map_or(f64::NEG_INFINITY, |stop| stop.to);
         let goes_on = now - last < (WINDOW + DELAY + LATEST) as f64;
         let stop = self.stops.len() - usize::from(goes_on);
-        // The next seconds belong to the last stop, so there must be one for this.
+        // Further seconds are added to the last stop, so there must be one for this.
         self.is_at_rest = stop < STOPS;
         for index in 0..WINDOW - LATEST {
             let is_new = self.window.iter().nth(index).is_some_and(|second| second.from >= last);
@@ -289,7 +309,8 @@ impl StopDetector {
         }
     }
 
-    /// Ends a stop, and forgets it if it was shorter than the criteria look: a halt at a crossing.
+    /// Ends a stop, and discards it if it was shorter than the criteria's average: a halt at a
+    /// crossing.
     fn set_off(&mut self) {
         self.is_at_rest = false;
         let Some(last) = self.stops.last().map(Stop::seconds) else { return };
@@ -300,7 +321,7 @@ impl StopDetector {
         }
     }
 
-    /// Takes a second of the window for one of a stop.
+    /// Assigns a second of the window to a stop.
     fn rest(&mut self, index: usize, stop: usize) {
         let before = index.checked_sub(1).and_then(|before| self.window.iter().nth(before));
         let before = before.filter(|before| before.is_rest);
@@ -325,87 +346,88 @@ impl StopDetector {
         }
     }
 
-    /// Where the stops are.
+    /// Source of the stops.
     #[must_use]
     pub fn rests(&self) -> &Rests {
         &self.rests
     }
 
-    /// What the criteria say of the last ten seconds, and what they are held to.
+    /// Criteria of the last ten seconds, and their limits.
     #[must_use]
     pub fn criteria(&self) -> Option<(Criteria, Limits)> {
         self.criteria.map(|criteria| (criteria, self.limits))
     }
 
-    /// Whether the vehicle stands now.
+    /// Whether the vehicle stands at present.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
         self.is_at_rest
     }
 
-    /// The stops so far; the last may last.
+    /// Stops so far; the last one may still continue.
     #[must_use]
     pub fn stops(&self) -> &[Stop] {
         &self.stops
     }
 
-    /// Length of the longest halt that was too short for a stop, s; zero where there was none.
+    /// Length of the longest halt that was too short for a stop, s; zero without one.
     #[must_use]
     pub fn fleeting(&self) -> f64 {
         self.fleeting
     }
 
-    /// Tells where the last stop is, north and east of the first, m.
+    /// Sets the position of the last stop, north and east of the first, m.
     pub fn displace(&mut self, displacement: [f64; 2]) {
         if let Some(stop) = self.stops.last_mut() {
             stop.displacement = Some(displacement);
         }
     }
 
-    /// The blocks at rest.
+    /// Averages of the time at rest.
     #[must_use]
     pub fn blocks(&self) -> &Blocks<AT_REST> {
         &self.blocks
     }
 
-    /// Joins the blocks at rest in pairs, for what sways quicker than they are long.
+    /// Joins the blocks at rest in pairs, for a sway with a period shorter than two blocks.
     pub fn coarsen(&mut self) {
         self.blocks.halve();
     }
 
-    /// Time from when the first sample began to when the last one ended, s; zero of none.
+    /// Time from the beginning of the first sample to the end of the last one, s; zero without
+    /// samples.
     #[must_use]
     pub fn elapsed(&self) -> f64 {
         let begun = self.begun.unwrap_or(self.last);
         self.last.0.saturating_sub(begun.0) as f64 * 1e-6
     }
 
-    /// The blocks on the way, each of which is that after a stop.
+    /// Averages of the drives, each with the number of the stop before it.
     #[must_use]
     pub fn drives(&self) -> &Blocks<DRIVEN> {
         &self.drives
     }
 
-    /// What made the carried attitude worthless first.
+    /// First event that made the carried attitude invalid.
     #[must_use]
     pub fn loss(&self) -> Option<Loss> {
         self.loss
     }
 
-    /// When the first sample began, s.
+    /// Beginning of the first sample, s.
     #[must_use]
     pub fn start(&self) -> f64 {
         self.begun.map_or(0.0, Instant::seconds)
     }
 
-    /// When the last sample ended, s, and what is carried then.
+    /// End of the last sample, s, with attitude and sensitivities at that time.
     pub fn now(&mut self) -> (f64, Carried) {
         self.strapdown.update(self.last);
         (self.last.seconds(), *self.strapdown.carried())
     }
 }
 
-/// A second as a block of a stop.
+/// Converts a second to a block of a stop.
 fn block(second: &Second, force: [f32; 3], stop: u8) -> Block {
     let Second { begin, end, .. } = second;
     Block {
@@ -418,6 +440,7 @@ fn block(second: &Second, force: [f32; 3], stop: u8) -> Block {
     }
 }
 
+/// Mean of two matrices.
 fn mean(a: &Rough, b: &Rough) -> Rough {
     core::array::from_fn(|row| {
         core::array::from_fn(|column| 0.5 * (a[row][column] + b[row][column]))

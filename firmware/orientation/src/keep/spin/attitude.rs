@@ -1,39 +1,43 @@
-//! The attitude of a spinning body as the paper's Fig. 2 has it: the roll that the gyros carry is overridden by
-//! the corrected one, and course and pitch go on from the gyros.
+//! Attitude of a spinning body (Nekrasova 2017, Fig. 2): the roll from the gyro is replaced by the
+//! corrected one, and course and pitch are propagated by the transverse gyros.
 
 use super::Spin;
 use super::phase_accumulator::sine_and_cosine;
 use crate::signal::SpinSample;
 use crate::units::{Angle, AngleIncrement, wrapped};
 
-/// Samples over which what lies across the spin is summed before course and pitch are told.
+/// Number of samples over which the transverse rotation is summed before course and pitch are
+/// updated.
 const SAMPLES: u32 = 16;
-/// Greatest pitch at which there is a course, rad: 89°.
+/// Greatest pitch up to which a course is propagated, rad: 89°.
 const STEEPEST: f64 = 1.553;
 
-/// Course and pitch; the roll is [`Spin::roll`].
+/// Course and pitch of a spinning body; the roll is [`Spin::roll`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Attitude {
+    /// Course, rad, clockwise from north.
     course: f64,
+    /// Pitch, rad, nose up positive.
     pitch: f64,
-    /// Turned upwards and to the right since they were told, in steps of an increment.
+    /// Rotation upwards and to the right since the last update, in steps of an increment.
     up: f32,
     right: f32,
+    /// Samples since the last update.
     count: u32,
 }
 
 impl Attitude {
-    /// Begins with course, clockwise from north, and pitch, nose up, rad.
+    /// Begins with course, clockwise from north, and pitch, nose up, both in rad.
     #[must_use]
     pub fn begin(course: f64, pitch: f64) -> Self {
         Self { course, pitch, ..Self::default() }
     }
 
-    /// Takes a sample after the roll has taken it.
+    /// Takes a sample, after the roll has been updated with it.
     #[inline]
     pub fn push(&mut self, sample: &SpinSample, spin: &Spin) {
         let [_, y, z] = sample.turned;
-        // The roll in the middle of the sample.
+        // Roll in the middle of the sample.
         let half = (spin.step() >> 1).cast_unsigned();
         let [sine, cosine] = sine_and_cosine(Angle(spin.roll().angle.0.wrapping_sub(half)));
         if !y.is_saturated() && !z.is_saturated() {
@@ -47,7 +51,7 @@ impl Attitude {
         }
     }
 
-    /// Tells course and pitch what they turned.
+    /// Updates course and pitch with the summed rotation.
     #[inline(never)]
     fn tell(&mut self) {
         let [up, right] =

@@ -1,32 +1,34 @@
-//! What the circle of the forces tells of the sensors.
+//! Sensor errors that show in the circle of the transverse forces.
 //!
-//! An accelerometer that leans by δ towards the other turns the phase by δ/2 and adds a part against the lift of which
-//! δ/2 stands across it; which of the two leans is not told. One that is too large adds a part along it and turns
-//! nothing. A gyro whose rate swells by h twice a turn adds h/4 against the lift, and h/4 three times a turn, which no
-//! accelerometer does; its angle is off by up to h/2.
+//! An accelerometer axis that leans by δ towards the other shifts the phase by δ/2 and adds a
+//! component rotating against the lift, of which δ/2 is perpendicular to it; the forces do not show
+//! which of the two leans. A scale error adds a component along the lift and shifts nothing. A gyro
+//! whose rate varies by h twice a turn adds h/4 against the lift, and h/4 three times a turn, which
+//! no accelerometer error does; its angle is off by up to h/2.
 
 use super::complex::Complex;
 use super::fit::Fit;
 
-/// How much of what was seen is forgotten at each look.
+/// Fading of the averages at each evaluation.
 const FORGOTTEN: f32 = 1.0 / 1024.0;
-/// Squares of standard deviations that chance may make: of one number, and of two together.
+/// Squared significance limit of one number.
 const ONE: f32 = 6.0;
+/// Squared significance limit of two numbers together.
 const TWO: f32 = 9.0;
 
-/// Means over the looks.
+/// Running averages over the evaluations.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Circle {
-    /// What stands across the lift of what goes round against it, part of the lift.
+    /// Part of the counter-rotating force that is perpendicular to the lift, relative to the lift.
     lean: f32,
-    /// What goes round three times a turn, part of the lift.
+    /// Part rotating three times a turn, relative to the lift.
     swell: Complex,
-    /// One over the variance of either part of [`Self::swell`].
+    /// Inverse variance of either part of [`Self::swell`].
     weight: f32,
 }
 
 impl Circle {
-    /// Takes what a look shows, with such a noise of a sample, both forces together, (m/s²)².
+    /// Adds an evaluation with this noise variance of a sample, both forces together, (m/s²)².
     pub(super) fn take(&mut self, fit: &Fit, noise: f32) {
         let inverse = 1.0 / fit.lift.power();
         let swell = fit.lift.against(fit.ripple.thrice()).scaled(inverse);
@@ -38,7 +40,7 @@ impl Circle {
         self.swell += (swell - self.swell).scaled(gain);
     }
 
-    /// What it adds to the roll's variance, rad².
+    /// Contribution to the roll's variance, rad².
     pub(super) fn variance(&self) -> f32 {
         if self.weight <= 0.0 {
             return 0.0;

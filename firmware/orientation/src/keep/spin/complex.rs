@@ -1,4 +1,4 @@
-//! Complex numbers in single precision.
+//! Complex numbers in single precision, for the sums of a spinning body.
 
 use core::iter::Sum;
 use core::ops::{Add, AddAssign, Sub};
@@ -6,17 +6,19 @@ use core::ops::{Add, AddAssign, Sub};
 /// A complex number.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Complex {
+    /// Real part.
     pub(super) real: f32,
+    /// Imaginary part.
     pub(super) imaginary: f32,
 }
 
 impl Complex {
-    /// The conjugate.
+    /// Complex conjugate.
     pub(super) fn conjugate(self) -> Self {
         Self { real: self.real, imaginary: -self.imaginary }
     }
 
-    /// The conjugate of this, times another.
+    /// Product of the conjugate of this number with another.
     #[inline]
     pub(super) fn against(self, other: Self) -> Self {
         Self {
@@ -25,7 +27,7 @@ impl Complex {
         }
     }
 
-    /// This times another.
+    /// Product with another number.
     #[inline]
     pub(super) fn times(self, other: Self) -> Self {
         Self {
@@ -34,13 +36,13 @@ impl Complex {
         }
     }
 
-    /// So many times this.
+    /// Product with a real factor.
     #[inline]
     pub(super) fn scaled(self, factor: f32) -> Self {
         Self { real: factor * self.real, imaginary: factor * self.imaginary }
     }
 
-    /// Its square.
+    /// Squared magnitude.
     pub(super) fn power(self) -> f32 {
         self.real * self.real + self.imaginary * self.imaginary
     }

@@ -1,27 +1,27 @@
-//! The paper's corrections: four extrema a turn, at each of which the roll is known.
+//! Corrections by extrema (Nekrasova 2017): at four extrema a turn the roll is known.
 //!
-//! A force is greatest or least one sample before that is seen; what the body has turned since is added. The
-//! paper leaves the extremum at its sample, which is half a sample off at most; a parabola through it and
-//! its neighbours finds it between.
+//! An extremum of a force is detected one sample after it occurred; the rotation since then is
+//! added. The paper takes the extremum at its sample, which is off by up to half a sample; a
+//! parabola through it and its neighbours locates it between samples.
 
 use super::phase_accumulator::PhaseAccumulator;
 use crate::units::{Angle, SpinForce};
 
-/// A signal of correction, by the paper's names.
+/// Correction signal, with the numbering of Nekrasova 2017.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Signal {
-    /// “1”: y is greatest, γ = 0.
+    /// Signal “1”: maximum of y, γ = 0.
     YMaximum,
-    /// “2”: y is least, γ = π.
+    /// Signal “2”: minimum of y, γ = π.
     YMinimum,
-    /// “−1”: z is greatest, γ = 3π/2.
+    /// Signal “−1”: maximum of z, γ = 3π/2.
     ZMaximum,
-    /// “−2”: z is least, γ = π/2.
+    /// Signal “−2”: minimum of z, γ = π/2.
     ZMinimum,
 }
 
 impl Signal {
-    /// The roll that it stands for.
+    /// Roll at which the signal occurs.
     #[must_use]
     pub fn roll(self) -> Angle {
         match self {
@@ -33,32 +33,37 @@ impl Signal {
     }
 }
 
-/// Looks for extrema.
+/// Detector of extrema.
 #[derive(Clone, Debug)]
 pub(super) struct Extrema {
+    /// Whether the extremum is located between samples.
     is_interpolated: bool,
+    /// Whether a correction has been made.
     has_corrected: bool,
-    /// The two forces before, older first.
+    /// The two previous pairs of forces, older first.
     before: Option<[[SpinForce; 2]; 2]>,
+    /// Latest pair of forces.
     latest: Option<[SpinForce; 2]>,
 }
 
 impl Extrema {
+    /// Detector before the first sample.
     pub(super) fn new(is_interpolated: bool) -> Self {
         Self { is_interpolated, has_corrected: false, before: None, latest: None }
     }
 
+    /// Whether a correction has been made.
     pub(super) fn has_corrected(&self) -> bool {
         self.has_corrected
     }
 
-    /// Forces before a gap do not go together with those after it.
+    /// Discards the previous forces, which do not join on to those after a gap.
     pub(super) fn disturb(&mut self) {
         self.before = None;
         self.latest = None;
     }
 
-    /// Takes forces; the phase accumulator has turned already.
+    /// Takes a pair of forces; the phase accumulator must already include this sample's rotation.
     #[inline]
     pub(super) fn push(
         &mut self,
@@ -72,7 +77,7 @@ impl Extrema {
         let [old, _] = before?;
         let (signal, [first, second, third]) = extremum(old, middle, now)?;
         let place = if self.is_interpolated { vertex(first, second, third) } else { 0.0 };
-        // From the extremum to this sample.
+        // Rotation from the extremum to this sample.
         let since = (1.0 - place) * phase_accumulator.step() as f32;
         phase_accumulator.set(Angle(signal.roll().0.wrapping_add((since as i32).cast_unsigned())));
         self.has_corrected = true;
@@ -80,7 +85,7 @@ impl Extrema {
     }
 }
 
-/// The extremum that the middle one of three pairs of forces is, with that axis' three forces.
+/// Extremum at the middle one of three pairs of forces, with the three forces of that axis.
 fn extremum(
     old: [SpinForce; 2],
     middle: [SpinForce; 2],
@@ -100,15 +105,18 @@ fn extremum(
     }
 }
 
+/// Whether the middle value is a maximum.
 fn is_greatest([first, second, third]: [i32; 3]) -> bool {
     second > first && second >= third
 }
 
+/// Whether the middle value is a minimum.
 fn is_least([first, second, third]: [i32; 3]) -> bool {
     second < first && second <= third
 }
 
-/// Where a parabola through three values has its vertex, in samples from the middle one, within half of one.
+/// Vertex of a parabola through three values, in samples from the middle one, limited to half a
+/// sample.
 fn vertex(first: i32, second: i32, third: i32) -> f32 {
     let rise = first.wrapping_sub(third) as f32;
     let bend = first.wrapping_sub(second).wrapping_add(third.wrapping_sub(second)) as f32;

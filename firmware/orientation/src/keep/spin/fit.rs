@@ -1,9 +1,9 @@
-//! The lift's phase in the forces of about one turn: least squares over every sample.
+//! Phase of the lift in the transverse forces of about one turn: least squares over every sample.
 //!
-//! `s = a_y − j a_z = c₀ + c₁τ + (Q₀ + Q₁τ) e^{jγ̂}`, γ̂ being the angle that is believed and τ the place in the turn
-//! from −1 to 1. What the accelerometers feel of the spin itself, −ρω², and its slow change are c; the lift and
-//! its change, Q. The phase of Q₀ is by how much γ̂ is behind at the middle. What goes round otherwise is taken out
-//! ([`super::harmonics`]), in turns with the rest.
+//! The model is `s = a_y − j a_z = c₀ + c₁τ + (Q₀ + Q₁τ) e^{jγ̂}`, with γ̂ the estimated angle and
+//! τ the place in the turn from −1 to 1. The constant c contains the centripetal force −ρω² and its
+//! slow change; Q is the lift and its change. The phase of Q₀ is the lag of γ̂ at the middle.
+//! Further harmonics are removed ([`super::harmonics`]), alternating with this fit.
 
 use super::Accelerometer;
 use super::complex::Complex;
@@ -11,67 +11,76 @@ use super::harmonics::{Harmonics, PARTS, Ripple};
 use super::phase_accumulator::sine_and_cosine;
 use crate::units::{Angle, SpinForce};
 
-/// One step of a force, m/s².
+/// Size of a force step, m/s².
 const STEP: f32 = 1e-5;
-/// Least samples of a fit: twice its eight real unknowns.
+/// Least number of samples of a fit: twice its eight real unknowns.
 const LEAST: u32 = 16;
-/// Complex unknowns of a fit.
+/// Number of complex unknowns of a fit.
 const UNKNOWNS: f32 = 4.0 + PARTS as f32;
-/// How often the rest is fitted after what goes round otherwise, over one turn: each leaves two fifths, and of four turns
-/// a fortieth.
+/// Number of alternations between this fit and the harmonics, over one turn: each leaves two fifths
+/// of the error, and over four turns a fortieth.
 const PASSES: u32 = 8;
-/// By what that raises the variance of the lift of one turn.
+/// Relative increase of the variance of one turn's lift by the harmonics.
 const CROWDED: f32 = 0.3;
-/// Part of what goes round otherwise that one turn does not tell from the lift.
+/// Part of the harmonics that one turn does not separate from the lift.
 const HIDDEN: f32 = 0.25;
-/// How much of the turning part must be its own: samples that do not go round cannot tell it from a force.
+/// Least part of the rotating columns that is independent of the others: samples over a small part
+/// of a turn cannot separate lift from constant force.
 const GOING_ROUND: f32 = 0.01;
-/// Part of the forces' power that sums in single precision may make of what is left of it.
+/// Relative error of the residual power due to sums in single precision.
 const PRECISION: f32 = 2e-7;
-/// What the rounding of the forces leaves at least, (m/s²)².
+/// Least residual variance, due to rounding of the forces, (m/s²)².
 const ROUNDING: f32 = STEP * STEP / 6.0;
 
 /// Sums over the samples of a turn.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sums {
-    /// Force that is taken off first: the turn's first one.
+    /// Force that is subtracted from all: the first one of the turn.
     base: [i32; 2],
-    /// Half the samples that the turn is expected to have, and one over it.
+    /// Half the expected number of samples of the turn, and its reciprocal.
     half: f32,
     scale: f32,
-    /// Samples, those without force included.
+    /// Number of samples, including those without force.
     samples: u32,
+    /// Number of samples with a force.
     count: u32,
+    /// Sum of the places.
     place: f32,
+    /// Sum of the squared places.
     place_square: f32,
+    /// Sums of e^{jγ̂} times place to the powers 0, 1 and 2.
     turning: [Complex; 3],
+    /// Sums of the force times place to the powers 0 and 1.
     force: [Complex; 2],
+    /// Sums of the force rotated back, times place to the powers 0 and 1.
     turned_force: [Complex; 2],
-    /// Of either force, the base taken off.
+    /// Sums of the squares of each force, after subtraction of the base.
     power: [f32; 2],
+    /// Sums for the harmonics.
     harmonics: Harmonics,
 }
 
-/// What a turn shows.
+/// Result of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Fit {
-    /// The lift at the middle, by γ̂, m/s².
+    /// Lift at the middle, relative to γ̂, m/s².
     pub(super) lift: Complex,
-    /// By how much it changes from the middle to either end, m/s².
+    /// Magnitude of the lift's change from the middle to either end, m/s².
     pub(super) change: f32,
-    /// Variance of what is left of a sample, both forces together, (m/s²)².
+    /// Residual variance of a sample, both forces together, (m/s²)².
     pub(super) noise: f32,
-    /// By which that counts in either part of the lift.
+    /// Factor from that variance to the variance of either part of the lift.
     pub(super) share: f32,
-    /// What goes round otherwise, m/s².
+    /// Amplitudes of the harmonics, m/s².
     pub(super) ripple: Ripple,
-    /// Samples, and turns.
+    /// Number of samples, and number of turns.
     pub(super) count: f32,
     pub(super) turns: u32,
 }
 
 impl Fit {
-    /// What goes round otherwise may hide of the lift, m/s²: of one turn a quarter, of more the less.
+    /// Possible error of the lift due to harmonics, m/s²: a quarter of them for one turn, less for
+    /// more turns.
     pub(super) fn crowded(&self) -> f32 {
         let turns = self.turns as f32;
         HIDDEN * self.ripple.size() / (turns * turns)
@@ -79,34 +88,34 @@ impl Fit {
 }
 
 impl Sums {
-    /// For a turn of about so many samples.
+    /// Empty sums for a turn of about this many samples.
     pub(super) fn of(samples: f32) -> Self {
         let half = 0.5 * samples;
         Self { half, scale: 1.0 / half, ..Self::default() }
     }
 
-    /// Samples of it.
+    /// Number of samples, including those without force.
     pub(super) fn samples(&self) -> u32 {
         self.samples
     }
 
-    /// What part of them comes after the middle, where the fit tells the phase.
+    /// Part of the samples after the middle, where the fit gives the phase.
     pub(super) fn part_after_middle(&self) -> f32 {
         let samples = self.samples as f32;
         (samples - 1.0 - self.half) / samples
     }
 
-    /// Those that had a force.
+    /// Number of samples with a force.
     pub(super) fn count(&self) -> u32 {
         self.count
     }
 
-    /// Passes over samples that are missing: they have no force.
+    /// Skips missing samples, which have no force.
     pub(super) fn pass(&mut self, samples: u32) {
         self.samples = self.samples.saturating_add(samples);
     }
 
-    /// Adds a sample. Written out: this is the sample's whole cost.
+    /// Adds a sample. The sums are written out, because they are the main cost of a sample.
     #[inline]
     pub(super) fn push(&mut self, angle: Angle, force: Option<[SpinForce; 2]>) {
         let place = (self.samples as f32 - self.half) * self.scale;
@@ -121,7 +130,7 @@ impl Sums {
         let [sine, cosine] = sine_and_cosine(angle);
         let real = y.0.wrapping_sub(self.base[0]) as f32 * STEP;
         let imaginary = self.base[1].wrapping_sub(z.0) as f32 * STEP;
-        // s e^{−jγ̂}
+        // Force rotated back, s e^{−jγ̂}.
         let turned_real = real * cosine + imaginary * sine;
         let turned_imaginary = imaginary * cosine - real * sine;
         let (placed_cosine, placed_sine) = (place * cosine, place * sine);
@@ -146,7 +155,7 @@ impl Sums {
         self.harmonics.push(place, [cosine, sine], [real, imaginary]);
     }
 
-    /// The accelerometers that showed one value all the time.
+    /// Accelerometers whose reading never changed.
     pub(super) fn stuck(&self) -> Option<Accelerometer> {
         match self.power.map(|power| power > 0.0) {
             [false, false] => Some(Accelerometer::Both),
@@ -156,7 +165,8 @@ impl Sums {
         }
     }
 
-    /// What the samples of so many turns show; none where they are too few, or do not go round.
+    /// Fits the samples of this many turns; `None` with too few samples, or where they do not cover
+    /// a turn.
     pub(super) fn fit(&self, turns: u32) -> Option<Fit> {
         let normal = Normal::of(self)?;
         let count = self.count as f32;
@@ -184,31 +194,31 @@ impl Sums {
     }
 }
 
-/// The normal equations of what is steady and of the lift.
+/// Normal equations of the constant part and of the lift.
 struct Normal {
-    /// A⁻¹ of the steady part, its upper triangle.
+    /// Inverse A⁻¹ for the constant part, upper triangle.
     inverse: [f32; 3],
-    /// The turning part's columns B, and A⁻¹B.
+    /// Columns B of the rotating part, and A⁻¹B.
     turning: [Complex; 3],
     first: [Complex; 2],
     second: [Complex; 2],
-    /// What is left to the turning part: A − B*A⁻¹B, Hermitian, and its determinant.
+    /// Reduced matrix A − B*A⁻¹B of the rotating part, Hermitian, and its determinant.
     m11: f32,
     m12: Complex,
     m22: f32,
     whole: f32,
 }
 
-/// A solution.
+/// Solution of the normal equations.
 struct Solved {
-    /// Steady force, its change, lift, its change.
+    /// Constant force, its change, lift, its change.
     model: [Complex; 4],
-    /// Power that it explains.
+    /// Power that the model explains, (m/s²)² times samples.
     explained: f32,
 }
 
 impl Normal {
-    /// Of sums; none where the samples are too few, or do not go round.
+    /// Normal equations from sums; `None` with too few samples, or where they do not cover a turn.
     fn of(sums: &Sums) -> Option<Self> {
         if sums.count < LEAST {
             return None;
@@ -229,7 +239,7 @@ impl Normal {
         goes_round.then_some(Self { inverse, turning, first, second, m11, m12, m22, whole })
     }
 
-    /// Of the force's sums, and of those turned back.
+    /// Solution for the sums of the force, and of the force rotated back.
     fn solve(&self, force: [Complex; 2], turned: [Complex; 2]) -> Solved {
         let [e0, e1, e2] = self.turning;
         let own = steady(&self.inverse, force[0], force[1]);
@@ -243,19 +253,19 @@ impl Normal {
         Solved { model: [steady, its_change, lift, change], explained }
     }
 
-    /// By which a sample's noise counts in either part of the lift.
+    /// Factor from a sample's noise variance to the variance of either part of the lift.
     fn share(&self) -> f32 {
         0.5 * self.m22 / self.whole
     }
 }
 
-/// A⁻¹ times a column, A⁻¹ by its upper triangle.
+/// Product of A⁻¹, given by its upper triangle, with a column.
 fn steady(inverse: &[f32; 3], one: Complex, other: Complex) -> [Complex; 2] {
     let [a, b, c] = *inverse;
     [one.scaled(a) + other.scaled(b), one.scaled(b) + other.scaled(c)]
 }
 
-/// The conjugates of two numbers times those of a column, summed.
+/// Sum of the products of two conjugated numbers with those of a column.
 fn both(one: Complex, other: Complex, column: &[Complex; 2]) -> Complex {
     one.against(column[0]) + other.against(column[1])
 }

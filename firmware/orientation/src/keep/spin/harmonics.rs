@@ -1,50 +1,55 @@
-//! What goes round in the forces otherwise than the lift: against it, twice and thrice a turn.
+//! Harmonics in the transverse forces other than the lift: against the rotation, twice and three
+//! times a turn.
 //!
-//! `s = … + Σ Xₖ e^{jkγ̂}`, k = −1, 2, −2 and 3. Sensors as they should be show none of it. Taken out, it neither bends
-//! the lift's phase nor counts as noise; what it tells of the sensors is in [`super::circle`].
+//! The model is `s = … + Σ Xₖ e^{jkγ̂}`, k = −1, 2, −2 and 3. Ideal sensors show none of them.
+//! Removing them keeps them from biasing the lift's phase and from counting as noise; their meaning
+//! for the sensors is in [`super::circle`].
 
 use super::complex::Complex;
 
-/// The parts, by how often they go round in a turn.
+/// Orders of the harmonics, per turn.
 const ORDERS: [i32; PARTS] = [AGAINST, 2, -2, THRICE];
+/// Order of the counter-rotating component.
 const AGAINST: i32 = -1;
+/// Order of the third harmonic.
 const THRICE: i32 = 3;
-/// How many there are.
+/// Number of harmonics.
 pub(super) const PARTS: usize = 4;
 
-/// Amplitudes of the parts, m/s².
+/// Amplitudes of the harmonics, m/s².
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Ripple(pub(super) [Complex; PARTS]);
 
 impl Ripple {
-    /// What goes round against the gyro.
+    /// Component that rotates against the gyro, m/s².
     pub(super) fn against(&self) -> Complex {
         self.0[0]
     }
 
-    /// Root of the power of all parts.
+    /// Root of the total power of all harmonics, m/s².
     pub(super) fn size(&self) -> f32 {
         libm::sqrtf(self.0.iter().map(|part| part.power()).sum())
     }
 
-    /// What goes round three times a turn.
+    /// Component that rotates three times a turn, m/s².
     pub(super) fn thrice(&self) -> Complex {
         self.0[3]
     }
 }
 
-/// Sums over the samples of a look.
+/// Sums over the samples of an evaluation.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Harmonics {
-    /// Of `e^{2jγ̂}` and `e^{3jγ̂}`, and times the place.
+    /// Sums of `e^{2jγ̂}` and `e^{3jγ̂}`, and of these times the place.
     second: [Complex; 2],
     third: [Complex; 2],
-    /// Of the force, turned back by each of [`ORDERS`].
+    /// Sums of the force rotated back by each of [`ORDERS`].
     force: [Complex; PARTS],
 }
 
 impl Harmonics {
-    /// Adds a sample: its place, its angle's cosine and sine, its force. Written out, as what calls it.
+    /// Adds a sample: place, cosine and sine of its angle, force. The sums are written out, as in
+    /// the caller.
     #[inline]
     pub(super) fn push(
         &mut self,
@@ -76,7 +81,8 @@ impl Harmonics {
         self.force[3].imaginary += imaginary * cosine_3 - real * sine_3;
     }
 
-    /// Of `e^{jkγ̂}` and that times the place, k from −3 to 3; `even` and `first` are those of k = 0 and 1.
+    /// Sums of `e^{jkγ̂}` and of that times the place, k from −3 to 3; `even` and `first` are those
+    /// of k = 0 and 1.
     fn round(&self, order: i32, even: [f32; 2], first: [Complex; 2]) -> [Complex; 2] {
         let sums = match order.abs() {
             0 => even.map(|real| Complex { real, imaginary: 0.0 }),
@@ -87,8 +93,8 @@ impl Harmonics {
         if order < 0 { sums.map(Complex::conjugate) } else { sums }
     }
 
-    /// Goes nearer to the parts by what a fit of the rest leaves of the forces; `model` is that fit: steady, its change,
-    /// lift, its change.
+    /// Improves the amplitudes by the residual of the other fit; `model` is that fit: constant, its
+    /// change, lift, its change.
     pub(super) fn approach(
         &self,
         ripple: &mut Ripple,
@@ -106,7 +112,8 @@ impl Harmonics {
         }
     }
 
-    /// What the parts make of the sums of the force, of that times the place, and of both turned back once.
+    /// Contribution of the harmonics to the sums of the force, of the force times the place, and of
+    /// both rotated back once.
     pub(super) fn shares(
         &self,
         ripple: &Ripple,
@@ -124,7 +131,7 @@ impl Harmonics {
         shares
     }
 
-    /// Power of the forces that the parts explain, beside what the fit of the rest does.
+    /// Power of the forces that the harmonics explain in addition to the other fit.
     pub(super) fn explained(&self, ripple: &Ripple, count: f32) -> f32 {
         let parts = ripple.0.iter().zip(&self.force);
         parts.map(|(part, force)| 2.0 * part.against(*force).real - count * part.power()).sum()

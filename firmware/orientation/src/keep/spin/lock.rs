@@ -1,7 +1,9 @@
-//! The phase lock: from turn to turn the lift's phase puts the angle right and tells the gyro's scale.
+//! Phase lock: from turn to turn the lift's phase corrects the angle and estimates the gyro's scale
+//! error.
 //!
-//! Two states, the angle's error and the scale's, in a Kalman filter over the turns. Where the lift is below the
-//! noise nothing is learnt: the gyro holds the angle, its scale known, and σ grows by what is not known of it.
+//! A Kalman filter over the turns has two states, the errors of angle and scale. Where the lift is
+//! below the noise no update is made: the gyro holds the angle with its estimated scale, and σ
+//! grows by the scale's uncertainty.
 
 use super::circle::Circle;
 use super::fit::{Fit, Sums};
@@ -12,64 +14,73 @@ use crate::units::{AngleIncrement, Instant, TURN};
 
 /// One turn in steps of the angle.
 const TURN_STEPS: u64 = 1 << 40;
-/// What is passed over first: sensors may begin with anything.
+/// Rotation that is skipped at the start, because sensors may begin with arbitrary values.
 const SKIPPED: u64 = TURN_STEPS / 4;
-/// Turns that are looked at together. Of one turn alone, a slow change of the forces takes three fifths of what
-/// tells the phase (6/π² of a ramp turns with it), of four it takes 4 %.
+/// Number of turns evaluated together. With one turn, a slow change of the forces takes three
+/// fifths of the phase information (6/π² of a ramp rotates with the turn), with four turns 4 %.
 const TOGETHER: u32 = 4;
-/// Samples of the longest turns that count as spinning, together: ten a second at 10 kHz.
+/// Greatest number of samples of the turns that count as spinning: ten turns a second at 10 kHz,
+/// four together.
 const LONGEST: u32 = 4096;
-/// Samples of a turn as long as none was seen.
+/// Assumed samples of a turn before one was measured.
 const USUAL: f32 = 100.0;
-/// Lift over its noise from which it is believed to begin with, and from which it is used.
+/// Ratio of the lift to its noise from which it is accepted at first.
 const FOUND: f32 = 5.0;
+/// Ratio of the lift to its noise from which it is used later.
 const USED: f32 = 3.0;
-/// Standard deviations by which a turn's phase may be off.
+/// Significance, in σ, at which a turn's phase is rejected.
 const BOUND: f64 = 4.0;
-/// Turns in a row that are off by more until all is searched anew.
+/// Retry budget: number of successive rejected turns after which the search begins anew.
 const PATIENCE: u32 = 8;
-/// 1σ of the scale where what was known of it has proved wrong.
+/// Standard deviation of the scale error after its estimate has proved wrong, 1σ.
 const WRONG: f64 = 0.1;
-/// 1σ of the angle, rad, from which a phase may be a turn off: it tells the angle anew, and nothing of the scale.
+/// Standard deviation of the angle, rad, from which a phase may be off by a turn: it then sets the
+/// angle and does not update the scale.
 const AMBIGUOUS: f64 = 0.785;
-/// How far the turns that are looked at together may get out of step, 1σ, rad.
+/// Greatest loss of phase among turns that are evaluated together, 1σ, rad.
 const IN_STEP: f64 = 0.4;
-/// Looks in a row that must agree before the roll is told, and those that must not before the scale is doubted.
+/// Number of successive evaluations that must agree before the roll is reported.
 const AGREED: u8 = 3;
+/// Number of successive contradicting evaluations before the scale is reset.
 const DISAGREED: u32 = 3;
-/// Part of the lift, beside the noise, that may go round against it.
+/// Greatest counter-rotating part of the force, relative to the lift, in addition to noise.
 const ELLIPTIC: f32 = 0.2;
-/// Looks over which what they add to the filter is averaged, the greatest mean in standard deviations and the greatest
-/// mean square that chance makes, and by how much the variances are too small where it is more.
+/// Number of evaluations over which the normalised innovations are averaged.
 const CALM_LOOKS: f32 = 16.0;
+/// Greatest mean innovation that chance makes, in σ.
 const CALM_MEAN: f32 = 0.75;
+/// Greatest mean squared innovation that chance makes.
 const CALM_SQUARE: f32 = 2.75;
+/// Factor by which the covariance is inflated where the innovations exceed these limits.
 const FADE: f64 = 4.0;
-/// Looks over which the noise is averaged.
+/// Number of evaluations over which the noise is averaged.
 const NOISE_LOOKS: f32 = 8.0;
-/// By how much a look may be noisier than those before and count fully: one blow does not make all that follows noisy.
+/// Greatest factor by which an evaluation's noise raises the average: a single shock does not make
+/// all later ones noisy.
 const NOISE_RISE: f32 = 4.0;
-/// Standard deviations by which a look is noisier than those before by more than chance: of n samples on two axes one is
-/// 1/√n of the noise's square.
+/// Significance, in σ, at which an evaluation is noisier than the average: with n samples on two
+/// axes, 1σ is 1/√n of the noise power.
 const NOISE_SIGMAS: f32 = 4.0;
-/// How the scale wanders, 1/√s: with the gyro's temperature.
+/// Random walk of the scale error, 1/√s: with the gyro's temperature.
 const SCALE_WALK: f64 = 1e-6;
-/// Rate below which a body does not spin, rad/s.
+/// Rate below which a body does not count as spinning, rad/s.
 const SLOWEST: f64 = 1.0;
-/// Part of the rate by which it may have changed where samples are missing.
+/// Relative change of the rate that is assumed while samples are missing.
 const CHANGE: f32 = 0.01;
-/// Part of its rate by which that may change in a second, beside what it does.
+/// Relative change of the rate per second that is assumed in addition to the observed one.
 const QUICKENING: f32 = 0.02;
-/// What may be lost of the rotation within turns that are used, rad (1σ).
+/// Greatest lost rotation within turns that are used, 1σ, rad.
 const BROKEN: f64 = 0.01;
-/// 1σ of the angle that says nothing any more, rad: that of any angle at all.
+/// Standard deviation of the angle that carries no information, 1σ, rad: that of a uniform
+/// distribution.
 const NOTHING: f64 = 1.8;
-/// 1σ of the angle beyond which the rotation is lost, rad.
+/// Standard deviation of the angle beyond which rotation counts as lost, 1σ, rad.
 const SURE: f64 = 0.4;
-/// 1σ of the angle for which a phase near half a turn off is a lift that pushes down, rad.
+/// Standard deviation of the angle up to which a phase near half a turn is interpreted as negative
+/// lift, 1σ, rad.
 const UPRIGHT: f64 = 0.1;
 
-/// What kept the latest turn from being used.
+/// Reason for which the latest turn was not used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Trouble {
     None,
@@ -83,54 +94,62 @@ enum Trouble {
     Contradicted,
 }
 
-/// The lock at work.
+/// State of the phase lock.
 #[derive(Clone, Debug)]
 pub(super) struct Lock {
-    /// N², rad²/s, and the sample period, s.
+    /// Noise power N², rad²/s, and sample period, s.
     walk: f64,
     period: f64,
-    /// 1σ of the gyro's bias, rad/s.
+    /// Standard deviation of the gyro's bias, 1σ, rad/s.
     bias: f64,
-    /// Seconds a radian, lately, and for how long the body does not spin, s.
+    /// Latest reciprocal rate, s/rad, and time for which the body has not been spinning, s.
     slowness: Option<f64>,
     still: f64,
-    /// Part of its rate by which that changes in a second, either way.
+    /// Relative change of the rate per second, magnitude.
     quickening: f32,
-    /// Variance of the scale to begin with.
+    /// Initial variance of the scale error.
     first: f64,
-    /// Variances of angle, rad², and scale, and what they share.
+    /// Variances of angle, rad², and scale error, and their covariance.
     angle: f64,
     scale: f64,
     shared: f64,
-    /// By what part of what the gyro shows that is too much: s/(1 + s) of a scale error s, in which phases are linear.
+    /// Estimated part of the gyro's reading that is excess: s/(1 + s) for a scale error s, in which
+    /// phases are linear.
     error: f64,
+    /// Sums of the turns in progress.
     sums: Sums,
-    /// Variance of the rotation that was lost since then, rad².
+    /// Variance of the rotation that was lost in these turns, rad².
     lost: f64,
-    /// The angle at which the turn began, and at which the states were told last.
+    /// Angle at which the turns began, and angle of the last filter update.
     begun: i64,
     told: i64,
-    /// How far it is to turn until the turns are looked at.
+    /// Rotation until the turns are evaluated.
     wanted: u64,
-    /// Samples since then.
+    /// Samples since the last filter update.
     since: u32,
-    /// Mean variance of what is left of a sample, (m/s²)².
+    /// Average residual variance of a sample, (m/s²)².
     noise: Option<f32>,
+    /// Latest lift, m/s².
     lift: Option<f32>,
+    /// Whether a lift was ever found.
     is_found: bool,
-    /// Looks that have agreed with each other, and those on end that have not.
+    /// Number of evaluations that agreed, and number of successive contradicting ones.
     agreed: u8,
     strays: u32,
-    /// The phase of the latest one that has not, rad: either it is wrong, or the roll.
+    /// Phase of the latest contradicting evaluation, rad: either it is wrong, or the roll.
     stray: f32,
-    /// Mean and mean square of what looks add, in standard deviations.
+    /// Mean and mean square of the normalised innovations.
     calm: [f32; 2],
+    /// Sensor errors that show in the forces.
     circle: Circle,
+    /// Reason for which the latest turn was not used.
     trouble: Trouble,
+    /// Time since which turns have not been used.
     troubled: Option<Instant>,
 }
 
 impl Lock {
+    /// Lock before the first sample.
     pub(super) fn new(setting: &Setting) -> Self {
         Self {
             walk: setting.angle_random_walk * setting.angle_random_walk,
@@ -163,7 +182,7 @@ impl Lock {
         }
     }
 
-    /// Takes a sample, by which the phase accumulator has turned already.
+    /// Takes a sample; the phase accumulator must already include its rotation.
     #[inline]
     pub(super) fn push(&mut self, sample: &SpinSample, phase_accumulator: &mut PhaseAccumulator) {
         self.sums.push(phase_accumulator.angle(), sample.force);
@@ -174,8 +193,9 @@ impl Lock {
         }
     }
 
-    /// So many samples are missing, and of so many on end, before and now, the increment is lost: about this one, in its
-    /// steps, which changed by so much meanwhile.
+    /// Accounts for missing samples and for samples whose increment is unknown. `known` and `lost`
+    /// are the lengths of the unknown run before and now, `mean` is the assumed increment in its
+    /// steps, and `change` its change meanwhile.
     pub(super) fn lose(&mut self, missing: f32, [known, lost]: [f32; 2], mean: f32, change: f32) {
         self.since = self.since.saturating_add(missing as u32);
         self.sums.pass(missing as u32);
@@ -188,14 +208,14 @@ impl Lock {
         }
     }
 
-    /// So many samples on end that the gyro does not tell, in samples of which nothing is known: the body leaves the rate
-    /// that it had as fast as it lately changed it, and a little.
+    /// Effective length of a run of samples without valid rotation: the body changes its rate as
+    /// fast as it lately did, plus a margin.
     pub(super) fn strayed(&self, samples: f32) -> f32 {
         let left = (self.quickening + QUICKENING) * samples * self.period as f32;
         samples * (0.5 * left / CHANGE).min(1.0)
     }
 
-    /// The turns are over.
+    /// Evaluates the turns.
     #[inline(never)]
     fn finish(&mut self, now: Instant, phase_accumulator: &mut PhaseAccumulator) {
         let turned = phase_accumulator.whole().wrapping_sub(self.begun).unsigned_abs();
@@ -219,7 +239,7 @@ impl Lock {
         self.since = 0;
     }
 
-    /// Turns that stay in step, whatever the scale.
+    /// Number of turns that stay in phase for the present uncertainty of the scale.
     fn together(&self) -> u32 {
         let one = TURN * libm::sqrt(self.scale);
         match self.agreed {
@@ -229,7 +249,7 @@ impl Lock {
         }
     }
 
-    /// The states after the body has turned by an angle, rad, in that time, s.
+    /// Propagates the states over a rotation, rad, in a time, s.
     fn carry(&mut self, angle: f64, seconds: f64) {
         self.angle += angle * (angle * self.scale - 2.0 * self.shared) + self.walk * seconds;
         self.shared -= angle * self.scale;
@@ -240,8 +260,8 @@ impl Lock {
         }
     }
 
-    /// What an unknown bias does: on a body that spins it is a scale error that changes with the rate, and on one that does
-    /// not it turns the angle.
+    /// Effect of an unknown bias: on a spinning body it is a scale error that changes with the
+    /// rate, on one that does not spin it rotates the angle.
     fn stray_by_bias(&mut self, angle: f64, seconds: f64) {
         let square = |part: f64| part * part;
         let slowness = seconds / angle.abs().max(SLOWEST * seconds);
@@ -257,14 +277,15 @@ impl Lock {
         }
     }
 
-    /// Any angle is possible: it shares nothing with the scale any more, since its turns were not counted.
+    /// Resets the angle to unknown. Its covariance with the scale is dropped, because turns were
+    /// not counted.
     fn forget_angle(&mut self) {
         self.angle = TURN * TURN;
         self.shared = 0.0;
         self.agreed = 0;
     }
 
-    /// Learns from turns; the middle of them is so far ago, rad.
+    /// Updates the filter with turns, whose middle is the rotation `half`, rad, ago.
     fn use_turn(&mut self, half: f64, phase_accumulator: &mut PhaseAccumulator) -> Trouble {
         if self.sums.count() * 2 < self.sums.samples() {
             return Trouble::NoForce;
@@ -285,17 +306,17 @@ impl Lock {
         }
         let phase = f64::from(libm::atan2f(fit.lift.imaginary, fit.lift.real));
         let square = |part: f64| part * part;
-        // A lift that changes while the scale is not known yet shows a phase of its own.
+        // A lift that changes while the scale is still uncertain has a phase error of its own.
         let bent = self.scale * square(half) * square(f64::from(fit.change / lift))
             + square(f64::from(fit.crowded() / lift));
         self.lift = Some(lift);
         let variance = square(f64::from(sigma / lift)) + bent + self.lost;
         let is_used = self.learn(phase, variance, half, phase_accumulator);
         if !is_used && (noise > NOISE_RISE * quiet || lift < FOUND * sigma) {
-            // The forces are to blame, or chance, not the gyro.
+            // The forces or chance are the cause, not the gyro.
             self.stray = 0.0;
         }
-        // What was lost after the middle is still to be known.
+        // Rotation lost after the middle remains uncertain.
         self.angle += self.lost;
         if is_used && self.agreed >= AGREED {
             self.circle.take(&fit, noise);
@@ -303,7 +324,8 @@ impl Lock {
         if self.stray == 0.0 { Trouble::None } else { Trouble::Contradicted }
     }
 
-    /// Whether a lift can be believed, beside what goes round against it and the noise of either part, m/s².
+    /// Checks whether a lift is significant, given the counter-rotating force and the noise of
+    /// either part, m/s².
     fn judge(&self, lift: f32, against: f32, sigma: f32) -> Trouble {
         let felt = sigma * if self.agreed > 0 { USED } else { FOUND };
         if lift.max(against) < felt {
@@ -319,8 +341,8 @@ impl Lock {
         }
     }
 
-    /// The noise of the forces, averaged over turns, or that of these where it is greater by more than chance: a blow, or
-    /// forces that the fit does not describe.
+    /// Noise of the forces, averaged over turns, or that of these turns where it is significantly
+    /// greater: a shock, or forces that the model does not describe.
     fn noise(&mut self, fit: &Fit) -> f32 {
         let before = self.noise.unwrap_or(fit.noise).min(NOISE_RISE * fit.noise);
         let noise = before + (fit.noise.min(NOISE_RISE * before) - before) / NOISE_LOOKS;
@@ -329,7 +351,8 @@ impl Lock {
         if fit.noise > noise * (1.0 + chance) { fit.noise } else { noise }
     }
 
-    /// Takes a phase of such a variance, that of the middle so far ago, rad; whether it could be.
+    /// Updates the filter with a phase of this variance, at a middle that is the rotation `half`,
+    /// rad, ago; returns whether it was accepted.
     fn learn(
         &mut self,
         phase: f64,
@@ -337,7 +360,8 @@ impl Lock {
         half: f64,
         phase_accumulator: &mut PhaseAccumulator,
     ) -> bool {
-        // The phase is that at the middle: the angle's error now, and what the scale has made of it since.
+        // The measured phase is that at the middle: the present angle error, less the scale's
+        // effect since.
         let with_angle = self.angle + half * self.shared;
         let with_scale = self.shared + half * self.scale;
         let whole = with_angle + half * with_scale + variance;
@@ -365,7 +389,7 @@ impl Lock {
         true
     }
 
-    /// Takes the angle from a phase alone: whatever was known of it leaves open which turn it is.
+    /// Sets the angle from a phase alone, because the number of turns is ambiguous.
     fn begin(
         &mut self,
         phase: f64,
@@ -381,7 +405,8 @@ impl Lock {
         phase_accumulator.correct(phase);
     }
 
-    /// A phase that cannot be. Before the roll is told, that begins anew; afterwards, where too many come in a row.
+    /// Handles a rejected phase. Before the roll is reported it starts anew; afterwards only when
+    /// too many are rejected in succession.
     fn disagree(
         &mut self,
         phase: f64,
@@ -404,15 +429,15 @@ impl Lock {
         }
     }
 
-    /// The variances are too small.
+    /// Inflates the covariance.
     fn fade(&mut self) {
         self.angle *= FADE;
         self.shared *= FADE;
         self.scale *= FADE;
     }
 
-    /// What looks add must be chance: where it is not, the body turns as the filter does not expect, and more than the
-    /// variances say is open.
+    /// Monitors the normalised innovations: where they are not white with variance one, the body
+    /// rotates otherwise than modelled, and the covariance is inflated.
     fn watch(&mut self, added: f32) {
         let [mean, square] = &mut self.calm;
         *mean += (added - *mean) / CALM_LOOKS;
@@ -423,7 +448,7 @@ impl Lock {
         }
     }
 
-    /// A phase near half a turn off, where the angle is sure, is a lift that pushes down.
+    /// Interprets a phase near half a turn, where the angle is certain, as a negative lift.
     fn upright(&mut self, phase: f64, variance: f64) -> f64 {
         let half = 0.5 * TURN;
         let is_sure = self.agreed >= AGREED && variance < UPRIGHT * UPRIGHT;
@@ -434,6 +459,7 @@ impl Lock {
         phase - libm::copysign(half, phase)
     }
 
+    /// Stores the reason for which turns are not used, with its time.
     fn note(&mut self, trouble: Trouble, now: Instant) {
         let is_lost =
             trouble == Trouble::None && (self.agreed < AGREED || self.angle > SURE * SURE);
@@ -442,7 +468,7 @@ impl Lock {
         self.troubled = (self.trouble != Trouble::None).then_some(since);
     }
 
-    /// 1σ of the angle, rad; none where any is possible.
+    /// Standard deviation of the angle, 1σ, rad; `None` where it is unknown.
     pub(super) fn sigma(&self, phase_accumulator: &PhaseAccumulator) -> Option<f64> {
         let angle = f64::from(PhaseAccumulator::between(self.told, phase_accumulator.whole()));
         let seconds = f64::from(self.since) * self.period;
@@ -453,15 +479,17 @@ impl Lock {
         (self.agreed >= AGREED && sigma < NOTHING).then_some(sigma)
     }
 
-    /// The scale error and its 1σ.
+    /// Scale error and its 1σ.
     pub(super) fn scale(&self) -> [f64; 2] {
         [self.error / (1.0 - self.error), libm::sqrt(self.scale)]
     }
 
+    /// Latest lift, m/s².
     pub(super) fn lift(&self) -> Option<f64> {
         self.lift.map(f64::from)
     }
 
+    /// State with its duration.
     pub(super) fn state(&self, now: Instant) -> State {
         let since = self.troubled.unwrap_or(now);
         let seconds = now.seconds() - since.seconds();

@@ -1,16 +1,16 @@
-//! Roll of a body that spins rapidly about its longitudinal axis (Nekrasova and Uspenskiy 2017).
+//! Roll of a body that spins rapidly about its longitudinal axis (Nekrasova 2017).
 //!
 //! ```text
 //!  x-gyro ─▶ angle ─────────────────┬─────────────────────────────▶ roll ± σ ─▶ attitude: course, pitch
 //!  y, z forces ─▶ extrema ─γ := γₑ──▲   or   ─▶ sums of a turn ─▶ phase, scale ─▲
 //! ```
 //!
-//! The lift q holds the body up, so the accelerometers feel it turn by turn: `a_y = q cos γ − ρ_y ω²` and
-//! `a_z = −q sin γ − ρ_z ω²` (the paper's equation 3; ρ how far they sit off the axis). The gyro alone loses the
-//! angle by its scale error: at 100 turns a second and 0.1 %, 36° in a second.
+//! The lift q supports the body, so the accelerometers measure it as `a_y = q cos γ − ρ_y ω²` and
+//! `a_z = −q sin γ − ρ_z ω²` (the paper's equation 3; ρ is their distance from the axis). The gyro
+//! alone loses the angle by its scale error: at 100 turns a second and 0.1 %, 36° in a second.
 //!
-//! Axes are the paper's: x forward, y up and z right at roll zero, roll clockwise seen from behind. On the axes of
-//! the rest of this crate the force to the right is `a_z`, that downwards `−a_y`.
+//! Axes are the paper's: x forward, y up and z right at roll zero, roll clockwise seen from behind.
+//! On the axes of the rest of this crate the force to the right is `a_z`, the force down `−a_y`.
 
 pub mod attitude;
 mod circle;
@@ -34,35 +34,38 @@ use crate::units::{AngleIncrement, Instant};
 use crate::words;
 use crate::words::Rounded;
 
-/// How the roll is corrected.
+/// Method by which the roll is corrected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// The paper's: at every extremum of a force the roll is that of the extremum, half a sample at best.
+    /// Extrema without interpolation (Nekrasova 2017): at every extremum of a force the roll is set
+    /// to that of the extremum, accurate to half a sample at best.
     Extrema,
-    /// The same, with the place of the extremum between the samples from a parabola.
+    /// Extrema located between the samples by a parabola.
     Interpolated,
-    /// The phase of all samples of a turn, and the gyro's scale from turn to turn.
+    /// Phase lock: phase of all samples of a turn, with the gyro's scale error estimated from turn
+    /// to turn.
     #[default]
     PhaseLocked,
 }
 
-/// What is known beforehand.
+/// Configuration of the roll estimation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
     /// Sample period, s.
     pub sample_seconds: f64,
     /// Angle random walk N of the x-gyro, rad/√s.
     pub angle_random_walk: f64,
-    /// 1σ of its scale factor.
+    /// Standard deviation of the x-gyro's scale factor, 1σ, relative.
     pub scale_sigma: f64,
-    /// 1σ of its bias, rad/s.
+    /// Standard deviation of the x-gyro's bias, 1σ, rad/s.
     pub bias_sigma: f64,
-    /// How the roll is corrected.
+    /// Method by which the roll is corrected.
     pub method: Method,
 }
 
 impl Setting {
-    /// A gyro of 0.06 °/√s, its scale known to 1 %, its bias to 0.06 °/s, its phase locked.
+    /// Configuration of a phase-locked gyro of 0.06 °/√s, with its scale known to 1 % and its bias
+    /// to 0.06 °/s.
     #[must_use]
     pub fn new(sample_seconds: f64) -> Self {
         Self {
@@ -75,14 +78,14 @@ impl Setting {
     }
 }
 
-/// Which accelerometer.
+/// Accelerometers of the spinning body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Accelerometer {
-    /// That along y.
+    /// Accelerometer along y.
     Y,
-    /// That along z.
+    /// Accelerometer along z.
     Z,
-    /// Both.
+    /// Accelerometers along y and z.
     Both,
 }
 
@@ -92,59 +95,59 @@ words! { Accelerometer:
     Self::Both => "both accelerometers show";
 }
 
-/// What the roll rests on.
+/// Source of the present roll, or fault that prevents it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum State {
-    /// No lift was felt yet.
+    /// No lift has been detected yet.
     #[default]
     Searching,
     /// Lift and gyro agree.
     Locked,
-    /// The lift is below the noise: the gyro holds the roll, for so many seconds.
+    /// The lift is below the noise, and the gyro holds the roll.
     Holding {
-        /// For how long.
+        /// Duration of the state, s.
         seconds: f64,
     },
-    /// The body turns too slowly for its forces to tell its turns.
+    /// The body spins too slowly to evaluate its turns.
     NotSpinning {
-        /// For how long.
+        /// Duration of the state, s.
         seconds: f64,
     },
-    /// There are no forces.
+    /// There are no usable forces.
     ForceLost {
-        /// For how long.
+        /// Duration of the state, s.
         seconds: f64,
     },
-    /// A part of the rotation was lost, and with it the roll, until the next turns show it again.
+    /// Rotation was lost, and with it the roll, until the next turns show it again.
     RotationLost {
-        /// For how long.
+        /// Duration of the state, s.
         seconds: f64,
     },
-    /// An accelerometer shows one value all the time.
+    /// An accelerometer repeats one identical value.
     AccelerometerStuck {
-        /// Which one.
+        /// Accelerometer that is stuck.
         which: Accelerometer,
-        /// For how long.
+        /// Duration of the state, s.
         seconds: f64,
     },
-    /// The gyro about the long axis shows one rate all the time.
+    /// The gyro about the longitudinal axis repeats one identical rate.
     GyroStuck {
-        /// For how long.
+        /// Duration of the state, s.
         seconds: f64,
     },
-    /// The forces go round against the gyro.
+    /// The forces rotate against the gyro: axes or signs are exchanged.
     Mirrored {
-        /// For how long.
+        /// Duration of the state, s.
         seconds: f64,
     },
-    /// The forces draw an ellipse, not a circle.
+    /// The forces describe an ellipse instead of a circle: a scale or axis is wrong.
     Elliptic {
-        /// For how long.
+        /// Duration of the state, s.
         seconds: f64,
     },
-    /// The forces turn otherwise than the gyro says.
+    /// The phase of the forces contradicts the gyro's angle.
     Contradicted {
-        /// For how long.
+        /// Duration of the state, s.
         seconds: f64,
     },
 }
@@ -163,17 +166,21 @@ words! { State:
     Self::Contradicted { seconds } => "the forces contradict the gyro for {} s: check its scale", Rounded::<2>(seconds);
 }
 
-/// Part of its period by which a sample may come late.
+/// Greatest delay of a sample, in sample periods.
 const LATE: f32 = 0.5;
 
-/// Follows the roll.
+/// Estimator of the roll.
 #[derive(Clone, Debug)]
 pub struct Spin {
+    /// Angle from the gyro, corrected.
     phase_accumulator: PhaseAccumulator,
+    /// Method in use.
     corrector: Corrector,
     /// Sample period, µs.
     period: f32,
+    /// Time of the latest sample.
     latest: Option<Instant>,
+    /// Plausibility check of the gyro.
     pace: Timing,
 }
 
@@ -183,12 +190,14 @@ pub struct Spin {
 )]
 #[derive(Clone, Debug)]
 enum Corrector {
+    /// Correction by extrema.
     Extrema(Extrema),
+    /// Correction by phase lock.
     Lock(Lock),
 }
 
 impl Spin {
-    /// Begins at an unknown roll.
+    /// Begins with an unknown roll.
     #[must_use]
     pub fn new(setting: &Setting) -> Self {
         let corrector = match setting.method {
@@ -205,7 +214,7 @@ impl Spin {
         }
     }
 
-    /// Takes a sample; the signal by which the roll was overridden, where it was.
+    /// Takes a sample; returns the extremum at which the roll was corrected, if there was one.
     #[inline]
     pub fn push(&mut self, sample: &SpinSample) -> Option<Signal> {
         let missing = self.missing(sample.time);
@@ -225,7 +234,7 @@ impl Spin {
         }
     }
 
-    /// Samples that are missing before one of this time.
+    /// Number of samples missing before one of this time.
     #[inline]
     fn missing(&mut self, now: Instant) -> f32 {
         let Some(before) = self.latest.replace(now) else { return 0.0 };
@@ -234,7 +243,8 @@ impl Spin {
         if missing > LATE * self.period { missing / self.period } else { 0.0 }
     }
 
-    /// The body goes on turning as it did while samples are missing, or their gyro is not believed.
+    /// Propagates the roll at the last rate while samples are missing or their gyro reading is
+    /// implausible.
     #[inline(never)]
     fn bridge(&mut self, missing: f32, turned: [AngleIncrement; 2]) {
         let [before, now] = turned.map(|turned| turned.0 as f32);
@@ -244,7 +254,7 @@ impl Spin {
             Corrector::Extrema(extrema) => extrema.disturb(),
             Corrector::Lock(lock) => {
                 let off = self.pace.off();
-                // A jump may be right at once; what clips or sticks was right before.
+                // A jump may be genuine at once; a saturated or stuck gyro was right before.
                 let strayed = |samples| if off > 0.0 { samples } else { lock.strayed(samples) };
                 let [known, lost] = self.pace.lost().map(strayed);
                 let change = (now - before).abs() + off;
@@ -254,15 +264,17 @@ impl Spin {
     }
 }
 
-/// What is asked of it.
+/// Results of the roll estimation.
 impl Spin {
-    /// The roll at the latest sample. Before the first correction it counts from zero at the first sample.
+    /// Roll at the latest sample. Before the first correction it counts from zero at the first
+    /// sample.
     #[must_use]
     pub fn roll(&self) -> Roll {
         self.phase_accumulator.roll()
     }
 
-    /// Its 1σ, rad; none where it is unknown, and of extrema, which do not tell.
+    /// Standard deviation of the roll, 1σ, rad; `None` where it is unknown, and for extrema, which
+    /// give none.
     #[must_use]
     pub fn sigma(&self) -> Option<f64> {
         match &self.corrector {
@@ -271,7 +283,7 @@ impl Spin {
         }
     }
 
-    /// The gyro's scale error, shown over true less one, and its 1σ; none of extrema.
+    /// Scale error of the gyro, shown over true less one, and its 1σ; `None` for extrema.
     #[must_use]
     pub fn scale(&self) -> Option<[f64; 2]> {
         match &self.corrector {
@@ -280,7 +292,7 @@ impl Spin {
         }
     }
 
-    /// The lift of the latest turn, m/s², negative where it pushes down; none where it is not known.
+    /// Lift of the latest turns, m/s², negative where it points down; `None` where it is unknown.
     #[must_use]
     pub fn lift(&self) -> Option<f64> {
         match &self.corrector {
@@ -289,7 +301,7 @@ impl Spin {
         }
     }
 
-    /// What the roll rests on.
+    /// Source of the present roll, or fault that prevents it.
     #[must_use]
     pub fn state(&self) -> State {
         let now = self.latest.unwrap_or_default();
@@ -305,7 +317,7 @@ impl Spin {
         }
     }
 
-    /// By what the latest sample turned the body, corrected for scale, in 2⁻³² of a turn.
+    /// Rotation of the latest sample, corrected for the scale error, in 2⁻³² of a turn.
     pub(super) fn step(&self) -> i32 {
         self.phase_accumulator.step()
     }

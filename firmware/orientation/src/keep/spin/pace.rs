@@ -1,50 +1,57 @@
-//! Whether the gyro can be believed: increments that clip, that jump as no body does, or that stay what they are.
+//! Plausibility check of the spin gyro: increments that saturate, that jump as no body does, or
+//! that repeat.
 
 use super::Setting;
 use crate::units::AngleIncrement;
 
-/// Samples without any change after which a gyro that has noise is stuck.
+/// Number of identical samples after which a noisy gyro counts as stuck.
 const STILL: u32 = 32;
-/// How many times as many they are as ever before.
+/// Factor by which that number must exceed the longest earlier repetition.
 const LONGER: u32 = 2;
-/// Samples that must have changed, more than not, before it is known to live, and the most that are counted.
+/// Surplus of changed samples from which the gyro counts as live.
 const LIVES: u16 = 128;
+/// Greatest surplus that is counted.
 const MOST: u16 = 512;
-/// Jumps on end after which they are believed: enough to see first whether it is stuck where it jumped to.
+/// Retry budget: number of successive jumps after which they are accepted; enough to detect first
+/// whether the gyro is stuck at the new value.
 const PATIENCE: u16 = 128;
-/// Steps of noise from which a gyro that lives does not repeat itself.
+/// Noise, in steps, from which a live gyro does not repeat itself.
 const LIVELY: f64 = 8.0;
-/// Least jump, rad in a sample, standard deviations of the noise, and part of the rate.
+/// Least jump, rad per sample.
 const JUMP: f64 = 1e-3;
+/// Least jump, in standard deviations of the noise.
 const JUMP_SIGMAS: f64 = 12.0;
+/// Least jump, as a divisor of the rate.
 const JUMP_PART: u32 = 16;
 
-/// The gyro's increments, one after the other.
+/// State of the plausibility check.
 #[derive(Clone, Debug)]
 pub(super) struct Timing {
-    /// The latest that was believed.
+    /// Latest increment that was accepted.
     before: AngleIncrement,
-    /// The latest, believed or not, and how many were as it is.
+    /// Latest increment, accepted or not, and its number of repetitions.
     shown: AngleIncrement,
     still: u32,
-    /// The most that were alike before: a coarse gyro that turns slowly repeats itself too.
+    /// Longest earlier repetition: a coarse gyro that turns slowly repeats itself too.
     longest: u32,
-    /// Samples that changed, less those that did not.
+    /// Surplus of changed over repeated samples.
     lives: u16,
-    /// Jumps on end, less what was good meanwhile. At the beginning none is known to be one.
+    /// Number of successive jumps, less plausible samples meanwhile; at the start no jump can be
+    /// recognised.
     jumped: u16,
-    /// Change from which an increment may be a jump, in its steps.
+    /// Least change that may be a jump, in steps of an increment.
     least: u32,
-    /// Samples on end of which the rotation is not known, before the latest and with it.
+    /// Length of the run of samples with unknown rotation, before the latest one and with it.
     lost: [u16; 2],
-    /// Whether its noise keeps a gyro that lives from repeating itself.
+    /// Whether the gyro's noise excludes repetitions.
     is_lively: bool,
-    /// Whether all of this is as it should be, of a gyro that lives or of one that never did.
+    /// Whether all checks are passed, and whether the gyro never changed by more than a step.
     is_calm: bool,
     is_dull: bool,
 }
 
 impl Timing {
+    /// Check before the first sample.
     pub(super) fn new(setting: &Setting) -> Self {
         let noise = setting.angle_random_walk * libm::sqrt(setting.sample_seconds);
         Self {
@@ -62,7 +69,7 @@ impl Timing {
         }
     }
 
-    /// What the body is taken to turn where the gyro shows this.
+    /// Increment that is assumed for the body, for the gyro's reading.
     #[inline]
     pub(super) fn take(&mut self, turned: AngleIncrement) -> AngleIncrement {
         let change = turned.0.wrapping_sub(self.shown.0).unsigned_abs();
@@ -77,7 +84,7 @@ impl Timing {
         self.before
     }
 
-    /// Takes one that is not as usual, or comes after such.
+    /// Checks an unusual increment, or one that follows such.
     #[inline(never)]
     fn weigh(&mut self, change: u32, off: u32) {
         let is_stuck = self.is_stuck();
@@ -100,12 +107,13 @@ impl Timing {
         self.is_calm = is_usual && self.jumped == 0 && !self.is_lost();
     }
 
+    /// Accepts the latest increment.
     fn believe(&mut self) {
         self.before = self.shown;
         self.lost = [0; 2];
     }
 
-    /// Takes one that may not be what the body turned.
+    /// Handles an increment that may be wrong.
     fn doubt(&mut self, off: u32) {
         let is_jump = off > self.least.max(self.before.0.unsigned_abs() / JUMP_PART);
         self.jumped = self.jumped.saturating_add(u16::from(is_jump));
@@ -114,40 +122,41 @@ impl Timing {
             return self.believe();
         }
         let [_, known] = self.lost;
-        // That it is stuck is seen late.
+        // A stuck gyro is detected late, so the repetitions count as lost.
         let late = if known == 0 && is_stuck { self.still as u16 } else { 1 };
         self.lost = [known, known.saturating_add(late)];
     }
 
-    /// What the body was taken to turn in the latest sample.
+    /// Increment that was assumed for the latest sample.
     pub(super) fn before(&self) -> AngleIncrement {
         self.before
     }
 
-    /// Whether the rotation of the latest sample is not known.
+    /// Whether the rotation of the latest sample is unknown.
     #[inline]
     pub(super) fn is_lost(&self) -> bool {
         self.lost[1] > 0
     }
 
-    /// Of how many samples on end it is not, before the latest and with it.
+    /// Lengths of the run with unknown rotation, before the latest sample and with it.
     pub(super) fn lost(&self) -> [f32; 2] {
         self.lost.map(f32::from)
     }
 
-    /// How far the gyro shows something else that may be right, in its steps: neither stuck nor clipped.
+    /// Deviation of a reading that may be right, in steps of an increment: zero where it is stuck
+    /// or saturated.
     pub(super) fn off(&self) -> f32 {
         let is_wrong = self.shown.is_saturated() || self.is_stuck();
         if is_wrong { 0.0 } else { self.shown.0.wrapping_sub(self.before.0).unsigned_abs() as f32 }
     }
 
-    /// Whether the gyro shows the same again and again.
+    /// Whether the gyro repeats one identical value.
     pub(super) fn is_stuck(&self) -> bool {
         let longer = LONGER.saturating_mul(self.longest);
         self.is_lively && self.lives >= LIVES && self.still >= STILL.max(longer)
     }
 
-    /// For how many samples it has shown the same; none of one that lives, or that clips.
+    /// Number of repetitions; `None` for a live gyro, or a saturated one.
     pub(super) fn stuck(&self) -> Option<u32> {
         (self.is_stuck() && !self.shown.is_saturated()).then_some(self.still)
     }

@@ -1,30 +1,32 @@
-//! What the body did since its heading was handed over.
+//! Motion of the body since its heading was handed over.
 
 use super::sums::Window;
 
-/// For how long a rest is remembered, s.
+/// Longest rest that is counted, s.
 const MEMORY: f32 = 600.0;
 
-/// What the body did since its heading was handed over.
+/// Motion of the body since its heading was handed over, as far as it affects the heading's error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Course {
-    /// Turned about the vertical, rad, whole turns included.
+    /// Net rotation about the vertical, rad, whole turns included.
     pub turned: f32,
-    /// For how long it has moved since it stood last, s.
+    /// Time of motion since the last rest, s.
     pub moved: f32,
-    /// For how long it stood then, s, ten minutes at most.
+    /// Length of that rest, s, at most ten minutes.
     pub stood: f32,
-    /// What a bias that grows by 1 rad/s² has turned unseen, rad.
+    /// Angle error per unit ramp of the bias, rad per rad/s².
     pub ramp: f32,
 }
 
 impl Course {
+    /// Adds a window of motion.
     pub(super) fn drive(&mut self, window: &Window) {
         self.turned += window.about;
         self.moved += window.seconds;
         self.ramp += window.seconds * (self.moved + 0.5 * self.stood);
     }
 
+    /// Adds a time at rest, s.
     pub(super) fn stand(&mut self, seconds: f32) {
         if self.moved > 0.0 {
             (self.moved, self.stood) = (0.0, 0.0);

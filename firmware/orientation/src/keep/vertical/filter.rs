@@ -1,14 +1,17 @@
-//! What gravity tells of tilt, biases and axes: a Kalman filter of seventeen states, ten times a second.
+//! Gyrovertical filter: a Kalman filter of seventeen states that corrects tilt, biases and axes by
+//! gravity, ten times a second.
 //!
-//! The states are errors: of the attitude about north, east and down; of the three gyros' biases on the body's
-//! axes; of their scale factors and the directions of their axes, nine numbers; and of the velocity, north and east, that
-//! the forces add up to. A body goes nowhere for long, so its velocity is about zero, to within what it lately showed:
-//! that is all that tells gravity from acceleration ([`super::motion`]). A lasting velocity fades from the state, for it
-//! says nothing of the tilt.
+//! The states are errors: of the attitude about north, east and down; of the three gyros' biases on
+//! the body's axes; of their scale factors and the directions of their axes, nine numbers; and of
+//! the velocity, north and east, that the forces integrate to. A body does not travel far for long,
+//! so its velocity is about zero, within what it lately showed (zero-velocity pseudo-measurement):
+//! that alone separates gravity from acceleration ([`super::motion`]). A lasting velocity fades
+//! from the state, because it carries no information on the tilt.
 //!
-//! Errors of scale and axes add up as long as a body turns one way, and come back when it turns back: they are no noise,
-//! but a state that gravity shows. They are learnt for the level only. Gravity knows nothing of the heading, and what
-//! motion makes it say wrongly of the axes would be carried there for good.
+//! Errors of scale and axes accumulate as long as a body turns one way, and cancel when it turns
+//! back: they are not noise, but states that gravity shows. They are estimated for the level only.
+//! Gravity does not observe the heading, and axis errors that motion makes it estimate wrongly
+//! would remain in the heading for good.
 
 use super::Vector;
 use super::floor::{Floor, Verdict};
@@ -18,91 +21,99 @@ use crate::math::rotation::dot;
 
 /// Number of states.
 const STATES: usize = 17;
-/// Where the turn about the vertical stands.
+/// Index of the rotation about the vertical.
 pub const TURN: usize = 2;
-/// Where the biases begin.
+/// Index of the first bias.
 const BIAS: usize = 3;
-/// Where scale factors and axes begin: by how much of the turn about each axis each gyro shows too much, row by row.
+/// Index of the first scale and axis error: the excess of each gyro per rotation about each axis,
+/// row by row.
 const AXES: usize = 6;
-/// Where the velocity begins.
+/// Index of the first velocity.
 const VELOCITY: usize = 15;
-/// Noise of the forces, m/s²/√Hz: 100 µg.
+/// Noise density of the forces, m/s²/√Hz: 100 µg/√Hz.
 const FORCE_NOISE: f32 = 1e-3;
-/// Error of the accelerometers that changes as the body turns, m/s²: 1 % of gravity, by scale and axes.
+/// Error of the accelerometers that changes as the body turns, m/s²: 1 % of gravity, by scale and
+/// axes.
 const FORCE_SCALE: f32 = 0.1;
 
-/// Part of a gyro's stated error of scale and axes that is the same all the time and can be learnt; the rest changes
-/// with rate, acceleration and temperature.
+/// Part of a gyro's configured error of scale and axes that is constant and can be estimated; the
+/// rest changes with rate, acceleration and temperature.
 const CONSTANT_PART: f32 = 0.4;
-/// Time over which an error of scale and axes is renewed, s.
+/// Correlation time of an error of scale and axes, s.
 const RENEWAL: f32 = 1000.0;
-/// For how long a body turns one way before it turns back, s: what changes of scale and axes adds up until then.
+/// Time for which a body turns one way before it turns back, s: variable errors of scale and axes
+/// accumulate until then.
 const SWING: f32 = 0.5;
-/// Part of a variance that rounding may make of it.
+/// Relative rounding error of a variance.
 const ROUNDING: f32 = 1e-6;
-/// Time in which a body that turns quickly shows all of the Earth's rate on every axis, s.
+/// Time in which a quickly turning body shows the full Earth rate on every axis, s.
 const TURNING: f32 = 30.0;
-/// For how long a bend lasts, s.
+/// Duration of a bend, s.
 const BEND: f32 = 10.0;
-/// Variance of an angle of which nothing is known, rad²: a turn's square. More would only cost digits.
+/// Variance of an unknown angle, rad²: a turn squared. A larger value would only cost digits.
 const ANY_ANGLE: f32 = 40.0;
-/// Time in which a bias that the floor shows becomes less certain by a factor of e in its variance, s.
+/// Time in which a bias that the floor shows gets a variance larger by a factor of e, s.
 const WIDENING: f32 = 4.0;
-/// Time over which it is watched what gravity takes from the level's variance and what the gyros add, s.
+/// Averaging time of the balance between growth and reduction of the level's variance, s.
 const WATCH: f32 = 5.0;
 
-/// The states that a stretch changes: tilt, turn and velocity.
+/// States that a stretch changes: tilt, rotation and velocity.
 const CARRIED: [usize; 5] = [0, 1, TURN, VELOCITY, VELOCITY + 1];
 
 /// A vector of all states.
 type States = [f32; STATES];
 
-/// What of the gyros is to be expected, 1σ.
+/// Expected errors of the gyros, as variances.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Expected {
-    /// Angle random walk, squared, rad²/s.
+    /// Squared angle random walk, rad²/s.
     pub walk: [f32; 3],
-    /// What a bias drifts, squared, (rad/s)²/s.
+    /// Squared drift of a bias, (rad/s)²/s.
     pub drift: [f32; 3],
-    /// Scale and axes, squared.
+    /// Squared error of scale and axes.
     pub scale: [f32; 3],
 }
 
-/// What is to be put right.
+/// Corrections that the filter found.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Correction {
-    /// Of the attitude, about north, east and down, rad.
+    /// Rotation of the attitude about north, east and down, rad.
     pub(super) rotation: [f32; 3],
-    /// Of the biases, rad/s.
+    /// Change of the biases, rad/s.
     pub(super) bias: [f32; 3],
-    /// Of scale factors and axes, a row a gyro.
+    /// Change of scale factors and axes, one row for each gyro.
     pub(super) axes: [[f32; 3]; 3],
 }
 
-/// What happened to the level's variance lately, rad²/s.
+/// Recent change of the level's variance, rad²/s.
 #[derive(Clone, Copy, Debug, Default)]
 struct Balance {
-    /// What the gyros' errors added.
+    /// Growth by the gyros' errors.
     grown: f32,
-    /// What gravity took.
+    /// Reduction by gravity.
     gained: f32,
 }
 
-/// The filter at work.
+/// State of the filter.
 #[derive(Clone, Debug)]
 pub struct Filter {
+    /// Covariance of the states.
     covariance: [States; STATES],
+    /// Velocity north and east that the forces integrate to, m/s.
     velocity: [f32; 2],
+    /// Statistics of the motion.
     motion: Motion,
+    /// Low-passed force, as a check of the vertical.
     floor: Floor,
+    /// Balance of the level's variance.
     balance: Balance,
-    /// Corrections that are still to be taken.
+    /// Corrections that have not been applied yet.
     correction: States,
 }
 
-/// Setting up, and a step.
+/// Initialisation and propagation.
 impl Filter {
-    /// With these 1σ of the gyros' biases, rad/s; the level is not taken yet.
+    /// Filter with these 1σ of the gyros' biases, rad/s, before the level is set.
     #[must_use]
     pub fn new(biases: [f32; 3], expected: &Expected) -> Self {
         let mut filter = Self {
@@ -123,8 +134,8 @@ impl Filter {
         filter
     }
 
-    /// What the stretch adds to the errors, first half: how the tilt goes along with what each gyro shows too much, by
-    /// its bias, and by its scale and axis of every rate.
+    /// First half of the propagation over a stretch: coupling of the tilt to the gyros' excess, by
+    /// bias, and by scale and axis for every rate.
     pub fn carry(&mut self, stretch: &Stretch) {
         let rates = stretch.rates();
         let (tilts, others) = self.covariance.split_at_mut(BIAS);
@@ -142,7 +153,7 @@ impl Filter {
         }
     }
 
-    /// The second half: how the velocity goes along, all of it as the other way round, and what is new.
+    /// Second half of the propagation: the velocity, the symmetric part, and the process noise.
     pub fn spread(&mut self, stretch: &Stretch, expected: &Expected) {
         let kept = 1.0 - stretch.seconds / FADING;
         for (velocity, impulse) in self.velocity.iter_mut().zip(stretch.impulse) {
@@ -166,8 +177,8 @@ impl Filter {
         self.balance.gained -= part * self.balance.gained;
     }
 
-    /// Carries the errors of tilt and velocity with each other, whose rows alone are carried yet, and makes the columns
-    /// like the rows.
+    /// Propagates tilt and velocity with each other, whose rows alone were propagated before, and
+    /// copies the rows to the columns.
     fn even_out(&mut self, stretch: &Stretch, kept: f32) {
         let rates = stretch.rates();
         let [about_north, about_east, about_down] = &stretch.attitude;
@@ -196,12 +207,12 @@ impl Filter {
         }
     }
 
-    /// What the stretch adds that is new.
+    /// Adds the process noise of a stretch.
     fn add_noise(&mut self, stretch: &Stretch, expected: &Expected) {
         self.add_turn_noise(stretch, expected);
         let square = stretch.rate_squares.iter().sum::<f32>();
         self.add_drift(stretch, expected, square);
-        // A body that keeps its attitude shows the same error all the time: a tilt, not noise.
+        // A body that keeps its attitude shows a constant error: that is a tilt, not noise.
         let turned = (square / stretch.seconds * SWING * SWING).min(1.0);
         let strayed = FORCE_SCALE * FORCE_SCALE * SWING * turned;
         for place in [VELOCITY, VELOCITY + 1] {
@@ -210,7 +221,8 @@ impl Filter {
         }
     }
 
-    /// Of the attitude: the gyros' random walk, and what changes of their scale and axes.
+    /// Process noise of the attitude: the gyros' random walk, and variable errors of scale and
+    /// axes.
     fn add_turn_noise(&mut self, stretch: &Stretch, expected: &Expected) {
         let scale = SWING * self.floor.strain();
         let strays: [f32; 3] = core::array::from_fn(|axis| {
@@ -219,7 +231,7 @@ impl Filter {
         });
         let [about_north, about_east, _] =
             stretch.attitude.map(|row| weighed(&row, &strays, stretch));
-        // What the gyro of the down axis makes of the turn by its scale, who keeps the turn accounts for.
+        // The scale error of the down gyro over a turn is accounted for in heading hold.
         let [x, y, _] = strays;
         let own = expected.walk[2] * stretch.seconds;
         let about_down = weighed(&stretch.attitude[2], &[x, y, own], stretch);
@@ -229,9 +241,10 @@ impl Filter {
         }
     }
 
-    /// Of biases and axes, of a body whose squared rates add up to this, rad²/s.
+    /// Process noise of biases and axes, for a body whose squared rates integrate to `square`,
+    /// rad²/s.
     fn add_drift(&mut self, stretch: &Stretch, expected: &Expected, square: f32) {
-        // A body that turns to and fro quickly leaves of it only its mean.
+        // A body that quickly turns to and fro leaves only the mean of it.
         let turned = (BEND * square).min(stretch.seconds / TURNING);
         for axis in 0..3 {
             let more = expected.drift[axis] * stretch.seconds + stretch.hidden * turned;
@@ -243,15 +256,15 @@ impl Filter {
         }
     }
 
-    /// What a wrong level makes of a turn: half its square is missing of it, the same way round for as long as a bend
-    /// lasts.
+    /// Effect of a wrong level on a turn: half its square is missing from the turn, with one sign
+    /// for the duration of a bend.
     fn slanted(&self, stretch: &Stretch) -> f32 {
         let square = self.covariance[0][0].max(self.covariance[1][1]);
         0.25 * square * square * BEND * stretch.rate_squares.iter().sum::<f32>()
     }
 
-    /// Looks how the body moves, and where the floor has its vertical: the mean force on the level frame, m/s², where the
-    /// filter's has nothing to do with it.
+    /// Observes the motion, and compares the floor's vertical; returns the mean force on the level
+    /// frame, m/s², where the filter's vertical is wrong beyond repair.
     pub fn watch(&mut self, stretch: &Stretch) -> Option<Vector> {
         let size = stretch.force();
         self.motion.watch(stretch, size, &self.floor.mean());
@@ -267,7 +280,7 @@ impl Filter {
         if self.motion.is_tumbled() { self.floor.take_level() } else { None }
     }
 
-    /// The body stays where it is, nearly: what its velocity north (0) or east (1) says, over so many seconds.
+    /// Zero-velocity pseudo-measurement for the velocity north (0) or east (1), over `seconds`.
     pub fn stay(&mut self, axis: usize, seconds: f32) {
         let before = self.level_variance();
         let density = self.motion.density(0.5 * before);
@@ -275,7 +288,7 @@ impl Filter {
         self.balance.gained += (before - self.level_variance()) / WATCH;
     }
 
-    /// Takes a measurement of one state: by how much it is off, and that number's variance.
+    /// Updates the filter with a measurement of one state: its deviation, and the variance of that.
     pub fn measure(&mut self, place: usize, off: f32, variance: f32) {
         let column: States = core::array::from_fn(|row| self.covariance[row][place]);
         let whole = column[place] + variance;
@@ -288,10 +301,12 @@ impl Filter {
         for (row, covariance) in self.covariance.iter_mut().enumerate() {
             let before = covariance[row];
             subtract(covariance, column[row] * part, &column);
-            // Of what is learnt at once almost to the end, rounding must not leave less than nothing.
+            // Rounding must not leave a negative variance of a state that is learnt almost
+            // completely at once.
             covariance[row] = covariance[row].max(ROUNDING * before);
         }
-        // What is left of the measured state is a difference of nearly equal numbers: written as a product.
+        // The remaining variance of the measured state is a difference of nearly equal numbers, so
+        // it is written as a product.
         let left = variance * part;
         for (row, before) in column.iter().enumerate() {
             self.covariance[row][place] = before * left;
@@ -300,9 +315,9 @@ impl Filter {
     }
 }
 
-/// What becomes of the states from outside.
+/// External changes of the states.
 impl Filter {
-    /// The body stands: whatever velocity it had is over.
+    /// Begins a rest: the velocity is zero.
     pub fn stand(&mut self) {
         self.velocity = [0.0; 2];
         self.motion.stand();
@@ -312,7 +327,7 @@ impl Filter {
         }
     }
 
-    /// What is to be put right, which is known from now on.
+    /// Takes the corrections, which count as applied from now on.
     pub(super) fn take(&mut self) -> Correction {
         let [a, b, c, x, y, z, axes @ .., north, east] = core::mem::take(&mut self.correction);
         self.velocity[0] += north;
@@ -325,24 +340,24 @@ impl Filter {
         }
     }
 
-    /// Counts the error of the turn about the vertical from now on.
+    /// Restarts the error of the rotation about the vertical.
     pub fn begin_turn(&mut self) {
         self.reset(TURN, 0.0);
     }
 
-    /// Forgets a bias but for this variance, (rad/s)².
+    /// Resets a bias to this variance, (rad/s)².
     pub fn forget_bias(&mut self, axis: usize, variance: f32) {
         self.reset(BIAS + axis, variance);
     }
 
-    /// Forgets a gyro's scale and axis but for what is stated of them, squared.
+    /// Resets a gyro's scale and axis errors to the configured variance.
     pub fn forget_axis(&mut self, axis: usize, scale: f32) {
         for place in axes(axis) {
             self.reset(place, lasting(scale));
         }
     }
 
-    /// Forgets all of a state but for its variance.
+    /// Resets a state to this variance, and removes its correlations.
     fn reset(&mut self, place: usize, variance: f32) {
         for other in 0..STATES {
             self.covariance[place][other] = 0.0;
@@ -352,7 +367,7 @@ impl Filter {
         self.correction[place] = 0.0;
     }
 
-    /// The level was taken anew, with this 1σ, rad.
+    /// Reports that the level was set anew, with this 1σ, rad.
     pub fn relevel(&mut self, sigma: f32) {
         for place in 0..TURN {
             self.reset(place, sigma * sigma);
@@ -361,50 +376,50 @@ impl Filter {
         self.stand();
     }
 
-    /// The body may be moving, at a speed that is not known yet.
+    /// Reports that the body may be moving at an unknown speed.
     pub fn expect_motion(&mut self) {
         self.motion.expect_motion();
     }
 
-    /// Watches from now on what gravity takes of what the gyros add, as if it had taken all until now.
+    /// Restarts the balance, as if gravity had compensated all growth until now.
     pub fn begin_balance(&mut self) {
         self.balance.gained = self.balance.grown;
     }
 
-    /// Makes a state less certain by a variance; an angle until it may be any.
+    /// Inflates the variance of a state; that of an angle only up to a whole turn.
     pub fn inflate(&mut self, place: usize, variance: f32) {
         let own = &mut self.covariance[place][place];
         let room = if place <= TURN { (ANY_ANGLE - *own).max(0.0) } else { variance };
         *own += variance.min(room);
     }
 
-    /// Makes both tilts less certain by a variance, rad².
+    /// Inflates the variance of both tilts, rad².
     pub fn doubt_level(&mut self, variance: f32) {
         self.inflate(0, variance);
         self.inflate(1, variance);
     }
 }
 
-/// What is asked of it.
+/// Results of the filter.
 impl Filter {
-    /// Variance of the turn about the vertical, rad².
+    /// Variance of the rotation about the vertical, rad².
     #[must_use]
     pub fn turn_variance(&self) -> f32 {
         self.variance(TURN)
     }
 
-    /// Variance of a state as it stands: what is still to be put right counts as an error.
+    /// Variance of a state including corrections that have not been applied yet.
     fn variance(&self, place: usize) -> f32 {
         let correction = self.correction[place];
         self.covariance[place][place].max(0.0) + correction * correction
     }
 
-    /// Variances of both tilts together, rad².
+    /// Sum of the variances of both tilts, rad².
     fn level_variance(&self) -> f32 {
         self.covariance[0][0] + self.covariance[1][1]
     }
 
-    /// 1σ of the greater tilt, rad.
+    /// Standard deviation of the greater tilt, 1σ, rad.
     #[must_use]
     pub fn tilt_sigma(&self) -> f32 {
         libm::sqrtf(self.variance(0).max(self.variance(1)))
@@ -416,20 +431,20 @@ impl Filter {
         core::array::from_fn(|axis| self.covariance[BIAS + axis][BIAS + axis].max(0.0))
     }
 
-    /// Whether the body is tumbled about, or was lately turned as no vehicle on wheels is.
+    /// Whether the body tumbles, or lately turned as no wheeled vehicle does.
     #[must_use]
     pub fn is_tumbled(&self) -> bool {
         self.motion.is_tumbled()
     }
 
-    /// Where the bias of an axis stands among the states.
+    /// Index of an axis's bias among the states.
     #[must_use]
     pub fn bias(axis: usize) -> usize {
         BIAS + axis
     }
 
-    /// What part gravity lately took of what the gyros' errors added to the level's variance; one where they added
-    /// nothing.
+    /// Part of the growth of the level's variance that gravity lately compensated; one where there
+    /// was no growth.
     #[must_use]
     pub fn share_of_gravity(&self) -> f32 {
         let Balance { grown, gained } = self.balance;
@@ -437,24 +452,25 @@ impl Filter {
     }
 }
 
-/// Where scale factor and axis of a gyro stand among the states.
+/// Indices of scale factor and axis errors of a gyro.
 fn axes(axis: usize) -> core::ops::Range<usize> {
     AXES + 3 * axis..AXES + 3 * axis + 3
 }
 
-/// Variance of what lasts of an error of scale and axes, from the whole.
+/// Variance of the constant part of an error of scale and axes, from the whole.
 fn lasting(scale: f32) -> f32 {
     CONSTANT_PART * CONSTANT_PART * scale
 }
 
-/// What strays about the body's axes, squared, as it adds up about an axis of the level frame.
+/// Variance about an axis of the level frame, from variances about the body's axes.
 fn weighed(row: &[f32; 3], strays: &[f32; 3], stretch: &Stretch) -> f32 {
     let part = 1.0 / (stretch.seconds * stretch.seconds);
     let [x, y, z] = row.map(|cosine| cosine * cosine * part);
     x * strays[0] + y * strays[1] + z * strays[2]
 }
 
-/// Takes a multiple of another row from a row: four numbers at a time, for a loop costs as much as what it does.
+/// Subtracts a multiple of another row from a row, four numbers at a time, because a loop costs as
+/// much as its body.
 #[inline(never)]
 fn subtract(row: &mut States, factor: f32, other: &States) {
     let (fours, rest) = row.as_chunks_mut::<4>();

@@ -1,14 +1,16 @@
-//! Where gravity must be if the filter is wrong: the force, low-passed in the gyros' frame.
+//! Independent check of the vertical: the force, low-passed in the gyros' frame (the floor).
 //!
-//! It errs by what the body accelerates, and by what the gyros turn too much within seconds, but it never strays farther:
-//! the floor on which the filter stands. Where it is beside the filter's vertical by more than motion and the level's σ
-//! explain, the gyros are worse than they are stated to be, or a turn was not seen, and σ grows.
+//! It is wrong by the acceleration of the body, and by the gyros' errors within seconds, but its
+//! error never grows beyond that: the filter is compared with it. Where it deviates from the
+//! filter's vertical by more than motion and the level's σ explain, the gyros are worse than
+//! configured, or a rotation was missed, and σ is inflated.
 //!
-//! A body on wheels may also be in a bend: its σ grows within seconds, to a fifth of what the two are apart. A body that
-//! is tumbled about, in a hand or by waves, or that was seen to turn quicker than wheels turn it, is in none, and its
-//! gyros are worked hardest: its level is at once as uncertain as the two are apart, for half a minute the gyros' scale
-//! is believed no more than gravity shows of it, and what leans for long is a bias. Where hardly any of the mean force
-//! holds the body up, the filter's vertical is none, and the floor's takes its place.
+//! A wheeled vehicle may also be in a bend: its σ then grows within seconds, to a fifth of the
+//! deviation. A body that tumbles, in a hand or on waves, or that turned faster than wheels turn
+//! it, is in no bend, and its gyros are stressed most: its level is at once as uncertain as the
+//! deviation, for half a minute the gyros' scale is trusted no more than gravity confirms, and a
+//! lasting deviation is attributed to a bias. Where hardly any of the mean force supports the body,
+//! the filter's vertical is invalid and the floor's replaces it.
 //!
 //! Source of the low-pass in the gyros' frame: D. Laidig and T. Seel, VQF, Information Fusion 2023.
 
@@ -17,59 +19,62 @@ use super::stretch::Stretch;
 use super::{GRAVITY, Vector};
 use crate::math::rotation::dot;
 
-/// Standard deviations by which the floor may be beside the filter's vertical.
+/// Significance, in σ, at which the floor deviates from the filter's vertical.
 const FLOOR: f32 = 5.0;
-/// Mean square that they may be apart at most, of a body that is tumbled about, in those of gravity: one that gained
-/// 70 m/s on a level course within the band is no such body.
+/// Greatest mean squared deviation for a tumbling body, in units of gravity squared: a body that
+/// gained 70 m/s on a level course within the band does not tumble.
 const FARTHEST: f32 = 0.5;
-/// Standard deviations that are too many if they last: those of a bias.
+/// Significance, in σ, of a lasting deviation that is attributed to a bias.
 const BIAS_SIGMAS: f32 = 2.5;
-/// Part of gravity that may be missing in the mean of what holds the body up, before the level is taken from the floor:
-/// a loop that is flown misses less.
+/// Part of gravity missing in the mean supporting force, beyond which the level is taken from the
+/// floor; a looping aircraft misses less.
 const MISSING: f32 = 0.5;
-/// Time in which the variance of a level that is not tumbled about grows by what the floor is beside it unexplained, s.
+/// Time in which the level's variance of a body that does not tumble grows by the unexplained
+/// deviation, s.
 const WIDENING: f32 = 2.0;
-/// For how long a doubt lasts, s.
+/// Decay time of an inflation, s.
 const DOUBT: f32 = 30.0;
-/// Variance of the level, rad², from which a doubt makes the gyros' scale uncertain, and the greatest factor of its
-/// variance: a gyro that is soft at its limit errs by a tenth.
+/// Variance of the level, rad², from which an inflation makes the gyros' scale uncertain.
 const STRAINED: f32 = 1e-5;
+/// Greatest factor on the variance of the gyros' scale: a gyro near saturation errs by a tenth.
 const STRAIN: f32 = 400.0;
 
-/// The floor, watched stretch by stretch.
+/// Low-passed force, updated stretch by stretch.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Floor {
     /// Mean force on the level frame, north, east, down, m/s².
     mean: Vector,
-    /// Mean part of gravity that is missing of what holds the body up.
+    /// Mean part of gravity that is missing in the supporting force.
     missing: f32,
-    /// Variance of the level that is doubted lately, rad².
+    /// Recent inflation of the level's variance, rad².
     doubt: f32,
 }
 
-/// What the floor has to say.
+/// Result of the comparison.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Verdict {
-    /// By how much the variance of the level grows, rad².
+    /// Growth of the level's variance, rad².
     pub(super) more: f32,
-    /// Whether the level leans as a gyro's bias would make it, more than what is known of the biases.
+    /// Whether the deviation indicates a gyro bias larger than its uncertainty.
     pub(super) is_biased: bool,
 }
 
 impl Floor {
-    /// Watches a stretch in which there was a force of this size, m/s².
+    /// Adds a stretch with a mean force of this magnitude, m/s².
     pub(super) fn watch(&mut self, stretch: &Stretch, size: f32) {
         let part = stretch.seconds / BAND;
         for (mean, impulse) in self.mean.iter_mut().zip(stretch.impulse) {
             *mean += impulse * (1.0 / BAND) - part * *mean;
         }
         let [.., down] = stretch.impulse;
-        // What holds the body up should be gravity, or what it feels at all: a body that falls misses nothing.
+        // The supporting force should be gravity, or the felt force where that is less: a falling
+        // body misses nothing.
         let missing = size.min(GRAVITY) + down / stretch.forced;
         self.missing += part * (missing * (1.0 / GRAVITY) - self.missing);
     }
 
-    /// Compares with the filter's vertical, good to this variance, rad², of a body that moves so.
+    /// Compares with the filter's vertical, which has this variance, rad², for a body with this
+    /// motion.
     pub(super) fn compare(&mut self, tilt: f32, motion: &Motion, seconds: f32) -> Verdict {
         let [north, east, _] = self.mean;
         let square = GRAVITY * GRAVITY;
@@ -88,7 +93,7 @@ impl Floor {
         Verdict { more: (self.doubt - tilt).max(0.0), is_biased }
     }
 
-    /// By what factor the variance of the gyros' scale is greater than stated.
+    /// Factor by which the variance of the gyros' scale exceeds the configured one.
     pub(super) fn strain(&self) -> f32 {
         (self.doubt / STRAINED).clamp(1.0, STRAIN)
     }
@@ -98,7 +103,8 @@ impl Floor {
         self.mean
     }
 
-    /// The mean force, if hardly any of it holds the body up as the filter has it; it is vertical from then on.
+    /// Takes the mean force where hardly any of it supports the body on the filter's vertical;
+    /// afterwards it counts as vertical.
     pub(super) fn take_level(&mut self) -> Option<Vector> {
         if self.missing < MISSING {
             return None;
@@ -109,7 +115,7 @@ impl Floor {
         Some(core::mem::replace(&mut self.mean, [0.0, 0.0, -size]))
     }
 
-    /// The body stands, on a level that is taken anew.
+    /// Restarts for a body at rest, whose level is set anew.
     pub(super) fn stand(&mut self) {
         *self = Self { doubt: self.doubt, ..Self::default() };
     }

@@ -1,4 +1,4 @@
-//! What becomes of rotation that nobody saw: samples that are missing, and gyros at the limit of their range.
+//! Rotation that was not measured: missing samples, and gyros at the limit of their range.
 
 use super::filter::{Filter, TURN};
 use super::judge::{Findings, Task};
@@ -10,22 +10,24 @@ use crate::signal::InertialSample;
 use crate::signal::increment::{Increment, STEP};
 use crate::units::{AngleIncrement, Instant};
 
-/// Part of the rate lately that a rate within a gap may be beside the mean of its ends.
+/// Deviation of the rate within a gap from the mean of its ends, as a part of the recent rate.
 const GAP_PART: f32 = 0.3;
-/// Tilt, 1σ, with which nothing of the level is left, rad: it is taken from the forces anew.
+/// Standard deviation of the tilt at which the level is lost, 1σ, rad: it is set anew by the
+/// forces.
 const ALL: f32 = 0.3;
-/// Rate that a blow may hide behind a gyro's limit, rad/s. Where the body turned already, by so much at least, the
-/// limit is about that rate, and a part of it may be hidden.
+/// Rate that a shock may hide beyond a gyro's limit, rad/s.
 const BLOW: f32 = 10.0;
+/// Recent rate from which the limit is about that rate, and only a part of it may be hidden, rad/s.
 const TURNING: f32 = 0.2;
+/// Part of the recent rate that may be hidden.
 const HIDDEN: f32 = 0.5;
 /// Longest gap that is bridged, s.
 const LONGEST: f32 = 60.0;
-/// An angle of which nothing is known, 1σ, rad.
+/// Standard deviation of an unknown angle, 1σ, rad.
 const ANY_ANGLE: f32 = 6.3;
 
 impl Vertical {
-    /// Samples are missing: the rate between is taken for the mean of those at either end.
+    /// Bridges missing samples: the rate in the gap is the mean of those at both ends.
     #[inline(never)]
     pub(super) fn bridge(&mut self, elapsed: f32, sample: &InertialSample) {
         let missing = elapsed - self.period;
@@ -45,7 +47,7 @@ impl Vertical {
         self.lose(lost * missing);
     }
 
-    /// So much is missing that nothing but the biases is worth keeping, and those as if they had been switched on.
+    /// Resets everything but the biases, which are kept with the variance of a switch-on.
     fn forget(&mut self, now: Instant) {
         let sigmas = self.priors.map(|prior| libm::sqrtf(prior + self.unknown));
         self.filter = Filter::new(sigmas, &self.expected);
@@ -59,11 +61,11 @@ impl Vertical {
         self.lose(ANY_ANGLE);
     }
 
-    /// A gyro stood at the limit of its range: what it turned beyond is not known.
+    /// Accounts for a gyro at the limit of its range: rotation beyond it is unknown.
     #[inline(never)]
     pub(super) fn clip(&mut self, now: Instant) {
         self.tick(now);
-        // What is lost of one clip goes one way: it adds up, not its squares.
+        // Rotation lost in one saturation has one sign: the angles add up, not their squares.
         let before = self.before.clipped;
         let lately = self.before.lately;
         let hidden = if lately > TURNING { HIDDEN * lately } else { BLOW };
@@ -71,11 +73,12 @@ impl Vertical {
         self.lose_square(self.before.clipped * self.before.clipped - before * before);
     }
 
-    /// A rotation of this size, rad, may have been lost.
+    /// Accounts for a possible loss of rotation of this size, rad.
     fn lose(&mut self, angle: f32) {
         self.lose_square(angle * angle);
     }
 
+    /// Inflates attitude variances, rad², and discards the averages in progress.
     fn lose_square(&mut self, variance: f32) {
         self.filter.doubt_level(variance);
         self.filter.inflate(TURN, variance);

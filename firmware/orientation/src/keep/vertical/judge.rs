@@ -1,4 +1,4 @@
-//! Looks at what happened: ten times a second at the forces, twice a second for a rest.
+//! Supervision of the gyrovertical: the forces ten times a second, rest detection twice a second.
 
 use super::filter::{Correction, Filter, TURN};
 use super::rest::{Found, Known, Means, WINDOW};
@@ -7,88 +7,96 @@ use super::sums::{Rested, Window};
 use super::{GRAVITY, Trust, Vector, Vertical};
 use crate::math::rotation::{difference, dot, scaled, sum, turned};
 
-/// Time from one step of the filter to the next, s.
+/// Time between two steps of the filter, s.
 pub(super) const STRETCH: f32 = 0.1;
-/// Time over which the first forces are averaged to begin with, s.
+/// Averaging time of the first forces, s.
 const START: f32 = 0.2;
-/// 1σ of the tilt with which it begins, rad, and of that on the way: nobody says that the body stands.
+/// Initial 1σ of the tilt at rest, rad.
 const START_TILT: f32 = 0.05;
+/// Initial 1σ of the tilt on the way, rad: rest is not assumed.
 const MOVING_TILT: f32 = 0.4;
-/// Rate, rad/s, and force beside gravity, m/s², below which the body may stand as it begins: an engine's and the wind's.
+/// Rate, rad/s, below which the body may be at rest at the start: engine and wind.
 const CALM_RATE: f32 = 0.2;
+/// Deviation of the force from gravity, m/s², below which the body may be at rest at the start.
 const CALM_FORCE: f32 = 0.5;
-/// Tilt, 1σ, of a standing body by its mean force over a window, rad: wind and engine.
+/// Standard deviation of the tilt of a body at rest from the mean force of a window, 1σ, rad: wind
+/// and engine.
 const STANDING_TILT: f32 = 3e-4;
-/// How far wind turns a body that stands, its engine off, 1σ, rad: 2″.
+/// Rotation of a body at rest by wind, engine off, 1σ, rad: 2″.
 const SHAKING: f32 = 1e-5;
-/// Longest stretch of a rest whose mean rates are taken together, s.
+/// Longest part of a rest whose mean rates are averaged together, s.
 const LONGEST_REST: f32 = 64.0;
-/// Part of gravity below which a force is a free fall.
+/// Part of gravity below which a force counts as free fall.
 const FREE: f32 = 0.3;
-/// Tilt, 1σ, beyond which a steady force is rather gravity than an acceleration, rad: 0.2 m/s².
+/// Standard deviation of the tilt beyond which a steady force is rather gravity than an
+/// acceleration, 1σ, rad: 0.2 m/s².
 const UNSURE: f32 = 0.02;
-/// Tilt, 1σ, at which the level counts as lost, rad.
+/// Standard deviation of the tilt at which the level counts as lost, 1σ, rad.
 const LOST: f32 = 0.1;
-/// Part that gravity takes of what the gyros' errors add to the level's variance, below which they carry it alone.
+/// Part of the growth of the level's variance that gravity compensates, below which the gyros alone
+/// carry the level.
 const COASTING: f32 = 0.25;
-/// Bias, in 1σ of what was stated, beyond which that is not believed.
+/// Bias, in configured 1σ, beyond which the configuration is not trusted.
 const GREATEST_BIAS: f32 = 5.0;
-/// Standard deviations of what is known of it by which it must be beyond that.
+/// Significance, in σ of the bias, by which it must exceed that.
 const SURE: f32 = 3.0;
-/// Greatest factor by which what was stated is widened at once, and the variance of a bias that is stated to be
-/// nothing, (rad/s)²: 0.002 °/h.
+/// Greatest factor by which a configured 1σ is inflated at once.
 const WIDEST: f32 = 100.0;
+/// Variance of a bias that is configured as zero, (rad/s)²: 0.002 °/h.
 const LEAST_PRIOR: f32 = 1e-16;
 
-/// How far gravity may be from the standard, m/s²: 9.78 on the equator, 9.83 at the poles.
+/// Deviation of gravity from the standard value, m/s²: 9.78 at the equator, 9.83 at the poles.
 const GRAVITY_CHANGE: f32 = 0.03;
-/// Standard deviations of the level by which a force at rest may be beside gravity.
+/// Significance, in σ of the level, at which a force at rest deviates from gravity.
 const SIGMAS: f32 = 5.0;
-/// Part of gravity by which the first forces may differ from it.
+/// Relative deviation of the first forces from gravity up to which they set the level.
 const BEGINNING: f32 = 0.5;
 
-/// What is to be done for a stretch: a part with each sample, so that none takes long.
+/// Work for a stretch, done in parts with each sample, so that no sample takes long.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Task {
-    /// All is done.
+    /// No work is left.
     #[default]
     Nothing,
-    /// The filter's errors are carried on: rows, then columns.
+    /// Propagate the filter's rows.
     Carry,
+    /// Propagate the filter's columns and add the process noise.
     Spread,
-    /// The velocity north (0) and east (1) is about zero.
+    /// Apply the zero-velocity pseudo-measurement north (0) or east (1).
     Stay(usize),
-    /// What can be trusted, and whether the body stands.
+    /// Determine the reliability, and detect rest.
     Judge,
-    /// The mean rate of a rest is the bias of an axis.
+    /// Update the bias of an axis with the mean rate of a rest.
     Learn(usize),
-    /// The mean force of a rest is gravity, about north (0) and east (1).
+    /// Update the tilt about north (0) or east (1) with the mean force of a rest.
     Level(usize),
-    /// What was found is put right.
+    /// Apply the corrections.
     Correct,
 }
 
-/// Greatest number of tasks of a stretch, with as many more as the samples leave that make an attitude and do none.
+/// Greatest number of tasks of a stretch, doubled for the samples that update the attitude and do
+/// no task.
 const TASKS: f32 = 24.0;
 
-/// What a look at a rest found, to be told to the filter.
+/// Measurements of a rest for the filter.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Findings {
-    /// By how much the biases are off, rad/s, and the variances of that.
+    /// Deviation of the biases, rad/s, and its variance.
     biases: Option<[Vector; 2]>,
-    /// By how much the level is off, rad.
+    /// Deviation of the level, rad.
     level: Option<[f32; 2]>,
-    /// Whether the biases are to be doubted then: what they hold of the Earth's rate is another as the body turns.
+    /// Whether the biases are to be inflated afterwards: the part of the Earth rate in them changes
+    /// as the body turns.
     is_doubted: bool,
 }
 
 impl Vertical {
-    /// How many parts of a stretch's work fall to a sample.
+    /// Number of tasks for each sample.
     pub(super) fn pace(period: f32) -> u32 {
         (TASKS * period / STRETCH) as u32 + 1
     }
 
-    /// A stretch is over: what is left of the one before is done, and its own work begins.
+    /// Ends a stretch: finishes the work of the previous one, and begins its own.
     #[inline(never)]
     pub(super) fn step(&mut self) {
         self.finish();
@@ -101,14 +109,14 @@ impl Vertical {
         self.task = Task::Carry;
     }
 
-    /// Does all that is left to be done.
+    /// Does all remaining work.
     pub(super) fn finish(&mut self) {
         while self.task != Task::Nothing {
             self.work();
         }
     }
 
-    /// Does a part of what is to be done.
+    /// Does one task.
     #[inline(never)]
     pub(super) fn work(&mut self) {
         self.task = match self.task {
@@ -139,7 +147,7 @@ impl Vertical {
         }
     }
 
-    /// The body stays where it is, nearly; its motion is watched before that counts.
+    /// Zero-velocity pseudo-measurement; the motion is observed before it is applied.
     fn stay(&mut self, axis: usize) -> Task {
         if axis == 0
             && let Some(force) = self.filter.watch(&self.block)
@@ -150,7 +158,7 @@ impl Vertical {
         if axis == 0 { Task::Stay(1) } else { Task::Judge }
     }
 
-    /// What comes after a look.
+    /// Task after rest detection.
     fn after_look(&self) -> Task {
         match self.findings {
             Findings { biases: Some(_), .. } => Task::Learn(0),
@@ -159,7 +167,7 @@ impl Vertical {
         }
     }
 
-    /// The mean rates of a rest are the biases.
+    /// Updates a bias with the mean rates of a rest.
     fn learn(&mut self, axis: usize) -> Task {
         if let Some([off, variance]) = self.findings.biases {
             self.filter.measure(Filter::bias(axis), off[axis], variance[axis]);
@@ -174,7 +182,7 @@ impl Vertical {
         self.after_look()
     }
 
-    /// The mean force of a rest is gravity.
+    /// Updates a tilt with the mean force of a rest.
     fn level(&mut self, place: usize) -> Task {
         if let Some(off) = self.findings.level {
             self.filter.measure(place, off[place], STANDING_TILT * STANDING_TILT);
@@ -186,7 +194,7 @@ impl Vertical {
         Task::Correct
     }
 
-    /// Takes the first forces for gravity, and those after all of the level was lost.
+    /// Sets the level by the first forces, also after it was lost.
     fn start(&mut self) {
         if self.window.forced < START {
             return;
@@ -194,7 +202,7 @@ impl Vertical {
         let Some(force) = self.window.force() else { return };
         let rate = self.window.rate();
         self.window = Window::default();
-        // A body that falls or is thrown shows no level.
+        // A falling or thrown body shows no level.
         let beside = (libm::sqrtf(dot(&force, &force)) - GRAVITY).abs();
         if beside > BEGINNING * GRAVITY {
             return;
@@ -212,13 +220,13 @@ impl Vertical {
         self.trust = Trust::Level;
     }
 
-    /// Says what of the level can be trusted.
+    /// Determines the reliability of the level.
     fn judge(&mut self) {
         let block = &self.block;
         let is_forced = block.forced > 0.5 * block.seconds;
         let is_free = is_forced && block.force() < FREE * GRAVITY;
         if !is_forced || is_free {
-            // What gravity could not take meanwhile says nothing of whether it can afterwards.
+            // Growth that gravity could not compensate meanwhile is no measure of what follows.
             self.filter.begin_balance();
         }
         self.trust = if self.filter.tilt_sigma() > LOST {
@@ -234,7 +242,7 @@ impl Vertical {
         };
     }
 
-    /// Looks whether the body stands; if so, its rates are the biases and its force is gravity.
+    /// Tests for rest; at rest the rates are the biases and the force is gravity.
     fn look(&mut self) {
         let window = core::mem::take(&mut self.window);
         let force = window.force();
@@ -250,7 +258,7 @@ impl Vertical {
             Found::Motion => self.move_on(&window, was_rest),
             Found::StrangeBias => {
                 self.move_on(&window, was_rest);
-                // Even rates were taken for a turn until now.
+                // Constant rates were taken for a rotation until now.
                 let turned = dot(&self.matrix[2], &self.rest.turned_evenly());
                 self.filter.inflate(TURN, turned * turned);
                 self.widen_biases(&difference(&means.rate, &self.bias), &means.rate);
@@ -258,7 +266,7 @@ impl Vertical {
         }
     }
 
-    /// What is known of the gyros.
+    /// Prior knowledge of the gyros for the detector.
     fn known(&self) -> Known {
         Known {
             biases: self.bias,
@@ -268,19 +276,20 @@ impl Vertical {
         }
     }
 
-    /// Variance of what the Earth's rate may hide in a bias, (rad/s)².
+    /// Variance of the Earth rate that a bias may contain, (rad/s)².
     fn hidden(&self) -> f32 {
         if self.knows_north { 0.0 } else { self.unknown }
     }
 
-    /// Variances of the biases as they were stated, with what the Earth's rate may hide in them, (rad/s)².
+    /// Configured variances of the biases, including the Earth rate that they may contain,
+    /// (rad/s)².
     fn stated(&self) -> Vector {
         let hidden = self.hidden();
         self.priors.map(|prior| (prior + hidden).max(LEAST_PRIOR))
     }
 
-    /// The body goes, or goes on. As long as nobody knows where north is, the biases hold what the Earth turned it by at
-    /// rest, which is another rate as soon as it turns.
+    /// Begins or continues motion. While north is unknown, the biases contain the Earth rate at
+    /// rest, which is another as soon as the body turns.
     fn move_on(&mut self, window: &Window, was_rest: bool) {
         self.course.drive(window);
         self.findings.biases = self.rested_biases();
@@ -293,14 +302,16 @@ impl Vertical {
         }
     }
 
+    /// Inflates the biases by the Earth rate that they may contain.
     pub(super) fn doubt_biases(&mut self) {
         for axis in 0..3 {
             self.filter.inflate(Filter::bias(axis), 2.0 * self.unknown);
         }
     }
 
-    /// The biases are off by so much, rad/s, for they are found to be these: what is known of them is forgotten. Where one
-    /// is beyond what was stated, that is believed of none of the gyros any more, for they are of one kind.
+    /// Inflates biases that deviate by `off`, rad/s, and were found to be `found`. Where one
+    /// exceeds its configured 1σ by far, the configuration is inflated for all gyros, because they
+    /// are of one kind.
     fn widen_biases(&mut self, off: &Vector, found: &Vector) {
         let stated = self.stated();
         let ratio = |biases: &Vector| {
@@ -318,18 +329,19 @@ impl Vertical {
         }
     }
 
-    /// Whether a mean force is gravity as the attitude has it, as far as that can be told.
+    /// Whether a mean force is gravity for the present attitude, within its uncertainty.
     fn is_gravity(&self, force: &Vector) -> bool {
         let off = sum(force, &scaled(&self.matrix[2], GRAVITY));
         let bound = SIGMAS * GRAVITY * self.sigma() + GRAVITY_CHANGE;
         dot(&off, &off) <= bound * bound
     }
 
-    /// The acceleration that a steady force may show, m/s²: where it is beside gravity as the attitude has it, and either
-    /// holds the body up as gravity would, as in a steady acceleration on a level road, or is not of gravity's size.
+    /// Acceleration that a steady force may show, m/s²: where it deviates from gravity for the
+    /// present attitude, and either supports the body as gravity would, as in steady acceleration
+    /// on a level road, or is not of gravity's magnitude.
     fn acceleration(&self, force: &Vector) -> Option<f32> {
-        // A body that is turned over does not speed up steadily for as long as a rest takes to be seen; and against a
-        // level that is not sure of itself no force is an acceleration.
+        // A body that is turned over does not accelerate steadily for as long as rest detection
+        // takes; and against an uncertain level no force counts as an acceleration.
         if self.filter.is_tumbled() || self.sigma() > UNSURE {
             return None;
         }
@@ -343,14 +355,14 @@ impl Vertical {
         is_possible.then(|| across.max(other))
     }
 
-    /// The level is not where it was believed to be, but where this force on it says.
+    /// Inflates the level by its deviation from the one that this force on it shows.
     fn lose_level(&mut self, force: &Vector) {
         let [about_north, about_east] = tilt(force);
         let square = about_north * about_north + about_east * about_east;
         self.filter.doubt_level(square);
     }
 
-    /// Takes the level from this force on it, for it stood where no vertical is.
+    /// Sets the level by this force on it, because the filter's vertical was invalid.
     fn take_level(&mut self, force: &Vector) {
         self.lose_level(force);
         for (place, off) in tilt(force).into_iter().enumerate() {
@@ -359,7 +371,7 @@ impl Vertical {
         }
     }
 
-    /// The body stands: its rates are the biases, and its force is gravity.
+    /// Processes a rest: the rates are the biases, and the force is gravity.
     fn stand(&mut self, window: &Window, was_rest: bool) {
         self.filter.stand();
         self.course.stand(window.seconds);
@@ -377,11 +389,11 @@ impl Vertical {
             }
             self.findings.level = Some(tilt(&force));
         }
-        // The body did not turn: what the gyro made of it is undone.
+        // The body did not turn, so the rotation from the gyro is undone.
         self.attitude.correct(&[0.0, 0.0, -window.about]);
     }
 
-    /// What the rest says of the biases that it has not said yet.
+    /// Measurement of the biases by the part of the rest that was not used yet.
     fn rested_biases(&mut self) -> Option<[Vector; 2]> {
         let Rested { seconds, turned, .. } = self.rested;
         if seconds <= 0.0 {
@@ -393,7 +405,7 @@ impl Vertical {
         Some([off, core::array::from_fn(|axis| self.rest_variance(axis, seconds))])
     }
 
-    /// Tells the filter at once what the rest says of the biases.
+    /// Updates the filter at once with the biases of the rest.
     pub(super) fn learn_biases(&mut self) {
         self.finish();
         self.findings.biases = self.rested_biases();
@@ -403,13 +415,13 @@ impl Vertical {
         }
     }
 
-    /// Variance of a mean rate over so many seconds of a rest, (rad/s)².
+    /// Variance of a mean rate over `seconds` of a rest, (rad/s)².
     pub(super) fn rest_variance(&self, axis: usize, seconds: f32) -> f32 {
         let shaking = SHAKING / seconds;
         self.expected.walk[axis] / seconds + 2.0 * shaking * shaking
     }
 
-    /// Puts attitude, biases and axes right.
+    /// Applies the corrections to attitude, biases and axes.
     pub(super) fn correct(&mut self) {
         let Correction { rotation, bias, axes } = self.filter.take();
         self.attitude.correct(&rotation);
@@ -429,8 +441,8 @@ impl Vertical {
     }
 }
 
-/// By how much a force on the level frame shows that it is turned, about north and east, rad: up to half a turn, which is
-/// about north.
+/// Tilt of the level frame that a force on it shows, about north and east, rad; up to half a turn,
+/// which is taken about north.
 fn tilt([north, east, down]: &Vector) -> [f32; 2] {
     let across = libm::sqrtf(north * north + east * east);
     let angle = libm::atan2f(across, -down);

@@ -1,4 +1,5 @@
-//! The analytic gyrovertical: attitude from three gyros and three accelerometers, Earth rate compensated.
+//! Analytic gyrovertical: attitude from three gyros and three accelerometers, with the Earth rate
+//! compensated.
 //!
 //! ```text
 //!  angle increments ─▶ sum, coning ─50 Hz─▶ attitude (integers) ─▶ pitch, roll, turn about the vertical
@@ -6,9 +7,9 @@
 //!                                      └─2 Hz─▶ rest? ─rates are biases, force is gravity─▲
 //! ```
 //!
-//! Source: Burov, section 2 (two coarse gyros and two accelerometers as an analytic gyrovertical); how
-//! gravity is told from acceleration is the filter's (compare D. Laidig and T. Seel, VQF, Information
-//! Fusion 2023, which filters the forces in an inertial frame for the same reason).
+//! Sources: Burov, section 2 (two coarse gyros and two accelerometers as an analytic gyrovertical);
+//! for separating gravity from acceleration compare D. Laidig and T. Seel, VQF, Information Fusion
+//! 2023, which filters the forces in an inertial frame for the same reason.
 
 mod course;
 mod filter;
@@ -37,83 +38,101 @@ use crate::units::{Instant, SpecificForce};
 /// A vector in single precision.
 type Vector = [f32; 3];
 
-/// Time from one attitude to the next, µs: 50 Hz.
+/// Time between attitude updates, µs: 50 Hz.
 const TICK: u64 = 20_000;
 /// Standard gravity, m/s².
 const GRAVITY: f32 = 9.806_65;
-/// Part of its period by which a sample may come late.
+/// Greatest delay of a sample, in sample periods.
 const LATE: f32 = 0.5;
-/// Force that no accelerometer for a vehicle or a hand shows, µm/s²: 100 g; what is beyond is clipped or no force at all.
+/// Greatest plausible force of an accelerometer on a vehicle or in a hand, µm/s²: 100 g; beyond it
+/// the reading is clipped or faulty.
 const GREATEST_FORCE: u32 = 980_665_000;
-/// Time over which the rate lately fades, s.
+/// Decay time of the recent rate, s.
 const GAP_WATCH: f32 = 1.0;
 
-/// Whether the level can be trusted, and what keeps it from that.
+/// Reliability of the level, and the cause that limits it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Trust {
-    /// The first forces have not come.
+    /// No forces have been received yet.
     #[default]
     Starting,
-    /// Nothing is the matter.
+    /// The level is corrected by gravity.
     Level,
-    /// The body moves so that gravity takes less than a quarter of what the gyros' errors add: they alone carry the level.
+    /// Gravity compensates less than a quarter of the growth by the gyros' errors, which alone
+    /// carry the level.
     Coasting,
-    /// The body falls freely.
+    /// The body is in free fall.
     FreeFall,
-    /// There are no forces, or they stand at their limit.
+    /// There are no forces, or they are saturated.
     NoForce,
-    /// A part of the rotation was lost, and the level with it.
+    /// Rotation was lost, and the level with it.
     RotationLost,
 }
 
-/// The gyrovertical at work.
+/// State of the gyrovertical.
 #[derive(Clone, Debug)]
 pub struct Vertical {
+    /// Expected errors of the gyros.
     expected: Expected,
-    /// Variances of the biases when the gyros are switched on, and of what the Earth's rate adds to them as long as
-    /// nobody knows where north is, (rad/s)².
+    /// Variances of the switch-on biases, (rad/s)², and variance of the Earth rate that they may
+    /// contain while north is unknown.
     priors: Vector,
     unknown: f32,
-    /// Whether a bias showed to be beyond what was stated.
+    /// Whether a bias exceeded its configured 1σ by far.
     is_bias_beyond_stated: bool,
-    /// 1σ of the accelerometers' biases, as a tilt, rad.
+    /// Standard deviation of the accelerometers' biases, as a tilt, 1σ, rad.
     force_tilt: f32,
     /// Sample period, s.
     period: f32,
-    /// How the level frame turns, rad/s: with the Earth, and on the way over it.
+    /// Rate of the level frame, rad/s: Earth rate and transport rate.
     frame: Vector,
+    /// Rotation since the latest attitude update.
     increment: Increment,
+    /// Forces since the latest attitude update.
     force: Sums,
+    /// Attitude from body axes to the level frame.
     attitude: Attitude,
+    /// Attitude as a matrix.
     matrix: Matrix,
+    /// Estimated biases, rad/s.
     bias: Vector,
-    /// Of the turn about each axis, what each gyro shows too much: its scale and the direction of its axis.
+    /// Excess of each gyro per rotation about each axis: scale factor and axis errors.
     axes: Matrix,
+    /// Filter of tilt, biases and axes.
     filter: Filter,
+    /// Stretch in progress.
     stretch: Stretch,
-    /// The stretch that is being worked on, what of that is to be done next, and how many parts a sample.
+    /// Stretch that is being processed, its next task, and the number of tasks for each sample.
     block: Stretch,
     task: Task,
     pace: u32,
+    /// Measurements of a rest for the filter.
     findings: Findings,
+    /// Window of rest detection in progress.
     window: Window,
+    /// Rest detection.
     rest: ZeroVelocityDetector,
+    /// Part of the present rest that was not used yet.
     rested: Rested,
+    /// Values of the previous sample.
     before: Before,
+    /// Motion since the heading was handed over.
     course: Course,
-    /// When the latest attitude was taken.
+    /// Time of the latest attitude update.
     since: Instant,
+    /// Reliability of the level.
     trust: Trust,
-    /// Whether nothing of the level is left.
+    /// Whether the level is lost completely.
     is_lost: bool,
+    /// Whether north is known, so that biases and Earth rate are separated.
     knows_north: bool,
 }
 
 impl Vertical {
-    /// Begins with these gyros at this place.
+    /// Begins with these gyros at this site.
     #[must_use]
     pub fn new(setting: &Setting) -> Self {
-        // As long as nobody knows where north is, a level axis may show the Earth's rate beside its bias.
+        // While north is unknown, a level axis may contain the Earth rate in addition to its bias.
         let unknown = 0.5 * setting.latitude.horizontal_rate() * setting.latitude.horizontal_rate();
         let sigmas = setting
             .gyros
@@ -152,7 +171,7 @@ impl Vertical {
         }
     }
 
-    /// Takes a sample; whether it made a new attitude, or lost one.
+    /// Takes a sample; returns whether it updated the attitude, or lost rotation.
     #[inline]
     pub fn push(&mut self, sample: &InertialSample) -> bool {
         let elapsed = self.elapsed(sample.time);
@@ -178,19 +197,20 @@ impl Vertical {
         if is_due || self.increment.is_large() {
             self.tick(sample.time);
         }
-        // A sample that makes an attitude does enough already, if there are others.
+        // A sample that updates the attitude does no further task, if there are others.
         for _ in u32::from(is_due)..self.pace {
             self.work();
         }
         is_due || is_lost
     }
 
-    /// Time since the sample before, s.
+    /// Time since the previous sample, s.
     #[inline]
     fn elapsed(&mut self, now: Instant) -> f32 {
         if let Some(before) = self.before.time.replace(now) {
             if now < before {
-                // A clock that was set back: what was measured since the latest attitude counts from now.
+                // The clock was set back: increments since the latest attitude update count from
+                // now.
                 self.since = now;
             }
             return seconds_between(before, now);
@@ -199,7 +219,7 @@ impl Vertical {
         self.period
     }
 
-    /// Takes the attitude.
+    /// Updates the attitude.
     #[inline(never)]
     fn tick(&mut self, now: Instant) {
         let seconds = seconds_between(self.since, now);
@@ -213,7 +233,7 @@ impl Vertical {
         self.before.lately = self.before.lately.max(rate);
     }
 
-    /// The body turned by what the gyros show, rad, in that time, s.
+    /// Rotates the body by the gyros' rotation, rad, in a time, s.
     fn advance(&mut self, rotation: &Vector, seconds: f32) {
         let frame = turned(&transposed(&self.matrix), &scaled(&self.frame, seconds));
         let shown = difference(rotation, &frame);
@@ -237,8 +257,8 @@ impl Vertical {
         }
     }
 
-    /// What the body turned, from what the gyros show of it without their biases: what is known of their axes is put
-    /// right in the level, and not in the heading.
+    /// Rotation of the body from the gyros' rotation without biases: the estimated axis errors are
+    /// corrected in the level, but not in the heading.
     fn rotation(&self, shown: &Vector) -> Vector {
         let [.., down] = &self.matrix;
         let off = turned(&self.axes, shown);
@@ -247,10 +267,10 @@ impl Vertical {
     }
 }
 
-/// What is asked of it.
+/// Results of the gyrovertical.
 impl Vertical {
-    /// From body axes to the level frame, on a course that is zero for a body that was level when it began; at the
-    /// latest sample.
+    /// Attitude from body axes to the level frame at the latest sample; the course is zero for a
+    /// body that was level at the start.
     #[must_use]
     pub fn attitude(&self) -> Attitude {
         let mut increment = self.increment;
@@ -262,69 +282,71 @@ impl Vertical {
         attitude
     }
 
-    /// 1σ of pitch and of roll, rad.
+    /// Standard deviation of pitch and of roll, 1σ, rad.
     #[must_use]
     pub fn sigma(&self) -> f32 {
         let tilt = self.filter.tilt_sigma();
         libm::sqrtf(tilt * tilt + self.force_tilt * self.force_tilt)
     }
 
-    /// Biases of the gyros, rad/s.
+    /// Estimated biases of the gyros, rad/s.
     #[must_use]
     pub fn biases(&self) -> Vector {
         self.bias
     }
 
-    /// Their 1σ, rad/s.
+    /// Standard deviations of the biases, 1σ, rad/s.
     #[must_use]
     pub fn bias_sigmas(&self) -> Vector {
         self.filter.bias_variances().map(libm::sqrtf)
     }
 
-    /// Whether a gyro's bias showed to be beyond what was stated, so that nothing stated of them is believed.
+    /// Whether a gyro's bias exceeded its configured 1σ by far, so that the configuration was
+    /// inflated.
     #[must_use]
     pub fn is_bias_beyond_stated(&self) -> bool {
         self.is_bias_beyond_stated
     }
 
-    /// Whether the level can be trusted.
+    /// Reliability of the level.
     #[must_use]
     pub fn trust(&self) -> Trust {
         self.trust
     }
 
-    /// Whether the body stands.
+    /// Whether the body is at rest.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
         self.rest.is_at_rest()
     }
 
-    /// When the latest sample ended.
+    /// End of the latest sample.
     #[must_use]
     pub fn time(&self) -> Instant {
         self.before.time.unwrap_or_default()
     }
 
-    /// What the body did since [`Vertical::begin_course`].
+    /// Motion of the body since [`Vertical::begin_course`].
     #[must_use]
     pub fn course(&self) -> &Course {
         &self.course
     }
 
-    /// Variance of what it turned about the vertical since then, rad²: noise and biases, and what gaps hid.
+    /// Variance of the rotation about the vertical since then, rad²: noise and biases, and rotation
+    /// during gaps.
     #[must_use]
     pub fn turn_variance(&self) -> f32 {
         self.filter.turn_variance()
     }
 
-    /// Mean rates about the body's axes at rest, rad/s, the Earth's included; none where it does not stand.
+    /// Mean rates about the body's axes at rest, rad/s, including the Earth rate; `None` in motion.
     #[must_use]
     pub fn rest_rates(&self) -> Option<[f64; 3]> {
         let frame = turned(&transposed(&self.matrix), &self.frame);
         self.is_at_rest().then(|| sum(&self.bias, &frame).map(f64::from))
     }
 
-    /// From now on another gyro shows the axis down: nothing is known of its bias.
+    /// Replaces the gyro of the down axis by another one, whose bias is unknown.
     pub fn exchange_down(&mut self, setting: &Setting) {
         self.finish();
         self.expected = setting.expected();
@@ -340,12 +362,13 @@ impl Vertical {
         self.window = Window::default();
     }
 
-    /// From now on the level frame turns so, rad/s.
+    /// Sets the rate of the level frame, rad/s.
     pub fn turn_frame(&mut self, rate: Vector) {
         self.frame = rate;
     }
 
-    /// The same, and north is known for the first time, or again: biases held the Earth's level rate until now.
+    /// Sets the rate of the level frame, rad/s, and reports that north is known for the first time,
+    /// or again: until now the biases contained the level Earth rate.
     pub fn find_north(&mut self, rate: Vector) {
         self.learn_biases();
         let more = turned(&transposed(&self.matrix), &difference(&rate, &self.frame));
@@ -355,7 +378,7 @@ impl Vertical {
         if !self.is_at_rest() {
             return;
         }
-        // What was learnt of the sum holds for the bias, of which more was known beforehand.
+        // The estimate of the sum now holds for the bias, which has a tighter prior.
         self.bias = difference(&self.bias, &more);
         for (axis, bias) in self.bias.into_iter().enumerate() {
             self.filter.measure(Filter::bias(axis), -bias, self.priors[axis]);
@@ -363,14 +386,15 @@ impl Vertical {
         self.correct();
     }
 
-    /// North is not known any more: biases may hold the Earth's rate from now on.
+    /// Sets the rate of the level frame, rad/s, and reports that north is unknown: biases may
+    /// contain the Earth rate from now on.
     pub fn lose_north(&mut self, rate: Vector) {
         self.frame = rate;
         self.knows_north = false;
         self.doubt_biases();
     }
 
-    /// Counts from now on.
+    /// Restarts the motion statistics and the error of the rotation about the vertical.
     pub fn begin_course(&mut self) {
         self.learn_biases();
         self.filter.begin_turn();
@@ -378,7 +402,7 @@ impl Vertical {
     }
 }
 
-/// Time from one moment to the next, s, an hour at most; none where it runs backwards.
+/// Time from one moment to the next, s, at most an hour; zero where it runs backwards.
 #[inline]
 fn seconds_between(before: Instant, now: Instant) -> f32 {
     now.0.saturating_sub(before.0).min(u64::from(u32::MAX)) as u32 as f32 * 1e-6

@@ -1,71 +1,83 @@
-//! How fast the body moves, as tilt cannot imitate it.
+//! Speed of the body in a form that a tilt error cannot imitate.
 //!
-//! A level that is tilted by δ shows a steady level force g·δ, which adds up to a speed; a body that moves shows a
-//! force that comes and goes. So the level force is taken less its own mean: what is left of it, added up, is the speed
-//! in the band that hides tilt (`swing`). Slower motion, as a vehicle's, is seen only in the sum of the force itself
-//! (`drift`), which counts as far as the tilt's own uncertainty does not explain it, and not beyond three times
-//! the swing of lately: a body that never swings does not drift.
+//! A level that is tilted by δ shows a constant level force g·δ, which integrates to a speed; a
+//! moving body shows a force that comes and goes. So the mean is subtracted from the level force:
+//! the integral of the rest is the speed in the band that hides tilt (`swing`). Slower motion, as
+//! of a vehicle, shows only in the integral of the force itself (`drift`), which counts as far as
+//! the tilt's own uncertainty does not explain it, and at most three times the recent swing: a body
+//! that never swings does not drift.
 //!
-//! A level that errs more each moment, behind gyros that are worse than stated, would imitate a swing. It does not change
-//! the force's size: what that adds up to is a speed as well (`heave`). A body that is tumbled about, in a hand or
-//! by waves, is moved up and down as it is to and fro, and its swing counts as far as its heave agrees. A
-//! vehicle's wheels keep it level and from heaving: its swing counts as it is.
+//! A level whose error grows steadily, behind gyros that are worse than configured, would imitate a
+//! swing. It does not change the force's magnitude, whose integral is a speed as well (`heave`). A
+//! body that tumbles, in a hand or on waves, moves up and down as it does to and fro, so its swing
+//! counts as far as its heave agrees. Wheels keep a vehicle level and prevent heave: its swing
+//! counts fully.
 
 use super::stretch::Stretch;
 use super::{GRAVITY, Vector};
 
-/// Time over which the band's speed fades, s: as that of the mean which is taken from the force.
+/// Fading time of the band's speed, s, and averaging time of the mean that is subtracted from the
+/// force.
 pub(super) const BAND: f32 = 7.0;
-/// Time over which the band's speeds are averaged, s: quicker ones hide no tilt.
+/// Averaging time of the band's speeds, s: faster motion hides no tilt.
 const QUICK: f32 = 1.5;
-/// Time after which the speed of slow motion fades, and over which it is averaged, s.
+/// Fading time of the speed of slow motion, s.
 pub(super) const FADING: f32 = 10.0;
+/// Averaging time of the speed of slow motion, s.
 const SLOW: f32 = 3.0;
-/// Time over which mean squares of speeds and rates are taken, s, and for how long the greatest is remembered, s.
+/// Averaging time of mean squares of speeds and rates, s.
 const WATCH: f32 = 5.0;
+/// Memory of the greatest mean square, s.
 const MEMORY: f32 = 30.0;
-/// Least speed that is allowed for, m/s: that of a body that stands.
+/// Least speed that is assumed, m/s: that of a body at rest.
 pub(super) const LEAST_SPEED: f32 = 0.05;
-/// Speed of a body of which it is not known yet, m/s: a hand's, a swell's.
+/// Speed that is assumed while it is unknown, m/s: of a hand, or a swell.
 const EXPECTED: f32 = 1.0;
-/// Standard deviations of the tilt within which it explains a drift.
+/// Significance, in σ of the tilt, up to which it explains a drift.
 const EXPLAINED: f32 = 2.0;
-/// Greatest mean square of a drift, in those of the swing.
+/// Greatest mean square of a drift, in units of that of the swing.
 const GREATEST_DRIFT: f32 = 10.0;
-/// Mean square of the rate about level axes from which a body is tumbled about, rad²/s²: wheels do not turn so.
+/// Mean square of the rate about level axes from which a body tumbles, rad²/s²: wheels do not turn
+/// so.
 const TUMBLING: f32 = 0.25;
-/// Mean rate about a level axis over half a second from which a body counts as tumbled, rad/s, and for how long, s.
+/// Mean rate about a level axis from which a body counts as tumbling, rad/s.
 const QUICK_ROLL: f32 = 0.15;
+/// Averaging time of that rate, s.
 const ROLLING: f32 = 0.5;
+/// Time for which the body then counts as tumbling, s.
 const TUMBLED: f32 = 60.0;
-/// Greatest mean square of a swing, in those of the heave, of a body that is tumbled about; and the square that is not
-/// asked for one, m²/s².
+/// Greatest mean square of a tumbling body's swing, in units of that of the heave.
 const GREATEST_SWING: f32 = 4.0;
+/// Mean square of a swing that needs no heave, m²/s².
 const LEAST_SWING: f32 = 0.01;
 
-/// A speed in one band of frequencies, along some axes, m/s.
+/// Speed in one frequency band, along some axes, m/s.
 #[derive(Clone, Copy, Debug)]
 struct Speed<const AXES: usize> {
-    /// The sum of the forces, which fades, and its average.
+    /// Fading integral of the forces, and its average.
     sum: [f32; AXES],
     average: [f32; AXES],
     /// Mean square of one axis over [`WATCH`], m²/s².
     square: f32,
 }
 
-/// The motion of the body, watched stretch by stretch.
+/// Motion statistics of the body, updated stretch by stretch.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Motion {
+    /// Level speed in the band that hides tilt.
     swing: Speed<2>,
+    /// Level speed of slow motion.
     drift: Speed<2>,
+    /// Speed from the force's magnitude.
     heave: Speed<1>,
-    /// Mean size of the force, m/s².
+    /// Mean magnitude of the force, m/s².
     size: f32,
-    /// The greatest mean square of the swing lately, m²/s².
+    /// Greatest recent mean square of the swing, m²/s².
     greatest: f32,
     /// Mean square of the rate about level axes, rad²/s².
     tumbling: f32,
-    /// Mean rate about north and east within half a second, rad/s, and for how long the body counts as tumbled, s.
+    /// Mean rates about north and east within half a second, rad/s, and time for which the body
+    /// still counts as tumbling, s.
     rolling: [f32; 2],
     tumbled: f32,
 }
@@ -77,7 +89,7 @@ impl<const AXES: usize> Default for Speed<AXES> {
 }
 
 impl<const AXES: usize> Speed<AXES> {
-    /// Adds what a force sums up to within so many seconds, m/s.
+    /// Adds the integral of a force over `seconds`, m/s.
     fn push(&mut self, impulse: [f32; AXES], seconds: f32, fading: f32, averaging: f32) {
         for (axis, impulse) in impulse.into_iter().enumerate() {
             self.sum[axis] += impulse - self.sum[axis] * (seconds / fading);
@@ -86,24 +98,24 @@ impl<const AXES: usize> Speed<AXES> {
         self.square += (seconds / WATCH) * (self.now() - self.square);
     }
 
-    /// Mean square of the axes now, m²/s².
+    /// Present mean square of the axes, m²/s².
     fn now(&self) -> f32 {
         self.average.iter().map(|speed| speed * speed).sum::<f32>() / AXES as f32
     }
 
-    /// The greater of the mean square now and lately, m²/s².
+    /// Greater of the present and the averaged mean square, m²/s².
     fn greater(&self) -> f32 {
         self.square.max(self.now())
     }
 
-    /// The body stands: what it did lately stays known.
+    /// Restarts the speed at rest, and keeps its averaged mean square.
     fn over(self) -> Self {
         Self { square: self.square, ..Self::default() }
     }
 }
 
 impl Motion {
-    /// Watches a stretch in which there was a force of this size, whose mean on the level frame is known, m/s².
+    /// Adds a stretch with a force of this magnitude, whose mean on the level frame is given, m/s².
     pub(super) fn watch(&mut self, stretch: &Stretch, size: f32, mean: &Vector) {
         let [north, east, _] = stretch.impulse;
         let seconds = stretch.seconds;
@@ -129,7 +141,7 @@ impl Motion {
         self.greatest = faded.max(self.swing());
     }
 
-    /// The body may be moving, at a speed that is not known yet.
+    /// Reports that the body may be moving at an unknown speed.
     pub(super) fn expect_motion(&mut self) {
         let square = EXPECTED * EXPECTED;
         for lately in [&mut self.swing.square, &mut self.heave.square, &mut self.greatest] {
@@ -137,7 +149,7 @@ impl Motion {
         }
     }
 
-    /// Mean square of the swing, as far as it is believed, m²/s².
+    /// Mean square of the swing that is accepted, m²/s².
     fn swing(&self) -> f32 {
         let swing = self.swing.greater();
         if self.is_tumbled() {
@@ -147,17 +159,18 @@ impl Motion {
         }
     }
 
-    /// The greatest mean square of the swing lately, m²/s².
+    /// Greatest recent mean square of the swing, m²/s².
     pub(super) fn greatest(&self) -> f32 {
         self.greatest.max(LEAST_SPEED * LEAST_SPEED)
     }
 
-    /// Whether the body is tumbled about, or was lately turned as no vehicle on wheels is.
+    /// Whether the body tumbles, or lately turned as no wheeled vehicle does.
     pub(super) fn is_tumbled(&self) -> bool {
         self.tumbling > TUMBLING || self.tumbled > 0.0
     }
 
-    /// Density of the speed about zero, m²/s, where the level is good to this variance, rad².
+    /// Noise density of the zero-velocity pseudo-measurement, m²/s, for a level of this variance,
+    /// rad².
     pub(super) fn density(&self, tilt: f32) -> f32 {
         let drift = self.drift.square.max(2.0 * self.drift.now());
         let imitated = FADING * GRAVITY * EXPLAINED;
@@ -167,7 +180,7 @@ impl Motion {
         self.swing().max(drift).max(LEAST_SPEED * LEAST_SPEED) * 2.0 * QUICK
     }
 
-    /// The body stands: what it did is over.
+    /// Restarts the speeds at rest.
     pub(super) fn stand(&mut self) {
         let Self { swing, drift, heave, .. } = *self;
         *self = Self { swing: swing.over(), drift: drift.over(), heave: heave.over(), ..*self };

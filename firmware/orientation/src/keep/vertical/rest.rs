@@ -1,129 +1,145 @@
-//! Whether the body stands: a zero-velocity detector that knows its gyros' noise from what they show.
+//! Zero-velocity detector (rest detection), which estimates its gyros' noise from their readings.
 //!
-//! Half a second is steady if its mean rates and forces are those of the half second before within the gyros' noise,
-//! and quiet if the rates are the biases' as well, within their uncertainty, in it alone and in all that it follows. Three
-//! quiet ones in a row are a rest. Noise decides, not the attitude; but where the force is not gravity as the attitude has
-//! it, and a steady acceleration would look just so, a rest must last for a minute, or until that would have made the
-//! body too fast: a vehicle that speeds up steadily on a straight road is quiet too. A body that was just tumbled about
-//! does not do that, and a force that is felt as at the latest rest is gravity as it was there.
+//! A window of half a second is steady if its mean rates and forces equal those of the window
+//! before within the gyros' noise, and quiet if the rates also equal the biases within their
+//! uncertainty, in this window alone and in all that it continues. Three quiet windows in
+//! succession are a rest. Noise decides, not the attitude; but where the force is not gravity for
+//! the present attitude, and a steady acceleration would look the same, a rest must last for a
+//! minute, or until that acceleration would have made the body too fast: a vehicle that accelerates
+//! steadily on a straight road is quiet too. A body that just tumbled does not do that, and a force
+//! equal to that of the latest rest is gravity as it was there.
 //!
-//! Rates that are steady but not the biases' are a turn, or biases beyond what was stated. A turn about a level axis
-//! would carry the force along, which shows at once which it is. A steady turn about the vertical and a bias look alike:
-//! within what was stated of the bias, a rest is believed; beyond that, rates that stay even for 20 s, of a gyro that has
-//! never rested. Of one that rested only for seconds, that rest may have been a turn itself: even rates are believed in its
-//! place if they last longer and make the biases less.
+//! Rates that are steady but unequal to the biases are a rotation, or biases beyond their
+//! configured 1σ. A rotation about a level axis would carry the force along, which distinguishes
+//! the two at once. A steady rotation about the vertical and a bias look alike: within the
+//! configured 1σ of the bias a rest is accepted; beyond it, rates that stay constant for 20 s, for
+//! a gyro that has never rested. If it rested only for seconds, that rest may have been a rotation
+//! itself: constant rates replace it if they last longer and make the biases smaller.
 //!
-//! The stop criteria of [`crate::signal::rest`] ask another question: whether the rate is the Earth's, of gyros that
-//! show it. They judge an average on its own and need no one before it, which coarse gyros cannot.
+//! The stop criteria of [`crate::signal::rest`] answer another question: whether the rate is the
+//! Earth's, for gyros that resolve it. They test an average on its own without a predecessor, which
+//! is impossible with coarse gyros.
 
 use super::Vector;
 use crate::math::rotation::{cross, difference, dot, scaled, sum};
 
-/// Standard deviations that a mean may be off.
+/// Significance, in σ, at which a mean deviates.
 const BOUND: f32 = 4.0;
 /// Length of a window, s.
 pub const WINDOW: f32 = 0.5;
-/// Quiet windows that make a rest.
+/// Number of quiet windows that make a rest.
 const ENOUGH: u32 = 3;
-/// Windows that make one where a steady acceleration would look just so: a minute.
+/// Retry budget: number of windows that make a rest where a steady acceleration would look the
+/// same: a minute.
 const PATIENCE: u32 = 120;
-/// Windows for which no turn is even, but the bias of a gyro that has never rested: 20 s.
+/// Number of windows after which constant rates are no rotation, but the bias of a gyro that has
+/// never rested: 20 s.
 const EVEN: u32 = 40;
-/// Windows more for each in which it rested for less than that, with a bias that was greater.
+/// Additional windows for each window of a shorter rest with a greater bias.
 const OUTLASTING: u32 = 3;
-/// Greatest speed to which a vehicle is taken to speed up steadily, m/s: a take-off's.
+/// Greatest speed of a steady acceleration, m/s: that of a take-off.
 const TOO_FAST: f32 = 100.0;
-/// How far wind and engine turn a body that stands within a window at most, rad: 20″.
+/// Greatest rotation of a body at rest by wind and engine within a window, rad: 20″.
 const SHAKING: f32 = 1e-4;
-/// How much a mean force may change at rest, m/s²: 3 mg.
+/// Greatest change of a mean force at rest, m/s²: 3 mg.
 const FORCE_CHANGE: f32 = 0.03;
-/// Least force that a body feels which does not fall, m/s²: half of gravity.
+/// Least force on a body that does not fall, m/s²: half of gravity.
 const LEAST_FORCE: f32 = 4.9;
-/// A turn is denied if it would have moved the force by so many times what that moved, and what it moved at least as far
-/// as can be told, m/s²: 1 mg.
+/// Ratio of the force change that a rotation would have made to the observed one, beyond which the
+/// rotation is denied.
 const DENIED: f32 = 3.0;
+/// Least observed change of the force, m/s²: 1 mg.
 const UNSEEN: f32 = 0.01;
-/// Windows that a turn must last to be denied: what shakes the body turns it back within them.
+/// Least number of windows of a rotation that is denied: what shakes the body turns it back within
+/// them.
 const DENYING: u32 = 6;
-/// Greatest and least noise that is believed, squared, in those of what was stated: five times, a tenth.
+/// Greatest squared noise that is assumed, in units of the configured one: five times.
 const GREATEST_NOISE: f32 = 25.0;
+/// Least squared noise that is assumed, in units of the configured one: a tenth.
 const LEAST_NOISE: f32 = 0.01;
 /// Weight of one window in the mean noise at rest.
 const AVERAGED: f32 = 0.125;
-/// Greatest noise that one window counts with, squared, in that known before: it may be a motion's first.
+/// Greatest squared noise with which one window counts, in units of the previous one: it may be the
+/// first of a motion.
 const GREATEST_RISE: f32 = 2.0;
-/// Part by which the squared noise may rise from window to window in motion.
+/// Relative increase of the squared noise from window to window in motion.
 const ADDED: f32 = 0.01;
-/// Part of its squared noise to which a gyro falls as a motion ends.
+/// Ratio to which a gyro's squared noise falls as a motion ends.
 const SETTLED: f32 = 0.5;
 
-/// What a window shows.
+/// Averages of a window.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Means {
-    /// Mean rates less what the Earth turns, rad/s.
+    /// Mean rates less the Earth rate, rad/s.
     pub rate: Vector,
-    /// Mean forces, m/s²; none where there was none.
+    /// Mean forces, m/s²; none without force readings.
     pub force: Option<Vector>,
-    /// Angle random walk as the rates within the window show it, squared, rad²/s.
+    /// Squared angle random walk from the scatter of the rates within the window, rad²/s.
     pub walk: Vector,
-    /// Acceleration that the force may show although nothing changes, if the attitude is right, m/s²; none where it is
-    /// gravity, or where the body does not speed up steadily.
+    /// Acceleration that the force may show although nothing changes, if the attitude is right,
+    /// m/s²; none where it is gravity, or where the body does not accelerate steadily.
     pub acceleration: Option<f32>,
 }
 
-/// What is known of the gyros.
+/// Prior knowledge of the gyros.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Known {
-    /// Biases, rad/s, and their variances.
+    /// Estimated biases, rad/s, and their variances.
     pub biases: Vector,
     pub variances: Vector,
-    /// Variances of the biases, (rad/s)², and angle random walk, squared, rad²/s, as they were stated.
+    /// Configured variances of the biases, (rad/s)², and squared angle random walk, rad²/s.
     pub stated: Vector,
     pub walk: Vector,
 }
 
-/// What a window belongs to.
+/// Classification of a window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Found {
-    /// The body moves, or may.
+    /// The body moves, or may move.
     Motion,
-    /// The body stands.
+    /// The body is at rest.
     Rest,
-    /// It stands, but its rates are no biases that were to be expected.
+    /// The body is at rest, but its rates are biases beyond the configured ones.
     StrangeBias,
 }
 
-/// The detector at work.
+/// State of the detector.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ZeroVelocityDetector {
+    /// Averages of the previous window.
     before: Option<Means>,
-    /// Noise of the gyros as they show it, squared, rad²/s; none before the first window.
+    /// Squared noise of the gyros from their readings, rad²/s; none before the first window.
     walk: Option<Vector>,
+    /// Number of successive quiet windows.
     quiet: u32,
-    /// What the body has turned beside the biases since it is steady or the biases were learnt, rad, and for how long, s.
+    /// Rotation beyond the biases since the body is steady or the biases were updated, rad, and its
+    /// duration, s.
     turned: Vector,
     seconds: f32,
+    /// Successive steady windows.
     steady: Steady,
+    /// Whether the body is at rest.
     is_at_rest: bool,
     /// Mean force of the latest rest, m/s².
     force: Option<Vector>,
-    /// Windows in which each gyro has rested with its bias, up to [`EVEN`].
+    /// Number of windows in which each gyro has rested with its bias, up to [`EVEN`].
     rested: [u32; 3],
 }
 
-/// Windows in a row that are steady, though not quiet.
+/// Successive windows that are steady, but not quiet.
 #[derive(Clone, Copy, Debug, Default)]
 struct Steady {
+    /// Number of windows.
     windows: u32,
-    /// What the body would have turned beside the biases meanwhile, rad.
+    /// Rotation beyond the biases in these windows, rad.
     turned: Vector,
-    /// The force in the first of them, m/s², and how far it was from that at most, squared.
+    /// Force in the first window, m/s², and greatest squared deviation from it.
     force: Vector,
     moved: f32,
 }
 
 impl ZeroVelocityDetector {
-    /// Takes a window, and says what it belongs to.
+    /// Takes a window and classifies it.
     pub fn push(&mut self, means: Means, known: &Known) -> Found {
         let walk = self.learn_noise(&means, known);
         let Some(before) = self.before.replace(means) else { return self.begin_motion() };
@@ -148,8 +164,8 @@ impl ZeroVelocityDetector {
         Found::Rest
     }
 
-    /// The gyros' noise as they show it: the least of lately, for motion only adds to it. As it falls, a motion ends, and
-    /// what the body turned until then says nothing of its rest.
+    /// Estimates the gyros' noise: the least of the recent values, because motion only adds to it.
+    /// A fall marks the end of a motion, and earlier rotation is no evidence on the rest.
     fn learn_noise(&mut self, means: &Means, known: &Known) -> Vector {
         let walk = core::array::from_fn(|axis| {
             let most = GREATEST_NOISE * known.walk[axis];
@@ -168,6 +184,7 @@ impl ZeroVelocityDetector {
         walk
     }
 
+    /// Whether the rates equal the biases, in this window and since it is counted.
     fn is_quiet(&mut self, means: &Means, known: &Known, walk: &Vector) -> bool {
         self.seconds += WINDOW;
         let mut is_quiet = true;
@@ -181,7 +198,8 @@ impl ZeroVelocityDetector {
         is_quiet
     }
 
-    /// Quiet windows that make a rest. A force that is felt as at the latest rest is gravity as it was there.
+    /// Number of quiet windows that make a rest. A force equal to that of the latest rest is
+    /// gravity as it was there.
     fn enough(&self, means: &Means, force: &Vector) -> u32 {
         let Some(acceleration) = means.acceleration else { return ENOUGH };
         if self.is_at_rest || self.force.is_some_and(|rested| is_steady(force, &rested)) {
@@ -190,6 +208,7 @@ impl ZeroVelocityDetector {
         ((TOO_FAST / (acceleration * WINDOW)) as u32).clamp(ENOUGH, PATIENCE)
     }
 
+    /// Begins a motion.
     fn begin_motion(&mut self) -> Found {
         self.steady = Steady::default();
         (self.quiet, self.is_at_rest) = (0, false);
@@ -197,8 +216,9 @@ impl ZeroVelocityDetector {
         Found::Motion
     }
 
-    /// Whether the rates have been even for longer than a turn lasts: about axes whose gyros have never rested, or so
-    /// shortly that this may have been a turn itself, if what they show now is less beside what was stated of them.
+    /// Whether the rates have been constant for longer than a rotation lasts: about axes whose
+    /// gyros have never rested, or so shortly that this may have been a rotation itself, if the
+    /// present rates deviate less from the configured biases.
     fn outlasts_turn(&self, known: &Known) -> bool {
         let Steady { windows, turned, .. } = self.steady;
         let seconds = windows as f32 * WINDOW;
@@ -214,29 +234,29 @@ impl ZeroVelocityDetector {
             })
     }
 
-    /// What the body would have turned beside the biases while its rates were even, rad.
+    /// Rotation beyond the biases while the rates were constant, rad.
     #[must_use]
     pub fn turned_evenly(&self) -> Vector {
         self.steady.turned
     }
 
-    /// What the body turns beside the biases counts from now on: they were learnt, or a motion ended.
+    /// Restarts the rotation beyond the biases: they were updated, or a motion ended.
     pub fn count_anew(&mut self) {
         (self.turned, self.seconds) = ([0.0; 3], 0.0);
     }
 
-    /// Whether the body stands.
+    /// Whether the body is at rest.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
         self.is_at_rest
     }
 
-    /// Begins anew, but for what is known of the gyros.
+    /// Restarts the detection, and keeps the knowledge of the gyros.
     pub fn disturb(&mut self) {
         *self = Self { walk: self.walk, force: self.force, rested: self.rested, ..Self::default() };
     }
 
-    /// Begins anew with another gyro about an axis: nothing is known of its noise.
+    /// Restarts the detection with another gyro about an axis, whose noise is unknown.
     pub fn exchange(&mut self, axis: usize, walk: f32) {
         self.disturb();
         self.rested[axis] = 0;
@@ -247,6 +267,7 @@ impl ZeroVelocityDetector {
 }
 
 impl Steady {
+    /// Adds a window.
     fn push(&mut self, turned: &Vector, force: Vector) {
         if self.windows == 0 {
             (self.force, self.moved) = (force, UNSEEN * UNSEEN);
@@ -257,8 +278,9 @@ impl Steady {
         self.turned = sum(&self.turned, turned);
     }
 
-    /// Whether the force would have been carried along by the turn that the rates show, and stands. In a bend it is carried
-    /// with the body and stands too, so only a turn that is rather about level axes is denied.
+    /// Whether the force stood although the rotation that the rates show would have carried it
+    /// along. In a bend the force is carried with the body and stands too, so only a rotation
+    /// mainly about level axes is denied.
     fn denies_turn(&self, walk: &Vector) -> bool {
         let seconds = self.windows as f32 * WINDOW;
         let is_noise =
@@ -273,14 +295,14 @@ impl Steady {
     }
 }
 
-/// How far a body that stands may seem to turn beside the bias in so many seconds, rad: by noise (angle random walk,
-/// squared, rad²/s), by what the bias is uncertain (its variance, (rad/s)²), and by wind.
+/// Greatest apparent rotation of a body at rest beyond the bias, rad: by noise (squared angle
+/// random walk, rad²/s), by the bias's variance, (rad/s)², and by wind.
 fn greatest_turn(walk: f32, variance: f32, seconds: f32) -> f32 {
     BOUND * libm::sqrtf(walk * seconds + variance * seconds * seconds) + SHAKING
 }
 
-/// The force of a window whose means are those of the one before within the noise; none where they are not, or where
-/// the body fell or its force was not known.
+/// Force of a window whose averages equal those of the one before within the noise; `None` where
+/// they do not, or where the body fell or its force was unknown.
 fn steady_force(now: &Means, before: &Means, walk: &Vector) -> Option<Vector> {
     let (force, force_before) = (now.force?, before.force?);
     if dot(&force, &force) < LEAST_FORCE * LEAST_FORCE {
@@ -294,7 +316,7 @@ fn steady_force(now: &Means, before: &Means, walk: &Vector) -> Option<Vector> {
     (is_steady && self::is_steady(&force, &force_before)).then_some(force)
 }
 
-/// Whether two mean forces are the same, as far as they are at rest.
+/// Whether two mean forces are equal within the tolerance at rest.
 fn is_steady(one: &Vector, other: &Vector) -> bool {
     one.iter().zip(other).all(|(one, other)| (one - other).abs() <= FORCE_CHANGE)
 }

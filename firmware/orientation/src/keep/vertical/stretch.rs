@@ -1,32 +1,33 @@
-//! What happened since the filter's last step.
+//! Integrals of the motion since the filter's last step.
 
 use super::Vector;
 use crate::keep::attitude::Matrix;
 use crate::math::rotation::{dot, scaled, sum};
 
-/// What happened since the last step.
+/// Integrals of the motion since the filter's last step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Stretch {
-    /// Its length, s.
+    /// Length, s.
     pub seconds: f32,
     /// Integral of the attitude's matrix, s.
     pub attitude: Matrix,
     /// Integral of the force on the level frame, north, east, down, m/s.
     pub impulse: [f32; 3],
-    /// For how much of it there were forces, s.
+    /// Time with valid forces, s.
     pub forced: f32,
-    /// What the body turned about its axes, rad.
+    /// Rotation of the body about its axes, rad.
     pub turned: Vector,
     /// Integrals of the squared rates about the body's axes, rad²/s.
     pub rate_squares: [f32; 3],
-    /// What the Earth's level rate may hide in the biases, (rad/s)²: nothing once north is known. As the body turns, it
-    /// goes from one to another.
+    /// Variance of the level Earth rate that the biases may contain, (rad/s)²: zero once north is
+    /// known. As the body turns it moves from one to another.
     pub hidden: f32,
-    /// Whether the body stands: it does not turn then, whatever the gyros show.
+    /// Whether the body is at rest: it does not rotate then, whatever the gyros show.
     pub is_rest: bool,
 }
 
 impl Stretch {
+    /// Adds a rotation, rad, with the mean attitude over its time, s.
     pub(super) fn turn(&mut self, attitude: &Matrix, rotation: &Vector, seconds: f32) {
         for (sums, row) in self.attitude.iter_mut().zip(attitude) {
             *sums = sum(sums, &scaled(row, seconds));
@@ -38,7 +39,7 @@ impl Stretch {
         self.seconds += seconds;
     }
 
-    /// A force on the level frame.
+    /// Adds a force on the level frame, m/s², over a time, s.
     pub(super) fn push(&mut self, force: &Vector, seconds: f32) {
         self.impulse = sum(&self.impulse, &scaled(force, seconds));
         self.forced += seconds;
@@ -49,7 +50,7 @@ impl Stretch {
         scaled(&self.turned, 1.0 / self.seconds)
     }
 
-    /// What the body turned about north and east, rad.
+    /// Rotation about north and east, rad.
     pub(super) fn level_turn(&self) -> [f32; 2] {
         let part = 1.0 / self.seconds;
         [dot(&self.attitude[0], &self.turned) * part, dot(&self.attitude[1], &self.turned) * part]
@@ -63,7 +64,7 @@ impl Stretch {
         square.max(0.0) * part * part
     }
 
-    /// The mean force's size, m/s².
+    /// Magnitude of the mean force, m/s².
     pub(super) fn force(&self) -> f32 {
         libm::sqrtf(dot(&self.impulse, &self.impulse)) / self.forced
     }

@@ -1,43 +1,49 @@
-//! What is summed between two looks.
+//! Sums between two evaluations.
 
 use super::Vector;
 use crate::math::rotation::{difference, scaled, sum};
 use crate::units::{AngleIncrement, Instant, SpecificForce};
 
-/// Bits by which forces are rounded down before they are summed, so that 64 of them fit at full range; 64 µm/s² are
-/// 7 µrad of tilt.
+/// Number of bits by which forces are rounded down before they are summed, so that 64 of them fit
+/// at full range; 64 µm/s² are 7 µrad of tilt.
 const SHIFT: u32 = 6;
 
-/// Differences from attitude to attitude by which noise can be told.
+/// Least number of rate differences that determine a noise.
 const FEWEST: u32 = 4;
 
-/// Forces since the latest attitude.
+/// Sums of the forces since the latest attitude update.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sums {
-    /// µm/s².
+    /// Sums in steps of 64 µm/s².
     pub(super) sums: [i32; 3],
+    /// Number of forces.
     pub(super) count: u32,
 }
 
-/// What a window of the rest watch sums.
+/// Sums of a window of rest detection.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Window {
+    /// Length, s.
     pub(super) seconds: f32,
-    /// What the body turned against the Earth, about its axes, with its biases, rad.
+    /// Rotation against the Earth about the body's axes, including the biases, rad.
     pub(super) turned: Vector,
-    /// Turned about the vertical, rad.
+    /// Rotation about the vertical, rad.
     pub(super) about: f32,
     /// Integral of the force on the body's axes, m/s.
     pub(super) impulse: Vector,
+    /// Time with valid forces, s.
     pub(super) forced: f32,
-    /// What the rates differ by from one attitude to the next, as half their squares by time, rad²/s, summed.
+    /// Sum of half the squared differences of the rates between attitude updates, times their
+    /// interval, rad²/s.
     scatter: Vector,
+    /// Number of differences.
     steps: u32,
+    /// Rates of the latest interval, rad/s.
     latest: Option<Vector>,
 }
 
 impl Window {
-    /// Takes what the body turned in that time, s, with its biases, rad.
+    /// Adds a rotation with its biases, rad, over a time, s.
     pub(super) fn turn(&mut self, turned: &Vector, seconds: f32) {
         self.seconds += seconds;
         self.turned = sum(&self.turned, turned);
@@ -50,8 +56,8 @@ impl Window {
         }
     }
 
-    /// Angle random walk, squared, as the rates scatter from one attitude to the next, rad²/s: whatever turns the body
-    /// evenly does not count. None where they are too few to tell.
+    /// Squared angle random walk from the scatter of the rates between attitude updates, rad²/s, to
+    /// which constant rotation does not contribute; `None` with too few of them.
     pub(super) fn walk(&self) -> Option<Vector> {
         (self.steps >= FEWEST).then(|| scaled(&self.scatter, 1.0 / self.steps as f32))
     }
@@ -61,34 +67,39 @@ impl Window {
         scaled(&self.turned, 1.0 / self.seconds)
     }
 
-    /// Mean force, m/s²; none where there was none.
+    /// Mean force, m/s²; `None` without force readings.
     pub(super) fn force(&self) -> Option<Vector> {
         (self.forced > 0.0).then(|| scaled(&self.impulse, 1.0 / self.forced))
     }
 }
 
-/// What of a rest the biases have not been told yet: of every part the mean rate counts, each as long as all
-/// before, for what shakes the body turns it to and fro.
+/// Part of a rest that has not updated the biases yet. The mean rate of each part counts, and each
+/// part is as long as all before, because shaking turns the body to and fro.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Rested {
+    /// Length so far, s.
     pub(super) seconds: f32,
-    /// Length of this part, s.
+    /// Intended length of this part, s.
     pub(super) due: f32,
+    /// Rotation so far, rad.
     pub(super) turned: Vector,
 }
 
-/// The sample before.
+/// Values of the previous sample.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Before {
+    /// Time of the previous sample.
     pub(super) time: Option<Instant>,
+    /// Increments of the previous sample.
     pub(super) turned: [AngleIncrement; 3],
-    /// Rate lately, rad/s.
+    /// Recent rate, rad/s.
     pub(super) lately: f32,
-    /// What may have been lost since a gyro clips, rad.
+    /// Rotation that may have been lost since a gyro saturated, rad.
     pub(super) clipped: f32,
 }
 
 impl Sums {
+    /// Adds a force.
     #[inline]
     pub(super) fn push(&mut self, [x, y, z]: [SpecificForce; 3]) {
         self.sums[0] = self.sums[0].saturating_add(x.0 >> SHIFT);
@@ -97,7 +108,7 @@ impl Sums {
         self.count += 1;
     }
 
-    /// The mean, m/s², which begins again.
+    /// Mean force, m/s²; the sums begin again.
     pub(super) fn take(&mut self) -> Option<Vector> {
         let Self { sums, count } = core::mem::take(self);
         let part = 1e-6 * (1 << SHIFT) as f32 / count as f32;

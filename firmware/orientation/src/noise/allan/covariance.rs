@@ -1,4 +1,4 @@
-//! How sure Allan variances are, and how they go together, under a noise model.
+//! Uncertainty of Allan variances, and correlation between them, under a noise model.
 //!
 //! The terms are Gaussian, so the covariance of two Allan variances is 2/(M₁M₂) ΣΣ c², c being the
 //! covariance of a term of one with a term of the other (the module `kernel`), plus 4·D₁D₂·c where a
@@ -15,29 +15,31 @@ use super::kernel::Kernel;
 use super::{Point, variance};
 use crate::noise::model::GyroNoise;
 
-/// How far beyond the corners flicker is followed, in spans of the longer terms: the tail falls as
-/// the fourth power, what is left out is below 0.1 %.
+/// How far beyond the corners the flicker covariance is followed, in spans of the longer terms: the
+/// tail falls as the fourth power, and the neglected part is below 0.1 %.
 const TAIL: i32 = 2;
-/// Blocks are half of the distance to a corner: twice a quarter and one.
+/// Divisor of the distance to the nearest corner: a block is twice its quotient plus one, about
+/// half of the distance.
 const BLOCK: i32 = 4;
 
-/// How an Allan variance was averaged, in samples, with what the model says of its terms.
+/// Averaging of one Allan variance, in samples, with the predictions of the noise model for its
+/// terms.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Window {
-    /// Averaging time.
+    /// Averaging time τ, samples.
     span: u32,
-    /// From term to term.
+    /// Distance from term to term, samples.
     stride: u32,
-    /// Terms.
+    /// Number of terms.
     terms: u32,
     /// Standard deviation of a term under the noise, rad/s.
     sigma: f64,
-    /// What the ramp adds to a term, standard deviations.
+    /// Contribution of the rate ramp to a term, in standard deviations.
     ramp: f32,
 }
 
 impl Window {
-    /// Of a point under a noise; spans and strides become whole samples.
+    /// Window of a point under a noise model; spans and strides are rounded to whole samples.
     #[must_use]
     pub fn new(point: &Point, noise: &GyroNoise, sample_seconds: f64) -> Self {
         let still = GyroNoise { rate_ramp: 0.0, ..*noise };
@@ -53,7 +55,7 @@ impl Window {
     }
 }
 
-/// A noise as the covariance needs it.
+/// Power laws of a noise model, as the covariance needs them.
 #[derive(Clone, Copy, Debug)]
 pub struct Law {
     /// Powers of Q, N, B and K at a lattice of one sample, (rad/s)².
@@ -61,7 +63,7 @@ pub struct Law {
 }
 
 impl Law {
-    /// Of a noise sampled every `sample_seconds`.
+    /// Power laws of a noise sampled every `sample_seconds`.
     #[must_use]
     pub fn new(noise: &GyroNoise, sample_seconds: f64) -> Self {
         let power = |coefficient: f64| coefficient * coefficient;
@@ -83,7 +85,7 @@ impl Law {
         scale * scale * f64::from(self.pair(short, long, scale).covariance())
     }
 
-    /// The pair in units of its terms' standard deviations.
+    /// Normalised pair of windows, in units of the terms' standard deviations.
     fn pair(&self, short: &Window, long: &Window, scale: f64) -> Pair {
         let lattice = short.stride.min(long.stride).max(1);
         let [m, big] = [f64::from(short.span), f64::from(long.span)];
@@ -104,7 +106,8 @@ impl Law {
 }
 
 /// Equivalent degrees of freedom 2V²/Var V of a point's Allan variance under a noise: V̂·edf/V is
-/// distributed as chi-square with so many degrees (NIST SP 1065, section 5.4).
+/// Equivalent degrees of freedom, so that V̂·edf/V is distributed as chi-square (NIST SP 1065,
+/// section 5.4).
 #[must_use]
 pub fn degrees_of_freedom(point: &Point, noise: &GyroNoise, sample_seconds: f64) -> f64 {
     let window = Window::new(point, noise, sample_seconds);
@@ -118,12 +121,12 @@ struct Pair {
     kernel: Kernel,
     strides: [NonZeroU32; 2],
     terms: [u32; 2],
-    /// Product of what the ramp adds to the terms.
+    /// Product of the rate ramp's contributions to both terms.
     ramp: f32,
 }
 
 impl Pair {
-    /// 2/(M₁M₂) ΣΣ (c² + 2 D₁D₂ c).
+    /// Normalised covariance 2/(M₁M₂) ΣΣ (c² + 2 D₁D₂ c).
     fn covariance(&self) -> f32 {
         let Kernel { short, long, .. } = self.kernel;
         let mut sum = self.block(0, 1);
@@ -146,7 +149,7 @@ impl Pair {
         2.0 * sum / short / long
     }
 
-    /// A block of lags about `lag`, on both sides of zero.
+    /// Contribution of a block of `width` lags about `lag`, on both sides of zero.
     fn block(&self, lag: i32, width: i32) -> f32 {
         let pairs = if lag == 0 { self.pairs(0) } else { self.pairs(lag) + self.pairs(-lag) };
         if pairs == 0.0 {
@@ -156,7 +159,7 @@ impl Pair {
         pairs * width as f32 * (c * c + 2.0 * self.ramp * c)
     }
 
-    /// Pairs of terms whose middles lie `lag` apart, the longer one later where positive.
+    /// Number of pairs of terms whose middles lie `lag` apart, the longer one later where positive.
     fn pairs(&self, lag: i32) -> f32 {
         let [step, stride] = self.strides;
         let shift = i64::from(lag) + i64::from(self.kernel.short) - i64::from(self.kernel.long);

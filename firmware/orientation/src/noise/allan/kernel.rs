@@ -1,4 +1,4 @@
-//! How the terms of two Allan variances go together, for each power law of noise.
+//! Covariance of the terms of two Allan variances, for each power law of noise.
 //!
 //! A term is a second difference of the angle. With s the generalised autocovariance of the angle
 //! (C. A. Greenhall, "The generalized autocovariance", 1999), the covariance of a term of span m and
@@ -22,7 +22,7 @@ pub struct Kernel {
     pub short: i32,
     /// Span of the longer terms M, steps.
     pub long: i32,
-    /// Weights of Q, N, B and K: what each law's shape counts in the covariance.
+    /// Weight of the shape of each law, Q, N, B and K, in the covariance.
     pub weights: [f32; 4],
 }
 
@@ -41,12 +41,13 @@ impl Kernel {
                 sum += factor * b * flicker(distance as f32 / m, long / m);
             }
         }
-        // What is left of K: the second difference of |u|/2 is a hat of the longer width.
+        // The second part of K: the second difference of |u|/2 is a triangle of the longer width.
         sum + k * (self.long - lag.abs()).max(0) as f32 / long
     }
 }
 
-/// The second difference of width 1 of u² ln(|u|/`scale`): the scale cancels in the second one.
+/// Second difference of width 1 of u² ln(|u|/`scale`). The scale cancels in the second difference
+/// of width M/m that is taken of it.
 fn flicker(u: f32, scale: f32) -> f32 {
     if u < 2.0 {
         return square_log(u + 1.0) - 2.0 * square_log(u) + square_log(u - 1.0)
@@ -58,7 +59,7 @@ fn flicker(u: f32, scale: f32) -> f32 {
     2.0 * libm::logf(u / scale) + 3.0 - square * series
 }
 
-/// u² ln|u|.
+/// Function u² ln|u|, continued by zero at u = 0.
 fn square_log(u: f32) -> f32 {
     if u == 0.0 { 0.0 } else { u * u * libm::logf(u.abs()) }
 }

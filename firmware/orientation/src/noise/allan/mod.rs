@@ -17,26 +17,27 @@ mod kernel;
 use super::model::GyroNoise;
 use crate::units::AngularRate;
 
-/// Levels: the last reaches τ = 6·2²³ samples, half of a record of 10⁸.
+/// Number of levels: the last reaches τ = 6·2²³ samples, half of a record of 10⁸.
 const LEVELS: usize = 24;
 /// Steps of a level over which differences are taken.
 const FACTORS: [u32; 2] = [4, 6];
-/// Samples over which differences are taken at level 0 beside these.
+/// Additional differences at level 0, in samples.
 const SHORT: [u32; 3] = [1, 2, 3];
-/// Entries of a ring: a power of two that holds twice the greatest factor and the newest.
+/// Entries of a ring: a power of two that holds twice the greatest factor and the newest angle.
 const RING: usize = 16;
 
-/// Most τ that a record can have.
+/// Greatest number of averaging times τ that a record can have.
 pub const MOST_POINTS: usize = SHORT.len() + FACTORS.len() * LEVELS;
 
-/// Samples that are taken; what comes later is left out (25 days at 2 kHz). A record that outlasts
-/// the last level (10⁸ samples) makes the known τ surer and adds no longer one.
+/// Greatest number of samples; later ones are ignored (25 days at 2 kHz). A record that outlasts
+/// the last level (10⁸ samples) makes the existing τ more certain and adds no longer one.
 pub const MOST_SAMPLES: u32 = u32::MAX;
 
 const _: () = assert!(size_of::<Allan>() <= 4096, "the board's room for it");
 const _: () = assert!(RING > 2 * FACTORS[1] as usize, "a ring holds a second difference");
 
-/// What each coefficient's square counts in the Allan variance at τ = `seconds`: Q, N, B, K, R.
+/// Factor of each squared coefficient in the Allan variance at τ = `seconds`, in the order Q, N, B,
+/// K, R: 3/τ², 1/τ, 2 ln 2/π, τ/3, τ²/2 (IEEE Std 952-1997).
 #[must_use]
 pub fn terms(seconds: f64) -> [f64; 5] {
     let flat = 2.0 * core::f64::consts::LN_2 / core::f64::consts::PI;
@@ -44,7 +45,7 @@ pub fn terms(seconds: f64) -> [f64; 5] {
     [3.0 / square, 1.0 / seconds, flat, seconds / 3.0, 0.5 * square]
 }
 
-/// Allan variance of a noise at τ = `seconds`, (rad/s)².
+/// Allan variance that a noise model predicts at τ = `seconds`, (rad/s)².
 #[must_use]
 pub fn variance(noise: &GyroNoise, seconds: f64) -> f64 {
     let coefficients = noise.coefficients().map(|coefficient| coefficient * coefficient);
@@ -60,22 +61,24 @@ pub struct Point {
     pub variance: f64,
     /// Time between the starts of successive terms, s.
     pub stride: f64,
-    /// Terms of the mean, ≥ 1.
+    /// Number of terms averaged, ≥ 1.
     pub terms: u64,
 }
 
-/// Every 2ᵏ-th angle, and the squared second differences of them.
+/// One level: every 2ᵏ-th angle, and the sums of the squared second differences.
 #[derive(Clone, Debug)]
 struct Level {
+    /// Ring of the latest angles, nrad/s·samples.
     angles: [i64; RING],
+    /// Sums of squared second differences over 4 and 6 steps.
     sums: [u128; 2],
 }
 
 impl Level {
-    /// Nothing but the angle zero at the start.
+    /// Level at the start, with the angle zero.
     const START: Self = Self { angles: [0; RING], sums: [0; 2] };
 
-    /// Takes the angle number `index`, nrad/s·samples.
+    /// Takes the angle with number `index`, nrad/s·samples.
     fn push(&mut self, index: u32, angle: i64) {
         self.angles[index as usize % RING] = angle;
         let Self { angles, sums: [four, six] } = self;
@@ -97,16 +100,21 @@ fn add<const STEP: u32>(sum: &mut u128, angles: &[i64; RING], index: u32, newest
     }
 }
 
-/// The estimator; see the module.
+/// Estimator of the overlapping Allan variance, 4 KB; see the module.
 #[derive(Clone, Debug)]
 pub struct Allan {
+    /// Rings and sums of the octaves.
     levels: [Level; LEVELS],
+    /// Sums of squared second differences over 1, 2 and 3 samples.
     short: [u128; 3],
-    /// Sum of all samples, modulo 2⁶⁴.
+    /// Sum of all samples, nrad/s, modulo 2⁶⁴.
     angle: i64,
+    /// Number of samples.
     samples: u32,
+    /// Latest sample, nrad/s.
     last: i32,
-    /// Smallest change between neighbours less one; a change of zero counts as the greatest.
+    /// Smallest non-zero change between neighbouring samples less one, nrad/s; a change of zero
+    /// wraps to the greatest value.
     change: u32,
     saturated: bool,
 }
@@ -118,7 +126,7 @@ impl Default for Allan {
 }
 
 impl Allan {
-    /// Of an empty record.
+    /// Estimator of an empty record.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -132,7 +140,7 @@ impl Allan {
         }
     }
 
-    /// Takes the next sample; samples come at even times without a gap.
+    /// Takes the next sample; samples must be equidistant and without gaps.
     pub fn push(&mut self, rate: AngularRate) {
         if self.samples == MOST_SAMPLES {
             return;
@@ -151,7 +159,7 @@ impl Allan {
         add::<{ SHORT[2] }>(three, angles, index, self.angle);
     }
 
-    /// Notes what makes a record useless.
+    /// Notes saturation and the smallest change, which reveal an unusable record.
     fn examine(&mut self, rate: AngularRate) {
         self.saturated |= rate.is_saturated();
         if self.samples > 0 {
@@ -160,33 +168,33 @@ impl Allan {
         self.last = rate.0;
     }
 
-    /// Samples taken.
+    /// Number of samples taken.
     #[must_use]
     pub fn samples(&self) -> u32 {
         self.samples
     }
 
-    /// Whether a sample stood at a limit of its range.
+    /// Whether any sample stood at a limit of its range.
     #[must_use]
     pub fn is_saturated(&self) -> bool {
         self.saturated
     }
 
-    /// Whether all samples were equal, as those of a stuck gyro or bus are; so is an empty record.
+    /// Whether all samples were equal, as with a stuck gyro or bus; true also for an empty record.
     #[must_use]
     pub fn is_constant(&self) -> bool {
         self.change == u32::MAX
     }
 
-    /// Smallest change between neighbouring samples, rad/s: in a record of noise the step of the
-    /// coarsest number format on the way. Zero for a constant record.
+    /// Smallest change between neighbouring samples, rad/s: in a noisy record this is the step of
+    /// the coarsest number format on the way. Zero for a constant record.
     #[must_use]
     pub fn resolution(&self) -> f64 {
         f64::from(self.change.wrapping_add(1)) * 1e-9
     }
 
-    /// The Allan variance at every τ that the record reaches, rising; `sample_seconds` is the time
-    /// from sample to sample, s.
+    /// Allan variances at every τ that the record reaches, in rising order; `sample_seconds` is the
+    /// sample period, s.
     pub fn points(&self, sample_seconds: f64) -> impl Iterator<Item = Point> {
         let short = SHORT.into_iter().zip(self.short).map(|(step, sum)| (0, step, sum));
         let levels = (0..).zip(&self.levels).flat_map(|(shift, level)| {
@@ -197,7 +205,7 @@ impl Allan {
             .filter_map(move |(shift, step, sum)| self.point(sample_seconds, shift, step, sum))
     }
 
-    /// The estimate from a sum over `step` steps of 2^`shift` samples.
+    /// Estimate from a sum over `step` steps of 2^`shift` samples; `None` without a complete term.
     fn point(&self, sample_seconds: f64, shift: u32, step: u32, sum: u128) -> Option<Point> {
         let terms = ((self.samples >> shift) + 1).checked_sub(2 * step).filter(|&n| n > 0)?;
         let stride = f64::from(1_u32 << shift);

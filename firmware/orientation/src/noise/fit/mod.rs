@@ -1,23 +1,27 @@
-//! The gyro's noise coefficients from its Allan variance.
+//! Noise coefficients of a gyro from its Allan variance.
 //!
-//! σ²(τ) = 3Q²/τ² + N²/τ + (2 ln 2/π)B² + K²τ/3 + R²τ²/2 (IEEE Std 952-1997, annex C), fitted with
-//! coefficients that are not negative. What is found has its standard deviation; what does not stand
-//! out has a limit.
+//! The model is σ²(τ) = 3Q²/τ² + N²/τ + (2 ln 2/π)B² + K²τ/3 + R²τ²/2 (IEEE Std 952-1997, annex C),
+//! fitted with non-negative coefficients. A coefficient that is found comes with its standard
+//! deviation; one that does not stand out comes with an upper limit.
 //!
-//! Two laws that rise alike over one record are hard to tell apart. What is told is therefore the
-//! mean of all choices of coefficients, and its deviation holds how far they lie apart. In simulated
-//! records a coefficient that is not there is mostly found in one of thirty, but:
+//! Two laws that rise alike over one record are hard to separate. The result is therefore the mean
+//! over all choices of coefficients, and its standard deviation includes how far they lie apart. In
+//! simulated records a coefficient that is absent is found in one record of thirty or fewer,
+//! except:
 //!
-//! - K in one of thirteen beside B that hardly rises above the white noise;
-//! - B in one of eight beside a walk alone that hardly rises above the white noise;
-//! - K in one of five beside B and a ramp that hardly rises above it, often in the ramp's stead;
-//! - a ramp beside a walk holds the slope that the walk had in this record, and its deviation does
-//!   not: it is four times too small where the walk is not found.
+//! - K in one of thirteen, beside a B that hardly rises above the white noise;
+//! - B in one of eight, beside a random walk alone that hardly rises above the white noise;
+//! - K in one of five, beside a B and a ramp that hardly rises above it, often in place of the
+//!   ramp;
+//! - a ramp beside a random walk takes up the slope that the walk had in this record, and its
+//!   standard deviation does not include it: it is four times too small where the walk is not
+//!   found.
 //!
-//! A walk that is seldom above the bias instability (N 0.02 °/√h, B 0.3 °/h, K 2 °/h/√h, one hour) is
-//! found in three records of four; in one of twenty it is above its stated limit, and beside a
-//! quantisation in one of eleven. The value of what is seldom found lies too high, for only high ones
-//! are found. Record longer, or at an even temperature.
+//! A random walk that is seldom above the bias instability (N 0.02 °/√h, B 0.3 °/h, K 2 °/h/√h, one
+//! hour) is found in three records of four; in one of twenty it is above its stated limit, and
+//! beside a quantisation in one of eleven. The value of a coefficient that is seldom found is
+//! biased high, because only high values are found. The remedy is a longer record, or one at
+//! constant temperature.
 
 mod average;
 mod regression;
@@ -33,31 +37,33 @@ use crate::units::{ARCSECOND, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 use crate::words;
 use crate::words::Rounded;
 
-/// Variance of the slope of a random walk, in K² over its length: 6/5.
+/// Variance of the slope of a random walk, in K² over its length: 6/5 (least-squares line through
+/// the walk).
 const WALK_SLOPE: f64 = 1.2;
-/// Fewest samples of which anything is said: eight τ, as many as the coefficients and three.
+/// Fewest samples for a fit: they give eight averaging times τ, three more than there are
+/// coefficients.
 const LEAST_SAMPLES: u64 = 64;
 
-/// One coefficient as the record knows it, in the unit its place states. It is told with five decimal
-/// places, which suit the field's units.
+/// Estimate of one coefficient from a record, in the unit stated where it is used. It is printed
+/// with six decimal places, which suit the field's units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Estimate {
-    /// It stands out.
+    /// The coefficient stands out of the other noise.
     Found {
-        /// The coefficient.
+        /// Estimate of the coefficient.
         value: f64,
-        /// Its standard deviation.
+        /// Standard deviation of the estimate, 1σ.
         sigma: f64,
     },
-    /// It does not stand out of the other noise of this record.
+    /// The coefficient does not stand out of the other noise of this record.
     NotObservable {
-        /// What it does not exceed, at two standard deviations.
+        /// Upper limit of the coefficient, at two standard deviations.
         at_most: f64,
     },
 }
 
 impl Estimate {
-    /// The same in a unit that is so great in the present one.
+    /// The estimate in another unit, which is `unit` in the present one.
     #[must_use]
     pub fn in_unit(self, unit: f64) -> Self {
         match self {
@@ -68,7 +74,7 @@ impl Estimate {
         }
     }
 
-    /// The coefficient where it was found.
+    /// Estimated coefficient, where it was found.
     #[must_use]
     pub fn value(self) -> Option<f64> {
         match self {
@@ -83,7 +89,7 @@ words! { Estimate:
     Self::NotObservable { at_most } => "not observable, at most {}", Rounded::<6>(at_most);
 }
 
-/// What a record says of its gyro's noise.
+/// Noise coefficients of a gyro as one record shows them, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoiseFit {
     /// Quantisation Q, rad.
@@ -96,14 +102,19 @@ pub struct NoiseFit {
     pub rate_random_walk: Estimate,
     /// Rate ramp R, rad/s².
     pub rate_ramp: Estimate,
-    /// Squared deviations of the points from the model over their variances.
+    /// Chi-square of the fit: squared deviations of the points from the model over their variances,
+    /// summed. Neighbouring points correlate, so its expectation is not `degrees`.
     pub chi_square: f64,
-    /// Points less coefficients found.
+    /// Number of points less number of coefficients found.
     pub degrees: usize,
 }
 
 impl NoiseFit {
-    /// The noise of a gyro that stood still while it was sampled every `sample_seconds`.
+    /// Fits the noise of a gyro at rest that was sampled every `sample_seconds`.
+    ///
+    /// # Errors
+    /// [`FitError`] if a sample was saturated, all samples are equal, the record is too short, or
+    /// its noise is below the resolution of the samples (a variance of step²/12).
     pub fn of(allan: &Allan, sample_seconds: f64) -> Result<Self, FitError> {
         if allan.is_saturated() {
             return Err(FitError::Saturated);
@@ -120,7 +131,11 @@ impl NoiseFit {
         Ok(fit)
     }
 
-    /// The same from points, rising in τ, that were estimated elsewhere.
+    /// Fits points that were estimated elsewhere, in rising order of τ.
+    ///
+    /// # Errors
+    /// [`FitError`] for a sample period that is not positive, for a short record, and for variances
+    /// that no noise model fits.
     pub fn of_points(points: &[Point], sample_seconds: f64) -> Result<Self, FitError> {
         if !(sample_seconds > 0.0 && sample_seconds.is_finite()) {
             return Err(FitError::Period);
@@ -134,9 +149,9 @@ impl NoiseFit {
         if fit.is_finite() { Ok(fit) } else { Err(FitError::NotNoise) }
     }
 
-    /// Adds to the σ of a ramp what the random walk over so many seconds looks like one: a slope of
-    /// variance 6K²/(5T). A walk that was not found may still hide beside a ramp:
-    /// [`Self::hidden_slope`] says how much.
+    /// Adds to the σ of a ramp the slope that the random walk found shows over `seconds`, of
+    /// variance 6K²/(5T). A random walk that was not found may still contribute:
+    /// [`Self::hidden_slope`] gives its bound.
     fn with_slope_of_walk(self, seconds: f64) -> Self {
         let (Estimate::Found { value, sigma }, Some(walk)) =
             (self.rate_ramp, self.rate_random_walk.value())
@@ -152,8 +167,8 @@ impl NoiseFit {
         Self { rate_ramp, ..self }
     }
 
-    /// What a random walk that was not found, but may be there, would make of the slope over so many
-    /// seconds, 1σ, rad/s².
+    /// Slope over `seconds`, 1σ, rad/s², that a random walk at its upper limit would show; `None`
+    /// where the walk was found, and its slope is part of the ramp's σ.
     #[must_use]
     pub fn hidden_slope(&self, seconds: f64) -> Option<f64> {
         match self.rate_random_walk {
@@ -162,7 +177,7 @@ impl NoiseFit {
         }
     }
 
-    /// Whether every coefficient is a number.
+    /// Whether every estimate is finite.
     fn is_finite(&self) -> bool {
         let is_finite = |estimate: &Estimate| match *estimate {
             Estimate::Found { value, sigma } => value.is_finite() && sigma.is_finite(),
@@ -171,20 +186,20 @@ impl NoiseFit {
         self.estimates().iter().all(is_finite)
     }
 
-    /// Q, N, B, K and R, in SI units.
+    /// Estimates of Q, N, B, K and R, in SI units.
     #[must_use]
     pub fn estimates(&self) -> [Estimate; 5] {
         let Self { quantisation: q, angle_random_walk: n, bias_instability: b, .. } = *self;
         [q, n, b, self.rate_random_walk, self.rate_ramp]
     }
 
-    /// The fitted Allan variance at τ = `seconds`, (rad/s)².
+    /// Fitted Allan variance at τ = `seconds`, (rad/s)².
     #[must_use]
     pub fn variance(&self, seconds: f64) -> f64 {
         variance(&self.noise(), seconds)
     }
 
-    /// The coefficients found; what is not observable is zero.
+    /// Noise model of the coefficients found; a coefficient that is not observable is zero.
     #[must_use]
     pub fn noise(&self) -> GyroNoise {
         GyroNoise {
@@ -196,7 +211,7 @@ impl NoiseFit {
         }
     }
 
-    /// All of them in the field's units.
+    /// All estimates in the field's units, as [`Coefficient`] states them.
     #[must_use]
     pub fn in_field_units(&self) -> [(Coefficient, Estimate); 5] {
         [
@@ -208,49 +223,49 @@ impl NoiseFit {
         ]
     }
 
-    /// Q, arc seconds.
+    /// Quantisation Q, arc seconds.
     #[must_use]
     pub fn arcseconds(&self) -> Estimate {
         self.quantisation.in_unit(ARCSECOND)
     }
 
-    /// N, °/√h.
+    /// Angle random walk N, °/√h.
     #[must_use]
     pub fn degrees_per_sqrt_hour(&self) -> Estimate {
         self.angle_random_walk.in_unit(DEGREE_PER_SQRT_HOUR)
     }
 
-    /// B, °/h.
+    /// Bias instability B, °/h.
     #[must_use]
     pub fn degrees_per_hour(&self) -> Estimate {
         self.bias_instability.in_unit(DEGREE_PER_HOUR)
     }
 
-    /// K, °/h/√h.
+    /// Rate random walk K, °/h/√h.
     #[must_use]
     pub fn degrees_per_hour_per_sqrt_hour(&self) -> Estimate {
         self.rate_random_walk.in_unit(DEGREE_PER_HOUR / 60.0)
     }
 
-    /// R, °/h².
+    /// Rate ramp R, °/h².
     #[must_use]
     pub fn degrees_per_hour_squared(&self) -> Estimate {
         self.rate_ramp.in_unit(DEGREE_PER_HOUR / 3600.0)
     }
 }
 
-/// A coefficient of the noise model.
+/// A coefficient of the noise model, with the field's unit (IEEE Std 952-1997).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coefficient {
-    /// Q, arc seconds.
+    /// Quantisation Q, arc seconds.
     Quantisation,
-    /// N, °/√h.
+    /// Angle random walk N, °/√h.
     AngleRandomWalk,
-    /// B, °/h.
+    /// Bias instability B, °/h.
     BiasInstability,
-    /// K, °/h/√h.
+    /// Rate random walk K, °/h/√h.
     RateRandomWalk,
-    /// R, °/h².
+    /// Rate ramp R, °/h².
     RateRamp,
 }
 
@@ -268,25 +283,25 @@ words! { NoiseFit:
         fit.degrees_per_hour_per_sqrt_hour(), fit.degrees_per_hour_squared();
 }
 
-/// Why a record says nothing.
+/// Reason for which a record determines no noise coefficients.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FitError {
-    /// Too few samples for a fit.
+    /// The record has too few samples for a fit.
     TooShort {
-        /// Samples there are.
+        /// Number of samples in the record.
         samples: u64,
-        /// Samples needed.
+        /// Number of samples needed.
         needed: u64,
     },
-    /// All samples are equal.
+    /// All samples are equal, as from a stuck gyro or bus.
     Constant,
     /// A sample stood at a limit of its range.
     Saturated,
-    /// The noise is smaller than what the rounding of its numbers adds.
+    /// The noise is smaller than the quantisation of the samples.
     Unresolved,
-    /// The variances are zero, infinite or those of a disturbance without noise.
+    /// The variances are zero or infinite, or those of a disturbance without noise.
     NotNoise,
-    /// The time between samples is not a positive number.
+    /// The sample period is not a positive number.
     Period,
 }
 

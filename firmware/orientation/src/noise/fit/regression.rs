@@ -1,61 +1,68 @@
-//! Linear least squares with coefficients that are not negative.
+//! Linear least squares with non-negative coefficients. With five coefficients every choice of
+//! positive ones can be tried: 31 small Cholesky solutions cost less flash than an active-set
+//! method.
 
 use heapless::Vec;
 
 use crate::math::{cholesky, cholesky_solve};
 use crate::noise::allan::{MOST_POINTS, Point, terms};
 
-/// Coefficients: the squares of Q, N, B, K and R.
+/// Number of coefficients: the squares of Q, N, B, K and R.
 pub const COLUMNS: usize = 5;
 
-/// The column of N.
+/// Index of the column of N².
 pub const WHITE: usize = 1;
 
-/// Which coefficients take part, bit for bit.
+/// Set of coefficients that take part, one bit each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Columns(pub u8);
 
 impl Columns {
-    /// All five.
+    /// Set of all five coefficients.
     pub const ALL: Self = Self(0b1_1111);
 
-    /// Whether this one takes part.
+    /// Whether a coefficient takes part.
     pub fn has(self, column: usize) -> bool {
         self.0 >> column & 1 == 1
     }
 
-    /// With this one.
+    /// The set with one coefficient added.
     pub fn with(self, column: usize) -> Self {
         Self(self.0 | 1 << column)
     }
 
-    /// How many take part.
+    /// Number of coefficients that take part.
     pub fn count(self) -> usize {
         self.0.count_ones() as usize
     }
 
-    /// Those that take part, rising.
+    /// Indices of the coefficients that take part, in rising order.
     pub fn each(self) -> impl Iterator<Item = usize> {
         (0..COLUMNS).filter(move |&column| self.has(column))
     }
 
-    /// Every choice of them that is not empty.
+    /// Every non-empty subset.
     pub fn subsets(self) -> impl Iterator<Item = Self> {
         (1..=self.0).filter(move |subset| subset & !self.0 == 0).map(Self)
     }
 }
 
-/// Weighted sums of the points over some columns, which are scaled to norm 1; others are zero.
+/// Weighted normal equations of the points over some columns, which are scaled to norm 1; the
+/// entries of other columns are zero.
 #[derive(Clone, Copy, Debug)]
 pub struct Sums {
+    /// Columns that take part.
     columns: Columns,
+    /// Matrix of the normal equations, lower triangle.
     normal: [[f64; COLUMNS]; COLUMNS],
+    /// Right side of the normal equations.
     right: [f64; COLUMNS],
+    /// Factors that scale the columns to norm 1.
     scales: [f64; COLUMNS],
 }
 
 impl Sums {
-    /// Of points whose variances have the standard deviations `sigmas`.
+    /// Normal equations of points whose variances have the standard deviations `sigmas`.
     pub fn new(points: &[Point], sigmas: &[f64], columns: Columns) -> Self {
         let mut sums = Self {
             columns,
@@ -71,6 +78,8 @@ impl Sums {
         sums
     }
 
+    /// Adds one point; `left` is its variance times its weight, and the weight is the reciprocal of
+    /// its σ.
     fn add(&mut self, terms: &[f64; COLUMNS], left: f64, weight: f64) {
         for i in self.columns.each() {
             let term = terms[i] * weight;
@@ -82,6 +91,7 @@ impl Sums {
         }
     }
 
+    /// Scales the columns to norm 1, so that the Cholesky pivots can be judged.
     fn scale(&mut self) {
         for i in self.columns.each() {
             self.scales[i] = 1.0 / libm::sqrt(self.normal[i][i]);
@@ -94,7 +104,8 @@ impl Sums {
         }
     }
 
-    /// Lower factor of the normal equations of some columns, packed to the front.
+    /// Lower Cholesky factor of the normal equations of some columns, packed to the front; `None`
+    /// where they are dependent.
     fn factor(&self, columns: Columns) -> Option<[[f64; COLUMNS]; COLUMNS]> {
         let mut matrix = [[0.0; COLUMNS]; COLUMNS];
         for (i, row) in columns.each().enumerate() {
@@ -105,7 +116,8 @@ impl Sums {
         cholesky(&mut matrix, columns.count()).then_some(matrix)
     }
 
-    /// Solves the normal equations of some columns for a right side; others are zero.
+    /// Solution of the normal equations of some columns for a right side; the other coefficients
+    /// are zero.
     fn solve(&self, columns: Columns, right: &[f64; COLUMNS]) -> Option<[f64; COLUMNS]> {
         let factor = self.factor(columns)?;
         let mut packed = [0.0; COLUMNS];
@@ -120,8 +132,8 @@ impl Sums {
         Some(solution)
     }
 
-    /// Column `column` of the inverse of the normal equations of some columns: covariances with this
-    /// coefficient's square if the points were independent.
+    /// Column `column` of the inverse of the normal equations of some columns: the covariances with
+    /// this squared coefficient if the points were independent.
     pub fn inverse(&self, columns: Columns, column: usize) -> Option<[f64; COLUMNS]> {
         let mut unit = [0.0; COLUMNS];
         unit[column] = self.scales[column];
@@ -129,8 +141,8 @@ impl Sums {
         Some(core::array::from_fn(|i| scaled[i] * self.scales[i]))
     }
 
-    /// The best of all solutions that are not negative: of every choice of columns that gives
-    /// positive ones, that which explains most.
+    /// Best non-negative solution: of all subsets of columns with positive solutions, the one that
+    /// explains most.
     pub fn positive(&self) -> (Columns, [f64; COLUMNS]) {
         let mut best = (Columns(0), [0.0; COLUMNS]);
         let mut most = 0.0;
@@ -146,12 +158,12 @@ impl Sums {
     }
 }
 
-/// Σ xᵢyᵢ.
+/// Scalar product Σ xᵢyᵢ.
 pub fn sum(x: &[f64; COLUMNS], y: &[f64; COLUMNS]) -> f64 {
     x.iter().zip(y).map(|(x, y)| x * y).sum()
 }
 
-/// What each point's variance counts in a coefficient's square, from that coefficient's column of the
+/// Weight of each point's variance in a squared coefficient, from that coefficient's column of the
 /// inverse.
 pub fn row(inverse: &[f64; COLUMNS], points: &[Point], sigmas: &[f64]) -> Vec<f64, MOST_POINTS> {
     let count =

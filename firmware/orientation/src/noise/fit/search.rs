@@ -1,14 +1,15 @@
-//! What every choice of coefficients makes of a record.
+//! Fits of a record for every choice of coefficients.
 //!
-//! Allan variances are nearly gamma distributed, and with few degrees of freedom far from normal. So
-//! choices are compared by their gamma deviance Σ ν (r − 1 − ln r), r = V̂/V, with ν the equivalent
-//! degrees of freedom, and a price for each coefficient. No choice is taken alone: the module
-//! `average` weighs them all.
+//! Allan variances are nearly gamma distributed, and with few degrees of freedom far from normal.
+//! So choices are compared by their gamma deviance Σ ν (r − 1 − ln r), r = V̂/V, with ν the
+//! equivalent degrees of freedom, plus a price for each coefficient. The result is not taken from a
+//! single choice: the module `average` weights them all.
 //!
-//! The points are weighted as if they were independent, and the deviations come from their full
-//! covariance. Weighting by the full covariance too would lessen the deviation of N by 11 %, of B and
-//! K by 1 to 8 % (an hour at 10 Hz), would tell a walk from the bias instability no better, and would
-//! make every value hang on the model's finest errors.
+//! The points are weighted as if they were independent, and the standard deviations follow from
+//! their full covariance. Weighting by the full covariance as well would reduce the standard
+//! deviation of N by 11 %, of B and K by 1 to 8 % (an hour at 10 Hz), would separate a random walk
+//! from the bias instability no better, and would make every value sensitive to the finest errors
+//! of the model.
 
 use heapless::Vec;
 
@@ -19,31 +20,36 @@ use crate::noise::allan::covariance::degrees_of_freedom;
 use crate::noise::allan::{MOST_POINTS, Point, terms, variance};
 use crate::noise::model::GyroNoise;
 
-/// What a coefficient must lessen the deviance by: 4, two standard deviations, for each of about two
-/// points that tell the same.
+/// Price of a coefficient, in deviance: 4, two standard deviations squared, for each of about two
+/// points that carry the same information.
 const PRICE: f64 = 8.0;
-/// What a ramp must besides: it is rare, and a random walk over one record looks like it.
+/// Additional price of a ramp: it is rare, and a random walk over one record looks like it.
 const RAMP_PRICE: f64 = 6.0;
-/// Most rounds of one fit: each draws its weights from the model that the one before has found.
+/// Greatest number of reweighting rounds of one fit; each draws its weights from the model of the
+/// previous round.
 const ROUNDS: usize = 10;
-/// Relative change of the squares at which the rounds end, a tenth of what an hour can tell.
+/// Relative change of the squares at which the rounds end: a tenth of what an hour's record
+/// resolves.
 const SETTLED: f64 = 1e-3;
-/// Rounds of degrees of freedom, which hardly depend on the model.
+/// Number of rounds for the degrees of freedom, which hardly depend on the model.
 const DEGREE_ROUNDS: usize = 3;
-/// Choices of coefficients: N belongs to every gyro, each of the others may be there or not.
+/// Number of choices of coefficients: N belongs to every gyro, each of the others may be present or
+/// not.
 pub const CHOICES: usize = 1 << (COLUMNS - 1);
 
-/// Squares of coefficients and how well they fit.
+/// A fitted model: squared coefficients and their deviance.
 #[derive(Clone, Copy, Debug)]
 pub struct Model {
-    /// Those that are not zero.
+    /// Coefficients that are not zero.
     pub columns: Columns,
+    /// Squares of the coefficients, SI units.
     squares: [f64; COLUMNS],
+    /// Gamma deviance of the points from the model.
     deviance: f64,
 }
 
 impl Model {
-    /// Its noise.
+    /// Noise model with these coefficients.
     pub fn noise(&self) -> GyroNoise {
         let [q, n, b, k, r] = self.squares.map(libm::sqrt);
         GyroNoise {
@@ -56,33 +62,34 @@ impl Model {
     }
 }
 
-/// A choice of coefficients, fitted.
+/// Fit of one choice of coefficients.
 #[derive(Clone, Copy, Debug)]
 pub struct Choice {
-    /// Those that may be more than zero.
+    /// Coefficients that the choice allows to be positive.
     pub columns: Columns,
-    /// The squares of the coefficients.
+    /// Squares of the coefficients, SI units.
     pub squares: [f64; COLUMNS],
-    /// Standard deviations of the squares, if the points did not repeat each other.
+    /// Standard deviations of the squares, as if the points were independent.
     pub spreads: [f64; COLUMNS],
-    /// The deviance and the prices of the coefficients.
+    /// Deviance plus the prices of the coefficients.
     pub cost: f64,
 }
 
-/// A fit under way.
+/// State of the search over all choices.
 pub struct Search<'p> {
-    /// The points that are used.
+    /// Points that are used.
     pub points: &'p [Point],
-    /// Time from sample to sample, s.
+    /// Sample period, s.
     pub sample_seconds: f64,
     /// Equivalent degrees of freedom of the points.
     degrees: Vec<f64, MOST_POINTS>,
-    /// Their expected variances, from which the next fit starts.
+    /// Expected variances of the points, (rad/s)², from which the next fit starts.
     variances: Vec<f64, MOST_POINTS>,
 }
 
 impl<'p> Search<'p> {
-    /// With the points that average over a τ more than once, as if they themselves were right.
+    /// Begins with the points that average over a τ more than once, and takes their own values as
+    /// the expected variances.
     pub fn begin(points: &'p [Point], sample_seconds: f64) -> Self {
         let advance = |point: &Point| point.terms as f64 * point.stride / point.seconds;
         let count = points.iter().take_while(|point| advance(point) >= 1.0).count();
@@ -95,7 +102,7 @@ impl<'p> Search<'p> {
         }
     }
 
-    /// The coefficients that stand out, and limits of the others.
+    /// Fits every choice and returns the coefficients that stand out, with limits of the others.
     pub fn finish(mut self) -> NoiseFit {
         self.settle();
         let (best, choices) = self.choices();
@@ -104,7 +111,7 @@ impl<'p> Search<'p> {
         self.conclude(average(&choices, &inflations))
     }
 
-    /// Every choice, and the model of the one that costs least.
+    /// Fits of every choice, and the model of the cheapest one.
     fn choices(&self) -> (Model, Vec<Choice, CHOICES>) {
         let mut least = f64::INFINITY;
         let mut best = Model { columns: Columns(0), squares: [0.0; COLUMNS], deviance: 0.0 };
@@ -115,12 +122,13 @@ impl<'p> Search<'p> {
             if choice.cost < least {
                 (least, best) = (choice.cost, model);
             }
-            // There is room for all of them.
+            // The vector has room for all choices, so the push cannot fail.
             let _ = choices.push(choice);
         }
         (best, choices)
     }
 
+    /// Cost and spreads of one fitted choice.
     fn choice(&self, columns: Columns, model: &Model, variances: &[f64]) -> Choice {
         let ramp = if columns.has(COLUMNS - 1) { RAMP_PRICE } else { 0.0 };
         Choice {
@@ -131,7 +139,7 @@ impl<'p> Search<'p> {
         }
     }
 
-    /// Brings the degrees of freedom to agree with the model of all coefficients.
+    /// Iterates the degrees of freedom to agree with the model of all coefficients.
     fn settle(&mut self) {
         for _ in 0..DEGREE_ROUNDS {
             let noise = self.fit(Columns::ALL).0.noise();
@@ -142,15 +150,15 @@ impl<'p> Search<'p> {
         }
     }
 
-    /// Takes the variances from a noise.
+    /// Takes the expected variances from a noise model.
     fn expect(&mut self, noise: &GyroNoise) {
         for (expected, point) in self.variances.iter_mut().zip(self.points) {
             *expected = variance(noise, point.seconds);
         }
     }
 
-    /// The model of the least deviance, to which weights that follow the model lead, and the
-    /// variances that it expects.
+    /// Model with these columns by iteratively reweighted least squares, which converges to the
+    /// least deviance, and the variances that it expects.
     fn fit(&self, columns: Columns) -> (Model, Vec<f64, MOST_POINTS>) {
         let mut variances = self.variances.clone();
         let mut model = Model { columns, squares: [0.0; COLUMNS], deviance: 0.0 };
@@ -170,7 +178,7 @@ impl<'p> Search<'p> {
         (model, variances)
     }
 
-    /// Standard deviations of the points where these are their variances, (rad/s)².
+    /// Standard deviations of the points' variances, for these expected variances, (rad/s)².
     pub fn sigmas(&self, variances: &[f64]) -> Vec<f64, MOST_POINTS> {
         let sigma = |(variance, degrees): (&f64, &f64)| variance * libm::sqrt(2.0 / degrees);
         variances.iter().zip(&self.degrees).map(sigma).collect()
@@ -181,6 +189,7 @@ impl<'p> Search<'p> {
         &self.variances
     }
 
+    /// Gamma deviance Σ ν (r − 1 − ln r) of the points from these expected variances.
     fn deviance(&self, variances: &[f64]) -> f64 {
         let part = |((point, variance), degrees): ((&Point, &f64), &f64)| {
             let ratio = point.variance / variance;
@@ -189,6 +198,7 @@ impl<'p> Search<'p> {
         self.points.iter().zip(variances).zip(&self.degrees).map(part).sum()
     }
 
+    /// Assembles the result, with chi-square about the averaged model.
     fn conclude(mut self, estimates: [Estimate; COLUMNS]) -> NoiseFit {
         let found = estimates.iter().filter(|estimate| estimate.value().is_some()).count();
         let [quantisation, angle_random_walk, bias_instability, rate_random_walk, rate_ramp] =
@@ -207,7 +217,7 @@ impl<'p> Search<'p> {
         fit
     }
 
-    /// Squared deviations of the points from what is expected, over their variances.
+    /// Chi-square of the points about their expected variances.
     fn chi_square(&self) -> f64 {
         let deviation = |((point, variance), sigma): ((&Point, &f64), &f64)| {
             let deviation = (point.variance - variance) / sigma;

@@ -1,4 +1,4 @@
-//! How sure the squares of the coefficients are.
+//! Standard deviations of the squared coefficients.
 
 use heapless::Vec;
 
@@ -7,12 +7,13 @@ use super::search::{Model, Search};
 use crate::noise::allan::MOST_POINTS;
 use crate::noise::allan::covariance::{Law, Window};
 
-/// One number a point.
+/// One number for each point.
 type Row = Vec<f64, MOST_POINTS>;
 
 impl Search<'_> {
-    /// Standard deviations of the squares of some coefficients beside those of a model that expects
-    /// these variances, if the points did not repeat each other; others are zero.
+    /// Standard deviations of the squares of some coefficients, as if the points were independent,
+    /// for a model that expects these variances. A coefficient outside the model is treated as if
+    /// it alone were added; others are zero.
     pub fn spreads(&self, columns: Columns, model: &Model, variances: &[f64]) -> [f64; COLUMNS] {
         let sums = Sums::new(self.points, &self.sigmas(variances), columns);
         let mut spreads = [0.0; COLUMNS];
@@ -23,8 +24,8 @@ impl Search<'_> {
         spreads
     }
 
-    /// By how much the variances of the squares exceed those from points which do not repeat each
-    /// other, under the model that is expected; those outside it as if each alone were taken in.
+    /// Factors by which correlation between the points raises the variances of the squares, under
+    /// the expected model. A coefficient outside the model is treated as if it alone were added.
     pub fn inflations(&self, model: &Model) -> [f64; COLUMNS] {
         let sigmas = self.sigmas(self.variances());
         let sums = Sums::new(self.points, &sigmas, Columns::ALL);
@@ -38,7 +39,7 @@ impl Search<'_> {
         core::array::from_fn(|column| inflations[column] * variances[column])
     }
 
-    /// Variances of sums over the points.
+    /// Variances of weighted sums over the points, with their full covariance.
     fn variances_of(&self, rows: &[Row; COLUMNS], model: &Model) -> [f64; COLUMNS] {
         let noise = model.noise();
         let law = Law::new(&noise, self.sample_seconds);

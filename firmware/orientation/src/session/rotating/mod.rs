@@ -1,11 +1,11 @@
-//! The procedure of a platform that turns all the time, as a state machine without I/O.
+//! Procedure of a continuously rotating platform (carouselling) as a state machine without I/O.
 //!
 //! ```text
-//!  level ─▶ [ uneven turn ─▶ clockwise ─▶ counter-clockwise ] each speed ─▶ azimuth ± σ, or why none
+//!  level ─▶ [ modulated ─▶ clockwise ─▶ counter-clockwise ] each speed ─▶ azimuth ± σ, or why none
 //! ```
 //!
-//! It commands the platform's rate, but judges by the encoder alone what the platform did: a recording
-//! replays the same session.
+//! It commands the platform's rate, but takes the motion from the encoder alone, so that a
+//! recording replays the same session.
 
 mod procedure;
 
@@ -21,82 +21,90 @@ use crate::error::Refusal;
 use crate::signal::Sample;
 use crate::units::{Angle, DEGREES_PER_RADIAN as DEGREES, Instant, TURN};
 
-/// What happens to a session.
+/// Input of a session.
 #[derive(Clone, Copy, Debug)]
 pub enum Event<'a> {
     /// A sample, with a fresh angle of the encoder.
     Sample(&'a Sample),
-    /// The same with the platform's rate as it was recorded, rad/s.
+    /// A sample of a recording, with the platform's rate that was recorded beside it, rad/s.
     Recorded(&'a Sample, f32),
-    /// There will be no more.
+    /// The end of the recording: there are no more samples.
     End,
-    /// The instrument cannot go on.
+    /// A permanent failure of the instrument.
     Failed(Refusal),
 }
 
-/// What the session asks for.
+/// Output of a session.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
-    /// Go on sampling.
+    /// Continue sampling.
     Wait,
-    /// Turn the platform at this rate, rad/s, clockwise positive; zero: come to rest.
+    /// Turn the platform at this rate, rad/s, clockwise positive; zero brings it to rest.
     Turn(f64),
-    /// Nothing more: the conclusion stands.
+    /// The session is over and its conclusion is final.
     Finished,
 }
 
-/// Where the session is.
+/// State of the session; speeds are given by their index.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Phase {
-    /// The tilt is looked at before anything turns.
+    /// The tilt is measured before anything turns.
     Level,
-    /// The platform turns unevenly at a speed, the index of which this is.
+    /// The platform makes rate-modulated turns at a speed.
     Uneven(usize),
-    /// It takes on a speed, and the sensor settles.
+    /// The platform accelerates to a speed, and the sensor settles.
     Settle(usize, Sense),
-    /// It turns evenly.
+    /// The platform turns at constant rate.
     Even(usize, Sense),
-    /// A recording is followed, whatever it shows.
+    /// A recording is processed, whatever it contains.
     Recorded,
-    /// The conclusion stands.
+    /// The session is over.
     Done,
 }
 
-/// Between two commands of an uneven turn, µs.
+/// Time between two commands of a rate-modulated turn, µs.
 const COMMAND_PERIOD: u64 = 20_000;
-/// How often more time than planned a stretch may take, and how much more, s.
+/// Retry budget of a stretch: factor on its planned time, and additional time, s.
 const PATIENCE: (f64, f64) = (2.0, 30.0);
-/// Sample periods that make a gap.
+/// Distance of two samples, in sample periods, that counts as a gap.
 const GAP: f64 = 3.5;
 
-/// One alignment on a turning platform.
+/// One alignment on a rotating platform.
 #[derive(Clone, Debug)]
 pub struct Session {
+    /// Configuration of the alignment.
     setting: Setting,
+    /// Procedure.
     procedure: Procedure,
+    /// Turns so far.
     turn_accumulator: TurnAccumulator,
+    /// State of the session.
     phase: Phase,
-    /// When the phase began, and when the last command was given.
+    /// Beginning of the phase, and time of the latest command.
     since: Option<Instant>,
     commanded: Instant,
+    /// Time of the latest sample.
     last: Option<Instant>,
-    /// Samples of this phase.
+    /// Number of samples of this phase.
     samples: u32,
-    /// After how long in this phase the sensor has settled, and the phase ends, µs.
+    /// Time in this phase after which the sensor has settled, and after which the phase ends, µs.
     settled: u64,
     end: u64,
-    /// When and where a turn began whose speed is measured, and what was found, rad/s; zero until then.
+    /// Beginning and encoder angle of the turn whose speed is measured, and the measured rate,
+    /// rad/s; zero before.
     measured: Option<(Instant, Angle)>,
     rate: f64,
-    /// What makes a gap between two samples, µs.
+    /// Distance of two samples that counts as a gap, µs.
     gap: u64,
-    /// Turns of this phase.
+    /// Number of turns of this phase.
     turns: u32,
+    /// Forces at rest.
     level: Level,
+    /// Conclusion, once the session is over.
     conclusion: Option<Conclusion>,
 }
 
-/// Sums of the forces at rest, µm/s².
+/// Sums of the forces at rest, µm/s², and the latest temperature.
 #[derive(Clone, Copy, Debug, Default)]
 struct Level {
     sums: [i64; 3],
@@ -105,17 +113,17 @@ struct Level {
 }
 
 impl Session {
-    /// A session that has not begun.
+    /// Creates a session before its first event.
     ///
     /// # Errors
-    /// [`ProcedureError::TableCorrupt`], and [`ProcedureError::NoSpeed`] for a speed that is none, too few
-    /// turns or no modulation.
+    /// [`ProcedureError::TableCorrupt`], and [`ProcedureError::NoSpeed`] for a speed of zero, too
+    /// few turns or no modulation.
     pub fn new(setting: Setting, procedure: Procedure) -> Result<Self, ProcedureError> {
         check(&procedure)?;
         Ok(Self::of(setting, procedure))
     }
 
-    /// The same of a procedure that was checked, so that it can be made where it is to lie.
+    /// Session of a procedure that was checked, built at its final place in memory.
     #[must_use]
     pub fn of(setting: Setting, procedure: Procedure) -> Self {
         let is_recorded = procedure.speeds.is_empty();
@@ -140,7 +148,7 @@ impl Session {
         }
     }
 
-    /// Takes one event and answers what is to be done now.
+    /// Takes one event and returns the command that follows.
     pub fn handle(&mut self, event: Event) -> Command {
         match event {
             _ if self.phase == Phase::Done => Command::Finished,
@@ -151,31 +159,31 @@ impl Session {
         }
     }
 
-    /// What is known beforehand.
+    /// Configuration of the alignment.
     #[must_use]
     pub fn setting(&self) -> &Setting {
         &self.setting
     }
 
-    /// How the session goes about it.
+    /// Procedure of the session.
     #[must_use]
     pub fn procedure(&self) -> &Procedure {
         &self.procedure
     }
 
-    /// Where the session is.
+    /// State of the session.
     #[must_use]
     pub fn phase(&self) -> Phase {
         self.phase
     }
 
-    /// What the platform did so far.
+    /// Motion of the platform so far.
     #[must_use]
     pub fn turn_accumulator(&self) -> &TurnAccumulator {
         &self.turn_accumulator
     }
 
-    /// Even turns done, and planned.
+    /// Number of turns at constant rate that are done, and planned.
     #[must_use]
     pub fn turns(&self) -> (u32, u32) {
         let done = self.turn_accumulator.stretches().iter().map(Stretch::count).sum();
@@ -183,14 +191,14 @@ impl Session {
         (done, speeds.map(|index| 2 * self.procedure.turns_at(index)).sum())
     }
 
-    /// Mean force at rest, m/s², where there was one.
+    /// Mean force at rest, m/s²; none without force readings.
     #[must_use]
     pub fn force(&self) -> Option<[f64; 3]> {
         let count = f64::from(self.level.count);
         (count > 0.0).then(|| self.level.sums.map(|sum| sum as f64 * 1e-6 / count))
     }
 
-    /// The couplings that were found, with date and temperature: to be stored.
+    /// Axis misalignments that were measured, with date and temperature, to be stored.
     pub fn couplings(&self) -> impl Iterator<Item = Coupling> {
         let temperature = self.level.temperature.unwrap_or(f32::NAN);
         let found = self.turn_accumulator.uneven().iter();
@@ -199,12 +207,13 @@ impl Session {
             .map(move |coupling| Coupling { date: self.procedure.date, temperature, ..coupling })
     }
 
-    /// The conclusion, once the session has finished.
+    /// Conclusion; `None` until the session is over.
     #[must_use]
     pub fn conclusion(&self) -> Option<&Conclusion> {
         self.conclusion.as_ref()
     }
 
+    /// Processes a sample.
     fn sample(&mut self, sample: &Sample, turning: Option<f32>) -> Command {
         let now = sample.time;
         let last = self.last.replace(now).unwrap_or(now);
@@ -230,7 +239,8 @@ impl Session {
         }
     }
 
-    /// Whether a recording's samples up to its first turn come at another pace than was told.
+    /// Refusal of a recording whose time stamps up to its first turn contradict the configured
+    /// period.
     fn contradiction(&mut self) -> Option<Refusal> {
         if self.phase != Phase::Recorded || core::mem::replace(&mut self.turns, 1) > 0 {
             return None;
@@ -242,7 +252,7 @@ impl Session {
         contradiction(told, found, PERIOD_TOLERANCE)
     }
 
-    /// Looks at the tilt at rest.
+    /// Measures the tilt at rest.
     fn level(&mut self, sample: &Sample, elapsed: u64) -> Command {
         if let Some(force) = sample.force {
             for (sum, part) in self.level.sums.iter_mut().zip(force) {
@@ -263,17 +273,18 @@ impl Session {
         self.begin_speed(0)
     }
 
-    /// Begins with a speed: unevenly first, where that is wanted.
+    /// Begins with a speed: with rate-modulated turns first, where they are configured.
     fn begin_speed(&mut self, index: usize) -> Command {
         if self.procedure.uneven_turns == 0 {
             return self.begin_sense(index, Sense::Clockwise);
         }
-        // Its first ramp is part of the unevenness.
+        // The first ramp is part of the rate-modulated motion.
         self.enter(Phase::Uneven(index), Mode::Ignore);
         Command::Turn(self.speed(index))
     }
 
-    /// Turns once to know the speed, then unevenly: for so many turns once the sensor has settled.
+    /// Turns once at constant rate to measure the speed, then rate-modulated for the configured
+    /// number of turns once the sensor has settled.
     fn uneven(&mut self, index: usize, sample: &Sample, elapsed: u64) -> Command {
         if self.rate <= 0.0 {
             self.measure(index, sample, elapsed);
@@ -293,8 +304,8 @@ impl Session {
         Command::Turn(self.procedure.uneven_rate(self.speed(index), self.rate, time))
     }
 
-    /// Measures by the encoder how fast the platform turns, over the time of one turn: a motor driver's
-    /// clock is some hundredths off, and the modulation must keep to the turns.
+    /// Measures the platform's speed by the encoder over one turn: a motor driver's clock may be
+    /// off by some per cent, and the modulation must stay synchronous with the turns.
     fn measure(&mut self, index: usize, sample: &Sample, elapsed: u64) {
         let Some((since, stage)) = self.measured else {
             if elapsed >= microseconds(self.procedure.ramp_seconds) {
@@ -312,7 +323,7 @@ impl Session {
             self.settled + microseconds(f64::from(self.procedure.uneven_turns) * TURN / self.rate);
     }
 
-    /// Ends where the sensor stands badly, or the platform did not turn.
+    /// Ends the session where the axis misalignment is too large, or the platform did not turn.
     fn end_uneven(&mut self, index: usize) -> Command {
         let Some(coupling) = self.couplings().nth(index) else {
             let wanted = self.speed(index) * DEGREES;
@@ -324,11 +335,13 @@ impl Session {
         }
     }
 
+    /// Begins a sense of rotation at a speed.
     fn begin_sense(&mut self, index: usize, sense: Sense) -> Command {
         self.enter(Phase::Settle(index, sense), Mode::Ignore);
         Command::Turn(sense.signed(self.speed(index)))
     }
 
+    /// Waits until platform and sensor have settled.
     fn settle(&mut self, index: usize, sense: Sense, elapsed: u64) -> Command {
         if elapsed >= self.end {
             self.enter(Phase::Even(index, sense), Mode::Even);
@@ -336,9 +349,10 @@ impl Session {
         Command::Wait
     }
 
-    /// Turns until the turns are full; gives up where that takes far too long.
+    /// Counts turns until all are done; refuses when that takes far too long.
     fn even(&mut self, index: usize, sense: Sense, has_turned: bool, elapsed: u64) -> Command {
-        // How many there are to be is asked with a turn alone: it costs 600 instructions.
+        // The number of planned turns is computed only with a complete turn: it costs 600
+        // instructions.
         if has_turned {
             self.turns += 1;
             if self.turns >= self.procedure.turns_at(index) {
@@ -352,6 +366,7 @@ impl Session {
         Command::Wait
     }
 
+    /// Goes on to the other sense, to the next speed, or to the conclusion.
     fn go_on(&mut self, index: usize, sense: Sense) -> Command {
         if sense == Sense::Clockwise {
             return self.begin_sense(index, Sense::CounterClockwise);
@@ -362,6 +377,7 @@ impl Session {
         self.conclude(None)
     }
 
+    /// Enters a phase and restarts its counters.
     fn enter(&mut self, phase: Phase, mode: Mode) {
         self.phase = phase;
         self.settled = microseconds(self.settle_seconds());
@@ -373,12 +389,12 @@ impl Session {
         self.turn_accumulator.follow(mode);
     }
 
-    /// A speed, rad/s.
+    /// Speed with this index, rad/s; zero beyond the last.
     fn speed(&self, index: usize) -> f64 {
         self.procedure.speeds.get(index).copied().unwrap_or_default()
     }
 
-    /// How long a phase lasts at most, s.
+    /// Longest time of a phase, s.
     fn longest(&self, phase: Phase) -> f64 {
         match phase {
             Phase::Settle(..) => self.settle_seconds(),
@@ -386,17 +402,17 @@ impl Session {
                 let turned = f64::from(self.procedure.turns_at(index)) * TURN;
                 PATIENCE.0 * turned / self.speed(index) + PATIENCE.1
             }
-            // An uneven turn's end follows from the speed that it measures.
+            // The end of a rate-modulated stretch follows from the speed that it measures.
             Phase::Uneven(_) | Phase::Level | Phase::Recorded | Phase::Done => 0.0,
         }
     }
 
-    /// How long nothing counts after a change of speed, s.
+    /// Time after a change of speed that is not used, s.
     fn settle_seconds(&self) -> f64 {
         self.procedure.ramp_seconds + self.setting.sensor.settle_seconds
     }
 
-    /// Ends the session with what there is, or with a reason.
+    /// Ends the session with the turns so far, or with a reason.
     fn conclude(&mut self, reason: Option<Refusal>) -> Command {
         let conclusion = self.conclusion.insert(Conclusion::default());
         if let Some(reason) = reason {
@@ -410,7 +426,7 @@ impl Session {
     }
 }
 
-/// Seconds as whole µs.
+/// Converts seconds to whole µs.
 fn microseconds(seconds: f64) -> u64 {
     Instant::from_seconds(seconds).0
 }

@@ -1,11 +1,11 @@
-//! The procedure of a vehicle that drives between stops, as a state machine without I/O.
+//! Procedure of a vehicle that drives between stops, as a state machine without I/O.
 //!
 //! ```text
 //!  stop, level ─▶ drive ─▶ stop, level ─▶ (drive ─▶ stop …) ─▶ azimuth ± σ, or why none
 //! ```
 //!
-//! It asks for stops and drives, but judges by the sensors alone what the vehicle did: a recording replays
-//! the same session.
+//! It requests stops and drives, but takes the motion from the sensors alone, so that a recording
+//! replays the same session.
 
 use heapless::Vec;
 
@@ -19,70 +19,71 @@ use crate::signal::InertialSample;
 use crate::signal::rest::{Criteria, Limits};
 use crate::units::Instant;
 
-/// What happens to a session.
+/// Input of a session.
 #[derive(Clone, Copy, Debug)]
 pub enum Event<'a> {
-    /// A sample.
+    /// A sample of gyros and accelerometers.
     Sample(&'a InertialSample),
-    /// Where the stop that lasts, or the last one, is: north and east of the first, m.
+    /// Reported position of the present or last stop, north and east of the first, m.
     Displaced([f64; 2]),
-    /// There will be no more.
+    /// The end of the recording: there are no more samples.
     End,
-    /// The instrument cannot go on.
+    /// A permanent failure of the instrument.
     Failed(Refusal),
 }
 
-/// What the session asks for.
+/// Output of a session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command {
-    /// Go on sampling.
+    /// Continue sampling.
     Wait,
-    /// The vehicle may drive: this stop was long enough. Said once at each.
+    /// The vehicle may drive, because this stop was long enough; returned once at each stop.
     Drive,
-    /// Nothing more: the conclusion stands.
+    /// The session is over and its conclusion is final.
     Finished,
 }
 
-/// Where the session is.
+/// State of the session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// The vehicle did not stand yet.
+    /// The vehicle has not stood yet.
     Waiting,
-    /// It stands, for which time this is the index.
+    /// The vehicle stands at the stop with this index.
     Standing(usize),
-    /// It drives, after that many stops.
+    /// The vehicle drives after this number of stops.
     Driving(usize),
-    /// The conclusion stands.
+    /// The session is over.
     Done,
 }
 
-/// How the session goes about it.
+/// Procedure of a session with stops.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Procedure {
-    /// Where the stops are.
+    /// Source of the stops.
     pub rests: Rests,
-    /// Stops after which it concludes; zero: when there are no more samples.
+    /// Number of stops after which the session concludes; zero to conclude at the end of the
+    /// samples.
     pub stops: usize,
-    /// How long the vehicle is to stand at each, s.
+    /// Time for which the vehicle is to stand at each stop, s.
     pub stop_seconds: f64,
-    /// Longest time for everything, s.
+    /// Longest time of the whole session, s.
     pub longest_seconds: f64,
     /// Sample period, s.
     pub sample_seconds: f64,
-    /// By how much the samples' times may contradict it, relative: what turned between two of them is wrong by
-    /// as much.
+    /// Tolerance of the time stamps against that period, relative: angles between two samples are
+    /// wrong by the same ratio.
     pub period_tolerance: f64,
-    /// Displacements of the stops from the first, north and east, m, where they are known beforehand.
+    /// Positions of the stops, north and east of the first, m, where they are known in advance.
     pub displacements: Vec<[f64; 2], STOPS>,
 }
 
-/// Default length of a stop, s: Szymanowski's short levelling.
+/// Default length of a stop, s: the short levelling of Szymanowski 2003.
 const STOP_SECONDS: f64 = 60.0;
-/// Longest time for everything, s.
+/// Default longest time of the whole session, s.
 const LONGEST_SECONDS: f64 = 6.0 * 3600.0;
 
 impl Procedure {
-    /// So many stops of a minute, which the criteria find.
+    /// Procedure with this number of stops of a minute, which the stop criteria find.
     #[must_use]
     pub fn new(stops: usize, sample_seconds: f64) -> Self {
         Self {
@@ -96,7 +97,7 @@ impl Procedure {
         }
     }
 
-    /// Whatever a recording with this sample period shows.
+    /// Procedure for a recording with this sample period, whatever it contains.
     #[must_use]
     pub fn recorded(rests: Rests, sample_seconds: f64) -> Self {
         Self {
@@ -107,10 +108,10 @@ impl Procedure {
         }
     }
 
-    /// Whether it can be gone about.
+    /// Checks the procedure.
     ///
     /// # Errors
-    /// As [`Session::new`].
+    /// [`ProcedureError::NoStops`], as for [`Session::new`].
     pub fn check(&self) -> Result<(), ProcedureError> {
         let is_period = self.sample_seconds > 0.0 && self.sample_seconds.is_finite();
         let has_stops = self.stops <= STOPS && (self.stops != 1 || self.rests == Rests::Whole);
@@ -122,33 +123,40 @@ impl Procedure {
     }
 }
 
-/// One alignment from stops.
+/// One alignment by stops.
 #[derive(Clone, Debug)]
 pub struct Session {
+    /// Configuration of the alignment.
     setting: Setting,
+    /// Procedure.
     procedure: Procedure,
+    /// Stops so far.
     stop_detector: StopDetector,
+    /// State of the session.
     phase: Phase,
+    /// Time of the first complete second.
     begun: Option<Instant>,
-    /// Samples so far.
+    /// Number of samples so far.
     samples: u32,
-    /// Whether this stop was said to be long enough.
+    /// Whether the command to drive was returned for this stop.
     is_told: bool,
+    /// Conclusion, once the session is over.
     conclusion: Option<Conclusion>,
 }
 
 impl Session {
-    /// A session that has not begun.
+    /// Creates a session before its first event.
     ///
     /// # Errors
-    /// [`ProcedureError::NoStops`]: no sample period, no length of a stop, one stop only, or too many.
+    /// [`ProcedureError::NoStops`]: no sample period, no length of a stop, a single stop, or too
+    /// many.
     pub fn new(setting: Setting, procedure: Procedure) -> Result<Self, ProcedureError> {
         procedure.check()?;
         Ok(Self::of(setting, procedure))
     }
 
-    /// The same of a procedure that was checked, made where it is to stay: it is too great for a small
-    /// stack.
+    /// Session of a procedure that was checked, built at its final place in memory, because it is
+    /// too large for a small stack.
     #[must_use]
     #[inline]
     pub fn of(setting: Setting, procedure: Procedure) -> Self {
@@ -161,7 +169,7 @@ impl Session {
         Self { setting, procedure, stop_detector, phase, begun, samples, is_told, conclusion }
     }
 
-    /// Takes one event and answers what is to be done now.
+    /// Takes one event and returns the command that follows.
     pub fn handle(&mut self, event: Event) -> Command {
         match event {
             _ if self.phase == Phase::Done => Command::Finished,
@@ -175,37 +183,37 @@ impl Session {
         }
     }
 
-    /// What is known beforehand.
+    /// Configuration of the alignment.
     #[must_use]
     pub fn setting(&self) -> &Setting {
         &self.setting
     }
 
-    /// How the session goes about it.
+    /// Procedure of the session.
     #[must_use]
     pub fn procedure(&self) -> &Procedure {
         &self.procedure
     }
 
-    /// Where the session is.
+    /// State of the session.
     #[must_use]
     pub fn phase(&self) -> Phase {
         self.phase
     }
 
-    /// The stops so far; the last may last.
+    /// Stops so far; the last one may still continue.
     #[must_use]
     pub fn stops(&self) -> &[Stop] {
         self.stop_detector.stops()
     }
 
-    /// The criteria of the last ten seconds, and what they are held to; new once a second.
+    /// Stop criteria of the last ten seconds, and their limits; updated once a second.
     #[must_use]
     pub fn criteria(&self) -> Option<(Criteria, Limits)> {
         self.stop_detector.criteria()
     }
 
-    /// The conclusion, once the session has finished.
+    /// Conclusion; `None` until the session is over.
     #[must_use]
     pub fn conclusion(&self) -> Option<&Conclusion> {
         self.conclusion.as_ref()
@@ -217,7 +225,7 @@ impl Session {
         if self.stop_detector.push(sample) { self.second(sample.time) } else { Command::Wait }
     }
 
-    /// Looks about once a second.
+    /// Updates phase and limits once a second.
     fn second(&mut self, now: Instant) -> Command {
         let begun = *self.begun.get_or_insert(now);
         self.tell_displacements();
@@ -240,7 +248,7 @@ impl Session {
         self.stand(count)
     }
 
-    /// Looks whether the vehicle stood for long enough.
+    /// Returns the command to drive, or concludes, once the vehicle has stood for long enough.
     fn stand(&mut self, count: usize) -> Command {
         let Phase::Standing(_) = self.phase else { return Command::Wait };
         let length = self.stop_detector.stops().last().map_or(0.0, Stop::seconds);
@@ -251,7 +259,7 @@ impl Session {
         if count == self.procedure.stops { self.conclude() } else { Command::Drive }
     }
 
-    /// Where the last stop is, if that is known beforehand.
+    /// Reports the position of the last stop, if it is known in advance.
     fn tell_displacements(&mut self) {
         let Some(last) = self.stop_detector.stops().len().checked_sub(1) else { return };
         if let Some(displacement) = self.procedure.displacements.get(last) {
@@ -259,6 +267,7 @@ impl Session {
         }
     }
 
+    /// Concludes from the stops so far.
     #[inline(never)]
     fn conclude(&mut self) -> Command {
         let conclusion = match self.contradiction() {
@@ -268,15 +277,16 @@ impl Session {
         self.finish(conclusion)
     }
 
-    /// Whether the samples come at another pace than was told.
+    /// Refusal of samples whose time stamps contradict the configured period.
     fn contradiction(&self) -> Option<Refusal> {
         let Procedure { sample_seconds: told, period_tolerance, .. } = self.procedure;
         let found = self.stop_detector.elapsed() / f64::from(self.samples.max(1));
-        // What is missing is told as such.
+        // Missing samples are reported as such instead.
         let is_whole = self.samples > 0 && self.stop_detector.loss().is_none();
         contradiction(told, found, period_tolerance).filter(|_| is_whole)
     }
 
+    /// Ends the session with a conclusion.
     fn finish(&mut self, conclusion: Conclusion) -> Command {
         self.conclusion = Some(conclusion);
         self.phase = Phase::Done;

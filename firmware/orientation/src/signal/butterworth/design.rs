@@ -1,4 +1,5 @@
-//! Design of the coefficients and of what the dwell average must know about the step response.
+//! Design of the Butterworth coefficients, and of the step-response sums that the dwell average
+//! needs.
 //!
 //! Bilinear transform with prewarping, g = tan(π fc/fs). The poles of order 2S lie at the angles
 //! θ = π(2i + 1)/(4S) from the real axis, k = 1/Q = 2 cos θ, and each section has
@@ -21,7 +22,7 @@ const GAIN_STEPS: f64 = 4_294_967_296.0;
 /// Deviation from the final value below which a step counts as settled.
 const SETTLED: f64 = 1e-6;
 
-/// Why a low-pass cannot be designed.
+/// Reason for which a low-pass cannot be designed, with its remedy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DesignError {
     /// Cutoff or sample rate is zero, negative, infinite or not a number: give both in Hz.
@@ -57,10 +58,13 @@ pub struct Section {
 /// An immutable low-pass of order 2·`SECTIONS`, 1 to 4 sections (others do not compile).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coefficients<const SECTIONS: usize> {
-    /// In order of growing quality factor.
+    /// Gains of the sections in order of growing quality factor.
     pub(super) gains: [Gains; SECTIONS],
+    /// Lag in samples; see [`Coefficients::lag`].
     lag: f64,
+    /// Lag power in samples; see [`Coefficients::lag_power`].
     lag_power: f64,
+    /// Settling in samples; see [`Coefficients::settling`].
     settling: u32,
 }
 
@@ -133,7 +137,8 @@ impl<const SECTIONS: usize> Coefficients<SECTIONS> {
     }
 }
 
-/// The cutoff as a part of the sample rate, if the design can hold it.
+/// Checks both frequencies, Hz, and returns the cutoff as a fraction of the sample rate, 10⁻⁵ to
+/// 1/4.
 fn checked_ratio(cutoff_hz: f64, rate_hz: f64) -> Result<f64, DesignError> {
     let is_usable = |value: f64| value.is_finite() && value > 0.0;
     if !is_usable(cutoff_hz) || !is_usable(rate_hz) {
@@ -147,40 +152,41 @@ fn checked_ratio(cutoff_hz: f64, rate_hz: f64) -> Result<f64, DesignError> {
 }
 
 impl Gains {
-    /// From the prewarped frequency `g` and `k` = 1/Q; each rounds to nearest.
+    /// Fixed-point gains of a section from the prewarped frequency `g` = tan(π fc/fs) and `k` =
+    /// 1/Q; each rounds to nearest.
     fn of(g: f64, k: f64) -> Self {
         let n = 1.0 + g * k + g * g;
         let frequency = libm::round(g / libm::sqrt(2.0 * n) * GAIN_STEPS);
-        // The rounded f enters m, so that its rounding does not reach the damping.
+        // The rounded f enters m, so that the rounding of f does not affect the damping.
         let realised = frequency / GAIN_STEPS;
         let memory = 0.5 - 0.5 * g * k / n - realised * realised;
         Self { memory: libm::round(memory * GAIN_STEPS) as i32, frequency: frequency as i32 }
     }
 
-    /// f as a number.
+    /// Frequency gain f as a fraction.
     fn f(self) -> f64 {
         f64::from(self.frequency) / GAIN_STEPS
     }
 
-    /// m as a number.
+    /// Memory gain m as a fraction.
     fn m(self) -> f64 {
         f64::from(self.memory) / GAIN_STEPS
     }
 
-    /// p = 1 + a₁ + a₂.
+    /// Section constant p = 1 + a₁ + a₂ = 8f².
     fn p(self) -> f64 {
         8.0 * self.f() * self.f()
     }
 
-    /// 1 − a₂.
+    /// Damping term 1 − a₂ = 2 − 4m − 4f².
     fn loss(self) -> f64 {
         2.0 - 4.0 * self.m() - 4.0 * self.f() * self.f()
     }
 }
 
-/// Settling in samples and Σ (1 − s(k))², by letting a filter at rest at 1 fall to 0.
+/// Settling in samples and Σ (1 − s(k))², from the free decay of a filter at rest at 1 towards 0.
 fn step_response<const SECTIONS: usize>(gains: &[Gains; SECTIONS]) -> (u32, f64) {
-    // What still moves below this cannot lift the output to `SETTLED` again.
+    // States below this limit cannot lift the output to `SETTLED` again.
     const STILL: f64 = 1e-3 * SETTLED;
     let mut states = [(0.0, 1.0); SECTIONS];
     let (mut settling, mut power, mut count) = (0, 0.0, 0);

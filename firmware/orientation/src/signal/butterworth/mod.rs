@@ -20,7 +20,7 @@ pub use design::{Coefficients, DesignError, Section};
 use crate::units::AngularRate;
 use sections::State;
 
-/// Fraction bits of the last section's output; [`Filter`] tells what headroom they leave.
+/// Fraction bits of the last section's output; [`Filter`] documents the headroom that they leave.
 const OUTPUT_BITS: u32 = 28;
 
 /// The state of one filtered signal, order 2·`SECTIONS`.
@@ -41,6 +41,7 @@ const OUTPUT_BITS: u32 = 28;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Filter<const SECTIONS: usize> {
+    /// States of the sections, in the order in which the signal passes them.
     sections: [State; SECTIONS],
 }
 
@@ -48,7 +49,7 @@ impl<const SECTIONS: usize> Filter<SECTIONS> {
     /// Fraction bits of the first section's input: every section passes its output on doubled.
     const INPUT_BITS: u32 = OUTPUT_BITS - SECTIONS as u32;
 
-    /// The state that the constant input `x` (any value) would have left behind for ever.
+    /// Steady state for the constant input `x` (any value), as if it had been applied for ever.
     #[must_use]
     pub fn at_rest(x: AngularRate) -> Self {
         const { assert!(SECTIONS >= 1 && SECTIONS <= 4, "a filter has 1 to 4 sections") };

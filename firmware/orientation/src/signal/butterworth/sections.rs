@@ -32,30 +32,31 @@ pub(super) struct Gains {
     pub(super) frequency: i32,
 }
 
-/// The two integrators of one section, in steps of its input.
+/// State of one section: its two integrators, in steps of its input.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct State {
-    /// E.
+    /// Doubled slope E.
     slope: i64,
-    /// L.
+    /// Level L.
     level: i64,
 }
 
 impl State {
-    /// The state that the constant `input` leaves behind.
+    /// Steady state for the constant `input`: E = 0 and L = `input`.
     pub(super) const fn at_rest(input: i64) -> Self {
         Self { slope: 0, level: input }
     }
 
-    /// Takes the input and returns the output, doubled.
+    /// Takes one input and returns the output, doubled.
     #[inline(always)]
     pub(super) fn update(&mut self, gains: Gains, input: i64) -> i64 {
         let Self { slope, level } = *self;
         let change = 4 * weighted_sum(input - level, gains.frequency, slope, gains.memory);
         self.slope = change - slope;
         let next = level + scaled(change, gains.frequency);
-        // Emits nothing. It makes LLVM read L again rather than hold it, and keeps it from
-        // interleaving two sections: both have more live values than a Cortex-M4 has registers.
+        // The fence emits no instruction. It makes LLVM read L again rather than hold it, and keeps
+        // it from interleaving two sections: both have more live values than a Cortex-M4 has
+        // registers.
         compiler_fence(Ordering::SeqCst);
         let output = self.level + next;
         self.level = next;

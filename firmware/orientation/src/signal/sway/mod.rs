@@ -1,4 +1,5 @@
-//! The sway of the base, from coarse gyros and accelerometers that stand on it.
+//! Sway of the base, estimated by coarse gyros and accelerometers that are fixed to it (Burov: the
+//! analytic gyrovertical on the base).
 //!
 //! ```text
 //!  rates ─▶ − bias ─▶ + ─▶ rate of the estimated attitude ─▶ along the sensitive axis
@@ -6,25 +7,27 @@
 //!             └── k₂ ─┴── k₁ ◀──┴── forces
 //! ```
 //!
-//! A mean rate over a dwell contains the change of the base's angle over its time T. What is
-//! subtracted is the rate of an *estimated attitude*, so the mean loses exactly that estimate's
-//! change, and gets the change of its error: bounded, and divided by T.
+//! A mean rate over a dwell contains the change of the base's angle over its time T. The rate that
+//! is subtracted is that of an *estimated attitude*, so the mean loses exactly that estimate's
+//! change, and gains the change of its error: bounded, and divided by T.
 //!
-//! The estimate is a vector that points up, turned by the gyros and drawn to the accelerometers. The
-//! draw is weak, 1/τ with τ of many seconds: a vehicle that sways about a point r below feels an
-//! acceleration of rω² times its angle, which at a hertz is larger than what gravity shows; of it
-//! rω/(gτ) enters. With a constant gyro bias b the estimate stands off by bτ, which no mean feels as
-//! it does not change; the bias is taken off all the same (k₂), so that the estimate is upright soon
-//! and couples nothing. Both gains begin as those of a line fit over the time so far, 4/t and 6/t²,
-//! and fall to 1/τ and 1/(τt). The third gyro, about the vertical, has no such reference: its bias is
-//! its mean so far, which leaves a high-pass; it only turns the two others' axes.
+//! The estimate is a vector that points up, turned by the gyros and drawn to the accelerometers.
+//! The correction is weak, 1/τ with τ of many seconds: a vehicle that sways about a point r below
+//! feels an acceleration of rω² times its angle, which at a hertz is larger than the tilt's share
+//! of gravity; of it rω/(gτ) enters. With a constant gyro bias b the estimate is off by bτ, which
+//! cancels in every mean as it does not change; the bias is estimated all the same (k₂), so that
+//! the vector is upright soon and axes do not mix. Both gains begin as those of a line fit over the
+//! elapsed time, 4/t and 6/t², and fall to 1/τ and 1/(τt). The third gyro, about the vertical, has
+//! no such reference: its bias is its mean so far, which leaves a high-pass; it only rotates the
+//! axes of the other two.
 //!
 //! The error of the angle is a Gauss–Markov process of variance (N²τ + a²/τ)/2 and correlation time
-//! τ, for an angle random walk N of the gyros and a noise a of the tilt. Beside it stands what grows
-//! with the sway: mismatch of scale and axes, uncertain time, and that acceleration.
+//! τ, for an angle random walk N of the gyros and a noise a of the tilt. In addition there are
+//! errors that grow with the sway: mismatch of scale and axes, uncertain time, and that
+//! acceleration.
 //!
-//! Nothing is subtracted before the sway was watched for some seconds; then, for the whole session,
-//! where it is large against this error, else never.
+//! The sway is observed for some seconds before anything is subtracted. Compensation is then
+//! switched on for the whole session if the sway is large against this error, else never.
 
 mod noise;
 
@@ -32,33 +35,35 @@ pub use noise::SwayNoise;
 
 use crate::units::{AngularRate, DEGREE, SpecificForce};
 
-/// Gravity, m/s²: the unit of the estimated vector. Its error only changes τ.
+/// Gravity, m/s²: the unit of the estimated vector. Its error only changes τ slightly.
 const GRAVITY: f32 = 9.806_65;
-/// Micrometres in a metre, as forces come.
+/// Metres per second squared in one step of a force.
 const MICRO: f32 = 1e-6;
-/// Nanoradians in a radian, as rates come.
+/// Radians per second in one step of a rate.
 const NANO: f32 = 1e-9;
 
-/// Factor on the variance of the angle error that σ is told. While the axis turns, the errors of
-/// successive dwells share less than the whitening believes: 1.16 on a circle of 24, computed. The
-/// rest is measured: without the factor the RMS of error over σ was 1.18 in 180 simulated runs.
+/// Factor on the variance of the angle error that enters σ. While the axis turns, the errors of
+/// successive dwells share less than the whitening filter assumes: 1.16 on a circle of 24,
+/// computed. The rest is measured: without the factor the RMS of error over σ was 1.18 in 180
+/// simulated runs.
 const RAISED: f64 = 1.4;
 
-/// Shortest time that the gains are those of, s.
+/// Least age at which the gains are computed, s.
 const YOUNGEST: f32 = 1.0;
-/// Longest time that the bias is a mean of, s: a temperature that drifts may be followed.
+/// Longest averaging time of the bias, s, so that a drift with temperature is followed.
 const OLDEST: f32 = 300.0;
-/// When the sway begins to be watched, s: the bias is then known to some hundredths of °/s.
+/// Age at which observation of the sway begins, s: the bias is then known to some hundredths of
+/// °/s.
 const WATCH_FROM: f32 = 10.0;
-/// When it is decided, s: one period of a slow sway later.
+/// Age at which compensation is decided, s: one period of a slow sway later.
 const WATCH_UNTIL: f32 = 22.0;
-/// Longest time between two readings that can be bridged, s.
+/// Longest time between two readings that is bridged, s.
 const LONGEST_STEP: f32 = 0.05;
-/// How large a sway must be to be subtracted, in standard deviations of what the subtraction leaves:
-/// it then takes away at least nine tenths of the variance that it would have left.
+/// Least sway that is compensated, in standard deviations of the error that the compensation
+/// leaves: it then removes at least nine tenths of the variance.
 const LARGE: f32 = 3.0;
 
-/// What is stated of the coarse sensors and where they stand.
+/// Stated properties of the coarse sensors and of their place on the base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoarseSensors {
     /// Angle random walk N of the gyros, rad/√s.
@@ -67,13 +72,13 @@ pub struct CoarseSensors {
     pub force_noise: f32,
     /// 1σ of scale and alignment against the precise gyro, relative.
     pub mismatch: f32,
-    /// By how much a rate that is held lags behind on average, s.
+    /// Mean delay of a rate that is held until the next reading, s.
     pub delay: f32,
-    /// 1σ of that time, s.
+    /// Standard deviation of that delay, 1σ, s.
     pub delay_sigma: f32,
-    /// From the point that the base sways about to the sensors, 1σ, m.
+    /// Distance from the point about which the base sways to the sensors, 1σ, m.
     pub lever: f32,
-    /// Time constant τ of the draw to the accelerometers, s, > 0.
+    /// Time constant τ of the correction by the accelerometers, s, > 0.
     pub memory: f32,
 }
 
@@ -96,15 +101,15 @@ impl CoarseSensors {
         }
     }
 
-    /// Variance of the angle error that does not grow with the sway, rad²: (N²τ + a²/τ)/2.
+    /// Variance of the angle error that is independent of the sway, rad²: (N²τ + a²/τ)/2.
     #[must_use]
     pub fn angle_variance(&self) -> f32 {
         let Self { rate_noise, force_noise, memory, .. } = *self;
         0.5 * (rate_noise * rate_noise * memory + force_noise * force_noise / memory)
     }
 
-    /// Variance of the angle error that grows with a sway of these variances of angle, rad², and
-    /// rate, (rad/s)².
+    /// Variance of the angle error that grows with the sway, rad², for a sway of these variances of
+    /// angle, rad², and rate, (rad/s)².
     fn residual_variance(&self, angle: f32, rate: f32) -> f32 {
         let felt = self.lever / (GRAVITY * self.memory);
         self.mismatch * self.mismatch * angle
@@ -112,40 +117,44 @@ impl CoarseSensors {
     }
 }
 
-/// How a base sways.
+/// Amplitude of the sway of a base.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Size {
-    /// RMS of its angle along an axis in the horizontal plane, mean over all directions, rad.
+    /// RMS angle along an axis in the horizontal plane, mean over all directions, rad.
     pub angle: f32,
-    /// RMS of its rate, likewise, rad/s.
+    /// RMS rate along an axis in the horizontal plane, mean over all directions, rad/s.
     pub rate: f32,
 }
 
-/// What was decided about a session.
+/// State of the decision on compensation for a session.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Decision {
-    /// Nothing yet.
+    /// The sway is still being observed.
     #[default]
     Watching,
-    /// The base hardly moves: nothing is subtracted.
+    /// The base hardly moves, with this sway: no compensation is applied.
     Still(Size),
-    /// It sways and this is subtracted, which leaves that noise.
+    /// The base sways by this size: it is compensated, which leaves this noise.
     Swaying(Size, SwayNoise),
 }
 
-/// Sums over the time that the sway is watched.
+/// Sums over the time in which the sway is observed.
 #[derive(Clone, Copy, Debug, Default)]
 struct Watch {
+    /// Number of readings.
     count: f32,
-    /// The estimated vector when it began.
+    /// Horizontal components of the estimated vector when the observation began.
     origin: [f32; 2],
+    /// Sums of the components' deviations from the origin.
     sums: [f32; 2],
+    /// Sum of the squares of these deviations.
     squares: f32,
-    /// Squared rates, less what the gyros' noise adds.
+    /// Sum of the squared rates less the part that the gyros' noise adds, (rad/s)².
     rates: f32,
 }
 
 impl Watch {
+    /// Adds one estimate; `noise` is the variance of a rate, (rad/s)².
     fn push(&mut self, up: [f32; 3], rate: [f32; 3], noise: f32) {
         let [x, y, _] = up;
         if self.count == 0.0 {
@@ -159,7 +168,7 @@ impl Watch {
         self.rates += rate[0] * rate[0] + rate[1] * rate[1] - 2.0 * noise;
     }
 
-    /// Variances of angle and rate along an axis, mean over all directions.
+    /// Variances of angle, rad², and rate, (rad/s)², along an axis, mean over all directions.
     fn variances(&self) -> [f32; 2] {
         let [x, y] = self.sums.map(|sum| sum / self.count);
         let angle = self.squares / self.count - x * x - y * y;
@@ -167,29 +176,32 @@ impl Watch {
     }
 }
 
-/// The estimator.
+/// Estimator of the sway.
 #[derive(Clone, Copy, Debug)]
 pub struct Sway {
+    /// Stated properties of the sensors.
     sensors: CoarseSensors,
-    /// Points up, on the base's axes forward, right, down; nothing before the first reading.
+    /// Estimated up vector on the base's axes forward, right, down; none before the first reading.
     up: Option<[f32; 3]>,
-    /// The first rates: what differs from them is small enough for the last bits to count.
+    /// First rates, subtracted so that single precision suffices for the rest.
     origin: [AngularRate; 3],
-    /// What is the gyros' own of that difference, rad/s.
+    /// Estimated gyro bias after subtraction of the first rates, rad/s.
     bias: [f32; 3],
-    /// Rate of the estimated attitude, rad/s, as it will be a delay later.
+    /// Rate of the estimated attitude, rad/s, extrapolated by the delay.
     rate: [f32; 2],
-    /// The same without the delay.
+    /// Rate of the estimated attitude, rad/s, without extrapolation.
     latest: [f32; 2],
-    /// Time since the estimate began, and since it was last set upright, s.
+    /// Age of the estimate, and time since the vector was last set by the accelerometers alone, s.
     age: f32,
     upright: f32,
+    /// Sums of the observation.
     watch: Watch,
+    /// Decision on compensation.
     decision: Decision,
 }
 
 impl Sway {
-    /// Knows nothing yet.
+    /// Begins without an estimate.
     #[must_use]
     pub fn new(sensors: CoarseSensors) -> Self {
         Self {
@@ -206,15 +218,15 @@ impl Sway {
         }
     }
 
-    /// What was decided.
+    /// Present state of the decision.
     #[must_use]
     pub fn decision(&self) -> Decision {
         self.decision
     }
 
-    /// Takes a reading so many seconds after the one before: rates about, and specific forces on, the
-    /// base's axes forward, right, down. After a longer time than can be bridged it begins anew, with
-    /// the bias that it knows.
+    /// Takes a reading `seconds` after the previous one: rates about, and specific forces on, the
+    /// base's axes forward, right, down. After a gap longer than 0.05 s the vector is set anew by
+    /// the accelerometers, and the estimated bias is kept.
     pub fn push(&mut self, seconds: f32, rate: [AngularRate; 3], force: [SpecificForce; 3]) {
         if self.up.is_none() {
             self.origin = rate;
@@ -233,7 +245,7 @@ impl Sway {
         }
     }
 
-    /// Turns the estimate on.
+    /// Propagates the estimate by one reading.
     fn turn(&mut self, seconds: f32, rate: [f32; 3], force: [f32; 3], up: [f32; 3]) {
         self.age += seconds;
         self.upright += seconds;
@@ -255,7 +267,8 @@ impl Sway {
         }
     }
 
-    /// Follows the biases: of the level axes by the draw, of the vertical one by its mean.
+    /// Updates the biases: of the level axes by the accelerometer correction, of the vertical axis
+    /// by its mean.
     fn learn(&mut self, seconds: f32, rate: [f32; 3], off: [f32; 3]) {
         let age = if self.age > OLDEST { OLDEST } else { self.age.max(YOUNGEST) };
         let gain = (6.0 / (age * age)).max(1.0 / (self.sensors.memory * age)) * seconds;
@@ -264,7 +277,7 @@ impl Sway {
         self.bias[2] += (rate[2] - self.bias[2]) * (seconds / age);
     }
 
-    /// Decides once, when it was watched for long enough.
+    /// Decides once, when the sway was observed for long enough.
     fn decide(&mut self) {
         if self.age < WATCH_UNTIL {
             return;
@@ -278,6 +291,7 @@ impl Sway {
             if is_large { self.swaying(size, own, left) } else { Decision::Still(size) };
     }
 
+    /// Decision for compensation, with the noise that it leaves.
     fn swaying(&self, size: Size, own: f32, left: f32) -> Decision {
         let noise = SwayNoise {
             angle_variance: RAISED * f64::from(own),
@@ -287,8 +301,8 @@ impl Sway {
         Decision::Swaying(size, noise)
     }
 
-    /// What is to be subtracted from a rate along the level axis with this cosine and sine of its
-    /// angle from forward, clockwise from above, rad/s; zero where nothing is.
+    /// Rate to be subtracted along the level axis with this cosine and sine of its angle from
+    /// forward, clockwise from above, rad/s; zero without compensation.
     #[must_use]
     pub fn along(&self, [cosine, sine]: [f32; 2]) -> f32 {
         match self.decision {
@@ -298,15 +312,17 @@ impl Sway {
     }
 }
 
+/// Square root in single precision.
 fn root(value: f32) -> f32 {
     libm::sqrtf(value)
 }
 
+/// Vector product in single precision.
 fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// A vector of nearly one, brought to one: a step of Newton's for 1/√x.
+/// Renormalises a vector whose length is nearly one, by one Newton step for 1/√x.
 fn normalised(v: [f32; 3]) -> [f32; 3] {
     let factor = 1.5 - 0.5 * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     v.map(|part| part * factor)

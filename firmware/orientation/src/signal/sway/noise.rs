@@ -1,30 +1,31 @@
-//! What a subtraction of the base's sway leaves: an angle error, of which a dwell sees the change.
+//! Noise that remains after compensation of the base's sway: an angle error, of which a dwell sees
+//! the change.
 
-/// The error of an estimated sway angle along the sensitive axis: a first-order Gauss–Markov process
-/// and, beside it, an error that keeps no memory from one end of a dwell to the other. Zero: nothing
-/// is subtracted.
+/// Error of an estimated sway angle along the sensitive axis: a first-order Gauss–Markov process
+/// and an error that is uncorrelated between both ends of a dwell. All zero where no compensation
+/// is applied.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SwayNoise {
     /// Variance σ² of the Gauss–Markov part, rad².
     pub angle_variance: f64,
-    /// Its correlation time τ, s.
+    /// Correlation time τ of the Gauss–Markov part, s.
     pub correlation: f64,
-    /// Variance of the part without memory, rad².
+    /// Variance of the uncorrelated part σᵣ², rad².
     pub residual_variance: f64,
 }
 
 impl SwayNoise {
-    /// Nothing is subtracted.
+    /// Noise without compensation: zero.
     pub const NONE: Self = Self { angle_variance: 0.0, correlation: 0.0, residual_variance: 0.0 };
 
-    /// Variance that a mean rate over so many seconds (> 0) gets, (rad/s)²: that of the change of
-    /// the angle error over the time, 2σ²(1 − e^{−T/τ})/T² and 2σᵣ²/T².
+    /// Variance that the error adds to a mean rate over `seconds` (> 0), (rad/s)²: that of the
+    /// change of the angle error over the time T, 2σ²(1 − e^{−T/τ})/T² + 2σᵣ²/T².
     #[must_use]
     pub fn mean_variance(&self, seconds: f64) -> f64 {
         self.angle_mean_variance(seconds) + self.residual_mean_variance(seconds)
     }
 
-    /// The Gauss–Markov part of it, which neighbouring dwells share.
+    /// Gauss–Markov part of [`Self::mean_variance`], (rad/s)², which neighbouring dwells share.
     #[must_use]
     pub fn angle_mean_variance(&self, seconds: f64) -> f64 {
         if self.angle_variance <= 0.0 {
@@ -34,13 +35,13 @@ impl SwayNoise {
         2.0 * self.angle_variance * forgotten / (seconds * seconds)
     }
 
-    /// The part without memory.
+    /// Uncorrelated part of [`Self::mean_variance`], (rad/s)².
     #[must_use]
     pub fn residual_mean_variance(&self, seconds: f64) -> f64 {
         2.0 * self.residual_variance / (seconds * seconds)
     }
 
-    /// Standard deviation of the angle, rad.
+    /// Standard deviation of the angle error, both parts, rad.
     #[must_use]
     pub fn angle_sigma(&self) -> f64 {
         libm::sqrt(self.angle_variance + self.residual_variance)
