@@ -1,6 +1,5 @@
-//! Build script of the bare-metal images: links them by cortex-m-rt's script, which takes the
-//! memory map from `memory.x`, and applies `budget.toml`, as constants for the images and as limits
-//! that the linker enforces on the board's image.
+//! Links the bare-metal images by cortex-m-rt's script, which takes the memory map from `memory.x`,
+//! and hands them the budget: as constants, and as limits that the board's image must keep to link.
 //!
 //! Cargo starts the linker in the workspace root, so `memory.x` is found there from any directory.
 
@@ -8,11 +7,10 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::{env, fs, io};
 
-/// The budget of the images: instructions, flash and RAM.
+/// What the images may cost.
 const BUDGET: &str = "budget.toml";
 
-/// A linker script that refuses an image without its table of reference signals in its section
-/// (`memory.x`).
+/// A linker script that refuses an image without its etalon table (`memory.x`).
 const ETALON: &str = "ASSERT(SIZEOF(.etalon) > 0, \"the etalon table is not in its section\");\n";
 
 fn main() -> io::Result<()> {
@@ -21,7 +19,7 @@ fn main() -> io::Result<()> {
     println!("cargo::rerun-if-changed=../memory.x");
     if env::var("CARGO_CFG_TARGET_OS").is_ok_and(|system| system == "none") {
         println!("cargo::rustc-link-arg-bins=-Tlink.x");
-        // defmt's own script places the log's strings outside the image; they stay on the host.
+        // defmt's own script: strings that stay on the host.
         for (feature, image) in [("EMULATOR", "emulator"), ("BOARD", "board")] {
             if env::var_os(format!("CARGO_FEATURE_{feature}")).is_some() {
                 println!("cargo::rustc-link-arg-bin={image}=-Tdefmt.x");
@@ -43,7 +41,7 @@ fn main() -> io::Result<()> {
     Ok(())
 }
 
-/// The keys and values of the budget. Comments and lines without a value are skipped.
+/// The budget's keys and values.
 fn entries(budget: &str) -> impl Iterator<Item = (&str, &str)> {
     budget.lines().filter_map(|line| {
         let (key, value) = line.split('#').next()?.split_once('=')?;
@@ -51,7 +49,7 @@ fn entries(budget: &str) -> impl Iterator<Item = (&str, &str)> {
     })
 }
 
-/// Rust source with each entry of the budget as a constant.
+/// Every entry of the budget as a constant.
 fn constants(budget: &str) -> io::Result<String> {
     let mut source = String::new();
     for (key, value) in entries(budget) {
@@ -61,10 +59,7 @@ fn constants(budget: &str) -> io::Result<String> {
     Ok(source)
 }
 
-/// A linker script that refuses an image beyond the budget of flash or static RAM.
-///
-/// # Errors
-/// The budget has no `flash_bytes` or no `static_ram_bytes`.
+/// A linker script that refuses an image beyond its memory.
 fn limits(budget: &str) -> io::Result<String> {
     let limit = |name: &str| {
         let entry = entries(budget).find(|(key, _)| *key == name);

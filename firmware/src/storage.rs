@@ -169,7 +169,7 @@ pub async fn load_calibration<S: CalibrationStore, O: Observer>(
 }
 
 /// Stores the axis misalignments of a session that has found an azimuth with them, and reports it.
-/// Those of a refused session are not stored.
+/// A session without an azimuth stores none.
 pub async fn save_calibration<S: CalibrationStore, O: Observer>(
     store: &mut S,
     session: &Session,

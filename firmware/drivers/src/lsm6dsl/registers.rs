@@ -39,7 +39,7 @@ pub const SOFTWARE_RESET: u8 = 0x01;
 pub const TEST_CTRL1_XL: u8 = 0x38;
 /// Gyro in its self-test: 208 Hz, ±2000 °/s (same source).
 pub const TEST_CTRL2_G: u8 = 0x5C;
-/// Both self-test forces in their positive direction: `ST_G` 01, `ST_XL` 01.
+/// The self-test forces of gyro and accelerometer in their positive direction: `ST_G` 01, `ST_XL` 01.
 pub const TEST_FORCES: u8 = 0x05;
 
 /// The status register.
