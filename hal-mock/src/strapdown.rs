@@ -10,13 +10,13 @@ use crate::vehicle::SensorFault;
 
 /// What is fixed to a body, and what goes wrong with it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct StrapdownConfiguration<'a> {
+pub(crate) struct StrapdownConfiguration<'a, const L: usize> {
     /// The gyros; each draws for itself.
     pub(crate) gyros: [GyroConfiguration; 3],
     /// Readings of a gyro per second, Hz, > 0.
     pub(crate) rate_hz: f64,
-    /// Rates at which the gyros clip, rad/s, > 0.
-    pub(crate) rate_limits_rad_s: [f64; 3],
+    /// Rates at which the gyros clip, rad/s, > 0: one for each, or a single one for all three.
+    pub(crate) rate_limits_rad_s: [f64; L],
     /// The accelerometers.
     pub(crate) accelerometer: AccelerometerConfiguration,
     /// Readings of the accelerometers per second, Hz, > 0.
@@ -35,13 +35,13 @@ pub(crate) fn gyro_seeds(seed: u64, streams: [u64; 3]) -> [u64; 3] {
 /// The sensors at work, of which the last `N` axes of the accelerometer are looked at. Each keeps what it
 /// showed last, for a fault that repeats it.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Strapdown<'a, const N: usize> {
+pub(crate) struct Strapdown<'a, const N: usize, const L: usize> {
     /// The gyros.
     gyros: [Gyro; 3],
     /// The accelerometers.
     accelerometer: Accelerometer,
-    /// Rates at which the gyros clip, rad/s.
-    rate_limits_rad_s: [f64; 3],
+    /// Rates at which the gyros clip, rad/s: one for each, or a single one for all three.
+    rate_limits_rad_s: [f64; L],
     /// Force at which an accelerometer clips, m/s².
     force_limit_m_s2: f64,
     /// What goes wrong, in any order.
@@ -52,9 +52,9 @@ pub(crate) struct Strapdown<'a, const N: usize> {
     forces_m_s2: [f64; N],
 }
 
-impl<'a, const N: usize> Strapdown<'a, N> {
+impl<'a, const N: usize, const L: usize> Strapdown<'a, N, L> {
     /// Sensors whose gyros draw from the seeds of three streams of a seed.
-    pub(crate) fn new(c: &StrapdownConfiguration<'a>, seed: u64, streams: [u64; 3]) -> Self {
+    pub(crate) fn new(c: &StrapdownConfiguration<'a, L>, seed: u64, streams: [u64; 3]) -> Self {
         let seeds = gyro_seeds(seed, streams);
         Self {
             gyros: [0, 1, 2].map(|axis: usize| Gyro::new(&c.gyros[axis], c.rate_hz, seeds[axis])),
@@ -80,7 +80,7 @@ impl<'a, const N: usize> Strapdown<'a, N> {
         let gyro = &mut self.gyros[axis];
         let steady_rad_s = gyro.steady(rate_rad_s, force_g);
         let value = gyro.sample(steady_rad_s, time_s, temperature_c);
-        let (last, full) = (self.rates_rad_s[axis], self.rate_limits_rad_s[axis]);
+        let (last, full) = (self.rates_rad_s[axis], self.rate_limit_rad_s(axis));
         let shown = SensorFault::spoilt(self.faults, axis, time_s, [value, last], full);
         self.rates_rad_s[axis] = shown;
         shown
@@ -99,7 +99,8 @@ impl<'a, const N: usize> Strapdown<'a, N> {
 
     /// Whether one of the latest outputs is at its full scale.
     pub(crate) fn is_clipped(&self) -> bool {
-        let mut rates = self.rates_rad_s.iter().zip(self.rate_limits_rad_s);
+        let mut rates =
+            self.rates_rad_s.iter().zip([0, 1, 2].map(|axis| self.rate_limit_rad_s(axis)));
         rates.any(|(rate, limit)| rate.abs() >= limit)
             || self.forces_m_s2.iter().any(|force| force.abs() >= self.force_limit_m_s2)
     }
@@ -117,5 +118,10 @@ impl<'a, const N: usize> Strapdown<'a, N> {
     /// Scale factor errors of the gyros, 1.
     pub(crate) fn scale_errors(&self) -> [f64; 3] {
         [0, 1, 2].map(|axis: usize| self.gyros[axis].scale_error())
+    }
+
+    /// Rate at which the gyro of an axis, 0 to 2, clips, rad/s.
+    fn rate_limit_rad_s(&self, axis: usize) -> f64 {
+        self.rate_limits_rad_s[axis.min(L - 1)]
     }
 }

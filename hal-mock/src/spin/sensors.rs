@@ -10,7 +10,7 @@ const TEMPERATURE_C: f64 = 25.0;
 
 /// The sensors at work.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Sensors<'a>(Strapdown<'a, 2>);
+pub(super) struct Sensors<'a>(Strapdown<'a, 2, 3>);
 
 impl<'a> Sensors<'a> {
     /// The sensors of a body at the start of its flight.

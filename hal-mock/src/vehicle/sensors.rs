@@ -20,7 +20,7 @@ pub struct Means {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sensors<'a> {
     /// The gyros and accelerometers, with full scales and faults.
-    strapdown: Strapdown<'a, 3>,
+    strapdown: Strapdown<'a, 3, 1>,
     /// The warm-up.
     temperature: TemperatureConfiguration,
     /// Gravity at the start, the g of the g-sensitivity.
@@ -38,7 +38,7 @@ impl<'a> Sensors<'a> {
         let strapdown = StrapdownConfiguration {
             gyros: c.gyros,
             rate_hz: c.rate_hz,
-            rate_limits_rad_s: [c.gyro_full_scale_rad_s; 3],
+            rate_limits_rad_s: [c.gyro_full_scale_rad_s],
             accelerometer: c.accelerometer,
             accelerometer_hz,
             force_limit_m_s2: c.accelerometer_full_scale_m_s2,
