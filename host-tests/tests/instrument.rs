@@ -203,7 +203,7 @@ fn what_is_survived_is_noticed() {
         ("stage-reset", "stage: it has restarted: starting it again"),
         ("gyro-hang", "gyro: its bus hangs"),
         ("stage-blocked-once", "stage: blocked, trying again"),
-        ("saturation-once", "is measured again: gyro saturated"),
+        ("saturation-once", "gyro: at the limit of its range"),
         ("overflow-once", "nobody took them in time"),
         ("door-slam", "is measured again"),
         ("base-nudge", "is measured again"),

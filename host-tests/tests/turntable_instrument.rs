@@ -205,6 +205,15 @@ fn a_blocked_platform_is_tried_once_more_from_rest() {
     );
 }
 
+/// The turn in which it clips is taken anew, so that nothing else would tell of it.
+#[test]
+fn a_gyro_that_clips_for_a_moment_is_told_once() {
+    let run = with_fault("saturation-once");
+    let clipped = told(&run).iter().filter(|line| line.contains("limit of its range")).count();
+    assert_eq!(clipped, 1, "{:#?}", told(&run));
+    assert_north(&short(1), &run);
+}
+
 #[test]
 fn an_overloaded_accelerometer_is_named() {
     let named = Refusal::Device { device: Device::Accelerometer, trouble: Trouble::Saturated };
