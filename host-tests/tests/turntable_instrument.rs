@@ -7,10 +7,9 @@ use bench::instrument::{TurntableRun, align_turning};
 use bench::output::{azimuth_error, degrees};
 use firmware::event::Event;
 use firmware::ports::NoRecorder;
-use firmware::simulated::fault::Fault;
+use firmware::simulated::fault::{AxisFault, Fault, Platform};
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;
-use hal_mock::chip::Select;
 use orientation::align::conclusion::Azimuth;
 use orientation::align::rotating::solution::SPEEDS;
 use orientation::device::{Device, Trouble};
@@ -53,7 +52,7 @@ fn assert_north(scenario: &TurntableScenario, run: &TurntableRun) {
 
 /// What the fault named so ends in.
 fn with_fault(name: &str) -> TurntableRun {
-    let fault = Fault::all().find(|fault| fault.to_string() == name);
+    let fault = Fault::all(Platform::Turntable).find(|fault| fault.to_string() == name);
     run_with(&short(1), Some(fault.expect("it is in the catalogue")))
 }
 
@@ -145,7 +144,7 @@ fn the_commands_of_an_uneven_turn_are_not_told() {
 #[test]
 fn the_platform_comes_to_rest_whatever_the_end() {
     for name in ["", "encoder-slip", "overload-always", "gyro-silent", "saturation-always"] {
-        let fault = Fault::all().find(|fault| fault.to_string() == name);
+        let fault = Fault::all(Platform::Turntable).find(|fault| fault.to_string() == name);
         let run = run_with(&short(1), fault);
         // It still rings, by a hundredth of what it turned at.
         assert!(run.rate.abs() < 0.0126, "{name}: it turns at {} rad/s", run.rate);
@@ -235,7 +234,7 @@ fn a_motor_driver_that_was_reset_turns_on() {
 #[test]
 fn no_fault_gives_a_wrong_north_but_a_wrong_zero_of_the_encoder() {
     let mut refused = 0;
-    for fault in Fault::all() {
+    for fault in Fault::all(Platform::Turntable) {
         let scenario = short(1);
         let run = run_with(&scenario, Some(fault));
         let Ok(azimuth) = verdict(&run) else {
@@ -243,9 +242,12 @@ fn no_fault_gives_a_wrong_north_but_a_wrong_zero_of_the_encoder() {
             continue;
         };
         let (error, sigma) = error(&scenario, azimuth);
-        let slipped = if fault == Fault::EncoderSlipAtStart { -0.5 } else { 0.0 };
+        let slipped =
+            if fault == Fault::Axis(Device::Stage, AxisFault::SlipAtStart) { -0.5 } else { 0.0 };
         assert!((error - slipped).abs() < 4.0 * sigma, "{fault}: off by {error}° of σ {sigma}°");
     }
     assert!(refused > 20, "only {refused} were refused");
-    assert!(Fault::all().any(|fault| matches!(fault, Fault::Chip(Select::Gyro, _))));
+    assert!(
+        Fault::all(Platform::Turntable).any(|fault| matches!(fault, Fault::Chip(Device::Gyro, _)))
+    );
 }

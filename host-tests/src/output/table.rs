@@ -147,19 +147,33 @@ pub fn errors(out: &mut impl Write, row: &Errors) -> fmt::Result {
 pub fn faults(out: &mut impl Write, rows: &[faults::Row]) -> fmt::Result {
     writeln!(
         out,
-        "\n{:<30} {:<8} {:>7} {:>6} {:>8} {:>8} {:>8}  what the board noticed first → why it refused",
-        "fault", "outcome", "error σ", "faults", "repeated", "left out", "after s"
+        "\n{:<10} {:<35} {:<8} {:>7} {:>6} {:>8} {:>8} {:>8} {:>7}  what the board noticed first → why it refused",
+        "platform",
+        "fault",
+        "outcome",
+        "error σ",
+        "faults",
+        "repeated",
+        "left out",
+        "after s",
+        "noticed"
     )?;
     for row in rows {
         let error = row.error_sigmas.map_or_else(|| "-".to_owned(), |e| format!("{e:+.2}"));
+        let [repeated, left_out] = [row.repeated, row.left_out]
+            .map(|count| count.map_or_else(|| "-".to_owned(), |count| count.to_string()));
+        let is_noticed = match row.is_noticed {
+            None => "-",
+            Some(true) => "yes",
+            Some(false) => "NO",
+        };
         write!(
             out,
-            "{:<30} {:<8} {error:>7} {:>6} {:>8} {:>8} {:>8.1}  {}",
+            "{:<10} {:<35} {:<8} {error:>7} {:>6} {repeated:>8} {left_out:>8} {:>8.1} {is_noticed:>7}  {}",
+            row.platform,
             row.fault,
             row.outcome,
             row.faults,
-            row.repeated,
-            row.left_out,
             row.seconds,
             row.noticed.as_deref().unwrap_or("nothing")
         )?;
