@@ -46,6 +46,8 @@ pub enum Event {
     Started(Device),
     /// A reading of a device was lost, with the symptom.
     Lost(Device, Symptom),
+    /// A gyro has come to the limit of its range, for the first time in this session.
+    Clipped(Device),
     /// A device is started again because of a symptom.
     Restarting(Device, Symptom),
     /// A device is given up: its retry budget is exhausted.
@@ -197,6 +199,7 @@ words! { Event:
         "begin: level, drive, stop and level again, at latitude {}°", Rounded::<4>(latitude);
     Self::Started(device) => "{}: identity and self-test passed, configured", device;
     Self::Lost(device, symptom) => "{}: reading lost: {}", device, symptom;
+    Self::Clipped(device) => "{}: at the limit of its range", device;
     Self::Restarting(device, symptom) => "{}: {}: starting it again", device, symptom;
     Self::GivenUp(device, trouble) => "{}: given up: {}", device, trouble;
     Self::Missing(count) => "{} sample(s) missing", count;

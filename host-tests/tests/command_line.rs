@@ -88,7 +88,7 @@ fn two_frames_find_north_and_leave_the_gyro_vertical() {
     assert_eq!(found["stored"], true);
     assert!(found["truth_off_vertical_deg"].as_f64().is_some_and(|off| off < 0.05));
     for (option, reason) in
-        [(["--record", "x.csv"], "elevation"), (["--fault", "base-nudge"], "stage")]
+        [(["--record", "x.csv"], "elevation"), (["--fault", "encoder-slip"], "stage")]
     {
         let refused = meridian(&[&options[..], &option].concat());
         assert_ne!(code(&refused), 0);

@@ -139,9 +139,8 @@ fn hold_family(family: &str) {
         let page = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("golden-{name}.html"));
         let _ = fs::remove_file(&page);
         let page_name = page.display().to_string();
-        let has_page = draws(name);
         let report = [&arguments[..], &["--report", page_name.as_str()]].concat();
-        let text = meridian(if has_page { &report } else { &arguments });
+        let text = meridian(&report);
         hold(&format!("{name}.txt"), &printed(&text), &mut differing);
         let json = meridian(&[&arguments[..], &["--json"]].concat());
         hold(&format!("{name}.json"), &printed_object(&json), &mut differing);
@@ -151,11 +150,6 @@ fn hold_family(family: &str) {
         let _ = fs::remove_file(&page);
     }
     assert!(differing.is_empty(), "{}", differing.join("\n"));
-}
-
-/// Whether a command takes `--report`.
-fn draws(name: &str) -> bool {
-    name != "campaign-faults"
 }
 
 #[test]

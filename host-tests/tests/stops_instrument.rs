@@ -6,12 +6,12 @@
 use bench::instrument::{VehicleRun, align_stops};
 use firmware::event::Event;
 use firmware::ports::NoRecorder;
-use firmware::simulated::vehicle::fault::VehicleFault;
+use firmware::simulated::fault::Fault;
 use firmware::simulated::vehicle::{Place, VehicleScenario};
 use orientation::align::conclusion::Azimuth;
 use orientation::error::Refusal;
 
-fn run(scenario: &VehicleScenario, fault: Option<VehicleFault>) -> VehicleRun {
+fn run(scenario: &VehicleScenario, fault: Option<Fault>) -> VehicleRun {
     align_stops(scenario, fault, NoRecorder, &()).expect("the scenario is possible")
 }
 

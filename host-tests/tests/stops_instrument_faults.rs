@@ -5,10 +5,8 @@
 
 use bench::instrument::{VehicleRun, align_stops};
 use firmware::ports::NoRecorder;
-use firmware::simulated::fault::Sickness;
+use firmware::simulated::fault::{ChipFault, Fault, Platform};
 use firmware::simulated::vehicle::VehicleScenario;
-use firmware::simulated::vehicle::fault::VehicleFault;
-use hal_mock::chip::Select;
 use orientation::align::conclusion::Azimuth;
 use orientation::device::{Device, Trouble};
 use orientation::error::Refusal;
@@ -30,43 +28,38 @@ enum End {
     SurvivedOrNot,
 }
 
-fn expected(fault: VehicleFault) -> End {
+fn expected(fault: Fault) -> End {
     match fault {
-        VehicleFault::Chip(select, sickness) => of_chip(select, sickness),
-        VehicleFault::OutOfStep => End::Named(Device::RightGyro, Trouble::OutOfStep),
-        VehicleFault::SaturationOnce | VehicleFault::Saturation => End::Clipped,
-        VehicleFault::OverloadOnce => End::Survived,
-        VehicleFault::Overload => End::Named(Device::Accelerometer, Trouble::Saturated),
-        VehicleFault::Overflow => End::Lost,
-        VehicleFault::NeverDrives | VehicleFault::NeverStops | VehicleFault::ShortStops => {
-            End::TooFewStops
-        }
-        VehicleFault::Sway | VehicleFault::Bumps => End::SurvivedOrNot,
+        Fault::Chip(device, fault) => of_chip(device, fault),
+        Fault::OutOfStep => End::Named(Device::RightGyro, Trouble::OutOfStep),
+        Fault::SaturationOnce | Fault::Saturation => End::Clipped,
+        Fault::OverloadOnce => End::Survived,
+        Fault::Overload => End::Named(Device::Accelerometer, Trouble::Saturated),
+        Fault::Overflow => End::Lost,
+        Fault::NeverDrives | Fault::NeverStops | Fault::ShortStops => End::TooFewStops,
+        Fault::Sway | Fault::Bumps => End::SurvivedOrNot,
+        other => panic!("{other} is none of a vehicle"),
     }
 }
 
 /// The accelerometer's bus has no checksum: flipped bits make it look as if it had nothing new.
-fn of_chip(select: Select, sickness: Sickness) -> End {
-    let device = match select {
-        Select::Gyro => Device::ForwardGyro,
-        Select::GyroRight => Device::RightGyro,
-        Select::GyroDown => Device::DownGyro,
-        _ => Device::Accelerometer,
-    };
+fn of_chip(device: Device, fault: ChipFault) -> End {
     let is_gyro = device != Device::Accelerometer;
-    match sickness {
-        Sickness::Identity => End::Named(device, Trouble::Identity),
-        Sickness::ChecksumAlways if is_gyro => End::Named(device, Trouble::Checksum),
-        Sickness::ChecksumAlways | Sickness::Silent => End::Named(device, Trouble::Silent),
-        Sickness::Stuck => End::Named(device, Trouble::Stuck),
-        Sickness::BusAlways => End::Named(device, Trouble::Bus),
-        Sickness::Reset | Sickness::Hang => End::Lost,
-        Sickness::ChecksumOnce | Sickness::SilentOnce | Sickness::BusOnce if is_gyro => End::Lost,
-        Sickness::ChecksumOnce | Sickness::SilentOnce | Sickness::BusOnce => End::Survived,
+    match fault {
+        ChipFault::Identity => End::Named(device, Trouble::Identity),
+        ChipFault::ChecksumAlways if is_gyro => End::Named(device, Trouble::Checksum),
+        ChipFault::ChecksumAlways | ChipFault::Silent => End::Named(device, Trouble::Silent),
+        ChipFault::Stuck => End::Named(device, Trouble::Stuck),
+        ChipFault::BusAlways => End::Named(device, Trouble::Bus),
+        ChipFault::Reset | ChipFault::Hang => End::Lost,
+        ChipFault::ChecksumOnce | ChipFault::SilentOnce | ChipFault::BusOnce if is_gyro => {
+            End::Lost
+        }
+        ChipFault::ChecksumOnce | ChipFault::SilentOnce | ChipFault::BusOnce => End::Survived,
     }
 }
 
-fn run(fault: VehicleFault) -> VehicleRun {
+fn run(fault: Fault) -> VehicleRun {
     let scenario = VehicleScenario { stops: 2, stop_s: 30.0, ..VehicleScenario::usual(1) };
     align_stops(&scenario, Some(fault), NoRecorder, &()).expect("the scenario is possible")
 }
@@ -95,7 +88,7 @@ fn end(found: &VehicleRun) -> Option<End> {
 
 #[test]
 fn every_fault_is_survived_or_refused_for_its_reason_and_nothing_hangs() {
-    for fault in VehicleFault::all() {
+    for fault in Fault::all(Platform::Vehicle) {
         let found = run(fault);
         let (end, expected) = (end(&found), expected(fault));
         let is_right = match expected {
@@ -105,7 +98,7 @@ fn every_fault_is_survived_or_refused_for_its_reason_and_nothing_hangs() {
         assert!(is_right, "{fault}: {:?}, not {expected:?}", verdict(&found));
         assert!(found.run.seconds < 720.0, "{fault}: {} s", found.run.seconds);
         // Who asks a chip that has just lost its supply is too early, and learns so.
-        if !matches!(fault, VehicleFault::Chip(_, Sickness::Reset)) {
+        if !matches!(fault, Fault::Chip(_, ChipFault::Reset)) {
             assert_eq!(found.run.violations, [""; 0], "{fault}");
         }
     }
@@ -113,19 +106,19 @@ fn every_fault_is_survived_or_refused_for_its_reason_and_nothing_hangs() {
 
 #[test]
 fn one_lost_conversion_of_any_axis_is_told_as_a_gap_of_its_length() {
-    for select in [Select::Gyro, Select::GyroRight, Select::GyroDown] {
-        let found = run(VehicleFault::Chip(select, Sickness::ChecksumOnce));
-        assert_eq!(found.run.health.missing, 1, "{select:?}");
+    for device in [Device::ForwardGyro, Device::RightGyro, Device::DownGyro] {
+        let found = run(Fault::Chip(device, ChipFault::ChecksumOnce));
+        assert_eq!(found.run.health.missing, 1, "{device}");
         let Err(Refusal::RotationMissing { seconds, .. }) = verdict(&found) else {
-            panic!("{select:?}: {:?}", verdict(&found));
+            panic!("{device}: {:?}", verdict(&found));
         };
-        assert!((seconds - 0.02).abs() < 1e-4, "{select:?}: {seconds} s");
+        assert!((seconds - 0.02).abs() < 1e-4, "{device}: {seconds} s");
     }
 }
 
 #[test]
 fn a_converter_that_comes_late_is_named_and_the_others_are_not_blamed() {
-    let found = run(VehicleFault::OutOfStep);
+    let found = run(Fault::OutOfStep);
     let lines: Vec<String> = found.run.events.iter().map(|(_, event)| event.to_string()).collect();
     let stray = "right gyro: reading lost: out of step with the others";
     assert!(lines.iter().any(|line| line == stray), "{lines:?}");
@@ -143,7 +136,8 @@ fn a_converter_that_comes_late_is_named_and_the_others_are_not_blamed() {
 
 #[test]
 fn every_fault_has_a_name_of_its_own() {
-    let mut names: Vec<String> = VehicleFault::all().map(|fault| fault.to_string()).collect();
+    let mut names: Vec<String> =
+        Fault::all(Platform::Vehicle).map(|fault| fault.to_string()).collect();
     let count = names.len();
     names.sort();
     names.dedup();

@@ -7,10 +7,9 @@ use bench::instrument::{TurntableRun, align_turning};
 use bench::output::{azimuth_error, degrees};
 use firmware::event::Event;
 use firmware::ports::NoRecorder;
-use firmware::simulated::fault::Fault;
+use firmware::simulated::fault::{AxisFault, Fault, Platform};
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;
-use hal_mock::chip::Select;
 use orientation::align::conclusion::Azimuth;
 use orientation::align::rotating::solution::SPEEDS;
 use orientation::device::{Device, Trouble};
@@ -53,7 +52,7 @@ fn assert_north(scenario: &TurntableScenario, run: &TurntableRun) {
 
 /// What the fault named so ends in.
 fn with_fault(name: &str) -> TurntableRun {
-    let fault = Fault::all().find(|fault| fault.to_string() == name);
+    let fault = Fault::all(Platform::Turntable).find(|fault| fault.to_string() == name);
     run_with(&short(1), Some(fault.expect("it is in the catalogue")))
 }
 
@@ -145,7 +144,7 @@ fn the_commands_of_an_uneven_turn_are_not_told() {
 #[test]
 fn the_platform_comes_to_rest_whatever_the_end() {
     for name in ["", "encoder-slip", "overload-always", "gyro-silent", "saturation-always"] {
-        let fault = Fault::all().find(|fault| fault.to_string() == name);
+        let fault = Fault::all(Platform::Turntable).find(|fault| fault.to_string() == name);
         let run = run_with(&short(1), fault);
         // It still rings, by a hundredth of what it turned at.
         assert!(run.rate.abs() < 0.0126, "{name}: it turns at {} rad/s", run.rate);
@@ -205,6 +204,15 @@ fn a_blocked_platform_is_tried_once_more_from_rest() {
     );
 }
 
+/// The turn in which it clips is taken anew, so that nothing else would tell of it.
+#[test]
+fn a_gyro_that_clips_for_a_moment_is_told_once() {
+    let run = with_fault("saturation-once");
+    let clipped = told(&run).iter().filter(|line| line.contains("limit of its range")).count();
+    assert_eq!(clipped, 1, "{:#?}", told(&run));
+    assert_north(&short(1), &run);
+}
+
 #[test]
 fn an_overloaded_accelerometer_is_named() {
     let named = Refusal::Device { device: Device::Accelerometer, trouble: Trouble::Saturated };
@@ -226,7 +234,7 @@ fn a_motor_driver_that_was_reset_turns_on() {
 #[test]
 fn no_fault_gives_a_wrong_north_but_a_wrong_zero_of_the_encoder() {
     let mut refused = 0;
-    for fault in Fault::all() {
+    for fault in Fault::all(Platform::Turntable) {
         let scenario = short(1);
         let run = run_with(&scenario, Some(fault));
         let Ok(azimuth) = verdict(&run) else {
@@ -234,9 +242,12 @@ fn no_fault_gives_a_wrong_north_but_a_wrong_zero_of_the_encoder() {
             continue;
         };
         let (error, sigma) = error(&scenario, azimuth);
-        let slipped = if fault == Fault::EncoderSlipAtStart { -0.5 } else { 0.0 };
+        let slipped =
+            if fault == Fault::Axis(Device::Stage, AxisFault::SlipAtStart) { -0.5 } else { 0.0 };
         assert!((error - slipped).abs() < 4.0 * sigma, "{fault}: off by {error}° of σ {sigma}°");
     }
     assert!(refused > 20, "only {refused} were refused");
-    assert!(Fault::all().any(|fault| matches!(fault, Fault::Chip(Select::Gyro, _))));
+    assert!(
+        Fault::all(Platform::Turntable).any(|fault| matches!(fault, Fault::Chip(Device::Gyro, _)))
+    );
 }

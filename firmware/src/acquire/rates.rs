@@ -7,6 +7,7 @@ use orientation::error::Refusal;
 use orientation::units::AngularRate;
 
 use super::{Limit, RepeatCounter, SILENCE, STUCK};
+use crate::event::Event;
 use crate::guarded::Guarded;
 use crate::ports::{Gyro, Observer, Quantity, RateReading};
 use crate::retry_budget::Symptom;
@@ -29,6 +30,8 @@ pub(super) struct Rates<'a, G, V = AngularRate> {
     period: Duration,
     /// End of the latest conversion.
     latest: Option<Instant>,
+    /// Whether it was told that the gyro came to the limit of its range: once is enough for a log.
+    has_clipped: bool,
 }
 
 /// Time without a conversion after which a gyro with this period, µs, counts as silent.
@@ -48,6 +51,7 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
             limit,
             period,
             latest: None,
+            has_clipped: false,
         }
     }
 
@@ -55,6 +59,7 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
     pub(super) fn renew(&mut self) {
         self.gyro.renew();
         self.limit.samples = 0;
+        self.has_clipped = false;
     }
 
     /// Waits for a conversion, at most for `silence`; returns its end, or the symptom to repair.
@@ -107,6 +112,9 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
         };
         if !is_new {
             return Ok(Ok(None));
+        }
+        if rate.is_saturated() && !core::mem::replace(&mut self.has_clipped, true) {
+            shared.tell(Event::Clipped(self.name));
         }
         if self.limit.is_exceeded(rate.is_saturated(), 1) {
             return Err(shared.give_up(self.name, Trouble::Saturated));

@@ -8,7 +8,6 @@ use drivers::lsm6dsl::registers::{ADDRESS_LOW, OutputRate};
 use drivers::lsm6dsl::{self, Lsm6dsl};
 use embassy_time::{Delay, Instant};
 use hal_mock::chip::Single;
-use hal_mock::fault::{FaultyI2c, When};
 use hal_mock::i2c::{I2cChip, I2cPort};
 use hal_mock::lsm6dsl::Lsm6dsl as SimulatedImu;
 use hal_mock::plant::base::{Base, CoarseConfiguration};
@@ -20,6 +19,7 @@ use orientation::noise::model::GyroNoise;
 use orientation::signal::sway::CoarseSensors;
 use orientation::units::DEGREE;
 
+use super::fault::PortWrapper;
 use super::scenario::Scenario;
 use crate::chips::BaseImu;
 
@@ -105,14 +105,13 @@ pub fn rig<'a>(scenario: &Scenario, journey: Option<&JourneyConfiguration<'a>>) 
     Single { chip: SimulatedImu::new(Instant::MIN, ADDRESS_LOW, CLOCK), environment }
 }
 
-/// The port of a base IMU, whose bus is lost at some time.
-#[must_use]
-pub fn imu<'r, 'a>(
+/// The port of a base IMU with a wrapper around its bus.
+pub fn imu<'r, 'a, A: PortWrapper>(
     rig: &'r RefCell<Rig<'a>>,
     scenario: &Scenario,
-    lost: Option<When>,
-) -> BaseImu<FaultyI2c<I2cPort<'r, Rig<'a>>>, Delay> {
-    let bus = FaultyI2c::new(I2cPort::new(rig, lsm6dsl::BUS_HERTZ), lost);
+    wrapper: &A,
+) -> BaseImu<A::I2c<I2cPort<'r, Rig<'a>>>, Delay> {
+    let bus = wrapper.i2c(I2cPort::new(rig, lsm6dsl::BUS_HERTZ));
     let configuration =
         lsm6dsl::Configuration { output: output(scenario), ..lsm6dsl::Configuration::default() };
     BaseImu {

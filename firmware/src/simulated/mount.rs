@@ -5,20 +5,16 @@
 
 use core::cell::RefCell;
 
-use drivers::ads1262::Ads1262;
-use drivers::adxl355::{self, Adxl355};
-use drivers::mt6835::{self, Mt6835};
-use drivers::tmc5160::{self, Tmc5160};
+use drivers::tmc5160::configuration::Configuration as Motor;
 use embassy_time::Delay;
-use hal_mock::chip::Select;
-use hal_mock::fault::{FaultPlan, FaultySpi};
+use hal_mock::chip::{Rig, Select};
 use hal_mock::gimbal::board::GimbalBoard;
 use hal_mock::gimbal::{FrameConfiguration, Gimbal, GimbalConfiguration, Misalignment};
 use hal_mock::noise::Generator;
 use hal_mock::plant::journey::JourneyConfiguration;
 use hal_mock::plant::train::StageConfiguration;
 use hal_mock::plant::{PlantConfiguration, StageFault};
-use hal_mock::spi::{ReadyPin, SpiPort};
+use hal_mock::spi::ReadyPin;
 use orientation::align::POSITIONS;
 use orientation::align::mount::{ARRIVAL, MountError, TWO_FRAMES, TwoFrame, azimuth_sigma};
 use orientation::align::setting::Setting;
@@ -29,12 +25,13 @@ use orientation::session::procedure::Procedure;
 use orientation::session::schedule::{Position, Schedule};
 use orientation::units::DEGREE;
 
+use super::fault::{Injection, PortWrapper};
 use super::keep::Day;
 use super::scenario::{self, Scenario, Turning};
-use super::{CONVERTER_HERTZ, OSCILLATOR};
+use super::{Bus, OSCILLATOR};
 use crate::chips;
 use crate::configuration::FramesConfiguration;
-use crate::ports::{Frames, NoBase, Ports, Sensors};
+use crate::ports::{Frames, Ports, Sensors};
 
 /// 1σ of the accelerometers on the base, m/s²: their biases are tilt, so they are calibrated, to
 /// 0.1 mg; as delivered, an ADXL355 would cost 0.5° at 48°.
@@ -53,19 +50,6 @@ const PASS: [f64; 4] = [0.0, 180.0, 90.0, 270.0];
 
 /// A stream of random numbers that no source of noise has.
 const STREAM: u64 = 1000;
-
-/// What goes wrong with the frames.
-#[derive(Clone, Debug, Default)]
-pub struct FramePlan {
-    /// Of the outer one.
-    pub outer: heapless::Vec<StageFault, 2>,
-    /// Of the inner one.
-    pub inner: heapless::Vec<StageFault, 2>,
-    /// What goes wrong with the bus of the gyro's converter.
-    pub gyro: Option<FaultPlan>,
-    /// The same of the accelerometer's.
-    pub accelerometer: Option<FaultPlan>,
-}
 
 /// A simulated alignment on a two-frame mount.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -152,15 +136,15 @@ impl FramesScenario {
 
     /// What is true of everything that the chips feel and move.
     #[must_use]
-    pub fn gimbal<'a>(&self, plan: &'a FramePlan) -> GimbalConfiguration<'a> {
-        self.gimbal_riding(plan, None)
+    pub fn gimbal<'a>(&self, injection: &'a Injection) -> GimbalConfiguration<'a> {
+        self.gimbal_riding(injection, None)
     }
 
     /// The same on a base that drives off.
     #[must_use]
     pub fn gimbal_riding<'a>(
         &self,
-        plan: &'a FramePlan,
+        injection: &'a Injection,
         journey: Option<JourneyConfiguration<'a>>,
     ) -> GimbalConfiguration<'a> {
         let mut chance = Generator::stream(self.base.seed, STREAM);
@@ -172,17 +156,19 @@ impl FramesScenario {
             frames_rad: told.frames + left(self.orthogonality_sigma),
             gyro_rad: told.gyro + left(self.orthogonality_sigma),
         };
-        let mut plant = PlantConfiguration { journey, ..self.base.plant() };
+        let disturbances = &injection.disturbances;
+        let mut plant = PlantConfiguration { journey, disturbances, ..self.base.plant() };
         plant.instruments.accelerometer.bias_sigma_m_s2 = FORCE_BIAS_SIGMA;
         let sigma = scenario::G_SENSITIVITY_SIGMA;
         for part in &mut plant.instruments.gyro.g_sensitivity_deg_h_g {
             *part += left(sigma);
         }
         let third_g_sensitivity_deg_h_g = left(sigma);
-        let frame = |faults, zero_rad, start_deg| frame(&plant, faults, zero_rad, start_deg);
+        let Injection { axes, caught, .. } = injection;
+        let start = self.start_deg;
         GimbalConfiguration {
-            outer: frame(&plan.outer, told.outer_zero, self.start_deg.outer),
-            inner: frame(&plan.inner, told.inner_zero, self.start_deg.inner),
+            outer: frame(&plant, &axes.outer, caught.outer, told.outer_zero, start.outer),
+            inner: frame(&plant, &axes.inner, caught.inner, told.inner_zero, start.inner),
             plant,
             misalignment,
             third_g_sensitivity_deg_h_g,
@@ -191,19 +177,21 @@ impl FramesScenario {
 
     /// The simulated board.
     #[must_use]
-    pub fn board<'a>(&self, plan: &'a FramePlan) -> GimbalBoard<'a> {
-        self.board_riding(plan, None)
+    pub fn board<'a>(&self, injection: &'a Injection) -> GimbalBoard<'a> {
+        self.board_riding(injection, None)
     }
 
     /// The same on a base that drives off.
     #[must_use]
     pub fn board_riding<'a>(
         &self,
-        plan: &'a FramePlan,
+        injection: &'a Injection,
         journey: Option<JourneyConfiguration<'a>>,
     ) -> GimbalBoard<'a> {
-        let gimbal = Gimbal::new(&self.gimbal_riding(plan, journey), self.base.seed);
-        GimbalBoard::new(gimbal, OSCILLATOR)
+        let gimbal = Gimbal::new(&self.gimbal_riding(injection, journey), self.base.seed);
+        let mut board = GimbalBoard::new(gimbal, OSCILLATOR);
+        board.blackouts = &injection.blackouts;
+        board
     }
 
     /// What the keeper is told of place and gyros; none where the latitude is none.
@@ -220,75 +208,55 @@ impl FramesScenario {
     }
 }
 
-/// A frame with the gear and the encoder of the single-axis stage.
+/// A frame with the gear and the encoder of the single-axis stage, whose cable may be caught at an angle, rad.
 fn frame<'a>(
     plant: &PlantConfiguration<'_>,
     faults: &'a [StageFault],
+    caught: Option<f64>,
     zero_rad: f64,
     start_deg: f64,
 ) -> FrameConfiguration<'a> {
     let perfect = FrameConfiguration::default();
+    let [low, high] = perfect.stage.travel_rad;
     let stage = StageConfiguration {
         start_rad: start_deg * DEGREE,
-        travel_rad: perfect.stage.travel_rad,
+        travel_rad: [low, caught.unwrap_or(high)],
         switches_rad: perfect.stage.switches_rad,
         ..plant.stage
     };
     FrameConfiguration { stage, encoder: plant.instruments.encoder, zero_rad, faults }
 }
 
-/// The bus of a chip on the simulated board.
-type Bus<'r, 'a> = FaultySpi<SpiPort<'r, GimbalBoard<'a>>>;
-
 /// The sensors of the simulated board.
-pub type FrameSensors<'r, 'a> = Sensors<
-    chips::AnalogueGyro<Bus<'r, 'a>, ReadyPin<'r, GimbalBoard<'a>>, Delay>,
-    chips::PlatformAccelerometer<Bus<'r, 'a>, Delay>,
-    Frames<chips::StageEncoder<Bus<'r, 'a>, Delay>>,
+pub type FrameSensors<'r, B, A> = Sensors<
+    chips::AnalogueGyro<Bus<'r, B, A>, <A as PortWrapper>::Line<ReadyPin<'r, B>>, Delay>,
+    chips::PlatformAccelerometer<Bus<'r, B, A>, Delay>,
+    Frames<chips::StageEncoder<Bus<'r, B, A>, Delay>>,
 >;
 
-/// Its other ports.
-pub type FramePorts<'r, 'a, L, R> = Ports<Frames<chips::StageMotor<Bus<'r, 'a>, Delay>>, L, R>;
+/// The other ports of the simulated board.
+pub type FramePorts<'r, B, A, L, R> = Ports<Frames<chips::StageMotor<Bus<'r, B, A>, Delay>>, L, R>;
 
 /// The sensors of a simulated board.
-#[must_use]
-pub fn sensors<'r, 'a>(
-    board: &'r RefCell<GimbalBoard<'a>>,
+pub fn sensors<'r, B: Rig, A: PortWrapper>(
+    board: &'r RefCell<B>,
     scenario: &FramesScenario,
-    plan: &FramePlan,
-) -> FrameSensors<'r, 'a> {
-    let bus = |select, hertz, fault| FaultySpi::new(SpiPort::new(board, select, hertz), fault);
-    let encoder = |select| {
-        let bus = bus(select, mt6835::BUS_HERTZ, None);
-        chips::StageEncoder(Mt6835::new(bus, Delay, mt6835::Configuration::default()))
-    };
-    let converter = bus(Select::Gyro, CONVERTER_HERTZ, plan.gyro);
-    let ready = ReadyPin::new(board, Select::Gyro);
-    let accelerometer = bus(Select::Accelerometer, adxl355::BUS_HERTZ, plan.accelerometer);
-    let accelerometer = Adxl355::new(accelerometer, Delay, scenario::accelerometer());
-    Sensors {
-        gyro: chips::AnalogueGyro {
-            converter: Ads1262::new(converter, ready, Delay, scenario.base.converter()),
-            scale: scenario::SCALE,
-            limit: scenario::LIMIT,
-        },
-        accelerometer: chips::PlatformAccelerometer(accelerometer),
-        encoder: Frames { outer: encoder(Select::Encoder), inner: encoder(Select::InnerEncoder) },
-        base: NoBase,
-    }
+    wrapper: &A,
+) -> FrameSensors<'r, B, A> {
+    let Sensors { gyro, accelerometer, encoder: outer, base } =
+        super::sensors(board, &scenario.base, wrapper);
+    let inner = super::encoder(board, wrapper, Select::InnerEncoder);
+    Sensors { gyro, accelerometer, encoder: Frames { outer, inner }, base }
 }
 
 /// The other ports of a simulated board.
-pub fn ports<'r, 'a, L, R>(
-    board: &'r RefCell<GimbalBoard<'a>>,
+pub fn ports<'r, B: Rig, A: PortWrapper, L, R>(
+    board: &'r RefCell<B>,
+    wrapper: &A,
     link: L,
     recorder: R,
-) -> FramePorts<'r, 'a, L, R> {
-    let motor = |select| {
-        let bus = FaultySpi::new(SpiPort::new(board, select, tmc5160::BUS_HERTZ), None);
-        let configuration = tmc5160::configuration::Configuration::default();
-        chips::StageMotor(Tmc5160::new(bus, Delay, configuration))
-    };
+) -> FramePorts<'r, B, A, L, R> {
+    let motor = |select| super::motor(board, wrapper, select, Motor::default());
     let actuator = Frames { outer: motor(Select::Actuator), inner: motor(Select::InnerActuator) };
     Ports { actuator, link, recorder }
 }

@@ -20,11 +20,9 @@ use orientation::align::rotating::{Sensor, Setting};
 use orientation::session::rotating::{self, Procedure};
 use orientation::units::{DEGREE, TURN};
 
-use super::fault::{Fault, Plan};
+use super::fault::{Fault, Injection, PortWrapper};
 use super::scenario::{GyroClass, Scenario};
-use super::{
-    Around, Chips, SimulatedPorts, SimulatedSensors, board_around, ports_with, sensors_with,
-};
+use super::{Chips, SimulatedPorts, SimulatedSensors, board_around, ports_with, sensors_with};
 use crate::configuration::{Configuration, TurntableConfiguration};
 
 /// The motor driver of a platform that turns without end: it has no switches.
@@ -182,40 +180,40 @@ impl TurntableScenario {
         plant
     }
 
-    /// A plan of a fault that comes amid the clockwise turns.
+    /// What a fault does that comes amid the clockwise turns.
     #[must_use]
-    pub fn plan(&self, fault: Option<Fault>) -> Plan {
+    pub fn injection(&self, fault: Option<Fault>) -> Injection {
         let Procedure { ramp_seconds, level_seconds, .. } = self.procedure();
         let turns = f64::from(self.uneven_turns) + 0.5 * f64::from(self.turns);
         let phases = if self.uneven_turns > 0 { 2.0 } else { 1.0 };
         let seconds = START_SECONDS + level_seconds + phases * ramp_seconds;
         let seconds = seconds + turns / self.speeds_hz[0];
-        Plan::at(fault, Instant::MIN + Duration::from_millis((seconds * 1e3) as u64))
+        Injection::at(fault, Instant::MIN + Duration::from_millis((seconds * 1e3) as u64))
     }
 
-    /// The simulated board with a plan of faults.
+    /// The simulated board with what goes wrong with it.
     #[must_use]
-    pub fn board<'a>(&self, plan: &'a Plan) -> Chips<'a> {
-        board_around(&self.plant(), self.base.seed, plan)
+    pub fn board<'a>(&self, injection: &'a Injection) -> Chips<'a> {
+        board_around(&self.plant(), self.base.seed, injection)
     }
 }
 
 /// The sensors of its simulated board.
-pub fn sensors<'a, B: Rig, A: Around>(
+pub fn sensors<'a, B: Rig, A: PortWrapper>(
     board: &'a RefCell<B>,
     scenario: &TurntableScenario,
-    around: &A,
+    wrapper: &A,
 ) -> SimulatedSensors<'a, B, A> {
-    sensors_with(board, &scenario.base, FORCE, around)
+    sensors_with(board, &scenario.base, FORCE, wrapper)
 }
 
 /// The other ports of its simulated board.
-pub fn ports<'a, B: Rig, A: Around, L, R>(
+pub fn ports<'a, B: Rig, A: PortWrapper, L, R>(
     board: &'a RefCell<B>,
-    around: &A,
+    wrapper: &A,
     link: L,
     recorder: R,
 ) -> SimulatedPorts<'a, B, A, L, R> {
     let motor = Motor { switches: MOTOR, ..Motor::default() };
-    ports_with(board, around, motor, link, recorder)
+    ports_with(board, wrapper, motor, link, recorder)
 }

@@ -10,6 +10,7 @@ use crate::ads1262::Ads1262;
 use crate::adxl355::Adxl355;
 use crate::assembly::{Assembly, Task};
 use crate::chip::{Select, SpiChip};
+use crate::fault::Blackout;
 use crate::mt6835::Mt6835;
 use crate::tmc5160::{Oscillator, Tmc5160};
 use crate::violation::Violations;
@@ -27,6 +28,8 @@ pub struct GimbalBoard<'a> {
     encoders: [Mt6835; 2],
     /// The motor drivers of the outer and the inner frame.
     actuators: [Tmc5160; 2],
+    /// Losses of supply to come, in order of time.
+    pub blackouts: &'a [Blackout],
 }
 
 impl<'a> GimbalBoard<'a> {
@@ -40,6 +43,7 @@ impl<'a> GimbalBoard<'a> {
             accelerometer: Adxl355::new(Instant::MIN),
             encoders: [(); 2].map(|()| Mt6835::new(Instant::MIN)),
             actuators: [(); 2].map(|()| Tmc5160::new(oscillator, Instant::MIN)),
+            blackouts: &[],
         }
     }
 }
@@ -56,7 +60,7 @@ impl Assembly for GimbalBoard<'_> {
     ];
 
     fn with(&mut self, select: Select, task: &mut impl Task) {
-        let Self { gimbal, gyro, accelerometer, encoders, actuators } = self;
+        let Self { gimbal, gyro, accelerometer, encoders, actuators, .. } = self;
         let ([outer_encoder, inner_encoder], [outer_actuator, inner_actuator]) =
             (encoders, actuators);
         match select {
@@ -84,6 +88,14 @@ impl Assembly for GimbalBoard<'_> {
 
     fn move_on(&mut self, now: Instant) {
         self.gimbal.advance(now);
+    }
+
+    fn blackouts(&self) -> &[Blackout] {
+        self.blackouts
+    }
+
+    fn drop_blackout(&mut self) {
+        self.blackouts = self.blackouts.get(1..).unwrap_or_default();
     }
 
     fn lose(&mut self, select: Select, now: Instant) {

@@ -10,13 +10,12 @@ use bench::campaign::szymanowski::{drives, parked};
 use bench::campaign::{disturbed, faults, instrument, keep};
 use bench::output::campaign as reports;
 use bench::output::progress::Progress;
-use bench::output::table;
 use bench::report::Report;
 use clap::{Args, ValueEnum};
-use firmware::simulated::fault::Fault;
+use firmware::simulated::fault::Platform;
 use serde_json::{Value, json};
 
-use super::{Told, files, whole};
+use super::{Told, faults as of_run, files, whole};
 
 /// Which campaign, how long.
 #[derive(Args)]
@@ -30,9 +29,12 @@ pub struct CampaignOptions {
     /// fault (1), of each class of disturbed (200).
     #[arg(long, value_parser = whole::<1, 1_000_000>)]
     runs: Option<u64>,
-    /// Writes figures and tables as a page for a browser; of all but faults.
+    /// Writes figures and tables as a page for a browser.
     #[arg(long, value_name = "FILE.html")]
     report: Option<PathBuf>,
+    /// The only platform to run, of faults: stage, two-frame, turntable, vehicle or spin.
+    #[arg(long, value_name = "NAME", value_parser = of_run::platform)]
+    platform: Option<Platform>,
     /// The only class to run, of disturbed.
     #[arg(long, value_name = "NAME")]
     class: Option<String>,
@@ -54,7 +56,7 @@ enum Campaign {
     Keep,
     /// The whole instrument on simulated chips, over drawn sites and attitudes.
     Instrument,
-    /// Every chip with every fault.
+    /// Every fault on every platform: what the board notices, and what comes of it.
     Faults,
     /// Recordings with faults of any severity: what gets past, and what is refused without need.
     Disturbed,
@@ -66,6 +68,12 @@ impl CampaignOptions {
     /// # Errors
     /// The options, and why.
     pub fn check(&self) -> Result<(), String> {
+        if self.platform.is_some() && !matches!(self.name, Campaign::Faults) {
+            return Err(format!(
+                "--platform: {} does not take it: only faults has platforms",
+                self.campaign()
+            ));
+        }
         if self.class.is_some() && !matches!(self.name, Campaign::Disturbed) {
             return Err(format!(
                 "--class: {} does not take it: only disturbed has classes",
@@ -77,9 +85,6 @@ impl CampaignOptions {
         {
             let names: Vec<_> = disturbed::classes().map(|class| class.name).collect();
             return Err(format!("--class: the classes are {}", names.join(", ")));
-        }
-        if self.report.is_some() && matches!(self.name, Campaign::Faults) {
-            return Err("--report: campaign faults does not take it: it has no figures".to_owned());
         }
         files::check(None, &[files::written("--report", "the page", self.report.as_ref())])
     }
@@ -112,7 +117,7 @@ pub fn run(options: &CampaignOptions, as_json: bool) -> Result<Told, String> {
         Campaign::Szymanowski => szymanowski(runs(500)),
         Campaign::Keep => keep(runs(500)),
         Campaign::Instrument => instrument(runs(500))?,
-        Campaign::Faults => return faults(runs(1), as_json),
+        Campaign::Faults => faults(options.platform, runs(1)),
         Campaign::Disturbed => disturbed(runs(200), options.class.as_deref()),
     };
     object["campaign"] =
@@ -241,18 +246,16 @@ fn instrument(runs: usize) -> Result<Done, String> {
     Ok(Done { report, refusal, object: json!({ "precision": row }) })
 }
 
-/// Every fault with every seed; a result where no north was wrong.
-fn faults(runs: usize, as_json: bool) -> Result<Told, String> {
-    let progress = Progress::new((Fault::all().count() * runs) as u64, "faults");
-    let rows =
-        faults::rows(1..=runs as u64, || progress.step()).map_err(|error| error.to_string())?;
+/// Every fault of one platform or of all with every seed; a result where none was answered wrongly or missed.
+fn faults(platform: Option<Platform>, runs: usize) -> Done {
+    let platforms = platform.map_or_else(|| Platform::ALL.to_vec(), |platform| vec![platform]);
+    let progress = Progress::new((faults::count(&platforms) * runs) as u64, "faults");
+    let rows = faults::rows(&platforms, 1..=runs as u64, || progress.step());
     progress.finish();
-    let found = rows.iter().all(|row| row.outcome != faults::WRONG);
-    let status = if found { "ok" } else { "failed" };
-    let object = json!({ "campaign": "faults", "status": status, "faults": rows });
-    let told = Told::of(found, as_json, &object, |text| table::faults(text, &rows))?;
-    let refusal = (!found).then(|| "a north was wrong".to_owned());
-    Ok(Told { refusal, ..told })
+    let is_good = rows.iter().all(|row| !row.is_bad());
+    let reason = "a fault gave a wrong north or roll, came to no end, or went unnoticed";
+    let (report, refusal) = (reports::faults::report(&rows), unless(is_good, reason));
+    Done { report, refusal, object: json!({ "faults": rows }) }
 }
 
 /// Healthy recordings for each run of a class.

@@ -13,8 +13,8 @@ use bench::recording::Truth;
 use bench::stops::{Method, Replay, Watched};
 use clap::Args;
 use firmware::event::Event;
+use firmware::simulated::fault::Fault;
 use firmware::simulated::scenario::Scenario;
-use firmware::simulated::vehicle::fault::VehicleFault;
 use firmware::simulated::vehicle::{Place, VehicleScenario};
 use hal_mock::vehicle::VehicleTruth;
 use orientation::session::stops::Session;
@@ -70,7 +70,7 @@ const ASSUMED: &str = "what the board is told of place and instrument";
 /// Runs the board and tells what came of it.
 pub fn run(
     scenario: &VehicleScenario,
-    fault: Option<VehicleFault>,
+    fault: Option<Fault>,
     report: Option<&Path>,
     as_json: bool,
 ) -> Result<Told, String> {

@@ -4,6 +4,7 @@ pub mod allan;
 pub mod campaign;
 pub mod driving;
 pub mod emulate;
+pub mod faults;
 pub mod files;
 pub mod keeping;
 pub mod plan;

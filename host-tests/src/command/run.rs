@@ -1,6 +1,5 @@
 //! `meridian run`: the whole board application on simulated chips.
 
-use std::fmt::Write;
 use std::path::PathBuf;
 use std::time::Instant as WallClock;
 
@@ -18,16 +17,14 @@ use drivers::ads1262::configuration::DataRate;
 use embassy_time::Instant;
 use firmware::event::Event;
 use firmware::ports::{NoRecorder, Observer, Recorder};
-use firmware::simulated::fault::Fault;
+use firmware::simulated::fault::{Fault, Platform};
 use firmware::simulated::keep::Hold;
-use firmware::simulated::mount::{FramePlan, FramesScenario};
+use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::{Aim, GyroClass, RATES, Scenario};
-use firmware::simulated::spin::fault::SpinFault;
-use firmware::simulated::vehicle::fault::VehicleFault;
 use orientation::session::{Session, rotating, stops};
-use serde_json::json;
 
 use super::driving::DrivingOptions;
+use super::faults::{self, Asked};
 use super::keeping::KeepingOptions;
 use super::spinning::SpinningOptions;
 use super::suits::{self, Given, carrier};
@@ -104,8 +101,8 @@ pub struct RunOptions {
     #[arg(long, value_enum, default_value = "stepwise")]
     method: Method,
     /// What goes wrong; `list` names the faults of the method.
-    #[arg(long, value_name = "NAME", value_parser = fault)]
-    fault: Option<Named>,
+    #[arg(long, value_name = "NAME", value_parser = faults::parse)]
+    fault: Option<Asked>,
     /// Writes the samples that the session got as a recording for `replay`.
     #[arg(long, value_name = "FILE.csv")]
     record: Option<PathBuf>,
@@ -146,14 +143,6 @@ enum Gyro {
     MemsFine,
     /// Micromechanical, tactical grade: N 0.15 °/√h, B 0.5 °/h.
     Mems,
-}
-
-/// Faults by their name, or the wish to see the names.
-#[derive(Clone, Copy, Debug)]
-enum Named {
-    List,
-    /// Those that bear it: on a stage, in a vehicle, on a spinning body.
-    Fault(Option<Fault>, Option<VehicleFault>, Option<SpinFault>),
 }
 
 fn within<const LIMIT: u16>(text: &str) -> Result<f64, String> {
@@ -204,19 +193,6 @@ fn sway_hertz(text: &str) -> Result<f64, String> {
     }
 }
 
-fn fault(text: &str) -> Result<Named, String> {
-    if text == "list" {
-        return Ok(Named::List);
-    }
-    let on_stage = Fault::all().find(|fault| fault.to_string() == text);
-    let in_vehicle = VehicleFault::all().find(|fault| fault.to_string() == text);
-    let in_flight = SpinFault::all().find(|fault| fault.to_string() == text);
-    if on_stage.is_none() && in_vehicle.is_none() && in_flight.is_none() {
-        return Err("no such fault; `--fault list` names them".to_owned());
-    }
-    Ok(Named::Fault(on_stage, in_vehicle, in_flight))
-}
-
 impl From<Gyro> for GyroClass {
     fn from(gyro: Gyro) -> Self {
         match gyro {
@@ -247,14 +223,16 @@ impl RunOptions {
     /// # Errors
     /// The options, and why.
     pub fn check(&self, given: &Given) -> Result<(), String> {
-        if let Some(Named::List) = self.fault {
-            return match given.beside(&["fault", "method"]) {
+        if let Some(Asked::List) = self.fault {
+            return match given.beside(&["fault", "method", "mount"]) {
                 Some(option) => Err(format!("{}: --fault list runs nothing", suits::long(option))),
                 None => Ok(()),
             };
         }
         suits::check(suits::RUN, given, &self.carrier())?;
-        self.check_fault()?;
+        if let Some(Asked::One(fault)) = self.fault {
+            faults::check(fault, self.platform(), self.no_base_imu)?;
+        }
         self.check_plan(given)?;
         self.check_keeping(given)?;
         if self.turning.is_molecular() && self.gyro.is_some() {
@@ -283,14 +261,10 @@ impl RunOptions {
 
     /// What two frames cannot take, however their positions come about.
     fn check_plan(&self, given: &Given) -> Result<(), String> {
-        let on_frames = self.mount == MountKind::TwoFrame;
-        match given.first(&["record", "fault"]).filter(|_| on_frames) {
-            Some(option) => Err(format!(
-                "{}: --mount two-frame does not take it: it is one of a stage",
-                suits::long(option)
-            )),
-            None => Ok(()),
+        if self.mount == MountKind::TwoFrame && given.has("record") {
+            return Err("--record: --mount two-frame does not take it: it is one of a stage".into());
         }
+        Ok(())
     }
 
     /// What keeping an azimuth needs, and what it takes the place of.
@@ -340,24 +314,14 @@ impl RunOptions {
         }
     }
 
-    /// A fault must be one of the method.
-    fn check_fault(&self) -> Result<(), &'static str> {
-        match (self.fault, self.method) {
-            (Some(Named::Fault(_, _, None)), Method::Spin) => Err(
-                "--fault: no spinning body has it; `--method spin --fault list` names those that one has",
-            ),
-            (Some(Named::Fault(_, None, _)), Method::Siap) => Err(
-                "--fault: no vehicle has it; `--method siap --fault list` names those that one has",
-            ),
-            (
-                Some(Named::Fault(None, in_vehicle, _)),
-                Method::Stepwise | Method::Positions | Method::Rotating,
-            ) => Err(if in_vehicle.is_some() {
-                "--fault: only a vehicle has it: --method siap"
-            } else {
-                "--fault: only a spinning body has it: --method spin"
-            }),
-            _ => Ok(()),
+    /// What carries the gyro, as the catalogue of faults names it.
+    fn platform(&self) -> Platform {
+        match (self.method, self.mount) {
+            (Method::Spin, _) => Platform::Spin,
+            (Method::Siap, _) => Platform::Vehicle,
+            (Method::Rotating, _) => Platform::Turntable,
+            (_, MountKind::TwoFrame) => Platform::TwoFrame,
+            (_, MountKind::Stage) => Platform::Stage,
         }
     }
 
@@ -406,7 +370,10 @@ impl From<&RunOptions> for Scenario {
             dwell_s: options.dwell.unwrap_or(DWELL),
             sway_deg: options.sway.unwrap_or(0.0),
             sway_hz: options.sway_hertz,
-            has_base_imu: (options.sway.is_some() || hold.seconds > 0.0) && !options.no_base_imu,
+            has_base_imu: (options.sway.is_some()
+                || hold.seconds > 0.0
+                || options.fault.is_some_and(Asked::is_of_base_imu))
+                && !options.no_base_imu,
             hold,
             ..Self::default()
         }
@@ -437,19 +404,19 @@ impl Observer for Terminal {
 
 /// Runs the board and tells what came of it.
 pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
-    let (fault, in_vehicle, in_flight) = match options.fault {
-        Some(Named::List) => return list(options.method, as_json),
-        Some(Named::Fault(on_stage, in_vehicle, in_flight)) => (on_stage, in_vehicle, in_flight),
-        None => (None, None, None),
+    let fault = match options.fault {
+        Some(Asked::List) => return faults::list(options.platform(), as_json),
+        Some(Asked::One(fault)) => Some(fault),
+        None => None,
     };
     let scenario = Scenario::from(options);
     if let Method::Spin = options.method {
         let scenario = options.spinning.scenario(options.seed);
-        return super::spinning::run(&scenario, in_flight, options.report.as_deref(), as_json);
+        return super::spinning::run(&scenario, fault, options.report.as_deref(), as_json);
     }
     if let Method::Siap = options.method {
         let scenario = options.driving.scenario(&scenario, options.rate);
-        return super::driving::run(&scenario, in_vehicle, options.report.as_deref(), as_json);
+        return super::driving::run(&scenario, fault, options.report.as_deref(), as_json);
     }
     if let Method::Rotating = options.method {
         let scenario = options.turning.scenario(&scenario);
@@ -457,7 +424,7 @@ pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
         return super::turning::run(&options.turning, &scenario, fault, report, as_json);
     }
     if options.mount == MountKind::TwoFrame {
-        return run_frames(&scenario, options, as_json);
+        return run_frames(&scenario, fault, options, as_json);
     }
     let begun = WallClock::now();
     let (KeptRun { run, kept }, recorded) = simulate(&scenario, fault, options)?;
@@ -486,24 +453,18 @@ fn tell(
     shown.told(options.report.as_deref(), as_json)
 }
 
-/// Names the faults that a method can have.
-fn list(method: Method, as_json: bool) -> Result<Told, String> {
-    let names: Vec<String> = match method {
-        Method::Spin => SpinFault::all().map(|fault| fault.to_string()).collect(),
-        Method::Siap => VehicleFault::all().map(|fault| fault.to_string()).collect(),
-        _ => Fault::all().map(|fault| fault.to_string()).collect(),
-    };
-    let object = json!({ "status": "ok", "faults": names });
-    Told::of(true, as_json, &object, |text| text.write_str(&names.join("\n")))
-}
-
 /// Runs the board with a two-frame mount and tells what came of it.
-fn run_frames(base: &Scenario, options: &RunOptions, as_json: bool) -> Result<Told, String> {
+fn run_frames(
+    base: &Scenario,
+    fault: Option<Fault>,
+    options: &RunOptions,
+    as_json: bool,
+) -> Result<Told, String> {
     let passes = options.passes.map_or(PASSES, |count| count as usize);
     let scenario = FramesScenario { base: *base, passes, ..FramesScenario::default() };
     let begun = WallClock::now();
     let watch = Terminal(Progress::new(0, "positions"));
-    let frames = instrument::align_frames(&scenario, &FramePlan::default(), &watch);
+    let frames = instrument::align_frames(&scenario, fault, &watch);
     watch.0.finish();
     let FramesRun { run, axis: [forward, right, down], kept } =
         frames.map_err(|error| error.to_string())?;

@@ -13,7 +13,7 @@ use bench::recording::Truth;
 use bench::spin::{Known, Replay, follow};
 use clap::Args;
 use firmware::event::Event;
-use firmware::simulated::spin::fault::SpinFault;
+use firmware::simulated::fault::Fault;
 use firmware::simulated::spin::{SAMPLE_RATE, SpinScenario};
 use firmware::spin::Flight;
 use orientation::units::DEGREE;
@@ -72,7 +72,7 @@ const REQUIRED_SIGMA: f64 = 10.0 * DEGREE;
 /// Runs the board and tells what came of it.
 pub fn run(
     scenario: &SpinScenario,
-    fault: Option<SpinFault>,
+    fault: Option<Fault>,
     report: Option<&Path>,
     as_json: bool,
 ) -> Result<Told, String> {

@@ -98,13 +98,11 @@ pub mod carrier {
     pub(super) const DRIVING: Methods = VEHICLE_BIT;
     /// What spins.
     pub(super) const SPINNING: Methods = BODY_BIT;
-    /// What has a catalogue of faults.
-    pub(super) const FAULTY: Methods = ALL & !FRAMES_BIT;
 }
 
 use carrier::{
-    ALL, DRIVING, DWELLING, FAULTY, FRAMED, KEEPING, LISTED, NORTH, RECORDED, SPINNING, STANDING,
-    STOPPING, TURNING,
+    ALL, DRIVING, DWELLING, FRAMED, KEEPING, LISTED, NORTH, RECORDED, SPINNING, STANDING, STOPPING,
+    TURNING,
 };
 
 const ROLL: &str = "the roll of a spinning body does not depend on it";
@@ -160,11 +158,7 @@ pub const RUN: &[Suit] = &[
     Suit("no_base_imu", STOPPING, SWAYS),
     Suit("seed", ALL, ""),
     Suit("method", ALL, ""),
-    Suit(
-        "fault",
-        FAULTY,
-        "the faults are those of a stage, a turntable, a vehicle and a spinning body",
-    ),
+    Suit("fault", ALL, ""),
     Suit(
         "record",
         RECORDED,

@@ -3,9 +3,9 @@
 use std::cell::RefCell;
 
 use firmware::ports::NoRecorder;
+use firmware::simulated::fault::Injection;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;
-use firmware::simulated::vehicle::fault::VehiclePlan;
 use firmware::simulated::vehicle::{BRIEF, VehicleScenario};
 use orientation::align::rotating::turn::Stretch;
 
@@ -42,9 +42,9 @@ pub fn turning(scenario: &TurntableScenario) -> Result<Outcome, String> {
 /// # Errors
 /// Where it comes to no end.
 pub fn stops(scenario: &VehicleScenario) -> Result<Outcome, String> {
-    let plan = VehiclePlan::NONE;
-    let board = RefCell::new(scenario.board(&BRIEF, &[], &plan));
-    let run = instrument::align_stops_on(&board, &plan, scenario, NoRecorder, &())
+    let healthy = Injection::NONE;
+    let board = RefCell::new(scenario.board(&BRIEF, &[], &healthy));
+    let run = instrument::align_stops_on(&board, &healthy, scenario, NoRecorder, &())
         .map_err(|error| failed(&error))?
         .run;
     let conclusion = run.replay.conclusion().ok_or(NOTHING)?;

@@ -6,8 +6,9 @@ use firmware::keep::Keeping;
 use firmware::ports::{Frames, HeadingStore, NoBase, NoRecorder, Observer};
 use firmware::run::{acquire_frames, run_frames_and_keep};
 use firmware::simulated::base;
+use firmware::simulated::fault::{Fault, FaultyRecorder, Injection};
 use firmware::simulated::keep::journey;
-use firmware::simulated::mount::{self, FramePlan, FramesScenario};
+use firmware::simulated::mount::{self, FramesScenario};
 use firmware::steady::Base;
 use hal_mock::gimbal::board::GimbalBoard;
 use orientation::keep::Keeper;
@@ -29,25 +30,20 @@ pub struct FramesRun {
     pub kept: Kept,
 }
 
-/// Runs a scenario in virtual time on this thread.
+/// Runs a scenario in virtual time on this thread, with a fault in its middle or none.
 ///
 /// # Errors
 /// What keeps the session from beginning, and a deadlock. A refusal is the session's conclusion.
 pub fn align_frames<W: Observer>(
     scenario: &FramesScenario,
-    plan: &FramePlan,
+    fault: Option<Fault>,
     watch: &W,
 ) -> Result<FramesRun, RunError> {
-    if !scenario.base.has_base_imu {
-        let board = RefCell::new(scenario.board(plan));
-        return align_with(&board, NoBase, scenario, plan, watch, ());
-    }
-    let plan = KeptPlan { frames: plan.clone(), ..KeptPlan::of(None) };
-    align_frames_and_keep(scenario, &plan, watch, ())
+    align_frames_and_keep(scenario, &KeptPlan::of(fault), watch, ())
 }
 
-/// The same on a base with sensors, and goes on as the scenario says; with a store of the heading over a
-/// loss of supply.
+/// Runs a scenario and goes on as it says, on a base with sensors where it has them; with a store of the
+/// heading over a loss of supply.
 ///
 /// # Errors
 /// Those of [`align_frames`].
@@ -57,13 +53,17 @@ pub fn align_frames_and_keep<W: Observer>(
     watch: &W,
     store: impl HeadingStore,
 ) -> Result<FramesRun, RunError> {
+    if !scenario.base.has_base_imu {
+        let board = RefCell::new(scenario.board(&plan.chips));
+        return align_with(&board, NoBase, scenario, &plan.chips, watch, store);
+    }
     let day = plan.day(scenario.day());
     let journey = journey(&day, &plan.base);
     let journey = (scenario.base.hold.seconds > 0.0).then_some(journey);
     let rig = RefCell::new(base::rig(&scenario.base, journey.as_ref()));
-    let imu = base::imu(&rig, &scenario.base, plan.imu);
-    let board = RefCell::new(scenario.board_riding(&plan.frames, journey));
-    let mut frames = align_with(&board, imu, scenario, &plan.frames, watch, store)?;
+    let imu = base::imu(&rig, &scenario.base, &plan.chips);
+    let board = RefCell::new(scenario.board_riding(&plan.chips, journey));
+    let mut frames = align_with(&board, imu, scenario, &plan.chips, watch, store)?;
     let rig = rig.borrow();
     let violations = base::violations(&rig).iter();
     frames.run.violations.extend(violations.map(|violation| format!("Base: {violation}")));
@@ -71,12 +71,12 @@ pub fn align_frames_and_keep<W: Observer>(
     Ok(frames)
 }
 
-/// The same with these sensors on the base.
+/// Runs a scenario on a board with these sensors on the base.
 fn align_with<B: Base, W: Observer>(
     board: &RefCell<GimbalBoard<'_>>,
     base: B,
     scenario: &FramesScenario,
-    plan: &FramePlan,
+    injection: &Injection,
     watch: &W,
     store: impl HeadingStore,
 ) -> Result<FramesRun, RunError> {
@@ -88,8 +88,9 @@ fn align_with<B: Base, W: Observer>(
     let channels = harness.channels();
     let latest = Frames::unread();
     let configuration = scenario.base.configuration();
-    let mut sensors = mount::sensors(board, scenario, plan).with_base(base);
-    let mut ports = mount::ports(board, harness.wire(), NoRecorder);
+    let mut sensors = mount::sensors(board, scenario, injection).with_base(base);
+    let recorder = FaultyRecorder::new(NoRecorder, injection.hang);
+    let mut ports = mount::ports(board, injection, harness.wire(), recorder);
     let mut keeper = Keeper::new(&scenario.keeper().ok_or_else(outside)?);
     let keep = scenario.base.keeping().ok_or_else(outside)?;
     let mut keeping = Keeping::new(&mut keeper, &keep, scenario.base.hold.outside(), store);
@@ -98,7 +99,7 @@ fn align_with<B: Base, W: Observer>(
         run_frames_and_keep(&mut ports, &frames, &latest, &mut session, &mut keeping, &channels),
     )?;
     let [outer, inner] = board.borrow().gimbal.frames();
-    let misalignment = scenario.gimbal(plan).misalignment;
+    let misalignment = scenario.gimbal(injection).misalignment;
     let axis = misalignment.axes(outer.angle_rad, inner.angle_rad).sensitive;
     let replay = Replay {
         method: Method::Positions,

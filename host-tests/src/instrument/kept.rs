@@ -2,11 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use firmware::simulated::fault::{Fault, Plan};
+use firmware::simulated::fault::{Fault, Injection};
 use firmware::simulated::keep::Day;
-use firmware::simulated::mount::FramePlan;
 use hal_mock::earth::Attitude;
-use hal_mock::fault::When;
 use hal_mock::plant::journey::BaseFault;
 use hal_mock::vehicle::Event;
 use hal_mock::vehicle::motion::Motion;
@@ -17,24 +15,19 @@ use super::Run;
 /// What goes wrong with a board on a base, in the middle of its alignment or later.
 #[derive(Clone, Debug)]
 pub struct KeptPlan {
-    /// With the chips of a stage.
-    pub chips: Plan,
-    /// With the frames of a mount and their chips.
-    pub frames: FramePlan,
+    /// With the chips of a stage or of two frames, its axes, and the coarse IMU's bus.
+    pub chips: Injection,
     /// With what the coarse sensors feel.
     pub base: Vec<BaseFault>,
-    /// When the bus of the coarse sensors is lost.
-    pub imu: Option<When>,
     /// What else happens on the way.
     pub events: Vec<Event>,
 }
 
 impl KeptPlan {
-    /// The plan of a fault of a stage's chips, or of none.
+    /// What a fault in the middle of the alignment does, or nothing.
     #[must_use]
     pub fn of(fault: Option<Fault>) -> Self {
-        let (frames, base, events) = (FramePlan::default(), Vec::new(), Vec::new());
-        Self { chips: Plan::of(fault), frames, base, imu: None, events }
+        Self { chips: Injection::of(fault), base: Vec::new(), events: Vec::new() }
     }
 
     /// A day with what happens on the way; of too many events the first ones.

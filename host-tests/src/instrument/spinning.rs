@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use firmware::ports::{Observer, Recorder, SpinPorts};
 use firmware::run::{acquire_spin, run_spin};
-use firmware::simulated::spin::fault::SpinFault;
+use firmware::simulated::fault::Fault;
 use firmware::simulated::spin::{self, SpinScenario};
 use firmware::spin::Flight;
 use hal_mock::spin::SpinTruth;
@@ -46,16 +46,16 @@ impl Recorder<SpinSample> for &mut Kept {
 /// A scale factor that is none, and a deadlock.
 pub fn follow_spin<W: Observer>(
     scenario: &SpinScenario,
-    fault: Option<SpinFault>,
+    fault: Option<Fault>,
     watch: &W,
 ) -> Result<SpinRun, RunError> {
-    let (course, plan) = (scenario.course(fault), scenario.plan(fault));
+    let (course, injection) = (scenario.course(fault), scenario.injection(fault));
     let configuration = scenario.configuration().ok_or(RunError::Scale)?;
-    let board = RefCell::new(scenario.board(&course, &plan));
+    let board = RefCell::new(scenario.board(&course, &injection));
     let (mut flight, mut kept) = (scenario.flight(), Kept::default());
     let harness = Harness::new(watch);
     let channels = harness.channels();
-    let mut sensors = spin::sensors(&board, &plan);
+    let mut sensors = spin::sensors(&board, &injection);
     let mut ports = SpinPorts { link: harness.wire(), recorder: &mut kept };
     let ended = harness::run(
         acquire_spin(&mut sensors, &configuration, &channels),
@@ -64,7 +64,7 @@ pub fn follow_spin<W: Observer>(
     drop(channels);
     let violations = harness::told(&board);
     // Another body of the same course, which has not flown yet.
-    let fresh = scenario.board(&course, &plan).plant;
+    let fresh = scenario.board(&course, &injection).plant;
     let at = |plant: &SpinPlant, time: Instant| {
         plant.truth_at(embassy_time::Instant::from_micros(time.0))
     };

@@ -8,7 +8,7 @@ use firmware::run::{acquire, run_and_keep};
 use firmware::simulated;
 use firmware::simulated::Chips;
 use firmware::simulated::base;
-use firmware::simulated::fault::{Fault, FaultyRecorder, Plan};
+use firmware::simulated::fault::{Fault, FaultyRecorder, Injection};
 use firmware::simulated::keep::journey;
 use firmware::simulated::scenario::Scenario;
 use firmware::steady::Base;
@@ -52,7 +52,7 @@ pub fn align_and_keep<R: Recorder, W: Observer>(
     let journey = journey(&day, &plan.base);
     let is_riding = scenario.hold.seconds > 0.0;
     let rig = RefCell::new(base::rig(scenario, is_riding.then_some(&journey)));
-    let imu = base::imu(&rig, scenario, plan.imu);
+    let imu = base::imu(&rig, scenario, &plan.chips);
     let board = RefCell::new(if is_riding {
         simulated::board_riding(scenario, journey, &plan.chips)
     } else {
@@ -77,16 +77,16 @@ pub fn align_on<B: Base, R: Recorder, W: Observer>(
     recorder: R,
     watch: &W,
 ) -> Result<Run, RunError> {
-    let plan = Plan::of(fault);
-    let board = RefCell::new(simulated::board(scenario, &plan));
-    align_with(&board, base, scenario, &plan, recorder, watch, ())
+    let injection = Injection::of(fault);
+    let board = RefCell::new(simulated::board(scenario, &injection));
+    align_with(&board, base, scenario, &injection, recorder, watch, ())
 }
 
 fn align_with<B: Base, R: Recorder, W: Observer>(
     board: &RefCell<Chips<'_>>,
     base: B,
     scenario: &Scenario,
-    plan: &Plan,
+    injection: &Injection,
     recorder: R,
     watch: &W,
     store: impl HeadingStore,
@@ -97,9 +97,9 @@ fn align_with<B: Base, R: Recorder, W: Observer>(
     let harness = Harness::new(watch);
     let channels = harness.channels();
     let configuration = scenario.configuration();
-    let mut sensors = simulated::sensors(board, scenario, plan).with_base(base);
-    let recorder = FaultyRecorder::new(recorder, plan.hang);
-    let mut ports = simulated::ports(board, plan, harness.wire(), recorder);
+    let mut sensors = simulated::sensors(board, scenario, injection).with_base(base);
+    let recorder = FaultyRecorder::new(recorder, injection.hang);
+    let mut ports = simulated::ports(board, injection, harness.wire(), recorder);
     let mut keeper = Keeper::new(&scenario.keeper().ok_or_else(outside)?);
     let keep = scenario.keeping().ok_or_else(outside)?;
     let mut keeping = Keeping::new(&mut keeper, &keep, scenario.hold.outside(), store);

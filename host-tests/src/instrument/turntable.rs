@@ -57,8 +57,8 @@ pub fn align_turning_again<R: Recorder, W: Observer>(
 ) -> Result<TurntableRun, RunError> {
     let mut setting = scenario.setting().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
     let mut procedure = scenario.procedure();
-    let plan = scenario.plan(fault);
-    let board = RefCell::new(scenario.board(&plan));
+    let injection = scenario.injection(fault);
+    let board = RefCell::new(scenario.board(&injection));
     let harness = Harness::new(watch);
     let channels = harness.channels();
     if let Some(Keeping { store, today }) = &mut keeping {
@@ -69,9 +69,9 @@ pub fn align_turning_again<R: Recorder, W: Observer>(
     let mut session = rotating::Session::new(setting, procedure).map_err(RunError::Procedure)?;
     let configuration = scenario.configuration();
     let platform = scenario.turntable();
-    let mut sensors = turntable::sensors(&board, scenario, &plan);
-    let recorder = FaultyRecorder::new(recorder, plan.hang);
-    let mut ports = turntable::ports(&board, &plan, harness.wire(), recorder);
+    let mut sensors = turntable::sensors(&board, scenario, &injection);
+    let recorder = FaultyRecorder::new(recorder, injection.hang);
+    let mut ports = turntable::ports(&board, &injection, harness.wire(), recorder);
     let instrument = async {
         match keeping {
             None => run_rotating(&mut ports, &platform, &mut session, &channels).await,

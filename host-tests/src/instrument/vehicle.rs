@@ -5,8 +5,7 @@ use std::cell::RefCell;
 use firmware::keep::Keeping;
 use firmware::ports::{HeadingStore, Observer, Recorder, VehiclePorts};
 use firmware::run::{acquire_triad, run_stops_and_keep};
-use firmware::simulated::fault::FaultyRecorder;
-use firmware::simulated::vehicle::fault::VehicleFault;
+use firmware::simulated::fault::{Fault, FaultyRecorder, Injection};
 use firmware::simulated::vehicle::{self, Day, KnownPlace, VehicleScenario};
 use hal_mock::vehicle::VehicleTruth;
 use hal_mock::vehicle::board::VehicleBoard;
@@ -35,7 +34,7 @@ pub struct VehicleRun {
 /// What keeps the session from beginning, and a deadlock. A refusal is the session's conclusion.
 pub fn align_stops<R: Recorder<InertialSample>, W: Observer>(
     scenario: &VehicleScenario,
-    fault: Option<VehicleFault>,
+    fault: Option<Fault>,
     recorder: R,
     watch: &W,
 ) -> Result<VehicleRun, RunError> {
@@ -48,13 +47,13 @@ pub fn align_stops<R: Recorder<InertialSample>, W: Observer>(
 /// Those of [`align_stops`].
 pub fn align_stops_storing<R: Recorder<InertialSample>, W: Observer>(
     scenario: &VehicleScenario,
-    fault: Option<VehicleFault>,
+    fault: Option<Fault>,
     recorder: R,
     watch: &W,
     store: impl HeadingStore,
 ) -> Result<VehicleRun, RunError> {
-    let (day, plan) = (scenario.day(fault), scenario.plan(fault));
-    align_stops_along(&day, &plan, scenario, recorder, watch, store)
+    let (day, injection) = (scenario.day(fault), scenario.injection(fault));
+    align_stops_along(&day, &injection, scenario, recorder, watch, store)
 }
 
 /// The same on a given day, with what goes wrong.
@@ -63,14 +62,14 @@ pub fn align_stops_storing<R: Recorder<InertialSample>, W: Observer>(
 /// Those of [`align_stops`].
 pub fn align_stops_along<R: Recorder<InertialSample>, W: Observer>(
     day: &Day,
-    plan: &vehicle::fault::VehiclePlan,
+    injection: &Injection,
     scenario: &VehicleScenario,
     recorder: R,
     watch: &W,
     store: impl HeadingStore,
 ) -> Result<VehicleRun, RunError> {
-    let board = RefCell::new(scenario.board(&day.legs, &day.events, plan));
-    let found = align_on(&board, plan, scenario, recorder, watch, store)?;
+    let board = RefCell::new(scenario.board(&day.legs, &day.events, injection));
+    let found = align_on(&board, injection, scenario, recorder, watch, store)?;
     let kept = Kept::of(&found.run.reports, day.configuration().motion());
     Ok(VehicleRun { kept, ..found })
 }
@@ -81,17 +80,17 @@ pub fn align_stops_along<R: Recorder<InertialSample>, W: Observer>(
 /// Those of [`align_stops`].
 pub fn align_stops_on<R: Recorder<InertialSample>, W: Observer>(
     board: &RefCell<VehicleBoard<'_>>,
-    plan: &vehicle::fault::VehiclePlan,
+    injection: &Injection,
     scenario: &VehicleScenario,
     recorder: R,
     watch: &W,
 ) -> Result<VehicleRun, RunError> {
-    align_on(board, plan, scenario, recorder, watch, ())
+    align_on(board, injection, scenario, recorder, watch, ())
 }
 
 fn align_on<R: Recorder<InertialSample>, W: Observer>(
     board: &RefCell<VehicleBoard<'_>>,
-    plan: &vehicle::fault::VehiclePlan,
+    injection: &Injection,
     scenario: &VehicleScenario,
     recorder: R,
     watch: &W,
@@ -102,11 +101,11 @@ fn align_on<R: Recorder<InertialSample>, W: Observer>(
     let mut session = session.map_err(RunError::Procedure)?;
     let harness = Harness::new(watch);
     let channels = harness.channels();
-    let mut sensors = vehicle::sensors(board, scenario, plan);
+    let mut sensors = vehicle::sensors(board, scenario, injection);
     let mut ports = VehiclePorts {
         position_aiding: KnownPlace::new(board, scenario.place, scenario.base.seed),
         link: harness.wire(),
-        recorder: FaultyRecorder::new(recorder, plan.hang),
+        recorder: FaultyRecorder::new(recorder, injection.hang),
     };
     let setting = scenario.keeper().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
     let mut keeper = Keeper::new(&setting);

@@ -5,7 +5,6 @@ pub mod campaign;
 pub mod emulation;
 pub mod plan;
 pub mod progress;
-pub mod table;
 
 use std::fmt;
 use std::io::{self, Write};

@@ -5,8 +5,10 @@ use super::{at, departure, frames, keep, sigmas, told};
 use bench::instrument::FramesRun;
 use bench::instrument::kept::KeptPlan;
 use embassy_time::{Duration, Instant};
+use firmware::simulated::fault::Injection;
 use firmware::simulated::keep::Hold;
-use firmware::simulated::mount::{FramePlan, FramesScenario};
+use firmware::simulated::mount::FramesScenario;
+use hal_mock::chip::Select;
 use hal_mock::fault::{BusFault, FaultPlan, When};
 use hal_mock::plant::journey::BaseFault;
 use hal_mock::vehicle::Event;
@@ -24,6 +26,15 @@ fn moment(seconds: f64) -> Instant {
 
 fn lost(seconds: f64, for_s: u64) -> When {
     When::during(moment(seconds), Duration::from_secs(for_s))
+}
+
+fn injected(scenario: &FramesScenario, chips: Injection) -> FramesRun {
+    keep(scenario, &KeptPlan { chips, ..KeptPlan::of(None) })
+}
+
+fn bus_error(select: Select, when: When) -> Injection {
+    let plan = FaultPlan { fault: BusFault::Error, when };
+    Injection { buses: [(select, plan)].into_iter().collect(), ..Injection::NONE }
 }
 
 /// No error is greater than is said, and the level is found again at the end.
@@ -46,8 +57,8 @@ fn has(found: &FramesRun, words: &str) -> bool {
 fn coarse_sensors_that_are_lost_at_rest_cost_nothing() {
     let scenario = scenario();
     let stands = departure(&scenario) - 25.0;
-    let plan = KeptPlan { imu: Some(lost(stands, 2)), ..KeptPlan::of(None) };
-    let found = keep(&scenario, &plan);
+    let coarse_imu = Some(lost(stands, 2));
+    let found = injected(&scenario, Injection { coarse_imu, ..Injection::NONE });
     assert!(has(&found, "no motion is measured"), "{:#?}", told(&found.run));
     assert!(!has(&found, "the azimuth is lost"), "{:#?}", told(&found.run));
     check(&found);
@@ -56,8 +67,8 @@ fn coarse_sensors_that_are_lost_at_rest_cost_nothing() {
 #[test]
 fn coarse_sensors_that_are_lost_on_the_way_come_back_and_nothing_wrong_is_told() {
     let scenario = scenario();
-    let plan = KeptPlan { imu: Some(lost(departure(&scenario) + AFTER, 3)), ..KeptPlan::of(None) };
-    let found = keep(&scenario, &plan);
+    let coarse_imu = Some(lost(departure(&scenario) + AFTER, 3));
+    let found = injected(&scenario, Injection { coarse_imu, ..Injection::NONE });
     assert!(has(&found, "no motion is measured"), "{:#?}", told(&found.run));
     check(&found);
 }
@@ -86,9 +97,7 @@ fn coarse_sensors_that_are_stuck_are_started_again() {
 fn where_the_precise_gyro_is_lost_the_coarse_one_goes_on() {
     let scenario = scenario();
     let when = When::always(moment(departure(&scenario) + AFTER));
-    let gyro = Some(FaultPlan { fault: BusFault::Error, when });
-    let frames = FramePlan { gyro, ..FramePlan::default() };
-    let found = keep(&scenario, &KeptPlan { frames, ..KeptPlan::of(None) });
+    let found = injected(&scenario, bus_error(Select::Gyro, when));
     assert!(has(&found, "the coarse gyro, as it was compared, shows"), "{:#?}", told(&found.run));
     assert!(found.kept.last().is_some_and(|point| point.report.time.seconds() > 400.0));
     check(&found);
@@ -98,10 +107,7 @@ fn where_the_precise_gyro_is_lost_the_coarse_one_goes_on() {
 fn without_the_accelerometer_the_gyros_carry_the_level_on() {
     let scenario = scenario();
     let begins = departure(&scenario) + 10.0;
-    let fault = BusFault::Error;
-    let accelerometer = Some(FaultPlan { fault, when: lost(begins, 20) });
-    let frames = FramePlan { accelerometer, ..FramePlan::default() };
-    let found = keep(&scenario, &KeptPlan { frames, ..KeptPlan::of(None) });
+    let found = injected(&scenario, bus_error(Select::Accelerometer, lost(begins, 20)));
     assert!(has(&found, "accelerometer: reading lost"), "{:#?}", told(&found.run));
     // Starting it again would cost what the base turns meanwhile.
     assert!(!has(&found, "starting it again"), "{:#?}", told(&found.run));

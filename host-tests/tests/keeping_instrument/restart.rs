@@ -4,10 +4,10 @@ use super::{told, vehicle};
 use bench::instrument::{VehicleRun, align_stops_along, align_stops_storing};
 use firmware::event::Event;
 use firmware::ports::{HeadingStore, NoRecorder};
+use firmware::simulated::fault::Injection;
 use firmware::simulated::flash::Flash;
 use firmware::simulated::keep::Hold;
 use firmware::simulated::scenario::{GyroClass, Scenario};
-use firmware::simulated::vehicle::fault::VehiclePlan;
 use firmware::simulated::vehicle::{Day, VehicleScenario};
 use firmware::storage::FlashStore;
 use hal_mock::vehicle::Stop;
@@ -50,8 +50,7 @@ fn second(
         base: Scenario { azimuth_deg: truth.azimuth_rad.to_degrees() + azimuth, ..scenario.base },
         ..scenario
     };
-    align_stops_along(&day, &VehiclePlan::NONE, &scenario, NoRecorder, &(), store)
-        .expect("possible")
+    align_stops_along(&day, &Injection::NONE, &scenario, NoRecorder, &(), store).expect("possible")
 }
 
 fn doubt(run: &VehicleRun) -> Option<Doubt> {

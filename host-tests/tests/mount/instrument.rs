@@ -1,11 +1,14 @@
 //! The whole instrument on a simulated two-frame mount.
 
 use bench::campaign::statistics::rms;
-use bench::instrument::{FramesRun, align_frames};
+use bench::instrument::kept::KeptPlan;
+use bench::instrument::{FramesRun, align_frames_and_keep};
 use bench::output::{azimuth_error, degrees};
 use embassy_time::{Duration, Instant};
 use firmware::event::Event;
-use firmware::simulated::mount::{FramePlan, FramesScenario};
+use firmware::ports::Frames;
+use firmware::simulated::fault::Injection;
+use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::Scenario;
 use hal_mock::noise::Generator;
 use hal_mock::plant::StageFault;
@@ -39,7 +42,7 @@ fn drawn(seed: u64) -> FramesScenario {
         outer_zero: within(0.2 * DEGREE),
         inner_zero: within(0.2 * DEGREE),
     };
-    let start_deg = firmware::ports::Frames { outer: within(90.0), inner: within(90.0) };
+    let start_deg = Frames { outer: within(90.0), inner: within(90.0) };
     FramesScenario { base, calibrated, start_deg, ..FramesScenario::default() }
 }
 
@@ -50,12 +53,13 @@ fn short(seed: u64) -> FramesScenario {
     FramesScenario { base, passes: 2, ..drawn }
 }
 
-fn run(scenario: &FramesScenario, plan: &FramePlan) -> FramesRun {
-    align_frames(scenario, plan, &()).expect("the scenario is possible")
+fn run(scenario: &FramesScenario, injection: &Injection) -> FramesRun {
+    let plan = KeptPlan { chips: injection.clone(), ..KeptPlan::of(None) };
+    align_frames_and_keep(scenario, &plan, &(), ()).expect("the scenario is possible")
 }
 
 fn healthy(scenario: &FramesScenario) -> FramesRun {
-    run(scenario, &FramePlan::default())
+    run(scenario, &Injection::NONE)
 }
 
 /// Error and σ, °, or why there is none.
@@ -110,17 +114,19 @@ fn a_calibration_that_the_board_does_not_know_turns_its_azimuth() {
 /// When frames fail: within the first pass.
 const MIDDLE: Instant = Instant::from_secs(50);
 
-fn of_inner(fault: StageFault) -> FramePlan {
-    FramePlan { inner: [fault].into_iter().collect(), ..FramePlan::default() }
+fn of_inner(fault: StageFault) -> Injection {
+    let inner = [fault].into_iter().collect();
+    Injection { axes: Frames { inner, ..Frames::default() }, ..Injection::NONE }
 }
 
-fn of_outer(fault: StageFault) -> FramePlan {
-    FramePlan { outer: [fault].into_iter().collect(), ..FramePlan::default() }
+fn of_outer(fault: StageFault) -> Injection {
+    let outer = [fault].into_iter().collect();
+    Injection { axes: Frames { outer, ..Frames::default() }, ..Injection::NONE }
 }
 
 fn assert_refused(
     scenario: &FramesScenario,
-    plan: &FramePlan,
+    plan: &Injection,
     device: Device,
     is_expected: impl Fn(Trouble) -> bool,
 ) {
@@ -152,7 +158,7 @@ fn in_half_turn(scenario: &FramesScenario, device: Device) -> Instant {
 }
 
 /// A scenario with one frame blocked in its first half turn.
-fn blocked(seed: u64, device: Device, seconds: Duration) -> (FramesScenario, FramePlan) {
+fn blocked(seed: u64, device: Device, seconds: Duration) -> (FramesScenario, Injection) {
     let scenario = short(seed);
     let from = in_half_turn(&scenario, device);
     let block =
@@ -266,14 +272,14 @@ fn a_swaying_base_is_taken_off_the_gyro_in_its_frames_too() {
         FramesScenario { base, ..scenario }
     };
     let alone = swaying(1, false);
-    let verdict = found(&alone, &run(&alone, &FramePlan::default()));
+    let verdict = found(&alone, &run(&alone, &Injection::NONE));
     assert!(matches!(verdict, Err(Refusal::Disturbed { .. })), "{verdict:?}");
     let ratios: Vec<f64> = (1..=16_u64)
         .into_par_iter()
         .filter_map(|seed| {
             let scenario = swaying(seed, true);
             // Near a pole σ may exceed the 10° that are accepted.
-            let [error, sigma] = found(&scenario, &run(&scenario, &FramePlan::default())).ok()?;
+            let [error, sigma] = found(&scenario, &run(&scenario, &Injection::NONE)).ok()?;
             Some(error / sigma)
         })
         .collect();

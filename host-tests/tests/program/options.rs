@@ -27,7 +27,7 @@ const IGNORED: [(&str, &str); 6] = [
         "--method positions",
         "--positions=6 --dwell=5 --passes=1 --turns=3 --stops=3 --flight-seconds=1",
     ),
-    ("--mount two-frame", "--positions=6 --record=x --fault=base-nudge --turns=3 --stops=3"),
+    ("--mount two-frame", "--positions=6 --record=x --turns=3 --stops=3"),
     ("--method stepwise", "--passes=1 --turns=3 --stops=3 --flight-seconds=1"),
 ];
 
@@ -54,6 +54,14 @@ fn a_fault_of_another_platform_is_refused() {
     ] {
         assert_misuse(&["run", "--method", method, "--fault", fault], "--fault: ");
     }
+    for (platform, fault, having) in [
+        ("--mount=stage", "inner-frame-reset", "a fault of two-frame, not of stage"),
+        ("--mount=two-frame", "encoder-slip", "a fault of stage and turntable, not of two-frame"),
+    ] {
+        assert_misuse(&["run", platform, "--fault", fault], having);
+    }
+    let without = ["run", "--sway", "0.1", "--no-base-imu", "--fault", "coarse-imu-silent"];
+    assert_misuse(&without, "--no-base-imu leaves out");
     assert_misuse(&["run", "--fault", "list", "--record", "x.csv"], "--record: ");
 }
 
@@ -126,15 +134,24 @@ fn keeping_for_no_time_is_as_good_as_not_asking_for_it() {
 
 #[test]
 fn each_method_lists_its_own_faults_and_takes_every_one_of_them() {
-    let listed = |method: &str| {
-        let output = meridian(&["run", "--method", method, "--fault", "list"]);
+    let listed = |platform: &str| {
+        let output = meridian(&["run", platform, "--fault", "list"]);
         let text = super::text(&output.stdout);
         text.lines().map(str::to_owned).collect::<Vec<_>>()
     };
-    let [stage, platform, vehicle, body] = ["stepwise", "rotating", "siap", "spin"].map(listed);
-    // Stage and platform are one board, whose chips fail alike; a vehicle and a spinning body have others.
-    assert_eq!(stage, platform);
-    assert_eq!((stage.len(), vehicle.len(), body.len()), (55, 51, 55));
+    let [stage, frames, platform, vehicle, body] = [
+        "--mount=stage",
+        "--mount=two-frame",
+        "--method=rotating",
+        "--method=siap",
+        "--method=spin",
+    ]
+    .map(listed);
+    // Stage and platform are one board, whose chips fail alike, but for the coarse IMU on the stage's base.
+    let shared: Vec<_> = stage.iter().filter(|name| !name.starts_with("coarse-imu")).collect();
+    assert_eq!(shared, platform.iter().collect::<Vec<_>>());
+    let counts = [&stage, &frames, &platform, &vehicle, &body].map(Vec::len);
+    assert_eq!(counts, [58, 85, 55, 51, 55]);
     for (method, own, other) in
         [("siap", &vehicle, &stage), ("spin", &body, &vehicle), ("stepwise", &stage, &body)]
     {
@@ -146,8 +163,11 @@ fn each_method_lists_its_own_faults_and_takes_every_one_of_them() {
 
 #[test]
 fn a_campaign_refuses_what_it_ignores() {
-    let words = "--report: campaign faults does not take it";
-    assert_misuse(&["campaign", "faults", "--report", "x.html"], words);
+    assert_misuse(
+        &["campaign", "spin", "--platform", "spin"],
+        "--platform: campaign spin does not",
+    );
+    assert_misuse(&["campaign", "faults", "--platform", "table"], "there are stage, two-frame");
     assert_misuse(&["campaign", "spin", "--class", "x"], "--class: campaign spin does not take it");
     assert_misuse(&["campaign", "disturbed", "--class", "x"], "--class: the classes are ");
 }

@@ -5,11 +5,11 @@ use bench::instrument::spinning::{SpinRun, follow_spin};
 use bench::spin::errors::wrapped;
 use bench::spin::{Known, follow};
 use firmware::event::Event;
+use firmware::simulated::fault::{Fault, Platform};
 use firmware::simulated::spin::SpinScenario;
-use firmware::simulated::spin::fault::SpinFault;
 use orientation::keep::spin::State;
 
-fn flown(scenario: &SpinScenario, fault: Option<SpinFault>) -> SpinRun {
+fn flown(scenario: &SpinScenario, fault: Option<Fault>) -> SpinRun {
     follow_spin(scenario, fault, &()).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -72,7 +72,7 @@ fn the_board_and_a_replay_of_its_samples_agree_to_the_last_bit() {
 
 #[test]
 fn it_holds_the_roll_while_there_is_no_lift_and_tells_when_it_is_back() {
-    let run = flown(&SpinScenario::default(), Some(SpinFault::LiftFades));
+    let run = flown(&SpinScenario::default(), Some(Fault::LiftFades));
     let events: Vec<Event> = run.run.events.iter().map(|(_, event)| *event).collect();
     let holds = |event: &Event| matches!(event, Event::Roll(State::Holding { .. }));
     assert!(events.iter().any(holds), "{events:?}");
@@ -87,7 +87,7 @@ fn it_holds_the_roll_while_there_is_no_lift_and_tells_when_it_is_back() {
 
 #[test]
 fn a_spin_that_stops_is_told() {
-    let run = flown(&SpinScenario::default(), Some(SpinFault::SpinStops));
+    let run = flown(&SpinScenario::default(), Some(Fault::SpinStops));
     let told = |(_, event): &(_, Event)| {
         matches!(event, Event::Roll(State::NotSpinning { .. } | State::RotationLost { .. }))
     };
@@ -97,7 +97,7 @@ fn a_spin_that_stops_is_told() {
 #[test]
 fn no_fault_makes_a_roll_that_its_sigma_does_not_cover() {
     let scenario = short();
-    for fault in SpinFault::all() {
+    for fault in Fault::all(Platform::Spin) {
         let run = flown(&scenario, Some(fault));
         let Some(sigma) = run.run.replay.spin().sigma() else { continue };
         // Held on the gyro alone, that is what its scale leaves.
@@ -108,7 +108,7 @@ fn no_fault_makes_a_roll_that_its_sigma_does_not_cover() {
 #[test]
 fn a_chip_that_fails_for_good_ends_the_flight_with_its_name() {
     let scenario = short();
-    for fault in SpinFault::all().filter(|fault| {
+    for fault in Fault::all(Platform::Spin).filter(|fault| {
         let name = fault.to_string();
         name.ends_with("-silent") || name.ends_with("bus-always") || name.ends_with("identity")
     }) {

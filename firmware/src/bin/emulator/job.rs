@@ -7,10 +7,9 @@ use core::mem::MaybeUninit;
 
 use firmware::ports::{NoRecorder, VehiclePorts};
 use firmware::simulated;
-use firmware::simulated::fault::Plan;
+use firmware::simulated::fault::Injection;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::{self, TurntableScenario};
-use firmware::simulated::vehicle::fault::VehiclePlan;
 use firmware::simulated::vehicle::{self, KnownPlace, VehicleScenario};
 use semihosting::sys::arm_compat::sys_get_cmdline_uninit;
 
@@ -21,10 +20,8 @@ use crate::setup::{self, Running, Sampling};
 /// Length of the longest command line, bytes; the emulator begins it with the image's path.
 const LONGEST: usize = 4096;
 
-/// Fault plan without faults, for a stage or platform.
-static PLAN: Plan = Plan::NONE;
-/// Fault plan without faults, for a vehicle.
-static VEHICLE_PLAN: VehiclePlan = VehiclePlan::NONE;
+/// Injection without faults, for every carrier.
+static HEALTHY: Injection = Injection::NONE;
 
 /// Kind of run, with its scenario.
 pub enum Job {
@@ -81,7 +78,7 @@ fn stepwise(scenario: &Scenario, meter: &'static Meter) -> Option<(Sampling, Run
     let session = setup::stepwise(scenario.prepared()?)?;
     let around = Metering(meter);
     let (inputs, outputs, channels) = setup::stage(
-        || simulated::board(scenario, &PLAN),
+        || simulated::board(scenario, &HEALTHY),
         |rig| simulated::sensors(rig, scenario, &around),
         |rig| simulated::ports(rig, &around, NoLink, NoRecorder),
         meter,
@@ -99,7 +96,7 @@ fn turning(scenario: &TurntableScenario, meter: &'static Meter) -> Option<(Sampl
     let session = setup::turning(&setting, procedure)?;
     let around = Metering(meter);
     let (inputs, outputs, channels) = setup::stage(
-        || scenario.board(&PLAN),
+        || scenario.board(&HEALTHY),
         |rig| turntable::sensors(rig, scenario, &around),
         |rig| turntable::ports(rig, &around, NoLink, NoRecorder),
         meter,
@@ -117,7 +114,7 @@ fn driving(scenario: &VehicleScenario, meter: &'static Meter) -> Option<(Samplin
     let keeping = setup::keeping(&scenario.keeper()?, &scenario.keeping());
     let around = Metering(meter);
     let (inputs, outputs, channels) = setup::vehicle(
-        || scenario.board(&vehicle::BRIEF, &[], &VEHICLE_PLAN),
+        || scenario.board(&vehicle::BRIEF, &[], &HEALTHY),
         |rig| vehicle::sensors(rig, scenario, &around),
         |rig| VehiclePorts {
             position_aiding: KnownPlace::new(rig, scenario.place, scenario.base.seed),

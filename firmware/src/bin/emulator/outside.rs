@@ -12,12 +12,13 @@ use core::pin::pin;
 use embassy_time::Instant;
 use embedded_hal::digital::ErrorType as PinErrorType;
 use embedded_hal_async::digital::Wait;
+use embedded_hal_async::i2c::{self, I2c};
 use embedded_hal_async::spi::{ErrorType as SpiErrorType, Operation, SpiDevice};
 use embedded_io_async::{ErrorType, Write};
 use firmware::event::Event;
 use firmware::log::DefmtLog;
 use firmware::ports::Observer;
-use firmware::simulated::Around;
+use firmware::simulated::fault::PortWrapper;
 use hal_mock::chip::Select;
 use orientation::keep::Report;
 use orientation::session::{Session, rotating, stops};
@@ -39,15 +40,20 @@ pub struct Aiding<T> {
 /// Puts a meter around every simulated port.
 pub struct Metering(pub &'static Meter);
 
-impl Around for Metering {
+impl PortWrapper for Metering {
     type Spi<S: SpiDevice> = Aiding<S>;
     type Line<W: Wait> = Aiding<W>;
+    type I2c<B: I2c<Error = i2c::ErrorKind>> = Aiding<B>;
 
     fn spi<S: SpiDevice>(&self, _: Select, port: S) -> Aiding<S> {
         Aiding { port, meter: self.0 }
     }
 
     fn line<W: Wait>(&self, _: Select, port: W) -> Aiding<W> {
+        Aiding { port, meter: self.0 }
+    }
+
+    fn i2c<B: I2c<Error = i2c::ErrorKind>>(&self, port: B) -> Aiding<B> {
         Aiding { port, meter: self.0 }
     }
 }
@@ -68,6 +74,20 @@ impl<T: SpiDevice> SpiDevice for Aiding<T> {
         operations: &mut [Operation<'_, u8>],
     ) -> Result<(), Self::Error> {
         outside(self.meter, self.port.transaction(operations)).await
+    }
+}
+
+impl<T: i2c::ErrorType> i2c::ErrorType for Aiding<T> {
+    type Error = T::Error;
+}
+
+impl<T: I2c> I2c for Aiding<T> {
+    async fn transaction(
+        &mut self,
+        address: u8,
+        operations: &mut [i2c::Operation<'_>],
+    ) -> Result<(), Self::Error> {
+        outside(self.meter, self.port.transaction(address, operations)).await
     }
 }
 

@@ -1,12 +1,14 @@
 //! One simulated flight of a body in fast rotation: what is true, what the board is told.
 
-pub mod fault;
+mod course;
+
+pub use course::Course;
 
 use core::cell::RefCell;
 
 use drivers::ads1262::configuration::{Configuration as Converter, DataRate};
 use drivers::ads1262::{Ads1262, GREATEST_BUS_HERTZ};
-use embassy_time::Delay;
+use embassy_time::{Delay, Instant};
 use hal_mock::accelerometer::AccelerometerConfiguration;
 use hal_mock::ads1262::Ads1262 as SimulatedConverter;
 use hal_mock::chip::Rig;
@@ -19,8 +21,8 @@ use hal_mock::spin::profile::Profile;
 use orientation::keep::spin::{Method, Setting};
 use orientation::units::{DEGREE_PER_SQRT_HOUR, TURN};
 
-use self::fault::{SpinFault, SpinPlan};
-use super::{Around, Bus, bus, scenario};
+use super::fault::{Fault, Injection, PortWrapper};
+use super::{Bus, bus, scenario};
 use crate::chips::AnalogueSensor;
 use crate::ports::SpinSensors;
 use crate::spin::Flight;
@@ -73,13 +75,6 @@ impl Default for SpinScenario {
     }
 }
 
-/// How spin and lift go over the time of a flight: rad/s and m/s² at some times, s.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Course {
-    spin: [(f64, f64); 4],
-    lift: [(f64, f64); 4],
-}
-
 impl SpinScenario {
     /// What the board is told of the gyro about x.
     #[must_use]
@@ -121,20 +116,20 @@ impl SpinScenario {
 
     /// How the body flies, where nothing or something is wrong with that.
     #[must_use]
-    pub fn course(&self, fault: Option<SpinFault>) -> Course {
+    pub fn course(&self, fault: Option<Fault>) -> Course {
         let (spin, middle) = (self.turns_per_s * TURN, self.middle_s());
-        fault::course(fault, spin, self.lift_m_s2, middle)
+        course::course(fault, spin, self.lift_m_s2, middle)
     }
 
-    /// A plan of a fault that comes in the middle.
+    /// What a fault does that comes in the middle.
     #[must_use]
-    pub fn plan(&self, fault: Option<SpinFault>) -> SpinPlan {
-        SpinPlan::at(fault, self.middle_s())
+    pub fn injection(&self, fault: Option<Fault>) -> Injection {
+        Injection::at(fault, Instant::from_micros((self.middle_s() * 1e6) as u64))
     }
 
-    /// The simulated board of a body that flies so, with a plan of what goes wrong.
+    /// The simulated board of a body that flies so, with what goes wrong with it.
     #[must_use]
-    pub fn board<'a>(&self, course: &'a Course, plan: &'a SpinPlan) -> SpinBoard<'a> {
+    pub fn board<'a>(&self, course: &'a Course, injection: &'a Injection) -> SpinBoard<'a> {
         let mut body = World {
             rate_hz: SAMPLE_RATE,
             spin_rad_s: Profile(&course.spin),
@@ -145,7 +140,7 @@ impl SpinScenario {
                 ..AccelerometerConfiguration::default()
             },
             accelerometer_full_scale_m_s2: FORCE_FULL_SCALE,
-            faults: &plan.sensors,
+            faults: &injection.sensors,
             ..World::default()
         };
         body.forces.lift_m_s2 = Profile(&course.lift);
@@ -156,7 +151,7 @@ impl SpinScenario {
             converter_noise_v: scenario::CONVERTER_NOISE,
         };
         let mut board = SpinBoard::new(SpinPlant::new(&plant, self.seed));
-        board.blackouts = &plan.blackouts;
+        board.blackouts = &injection.blackouts;
         // One oscillator for all five.
         board.converters.iter_mut().for_each(SimulatedConverter::clock_externally);
         board
@@ -173,17 +168,17 @@ impl SpinScenario {
 
 /// The sensors of a spinning body on simulated chips.
 pub type SimulatedSpin<'a, B, A> =
-    SpinSensors<AnalogueSensor<Bus<'a, B, A>, <A as Around>::Line<ReadyPin<'a, B>>, Delay>>;
+    SpinSensors<AnalogueSensor<Bus<'a, B, A>, <A as PortWrapper>::Line<ReadyPin<'a, B>>, Delay>>;
 
 /// The sensors of its simulated board.
-pub fn sensors<'a, B: Rig, A: Around>(
+pub fn sensors<'a, B: Rig, A: PortWrapper>(
     board: &'a RefCell<B>,
-    around: &A,
+    wrapper: &A,
 ) -> SimulatedSpin<'a, B, A> {
     let converter = Converter { rate: DataRate::Sps14400, ..Converter::default() };
     SpinSensors(CHIPS.map(|select| {
-        let bus = bus(board, around, select, GREATEST_BUS_HERTZ);
-        let ready = around.line(select, ReadyPin::new(board, select));
+        let bus = bus(board, wrapper, select, GREATEST_BUS_HERTZ);
+        let ready = wrapper.line(select, ReadyPin::new(board, select));
         AnalogueSensor(Ads1262::new(bus, ready, Delay, converter).clocked())
     }))
 }

@@ -3,7 +3,6 @@
 //! Site, gyro and sample rate are those of a [`Scenario`], which also says how the vehicle faces at first;
 //! the way, the stops and the calibrated accelerometer are its own.
 
-pub mod fault;
 mod site;
 
 pub use site::{KnownPlace, Place};
@@ -13,7 +12,7 @@ use core::cell::RefCell;
 use drivers::ads1262::Ads1262;
 use drivers::adxl355::registers::OutputRate;
 use drivers::adxl355::{self, Adxl355};
-use embassy_time::Delay;
+use embassy_time::{Delay, Instant};
 use hal_mock::accelerometer::AccelerometerConfiguration;
 use hal_mock::ads1262::Ads1262 as SimulatedConverter;
 use hal_mock::chip::{Rig, Select};
@@ -30,10 +29,10 @@ use orientation::keep;
 use orientation::session::stops::Procedure;
 use orientation::units::DEGREE_PER_HOUR;
 
-use self::fault::{VehicleFault, VehiclePlan};
+use super::fault::{Fault, Injection, PortWrapper};
 use super::keep::Hold;
 use super::scenario::{self, Scenario};
-use super::{Around, Bus, CONVERTER_HERTZ, bus};
+use super::{Bus, CONVERTER_HERTZ, bus};
 use crate::chips;
 use crate::configuration::{self, KeepConfiguration, Realignment};
 use crate::ports::VehicleSensors;
@@ -219,41 +218,42 @@ impl VehicleScenario {
 
     /// What the vehicle does, where nothing or something is wrong with that.
     #[must_use]
-    pub fn day(&self, fault: Option<VehicleFault>) -> Day {
+    pub fn day(&self, fault: Option<Fault>) -> Day {
         let mut day = Day::stops(self.base.seed, self.stops, self.standing_s(), self.drive_s);
         day.vehicle = self.vehicle();
         let Hold { seconds, drive_s, stop_s, .. } = self.base.hold;
         day.go_on(self.base.seed, seconds, drive_s, stop_s);
         match fault {
-            Some(VehicleFault::NeverDrives) => day.legs.truncate(1),
-            Some(VehicleFault::NeverStops) => never_stop(&mut day),
-            Some(VehicleFault::ShortStops) => {
+            Some(Fault::NeverDrives) => day.legs.truncate(1),
+            Some(Fault::NeverStops) => never_stop(&mut day),
+            Some(Fault::ShortStops) => {
                 stops_of(&mut day).skip(1).for_each(|stop| stop.seconds = SHORT_SECONDS);
                 drive_on(&mut day);
             }
-            Some(VehicleFault::Sway) => stops_of(&mut day).for_each(|stop| stop.sway = sway()),
-            Some(VehicleFault::Bumps) => bump(&mut day),
+            Some(Fault::Sway) => stops_of(&mut day).for_each(|stop| stop.sway = sway()),
+            Some(Fault::Bumps) => bump(&mut day),
             _ => {}
         }
         day
     }
 
-    /// A plan of a fault that comes amid the first drive.
+    /// What a fault does that comes amid the first drive.
     #[must_use]
-    pub fn plan(&self, fault: Option<VehicleFault>) -> VehiclePlan {
-        VehiclePlan::at(fault, self.standing_s() + 0.5 * self.drive_s)
+    pub fn injection(&self, fault: Option<Fault>) -> Injection {
+        let seconds = self.standing_s() + 0.5 * self.drive_s;
+        Injection::at(fault, Instant::from_micros((seconds * 1e6) as u64))
     }
 
-    /// The simulated board of a vehicle that does this, with a plan of what goes wrong.
+    /// The simulated board of a vehicle that does this, with what goes wrong with it.
     #[must_use]
     pub fn board<'a>(
         &self,
         legs: &'a [Leg],
         events: &'a [Event],
-        plan: &'a VehiclePlan,
+        injection: &'a Injection,
     ) -> VehicleBoard<'a> {
         let vehicle =
-            VehicleConfiguration { legs, events, faults: &plan.sensors, ..self.vehicle() };
+            VehicleConfiguration { legs, events, faults: &injection.sensors, ..self.vehicle() };
         let plant = VehiclePlantConfiguration {
             vehicle,
             accelerometer_hz: self.output().1,
@@ -261,7 +261,7 @@ impl VehicleScenario {
             converter_noise_v: scenario::CONVERTER_NOISE,
         };
         let mut board = VehicleBoard::new(VehiclePlant::new(&plant, self.base.seed));
-        board.blackouts = &plan.blackouts;
+        board.blackouts = &injection.blackouts;
         // One oscillator for all three.
         board.converters.iter_mut().for_each(SimulatedConverter::clock_externally);
         board
@@ -374,20 +374,20 @@ fn sway() -> SwayConfiguration {
 
 /// The sensors of a vehicle on simulated chips.
 pub type SimulatedTriad<'a, B, A> = VehicleSensors<
-    chips::AnalogueGyro<Bus<'a, B, A>, <A as Around>::Line<ReadyPin<'a, B>>, Delay>,
+    chips::AnalogueGyro<Bus<'a, B, A>, <A as PortWrapper>::Line<ReadyPin<'a, B>>, Delay>,
     chips::PlatformAccelerometer<Bus<'a, B, A>, Delay>,
 >;
 
 /// The sensors of its simulated board.
-pub fn sensors<'a, B: Rig, A: Around>(
+pub fn sensors<'a, B: Rig, A: PortWrapper>(
     board: &'a RefCell<B>,
     scenario: &VehicleScenario,
-    around: &A,
+    wrapper: &A,
 ) -> SimulatedTriad<'a, B, A> {
     let gyro = |select: Select| chips::AnalogueGyro {
         converter: Ads1262::new(
-            bus(board, around, select, CONVERTER_HERTZ),
-            around.line(select, ReadyPin::new(board, select)),
+            bus(board, wrapper, select, CONVERTER_HERTZ),
+            wrapper.line(select, ReadyPin::new(board, select)),
             Delay,
             scenario.base.converter(),
         )
@@ -395,7 +395,7 @@ pub fn sensors<'a, B: Rig, A: Around>(
         scale: scenario::SCALE,
         limit: scenario::LIMIT,
     };
-    let accelerometer = bus(board, around, Select::Accelerometer, adxl355::BUS_HERTZ);
+    let accelerometer = bus(board, wrapper, Select::Accelerometer, adxl355::BUS_HERTZ);
     let rate = adxl355::Configuration { rate: scenario.output().0 };
     VehicleSensors {
         gyros: GYROS.map(gyro),

@@ -2,6 +2,7 @@
 
 pub mod burov;
 pub mod disturbed;
+pub mod faults;
 pub mod instrument;
 pub mod keep;
 pub mod rotating;

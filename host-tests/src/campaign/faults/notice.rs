@@ -1,0 +1,63 @@
+//! What a board tells that a healthy one does not tell.
+
+use firmware::event::Event;
+use firmware::simulated::fault::Notice;
+use orientation::device::Device;
+use orientation::error::Refusal;
+use orientation::keep::Realigned;
+use orientation::keep::spin::State;
+
+/// The first event that tells of something wrong.
+pub(super) fn first(events: &[Event]) -> Option<&Event> {
+    events.iter().find(|event| is_wrong(event))
+}
+
+/// Whether what must be noticed was noticed; none where nothing must be.
+pub(super) fn is_noticed(notice: Notice, events: &[Event]) -> Option<bool> {
+    match notice {
+        Notice::Nothing => None,
+        Notice::Anything => Some(first(events).is_some()),
+        Notice::Named(device) => Some(events.iter().any(|event| blamed(event) == Some(device))),
+    }
+}
+
+/// The device that an event tells something wrong of.
+fn blamed(event: &Event) -> Option<Device> {
+    match event {
+        Event::Lost(device, _)
+        | Event::Clipped(device)
+        | Event::Restarting(device, _)
+        | Event::GivenUp(device, _)
+        | Event::Corrected(device, _)
+        | Event::Blocked(device)
+        | Event::Refused(Refusal::Device { device, .. })
+        | Event::RollEnded(Refusal::Device { device, .. }) => Some(*device),
+        _ => None,
+    }
+}
+
+/// Whether an event tells of something wrong.
+fn is_wrong(event: &Event) -> bool {
+    match event {
+        Event::HandedOver(.., outcome) => matches!(outcome, Realigned::Disagrees { .. }),
+        Event::Roll(state) => !matches!(state, State::Searching | State::Locked),
+        Event::Missing(_)
+        | Event::Late(_)
+        | Event::Overflowed(_)
+        | Event::CutShort(_)
+        | Event::Repeated(..)
+        | Event::LeftOut(..)
+        | Event::TurnsLeftOut(..)
+        | Event::CalibrationUnreadable(_)
+        | Event::CalibrationNotSaved(_)
+        | Event::NoMotion
+        | Event::AzimuthLost
+        | Event::BiasBeyondStated
+        | Event::Doubted(_)
+        | Event::HeadingNotKept(_)
+        | Event::LinkSilent
+        | Event::Refused(_)
+        | Event::RollEnded(_) => true,
+        other => blamed(other).is_some(),
+    }
+}

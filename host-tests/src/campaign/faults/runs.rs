@@ -1,0 +1,168 @@
+//! One run of a platform with a fault in its middle, on the shortest schedule that tells.
+
+use firmware::event::Event;
+use firmware::health::Health;
+use firmware::ports::NoRecorder;
+use firmware::simulated::base::CoarseClass;
+use firmware::simulated::fault::{Fault, Platform};
+use firmware::simulated::mount::FramesScenario;
+use firmware::simulated::scenario::Scenario;
+use firmware::simulated::spin::SpinScenario;
+use firmware::simulated::turntable::TurntableScenario;
+use firmware::simulated::vehicle::VehicleScenario;
+use orientation::align::conclusion::Azimuth;
+use orientation::device::Device;
+use orientation::error::Refusal;
+
+use crate::instrument::spinning::follow_spin;
+use crate::instrument::{self, Run, RunError};
+use crate::output::{azimuth_error, degrees};
+
+/// Sample rate of all but the spinning body, Hz.
+const RATE_HZ: f64 = 100.0;
+/// Amplitude of the base's sway where the coarse IMU is what fails, °.
+const SWAY_DEG: f64 = 0.1;
+/// Passes on two frames.
+const PASSES: usize = 2;
+/// Speed of the turntable, Hz, its uneven turns, and its turns each way.
+const SPEED_HZ: f64 = 0.2;
+const UNEVEN_TURNS: u32 = 6;
+const TURNS: u32 = 4;
+/// Stops of the vehicle, how long it levels at each, and how long it drives between them, s.
+const STOPS: usize = 2;
+const STOP_S: f64 = 30.0;
+const DRIVE_S: f64 = 600.0;
+/// How long the spinning body flies, s: a chip that fails in the middle is given up by then.
+const FLIGHT_S: f64 = 3.0;
+/// Greatest 1σ of a roll that is one, °.
+const ROLL_SIGMA_DEG: f64 = 10.0;
+
+/// How a run ended.
+#[derive(Debug)]
+pub(super) struct Ended {
+    /// Error in σ, or why there is no azimuth or roll.
+    pub(super) verdict: Result<f64, String>,
+    pub(super) events: Vec<Event>,
+    pub(super) health: Health,
+    /// Dwells that were measured again, and that were left out.
+    pub(super) dwells: Option<[usize; 2]>,
+    pub(super) seconds: f64,
+    pub(super) violations: usize,
+}
+
+impl Default for Ended {
+    /// How a run ended that came to no end.
+    fn default() -> Self {
+        Self {
+            verdict: Err(String::new()),
+            events: Vec::new(),
+            health: Health::default(),
+            dwells: None,
+            seconds: 0.0,
+            violations: 0,
+        }
+    }
+}
+
+impl Ended {
+    fn new<R>(run: &Run<R>, verdict: Result<f64, String>) -> Self {
+        Self {
+            verdict,
+            events: run.events.iter().map(|(_, event)| *event).collect(),
+            health: run.health,
+            dwells: None,
+            seconds: run.seconds,
+            violations: run.violations.len(),
+        }
+    }
+
+    /// How a run with dwells ended.
+    fn with_dwells(run: &Run, truth_deg: f64) -> Result<Self, RunError> {
+        let conclusion = run.conclusion().ok_or(RunError::Deadlock)?;
+        let left_out = conclusion.disturbances.iter().filter(|why| why.is_some()).count();
+        let dwells = Some([run.replay.session.repetitions().len(), left_out]);
+        Ok(Self { dwells, ..Self::new(run, in_sigmas(conclusion.verdict, truth_deg)) })
+    }
+}
+
+/// The error of an azimuth in σ, or why there is none.
+fn in_sigmas(verdict: Result<Azimuth, Refusal>, truth_deg: f64) -> Result<f64, String> {
+    let azimuth = verdict.map_err(|reason| reason.to_string())?;
+    Ok(azimuth_error(degrees(azimuth.angle), truth_deg) / degrees(azimuth.sigma))
+}
+
+/// Runs a platform with a fault.
+pub(super) fn run(platform: Platform, fault: Fault, seed: u64) -> Result<Ended, RunError> {
+    match platform {
+        Platform::Stage => on_stage(fault, seed),
+        Platform::TwoFrame => on_frames(fault, seed),
+        Platform::Turntable => on_turntable(fault, seed),
+        Platform::Vehicle => in_vehicle(fault, seed),
+        Platform::Spin => in_flight(fault, seed),
+    }
+}
+
+/// The default site and gyro; where the coarse IMU fails, on a base that sways, with one that is fine enough
+/// for an answer in a short time.
+fn base(fault: Fault, seed: u64) -> Scenario {
+    let base = Scenario { sample_rate_hz: RATE_HZ, ..Scenario::usual(seed) };
+    if !matches!(fault, Fault::Chip(Device::Base, _)) {
+        return base;
+    }
+    Scenario { sway_deg: SWAY_DEG, has_base_imu: true, coarse: CoarseClass::FINE, ..base }
+}
+
+fn on_stage(fault: Fault, seed: u64) -> Result<Ended, RunError> {
+    let scenario = base(fault, seed);
+    let run = instrument::align(&scenario, Some(fault), NoRecorder, &())?;
+    Ended::with_dwells(&run, scenario.azimuth_deg)
+}
+
+fn on_frames(fault: Fault, seed: u64) -> Result<Ended, RunError> {
+    let scenario =
+        FramesScenario { base: base(fault, seed), passes: PASSES, ..FramesScenario::default() };
+    let frames = instrument::align_frames(&scenario, Some(fault), &())?;
+    Ended::with_dwells(&frames.run, scenario.base.azimuth_deg)
+}
+
+fn on_turntable(fault: Fault, seed: u64) -> Result<Ended, RunError> {
+    let scenario = TurntableScenario {
+        base: base(fault, seed),
+        speeds_hz: [SPEED_HZ, 0.0],
+        uneven_turns: UNEVEN_TURNS,
+        turns: TURNS,
+        ..TurntableScenario::default()
+    };
+    let run = instrument::align_turning(&scenario, Some(fault), NoRecorder, &())?.run;
+    let conclusion = run.replay.conclusion().ok_or(RunError::Deadlock)?;
+    Ok(Ended::new(&run, in_sigmas(conclusion.verdict, scenario.base.azimuth_deg)))
+}
+
+fn in_vehicle(fault: Fault, seed: u64) -> Result<Ended, RunError> {
+    let usual = VehicleScenario::usual(seed);
+    let scenario = VehicleScenario { stops: STOPS, stop_s: STOP_S, drive_s: DRIVE_S, ..usual };
+    let found = instrument::align_stops(&scenario, Some(fault), NoRecorder, &())?;
+    let conclusion = found.run.replay.conclusion().ok_or(RunError::Deadlock)?;
+    let truth_deg = degrees(found.truth.attitude.azimuth_rad);
+    Ok(Ended::new(&found.run, in_sigmas(conclusion.verdict, truth_deg)))
+}
+
+fn in_flight(fault: Fault, seed: u64) -> Result<Ended, RunError> {
+    let scenario = SpinScenario { seed, seconds: FLIGHT_S, ..SpinScenario::default() };
+    let flown = follow_spin(&scenario, Some(fault), &())?;
+    let spin = flown.run.replay.spin();
+    let ended = flown.run.events.iter().find_map(|(_, event)| match event {
+        Event::RollEnded(reason) => Some(reason.to_string()),
+        _ => None,
+    });
+    let verdict = match (ended, spin.sigma().map(degrees)) {
+        (Some(reason), _) => Err(reason),
+        (None, Some(sigma)) if sigma <= ROLL_SIGMA_DEG => {
+            let [roll, truth] = [spin.roll().rad(), flown.truth.roll_rad].map(degrees);
+            Ok(azimuth_error(roll, truth) / sigma)
+        }
+        (None, Some(sigma)) => Err(format!("σ of the roll at the end is {sigma:.1}°")),
+        (None, None) => Err(format!("the roll is not known at the end: {}", spin.state())),
+    };
+    Ok(Ended::new(&flown.run, verdict))
+}

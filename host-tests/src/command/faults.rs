@@ -1,0 +1,76 @@
+//! `meridian run --fault`: the catalogue of faults on the command line.
+
+use std::fmt::Write;
+
+use firmware::simulated::fault::{Fault, Platform};
+use orientation::device::Device;
+use serde_json::json;
+
+use super::Told;
+
+/// A fault that is asked for, or the wish to see the names.
+#[derive(Clone, Copy, Debug)]
+pub enum Asked {
+    /// The names of the platform's faults.
+    List,
+    /// This fault.
+    One(Fault),
+}
+
+impl Asked {
+    /// Whether it is a fault of the coarse IMU, which comes with it then.
+    pub fn is_of_base_imu(self) -> bool {
+        matches!(self, Self::One(Fault::Chip(Device::Base, _)))
+    }
+}
+
+/// A fault of any platform by its name, or `list`.
+///
+/// # Errors
+/// A name that no fault bears.
+pub fn parse(text: &str) -> Result<Asked, String> {
+    if text == "list" {
+        return Ok(Asked::List);
+    }
+    let mut faults = Platform::ALL.into_iter().flat_map(Fault::all);
+    let found = faults.find(|fault| fault.to_string() == text);
+    found.map(Asked::One).ok_or_else(|| "no such fault; `--fault list` names them".to_owned())
+}
+
+/// A platform by its name.
+///
+/// # Errors
+/// A name that no platform bears.
+pub fn platform(text: &str) -> Result<Platform, String> {
+    let found = Platform::ALL.into_iter().find(|platform| platform.name() == text);
+    let names = Platform::ALL.map(Platform::name).join(", ");
+    found.ok_or_else(|| format!("no such platform; there are {names}"))
+}
+
+/// Refuses a fault that cannot happen on a platform.
+///
+/// # Errors
+/// The platforms that have the fault, or that the coarse IMU which it needs is left out.
+pub fn check(fault: Fault, platform: Platform, no_base_imu: bool) -> Result<(), String> {
+    if no_base_imu && Asked::One(fault).is_of_base_imu() {
+        return Err("--fault: --no-base-imu leaves out what it happens to".to_owned());
+    }
+    let having: Vec<_> = fault.platforms().map(Platform::name).collect();
+    if having.contains(&platform.name()) {
+        return Ok(());
+    }
+    Err(format!(
+        "--fault: {fault} is a fault of {}, not of {platform}; `--fault list` names those that it has",
+        having.join(" and ")
+    ))
+}
+
+/// Names the faults of a platform.
+///
+/// # Errors
+/// Those of the writer.
+pub fn list(platform: Platform, as_json: bool) -> Result<Told, String> {
+    let names: Vec<String> = Fault::all(platform).map(|fault| fault.to_string()).collect();
+    let object = json!({ "status": "ok", "faults": names });
+    Told::of(true, as_json, &object, |text| text.write_str(&names.join("\n")))
+}
