@@ -1,0 +1,19 @@
+//! Holds azimuth from stops (equations.md §5) to closed forms, to scipy, and to simulated vehicles.
+
+mod criteria;
+mod drives;
+mod inclination;
+mod increments;
+mod minimum;
+mod place;
+mod refusals;
+mod rotations;
+mod strapdown;
+mod swaying;
+mod turns;
+mod world;
+
+#[track_caller]
+fn assert_near(value: f64, expected: f64, tolerance: f64) {
+    assert!((value - expected).abs() <= tolerance, "{value} is not {expected} ± {tolerance}");
+}
