@@ -1,14 +1,14 @@
 //! Campaigns: a tenth of each with every `cargo test`, the whole of it, with the README's figures, in `.ci/full`.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
+#[path = "../support/mod.rs"]
+mod support;
+
 mod burov;
-mod campaign;
 mod disturbed;
-mod keep_campaign;
-mod keep_readme;
-mod rotating_campaign;
-mod rotating_readme;
-mod spin_readme;
-mod stops_campaign;
-mod stops_readme;
-mod turning_faults;
+mod instrument;
+mod keep;
+mod rotating;
+mod sokolov;
+mod spin;
+mod szymanowski;

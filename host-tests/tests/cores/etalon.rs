@@ -12,6 +12,8 @@ use orientation::align::etalon::{
 };
 use rayon::prelude::*;
 
+use crate::support::campaign::{Extent, campaigns};
+
 const ARCSECOND: f64 = TAU / 1_296_000.0;
 const GRID: f64 = TAU / 129_600.0;
 const ONE: f64 = 2_147_483_648.0;
@@ -128,9 +130,14 @@ fn rates_are_rounded_and_clamped_as_documented() {
     assert_eq!(series.step(), -1);
 }
 
-#[test]
-fn ordinary_series_give_the_answer_of_the_brute_force_with_few_evaluations() {
-    let outcomes = agree(400, |random, _| ordinary(random));
+campaigns! {
+    ordinary_series_give_the_answer_of_the_brute_force_with_few_evaluations;
+    the_papers_settings_give_the_answer_of_the_brute_force_with_few_evaluations;
+    adversarial_series_give_the_answer_of_the_brute_force;
+}
+
+fn ordinary_series_give_the_answer_of_the_brute_force_with_few_evaluations(extent: Extent) {
+    let outcomes = agree(extent.of(400), |random, _| ordinary(random));
     for (criterion, name) in CRITERIA.iter().enumerate() {
         let counts = evaluations(&outcomes, criterion);
         assert!(counts[counts.len() / 2] <= 2, "{name}: median {}", counts[counts.len() / 2]);
@@ -139,9 +146,8 @@ fn ordinary_series_give_the_answer_of_the_brute_force_with_few_evaluations() {
     }
 }
 
-#[test]
-fn the_papers_settings_give_the_answer_of_the_brute_force_with_few_evaluations() {
-    let outcomes = agree(150, |random, _| paper(random));
+fn the_papers_settings_give_the_answer_of_the_brute_force_with_few_evaluations(extent: Extent) {
+    let outcomes = agree(extent.of(150), |random, _| paper(random));
     for (criterion, name) in CRITERIA.iter().enumerate() {
         let counts = evaluations(&outcomes, criterion);
         let p99 = counts[counts.len() * 99 / 100];
@@ -149,14 +155,13 @@ fn the_papers_settings_give_the_answer_of_the_brute_force_with_few_evaluations()
     }
 }
 
-#[test]
-fn adversarial_series_give_the_answer_of_the_brute_force() {
-    agree(400, adversarial);
+fn adversarial_series_give_the_answer_of_the_brute_force(extent: Extent) {
+    agree(extent.of(400), adversarial);
 }
 
 #[test]
 fn more_positions_than_short_sums_can_hold_give_the_answer_of_the_brute_force() {
-    agree(24, |random, _| long(random));
+    agree(8, |random, _| long(random));
 }
 
 #[test]

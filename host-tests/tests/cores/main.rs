@@ -1,6 +1,9 @@
 //! The cores: numbers, noise, alignment, keeping and sessions against closed forms, independent oracles and simulated signals.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
+#[path = "../support/mod.rs"]
+mod support;
+
 mod alignment;
 mod allan;
 mod butterworth;

@@ -1,11 +1,8 @@
 //! Autocompensated positions: two, three, four and many, in passes, under drift.
 
-use std::path::Path;
-
 use bench::campaign::statistics::rms;
 use bench::output::azimuth_error;
 use bench::positions::autocompensation;
-use bench::recording;
 use bench::replay::{Method, Options, drive, replay};
 use bench::simulate::stage_path;
 use hal_mock::gyro::GyroConfiguration;
@@ -19,6 +16,8 @@ use orientation::noise::model::GyroNoise;
 use orientation::session::Session;
 use orientation::session::procedure::Procedure;
 use orientation::session::schedule::{Position, Schedule};
+
+use crate::support::files::recording;
 
 const LATITUDE_DEG: f64 = 52.0;
 const RATE_HZ: f64 = 25.0;
@@ -96,9 +95,7 @@ impl Trial<'_> {
 #[test]
 fn the_recordings_give_north_by_positions_within_three_and_a_half_sigma() {
     for name in ["positions-four-fog", "stepwise-tilted-drift"] {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/recordings");
-        let recording = recording::read(&path.join(format!("{name}.csv.gz"))).expect("it reads");
-        let (header, body, truth) = recording.into_parts();
+        let (header, body, truth) = recording(name).into_parts();
         let options = Options { method: Method::Positions, ..Options::default() };
         let replay = replay(&header, &body, &options, |_| {}).expect("it replays");
         let conclusion = replay.session.conclusion().expect("done");

@@ -3,7 +3,6 @@
 use std::cell::RefCell;
 use std::time::Duration;
 
-use bench::virtual_time;
 use drivers::adxl355::registers::OutputRate;
 use drivers::adxl355::{
     ATTEMPTS, Adxl355, BUS_HERTZ, BYTES_PER_CHECK, BYTES_PER_SAMPLE, Configuration,
@@ -14,12 +13,14 @@ use embassy_time::{Delay, Instant, Timer};
 use embedded_hal_async::digital::Wait;
 use embedded_hal_async::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
 use hal_mock::adxl355::{Adxl355 as Chip, POWER_UP, RESET_TIME};
-use hal_mock::chip::{Rig, Select, Single, SpiChip};
+use hal_mock::chip::{Rig, Select, Single};
 use hal_mock::environment::ForceInput;
 use hal_mock::spi::{ReadyPin, SpiPort};
 use hal_mock::violation::Misuse;
 use orientation::units::{SpecificForce, Temperature};
 use proptest::prelude::*;
+
+use crate::support::rig::{run, violations};
 
 /// Constant force, constant temperature, and how often it was felt.
 struct Table {
@@ -47,10 +48,6 @@ fn bench_with(force: [f64; 3]) -> Bench {
     RefCell::new(Single { chip: Chip::new(Instant::from_ticks(0)), environment })
 }
 
-fn run<F: Future>(future: F) -> F::Output {
-    virtual_time::run(future).expect("nothing here waits for ever")
-}
-
 fn accelerometer(rig: &Bench, rate: OutputRate) -> Accelerometer<'_> {
     let port = SpiPort::new(rig, Select::Accelerometer, BUS_HERTZ);
     Adxl355::new(port, Delay, Configuration { rate })
@@ -64,15 +61,6 @@ async fn started(rig: &Bench, rate: OutputRate) -> Accelerometer<'_> {
 
 fn power_cycle(rig: &Bench) {
     rig.borrow_mut().power_cycle(Select::Accelerometer, Instant::now());
-}
-
-fn violations(rig: &Bench) -> Vec<Misuse> {
-    let rig = rig.borrow();
-    SpiChip::<Table>::violations(&rig.chip)
-        .first()
-        .iter()
-        .map(|violation| violation.misuse)
-        .collect()
 }
 
 async fn exchange(rig: &Bench, hertz: u32, sent: &[u8]) -> Vec<u8> {

@@ -3,7 +3,6 @@
 use std::cell::RefCell;
 use std::time::Duration;
 
-use bench::virtual_time;
 use drivers::fault::Fault;
 use drivers::mt6835::registers::{Bandwidth, Hysteresis, OVERSPEED, UNDERVOLTAGE, WEAK_MAGNET};
 use drivers::mt6835::{
@@ -11,13 +10,15 @@ use drivers::mt6835::{
 };
 use embassy_time::{Delay, Instant, Timer};
 use embedded_hal_async::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
-use hal_mock::chip::{Rig, Select, Single, SpiChip};
+use hal_mock::chip::{Rig, Select, Single};
 use hal_mock::environment::ShaftAngle;
 use hal_mock::mt6835::Mt6835 as Chip;
 use hal_mock::spi::SpiPort;
 use hal_mock::violation::Misuse;
 use orientation::units::Angle;
 use proptest::prelude::*;
+
+use crate::support::rig::{run, violations};
 
 /// A shaft that turns evenly, and a magnet that can be taken away.
 struct Shaft {
@@ -44,10 +45,6 @@ fn bench_at(turns: f64) -> Bench {
     RefCell::new(Single { chip: Chip::new(Instant::from_ticks(0)), environment })
 }
 
-fn run<F: Future>(future: F) -> F::Output {
-    virtual_time::run(future).expect("nothing here waits for ever")
-}
-
 fn encoder(rig: &Bench, configuration: Configuration) -> Encoder<'_> {
     Mt6835::new(SpiPort::new(rig, Select::Encoder, BUS_HERTZ), Delay, configuration)
 }
@@ -60,15 +57,6 @@ async fn started(rig: &Bench) -> Encoder<'_> {
 
 fn power_cycle(rig: &Bench) {
     rig.borrow_mut().power_cycle(Select::Encoder, Instant::now());
-}
-
-fn violations(rig: &Bench) -> Vec<Misuse> {
-    let rig = rig.borrow();
-    SpiChip::<Shaft>::violations(&rig.chip)
-        .first()
-        .iter()
-        .map(|violation| violation.misuse)
-        .collect()
 }
 
 /// Sends bytes and gives the answer.

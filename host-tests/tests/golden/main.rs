@@ -4,13 +4,16 @@
 //! Wall-clock times are masked. `MERIDIAN_GOLDEN=write cargo test --test golden` writes the files anew; a
 //! commit that does so says why.
 
-#![allow(clippy::expect_used, reason = "a test that cannot go on has failed")]
+#![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
+
+#[path = "../support/mod.rs"]
+mod support;
 
 use std::fmt::Write as _;
 use std::fs;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
 use bench::emulate::host;
 use bench::emulate::outcome::Outcome;
@@ -21,6 +24,9 @@ use flate2::Compression;
 use flate2::read::GzDecoder;
 use flate2::write::GzEncoder;
 use serde_json::Value;
+
+use support::files::{Scratch, recordings};
+use support::program::command;
 
 /// A command, and the name of its files.
 struct Golden<'a> {
@@ -42,11 +48,7 @@ fn goldens<'a>(list: &'a str, family: &str) -> Vec<Golden<'a>> {
 }
 
 fn meridian(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_meridian"))
-        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("data/recordings"))
-        .args(arguments)
-        .output()
-        .expect("it starts")
+    command().current_dir(recordings()).args(arguments).output().expect("it starts")
 }
 
 /// The exit code, then what stands on standard output, without the times that a clock on the wall gave.
@@ -135,11 +137,10 @@ fn hold_family(family: &str) {
     let list = fs::read_to_string(folder().join("commands.txt")).expect("the list is there");
     let mut differing = Vec::new();
     for Golden { name, arguments } in goldens(&list, family) {
-        let page = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("golden-{name}.html"));
-        let _ = fs::remove_file(&page);
-        let page_name = page.display().to_string();
+        let scratch = Scratch::new("golden");
+        let page = scratch.path(&format!("golden-{name}.html"));
         let has_page = draws(name);
-        let report = [&arguments[..], &["--report", page_name.as_str()]].concat();
+        let report = [&arguments[..], &["--report", page.as_str()]].concat();
         let text = meridian(if has_page { &report } else { &arguments });
         hold(&format!("{name}.txt"), &printed(&text), &mut differing);
         let json = meridian(&[&arguments[..], &["--json"]].concat());
@@ -147,7 +148,6 @@ fn hold_family(family: &str) {
         if let Ok(html) = fs::read_to_string(&page) {
             hold(&format!("{name}.html.gz"), &html, &mut differing);
         }
-        let _ = fs::remove_file(&page);
     }
     assert!(differing.is_empty(), "{}", differing.join("\n"));
 }

@@ -1,14 +1,9 @@
 //! The whole instrument on simulated chips: it finds north, repeats itself bit for bit, records what
 //! it saw, tells what it did, and never reports a wrong north.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::thread;
 
-use bench::campaign::faults::{self, WRONG_SIGMAS};
-use bench::campaign::instrument::{self as campaign, Runs};
-use bench::campaign::statistics::NORMAL_COVERAGE;
-use bench::campaign::statistics::Precision;
 use bench::instrument::recorder::CsvRecorder;
 use bench::instrument::{self, Run};
 use bench::output::{azimuth_error, degrees};
@@ -18,6 +13,8 @@ use firmware::event::Event;
 use firmware::ports::NoRecorder;
 use firmware::simulated::scenario::Scenario;
 use orientation::align::conclusion::Conclusion;
+
+use crate::support::files::Scratch;
 
 /// A short alignment, for what does not depend on its length.
 fn short(seed: u64) -> Scenario {
@@ -76,8 +73,8 @@ fn four_runs_side_by_side_give_their_single_runs_results() {
 #[test]
 fn a_recorded_run_replays_to_the_same_azimuth() {
     for scenario in [short(5), Scenario { sample_rate_hz: 400.0, ..short(6) }] {
-        let name = format!("recorded-{}.csv", scenario.seed);
-        let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+        let scratch = Scratch::new("recorded");
+        let path = PathBuf::from(scratch.path("recorded.csv"));
         let setting = scenario.setting().expect("a latitude");
         let mut recorder =
             CsvRecorder::create(&path, &scenario, &setting).expect("the folder is ours");
@@ -121,95 +118,6 @@ fn the_log_tells_what_the_board_did_in_order() {
     assert!(run.events.is_sorted_by_key(|(at, _)| *at));
     assert!(run.lines.contains("measuring 5/9"));
     assert!(run.lines.ends_with("faults 0\r\n"), "{}", run.lines);
-}
-
-#[test]
-fn north_is_found_as_well_as_the_limit_allows_over_sites_attitudes_and_tilts() {
-    let Runs { precision: found, violations, .. } =
-        &campaign::precision(500, || ()).expect("all are possible");
-    let Precision { runs, refused, ratio, coverage_percent, .. } = found;
-    assert_eq!((runs, refused, violations), (&500, &0, &0), "{found:?}");
-    assert!(*ratio <= 1.06, "{found:?}");
-    for (found, normal) in coverage_percent.iter().zip(NORMAL_COVERAGE) {
-        assert!((found - normal).abs() <= 2.5, "{found} % instead of {normal} %");
-    }
-    let [one, two, three] = coverage_percent;
-    let row = format!(
-        "| 24 positions of 15°, the first once more | {:.4}° | {:.4}° | {ratio:.3} | {one:.1}, {two:.1}, {three:.1} % |",
-        found.rms_deg, found.limit_deg
-    );
-    let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md");
-    let readme = fs::read_to_string(readme).expect("the README is there");
-    assert!(readme.contains(&row), "the README lacks {row}");
-}
-
-/// What a fault must come to: an azimuth, or a refusal whose reason says this.
-fn expected(fault: &str) -> Option<&'static str> {
-    const NOT_THERE: &str = "another chip answers, or none";
-    let (device, sickness) = fault.split_once('-').expect("device and sickness");
-    let [is_gyro, is_stage] = ["gyro", "stage"].map(|name| device == name);
-    let is_force = device == "accelerometer";
-    match sickness {
-        "identity" => Some(NOT_THERE),
-        "silent" => Some("gives no more data"),
-        // Without a checksum a broken reply shows in identity or read-back, after a while.
-        "checksum-always" | "stuck" if is_stage => Some("stage: "),
-        "checksum-always" if is_force => Some("accelerometer: "),
-        "checksum-always" => Some("fail their checksum"),
-        "stuck" if device == "encoder" => Some("encoder: "),
-        "stuck" => Some("the same reading for ever"),
-        "bus-always" => Some("its bus fails"),
-        "hang-always" if is_gyro => Some("its bus hangs"),
-        "blocked" => Some("it is blocked at 75"),
-        "limit" => Some("it is blocked at 200"),
-        "slip" | "slip-at-start" | "creep" => Some("motor and encoder disagree"),
-        "always" => Some("at the limit of its range"),
-        _ => None,
-    }
-}
-
-#[test]
-fn every_fault_of_every_chip_is_survived_or_refused_for_its_reason_and_nothing_hangs() {
-    let rows = faults::rows(1..=2, || ()).expect("nothing waits for ever");
-    assert_eq!(rows.len(), 2 * (4 * 10 + 15), "every chip with every sickness, and the rest");
-    for row in &rows {
-        // The default session takes 276 s; what was lost is measured again, retry budget has its limits.
-        assert!(row.seconds < 400.0, "{row:?} takes too long");
-        match (expected(&row.fault), &row.reason) {
-            (None, None) => {
-                let sigmas = row.error_sigmas.expect("an azimuth");
-                assert!(sigmas.abs() <= WRONG_SIGMAS, "{row:?}: a wrong north");
-            }
-            (Some(part), Some(reason)) => assert!(reason.contains(part), "{row:?}: not {part}"),
-            _ => panic!("{row:?}"),
-        }
-    }
-}
-
-/// What the board must have noticed of faults that it survives.
-#[test]
-fn what_is_survived_is_noticed() {
-    let rows = faults::rows(1..=1, || ()).expect("nothing waits for ever");
-    for (fault, part) in [
-        ("gyro-checksum-once", "gyro: reading lost: wrong checksum"),
-        ("encoder-checksum-once", "encoder: reading lost: wrong checksum"),
-        ("gyro-silent-once", "1 sample(s) missing"),
-        ("encoder-silent-once", "encoder: reading lost: too far from the one before"),
-        ("gyro-bus-once", "gyro: reading lost: bus error"),
-        ("accelerometer-reset", "accelerometer: it has restarted: starting it again"),
-        ("encoder-reset", "encoder: it has restarted: starting it again"),
-        ("stage-reset", "stage: it has restarted: starting it again"),
-        ("gyro-hang", "gyro: its bus hangs"),
-        ("stage-blocked-once", "stage: blocked, trying again"),
-        ("saturation-once", "is measured again: gyro saturated"),
-        ("overflow-once", "nobody took them in time"),
-        ("door-slam", "is measured again"),
-        ("base-nudge", "is measured again"),
-    ] {
-        let row = rows.iter().find(|row| row.fault == fault).expect(fault);
-        let noticed = row.noticed.as_deref().unwrap_or("nothing");
-        assert!(noticed.contains(part), "{fault}: {noticed}");
-    }
 }
 
 #[test]

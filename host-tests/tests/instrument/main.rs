@@ -1,6 +1,9 @@
 //! The whole instrument on simulated chips, one module for each method and mount.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
+#[path = "../support/mod.rs"]
+mod support;
+
 mod instrument;
 mod instrument_parts;
 mod keeping_instrument;

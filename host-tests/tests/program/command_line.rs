@@ -1,53 +1,7 @@
 //! The `meridian` program as a user meets it: output, exit codes, one clear line for each mistake.
 
-use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-
-use serde_json::Value;
-
-fn meridian(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_meridian")).args(arguments).output().expect("it starts")
-}
-
-fn code(output: &Output) -> i32 {
-    output.status.code().expect("no signal ended it")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).expect("it prints UTF-8")
-}
-
-fn stored(name: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/recordings");
-    path.join(format!("{name}.csv.gz")).display().to_string()
-}
-
-/// A file of its own for one test, gone with it.
-struct Scratch(PathBuf);
-
-impl Scratch {
-    fn new(name: &str, content: &[u8]) -> Self {
-        let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
-        fs::write(&path, content).expect("the folder is ours");
-        Self(path)
-    }
-
-    fn path(&self) -> String {
-        self.0.display().to_string()
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        // A file that is left behind hurts nobody.
-        let _ = fs::remove_file(&self.0);
-    }
-}
-
-fn object(output: &Output) -> Value {
-    serde_json::from_slice(&output.stdout).expect("one JSON object and nothing else")
-}
+use crate::support::files::{Scratch, stored};
+use crate::support::program::{code, meridian, object, page, text};
 
 #[test]
 fn without_a_command_the_whole_board_finds_north_on_simulated_chips() {
@@ -260,8 +214,8 @@ fn a_malformed_recording_gets_one_line_that_names_file_line_and_column() {
         ("cut.csv", sound()[..9000].to_owned(), "line"),
     ];
     for (name, content, part) in cases {
-        let file = Scratch::new(name, content.as_bytes());
-        let output = meridian(&["replay", &file.path()]);
+        let scratch = Scratch::new("bad");
+        let output = meridian(&["replay", &scratch.with(name, content)]);
         let message = text(&output.stderr);
         assert_eq!(code(&output), 1, "{name}: {message}");
         assert_eq!(message.lines().count(), 1, "{name}: {message}");
@@ -280,8 +234,8 @@ fn a_gap_in_the_times_is_named() {
             all
         },
     );
-    let file = Scratch::new("gap.csv", without.as_bytes());
-    let output = meridian(&["replay", &file.path()]);
+    let scratch = Scratch::new("gap");
+    let output = meridian(&["replay", &scratch.with("gap.csv", without)]);
     let message = text(&output.stderr);
     assert_eq!(code(&output), 1);
     assert!(message.contains("gap.csv") && message.contains("line 106"), "{message}");
@@ -303,8 +257,8 @@ fn a_stage_that_never_stands_still_has_no_dwell() {
         moving += &[time, angle, 1e-5, 0.0, 0.0, -9.8].map(|x| x.to_string()).join(",");
         moving += "\n";
     }
-    let file = Scratch::new("moving.csv", moving.as_bytes());
-    let output = meridian(&["replay", &file.path()]);
+    let scratch = Scratch::new("moving");
+    let output = meridian(&["replay", &scratch.with("moving.csv", moving)]);
     assert_eq!(code(&output), 1);
     assert!(text(&output.stderr).contains("stage_rad"), "{}", text(&output.stderr));
 }
@@ -398,8 +352,8 @@ fn two_positions_are_an_answer_only_where_the_half_is_stated() {
     let row = |angle: f64, sign: f64| format!("{angle},{},1e-8,100\n", 1e-6 + sign * rate);
     let rows: String =
         (0..3).flat_map(|_| [row(0.0, 1.0), row(std::f64::consts::PI, -1.0)]).collect();
-    let file = Scratch::new("two-positions.csv", format!("{header}{rows}").as_bytes());
-    let path = file.path();
+    let scratch = Scratch::new("two-positions");
+    let path = scratch.with("two-positions.csv", format!("{header}{rows}"));
     let refused = meridian(&["replay", &path, "--method", "positions", "--json"]);
     assert_eq!(code(&refused), 1);
     assert!(object(&refused)["reason"].as_str().expect("why").contains("east or west"));
@@ -416,15 +370,12 @@ fn two_positions_are_an_answer_only_where_the_half_is_stated() {
 
 #[test]
 fn pages_are_written_for_alignments_and_plans() {
-    let page = Scratch::new("page.html", b"");
-    let path = page.path();
     let recording = stored("positions-four-fog");
     for arguments in [
-        &["replay", &recording, "--report", &path][..],
-        &["plan", "--arw", "0.01", "--latitude", "48", "--seconds", "300", "--report", &path],
+        &["replay", &recording][..],
+        &["plan", "--arw", "0.01", "--latitude", "48", "--seconds", "300"],
     ] {
-        assert_eq!(code(&meridian(arguments)), 0);
-        let html = fs::read_to_string(&page.0).expect("it is there");
+        let (_, html) = page(arguments);
         assert!(html.matches("<svg").count() >= 2, "{arguments:?}");
     }
     let nowhere = ["replay", &recording, "--report", "/nowhere/page.html"];

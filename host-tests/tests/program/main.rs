@@ -1,6 +1,9 @@
 //! The `meridian` program as a user meets it: output, exit codes, mistakes, pages, and what `emulate` makes of its images.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
+#[path = "../support/mod.rs"]
+mod support;
+
 mod command_line;
 mod emulate;
 mod program;

@@ -1,19 +1,19 @@
 //! The HTML report: a page that any browser reads, with every point where it belongs.
 
 use std::path::{Path, PathBuf};
-use std::{env, fs};
 
 use bench::report::{Axis, Figure, Part, Report, Series, Style, Table};
 
+use crate::support::files::Scratch;
+
 /// A page written and read back.
 fn page(name: &str, parts: Vec<Part>) -> String {
-    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let scratch = Scratch::new("report");
+    let path = PathBuf::from(scratch.path(name));
     let subtitle = vec!["first line".to_owned(), "rate < 10 Hz & \"quoted\"".to_owned()];
     let report = Report { title: "A & B <i>".to_owned(), subtitle, parts };
     report.write(&path).expect("the folder is ours");
-    let text = fs::read_to_string(&path).expect("it was written");
-    fs::remove_file(&path).expect("it is there");
-    text
+    scratch.read(name)
 }
 
 /// A figure over these axes.
@@ -245,10 +245,10 @@ fn a_band_runs_along_its_lower_limits_and_back_along_the_upper_ones() {
 #[test]
 fn a_path_that_cannot_be_written_is_named() {
     let missing = Path::new("/no/such/folder/report.html");
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let scratch = Scratch::new("folder");
     for (path, reason) in [
         (missing, "there is no such folder: /no/such/folder"),
-        (folder, "it is a directory; name a file in it"),
+        (scratch.folder(), "it is a directory; name a file in it"),
     ] {
         let error = Report::default().write(path).expect_err("it cannot be written");
         let expected = format!("{}: the report cannot be written: {reason}", path.display());

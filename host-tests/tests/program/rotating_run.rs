@@ -1,16 +1,14 @@
 //! `run --method rotating`: the board on a turning platform from the command line, and its misuse.
 
-use std::process::{Command, Output};
+use std::process::Output;
 
 use serde_json::Value;
 
-fn run(arguments: &[&str]) -> Output {
-    let program = env!("CARGO_BIN_EXE_meridian");
-    Command::new(program).arg("run").args(arguments).output().expect("it runs")
-}
+use crate::support::files::Scratch;
+use crate::support::program::{assert_drawn, meridian, object, page};
 
-fn object(output: &Output) -> Value {
-    serde_json::from_slice(&output.stdout).expect("one JSON object")
+fn run(arguments: &[&str]) -> Output {
+    meridian(&[&["run"], arguments].concat())
 }
 
 #[test]
@@ -40,41 +38,12 @@ fn speeds_and_turns_are_those_that_were_asked_for() {
 }
 
 #[test]
-fn what_cannot_go_together_is_misuse_with_the_options_named() {
-    let misuses: [(&[&str], &str); 11] = [
-        (&["--flash", "x"], "--flash"),
-        (&["--uneven-turns", "6"], "--uneven-turns"),
-        (&["--method", "rotating", "--date", "2026-03-14"], "--flash"),
-        (&["--speeds", "0.1"], "--speeds"),
-        (&["--sensor", "met"], "--sensor"),
-        (&["--method", "rotating", "--dwell", "3"], "--dwell"),
-        (&["--method", "rotating", "--sigma", "0.1"], "--sigma"),
-        (&["--method", "rotating", "--mount", "two-frame"], "--mount"),
-        (&["--method", "rotating", "--sway", "0.1"], "--sway"),
-        (&["--method", "rotating", "--sensor", "met", "--gyro", "fog"], "--gyro"),
-        (&["--method", "rotating", "--record", "x.csv"], "--record"),
-    ];
-    for (arguments, option) in misuses {
-        let output = run(arguments);
-        let words = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {words}");
-        assert!(words.contains(option) && output.stdout.is_empty(), "{arguments:?}: {words}");
-    }
-}
-
-/// A file of its own that is not there yet.
-fn flash(name: &str) -> String {
-    let path = std::env::temp_dir().join(format!("{name}-{}.flash", std::process::id()));
-    path.display().to_string()
-}
-
-#[test]
 fn a_flash_file_spares_the_uneven_turns_of_the_next_run() {
-    let file = flash("kept");
+    let scratch = Scratch::new("kept");
+    let file = scratch.path("flash");
     let turns = ["--method", "rotating", "--turns", "4", "--json", "--flash", file.as_str()];
     let first = run(&[&turns[..], &["--date", "2026-03-14"]].concat());
     let second = run(&[&turns[..], &["--date", "2026-03-20", "--uneven-turns", "0"]].concat());
-    std::fs::remove_file(&file).expect("it was written");
     let [first, second] = [first, second].map(|output| object(&output));
     assert_eq!(first["recalled"], Value::Array(Vec::new()));
     let number = |object: &Value, key: &str| object[key].as_f64().unwrap_or(f64::NAN);
@@ -93,7 +62,8 @@ fn a_flash_file_spares_the_uneven_turns_of_the_next_run() {
 
 #[test]
 fn a_molecular_electronic_sensor_without_a_stored_coupling_is_refused() {
-    let file = flash("empty");
+    let scratch = Scratch::new("empty");
+    let file = scratch.path("flash");
     let output = run(&[
         "--method",
         "rotating",
@@ -105,7 +75,6 @@ fn a_molecular_electronic_sensor_without_a_stored_coupling_is_refused() {
         &file,
         "--json",
     ]);
-    std::fs::remove_file(&file).expect("it was created");
     let object = object(&output);
     assert_eq!((output.status.code(), &object["status"]), (Some(1), &"refused".into()));
     let reason = object["reason"].as_str().unwrap_or_default();
@@ -114,7 +83,8 @@ fn a_molecular_electronic_sensor_without_a_stored_coupling_is_refused() {
 
 #[test]
 fn a_damaged_flash_file_is_named_and_left_alone() {
-    let file = flash("damaged");
+    let scratch = Scratch::new("damaged");
+    let file = scratch.path("flash");
     let arguments = ["--method", "rotating", "--turns", "2", "--flash", file.as_str()];
     assert!(run(&arguments).status.success());
     let mut bytes = std::fs::read(&file).expect("it was written");
@@ -127,40 +97,11 @@ fn a_damaged_flash_file_is_named_and_left_alone() {
         assert!(!output.status.success() && words.contains(&file), "{words}");
         assert_eq!(std::fs::read(&file).expect("it is there"), damaged);
     }
-    std::fs::remove_file(&file).expect("the file is ours");
-}
-
-#[test]
-fn what_is_no_day_or_too_few_uneven_turns_is_misuse() {
-    for (option, value) in [
-        ("--date", "2026-02-29"),
-        ("--date", "14.3.2026"),
-        ("--date", "2026-03-14-1"),
-        ("--uneven-turns", "3"),
-        ("--uneven-turns", "-1"),
-    ] {
-        let option = format!("{option}={value}");
-        let output = run(&["--method", "rotating", "--flash", "never-made", option.as_str()]);
-        assert_eq!(output.status.code(), Some(2), "{option}");
-    }
-}
-
-#[test]
-fn speeds_out_of_reach_or_too_close_are_misuse() {
-    for speeds in ["0", "0.6", "0.1,0.11", "0.1,0.2,0.3", "fast", "-0.1"] {
-        let output = run(&["--method", "rotating", &format!("--speeds={speeds}")]);
-        assert_eq!(output.status.code(), Some(2), "{speeds}");
-    }
 }
 
 #[test]
 fn the_report_of_a_run_draws_its_turns() {
-    let page = std::env::temp_dir().join(format!("rotating-run-{}.html", std::process::id()));
-    let path = page.display().to_string();
-    let output = run(&["--method", "rotating", "--turns", "3", "--report", path.as_str()]);
-    assert!(output.status.success());
-    let text = std::fs::read_to_string(&page).expect("it was written");
-    std::fs::remove_file(&page).expect("the file is ours");
-    assert!(text.contains("unevenly") && text.contains("Phasor of each turn"), "{text}");
-    assert!(!text.contains("no points to draw"));
+    let (_, page) = page(&["run", "--method", "rotating", "--turns", "3"]);
+    assert_drawn(&page, &["unevenly", "Phasor of each turn"]);
+    assert!(!page.contains("no points to draw"));
 }

@@ -1,16 +1,13 @@
 //! `run --method siap`: the board in a vehicle from the command line, and its misuse.
 
-use std::process::{Command, Output};
+use std::process::Output;
 
 use serde_json::Value;
 
-fn run(arguments: &[&str]) -> Output {
-    let program = env!("CARGO_BIN_EXE_meridian");
-    Command::new(program).arg("run").args(arguments).output().expect("it runs")
-}
+use crate::support::program::{assert_drawn, meridian, object, page};
 
-fn object(output: &Output) -> Value {
-    serde_json::from_slice(&output.stdout).expect("one JSON object")
+fn run(arguments: &[&str]) -> Output {
+    meridian(&[&["run"], arguments].concat())
 }
 
 /// A short day: two stops, four minutes.
@@ -56,15 +53,9 @@ fn a_vehicle_that_never_drives_is_refused_with_the_reason() {
 
 #[test]
 fn the_report_draws_the_stop_criteria_of_the_board() {
-    let page = std::env::temp_dir().join(format!("siap-{}.html", std::process::id()));
-    let path = page.display().to_string();
-    assert!(run(&[&SHORT[..], &["--report", path.as_str()]].concat()).status.success());
-    let text = std::fs::read_to_string(&page).expect("it was written");
-    std::fs::remove_file(&page).expect("the file is ours");
-    for title in ["Kryt1 = Ω − |ω| (Fig. 6)", "U over the azimuth at the start (Fig. 9)", "stop 2"]
-    {
-        assert!(text.contains(title), "{title}");
-    }
+    let (_, page) = page(&[&["run"], &SHORT[..]].concat());
+    let titles = ["Kryt1 = Ω − |ω| (Fig. 6)", "U over the azimuth at the start (Fig. 9)", "stop 2"];
+    assert_drawn(&page, &titles);
 }
 
 #[test]
@@ -75,27 +66,4 @@ fn faults_are_those_of_the_method() {
     let stage = run(&["--fault", "list"]);
     let names = String::from_utf8_lossy(&stage.stdout).into_owned();
     assert!(!names.contains("never-drives"), "{names}");
-    assert_eq!(run(&["--fault", "never-drives"]).status.code(), Some(2));
-    assert_eq!(run(&["--method", "siap", "--fault", "nothing"]).status.code(), Some(2));
-}
-
-#[test]
-fn what_cannot_go_together_is_misuse_with_the_options_named() {
-    let misuses: [(&[&str], &str); 9] = [
-        (&["--stops", "3"], "--stops"),
-        (&["--drive-seconds", "300"], "--drive-seconds"),
-        (&["--method", "rotating", "--no-displacement"], "--no-displacement"),
-        (&["--method", "siap", "--stops", "1"], "--stops"),
-        (&["--method", "siap", "--dwell", "3"], "--dwell"),
-        (&["--method", "siap", "--mount", "two-frame"], "--mount"),
-        (&["--method", "siap", "--turns", "3"], "--turns"),
-        (&["--method", "siap", "--sway", "0.1"], "--sway"),
-        (&["--method", "siap", "--record", "x.csv"], "--record"),
-    ];
-    for (arguments, option) in misuses {
-        let output = run(arguments);
-        let words = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {words}");
-        assert!(words.contains(option), "{arguments:?}: {words}");
-    }
 }

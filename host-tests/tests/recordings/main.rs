@@ -2,6 +2,9 @@
 #![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
 #![allow(clippy::format_push_string, reason = "a test may allocate")]
 
+#[path = "../support/mod.rs"]
+mod support;
+
 mod allan_host;
 mod laser_gyro;
 mod recording;

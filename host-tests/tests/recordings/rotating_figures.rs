@@ -2,12 +2,13 @@
 //! platform's unevenness stands before, and not after, the coupling is taken off.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
-use std::path::Path;
 
-use bench::recording::{self, Body, RotatingRow};
+use bench::recording::{Body, RotatingRow};
 use bench::rotating::part::Part;
 use bench::rotating::turns::{freed, phasor, phasors, rate_hz, spectrum, turn_hz, whole_turns};
 use bench::spectrum::Line;
+
+use crate::support::files::recording;
 
 /// Rows of a platform at `speed` rad/s, 50 a second, whose gyro shows 3 cos θ − 4 sin θ on a drift.
 fn even_rows(speed: f64, count: u32) -> Vec<RotatingRow> {
@@ -74,8 +75,7 @@ fn a_part_is_cut_by_its_times_and_says_what_it_is() {
 
 /// The gyro's recording.
 fn recorded() -> Vec<RotatingRow> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/recordings/rotating-gyro.csv.gz");
-    match recording::read(&path).expect("it reads").body {
+    match recording("rotating-gyro").body {
         Body::Rotating(rows) => rows,
         other => panic!("is {}", other.kind()),
     }

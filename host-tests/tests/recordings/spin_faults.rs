@@ -1,17 +1,14 @@
 //! What the sensors of a spinning body show of their faults: each is named, or within σ.
 
 use std::f64::consts::TAU;
-use std::process::Command;
 
-use bench::campaign::disturbed::{classes, row, spin};
-use bench::campaign::statistics::{Answer, coverage};
 use bench::recording::{Body, Header, SpinRow};
 use bench::spin::errors::wrapped;
 use bench::spin::{Options, Replay, replay};
 use hal_mock::noise::Generator;
 use orientation::keep::spin::{Accelerometer, State};
-use rayon::prelude::*;
-use serde_json::Value;
+
+use crate::support::program::{code, meridian, object};
 
 /// Samples a second, and seconds.
 const RATE_HZ: f64 = 10_000.0;
@@ -61,32 +58,6 @@ fn assert_true(replay: &Replay, rows: &[SpinRow]) {
     let error = wrapped(end.roll_rad - roll_rad(rows.last().expect("there are rows").time_s));
     let sigma = end.sigma_rad.expect("it is told");
     assert!(error.abs() < 4.0 * sigma, "{error} {sigma}");
-}
-
-#[test]
-fn every_class_of_a_spinning_body_passes_in_few_runs() {
-    let of_bodies: Vec<_> = classes().filter(|class| class.name.starts_with("spin-")).collect();
-    assert_eq!(of_bodies.len(), 8);
-    for class in of_bodies {
-        let row = row(class, 20, &|| ());
-        println!("{row:?}");
-        assert_eq!((row.wrong, row.healthy_refused), (0, 0), "{row:?}");
-        // Of so few runs one more or less is chance.
-        assert!(row.harmless_answered as f64 >= 0.8 * row.harmless as f64, "{row:?}");
-    }
-}
-
-#[test]
-fn healthy_flights_are_answered_and_their_errors_covered() {
-    let answers: Vec<Result<Answer, String>> =
-        (1..401_u64).into_par_iter().map(spin::healthy).collect();
-    let given: Vec<_> = answers.iter().flatten().collect();
-    assert_eq!(given.len(), answers.len());
-    let errors: Vec<f64> = given.iter().map(|answer| answer.error).collect();
-    let sigmas: Vec<f64> = given.iter().map(|answer| answer.sigma).collect();
-    let [one, two, three] = coverage(&errors, &sigmas);
-    println!("{one} {two} {three} %");
-    assert!((62.0..78.0).contains(&one) && two > 92.0 && three > 98.5, "{one} {two} {three}");
 }
 
 #[test]
@@ -217,13 +188,9 @@ fn an_axis_that_leans_widens_sigma_by_half_of_that_and_one_that_is_too_large_doe
 fn a_flight_whose_board_gave_the_roll_up_is_refused_with_exit_code_1_and_its_reason() {
     let arguments = ["run", "--method", "spin", "--flight-seconds", "3", "--fault"];
     for fault in ["forward-gyro-silent", "up-accelerometer-silent"] {
-        let output = Command::new(env!("CARGO_BIN_EXE_meridian"))
-            .args(arguments)
-            .args([fault, "--json"])
-            .output()
-            .expect("it runs");
-        let object: Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
-        assert_eq!(output.status.code(), Some(1), "{fault}: {object}");
+        let output = meridian(&[&arguments[..], &[fault, "--json"]].concat());
+        let object = object(&output);
+        assert_eq!(code(&output), 1, "{fault}: {object}");
         assert_eq!(object["status"], "refused", "{fault}: {object}");
         let reason = object["reason"].as_str().unwrap_or_default();
         assert!(reason.starts_with("no roll: "), "{fault}: {reason}");

@@ -1,10 +1,6 @@
 //! What a vehicle's recording shows of faults: in itself, and in what its header says.
 
-use std::path::{Path, PathBuf};
-
-use bench::campaign::disturbed::{classes, row, vehicle};
-use bench::campaign::statistics::{Answer, coverage};
-use bench::recording::{self, Body, Header, ImuRow};
+use bench::recording::{Body, Header, ImuRow};
 use bench::replay::ReplayError;
 use bench::stops::floor::Spectrum;
 use bench::stops::{Method, Options, Replay, grade, noise, replay};
@@ -17,18 +13,15 @@ use orientation::error::Refusal;
 use orientation::session::stops::{Event, Procedure, Session};
 use orientation::signal::InertialSample;
 use orientation::units::Instant;
-use rayon::prelude::*;
+
+use crate::support::files::recording;
 
 const FOG: &str = "drive-fog-1dph";
 const IDEAL: &str = "drive-ideal";
 const PARKED: &str = "parked-swaying";
 
 fn recorded(name: &str) -> (Header, Vec<ImuRow>) {
-    let path: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("data/recordings")
-        .join(name)
-        .with_extension("csv.gz");
-    let (header, body, _) = recording::read(&path).expect("it reads").into_parts();
+    let (header, body, _) = recording(name).into_parts();
     let Body::Imu(rows) = body else { panic!("{name} is {}", body.kind()) };
     (header, rows)
 }
@@ -39,34 +32,6 @@ fn replayed(header: &Header, rows: &[ImuRow]) -> Result<Replay, ReplayError> {
 
 fn reason(header: &Header, rows: &[ImuRow]) -> String {
     replayed(header, rows).expect_err("it does not replay").to_string()
-}
-
-#[test]
-fn every_class_of_a_vehicle_passes_in_few_runs() {
-    let of_vehicles = |name: &str| name.starts_with("vehicle") || name.starts_with("standing");
-    for class in classes().filter(|class| of_vehicles(class.name)) {
-        let row = row(class, 20, &|| ());
-        println!("{row:?}");
-        assert!(row.wrong as f64 <= class.wrong_allowed * row.answered as f64, "{row:?}");
-        // Of so few runs one more or less is chance.
-        assert!(row.harmless_answered as f64 >= 0.8 * row.harmless as f64, "{row:?}");
-    }
-}
-
-#[test]
-fn healthy_vehicles_are_answered_and_their_errors_covered() {
-    let answers: Vec<Result<Answer, String>> =
-        (1..161_u64).into_par_iter().map(vehicle::healthy).collect();
-    let too_large = |reason: &String| reason.contains("above the accepted");
-    let refused = answers.iter().filter_map(|answer| answer.as_ref().err());
-    let refused: Vec<_> = refused.filter(|reason| !too_large(reason)).collect();
-    assert!(refused.len() <= 3, "{refused:?}");
-    let given: Vec<_> = answers.iter().flatten().collect();
-    let errors: Vec<f64> = given.iter().map(|answer| answer.error).collect();
-    let sigmas: Vec<f64> = given.iter().map(|answer| answer.sigma).collect();
-    let [one, two, three] = coverage(&errors, &sigmas);
-    println!("{one} {two} {three} % of {}", given.len());
-    assert!((58.0..84.0).contains(&one) && two > 90.0 && three > 97.5, "{one} {two} {three}");
 }
 
 #[test]

@@ -15,10 +15,7 @@ use hal_mock::stage::{EncoderConfiguration, Harmonic, Stage, Stop, minimum_jerk}
 use hal_mock::temperature::TemperatureConfiguration;
 use hal_mock::world::{World, WorldConfiguration};
 
-#[track_caller]
-fn assert_near(value: f64, expected: f64, tolerance: f64) {
-    assert!((value - expected).abs() <= tolerance, "{value} is not {expected} ± {tolerance}");
-}
+use crate::support::assert_near;
 
 /// A stop of 100 s at zero.
 const STANDING: [Stop; 1] = [Stop::new(0.0, 100.0)];

@@ -13,7 +13,4 @@ mod swaying;
 mod turns;
 mod world;
 
-#[track_caller]
-fn assert_near(value: f64, expected: f64, tolerance: f64) {
-    assert!((value - expected).abs() <= tolerance, "{value} is not {expected} ± {tolerance}");
-}
+use crate::support::assert_near;

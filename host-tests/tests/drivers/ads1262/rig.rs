@@ -71,6 +71,4 @@ pub async fn until(micros: u64) {
 }
 
 /// Runs a test in virtual time.
-pub fn run<T>(future: impl Future<Output = T>) -> T {
-    bench::virtual_time::run(future).expect("somebody waits for ever")
-}
+pub use crate::support::rig::run;

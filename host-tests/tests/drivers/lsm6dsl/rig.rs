@@ -2,7 +2,6 @@
 
 use std::cell::RefCell;
 
-use bench::virtual_time;
 use drivers::lsm6dsl::registers::ADDRESS_LOW;
 use drivers::lsm6dsl::{BUS_HERTZ, Configuration, Lsm6dsl};
 use embassy_time::{Delay, Instant};
@@ -52,9 +51,7 @@ pub fn level() -> Bench {
     bench_with([0.0, 0.0, -1.0], [0.0; 3])
 }
 
-pub fn run<F: Future>(future: F) -> F::Output {
-    virtual_time::run(future).expect("nothing here waits for ever")
-}
+pub use crate::support::rig::run;
 
 pub fn port(rig: &Bench) -> I2cPort<'_, Single<Chip, Table>> {
     I2cPort::new(rig, BUS_HERTZ)

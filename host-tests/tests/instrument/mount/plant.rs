@@ -1,6 +1,5 @@
 //! The simulated gimbal against the oracle: axes, rates, forces, encoders, faults.
 
-use embassy_time::Instant;
 use hal_mock::chip::{Rig, Select, Transaction};
 use hal_mock::environment::{AnalogueInput, ForceInput, Mechanics, ShaftAngle};
 use hal_mock::gimbal::board::GimbalBoard;
@@ -16,15 +15,13 @@ use proptest::prelude::*;
 use super::kinematics::{calibration, frames};
 use super::oracle::{self, X, Y, Z, about, apply, dot, times};
 
+use crate::support::at;
+
 const OMEGA: f64 = 7.292_115e-5;
 const STANDARD_GRAVITY: f64 = 9.806_65;
 /// Volts of the plant's gyro for one rad/s.
 const VOLTS: f64 = 0.05 * 180.0 / core::f64::consts::PI;
 const PER_RAD: f64 = 4_608_000.0 / core::f64::consts::TAU;
-
-fn at(seconds: f64) -> Instant {
-    Instant::from_micros((seconds * 1e6).round() as u64)
-}
 
 /// A gimbal without noise whose frames stand at these angles.
 fn gimbal(mount: &TwoFrame, angles: FrameAngles, kappa: [f64; 3]) -> GimbalConfiguration<'static> {

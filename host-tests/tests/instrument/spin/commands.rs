@@ -1,33 +1,9 @@
 //! `replay`, `run` and `campaign` of a spinning body from the command line, and their misuse.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-
 use serde_json::Value;
 
-fn meridian(arguments: &[&str]) -> Output {
-    let program = env!("CARGO_BIN_EXE_meridian");
-    Command::new(program).args(arguments).output().expect("it runs")
-}
-
-fn object(output: &Output) -> Value {
-    serde_json::from_slice(&output.stdout).expect("one JSON object")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
-
-/// A stored recording's path.
-fn stored(name: &str) -> String {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/recordings");
-    folder.join(name).with_extension("csv.gz").display().to_string()
-}
-
-/// A file of this process.
-fn scratch(name: &str) -> PathBuf {
-    std::env::temp_dir().join(format!("{}-{name}", std::process::id()))
-}
+use crate::support::files::{Scratch, stored};
+use crate::support::program::{assert_drawn, meridian, object, page, text};
 
 #[test]
 fn the_kind_chooses_the_method_and_the_object_has_every_figure() {
@@ -71,37 +47,29 @@ fn the_block_tells_roll_limit_and_every_method() {
 
 #[test]
 fn the_page_draws_errors_sigma_lift_and_scale() {
-    let page = scratch("spin.html");
-    let path = page.display().to_string();
-    let output = meridian(&["replay", &stored("spin-100rps"), "--report", &path]);
-    assert!(output.status.success());
-    let drawn = std::fs::read_to_string(&page).expect("it was written");
-    std::fs::remove_file(&page).expect("the file is ours");
-    for title in [
+    let (_, page) = page(&["replay", &stored("spin-100rps")]);
+    let titles = [
         "Roll error of the methods",
         "between corrections (Fig. 8)",
         "σ of the roll",
         "Lift",
         "Scale error of the gyro",
         "States of the phase lock",
-    ] {
-        assert!(drawn.contains(title), "{title}");
-    }
-    assert!(!drawn.contains("There are no points to draw"));
+    ];
+    assert_drawn(&page, &titles);
+    assert!(!page.contains("There are no points to draw"));
 }
 
 #[test]
 fn a_body_without_lift_is_refused_with_exit_code_1_and_the_reason() {
-    let file = scratch("falling.csv");
     let mut rows = "# kind: spin\n# rate_hz: 10000\nt_s,gx_rad_s,ay_m_s2,az_m_s2\n".to_owned();
     for index in 0..3000 {
         let noise = f64::from((index * 7919) % 997) / 997.0;
         let row = format!("{:.4},500,{:.3},{:.3}\n", f64::from(index) * 1e-4, noise, 1.0 - noise);
         rows.push_str(&row);
     }
-    std::fs::write(&file, rows).expect("there is room");
-    let output = meridian(&["replay", &file.display().to_string(), "--json"]);
-    std::fs::remove_file(&file).expect("the file is ours");
+    let scratch = Scratch::new("falling");
+    let output = meridian(&["replay", &scratch.with("falling.csv", rows), "--json"]);
     assert_eq!(output.status.code(), Some(1));
     let object = object(&output);
     assert_eq!(object["status"], "refused");
@@ -149,36 +117,20 @@ fn the_simulated_board_follows_a_flight() {
 }
 
 #[test]
-fn what_a_spinning_body_does_not_have_is_misuse() {
-    for more in [
-        &["--method", "spin", "--positions", "12"][..],
-        &["--method", "spin", "--sway", "1"],
-        &["--method", "spin", "--stops", "3"],
-        &["--method", "spin", "--fault", "blocked"],
-        &["--method", "stepwise", "--fault", "lift-fades"],
-        &["--flight-seconds", "2"],
-    ] {
-        let output = meridian(&[&["run"][..], more].concat());
-        assert_eq!(output.status.code(), Some(2), "{more:?}: {}", text(&output.stderr));
-    }
+fn the_faults_of_a_spinning_body_are_listed() {
     let listed = meridian(&["run", "--method", "spin", "--fault", "list"]);
     assert!(text(&listed.stdout).contains("lift-fades"));
 }
 
 #[test]
 fn the_campaign_prints_the_papers_figures_and_draws_them() {
-    let page = scratch("spin-campaign.html");
-    let path = page.display().to_string();
-    let output = meridian(&["campaign", "spin", "--runs", "2", "--report", &path]);
+    let (output, page) = page(&["campaign", "spin", "--runs", "2"]);
     let told = text(&output.stdout);
     for words in ["Fig. 7", "Fig. 8", "corrections a turn", "noise of 1.5 m/s²", "limit"] {
         assert!(told.contains(words), "{words}: {told}");
     }
-    let drawn = std::fs::read_to_string(&page).expect("it was written");
-    std::fs::remove_file(&page).expect("the file is ours");
-    for title in ["(Fig. 7)", "(Fig. 8)", "without correction", "The phase lock at a moment"] {
-        assert!(drawn.contains(title), "{title}");
-    }
+    let titles = ["(Fig. 7)", "(Fig. 8)", "without correction", "The phase lock at a moment"];
+    assert_drawn(&page, &titles);
     let object = object(&meridian(&["campaign", "spin", "--runs", "1", "--json"]));
     assert_eq!(object["flights"].as_array().map(Vec::len), Some(4), "{object}");
     let uncorrected = object["paper"]["uncorrected_deg"].as_f64().unwrap_or(f64::NAN);

@@ -1,21 +1,15 @@
 //! The stored recordings of spinning bodies, which an independent simulator made.
 
-use std::path::Path;
-
-use bench::recording::{Body, Header, Recording, read};
+use bench::recording::{Body, Header};
 use bench::replay::ReplayError;
 use bench::spin::errors::Errors;
 use bench::spin::{Options, Replay, replay};
 
-/// Reads a stored recording.
-pub fn stored(name: &str) -> Recording {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/recordings");
-    read(&folder.join(name).with_extension("csv.gz")).unwrap_or_else(|error| panic!("{error}"))
-}
+use crate::support::files::recording;
 
 /// Its replay, and the errors of each method.
 fn replayed(name: &str) -> (Replay, [Errors; 3]) {
-    let (header, body, truth) = stored(name).into_parts();
+    let (header, body, truth) = recording(name).into_parts();
     let replay = replay(&header, &body, &Options::default()).expect("it is of a spinning body");
     let errors = [0, 1, 2].map(|index: usize| {
         Errors::of(&replay.tracks[index], &truth.roll_rad).expect("the truth is there")
@@ -69,7 +63,7 @@ fn in_noise_bare_extrema_fail_and_the_phase_lock_loses_no_turn() {
 
 #[test]
 fn a_solver_finds_the_same_roll_where_nobody_knows_the_truth() {
-    let (header, body, _) = stored("spin-80rps-noisy").into_parts();
+    let (header, body, _) = recording("spin-80rps-noisy").into_parts();
     let blind = replay(&header, &body, &Options::default()).expect("it is of a spinning body");
     let (replay, _) = replayed("spin-80rps-noisy");
     assert_eq!(blind.answer().rolls_rad, replay.answer().rolls_rad);
@@ -77,18 +71,18 @@ fn a_solver_finds_the_same_roll_where_nobody_knows_the_truth() {
 
 #[test]
 fn another_kind_or_a_single_sample_is_refused() {
-    let (header, body, _) = stored("spin-100rps").into_parts();
+    let (header, body, _) = recording("spin-100rps").into_parts();
     let one = Body::Spin(body.spin()[..1].to_vec());
     let refused = replay(&header, &one, &Options::default()).map(|_| ());
     assert_eq!(refused, Err(ReplayError::TooFewSamples(1)));
-    let (header, body, _) = stored("stepwise-bumped").into_parts();
+    let (header, body, _) = recording("stepwise-bumped").into_parts();
     let refused = replay(&header, &body, &Options::default()).map(|_| ());
     assert_eq!(refused, Err(ReplayError::NoSpin(body.kind())));
 }
 
 #[test]
 fn a_body_without_lift_has_no_roll() {
-    let (header, body, _) = stored("spin-100rps").into_parts();
+    let (header, body, _) = recording("spin-100rps").into_parts();
     let mut rows = body.spin().to_vec();
     for row in &mut rows {
         // What is left is the square of the rate, and a little of noise that repeats after 997 samples.
@@ -103,7 +97,7 @@ fn a_body_without_lift_has_no_roll() {
 #[test]
 fn a_rate_a_little_off_the_times_loses_no_sample_and_no_roll() {
     for name in ["spin-100rps", "spin-80rps-noisy"] {
-        let (header, body, truth) = stored(name).into_parts();
+        let (header, body, truth) = recording(name).into_parts();
         let rate_hz = header.rate_hz.expect("it is stated");
         for part in [-9e-3, -1e-3, -1.6e-4, -3e-5, 3e-5, 1.6e-4, 1e-3, 9e-3] {
             let header = Header { rate_hz: Some(rate_hz * (1.0 + part)), ..header.clone() };

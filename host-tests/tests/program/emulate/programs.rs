@@ -8,6 +8,8 @@ use bench::emulate::images::{Images, artifacts, root};
 use bench::emulate::qemu;
 use serde_json::Value;
 
+use crate::support::program::command;
+
 #[test]
 fn cargos_messages_name_the_images() {
     let message = |name: &str, path: &str| {
@@ -68,8 +70,7 @@ fn a_program_that_ends_gives_its_code_and_all_it_printed() {
 
 /// The program where nothing can be found.
 fn without_programs(arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_meridian"));
-    command.args(arguments).env("PATH", "").output().expect("it starts")
+    command().args(arguments).env("PATH", "").output().expect("it starts")
 }
 
 #[test]

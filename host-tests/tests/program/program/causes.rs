@@ -6,9 +6,10 @@ use std::fmt::Write;
 
 use hal_mock::noise::Generator;
 
-use super::{
-    Scratch, code, mapped, meridian, reason, recorded, refused, scaled, stored, text, unpacked,
-};
+use crate::support::files::{Scratch, stored, unpacked};
+use crate::support::program::{code, meridian, reason, text};
+
+use super::{mapped, recorded, refused, scaled};
 
 const DEGREES: f64 = 57.295_779_513_082_32;
 const IMU_FORCES: [&str; 3] = ["ax_m_s2", "ay_m_s2", "az_m_s2"];

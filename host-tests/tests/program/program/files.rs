@@ -2,7 +2,10 @@
 
 use std::fs;
 
-use super::{Scratch, assert_misuse, code, meridian, reason, recorded, stored};
+use crate::support::files::{Scratch, stored};
+use crate::support::program::{assert_misuse, code, meridian, reason};
+
+use super::recorded;
 
 /// A folder with a copy of a recording, and its content.
 fn copy(name: &str, of: &str) -> (Scratch, String, Vec<u8>) {
@@ -25,7 +28,8 @@ fn no_output_of_any_command_is_the_recording_by_whatever_name() {
         fs::hard_link(&path, &hard).expect("one device");
         #[cfg(unix)]
         std::os::unix::fs::symlink("copy.csv.gz", &soft).expect("the folder is ours");
-        let folder = scratch.0.file_name().expect("it has a name").to_string_lossy().into_owned();
+        let folder =
+            scratch.folder().file_name().expect("it has a name").to_string_lossy().into_owned();
         let round = scratch.path(&format!("../{folder}/./copy.csv.gz"));
         let vertical = if of.starts_with("imu") { &["--method", "vertical"][..] } else { &[] };
         for option in options {
@@ -58,13 +62,13 @@ fn no_output_is_another_output_by_whatever_name_even_before_either_is_there() {
     }
     let beside = scratch.path("one.new");
     assert_misuse(&[&flash[..], &["--report", &beside]].concat(), "takes the flash already");
-    assert!(!scratch.0.join("one").exists());
+    assert!(!scratch.folder().join("one").exists());
 }
 
 #[test]
 fn a_folder_is_no_file_and_neither_is_nothing() {
     let scratch = Scratch::new("folders");
-    let folder = scratch.0.display().to_string();
+    let folder = scratch.folder().display().to_string();
     let stage = stored("stepwise-bumped");
     assert_misuse(&["replay", &folder], "is a directory; name a file in it");
     assert_misuse(&["allan", &folder], "is a directory; name a file in it");

@@ -4,7 +4,8 @@ use std::fs;
 
 use hal_mock::noise::Generator;
 
-use super::{Scratch, assert_misuse, stored};
+use crate::support::files::{Scratch, stored};
+use crate::support::program::{assert_misuse, code, command, meridian, text};
 
 /// How many are drawn.
 const COUNT: usize = 200;
@@ -137,7 +138,7 @@ fn drawn(chance: &mut Chance) -> Vec<String> {
 #[test]
 fn two_hundred_drawn_misuses_are_told_in_one_line_each_and_do_nothing() {
     let scratch = Scratch::new("misuses");
-    let (file, folder) = (scratch.path("sound.csv.gz"), scratch.0.display().to_string());
+    let (file, folder) = (scratch.path("sound.csv.gz"), scratch.folder().display().to_string());
     fs::copy(stored("stepwise-bumped"), &file).expect("the folder is ours");
     let content = fs::read(&file).expect("it is there");
     let mut chance = Chance(Generator::new(SEED));
@@ -152,7 +153,7 @@ fn two_hundred_drawn_misuses_are_told_in_one_line_each_and_do_nothing() {
         assert_misuse(&arguments.iter().map(String::as_str).collect::<Vec<_>>(), "");
     }
     assert!(fs::read(&file).expect("it is there") == content);
-    assert_eq!(fs::read_dir(&scratch.0).expect("it is there").count(), 1);
+    assert_eq!(fs::read_dir(scratch.folder()).expect("it is there").count(), 1);
 }
 
 #[test]
@@ -167,19 +168,76 @@ fn whatever_stands_in_an_argument_the_message_is_one_line() {
     {
         use std::os::unix::ffi::OsStrExt;
         let odd = std::ffi::OsStr::from_bytes(b"--gyro=\xff\xfe");
-        let program = env!("CARGO_BIN_EXE_meridian");
-        let output = std::process::Command::new(program).arg("run").arg(odd).output();
+        let output = command().arg("run").arg(odd).output();
         let output = output.expect("it starts");
-        let lines = super::text(&output.stderr).lines().count();
+        let lines = text(&output.stderr).lines().count();
         assert_eq!((output.status.code(), lines), (Some(2), 1));
+    }
+}
+
+/// Options of `run` that do not go together or are impossible, and what is named of them.
+const APART: [(&str, &str); 46] = [
+    ("--flash x", "--flash"),
+    ("--uneven-turns 6", "--uneven-turns"),
+    ("--speeds 0.1", "--speeds"),
+    ("--sensor met", "--sensor"),
+    ("--stops 3", "--stops"),
+    ("--drive-seconds 300", "--drive-seconds"),
+    ("--flight-seconds 2", "--flight-seconds"),
+    ("--no-base-imu", "--sway"),
+    ("--sway 3", "--sway"),
+    ("--sway -0.1", "--sway"),
+    ("--sway nan", "--sway"),
+    ("--sway 0.1 --sway-hertz 9", "--sway-hertz"),
+    ("--sway 0.1 --record never.csv", "--record"),
+    ("--method rotating --date 2026-03-14", "--flash"),
+    ("--method rotating --dwell 3", "--dwell"),
+    ("--method rotating --sigma 0.1", "--sigma"),
+    ("--method rotating --mount two-frame", "--mount"),
+    ("--method rotating --sway 0.1", "--sway"),
+    ("--method rotating --sensor met --gyro fog", "--gyro"),
+    ("--method rotating --record x.csv", "--record"),
+    ("--method rotating --no-displacement", "--no-displacement"),
+    ("--method rotating --flash x --date=2026-02-29", "--date"),
+    ("--method rotating --flash x --date=14.3.2026", "--date"),
+    ("--method rotating --flash x --date=2026-03-14-1", "--date"),
+    ("--method rotating --flash x --uneven-turns=3", "--uneven-turns"),
+    ("--method rotating --flash x --uneven-turns=-1", "--uneven-turns"),
+    ("--method rotating --speeds=0", "--speeds"),
+    ("--method rotating --speeds=0.6", "--speeds"),
+    ("--method rotating --speeds=0.1,0.11", "--speeds"),
+    ("--method rotating --speeds=0.1,0.2,0.3", "--speeds"),
+    ("--method rotating --speeds=fast", "--speeds"),
+    ("--method rotating --speeds=-0.1", "--speeds"),
+    ("--method siap --stops 1", "--stops"),
+    ("--method siap --dwell 3", "--dwell"),
+    ("--method siap --mount two-frame", "--mount"),
+    ("--method siap --turns 3", "--turns"),
+    ("--method siap --sway 0.1", "--sway"),
+    ("--method siap --record x.csv", "--record"),
+    ("--method siap --fault nothing", "nothing"),
+    ("--method spin --positions 12", "--positions"),
+    ("--method spin --sway 1", "--sway"),
+    ("--method spin --stops 3", "--stops"),
+    ("--method spin --fault blocked", "blocked"),
+    ("--method stepwise --fault lift-fades", "--method spin"),
+    ("--fault never-drives", "--method siap"),
+    ("--mount table", "--mount"),
+];
+
+#[test]
+fn what_cannot_go_together_is_misuse_with_the_option_named() {
+    for (arguments, named) in APART {
+        let arguments: Vec<&str> = ["run"].into_iter().chain(arguments.split(' ')).collect();
+        assert_misuse(&arguments, named);
     }
 }
 
 #[test]
 fn help_is_whole_and_no_misuse() {
     for arguments in [&["--help"][..], &["run", "--help"], &["help", "replay"], &["--version"]] {
-        let output = super::meridian(arguments);
-        assert_eq!(super::code(&output), 0, "{arguments:?}");
+        let output = meridian(arguments);
+        assert_eq!(code(&output), 0, "{arguments:?}");
         assert!(!output.stdout.is_empty() && output.stderr.is_empty(), "{arguments:?}");
     }
 }

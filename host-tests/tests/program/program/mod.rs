@@ -8,94 +8,15 @@ mod reasons;
 mod seeds;
 mod warnings;
 
-use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-
-use serde_json::Value;
-
-/// Runs the built program.
-fn meridian(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_meridian")).args(arguments).output().expect("it starts")
-}
-
-fn code(output: &Output) -> i32 {
-    output.status.code().expect("no signal ended it")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
-
-fn object(output: &Output) -> Value {
-    serde_json::from_slice(&output.stdout).expect("one JSON object and nothing else")
-}
-
-/// The last line on standard error: the reason.
-fn reason(output: &Output) -> String {
-    text(&output.stderr).lines().last().unwrap_or_default().to_owned()
-}
-
-/// A misuse: exit code 2, one line, nothing on standard output.
-fn assert_misuse(arguments: &[&str], words: &str) {
-    let output = meridian(arguments);
-    let told = text(&output.stderr);
-    assert_eq!(code(&output), 2, "{arguments:?}: {told}");
-    assert_eq!(told.lines().count(), 1, "{arguments:?}: {told}");
-    assert!(told.starts_with("error: ") && told.contains(words), "{arguments:?}: {told}");
-    assert!(output.stdout.is_empty(), "{arguments:?}");
-}
-
-fn stored(name: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/recordings");
-    path.join(format!("{name}.csv.gz")).display().to_string()
-}
-
-/// A folder of its own for one test, gone with it.
-struct Scratch(PathBuf);
-
-impl Scratch {
-    fn new(name: &str) -> Self {
-        let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("program-{name}"));
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(&path).expect("the folder is ours");
-        Self(path)
-    }
-
-    /// The path of a file in it.
-    fn path(&self, name: &str) -> String {
-        self.0.join(name).display().to_string()
-    }
-
-    /// The path of a file in it that holds this.
-    fn with(&self, name: &str, content: &str) -> String {
-        fs::write(self.0.join(name), content).expect("the folder is ours");
-        self.path(name)
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        // A folder that is left behind does no harm.
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
+use crate::support::files::Scratch;
+use crate::support::program::{code, meridian, object, reason};
 
 /// What a board on a stage shows, as it records it: 24 positions of 2 s at 50 Hz.
 fn recorded(scratch: &Scratch) -> String {
     let path = scratch.path("stage.csv");
     let output = meridian(&["run", "--rate", "50", "--dwell", "2", "--record", &path]);
     assert_eq!(code(&output), 0, "{}", reason(&output));
-    fs::read_to_string(path).expect("it was written")
-}
-
-/// A stored recording as text.
-fn unpacked(name: &str) -> String {
-    let file = fs::File::open(stored(name)).expect("it is there");
-    let mut text = String::new();
-    std::io::Read::read_to_string(&mut flate2::read::MultiGzDecoder::new(file), &mut text)
-        .expect("it is gzip");
-    text
+    scratch.read("stage.csv")
 }
 
 /// The reason for which a recording is refused.

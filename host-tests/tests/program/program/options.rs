@@ -1,6 +1,7 @@
 //! Options: what a method ignores is refused by name, and a minus may begin a number.
 
-use super::{assert_misuse, code, meridian, object, reason, stored};
+use crate::support::files::stored;
+use crate::support::program::{assert_misuse, code, meridian, object, reason, text};
 
 /// Methods and mounts, and all that each ignores.
 const IGNORED: [(&str, &str); 6] = [
@@ -128,7 +129,7 @@ fn keeping_for_no_time_is_as_good_as_not_asking_for_it() {
 fn each_method_lists_its_own_faults_and_takes_every_one_of_them() {
     let listed = |method: &str| {
         let output = meridian(&["run", "--method", method, "--fault", "list"]);
-        let text = super::text(&output.stdout);
+        let text = text(&output.stdout);
         text.lines().map(str::to_owned).collect::<Vec<_>>()
     };
     let [stage, platform, vehicle, body] = ["stepwise", "rotating", "siap", "spin"].map(listed);

@@ -2,7 +2,10 @@
 
 use std::fmt::Write;
 
-use super::{Scratch, code, mapped, meridian, reason, recorded, refused, scaled, stored, unpacked};
+use crate::support::files::{Scratch, stored, unpacked};
+use crate::support::program::{code, meridian, reason, text};
+
+use super::{mapped, recorded, refused, scaled};
 
 const FORCES: [&str; 3] = ["fx_m_s2", "fy_m_s2", "fz_m_s2"];
 const DEGREES: f64 = 57.295_779_513_082_32;
@@ -34,7 +37,7 @@ fn the_text_for_people_names_the_likely_cause_too() {
     let scratch = Scratch::new("text");
     let path = scratch.with("x.csv", &scaled(&recorded(&scratch), &["stage_rad"], DEGREES));
     let output = meridian(&["replay", &path]);
-    let told = super::text(&output.stdout);
+    let told = text(&output.stdout);
     assert!(told.contains("likely cause       column stage_rad: in degrees"), "{told}");
 }
 

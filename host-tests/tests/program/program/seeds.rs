@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use super::{Scratch, assert_misuse, code, meridian, object, reason, stored, text};
+use crate::support::files::{Scratch, stored};
+use crate::support::program::{assert_misuse, code, meridian, object, reason, text};
 
 /// What can be run, as shortly as it can be.
 const RUNS: [&[&str]; 8] = [

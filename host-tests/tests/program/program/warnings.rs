@@ -1,9 +1,11 @@
 //! What a recording says to no purpose is told, and changes nothing.
 
 use std::fs;
-use std::path::Path;
 
-use super::{Scratch, code, meridian, object, recorded, text};
+use crate::support::files::{Scratch, recordings};
+use crate::support::program::{code, meridian, object, text};
+
+use super::recorded;
 
 /// The warnings of a recording, as they stand on standard error and in the object.
 fn warnings(scratch: &Scratch, recording: &str) -> Vec<String> {
@@ -78,8 +80,7 @@ fn a_remark_is_no_slip_of_a_key() {
 
 #[test]
 fn no_stored_recording_is_warned_of() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/recordings");
-    for file in fs::read_dir(folder).expect("it is there") {
+    for file in fs::read_dir(recordings()).expect("it is there") {
         let path = file.expect("it is there").path();
         if path.extension().is_some_and(|extension| extension == "gz") {
             let recording = bench::recording::read(&path).expect("it reads");

@@ -1,45 +1,25 @@
 //! `meridian allan` as a user meets it: units, keys, the page, and clear words for bad input.
 
-use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
 use hal_mock::noise::Generator;
 use serde_json::Value;
 
+use crate::support::files::{Scratch, stored};
+use crate::support::program::{assert_drawn, assert_misuse, code, meridian, object, page, text};
+
 fn allan(arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_meridian"));
-    command.arg("allan").args(arguments).output().expect("it starts")
+    meridian(&[&["allan"], arguments].concat())
 }
 
 fn hour() -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/recordings/static-gyro-1h.csv.gz");
-    path.display().to_string()
-}
-
-fn code(output: &Output) -> i32 {
-    output.status.code().expect("no signal ended it")
-}
-
-fn text(bytes: &[u8]) -> &str {
-    std::str::from_utf8(bytes).expect("it prints UTF-8")
-}
-
-fn object(output: &Output) -> Value {
-    serde_json::from_slice(&output.stdout).expect("one JSON object and nothing else")
-}
-
-fn scratch(name: &str) -> PathBuf {
-    PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name)
+    stored("static-gyro-1h")
 }
 
 /// The command on a file of this content and name.
 fn on(name: &str, content: &str, options: &[&str]) -> Output {
-    let path = scratch(name);
-    fs::write(&path, content).expect("the folder is ours");
-    let output = allan(&[&[path.to_str().expect("a plain name")], options].concat());
-    fs::remove_file(&path).expect("it is there");
-    output
+    let scratch = Scratch::new("allan");
+    allan(&[&[scratch.with(name, content).as_str()], options].concat())
 }
 
 /// A recording of white noise at 10 Hz; row i stands in line 4 + i. What is to be left out or written
@@ -54,7 +34,7 @@ fn noisy(rows: u32, row: impl Fn(u32, String) -> Option<String>) -> String {
 }
 
 /// The message of a run that failed, in one line.
-fn refusal(output: &Output) -> &str {
+fn refusal(output: &Output) -> String {
     let message = text(&output.stderr);
     assert_eq!((code(output), message.lines().count()), (1, 1), "{message}");
     message
@@ -117,12 +97,8 @@ fn every_number_has_its_unit() {
 
 #[test]
 fn the_page_has_the_curve_its_limits_the_fit_and_five_asymptotes() {
-    let page = scratch("allan.html");
-    let output = allan(&[&hour(), "--report", page.to_str().expect("a plain name")]);
-    assert_eq!(code(&output), 0);
-    let html = fs::read_to_string(&page).expect("it was written");
-    fs::remove_file(&page).expect("it is there");
-    for part in [
+    let (_, html) = page(&["allan", &hour()]);
+    let parts = [
         "averaging time τ, s",
         "Allan deviation σ, °/h",
         "limits of 68.3 %</li>",
@@ -133,9 +109,8 @@ fn the_page_has_the_curve_its_limits_the_fit_and_five_asymptotes() {
         "B bias instability: ",
         "K rate random walk: ",
         "R rate ramp: not observable",
-    ] {
-        assert!(html.contains(part), "{part} is missing");
-    }
+    ];
+    assert_drawn(&html, &parts);
     assert_eq!(html.matches("<circle cx").count(), 28 + 1, "every point, and one in the legend");
 }
 
@@ -281,16 +256,14 @@ fn a_recording_of_another_kind_is_refused_both_ways() {
     let moving = "# kind: dwells\nstage_rad,rate_rad_s,sigma_rad_s,seconds\n0,1e-5,1e-8,60\n";
     let output = on("dwells.csv", moving, &[]);
     assert!(refusal(&output).contains("dwells.csv: kind `dwells` is no record at rest"));
-    let mut replay = Command::new(env!("CARGO_BIN_EXE_meridian"));
-    let output = replay.args(["replay", &hour(), "--latitude", "50"]).output().expect("it starts");
+    let output = meridian(&["replay", &hour(), "--latitude", "50"]);
     assert!(refusal(&output).contains("kind `static` has no positions to align from"));
 }
 
 #[test]
 fn misuse_is_exit_two_in_one_line() {
     for arguments in [&[][..], &["a.csv", "--column"], &["a.csv", "--method", "x"]] {
-        let output = allan(arguments);
-        assert_eq!((code(&output), text(&output.stderr).lines().count()), (2, 1), "{arguments:?}");
+        assert_misuse(&[&["allan"], arguments].concat(), "");
     }
     assert!(
         refusal(&allan(&["no-such-file.csv"])).contains("no-such-file.csv: there is no such file")

@@ -1,8 +1,8 @@
 //! Recordings of kind `static`: one gyro or an inertial measurement unit, with gaps that are kept.
 
-use std::path::Path;
+use bench::recording::{Body, Gap, ImuSample, Recording, Spacing, StaticRow, read_from};
 
-use bench::recording::{Body, Gap, ImuSample, Recording, Spacing, StaticRow, read, read_from};
+use crate::support::files::recording;
 
 /// A gyro at 10 Hz; its column names stand in line 3, its rows in lines 4 to 9.
 const GYRO: &str = "\
@@ -138,8 +138,7 @@ fn a_rate_that_misses_by_more_than_one_per_cent_is_told_and_the_times_are_believ
 
 #[test]
 fn the_stored_hour_is_complete() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/recordings/static-gyro-1h.csv.gz");
-    let recording = read(&path).unwrap_or_else(|error| panic!("{error}"));
+    let recording = recording("static-gyro-1h");
     assert_eq!(recording.header.gyro_n_deg_sqrt_h, None);
     let truth =
         [("truth_N_deg_sqrt_h", "0.02"), ("truth_B_deg_h", "0.3"), ("truth_K_deg_h_sqrt_h", "2.0")];

@@ -3,11 +3,13 @@
 use std::cell::Cell;
 use std::fs;
 use std::io::{self, Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use bench::recording::{MAX_LINE_BYTES, MAX_ROWS, read, read_from};
 use flate2::{Compression, write::GzEncoder};
 use proptest::prelude::*;
+
+use crate::support::files::Scratch;
 
 use super::{DWELLS, ROTATING, STAGE, changed, gzip, message, parse};
 
@@ -166,12 +168,11 @@ fn a_file_that_is_not_there_or_is_a_directory_is_refused() {
 #[cfg(unix)]
 fn a_file_that_may_not_be_read_is_refused() {
     use std::os::unix::fs::PermissionsExt;
-    let path = std::env::temp_dir().join(format!("unreadable-{}.csv", std::process::id()));
-    fs::write(&path, STAGE).expect("the temporary directory takes files");
+    let scratch = Scratch::new("unreadable");
+    let path = PathBuf::from(scratch.with("unreadable.csv", STAGE));
     fs::set_permissions(&path, fs::Permissions::from_mode(0o000)).expect("the file is ours");
     let may_read_all = fs::read(&path).is_ok();
     let result = read(&path).map_err(|error| error.to_string());
-    fs::remove_file(&path).expect("the file is ours");
     let expected = format!("{}: may not be read; change its permissions", path.display());
     assert!(may_read_all || result == Err(expected));
 }

@@ -1,16 +1,10 @@
 //! The stored recordings are complete, and `data/README.md` says what they are.
 
-use std::path::Path;
+use bench::recording::{Body, Header, Sensor};
 
-use bench::recording::{Body, Header, Recording, Sensor, read};
+use crate::support::files::recording;
 
 use super::stage_rows;
-
-/// Reads a stored recording.
-fn stored(name: &str) -> Recording {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/recordings");
-    read(&folder.join(name).with_extension("csv.gz")).unwrap_or_else(|error| panic!("{error}"))
-}
 
 /// What is asserted of a stored recording.
 struct Expected {
@@ -125,7 +119,7 @@ fn all() -> [Expected; 10] {
 #[test]
 fn each_stored_recording_has_its_rows_header_and_truth() {
     for expected in all() {
-        let recording = stored(expected.name);
+        let recording = recording(expected.name);
         assert_eq!(recording.header, expected.header, "{}", expected.name);
         assert_eq!(recording.truth.azimuth_deg, Some(expected.azimuth_deg), "{}", expected.name);
         let rows = stage_rows(recording);
@@ -165,7 +159,7 @@ fn rotating() -> [Expected; 2] {
 #[test]
 fn each_rotating_recording_has_its_rows_header_and_truth() {
     for expected in rotating() {
-        let recording = stored(expected.name);
+        let recording = recording(expected.name);
         assert_eq!(recording.header, expected.header, "{}", expected.name);
         assert_eq!(recording.truth.azimuth_deg, Some(expected.azimuth_deg), "{}", expected.name);
         let Body::Rotating(rows) = recording.body else { panic!("is {}", recording.body.kind()) };
@@ -211,7 +205,7 @@ fn vehicles() -> [Expected; 4] {
 #[test]
 fn each_recording_of_a_vehicle_has_its_rows_header_and_truth() {
     for expected in vehicles() {
-        let recording = stored(expected.name);
+        let recording = recording(expected.name);
         assert_eq!(recording.header, expected.header, "{}", expected.name);
         assert_eq!(recording.truth.azimuth_deg, Some(expected.azimuth_deg), "{}", expected.name);
         assert_eq!(recording.truth.start_azimuth_deg, Some(72.5621), "{}", expected.name);
@@ -226,7 +220,7 @@ fn each_recording_of_a_spinning_body_has_its_rows_and_the_true_roll_of_each() {
     for (name, first, last) in
         [("spin-100rps", 0.4, 630.980_24), ("spin-80rps-noisy", 0.0, 510.660_7)]
     {
-        let recording = stored(name);
+        let recording = recording(name);
         assert_eq!(recording.header, Header { rate_hz: Some(10_000.0), ..Header::default() });
         assert_eq!(recording.truth.others, [("truth_scale_error".to_owned(), "0.001".to_owned())]);
         let rolls = &recording.truth.roll_rad;
@@ -262,7 +256,7 @@ fn broad() -> [Expected; 6] {
 #[test]
 fn the_recordings_of_broad_know_the_attitude_where_errors_count() {
     for (expected, known) in broad().into_iter().zip([21_708, 9230, 16_655, 19_201, 18_074, 7198]) {
-        let recording = stored(expected.name);
+        let recording = recording(expected.name);
         assert_eq!(recording.header, expected.header, "{}", expected.name);
         let attitude = &recording.truth.attitude;
         assert_eq!(attitude.iter().flatten().count(), known, "{}", expected.name);
@@ -276,7 +270,7 @@ fn the_recordings_of_broad_know_the_attitude_where_errors_count() {
 fn the_disturbances_are_known_to_the_truth_only() {
     for (name, span) in [("stepwise-bumped", "47-51"), ("stepwise-nudged", "79-83")] {
         let expected = [("truth_disturbed_s".to_owned(), span.to_owned())];
-        assert_eq!(stored(name).truth.others, expected);
+        assert_eq!(recording(name).truth.others, expected);
     }
 }
 

@@ -5,10 +5,9 @@ mod slow;
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 use std::fmt::Write;
-use std::path::Path;
 
 use bench::output::{azimuth_error, columns};
-use bench::recording::{self, Body, Header, Recording, StageRow};
+use bench::recording::{Body, Header, StageRow};
 use bench::replay::{Options, Replay, ReplayError, replay};
 use hal_mock::noise::Generator;
 use orientation::align::conclusion::Conclusion;
@@ -17,6 +16,8 @@ use orientation::align::quality::Disturbance;
 use orientation::align::setting::Half;
 use orientation::earth::Latitude;
 use orientation::error::{Refusal, Source};
+
+use crate::support::files::recording;
 
 struct Replayed {
     replay: Replay,
@@ -53,13 +54,8 @@ impl Replayed {
     }
 }
 
-fn stored(name: &str) -> Recording {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/recordings").join(name);
-    recording::read(&path.with_extension("csv.gz")).expect("it reads")
-}
-
 fn replayed_with(name: &str, options: &Options) -> Replayed {
-    let (header, body, truth) = stored(name).into_parts();
+    let (header, body, truth) = recording(name).into_parts();
     let replay = replay(&header, &body, options, |_| {}).expect("it replays");
     Replayed { replay, header, truth_deg: truth.azimuth_deg.expect("it carries a truth") }
 }
@@ -225,7 +221,7 @@ fn a_demand_beyond_the_limit_is_refused_and_names_what_limits() {
 #[test]
 fn noise_that_is_not_stated_is_estimated_from_the_dwells() {
     for name in ["stepwise-circle", "stepwise-tilted-drift"] {
-        let (mut header, body, truth) = stored(name).into_parts();
+        let (mut header, body, truth) = recording(name).into_parts();
         let stated = header.gyro_n_deg_sqrt_h.take().expect("N is stated");
         let replay = replay(&header, &body, &Options::default(), |_| {}).expect("it replays");
         let conclusion = replay.session.conclusion().expect("it has ended");
@@ -290,7 +286,7 @@ fn dwells_with(count: usize, azimuth_deg: f64, disturbed: Disturbing) -> (String
 }
 
 fn replayed_dwells(text: &str, options: &Options) -> Result<Replay, ReplayError> {
-    let recording = recording::read_from("dwells.csv", text.as_bytes()).expect("it reads");
+    let recording = bench::recording::read_from("dwells.csv", text.as_bytes()).expect("it reads");
     let (header, body, _) = recording.into_parts();
     replay(&header, &body, options, |_| {})
 }
@@ -361,7 +357,7 @@ fn dwells_without_forces_are_told_to_be_taken_as_level() {
         writeln!(text, "{stage},{rate},1e-8,60").expect("a String takes all");
     }
     let (header, body, _) =
-        recording::read_from("level", text.as_bytes()).expect("it reads").into_parts();
+        bench::recording::read_from("level", text.as_bytes()).expect("it reads").into_parts();
     let replay = replay(&header, &body, &Options::default(), |_| {}).expect("it replays");
     let level =
         "a level platform, for there are no forces: by each degree of tilt north is 1.00° off";
@@ -392,7 +388,7 @@ const OTHERWISE: [(&str, Change); 4] = [
 fn a_stage_that_is_built_otherwise_is_refused_or_stands_under_what_is_assumed_with_its_size() {
     let mut told = 0;
     for name in ALL {
-        let (header, body, truth) = stored(name).into_parts();
+        let (header, body, truth) = recording(name).into_parts();
         let truth_deg = truth.azimuth_deg.expect("it carries a truth");
         let Body::Stage(rows) = body else { continue };
         for (words, change) in OTHERWISE {
@@ -425,7 +421,7 @@ fn accelerometer_biases_that_drift_are_told_from_a_base_that_tilts() {
         for (rate, [x, y]) in
             per_second.into_iter().flat_map(|rate| [(rate, [1.0, -1.0]), (rate, [0.5, 1.0])])
         {
-            let (header, body, truth) = stored(name).into_parts();
+            let (header, body, truth) = recording(name).into_parts();
             let Body::Stage(mut rows) = body else { panic!("{name} is no stage") };
             for row in &mut rows {
                 let drift = 9.81 * rate * row.time_s;
@@ -452,7 +448,7 @@ fn accelerometer_biases_that_drift_are_told_from_a_base_that_tilts() {
 #[test]
 fn a_dead_accelerometer_across_the_vertical_is_named() {
     for axes in [vec![0], vec![1], vec![0, 1]] {
-        let (header, body, _) = stored("stepwise-circle").into_parts();
+        let (header, body, _) = recording("stepwise-circle").into_parts();
         let Body::Stage(mut rows) = body else { panic!("it is a stage") };
         for (index, row) in rows.iter_mut().enumerate() {
             for axis in &axes {

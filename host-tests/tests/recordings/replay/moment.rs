@@ -2,7 +2,9 @@
 
 use bench::recording::{Body, Header, StageRow};
 
-use super::{ALL, of_rows, stored};
+use crate::support::files::recording;
+
+use super::{ALL, of_rows};
 
 /// What makes a column of a recording's row that of another row.
 type Shift = fn(&mut StageRow, &StageRow);
@@ -26,7 +28,7 @@ struct Sound {
 }
 
 fn sound(name: &str) -> Sound {
-    let (header, body, truth) = stored(name).into_parts();
+    let (header, body, truth) = recording(name).into_parts();
     let Body::Stage(rows) = body else { panic!("{name} is no stage") };
     let truth_deg = truth.azimuth_deg.expect("it carries a truth");
     let dwell = rows.partition_point(|row| (row.stage_rad - rows[0].stage_rad).abs() < 1e-3);

@@ -4,7 +4,9 @@ use bench::recording::{Body, Header, StageRow};
 use hal_mock::noise::Generator;
 use orientation::earth::Latitude;
 
-use super::{ALL, of_rows, stored};
+use crate::support::files::recording;
+
+use super::{ALL, of_rows};
 
 /// Standard gravity, m/s².
 const GRAVITY: f64 = 9.81;
@@ -92,7 +94,7 @@ fn most(assumed: &[String], words: &str, rate: f64) -> Option<f64> {
 fn assert_told(words: &str, rates: &[f64], rad_s: f64, moves: Moves, turned: f64) -> usize {
     let mut told = 0;
     for name in ALL {
-        let (header, body, truth) = stored(name).into_parts();
+        let (header, body, truth) = recording(name).into_parts();
         let truth_deg = truth.azimuth_deg.expect("it carries a truth");
         let Body::Stage(rows) = body else { continue };
         for rate in rates {

@@ -6,17 +6,17 @@ mod output;
 mod simulated;
 mod spoilt;
 
-use std::path::{Path, PathBuf};
-
 use bench::cause::of_turning;
 use bench::output::azimuth_error;
-use bench::recording::{self, Body, Header, Kind, RotatingRow};
+use bench::recording::{Body, Header, Kind, RotatingRow};
 use bench::replay::{Options, ReplayError};
 use bench::rotating::{Replay, replay};
 use orientation::align::rotating::conclusion::Conclusion;
 use orientation::align::rotating::solution::Pair;
 use orientation::earth::Latitude;
 use orientation::error::Refusal;
+
+use crate::support::files::recording;
 
 use oracle::Known;
 
@@ -28,15 +28,8 @@ struct Recorded {
     truth_deg: f64,
 }
 
-fn file(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("data/recordings")
-        .join(name)
-        .with_extension("csv.gz")
-}
-
 fn recorded(name: &str) -> Recorded {
-    let (header, body, truth) = recording::read(&file(name)).expect("it reads").into_parts();
+    let (header, body, truth) = recording(name).into_parts();
     let truth_deg = truth.azimuth_deg.expect("it carries a truth");
     Recorded { header, rows: body.rotating().to_vec(), truth_deg }
 }
@@ -216,7 +209,7 @@ fn without_a_latitude_or_on_another_kind_there_is_no_replay() {
     let body = Body::Rotating(recorded.rows);
     let none = replay(&recorded.header, &body, &Options::default()).expect_err("no latitude");
     assert_eq!(none, ReplayError::NoLatitude(Kind::Rotating));
-    let stage = recording::read(&file("stepwise-paper-1")).expect("it reads");
+    let stage = recording("stepwise-paper-1");
     let other = replay(&stage.header, &stage.body, &Options::default()).expect_err("another kind");
     assert_eq!(
         other.to_string(),

@@ -1,22 +1,16 @@
 //! What the command line says of a turning platform.
 
-use std::process::{Command, Output};
+use std::process::Output;
 
 use serde_json::Value;
 
-use super::{GYRO, MET, file};
+use crate::support::files::stored;
+use crate::support::program::{assert_drawn, meridian, object, page};
 
-fn meridian(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_meridian")).args(arguments).output().expect("it runs")
-}
+use super::{GYRO, MET};
 
 fn replayed(name: &str, more: &[&str]) -> Output {
-    let path = file(name).display().to_string();
-    meridian(&[&["replay", path.as_str()], more].concat())
-}
-
-fn object(output: &Output) -> Value {
-    serde_json::from_slice(&output.stdout).expect("one JSON object")
+    meridian(&[&["replay", &stored(name)], more].concat())
 }
 
 #[test]
@@ -100,22 +94,17 @@ fn the_block_prints_the_limit_the_coupling_and_every_stage() {
 
 #[test]
 fn the_report_draws_profile_spectra_phasors_and_residuals() {
-    let page = std::env::temp_dir().join(format!("rotating-{}.html", std::process::id()));
-    let path = page.display().to_string();
-    assert!(replayed(MET, &["--report", path.as_str()]).status.success());
-    let text = std::fs::read_to_string(&page).expect("it was written");
-    std::fs::remove_file(&page).expect("the file is ours");
-    for title in [
+    let (_, page) = page(&["replay", &stored(MET)]);
+    let titles = [
         "Azimuth after each stage of compensation",
         "Rate of the platform, clockwise at 0.100 Hz, unevenly",
         "Amplitude spectra, clockwise at 0.100 Hz, unevenly",
         "Amplitude spectra, counter-clockwise at 0.200 Hz",
         "Phasor of the sensor's signal in each turn",
         "Phasor of each turn less the mean of its stretch",
-    ] {
-        assert!(text.contains(title), "{title}");
-    }
-    assert!(!text.contains("no points to draw"));
+    ];
+    assert_drawn(&page, &titles);
+    assert!(!page.contains("no points to draw"));
 }
 
 #[test]

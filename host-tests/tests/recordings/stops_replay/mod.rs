@@ -5,15 +5,15 @@ mod output;
 mod parts;
 mod spoilt;
 
-use std::path::{Path, PathBuf};
-
 use bench::output::{azimuth_error, degrees, degrees_per_hour};
-use bench::recording::{self, Body, Header, ImuRow, Truth};
+use bench::recording::{Body, Header, ImuRow, Truth};
 use bench::stops::averaging::Averages;
 use bench::stops::{Method, Options, Replay, replay};
 use orientation::align::conclusion::Azimuth;
 use orientation::align::stops::conclusion::{Conclusion, Found};
 use orientation::error::Refusal;
+
+use crate::support::files::recording;
 
 const IDEAL: &str = "drive-ideal";
 const FOG: &str = "drive-fog-1dph";
@@ -30,15 +30,8 @@ struct Recorded {
     truth: Truth,
 }
 
-fn file(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("data/recordings")
-        .join(name)
-        .with_extension("csv.gz")
-}
-
 fn recorded(name: &str) -> Recorded {
-    let (header, body, truth) = recording::read(&file(name)).expect("it reads").into_parts();
+    let (header, body, truth) = recording(name).into_parts();
     let Body::Imu(rows) = body else { panic!("{name} is {}", body.kind()) };
     Recorded { header, rows, truth }
 }

@@ -1,22 +1,16 @@
 //! What the command line says of a vehicle.
 
-use std::process::{Command, Output};
+use std::process::Output;
 
 use serde_json::Value;
 
-use super::{FOG, IDEAL, PARKED, THREE, file};
+use crate::support::files::{Scratch, stored, unpacked};
+use crate::support::program::{assert_drawn, meridian, object, page};
 
-fn meridian(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_meridian")).args(arguments).output().expect("it runs")
-}
+use super::{FOG, IDEAL, PARKED, THREE};
 
 fn replayed(name: &str, more: &[&str]) -> Output {
-    let path = file(name).display().to_string();
-    meridian(&[&["replay", path.as_str()], more].concat())
-}
-
-fn object(output: &Output) -> Value {
-    serde_json::from_slice(&output.stdout).expect("one JSON object")
+    meridian(&[&["replay", &stored(name)], more].concat())
 }
 
 #[test]
@@ -101,12 +95,8 @@ fn the_block_prints_both_ends_the_paper_and_the_stops() {
 
 #[test]
 fn the_report_draws_the_papers_figures() {
-    let page = std::env::temp_dir().join(format!("stops-{}.html", std::process::id()));
-    let path = page.display().to_string();
-    assert!(replayed(FOG, &["--report", path.as_str()]).status.success());
-    let text = std::fs::read_to_string(&page).expect("it was written");
-    std::fs::remove_file(&page).expect("the file is ours");
-    for title in [
+    let (_, page) = page(&["replay", &stored(FOG)]);
+    let titles = [
         "U over the azimuth at the start (Fig. 9)",
         "U near its minimum",
         "Kryt1 = Ω − |ω| (Fig. 6)",
@@ -117,21 +107,14 @@ fn the_report_draws_the_papers_figures() {
         "Azimuth at the end, with 1σ",
         "Error budget",
         "Stops",
-    ] {
-        assert!(text.contains(title), "{title}");
-    }
-    assert!(!text.contains("no points to draw"));
+    ];
+    assert_drawn(&page, &titles);
+    assert!(!page.contains("no points to draw"));
 }
 
 /// A plain copy of a recording with its text changed.
-fn changed(name: &str, stem: &str, change: impl FnOnce(String) -> String) -> std::path::PathBuf {
-    use std::io::Read;
-    let stored = std::fs::File::open(file(name)).expect("it is stored");
-    let mut text = String::new();
-    flate2::read::GzDecoder::new(stored).read_to_string(&mut text).expect("it is text");
-    let copy = std::env::temp_dir().join(format!("{stem}-{}.csv", std::process::id()));
-    std::fs::write(&copy, change(text)).expect("it is written");
-    copy
+fn changed(scratch: &Scratch, name: &str, change: impl FnOnce(String) -> String) -> String {
+    scratch.with("changed.csv", change(unpacked(name)))
 }
 
 #[test]
@@ -140,9 +123,8 @@ fn a_false_truth_changes_nothing_but_the_errors() {
         text.replace("truth_azimuth_deg: 12.562100", "truth_azimuth_deg: 200.0")
             .replace("truth_start_azimuth_deg: 72.562100", "truth_start_azimuth_deg: 3.0")
     };
-    let copy = changed(THREE, "lie", lie);
-    let lied = object(&meridian(&["replay", &copy.display().to_string(), "--json"]));
-    std::fs::remove_file(&copy).expect("the file is ours");
+    let scratch = Scratch::new("lie");
+    let lied = object(&meridian(&["replay", &changed(&scratch, THREE, lie), "--json"]));
     let mut lied = lied.as_object().expect("an object").clone();
     let mut told = object(&replayed(THREE, &["--json"])).as_object().expect("an object").clone();
     for key in ["error_deg", "start_error_deg"] {
@@ -157,9 +139,8 @@ fn a_refusal_is_told_with_its_reason_and_exit_one() {
         text.replace("# stops_s: 0-60;960-1020", "# stops_s: 0-60")
             .replace("displacements_north_east_m", "unknown")
     };
-    let copy = changed(FOG, "one-stop", one_stop);
-    let output = meridian(&["replay", &copy.display().to_string(), "--json"]);
-    std::fs::remove_file(&copy).expect("the file is ours");
+    let scratch = Scratch::new("one-stop");
+    let output = meridian(&["replay", &changed(&scratch, FOG, one_stop), "--json"]);
     assert_eq!(output.status.code(), Some(1));
     let object = object(&output);
     assert_eq!(object["status"], "refused");
@@ -194,8 +175,8 @@ fn latitude_and_displacements_may_come_from_the_command_line() {
         text.replace("# latitude_deg: 52.000000\n", "")
             .replace("# displacements_north_east_m: 0.0,0.0;-2134.0,2737.8\n", "")
     };
-    let copy = changed(IDEAL, "bare", bare);
-    let path = copy.display().to_string();
+    let scratch = Scratch::new("bare");
+    let path = changed(&scratch, IDEAL, bare);
     let nothing = meridian(&["replay", &path]);
     let told = meridian(&[
         "replay",
@@ -206,7 +187,6 @@ fn latitude_and_displacements_may_come_from_the_command_line() {
         "0,0;-2134.0,2737.8",
         "--json",
     ]);
-    std::fs::remove_file(&copy).expect("the file is ours");
     assert_eq!(nothing.status.code(), Some(1));
     let [mut told, mut stored] = [told, replayed(IDEAL, &["--json"])].map(|output| object(&output));
     // The header says the same.

@@ -1,27 +1,16 @@
 //! What the command line says of an attitude that was kept.
 
-use std::process::{Command, Output};
+use std::process::Output;
 
-use bench::recording;
 use serde_json::Value;
 
-use super::{TRIALS, file};
+use crate::support::files::{Scratch, recording, stored};
+use crate::support::program::{assert_drawn, meridian, object, page, reason, text};
 
-fn meridian(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_meridian")).args(arguments).output().expect("it runs")
-}
+use super::TRIALS;
 
 fn replayed(name: &str, more: &[&str]) -> Output {
-    let path = file(name).display().to_string();
-    meridian(&[&["replay", path.as_str(), "--method", "vertical"], more].concat())
-}
-
-fn text(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stdout).into_owned()
-}
-
-fn object(output: &Output) -> Value {
-    serde_json::from_slice(&output.stdout).expect("one JSON object")
+    meridian(&[&["replay", &stored(name), "--method", "vertical"], more].concat())
 }
 
 fn number(object: &Value, key: &str) -> f64 {
@@ -51,14 +40,13 @@ fn the_object_has_its_keys_and_the_errors_where_there_is_a_truth() {
 #[test]
 fn the_attitude_is_written_for_every_sample_and_has_the_errors_that_are_told() {
     for (name, _) in TRIALS {
-        let path = std::env::temp_dir().join(format!("{name}-{}.csv", std::process::id()));
-        let path_text = path.display().to_string();
-        let told = object(&replayed(name, &["--json", "--attitude-out", &path_text]));
-        let written = std::fs::read_to_string(&path).expect("it was written");
-        std::fs::remove_file(&path).expect("it is ours");
+        let scratch = Scratch::new("attitude");
+        let path = scratch.path("attitude.csv");
+        let told = object(&replayed(name, &["--json", "--attitude-out", &path]));
+        let written = scratch.read("attitude.csv");
         let mut lines = written.lines();
         assert_eq!(lines.next(), Some("t_s,qw,qx,qy,qz,sigma_tilt_rad"));
-        let truth = recording::read(&file(name)).expect("it reads").truth.attitude;
+        let truth = recording(name).truth.attitude;
         let mut squares = Vec::new();
         for (line, truth) in lines.by_ref().zip(&truth) {
             let fields: Vec<f64> = line.split(',').filter_map(|field| field.parse().ok()).collect();
@@ -95,7 +83,7 @@ fn inclination_deg(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 #[test]
 fn the_block_tells_level_turn_biases_states_and_what_was_assumed() {
-    let block = text(&replayed("imu-broad-06", &[]));
+    let block = text(&replayed("imu-broad-06", &[]).stdout);
     for words in [
         "Pitch and roll kept in",
         "° (1σ)",
@@ -109,58 +97,43 @@ fn the_block_tells_level_turn_biases_states_and_what_was_assumed() {
     ] {
         assert!(block.contains(words), "{words}: {block}");
     }
-    let known = text(&replayed("imu-broad-06", &["--latitude", "52.5"]));
+    let known = text(&replayed("imu-broad-06", &["--latitude", "52.5"]).stdout);
     assert!(!known.contains("latitude 45°"), "{known}");
     // A header that knows its gyros is believed.
-    let fog = text(&replayed("drive-fog-1dph", &[]));
+    let fog = text(&replayed("drive-fog-1dph", &[]).stdout);
     assert!(!fog.contains("gyro noise of") && !fog.contains("gyro biases of"), "{fog}");
     assert!(fog.contains("accelerometer biases of a coarse unit"), "{fog}");
 }
 
 #[test]
 fn a_recording_is_not_written_over_and_no_output_over_another() {
-    let path = std::env::temp_dir().join(format!("kept-{}.csv.gz", std::process::id()));
-    std::fs::copy(file("imu-broad-24"), &path).expect("it is copied");
-    let before = std::fs::read(&path).expect("it is there");
-    let text = path.display().to_string();
-    let replay = |options: &[&str]| {
-        let meridian = Command::new(env!("CARGO_BIN_EXE_meridian"))
-            .args(["replay", &text, "--method", "vertical"])
-            .args(options)
-            .output()
-            .expect("it runs");
-        (meridian.status.success(), String::from_utf8_lossy(&meridian.stderr).into_owned())
-    };
+    let scratch = Scratch::new("kept");
+    let before = std::fs::read(stored("imu-broad-24")).expect("it is there");
+    let path = scratch.with("kept.csv.gz", &before);
     for (options, words) in [
-        (["--attitude-out", &text, "--report", "x.html"], "--attitude-out"),
-        (["--attitude-out", "x.csv", "--report", &text], "--report"),
+        (["--attitude-out", &path, "--report", "x.html"], "--attitude-out"),
+        (["--attitude-out", "x.csv", "--report", &path], "--report"),
         (["--attitude-out", "x.csv", "--report", "x.csv"], "takes the attitude already"),
     ] {
-        let (is_done, told) = replay(&options);
-        assert!(!is_done && told.contains(words), "{told}");
+        let output = meridian(&[&["replay", &path, "--method", "vertical"], &options[..]].concat());
+        let told = reason(&output);
+        assert!(!output.status.success() && told.contains(words), "{told}");
     }
     assert_eq!(std::fs::read(&path).expect("it is there"), before);
-    std::fs::remove_file(&path).expect("it is ours");
 }
 
 #[test]
 fn the_report_draws_errors_beside_their_sigma() {
-    let path = std::env::temp_dir().join(format!("vertical-{}.html", std::process::id()));
-    let path_text = path.display().to_string();
-    assert!(replayed("imu-broad-24", &["--report", &path_text]).status.success());
-    let page = std::fs::read_to_string(&path).expect("it was written");
-    assert!(replayed("parked-swaying", &["--report", &path_text]).status.success());
-    let without = std::fs::read_to_string(&path).expect("it was written");
-    std::fs::remove_file(&path).expect("it is ours");
-    for title in ["Error of the vertical", "Error of the heading", "Biases of the gyros", "±σ"] {
-        assert!(page.contains(title), "{title}");
-    }
+    let [with, without] = ["imu-broad-24", "parked-swaying"]
+        .map(|name| page(&["replay", &stored(name), "--method", "vertical"]).1);
+    let titles = ["Error of the vertical", "Error of the heading", "Biases of the gyros", "±σ"];
+    assert_drawn(&with, &titles);
     assert!(!without.contains("Error of the vertical") && without.contains("Pitch and roll"));
 }
 
 #[test]
 fn options_that_keep_no_attitude_or_no_azimuth_are_misuse() {
-    let path = file("imu-broad-06").display().to_string();
+    let path = stored("imu-broad-06");
     for (method, more) in [
         ("vertical", ["--half", "east"]),
         ("vertical", ["--criterion", "least-squares"]),
@@ -182,7 +155,7 @@ fn a_sigma_that_was_not_reached_is_refused_with_exit_one() {
     assert!(object.get("pitch_deg").is_none());
     let reason = object["reason"].as_str().expect("a reason");
     assert!(reason.contains("0.01° is wanted"), "{reason}");
-    let stage = file("stepwise-paper-1").display().to_string();
+    let stage = stored("stepwise-paper-1");
     let output = meridian(&["replay", &stage, "--method", "vertical"]);
     assert_eq!(output.status.code(), Some(1));
     let error = String::from_utf8_lossy(&output.stderr).into_owned();

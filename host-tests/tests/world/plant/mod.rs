@@ -16,20 +16,13 @@ use hal_mock::plant::train::StageConfiguration;
 use hal_mock::plant::{Plant, PlantConfiguration, StageFault};
 use hal_mock::stage::{EncoderConfiguration, Harmonic, StageState};
 
+use crate::support::{assert_near, at};
+
 /// Microsteps in a radian of the stage.
 const PER_RAD: f64 = 4_608_000.0 / TAU;
 
 /// Rounding of microseconds and of 4 608 000 microsteps a turn in `f64`.
 const EXACT: f64 = 1e-12;
-
-#[track_caller]
-fn assert_near(value: f64, expected: f64, tolerance: f64) {
-    assert!((value - expected).abs() <= tolerance, "{value} is not {expected} ± {tolerance}");
-}
-
-fn at(seconds: f64) -> Instant {
-    Instant::from_micros((seconds * 1e6).round() as u64)
-}
 
 /// A perfect plant with this stage.
 fn with_stage(stage: StageConfiguration) -> Plant<'static> {

@@ -9,20 +9,12 @@ mod unevenness;
 
 use std::f64::consts::TAU;
 
-use embassy_time::Instant;
 use hal_mock::turntable::{TurningSample, Turntable, TurntableConfiguration};
+
+use crate::support::{assert_near, at};
 
 /// Microsteps in a radian of the stage.
 const PER_RAD: f64 = 4_608_000.0 / TAU;
-
-#[track_caller]
-fn assert_near(value: f64, expected: f64, tolerance: f64) {
-    assert!((value - expected).abs() <= tolerance, "{value} is not {expected} ± {tolerance}");
-}
-
-fn at(seconds: f64) -> Instant {
-    Instant::from_micros((seconds * 1e6).round() as u64)
-}
 
 fn run(configuration: &TurntableConfiguration, seed: u64) -> Vec<TurningSample> {
     Turntable::new(configuration, seed).collect()

@@ -11,13 +11,10 @@ mod scenarios;
 use hal_mock::plant::sway::{SwayComponent, SwayConfiguration};
 use hal_mock::vehicle::{Vehicle, VehicleConfiguration, VehicleSample, VehicleTruth};
 
+use crate::support::assert_near;
+
 /// Earth's rotation rate, rad/s (WGS 84).
 const EARTH: f64 = 7.292_115e-5;
-
-#[track_caller]
-fn assert_near(value: f64, expected: f64, tolerance: f64) {
-    assert!((value - expected).abs() <= tolerance, "{value} is not {expected} ± {tolerance}");
-}
 
 #[track_caller]
 fn assert_vector(value: [f64; 3], expected: [f64; 3], tolerance: f64) {

@@ -1,12 +1,10 @@
-//! Recordings of a platform that turns all the time, with faults of any severity: what must not get past, and what
-//! must not be refused.
+//! Recordings of a platform that turns all the time.
 
 use bench::campaign::disturbed::{classes, row, turning};
 use bench::campaign::statistics::{Answer, Precision};
 use rayon::prelude::*;
 
-/// Runs of each class; `meridian campaign disturbed` does ten times as many.
-const RUNS: usize = 20;
+use super::RUNS;
 
 /// The faults of which some get past, when they are just too small to be seen: a base that yaws, for a tilt lets the
 /// gyro feel its rate as the Earth's; and one that is turned while the platform turns back, for that looks like a lag.

@@ -1,10 +1,11 @@
-//! `campaign keep` in small: its limit, an azimuth that is stored on a base that turns, and what it prints.
+//! `campaign keep`: Burov's classes half an hour after their alignment as the README prints them, its limit, an
+//! azimuth that is stored on a base that turns, and what it prints.
 
 use std::f64::consts::{LN_2, PI};
-use std::process::Command;
 
-use bench::campaign::keep;
 use bench::campaign::keep::limit::{adjacent_variance, stored_sigma};
+use bench::campaign::keep::{self, Row, Spread};
+use bench::campaign::statistics::NORMAL_COVERAGE;
 use bench::output::azimuth_error;
 use bench::stops::samples::Converter;
 use orientation::earth::Latitude;
@@ -12,7 +13,9 @@ use orientation::keep::{Gyro, Handover, Keeper, Setting};
 use orientation::noise::model::GyroNoise;
 use orientation::units::DEGREE_PER_HOUR;
 use proptest::prelude::*;
-use serde_json::Value;
+
+use crate::support::campaign::{Extent, campaigns};
+use crate::support::program::{assert_drawn, object, page};
 
 proptest! {
     #[test]
@@ -84,12 +87,9 @@ fn a_base_keeps_its_azimuth_at_rest_and_through_turns_whatever_bias_and_latitude
 
 #[test]
 fn the_command_prints_every_class_and_draws() {
-    let page = std::env::temp_dir().join(format!("keep-{}.html", std::process::id()));
-    let path = page.display().to_string();
-    let arguments = ["campaign", "keep", "--runs", "1", "--json", "--report", path.as_str()];
-    let output = Command::new(env!("CARGO_BIN_EXE_meridian")).args(arguments).output();
-    let output = output.expect("it runs");
-    let object: Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
+    let arguments = ["campaign", "keep", "--runs", "1", "--json"];
+    let (output, page) = page(&arguments);
+    let object = object(&output);
     assert_eq!(object["campaign"], "keep");
     let classes = object["classes"].as_array().expect("there are classes");
     assert_eq!(classes.len(), keep::COUNT);
@@ -97,9 +97,55 @@ fn the_command_prints_every_class_and_draws() {
         assert_eq!(class["growth"].as_array().map(Vec::len), Some(30), "{class}");
         assert!(class["azimuth"]["rms_deg"].is_f64() && class["azimuth_limit_deg"].is_f64());
     }
-    let drawn = std::fs::read_to_string(&page).expect("it was written");
-    std::fs::remove_file(&page).expect("the file is ours");
-    for title in ["Table 1", "Azimuth: very lightweight", "Pitch and roll: light", "σ(t)"] {
-        assert!(drawn.contains(title), "{title}");
+    let titles = ["Table 1", "Azimuth: very lightweight", "Pitch and roll: light", "σ(t)"];
+    assert_drawn(&page, &titles);
+}
+
+/// Vehicles of each class: the RMS is then known to 5 %, the coverage of all to 1.5 points.
+const RUNS: usize = 200;
+/// Classes; the rows after them stand for comparison.
+const CLASSES: usize = 5;
+
+/// As the README has it.
+fn line(row: &Row) -> String {
+    let covered = |spread: &Spread| {
+        let [one, two, three] = spread.coverage_percent;
+        format!("{one:.1}, {two:.1}, {three:.1} %")
+    };
+    format!(
+        "| {} | {:.2}° | {:.3}° | {:.3}° | {:.3}° | {} | {:.2}° | {:.3}° | {} |",
+        row.class,
+        row.wanted_azimuth_deg,
+        row.azimuth_driving.rms_deg,
+        row.azimuth.rms_deg,
+        row.azimuth_limit_deg,
+        covered(&row.azimuth),
+        row.wanted_level_deg,
+        row.level.rms_deg,
+        covered(&row.level),
+    )
+}
+
+/// The coverage over all classes, per cent.
+fn over_all(rows: &[Row], of: impl Fn(&Row) -> Spread) -> [f64; 3] {
+    [0, 1, 2].map(|index| {
+        rows.iter().map(|row| of(row).coverage_percent[index]).sum::<f64>() / rows.len() as f64
+    })
+}
+
+campaigns! { each_class_keeps_azimuth_pitch_and_roll_as_its_row_wants_and_sigma_covers_them; }
+
+fn each_class_keeps_azimuth_pitch_and_roll_as_its_row_wants_and_sigma_covers_them(extent: Extent) {
+    let runs = extent.of(RUNS);
+    let rows: Vec<Row> = (0..CLASSES).map(|case| keep::row(case, runs, &|| {})).collect();
+    extent.assert_in_readme(&rows.iter().map(line).collect::<Vec<_>>());
+    for row in &rows {
+        assert!(row.is_wanted && row.is_met && row.lost == 0, "{row:?}");
+    }
+    for covered in [over_all(&rows, |row| row.azimuth), over_all(&rows, |row| row.level)] {
+        for (covered, normal) in covered.iter().zip(NORMAL_COVERAGE) {
+            let chance = extent.share(3.0, normal, CLASSES * runs);
+            assert!((covered - normal).abs() <= chance, "{covered} {normal} ± {chance}");
+        }
     }
 }

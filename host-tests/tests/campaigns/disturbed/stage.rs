@@ -1,9 +1,8 @@
-//! Recordings of a stage with faults of any severity: what must not get past, and what must not be refused.
+//! Recordings of a stage.
 
 use bench::campaign::disturbed::{classes, healthy, row, stage};
 
-/// Runs of each class; `meridian campaign disturbed` does ten times as many.
-const RUNS: usize = 20;
+use super::RUNS;
 
 /// The faults of a stage of which some still get past, when they are just too small to be seen: a rate of the base that
 /// shifts the last heading by five σ is hardly more than its own σ.
