@@ -1,0 +1,14 @@
+//! Campaigns: a tenth of each with every `cargo test`, the whole of it, with the README's figures, in `.ci/full`.
+#![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod burov;
+mod disturbed;
+mod instrument;
+mod keep;
+mod rotating;
+mod sokolov;
+mod spin;
+mod szymanowski;

@@ -1,0 +1,5 @@
+//! Holds the roll of a spinning body (equations.md §6) to closed forms and to what may go wrong.
+
+mod faults;
+mod lock;
+mod world;

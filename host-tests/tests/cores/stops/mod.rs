@@ -1,0 +1,16 @@
+//! Holds azimuth from stops (equations.md §5) to closed forms, to scipy, and to simulated vehicles.
+
+mod criteria;
+mod drives;
+mod inclination;
+mod increments;
+mod minimum;
+mod place;
+mod refusals;
+mod rotations;
+mod strapdown;
+mod swaying;
+mod turns;
+mod world;
+
+use crate::support::assert_near;

@@ -1,0 +1,9 @@
+//! Holds pitch, roll and the kept azimuth (equations.md §3, §7) to closed forms and to what may go wrong.
+
+mod attitude;
+mod faults;
+mod honesty;
+mod rest;
+mod world;
+
+use crate::support::assert_near;

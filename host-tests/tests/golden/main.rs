@@ -1,0 +1,266 @@
+//! Golden files: what the commands of `golden/commands.txt` print, as text, as JSON and as a page, and the
+//! bits that the emulated firmware is compared with.
+//!
+//! Wall-clock times are masked. `MERIDIAN_GOLDEN=write cargo test --test golden` writes the files anew; a
+//! commit that does so says why.
+
+#![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
+
+#[path = "../support/mod.rs"]
+mod support;
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::fs;
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::Output;
+
+use bench::emulate::host;
+use bench::emulate::outcome::Outcome;
+use firmware::simulated::scenario::Scenario;
+use firmware::simulated::turntable::TurntableScenario;
+use firmware::simulated::vehicle::VehicleScenario;
+use flate2::Compression;
+use flate2::read::GzDecoder;
+use flate2::write::GzEncoder;
+use serde_json::Value;
+
+use support::files::{Scratch, recordings};
+use support::program::command;
+
+/// A command, and the name of its files.
+struct Golden<'a> {
+    name: &'a str,
+    arguments: Vec<&'a str>,
+}
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden")
+}
+
+/// The commands of the list whose names begin so.
+fn goldens<'a>(list: &'a str, family: &str) -> Vec<Golden<'a>> {
+    let entries = list.lines().filter_map(|line| line.split_once(": "));
+    let chosen = entries.filter(|(name, _)| !name.starts_with('#') && name.starts_with(family));
+    chosen
+        .map(|(name, rest)| Golden { name, arguments: rest.split_whitespace().collect() })
+        .collect()
+}
+
+fn meridian(arguments: &[&str]) -> Output {
+    command().current_dir(recordings()).args(arguments).output().expect("it starts")
+}
+
+/// The exit code, then what stands on standard output, without the times that a clock on the wall gave.
+fn printed(output: &Output) -> String {
+    let code = output.status.code().expect("no signal ended it");
+    format!("exit {code}\n{}", without_times(&String::from_utf8_lossy(&output.stdout)))
+}
+
+/// A text without what its lines tell of how quick something was.
+fn without_times(text: &str) -> String {
+    text.lines().flat_map(|line| [masked(line), "\n"]).collect()
+}
+
+/// The same of a JSON object, a key a line.
+fn printed_object(output: &Output) -> String {
+    let code = output.status.code().expect("no signal ended it");
+    let mut object: Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
+    for key in TIMED {
+        if let Some(value) = object.get_mut(key) {
+            *value = Value::Null;
+        }
+    }
+    format!("exit {code}\n{object:#}\n")
+}
+
+/// Keys whose values a clock on the wall gave.
+const TIMED: [&str; 2] = ["streaming_samples_s", "batch_samples_s"];
+
+/// A line without what it tells of how quick something was: the end of one, all of another.
+fn masked(line: &str) -> &str {
+    if line.contains("million samples/s") {
+        return "(masked)";
+    }
+    let cut = line.find(" Hz in ").map(|at| at + " Hz".len());
+    &line[..cut.unwrap_or(line.len())]
+}
+
+/// Holds a text to its file, or writes the file where that is asked for.
+fn hold(file: &str, found: &str, differing: &mut Vec<String>) {
+    let path = folder().join(file);
+    if std::env::var_os("MERIDIAN_GOLDEN").is_some_and(|what| what == "write") {
+        fs::write(path, packed(file, found)).expect("the folder is ours");
+        return;
+    }
+    let kept = fs::read(&path).map(|bytes| unpacked(file, &bytes)).unwrap_or_default();
+    let (mut lines, mut kept) = (found.lines(), kept.lines());
+    let mut number = 0;
+    loop {
+        number += 1;
+        match (lines.next(), kept.next()) {
+            (None, None) => return,
+            (found, kept) if found == kept => {}
+            (found, kept) => {
+                return differing
+                    .push(format!("{file}:{number}\n  kept  {kept:?}\n  found {found:?}"));
+            }
+        }
+    }
+}
+
+fn is_packed(file: &str) -> bool {
+    Path::new(file).extension().is_some_and(|ending| ending == "gz")
+}
+
+fn packed(file: &str, text: &str) -> Vec<u8> {
+    if !is_packed(file) {
+        return text.as_bytes().to_vec();
+    }
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+    encoder.write_all(text.as_bytes()).expect("memory takes it");
+    encoder.finish().expect("memory takes it")
+}
+
+fn unpacked(file: &str, bytes: &[u8]) -> String {
+    let mut text = String::new();
+    if is_packed(file) {
+        GzDecoder::new(bytes).read_to_string(&mut text).expect("a golden page is text in gzip");
+    } else {
+        text.push_str(std::str::from_utf8(bytes).expect("a golden file is text"));
+    }
+    text
+}
+
+/// Runs every command of a family twice, for text with a page and for JSON.
+fn hold_family(family: &str) {
+    let list = fs::read_to_string(folder().join("commands.txt")).expect("the list is there");
+    let mut differing = Vec::new();
+    for Golden { name, arguments } in goldens(&list, family) {
+        let scratch = Scratch::new("golden");
+        let page = scratch.path(&format!("golden-{name}.html"));
+        let report = [&arguments[..], &["--report", page.as_str()]].concat();
+        let text = meridian(&report);
+        hold(&format!("{name}.txt"), &printed(&text), &mut differing);
+        let json = meridian(&[&arguments[..], &["--json"]].concat());
+        hold(&format!("{name}.json"), &printed_object(&json), &mut differing);
+        if let Ok(html) = fs::read_to_string(&page) {
+            hold(&format!("{name}.html.gz"), &without_times(&html), &mut differing);
+        }
+    }
+    assert!(differing.is_empty(), "{}", differing.join("\n"));
+}
+
+#[test]
+fn simulated_runs_print_what_they_printed() {
+    hold_family("run");
+}
+
+#[test]
+fn replays_print_what_they_printed() {
+    hold_family("replay");
+}
+
+#[test]
+fn campaigns_print_what_they_printed() {
+    hold_family("campaign");
+}
+
+#[test]
+fn noise_analyses_and_plans_print_what_they_printed() {
+    hold_family("allan");
+    hold_family("plan");
+}
+
+#[test]
+fn the_bits_that_the_emulated_firmware_is_compared_with_are_what_they_were() {
+    let mut found = String::new();
+    for seed in [1, 2] {
+        let stage = host::outcome(&Scenario { seed, ..Scenario::default() });
+        let turntable = host::turning(&TurntableScenario::brief(seed));
+        let vehicle = host::stops(&VehicleScenario::brief(seed));
+        for (carrier, outcome) in [("stage", stage), ("turntable", turntable), ("vehicle", vehicle)]
+        {
+            let outcome = outcome.expect("the simulated board comes to an end");
+            writeln!(found, "{carrier}, seed {seed}").expect("memory takes it");
+            describe(&mut found, &outcome);
+        }
+    }
+    let mut differing = Vec::new();
+    hold("emulator.txt", &found, &mut differing);
+    assert!(differing.is_empty(), "{}", differing.join("\n"));
+}
+
+/// Writes the bits of a run: the azimuth and its standard deviation, then a line for each dwell, turn, stop
+/// and second that it was kept.
+fn describe(text: &mut String, outcome: &Outcome) {
+    let Outcome { azimuth_bits, sigma_bits, reason, dwells, turns, stops, kept, .. } = outcome;
+    let found = [*azimuth_bits, *sigma_bits];
+    writeln!(text, "azimuth {} {reason:?}", hexadecimal(&found)).expect("memory takes it");
+    let lists: [(&str, Vec<&[Option<u64>]>); 4] = [
+        ("dwell", dwells.iter().map(|bits| &bits.0[..]).collect()),
+        ("turn", turns.iter().map(|bits| &bits.0[..]).collect()),
+        ("stop", stops.iter().map(|bits| &bits.0[..]).collect()),
+        ("kept", kept.iter().map(|bits| &bits.0[..]).collect()),
+    ];
+    for (what, list) in lists {
+        for bits in list {
+            writeln!(text, "{what} {}", hexadecimal(bits)).expect("memory takes it");
+        }
+    }
+}
+
+fn hexadecimal(bits: &[Option<u64>]) -> String {
+    let one = |bits: &Option<u64>| bits.map_or_else(|| "-".to_owned(), |bits| format!("{bits:x}"));
+    bits.iter().map(one).collect::<Vec<_>>().join(" ")
+}
+
+/// The keys that `README.md` lists: what stands in the code marks of its tables.
+fn listed() -> BTreeSet<String> {
+    let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
+    let text = fs::read_to_string(readme).expect("the list is there");
+    let rows = text.lines().filter(|line| line.starts_with("| `"));
+    rows.flat_map(|row| row.split('`').skip(1).step_by(2)).map(str::to_owned).collect()
+}
+
+/// All keys of a value, those of what it holds too.
+fn keys(value: &Value, into: &mut BTreeSet<String>) {
+    match value {
+        Value::Object(fields) => {
+            for (key, value) in fields {
+                into.insert(key.clone());
+                keys(value, into);
+            }
+        }
+        Value::Array(values) => values.iter().for_each(|value| keys(value, into)),
+        _ => {}
+    }
+}
+
+#[test]
+fn every_object_of_a_run_or_replay_keeps_the_contract_of_the_readme() {
+    let (list, listed) = (fs::read_to_string(folder().join("commands.txt")), listed());
+    let list = list.expect("the list is there");
+    let mut found = BTreeSet::new();
+    for Golden { name, .. } in ["run", "replay"].iter().flat_map(|family| goldens(&list, family)) {
+        let file = folder().join(format!("{name}.json"));
+        let text = fs::read_to_string(file).expect("every command has its golden files");
+        let (exit, object) = text.split_once('\n').expect("the exit code stands first");
+        let object: Value = serde_json::from_str(object).expect("an object follows");
+        keys(&object, &mut found);
+        let is_ok = object["status"] == "ok";
+        assert_eq!(is_ok, exit == "exit 0", "{name}");
+        assert_eq!(is_ok, object.get("reason").is_none(), "{name}: a refusal has a reason");
+        if object["status"] == "failed" {
+            continue;
+        }
+        assert_eq!(object["schema"], 1, "{name}");
+        assert!(object["file"].is_string() != object["seed"].is_u64(), "{name}: one of both");
+        assert!(is_ok || object.get("azimuth_deg").is_none(), "{name}: none where refused");
+        let sigma = object.get("sigma_deg").and_then(Value::as_f64);
+        assert!(!is_ok || sigma.is_some_and(|sigma| sigma > 0.0), "{name}: a result has its σ");
+    }
+    let unlisted: Vec<_> = found.difference(&listed).collect();
+    assert!(unlisted.is_empty(), "not in README.md: {unlisted:?}");
+}

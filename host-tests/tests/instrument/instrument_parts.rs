@@ -1,0 +1,231 @@
+//! The small parts of the instrument, each against a closed form or its written rule.
+
+use std::cell::RefCell;
+
+use bench::virtual_time;
+use drivers::fault::Fault;
+use embassy_time::{Duration, Instant, Timer};
+use embedded_io_async::{ErrorKind, ErrorType, Write};
+use firmware::calibration::{Calibration, Harmonics};
+use firmware::event::Event;
+use firmware::health::Health;
+use firmware::keep::Kept;
+use firmware::link::{self, Status};
+use firmware::ports::Observer;
+use firmware::retry_budget::{Remedy, RetryBudget, Symptom};
+use firmware::shared::Shared;
+use firmware::timeline::{Arrival, Timeline};
+use orientation::device::{Device, Trouble};
+use orientation::keep::State;
+use orientation::units::Angle;
+use proptest::prelude::*;
+
+fn at(microseconds: u64) -> Instant {
+    Instant::from_micros(microseconds)
+}
+
+#[test]
+fn samples_a_period_apart_are_in_time_and_a_quarter_is_forgiven() {
+    let mut timeline = Timeline::new(2500);
+    let times = [0, 2500, 5000 + 600, 7500 - 25, 10_000];
+    assert!(times.iter().all(|time| timeline.judge(at(*time)) == Arrival::InTime));
+}
+
+#[test]
+fn a_sample_beside_its_time_is_late_or_early_by_what_it_is_beside() {
+    let mut timeline = Timeline::new(2500);
+    assert_eq!(timeline.judge(at(0)), Arrival::InTime);
+    assert_eq!(timeline.judge(at(3400)), Arrival::Late(900));
+    assert_eq!(timeline.judge(at(5000)), Arrival::Late(-900));
+}
+
+#[test]
+fn every_missing_sample_is_counted_however_many() {
+    for missing in [1_u32, 2, 3, 40, 100_000] {
+        let mut timeline = Timeline::new(417);
+        timeline.judge(at(0));
+        let gap = u64::from(missing + 1) * 417 + 30;
+        assert_eq!(timeline.judge(at(gap)), Arrival::Missing(missing));
+    }
+}
+
+#[test]
+fn a_failing_bus_costs_three_readings_before_the_device_is_started_again() {
+    let mut retry_budget = RetryBudget::default();
+    let bus = Symptom::Chip(Fault::Bus);
+    let remedies = [(); 5].map(|()| retry_budget.failed(bus));
+    let [a, b, c, d, e] = remedies;
+    assert_eq!([a, b, c], [Remedy::Drop; 3]);
+    assert_eq!([d, e], [Remedy::Restart, Remedy::Drop]);
+}
+
+#[test]
+fn a_good_reading_restores_the_patience_with_the_bus() {
+    let mut retry_budget = RetryBudget::default();
+    let checksum = Symptom::Chip(Fault::Checksum);
+    for _ in 0..100 {
+        assert_eq!(retry_budget.failed(checksum), Remedy::Drop);
+        retry_budget.succeeded();
+    }
+}
+
+#[test]
+fn what_no_repetition_mends_restarts_five_times_and_then_is_given_up_for_its_reason() {
+    for (symptom, trouble) in [
+        (Symptom::Chip(Fault::Reset), Trouble::Resets),
+        (Symptom::Chip(Fault::Identity { found: 0 }), Trouble::Identity),
+        (Symptom::Chip(Fault::SelfTest), Trouble::SelfTest),
+        (Symptom::Chip(Fault::NotAsWritten { register: 1 }), Trouble::NotAsWritten),
+        (Symptom::Chip(Fault::NotReady), Trouble::Silent),
+        (Symptom::Chip(Fault::Alarm { status: 1 }), Trouble::Alarm),
+        (Symptom::Silent, Trouble::Silent),
+        (Symptom::Stuck, Trouble::Stuck),
+    ] {
+        let mut retry_budget = RetryBudget::default();
+        for _ in 0..5 {
+            assert_eq!(retry_budget.failed(symptom), Remedy::Restart);
+        }
+        assert_eq!(retry_budget.failed(symptom), Remedy::GiveUp(trouble));
+    }
+}
+
+proptest! {
+    #[test]
+    fn a_calibrated_encoder_is_right_within_one_second_of_arc(
+        truth in 0.0..core::f64::consts::TAU,
+        first in 0.0..2e-3_f64,
+        second in 0.0..1e-3_f64,
+        phase in -3.0..3.0_f64,
+    ) {
+        let parts = |amplitude: f64| {
+            [amplitude * phase.cos(), amplitude * phase.sin()].map(|part| part as f32)
+        };
+        let harmonics = Harmonics { first: parts(first), second: parts(second) };
+        // The calibration is stated over the shown angle: find what is shown for this truth.
+        let error = |shown: f64| first * (shown + phase).sin() + second * (2.0 * shown + phase).sin();
+        let shown = (0..20).fold(truth, |shown, _| truth + error(shown));
+        let corrected = Calibration::new(harmonics).correct(Angle::from_rad(shown));
+        let off = (corrected - Angle::from_rad(truth)).signed_rad();
+        prop_assert!(off.abs() < 4.85e-6 * (1.0 + 1e3 * (first + second)), "off by {} ″", off * 206_265.0);
+    }
+}
+
+#[test]
+fn without_harmonics_the_angle_is_untouched() {
+    let mut calibration = Calibration::new(Harmonics::default());
+    for step in (0..=u32::MAX).step_by(0x0123_4567) {
+        assert_eq!(calibration.correct(Angle(step)), Angle(step));
+    }
+}
+
+#[test]
+fn every_fault_counts_once() {
+    let mut health = Health::EMPTY;
+    health.lose(Device::Gyro);
+    health.lose(Device::Stage);
+    health.restart(Device::Encoder);
+    health.missing += 3;
+    assert_eq!(health.faults(), 6);
+}
+
+#[test]
+fn a_status_never_tells_a_smaller_sigma_than_there_is() {
+    let status = Status::concluded(359.9996, 0.012_01);
+    assert_eq!(status.to_string(), "azimuth 0.000 sigma 0.013");
+    assert_eq!(Status::Measuring { done: 5, of: 24 }.to_string(), "measuring 5/24");
+}
+
+/// Keeps what is told.
+#[derive(Default)]
+struct Told(RefCell<Vec<Event>>);
+
+impl Observer for Told {
+    fn event(&self, _: Instant, event: &Event) {
+        self.0.borrow_mut().push(*event);
+    }
+}
+
+/// A link that hangs, or refuses.
+enum SickLink {
+    Hangs,
+    Refuses,
+}
+
+impl ErrorType for SickLink {
+    type Error = ErrorKind;
+}
+
+impl Write for SickLink {
+    async fn write(&mut self, _: &[u8]) -> Result<usize, ErrorKind> {
+        match self {
+            Self::Hangs => core::future::pending().await,
+            Self::Refuses => Err(ErrorKind::Other),
+        }
+    }
+
+    async fn flush(&mut self) -> Result<(), ErrorKind> {
+        Ok(())
+    }
+}
+
+#[test]
+fn a_sick_link_costs_its_lines_and_is_told_once() {
+    for mut sick in [SickLink::Hangs, SickLink::Refuses] {
+        let told = Told::default();
+        let shared = Shared::new(&told);
+        virtual_time::run(async {
+            for _ in 0..3 {
+                link::send(&mut sick, &shared).await;
+                Timer::after(Duration::from_secs(1)).await;
+            }
+            assert!(Instant::now() <= Instant::from_millis(4500), "it waits half a second at most");
+        })
+        .expect("time wakes everybody");
+        assert_eq!(shared.health.get().unsent, 3);
+        assert_eq!(*told.0.borrow(), [Event::LinkSilent]);
+    }
+}
+
+/// A link that keeps what it is sent.
+#[derive(Default)]
+struct Heard(Vec<u8>);
+
+impl ErrorType for Heard {
+    type Error = ErrorKind;
+}
+
+impl Write for Heard {
+    async fn write(&mut self, bytes: &[u8]) -> Result<usize, ErrorKind> {
+        self.0.extend(bytes);
+        Ok(bytes.len())
+    }
+
+    async fn flush(&mut self) -> Result<(), ErrorKind> {
+        Ok(())
+    }
+}
+
+#[test]
+fn the_line_of_an_attitude_is_whole_in_every_state_after_a_year_with_every_fault_counted() {
+    let seconds = 3.2e7;
+    let states = [
+        State::Starting,
+        State::Level,
+        State::Coasting { seconds },
+        State::FreeFall { seconds },
+        State::NoForce { seconds },
+        State::RotationLost { seconds },
+    ];
+    let told = Told::default();
+    let shared = Shared::new(&told);
+    shared.count(|health| health.unsent = u32::MAX);
+    for state in states.map(Some).into_iter().chain([None]) {
+        let level = [-90_000, -180_000];
+        let kept = Kept { azimuth: Some([359_999, 180_000]), level, state, is_recalled: true };
+        shared.keep.told.set(Some(kept));
+        let mut heard = Heard::default();
+        virtual_time::run(link::send(&mut heard, &shared)).expect("time wakes everybody");
+        let line = String::from_utf8(heard.0).expect("text");
+        assert!(line.ends_with(", recalled, faults 4294967295\r\n"), "{line}");
+    }
+}

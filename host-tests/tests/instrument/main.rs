@@ -1,0 +1,16 @@
+//! The whole instrument on simulated chips, one module for each method and mount.
+#![allow(clippy::expect_used, clippy::panic, reason = "a test that cannot go on has failed")]
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod instrument;
+mod instrument_parts;
+mod keeping_instrument;
+mod mount;
+mod spin;
+mod stops_instrument;
+mod stops_instrument_faults;
+mod sway;
+mod turntable_instrument;
+mod turntable_instrument_storage;

@@ -1,0 +1,129 @@
+//! The whole instrument in a vehicle, on simulated chips: a healthy run, what the log tells, and what a
+//! lost conversion costs.
+
+use bench::instrument::{VehicleRun, align_stops};
+use firmware::event::Event;
+use firmware::ports::NoRecorder;
+use firmware::simulated::fault::Fault;
+use firmware::simulated::vehicle::{Place, VehicleScenario};
+use orientation::align::conclusion::Azimuth;
+use orientation::error::Refusal;
+
+fn run(scenario: &VehicleScenario, fault: Option<Fault>) -> VehicleRun {
+    align_stops(scenario, fault, NoRecorder, &()).expect("the scenario is possible")
+}
+
+fn verdict(found: &VehicleRun) -> Result<Azimuth, Refusal> {
+    found.run.replay.conclusion().expect("every run concludes").verdict
+}
+
+/// What was told, without the times.
+fn told(found: &VehicleRun) -> Vec<String> {
+    found.run.events.iter().map(|(_, event)| event.to_string()).collect()
+}
+
+/// Error of the azimuth, rad, the short way.
+fn error(found: &VehicleRun, azimuth: &Azimuth) -> f64 {
+    let off = azimuth.angle - found.truth.attitude.azimuth_rad;
+    off.sin().atan2(off.cos())
+}
+
+#[test]
+fn north_is_found_within_its_sigma_and_no_rule_of_a_chip_is_broken() {
+    let mut squares = 0.0;
+    for seed in 1..=4 {
+        let found = run(&VehicleScenario::usual(seed), None);
+        let azimuth = verdict(&found).unwrap_or_else(|reason| panic!("seed {seed}: {reason}"));
+        let sigmas = error(&found, &azimuth) / azimuth.sigma;
+        assert!(sigmas.abs() < 3.5, "seed {seed}: {sigmas} σ");
+        assert!(azimuth.sigma.to_degrees() < 0.2, "seed {seed}: {}", azimuth.sigma.to_degrees());
+        squares += sigmas * sigmas;
+        assert_eq!(found.run.violations, [""; 0], "seed {seed}");
+        assert_eq!(found.run.health.faults(), 0, "seed {seed}");
+    }
+    // Chi-square of 4 degrees of freedom: 0.09 and 16.9 are its 0.1 and 99.8 % points (scipy).
+    assert!((0.09..16.9).contains(&squares), "{squares}");
+}
+
+#[test]
+fn three_headings_tell_the_biases_that_the_gyros_have() {
+    let found = run(&VehicleScenario::usual(1), None);
+    let conclusion = found.run.replay.conclusion().expect("it concludes");
+    let solved = conclusion.found.expect("something was found");
+    let truth = found.truth.gyro_bias_rad_s;
+    for ((bias, sigma), truth) in solved.biases.into_iter().zip(solved.bias_sigmas).zip(truth) {
+        assert!((bias - truth).abs() < 3.5 * sigma, "{bias} is not {truth} within {sigma}");
+    }
+    let of_gyros = told(&found).iter().filter(|line| line.contains("gyro: bias ")).count();
+    assert_eq!(of_gyros, if solved.are_biases_observed { 3 } else { 0 });
+}
+
+#[test]
+fn the_log_tells_what_the_board_did_in_order() {
+    let found = run(&VehicleScenario::usual(1), None);
+    let lines = told(&found);
+    let expected = [
+        "begin: level, drive, stop and level again",
+        "accelerometer: identity and self-test passed",
+        "forward gyro: identity and self-test passed",
+        "right gyro: identity and self-test passed",
+        "down gyro: identity and self-test passed",
+        "stop 1 levelled for 6",
+        "driving",
+        "stop 2 found after 6",
+        "stop 2 is ",
+        "stop 2 levelled for 6",
+        "driving",
+        "stop 3 found after 6",
+        "stop 3 is ",
+    ];
+    let mut following = lines.iter();
+    for beginning in expected {
+        let is_there = following.any(|line| line.starts_with(beginning));
+        assert!(is_there, "{beginning} is missing or late: {lines:?}");
+    }
+    assert!(lines.last().is_some_and(|line| line.starts_with("azimuth ")), "{lines:?}");
+    let statuses = ["starting", "levelling at stop 1", "stop 1 done, may drive", "driving"];
+    let mut link = found.run.lines.lines();
+    for status in statuses {
+        assert!(link.any(|line| line.starts_with(status)), "{status} is missing or late");
+    }
+    assert!(found.run.lines.lines().last().is_some_and(|line| line.starts_with("azimuth ")));
+    assert!(!found.run.lines.contains("homing"), "nothing is homed");
+}
+
+#[test]
+fn a_stop_is_levelled_as_the_ground_lies_there() {
+    let scenario = VehicleScenario::usual(1);
+    let found = run(&scenario, None);
+    let day = scenario.day(None);
+    let hal_mock::vehicle::Leg::Stop(first) = day.legs[0] else { panic!("a day begins at rest") };
+    let level = found.run.events.iter().find_map(|(_, event)| match event {
+        Event::MayDrive(1, _, level) => Some(*level),
+        _ => None,
+    });
+    let [pitch, roll] = level.expect("the first stop is levelled");
+    // 0.1 mg of bias is 0.006°; the road itself rocks for the first seconds.
+    assert!((pitch - first.pitch_deg).abs() < 0.03, "{pitch} is not {}", first.pitch_deg);
+    assert!((roll - first.roll_deg).abs() < 0.03, "{roll} is not {}", first.roll_deg);
+}
+
+#[test]
+fn a_displacement_that_nobody_knows_costs_accuracy_and_no_truth() {
+    let sigma = |place| {
+        let found = run(&VehicleScenario { place, ..VehicleScenario::usual(1) }, None);
+        let azimuth = verdict(&found).unwrap_or_else(|reason| panic!("{reason}"));
+        assert!(error(&found, &azimuth).abs() < 3.5 * azimuth.sigma);
+        let is_told = told(&found).iter().any(|line| line.contains(" north and "));
+        assert_eq!(is_told, place != Place::Unknown);
+        azimuth.sigma
+    };
+    assert!(sigma(Place::Unknown) > sigma(Place::Known { sigma_m: 2.0 }));
+}
+
+#[test]
+fn a_seed_gives_one_run_and_another_seed_another() {
+    let angle = |seed| verdict(&run(&VehicleScenario::usual(seed), None)).map(|found| found.angle);
+    assert_eq!(angle(1), angle(1));
+    assert_ne!(angle(1), angle(4));
+}

@@ -1,0 +1,251 @@
+//! The whole instrument on simulated chips with a platform that turns all the time: it finds north,
+//! tells what it did, comes to rest at the end, and never reports a wrong north.
+
+use bench::instrument::{TurntableRun, align_turning};
+use bench::output::{azimuth_error, degrees};
+use firmware::event::Event;
+use firmware::ports::NoRecorder;
+use firmware::simulated::fault::{AxisFault, Fault, Platform};
+use firmware::simulated::scenario::Scenario;
+use firmware::simulated::turntable::TurntableScenario;
+use orientation::align::conclusion::Azimuth;
+use orientation::align::rotating::solution::SPEEDS;
+use orientation::device::{Device, Trouble};
+use orientation::error::Refusal;
+
+/// A short alignment, for what does not depend on its length.
+fn short(seed: u64) -> TurntableScenario {
+    let base = Scenario { sample_rate_hz: 100.0, ..Scenario::usual(seed) };
+    let brief = TurntableScenario::brief(seed);
+    TurntableScenario { base, uneven_turns: 6, turns: 4, ..brief }
+}
+
+fn run_with(scenario: &TurntableScenario, fault: Option<Fault>) -> TurntableRun {
+    align_turning(scenario, fault, NoRecorder, &()).expect("the scenario is possible")
+}
+
+fn run(scenario: &TurntableScenario) -> TurntableRun {
+    run_with(scenario, None)
+}
+
+fn verdict(run: &TurntableRun) -> Result<Azimuth, Refusal> {
+    run.run.replay.conclusion().expect("every run concludes").verdict
+}
+
+fn told(run: &TurntableRun) -> Vec<String> {
+    run.run.events.iter().map(|(_, event)| event.to_string()).collect()
+}
+
+/// The error of an azimuth, °, and its σ.
+fn error(scenario: &TurntableScenario, azimuth: Azimuth) -> (f64, f64) {
+    let error = azimuth_error(degrees(azimuth.angle), scenario.base.azimuth_deg);
+    (error, degrees(azimuth.sigma))
+}
+
+fn assert_north(scenario: &TurntableScenario, run: &TurntableRun) {
+    let azimuth = verdict(run).unwrap_or_else(|reason| panic!("{reason}"));
+    let (error, sigma) = error(scenario, azimuth);
+    assert!(error.abs() < 4.0 * sigma, "off by {error}° of σ {sigma}°");
+}
+
+/// What the fault named so ends in.
+fn with_fault(name: &str) -> TurntableRun {
+    let fault = Fault::all(Platform::Turntable).find(|fault| fault.to_string() == name);
+    run_with(&short(1), Some(fault.expect("it is in the catalogue")))
+}
+
+fn refusal(name: &str) -> Refusal {
+    verdict(&with_fault(name)).expect_err("no azimuth may come of it")
+}
+
+#[test]
+fn the_default_run_finds_north_and_breaks_no_rule_of_a_chip() {
+    let scenario = TurntableScenario::usual(1);
+    let run = run(&scenario);
+    assert_north(&scenario, &run);
+    assert_eq!(run.run.violations, Vec::<String>::new());
+    assert_eq!(run.run.health.faults(), 0, "{:?}", run.run.health);
+    let coupling = run.run.replay.couplings().next().expect("the uneven turns show it");
+    let off = degrees(coupling.angle()) - scenario.elevation_deg;
+    assert!(off.abs() < 1e-3, "the axis is found {off}° beside its elevation");
+    assert_eq!(run.run.replay.turns(), (20, 20));
+}
+
+#[test]
+fn a_molecular_electronic_sensor_finds_north_at_two_speeds() {
+    let scenario = TurntableScenario::molecular(2);
+    let run = run(&scenario);
+    assert_north(&scenario, &run);
+    let fit = run.run.replay.conclusion().and_then(|conclusion| conclusion.fit).expect("a fit");
+    assert!(fit.molecular.size() > 0.1, "its g-sensitivity counts: {}", fit.molecular.size());
+    assert!(fit.phases[0] > 0.2, "it runs ahead: {} rad", fit.phases[0]);
+}
+
+#[test]
+fn a_sensor_that_leads_finds_north_at_every_azimuth_although_its_motor_is_fast() {
+    // Where the unevenness acts across the Earth rate, a coupling beside the turn would show at 8 σ.
+    for azimuth_deg in [33.7, 123.7, 303.7] {
+        let molecular = TurntableScenario::molecular(1);
+        let base = Scenario { azimuth_deg, ..molecular.base };
+        let scenario = TurntableScenario { base, ..molecular };
+        let run = run(&scenario);
+        let azimuth = verdict(&run).unwrap_or_else(|reason| panic!("{reason}"));
+        let (error, sigma) = error(&scenario, azimuth);
+        assert!(
+            error.abs() < 0.25 && error.abs() < 3.0 * sigma,
+            "{azimuth_deg}: {error} ± {sigma}"
+        );
+    }
+}
+
+#[test]
+fn a_seed_gives_one_run_and_another_seed_another() {
+    let bits = |seed| verdict(&run(&short(seed))).map(|found| found.angle.to_bits());
+    assert_eq!(bits(3), bits(3));
+    assert_ne!(bits(3), bits(4));
+}
+
+#[test]
+fn the_log_tells_what_the_board_did_in_order() {
+    let told = told(&run(&short(1)));
+    let mut rest = told.iter();
+    for part in [
+        "begin: 8 turns at latitude 47.58",
+        "identity and self-test passed",
+        "level: platform inclined",
+        "uneven turns, 72.00 °/s in the mean",
+        "stage: turns at 72.00 °/s",
+        "gyro's axis 0.80",
+        "turns count from here: clockwise, 72.00 °/s",
+        "turn 4 of 8",
+        "stage: turns at -72.00 °/s",
+        "turns count from here: counter-clockwise",
+        "turn 8 of 8",
+        "azimuth 213.",
+        "stage: comes to rest",
+    ] {
+        assert!(rest.any(|line| line.contains(part)), "{part}: not, or not there, in {told:#?}");
+    }
+    let run = run(&short(1)).run;
+    assert!(run.lines.contains("measuring 0/8"), "{}", run.lines);
+    assert!(run.lines.contains("measuring 7/8"), "{}", run.lines);
+}
+
+/// Between two commands of an uneven turn pass 50 ms: they are not worth a line each.
+#[test]
+fn the_commands_of_an_uneven_turn_are_not_told() {
+    let run = run(&short(1));
+    let rates = run.run.events.iter().filter(|(_, event)| matches!(event, Event::Revolving(..)));
+    assert_eq!(rates.count(), 3, "clockwise, counter-clockwise, at rest");
+}
+
+#[test]
+fn the_platform_comes_to_rest_whatever_the_end() {
+    for name in ["", "encoder-slip", "overload-always", "gyro-silent", "saturation-always"] {
+        let fault = Fault::all(Platform::Turntable).find(|fault| fault.to_string() == name);
+        let run = run_with(&short(1), fault);
+        // It still rings, by a hundredth of what it turned at.
+        assert!(run.rate.abs() < 0.0126, "{name}: it turns at {} rad/s", run.rate);
+    }
+}
+
+#[test]
+fn a_stored_coupling_spares_the_uneven_turns() {
+    let before = run(&short(5)).run.replay;
+    let mut stored = [None; SPEEDS];
+    stored.iter_mut().zip(before.couplings()).for_each(|(place, found)| *place = Some(found));
+    let scenario = TurntableScenario { uneven_turns: 0, stored, ..short(6) };
+    let run = run(&scenario);
+    assert_north(&scenario, &run);
+    assert!(!told(&run).iter().any(|line| line.contains("uneven")));
+}
+
+#[test]
+fn an_uneven_gear_is_no_disagreement() {
+    for seed in [7, 8] {
+        let scenario = TurntableScenario { unevenness: [0.005, 0.003], ..short(seed) };
+        let run = run(&scenario);
+        assert!(!told(&run).iter().any(|line| line.contains("disagree")), "{:?}", told(&run));
+    }
+}
+
+#[test]
+fn a_badly_aligned_sensor_is_to_be_aligned() {
+    let scenario = TurntableScenario { elevation_deg: -2.5, ..short(1) };
+    let reason = verdict(&run(&scenario)).expect_err("it exceeds the limit");
+    assert!(matches!(reason, Refusal::Misaligned { angle, .. } if (angle + 2.5).abs() < 0.01));
+    assert!(reason.to_string().contains("align the sensor mechanically"), "{reason}");
+}
+
+#[test]
+fn a_slipping_or_creeping_encoder_is_found_by_the_motor() {
+    for (name, least) in [("encoder-slip", 0.4), ("encoder-creep", 0.15)] {
+        match refusal(name) {
+            Refusal::Device { device: Device::Stage, trouble: Trouble::Disagrees(angle) } => {
+                assert!((least..0.6).contains(&angle.abs()), "{name}: {angle}°");
+            }
+            other => panic!("{name}: {other}"),
+        }
+    }
+}
+
+#[test]
+fn a_blocked_platform_is_tried_once_more_from_rest() {
+    let run = with_fault("stage-blocked");
+    let blocked = told(&run).iter().filter(|line| line.contains("blocked, trying again")).count();
+    assert_eq!(blocked, 1);
+    let reason = verdict(&run).expect_err("it does not turn");
+    let is_blocked = |trouble| matches!(trouble, Trouble::Stalled(_));
+    assert!(
+        matches!(reason, Refusal::Device { device: Device::Stage, trouble } if is_blocked(trouble)),
+        "{reason}"
+    );
+}
+
+/// The turn in which it clips is taken anew, so that nothing else would tell of it.
+#[test]
+fn a_gyro_that_clips_for_a_moment_is_told_once() {
+    let run = with_fault("saturation-once");
+    let clipped = told(&run).iter().filter(|line| line.contains("limit of its range")).count();
+    assert_eq!(clipped, 1, "{:#?}", told(&run));
+    assert_north(&short(1), &run);
+}
+
+#[test]
+fn an_overloaded_accelerometer_is_named() {
+    let named = Refusal::Device { device: Device::Accelerometer, trouble: Trouble::Saturated };
+    assert_eq!(refusal("overload-always"), named);
+}
+
+#[test]
+fn a_motor_driver_that_was_reset_turns_on() {
+    let run = with_fault("stage-reset");
+    let told = told(&run);
+    assert!(told.iter().any(|line| line.contains("it has restarted")), "{told:#?}");
+    assert!(run.run.events.len() > 20, "{told:#?}");
+    if verdict(&run).is_ok() {
+        assert_north(&short(1), &run);
+    }
+}
+
+/// Of all that can go wrong one thing cannot be seen: without an index the encoder's zero is believed.
+#[test]
+fn no_fault_gives_a_wrong_north_but_a_wrong_zero_of_the_encoder() {
+    let mut refused = 0;
+    for fault in Fault::all(Platform::Turntable) {
+        let scenario = short(1);
+        let run = run_with(&scenario, Some(fault));
+        let Ok(azimuth) = verdict(&run) else {
+            refused += 1;
+            continue;
+        };
+        let (error, sigma) = error(&scenario, azimuth);
+        let slipped =
+            if fault == Fault::Axis(Device::Stage, AxisFault::SlipAtStart) { -0.5 } else { 0.0 };
+        assert!((error - slipped).abs() < 4.0 * sigma, "{fault}: off by {error}° of σ {sigma}°");
+    }
+    assert!(refused > 20, "only {refused} were refused");
+    assert!(
+        Fault::all(Platform::Turntable).any(|fault| matches!(fault, Fault::Chip(Device::Gyro, _)))
+    );
+}

@@ -1,0 +1,151 @@
+//! A refusal names what it is likely to come from: a unit, a noise, a sensor that is stuck, another command.
+
+use std::fmt::Write;
+
+use crate::support::files::{Scratch, stored, unpacked};
+use crate::support::program::{code, meridian, reason, text};
+
+use super::{mapped, recorded, refused, scaled};
+
+const FORCES: [&str; 3] = ["fx_m_s2", "fy_m_s2", "fz_m_s2"];
+const DEGREES: f64 = 57.295_779_513_082_32;
+
+#[test]
+fn a_column_in_another_unit_is_named_with_the_factor_that_mends_it() {
+    let scratch = Scratch::new("units");
+    let sound = recorded(&scratch);
+    let cases: [(&[&str], f64, &str); 5] = [
+        (&["stage_rad"], DEGREES, "column stage_rad: in degrees, as it seems, not rad"),
+        (&["g_rad_s"], DEGREES, "column g_rad_s: in °/s, as it seems, not rad/s"),
+        (&FORCES, 1.0 / 9.806_65, "columns fx_m_s2 to fz_m_s2: in g, as it seems, not m/s²"),
+        (&FORCES, 1e3 / 9.806_65, "columns fx_m_s2 to fz_m_s2: in mg, as it seems, not m/s²"),
+        (&["g_rad_s"], DEGREES * 3600.0, "check the unit: °/s or °/h?"),
+    ];
+    for (columns, factor, words) in cases {
+        let why = refused(&scratch, &scaled(&sound, columns, factor));
+        assert!(why.contains(words), "{why}");
+    }
+    let both = scaled(&scaled(&sound, &["stage_rad", "g_rad_s"], DEGREES), &FORCES, 1e3 / 9.806_65);
+    let why = refused(&scratch, &both);
+    for words in ["stage_rad: in degrees", "g_rad_s: in °/s", "fz_m_s2: in mg"] {
+        assert!(why.contains(words), "{why}");
+    }
+}
+
+#[test]
+fn the_text_for_people_names_the_likely_cause_too() {
+    let scratch = Scratch::new("text");
+    let path = scratch.with("x.csv", &scaled(&recorded(&scratch), &["stage_rad"], DEGREES));
+    let output = meridian(&["replay", &path]);
+    let told = text(&output.stdout);
+    assert!(told.contains("; column stage_rad: in degrees"), "{told}");
+}
+
+#[test]
+fn dwells_that_scatter_alike_tell_of_n_and_not_of_the_platform() {
+    let scratch = Scratch::new("noise");
+    let sound = recorded(&scratch);
+    let with =
+        |n: &str| sound.replace("gyro_N_deg_sqrt_h: 0.001", &format!("gyro_N_deg_sqrt_h: {n}"));
+    for n in ["0.00001", "0.0001", "0.0003"] {
+        let why = refused(&scratch, &with(n));
+        assert!(why.contains("all dwells scatter alike, with "), "{why}");
+        assert!(why.contains("check N, and the unit of the rates"), "{why}");
+        let told = format!("key gyro_N_deg_sqrt_h says {n} °/√h, but the dwells show ");
+        assert!(why.contains(&told), "{why}");
+    }
+    let why = refused(&scratch, &with("30"));
+    assert!(why.contains("says 30 °/√h, but the dwells show "), "{why}");
+}
+
+#[test]
+fn a_stuck_gyro_and_a_stuck_encoder_of_a_stage_are_named() {
+    let scratch = Scratch::new("stuck");
+    let sound = recorded(&scratch);
+    let why = refused(&scratch, &mapped(&sound, &["g_rad_s"], |_| "1e-5".to_owned()));
+    assert!(why.contains("column g_rad_s holds the same value in "), "{why}");
+    assert!(why.contains("the sensor is stuck; check its supply and cable"), "{why}");
+    let why = refused(&scratch, &mapped(&sound, &["stage_rad"], |_| "0.25".to_owned()));
+    assert!(why.contains("column stage_rad holds the same value in "), "{why}");
+}
+
+/// Twelve averaged dwells over the full circle, north at 60°.
+fn dwells() -> String {
+    let mut text = "# kind: dwells\n# latitude_deg: 48\n\
+                    stage_rad,rate_rad_s,sigma_rad_s,seconds,fx_m_s2,fy_m_s2,fz_m_s2\n"
+        .to_owned();
+    let horizontal = 7.292_115e-5 * 48_f64.to_radians().cos();
+    for index in 0..12_u32 {
+        let angle = f64::from(index) * 30_f64.to_radians();
+        let noise = 2e-8 * [0.3, -1.1, 0.7, 0.2, -0.6, 1.2, -0.1][index as usize % 7];
+        let rate = horizontal * (angle + 60_f64.to_radians()).cos() + 1e-6 + noise;
+        let [x, y] = [0.05 * angle.cos(), -0.05 * angle.sin()];
+        writeln!(text, "{angle},{rate},2e-8,60,{x},{y},-9.81").expect("memory suffices");
+    }
+    text
+}
+
+#[test]
+fn averaged_dwells_in_other_units_are_named() {
+    let scratch = Scratch::new("dwells");
+    let path = scratch.with("sound.csv", &dwells());
+    let output = meridian(&["replay", &path]);
+    assert_eq!(code(&output), 0, "{}", reason(&output));
+    let cases: [(&[&str], f64, &str); 6] = [
+        (&["stage_rad"], DEGREES, "column stage_rad: in degrees"),
+        (&["rate_rad_s", "sigma_rad_s"], DEGREES, "columns rate_rad_s and sigma_rad_s: in °/s"),
+        (&["rate_rad_s"], DEGREES, "column rate_rad_s: in °/s"),
+        (&["sigma_rad_s"], DEGREES * 3600.0, "column sigma_rad_s: in °/h"),
+        (
+            &["sigma_rad_s"],
+            1e-4,
+            "so much is no noise: check the units of all columns, and sigma_rad_s",
+        ),
+        (&FORCES, 1e3 / 9.806_65, "columns fx_m_s2 to fz_m_s2: in mg"),
+    ];
+    for (columns, factor, words) in cases {
+        let why = refused(&scratch, &scaled(&dwells(), columns, factor));
+        assert!(why.contains(words), "{why}");
+    }
+}
+
+#[test]
+fn a_turning_platform_in_other_units_or_with_a_stuck_gyro_is_named() {
+    let scratch = Scratch::new("turning");
+    let sound = unpacked("rotating-gyro");
+    let cases: [(&[&str], f64, &str); 3] = [
+        (
+            &["stage_rad", "stage_rate_rad_s"],
+            DEGREES,
+            "columns stage_rad and stage_rate_rad_s: in degrees",
+        ),
+        (&["stage_rad"], DEGREES, "column stage_rad: in degrees"),
+        (&["g_rad_s"], DEGREES, "column g_rad_s: in °/s"),
+    ];
+    for (columns, factor, words) in cases {
+        let why = refused(&scratch, &scaled(&sound, columns, factor));
+        assert!(why.contains(words), "{why}");
+    }
+    let why = refused(&scratch, &mapped(&sound, &["g_rad_s"], |_| "1e-5".to_owned()));
+    assert!(why.contains("column g_rad_s holds the same value in "), "{why}");
+    let why = refused(&scratch, &sound.replace("deg_sqrt_h: 0.002000", "deg_sqrt_h: 0.00001"));
+    assert!(why.contains("key gyro_N_deg_sqrt_h says 0.00001 °/√h"), "{why}");
+}
+
+#[test]
+fn a_record_at_rest_is_sent_to_allan() {
+    let rest = stored("static-gyro-1h");
+    for method in [&[][..], &["--method", "stepwise"], &["--method", "static"]] {
+        let output = meridian(&[&["replay", &rest, "--latitude", "50"], method].concat());
+        assert_eq!(code(&output), 1);
+        assert!(reason(&output).contains("`meridian allan`"), "{}", reason(&output));
+    }
+}
+
+#[test]
+fn what_is_really_disturbed_keeps_its_reason() {
+    let output = meridian(&["run", "--sway", "0.1", "--no-base-imu", "--rate", "50"]);
+    assert_eq!(code(&output), 1);
+    let why = reason(&output);
+    assert!(why.contains("dwells were disturbed: keep the platform still"), "{why}");
+}

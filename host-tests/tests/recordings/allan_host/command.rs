@@ -1,0 +1,271 @@
+//! `meridian allan` as a user meets it: units, keys, the page, and clear words for bad input.
+
+use std::process::Output;
+
+use hal_mock::noise::Generator;
+use serde_json::Value;
+
+use crate::support::files::{Scratch, stored};
+use crate::support::program::{assert_drawn, assert_misuse, code, meridian, object, page, text};
+
+fn allan(arguments: &[&str]) -> Output {
+    meridian(&[&["allan"], arguments].concat())
+}
+
+fn hour() -> String {
+    stored("static-gyro-1h")
+}
+
+/// The command on a file of this content and name.
+fn on(name: &str, content: &str, options: &[&str]) -> Output {
+    let scratch = Scratch::new("allan");
+    allan(&[&[scratch.with(name, content).as_str()], options].concat())
+}
+
+/// A recording of white noise at 10 Hz; row i stands in line 4 + i. What is to be left out or written
+/// otherwise is asked of `row`, by its number and its text.
+fn noisy(rows: u32, row: impl Fn(u32, String) -> Option<String>) -> String {
+    let mut generator = Generator::new(5);
+    let lines = (0..rows).filter_map(|index| {
+        let rate = 1e-5 * generator.gaussian();
+        row(index, format!("{:.1},{rate:.6e}\n", f64::from(index) / 10.0))
+    });
+    "# kind: static\n# rate_hz: 10\nt_s,g_rad_s\n".to_owned() + &lines.collect::<String>()
+}
+
+/// The message of a run that failed, in one line.
+fn refusal(output: &Output) -> String {
+    let message = text(&output.stderr);
+    assert_eq!((code(output), message.lines().count()), (1, 1), "{message}");
+    message
+}
+
+#[test]
+fn the_stored_hour_gives_the_noise_that_its_simulator_had() {
+    let object = object(&allan(&[&hour(), "--json"]));
+    let number = |key: &str| object[key].as_f64().unwrap_or_else(|| panic!("{key}: {object}"));
+    assert_eq!(object["status"], "ok");
+    assert!((number("n_deg_sqrt_h") / 0.02 - 1.0).abs() < 0.02);
+    for (key, truth) in [("b_deg_h", 0.3), ("k_deg_h_sqrt_h", 2.0)] {
+        let sigma = number(&format!("{key}_sigma"));
+        assert!((number(key) - truth).abs() < 2.0 * sigma, "{key}: {} ± {sigma}", number(key));
+    }
+    for key in ["q_arcsec", "r_deg_h2"] {
+        assert!(object[key].is_null() && number(&format!("{key}_at_most")) > 0.0, "{key}");
+    }
+    assert!(number("streaming_difference") < 1e-9);
+}
+
+#[test]
+fn the_curve_is_four_arrays_of_one_length_within_its_limits() {
+    let object = object(&allan(&[&hour(), "--json"]));
+    let array = |key: &str| -> Vec<f64> {
+        let values = object[key].as_array().unwrap_or_else(|| panic!("{key}"));
+        values.iter().map(|value| value.as_f64().expect("a number")).collect()
+    };
+    let [tau, deviation, lower, upper] = ["tau_s", "adev_deg_h", "lower", "upper"].map(array);
+    assert!((tau[3] - 0.4).abs() < 1e-9);
+    assert_eq!((tau.len(), deviation.len(), lower.len(), upper.len()), (28, 28, 28, 28));
+    for i in 0..tau.len() {
+        assert!(lower[i] < deviation[i] && deviation[i] < upper[i], "at {} s", tau[i]);
+    }
+    // The overlapping Allan deviation of the file by its definition in numpy, °/h.
+    for (seconds, expected) in
+        [(0.1, 3.818_997_516), (1.2, 1.119_345_607), (51.2, 0.301_604_066), (614.4, 0.479_155_550)]
+    {
+        let index = tau.iter().position(|tau| (tau / seconds - 1.0).abs() < 1e-6).expect("there");
+        assert!(
+            (deviation[index] / expected - 1.0).abs() < 1e-6,
+            "{seconds}: {}",
+            deviation[index]
+        );
+    }
+}
+
+#[test]
+fn every_number_has_its_unit() {
+    let output = allan(&[&hour()]);
+    assert_eq!(code(&output), 0);
+    let block = text(&output.stdout);
+    for unit in ["arcsec", "°/√h", "°/h", "°/h/√h", "°/h²", "τ, s", "Hz", "samples/s", "68.3 %"]
+    {
+        assert!(block.contains(unit), "{unit} is missing in {block}");
+    }
+    assert!(block.contains("not observable in this record (at most "), "{block}");
+    assert!(block.contains("variances of the same windows differ by at most"), "{block}");
+}
+
+#[test]
+fn the_page_has_the_curve_its_limits_the_fit_and_five_asymptotes() {
+    let (_, html) = page(&["allan", &hour()]);
+    let parts = [
+        "averaging time τ, s",
+        "Allan deviation σ, °/h",
+        "limits of 68.3 %</li>",
+        "overlapping Allan deviation</li>",
+        "fit</li>",
+        "Q quantisation: not observable",
+        "N angle random walk: 0.0",
+        "B bias instability: ",
+        "K rate random walk: ",
+        "R rate ramp: not observable",
+    ];
+    assert_drawn(&html, &parts);
+    assert_eq!(html.matches("<circle cx").count(), 28 + 1, "every point, and one in the legend");
+}
+
+#[test]
+fn a_page_that_cannot_be_written_is_named() {
+    let output = allan(&[&hour(), "--json", "--report", "/no/such/folder/a.html"]);
+    assert!(refusal(&output).contains("/no/such/folder/a.html: the report cannot be written"));
+    let object = object(&output);
+    assert_eq!(object["status"], "failed");
+    assert!(object["n_deg_sqrt_h"].is_number(), "the numbers are not lost with the page");
+}
+
+#[test]
+fn an_inertial_measurement_unit_is_read_along_body_x_unless_said() {
+    let mut generator = Generator::new(6);
+    let rows = (0..300).map(|index| {
+        let [x, y, z] = [1e-5, 2e-5, 3e-5].map(|sigma| sigma * generator.gaussian());
+        format!("{:.2},{x:e},{y:e},{z:e},0,0,-9.8\n", f64::from(index) / 50.0)
+    });
+    let names = "t_s,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s2,ay_m_s2,az_m_s2";
+    let imu = format!("# kind: static\n{names}\n{}", rows.collect::<String>());
+    let first = |options: &[&str]| {
+        let object = object(&on("imu.csv", &imu, &[&["--json"], options].concat()));
+        let column = object["column"].as_str().unwrap_or_default().to_owned();
+        (column, object["adev_deg_h"][0].as_f64().expect("a number"))
+    };
+    let (column, x) = first(&[]);
+    assert_eq!(column, "gx_rad_s");
+    let (column, z) = first(&["--column", "gz_rad_s"]);
+    assert_eq!(column, "gz_rad_s");
+    assert!((z / x / 3.0 - 1.0).abs() < 0.3, "{z} and {x}");
+    for wrong in ["g_rad_s", "ax_m_s2", "gyro"] {
+        let output = on("imu.csv", &imu, &["--column", wrong]);
+        let message = refusal(&output);
+        let words = format!("no rate column \"{wrong}\"; there is gx_rad_s, gy_rad_s, gz_rad_s");
+        assert!(message.contains("imu.csv") && message.contains(&words), "{message}");
+    }
+}
+
+#[test]
+fn a_record_that_is_too_short_is_refused_with_what_it_needs() {
+    for rows in [2, 20, 63] {
+        let output = on("short.csv", &noisy(rows, |_, row| Some(row)), &["--json"]);
+        let words = format!("column g_rad_s: record too short: {rows} samples, 64 needed");
+        assert!(refusal(&output).contains(&words), "{}", text(&output.stderr));
+        let object = object(&output);
+        assert_eq!((&object["status"], &object["samples"]), (&"refused".into(), &rows.into()));
+        assert!(object["tau_s"].is_null() && object["n_deg_sqrt_h"].is_null(), "{object}");
+    }
+    let output = on("one.csv", &noisy(1, |_, row| Some(row)), &[]);
+    assert!(refusal(&output).contains("one.csv: record too short: one row"));
+    let output = on("none.csv", &noisy(0, |_, row| Some(row)), &[]);
+    assert!(refusal(&output).contains("none.csv: line 3: no rows follow the column names"));
+}
+
+#[test]
+fn the_longest_times_of_a_short_record_are_told_as_unsure() {
+    let object = object(&on("brief.csv", &noisy(100, |_, row| Some(row)), &["--json"]));
+    assert_eq!(object["status"], "ok");
+    let last = |key: &str| object[key].as_array().and_then(|a| a.last()?.as_f64()).expect("one");
+    assert!(last("upper") / last("lower") > 2.0);
+    assert!(object["b_deg_h"].is_null() || object["b_deg_h_sigma"].is_number());
+}
+
+#[test]
+fn a_constant_record_is_refused_as_stuck() {
+    let row = |_, row: String| Some(row.split(',').next()?.to_owned() + ",1.5e-5\n");
+    let output = on("constant.csv", &noisy(500, row), &[]);
+    let message = refusal(&output);
+    assert!(message.contains("constant.csv: column g_rad_s: all samples are equal"), "{message}");
+    assert!(text(&output.stdout).contains("No noise from g_rad_s"));
+}
+
+#[test]
+fn what_is_no_number_is_named_with_line_and_column() {
+    for (wrong, words) in [
+        ("nan", "\"nan\" is allowed only in truth_ columns"),
+        ("inf", "\"inf\" is not a finite number"),
+        ("1e-5x", "\"1e-5x\" is not a number"),
+        ("", "the field is empty"),
+    ] {
+        let row = |index, row: String| {
+            let (time, rate) = row.split_once(',')?;
+            let rate = if index == 200 { format!("{wrong}\n") } else { rate.to_owned() };
+            Some(format!("{time},{rate}"))
+        };
+        let output = on("number.csv", &noisy(500, row), &[]);
+        let expected = format!("number.csv: line 204, column g_rad_s: {words}");
+        assert!(refusal(&output).contains(&expected), "{}", text(&output.stderr));
+    }
+}
+
+#[test]
+fn time_that_runs_backwards_is_named_with_its_line() {
+    let row =
+        |index, row: String| Some(if index == 200 { row.replace("20.0,", "2.0,") } else { row });
+    let output = on("backwards.csv", &noisy(500, row), &[]);
+    let expected = "line 204, column t_s: 2 s does not come after 19.9 s of line 203";
+    assert!(refusal(&output).contains(expected), "{}", text(&output.stderr));
+}
+
+#[test]
+fn gaps_part_the_record_and_are_told() {
+    let row = |index, row| (!(500..600).contains(&index) && index != 1200).then_some(row);
+    let gapped = noisy(2000, row);
+    let output = on("gaps.csv", &gapped, &[]);
+    assert_eq!(code(&output), 0, "{}", text(&output.stderr));
+    let block = text(&output.stdout);
+    assert!(block.contains("1899 samples at 10 Hz, 189.9 s in 3 segments"), "{block}");
+    let told = "2 gaps, 10.100 s in all, the first before line 504 after 49.9 s";
+    assert!(block.contains(told), "{block}");
+    let found = object(&on("gaps.csv", &gapped, &["--json"]));
+    assert_eq!(found["gaps"].as_array().map(Vec::len), Some(2));
+    assert_eq!(found["gaps"][1]["line"], 4 + 1100);
+    assert_eq!(found["terms"][0], 1899 - 3);
+    let whole = object(&on("whole.csv", &noisy(2000, |_, row| Some(row)), &["--json"]));
+    let n = |object: &Value| object["n_deg_sqrt_h"].as_f64().expect("a number");
+    assert!((n(&found) / n(&whole) - 1.0).abs() < 0.05, "{} and {}", n(&found), n(&whole));
+}
+
+#[test]
+fn a_record_that_is_all_gaps_is_refused_with_its_gaps() {
+    let row = |index: u32, row| (index % 3 != 2 || index < 40).then_some(row);
+    let output = on("holes.csv", &noisy(90, row), &[]);
+    let message = refusal(&output);
+    assert!(message.contains("record too short: ") && message.contains(" gaps, "), "{message}");
+}
+
+#[test]
+fn a_wrong_rate_is_told_and_the_times_are_believed() {
+    let right = noisy(500, |_, row| Some(row));
+    let wrong = right.replace("rate_hz: 10", "rate_hz: 100");
+    let [right, wrong] = [right, wrong].map(|text| object(&on("rate.csv", &text, &["--json"])));
+    assert_eq!(wrong["tau_s"], right["tau_s"]);
+    assert_eq!(wrong["n_deg_sqrt_h"], right["n_deg_sqrt_h"]);
+    assert_eq!(right["notes"].as_array().map(Vec::len), Some(0));
+    let note = wrong["notes"][0].as_str().expect("a note");
+    assert!(note.contains("100 Hz contradicts the times, which have 10"), "{note}");
+}
+
+#[test]
+fn a_recording_of_another_kind_is_refused_both_ways() {
+    let moving = "# kind: dwells\nstage_rad,rate_rad_s,sigma_rad_s,seconds\n0,1e-5,1e-8,60\n";
+    let output = on("dwells.csv", moving, &[]);
+    assert!(refusal(&output).contains("dwells.csv: kind `dwells` is no record at rest"));
+    let output = meridian(&["replay", &hour(), "--latitude", "50"]);
+    assert!(refusal(&output).contains("kind `static` has no positions to align from"));
+}
+
+#[test]
+fn misuse_is_exit_two_in_one_line() {
+    for arguments in [&[][..], &["a.csv", "--column"], &["a.csv", "--method", "x"]] {
+        assert_misuse(&[&["allan"], arguments].concat(), "");
+    }
+    assert!(
+        refusal(&allan(&["no-such-file.csv"])).contains("no-such-file.csv: there is no such file")
+    );
+}

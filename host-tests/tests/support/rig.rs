@@ -1,0 +1,19 @@
+//! One chip on a bus of its own in virtual time.
+
+use std::cell::RefCell;
+
+use bench::virtual_time;
+use hal_mock::chip::{Single, SpiChip};
+use hal_mock::violation::Misuse;
+
+/// Runs what must end.
+#[track_caller]
+pub fn run<F: Future>(future: F) -> F::Output {
+    virtual_time::run(future).expect("nothing here waits for ever")
+}
+
+/// The rules of the chip that were broken.
+pub fn violations<C: SpiChip<E>, E>(rig: &RefCell<Single<C, E>>) -> Vec<Misuse> {
+    let rig = rig.borrow();
+    rig.chip.violations().first().iter().map(|violation| violation.misuse).collect()
+}
