@@ -11,7 +11,6 @@ use bench::recording;
 use bench::replay::{Options, replay};
 use firmware::event::Event;
 use firmware::ports::NoRecorder;
-use firmware::simulated::fault::Platform;
 use firmware::simulated::scenario::Scenario;
 use orientation::align::conclusion::Conclusion;
 
