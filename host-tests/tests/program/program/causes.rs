@@ -107,7 +107,7 @@ fn an_accelerometer_that_warms_up_on_an_arc_is_named_and_no_sense_of_the_stage_i
         for change_mg in [1.0, 3.0, 6.0] {
             for towards in [0.0, 1.0, 2.0, 3.0, 4.0, 5.0] {
                 let arc = warming_arc(arc_deg, change_mg, towards);
-                let output = meridian(&["replay", &scratch.with("arc.csv", &arc)]);
+                let output = meridian(&["replay", &scratch.with("arc.csv", arc)]);
                 let why = text(&output.stderr);
                 assert!(!why.contains("multiply by -1"), "{arc_deg}°, {change_mg} mg: {why}");
                 named += usize::from(why.contains("as while it warms up, explain the forces"));
@@ -166,7 +166,7 @@ fn accelerometers_in_g_or_mg_are_named_whatever_carries_them() {
             assert!(why.contains(&words), "{name}: {why}");
         }
     }
-    let path = scratch.with("x.csv", &scaled(&unpacked("imu-broad-06"), &IMU_FORCES, IN_G));
+    let path = scratch.with("x.csv", scaled(&unpacked("imu-broad-06"), &IMU_FORCES, IN_G));
     let output = meridian(&["replay", &path, "--method", "vertical"]);
     let why = reason(&output);
     assert!(why.contains("no level was found; columns ax_m_s2 to az_m_s2: in g"), "{why}");
@@ -176,7 +176,7 @@ fn accelerometers_in_g_or_mg_are_named_whatever_carries_them() {
 fn a_platform_that_is_nearly_level_tells_what_its_accelerometer_does_not_show() {
     for (name, factor) in [("rotating-gyro", 1.0), ("rotating-gyro", IN_G)] {
         let scratch = Scratch::new("light");
-        let path = scratch.with("x.csv", &scaled(&unpacked(name), &["a_m_s2"], factor));
+        let path = scratch.with("x.csv", scaled(&unpacked(name), &["a_m_s2"], factor));
         let told = text(&meridian(&["replay", &path]).stdout);
         for words in ["accelerometer in m/s²", "sense of the platform,"] {
             assert!(told.contains(words), "{told}");
@@ -290,7 +290,7 @@ fn the_beginning_of_a_sound_recording_is_too_short_and_nothing_else() {
     ] {
         let keys = ["stops_s", "displacements_north_east_m"];
         let sound = keys.iter().fold(unpacked(name), |text, key| without(&text, key));
-        let path = scratch.with("short.csv", &beginning(&sound, 10));
+        let path = scratch.with("short.csv", beginning(&sound, 10));
         let output = meridian(&["replay", &path]);
         let why = reason(&output);
         let is_blamed = ["as it seems", "stuck", "missing", "column", "key "]
@@ -304,12 +304,12 @@ fn the_beginning_of_a_sound_recording_is_too_short_and_nothing_else() {
 fn a_spinning_bodys_gyro_of_another_scale_is_not_stuck() {
     let scratch = Scratch::new("spin-scale");
     for factor in [0.9, 1.1] {
-        let path = scratch.with("x.csv", &scaled(&unpacked("spin-100rps"), &["gx_rad_s"], factor));
+        let path = scratch.with("x.csv", scaled(&unpacked("spin-100rps"), &["gx_rad_s"], factor));
         let output = meridian(&["replay", &path]);
         assert!(!reason(&output).contains("stuck"), "{}", reason(&output));
     }
     let noisy = unpacked("spin-80rps-noisy");
-    let path = scratch.with("x.csv", &mapped(&noisy, &["gx_rad_s"], |_| "500".to_owned()));
+    let path = scratch.with("x.csv", mapped(&noisy, &["gx_rad_s"], |_| "500".to_owned()));
     let why = reason(&meridian(&["replay", &path]));
     assert!(why.contains("stuck") || why.contains("gx_rad_s"), "{why}");
 }

@@ -35,7 +35,7 @@ fn a_column_in_another_unit_is_named_with_the_factor_that_mends_it() {
 #[test]
 fn the_text_for_people_names_the_likely_cause_too() {
     let scratch = Scratch::new("text");
-    let path = scratch.with("x.csv", &scaled(&recorded(&scratch), &["stage_rad"], DEGREES));
+    let path = scratch.with("x.csv", scaled(&recorded(&scratch), &["stage_rad"], DEGREES));
     let output = meridian(&["replay", &path]);
     let told = text(&output.stdout);
     assert!(told.contains("likely cause       column stage_rad: in degrees"), "{told}");
@@ -88,7 +88,7 @@ fn dwells() -> String {
 #[test]
 fn averaged_dwells_in_other_units_are_named() {
     let scratch = Scratch::new("dwells");
-    let path = scratch.with("sound.csv", &dwells());
+    let path = scratch.with("sound.csv", dwells());
     let output = meridian(&["replay", &path]);
     assert_eq!(code(&output), 0, "{}", reason(&output));
     let cases: [(&[&str], f64, &str); 6] = [

@@ -92,7 +92,7 @@ fn no_stored_recording_is_warned_of() {
 #[test]
 fn a_kind_that_is_written_otherwise_is_found_in_its_line() {
     let scratch = Scratch::new("kind");
-    let path = scratch.with("kind.csv", &recorded(&scratch).replace("# kind:", "# Kind:"));
+    let path = scratch.with("kind.csv", recorded(&scratch).replace("# kind:", "# Kind:"));
     let output = meridian(&["replay", &path]);
     assert_eq!(code(&output), 1);
     let told = text(&output.stderr);
