@@ -58,11 +58,14 @@ impl Extent {
     }
 
     /// How far a share of so many runs may be from its expectation, per cent: `whole` where all are run; of fewer,
-    /// what chance makes, 4 √(p (1 − p)/n).
+    /// what chance makes, 4 √(p (1 − p)/n), or a run and a half, for a share of nearly all is not normal.
     pub fn share(self, whole: f64, expected_percent: f64, runs: usize) -> f64 {
         let p = expected_percent / 100.0;
         match self {
-            Self::Tenth => whole.max(100.0 * SIGMAS * (p * (1.0 - p) / runs as f64).sqrt()),
+            Self::Tenth => {
+                let count = (SIGMAS * (p * (1.0 - p) * runs as f64).sqrt()).max(1.5);
+                whole.max(100.0 * count / runs as f64)
+            }
             Self::Whole => whole,
         }
     }
@@ -79,7 +82,7 @@ pub fn assert_in_readme(rows: &[String]) {
 
 /// Two tests of one body, `fn(Extent)`: in a tenth, and whole.
 macro_rules! campaigns {
-    ($($(#[$doc:meta])* $name:ident;)+) => {$(
+    ($($name:ident;)+) => {$(
         mod $name {
             use crate::support::campaign::Extent;
 
