@@ -7,37 +7,39 @@
 
 mod command;
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use bench::output::say;
+use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::command::allan::AllanOptions;
 use crate::command::campaign::CampaignOptions;
 use crate::command::emulate::EmulateOptions;
+use crate::command::given::Given;
 use crate::command::plan::PlanOptions;
 use crate::command::replay::ReplayOptions;
-use crate::command::run::RunOptions;
-use crate::command::suits::Given;
+use crate::command::run::{RunOptions, alias};
 use crate::command::{Failure, print};
 
 /// Finds true north from a precise gyro on a rotation stage, with its standard deviation.
 ///
-/// Without a command it is `run`.
+/// Without a command it is `run stage`.
 #[derive(Parser)]
-#[command(name = "meridian", version)]
+#[command(name = "meridian", version, subcommand_required = false)]
 struct CommandLine {
     /// One JSON object on standard output instead of text.
     #[arg(long, global = true)]
     json: bool,
     #[command(subcommand)]
-    command: Option<Command>,
+    command: Command,
 }
 
 #[derive(Subcommand)]
 enum Command {
     /// Runs the whole board application on simulated chips.
-    Run(Box<RunOptions>),
+    Run(RunOptions),
     /// Runs the alignment on a recording of kind `stage`, `dwells`, `rotating` or `imu`, or finds
     /// the roll of a spinning body on one of kind `spin`.
     Replay(ReplayOptions),
@@ -59,27 +61,29 @@ struct Asked {
     given: Given,
 }
 
-/// The command line; without a command it is `run` with all its defaults.
+/// The command line; without a command it is a run of a stage with all its defaults.
 fn parse() -> Result<Asked, clap::Error> {
-    let matches = taking_negative_numbers(CommandLine::command()).try_get_matches()?;
-    let given = matches.subcommand().map_or_else(Given::nothing, |(_, options)| Given::of(options));
-    let CommandLine { json: as_json, command } = CommandLine::from_arg_matches(&matches)?;
-    if let Some(command) = command {
-        return Ok(Asked { as_json, command, given });
+    let mut arguments: Vec<_> = std::env::args_os().collect();
+    let named = alias::expanded(arguments.split_off(1.min(arguments.len())))
+        .map_err(|wrong| clap::Error::raw(ErrorKind::InvalidValue, wrong))?;
+    let program = taking_negative_numbers(CommandLine::command());
+    let mut matches = program.clone().try_get_matches_from(arguments.iter().chain(&named))?;
+    if matches.subcommand().is_none() {
+        let run = ["run", "stage"].map(OsString::from);
+        matches = program.try_get_matches_from(arguments.iter().chain(&named).chain(&run))?;
     }
-    let matches = Command::augment_subcommands(clap::Command::new("meridian"))
-        .try_get_matches_from(["meridian", "run"])?;
-    Ok(Asked { as_json, command: Command::from_arg_matches(&matches)?, given })
+    let CommandLine { json: as_json, command } = CommandLine::from_arg_matches(&matches)?;
+    Ok(Asked { as_json, command, given: Given::of(&matches) })
 }
 
 /// The same where what begins with a minus is the value of an option that takes a number: what it may be, its
 /// parser knows.
 fn taking_negative_numbers(program: clap::Command) -> clap::Command {
     program.mut_subcommands(|command| {
-        command.mut_args(|arg| {
+        taking_negative_numbers(command.mut_args(|arg| {
             let is_number = takes_number(&arg);
             arg.allow_hyphen_values(is_number)
-        })
+        }))
     })
 }
 
@@ -124,7 +128,7 @@ fn check(command: &Command, given: &Given) -> Result<(), String> {
     }
 }
 
-/// Prints help where that was asked for, else what is wrong with the options in one line.
+/// Prints help where that was asked for, else what is wrong with the options in one line, and whose help tells more.
 fn misuse(error: &clap::Error) -> ExitCode {
     if !error.use_stderr() {
         // Nothing is to be done where even the help cannot be printed.
@@ -137,7 +141,13 @@ fn misuse(error: &clap::Error) -> ExitCode {
         .filter(|line| !line.is_empty() && !line.starts_with("For more information"))
         .collect();
     let message = message.join(" ");
-    misused(message.strip_prefix("error: ").unwrap_or(&message))
+    let message = message.strip_prefix("error: ").unwrap_or(&message);
+    let usage = text.lines().find_map(|line| line.trim().strip_prefix("Usage: "));
+    let command = usage.and_then(|usage| usage.split(['[', '<']).next()).unwrap_or_default().trim();
+    match error.kind() {
+        ErrorKind::UnknownArgument => misused(&format!("{message}; see `{command} --help`")),
+        _ => misused(message),
+    }
 }
 
 /// Says what is wrong with the options.

@@ -2,17 +2,13 @@
 
 pub mod allan;
 pub mod campaign;
-pub mod driving;
 pub mod emulate;
 pub mod faults;
 pub mod files;
-pub mod keeping;
+pub mod given;
 pub mod plan;
 pub mod replay;
 pub mod run;
-pub mod spinning;
-pub mod suits;
-pub mod turning;
 
 use std::fmt;
 use std::io::Write;

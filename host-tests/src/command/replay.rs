@@ -12,7 +12,7 @@ use clap::Args;
 use orientation::align::criterion::Criterion;
 use orientation::earth::Latitude;
 
-use super::suits::{self, Given};
+use super::given::{Given, long};
 use super::{Failure, Half, Shown, Told, explained, files, latitude, sigma};
 
 /// Which recording, and how it is taken.
@@ -83,11 +83,32 @@ impl ReplayOptions {
     /// # Errors
     /// The options, and why.
     pub fn check(&self, given: &Given) -> Result<(), String> {
-        self.method.map_or(Ok(()), |method| suits::check_replay(given, method))?;
+        self.method.map_or(Ok(()), |method| check(given, method))?;
         let attitude = files::written("--attitude-out", "the attitude", self.attitude_out.as_ref());
         let report = files::written("--report", "the page", self.report.as_ref());
         files::check(Some(&self.file), &[attitude, report])
     }
+}
+
+/// The options that not every method takes, and why others do not.
+const SPECIAL: [(&str, &str); 5] = [
+    ("latitude", "the roll of a spinning body does not depend on it"),
+    ("criterion", "only a stage that stops has another criterion than the one"),
+    ("half", "only two positions of a stage leave the half of the circle open"),
+    ("displacements", "only the stops of method siap have them"),
+    ("attitude_out", "only method vertical keeps an attitude"),
+];
+
+/// Refuses the first option that a method does not take.
+///
+/// # Errors
+/// The option, the method, and why.
+fn check(given: &Given, method: &Method) -> Result<(), String> {
+    let is_ignored =
+        |(option, _): &&(&str, &str)| given.has(option) && !method.takes.contains(option);
+    SPECIAL.iter().find(is_ignored).map_or(Ok(()), |(option, why)| {
+        Err(format!("{}: --method {} does not take it: {why}", long(option), method.name))
+    })
 }
 
 /// Replays a recording.
@@ -96,7 +117,7 @@ pub fn run(options: &ReplayOptions, given: &Given, as_json: bool) -> Result<Told
     let usual = || methods::named(methods::usual(&recording)).unwrap_or(&METHODS[0]);
     let method = options.method.unwrap_or_else(usual);
     // Without a method stated, that the options do not suit shows only now.
-    suits::check_replay(given, method).map_err(Failure::misuse)?;
+    check(given, method).map_err(Failure::misuse)?;
     let warnings = recording.told_warnings(&options.file);
     replay(options, method, recording, as_json)
         .map_err(|reason| Failure { warnings: warnings.clone(), ..reason.into() })

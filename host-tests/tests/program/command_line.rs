@@ -26,7 +26,7 @@ fn without_a_command_the_whole_board_finds_north_on_simulated_chips() {
 
 #[test]
 fn two_frames_find_north_and_leave_the_gyro_vertical() {
-    let options = ["run", "--mount", "two-frame", "--passes", "2", "--rate", "100"];
+    let options = ["run", "two-frame", "--passes", "2", "--rate", "100"];
     let output = meridian(&options);
     assert_eq!(code(&output), 0);
     let block = text(&output.stdout);

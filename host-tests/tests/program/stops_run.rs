@@ -11,8 +11,7 @@ fn run(arguments: &[&str]) -> Output {
 }
 
 /// A short day: two stops, four minutes.
-const SHORT: [&str; 7] =
-    ["--method", "siap", "--stops", "2", "--drive-seconds", "240", "--stop-seconds=40"];
+const SHORT: [&str; 7] = ["vehicle", "--stops", "2", "--drive-seconds", "240", "--stop-seconds=40"];
 
 /// The object of a short day with more options, and whether there was a result.
 fn short(more: &[&str]) -> (Value, bool) {
@@ -60,7 +59,7 @@ fn the_report_draws_the_stop_criteria_of_the_board() {
 
 #[test]
 fn faults_are_those_of_the_method() {
-    let vehicle = run(&["--method", "siap", "--fault", "list"]);
+    let vehicle = run(&["vehicle", "--fault", "list"]);
     let names = String::from_utf8_lossy(&vehicle.stdout).into_owned();
     assert!(names.contains("never-drives") && names.contains("right-gyro"), "{names}");
     let stage = run(&["--fault", "list"]);

@@ -186,7 +186,7 @@ fn an_axis_that_leans_widens_sigma_by_half_of_that_and_one_that_is_too_large_doe
 
 #[test]
 fn a_flight_whose_board_gave_the_roll_up_is_refused_with_exit_code_1_and_its_reason() {
-    let arguments = ["run", "--method", "spin", "--flight-seconds", "3", "--fault"];
+    let arguments = ["run", "spin", "--flight-seconds", "3", "--fault"];
     for fault in ["forward-gyro-silent", "up-accelerometer-silent"] {
         let output = meridian(&[&arguments[..], &[fault, "--json"]].concat());
         let object = object(&output);

@@ -51,7 +51,7 @@ fn no_output_is_another_output_by_whatever_name_even_before_either_is_there() {
     std::os::unix::fs::symlink("one", &soft).expect("the folder is ours");
     let imu = stored("imu-broad-24");
     let vertical = ["replay", &imu, "--method", "vertical", "--attitude-out", &one];
-    let flash = ["run", "--method", "rotating", "--flash", &one];
+    let flash = ["run", "turntable", "--flash", &one];
     for again in [&one, &other, &soft] {
         assert_misuse(&["run", "--record", &one, "--report", again], "takes the recording already");
         assert_misuse(
@@ -75,7 +75,7 @@ fn a_folder_is_no_file_and_neither_is_nothing() {
     for (arguments, option) in [
         (&["run", "--report"][..], "--report"),
         (&["run", "--record"], "--record"),
-        (&["run", "--method", "rotating", "--flash"], "--flash"),
+        (&["run", "turntable", "--flash"], "--flash"),
         (&["replay", &stage, "--report"], "--report"),
         (&["replay", &stage, "--method", "vertical", "--attitude-out"], "--attitude-out"),
         (&["campaign", "spin", "--report"], "--report"),
@@ -91,7 +91,7 @@ fn a_file_in_a_folder_that_is_not_there_is_refused_in_words_that_name_both() {
     let scratch = Scratch::new("nowhere");
     let (folder, beneath) = (scratch.path("none"), scratch.with("plain", ""));
     let short = ["run", "--rate", "50", "--dwell", "2"];
-    let turning = ["run", "--method", "rotating", "--rate", "50", "--turns", "2"];
+    let turning = ["run", "turntable", "--rate", "50", "--turns", "2"];
     let imu = stored("imu-broad-24");
     let vertical = ["replay", &imu, "--method", "vertical"];
     for (arguments, option, what) in [

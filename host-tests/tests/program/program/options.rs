@@ -3,61 +3,75 @@
 use crate::support::files::stored;
 use crate::support::program::{assert_misuse, code, meridian, object, reason, text};
 
-/// Methods and mounts, and all that each ignores.
-const IGNORED: [(&str, &str); 6] = [
+/// Platforms, and all options that each does not take.
+const IGNORED: [(&str, &str); 5] = [
     (
-        "--method spin",
+        "spin",
         "--latitude=1 --azimuth=1 --pitch=1 --roll=1 --gyro=fog --rate=100 --seconds=60 --sigma=1 --survey=60 \
          --mount=stage --passes=1 --half=east --positions=6 --dwell=5 --sensor=gyro --speeds=0.1 --turns=3 \
          --uneven-turns=5 --flash=x --stops=3 --stop-seconds=50 --drive-seconds=300 --no-displacement --hold=5 \
-         --realign --handover=1,1 --sway=0.1 --record=x",
+         --realign --handover=1,1 --sway=0.1",
     ),
     (
-        "--method siap",
+        "vehicle",
         "--pitch=1 --roll=1 --seconds=60 --sigma=1 --survey=60 --mount=stage --passes=1 --half=east \
          --positions=6 --dwell=5 --sensor=gyro --speeds=0.1 --turns=3 --uneven-turns=5 --flash=x \
-         --flight-seconds=1 --turns-per-second=90 --sway=0.1 --record=x",
+         --flight-seconds=1 --turns-per-second=90 --sway=0.1",
     ),
     (
-        "--method rotating",
+        "turntable",
         "--seconds=60 --sigma=1 --survey=60 --mount=stage --passes=1 --half=east --positions=6 --dwell=5 \
          --stops=3 --stop-seconds=50 --drive-seconds=300 --no-displacement --hold=5 --realign --handover=1,1 \
-         --flight-seconds=1 --turns-per-second=90 --sway=0.1 --record=x",
+         --flight-seconds=1 --turns-per-second=90 --sway=0.1",
     ),
-    (
-        "--method positions",
-        "--positions=6 --dwell=5 --passes=1 --turns=3 --stops=3 --flight-seconds=1",
-    ),
-    ("--mount two-frame", "--positions=6 --record=x --turns=3 --stops=3"),
-    ("--method stepwise", "--passes=1 --turns=3 --stops=3 --flight-seconds=1"),
+    ("two-frame", "--positions=6 --turns=3 --stops=3"),
+    ("stage", "--passes=1 --turns=3 --stops=3 --flight-seconds=1"),
+];
+/// What `--method` and `--mount` stand for.
+const ALIASES: [(&str, &str); 6] = [
+    ("--method spin", "spin"),
+    ("--method=siap", "vehicle"),
+    ("--method rotating", "turntable"),
+    ("--mount two-frame", "two-frame"),
+    ("--method stepwise --mount=two-frame", "two-frame"),
+    ("--mount stage", "stage"),
 ];
 
 #[test]
-fn an_option_that_a_method_or_mount_ignores_is_refused_with_both_named() {
-    for (method, options) in IGNORED {
+fn an_option_that_a_platform_does_not_take_is_refused_with_both_named() {
+    for (platform, options) in IGNORED {
         for option in options.split_whitespace() {
             let name = option.split('=').next().unwrap_or_default();
-            let words = format!("{name}: {method} does not take it: ");
-            let arguments: Vec<&str> = ["run"].into_iter().chain(method.split(' ')).collect();
-            assert_misuse(&[&arguments[..], &[option]].concat(), &words);
+            let words =
+                format!("unexpected argument '{name}' found; see `meridian run {platform} --help`");
+            assert_misuse(&["run", platform, option], &words);
         }
     }
 }
 
 #[test]
-fn a_fault_of_another_platform_is_refused() {
-    for (method, fault) in [
-        ("stepwise", "never-drives"),
-        ("positions", "lift-fades"),
-        ("rotating", "never-drives"),
-        ("siap", "base-nudge"),
-        ("spin", "never-drives"),
-    ] {
-        assert_misuse(&["run", "--method", method, "--fault", fault], "--fault: ");
+fn a_method_or_a_mount_stands_for_its_platform() {
+    for (alias, platform) in ALIASES {
+        let words: Vec<&str> = alias.split(' ').collect();
+        for after in [&["--help"][..], &["--fault", "list"], &["--nothing"], &["--seed", "x"]] {
+            let by_alias = meridian(&[&["run"], &words[..], after].concat());
+            let by_name = meridian(&[&["run", platform], after].concat());
+            assert_eq!(by_alias, by_name, "{alias} {after:?}");
+        }
     }
+    let planned = ["--positions", "4"];
+    let words = "'--seconds <SECONDS>' cannot be used with";
+    assert_misuse(&[&["run", "--method", "positions"], &planned[..]].concat(), words);
+}
+
+#[test]
+fn a_fault_of_another_platform_is_refused() {
     for (platform, fault, having) in [
-        ("--mount=stage", "inner-frame-reset", "a fault of two-frame, not of stage"),
-        ("--mount=two-frame", "encoder-slip", "a fault of stage and turntable, not of two-frame"),
+        ("turntable", "never-drives", "a fault of vehicle, not of turntable"),
+        ("vehicle", "base-nudge", "not of vehicle"),
+        ("spin", "never-drives", "a fault of vehicle, not of spin"),
+        ("stage", "inner-frame-reset", "a fault of two-frame, not of stage"),
+        ("two-frame", "encoder-slip", "a fault of stage and turntable, not of two-frame"),
     ] {
         assert_misuse(&["run", platform, "--fault", fault], having);
     }
@@ -75,10 +89,7 @@ fn keeping_and_handing_over_are_refused_where_nothing_comes_of_them() {
     assert_misuse(&["run", "--handover", "1,1", "--dwell", "3"], "--dwell: --handover takes");
     assert_misuse(&["run", "--handover", "1,1", "--gyro", "mems"], "--gyro: --handover takes");
     for option in ["--stops=7", "--no-displacement"] {
-        assert_misuse(
-            &["run", "--method", "siap", "--handover", "1,1", option],
-            "--handover takes",
-        );
+        assert_misuse(&["run", "vehicle", "--handover", "1,1", option], "--handover takes");
     }
     assert_misuse(&["run", "--realign", "--hold", "299"], "--realign: the first stop");
     assert_misuse(&["run", "--hold", "9", "--record", "x.csv"], "--record: ");
@@ -134,31 +145,25 @@ fn keeping_for_no_time_is_as_good_as_not_asking_for_it() {
 }
 
 #[test]
-fn each_method_lists_its_own_faults_and_takes_every_one_of_them() {
+fn each_platform_lists_its_own_faults_and_takes_every_one_of_them() {
     let listed = |platform: &str| {
         let output = meridian(&["run", platform, "--fault", "list"]);
         let text = text(&output.stdout);
         text.lines().map(str::to_owned).collect::<Vec<_>>()
     };
-    let [stage, frames, platform, vehicle, body] = [
-        "--mount=stage",
-        "--mount=two-frame",
-        "--method=rotating",
-        "--method=siap",
-        "--method=spin",
-    ]
-    .map(listed);
+    let [stage, frames, platform, vehicle, body] =
+        ["stage", "two-frame", "turntable", "vehicle", "spin"].map(listed);
     // Stage and platform are one board, whose chips fail alike, but for the coarse IMU on the stage's base.
     let shared: Vec<_> = stage.iter().filter(|name| !name.starts_with("coarse-imu")).collect();
     assert_eq!(shared, platform.iter().collect::<Vec<_>>());
     let counts = [&stage, &frames, &platform, &vehicle, &body].map(Vec::len);
     assert_eq!(counts, [58, 85, 55, 51, 55]);
-    for (method, own, other) in
-        [("siap", &vehicle, &stage), ("spin", &body, &vehicle), ("stepwise", &stage, &body)]
+    for (platform, own, other) in
+        [("vehicle", &vehicle, &stage), ("spin", &body, &vehicle), ("stage", &stage, &body)]
     {
-        assert!(own != other, "{method}");
+        assert!(own != other, "{platform}");
         let alien = other.iter().find(|fault| !own.contains(fault)).expect("they differ");
-        assert_misuse(&["run", "--method", method, "--fault", alien], "--fault: ");
+        assert_misuse(&["run", platform, "--fault", alien], "--fault: ");
     }
 }
 
@@ -190,9 +195,9 @@ fn a_number_may_be_negative_where_its_quantity_may() {
 fn a_negative_number_is_refused_in_words_where_its_quantity_has_none() {
     let stage = stored("stepwise-circle");
     for (arguments, words) in [
-        (&["run", "--method", "rotating", "--uneven-turns", "-1"][..], "neither 0 nor a number"),
-        (&["run", "--method", "rotating", "--speeds", "-0.1,0.2"], "not a speed from"),
-        (&["run", "--method", "rotating", "--turns", "-3"], "not a whole number from 2 to 1000"),
+        (&["run", "turntable", "--uneven-turns", "-1"][..], "neither 0 nor a number"),
+        (&["run", "turntable", "--speeds", "-0.1,0.2"], "not a speed from"),
+        (&["run", "turntable", "--turns", "-3"], "not a whole number from 2 to 1000"),
         (&["run", "--handover", "-1,-0.2"], "not an azimuth within"),
         (&["run", "--handover", "-361,1"], "not an azimuth within"),
         (&["run", "--dwell", "-1"], "not a number of seconds"),

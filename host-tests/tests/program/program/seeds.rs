@@ -7,21 +7,21 @@ use crate::support::program::{assert_misuse, code, meridian, object, reason, tex
 
 /// What can be run, as shortly as it can be.
 const RUNS: [&[&str]; 8] = [
-    &["--rate", "50", "--dwell", "2", "--positions", "6", "--hold", "0"],
-    &["--rate", "50", "--dwell", "2", "--positions", "6", "--hold", "20"],
-    &["--rate", "50", "--sway", "0.2", "--dwell", "2", "--positions", "8"],
-    &["--method", "positions", "--rate", "50", "--seconds", "60", "--gyro", "fog"],
-    &["--mount", "two-frame", "--rate", "50", "--dwell", "2", "--passes", "2"],
-    &["--method", "rotating", "--rate", "50", "--turns", "2", "--uneven-turns", "4"],
-    &["--method", "siap", "--rate", "50", "--stops", "2", "--drive-seconds", "240", "--hold", "10"],
-    &["--method", "spin", "--flight-seconds", "0.5"],
+    &["stage", "--rate", "50", "--dwell", "2", "--positions", "6", "--hold", "0"],
+    &["stage", "--rate", "50", "--dwell", "2", "--positions", "6", "--hold", "20"],
+    &["stage", "--rate", "50", "--sway", "0.2", "--dwell", "2", "--positions", "8"],
+    &["stage", "--rate", "50", "--seconds", "60", "--gyro", "fog"],
+    &["two-frame", "--rate", "50", "--dwell", "2", "--passes", "2"],
+    &["turntable", "--rate", "50", "--turns", "2", "--uneven-turns", "4"],
+    &["vehicle", "--rate", "50", "--stops", "2", "--drive-seconds", "240", "--hold", "10"],
+    &["spin", "--flight-seconds", "0.5"],
 ];
 
 #[test]
-fn every_seed_of_64_bits_runs_with_every_method_and_mount() {
+fn every_seed_of_64_bits_runs_on_every_platform() {
     for run in RUNS {
         for seed in ["0", "2635249153387078803", "9223372036854775808", "18446744073709551615"] {
-            let arguments = [&["run", "--seed", seed, "--json"], run].concat();
+            let arguments = [&["run"], run, &["--seed", seed, "--json"]].concat();
             let output = meridian(&arguments);
             assert!(code(&output) <= 1, "{arguments:?}: {}", text(&output.stderr));
             assert_eq!(object(&output)["seed"].to_string(), seed, "{arguments:?}");
@@ -54,16 +54,16 @@ fn what_is_no_seed_of_64_bits_is_misuse() {
 #[test]
 fn a_healthy_run_tells_no_sample_beside_its_time_at_any_rate() {
     for rate in ["20", "50", "60", "100", "400", "1200", "2400"] {
-        for mount in [&["--positions", "4"][..], &["--mount", "two-frame", "--passes", "1"]] {
-            let short = ["run", "--json", "--dwell", "2", "--hold", "10", "--rate", rate];
-            let output = meridian(&[&short, mount].concat());
+        for platform in [&["stage", "--positions", "4"][..], &["two-frame", "--passes", "1"]] {
+            let short = ["--json", "--dwell", "2", "--hold", "10", "--rate", rate];
+            let output = meridian(&[&["run"], platform, &short[..]].concat());
             let object = object(&output);
             let count = |what: &str| object["health"][what].as_u64().expect("a count");
-            assert_eq!(count("late"), 0, "{rate} {mount:?}: {}", reason(&output));
-            assert!(!text(&output.stderr).contains("beside its time"), "{rate} {mount:?}");
+            assert_eq!(count("late"), 0, "{rate} {platform:?}: {}", reason(&output));
+            assert!(!text(&output.stderr).contains("beside its time"), "{rate} {platform:?}");
             // Two frames' chips and the base's share what a period at 2400 Hz has: one conversion in a minute is lost.
-            let lost = u64::from(rate == "2400" && mount.len() > 2);
-            assert!(count("missing") <= lost, "{rate} {mount:?}: {}", count("missing"));
+            let lost = u64::from(rate == "2400" && platform[0] == "two-frame");
+            assert!(count("missing") <= lost, "{rate} {platform:?}: {}", count("missing"));
         }
     }
 }
@@ -126,7 +126,7 @@ fn a_flash_that_cannot_be_written_is_no_ok() {
     let scratch = Scratch::new("flash");
     let path = scratch.path("no-folder/flash");
     assert!(!Path::new(&path).exists());
-    let turning = ["run", "--method", "rotating", "--turns", "2", "--uneven-turns", "4"];
+    let turning = ["run", "turntable", "--turns", "2", "--uneven-turns", "4"];
     let output = meridian(&[&turning[..], &["--rate", "50", "--flash", &path, "--json"]].concat());
     assert_eq!((code(&output), &object(&output)["status"]), (1, &"failed".into()));
 }

@@ -3,6 +3,9 @@
 use clap::Args;
 use firmware::simulated::keep::Hold;
 
+use super::options::seconds;
+use crate::command::given::{self, Given};
+
 /// How long a run goes on where nothing is said, s, and where it aligns anew at stops: several come then.
 const USUAL: f64 = 60.0;
 const REALIGNING: f64 = 1800.0;
@@ -14,7 +17,7 @@ const HANDED: f64 = 20.0;
 pub struct KeepingOptions {
     /// Seconds for which the azimuth is kept, while the vehicle drives and stops; 0 for not at all (60;
     /// with --realign 1800; with --record, --fault or --sigma 0).
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds::<0, 14_400>)]
     hold: Option<f64>,
     /// While the azimuth is kept, aligns anew at stops.
     #[arg(long)]
@@ -22,13 +25,6 @@ pub struct KeepingOptions {
     /// An azimuth that is handed over from outside instead of an alignment, and its 1σ, in degrees.
     #[arg(long, value_name = "DEGREES,SIGMA", value_parser = handover)]
     handover: Option<[f64; 2]>,
-}
-
-fn seconds(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(seconds) if (0.0..=14_400.0).contains(&seconds) => Ok(seconds),
-        _ => Err("not a number of seconds from 0 to 14400".to_owned()),
-    }
 }
 
 fn handover(text: &str) -> Result<[f64; 2], String> {
@@ -43,11 +39,6 @@ fn handover(text: &str) -> Result<[f64; 2], String> {
 }
 
 impl KeepingOptions {
-    /// Whether it aligns anew at stops.
-    pub fn realigns(&self) -> bool {
-        self.realign
-    }
-
     /// How the run goes on; one that is to be the same as ever does not unless it is asked to.
     pub fn hold(&self, is_plain: bool) -> Hold {
         let usual = match (is_plain, self.realign) {
@@ -60,5 +51,36 @@ impl KeepingOptions {
             handover: self.handover.map(|handover| (handover, HANDED)),
             ..Hold::of(self.hold.unwrap_or(usual))
         }
+    }
+
+    /// What keeping needs; and what an azimuth from outside takes the place of, unless the vehicle aligns itself anew
+    /// later: the options that plan an alignment.
+    ///
+    /// # Errors
+    /// The option, and why it does not go with the others.
+    pub fn check(
+        &self,
+        given: &Given,
+        hold: &Hold,
+        aligning: &[&'static str],
+    ) -> Result<(), String> {
+        let asked = given.first(&["realign", "handover"]);
+        if let Some(option) = asked.filter(|_| hold.seconds <= 0.0) {
+            let option = given::long(option);
+            return Err(format!("{option}: nothing is kept after this run; add --hold SECONDS"));
+        }
+        let first = Hold::default().drive_s + Hold::default().stop_s;
+        if self.realign && hold.seconds < first {
+            return Err(format!(
+                "--realign: the first stop after the alignment ends after {first} s; add --hold of more"
+            ));
+        }
+        let is_alone = self.handover.is_some() && !self.realign;
+        given.first(aligning).filter(|_| is_alone).map_or(Ok(()), |option| {
+            Err(format!(
+                "{}: --handover takes the place of the alignment; add --realign or leave one out",
+                given::long(option)
+            ))
+        })
     }
 }

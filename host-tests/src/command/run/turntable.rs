@@ -1,52 +1,57 @@
-//! `meridian run --method rotating`: the board on a platform that turns all the time.
+//! `meridian run turntable`: the board on a platform that turns all the time.
 
-use std::path::{Path, PathBuf};
-use std::time::Instant as WallClock;
+use std::path::PathBuf;
 
 use bench::instrument::kept::Kept;
 use bench::instrument::{Keeping, Run, TurntableRun, align_turning_again, flash_file};
-use bench::outcome::Finished;
 use bench::outcome::run::RunDetails;
-use bench::output::progress::Progress;
 use bench::recording::{Body, Truth};
 use bench::rotating::Replay;
 use bench::rotating::recorder::RowRecorder;
 use clap::{Args, ValueEnum};
 use firmware::date::Day;
 use firmware::event::Event;
-use firmware::simulated::fault::Fault;
+use firmware::simulated::fault::{Fault, Platform};
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;
 use firmware::storage::{Remembered, Today};
 
-use super::files::{self, Written};
-use super::run::Terminal;
-use super::{Shown, Told, whole};
+use super::options::{Common, Inclination, Place};
+use super::{Ran, Simulated, Terminal};
+use crate::command::files::{self, Written};
+use crate::command::given::Given;
+use crate::command::whole;
 
-/// What a platform that turns all the time is asked for.
+/// What is asked of a platform that turns all the time.
 #[derive(Args, Clone, Debug)]
-pub struct TurningOptions {
-    /// With --method rotating: the sensor (gyro).
+pub struct TurntableOptions {
+    #[command(flatten)]
+    common: Common,
+    #[command(flatten)]
+    place: Place,
+    #[command(flatten)]
+    inclination: Inclination,
+    /// The sensor (gyro).
     #[arg(long, value_enum)]
     sensor: Option<Sensor>,
-    /// With --method rotating: one or two speeds in turns a second (0.137; of met 0.1,0.2).
+    /// One or two speeds in turns a second (0.137; of met 0.1,0.2).
     #[arg(long, value_name = "HERTZ[,HERTZ]", value_parser = speeds)]
     speeds: Option<[f64; 2]>,
-    /// With --method rotating: whole turns each way at the slowest speed.
+    /// Whole turns each way at the slowest speed.
     #[arg(long, value_parser = whole::<2, 1000>)]
     turns: Option<u64>,
-    /// With --method rotating: uneven turns before them, 0 where what --flash keeps is to do (12).
+    /// Rate-modulated turns before them, 0 where what --flash keeps is to do (12).
     #[arg(long, value_name = "TURNS", value_parser = uneven_turns)]
     uneven_turns: Option<u32>,
-    /// With --method rotating: the board's flash, which keeps what uneven turns find from run to run.
+    /// The board's flash, which keeps the axis misalignments that rate-modulated turns find from run to run.
     #[arg(long, value_name = "FILE")]
     flash: Option<PathBuf>,
-    /// With --flash: today, so that the board knows when it found something.
+    /// Today, so that the board knows when it found something.
     #[arg(long, value_name = "YYYY-MM-DD", value_parser = date, requires = "flash")]
     date: Option<u64>,
 }
 
-/// None, or enough to tell a coupling from the Earth rate.
+/// None, or enough to tell an axis misalignment from the Earth rate.
 fn uneven_turns(text: &str) -> Result<u32, String> {
     match text.parse::<u32>() {
         Ok(turns) if turns == 0 || (4..=1000).contains(&turns) => Ok(turns),
@@ -91,29 +96,18 @@ fn speeds(text: &str) -> Result<[f64; 2], String> {
 /// Speeds closer than this tell nothing apart.
 const LEAST_RATIO: f64 = 1.2;
 
-impl TurningOptions {
-    /// The file of the flash, and the one in which it is written first.
-    pub fn files(&self) -> [Option<Written>; 2] {
-        let beside = self.flash.as_deref().map(flash_file::beside);
-        [self.flash.as_ref(), beside.as_ref()]
-            .map(|path| files::written("--flash", "the flash", path))
-    }
-
-    /// Whether the sensor is a molecular-electronic one.
-    pub fn is_molecular(&self) -> bool {
-        self.sensor == Some(Sensor::Met)
-    }
-
-    /// The scenario on a base.
-    pub fn scenario(&self, base: &Scenario) -> TurntableScenario {
-        let usual = if self.is_molecular() {
-            let molecular = TurntableScenario::molecular(base.seed);
-            let gyro = molecular.base.gyro;
-            TurntableScenario { base: Scenario { gyro, ..*base }, ..molecular }
-        } else {
-            TurntableScenario { base: *base, ..TurntableScenario::default() }
+impl TurntableOptions {
+    fn scenario(&self) -> TurntableScenario {
+        let seed = self.common.seed;
+        let usual = match self.sensor {
+            Some(Sensor::Met) => TurntableScenario::molecular(seed),
+            _ => TurntableScenario { base: Scenario::usual(seed), ..TurntableScenario::default() },
         };
+        let Inclination { pitch: pitch_deg, roll: roll_deg } = self.inclination;
+        let told = Scenario { pitch_deg, roll_deg, ..self.place.scenario(seed) };
+        let gyro = if self.place.gyro.is_some() { told.gyro } else { usual.base.gyro };
         TurntableScenario {
+            base: Scenario { gyro, ..told },
             speeds_hz: self.speeds.unwrap_or(usual.speeds_hz),
             uneven_turns: self.uneven_turns.unwrap_or(usual.uneven_turns),
             turns: self.turns.map_or(usual.turns, |turns| turns as u32),
@@ -137,36 +131,51 @@ impl TurningOptions {
     }
 }
 
-/// What the pages and blocks call it.
-const NAME: &str = "the simulated run";
+impl Simulated for TurntableOptions {
+    const PLATFORM: Platform = Platform::Turntable;
 
-/// Runs the board and tells what came of it.
-pub fn run(
-    options: &TurningOptions,
-    scenario: &TurntableScenario,
-    fault: Option<Fault>,
-    report: Option<&Path>,
-    as_json: bool,
-) -> Result<Told, String> {
-    let begun = WallClock::now();
-    let mut keeping = options.keeping()?;
-    let watch = Terminal(Progress::new(0, "turns"));
-    let mut recorder = RowRecorder::default();
-    let run = align_turning_again(scenario, fault, &mut recorder, &watch, keeping.as_mut());
-    watch.0.finish();
-    let TurntableRun { run, .. } = run.map_err(|error| error.to_string())?;
-    let put_away = options.put_away(keeping);
-    let rate_hz = scenario.base.sample_rate_hz;
-    let mut details = RunDetails::of(&run, &Kept::default(), rate_hz, begun.elapsed());
-    details.recalled = Some(recalled(&run).map(Into::into).collect());
-    let replay =
-        Replay { session: run.replay.clone(), zero_s: 0.0, assumed: vec![ASSUMED.to_owned()] };
-    let truth = Truth { azimuth_deg: Some(scenario.base.azimuth_deg), ..Truth::default() };
-    let outcome = replay.outcome(&truth).of_run(scenario.base.seed, details);
-    let body = Body::Rotating(recorder.rows().to_vec());
-    let (finished, body) = (&replay, Some(&body));
-    let shown = Shown { name: NAME, outcome, finished, truth: &truth, body };
-    Ok(shown.told(report, as_json)?.with_written(put_away))
+    fn common(&self) -> &Common {
+        &self.common
+    }
+
+    /// The file of the flash, and the one in which it is written first.
+    fn files(&self) -> Vec<Option<Written>> {
+        let beside = self.flash.as_deref().map(flash_file::beside);
+        let files = [self.flash.as_ref(), beside.as_ref()];
+        files.map(|path| files::written("--flash", "the flash", path)).into()
+    }
+
+    fn check(&self, _: &Given) -> Result<(), String> {
+        if self.sensor == Some(Sensor::Met) && self.place.gyro.is_some() {
+            return Err(
+                "--gyro: a molecular-electronic sensor takes its place; leave out --sensor met"
+                    .to_owned(),
+            );
+        }
+        Ok(())
+    }
+
+    fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
+        let scenario = self.scenario();
+        let (mut keeping, mut recorder) = (self.keeping()?, RowRecorder::default());
+        let (TurntableRun { run, .. }, wall) = Terminal::watching("turns", |watch| {
+            align_turning_again(&scenario, fault, &mut recorder, watch, keeping.as_mut())
+        })?;
+        let written = self.put_away(keeping);
+        let mut details =
+            RunDetails::of(&run, &Kept::default(), scenario.base.sample_rate_hz, wall);
+        details.recalled = Some(recalled(&run).map(Into::into).collect());
+        let finished =
+            Replay { session: run.replay, zero_s: 0.0, assumed: vec![ASSUMED.to_owned()] };
+        Ok(Ran {
+            name: "the simulated run",
+            finished: Box::new(finished),
+            truth: Truth { azimuth_deg: Some(scenario.base.azimuth_deg), ..Truth::default() },
+            details,
+            body: Some(Body::Rotating(recorder.rows().to_vec())),
+            written,
+        })
+    }
 }
 
 /// The stored axis misalignments that the board used.

@@ -1,0 +1,42 @@
+//! The options that stand on the command line, apart from those that have their defaults.
+
+use clap::ArgMatches;
+use clap::parser::ValueSource;
+
+/// The options that stand on the command line, by the names of their fields.
+#[derive(Default)]
+pub struct Given(Vec<String>);
+
+impl Given {
+    /// Those of a command and of its subcommands.
+    pub fn of(matches: &ArgMatches) -> Self {
+        // What begins with a capital letter is a group of options.
+        let stands = |id: &&clap::Id| {
+            id.as_str().starts_with(char::is_lowercase)
+                && matches.value_source(id.as_str()) == Some(ValueSource::CommandLine)
+        };
+        let mut given: Vec<_> = matches.ids().filter(stands).map(ToString::to_string).collect();
+        given.extend(matches.subcommand().into_iter().flat_map(|(_, inner)| Self::of(inner).0));
+        Self(given)
+    }
+
+    /// Whether this one is among them.
+    pub fn has(&self, option: &str) -> bool {
+        self.0.iter().any(|given| given == option)
+    }
+
+    /// The first of these that is among them.
+    pub fn first(&self, options: &[&'static str]) -> Option<&'static str> {
+        options.iter().find(|option| self.has(option)).copied()
+    }
+
+    /// The first that is none of these.
+    pub fn beside(&self, options: &[&str]) -> Option<&str> {
+        self.0.iter().map(String::as_str).find(|given| !options.contains(given))
+    }
+}
+
+/// An option as it stands on the command line.
+pub fn long(option: &str) -> String {
+    format!("--{}", option.replace('_', "-"))
+}

@@ -1,0 +1,198 @@
+//! `meridian run`: the whole board application on simulated chips, a subcommand for each platform.
+
+pub mod alias;
+mod keeping;
+mod options;
+mod spin;
+mod stage;
+mod turntable;
+mod vehicle;
+
+use std::time::{Duration, Instant as WallClock};
+
+use bench::instrument::RunError;
+use bench::outcome::Finished;
+use bench::outcome::run::RunDetails;
+use bench::output::progress::Progress;
+use bench::recording::{Body, Truth};
+use clap::{Args, Subcommand};
+use embassy_time::Instant;
+use firmware::event::Event;
+use firmware::ports::Observer;
+use firmware::simulated::fault::{Fault, Platform};
+use orientation::session::{Session, rotating, stops};
+
+use self::options::Common;
+use super::faults::{self, Asked};
+use super::files::{self, Written};
+use super::given::{self, Given};
+use super::{Shown, Told};
+
+/// What is run.
+#[derive(Args)]
+pub struct RunOptions {
+    #[command(subcommand)]
+    platform: Carrier,
+}
+
+/// What carries the sensors.
+#[derive(Subcommand)]
+enum Carrier {
+    /// A gyro on a single-axis stage: positions on the full circle, unless a plan is asked for. What runs where no
+    /// platform is named.
+    Stage(Box<stage::StageOptions>),
+    /// A gyro in two frames: four headings, and vertical to keep the azimuth.
+    TwoFrame(Box<stage::FramesOptions>),
+    /// A platform that turns all the time, on a slip ring.
+    Turntable(Box<turntable::TurntableOptions>),
+    /// Three gyros in a vehicle that drives from stop to stop.
+    Vehicle(Box<vehicle::VehicleOptions>),
+    /// The roll of a body in fast rotation.
+    Spin(spin::SpinOptions),
+}
+
+/// A platform that is run as its options say.
+trait Simulated {
+    /// As the catalogue of faults names it.
+    const PLATFORM: Platform;
+
+    /// What every platform takes.
+    fn common(&self) -> &Common;
+
+    /// What cannot go together, beyond what the parser of the arguments refuses.
+    ///
+    /// # Errors
+    /// The options, and why.
+    fn check(&self, _given: &Given) -> Result<(), String> {
+        Ok(())
+    }
+
+    /// The files that it writes beside those of every platform.
+    fn files(&self) -> Vec<Option<Written>> {
+        Vec::new()
+    }
+
+    /// Whether the coarse IMU on the base is left out.
+    fn lacks_base_imu(&self) -> bool {
+        false
+    }
+
+    /// Runs the board.
+    ///
+    /// # Errors
+    /// What keeps it from running; a refusal is none.
+    fn run(&self, fault: Option<Fault>) -> Result<Ran, String>;
+}
+
+/// A finished run, ready to be shown.
+struct Ran {
+    /// What texts and pages call it.
+    name: &'static str,
+    /// Its analysis.
+    finished: Box<dyn Finished>,
+    /// The truth, for errors alone.
+    truth: Truth,
+    /// How the board did, and what it kept.
+    details: RunDetails,
+    /// The rows that figures show, where there are any.
+    body: Option<Body>,
+    /// Whether what was written beside is whole.
+    written: Result<(), String>,
+}
+
+impl RunOptions {
+    /// What cannot go together.
+    ///
+    /// # Errors
+    /// The options, and why.
+    pub fn check(&self, given: &Given) -> Result<(), String> {
+        match &self.platform {
+            Carrier::Stage(options) => check(&**options, given),
+            Carrier::TwoFrame(options) => check(&**options, given),
+            Carrier::Turntable(options) => check(&**options, given),
+            Carrier::Vehicle(options) => check(&**options, given),
+            Carrier::Spin(options) => check(options, given),
+        }
+    }
+}
+
+fn check<P: Simulated>(platform: &P, given: &Given) -> Result<(), String> {
+    let common = platform.common();
+    match common.fault {
+        Some(Asked::List) => {
+            // `--method positions` stands for `--seconds 300`.
+            let beside = given.beside(&["fault", "seconds", "json"]);
+            return beside.map_or(Ok(()), |option| {
+                Err(format!("{}: --fault list runs nothing", given::long(option)))
+            });
+        }
+        Some(Asked::One(fault)) => {
+            faults::check(fault, P::PLATFORM, platform.lacks_base_imu())?;
+        }
+        None => {}
+    }
+    platform.check(given)?;
+    let report = files::written("--report", "the page", common.report.as_ref());
+    let files: Vec<_> = platform.files().into_iter().chain([report]).collect();
+    files::check(None, &files)
+}
+
+/// Runs the board and tells what came of it.
+pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
+    match &options.platform {
+        Carrier::Stage(options) => told(&**options, as_json),
+        Carrier::TwoFrame(options) => told(&**options, as_json),
+        Carrier::Turntable(options) => told(&**options, as_json),
+        Carrier::Vehicle(options) => told(&**options, as_json),
+        Carrier::Spin(options) => told(options, as_json),
+    }
+}
+
+fn told<P: Simulated>(platform: &P, as_json: bool) -> Result<Told, String> {
+    let Common { seed, fault, report, .. } = platform.common();
+    let fault = match fault {
+        Some(Asked::List) => return faults::list(P::PLATFORM, as_json),
+        Some(Asked::One(fault)) => Some(*fault),
+        None => None,
+    };
+    let Ran { name, finished, truth, details, body, written } = platform.run(fault)?;
+    let outcome = finished.outcome(&truth).of_run(*seed, details);
+    let shown = Shown { name, outcome, finished: &*finished, truth: &truth, body: body.as_ref() };
+    Ok(shown.told(report.as_deref(), as_json)?.with_written(written))
+}
+
+/// Shows the log and the progress while a board works.
+struct Terminal(Progress);
+
+impl Terminal {
+    /// Runs a board, whose progress counts these; with the time that it took on this machine.
+    fn watching<T>(
+        steps: &'static str,
+        run: impl FnOnce(&Self) -> Result<T, RunError>,
+    ) -> Result<(T, Duration), String> {
+        let begun = WallClock::now();
+        let watch = Self(Progress::new(0, steps));
+        let ran = run(&watch);
+        watch.0.finish();
+        ran.map(|ran| (ran, begun.elapsed())).map_err(|error| error.to_string())
+    }
+}
+
+impl Observer for Terminal {
+    fn event(&self, at: Instant, event: &Event) {
+        let seconds = at.as_micros() as f64 * 1e-6;
+        self.0.log(&format!("{seconds:>11.6} {event}"));
+    }
+
+    fn progress(&self, session: &Session) {
+        self.0.session(session);
+    }
+
+    fn turned(&self, session: &rotating::Session) {
+        self.0.steps(session.turns());
+    }
+
+    fn stopped(&self, session: &stops::Session) {
+        self.0.steps((session.stops().len() as u32, session.procedure().stops as u32));
+    }
+}

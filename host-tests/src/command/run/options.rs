@@ -1,0 +1,125 @@
+//! Options that several platforms share.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use drivers::ads1262::configuration::DataRate;
+use firmware::simulated::scenario::{GyroClass, RATES, Scenario};
+
+use crate::command::faults::{self, Asked};
+use crate::command::seed;
+
+/// What every platform takes.
+#[derive(Args, Clone, Debug)]
+pub struct Common {
+    /// What fixes everything random.
+    #[arg(long, default_value_t = 1, value_parser = seed)]
+    pub seed: u64,
+    /// What goes wrong; `list` names the faults of the platform.
+    #[arg(long, value_name = "NAME", value_parser = faults::parse)]
+    pub fault: Option<Asked>,
+    /// Writes figures and tables as a page for a browser.
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
+}
+
+/// Where a platform that finds north is, and with which gyro.
+#[derive(Args, Clone, Debug)]
+pub struct Place {
+    /// Latitude in degrees, north positive.
+    #[arg(long, value_name = "DEGREES", default_value = "47.58", value_parser = within::<90>)]
+    latitude: f64,
+    /// True azimuth of body x in degrees; the board is not told.
+    #[arg(long, value_name = "DEGREES", default_value = "213.7", value_parser = within::<360>)]
+    azimuth: f64,
+    /// The gyro (fog).
+    #[arg(long, value_enum)]
+    pub gyro: Option<Gyro>,
+    /// Samples of the gyro a second: a data rate of its converter (400; of a vehicle 100).
+    #[arg(long, value_name = "HERTZ", value_parser = rate)]
+    pub rate: Option<f64>,
+}
+
+impl Place {
+    /// A scenario there, everything else as usual.
+    pub fn scenario(&self, seed: u64) -> Scenario {
+        let usual = Scenario::usual(seed);
+        Scenario {
+            latitude_deg: self.latitude,
+            azimuth_deg: self.azimuth.rem_euclid(360.0),
+            gyro: self.gyro.map_or(usual.gyro, Into::into),
+            sample_rate_hz: self.rate.unwrap_or(usual.sample_rate_hz),
+            ..usual
+        }
+    }
+}
+
+/// How a base that stands is inclined.
+#[derive(Args, Clone, Debug)]
+pub struct Inclination {
+    /// True pitch of the base in degrees, nose up positive.
+    #[arg(long, value_name = "DEGREES", default_value = "0.6", value_parser = within::<90>)]
+    pub pitch: f64,
+    /// True roll of the base in degrees, right side down positive.
+    #[arg(long, value_name = "DEGREES", default_value = "-0.4", value_parser = within::<180>)]
+    pub roll: f64,
+}
+
+/// A class of gyros.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum Gyro {
+    /// Fibre-optic: N 0.001 °/√h, B 0.007 °/h.
+    Fog,
+    /// Fibre-optic, lower grade: N 0.02 °/√h, B 0.1 °/h.
+    FogCoarse,
+    /// The best micromechanical: N 0.036 °/√h, B 0.3 °/h.
+    MemsFine,
+    /// Micromechanical, tactical grade: N 0.15 °/√h, B 0.5 °/h.
+    Mems,
+}
+
+impl From<Gyro> for GyroClass {
+    fn from(gyro: Gyro) -> Self {
+        match gyro {
+            Gyro::Fog => Self::FIBRE_OPTIC,
+            Gyro::FogCoarse => Self::FIBRE_OPTIC_COARSE,
+            Gyro::MemsFine => Self::MICROMECHANICAL_FINE,
+            Gyro::Mems => Self::MICROMECHANICAL,
+        }
+    }
+}
+
+fn within<const LIMIT: u16>(text: &str) -> Result<f64, String> {
+    let limit = f64::from(LIMIT);
+    match text.parse::<f64>() {
+        Ok(angle) if angle.abs() <= limit => Ok(angle),
+        Ok(_) => Err(format!("outside ±{limit}°")),
+        Err(_) => Err("not a number".to_owned()),
+    }
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    let rates = RATES.map(DataRate::hertz);
+    let known = rates.map(|rate| rate.to_string()).join(", ");
+    let rate = text.parse::<f64>().ok().filter(|rate| rates.contains(rate));
+    rate.ok_or_else(|| format!("not one of the converter's rates: {known}"))
+}
+
+/// A number from `least` to `most` of what the words name.
+///
+/// # Errors
+/// Anything else, in words.
+pub fn number(text: &str, least: f64, most: f64, what: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if (least..=most).contains(&number) => Ok(number),
+        _ => Err(format!("not {what} from {least} to {most}")),
+    }
+}
+
+/// A time from `LEAST` to `MOST` s.
+///
+/// # Errors
+/// Anything else, in words.
+pub fn seconds<const LEAST: u32, const MOST: u32>(text: &str) -> Result<f64, String> {
+    number(text, LEAST.into(), MOST.into(), "a number of seconds")
+}

@@ -1,0 +1,84 @@
+//! `meridian run spin`: the board on a body in fast rotation.
+
+use bench::instrument::Run;
+use bench::instrument::kept::Kept;
+use bench::instrument::spinning::{SpinRun, follow_spin};
+use bench::outcome::run::RunDetails;
+use bench::recording::Truth;
+use bench::spin::{Known, Replay, follow};
+use clap::Args;
+use firmware::event::Event;
+use firmware::simulated::fault::{Fault, Platform};
+use firmware::simulated::spin::{SAMPLE_RATE, SpinScenario};
+use firmware::spin::Flight;
+use orientation::units::DEGREE;
+
+use super::options::{Common, number};
+use super::{Ran, Simulated, Terminal};
+
+/// What is asked of a flight.
+#[derive(Args, Clone, Debug)]
+pub struct SpinOptions {
+    #[command(flatten)]
+    common: Common,
+    /// Seconds for which the roll is followed (2).
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    flight_seconds: Option<f64>,
+    /// Turns a second (100).
+    #[arg(long, value_name = "TURNS", value_parser = turns)]
+    turns_per_second: Option<f64>,
+}
+
+/// A time of flight, s.
+fn seconds(text: &str) -> Result<f64, String> {
+    number(text, 0.5, 60.0, "a number of seconds")
+}
+
+/// A spin within what the gyro measures, turns a second.
+fn turns(text: &str) -> Result<f64, String> {
+    number(text, 20.0, 105.0, "a number of turns a second")
+}
+
+/// What a simulated board is told.
+const ASSUMED: &str = "what the board is told of its gyros";
+/// Greatest 1σ of a roll that is one, rad: 10°, as a replay has it.
+const REQUIRED_SIGMA: f64 = 10.0 * DEGREE;
+
+impl Simulated for SpinOptions {
+    const PLATFORM: Platform = Platform::Spin;
+
+    fn common(&self) -> &Common {
+        &self.common
+    }
+
+    fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
+        let usual = SpinScenario::default();
+        let scenario = SpinScenario {
+            seed: self.common.seed,
+            seconds: self.flight_seconds.unwrap_or(usual.seconds),
+            turns_per_s: self.turns_per_second.unwrap_or(usual.turns_per_s),
+            ..usual
+        };
+        let (SpinRun { run, samples, rolls_rad, .. }, wall) =
+            Terminal::watching("samples", |watch| follow_spin(&scenario, fault, watch))?;
+        let assumed = vec![ASSUMED.to_owned()];
+        let known = Known { setting: scenario.setting(), required_sigma: REQUIRED_SIGMA, assumed };
+        let replay = Replay { ended: ended(&run), ..follow(&samples, known) };
+        Ok(Ran {
+            name: "the simulated flight",
+            finished: Box::new(replay),
+            truth: Truth { roll_rad: rolls_rad, ..Truth::default() },
+            details: RunDetails::of(&run, &Kept::default(), SAMPLE_RATE, wall),
+            body: None,
+            written: Ok(()),
+        })
+    }
+}
+
+/// Why the board gave the roll up, if it did: what it had by then is none of the end.
+fn ended(run: &Run<Flight>) -> Option<String> {
+    run.events.iter().find_map(|(_, event)| match event {
+        Event::RollEnded(_) => Some(event.to_string()),
+        _ => None,
+    })
+}

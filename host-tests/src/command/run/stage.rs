@@ -1,0 +1,282 @@
+//! `meridian run stage` and `meridian run two-frame`: a base that stands while its gyro stops at positions.
+
+use std::path::PathBuf;
+
+use bench::instrument::kept::{Kept, KeptPlan, KeptRun};
+use bench::instrument::recorder::CsvRecorder;
+use bench::instrument::{self, FramesRun, Run, RunError};
+use bench::outcome::Finished;
+use bench::outcome::run::{KeptAzimuth, RunDetails};
+use bench::output::degrees;
+use bench::recording::Truth;
+use bench::unwritten;
+use clap::Args;
+use firmware::event::Event;
+use firmware::ports::{NoRecorder, Recorder};
+use firmware::simulated::fault::{Fault, Platform};
+use firmware::simulated::mount::FramesScenario;
+use firmware::simulated::scenario::{Aim, Scenario};
+
+use super::keeping::KeepingOptions;
+use super::options::{Common, Inclination, Place, number, seconds};
+use super::{Ran, Simulated, Terminal};
+use crate::command::faults::Asked;
+use crate::command::files::{self, Written};
+use crate::command::given::Given;
+use crate::command::{Half, sigma, whole};
+
+/// What is asked of a stage.
+#[derive(Args, Clone, Debug)]
+pub struct StageOptions {
+    #[command(flatten)]
+    base: BaseOptions,
+    /// Positions on the full circle (24), to the first of which it comes once more at the end.
+    #[arg(long, value_parser = whole::<2, 64>, conflicts_with_all = ["seconds", "sigma"])]
+    positions: Option<u64>,
+    /// Writes the samples that the session got as a recording for `replay`.
+    #[arg(long, value_name = "FILE.csv", conflicts_with = "sway")]
+    record: Option<PathBuf>,
+}
+
+/// What is asked of two frames.
+#[derive(Args, Clone, Debug)]
+pub struct FramesOptions {
+    #[command(flatten)]
+    base: BaseOptions,
+    /// How often the four headings are visited (6).
+    #[arg(long, value_name = "PASSES", value_parser = whole::<1, 16>, conflicts_with_all = ["seconds", "sigma"])]
+    passes: Option<u64>,
+}
+
+/// What a stage and two frames share: a base that stands or sways, and a plan of positions.
+#[derive(Args, Clone, Debug)]
+struct BaseOptions {
+    #[command(flatten)]
+    common: Common,
+    #[command(flatten)]
+    place: Place,
+    #[command(flatten)]
+    inclination: Inclination,
+    /// The best schedule for the gyro in so many seconds, instead of positions on the full circle; with
+    /// --sigma the time allowed.
+    #[arg(long, value_name = "SECONDS", value_parser = seconds::<60, 36_000>)]
+    seconds: Option<f64>,
+    /// Goes on until this standard deviation is reached, in degrees (1σ).
+    #[arg(long, value_name = "DEGREES", value_parser = wanted)]
+    sigma: Option<f64>,
+    /// Stands still first for so many seconds, to know the gyro's noise and to plan by it.
+    #[arg(long, value_name = "SECONDS", value_parser = seconds::<60, 36_000>)]
+    survey: Option<f64>,
+    /// The half of the circle in which the board is told that the azimuth lies: two positions need it.
+    #[arg(long, value_enum)]
+    half: Option<Half>,
+    /// Seconds at each position (10).
+    #[arg(long, value_name = "SECONDS", value_parser = dwell, conflicts_with_all = ["seconds", "sigma"])]
+    dwell: Option<f64>,
+    #[command(flatten)]
+    keeping: KeepingOptions,
+    /// Amplitude of the base's sway in degrees; brings a coarse IMU on the base with it.
+    #[arg(long, value_name = "DEGREES", value_parser = sway)]
+    sway: Option<f64>,
+    /// Frequency of the sway in hertz.
+    #[arg(long, value_name = "HERTZ", default_value = "0.5", value_parser = sway_hertz, requires = "sway")]
+    sway_hertz: f64,
+    /// Lets the base sway without a coarse IMU on it.
+    #[arg(long, requires = "sway")]
+    no_base_imu: bool,
+}
+
+fn wanted(text: &str) -> Result<f64, String> {
+    sigma(text).map(f64::to_degrees)
+}
+
+fn dwell(text: &str) -> Result<f64, String> {
+    number(text, 0.5, 600.0, "a number of seconds")
+}
+
+fn sway(text: &str) -> Result<f64, String> {
+    number(text, 0.0, 2.0, "an amplitude in degrees")
+}
+
+fn sway_hertz(text: &str) -> Result<f64, String> {
+    number(text, 0.05, 5.0, "a frequency in hertz")
+}
+
+/// Time allowed for an accuracy where none is stated, s.
+const ALLOWED: f64 = 1800.0;
+/// Options that plan an alignment, of which there is none where an azimuth is handed over.
+const ALIGNING: [&str; 7] = ["positions", "dwell", "passes", "seconds", "sigma", "survey", "half"];
+
+impl BaseOptions {
+    /// How the schedule is chosen.
+    fn aim(&self) -> Aim {
+        match (self.sigma, self.seconds) {
+            (None, None) => Aim::Circle,
+            (None, Some(seconds)) => Aim::Time(seconds),
+            (Some(sigma_deg), seconds) => {
+                Aim::Accuracy { sigma_deg, seconds: seconds.unwrap_or(ALLOWED) }
+            }
+        }
+    }
+
+    /// The scenario of the base; what is recorded is to be replayed, and does not go on after its alignment.
+    fn scenario(&self, is_recorded: bool) -> Scenario {
+        let usual = self.place.scenario(self.common.seed);
+        // A fault is seen as it ever was, and where nobody knows how long the alignment takes, the base must not drive
+        // off.
+        let fault = self.common.fault;
+        let is_plain = is_recorded || fault.is_some() || self.no_base_imu || self.sigma.is_some();
+        let hold = self.keeping.hold(is_plain);
+        let needs_base_imu =
+            self.sway.is_some() || hold.seconds > 0.0 || fault.is_some_and(Asked::is_of_base_imu);
+        Scenario {
+            pitch_deg: self.inclination.pitch,
+            roll_deg: self.inclination.roll,
+            aim: self.aim(),
+            survey_s: self.survey.unwrap_or(0.0),
+            half: self.half.map(Into::into),
+            dwell_s: self.dwell.unwrap_or(usual.dwell_s),
+            sway_deg: self.sway.unwrap_or(0.0),
+            sway_hz: self.sway_hertz,
+            has_base_imu: needs_base_imu && !self.no_base_imu,
+            hold,
+            ..usual
+        }
+    }
+
+    /// What keeping needs, and what it takes the place of.
+    fn check(
+        &self,
+        given: &Given,
+        scenario: &Scenario,
+        aligning: &[&'static str],
+    ) -> Result<(), String> {
+        let asked = given.first(&["realign", "handover"]);
+        let keeps = asked.is_some() || given.has("hold") && scenario.hold.seconds > 0.0;
+        if keeps && self.no_base_imu {
+            return Err("--no-base-imu: without coarse sensors nothing is kept".to_owned());
+        }
+        self.keeping.check(given, &scenario.hold, aligning)
+    }
+}
+
+impl StageOptions {
+    fn scenario(&self) -> Scenario {
+        let base = self.base.scenario(self.record.is_some());
+        Scenario {
+            positions: self.positions.map_or(base.positions, |count| count as usize),
+            ..base
+        }
+    }
+}
+
+impl Simulated for StageOptions {
+    const PLATFORM: Platform = Platform::Stage;
+
+    fn common(&self) -> &Common {
+        &self.base.common
+    }
+
+    fn lacks_base_imu(&self) -> bool {
+        self.base.no_base_imu
+    }
+
+    fn files(&self) -> Vec<Option<Written>> {
+        vec![files::written("--record", "the recording", self.record.as_ref())]
+    }
+
+    fn check(&self, given: &Given) -> Result<(), String> {
+        let keeps = given.first(&["realign", "handover"]).is_some();
+        let scenario = self.scenario();
+        if self.record.is_some() && (keeps || given.has("hold") && scenario.hold.seconds > 0.0) {
+            return Err("--record: what a base with coarse sensors shows is not recorded".into());
+        }
+        // A stage keeps its azimuth by the coarse gyros alone.
+        let aligning = [&["gyro"][..], &ALIGNING].concat();
+        self.base.check(given, &scenario, &aligning)
+    }
+
+    fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
+        let scenario = self.scenario();
+        let setting = scenario.setting().ok_or("the latitude is outside ±90°")?;
+        let created = |path: &PathBuf| {
+            let recorder = CsvRecorder::create(path, &scenario, &setting);
+            recorder.map_err(|error| unwritten::told("the recording", path, &error))
+        };
+        let mut recorder = self.record.as_ref().map(created).transpose()?;
+        let (KeptRun { run, kept }, wall) =
+            Terminal::watching("positions", |watch| match &mut recorder {
+                None => align(&scenario, fault, NoRecorder, watch),
+                Some(recorder) => align(&scenario, fault, recorder, watch),
+            })?;
+        let written = recorder.zip(self.record.as_ref()).map_or(Ok(()), |(mut recorder, path)| {
+            recorder.finish().map_err(|error| unwritten::told("the recording", path, &error))
+        });
+        let details = RunDetails::of(&run, &kept, scenario.sample_rate_hz, wall);
+        Ok(Ran { written, ..ran("the simulated run", run, details, &scenario) })
+    }
+}
+
+impl FramesOptions {
+    fn scenario(&self) -> FramesScenario {
+        let usual = FramesScenario::default();
+        FramesScenario {
+            base: self.base.scenario(false),
+            passes: self.passes.map_or(usual.passes, |count| count as usize),
+            ..usual
+        }
+    }
+}
+
+impl Simulated for FramesOptions {
+    const PLATFORM: Platform = Platform::TwoFrame;
+
+    fn common(&self) -> &Common {
+        &self.base.common
+    }
+
+    fn lacks_base_imu(&self) -> bool {
+        self.base.no_base_imu
+    }
+
+    fn check(&self, given: &Given) -> Result<(), String> {
+        self.base.check(given, &self.scenario().base, &ALIGNING)
+    }
+
+    fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
+        let scenario = self.scenario();
+        let (FramesRun { run, axis: [forward, right, down], kept }, wall) =
+            Terminal::watching("positions", |watch| {
+                instrument::align_frames(&scenario, fault, watch)
+            })?;
+        let stored = run.events.iter().any(|(_, event)| matches!(event, Event::Stored(..)));
+        let mut details = RunDetails::of(&run, &kept, scenario.base.sample_rate_hz, wall);
+        details.stored = Some(stored);
+        details.truth_off_vertical_deg = Some(degrees(forward.hypot(right).atan2(down)));
+        Ok(ran("the simulated run on two frames", run, details, &scenario.base))
+    }
+}
+
+/// Runs a stage on a base with sensors, or without.
+fn align<R: Recorder>(
+    scenario: &Scenario,
+    fault: Option<Fault>,
+    recorder: R,
+    watch: &Terminal,
+) -> Result<KeptRun, RunError> {
+    if scenario.has_base_imu {
+        let plan = KeptPlan::of(fault);
+        return instrument::align_and_keep(scenario, &plan, recorder, watch, ());
+    }
+    let run = instrument::align(scenario, fault, recorder, watch)?;
+    Ok(KeptRun { run, kept: Kept::default() })
+}
+
+/// What came of a run at standstills; what it kept, where no alignment of it stands.
+fn ran(name: &'static str, run: Run, details: RunDetails, scenario: &Scenario) -> Ran {
+    let is_aligned = run.conclusion().is_some();
+    let finished: Box<dyn Finished> =
+        if is_aligned { Box::new(run.replay) } else { Box::new(KeptAzimuth) };
+    let truth = Truth { azimuth_deg: Some(scenario.azimuth_deg), ..Truth::default() };
+    Ran { name, finished, truth, details, body: None, written: Ok(()) }
+}

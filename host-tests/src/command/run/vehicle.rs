@@ -1,0 +1,115 @@
+//! `meridian run vehicle`: the board in a vehicle that goes from stop to stop.
+
+use bench::instrument::kept::{Kept, Point};
+use bench::instrument::{Run, VehicleRun, align_stops};
+use bench::outcome::Finished;
+use bench::outcome::run::{KeptAzimuth, RunDetails};
+use bench::output::degrees;
+use bench::recording::Truth;
+use bench::stops::{Method, Replay, Watched};
+use clap::Args;
+use firmware::event::Event;
+use firmware::simulated::fault::{Fault, Platform};
+use firmware::simulated::scenario::Scenario;
+use firmware::simulated::vehicle::{self, VehicleScenario};
+use hal_mock::vehicle::VehicleTruth;
+use orientation::session::stops::Session;
+
+use super::keeping::KeepingOptions;
+use super::options::{Common, Place, seconds};
+use super::{Ran, Simulated, Terminal};
+use crate::command::given::Given;
+use crate::command::whole;
+
+/// What is asked of a vehicle.
+#[derive(Args, Clone, Debug)]
+pub struct VehicleOptions {
+    #[command(flatten)]
+    common: Common,
+    #[command(flatten)]
+    place: Place,
+    /// How often the vehicle stops (3).
+    #[arg(long, value_parser = whole::<2, 8>)]
+    stops: Option<u64>,
+    /// Seconds for which the board levels at each stop (60).
+    #[arg(long, value_name = "SECONDS", value_parser = seconds::<10, 3600>)]
+    stop_seconds: Option<f64>,
+    /// Seconds of driving from stop to stop (600).
+    #[arg(long, value_name = "SECONDS", value_parser = seconds::<10, 3600>)]
+    drive_seconds: Option<f64>,
+    /// The board is not told how far it has come.
+    #[arg(long)]
+    no_displacement: bool,
+    #[command(flatten)]
+    keeping: KeepingOptions,
+}
+
+/// What a simulated board is told.
+const ASSUMED: &str = "what the board is told of place and instrument";
+
+impl VehicleOptions {
+    fn scenario(&self) -> VehicleScenario {
+        let usual = VehicleScenario::default();
+        let sample_rate_hz = self.place.rate.unwrap_or(usual.base.sample_rate_hz);
+        let hold = self.keeping.hold(self.common.fault.is_some());
+        let unknown = self.no_displacement.then_some(vehicle::Place::Unknown);
+        VehicleScenario {
+            base: Scenario { sample_rate_hz, hold, ..self.place.scenario(self.common.seed) },
+            stops: self.stops.map_or(usual.stops, |stops| stops as usize),
+            stop_s: self.stop_seconds.unwrap_or(usual.stop_s),
+            drive_s: self.drive_seconds.unwrap_or(usual.drive_s),
+            place: unknown.unwrap_or(usual.place),
+        }
+    }
+}
+
+impl Simulated for VehicleOptions {
+    const PLATFORM: Platform = Platform::Vehicle;
+
+    fn common(&self) -> &Common {
+        &self.common
+    }
+
+    fn check(&self, given: &Given) -> Result<(), String> {
+        self.keeping.check(given, &self.scenario().base.hold, &["stops", "no_displacement"])
+    }
+
+    fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
+        let scenario = self.scenario();
+        let setting = scenario.setting().ok_or("the latitude is outside ±90°")?;
+        let beside = Session::new(setting, scenario.procedure());
+        let mut watched = Watched::new(beside.map_err(|error| error.to_string())?);
+        let (VehicleRun { run, truth, kept }, wall) = Terminal::watching("stops", |watch| {
+            align_stops(&scenario, fault, &mut watched, watch)
+        })?;
+        let azimuth_rad = concluded(&run, &kept, truth);
+        let truth = Truth {
+            azimuth_deg: Some(degrees(azimuth_rad).rem_euclid(360.0)),
+            start_azimuth_deg: Some(scenario.base.azimuth_deg),
+            ..Truth::default()
+        };
+        let details = RunDetails::of(&run, &kept, scenario.base.sample_rate_hz, wall);
+        let replay = Replay {
+            method: Method::Siap,
+            session: run.replay,
+            zero_s: 0.0,
+            criteria: watched.into_criteria(),
+            assumed: vec![ASSUMED.to_owned()],
+        };
+        let is_aligned = replay.conclusion().is_some();
+        let finished: Box<dyn Finished> =
+            if is_aligned { Box::new(replay) } else { Box::new(KeptAzimuth) };
+        let (name, body, written) = ("the simulated drive", None, Ok(()));
+        Ok(Ran { name, finished, truth, details, body, written })
+    }
+}
+
+/// The true azimuth when the session concluded, rad: at the end, unless the vehicle went on.
+fn concluded<R>(run: &Run<R>, kept: &Kept, truth: VehicleTruth) -> f64 {
+    let is_conclusion = |event: &Event| matches!(event, Event::Concluded(..));
+    let at = run.events.iter().find(|(_, event)| is_conclusion(event)).map(|(at, _)| *at);
+    let later =
+        |point: &&Point| at.is_some_and(|at| point.seconds() * 1e6 >= at.as_micros() as f64);
+    let point = kept.points.iter().find(later);
+    point.map_or(truth.attitude.azimuth_rad, |point| point.truth.azimuth_rad)
+}
