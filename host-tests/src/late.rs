@@ -10,9 +10,9 @@ use orientation::align::quality::Disturbance;
 use orientation::session::Session;
 use orientation::signal::dwell::Dwell;
 
+use crate::median::median;
 use crate::recording::StageRow;
 use crate::recording::repeated::alone;
-use crate::replay::median;
 
 /// Fewest equal rates at an end of a recording that are no chance.
 const FEWEST_REPEATED: usize = 16;

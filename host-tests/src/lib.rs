@@ -11,6 +11,7 @@ pub mod criterion;
 pub mod emulate;
 pub mod instrument;
 pub mod late;
+pub mod median;
 pub mod methods;
 pub mod oracle;
 pub mod outcome;

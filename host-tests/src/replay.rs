@@ -18,6 +18,9 @@ use orientation::signal::dwell::Dwell;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce, TURN, Temperature};
 
 use crate::late::{self, Late};
+pub(crate) use crate::median::median;
+use crate::methods::asked::Asked;
+use crate::recording::period::period_s;
 use crate::recording::{Body, DwellRow, Header, Kind, Short, StageRow};
 use crate::setting::{Described, describe};
 use crate::stops::samples::{dead_accelerometer, is_cut};
@@ -70,6 +73,13 @@ pub struct Options {
     pub criterion: Criterion,
     /// Greatest accepted standard deviation, rad; `None` for the default.
     pub required_sigma: Option<f64>,
+}
+
+impl From<&Asked> for Options {
+    fn from(asked: &Asked) -> Self {
+        let Asked { latitude, criterion, half, required_sigma, .. } = *asked;
+        Self { method: Method::default(), half, latitude, criterion, required_sigma }
+    }
 }
 
 impl Default for Options {
@@ -346,7 +356,7 @@ fn stage(
     criterion: Criterion,
     progress: impl FnMut(&Session),
 ) -> Result<Session, ReplayError> {
-    let sample_seconds = sample_seconds(header, rows);
+    let sample_seconds = period_s(header.rate_hz, rows, |row| row.time_s);
     if let Some(axis) = dead_accelerometer(rows, |row| row.force_m_s2) {
         let column = ["fx_m_s2", "fy_m_s2"][axis];
         let seconds = rows.len() as f64 * sample_seconds;
@@ -452,12 +462,6 @@ fn still(rows: &[StageRow]) -> f64 {
     (STILL_MEDIANS * usual).clamp(STILL, STILL_NOISY)
 }
 
-/// The (upper) median in linear time; zero of none.
-pub(crate) fn median(values: &mut [f64]) -> f64 {
-    let half = values.len() / 2;
-    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(half, f64::total_cmp).1 }
-}
-
 /// The angle from one reading to the next, rad; a wrap of the encoder is none.
 fn turned(from: f64, to: f64) -> f64 {
     let turns = (to - from) / TURN;
@@ -499,12 +503,6 @@ fn standstills(
     }
     let position = |(angle, count)| Position { angle, seconds: f64::from(count) * sample_seconds };
     Ok(runs.into_iter().map(position).collect())
-}
-
-/// The sample period, s: the header's, else the times' median step. The session compares it with the times.
-fn sample_seconds(header: &Header, rows: &[StageRow]) -> f64 {
-    let mut steps: Vec<f64> = rows.windows(2).map(|pair| pair[1].time_s - pair[0].time_s).collect();
-    header.rate_hz.map_or_else(|| median(&mut steps).max(1e-6), |rate| 1.0 / rate)
 }
 
 fn dwells(

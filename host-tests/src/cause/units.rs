@@ -222,7 +222,7 @@ pub fn force_unit(body: &Body) -> Option<Unit> {
         }
         Body::Rotating(_) | Body::Spin(_) => Vec::new(),
     };
-    let usual = replay::median(&mut sizes);
+    let usual = crate::median::median(&mut sizes);
     FORCES.into_iter().find(|Unit(factor, _)| (usual * factor / GRAVITY - 1.0).abs() < NEAR)
 }
 

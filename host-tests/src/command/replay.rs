@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use bench::methods::{self, Asked, METHODS, Method};
+use bench::methods::asked::Asked;
+use bench::methods::{self, METHODS, Method};
 use bench::outcome::{Outcome, Source};
 use bench::output::progress::Progress;
 use bench::recording::{self, Recording};

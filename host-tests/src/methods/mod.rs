@@ -2,37 +2,13 @@
 //!
 //! A further method is an entry here; its replay, its outcome and its causes stand in folders of their own.
 
-use orientation::align::criterion::Criterion;
-use orientation::align::setting::Half;
-use orientation::earth::Latitude;
+pub mod asked;
 
+use self::asked::Asked;
 use crate::outcome::Finished;
 use crate::recording::{Body, Header, Kind, Recording};
 use crate::replay::{self, ReplayError};
 use crate::{rotating, spin, stops, vertical};
-
-/// What a user asks of a replay, whatever the method.
-#[derive(Clone, Debug)]
-pub struct Asked {
-    /// Latitude instead of the header's.
-    pub latitude: Option<Latitude>,
-    /// How the azimuth is found; of a stage that stops.
-    pub criterion: Criterion,
-    /// The half of the circle in which the azimuth lies, where that is known; of a stage that stops.
-    pub half: Option<Half>,
-    /// Displacements of the stops, north and east, m, instead of the header's; of a vehicle.
-    pub displacements_m: Option<Vec<[f64; 2]>>,
-    /// Greatest accepted 1σ, rad.
-    pub required_sigma: Option<f64>,
-}
-
-impl Default for Asked {
-    fn default() -> Self {
-        let criterion = Criterion::MaximumLikelihood;
-        let (latitude, half, displacements_m, required_sigma) = (None, None, None, None);
-        Self { latitude, criterion, half, displacements_m, required_sigma }
-    }
-}
 
 /// Told of each step of a replay: the session so far.
 pub type Watch<'a> = &'a dyn Fn(&orientation::session::Session);
@@ -143,30 +119,4 @@ fn from_stops(
 ) -> Result<Box<dyn Finished>, ReplayError> {
     let options = stops::Options { method: Some(method), ..asked.into() };
     boxed(stops::replay(header, body, &options))
-}
-
-impl From<&Asked> for replay::Options {
-    fn from(asked: &Asked) -> Self {
-        let Asked { latitude, criterion, half, required_sigma, .. } = *asked;
-        Self { method: replay::Method::default(), half, latitude, criterion, required_sigma }
-    }
-}
-
-impl From<&Asked> for stops::Options {
-    fn from(asked: &Asked) -> Self {
-        let Asked { latitude, displacements_m, required_sigma, .. } = asked.clone();
-        Self { method: None, latitude, displacements_m, required_sigma }
-    }
-}
-
-impl From<&Asked> for vertical::Options {
-    fn from(asked: &Asked) -> Self {
-        Self { latitude: asked.latitude, required_sigma: asked.required_sigma }
-    }
-}
-
-impl From<&Asked> for spin::Options {
-    fn from(asked: &Asked) -> Self {
-        Self { required_sigma: asked.required_sigma }
-    }
 }

@@ -11,13 +11,18 @@ pub mod stage;
 pub mod stops;
 pub mod vertical;
 
+use std::any::Any;
+use std::fmt;
+
 use orientation::align::budget::Budget;
 use orientation::align::conclusion::Azimuth;
 use orientation::error::{Refusal, Source as Part};
+use serde::ser::Error;
 use serde::{Serialize, Serializer};
+use serde_json::Value;
 
 use self::run::RunDetails;
-use crate::methods::Asked;
+use crate::methods::asked::Asked;
 use crate::output::{azimuth_error, degrees, positive_zero};
 use crate::recording::{Body, Header, Truth};
 use crate::report::{Lines, Part as ReportPart, Report, Table};
@@ -30,6 +35,11 @@ pub const SCHEMA: u32 = 1;
 pub trait Finished {
     /// What was found. The truth is for errors alone.
     fn outcome(&self, truth: &Truth) -> Outcome;
+
+    /// How texts and pages begin, before the name of what was analysed: with a result, and without one.
+    fn titles(&self) -> [&'static str; 2] {
+        ["True north found in", "No azimuth from"]
+    }
 
     /// Lines and tables beyond those that every method has.
     fn parts(&self, outcome: &Outcome) -> Vec<ReportPart>;
@@ -61,7 +71,7 @@ pub enum Source {
 }
 
 /// The result of any method on a recording or on a simulated run, as its JSON object has it.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Debug, Serialize)]
 pub struct Outcome {
     /// Version of the object, [`SCHEMA`].
     pub schema: u32,
@@ -98,8 +108,8 @@ pub struct Outcome {
     #[serde(flatten)]
     pub fit: Option<FitDetails>,
     /// What the method adds.
-    #[serde(flatten)]
-    pub details: Details,
+    #[serde(flatten, serialize_with = "keys")]
+    pub details: Box<dyn Details>,
     /// What only a simulated run has.
     #[serde(flatten)]
     pub run: Option<RunDetails>,
@@ -126,23 +136,36 @@ pub struct FitDetails {
     pub excluded: Vec<Excluded>,
 }
 
-/// What a method adds to an outcome.
-#[derive(Clone, Debug, Serialize)]
-#[serde(untagged)]
-pub enum Details {
-    /// Stepwise gyrocompassing, or autocompensated positions.
-    Stage(stage::StageDetails),
-    /// Continuous rotation.
-    Rotating(rotating::RotatingDetails),
-    /// Stops of a vehicle.
-    Stops(Box<stops::StopsDetails>),
-    /// The level.
-    Vertical(vertical::VerticalDetails),
-    /// A spinning body.
-    Spin(spin::SpinDetails),
-    /// An azimuth that is kept without an alignment of its own.
-    Kept {},
+/// What a method adds to an outcome: keys of its object, of which only the method itself knows the type.
+pub trait Details: fmt::Debug {
+    /// The keys and their values.
+    ///
+    /// # Errors
+    /// A value that JSON does not have.
+    fn keys(&self) -> serde_json::Result<Value>;
+
+    /// The details as what they are.
+    fn as_any(&self) -> &dyn Any;
 }
+
+impl<T: Serialize + fmt::Debug + 'static> Details for T {
+    fn keys(&self) -> serde_json::Result<Value> {
+        serde_json::to_value(self)
+    }
+
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+}
+
+#[expect(clippy::borrowed_box, reason = "the field as it stands comes in")]
+fn keys<S: Serializer>(details: &Box<dyn Details>, serializer: S) -> Result<S::Ok, S::Error> {
+    details.keys().map_err(S::Error::custom)?.serialize(serializer)
+}
+
+/// No details of an alignment: an azimuth that is kept without one, or a session that did not end.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct NoDetails {}
 
 /// The 1σ parts of σ, serialised in degrees under the names of [`BUDGET_KEYS`].
 #[derive(Clone, Copy, Debug)]
@@ -240,7 +263,7 @@ impl FitDetails {
 impl Outcome {
     /// An outcome of a method, with nothing found yet.
     #[must_use]
-    pub fn new(method: &'static str, details: Details) -> Self {
+    pub fn new(method: &'static str, details: impl Details + 'static) -> Self {
         Self {
             schema: SCHEMA,
             source: None,
@@ -255,7 +278,7 @@ impl Outcome {
             roll_deg: None,
             seconds: 0.0,
             fit: None,
-            details,
+            details: Box::new(details),
             run: None,
             assumed: Vec::new(),
         }
@@ -264,7 +287,7 @@ impl Outcome {
     /// The outcome of a session that was not given its end.
     #[must_use]
     pub fn unfinished(method: &'static str) -> Self {
-        Self::new(method, Details::Kept {}).settled(Some("the session did not end".to_owned()))
+        Self::new(method, NoDetails {}).settled(Some("the session did not end".to_owned()))
     }
 
     /// The outcome with the verdict of an alignment; `truth_deg` is for its error alone.
@@ -284,6 +307,12 @@ impl Outcome {
     #[must_use]
     pub fn settled(self, reason: Option<String>) -> Self {
         Self { status: if reason.is_none() { "ok" } else { "refused" }, reason, ..self }
+    }
+
+    /// What the method added, where it is of this type.
+    #[must_use]
+    pub fn details<D: 'static>(&self) -> Option<&D> {
+        self.details.as_any().downcast_ref()
     }
 
     /// Whether there is a result.
@@ -309,17 +338,9 @@ pub fn report(
     parts.extend(outcome.run.iter().flat_map(RunDetails::parts));
     parts.extend(figures);
     parts.retain(|part| !matches!(part, ReportPart::Lines(lines) if lines.lines.is_empty()));
-    Report { title: title(name, outcome), subtitle: Vec::new(), parts }
-}
-
-fn title(name: &str, outcome: &Outcome) -> String {
-    let [found, refused] = match outcome.details {
-        Details::Vertical(_) => ["Pitch and roll kept in", "No pitch and roll from"],
-        Details::Spin(_) => ["Roll of the spinning body in", "No roll at the end of"],
-        Details::Kept {} => ["Azimuth kept in", "No azimuth kept in"],
-        _ => ["True north found in", "No azimuth from"],
-    };
-    format!("{} {name}", if outcome.is_ok() { found } else { refused })
+    let [found, refused] = finished.titles();
+    let title = format!("{} {name}", if outcome.is_ok() { found } else { refused });
+    Report { title, subtitle: Vec::new(), parts }
 }
 
 /// What every method says first: the result or the reason, the limit, the truth, the level.

@@ -8,7 +8,7 @@ use firmware::storage::Remembered;
 use orientation::keep::Realigned;
 use serde::Serialize;
 
-use super::{Details, Finished, Outcome};
+use super::{Finished, NoDetails, Outcome};
 use crate::instrument::Run;
 use crate::instrument::kept::{Kept, Point};
 use crate::output::{degrees, positive_zero};
@@ -250,7 +250,11 @@ pub struct KeptAzimuth;
 
 impl Finished for KeptAzimuth {
     fn outcome(&self, _: &Truth) -> Outcome {
-        Outcome::new("kept", Details::Kept {})
+        Outcome::new("kept", NoDetails {})
+    }
+
+    fn titles(&self) -> [&'static str; 2] {
+        ["Azimuth kept in", "No azimuth kept in"]
     }
 
     fn parts(&self, _: &Outcome) -> Vec<Part> {
@@ -267,7 +271,7 @@ impl Outcome {
     #[must_use]
     pub fn of_run(self, seed: u64, run: RunDetails) -> Self {
         let this = Self { source: Some(super::Source::Seed(seed)), ..self };
-        if !matches!(this.details, Details::Kept {}) {
+        if this.details::<NoDetails>().is_none() {
             return Self { run: Some(run), ..this };
         }
         let kept = run.kept.as_ref();

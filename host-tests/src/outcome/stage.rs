@@ -6,9 +6,9 @@ use orientation::session::Session;
 use orientation::signal::dwell::Dwell;
 use serde::Serialize;
 
-use super::{Details, Excluded, Finished, FitDetails, Outcome};
+use super::{Excluded, Finished, FitDetails, Outcome};
 use crate::cause;
-use crate::methods::Asked;
+use crate::methods::asked::Asked;
 use crate::output::{columns, degrees, degrees_per_hour};
 use crate::positions::{Autocompensation, autocompensation};
 use crate::recording::{Body, Header, Truth};
@@ -171,13 +171,13 @@ impl Finished for Replay {
                 ..FitDetails::of(fit.map(|fit| &fit.budget), kept.len())
             }),
             assumed: self.assumed.clone(),
-            ..Outcome::new(self.method.name(), Details::Stage(self.details(conclusion)))
+            ..Outcome::new(self.method.name(), self.details(conclusion))
         }
         .judged(&conclusion.verdict, truth.azimuth_deg)
     }
 
     fn parts(&self, outcome: &Outcome) -> Vec<Part> {
-        let Details::Stage(details) = &outcome.details else { return Vec::new() };
+        let Some(details) = outcome.details::<StageDetails>() else { return Vec::new() };
         let mut lines = Lines::new("Fit");
         lines.add("criterion", &details.criterion);
         lines.add("Earth rate is", details.horizontal_earth_rate.unwrap_or("not fitted"));
@@ -203,7 +203,7 @@ impl Finished for Replay {
     }
 
     fn figures(&self, outcome: &Outcome, _: &Truth, _: Option<&Body>) -> Vec<Part> {
-        let Details::Stage(details) = &outcome.details else { return Vec::new() };
+        let Some(details) = outcome.details::<StageDetails>() else { return Vec::new() };
         if details.chi_square.is_none() {
             return Vec::new();
         }

@@ -3,9 +3,9 @@
 use orientation::keep::attitude::angles;
 use serde::Serialize;
 
-use super::{Details, Finished, Outcome};
+use super::{Finished, Outcome};
 use crate::cause;
-use crate::methods::Asked;
+use crate::methods::asked::Asked;
 use crate::output::{degrees, degrees_per_hour, positive_zero};
 use crate::recording::{Body, Header, Truth};
 use crate::report::{Axis, Figure, Lines, Part, Point, Series, Style, Table};
@@ -78,13 +78,17 @@ impl Finished for Replay {
             roll_deg: is_found.then(|| degrees(last.roll)),
             seconds: self.seconds,
             assumed: self.assumed.clone(),
-            ..Outcome::new("vertical", Details::Vertical(details))
+            ..Outcome::new("vertical", details)
         }
         .settled(self.refusal.clone())
     }
 
+    fn titles(&self) -> [&'static str; 2] {
+        ["Pitch and roll kept in", "No pitch and roll from"]
+    }
+
     fn parts(&self, outcome: &Outcome) -> Vec<Part> {
-        let Details::Vertical(details) = &outcome.details else { return Vec::new() };
+        let Some(details) = outcome.details::<VerticalDetails>() else { return Vec::new() };
         let row = |met: &Met| vec![met.state.to_owned(), format!("{:.2}", met.seconds)];
         let states = Table::new("States that were met", &["state", "time, s"]);
         let states = Table { rows: details.states.iter().map(row).collect(), ..states };

@@ -8,8 +8,9 @@ use std::collections::HashSet;
 
 use super::error::Fault;
 use super::lines::Line;
-use super::number::{Range, number};
+use super::number::number;
 use super::problem::{HeaderProblem, ValueProblem};
+use super::range::Range;
 use super::resemblance::resembled;
 use super::warning::{About, Warning};
 

@@ -4,9 +4,7 @@ use std::error::Error;
 use std::fmt;
 
 use super::problem::{Problem, ValueProblem};
-
-/// Longest excerpt of a recording that a message quotes, in characters.
-const EXCERPT: usize = 40;
+use super::quote::{printable, shortened};
 
 /// Why a recording was not read. [`Display`](fmt::Display) is one line, whatever the file holds:
 /// `walk.csv: line 812, column g_rad_s: "abc" is not a number; …`.
@@ -96,27 +94,5 @@ impl fmt::Display for Place {
             Self::Key(line, key) => write!(f, "line {line}, key {}: ", shortened(key)),
             Self::Column(line, name) => write!(f, "line {line}, column {}: ", shortened(name)),
         }
-    }
-}
-
-/// Replaces what would break the message's line or hide part of it.
-pub(super) fn printable(text: &str) -> String {
-    let hides = |c: char| c.is_control() || matches!(c, '\u{2028}'..='\u{202e}');
-    text.chars().map(|c| if hides(c) { char::REPLACEMENT_CHARACTER } else { c }).collect()
-}
-
-/// The text in one line and no longer than a message bears.
-pub(super) fn shortened(text: &str) -> String {
-    match text.char_indices().nth(EXCERPT) {
-        Some((end, _)) => printable(&text[..end]) + "…",
-        None => printable(text),
-    }
-}
-
-/// The text in double quotes, escaped, and no longer than a message bears.
-pub(super) fn quoted(text: &str) -> String {
-    match text.char_indices().nth(EXCERPT) {
-        Some((end, _)) => format!("{:?}…", &text[..end]),
-        None => format!("{text:?}"),
     }
 }

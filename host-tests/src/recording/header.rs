@@ -4,10 +4,10 @@
 //! read, so no other type ever holds them. Unknown keys, and comments without a colon, are skipped.
 
 use super::error::Fault;
-use super::number::{Range, number};
+use super::number::number;
 use super::problem::{HeaderProblem, Problem, SourceProblem, ValueProblem};
+use super::range::Range;
 use super::resemblance::resembled;
-use super::stops::{DISPLACEMENTS, STOPS};
 use super::warning::{self, About, Warning};
 
 /// What the header says about the site and the instrument. A key that is absent is `None`: a noise
@@ -77,6 +77,10 @@ pub struct Truth {
 /// Most `truth_*` keys: they are the only ones kept without being known.
 const MAX_TRUTH_KEYS: usize = 1000;
 
+/// The key of a vehicle's stops.
+pub(super) const STOPS: &str = "stops_s";
+/// The key of their displacements.
+pub(super) const DISPLACEMENTS: &str = "displacements_north_east_m";
 /// Keys whose value is not one number.
 const WORDS: [&str; 5] = ["kind", PAIR, "sensor", STOPS, DISPLACEMENTS];
 const PAIR: &str = "g_sensitivity_deg_h_g";

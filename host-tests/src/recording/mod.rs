@@ -15,7 +15,10 @@ mod error;
 mod header;
 mod lines;
 mod number;
+pub mod period;
 mod problem;
+mod quote;
+mod range;
 pub mod repeated;
 mod resemblance;
 mod rows;
@@ -32,8 +35,8 @@ use std::path::Path;
 pub use error::{Place, ReadError};
 pub use header::{Header, Sensor, Truth};
 pub use lines::{MAX_LINE_BYTES, MAX_ROWS};
-pub use number::{Range, Short};
 pub use problem::{HeaderProblem, Problem, SourceProblem, StopProblem, TimeProblem, ValueProblem};
+pub use range::{Range, Short};
 pub use rows::{DwellRow, ImuRow, ImuSample, RotatingRow, SpinRow, StageRow, StaticRow};
 pub use spacing::{Gap, Spacing};
 pub use stops::displacements;
@@ -67,7 +70,7 @@ impl Recording {
     /// The warnings in words, a line each, of a recording in this file.
     #[must_use]
     pub fn told_warnings(&self, file: &Path) -> Vec<String> {
-        let file = error::printable(&file.display().to_string());
+        let file = quote::printable(&file.display().to_string());
         self.warnings.iter().map(|warning| format!("{file}: {warning}")).collect()
     }
 }

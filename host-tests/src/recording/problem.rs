@@ -4,8 +4,8 @@ use std::fmt;
 use std::io;
 
 use super::KINDS;
-use super::error::{printable, quoted};
-use super::number::{Range, Short};
+use super::quote::{printable, quoted};
+use super::range::{Range, Short};
 
 /// What is wrong with a recording.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,8 +7,8 @@ use super::columns::{Column, Layout, MAX_COLUMNS, Need, Values};
 use super::error::Fault;
 use super::header::check_late;
 use super::lines::{Lines, MAX_ROWS};
-use super::number::Range;
 use super::problem::{SourceProblem, TimeProblem, ValueProblem};
+use super::range::Range;
 use super::warning::Warning;
 
 /// Times, in seconds, that a double resolves to 2 µs.

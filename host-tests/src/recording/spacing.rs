@@ -3,12 +3,8 @@
 
 use std::ops::Range;
 
+use super::period::Steps;
 use super::rows::StaticRow;
-use super::timing::Times;
-
-/// Samples are consecutive while the step between them is no more than so many periods: with one
-/// missing it is two, and clocks jitter.
-pub(super) const LONGEST_STEP: f64 = 1.75;
 
 /// The part by which the header's rate may miss that of the times before it is told.
 const RATE_TOLERANCE: f64 = 0.01;
@@ -44,19 +40,12 @@ impl Spacing {
     /// rows.
     #[must_use]
     pub fn of(rows: &[StaticRow], rate_hz: Option<f64>) -> Option<Self> {
-        let times = Times { rows, stamp: |row| (row.line, row.time_s), column: "t_s" };
-        let median = times.median_step()?;
-        let is_step = |step: f64| step <= LONGEST_STEP * median;
-        let steps = rows.windows(2).map(step).filter(|step| is_step(*step));
-        let (sum, count) = steps.fold((0.0, 0.0), |(sum, count), step| (sum + step, count + 1.0));
-        let period_s = sum / count;
+        let steps = Steps::of(rows, |row| row.time_s)?;
+        let period_s = steps.mean_s();
         let misses = |rate: &f64| (rate * period_s - 1.0).abs() > RATE_TOLERANCE;
         let between = rows.windows(2).enumerate();
-        let gaps = between.filter(|(_, pair)| !is_step(step(pair))).map(|(i, pair)| Gap {
-            row: i + 1,
-            line: pair[1].line,
-            from_s: pair[0].time_s,
-            seconds: step(pair),
+        let gaps = between.filter(|(_, pair)| !steps.is_unbroken(step(pair))).map(|(i, pair)| {
+            Gap { row: i + 1, line: pair[1].line, from_s: pair[0].time_s, seconds: step(pair) }
         });
         let gaps = gaps.collect();
         let contradicted_rate_hz = rate_hz.filter(misses);

@@ -2,15 +2,11 @@
 //! first.
 
 use super::error::Fault;
-use super::header::{Collector, Header};
-use super::number::{Range, number};
+use super::header::{Collector, DISPLACEMENTS, Header, STOPS};
+use super::number::number;
 use super::problem::{Problem, StopProblem};
+use super::range::Range;
 use super::rows::{ImuRow, TIME};
-
-/// The key of the stops.
-pub(super) const STOPS: &str = "stops_s";
-/// The key of their displacements.
-pub(super) const DISPLACEMENTS: &str = "displacements_north_east_m";
 
 /// Displacements of vehicles, m: no drive between two alignments goes further.
 const DISPLACEMENT: Range = Range::symmetric(1e6, " m");

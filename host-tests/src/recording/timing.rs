@@ -1,8 +1,8 @@
 //! Whether the times of a sampled recording keep its rate.
 
 use super::error::Fault;
+use super::period::Steps;
 use super::problem::TimeProblem;
-use super::spacing::LONGEST_STEP;
 
 /// A gap is a step longer than this many sample periods.
 const GAP_PERIODS: f64 = 3.0;
@@ -26,9 +26,9 @@ pub(super) struct Times<'a, T> {
 impl<T> Times<'_, T> {
     /// Refuses a header's rate (its line, and Hz) that the times contradict, and gaps.
     pub fn check(&self, rate: Option<(u64, f64)>) -> Result<(), Fault> {
-        let Some(median) = self.median_step() else { return Ok(()) };
-        let Some((line, rate_hz)) = rate else { return self.check_gaps(median) };
-        let unbroken = Timing::of(self.steps().filter(|step| *step <= LONGEST_STEP * median));
+        let Some(usual) = Steps::of(self.rows, |row| (self.stamp)(row).1) else { return Ok(()) };
+        let Some((line, rate_hz)) = rate else { return self.check_gaps(usual.median_s) };
+        let unbroken = Timing::of(self.steps().filter(|step| usual.is_unbroken(*step)));
         // Missing samples slow all steps down, few digits in the times make some seem to miss one: a wrong rate
         // shows both ways.
         let paces = [Timing::of(self.steps()), unbroken];
@@ -51,13 +51,6 @@ impl<T> Times<'_, T> {
             }
         }
         Ok(())
-    }
-
-    /// The median of the steps (the lower one of two), in seconds; `None` with fewer than two rows.
-    pub fn median_step(&self) -> Option<f64> {
-        let mut steps: Vec<f64> = self.steps().collect();
-        let middle = steps.len().checked_sub(1)? / 2;
-        Some(*steps.select_nth_unstable_by(middle, f64::total_cmp).1)
     }
 
     /// The steps, in seconds.

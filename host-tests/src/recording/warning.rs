@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::error::shortened;
+use super::quote::shortened;
 
 /// Most warnings that are kept of one recording.
 pub(super) const MOST: usize = 20;

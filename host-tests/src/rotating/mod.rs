@@ -16,8 +16,10 @@ use orientation::signal::Sample;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce};
 
 use self::part::Part;
+use crate::median::median;
+use crate::recording::period::period_s;
 use crate::recording::{self, Body, Header, RotatingRow};
-use crate::replay::{Options, ReplayError, latitude, median};
+use crate::replay::{Options, ReplayError, latitude};
 use crate::setting::{Described, describe};
 use crate::stops::samples::is_cut;
 use crate::untold;
@@ -84,12 +86,13 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
         common.required_sigma = sigma;
     }
     let sensor = sensor(header, &mut assumed);
-    let rate = header.rate_hz.unwrap_or_else(|| turns::rate_hz(rows));
+    let period_s = period_s(header.rate_hz, rows, |row| row.time_s);
+    let rate = 1.0 / period_s;
     let rate_step = rounded(&mut common, sensor.is_flat, rows, rate);
     let encoder_zero_sigma = encoder_zero(header, &mut assumed);
     let setting = Setting::new(common, sensor);
     let setting = Setting { encoder_zero_sigma, harmonics_known: false, rate_step, ..setting };
-    let session = follow(setting, rows, 1.0 / rate.max(f64::MIN_POSITIVE));
+    let session = follow(setting, rows, period_s);
     let session = session.map_err(ReplayError::Procedure)?;
     assumed.extend(untold::of_platform(&session));
     let zero_s = rows.first().map_or(0.0, |row| row.time_s);

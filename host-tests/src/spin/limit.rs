@@ -57,7 +57,7 @@ impl Turns {
             .collect();
         let mut variances: Vec<f64> = fits.iter().map(|(_, [_, variance])| *variance).collect();
         let lifts = fits.iter().map(|(from, [lift, _])| (*from, *lift)).collect();
-        Self { lifts, force_noise: crate::replay::median(&mut variances).sqrt() }
+        Self { lifts, force_noise: crate::median::median(&mut variances).sqrt() }
     }
 
     /// The lift at a sample, m/s²: that of its turn.
@@ -117,7 +117,7 @@ pub(super) fn white(rates: &[f64]) -> f64 {
     let lives = windows.filter(|(from, _)| !stuck.contains(from));
     let mut squares: Vec<f64> = lives.map(|(_, window)| difference(window).powi(2)).collect();
     // Of a normal variable's square the median is 0.455 of the mean.
-    (crate::replay::median(&mut squares) / 0.455 / SIXTH).sqrt()
+    (crate::median::median(&mut squares) / 0.455 / SIXTH).sqrt()
 }
 
 /// How many times as long as any other a stretch of one rate is over which a gyro is stuck.

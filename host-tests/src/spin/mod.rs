@@ -14,9 +14,10 @@ use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 
 use self::limit::{Noise, Turns};
 use self::track::Track;
+use crate::methods::asked::Asked;
+use crate::recording::period::Steps;
 use crate::recording::{Body, Header, SpinRow};
 use crate::replay::ReplayError;
-use crate::stops::samples::pace;
 
 /// 1σ of a gyro's scale error of which the header says nothing: 1 %.
 pub const SCALE_SIGMA: f64 = 0.01;
@@ -39,6 +40,12 @@ pub fn name(method: Method) -> &'static str {
 pub struct Options {
     /// Greatest accepted standard deviation, rad; none where any will do.
     pub required_sigma: Option<f64>,
+}
+
+impl From<&Asked> for Options {
+    fn from(asked: &Asked) -> Self {
+        Self { required_sigma: asked.required_sigma }
+    }
 }
 
 /// A finished replay.
@@ -96,8 +103,8 @@ impl Replay {
 /// A recording of another kind, or of less than two samples.
 pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay, ReplayError> {
     let Body::Spin(rows) = body else { return Err(ReplayError::NoSpin(body.kind())) };
-    let period_s = pace(header.rate_hz, rows, |row| row.time_s);
-    let period_s = period_s.ok_or(ReplayError::TooFewSamples(rows.len()))?;
+    let steps = Steps::of(rows, |row| row.time_s);
+    let period_s = steps.ok_or(ReplayError::TooFewSamples(rows.len()))?.period_s(header.rate_hz);
     let samples: Vec<SpinSample> = samples::samples(rows, period_s).collect();
     let (setting, assumed) = setting(header, rows, period_s);
     let required_sigma = options.required_sigma.unwrap_or(f64::INFINITY);

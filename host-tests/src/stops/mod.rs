@@ -25,6 +25,9 @@ use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, DEGREES_PER_RADI
 
 use self::noise::White;
 use self::way::{Leg, Slip};
+use crate::median::median;
+use crate::methods::asked::Asked;
+use crate::recording::period::{Steps, period_s};
 use crate::recording::{Body, Header, ImuRow, Kind};
 use crate::replay::{self, ReplayError};
 use crate::setting::{Described, describe};
@@ -44,7 +47,7 @@ impl Method {
     #[must_use]
     pub fn of(header: &Header, body: &Body) -> Option<Self> {
         let rows = samples::rows(body)?;
-        Some(usual(header, &rows, samples::period(header.rate_hz, &rows)))
+        Some(usual(header, &rows, period_s(header.rate_hz, &rows, |row| row.time_s)))
     }
 
     /// Its name on the command line.
@@ -68,6 +71,13 @@ pub struct Options {
     pub displacements_m: Option<Vec<[f64; 2]>>,
     /// Greatest accepted standard deviation, rad; `None` for the default.
     pub required_sigma: Option<f64>,
+}
+
+impl From<&Asked> for Options {
+    fn from(asked: &Asked) -> Self {
+        let Asked { latitude, displacements_m, required_sigma, .. } = asked.clone();
+        Self { method: None, latitude, displacements_m, required_sigma }
+    }
 }
 
 /// A finished replay.
@@ -114,7 +124,7 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
 fn check_way(body: &Body, header: &Header, mut replay: Replay) -> Result<Replay, ReplayError> {
     let found = replay.conclusion().filter(|it| it.verdict.is_ok()).and_then(|it| it.found);
     let (Some(rows), Some(found)) = (samples::rows(body), found) else { return Ok(replay) };
-    let period_s = samples::period(header.rate_hz, &rows);
+    let period_s = period_s(header.rate_hz, &rows, |row| row.time_s);
     let common = &replay.session.setting().common;
     let (stops, zero_s) = (replay.session.stops(), replay.zero_s);
     let legs = way::legs(&rows, zero_s, period_s, stops, common, found.start.angle);
@@ -158,7 +168,7 @@ fn check_kilometres(
 fn follow(header: &Header, body: &Body, options: &Options) -> Result<Replay, ReplayError> {
     let rows = samples::rows(body).ok_or_else(|| missing(body))?;
     let latitude = replay::latitude(header, body, options.latitude)?;
-    let period_s = samples::period(header.rate_hz, &rows);
+    let period_s = period_s(header.rate_hz, &rows, |row| row.time_s);
     check_rate(header.rate_hz, &rows)?;
     check_stuck(&rows, period_s)?;
     check_unit(header, &rows, period_s)?;
@@ -226,7 +236,7 @@ fn usual(header: &Header, rows: &[ImuRow], period_s: f64) -> Method {
     });
     let mut turned: Vec<f64> = turned.collect();
     let size = ((MEDIAN_S / period_s) as usize).max(1);
-    let headings = turned.chunks_mut(size).map(replay::median);
+    let headings = turned.chunks_mut(size).map(median);
     let (least, most) = headings
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), heading| {
             (least.min(heading), most.max(heading))
@@ -280,7 +290,7 @@ const RATE_TOLERANCE: f64 = 0.01;
 
 /// Refuses a stated rate that the times contradict: one of both is wrong, and every rotation with it.
 fn check_rate(rate_hz: Option<f64>, rows: &[ImuRow]) -> Result<(), ReplayError> {
-    let found = samples::pace(None, rows, |row| row.time_s).map(|step| 1.0 / step);
+    let found = Steps::of(rows, |row| row.time_s).map(|steps| 1.0 / steps.mean_s());
     let (Some(stated_hz), Some(found_hz)) = (rate_hz, found) else { return Ok(()) };
     if (stated_hz / found_hz - 1.0).abs() <= RATE_TOLERANCE {
         return Ok(());

@@ -7,10 +7,6 @@ use orientation::units::{AngleIncrement, Instant, SpecificForce};
 
 use crate::recording::repeated::alone;
 use crate::recording::{Body, ImuRow, ImuSample, StaticRow};
-use crate::replay;
-
-/// Steps longer than so many periods have a sample missing.
-const LONGEST_STEP: f64 = 1.5;
 
 /// How much longer than any other a standstill at the greatest value must be: where a smooth signal is
 /// coarsely written, its top is the longest by three.
@@ -28,36 +24,6 @@ pub fn rows(body: &Body) -> Option<Cow<'_, [ImuRow]>> {
 
 fn row(row: &StaticRow) -> Option<ImuRow> {
     Some(ImuRow { line: row.line, time_s: row.time_s, sample: row.imu? })
-}
-
-/// The sample period, s, of [`pace`]; a second of nothing.
-#[must_use]
-pub fn period(rate_hz: Option<f64>, rows: &[ImuRow]) -> f64 {
-    let stated = || rate_hz.map(|rate| 1.0 / rate);
-    pace(rate_hz, rows, |row| row.time_s).or_else(stated).unwrap_or(1.0)
-}
-
-/// The time from sample to sample, s: the header's, unless over all the rows it and the times come apart by more than
-/// half a sample. Times may be rounded, so their mean counts, of the steps without a missing sample. None of fewer than
-/// two rows.
-#[must_use]
-pub fn pace<R>(rate_hz: Option<f64>, rows: &[R], time_s: fn(&R) -> f64) -> Option<f64> {
-    let (sum, count) = steps(rows, time_s)?;
-    let stated = rate_hz.map(|rate| 1.0 / rate);
-    let is_theirs = |stated: &f64| (sum - count * stated).abs() <= 0.5 * stated;
-    Some(stated.filter(is_theirs).unwrap_or(sum / count))
-}
-
-/// The sum of the steps without a missing sample, s, and how many they are.
-fn steps<R>(rows: &[R], time_s: fn(&R) -> f64) -> Option<(f64, f64)> {
-    let steps = || rows.windows(2).map(|pair| time_s(&pair[1]) - time_s(&pair[0]));
-    let mut sorted: Vec<f64> = steps().collect();
-    if sorted.is_empty() {
-        return None;
-    }
-    let longest = LONGEST_STEP * replay::median(&mut sorted);
-    let add = |(sum, count), step| (sum + step, count + 1.0);
-    Some(steps().filter(|step| *step <= longest).fold((0.0, 0.0), add))
 }
 
 /// Equal values in a row that are no chance where there is noise.

@@ -14,7 +14,9 @@ use orientation::noise::model::GyroNoise;
 use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 use serde::Serialize;
 
+use crate::methods::asked::Asked;
 use crate::output::{azimuth_error, degrees};
+use crate::recording::period::period_s;
 use crate::recording::{Body, Header, Short};
 use crate::replay::ReplayError;
 use crate::setting::noise;
@@ -30,6 +32,12 @@ pub struct Options {
     pub latitude: Option<Latitude>,
     /// Greatest accepted standard deviation of pitch and roll, rad; `None` for any.
     pub required_sigma: Option<f64>,
+}
+
+impl From<&Asked> for Options {
+    fn from(asked: &Asked) -> Self {
+        Self { latitude: asked.latitude, required_sigma: asked.required_sigma }
+    }
 }
 
 /// What the keeper said after a sample.
@@ -81,7 +89,7 @@ pub struct Replay {
 /// What keeps the keeper from beginning.
 pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay, ReplayError> {
     let rows = samples::rows(body).ok_or_else(|| missing(body))?;
-    let period_s = samples::period(header.rate_hz, &rows);
+    let period_s = period_s(header.rate_hz, &rows, |row| row.time_s);
     check_stuck(&rows, period_s)?;
     let mut assumed = Vec::new();
     let latitude = latitude(header, options, &mut assumed);

@@ -11,9 +11,9 @@ use orientation::align::rotating::solution::Fit;
 use orientation::align::rotating::turn::{Stretch, Turn};
 use serde::Serialize;
 
-use super::{Details, Excluded, Finished, FitDetails, Outcome};
+use super::{Excluded, Finished, FitDetails, Outcome};
 use crate::cause;
-use crate::methods::Asked;
+use crate::methods::asked::Asked;
 use crate::output::{azimuth_error, degrees, degrees_per_hour};
 use crate::recording::{Body, Header, RotatingRow, Truth};
 use crate::report::{Lines, Part, Table};
@@ -269,13 +269,13 @@ impl Finished for Replay {
                 ..FitDetails::of(fit.map(|fit| &fit.budget), turns as usize)
             }),
             assumed: self.assumed.clone(),
-            ..Outcome::new("rotating", Details::Rotating(self.details(conclusion)))
+            ..Outcome::new("rotating", self.details(conclusion))
         }
         .judged(&conclusion.verdict, truth.azimuth_deg)
     }
 
     fn parts(&self, outcome: &Outcome) -> Vec<Part> {
-        let Details::Rotating(details) = &outcome.details else { return Vec::new() };
+        let Some(details) = outcome.details::<RotatingDetails>() else { return Vec::new() };
         let stages = details.stages.as_ref().map(stages);
         let parts = [Some(lines(details).into()), stages.map(Part::from)].into_iter().flatten();
         parts.chain([stretches(&details.stretches).into()]).collect()
@@ -357,7 +357,7 @@ fn stretches(stretches: &[StretchDetails]) -> Table {
 
 /// Spectra of every part as it came and freed of the axis misalignment, then the phasors of its turns.
 fn figures(replay: &Replay, outcome: &Outcome, rows: &[RotatingRow]) -> Vec<Part> {
-    let Details::Rotating(details) = &outcome.details else { return Vec::new() };
+    let Some(details) = outcome.details::<RotatingDetails>() else { return Vec::new() };
     let coupling = replay.conclusion().and_then(|conclusion| conclusion.couplings.first());
     let without = match coupling {
         Some(coupling) => freed(rows, coupling.sine, coupling.quadrature),

@@ -5,7 +5,7 @@ mod figures;
 use orientation::units::TURN;
 use serde::Serialize;
 
-use super::{Details, Finished, Outcome};
+use super::{Finished, Outcome};
 use crate::output::degrees;
 use crate::recording::{Body, Truth};
 use crate::report::{Lines, Part, Table};
@@ -99,13 +99,17 @@ impl Finished for Replay {
             limit_deg: bounds.and_then(<[f64]>::last).copied().map(degrees),
             seconds: end.time_s,
             assumed: self.assumed.clone(),
-            ..Outcome::new("spin", Details::Spin(details))
+            ..Outcome::new("spin", details)
         }
         .settled(reason)
     }
 
+    fn titles(&self) -> [&'static str; 2] {
+        ["Roll of the spinning body in", "No roll at the end of"]
+    }
+
     fn parts(&self, outcome: &Outcome) -> Vec<Part> {
-        let Details::Spin(details) = &outcome.details else { return Vec::new() };
+        let Some(details) = outcome.details::<SpinDetails>() else { return Vec::new() };
         let states = &self.answer().states;
         let row = |(from_s, state): &(f64, _)| vec![format!("{from_s:.4}"), format!("{state}")];
         let table = Table::new("States of the phase lock", &["from, s", "state"]);

@@ -8,9 +8,9 @@ use orientation::align::stops::stop;
 use orientation::units::wrapped;
 use serde::Serialize;
 
-use super::{Details, Excluded, Finished, FitDetails, Outcome};
+use super::{Excluded, Finished, FitDetails, Outcome};
 use crate::cause;
-use crate::methods::Asked;
+use crate::methods::asked::Asked;
 use crate::output::{azimuth_error, degrees, degrees_per_hour, positive_zero};
 use crate::recording::{Body, Header, Truth};
 use crate::report::{Lines, Part, Table};
@@ -199,13 +199,13 @@ impl Finished for Replay {
                 ..FitDetails::of(found.map(|found| &found.budget), stops.len())
             }),
             assumed: self.assumed.clone(),
-            ..Outcome::new(method, Details::Stops(Box::new(details)))
+            ..Outcome::new(method, details)
         }
         .judged(&conclusion.verdict, truth.azimuth_deg)
     }
 
     fn parts(&self, outcome: &Outcome) -> Vec<Part> {
-        let Details::Stops(details) = &outcome.details else { return Vec::new() };
+        let Some(details) = outcome.details::<StopsDetails>() else { return Vec::new() };
         let lines = lines(details);
         let lines = (!lines.lines.is_empty()).then_some(lines);
         let papers = details.plain.as_ref().map(of_plain);
@@ -227,7 +227,7 @@ impl Finished for Replay {
     }
 
     fn figures(&self, outcome: &Outcome, _: &Truth, _: Option<&Body>) -> Vec<Part> {
-        let Details::Stops(details) = &outcome.details else { return Vec::new() };
+        let Some(details) = outcome.details::<StopsDetails>() else { return Vec::new() };
         let mut parts: Vec<Part> = Vec::new();
         parts.extend(figures::azimuths(outcome, details.plain.as_ref()).map(Part::from));
         if let Some(found) = self.found() {

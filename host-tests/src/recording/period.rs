@@ -1,0 +1,62 @@
+//! The sample period of a recording: one rule for every kind.
+//!
+//! It is the header's, unless over all the rows it and the times come apart by more than half a sample; then the times are
+//! believed. Times may be rounded, so the mean of the steps counts, of those without a missing sample.
+
+/// Samples are consecutive while the step between them is no more than so many times the usual one: with one missing it
+/// is two, and clocks jitter.
+const LONGEST_STEP: f64 = 1.75;
+
+/// The steps from sample to sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Steps {
+    /// The usual one, s: the median, the lower one of two.
+    pub median_s: f64,
+    sum_s: f64,
+    count: f64,
+}
+
+impl Steps {
+    /// The steps between rows whose times, s, increase; `None` of fewer than two.
+    #[must_use]
+    pub fn of<R>(rows: &[R], time_s: impl Fn(&R) -> f64) -> Option<Self> {
+        let steps = || rows.windows(2).map(|pair| time_s(&pair[1]) - time_s(&pair[0]));
+        let mut sorted: Vec<f64> = steps().collect();
+        let middle = sorted.len().checked_sub(1)? / 2;
+        let median_s = *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;
+        let none = Self { median_s, sum_s: 0.0, count: 0.0 };
+        let add = |Self { sum_s, count, .. }: Self, step| Self {
+            median_s,
+            sum_s: sum_s + step,
+            count: count + 1.0,
+        };
+        Some(steps().filter(|step| none.is_unbroken(*step)).fold(none, add))
+    }
+
+    /// Whether no sample is missing in a step, s.
+    #[must_use]
+    pub fn is_unbroken(&self, step_s: f64) -> bool {
+        step_s <= LONGEST_STEP * self.median_s
+    }
+
+    /// The mean of the steps without a missing sample, s.
+    #[must_use]
+    pub fn mean_s(&self) -> f64 {
+        self.sum_s / self.count
+    }
+
+    /// The sample period, s, with the header's rate, Hz, where it has one.
+    #[must_use]
+    pub fn period_s(&self, rate_hz: Option<f64>) -> f64 {
+        let is_theirs = |stated: &f64| (self.sum_s - self.count * stated).abs() <= 0.5 * stated;
+        rate_hz.map(|rate| 1.0 / rate).filter(is_theirs).unwrap_or_else(|| self.mean_s())
+    }
+}
+
+/// The sample period of rows, s, with the header's rate, Hz, where it has one; of fewer than two rows the header's, or one
+/// second.
+#[must_use]
+pub fn period_s<R>(rate_hz: Option<f64>, rows: &[R], time_s: impl Fn(&R) -> f64) -> f64 {
+    let stated = || rate_hz.map_or(1.0, |rate| 1.0 / rate);
+    Steps::of(rows, time_s).map_or_else(stated, |steps| steps.period_s(rate_hz))
+}
