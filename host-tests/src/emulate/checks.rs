@@ -35,24 +35,24 @@ impl Check {
 }
 
 /// What was taken in each run.
-#[derive(Clone, Copy, Debug)]
-pub struct Runs<'a> {
+#[derive(Clone, Debug)]
+pub struct Runs {
     /// The usual one.
-    pub figures: &'a Figures,
+    pub figures: Figures,
     /// The one at the highest sample rate.
-    pub brief: &'a Figures,
-    /// The one that learns its gyro's noise.
-    pub survey: &'a Figures,
+    pub brief: Figures,
+    /// The one that learns its gyro's noise and plans by it.
+    pub survey: Figures,
     /// The one on a platform that turns all the time, at the highest sample rate.
-    pub turning: &'a Figures,
+    pub turning: Figures,
     /// The one in a vehicle that goes from stop to stop.
-    pub stops: &'a Figures,
+    pub stops: Figures,
 }
 
 /// All checks, in the order of the printed table.
 #[must_use]
-pub fn all(runs: &Runs<'_>, memory: &Memory, budget: &Budget) -> Vec<Check> {
-    let Runs { figures, brief, survey, turning, stops } = *runs;
+pub fn all(runs: &Runs, memory: &Memory, budget: &Budget) -> Vec<Check> {
+    let Runs { figures, brief, survey, turning, stops } = runs;
     let most = |what, count, budget| Check { what, count, budget, at_least: false };
     let limited = |what, count, name| most(what, count, budget.limit(name));
     let worst = |of: &Figures| of.tasks.iter().map(|task| task.worst).max().unwrap_or(0);

@@ -5,10 +5,7 @@
 use serde::Serialize;
 
 use super::decode::Line;
-use super::outcome::{
-    Bits, DwellBits, FIELDS, KEPT_FIELDS, KeptBits, Outcome, STOP_FIELDS, StopBits, TURN_FIELDS,
-    TurnBits,
-};
+use super::outcome::{KEPT, KINDS, Kind, Outcome, Row};
 
 /// What the whole instrument took.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -43,10 +40,7 @@ pub struct Task {
 /// What was read so far.
 #[derive(Clone, Debug, Default)]
 pub struct Collected {
-    dwells: Vec<DwellBits>,
-    turns: Vec<TurnBits>,
-    stops: Vec<StopBits>,
-    kept: Vec<KeptBits>,
+    rows: Vec<Row>,
     outcome: Option<Outcome>,
     effort: bool,
     figures: Figures,
@@ -67,13 +61,6 @@ impl Collected {
     fn read(&mut self, words: &str) -> Option<()> {
         let number = |name| value(words, name)?.parse::<u64>().ok();
         match words.split(' ').next()? {
-            "dwell" => next(&mut self.dwells, FIELDS, words),
-            "turn" => next(&mut self.turns, TURN_FIELDS, words),
-            "stop" => next(&mut self.stops, STOP_FIELDS, words),
-            "kept" => {
-                self.kept.push(Bits::parse(KEPT_FIELDS, |name| value(words, name))?);
-                Some(())
-            }
             "outcome" => {
                 self.outcome = Some(outcome(words)?);
                 Some(())
@@ -97,8 +84,18 @@ impl Collected {
                 self.figures.stack_bytes = number("bytes")?;
                 Some(())
             }
-            _ => None,
+            word => self.row(KINDS.into_iter().find(|kind| kind.word == word)?, words),
         }
+    }
+
+    /// Takes a row; one that is numbered must come after those before it.
+    fn row(&mut self, kind: &'static Kind, words: &str) -> Option<()> {
+        let before = self.rows.iter().filter(|row| row.kind == kind).count();
+        if *kind != KEPT && value(words, "number")?.parse() != Ok(before + 1) {
+            return None;
+        }
+        self.rows.push(Row::parse(kind, |name| value(words, name))?);
+        Some(())
     }
 
     /// What the run found and took.
@@ -117,20 +114,8 @@ impl Collected {
         if self.figures.stack_bytes == 0 {
             return Err(missing("stack"));
         }
-        let Self { dwells, turns, stops, kept, figures, .. } = self;
-        Ok((Outcome { dwells, turns, stops, kept, ..outcome }, figures))
+        Ok((Outcome { rows: self.rows, ..outcome }, self.figures))
     }
-}
-
-/// Takes a numbered line, which must come after those before it.
-fn next<const N: usize>(
-    rows: &mut Vec<Bits<N>>,
-    names: [&'static str; N],
-    words: &str,
-) -> Option<()> {
-    let number: usize = value(words, "number")?.parse().ok()?;
-    let row = Bits::parse(names, |name| value(words, name))?;
-    (number == rows.len() + 1).then(|| rows.push(row))
 }
 
 fn outcome(words: &str) -> Option<Outcome> {

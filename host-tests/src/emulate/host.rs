@@ -19,8 +19,8 @@ use crate::instrument::{self, RunError};
 pub fn outcome(scenario: &Scenario) -> Result<Outcome, String> {
     let run = instrument::align(scenario, None, NoRecorder, &()).map_err(|error| failed(&error))?;
     let conclusion = run.conclusion().ok_or(NOTHING)?;
-    let dwells = run.replay.session.dwells().iter().map(Into::into).collect();
-    Ok(Outcome { dwells, ..Outcome::of(scenario.seed, &conclusion.verdict) })
+    let dwells = run.replay.session.dwells().iter().map(Into::into);
+    Ok(Outcome::of(scenario.seed, &conclusion.verdict, dwells))
 }
 
 /// The same on a platform that turns all the time.
@@ -33,8 +33,8 @@ pub fn turning(scenario: &TurntableScenario) -> Result<Outcome, String> {
         .run;
     let conclusion = run.replay.conclusion().ok_or(NOTHING)?;
     let stretches = run.replay.turn_accumulator().stretches().iter();
-    let turns = stretches.flat_map(Stretch::turns).map(Into::into).collect();
-    Ok(Outcome { turns, ..Outcome::of(scenario.base.seed, &conclusion.verdict) })
+    let turns = stretches.flat_map(Stretch::turns).map(Into::into);
+    Ok(Outcome::of(scenario.base.seed, &conclusion.verdict, turns))
 }
 
 /// The same in a vehicle that goes from stop to stop.
@@ -48,9 +48,9 @@ pub fn stops(scenario: &VehicleScenario) -> Result<Outcome, String> {
         .map_err(|error| failed(&error))?
         .run;
     let conclusion = run.replay.conclusion().ok_or(NOTHING)?;
-    let stops = run.replay.stops().iter().map(Into::into).collect();
-    let kept = run.reports.iter().map(Into::into).collect();
-    Ok(Outcome { stops, kept, ..Outcome::of(scenario.base.seed, &conclusion.verdict) })
+    let stops = run.replay.stops().iter().map(Into::into);
+    let kept = run.reports.iter().map(Into::into);
+    Ok(Outcome::of(scenario.base.seed, &conclusion.verdict, stops.chain(kept)))
 }
 
 const NOTHING: &str = "the host's run found nothing";

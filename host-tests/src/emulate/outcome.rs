@@ -9,84 +9,95 @@ use orientation::error::Refusal;
 use orientation::keep::Report;
 use orientation::signal::dwell::Dwell;
 
-/// The numbers of a dwell that are compared, by their names in the log.
-pub const FIELDS: [&str; 10] = [
-    "stage",
-    "middle",
-    "seconds",
-    "samples",
-    "rate",
-    "taper",
-    "force_x",
-    "force_y",
-    "force_z",
-    "temperature",
-];
+/// A kind of row of the log whose numbers are compared.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Kind {
+    /// The word with which its lines begin.
+    pub word: &'static str,
+    /// The names of its numbers in the log.
+    pub names: &'static [&'static str],
+}
 
-/// The numbers of a turn that are compared, by their names in the log.
-pub const TURN_FIELDS: [&str; 13] = [
-    "rate_cos",
-    "rate_sin",
-    "turning_cos",
-    "turning_sin",
-    "leak_cos",
-    "leak_sin",
-    "force_cos",
-    "force_sin",
-    "mean_force",
-    "offset",
-    "middle",
-    "seconds",
-    "speed",
-];
+/// A dwell at a position.
+pub static DWELL: Kind = Kind {
+    word: "dwell",
+    names: &[
+        "stage",
+        "middle",
+        "seconds",
+        "samples",
+        "rate",
+        "taper",
+        "force_x",
+        "force_y",
+        "force_z",
+        "temperature",
+    ],
+};
 
-/// The numbers of a stop that are compared, by their names in the log.
-pub const STOP_FIELDS: [&str; 8] =
-    ["from", "to", "turned_x", "turned_y", "turned_z", "force_x", "force_y", "force_z"];
+/// A turn of a platform that turns all the time.
+pub static TURN: Kind = Kind {
+    word: "turn",
+    names: &[
+        "rate_cos",
+        "rate_sin",
+        "turning_cos",
+        "turning_sin",
+        "leak_cos",
+        "leak_sin",
+        "force_cos",
+        "force_sin",
+        "mean_force",
+        "offset",
+        "middle",
+        "seconds",
+        "speed",
+    ],
+};
 
-/// The numbers that are kept, of which one is whole, by their names in the log.
-pub const KEPT_FIELDS: [&str; 9] =
-    ["time", "azimuth", "sigma", "pitch", "roll", "w", "x", "y", "z"];
+/// A stop of a vehicle.
+pub static STOP: Kind = Kind {
+    word: "stop",
+    names: &["from", "to", "turned_x", "turned_y", "turned_z", "force_x", "force_y", "force_z"],
+};
+
+/// What is kept at a second after the alignment.
+pub static KEPT: Kind = Kind {
+    word: "kept",
+    names: &["time", "azimuth", "sigma", "pitch", "roll", "w", "x", "y", "z"],
+};
+
+/// All kinds, in the order of cause and effect.
+pub static KINDS: [&Kind; 4] = [&DWELL, &TURN, &STOP, &KEPT];
 
 /// The bits of what is absent: a NaN that no computation gives.
 const ABSENT: u64 = u64::MAX;
 
-/// The bits of the numbers of something, in the order of their names; [`None`] where one is absent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Bits<const N: usize>(pub [Option<u64>; N]);
+/// The bits of the numbers of something.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Row {
+    /// What they are of.
+    pub kind: &'static Kind,
+    /// In the order of the kind's names; [`None`] where one is absent.
+    pub bits: Vec<Option<u64>>,
+}
 
-/// Of a dwell, in the order of [`FIELDS`].
-pub type DwellBits = Bits<{ FIELDS.len() }>;
-
-/// Of a turn, in the order of [`TURN_FIELDS`].
-pub type TurnBits = Bits<{ TURN_FIELDS.len() }>;
-
-/// Of a stop, in the order of [`STOP_FIELDS`].
-pub type StopBits = Bits<{ STOP_FIELDS.len() }>;
-
-/// Of what is kept, in the order of [`KEPT_FIELDS`].
-pub type KeptBits = Bits<{ KEPT_FIELDS.len() }>;
-
-impl<const N: usize> Bits<N> {
-    /// From hexadecimal texts; [`None`] where one is missing or is no number.
+impl Row {
+    /// From hexadecimal texts by their names; [`None`] where one is missing or is no number.
     #[must_use]
-    pub fn parse<'t>(
-        names: [&'static str; N],
-        text: impl Fn(&'static str) -> Option<&'t str>,
-    ) -> Option<Self> {
-        let mut bits = [None; N];
-        for (bits, name) in bits.iter_mut().zip(names) {
-            let value = u64::from_str_radix(text(name)?, 16).ok()?;
-            *bits = (value != ABSENT).then_some(value);
-        }
-        Some(Self(bits))
+    pub fn parse<'t>(kind: &'static Kind, text: impl Fn(&str) -> Option<&'t str>) -> Option<Self> {
+        let bits = |name: &&str| {
+            let bits = u64::from_str_radix(text(name)?, 16).ok()?;
+            Some((bits != ABSENT).then_some(bits))
+        };
+        Some(Self { kind, bits: kind.names.iter().map(bits).collect::<Option<_>>()? })
     }
 }
 
-impl From<&Dwell> for DwellBits {
+impl From<&Dwell> for Row {
     fn from(dwell: &Dwell) -> Self {
         let [x, y, z] = dwell.force.map_or([None; 3], |force| force.map(|f| Some(f.to_bits())));
-        Self([
+        let bits = vec![
             Some(dwell.stage.0.into()),
             Some(dwell.middle.to_bits()),
             Some(dwell.seconds.to_bits()),
@@ -97,38 +108,36 @@ impl From<&Dwell> for DwellBits {
             y,
             z,
             dwell.temperature.get().map(f64::to_bits),
-        ])
+        ];
+        Self { kind: &DWELL, bits }
     }
 }
 
-impl From<&Turn> for TurnBits {
+impl From<&Turn> for Row {
     fn from(turn: &Turn) -> Self {
-        let [a, b] = turn.rate;
-        let [c, d] = turn.turning;
-        let [e, f] = turn.leak;
-        let [g, h] = turn.force;
+        let phasors = [turn.rate, turn.turning, turn.leak, turn.force].into_iter().flatten();
         let rest = [turn.mean_force, turn.offset, turn.middle, turn.seconds, turn.speed];
-        let [i, j, k, l, m] = rest;
-        Self([a, b, c, d, e, f, g, h, i, j, k, l, m].map(|value| Some(f64::from(value).to_bits())))
+        let bits = phasors.chain(rest).map(|value| Some(f64::from(value).to_bits()));
+        Self { kind: &TURN, bits: bits.collect() }
     }
 }
 
-impl From<&Stop> for StopBits {
+impl From<&Stop> for Row {
     fn from(stop: &Stop) -> Self {
-        let [x, y, z] = stop.turned.mean();
-        let [forward, right, down] = stop.force.mean();
-        let numbers = [stop.from, stop.to, x, y, z, forward, right, down];
-        Self(numbers.map(|value| Some(value.to_bits())))
+        let means = [stop.turned.mean(), stop.force.mean()].into_iter().flatten();
+        let numbers = [stop.from, stop.to].into_iter().chain(means);
+        Self { kind: &STOP, bits: numbers.map(|value| Some(value.to_bits())).collect() }
     }
 }
 
-impl From<&Report> for KeptBits {
+impl From<&Report> for Row {
     fn from(report: &Report) -> Self {
         let azimuth = report.azimuth.map(|azimuth| azimuth.angle.to_bits());
         let sigma = report.azimuth.map(|azimuth| azimuth.sigma.to_bits());
-        let [pitch, roll] = [report.pitch, report.roll].map(|angle| Some(angle.to_bits()));
-        let [w, x, y, z] = report.attitude.map(|part| Some(part.to_bits()));
-        Self([Some(report.time.0), azimuth, sigma, pitch, roll, w, x, y, z])
+        let angles = [report.pitch, report.roll].into_iter().chain(report.attitude);
+        let angles = angles.map(|angle| Some(angle.to_bits()));
+        let bits = [Some(report.time.0), azimuth, sigma].into_iter().chain(angles).collect();
+        Self { kind: &KEPT, bits }
     }
 }
 
@@ -143,113 +152,47 @@ pub struct Outcome {
     pub sigma_bits: Option<u64>,
     /// Why there is no azimuth.
     pub reason: Option<String>,
-    /// The dwells, of a run in positions.
-    pub dwells: Vec<DwellBits>,
-    /// The turns, of one on a platform that turns all the time.
-    pub turns: Vec<TurnBits>,
-    /// The stops, of one in a vehicle.
-    pub stops: Vec<StopBits>,
-    /// What was kept after it, second by second.
-    pub kept: Vec<KeptBits>,
+    /// Dwells, turns or stops, and what was kept after them, second by second.
+    pub rows: Vec<Row>,
 }
 
 impl Outcome {
-    /// Of a verdict, without what led to it.
+    /// Of a verdict and what led to it.
     #[must_use]
-    pub fn of(seed: u64, verdict: &Result<Azimuth, Refusal>) -> Self {
+    pub fn of(
+        seed: u64,
+        verdict: &Result<Azimuth, Refusal>,
+        rows: impl Iterator<Item = Row>,
+    ) -> Self {
         let found = verdict.as_ref();
         Self {
             seed,
             azimuth_bits: found.ok().map(|azimuth| azimuth.angle.to_bits()),
             sigma_bits: found.ok().map(|azimuth| azimuth.sigma.to_bits()),
             reason: found.err().map(ToString::to_string),
-            ..Self::default()
+            rows: rows.collect(),
         }
+    }
+
+    /// The rows of a kind, in their order.
+    pub fn rows_of(&self, kind: &'static Kind) -> impl Iterator<Item = &Row> {
+        self.rows.iter().filter(move |row| row.kind == kind)
     }
 }
 
 /// The first thing in which two runs differ.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Difference {
-    /// They had different seeds.
-    Seed {
-        /// The emulated run's.
-        emulated: u64,
-        /// The host's.
-        host: u64,
-    },
-    /// A number of a dwell, a turn, a stop or a report.
-    Number {
-        /// What it is of.
-        of: &'static str,
-        /// Which of them, from one.
-        number: usize,
-        /// Name of the number.
-        field: &'static str,
-        /// Its bits in the emulated run.
-        emulated: Option<u64>,
-        /// Its bits on the host.
-        host: Option<u64>,
-    },
-    /// How many dwells, turns or stops there were.
-    Count {
-        /// Of what.
-        of: &'static str,
-        /// In the emulated run.
-        emulated: usize,
-        /// On the host.
-        host: usize,
-    },
-    /// The azimuth or its standard deviation.
-    Result {
-        /// Which.
-        field: &'static str,
-        /// Its bits in the emulated run.
-        emulated: Option<u64>,
-        /// Its bits on the host.
-        host: Option<u64>,
-    },
-    /// The reason why there is no azimuth.
-    Reason {
-        /// The emulated run's.
-        emulated: Option<String>,
-        /// The host's.
-        host: Option<String>,
-    },
+pub struct Difference {
+    /// What it is.
+    pub what: String,
+    /// What it is in the emulated run, then on the host.
+    pub values: [String; 2],
 }
 
 impl fmt::Display for Difference {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Seed { emulated, host } => {
-                write!(f, "seed: {emulated} in the emulator, {host} on the host")
-            }
-            Self::Number { of, number, field, emulated, host } => {
-                let [emulated, host] = [emulated, host].map(|bits| shown(field, *bits));
-                write!(f, "{of} {number}, {field}: {emulated} in the emulator, {host} on the host")
-            }
-            Self::Count { of, emulated, host } => {
-                write!(f, "{of}s: {emulated} in the emulator, {host} on the host")
-            }
-            Self::Result { field, emulated, host } => {
-                let [emulated, host] = [emulated, host].map(|bits| shown(field, *bits));
-                write!(f, "{field}: {emulated} in the emulator, {host} on the host")
-            }
-            Self::Reason { emulated, host } => {
-                let [emulated, host] =
-                    [emulated, host].map(|reason| reason.as_deref().unwrap_or("none"));
-                write!(f, "reason: «{emulated}» in the emulator, «{host}» on the host")
-            }
-        }
-    }
-}
-
-/// Bits, and the number that they are.
-fn shown(field: &str, bits: Option<u64>) -> String {
-    match bits {
-        None => "none".to_owned(),
-        Some(bits) if ["stage", "samples", "time"].contains(&field) => format!("{bits:#x}"),
-        Some(bits) => format!("{bits:#018x} ({:e})", f64::from_bits(bits)),
+        let [emulated, host] = &self.values;
+        write!(f, "{}: {emulated} in the emulator, {host} on the host", self.what)
     }
 }
 
@@ -259,41 +202,42 @@ fn shown(field: &str, bits: Option<u64>) -> String {
 /// # Errors
 /// The first difference.
 pub fn compare(emulated: &Outcome, host: &Outcome) -> Result<(), Difference> {
-    if emulated.seed != host.seed {
-        return Err(Difference::Seed { emulated: emulated.seed, host: host.seed });
-    }
-    rows("dwell", FIELDS, &emulated.dwells, &host.dwells)?;
-    rows("turn", TURN_FIELDS, &emulated.turns, &host.turns)?;
-    rows("stop", STOP_FIELDS, &emulated.stops, &host.stops)?;
-    rows("report", KEPT_FIELDS, &emulated.kept, &host.kept)?;
-    result("azimuth", emulated.azimuth_bits, host.azimuth_bits)?;
-    result("sigma", emulated.sigma_bits, host.sigma_bits)?;
-    let [one, other] = [emulated, host].map(|run| run.reason.as_deref().map(short));
-    if one == other {
-        return Ok(());
-    }
-    Err(Difference::Reason { emulated: emulated.reason.clone(), host: host.reason.clone() })
+    let runs = [emulated, host];
+    same("seed".to_owned(), runs.map(|run| run.seed.to_string()))?;
+    KINDS.into_iter().try_for_each(|kind| rows(kind, runs))?;
+    same("azimuth".to_owned(), runs.map(|run| shown("azimuth", run.azimuth_bits)))?;
+    same("sigma".to_owned(), runs.map(|run| shown("sigma", run.sigma_bits)))?;
+    let reason = |run: &Outcome| {
+        run.reason.as_deref().map_or("none".to_owned(), |reason| format!("«{}»", short(reason)))
+    };
+    same("reason".to_owned(), runs.map(reason))
 }
 
-/// Compares dwells, turns or stops, and how many there are.
-fn rows<const N: usize>(
-    of: &'static str,
-    names: [&'static str; N],
-    emulated: &[Bits<N>],
-    host: &[Bits<N>],
-) -> Result<(), Difference> {
-    for (number, (emulated, host)) in (1..).zip(emulated.iter().zip(host)) {
-        let mut numbers = names.into_iter().zip(emulated.0.into_iter().zip(host.0));
-        if let Some((field, (emulated, host))) = numbers.find(|(_, (one, other))| one != other) {
-            return Err(Difference::Number { of, number, field, emulated, host });
+fn same(what: String, values: [String; 2]) -> Result<(), Difference> {
+    if values[0] == values[1] { Ok(()) } else { Err(Difference { what, values }) }
+}
+
+/// Compares the rows of a kind, and how many there are.
+fn rows(kind: &'static Kind, runs: [&Outcome; 2]) -> Result<(), Difference> {
+    let pairs = runs[0].rows_of(kind).zip(runs[1].rows_of(kind));
+    for (number, (emulated, host)) in (1..).zip(pairs) {
+        let both = emulated.bits.iter().zip(&host.bits);
+        for (name, (emulated, host)) in kind.names.iter().zip(both) {
+            let what = format!("{} {number}, {name}", kind.word);
+            same(what, [emulated, host].map(|bits| shown(name, *bits)))?;
         }
     }
-    let [emulated, host] = [emulated, host].map(<[_]>::len);
-    if emulated == host { Ok(()) } else { Err(Difference::Count { of, emulated, host }) }
+    let counts = runs.map(|run| run.rows_of(kind).count().to_string());
+    same(format!("rows of kind {}", kind.word), counts)
 }
 
-fn result(field: &'static str, emulated: Option<u64>, host: Option<u64>) -> Result<(), Difference> {
-    if emulated == host { Ok(()) } else { Err(Difference::Result { field, emulated, host }) }
+/// Bits, and the number that they are.
+fn shown(field: &str, bits: Option<u64>) -> String {
+    match bits {
+        None => "none".to_owned(),
+        Some(bits) if ["stage", "samples", "time"].contains(&field) => format!("{bits:#x}"),
+        Some(bits) => format!("{bits:#018x} ({:e})", f64::from_bits(bits)),
+    }
 }
 
 /// A sentence with its decimals cut to what they say: the log's formatter leaves out zeros at the

@@ -8,7 +8,7 @@ use crate::emulate::Emulation;
 use crate::emulate::checks::Check;
 use crate::emulate::collect::Figures;
 use crate::emulate::cost::Row;
-use crate::emulate::outcome::Outcome;
+use crate::emulate::outcome::{DWELL, Outcome};
 
 /// Writes what the emulated instrument found, whether the host found the same, and all figures.
 ///
@@ -31,7 +31,7 @@ pub fn tables(out: &mut impl Write, emulation: &Emulation) -> fmt::Result {
 
 fn found(out: &mut impl Write, outcome: &Outcome) -> fmt::Result {
     let degrees = |bits| f64::from_bits(bits).to_degrees();
-    write!(out, "\nseed {}, {} dwells: ", outcome.seed, outcome.dwells.len())?;
+    write!(out, "\nseed {}, {} dwells: ", outcome.seed, outcome.rows_of(&DWELL).count())?;
     match (&outcome.reason, outcome.azimuth_bits.zip(outcome.sigma_bits)) {
         (None, Some((azimuth, sigma))) => {
             writeln!(out, "azimuth {:.4}° ± {:.4}° (1σ)", degrees(azimuth), degrees(sigma))
@@ -60,7 +60,8 @@ fn cores(out: &mut impl Write, rows: &[Row]) -> fmt::Result {
 }
 
 fn tasks(out: &mut impl Write, emulation: &Emulation) -> fmt::Result {
-    let figures = &emulation.figures;
+    let runs = &emulation.runs;
+    let figures = &runs.figures;
     writeln!(out, "\n{:>10} {:>12} {:>10} task", "polls", "instructions", "longest")?;
     for task in &figures.tasks {
         writeln!(
@@ -70,10 +71,10 @@ fn tasks(out: &mut impl Write, emulation: &Emulation) -> fmt::Result {
         )?;
     }
     effort(out, "from the first dwell to the last", figures)?;
-    effort(out, "the same at 2400 Hz, in a brief run", &emulation.brief)?;
-    effort(out, "the same at 100 Hz, after a survey of two minutes", &emulation.survey)?;
-    effort(out, "from turn to turn at 2400 Hz, on a turning platform", &emulation.turning)?;
-    effort(out, "from stop to stop at 50 Hz, three gyros in a vehicle", &emulation.stops)?;
+    effort(out, "the same at 2400 Hz, in a brief run", &runs.brief)?;
+    effort(out, "the same at 100 Hz, after a survey of two minutes", &runs.survey)?;
+    effort(out, "from turn to turn at 2400 Hz, on a turning platform", &runs.turning)?;
+    effort(out, "from stop to stop at 50 Hz, three gyros in a vehicle", &runs.stops)?;
     writeln!(out, "(without bus drivers and interrupts, which are the board's own)")
 }
 
@@ -107,21 +108,22 @@ fn row(out: &mut impl Write, check: &Check) -> fmt::Result {
 pub fn object(emulation: &Emulation) -> Value {
     let outcome = &emulation.emulated;
     let degrees = |bits: Option<u64>| bits.map(|bits| f64::from_bits(bits).to_degrees());
-    let figures = &emulation.figures;
+    let runs = &emulation.runs;
+    let figures = &runs.figures;
     json!({
         "status": if emulation.is_right() { "ok" } else { "failed" },
         "seed": outcome.seed,
         "azimuth_deg": degrees(outcome.azimuth_bits),
         "sigma_deg": degrees(outcome.sigma_bits),
         "reason": outcome.reason,
-        "dwells": outcome.dwells.len(),
+        "dwells": outcome.rows_of(&DWELL).count(),
         "difference": emulation.comparison.as_ref().err().map(ToString::to_string),
         "instructions": figures.instructions,
         "simulation_instructions": figures.simulation,
         "samples": figures.samples,
         "seconds": figures.microseconds as f64 / 1e6,
         "instructions_per_sample_at_2400_hz":
-            emulation.brief.instructions / emulation.brief.samples.max(1),
+            runs.brief.instructions / runs.brief.samples.max(1),
         "tasks": figures.tasks,
         "memory": emulation.memory,
         "cores": emulation.cost,

@@ -195,19 +195,11 @@ fn the_bits_that_the_emulated_firmware_is_compared_with_are_what_they_were() {
 /// Writes the bits of a run: the azimuth and its standard deviation, then a line for each dwell, turn, stop
 /// and second that it was kept.
 fn describe(text: &mut String, outcome: &Outcome) {
-    let Outcome { azimuth_bits, sigma_bits, reason, dwells, turns, stops, kept, .. } = outcome;
+    let Outcome { azimuth_bits, sigma_bits, reason, rows, .. } = outcome;
     let found = [*azimuth_bits, *sigma_bits];
     writeln!(text, "azimuth {} {reason:?}", hexadecimal(&found)).expect("memory takes it");
-    let lists: [(&str, Vec<&[Option<u64>]>); 4] = [
-        ("dwell", dwells.iter().map(|bits| &bits.0[..]).collect()),
-        ("turn", turns.iter().map(|bits| &bits.0[..]).collect()),
-        ("stop", stops.iter().map(|bits| &bits.0[..]).collect()),
-        ("kept", kept.iter().map(|bits| &bits.0[..]).collect()),
-    ];
-    for (what, list) in lists {
-        for bits in list {
-            writeln!(text, "{what} {}", hexadecimal(bits)).expect("memory takes it");
-        }
+    for row in rows {
+        writeln!(text, "{} {}", row.kind.word, hexadecimal(&row.bits)).expect("memory takes it");
     }
 }
 

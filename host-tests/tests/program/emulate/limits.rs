@@ -101,8 +101,9 @@ fn figures() -> Figures {
 }
 
 /// The same in every run.
-fn alike(figures: &Figures) -> Runs<'_> {
-    Runs { figures, brief: figures, survey: figures, turning: figures, stops: figures }
+fn alike(figures: &Figures) -> Runs {
+    let [brief, survey, turning, stops] = [(); 4].map(|()| figures.clone());
+    Runs { figures: figures.clone(), brief, survey, turning, stops }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use bench::emulate::collect::{Collected, Figures, Task};
 use bench::emulate::decode::Line;
-use bench::emulate::outcome::{Bits, Outcome, STOP_FIELDS, TURN_FIELDS};
+use bench::emulate::outcome::{self, Kind, Outcome, Row, STOP, TURN};
 
 fn printed(words: &str) -> Line {
     Line { time: "1.5".to_owned(), level: None, words: words.to_owned() }
@@ -39,8 +39,9 @@ fn the_log_gives_back_the_bits_and_the_figures() {
     let rate = Some((-1.0 / 65_536.0_f64).to_bits());
     let temperature = Some(25.0_f64.to_bits());
     let stage = Some(1 << 30);
-    let dwell = [stage, half, one, Some(100), rate, one, None, None, None, temperature];
-    assert_eq!(outcome.dwells, [Bits(dwell); 2]);
+    let bits = vec![stage, half, one, Some(100), rate, one, None, None, None, temperature];
+    let dwell = Row { kind: &outcome::DWELL, bits };
+    assert_eq!(outcome.rows, [dwell.clone(), dwell]);
     let tasks =
         vec![Task { name: "the instrument".into(), polls: 30, instructions: 900, worst: 100 }];
     let expected = Figures {
@@ -54,34 +55,28 @@ fn the_log_gives_back_the_bits_and_the_figures() {
     assert_eq!(figures, expected);
 }
 
-#[test]
-fn turns_come_in_their_order_with_all_their_numbers() {
-    let names = TURN_FIELDS.map(|name| format!("{name}=3fe0000000000000")).join(" ");
-    let mut log = whole_log();
-    log.drain(..2);
-    log.insert(0, format!("turn number=1 {names}"));
-    log.insert(1, format!("turn number=2 {names}"));
-    let (outcome, _) = collect(&log).expect("a whole log");
-    assert_eq!(outcome.turns, [Bits([Some(0.5_f64.to_bits()); TURN_FIELDS.len()]); 2]);
-    assert_eq!(outcome.dwells, []);
-    log.remove(0);
-    assert!(collect(&log).is_err(), "the first is missing");
-    log[0] = format!("turn number=1 {}", names.replace("leak_sin=", "leak="));
-    assert!(collect(&log).is_err(), "a number is missing");
+/// A row all of whose numbers are a half.
+fn halves(kind: &'static Kind) -> Row {
+    Row { kind, bits: vec![Some(0.5_f64.to_bits()); kind.names.len()] }
 }
 
 #[test]
-fn stops_come_in_their_order_with_all_their_numbers() {
-    let names = STOP_FIELDS.map(|name| format!("{name}=3fe0000000000000")).join(" ");
-    let mut log = whole_log();
-    log.drain(..2);
-    log.insert(0, format!("stop number=1 {names}"));
-    let (outcome, _) = collect(&log).expect("a whole log");
-    assert_eq!(outcome.stops, [Bits([Some(0.5_f64.to_bits()); STOP_FIELDS.len()])]);
-    log[0] = format!("stop number=2 {names}");
-    assert!(collect(&log).is_err(), "the first is missing");
-    log[0] = format!("stop number=1 {}", names.replace("turned_y=", "turned="));
-    assert!(collect(&log).is_err(), "a number is missing");
+fn turns_and_stops_come_in_their_order_with_all_their_numbers() {
+    for (kind, name) in [(&TURN, "offset="), (&STOP, "turned_y=")] {
+        let names: Vec<_> =
+            kind.names.iter().map(|name| format!("{name}=3fe0000000000000")).collect();
+        let (names, word) = (names.join(" "), kind.word);
+        let mut log = whole_log();
+        log.drain(..2);
+        log.insert(0, format!("{word} number=1 {names}"));
+        log.insert(1, format!("{word} number=2 {names}"));
+        let (outcome, _) = collect(&log).expect("a whole log");
+        assert_eq!(outcome.rows, [halves(kind), halves(kind)]);
+        log.remove(0);
+        assert!(collect(&log).is_err(), "the first is missing");
+        log[0] = format!("{word} number=1 {}", names.replace(name, "other="));
+        assert!(collect(&log).is_err(), "a number is missing");
+    }
 }
 
 #[test]
