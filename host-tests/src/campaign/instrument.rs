@@ -71,7 +71,7 @@ fn outcome(scenario: &Scenario) -> Result<Outcome, RunError> {
     let run = instrument::align(scenario, None, NoRecorder, &())?;
     let conclusion = run.conclusion().ok_or(RunError::Deadlock)?;
     Ok(Outcome {
-        answer: Answer::of(conclusion, scenario.azimuth_deg),
+        answer: Answer::of_stage(conclusion, scenario.azimuth_deg),
         repeated: run.replay.session.repetitions().len(),
         violations: run.violations.len(),
     })

@@ -81,9 +81,9 @@ impl CampaignOptions {
             ));
         }
         if let Some(class) = &self.class
-            && disturbed::classes().all(|of| of.name != class)
+            && disturbed::classes().all(|of| of.fault.name != *class)
         {
-            let names: Vec<_> = disturbed::classes().map(|class| class.name).collect();
+            let names: Vec<_> = disturbed::classes().map(|class| class.fault.name).collect();
             return Err(format!("--class: the classes are {}", names.join(", ")));
         }
         files::check(None, &[files::written("--report", "the page", self.report.as_ref())])
@@ -264,7 +264,7 @@ const HEALTHY: usize = 15;
 /// Every class of faults in recordings; a result where each passes.
 fn disturbed(runs: usize, class: Option<&str>) -> Done {
     let chosen: Vec<_> =
-        disturbed::classes().filter(|of| class.is_none_or(|name| of.name == name)).collect();
+        disturbed::classes().filter(|of| class.is_none_or(|name| of.fault.name == name)).collect();
     let healthy_runs = if class.is_none() { HEALTHY * runs } else { 0 };
     let progress = Progress::new((chosen.len() * runs + healthy_runs) as u64, "recordings");
     let tick = || progress.step();
@@ -272,7 +272,7 @@ fn disturbed(runs: usize, class: Option<&str>) -> Done {
         None => disturbed::healthy(healthy_runs, &tick),
         Some(_) => Vec::new(),
     };
-    let rows: Vec<_> = chosen.into_iter().map(|class| disturbed::row(class, runs, &tick)).collect();
+    let rows: Vec<_> = chosen.iter().map(|class| disturbed::row(class, runs, &tick)).collect();
     progress.finish();
     Done {
         report: reports::disturbed::report(&healthy, &rows),

@@ -111,7 +111,7 @@ impl Trial {
             .map_err(|_| Refusal::TooFewPositions { positions: 0 })?;
         let longest = 2.0 * self.plan.seconds + 60.0;
         run(&mut session, &self.world(azimuth_deg), &[], self.rotation, longest, seed);
-        session.conclusion().ok_or(Refusal::TimeExhausted).and_then(|c| Answer::of(c, azimuth_deg))
+        session.conclusion().ok_or(Refusal::TimeExhausted).and_then(|c| Answer::of_stage(c, azimuth_deg))
     }
 
     fn setting(&self) -> Setting {

@@ -20,7 +20,6 @@ use orientation::units::DEGREE_PER_HOUR;
 use self::world::{LATITUDE_DEG, World};
 use super::over;
 use super::statistics::Answer;
-use crate::output::{azimuth_error, degrees};
 use crate::rotating::follow;
 
 /// Golden angle, °: azimuths of successive seeds fill the circle evenly.
@@ -72,12 +71,7 @@ impl Solved {
         let conclusion = session.conclusion();
         let verdict = conclusion.map_or(Err(Refusal::TimeExhausted), |found| found.verdict);
         let fit = conclusion.and_then(|found| found.fit);
-        let limit = fit.map_or(f64::NAN, |fit| degrees(fit.limit));
-        let answer = verdict.map(|azimuth| Answer {
-            error: azimuth_error(degrees(azimuth.angle), world.azimuth_deg),
-            sigma: degrees(azimuth.sigma),
-            limit,
-        });
+        let answer = Answer::of(verdict, fit.map(|fit| fit.limit), world.azimuth_deg);
         Self { answer, fit }
     }
 }

@@ -38,9 +38,9 @@ fn classes(rows: &[Row]) -> Table {
         "severity",
     ];
     let line = |row: &Row| {
-        let [low, high] = row.severity;
+        let [low, high] = row.fault.severity;
         vec![
-            row.class.to_string(),
+            row.fault.name.clone(),
             row.runs.to_string(),
             row.answered.to_string(),
             format!("{} ({}, {})", row.wrong, row.wrong_of_few, row.wrong_told),
@@ -48,7 +48,7 @@ fn classes(rows: &[Row]) -> Table {
             format!("{} of {}", row.harmless_answered, row.harmless),
             row.healthy_refused.to_string(),
             if row.is_met { "yes" } else { "NO" }.to_owned(),
-            format!("{low} to {high} {}", row.unit),
+            format!("{low} to {high} {}", row.fault.unit),
         ]
     };
     Table { rows: rows.iter().map(line).collect(), ..Table::new("Classes of faults", &head) }
@@ -59,7 +59,7 @@ fn reasons(rows: &[Row]) -> Lines {
     let mut lines = Lines::new("Most frequent reasons of refusals");
     for row in rows {
         for (reason, count) in row.reasons.iter().take(REASONS) {
-            lines.add(row.class, format!("{count:>4} × {reason}"));
+            lines.add(&row.fault.name, format!("{count:>4} × {reason}"));
         }
     }
     lines
