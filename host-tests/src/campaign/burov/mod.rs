@@ -4,6 +4,8 @@ pub mod classes;
 pub mod devices;
 pub mod drift;
 
+use std::fmt;
+
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::instruments::InstrumentsConfiguration;
 use orientation::align::setting::Setting;
@@ -53,8 +55,14 @@ impl Grade {
     /// Its noise.
     #[must_use]
     pub fn noise(&self) -> GyroNoise {
-        let Self { n_deg_sqrt_h, b_deg_h, k_deg_h_sqrt_h, r_deg_h2 } = *self;
-        GyroNoise::from_field_units(n_deg_sqrt_h, b_deg_h, k_deg_h_sqrt_h, r_deg_h2)
+        let [n, b, k, r] = self.values();
+        GyroNoise::from_field_units(n, b, k, r)
+    }
+
+    /// N, B, K and R.
+    #[must_use]
+    pub fn values(&self) -> [f64; 4] {
+        [self.n_deg_sqrt_h, self.b_deg_h, self.k_deg_h_sqrt_h, self.r_deg_h2]
     }
 
     /// What a planner is told of it on such a stage.
@@ -79,6 +87,13 @@ impl Grade {
             bias_sigma_deg_h: BIAS_DEG_H,
             ..GyroConfiguration::default()
         }
+    }
+}
+
+impl fmt::Display for Grade {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [n, b, k, r] = self.values();
+        write!(f, "N {n} °/√h, B {b} °/h, K {k} °/h/√h, R {r} °/h²")
     }
 }
 
@@ -111,7 +126,10 @@ impl Trial {
             .map_err(|_| Refusal::TooFewPositions { positions: 0 })?;
         let longest = 2.0 * self.plan.seconds + 60.0;
         run(&mut session, &self.world(azimuth_deg), &[], self.rotation, longest, seed);
-        session.conclusion().ok_or(Refusal::TimeExhausted).and_then(|c| Answer::of_stage(c, azimuth_deg))
+        session
+            .conclusion()
+            .ok_or(Refusal::TimeExhausted)
+            .and_then(|c| Answer::of_stage(c, azimuth_deg))
     }
 
     fn setting(&self) -> Setting {
