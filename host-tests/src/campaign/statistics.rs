@@ -66,6 +66,11 @@ pub struct Precision {
 }
 
 impl Precision {
+    /// Whether none was refused.
+    pub(crate) fn is_complete(&self) -> bool {
+        self.refused == 0
+    }
+
     /// Of these answers.
     #[must_use]
     pub fn of<E: Display>(answers: &[Result<Answer, E>]) -> Self {

@@ -12,8 +12,7 @@ const POSITIONS: std::ops::RangeInclusive<u32> = 5..=25;
 const NEAR: std::ops::RangeInclusive<u32> = 8..=14;
 
 /// The page for a campaign.
-#[must_use]
-pub fn report(devices: &[Device], drift: &[Comparison], classes: &[classes::Row]) -> Report {
+pub(crate) fn report(devices: &[Device], drift: &[Comparison], classes: &[classes::Row]) -> Report {
     let errors = curve(POSITIONS);
     let points = errors.iter().map(|(n, error)| (f64::from(*n), *error)).collect();
     Report {

@@ -8,8 +8,7 @@ use crate::report::{Lines, Part, Report};
 const REASONS: usize = 4;
 
 /// What healthy recordings gave, and what became of each class of faults.
-#[must_use]
-pub fn report(healthy: &[HealthyRow], rows: &[Row]) -> Report {
+pub(crate) fn report(healthy: &[HealthyRow], rows: &[Row]) -> Report {
     let of_healthy = (!healthy.is_empty()).then(|| of_healthy(healthy));
     let reasons = Some(reasons(rows)).filter(|lines| !lines.lines.is_empty());
     let subtitle = [

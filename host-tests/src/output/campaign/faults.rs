@@ -7,8 +7,7 @@ use crate::campaign::faults::Row;
 use crate::report::Report;
 
 /// What came of every fault on every platform.
-#[must_use]
-pub fn report(rows: &[Row]) -> Report {
+pub(crate) fn report(rows: &[Row]) -> Report {
     let table = Columns::of("Faults", rows)
         .column("platform", |row| row.platform)
         .column("fault", |row| &row.fault)

@@ -5,8 +5,7 @@ use crate::campaign::instrument::Runs;
 use crate::report::{Lines, Report};
 
 /// What many runs of the whole instrument amount to.
-#[must_use]
-pub fn report(runs: &Runs) -> Report {
+pub(crate) fn report(runs: &Runs) -> Report {
     let mut lines = Lines::default();
     lines.add("measured again", format!("{} dwells", runs.repeated));
     lines.add("FORBIDDEN", format!("{} accesses that a data sheet forbids", runs.violations));

@@ -6,8 +6,7 @@ use crate::campaign::keep::{Growth, Row, Spread};
 use crate::report::{Part, Report, Series, Style};
 
 /// The page for a campaign.
-#[must_use]
-pub fn report(rows: &[Row]) -> Report {
+pub(crate) fn report(rows: &[Row]) -> Report {
     let figures = rows.iter().flat_map(|row| {
         let name = format!("{}, {}", row.class, row.mount);
         let (azimuth, level) = (row.wanted_azimuth_deg, row.wanted_level_deg);

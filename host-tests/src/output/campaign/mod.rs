@@ -1,14 +1,14 @@
 //! What campaigns print: one report for terminal and page, whose figures only the page shows.
 
-pub mod burov;
-pub mod disturbed;
-pub mod faults;
-pub mod instrument;
-pub mod keep;
-pub mod rotating;
-pub mod sokolov;
-pub mod spin;
-pub mod szymanowski;
+pub(crate) mod burov;
+pub(crate) mod disturbed;
+pub(crate) mod faults;
+pub(crate) mod instrument;
+pub(crate) mod keep;
+pub(crate) mod rotating;
+pub(crate) mod sokolov;
+pub(crate) mod spin;
+pub(crate) mod szymanowski;
 
 use std::fmt::Display;
 

@@ -18,8 +18,7 @@ const SETTLED: f64 = 5.0;
 const SECONDS: f64 = 200.0;
 
 /// The page for a campaign.
-#[must_use]
-pub fn report(
+pub(crate) fn report(
     stages: &[stages::Row],
     molecular: &[molecular::Row],
     refusals: &[refusals::Row],

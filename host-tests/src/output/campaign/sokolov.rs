@@ -6,8 +6,7 @@ use crate::output::positive_zero;
 use crate::report::{Lines, Part, Report};
 
 /// Both schedules: the paper's table, then the precision.
-#[must_use]
-pub fn report(turns: &[Turn], precisions: &[Precision]) -> Report {
+pub(crate) fn report(turns: &[Turn], precisions: &[Precision]) -> Report {
     let parts = turns.iter().flat_map(of_turn).chain([of_precisions(precisions)]);
     let subtitle = [
         "60 dwells of 1 s, 0.15 °/h per sample at 100 Hz, 47°35′",

@@ -11,8 +11,7 @@ use crate::spin::{METHODS, name};
 const POINTS: usize = 2000;
 
 /// The page for a campaign.
-#[must_use]
-pub fn report(paper: &Paper, rows: &[Row]) -> Report {
+pub(crate) fn report(paper: &Paper, rows: &[Row]) -> Report {
     let [uncorrected, extrema, interpolated, locked] = &paper.curves;
     let methods = [extrema, interpolated, locked];
     let whole: Vec<(&str, &[(f64, f64)])> =

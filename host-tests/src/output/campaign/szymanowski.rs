@@ -8,8 +8,7 @@ use crate::outcome::stops::figures;
 use crate::report::{Part, Report, Series, Style};
 
 /// The page for a campaign.
-#[must_use]
-pub fn report(drives: &[drives::Row], parked: &[parked::Row]) -> Report {
+pub(crate) fn report(drives: &[drives::Row], parked: &[parked::Row]) -> Report {
     let mut parts = vec![of_drives(drives), of_parked(parked)];
     parts.extend(drives.iter().map(errors));
     let latitude = Latitude::from_degrees(drives::LATITUDE_DEG);

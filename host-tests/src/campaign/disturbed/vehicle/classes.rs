@@ -61,10 +61,12 @@ fn wrong_times() -> [Class; 2] {
                 bench.header.rate_hz = bench.header.rate_hz.map(|rate| rate * wrong);
             },
         ),
-        Fault::new("vehicle-clock", clock, [1e-4, 2.0], "of the pace")
-            .spoils(Bench::drawn, |bench, chance, size| {
-                bench.clock = chance.factor_or_inverse(1.0 + size)
-            }),
+        Fault::new("vehicle-clock", clock, [1e-4, 2.0], "of the pace").spoils(
+            Bench::drawn,
+            |bench, chance, size| {
+                bench.clock = chance.factor_or_inverse(1.0 + size);
+            },
+        ),
     ]
 }
 
