@@ -4,11 +4,32 @@ use firmware::ports::NoRecorder;
 use firmware::simulated::scenario::Scenario;
 use hal_mock::noise::Generator;
 use orientation::error::Refusal;
-use rayon::prelude::*;
 use serde::Serialize;
+use serde_json::json;
 
 use super::statistics::{Answer, Precision};
+use super::{Asked, Campaign, Done, Tick, over, unless};
 use crate::instrument::{self, RunError};
+use crate::output::campaign;
+
+/// The whole instrument over many seeds.
+pub(super) const CAMPAIGN: Campaign = Campaign {
+    name: "instrument",
+    meaning: "The whole instrument on simulated chips, over drawn sites and attitudes",
+    runs: 500,
+    takes: &[],
+    steps: "alignments",
+    count: |asked| asked.runs,
+    run,
+};
+
+/// A result where none was refused.
+fn run(asked: &Asked, tick: Tick<'_>) -> Result<Done, String> {
+    let runs = precision(asked.runs, tick).map_err(|error| error.to_string())?;
+    let refusal = unless(runs.precision.is_complete(), "a healthy board was refused");
+    let report = campaign::instrument::report(&runs);
+    Ok(Done { report, refusal, object: json!({ "precision": runs }) })
+}
 
 /// Greatest latitude that is drawn, °.
 const LATITUDE_DEG: f64 = 70.0;
@@ -29,16 +50,8 @@ pub struct Runs {
     pub violations: usize,
 }
 
-/// One run's outcome.
-struct Outcome {
-    answer: Result<Answer, Refusal>,
-    repeated: usize,
-    violations: usize,
-}
-
 /// The scenario of one seed: site, attitude and instrument drawn from it.
-#[must_use]
-pub fn scenario(seed: u64) -> Scenario {
+fn scenario(seed: u64) -> Scenario {
     let mut chance = Generator::new(seed);
     let mut uniform = |low: f64, high: f64| low + (high - low) * chance.uniform();
     let (tilt, toward) = (uniform(0.0, TILT_DEG), uniform(0.0, core::f64::consts::TAU));
@@ -59,29 +72,20 @@ pub fn scenario(seed: u64) -> Scenario {
 /// # Errors
 /// What keeps a run from beginning, and a deadlock.
 pub fn precision(runs: usize, tick: impl Fn() + Sync) -> Result<Runs, RunError> {
-    let outcomes = (1..=runs as u64).into_par_iter().map(|seed| {
-        let outcome = outcome(&scenario(seed));
-        tick();
-        outcome
-    });
-    Ok(summary(&outcomes.collect::<Result<Vec<_>, _>>()?))
-}
-
-fn outcome(scenario: &Scenario) -> Result<Outcome, RunError> {
-    let run = instrument::align(scenario, None, NoRecorder, &())?;
-    let conclusion = run.conclusion().ok_or(RunError::Deadlock)?;
-    Ok(Outcome {
-        answer: Answer::of(conclusion, scenario.azimuth_deg),
-        repeated: run.replay.session.repetitions().len(),
-        violations: run.violations.len(),
+    let outcomes = over(runs, &tick, |seed| outcome(&scenario(seed)));
+    let outcomes = outcomes.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let answers: Vec<_> = outcomes.iter().map(|(answer, ..)| *answer).collect();
+    Ok(Runs {
+        precision: Precision::of(&answers),
+        repeated: outcomes.iter().map(|(_, repeated, _)| repeated).sum(),
+        violations: outcomes.iter().map(|(.., violations)| violations).sum(),
     })
 }
 
-fn summary(outcomes: &[Outcome]) -> Runs {
-    let answers: Vec<_> = outcomes.iter().map(|outcome| outcome.answer).collect();
-    Runs {
-        precision: Precision::of(&answers),
-        repeated: outcomes.iter().map(|o| o.repeated).sum(),
-        violations: outcomes.iter().map(|o| o.violations).sum(),
-    }
+/// One run's answer, how many dwells were measured again, and how many accesses were forbidden.
+fn outcome(scenario: &Scenario) -> Result<(Result<Answer, Refusal>, usize, usize), RunError> {
+    let run = instrument::align(scenario, None, NoRecorder, &())?;
+    let conclusion = run.conclusion().ok_or(RunError::Deadlock)?;
+    let answer = Answer::of_stage(conclusion, scenario.azimuth_deg);
+    Ok((answer, run.replay.session.repetitions().len(), run.violations.len()))
 }

@@ -1,4 +1,6 @@
-//! Monte-Carlo campaigns: many simulated alignments, told as tables.
+//! Monte-Carlo campaigns: many simulated alignments, told as tables; and their registry.
+//!
+//! A further campaign is an entry here; its world, its figures and its verdict stand in a folder of their own.
 
 pub mod burov;
 pub mod disturbed;
@@ -11,7 +13,76 @@ pub mod spin;
 pub mod statistics;
 pub mod szymanowski;
 
+use firmware::simulated::fault::Platform;
 use rayon::prelude::*;
+use serde_json::Value;
+
+use crate::report::Report;
+
+/// What a user asks of a campaign.
+#[derive(Clone, Debug)]
+pub struct Asked {
+    /// Runs of each row; some rows take a part of it.
+    pub runs: usize,
+    /// The only platform to run, of faults.
+    pub platform: Option<Platform>,
+    /// The only class to run, of disturbed.
+    pub class: Option<String>,
+}
+
+/// Called after each step of a campaign, from whatever thread.
+pub type Tick<'a> = &'a (dyn Fn() + Sync);
+
+/// A campaign.
+pub struct Campaign {
+    /// Its name on the command line.
+    pub name: &'static str,
+    /// What it runs, for the help.
+    pub meaning: &'static str,
+    /// Runs where no number is asked for.
+    pub runs: usize,
+    /// The options, by their names without dashes, that it takes beside those that every campaign takes.
+    pub takes: &'static [&'static str],
+    /// What its steps are called.
+    pub steps: &'static str,
+    /// How many steps it has.
+    pub count: fn(&Asked) -> usize,
+    /// Runs it.
+    pub run: fn(&Asked, Tick<'_>) -> Result<Done, String>,
+}
+
+/// What a campaign gave, ready to be shown.
+pub struct Done {
+    /// Its JSON object but for the status.
+    pub object: Value,
+    /// Its text and page.
+    pub report: Report,
+    /// Why it is no result, where it is none.
+    pub refusal: Option<&'static str>,
+}
+
+/// The campaigns, in the order of the help.
+pub static CAMPAIGNS: [Campaign; 9] = [
+    sokolov::CAMPAIGN,
+    burov::CAMPAIGN,
+    rotating::CAMPAIGN,
+    spin::CAMPAIGN,
+    szymanowski::CAMPAIGN,
+    keep::CAMPAIGN,
+    instrument::CAMPAIGN,
+    faults::CAMPAIGN,
+    disturbed::CAMPAIGN,
+];
+
+/// A reason where something is not so.
+fn unless(found: bool, reason: &'static str) -> Option<&'static str> {
+    (!found).then_some(reason)
+}
+
+/// A tenth of the runs, or one.
+fn tenth(runs: usize) -> usize {
+    (runs / 10).max(1)
+}
 
 /// One result for each seed.
 fn over<T: Send>(runs: usize, tick: &(impl Fn() + Sync), of: impl Fn(u64) -> T + Sync) -> Vec<T> {

@@ -25,12 +25,35 @@ use orientation::signal::dwell::Dwell;
 use orientation::units::{ARCSECONDS_PER_RADIAN, DEGREE_PER_HOUR};
 use rayon::prelude::*;
 use serde::Serialize;
+use serde_json::json;
 
 use super::statistics::{coverage, least, rms};
-use crate::output::azimuth_error;
+use super::{Asked, Campaign, Done, Tick};
+use crate::output::{azimuth_error, campaign};
 use crate::reference::Filter;
 use crate::replay::drive;
 use crate::simulate::stage_path;
+
+/// The paper's table, and the precision, of both schedules.
+pub(super) const CAMPAIGN: Campaign = Campaign {
+    name: "sokolov",
+    meaning: "The numerical experiment of Sokolov 2019: stepwise gyrocompassing, all five criteria",
+    runs: 5000,
+    takes: &[],
+    steps: "alignments",
+    count: |asked| TURNS.len() * (3 * TABLE_RUNS + asked.runs),
+    run,
+};
+
+/// Both schedules: the paper's table, then the precision.
+fn run(asked: &Asked, tick: Tick<'_>) -> Result<Done, String> {
+    let tables = TURNS.iter().map(|turn| tabulate(*turn, tick)).collect::<Result<Vec<_>, _>>()?;
+    let precisions = TURNS.iter().map(|turn| precision(*turn, asked.runs, tick));
+    let precisions = precisions.collect::<Result<Vec<_>, _>>()?;
+    let object = json!({ "tables": tables, "precision": precisions });
+    let report = campaign::sokolov::report(&tables, &precisions);
+    Ok(Done { object, report, refusal: None })
+}
 
 /// Latitude of the paper, °.
 const LATITUDE_DEG: f64 = 47.0 + 35.0 / 60.0;
@@ -45,7 +68,7 @@ const DWELL_SAMPLES: usize = 100;
 /// Sample rate, Hz.
 const RATE_HZ: f64 = 100.0;
 /// Realisations for each azimuth in the paper's Table 1.
-pub const TABLE_RUNS: usize = 90;
+const TABLE_RUNS: usize = 90;
 /// The paper's azimuths, °, moved off the 10″ grid by a third and more of a step.
 const AZIMUTHS_DEG: [f64; 3] =
     [28.0 + 10.0 / 60.0 + 3.7 / 3600.0, 28.5 + 4.1 / 3600.0, 28.0 + 50.0 / 60.0 + 6.3 / 3600.0];
@@ -61,10 +84,12 @@ pub enum Turn {
     Circle,
 }
 
+/// Both schedules.
+const TURNS: [Turn; 2] = [Turn::Arc, Turn::Circle];
+
 impl Turn {
     /// Its name in tables.
-    #[must_use]
-    pub fn name(self) -> &'static str {
+    fn name(self) -> &'static str {
         match self {
             Self::Arc => "28° arc, steps of 28′",
             Self::Circle => "full circle, steps of 6°",
@@ -84,8 +109,7 @@ impl Turn {
 ///
 /// # Panics
 /// Never: the latitude is a constant within ±90°.
-#[must_use]
-pub fn setting() -> Setting {
+fn setting() -> Setting {
     let latitude = Latitude::from_degrees(LATITUDE_DEG).unwrap_or_else(|| unreachable!());
     Setting {
         noise: GyroNoise::from_field_units(ANGLE_RANDOM_WALK, 0.0, 0.0, 0.0),
@@ -95,8 +119,7 @@ pub fn setting() -> Setting {
 }
 
 /// The samples of one realisation.
-#[must_use]
-pub fn samples(turn: Turn, azimuth_deg: f64, seed: u64) -> Vec<Sample> {
+fn samples(turn: Turn, azimuth_deg: f64, seed: u64) -> Vec<Sample> {
     let stops: Vec<Stop> = (0..POSITIONS).map(|i| Stop::new(i as f64 * turn.step(), 1.0)).collect();
     let gyro = GyroConfiguration {
         n_deg_sqrt_h: ANGLE_RANDOM_WALK,
@@ -124,10 +147,7 @@ fn procedure(turn: Turn) -> Procedure {
 }
 
 /// The dwells of one realisation, through the session's fixed-point filter.
-///
-/// # Errors
-/// What keeps the session from beginning.
-pub fn dwells(turn: Turn, samples: &[Sample]) -> Result<Vec<Dwell>, String> {
+fn dwells(turn: Turn, samples: &[Sample]) -> Result<Vec<Dwell>, String> {
     let mut session =
         Session::new(setting(), procedure(turn)).map_err(|error| format!("{error:?}"))?;
     drive(&mut session, samples.iter().copied(), |_| {});
@@ -255,51 +275,49 @@ pub struct AlphaRow {
 /// # Errors
 /// What keeps a session from beginning.
 pub fn tabulate(turn: Turn, tick: impl Fn() + Sync) -> Result<Table, String> {
-    let all: Vec<(usize, Vec<Dwell>)> = (0..3 * TABLE_RUNS)
-        .into_par_iter()
-        .map(|run| {
-            let place = run / TABLE_RUNS;
-            let samples = samples(turn, AZIMUTHS_DEG[place], run as u64 + 1);
-            tick();
-            Ok((place, dwells(turn, &samples)?))
-        })
-        .collect::<Result<_, String>>()?;
-    let rows = criteria().map(|(name, criterion)| row(&all, name, criterion));
+    let realisation = |run: usize| {
+        let samples = samples(turn, AZIMUTHS_DEG[run / TABLE_RUNS], run as u64 + 1);
+        tick();
+        dwells(turn, &samples)
+    };
+    let runs = (0..3 * TABLE_RUNS).into_par_iter();
+    let all = runs.map(realisation).collect::<Result<Vec<_>, String>>()?;
+    let is_arc = turn == Turn::Arc;
     Ok(Table {
         schedule: turn.name(),
-        rows: rows.to_vec(),
+        rows: criteria().map(|(name, criterion)| row(&all, name, criterion)).to_vec(),
         paper_least_arcsec: PAPER_LEAST,
-        stop_rules: if turn == Turn::Arc { stop_rules(&all) } else { Vec::new() },
-        paper_alpha: if turn == Turn::Arc { paper_alpha(&all) } else { Vec::new() },
+        stop_rules: if is_arc { stop_rules(&all) } else { Vec::new() },
+        paper_alpha: if is_arc { paper_alpha(&all) } else { Vec::new() },
     })
 }
 
-fn row(all: &[(usize, Vec<Dwell>)], name: &'static str, criterion: Criterion) -> Row {
-    let answers: Vec<(usize, Option<Answer>)> = all
-        .par_iter()
-        .map(|(place, dwells)| (*place, answer(dwells, criterion, AZIMUTHS_DEG[*place])))
-        .collect();
-    let given: Vec<(usize, Answer)> = answers
-        .iter()
-        .filter_map(|(place, answer)| answer.map(|answer| (*place, answer)))
-        .collect();
-    let errors: Vec<f64> = given.iter().map(|(_, answer)| answer.error).collect();
-    let limits: Vec<f64> = given.iter().map(|(_, answer)| answer.limit).collect();
-    let free: Vec<f64> = given.iter().map(|(_, answer)| answer.limit_free).collect();
-    let sigmas: Vec<f64> = given.iter().map(|(_, answer)| answer.sigma).collect();
-    let at = |place: usize| -> Vec<f64> {
-        given.iter().filter(|(p, _)| *p == place).map(|(_, answer)| answer.error).collect()
+/// One figure of all answers.
+fn column<'a>(
+    answers: impl IntoIterator<Item = &'a Answer>,
+    of: impl Fn(&Answer) -> f64,
+) -> Vec<f64> {
+    answers.into_iter().map(of).collect()
+}
+
+fn row(all: &[Vec<Dwell>], name: &'static str, criterion: Criterion) -> Row {
+    let solve = |(run, dwells): (usize, &Vec<Dwell>)| {
+        answer(dwells, criterion, AZIMUTHS_DEG[run / TABLE_RUNS])
     };
+    let answers: Vec<Option<Answer>> = all.par_iter().enumerate().map(solve).collect();
+    let rms_of = |of: fn(&Answer) -> f64| rms(&column(answers.iter().flatten(), of));
+    let at = |place: usize| answers.iter().skip(place * TABLE_RUNS).take(TABLE_RUNS).flatten();
+    let (rms_arcsec, limit_arcsec) = (rms_of(|answer| answer.error), rms_of(|answer| answer.limit));
     Row {
         criterion: name,
         runs: answers.len(),
-        refused: answers.len() - given.len(),
-        rms_arcsec: rms(&errors),
-        least_arcsec: [0, 1, 2].map(|place| least(&at(place))),
-        sigma_arcsec: rms(&sigmas),
-        limit_arcsec: rms(&limits),
-        limit_free_arcsec: rms(&free),
-        ratio: rms(&errors) / rms(&limits),
+        refused: answers.iter().filter(|answer| answer.is_none()).count(),
+        rms_arcsec,
+        least_arcsec: [0, 1, 2].map(|place| least(&column(at(place), |answer| answer.error))),
+        sigma_arcsec: rms_of(|answer| answer.sigma),
+        limit_arcsec,
+        limit_free_arcsec: rms_of(|answer| answer.limit_free),
+        ratio: rms_arcsec / limit_arcsec,
     }
 }
 
@@ -310,14 +328,13 @@ fn stopped_at(dwells: &[Dwell], rule: StopRule) -> usize {
     dwells.windows(2).position(stops).map_or(POSITIONS, |index| index + 2)
 }
 
-fn stop_rules(all: &[(usize, Vec<Dwell>)]) -> Vec<StopRow> {
+fn stop_rules(all: &[Vec<Dwell>]) -> Vec<StopRow> {
     let rules = [
         ("the paper's: δ changes sign", StopRule::SignChange),
         ("significant: δ < −3 σ", StopRule::Significant(3.0)),
     ];
     let row = |(name, rule)| {
-        let mut steps: Vec<usize> =
-            all.iter().map(|(_, dwells)| stopped_at(dwells, rule)).collect();
+        let mut steps: Vec<usize> = all.iter().map(|dwells| stopped_at(dwells, rule)).collect();
         steps.sort_unstable();
         StopRow {
             rule: name,
@@ -330,17 +347,17 @@ fn stop_rules(all: &[(usize, Vec<Dwell>)]) -> Vec<StopRow> {
 }
 
 /// The paper's α = 5″ read as 5 °/h, and as 5″/h.
-fn paper_alpha(all: &[(usize, Vec<Dwell>)]) -> Vec<AlphaRow> {
+fn paper_alpha(all: &[Vec<Dwell>]) -> Vec<AlphaRow> {
     [5.0, 5.0 / 3600.0].into_iter().map(|alpha| alpha_row(all, alpha)).collect()
 }
 
-fn alpha_row(all: &[(usize, Vec<Dwell>)], alpha_deg_h: f64) -> AlphaRow {
+fn alpha_row(all: &[Vec<Dwell>], alpha_deg_h: f64) -> AlphaRow {
     let rate = setting().latitude.horizontal_rate();
     let limit = Limit::WithinAbsolute((alpha_deg_h * DEGREE_PER_HOUR / rate * ONE) as u64);
     let step = (Turn::Arc.step() / STEP).round() as i32;
     let accepted: Vec<Accepted> = all
         .par_iter()
-        .filter_map(|(_, dwells)| {
+        .filter_map(|dwells| {
             let series = Series::new(dwells.iter().map(|dwell| dwell.rate / rate), step).ok()?;
             Some(etalon::accepted(Etalon::built_in(), &series, limit).accepted)
         })
@@ -425,19 +442,18 @@ pub fn precision(turn: Turn, runs: usize, tick: impl Fn() + Sync) -> Result<Prec
         .collect::<Result<_, String>>()?;
     let given: Vec<[Answer; 2]> =
         answers.iter().filter_map(|[a, b]| (*a).zip(*b)).map(Into::into).collect();
-    let errors = |path: usize| -> Vec<f64> { given.iter().map(|pair| pair[path].error).collect() };
-    let sigmas: Vec<f64> = given.iter().map(|pair| pair[0].sigma).collect();
-    let limits: Vec<f64> = given.iter().map(|pair| pair[0].limit).collect();
-    let (fixed, floating) = (errors(0), errors(1));
+    let of = |path: usize, of: fn(&Answer) -> f64| column(given.iter().map(|both| &both[path]), of);
+    let [fixed, floating] = [0, 1].map(|path| of(path, |answer| answer.error));
+    let limit_arcsec = rms(&of(0, |answer| answer.limit));
     Ok(Precision {
         schedule: turn.name(),
         runs,
         refused: runs - given.len(),
         rms_arcsec: rms(&fixed),
         rms_floating_point_arcsec: rms(&floating),
-        limit_arcsec: rms(&limits),
-        ratio: rms(&fixed) / rms(&limits),
+        limit_arcsec,
+        ratio: rms(&fixed) / limit_arcsec,
         fixed_point_ratio: rms(&fixed) / rms(&floating),
-        coverage_percent: coverage(&fixed, &sigmas),
+        coverage_percent: coverage(&fixed, &of(0, |answer| answer.sigma)),
     })
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-use orientation::align::conclusion::Conclusion;
+use orientation::align::conclusion::{Azimuth, Conclusion};
 use orientation::error::Refusal;
 use serde::Serialize;
 
@@ -20,15 +20,27 @@ pub struct Answer {
 }
 
 impl Answer {
-    /// Of a conclusion.
+    /// A verdict against the true azimuth; its limit, rad, where there is one.
     ///
     /// # Errors
     /// Its refusal.
-    pub fn of(conclusion: &Conclusion, truth_deg: f64) -> Result<Self, Refusal> {
-        let azimuth = conclusion.verdict?;
-        let limit = conclusion.fit.as_ref().map_or(f64::NAN, |fit| degrees(fit.limit));
+    pub fn of(
+        verdict: Result<Azimuth, Refusal>,
+        limit: Option<f64>,
+        truth_deg: f64,
+    ) -> Result<Self, Refusal> {
+        let azimuth = verdict?;
         let error = azimuth_error(degrees(azimuth.angle), truth_deg);
+        let limit = limit.map_or(f64::NAN, degrees);
         Ok(Self { error, sigma: degrees(azimuth.sigma), limit })
+    }
+
+    /// The conclusion of a stage against the true azimuth.
+    ///
+    /// # Errors
+    /// Its refusal.
+    pub fn of_stage(conclusion: &Conclusion, truth_deg: f64) -> Result<Self, Refusal> {
+        Self::of(conclusion.verdict, conclusion.fit.as_ref().map(|fit| fit.limit), truth_deg)
     }
 }
 
@@ -54,6 +66,11 @@ pub struct Precision {
 }
 
 impl Precision {
+    /// Whether none was refused.
+    pub(crate) fn is_complete(&self) -> bool {
+        self.refused == 0
+    }
+
     /// Of these answers.
     #[must_use]
     pub fn of<E: Display>(answers: &[Result<Answer, E>]) -> Self {

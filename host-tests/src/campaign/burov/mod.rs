@@ -4,6 +4,8 @@ pub mod classes;
 pub mod devices;
 pub mod drift;
 
+use std::fmt;
+
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::instruments::InstrumentsConfiguration;
 use orientation::align::setting::Setting;
@@ -17,11 +19,41 @@ use orientation::session::procedure::Procedure;
 use orientation::session::schedule::Schedule;
 use orientation::units::DEGREE_PER_HOUR;
 use serde::Serialize;
+use serde_json::json;
 
-use super::over;
 use super::statistics::Answer;
+use super::{Asked, Campaign, Done, Tick, over, tenth, unless};
+use crate::output::campaign;
 use crate::planning::SHORTEST;
-use crate::simulate::run;
+use crate::simulate;
+
+/// The paper's example and devices, schedules under drift, the five classes.
+pub(super) const CAMPAIGN: Campaign = Campaign {
+    name: "burov",
+    meaning: "Burov's optimisation, his devices and classes, and schedules under drift",
+    runs: 5000,
+    takes: &[],
+    steps: "alignments",
+    count: |asked| 2 * drift::GYROS.len() * asked.runs + classes::COUNT * tenth(asked.runs),
+    run: |asked, tick| Ok(run(asked, tick)),
+};
+
+/// A result where every row of the classes is met.
+fn run(asked: &Asked, tick: Tick<'_>) -> Done {
+    let drift = drift::GYROS.iter().filter_map(|gyro| drift::compare(*gyro, asked.runs, tick));
+    let drift: Vec<_> = drift.collect();
+    let classes = classes::rows(tenth(asked.runs), tick);
+    let (curve, devices) = (devices::curve(8..=14), devices::devices());
+    let reason =
+        "a class does not meet its row; with few runs (a tenth of --runs) that may be chance";
+    Done {
+        report: campaign::burov::report(&devices, &drift, &classes),
+        refusal: unless(classes.iter().all(|row| row.is_met), reason),
+        object: json!({
+            "devices": devices, "rate_error_deg_h": curve, "drift": drift, "classes": classes,
+        }),
+    }
+}
 
 /// Latitude of the simulations, °.
 pub const LATITUDE_DEG: f64 = 48.0;
@@ -53,8 +85,14 @@ impl Grade {
     /// Its noise.
     #[must_use]
     pub fn noise(&self) -> GyroNoise {
-        let Self { n_deg_sqrt_h, b_deg_h, k_deg_h_sqrt_h, r_deg_h2 } = *self;
-        GyroNoise::from_field_units(n_deg_sqrt_h, b_deg_h, k_deg_h_sqrt_h, r_deg_h2)
+        let [n, b, k, r] = self.values();
+        GyroNoise::from_field_units(n, b, k, r)
+    }
+
+    /// N, B, K and R.
+    #[must_use]
+    pub fn values(&self) -> [f64; 4] {
+        [self.n_deg_sqrt_h, self.b_deg_h, self.k_deg_h_sqrt_h, self.r_deg_h2]
     }
 
     /// What a planner is told of it on such a stage.
@@ -79,6 +117,13 @@ impl Grade {
             bias_sigma_deg_h: BIAS_DEG_H,
             ..GyroConfiguration::default()
         }
+    }
+}
+
+impl fmt::Display for Grade {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [n, b, k, r] = self.values();
+        write!(f, "N {n} °/√h, B {b} °/h, K {k} °/h/√h, R {r} °/h²")
     }
 }
 
@@ -110,8 +155,11 @@ impl Trial {
         let mut session = Session::new(self.setting(), procedure)
             .map_err(|_| Refusal::TooFewPositions { positions: 0 })?;
         let longest = 2.0 * self.plan.seconds + 60.0;
-        run(&mut session, &self.world(azimuth_deg), &[], self.rotation, longest, seed);
-        session.conclusion().ok_or(Refusal::TimeExhausted).and_then(|c| Answer::of(c, azimuth_deg))
+        simulate::run(&mut session, &self.world(azimuth_deg), &[], self.rotation, longest, seed);
+        session
+            .conclusion()
+            .ok_or(Refusal::TimeExhausted)
+            .and_then(|c| Answer::of_stage(c, azimuth_deg))
     }
 
     fn setting(&self) -> Setting {

@@ -36,6 +36,11 @@ impl Chance {
         if self.happens(0.5) { 1.0 } else { -1.0 }
     }
 
+    /// A factor or its inverse.
+    pub(super) fn factor_or_inverse(&mut self, factor: f64) -> f64 {
+        if self.happens(0.5) { factor } else { 1.0 / factor }
+    }
+
     /// A normal variable of variance one.
     pub(super) fn normal(&mut self) -> f64 {
         self.0.gaussian()

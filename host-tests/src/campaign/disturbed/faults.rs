@@ -1,4 +1,5 @@
-//! What goes wrong with a rig, whatever turns it; and what is drawn or left unsaid for it beforehand.
+//! The classes of faults of a rig, whatever turns it: of its base, its encoder, its gyro and its accelerometer, and of
+//! what is said of them.
 
 use std::f64::consts::TAU;
 
@@ -8,174 +9,245 @@ use hal_mock::temperature::TemperatureConfiguration;
 
 use super::axes::TURNED;
 use super::chance::Chance;
+use super::class::{Class, Fault};
 use super::gyro::Drift;
-use super::unit::Rig;
+use super::unit::{Rig, Unit};
 
 /// m/s² of a thousandth of gravity.
 const MILLI_G: f64 = 9.81e-3;
 
-/// The base tilts slowly, °/h.
-pub(super) fn base_tilts<R: Rig>(rig: &mut R, chance: &mut Chance, size: f64) {
-    let (sine, cosine) = chance.between(0.0, TAU).sin_cos();
-    let rates = [0.0, cosine, sine];
-    rig.unit_mut().base.rates_rad_s = rates.map(|part| part * size * DEGREE_PER_HOUR);
+/// A fault of a rig, between two severities of a unit.
+pub(super) fn of<R: Rig>(
+    name: &str,
+    fault: impl Into<String>,
+    severity: [f64; 2],
+    unit: impl Into<String>,
+) -> Fault {
+    Fault::new(format!("{}{name}", R::NAME), fault, severity, unit)
 }
 
-/// The base turns slowly about the vertical, °/min.
-pub(super) fn base_yaws<R: Rig>(rig: &mut R, chance: &mut Chance, size: f64) {
-    rig.unit_mut().base.rates_rad_s[0] = chance.sign() * size.to_radians() / 60.0;
+/// The base turns about the vertical.
+pub(super) fn base_turn<R: Rig>() -> Class {
+    let fault = format!("the base turns about the vertical {}", R::MIDWAY);
+    of::<R>("base-turn", fault, [0.003, 20.0], "°").spoils(R::on_circle, |rig, chance, size| {
+        let at = rig.some_time(chance);
+        rig.unit_mut().base.turns.push((at, chance.sign() * size.to_radians()));
+    })
 }
 
-/// The base is turned about the vertical, °.
-pub(super) fn base_turns<R: Rig>(rig: &mut R, chance: &mut Chance, size: f64) {
-    let at = rig.some_time(chance);
-    rig.unit_mut().base.turns.push((at, chance.sign() * size.to_radians()));
+/// The encoder slips.
+pub(super) fn encoder_slip<R: Rig>() -> Class {
+    let fault = format!("the encoder slips {}", R::MIDWAY);
+    of::<R>("encoder-slip", fault, [0.003, 90.0], "°").spoils(R::on_circle, |rig, chance, size| {
+        let at = rig.some_time(chance);
+        rig.unit_mut().slips.push((at, chance.sign() * size.to_radians()));
+    })
 }
 
-/// The encoder slips, °.
-pub(super) fn encoder_slips<R: Rig>(rig: &mut R, chance: &mut Chance, size: f64) {
-    let at = rig.some_time(chance);
-    rig.unit_mut().slips.push((at, chance.sign() * size.to_radians()));
-}
-
-/// The encoder errs twice a turn, °.
-pub(super) fn encoder_errs_twice<R: Rig>(rig: &mut R, chance: &mut Chance, size: f64) {
-    rig.unit_mut().instruments.encoder.second =
-        Harmonic { amplitude_rad: size.to_radians(), phase_rad: chance.between(0.0, TAU) };
+/// The base moves slowly.
+pub(super) fn base_moves<R: Rig>() -> [Class; 2] {
+    [
+        of::<R>("base-tilting", "the base tilts slowly", [0.001, 30.0], "°/h").spoils(
+            R::drawn,
+            |rig, chance, size| {
+                let (sine, cosine) = chance.between(0.0, TAU).sin_cos();
+                let rates = [0.0, cosine, sine];
+                rig.unit_mut().base.rates_rad_s = rates.map(|part| part * size * DEGREE_PER_HOUR);
+            },
+        ),
+        of::<R>("base-yawing", "the base turns slowly about the vertical", [3e-4, 3.0], "°/min")
+            .spoils(R::on_circle, |rig, chance, size| {
+                rig.unit_mut().base.rates_rad_s[0] = chance.sign() * size.to_radians() / 60.0;
+            }),
+    ]
 }
 
 /// The encoder counts the other way, under so many degrees of tilt.
-pub(super) fn encoder_reversed<R: Rig>(mut rig: R, size: f64) -> super::Pair {
-    tilt(&mut rig, size);
-    rig.with(|rig, _, _| rig.unit_mut().is_reversed = true, size)
+pub(super) fn reversed<R: Rig>(name: &str, fault: &str, drawn: fn(u64) -> R) -> Class {
+    of::<R>(name, fault, [0.01, 5.0], "° of tilt").drawn(move |seed, size| {
+        let mut rig = drawn(seed);
+        let uphill = 360.0 * Chance::new(seed, R::FAULT).between(0.0, 1.0);
+        let instruments = &mut rig.unit_mut().instruments;
+        *instruments = instruments.leaning(size, uphill);
+        rig.pair(|rig, _| rig.unit_mut().is_reversed = true)
+    })
 }
 
-/// The gyro's bias steps, twice, σ of a mean.
-pub(super) fn bias_steps<R: Rig>(rig: &mut R, chance: &mut Chance, size: f64) {
-    for _ in 0..2 {
-        let at_s = rig.some_time(chance);
+/// The gyro's bias drifts as no key states; `steps` is what is said of two steps.
+pub(super) fn drifts<R: Rig>(steps: &str) -> [Class; 3] {
+    let unit = format!("σ of a {}", R::MEAN);
+    let over = format!("{unit}, over the recording");
+    let [of_steps, of_walk, of_warm_up] = [
+        ("bias-steps", steps, unit.clone()),
+        ("random-walk", "a rate random walk that no key states", over),
+        ("warm-up", "a warm-up that no key states", unit),
+    ]
+    .map(|(name, fault, unit)| of::<R>(name, fault, [0.1, 1000.0], unit));
+    [
+        of_steps.spoils(R::on_circle, |rig, chance, size| {
+            for _ in 0..2 {
+                let at_s = rig.some_time(chance);
+                let rate = chance.sign() * size * rig.mean_sigma();
+                rig.unit_mut().drift.push(Drift::Step { at_s, rate });
+            }
+        }),
+        of_walk.spoils(R::on_circle, |rig, _, size| {
+            let density = size * rig.mean_sigma() / rig.seconds().sqrt();
+            rig.unit_mut().drift.push(Drift::Walk { density });
+        }),
+        of_warm_up.spoils(R::on_circle, |rig, chance, size| {
+            let rate = chance.sign() * size * rig.mean_sigma();
+            let seconds = chance.scaled(0.1, 3.0) * rig.seconds();
+            rig.unit_mut().drift.push(Drift::WarmUp { rate, seconds });
+        }),
+    ]
+}
+
+/// The bias follows the temperature of a rig that becomes [`warm`].
+pub(super) fn temperature<R: Rig>(fault: &str, drawn: fn(u64) -> R) -> Class {
+    let unit = format!("σ of a {}", R::MEAN);
+    of::<R>("temperature", fault, [0.1, 1000.0], unit).spoils(drawn, |rig, chance, size| {
+        let temperature = &rig.unit().instruments.temperature;
+        let rise = temperature.at(rig.seconds()) - temperature.at(0.0);
         let rate = chance.sign() * size * rig.mean_sigma();
-        rig.unit_mut().drift.push(Drift::Step { at_s, rate });
-    }
+        rig.unit_mut().instruments.gyro.temperature_deg_h_c = rate / rise / DEGREE_PER_HOUR;
+    })
 }
 
-/// The gyro's bias walks, σ of a mean over the recording.
-pub(super) fn bias_walks<R: Rig>(rig: &mut R, _: &mut Chance, size: f64) {
-    let density = size * rig.mean_sigma() / rig.seconds().sqrt();
-    rig.unit_mut().drift.push(Drift::Walk { density });
-}
-
-/// The gyro warms up, σ of a mean.
-pub(super) fn gyro_warms_up<R: Rig>(rig: &mut R, chance: &mut Chance, size: f64) {
-    let rate = chance.sign() * size * rig.mean_sigma();
-    let seconds = chance.scaled(0.1, 3.0) * rig.seconds();
-    rig.unit_mut().drift.push(Drift::WarmUp { rate, seconds });
-}
-
-/// A temperature that rises or falls, with a noise in °C.
-pub(super) fn warm<R: Rig>(rig: &mut R, noise_c: f64) {
-    let mut chance = Chance::new(rig.unit().seed, R::FAULT + 2);
+/// A rig whose temperature rises or falls, with a noise in °C.
+pub(super) fn warm<R: Rig>(mut rig: R, noise_c: f64) -> R {
+    let mut chance = Chance::new(rig.seed(), R::FAULT + 2);
     rig.unit_mut().instruments.temperature = TemperatureConfiguration {
         rise_c: chance.sign() * chance.scaled(1.0, 20.0),
         time_constant_s: chance.scaled(0.1, 3.0) * rig.seconds(),
         noise_c,
         ..TemperatureConfiguration::default()
     };
+    rig
 }
 
-/// The bias follows the temperature, σ of a mean over the recording.
-pub(super) fn bias_follows_temperature<R: Rig>(rig: &mut R, chance: &mut Chance, size: f64) {
-    let temperature = &rig.unit().instruments.temperature;
-    let rise = temperature.at(rig.seconds()) - temperature.at(0.0);
-    let rate = chance.sign() * size * rig.mean_sigma();
-    rig.unit_mut().instruments.gyro.temperature_deg_h_c = rate / rise / DEGREE_PER_HOUR;
+/// What becomes of the columns of gyro and encoder: late by these times, s, and clipped, as is said.
+pub(super) fn columns<R: Rig>(late_s: [f64; 2], clipped: &str) -> [Class; 5] {
+    [
+        of::<R>("gyro-lag", "the gyro lags", [0.01, 10.0], "s")
+            .spoils(R::drawn, |rig, _, size| rig.unit_mut().gyro.lag_s = size),
+        of::<R>("gyro-late", "the gyro's column is late", late_s, "s")
+            .spoils(R::drawn, |rig, _, size| rig.unit_mut().gyro.late_s = size),
+        of::<R>("gyro-coarse", "the gyro's column has coarse steps", [0.1, 100.0], "σ of a sample")
+            .spoils(R::drawn, |rig, _, size| {
+                rig.unit_mut().gyro.step = size * rig.sample_sigma();
+            }),
+        clips::<R>(clipped),
+        of::<R>("encoder-second-harmonic", "the encoder errs twice a turn", [0.003, 3.0], "°")
+            .spoils(R::drawn, |rig, chance, size| {
+                let (amplitude_rad, phase_rad) = (size.to_radians(), chance.between(0.0, TAU));
+                rig.unit_mut().instruments.encoder.second = Harmonic { amplitude_rad, phase_rad };
+            }),
+    ]
 }
 
-/// The gyro lags, s.
-pub(super) fn gyro_lags<R: Rig>(rig: &mut R, _: &mut Chance, size: f64) {
-    rig.unit_mut().gyro.lag_s = size;
-}
-
-/// The gyro's column is late, s.
-pub(super) fn gyro_is_late<R: Rig>(rig: &mut R, _: &mut Chance, size: f64) {
-    rig.unit_mut().gyro.late_s = size;
-}
-
-/// The gyro's column has coarse steps, σ of a sample.
-pub(super) fn gyro_is_coarse<R: Rig>(rig: &mut R, _: &mut Chance, size: f64) {
-    rig.unit_mut().gyro.step = size * rig.sample_sigma();
-}
-
-/// The gyro's column is clipped, by parts of the horizontal Earth rate below the greatest of these rates, rad/s.
-pub(super) fn gyro_clips<R: Rig>(rig: &mut R, size: f64, rates: impl Iterator<Item = f64>) {
-    let latitude = rig.unit().instruments.latitude_deg.to_radians();
-    let earth = latitude.cos() * 15.041 * DEGREE_PER_HOUR;
-    rig.unit_mut().gyro.limit = Some(rates.fold(f64::MIN, f64::max) - size * earth);
-}
-
-/// A tilt by so many degrees, any way.
-pub(super) fn tilt<R: Rig>(rig: &mut R, size: f64) {
-    let uphill = 360.0 * Chance::new(rig.unit().seed, R::FAULT).between(0.0, 1.0);
-    let instruments = &mut rig.unit_mut().instruments;
-    *instruments = instruments.leaning(size, uphill);
+/// The gyro's column is clipped, by parts of the horizontal Earth rate below the greatest rate.
+fn clips<R: Rig>(fault: &str) -> Class {
+    let unit = "of the horizontal Earth rate, below the greatest rate";
+    of::<R>("gyro-clipped", fault, [0.01, 10.0], unit).spoils(R::drawn, |rig, _, size| {
+        let latitude = rig.unit().instruments.latitude_deg.to_radians();
+        let earth = latitude.cos() * 15.041 * DEGREE_PER_HOUR;
+        let greatest = rig.rates().into_iter().fold(f64::MIN, f64::max);
+        rig.unit_mut().gyro.limit = Some(greatest - size * earth);
+    })
 }
 
 /// Two of the accelerometer's axes are flipped together or turned by 90°, under so many degrees of tilt. As far as
 /// the Earth-rate ratio tells: what the wrong axes add lies along the Earth rate.
-pub(super) fn accelerometer_axes<R: Rig>(mut rig: R, size: f64) -> super::Pair {
-    let mut chance = Chance::new(rig.unit().seed, R::FAULT);
-    let [flipped, right, left] = TURNED;
-    let (axes, turn) = chance.one_of(&[(flipped, 0.0), (right, -45.0), (left, 45.0)]);
-    let aside = chance.sign() * chance.between(25.0, 40.0);
-    let unit = rig.unit_mut();
-    let along = -unit.instruments.azimuth_deg + turn + aside;
-    unit.instruments = unit.instruments.leaning(size, along);
-    let scale_sigma = chance.scaled(1e-5, 1e-4);
-    unit.instruments.gyro.scale_sigma = scale_sigma;
-    unit.header.gyro_scale_sigma = Some(scale_sigma);
-    rig.with(|rig, _, _| rig.unit_mut().axes = axes, size)
+pub(super) fn accelerometer_axes<R: Rig>(drawn: fn(u64) -> R) -> Class {
+    let fault = "two of the accelerometer's axes are flipped together or turned by 90°";
+    let fault = of::<R>("accelerometer-axes", fault, [0.01, 5.0], "° of tilt");
+    fault.drawn(move |seed, size| {
+        let mut rig = drawn(seed);
+        let mut chance = Chance::new(seed, R::FAULT);
+        let [flipped, right, left] = TURNED;
+        let (axes, turn) = chance.one_of(&[(flipped, 0.0), (right, -45.0), (left, 45.0)]);
+        let aside = chance.sign() * chance.between(25.0, 40.0);
+        let unit = rig.unit_mut();
+        let along = -unit.instruments.azimuth_deg + turn + aside;
+        unit.instruments = unit.instruments.leaning(size, along);
+        let scale_sigma = chance.scaled(1e-5, 1e-4);
+        unit.instruments.gyro.scale_sigma = scale_sigma;
+        unit.header.gyro_scale_sigma = Some(scale_sigma);
+        rig.pair(|rig, _| rig.unit_mut().axes = axes)
+    })
 }
 
 /// The header's rate is not that of the times, by a part of it.
-pub(super) fn period_is_wrong<R: Rig>(rig: &mut R, chance: &mut Chance, size: f64) {
-    let wrong = if chance.happens(0.5) { 1.0 + size } else { 1.0 / (1.0 + size) };
-    rig.unit_mut().header.rate_hz = Some(R::RATE_HZ * wrong);
+pub(super) fn period<R: Rig>() -> Class {
+    let fault = "the header's rate is not that of the times";
+    let fault = of::<R>("period", fault, [0.0001, 2.0], "of the rate");
+    fault.spoils(R::drawn, |rig, chance, size| {
+        rig.unit_mut().header.rate_hz = Some(R::RATE_HZ * chance.factor_or_inverse(1.0 + size));
+    })
 }
 
-/// Says nothing of the g-sensitivity.
-pub(super) fn leave_g_sensitivity_unsaid<R: Rig>(rig: &mut R) {
-    let header = &mut rig.unit_mut().header;
-    header.g_sensitivity_deg_h_g = None;
-    header.g_sensitivity_sigma_deg_h_g = None;
+/// What no key states.
+pub(super) fn unstated<R: Rig>() -> [Class; 3] {
+    let kappa_unit = "times 50 000 °/h/g for each (°/√h)² of N";
+    [
+        of::<R>(
+            "unstated-g-sensitivity",
+            "a g-sensitivity that no key states",
+            [0.01, 4.0],
+            kappa_unit,
+        )
+        .spoils(
+            |seed| silent::<R>(seed, leave_g_sensitivity_unsaid),
+            |rig, chance, size| {
+                let (sine, cosine) = chance.between(0.0, TAU).sin_cos();
+                let gyro = &mut rig.unit_mut().instruments.gyro;
+                let size = (size * 50_000.0 * gyro.n_deg_sqrt_h * gyro.n_deg_sqrt_h).min(212.0);
+                gyro.g_sensitivity_deg_h_g = [size * cosine, size * sine];
+            },
+        ),
+        of::<R>("unstated-scale", "a scale error that no key states", [0.0001, 0.05], "").spoils(
+            |seed| silent::<R>(seed, leave_scale_unsaid),
+            |rig, chance, size| {
+                rig.unit_mut().instruments.gyro.scale_error = chance.sign() * size;
+            },
+        ),
+        of::<R>(
+            "unstated-accelerometer-bias",
+            "accelerometer biases that no key states",
+            [0.1, 100.0],
+            "mg",
+        )
+        .spoils(
+            |seed| silent::<R>(seed, leave_force_bias_unsaid),
+            |rig, chance, size| {
+                rig.unit_mut().instruments.accelerometer.bias_m_s2 =
+                    [0, 1, 2].map(|_| chance.sign() * size * MILLI_G);
+            },
+        ),
+    ]
 }
 
-/// A g-sensitivity, times 50 000 °/h/g for each (°/√h)² of N.
-pub(super) fn g_sensitivity<R: Rig>(rig: &mut R, chance: &mut Chance, size: f64) {
-    let (sine, cosine) = chance.between(0.0, TAU).sin_cos();
-    let gyro = &mut rig.unit_mut().instruments.gyro;
-    let size = (size * 50_000.0 * gyro.n_deg_sqrt_h * gyro.n_deg_sqrt_h).min(212.0);
-    gyro.g_sensitivity_deg_h_g = [size * cosine, size * sine];
+/// A drawn rig of which something is left unsaid.
+fn silent<R: Rig>(seed: u64, leave: fn(&mut Unit)) -> R {
+    let mut rig = R::drawn(seed);
+    leave(rig.unit_mut());
+    rig
+}
+
+fn leave_g_sensitivity_unsaid(unit: &mut Unit) {
+    unit.header.g_sensitivity_deg_h_g = None;
+    unit.header.g_sensitivity_sigma_deg_h_g = None;
 }
 
 /// Says nothing of the gyro's scale, which is exact.
-pub(super) fn leave_scale_unsaid<R: Rig>(rig: &mut R) {
-    rig.unit_mut().header.gyro_scale_sigma = None;
-    rig.unit_mut().instruments.gyro.scale_sigma = 0.0;
-}
-
-/// A scale error.
-pub(super) fn scale<R: Rig>(rig: &mut R, chance: &mut Chance, size: f64) {
-    rig.unit_mut().instruments.gyro.scale_error = chance.sign() * size;
+fn leave_scale_unsaid(unit: &mut Unit) {
+    unit.header.gyro_scale_sigma = None;
+    unit.instruments.gyro.scale_sigma = 0.0;
 }
 
 /// Says nothing of the accelerometer's biases, which are none.
-pub(super) fn leave_accelerometer_bias_unsaid<R: Rig>(rig: &mut R) {
-    rig.unit_mut().header.accelerometer_bias_m_s2 = None;
-    rig.unit_mut().instruments.accelerometer.bias_sigma_m_s2 = 0.0;
-}
-
-/// Biases of the accelerometer, mg.
-pub(super) fn accelerometer_bias<R: Rig>(rig: &mut R, chance: &mut Chance, size: f64) {
-    rig.unit_mut().instruments.accelerometer.bias_m_s2 =
-        [0, 1, 2].map(|_| chance.sign() * size * MILLI_G);
+fn leave_force_bias_unsaid(unit: &mut Unit) {
+    unit.header.accelerometer_bias_m_s2 = None;
+    unit.instruments.accelerometer.bias_sigma_m_s2 = 0.0;
 }

@@ -7,139 +7,106 @@
 
 mod axes;
 mod chance;
+mod class;
 mod faults;
 mod gyro;
-pub mod spin;
-pub mod stage;
-pub mod turning;
+mod spin;
+mod stage;
+mod turning;
 mod unit;
-pub mod vehicle;
+mod vehicle;
 
-use serde::Serialize;
-
-use super::over;
-use super::statistics::{Answer, Precision};
 use hal_mock::noise::Generator;
+use serde::Serialize;
+use serde_json::json;
 
-/// Error in σ beyond which an answer is wrong.
-pub const WRONG_SIGMAS: f64 = 5.0;
+use super::statistics::{Answer, Precision};
+use super::{Asked, Campaign, Done, Tick, over, unless};
+use crate::output::campaign;
+
+pub use class::{Class, Fault, Pair, WRONG_SIGMAS};
+
+/// Every class of faults in recordings, or one, and healthy recordings beside all.
+pub(super) const CAMPAIGN: Campaign = Campaign {
+    name: "disturbed",
+    meaning: "Recordings with faults of any severity: what gets past, and what is refused without need",
+    runs: 200,
+    takes: &["class"],
+    steps: "recordings",
+    count: |asked| chosen(asked).count() * asked.runs + healthy_runs(asked),
+    run: |asked, tick| Ok(run(asked, tick)),
+};
+
+/// A result where each class passes.
+fn run(asked: &Asked, tick: Tick<'_>) -> Done {
+    let all = asked.class.is_none().then(|| healthy(healthy_runs(asked), &tick));
+    let healthy = all.unwrap_or_default();
+    let rows: Vec<_> = chosen(asked).map(|class| row(&class, asked.runs, &tick)).collect();
+    let reason = "a class of faults gets past, or is refused without need";
+    Done {
+        report: campaign::disturbed::report(&healthy, &rows),
+        refusal: unless(rows.iter().all(|row| row.is_met), reason),
+        object: json!({ "healthy": healthy, "classes": rows }),
+    }
+}
+
+/// The classes that are asked for.
+fn chosen(asked: &Asked) -> impl Iterator<Item = Class> {
+    classes().filter(|of| asked.class.as_ref().is_none_or(|name| of.fault.name == *name))
+}
+
+/// Healthy recordings beside all classes.
+fn healthy_runs(asked: &Asked) -> usize {
+    if asked.class.is_none() { HEALTHY * asked.runs } else { 0 }
+}
+
+/// Healthy recordings for each run of a class.
+const HEALTHY: usize = 15;
 /// Residuals below which σ rests on few.
 pub const FEW_RESIDUALS: usize = 10;
 /// Part of the answers whose σ rests on few residuals that may be wrong.
 const WRONG_OF_FEW: f64 = 0.01;
 /// Part of the runs whose fault does no harm that must be answered.
 const ANSWERED_OF_HARMLESS: f64 = 0.9;
-/// How many times the σ of the healthy run such an answer may have.
-const GREATEST_SIGMA: f64 = 3.0;
 /// The random stream of a severity: none of those that a world draws from.
 const SEVERITY: u64 = 2_000;
 
-/// One run, with its fault and without.
-#[derive(Clone, Debug)]
-pub struct Pair {
-    /// What the healthy recording gave, or why it gave nothing.
-    pub healthy: Result<Answer, String>,
-    /// The same with the fault.
-    pub faulty: Result<Answer, String>,
-    /// Error of the fault's recording when nothing is checked, °; none where even that has no answer.
-    pub unchecked_deg: Option<f64>,
-    /// By how much a slow motion of the base may put the fault's answer off unseen, as is told beside it, °.
-    pub untold_deg: f64,
-    /// Whether σ rests on fewer than [`FEW_RESIDUALS`] residuals.
-    pub is_few: bool,
-}
-
-impl Pair {
-    /// Whether the fault moves the answer by less than the healthy run's σ.
-    fn is_harmless(&self) -> bool {
-        let (Ok(healthy), Some(unchecked)) = (&self.healthy, self.unchecked_deg) else {
-            return false;
-        };
-        (unchecked - healthy.error).abs() <= healthy.sigma
-    }
-
-    /// Error of the fault's answer in its own σ; infinite where either is no number.
-    fn sigmas(&self) -> Option<f64> {
-        let sigmas = self.faulty.as_ref().ok().map(|answer| (answer.error / answer.sigma).abs());
-        sigmas.map(|sigmas| if sigmas.is_nan() { f64::INFINITY } else { sigmas })
-    }
-
-    /// Whether the fault's answer is wrong, and by how much it may be is told beside it.
-    fn is_told(&self) -> bool {
-        let is_within = |answer: &Answer| answer.error.abs() <= self.untold_deg;
-        self.is_wrong() && self.faulty.as_ref().is_ok_and(is_within)
-    }
-
-    /// Whether the fault's answer is beyond [`WRONG_SIGMAS`].
-    fn is_wrong(&self) -> bool {
-        self.sigmas().is_some_and(|sigmas| sigmas > WRONG_SIGMAS)
-    }
-
-    /// Whether the fault's run was answered about as well as the healthy one.
-    fn is_answered_well(&self) -> bool {
-        match (&self.healthy, &self.faulty) {
-            (Ok(healthy), Ok(faulty)) => faulty.sigma <= GREATEST_SIGMA * healthy.sigma,
-            _ => false,
-        }
-    }
-}
-
-/// A fault of any severity.
+/// What is drawn with and without faults.
 #[derive(Clone, Copy)]
-pub struct Class {
-    /// Its name on the command line.
+pub struct Platform {
+    /// Its name.
     pub name: &'static str,
-    /// What happens.
-    pub fault: &'static str,
-    /// From harmless to gross; severities are drawn evenly in their logarithm.
-    pub severity: [f64; 2],
-    /// Unit of the severity.
-    pub unit: &'static str,
-    /// Part of the answers that may be wrong; zero but where the data cannot tell.
-    pub wrong_allowed: f64,
-    /// The run of a seed and a severity.
-    pub draw: fn(u64, f64) -> Pair,
+    /// The answer of a seed's healthy recording, or why there is none.
+    pub healthy: fn(u64) -> Result<Answer, String>,
+    /// Its classes of faults.
+    pub classes: fn() -> Vec<Class>,
 }
 
-/// Every class, method by method.
-pub fn classes() -> impl Iterator<Item = &'static Class> {
-    let of_carriers = stage::CLASSES.iter().chain(turning::CLASSES).chain(vehicle::CLASSES);
-    of_carriers.chain(spin::CLASSES)
-}
+/// Every platform.
+pub const PLATFORMS: [Platform; 4] =
+    [stage::PLATFORM, turning::PLATFORM, vehicle::PLATFORM, spin::PLATFORM];
 
-/// Healthy recordings of a method.
-#[derive(Clone, Copy)]
-pub struct Healthy {
-    /// The method.
-    pub name: &'static str,
-    /// The answer of a seed's run.
-    pub draw: fn(u64) -> Result<Answer, String>,
+/// Every class, platform by platform.
+pub fn classes() -> impl Iterator<Item = Class> {
+    PLATFORMS.iter().flat_map(|platform| (platform.classes)())
 }
-
-/// The methods whose healthy recordings are drawn.
-pub const HEALTHY: [Healthy; 4] = [
-    Healthy { name: "stage", draw: stage::healthy },
-    Healthy { name: "turning", draw: turning::healthy },
-    Healthy { name: "vehicle", draw: vehicle::healthy },
-    Healthy { name: "spin", draw: spin::healthy },
-];
 
 /// What healthy recordings gave.
 #[derive(Clone, Debug, Serialize)]
 pub struct HealthyRow {
-    /// The method.
+    /// The platform.
     pub method: &'static str,
     /// Errors against σ and limit.
     #[serde(flatten)]
     pub precision: Precision,
 }
 
-/// Draws healthy recordings of every method, so many in all; the last row has all of them.
+/// Draws healthy recordings of every platform, so many in all; the last row has all of them.
 pub fn healthy(runs: usize, tick: &(impl Fn() + Sync)) -> Vec<HealthyRow> {
     let mut all = Vec::new();
     let mut rows: Vec<HealthyRow> = Vec::new();
-    for Healthy { name, draw } in HEALTHY {
-        let answers = over(runs / HEALTHY.len(), tick, draw);
+    for Platform { name, healthy, .. } in PLATFORMS {
+        let answers = over(runs / PLATFORMS.len(), tick, healthy);
         rows.push(HealthyRow { method: name, precision: Precision::of(&answers) });
         all.extend(answers);
     }
@@ -150,14 +117,9 @@ pub fn healthy(runs: usize, tick: &(impl Fn() + Sync)) -> Vec<HealthyRow> {
 /// What became of a class.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
-    /// The class.
-    pub class: &'static str,
-    /// What happens in it.
-    pub fault: &'static str,
-    /// The severities, and their unit.
-    pub severity: [f64; 2],
-    /// Unit of the severities.
-    pub unit: &'static str,
+    /// The class's fault.
+    #[serde(flatten)]
+    pub fault: Fault,
     /// Runs.
     pub runs: usize,
     /// Runs that were answered with the fault.
@@ -186,66 +148,60 @@ pub struct Row {
     pub is_met: bool,
 }
 
-/// The severity of a seed's run.
-fn severity(class: &Class, seed: u64) -> f64 {
-    let [low, high] = class.severity;
-    low * (high / low).powf(Generator::stream(seed, SEVERITY).uniform())
-}
-
 /// Draws a class with seeds 1 to `runs`; `tick` after each.
 #[must_use]
-pub fn row(class: &'static Class, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
-    let pairs = over(runs, tick, |seed| {
-        let severity = severity(class, seed);
-        (seed, severity, (class.draw)(seed, severity))
+pub fn row(class: &Class, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
+    let runs = over(runs, tick, |seed| {
+        let [low, high] = class.fault.severity;
+        let severity = low * (high / low).powf(Generator::stream(seed, SEVERITY).uniform());
+        Run { seed, severity, pair: (class.draw)(seed, severity) }
     });
-    summary(class, &pairs)
+    summary(class, &runs)
 }
 
-fn summary(class: &'static Class, pairs: &[(u64, f64, Pair)]) -> Row {
-    let count = |of: &dyn Fn(&Pair) -> bool| pairs.iter().filter(|(.., pair)| of(pair)).count();
-    let answered = count(&|pair| pair.faulty.is_ok());
+/// One run of a class.
+struct Run {
+    seed: u64,
+    severity: f64,
+    pair: Pair,
+}
+
+fn summary(class: &Class, all: &[Run]) -> Row {
+    let such = |is: fn(&Pair) -> bool| all.iter().filter(move |run| is(&run.pair));
+    let count = |is: fn(&Pair) -> bool| such(is).count();
+    let answered = count(|pair| pair.faulty.answer.is_ok());
     let (wrong, wrong_of_few) =
-        (count(&Pair::is_wrong), count(&|pair| pair.is_few && pair.is_wrong()));
-    let harmless = count(&Pair::is_harmless);
-    let harmless_answered = count(&|pair| pair.is_harmless() && pair.is_answered_well());
-    let worst_sigmas = pairs.iter().filter_map(|(.., pair)| pair.sigmas()).fold(0.0, f64::max);
-    let wrong_runs = pairs.iter().filter(|(.., pair)| pair.is_wrong());
-    let wrong_runs = wrong_runs
-        .filter_map(|(seed, severity, pair)| Some((*seed, *severity, pair.sigmas()?)))
-        .collect();
-    let lost = |pair: &Pair| pair.is_harmless() && !pair.is_answered_well();
-    let lost_runs = pairs.iter().filter(|(.., pair)| lost(pair));
-    let lost_runs = lost_runs.map(|(seed, severity, _)| (*seed, *severity)).collect();
-    let allowed = |part: f64, of: usize| (part * of as f64).floor() as usize;
-    let is_right = wrong - wrong_of_few <= allowed(class.wrong_allowed, answered)
-        && wrong <= allowed(class.wrong_allowed.max(WRONG_OF_FEW), answered);
+        (count(Pair::is_wrong), count(|pair| pair.is_few && pair.is_wrong()));
+    let (harmless, lost) = (count(Pair::is_harmless), count(Pair::is_lost));
+    let harmless_answered = harmless - lost;
+    let allowed = |part: f64| (part * answered as f64).floor() as usize;
+    let is_right = wrong - wrong_of_few <= allowed(class.wrong_allowed)
+        && wrong <= allowed(class.wrong_allowed.max(WRONG_OF_FEW));
     let is_useful = harmless_answered as f64 >= ANSWERED_OF_HARMLESS * harmless as f64;
     Row {
-        class: class.name,
-        fault: class.fault,
-        severity: class.severity,
-        unit: class.unit,
-        runs: pairs.len(),
+        fault: class.fault.clone(),
+        runs: all.len(),
         answered,
         wrong,
         wrong_of_few,
-        wrong_told: count(&Pair::is_told),
-        worst_sigmas,
-        wrong_runs,
-        lost_runs,
+        wrong_told: count(Pair::is_told),
+        worst_sigmas: all.iter().filter_map(|run| run.pair.sigmas()).fold(0.0, f64::max),
+        wrong_runs: such(Pair::is_wrong)
+            .filter_map(|run| Some((run.seed, run.severity, run.pair.sigmas()?)))
+            .collect(),
+        lost_runs: such(Pair::is_lost).map(|run| (run.seed, run.severity)).collect(),
         harmless,
         harmless_answered,
-        healthy_refused: count(&|pair| pair.healthy.is_err()),
-        reasons: reasons(pairs),
+        healthy_refused: count(|pair| pair.healthy.is_err()),
+        reasons: reasons(all),
         is_met: is_right && is_useful,
     }
 }
 
 /// Why runs with the fault were refused, the commonest first.
-fn reasons(pairs: &[(u64, f64, Pair)]) -> Vec<(String, usize)> {
+fn reasons(all: &[Run]) -> Vec<(String, usize)> {
     let mut counted: Vec<(String, usize)> = Vec::new();
-    for reason in pairs.iter().filter_map(|(.., pair)| pair.faulty.as_ref().err()) {
+    for reason in all.iter().filter_map(|run| run.pair.faulty.answer.as_ref().err()) {
         let words = without_numbers(reason);
         match counted.iter_mut().find(|(other, _)| *other == words) {
             Some((_, count)) => *count += 1,

@@ -10,14 +10,12 @@ use hal_mock::instruments::{BaseMotion, InstrumentsConfiguration};
 use hal_mock::noise::Generator;
 use hal_mock::stage::EncoderConfiguration;
 
-use super::Pair;
 use super::axes::{Axes, UPRIGHT};
 use super::chance::Chance;
+use super::class::Subject;
 use super::gyro::{Column, Drift, Drifting, GyroFault};
-use crate::campaign::statistics::Answer;
-use crate::output::{azimuth_error, degrees};
+use crate::output::degrees;
 use crate::recording::Header;
-use crate::untold::unseen::Unseen;
 
 /// Step of the encoder: 21 bit.
 const ENCODER_STEP_RAD: f64 = TAU / 2_097_152.0;
@@ -186,13 +184,23 @@ fn stepped(steps: &[(f64, f64)], time_s: f64) -> f64 {
 }
 
 /// What turns an instrument.
-pub(super) trait Rig: Clone {
-    /// What aligns it.
-    type Session;
-    /// The random stream of its faults.
-    const FAULT: u64;
+pub(super) trait Rig: Subject + 'static {
+    /// What the names of its classes begin with.
+    const NAME: &'static str;
+    /// What a mean rate is of.
+    const MEAN: &'static str;
+    /// When something happens in the middle of a recording.
+    const MIDWAY: &'static str;
     /// Samples a second.
     const RATE_HZ: f64;
+
+    /// A healthy one at a drawn place; what it is told of itself is true.
+    fn drawn(seed: u64) -> Self;
+
+    /// One that goes all around: on an arc a drift in step with the turn looks like the Earth.
+    fn on_circle(seed: u64) -> Self {
+        Self::drawn(seed)
+    }
 
     fn unit(&self) -> &Unit;
     fn unit_mut(&mut self) -> &mut Unit;
@@ -202,18 +210,8 @@ pub(super) trait Rig: Clone {
     fn some_time(&self, chance: &mut Chance) -> f64;
     /// 1σ of one mean rate, of a dwell or a turn, from white noise, rad/s.
     fn mean_sigma(&self) -> f64;
-    /// Its answer, and the session, where there is one.
-    fn align(&self) -> (Result<Answer, String>, Option<Self::Session>);
-    /// The azimuth, °, when nothing is checked.
-    fn unchecked_deg(session: &Self::Session) -> Option<f64>;
-
-    /// The slow motions of the base that may put its azimuth off unseen.
-    fn unseen(session: &Self::Session) -> Vec<Unseen>;
-
-    /// Whether σ rests on few residuals.
-    fn is_few(&self) -> bool {
-        false
-    }
+    /// The rates that its gyro shows at its usual speed, rad/s.
+    fn rates(&self) -> Vec<f64>;
 
     /// True azimuth at the end, °.
     fn truth_deg(&self) -> f64 {
@@ -228,22 +226,8 @@ pub(super) trait Rig: Clone {
 
     /// Its drift and its gyro's column at work.
     fn at_work(&self) -> (Drifting, Column) {
-        let walk = Generator::stream(self.unit().seed, Self::FAULT + 1);
+        let walk = Generator::stream(self.seed(), Self::FAULT + 1);
         let drifting = Drifting::new(Self::RATE_HZ, walk);
         (drifting, Column::new(Self::RATE_HZ, &self.unit().gyro))
-    }
-
-    /// This rig with a fault of a size, and without.
-    fn with(&self, fault: impl FnOnce(&mut Self, &mut Chance, f64), size: f64) -> Pair {
-        let (healthy, _) = self.align();
-        let mut spoilt = self.clone();
-        fault(&mut spoilt, &mut Chance::new(self.unit().seed, Self::FAULT), size);
-        let (faulty, session) = spoilt.align();
-        let unchecked = session.as_ref().and_then(Self::unchecked_deg);
-        let unchecked_deg = unchecked.map(|azimuth| azimuth_error(azimuth, spoilt.truth_deg()));
-        let unseen = session.as_ref().map(Self::unseen).unwrap_or_default();
-        let untold_deg =
-            unseen.iter().map(|unseen| unseen.shift().to_degrees()).fold(0.0, f64::max);
-        Pair { healthy, faulty, unchecked_deg, untold_deg, is_few: self.is_few() }
     }
 }

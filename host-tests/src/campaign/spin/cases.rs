@@ -27,38 +27,20 @@ const STEADY: &[(f64, f64)] = &[(0.0, 30.0), (1.0, 35.0)];
 /// A lift that is gone for 0.3 s.
 const FADING: &[(f64, f64)] = &[(0.5, 30.0), (0.52, 0.0), (0.82, 0.0), (0.84, 30.0)];
 
+/// Flights with so much noise in the accelerometers.
+const fn noisy(name: &'static str, noise_m_s2: f64) -> Case {
+    Case { name, seconds: 1.0, lift_m_s2: STEADY, noise_m_s2, gyro_n_deg_sqrt_h: 0.0, held_s: None }
+}
+
 const CASES: [Case; COUNT] = [
+    noisy("noise of 0.01 m/s²", 0.01),
+    noisy("noise of 1.5 m/s²", 1.5),
+    Case { gyro_n_deg_sqrt_h: 10.0, ..noisy("the same, and a gyro of 10 °/√h", 1.5) },
     Case {
-        name: "noise of 0.01 m/s²",
-        seconds: 1.0,
-        lift_m_s2: STEADY,
-        noise_m_s2: 0.01,
-        gyro_n_deg_sqrt_h: 0.0,
-        held_s: None,
-    },
-    Case {
-        name: "noise of 1.5 m/s²",
-        seconds: 1.0,
-        lift_m_s2: STEADY,
-        noise_m_s2: 1.5,
-        gyro_n_deg_sqrt_h: 0.0,
-        held_s: None,
-    },
-    Case {
-        name: "the same, and a gyro of 10 °/√h",
-        seconds: 1.0,
-        lift_m_s2: STEADY,
-        noise_m_s2: 1.5,
-        gyro_n_deg_sqrt_h: 10.0,
-        held_s: None,
-    },
-    Case {
-        name: "noise of 1.5 m/s², no lift for 0.3 s",
         seconds: 1.2,
         lift_m_s2: FADING,
-        noise_m_s2: 1.5,
-        gyro_n_deg_sqrt_h: 0.0,
         held_s: Some(0.82),
+        ..noisy("noise of 1.5 m/s², no lift for 0.3 s", 1.5)
     },
 ];
 

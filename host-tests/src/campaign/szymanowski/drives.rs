@@ -31,21 +31,14 @@ struct Case {
     knows_displacement: bool,
 }
 
+/// Two stops of which all is told.
+const TWO: Case = Case { name: "two stops", stops: 2, is_stated: true, knows_displacement: true };
+
 const CASES: [Case; COUNT] = [
-    Case { name: "two stops", stops: 2, is_stated: true, knows_displacement: true },
-    Case {
-        name: "two stops, found by the criteria",
-        stops: 2,
-        is_stated: false,
-        knows_displacement: true,
-    },
-    Case {
-        name: "two stops, displacement not known",
-        stops: 2,
-        is_stated: true,
-        knows_displacement: false,
-    },
-    Case { name: "three stops", stops: 3, is_stated: true, knows_displacement: true },
+    TWO,
+    Case { name: "two stops, found by the criteria", is_stated: false, ..TWO },
+    Case { name: "two stops, displacement not known", knows_displacement: false, ..TWO },
+    Case { name: "three stops", stops: 3, ..TWO },
 ];
 
 /// How many rows there are.
@@ -81,21 +74,13 @@ pub struct Row {
 }
 
 /// One drive, °.
-#[derive(Clone, Debug)]
 struct Run {
     averaging: f64,
-    plain: Option<Plain>,
+    /// Error of the paper's method, its σ, and by how much Brent's search and the Euler form differ.
+    plain: Option<[f64; 4]>,
     /// Errors of the biases over their σ, and those σ, °/h.
     biases: Option<[[f64; 2]; 3]>,
     answer: Result<Answer, Refusal>,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Plain {
-    error: f64,
-    sigma: f64,
-    brent: f64,
-    euler: f64,
 }
 
 /// Drives each case with seeds 1 to `runs`; `tick` after each.
@@ -110,13 +95,10 @@ pub fn rows(runs: usize, tick: impl Fn() + Sync) -> Vec<Row> {
 /// Where the index is not below [`COUNT`].
 #[must_use]
 pub fn row(case: usize, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
-    drive(CASES[case], runs, tick)
-}
-
-fn drive(case: Case, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
+    let case = CASES[case];
     let runs = over(runs, tick, |seed| case.run(seed));
-    let plain = |of: fn(&Plain) -> f64| -> Vec<f64> {
-        runs.iter().filter_map(|run| run.plain.as_ref().map(of)).collect()
+    let plain = |part: usize| -> Vec<f64> {
+        runs.iter().filter_map(|run| Some(run.plain?[part])).collect()
     };
     let biases: Vec<[f64; 2]> = runs.iter().filter_map(|run| run.biases).flatten().collect();
     let of_biases = |part: usize| {
@@ -129,10 +111,10 @@ fn drive(case: Case, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
         case: case.name,
         stops: case.stops,
         averaging_rms_deg: rms(&averaging),
-        plain_rms_deg: rms(&plain(|plain| plain.error)),
-        plain_sigma_deg: rms(&plain(|plain| plain.sigma)),
-        brent_difference_deg: greatest(&plain(|plain| plain.brent)),
-        euler_difference_deg: greatest(&plain(|plain| plain.euler)),
+        plain_rms_deg: rms(&plain(0)),
+        plain_sigma_deg: rms(&plain(1)),
+        brent_difference_deg: greatest(&plain(2)),
+        euler_difference_deg: greatest(&plain(3)),
         bias_ratio: of_biases(0),
         bias_sigma_dph: of_biases(1),
         precision: Precision::of(&runs.iter().map(|run| run.answer).collect::<Vec<_>>()),
@@ -160,7 +142,7 @@ impl Run {
         let found = day.conclusion.found.as_ref();
         Self {
             averaging,
-            plain: found.map(|found| Plain::of(&found.plain, day.start)),
+            plain: found.map(|found| plainly(&found.plain, day.start)),
             biases: found.filter(|found| found.are_biases_observed).map(|found| {
                 std::array::from_fn(|axis| {
                     let sigma = found.bias_sigmas[axis];
@@ -172,14 +154,10 @@ impl Run {
     }
 }
 
-impl Plain {
-    fn of(plain: &plain::Plain, start: f64) -> Self {
-        let from_closed = |azimuth: f64| azimuth_error(degrees(azimuth), degrees(plain.azimuth));
-        Self {
-            error: azimuth_error(degrees(plain.azimuth), degrees(start)),
-            sigma: degrees(plain.sigma),
-            brent: from_closed(plain.angle.at),
-            euler: from_closed(plain.euler.at),
-        }
-    }
+/// Error and σ of the paper's method at the start, and by how much its other forms differ from the closed one, °.
+fn plainly(plain: &plain::Plain, start: f64) -> [f64; 4] {
+    let [error, brent, euler] =
+        [(plain.azimuth, start), (plain.angle.at, plain.azimuth), (plain.euler.at, plain.azimuth)]
+            .map(|(azimuth, from)| azimuth_error(degrees(azimuth), degrees(from)));
+    [error, degrees(plain.sigma), brent, euler]
 }

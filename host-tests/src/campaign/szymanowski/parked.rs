@@ -30,16 +30,18 @@ struct Case {
     has_doors: bool,
 }
 
+/// Vehicles with good gyros that nothing moves.
+const QUIET: Case = Case { name: "quiet", has_good_gyros: true, sways: false, has_doors: false };
+
 const CASES: [Case; COUNT] = [
     Case {
         name: "quiet, gyros of 1 °/h, as long as a drive and its stops",
         has_good_gyros: false,
-        sways: false,
-        has_doors: false,
+        ..QUIET
     },
-    Case { name: "quiet", has_good_gyros: true, sways: false, has_doors: false },
-    Case { name: "swaying", has_good_gyros: true, sways: true, has_doors: false },
-    Case { name: "swaying, doors slammed", has_good_gyros: true, sways: true, has_doors: true },
+    QUIET,
+    Case { name: "swaying", sways: true, ..QUIET },
+    Case { name: "swaying, doors slammed", sways: true, has_doors: true, ..QUIET },
 ];
 
 /// How many rows there are.
@@ -69,10 +71,7 @@ pub fn rows(runs: usize, tick: impl Fn() + Sync) -> Vec<Row> {
 /// Where the index is not below [`COUNT`].
 #[must_use]
 pub fn row(case: usize, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
-    park(&CASES[case], runs, tick)
-}
-
-fn park(case: &Case, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
+    let case = &CASES[case];
     let days = over(runs, tick, |seed| {
         let told = Told { rests: Rests::Whole, knows_displacement: false };
         let day = live(&case.scenario(seed), seed, told);

@@ -15,7 +15,7 @@ use orientation::session::stops::{Event, Procedure, Session};
 use orientation::units::DEGREE_PER_HOUR;
 
 use crate::campaign::statistics::Answer;
-use crate::output::{azimuth_error, degrees};
+use crate::output::degrees;
 use crate::stops::averaging::Averages;
 use crate::stops::samples::Converter;
 
@@ -45,13 +45,8 @@ impl Day {
     /// # Errors
     /// Why there is none.
     pub fn answer(&self) -> Result<Answer, Refusal> {
-        let azimuth = self.conclusion.verdict?;
-        let limit = self.conclusion.found.as_ref().map_or(f64::NAN, |found| found.limit);
-        Ok(Answer {
-            error: azimuth_error(degrees(azimuth.angle), degrees(self.end)),
-            sigma: degrees(azimuth.sigma),
-            limit: degrees(limit),
-        })
+        let limit = self.conclusion.found.as_ref().map(|found| found.limit);
+        Answer::of(self.conclusion.verdict, limit, degrees(self.end))
     }
 }
 

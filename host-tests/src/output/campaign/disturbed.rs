@@ -1,57 +1,50 @@
 //! The report of `campaign disturbed`.
 
-use super::precisions;
+use super::Columns;
 use crate::campaign::disturbed::{HealthyRow, Row, WRONG_SIGMAS};
-use crate::report::{Lines, Part, Report, Table};
+use crate::report::{Lines, Part, Report};
 
 /// Reasons of refusals that are shown for each class.
 const REASONS: usize = 4;
 
 /// What healthy recordings gave, and what became of each class of faults.
-#[must_use]
-pub fn report(healthy: &[HealthyRow], rows: &[Row]) -> Report {
-    let named = healthy.iter().map(|row| (row.method.to_string(), &row.precision));
-    let table = (!healthy.is_empty()).then(|| precisions("Healthy recordings", "method", named));
+pub(crate) fn report(healthy: &[HealthyRow], rows: &[Row]) -> Report {
+    let of_healthy = (!healthy.is_empty()).then(|| of_healthy(healthy));
     let reasons = Some(reasons(rows)).filter(|lines| !lines.lines.is_empty());
-    let parts = table.into_iter().map(Part::from);
     let subtitle = [
         format!("an answer is wrong beyond {WRONG_SIGMAS} of its σ"),
         "a fault is harmless where it moves the answer by less than the healthy σ".to_owned(),
     ];
+    let parts = [of_healthy, Some(of_classes(rows)), reasons.map(Part::from)];
     Report {
         title: "Recordings with faults of any severity".to_owned(),
         subtitle: subtitle.to_vec(),
-        parts: parts.chain([classes(rows).into()]).chain(reasons.map(Part::from)).collect(),
+        parts: parts.into_iter().flatten().collect(),
     }
 }
 
-fn classes(rows: &[Row]) -> Table {
-    let head = [
-        "class",
-        "runs",
-        "answered",
-        "wrong (few, told)",
-        "worst, σ",
-        "harmless answered",
-        "healthy refused",
-        "met",
-        "severity",
-    ];
-    let line = |row: &Row| {
-        let [low, high] = row.severity;
-        vec![
-            row.class.to_string(),
-            row.runs.to_string(),
-            row.answered.to_string(),
-            format!("{} ({}, {})", row.wrong, row.wrong_of_few, row.wrong_told),
-            format!("{:.1}", row.worst_sigmas),
-            format!("{} of {}", row.harmless_answered, row.harmless),
-            row.healthy_refused.to_string(),
-            if row.is_met { "yes" } else { "NO" }.to_owned(),
-            format!("{low} to {high} {}", row.unit),
-        ]
-    };
-    Table { rows: rows.iter().map(line).collect(), ..Table::new("Classes of faults", &head) }
+fn of_healthy(rows: &[HealthyRow]) -> Part {
+    let table = Columns::of("Healthy recordings", rows).column("method", |row| row.method);
+    table.precision(|row| &row.precision).into()
+}
+
+fn of_classes(rows: &[Row]) -> Part {
+    Columns::of("Classes of faults", rows)
+        .column("class", |row| &row.fault.name)
+        .column("runs", |row| row.runs)
+        .column("answered", |row| row.answered)
+        .column("wrong (few, told)", |row| {
+            format!("{} ({}, {})", row.wrong, row.wrong_of_few, row.wrong_told)
+        })
+        .fixed("worst, σ", 1, |row| row.worst_sigmas)
+        .column("harmless answered", |row| format!("{} of {}", row.harmless_answered, row.harmless))
+        .column("healthy refused", |row| row.healthy_refused)
+        .column("met", |row| if row.is_met { "yes" } else { "NO" })
+        .column("severity", |row| {
+            let [low, high] = row.fault.severity;
+            format!("{low} to {high} {}", row.fault.unit)
+        })
+        .into()
 }
 
 /// The most frequent reasons of refusals, class by class.
@@ -59,7 +52,7 @@ fn reasons(rows: &[Row]) -> Lines {
     let mut lines = Lines::new("Most frequent reasons of refusals");
     for row in rows {
         for (reason, count) in row.reasons.iter().take(REASONS) {
-            lines.add(row.class, format!("{count:>4} × {reason}"));
+            lines.add(&row.fault.name, format!("{count:>4} × {reason}"));
         }
     }
     lines

@@ -1,49 +1,32 @@
 //! The report of `campaign faults`.
 
+use std::fmt::Display;
+
+use super::Columns;
 use crate::campaign::faults::Row;
-use crate::report::{Report, Table};
+use crate::report::Report;
 
 /// What came of every fault on every platform.
-#[must_use]
-pub fn report(rows: &[Row]) -> Report {
-    let head = [
-        "platform",
-        "fault",
-        "outcome",
-        "error, σ",
-        "faults",
-        "repeated",
-        "left out",
-        "after, s",
-        "noticed",
-        "what the board noticed first → why it refused",
-    ];
-    let table = Table::new("Faults", &head);
-    let table = Table { rows: rows.iter().map(line).collect(), ..table };
+pub(crate) fn report(rows: &[Row]) -> Report {
+    let table = Columns::of("Faults", rows)
+        .column("platform", |row| row.platform)
+        .column("fault", |row| &row.fault)
+        .column("outcome", |row| row.outcome)
+        .column("error, σ", |row| or_dash(row.error_sigmas.map(|sigmas| format!("{sigmas:+.2}"))))
+        .column("faults", |row| row.faults)
+        .column("repeated", |row| or_dash(row.repeated))
+        .column("left out", |row| or_dash(row.left_out))
+        .fixed("after, s", 1, |row| row.seconds)
+        .column("noticed", |row| or_dash(row.is_noticed.map(|is| if is { "yes" } else { "NO" })))
+        .column("what the board noticed first → why it refused", |row| {
+            let reason = row.reason.as_ref().map(|reason| format!(" → {reason}"));
+            let first = row.noticed.as_deref().unwrap_or("nothing");
+            format!("{first}{}", reason.unwrap_or_default())
+        });
     let title = "Every fault on every platform".to_owned();
     Report { title, subtitle: Vec::new(), parts: vec![table.into()] }
 }
 
-fn line(row: &Row) -> Vec<String> {
-    let none = || "-".to_owned();
-    let count = |count: Option<usize>| count.map_or_else(none, |count| count.to_string());
-    let is_noticed = match row.is_noticed {
-        None => "-",
-        Some(true) => "yes",
-        Some(false) => "NO",
-    };
-    let first = row.noticed.as_deref().unwrap_or("nothing");
-    let reason = row.reason.as_ref().map(|reason| format!(" → {reason}"));
-    vec![
-        row.platform.to_string(),
-        row.fault.clone(),
-        row.outcome.to_string(),
-        row.error_sigmas.map_or_else(none, |sigmas| format!("{sigmas:+.2}")),
-        row.faults.to_string(),
-        count(row.repeated),
-        count(row.left_out),
-        format!("{:.1}", row.seconds),
-        is_noticed.to_owned(),
-        format!("{first}{}", reason.unwrap_or_default()),
-    ]
+fn or_dash(value: Option<impl Display>) -> String {
+    value.map_or_else(|| "-".to_owned(), |value| value.to_string())
 }

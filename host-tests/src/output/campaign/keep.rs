@@ -1,92 +1,81 @@
 //! The report of `campaign keep`: what every class keeps, and how errors grow beside σ(t).
 
-use super::covered;
+use super::{Columns, figure};
 use crate::campaign::burov::LATITUDE_DEG;
 use crate::campaign::keep::{Growth, Row, Spread};
-use crate::report::{Axis, Figure, Part, Report, Series, Style, Table};
+use crate::report::{Part, Report, Series, Style};
 
 /// The page for a campaign.
-#[must_use]
-pub fn report(rows: &[Row]) -> Report {
-    let mut parts: Vec<Part> = vec![classes(rows).into(), table(rows).into()];
-    for row in rows {
+pub(crate) fn report(rows: &[Row]) -> Report {
+    let figures = rows.iter().flat_map(|row| {
         let name = format!("{}, {}", row.class, row.mount);
         let (azimuth, level) = (row.wanted_azimuth_deg, row.wanted_level_deg);
-        parts.push(figure(row, &format!("Azimuth: {name}"), azimuth, |at| at.azimuth).into());
-        parts.push(figure(row, &format!("Pitch and roll: {name}"), level, |at| at.level).into());
-    }
+        [
+            growth(row, &format!("Azimuth: {name}"), azimuth, |at| at.azimuth),
+            growth(row, &format!("Pitch and roll: {name}"), level, |at| at.level),
+        ]
+    });
     Report {
         title: "Azimuth, pitch and roll, kept for half an hour".to_owned(),
         subtitle: vec![format!(
             "Burov, Table 1; a vehicle that drives without a halt, at {LATITUDE_DEG}° of latitude"
         )],
-        parts,
+        parts: [of_classes(rows), of_errors(rows)].into_iter().chain(figures).collect(),
     }
 }
 
 /// Errors and σ over the time.
-fn figure(row: &Row, title: &str, wanted_deg: f64, of: impl Fn(&Growth) -> Spread) -> Figure {
-    let over = |part: fn(&Spread) -> f64| -> Vec<(f64, f64)> {
-        row.growth.iter().map(|at| (at.seconds / 60.0, part(&of(at)))).collect()
+fn growth(row: &Row, title: &str, wanted_deg: f64, of: impl Fn(&Growth) -> Spread) -> Part {
+    let curve = |name, style, value: &dyn Fn(Spread) -> f64| {
+        let points = row.growth.iter().map(|at| (at.seconds / 60.0, value(of(at))));
+        Series::new(name, style, points)
     };
-    let wanted = row.growth.iter().map(|at| (at.seconds / 60.0, wanted_deg));
-    Figure {
-        title: title.to_owned(),
-        x: Axis::linear("time since the azimuth was handed over", "min"),
-        y: Axis::linear("error, RMS over the runs", "°"),
-        series: vec![
-            Series::new("error", Style::LineAndPoints, over(|spread| spread.rms_deg)),
-            Series::new("σ(t)", Style::Line, over(|spread| spread.sigma_deg)),
-            Series::new("wanted", Style::Dashed, wanted),
-        ],
-    }
+    let series = vec![
+        curve("error", Style::LineAndPoints, &|spread| spread.rms_deg),
+        curve("σ(t)", Style::Line, &|spread| spread.sigma_deg),
+        curve("wanted", Style::Dashed, &|_| wanted_deg),
+    ];
+    let time = ["time since the azimuth was handed over", "min"];
+    figure(title, time, ["error, RMS over the runs", "°"], series)
 }
 
 /// The gyros of each class, and what became of it.
-fn classes(rows: &[Row]) -> Table {
-    let line = |row: &Row| {
-        let grade = &row.grade;
-        let (n, b, k, r) =
-            (grade.n_deg_sqrt_h, grade.b_deg_h, grade.k_deg_h_sqrt_h, grade.r_deg_h2);
-        let met = if row.is_met { "met" } else { "not met" };
-        vec![
-            row.class.to_owned(),
-            format!("{} (N {n} °/√h, B {b} °/h, K {k} °/h/√h, R {r} °/h²)", row.gyro),
-            row.mount.clone(),
-            row.way.clone(),
-            row.runs.to_string(),
-            row.lost.to_string(),
-            format!("{met}{}", if row.is_wanted { "" } else { " (for comparison)" }),
-        ]
-    };
-    let head = ["class", "gyro", "mount", "azimuth", "runs", "azimuth lost", "outcome"];
-    Table { rows: rows.iter().map(line).collect(), ..Table::new("Classes", &head) }
+fn of_classes(rows: &[Row]) -> Part {
+    Columns::of("Classes", rows)
+        .column("class", |row| row.class)
+        .column("gyro", |row| format!("{} ({})", row.gyro, row.grade))
+        .column("mount", |row| &row.mount)
+        .column("azimuth", |row| &row.way)
+        .column("runs", |row| row.runs)
+        .column("azimuth lost", |row| row.lost)
+        .column("outcome", |row| {
+            let met = if row.is_met { "met" } else { "not met" };
+            format!("{met}{}", if row.is_wanted { "" } else { " (for comparison)" })
+        })
+        .into()
 }
 
 /// Errors of each class, quantity by quantity.
-fn table(rows: &[Row]) -> Table {
+fn of_errors(rows: &[Row]) -> Part {
     let lines = rows.iter().flat_map(|row| {
-        let line = |what: &str, spread: &Spread, wanted: String, limit: String| {
-            vec![
-                format!("{}: {what}", row.class),
-                format!("{:.3}", spread.rms_deg),
-                format!("{:.3}", spread.sigma_deg),
-                covered(&spread.coverage_percent),
-                wanted,
-                limit,
-            ]
-        };
-        let [azimuth, level] =
-            [row.wanted_azimuth_deg, row.wanted_level_deg].map(|wanted| format!("{wanted:.2}"));
-        let limit = format!("{:.3}", row.azimuth_limit_deg);
-        let none = String::new;
+        let (azimuth, level) = (row.wanted_azimuth_deg, row.wanted_level_deg);
+        let limit = Some(row.azimuth_limit_deg);
         [
-            line("azimuth after 0.5 h", &row.azimuth, azimuth, limit),
-            line("azimuth while driving", &row.azimuth_driving, none(), none()),
-            line("pitch, roll on the way", &row.level, level, none()),
-            line("pitch, roll at rest", &row.level_at_rest, none(), none()),
+            (row, "azimuth after 0.5 h", row.azimuth, Some(azimuth), limit),
+            (row, "azimuth while driving", row.azimuth_driving, None, None),
+            (row, "pitch, roll on the way", row.level, Some(level), None),
+            (row, "pitch, roll at rest", row.level_at_rest, None, None),
         ]
     });
-    let head = ["class", "RMS, °", "σ, °", "within 1, 2, 3 σ, %", "wanted, 1σ, °", "limit, °"];
-    Table { rows: lines.collect(), ..Table::new("Table 1: what is kept after half an hour", &head) }
+    let or_empty = |value: Option<f64>, places: usize| {
+        value.map_or_else(String::new, |value| format!("{value:.places$}"))
+    };
+    Columns::of("Table 1: what is kept after half an hour", &lines.collect::<Vec<_>>())
+        .column("class", |(row, what, ..)| format!("{}: {what}", row.class))
+        .fixed("RMS, °", 3, |(_, _, spread, ..)| spread.rms_deg)
+        .fixed("σ, °", 3, |(_, _, spread, ..)| spread.sigma_deg)
+        .covered(|(_, _, spread, ..)| spread.coverage_percent)
+        .column("wanted, 1σ, °", |(.., wanted, _)| or_empty(*wanted, 2))
+        .column("limit, °", |(.., limit)| or_empty(*limit, 3))
+        .into()
 }

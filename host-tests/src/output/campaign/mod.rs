@@ -1,56 +1,90 @@
 //! What campaigns print: one report for terminal and page, whose figures only the page shows.
 
-pub mod burov;
-pub mod disturbed;
-pub mod faults;
-pub mod instrument;
-pub mod keep;
-pub mod rotating;
-pub mod sokolov;
-pub mod spin;
-pub mod szymanowski;
+pub(crate) mod burov;
+pub(crate) mod disturbed;
+pub(crate) mod faults;
+pub(crate) mod instrument;
+pub(crate) mod keep;
+pub(crate) mod rotating;
+pub(crate) mod sokolov;
+pub(crate) mod spin;
+pub(crate) mod szymanowski;
+
+use std::fmt::Display;
 
 use crate::campaign::statistics::{NORMAL_COVERAGE, Precision};
-use crate::report::Table;
+use crate::report::{Axis, Figure, Part, Series, Table};
 
-/// Columns of what many alignments amount to.
-const PRECISION: [&str; 7] =
-    ["runs", "refused", "RMS, °", "limit, °", "error / limit", "within 1, 2, 3 σ, %", "worst, σ"];
-
-/// What many alignments amount to, under [`PRECISION`].
-fn precision(row: &Precision) -> [String; 7] {
-    [
-        row.runs.to_string(),
-        row.refused.to_string(),
-        format!("{:.4}", row.rms_deg),
-        format!("{:.4}", row.limit_deg),
-        format!("{:.3}", row.ratio),
-        covered(&row.coverage_percent),
-        format!("{:.2}", row.worst_sigmas),
-    ]
+/// A table that grows by columns: each names itself and shows one thing of every row.
+struct Columns<'a, R> {
+    rows: &'a [R],
+    table: Table,
 }
 
-/// Per cent of errors within 1, 2 and 3 σ.
-fn covered([one, two, three]: &[f64; 3]) -> String {
-    format!("{one:.1}, {two:.1}, {three:.1}")
+impl<'a, R> Columns<'a, R> {
+    /// A table of these rows, without columns yet.
+    fn of(title: &str, rows: &'a [R]) -> Self {
+        let cells = vec![Vec::new(); rows.len()];
+        Self { rows, table: Table { rows: cells, ..Table::new(title, &[]) } }
+    }
+
+    /// Words or a whole number.
+    fn column<C: Display>(mut self, name: &str, of: impl Fn(&'a R) -> C) -> Self {
+        self.table.head.push(name.to_owned());
+        for (row, cells) in self.rows.iter().zip(&mut self.table.rows) {
+            cells.push(of(row).to_string());
+        }
+        self
+    }
+
+    /// A number with so many decimal places.
+    fn fixed(self, name: &str, places: usize, of: impl Fn(&'a R) -> f64) -> Self {
+        self.column(name, |row| format!("{:.places$}", of(row)))
+    }
+
+    /// A number with an exponent and so many decimal places.
+    fn scientific(self, name: &str, places: usize, of: impl Fn(&'a R) -> f64) -> Self {
+        self.column(name, |row| format!("{:.places$e}", of(row)))
+    }
+
+    /// Per cent of errors within 1, 2 and 3 σ.
+    fn covered(self, of: impl Fn(&'a R) -> [f64; 3]) -> Self {
+        self.column("within 1, 2, 3 σ, %", |row| list(&of(row)))
+    }
+
+    /// What many alignments amount to.
+    fn precision(self, of: impl Fn(&'a R) -> &'a Precision) -> Self {
+        self.column("runs", |row| of(row).runs)
+            .column("refused", |row| of(row).refused)
+            .fixed("RMS, °", 4, |row| of(row).rms_deg)
+            .fixed("limit, °", 4, |row| of(row).limit_deg)
+            .fixed("error / limit", 3, |row| of(row).ratio)
+            .covered(|row| of(row).coverage_percent)
+            .fixed("worst, σ", 2, |row| of(row).worst_sigmas)
+    }
 }
 
-/// A table of what many alignments amount to, a row for each name.
-fn precisions<'a>(
-    title: &str,
-    name: &str,
-    rows: impl IntoIterator<Item = (String, &'a Precision)>,
-) -> Table {
-    let head: Vec<&str> = [name].into_iter().chain(PRECISION).collect();
-    let row =
-        |(name, row): (String, &Precision)| [name].into_iter().chain(precision(row)).collect();
-    Table { rows: rows.into_iter().map(row).collect(), ..Table::new(title, &head) }
+impl<R> From<Columns<'_, R>> for Part {
+    fn from(columns: Columns<'_, R>) -> Self {
+        columns.table.into()
+    }
+}
+
+/// Three numbers with one decimal place.
+fn list(values: &[f64; 3]) -> String {
+    values.map(|value| format!("{value:.1}")).join(", ")
+}
+
+/// Curves over linear axes, each with its unit.
+fn figure(title: &str, x: [&str; 2], y: [&str; 2], series: Vec<Series>) -> Part {
+    let [x, y] = [x, y].map(|[label, unit]| Axis::linear(label, unit));
+    Figure { title: title.to_owned(), x, y, series }.into()
 }
 
 /// First reasons of refusals, a line each.
-fn reasons<'a>(rows: impl IntoIterator<Item = &'a Precision>) -> Vec<String> {
+fn reasons<'a>(rows: impl IntoIterator<Item = &'a Precision>) -> impl Iterator<Item = String> {
     let reasons = rows.into_iter().filter_map(|row| row.first_reason.as_ref());
-    reasons.map(|reason| format!("first refusal: {reason}")).collect()
+    reasons.map(|reason| format!("first refusal: {reason}"))
 }
 
 /// What a normal distribution has within 1, 2 and 3 σ.

@@ -1,13 +1,13 @@
 //! The report of `campaign rotating`: where the raw error comes from, the spectra of MET 2018 at two axis
 //! misalignments, and the tables.
 
-use super::{normal, precisions, reasons};
+use super::{Columns, figure, normal, reasons};
 use crate::campaign::rotating::world::{
     COUPLING_DEG, LATITUDE_DEG, TILT_DEG, UNEVENNESS, World, segments,
 };
 use crate::campaign::rotating::{molecular, refusals, stages};
 use crate::outcome::rotating::figures;
-use crate::report::{Axis, Figure, Part as OfPage, Report, Series, Style, Table};
+use crate::report::{Part as OfPage, Report, Series, Style};
 use crate::rotating::part::Part;
 
 /// The couplings of the figure with two of them, °: as in the campaign, and nearly aligned.
@@ -18,17 +18,18 @@ const SETTLED: f64 = 5.0;
 const SECONDS: f64 = 200.0;
 
 /// The page for a campaign.
-#[must_use]
-pub fn report(
+pub(crate) fn report(
     stages: &[stages::Row],
     molecular: &[molecular::Row],
     refusals: &[refusals::Row],
 ) -> Report {
-    let mut parts: Vec<OfPage> = stages.iter().map(|row| of_stages(row).into()).collect();
-    parts.extend(stages.first().map(|row| raw(row).into()));
-    parts.push(of_precisions(stages, molecular).into());
-    parts.push(of_molecular(molecular).into());
-    parts.push(of_refusals(refusals).into());
+    let mut parts: Vec<OfPage> = stages.iter().map(of_stages).collect();
+    parts.extend(stages.first().map(raw));
+    parts.extend([
+        of_precisions(stages, molecular),
+        of_molecular(molecular),
+        of_refusals(refusals),
+    ]);
     parts.extend(of_couplings());
     Report {
         title: "Dynamic north finding on a turning platform".to_owned(),
@@ -56,80 +57,61 @@ fn subtitle(stages: &[stages::Row], molecular: &[molecular::Row]) -> Vec<String>
     lines.into_iter().chain(reasons(all)).collect()
 }
 
-fn of_stages(row: &stages::Row) -> Table {
-    let line = |stage: &stages::Stage| {
-        let [rms, greatest] = [stage.rms_deg, stage.greatest_deg].map(|x| format!("{x:.4}"));
-        vec![stage.stage.to_owned(), rms, greatest]
-    };
-    let title = format!("Error after each stage, N = {} °/√h", row.n_deg_sqrt_h);
-    let table = Table::new(&title, &["stage", "RMS, °", "greatest, °"]);
-    Table { rows: row.stages.iter().map(line).collect(), ..table }
+fn of_stages(row: &stages::Row) -> OfPage {
+    Columns::of(&format!("Error after each stage, N = {} °/√h", row.n_deg_sqrt_h), &row.stages)
+        .column("stage", |stage| stage.stage)
+        .fixed("RMS, °", 4, |stage| stage.rms_deg)
+        .fixed("greatest, °", 4, |stage| stage.greatest_deg)
+        .into()
 }
 
 /// The raw error over where the unevenness acts.
-fn raw(row: &stages::Row) -> Figure {
-    Figure {
-        title: "Raw error over where the gear's unevenness acts".to_owned(),
-        x: Axis::linear("from the azimuth", "°"),
-        y: Axis::linear("error of the raw azimuth", "°"),
-        series: vec![Series::new("one run each", Style::Points, row.raw.iter().copied())],
-    }
+fn raw(row: &stages::Row) -> OfPage {
+    let series = Series::new("one run each", Style::Points, row.raw.iter().copied());
+    let title = "Raw error over where the gear's unevenness acts";
+    figure(title, ["from the azimuth", "°"], ["error of the raw azimuth", "°"], vec![series])
 }
 
-fn of_precisions(stages: &[stages::Row], molecular: &[molecular::Row]) -> Table {
+fn of_precisions(stages: &[stages::Row], molecular: &[molecular::Row]) -> OfPage {
     let gyro = |row: &stages::Row| format!("gyro, N {} °/√h", row.n_deg_sqrt_h);
     let sensor = |row: &molecular::Row| {
         let walk = molecular::WALK;
         let (coupling, ratio) = (row.coupling_deg, row.ratio);
         format!("molecular-electronic, axis misalignment {coupling}°, ρ {ratio}, N {walk} °/√h")
     };
-    let gyros = stages.iter().map(|row| (gyro(row), &row.precision));
-    let sensors = molecular.iter().map(|row| (sensor(row), &row.precision));
-    precisions("Azimuths with noise", "sensor", gyros.chain(sensors))
+    let gyros = stages.iter().map(|row| (gyro(row), row.precision.clone()));
+    let sensors = molecular.iter().map(|row| (sensor(row), row.precision.clone()));
+    Columns::of("Azimuths with noise", &gyros.chain(sensors).collect::<Vec<_>>())
+        .column("sensor", |(name, _)| name)
+        .precision(|(_, precision)| precision)
+        .into()
 }
 
-fn of_molecular(rows: &[molecular::Row]) -> Table {
-    let line = |row: &molecular::Row| -> Vec<String> {
-        let numbers = [
-            row.one_speed_rms_deg,
-            row.one_speed_greatest_deg,
-            row.predicted_rms_deg,
-            row.off_prediction_deg,
-            row.bound_deg,
-            row.plain_limit_deg,
-        ];
-        let two = [row.two_speeds_rms_deg, row.two_speeds_greatest_deg];
-        let names = [row.coupling_deg, row.ratio].map(|number| number.to_string()).into_iter();
-        let numbers = names.chain(numbers.map(|number| format!("{number:.4}")));
-        let numbers = numbers.chain(two.map(|number| format!("{number:.5}")));
-        numbers.chain([format!("{:.2}", row.noise_ratio)]).collect()
-    };
-    let head = [
-        "axis misalignment, °",
-        "ρ",
-        "one speed: RMS, °",
-        "greatest, °",
-        "as predicted, °",
-        "greatest difference, °",
-        "bound ρ²/2, °",
-        "limit without G and H, °",
-        "two speeds: RMS, °",
-        "greatest, °",
-        "with noise: RMS over that limit",
-    ];
+fn of_molecular(rows: &[molecular::Row]) -> OfPage {
     let title = "Molecular-electronic sensor: what is left of its g-sensitivity without noise";
-    Table { rows: rows.iter().map(line).collect(), ..Table::new(title, &head) }
+    Columns::of(title, rows)
+        .column("axis misalignment, °", |row| row.coupling_deg)
+        .column("ρ", |row| row.ratio)
+        .fixed("one speed: RMS, °", 4, |row| row.one_speed_rms_deg)
+        .fixed("greatest, °", 4, |row| row.one_speed_greatest_deg)
+        .fixed("as predicted, °", 4, |row| row.predicted_rms_deg)
+        .fixed("greatest difference, °", 4, |row| row.off_prediction_deg)
+        .fixed("bound ρ²/2, °", 4, |row| row.bound_deg)
+        .fixed("limit without G and H, °", 4, |row| row.plain_limit_deg)
+        .fixed("two speeds: RMS, °", 5, |row| row.two_speeds_rms_deg)
+        .fixed("greatest, °", 5, |row| row.two_speeds_greatest_deg)
+        .fixed("with noise: RMS over that limit", 2, |row| row.noise_ratio)
+        .into()
 }
 
-fn of_refusals(rows: &[refusals::Row]) -> Table {
-    let line = |row: &refusals::Row| {
-        let reason = row.reason.clone().unwrap_or_default();
-        let counts = [row.runs, row.refused, row.wrong].map(|count| count.to_string());
-        [row.case.to_owned()].into_iter().chain(counts).chain([reason]).collect()
-    };
-    let head = ["what went wrong", "runs", "refused", "wrong", "most often because"];
-    let table = Table::new("What must be refused", &head);
-    Table { rows: rows.iter().map(line).collect(), ..table }
+fn of_refusals(rows: &[refusals::Row]) -> OfPage {
+    Columns::of("What must be refused", rows)
+        .column("what went wrong", |row| row.case)
+        .column("runs", |row| row.runs)
+        .column("refused", |row| row.refused)
+        .column("wrong", |row| row.wrong)
+        .column("most often because", |row| row.reason.as_deref().unwrap_or_default())
+        .into()
 }
 
 /// The first figures of MET 2018: the sensor's spectrum at two axis misalignments, and the platform's.

@@ -1,14 +1,13 @@
 //! The report of `campaign sokolov`: Table 1 of Sokolov 2019, then maximum likelihood through fixed point.
 
-use super::{covered, normal};
+use super::{Columns, list, normal};
 use crate::campaign::sokolov::{AlphaRow, Precision, Table as Turn};
 use crate::output::positive_zero;
-use crate::report::{Lines, Part, Report, Table};
+use crate::report::{Lines, Part, Report};
 
 /// Both schedules: the paper's table, then the precision.
-#[must_use]
-pub fn report(turns: &[Turn], precisions: &[Precision]) -> Report {
-    let parts = turns.iter().flat_map(of_turn).chain([of_precisions(precisions).into()]);
+pub(crate) fn report(turns: &[Turn], precisions: &[Precision]) -> Report {
+    let parts = turns.iter().flat_map(of_turn).chain([of_precisions(precisions)]);
     let subtitle = [
         "60 dwells of 1 s, 0.15 °/h per sample at 100 Hz, 47°35′",
         "three azimuths (28°10′, 28°30′, 28°50′, off the grid); errors in arc seconds",
@@ -21,33 +20,17 @@ pub fn report(turns: &[Turn], precisions: &[Precision]) -> Report {
 }
 
 fn of_turn(turn: &Turn) -> [Part; 2] {
-    let head = [
-        "criterion",
-        "runs",
-        "refused",
-        "RMS, ″",
-        "stated σ, ″",
-        "limit, ″",
-        "Ω_h free, ″",
-        "RMS / limit",
-        "least of 90 each, ″",
-        "paper's least, ″",
-    ];
-    let rows = turn.rows.iter().map(|row| {
-        vec![
-            row.criterion.to_string(),
-            row.runs.to_string(),
-            row.refused.to_string(),
-            format!("{:.1}", row.rms_arcsec),
-            format!("{:.1}", row.sigma_arcsec),
-            format!("{:.1}", row.limit_arcsec),
-            format!("{:.1}", row.limit_free_arcsec),
-            format!("{:.2}", row.ratio),
-            list(&row.least_arcsec),
-            list(&turn.paper_least_arcsec),
-        ]
-    });
-    let table = Table { rows: rows.collect(), ..Table::new(turn.schedule, &head) };
+    let table = Columns::of(turn.schedule, &turn.rows)
+        .column("criterion", |row| row.criterion)
+        .column("runs", |row| row.runs)
+        .column("refused", |row| row.refused)
+        .fixed("RMS, ″", 1, |row| row.rms_arcsec)
+        .fixed("stated σ, ″", 1, |row| row.sigma_arcsec)
+        .fixed("limit, ″", 1, |row| row.limit_arcsec)
+        .fixed("Ω_h free, ″", 1, |row| row.limit_free_arcsec)
+        .fixed("RMS / limit", 2, |row| row.ratio)
+        .column("least of 90 each, ″", |row| list(&row.least_arcsec))
+        .column("paper's least, ″", |_| list(&turn.paper_least_arcsec));
     let mut lines = Lines::default();
     for rule in &turn.stop_rules {
         let reached = format!("all 60 reached in {} of {}", rule.all_positions, rule.runs);
@@ -65,36 +48,17 @@ fn of_turn(turn: &Turn) -> [Part; 2] {
     [table.into(), lines.into()]
 }
 
-fn list(values: &[f64; 3]) -> String {
-    values.map(|value| format!("{value:.1}")).join(", ")
-}
-
-fn of_precisions(precisions: &[Precision]) -> Table {
-    let head = [
-        "schedule",
-        "runs",
-        "refused",
-        "RMS, ″",
-        "limit, ″",
-        "RMS / limit",
-        "in f64, ″",
-        "fixed point adds, %",
-        "within 1, 2, 3 σ, %",
-    ];
-    let rows = precisions.iter().map(|row| {
-        let added = positive_zero(100.0 * (row.fixed_point_ratio - 1.0), 5e-4);
-        vec![
-            row.schedule.to_string(),
-            row.runs.to_string(),
-            row.refused.to_string(),
-            format!("{:.2}", row.rms_arcsec),
-            format!("{:.2}", row.limit_arcsec),
-            format!("{:.4}", row.ratio),
-            format!("{:.2}", row.rms_floating_point_arcsec),
-            format!("{added:+.3}"),
-            covered(&row.coverage_percent),
-        ]
-    });
-    let title = "Maximum likelihood through fixed point, azimuths off the grid";
-    Table { rows: rows.collect(), ..Table::new(title, &head) }
+fn of_precisions(precisions: &[Precision]) -> Part {
+    let added = |row: &Precision| positive_zero(100.0 * (row.fixed_point_ratio - 1.0), 5e-4);
+    Columns::of("Maximum likelihood through fixed point, azimuths off the grid", precisions)
+        .column("schedule", |row| row.schedule)
+        .column("runs", |row| row.runs)
+        .column("refused", |row| row.refused)
+        .fixed("RMS, ″", 2, |row| row.rms_arcsec)
+        .fixed("limit, ″", 2, |row| row.limit_arcsec)
+        .fixed("RMS / limit", 4, |row| row.ratio)
+        .fixed("in f64, ″", 2, |row| row.rms_floating_point_arcsec)
+        .column("fixed point adds, %", |row| format!("{:+.3}", added(row)))
+        .covered(|row| row.coverage_percent)
+        .into()
 }

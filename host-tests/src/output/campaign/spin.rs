@@ -1,18 +1,17 @@
 //! The report of `campaign spin`: Figs. 7 and 8 of Nekrasova 2017, and the tables.
 
-use super::{covered, normal};
+use super::{Columns, figure, normal};
 use crate::campaign::spin::cases::{Row, Spot};
 use crate::campaign::spin::paper::{FRAGMENT_S, Paper, TURNS_PER_S};
 use crate::campaign::spin::world::{RATE_HZ, SCALE_ERROR};
-use crate::report::{Axis, Figure, Lines, Part, Report, Series, Style, Table};
+use crate::report::{Lines, Part, Report, Series, Style};
 use crate::spin::{METHODS, name};
 
 /// Points of a curve at most.
 const POINTS: usize = 2000;
 
 /// The page for a campaign.
-#[must_use]
-pub fn report(paper: &Paper, rows: &[Row]) -> Report {
+pub(crate) fn report(paper: &Paper, rows: &[Row]) -> Report {
     let [uncorrected, extrema, interpolated, locked] = &paper.curves;
     let methods = [extrema, interpolated, locked];
     let whole: Vec<(&str, &[(f64, f64)])> =
@@ -22,13 +21,13 @@ pub fn report(paper: &Paper, rows: &[Row]) -> Report {
     let fragment: Vec<_> =
         named_methods().map(|(name, curve)| (name, from(curve, end_s - FRAGMENT_S))).collect();
     let beside: Vec<_> = named_methods().skip(1).map(|(name, curve)| (name, &curve[..])).collect();
-    let parts: Vec<Part> = vec![
+    let parts = vec![
         of_paper(paper).into(),
-        figure("Error of the roll over a second (Fig. 7)", &whole).into(),
-        figure("A fragment of it between corrections (Fig. 8)", &fragment).into(),
-        figure("Interpolated extrema and phase lock on the same samples", &beside).into(),
-        of_rows(rows).into(),
-        of_spots(rows).into(),
+        over_time("Error of the roll over a second (Fig. 7)", &whole),
+        over_time("A fragment of it between corrections (Fig. 8)", &fragment),
+        over_time("Interpolated extrema and phase lock on the same samples", &beside),
+        of_rows(rows),
+        of_spots(rows),
     ];
     let percent = 100.0 * SCALE_ERROR;
     Report {
@@ -60,51 +59,42 @@ fn from(curve: &[(f64, f64)], from_s: f64) -> &[(f64, f64)] {
     &curve[curve.partition_point(|(time_s, _)| *time_s < from_s)..]
 }
 
-fn figure(title: &str, curves: &[(&str, &[(f64, f64)])]) -> Figure {
+fn over_time(title: &str, curves: &[(&str, &[(f64, f64)])]) -> Part {
     let series = curves.iter().map(|(name, curve)| {
         let every = (curve.len() / POINTS).max(1);
         Series::new(name, Style::Line, curve.iter().step_by(every).copied())
     });
-    Figure {
-        title: title.to_owned(),
-        x: Axis::linear("time", "s"),
-        y: Axis::linear("roll error", "°"),
-        series: series.collect(),
-    }
+    figure(title, ["time", "s"], ["roll error", "°"], series.collect())
 }
 
-fn of_rows(rows: &[Row]) -> Table {
-    let line = |row: &Row| {
-        let methods = row.rms_deg.map(|rms| format!("{rms:.4}"));
-        let scale = [row.scale_rms, row.scale_sigma].map(|scale| format!("{scale:.1e}"));
-        let counts = [row.miscounted, row.lost, row.runs].map(|count| count.to_string());
-        let cells = [row.case.to_owned()].into_iter().chain(methods);
-        cells.chain([format!("{:.4}", row.limit_deg)]).chain(counts).chain(scale).collect()
-    };
-    let head = ["flights"].into_iter().chain(METHODS.map(name));
-    let more = ["limit", "turns miscounted", "roll lost", "runs", "scale error, RMS", "its σ"];
-    let head: Vec<&str> = head.chain(more).collect();
-    let table = Table::new("RMS errors after the first 0.1 s, °", &head);
-    Table { rows: rows.iter().map(line).collect(), ..table }
+fn of_rows(rows: &[Row]) -> Part {
+    let table = Columns::of("RMS errors after the first 0.1 s, °", rows);
+    let methods = METHODS.iter().enumerate();
+    methods
+        .fold(table.column("flights", |row| row.case), |table, (index, method)| {
+            table.fixed(name(*method), 4, |row| row.rms_deg[index])
+        })
+        .fixed("limit", 4, |row| row.limit_deg)
+        .column("turns miscounted", |row| row.miscounted)
+        .column("roll lost", |row| row.lost)
+        .column("runs", |row| row.runs)
+        .scientific("scale error, RMS", 1, |row| row.scale_rms)
+        .scientific("its σ", 1, |row| row.scale_sigma)
+        .into()
 }
 
-fn of_spots(rows: &[Row]) -> Table {
-    let line = |case: &str, when: &str, spot: &Spot| {
-        vec![
-            case.to_owned(),
-            when.to_owned(),
-            format!("{:.4}", spot.rms_deg),
-            format!("{:.4}", spot.sigma_deg),
-            format!("{:.4}", spot.limit_deg),
-            covered(&spot.coverage_percent),
-        ]
-    };
+fn of_spots(rows: &[Row]) -> Part {
     let both = rows.iter().flat_map(|row| {
-        let end = line(row.case, "at the end", &row.end);
-        let held = row.held.as_ref();
-        [Some(end), held.map(|held| line(row.case, "before the lift comes back", held))]
+        let held = row.held.as_ref().map(|held| (row.case, "before the lift comes back", held));
+        [Some((row.case, "at the end", &row.end)), held]
     });
-    let head = ["flights", "when", "RMS error, °", "σ, °", "limit, °", "within 1, 2, 3 σ, %"];
-    let table = Table::new("The phase lock at a moment", &head);
-    Table { rows: both.flatten().collect(), ..table }
+    let spots: Vec<(&str, &str, &Spot)> = both.flatten().collect();
+    Columns::of("The phase lock at a moment", &spots)
+        .column("flights", |(case, ..)| case)
+        .column("when", |(_, when, _)| when)
+        .fixed("RMS error, °", 4, |(.., spot)| spot.rms_deg)
+        .fixed("σ, °", 4, |(.., spot)| spot.sigma_deg)
+        .fixed("limit, °", 4, |(.., spot)| spot.limit_deg)
+        .covered(|(.., spot)| spot.coverage_percent)
+        .into()
 }

@@ -2,16 +2,15 @@
 
 use orientation::earth::Latitude;
 
-use super::{PRECISION, normal, precision, reasons};
+use super::{Columns, figure, normal, reasons};
 use crate::campaign::szymanowski::{drives, parked};
 use crate::outcome::stops::figures;
-use crate::report::{Axis, Figure, Part, Report, Series, Style, Table};
+use crate::report::{Part, Report, Series, Style};
 
 /// The page for a campaign.
-#[must_use]
-pub fn report(drives: &[drives::Row], parked: &[parked::Row]) -> Report {
-    let mut parts: Vec<Part> = vec![of_drives(drives).into(), of_parked(parked).into()];
-    parts.extend(drives.iter().map(|row| errors(row).into()));
+pub(crate) fn report(drives: &[drives::Row], parked: &[parked::Row]) -> Report {
+    let mut parts = vec![of_drives(drives), of_parked(parked)];
+    parts.extend(drives.iter().map(errors));
     let latitude = Latitude::from_degrees(drives::LATITUDE_DEG);
     parts.extend(latitude.map(|latitude| figures::heading_error(latitude, None).into()));
     Report { title: "Azimuth from stops".to_owned(), subtitle: subtitle(drives, parked), parts }
@@ -37,39 +36,33 @@ fn subtitle(drives: &[drives::Row], parked: &[parked::Row]) -> Vec<String> {
     lines.into_iter().chain(reasons(all)).collect()
 }
 
-fn of_drives(rows: &[drives::Row]) -> Table {
-    let line = |row: &drives::Row| {
-        let before = [row.averaging_rms_deg, row.plain_rms_deg, row.plain_sigma_deg];
-        let differences = [row.brent_difference_deg, row.euler_difference_deg];
-        let differences = differences.map(|difference| format!("{difference:.1e}"));
-        let biases = [row.bias_sigma_dph, row.bias_ratio]
-            .map(|value| value.map_or_else(String::new, |value| format!("{value:.3}")));
-        let cells = [row.case.to_owned()].into_iter().chain(before.map(|rms| format!("{rms:.4}")));
-        cells.chain(precision(&row.precision)).chain(differences).chain(biases).collect()
-    };
-    let before = ["drive", "before: averaging, °", "the paper's method, °", "its σ, °"];
-    let after =
-        ["Brent's search off by, °", "in Euler form, °", "biases: σ, °/h", "error / σ of biases"];
-    let head: Vec<&str> = before.into_iter().chain(PRECISION).chain(after).collect();
-    Table { rows: rows.iter().map(line).collect(), ..Table::new("Drives: RMS errors", &head) }
+fn of_drives(rows: &[drives::Row]) -> Part {
+    let bias = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.3}"));
+    Columns::of("Drives: RMS errors", rows)
+        .column("drive", |row| row.case)
+        .fixed("before: averaging, °", 4, |row| row.averaging_rms_deg)
+        .fixed("the paper's method, °", 4, |row| row.plain_rms_deg)
+        .fixed("its σ, °", 4, |row| row.plain_sigma_deg)
+        .precision(|row| &row.precision)
+        .scientific("Brent's search off by, °", 1, |row| row.brent_difference_deg)
+        .scientific("in Euler form, °", 1, |row| row.euler_difference_deg)
+        .column("biases: σ, °/h", |row| bias(row.bias_sigma_dph))
+        .column("error / σ of biases", |row| bias(row.bias_ratio))
+        .into()
 }
 
-fn of_parked(rows: &[parked::Row]) -> Table {
-    let line = |row: &parked::Row| {
-        let cells = [row.case.to_owned(), format!("{:.4}", row.averaging_rms_deg)];
-        cells.into_iter().chain(precision(&row.precision)).collect()
-    };
-    let head: Vec<&str> = ["vehicle", "averaging, °"].into_iter().chain(PRECISION).collect();
-    let table = Table::new("Parked vehicles: RMS errors", &head);
-    Table { rows: rows.iter().map(line).collect(), ..table }
+fn of_parked(rows: &[parked::Row]) -> Part {
+    Columns::of("Parked vehicles: RMS errors", rows)
+        .column("vehicle", |row| row.case)
+        .fixed("averaging, °", 4, |row| row.averaging_rms_deg)
+        .precision(|row| &row.precision)
+        .into()
 }
 
 /// The error of each drive over that of averaging at its first stop.
-fn errors(row: &drives::Row) -> Figure {
-    Figure {
-        title: format!("Error after over error before: {}", row.case),
-        x: Axis::linear("averaging over the first stop", "°"),
-        y: Axis::linear("azimuth at the end", "°"),
-        series: vec![Series::new("one drive each", Style::Points, row.errors.iter().copied())],
-    }
+fn errors(row: &drives::Row) -> Part {
+    let title = format!("Error after over error before: {}", row.case);
+    let series = Series::new("one drive each", Style::Points, row.errors.iter().copied());
+    let before = ["averaging over the first stop", "°"];
+    figure(&title, before, ["azimuth at the end", "°"], vec![series])
 }

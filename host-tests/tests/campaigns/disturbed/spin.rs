@@ -1,6 +1,6 @@
 //! Recordings of spinning bodies.
 
-use bench::campaign::disturbed::{classes, row, spin};
+use bench::campaign::disturbed::{PLATFORMS, row};
 use bench::campaign::statistics::{Answer, coverage};
 use rayon::prelude::*;
 
@@ -14,9 +14,10 @@ campaigns! {
 }
 
 fn every_class_of_a_spinning_body_passes_in_few_runs(extent: Extent) {
-    let of_bodies: Vec<_> = classes().filter(|class| class.name.starts_with("spin-")).collect();
+    let [.., spin] = PLATFORMS;
+    let of_bodies = (spin.classes)();
     assert_eq!(of_bodies.len(), 8);
-    for class in of_bodies {
+    for class in &of_bodies {
         let row = row(class, runs(extent), &|| ());
         println!("{row:?}");
         assert_eq!((row.wrong, row.healthy_refused), (0, 0), "{row:?}");
@@ -26,8 +27,9 @@ fn every_class_of_a_spinning_body_passes_in_few_runs(extent: Extent) {
 }
 
 fn healthy_flights_are_answered_and_their_errors_covered(extent: Extent) {
+    let [.., spin] = PLATFORMS;
     let answers: Vec<Result<Answer, String>> =
-        (1..=healthy(extent, 400) as u64).into_par_iter().map(spin::healthy).collect();
+        (1..=healthy(extent, 400) as u64).into_par_iter().map(spin.healthy).collect();
     let given: Vec<_> = answers.iter().flatten().collect();
     assert_eq!(given.len(), answers.len());
     let errors: Vec<f64> = given.iter().map(|answer| answer.error).collect();

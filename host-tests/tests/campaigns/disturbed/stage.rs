@@ -1,6 +1,6 @@
 //! Recordings of a stage.
 
-use bench::campaign::disturbed::{classes, healthy, row, stage};
+use bench::campaign::disturbed::{PLATFORMS, classes, healthy, row};
 
 use crate::support::campaign::{Extent, campaigns};
 
@@ -16,9 +16,10 @@ campaigns! {
 }
 
 fn a_fault_that_the_dwells_show_is_answered_within_its_sigma_or_refused(extent: Extent) {
-    for class in stage::CLASSES {
-        let found = row(class, runs(extent), &|| ());
-        let allowed = usize::from(PASSING.contains(&class.name));
+    let [stage, ..] = PLATFORMS;
+    for class in (stage.classes)() {
+        let found = row(&class, runs(extent), &|| ());
+        let allowed = usize::from(PASSING.contains(&class.fault.name.as_str()));
         assert!(found.wrong <= allowed, "{found:?}");
         // With so few harmless runs one refusal more than a tenth is chance.
         assert!(10 * found.harmless_answered + 10 >= 9 * found.harmless, "{found:?}");
@@ -31,8 +32,8 @@ const SLOW_RUNS: usize = 100;
 #[test]
 fn a_base_that_turns_too_slowly_to_be_seen_is_told_beside_the_azimuth_that_it_puts_off() {
     let mut wrong = 0;
-    for class in classes().filter(|class| class.name.ends_with("base-yawing")) {
-        let found = row(class, SLOW_RUNS, &|| ());
+    for class in classes().filter(|class| class.fault.name.ends_with("base-yawing")) {
+        let found = row(&class, SLOW_RUNS, &|| ());
         assert_eq!(found.wrong_told, found.wrong, "{found:?}");
         wrong += found.wrong;
     }

@@ -1,6 +1,6 @@
 //! Recordings of a platform that turns all the time.
 
-use bench::campaign::disturbed::{classes, row, turning};
+use bench::campaign::disturbed::{PLATFORMS, row};
 use bench::campaign::statistics::{Answer, Precision};
 use rayon::prelude::*;
 
@@ -18,9 +18,10 @@ campaigns! {
 }
 
 fn a_fault_that_the_turns_show_is_answered_within_its_sigma_or_refused(extent: Extent) {
-    for class in classes().filter(|class| class.name.starts_with("turning-")) {
-        let found = row(class, runs(extent), &|| ());
-        let allowed = usize::from(SEEN_LATE.contains(&class.name));
+    let [_, turning, ..] = PLATFORMS;
+    for class in (turning.classes)() {
+        let found = row(&class, runs(extent), &|| ());
+        let allowed = usize::from(SEEN_LATE.contains(&class.fault.name.as_str()));
         assert!(found.wrong <= allowed, "{found:?}");
         // With so few harmless runs two refusals more than a tenth are chance.
         assert!(10 * found.harmless_answered + 20 >= 9 * found.harmless, "{found:?}");
@@ -28,8 +29,9 @@ fn a_fault_that_the_turns_show_is_answered_within_its_sigma_or_refused(extent: E
 }
 
 fn healthy_platforms_are_answered_and_their_errors_covered(extent: Extent) {
+    let [_, turning, ..] = PLATFORMS;
     let answers: Vec<Result<Answer, String>> =
-        (1..=healthy(extent, 300) as u64).into_par_iter().map(turning::healthy).collect();
+        (1..=healthy(extent, 300) as u64).into_par_iter().map(turning.healthy).collect();
     let precision = Precision::of(&answers);
     assert!(precision.refused <= extent.count(3), "{precision:?}");
     assert!(precision.worst_sigmas < 5.0, "{precision:?}");

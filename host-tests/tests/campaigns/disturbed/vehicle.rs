@@ -1,6 +1,6 @@
 //! Recordings of vehicles, between stops and where they stand.
 
-use bench::campaign::disturbed::{classes, row, vehicle};
+use bench::campaign::disturbed::{PLATFORMS, row};
 use bench::campaign::statistics::{Answer, coverage};
 use rayon::prelude::*;
 
@@ -14,9 +14,9 @@ campaigns! {
 }
 
 fn every_class_of_a_vehicle_passes_in_few_runs(extent: Extent) {
-    let of_vehicles = |name: &str| name.starts_with("vehicle") || name.starts_with("standing");
-    for class in classes().filter(|class| of_vehicles(class.name)) {
-        let row = row(class, runs(extent), &|| ());
+    let [.., vehicle, _] = PLATFORMS;
+    for class in (vehicle.classes)() {
+        let row = row(&class, runs(extent), &|| ());
         println!("{row:?}");
         assert!(row.wrong as f64 <= class.wrong_allowed * row.answered as f64, "{row:?}");
         // Of so few runs one more or less is chance.
@@ -25,8 +25,9 @@ fn every_class_of_a_vehicle_passes_in_few_runs(extent: Extent) {
 }
 
 fn healthy_vehicles_are_answered_and_their_errors_covered(extent: Extent) {
+    let [.., vehicle, _] = PLATFORMS;
     let answers: Vec<Result<Answer, String>> =
-        (1..=healthy(extent, 160) as u64).into_par_iter().map(vehicle::healthy).collect();
+        (1..=healthy(extent, 160) as u64).into_par_iter().map(vehicle.healthy).collect();
     let too_large = |reason: &String| reason.contains("above the accepted");
     let refused = answers.iter().filter_map(|answer| answer.as_ref().err());
     let refused: Vec<_> = refused.filter(|reason| !too_large(reason)).collect();

@@ -10,19 +10,24 @@ use hal_mock::gyro::GyroConfiguration;
 use hal_mock::spin::profile::Profile;
 use hal_mock::spin::{SpinConfiguration, SpinWorld};
 
-use super::Pair;
+use super::Platform;
 use super::chance::Chance;
+use super::class::{Aligned, Subject};
 use crate::campaign::statistics::Answer;
 use crate::output::degrees;
 use crate::recording::{Body, Header, SpinRow};
 use crate::spin::errors::wrapped;
-use crate::spin::{Options, Replay, replay};
+use crate::spin::{Options, replay};
 
-pub use classes::CLASSES;
+/// A spinning body.
+pub(super) const PLATFORM: Platform = Platform {
+    name: "spin",
+    healthy: |seed| Recorded::drawn(seed).align().answer,
+    classes: classes::classes,
+};
 
-/// The random streams of a flight and of its fault: none of those that a world draws from.
+/// The random stream of a flight: none of those that a world draws from.
 const DRAWN: u64 = 2_031;
-const FAULT: u64 = 2_032;
 
 /// A drawn flight; what is told of its gyro is true.
 #[derive(Clone, Debug)]
@@ -102,22 +107,8 @@ impl Flight {
             rows.push(SpinRow { line, time_s, rate_rad_s, force_m_s2: sample.force_m_s2 });
             rolls_rad.push(world.truth().roll_rad);
         }
-        Recorded { rows, rolls_rad, lift_m_s2: self.lift_m_s2[0].1, header: self.header.clone() }
-    }
-
-    /// This flight with a fault and without.
-    fn pair(&self, spoil: impl FnOnce(&mut Recorded, &mut Chance)) -> Pair {
-        let recorded = self.recorded();
-        let healthy = recorded.answer();
-        let mut spoilt = recorded;
-        spoil(&mut spoilt, &mut Chance::new(self.seed, FAULT));
-        Pair {
-            healthy,
-            faulty: spoilt.answer(),
-            unchecked_deg: spoilt.unchecked_deg(),
-            untold_deg: 0.0,
-            is_few: false,
-        }
+        let (seed, lift_m_s2) = (self.seed, self.lift_m_s2[0].1);
+        Recorded { seed, rows, rolls_rad, lift_m_s2, header: self.header.clone() }
     }
 }
 
@@ -132,6 +123,7 @@ fn changing(chance: &mut Chance, seconds: f64, value: f64, part: f64) -> [(f64, 
 /// A flight as it was recorded, and the true roll at each sample.
 #[derive(Clone, Debug)]
 struct Recorded {
+    seed: u64,
     rows: Vec<SpinRow>,
     rolls_rad: Vec<f64>,
     /// Lift at the start, m/s².
@@ -140,6 +132,11 @@ struct Recorded {
 }
 
 impl Recorded {
+    /// A healthy flight.
+    fn drawn(seed: u64) -> Self {
+        Flight::drawn(seed).recorded()
+    }
+
     /// Error of a roll at the last sample, °.
     fn error_deg(&self, roll_rad: f64) -> f64 {
         degrees(wrapped(roll_rad - self.rolls_rad.last().copied().unwrap_or(f64::NAN)))
@@ -150,10 +147,6 @@ impl Recorded {
         let body = Body::Spin(self.rows.clone());
         let replay = replay(&self.header, &body, &Options::default());
         let replay = replay.map_err(|error| error.to_string())?;
-        self.told(&replay)
-    }
-
-    fn told(&self, replay: &Replay) -> Result<Answer, String> {
         if let Some(reason) = replay.refusal() {
             return Err(reason);
         }
@@ -165,17 +158,21 @@ impl Recorded {
             limit: limit.map_or(f64::NAN, degrees),
         })
     }
-
-    /// Error of the roll when nothing is checked and nothing left out, °.
-    fn unchecked_deg(&self) -> Option<f64> {
-        plain::roll(&self.rows, &self.header).map(|roll_rad| self.error_deg(roll_rad))
-    }
 }
 
-/// The answer of a drawn flight without any fault.
-///
-/// # Errors
-/// Why there is none.
-pub fn healthy(seed: u64) -> Result<Answer, String> {
-    Flight::drawn(seed).recorded().answer()
+impl Subject for Recorded {
+    const FAULT: u64 = 2_032;
+
+    fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    fn align(&self) -> Aligned {
+        let unchecked = plain::roll(&self.rows, &self.header);
+        Aligned {
+            answer: self.answer(),
+            unchecked_deg: unchecked.map(|roll_rad| self.error_deg(roll_rad)),
+            untold_deg: 0.0,
+        }
+    }
 }

@@ -13,17 +13,23 @@ use orientation::align::level;
 use orientation::align::regression::{Column as Coefficient, Regression};
 use orientation::session::Session;
 
-use super::FEW_RESIDUALS;
 use super::axes::shown;
 use super::chance::Chance;
+use super::class::{Aligned, Subject};
 use super::unit::{Grade, Rig, Unit};
+use super::{FEW_RESIDUALS, Platform};
 use crate::campaign::statistics::Answer;
 use crate::output::degrees;
 use crate::recording::{Body, StageRow};
 use crate::replay::{Options, replay};
-use crate::untold::unseen::{self, Unseen};
+use crate::untold::unseen;
 
-pub use classes::CLASSES;
+/// A stage that stops.
+pub(super) const PLATFORM: Platform = Platform {
+    name: "stage",
+    healthy: |seed| Bench::drawn(seed).align().answer,
+    classes: classes::classes,
+};
 
 /// The random stream of an instrument: none of those that a world draws from.
 const DRAWN: u64 = 2_001;
@@ -39,28 +45,7 @@ struct Bench {
 }
 
 impl Bench {
-    /// A healthy instrument at a drawn place; what it is told of itself is true.
-    fn drawn(seed: u64) -> Self {
-        let mut chance = Chance::new(seed, DRAWN);
-        let grade = Grade::drawn(&mut chance, N);
-        let kappa = grade.g_sensitivity(&mut chance);
-        let level = |_: &mut Chance| GyroConfiguration::default().axis_elevation_rad;
-        let instruments = grade.instruments(&mut chance, Self::RATE_HZ, kappa, level);
-        let header = grade.header(Self::RATE_HZ, chance.happens(0.7));
-        Self {
-            unit: Unit::new(seed, &instruments, header),
-            stops: stops(&mut chance, 0.9),
-            has_temperature: chance.happens(0.3),
-        }
-    }
-
-    /// The same on a whole circle: on an arc a drift in step with the turn looks like the Earth.
-    fn on_circle(seed: u64) -> Self {
-        let stops = stops(&mut Chance::new(seed, Self::FAULT + 3), 1.0);
-        Self { stops, ..Self::drawn(seed) }
-    }
-
-    /// The same on an arc that does not come back.
+    /// One on an arc that does not come back.
     fn one_way(seed: u64) -> Self {
         let mut stops = stops(&mut Chance::new(seed, Self::FAULT + 3), 0.0);
         stops.pop();
@@ -101,11 +86,51 @@ impl Bench {
     }
 }
 
-impl Rig for Bench {
-    type Session = Session;
+impl Subject for Bench {
     const FAULT: u64 = 2_002;
+
+    fn seed(&self) -> u64 {
+        self.unit.seed
+    }
+
+    fn align(&self) -> Aligned {
+        let body = Body::Stage(self.rows());
+        match replay(&self.unit.header, &body, &Options::default(), |_| ()) {
+            Ok(replay) => aligned(&replay.session, self.truth_deg()),
+            Err(error) => Aligned::refused(error),
+        }
+    }
+
+    fn is_few(&self) -> bool {
+        self.stops.len() < FEW_RESIDUALS + 3
+    }
+}
+
+impl Rig for Bench {
+    const NAME: &'static str = "";
+    const MEAN: &'static str = "dwell";
+    const MIDWAY: &'static str = "between two dwells";
     /// The noise of a dwell does not depend on it.
     const RATE_HZ: f64 = 25.0;
+
+    fn drawn(seed: u64) -> Self {
+        let mut chance = Chance::new(seed, DRAWN);
+        let grade = Grade::drawn(&mut chance, N);
+        let kappa = grade.g_sensitivity(&mut chance);
+        let level = |_: &mut Chance| GyroConfiguration::default().axis_elevation_rad;
+        let instruments = grade.instruments(&mut chance, Self::RATE_HZ, kappa, level);
+        let header = grade.header(Self::RATE_HZ, chance.happens(0.7));
+        Self {
+            unit: Unit::new(seed, &instruments, header),
+            stops: stops(&mut chance, 0.9),
+            has_temperature: chance.happens(0.3),
+        }
+    }
+
+    fn on_circle(seed: u64) -> Self {
+        let stops = stops(&mut Chance::new(seed, Self::FAULT + 3), 1.0);
+        Self { stops, ..Self::drawn(seed) }
+    }
 
     fn unit(&self) -> &Unit {
         &self.unit
@@ -134,36 +159,30 @@ impl Rig for Bench {
         self.sample_sigma() / (seconds * Self::RATE_HZ).sqrt()
     }
 
-    fn align(&self) -> (Result<Answer, String>, Option<Session>) {
-        let body = Body::Stage(self.rows());
-        match replay(&self.unit.header, &body, &Options::default(), |_| ()) {
-            Ok(replay) => (answer(&replay.session, self.truth_deg()), Some(replay.session)),
-            Err(error) => (Err(error.to_string()), None),
-        }
+    fn rates(&self) -> Vec<f64> {
+        self.rows().iter().map(|row| row.rate_rad_s).collect()
     }
+}
 
-    fn unseen(session: &Session) -> Vec<Unseen> {
-        unseen::of_stage(session)
-    }
+/// What a session found, and what plain least squares on all dwells give: nothing is left out.
+fn aligned(session: &Session, truth_deg: f64) -> Aligned {
+    let answer = session.conclusion().map(|found| Answer::of_stage(found, truth_deg));
+    Aligned::of(answer, plain_deg(session), &unseen::of_stage(session), truth_deg)
+}
 
-    /// Plain least squares on all dwells: nothing is left out.
-    fn unchecked_deg(session: &Session) -> Option<f64> {
-        let setting = session.setting();
-        let gravity = setting.latitude.gravity();
-        let tilt = level::tilt(session.dwells().iter(), gravity, setting.accelerometer_bias_sigma);
-        let mut regression = Regression::<3>::default();
-        for dwell in session.dwells() {
-            let axis = tilt.sensitive_axis(dwell.stage.rad());
-            let left = dwell.rate + setting.latitude.vertical_rate() * axis[2];
-            regression.push(&[axis[0], -axis[1], 1.0], left);
-        }
-        let [north, east, _] = regression.solve(&[Coefficient::Free; 3])?.coefficients;
-        Some(degrees(east.atan2(north)))
+/// The azimuth of plain least squares, °.
+fn plain_deg(session: &Session) -> Option<f64> {
+    let setting = session.setting();
+    let gravity = setting.latitude.gravity();
+    let tilt = level::tilt(session.dwells().iter(), gravity, setting.accelerometer_bias_sigma);
+    let mut regression = Regression::<3>::default();
+    for dwell in session.dwells() {
+        let axis = tilt.sensitive_axis(dwell.stage.rad());
+        let left = dwell.rate + setting.latitude.vertical_rate() * axis[2];
+        regression.push(&[axis[0], -axis[1], 1.0], left);
     }
-
-    fn is_few(&self) -> bool {
-        self.stops.len() < FEW_RESIDUALS + 3
-    }
+    let [north, east, _] = regression.solve(&[Coefficient::Free; 3])?.coefficients;
+    Some(degrees(east.atan2(north)))
 }
 
 /// Where the stage goes: a circle, or an arc, and back to the first position.
@@ -177,15 +196,4 @@ fn stops(chance: &mut Chance, circles: f64) -> Vec<Stop> {
     let mut list: Vec<f64> = (0..positions).map(|k| start + f64::from(k) * step).collect();
     list.push(start);
     list.into_iter().map(|angle| Stop::new(angle, dwell_s).after(rotation_s)).collect()
-}
-
-/// The answer of a session against the truth.
-fn answer(session: &Session, truth_deg: f64) -> Result<Answer, String> {
-    let conclusion = session.conclusion().ok_or("the session did not end")?;
-    Answer::of(conclusion, truth_deg).map_err(|refusal| refusal.to_string())
-}
-
-/// The answer of a drawn instrument without any fault.
-pub fn healthy(seed: u64) -> Result<Answer, String> {
-    Bench::drawn(seed).align().0
 }

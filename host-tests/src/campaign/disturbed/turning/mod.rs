@@ -13,18 +13,24 @@ use hal_mock::turntable::{EncoderSlip, Segment, TurningSample, Turntable, Turnta
 use orientation::align::rotating::solution::Fit;
 use orientation::session::rotating::Session;
 
+use super::Platform;
 use super::axes::shown;
 use super::chance::Chance;
+use super::class::{Aligned, Subject};
 use super::gyro::Column;
 use super::unit::{Grade, Rig, Unit};
 use crate::campaign::statistics::Answer;
-use crate::output::{azimuth_error, degrees};
 use crate::recording::{Body, Header, RotatingRow, Sensor};
 use crate::replay::Options;
 use crate::rotating::replay;
-use crate::untold::unseen::{self, Unseen};
+use crate::untold::unseen;
 
-pub use classes::CLASSES;
+/// A platform that turns all the time.
+pub(super) const PLATFORM: Platform = Platform {
+    name: "turning",
+    healthy: |seed| Bench::drawn(seed).align().answer,
+    classes: classes::classes,
+};
 
 /// The random stream of an instrument: none of those that a world draws from.
 const DRAWN: u64 = 2_011;
@@ -86,16 +92,6 @@ impl Bench {
         };
         bench.unit.slips.push((0.0, zero_sigma_deg.to_radians() * chance.normal()));
         bench.rate_is_encoders = chance.happens(0.5);
-        bench
-    }
-
-    /// The same, but that one of four has a molecular-electronic sensor.
-    fn drawn(seed: u64) -> Self {
-        let mut chance = Chance::new(seed, MOLECULAR);
-        let mut bench = Self::with_gyro(seed);
-        if chance.happens(MOLECULAR_PART) {
-            bench.make_molecular(&mut chance);
-        }
         bench
     }
 
@@ -174,11 +170,38 @@ impl Bench {
     }
 }
 
-impl Rig for Bench {
-    type Session = Session;
+impl Subject for Bench {
     const FAULT: u64 = 2_012;
+
+    fn seed(&self) -> u64 {
+        self.unit.seed
+    }
+
+    fn align(&self) -> Aligned {
+        let body = Body::Rotating(self.rows());
+        match replay(&self.unit.header, &body, &Options::default()) {
+            Ok(replay) => aligned(&replay.session, self.truth_deg()),
+            Err(error) => Aligned::refused(error),
+        }
+    }
+}
+
+impl Rig for Bench {
+    const NAME: &'static str = "turning-";
+    const MEAN: &'static str = "turn";
+    const MIDWAY: &'static str = "mid-way";
     /// The noise of a turn does not depend on it.
     const RATE_HZ: f64 = 50.0;
+
+    /// One of four has a molecular-electronic sensor.
+    fn drawn(seed: u64) -> Self {
+        let mut chance = Chance::new(seed, MOLECULAR);
+        let mut bench = Self::with_gyro(seed);
+        if chance.happens(MOLECULAR_PART) {
+            bench.make_molecular(&mut chance);
+        }
+        bench
+    }
 
     fn unit(&self) -> &Unit {
         &self.unit
@@ -203,21 +226,22 @@ impl Rig for Bench {
         self.sample_sigma() * (2.0 * self.speed / TAU / Self::RATE_HZ).sqrt()
     }
 
-    fn align(&self) -> (Result<Answer, String>, Option<Session>) {
-        let body = Body::Rotating(self.rows());
-        match replay(&self.unit.header, &body, &Options::default()) {
-            Ok(replay) => (answer(&replay.session, self.truth_deg()), Some(replay.session)),
-            Err(error) => (Err(error.to_string()), None),
-        }
+    /// Those of the even turns.
+    fn rates(&self) -> Vec<f64> {
+        let even = (self.uneven_s + RAMP_SECONDS) * Self::RATE_HZ;
+        self.rows().iter().skip(even as usize).map(|row| row.rate_rad_s).collect()
     }
+}
 
-    fn unseen(session: &Session) -> Vec<Unseen> {
-        unseen::of_platform(session)
-    }
-
-    fn unchecked_deg(session: &Session) -> Option<f64> {
-        plain::azimuth_deg(session)
-    }
+/// What a session found, and the plain mean of all turns.
+fn aligned(session: &Session, truth_deg: f64) -> Aligned {
+    // Where the noise is not stated, what its estimate leaves stands for the limit.
+    let limit = |fit: Fit| if fit.limit > 0.0 { fit.limit } else { fit.budget.noise };
+    let answer = session
+        .conclusion()
+        .map(|conclusion| Answer::of(conclusion.verdict, conclusion.fit.map(limit), truth_deg));
+    let plain_deg = plain::azimuth_deg(session);
+    Aligned::of(answer, plain_deg, &unseen::of_platform(session), truth_deg)
 }
 
 /// A ripple of a size between two values.
@@ -232,20 +256,4 @@ fn with_own_rate(mut rows: Vec<RotatingRow>) -> Vec<RotatingRow> {
         row.stage_rate_rad_s = 0.5 * (beside[2] - beside[0]) * Bench::RATE_HZ;
     }
     rows
-}
-
-/// The answer of a session against the truth.
-fn answer(session: &Session, truth_deg: f64) -> Result<Answer, String> {
-    let conclusion = session.conclusion().ok_or("the session did not end")?;
-    let azimuth = conclusion.verdict.map_err(|refusal| refusal.to_string())?;
-    // Where the noise is not stated, what its estimate leaves stands for the limit.
-    let limit = |fit: Fit| degrees(if fit.limit > 0.0 { fit.limit } else { fit.budget.noise });
-    let limit = conclusion.fit.map_or(f64::NAN, limit);
-    let error = azimuth_error(degrees(azimuth.angle), truth_deg);
-    Ok(Answer { error, sigma: degrees(azimuth.sigma), limit })
-}
-
-/// The answer of a drawn instrument without any fault.
-pub fn healthy(seed: u64) -> Result<Answer, String> {
-    Bench::drawn(seed).align().0
 }

@@ -5,158 +5,138 @@ use hal_mock::vehicle::Leg;
 use super::{Bench, DRAWN, MILLI_G};
 use crate::campaign::disturbed::axes::turned;
 use crate::campaign::disturbed::chance::Chance;
-use crate::campaign::disturbed::{Class, Pair};
+use crate::campaign::disturbed::class::{Class, Fault, Subject};
 
 /// Answers that may be wrong of a vehicle that only stands, where a bias is not what it was said to be: no data
 /// tell the bias along east from north.
 const WRONG_OF_FALSE_BIAS: f64 = 0.05;
 
 /// The classes of a vehicle.
-pub const CLASSES: &[Class] = &[
-    Class {
-        name: "vehicle-short-stops",
-        fault: "N that no key states, and short stops of a long recording",
-        severity: [300.0, 6000.0],
-        unit: "samples of a stop",
-        wrong_allowed: 0.0,
-        draw: |seed, size| {
-            let mut bench = Bench::siap(seed);
-            bench.shorten_stops(size);
-            bench.header.gyro_n_deg_sqrt_h = Some(bench.gyro().n_deg_sqrt_h);
-            bench.pair(|bench, _| bench.header.gyro_n_deg_sqrt_h = None)
+pub(super) fn classes() -> Vec<Class> {
+    let mut classes: Vec<Class> = understated().into();
+    classes.extend(wrong_times());
+    classes.push(accelerometer_axes());
+    classes.extend(unstated());
+    classes
+}
+
+/// What is said of the gyros is too good, or nothing is said.
+fn understated() -> [Class; 3] {
+    let short = "N that no key states, and short stops of a long recording";
+    let noise = "the gyros' N is so many times what is stated, on the way and standing";
+    let bias = "the gyros' biases are so many times what is stated, in a vehicle that only stands";
+    let of_bias = Fault::new("standing-bias-understated", bias, [1.0, 30.0], "").spoils(
+        Bench::standing,
+        |bench, _, size| {
+            bench.header.gyro_bias_deg_h = Some(bench.gyro().bias_sigma_deg_h / size);
         },
-    },
-    Class {
-        name: "vehicle-noise-understated",
-        fault: "the gyros' N is so many times what is stated, on the way and standing",
-        severity: [1.0, 30.0],
-        unit: "",
-        wrong_allowed: 0.0,
-        draw: |seed, size| {
-            let mut bench = Bench::drawn(seed);
-            bench.header.gyro_n_deg_sqrt_h = Some(bench.gyro().n_deg_sqrt_h);
-            let stated = Some(bench.gyro().n_deg_sqrt_h / size);
-            bench.pair(|bench, _| bench.header.gyro_n_deg_sqrt_h = stated)
-        },
-    },
-    Class {
-        name: "standing-bias-understated",
-        fault: "the gyros' biases are so many times what is stated, in a vehicle that only stands",
-        severity: [1.0, 30.0],
-        unit: "",
-        wrong_allowed: WRONG_OF_FALSE_BIAS,
-        draw: |seed, size| {
-            let bench = Bench::standing(seed);
-            let stated = Some(bench.gyro().bias_sigma_deg_h / size);
-            bench.pair(|bench, _| bench.header.gyro_bias_deg_h = stated)
-        },
-    },
-    Class {
-        name: "vehicle-rate",
-        fault: "the header's rate is not that of the times",
-        severity: [1e-4, 2.0],
-        unit: "of the rate",
-        wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::drawn(seed).pair(|bench, chance| {
-                let wrong = if chance.happens(0.5) { 1.0 + size } else { 1.0 / (1.0 + size) };
+    );
+    [
+        Fault::new("vehicle-short-stops", short, [300.0, 6000.0], "samples of a stop").drawn(
+            |seed, size| {
+                let mut bench = Bench::siap(seed).stating_noise();
+                bench.shorten_stops(size);
+                bench.pair(|bench, _| bench.header.gyro_n_deg_sqrt_h = None)
+            },
+        ),
+        Fault::new("vehicle-noise-understated", noise, [1.0, 30.0], "").spoils(
+            |seed| Bench::drawn(seed).stating_noise(),
+            |bench, _, size| {
+                bench.header.gyro_n_deg_sqrt_h = Some(bench.gyro().n_deg_sqrt_h / size);
+            },
+        ),
+        Class { wrong_allowed: WRONG_OF_FALSE_BIAS, ..of_bias },
+    ]
+}
+
+/// The header's rate is not that of the times, or the times are not those of the sensors.
+fn wrong_times() -> [Class; 2] {
+    let rate = "the header's rate is not that of the times";
+    let clock = "the times run at another pace than the sensors, whose rate is stated";
+    [
+        Fault::new("vehicle-rate", rate, [1e-4, 2.0], "of the rate").spoils(
+            Bench::drawn,
+            |bench, chance, size| {
+                let wrong = chance.factor_or_inverse(1.0 + size);
                 bench.header.rate_hz = bench.header.rate_hz.map(|rate| rate * wrong);
-            })
-        },
-    },
-    Class {
-        name: "vehicle-clock",
-        fault: "the times run at another pace than the sensors, whose rate is stated",
-        severity: [1e-4, 2.0],
-        unit: "of the pace",
-        wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::drawn(seed).pair(|bench, chance| {
-                bench.clock = if chance.happens(0.5) { 1.0 + size } else { 1.0 / (1.0 + size) };
-            })
-        },
-    },
-    Class {
-        name: "vehicle-accelerometer-axes",
-        fault: "the accelerometers are turned by 90° or 180° about the vertical",
-        severity: [0.005, 5.0],
-        unit: "° of slope",
-        wrong_allowed: 0.0,
-        draw: |seed, size| {
+            },
+        ),
+        Fault::new("vehicle-clock", clock, [1e-4, 2.0], "of the pace").spoils(
+            Bench::drawn,
+            |bench, chance, size| {
+                bench.clock = chance.factor_or_inverse(1.0 + size);
+            },
+        ),
+    ]
+}
+
+fn accelerometer_axes() -> Class {
+    let fault = "the accelerometers are turned by 90° or 180° about the vertical";
+    Fault::new("vehicle-accelerometer-axes", fault, [0.005, 5.0], "° of slope").drawn(
+        |seed, size| {
             let mut bench = Bench::moving(seed);
             bench.lean(size);
-            never_harmless(bench.pair(|bench, chance| bench.accelerometer_axes = turned(chance)))
+            let pair = bench.pair(|bench, chance| bench.accelerometer_axes = turned(chance));
+            pair.never_harmless()
         },
-    },
-    Class {
-        name: "vehicle-unstated-g-sensitivity",
-        fault: "a g-sensitivity of the gyros that no key states",
-        severity: [0.01, 3.0],
-        unit: "of the bias's σ, per g",
-        wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::drawn(seed).pair(|bench, chance| {
+    )
+}
+
+/// What no key states.
+fn unstated() -> [Class; 4] {
+    let kappa = "a g-sensitivity of the gyros that no key states";
+    let scale = "scale errors of the gyros that no key states";
+    let force = "accelerometer biases that no key states";
+    let bias = "biases of the gyros that no key states";
+    let kappa_unit = "of the bias's σ, per g";
+    [
+        Fault::new("vehicle-unstated-g-sensitivity", kappa, [0.01, 3.0], kappa_unit).spoils(
+            Bench::drawn,
+            |bench, chance, size| {
                 let size = size * bench.gyro().bias_sigma_deg_h;
                 for gyro in &mut bench.day.vehicle.gyros {
                     gyro.g_sensitivity_deg_h_g = [0, 1].map(|_| size * chance.normal());
                 }
                 bench.header.g_sensitivity_deg_h_g = None;
                 bench.header.g_sensitivity_sigma_deg_h_g = None;
-            })
-        },
-    },
-    Class {
-        name: "vehicle-unstated-scale",
-        fault: "scale errors of the gyros that no key states",
-        severity: [1e-6, 1e-3],
-        unit: "",
-        wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::drawn(seed).pair(|bench, chance| {
+            },
+        ),
+        Fault::new("vehicle-unstated-scale", scale, [1e-6, 1e-3], "").spoils(
+            Bench::drawn,
+            |bench, chance, size| {
                 for gyro in &mut bench.day.vehicle.gyros {
                     gyro.scale_sigma = 0.0;
                     gyro.scale_error = size * chance.normal();
                 }
                 bench.header.gyro_scale_sigma = None;
-            })
-        },
-    },
-    Class {
-        name: "vehicle-unstated-accelerometer-bias",
-        fault: "accelerometer biases that no key states",
-        severity: [0.01, 10.0],
-        unit: "mg",
-        wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::drawn(seed).pair(|bench, chance| {
+            },
+        ),
+        Fault::new("vehicle-unstated-accelerometer-bias", force, [0.01, 10.0], "mg").spoils(
+            Bench::drawn,
+            |bench, chance, size| {
                 let accelerometer = &mut bench.day.vehicle.accelerometer;
                 accelerometer.bias_sigma_m_s2 = 0.0;
                 accelerometer.bias_m_s2 = [0, 1, 2].map(|_| chance.normal() * size * MILLI_G);
                 bench.header.accelerometer_bias_m_s2 = None;
-            })
-        },
-    },
-    Class {
-        name: "vehicle-unstated-bias",
-        fault: "biases of the gyros that no key states",
-        severity: [0.003, 3.0],
-        unit: "°/h",
-        wrong_allowed: 0.0,
-        draw: |seed, size| {
-            Bench::siap(seed).pair(|bench, _| {
-                bench.change_gyros(|gyro| gyro.bias_sigma_deg_h = size);
+            },
+        ),
+        Fault::new("vehicle-unstated-bias", bias, [0.003, 3.0], "°/h").spoils(
+            Bench::siap,
+            |bench, _, size| {
+                bench.day.vehicle.gyros.iter_mut().for_each(|gyro| gyro.bias_sigma_deg_h = size);
                 bench.header.gyro_bias_deg_h = None;
-            })
-        },
-    },
-];
-
-/// Axes that are turned contradict whatever moves: an azimuth that comes near the true one is luck.
-fn never_harmless(pair: Pair) -> Pair {
-    Pair { unchecked_deg: None, ..pair }
+            },
+        ),
+    ]
 }
 
 impl Bench {
+    /// The same with its N stated.
+    fn stating_noise(mut self) -> Self {
+        self.header.gyro_n_deg_sqrt_h = Some(self.gyro().n_deg_sqrt_h);
+        self
+    }
+
     /// Makes the stops so many samples long: nearly a quarter of the recording, or down to a sixtieth.
     fn shorten_stops(&mut self, samples: f64) {
         let mut chance = Chance::new(self.seed, DRAWN + 2);

@@ -9,19 +9,24 @@ use hal_mock::plant::sway::SwayConfiguration;
 use hal_mock::vehicle::scenario::Scenario;
 use hal_mock::vehicle::{Leg, Vehicle};
 
-use super::Pair;
+use super::Platform;
 use super::axes::{Axes, UPRIGHT, shown};
 use super::chance::Chance;
+use super::class::{Aligned, Subject};
 use crate::campaign::statistics::Answer;
-use crate::output::{azimuth_error, degrees};
+use crate::output::degrees;
 use crate::recording::{Body, Header, ImuRow, ImuSample};
 use crate::stops::{Method, Options, Replay, replay};
 
-pub use classes::CLASSES;
+/// A vehicle: one that stops and drives where the seed is even, one that only stands where it is odd.
+pub(super) const PLATFORM: Platform = Platform {
+    name: "vehicle",
+    healthy: |seed| Bench::drawn(seed).align().answer,
+    classes: classes::classes,
+};
 
-/// The random streams of a unit and of its fault: none of those that a world draws from.
+/// The random stream of a unit: none of those that a world draws from.
 const DRAWN: u64 = 2_011;
-const FAULT: u64 = 2_012;
 /// Seeds of one series, beyond which those of another begin.
 const RESERVED: u64 = 1 << 20;
 /// m/s² of a thousandth of gravity.
@@ -43,13 +48,6 @@ struct Bench {
     accelerometer_axes: Axes,
     /// What the recorder's clock makes of a second.
     clock: f64,
-}
-
-/// What a recording became.
-struct Aligned {
-    answer: Result<Answer, String>,
-    /// Error of the azimuth when nothing is checked, °, where there is one.
-    unchecked_deg: Option<f64>,
 }
 
 impl Bench {
@@ -150,17 +148,12 @@ impl Bench {
         self.day.vehicle.gyros[0]
     }
 
-    /// Changes all three gyros.
-    fn change_gyros(&mut self, change: impl Fn(&mut GyroConfiguration)) {
-        self.day.vehicle.gyros.iter_mut().for_each(change);
-    }
-
     /// The recording: its rows, the header, and the true azimuth at its end, °.
     fn recorded(&self) -> (Body, Header, f64) {
         let configuration = self.day.configuration();
         let mut vehicle = Vehicle::new(&configuration, self.seed);
         let stops: Vec<[f64; 2]> = configuration.stops().collect();
-        let mut fixes = Chance::new(self.seed, FAULT + 1);
+        let mut fixes = Chance::new(self.seed, Self::FAULT + 1);
         let mut middles = stops.iter().map(|[from, to]| 0.5 * (from + to)).peekable();
         let (mut rows, mut places) = (Vec::new(), Vec::new());
         while let Some(sample) = vehicle.next() {
@@ -186,54 +179,30 @@ impl Bench {
         };
         (Body::Imu(rows), header, vehicle.truth().attitude.azimuth_rad.to_degrees())
     }
+}
+
+impl Subject for Bench {
+    const FAULT: u64 = 2_012;
+
+    fn seed(&self) -> u64 {
+        self.seed
+    }
 
     fn align(&self) -> Aligned {
         let (body, header, truth_deg) = self.recorded();
         let options = Options { method: Some(self.method), ..Options::default() };
         match replay(&header, &body, &options) {
-            Ok(replay) => Aligned {
-                answer: answer(&replay, truth_deg),
-                unchecked_deg: unchecked_deg(&replay, truth_deg),
-            },
-            Err(error) => Aligned { answer: Err(error.to_string()), unchecked_deg: None },
-        }
-    }
-
-    /// This unit with a fault and without.
-    fn pair(&self, spoil: impl FnOnce(&mut Self, &mut Chance)) -> Pair {
-        let mut spoilt = self.clone();
-        spoil(&mut spoilt, &mut Chance::new(self.seed, FAULT));
-        let (healthy, faulty) = (self.align(), spoilt.align());
-        Pair {
-            healthy: healthy.answer,
-            faulty: faulty.answer,
-            unchecked_deg: faulty.unchecked_deg,
-            untold_deg: 0.0,
-            is_few: false,
+            Ok(replay) => aligned(&replay, truth_deg),
+            Err(error) => Aligned::refused(error),
         }
     }
 }
 
-/// The answer of a replay against the truth.
-fn answer(replay: &Replay, truth_deg: f64) -> Result<Answer, String> {
-    let conclusion = replay.conclusion().ok_or("the session did not end")?;
-    let azimuth = conclusion.verdict.map_err(|refusal| refusal.to_string())?;
-    let limit = conclusion.found.as_ref().map_or(f64::NAN, |found| degrees(found.limit));
-    let error = azimuth_error(degrees(azimuth.angle), truth_deg);
-    Ok(Answer { error, sigma: degrees(azimuth.sigma), limit })
-}
-
-/// Error of what was found, believed or not, °.
-fn unchecked_deg(replay: &Replay, truth_deg: f64) -> Option<f64> {
-    let found = replay.conclusion()?.found.as_ref()?;
-    Some(azimuth_error(degrees(found.unchecked), truth_deg))
-}
-
-/// The answer of a drawn unit without any fault: of a vehicle that stops and drives where the seed is even, of
-/// one that only stands where it is odd.
-///
-/// # Errors
-/// Why there is none.
-pub fn healthy(seed: u64) -> Result<Answer, String> {
-    Bench::drawn(seed).align().answer
+/// What a replay found, and what it found believed or not.
+fn aligned(replay: &Replay, truth_deg: f64) -> Aligned {
+    let conclusion = replay.conclusion();
+    let found = conclusion.and_then(|conclusion| conclusion.found.as_ref());
+    let limit = found.map(|found| found.limit);
+    let answer = conclusion.map(|conclusion| Answer::of(conclusion.verdict, limit, truth_deg));
+    Aligned::of(answer, found.map(|found| degrees(found.unchecked)), &[], truth_deg)
 }
