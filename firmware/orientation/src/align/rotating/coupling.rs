@@ -24,6 +24,7 @@ const LEAST_TURNS: f64 = 3.0;
 
 /// Axis misalignment and lag of the gyro, from one rate-modulated stretch or from storage.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Coupling {
     /// Part of the platform's rate that the gyro shows, s = −sin α: the in-phase response at the
     /// frequency of the modulation.

@@ -32,6 +32,7 @@ use crate::units::{DEGREE, DEGREES_PER_RADIAN};
 
 /// Kind of sensor on the platform.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sensor {
     /// Whether the response is flat: gain one and no lag at the platform's speed. Otherwise gain
     /// and lag are unknown, and rotation in both senses determines them.
@@ -55,6 +56,7 @@ impl Sensor {
 
 /// Configuration of an alignment on a rotating platform.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Setting {
     /// Site, gyro, accelerometer and requirements.
     pub common: Common,
