@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::Instant as WallClock;
 
 use bench::instrument::kept::{Kept, KeptPlan, KeptRun};
-use bench::instrument::recorder::CsvRecorder;
+use bench::instrument::recorder::{self, Samples};
 use bench::instrument::{self, FramesRun, Run, RunError};
 use bench::outcome::Finished;
 use bench::outcome::run::{KeptAzimuth, RunDetails};
@@ -464,7 +464,7 @@ fn run_frames(
     let scenario = FramesScenario { base: *base, passes, ..FramesScenario::default() };
     let begun = WallClock::now();
     let watch = Terminal(Progress::new(0, "positions"));
-    let frames = instrument::align_frames(&scenario, fault, &watch);
+    let frames = instrument::align_frames(&scenario, fault, NoRecorder, &watch);
     watch.0.finish();
     let FramesRun { run, axis: [forward, right, down], kept } =
         frames.map_err(|error| error.to_string())?;
@@ -487,10 +487,11 @@ fn simulate(
         None => align(scenario, fault, NoRecorder, &watch),
         Some(path) => {
             let failed = |error: std::io::Error| unwritten::told("the recording", path, &error);
-            let setting = scenario.setting().ok_or("the latitude is outside ±90°")?;
-            let mut recorder = CsvRecorder::create(path, scenario, &setting).map_err(failed)?;
-            let run = align(scenario, fault, &mut recorder, &watch);
-            recorded = recorder.finish().map_err(failed);
+            let mut samples = Samples::default();
+            let run = align(scenario, fault, &mut samples, &watch);
+            if let Ok(KeptRun { run, .. }) = &run {
+                recorded = recorder::write(path, scenario, run, &samples.0).map_err(failed);
+            }
             run
         }
     };

@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 use std::time::Instant as WallClock;
 
 use bench::instrument::kept::Kept;
+use bench::instrument::recorder::{Samples, turning_rows};
 use bench::instrument::{Keeping, Run, TurntableRun, align_turning_again, flash_file};
 use bench::outcome::Finished;
 use bench::outcome::run::RunDetails;
 use bench::output::progress::Progress;
 use bench::recording::{Body, Truth};
 use bench::rotating::Replay;
-use bench::rotating::recorder::RowRecorder;
 use clap::{Args, ValueEnum};
 use firmware::date::Day;
 use firmware::event::Event;
@@ -151,7 +151,7 @@ pub fn run(
     let begun = WallClock::now();
     let mut keeping = options.keeping()?;
     let watch = Terminal(Progress::new(0, "turns"));
-    let mut recorder = RowRecorder::default();
+    let mut recorder = Samples::default();
     let run = align_turning_again(scenario, fault, &mut recorder, &watch, keeping.as_mut());
     watch.0.finish();
     let TurntableRun { run, .. } = run.map_err(|error| error.to_string())?;
@@ -163,7 +163,7 @@ pub fn run(
         Replay { session: run.replay.clone(), zero_s: 0.0, assumed: vec![ASSUMED.to_owned()] };
     let truth = Truth { azimuth_deg: Some(scenario.base.azimuth_deg), ..Truth::default() };
     let outcome = replay.outcome(&truth).of_run(scenario.base.seed, details);
-    let body = Body::Rotating(recorder.rows().to_vec());
+    let body = Body::Rotating(turning_rows(&recorder.0));
     let (finished, body) = (&replay, Some(&body));
     let shown = Shown { name: NAME, outcome, finished, truth: &truth, body };
     Ok(shown.told(report, as_json)?.with_written(put_away))

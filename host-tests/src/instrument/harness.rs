@@ -1,12 +1,12 @@
 //! What stands around every simulated board: its log, the wire of its link, and the clock.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
 use embassy_time::Instant;
 use embedded_io_async::{ErrorType, Write};
 use firmware::event::Event;
 use firmware::health::Health;
-use firmware::ports::Observer;
+use firmware::ports::{BaseReading, Observer};
 use firmware::shared::Channels;
 use hal_mock::assembly::Assembly;
 use orientation::keep::Report;
@@ -22,11 +22,16 @@ pub(super) const ASSUMED: &str = "latitude exact, calibrations as stated";
 pub(super) struct Log<'w, W> {
     events: RefCell<Vec<(Instant, Event)>>,
     reports: RefCell<Vec<Report>>,
+    base: RefCell<Vec<(Instant, BaseReading)>>,
+    is_aligned: Cell<bool>,
     watch: &'w W,
 }
 
 impl<W: Observer> Observer for Log<'_, W> {
     fn event(&self, at: Instant, event: &Event) {
+        if matches!(event, Event::Concluded(..) | Event::Refused(_)) {
+            self.is_aligned.set(true);
+        }
         self.events.borrow_mut().push((at, *event));
         self.watch.event(at, event);
     }
@@ -46,6 +51,13 @@ impl<W: Observer> Observer for Log<'_, W> {
     fn kept(&self, report: &Report) {
         self.reports.borrow_mut().push(*report);
         self.watch.kept(report);
+    }
+
+    fn sensed(&self, at: Instant, reading: &BaseReading) {
+        if !self.is_aligned.get() {
+            self.base.borrow_mut().push((at, *reading));
+        }
+        self.watch.sensed(at, reading);
     }
 }
 
@@ -82,8 +94,14 @@ pub(super) struct Ended {
 impl<'w, W: Observer> Harness<'w, W> {
     /// An empty one; what a board tells goes on to `watch`.
     pub(super) fn new(watch: &'w W) -> Self {
-        let (events, reports) = (RefCell::default(), RefCell::default());
-        Self { log: Log { events, reports, watch }, bytes: RefCell::default() }
+        let log = Log {
+            events: RefCell::default(),
+            reports: RefCell::default(),
+            base: RefCell::default(),
+            is_aligned: Cell::default(),
+            watch,
+        };
+        Self { log, bytes: RefCell::default() }
     }
 
     /// The channels of the board's parts.
@@ -102,6 +120,7 @@ impl<'w, W: Observer> Harness<'w, W> {
             replay,
             events: self.log.events.into_inner(),
             reports: self.log.reports.into_inner(),
+            base: self.log.base.into_inner(),
             lines: String::from_utf8_lossy(&self.bytes.into_inner()).into_owned(),
             seconds: ended.at.as_micros() as f64 * 1e-6,
             health: ended.health,

@@ -44,6 +44,8 @@ pub struct Header {
     pub stops_s: Option<Vec<[f64; 2]>>,
     /// How far each stop lies from the first, north and east, m; as many as the stops where both are there.
     pub displacements_m: Option<Vec<[f64; 2]>>,
+    /// What the session of a run was given, as [`super::Given`] reads it.
+    pub session: Option<String>,
 }
 
 /// The principle of the rate sensor.
@@ -53,6 +55,20 @@ pub enum Sensor {
     Gyro,
     /// A molecular-electronic rate sensor.
     Met,
+}
+
+impl Sensor {
+    /// All principles.
+    const ALL: [Self; 2] = [Self::Gyro, Self::Met];
+
+    /// Its name in a header.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Gyro => "gyro",
+            Self::Met => "met",
+        }
+    }
 }
 
 /// What a simulator or a reference instrument knows, for checking a result only: a solver must
@@ -78,7 +94,8 @@ pub struct Truth {
 const MAX_TRUTH_KEYS: usize = 1000;
 
 /// Keys whose value is not one number.
-const WORDS: [&str; 5] = ["kind", PAIR, "sensor", STOPS, DISPLACEMENTS];
+const WORDS: [&str; 6] = ["kind", PAIR, "sensor", STOPS, DISPLACEMENTS, SESSION];
+pub(super) const SESSION: &str = "session";
 const PAIR: &str = "g_sensitivity_deg_h_g";
 /// Keys of the truth that are looked at.
 const TRUTHS: [&str; 2] = ["truth_azimuth_deg", "truth_start_azimuth_deg"];
@@ -222,6 +239,7 @@ impl Collector {
         }
         header.g_sensitivity_deg_h_g = self.parse(PAIR, pair)?;
         header.sensor = self.parse("sensor", sensor)?;
+        header.session = self.get(SESSION).map(|(_, text)| text.to_owned());
         Ok(header)
     }
 
@@ -273,11 +291,8 @@ fn pair(text: &str) -> Result<[f64; 2], Problem> {
 
 /// The sensor's name.
 fn sensor(text: &str) -> Result<Sensor, Problem> {
-    match text {
-        "gyro" => Ok(Sensor::Gyro),
-        "met" => Ok(Sensor::Met),
-        other => Err(HeaderProblem::UnknownSensor(other.to_owned()).into()),
-    }
+    let unknown = || HeaderProblem::UnknownSensor(text.to_owned()).into();
+    Sensor::ALL.into_iter().find(|sensor| sensor.name() == text).ok_or_else(unknown)
 }
 
 /// The true azimuth; a truth may be `nan`, which says that it is not known.

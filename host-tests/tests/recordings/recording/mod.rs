@@ -92,6 +92,9 @@ fn a_stage_recording_gives_its_rows_with_their_lines() {
         rate_rad_s: 3.5e-5,
         force_m_s2: [0.127, -0.27, -9.83],
         temperature_c: None,
+        force_is_new: true,
+        elevation_rad: None,
+        base: None,
     };
     assert_eq!(rows[2], third);
 }
@@ -239,6 +242,9 @@ proptest! {
             rate_rad_s: row.1,
             force_m_s2: row.2,
             temperature_c: Some(row.3),
+            force_is_new: true,
+            elevation_rad: None,
+            base: None,
         }).collect();
         prop_assert_eq!(stage_rows(read(written(&rows))), rows);
     }

@@ -41,6 +41,7 @@ pub struct Sensor {
     /// (molecular-electronic sensors): its effect of tilt times the platform's speed, over the
     /// horizontal Earth rate, rad/s. Zero for a gyro without it; infinite where it is unknown,
     /// which requires two speeds.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::units::or_infinite"))]
     pub molecular_sigma: f64,
     /// Settling time of the output after a change of speed, s.
     pub settle_seconds: f64,

@@ -1,0 +1,44 @@
+//! The recording of a spinning body, kind `spin`.
+//!
+//! Rates are what turned in a sample, over its period.
+
+use std::io::{self, Write};
+
+use firmware::simulated::spin::{SAMPLE_RATE, SpinScenario};
+use orientation::signal::SpinSample;
+use orientation::units::{AngleIncrement, SpinForce};
+
+use super::text::{Scaled, seconds};
+use super::{Carrier, Ending};
+use crate::instrument::spinning::SpinRun;
+use crate::recording::{GREATEST_SPIN_RATE, Given, Kind};
+
+const COLUMNS: &str = "t_s,gx_rad_s,gy_rad_s,gz_rad_s,ay_m_s2,az_m_s2,truth_roll_rad";
+
+impl Carrier for SpinScenario {
+    type Run = SpinRun;
+    type Sample = SpinSample;
+
+    fn write(&self, to: &mut impl Write, run: &SpinRun, of: &[SpinSample]) -> io::Result<()> {
+        let setting = self.setting();
+        let ended = Ending::of(&run.run.events).reason;
+        writeln!(to, "# kind: {}", Kind::Spin)?;
+        writeln!(to, "# rate_hz: {SAMPLE_RATE}")?;
+        writeln!(to, "# gyro_N_deg_sqrt_h: {}", self.gyro_n_deg_sqrt_h)?;
+        writeln!(to, "# gyro_scale_sigma: {}", self.scale_sigma)?;
+        writeln!(to, "{}", Given { setting, procedure: (), ended })?;
+        writeln!(to, "{COLUMNS}")?;
+        for (sample, roll) in of.iter().zip(&run.rolls_rad) {
+            let [x, y, z] = sample.turned.map(mean_rate);
+            let [up, right] = sample.force.unwrap_or([SpinForce(i32::MAX); 2]);
+            let [up, right] = [up, right].map(|force| Scaled::new(force.0, 5));
+            writeln!(to, "{},{x},{y},{z},{up},{right},{roll}", seconds(sample.time))?;
+        }
+        Ok(())
+    }
+}
+
+/// What turned in a period as a rate, rad/s; at a limit of the gyro's range the greatest that there is.
+fn mean_rate(turned: AngleIncrement) -> f64 {
+    if turned.is_saturated() { GREATEST_SPIN_RATE } else { turned.rad() * SAMPLE_RATE }
+}
