@@ -349,8 +349,8 @@ fn again(
         survey.orders = if is_mounted { &Order::QUARTERS } else { &Order::COMPARED };
     }
     let mut session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
-    feed(&mut session, rows.iter().map(|row| sample(row, 0.0)), progress);
-    session.handle(ended.map_or(Event::End, Event::Failed));
+    let end = ended.map_or(Event::End, Event::Failed);
+    drive(&mut session, rows.iter().map(|row| sample(row, 0.0)), end, progress);
     let method = if is_mounted { Method::Positions } else { Method::of(&session) };
     Ok(Replay { method, setting: *session.setting(), session, assumed: vec![GIVEN.to_owned()] })
 }
@@ -414,7 +414,7 @@ fn stage(
         }
         sample
     };
-    drive(&mut session, rows.iter().map(shown), progress);
+    drive(&mut session, rows.iter().map(shown), Event::End, progress);
     Ok(session)
 }
 
@@ -448,20 +448,11 @@ fn followed(
     })
 }
 
-/// Feeds samples to a session until it has finished or they end.
+/// Feeds samples to a session until it has finished or they end, as this event tells it.
 pub fn drive(
     session: &mut Session,
     samples: impl Iterator<Item = Sample>,
-    progress: impl FnMut(&Session),
-) {
-    feed(session, samples, progress);
-    session.handle(Event::End);
-}
-
-/// Feeds samples to a session.
-fn feed(
-    session: &mut Session,
-    samples: impl Iterator<Item = Sample>,
+    end: Event<'_>,
     mut progress: impl FnMut(&Session),
 ) {
     let mut seen = 0;
@@ -472,6 +463,7 @@ fn feed(
             progress(session);
         }
     }
+    session.handle(end);
 }
 
 /// A row in the stage path's units, its time from `begin` on; rounding as in

@@ -57,20 +57,6 @@ pub enum Sensor {
     Met,
 }
 
-impl Sensor {
-    /// All principles.
-    const ALL: [Self; 2] = [Self::Gyro, Self::Met];
-
-    /// Its name in a header.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Gyro => "gyro",
-            Self::Met => "met",
-        }
-    }
-}
-
 /// What a simulator or a reference instrument knows, for checking a result only: a solver must
 /// never be given this.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -291,8 +277,11 @@ fn pair(text: &str) -> Result<[f64; 2], Problem> {
 
 /// The sensor's name.
 fn sensor(text: &str) -> Result<Sensor, Problem> {
-    let unknown = || HeaderProblem::UnknownSensor(text.to_owned()).into();
-    Sensor::ALL.into_iter().find(|sensor| sensor.name() == text).ok_or_else(unknown)
+    match text {
+        "gyro" => Ok(Sensor::Gyro),
+        "met" => Ok(Sensor::Met),
+        other => Err(HeaderProblem::UnknownSensor(other.to_owned()).into()),
+    }
 }
 
 /// The true azimuth; a truth may be `nan`, which says that it is not known.

@@ -59,20 +59,18 @@ pub fn samples(rows: &[SpinRow], period_s: f64) -> impl Iterator<Item = SpinSamp
 
 /// The samples of a run, as its board had them: a rate is what turned in the period, s, that ended with its row.
 pub fn given(rows: &[SpinRow], period_s: f64) -> impl Iterator<Item = SpinSample> + '_ {
-    let mut carried = [0.0; 3];
+    let turned = move |rate: f64| {
+        let is_cut = rate.abs() >= GREATEST_SPIN_RATE;
+        AngleIncrement::from_rad(if is_cut { f64::NAN } else { rate * period_s }, &mut 0.0)
+    };
     rows.iter().map(move |row| {
         let [y, z] = row.across_rad_s.unwrap_or_default();
-        let mut carried = carried.iter_mut();
-        let turned = [row.rate_rad_s, y, z].map(|rate| {
-            let is_cut = rate.abs() >= GREATEST_SPIN_RATE;
-            let angle = if is_cut { f64::NAN } else { rate * period_s };
-            carried
-                .next()
-                .map_or(AngleIncrement::default(), |it| AngleIncrement::from_rad(angle, it))
-        });
         let force = row.force_m_s2.map(SpinForce::from_m_per_s2);
-        let force = Some(force).filter(|force| !force.iter().any(|part| part.is_saturated()));
-        SpinSample { time: Instant::from_seconds(row.time_s), turned, force }
+        SpinSample {
+            time: Instant::from_seconds(row.time_s),
+            turned: [row.rate_rad_s, y, z].map(turned),
+            force: (!force.iter().any(|force| force.is_saturated())).then_some(force),
+        }
     })
 }
 

@@ -1,26 +1,23 @@
 //! Recordings of simulated runs: what an instrument's session was given, to the last digit.
 //!
 //! [`Samples`] keeps what the session gets while it runs; [`write`] makes a recording of it afterwards, when it is
-//! known how the run ended. Integers of the board are written out whole, so that a replay gets the very same ones.
-//! Of a run that aligns more than once, the recording holds the first alignment.
+//! known how the run ended. Integers of the board are written out whole, so that a replay gets the very same ones. A
+//! recording holds one alignment, and not what is kept after it.
 
 mod spin;
 mod stage;
-mod text;
 mod turntable;
 mod vehicle;
 
+use std::fmt::Display;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-use embassy_time::Instant;
-use firmware::event::Event;
 use firmware::ports::Recorder;
 use firmware::simulated::scenario::Scenario;
 use orientation::align::setting::Setting;
-use orientation::error::Refusal;
-use orientation::units::{self, DEGREE_PER_HOUR};
+use orientation::units::{AngularRate, DEGREE_PER_HOUR, Instant, SpecificForce};
 
 pub use turntable::turning_rows;
 
@@ -65,31 +62,15 @@ pub fn write<C: Carrier>(
     to.flush()
 }
 
-/// How the first alignment of a run ended: when, and why without a result.
-#[derive(Clone, Copy, Debug)]
-struct Ending {
-    at: units::Instant,
-    reason: Option<Refusal>,
-}
-
-impl Ending {
-    /// The ending that a board told.
-    fn of(events: &[(Instant, Event)]) -> Self {
-        let ending = |(at, event): &(Instant, Event)| {
-            let reason = match *event {
-                Event::Concluded(..) | Event::Flown { .. } => None,
-                Event::Refused(reason) | Event::RollEnded(reason) => Some(reason),
-                _ => return None,
-            };
-            Some(Self { at: units::Instant(at.as_micros()), reason })
-        };
-        let never = Self { at: units::Instant(u64::MAX), reason: None };
-        events.iter().find_map(ending).unwrap_or(never)
-    }
-}
-
-/// Writes what the keys of a header say of place and instrument, for those who read nothing else.
-fn header(to: &mut impl Write, kind: Kind, base: &Scenario, setting: &Setting) -> io::Result<()> {
+/// Writes what a board was told: what keys of their own say of place and instrument, then all that its session was
+/// given.
+fn header(
+    to: &mut impl Write,
+    kind: Kind,
+    base: &Scenario,
+    setting: &Setting,
+    given: &impl Display,
+) -> io::Result<()> {
     let [along, across] = setting.g_sensitivity.map(|part| part / DEGREE_PER_HOUR);
     let kappa_sigma = setting.g_sensitivity_sigma / DEGREE_PER_HOUR;
     writeln!(to, "# kind: {kind}")?;
@@ -101,5 +82,29 @@ fn header(to: &mut impl Write, kind: Kind, base: &Scenario, setting: &Setting) -
     writeln!(to, "# gyro_scale_sigma: {}", setting.scale_sigma)?;
     writeln!(to, "# g_sensitivity_deg_h_g: {along:.9},{across:.9}")?;
     writeln!(to, "# g_sensitivity_sigma_deg_h_g: {kappa_sigma:.9}")?;
-    writeln!(to, "# accelerometer_bias_m_s2: {:.9}", setting.accelerometer_bias_sigma)
+    writeln!(to, "# accelerometer_bias_m_s2: {:.9}", setting.accelerometer_bias_sigma)?;
+    writeln!(to, "{given}")
+}
+
+/// Writes a row, with all digits of its numbers; what is not a number leaves its field empty.
+fn row(to: &mut impl Write, fields: &[f64]) -> io::Result<()> {
+    let text = |field: &f64| if field.is_nan() { String::new() } else { field.to_string() };
+    writeln!(to, "{}", fields.iter().map(text).collect::<Vec<_>>().join(","))
+}
+
+// A division gives the number that is nearest to the decimal fraction, and so is written as that.
+
+/// A time, s.
+fn seconds(time: Instant) -> f64 {
+    time.0 as f64 / 1e6
+}
+
+/// A rate, rad/s; one at either limit of its range stands at the upper one, which a recording can hold.
+fn rate(rate: AngularRate) -> f64 {
+    f64::from(if rate.is_saturated() { i32::MAX } else { rate.0 }) / 1e9
+}
+
+/// Forces, m/s².
+fn forces(forces: [SpecificForce; 3]) -> [f64; 3] {
+    forces.map(|force| f64::from(force.0) / 1e6)
 }

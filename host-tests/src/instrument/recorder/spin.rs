@@ -1,15 +1,13 @@
-//! The recording of a spinning body, kind `spin`.
-//!
-//! Rates are what turned in a sample, over its period.
+//! The recording of a spinning body, kind `spin`. Rates are what turned in a sample, over its period.
 
 use std::io::{self, Write};
 
+use firmware::event::Event;
 use firmware::simulated::spin::{SAMPLE_RATE, SpinScenario};
 use orientation::signal::SpinSample;
 use orientation::units::{AngleIncrement, SpinForce};
 
-use super::text::{Scaled, seconds};
-use super::{Carrier, Ending};
+use super::{Carrier, row, seconds};
 use crate::instrument::spinning::SpinRun;
 use crate::recording::{GREATEST_SPIN_RATE, Given, Kind};
 
@@ -20,21 +18,21 @@ impl Carrier for SpinScenario {
     type Sample = SpinSample;
 
     fn write(&self, to: &mut impl Write, run: &SpinRun, of: &[SpinSample]) -> io::Result<()> {
-        let setting = self.setting();
-        let ended = Ending::of(&run.run.events).reason;
-        writeln!(to, "# kind: {}", Kind::Spin)?;
-        writeln!(to, "# rate_hz: {SAMPLE_RATE}")?;
+        let ended = run.run.events.iter().find_map(|(_, event)| match event {
+            Event::RollEnded(reason) => Some(*reason),
+            _ => None,
+        });
+        writeln!(to, "# kind: {}\n# rate_hz: {SAMPLE_RATE}", Kind::Spin)?;
         writeln!(to, "# gyro_N_deg_sqrt_h: {}", self.gyro_n_deg_sqrt_h)?;
         writeln!(to, "# gyro_scale_sigma: {}", self.scale_sigma)?;
-        writeln!(to, "{}", Given { setting, procedure: (), ended })?;
-        writeln!(to, "{COLUMNS}")?;
-        for (sample, roll) in of.iter().zip(&run.rolls_rad) {
+        let given = Given { setting: self.setting(), procedure: (), ended };
+        writeln!(to, "{given}\n{COLUMNS}")?;
+        of.iter().zip(&run.rolls_rad).try_for_each(|(sample, roll)| {
             let [x, y, z] = sample.turned.map(mean_rate);
-            let [up, right] = sample.force.unwrap_or([SpinForce(i32::MAX); 2]);
-            let [up, right] = [up, right].map(|force| Scaled::new(force.0, 5));
-            writeln!(to, "{},{x},{y},{z},{up},{right},{roll}", seconds(sample.time))?;
-        }
-        Ok(())
+            let force = sample.force.unwrap_or([SpinForce(i32::MAX); 2]);
+            let [up, right] = force.map(|force| f64::from(force.0) / 1e5);
+            row(to, &[seconds(sample.time), x, y, z, up, right, *roll])
+        })
     }
 }
 
