@@ -1,6 +1,6 @@
 //! What stands around every simulated board: its log, the wire of its link, and the clock.
 
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 
 use embassy_time::Instant;
 use embedded_io_async::{ErrorType, Write};
@@ -23,15 +23,11 @@ pub(super) struct Log<'w, W> {
     events: RefCell<Vec<(Instant, Event)>>,
     reports: RefCell<Vec<Report>>,
     base: RefCell<Vec<(Instant, BaseReading)>>,
-    is_aligned: Cell<bool>,
     watch: &'w W,
 }
 
 impl<W: Observer> Observer for Log<'_, W> {
     fn event(&self, at: Instant, event: &Event) {
-        if matches!(event, Event::Concluded(..) | Event::Refused(_)) {
-            self.is_aligned.set(true);
-        }
         self.events.borrow_mut().push((at, *event));
         self.watch.event(at, event);
     }
@@ -54,7 +50,8 @@ impl<W: Observer> Observer for Log<'_, W> {
     }
 
     fn sensed(&self, at: Instant, reading: &BaseReading) {
-        if !self.is_aligned.get() {
+        let is_end = |event: &Event| matches!(event, Event::Concluded(..) | Event::Refused(_));
+        if !self.events.borrow().iter().any(|(_, event)| is_end(event)) {
             self.base.borrow_mut().push((at, *reading));
         }
         self.watch.sensed(at, reading);
@@ -94,14 +91,8 @@ pub(super) struct Ended {
 impl<'w, W: Observer> Harness<'w, W> {
     /// An empty one; what a board tells goes on to `watch`.
     pub(super) fn new(watch: &'w W) -> Self {
-        let log = Log {
-            events: RefCell::default(),
-            reports: RefCell::default(),
-            base: RefCell::default(),
-            is_aligned: Cell::default(),
-            watch,
-        };
-        Self { log, bytes: RefCell::default() }
+        let (events, reports, base) = Default::default();
+        Self { log: Log { events, reports, base, watch }, bytes: RefCell::default() }
     }
 
     /// The channels of the board's parts.

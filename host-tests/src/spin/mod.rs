@@ -98,7 +98,7 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
     let Body::Spin(rows) = body else { return Err(ReplayError::NoSpin(body.kind())) };
     let required_sigma = options.required_sigma.unwrap_or(f64::INFINITY);
     if let Some(given) = Given::of(header)? {
-        return Ok(again(given, rows, required_sigma));
+        return Ok(again(&given, rows, required_sigma));
     }
     let period_s = pace(header.rate_hz, rows, |row| row.time_s);
     let period_s = period_s.ok_or(ReplayError::TooFewSamples(rows.len()))?;
@@ -109,8 +109,8 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
 }
 
 /// Replays a run with what its board was given.
-fn again(given: Given<Setting>, rows: &[SpinRow], required_sigma: f64) -> Replay {
-    let Given { setting, procedure: (), ended } = given;
+fn again(given: &Given<Setting>, rows: &[SpinRow], required_sigma: f64) -> Replay {
+    let Given { setting, ended, .. } = *given;
     let samples: Vec<SpinSample> = samples::given(rows, setting.sample_seconds).collect();
     let ended = ended.map(|reason| firmware::event::Event::RollEnded(reason).to_string());
     let assumed = vec![GIVEN.to_owned()];

@@ -169,8 +169,9 @@ fn turntable(seed: u64) -> TurntableScenario {
     TurntableScenario { base, uneven_turns: 6, turns: 4, ..brief }
 }
 
+/// Three stops of a minute.
 fn vehicle(seed: u64) -> VehicleScenario {
-    VehicleScenario { stop_s: 40.0, drive_s: 300.0, ..VehicleScenario::usual(seed) }
+    VehicleScenario::usual(seed)
 }
 
 #[test]

@@ -66,22 +66,13 @@ fn write(
     of.iter().enumerate().try_for_each(|(index, sample)| {
         force = sample.force.map_or(force, forces);
         let until = of.get(index + 1).map_or(u64::MAX, |next| next.time.0);
+        let measured = [seconds(sample.time), sample.stage.rad(), rate(sample.rate)];
+        let temperature = sample.temperature.map_or(f64::NAN, |shown| f64::from(shown.0) / 1e3);
+        let elevation = sample.elevation.map_or(f64::NAN, Angle::rad);
+        let beside = [temperature, f64::from(sample.force.is_some()), elevation];
         let base = shown(&run.base, sample.time.0..until);
-        let whole = [&measured(sample)[..], &force, &beside(sample), &base].concat();
-        row(to, &whole[..fields])
+        row(to, &[&measured[..], &force, &beside, &base].concat()[..fields])
     })
-}
-
-/// Time, angle of the stage and rate of the gyro.
-fn measured(sample: &Sample) -> [f64; 3] {
-    [seconds(sample.time), sample.stage.rad(), rate(sample.rate)]
-}
-
-/// What came with a new force: temperature, that it did, and the elevation of the axis.
-fn beside(sample: &Sample) -> [f64; 3] {
-    let temperature = sample.temperature.map_or(f64::NAN, |shown| f64::from(shown.0) / 1e3);
-    let is_new = f64::from(u8::from(sample.force.is_some()));
-    [temperature, is_new, sample.elevation.map_or(f64::NAN, Angle::rad)]
 }
 
 /// The latest reading of the base's sensors in a span of time, µs; no numbers without one.

@@ -29,7 +29,7 @@ impl Carrier for TurntableScenario {
         writeln!(to, "# truth_azimuth_deg: {}\n{COLUMNS}", self.base.azimuth_deg)?;
         let start = of.first().map_or(0.0, |first| first.stage.rad());
         turning_rows(of).iter().try_for_each(|it| {
-            let (angle, is_new) = (start + it.stage_rad, f64::from(u8::from(it.force_is_new)));
+            let (angle, is_new) = (start + it.stage_rad, f64::from(it.force_is_new));
             let [along, across] = [it.force_m_s2, it.across_m_s2.unwrap_or_default()];
             let turning = it.stage_rate_rad_s;
             row(to, &[it.time_s, angle, turning, it.rate_rad_s, along, across, is_new])

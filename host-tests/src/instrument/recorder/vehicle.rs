@@ -38,7 +38,7 @@ impl Carrier for VehicleScenario {
             force = sample.force.map_or(force, forces);
             let ([x, y, z], [ahead, right, down]) =
                 (sample.turned.map(|turned| mean_rate(turned, period_s)), force);
-            let is_new = f64::from(u8::from(sample.force.is_some()));
+            let is_new = f64::from(sample.force.is_some());
             row(to, &[seconds(sample.time), x, y, z, ahead, right, down, is_new])
         })
     }

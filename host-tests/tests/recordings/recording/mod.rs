@@ -134,6 +134,7 @@ fn every_header_key_reaches_its_field() {
         // Those of a vehicle: no stage has them.
         stops_s: None,
         displacements_m: None,
+        session: None,
     };
     assert_eq!(read(changed(STAGE, "# kind: stage", keys)).header, header);
     assert_eq!(read("# kind: dwells\n".to_owned() + &DWELLS[15..]).header, Header::default());
