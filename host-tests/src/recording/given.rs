@@ -25,6 +25,15 @@ pub struct Given<S, P = ()> {
     pub ended: Option<Refusal>,
 }
 
+impl<S, P> Given<S, P> {
+    /// What a session was given that ended so. A refusal with a number that text cannot hold comes of the samples,
+    /// and need not be told.
+    pub fn new(setting: S, procedure: P, ended: Option<Refusal>) -> Self {
+        let is_text = |it: &Refusal| serde_json::to_string(it).is_ok_and(|it| !it.contains("null"));
+        Self { setting, procedure, ended: ended.filter(is_text) }
+    }
+}
+
 impl<S: DeserializeOwned, P: DeserializeOwned> Given<S, P> {
     /// What the header says, where it comes from a run.
     ///

@@ -105,7 +105,9 @@ impl Replay {
 /// What keeps the session from beginning, or makes it refuse: displacements in kilometres. Another refusal is
 /// not an error but the session's conclusion.
 pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay, ReplayError> {
-    if let Some(given) = Given::of(header)? {
+    if options.method != Some(Method::Static)
+        && let Some(given) = Given::of(header)?
+    {
         return again(given, header, body, options);
     }
     let replay = follow(header, body, options)?;
@@ -242,7 +244,7 @@ const MEDIAN_S: f64 = 30.0;
 /// The method of a recording for which none was asked: where no stop is stated and it never turned about
 /// its vertical, it stood.
 fn usual(header: &Header, rows: &[ImuRow], period_s: f64) -> Method {
-    if header.stops_s.is_some() {
+    if header.stops_s.is_some() || header.session.is_some() {
         return Method::Siap;
     }
     let turned = rows.iter().scan(0.0, |turned, row| {

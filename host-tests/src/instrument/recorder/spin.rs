@@ -25,7 +25,7 @@ impl Carrier for SpinScenario {
         writeln!(to, "# kind: {}\n# rate_hz: {SAMPLE_RATE}", Kind::Spin)?;
         writeln!(to, "# gyro_N_deg_sqrt_h: {}", self.gyro_n_deg_sqrt_h)?;
         writeln!(to, "# gyro_scale_sigma: {}", self.scale_sigma)?;
-        let given = Given { setting: self.setting(), procedure: (), ended };
+        let given = Given::new(self.setting(), (), ended);
         writeln!(to, "{given}\n{COLUMNS}")?;
         of.iter().zip(&run.rolls_rad).try_for_each(|(sample, roll)| {
             let [x, y, z] = sample.turned.map(mean_rate);

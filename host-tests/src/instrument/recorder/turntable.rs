@@ -20,7 +20,7 @@ impl Carrier for TurntableScenario {
         let session = &run.run.replay;
         let (setting, procedure) = (*session.setting(), session.procedure().clone());
         let ended = session.conclusion().and_then(|conclusion| conclusion.verdict.err());
-        let given = Given { setting, procedure, ended };
+        let given = Given::new(setting, procedure, ended);
         header(to, Kind::Rotating, &self.base, &setting.common, &given)?;
         let sensor = if self.molecular.is_some() { "met" } else { "gyro" };
         writeln!(to, "# sensor: {sensor}")?;

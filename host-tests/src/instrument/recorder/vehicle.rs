@@ -26,7 +26,7 @@ impl Carrier for VehicleScenario {
         let (setting, procedure) = (*session.setting(), session.procedure().clone());
         let period_s = procedure.sample_seconds;
         let ended = session.conclusion().and_then(|conclusion| conclusion.verdict.err());
-        let given = Given { setting, procedure, ended };
+        let given = Given::new(setting, procedure, ended);
         header(to, Kind::Imu, &self.base, &setting.common, &given)?;
         writeln!(to, "# gyro_bias_deg_h: {}", self.base.gyro.bias_sigma_deg_h)?;
         let azimuth_deg = run.truth.attitude.azimuth_rad.to_degrees().rem_euclid(360.0);

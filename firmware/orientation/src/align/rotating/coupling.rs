@@ -40,7 +40,15 @@ pub struct Coupling {
     /// Date of the measurement, s since 1970; zero where it is unknown.
     pub date: u64,
     /// Temperature at the measurement, °C; NaN where it is unknown.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "or_unknown"))]
     pub temperature: f32,
+}
+
+/// Reads a number that text holds as a missing one where it is NaN.
+#[cfg(feature = "serde")]
+fn or_unknown<'de, D: serde::Deserializer<'de>>(text: D) -> Result<f32, D::Error> {
+    let number: Option<f32> = serde::Deserialize::deserialize(text)?;
+    Ok(number.unwrap_or(f32::NAN))
 }
 
 impl Coupling {
