@@ -283,3 +283,14 @@ fn a_recorded_mount_with_a_fault_replays_bit_for_bit() {
         replay_frames(&frames(1), Some(fault));
     }
 }
+
+#[test]
+fn what_a_session_was_given_counts_as_the_run_wrote_it_or_not_at_all() {
+    let scenario = SpinScenario { seconds: 0.6, ..SpinScenario::default() };
+    let run = follow_spin(&scenario, None, &()).expect("it is possible");
+    let (header, body) = read_back(&scenario, &run, &run.samples).expect("there are samples");
+    let changed = Header { session: Some("{}".to_owned()), ..header };
+    let refused = spin::replay(&changed, &body, &spin::Options::default()).map(|_| ());
+    let why = refused.expect_err("nothing was given").to_string();
+    assert!(why.starts_with("key session: missing field `setting`"), "{why}");
+}

@@ -1,5 +1,6 @@
 //! The recording of a vehicle, kind `imu`. Rates are what turned in a sample, over its nominal period.
 
+use std::f64::consts::TAU;
 use std::io::{self, Write};
 
 use firmware::simulated::vehicle::VehicleScenario;
@@ -29,8 +30,10 @@ impl Carrier for VehicleScenario {
         let given = Given::new(setting, procedure, ended);
         header(to, Kind::Imu, &self.base, &setting.common, &given)?;
         writeln!(to, "# gyro_bias_deg_h: {}", self.base.gyro.bias_sigma_deg_h)?;
-        let azimuth_deg = run.truth.attitude.azimuth_rad.to_degrees().rem_euclid(360.0);
-        writeln!(to, "# truth_azimuth_deg: {azimuth_deg}")?;
+        // The vehicle stands when its alignment ends, and may drive afterwards.
+        let kept = run.kept.with_azimuth().next().map(|(point, _)| point.truth.azimuth_rad);
+        let azimuth = kept.unwrap_or(run.truth.attitude.azimuth_rad).rem_euclid(TAU);
+        writeln!(to, "# truth_azimuth_deg: {}", azimuth.to_degrees())?;
         stops(to, run)?;
         writeln!(to, "{COLUMNS}")?;
         let mut force = [0.0; 3];
