@@ -288,6 +288,9 @@ pub trait Observer {
 
     /// The keeper's report, once a second.
     fn kept(&self, _: &Report) {}
+
+    /// A new reading of the coarse sensors on the base at a time of the instrument's clock.
+    fn sensed(&self, _: Instant, _: &BaseReading) {}
 }
 
 /// An observer that ignores everything.
@@ -314,6 +317,10 @@ impl<O: Observer> Observer for &O {
 
     fn kept(&self, report: &Report) {
         (**self).kept(report);
+    }
+
+    fn sensed(&self, at: Instant, reading: &BaseReading) {
+        (**self).sensed(at, reading);
     }
 }
 

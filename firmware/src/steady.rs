@@ -189,11 +189,14 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
     ///
     /// # Errors
     /// The symptom of a unit that gives no reading for 100 ms, fails on the bus, or is stuck.
-    async fn read(&mut self) -> Result<(), Symptom> {
+    async fn read<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Result<(), Symptom> {
         let begun = Instant::now();
         let outcome = self.base.device.read().await;
         match self.base.checked(begun, outcome)? {
-            Some(reading) => self.push(begun, reading),
+            Some(reading) => {
+                shared.observer().sensed(begun, &reading);
+                self.push(begun, reading)
+            }
             None if (begun - self.silent).as_micros() > SILENCE => Err(Symptom::Silent),
             None => {
                 self.hold(begun);
@@ -313,7 +316,7 @@ impl<B: BaseSensors> CompensatesSway for SwayCompensation<'_, B> {
             return Ok(());
         }
         let was_decided = self.is_decided();
-        if let Err(symptom) = self.read().await {
+        if let Err(symptom) = self.read(shared).await {
             self.mend(symptom, shared).await?;
         }
         if !was_decided {

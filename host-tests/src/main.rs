@@ -7,7 +7,6 @@
 
 mod command;
 
-use std::ffi::OsString;
 use std::process::ExitCode;
 
 use bench::output::say;
@@ -27,7 +26,7 @@ use crate::command::{Failure, print};
 ///
 /// Without a command it is `run stage`.
 #[derive(Parser)]
-#[command(name = "meridian", version, subcommand_required = false)]
+#[command(name = "meridian", version)]
 struct CommandLine {
     /// One JSON object on standard output instead of text.
     #[arg(long, global = true)]
@@ -67,11 +66,7 @@ fn parse() -> Result<Asked, clap::Error> {
     let named = alias::expanded(arguments.split_off(1.min(arguments.len())))
         .map_err(|wrong| clap::Error::raw(ErrorKind::InvalidValue, wrong))?;
     let program = taking_negative_numbers(CommandLine::command());
-    let mut matches = program.clone().try_get_matches_from(arguments.iter().chain(&named))?;
-    if matches.subcommand().is_none() {
-        let run = ["run", "stage"].map(OsString::from);
-        matches = program.try_get_matches_from(arguments.iter().chain(&named).chain(&run))?;
-    }
+    let matches = program.try_get_matches_from(arguments.iter().chain(&named))?;
     let CommandLine { json: as_json, command } = CommandLine::from_arg_matches(&matches)?;
     Ok(Asked { as_json, command, given: Given::of(&matches) })
 }
@@ -137,13 +132,14 @@ fn misuse(error: &clap::Error) -> ExitCode {
     }
     let text = error.render().to_string();
     let lines = text.lines().map(str::trim).take_while(|line| !line.starts_with("Usage:"));
-    let message: Vec<&str> = lines
-        .filter(|line| !line.is_empty() && !line.starts_with("For more information"))
-        .collect();
+    let message: Vec<&str> =
+        lines.filter(|line| !line.is_empty() && !line.starts_with("tip: ")).collect();
     let message = message.join(" ");
     let message = message.strip_prefix("error: ").unwrap_or(&message);
     let usage = text.lines().find_map(|line| line.trim().strip_prefix("Usage: "));
-    let command = usage.and_then(|usage| usage.split(['[', '<']).next()).unwrap_or_default().trim();
+    let is_name = |word: &&str| !word.starts_with(['-', '[', '<']);
+    let words = usage.unwrap_or_default().split(' ').take_while(is_name);
+    let command = words.collect::<Vec<_>>().join(" ");
     match error.kind() {
         ErrorKind::UnknownArgument => misused(&format!("{message}; see `{command} --help`")),
         _ => misused(message),

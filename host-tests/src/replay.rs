@@ -8,8 +8,10 @@ use std::fmt;
 
 use orientation::align::CAPACITY;
 use orientation::align::criterion::Criterion;
+use orientation::align::mount::TWO_FRAMES;
 use orientation::align::setting::{Half, Setting};
 use orientation::earth::Latitude;
+use orientation::planner::order::Order;
 use orientation::session::procedure::{Procedure, ProcedureError, STILL};
 use orientation::session::schedule::{Position, Schedule};
 use orientation::session::{Event, Session};
@@ -18,10 +20,10 @@ use orientation::signal::dwell::Dwell;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce, TURN, Temperature};
 
 use crate::late::{self, Late};
-pub(crate) use crate::median::median;
+use crate::median::median;
 use crate::methods::asked::Asked;
 use crate::recording::period::period_s;
-use crate::recording::{Body, DwellRow, Header, Kind, Short, StageRow};
+use crate::recording::{Body, DwellRow, Given, Header, Kind, Short, StageRow};
 use crate::setting::{Described, describe};
 use crate::stops::samples::{dead_accelerometer, is_cut};
 use crate::stops::way::Slip;
@@ -93,6 +95,18 @@ impl Default for Options {
         }
     }
 }
+
+impl Options {
+    /// Puts what the user states in the place of what a run's session was given.
+    pub(crate) fn change(&self, given: &mut Setting) {
+        given.latitude = self.latitude.unwrap_or(given.latitude);
+        given.half = self.half.or(given.half);
+        given.required_sigma = self.required_sigma.unwrap_or(given.required_sigma);
+    }
+}
+
+/// What a replay of a run rests on.
+pub(crate) const GIVEN: &str = "what the board was told of place and instrument";
 
 /// A finished replay.
 #[derive(Clone, Debug)]
@@ -195,6 +209,14 @@ pub enum ReplayError {
     NoiseUnknown,
     /// The session cannot follow the recording.
     Procedure(ProcedureError),
+    /// What the header says of a run's session cannot be read, and why.
+    Session(String),
+}
+
+impl From<serde_json::Error> for ReplayError {
+    fn from(error: serde_json::Error) -> Self {
+        Self::Session(error.to_string())
+    }
 }
 
 impl fmt::Display for ReplayError {
@@ -283,6 +305,9 @@ impl fmt::Display for ReplayError {
                 "key gyro_N_deg_sqrt_h is missing, and the samples at rest are too few to estimate it from: \
                  state it, or stand for longer",
             ),
+            Self::Session(why) => {
+                write!(f, "key session: {why}: leave the line as the run wrote it, or take it out")
+            }
             Self::Late(late) => late.fmt(f),
             Self::Procedure(error) => error.fmt(f),
         }
@@ -302,6 +327,9 @@ pub fn replay(
     progress: impl FnMut(&Session),
 ) -> Result<Replay, ReplayError> {
     let stops = Stops::of(body)?;
+    if let (Stops::Samples(rows), Some(given)) = (&stops, Given::of(header)?) {
+        return again(given, rows, options, progress);
+    }
     let latitude = latitude(header, body, options.latitude)?;
     let Described { mut setting, mut assumed } = describe(header, body, latitude);
     setting.half = options.half;
@@ -317,6 +345,30 @@ pub fn replay(
     assumed.extend(untold::of_stage(&session));
     assumed.extend(late::untold(&session).filter(|_| body.kind() == Kind::Stage));
     Ok(Replay { method: options.method, session, setting, assumed })
+}
+
+/// Replays a run by giving its session what the board's was given. Elevations show a mount of two frames.
+fn again(
+    given: Given<Setting, Procedure>,
+    rows: &[StageRow],
+    options: &Options,
+    progress: impl FnMut(&Session),
+) -> Result<Replay, ReplayError> {
+    let Given { mut setting, mut procedure, ended } = given;
+    options.change(&mut setting);
+    procedure.criterion = options.criterion;
+    let is_mounted = rows.iter().any(|row| row.elevation_rad.is_some());
+    if is_mounted {
+        setting.mount = TWO_FRAMES;
+    }
+    if let Some(survey) = &mut procedure.survey {
+        survey.orders = if is_mounted { &Order::QUARTERS } else { &Order::COMPARED };
+    }
+    let mut session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
+    let end = ended.map_or(Event::End, Event::Failed);
+    drive(&mut session, rows.iter().map(|row| sample(row, 0.0)), end, progress);
+    let method = if is_mounted { Method::Positions } else { Method::of(&session) };
+    Ok(Replay { method, setting: *session.setting(), session, assumed: vec![GIVEN.to_owned()] })
 }
 
 /// The rows of a recording whose stage stops.
@@ -378,7 +430,7 @@ fn stage(
         }
         sample
     };
-    drive(&mut session, rows.iter().map(shown), progress);
+    drive(&mut session, rows.iter().map(shown), Event::End, progress);
     Ok(session)
 }
 
@@ -412,10 +464,11 @@ fn followed(
     })
 }
 
-/// Feeds samples to a session until it has finished or they end.
+/// Feeds samples to a session until it has finished or they end, as this event tells it.
 pub fn drive(
     session: &mut Session,
     samples: impl Iterator<Item = Sample>,
+    end: Event<'_>,
     mut progress: impl FnMut(&Session),
 ) {
     let mut seen = 0;
@@ -426,7 +479,7 @@ pub fn drive(
             progress(session);
         }
     }
-    session.handle(Event::End);
+    session.handle(end);
 }
 
 /// A row in the stage path's units, its time from `begin` on; rounding as in
@@ -436,9 +489,9 @@ fn sample(row: &StageRow, begin: f64) -> Sample {
         time: Instant::from_seconds(row.time_s - begin),
         stage: Angle::from_rad(row.stage_rad),
         rate: AngularRate::from_rad_per_s(row.rate_rad_s),
-        force: Some(row.force_m_s2.map(SpecificForce::from_m_per_s2)),
+        force: row.force_is_new.then(|| row.force_m_s2.map(SpecificForce::from_m_per_s2)),
         temperature: row.temperature_c.map(Temperature::from_celsius),
-        elevation: None,
+        elevation: row.elevation_rad.map(Angle::from_rad),
     }
 }
 

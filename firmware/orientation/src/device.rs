@@ -7,6 +7,7 @@ use crate::words::Rounded;
 
 /// A sensor, actuator or sensor group of the board, as it is named in logs and refusals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Device {
     /// The precise gyro.
     Gyro,
@@ -61,6 +62,7 @@ words! { Device:
 /// Permanent failure of a device, one that neither repeated transfers nor a restart of the device
 /// cured. Angles are in degrees, ready to print.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Trouble {
     /// Transfers on the device's bus fail.
     Bus,

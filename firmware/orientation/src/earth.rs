@@ -21,6 +21,7 @@ const ECCENTRICITY_SQUARED: f64 = 0.006_694_379_990_14;
 
 /// A geodetic latitude, rad, always within ±90°.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Latitude(f64);
 
 impl Latitude {

@@ -12,6 +12,7 @@ use crate::words::Rounded;
 /// Source of the uncertainty of an azimuth: one line of the error budget; see
 /// [`crate::align::budget::Budget`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Source {
     /// White noise (angle random walk) of the gyro.
     Noise,
@@ -48,6 +49,7 @@ words! { Source:
 /// Reason for which no azimuth is given. Angles are in degrees and times in seconds, ready to
 /// print.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Refusal {
     /// The latitude is within 5° of a pole: the horizontal Earth rate is below 9 % of the whole.
     LatitudeTooHigh {

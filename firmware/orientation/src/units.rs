@@ -187,6 +187,13 @@ impl Temperature {
     }
 }
 
+/// Reads a number that text holds as a missing one where it is infinite.
+#[cfg(feature = "serde")]
+pub(crate) fn or_infinite<'de, D: serde::Deserializer<'de>>(text: D) -> Result<f64, D::Error> {
+    let number: Option<f64> = serde::Deserialize::deserialize(text)?;
+    Ok(number.unwrap_or(f64::INFINITY))
+}
+
 /// A number that may be missing, in the memory of one number: `Option<f64>` takes twice as much.
 #[derive(Clone, Copy, Debug)]
 pub struct Optional(f64);

@@ -17,9 +17,9 @@ use orientation::align::etalon::{self, Accepted, Limit, Series, Table as Etalon}
 use orientation::align::setting::Setting;
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
-use orientation::session::Session;
 use orientation::session::procedure::Procedure;
 use orientation::session::schedule::{Position, Schedule, StopRule};
+use orientation::session::{Event, Session};
 use orientation::signal::Sample;
 use orientation::signal::dwell::Dwell;
 use orientation::units::{ARCSECONDS_PER_RADIAN, DEGREE_PER_HOUR};
@@ -150,7 +150,7 @@ fn procedure(turn: Turn) -> Procedure {
 fn dwells(turn: Turn, samples: &[Sample]) -> Result<Vec<Dwell>, String> {
     let mut session =
         Session::new(setting(), procedure(turn)).map_err(|error| format!("{error:?}"))?;
-    drive(&mut session, samples.iter().copied(), |_| {});
+    drive(&mut session, samples.iter().copied(), Event::End, |_| {});
     Ok(session.dwells().to_vec())
 }
 

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use firmware::keep::Keeping;
-use firmware::ports::{Frames, HeadingStore, NoBase, NoRecorder, Observer};
+use firmware::ports::{Frames, HeadingStore, NoBase, Observer, Recorder};
 use firmware::run::{acquire_frames, run_frames_and_keep};
 use firmware::simulated::base;
 use firmware::simulated::fault::{Fault, FaultyRecorder, Injection};
@@ -34,12 +34,13 @@ pub struct FramesRun {
 ///
 /// # Errors
 /// What keeps the session from beginning, and a deadlock. A refusal is the session's conclusion.
-pub fn align_frames<W: Observer>(
+pub fn align_frames<R: Recorder, W: Observer>(
     scenario: &FramesScenario,
     fault: Option<Fault>,
+    recorder: R,
     watch: &W,
 ) -> Result<FramesRun, RunError> {
-    align_frames_and_keep(scenario, &KeptPlan::of(fault), watch, ())
+    align_frames_and_keep(scenario, &KeptPlan::of(fault), recorder, watch, ())
 }
 
 /// Runs a scenario and goes on as it says, on a base with sensors where it has them; with a store of the
@@ -47,15 +48,16 @@ pub fn align_frames<W: Observer>(
 ///
 /// # Errors
 /// Those of [`align_frames`].
-pub fn align_frames_and_keep<W: Observer>(
+pub fn align_frames_and_keep<R: Recorder, W: Observer>(
     scenario: &FramesScenario,
     plan: &KeptPlan,
+    recorder: R,
     watch: &W,
     store: impl HeadingStore,
 ) -> Result<FramesRun, RunError> {
     if !scenario.base.has_base_imu {
         let board = RefCell::new(scenario.board(&plan.chips));
-        return align_with(&board, NoBase, scenario, &plan.chips, watch, store);
+        return align_with(&board, NoBase, scenario, &plan.chips, recorder, watch, store);
     }
     let day = plan.day(scenario.day());
     let journey = journey(&day, &plan.base);
@@ -63,7 +65,7 @@ pub fn align_frames_and_keep<W: Observer>(
     let rig = RefCell::new(base::rig(&scenario.base, journey.as_ref()));
     let imu = base::imu(&rig, &scenario.base, &plan.chips);
     let board = RefCell::new(scenario.board_riding(&plan.chips, journey));
-    let mut frames = align_with(&board, imu, scenario, &plan.chips, watch, store)?;
+    let mut frames = align_with(&board, imu, scenario, &plan.chips, recorder, watch, store)?;
     let rig = rig.borrow();
     let violations = base::violations(&rig).iter();
     frames.run.violations.extend(violations.map(|violation| format!("Base: {violation}")));
@@ -72,11 +74,12 @@ pub fn align_frames_and_keep<W: Observer>(
 }
 
 /// Runs a scenario on a board with these sensors on the base.
-fn align_with<B: Base, W: Observer>(
+fn align_with<B: Base, R: Recorder, W: Observer>(
     board: &RefCell<GimbalBoard<'_>>,
     base: B,
     scenario: &FramesScenario,
     injection: &Injection,
+    recorder: R,
     watch: &W,
     store: impl HeadingStore,
 ) -> Result<FramesRun, RunError> {
@@ -89,7 +92,7 @@ fn align_with<B: Base, W: Observer>(
     let latest = Frames::unread();
     let configuration = scenario.base.configuration();
     let mut sensors = mount::sensors(board, scenario, injection).with_base(base);
-    let recorder = FaultyRecorder::new(NoRecorder, injection.hang);
+    let recorder = FaultyRecorder::new(recorder, injection.hang);
     let mut ports = mount::ports(board, injection, harness.wire(), recorder);
     let mut keeper = Keeper::new(&scenario.keeper().ok_or_else(outside)?);
     let keep = scenario.base.keeping().ok_or_else(outside)?;

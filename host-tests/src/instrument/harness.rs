@@ -6,7 +6,7 @@ use embassy_time::Instant;
 use embedded_io_async::{ErrorType, Write};
 use firmware::event::Event;
 use firmware::health::Health;
-use firmware::ports::Observer;
+use firmware::ports::{BaseReading, Observer};
 use firmware::shared::Channels;
 use hal_mock::assembly::Assembly;
 use orientation::keep::Report;
@@ -22,6 +22,7 @@ pub(super) const ASSUMED: &str = "latitude exact, calibrations as stated";
 pub(super) struct Log<'w, W> {
     events: RefCell<Vec<(Instant, Event)>>,
     reports: RefCell<Vec<Report>>,
+    base: RefCell<Vec<(Instant, BaseReading)>>,
     watch: &'w W,
 }
 
@@ -46,6 +47,14 @@ impl<W: Observer> Observer for Log<'_, W> {
     fn kept(&self, report: &Report) {
         self.reports.borrow_mut().push(*report);
         self.watch.kept(report);
+    }
+
+    fn sensed(&self, at: Instant, reading: &BaseReading) {
+        let is_end = |event: &Event| matches!(event, Event::Concluded(..) | Event::Refused(_));
+        if !self.events.borrow().iter().any(|(_, event)| is_end(event)) {
+            self.base.borrow_mut().push((at, *reading));
+        }
+        self.watch.sensed(at, reading);
     }
 }
 
@@ -82,8 +91,8 @@ pub(super) struct Ended {
 impl<'w, W: Observer> Harness<'w, W> {
     /// An empty one; what a board tells goes on to `watch`.
     pub(super) fn new(watch: &'w W) -> Self {
-        let (events, reports) = (RefCell::default(), RefCell::default());
-        Self { log: Log { events, reports, watch }, bytes: RefCell::default() }
+        let (events, reports, base) = Default::default();
+        Self { log: Log { events, reports, base, watch }, bytes: RefCell::default() }
     }
 
     /// The channels of the board's parts.
@@ -102,6 +111,7 @@ impl<'w, W: Observer> Harness<'w, W> {
             replay,
             events: self.log.events.into_inner(),
             reports: self.log.reports.into_inner(),
+            base: self.log.base.into_inner(),
             lines: String::from_utf8_lossy(&self.bytes.into_inner()).into_owned(),
             seconds: ended.at.as_micros() as f64 * 1e-6,
             health: ended.health,

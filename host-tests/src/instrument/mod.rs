@@ -22,6 +22,7 @@ use std::fmt;
 use embassy_time::Instant;
 use firmware::event::Event;
 use firmware::health::Health;
+use firmware::ports::BaseReading;
 use orientation::align::conclusion::Conclusion;
 use orientation::align::mount::MountError;
 use orientation::keep::Report;
@@ -38,6 +39,8 @@ pub struct Run<R = Replay> {
     pub events: Vec<(Instant, Event)>,
     /// What the keeper reported, once a second.
     pub reports: Vec<Report>,
+    /// What coarse sensors on the base showed until the first alignment ended, with the times of reading.
+    pub base: Vec<(Instant, BaseReading)>,
     /// What the link carried.
     pub lines: String,
     /// Virtual time from power-on to the end, s.

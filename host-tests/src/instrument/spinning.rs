@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use firmware::ports::{Observer, Recorder, SpinPorts};
+use firmware::ports::{Observer, SpinPorts};
 use firmware::run::{acquire_spin, run_spin};
 use firmware::simulated::fault::Fault;
 use firmware::simulated::spin::{self, SpinScenario};
@@ -13,6 +13,7 @@ use orientation::signal::SpinSample;
 use orientation::units::Instant;
 
 use super::harness::{self, Harness};
+use super::recorder::Samples;
 use super::{Run, RunError};
 
 /// A finished flight.
@@ -30,16 +31,6 @@ pub struct SpinRun {
     pub truth: SpinTruth,
 }
 
-/// Keeps samples.
-#[derive(Debug, Default)]
-struct Kept(Vec<SpinSample>);
-
-impl Recorder<SpinSample> for &mut Kept {
-    async fn record(&mut self, sample: &SpinSample) {
-        self.0.push(*sample);
-    }
-}
-
 /// Runs a scenario in virtual time on this thread.
 ///
 /// # Errors
@@ -52,7 +43,7 @@ pub fn follow_spin<W: Observer>(
     let (course, injection) = (scenario.course(fault), scenario.injection(fault));
     let configuration = scenario.configuration().ok_or(RunError::Scale)?;
     let board = RefCell::new(scenario.board(&course, &injection));
-    let (mut flight, mut kept) = (scenario.flight(), Kept::default());
+    let (mut flight, mut kept) = (scenario.flight(), Samples::default());
     let harness = Harness::new(watch);
     let channels = harness.channels();
     let mut sensors = spin::sensors(&board, &injection);

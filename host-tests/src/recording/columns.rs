@@ -15,7 +15,7 @@ use super::resemblance::resembled;
 use super::warning::{About, Warning};
 
 /// Most columns that a kind can know.
-pub(super) const MAX_COLUMNS: usize = 12;
+pub(super) const MAX_COLUMNS: usize = 15;
 
 /// What the names of columns begin with that only a check may know; they may hold `nan`.
 const TRUTH: &str = "truth_";
@@ -29,6 +29,8 @@ pub(super) enum Need {
     Always,
     /// Never.
     Optional,
+    /// Never, and where it is, its fields may be empty.
+    Sometimes,
     /// When any of these is: they come together.
     AnyOf(&'static [&'static str]),
     /// When none of these is: they stand in for it.
@@ -63,14 +65,14 @@ pub(super) struct Layout {
 }
 
 /// The numbers of one row.
-pub(super) struct Values<'a> {
+pub(super) struct Values {
     /// The row's line.
     pub line: u64,
     numbers: [f64; MAX_COLUMNS],
-    present: &'a [bool; MAX_COLUMNS],
+    present: [bool; MAX_COLUMNS],
 }
 
-impl Values<'_> {
+impl Values {
     /// The number in a column that is there ([`Layout::new`] has seen to it).
     pub fn needed(&self, column: usize) -> f64 {
         self.numbers[column]
@@ -153,25 +155,29 @@ impl Layout {
     fn needed(&self) -> impl Iterator<Item = &'static Column> {
         self.columns.iter().filter(|column| match column.need {
             Need::Always => true,
-            Need::Optional => false,
+            Need::Optional | Need::Sometimes => false,
             Need::AnyOf(group) => group.iter().any(|name| self.has(name)),
             Need::NoneOf(group) => !group.iter().any(|name| self.has(name)),
         })
     }
 
     /// Reads the numbers of a row.
-    pub fn values(&self, line: &Line<'_>) -> Result<Values<'_>, Fault> {
+    pub fn values(&self, line: &Line<'_>) -> Result<Values, Fault> {
         self.check_count(line)?;
-        let mut numbers = [0.0; MAX_COLUMNS];
-        for (field, place) in line.text.split(',').zip(&self.fields) {
+        let (mut numbers, mut present) = ([0.0; MAX_COLUMNS], self.present);
+        for (field, place) in line.text.split(',').map(str::trim_ascii).zip(&self.fields) {
             let Some(place) = *place else { continue };
-            let Column { name, range, .. } = &self.columns[place];
-            numbers[place] = match number(field.trim_ascii(), range) {
+            let Column { name, need, range } = &self.columns[place];
+            if field.is_empty() && *need == Need::Sometimes {
+                present[place] = false;
+                continue;
+            }
+            numbers[place] = match number(field, range) {
                 Err(ValueProblem::Nan(_)) if name.starts_with(TRUTH) => f64::NAN,
                 read => read.map_err(|problem| Fault::column(line.number, name, problem))?,
             };
         }
-        Ok(Values { line: line.number, numbers, present: &self.present })
+        Ok(Values { line: line.number, numbers, present })
     }
 
     /// A wrong count is told before a wrong number: a cut line has both.

@@ -44,6 +44,8 @@ pub struct Header {
     pub stops_s: Option<Vec<[f64; 2]>>,
     /// How far each stop lies from the first, north and east, m; as many as the stops where both are there.
     pub displacements_m: Option<Vec<[f64; 2]>>,
+    /// What the session of a run was given, as [`super::Given`] reads it.
+    pub session: Option<String>,
 }
 
 /// The principle of the rate sensor.
@@ -82,7 +84,8 @@ pub(super) const STOPS: &str = "stops_s";
 /// The key of their displacements.
 pub(super) const DISPLACEMENTS: &str = "displacements_north_east_m";
 /// Keys whose value is not one number.
-const WORDS: [&str; 5] = ["kind", PAIR, "sensor", STOPS, DISPLACEMENTS];
+const WORDS: [&str; 6] = ["kind", PAIR, "sensor", STOPS, DISPLACEMENTS, SESSION];
+pub(super) const SESSION: &str = "session";
 const PAIR: &str = "g_sensitivity_deg_h_g";
 /// Keys of the truth that are looked at.
 const TRUTHS: [&str; 2] = ["truth_azimuth_deg", "truth_start_azimuth_deg"];
@@ -226,6 +229,7 @@ impl Collector {
         }
         header.g_sensitivity_deg_h_g = self.parse(PAIR, pair)?;
         header.sensor = self.parse("sensor", sensor)?;
+        header.session = self.get(SESSION).map(|(_, text)| text.to_owned());
         Ok(header)
     }
 

@@ -12,6 +12,7 @@
 
 mod columns;
 mod error;
+mod given;
 mod header;
 mod lines;
 mod number;
@@ -33,11 +34,15 @@ use std::io::{self, Read};
 use std::path::Path;
 
 pub use error::{Place, ReadError};
+pub use given::Given;
 pub use header::{Header, Sensor, Truth};
 pub use lines::{MAX_LINE_BYTES, MAX_ROWS};
 pub use problem::{HeaderProblem, Problem, SourceProblem, StopProblem, TimeProblem, ValueProblem};
 pub use range::{Range, Short};
-pub use rows::{DwellRow, ImuRow, ImuSample, RotatingRow, SpinRow, StageRow, StaticRow};
+pub use rows::{
+    DwellRow, GREATEST_BODY_RATE, GREATEST_SPIN_RATE, ImuRow, ImuSample, RotatingRow, SpinRow,
+    StageRow, StaticRow,
+};
 pub use spacing::{Gap, Spacing};
 pub use stops::displacements;
 pub use warning::{About, Warning};
@@ -202,7 +207,10 @@ fn parse(reader: impl Read) -> Result<Recording, Fault> {
     let (body, Truth { roll_rad, attitude, .. }) =
         body(kind, &mut lines, line, &names, &mut warnings)?;
     let rate = entries.get("rate_hz").map(|(line, _)| line).zip(header.rate_hz);
-    check_times(&body, rate)?;
+    // A run tells its session of a gap by the times alone.
+    if header.session.is_none() {
+        check_times(&body, rate)?;
+    }
     if let Body::Imu(rows) = &body {
         stops::check_inside(&entries, &header, rows)?;
     }

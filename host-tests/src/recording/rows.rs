@@ -15,18 +15,24 @@ use super::warning::Warning;
 pub(super) const TIME: Range = Range::symmetric(1e10, " s");
 /// Stage angles that [`orientation::units::Angle`] takes exactly: 10⁶ turns.
 const STAGE: Range = Range::symmetric(6.283_185e6, " rad");
+/// Elevations of an axis over a plane, a whole turn at most.
+const ELEVATION: Range = Range::symmetric(6.283_186, " rad");
 /// The range of [`orientation::units::AngularRate`].
 const RATE: Range = Range::symmetric(2.147_483_647, " rad/s");
-/// Rates of a vehicle's gyros, 5 700 °/s: beyond what any of them measures.
-const BODY_RATE: Range = Range::symmetric(100.0, " rad/s");
+/// Greatest rate of a vehicle's gyros, rad/s: 5 700 °/s, beyond what any of them measures. In the recording of a run it
+/// stands for a gyro at a limit of its range.
+pub const GREATEST_BODY_RATE: f64 = 100.0;
+const BODY_RATE: Range = Range::symmetric(GREATEST_BODY_RATE, " rad/s");
 /// Rates at which a stage can turn: 160 turns a second.
 const STAGE_RATE: Range = Range::symmetric(1e3, " rad/s");
 /// The range of [`orientation::units::SpecificForce`].
 const FORCE: Range = Range::symmetric(2_147.483_647, " m/s²");
 /// The range of [`orientation::units::Temperature`].
 const TEMPERATURE: Range = Range::symmetric(2_147_483.647, " °C");
-/// Rates about the axes of a body in fast rotation: 1 600 turns a second.
-const SPIN_RATE: Range = Range::symmetric(1e4, " rad/s");
+/// Greatest rate about the axes of a body in fast rotation, rad/s: 1 600 turns a second. In the recording of a run it
+/// stands for a gyro at a limit of its range.
+pub const GREATEST_SPIN_RATE: f64 = 1e4;
+const SPIN_RATE: Range = Range::symmetric(GREATEST_SPIN_RATE, " rad/s");
 /// The range of [`orientation::units::SpinForce`].
 const SPIN_FORCE: Range = Range::symmetric(21_474.836_47, " m/s²");
 /// Rolls in which a double resolves 1 nrad: 10⁶ turns.
@@ -41,6 +47,18 @@ const FLAG: Range = Range::from_zero(1.0, "");
 const FORCES: [&str; 3] = ["fx_m_s2", "fy_m_s2", "fz_m_s2"];
 /// So do those of an inertial measurement unit.
 const IMU: [&str; 6] = ["gx_rad_s", "gy_rad_s", "gz_rad_s", "ax_m_s2", "ay_m_s2", "az_m_s2"];
+
+/// So do the rates across the long axis of a spinning body.
+const ACROSS: [&str; 2] = ["gy_rad_s", "gz_rad_s"];
+/// A coarse one of them, on the base of a stage.
+const BASE: [&str; 6] = ["bgx_rad_s", "bgy_rad_s", "bgz_rad_s", "bax_m_s2", "bay_m_s2", "baz_m_s2"];
+/// Whether a row brings a force that was not there before: one that is read less often is repeated.
+const NEW_FORCE: Column = sometimes("force_is_new", FLAG);
+
+/// A column that need not be there, and whose fields may be empty.
+const fn sometimes(name: &'static str, range: Range) -> Column {
+    Column { name, need: Need::Sometimes, range }
+}
 
 /// One sample of a `stage` recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,6 +76,12 @@ pub struct StageRow {
     pub force_m_s2: [f64; 3],
     /// Temperature of the gyro, °C, when recorded.
     pub temperature_c: Option<f64>,
+    /// Whether the force was read with this sample; always where the recording does not tell.
+    pub force_is_new: bool,
+    /// Elevation of the sensitive axis over the base's plane, rad, where a mount moves it and a force came.
+    pub elevation_rad: Option<f64>,
+    /// What a coarse inertial measurement unit on the base showed anew.
+    pub base: Option<ImuSample>,
 }
 
 /// One sample of a `rotating` recording: a stage that turns all the time.
@@ -77,6 +101,8 @@ pub struct RotatingRow {
     pub force_m_s2: f64,
     /// The same 90° clockwise of it, when recorded.
     pub across_m_s2: Option<f64>,
+    /// Whether the force was read with this sample; always where the recording does not tell.
+    pub force_is_new: bool,
 }
 
 /// One position of a `dwells` recording, already averaged.
@@ -119,6 +145,8 @@ pub struct ImuRow {
     pub time_s: f64,
     /// Means over the sample.
     pub sample: ImuSample,
+    /// Whether the force was read with this sample; always where the recording does not tell.
+    pub force_is_new: bool,
 }
 
 /// One sample of a `spin` recording: what a body in fast rotation shows at that moment.
@@ -132,6 +160,8 @@ pub struct SpinRow {
     pub rate_rad_s: f64,
     /// Specific force along body y (up at roll zero) and z (right there), m/s², ±21474.83647.
     pub force_m_s2: [f64; 2],
+    /// Rates about these axes, rad/s, ±10000, when recorded.
+    pub across_rad_s: Option<[f64; 2]>,
 }
 
 /// What an inertial measurement unit gives at a time, along body x (forward), y (right), z (down).
@@ -151,7 +181,7 @@ pub(super) trait Row: Sized {
     const TIME: usize;
 
     /// The row that has these numbers.
-    fn from_values(values: &Values<'_>) -> Self;
+    fn from_values(values: &Values) -> Self;
 }
 
 impl Row for StageRow {
@@ -162,11 +192,19 @@ impl Row for StageRow {
         Column::always("fx_m_s2", FORCE),
         Column::always("fy_m_s2", FORCE),
         Column::always("fz_m_s2", FORCE),
-        Column { name: "temperature_c", need: Need::Optional, range: TEMPERATURE },
+        sometimes("temperature_c", TEMPERATURE),
+        NEW_FORCE,
+        sometimes("elevation_rad", ELEVATION),
+        sometimes(BASE[0], RATE),
+        sometimes(BASE[1], RATE),
+        sometimes(BASE[2], RATE),
+        sometimes(BASE[3], FORCE),
+        sometimes(BASE[4], FORCE),
+        sometimes(BASE[5], FORCE),
     ];
     const TIME: usize = 0;
 
-    fn from_values(values: &Values<'_>) -> Self {
+    fn from_values(values: &Values) -> Self {
         Self {
             line: values.line,
             time_s: values.needed(0),
@@ -174,8 +212,16 @@ impl Row for StageRow {
             rate_rad_s: values.needed(2),
             force_m_s2: [3, 4, 5].map(|column| values.needed(column)),
             temperature_c: values.optional(6),
+            force_is_new: has_new_force(values, 7),
+            elevation_rad: values.optional(8),
+            base: values.optional(9).map(|_| imu_sample(values, 9)),
         }
     }
+}
+
+/// Whether a row brings a force, by the column at this place; always without it.
+fn has_new_force(values: &Values, place: usize) -> bool {
+    values.optional(place).is_none_or(|is_new| is_new > 0.0)
 }
 
 impl Row for RotatingRow {
@@ -186,10 +232,11 @@ impl Row for RotatingRow {
         Column::always("g_rad_s", RATE),
         Column::always("a_m_s2", FORCE),
         Column { name: "a_across_m_s2", need: Need::Optional, range: FORCE },
+        NEW_FORCE,
     ];
     const TIME: usize = 0;
 
-    fn from_values(values: &Values<'_>) -> Self {
+    fn from_values(values: &Values) -> Self {
         Self {
             line: values.line,
             time_s: values.needed(0),
@@ -198,6 +245,7 @@ impl Row for RotatingRow {
             rate_rad_s: values.needed(3),
             force_m_s2: values.needed(4),
             across_m_s2: values.optional(5),
+            force_is_new: has_new_force(values, 6),
         }
     }
 }
@@ -215,7 +263,7 @@ impl Row for DwellRow {
     ];
     const TIME: usize = 4;
 
-    fn from_values(values: &Values<'_>) -> Self {
+    fn from_values(values: &Values) -> Self {
         let force = [5, 6, 7].map(|column| values.needed(column));
         Self {
             stage_rad: values.needed(0),
@@ -246,17 +294,23 @@ impl Row for (ImuRow, Option<TrueAttitude>) {
         Column { name: "truth_qy", need: Need::Optional, range: QUATERNION },
         Column { name: "truth_qz", need: Need::Optional, range: QUATERNION },
         Column { name: "moving", need: Need::Optional, range: FLAG },
+        NEW_FORCE,
     ];
     const TIME: usize = 0;
 
-    fn from_values(values: &Values<'_>) -> Self {
-        let sample = imu_sample(values, 1);
-        (ImuRow { line: values.line, time_s: values.needed(0), sample }, true_attitude(values))
+    fn from_values(values: &Values) -> Self {
+        let row = ImuRow {
+            line: values.line,
+            time_s: values.needed(0),
+            sample: imu_sample(values, 1),
+            force_is_new: has_new_force(values, 12),
+        };
+        (row, true_attitude(values))
     }
 }
 
 /// The quaternion in columns 7 to 10, where all of it is there.
-fn true_attitude(values: &Values<'_>) -> Option<TrueAttitude> {
+fn true_attitude(values: &Values) -> Option<TrueAttitude> {
     let [w, x, y, z] = [7, 8, 9, 10].map(|column| values.optional(column));
     let parts = [w?, x?, y?, z?];
     let square: f64 = parts.iter().map(|part| part * part).sum();
@@ -265,7 +319,7 @@ fn true_attitude(values: &Values<'_>) -> Option<TrueAttitude> {
 }
 
 /// The sample whose columns begin at this place.
-fn imu_sample(values: &Values<'_>, first: usize) -> ImuSample {
+fn imu_sample(values: &Values, first: usize) -> ImuSample {
     let three = |first: usize| [0, 1, 2].map(|axis| values.needed(first + axis));
     ImuSample { rates_rad_s: three(first), force_m_s2: three(first + 3) }
 }
@@ -278,15 +332,18 @@ impl Row for (SpinRow, Option<f64>) {
         Column::always("ay_m_s2", SPIN_FORCE),
         Column::always("az_m_s2", SPIN_FORCE),
         Column { name: "truth_roll_rad", need: Need::Optional, range: ROLL },
+        Column { name: ACROSS[0], need: Need::AnyOf(&ACROSS), range: SPIN_RATE },
+        Column { name: ACROSS[1], need: Need::AnyOf(&ACROSS), range: SPIN_RATE },
     ];
     const TIME: usize = 0;
 
-    fn from_values(values: &Values<'_>) -> Self {
+    fn from_values(values: &Values) -> Self {
         let row = SpinRow {
             line: values.line,
             time_s: values.needed(0),
             rate_rad_s: values.needed(1),
             force_m_s2: [2, 3].map(|column| values.needed(column)),
+            across_rad_s: values.optional(5).map(|_| [5, 6].map(|column| values.needed(column))),
         };
         (row, values.optional(4))
     }
@@ -305,7 +362,7 @@ impl Row for StaticRow {
     ];
     const TIME: usize = 0;
 
-    fn from_values(values: &Values<'_>) -> Self {
+    fn from_values(values: &Values) -> Self {
         Self {
             line: values.line,
             time_s: values.needed(0),
@@ -344,10 +401,7 @@ pub(super) fn read<T: Row>(
 }
 
 /// The row's line and time, when it has a time; refuses one that is not later than the one before.
-fn later<T: Row>(
-    before: Option<(u64, f64)>,
-    values: &Values<'_>,
-) -> Result<Option<(u64, f64)>, Fault> {
+fn later<T: Row>(before: Option<(u64, f64)>, values: &Values) -> Result<Option<(u64, f64)>, Fault> {
     let time = values.optional(T::TIME);
     match (before, time) {
         (Some((before_line, before_s)), Some(time_s)) if time_s <= before_s => {

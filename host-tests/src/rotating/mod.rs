@@ -1,7 +1,6 @@
 //! Recordings of a platform that turns all the time: replay through the session, and what figures need.
 
 pub mod part;
-pub mod recorder;
 pub mod turns;
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI, TAU};
@@ -18,8 +17,8 @@ use orientation::units::{Angle, AngularRate, Instant, SpecificForce};
 use self::part::Part;
 use crate::median::median;
 use crate::recording::period::period_s;
-use crate::recording::{self, Body, Header, RotatingRow};
-use crate::replay::{Options, ReplayError, latitude};
+use crate::recording::{self, Body, Given, Header, RotatingRow};
+use crate::replay::{GIVEN, Options, ReplayError, latitude};
 use crate::setting::{Described, describe};
 use crate::stops::samples::is_cut;
 use crate::untold;
@@ -80,6 +79,9 @@ fn span(stretch: &Stretch) -> Option<(f64, f64)> {
 /// What keeps the session from beginning. A refusal is not an error but the session's conclusion.
 pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay, ReplayError> {
     let Body::Rotating(rows) = body else { return Err(ReplayError::Stops(body.kind())) };
+    if let Some(given) = Given::of(header)? {
+        return again(given, rows, options);
+    }
     let latitude = latitude(header, body, options.latitude)?;
     let Described { setting: mut common, mut assumed } = describe(header, body, latitude);
     if let Some(sigma) = options.required_sigma {
@@ -97,6 +99,25 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
     assumed.extend(untold::of_platform(&session));
     let zero_s = rows.first().map_or(0.0, |row| row.time_s);
     Ok(Replay { session, zero_s, assumed })
+}
+
+/// Replays a run by giving its session what the board's was given.
+///
+/// # Errors
+/// As [`replay`].
+fn again(
+    given: Given<Setting, Procedure>,
+    rows: &[RotatingRow],
+    options: &Options,
+) -> Result<Replay, ReplayError> {
+    let Given { mut setting, procedure, ended } = given;
+    options.change(&mut setting.common);
+    let mut session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
+    for row in rows {
+        session.handle(Event::Sample(&sample(row, 0.0)));
+    }
+    session.handle(ended.map_or(Event::End, Event::Failed));
+    Ok(Replay { session, zero_s: 0.0, assumed: vec![GIVEN.to_owned()] })
 }
 
 /// Part of the power of what rounding adds that is the first harmonic of its staircase, 6/π².
@@ -203,7 +224,7 @@ fn sample(row: &RotatingRow, begin: f64) -> Sample {
         time: Instant::from_seconds(row.time_s - begin),
         stage: Angle::from_rad(row.stage_rad),
         rate: AngularRate::from_rad_per_s(row.rate_rad_s),
-        force: Some([along, across, SpecificForce::default()]),
+        force: row.force_is_new.then_some([along, across, SpecificForce::default()]),
         ..Sample::default()
     }
 }

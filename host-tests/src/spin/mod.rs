@@ -16,8 +16,8 @@ use self::limit::{Noise, Turns};
 use self::track::Track;
 use crate::methods::asked::Asked;
 use crate::recording::period::Steps;
-use crate::recording::{Body, Header, SpinRow};
-use crate::replay::ReplayError;
+use crate::recording::{Body, Given, Header, SpinRow};
+use crate::replay::{GIVEN, ReplayError};
 
 /// 1σ of a gyro's scale error of which the header says nothing: 1 %.
 pub const SCALE_SIGMA: f64 = 0.01;
@@ -103,13 +103,25 @@ impl Replay {
 /// A recording of another kind, or of less than two samples.
 pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay, ReplayError> {
     let Body::Spin(rows) = body else { return Err(ReplayError::NoSpin(body.kind())) };
+    let required_sigma = options.required_sigma.unwrap_or(f64::INFINITY);
+    if let Some(given) = Given::of(header)? {
+        return Ok(again(&given, rows, required_sigma));
+    }
     let steps = Steps::of(rows, |row| row.time_s);
     let period_s = steps.ok_or(ReplayError::TooFewSamples(rows.len()))?.period_s(header.rate_hz);
     let samples: Vec<SpinSample> = samples::samples(rows, period_s).collect();
     let (setting, assumed) = setting(header, rows, period_s);
-    let required_sigma = options.required_sigma.unwrap_or(f64::INFINITY);
     let replay = follow(&samples, Known { setting, required_sigma, assumed });
     Ok(Replay { doubt: stuck_gyro(rows), ..replay })
+}
+
+/// Replays a run with what its board was given.
+fn again(given: &Given<Setting>, rows: &[SpinRow], required_sigma: f64) -> Replay {
+    let Given { setting, ended, .. } = *given;
+    let samples: Vec<SpinSample> = samples::given(rows, setting.sample_seconds).collect();
+    let ended = ended.map(|reason| firmware::event::Event::RollEnded(reason).to_string());
+    let assumed = vec![GIVEN.to_owned()];
+    Replay { ended, ..follow(&samples, Known { setting, required_sigma, assumed }) }
 }
 
 /// Noise of the forces from which sensors are no ideal ones, m/s²: those that turn so fast measure thousands.

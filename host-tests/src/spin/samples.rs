@@ -3,7 +3,7 @@
 use orientation::signal::SpinSample;
 use orientation::units::{AngleIncrement, Instant, SpinForce};
 
-use crate::recording::SpinRow;
+use crate::recording::{GREATEST_SPIN_RATE, SpinRow};
 use crate::stops::samples::is_cut;
 
 /// Makes samples of what the sensors of a spinning body show at moments; what rounding leaves over of a
@@ -54,6 +54,23 @@ pub fn samples(rows: &[SpinRow], period_s: f64) -> impl Iterator<Item = SpinSamp
         let spin = if cut.next() == Some(true) { f64::NAN } else { row.rate_rad_s };
         let force = if cut.any(|is_cut| is_cut) { [f64::NAN; 2] } else { row.force_m_s2 };
         converter.sample(time_s, [spin, 0.0, 0.0], force)
+    })
+}
+
+/// The samples of a run, as its board had them: a rate is what turned in the period, s, that ended with its row.
+pub fn given(rows: &[SpinRow], period_s: f64) -> impl Iterator<Item = SpinSample> + '_ {
+    let turned = move |rate: f64| {
+        let is_cut = rate.abs() >= GREATEST_SPIN_RATE;
+        AngleIncrement::from_rad(if is_cut { f64::NAN } else { rate * period_s }, &mut 0.0)
+    };
+    rows.iter().map(move |row| {
+        let [y, z] = row.across_rad_s.unwrap_or_default();
+        let force = row.force_m_s2.map(SpinForce::from_m_per_s2);
+        SpinSample {
+            time: Instant::from_seconds(row.time_s),
+            turned: [row.rate_rad_s, y, z].map(turned),
+            force: (!force.iter().any(|force| force.is_saturated())).then_some(force),
+        }
     })
 }
 

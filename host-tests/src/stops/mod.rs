@@ -28,8 +28,8 @@ use self::way::{Leg, Slip};
 use crate::median::median;
 use crate::methods::asked::Asked;
 use crate::recording::period::{Steps, period_s};
-use crate::recording::{Body, Header, ImuRow, Kind};
-use crate::replay::{self, ReplayError};
+use crate::recording::{Body, Given, Header, ImuRow, Kind};
+use crate::replay::{self, GIVEN, ReplayError};
 use crate::setting::{Described, describe};
 use crate::untold;
 
@@ -115,9 +115,36 @@ impl Replay {
 /// What keeps the session from beginning, or makes it refuse: displacements in kilometres. Another refusal is
 /// not an error but the session's conclusion.
 pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay, ReplayError> {
+    if options.method != Some(Method::Static)
+        && let Some(given) = Given::of(header)?
+    {
+        return again(given, header, body, options);
+    }
     let replay = follow(header, body, options)?;
     check_kilometres(header, body, options, &replay)?;
     check_way(body, header, replay)
+}
+
+/// Replays a run by giving its session what the board's was given.
+fn again(
+    given: Given<Setting, Procedure>,
+    header: &Header,
+    body: &Body,
+    options: &Options,
+) -> Result<Replay, ReplayError> {
+    let Given { mut setting, mut procedure, ended } = given;
+    let (common, rows) = (&mut setting.common, samples::rows(body).ok_or_else(|| missing(body))?);
+    common.latitude = options.latitude.unwrap_or(common.latitude);
+    common.required_sigma = options.required_sigma.unwrap_or(common.required_sigma);
+    procedure.displacements = displacements(header, options)?;
+    let period_s = procedure.sample_seconds;
+    let session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
+    let mut watched = Watched::new(session);
+    samples::given(&rows, period_s).for_each(|sample| watched.push(&sample));
+    let Watched { mut session, criteria } = watched;
+    session.handle(ended.map_or(Event::End, Event::Failed));
+    let assumed = vec![GIVEN.to_owned()];
+    Ok(Replay { method: Method::Siap, session, zero_s: 0.0, criteria, assumed })
 }
 
 /// Refuses displacements that the forces on the way contradict, and tells where they cannot.
@@ -227,7 +254,7 @@ const MEDIAN_S: f64 = 30.0;
 /// The method of a recording for which none was asked: where no stop is stated and it never turned about
 /// its vertical, it stood.
 fn usual(header: &Header, rows: &[ImuRow], period_s: f64) -> Method {
-    if header.stops_s.is_some() {
+    if header.stops_s.is_some() || header.session.is_some() {
         return Method::Siap;
     }
     let turned = rows.iter().scan(0.0, |turned, row| {

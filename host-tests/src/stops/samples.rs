@@ -6,7 +6,7 @@ use orientation::signal::InertialSample;
 use orientation::units::{AngleIncrement, Instant, SpecificForce};
 
 use crate::recording::repeated::alone;
-use crate::recording::{Body, ImuRow, ImuSample, StaticRow};
+use crate::recording::{Body, GREATEST_BODY_RATE, ImuRow, ImuSample, StaticRow};
 
 /// How much longer than any other a standstill at the greatest value must be: where a smooth signal is
 /// coarsely written, its top is the longest by three.
@@ -23,7 +23,7 @@ pub fn rows(body: &Body) -> Option<Cow<'_, [ImuRow]>> {
 }
 
 fn row(row: &StaticRow) -> Option<ImuRow> {
-    Some(ImuRow { line: row.line, time_s: row.time_s, sample: row.imu? })
+    Some(ImuRow { line: row.line, time_s: row.time_s, sample: row.imu?, force_is_new: true })
 }
 
 /// Equal values in a row that are no chance where there is noise.
@@ -79,8 +79,22 @@ impl Converter {
 
 /// The samples of rows; their time counts from when the first one began.
 pub fn samples(rows: &[ImuRow], period_s: f64) -> impl Iterator<Item = InertialSample> + '_ {
-    let begin = begin(rows, period_s);
-    let limits = limits(rows);
+    within(limits(rows), begin(rows, period_s), rows, period_s)
+}
+
+/// The samples of a run, as its board had them.
+pub fn given(rows: &[ImuRow], period_s: f64) -> impl Iterator<Item = InertialSample> + '_ {
+    let (rate, none) = (GREATEST_BODY_RATE, f64::INFINITY);
+    within([rate, rate, rate, none, none, none], 0.0, rows, period_s)
+}
+
+/// The samples of rows whose channels are cut at these limits; their time counts from a time, s.
+fn within(
+    limits: [f64; 6],
+    begin: f64,
+    rows: &[ImuRow],
+    period_s: f64,
+) -> impl Iterator<Item = InertialSample> + '_ {
     let mut converter = Converter::default();
     rows.iter().map(move |row| {
         let ImuSample { rates_rad_s, force_m_s2 } = row.sample;
@@ -92,7 +106,7 @@ pub fn samples(rows: &[ImuRow], period_s: f64) -> impl Iterator<Item = InertialS
                 *turned = AngleIncrement(i32::MAX);
             }
         }
-        if cut.any(|is_cut| is_cut) {
+        if cut.any(|is_cut| is_cut) || !row.force_is_new {
             sample.force = None;
         }
         sample

@@ -18,9 +18,9 @@ use orientation::align::setting::Setting;
 use orientation::earth::Latitude;
 use orientation::error::Refusal;
 use orientation::noise::model::GyroNoise;
-use orientation::session::Session;
 use orientation::session::procedure::Procedure;
 use orientation::session::schedule::{Position, Schedule};
+use orientation::session::{Event, Session};
 use orientation::units::DEGREE_PER_HOUR;
 use rayon::prelude::*;
 
@@ -106,7 +106,7 @@ fn verdict(case: &Case, disturbances: &[Disturbance], seed: u64) -> Result<Azimu
     let configuration =
         WorldConfiguration { instruments: case.world, stops: &case.stops, disturbances };
     let world = World::new(configuration, seed);
-    drive(&mut session, world.map(|reading| stage_path(&reading)), |_| {});
+    drive(&mut session, world.map(|reading| stage_path(&reading)), Event::End, |_| {});
     session.conclusion().expect("it has ended").verdict
 }
 

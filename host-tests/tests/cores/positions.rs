@@ -13,9 +13,9 @@ use orientation::align::setting::{Half, Setting};
 use orientation::earth::Latitude;
 use orientation::error::Refusal;
 use orientation::noise::model::GyroNoise;
-use orientation::session::Session;
 use orientation::session::procedure::Procedure;
 use orientation::session::schedule::{Position, Schedule};
+use orientation::session::{Event, Session};
 
 use crate::support::files::recording;
 
@@ -71,7 +71,7 @@ impl Trial<'_> {
         let stops = self.stops();
         let world =
             World::new(WorldConfiguration { instruments, stops: &stops, disturbances: &[] }, seed);
-        drive(&mut session, world.map(|reading| stage_path(&reading)), |_| {});
+        drive(&mut session, world.map(|reading| stage_path(&reading)), Event::End, |_| {});
         session
     }
 

@@ -8,6 +8,7 @@ mod instrument;
 mod instrument_parts;
 mod keeping_instrument;
 mod mount;
+mod recordings;
 mod spin;
 mod stops_instrument;
 mod stops_instrument_faults;

@@ -60,6 +60,7 @@ fn replayed(day: &Scenario, seed: u64, n_deg_sqrt_h: Option<f64>) -> Replay {
             rates_rad_s: sample.turned_rad.map(|angle| angle * RATE_HZ),
             force_m_s2: sample.force_m_s2,
         },
+        force_is_new: true,
     });
     let header = Header {
         latitude_deg: Some(LATITUDE_DEG),

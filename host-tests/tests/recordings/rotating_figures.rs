@@ -26,6 +26,7 @@ fn even_rows(speed: f64, count: u32) -> Vec<RotatingRow> {
             rate_rad_s,
             force_m_s2,
             across_m_s2: None,
+            force_is_new: true,
         }
     };
     (0..count).map(row).collect()

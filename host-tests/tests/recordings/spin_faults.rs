@@ -40,6 +40,7 @@ fn rows() -> Vec<SpinRow> {
             time_s,
             rate_rad_s: rate_rad_s + GYRO_NOISE * chance.gaussian(),
             force_m_s2: forces.map(|force| force + NOISE * chance.gaussian()),
+            across_rad_s: None,
         }
     };
     (0..(SECONDS * RATE_HZ) as usize).map(row).collect()

@@ -19,6 +19,7 @@ use crate::units::wrapped;
 
 /// Criterion by which the azimuth is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Criterion {
     /// Generalised least squares on the dwells themselves.
     MaximumLikelihood,

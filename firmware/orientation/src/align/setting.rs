@@ -11,6 +11,7 @@ use crate::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, TURN};
 /// Half circle in which the azimuth is known to lie: the ambiguity that two opposite positions
 /// leave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Half {
     /// Eastern half: 0° to 180°.
     East,
@@ -59,6 +60,12 @@ impl Mount {
     }
 }
 
+impl Default for Mount {
+    fn default() -> Self {
+        Self::STAGE
+    }
+}
+
 impl PartialEq for Mount {
     fn eq(&self, other: &Self) -> bool {
         self.name == other.name
@@ -67,8 +74,10 @@ impl PartialEq for Mount {
 
 /// Site, instrument and requirements. A standard deviation of zero means exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Setting {
-    /// Mechanism that carries the gyro.
+    /// Mechanism that carries the gyro; text does not hold it, because it is code.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub mount: Mount,
     /// Geodetic latitude.
     pub latitude: Latitude,

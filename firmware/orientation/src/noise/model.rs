@@ -5,6 +5,7 @@ use crate::units::{ARCSECOND, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, TURN};
 /// Noise coefficients of a gyro in SI units, for the Allan variance 3Q²/τ² + N²/τ + (2 ln 2/π)B² +
 /// K²τ/3 + R²τ²/2. A coefficient of zero is absent.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GyroNoise {
     /// Quantisation Q, rad: 1σ of the angle's rounding.
     pub quantisation: f64,

@@ -18,6 +18,7 @@ use prediction::{Visit, rate_sigma};
 
 /// Time that the stage takes for a rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rotation {
     /// Constant part of every rotation, s, ≥ 0: acceleration, deceleration and settling.
     pub rest: f64,
@@ -83,6 +84,7 @@ impl Conditions {
 
 /// A schedule of positions, with the accuracy that it will reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Plan {
     /// Order of the positions.
     pub order: Order,

@@ -7,6 +7,7 @@ use crate::units::TURN;
 /// A sum over positions 180° apart, taken alternately, keeps the signal that turns with the stage
 /// and cancels drift; mirrored orders cancel a linear drift exactly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Order {
     /// Order 0°, 180°, 90°, 270°: Burov's four positions.
     Quadrature,

@@ -37,6 +37,7 @@ pub(super) fn contradiction(told: f64, found: f64, tolerance: f64) -> Option<Ref
 
 /// Procedure of a session.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Procedure {
     /// Positions and dwells.
     pub schedule: Schedule,

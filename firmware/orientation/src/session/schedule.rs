@@ -10,6 +10,7 @@ use crate::signal::dwell::Dwell;
 
 /// One position: stage angle and length of the dwell.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Position {
     /// Stage angle, rad, not wrapped to one turn: cables are not.
     pub angle: f64,
@@ -23,6 +24,7 @@ pub struct Position {
     reason = "without an allocator the list lives here; a session holds one schedule"
 )]
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Schedule {
     /// A list of positions, visited in its order.
     Listed(Vec<Position, CAPACITY>),
@@ -45,6 +47,7 @@ pub enum Schedule {
 
 /// Rule by which a session stops before the last position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum StopRule {
     /// All positions are visited.
     #[default]

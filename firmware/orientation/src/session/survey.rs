@@ -23,12 +23,15 @@ const RESERVE: f64 = 0.95;
 
 /// Survey of the gyro's noise, and conditions of the plan that follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Survey {
     /// Time for which the stage stands still, s.
     pub seconds: f64,
     /// Rotation time of the stage.
     pub rotation: Rotation,
-    /// Orders of positions that the stage can turn through.
+    /// Orders of positions that the stage can turn through; text does not hold them, because they
+    /// belong to the mount.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub orders: &'static [Order],
     /// Length of the shortest dwell of the plan, s.
     pub shortest: f64,

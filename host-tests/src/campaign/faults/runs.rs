@@ -121,7 +121,7 @@ fn on_stage(fault: Fault, seed: u64) -> Result<Ended, RunError> {
 fn on_frames(fault: Fault, seed: u64) -> Result<Ended, RunError> {
     let scenario =
         FramesScenario { base: base(fault, seed), passes: PASSES, ..FramesScenario::default() };
-    let frames = instrument::align_frames(&scenario, Some(fault), &())?;
+    let frames = instrument::align_frames(&scenario, Some(fault), NoRecorder, &())?;
     Ended::with_dwells(&frames.run, scenario.base.azimuth_deg)
 }
 

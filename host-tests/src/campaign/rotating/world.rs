@@ -203,6 +203,7 @@ impl World {
             rate_rad_s: sample.rate_rad_s,
             force_m_s2: sample.force_m_s2[0],
             across_m_s2: None,
+            force_is_new: true,
         };
         Turntable::new(&configuration, seed).enumerate().map(row).collect()
     }

@@ -5,16 +5,21 @@ use std::ffi::OsString;
 /// What a plan of positions is made for where no time is stated: `--method positions`.
 const PLANNED: [&str; 2] = ["--seconds", "300"];
 
-/// The arguments, without the program's name, with the platform of a run in its place.
+/// The arguments, without the program's name, with the platform of a run in its place; without a command it is a run of
+/// a stage.
 ///
 /// # Errors
 /// A method or a mount that there is not; the words name those that there are.
 pub fn expanded(mut arguments: Vec<OsString>) -> Result<Vec<OsString>, String> {
     let is_option = |argument: &OsString| argument.to_string_lossy().starts_with('-');
-    let place = arguments.iter().position(|argument| !is_option(argument));
-    let Some(place) = place.filter(|place| arguments[*place] == "run") else {
+    let Some(place) = arguments.iter().position(|argument| !is_option(argument)) else {
+        let is_plain = arguments.iter().all(|argument| argument == "--json");
+        arguments.extend(["run", "stage"].map(OsString::from).into_iter().filter(|_| is_plain));
         return Ok(arguments);
     };
+    if arguments[place] != "run" {
+        return Ok(arguments);
+    }
     let mut after = arguments[place + 1..].iter().filter(|argument| *argument != "--json");
     let first = after.next().map(|argument| argument.to_string_lossy());
     if first.is_some_and(|first| !first.starts_with('-') || first == "--help" || first == "-h") {

@@ -3,7 +3,7 @@
 use clap::Args;
 use firmware::simulated::keep::Hold;
 
-use super::options::seconds;
+use super::options::{Common, seconds};
 use crate::command::given::{self, Given};
 
 /// How long a run goes on where nothing is said, s, and where it aligns anew at stops: several come then.
@@ -62,9 +62,15 @@ impl KeepingOptions {
         &self,
         given: &Given,
         hold: &Hold,
+        common: &Common,
         aligning: &[&'static str],
     ) -> Result<(), String> {
         let asked = given.first(&["realign", "handover"]);
+        if common.record.is_some() && (asked.is_some() || hold.seconds > 0.0) {
+            return Err(
+                "--record: a recording holds an alignment, not what is kept after it".to_owned()
+            );
+        }
         if let Some(option) = asked.filter(|_| hold.seconds <= 0.0) {
             let option = given::long(option);
             return Err(format!("{option}: nothing is kept after this run; add --hold SECONDS"));

@@ -132,8 +132,9 @@ fn check<P: Simulated>(platform: &P, given: &Given) -> Result<(), String> {
         None => {}
     }
     platform.check(given)?;
+    let record = files::written("--record", "the recording", common.record.as_ref());
     let report = files::written("--report", "the page", common.report.as_ref());
-    let files: Vec<_> = platform.files().into_iter().chain([report]).collect();
+    let files: Vec<_> = [record].into_iter().chain(platform.files()).chain([report]).collect();
     files::check(None, &files)
 }
 
@@ -149,12 +150,14 @@ pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
 }
 
 fn told<P: Simulated>(platform: &P, as_json: bool) -> Result<Told, String> {
-    let Common { seed, fault, report, .. } = platform.common();
+    let common = platform.common();
+    let Common { seed, fault, report, .. } = common;
     let fault = match fault {
         Some(Asked::List) => return faults::list(P::PLATFORM, as_json),
         Some(Asked::One(fault)) => Some(*fault),
         None => None,
     };
+    common.open()?;
     let Ran { name, finished, truth, details, body, written } = platform.run(fault)?;
     let outcome = finished.outcome(&truth).of_run(*seed, details);
     let shown = Shown { name, outcome, finished: &*finished, truth: &truth, body: body.as_ref() };

@@ -1,7 +1,10 @@
 //! Options that several platforms share.
 
+use std::fs::OpenOptions;
 use std::path::PathBuf;
 
+use bench::instrument::recorder::{self, Carrier};
+use bench::unwritten;
 use clap::{Args, ValueEnum};
 use drivers::ads1262::configuration::DataRate;
 use firmware::simulated::scenario::{GyroClass, RATES, Scenario};
@@ -18,9 +21,41 @@ pub struct Common {
     /// What goes wrong; `list` names the faults of the platform.
     #[arg(long, value_name = "NAME", value_parser = faults::parse)]
     pub fault: Option<Asked>,
+    /// Writes the samples that the session got as a recording for `replay`.
+    #[arg(long, value_name = "FILE.csv")]
+    pub record: Option<PathBuf>,
     /// Writes figures and tables as a page for a browser.
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
+}
+
+impl Common {
+    /// Writes the recording of a finished run, where one is asked for.
+    ///
+    /// # Errors
+    /// Those of the file, in words.
+    pub fn write<C: Carrier>(
+        &self,
+        carrier: &C,
+        run: &C::Run,
+        samples: &[C::Sample],
+    ) -> Result<(), String> {
+        self.record.as_ref().map_or(Ok(()), |path| {
+            recorder::write(path, carrier, run, samples)
+                .map_err(|error| unwritten::told("the recording", path, &error))
+        })
+    }
+
+    /// Makes the file of the recording before the run, so that one that cannot be written is told at once.
+    ///
+    /// # Errors
+    /// Those of the file, in words.
+    pub fn open(&self) -> Result<(), String> {
+        self.record.as_ref().map_or(Ok(()), |path| {
+            let opened = OpenOptions::new().append(true).create(true).open(path);
+            opened.map(drop).map_err(|error| unwritten::told("the recording", path, &error))
+        })
+    }
 }
 
 /// Where a platform that finds north is, and with which gyro.

@@ -59,8 +59,10 @@ impl Simulated for SpinOptions {
             turns_per_s: self.turns_per_second.unwrap_or(usual.turns_per_s),
             ..usual
         };
-        let (SpinRun { run, samples, rolls_rad, .. }, wall) =
+        let (flown, wall) =
             Terminal::watching("samples", |watch| follow_spin(&scenario, fault, watch))?;
+        let written = self.common.write(&scenario, &flown, &flown.samples);
+        let SpinRun { run, samples, rolls_rad, .. } = flown;
         let assumed = vec![ASSUMED.to_owned()];
         let known = Known { setting: scenario.setting(), required_sigma: REQUIRED_SIGMA, assumed };
         let replay = Replay { ended: ended(&run), ..follow(&samples, known) };
@@ -70,7 +72,7 @@ impl Simulated for SpinOptions {
             truth: Truth { roll_rad: rolls_rad, ..Truth::default() },
             details: RunDetails::of(&run, &Kept::default(), SAMPLE_RATE, wall),
             body: None,
-            written: Ok(()),
+            written,
         })
     }
 }

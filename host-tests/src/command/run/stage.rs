@@ -1,18 +1,15 @@
 //! `meridian run stage` and `meridian run two-frame`: a base that stands while its gyro stops at positions.
 
-use std::path::PathBuf;
-
 use bench::instrument::kept::{Kept, KeptPlan, KeptRun};
-use bench::instrument::recorder::CsvRecorder;
+use bench::instrument::recorder::Samples;
 use bench::instrument::{self, FramesRun, Run, RunError};
 use bench::outcome::Finished;
 use bench::outcome::run::{KeptAzimuth, RunDetails};
 use bench::output::degrees;
 use bench::recording::Truth;
-use bench::unwritten;
 use clap::Args;
 use firmware::event::Event;
-use firmware::ports::{NoRecorder, Recorder};
+use firmware::ports::Recorder;
 use firmware::simulated::fault::{Fault, Platform};
 use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::{Aim, Scenario};
@@ -21,7 +18,6 @@ use super::keeping::KeepingOptions;
 use super::options::{Common, Inclination, Place, number, seconds};
 use super::{Ran, Simulated, Terminal};
 use crate::command::faults::Asked;
-use crate::command::files::{self, Written};
 use crate::command::given::Given;
 use crate::command::{Half, sigma, whole};
 
@@ -33,9 +29,6 @@ pub struct StageOptions {
     /// Positions on the full circle (24), to the first of which it comes once more at the end.
     #[arg(long, value_parser = whole::<2, 64>, conflicts_with_all = ["seconds", "sigma"])]
     positions: Option<u64>,
-    /// Writes the samples that the session got as a recording for `replay`.
-    #[arg(long, value_name = "FILE.csv", conflicts_with = "sway")]
-    record: Option<PathBuf>,
 }
 
 /// What is asked of two frames.
@@ -119,12 +112,13 @@ impl BaseOptions {
         }
     }
 
-    /// The scenario of the base; what is recorded is to be replayed, and does not go on after its alignment.
-    fn scenario(&self, is_recorded: bool) -> Scenario {
+    /// The scenario of the base; what is recorded does not go on after its alignment.
+    fn scenario(&self) -> Scenario {
         let usual = self.place.scenario(self.common.seed);
         // A fault is seen as it ever was, and where nobody knows how long the alignment takes, the base must not drive
         // off.
         let fault = self.common.fault;
+        let is_recorded = self.common.record.is_some();
         let is_plain = is_recorded || fault.is_some() || self.no_base_imu || self.sigma.is_some();
         let hold = self.keeping.hold(is_plain);
         let needs_base_imu =
@@ -156,13 +150,13 @@ impl BaseOptions {
         if keeps && self.no_base_imu {
             return Err("--no-base-imu: without coarse sensors nothing is kept".to_owned());
         }
-        self.keeping.check(given, &scenario.hold, aligning)
+        self.keeping.check(given, &scenario.hold, &self.common, aligning)
     }
 }
 
 impl StageOptions {
     fn scenario(&self) -> Scenario {
-        let base = self.base.scenario(self.record.is_some());
+        let base = self.base.scenario();
         Scenario {
             positions: self.positions.map_or(base.positions, |count| count as usize),
             ..base
@@ -181,16 +175,8 @@ impl Simulated for StageOptions {
         self.base.no_base_imu
     }
 
-    fn files(&self) -> Vec<Option<Written>> {
-        vec![files::written("--record", "the recording", self.record.as_ref())]
-    }
-
     fn check(&self, given: &Given) -> Result<(), String> {
-        let keeps = given.first(&["realign", "handover"]).is_some();
         let scenario = self.scenario();
-        if self.record.is_some() && (keeps || given.has("hold") && scenario.hold.seconds > 0.0) {
-            return Err("--record: what a base with coarse sensors shows is not recorded".into());
-        }
         // A stage keeps its azimuth by the coarse gyros alone.
         let aligning = [&["gyro"][..], &ALIGNING].concat();
         self.base.check(given, &scenario, &aligning)
@@ -198,20 +184,10 @@ impl Simulated for StageOptions {
 
     fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
         let scenario = self.scenario();
-        let setting = scenario.setting().ok_or("the latitude is outside ±90°")?;
-        let created = |path: &PathBuf| {
-            let recorder = CsvRecorder::create(path, &scenario, &setting);
-            recorder.map_err(|error| unwritten::told("the recording", path, &error))
-        };
-        let mut recorder = self.record.as_ref().map(created).transpose()?;
+        let mut samples = Samples::default();
         let (KeptRun { run, kept }, wall) =
-            Terminal::watching("positions", |watch| match &mut recorder {
-                None => align(&scenario, fault, NoRecorder, watch),
-                Some(recorder) => align(&scenario, fault, recorder, watch),
-            })?;
-        let written = recorder.zip(self.record.as_ref()).map_or(Ok(()), |(mut recorder, path)| {
-            recorder.finish().map_err(|error| unwritten::told("the recording", path, &error))
-        });
+            Terminal::watching("positions", |watch| align(&scenario, fault, &mut samples, watch))?;
+        let written = self.base.common.write(&scenario, &run, &samples.0);
         let details = RunDetails::of(&run, &kept, scenario.sample_rate_hz, wall);
         Ok(Ran { written, ..ran("the simulated run", run, details, &scenario) })
     }
@@ -221,7 +197,7 @@ impl FramesOptions {
     fn scenario(&self) -> FramesScenario {
         let usual = FramesScenario::default();
         FramesScenario {
-            base: self.base.scenario(false),
+            base: self.base.scenario(),
             passes: self.passes.map_or(usual.passes, |count| count as usize),
             ..usual
         }
@@ -245,15 +221,18 @@ impl Simulated for FramesOptions {
 
     fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
         let scenario = self.scenario();
-        let (FramesRun { run, axis: [forward, right, down], kept }, wall) =
-            Terminal::watching("positions", |watch| {
-                instrument::align_frames(&scenario, fault, watch)
-            })?;
+        let mut samples = Samples::default();
+        let (run, wall) = Terminal::watching("positions", |watch| {
+            instrument::align_frames(&scenario, fault, &mut samples, watch)
+        })?;
+        let written = self.base.common.write(&scenario, &run, &samples.0);
+        let FramesRun { run, axis: [forward, right, down], kept } = run;
         let stored = run.events.iter().any(|(_, event)| matches!(event, Event::Stored(..)));
         let mut details = RunDetails::of(&run, &kept, scenario.base.sample_rate_hz, wall);
         details.stored = Some(stored);
         details.truth_off_vertical_deg = Some(degrees(forward.hypot(right).atan2(down)));
-        Ok(ran("the simulated run on two frames", run, details, &scenario.base))
+        let ran = ran("the simulated run on two frames", run, details, &scenario.base);
+        Ok(Ran { written, ..ran })
     }
 }
 

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use bench::instrument::kept::Kept;
+use bench::instrument::recorder::{Samples, turning_rows};
 use bench::instrument::{Keeping, Run, TurntableRun, align_turning_again, flash_file};
 use bench::outcome::run::RunDetails;
 use bench::recording::{Body, Truth};
 use bench::rotating::Replay;
-use bench::rotating::recorder::RowRecorder;
 use clap::{Args, ValueEnum};
 use firmware::date::Day;
 use firmware::event::Event;
@@ -157,11 +157,13 @@ impl Simulated for TurntableOptions {
 
     fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
         let scenario = self.scenario();
-        let (mut keeping, mut recorder) = (self.keeping()?, RowRecorder::default());
-        let (TurntableRun { run, .. }, wall) = Terminal::watching("turns", |watch| {
+        let (mut keeping, mut recorder) = (self.keeping()?, Samples::default());
+        let (run, wall) = Terminal::watching("turns", |watch| {
             align_turning_again(&scenario, fault, &mut recorder, watch, keeping.as_mut())
         })?;
-        let written = self.put_away(keeping);
+        let recorded = self.common.write(&scenario, &run, &recorder.0);
+        let written = self.put_away(keeping).and(recorded);
+        let TurntableRun { run, .. } = run;
         let mut details =
             RunDetails::of(&run, &Kept::default(), scenario.base.sample_rate_hz, wall);
         details.recalled = Some(recalled(&run).map(Into::into).collect());
@@ -172,7 +174,7 @@ impl Simulated for TurntableOptions {
             finished: Box::new(finished),
             truth: Truth { azimuth_deg: Some(scenario.base.azimuth_deg), ..Truth::default() },
             details,
-            body: Some(Body::Rotating(recorder.rows().to_vec())),
+            body: Some(Body::Rotating(turning_rows(&recorder.0))),
             written,
         })
     }

@@ -1,6 +1,7 @@
 //! `meridian run vehicle`: the board in a vehicle that goes from stop to stop.
 
 use bench::instrument::kept::{Kept, Point};
+use bench::instrument::recorder::Samples;
 use bench::instrument::{Run, VehicleRun, align_stops};
 use bench::outcome::Finished;
 use bench::outcome::run::{KeptAzimuth, RunDetails};
@@ -51,7 +52,8 @@ impl VehicleOptions {
     fn scenario(&self) -> VehicleScenario {
         let usual = VehicleScenario::default();
         let sample_rate_hz = self.place.rate.unwrap_or(usual.base.sample_rate_hz);
-        let hold = self.keeping.hold(self.common.fault.is_some());
+        let is_plain = self.common.record.is_some() || self.common.fault.is_some();
+        let hold = self.keeping.hold(is_plain);
         let unknown = self.no_displacement.then_some(vehicle::Place::Unknown);
         VehicleScenario {
             base: Scenario { sample_rate_hz, hold, ..self.place.scenario(self.common.seed) },
@@ -71,7 +73,8 @@ impl Simulated for VehicleOptions {
     }
 
     fn check(&self, given: &Given) -> Result<(), String> {
-        self.keeping.check(given, &self.scenario().base.hold, &["stops", "no_displacement"])
+        let hold = self.scenario().base.hold;
+        self.keeping.check(given, &hold, &self.common, &["stops", "no_displacement"])
     }
 
     fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
@@ -79,9 +82,13 @@ impl Simulated for VehicleOptions {
         let setting = scenario.setting().ok_or("the latitude is outside ±90°")?;
         let beside = Session::new(setting, scenario.procedure());
         let mut watched = Watched::new(beside.map_err(|error| error.to_string())?);
-        let (VehicleRun { run, truth, kept }, wall) = Terminal::watching("stops", |watch| {
-            align_stops(&scenario, fault, &mut watched, watch)
+        let mut samples = Samples::default();
+        let (run, wall) = Terminal::watching("stops", |watch| {
+            align_stops(&scenario, fault, &mut samples, watch)
         })?;
+        samples.0.iter().for_each(|sample| watched.push(sample));
+        let written = self.common.write(&scenario, &run, &samples.0);
+        let VehicleRun { run, truth, kept } = run;
         let azimuth_rad = concluded(&run, &kept, truth);
         let truth = Truth {
             azimuth_deg: Some(degrees(azimuth_rad).rem_euclid(360.0)),
@@ -99,7 +106,7 @@ impl Simulated for VehicleOptions {
         let is_aligned = replay.conclusion().is_some();
         let finished: Box<dyn Finished> =
             if is_aligned { Box::new(replay) } else { Box::new(KeptAzimuth) };
-        let (name, body, written) = ("the simulated drive", None, Ok(()));
+        let (name, body) = ("the simulated drive", None);
         Ok(Ran { name, finished, truth, details, body, written })
     }
 }

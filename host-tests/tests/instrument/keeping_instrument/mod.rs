@@ -34,7 +34,7 @@ fn frames(seed: u64, hold: Hold) -> FramesScenario {
 }
 
 fn keep(scenario: &FramesScenario, plan: &KeptPlan) -> FramesRun {
-    align_frames_and_keep(scenario, plan, &(), ()).expect("the scenario is possible")
+    align_frames_and_keep(scenario, plan, NoRecorder, &(), ()).expect("the scenario is possible")
 }
 
 /// When the base sets off, s.

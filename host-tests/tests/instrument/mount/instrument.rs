@@ -6,7 +6,7 @@ use bench::instrument::{FramesRun, align_frames_and_keep};
 use bench::output::{azimuth_error, degrees};
 use embassy_time::{Duration, Instant};
 use firmware::event::Event;
-use firmware::ports::Frames;
+use firmware::ports::{Frames, NoRecorder};
 use firmware::simulated::fault::Injection;
 use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::Scenario;
@@ -57,7 +57,7 @@ fn short(seed: u64) -> FramesScenario {
 
 fn run(scenario: &FramesScenario, injection: &Injection) -> FramesRun {
     let plan = KeptPlan { chips: injection.clone(), ..KeptPlan::of(None) };
-    align_frames_and_keep(scenario, &plan, &(), ()).expect("the scenario is possible")
+    align_frames_and_keep(scenario, &plan, NoRecorder, &(), ()).expect("the scenario is possible")
 }
 
 fn healthy(scenario: &FramesScenario) -> FramesRun {

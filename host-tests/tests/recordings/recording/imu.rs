@@ -50,7 +50,10 @@ fn its_rows_come_with_their_lines_and_rates_beyond_those_of_a_stage() {
     assert_eq!(recording.header.gyro_bias_deg_h, Some(1.5));
     let rows = rows(recording);
     let sample = ImuSample { rates_rad_s: [1e-5, -12.5, 5e-5], force_m_s2: [0.1, 0.3, -9.8] };
-    assert_eq!((rows.len(), rows[2]), (5, ImuRow { line: 9, time_s: 0.06, sample }));
+    assert_eq!(
+        (rows.len(), rows[2]),
+        (5, ImuRow { line: 9, time_s: 0.06, sample, force_is_new: true })
+    );
 }
 
 #[test]

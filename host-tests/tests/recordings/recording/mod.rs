@@ -92,6 +92,9 @@ fn a_stage_recording_gives_its_rows_with_their_lines() {
         rate_rad_s: 3.5e-5,
         force_m_s2: [0.127, -0.27, -9.83],
         temperature_c: None,
+        force_is_new: true,
+        elevation_rad: None,
+        base: None,
     };
     assert_eq!(rows[2], third);
 }
@@ -131,6 +134,7 @@ fn every_header_key_reaches_its_field() {
         // Those of a vehicle: no stage has them.
         stops_s: None,
         displacements_m: None,
+        session: None,
     };
     assert_eq!(read(changed(STAGE, "# kind: stage", keys)).header, header);
     assert_eq!(read("# kind: dwells\n".to_owned() + &DWELLS[15..]).header, Header::default());
@@ -239,6 +243,9 @@ proptest! {
             rate_rad_s: row.1,
             force_m_s2: row.2,
             temperature_c: Some(row.3),
+            force_is_new: true,
+            elevation_rad: None,
+            base: None,
         }).collect();
         prop_assert_eq!(stage_rows(read(written(&rows))), rows);
     }

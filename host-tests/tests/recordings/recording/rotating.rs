@@ -26,6 +26,7 @@ fn its_rows_come_with_their_lines_and_the_sensor_by_name() {
         rate_rad_s: -1.26e-2,
         force_m_s2: 0.126,
         across_m_s2: None,
+        force_is_new: true,
     };
     let read_rows = rows(ROTATING);
     assert_eq!((read_rows.len(), read_rows[1]), (3, second));

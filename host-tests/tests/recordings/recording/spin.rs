@@ -29,8 +29,13 @@ fn rows(recording: Recording) -> Vec<SpinRow> {
 
 #[test]
 fn its_rows_come_with_their_lines_and_rates_of_a_hundred_turns_a_second() {
-    let second =
-        SpinRow { line: 6, time_s: 0.0001, rate_rad_s: 631.28, force_m_s2: [-7927.3, -3990.5] };
+    let second = SpinRow {
+        line: 6,
+        time_s: 0.0001,
+        rate_rad_s: 631.28,
+        force_m_s2: [-7927.3, -3990.5],
+        across_rad_s: None,
+    };
     let recording = read(SPIN);
     assert_eq!(recording.header.rate_hz, Some(10_000.0));
     let rows = rows(recording);
@@ -73,7 +78,13 @@ fn every_column_but_the_truth_is_needed_in_whatever_order() {
         assert_eq!(message(changed(SPIN, all, &names)), expected);
     }
     let turned = "# kind: spin\naz_m_s2,truth_roll_rad,gx_rad_s,colour,t_s,ay_m_s2\n1,2,3,x,4,5\n";
-    let row = SpinRow { line: 3, time_s: 4.0, rate_rad_s: 3.0, force_m_s2: [5.0, 1.0] };
+    let row = SpinRow {
+        line: 3,
+        time_s: 4.0,
+        rate_rad_s: 3.0,
+        force_m_s2: [5.0, 1.0],
+        across_rad_s: None,
+    };
     assert_eq!(rows(read(turned)), [row]);
 }
 

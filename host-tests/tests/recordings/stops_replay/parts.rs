@@ -17,6 +17,7 @@ fn at(times: impl Iterator<Item = f64>, rates: impl Fn(usize) -> [f64; 3]) -> Ve
         line: index as u64 + 1,
         time_s,
         sample: ImuSample { rates_rad_s: rates(index), force_m_s2: [0.0, 0.0, -9.81] },
+        force_is_new: true,
     };
     times.enumerate().map(row).collect()
 }
@@ -66,7 +67,7 @@ fn a_record_at_rest_with_all_columns_is_taken_too() {
     let full = StaticRow { line: 3, time_s: 0.5, rate_rad_s: None, imu: Some(imu) };
     let body = Body::Static(vec![full]);
     let taken = rows(&body).expect("it has three gyros").into_owned();
-    assert_eq!(taken, [ImuRow { line: 3, time_s: 0.5, sample: imu }]);
+    assert_eq!(taken, [ImuRow { line: 3, time_s: 0.5, sample: imu, force_is_new: true }]);
     let one_gyro = StaticRow { rate_rad_s: Some(1e-5), imu: None, ..full };
     assert!(rows(&Body::Static(vec![full, one_gyro])).is_none());
 }
@@ -83,7 +84,7 @@ fn noisy(walk: f64, density: f64, sway: f64, seconds: u32) -> Vec<ImuRow> {
             rates_rad_s: three(sigma[0], slow),
             force_m_s2: three(sigma[1], 9.8 * slow),
         };
-        ImuRow { line: u64::from(index) + 1, time_s, sample }
+        ImuRow { line: u64::from(index) + 1, time_s, sample, force_is_new: true }
     };
     (0..25 * seconds).map(row).collect()
 }

@@ -24,6 +24,7 @@ const LEAST_TURNS: f64 = 3.0;
 
 /// Axis misalignment and lag of the gyro, from one rate-modulated stretch or from storage.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Coupling {
     /// Part of the platform's rate that the gyro shows, s = −sin α: the in-phase response at the
     /// frequency of the modulation.
@@ -39,7 +40,15 @@ pub struct Coupling {
     /// Date of the measurement, s since 1970; zero where it is unknown.
     pub date: u64,
     /// Temperature at the measurement, °C; NaN where it is unknown.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "or_unknown"))]
     pub temperature: f32,
+}
+
+/// Reads a number that text holds as a missing one where it is NaN.
+#[cfg(feature = "serde")]
+fn or_unknown<'de, D: serde::Deserializer<'de>>(text: D) -> Result<f32, D::Error> {
+    let number: Option<f32> = serde::Deserialize::deserialize(text)?;
+    Ok(number.unwrap_or(f32::NAN))
 }
 
 impl Coupling {

@@ -32,6 +32,7 @@ use crate::units::{DEGREE, DEGREES_PER_RADIAN};
 
 /// Kind of sensor on the platform.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sensor {
     /// Whether the response is flat: gain one and no lag at the platform's speed. Otherwise gain
     /// and lag are unknown, and rotation in both senses determines them.
@@ -40,6 +41,7 @@ pub struct Sensor {
     /// (molecular-electronic sensors): its effect of tilt times the platform's speed, over the
     /// horizontal Earth rate, rad/s. Zero for a gyro without it; infinite where it is unknown,
     /// which requires two speeds.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::units::or_infinite"))]
     pub molecular_sigma: f64,
     /// Settling time of the output after a change of speed, s.
     pub settle_seconds: f64,
@@ -55,6 +57,7 @@ impl Sensor {
 
 /// Configuration of an alignment on a rotating platform.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Setting {
     /// Site, gyro, accelerometer and requirements.
     pub common: Common,

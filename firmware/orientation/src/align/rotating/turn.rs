@@ -108,6 +108,7 @@ impl Turn {
 
 /// Sense of rotation, seen from above.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Sense {
     /// Clockwise: encoder angles increase.
     Clockwise,

@@ -31,6 +31,7 @@ use crate::units::DEGREE_PER_HOUR;
 
 /// Configuration of an alignment by stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Setting {
     /// Site of the first stop, the gyros' noise, the accelerometers' biases, and the requirements.
     pub common: Common,

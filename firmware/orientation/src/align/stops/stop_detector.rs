@@ -34,6 +34,7 @@ const GAP: f64 = 1.6;
 
 /// Source of the stops.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Rests {
     /// The stop criteria find them.
     Found,

@@ -36,6 +36,7 @@ use crate::words::Rounded;
 
 /// Method by which the roll is corrected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Method {
     /// Extrema without interpolation (Nekrasova 2017): at every extremum of a force the roll is set
     /// to that of the extremum, accurate to half a sample at best.
@@ -50,6 +51,7 @@ pub enum Method {
 
 /// Configuration of the roll estimation.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Setting {
     /// Sample period, s.
     pub sample_seconds: f64,

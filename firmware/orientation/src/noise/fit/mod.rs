@@ -285,6 +285,7 @@ words! { NoiseFit:
 
 /// Reason for which a record determines no noise coefficients.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum FitError {
     /// The record has too few samples for a fit.
     TooShort {

@@ -19,6 +19,7 @@ const BLOCK_ANGLE: f64 = 0.1 / 360.0 * TURN;
 
 /// Procedure of a session on a rotating platform.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Procedure {
     /// Speeds of the platform, rad/s, > 0, one or two; none for a recording.
     pub speeds: Vec<f64, SPEEDS>,

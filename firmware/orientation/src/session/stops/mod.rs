@@ -58,6 +58,7 @@ pub enum Phase {
 
 /// Procedure of a session with stops.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Procedure {
     /// Source of the stops.
     pub rests: Rests,

@@ -5,6 +5,7 @@
 /// and an error that is uncorrelated between both ends of a dwell. All zero where no compensation
 /// is applied.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SwayNoise {
     /// Variance σ² of the Gauss–Markov part, rad².
     pub angle_variance: f64,

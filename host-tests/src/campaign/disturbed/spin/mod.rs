@@ -104,7 +104,8 @@ impl Flight {
         while let Some(sample) = world.next() {
             let [rate_rad_s, ..] = sample.rate_rad_s;
             let (line, time_s) = (rows.len() as u64 + 1, sample.time_s);
-            rows.push(SpinRow { line, time_s, rate_rad_s, force_m_s2: sample.force_m_s2 });
+            let force_m_s2 = sample.force_m_s2;
+            rows.push(SpinRow { line, time_s, rate_rad_s, force_m_s2, across_rad_s: None });
             rolls_rad.push(world.truth().roll_rad);
         }
         let (seed, lift_m_s2) = (self.seed, self.lift_m_s2[0].1);

@@ -60,7 +60,7 @@ fn looks(rows: &[SpinRow], angles: &[f64]) -> Vec<Look> {
         }
     }
     let mut variances: Vec<f64> = looks.iter().map(|look| look.variance).collect();
-    let variance = crate::replay::median(&mut variances);
+    let variance = crate::median::median(&mut variances);
     looks.into_iter().map(|look| Look { variance, ..look }).collect()
 }
 

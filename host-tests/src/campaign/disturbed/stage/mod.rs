@@ -80,6 +80,9 @@ impl Bench {
                 rate_rad_s: column.show(sample.rate_rad_s),
                 force_m_s2: shown(&self.unit.axes, sample.force_m_s2),
                 temperature_c: self.has_temperature.then_some(sample.temperature_c),
+                force_is_new: true,
+                elevation_rad: None,
+                base: None,
             });
         }
         rows

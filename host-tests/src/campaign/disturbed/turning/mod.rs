@@ -166,6 +166,7 @@ impl Bench {
             rate_rad_s: column.show(sample.rate_rad_s),
             force_m_s2: along,
             across_m_s2: Some(across),
+            force_is_new: true,
         }
     }
 }

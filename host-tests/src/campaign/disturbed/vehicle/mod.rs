@@ -165,6 +165,7 @@ impl Bench {
                     rates_rad_s: rates,
                     force_m_s2: shown(&self.accelerometer_axes, sample.force_m_s2),
                 },
+                force_is_new: true,
             });
             if middles.next_if(|middle| *middle <= sample.time_s).is_some() {
                 let sigma = if places.is_empty() { 0.0 } else { FIX_M };

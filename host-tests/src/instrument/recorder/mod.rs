@@ -1,0 +1,110 @@
+//! Recordings of simulated runs: what an instrument's session was given, to the last digit.
+//!
+//! [`Samples`] keeps what the session gets while it runs; [`write`] makes a recording of it afterwards, when it is
+//! known how the run ended. Integers of the board are written out whole, so that a replay gets the very same ones. A
+//! recording holds one alignment, and not what is kept after it.
+
+mod spin;
+mod stage;
+mod turntable;
+mod vehicle;
+
+use std::fmt::Display;
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+use firmware::ports::Recorder;
+use firmware::simulated::scenario::Scenario;
+use orientation::align::setting::Setting;
+use orientation::units::{AngularRate, DEGREE_PER_HOUR, Instant, SpecificForce};
+
+pub use turntable::turning_rows;
+
+use crate::recording::Kind;
+
+/// The samples that a session was given, in order: the recorder of every carrier.
+#[derive(Clone, Debug, Default)]
+pub struct Samples<S>(pub Vec<S>);
+
+impl<S: Copy> Recorder<S> for &mut Samples<S> {
+    async fn record(&mut self, sample: &S) {
+        self.0.push(*sample);
+    }
+}
+
+/// A carrier whose runs can be recorded.
+pub trait Carrier {
+    /// A finished run.
+    type Run;
+    /// What its session takes.
+    type Sample;
+
+    /// Writes header, column names and rows.
+    ///
+    /// # Errors
+    /// Those of the file.
+    fn write(&self, to: &mut impl Write, run: &Self::Run, of: &[Self::Sample]) -> io::Result<()>;
+}
+
+/// Writes the recording of a finished run and its session's samples to a file.
+///
+/// # Errors
+/// Those of the file.
+pub fn write<C: Carrier>(
+    path: &Path,
+    carrier: &C,
+    run: &C::Run,
+    samples: &[C::Sample],
+) -> io::Result<()> {
+    let mut to = BufWriter::new(File::create(path)?);
+    carrier.write(&mut to, run, samples)?;
+    to.flush()
+}
+
+/// Writes what a board was told: what keys of their own say of place and instrument, then all that its session was
+/// given.
+fn header(
+    to: &mut impl Write,
+    kind: Kind,
+    base: &Scenario,
+    setting: &Setting,
+    given: &impl Display,
+) -> io::Result<()> {
+    let [along, across] = setting.g_sensitivity.map(|part| part / DEGREE_PER_HOUR);
+    let kappa_sigma = setting.g_sensitivity_sigma / DEGREE_PER_HOUR;
+    writeln!(to, "# kind: {kind}")?;
+    writeln!(to, "# latitude_deg: {}", base.latitude_deg)?;
+    writeln!(to, "# rate_hz: {}", base.sample_rate_hz)?;
+    writeln!(to, "# gyro_N_deg_sqrt_h: {}", base.gyro.n_deg_sqrt_h)?;
+    writeln!(to, "# gyro_B_deg_h: {}", base.gyro.b_deg_h)?;
+    writeln!(to, "# gyro_K_deg_h_sqrt_h: {}", base.gyro.k_deg_h_sqrt_h)?;
+    writeln!(to, "# gyro_scale_sigma: {}", setting.scale_sigma)?;
+    writeln!(to, "# g_sensitivity_deg_h_g: {along:.9},{across:.9}")?;
+    writeln!(to, "# g_sensitivity_sigma_deg_h_g: {kappa_sigma:.9}")?;
+    writeln!(to, "# accelerometer_bias_m_s2: {:.9}", setting.accelerometer_bias_sigma)?;
+    writeln!(to, "{given}")
+}
+
+/// Writes a row, with all digits of its numbers; what is not a number leaves its field empty.
+fn row(to: &mut impl Write, fields: &[f64]) -> io::Result<()> {
+    let text = |field: &f64| if field.is_nan() { String::new() } else { field.to_string() };
+    writeln!(to, "{}", fields.iter().map(text).collect::<Vec<_>>().join(","))
+}
+
+// A division gives the number that is nearest to the decimal fraction, and so is written as that.
+
+/// A time, s.
+fn seconds(time: Instant) -> f64 {
+    time.0 as f64 / 1e6
+}
+
+/// A rate, rad/s; one at either limit of its range stands at the upper one, which a recording can hold.
+fn rate(rate: AngularRate) -> f64 {
+    f64::from(if rate.is_saturated() { i32::MAX } else { rate.0 }) / 1e9
+}
+
+/// Forces, m/s².
+fn forces(forces: [SpecificForce; 3]) -> [f64; 3] {
+    forces.map(|force| f64::from(force.0) / 1e6)
+}

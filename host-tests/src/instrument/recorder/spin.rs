@@ -1,0 +1,42 @@
+//! The recording of a spinning body, kind `spin`. Rates are what turned in a sample, over its period.
+
+use std::io::{self, Write};
+
+use firmware::event::Event;
+use firmware::simulated::spin::{SAMPLE_RATE, SpinScenario};
+use orientation::signal::SpinSample;
+use orientation::units::{AngleIncrement, SpinForce};
+
+use super::{Carrier, row, seconds};
+use crate::instrument::spinning::SpinRun;
+use crate::recording::{GREATEST_SPIN_RATE, Given, Kind};
+
+const COLUMNS: &str = "t_s,gx_rad_s,gy_rad_s,gz_rad_s,ay_m_s2,az_m_s2,truth_roll_rad";
+
+impl Carrier for SpinScenario {
+    type Run = SpinRun;
+    type Sample = SpinSample;
+
+    fn write(&self, to: &mut impl Write, run: &SpinRun, of: &[SpinSample]) -> io::Result<()> {
+        let ended = run.run.events.iter().find_map(|(_, event)| match event {
+            Event::RollEnded(reason) => Some(*reason),
+            _ => None,
+        });
+        writeln!(to, "# kind: {}\n# rate_hz: {SAMPLE_RATE}", Kind::Spin)?;
+        writeln!(to, "# gyro_N_deg_sqrt_h: {}", self.gyro_n_deg_sqrt_h)?;
+        writeln!(to, "# gyro_scale_sigma: {}", self.scale_sigma)?;
+        let given = Given::new(self.setting(), (), ended);
+        writeln!(to, "{given}\n{COLUMNS}")?;
+        of.iter().zip(&run.rolls_rad).try_for_each(|(sample, roll)| {
+            let [x, y, z] = sample.turned.map(mean_rate);
+            let force = sample.force.unwrap_or([SpinForce(i32::MAX); 2]);
+            let [up, right] = force.map(|force| f64::from(force.0) / 1e5);
+            row(to, &[seconds(sample.time), x, y, z, up, right, *roll])
+        })
+    }
+}
+
+/// What turned in a period as a rate, rad/s; at a limit of the gyro's range the greatest that there is.
+fn mean_rate(turned: AngleIncrement) -> f64 {
+    if turned.is_saturated() { GREATEST_SPIN_RATE } else { turned.rad() * SAMPLE_RATE }
+}

@@ -1,0 +1,88 @@
+//! The recording of a stage or of two frames, kind `stage`. The rate is that which the session was given: on a base with
+//! coarse sensors, less the base's sway.
+
+use std::io::{self, Write};
+use std::ops::Range;
+
+use embassy_time::Instant;
+use firmware::ports::BaseReading;
+use firmware::simulated::mount::FramesScenario;
+use firmware::simulated::scenario::Scenario;
+use orientation::align::setting::Setting;
+use orientation::session::procedure::Procedure;
+use orientation::signal::Sample;
+use orientation::units::Angle;
+
+use super::{Carrier, forces, header, rate, row, seconds};
+use crate::instrument::{FramesRun, Run};
+use crate::recording::{Given, Kind};
+
+/// The columns of every stage, then that of a mount, then those of a base with coarse sensors.
+const COLUMNS: [&str; 3] = [
+    "t_s,stage_rad,g_rad_s,fx_m_s2,fy_m_s2,fz_m_s2,temperature_c,force_is_new",
+    "elevation_rad",
+    "bgx_rad_s,bgy_rad_s,bgz_rad_s,bax_m_s2,bay_m_s2,baz_m_s2",
+];
+
+impl Carrier for Scenario {
+    type Run = Run;
+    type Sample = Sample;
+
+    fn write(&self, to: &mut impl Write, run: &Run, of: &[Sample]) -> io::Result<()> {
+        write(to, self, (self.setting(), self.procedure()), run, of)
+    }
+}
+
+impl Carrier for FramesScenario {
+    type Run = FramesRun;
+    type Sample = Sample;
+
+    fn write(&self, to: &mut impl Write, run: &FramesRun, of: &[Sample]) -> io::Result<()> {
+        write(to, &self.base, (self.setting(), self.procedure()), &run.run, of)
+    }
+}
+
+/// Writes what a board was told at the begin, for a survey changes it, and what it measured.
+fn write(
+    to: &mut impl Write,
+    scenario: &Scenario,
+    (setting, procedure): (Option<Setting>, Procedure),
+    run: &Run,
+    of: &[Sample],
+) -> io::Result<()> {
+    let setting = setting.ok_or(io::ErrorKind::InvalidInput)?;
+    let setting = Setting { sway: run.replay.setting.sway, ..setting };
+    let ended = run.conclusion().and_then(|conclusion| conclusion.verdict.err());
+    header(to, Kind::Stage, scenario, &setting, &Given::new(setting, procedure, ended))?;
+    let is_mounted = of.iter().any(|sample| sample.elevation.is_some());
+    let (groups, fields) = match (run.base.is_empty(), is_mounted) {
+        (true, false) => (1, 8),
+        (true, true) => (2, 9),
+        (false, _) => (3, 15),
+    };
+    writeln!(to, "# truth_azimuth_deg: {}", scenario.azimuth_deg)?;
+    writeln!(to, "{}", COLUMNS[..groups].join(","))?;
+    let mut force = [0.0; 3];
+    of.iter().enumerate().try_for_each(|(index, sample)| {
+        force = sample.force.map_or(force, forces);
+        let until = of.get(index + 1).map_or(u64::MAX, |next| next.time.0);
+        let measured = [seconds(sample.time), sample.stage.rad(), rate(sample.rate)];
+        let temperature = sample.temperature.map_or(f64::NAN, |shown| f64::from(shown.0) / 1e3);
+        let elevation = sample.elevation.map_or(f64::NAN, Angle::rad);
+        let beside = [temperature, f64::from(sample.force.is_some()), elevation];
+        let base = shown(&run.base, sample.time.0..until);
+        row(to, &[&measured[..], &force, &beside, &base].concat()[..fields])
+    })
+}
+
+/// The latest reading of the base's sensors in a span of time, µs; no numbers without one.
+fn shown(base: &[(Instant, BaseReading)], span: Range<u64>) -> [f64; 6] {
+    let before = base.partition_point(|(at, _)| at.as_micros() < span.end);
+    match base[..before].last() {
+        Some((at, reading)) if at.as_micros() >= span.start => {
+            let ([x, y, z], [ahead, right, down]) = (reading.rate.map(rate), forces(reading.force));
+            [x, y, z, ahead, right, down]
+        }
+        _ => [f64::NAN; 6],
+    }
+}

@@ -1,0 +1,63 @@
+//! The recording of a platform that turns all the time, kind `rotating`, and its rows for figures.
+
+use std::io::{self, Write};
+
+use firmware::simulated::turntable::TurntableScenario;
+use orientation::signal::Sample;
+use orientation::units::Angle;
+
+use super::{Carrier, forces, header, rate, row, seconds};
+use crate::instrument::TurntableRun;
+use crate::recording::{Given, Kind, RotatingRow};
+
+const COLUMNS: &str = "t_s,stage_rad,stage_rate_rad_s,g_rad_s,a_m_s2,a_across_m_s2,force_is_new";
+
+impl Carrier for TurntableScenario {
+    type Run = TurntableRun;
+    type Sample = Sample;
+
+    fn write(&self, to: &mut impl Write, run: &TurntableRun, of: &[Sample]) -> io::Result<()> {
+        let session = &run.run.replay;
+        let (setting, procedure) = (*session.setting(), session.procedure().clone());
+        let ended = session.conclusion().and_then(|conclusion| conclusion.verdict.err());
+        let given = Given::new(setting, procedure, ended);
+        header(to, Kind::Rotating, &self.base, &setting.common, &given)?;
+        let sensor = if self.molecular.is_some() { "met" } else { "gyro" };
+        writeln!(to, "# sensor: {sensor}")?;
+        let zero_sigma = setting.encoder_zero_sigma.to_degrees();
+        writeln!(to, "# encoder_zero_sigma_deg: {zero_sigma:.9}")?;
+        writeln!(to, "# truth_azimuth_deg: {}\n{COLUMNS}", self.base.azimuth_deg)?;
+        let start = of.first().map_or(0.0, |first| first.stage.rad());
+        turning_rows(of).iter().try_for_each(|it| {
+            let (angle, is_new) = (start + it.stage_rad, f64::from(it.force_is_new));
+            let [along, across] = [it.force_m_s2, it.across_m_s2.unwrap_or_default()];
+            let turning = it.stage_rate_rad_s;
+            row(to, &[it.time_s, angle, turning, it.rate_rad_s, along, across, is_new])
+        })
+    }
+}
+
+/// The rows of a recording of these samples, their angles from that of the first one on: whole turns counted, the
+/// platform's rate from sample to sample, the force the latest.
+#[must_use]
+pub fn turning_rows(samples: &[Sample]) -> Vec<RotatingRow> {
+    let (mut steps, mut force) = (0, [0.0; 3]);
+    let before = samples.first().into_iter().chain(samples);
+    let row = |((line, sample), before): ((u64, &Sample), &Sample)| {
+        let turned = (sample.stage - before.stage).0.cast_signed();
+        let lasted_s = (sample.time.0 - before.time.0).max(1) as f64 * 1e-6;
+        steps += i64::from(turned);
+        force = sample.force.map_or(force, forces);
+        RotatingRow {
+            line,
+            time_s: seconds(sample.time),
+            stage_rad: steps as f64 * Angle::STEP,
+            stage_rate_rad_s: f64::from(turned) * Angle::STEP / lasted_s,
+            rate_rad_s: rate(sample.rate),
+            force_m_s2: force[0],
+            across_m_s2: Some(force[1]),
+            force_is_new: sample.force.is_some(),
+        }
+    };
+    (1..).zip(samples).zip(before).map(row).collect()
+}

@@ -1,0 +1,67 @@
+//! The recording of a vehicle, kind `imu`. Rates are what turned in a sample, over its nominal period.
+
+use std::f64::consts::TAU;
+use std::io::{self, Write};
+
+use firmware::simulated::vehicle::VehicleScenario;
+use orientation::signal::InertialSample;
+use orientation::units::AngleIncrement;
+
+use super::{Carrier, forces, header, row, seconds};
+use crate::instrument::VehicleRun;
+use crate::recording::{GREATEST_BODY_RATE, Given, Kind};
+
+const COLUMNS: &str = "t_s,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s2,ay_m_s2,az_m_s2,force_is_new";
+
+impl Carrier for VehicleScenario {
+    type Run = VehicleRun;
+    type Sample = InertialSample;
+
+    fn write(
+        &self,
+        to: &mut impl Write,
+        run: &VehicleRun,
+        of: &[InertialSample],
+    ) -> io::Result<()> {
+        let session = &run.run.replay;
+        let (setting, procedure) = (*session.setting(), session.procedure().clone());
+        let period_s = procedure.sample_seconds;
+        let ended = session.conclusion().and_then(|conclusion| conclusion.verdict.err());
+        let given = Given::new(setting, procedure, ended);
+        header(to, Kind::Imu, &self.base, &setting.common, &given)?;
+        writeln!(to, "# gyro_bias_deg_h: {}", self.base.gyro.bias_sigma_deg_h)?;
+        // The vehicle stands when its alignment ends, and may drive afterwards.
+        let kept = run.kept.with_azimuth().next().map(|(point, _)| point.truth.azimuth_rad);
+        let azimuth = kept.unwrap_or(run.truth.attitude.azimuth_rad).rem_euclid(TAU);
+        writeln!(to, "# truth_azimuth_deg: {}", azimuth.to_degrees())?;
+        stops(to, run)?;
+        writeln!(to, "{COLUMNS}")?;
+        let mut force = [0.0; 3];
+        of.iter().try_for_each(|sample| {
+            force = sample.force.map_or(force, forces);
+            let ([x, y, z], [ahead, right, down]) =
+                (sample.turned.map(|turned| mean_rate(turned, period_s)), force);
+            let is_new = f64::from(sample.force.is_some());
+            row(to, &[seconds(sample.time), x, y, z, ahead, right, down, is_new])
+        })
+    }
+}
+
+/// What turned in a period, s, as a rate, rad/s; at a limit of the gyro's range the greatest that there is.
+fn mean_rate(turned: AngleIncrement, period_s: f64) -> f64 {
+    if turned.is_saturated() { GREATEST_BODY_RATE } else { turned.rad() / period_s }
+}
+
+/// Writes where the vehicle stood, and what the board was told of how far from the first stop that was.
+fn stops(to: &mut impl Write, run: &VehicleRun) -> io::Result<()> {
+    let stops = run.run.replay.stops();
+    if stops.is_empty() {
+        return Ok(());
+    }
+    let stood: Vec<_> = stops.iter().map(|stop| format!("{}-{}", stop.from, stop.to)).collect();
+    writeln!(to, "# stops_s: {}", stood.join(";"))?;
+    let places = stops.iter().map(|stop| stop.displacement);
+    let places = places.map(|place| place.map(|[north, east]| format!("{north},{east}")));
+    let Some(places) = places.collect::<Option<Vec<_>>>() else { return Ok(()) };
+    writeln!(to, "# displacements_north_east_m: {}", places.join(";"))
+}

@@ -1,0 +1,51 @@
+//! What the session of a recorded run was given beside its samples, and how it ended.
+//!
+//! A replay that gives the same to the same session comes to the same result, to the last bit; without it, a
+//! replay has to find out from the samples what the instrument was told. It stands in the header as JSON under
+//! the key `session`.
+
+use std::fmt;
+
+use orientation::error::Refusal;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use super::Header;
+use super::header::SESSION;
+
+/// What a session was given beside its samples.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Given<S, P = ()> {
+    /// Site, instrument and requirements.
+    pub setting: S,
+    /// How the session goes about it.
+    pub procedure: P,
+    /// Why there is no result, where there is none: a failure of the instrument ends a session, too.
+    pub ended: Option<Refusal>,
+}
+
+impl<S, P> Given<S, P> {
+    /// What a session was given that ended so. A refusal with a number that text cannot hold comes of the samples,
+    /// and need not be told.
+    pub fn new(setting: S, procedure: P, ended: Option<Refusal>) -> Self {
+        let is_text = |it: &Refusal| serde_json::to_string(it).is_ok_and(|it| !it.contains("null"));
+        Self { setting, procedure, ended: ended.filter(is_text) }
+    }
+}
+
+impl<S: DeserializeOwned, P: DeserializeOwned> Given<S, P> {
+    /// What the header says, where it comes from a run.
+    ///
+    /// # Errors
+    /// The text was changed, or belongs to another kind of session.
+    pub fn of(header: &Header) -> serde_json::Result<Option<Self>> {
+        header.session.as_ref().map(|text| serde_json::from_str(text)).transpose()
+    }
+}
+
+impl<S: Serialize, P: Serialize> fmt::Display for Given<S, P> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let text = serde_json::to_string(self).map_err(|_| fmt::Error)?;
+        write!(f, "# {SESSION}: {text}")
+    }
+}

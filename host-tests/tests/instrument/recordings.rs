@@ -1,0 +1,296 @@
+//! Recordings of runs: a run comes to the same result with and without one, and its replay to the same again, to the
+//! last bit.
+
+use std::fmt::Debug;
+use std::path::Path;
+
+use bench::instrument::recorder::{self, Carrier, Samples};
+use bench::instrument::spinning::{SpinRun, follow_spin};
+use bench::instrument::{Run, align, align_frames, align_stops, align_turning};
+use bench::outcome::Finished;
+use bench::recording::{self, Body, Header, Truth};
+use bench::spin::{Known, follow};
+use bench::{replay, rotating, spin, stops};
+use firmware::event::Event;
+use firmware::ports::{Frames, NoRecorder};
+use firmware::simulated::fault::{Fault, Platform};
+use firmware::simulated::mount::FramesScenario;
+use firmware::simulated::scenario::{Aim, Scenario};
+use firmware::simulated::spin::SpinScenario;
+use firmware::simulated::turntable::TurntableScenario;
+use firmware::simulated::vehicle::{Place, VehicleScenario};
+use orientation::session::{rotating as rotating_session, stops as stops_session};
+use orientation::units::DEGREE;
+use serde_json::Value;
+
+use crate::support::files::Scratch;
+
+/// Faults that lose samples, or what a sensor measures, for a while.
+const LOSSES: [&str; 5] = [
+    "overflow-once",
+    "saturation-once",
+    "overload-once",
+    "spin-saturation-once",
+    "spin-overload-once",
+];
+
+/// Those faults of a platform, and every seventh of its catalogue.
+fn some_faults(platform: Platform) -> impl Iterator<Item = Fault> {
+    let losses = Fault::all(platform).filter(|fault| LOSSES.contains(&fault.to_string().as_str()));
+    Fault::all(platform).step_by(7).chain(losses)
+}
+
+/// What a reader finds in the recording of a run; none of a run without a sample.
+fn read_back<C: Carrier>(
+    carrier: &C,
+    run: &C::Run,
+    samples: &[C::Sample],
+) -> Option<(Header, Body)> {
+    samples.first()?;
+    let scratch = Scratch::new("recorded");
+    let path = scratch.path("run.csv");
+    recorder::write(Path::new(&path), carrier, run, samples).expect("the folder is ours");
+    let recording = recording::read(Path::new(&path)).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(recording.told_warnings(Path::new(&path)), [""; 0]);
+    let (header, body, _) = recording.into_parts();
+    Some((header, body))
+}
+
+/// All that is told of an analysis but what it assumed, and its numbers in full.
+fn told(finished: &dyn Finished, conclusion: &impl Debug) -> (Value, String) {
+    let mut outcome = serde_json::to_value(finished.outcome(&Truth::default()));
+    let keys = outcome.as_mut().ok().and_then(Value::as_object_mut).expect("it is an object");
+    keys.remove("assumed");
+    (outcome.expect("it is an object"), format!("{conclusion:?}"))
+}
+
+/// What is told of an alignment in positions.
+fn told_of_stage(replay: &replay::Replay) -> (Value, String) {
+    told(
+        replay,
+        &(replay.session.conclusion(), replay.session.dwells(), replay.session.repetitions()),
+    )
+}
+
+/// Compares runs without and with a recorder with what a replay makes of the recording.
+fn compare_stage<C: Carrier>(plain: &Run, carrier: &C, run: &C::Run, of: &Run, it: &[C::Sample]) {
+    assert_eq!(told_of_stage(&plain.replay), told_of_stage(&of.replay));
+    let Some((header, body)) = read_back(carrier, run, it) else { return };
+    let again = replay::replay(&header, &body, &replay::Options::default(), |_| {});
+    let again = again.unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(told_of_stage(&again), told_of_stage(&of.replay));
+    assert_eq!(again.setting, of.replay.setting);
+}
+
+fn replay_stage(scenario: &Scenario, fault: Option<Fault>) {
+    let plain = align(scenario, fault, NoRecorder, &()).expect("it is possible");
+    let found = plain.conclusion().map(|conclusion| conclusion.verdict);
+    assert!(fault.is_some() || matches!(found, Some(Ok(_))), "{found:?}");
+    let mut samples = Samples::default();
+    let run = align(scenario, fault, &mut samples, &()).expect("it is possible");
+    compare_stage(&plain, scenario, &run, &run, &samples.0);
+}
+
+fn replay_frames(scenario: &FramesScenario, fault: Option<Fault>) {
+    let plain = align_frames(scenario, fault, NoRecorder, &()).expect("it is possible");
+    let found = plain.run.conclusion().map(|conclusion| conclusion.verdict);
+    assert!(fault.is_some() || matches!(found, Some(Ok(_))), "{found:?}");
+    let mut samples = Samples::default();
+    let frames = align_frames(scenario, fault, &mut samples, &()).expect("it is possible");
+    compare_stage(&plain.run, scenario, &frames, &frames.run, &samples.0);
+}
+
+fn replay_turntable(scenario: &TurntableScenario, fault: Option<Fault>) {
+    let of_run = |run: &Run<rotating_session::Session>| {
+        let (session, assumed) = (run.replay.clone(), Vec::new());
+        let replay = rotating::Replay { session, zero_s: 0.0, assumed };
+        told(&replay, &replay.conclusion())
+    };
+    let plain = align_turning(scenario, fault, NoRecorder, &()).expect("it is possible");
+    let found = plain.run.replay.conclusion().map(|conclusion| conclusion.verdict);
+    assert!(fault.is_some() || matches!(found, Some(Ok(_))), "{found:?}");
+    let mut samples = Samples::default();
+    let run = align_turning(scenario, fault, &mut samples, &()).expect("it is possible");
+    assert_eq!(of_run(&plain.run), of_run(&run.run));
+    let Some((header, body)) = read_back(scenario, &run, &samples.0) else { return };
+    let again = rotating::replay(&header, &body, &replay::Options::default());
+    let again = again.unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(told(&again, &again.conclusion()), of_run(&run.run));
+}
+
+fn replay_vehicle(scenario: &VehicleScenario, fault: Option<Fault>) {
+    let told = |session: &stops_session::Session| {
+        format!("{:?} {:?}", session.conclusion(), session.stops())
+    };
+    let plain = align_stops(scenario, fault, NoRecorder, &()).expect("it is possible");
+    let found = plain.run.replay.conclusion().map(|conclusion| conclusion.verdict);
+    assert!(fault.is_some() || matches!(found, Some(Ok(_))), "{found:?}");
+    let mut samples = Samples::default();
+    let found = align_stops(scenario, fault, &mut samples, &()).expect("it is possible");
+    assert_eq!(told(&plain.run.replay), told(&found.run.replay));
+    let Some((header, body)) = read_back(scenario, &found, &samples.0) else { return };
+    let again = stops::replay(&header, &body, &stops::Options::default());
+    let again = again.unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(told(&again.session), told(&found.run.replay));
+}
+
+fn replay_spin(scenario: &SpinScenario, fault: Option<Fault>) {
+    let run = follow_spin(scenario, fault, &()).expect("it is possible");
+    let Some((header, body)) = read_back(scenario, &run, &run.samples) else { return };
+    let again = spin::replay(&header, &body, &spin::Options::default());
+    let again = again.unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(format!("{again:?}"), format!("{:?}", of_spin(scenario, &run, &again.assumed)));
+    let end = again.answer().end;
+    assert_eq!(end.roll_rad.to_bits(), run.run.replay.spin().roll().rad().to_bits());
+    assert_eq!(end.sigma_rad, run.run.replay.spin().sigma());
+}
+
+/// What the command line tells of a flight.
+fn of_spin(scenario: &SpinScenario, run: &SpinRun, assumed: &[String]) -> spin::Replay {
+    let (setting, assumed) = (scenario.setting(), assumed.to_vec());
+    let known = Known { setting, required_sigma: f64::INFINITY, assumed };
+    let ended = run.run.events.iter().find_map(|(_, event)| match event {
+        Event::RollEnded(_) => Some(event.to_string()),
+        _ => None,
+    });
+    spin::Replay { ended, ..follow(&run.samples, known) }
+}
+
+/// A circle of eight positions, the first again, four seconds each.
+fn stage(seed: u64) -> Scenario {
+    let azimuth_deg = 137.5 * seed as f64 % 360.0;
+    let (positions, dwell_s, sample_rate_hz) = (9, 4.0, 100.0);
+    Scenario { azimuth_deg, positions, dwell_s, sample_rate_hz, ..Scenario::usual(seed) }
+}
+
+fn turntable(seed: u64) -> TurntableScenario {
+    let base = Scenario { sample_rate_hz: 100.0, ..Scenario::usual(seed) };
+    let brief = TurntableScenario::brief(seed);
+    TurntableScenario { base, uneven_turns: 6, turns: 4, ..brief }
+}
+
+/// Three stops of a minute.
+fn vehicle(seed: u64) -> VehicleScenario {
+    VehicleScenario::usual(seed)
+}
+
+#[test]
+fn a_recorded_turntable_replays_bit_for_bit() {
+    (1..=2).for_each(|seed| replay_turntable(&turntable(seed), None));
+    let molecular = TurntableScenario { turns: 2, ..TurntableScenario::molecular(3) };
+    let base = Scenario { sample_rate_hz: 100.0, ..molecular.base };
+    replay_turntable(&TurntableScenario { base, ..molecular }, None);
+}
+
+#[test]
+fn a_recorded_turntable_with_a_fault_replays_bit_for_bit() {
+    for fault in some_faults(Platform::Turntable) {
+        println!("{fault}");
+        replay_turntable(&turntable(1), Some(fault));
+    }
+}
+
+#[test]
+fn a_recorded_vehicle_replays_bit_for_bit() {
+    (1..=2).for_each(|seed| replay_vehicle(&vehicle(seed), None));
+    replay_vehicle(&VehicleScenario { place: Place::Unknown, ..vehicle(3) }, None);
+}
+
+#[test]
+fn a_recorded_vehicle_with_a_fault_replays_bit_for_bit() {
+    for fault in some_faults(Platform::Vehicle) {
+        println!("{fault}");
+        replay_vehicle(&vehicle(1), Some(fault));
+    }
+}
+
+#[test]
+fn a_recorded_flight_replays_bit_for_bit() {
+    for seed in 1..=2 {
+        replay_spin(&SpinScenario { seed, seconds: 0.6, ..SpinScenario::default() }, None);
+    }
+}
+
+#[test]
+fn a_recorded_flight_with_a_fault_replays_bit_for_bit() {
+    for fault in some_faults(Platform::Spin) {
+        println!("{fault}");
+        replay_spin(&SpinScenario { seconds: 0.6, ..SpinScenario::default() }, Some(fault));
+    }
+}
+
+#[test]
+fn a_recorded_stage_replays_bit_for_bit() {
+    replay_stage(&stage(1), None);
+    replay_stage(&Scenario { sample_rate_hz: 400.0, ..stage(2) }, None);
+    replay_stage(&Scenario { aim: Aim::Time(60.0), ..stage(3) }, None);
+    replay_stage(&Scenario::surveying(4), None);
+}
+
+#[test]
+fn a_recorded_stage_with_a_fault_replays_bit_for_bit() {
+    for fault in some_faults(Platform::Stage) {
+        println!("{fault}");
+        replay_stage(&stage(1), Some(fault));
+    }
+}
+
+#[test]
+fn a_recorded_stage_on_a_base_that_sways_replays_bit_for_bit() {
+    for (seed, sway_deg) in [(1, 0.05), (2, 0.0)] {
+        let base = Scenario { sway_deg, sway_hz: 2.0, has_base_imu: true, ..stage(seed) };
+        replay_stage(&Scenario { positions: 24, dwell_s: 10.0, ..base }, None);
+    }
+}
+
+#[test]
+fn a_recording_on_a_base_with_sensors_holds_what_they_showed() {
+    let scenario = Scenario { sway_deg: 0.2, has_base_imu: true, ..stage(1) };
+    let mut samples = Samples::default();
+    let run = align(&scenario, None, &mut samples, &()).expect("it is possible");
+    let read = read_back(&scenario, &run, &samples.0);
+    let Some((_, Body::Stage(rows))) = read else { panic!("it is a stage") };
+    let shown: Vec<f64> =
+        rows.iter().filter_map(|row| row.base).map(|base| base.rates_rad_s[0]).collect();
+    let from = samples.0.first().expect("there are samples").time.0;
+    let until = samples.0.last().expect("there are samples").time.0;
+    let within = run.base.iter().filter(|(at, _)| (from..=until).contains(&at.as_micros()));
+    let given: Vec<f64> = within.map(|(_, reading)| reading.rate[0].rad_per_s()).collect();
+    assert!(shown.len() > 1000 && shown.len().abs_diff(given.len()) <= 1, "{}", shown.len());
+    assert!(shown.iter().zip(&given).all(|(shown, given)| (shown - given).abs() < 1e-12));
+}
+
+/// Two passes of a mount.
+fn frames(seed: u64) -> FramesScenario {
+    let base = Scenario { dwell_s: 6.0, ..stage(seed) };
+    let start_deg = Frames { outer: 30.0, inner: -20.0 };
+    let orthogonality_sigma = 0.002 * DEGREE;
+    FramesScenario { base, passes: 2, start_deg, orthogonality_sigma, ..FramesScenario::default() }
+}
+
+#[test]
+fn a_recorded_mount_replays_bit_for_bit() {
+    (1..=2).for_each(|seed| replay_frames(&frames(seed), None));
+    let planned = frames(3);
+    let base = Scenario { aim: Aim::Time(120.0), has_base_imu: true, ..planned.base };
+    replay_frames(&FramesScenario { base, ..planned }, None);
+}
+
+#[test]
+fn a_recorded_mount_with_a_fault_replays_bit_for_bit() {
+    for fault in some_faults(Platform::TwoFrame).step_by(2) {
+        println!("{fault}");
+        replay_frames(&frames(1), Some(fault));
+    }
+}
+
+#[test]
+fn what_a_session_was_given_counts_as_the_run_wrote_it_or_not_at_all() {
+    let scenario = SpinScenario { seconds: 0.6, ..SpinScenario::default() };
+    let run = follow_spin(&scenario, None, &()).expect("it is possible");
+    let (header, body) = read_back(&scenario, &run, &run.samples).expect("there are samples");
+    let changed = Header { session: Some("{}".to_owned()), ..header };
+    let refused = spin::replay(&changed, &body, &spin::Options::default()).map(|_| ());
+    let why = refused.expect_err("nothing was given").to_string();
+    assert!(why.starts_with("key session: missing field `setting`"), "{why}");
+}
