@@ -162,10 +162,14 @@ impl<'a, M: Actuator, O: Observer> Motor<'a, M, O> {
         Some(self.latest.get()).filter(|(_, read)| Instant::now() - *read <= STALE)
     }
 
+    /// The encoder's latest angle, regardless of its age.
+    pub(crate) fn shown(&self) -> Angle {
+        self.latest.get().0
+    }
+
     /// The encoder's latest angle, rad, on the turn nearest to `near`, regardless of its age.
     fn nearest_shown(&self, near: f64) -> f64 {
-        let (shown, _) = self.latest.get();
-        near + (shown - Angle::from_rad(near)).signed_rad()
+        near + (self.shown() - Angle::from_rad(near)).signed_rad()
     }
 
     /// A recent angle of the encoder, rad, on the turn nearest to `near`; waits up to 5 s for it.
@@ -186,6 +190,16 @@ impl<'a, M: Actuator, O: Observer> Motor<'a, M, O> {
     /// The trouble of a stalled axis, with the angle at which it stands, °.
     pub(crate) fn blocked(&self) -> Trouble {
         Trouble::Stalled(self.nearest_shown(self.motion.angle) * DEGREES)
+    }
+
+    /// Gives the motor up if two angles that should be equal differ by more than `most`, rad. Not
+    /// inlined, so that flash holds it once.
+    #[inline(never)]
+    pub(crate) fn check(&self, apart: f64, most: f64) -> Result<(), Break> {
+        if apart.abs() > most {
+            return Err(self.fail(Trouble::Disagrees(apart * DEGREES)).into());
+        }
+        Ok(())
     }
 
     /// Reports an event of this axis under the name of its drive.

@@ -24,6 +24,9 @@ const RETRIES: u32 = 5;
 /// Number of repetitions of a movement: an obstacle that is still there after the third attempt is
 /// taken as permanent.
 const MOVES: u32 = 2;
+/// Largest change of the encoder of an axis that has not moved, in steps of an angle: 0.015°, half of
+/// the distance from a target that is not corrected.
+const STOOD: u32 = u32::MAX / 24_000;
 
 /// The control of a stage, or of one frame of a two-frame mount.
 pub struct Stage<'a, M, O> {
@@ -134,9 +137,7 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
         Timer::after(self.configuration.settle).await;
         let index = self.configuration.index;
         let shown = self.motor.shown_near(index).await?;
-        if (shown - index).abs() > self.configuration.index_tolerance {
-            return Err(self.motor.fail(Trouble::Disagrees((shown - index) * DEGREES)).into());
-        }
+        self.motor.check(shown - index, self.configuration.index_tolerance)?;
         self.motor.ask(Request::SetAngle(shown)).await?;
         self.motor.tell(|axis| Event::Homed(axis, shown * DEGREES));
         Ok(())
@@ -171,25 +172,33 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
                 }
                 Err(Break::Stalled) if attempt == MOVES => trouble = None,
                 Err(Break::Lost) if attempt == MOVES => trouble = Some(Trouble::Resets),
-                Err(broken) => self.recover(broken, STALL_REST * (1 << attempt)).await?,
+                Err(broken) => {
+                    self.recover(broken, STALL_REST * (1 << attempt)).await?;
+                    // A correction belongs to the step count before.
+                    aim = target;
+                }
             }
         }
         Err(self.motor.fail(trouble.unwrap_or_else(|| self.motor.blocked())))
     }
 
     /// Makes one movement to `aim` and returns the distance of the encoder's angle from `target`,
-    /// rad. Motor and encoder must agree.
+    /// rad. Motor and encoder must agree. An encoder that stands where it was, away from the target,
+    /// shows a stall: in a short movement the motor is too slow for the driver's own detection.
     async fn approach(&mut self, aim: f64, target: f64) -> Result<f64, Break> {
         let has_arrived = |motion: &Motion| motion.has_reached && motion.is_standing;
+        let before = self.motor.shown();
         self.motor.ask(Request::GoTo(aim)).await?;
         self.motor.follow(Trouble::Restless, self.configuration.longest, has_arrived).await?;
         Timer::after(self.configuration.settle).await;
         let shown = self.motor.shown_near(self.motor.motion.angle).await?;
-        let apart = shown - self.motor.motion.angle;
-        if apart.abs() > self.configuration.agreement {
-            return Err(self.motor.fail(Trouble::Disagrees(apart * DEGREES)).into());
+        let (apart, off) = (shown - self.motor.motion.angle, shown - target);
+        let moved = (self.motor.shown() - before).0.cast_signed().unsigned_abs();
+        if moved <= STOOD && off.abs() > self.configuration.tolerance {
+            return Err(Break::Stalled);
         }
-        Ok(shown - target)
+        self.motor.check(apart, self.configuration.agreement)?;
+        Ok(off)
     }
 
     /// Prepares the stage for another attempt. The motor's step count is invalid after a stall or a

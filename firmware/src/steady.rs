@@ -16,7 +16,7 @@ use embassy_time::Instant;
 use micromath::F32Ext;
 use orientation::device::Device;
 use orientation::error::Refusal;
-use orientation::signal::sway::{Decision, Sway};
+use orientation::signal::sway::{Decision, Sway, SwayNoise};
 use orientation::units::{Angle, AngularRate, DEGREES_PER_RADIAN as DEGREES, SpecificForce, TURN};
 
 use crate::acquire::{RepeatCounter, STUCK};
@@ -254,14 +254,20 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
             self.silent = Instant::now();
         }
         match outcome {
-            Err(reason) if self.is_swaying() && !shared.keep.is_kept.get() => Err(reason),
-            Err(_) => {
-                self.is_lost = true;
-                self.lost = Instant::now();
-                Ok(())
-            }
-            Ok(()) => Ok(()),
+            Err(reason) if self.is_swaying() && !shared.keep.is_kept.get() => return Err(reason),
+            Err(_) => self.lose(shared),
+            Ok(()) => {}
         }
+        Ok(())
+    }
+
+    /// Continues without the sensors; a sway that they have not observed by now stays unmeasured.
+    fn lose<O: Observer>(&mut self, shared: &Shared<'_, O>) {
+        if !self.is_decided() {
+            shared.sway.set(SwayNoise::UNMEASURED);
+        }
+        self.is_lost = true;
+        self.lost = Instant::now();
     }
 
     /// Whether the base unit is out of use. While an azimuth is kept, it is tried again every 10 s.
@@ -274,19 +280,20 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
 
     /// Reports the decision; called when the decision may have been taken.
     fn tell<O: Observer>(&self, shared: &Shared<'_, O>) {
-        match self.sway.decision() {
-            Decision::Watching => {}
+        let (noise, event) = match self.sway.decision() {
+            Decision::Watching => return,
             Decision::Still(size) => {
-                shared.tell(Event::BaseStill(f64::from(size.angle) * DEGREES));
+                (SwayNoise::NONE, Event::BaseStill(f64::from(size.angle) * DEGREES))
             }
             Decision::Swaying(size, noise) => {
-                shared.sway.set(noise);
                 let hertz = f64::from(size.rate / size.angle) / TURN;
                 let [angle, left] =
                     [f64::from(size.angle), noise.angle_sigma()].map(|angle| angle * DEGREES);
-                shared.tell(Event::BaseSways(angle, hertz, left));
+                (noise, Event::BaseSways(angle, hertz, left))
             }
-        }
+        };
+        shared.sway.set(noise);
+        shared.tell(event);
     }
 
     /// Contribution of the sway to the gyro's rate at a stage angle, nrad/s.
@@ -302,7 +309,10 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
 
 impl<B: BaseSensors> CompensatesSway for SwayCompensation<'_, B> {
     async fn start<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal> {
-        self.is_lost = self.base.start(shared).await.is_err();
+        self.is_lost = false;
+        if self.base.start(shared).await.is_err() {
+            self.lose(shared);
+        }
         self.silent = Instant::now();
         Ok(())
     }

@@ -196,10 +196,7 @@ impl<'a, M: Actuator, O: Observer> Turntable<'a, M, O> {
 
     /// Gives the turntable up if motor and encoder differ by more than the tolerance, rad.
     fn check(&self, apart: f64) -> Result<(), Break> {
-        if self.is_far(apart) {
-            return Err(self.motor.fail(Trouble::Disagrees(apart * DEGREES)).into());
-        }
-        Ok(())
+        self.motor.check(apart, self.configuration.agreement)
     }
 }
 

@@ -112,15 +112,15 @@ pub struct Truth {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Instruments {
     /// Attitude of the base at rest.
-    attitude: Attitude,
+    pub(crate) attitude: Attitude,
     /// Latitude and attitude at rest, with gravity and Earth rate.
-    site: Site,
+    pub(crate) site: Site,
     /// Errors of the encoder.
     encoder: EncoderConfiguration,
     /// The warm-up.
     temperature: TemperatureConfiguration,
     /// The precise gyro.
-    gyro: Gyro,
+    pub(crate) gyro: Gyro,
     /// The accelerometer beside it.
     accelerometer: Accelerometer,
     /// The thermometer of the accelerometer.
@@ -178,15 +178,15 @@ struct Pose {
 
 /// What the platform's sensors feel, less noise.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Felt {
+pub(crate) struct Felt {
     /// Inertial rate along the gyro's sensitive axis, rad/s.
-    axis_rad_s: f64,
+    pub(crate) axis_rad_s: f64,
     /// What the gyro shows of that, less noise, rad/s.
-    steady_rad_s: f64,
+    pub(crate) steady_rad_s: f64,
     /// Specific force on platform x, y, z, m/s².
-    force_m_s2: [f64; 3],
+    pub(crate) force_m_s2: [f64; 3],
     /// Force on platform x and y in units of local gravity.
-    force_g: [f64; 2],
+    pub(crate) force_g: [f64; 2],
 }
 
 impl Instruments {
@@ -246,6 +246,11 @@ impl Instruments {
         let force_g = [force_m_s2[0] / gravity, force_m_s2[1] / gravity];
         let steady_rad_s = self.gyro.steady(axis_rad_s, force_g);
         self.pose.felt = Felt { axis_rad_s, steady_rad_s, force_m_s2, force_g };
+    }
+
+    /// Sets what is felt by instruments that the caller has moved.
+    pub(crate) fn feel(&mut self, felt: Felt) {
+        self.pose.felt = felt;
     }
 
     /// Reads everything once, `time_s` after the first sample. Call `rate_hz` times a second.

@@ -52,50 +52,55 @@ impl<R: Rig> SpiDevice for SpiPort<'_, R> {
     }
 }
 
-/// All bytes of a transaction in a row, and the pauses in it.
+/// Bytes that the controller sends in an operation.
+pub(crate) fn sent<'o>(operation: &'o Operation<'_, u8>) -> &'o [u8] {
+    match operation {
+        Operation::Write(bytes) | Operation::Transfer(_, bytes) => bytes,
+        Operation::TransferInPlace(bytes) => bytes,
+        Operation::Read(_) | Operation::DelayNs(_) => &[],
+    }
+}
+
+/// Bytes that the controller receives in an operation.
+pub(crate) fn received<'o>(operation: &'o mut Operation<'_, u8>) -> &'o mut [u8] {
+    match operation {
+        Operation::Read(bytes)
+        | Operation::Transfer(bytes, _)
+        | Operation::TransferInPlace(bytes) => bytes,
+        Operation::Write(_) | Operation::DelayNs(_) => &mut [],
+    }
+}
+
+/// Number of bytes on the wire in an operation.
+pub(crate) fn length(operation: &Operation<'_, u8>) -> usize {
+    match operation {
+        Operation::Read(bytes) => bytes.len(),
+        Operation::Transfer(read, written) => read.len().max(written.len()),
+        other => sent(other).len(),
+    }
+}
+
+/// All bytes of a transaction in a row, zeros where only the reply counts, and the pauses in it.
 fn flatten(operations: &[Operation<'_, u8>]) -> Result<(Vec<u8, LONGEST>, Duration), ErrorKind> {
-    let mut sent = Vec::new();
-    let mut pause = 0;
+    let (mut bytes, mut pause) = (Vec::new(), 0);
     for operation in operations {
-        match operation {
-            Operation::Write(bytes) | Operation::Transfer(_, bytes) => {
-                sent.extend_from_slice(bytes)
-            }
-            Operation::TransferInPlace(bytes) => sent.extend_from_slice(bytes),
-            Operation::Read(bytes) => sent.resize(sent.len() + bytes.len(), 0),
-            Operation::DelayNs(nanoseconds) => {
-                pause += u64::from(*nanoseconds);
-                Ok(())
-            }
-        }
-        .map_err(|_| ErrorKind::Overrun)?;
-        if let Operation::Transfer(read, written) = operation {
-            let longer = read.len().max(written.len());
-            sent.resize(sent.len() + longer - written.len(), 0).map_err(|_| ErrorKind::Overrun)?;
+        let end = bytes.len() + length(operation);
+        bytes.extend_from_slice(sent(operation)).map_err(|_| ErrorKind::Overrun)?;
+        bytes.resize(end, 0).map_err(|_| ErrorKind::Overrun)?;
+        if let Operation::DelayNs(nanoseconds) = operation {
+            pause += u64::from(*nanoseconds);
         }
     }
-    Ok((sent, Duration::from_micros(pause.div_ceil(1000))))
+    Ok((bytes, Duration::from_micros(pause.div_ceil(1000))))
 }
 
 /// Hands the reply out to the operations that read.
 fn distribute(operations: &mut [Operation<'_, u8>], reply: &[u8]) {
     let mut rest = reply;
     for operation in operations {
-        let (bytes, length): (&mut [u8], usize) = match operation {
-            Operation::Write(bytes) => (&mut [], bytes.len()),
-            Operation::Read(bytes) | Operation::TransferInPlace(bytes) => {
-                let length = bytes.len();
-                (bytes, length)
-            }
-            Operation::Transfer(read, written) => {
-                let length = read.len().max(written.len());
-                (read, length)
-            }
-            Operation::DelayNs(_) => continue,
-        };
-        let (own, later) = rest.split_at(length);
-        let count = bytes.len();
-        bytes.copy_from_slice(&own[..count]);
+        let (own, later) = rest.split_at(length(operation));
+        let bytes = received(operation);
+        bytes.copy_from_slice(&own[..bytes.len()]);
         rest = later;
     }
 }

@@ -175,6 +175,9 @@ pub enum Refusal {
         /// Number of all dwells.
         positions: usize,
     },
+    /// More dwells were disturbed than may be excluded, and the coarse inertial measurement unit
+    /// failed that would have measured the sway of the base.
+    SwayUnmeasured,
     /// More turns of the rotating platform were disturbed than may be excluded.
     TurnsDisturbed {
         /// Number of disturbed turns.
@@ -419,6 +422,8 @@ words! { Refusal:
         Rounded::<1>(ratio);
     Self::Disturbed { disturbed, positions } =>
         "{} of {} dwells were disturbed: keep the platform still", disturbed, positions;
+    Self::SwayUnmeasured =>
+        "the dwells were disturbed, and the coarse IMU is missing that would measure the base's sway: check its wiring";
     Self::TurnsDisturbed { disturbed, turns } =>
         "{} of {} turns were disturbed: keep the base still, let the sensor settle", disturbed, turns;
     Self::TurnsAstray { turns } =>

@@ -15,6 +15,7 @@ pub mod vehicle;
 use core::cell::RefCell;
 
 use drivers::ads1262::Ads1262;
+use drivers::ads1262::configuration::Configuration as Converter;
 use drivers::adxl355::{self, Adxl355};
 use drivers::mt6835::{self, Mt6835};
 use drivers::tmc5160::configuration::Configuration as Motor;
@@ -46,20 +47,15 @@ const OSCILLATOR: Oscillator = Oscillator::Internal { hertz: 12_240_000 };
 pub type Chips<'a> =
     Board<'a, SimulatedConverter, SimulatedAccelerometer, SimulatedEncoder, SimulatedMotorDriver>;
 
-/// The simulated board of a scenario with what goes wrong with it.
+/// The simulated board of a scenario with what goes wrong with it, on a base that goes along a journey where
+/// there is one.
 #[must_use]
-pub fn board<'a>(scenario: &Scenario, injection: &'a Injection) -> Chips<'a> {
-    board_around(&scenario.plant(), scenario.seed, injection)
-}
-
-/// The same on a base that drives off.
-#[must_use]
-pub fn board_riding<'a>(
+pub fn board<'a>(
     scenario: &Scenario,
-    journey: JourneyConfiguration<'a>,
+    journey: Option<JourneyConfiguration<'a>>,
     injection: &'a Injection,
 ) -> Chips<'a> {
-    let plant = PlantConfiguration { journey: Some(journey), ..scenario.plant() };
+    let plant = PlantConfiguration { journey, ..scenario.plant() };
     board_around(&plant, scenario.seed, injection)
 }
 
@@ -90,9 +86,15 @@ fn board_around<'a>(
 /// A simulated serial bus with a wrapper around it.
 type Bus<'a, B, A> = <A as PortWrapper>::Spi<SpiPort<'a, B>>;
 
+/// A simulated data-ready line with a wrapper around it.
+type Line<'a, B, A> = <A as PortWrapper>::Line<ReadyPin<'a, B>>;
+
+/// A gyro behind simulated ports.
+type SimulatedGyro<'a, B, A> = chips::AnalogueGyro<Bus<'a, B, A>, Line<'a, B, A>, Delay>;
+
 /// The sensors of a simulated board.
 pub type SimulatedSensors<'a, B, A> = Sensors<
-    chips::AnalogueGyro<Bus<'a, B, A>, <A as PortWrapper>::Line<ReadyPin<'a, B>>, Delay>,
+    SimulatedGyro<'a, B, A>,
     chips::PlatformAccelerometer<Bus<'a, B, A>, Delay>,
     chips::StageEncoder<Bus<'a, B, A>, Delay>,
 >;
@@ -100,88 +102,76 @@ pub type SimulatedSensors<'a, B, A> = Sensors<
 /// The other ports of a simulated board.
 pub type SimulatedPorts<'a, B, A, L, R> = Ports<chips::StageMotor<Bus<'a, B, A>, Delay>, L, R>;
 
-/// The bus of one chip, with a clock of `hertz`.
-fn bus<'a, B: Rig, A: PortWrapper>(
-    board: &'a RefCell<B>,
-    wrapper: &A,
-    select: Select,
-    hertz: u32,
-) -> Bus<'a, B, A> {
-    wrapper.spi(select, SpiPort::new(board, select, hertz))
-}
+/// The wires of a simulated board: its chips as the drivers reach them, with a wrapper around every port.
+#[derive(Debug)]
+pub struct Wires<'a, 'w, B, A>(pub &'a RefCell<B>, pub &'w A);
 
-/// The sensors of a simulated board.
-pub fn sensors<'a, B: Rig, A: PortWrapper>(
-    board: &'a RefCell<B>,
-    scenario: &Scenario,
-    wrapper: &A,
-) -> SimulatedSensors<'a, B, A> {
-    sensors_with(board, scenario, scenario::accelerometer(), wrapper)
-}
-
-/// The same with an accelerometer that is told something else.
-fn sensors_with<'a, B: Rig, A: PortWrapper>(
-    board: &'a RefCell<B>,
-    scenario: &Scenario,
-    force: adxl355::Configuration,
-    wrapper: &A,
-) -> SimulatedSensors<'a, B, A> {
-    let bus = |select, hertz| bus(board, wrapper, select, hertz);
-    let converter = bus(Select::Gyro, CONVERTER_HERTZ);
-    let ready = wrapper.line(Select::Gyro, ReadyPin::new(board, Select::Gyro));
-    let accelerometer = bus(Select::Accelerometer, adxl355::BUS_HERTZ);
-    let accelerometer = Adxl355::new(accelerometer, Delay, force);
-    Sensors {
-        gyro: chips::AnalogueGyro {
-            converter: Ads1262::new(converter, ready, Delay, scenario.converter()),
-            scale: scenario::SCALE,
-            limit: scenario::LIMIT,
-        },
-        accelerometer: chips::PlatformAccelerometer(accelerometer),
-        encoder: encoder(board, wrapper, Select::Encoder),
-        base: NoBase,
+impl<'a, B: Rig, A: PortWrapper> Wires<'a, '_, B, A> {
+    /// The sensors of a stage or a turntable, whose accelerometer is told this.
+    #[must_use]
+    pub fn sensors(
+        &self,
+        scenario: &Scenario,
+        force: adxl355::Configuration,
+    ) -> SimulatedSensors<'a, B, A> {
+        Sensors {
+            gyro: self.gyro(Select::Gyro, scenario),
+            accelerometer: self.accelerometer(force),
+            encoder: self.encoder(Select::Encoder),
+            base: NoBase,
+        }
     }
-}
 
-/// The encoder of a stage or of one of its frames.
-fn encoder<'a, B: Rig, A: PortWrapper>(
-    board: &'a RefCell<B>,
-    wrapper: &A,
-    select: Select,
-) -> chips::StageEncoder<Bus<'a, B, A>, Delay> {
-    let bus = bus(board, wrapper, select, mt6835::BUS_HERTZ);
-    chips::StageEncoder(Mt6835::new(bus, Delay, mt6835::Configuration::default()))
-}
+    /// The other ports of a stage or a turntable, whose motor driver is told this.
+    pub fn ports<L, R>(
+        &self,
+        motor: Motor,
+        link: L,
+        recorder: R,
+    ) -> SimulatedPorts<'a, B, A, L, R> {
+        Ports { actuator: self.motor(Select::Actuator, motor), link, recorder }
+    }
 
-/// The motor of a stage or of one of its frames.
-fn motor<'a, B: Rig, A: PortWrapper>(
-    board: &'a RefCell<B>,
-    wrapper: &A,
-    select: Select,
-    told: Motor,
-) -> chips::StageMotor<Bus<'a, B, A>, Delay> {
-    let bus = bus(board, wrapper, select, tmc5160::BUS_HERTZ);
-    chips::StageMotor(Tmc5160::new(bus, Delay, told))
-}
+    /// The bus of one chip, with a clock of `hertz`.
+    fn bus(&self, select: Select, hertz: u32) -> Bus<'a, B, A> {
+        self.1.spi(select, SpiPort::new(self.0, select, hertz))
+    }
 
-/// The other ports of a simulated board.
-pub fn ports<'a, B: Rig, A: PortWrapper, L, R>(
-    board: &'a RefCell<B>,
-    wrapper: &A,
-    link: L,
-    recorder: R,
-) -> SimulatedPorts<'a, B, A, L, R> {
-    ports_with(board, wrapper, Motor::default(), link, recorder)
-}
+    /// A converter with its data-ready line, on a bus with a clock of `hertz`.
+    fn converter(
+        &self,
+        select: Select,
+        hertz: u32,
+        told: Converter,
+    ) -> Ads1262<Bus<'a, B, A>, Line<'a, B, A>, Delay> {
+        let ready = self.1.line(select, ReadyPin::new(self.0, select));
+        Ads1262::new(self.bus(select, hertz), ready, Delay, told)
+    }
 
-/// The same with a motor driver that is told something else.
-fn ports_with<'a, B: Rig, A: PortWrapper, L, R>(
-    board: &'a RefCell<B>,
-    wrapper: &A,
-    motor: Motor,
-    link: L,
-    recorder: R,
-) -> SimulatedPorts<'a, B, A, L, R> {
-    let actuator = self::motor(board, wrapper, Select::Actuator, motor);
-    Ports { actuator, link, recorder }
+    /// A gyro with its converter.
+    fn gyro(&self, select: Select, scenario: &Scenario) -> SimulatedGyro<'a, B, A> {
+        let converter = self.converter(select, CONVERTER_HERTZ, scenario.converter());
+        chips::AnalogueGyro { converter, scale: scenario::SCALE, limit: scenario::LIMIT }
+    }
+
+    /// The accelerometer.
+    fn accelerometer(
+        &self,
+        told: adxl355::Configuration,
+    ) -> chips::PlatformAccelerometer<Bus<'a, B, A>, Delay> {
+        let bus = self.bus(Select::Accelerometer, adxl355::BUS_HERTZ);
+        chips::PlatformAccelerometer(Adxl355::new(bus, Delay, told))
+    }
+
+    /// The encoder of a stage or of one of its frames.
+    fn encoder(&self, select: Select) -> chips::StageEncoder<Bus<'a, B, A>, Delay> {
+        let bus = self.bus(select, mt6835::BUS_HERTZ);
+        chips::StageEncoder(Mt6835::new(bus, Delay, mt6835::Configuration::default()))
+    }
+
+    /// The motor of a stage or of one of its frames.
+    fn motor(&self, select: Select, told: Motor) -> chips::StageMotor<Bus<'a, B, A>, Delay> {
+        let bus = self.bus(select, tmc5160::BUS_HERTZ);
+        chips::StageMotor(Tmc5160::new(bus, Delay, told))
+    }
 }

@@ -3,8 +3,6 @@
 //! Site, attitude, gyro and dwells are those of a [`Scenario`]; the mechanism, its calibration and the
 //! accelerometer on the base are its own. What a calibration leaves is drawn from the seed.
 
-use core::cell::RefCell;
-
 use drivers::tmc5160::configuration::Configuration as Motor;
 use embassy_time::Delay;
 use hal_mock::chip::{Rig, Select};
@@ -14,7 +12,6 @@ use hal_mock::noise::Generator;
 use hal_mock::plant::journey::JourneyConfiguration;
 use hal_mock::plant::train::StageConfiguration;
 use hal_mock::plant::{PlantConfiguration, StageFault};
-use hal_mock::spi::ReadyPin;
 use orientation::align::POSITIONS;
 use orientation::align::mount::{ARRIVAL, MountError, TWO_FRAMES, TwoFrame, azimuth_sigma};
 use orientation::align::setting::Setting;
@@ -28,7 +25,7 @@ use orientation::units::DEGREE;
 use super::fault::{Injection, PortWrapper};
 use super::keep::Day;
 use super::scenario::{self, Scenario, Turning};
-use super::{Bus, OSCILLATOR};
+use super::{Bus, OSCILLATOR, SimulatedGyro, Wires};
 use crate::chips;
 use crate::configuration::FramesConfiguration;
 use crate::ports::{Frames, Ports, Sensors};
@@ -134,18 +131,13 @@ impl FramesScenario {
         TwoFrame { outer_zero, inner_zero, ..TwoFrame::default() }
     }
 
-    /// What is true of everything that the chips feel and move.
+    /// What is true of everything that the chips feel and move, on a base that goes along a journey where
+    /// there is one.
     #[must_use]
-    pub fn gimbal<'a>(&self, injection: &'a Injection) -> GimbalConfiguration<'a> {
-        self.gimbal_riding(injection, None)
-    }
-
-    /// The same on a base that drives off.
-    #[must_use]
-    pub fn gimbal_riding<'a>(
+    pub fn gimbal<'a>(
         &self,
-        injection: &'a Injection,
         journey: Option<JourneyConfiguration<'a>>,
+        injection: &'a Injection,
     ) -> GimbalConfiguration<'a> {
         let mut chance = Generator::stream(self.base.seed, STREAM);
         let mut left = |sigma: f64| sigma * chance.gaussian();
@@ -175,20 +167,14 @@ impl FramesScenario {
         }
     }
 
-    /// The simulated board.
+    /// The simulated board on such a base.
     #[must_use]
-    pub fn board<'a>(&self, injection: &'a Injection) -> GimbalBoard<'a> {
-        self.board_riding(injection, None)
-    }
-
-    /// The same on a base that drives off.
-    #[must_use]
-    pub fn board_riding<'a>(
+    pub fn board<'a>(
         &self,
-        injection: &'a Injection,
         journey: Option<JourneyConfiguration<'a>>,
+        injection: &'a Injection,
     ) -> GimbalBoard<'a> {
-        let gimbal = Gimbal::new(&self.gimbal_riding(injection, journey), self.base.seed);
+        let gimbal = Gimbal::new(&self.gimbal(journey, injection), self.base.seed);
         let mut board = GimbalBoard::new(gimbal, OSCILLATOR);
         board.blackouts = &injection.blackouts;
         board
@@ -227,36 +213,31 @@ fn frame<'a>(
     FrameConfiguration { stage, encoder: plant.instruments.encoder, zero_rad, faults }
 }
 
-/// The sensors of the simulated board.
-pub type FrameSensors<'r, B, A> = Sensors<
-    chips::AnalogueGyro<Bus<'r, B, A>, <A as PortWrapper>::Line<ReadyPin<'r, B>>, Delay>,
-    chips::PlatformAccelerometer<Bus<'r, B, A>, Delay>,
-    Frames<chips::StageEncoder<Bus<'r, B, A>, Delay>>,
+/// The sensors of a two-frame mount on simulated chips.
+pub type FrameSensors<'a, B, A> = Sensors<
+    SimulatedGyro<'a, B, A>,
+    chips::PlatformAccelerometer<Bus<'a, B, A>, Delay>,
+    Frames<chips::StageEncoder<Bus<'a, B, A>, Delay>>,
 >;
 
-/// The other ports of the simulated board.
-pub type FramePorts<'r, B, A, L, R> = Ports<Frames<chips::StageMotor<Bus<'r, B, A>, Delay>>, L, R>;
+/// The other ports of a two-frame mount on simulated chips.
+pub type FramePorts<'a, B, A, L, R> = Ports<Frames<chips::StageMotor<Bus<'a, B, A>, Delay>>, L, R>;
 
-/// The sensors of a simulated board.
-pub fn sensors<'r, B: Rig, A: PortWrapper>(
-    board: &'r RefCell<B>,
-    scenario: &FramesScenario,
-    wrapper: &A,
-) -> FrameSensors<'r, B, A> {
-    let Sensors { gyro, accelerometer, encoder: outer, base } =
-        super::sensors(board, &scenario.base, wrapper);
-    let inner = super::encoder(board, wrapper, Select::InnerEncoder);
-    Sensors { gyro, accelerometer, encoder: Frames { outer, inner }, base }
-}
+impl<'a, B: Rig, A: PortWrapper> Wires<'a, '_, B, A> {
+    /// The sensors of a two-frame mount.
+    #[must_use]
+    pub fn frame_sensors(&self, scenario: &FramesScenario) -> FrameSensors<'a, B, A> {
+        let Sensors { gyro, accelerometer, encoder: outer, base } =
+            self.sensors(&scenario.base, scenario::FORCE);
+        let inner = self.encoder(Select::InnerEncoder);
+        Sensors { gyro, accelerometer, encoder: Frames { outer, inner }, base }
+    }
 
-/// The other ports of a simulated board.
-pub fn ports<'r, B: Rig, A: PortWrapper, L, R>(
-    board: &'r RefCell<B>,
-    wrapper: &A,
-    link: L,
-    recorder: R,
-) -> FramePorts<'r, B, A, L, R> {
-    let motor = |select| super::motor(board, wrapper, select, Motor::default());
-    let actuator = Frames { outer: motor(Select::Actuator), inner: motor(Select::InnerActuator) };
-    Ports { actuator, link, recorder }
+    /// The other ports of a two-frame mount.
+    pub fn frame_ports<L, R>(&self, link: L, recorder: R) -> FramePorts<'a, B, A, L, R> {
+        let motor = |select| self.motor(select, Motor::default());
+        let actuator =
+            Frames { outer: motor(Select::Actuator), inner: motor(Select::InnerActuator) };
+        Ports { actuator, link, recorder }
+    }
 }

@@ -36,6 +36,9 @@ pub(super) const SCALE_SIGMA: f64 = 5e-4;
 pub(super) const FORCE_NOISE: f64 = 25e-6 * 9.80665;
 /// 1σ of the ADXL355's offset, 25 mg at most (data sheet, table 1), m/s².
 const FORCE_BIAS_SIGMA: f64 = 0.0083 * 9.80665;
+/// What the accelerometer's driver is told: more outputs than are read.
+pub const FORCE: adxl355::Configuration =
+    adxl355::Configuration { rate: adxl355::registers::OutputRate::Hz125 };
 /// Magnet's eccentricity and ellipticity as the encoder shows them, rad: 0.05° and 0.02°.
 const HARMONICS: [Harmonic; 2] = [
     Harmonic { amplitude_rad: 0.05 * DEGREE, phase_rad: 0.7 },
@@ -406,10 +409,4 @@ fn calibration() -> Harmonics {
             .map(|part| part as f32)
     };
     Harmonics { first: parts(HARMONICS[0]), second: parts(HARMONICS[1]) }
-}
-
-/// The accelerometer's configuration: more outputs than are read.
-#[must_use]
-pub fn accelerometer() -> adxl355::Configuration {
-    adxl355::Configuration { rate: adxl355::registers::OutputRate::Hz125 }
 }

@@ -3,13 +3,10 @@
 //! Site, attitude, gyro and sample rate are those of a [`Scenario`]; slip ring, unevenness, speeds and
 //! the sensor's own dynamics are its own. The chips are the same.
 
-use core::cell::RefCell;
-
 use drivers::adxl355;
 use drivers::adxl355::registers::OutputRate;
 use drivers::tmc5160::configuration::{Configuration as Motor, Switches};
 use embassy_time::{Duration, Instant};
-use hal_mock::chip::Rig;
 use hal_mock::molecular::MolecularConfiguration;
 use hal_mock::plant::PlantConfiguration;
 use hal_mock::plant::train::StageConfiguration;
@@ -20,9 +17,9 @@ use orientation::align::rotating::{Sensor, Setting};
 use orientation::session::rotating::{self, Procedure};
 use orientation::units::{DEGREE, TURN};
 
-use super::fault::{Fault, Injection, PortWrapper};
+use super::fault::{Fault, Injection};
 use super::scenario::{GyroClass, Scenario};
-use super::{Chips, SimulatedPorts, SimulatedSensors, board_around, ports_with, sensors_with};
+use super::{Chips, board_around};
 use crate::configuration::{Configuration, TurntableConfiguration};
 
 /// The motor driver of a platform that turns without end: it has no switches.
@@ -30,7 +27,7 @@ const MOTOR: Switches = Switches { left: None, right: None };
 
 /// The accelerometer of a platform that turns: its filter delays a force by two and a half outputs, in
 /// which the platform is not to turn far.
-const FORCE: adxl355::Configuration = adxl355::Configuration { rate: OutputRate::Hz1000 };
+pub const FORCE: adxl355::Configuration = adxl355::Configuration { rate: OutputRate::Hz1000 };
 /// The same rate, Hz.
 const FORCE_HERTZ: f64 = 1000.0;
 
@@ -198,22 +195,8 @@ impl TurntableScenario {
     }
 }
 
-/// The sensors of its simulated board.
-pub fn sensors<'a, B: Rig, A: PortWrapper>(
-    board: &'a RefCell<B>,
-    scenario: &TurntableScenario,
-    wrapper: &A,
-) -> SimulatedSensors<'a, B, A> {
-    sensors_with(board, &scenario.base, FORCE, wrapper)
-}
-
-/// The other ports of its simulated board.
-pub fn ports<'a, B: Rig, A: PortWrapper, L, R>(
-    board: &'a RefCell<B>,
-    wrapper: &A,
-    link: L,
-    recorder: R,
-) -> SimulatedPorts<'a, B, A, L, R> {
-    let motor = Motor { switches: MOTOR, ..Motor::default() };
-    ports_with(board, wrapper, motor, link, recorder)
+/// What its motor driver is told.
+#[must_use]
+pub fn motor() -> Motor {
+    Motor { switches: MOTOR, ..Motor::default() }
 }

@@ -1,13 +1,16 @@
-//! A data-ready line that may lose edges.
+//! A data-ready line that may lose edges, or fall late.
 
-use embassy_time::Instant;
+use embassy_time::{Duration, Instant, Timer};
 use embedded_hal::digital::ErrorType;
 use embedded_hal_async::digital::Wait;
 
 use super::When;
 
+/// By how much a converter that is out of step comes late.
+const LATE: Duration = Duration::from_millis(4);
+
 /// A data-ready line that may lose edges: what waited for a lost edge, or for the level that it
-/// brought, waits for the next edge.
+/// brought, waits for the next edge. It may also fall late.
 #[derive(Debug)]
 pub struct FaultyReady<W> {
     /// What it wraps.
@@ -16,13 +19,21 @@ pub struct FaultyReady<W> {
     when: Option<When>,
     /// Whether one was.
     shown: bool,
+    /// Since when edges come late, if they do.
+    late: Option<Instant>,
 }
 
 impl<W> FaultyReady<W> {
     /// The line with a time when it loses edges; without one it is healthy and passes all on.
     #[must_use]
     pub const fn new(line: W, when: Option<When>) -> Self {
-        Self { line, when, shown: false }
+        Self { line, when, shown: false, late: None }
+    }
+
+    /// The same line, whose edges come 4 ms late since a time, or never do.
+    #[must_use]
+    pub fn late(self, since: Option<Instant>) -> Self {
+        Self { late: since, ..self }
     }
 
     /// Whether what has just happened on the line is lost.
@@ -41,6 +52,9 @@ impl<W: Wait> FaultyReady<W> {
         wanted(&mut self.line).await?;
         while self.loses() {
             next(&mut self.line).await?;
+        }
+        if self.late.is_some_and(|since| Instant::now() >= since) {
+            Timer::after(LATE).await;
         }
         Ok(())
     }

@@ -6,6 +6,7 @@ use heapless::Vec;
 
 use super::When;
 use crate::noise::Generator;
+use crate::spi::{length, received, sent};
 
 /// Time that a missing chip takes for a byte: a bus of 1 MHz. Without it a driver that polls would
 /// stop the clock.
@@ -79,11 +80,11 @@ impl<S> FaultySpi<S> {
     }
 
     /// The fault that shows in a transaction that begins now.
-    fn fault(&mut self, operations: &[Operation<'_, u8>]) -> Option<BusFault> {
+    fn fault(&mut self, operations: &mut [Operation<'_, u8>]) -> Option<BusFault> {
         let FaultPlan { fault, when } = self.plan?;
         // What has no reply cannot have a wrong one.
         let flips = matches!(fault, BusFault::FlippedBit { .. });
-        let shows_here = !flips || operations.iter().any(|operation| reads(operation) > 0);
+        let shows_here = !flips || replies(operations).next().is_some();
         (shows_here && when.shows(Instant::now(), &mut self.shown)).then_some(fault)
     }
 
@@ -94,7 +95,7 @@ impl<S> FaultySpi<S> {
 
     /// Flips one bit of the reply.
     fn flip(&mut self, operations: &mut [Operation<'_, u8>]) {
-        let bytes: usize = operations.iter().map(reads).sum();
+        let bytes = replies(operations).count();
         let chosen = self.chance.next_u64() % (8 * bytes.max(1) as u64);
         if let Some(byte) = replies(operations).nth((chosen / 8) as usize) {
             *byte ^= 1 << (chosen % 8);
@@ -160,37 +161,9 @@ impl<S: SpiDevice> SpiDevice for FaultySpi<S> {
     }
 }
 
-/// Bytes that the controller reads in an operation.
-fn reads(operation: &Operation<'_, u8>) -> usize {
-    match operation {
-        Operation::Read(bytes)
-        | Operation::Transfer(bytes, _)
-        | Operation::TransferInPlace(bytes) => bytes.len(),
-        Operation::Write(_) | Operation::DelayNs(_) => 0,
-    }
-}
-
-/// Bytes on the wire in an operation.
-fn length(operation: &Operation<'_, u8>) -> usize {
-    match operation {
-        Operation::Write(bytes) | Operation::Transfer(_, bytes) => {
-            bytes.len().max(reads(operation))
-        }
-        _ => reads(operation),
-    }
-}
-
 /// The bytes that the controller reads, in order.
 fn replies<'b>(operations: &'b mut [Operation<'_, u8>]) -> impl Iterator<Item = &'b mut u8> {
-    operations.iter_mut().flat_map(|operation| {
-        let bytes: &mut [u8] = match operation {
-            Operation::Read(bytes)
-            | Operation::Transfer(bytes, _)
-            | Operation::TransferInPlace(bytes) => bytes,
-            Operation::Write(_) | Operation::DelayNs(_) => &mut [],
-        };
-        bytes.iter_mut()
-    })
+    operations.iter_mut().flat_map(received)
 }
 
 /// What transactions of one kind have in common.
@@ -206,11 +179,7 @@ impl Kind {
     /// The kind of a transaction that has not been passed on yet; a read sends zeros.
     fn of(operations: &[Operation<'_, u8>]) -> Self {
         let first = operations.iter().find(|operation| length(operation) > 0);
-        let first = first.and_then(|operation| match operation {
-            Operation::Write(bytes) | Operation::Transfer(_, bytes) => bytes.first(),
-            Operation::TransferInPlace(bytes) => bytes.first(),
-            Operation::Read(_) | Operation::DelayNs(_) => None,
-        });
+        let first = first.and_then(|operation| sent(operation).first());
         Self { first: first.copied().unwrap_or(0), length: operations.iter().map(length).sum() }
     }
 }
@@ -225,7 +194,7 @@ struct Memory {
 impl Memory {
     /// Keeps the reply of a transaction in place of the last of its kind, or of the oldest.
     fn remember(&mut self, kind: Kind, operations: &mut [Operation<'_, u8>]) {
-        if operations.iter().map(reads).sum::<usize>() > LONGEST {
+        if replies(operations).count() > LONGEST {
             return;
         }
         let known = self.replies.iter().position(|(other, _)| *other == kind);

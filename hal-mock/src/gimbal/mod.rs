@@ -14,20 +14,15 @@ pub mod board;
 
 use embassy_time::Instant;
 
-use crate::accelerometer::Accelerometer;
-use crate::disturbance::{self, Effect};
-use crate::earth::{Attitude, Matrix, Site, about_x, about_y, about_z, multiply};
+use crate::earth::{Matrix, about_x, about_y, about_z, multiply};
 use crate::environment::{AnalogueInput, ForceInput, Mechanics, ShaftAngle};
-use crate::gyro::{DEGREE_PER_HOUR, Gyro};
-use crate::instruments::BaseMotion;
-use crate::noise::{White, source};
+use crate::gyro::DEGREE_PER_HOUR;
+use crate::instruments::{BaseMotion, Felt, Instruments};
 use crate::plant::drive::Drive;
-use crate::plant::journey::Journey;
-use crate::plant::sway::SwayConfiguration;
+use crate::plant::payload::Payload;
 use crate::plant::train::StageConfiguration;
-use crate::plant::{PlantConfiguration, STANDARD_GRAVITY_M_S2, StageFault, seconds};
+use crate::plant::{PlantConfiguration, StageFault, seconds};
 use crate::stage::{EncoderConfiguration, StageState};
-use crate::temperature::{TemperatureConfiguration, Thermometer};
 
 /// How the mechanism differs from a perfect one, rad; right-handed about the named axis with both
 /// frames at zero.
@@ -119,19 +114,6 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// What the gyro and the accelerometer feel, less noise.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Felt {
-    /// Angles and rates of the outer and the inner frame.
-    frames: [StageState; 2],
-    /// What the gyro shows of that, less noise, rad/s.
-    steady_rad_s: f64,
-    /// Specific force along the sensitive and the inner axis, g.
-    force_g: [f64; 2],
-    /// Specific force on the base's axes, m/s².
-    force_m_s2: [f64; 3],
-}
-
 /// The mount at work.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gimbal<'a> {
@@ -143,34 +125,10 @@ pub struct Gimbal<'a> {
     misalignment: Misalignment,
     /// The g-sensitivity along the third axis, rad/s per g.
     third_rad_s: f64,
-    /// Attitude of the base at rest.
-    attitude: Attitude,
-    /// Latitude and attitude at rest, with gravity and Earth rate.
-    site: Site,
-    /// Sway of the base; none where it stands still.
-    sway: Option<SwayConfiguration>,
-    /// Journey of the base; none where it stays.
-    journey: Option<Journey<'a>>,
-    /// Periods of the gyro's converter and of the accelerometer, s.
-    periods_s: [f64; 2],
-    /// The gyro in the inner frame.
-    gyro: Gyro,
-    /// The accelerometer on the base.
-    accelerometer: Accelerometer,
-    /// The warm-up.
-    temperature: TemperatureConfiguration,
-    /// The thermometer of the accelerometer.
-    thermometer: Thermometer,
-    /// White noise of the converter, V.
-    converter: White,
-    /// Scale factor of the gyro, V per rad/s.
-    volts_per_rad_s: f64,
-    /// Rate at which the gyro's output clips, rad/s.
-    full_scale_rad_s: f64,
-    /// What disturbs it, in any order.
-    disturbances: &'a [disturbance::Disturbance],
-    /// What was felt last, on a base at rest.
-    felt: Option<Felt>,
+    /// What is mounted in the inner frame and on the base, and what befalls the base.
+    payload: Payload<'a>,
+    /// What was felt last, on a base at rest, with the frames that it belongs to.
+    felt: Option<([StageState; 2], Felt)>,
 }
 
 /// Axes of the mechanism in the base's frame, unit vectors forward, right, down.
@@ -208,30 +166,12 @@ impl<'a> Gimbal<'a> {
     /// A mount at the start of the clock; the seed fixes everything random in it.
     #[must_use]
     pub fn new(configuration: &GimbalConfiguration<'a>, seed: u64) -> Self {
-        let PlantConfiguration { instruments, .. } = configuration.plant;
-        let attitude = instruments.attitude();
-        let accelerometer_hz = configuration.plant.accelerometer_hz;
         Self {
             outer: Frame::new(&configuration.outer),
             inner: Frame::new(&configuration.inner),
             misalignment: configuration.misalignment,
             third_rad_s: configuration.third_g_sensitivity_deg_h_g * DEGREE_PER_HOUR,
-            attitude,
-            site: Site::new(instruments.latitude_deg.to_radians(), &attitude),
-            sway: Some(configuration.plant.sway).filter(SwayConfiguration::is_active),
-            journey: configuration.plant.journey.map(|journey| {
-                let latitude_rad = instruments.latitude_deg.to_radians();
-                Journey::new(&journey, latitude_rad, attitude.azimuth_rad, [0.0; 3])
-            }),
-            periods_s: [1.0 / instruments.rate_hz, 1.0 / accelerometer_hz],
-            gyro: Gyro::new(&instruments.gyro, instruments.rate_hz, seed),
-            accelerometer: Accelerometer::new(&instruments.accelerometer, accelerometer_hz, seed),
-            temperature: instruments.temperature,
-            thermometer: Thermometer::new(&instruments.temperature, seed),
-            converter: White::new(configuration.plant.converter_noise_v, seed, source::CONVERTER),
-            volts_per_rad_s: configuration.plant.gyro_volts_per_rad_s,
-            full_scale_rad_s: configuration.plant.gyro_full_scale_rad_s,
-            disturbances: configuration.plant.disturbances,
+            payload: Payload::new(&configuration.plant, seed),
             felt: None,
         }
     }
@@ -258,29 +198,28 @@ impl<'a> Gimbal<'a> {
         Side { gimbal: self, is_inner: true }
     }
 
-    /// What is felt by the gyro's converter, 0, or by the accelerometer, 1.
-    fn felt(&mut self, chip: usize, now: Instant) -> Felt {
+    /// Brings the instruments to what the gyro's converter, 0, or the accelerometer, 1, feels.
+    fn feel(&mut self, chip: usize, now: Instant) {
         self.advance(now);
         let frames = self.frames();
-        let (time_s, period_s) = (seconds(now), self.periods_s[chip]);
-        if let Some(means) = self.journey.as_mut().and_then(|way| way.felt(chip, time_s, period_s))
-        {
-            return self.felt_of(means.rate_rad_s, means.force_m_s2, frames);
-        }
-        if let Some(sway) = &self.sway {
-            let motion = sway.at(seconds(now));
-            return self.felt_on(&motion, frames);
-        }
-        match self.felt {
-            Some(felt) if felt.frames == frames => felt,
-            _ => *self.felt.insert(self.felt_on(&BaseMotion::default(), frames)),
-        }
+        let felt = match (self.payload.ridden(chip, now), &self.payload.sway, self.felt) {
+            (Some(means), ..) => self.felt_of(means.rate_rad_s, means.force_m_s2, frames),
+            (None, Some(sway), _) => self.felt_on(&sway.at(seconds(now)), frames),
+            (None, None, Some((known, felt))) if known == frames => felt,
+            (None, None, _) => {
+                let felt = self.felt_on(&BaseMotion::default(), frames);
+                self.felt = Some((frames, felt));
+                felt
+            }
+        };
+        self.payload.instruments.feel(felt);
     }
 
     /// What is felt on a base that moves.
     fn felt_on(&self, motion: &BaseMotion, frames: [StageState; 2]) -> Felt {
-        let attitude = motion.moved(&self.attitude);
-        let base = self.site.with_attitude(&attitude).on_platform(0.0);
+        let Instruments { attitude, site, .. } = &self.payload.instruments;
+        let attitude = motion.moved(attitude);
+        let base = site.with_attitude(&attitude).on_platform(0.0);
         let own = motion.body_rad_s(&attitude);
         let rate_rad_s = core::array::from_fn(|i| base.rate_rad_s[i] + own[i]);
         self.felt_of(rate_rad_s, base.force_m_s2, frames)
@@ -293,18 +232,13 @@ impl<'a> Gimbal<'a> {
         let rate: [f64; 3] = core::array::from_fn(|i| {
             turn[i] + outer.rate_rad_s * axes.outer[i] + inner.rate_rad_s * axes.inner[i]
         });
-        let gravity = self.site.gravity_m_s2();
+        let Instruments { gyro, site, .. } = &self.payload.instruments;
+        let gravity = site.gravity_m_s2();
         let [along, inner_g, third_g] =
             [axes.sensitive, axes.inner, axes.third].map(|axis| dot(axis, force_m_s2) / gravity);
-        let force_g = [along, inner_g];
-        let steady_rad_s =
-            self.gyro.steady(dot(axes.sensitive, rate), force_g) + third_g * self.third_rad_s;
-        Felt { frames, steady_rad_s, force_g, force_m_s2 }
-    }
-
-    /// What the disturbances add at `now`.
-    fn effect(&self, now: Instant) -> Effect {
-        disturbance::total(self.disturbances, seconds(now))
+        let (axis_rad_s, force_g) = (dot(axes.sensitive, rate), [along, inner_g]);
+        let steady_rad_s = gyro.steady(axis_rad_s, force_g) + third_g * self.third_rad_s;
+        Felt { axis_rad_s, steady_rad_s, force_m_s2, force_g }
     }
 }
 
@@ -320,30 +254,21 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 impl AnalogueInput for Gimbal<'_> {
     fn volts(&mut self, now: Instant) -> f64 {
-        let (felt, added) = (self.felt(0, now), self.effect(now).rate_rad_s);
-        let temperature_c = self.temperature.at(seconds(now));
-        let elapsed_s = seconds(now);
-        let rate_rad_s = self.gyro.sample_under(
-            felt.force_g,
-            felt.steady_rad_s + added,
-            elapsed_s,
-            temperature_c,
-        );
-        let limit = self.full_scale_rad_s;
-        rate_rad_s.max(-limit).min(limit) * self.volts_per_rad_s + self.converter.sample()
+        self.feel(0, now);
+        self.payload.volts(now)
     }
 }
 
 /// The accelerometer's axes are those of the base: forward, right, down.
 impl ForceInput for Gimbal<'_> {
     fn force_g(&mut self, now: Instant) -> [f64; 3] {
-        let (force, effect) = (self.felt(1, now).force_m_s2, self.effect(now).force_m_s2);
-        let felt = core::array::from_fn(|i| force[i] + effect[i]);
-        self.accelerometer.sample(felt).map(|force| force / STANDARD_GRAVITY_M_S2)
+        self.feel(1, now);
+        let effect = self.payload.effect(now);
+        self.payload.force_g(&effect)
     }
 
     fn temperature_c(&mut self, now: Instant) -> f64 {
-        self.thermometer.sample(self.temperature.at(seconds(now)))
+        self.payload.instruments.temperature(seconds(now))
     }
 }
 

@@ -15,6 +15,7 @@
 pub mod base;
 pub(crate) mod drive;
 pub mod journey;
+pub(crate) mod payload;
 mod ringing;
 pub mod sway;
 pub mod train;
@@ -22,12 +23,12 @@ pub mod train;
 use embassy_time::Instant;
 
 use crate::accelerometer::Lever;
-use crate::disturbance::{self, Disturbance, Effect};
+use crate::disturbance::Disturbance;
 use crate::environment::{AnalogueInput, ForceInput, Mechanics, ShaftAngle};
-use crate::instruments::{Instruments, InstrumentsConfiguration, Truth};
-use crate::noise::{White, source};
+use crate::instruments::{InstrumentsConfiguration, Truth};
 use drive::Drive;
-use journey::{Journey, JourneyConfiguration};
+use journey::JourneyConfiguration;
+use payload::Payload;
 use sway::SwayConfiguration;
 use train::StageConfiguration;
 
@@ -119,28 +120,14 @@ impl Default for PlantConfiguration<'_> {
 /// The plant at work.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plant<'a> {
-    /// What is mounted on the stage.
-    instruments: Instruments,
+    /// What is mounted on the stage, and what befalls the base.
+    payload: Payload<'a>,
     /// Motor, gear and stage, with their faults.
     drive: Drive<'a>,
-    /// The base's sway, where it sways.
-    sway: Option<SwayConfiguration>,
-    /// Where the base goes, where it leaves.
-    journey: Option<Journey<'a>>,
-    /// Periods of the gyro's converter and of the accelerometer, s.
-    periods_s: [f64; 2],
     /// Moment of the latest pose on a swaying base.
     swayed_at: Option<Instant>,
     /// Where the accelerometer sits.
     lever: Lever,
-    /// White noise of the converter, V.
-    converter: White,
-    /// Scale factor of the gyro, V per rad/s.
-    gyro_volts_per_rad_s: f64,
-    /// Rate at which the gyro's output clips, rad/s.
-    gyro_full_scale_rad_s: f64,
-    /// What disturbs the sensors, in any order.
-    disturbances: &'a [Disturbance],
 }
 
 impl<'a> Plant<'a> {
@@ -151,24 +138,11 @@ impl<'a> Plant<'a> {
     #[must_use]
     #[inline(never)]
     pub fn new(configuration: &PlantConfiguration<'a>, seed: u64) -> Self {
-        let c = configuration;
-        let accelerometer_hz = c.accelerometer_hz;
         Self {
-            instruments: Instruments::with_accelerometer_at(&c.instruments, accelerometer_hz, seed),
-            drive: Drive::new(&c.stage, c.faults),
-            sway: c.sway.is_active().then_some(c.sway),
-            journey: c.journey.map(|journey| {
-                let latitude_rad = c.instruments.latitude_deg.to_radians();
-                let azimuth_rad = c.instruments.attitude().azimuth_rad;
-                Journey::new(&journey, latitude_rad, azimuth_rad, [0.0; 3])
-            }),
-            periods_s: [1.0 / c.instruments.rate_hz, 1.0 / accelerometer_hz],
+            payload: Payload::new(configuration, seed),
+            drive: Drive::new(&configuration.stage, configuration.faults),
             swayed_at: None,
-            lever: Lever::new(c.accelerometer_lever_m),
-            converter: White::new(c.converter_noise_v, seed, source::CONVERTER),
-            gyro_volts_per_rad_s: c.gyro_volts_per_rad_s,
-            gyro_full_scale_rad_s: c.gyro_full_scale_rad_s,
-            disturbances: c.disturbances,
+            lever: Lever::new(configuration.accelerometer_lever_m),
         }
     }
 
@@ -188,7 +162,7 @@ impl<'a> Plant<'a> {
     /// of the latest moment, rate as of the latest reading.
     #[must_use]
     pub fn truth(&self) -> Truth {
-        Truth { stage: self.drive.state(), ..self.instruments.truth() }
+        Truth { stage: self.drive.state(), ..self.payload.instruments.truth() }
     }
 
     /// Brings the instruments to where the stage is at `now`.
@@ -196,10 +170,11 @@ impl<'a> Plant<'a> {
     fn look(&mut self, now: Instant) {
         self.advance(now);
         let stage = self.drive.state();
-        match &self.sway {
-            None => self.instruments.turn(stage),
+        let Payload { instruments, sway, .. } = &mut self.payload;
+        match sway {
+            None => instruments.turn(stage),
             Some(sway) if self.swayed_at != Some(now) => {
-                self.instruments.turn_on(stage, &sway.at(seconds(now)));
+                instruments.turn_on(stage, &sway.at(seconds(now)));
                 self.swayed_at = Some(now);
             }
             Some(_) => {}
@@ -211,20 +186,9 @@ impl<'a> Plant<'a> {
     #[inline]
     fn feel(&mut self, chip: usize, now: Instant) {
         self.look(now);
-        let period_s = self.periods_s[chip];
-        let journey = self.journey.as_mut();
-        if let Some(means) = journey.and_then(|way| way.felt(chip, seconds(now), period_s)) {
-            self.instruments.ride(self.drive.state(), &means);
+        if let Some(means) = self.payload.ridden(chip, now) {
+            self.payload.instruments.ride(self.drive.state(), &means);
         }
-    }
-
-    /// What the disturbances add at `now`.
-    #[inline]
-    fn effect(&self, now: Instant) -> Effect {
-        if self.disturbances.is_empty() {
-            return Effect::default();
-        }
-        disturbance::total(self.disturbances, seconds(now))
     }
 }
 
@@ -236,10 +200,7 @@ pub(crate) fn seconds(now: Instant) -> f64 {
 impl AnalogueInput for Plant<'_> {
     fn volts(&mut self, now: Instant) -> f64 {
         self.feel(0, now);
-        let effect = self.effect(now);
-        let limit = self.gyro_full_scale_rad_s;
-        let rate_rad_s = self.instruments.rate(seconds(now), &effect).max(-limit).min(limit);
-        rate_rad_s * self.gyro_volts_per_rad_s + self.converter.sample()
+        self.payload.volts(now)
     }
 }
 
@@ -247,20 +208,20 @@ impl AnalogueInput for Plant<'_> {
 impl ForceInput for Plant<'_> {
     fn force_g(&mut self, now: Instant) -> [f64; 3] {
         self.feel(1, now);
-        let mut effect = self.effect(now);
+        let mut effect = self.payload.effect(now);
         self.lever.add(&mut effect, seconds(now), self.drive.state().rate_rad_s);
-        self.instruments.force(&effect).map(|force| force / STANDARD_GRAVITY_M_S2)
+        self.payload.force_g(&effect)
     }
 
     fn temperature_c(&mut self, now: Instant) -> f64 {
-        self.instruments.temperature(seconds(now))
+        self.payload.instruments.temperature(seconds(now))
     }
 }
 
 impl ShaftAngle for Plant<'_> {
     fn shaft_turns(&mut self, now: Instant) -> f64 {
         self.look(now);
-        (self.instruments.shown_rad() + self.drive.slip_rad(now)) / core::f64::consts::TAU
+        (self.payload.instruments.shown_rad() + self.drive.slip_rad(now)) / core::f64::consts::TAU
     }
 }
 

@@ -131,8 +131,9 @@ impl Scenario {
     }
 }
 
-/// Greatest mean rate at which a vehicle takes a turn, °/s: twice that stays below the gyros' full scale.
-const TURNING_DEG_S: f64 = 18.0;
+/// Greatest mean rate at which a vehicle takes a turn, °/s. A turn of least jerk is 15/8 times as fast in its
+/// middle, where bends and weaving of the body add up to 12 °/s: the gyros' full scale is 40 °/s.
+const TURNING_DEG_S: f64 = 15.0;
 
 /// Draws what a day is like.
 struct Draw(Generator);

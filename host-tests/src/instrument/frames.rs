@@ -5,10 +5,11 @@ use std::cell::RefCell;
 use firmware::keep::Keeping;
 use firmware::ports::{Frames, HeadingStore, NoBase, Observer, Recorder};
 use firmware::run::{acquire_frames, run_frames_and_keep};
+use firmware::simulated::Wires;
 use firmware::simulated::base;
 use firmware::simulated::fault::{Fault, FaultyRecorder, Injection};
 use firmware::simulated::keep::journey;
-use firmware::simulated::mount::{self, FramesScenario};
+use firmware::simulated::mount::FramesScenario;
 use firmware::steady::Base;
 use hal_mock::gimbal::board::GimbalBoard;
 use orientation::keep::Keeper;
@@ -56,7 +57,7 @@ pub fn align_frames_and_keep<R: Recorder, W: Observer>(
     store: impl HeadingStore,
 ) -> Result<FramesRun, RunError> {
     if !scenario.base.has_base_imu {
-        let board = RefCell::new(scenario.board(&plan.chips));
+        let board = RefCell::new(scenario.board(None, &plan.chips));
         return align_with(&board, NoBase, scenario, &plan.chips, recorder, watch, store);
     }
     let day = plan.day(scenario.day());
@@ -64,7 +65,7 @@ pub fn align_frames_and_keep<R: Recorder, W: Observer>(
     let journey = (scenario.base.hold.seconds > 0.0).then_some(journey);
     let rig = RefCell::new(base::rig(&scenario.base, journey.as_ref()));
     let imu = base::imu(&rig, &scenario.base, &plan.chips);
-    let board = RefCell::new(scenario.board_riding(&plan.chips, journey));
+    let board = RefCell::new(scenario.board(journey, &plan.chips));
     let mut frames = align_with(&board, imu, scenario, &plan.chips, recorder, watch, store)?;
     let rig = rig.borrow();
     let violations = base::violations(&rig).iter();
@@ -91,9 +92,10 @@ fn align_with<B: Base, R: Recorder, W: Observer>(
     let channels = harness.channels();
     let latest = Frames::unread();
     let configuration = scenario.base.configuration();
-    let mut sensors = mount::sensors(board, scenario, injection).with_base(base);
+    let wires = Wires(board, injection);
+    let mut sensors = wires.frame_sensors(scenario).with_base(base);
     let recorder = FaultyRecorder::new(recorder, injection.hang);
-    let mut ports = mount::ports(board, injection, harness.wire(), recorder);
+    let mut ports = wires.frame_ports(harness.wire(), recorder);
     let mut keeper = Keeper::new(&scenario.keeper().ok_or_else(outside)?);
     let keep = scenario.base.keeping().ok_or_else(outside)?;
     let mut keeping = Keeping::new(&mut keeper, &keep, scenario.base.hold.outside(), store);
@@ -102,7 +104,7 @@ fn align_with<B: Base, R: Recorder, W: Observer>(
         run_frames_and_keep(&mut ports, &frames, &latest, &mut session, &mut keeping, &channels),
     )?;
     let [outer, inner] = board.borrow().gimbal.frames();
-    let misalignment = scenario.gimbal(injection).misalignment;
+    let misalignment = scenario.gimbal(None, injection).misalignment;
     let axis = misalignment.axes(outer.angle_rad, inner.angle_rad).sensitive;
     let replay = Replay {
         method: Method::Positions,

@@ -4,8 +4,9 @@ use std::cell::RefCell;
 
 use firmware::ports::{Observer, SpinPorts};
 use firmware::run::{acquire_spin, run_spin};
+use firmware::simulated::Wires;
 use firmware::simulated::fault::Fault;
-use firmware::simulated::spin::{self, SpinScenario};
+use firmware::simulated::spin::SpinScenario;
 use firmware::spin::Flight;
 use hal_mock::spin::SpinTruth;
 use hal_mock::spin::plant::SpinPlant;
@@ -46,7 +47,7 @@ pub fn follow_spin<W: Observer>(
     let (mut flight, mut kept) = (scenario.flight(), Samples::default());
     let harness = Harness::new(watch);
     let channels = harness.channels();
-    let mut sensors = spin::sensors(&board, &injection);
+    let mut sensors = Wires(&board, &injection).spinning();
     let mut ports = SpinPorts { link: harness.wire(), recorder: &mut kept };
     let ended = harness::run(
         acquire_spin(&mut sensors, &configuration, &channels),

@@ -2,15 +2,15 @@
 
 use std::cell::RefCell;
 
+use drivers::tmc5160::configuration::Configuration as Motor;
 use firmware::keep::Keeping;
 use firmware::ports::{HeadingStore, NoBase, Observer, Recorder};
 use firmware::run::{acquire, run_and_keep};
-use firmware::simulated;
-use firmware::simulated::Chips;
 use firmware::simulated::base;
 use firmware::simulated::fault::{Fault, FaultyRecorder, Injection};
 use firmware::simulated::keep::journey;
-use firmware::simulated::scenario::Scenario;
+use firmware::simulated::scenario::{self, Scenario};
+use firmware::simulated::{self, Chips, Wires};
 use firmware::steady::Base;
 use orientation::keep::Keeper;
 use orientation::session::Session;
@@ -50,14 +50,10 @@ pub fn align_and_keep<R: Recorder, W: Observer>(
 ) -> Result<KeptRun, RunError> {
     let day = plan.day(scenario.day());
     let journey = journey(&day, &plan.base);
-    let is_riding = scenario.hold.seconds > 0.0;
-    let rig = RefCell::new(base::rig(scenario, is_riding.then_some(&journey)));
+    let journey = (scenario.hold.seconds > 0.0).then_some(journey);
+    let rig = RefCell::new(base::rig(scenario, journey.as_ref()));
     let imu = base::imu(&rig, scenario, &plan.chips);
-    let board = RefCell::new(if is_riding {
-        simulated::board_riding(scenario, journey, &plan.chips)
-    } else {
-        simulated::board(scenario, &plan.chips)
-    });
+    let board = RefCell::new(simulated::board(scenario, journey, &plan.chips));
     let mut run = align_with(&board, imu, scenario, &plan.chips, recorder, watch, store)?;
     let rig = rig.borrow();
     run.violations
@@ -78,7 +74,7 @@ pub fn align_on<B: Base, R: Recorder, W: Observer>(
     watch: &W,
 ) -> Result<Run, RunError> {
     let injection = Injection::of(fault);
-    let board = RefCell::new(simulated::board(scenario, &injection));
+    let board = RefCell::new(simulated::board(scenario, None, &injection));
     align_with(&board, base, scenario, &injection, recorder, watch, ())
 }
 
@@ -97,9 +93,10 @@ fn align_with<B: Base, R: Recorder, W: Observer>(
     let harness = Harness::new(watch);
     let channels = harness.channels();
     let configuration = scenario.configuration();
-    let mut sensors = simulated::sensors(board, scenario, injection).with_base(base);
+    let wires = Wires(board, injection);
+    let mut sensors = wires.sensors(scenario, scenario::FORCE).with_base(base);
     let recorder = FaultyRecorder::new(recorder, injection.hang);
-    let mut ports = simulated::ports(board, injection, harness.wire(), recorder);
+    let mut ports = wires.ports(Motor::default(), harness.wire(), recorder);
     let mut keeper = Keeper::new(&scenario.keeper().ok_or_else(outside)?);
     let keep = scenario.keeping().ok_or_else(outside)?;
     let mut keeping = Keeping::new(&mut keeper, &keep, scenario.hold.outside(), store);

@@ -4,6 +4,7 @@ use std::cell::RefCell;
 
 use firmware::ports::{Observer, Recorder};
 use firmware::run::{acquire, run_rotating, run_storing};
+use firmware::simulated::Wires;
 use firmware::simulated::fault::{Fault, FaultyRecorder};
 use firmware::simulated::flash::Flash;
 use firmware::simulated::turntable::{self, TurntableScenario};
@@ -69,9 +70,10 @@ pub fn align_turning_again<R: Recorder, W: Observer>(
     let mut session = rotating::Session::new(setting, procedure).map_err(RunError::Procedure)?;
     let configuration = scenario.configuration();
     let platform = scenario.turntable();
-    let mut sensors = turntable::sensors(&board, scenario, &injection);
+    let wires = Wires(&board, &injection);
+    let mut sensors = wires.sensors(&scenario.base, turntable::FORCE);
     let recorder = FaultyRecorder::new(recorder, injection.hang);
-    let mut ports = turntable::ports(&board, &injection, harness.wire(), recorder);
+    let mut ports = wires.ports(turntable::motor(), harness.wire(), recorder);
     let instrument = async {
         match keeping {
             None => run_rotating(&mut ports, &platform, &mut session, &channels).await,

@@ -5,8 +5,9 @@ use std::cell::RefCell;
 use firmware::keep::Keeping;
 use firmware::ports::{HeadingStore, Observer, Recorder, VehiclePorts};
 use firmware::run::{acquire_triad, run_stops_and_keep};
+use firmware::simulated::Wires;
 use firmware::simulated::fault::{Fault, FaultyRecorder, Injection};
-use firmware::simulated::vehicle::{self, Day, KnownPlace, VehicleScenario};
+use firmware::simulated::vehicle::{Day, KnownPlace, VehicleScenario};
 use hal_mock::vehicle::VehicleTruth;
 use hal_mock::vehicle::board::VehicleBoard;
 use orientation::keep::Keeper;
@@ -101,7 +102,7 @@ fn align_on<R: Recorder<InertialSample>, W: Observer>(
     let mut session = session.map_err(RunError::Procedure)?;
     let harness = Harness::new(watch);
     let channels = harness.channels();
-    let mut sensors = vehicle::sensors(board, scenario, injection);
+    let mut sensors = Wires(board, injection).triad(scenario);
     let mut ports = VehiclePorts {
         position_aiding: KnownPlace::new(board, scenario.place, scenario.base.seed),
         link: harness.wire(),

@@ -5,13 +5,14 @@ use bench::instrument::{TurntableRun, align_turning};
 use bench::output::{azimuth_error, degrees};
 use firmware::event::Event;
 use firmware::ports::NoRecorder;
-use firmware::simulated::fault::{AxisFault, Fault, Platform};
+use firmware::simulated::fault::{AxisFault, ChipFault, Fault, Platform};
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;
 use orientation::align::conclusion::Azimuth;
 use orientation::align::rotating::solution::SPEEDS;
 use orientation::device::{Device, Trouble};
 use orientation::error::Refusal;
+use rayon::prelude::*;
 
 /// A short alignment, for what does not depend on its length.
 fn short(seed: u64) -> TurntableScenario {
@@ -187,6 +188,23 @@ fn a_slipping_or_creeping_encoder_is_found_by_the_motor() {
             other => panic!("{name}: {other}"),
         }
     }
+}
+
+/// Wherever in its turn the platform is, and whichever way its motor counts.
+#[test]
+fn a_motor_driver_whose_answers_cannot_be_read_is_named_for_that() {
+    let fault = Fault::Chip(Device::Stage, ChipFault::ChecksumAlways);
+    (1..=24).into_par_iter().for_each(|seed: u32| {
+        let scenario = TurntableScenario { turns: 4 + seed % 5, ..short(seed.into()) };
+        let run = run_with(&scenario, Some(fault));
+        match verdict(&run) {
+            Err(Refusal::Device { device: Device::Stage, trouble }) => assert!(
+                !matches!(trouble, Trouble::Disagrees(_) | Trouble::Stalled(_)),
+                "seed {seed}: {trouble}"
+            ),
+            other => panic!("seed {seed}: {other:?}"),
+        }
+    });
 }
 
 #[test]

@@ -100,6 +100,8 @@ pub mod gstat {
     pub const CHARGE_PUMP: u32 = 1 << 2;
     /// All flags.
     pub const ALL: u32 = 7;
+    /// Bits that are zero.
+    pub const RESERVED: u32 = !ALL;
 }
 
 /// Bits of IOIN (6.1).
@@ -108,6 +110,8 @@ pub mod ioin {
     pub const DISABLED: u32 = 1 << 4;
     /// External step pulses are selected.
     pub const STEP_MODE: u32 = 1 << 6;
+    /// Bits that are zero.
+    pub const RESERVED: u32 = 0x00FF_FF00;
     /// Position of the version in the register.
     pub const VERSION_SHIFT: u32 = 24;
     /// The only known version.
@@ -160,6 +164,8 @@ pub mod ramp_stat {
     pub const STANDING: u32 = 1 << 10;
     /// All events that are cleared by writing a one.
     pub const EVENTS: u32 = 0x10CC;
+    /// Bits that are zero.
+    pub const RESERVED: u32 = !0x3FFF;
 }
 
 /// Bits of `DRV_STATUS` (6.5.5).

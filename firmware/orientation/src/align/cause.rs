@@ -3,7 +3,8 @@
 //! A platform that is pushed or shaken disturbs each dwell differently. If all dwells scatter
 //! alike, and white, from block to block and from mean to mean, then the configured noise is wrong
 //! or the rates are in another unit. A platform that sways returns to where it was, so the means of
-//! its dwells scatter far less than that. A gyro that is stuck is diagnosed as such.
+//! its dwells scatter far less than that. A gyro that is stuck is diagnosed as such, and so is a
+//! base whose sensors failed before they could observe its sway.
 
 use super::quality::median_of;
 use super::regression::{Column, Regression};
@@ -35,6 +36,7 @@ pub fn of(refusal: Refusal, setting: &Setting, dwells: &[Dwell]) -> Refusal {
         Refusal::Disturbed { .. } if is_stuck(dwells) => {
             Refusal::Device { device: Device::Gyro, trouble: Trouble::Stuck }
         }
+        Refusal::Disturbed { .. } if setting.sway.is_unmeasured() => Refusal::SwayUnmeasured,
         Refusal::Disturbed { .. } => {
             noise(setting, dwells).map_or(refusal, |ratio| Refusal::NoiseNotAsStated { ratio })
         }

@@ -59,18 +59,18 @@ pub fn report(counter: &Counter, report: &mut Report) {
     let latitude = Latitude::from_degrees(52.0).unwrap_or(Latitude::EQUATOR);
     let coarse = Setting::coarse(latitude, 1.0 / COARSE_HZ as f64);
     let [mean, worst] = kept(counter, Keeper::new(&coarse), COARSE_HZ, report);
-    let name = format_args!("gyrovertical on a coarse IMU, a sample at 416 Hz");
+    let name = "gyrovertical on a coarse IMU, a sample at 416 Hz";
     report.budget(name, mean, VERTICAL_INSTRUCTIONS);
-    let name = format_args!("gyrovertical, the sample that costs most");
+    let name = "gyrovertical, the sample that costs most";
     report.budget(name, worst, VERTICAL_GREATEST_INSTRUCTIONS);
     let noise = GyroNoise::from_field_units(0.001, 0.007, 0.0, 0.0);
     let gyro = Gyro { noise, bias_sigma: DEGREE_PER_HOUR, scale_sigma: 1e-4 };
     let mut keeper = Keeper::new(&Setting::precise(latitude, 1.0 / PRECISE_HZ as f64, gyro));
     keeper.hand_over(Handover { azimuth: 1.0, sigma: 0.1 * DEGREE });
     let [mean, worst] = kept(counter, keeper, PRECISE_HZ, report);
-    let name = format_args!("heading from three precise gyros, a sample at 2 kHz");
+    let name = "heading from three precise gyros, a sample at 2 kHz";
     report.budget(name, mean, HEADING_INSTRUCTIONS);
-    figure(format_args!("the same, the sample that costs most"), worst);
+    figure("the same, the sample that costs most", worst);
     spun(counter, report);
 }
 
@@ -126,9 +126,9 @@ fn spun(counter: &Counter, report: &mut Report) {
     }
     let off = spin.roll().rad() - roll;
     report.require("the roll is found to a degree, its turns counted", off.abs() < DEGREE);
-    let name = format_args!("roll of a spinning body, a sample at 10 kHz");
+    let name = "roll of a spinning body, a sample at 10 kHz";
     report.budget(name, total.mean(SPUN), SPIN_INSTRUCTIONS);
-    figure(format_args!("the same, a sample that ends four turns"), worst.instructions());
+    figure("the same, a sample that ends four turns", worst.instructions());
 }
 
 /// Sample of a spinning body.

@@ -53,18 +53,6 @@ enum Failure {
     Series(SeriesError),
 }
 
-impl From<DesignError> for Failure {
-    fn from(error: DesignError) -> Self {
-        Self::Filter(error)
-    }
-}
-
-impl From<SeriesError> for Failure {
-    fn from(error: SeriesError) -> Self {
-        Self::Series(error)
-    }
-}
-
 #[entry]
 fn main() -> ! {
     let mut report = Report::default();
@@ -81,13 +69,13 @@ fn measure(report: &mut Report) -> Result<(), Failure> {
     let counter = Counter::start(peripherals.SYST);
     check_scale(&counter, report);
     heading("INSTRUCTIONS (not cycles) on a Cortex-M4F");
-    samples::report(&counter, report)?;
+    samples::report(&counter, report).map_err(Failure::Filter)?;
     turning::report(&counter, report);
     stops::report(&counter, report);
     keep::report(&counter, report);
-    matching::report(&counter, report)?;
+    matching::report(&counter, report).map_err(Failure::Series)?;
     yardsticks::regression(&counter, report);
-    conclusion::report(&counter, report)?;
+    conclusion::report(&counter, report).map_err(Failure::Filter)?;
     noise::report(&counter, report);
     planning::report(&counter, report);
     heading("bytes");
@@ -98,7 +86,7 @@ fn measure(report: &mut Report) -> Result<(), Failure> {
 fn check_scale(counter: &Counter, report: &mut Report) {
     heading("checks, instructions");
     let mut check = |name, work: fn(), known| {
-        report.check(format_args!("{name}"), counter.measure(work).0.instructions(), known);
+        report.check(name, counter.measure(work).0.instructions(), known);
     };
     check("a thousand instructions in a row", scale::thousand, scale::THOUSAND);
     check("a loop of ten million", scale::long_loop, scale::LONG_LOOP);
@@ -106,25 +94,23 @@ fn check_scale(counter: &Counter, report: &mut Report) {
 
 /// Stack, static sizes and flash.
 fn sizes() -> Result<(), Failure> {
-    matching::report_stack()?;
-    figure(format_args!("stack of a conclusion of 60 dwells"), conclusion::stack()? as u64);
-    figure(format_args!("stack of a noise fit of the full grid"), noise::stack() as u64);
-    figure(format_args!("stack of a plan"), planning::stack() as u64);
-    figure(format_args!("stack of a conclusion of two stops"), stops::stack() as u64);
-    figure(format_args!("stack of this image at its deepest"), stack::greatest_stack() as u64);
-    figure(format_args!("a Session"), size_of::<Session>() as u64);
-    figure(format_args!("a Session on a turning platform"), size_of::<rotating::Session>() as u64);
+    matching::report_stack().map_err(Failure::Series)?;
+    let stack_of_conclusion = conclusion::stack().map_err(Failure::Filter)?;
+    figure("stack of a conclusion of 60 dwells", stack_of_conclusion as u64);
+    figure("stack of a noise fit of the full grid", noise::stack() as u64);
+    figure("stack of a plan", planning::stack() as u64);
+    figure("stack of a conclusion of two stops", stops::stack() as u64);
+    figure("stack of this image at its deepest", stack::greatest_stack() as u64);
+    figure("a Session", size_of::<Session>() as u64);
+    figure("a Session on a turning platform", size_of::<rotating::Session>() as u64);
+    figure("a Session from stops", size_of::<orientation::session::stops::Session>() as u64);
+    figure("a Keeper", size_of::<orientation::keep::Keeper>() as u64);
+    figure("a Spin", size_of::<orientation::keep::spin::Spin>() as u64);
+    figure("a Conclusion", size_of::<Conclusion>() as u64);
+    figure("an Allan variance", size_of::<Allan>() as u64);
+    figure("static memory of this image", memory::statics() as u64);
     figure(
-        format_args!("a Session from stops"),
-        size_of::<orientation::session::stops::Session>() as u64,
-    );
-    figure(format_args!("a Keeper"), size_of::<orientation::keep::Keeper>() as u64);
-    figure(format_args!("a Spin"), size_of::<orientation::keep::spin::Spin>() as u64);
-    figure(format_args!("a Conclusion"), size_of::<Conclusion>() as u64);
-    figure(format_args!("an Allan variance"), size_of::<Allan>() as u64);
-    figure(format_args!("static memory of this image"), memory::statics() as u64);
-    figure(
-        format_args!("flash of this image, its measuring and the etalon table included"),
+        "flash of this image, its measuring and the etalon table included",
         memory::flash() as u64,
     );
     Ok(())

@@ -111,10 +111,10 @@ pub fn report(counter: &Counter, report: &mut Report) -> Result<(), SeriesError>
 pub fn report_stack() -> Result<(), SeriesError> {
     let series = TURNS[0].series(1)?;
     let of = |criterion| stack_of(|| search(&series, criterion)).0 as u64;
-    figure(format_args!("stack of a match, maximum likelihood"), of(Criterion::MaximumLikelihood));
-    figure(format_args!("stack of a match, least absolute"), of(Criterion::LeastAbsolute));
+    figure("stack of a match, maximum likelihood", of(Criterion::MaximumLikelihood));
+    figure("stack of a match, least absolute", of(Criterion::LeastAbsolute));
     let within = stack_of(|| accepted(&series, squares_limit())).0 as u64;
-    figure(format_args!("stack of a match, within squares"), within);
+    figure("stack of a match, within squares", within);
     Ok(())
 }
 
@@ -161,12 +161,7 @@ fn within(counter: &Counter, report: &mut Report, turn: Turn) -> Result<(), Seri
 fn within_absolute(counter: &Counter, turn: Turn) -> Result<(), SeriesError> {
     let limit = Limit::WithinAbsolute((ACCEPTED_ABSOLUTE * ONE) as u64);
     let cost = |series: &Series| counter.measure(|| accepted(series, limit)).0.instructions();
-    let spread = Spread::of(cost, turn)?;
-    let row = |what, count| {
-        figure(format_args!("match of 60, {}, within absolute, {what}", turn.name), count);
-    };
-    row("median", spread.median());
-    row("greatest", spread.greatest());
+    rows(turn, "within absolute", &Spread::of(cost, turn)?);
     Ok(())
 }
 
@@ -176,14 +171,15 @@ fn absolute(counter: &Counter, turn: Turn) -> Result<(), SeriesError> {
     let cost = |series: &Series| counter.measure(|| search(series, criterion)).0.instructions();
     let spread = Spread::of(cost, turn)?;
     let evaluations = Spread::of(|series| u64::from(search(series, criterion).evaluations), turn)?;
-    let row = |what, count| {
-        figure(format_args!("match of 60, {}, least absolute, {what}", turn.name), count);
-    };
-    row("median", spread.median());
-    row("greatest", spread.greatest());
-    row("evaluations, median", evaluations.median());
-    row("evaluations, greatest", evaluations.greatest());
+    rows(turn, "least absolute", &spread);
+    rows(turn, "least absolute, evaluations", &evaluations);
     Ok(())
+}
+
+/// Reports the two rows of a criterion without a budget.
+fn rows(Turn { name: turn, .. }: Turn, name: &str, spread: &Spread) {
+    figure(format_args!("match of 60, {turn}, {name}, median"), spread.median());
+    figure(format_args!("match of 60, {turn}, {name}, greatest"), spread.greatest());
 }
 
 /// Reports the two rows of a criterion with a budget.

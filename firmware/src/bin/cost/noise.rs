@@ -32,7 +32,7 @@ type Push = fn(&mut Allan, AngularRate);
 
 /// Measures a sample, and the fits of an hour and of the full grid.
 pub fn report(counter: &Counter, report: &mut Report) {
-    report.budget(format_args!("Allan variance, a sample"), sample(counter), ALLAN_INSTRUCTIONS);
+    report.budget("Allan variance, a sample", sample(counter), ALLAN_INSTRUCTIONS);
     for (name, samples) in [("an hour at 2 kHz", HOUR), ("10^8 samples", LONGEST)] {
         let points = points(samples);
         let (cost, fit) = counter.measure(|| fit(&points));

@@ -26,9 +26,9 @@ pub fn report(counter: &Counter, report: &mut Report) {
         .fold([0; 3], |most: [u64; 3], costs| {
             core::array::from_fn(|index| most[index].max(costs[index]))
         });
-    report.budget(format_args!("plan for a time, all orders"), time, PLAN_INSTRUCTIONS);
-    report.budget(format_args!("plan for a wanted sigma"), sigma, PLAN_INSTRUCTIONS);
-    report.budget(format_args!("Burov's best positions"), burov, PLAN_INSTRUCTIONS);
+    report.budget("plan for a time, all orders", time, PLAN_INSTRUCTIONS);
+    report.budget("plan for a wanted sigma", sigma, PLAN_INSTRUCTIONS);
+    report.budget("Burov's best positions", burov, PLAN_INSTRUCTIONS);
 }
 
 /// Stack of a plan, bytes.

@@ -1,6 +1,6 @@
 //! Printed table, with the check of every budget.
 
-use core::fmt::Arguments;
+use core::fmt::Display;
 
 use cortex_m::asm::wfi;
 use cortex_m_semihosting::{debug, hprintln};
@@ -16,7 +16,7 @@ pub fn heading(quantity: &str) {
 
 /// Prints a figure without a budget.
 #[inline(never)]
-pub fn figure(name: Arguments, count: u64) {
+pub fn figure(name: impl Display, count: u64) {
     hprintln!("{count:>10} {:>10} {:5} {name}", "-", "");
 }
 
@@ -30,14 +30,14 @@ pub struct Report {
 impl Report {
     /// Prints a figure that must not exceed its budget.
     #[inline(never)]
-    pub fn budget(&mut self, name: Arguments, count: u64, budget: u64) {
+    pub fn budget(&mut self, name: impl Display, count: u64, budget: u64) {
         let verdict = if count <= budget { "ok" } else { "OVER" };
         self.failed |= count > budget;
         hprintln!("{count:>10} {budget:>10} {verdict:5} {name}");
     }
 
     /// Prints a figure with a known value, which must agree within one per cent.
-    pub fn check(&mut self, name: Arguments, count: u64, known: u64) {
+    pub fn check(&mut self, name: impl Display, count: u64, known: u64) {
         let agrees = count.abs_diff(known) * CHECK_PARTS <= known;
         self.failed |= !agrees;
         let verdict = if agrees { "ok" } else { "WRONG" };

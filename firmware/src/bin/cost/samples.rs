@@ -41,16 +41,16 @@ pub fn report(counter: &Counter, report: &mut Report) -> Result<(), DesignError>
     let (cost, coefficients) = counter.measure(design);
     let coefficients = coefficients?;
     report.budget(
-        format_args!("Butterworth of order 6, a sample"),
+        "Butterworth of order 6, a sample",
         filter(counter, &coefficients),
         FILTER_INSTRUCTIONS,
     );
     report.budget(
-        format_args!("filter and dwell, a sample"),
+        "filter and dwell, a sample",
         dwell(counter, &coefficients),
         FILTER_AND_DWELL_INSTRUCTIONS,
     );
-    figure(format_args!("design of the filter for 2 Hz at 2 kHz"), cost.instructions());
+    figure("design of the filter for 2 Hz at 2 kHz", cost.instructions());
     Ok(())
 }
 

@@ -46,11 +46,7 @@ pub fn report(counter: &Counter, report: &mut Report) {
     let found = conclusion.found.filter(|_| conclusion.verdict.is_ok());
     let is_right = found.is_some_and(|found| (found.start.angle - AZIMUTH).abs() < 0.01 * DEGREE);
     report.require("the azimuth at the start is found from two stops", is_right);
-    report.budget(
-        format_args!("conclusion of two stops and a drive"),
-        cost.instructions(),
-        STOPS_INSTRUCTIONS,
-    );
+    report.budget("conclusion of two stops and a drive", cost.instructions(), STOPS_INSTRUCTIONS);
     if let Some(found) = found {
         inclination(counter, report, &found.plain.inclination);
     }
@@ -71,11 +67,11 @@ fn sample(counter: &Counter, report: &mut Report) {
         worst = worst.max(cost);
     }
     report.budget(
-        format_args!("strapdown of three gyros, a sample at 2 kHz"),
+        "strapdown of three gyros, a sample at 2 kHz",
         total.mean(SAMPLES),
         STRAPDOWN_INSTRUCTIONS,
     );
-    figure(format_args!("the same, a sample that ends a second"), worst.instructions());
+    figure("the same, a sample that ends a second", worst.instructions());
 }
 
 /// Measures the greatest cost of U over the circle, and that of the search.
@@ -91,15 +87,15 @@ fn inclination(counter: &Counter, report: &mut Report, inclination: &Inclination
             worst = worst.max(counter.measure(|| form(inclination, azimuth)).0);
         }
         if name.contains("angle") {
-            report.budget(format_args!("{name}"), worst.instructions(), INCLINATION_INSTRUCTIONS);
+            report.budget(name, worst.instructions(), INCLINATION_INSTRUCTIONS);
         } else {
-            figure(format_args!("{name}"), worst.instructions());
+            figure(name, worst.instructions());
         }
     }
     let (cost, minimum) = counter.measure(|| inclination.minimised(Inclination::angle));
     let off = minimum.at - inclination.closed_form();
     report.require("the search finds the closed form", off.abs() < 1e-6 * DEGREE);
-    figure(format_args!("search for the least U by Brent's method"), cost.instructions());
+    figure("search for the least U by Brent's method", cost.instructions());
 }
 
 /// Conclusion that is measured, not inlined.

@@ -47,11 +47,11 @@ pub fn report(counter: &Counter, report: &mut Report) {
     }
     report.require("the platform turned round twice", turns == 2);
     report.budget(
-        format_args!("demodulation on a turning platform, a sample"),
+        "demodulation on a turning platform, a sample",
         total.mean(SAMPLES),
         TURNING_INSTRUCTIONS,
     );
-    figure(format_args!("the same, a sample that ends a turn"), worst.instructions());
+    figure("the same, a sample that ends a turn", worst.instructions());
 }
 
 /// Sample of a platform that turns clockwise.

@@ -21,10 +21,7 @@ pub fn exhaustive(counter: &Counter, report: &mut Report, series: &Series) {
     let (cost, index) = counter.measure(|| least_squares(series));
     let fast = etalon::search(Table::built_in(), series, Criterion::LeastSquares).index;
     report.require("the exhaustive search finds what the fast one finds", index == fast);
-    figure(
-        format_args!("exhaustive search of the circle for 60, least squares"),
-        cost.instructions(),
-    );
+    figure("exhaustive search of the circle for 60, least squares", cost.instructions());
 }
 
 /// Lowest index with the least sum of squared differences, by trying all 129 600.

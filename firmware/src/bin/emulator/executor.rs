@@ -19,31 +19,28 @@ fn pend(_: *mut ()) {
     PENDED.store(true, Ordering::Relaxed);
 }
 
-/// Deadlock: every task waits for an event that no passage of time brings.
-pub struct Deadlock;
-
 /// Creates an executor for [`run`].
 pub fn new() -> Executor {
     Executor::new(core::ptr::null_mut())
 }
 
-/// Polls until the application reports that it has finished.
-///
-/// # Errors
-/// [`Deadlock`] where all tasks wait without a timer.
-pub fn run(
+/// Polls until the application has finished, and returns what it has then; [`None`] where all tasks
+/// wait for an event that no passage of time brings.
+pub fn run<T>(
     executor: &'static Executor,
     meter: &Meter,
-    finished: impl Fn() -> bool,
-) -> Result<(), Deadlock> {
-    while !finished() {
+    finished: impl Fn() -> Option<T>,
+) -> Option<T> {
+    loop {
+        if let Some(found) = finished() {
+            return Some(found);
+        }
         if PENDED.swap(false, Ordering::Relaxed) {
             // SAFETY: only this loop polls, it is not re-entered, and `init_with` has made the
             // executor where it stays.
             meter.poll(|| unsafe { executor.poll() });
         } else if !clock::advance() {
-            return Err(Deadlock);
+            return None;
         }
     }
-    Ok(())
 }

@@ -5,12 +5,13 @@
 
 use core::mem::MaybeUninit;
 
+use drivers::tmc5160::configuration::Configuration as Motor;
 use firmware::ports::{NoRecorder, VehiclePorts};
-use firmware::simulated;
 use firmware::simulated::fault::Injection;
-use firmware::simulated::scenario::Scenario;
+use firmware::simulated::scenario::{self, Scenario};
 use firmware::simulated::turntable::{self, TurntableScenario};
 use firmware::simulated::vehicle::{self, KnownPlace, VehicleScenario};
+use firmware::simulated::{self, Wires};
 use semihosting::sys::arm_compat::sys_get_cmdline_uninit;
 
 use crate::meter::Meter;
@@ -78,9 +79,9 @@ fn stepwise(scenario: &Scenario, meter: &'static Meter) -> Option<(Sampling, Run
     let session = setup::stepwise(scenario.prepared()?)?;
     let around = Metering(meter);
     let (inputs, outputs, channels) = setup::stage(
-        || simulated::board(scenario, &HEALTHY),
-        |rig| simulated::sensors(rig, scenario, &around),
-        |rig| simulated::ports(rig, &around, NoLink, NoRecorder),
+        || simulated::board(scenario, None, &HEALTHY),
+        |rig| Wires(rig, &around).sensors(scenario, scenario::FORCE),
+        |rig| Wires(rig, &around).ports(Motor::default(), NoLink, NoRecorder),
         meter,
     )?;
     let configuration = scenario.configuration();
@@ -97,8 +98,8 @@ fn turning(scenario: &TurntableScenario, meter: &'static Meter) -> Option<(Sampl
     let around = Metering(meter);
     let (inputs, outputs, channels) = setup::stage(
         || scenario.board(&HEALTHY),
-        |rig| turntable::sensors(rig, scenario, &around),
-        |rig| turntable::ports(rig, &around, NoLink, NoRecorder),
+        |rig| Wires(rig, &around).sensors(&scenario.base, turntable::FORCE),
+        |rig| Wires(rig, &around).ports(turntable::motor(), NoLink, NoRecorder),
         meter,
     )?;
     Some((
@@ -115,7 +116,7 @@ fn driving(scenario: &VehicleScenario, meter: &'static Meter) -> Option<(Samplin
     let around = Metering(meter);
     let (inputs, outputs, channels) = setup::vehicle(
         || scenario.board(&vehicle::BRIEF, &[], &HEALTHY),
-        |rig| vehicle::sensors(rig, scenario, &around),
+        |rig| Wires(rig, &around).triad(scenario),
         |rig| VehiclePorts {
             position_aiding: KnownPlace::new(rig, scenario.place, scenario.base.seed),
             link: NoLink,

@@ -31,13 +31,11 @@ use core::cell::OnceCell;
 use core::pin::pin;
 
 use cortex_m_rt::entry;
-use embassy_executor::SpawnError;
 use embassy_executor::raw::Executor;
 use semihosting::process::ExitCode;
 use static_cell::StaticCell;
 
 use counter::Counter;
-use executor::Deadlock;
 use job::Job;
 use meter::{Meter, Task};
 use setup::{Finished, Running, Sampling};
@@ -57,18 +55,6 @@ enum Failure {
     Session,
     /// The session did not conclude.
     NoConclusion,
-}
-
-impl From<SpawnError> for Failure {
-    fn from(_: SpawnError) -> Self {
-        Self::NotStarted
-    }
-}
-
-impl From<Deadlock> for Failure {
-    fn from(Deadlock: Deadlock) -> Self {
-        Self::Deadlock
-    }
 }
 
 /// State that the tasks share with [`main`].
@@ -109,10 +95,10 @@ fn run() -> Result<(), Failure> {
     let executor: &'static Executor = EXECUTOR.init_with(executor::new);
     let (sampling, running) = job.begin(&bench.meter).ok_or(Failure::Session)?;
     let spawner = executor.spawner();
-    spawner.spawn(acquisition(bench, sampling)?);
-    spawner.spawn(instrument(bench, running)?);
-    executor::run(executor, &bench.meter, || bench.finished.get().is_some())?;
-    let finished = bench.finished.get().ok_or(Failure::NoConclusion)?;
+    spawner.spawn(acquisition(bench, sampling).map_err(|_| Failure::NotStarted)?);
+    spawner.spawn(instrument(bench, running).map_err(|_| Failure::NotStarted)?);
+    let finished = || bench.finished.get();
+    let finished = executor::run(executor, &bench.meter, finished).ok_or(Failure::Deadlock)?;
     finished.log(job.base().seed).ok_or(Failure::NoConclusion)?;
     log::effort(&bench.meter, job.base().sample_rate_hz);
     log::task(&bench.acquisition);

@@ -13,7 +13,7 @@ use heapless::Vec;
 use orientation::device::Device;
 use orientation::units::TURN;
 
-use super::{AxisFault, Chip, ChipFault, Fault, InjectionPoint, LateReady, PortWrapper};
+use super::{AxisFault, Chip, ChipFault, Fault, InjectionPoint, PortWrapper};
 use crate::ports::Frames;
 
 /// When things go wrong that go wrong in the middle of positions: in a dwell of the default schedule.
@@ -178,16 +178,16 @@ fn for_chip<T: Copy>(list: &[(Select, T)], select: Select) -> Option<T> {
 
 impl PortWrapper for Injection {
     type Spi<S: SpiDevice> = FaultySpi<S>;
-    type Line<W: Wait> = LateReady<FaultyReady<W>>;
+    type Line<W: Wait> = FaultyReady<W>;
     type I2c<B: I2c<Error = ErrorKind>> = FaultyI2c<B>;
 
     fn spi<S: SpiDevice>(&self, select: Select, bus: S) -> FaultySpi<S> {
         FaultySpi::new(bus, for_chip(&self.buses, select))
     }
 
-    fn line<W: Wait>(&self, select: Select, line: W) -> LateReady<FaultyReady<W>> {
+    fn line<W: Wait>(&self, select: Select, line: W) -> FaultyReady<W> {
         let since = self.late.filter(|(chip, _)| *chip == select).map(|(_, since)| since);
-        LateReady::new(FaultyReady::new(line, for_chip(&self.ready, select)), since)
+        FaultyReady::new(line, for_chip(&self.ready, select)).late(since)
     }
 
     fn i2c<B: I2c<Error = ErrorKind>>(&self, bus: B) -> FaultyI2c<B> {

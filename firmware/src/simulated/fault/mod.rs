@@ -17,7 +17,7 @@ use orientation::device::Device;
 
 pub use self::chip::{Chip, ChipFault, InjectionPoint};
 pub use self::injection::Injection;
-pub use self::port::{FaultyRecorder, LateReady, PortWrapper};
+pub use self::port::{FaultyRecorder, PortWrapper};
 
 /// What carries the sensors of a simulated board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,8 +1,6 @@
-//! What stands around the simulated ports: what every port may be wrapped in, a late data-ready line, and a
-//! recorder that hangs.
+//! What stands around the simulated ports: what every port may be wrapped in, and a recorder that hangs.
 
 use embassy_time::{Duration, Instant, Timer};
-use embedded_hal::digital::ErrorType;
 use embedded_hal_async::digital::Wait;
 use embedded_hal_async::i2c::{ErrorKind, I2c};
 use embedded_hal_async::spi::SpiDevice;
@@ -10,8 +8,6 @@ use hal_mock::chip::Select;
 
 use crate::ports::Recorder;
 
-/// By how much a converter that is out of step comes late.
-const LATE: Duration = Duration::from_millis(4);
 /// For how long a recorder that hangs takes no sample.
 const HANG: Duration = Duration::from_millis(500);
 
@@ -32,57 +28,6 @@ pub trait PortWrapper {
 
     /// Wraps the I²C bus of the coarse IMU on the base.
     fn i2c<B: I2c<Error = ErrorKind>>(&self, bus: B) -> Self::I2c<B>;
-}
-
-/// A data-ready line that falls late from some time on.
-#[derive(Debug)]
-pub struct LateReady<W> {
-    line: W,
-    since: Option<Instant>,
-}
-
-impl<W> LateReady<W> {
-    /// A line that falls 4 ms late since a time, or one that never does.
-    #[must_use]
-    pub const fn new(line: W, since: Option<Instant>) -> Self {
-        Self { line, since }
-    }
-
-    async fn lag(&self) {
-        if self.since.is_some_and(|since| Instant::now() >= since) {
-            Timer::after(LATE).await;
-        }
-    }
-}
-
-impl<W: ErrorType> ErrorType for LateReady<W> {
-    type Error = W::Error;
-}
-
-impl<W: Wait> Wait for LateReady<W> {
-    fn wait_for_high(&mut self) -> impl Future<Output = Result<(), W::Error>> {
-        self.line.wait_for_high()
-    }
-
-    async fn wait_for_low(&mut self) -> Result<(), W::Error> {
-        self.line.wait_for_low().await?;
-        self.lag().await;
-        Ok(())
-    }
-
-    fn wait_for_rising_edge(&mut self) -> impl Future<Output = Result<(), W::Error>> {
-        self.line.wait_for_rising_edge()
-    }
-
-    async fn wait_for_falling_edge(&mut self) -> Result<(), W::Error> {
-        self.line.wait_for_falling_edge().await?;
-        self.lag().await;
-        Ok(())
-    }
-
-    fn wait_for_any_edge(&mut self) -> impl Future<Output = Result<(), W::Error>> {
-        self.line.wait_for_any_edge()
-    }
 }
 
 /// A recorder that may hang once.

@@ -4,16 +4,13 @@ mod course;
 
 pub use course::Course;
 
-use core::cell::RefCell;
-
+use drivers::ads1262::GREATEST_BUS_HERTZ;
 use drivers::ads1262::configuration::{Configuration as Converter, DataRate};
-use drivers::ads1262::{Ads1262, GREATEST_BUS_HERTZ};
 use embassy_time::{Delay, Instant};
 use hal_mock::accelerometer::AccelerometerConfiguration;
 use hal_mock::ads1262::Ads1262 as SimulatedConverter;
 use hal_mock::chip::Rig;
 use hal_mock::gyro::GyroConfiguration;
-use hal_mock::spi::ReadyPin;
 use hal_mock::spin::SpinConfiguration as World;
 use hal_mock::spin::board::{CHIPS, SpinBoard};
 use hal_mock::spin::plant::{SpinPlant, SpinPlantConfiguration};
@@ -22,7 +19,7 @@ use orientation::keep::spin::{Method, Setting};
 use orientation::units::{DEGREE_PER_SQRT_HOUR, TURN};
 
 use super::fault::{Fault, Injection, PortWrapper};
-use super::{Bus, bus, scenario};
+use super::{Bus, Line, Wires, scenario};
 use crate::chips::AnalogueSensor;
 use crate::ports::SpinSensors;
 use crate::spin::Flight;
@@ -168,17 +165,14 @@ impl SpinScenario {
 
 /// The sensors of a spinning body on simulated chips.
 pub type SimulatedSpin<'a, B, A> =
-    SpinSensors<AnalogueSensor<Bus<'a, B, A>, <A as PortWrapper>::Line<ReadyPin<'a, B>>, Delay>>;
+    SpinSensors<AnalogueSensor<Bus<'a, B, A>, Line<'a, B, A>, Delay>>;
 
-/// The sensors of its simulated board.
-pub fn sensors<'a, B: Rig, A: PortWrapper>(
-    board: &'a RefCell<B>,
-    wrapper: &A,
-) -> SimulatedSpin<'a, B, A> {
-    let converter = Converter { rate: DataRate::Sps14400, ..Converter::default() };
-    SpinSensors(CHIPS.map(|select| {
-        let bus = bus(board, wrapper, select, GREATEST_BUS_HERTZ);
-        let ready = wrapper.line(select, ReadyPin::new(board, select));
-        AnalogueSensor(Ads1262::new(bus, ready, Delay, converter).clocked())
-    }))
+impl<'a, B: Rig, A: PortWrapper> Wires<'a, '_, B, A> {
+    /// The sensors of a spinning body.
+    #[must_use]
+    pub fn spinning(&self) -> SimulatedSpin<'a, B, A> {
+        let told = Converter { rate: DataRate::Sps14400, ..Converter::default() };
+        let converter = |select| self.converter(select, GREATEST_BUS_HERTZ, told);
+        SpinSensors(CHIPS.map(|select| AnalogueSensor(converter(select).clocked())))
+    }
 }

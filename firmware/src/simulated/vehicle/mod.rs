@@ -7,18 +7,14 @@ mod site;
 
 pub use site::{KnownPlace, Place};
 
-use core::cell::RefCell;
-
-use drivers::ads1262::Ads1262;
+use drivers::adxl355;
 use drivers::adxl355::registers::OutputRate;
-use drivers::adxl355::{self, Adxl355};
 use embassy_time::{Delay, Instant};
 use hal_mock::accelerometer::AccelerometerConfiguration;
 use hal_mock::ads1262::Ads1262 as SimulatedConverter;
-use hal_mock::chip::{Rig, Select};
+use hal_mock::chip::Rig;
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::plant::sway::{SwayComponent, SwayConfiguration};
-use hal_mock::spi::ReadyPin;
 use hal_mock::vehicle::board::{GYROS, VehicleBoard};
 use hal_mock::vehicle::plant::{VehiclePlant, VehiclePlantConfiguration};
 use hal_mock::vehicle::{self as world, Drive, Event, Leg, Stop, VehicleConfiguration};
@@ -32,7 +28,7 @@ use orientation::units::DEGREE_PER_HOUR;
 use super::fault::{Fault, Injection, PortWrapper};
 use super::keep::Hold;
 use super::scenario::{self, Scenario};
-use super::{Bus, CONVERTER_HERTZ, bus};
+use super::{Bus, SimulatedGyro, Wires};
 use crate::chips;
 use crate::configuration::{self, KeepConfiguration, Realignment};
 use crate::ports::VehicleSensors;
@@ -373,32 +369,18 @@ fn sway() -> SwayConfiguration {
 }
 
 /// The sensors of a vehicle on simulated chips.
-pub type SimulatedTriad<'a, B, A> = VehicleSensors<
-    chips::AnalogueGyro<Bus<'a, B, A>, <A as PortWrapper>::Line<ReadyPin<'a, B>>, Delay>,
-    chips::PlatformAccelerometer<Bus<'a, B, A>, Delay>,
->;
+pub type SimulatedTriad<'a, B, A> =
+    VehicleSensors<SimulatedGyro<'a, B, A>, chips::PlatformAccelerometer<Bus<'a, B, A>, Delay>>;
 
-/// The sensors of its simulated board.
-pub fn sensors<'a, B: Rig, A: PortWrapper>(
-    board: &'a RefCell<B>,
-    scenario: &VehicleScenario,
-    wrapper: &A,
-) -> SimulatedTriad<'a, B, A> {
-    let gyro = |select: Select| chips::AnalogueGyro {
-        converter: Ads1262::new(
-            bus(board, wrapper, select, CONVERTER_HERTZ),
-            wrapper.line(select, ReadyPin::new(board, select)),
-            Delay,
-            scenario.base.converter(),
-        )
-        .clocked(),
-        scale: scenario::SCALE,
-        limit: scenario::LIMIT,
-    };
-    let accelerometer = bus(board, wrapper, Select::Accelerometer, adxl355::BUS_HERTZ);
-    let rate = adxl355::Configuration { rate: scenario.output().0 };
-    VehicleSensors {
-        gyros: GYROS.map(gyro),
-        accelerometer: chips::PlatformAccelerometer(Adxl355::new(accelerometer, Delay, rate)),
+impl<'a, B: Rig, A: PortWrapper> Wires<'a, '_, B, A> {
+    /// The sensors of a vehicle.
+    #[must_use]
+    pub fn triad(&self, scenario: &VehicleScenario) -> SimulatedTriad<'a, B, A> {
+        let gyro = |select| {
+            let gyro = self.gyro(select, &scenario.base);
+            chips::AnalogueGyro { converter: gyro.converter.clocked(), ..gyro }
+        };
+        let told = adxl355::Configuration { rate: scenario.output().0 };
+        VehicleSensors { gyros: GYROS.map(gyro), accelerometer: self.accelerometer(told) }
     }
 }

@@ -11,6 +11,7 @@ use drivers::tmc5160::units::Velocity;
 use embassy_time::{Delay, Duration, Instant, Timer};
 use embedded_hal_async::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
 use hal_mock::chip::{Rig as _, Select, Single, SpiChip};
+use hal_mock::noise::Generator;
 use hal_mock::spi::SpiPort;
 use hal_mock::tmc5160::{Sickness, Tmc5160 as Chip};
 
@@ -30,6 +31,8 @@ pub struct Wire {
     broken: Cell<bool>,
     /// The level at which the chip's answers are stuck.
     stuck: Cell<Option<u8>>,
+    /// Chooses the bit that is wrong in every answer.
+    pub noise: RefCell<Option<Generator>>,
 }
 
 impl Wire {
@@ -65,6 +68,10 @@ impl SpiDevice for Tap<'_> {
         port.transfer_in_place(bytes).await?;
         if let Some((_, _, reply)) = damage {
             flip(bytes, reply);
+        }
+        if let Some(noise) = wire.noise.borrow_mut().as_mut() {
+            let bit = noise.next_u64() % 40;
+            bytes[(bit / 8) as usize] ^= 1 << (bit % 8);
         }
         if let Some(level) = wire.stuck.get() {
             bytes.fill(level);

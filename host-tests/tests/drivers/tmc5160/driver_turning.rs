@@ -6,6 +6,7 @@ use drivers::fault::Fault;
 use drivers::tmc5160::configuration::MICROSTEPS_PER_TURN;
 use drivers::tmc5160::units::Velocity;
 use embassy_time::{Duration, Ticker, Timer};
+use hal_mock::noise::Generator;
 
 use super::driver::{on_a_stage, rest};
 
@@ -115,4 +116,27 @@ fn a_count_that_wraps_around_does_not_disturb_the_velocity() {
         assert_eq!(status.velocity, Velocity(600_000));
         assert!(status.position < 0 && !status.stalled);
     });
+}
+
+/// With one wrong bit in each of eight replies, chance leaves a status valid only where every bit falls where
+/// any value is possible.
+#[test]
+fn wrong_bits_in_every_answer_of_a_turning_motor_are_noticed() {
+    const LOOKS: usize = 5_000;
+    for hertz in [-0.2, -0.01, 0.05, 0.25] {
+        on_a_stage(async |driver, _, wire| {
+            let speed = f64::from(MICROSTEPS_PER_TURN) * hertz;
+            driver.run(Velocity(speed as i32)).await.expect("it runs");
+            Timer::after(Duration::from_secs(4)).await;
+            wire.noise.replace(Some(Generator::new(hertz.to_bits())));
+            let mut passed = 0;
+            for _ in 0..LOOKS {
+                passed += usize::from(driver.status().await.is_ok());
+                Timer::after(Duration::from_millis(20)).await;
+            }
+            assert!(50 * passed < LOOKS, "{passed} of {LOOKS} passed at {hertz} Hz");
+            wire.noise.replace(None);
+            assert!(driver.status().await.is_ok());
+        });
+    }
 }

@@ -221,6 +221,35 @@ fn a_frame_that_is_blocked_for_a_while_homes_again_and_north_is_found() {
     }
 }
 
+/// A frame may be held in any dwell or movement, also in one of a tenth of a degree, by which the calibrated
+/// geometry turns the inner frame between two headings.
+#[test]
+fn whenever_a_frame_is_held_for_a_while_north_is_found_and_no_encoder_is_blamed() {
+    let moments: Vec<u64> = (20..120).step_by(5).collect();
+    moments.into_par_iter().for_each(|second| {
+        let from = Instant::from_secs(second);
+        let held = StageFault::Block { from, until: from + Duration::from_secs(15) };
+        for plan in [of_inner(held), of_outer(held)] {
+            let scenario = short(second);
+            let run = run(&scenario, &plan);
+            let [error, sigma] = found(&scenario, &run)
+                .unwrap_or_else(|reason| panic!("held at {second} s: {reason}: {:#?}", told(&run)));
+            assert!(error.abs() < 4.0 * sigma, "held at {second} s: {error}° of σ {sigma}°");
+        }
+    });
+}
+
+#[test]
+fn whenever_a_frame_is_held_for_good_it_is_refused_as_blocked() {
+    let moments: Vec<u64> = (20..80).step_by(5).collect();
+    moments.into_par_iter().for_each(|second| {
+        let held = StageFault::Block { from: Instant::from_secs(second), until: Instant::MAX };
+        let is_stalled = |trouble| matches!(trouble, Trouble::Stalled(_));
+        assert_refused(&short(second), &of_inner(held), Device::InnerFrame, is_stalled);
+        assert_refused(&short(second), &of_outer(held), Device::OuterFrame, is_stalled);
+    });
+}
+
 /// A slip may come in any dwell, the last one included, where no movement follows to notice it.
 #[test]
 fn whenever_an_encoder_slips_there_is_never_a_wrong_north() {

@@ -2,12 +2,15 @@
 
 use bench::instrument::{self, Run};
 use bench::output::{azimuth_error, degrees};
-use drivers::fault::Fault;
+use drivers::fault::Fault as BusFault;
 use embassy_time::Instant;
 use firmware::event::Event;
 use firmware::ports::{BaseReading, BaseSensors, NoRecorder, Startable};
 use firmware::simulated::base::CoarseClass;
+use firmware::simulated::fault::{ChipFault, Fault};
+use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::{GyroClass, Scenario};
+use orientation::device::Device;
 use orientation::error::Refusal;
 use orientation::signal::sway::CoarseSensors;
 use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR, SpecificForce};
@@ -186,15 +189,15 @@ struct Failing {
 }
 
 impl Startable for Failing {
-    async fn start(&mut self) -> Result<(), Fault> {
-        if Instant::now() < self.until { Ok(()) } else { Err(Fault::Identity { found: 0 }) }
+    async fn start(&mut self) -> Result<(), BusFault> {
+        if Instant::now() < self.until { Ok(()) } else { Err(BusFault::Identity { found: 0 }) }
     }
 }
 
 impl BaseSensors for Failing {
-    async fn read(&mut self) -> Result<Option<BaseReading>, Fault> {
+    async fn read(&mut self) -> Result<Option<BaseReading>, BusFault> {
         if Instant::now() >= self.until {
-            return Err(Fault::Bus);
+            return Err(BusFault::Bus);
         }
         self.count += 1;
         let seconds = Instant::now().as_micros() as f64 * 1e-6;
@@ -231,6 +234,26 @@ fn a_base_imu_that_fails_ends_only_a_session_that_needs_it() {
             assert!(reason.to_string().starts_with("base: "), "{reason}");
         }
     }
+}
+
+#[test]
+fn a_sway_that_a_missing_imu_would_have_measured_is_refused_for_the_missing_imu() {
+    (0..=6_u64).into_par_iter().for_each(|seed| {
+        let scenario = Scenario { sample_rate_hz: 100.0, ..scenario(seed) };
+        let fault = Some(Fault::Chip(Device::Base, ChipFault::Identity));
+        let frames = FramesScenario { base: scenario, passes: 2, ..FramesScenario::default() };
+        // It never answers, on a stage and in two frames, or fails before it has seen enough.
+        let never = instrument::align(&scenario, fault, NoRecorder, &()).expect("possible");
+        let in_frames =
+            instrument::align_frames(&frames, fault, NoRecorder, &()).expect("possible").run;
+        let base = Failing { until: Instant::from_secs(5), feels: false, count: 0 };
+        let early = instrument::align_on(base, &scenario, None, NoRecorder, &()).expect("possible");
+        for run in [&never, &in_frames, &early] {
+            let reason = found(&scenario, run).expect_err("nothing takes the sway off");
+            assert_eq!(reason, Refusal::SwayUnmeasured, "seed {seed}");
+            assert!(reason.to_string().contains("the coarse IMU is missing"), "{reason}");
+        }
+    });
 }
 
 #[test]

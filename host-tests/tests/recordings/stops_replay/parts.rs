@@ -2,10 +2,11 @@
 
 use std::f64::consts::TAU;
 
+use bench::recording::period::period_s;
 use bench::recording::{Body, ImuRow, ImuSample, StaticRow};
 use bench::stops::averaging::Averages;
 use bench::stops::noise::estimate;
-use bench::stops::samples::{period, rows, samples};
+use bench::stops::samples::{rows, samples};
 use hal_mock::noise::Generator;
 use proptest::prelude::*;
 
@@ -31,9 +32,9 @@ fn times(rate: f64, parts: f64, count: u32) -> impl Iterator<Item = f64> {
 fn rounded_times_leave_the_nominal_period() {
     let still = |_| [0.0; 3];
     let rounded = at(times(285.714_286, 1e4, 20_000), still);
-    assert_eq!(period(Some(285.714_286), &rounded), 1.0 / 285.714_286);
+    assert_eq!(period_s(Some(285.714_286), &rounded, |row| row.time_s), 1.0 / 285.714_286);
     // Without a rate in the header their mean counts, to a last digit in all of them together.
-    let own = period(None, &rounded);
+    let own = period_s(None, &rounded, |row| row.time_s);
     assert!((own * 285.714_286 - 1.0).abs() < 1e-5, "{own}");
 }
 
@@ -41,7 +42,7 @@ fn rounded_times_leave_the_nominal_period() {
 fn a_rate_that_the_times_leave_behind_is_not_believed() {
     let rows = at(times(100.3, 1e9, 10_000), |_| [0.0; 3]);
     // Thirty samples in a hundred seconds.
-    let found = period(Some(100.0), &rows);
+    let found = period_s(Some(100.0), &rows, |row| row.time_s);
     assert!((found * 100.3 - 1.0).abs() < 1e-6, "{found}");
 }
 
@@ -49,8 +50,8 @@ fn a_rate_that_the_times_leave_behind_is_not_believed() {
 fn a_missing_sample_does_not_stretch_the_period() {
     let mut rows = at(times(50.0, 1e9, 1000), |_| [0.0; 3]);
     rows.remove(500);
-    assert_eq!(period(Some(50.0), &rows), 0.02);
-    let own = period(None, &rows);
+    assert_eq!(period_s(Some(50.0), &rows, |row| row.time_s), 0.02);
+    let own = period_s(None, &rows, |row| row.time_s);
     assert!((own / 0.02 - 1.0).abs() < 1e-9, "{own}");
 }
 
@@ -117,7 +118,7 @@ fn noise_is_taken_where_the_vehicle_stood() {
 fn few_rows_are_no_reason_to_panic() {
     for count in 0..9 {
         let rows = at(times(25.0, 1e9, count), |_| [1e-5; 3]);
-        let found = estimate(&rows, None, period(None, &rows));
+        let found = estimate(&rows, None, period_s(None, &rows, |row| row.time_s));
         assert!(found.angle_random_walk >= 0.0 && found.force >= 0.0);
         assert_eq!(samples(&rows, 0.04).count(), count as usize);
     }

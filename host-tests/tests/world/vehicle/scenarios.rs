@@ -56,6 +56,29 @@ fn there_are_as_many_stops_as_are_asked_for() {
     }
 }
 
+/// Vehicles turn, bend and weave; their gyros end at 40 °/s.
+#[test]
+fn however_short_a_drive_is_no_vehicle_turns_faster_than_its_gyros_measure() {
+    const RATE_HZ: f64 = 20.0;
+    let mut fastest: f64 = 0.0;
+    for drive_s in [60.0, 120.0, 180.0, 300.0, 600.0] {
+        for seed in 0..40 {
+            let mut day = Scenario::stops(seed, 3, 10.0, drive_s);
+            day.go_on(seed, drive_s, 0.5 * drive_s, 10.0);
+            let day = VehicleConfiguration { rate_hz: RATE_HZ, ..day.configuration() };
+            let mut vehicle = Vehicle::new(&day, seed);
+            let mut before = vehicle.truth().attitude.azimuth_rad;
+            while vehicle.next().is_some() {
+                let azimuth_rad = vehicle.truth().attitude.azimuth_rad;
+                let rate = (azimuth_rad - before).to_degrees() * RATE_HZ;
+                assert!(rate.abs() < 40.0, "{rate} °/s, drive of {drive_s} s, seed {seed}");
+                (fastest, before) = (fastest.max(rate.abs()), azimuth_rad);
+            }
+        }
+    }
+    assert!(fastest > 30.0, "they dare {fastest} °/s only");
+}
+
 #[test]
 fn a_parked_vehicle_sways_by_half_a_degree_and_stays() {
     let day = Scenario::parked(8, 300.0);

@@ -19,6 +19,16 @@ impl SwayNoise {
     /// Noise without compensation: zero.
     pub const NONE: Self = Self { angle_variance: 0.0, correlation: 0.0, residual_variance: 0.0 };
 
+    /// Noise without compensation, zero, of a base whose sensors failed before they had observed
+    /// its sway. The endless correlation time distinguishes it from [`Self::NONE`].
+    pub const UNMEASURED: Self = Self { correlation: f64::INFINITY, ..Self::NONE };
+
+    /// Whether the sensors failed that would have observed the sway.
+    #[must_use]
+    pub fn is_unmeasured(&self) -> bool {
+        self.correlation.is_infinite()
+    }
+
     /// Variance that the error adds to a mean rate over `seconds` (> 0), (rad/s)²: that of the
     /// change of the angle error over the time T, 2σ²(1 − e^{−T/τ})/T² + 2σᵣ²/T².
     #[must_use]
