@@ -1,7 +1,8 @@
 //! The sample period of a recording: one rule for every kind.
 //!
 //! It is the header's, unless over all the rows it and the times come apart by more than half a sample; then the times are
-//! believed. Times may be rounded, so the mean of the steps counts, of those without a missing sample.
+//! believed. Times may be rounded, so the mean of the steps counts, of those without a missing sample. Only a turning
+//! platform holds on to a stated rate, which its session refuses where the times contradict it.
 
 /// Samples are consecutive while the step between them is no more than so many times the usual one: with one missing it
 /// is two, and clocks jitter.

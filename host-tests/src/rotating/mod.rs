@@ -88,13 +88,14 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
         common.required_sigma = sigma;
     }
     let sensor = sensor(header, &mut assumed);
-    let period_s = period_s(header.rate_hz, rows, |row| row.time_s);
-    let rate = 1.0 / period_s;
+    // A stated rate is not replaced by that of the times: the session compares both, and refuses what is contradicted.
+    let of_times = || 1.0 / period_s(None, rows, |row| row.time_s);
+    let rate = header.rate_hz.unwrap_or_else(of_times);
     let rate_step = rounded(&mut common, sensor.is_flat, rows, rate);
     let encoder_zero_sigma = encoder_zero(header, &mut assumed);
     let setting = Setting::new(common, sensor);
     let setting = Setting { encoder_zero_sigma, harmonics_known: false, rate_step, ..setting };
-    let session = follow(setting, rows, period_s);
+    let session = follow(setting, rows, 1.0 / rate);
     let session = session.map_err(ReplayError::Procedure)?;
     assumed.extend(untold::of_platform(&session));
     let zero_s = rows.first().map_or(0.0, |row| row.time_s);
