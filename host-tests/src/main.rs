@@ -123,6 +123,9 @@ fn check(command: &Command, given: &Given) -> Result<(), String> {
     }
 }
 
+/// How the lines of a misuse begin that only hint at what else there is.
+const HINTS: [&str; 2] = ["tip: ", "For more information"];
+
 /// Prints help where that was asked for, else what is wrong with the options in one line, and whose help tells more.
 fn misuse(error: &clap::Error) -> ExitCode {
     if !error.use_stderr() {
@@ -132,8 +135,9 @@ fn misuse(error: &clap::Error) -> ExitCode {
     }
     let text = error.render().to_string();
     let lines = text.lines().map(str::trim).take_while(|line| !line.starts_with("Usage:"));
-    let message: Vec<&str> =
-        lines.filter(|line| !line.is_empty() && !line.starts_with("tip: ")).collect();
+    let message: Vec<&str> = lines
+        .filter(|line| !line.is_empty() && !HINTS.iter().any(|hint| line.starts_with(hint)))
+        .collect();
     let message = message.join(" ");
     let message = message.strip_prefix("error: ").unwrap_or(&message);
     let usage = text.lines().find_map(|line| line.trim().strip_prefix("Usage: "));

@@ -41,6 +41,7 @@ pub fn assert_misuse(arguments: &[&str], words: &str) {
     assert_eq!(code(&output), 2, "{arguments:?}: {told}");
     assert_eq!(told.lines().count(), 1, "{arguments:?}: {told}");
     assert!(told.starts_with("error: ") && told.contains(words), "{arguments:?}: {told}");
+    assert!(!told.contains("For more information"), "{arguments:?}: {told}");
     assert!(output.stdout.is_empty(), "{arguments:?}");
 }
 
