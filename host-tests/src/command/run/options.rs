@@ -7,6 +7,7 @@ use bench::instrument::recorder::{self, Carrier};
 use bench::unwritten;
 use clap::{Args, ValueEnum};
 use drivers::ads1262::configuration::DataRate;
+use firmware::ports::Recorder;
 use firmware::simulated::scenario::{GyroClass, RATES, Scenario};
 
 use crate::command::faults::{self, Asked};
@@ -29,7 +30,33 @@ pub struct Common {
     pub report: Option<PathBuf>,
 }
 
+/// The samples of a session, kept only where they are to be recorded: a long run has a hundred million.
+pub struct Wanted<S> {
+    is_recorded: bool,
+    samples: Vec<S>,
+}
+
+impl<S: Copy> Recorder<S> for &mut Wanted<S> {
+    async fn record(&mut self, sample: &S) {
+        if self.is_recorded {
+            self.samples.push(*sample);
+        }
+    }
+}
+
+impl<S> Wanted<S> {
+    /// Those so far; none where none are recorded.
+    pub fn samples(&self) -> &[S] {
+        &self.samples
+    }
+}
+
 impl Common {
+    /// A place for the samples of a session.
+    pub fn wanted<S>(&self) -> Wanted<S> {
+        Wanted { is_recorded: self.record.is_some(), samples: Vec::new() }
+    }
+
     /// Writes the recording of a finished run, where one is asked for.
     ///
     /// # Errors

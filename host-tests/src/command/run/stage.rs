@@ -1,7 +1,6 @@
 //! `meridian run stage` and `meridian run two-frame`: a base that stands while its gyro stops at positions.
 
 use bench::instrument::kept::{Kept, KeptPlan, KeptRun};
-use bench::instrument::recorder::Samples;
 use bench::instrument::{self, FramesRun, Run, RunError};
 use bench::outcome::Finished;
 use bench::outcome::run::{KeptAzimuth, RunDetails};
@@ -184,10 +183,10 @@ impl Simulated for StageOptions {
 
     fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
         let scenario = self.scenario();
-        let mut samples = Samples::default();
+        let mut wanted = self.base.common.wanted();
         let (KeptRun { run, kept }, wall) =
-            Terminal::watching("positions", |watch| align(&scenario, fault, &mut samples, watch))?;
-        let written = self.base.common.write(&scenario, &run, &samples.0);
+            Terminal::watching("positions", |watch| align(&scenario, fault, &mut wanted, watch))?;
+        let written = self.base.common.write(&scenario, &run, wanted.samples());
         let details = RunDetails::of(&run, &kept, scenario.sample_rate_hz, wall);
         Ok(Ran { written, ..ran("the simulated run", run, details, &scenario) })
     }
@@ -221,11 +220,11 @@ impl Simulated for FramesOptions {
 
     fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
         let scenario = self.scenario();
-        let mut samples = Samples::default();
+        let mut wanted = self.base.common.wanted();
         let (run, wall) = Terminal::watching("positions", |watch| {
-            instrument::align_frames(&scenario, fault, &mut samples, watch)
+            instrument::align_frames(&scenario, fault, &mut wanted, watch)
         })?;
-        let written = self.base.common.write(&scenario, &run, &samples.0);
+        let written = self.base.common.write(&scenario, &run, wanted.samples());
         let FramesRun { run, axis: [forward, right, down], kept } = run;
         let stored = run.events.iter().any(|(_, event)| matches!(event, Event::Stored(..)));
         let mut details = RunDetails::of(&run, &kept, scenario.base.sample_rate_hz, wall);

@@ -1,7 +1,6 @@
 //! `meridian run vehicle`: the board in a vehicle that goes from stop to stop.
 
 use bench::instrument::kept::{Kept, Point};
-use bench::instrument::recorder::Samples;
 use bench::instrument::{Run, VehicleRun, align_stops};
 use bench::outcome::Finished;
 use bench::outcome::run::{KeptAzimuth, RunDetails};
@@ -10,14 +9,16 @@ use bench::recording::Truth;
 use bench::stops::{Method, Replay, Watched};
 use clap::Args;
 use firmware::event::Event;
+use firmware::ports::Recorder;
 use firmware::simulated::fault::{Fault, Platform};
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::vehicle::{self, VehicleScenario};
 use hal_mock::vehicle::VehicleTruth;
 use orientation::session::stops::Session;
+use orientation::signal::InertialSample;
 
 use super::keeping::KeepingOptions;
-use super::options::{Common, Place, seconds};
+use super::options::{Common, Place, Wanted, seconds};
 use super::{Ran, Simulated, Terminal};
 use crate::command::given::Given;
 use crate::command::whole;
@@ -65,6 +66,19 @@ impl VehicleOptions {
     }
 }
 
+/// What the session is seen to get: the stop criteria on the way, and the samples where they are recorded.
+struct Seen {
+    watched: Watched,
+    wanted: Wanted<InertialSample>,
+}
+
+impl Recorder<InertialSample> for &mut Seen {
+    async fn record(&mut self, sample: &InertialSample) {
+        self.watched.push(sample);
+        (&mut self.wanted).record(sample).await;
+    }
+}
+
 impl Simulated for VehicleOptions {
     const PLATFORM: Platform = Platform::Vehicle;
 
@@ -81,13 +95,11 @@ impl Simulated for VehicleOptions {
         let scenario = self.scenario();
         let setting = scenario.setting().ok_or("the latitude is outside ±90°")?;
         let beside = Session::new(setting, scenario.procedure());
-        let mut watched = Watched::new(beside.map_err(|error| error.to_string())?);
-        let mut samples = Samples::default();
-        let (run, wall) = Terminal::watching("stops", |watch| {
-            align_stops(&scenario, fault, &mut samples, watch)
-        })?;
-        samples.0.iter().for_each(|sample| watched.push(sample));
-        let written = self.common.write(&scenario, &run, &samples.0);
+        let watched = Watched::new(beside.map_err(|error| error.to_string())?);
+        let mut seen = Seen { watched, wanted: self.common.wanted() };
+        let (run, wall) =
+            Terminal::watching("stops", |watch| align_stops(&scenario, fault, &mut seen, watch))?;
+        let written = self.common.write(&scenario, &run, seen.wanted.samples());
         let VehicleRun { run, truth, kept } = run;
         let azimuth_rad = concluded(&run, &kept, truth);
         let truth = Truth {
@@ -100,7 +112,7 @@ impl Simulated for VehicleOptions {
             method: Method::Siap,
             session: run.replay,
             zero_s: 0.0,
-            criteria: watched.into_criteria(),
+            criteria: seen.watched.into_criteria(),
             assumed: vec![ASSUMED.to_owned()],
         };
         let is_aligned = replay.conclusion().is_some();
