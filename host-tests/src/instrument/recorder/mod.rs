@@ -1,6 +1,6 @@
 //! Recordings of simulated runs: what an instrument's session was given, to the last digit.
 //!
-//! [`Samples`] keeps what the session gets while it runs; [`write`] makes a recording of it afterwards, when it is
+//! [`Samples`] keeps what the session gets while it runs; [`write()`] makes a recording of it afterwards, when it is
 //! known how the run ended. Integers of the board are written out whole, so that a replay gets the very same ones. A
 //! recording holds one alignment, and not what is kept after it.
 
