@@ -29,9 +29,9 @@ use serde_json::json;
 
 use super::statistics::{coverage, least, rms};
 use super::{Asked, Campaign, Done, Tick};
+use crate::methods::stepwise::drive;
 use crate::output::{azimuth_error, campaign};
 use crate::reference::Filter;
-use crate::replay::drive;
 use crate::simulate::stage_path;
 
 /// The paper's table, and the precision, of both schedules.

@@ -5,8 +5,9 @@ use orientation::error::Refusal;
 use orientation::units::DEGREE;
 
 use super::NO_NOISE;
+use crate::methods::asked::Asked;
+use crate::methods::stepwise;
 use crate::recording::{Body, Header, Short};
-use crate::replay::{self, Options};
 
 /// Factor by which a noise is not the one stated.
 const OTHER_NOISE: f64 = 1.5;
@@ -45,10 +46,10 @@ pub fn impossible(body: &Body) -> Option<String> {
 }
 
 /// Whether the noise that is stated is not the one that the dwells show.
-pub fn noise(header: &Header, body: &Body, options: &Options) -> Option<String> {
+pub fn noise(header: &Header, body: &Body, asked: &Asked) -> Option<String> {
     let stated = header.gyro_n_deg_sqrt_h.filter(|_| matches!(body, Body::Stage(_)))?;
     let silent = Header { gyro_n_deg_sqrt_h: None, ..header.clone() };
-    let replay = replay::replay(&silent, body, options, |_| {}).ok()?;
+    let replay = stepwise::replay(&silent, body, asked, |_| {}).ok()?;
     let conclusion = replay.session.conclusion()?;
     let Ok(Azimuth { .. }) = conclusion.verdict else { return None };
     let shown = conclusion.angle_random_walk / DEGREE * 60.0;
@@ -62,12 +63,7 @@ pub fn noise(header: &Header, body: &Body, options: &Options) -> Option<String> 
 }
 
 /// Keys of drift and g-sensitivity that are missing, where a usual one of either would explain the dwells.
-pub fn missing(
-    header: &Header,
-    body: &Body,
-    options: &Options,
-    refusal: &Refusal,
-) -> Option<String> {
+pub fn missing(header: &Header, body: &Body, asked: &Asked, refusal: &Refusal) -> Option<String> {
     let is_scattered = match refusal {
         Refusal::ResidualsNotWhite { ratio } | Refusal::NoiseNotAsStated { ratio } => {
             *ratio <= NO_NOISE
@@ -76,7 +72,7 @@ pub fn missing(
         _ => false,
     };
     let explains = |header: Header| {
-        let replay = replay::replay(&header, body, options, |_| {});
+        let replay = stepwise::replay(&header, body, asked, |_| {});
         replay.is_ok_and(|replay| {
             replay.session.conclusion().is_some_and(|found| {
                 matches!(found.verdict, Ok(_) | Err(Refusal::BudgetNotMet { .. }))

@@ -17,9 +17,10 @@ pub use vehicle::{of_level, of_vehicle};
 use orientation::error::Refusal;
 use orientation::session::Session;
 
+use crate::methods::asked::Asked;
+use crate::methods::rotating;
+use crate::methods::stepwise;
 use crate::recording::{Body, Header, Sensor, Short};
-use crate::replay::{self, Options};
-use crate::rotating;
 
 /// Times the stated noise power that no residuals are by chance or drift.
 const NO_NOISE: f64 = 100.0;
@@ -31,7 +32,7 @@ const FEW: usize = 5;
 pub fn of_stopping(
     header: &Header,
     body: &Body,
-    options: &Options,
+    asked: &Asked,
     session: &Session,
     refusal: &Refusal,
 ) -> Option<String> {
@@ -40,7 +41,7 @@ pub fn of_stopping(
         return proven;
     }
     let passes = |body: &Body| {
-        let replay = replay::replay(header, body, options, |_| {});
+        let replay = stepwise::replay(header, body, asked, |_| {});
         replay.is_ok_and(|replay| replay.session.conclusion().is_some_and(|c| c.verdict.is_ok()))
     };
     let force = units::force_unit(body);
@@ -55,10 +56,10 @@ pub fn of_stopping(
     warming()
         .or_else(|| meant.as_ref().map(|trial| trial.told(body)))
         .or_else(|| force.map(|unit| unit.told(units::force_columns(body))))
-        .or_else(|| units::of_sigma(header, body, options))
-        .or_else(|| keys::noise(header, body, options))
+        .or_else(|| units::of_sigma(header, body, asked))
+        .or_else(|| keys::noise(header, body, asked))
         .or_else(|| slip::of(session, refusal))
-        .or_else(|| keys::missing(header, body, options, refusal))
+        .or_else(|| keys::missing(header, body, asked, refusal))
         .or_else(|| too_much(body, refusal))
 }
 
@@ -67,7 +68,7 @@ pub fn of_stopping(
 pub fn of_turning(
     header: &Header,
     body: &Body,
-    options: &Options,
+    asked: &Asked,
     refusal: &Refusal,
 ) -> Option<String> {
     let Body::Rotating(rows) = body else { return None };
@@ -77,7 +78,7 @@ pub fn of_turning(
         return proven;
     }
     let passes = |header: &Header, body: &Body| {
-        let replay = rotating::replay(header, body, options);
+        let replay = rotating::replay(header, body, asked);
         replay.is_ok_and(|replay| replay.conclusion().is_some_and(|c| c.verdict.is_ok()))
     };
     let noise = || {

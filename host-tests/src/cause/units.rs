@@ -2,8 +2,9 @@
 
 use orientation::units::DEGREE;
 
+use crate::methods::asked::Asked;
+use crate::methods::stepwise;
 use crate::recording::{Body, DwellRow, Header, RotatingRow, StageRow};
-use crate::replay::{self, Options};
 
 /// Standard gravity, m/s².
 const GRAVITY: f64 = 9.806_65;
@@ -245,12 +246,12 @@ pub fn of_platform_rate(rows: &[RotatingRow]) -> Option<String> {
 }
 
 /// Whether the σ of averaged dwells alone are in another unit: in the one that is meant they pass, and scatter so.
-pub fn of_sigma(header: &Header, body: &Body, options: &Options) -> Option<String> {
+pub fn of_sigma(header: &Header, body: &Body, asked: &Asked) -> Option<String> {
     let Body::Dwells(rows) = body else { return None };
     let passes = |Unit(factor, _): &Unit| {
         let row = |row: &DwellRow| DwellRow { sigma_rad_s: row.sigma_rad_s * factor, ..*row };
         let body = Body::Dwells(rows.iter().map(row).collect());
-        let replay = replay::replay(header, &body, options, |_| {}).ok()?;
+        let replay = stepwise::replay(header, &body, asked, |_| {}).ok()?;
         let conclusion = replay.session.conclusion().filter(|found| found.verdict.is_ok())?;
         let squares = conclusion.residuals.iter().map(|residual| residual.normalised.powi(2));
         let scatter = (squares.sum::<f64>() / conclusion.residuals.len().max(1) as f64).sqrt();

@@ -4,8 +4,9 @@ use orientation::error::Refusal;
 
 use super::is_short;
 use super::units::{self, MOST_ROWS, RATES, Unit};
+use crate::methods::asked::Asked;
+use crate::methods::stops::{self, samples};
 use crate::recording::{Body, Header, ImuRow};
-use crate::stops::{self, Options, samples};
 
 /// The gyros' columns.
 const GYROS: &str = "columns gx_rad_s to gz_rad_s";
@@ -15,7 +16,7 @@ const GYROS: &str = "columns gx_rad_s to gz_rad_s";
 pub fn of_vehicle(
     header: &Header,
     body: &Body,
-    options: &Options,
+    asked: &Asked,
     refusal: &Refusal,
 ) -> Option<String> {
     let force = units::force_unit(body);
@@ -26,7 +27,7 @@ pub fn of_vehicle(
     }
     let passes = |rate: &Unit| {
         let body = Body::Imu(converted(&rows, rate.0, force.map_or(1.0, |unit| unit.0)));
-        let replay = stops::replay(header, &body, options);
+        let replay = stops::replay(header, &body, asked);
         replay.is_ok_and(|replay| replay.conclusion().is_some_and(|found| found.verdict.is_ok()))
     };
     let of_rates = RATES.into_iter().find(passes).map(|unit| unit.told(GYROS));

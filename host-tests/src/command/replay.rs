@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 
 use bench::methods::asked::Asked;
+use bench::methods::vertical::write_attitude;
 use bench::methods::{self, METHODS, Method};
 use bench::outcome::{Outcome, Source};
 use bench::output::progress::Progress;
 use bench::recording::{self, Recording};
 use bench::unwritten;
-use bench::vertical::write_attitude;
 use clap::Args;
 use orientation::align::criterion::Criterion;
 use orientation::earth::Latitude;
@@ -58,18 +58,6 @@ fn displacements(text: &str) -> Result<Displacements, String> {
     recording::displacements(text).map(Displacements).map_err(|problem| problem.to_string())
 }
 
-impl From<&ReplayOptions> for Asked {
-    fn from(options: &ReplayOptions) -> Self {
-        Self {
-            latitude: options.latitude,
-            criterion: options.criterion,
-            half: options.half.map(Into::into),
-            displacements_m: options.displacements.as_ref().map(|list| list.0.clone()),
-            required_sigma: Some(options.require_sigma),
-        }
-    }
-}
-
 /// Takes the names of the registry.
 fn method(text: &str) -> Result<&'static Method, String> {
     methods::named(text).ok_or_else(|| {
@@ -79,6 +67,18 @@ fn method(text: &str) -> Result<&'static Method, String> {
 }
 
 impl ReplayOptions {
+    /// What the user asks of this method.
+    fn asked(&self, method: &Method) -> Asked {
+        Asked {
+            method: Some(method.name),
+            latitude: self.latitude,
+            criterion: self.criterion,
+            half: self.half.map(Into::into),
+            displacements_m: self.displacements.as_ref().map(|list| list.0.clone()),
+            required_sigma: Some(self.require_sigma),
+        }
+    }
+
     /// What cannot go together.
     ///
     /// # Errors
@@ -134,7 +134,7 @@ fn replay(
 ) -> Result<Told, String> {
     let name = options.file.display().to_string();
     let (header, body, truth) = recording.into_parts();
-    let (asked, progress) = (Asked::from(options), Progress::new(0, "positions"));
+    let (asked, progress) = (options.asked(method), Progress::new(0, "positions"));
     let finished = (method.replay)(&header, &body, &asked, &|session| progress.session(session))
         .map_err(|error| format!("{name}: {error}"))?;
     progress.finish();

@@ -18,7 +18,7 @@ use orientation::session::Session;
 use super::harness::{self, ASSUMED, Harness};
 use super::kept::{Kept, KeptPlan};
 use super::{Run, RunError};
-use crate::replay::{Method, Replay};
+use crate::methods::stepwise::{Method, Replay};
 
 /// A finished run on a two-frame mount.
 #[derive(Clone, Debug)]

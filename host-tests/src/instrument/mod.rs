@@ -28,7 +28,7 @@ use orientation::align::mount::MountError;
 use orientation::keep::Report;
 use orientation::session::procedure::ProcedureError;
 
-use crate::replay::Replay;
+use crate::methods::stepwise::Replay;
 
 /// A finished run of one kind of session.
 #[derive(Clone, Debug)]

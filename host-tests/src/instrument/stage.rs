@@ -18,7 +18,7 @@ use orientation::session::Session;
 use super::harness::{self, ASSUMED, Harness};
 use super::kept::{Kept, KeptPlan, KeptRun};
 use super::{Run, RunError};
-use crate::replay::{HALF, Method, Replay};
+use crate::methods::stepwise::{HALF, Method, Replay};
 
 /// Runs a scenario in virtual time on this thread.
 ///

@@ -1,12 +1,18 @@
 //! What a user asks of a replay, whatever the method.
 
 use orientation::align::criterion::Criterion;
-use orientation::align::setting::Half;
+use orientation::align::setting::{Half, Setting};
 use orientation::earth::Latitude;
+
+use super::error::ReplayError;
+use crate::recording::{Body, Header};
+use crate::setting::{Described, describe};
 
 /// What a user asks of a replay, whatever the method.
 #[derive(Clone, Debug)]
 pub struct Asked {
+    /// Name of the method; `None` for the one that the recording shows.
+    pub method: Option<&'static str>,
     /// Latitude instead of the header's.
     pub latitude: Option<Latitude>,
     /// How the azimuth is found; of a stage that stops.
@@ -15,14 +21,47 @@ pub struct Asked {
     pub half: Option<Half>,
     /// Displacements of the stops, north and east, m, instead of the header's; of a vehicle.
     pub displacements_m: Option<Vec<[f64; 2]>>,
-    /// Greatest accepted 1σ, rad.
+    /// Greatest accepted 1σ, rad; `None` for the method's default.
     pub required_sigma: Option<f64>,
 }
 
 impl Default for Asked {
     fn default() -> Self {
-        let criterion = Criterion::MaximumLikelihood;
-        let (latitude, half, displacements_m, required_sigma) = (None, None, None, None);
-        Self { latitude, criterion, half, displacements_m, required_sigma }
+        Self {
+            method: None,
+            latitude: None,
+            criterion: Criterion::MaximumLikelihood,
+            half: None,
+            displacements_m: None,
+            required_sigma: None,
+        }
+    }
+}
+
+impl Asked {
+    /// The user's latitude, or the header's.
+    ///
+    /// # Errors
+    /// Neither gives one.
+    pub(crate) fn latitude(&self, header: &Header, body: &Body) -> Result<Latitude, ReplayError> {
+        let stated = header.latitude_deg.and_then(Latitude::from_degrees);
+        self.latitude.or(stated).ok_or(ReplayError::NoLatitude(body.kind()))
+    }
+
+    /// Site and instrument as header and user state them.
+    ///
+    /// # Errors
+    /// There is no latitude.
+    pub(crate) fn describe(&self, header: &Header, body: &Body) -> Result<Described, ReplayError> {
+        let mut described = describe(header, body, self.latitude(header, body)?);
+        self.change(&mut described.setting);
+        Ok(described)
+    }
+
+    /// Puts what the user states in the place of what a session was given.
+    pub(crate) fn change(&self, setting: &mut Setting) {
+        setting.latitude = self.latitude.unwrap_or(setting.latitude);
+        setting.half = self.half.or(setting.half);
+        setting.required_sigma = self.required_sigma.unwrap_or(setting.required_sigma);
     }
 }

@@ -3,12 +3,18 @@
 //! A further method is an entry here; its replay, its outcome and its causes stand in folders of their own.
 
 pub mod asked;
+pub mod error;
+mod limits;
+pub mod rotating;
+pub mod spin;
+pub mod stepwise;
+pub mod stops;
+pub mod vertical;
 
 use self::asked::Asked;
+use self::error::ReplayError;
 use crate::outcome::Finished;
 use crate::recording::{Body, Header, Kind, Recording};
-use crate::replay::{self, ReplayError};
-use crate::{rotating, spin, stops, vertical};
 
 /// Told of each step of a replay: the session so far.
 pub type Watch<'a> = &'a dyn Fn(&orientation::session::Session);
@@ -34,47 +40,43 @@ pub static METHODS: [Method; 7] = [
         name: "stepwise",
         meaning: "Stepwise gyrocompassing",
         takes: &["latitude", "criterion", "half"],
-        replay: |header, body, asked, watch| {
-            at_standstills(replay::Method::Stepwise, header, body, asked, watch)
-        },
+        replay: at_standstills,
     },
     Method {
         name: "positions",
         meaning: "Autocompensated positions, in passes",
         takes: &["latitude", "criterion", "half"],
-        replay: |header, body, asked, watch| {
-            at_standstills(replay::Method::Positions, header, body, asked, watch)
-        },
+        replay: at_standstills,
     },
     Method {
         name: "rotating",
         meaning: "A platform that turns all the time",
         takes: &["latitude"],
-        replay: |header, body, asked, _| boxed(rotating::replay(header, body, &asked.into())),
+        replay: |header, body, asked, _| boxed(rotating::replay(header, body, asked)),
     },
     Method {
         name: "siap",
         meaning: "A vehicle: the azimuth from two stops and more",
         takes: &["latitude", "displacements"],
-        replay: |header, body, asked, _| from_stops(stops::Method::Siap, header, body, asked),
+        replay: |header, body, asked, _| boxed(stops::replay(header, body, asked)),
     },
     Method {
         name: "static",
         meaning: "A vehicle at rest all the time, sway allowed",
         takes: &["latitude"],
-        replay: |header, body, asked, _| from_stops(stops::Method::Static, header, body, asked),
+        replay: |header, body, asked, _| boxed(stops::replay(header, body, asked)),
     },
     Method {
         name: "vertical",
         meaning: "Pitch and roll, and the turn about the vertical, kept from the beginning to the end",
         takes: &["latitude", "attitude_out"],
-        replay: |header, body, asked, _| boxed(vertical::replay(header, body, &asked.into())),
+        replay: |header, body, asked, _| boxed(vertical::replay(header, body, asked)),
     },
     Method {
         name: "spin",
         meaning: "The roll of a body in fast rotation, from the extrema of its accelerometers and by phase lock",
         takes: &[],
-        replay: |header, body, asked, _| boxed(spin::replay(header, body, &asked.into())),
+        replay: |header, body, asked, _| boxed(spin::replay(header, body, asked)),
     },
 ];
 
@@ -101,22 +103,10 @@ fn boxed<F: Finished + 'static>(
 }
 
 fn at_standstills(
-    method: replay::Method,
     header: &Header,
     body: &Body,
     asked: &Asked,
     watch: Watch<'_>,
 ) -> Result<Box<dyn Finished>, ReplayError> {
-    let options = replay::Options { method, ..asked.into() };
-    boxed(replay::replay(header, body, &options, watch))
-}
-
-fn from_stops(
-    method: stops::Method,
-    header: &Header,
-    body: &Body,
-    asked: &Asked,
-) -> Result<Box<dyn Finished>, ReplayError> {
-    let options = stops::Options { method: Some(method), ..asked.into() };
-    boxed(stops::replay(header, body, &options))
+    boxed(stepwise::replay(header, body, asked, watch))
 }

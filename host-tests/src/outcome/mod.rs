@@ -4,12 +4,7 @@
 //! the JSON object, the text and the page; text and page are one [`Report`], whose figures only the page
 //! shows.
 
-pub mod rotating;
 pub mod run;
-pub mod spin;
-pub mod stage;
-pub mod stops;
-pub mod vertical;
 
 use std::any::Any;
 use std::fmt;
@@ -23,10 +18,10 @@ use serde_json::Value;
 
 use self::run::RunDetails;
 use crate::methods::asked::Asked;
+use crate::methods::vertical::Moment;
 use crate::output::{azimuth_error, degrees, positive_zero};
 use crate::recording::{Body, Header, Truth};
 use crate::report::{Lines, Part as ReportPart, Report, Table};
-use crate::vertical::Moment;
 
 /// Version of the JSON object. A key that changes its meaning or its unit, or goes, raises it; a further key does not.
 pub const SCHEMA: u32 = 1;

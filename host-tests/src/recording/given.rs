@@ -13,6 +13,9 @@ use serde::{Deserialize, Serialize};
 use super::Header;
 use super::header::SESSION;
 
+/// What a replay of a run rests on.
+pub(crate) const GIVEN: &str = "what the board was told of place and instrument";
+
 /// What a session was given beside its samples.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Given<S, P = ()> {
@@ -37,9 +40,10 @@ impl<S: DeserializeOwned, P: DeserializeOwned> Given<S, P> {
     /// What the header says, where it comes from a run.
     ///
     /// # Errors
-    /// The text was changed, or belongs to another kind of session.
-    pub fn of(header: &Header) -> serde_json::Result<Option<Self>> {
-        header.session.as_ref().map(|text| serde_json::from_str(text)).transpose()
+    /// The text was changed, or belongs to another kind of session: why it cannot be read.
+    pub fn of(header: &Header) -> Result<Option<Self>, String> {
+        let read = header.session.as_ref().map(|text| serde_json::from_str(text));
+        read.transpose().map_err(|error| error.to_string())
     }
 }
 

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use bench::campaign::statistics::rms;
+use bench::methods::stepwise::drive;
 use bench::output::azimuth_error;
-use bench::replay::drive;
 use bench::simulate::stage_path;
 use hal_mock::accelerometer::AccelerometerConfiguration;
 use hal_mock::disturbance::Disturbance;

@@ -1,9 +1,10 @@
 //! Autocompensated positions: two, three, four and many, in passes, under drift.
 
 use bench::campaign::statistics::rms;
+use bench::methods::asked::Asked;
+use bench::methods::stepwise::positions::autocompensation;
+use bench::methods::stepwise::{drive, replay};
 use bench::output::azimuth_error;
-use bench::positions::autocompensation;
-use bench::replay::{Method, Options, drive, replay};
 use bench::simulate::stage_path;
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::instruments::InstrumentsConfiguration;
@@ -96,7 +97,7 @@ impl Trial<'_> {
 fn the_recordings_give_north_by_positions_within_three_and_a_half_sigma() {
     for name in ["positions-four-fog", "stepwise-tilted-drift"] {
         let (header, body, truth) = recording(name).into_parts();
-        let options = Options { method: Method::Positions, ..Options::default() };
+        let options = Asked { method: Some("positions"), ..Asked::default() };
         let replay = replay(&header, &body, &options, |_| {}).expect("it replays");
         let conclusion = replay.session.conclusion().expect("done");
         let azimuth = conclusion.verdict.expect("north");

@@ -6,9 +6,10 @@ use std::thread;
 
 use bench::instrument::recorder::{self, Samples};
 use bench::instrument::{self, Run};
+use bench::methods::asked::Asked;
+use bench::methods::stepwise::replay;
 use bench::output::{azimuth_error, degrees};
 use bench::recording::{self, Header};
-use bench::replay::{Options, replay};
 use firmware::event::Event;
 use firmware::ports::NoRecorder;
 use firmware::simulated::scenario::Scenario;
@@ -81,7 +82,7 @@ fn a_recorded_run_replays_to_the_same_azimuth_without_what_its_session_was_given
         let (header, body, truth) = recording::read(&path).expect("it is well-formed").into_parts();
         assert_eq!(truth.azimuth_deg, Some(scenario.azimuth_deg));
         let header = Header { session: None, ..header };
-        let again = replay(&header, &body, &Options::default(), |_| {}).expect("it has dwells");
+        let again = replay(&header, &body, &Asked::default(), |_| {}).expect("it has dwells");
         let again = again.session.conclusion().and_then(|c| c.verdict.ok()).expect("as healthy");
         let found = conclusion(&run).verdict.expect("a healthy run");
         let apart = azimuth_error(degrees(again.angle), degrees(found.angle)).abs();

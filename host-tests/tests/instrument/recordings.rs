@@ -7,10 +7,11 @@ use std::path::Path;
 use bench::instrument::recorder::{self, Carrier, Samples};
 use bench::instrument::spinning::{SpinRun, follow_spin};
 use bench::instrument::{Run, align, align_frames, align_stops, align_turning};
+use bench::methods::asked::Asked;
+use bench::methods::spin::{Known, follow};
+use bench::methods::{rotating, spin, stepwise, stops};
 use bench::outcome::Finished;
 use bench::recording::{self, Body, Header, Truth};
-use bench::spin::{Known, follow};
-use bench::{replay, rotating, spin, stops};
 use firmware::event::Event;
 use firmware::ports::{Frames, NoRecorder};
 use firmware::simulated::fault::{Fault, Platform};
@@ -65,7 +66,7 @@ fn told(finished: &dyn Finished, conclusion: &impl Debug) -> (Value, String) {
 }
 
 /// What is told of an alignment in positions.
-fn told_of_stage(replay: &replay::Replay) -> (Value, String) {
+fn told_of_stage(replay: &stepwise::Replay) -> (Value, String) {
     told(
         replay,
         &(replay.session.conclusion(), replay.session.dwells(), replay.session.repetitions()),
@@ -76,7 +77,7 @@ fn told_of_stage(replay: &replay::Replay) -> (Value, String) {
 fn compare_stage<C: Carrier>(plain: &Run, carrier: &C, run: &C::Run, of: &Run, it: &[C::Sample]) {
     assert_eq!(told_of_stage(&plain.replay), told_of_stage(&of.replay));
     let Some((header, body)) = read_back(carrier, run, it) else { return };
-    let again = replay::replay(&header, &body, &replay::Options::default(), |_| {});
+    let again = stepwise::replay(&header, &body, &Asked::default(), |_| {});
     let again = again.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(told_of_stage(&again), told_of_stage(&of.replay));
     assert_eq!(again.setting, of.replay.setting);
@@ -113,7 +114,7 @@ fn replay_turntable(scenario: &TurntableScenario, fault: Option<Fault>) {
     let run = align_turning(scenario, fault, &mut samples, &()).expect("it is possible");
     assert_eq!(of_run(&plain.run), of_run(&run.run));
     let Some((header, body)) = read_back(scenario, &run, &samples.0) else { return };
-    let again = rotating::replay(&header, &body, &replay::Options::default());
+    let again = rotating::replay(&header, &body, &Asked::default());
     let again = again.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(told(&again, &again.conclusion()), of_run(&run.run));
 }
@@ -129,7 +130,7 @@ fn replay_vehicle(scenario: &VehicleScenario, fault: Option<Fault>) {
     let found = align_stops(scenario, fault, &mut samples, &()).expect("it is possible");
     assert_eq!(told(&plain.run.replay), told(&found.run.replay));
     let Some((header, body)) = read_back(scenario, &found, &samples.0) else { return };
-    let again = stops::replay(&header, &body, &stops::Options::default());
+    let again = stops::replay(&header, &body, &Asked::default());
     let again = again.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(told(&again.session), told(&found.run.replay));
 }
@@ -137,7 +138,7 @@ fn replay_vehicle(scenario: &VehicleScenario, fault: Option<Fault>) {
 fn replay_spin(scenario: &SpinScenario, fault: Option<Fault>) {
     let run = follow_spin(scenario, fault, &()).expect("it is possible");
     let Some((header, body)) = read_back(scenario, &run, &run.samples) else { return };
-    let again = spin::replay(&header, &body, &spin::Options::default());
+    let again = spin::replay(&header, &body, &Asked::default());
     let again = again.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(format!("{again:?}"), format!("{:?}", of_spin(scenario, &run, &again.assumed)));
     let end = again.answer().end;
@@ -290,7 +291,7 @@ fn what_a_session_was_given_counts_as_the_run_wrote_it_or_not_at_all() {
     let run = follow_spin(&scenario, None, &()).expect("it is possible");
     let (header, body) = read_back(&scenario, &run, &run.samples).expect("there are samples");
     let changed = Header { session: Some("{}".to_owned()), ..header };
-    let refused = spin::replay(&changed, &body, &spin::Options::default()).map(|_| ());
+    let refused = spin::replay(&changed, &body, &Asked::default()).map(|_| ());
     let why = refused.expect_err("nothing was given").to_string();
     assert!(why.starts_with("key session: missing field `setting`"), "{why}");
 }

@@ -3,9 +3,10 @@
 //! Their samples scatter by far more than their N: quantisation and dither are noise of the angle, which comes
 //! back with the next sample. A bias of 0.01 °/h is 0.05° of azimuth, N of 0.002 °/√h another 0.07° in a minute.
 
+use bench::methods::asked::Asked;
+use bench::methods::stops::{Replay, replay};
 use bench::output::{azimuth_error, degrees};
 use bench::recording::{Body, Header, ImuRow, ImuSample};
-use bench::stops::{Method, Options, Replay, replay};
 use hal_mock::accelerometer::AccelerometerConfiguration;
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::vehicle::scenario::Scenario;
@@ -69,7 +70,7 @@ fn replayed(day: &Scenario, seed: u64, n_deg_sqrt_h: Option<f64>) -> Replay {
         gyro_bias_deg_h: Some(GYRO[1]),
         ..Header::default()
     };
-    let options = Options { method: Some(Method::Static), ..Options::default() };
+    let options = Asked { method: Some("static"), ..Asked::default() };
     replay(&header, &Body::Imu(rows.collect()), &options).expect("it replays")
 }
 

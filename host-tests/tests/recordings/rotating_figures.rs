@@ -3,9 +3,11 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+use bench::methods::rotating::part::Part;
+use bench::methods::rotating::turns::{
+    freed, phasor, phasors, rate_hz, spectrum, turn_hz, whole_turns,
+};
 use bench::recording::{Body, RotatingRow};
-use bench::rotating::part::Part;
-use bench::rotating::turns::{freed, phasor, phasors, rate_hz, spectrum, turn_hz, whole_turns};
 use bench::spectrum::Line;
 
 use crate::support::files::recording;

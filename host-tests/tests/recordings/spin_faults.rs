@@ -2,9 +2,10 @@
 
 use std::f64::consts::TAU;
 
+use bench::methods::asked::Asked;
+use bench::methods::spin::errors::wrapped;
+use bench::methods::spin::{Replay, replay};
 use bench::recording::{Body, Header, SpinRow};
-use bench::spin::errors::wrapped;
-use bench::spin::{Options, Replay, replay};
 use hal_mock::noise::Generator;
 use orientation::keep::spin::{Accelerometer, State};
 
@@ -48,7 +49,7 @@ fn rows() -> Vec<SpinRow> {
 
 fn replayed(rows: Vec<SpinRow>) -> Replay {
     let header = Header { rate_hz: Some(RATE_HZ), ..Header::default() };
-    replay(&header, &Body::Spin(rows), &Options::default()).expect("it is of a spinning body")
+    replay(&header, &Body::Spin(rows), &Asked::default()).expect("it is of a spinning body")
 }
 
 /// That the roll at the end is told, and true.

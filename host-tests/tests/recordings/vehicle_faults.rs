@@ -1,9 +1,10 @@
 //! What a vehicle's recording shows of faults: in itself, and in what its header says.
 
+use bench::methods::asked::Asked;
+use bench::methods::error::ReplayError;
+use bench::methods::stops::floor::Spectrum;
+use bench::methods::stops::{Replay, grade, noise, replay};
 use bench::recording::{Body, Header, ImuRow};
-use bench::replay::ReplayError;
-use bench::stops::floor::Spectrum;
-use bench::stops::{Method, Options, Replay, grade, noise, replay};
 use hal_mock::noise::Generator;
 use orientation::align::setting::Setting as Common;
 use orientation::align::stops::Setting;
@@ -27,7 +28,7 @@ fn recorded(name: &str) -> (Header, Vec<ImuRow>) {
 }
 
 fn replayed(header: &Header, rows: &[ImuRow]) -> Result<Replay, ReplayError> {
-    replay(header, &Body::Imu(rows.to_vec()), &Options::default())
+    replay(header, &Body::Imu(rows.to_vec()), &Asked::default())
 }
 
 fn reason(header: &Header, rows: &[ImuRow]) -> String {
@@ -177,7 +178,7 @@ fn noise_that_was_stated_too_small_is_taken_as_the_recording_shows_it() {
 #[test]
 fn a_false_bias_of_a_vehicle_that_stands_widens_sigma() {
     let (mut header, rows) = recorded(PARKED);
-    let options = Options { method: Some(Method::Static), ..Options::default() };
+    let options = Asked { method: Some("static"), ..Asked::default() };
     let sigma = |header: &Header| {
         let replay = replay(header, &Body::Imu(rows.clone()), &options).expect("it replays");
         replay

@@ -14,8 +14,8 @@ use serde::Serialize;
 use super::{BIAS_DEG_H, Grade, RATE_HZ, Trial, latitude, over};
 use crate::campaign::keep::limit::stored_sigma;
 use crate::campaign::statistics::{Answer, Precision};
+use crate::methods::stops::samples::Converter;
 use crate::output::{azimuth_error, degrees};
-use crate::stops::samples::Converter;
 
 /// How long the stage turns: its motor driver's ramp at 0.35 rad/s, with slopes and rest.
 const STAGE: Rotation = Rotation { rest: 0.7, speed: 0.35, wraps: false };

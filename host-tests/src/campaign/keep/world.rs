@@ -13,8 +13,8 @@ use orientation::keep::{Gyro, Handover, Keeper, Setting};
 use orientation::units::DEGREE_PER_HOUR;
 
 use crate::campaign::burov::{Grade, LATITUDE_DEG, latitude};
+use crate::methods::stops::samples::Converter;
 use crate::output::{azimuth_error, degrees};
-use crate::stops::samples::Converter;
 
 /// Samples a second: enough for the motion of a body on a road.
 pub const RATE_HZ: f64 = 50.0;

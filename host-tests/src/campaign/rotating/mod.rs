@@ -22,8 +22,8 @@ use serde_json::json;
 use self::world::{LATITUDE_DEG, World};
 use super::statistics::{Answer, Precision};
 use super::{Asked, Campaign, Done, Tick, over, tenth, unless};
+use crate::methods::rotating::follow;
 use crate::output::campaign;
-use crate::rotating::follow;
 
 /// The stages of compensation, molecular-electronic sensors, and what must be refused.
 pub(super) const CAMPAIGN: Campaign = Campaign {

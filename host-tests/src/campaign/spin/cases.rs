@@ -6,9 +6,9 @@ use super::paper::{errors, track};
 use super::world::{Flight, Recorded, SCALE_ERROR, drawn};
 use crate::campaign::over;
 use crate::campaign::statistics::{coverage, rms};
+use crate::methods::spin::METHODS;
+use crate::methods::spin::errors::bound_rms;
 use crate::output::degrees;
-use crate::spin::METHODS;
-use crate::spin::errors::bound_rms;
 
 /// What the flights of a row are like.
 #[derive(Clone, Copy, Debug)]

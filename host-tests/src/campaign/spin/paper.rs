@@ -7,10 +7,10 @@ use orientation::units::TURN;
 use serde::Serialize;
 
 use super::world::{Flight, RATE_HZ, Recorded, SCALE_ERROR, SCALE_SIGMA};
+use crate::methods::spin::errors::Errors;
+use crate::methods::spin::track::Track;
+use crate::methods::spin::{METHODS, name};
 use crate::output::degrees;
-use crate::spin::errors::Errors;
-use crate::spin::track::Track;
-use crate::spin::{METHODS, name};
 
 /// Turns a second: the paper's hundred, and a little more, so that samples fall everywhere on the turn.
 pub const TURNS_PER_S: f64 = 100.37;

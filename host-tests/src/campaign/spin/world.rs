@@ -7,8 +7,8 @@ use hal_mock::spin::{SpinConfiguration, SpinSample as Shown, SpinWorld};
 use orientation::signal::SpinSample;
 use orientation::units::DEGREE_PER_SQRT_HOUR;
 
-use crate::spin::limit::{self, Noise};
-use crate::spin::samples::Converter;
+use crate::methods::spin::limit::{self, Noise};
+use crate::methods::spin::samples::Converter;
 
 /// Samples a second: the paper's.
 pub const RATE_HZ: f64 = 10_000.0;

@@ -15,9 +15,9 @@ use orientation::session::stops::{Event, Procedure, Session};
 use orientation::units::DEGREE_PER_HOUR;
 
 use crate::campaign::statistics::Answer;
+use crate::methods::stops::averaging::Averages;
+use crate::methods::stops::samples::Converter;
 use crate::output::degrees;
-use crate::stops::averaging::Averages;
-use crate::stops::samples::Converter;
 
 /// Samples a second: enough for the motion of a body on a road.
 pub const RATE_HZ: f64 = 50.0;

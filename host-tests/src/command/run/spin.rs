@@ -3,9 +3,9 @@
 use bench::instrument::Run;
 use bench::instrument::kept::Kept;
 use bench::instrument::spinning::{SpinRun, follow_spin};
+use bench::methods::spin::{Known, Replay, follow};
 use bench::outcome::run::RunDetails;
 use bench::recording::Truth;
-use bench::spin::{Known, Replay, follow};
 use clap::Args;
 use firmware::event::Event;
 use firmware::simulated::fault::{Fault, Platform};

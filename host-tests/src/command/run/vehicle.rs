@@ -2,11 +2,11 @@
 
 use bench::instrument::kept::{Kept, Point};
 use bench::instrument::{Run, VehicleRun, align_stops};
+use bench::methods::stops::{Method, Replay, Watched};
 use bench::outcome::Finished;
 use bench::outcome::run::{KeptAzimuth, RunDetails};
 use bench::output::degrees;
 use bench::recording::Truth;
-use bench::stops::{Method, Replay, Watched};
 use clap::Args;
 use firmware::event::Event;
 use firmware::ports::Recorder;

@@ -6,9 +6,9 @@ use crate::campaign::rotating::world::{
     COUPLING_DEG, LATITUDE_DEG, TILT_DEG, UNEVENNESS, World, segments,
 };
 use crate::campaign::rotating::{molecular, refusals, stages};
-use crate::outcome::rotating::figures;
+use crate::methods::rotating::outcome::figures;
+use crate::methods::rotating::part::Part;
 use crate::report::{Part as OfPage, Report, Series, Style};
-use crate::rotating::part::Part;
 
 /// The couplings of the figure with two of them, °: as in the campaign, and nearly aligned.
 const COUPLINGS_DEG: [f64; 2] = [COUPLING_DEG, 0.1];

@@ -4,8 +4,8 @@ use super::{Columns, figure, normal};
 use crate::campaign::spin::cases::{Row, Spot};
 use crate::campaign::spin::paper::{FRAGMENT_S, Paper, TURNS_PER_S};
 use crate::campaign::spin::world::{RATE_HZ, SCALE_ERROR};
+use crate::methods::spin::{METHODS, name};
 use crate::report::{Lines, Part, Report, Series, Style};
-use crate::spin::{METHODS, name};
 
 /// Points of a curve at most.
 const POINTS: usize = 2000;

@@ -4,7 +4,7 @@ use orientation::earth::Latitude;
 
 use super::{Columns, figure, normal, reasons};
 use crate::campaign::szymanowski::{drives, parked};
-use crate::outcome::stops::figures;
+use crate::methods::stops::outcome::figures;
 use crate::report::{Part, Report, Series, Style};
 
 /// The page for a campaign.

@@ -2,8 +2,8 @@
 //! comes back by itself within a bounded time.
 
 use bench::campaign::spin::world::{RATE_HZ, SCALE_ERROR};
-use bench::spin::errors::wrapped;
-use bench::spin::samples::Converter;
+use bench::methods::spin::errors::wrapped;
+use bench::methods::spin::samples::Converter;
 use hal_mock::accelerometer::AccelerometerConfiguration;
 use hal_mock::spin::profile::Profile;
 use hal_mock::spin::{SpinConfiguration, SpinWorld};

@@ -2,8 +2,8 @@
 //! and every fault in the catalogue.
 
 use bench::instrument::spinning::{SpinRun, follow_spin};
-use bench::spin::errors::wrapped;
-use bench::spin::{Known, follow};
+use bench::methods::spin::errors::wrapped;
+use bench::methods::spin::{Known, follow};
 use firmware::event::Event;
 use firmware::simulated::fault::{Fault, Platform};
 use firmware::simulated::spin::SpinScenario;

@@ -1,16 +1,17 @@
 //! The stored recordings of spinning bodies, which an independent simulator made.
 
+use bench::methods::asked::Asked;
+use bench::methods::error::ReplayError;
+use bench::methods::spin::errors::Errors;
+use bench::methods::spin::{Replay, replay};
 use bench::recording::{Body, Header};
-use bench::replay::ReplayError;
-use bench::spin::errors::Errors;
-use bench::spin::{Options, Replay, replay};
 
 use crate::support::files::recording;
 
 /// Its replay, and the errors of each method.
 fn replayed(name: &str) -> (Replay, [Errors; 3]) {
     let (header, body, truth) = recording(name).into_parts();
-    let replay = replay(&header, &body, &Options::default()).expect("it is of a spinning body");
+    let replay = replay(&header, &body, &Asked::default()).expect("it is of a spinning body");
     let errors = [0, 1, 2].map(|index: usize| {
         Errors::of(&replay.tracks[index], &truth.roll_rad).expect("the truth is there")
     });
@@ -64,7 +65,7 @@ fn in_noise_bare_extrema_fail_and_the_phase_lock_loses_no_turn() {
 #[test]
 fn a_solver_finds_the_same_roll_where_nobody_knows_the_truth() {
     let (header, body, _) = recording("spin-80rps-noisy").into_parts();
-    let blind = replay(&header, &body, &Options::default()).expect("it is of a spinning body");
+    let blind = replay(&header, &body, &Asked::default()).expect("it is of a spinning body");
     let (replay, _) = replayed("spin-80rps-noisy");
     assert_eq!(blind.answer().rolls_rad, replay.answer().rolls_rad);
 }
@@ -73,10 +74,10 @@ fn a_solver_finds_the_same_roll_where_nobody_knows_the_truth() {
 fn another_kind_or_a_single_sample_is_refused() {
     let (header, body, _) = recording("spin-100rps").into_parts();
     let one = Body::Spin(body.spin()[..1].to_vec());
-    let refused = replay(&header, &one, &Options::default()).map(|_| ());
+    let refused = replay(&header, &one, &Asked::default()).map(|_| ());
     assert_eq!(refused, Err(ReplayError::TooFewSamples(1)));
     let (header, body, _) = recording("stepwise-bumped").into_parts();
-    let refused = replay(&header, &body, &Options::default()).map(|_| ());
+    let refused = replay(&header, &body, &Asked::default()).map(|_| ());
     assert_eq!(refused, Err(ReplayError::NoSpin(body.kind())));
 }
 
@@ -89,7 +90,7 @@ fn a_body_without_lift_has_no_roll() {
         let noise = ((row.line * 7919) % 997) as f64 / 997.0 - 0.5;
         row.force_m_s2 = [-7954.0 + noise, -3977.0 - noise];
     }
-    let replay = replay(&header, &Body::Spin(rows), &Options::default()).expect("it can be read");
+    let replay = replay(&header, &Body::Spin(rows), &Asked::default()).expect("it can be read");
     let reason = replay.refusal().expect("there is no roll");
     assert!(reason.starts_with("the roll is not known at the end: searching"), "{reason}");
 }
@@ -101,7 +102,7 @@ fn a_rate_a_little_off_the_times_loses_no_sample_and_no_roll() {
         let rate_hz = header.rate_hz.expect("it is stated");
         for part in [-9e-3, -1e-3, -1.6e-4, -3e-5, 3e-5, 1.6e-4, 1e-3, 9e-3] {
             let header = Header { rate_hz: Some(rate_hz * (1.0 + part)), ..header.clone() };
-            let replay = replay(&header, &body, &Options::default()).expect("it can be read");
+            let replay = replay(&header, &body, &Asked::default()).expect("it can be read");
             let errors =
                 Errors::of(&replay.tracks[2], &truth.roll_rad).expect("the truth is there");
             let rms_rad = errors.rms_rad.expect("it is long enough");

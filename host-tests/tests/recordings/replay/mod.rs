@@ -6,10 +6,12 @@ mod slow;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 use std::fmt::Write;
 
+use bench::methods::asked::Asked;
+use bench::methods::error::ReplayError;
+use bench::methods::stepwise::{Replay, replay};
 use bench::outcome::{self, Finished};
 use bench::output::{azimuth_error, columns};
 use bench::recording::{Body, Header, StageRow, Truth};
-use bench::replay::{Options, Replay, ReplayError, replay};
 use hal_mock::noise::Generator;
 use orientation::align::conclusion::Conclusion;
 use orientation::align::criterion::Criterion;
@@ -55,7 +57,7 @@ impl Replayed {
     }
 }
 
-fn replayed_with(name: &str, options: &Options) -> Replayed {
+fn replayed_with(name: &str, options: &Asked) -> Replayed {
     let (header, body, truth) = recording(name).into_parts();
     let replay = replay(&header, &body, options, |_| {}).expect("it replays");
     Replayed { replay, header, truth_deg: truth.azimuth_deg.expect("it carries a truth") }
@@ -63,12 +65,12 @@ fn replayed_with(name: &str, options: &Options) -> Replayed {
 
 /// The rows of a stage, of which the truth is known.
 fn of_rows(header: &Header, rows: Vec<StageRow>, truth_deg: f64) -> Result<Replayed, ReplayError> {
-    let replay = replay(header, &Body::Stage(rows), &Options::default(), |_| {})?;
+    let replay = replay(header, &Body::Stage(rows), &Asked::default(), |_| {})?;
     Ok(Replayed { replay, header: header.clone(), truth_deg })
 }
 
 fn replayed(name: &str) -> Replayed {
-    replayed_with(name, &Options::default())
+    replayed_with(name, &Asked::default())
 }
 
 const ALL: [&str; 10] = [
@@ -159,7 +161,7 @@ fn all_of_the_papers_criteria_answer_within_their_sigma() {
     for criterion in criteria {
         for name in ["stepwise-circle", "stepwise-paper-1", "stepwise-paper-2", "stepwise-paper-3"]
         {
-            let options = Options { criterion, ..Options::default() };
+            let options = Asked { criterion, ..Asked::default() };
             let (error, sigma) = replayed_with(name, &options).error_and_sigma();
             assert!(error.abs() <= 3.5 * sigma, "{name} {criterion:?}: {error} ± {sigma}");
         }
@@ -168,14 +170,14 @@ fn all_of_the_papers_criteria_answer_within_their_sigma() {
 
 #[test]
 fn a_left_out_dwell_makes_the_steps_uneven_for_the_papers_criteria() {
-    let options = Options { criterion: Criterion::LeastSquares, ..Options::default() };
+    let options = Asked { criterion: Criterion::LeastSquares, ..Asked::default() };
     let replayed = replayed_with("stepwise-bumped", &options);
     assert_eq!(replayed.conclusion().verdict, Err(Refusal::StepsUneven));
 }
 
 #[test]
 fn a_wrong_latitude_is_noticed_by_the_earth_rate() {
-    let options = Options { latitude: Latitude::from_degrees(60.0), ..Options::default() };
+    let options = Asked { latitude: Latitude::from_degrees(60.0), ..Asked::default() };
     let replayed = replayed_with("stepwise-circle", &options);
     let verdict = replayed.conclusion().verdict;
     assert!(matches!(verdict, Err(Refusal::EarthRateMismatch { .. })), "{verdict:?}");
@@ -185,7 +187,7 @@ fn a_wrong_latitude_is_noticed_by_the_earth_rate() {
 fn the_wrong_half_of_the_circle_gives_no_azimuth_that_is_wrong() {
     for name in ALL {
         for half in [Half::East, Half::West] {
-            let options = Options { half: Some(half), ..Options::default() };
+            let options = Asked { half: Some(half), ..Asked::default() };
             let replayed = replayed_with(name, &options);
             let conclusion = replayed.conclusion();
             let is_right = half.contains(replayed.truth_deg.to_radians());
@@ -202,7 +204,7 @@ fn the_wrong_half_of_the_circle_gives_no_azimuth_that_is_wrong() {
 
 #[test]
 fn beyond_eighty_five_degrees_north_is_refused() {
-    let options = Options { latitude: Latitude::from_degrees(-85.5), ..Options::default() };
+    let options = Asked { latitude: Latitude::from_degrees(-85.5), ..Asked::default() };
     let replayed = replayed_with("stepwise-circle", &options);
     let verdict = replayed.conclusion().verdict;
     assert!(matches!(verdict, Err(Refusal::LatitudeTooHigh { .. })), "{verdict:?}");
@@ -211,7 +213,7 @@ fn beyond_eighty_five_degrees_north_is_refused() {
 #[test]
 fn a_demand_beyond_the_limit_is_refused_and_names_what_limits() {
     let required_sigma = Some(0.01_f64.to_radians());
-    let options = Options { required_sigma, ..Options::default() };
+    let options = Asked { required_sigma, ..Asked::default() };
     let replayed = replayed_with("stepwise-circle", &options);
     let verdict = replayed.conclusion().verdict;
     let Err(Refusal::BudgetNotMet { source, .. }) = verdict else { panic!("{verdict:?}") };
@@ -223,7 +225,7 @@ fn noise_that_is_not_stated_is_estimated_from_the_dwells() {
     for name in ["stepwise-circle", "stepwise-tilted-drift"] {
         let (mut header, body, truth) = recording(name).into_parts();
         let stated = header.gyro_n_deg_sqrt_h.take().expect("N is stated");
-        let replay = replay(&header, &body, &Options::default(), |_| {}).expect("it replays");
+        let replay = replay(&header, &body, &Asked::default(), |_| {}).expect("it replays");
         let conclusion = replay.session.conclusion().expect("it has ended");
         let found = conclusion.angle_random_walk.to_degrees() * 60.0;
         assert!((found / stated - 1.0).abs() < 0.15, "{name}: {found} for {stated}");
@@ -250,7 +252,7 @@ fn rows_of_averaged_dwells_give_the_same_north_as_their_samples() {
         writeln!(text, "{stage:e},{rate:e},{sigma:e},{seconds},{middle},{x:e},{y:e},{z:e}")
             .expect("strings take all");
     }
-    let replay = replayed_dwells(&text, &Options::default()).expect("it replays");
+    let replay = replayed_dwells(&text, &Asked::default()).expect("it replays");
     let conclusion = replay.session.conclusion().expect("it has ended");
     let (a, b) = (conclusion.verdict.expect("ok"), sampled.conclusion().verdict.expect("ok"));
     assert!((a.angle - b.angle).abs() < 1e-9 && (a.sigma - b.sigma).abs() < 1e-9, "{a:?} {b:?}");
@@ -285,7 +287,7 @@ fn dwells_with(count: usize, azimuth_deg: f64, disturbed: Disturbing) -> (String
     (text, sigma / horizontal)
 }
 
-fn replayed_dwells(text: &str, options: &Options) -> Result<Replay, ReplayError> {
+fn replayed_dwells(text: &str, options: &Asked) -> Result<Replay, ReplayError> {
     let recording = bench::recording::read_from("dwells.csv", text.as_bytes()).expect("it reads");
     let (header, body, _) = recording.into_parts();
     replay(&header, &body, options, |_| {})
@@ -296,7 +298,7 @@ fn a_thousand_positions_are_one_alignment_and_one_more_is_refused() {
     let azimuth_deg = 213.7;
     let (text, sigma) = dwells(1024, azimuth_deg);
     for criterion in [Criterion::MaximumLikelihood, Criterion::OnTable, Criterion::LeastAbsolute] {
-        let options = Options { criterion, ..Options::default() };
+        let options = Asked { criterion, ..Asked::default() };
         let replay = replayed_dwells(&text, &options).expect("it replays");
         let conclusion = replay.session.conclusion().expect("it has ended");
         let azimuth = conclusion.verdict.expect("there is an azimuth");
@@ -308,7 +310,7 @@ fn a_thousand_positions_are_one_alignment_and_one_more_is_refused() {
         assert!((limit / expected - 1.0).abs() < 0.02, "{criterion:?}: {limit} {expected}");
     }
     let (text, _) = dwells(1025, azimuth_deg);
-    let error = replayed_dwells(&text, &Options::default()).err().map(|error| error.to_string());
+    let error = replayed_dwells(&text, &Asked::default()).err().map(|error| error.to_string());
     assert!(error.is_some_and(|words| words.contains("1025 positions are more than the 1024")));
 }
 
@@ -322,7 +324,7 @@ fn what_explains_the_dwells_beside_the_earth_rate_stands_in_the_model_and_costs_
     ];
     for (name, disturbed) in disturbed {
         let (text, _) = dwells_with(45, 213.7, disturbed);
-        let replay = replayed_dwells(&text, &Options::default()).expect("it replays");
+        let replay = replayed_dwells(&text, &Asked::default()).expect("it replays");
         let conclusion = replay.session.conclusion().expect("it has ended");
         let azimuth = conclusion.verdict.expect(name);
         let model = columns(conclusion.fit.as_ref().expect("there is a fit"));
@@ -358,7 +360,7 @@ fn dwells_without_forces_are_told_to_be_taken_as_level() {
     }
     let (header, body, _) =
         bench::recording::read_from("level", text.as_bytes()).expect("it reads").into_parts();
-    let replay = replay(&header, &body, &Options::default(), |_| {}).expect("it replays");
+    let replay = replay(&header, &body, &Asked::default(), |_| {}).expect("it replays");
     let level =
         "a level platform, for there are no forces: by each degree of tilt north is 1.00° off";
     assert!(replay.assumed.iter().any(|line| line == level), "{:?}", replay.assumed);
@@ -431,7 +433,7 @@ fn accelerometer_biases_that_drift_are_told_from_a_base_that_tilts() {
                     row.force_m_s2[2],
                 ];
             }
-            let options = Options::default();
+            let options = Asked::default();
             let replay = replay(&header, &Body::Stage(rows), &options, |_| {}).expect("it replays");
             let verdict = replay.session.conclusion().expect("it has ended").verdict;
             let Ok(azimuth) = verdict else { continue };
@@ -455,7 +457,7 @@ fn a_dead_accelerometer_across_the_vertical_is_named() {
                 row.force_m_s2[*axis] = if index % 2 == 0 { 0.0 } else { -0.0 };
             }
         }
-        let error = replay(&header, &Body::Stage(rows), &Options::default(), |_| {}).err();
+        let error = replay(&header, &Body::Stage(rows), &Asked::default(), |_| {}).err();
         let column = ["fx_m_s2", "fy_m_s2"][axes[0]];
         assert!(
             matches!(error, Some(ReplayError::Stuck { column: named, .. }) if named == column),

@@ -7,10 +7,11 @@ mod simulated;
 mod spoilt;
 
 use bench::cause::of_turning;
+use bench::methods::asked::Asked;
+use bench::methods::error::ReplayError;
+use bench::methods::rotating::{Replay, replay};
 use bench::output::azimuth_error;
 use bench::recording::{Body, Header, Kind, RotatingRow};
-use bench::replay::{Options, ReplayError};
-use bench::rotating::{Replay, replay};
 use orientation::align::rotating::conclusion::Conclusion;
 use orientation::align::rotating::solution::Pair;
 use orientation::earth::Latitude;
@@ -37,7 +38,7 @@ fn recorded(name: &str) -> Recorded {
 impl Recorded {
     fn replayed(&self) -> Replay {
         let body = Body::Rotating(self.rows.clone());
-        replay(&self.header, &body, &Options::default()).expect("it replays")
+        replay(&self.header, &body, &Asked::default()).expect("it replays")
     }
 
     fn refusal(&self) -> Refusal {
@@ -207,10 +208,10 @@ fn without_a_latitude_or_on_another_kind_there_is_no_replay() {
     let mut recorded = recorded(GYRO);
     recorded.header.latitude_deg = None;
     let body = Body::Rotating(recorded.rows);
-    let none = replay(&recorded.header, &body, &Options::default()).expect_err("no latitude");
+    let none = replay(&recorded.header, &body, &Asked::default()).expect_err("no latitude");
     assert_eq!(none, ReplayError::NoLatitude(Kind::Rotating));
     let stage = recording("stepwise-paper-1");
-    let other = replay(&stage.header, &stage.body, &Options::default()).expect_err("another kind");
+    let other = replay(&stage.header, &stage.body, &Asked::default()).expect_err("another kind");
     assert_eq!(
         other.to_string(),
         "kind `stage` has no platform that turns all the time: no method rotating"
@@ -313,7 +314,7 @@ fn a_base_that_is_turned_between_stretches_of_a_sensor_of_unknown_lag_is_not_tak
                 Ok(azimuth) => azimuth,
                 Err(refusal) => {
                     let body = Body::Rotating(turned.rows);
-                    let cause = of_turning(&turned.header, &body, &Options::default(), &refusal);
+                    let cause = of_turning(&turned.header, &body, &Asked::default(), &refusal);
                     // The sensor's gain is not known: in another unit its rates would do as well.
                     assert_eq!(cause, None, "after {stretch}, {turn_deg}°: {refusal}");
                     refused += 1;
@@ -341,7 +342,7 @@ fn what_an_unknown_lag_hides_at_one_speed_and_at_two_is_assumed() {
     assert_eq!(told(&recorded(GYRO).replayed()), [false, false]);
     one.rows.retain(|row| row.time_s < 280.0);
     one.header.g_sensitivity_deg_h_g = Some([0.0; 2]);
-    let options = Options { required_sigma: Some(0.5), ..Options::default() };
+    let options = Asked { required_sigma: Some(0.5), ..Asked::default() };
     let replay = replay(&one.header, &Body::Rotating(one.rows), &options).expect("it replays");
     assert!(conclusion(&replay).verdict.is_ok(), "{:?}", conclusion(&replay).verdict);
     assert_eq!(told(&replay), [true, false], "{:?}", replay.assumed);

@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use bench::campaign::rotating::world::{LATITUDE_DEG, World};
+use bench::methods::rotating::part::Part;
 use bench::output::azimuth_error;
-use bench::rotating::part::Part;
 
 use super::oracle::{self, Known};
 

@@ -5,10 +5,11 @@ mod output;
 mod parts;
 mod spoilt;
 
+use bench::methods::asked::Asked;
+use bench::methods::stops::averaging::Averages;
+use bench::methods::stops::{Method, Replay, replay};
 use bench::output::{azimuth_error, degrees, degrees_per_hour};
 use bench::recording::{Body, Header, ImuRow, Truth};
-use bench::stops::averaging::Averages;
-use bench::stops::{Method, Options, Replay, replay};
 use orientation::align::conclusion::Azimuth;
 use orientation::align::stops::conclusion::{Conclusion, Found};
 use orientation::error::Refusal;
@@ -37,13 +38,13 @@ fn recorded(name: &str) -> Recorded {
 }
 
 impl Recorded {
-    fn replayed_by(&self, options: &Options) -> Replay {
+    fn replayed_by(&self, options: &Asked) -> Replay {
         let body = Body::Imu(self.rows.clone());
         replay(&self.header, &body, options).expect("it replays")
     }
 
     fn replayed(&self) -> Replay {
-        self.replayed_by(&Options::default())
+        self.replayed_by(&Asked::default())
     }
 
     fn refusal(&self) -> Refusal {
@@ -131,7 +132,7 @@ fn three_stops_show_the_biases_that_the_gyros_had() {
 #[test]
 fn a_swaying_vehicle_aligns_where_averaging_does_not() {
     let recorded = recorded(PARKED);
-    let options = Options { method: Some(Method::Static), ..Options::default() };
+    let options = Asked { method: Some("static"), ..Asked::default() };
     let replay = recorded.replayed_by(&options);
     let [error, sigma] = recorded.error(conclusion(&replay));
     println!("{error:+.4}° ± {sigma:.4}°");
@@ -230,7 +231,7 @@ fn a_displacement_that_nobody_knows_costs_accuracy_and_nothing_else() {
 fn displacements_of_the_user_count_before_those_of_the_header() {
     let mut recorded = recorded(IDEAL);
     let displacements_m = recorded.header.displacements_m.take();
-    let options = Options { displacements_m: displacements_m.clone(), ..Options::default() };
+    let options = Asked { displacements_m: displacements_m.clone(), ..Asked::default() };
     let told = recorded.replayed_by(&options);
     recorded.header.displacements_m = Some(vec![[0.0; 2], [9e3, 9e3]]);
     let instead = recorded.replayed_by(&options);

@@ -2,11 +2,11 @@
 
 use std::f64::consts::TAU;
 
+use bench::methods::stops::averaging::Averages;
+use bench::methods::stops::noise::estimate;
+use bench::methods::stops::samples::{rows, samples};
 use bench::recording::period::period_s;
 use bench::recording::{Body, ImuRow, ImuSample, StaticRow};
-use bench::stops::averaging::Averages;
-use bench::stops::noise::estimate;
-use bench::stops::samples::{rows, samples};
 use hal_mock::noise::Generator;
 use proptest::prelude::*;
 

@@ -1,8 +1,9 @@
 //! Recordings spoilt in one place are refused with the reason, or survive it.
 
+use bench::methods::asked::Asked;
+use bench::methods::error::ReplayError;
+use bench::methods::stops::replay;
 use bench::recording::{Body, ImuRow, Kind};
-use bench::replay::ReplayError;
-use bench::stops::{Method, Options, replay};
 use orientation::error::Refusal;
 
 use super::{FOG, IDEAL, PARKED, Recorded, SIGMAS, THREE, conclusion, recorded};
@@ -118,7 +119,7 @@ fn a_second_without_samples_at_rest_is_refused_or_costs_nothing() {
 
 #[test]
 fn a_drive_taken_for_a_parked_vehicle_is_refused() {
-    let options = Options { method: Some(Method::Static), ..Options::default() };
+    let options = Asked { method: Some("static"), ..Asked::default() };
     let replay = recorded(FOG).replayed_by(&options);
     let reason = conclusion(&replay).verdict.expect_err("it drove");
     println!("{reason}");
@@ -126,7 +127,7 @@ fn a_drive_taken_for_a_parked_vehicle_is_refused() {
 
 #[test]
 fn a_sigma_that_was_not_reached_is_refused() {
-    let options = Options { required_sigma: Some(1e-4_f64.to_radians()), ..Options::default() };
+    let options = Asked { required_sigma: Some(1e-4_f64.to_radians()), ..Asked::default() };
     let replay = recorded(FOG).replayed_by(&options);
     let reason = conclusion(&replay).verdict.expect_err("1e-4° is out of reach");
     assert!(matches!(reason, Refusal::BudgetNotMet { .. }), "{reason}");
@@ -145,30 +146,30 @@ fn a_latitude_that_is_not_the_vehicles_does_not_pass_in_silence() {
 #[test]
 fn what_keeps_a_replay_from_beginning_is_told() {
     let recorded = recorded(IDEAL);
-    let begin = |recorded: &Recorded, options: &Options| {
+    let begin = |recorded: &Recorded, options: &Asked| {
         let body = Body::Imu(recorded.rows.clone());
         replay(&recorded.header, &body, options).map(|_| ())
     };
     let three = vec![[0.0; 2], [1.0; 2], [2.0; 2]];
-    let options = Options { displacements_m: Some(three), ..Options::default() };
+    let options = Asked { displacements_m: Some(three), ..Asked::default() };
     let error = begin(&recorded, &options).expect_err("three for two");
     assert_eq!(error, ReplayError::Displacements { stated: 3, stops: 2 });
     assert_eq!(error.to_string(), "3 displacements for 2 stops: state one for each stop");
 
     let mut nowhere = recorded;
     nowhere.header.latitude_deg = None;
-    let error = begin(&nowhere, &Options::default()).expect_err("no latitude");
+    let error = begin(&nowhere, &Asked::default()).expect_err("no latitude");
     assert_eq!(error, ReplayError::NoLatitude(Kind::Imu));
 
     nowhere.header.latitude_deg = Some(52.0);
     nowhere.header.stops_s =
         Some((0..99).map(|i| f64::from(i) * 10.0).map(|t| [t, t + 5.0]).collect());
     nowhere.header.displacements_m = None;
-    let error = begin(&nowhere, &Options::default()).expect_err("99 stops");
+    let error = begin(&nowhere, &Asked::default()).expect_err("99 stops");
     assert!(error.to_string().contains("99 stops are more than the"), "{error}");
 
     let dwells = Body::Dwells(Vec::new());
-    let error = replay(&nowhere.header, &dwells, &Options::default()).expect_err("another kind");
+    let error = replay(&nowhere.header, &dwells, &Asked::default()).expect_err("another kind");
     assert_eq!(
         error.to_string(),
         "kind `dwells` is no vehicle: no method siap, static or vertical"
@@ -178,9 +179,9 @@ fn what_keeps_a_replay_from_beginning_is_told() {
 /// The refusal of a recording with other displacements, in words.
 fn misplaced(recorded: &Recorded, mend: fn([f64; 2]) -> [f64; 2]) -> String {
     let stated = recorded.header.displacements_m.as_ref().expect("they are stated");
-    let options = Options {
+    let options = Asked {
         displacements_m: Some(stated.iter().map(|place| mend(*place)).collect()),
-        ..Options::default()
+        ..Asked::default()
     };
     let replayed = replay(&recorded.header, &Body::Imu(recorded.rows.clone()), &options);
     replayed.map(|_| ()).expect_err("the forces contradict it").to_string()

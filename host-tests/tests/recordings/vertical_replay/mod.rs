@@ -2,14 +2,15 @@
 //!
 //! VQF's figures were computed with its authors' Python package `vqf` 2.1 in its default setting (6 axes, offline
 //! methods not used) on the very samples of `data/recordings/imu-broad-*`, axes turned from forward, right, down to
-//! forward, left, up and its quaternions back; errors as `bench::vertical::errors` defines them.
+//! forward, left, up and its quaternions back; errors as `bench::methods::vertical::errors` defines them.
 
 mod output;
 mod spoilt;
 
+use bench::methods::asked::Asked;
+use bench::methods::vertical::errors::{Errors, Off};
+use bench::methods::vertical::{Moment, Replay, replay};
 use bench::recording::{Body, Header, ImuRow};
-use bench::vertical::errors::{Errors, Off};
-use bench::vertical::{Moment, Options, Replay, replay};
 
 use crate::support::campaign::assert_in_readme;
 use crate::support::files::recording;
@@ -51,7 +52,7 @@ fn recorded(name: &str) -> Recorded {
 impl Recorded {
     fn replayed(&self) -> Replay {
         let body = Body::Imu(self.rows.clone());
-        replay(&self.header, &body, &Options::default()).expect("it replays")
+        replay(&self.header, &body, &Asked::default()).expect("it replays")
     }
 
     fn errors(&self, replay: &Replay) -> Errors {

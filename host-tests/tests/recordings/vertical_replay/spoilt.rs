@@ -1,7 +1,8 @@
 //! Recordings with something wrong in them: the state says so, σ covers it, and the level comes back.
 
+use bench::methods::asked::Asked;
+use bench::methods::vertical::{Replay, replay};
 use bench::recording::{Body, ImuRow, read_from};
-use bench::vertical::{Options, Replay, replay};
 
 use super::{Recorded, recorded};
 
@@ -125,7 +126,7 @@ fn gaps_numbers_that_are_none_and_stuck_gyros_are_errors_that_name_the_line() {
     none[4] = row(4, "nan");
     assert!(refused(&none).contains("line 7, column gx_rad_s"), "{}", refused(&none));
     let stuck = spoilt([20.0, 50.0], |row| row.sample.rates_rad_s[1] = 0.25);
-    let error = replay(&stuck.header, &Body::Imu(stuck.rows), &Options::default());
+    let error = replay(&stuck.header, &Body::Imu(stuck.rows), &Asked::default());
     let error = error.expect_err("a gyro is stuck").to_string();
     assert!(error.starts_with("column gy_rad_s: the same value for 30.0 s from line"), "{error}");
 }
@@ -135,7 +136,7 @@ fn few_rows_are_refused_without_a_panic() {
     for count in [1, 2, 10] {
         let recorded = recorded("imu-broad-06");
         let body = Body::Imu(recorded.rows[..count].to_vec());
-        let replay = replay(&recorded.header, &body, &Options::default()).expect("it replays");
+        let replay = replay(&recorded.header, &body, &Asked::default()).expect("it replays");
         assert_eq!(replay.refusal.as_deref(), Some("no level was found"));
         assert_eq!(replay.moments.len(), count);
     }

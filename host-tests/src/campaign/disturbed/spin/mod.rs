@@ -14,10 +14,11 @@ use super::Platform;
 use super::chance::Chance;
 use super::class::{Aligned, Subject};
 use crate::campaign::statistics::Answer;
+use crate::methods::asked::Asked;
+use crate::methods::spin::errors::wrapped;
+use crate::methods::spin::replay;
 use crate::output::degrees;
 use crate::recording::{Body, Header, SpinRow};
-use crate::spin::errors::wrapped;
-use crate::spin::{Options, replay};
 
 /// A spinning body.
 pub(super) const PLATFORM: Platform = Platform {
@@ -146,7 +147,7 @@ impl Recorded {
     /// The roll at the end.
     fn answer(&self) -> Result<Answer, String> {
         let body = Body::Spin(self.rows.clone());
-        let replay = replay(&self.header, &body, &Options::default());
+        let replay = replay(&self.header, &body, &Asked::default());
         let replay = replay.map_err(|error| error.to_string())?;
         if let Some(reason) = replay.refusal() {
             return Err(reason);

@@ -6,9 +6,9 @@ use std::f64::consts::TAU;
 use orientation::align::regression::{Column, Regression};
 use orientation::units::DEGREE_PER_SQRT_HOUR;
 
+use crate::methods::spin::errors::wrapped;
+use crate::methods::spin::limit::gyro_walk;
 use crate::recording::{Header, SpinRow};
-use crate::spin::errors::wrapped;
-use crate::spin::limit::gyro_walk;
 
 /// Turns that are looked at together, as the core does.
 const TOGETHER: f64 = 4.0;

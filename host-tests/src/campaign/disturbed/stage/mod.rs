@@ -19,9 +19,10 @@ use super::class::{Aligned, Subject};
 use super::unit::{Grade, Rig, Unit};
 use super::{FEW_RESIDUALS, Platform};
 use crate::campaign::statistics::Answer;
+use crate::methods::asked::Asked;
+use crate::methods::stepwise::replay;
 use crate::output::degrees;
 use crate::recording::{Body, StageRow};
-use crate::replay::{Options, replay};
 use crate::untold::unseen;
 
 /// A stage that stops.
@@ -98,7 +99,7 @@ impl Subject for Bench {
 
     fn align(&self) -> Aligned {
         let body = Body::Stage(self.rows());
-        match replay(&self.unit.header, &body, &Options::default(), |_| ()) {
+        match replay(&self.unit.header, &body, &Asked::default(), |_| ()) {
             Ok(replay) => aligned(&replay.session, self.truth_deg()),
             Err(error) => Aligned::refused(error),
         }

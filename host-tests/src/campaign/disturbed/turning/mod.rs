@@ -20,9 +20,9 @@ use super::class::{Aligned, Subject};
 use super::gyro::Column;
 use super::unit::{Grade, Rig, Unit};
 use crate::campaign::statistics::Answer;
+use crate::methods::asked::Asked;
+use crate::methods::rotating::replay;
 use crate::recording::{Body, Header, RotatingRow, Sensor};
-use crate::replay::Options;
-use crate::rotating::replay;
 use crate::untold::unseen;
 
 /// A platform that turns all the time.
@@ -180,7 +180,7 @@ impl Subject for Bench {
 
     fn align(&self) -> Aligned {
         let body = Body::Rotating(self.rows());
-        match replay(&self.unit.header, &body, &Options::default()) {
+        match replay(&self.unit.header, &body, &Asked::default()) {
             Ok(replay) => aligned(&replay.session, self.truth_deg()),
             Err(error) => Aligned::refused(error),
         }

@@ -14,9 +14,10 @@ use super::axes::{Axes, UPRIGHT, shown};
 use super::chance::Chance;
 use super::class::{Aligned, Subject};
 use crate::campaign::statistics::Answer;
+use crate::methods::asked::Asked;
+use crate::methods::stops::{Method, Replay, replay};
 use crate::output::degrees;
 use crate::recording::{Body, Header, ImuRow, ImuSample};
-use crate::stops::{Method, Options, Replay, replay};
 
 /// A vehicle: one that stops and drives where the seed is even, one that only stands where it is odd.
 pub(super) const PLATFORM: Platform = Platform {
@@ -191,7 +192,7 @@ impl Subject for Bench {
 
     fn align(&self) -> Aligned {
         let (body, header, truth_deg) = self.recorded();
-        let options = Options { method: Some(self.method), ..Options::default() };
+        let options = Asked { method: Some(self.method.name()), ..Asked::default() };
         match replay(&header, &body, &options) {
             Ok(replay) => aligned(&replay, truth_deg),
             Err(error) => Aligned::refused(error),

@@ -10,6 +10,8 @@ use orientation::align::quality::Disturbance;
 use orientation::session::Session;
 use orientation::signal::dwell::Dwell;
 
+use thiserror::Error;
+
 use crate::median::median;
 use crate::recording::StageRow;
 use crate::recording::repeated::alone;
@@ -31,36 +33,34 @@ pub enum End {
 }
 
 /// A column that is not of the same moment as the others, by so many seconds.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum Late {
     /// The gyro's.
+    #[error(
+        "column g_rad_s: the {0} value again and again for {1:.1} s, a whole dwell: the column is {way} by as long, or \
+         the gyro did not measure; record again",
+        way = .0.way()
+    )]
     Gyro(End, f64),
     /// The stage's.
+    #[error(
+        "column stage_rad: the {0} dwell lasts {1:.1} s longer than the others, and the rate is not the same all \
+         through it: the column is {way} by as long, or the platform moved; record again",
+        way = .0.way()
+    )]
     Stage(End, f64),
+}
+
+impl End {
+    /// Which way a column is off that repeats itself there.
+    fn way(self) -> &'static str {
+        if self == Self::First { "late" } else { "early" }
+    }
 }
 
 impl fmt::Display for End {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(if *self == Self::First { "first" } else { "last" })
-    }
-}
-
-impl fmt::Display for Late {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let (Self::Gyro(end, seconds) | Self::Stage(end, seconds)) = self;
-        let way = if *end == End::First { "late" } else { "early" };
-        match self {
-            Self::Gyro(..) => write!(
-                f,
-                "column g_rad_s: the {end} value again and again for {seconds:.1} s, a whole dwell: the column is \
-                 {way} by as long, or the gyro did not measure; record again"
-            ),
-            Self::Stage(..) => write!(
-                f,
-                "column stage_rad: the {end} dwell lasts {seconds:.1} s longer than the others, and the rate is not \
-                 the same all through it: the column is {way} by as long, or the platform moved; record again"
-            ),
-        }
     }
 }
 

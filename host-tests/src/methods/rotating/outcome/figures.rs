@@ -3,11 +3,11 @@
 use rustfft::num_complex::Complex;
 
 use super::TurnDetails;
+use crate::methods::rotating::part::Part;
+use crate::methods::rotating::turns::{Signal, phasors, spectrum, turn_hz};
 use crate::output::degrees_per_hour;
 use crate::recording::RotatingRow;
 use crate::report::{Axis, Figure, Series, Style};
-use crate::rotating::part::Part;
-use crate::rotating::turns::{Signal, phasors, spectrum, turn_hz};
 
 /// Points of a profile; more would not be told apart.
 const PROFILE_POINTS: usize = 1500;

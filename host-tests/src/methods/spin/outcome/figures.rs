@@ -1,11 +1,11 @@
 //! Figures of a spinning body over the time.
 
+use crate::methods::spin::errors::Errors;
+use crate::methods::spin::track::{Point, Track};
+use crate::methods::spin::{Replay, name};
 use crate::output::degrees;
 use crate::recording::Truth;
 use crate::report::{Axis, Figure, Series, Style};
-use crate::spin::errors::Errors;
-use crate::spin::track::{Point, Track};
-use crate::spin::{Replay, name};
 
 /// Points of a curve at most.
 const POINTS: usize = 2000;

@@ -3,14 +3,14 @@
 use orientation::keep::attitude::angles;
 use serde::Serialize;
 
-use super::{Finished, Outcome};
 use crate::cause;
 use crate::methods::asked::Asked;
+use crate::methods::vertical::errors::{Errors, Off};
+use crate::methods::vertical::{Met, Moment, Replay};
+use crate::outcome::{Finished, Outcome};
 use crate::output::{degrees, degrees_per_hour, positive_zero};
 use crate::recording::{Body, Header, Truth};
 use crate::report::{Axis, Figure, Lines, Part, Point, Series, Style, Table};
-use crate::vertical::errors::{Errors, Off};
-use crate::vertical::{Met, Moment, Replay};
 
 /// Most points of a curve.
 const POINTS: usize = 1500;

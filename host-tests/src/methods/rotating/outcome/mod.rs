@@ -11,14 +11,14 @@ use orientation::align::rotating::solution::Fit;
 use orientation::align::rotating::turn::{Stretch, Turn};
 use serde::Serialize;
 
-use super::{Excluded, Finished, FitDetails, Outcome};
 use crate::cause;
 use crate::methods::asked::Asked;
+use crate::methods::rotating::Replay;
+use crate::methods::rotating::turns::freed;
+use crate::outcome::{Excluded, Finished, FitDetails, Outcome};
 use crate::output::{azimuth_error, degrees, degrees_per_hour};
 use crate::recording::{Body, Header, RotatingRow, Truth};
 use crate::report::{Lines, Part, Table};
-use crate::rotating::Replay;
-use crate::rotating::turns::freed;
 
 /// What an alignment on a turning platform adds.
 #[derive(Clone, Debug, Serialize)]
@@ -290,7 +290,7 @@ impl Finished for Replay {
 
     fn cause(&self, header: &Header, body: &Body, asked: &Asked) -> Option<String> {
         let refusal = self.conclusion()?.verdict.as_ref().err()?;
-        cause::of_turning(header, body, &asked.into(), refusal)
+        cause::of_turning(header, body, asked, refusal)
     }
 }
 

@@ -5,14 +5,14 @@
 //! linearly growing acceleration, and is taken off. What is left is good to a tenth of the way: not enough for the
 //! azimuth, but for telling metres from kilometres and north from east.
 
-use std::fmt;
-
 use orientation::align::setting::Setting as Common;
 use orientation::align::stops::stop::Stop;
 use orientation::math::rotation::{
     Matrix, Vector, about_down, by, cross, difference, length, levelled, product, scaled, sum,
     transposed, turned, unit,
 };
+
+use thiserror::Error;
 
 use crate::recording::ImuRow;
 
@@ -42,29 +42,20 @@ pub struct Leg {
 }
 
 /// What a displacement is likely to be where it is not north and east in metres.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum Slip {
     /// Kilometres.
+    #[error("they are in kilometres, as it seems: state them in metres")]
     Kilometres,
     /// East and north.
+    #[error("north and east are exchanged, as it seems: state north first")]
     Exchanged,
     /// South and west.
+    #[error("their signs are reversed, as it seems: state how far each stop lies from the first")]
     Reversed,
     /// None of these.
+    #[error("correct them, or leave them out")]
     Unknown,
-}
-
-impl fmt::Display for Slip {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Kilometres => "they are in kilometres, as it seems: state them in metres",
-            Self::Exchanged => "north and east are exchanged, as it seems: state north first",
-            Self::Reversed => {
-                "their signs are reversed, as it seems: state how far each stop lies from the first"
-            }
-            Self::Unknown => "correct them, or leave them out",
-        })
-    }
 }
 
 impl Slip {

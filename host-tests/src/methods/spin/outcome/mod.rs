@@ -5,13 +5,13 @@ mod figures;
 use orientation::units::TURN;
 use serde::Serialize;
 
-use super::{Finished, Outcome};
+use crate::methods::spin::errors::{Errors, bound_rms};
+use crate::methods::spin::track::Track;
+use crate::methods::spin::{Replay, name};
+use crate::outcome::{Finished, Outcome};
 use crate::output::degrees;
 use crate::recording::{Body, Truth};
 use crate::report::{Lines, Part, Table};
-use crate::spin::errors::{Errors, bound_rms};
-use crate::spin::track::Track;
-use crate::spin::{Replay, name};
 
 /// What the roll of a spinning body adds; rolls count whole turns, errors do not.
 #[derive(Clone, Debug, Serialize)]

@@ -1,5 +1,6 @@
 //! Recordings of a platform that turns all the time: replay through the session, and what figures need.
 
+pub mod outcome;
 pub mod part;
 pub mod turns;
 
@@ -16,11 +17,12 @@ use orientation::units::{Angle, AngularRate, Instant, SpecificForce};
 
 use self::part::Part;
 use crate::median::median;
+use crate::methods::asked::Asked;
+use crate::methods::error::ReplayError;
+use crate::methods::limits::limits;
 use crate::recording::period::period_s;
-use crate::recording::{self, Body, Given, Header, RotatingRow};
-use crate::replay::{GIVEN, Options, ReplayError, latitude};
-use crate::setting::{Described, describe};
-use crate::stops::samples::is_cut;
+use crate::recording::{self, Body, GIVEN, Given, Header, RotatingRow};
+use crate::setting::Described;
 use crate::untold;
 
 /// A finished replay.
@@ -77,16 +79,12 @@ fn span(stretch: &Stretch) -> Option<(f64, f64)> {
 ///
 /// # Errors
 /// What keeps the session from beginning. A refusal is not an error but the session's conclusion.
-pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay, ReplayError> {
+pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, ReplayError> {
     let Body::Rotating(rows) = body else { return Err(ReplayError::Stops(body.kind())) };
-    if let Some(given) = Given::of(header)? {
-        return again(given, rows, options);
+    if let Some(given) = Given::of(header).map_err(ReplayError::Session)? {
+        return again(given, rows, asked);
     }
-    let latitude = latitude(header, body, options.latitude)?;
-    let Described { setting: mut common, mut assumed } = describe(header, body, latitude);
-    if let Some(sigma) = options.required_sigma {
-        common.required_sigma = sigma;
-    }
+    let Described { setting: mut common, mut assumed } = asked.describe(header, body)?;
     let sensor = sensor(header, &mut assumed);
     // A stated rate is not replaced by that of the times: the session compares both, and refuses what is contradicted.
     let of_times = || 1.0 / period_s(None, rows, |row| row.time_s);
@@ -109,10 +107,10 @@ pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay,
 fn again(
     given: Given<Setting, Procedure>,
     rows: &[RotatingRow],
-    options: &Options,
+    asked: &Asked,
 ) -> Result<Replay, ReplayError> {
     let Given { mut setting, procedure, ended } = given;
-    options.change(&mut setting.common);
+    asked.change(&mut setting.common);
     let mut session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
     for row in rows {
         session.handle(Event::Sample(&sample(row, 0.0)));
@@ -185,7 +183,7 @@ pub fn follow(
 ) -> Result<Session, ProcedureError> {
     let mut session = Session::new(setting, Procedure::recorded(sample_seconds))?;
     let begin = rows.first().map_or(0.0, |row| row.time_s);
-    let limits = limits(rows);
+    let limits = limits(&rows.iter().map(|row| row.rate_rad_s), FEW_CUT);
     for row in rows {
         let mut sample = sample(row, begin);
         if row.rate_rad_s <= limits[0] || row.rate_rad_s >= limits[1] {
@@ -199,22 +197,6 @@ pub fn follow(
 
 /// Part of a turn's samples that may stand at a limit: what so few peaks of the noise lack is nothing.
 const FEW_CUT: f64 = 0.003;
-
-/// Between which rates a gyro's column is not cut, rad/s: one at its limit shows the same greatest rate, or least,
-/// again and again.
-fn limits(rows: &[RotatingRow]) -> [f64; 2] {
-    let rates = || rows.iter().map(|row| row.rate_rad_s);
-    let extreme = |of: fn(f64, f64) -> f64| rates().reduce(of).unwrap_or_default();
-    let (least, greatest) = (extreme(f64::min), extreme(f64::max));
-    let is_limit = |limit: f64| {
-        let count = rates().filter(|rate| *rate == limit).count();
-        count as f64 > FEW_CUT * rows.len() as f64 && is_cut(rates(), limit)
-    };
-    [
-        if is_limit(least) { least } else { f64::NEG_INFINITY },
-        if is_limit(greatest) { greatest } else { f64::INFINITY },
-    ]
-}
 
 /// A row in the stage path's units, its time from `begin` on; rounding as in
 /// [`orientation::units`]. A force across the axis that is not recorded is none.

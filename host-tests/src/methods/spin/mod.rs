@@ -5,6 +5,7 @@
 
 pub mod errors;
 pub mod limit;
+pub mod outcome;
 pub mod samples;
 pub mod track;
 
@@ -15,9 +16,9 @@ use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 use self::limit::{Noise, Turns};
 use self::track::Track;
 use crate::methods::asked::Asked;
+use crate::methods::error::ReplayError;
 use crate::recording::period::Steps;
-use crate::recording::{Body, Given, Header, SpinRow};
-use crate::replay::{GIVEN, ReplayError};
+use crate::recording::{Body, GIVEN, Given, Header, SpinRow};
 
 /// 1σ of a gyro's scale error of which the header says nothing: 1 %.
 pub const SCALE_SIGMA: f64 = 0.01;
@@ -32,19 +33,6 @@ pub fn name(method: Method) -> &'static str {
         Method::Extrema => "extrema",
         Method::Interpolated => "interpolated",
         Method::PhaseLocked => "phase-locked",
-    }
-}
-
-/// What the user asked for.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Options {
-    /// Greatest accepted standard deviation, rad; none where any will do.
-    pub required_sigma: Option<f64>,
-}
-
-impl From<&Asked> for Options {
-    fn from(asked: &Asked) -> Self {
-        Self { required_sigma: asked.required_sigma }
     }
 }
 
@@ -101,10 +89,10 @@ impl Replay {
 ///
 /// # Errors
 /// A recording of another kind, or of less than two samples.
-pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay, ReplayError> {
+pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, ReplayError> {
     let Body::Spin(rows) = body else { return Err(ReplayError::NoSpin(body.kind())) };
-    let required_sigma = options.required_sigma.unwrap_or(f64::INFINITY);
-    if let Some(given) = Given::of(header)? {
+    let required_sigma = asked.required_sigma.unwrap_or(f64::INFINITY);
+    if let Some(given) = Given::of(header).map_err(ReplayError::Session)? {
         return Ok(again(&given, rows, required_sigma));
     }
     let steps = Steps::of(rows, |row| row.time_s);

@@ -4,6 +4,7 @@
 //! against what was true.
 
 pub mod errors;
+pub mod outcome;
 
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
@@ -15,30 +16,15 @@ use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 use serde::Serialize;
 
 use crate::methods::asked::Asked;
+use crate::methods::error::ReplayError;
+use crate::methods::stops::{check_stuck, missing, samples};
 use crate::output::{azimuth_error, degrees};
 use crate::recording::period::period_s;
 use crate::recording::{Body, Header, Short};
-use crate::replay::ReplayError;
 use crate::setting::noise;
-use crate::stops::{check_stuck, missing, samples};
 
 /// Latitude where none is known, °: the Earth's rate about the vertical is then off by 15 °/h at most.
 const LATITUDE_DEG: f64 = 45.0;
-
-/// What the user asked for.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Options {
-    /// Latitude instead of the header's.
-    pub latitude: Option<Latitude>,
-    /// Greatest accepted standard deviation of pitch and roll, rad; `None` for any.
-    pub required_sigma: Option<f64>,
-}
-
-impl From<&Asked> for Options {
-    fn from(asked: &Asked) -> Self {
-        Self { latitude: asked.latitude, required_sigma: asked.required_sigma }
-    }
-}
 
 /// What the keeper said after a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,25 +73,25 @@ pub struct Replay {
 ///
 /// # Errors
 /// What keeps the keeper from beginning.
-pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay, ReplayError> {
+pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, ReplayError> {
     let rows = samples::rows(body).ok_or_else(|| missing(body))?;
     let period_s = period_s(header.rate_hz, &rows, |row| row.time_s);
     check_stuck(&rows, period_s)?;
     let mut assumed = Vec::new();
-    let latitude = latitude(header, options, &mut assumed);
+    let latitude = latitude(header, asked, &mut assumed);
     let mut keeper = Keeper::new(&setting(header, latitude, period_s, &mut assumed));
     let mut watched = Watched::new(keeper.report(), period_s);
     for (sample, row) in samples::samples(&rows, period_s).zip(rows.iter()) {
         keeper.push(&sample);
         watched.push(row.time_s, &keeper.report());
     }
-    Ok(watched.ended(assumed, options.required_sigma))
+    Ok(watched.ended(assumed, asked.required_sigma))
 }
 
 /// The user's latitude, the header's, or the one that is assumed.
-fn latitude(header: &Header, options: &Options, assumed: &mut Vec<String>) -> Latitude {
+fn latitude(header: &Header, asked: &Asked, assumed: &mut Vec<String>) -> Latitude {
     let stated = header.latitude_deg.and_then(Latitude::from_degrees);
-    options.latitude.or(stated).unwrap_or_else(|| {
+    asked.latitude.or(stated).unwrap_or_else(|| {
         assumed.push(format!("latitude {LATITUDE_DEG}°: none is stated"));
         Latitude::from_degrees(LATITUDE_DEG).unwrap_or_else(|| unreachable!())
     })

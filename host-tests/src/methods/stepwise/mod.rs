@@ -4,36 +4,35 @@
 //! schedule, its travel has no limit, and nothing can be repeated. The types that come in here hold
 //! no truth.
 
-use std::fmt;
+pub mod late;
+pub mod outcome;
+pub mod positions;
 
-use orientation::align::CAPACITY;
 use orientation::align::criterion::Criterion;
 use orientation::align::mount::TWO_FRAMES;
-use orientation::align::setting::{Half, Setting};
-use orientation::earth::Latitude;
+use orientation::align::setting::Setting;
 use orientation::planner::order::Order;
-use orientation::session::procedure::{Procedure, ProcedureError, STILL};
+use orientation::session::procedure::{Procedure, STILL};
 use orientation::session::schedule::{Position, Schedule};
 use orientation::session::{Event, Session};
 use orientation::signal::Sample;
 use orientation::signal::dwell::Dwell;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce, TURN, Temperature};
 
-use crate::late::{self, Late};
+use super::asked::Asked;
+use super::error::ReplayError;
+use super::limits::limits;
+use super::stops::samples::dead_accelerometer;
 use crate::median::median;
-use crate::methods::asked::Asked;
 use crate::recording::period::period_s;
-use crate::recording::{Body, DwellRow, Given, Header, Kind, Short, StageRow};
-use crate::setting::{Described, describe};
-use crate::stops::samples::{dead_accelerometer, is_cut};
-use crate::stops::way::Slip;
+use crate::recording::{Body, DwellRow, GIVEN, Given, Header, Kind, StageRow};
+use crate::setting::Described;
 use crate::untold;
 
 /// By which of its names an alignment in positions is called; the fit is the same.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
     /// Stepwise gyrocompassing.
-    #[default]
     Stepwise,
     /// Autocompensated positions, in passes.
     Positions,
@@ -49,6 +48,11 @@ impl Method {
         }
     }
 
+    /// That of a name on the command line.
+    fn named(name: Option<&str>) -> Self {
+        if name == Some(Self::Positions.name()) { Self::Positions } else { Self::Stepwise }
+    }
+
     /// Its name on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -61,52 +65,6 @@ impl Method {
 
 /// What an answer rests on where the half of the circle was stated.
 pub const HALF: &str = "the half of the circle as stated: two positions give its mirror image else";
-
-/// What the user asked for.
-#[derive(Clone, Copy, Debug)]
-pub struct Options {
-    /// The method.
-    pub method: Method,
-    /// The half of the circle in which the azimuth lies, where that is known.
-    pub half: Option<Half>,
-    /// Latitude instead of the header's.
-    pub latitude: Option<Latitude>,
-    /// How the azimuth is found.
-    pub criterion: Criterion,
-    /// Greatest accepted standard deviation, rad; `None` for the default.
-    pub required_sigma: Option<f64>,
-}
-
-impl From<&Asked> for Options {
-    fn from(asked: &Asked) -> Self {
-        let Asked { latitude, criterion, half, required_sigma, .. } = *asked;
-        Self { method: Method::default(), half, latitude, criterion, required_sigma }
-    }
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            method: Method::default(),
-            half: None,
-            latitude: None,
-            criterion: Criterion::MaximumLikelihood,
-            required_sigma: None,
-        }
-    }
-}
-
-impl Options {
-    /// Puts what the user states in the place of what a run's session was given.
-    pub(crate) fn change(&self, given: &mut Setting) {
-        given.latitude = self.latitude.unwrap_or(given.latitude);
-        given.half = self.half.or(given.half);
-        given.required_sigma = self.required_sigma.unwrap_or(given.required_sigma);
-    }
-}
-
-/// What a replay of a run rests on.
-pub(crate) const GIVEN: &str = "what the board was told of place and instrument";
 
 /// A finished replay.
 #[derive(Clone, Debug)]
@@ -136,186 +94,6 @@ impl Replay {
     }
 }
 
-/// Why a recording that could be read cannot be replayed.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ReplayError {
-    /// Neither the header nor the user gives a latitude to a recording of this kind.
-    NoLatitude(Kind),
-    /// A kind without positions.
-    Kind(Kind),
-    /// A kind whose stage does not turn all the time.
-    Stops(Kind),
-    /// The stage never stood still long enough.
-    NoDwell,
-    /// More positions than a session holds.
-    TooManyPositions(usize),
-    /// A kind without three gyros and three accelerometers.
-    NoVehicle(Kind),
-    /// A kind without a body in fast rotation.
-    NoSpin(Kind),
-    /// Fewer samples than a rate has.
-    TooFewSamples(usize),
-    /// A recording of kind `static` with one gyro.
-    OneGyro,
-    /// More stops than a session holds, and how many that is.
-    TooManyStops(usize, usize),
-    /// Displacements are not one for each stop.
-    Displacements {
-        /// How many were stated.
-        stated: usize,
-        /// How many stops there are.
-        stops: usize,
-    },
-    /// A sensor stood still.
-    Stuck {
-        /// Its column.
-        column: &'static str,
-        /// The line where that begins.
-        line: u64,
-        /// For how long, s.
-        seconds: f64,
-    },
-    /// A column is not of the same moment as the others.
-    Late(Late),
-    /// The header's rate is not that of the times.
-    Rate {
-        /// As stated, Hz.
-        stated_hz: f64,
-        /// As the times have it, Hz.
-        found_hz: f64,
-    },
-    /// The gyros' rate at rest is so many times the Earth's: that of a degree in radians.
-    DegreesPerSecond {
-        /// How many times.
-        times: f64,
-    },
-    /// No displacement lies far from the first stop, but a thousand times as far there is an azimuth.
-    Kilometres {
-        /// The greatest part of one, as stated.
-        greatest: f64,
-    },
-    /// The forces on the way to a stop contradict its displacement.
-    Way {
-        /// The stop before, from one.
-        stop: usize,
-        /// How far the next one lies from it as stated, north and east, m.
-        stated_m: [f64; 2],
-        /// How far by the forces.
-        driven_m: [f64; 2],
-        /// What the displacements are likely to be.
-        slip: Slip,
-    },
-    /// The gyros' noise is not stated, and there are too few samples at rest to estimate it from.
-    NoiseUnknown,
-    /// The session cannot follow the recording.
-    Procedure(ProcedureError),
-    /// What the header says of a run's session cannot be read, and why.
-    Session(String),
-}
-
-impl From<serde_json::Error> for ReplayError {
-    fn from(error: serde_json::Error) -> Self {
-        Self::Session(error.to_string())
-    }
-}
-
-impl fmt::Display for ReplayError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoLatitude(kind) => {
-                f.write_str("key latitude_deg is missing: add it or give --latitude")?;
-                match kind {
-                    Kind::Imu | Kind::Static => {
-                        f.write_str("; --method vertical gives pitch and roll without it")
-                    }
-                    _ => Ok(()),
-                }
-            }
-            Self::Kind(Kind::Static) => f.write_str(
-                "kind `static` has no positions to align from: `meridian allan` finds the gyro's noise in it",
-            ),
-            Self::Kind(kind) => write!(f, "kind `{kind}` has no positions to align from"),
-            Self::Stops(kind) => {
-                write!(
-                    f,
-                    "kind `{kind}` has no platform that turns all the time: no method rotating"
-                )
-            }
-            Self::NoDwell => f.write_str(
-                "column stage_rad: the stage stands still nowhere long enough for a dwell",
-            ),
-            Self::TooManyPositions(found) => {
-                write!(
-                    f,
-                    "column stage_rad: {found} positions are more than the {CAPACITY} that a \
-                     session holds: split the recording, or average neighbours into kind dwells"
-                )
-            }
-            Self::NoVehicle(kind) => {
-                write!(f, "kind `{kind}` is no vehicle: no method siap, static or vertical")
-            }
-            Self::NoSpin(kind) => write!(f, "kind `{kind}` has no spinning body: no method spin"),
-            Self::TooFewSamples(count) => {
-                write!(f, "column t_s: {count} sample(s) have no rate: record for longer")
-            }
-            Self::OneGyro => f.write_str(
-                "columns gx_rad_s to az_m_s2 are missing: this method needs three gyros and three \
-                 accelerometers; `meridian allan` finds the noise of the one",
-            ),
-            Self::TooManyStops(stops, most) => {
-                write!(
-                    f,
-                    "key stops_s: {stops} stops are more than the {most} that a session holds"
-                )
-            }
-            Self::Displacements { stated, stops } => {
-                write!(f, "{stated} displacements for {stops} stops: state one for each stop")
-            }
-            Self::Stuck { column, line, seconds } => write!(
-                f,
-                "column {column}: the same value for {seconds:.1} s from line {line} on: the sensor is stuck; \
-                 check its supply and cable, then record again or cut the recording off before"
-            ),
-            Self::Rate { stated_hz, found_hz } => write!(
-                f,
-                "key rate_hz: {} Hz, but the times of column t_s make it {found_hz:.3} Hz, {:.1} % apart: \
-                 correct the one that is wrong",
-                Short(*stated_hz),
-                100.0 * (stated_hz / found_hz - 1.0).abs()
-            ),
-            Self::DegreesPerSecond { times } => write!(
-                f,
-                "columns gx_rad_s to gz_rad_s: at rest they show {times:.1} times the Earth rate, which is 1 in \
-                 rad/s and 57.3 in °/s: convert them to rad/s"
-            ),
-            Self::Kilometres { greatest } => write!(
-                f,
-                "key displacements_north_east_m: with {greatest} m at the most there is no azimuth, with as many \
-                 kilometres there is: state them in metres"
-            ),
-            Self::Way { stop, stated_m, driven_m, slip } => {
-                let [[north, east], [driven_north, driven_east]] = [stated_m, driven_m];
-                write!(
-                    f,
-                    "key displacements_north_east_m: from stop {stop} to the next it says {north:.1} m north and \
-                     {east:.1} m east, the forces on the way say {driven_north:.0} m and {driven_east:.0} m: {slip}"
-                )
-            }
-            Self::NoiseUnknown => f.write_str(
-                "key gyro_N_deg_sqrt_h is missing, and the samples at rest are too few to estimate it from: \
-                 state it, or stand for longer",
-            ),
-            Self::Session(why) => {
-                write!(f, "key session: {why}: leave the line as the run wrote it, or take it out")
-            }
-            Self::Late(late) => late.fmt(f),
-            Self::Procedure(error) => error.fmt(f),
-        }
-    }
-}
-
-impl std::error::Error for ReplayError {}
-
 /// Replays a recording; `progress` sees the session after each dwell.
 ///
 /// # Errors
@@ -323,40 +101,38 @@ impl std::error::Error for ReplayError {}
 pub fn replay(
     header: &Header,
     body: &Body,
-    options: &Options,
+    asked: &Asked,
     progress: impl FnMut(&Session),
 ) -> Result<Replay, ReplayError> {
     let stops = Stops::of(body)?;
-    if let (Stops::Samples(rows), Some(given)) = (&stops, Given::of(header)?) {
-        return again(given, rows, options, progress);
+    if let (Stops::Samples(rows), Some(given)) =
+        (&stops, Given::of(header).map_err(ReplayError::Session)?)
+    {
+        return again(given, rows, asked, progress);
     }
-    let latitude = latitude(header, body, options.latitude)?;
-    let Described { mut setting, mut assumed } = describe(header, body, latitude);
-    setting.half = options.half;
-    assumed.extend(options.half.map(|_| HALF.to_owned()));
-    if let Some(sigma) = options.required_sigma {
-        setting.required_sigma = sigma;
-    }
+    let Described { setting, mut assumed } = asked.describe(header, body)?;
+    assumed.extend(asked.half.map(|_| HALF.to_owned()));
     let session = match stops {
-        Stops::Samples(rows) => stage(header, rows, setting, options.criterion, progress),
-        Stops::Averages(rows) => dwells(rows, setting, options.criterion, progress),
+        Stops::Samples(rows) => stage(header, rows, setting, asked.criterion, progress),
+        Stops::Averages(rows) => dwells(rows, setting, asked.criterion, progress),
     }?;
     late::check_stage(&session).map_err(ReplayError::Late)?;
     assumed.extend(untold::of_stage(&session));
     assumed.extend(late::untold(&session).filter(|_| body.kind() == Kind::Stage));
-    Ok(Replay { method: options.method, session, setting, assumed })
+    let method = Method::named(asked.method);
+    Ok(Replay { method, session, setting, assumed })
 }
 
 /// Replays a run by giving its session what the board's was given. Elevations show a mount of two frames.
 fn again(
     given: Given<Setting, Procedure>,
     rows: &[StageRow],
-    options: &Options,
+    asked: &Asked,
     progress: impl FnMut(&Session),
 ) -> Result<Replay, ReplayError> {
     let Given { mut setting, mut procedure, ended } = given;
-    options.change(&mut setting);
-    procedure.criterion = options.criterion;
+    asked.change(&mut setting);
+    procedure.criterion = asked.criterion;
     let is_mounted = rows.iter().any(|row| row.elevation_rad.is_some());
     if is_mounted {
         setting.mount = TWO_FRAMES;
@@ -387,20 +163,6 @@ impl<'a> Stops<'a> {
     }
 }
 
-/// The user's latitude, or the header's.
-///
-/// # Errors
-/// Neither gives one.
-pub(crate) fn latitude(
-    header: &Header,
-    body: &Body,
-    stated: Option<Latitude>,
-) -> Result<Latitude, ReplayError> {
-    stated
-        .or_else(|| header.latitude_deg.and_then(Latitude::from_degrees))
-        .ok_or(ReplayError::NoLatitude(body.kind()))
-}
-
 fn stage(
     header: &Header,
     rows: &[StageRow],
@@ -422,7 +184,7 @@ fn stage(
     let procedure = Procedure { still, ..followed };
     let mut session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
     let begin = rows.first().map_or(0.0, |row| row.time_s);
-    let limits = limits(rows);
+    let limits = limits(&rows.iter().map(|row| row.rate_rad_s), 0.0);
     let shown = |row: &StageRow| {
         let mut sample = sample(row, begin);
         if row.rate_rad_s <= limits[0] || row.rate_rad_s >= limits[1] {
@@ -432,18 +194,6 @@ fn stage(
     };
     drive(&mut session, rows.iter().map(shown), Event::End, progress);
     Ok(session)
-}
-
-/// Between which rates a gyro's column is not cut, rad/s: a recording does not say what its gyro can measure, but
-/// one at its limit shows the same greatest rate, or least, again and again.
-fn limits(rows: &[StageRow]) -> [f64; 2] {
-    let rates = || rows.iter().map(|row| row.rate_rad_s);
-    let (least, greatest) =
-        (rates().fold(f64::INFINITY, f64::min), rates().fold(f64::NEG_INFINITY, f64::max));
-    [
-        if is_cut(rates(), least) { least } else { f64::NEG_INFINITY },
-        if is_cut(rates(), greatest) { greatest } else { f64::INFINITY },
-    ]
 }
 
 /// The procedure that goes where a recording went.

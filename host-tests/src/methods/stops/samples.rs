@@ -5,12 +5,9 @@ use std::borrow::Cow;
 use orientation::signal::InertialSample;
 use orientation::units::{AngleIncrement, Instant, SpecificForce};
 
+use crate::methods::limits;
 use crate::recording::repeated::alone;
 use crate::recording::{Body, GREATEST_BODY_RATE, ImuRow, ImuSample, StaticRow};
-
-/// How much longer than any other a standstill at the greatest value must be: where a smooth signal is
-/// coarsely written, its top is the longest by three.
-const LONGER: usize = 4;
 
 /// The rows of three gyros and three accelerometers, of whatever kind; none where one of them is missing.
 #[must_use]
@@ -79,7 +76,7 @@ impl Converter {
 
 /// The samples of rows; their time counts from when the first one began.
 pub fn samples(rows: &[ImuRow], period_s: f64) -> impl Iterator<Item = InertialSample> + '_ {
-    within(limits(rows), begin(rows, period_s), rows, period_s)
+    within(limits::of_channels(rows, channels), begin(rows, period_s), rows, period_s)
 }
 
 /// The samples of a run, as its board had them.
@@ -100,7 +97,8 @@ fn within(
         let ImuSample { rates_rad_s, force_m_s2 } = row.sample;
         let turned_rad = rates_rad_s.map(|rate| rate * period_s);
         let mut sample = converter.sample(row.time_s - begin, turned_rad, force_m_s2);
-        let mut cut = channels(row).zip(limits).map(|(value, limit)| value.abs() >= limit);
+        let mut cut =
+            channels(row).into_iter().zip(limits).map(|(value, limit)| value.abs() >= limit);
         for turned in &mut sample.turned {
             if cut.next() == Some(true) {
                 *turned = AngleIncrement(i32::MAX);
@@ -120,32 +118,7 @@ pub fn begin(rows: &[ImuRow], period_s: f64) -> f64 {
 }
 
 /// The three rates, then the three forces.
-fn channels(row: &ImuRow) -> impl Iterator<Item = f64> + '_ {
-    row.sample.rates_rad_s.into_iter().chain(row.sample.force_m_s2)
-}
-
-/// Where each channel is cut, infinite where it is not. A recording does not say what its sensors can
-/// measure, but a sensor at its limit shows one greatest value again and again.
-fn limits(rows: &[ImuRow]) -> [f64; 6] {
-    std::array::from_fn(|channel| {
-        let values = || rows.iter().filter_map(|row| channels(row).nth(channel)).map(f64::abs);
-        let greatest = values().fold(0.0, f64::max);
-        let is_cut = greatest > 0.0 && is_cut(values(), greatest);
-        if is_cut { greatest } else { f64::INFINITY }
-    })
-}
-
-/// Whether a signal stands at its greatest value for far more samples on end than at any other. One that
-/// stands there most of the time is steady.
-pub(crate) fn is_cut(values: impl Iterator<Item = f64>, greatest: f64) -> bool {
-    let (mut run, mut before) = (0, f64::NAN);
-    let (mut at_greatest, mut elsewhere, mut count) = (0, 0, 0);
-    for value in values {
-        run = if value == before { run + 1 } else { 1 };
-        before = value;
-        let longest = if value == greatest { &mut at_greatest } else { &mut elsewhere };
-        *longest = run.max(*longest);
-        count += 1;
-    }
-    at_greatest > LONGER * elsewhere && 2 * at_greatest < count
+fn channels(row: &ImuRow) -> [f64; 6] {
+    let ([x, y, z], [fx, fy, fz]) = (row.sample.rates_rad_s, row.sample.force_m_s2);
+    [x, y, z, fx, fy, fz]
 }

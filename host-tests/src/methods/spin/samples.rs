@@ -3,8 +3,8 @@
 use orientation::signal::SpinSample;
 use orientation::units::{AngleIncrement, Instant, SpinForce};
 
+use crate::methods::limits;
 use crate::recording::{GREATEST_SPIN_RATE, SpinRow};
-use crate::stops::samples::is_cut;
 
 /// Makes samples of what the sensors of a spinning body show at moments; what rounding leaves over of a
 /// rotation goes to the next sample.
@@ -46,11 +46,12 @@ impl Converter {
 /// s, that pass between them. The rates across are not recorded: they are taken as zero.
 pub fn samples(rows: &[SpinRow], period_s: f64) -> impl Iterator<Item = SpinSample> + '_ {
     let begin = rows.first().map_or(0.0, |row| row.time_s);
-    let limits = limits(rows);
+    let limits = limits::of_channels(rows, channels);
     let mut converter = Converter::new(period_s);
     rows.iter().map(move |row| {
         let time_s = ((row.time_s - begin) / period_s).round() * period_s;
-        let mut cut = channels(row).zip(limits).map(|(value, limit)| value.abs() >= limit);
+        let mut cut =
+            channels(row).into_iter().zip(limits).map(|(value, limit)| value.abs() >= limit);
         let spin = if cut.next() == Some(true) { f64::NAN } else { row.rate_rad_s };
         let force = if cut.any(|is_cut| is_cut) { [f64::NAN; 2] } else { row.force_m_s2 };
         converter.sample(time_s, [spin, 0.0, 0.0], force)
@@ -75,16 +76,7 @@ pub fn given(rows: &[SpinRow], period_s: f64) -> impl Iterator<Item = SpinSample
 }
 
 /// The rate, then both forces.
-fn channels(row: &SpinRow) -> impl Iterator<Item = f64> + '_ {
-    [row.rate_rad_s].into_iter().chain(row.force_m_s2)
-}
-
-/// Where each channel is cut, infinite where it is not: a sensor at its limit shows one greatest value again
-/// and again.
-fn limits(rows: &[SpinRow]) -> [f64; 3] {
-    std::array::from_fn(|channel| {
-        let values = || rows.iter().filter_map(|row| channels(row).nth(channel)).map(f64::abs);
-        let greatest = values().fold(0.0, f64::max);
-        if greatest > 0.0 && is_cut(values(), greatest) { greatest } else { f64::INFINITY }
-    })
+fn channels(row: &SpinRow) -> [f64; 3] {
+    let [y, z] = row.force_m_s2;
+    [row.rate_rad_s, y, z]
 }

@@ -7,6 +7,7 @@ pub mod averaging;
 pub mod floor;
 pub mod grade;
 pub mod noise;
+pub mod outcome;
 pub mod samples;
 pub mod way;
 
@@ -17,7 +18,7 @@ use orientation::align::stops::Setting;
 use orientation::align::stops::conclusion::Conclusion;
 use orientation::align::stops::stop::STOPS;
 use orientation::align::stops::stop_detector::Rests;
-use orientation::earth::{EARTH_RATE, Latitude};
+use orientation::earth::EARTH_RATE;
 use orientation::session::stops::{Event, Procedure, Session};
 use orientation::signal::InertialSample;
 use orientation::signal::rest::{Criteria, Limits};
@@ -27,10 +28,10 @@ use self::noise::White;
 use self::way::{Leg, Slip};
 use crate::median::median;
 use crate::methods::asked::Asked;
+use crate::methods::error::ReplayError;
 use crate::recording::period::{Steps, period_s};
-use crate::recording::{Body, Given, Header, ImuRow, Kind};
-use crate::replay::{self, GIVEN, ReplayError};
-use crate::setting::{Described, describe};
+use crate::recording::{Body, GIVEN, Given, Header, ImuRow, Kind};
+use crate::setting::Described;
 use crate::untold;
 
 /// How a vehicle's azimuth is found.
@@ -50,6 +51,11 @@ impl Method {
         Some(usual(header, &rows, period_s(header.rate_hz, &rows, |row| row.time_s)))
     }
 
+    /// That of a name on the command line.
+    fn named(name: &str) -> Option<Self> {
+        [Self::Siap, Self::Static].into_iter().find(|method| method.name() == name)
+    }
+
     /// Its name on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -57,26 +63,6 @@ impl Method {
             Self::Siap => "siap",
             Self::Static => "static",
         }
-    }
-}
-
-/// What the user asked for.
-#[derive(Clone, Debug, Default)]
-pub struct Options {
-    /// The method; else as the recording shows.
-    pub method: Option<Method>,
-    /// Latitude instead of the header's.
-    pub latitude: Option<Latitude>,
-    /// Displacements of the stops, north and east, m, instead of the header's.
-    pub displacements_m: Option<Vec<[f64; 2]>>,
-    /// Greatest accepted standard deviation, rad; `None` for the default.
-    pub required_sigma: Option<f64>,
-}
-
-impl From<&Asked> for Options {
-    fn from(asked: &Asked) -> Self {
-        let Asked { latitude, displacements_m, required_sigma, .. } = asked.clone();
-        Self { method: None, latitude, displacements_m, required_sigma }
     }
 }
 
@@ -114,14 +100,14 @@ impl Replay {
 /// # Errors
 /// What keeps the session from beginning, or makes it refuse: displacements in kilometres. Another refusal is
 /// not an error but the session's conclusion.
-pub fn replay(header: &Header, body: &Body, options: &Options) -> Result<Replay, ReplayError> {
-    if options.method != Some(Method::Static)
-        && let Some(given) = Given::of(header)?
+pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, ReplayError> {
+    if asked.method != Some(Method::Static.name())
+        && let Some(given) = Given::of(header).map_err(ReplayError::Session)?
     {
-        return again(given, header, body, options);
+        return again(given, header, body, asked);
     }
-    let replay = follow(header, body, options)?;
-    check_kilometres(header, body, options, &replay)?;
+    let replay = follow(header, body, asked)?;
+    check_kilometres(header, body, asked, &replay)?;
     check_way(body, header, replay)
 }
 
@@ -130,13 +116,12 @@ fn again(
     given: Given<Setting, Procedure>,
     header: &Header,
     body: &Body,
-    options: &Options,
+    asked: &Asked,
 ) -> Result<Replay, ReplayError> {
     let Given { mut setting, mut procedure, ended } = given;
     let (common, rows) = (&mut setting.common, samples::rows(body).ok_or_else(|| missing(body))?);
-    common.latitude = options.latitude.unwrap_or(common.latitude);
-    common.required_sigma = options.required_sigma.unwrap_or(common.required_sigma);
-    procedure.displacements = displacements(header, options)?;
+    asked.change(common);
+    procedure.displacements = displacements(header, asked)?;
     let period_s = procedure.sample_seconds;
     let session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
     let mut watched = Watched::new(session);
@@ -174,10 +159,10 @@ const KILOMETRE: f64 = 1e3;
 fn check_kilometres(
     header: &Header,
     body: &Body,
-    options: &Options,
+    asked: &Asked,
     replay: &Replay,
 ) -> Result<(), ReplayError> {
-    let stated = options.displacements_m.as_ref().or(header.displacements_m.as_ref());
+    let stated = asked.displacements_m.as_ref().or(header.displacements_m.as_ref());
     let is_answered = |replay: &Replay| replay.conclusion().is_some_and(|it| it.verdict.is_ok());
     let greatest =
         stated.iter().flat_map(|list| list.as_flattened()).fold(0.0, |a: f64, b| a.max(b.abs()));
@@ -187,30 +172,28 @@ fn check_kilometres(
     }
     let displacements_m =
         Some(list.iter().map(|place| place.map(|part| KILOMETRE * part)).collect());
-    let farther = follow(header, body, &Options { displacements_m, ..options.clone() })?;
+    let farther = follow(header, body, &Asked { displacements_m, ..asked.clone() })?;
     if is_answered(&farther) { Err(ReplayError::Kilometres { greatest }) } else { Ok(()) }
 }
 
 /// Drives the session with the rows.
-fn follow(header: &Header, body: &Body, options: &Options) -> Result<Replay, ReplayError> {
+fn follow(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, ReplayError> {
     let rows = samples::rows(body).ok_or_else(|| missing(body))?;
-    let latitude = replay::latitude(header, body, options.latitude)?;
+    asked.latitude(header, body)?;
     let period_s = period_s(header.rate_hz, &rows, |row| row.time_s);
     check_rate(header.rate_hz, &rows)?;
     check_stuck(&rows, period_s)?;
     check_unit(header, &rows, period_s)?;
     let zero_s = samples::begin(&rows, period_s);
-    let method = options.method.unwrap_or_else(|| usual(header, &rows, period_s));
+    let stated = asked.method.and_then(Method::named);
+    let method = stated.unwrap_or_else(|| usual(header, &rows, period_s));
     let rests = rests(header, method, zero_s)?;
-    let displacements = displacements(header, options)?;
+    let displacements = displacements(header, asked)?;
     let mut told = Vec::new();
     let header = &grade::filled(header, &mut told);
-    let Described { setting: mut common, mut assumed } = describe(header, body, latitude);
+    let Described { setting: mut common, mut assumed } = asked.describe(header, body)?;
     assumed.append(&mut told);
     assumed.push(untold::AXES_OF_A_VEHICLE.to_owned());
-    if let Some(sigma) = options.required_sigma {
-        common.required_sigma = sigma;
-    }
     common.scale_sigma = common.scale_sigma.hypot(astray(header.rate_hz, period_s));
     let setting = setting(header, common, &rows, period_s, method, &mut assumed)?;
     let procedure = Procedure { displacements, ..Procedure::recorded(rests, period_s) };
@@ -285,8 +268,8 @@ fn rests(header: &Header, method: Method, zero_s: f64) -> Result<Rests, ReplayEr
 }
 
 /// The user's displacements, or the header's; one for each stop where stops are stated.
-fn displacements(header: &Header, options: &Options) -> Result<Few<[f64; 2], STOPS>, ReplayError> {
-    let list = options.displacements_m.as_ref().or(header.displacements_m.as_ref());
+fn displacements(header: &Header, asked: &Asked) -> Result<Few<[f64; 2], STOPS>, ReplayError> {
+    let list = asked.displacements_m.as_ref().or(header.displacements_m.as_ref());
     let list = list.map_or(&[][..], Vec::as_slice);
     let wrong = |stops| ReplayError::Displacements { stated: list.len(), stops };
     match &header.stops_s {

@@ -6,13 +6,13 @@ use orientation::session::Session;
 use orientation::signal::dwell::Dwell;
 use serde::Serialize;
 
-use super::{Excluded, Finished, FitDetails, Outcome};
 use crate::cause;
 use crate::methods::asked::Asked;
+use crate::methods::stepwise::positions::{Autocompensation, autocompensation};
+use crate::methods::stepwise::{Method, Replay};
+use crate::outcome::{Excluded, Finished, FitDetails, Outcome};
 use crate::output::{columns, degrees, degrees_per_hour};
-use crate::positions::{Autocompensation, autocompensation};
 use crate::recording::{Body, Header, Truth};
-use crate::replay::{Method, Replay};
 use crate::report::{Axis, Figure, Lines, Part, Series, Style, Table};
 
 /// What an alignment at standstills adds.
@@ -212,7 +212,7 @@ impl Finished for Replay {
 
     fn cause(&self, header: &Header, body: &Body, asked: &Asked) -> Option<String> {
         let refusal = self.session.conclusion()?.verdict.as_ref().err()?;
-        cause::of_stopping(header, body, &asked.into(), &self.session, refusal)
+        cause::of_stopping(header, body, asked, &self.session, refusal)
     }
 }
 

@@ -8,13 +8,13 @@ use orientation::align::stops::stop;
 use orientation::units::wrapped;
 use serde::Serialize;
 
-use super::{Excluded, Finished, FitDetails, Outcome};
 use crate::cause;
 use crate::methods::asked::Asked;
+use crate::methods::stops::Replay;
+use crate::outcome::{Excluded, Finished, FitDetails, Outcome};
 use crate::output::{azimuth_error, degrees, degrees_per_hour, positive_zero};
 use crate::recording::{Body, Header, Truth};
 use crate::report::{Lines, Part, Table};
-use crate::stops::Replay;
 
 /// What an alignment from stops adds.
 #[derive(Clone, Debug, Serialize)]
@@ -243,7 +243,7 @@ impl Finished for Replay {
 
     fn cause(&self, header: &Header, body: &Body, asked: &Asked) -> Option<String> {
         let refusal = self.conclusion()?.verdict.as_ref().err()?;
-        cause::of_vehicle(header, body, &asked.into(), refusal)
+        cause::of_vehicle(header, body, asked, refusal)
     }
 }
 

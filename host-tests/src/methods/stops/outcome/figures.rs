@@ -7,10 +7,10 @@ use orientation::signal::rest::{Criteria, Limits};
 use orientation::units::wrapped;
 
 use super::PlainDetails;
+use crate::methods::stops::Replay;
 use crate::outcome::Outcome;
 use crate::output::{azimuth_error, degrees, degrees_per_hour};
 use crate::report::{Axis, Figure, Series, Style};
-use crate::stops::Replay;
 
 /// Places along a curve.
 const PLACES: i32 = 240;
