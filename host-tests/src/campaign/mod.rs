@@ -3,6 +3,7 @@
 //! A further campaign is an entry here; its world, its figures and its verdict stand in a folder of their own.
 
 pub mod burov;
+mod columns;
 pub mod disturbed;
 pub mod faults;
 pub mod instrument;
@@ -63,15 +64,15 @@ pub struct Done {
 
 /// The campaigns, in the order of the help.
 pub static CAMPAIGNS: [Campaign; 9] = [
-    sokolov::CAMPAIGN,
-    burov::CAMPAIGN,
-    rotating::CAMPAIGN,
-    spin::CAMPAIGN,
-    szymanowski::CAMPAIGN,
-    keep::CAMPAIGN,
-    instrument::CAMPAIGN,
-    faults::CAMPAIGN,
-    disturbed::CAMPAIGN,
+    sokolov::report::CAMPAIGN,
+    burov::report::CAMPAIGN,
+    rotating::report::CAMPAIGN,
+    spin::report::CAMPAIGN,
+    szymanowski::report::CAMPAIGN,
+    keep::report::CAMPAIGN,
+    instrument::report::CAMPAIGN,
+    faults::report::CAMPAIGN,
+    disturbed::report::CAMPAIGN,
 ];
 
 /// A reason where something is not so.

@@ -1,7 +1,6 @@
 //! What the user sees of plans, noise analyses and campaigns, and the progress bar.
 
 pub mod allan;
-pub mod campaign;
 pub mod emulation;
 pub mod plan;
 pub mod progress;

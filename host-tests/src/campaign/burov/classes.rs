@@ -11,8 +11,9 @@ use orientation::signal::InertialSample;
 use orientation::units::DEGREE_PER_HOUR;
 use serde::Serialize;
 
-use super::{BIAS_DEG_H, Grade, RATE_HZ, Trial, latitude, over};
+use super::{BIAS_DEG_H, Grade, RATE_HZ, Trial, latitude};
 use crate::campaign::keep::limit::stored_sigma;
+use crate::campaign::over;
 use crate::campaign::statistics::{Answer, Precision};
 use crate::methods::stops::samples::Converter;
 use crate::output::{azimuth_error, degrees};

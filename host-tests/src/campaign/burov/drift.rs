@@ -4,7 +4,8 @@ use orientation::planner::order::Order;
 use orientation::planner::{Conditions, Plan, Rotation, for_time};
 use serde::Serialize;
 
-use super::{Grade, Trial, latitude, over};
+use super::{Grade, Trial, latitude};
+use crate::campaign::over;
 use crate::campaign::statistics::Precision;
 use crate::output::degrees;
 

@@ -3,6 +3,7 @@
 pub mod classes;
 pub mod devices;
 pub mod drift;
+pub(super) mod report;
 
 use std::fmt;
 
@@ -19,41 +20,10 @@ use orientation::session::procedure::Procedure;
 use orientation::session::schedule::Schedule;
 use orientation::units::DEGREE_PER_HOUR;
 use serde::Serialize;
-use serde_json::json;
 
 use super::statistics::Answer;
-use super::{Asked, Campaign, Done, Tick, over, tenth, unless};
-use crate::output::campaign;
 use crate::planning::SHORTEST;
 use crate::simulate;
-
-/// The paper's example and devices, schedules under drift, the five classes.
-pub(super) const CAMPAIGN: Campaign = Campaign {
-    name: "burov",
-    meaning: "Burov's optimisation, his devices and classes, and schedules under drift",
-    runs: 5000,
-    takes: &[],
-    steps: "alignments",
-    count: |asked| 2 * drift::GYROS.len() * asked.runs + classes::COUNT * tenth(asked.runs),
-    run: |asked, tick| Ok(run(asked, tick)),
-};
-
-/// A result where every row of the classes is met.
-fn run(asked: &Asked, tick: Tick<'_>) -> Done {
-    let drift = drift::GYROS.iter().filter_map(|gyro| drift::compare(*gyro, asked.runs, tick));
-    let drift: Vec<_> = drift.collect();
-    let classes = classes::rows(tenth(asked.runs), tick);
-    let (curve, devices) = (devices::curve(8..=14), devices::devices());
-    let reason =
-        "a class does not meet its row; with few runs (a tenth of --runs) that may be chance";
-    Done {
-        report: campaign::burov::report(&devices, &drift, &classes),
-        refusal: unless(classes.iter().all(|row| row.is_met), reason),
-        object: json!({
-            "devices": devices, "rate_error_deg_h": curve, "drift": drift, "classes": classes,
-        }),
-    }
-}
 
 /// Latitude of the simulations, °.
 pub const LATITUDE_DEG: f64 = 48.0;

@@ -10,6 +10,7 @@ mod chance;
 mod class;
 mod faults;
 mod gyro;
+pub(super) mod report;
 mod spin;
 mod stage;
 mod turning;
@@ -18,50 +19,12 @@ mod vehicle;
 
 use hal_mock::noise::Generator;
 use serde::Serialize;
-use serde_json::json;
 
+use super::over;
 use super::statistics::{Answer, Precision};
-use super::{Asked, Campaign, Done, Tick, over, unless};
-use crate::output::campaign;
 
 pub use class::{Class, Fault, Pair, WRONG_SIGMAS};
 
-/// Every class of faults in recordings, or one, and healthy recordings beside all.
-pub(super) const CAMPAIGN: Campaign = Campaign {
-    name: "disturbed",
-    meaning: "Recordings with faults of any severity: what gets past, and what is refused without need",
-    runs: 200,
-    takes: &["class"],
-    steps: "recordings",
-    count: |asked| chosen(asked).count() * asked.runs + healthy_runs(asked),
-    run: |asked, tick| Ok(run(asked, tick)),
-};
-
-/// A result where each class passes.
-fn run(asked: &Asked, tick: Tick<'_>) -> Done {
-    let all = asked.class.is_none().then(|| healthy(healthy_runs(asked), &tick));
-    let healthy = all.unwrap_or_default();
-    let rows: Vec<_> = chosen(asked).map(|class| row(&class, asked.runs, &tick)).collect();
-    let reason = "a class of faults gets past, or is refused without need";
-    Done {
-        report: campaign::disturbed::report(&healthy, &rows),
-        refusal: unless(rows.iter().all(|row| row.is_met), reason),
-        object: json!({ "healthy": healthy, "classes": rows }),
-    }
-}
-
-/// The classes that are asked for.
-fn chosen(asked: &Asked) -> impl Iterator<Item = Class> {
-    classes().filter(|of| asked.class.as_ref().is_none_or(|name| of.fault.name == *name))
-}
-
-/// Healthy recordings beside all classes.
-fn healthy_runs(asked: &Asked) -> usize {
-    if asked.class.is_none() { HEALTHY * asked.runs } else { 0 }
-}
-
-/// Healthy recordings for each run of a class.
-const HEALTHY: usize = 15;
 /// Residuals below which σ rests on few.
 pub const FEW_RESIDUALS: usize = 10;
 /// Part of the answers whose σ rests on few residuals that may be wrong.

@@ -1,6 +1,7 @@
 //! Every fault on every platform: recovered within 5 σ or refused with a reason, and noticed where it must be.
 
 mod notice;
+pub(super) mod report;
 mod runs;
 
 use std::ops::RangeInclusive;
@@ -8,35 +9,8 @@ use std::ops::RangeInclusive;
 use firmware::simulated::fault::{Fault, Platform};
 use rayon::prelude::*;
 use serde::Serialize;
-use serde_json::json;
 
 use self::runs::Ended;
-use super::{Asked, Campaign, Done, Tick, unless};
-use crate::output::campaign;
-
-/// Every fault of one platform or of all with every seed.
-pub(super) const CAMPAIGN: Campaign = Campaign {
-    name: "faults",
-    meaning: "Every fault on every platform: what the board notices, and what comes of it",
-    runs: 1,
-    takes: &["platform"],
-    steps: "faults",
-    count: |asked| count(&platforms(asked)) * asked.runs,
-    run: |asked, tick| Ok(run(asked, tick)),
-};
-
-/// A result where none was answered wrongly or missed.
-fn run(asked: &Asked, tick: Tick<'_>) -> Done {
-    let rows = rows(&platforms(asked), 1..=asked.runs as u64, tick);
-    let is_good = rows.iter().all(|row| !row.is_bad());
-    let reason = "a fault gave a wrong north or roll, came to no end, or went unnoticed";
-    let (report, refusal) = (campaign::faults::report(&rows), unless(is_good, reason));
-    Done { report, refusal, object: json!({ "faults": rows }) }
-}
-
-fn platforms(asked: &Asked) -> Vec<Platform> {
-    asked.platform.map_or_else(|| Platform::ALL.to_vec(), |platform| vec![platform])
-}
 
 /// Error in σ beyond which an azimuth is a wrong north, and a roll a wrong one.
 pub const WRONG_SIGMAS: f64 = 5.0;

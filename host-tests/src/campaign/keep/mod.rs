@@ -4,37 +4,18 @@
 //! as good as its gyro allows or with an azimuth from outside.
 
 pub mod limit;
+pub(super) mod report;
 pub mod world;
 
 use serde::Serialize;
-use serde_json::json;
 
 use self::limit::stored_sigma;
 use self::world::{Fitting, MARK_S, Mark, Mount, Pair, STORED_S};
 use super::burov::classes::{CLASSES, Class, Way};
 use super::burov::{BIAS_DEG_H, Grade};
+use super::over;
 use super::statistics::{coverage, rms};
-use super::{Asked, Campaign, Done, Tick, over, unless};
-use crate::output::{campaign, degrees};
-
-/// Azimuth, pitch and roll through half an hour of driving.
-pub(super) const CAMPAIGN: Campaign = Campaign {
-    name: "keep",
-    meaning: "Storage of the azimuth, pitch and roll in vehicles that drive: Burov's classes",
-    runs: 500,
-    takes: &[],
-    steps: "vehicles",
-    count: |asked| COUNT * asked.runs,
-    run: |asked, tick| Ok(run(asked, tick)),
-};
-
-/// A result where every row that is to be met is.
-fn run(asked: &Asked, tick: Tick<'_>) -> Done {
-    let rows = rows(asked.runs, tick);
-    let found = rows.iter().all(|row| row.is_met || !row.is_wanted);
-    let refusal = unless(found, "a class does not meet its row; with few runs that may be chance");
-    Done { report: campaign::keep::report(&rows), refusal, object: json!({ "classes": rows }) }
-}
+use crate::output::degrees;
 
 /// A class, and what it is fitted with.
 struct Case {

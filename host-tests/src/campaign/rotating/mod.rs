@@ -3,6 +3,7 @@
 pub mod molecular;
 pub mod motor;
 pub mod refusals;
+pub(super) mod report;
 pub mod stages;
 pub mod world;
 
@@ -17,42 +18,9 @@ use orientation::noise::model::GyroNoise;
 use orientation::session::rotating::{Procedure, Session};
 use orientation::units::DEGREE_PER_HOUR;
 
-use serde_json::json;
-
 use self::world::{LATITUDE_DEG, World};
-use super::statistics::{Answer, Precision};
-use super::{Asked, Campaign, Done, Tick, over, tenth, unless};
+use super::statistics::Answer;
 use crate::methods::rotating::follow;
-use crate::output::campaign;
-
-/// The stages of compensation, molecular-electronic sensors, and what must be refused.
-pub(super) const CAMPAIGN: Campaign = Campaign {
-    name: "rotating",
-    meaning: "A platform that turns all the time (MET 2018), its errors and what is done about each",
-    runs: 500,
-    takes: &[],
-    steps: "alignments",
-    count: |asked| {
-        let tables = stages::WALKS.len() + molecular::COUNT;
-        tables * asked.runs + refusals::COUNT * tenth(asked.runs)
-    },
-    run: |asked, tick| Ok(run(asked, tick)),
-};
-
-/// A result where no healthy run was refused and no north was wrong.
-fn run(asked: &Asked, tick: Tick<'_>) -> Done {
-    let stages = stages::rows(asked.runs, tick);
-    let molecular = molecular::rows(asked.runs, tick);
-    let refusals = refusals::rows(tenth(asked.runs), tick);
-    let sensors = molecular.iter().map(|row| &row.precision);
-    let mut healthy = stages.iter().map(|row| &row.precision).chain(sensors);
-    let found = healthy.all(Precision::is_complete) && refusals.iter().all(|row| row.wrong == 0);
-    Done {
-        report: campaign::rotating::report(&stages, &molecular, &refusals),
-        refusal: unless(found, "a healthy run was refused, or a north was wrong"),
-        object: json!({ "stages": stages, "molecular": molecular, "refusals": refusals }),
-    }
-}
 
 /// Golden angle, °: azimuths of successive seeds fill the circle evenly.
 const GOLDEN_ANGLE_DEG: f64 = 137.507_764;

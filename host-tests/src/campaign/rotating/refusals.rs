@@ -11,8 +11,9 @@ use serde::Serialize;
 
 use super::stages::{SECONDS, TURN_HZ};
 use super::world::World;
-use super::{Solved, follow_world, over};
+use super::{Solved, follow_world};
 use crate::campaign::faults::WRONG_SIGMAS;
+use crate::campaign::over;
 use crate::campaign::statistics::Answer;
 
 /// Angle random walk of the gyro, °/√h.

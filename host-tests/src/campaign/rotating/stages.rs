@@ -7,7 +7,8 @@ use orientation::align::rotating::Sensor;
 use serde::Serialize;
 
 use super::world::{Integrating, World};
-use super::{GOLDEN_ANGLE_DEG, Solved, over, solve};
+use super::{GOLDEN_ANGLE_DEG, Solved, solve};
+use crate::campaign::over;
 use crate::campaign::statistics::{Precision, rms};
 use crate::output::azimuth_error;
 

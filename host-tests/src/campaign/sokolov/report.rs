@@ -1,12 +1,37 @@
-//! The report of `campaign sokolov`: Table 1 of Sokolov 2019, then maximum likelihood through fixed point.
+//! `campaign sokolov`: its entry in the registry, and its report: Table 1 of Sokolov 2019, then maximum likelihood through fixed point.
 
-use super::{Columns, list, normal};
-use crate::campaign::sokolov::{AlphaRow, Precision, Table as Turn};
+use serde_json::json;
+
+use super::{AlphaRow, Precision, Table as Turn};
+use super::{TABLE_RUNS, TURNS, precision, tabulate};
+use crate::campaign::columns::{Columns, list, normal};
+use crate::campaign::{Asked, Campaign, Done, Tick};
 use crate::output::positive_zero;
 use crate::report::{Lines, Part, Report};
 
+/// The paper's table, and the precision, of both schedules.
+pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
+    name: "sokolov",
+    meaning: "The numerical experiment of Sokolov 2019: stepwise gyrocompassing, all five criteria",
+    runs: 5000,
+    takes: &[],
+    steps: "alignments",
+    count: |asked| TURNS.len() * (3 * TABLE_RUNS + asked.runs),
+    run,
+};
+
 /// Both schedules: the paper's table, then the precision.
-pub(crate) fn report(turns: &[Turn], precisions: &[Precision]) -> Report {
+fn run(asked: &Asked, tick: Tick<'_>) -> Result<Done, String> {
+    let tables = TURNS.iter().map(|turn| tabulate(*turn, tick)).collect::<Result<Vec<_>, _>>()?;
+    let precisions = TURNS.iter().map(|turn| precision(*turn, asked.runs, tick));
+    let precisions = precisions.collect::<Result<Vec<_>, _>>()?;
+    let object = json!({ "tables": tables, "precision": precisions });
+    let report = report(&tables, &precisions);
+    Ok(Done { object, report, refusal: None })
+}
+
+/// Both schedules: the paper's table, then the precision.
+fn report(turns: &[Turn], precisions: &[Precision]) -> Report {
     let parts = turns.iter().flat_map(of_turn).chain([of_precisions(precisions)]);
     let subtitle = [
         "60 dwells of 1 s, 0.15 °/h per sample at 100 Hz, 47°35′",

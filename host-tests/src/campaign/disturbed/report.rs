@@ -1,14 +1,54 @@
-//! The report of `campaign disturbed`.
+//! `campaign disturbed`: its entry in the registry, and its report.
 
-use super::Columns;
-use crate::campaign::disturbed::{HealthyRow, Row, WRONG_SIGMAS};
+use serde_json::json;
+
+use super::{Class, HealthyRow, Row, WRONG_SIGMAS};
+use super::{classes, healthy, row};
+use crate::campaign::columns::Columns;
+use crate::campaign::{Asked, Campaign, Done, Tick, unless};
 use crate::report::{Lines, Part, Report};
+
+/// Every class of faults in recordings, or one, and healthy recordings beside all.
+pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
+    name: "disturbed",
+    meaning: "Recordings with faults of any severity: what gets past, and what is refused without need",
+    runs: 200,
+    takes: &["class"],
+    steps: "recordings",
+    count: |asked| chosen(asked).count() * asked.runs + healthy_runs(asked),
+    run: |asked, tick| Ok(run(asked, tick)),
+};
+
+/// A result where each class passes.
+fn run(asked: &Asked, tick: Tick<'_>) -> Done {
+    let all = asked.class.is_none().then(|| healthy(healthy_runs(asked), &tick));
+    let healthy = all.unwrap_or_default();
+    let rows: Vec<_> = chosen(asked).map(|class| row(&class, asked.runs, &tick)).collect();
+    let reason = "a class of faults gets past, or is refused without need";
+    Done {
+        report: report(&healthy, &rows),
+        refusal: unless(rows.iter().all(|row| row.is_met), reason),
+        object: json!({ "healthy": healthy, "classes": rows }),
+    }
+}
 
 /// Reasons of refusals that are shown for each class.
 const REASONS: usize = 4;
 
+/// The classes that are asked for.
+fn chosen(asked: &Asked) -> impl Iterator<Item = Class> {
+    classes().filter(|of| asked.class.as_ref().is_none_or(|name| of.fault.name == *name))
+}
+
+/// Healthy recordings beside all classes.
+fn healthy_runs(asked: &Asked) -> usize {
+    if asked.class.is_none() { HEALTHY * asked.runs } else { 0 }
+}
+
+/// Healthy recordings for each run of a class.
+const HEALTHY: usize = 15;
 /// What healthy recordings gave, and what became of each class of faults.
-pub(crate) fn report(healthy: &[HealthyRow], rows: &[Row]) -> Report {
+fn report(healthy: &[HealthyRow], rows: &[Row]) -> Report {
     let of_healthy = (!healthy.is_empty()).then(|| of_healthy(healthy));
     let reasons = Some(reasons(rows)).filter(|lines| !lines.lines.is_empty());
     let subtitle = [

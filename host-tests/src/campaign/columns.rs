@@ -1,35 +1,25 @@
-//! What campaigns print: one report for terminal and page, whose figures only the page shows.
-
-pub(crate) mod burov;
-pub(crate) mod disturbed;
-pub(crate) mod faults;
-pub(crate) mod instrument;
-pub(crate) mod keep;
-pub(crate) mod rotating;
-pub(crate) mod sokolov;
-pub(crate) mod spin;
-pub(crate) mod szymanowski;
+//! What the reports of campaigns are made of: one report for terminal and page, whose figures only the page shows.
 
 use std::fmt::Display;
 
-use crate::campaign::statistics::{NORMAL_COVERAGE, Precision};
+use super::statistics::{NORMAL_COVERAGE, Precision};
 use crate::report::{Axis, Figure, Part, Series, Table};
 
 /// A table that grows by columns: each names itself and shows one thing of every row.
-struct Columns<'a, R> {
+pub(super) struct Columns<'a, R> {
     rows: &'a [R],
     table: Table,
 }
 
 impl<'a, R> Columns<'a, R> {
     /// A table of these rows, without columns yet.
-    fn of(title: &str, rows: &'a [R]) -> Self {
+    pub(super) fn of(title: &str, rows: &'a [R]) -> Self {
         let cells = vec![Vec::new(); rows.len()];
         Self { rows, table: Table { rows: cells, ..Table::new(title, &[]) } }
     }
 
     /// Words or a whole number.
-    fn column<C: Display>(mut self, name: &str, of: impl Fn(&'a R) -> C) -> Self {
+    pub(super) fn column<C: Display>(mut self, name: &str, of: impl Fn(&'a R) -> C) -> Self {
         self.table.head.push(name.to_owned());
         for (row, cells) in self.rows.iter().zip(&mut self.table.rows) {
             cells.push(of(row).to_string());
@@ -38,22 +28,22 @@ impl<'a, R> Columns<'a, R> {
     }
 
     /// A number with so many decimal places.
-    fn fixed(self, name: &str, places: usize, of: impl Fn(&'a R) -> f64) -> Self {
+    pub(super) fn fixed(self, name: &str, places: usize, of: impl Fn(&'a R) -> f64) -> Self {
         self.column(name, |row| format!("{:.places$}", of(row)))
     }
 
     /// A number with an exponent and so many decimal places.
-    fn scientific(self, name: &str, places: usize, of: impl Fn(&'a R) -> f64) -> Self {
+    pub(super) fn scientific(self, name: &str, places: usize, of: impl Fn(&'a R) -> f64) -> Self {
         self.column(name, |row| format!("{:.places$e}", of(row)))
     }
 
     /// Per cent of errors within 1, 2 and 3 σ.
-    fn covered(self, of: impl Fn(&'a R) -> [f64; 3]) -> Self {
+    pub(super) fn covered(self, of: impl Fn(&'a R) -> [f64; 3]) -> Self {
         self.column("within 1, 2, 3 σ, %", |row| list(&of(row)))
     }
 
     /// What many alignments amount to.
-    fn precision(self, of: impl Fn(&'a R) -> &'a Precision) -> Self {
+    pub(super) fn precision(self, of: impl Fn(&'a R) -> &'a Precision) -> Self {
         self.column("runs", |row| of(row).runs)
             .column("refused", |row| of(row).refused)
             .fixed("RMS, °", 4, |row| of(row).rms_deg)
@@ -71,24 +61,26 @@ impl<R> From<Columns<'_, R>> for Part {
 }
 
 /// Three numbers with one decimal place.
-fn list(values: &[f64; 3]) -> String {
+pub(super) fn list(values: &[f64; 3]) -> String {
     values.map(|value| format!("{value:.1}")).join(", ")
 }
 
 /// Curves over linear axes, each with its unit.
-fn figure(title: &str, x: [&str; 2], y: [&str; 2], series: Vec<Series>) -> Part {
+pub(super) fn figure(title: &str, x: [&str; 2], y: [&str; 2], series: Vec<Series>) -> Part {
     let [x, y] = [x, y].map(|[label, unit]| Axis::linear(label, unit));
     Figure { title: title.to_owned(), x, y, series }.into()
 }
 
 /// First reasons of refusals, a line each.
-fn reasons<'a>(rows: impl IntoIterator<Item = &'a Precision>) -> impl Iterator<Item = String> {
+pub(super) fn reasons<'a>(
+    rows: impl IntoIterator<Item = &'a Precision>,
+) -> impl Iterator<Item = String> {
     let reasons = rows.into_iter().filter_map(|row| row.first_reason.as_ref());
     reasons.map(|reason| format!("first refusal: {reason}"))
 }
 
 /// What a normal distribution has within 1, 2 and 3 σ.
-fn normal() -> String {
+pub(super) fn normal() -> String {
     let [one, two, three] = NORMAL_COVERAGE;
     format!("a normal distribution has {one}, {two}, {three} % within 1, 2, 3 σ")
 }

@@ -6,6 +6,8 @@
 //! paper's arc of 28′ steps, then on the full circle. The paper prints the least error of 90 runs;
 //! here it stands beside the RMS and the limit.
 
+pub(super) mod report;
+
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::instruments::InstrumentsConfiguration;
 use hal_mock::stage::Stop;
@@ -25,35 +27,12 @@ use orientation::signal::dwell::Dwell;
 use orientation::units::{ARCSECONDS_PER_RADIAN, DEGREE_PER_HOUR};
 use rayon::prelude::*;
 use serde::Serialize;
-use serde_json::json;
 
 use super::statistics::{coverage, least, rms};
-use super::{Asked, Campaign, Done, Tick};
 use crate::methods::stepwise::drive;
-use crate::output::{azimuth_error, campaign};
+use crate::output::azimuth_error;
 use crate::reference::Filter;
 use crate::simulate::stage_path;
-
-/// The paper's table, and the precision, of both schedules.
-pub(super) const CAMPAIGN: Campaign = Campaign {
-    name: "sokolov",
-    meaning: "The numerical experiment of Sokolov 2019: stepwise gyrocompassing, all five criteria",
-    runs: 5000,
-    takes: &[],
-    steps: "alignments",
-    count: |asked| TURNS.len() * (3 * TABLE_RUNS + asked.runs),
-    run,
-};
-
-/// Both schedules: the paper's table, then the precision.
-fn run(asked: &Asked, tick: Tick<'_>) -> Result<Done, String> {
-    let tables = TURNS.iter().map(|turn| tabulate(*turn, tick)).collect::<Result<Vec<_>, _>>()?;
-    let precisions = TURNS.iter().map(|turn| precision(*turn, asked.runs, tick));
-    let precisions = precisions.collect::<Result<Vec<_>, _>>()?;
-    let object = json!({ "tables": tables, "precision": precisions });
-    let report = campaign::sokolov::report(&tables, &precisions);
-    Ok(Done { object, report, refusal: None })
-}
 
 /// Latitude of the paper, °.
 const LATITUDE_DEG: f64 = 47.0 + 35.0 / 60.0;

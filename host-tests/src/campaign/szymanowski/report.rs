@@ -1,14 +1,40 @@
-//! The report of `campaign szymanowski`: errors before and after, and the tables.
+//! `campaign szymanowski`: its entry in the registry, and its report: errors before and after, and the tables.
 
 use orientation::earth::Latitude;
+use serde_json::json;
 
-use super::{Columns, figure, normal, reasons};
-use crate::campaign::szymanowski::{drives, parked};
+use super::{drives, parked};
+use crate::campaign::columns::{Columns, figure, normal, reasons};
+use crate::campaign::statistics::Precision;
+use crate::campaign::{Asked, Campaign, Done, Tick, unless};
 use crate::methods::stops::outcome::figures;
 use crate::report::{Part, Report, Series, Style};
 
+/// Drives between stops, and parked vehicles.
+pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
+    name: "szymanowski",
+    meaning: "Azimuth from stops: Szymanowski's Table 1 over many drives, and vehicles that stand and sway",
+    runs: 500,
+    takes: &[],
+    steps: "vehicles",
+    count: |asked| (drives::COUNT + parked::COUNT) * asked.runs,
+    run: |asked, tick| Ok(run(asked, tick)),
+};
+
+/// A result where none was refused.
+fn run(asked: &Asked, tick: Tick<'_>) -> Done {
+    let (drives, parked) = (drives::rows(asked.runs, tick), parked::rows(asked.runs, tick));
+    let standing = parked.iter().map(|row| &row.precision);
+    let mut all = drives.iter().map(|row| &row.precision).chain(standing);
+    Done {
+        refusal: unless(all.all(Precision::is_complete), "a healthy vehicle was refused"),
+        report: report(&drives, &parked),
+        object: json!({ "drives": drives, "parked": parked }),
+    }
+}
+
 /// The page for a campaign.
-pub(crate) fn report(drives: &[drives::Row], parked: &[parked::Row]) -> Report {
+fn report(drives: &[drives::Row], parked: &[parked::Row]) -> Report {
     let mut parts = vec![of_drives(drives), of_parked(parked)];
     parts.extend(drives.iter().map(errors));
     let latitude = Latitude::from_degrees(drives::LATITUDE_DEG);

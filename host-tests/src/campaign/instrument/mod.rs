@@ -1,35 +1,16 @@
 //! The whole instrument over many drawn sites, attitudes and seeds: error against limit and σ.
 
+pub(super) mod report;
+
 use firmware::ports::NoRecorder;
 use firmware::simulated::scenario::Scenario;
 use hal_mock::noise::Generator;
 use orientation::error::Refusal;
 use serde::Serialize;
-use serde_json::json;
 
+use super::over;
 use super::statistics::{Answer, Precision};
-use super::{Asked, Campaign, Done, Tick, over, unless};
 use crate::instrument::{self, RunError};
-use crate::output::campaign;
-
-/// The whole instrument over many seeds.
-pub(super) const CAMPAIGN: Campaign = Campaign {
-    name: "instrument",
-    meaning: "The whole instrument on simulated chips, over drawn sites and attitudes",
-    runs: 500,
-    takes: &[],
-    steps: "alignments",
-    count: |asked| asked.runs,
-    run,
-};
-
-/// A result where none was refused.
-fn run(asked: &Asked, tick: Tick<'_>) -> Result<Done, String> {
-    let runs = precision(asked.runs, tick).map_err(|error| error.to_string())?;
-    let refusal = unless(runs.precision.is_complete(), "a healthy board was refused");
-    let report = campaign::instrument::report(&runs);
-    Ok(Done { report, refusal, object: json!({ "precision": runs }) })
-}
 
 /// Greatest latitude that is drawn, °.
 const LATITUDE_DEG: f64 = 70.0;

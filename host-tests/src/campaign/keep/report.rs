@@ -1,12 +1,35 @@
-//! The report of `campaign keep`: what every class keeps, and how errors grow beside σ(t).
+//! `campaign keep`: its entry in the registry, and its report: what every class keeps, and how errors grow beside σ(t).
 
-use super::{Columns, figure};
+use serde_json::json;
+
+use super::{COUNT, rows};
+use super::{Growth, Row, Spread};
 use crate::campaign::burov::LATITUDE_DEG;
-use crate::campaign::keep::{Growth, Row, Spread};
+use crate::campaign::columns::{Columns, figure};
+use crate::campaign::{Asked, Campaign, Done, Tick, unless};
 use crate::report::{Part, Report, Series, Style};
 
+/// Azimuth, pitch and roll through half an hour of driving.
+pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
+    name: "keep",
+    meaning: "Storage of the azimuth, pitch and roll in vehicles that drive: Burov's classes",
+    runs: 500,
+    takes: &[],
+    steps: "vehicles",
+    count: |asked| COUNT * asked.runs,
+    run: |asked, tick| Ok(run(asked, tick)),
+};
+
+/// A result where every row that is to be met is.
+fn run(asked: &Asked, tick: Tick<'_>) -> Done {
+    let rows = rows(asked.runs, tick);
+    let found = rows.iter().all(|row| row.is_met || !row.is_wanted);
+    let refusal = unless(found, "a class does not meet its row; with few runs that may be chance");
+    Done { report: report(&rows), refusal, object: json!({ "classes": rows }) }
+}
+
 /// The page for a campaign.
-pub(crate) fn report(rows: &[Row]) -> Report {
+fn report(rows: &[Row]) -> Report {
     let figures = rows.iter().flat_map(|row| {
         let name = format!("{}, {}", row.class, row.mount);
         let (azimuth, level) = (row.wanted_azimuth_deg, row.wanted_level_deg);

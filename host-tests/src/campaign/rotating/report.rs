@@ -1,14 +1,45 @@
-//! The report of `campaign rotating`: where the raw error comes from, the spectra of MET 2018 at two axis
+//! `campaign rotating`: its entry in the registry, and its report: where the raw error comes from, the spectra of MET 2018 at two axis
 //! misalignments, and the tables.
 
-use super::{Columns, figure, normal, reasons};
-use crate::campaign::rotating::world::{
-    COUPLING_DEG, LATITUDE_DEG, TILT_DEG, UNEVENNESS, World, segments,
-};
-use crate::campaign::rotating::{molecular, refusals, stages};
+use serde_json::json;
+
+use super::world::{COUPLING_DEG, LATITUDE_DEG, TILT_DEG, UNEVENNESS, World, segments};
+use super::{molecular, refusals, stages};
+use crate::campaign::columns::{Columns, figure, normal, reasons};
+use crate::campaign::statistics::Precision;
+use crate::campaign::{Asked, Campaign, Done, Tick, tenth, unless};
 use crate::methods::rotating::outcome::figures;
 use crate::methods::rotating::part::Part;
 use crate::report::{Part as OfPage, Report, Series, Style};
+
+/// The stages of compensation, molecular-electronic sensors, and what must be refused.
+pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
+    name: "rotating",
+    meaning: "A platform that turns all the time (MET 2018), its errors and what is done about each",
+    runs: 500,
+    takes: &[],
+    steps: "alignments",
+    count: |asked| {
+        let tables = stages::WALKS.len() + molecular::COUNT;
+        tables * asked.runs + refusals::COUNT * tenth(asked.runs)
+    },
+    run: |asked, tick| Ok(run(asked, tick)),
+};
+
+/// A result where no healthy run was refused and no north was wrong.
+fn run(asked: &Asked, tick: Tick<'_>) -> Done {
+    let stages = stages::rows(asked.runs, tick);
+    let molecular = molecular::rows(asked.runs, tick);
+    let refusals = refusals::rows(tenth(asked.runs), tick);
+    let sensors = molecular.iter().map(|row| &row.precision);
+    let mut healthy = stages.iter().map(|row| &row.precision).chain(sensors);
+    let found = healthy.all(Precision::is_complete) && refusals.iter().all(|row| row.wrong == 0);
+    Done {
+        report: report(&stages, &molecular, &refusals),
+        refusal: unless(found, "a healthy run was refused, or a north was wrong"),
+        object: json!({ "stages": stages, "molecular": molecular, "refusals": refusals }),
+    }
+}
 
 /// The couplings of the figure with two of them, °: as in the campaign, and nearly aligned.
 const COUPLINGS_DEG: [f64; 2] = [COUPLING_DEG, 0.1];
@@ -18,7 +49,7 @@ const SETTLED: f64 = 5.0;
 const SECONDS: f64 = 200.0;
 
 /// The page for a campaign.
-pub(crate) fn report(
+fn report(
     stages: &[stages::Row],
     molecular: &[molecular::Row],
     refusals: &[refusals::Row],

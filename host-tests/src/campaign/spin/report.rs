@@ -1,17 +1,42 @@
-//! The report of `campaign spin`: Figs. 7 and 8 of Nekrasova 2017, and the tables.
+//! `campaign spin`: its entry in the registry, and its report: Figs. 7 and 8 of Nekrasova 2017, and the tables.
 
-use super::{Columns, figure, normal};
-use crate::campaign::spin::cases::{Row, Spot};
-use crate::campaign::spin::paper::{FRAGMENT_S, Paper, TURNS_PER_S};
-use crate::campaign::spin::world::{RATE_HZ, SCALE_ERROR};
+use serde_json::json;
+
+use super::cases::{self, Row, Spot};
+use super::paper::{self, FRAGMENT_S, Paper, TURNS_PER_S};
+use super::world::{RATE_HZ, SCALE_ERROR};
+use crate::campaign::columns::{Columns, figure, normal};
+use crate::campaign::{Asked, Campaign, Done, Tick, unless};
 use crate::methods::spin::{METHODS, name};
 use crate::report::{Lines, Part, Report, Series, Style};
+
+/// The paper's second, and flights with noise.
+pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
+    name: "spin",
+    meaning: "The roll of a spinning body: the figures of Nekrasova 2017, then noise, and a lift that fades",
+    runs: 500,
+    takes: &[],
+    steps: "flights",
+    count: |asked| cases::COUNT * asked.runs,
+    run: |asked, tick| Ok(run(asked, tick)),
+};
+
+/// A result where no roll was lost and no turn miscounted.
+fn run(asked: &Asked, tick: Tick<'_>) -> Done {
+    let (paper, rows) = (paper::paper(), cases::rows(asked.runs, tick));
+    let found = rows.iter().all(|row| row.lost == 0 && row.miscounted == 0);
+    Done {
+        report: report(&paper, &rows),
+        refusal: unless(found, "a roll was lost, or a turn miscounted"),
+        object: json!({ "paper": paper, "flights": rows }),
+    }
+}
 
 /// Points of a curve at most.
 const POINTS: usize = 2000;
 
 /// The page for a campaign.
-pub(crate) fn report(paper: &Paper, rows: &[Row]) -> Report {
+fn report(paper: &Paper, rows: &[Row]) -> Report {
     let [uncorrected, extrema, interpolated, locked] = &paper.curves;
     let methods = [extrema, interpolated, locked];
     let whole: Vec<(&str, &[(f64, f64)])> =
