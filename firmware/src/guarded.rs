@@ -7,7 +7,7 @@ use orientation::device::Device;
 use orientation::error::Refusal;
 
 use crate::event::Event;
-use crate::ports::{Observer, Startable};
+use crate::ports::Startable;
 use crate::retry_budget::{Remedy, RetryBudget, Symptom};
 use crate::shared::Shared;
 
@@ -40,11 +40,7 @@ struct Guard {
 impl Guard {
     /// Charges a symptom to the budget: true if the device must be started again, false if only the
     /// reading is lost.
-    fn is_to_restart<O: Observer>(
-        &mut self,
-        symptom: Symptom,
-        shared: &Shared<'_, O>,
-    ) -> Result<bool, Refusal> {
+    fn is_to_restart(&mut self, symptom: Symptom, shared: &Shared<'_>) -> Result<bool, Refusal> {
         match self.retry_budget.failed(symptom) {
             Remedy::Drop => Ok(false),
             Remedy::Restart => Ok(true),
@@ -74,10 +70,7 @@ impl<'a, D: Startable> Guarded<'a, D> {
     ///
     /// # Errors
     /// The device is given up: it did not start within its retry budget.
-    pub fn start<O: Observer>(
-        &mut self,
-        shared: &Shared<'_, O>,
-    ) -> impl Future<Output = Result<(), Refusal>> {
+    pub fn start(&mut self, shared: &Shared<'_>) -> impl Future<Output = Result<(), Refusal>> {
         self.start_after(None, shared)
     }
 
@@ -85,11 +78,7 @@ impl<'a, D: Startable> Guarded<'a, D> {
     ///
     /// # Errors
     /// The device is given up.
-    pub async fn mend<O: Observer>(
-        &mut self,
-        symptom: Symptom,
-        shared: &Shared<'_, O>,
-    ) -> Result<(), Refusal> {
+    pub async fn mend(&mut self, symptom: Symptom, shared: &Shared<'_>) -> Result<(), Refusal> {
         if self.guard.is_to_restart(symptom, shared)? {
             return self.start_after(Some(symptom), shared).await;
         }
@@ -128,10 +117,10 @@ impl<'a, D: Startable> Guarded<'a, D> {
 
     /// Starts the device until it succeeds, with a rest before every attempt that follows a
     /// failure.
-    async fn start_after<O: Observer>(
+    async fn start_after(
         &mut self,
         mut trouble: Option<Symptom>,
-        shared: &Shared<'_, O>,
+        shared: &Shared<'_>,
     ) -> Result<(), Refusal> {
         loop {
             if let Some(symptom) = trouble {

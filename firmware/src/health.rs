@@ -5,7 +5,6 @@ use embassy_time::{Duration, Timer};
 use orientation::device::Device;
 use orientation::error::Refusal;
 
-use crate::ports::Observer;
 use crate::shared::Shared;
 
 /// Time without samples after which the session is ended: longer than all restarts of a sensor
@@ -88,7 +87,7 @@ fn count(counters: &mut [u16; 5], device: Device) {
 
 /// Ends the session with [`Refusal::TimeExhausted`] when no samples arrive for 30 s, whatever the
 /// reason.
-pub async fn watch<O: Observer>(shared: &Shared<'_, O>) {
+pub async fn watch(shared: &Shared<'_>) {
     loop {
         let before = shared.health.get().samples;
         Timer::after(SILENCE).await;

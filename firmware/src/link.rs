@@ -16,7 +16,6 @@ use embedded_io_async::Write;
 use heapless::String;
 
 use crate::event::Event;
-use crate::ports::Observer;
 use crate::shared::Shared;
 
 /// Time between two lines.
@@ -127,7 +126,7 @@ impl fmt::Display for Status {
 
 /// Sends a status line every second until the conclusion of the session has been sent. Runs for
 /// ever beside a keeper.
-pub async fn run<L: Write, O: Observer>(link: &mut L, shared: &Shared<'_, O>) {
+pub async fn run<L: Write>(link: &mut L, shared: &Shared<'_>) {
     loop {
         let is_last = shared.status.get().is_last() && !shared.keep.is_wanted.get();
         send(link, shared).await;
@@ -140,7 +139,7 @@ pub async fn run<L: Write, O: Observer>(link: &mut L, shared: &Shared<'_, O>) {
 
 /// Sends one status line. If the link does not take the line in time, the line is discarded and
 /// counted; the first loss is also reported as an event.
-pub async fn send<L: Write, O: Observer>(link: &mut L, shared: &Shared<'_, O>) {
+pub async fn send<L: Write>(link: &mut L, shared: &Shared<'_>) {
     let mut line = String::<LENGTH>::new();
     let faults = shared.health.get().faults();
     // The capacity holds the longest line; a longer one would be cut.

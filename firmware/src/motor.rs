@@ -9,7 +9,7 @@ use orientation::units::{Angle, DEGREES_PER_RADIAN as DEGREES};
 
 use crate::event::Event;
 use crate::guarded::Guarded;
-use crate::ports::{Actuator, Motion, Observer};
+use crate::ports::{Actuator, Motion};
 use crate::shared::{LatestAngle, Shared};
 
 /// Period at which the motor's status is read.
@@ -69,7 +69,7 @@ pub(crate) enum Request {
 }
 
 /// The motor of an axis with its retry budget, and the latest angle of its encoder.
-pub(crate) struct Motor<'a, M, O> {
+pub(crate) struct Motor<'a, M> {
     /// Names in the log.
     axis: Axis,
     /// The motor's driver with its retry budget.
@@ -78,16 +78,16 @@ pub(crate) struct Motor<'a, M, O> {
     pub(crate) motion: Motion,
     /// The encoder's latest angle and the time of its reading.
     latest: &'a LatestAngle,
-    pub(crate) shared: &'a Shared<'a, O>,
+    pub(crate) shared: &'a Shared<'a>,
 }
 
-impl<'a, M: Actuator, O: Observer> Motor<'a, M, O> {
+impl<'a, M: Actuator> Motor<'a, M> {
     /// Takes the motor of an axis whose encoder writes its angle to `latest`; nothing moves yet.
     pub(crate) fn new(
         axis: Axis,
         actuator: &'a mut M,
         latest: &'a LatestAngle,
-        shared: &'a Shared<'a, O>,
+        shared: &'a Shared<'a>,
     ) -> Self {
         let actuator = Guarded::new(actuator, axis.drive);
         Self { axis, actuator, motion: Motion::default(), latest, shared }

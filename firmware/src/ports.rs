@@ -298,32 +298,6 @@ impl Observer for () {
     fn event(&self, _: Instant, _: &Event) {}
 }
 
-impl<O: Observer> Observer for &O {
-    fn event(&self, at: Instant, event: &Event) {
-        (**self).event(at, event);
-    }
-
-    fn progress(&self, session: &Session) {
-        (**self).progress(session);
-    }
-
-    fn turned(&self, session: &rotating::Session) {
-        (**self).turned(session);
-    }
-
-    fn stopped(&self, session: &stops::Session) {
-        (**self).stopped(session);
-    }
-
-    fn kept(&self, report: &Report) {
-        (**self).kept(report);
-    }
-
-    fn sensed(&self, at: Instant, reading: &BaseReading) {
-        (**self).sensed(at, reading);
-    }
-}
-
 /// A pair of values for the two frames of a mount.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Frames<T> {
@@ -377,27 +351,6 @@ pub struct SpinSensors<C>(
     /// then of the accelerometers along y and z.
     pub [C; 5],
 );
-
-/// The other ports of a board on a spinning body.
-#[derive(Debug)]
-pub struct SpinPorts<L, R> {
-    /// Destination of the status lines.
-    pub link: L,
-    /// Destination of the raw samples.
-    pub recorder: R,
-}
-
-/// The other ports of a board in a vehicle. There is no motor; the driver is informed by link and
-/// log.
-#[derive(Debug)]
-pub struct VehiclePorts<W, L, R> {
-    /// Source of the vehicle's displacement.
-    pub position_aiding: W,
-    /// Destination of the status lines.
-    pub link: L,
-    /// Destination of the raw samples.
-    pub recorder: R,
-}
 
 /// The other ports of a board with a stage, a turntable or a mount.
 #[derive(Debug)]

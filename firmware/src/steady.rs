@@ -24,7 +24,7 @@ use crate::event::Event;
 use crate::guarded::Guarded;
 use crate::keep::RETRY;
 use crate::pointing::Decimator;
-use crate::ports::{BaseReading, BaseSensors, NoBase, Observer};
+use crate::ports::{BaseReading, BaseSensors, NoBase};
 use crate::retry_budget::Symptom;
 use crate::shared::Shared;
 
@@ -54,7 +54,7 @@ pub trait CompensatesSway {
     ///
     /// # Errors
     /// A device without which the session cannot run is given up.
-    async fn start<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal>;
+    async fn start(&mut self, shared: &Shared<'_>) -> Result<(), Refusal>;
 
     /// Whether the decision for or against the compensation has been taken.
     fn is_decided(&self) -> bool;
@@ -63,7 +63,7 @@ pub trait CompensatesSway {
     ///
     /// # Errors
     /// The sensors are given up while their readings are being subtracted.
-    async fn follow<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal>;
+    async fn follow(&mut self, shared: &Shared<'_>) -> Result<(), Refusal>;
 
     /// The reading of the latest [`Self::follow`] and its time; each reading is returned once.
     fn reading(&mut self) -> Option<(Instant, BaseReading)>;
@@ -88,10 +88,7 @@ impl Base for NoBase {
 
 /// No compensation: rates are used as measured.
 impl CompensatesSway for NoBase {
-    fn start<O: Observer>(
-        &mut self,
-        _: &Shared<'_, O>,
-    ) -> impl Future<Output = Result<(), Refusal>> {
+    fn start(&mut self, _: &Shared<'_>) -> impl Future<Output = Result<(), Refusal>> {
         ready(Ok(()))
     }
 
@@ -99,10 +96,7 @@ impl CompensatesSway for NoBase {
         true
     }
 
-    fn follow<O: Observer>(
-        &mut self,
-        _: &Shared<'_, O>,
-    ) -> impl Future<Output = Result<(), Refusal>> {
+    fn follow(&mut self, _: &Shared<'_>) -> impl Future<Output = Result<(), Refusal>> {
         ready(Ok(()))
     }
 
@@ -189,7 +183,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
     ///
     /// # Errors
     /// The symptom of a unit that gives no reading for 100 ms, fails on the bus, or is stuck.
-    async fn read<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Result<(), Symptom> {
+    async fn read(&mut self, shared: &Shared<'_>) -> Result<(), Symptom> {
         let begun = Instant::now();
         let outcome = self.base.device.read().await;
         match self.base.checked(begun, outcome)? {
@@ -243,11 +237,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
     ///
     /// # Errors
     /// The sensors are given up although their readings are being subtracted in an alignment.
-    async fn mend<O: Observer>(
-        &mut self,
-        symptom: Symptom,
-        shared: &Shared<'_, O>,
-    ) -> Result<(), Refusal> {
+    async fn mend(&mut self, symptom: Symptom, shared: &Shared<'_>) -> Result<(), Refusal> {
         let restarts = self.base.restarts();
         let outcome = self.base.mend(symptom, shared).await;
         if self.base.restarts() != restarts {
@@ -262,7 +252,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
     }
 
     /// Continues without the sensors; a sway that they have not observed by now stays unmeasured.
-    fn lose<O: Observer>(&mut self, shared: &Shared<'_, O>) {
+    fn lose(&mut self, shared: &Shared<'_>) {
         if !self.is_decided() {
             shared.sway.set(SwayNoise::UNMEASURED);
         }
@@ -271,7 +261,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
     }
 
     /// Whether the base unit is out of use. While an azimuth is kept, it is tried again every 10 s.
-    fn is_absent<O: Observer>(&mut self, shared: &Shared<'_, O>) -> bool {
+    fn is_absent(&mut self, shared: &Shared<'_>) -> bool {
         if self.is_lost && shared.keep.is_kept.get() && self.lost.elapsed() >= RETRY {
             self.renew();
         }
@@ -279,7 +269,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
     }
 
     /// Reports the decision; called when the decision may have been taken.
-    fn tell<O: Observer>(&self, shared: &Shared<'_, O>) {
+    fn tell(&self, shared: &Shared<'_>) {
         let (noise, event) = match self.sway.decision() {
             Decision::Watching => return,
             Decision::Still(size) => {
@@ -308,7 +298,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
 }
 
 impl<B: BaseSensors> CompensatesSway for SwayCompensation<'_, B> {
-    async fn start<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal> {
+    async fn start(&mut self, shared: &Shared<'_>) -> Result<(), Refusal> {
         self.is_lost = false;
         if self.base.start(shared).await.is_err() {
             self.lose(shared);
@@ -321,7 +311,7 @@ impl<B: BaseSensors> CompensatesSway for SwayCompensation<'_, B> {
         self.is_lost || self.sway.decision() != Decision::Watching
     }
 
-    async fn follow<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal> {
+    async fn follow(&mut self, shared: &Shared<'_>) -> Result<(), Refusal> {
         if self.is_absent(shared) || !self.due.is_due() {
             return Ok(());
         }

@@ -5,6 +5,7 @@
 //! unnecessary. Images without storage contain none of this code.
 
 use drivers::fault::Fault;
+use embassy_futures::select::select;
 use embedded_storage_async::nor_flash::NorFlash;
 use orientation::align::rotating::Setting;
 use orientation::align::rotating::coupling::{BYTES, Coupling};
@@ -19,8 +20,9 @@ use sequential_storage::map::{MapConfig, MapStorage};
 
 use crate::date::Day;
 use crate::event::Event;
-use crate::ports::{CalibrationStore, HeadingStore, Observer};
-use crate::shared::Shared;
+use crate::ports::{CalibrationStore, HeadingStore};
+use crate::run::discard;
+use crate::shared::{Channels, Shared};
 
 /// Size of the buffer for the longest item, bytes: key and data, in whole words of flash.
 const BUFFER: usize = (1 + LONGEST).next_multiple_of(32);
@@ -146,11 +148,11 @@ pub async fn keep<S: CalibrationStore>(
 
 /// Prepares a session: sets its date and, if its procedure has no rate-modulated turns, gives it
 /// the stored axis misalignments. Reports what is used.
-pub async fn load_calibration<S: CalibrationStore, O: Observer>(
+pub async fn load_calibration<S: CalibrationStore>(
     store: &mut S,
     today: Today,
     (setting, procedure): (&mut Setting, &mut Procedure),
-    shared: &Shared<'_, O>,
+    shared: &Shared<'_>,
 ) {
     procedure.date = today.date.unwrap_or_default();
     if procedure.uneven_turns > 0 {
@@ -169,23 +171,23 @@ pub async fn load_calibration<S: CalibrationStore, O: Observer>(
 }
 
 /// Stores the axis misalignments of a session that has found an azimuth with them, and reports it.
-/// A session without an azimuth stores none.
-pub async fn save_calibration<S: CalibrationStore, O: Observer>(
+/// A session without an azimuth stores none. Samples are discarded meanwhile.
+pub async fn save_calibration<S: CalibrationStore>(
     store: &mut S,
     session: &Session,
-    shared: &Shared<'_, O>,
+    channels: &Channels<'_>,
 ) {
     if session.conclusion().is_none_or(|conclusion| conclusion.verdict.is_err()) {
         return;
     }
-    match keep(store, session.couplings()).await {
-        Ok(()) => {
-            session
-                .couplings()
-                .for_each(|found| shared.tell(Event::CalibrationSaved((&found).into())));
+    let saved = async {
+        let told = |found: Coupling| Event::CalibrationSaved((&found).into());
+        match keep(store, session.couplings()).await {
+            Ok(()) => session.couplings().for_each(|found| channels.shared.tell(told(found))),
+            Err(fault) => channels.shared.tell(Event::CalibrationNotSaved(fault)),
         }
-        Err(fault) => shared.tell(Event::CalibrationNotSaved(fault)),
-    }
+    };
+    select(saved, discard(channels)).await;
 }
 
 /// A stored axis misalignment as it is reported.

@@ -7,7 +7,7 @@ use orientation::signal::InertialSample;
 use orientation::units::{Angle, AngleIncrement, AngularRate, SpecificForce};
 
 use crate::keep::{Motion, VerticalGyro};
-use crate::ports::{BaseReading, Observer};
+use crate::ports::BaseReading;
 use crate::shared::Shared;
 
 /// Quarter of a turn, in steps of an [`Angle`].
@@ -180,12 +180,7 @@ impl Coarse {
 
     /// Converts a coarse reading to a sample and passes it on. Saturation is kept as such; missing
     /// readings show in the times.
-    pub(super) fn pass_on<O: Observer>(
-        &mut self,
-        at: Instant,
-        reading: &BaseReading,
-        shared: &Shared<'_, O>,
-    ) {
+    pub(super) fn pass_on(&mut self, at: Instant, reading: &BaseReading, shared: &Shared<'_>) {
         let (lasted, _) = self.pace.lasted(at);
         let [forward, right, down] = &mut self.carried;
         let [about_forward, about_right, about_down] = reading.rate;
@@ -209,7 +204,7 @@ impl Coarse {
 
     /// Rotation of the precise gyro about down since the latest reading; `None` where it was not
     /// vertical.
-    fn take_precise<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Option<AngleIncrement> {
+    fn take_precise(&mut self, shared: &Shared<'_>) -> Option<AngleIncrement> {
         let precise = &mut self.precise;
         let down = match (precise.is_vertical, self.excess.is_known()) {
             (true, _) => VerticalGyro::Precise,

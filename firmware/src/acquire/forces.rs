@@ -10,7 +10,7 @@ use super::{Limit, RepeatCounter, STUCK};
 use crate::guarded::Guarded;
 use crate::keep::RETRY;
 use crate::pointing::Decimator;
-use crate::ports::{Accelerometer, ForceReading, Observer};
+use crate::ports::{Accelerometer, ForceReading};
 use crate::retry_budget::Symptom;
 use crate::shared::Shared;
 
@@ -19,7 +19,7 @@ const PAUSE: Duration = Duration::from_secs(1);
 
 /// Whether an azimuth is held and the body moves. Rotation during the restart of a device would be
 /// lost, so the gyros alone carry the attitude, and the accelerometer is repaired at the next rest.
-fn is_on_the_way<O: Observer>(shared: &Shared<'_, O>) -> bool {
+fn is_on_the_way(shared: &Shared<'_>) -> bool {
     shared.keep.is_kept.get() && !shared.keep.is_at_rest.get()
 }
 
@@ -58,18 +58,18 @@ impl<'a, A: Accelerometer> Forces<'a, A> {
     }
 
     /// Starts the accelerometer, repeatedly within the retry budget.
-    pub(super) fn start<O: Observer>(
+    pub(super) fn start(
         &mut self,
-        shared: &Shared<'_, O>,
+        shared: &Shared<'_>,
     ) -> impl Future<Output = Result<(), Refusal>> {
         self.accelerometer.start(shared)
     }
 
     /// Returns a new reading where one is due, possibly saturated; none where it was lost. It must
     /// be called with every sample.
-    pub(super) async fn read<O: Observer>(
+    pub(super) async fn read(
         &mut self,
-        shared: &Shared<'_, O>,
+        shared: &Shared<'_>,
     ) -> Result<Option<ForceReading>, Refusal> {
         if !self.due.is_due() || self.absent.is_some_and(|until| Instant::now() < until) {
             return Ok(None);
@@ -99,11 +99,11 @@ impl<'a, A: Accelerometer> Forces<'a, A> {
 
     /// Checks a reading: a valid one, or the symptom to repair. Repeated outputs show an
     /// accelerometer that has stopped; one that stays saturated is given up.
-    fn judge<O: Observer>(
+    fn judge(
         &mut self,
         begun: Instant,
         outcome: Result<ForceReading, Fault>,
-        shared: &Shared<'_, O>,
+        shared: &Shared<'_>,
     ) -> Result<Result<ForceReading, Symptom>, Refusal> {
         let reading = match self.accelerometer.checked(begun, outcome) {
             Ok(reading) => reading,

@@ -23,8 +23,14 @@ mod stage;
 mod triad;
 
 pub use spin::SpinAcquisition;
-pub use stage::Acquisition;
+pub use stage::{on_mount, on_stage};
 pub use triad::TriadAcquisition;
+
+use core::convert::Infallible;
+
+use orientation::error::Refusal;
+
+use outlet::Outlet;
 
 /// Number of identical successive readings that is not chance: the last bits of all sensors are
 /// noise.
@@ -33,6 +39,63 @@ pub(crate) const STUCK: u32 = 64;
 const SATURATED_SECONDS: f64 = 5.0;
 /// Number of periods without a conversion after which a gyro counts as silent.
 const SILENCE: u32 = 8;
+
+/// The sensors of a carrier as the source of its samples.
+#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
+pub trait Source<'a> {
+    /// The kind of sample.
+    type Sample: 'static;
+
+    /// The outlet of the samples.
+    fn outlet(&mut self) -> &mut Outlet<'a, Self::Sample>;
+
+    /// Starts the sensors.
+    ///
+    /// # Errors
+    /// A sensor is given up.
+    async fn start(&mut self) -> Result<(), Refusal>;
+
+    /// Takes the next sample; [`None`] where a reading was lost.
+    ///
+    /// # Errors
+    /// A sensor is given up.
+    async fn sample(&mut self) -> Result<Option<Self::Sample>, Refusal>;
+
+    /// Continues without the sensor that was given up, where the others suffice for a while.
+    ///
+    /// # Errors
+    /// The reason, where they do not.
+    async fn do_without(&mut self, reason: Refusal) -> Result<(), Refusal> {
+        Err(reason)
+    }
+
+    /// Restores the full retry budget of all sensors.
+    fn renew(&mut self);
+}
+
+/// Acquires samples without end. Where a sensor is given up, reports the reason, which ends the
+/// session, and, while an azimuth is held, tries again later.
+pub async fn acquire<'a>(source: &mut impl Source<'a>) {
+    loop {
+        let Err(reason) = sample_for_ever(source).await;
+        let shared = source.outlet().shared;
+        shared.fail(reason);
+        shared.keep.rest().await;
+        source.renew();
+    }
+}
+
+/// Starts the sensors and samples until one is given up.
+async fn sample_for_ever<'a>(source: &mut impl Source<'a>) -> Result<Infallible, Refusal> {
+    source.start().await?;
+    loop {
+        match source.sample().await {
+            Ok(Some(sample)) => source.outlet().hand_over(sample),
+            Ok(None) => {}
+            Err(reason) => source.do_without(reason).await?,
+        }
+    }
+}
 
 /// Counter of identical successive values.
 #[derive(Clone, Copy, Debug)]

@@ -9,7 +9,7 @@ use orientation::units::AngularRate;
 use super::{Limit, RepeatCounter, SILENCE, STUCK};
 use crate::event::Event;
 use crate::guarded::Guarded;
-use crate::ports::{Gyro, Observer, Quantity, RateReading};
+use crate::ports::{Gyro, Quantity, RateReading};
 use crate::retry_budget::Symptom;
 use crate::shared::Shared;
 
@@ -90,9 +90,9 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
     }
 
     /// Returns a new rate, none where it is not new, or the symptom to repair.
-    pub(super) async fn read<O: Observer>(
+    pub(super) async fn read(
         &mut self,
-        shared: &Shared<'_, O>,
+        shared: &Shared<'_>,
     ) -> Result<Result<Option<V>, Symptom>, Refusal> {
         let begun = Instant::now();
         let outcome = self.gyro.device.read().await;
@@ -100,11 +100,11 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
     }
 
     /// Checks a reading for faults, saturation and repetition.
-    fn judge<O: Observer>(
+    fn judge(
         &mut self,
         begun: Instant,
         outcome: Result<RateReading<V>, Fault>,
-        shared: &Shared<'_, O>,
+        shared: &Shared<'_>,
     ) -> Result<Result<Option<V>, Symptom>, Refusal> {
         let RateReading { rate, is_new } = match self.gyro.checked(begun, outcome) {
             Ok(reading) => reading,

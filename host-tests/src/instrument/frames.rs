@@ -2,9 +2,12 @@
 
 use std::cell::RefCell;
 
+use firmware::acquire::{acquire, on_mount};
+use firmware::gimbal::Gimbal;
 use firmware::keep::Keeping;
-use firmware::ports::{Frames, HeadingStore, NoBase, Observer, Recorder};
-use firmware::run::{acquire_frames, run_frames_and_keep};
+use firmware::ports::{Frames, HeadingStore, NoBase, Observer, Ports, Recorder};
+use firmware::run::navigate;
+use firmware::runner::Stepwise;
 use firmware::simulated::Wires;
 use firmware::simulated::base;
 use firmware::simulated::fault::{Fault, FaultyRecorder, Injection};
@@ -95,13 +98,21 @@ fn align_with<B: Base, R: Recorder, W: Observer>(
     let wires = Wires(board, injection);
     let mut sensors = wires.frame_sensors(scenario).with_base(base);
     let recorder = FaultyRecorder::new(recorder, injection.hang);
-    let mut ports = wires.frame_ports(harness.wire(), recorder);
+    let Ports { mut actuator, mut link, mut recorder } =
+        wires.frame_ports(harness.wire(), recorder);
     let mut keeper = Keeper::new(&scenario.keeper().ok_or_else(outside)?);
     let keep = scenario.base.keeping().ok_or_else(outside)?;
     let mut keeping = Keeping::new(&mut keeper, &keep, scenario.base.hold.outside(), store);
     let ended = harness::run(
-        acquire_frames(&mut sensors, &configuration, &frames, &latest, &channels),
-        run_frames_and_keep(&mut ports, &frames, &latest, &mut session, &mut keeping, &channels),
+        acquire(&mut on_mount(&mut sensors, &configuration, &frames, &latest, &channels)),
+        navigate(
+            &mut Gimbal::new(&mut actuator, &frames, &latest, &channels.shared),
+            &mut Stepwise::new(&mut session),
+            &mut link,
+            &mut recorder,
+            &mut keeping,
+            &channels,
+        ),
     )?;
     let [outer, inner] = board.borrow().gimbal.frames();
     let misalignment = scenario.gimbal(None, injection).misalignment;

@@ -3,14 +3,17 @@
 use std::cell::RefCell;
 
 use drivers::tmc5160::configuration::Configuration as Motor;
+use firmware::acquire::{acquire, on_stage};
 use firmware::keep::Keeping;
-use firmware::ports::{HeadingStore, NoBase, Observer, Recorder};
-use firmware::run::{acquire, run_and_keep};
+use firmware::ports::{HeadingStore, NoBase, Observer, Ports, Recorder};
+use firmware::run::navigate;
+use firmware::runner::Stepwise;
 use firmware::simulated::base;
 use firmware::simulated::fault::{Fault, FaultyRecorder, Injection};
 use firmware::simulated::keep::journey;
 use firmware::simulated::scenario::{self, Scenario};
 use firmware::simulated::{self, Chips, Wires};
+use firmware::stage::Stage;
 use firmware::steady::Base;
 use orientation::keep::Keeper;
 use orientation::session::Session;
@@ -96,13 +99,21 @@ fn align_with<B: Base, R: Recorder, W: Observer>(
     let wires = Wires(board, injection);
     let mut sensors = wires.sensors(scenario, scenario::FORCE).with_base(base);
     let recorder = FaultyRecorder::new(recorder, injection.hang);
-    let mut ports = wires.ports(Motor::default(), harness.wire(), recorder);
+    let Ports { mut actuator, mut link, mut recorder } =
+        wires.ports(Motor::default(), harness.wire(), recorder);
     let mut keeper = Keeper::new(&scenario.keeper().ok_or_else(outside)?);
     let keep = scenario.keeping().ok_or_else(outside)?;
     let mut keeping = Keeping::new(&mut keeper, &keep, scenario.hold.outside(), store);
     let ended = harness::run(
-        acquire(&mut sensors, &configuration, &channels),
-        run_and_keep(&mut ports, &configuration, &mut session, &mut keeping, &channels),
+        acquire(&mut on_stage(&mut sensors, &configuration, &channels)),
+        navigate(
+            &mut Stage::new(&mut actuator, &configuration.stage, &channels.shared),
+            &mut Stepwise::new(&mut session),
+            &mut link,
+            &mut recorder,
+            &mut keeping,
+            &channels,
+        ),
     )?;
     let assumed = [ASSUMED].into_iter().chain(scenario.half.map(|_| HALF));
     let replay = Replay {
