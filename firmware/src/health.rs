@@ -34,18 +34,6 @@ pub struct Health {
 }
 
 impl Health {
-    /// All counters at zero.
-    pub const EMPTY: Self = Self {
-        samples: 0,
-        missing: 0,
-        late: 0,
-        overflowed: 0,
-        unkept: 0,
-        lost: [0; 5],
-        restarts: [0; 5],
-        unsent: 0,
-    };
-
     /// Counts a lost reading of a device.
     pub fn lose(&mut self, device: Device) {
         count(&mut self.lost, device);

@@ -101,26 +101,25 @@ impl fmt::Display for Status {
             Self::Levelling { stop } => write!(f, "levelling at stop {stop}"),
             Self::MayDrive { stop } => write!(f, "stop {stop} done, may drive"),
             Self::Driving => f.write_str("driving"),
-            Self::Concluded { azimuth, sigma } => write!(
-                f,
-                "azimuth {}.{:03} sigma {}.{:03}",
-                azimuth / 1000,
-                azimuth % 1000,
-                sigma / 1000,
-                sigma % 1000
-            ),
+            Self::Concluded { azimuth, sigma } => {
+                write!(f, "azimuth {} sigma {}", Thousandths(*azimuth), Thousandths(*sigma))
+            }
             Self::Refused => f.write_str("no azimuth"),
-            Self::Rolling { roll: Some([roll, sigma]), state } => write!(
-                f,
-                "roll {}.{:03} sigma {}.{:03} {state}",
-                roll / 1000,
-                roll % 1000,
-                sigma / 1000,
-                sigma % 1000
-            ),
+            Self::Rolling { roll: Some([roll, sigma]), state } => {
+                write!(f, "roll {} sigma {} {state}", Thousandths(*roll), Thousandths(*sigma))
+            }
             Self::Rolling { roll: None, state } => write!(f, "roll unknown, {state}"),
             Self::RollEnded => f.write_str("no roll"),
         }
+    }
+}
+
+/// A number of thousandths, written as a decimal fraction.
+pub(crate) struct Thousandths(pub(crate) u32);
+
+impl fmt::Display for Thousandths {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}.{:03}", self.0 / 1000, self.0 % 1000)
     }
 }
 

@@ -48,6 +48,17 @@ impl Quantity for Code {
     }
 }
 
+/// A value at a limit of the number range where its sensor or converter is saturated, so that the
+/// loss is visible downstream.
+#[must_use]
+pub(crate) fn clipped(value: i32, is_clipped: bool) -> i32 {
+    match (is_clipped, value < 0) {
+        (false, _) => value,
+        (true, false) => i32::MAX,
+        (true, true) => i32::MIN,
+    }
+}
+
 /// One conversion of the precise gyro, or of another sensor behind a converter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RateReading<V = AngularRate> {

@@ -37,7 +37,7 @@ pub struct Channels<'a, S = Sample> {
 
 impl<'a, S> Channels<'a, S> {
     /// Channels without any message; events go to the observer.
-    pub const fn new(observer: &'a dyn Observer) -> Self {
+    pub fn new(observer: &'a dyn Observer) -> Self {
         Self { samples: Queue::new(), shared: Shared::new(observer) }
     }
 }
@@ -75,7 +75,7 @@ pub struct Shared<'a> {
 
 impl<'a> Shared<'a> {
     /// Signals and cells without any message.
-    pub const fn new(observer: &'a dyn Observer) -> Self {
+    pub fn new(observer: &'a dyn Observer) -> Self {
         Self {
             wanted: Signal::new(),
             sensing: Signal::new(),
@@ -85,7 +85,7 @@ impl<'a> Shared<'a> {
             angle: Cell::new((Angle(0), Instant::MIN)),
             sway: Cell::new(SwayNoise::NONE),
             keep: KeeperChannels::new(),
-            health: Cell::new(Health::EMPTY),
+            health: Cell::default(),
             status: Cell::new(Status::Starting),
             observer,
         }

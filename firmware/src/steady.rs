@@ -10,8 +10,6 @@
 //! A base unit that fails is started again as any other device. If it is given up, a session that
 //! does not need it continues without it.
 
-use core::future::ready;
-
 use embassy_time::Instant;
 use micromath::F32Ext;
 use orientation::device::Device;
@@ -47,35 +45,48 @@ pub trait Base {
     fn steady(&mut self) -> Self::CompensatesSway<'_>;
 }
 
-/// The compensation of the base's sway.
+/// The compensation of the base's sway. Without sensors there is nothing to read, and rates are used
+/// as measured; the methods do so unless they are implemented.
 #[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait CompensatesSway {
     /// Starts the sensors.
     ///
     /// # Errors
     /// A device without which the session cannot run is given up.
-    async fn start(&mut self, shared: &Shared<'_>) -> Result<(), Refusal>;
+    async fn start(&mut self, _shared: &Shared<'_>) -> Result<(), Refusal> {
+        Ok(())
+    }
 
     /// Whether the decision for or against the compensation has been taken.
-    fn is_decided(&self) -> bool;
+    fn is_decided(&self) -> bool {
+        true
+    }
 
     /// Reads the sensors; called with every sample.
     ///
     /// # Errors
     /// The sensors are given up while their readings are being subtracted.
-    async fn follow(&mut self, shared: &Shared<'_>) -> Result<(), Refusal>;
+    async fn follow(&mut self, _shared: &Shared<'_>) -> Result<(), Refusal> {
+        Ok(())
+    }
 
     /// The reading of the latest [`Self::follow`] and its time; each reading is returned once.
-    fn reading(&mut self) -> Option<(Instant, BaseReading)>;
+    fn reading(&mut self) -> Option<(Instant, BaseReading)> {
+        None
+    }
 
     /// Time between two readings, µs, for a precise gyro with the sampling period `sample`, µs.
-    fn period(&self, sample: u32) -> u32;
+    fn period(&self, sample: u32) -> u32 {
+        sample
+    }
 
     /// Restores the full retry budget of the sensors.
-    fn renew(&mut self);
+    fn renew(&mut self) {}
 
     /// The rate along a horizontal axis at this heading, less the sway.
-    fn steadied(&mut self, rate: AngularRate, heading: Angle) -> AngularRate;
+    fn steadied(&mut self, rate: AngularRate, _heading: Angle) -> AngularRate {
+        rate
+    }
 }
 
 impl Base for NoBase {
@@ -86,34 +97,7 @@ impl Base for NoBase {
     }
 }
 
-/// No compensation: rates are used as measured.
-impl CompensatesSway for NoBase {
-    fn start(&mut self, _: &Shared<'_>) -> impl Future<Output = Result<(), Refusal>> {
-        ready(Ok(()))
-    }
-
-    fn is_decided(&self) -> bool {
-        true
-    }
-
-    fn follow(&mut self, _: &Shared<'_>) -> impl Future<Output = Result<(), Refusal>> {
-        ready(Ok(()))
-    }
-
-    fn reading(&mut self) -> Option<(Instant, BaseReading)> {
-        None
-    }
-
-    fn period(&self, sample: u32) -> u32 {
-        sample
-    }
-
-    fn renew(&mut self) {}
-
-    fn steadied(&mut self, rate: AngularRate, _: Angle) -> AngularRate {
-        rate
-    }
-}
+impl CompensatesSway for NoBase {}
 
 impl<B: BaseSensors> Base for B {
     type CompensatesSway<'a>

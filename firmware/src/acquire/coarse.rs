@@ -6,6 +6,7 @@ use embassy_time::Instant;
 use orientation::signal::InertialSample;
 use orientation::units::{Angle, AngleIncrement, AngularRate, SpecificForce};
 
+use super::increments;
 use crate::keep::{Motion, VerticalGyro};
 use crate::ports::BaseReading;
 use crate::shared::Shared;
@@ -182,13 +183,7 @@ impl Coarse {
     /// readings show in the times.
     pub(super) fn pass_on(&mut self, at: Instant, reading: &BaseReading, shared: &Shared<'_>) {
         let (lasted, _) = self.pace.lasted(at);
-        let [forward, right, down] = &mut self.carried;
-        let [about_forward, about_right, about_down] = reading.rate;
-        let mut turned = [
-            AngleIncrement::of_rate(about_forward, lasted, forward),
-            AngleIncrement::of_rate(about_right, lasted, right),
-            AngleIncrement::of_rate(about_down, lasted, down),
-        ];
+        let mut turned = increments(reading.rate, lasted, &mut self.carried);
         turned[2] = match self.take_precise(shared) {
             Some(precise) => {
                 self.excess.push(turned[2], precise);

@@ -29,6 +29,7 @@ pub use triad::TriadAcquisition;
 use core::convert::Infallible;
 
 use orientation::error::Refusal;
+use orientation::units::{AngleIncrement, AngularRate};
 
 use outlet::Outlet;
 
@@ -95,6 +96,22 @@ async fn sample_for_ever<'a>(source: &mut impl Source<'a>) -> Result<Infallible,
             Err(reason) => source.do_without(reason).await?,
         }
     }
+}
+
+/// Increments of the rates about three axes over a time, µs, with the remainders of whole steps,
+/// 10⁻¹⁵ rad.
+fn increments(
+    rates: [AngularRate; 3],
+    microseconds: u32,
+    carried: &mut [i64; 3],
+) -> [AngleIncrement; 3] {
+    let [forward, right, down] = carried;
+    let [about_forward, about_right, about_down] = rates;
+    [
+        AngleIncrement::of_rate(about_forward, microseconds, forward),
+        AngleIncrement::of_rate(about_right, microseconds, right),
+        AngleIncrement::of_rate(about_down, microseconds, down),
+    ]
 }
 
 /// Counter of identical successive values.

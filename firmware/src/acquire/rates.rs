@@ -27,7 +27,7 @@ pub(super) struct Rates<'a, G, V = AngularRate> {
     /// Counter of saturated readings.
     limit: Limit,
     /// Sample period.
-    period: Duration,
+    pub(super) period: Duration,
     /// End of the latest conversion.
     latest: Option<Instant>,
     /// Whether it was told that the gyro came to the limit of its range: once is enough for a log.

@@ -58,8 +58,6 @@ struct Acquisition<'a, G, A, P, S> {
     coarse: Coarse,
     outlet: Outlet<'a, Sample>,
     silence: Duration,
-    /// Period of the precise gyro's samples.
-    period: Duration,
 }
 
 impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Acquisition<'a, G, A, P, S> {
@@ -83,7 +81,6 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Acquisition
             coarse,
             outlet: Outlet::new(period, channels),
             silence: silence(period),
-            period: Duration::from_micros(period.into()),
         }
     }
 
@@ -171,7 +168,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
         }
         self.coarse.lose_precise();
         let until = Instant::now() + RETRY;
-        let mut ticker = Ticker::every(self.period);
+        let mut ticker = Ticker::every(self.rates.period);
         while Instant::now() < until || !shared.keep.is_at_rest.get() {
             ticker.next().await;
             self.steady.follow(shared).await?;

@@ -8,12 +8,12 @@ use embassy_time::{Duration, Instant};
 use orientation::device::Device;
 use orientation::error::Refusal;
 use orientation::signal::InertialSample;
-use orientation::units::{AngleIncrement, AngularRate, SpecificForce};
+use orientation::units::SpecificForce;
 
-use super::Source;
 use super::forces::Forces;
 use super::in_step::{Group, middle};
 use super::outlet::Outlet;
+use super::{Source, increments};
 use crate::configuration::VehicleConfiguration;
 use crate::keep::Motion;
 use crate::ports::{Accelerometer, ForceReading, InStep, VehicleSensors};
@@ -64,17 +64,6 @@ impl<'a, G: InStep, A: Accelerometer> TriadAcquisition<'a, G, A> {
         let lasted = if beside <= self.period / 4 { since } else { self.period };
         lasted.as_micros() as u32
     }
-
-    /// Increments of the gyros' rates over a time, µs.
-    fn turned(&mut self, rates: [AngularRate; 3], microseconds: u32) -> [AngleIncrement; 3] {
-        let [forward, right, down] = &mut self.carried;
-        let [about_forward, about_right, about_down] = rates;
-        [
-            AngleIncrement::of_rate(about_forward, microseconds, forward),
-            AngleIncrement::of_rate(about_right, microseconds, right),
-            AngleIncrement::of_rate(about_down, microseconds, down),
-        ]
-    }
 }
 
 impl<'a, G: InStep, A: Accelerometer> Source<'a> for TriadAcquisition<'a, G, A> {
@@ -101,7 +90,7 @@ impl<'a, G: InStep, A: Accelerometer> Source<'a> for TriadAcquisition<'a, G, A> 
         let force = reading.and_then(|reading| self.mean.push(reading));
         let Some(rates) = rates else { return Ok(None) };
         self.outlet.judge(time);
-        let turned = self.turned(rates, lasted);
+        let turned = increments(rates, lasted, &mut self.carried);
         let time = orientation::units::Instant(time.as_micros());
         let sample = InertialSample { time, turned, force };
         self.outlet.shared.move_on(Motion::Moved(sample));

@@ -43,11 +43,6 @@ impl<M: HeadingStore> Memory<M> {
         Self { store, found: None, stored: None, has_failed: false }
     }
 
-    /// The store.
-    pub(super) fn store(&self) -> &M {
-        &self.store
-    }
-
     /// Reads the heading that was stored before the restart. An item with a wrong checksum counts
     /// as absent.
     pub(super) async fn load(&mut self, shared: &Shared<'_>) {

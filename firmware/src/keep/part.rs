@@ -134,12 +134,6 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
         self.keeper.report()
     }
 
-    /// The non-volatile store of the heading.
-    #[must_use]
-    pub fn store(&self) -> &M {
-        self.memory.store()
-    }
-
     /// Takes the inertial samples that the session has had the chance to take, and the session's
     /// azimuth in its place among them.
     fn take(&mut self, shared: &Shared<'_>) {
