@@ -19,7 +19,7 @@ use orientation::units::{Angle, AngularRate, TURN};
 
 use crate::ports::{
     Accelerometer, Actuator, BaseReading, BaseSensors, Code, Encoder, ForceReading, Gyro, InStep,
-    Motion, RateReading, Startable, clipped,
+    Motion, RateReading, Request, Startable, clipped,
 };
 
 /// A gyro with an analogue rate output, behind its analogue-to-digital converter.
@@ -195,31 +195,26 @@ impl<S: SpiDevice, D: DelayNs> Startable for StageMotor<S, D> {
 }
 
 impl<S: SpiDevice, D: DelayNs> Actuator for StageMotor<S, D> {
-    fn go_to(&mut self, angle: f64) -> impl Future<Output = Result<(), Fault>> {
-        self.0.go_to(microsteps(angle))
-    }
-
-    fn seek(&mut self, rate: f64) -> impl Future<Output = Result<(), Fault>> {
-        self.0.run(Velocity(microsteps(rate)))
-    }
-
-    fn set_angle(&mut self, angle: f64) -> impl Future<Output = Result<(), Fault>> {
-        self.0.set_position(microsteps(angle))
-    }
-
-    async fn release(&mut self) -> Result<(), Fault> {
-        self.0.stop().await?;
-        self.0.clear_stall().await
-    }
-
-    async fn motion(&mut self) -> Result<Motion, Fault> {
-        let status = self.0.status().await?;
-        Ok(Motion {
-            angle: f64::from(status.position) / f64::from(MICROSTEPS_PER_TURN) * TURN,
-            is_standing: status.standing,
-            has_reached: status.reached,
-            is_stalled: status.stalled,
-            at_index: status.left_switch,
-        })
+    async fn execute(&mut self, request: Request) -> Result<Option<Motion>, Fault> {
+        match request {
+            Request::GoTo(angle) => self.0.go_to(microsteps(angle)).await?,
+            Request::Seek(rate) => self.0.run(Velocity(microsteps(rate))).await?,
+            Request::SetAngle(angle) => self.0.set_position(microsteps(angle)).await?,
+            Request::Release => {
+                self.0.stop().await?;
+                self.0.clear_stall().await?;
+            }
+            Request::Look => {
+                let status = self.0.status().await?;
+                return Ok(Some(Motion {
+                    angle: f64::from(status.position) / f64::from(MICROSTEPS_PER_TURN) * TURN,
+                    is_standing: status.standing,
+                    has_reached: status.reached,
+                    is_stalled: status.stalled,
+                    at_index: status.left_switch,
+                }));
+            }
+        }
+        Ok(None)
     }
 }

@@ -82,7 +82,9 @@ impl<M: Actuator> Mechanism for Gimbal<'_, M> {
     /// Starts the drives, waits for the first valid angles, homes, and then follows requests for a
     /// heading or for the vertical.
     async fn serve(&mut self) -> Result<Infallible, Refusal> {
-        both(self.outer.start(), self.inner.start()).await?;
+        let [outer, inner] =
+            [&mut self.outer, &mut self.inner].map(|frame| &mut frame.motor.actuator);
+        both(outer.start(self.shared), inner.start(self.shared)).await?;
         self.shared.sensing.wait().await;
         both(self.outer.home(), self.inner.home()).await?;
         self.go_to(Station::Forward).await?;

@@ -9,7 +9,6 @@ use crate::shared::Shared;
 
 /// A mechanism that executes the requests of a session: a stage, a two-frame mount, a turntable, or
 /// none.
-#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait Mechanism {
     /// Brings the mechanism to its reference, then executes requests without end.
     ///

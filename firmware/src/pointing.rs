@@ -47,7 +47,6 @@ pub struct Aim {
 }
 
 /// The encoders as the source of the direction of the sensitive axis.
-#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait Pointing {
     /// The readings of the encoders.
     type Shown;
@@ -121,8 +120,6 @@ fn greatest_step(time: Duration) -> u32 {
 pub struct Shaft<'a, E> {
     /// The encoder with its retry budget.
     encoder: Guarded<'a, E>,
-    /// Name of the encoder in the log.
-    name: Device,
     /// Correction of its harmonic errors.
     calibration: Calibration,
     /// Decimation of the readings.
@@ -149,7 +146,6 @@ impl<'a, E: Encoder> Shaft<'a, E> {
     ) -> Self {
         Self {
             encoder: Guarded::new(encoder, name),
-            name,
             calibration: Calibration::new(harmonics),
             due: Decimator::new(configuration.angle_divider),
             angle: None,
@@ -167,7 +163,7 @@ impl<'a, E: Encoder> Shaft<'a, E> {
         let is_far = distance(angle, last) > greatest_step(now - read);
         self.has_jumped = is_far && !self.has_jumped && read > Instant::MIN;
         if self.has_jumped {
-            self.shared.lose(self.name, Symptom::Jumped);
+            self.shared.lose(self.encoder.name, Symptom::Jumped);
             return false;
         }
         self.latest.set((angle, now));

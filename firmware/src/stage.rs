@@ -16,8 +16,8 @@ use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 use crate::configuration::StageConfiguration;
 use crate::event::Event;
 use crate::mechanism::Mechanism;
-use crate::motor::{Axis, Break, Motor, Request, STALL_REST};
-use crate::ports::{Actuator, Motion};
+use crate::motor::{Axis, Break, Motor, STALL_REST};
+use crate::ports::{Actuator, Motion, Request};
 use crate::shared::{LatestAngle, Shared};
 
 /// Number of repetitions of the search for the index after a stall.
@@ -32,7 +32,7 @@ const STOOD: u32 = u32::MAX / 24_000;
 /// The control of a stage, or of one frame of a two-frame mount.
 pub struct Stage<'a, M> {
     /// The motor and its encoder.
-    motor: Motor<'a, M>,
+    pub(crate) motor: Motor<'a, M>,
     /// Travel, tolerances and time limits.
     configuration: StageConfiguration,
 }
@@ -57,11 +57,6 @@ impl<'a, M: Actuator> Stage<'a, M> {
     ) -> Self {
         let motor = Motor::new(axis, actuator, latest, shared);
         Self { motor, configuration: *configuration }
-    }
-
-    /// Starts the motor's driver.
-    pub(crate) fn start(&mut self) -> impl Future<Output = Result<(), Refusal>> {
-        self.motor.start()
     }
 
     /// Finds the index and sets the motor's step count by the encoder there. A stall is followed by
@@ -197,7 +192,7 @@ impl<M: Actuator> Mechanism for Stage<'_, M> {
     /// Starts the driver, waits for the sensors, homes, and then follows requests for ever.
     async fn serve(&mut self) -> Result<Infallible, Refusal> {
         let shared = self.motor.shared;
-        self.start().await?;
+        self.motor.actuator.start(shared).await?;
         shared.sensing.wait().await;
         self.home().await?;
         self.turn_to(self.configuration.home).await?;

@@ -34,20 +34,8 @@ const STEP: f32 = (TURN / 4_294_967_296.0) as f32;
 /// turn, by which a sway across the axis is resolved with an error of 0.04 %.
 const KEPT: u32 = 1 << 18;
 
-/// Equipment of the base: coarse sensors or none.
-pub trait Base {
-    /// The type of the compensation with this equipment.
-    type CompensatesSway<'a>: CompensatesSway
-    where
-        Self: 'a;
-
-    /// Takes the sensors; nothing is started yet.
-    fn steady(&mut self) -> Self::CompensatesSway<'_>;
-}
-
 /// The compensation of the base's sway. Without sensors there is nothing to read, and rates are used
 /// as measured; the methods do so unless they are implemented.
-#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait CompensatesSway {
     /// Starts the sensors.
     ///
@@ -89,26 +77,7 @@ pub trait CompensatesSway {
     }
 }
 
-impl Base for NoBase {
-    type CompensatesSway<'a> = NoBase;
-
-    fn steady(&mut self) -> NoBase {
-        NoBase
-    }
-}
-
 impl CompensatesSway for NoBase {}
-
-impl<B: BaseSensors> Base for B {
-    type CompensatesSway<'a>
-        = SwayCompensation<'a, B>
-    where
-        B: 'a;
-
-    fn steady(&mut self) -> SwayCompensation<'_, B> {
-        SwayCompensation::new(self)
-    }
-}
 
 /// The compensation of sway by coarse sensors on the base.
 pub struct SwayCompensation<'a, B> {
@@ -140,7 +109,7 @@ pub struct SwayCompensation<'a, B> {
 
 impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
     /// Takes the base unit; nothing is started yet.
-    fn new(device: &'a mut B) -> Self {
+    pub fn new(device: &'a mut B) -> Self {
         let (sensors, divider) = (device.sensors(), device.divider());
         Self {
             base: Guarded::new(device, Device::Base),

@@ -19,8 +19,8 @@ use orientation::units::{Angle, DEGREES_PER_RADIAN as DEGREES, TURN};
 use crate::configuration::TurntableConfiguration;
 use crate::event::Event;
 use crate::mechanism::Mechanism;
-use crate::motor::{Axis, Break, Motor, POLL, Request, STALL_REST};
-use crate::ports::Actuator;
+use crate::motor::{Axis, Break, Motor, POLL, STALL_REST};
+use crate::ports::{Actuator, Request};
 use crate::shared::Shared;
 
 /// Number of stalls in a session after which the platform may turn on.
@@ -171,8 +171,9 @@ impl<'a, M: Actuator> Turntable<'a, M> {
 impl<M: Actuator> Mechanism for Turntable<'_, M> {
     /// Starts the driver, waits for the sensors, and turns until the session has to end.
     async fn serve(&mut self) -> Result<Infallible, Refusal> {
-        self.motor.start().await?;
-        self.motor.shared.sensing.wait().await;
+        let shared = self.motor.shared;
+        self.motor.actuator.start(shared).await?;
+        shared.sensing.wait().await;
         loop {
             let Err(broken) = self.turn().await;
             self.forgive(broken)?;

@@ -2,11 +2,11 @@
 
 use drivers::fault::Fault;
 use embassy_time::{Duration, Instant};
-use orientation::device::{Device, Trouble};
+use orientation::device::Device;
 use orientation::error::Refusal;
 use orientation::units::SpecificForce;
 
-use super::{Limit, RepeatCounter, STUCK};
+use super::Plausibility;
 use crate::guarded::Guarded;
 use crate::keep::RETRY;
 use crate::pointing::Decimator;
@@ -26,13 +26,11 @@ fn is_on_the_way(shared: &Shared<'_>) -> bool {
 /// State of the accelerometer's readings.
 pub(super) struct Forces<'a, A> {
     /// Accelerometer with its retry budget.
-    accelerometer: Guarded<'a, A>,
+    pub(super) accelerometer: Guarded<'a, A>,
     /// Decimation of the sample rate.
     due: Decimator,
-    /// Counter of identical readings.
-    row: RepeatCounter<[SpecificForce; 3]>,
-    /// Counter of saturated readings.
-    limit: Limit,
+    /// Checks of its readings.
+    plausibility: Plausibility<[SpecificForce; 3]>,
     /// Time until which it is not read, after a failure while an azimuth is held.
     absent: Option<Instant>,
 }
@@ -44,8 +42,7 @@ impl<'a, A: Accelerometer> Forces<'a, A> {
         Self {
             accelerometer: Guarded::new(accelerometer, Device::Accelerometer),
             due: Decimator::new(divider),
-            row: RepeatCounter::new(),
-            limit: Limit::new(sample_rate),
+            plausibility: Plausibility::new(sample_rate),
             absent: None,
         }
     }
@@ -53,16 +50,8 @@ impl<'a, A: Accelerometer> Forces<'a, A> {
     /// Restores the full retry budget.
     pub(super) fn renew(&mut self) {
         self.accelerometer.renew();
-        self.limit.samples = 0;
+        self.plausibility.saturated = 0;
         self.absent = None;
-    }
-
-    /// Starts the accelerometer, repeatedly within the retry budget.
-    pub(super) fn start(
-        &mut self,
-        shared: &Shared<'_>,
-    ) -> impl Future<Output = Result<(), Refusal>> {
-        self.accelerometer.start(shared)
     }
 
     /// Returns a new reading where one is due, possibly saturated; none where it was lost. It must
@@ -109,13 +98,9 @@ impl<'a, A: Accelerometer> Forces<'a, A> {
             Ok(reading) => reading,
             Err(symptom) => return Ok(Err(symptom)),
         };
-        if self.limit.is_exceeded(reading.is_clipped, self.due.divider) {
-            return Err(shared.give_up(Device::Accelerometer, Trouble::Saturated));
+        match self.plausibility.judge(reading.force, reading.is_clipped, self.due.divider) {
+            Ok(symptom) => Ok(symptom.map_or(Ok(reading), Err)),
+            Err(trouble) => Err(shared.give_up(Device::Accelerometer, trouble)),
         }
-        if self.row.push(reading.force) >= STUCK && !reading.is_clipped {
-            self.row = RepeatCounter::new();
-            return Ok(Err(Symptom::Stuck));
-        }
-        Ok(Ok(reading))
     }
 }

@@ -81,12 +81,12 @@ impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
     async fn begin(&mut self) {
         for converter in &mut self.converters {
             if let Err(fault) = converter.gyro.device.arm().await {
-                self.shared.lose(converter.name, Symptom::Chip(fault));
+                self.shared.lose(converter.gyro.name, Symptom::Chip(fault));
             }
         }
         for converter in &mut self.converters {
             if let Err(fault) = converter.gyro.device.begin().await {
-                self.shared.lose(converter.name, Symptom::Chip(fault));
+                self.shared.lose(converter.gyro.name, Symptom::Chip(fault));
             }
         }
         self.strays = 0;
@@ -157,7 +157,7 @@ impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
         if self.strays > STRAYS {
             self.mend::<()>(index, Symptom::OutOfStep).await?;
         } else {
-            self.shared.lose(self.converters[index].name, Symptom::OutOfStep);
+            self.shared.lose(self.converters[index].gyro.name, Symptom::OutOfStep);
             Timer::after(self.period / 2).await;
             self.values().await?;
         }

@@ -28,9 +28,11 @@ pub use triad::TriadAcquisition;
 
 use core::convert::Infallible;
 
+use orientation::device::Trouble;
 use orientation::error::Refusal;
 use orientation::units::{AngleIncrement, AngularRate};
 
+use crate::retry_budget::Symptom;
 use outlet::Outlet;
 
 /// Number of identical successive readings that is not chance: the last bits of all sensors are
@@ -42,7 +44,6 @@ const SATURATED_SECONDS: f64 = 5.0;
 const SILENCE: u32 = 8;
 
 /// The sensors of a carrier as the source of its samples.
-#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait Source<'a> {
     /// The kind of sample.
     type Sample: 'static;
@@ -136,24 +137,43 @@ impl<T: Copy + PartialEq> RepeatCounter<T> {
     }
 }
 
-/// Counter of successive samples at the limit of the range.
+/// Checks of the successive readings of a sensor.
 #[derive(Clone, Copy, Debug)]
-struct Limit {
-    /// Successive samples at the limit.
-    samples: u32,
-    /// Greatest number that is tolerated.
+struct Plausibility<T> {
+    /// Counter of identical readings.
+    repeats: RepeatCounter<T>,
+    /// Successive samples at the limit of the range.
+    saturated: u32,
+    /// Greatest number of these that is tolerated.
     longest: u32,
 }
 
-impl Limit {
-    /// Counter for a sensor with this sample rate, Hz.
+impl<T: Copy + PartialEq> Plausibility<T> {
+    /// Checks of a sensor with this sample rate, Hz.
     fn new(sample_rate: f64) -> Self {
-        Self { samples: 0, longest: (SATURATED_SECONDS * sample_rate) as u32 }
+        let longest = (SATURATED_SECONDS * sample_rate) as u32;
+        Self { repeats: RepeatCounter::new(), saturated: 0, longest }
     }
 
-    /// Adds `samples` samples; returns whether the sensor has been at its limit for too long.
-    fn is_exceeded(&mut self, is_there: bool, samples: u32) -> bool {
-        self.samples = if is_there { self.samples + samples } else { 0 };
-        self.samples > self.longest
+    /// Takes a reading that stands for `samples` samples. One that is repeated too often is a
+    /// symptom of a sensor that has stopped.
+    ///
+    /// # Errors
+    /// The sensor has been at the limit of its range for too long.
+    fn judge(
+        &mut self,
+        value: T,
+        is_clipped: bool,
+        samples: u32,
+    ) -> Result<Option<Symptom>, Trouble> {
+        self.saturated = if is_clipped { self.saturated + samples } else { 0 };
+        if self.saturated > self.longest {
+            return Err(Trouble::Saturated);
+        }
+        if self.repeats.push(value) < STUCK || is_clipped {
+            return Ok(None);
+        }
+        self.repeats = RepeatCounter::new();
+        Ok(Some(Symptom::Stuck))
     }
 }

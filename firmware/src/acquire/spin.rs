@@ -13,6 +13,7 @@ use orientation::units::{AngleIncrement, Instant, SpinForce};
 use super::Source;
 use super::in_step::{Group, middle};
 use super::outlet::Outlet;
+use crate::configuration::period;
 use crate::ports::{Code, InStep, Quantity, SpinSensors};
 use crate::shared::Channels;
 use crate::spin::configuration::{CHANNELS, GYROS, SpinConfiguration};
@@ -47,7 +48,8 @@ impl<'a, C: InStep<Code>> SpinAcquisition<'a, C> {
         configuration: &'a SpinConfiguration,
         channels: &'a Channels<'a, SpinSample>,
     ) -> Self {
-        let (rate, period) = (configuration.sample_rate, configuration.period());
+        let rate = configuration.sample_rate;
+        let period = period(rate);
         Self {
             converters: Group::new(converters, NAMES, rate, period, &channels.shared),
             configuration,
@@ -60,16 +62,11 @@ impl<'a, C: InStep<Code>> SpinAcquisition<'a, C> {
     /// Rotation of the gyros since the middle of the previous conversion; for the first one as much
     /// as in a whole conversion.
     fn turned(&mut self, codes: &[Code; CHANNELS]) -> [AngleIncrement; GYROS] {
-        let mut steps = [0; GYROS];
-        for (axis, steps) in steps.iter_mut().enumerate() {
-            *steps = self.configuration.gyros[axis].steps(codes[axis]);
-        }
+        let gyros = &self.configuration.gyros;
+        let steps = core::array::from_fn(|axis| gyros[axis].steps(codes[axis]));
         let before = self.before.replace(steps).unwrap_or(steps);
-        let mut turned = [AngleIncrement::default(); GYROS];
-        for (axis, turned) in turned.iter_mut().enumerate() {
-            *turned = between(before[axis], steps[axis], &mut self.carried[axis]);
-        }
-        turned
+        let carried = &mut self.carried;
+        core::array::from_fn(|axis| between(before[axis], steps[axis], &mut carried[axis]))
     }
 
     /// Specific forces up and right; [`None`] if one is saturated.

@@ -15,15 +15,15 @@ use super::coarse::Coarse;
 use super::forces::Forces;
 use super::outlet::Outlet;
 use super::rates::{Rates, silence};
-use crate::configuration::{Configuration, FramesConfiguration};
+use crate::configuration::{Configuration, FramesConfiguration, period};
 use crate::keep::RETRY;
 use crate::pointing::{FrameShafts, Pointing, Shaft};
 use crate::ports::{Accelerometer, Encoder, Frames, Gyro, Sensors};
 use crate::shared::{Channels, LatestAngle};
-use crate::steady::{Base, CompensatesSway};
+use crate::steady::CompensatesSway;
 
 /// The sensors of a stage or a turntable as a source of samples; nothing is started yet.
-pub fn on_stage<'a, G: Gyro, A: Accelerometer, E: Encoder, B: Base>(
+pub fn on_stage<'a, G: Gyro, A: Accelerometer, E: Encoder, B: CompensatesSway>(
     sensors: &'a mut Sensors<G, A, E, B>,
     configuration: &Configuration,
     channels: &'a Channels<'a>,
@@ -32,12 +32,12 @@ pub fn on_stage<'a, G: Gyro, A: Accelerometer, E: Encoder, B: Base>(
     let (harmonics, latest) = (configuration.encoder, &channels.shared.angle);
     let shared = &channels.shared;
     let shaft = Shaft::new(encoder, Device::Encoder, harmonics, configuration, latest, shared);
-    Acquisition::new(gyro, accelerometer, shaft, base.steady(), configuration, channels)
+    Acquisition::new(gyro, accelerometer, shaft, base, configuration, channels)
 }
 
 /// The sensors of a two-frame mount as a source of samples; nothing is started yet. The latest
 /// frame angles are written to `latest`.
-pub fn on_mount<'a, G: Gyro, A: Accelerometer, E: Encoder, B: Base>(
+pub fn on_mount<'a, G: Gyro, A: Accelerometer, E: Encoder, B: CompensatesSway>(
     sensors: &'a mut Sensors<G, A, Frames<E>, B>,
     configuration: &Configuration,
     frames: &FramesConfiguration,
@@ -46,7 +46,7 @@ pub fn on_mount<'a, G: Gyro, A: Accelerometer, E: Encoder, B: Base>(
 ) -> impl Source<'a> {
     let Sensors { gyro, accelerometer, encoder, base } = sensors;
     let shafts = FrameShafts::new(encoder, configuration, frames, latest, &channels.shared);
-    Acquisition::new(gyro, accelerometer, shafts, base.steady(), configuration, channels)
+    Acquisition::new(gyro, accelerometer, shafts, base, configuration, channels)
 }
 
 /// Acquisition of the sensors of the stage path.
@@ -54,7 +54,7 @@ struct Acquisition<'a, G, A, P, S> {
     rates: Rates<'a, G>,
     forces: Forces<'a, A>,
     pointing: P,
-    steady: S,
+    steady: &'a mut S,
     coarse: Coarse,
     outlet: Outlet<'a, Sample>,
     silence: Duration,
@@ -66,12 +66,12 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Acquisition
         gyro: &'a mut G,
         accelerometer: &'a mut A,
         pointing: P,
-        steady: S,
+        steady: &'a mut S,
         configuration: &Configuration,
         channels: &'a Channels<'a>,
     ) -> Self {
-        let period = configuration.period();
         let Configuration { sample_rate, force_divider, .. } = *configuration;
+        let period = period(sample_rate);
         let coarse = Coarse::new(steady.period(period), period);
         Self {
             rates: Rates::new(gyro, Device::Gyro, sample_rate),
@@ -120,7 +120,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
 
     async fn start(&mut self) -> Result<(), Refusal> {
         let shared = self.outlet.shared;
-        self.forces.start(shared).await?;
+        self.forces.accelerometer.start(shared).await?;
         self.pointing.start().await?;
         self.steady.start(shared).await?;
         self.rates.gyro.start(shared).await

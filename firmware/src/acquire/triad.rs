@@ -14,7 +14,7 @@ use super::forces::Forces;
 use super::in_step::{Group, middle};
 use super::outlet::Outlet;
 use super::{Source, increments};
-use crate::configuration::VehicleConfiguration;
+use crate::configuration::{VehicleConfiguration, period};
 use crate::keep::Motion;
 use crate::ports::{Accelerometer, ForceReading, InStep, VehicleSensors};
 use crate::shared::Channels;
@@ -42,8 +42,8 @@ impl<'a, G: InStep, A: Accelerometer> TriadAcquisition<'a, G, A> {
         configuration: &VehicleConfiguration,
         channels: &'a Channels<'a, InertialSample>,
     ) -> Self {
-        let period = configuration.period();
-        let VehicleConfiguration { sample_rate, force_divider, forces, .. } = *configuration;
+        let VehicleConfiguration { sample_rate, force_divider, forces } = *configuration;
+        let period = period(sample_rate);
         let VehicleSensors { gyros, accelerometer } = sensors;
         Self {
             gyros: Group::new(gyros, NAMES, sample_rate, period, &channels.shared),
@@ -74,7 +74,7 @@ impl<'a, G: InStep, A: Accelerometer> Source<'a> for TriadAcquisition<'a, G, A> 
     }
 
     async fn start(&mut self) -> Result<(), Refusal> {
-        self.forces.start(self.outlet.shared).await?;
+        self.forces.accelerometer.start(self.outlet.shared).await?;
         self.gyros.start().await
     }
 

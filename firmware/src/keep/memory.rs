@@ -15,8 +15,9 @@ use orientation::keep::restart::{Doubt, Remembered};
 use orientation::units::DEGREE;
 
 use crate::event::Event;
-use crate::ports::HeadingStore;
+use crate::ports::Store;
 use crate::shared::Shared;
+use crate::storage::HEADING;
 
 /// Least time between two writes of the same stop.
 const PERIOD: Duration = Duration::from_secs(60);
@@ -37,7 +38,7 @@ pub(super) struct Memory<M> {
     has_failed: bool,
 }
 
-impl<M: HeadingStore> Memory<M> {
+impl<M: Store> Memory<M> {
     /// Wraps a store; nothing is read yet.
     pub(super) fn new(store: M) -> Self {
         Self { store, found: None, stored: None, has_failed: false }
@@ -46,7 +47,7 @@ impl<M: HeadingStore> Memory<M> {
     /// Reads the heading that was stored before the restart. An item with a wrong checksum counts
     /// as absent.
     pub(super) async fn load(&mut self, shared: &Shared<'_>) {
-        match self.store.load_heading().await {
+        match self.store.load::<{ Remembered::BYTES }>(HEADING).await {
             Ok(bytes) => self.found = bytes.as_ref().and_then(|b| Remembered::from_bytes(b)),
             Err(fault) => self.fail(fault, shared),
         }
@@ -109,7 +110,7 @@ impl<M: HeadingStore> Memory<M> {
 
     /// Writes an item and reports the first failure.
     async fn write(&mut self, bytes: &[u8; Remembered::BYTES], shared: &Shared<'_>) {
-        if let Err(fault) = self.store.save_heading(bytes).await {
+        if let Err(fault) = self.store.save(HEADING, bytes).await {
             self.fail(fault, shared);
         }
     }

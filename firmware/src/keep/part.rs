@@ -13,7 +13,7 @@ use super::memory::Memory;
 use super::{Kept, Motion, VerticalGyro};
 use crate::configuration::{Alignment, KeepConfiguration, Realignment};
 use crate::event::Event;
-use crate::ports::{Aiding, HeadingStore};
+use crate::ports::{Aiding, Store};
 use crate::shared::Shared;
 
 /// Longest time for which inertial samples wait in the queue: half of the queue's capacity at 2
@@ -42,7 +42,6 @@ const TOLD_SECONDS: f64 = 3.0;
 
 /// The part of the instrument that keeps the attitude beside a session; the unit type keeps
 /// nothing.
-#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait Keep {
     /// Runs until the configured duration of keeping is over. Never returns if nothing is kept.
     async fn run(&mut self, shared: &Shared<'_>);
@@ -101,7 +100,7 @@ struct Told {
     since: Option<Instant>,
 }
 
-impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
+impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
     /// Takes an estimator that has had no sample.
     pub fn new(
         keeper: &'k mut Keeper,
@@ -362,7 +361,7 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
     }
 }
 
-impl<H: Aiding, M: HeadingStore> Keep for Keeping<'_, H, M> {
+impl<H: Aiding, M: Store> Keep for Keeping<'_, H, M> {
     async fn run(&mut self, shared: &Shared<'_>) {
         if self.configuration.hold == Duration::MIN {
             pending::<()>().await;

@@ -94,19 +94,9 @@ pub struct SessionRunner<'a, R, S> {
     taken: Option<units::Instant>,
 }
 
-/// The cause that ends a session before its own conclusion.
-enum Break {
-    /// The session cannot continue.
-    Refused(Refusal),
-    /// The azimuth is known already, so the session is skipped.
-    Spared,
-}
-
-impl From<Refusal> for Break {
-    fn from(reason: Refusal) -> Self {
-        Self::Refused(reason)
-    }
-}
+/// The cause that ends a session before its own conclusion: a refusal, or [`None`] if the azimuth is
+/// known already, so that the session is skipped.
+type Break = Option<Refusal>;
 
 impl<'a, R: Recorder<S>, S> SessionRunner<'a, R, S> {
     /// Takes a session that has not begun.
@@ -131,9 +121,8 @@ impl<'a, R: Recorder<S>, S> SessionRunner<'a, R, S> {
         }
         loop {
             self.shared.tell(self.session.outset());
-            match self.runner().await {
-                Ok(()) | Err(Break::Spared) => {}
-                Err(Break::Refused(reason)) => self.session.fail(reason),
+            if let Err(Some(reason)) = self.runner().await {
+                self.session.fail(reason);
             }
             self.conclude();
             self.shared.concluded.signal(());
@@ -229,7 +218,7 @@ impl<'a, R: Recorder<S>, S> SessionRunner<'a, R, S> {
         match select3(failure.wait(), self.samples.receive(), keep.spare.wait()).await {
             Either3::First(reason) => Err(reason.into()),
             Either3::Second(sample) => Ok(sample),
-            Either3::Third(()) => Err(Break::Spared),
+            Either3::Third(()) => Err(None),
         }
     }
 

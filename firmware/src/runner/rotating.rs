@@ -16,17 +16,10 @@ use crate::shared::Shared;
 pub struct Rotating<'a> {
     /// The session.
     session: &'a mut Session,
-    /// The state of its reports.
-    told: Told,
-}
-
-/// The part of the session's progress that has been reported.
-#[derive(Clone, Copy, Debug)]
-struct Told {
     /// Phase that was reported last.
-    phase: Phase,
+    told_phase: Phase,
     /// Number of turns that were reported.
-    turns: u32,
+    told_turns: u32,
 }
 
 impl<'a> Rotating<'a> {
@@ -36,8 +29,8 @@ impl<'a> Rotating<'a> {
         if !is_coupled(session) {
             session.handle(SessionEvent::Failed(Refusal::CouplingUnknown));
         }
-        let told = Told { phase: session.phase(), turns: 0 };
-        Self { session, told }
+        let told_phase = session.phase();
+        Self { session, told_phase, told_turns: 0 }
     }
 }
 
@@ -75,16 +68,16 @@ impl AlignmentSession<Sample> for Rotating<'_> {
     }
 
     fn follow(&mut self, shared: &Shared<'_>) {
-        let (session, told) = (&*self.session, &mut self.told);
-        if session.phase() != told.phase {
-            tell_found(session, told.phase, shared);
+        let session = &*self.session;
+        if session.phase() != self.told_phase {
+            tell_found(session, self.told_phase, shared);
             tell_phase(session, shared);
-            told.phase = session.phase();
+            self.told_phase = session.phase();
         }
         // The number of planned turns is not computed here, as this runs with every sample.
         let done = session.turn_accumulator().stretches().iter().map(Stretch::count).sum();
-        if done > told.turns {
-            told.turns = done;
+        if done > self.told_turns {
+            self.told_turns = done;
             let (_, of) = session.turns();
             shared.tell(Event::Turned(done, of));
             tell_status(session, shared);

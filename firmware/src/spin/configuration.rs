@@ -69,12 +69,6 @@ pub struct SpinConfiguration {
 }
 
 impl SpinConfiguration {
-    /// The sampling period, µs, rounded to nearest.
-    #[must_use]
-    pub fn period(&self) -> u32 {
-        libm::round(1e6 / self.sample_rate) as u32
-    }
-
     /// Time from the middle of a conversion to its end, µs, rounded to nearest.
     #[must_use]
     pub fn half_period(&self) -> u32 {

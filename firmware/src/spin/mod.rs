@@ -21,13 +21,11 @@ use crate::ports::Recorder;
 use crate::shared::Channels;
 
 /// Tracks a flight until its duration is over or acquisition gives a sensor up, and reports it.
-pub(crate) async fn follow<R>(
+pub(crate) async fn follow<R: Recorder<SpinSample>>(
     flight: &mut Flight,
     recorder: &mut R,
     channels: &Channels<'_, SpinSample>,
-) where
-    R: Recorder<SpinSample>,
-{
+) {
     let shared = &channels.shared;
     shared.tell(Event::BegunSpin);
     while !flight.is_over() {

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use firmware::acquire::{acquire, on_mount};
 use firmware::gimbal::Gimbal;
 use firmware::keep::Keeping;
-use firmware::ports::{Frames, HeadingStore, NoBase, Observer, Ports, Recorder};
+use firmware::ports::{Frames, NoBase, Observer, Ports, Recorder, Store};
 use firmware::run::navigate;
 use firmware::runner::Stepwise;
 use firmware::simulated::Wires;
@@ -13,7 +13,7 @@ use firmware::simulated::base;
 use firmware::simulated::fault::{Fault, FaultyRecorder, Injection};
 use firmware::simulated::keep::journey;
 use firmware::simulated::mount::FramesScenario;
-use firmware::steady::Base;
+use firmware::steady::{CompensatesSway, SwayCompensation};
 use hal_mock::gimbal::board::GimbalBoard;
 use orientation::keep::Keeper;
 use orientation::session::Session;
@@ -57,7 +57,7 @@ pub fn align_frames_and_keep<R: Recorder, W: Observer>(
     plan: &KeptPlan,
     recorder: R,
     watch: &W,
-    store: impl HeadingStore,
+    store: impl Store,
 ) -> Result<FramesRun, RunError> {
     if !scenario.base.has_base_imu {
         let board = RefCell::new(scenario.board(None, &plan.chips));
@@ -67,9 +67,17 @@ pub fn align_frames_and_keep<R: Recorder, W: Observer>(
     let journey = journey(&day, &plan.base);
     let journey = (scenario.base.hold.seconds > 0.0).then_some(journey);
     let rig = RefCell::new(base::rig(&scenario.base, journey.as_ref()));
-    let imu = base::imu(&rig, &scenario.base, &plan.chips);
+    let mut imu = base::imu(&rig, &scenario.base, &plan.chips);
     let board = RefCell::new(scenario.board(journey, &plan.chips));
-    let mut frames = align_with(&board, imu, scenario, &plan.chips, recorder, watch, store)?;
+    let mut frames = align_with(
+        &board,
+        SwayCompensation::new(&mut imu),
+        scenario,
+        &plan.chips,
+        recorder,
+        watch,
+        store,
+    )?;
     let rig = rig.borrow();
     let violations = base::violations(&rig).iter();
     frames.run.violations.extend(violations.map(|violation| format!("Base: {violation}")));
@@ -78,14 +86,14 @@ pub fn align_frames_and_keep<R: Recorder, W: Observer>(
 }
 
 /// Runs a scenario on a board with these sensors on the base.
-fn align_with<B: Base, R: Recorder, W: Observer>(
+fn align_with<B: CompensatesSway, R: Recorder, W: Observer>(
     board: &RefCell<GimbalBoard<'_>>,
     base: B,
     scenario: &FramesScenario,
     injection: &Injection,
     recorder: R,
     watch: &W,
-    store: impl HeadingStore,
+    store: impl Store,
 ) -> Result<FramesRun, RunError> {
     let outside = || RunError::Latitude(scenario.base.latitude_deg);
     let setting = scenario.setting().ok_or_else(outside)?;

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use firmware::acquire::{TriadAcquisition, acquire};
 use firmware::keep::Keeping;
 use firmware::mechanism::Strapdown;
-use firmware::ports::{HeadingStore, Observer, Recorder};
+use firmware::ports::{Observer, Recorder, Store};
 use firmware::run::navigate;
 use firmware::runner::Stops;
 use firmware::simulated::Wires;
@@ -54,7 +54,7 @@ pub fn align_stops_storing<R: Recorder<InertialSample>, W: Observer>(
     fault: Option<Fault>,
     recorder: R,
     watch: &W,
-    store: impl HeadingStore,
+    store: impl Store,
 ) -> Result<VehicleRun, RunError> {
     let (day, injection) = (scenario.day(fault), scenario.injection(fault));
     align_stops_along(&day, &injection, scenario, recorder, watch, store)
@@ -70,7 +70,7 @@ pub fn align_stops_along<R: Recorder<InertialSample>, W: Observer>(
     scenario: &VehicleScenario,
     recorder: R,
     watch: &W,
-    store: impl HeadingStore,
+    store: impl Store,
 ) -> Result<VehicleRun, RunError> {
     let board = RefCell::new(scenario.board(&day.legs, &day.events, injection));
     let found = align_on(&board, injection, scenario, recorder, watch, store)?;
@@ -98,7 +98,7 @@ fn align_on<R: Recorder<InertialSample>, W: Observer>(
     scenario: &VehicleScenario,
     recorder: R,
     watch: &W,
-    store: impl HeadingStore,
+    store: impl Store,
 ) -> Result<VehicleRun, RunError> {
     let setting = scenario.setting().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
     let session = stops::Session::new(setting, scenario.procedure());

@@ -6,7 +6,7 @@ use firmware::acquire::{TriadAcquisition, acquire};
 use firmware::keep::Keeping;
 use firmware::log::DefmtLog;
 use firmware::mechanism::Strapdown;
-use firmware::ports::{NoOutside, NoRecorder, NoWhereabouts};
+use firmware::ports::NoRecorder;
 use firmware::run::navigate;
 use firmware::runner::Stops;
 use firmware::shared::Channels;
@@ -36,9 +36,10 @@ pub async fn align(spawner: Spawner, wiring: Wiring) {
     let channels: &'static VehicleSeams = SEAMS.init_with(|| Channels::new(&DefmtLog));
     spawner.spawn(defmt::unwrap!(acquisition(ports::triad(sensors), channels)));
     let configuration = configuration::keeping();
-    let mut keeping = Keeping::new(keeper(), &configuration, NoOutside, store(flash));
-    let (mut body, mut nowhere) = (Strapdown::new(&channels.shared), NoWhereabouts);
-    let session = &mut Stops::new(session, &mut nowhere);
+    let mut keeping = Keeping::new(keeper(), &configuration, (), store(flash));
+    let mut body = Strapdown::new(&channels.shared);
+    let position_aiding = &mut ();
+    let session = &mut Stops::new(session, position_aiding);
     let health =
         navigate(&mut body, session, &mut link, &mut NoRecorder, &mut keeping, channels).await;
     tell(&health, &mut link, &channels.shared).await;

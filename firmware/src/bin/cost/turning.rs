@@ -62,7 +62,6 @@ fn sample(index: u64, noise: &mut Generator) -> Sample {
         rate: AngularRate::from_rad_per_s(rate),
         force: (index.is_multiple_of(SLOW))
             .then(|| [along, 0.0, -9.81].map(SpecificForce::from_m_per_s2)),
-        temperature: None,
-        elevation: None,
+        ..Sample::default()
     }
 }

@@ -12,7 +12,7 @@ use firmware::configuration::{
 };
 use firmware::keep::Keeping;
 use firmware::mechanism::Strapdown;
-use firmware::ports::{NoOutside, NoRecorder, Ports};
+use firmware::ports::{NoRecorder, Ports};
 use firmware::run::navigate;
 use firmware::runner::{Rotating, Stepwise, Stops};
 use firmware::shared::Channels;
@@ -46,7 +46,7 @@ pub type VehicleInputs = SimulatedTriad<'static, VehicleBoard<'static>, Metering
 /// The position aiding of an instrument in a vehicle.
 pub type Place = KnownPlace<'static, 'static>;
 /// The attitude keeper of a vehicle, without aiding and without memory over a loss of supply.
-pub type VehicleKeeping = Keeping<'static, NoOutside, ()>;
+pub type VehicleKeeping = Keeping<'static, (), ()>;
 /// The channels of an instrument on a stage or on a turntable.
 type StageSeams = Channels<'static>;
 /// The channels of an instrument in a vehicle, which carry inertial samples.
@@ -152,7 +152,7 @@ pub fn driving(
 /// Builds the attitude keeper of a vehicle, without aiding from outside and without memory.
 #[inline(never)]
 pub fn keeping(setting: &keep::Setting, configuration: &KeepConfiguration) -> VehicleKeeping {
-    Keeping::new(KEEPER.init_with(|| Keeper::new(setting)), configuration, NoOutside, ())
+    Keeping::new(KEEPER.init_with(|| Keeper::new(setting)), configuration, (), ())
 }
 
 /// The sampling half of an instrument: sensors, configuration and channels.
@@ -231,27 +231,28 @@ pub enum Finished {
 impl Finished {
     /// Logs the dwells, turns or stops and the outcome; [`None`] if the session has not concluded.
     pub fn log(&self, seed: u64) -> Option<()> {
-        match self {
+        let verdict = match self {
             Self::Stepwise(session) => {
                 session.dwells().iter().zip(1..).for_each(|(dwell, number)| {
                     results::dwell(number, dwell);
                 });
-                results::outcome(seed, &session.conclusion()?.verdict);
+                session.conclusion()?.verdict
             }
             Self::Turning(session) => {
                 let stretches = session.turn_accumulator().stretches().iter();
                 stretches.flat_map(Stretch::turns).zip(1..).for_each(|(turn, number)| {
                     results::turn(number, turn);
                 });
-                results::outcome(seed, &session.conclusion()?.verdict);
+                session.conclusion()?.verdict
             }
             Self::Stops(session) => {
                 session.stops().iter().zip(1..).for_each(|(stop, number)| {
                     results::stop(number, stop);
                 });
-                results::outcome(seed, &session.conclusion()?.verdict);
+                session.conclusion()?.verdict
             }
-        }
+        };
+        results::outcome(seed, &verdict);
         Some(())
     }
 }
