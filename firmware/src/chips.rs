@@ -19,7 +19,7 @@ use orientation::units::{Angle, AngularRate, TURN};
 
 use crate::ports::{
     Accelerometer, Actuator, BaseReading, BaseSensors, Code, Encoder, ForceReading, Gyro, InStep,
-    Motion, RateReading, Startable,
+    Motion, RateReading, Request, Startable, clipped,
 };
 
 /// A gyro with an analogue rate output, behind its analogue-to-digital converter.
@@ -46,17 +46,11 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Gyro for AnalogueGyro<S, R, D> {
     }
 
     async fn read(&mut self) -> Result<RateReading, Fault> {
-        // A saturated reading is set to the limit of the number range, so that its loss is visible
-        // downstream.
         let conversion = self.converter.read().await?;
         let rate = self.scale.rate(conversion.code);
         let is_clipped =
             conversion.is_clipped || rate.0.unsigned_abs() >= self.limit.0.unsigned_abs();
-        let rate = match (is_clipped, rate.0 < 0) {
-            (false, _) => rate,
-            (true, false) => AngularRate(i32::MAX),
-            (true, true) => AngularRate(i32::MIN),
-        };
+        let rate = AngularRate(clipped(rate.0, is_clipped));
         Ok(RateReading { rate, is_new: conversion.is_new })
     }
 }
@@ -88,14 +82,9 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Gyro<Code> for AnalogueSensor<S, R, D> {
     }
 
     async fn read(&mut self) -> Result<RateReading<Code>, Fault> {
-        // A saturated conversion is set to the limit of the number range.
         let conversion = self.0.read().await?;
-        let code = match (conversion.is_clipped, conversion.code < 0) {
-            (false, _) => conversion.code,
-            (true, false) => i32::MAX,
-            (true, true) => i32::MIN,
-        };
-        Ok(RateReading { rate: Code(code), is_new: conversion.is_new })
+        let rate = Code(clipped(conversion.code, conversion.is_clipped));
+        Ok(RateReading { rate, is_new: conversion.is_new })
     }
 }
 
@@ -206,31 +195,26 @@ impl<S: SpiDevice, D: DelayNs> Startable for StageMotor<S, D> {
 }
 
 impl<S: SpiDevice, D: DelayNs> Actuator for StageMotor<S, D> {
-    fn go_to(&mut self, angle: f64) -> impl Future<Output = Result<(), Fault>> {
-        self.0.go_to(microsteps(angle))
-    }
-
-    fn seek(&mut self, rate: f64) -> impl Future<Output = Result<(), Fault>> {
-        self.0.run(Velocity(microsteps(rate)))
-    }
-
-    fn set_angle(&mut self, angle: f64) -> impl Future<Output = Result<(), Fault>> {
-        self.0.set_position(microsteps(angle))
-    }
-
-    async fn release(&mut self) -> Result<(), Fault> {
-        self.0.stop().await?;
-        self.0.clear_stall().await
-    }
-
-    async fn motion(&mut self) -> Result<Motion, Fault> {
-        let status = self.0.status().await?;
-        Ok(Motion {
-            angle: f64::from(status.position) / f64::from(MICROSTEPS_PER_TURN) * TURN,
-            is_standing: status.standing,
-            has_reached: status.reached,
-            is_stalled: status.stalled,
-            at_index: status.left_switch,
-        })
+    async fn execute(&mut self, request: Request) -> Result<Option<Motion>, Fault> {
+        match request {
+            Request::GoTo(angle) => self.0.go_to(microsteps(angle)).await?,
+            Request::Seek(rate) => self.0.run(Velocity(microsteps(rate))).await?,
+            Request::SetAngle(angle) => self.0.set_position(microsteps(angle)).await?,
+            Request::Release => {
+                self.0.stop().await?;
+                self.0.clear_stall().await?;
+            }
+            Request::Look => {
+                let status = self.0.status().await?;
+                return Ok(Some(Motion {
+                    angle: f64::from(status.position) / f64::from(MICROSTEPS_PER_TURN) * TURN,
+                    is_standing: status.standing,
+                    has_reached: status.reached,
+                    is_stalled: status.stalled,
+                    at_index: status.left_switch,
+                }));
+            }
+        }
+        Ok(None)
     }
 }

@@ -175,12 +175,12 @@ impl Configuration {
             stage: StageConfiguration::default(),
         }
     }
+}
 
-    /// The sampling period, µs, rounded to nearest.
-    #[must_use]
-    pub fn period(&self) -> u32 {
-        libm::round(1e6 / self.sample_rate) as u32
-    }
+/// The sampling period at a sampling rate, Hz: in µs, rounded to nearest.
+#[must_use]
+pub fn period(sample_rate: f64) -> u32 {
+    libm::round(1e6 / sample_rate) as u32
 }
 
 /// The configuration of a strapdown instrument in a vehicle.
@@ -209,12 +209,6 @@ impl VehicleConfiguration {
         let force_divider = ratio(sample_rate, VEHICLE_FORCE_RATE);
         let forces = ratio(sample_rate / f64::from(force_divider), MEAN_FORCE_RATE);
         Self { sample_rate, force_divider, forces }
-    }
-
-    /// The sampling period, µs, rounded to nearest.
-    #[must_use]
-    pub fn period(&self) -> u32 {
-        libm::round(1e6 / self.sample_rate) as u32
     }
 }
 

@@ -15,8 +15,10 @@ use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 
 use crate::configuration::FramesConfiguration;
 use crate::event::Event;
+use crate::link::Status;
+use crate::mechanism::Mechanism;
 use crate::motor::Axis;
-use crate::ports::{Actuator, Frames, Observer};
+use crate::ports::{Actuator, Frames};
 use crate::shared::{LatestAngle, Shared};
 use crate::stage::Stage;
 
@@ -26,26 +28,26 @@ const OUTER: Axis = Axis { drive: Device::OuterFrame, encoder: Device::OuterEnco
 const INNER: Axis = Axis { drive: Device::InnerFrame, encoder: Device::InnerEncoder };
 
 /// The two frames of a mount and their control.
-pub struct Gimbal<'a, M, O> {
+pub struct Gimbal<'a, M> {
     /// Drive of the outer frame.
-    outer: Stage<'a, M, O>,
+    outer: Stage<'a, M>,
     /// Drive of the inner frame.
-    inner: Stage<'a, M, O>,
+    inner: Stage<'a, M>,
     /// Geometry and tolerances.
     configuration: &'a FramesConfiguration,
     /// Latest encoder angles, written by acquisition.
     latest: &'a Frames<LatestAngle>,
     /// Signals and counters that all parts share.
-    shared: &'a Shared<'a, O>,
+    shared: &'a Shared<'a>,
 }
 
-impl<'a, M: Actuator, O: Observer> Gimbal<'a, M, O> {
+impl<'a, M: Actuator> Gimbal<'a, M> {
     /// Takes both motors; nothing moves yet.
     pub fn new(
         actuators: &'a mut Frames<M>,
         configuration: &'a FramesConfiguration,
         latest: &'a Frames<LatestAngle>,
-        shared: &'a Shared<'a, O>,
+        shared: &'a Shared<'a>,
     ) -> Self {
         let Frames { outer, inner } = actuators;
         let drives = &configuration.drives;
@@ -58,30 +60,31 @@ impl<'a, M: Actuator, O: Observer> Gimbal<'a, M, O> {
         }
     }
 
-    /// Homes both frames, then serves the session's requests until a frame is given up; returns the
-    /// reason.
-    pub async fn run(&mut self) -> Refusal {
-        match self.serve().await {
-            Ok(never) => match never {},
-            Err(reason) => reason,
-        }
-    }
-
     /// Sets the gyro's sensitive axis vertical and reports the angles of both frames.
     ///
     /// # Errors
     /// A frame that was given up during the movement; the log has its name and the reason.
-    pub async fn store(&mut self) -> Result<(), Refusal> {
+    async fn store(&mut self) -> Result<(), Refusal> {
         self.go_to(Station::Storage).await?;
         let shown = |latest: &LatestAngle| latest.get().0.signed_rad() * DEGREES;
         self.shared.tell(Event::Stored(shown(&self.latest.outer), shown(&self.latest.inner)));
         Ok(())
     }
 
+    /// Turns both frames to an orientation at the same time.
+    async fn go_to(&mut self, station: Station) -> Result<(), Refusal> {
+        let angles = self.configuration.angles(station);
+        both(self.outer.turn_to(angles.outer), self.inner.turn_to(angles.inner)).await
+    }
+}
+
+impl<M: Actuator> Mechanism for Gimbal<'_, M> {
     /// Starts the drives, waits for the first valid angles, homes, and then follows requests for a
     /// heading or for the vertical.
     async fn serve(&mut self) -> Result<Infallible, Refusal> {
-        both(self.outer.start(), self.inner.start()).await?;
+        let [outer, inner] =
+            [&mut self.outer, &mut self.inner].map(|frame| &mut frame.motor.actuator);
+        both(outer.start(self.shared), inner.start(self.shared)).await?;
         self.shared.sensing.wait().await;
         both(self.outer.home(), self.inner.home()).await?;
         self.go_to(Station::Forward).await?;
@@ -101,10 +104,14 @@ impl<'a, M: Actuator, O: Observer> Gimbal<'a, M, O> {
         }
     }
 
-    /// Turns both frames to an orientation at the same time.
-    async fn go_to(&mut self, station: Station) -> Result<(), Refusal> {
-        let angles = self.configuration.angles(station);
-        both(self.outer.turn_to(angles.outer), self.inner.turn_to(angles.inner)).await
+    /// After an azimuth was found, sets the gyro's sensitive axis vertical, where it can hold the
+    /// azimuth; a keeper has requested that already.
+    async fn park(&mut self) {
+        let is_found = matches!(self.shared.status.get(), Status::Concluded { .. });
+        if is_found && !self.shared.keep.is_wanted.get() {
+            // If this fails, the log has the reason; the azimuth is valid nevertheless.
+            let _ = self.store().await;
+        }
     }
 }
 

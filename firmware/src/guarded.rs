@@ -7,7 +7,7 @@ use orientation::device::Device;
 use orientation::error::Refusal;
 
 use crate::event::Event;
-use crate::ports::{Observer, Startable};
+use crate::ports::Startable;
 use crate::retry_budget::{Remedy, RetryBudget, Symptom};
 use crate::shared::Shared;
 
@@ -23,61 +23,44 @@ const SLOW: Duration = Duration::from_millis(50);
 pub struct Guarded<'a, D> {
     /// The device.
     pub device: &'a mut D,
-    /// Name and retry budget.
-    guard: Guard,
-}
-
-/// Name and retry budget of a device. The type does not depend on the device, so that its code
-/// exists once.
-#[derive(Debug)]
-struct Guard {
     /// Name of the device in the log.
-    name: Device,
+    pub name: Device,
     /// Failures that the device may still have.
     retry_budget: RetryBudget,
 }
 
-impl Guard {
-    /// Charges a symptom to the budget: true if the device must be started again, false if only the
-    /// reading is lost.
-    fn is_to_restart<O: Observer>(
-        &mut self,
-        symptom: Symptom,
-        shared: &Shared<'_, O>,
-    ) -> Result<bool, Refusal> {
-        match self.retry_budget.failed(symptom) {
-            Remedy::Drop => Ok(false),
-            Remedy::Restart => Ok(true),
-            Remedy::GiveUp(trouble) => Err(shared.give_up(self.name, trouble)),
-        }
+/// The remedy for a symptom of a device: true if it must be started again, false if only the reading
+/// is lost. Not a method, so that its code exists once for all devices.
+fn is_to_restart(remedy: Remedy, name: Device, shared: &Shared<'_>) -> Result<bool, Refusal> {
+    match remedy {
+        Remedy::Drop => Ok(false),
+        Remedy::Restart => Ok(true),
+        Remedy::GiveUp(trouble) => Err(shared.give_up(name, trouble)),
     }
 }
 
 impl<'a, D: Startable> Guarded<'a, D> {
     /// Gives a device its full retry budget. The name identifies it in the log and in the counters.
     pub fn new(device: &'a mut D, name: Device) -> Self {
-        Self { device, guard: Guard { name, retry_budget: RetryBudget::default() } }
+        Self { device, name, retry_budget: RetryBudget::default() }
     }
 
     /// Number of times that the device was started again since the budget was last restored.
     #[must_use]
     pub fn restarts(&self) -> u8 {
-        self.guard.retry_budget.restarts()
+        self.retry_budget.restarts()
     }
 
     /// Restores the full retry budget.
     pub fn renew(&mut self) {
-        self.guard.retry_budget = RetryBudget::default();
+        self.retry_budget = RetryBudget::default();
     }
 
     /// Starts the device, several times if necessary.
     ///
     /// # Errors
     /// The device is given up: it did not start within its retry budget.
-    pub fn start<O: Observer>(
-        &mut self,
-        shared: &Shared<'_, O>,
-    ) -> impl Future<Output = Result<(), Refusal>> {
+    pub fn start(&mut self, shared: &Shared<'_>) -> impl Future<Output = Result<(), Refusal>> {
         self.start_after(None, shared)
     }
 
@@ -85,15 +68,11 @@ impl<'a, D: Startable> Guarded<'a, D> {
     ///
     /// # Errors
     /// The device is given up.
-    pub async fn mend<O: Observer>(
-        &mut self,
-        symptom: Symptom,
-        shared: &Shared<'_, O>,
-    ) -> Result<(), Refusal> {
-        if self.guard.is_to_restart(symptom, shared)? {
+    pub async fn mend(&mut self, symptom: Symptom, shared: &Shared<'_>) -> Result<(), Refusal> {
+        if is_to_restart(self.retry_budget.failed(symptom), self.name, shared)? {
             return self.start_after(Some(symptom), shared).await;
         }
-        shared.lose(self.guard.name, symptom);
+        shared.lose(self.name, symptom);
         Ok(())
     }
 
@@ -121,29 +100,29 @@ impl<'a, D: Startable> Guarded<'a, D> {
             return Err(Symptom::Slow);
         }
         if outcome.is_ok() {
-            self.guard.retry_budget.succeeded();
+            self.retry_budget.succeeded();
         }
         outcome.map_err(Symptom::Chip)
     }
 
     /// Starts the device until it succeeds, with a rest before every attempt that follows a
     /// failure.
-    async fn start_after<O: Observer>(
+    async fn start_after(
         &mut self,
         mut trouble: Option<Symptom>,
-        shared: &Shared<'_, O>,
+        shared: &Shared<'_>,
     ) -> Result<(), Refusal> {
         loop {
             if let Some(symptom) = trouble {
-                shared.restart(self.guard.name, symptom);
+                shared.restart(self.name, symptom);
                 Timer::after(REST).await;
             }
             let Err(fault) = self.device.start().await else { break };
             let symptom = Symptom::Chip(fault);
-            self.guard.is_to_restart(symptom, shared)?;
+            is_to_restart(self.retry_budget.failed(symptom), self.name, shared)?;
             trouble = Some(symptom);
         }
-        shared.tell(Event::Started(self.guard.name));
+        shared.tell(Event::Started(self.name));
         Ok(())
     }
 }

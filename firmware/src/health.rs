@@ -5,7 +5,6 @@ use embassy_time::{Duration, Timer};
 use orientation::device::Device;
 use orientation::error::Refusal;
 
-use crate::ports::Observer;
 use crate::shared::Shared;
 
 /// Time without samples after which the session is ended: longer than all restarts of a sensor
@@ -35,18 +34,6 @@ pub struct Health {
 }
 
 impl Health {
-    /// All counters at zero.
-    pub const EMPTY: Self = Self {
-        samples: 0,
-        missing: 0,
-        late: 0,
-        overflowed: 0,
-        unkept: 0,
-        lost: [0; 5],
-        restarts: [0; 5],
-        unsent: 0,
-    };
-
     /// Counts a lost reading of a device.
     pub fn lose(&mut self, device: Device) {
         count(&mut self.lost, device);
@@ -88,7 +75,7 @@ fn count(counters: &mut [u16; 5], device: Device) {
 
 /// Ends the session with [`Refusal::TimeExhausted`] when no samples arrive for 30 s, whatever the
 /// reason.
-pub async fn watch<O: Observer>(shared: &Shared<'_, O>) {
+pub async fn watch(shared: &Shared<'_>) {
     loop {
         let before = shared.health.get().samples;
         Timer::after(SILENCE).await;

@@ -13,12 +13,13 @@
 //! gyros and the accelerometer give the samples, and the session asks the driver to stop and to
 //! drive on. On a [`spin`]ning body there is no alignment; its roll angle is tracked.
 //!
-//! [`run::acquire`] samples, and [`run::run`] joins the other parts in fixed order. They know no
-//! pin, no bus, and no clock other than `embassy-time`'s. The traits of [`ports`] describe what
-//! they need from outside; [`chips`] implements them by the drivers of the `drivers` crate.
+//! [`acquire::acquire`] samples, and [`run::navigate`] joins the other parts in fixed order. They
+//! know no pin, no bus, and no clock other than `embassy-time`'s. The traits of [`ports`] describe
+//! what they need from outside; [`chips`] implements them by the drivers of the `drivers` crate.
 //! Whatever happens is reported once, as an [`event::Event`].
 #![no_std]
 #![forbid(unsafe_code)]
+#![expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 
 pub mod ports;
 
@@ -34,6 +35,7 @@ pub mod timeline;
 
 pub mod gimbal;
 pub mod keep;
+pub mod mechanism;
 pub mod motor;
 pub mod runner;
 pub mod stage;

@@ -16,7 +16,6 @@ use embedded_io_async::Write;
 use heapless::String;
 
 use crate::event::Event;
-use crate::ports::Observer;
 use crate::shared::Shared;
 
 /// Time between two lines.
@@ -102,32 +101,31 @@ impl fmt::Display for Status {
             Self::Levelling { stop } => write!(f, "levelling at stop {stop}"),
             Self::MayDrive { stop } => write!(f, "stop {stop} done, may drive"),
             Self::Driving => f.write_str("driving"),
-            Self::Concluded { azimuth, sigma } => write!(
-                f,
-                "azimuth {}.{:03} sigma {}.{:03}",
-                azimuth / 1000,
-                azimuth % 1000,
-                sigma / 1000,
-                sigma % 1000
-            ),
+            Self::Concluded { azimuth, sigma } => {
+                write!(f, "azimuth {} sigma {}", Thousandths(*azimuth), Thousandths(*sigma))
+            }
             Self::Refused => f.write_str("no azimuth"),
-            Self::Rolling { roll: Some([roll, sigma]), state } => write!(
-                f,
-                "roll {}.{:03} sigma {}.{:03} {state}",
-                roll / 1000,
-                roll % 1000,
-                sigma / 1000,
-                sigma % 1000
-            ),
+            Self::Rolling { roll: Some([roll, sigma]), state } => {
+                write!(f, "roll {} sigma {} {state}", Thousandths(*roll), Thousandths(*sigma))
+            }
             Self::Rolling { roll: None, state } => write!(f, "roll unknown, {state}"),
             Self::RollEnded => f.write_str("no roll"),
         }
     }
 }
 
+/// A number of thousandths, written as a decimal fraction.
+pub(crate) struct Thousandths(pub(crate) u32);
+
+impl fmt::Display for Thousandths {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}.{:03}", self.0 / 1000, self.0 % 1000)
+    }
+}
+
 /// Sends a status line every second until the conclusion of the session has been sent. Runs for
 /// ever beside a keeper.
-pub async fn run<L: Write, O: Observer>(link: &mut L, shared: &Shared<'_, O>) {
+pub async fn run<L: Write>(link: &mut L, shared: &Shared<'_>) {
     loop {
         let is_last = shared.status.get().is_last() && !shared.keep.is_wanted.get();
         send(link, shared).await;
@@ -140,7 +138,7 @@ pub async fn run<L: Write, O: Observer>(link: &mut L, shared: &Shared<'_, O>) {
 
 /// Sends one status line. If the link does not take the line in time, the line is discarded and
 /// counted; the first loss is also reported as an event.
-pub async fn send<L: Write, O: Observer>(link: &mut L, shared: &Shared<'_, O>) {
+pub async fn send<L: Write>(link: &mut L, shared: &Shared<'_>) {
     let mut line = String::<LENGTH>::new();
     let faults = shared.health.get().faults();
     // The capacity holds the longest line; a longer one would be cut.

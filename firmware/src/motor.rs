@@ -1,7 +1,6 @@
 //! The motor of an axis and its encoder, as used by stage and turntable. A request is repeated
 //! while only the bus fails; a movement that is broken off reports its cause.
 
-use drivers::fault::Fault;
 use embassy_time::{Duration, Instant, Timer};
 use orientation::device::{Device, Trouble};
 use orientation::error::Refusal;
@@ -9,7 +8,7 @@ use orientation::units::{Angle, DEGREES_PER_RADIAN as DEGREES};
 
 use crate::event::Event;
 use crate::guarded::Guarded;
-use crate::ports::{Actuator, Motion, Observer};
+use crate::ports::{Actuator, Motion, Request};
 use crate::shared::{LatestAngle, Shared};
 
 /// Period at which the motor's status is read.
@@ -53,49 +52,29 @@ impl From<Refusal> for Break {
     }
 }
 
-/// A request to the motor driver.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Request {
-    /// Move to an angle, rad.
-    GoTo(f64),
-    /// Turn at a rate, rad/s, clockwise positive.
-    Seek(f64),
-    /// Set the step count to the angle at which the motor stands, rad.
-    SetAngle(f64),
-    /// Stop, and clear a stall so that the motor can turn again.
-    Release,
-    /// Read the motor's status.
-    Look,
-}
-
 /// The motor of an axis with its retry budget, and the latest angle of its encoder.
-pub(crate) struct Motor<'a, M, O> {
+pub(crate) struct Motor<'a, M> {
     /// Names in the log.
     axis: Axis,
     /// The motor's driver with its retry budget.
-    actuator: Guarded<'a, M>,
+    pub(crate) actuator: Guarded<'a, M>,
     /// The motor's status at the latest reading.
     pub(crate) motion: Motion,
     /// The encoder's latest angle and the time of its reading.
     latest: &'a LatestAngle,
-    pub(crate) shared: &'a Shared<'a, O>,
+    pub(crate) shared: &'a Shared<'a>,
 }
 
-impl<'a, M: Actuator, O: Observer> Motor<'a, M, O> {
+impl<'a, M: Actuator> Motor<'a, M> {
     /// Takes the motor of an axis whose encoder writes its angle to `latest`; nothing moves yet.
     pub(crate) fn new(
         axis: Axis,
         actuator: &'a mut M,
         latest: &'a LatestAngle,
-        shared: &'a Shared<'a, O>,
+        shared: &'a Shared<'a>,
     ) -> Self {
         let actuator = Guarded::new(actuator, axis.drive);
         Self { axis, actuator, motion: Motion::default(), latest, shared }
-    }
-
-    /// Starts the motor's driver, within its retry budget.
-    pub(crate) fn start(&mut self) -> impl Future<Output = Result<(), Refusal>> {
-        self.actuator.start(self.shared)
     }
 
     /// Executes a request, and repeats it while only the bus fails.
@@ -106,24 +85,17 @@ impl<'a, M: Actuator, O: Observer> Motor<'a, M, O> {
         let restarts = self.actuator.restarts();
         loop {
             let begun = Instant::now();
-            let outcome = self.exchange(request).await;
-            let Err(symptom) = self.actuator.checked(begun, outcome) else { return Ok(()) };
-            self.actuator.mend(symptom, self.shared).await?;
+            let outcome = self.actuator.device.execute(request).await;
+            match self.actuator.checked(begun, outcome) {
+                Ok(motion) => {
+                    self.motion = motion.unwrap_or(self.motion);
+                    return Ok(());
+                }
+                Err(symptom) => self.actuator.mend(symptom, self.shared).await?,
+            }
             if self.actuator.restarts() != restarts {
                 return Err(Break::Lost);
             }
-        }
-    }
-
-    /// One attempt of a request, without repetition.
-    async fn exchange(&mut self, request: Request) -> Result<(), Fault> {
-        let motor = &mut *self.actuator.device;
-        match request {
-            Request::GoTo(angle) => motor.go_to(angle).await,
-            Request::Seek(rate) => motor.seek(rate).await,
-            Request::SetAngle(angle) => motor.set_angle(angle).await,
-            Request::Release => motor.release().await,
-            Request::Look => motor.motion().await.map(|motion| self.motion = motion),
         }
     }
 

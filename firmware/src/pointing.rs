@@ -21,7 +21,7 @@ use orientation::units::{Angle, DEGREE};
 use crate::calibration::{Calibration, Harmonics};
 use crate::configuration::{Configuration, FramesConfiguration};
 use crate::guarded::Guarded;
-use crate::ports::{Encoder, Frames, Observer};
+use crate::ports::{Encoder, Frames};
 use crate::retry_budget::Symptom;
 use crate::shared::{LatestAngle, Shared};
 
@@ -47,7 +47,6 @@ pub struct Aim {
 }
 
 /// The encoders as the source of the direction of the sensitive axis.
-#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait Pointing {
     /// The readings of the encoders.
     type Shown;
@@ -118,11 +117,9 @@ fn greatest_step(time: Duration) -> u32 {
 }
 
 /// The encoder of one axis: retry budget, calibration and check of its jumps.
-pub struct Shaft<'a, E, O> {
+pub struct Shaft<'a, E> {
     /// The encoder with its retry budget.
     encoder: Guarded<'a, E>,
-    /// Name of the encoder in the log.
-    name: Device,
     /// Correction of its harmonic errors.
     calibration: Calibration,
     /// Decimation of the readings.
@@ -133,10 +130,10 @@ pub struct Shaft<'a, E, O> {
     latest: &'a LatestAngle,
     /// Whether the latest reading was discarded as a jump.
     has_jumped: bool,
-    shared: &'a Shared<'a, O>,
+    shared: &'a Shared<'a>,
 }
 
-impl<'a, E: Encoder, O: Observer> Shaft<'a, E, O> {
+impl<'a, E: Encoder> Shaft<'a, E> {
     /// Takes an encoder with its name in the log; nothing is started yet. Valid angles are written
     /// to `latest`.
     pub fn new(
@@ -145,11 +142,10 @@ impl<'a, E: Encoder, O: Observer> Shaft<'a, E, O> {
         harmonics: Harmonics,
         configuration: &Configuration,
         latest: &'a LatestAngle,
-        shared: &'a Shared<'a, O>,
+        shared: &'a Shared<'a>,
     ) -> Self {
         Self {
             encoder: Guarded::new(encoder, name),
-            name,
             calibration: Calibration::new(harmonics),
             due: Decimator::new(configuration.angle_divider),
             angle: None,
@@ -167,7 +163,7 @@ impl<'a, E: Encoder, O: Observer> Shaft<'a, E, O> {
         let is_far = distance(angle, last) > greatest_step(now - read);
         self.has_jumped = is_far && !self.has_jumped && read > Instant::MIN;
         if self.has_jumped {
-            self.shared.lose(self.name, Symptom::Jumped);
+            self.shared.lose(self.encoder.name, Symptom::Jumped);
             return false;
         }
         self.latest.set((angle, now));
@@ -178,7 +174,7 @@ impl<'a, E: Encoder, O: Observer> Shaft<'a, E, O> {
 
 /// The one axis of a stage: the sensitive axis lies in the stage's plane, and its angle is the
 /// heading.
-impl<E: Encoder, O: Observer> Pointing for Shaft<'_, E, O> {
+impl<E: Encoder> Pointing for Shaft<'_, E> {
     type Shown = Angle;
 
     const FORCE_ON_BASE: bool = false;
@@ -211,9 +207,9 @@ impl<E: Encoder, O: Observer> Pointing for Shaft<'_, E, O> {
 }
 
 /// The encoders of the two frames of a mount.
-pub struct FrameShafts<'a, E, O> {
+pub struct FrameShafts<'a, E> {
     /// Encoders of the outer and the inner frame.
-    shafts: Frames<Shaft<'a, E, O>>,
+    shafts: Frames<Shaft<'a, E>>,
     /// Calibrated geometry of the mount.
     geometry: TwoFrame,
     /// Time without movement after which the frames count as at rest.
@@ -236,14 +232,14 @@ pub struct FrameShafts<'a, E, O> {
     aim: Aim,
 }
 
-impl<'a, E: Encoder, O: Observer> FrameShafts<'a, E, O> {
+impl<'a, E: Encoder> FrameShafts<'a, E> {
     /// Takes the encoders of both frames; nothing is started yet.
     pub fn new(
         encoders: &'a mut Frames<E>,
         configuration: &Configuration,
         frames: &FramesConfiguration,
         latest: &'a Frames<LatestAngle>,
-        shared: &'a Shared<'a, O>,
+        shared: &'a Shared<'a>,
     ) -> Self {
         let Frames { outer, inner } = encoders;
         let Frames { outer: outer_error, inner: inner_error } = frames.encoders;
@@ -290,7 +286,7 @@ impl<'a, E: Encoder, O: Observer> FrameShafts<'a, E, O> {
     }
 }
 
-impl<E: Encoder, O: Observer> Pointing for FrameShafts<'_, E, O> {
+impl<E: Encoder> Pointing for FrameShafts<'_, E> {
     type Shown = Frames<Angle>;
 
     const FORCE_ON_BASE: bool = true;

@@ -6,8 +6,6 @@
 
 use drivers::fault::Fault;
 use embassy_time::Instant;
-use orientation::align::rotating::coupling::BYTES;
-use orientation::keep::restart::Remembered;
 use orientation::keep::{Handover, Report};
 use orientation::session::{Session, rotating, stops};
 use orientation::signal::Sample;
@@ -17,7 +15,6 @@ use orientation::units::{Angle, AngularRate, SpecificForce, Temperature};
 use crate::event::Event;
 
 /// A device that can be started, and started again after a failure.
-#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait Startable {
     /// Resets, identifies, tests and configures the device, regardless of its present state.
     ///
@@ -48,6 +45,17 @@ impl Quantity for Code {
     }
 }
 
+/// A value at a limit of the number range where its sensor or converter is saturated, so that the
+/// loss is visible downstream.
+#[must_use]
+pub(crate) fn clipped(value: i32, is_clipped: bool) -> i32 {
+    match (is_clipped, value < 0) {
+        (false, _) => value,
+        (true, false) => i32::MAX,
+        (true, true) => i32::MIN,
+    }
+}
+
 /// One conversion of the precise gyro, or of another sensor behind a converter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RateReading<V = AngularRate> {
@@ -58,7 +66,6 @@ pub struct RateReading<V = AngularRate> {
 }
 
 /// The precise gyro, or another sensor behind a converter.
-#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait Gyro<V = AngularRate>: Startable {
     /// Waits until a conversion is ready. The future may be dropped at any time without loss.
     async fn ready(&mut self) -> Result<(), Fault>;
@@ -69,7 +76,6 @@ pub trait Gyro<V = AngularRate>: Startable {
 
 /// A gyro that converts synchronously with others on the same clock: first all are armed, then the
 /// conversions of all are begun one right after the other.
-#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait InStep<V = AngularRate>: Gyro<V> {
     /// Stops the conversions of a started gyro and prepares the synchronous begin.
     async fn arm(&mut self) -> Result<(), Fault>;
@@ -94,14 +100,12 @@ pub struct ForceReading {
 }
 
 /// The accelerometer on the platform or on the base.
-#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait Accelerometer: Startable {
     /// Reads the latest output.
     async fn read(&mut self) -> Result<ForceReading, Fault>;
 }
 
 /// The absolute encoder of the stage.
-#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait Encoder: Startable {
     /// Reads the present angle.
     async fn read(&mut self) -> Result<Angle, Fault>;
@@ -119,7 +123,6 @@ pub struct BaseReading {
 }
 
 /// Coarse gyros and accelerometers on the base, which measure its sway.
-#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait BaseSensors: Startable {
     /// Reads the latest output; [`None`] if it has been read before.
     async fn read(&mut self) -> Result<Option<BaseReading>, Fault>;
@@ -151,66 +154,57 @@ pub struct Motion {
     pub at_index: bool,
 }
 
-/// The motor of the stage. Angles are clockwise positive as seen from above.
-#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
-pub trait Actuator: Startable {
-    /// Moves to an angle by the motor's step count, rad, not wrapped. Returns at once; the movement
-    /// goes on.
-    async fn go_to(&mut self, angle: f64) -> Result<(), Fault>;
-
-    /// Turns at a rate, rad/s, clockwise positive, until another command or an end switch;
-    /// permitted during a movement. A rate of zero brings the motor to rest by its ramp.
-    async fn seek(&mut self, rate: f64) -> Result<(), Fault>;
-
-    /// Sets the step count to the angle at which the motor stands, rad.
-    async fn set_angle(&mut self, angle: f64) -> Result<(), Fault>;
-
-    /// Stops the motor, and clears a stall so that it can turn again.
-    async fn release(&mut self) -> Result<(), Fault>;
-
-    /// Reads the motor's status.
-    async fn motion(&mut self) -> Result<Motion, Fault>;
+/// A request to the motor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Request {
+    /// Move to an angle by the motor's step count, rad, not wrapped.
+    GoTo(f64),
+    /// Turn at a rate, rad/s, clockwise positive, until another request or an end switch; permitted
+    /// during a movement. A rate of zero brings the motor to rest by its ramp.
+    Seek(f64),
+    /// Set the step count to the angle at which the motor stands, rad.
+    SetAngle(f64),
+    /// Stop, and clear a stall so that the motor can turn again.
+    Release,
+    /// Read the motor's status.
+    Look,
 }
 
-/// Non-volatile storage of calibrations.
-#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
-pub trait CalibrationStore {
+/// The motor of the stage. Angles are clockwise positive as seen from above.
+pub trait Actuator: Startable {
+    /// Executes a request, and returns the motor's status if the request was for it. Returns at
+    /// once; a movement goes on.
+    async fn execute(&mut self, request: Request) -> Result<Option<Motion>, Fault>;
+}
+
+/// Non-volatile storage of items, each in a slot of its own: calibrations, and the heading of a
+/// vehicle at rest.
+pub trait Store {
     /// The latest item of a slot; [`None`] if the slot is empty.
-    async fn load(&mut self, slot: u8) -> Result<Option<[u8; BYTES]>, Fault>;
+    async fn load<const N: usize>(&mut self, slot: u8) -> Result<Option<[u8; N]>, Fault>;
 
     /// Stores an item in a slot. If the supply is lost during the write, the slot holds either the
     /// old or the new item.
-    async fn save(&mut self, slot: u8, bytes: &[u8; BYTES]) -> Result<(), Fault>;
+    async fn save<const N: usize>(&mut self, slot: u8, item: &[u8; N]) -> Result<(), Fault>;
 }
 
-/// Non-volatile storage of the heading of a vehicle at rest.
-#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
-pub trait HeadingStore {
-    /// The latest item; [`None`] if nothing was stored.
-    async fn load_heading(&mut self) -> Result<Option<[u8; Remembered::BYTES]>, Fault>;
-
-    /// Stores an item. If the supply is lost during the write, the store holds either the old or
-    /// the new item.
-    async fn save_heading(&mut self, bytes: &[u8; Remembered::BYTES]) -> Result<(), Fault>;
-}
-
-impl<H: HeadingStore> HeadingStore for &mut H {
-    async fn load_heading(&mut self) -> Result<Option<[u8; Remembered::BYTES]>, Fault> {
-        (**self).load_heading().await
+impl<T: Store> Store for &mut T {
+    async fn load<const N: usize>(&mut self, slot: u8) -> Result<Option<[u8; N]>, Fault> {
+        (**self).load(slot).await
     }
 
-    async fn save_heading(&mut self, bytes: &[u8; Remembered::BYTES]) -> Result<(), Fault> {
-        (**self).save_heading(bytes).await
+    async fn save<const N: usize>(&mut self, slot: u8, item: &[u8; N]) -> Result<(), Fault> {
+        (**self).save(slot, item).await
     }
 }
 
 /// A store that keeps nothing.
-impl HeadingStore for () {
-    async fn load_heading(&mut self) -> Result<Option<[u8; Remembered::BYTES]>, Fault> {
+impl Store for () {
+    async fn load<const N: usize>(&mut self, _: u8) -> Result<Option<[u8; N]>, Fault> {
         Ok(None)
     }
 
-    async fn save_heading(&mut self, _: &[u8; Remembered::BYTES]) -> Result<(), Fault> {
+    async fn save<const N: usize>(&mut self, _: u8, _: &[u8; N]) -> Result<(), Fault> {
         Ok(())
     }
 }
@@ -227,10 +221,7 @@ pub trait Aiding {
 }
 
 /// No aiding from outside.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct NoOutside;
-
-impl Aiding for NoOutside {
+impl Aiding for () {
     fn azimuth(&mut self) -> Option<Handover> {
         None
     }
@@ -241,7 +232,6 @@ impl Aiding for NoOutside {
 }
 
 /// A recorder of raw samples. A slow recorder delays the session; samples queue meanwhile.
-#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait Recorder<S = Sample> {
     /// Records one sample.
     async fn record(&mut self, sample: &S);
@@ -263,10 +253,7 @@ pub trait PositionAiding {
 }
 
 /// No position aiding.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct NoWhereabouts;
-
-impl PositionAiding for NoWhereabouts {
+impl PositionAiding for () {
     fn displacement(&mut self) -> Option<[f64; 2]> {
         None
     }
@@ -298,32 +285,6 @@ impl Observer for () {
     fn event(&self, _: Instant, _: &Event) {}
 }
 
-impl<O: Observer> Observer for &O {
-    fn event(&self, at: Instant, event: &Event) {
-        (**self).event(at, event);
-    }
-
-    fn progress(&self, session: &Session) {
-        (**self).progress(session);
-    }
-
-    fn turned(&self, session: &rotating::Session) {
-        (**self).turned(session);
-    }
-
-    fn stopped(&self, session: &stops::Session) {
-        (**self).stopped(session);
-    }
-
-    fn kept(&self, report: &Report) {
-        (**self).kept(report);
-    }
-
-    fn sensed(&self, at: Instant, reading: &BaseReading) {
-        (**self).sensed(at, reading);
-    }
-}
-
 /// A pair of values for the two frames of a mount.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Frames<T> {
@@ -349,12 +310,12 @@ pub struct Sensors<G, A, E, B = NoBase> {
     pub accelerometer: A,
     /// The encoder of the stage, or [`Frames`] of encoders on a two-frame mount.
     pub encoder: E,
-    /// The coarse sensors on the base, or [`NoBase`].
+    /// The compensation of the base's sway by coarse sensors there, or [`NoBase`].
     pub base: B,
 }
 
 impl<G, A, E> Sensors<G, A, E> {
-    /// Adds coarse sensors on the base.
+    /// Adds the compensation of the base's sway.
     pub fn with_base<B>(self, base: B) -> Sensors<G, A, E, B> {
         let Self { gyro, accelerometer, encoder, base: NoBase } = self;
         Sensors { gyro, accelerometer, encoder, base }
@@ -377,27 +338,6 @@ pub struct SpinSensors<C>(
     /// then of the accelerometers along y and z.
     pub [C; 5],
 );
-
-/// The other ports of a board on a spinning body.
-#[derive(Debug)]
-pub struct SpinPorts<L, R> {
-    /// Destination of the status lines.
-    pub link: L,
-    /// Destination of the raw samples.
-    pub recorder: R,
-}
-
-/// The other ports of a board in a vehicle. There is no motor; the driver is informed by link and
-/// log.
-#[derive(Debug)]
-pub struct VehiclePorts<W, L, R> {
-    /// Source of the vehicle's displacement.
-    pub position_aiding: W,
-    /// Destination of the status lines.
-    pub link: L,
-    /// Destination of the raw samples.
-    pub recorder: R,
-}
 
 /// The other ports of a board with a stage, a turntable or a mount.
 #[derive(Debug)]

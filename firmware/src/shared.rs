@@ -28,16 +28,16 @@ pub type Queue<S> = Channel<NoopRawMutex, S, QUEUE>;
 
 /// All channels of an instrument whose samples are of the type `S`. Only acquisition and the
 /// session depend on that type.
-pub struct Channels<'a, O, S = Sample> {
+pub struct Channels<'a, S = Sample> {
     /// The samples from acquisition to the session.
     pub samples: Queue<S>,
     /// All other signals and cells.
-    pub shared: Shared<'a, O>,
+    pub shared: Shared<'a>,
 }
 
-impl<'a, O: Observer, S> Channels<'a, O, S> {
+impl<'a, S> Channels<'a, S> {
     /// Channels without any message; events go to the observer.
-    pub const fn new(observer: &'a O) -> Self {
+    pub fn new(observer: &'a dyn Observer) -> Self {
         Self { samples: Queue::new(), shared: Shared::new(observer) }
     }
 }
@@ -46,7 +46,7 @@ impl<'a, O: Observer, S> Channels<'a, O, S> {
 pub type LatestAngle = Cell<(Angle, Instant)>;
 
 /// Signals and cells between the parts. All parts run in one executor, so no lock is needed.
-pub struct Shared<'a, O> {
+pub struct Shared<'a> {
     /// From the session to the drive: the requested angle, rad, or on a turntable the requested
     /// rate, rad/s. A new request replaces the one before.
     pub wanted: Signal<NoopRawMutex, f64>,
@@ -70,12 +70,12 @@ pub struct Shared<'a, O> {
     /// The status that the link reports.
     pub status: Cell<Status>,
     /// Receiver of events.
-    observer: &'a O,
+    observer: &'a dyn Observer,
 }
 
-impl<'a, O: Observer> Shared<'a, O> {
+impl<'a> Shared<'a> {
     /// Signals and cells without any message.
-    pub const fn new(observer: &'a O) -> Self {
+    pub fn new(observer: &'a dyn Observer) -> Self {
         Self {
             wanted: Signal::new(),
             sensing: Signal::new(),
@@ -85,7 +85,7 @@ impl<'a, O: Observer> Shared<'a, O> {
             angle: Cell::new((Angle(0), Instant::MIN)),
             sway: Cell::new(SwayNoise::NONE),
             keep: KeeperChannels::new(),
-            health: Cell::new(Health::EMPTY),
+            health: Cell::default(),
             status: Cell::new(Status::Starting),
             observer,
         }
@@ -106,7 +106,7 @@ impl<'a, O: Observer> Shared<'a, O> {
     }
 
     /// The observer.
-    pub fn observer(&self) -> &O {
+    pub fn observer(&self) -> &'a dyn Observer {
         self.observer
     }
 

@@ -15,8 +15,9 @@ use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 
 use crate::configuration::StageConfiguration;
 use crate::event::Event;
-use crate::motor::{Axis, Break, Motor, Request, STALL_REST};
-use crate::ports::{Actuator, Motion, Observer};
+use crate::mechanism::Mechanism;
+use crate::motor::{Axis, Break, Motor, STALL_REST};
+use crate::ports::{Actuator, Motion, Request};
 use crate::shared::{LatestAngle, Shared};
 
 /// Number of repetitions of the search for the index after a stall.
@@ -29,19 +30,19 @@ const MOVES: u32 = 2;
 const STOOD: u32 = u32::MAX / 24_000;
 
 /// The control of a stage, or of one frame of a two-frame mount.
-pub struct Stage<'a, M, O> {
+pub struct Stage<'a, M> {
     /// The motor and its encoder.
-    motor: Motor<'a, M, O>,
+    pub(crate) motor: Motor<'a, M>,
     /// Travel, tolerances and time limits.
     configuration: StageConfiguration,
 }
 
-impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
+impl<'a, M: Actuator> Stage<'a, M> {
     /// Takes the motor of a single-axis stage; nothing moves yet.
     pub fn new(
         actuator: &'a mut M,
         configuration: &StageConfiguration,
-        shared: &'a Shared<'a, O>,
+        shared: &'a Shared<'a>,
     ) -> Self {
         Self::of(Axis::ONLY, actuator, configuration, &shared.angle, shared)
     }
@@ -52,40 +53,10 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
         actuator: &'a mut M,
         configuration: &StageConfiguration,
         latest: &'a LatestAngle,
-        shared: &'a Shared<'a, O>,
+        shared: &'a Shared<'a>,
     ) -> Self {
         let motor = Motor::new(axis, actuator, latest, shared);
         Self { motor, configuration: *configuration }
-    }
-
-    /// Homes, then executes requested movements until the stage is given up; returns the reason.
-    pub async fn run(&mut self) -> Refusal {
-        match self.serve().await {
-            Ok(never) => match never {},
-            Err(reason) => reason,
-        }
-    }
-
-    /// Starts the driver, waits for the sensors, homes, and then follows requests for ever.
-    ///
-    /// # Errors
-    /// The stage or its encoder is given up.
-    async fn serve(&mut self) -> Result<Infallible, Refusal> {
-        let shared = self.motor.shared;
-        self.start().await?;
-        shared.sensing.wait().await;
-        self.home().await?;
-        self.turn_to(self.configuration.home).await?;
-        shared.homed.signal(());
-        loop {
-            let target = shared.wanted.wait().await;
-            self.turn_to(target).await?;
-        }
-    }
-
-    /// Starts the motor's driver.
-    pub(crate) fn start(&mut self) -> impl Future<Output = Result<(), Refusal>> {
-        self.motor.start()
     }
 
     /// Finds the index and sets the motor's step count by the encoder there. A stall is followed by
@@ -213,6 +184,22 @@ impl<'a, M: Actuator, O: Observer> Stage<'a, M, O> {
                 Timer::after(rest).await;
                 self.home().await
             }
+        }
+    }
+}
+
+impl<M: Actuator> Mechanism for Stage<'_, M> {
+    /// Starts the driver, waits for the sensors, homes, and then follows requests for ever.
+    async fn serve(&mut self) -> Result<Infallible, Refusal> {
+        let shared = self.motor.shared;
+        self.motor.actuator.start(shared).await?;
+        shared.sensing.wait().await;
+        self.home().await?;
+        self.turn_to(self.configuration.home).await?;
+        shared.homed.signal(());
+        loop {
+            let target = shared.wanted.wait().await;
+            self.turn_to(target).await?;
         }
     }
 }

@@ -10,8 +10,6 @@
 //! A base unit that fails is started again as any other device. If it is given up, a session that
 //! does not need it continues without it.
 
-use core::future::ready;
-
 use embassy_time::Instant;
 use micromath::F32Ext;
 use orientation::device::Device;
@@ -24,7 +22,7 @@ use crate::event::Event;
 use crate::guarded::Guarded;
 use crate::keep::RETRY;
 use crate::pointing::Decimator;
-use crate::ports::{BaseReading, BaseSensors, NoBase, Observer};
+use crate::ports::{BaseReading, BaseSensors, NoBase};
 use crate::retry_budget::Symptom;
 use crate::shared::Shared;
 
@@ -36,101 +34,50 @@ const STEP: f32 = (TURN / 4_294_967_296.0) as f32;
 /// turn, by which a sway across the axis is resolved with an error of 0.04 %.
 const KEPT: u32 = 1 << 18;
 
-/// Equipment of the base: coarse sensors or none.
-pub trait Base {
-    /// The type of the compensation with this equipment.
-    type CompensatesSway<'a>: CompensatesSway
-    where
-        Self: 'a;
-
-    /// Takes the sensors; nothing is started yet.
-    fn steady(&mut self) -> Self::CompensatesSway<'_>;
-}
-
-/// The compensation of the base's sway.
-#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
+/// The compensation of the base's sway. Without sensors there is nothing to read, and rates are used
+/// as measured; the methods do so unless they are implemented.
 pub trait CompensatesSway {
     /// Starts the sensors.
     ///
     /// # Errors
     /// A device without which the session cannot run is given up.
-    async fn start<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal>;
+    async fn start(&mut self, _shared: &Shared<'_>) -> Result<(), Refusal> {
+        Ok(())
+    }
 
     /// Whether the decision for or against the compensation has been taken.
-    fn is_decided(&self) -> bool;
+    fn is_decided(&self) -> bool {
+        true
+    }
 
     /// Reads the sensors; called with every sample.
     ///
     /// # Errors
     /// The sensors are given up while their readings are being subtracted.
-    async fn follow<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal>;
+    async fn follow(&mut self, _shared: &Shared<'_>) -> Result<(), Refusal> {
+        Ok(())
+    }
 
     /// The reading of the latest [`Self::follow`] and its time; each reading is returned once.
-    fn reading(&mut self) -> Option<(Instant, BaseReading)>;
-
-    /// Time between two readings, µs, for a precise gyro with the sampling period `sample`, µs.
-    fn period(&self, sample: u32) -> u32;
-
-    /// Restores the full retry budget of the sensors.
-    fn renew(&mut self);
-
-    /// The rate along a horizontal axis at this heading, less the sway.
-    fn steadied(&mut self, rate: AngularRate, heading: Angle) -> AngularRate;
-}
-
-impl Base for NoBase {
-    type CompensatesSway<'a> = NoBase;
-
-    fn steady(&mut self) -> NoBase {
-        NoBase
-    }
-}
-
-/// No compensation: rates are used as measured.
-impl CompensatesSway for NoBase {
-    fn start<O: Observer>(
-        &mut self,
-        _: &Shared<'_, O>,
-    ) -> impl Future<Output = Result<(), Refusal>> {
-        ready(Ok(()))
-    }
-
-    fn is_decided(&self) -> bool {
-        true
-    }
-
-    fn follow<O: Observer>(
-        &mut self,
-        _: &Shared<'_, O>,
-    ) -> impl Future<Output = Result<(), Refusal>> {
-        ready(Ok(()))
-    }
-
     fn reading(&mut self) -> Option<(Instant, BaseReading)> {
         None
     }
 
+    /// Time between two readings, µs, for a precise gyro with the sampling period `sample`, µs.
     fn period(&self, sample: u32) -> u32 {
         sample
     }
 
+    /// Restores the full retry budget of the sensors.
     fn renew(&mut self) {}
 
-    fn steadied(&mut self, rate: AngularRate, _: Angle) -> AngularRate {
+    /// The rate along a horizontal axis at this heading, less the sway.
+    fn steadied(&mut self, rate: AngularRate, _heading: Angle) -> AngularRate {
         rate
     }
 }
 
-impl<B: BaseSensors> Base for B {
-    type CompensatesSway<'a>
-        = SwayCompensation<'a, B>
-    where
-        B: 'a;
-
-    fn steady(&mut self) -> SwayCompensation<'_, B> {
-        SwayCompensation::new(self)
-    }
-}
+impl CompensatesSway for NoBase {}
 
 /// The compensation of sway by coarse sensors on the base.
 pub struct SwayCompensation<'a, B> {
@@ -162,7 +109,7 @@ pub struct SwayCompensation<'a, B> {
 
 impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
     /// Takes the base unit; nothing is started yet.
-    fn new(device: &'a mut B) -> Self {
+    pub fn new(device: &'a mut B) -> Self {
         let (sensors, divider) = (device.sensors(), device.divider());
         Self {
             base: Guarded::new(device, Device::Base),
@@ -189,7 +136,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
     ///
     /// # Errors
     /// The symptom of a unit that gives no reading for 100 ms, fails on the bus, or is stuck.
-    async fn read<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Result<(), Symptom> {
+    async fn read(&mut self, shared: &Shared<'_>) -> Result<(), Symptom> {
         let begun = Instant::now();
         let outcome = self.base.device.read().await;
         match self.base.checked(begun, outcome)? {
@@ -243,11 +190,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
     ///
     /// # Errors
     /// The sensors are given up although their readings are being subtracted in an alignment.
-    async fn mend<O: Observer>(
-        &mut self,
-        symptom: Symptom,
-        shared: &Shared<'_, O>,
-    ) -> Result<(), Refusal> {
+    async fn mend(&mut self, symptom: Symptom, shared: &Shared<'_>) -> Result<(), Refusal> {
         let restarts = self.base.restarts();
         let outcome = self.base.mend(symptom, shared).await;
         if self.base.restarts() != restarts {
@@ -262,7 +205,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
     }
 
     /// Continues without the sensors; a sway that they have not observed by now stays unmeasured.
-    fn lose<O: Observer>(&mut self, shared: &Shared<'_, O>) {
+    fn lose(&mut self, shared: &Shared<'_>) {
         if !self.is_decided() {
             shared.sway.set(SwayNoise::UNMEASURED);
         }
@@ -271,7 +214,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
     }
 
     /// Whether the base unit is out of use. While an azimuth is kept, it is tried again every 10 s.
-    fn is_absent<O: Observer>(&mut self, shared: &Shared<'_, O>) -> bool {
+    fn is_absent(&mut self, shared: &Shared<'_>) -> bool {
         if self.is_lost && shared.keep.is_kept.get() && self.lost.elapsed() >= RETRY {
             self.renew();
         }
@@ -279,7 +222,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
     }
 
     /// Reports the decision; called when the decision may have been taken.
-    fn tell<O: Observer>(&self, shared: &Shared<'_, O>) {
+    fn tell(&self, shared: &Shared<'_>) {
         let (noise, event) = match self.sway.decision() {
             Decision::Watching => return,
             Decision::Still(size) => {
@@ -308,7 +251,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
 }
 
 impl<B: BaseSensors> CompensatesSway for SwayCompensation<'_, B> {
-    async fn start<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal> {
+    async fn start(&mut self, shared: &Shared<'_>) -> Result<(), Refusal> {
         self.is_lost = false;
         if self.base.start(shared).await.is_err() {
             self.lose(shared);
@@ -321,7 +264,7 @@ impl<B: BaseSensors> CompensatesSway for SwayCompensation<'_, B> {
         self.is_lost || self.sway.decision() != Decision::Watching
     }
 
-    async fn follow<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Result<(), Refusal> {
+    async fn follow(&mut self, shared: &Shared<'_>) -> Result<(), Refusal> {
         if self.is_absent(shared) || !self.due.is_due() {
             return Ok(());
         }

@@ -5,11 +5,12 @@
 //! unnecessary. Images without storage contain none of this code.
 
 use drivers::fault::Fault;
+use embassy_futures::select::select;
 use embedded_storage_async::nor_flash::NorFlash;
 use orientation::align::rotating::Setting;
 use orientation::align::rotating::coupling::{BYTES, Coupling};
 use orientation::align::rotating::solution::SPEEDS;
-use orientation::keep;
+use orientation::keep::restart::Remembered as Heading;
 use orientation::session::rotating::{Procedure, Session};
 use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 use orientation::words;
@@ -19,15 +20,14 @@ use sequential_storage::map::{MapConfig, MapStorage};
 
 use crate::date::Day;
 use crate::event::Event;
-use crate::ports::{CalibrationStore, HeadingStore, Observer};
-use crate::shared::Shared;
+use crate::ports::Store;
+use crate::run::discard;
+use crate::shared::{Channels, Shared};
 
 /// Size of the buffer for the longest item, bytes: key and data, in whole words of flash.
 const BUFFER: usize = (1 + LONGEST).next_multiple_of(32);
 /// Size of the longer of the two kinds of item, bytes.
-const LONGEST: usize = if BYTES > HEADING_BYTES { BYTES } else { HEADING_BYTES };
-/// Size of a heading, bytes.
-const HEADING_BYTES: usize = keep::restart::Remembered::BYTES;
+const LONGEST: usize = if BYTES > Heading::BYTES { BYTES } else { Heading::BYTES };
 
 /// A store in pages of a flash that are reserved for it. A new item is written beside the old one;
 /// until it is complete, the old one is valid.
@@ -51,32 +51,20 @@ impl<F: NorFlash> FlashStore<F> {
     }
 }
 
-impl<F: NorFlash> CalibrationStore for FlashStore<F> {
-    async fn load(&mut self, slot: u8) -> Result<Option<[u8; BYTES]>, Fault> {
-        let found = self.map.fetch_item::<[u8; BYTES]>(&mut self.buffer, &slot).await;
+impl<F: NorFlash> Store for FlashStore<F> {
+    async fn load<const N: usize>(&mut self, slot: u8) -> Result<Option<[u8; N]>, Fault> {
+        let found = self.map.fetch_item::<[u8; N]>(&mut self.buffer, &slot).await;
         found.map_err(|_| Fault::Bus)
     }
 
-    async fn save(&mut self, slot: u8, bytes: &[u8; BYTES]) -> Result<(), Fault> {
-        let kept = self.map.store_item(&mut self.buffer, &slot, bytes).await;
+    async fn save<const N: usize>(&mut self, slot: u8, item: &[u8; N]) -> Result<(), Fault> {
+        let kept = self.map.store_item(&mut self.buffer, &slot, item).await;
         kept.map_err(|_| Fault::Bus)
     }
 }
 
-/// The key of the heading; the keys of axis misalignments are the indices of speeds.
-const HEADING: u8 = 0x80;
-
-impl<F: NorFlash> HeadingStore for FlashStore<F> {
-    async fn load_heading(&mut self) -> Result<Option<[u8; HEADING_BYTES]>, Fault> {
-        let found = self.map.fetch_item::<[u8; HEADING_BYTES]>(&mut self.buffer, &HEADING);
-        found.await.map_err(|_| Fault::Bus)
-    }
-
-    async fn save_heading(&mut self, bytes: &[u8; HEADING_BYTES]) -> Result<(), Fault> {
-        let kept = self.map.store_item(&mut self.buffer, &HEADING, bytes).await;
-        kept.map_err(|_| Fault::Bus)
-    }
-}
+/// The slot of the heading; the slots of axis misalignments are the indices of speeds.
+pub const HEADING: u8 = 0x80;
 
 /// The date, and the permitted age of a calibration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -112,7 +100,7 @@ const SAME_SPEED: f64 = 0.1;
 ///
 /// # Errors
 /// The fault of the store.
-pub async fn recall<S: CalibrationStore>(
+pub async fn recall<S: Store>(
     store: &mut S,
     speeds: &[f64],
     today: Today,
@@ -134,7 +122,7 @@ pub async fn recall<S: CalibrationStore>(
 ///
 /// # Errors
 /// The fault of the store.
-pub async fn keep<S: CalibrationStore>(
+pub async fn keep<S: Store>(
     store: &mut S,
     found: impl Iterator<Item = Coupling>,
 ) -> Result<(), Fault> {
@@ -146,11 +134,11 @@ pub async fn keep<S: CalibrationStore>(
 
 /// Prepares a session: sets its date and, if its procedure has no rate-modulated turns, gives it
 /// the stored axis misalignments. Reports what is used.
-pub async fn load_calibration<S: CalibrationStore, O: Observer>(
+pub async fn load_calibration<S: Store>(
     store: &mut S,
     today: Today,
     (setting, procedure): (&mut Setting, &mut Procedure),
-    shared: &Shared<'_, O>,
+    shared: &Shared<'_>,
 ) {
     procedure.date = today.date.unwrap_or_default();
     if procedure.uneven_turns > 0 {
@@ -169,23 +157,19 @@ pub async fn load_calibration<S: CalibrationStore, O: Observer>(
 }
 
 /// Stores the axis misalignments of a session that has found an azimuth with them, and reports it.
-/// A session without an azimuth stores none.
-pub async fn save_calibration<S: CalibrationStore, O: Observer>(
-    store: &mut S,
-    session: &Session,
-    shared: &Shared<'_, O>,
-) {
+/// A session without an azimuth stores none. Samples are discarded meanwhile.
+pub async fn save_calibration<S: Store>(store: &mut S, session: &Session, channels: &Channels<'_>) {
     if session.conclusion().is_none_or(|conclusion| conclusion.verdict.is_err()) {
         return;
     }
-    match keep(store, session.couplings()).await {
-        Ok(()) => {
-            session
-                .couplings()
-                .for_each(|found| shared.tell(Event::CalibrationSaved((&found).into())));
+    let saved = async {
+        let told = |found: Coupling| Event::CalibrationSaved((&found).into());
+        match keep(store, session.couplings()).await {
+            Ok(()) => session.couplings().for_each(|found| channels.shared.tell(told(found))),
+            Err(fault) => channels.shared.tell(Event::CalibrationNotSaved(fault)),
         }
-        Err(fault) => shared.tell(Event::CalibrationNotSaved(fault)),
-    }
+    };
+    select(saved, discard(channels)).await;
 }
 
 /// A stored axis misalignment as it is reported.

@@ -18,8 +18,9 @@ use orientation::units::{Angle, DEGREES_PER_RADIAN as DEGREES, TURN};
 
 use crate::configuration::TurntableConfiguration;
 use crate::event::Event;
-use crate::motor::{Axis, Break, Motor, POLL, Request, STALL_REST};
-use crate::ports::{Actuator, Observer};
+use crate::mechanism::Mechanism;
+use crate::motor::{Axis, Break, Motor, POLL, STALL_REST};
+use crate::ports::{Actuator, Request};
 use crate::shared::Shared;
 
 /// Number of stalls in a session after which the platform may turn on.
@@ -35,9 +36,9 @@ const SECTORS: usize = 32;
 const SECTOR_BITS: u32 = u32::BITS - SECTORS.ilog2();
 
 /// The control of a turntable.
-pub struct Turntable<'a, M, O> {
+pub struct Turntable<'a, M> {
     /// The motor and its encoder.
-    motor: Motor<'a, M, O>,
+    motor: Motor<'a, M>,
     /// Tolerance and settling time.
     configuration: TurntableConfiguration,
     /// Differences of encoder and motor around a turn.
@@ -50,12 +51,12 @@ pub struct Turntable<'a, M, O> {
     blocks: u32,
 }
 
-impl<'a, M: Actuator, O: Observer> Turntable<'a, M, O> {
+impl<'a, M: Actuator> Turntable<'a, M> {
     /// Takes the motor; nothing moves yet.
     pub fn new(
         actuator: &'a mut M,
         configuration: &TurntableConfiguration,
-        shared: &'a Shared<'a, O>,
+        shared: &'a Shared<'a>,
     ) -> Self {
         Self {
             motor: Motor::new(Axis::ONLY, actuator, &shared.angle, shared),
@@ -67,29 +68,6 @@ impl<'a, M: Actuator, O: Observer> Turntable<'a, M, O> {
         }
     }
 
-    /// Turns at the requested rates until the turntable is given up; returns the reason.
-    pub async fn run(&mut self) -> Refusal {
-        match self.serve().await {
-            Ok(never) => match never {},
-            Err(reason) => reason,
-        }
-    }
-
-    /// Brings the platform to rest.
-    ///
-    /// # Errors
-    /// The motor is given up meanwhile; the log has the reason.
-    pub async fn rest(&mut self) -> Result<(), Refusal> {
-        for _ in 0..=BLOCKS {
-            match self.stop().await {
-                Err(Break::Refused(reason)) => return Err(reason),
-                // A driver that was started again has stopped its motor, and so has a stall.
-                Ok(()) | Err(Break::Lost | Break::Stalled) => {}
-            }
-        }
-        Ok(())
-    }
-
     /// Brings the platform to rest by the motor's ramp, within 10 s.
     async fn stop(&mut self) -> Result<(), Break> {
         self.motor.look().await?;
@@ -99,16 +77,6 @@ impl<'a, M: Actuator, O: Observer> Turntable<'a, M, O> {
         self.motor.tell(|axis| Event::Revolving(axis, 0.0));
         self.motor.ask(Request::Seek(0.0)).await?;
         self.motor.follow(Trouble::Restless, LONGEST_STOP, |motion| motion.is_standing).await
-    }
-
-    /// Starts the driver, waits for the sensors, and turns until the session has to end.
-    async fn serve(&mut self) -> Result<Infallible, Refusal> {
-        self.motor.start().await?;
-        self.motor.shared.sensing.wait().await;
-        loop {
-            let Err(broken) = self.turn().await;
-            self.forgive(broken)?;
-        }
     }
 
     /// Decides whether the platform may turn on after a break: after a restart of the driver, whose
@@ -197,6 +165,29 @@ impl<'a, M: Actuator, O: Observer> Turntable<'a, M, O> {
     /// Gives the turntable up if motor and encoder differ by more than the tolerance, rad.
     fn check(&self, apart: f64) -> Result<(), Break> {
         self.motor.check(apart, self.configuration.agreement)
+    }
+}
+
+impl<M: Actuator> Mechanism for Turntable<'_, M> {
+    /// Starts the driver, waits for the sensors, and turns until the session has to end.
+    async fn serve(&mut self) -> Result<Infallible, Refusal> {
+        let shared = self.motor.shared;
+        self.motor.actuator.start(shared).await?;
+        shared.sensing.wait().await;
+        loop {
+            let Err(broken) = self.turn().await;
+            self.forgive(broken)?;
+        }
+    }
+
+    /// Brings the platform to rest.
+    async fn park(&mut self) {
+        for _ in 0..=BLOCKS {
+            // A driver that was started again has stopped its motor, and so has a stall.
+            if let Err(Break::Refused(_)) = self.stop().await {
+                return;
+            }
+        }
     }
 }
 

@@ -6,8 +6,9 @@ use embassy_time::Instant;
 use orientation::signal::InertialSample;
 use orientation::units::{Angle, AngleIncrement, AngularRate, SpecificForce};
 
+use super::increments;
 use crate::keep::{Motion, VerticalGyro};
-use crate::ports::{BaseReading, Observer};
+use crate::ports::BaseReading;
 use crate::shared::Shared;
 
 /// Quarter of a turn, in steps of an [`Angle`].
@@ -180,20 +181,9 @@ impl Coarse {
 
     /// Converts a coarse reading to a sample and passes it on. Saturation is kept as such; missing
     /// readings show in the times.
-    pub(super) fn pass_on<O: Observer>(
-        &mut self,
-        at: Instant,
-        reading: &BaseReading,
-        shared: &Shared<'_, O>,
-    ) {
+    pub(super) fn pass_on(&mut self, at: Instant, reading: &BaseReading, shared: &Shared<'_>) {
         let (lasted, _) = self.pace.lasted(at);
-        let [forward, right, down] = &mut self.carried;
-        let [about_forward, about_right, about_down] = reading.rate;
-        let mut turned = [
-            AngleIncrement::of_rate(about_forward, lasted, forward),
-            AngleIncrement::of_rate(about_right, lasted, right),
-            AngleIncrement::of_rate(about_down, lasted, down),
-        ];
+        let mut turned = increments(reading.rate, lasted, &mut self.carried);
         turned[2] = match self.take_precise(shared) {
             Some(precise) => {
                 self.excess.push(turned[2], precise);
@@ -209,7 +199,7 @@ impl Coarse {
 
     /// Rotation of the precise gyro about down since the latest reading; `None` where it was not
     /// vertical.
-    fn take_precise<O: Observer>(&mut self, shared: &Shared<'_, O>) -> Option<AngleIncrement> {
+    fn take_precise(&mut self, shared: &Shared<'_>) -> Option<AngleIncrement> {
         let precise = &mut self.precise;
         let down = match (precise.is_vertical, self.excess.is_known()) {
             (true, _) => VerticalGyro::Precise,

@@ -2,15 +2,15 @@
 
 use drivers::fault::Fault;
 use embassy_time::{Duration, Instant};
-use orientation::device::{Device, Trouble};
+use orientation::device::Device;
 use orientation::error::Refusal;
 use orientation::units::SpecificForce;
 
-use super::{Limit, RepeatCounter, STUCK};
+use super::Plausibility;
 use crate::guarded::Guarded;
 use crate::keep::RETRY;
 use crate::pointing::Decimator;
-use crate::ports::{Accelerometer, ForceReading, Observer};
+use crate::ports::{Accelerometer, ForceReading};
 use crate::retry_budget::Symptom;
 use crate::shared::Shared;
 
@@ -19,20 +19,18 @@ const PAUSE: Duration = Duration::from_secs(1);
 
 /// Whether an azimuth is held and the body moves. Rotation during the restart of a device would be
 /// lost, so the gyros alone carry the attitude, and the accelerometer is repaired at the next rest.
-fn is_on_the_way<O: Observer>(shared: &Shared<'_, O>) -> bool {
+fn is_on_the_way(shared: &Shared<'_>) -> bool {
     shared.keep.is_kept.get() && !shared.keep.is_at_rest.get()
 }
 
 /// State of the accelerometer's readings.
 pub(super) struct Forces<'a, A> {
     /// Accelerometer with its retry budget.
-    accelerometer: Guarded<'a, A>,
+    pub(super) accelerometer: Guarded<'a, A>,
     /// Decimation of the sample rate.
     due: Decimator,
-    /// Counter of identical readings.
-    row: RepeatCounter<[SpecificForce; 3]>,
-    /// Counter of saturated readings.
-    limit: Limit,
+    /// Checks of its readings.
+    plausibility: Plausibility<[SpecificForce; 3]>,
     /// Time until which it is not read, after a failure while an azimuth is held.
     absent: Option<Instant>,
 }
@@ -44,8 +42,7 @@ impl<'a, A: Accelerometer> Forces<'a, A> {
         Self {
             accelerometer: Guarded::new(accelerometer, Device::Accelerometer),
             due: Decimator::new(divider),
-            row: RepeatCounter::new(),
-            limit: Limit::new(sample_rate),
+            plausibility: Plausibility::new(sample_rate),
             absent: None,
         }
     }
@@ -53,23 +50,15 @@ impl<'a, A: Accelerometer> Forces<'a, A> {
     /// Restores the full retry budget.
     pub(super) fn renew(&mut self) {
         self.accelerometer.renew();
-        self.limit.samples = 0;
+        self.plausibility.saturated = 0;
         self.absent = None;
-    }
-
-    /// Starts the accelerometer, repeatedly within the retry budget.
-    pub(super) fn start<O: Observer>(
-        &mut self,
-        shared: &Shared<'_, O>,
-    ) -> impl Future<Output = Result<(), Refusal>> {
-        self.accelerometer.start(shared)
     }
 
     /// Returns a new reading where one is due, possibly saturated; none where it was lost. It must
     /// be called with every sample.
-    pub(super) async fn read<O: Observer>(
+    pub(super) async fn read(
         &mut self,
-        shared: &Shared<'_, O>,
+        shared: &Shared<'_>,
     ) -> Result<Option<ForceReading>, Refusal> {
         if !self.due.is_due() || self.absent.is_some_and(|until| Instant::now() < until) {
             return Ok(None);
@@ -99,23 +88,19 @@ impl<'a, A: Accelerometer> Forces<'a, A> {
 
     /// Checks a reading: a valid one, or the symptom to repair. Repeated outputs show an
     /// accelerometer that has stopped; one that stays saturated is given up.
-    fn judge<O: Observer>(
+    fn judge(
         &mut self,
         begun: Instant,
         outcome: Result<ForceReading, Fault>,
-        shared: &Shared<'_, O>,
+        shared: &Shared<'_>,
     ) -> Result<Result<ForceReading, Symptom>, Refusal> {
         let reading = match self.accelerometer.checked(begun, outcome) {
             Ok(reading) => reading,
             Err(symptom) => return Ok(Err(symptom)),
         };
-        if self.limit.is_exceeded(reading.is_clipped, self.due.divider) {
-            return Err(shared.give_up(Device::Accelerometer, Trouble::Saturated));
+        match self.plausibility.judge(reading.force, reading.is_clipped, self.due.divider) {
+            Ok(symptom) => Ok(symptom.map_or(Ok(reading), Err)),
+            Err(trouble) => Err(shared.give_up(Device::Accelerometer, trouble)),
         }
-        if self.row.push(reading.force) >= STUCK && !reading.is_clipped {
-            self.row = RepeatCounter::new();
-            return Ok(Err(Symptom::Stuck));
-        }
-        Ok(Ok(reading))
     }
 }

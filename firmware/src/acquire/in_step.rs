@@ -15,7 +15,7 @@ use orientation::math;
 use orientation::units::AngularRate;
 
 use super::rates::{Rates, silence};
-use crate::ports::{InStep, Observer, Quantity};
+use crate::ports::{InStep, Quantity};
 use crate::retry_budget::Symptom;
 use crate::shared::Shared;
 
@@ -27,11 +27,11 @@ const STRAYS: u8 = 3;
 type Arrival = Cell<Option<Result<Instant, Fault>>>;
 
 /// Group of `N` converters with sensors that measure values `V`.
-pub(super) struct Group<'a, C, O, const N: usize, V = AngularRate> {
+pub(super) struct Group<'a, C, const N: usize, V = AngularRate> {
     /// Converters with their checks.
     converters: [Rates<'a, C, V>; N],
     /// Channels to the other tasks.
-    shared: &'a Shared<'a, O>,
+    shared: &'a Shared<'a>,
     /// Sample period.
     period: Duration,
     /// Time without a conversion after which a converter counts as silent.
@@ -40,14 +40,14 @@ pub(super) struct Group<'a, C, O, const N: usize, V = AngularRate> {
     strays: u8,
 }
 
-impl<'a, C: InStep<V>, O: Observer, V: Quantity, const N: usize> Group<'a, C, O, N, V> {
+impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
     /// Takes converters with a period in µs, each with its name in the log; nothing is started yet.
     pub(super) fn new(
         converters: &'a mut [C; N],
         names: [Device; N],
         sample_rate: f64,
         period: u32,
-        shared: &'a Shared<'a, O>,
+        shared: &'a Shared<'a>,
     ) -> Self {
         let mut names = names.into_iter();
         let taken = converters.each_mut().map(|converter| {
@@ -81,12 +81,12 @@ impl<'a, C: InStep<V>, O: Observer, V: Quantity, const N: usize> Group<'a, C, O,
     async fn begin(&mut self) {
         for converter in &mut self.converters {
             if let Err(fault) = converter.gyro.device.arm().await {
-                self.shared.lose(converter.name, Symptom::Chip(fault));
+                self.shared.lose(converter.gyro.name, Symptom::Chip(fault));
             }
         }
         for converter in &mut self.converters {
             if let Err(fault) = converter.gyro.device.begin().await {
-                self.shared.lose(converter.name, Symptom::Chip(fault));
+                self.shared.lose(converter.gyro.name, Symptom::Chip(fault));
             }
         }
         self.strays = 0;
@@ -157,7 +157,7 @@ impl<'a, C: InStep<V>, O: Observer, V: Quantity, const N: usize> Group<'a, C, O,
         if self.strays > STRAYS {
             self.mend::<()>(index, Symptom::OutOfStep).await?;
         } else {
-            self.shared.lose(self.converters[index].name, Symptom::OutOfStep);
+            self.shared.lose(self.converters[index].gyro.name, Symptom::OutOfStep);
             Timer::after(self.period / 2).await;
             self.values().await?;
         }

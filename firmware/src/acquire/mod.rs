@@ -23,8 +23,17 @@ mod stage;
 mod triad;
 
 pub use spin::SpinAcquisition;
-pub use stage::Acquisition;
+pub use stage::{on_mount, on_stage};
 pub use triad::TriadAcquisition;
+
+use core::convert::Infallible;
+
+use orientation::device::Trouble;
+use orientation::error::Refusal;
+use orientation::units::{AngleIncrement, AngularRate};
+
+use crate::retry_budget::Symptom;
+use outlet::Outlet;
 
 /// Number of identical successive readings that is not chance: the last bits of all sensors are
 /// noise.
@@ -33,6 +42,78 @@ pub(crate) const STUCK: u32 = 64;
 const SATURATED_SECONDS: f64 = 5.0;
 /// Number of periods without a conversion after which a gyro counts as silent.
 const SILENCE: u32 = 8;
+
+/// The sensors of a carrier as the source of its samples.
+pub trait Source<'a> {
+    /// The kind of sample.
+    type Sample: 'static;
+
+    /// The outlet of the samples.
+    fn outlet(&mut self) -> &mut Outlet<'a, Self::Sample>;
+
+    /// Starts the sensors.
+    ///
+    /// # Errors
+    /// A sensor is given up.
+    async fn start(&mut self) -> Result<(), Refusal>;
+
+    /// Takes the next sample; [`None`] where a reading was lost.
+    ///
+    /// # Errors
+    /// A sensor is given up.
+    async fn sample(&mut self) -> Result<Option<Self::Sample>, Refusal>;
+
+    /// Continues without the sensor that was given up, where the others suffice for a while.
+    ///
+    /// # Errors
+    /// The reason, where they do not.
+    async fn do_without(&mut self, reason: Refusal) -> Result<(), Refusal> {
+        Err(reason)
+    }
+
+    /// Restores the full retry budget of all sensors.
+    fn renew(&mut self);
+}
+
+/// Acquires samples without end. Where a sensor is given up, reports the reason, which ends the
+/// session, and, while an azimuth is held, tries again later.
+pub async fn acquire<'a>(source: &mut impl Source<'a>) {
+    loop {
+        let Err(reason) = sample_for_ever(source).await;
+        let shared = source.outlet().shared;
+        shared.fail(reason);
+        shared.keep.rest().await;
+        source.renew();
+    }
+}
+
+/// Starts the sensors and samples until one is given up.
+async fn sample_for_ever<'a>(source: &mut impl Source<'a>) -> Result<Infallible, Refusal> {
+    source.start().await?;
+    loop {
+        match source.sample().await {
+            Ok(Some(sample)) => source.outlet().hand_over(sample),
+            Ok(None) => {}
+            Err(reason) => source.do_without(reason).await?,
+        }
+    }
+}
+
+/// Increments of the rates about three axes over a time, µs, with the remainders of whole steps,
+/// 10⁻¹⁵ rad.
+fn increments(
+    rates: [AngularRate; 3],
+    microseconds: u32,
+    carried: &mut [i64; 3],
+) -> [AngleIncrement; 3] {
+    let [forward, right, down] = carried;
+    let [about_forward, about_right, about_down] = rates;
+    [
+        AngleIncrement::of_rate(about_forward, microseconds, forward),
+        AngleIncrement::of_rate(about_right, microseconds, right),
+        AngleIncrement::of_rate(about_down, microseconds, down),
+    ]
+}
 
 /// Counter of identical successive values.
 #[derive(Clone, Copy, Debug)]
@@ -56,24 +137,43 @@ impl<T: Copy + PartialEq> RepeatCounter<T> {
     }
 }
 
-/// Counter of successive samples at the limit of the range.
+/// Checks of the successive readings of a sensor.
 #[derive(Clone, Copy, Debug)]
-struct Limit {
-    /// Successive samples at the limit.
-    samples: u32,
-    /// Greatest number that is tolerated.
+struct Plausibility<T> {
+    /// Counter of identical readings.
+    repeats: RepeatCounter<T>,
+    /// Successive samples at the limit of the range.
+    saturated: u32,
+    /// Greatest number of these that is tolerated.
     longest: u32,
 }
 
-impl Limit {
-    /// Counter for a sensor with this sample rate, Hz.
+impl<T: Copy + PartialEq> Plausibility<T> {
+    /// Checks of a sensor with this sample rate, Hz.
     fn new(sample_rate: f64) -> Self {
-        Self { samples: 0, longest: (SATURATED_SECONDS * sample_rate) as u32 }
+        let longest = (SATURATED_SECONDS * sample_rate) as u32;
+        Self { repeats: RepeatCounter::new(), saturated: 0, longest }
     }
 
-    /// Adds `samples` samples; returns whether the sensor has been at its limit for too long.
-    fn is_exceeded(&mut self, is_there: bool, samples: u32) -> bool {
-        self.samples = if is_there { self.samples + samples } else { 0 };
-        self.samples > self.longest
+    /// Takes a reading that stands for `samples` samples. One that is repeated too often is a
+    /// symptom of a sensor that has stopped.
+    ///
+    /// # Errors
+    /// The sensor has been at the limit of its range for too long.
+    fn judge(
+        &mut self,
+        value: T,
+        is_clipped: bool,
+        samples: u32,
+    ) -> Result<Option<Symptom>, Trouble> {
+        self.saturated = if is_clipped { self.saturated + samples } else { 0 };
+        if self.saturated > self.longest {
+            return Err(Trouble::Saturated);
+        }
+        if self.repeats.push(value) < STUCK || is_clipped {
+            return Ok(None);
+        }
+        self.repeats = RepeatCounter::new();
+        Ok(Some(Symptom::Stuck))
     }
 }

@@ -3,25 +3,24 @@
 use embassy_time::Instant;
 
 use crate::event::Event;
-use crate::ports::Observer;
 use crate::shared::{Channels, Queue, Shared};
 use crate::timeline::{Arrival, Timeline};
 
 /// Outlet of samples of kind `S`.
-pub(super) struct Outlet<'a, O, S> {
+pub struct Outlet<'a, S> {
     /// Queue to the session.
     queue: &'a Queue<S>,
     /// Channels to the other tasks.
-    pub(super) shared: &'a Shared<'a, O>,
+    pub(super) shared: &'a Shared<'a>,
     /// Expected times of the samples.
     timeline: Timeline,
     /// Number of successive samples lost because the queue was full.
     overflowed: u32,
 }
 
-impl<'a, O: Observer, S> Outlet<'a, O, S> {
+impl<'a, S> Outlet<'a, S> {
     /// Outlet of samples with this period, µs.
-    pub(super) fn new(period: u32, channels: &'a Channels<'a, O, S>) -> Self {
+    pub(super) fn new(period: u32, channels: &'a Channels<'a, S>) -> Self {
         Self {
             queue: &channels.samples,
             shared: &channels.shared,

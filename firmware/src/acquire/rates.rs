@@ -1,15 +1,14 @@
 //! Conversions of a gyro: awaited, read, and checked.
 
-use drivers::fault::Fault;
 use embassy_time::{Duration, Instant, with_timeout};
-use orientation::device::{Device, Trouble};
+use orientation::device::Device;
 use orientation::error::Refusal;
 use orientation::units::AngularRate;
 
-use super::{Limit, RepeatCounter, SILENCE, STUCK};
+use super::{Plausibility, SILENCE};
 use crate::event::Event;
 use crate::guarded::Guarded;
-use crate::ports::{Gyro, Observer, Quantity, RateReading};
+use crate::ports::{Gyro, Quantity, RateReading};
 use crate::retry_budget::Symptom;
 use crate::shared::Shared;
 
@@ -20,14 +19,10 @@ const AT_ONCE: u32 = 16;
 pub(super) struct Rates<'a, G, V = AngularRate> {
     /// Gyro with its retry budget.
     pub(super) gyro: Guarded<'a, G>,
-    /// Name in the log.
-    pub(super) name: Device,
-    /// Counter of identical readings.
-    row: RepeatCounter<V>,
-    /// Counter of saturated readings.
-    limit: Limit,
+    /// Checks of its readings.
+    plausibility: Plausibility<V>,
     /// Sample period.
-    period: Duration,
+    pub(super) period: Duration,
     /// End of the latest conversion.
     latest: Option<Instant>,
     /// Whether it was told that the gyro came to the limit of its range: once is enough for a log.
@@ -42,13 +37,10 @@ pub(super) fn silence(period: u32) -> Duration {
 impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
     /// Takes a gyro with this sample rate, Hz, by its name in the log.
     pub(super) fn new(gyro: &'a mut G, name: Device, sample_rate: f64) -> Self {
-        let limit = Limit::new(sample_rate);
         let period = Duration::from_micros((1e6 / sample_rate + 0.5) as u64);
         Self {
             gyro: Guarded::new(gyro, name),
-            name,
-            row: RepeatCounter::new(),
-            limit,
+            plausibility: Plausibility::new(sample_rate),
             period,
             latest: None,
             has_clipped: false,
@@ -58,7 +50,7 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
     /// Restores the full retry budget.
     pub(super) fn renew(&mut self) {
         self.gyro.renew();
-        self.limit.samples = 0;
+        self.plausibility.saturated = 0;
         self.has_clipped = false;
     }
 
@@ -89,23 +81,14 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
         }
     }
 
-    /// Returns a new rate, none where it is not new, or the symptom to repair.
-    pub(super) async fn read<O: Observer>(
+    /// Returns a new rate, checked for saturation and repetition; none where it is not new, or the
+    /// symptom to repair.
+    pub(super) async fn read(
         &mut self,
-        shared: &Shared<'_, O>,
+        shared: &Shared<'_>,
     ) -> Result<Result<Option<V>, Symptom>, Refusal> {
         let begun = Instant::now();
         let outcome = self.gyro.device.read().await;
-        self.judge(begun, outcome, shared)
-    }
-
-    /// Checks a reading for faults, saturation and repetition.
-    fn judge<O: Observer>(
-        &mut self,
-        begun: Instant,
-        outcome: Result<RateReading<V>, Fault>,
-        shared: &Shared<'_, O>,
-    ) -> Result<Result<Option<V>, Symptom>, Refusal> {
         let RateReading { rate, is_new } = match self.gyro.checked(begun, outcome) {
             Ok(reading) => reading,
             Err(symptom) => return Ok(Err(symptom)),
@@ -114,15 +97,11 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
             return Ok(Ok(None));
         }
         if rate.is_saturated() && !core::mem::replace(&mut self.has_clipped, true) {
-            shared.tell(Event::Clipped(self.name));
+            shared.tell(Event::Clipped(self.gyro.name));
         }
-        if self.limit.is_exceeded(rate.is_saturated(), 1) {
-            return Err(shared.give_up(self.name, Trouble::Saturated));
+        match self.plausibility.judge(rate, rate.is_saturated(), 1) {
+            Ok(symptom) => Ok(symptom.map_or(Ok(Some(rate)), Err)),
+            Err(trouble) => Err(shared.give_up(self.gyro.name, trouble)),
         }
-        if self.row.push(rate) >= STUCK && !rate.is_saturated() {
-            self.row = RepeatCounter::new();
-            return Ok(Err(Symptom::Stuck));
-        }
-        Ok(Ok(Some(rate)))
     }
 }

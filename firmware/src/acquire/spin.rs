@@ -4,17 +4,17 @@
 //! one moment: a conversion is a mean, and belongs to its middle. From middle to middle a gyro has
 //! turned by half of either conversion. A lost conversion shows in the next sample's time.
 
-use core::convert::Infallible;
-
 use embassy_time::Duration;
 use orientation::device::Device;
 use orientation::error::Refusal;
 use orientation::signal::SpinSample;
 use orientation::units::{AngleIncrement, Instant, SpinForce};
 
+use super::Source;
 use super::in_step::{Group, middle};
 use super::outlet::Outlet;
-use crate::ports::{Code, InStep, Observer, Quantity, SpinSensors};
+use crate::configuration::period;
+use crate::ports::{Code, InStep, Quantity, SpinSensors};
 use crate::shared::Channels;
 use crate::spin::configuration::{CHANNELS, GYROS, SpinConfiguration};
 
@@ -28,27 +28,28 @@ const NAMES: [Device; CHANNELS] = [
 ];
 
 /// Acquisition of the sensors of a spinning body.
-pub struct SpinAcquisition<'a, C, O> {
+pub struct SpinAcquisition<'a, C> {
     /// Converters of all sensors.
-    converters: Group<'a, C, O, CHANNELS, Code>,
+    converters: Group<'a, C, CHANNELS, Code>,
     /// Scale factors and rates.
     configuration: &'a SpinConfiguration,
     /// Outlet of samples.
-    outlet: Outlet<'a, O, SpinSample>,
+    outlet: Outlet<'a, SpinSample>,
     /// Rotation of the gyros in the previous conversion, in steps of an increment.
     before: Option<[i32; GYROS]>,
     /// Remaining half steps.
     carried: [i64; GYROS],
 }
 
-impl<'a, C: InStep<Code>, O: Observer> SpinAcquisition<'a, C, O> {
+impl<'a, C: InStep<Code>> SpinAcquisition<'a, C> {
     /// Takes the sensors; nothing is started yet.
     pub fn new(
         SpinSensors(converters): &'a mut SpinSensors<C>,
         configuration: &'a SpinConfiguration,
-        channels: &'a Channels<'a, O, SpinSample>,
+        channels: &'a Channels<'a, SpinSample>,
     ) -> Self {
-        let (rate, period) = (configuration.sample_rate, configuration.period());
+        let rate = configuration.sample_rate;
+        let period = period(rate);
         Self {
             converters: Group::new(converters, NAMES, rate, period, &channels.shared),
             configuration,
@@ -58,25 +59,36 @@ impl<'a, C: InStep<Code>, O: Observer> SpinAcquisition<'a, C, O> {
         }
     }
 
-    /// Samples until a sensor is given up; returns the reason.
-    pub async fn run(&mut self) -> Refusal {
-        match self.sample_for_ever().await {
-            Ok(never) => match never {},
-            Err(reason) => reason,
-        }
+    /// Rotation of the gyros since the middle of the previous conversion; for the first one as much
+    /// as in a whole conversion.
+    fn turned(&mut self, codes: &[Code; CHANNELS]) -> [AngleIncrement; GYROS] {
+        let gyros = &self.configuration.gyros;
+        let steps = core::array::from_fn(|axis| gyros[axis].steps(codes[axis]));
+        let before = self.before.replace(steps).unwrap_or(steps);
+        let carried = &mut self.carried;
+        core::array::from_fn(|axis| between(before[axis], steps[axis], &mut carried[axis]))
     }
 
-    /// Starts the sensors and samples without end.
-    async fn sample_for_ever(&mut self) -> Result<Infallible, Refusal> {
-        self.converters.start().await?;
-        loop {
-            if let Some(sample) = self.sample().await? {
-                self.outlet.hand_over(sample);
-            }
-        }
+    /// Specific forces up and right; [`None`] if one is saturated.
+    fn force(&self, codes: &[Code; CHANNELS]) -> Option<[SpinForce; 2]> {
+        let [_, _, _, up, right] = *codes;
+        let [of_up, of_right] = &self.configuration.accelerometers;
+        let force = [SpinForce(of_up.steps(up)), SpinForce(of_right.steps(right))];
+        (!force.iter().any(|force| force.is_saturated())).then_some(force)
+    }
+}
+
+impl<'a, C: InStep<Code>> Source<'a> for SpinAcquisition<'a, C> {
+    type Sample = SpinSample;
+
+    fn outlet(&mut self) -> &mut Outlet<'a, SpinSample> {
+        &mut self.outlet
     }
 
-    /// Takes the next sample; none where a reading was lost.
+    fn start(&mut self) -> impl Future<Output = Result<(), Refusal>> {
+        self.converters.start()
+    }
+
     async fn sample(&mut self) -> Result<Option<SpinSample>, Refusal> {
         let Some(times) = self.converters.conversions().await? else { return Ok(None) };
         let time = middle(times);
@@ -91,27 +103,8 @@ impl<'a, C: InStep<Code>, O: Observer> SpinAcquisition<'a, C, O> {
         Ok(Some(SpinSample { time, turned: self.turned(&codes), force: self.force(&codes) }))
     }
 
-    /// Rotation of the gyros since the middle of the previous conversion; for the first one as much
-    /// as in a whole conversion.
-    fn turned(&mut self, codes: &[Code; CHANNELS]) -> [AngleIncrement; GYROS] {
-        let mut steps = [0; GYROS];
-        for (axis, steps) in steps.iter_mut().enumerate() {
-            *steps = self.configuration.gyros[axis].steps(codes[axis]);
-        }
-        let before = self.before.replace(steps).unwrap_or(steps);
-        let mut turned = [AngleIncrement::default(); GYROS];
-        for (axis, turned) in turned.iter_mut().enumerate() {
-            *turned = between(before[axis], steps[axis], &mut self.carried[axis]);
-        }
-        turned
-    }
-
-    /// Specific forces up and right; [`None`] if one is saturated.
-    fn force(&self, codes: &[Code; CHANNELS]) -> Option<[SpinForce; 2]> {
-        let [_, _, _, up, right] = *codes;
-        let [of_up, of_right] = &self.configuration.accelerometers;
-        let force = [SpinForce(of_up.steps(up)), SpinForce(of_right.steps(right))];
-        (!force.iter().any(|force| force.is_saturated())).then_some(force)
+    fn renew(&mut self) {
+        self.converters.renew();
     }
 }
 

@@ -4,52 +4,74 @@
 //! accelerometer with every n-th sample: between, the stage cannot have turned far, and the force
 //! is only averaged. Without a valid rate and a valid angle there is no sample.
 
-use core::convert::Infallible;
-
 use embassy_time::{Duration, Instant, Ticker};
 use orientation::device::Device;
 use orientation::error::Refusal;
 use orientation::signal::Sample;
 use orientation::units::AngularRate;
 
+use super::Source;
 use super::coarse::Coarse;
 use super::forces::Forces;
 use super::outlet::Outlet;
 use super::rates::{Rates, silence};
-use crate::configuration::Configuration;
+use crate::configuration::{Configuration, FramesConfiguration, period};
 use crate::keep::RETRY;
-use crate::pointing::Pointing;
-use crate::ports::{Accelerometer, Gyro, Observer};
-use crate::shared::Channels;
+use crate::pointing::{FrameShafts, Pointing, Shaft};
+use crate::ports::{Accelerometer, Encoder, Frames, Gyro, Sensors};
+use crate::shared::{Channels, LatestAngle};
 use crate::steady::CompensatesSway;
 
+/// The sensors of a stage or a turntable as a source of samples; nothing is started yet.
+pub fn on_stage<'a, G: Gyro, A: Accelerometer, E: Encoder, B: CompensatesSway>(
+    sensors: &'a mut Sensors<G, A, E, B>,
+    configuration: &Configuration,
+    channels: &'a Channels<'a>,
+) -> impl Source<'a> {
+    let Sensors { gyro, accelerometer, encoder, base } = sensors;
+    let (harmonics, latest) = (configuration.encoder, &channels.shared.angle);
+    let shared = &channels.shared;
+    let shaft = Shaft::new(encoder, Device::Encoder, harmonics, configuration, latest, shared);
+    Acquisition::new(gyro, accelerometer, shaft, base, configuration, channels)
+}
+
+/// The sensors of a two-frame mount as a source of samples; nothing is started yet. The latest
+/// frame angles are written to `latest`.
+pub fn on_mount<'a, G: Gyro, A: Accelerometer, E: Encoder, B: CompensatesSway>(
+    sensors: &'a mut Sensors<G, A, Frames<E>, B>,
+    configuration: &Configuration,
+    frames: &FramesConfiguration,
+    latest: &'a Frames<LatestAngle>,
+    channels: &'a Channels<'a>,
+) -> impl Source<'a> {
+    let Sensors { gyro, accelerometer, encoder, base } = sensors;
+    let shafts = FrameShafts::new(encoder, configuration, frames, latest, &channels.shared);
+    Acquisition::new(gyro, accelerometer, shafts, base, configuration, channels)
+}
+
 /// Acquisition of the sensors of the stage path.
-pub struct Acquisition<'a, G, A, P, S, O> {
+struct Acquisition<'a, G, A, P, S> {
     rates: Rates<'a, G>,
     forces: Forces<'a, A>,
     pointing: P,
-    steady: S,
+    steady: &'a mut S,
     coarse: Coarse,
-    outlet: Outlet<'a, O, Sample>,
+    outlet: Outlet<'a, Sample>,
     silence: Duration,
-    /// Period of the precise gyro's samples.
-    period: Duration,
 }
 
-impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway, O: Observer>
-    Acquisition<'a, G, A, P, S, O>
-{
+impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Acquisition<'a, G, A, P, S> {
     /// Takes the sensors; nothing is started yet.
-    pub fn new(
+    fn new(
         gyro: &'a mut G,
         accelerometer: &'a mut A,
         pointing: P,
-        steady: S,
+        steady: &'a mut S,
         configuration: &Configuration,
-        channels: &'a Channels<'a, O>,
+        channels: &'a Channels<'a>,
     ) -> Self {
-        let period = configuration.period();
         let Configuration { sample_rate, force_divider, .. } = *configuration;
+        let period = period(sample_rate);
         let coarse = Coarse::new(steady.period(period), period);
         Self {
             rates: Rates::new(gyro, Device::Gyro, sample_rate),
@@ -59,64 +81,14 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway, O: Observer
             coarse,
             outlet: Outlet::new(period, channels),
             silence: silence(period),
-            period: Duration::from_micros(period.into()),
-        }
-    }
-
-    /// Samples without end; where a sensor is given up, reports the reason and, while an azimuth is
-    /// held, tries again later.
-    pub async fn run_for_ever(&mut self) {
-        loop {
-            let Err(reason) = self.sample_for_ever().await;
-            self.outlet.shared.fail(reason);
-            self.outlet.shared.keep.rest().await;
-            self.renew();
-            self.steady.renew();
         }
     }
 
     /// Restores the full retry budget of the precise gyro and the sensors beside it.
-    fn renew(&mut self) {
+    fn renew_precise(&mut self) {
         self.rates.renew();
         self.forces.renew();
         self.pointing.renew();
-    }
-
-    /// Starts the sensors and samples until one is given up.
-    async fn sample_for_ever(&mut self) -> Result<Infallible, Refusal> {
-        let shared = self.outlet.shared;
-        self.forces.start(shared).await?;
-        self.pointing.start().await?;
-        self.steady.start(shared).await?;
-        self.rates.gyro.start(shared).await?;
-        loop {
-            match self.sample().await {
-                Ok(Some(sample)) => self.outlet.hand_over(sample),
-                Ok(None) => {}
-                Err(reason) if shared.keep.is_kept.get() => self.go_on_coarse(reason).await?,
-                Err(reason) => return Err(reason),
-            }
-        }
-    }
-
-    /// While an azimuth is held, continues with the coarse sensors alone until the body rests and
-    /// the others may be tried again.
-    async fn go_on_coarse(&mut self, reason: Refusal) -> Result<(), Refusal> {
-        let shared = self.outlet.shared;
-        self.coarse.lose_precise();
-        let until = Instant::now() + RETRY;
-        let mut ticker = Ticker::every(self.period);
-        while Instant::now() < until || !shared.keep.is_at_rest.get() {
-            ticker.next().await;
-            self.steady.follow(shared).await?;
-            self.pass_on();
-            shared.count(|health| health.samples = health.samples.saturating_add(1));
-            if !shared.keep.is_idle.get() {
-                shared.fail(reason);
-            }
-        }
-        self.renew();
-        Ok(())
     }
 
     /// Passes a coarse reading on to attitude and heading.
@@ -127,7 +99,33 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway, O: Observer
         }
     }
 
-    /// Takes the next sample; none where a reading was lost.
+    /// Reads the precise gyro; none where the reading was lost.
+    async fn rate(&mut self) -> Result<Option<AngularRate>, Refusal> {
+        let shared = self.outlet.shared;
+        match self.rates.read(shared).await? {
+            Ok(rate) => Ok(rate),
+            Err(symptom) => self.rates.gyro.mend(symptom, shared).await.map(|()| None),
+        }
+    }
+}
+
+impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
+    for Acquisition<'a, G, A, P, S>
+{
+    type Sample = Sample;
+
+    fn outlet(&mut self) -> &mut Outlet<'a, Sample> {
+        &mut self.outlet
+    }
+
+    async fn start(&mut self) -> Result<(), Refusal> {
+        let shared = self.outlet.shared;
+        self.forces.accelerometer.start(shared).await?;
+        self.pointing.start().await?;
+        self.steady.start(shared).await?;
+        self.rates.gyro.start(shared).await
+    }
+
     async fn sample(&mut self) -> Result<Option<Sample>, Refusal> {
         let shared = self.outlet.shared;
         let time = match self.rates.conversion(self.silence).await {
@@ -161,12 +159,31 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway, O: Observer
         }))
     }
 
-    /// Reads the precise gyro; none where the reading was lost.
-    async fn rate(&mut self) -> Result<Option<AngularRate>, Refusal> {
+    /// While an azimuth is held, continues with the coarse sensors alone until the body rests and
+    /// the others may be tried again.
+    async fn do_without(&mut self, reason: Refusal) -> Result<(), Refusal> {
         let shared = self.outlet.shared;
-        match self.rates.read(shared).await? {
-            Ok(rate) => Ok(rate),
-            Err(symptom) => self.rates.gyro.mend(symptom, shared).await.map(|()| None),
+        if !shared.keep.is_kept.get() {
+            return Err(reason);
         }
+        self.coarse.lose_precise();
+        let until = Instant::now() + RETRY;
+        let mut ticker = Ticker::every(self.rates.period);
+        while Instant::now() < until || !shared.keep.is_at_rest.get() {
+            ticker.next().await;
+            self.steady.follow(shared).await?;
+            self.pass_on();
+            shared.count(|health| health.samples = health.samples.saturating_add(1));
+            if !shared.keep.is_idle.get() {
+                shared.fail(reason);
+            }
+        }
+        self.renew_precise();
+        Ok(())
+    }
+
+    fn renew(&mut self) {
+        self.renew_precise();
+        self.steady.renew();
     }
 }

@@ -4,31 +4,30 @@
 //! lost conversion is unknown; such a sample is not passed on, and the jump in time reports the
 //! loss to the session.
 
-use core::convert::Infallible;
-
 use embassy_time::{Duration, Instant};
 use orientation::device::Device;
 use orientation::error::Refusal;
 use orientation::signal::InertialSample;
-use orientation::units::{AngleIncrement, AngularRate, SpecificForce};
+use orientation::units::SpecificForce;
 
 use super::forces::Forces;
 use super::in_step::{Group, middle};
 use super::outlet::Outlet;
-use crate::configuration::VehicleConfiguration;
+use super::{Source, increments};
+use crate::configuration::{VehicleConfiguration, period};
 use crate::keep::Motion;
-use crate::ports::{Accelerometer, ForceReading, InStep, Observer, VehicleSensors};
+use crate::ports::{Accelerometer, ForceReading, InStep, VehicleSensors};
 use crate::shared::Channels;
 
 /// Names of the gyros in the log: forward, right, down.
 const NAMES: [Device; 3] = [Device::ForwardGyro, Device::RightGyro, Device::DownGyro];
 
 /// Acquisition of the sensors of a vehicle.
-pub struct TriadAcquisition<'a, G, A, O> {
-    gyros: Group<'a, G, O, 3>,
+pub struct TriadAcquisition<'a, G, A> {
+    gyros: Group<'a, G, 3>,
     forces: Forces<'a, A>,
     mean: Mean,
-    outlet: Outlet<'a, O, InertialSample>,
+    outlet: Outlet<'a, InertialSample>,
     period: Duration,
     /// Remainders of the rotation in whole steps, 10⁻¹⁵ rad.
     carried: [i64; 3],
@@ -36,15 +35,15 @@ pub struct TriadAcquisition<'a, G, A, O> {
     latest: Option<Instant>,
 }
 
-impl<'a, G: InStep, A: Accelerometer, O: Observer> TriadAcquisition<'a, G, A, O> {
+impl<'a, G: InStep, A: Accelerometer> TriadAcquisition<'a, G, A> {
     /// Takes the sensors; nothing is started yet.
     pub fn new(
         sensors: &'a mut VehicleSensors<G, A>,
         configuration: &VehicleConfiguration,
-        channels: &'a Channels<'a, O, InertialSample>,
+        channels: &'a Channels<'a, InertialSample>,
     ) -> Self {
-        let period = configuration.period();
-        let VehicleConfiguration { sample_rate, force_divider, forces, .. } = *configuration;
+        let VehicleConfiguration { sample_rate, force_divider, forces } = *configuration;
+        let period = period(sample_rate);
         let VehicleSensors { gyros, accelerometer } = sensors;
         Self {
             gyros: Group::new(gyros, NAMES, sample_rate, period, &channels.shared),
@@ -57,31 +56,28 @@ impl<'a, G: InStep, A: Accelerometer, O: Observer> TriadAcquisition<'a, G, A, O>
         }
     }
 
-    /// Samples without end; where a sensor is given up, reports the reason and, while an azimuth is
-    /// held, tries again later.
-    pub async fn run_for_ever(&mut self) {
-        loop {
-            let Err(reason) = self.sample_for_ever().await;
-            self.outlet.shared.fail(reason);
-            self.outlet.shared.keep.rest().await;
-            self.forces.renew();
-            self.gyros.renew();
-        }
+    /// Length of the conversions that ended at this time, µs: the time since the previous ones, or
+    /// the nominal period where that is unknown.
+    fn lasted(&mut self, time: Instant) -> u32 {
+        let since = self.latest.replace(time).map_or(Duration::MAX, |latest| time - latest);
+        let beside = since.max(self.period) - since.min(self.period);
+        let lasted = if beside <= self.period / 4 { since } else { self.period };
+        lasted.as_micros() as u32
+    }
+}
+
+impl<'a, G: InStep, A: Accelerometer> Source<'a> for TriadAcquisition<'a, G, A> {
+    type Sample = InertialSample;
+
+    fn outlet(&mut self) -> &mut Outlet<'a, InertialSample> {
+        &mut self.outlet
     }
 
-    /// Starts the sensors and samples until one is given up.
-    async fn sample_for_ever(&mut self) -> Result<Infallible, Refusal> {
-        self.forces.start(self.outlet.shared).await?;
-        self.gyros.start().await?;
-        loop {
-            if let Some(sample) = self.sample().await? {
-                self.outlet.shared.move_on(Motion::Moved(sample));
-                self.outlet.hand_over(sample);
-            }
-        }
+    async fn start(&mut self) -> Result<(), Refusal> {
+        self.forces.accelerometer.start(self.outlet.shared).await?;
+        self.gyros.start().await
     }
 
-    /// Takes the next sample; none where a reading was lost.
     async fn sample(&mut self) -> Result<Option<InertialSample>, Refusal> {
         let Some(times) = self.gyros.conversions().await? else { return Ok(None) };
         let time = middle(times);
@@ -94,31 +90,16 @@ impl<'a, G: InStep, A: Accelerometer, O: Observer> TriadAcquisition<'a, G, A, O>
         let force = reading.and_then(|reading| self.mean.push(reading));
         let Some(rates) = rates else { return Ok(None) };
         self.outlet.judge(time);
-        Ok(Some(InertialSample {
-            time: orientation::units::Instant(time.as_micros()),
-            turned: self.turned(rates, lasted),
-            force,
-        }))
+        let turned = increments(rates, lasted, &mut self.carried);
+        let time = orientation::units::Instant(time.as_micros());
+        let sample = InertialSample { time, turned, force };
+        self.outlet.shared.move_on(Motion::Moved(sample));
+        Ok(Some(sample))
     }
 
-    /// Length of the conversions that ended at this time, µs: the time since the previous ones, or
-    /// the nominal period where that is unknown.
-    fn lasted(&mut self, time: Instant) -> u32 {
-        let since = self.latest.replace(time).map_or(Duration::MAX, |latest| time - latest);
-        let beside = since.max(self.period) - since.min(self.period);
-        let lasted = if beside <= self.period / 4 { since } else { self.period };
-        lasted.as_micros() as u32
-    }
-
-    /// Increments of the gyros' rates over a time, µs.
-    fn turned(&mut self, rates: [AngularRate; 3], microseconds: u32) -> [AngleIncrement; 3] {
-        let [forward, right, down] = &mut self.carried;
-        let [about_forward, about_right, about_down] = rates;
-        [
-            AngleIncrement::of_rate(about_forward, microseconds, forward),
-            AngleIncrement::of_rate(about_right, microseconds, right),
-            AngleIncrement::of_rate(about_down, microseconds, down),
-        ]
+    fn renew(&mut self) {
+        self.forces.renew();
+        self.gyros.renew();
     }
 }
 

@@ -15,8 +15,9 @@ use orientation::keep::restart::{Doubt, Remembered};
 use orientation::units::DEGREE;
 
 use crate::event::Event;
-use crate::ports::{HeadingStore, Observer};
+use crate::ports::Store;
 use crate::shared::Shared;
+use crate::storage::HEADING;
 
 /// Least time between two writes of the same stop.
 const PERIOD: Duration = Duration::from_secs(60);
@@ -37,28 +38,23 @@ pub(super) struct Memory<M> {
     has_failed: bool,
 }
 
-impl<M: HeadingStore> Memory<M> {
+impl<M: Store> Memory<M> {
     /// Wraps a store; nothing is read yet.
     pub(super) fn new(store: M) -> Self {
         Self { store, found: None, stored: None, has_failed: false }
     }
 
-    /// The store.
-    pub(super) fn store(&self) -> &M {
-        &self.store
-    }
-
     /// Reads the heading that was stored before the restart. An item with a wrong checksum counts
     /// as absent.
-    pub(super) async fn load<O: Observer>(&mut self, shared: &Shared<'_, O>) {
-        match self.store.load_heading().await {
+    pub(super) async fn load(&mut self, shared: &Shared<'_>) {
+        match self.store.load::<{ Remembered::BYTES }>(HEADING).await {
             Ok(bytes) => self.found = bytes.as_ref().and_then(|b| Remembered::from_bytes(b)),
             Err(fault) => self.fail(fault, shared),
         }
     }
 
     /// Reports the first failure of the store.
-    fn fail<O: Observer>(&mut self, fault: Fault, shared: &Shared<'_, O>) {
+    fn fail(&mut self, fault: Fault, shared: &Shared<'_>) {
         if !core::mem::replace(&mut self.has_failed, true) {
             shared.tell(Event::HeadingNotKept(fault));
         }
@@ -71,11 +67,7 @@ impl<M: HeadingStore> Memory<M> {
 
     /// Decides on the heading from before the restart once the vehicle has rested long enough; true
     /// if it is used. Until then it stays pending.
-    pub(super) fn recall<O: Observer>(
-        &mut self,
-        keeper: &mut Keeper,
-        shared: &Shared<'_, O>,
-    ) -> bool {
+    pub(super) fn recall(&mut self, keeper: &mut Keeper, shared: &Shared<'_>) -> bool {
         let Some(found) = &self.found else { return false };
         let outcome = keeper.recall(found);
         match outcome {
@@ -89,12 +81,7 @@ impl<M: HeadingStore> Memory<M> {
 
     /// Stores the heading of a body at rest, at most once a minute, and erases it when the body
     /// sets off. The item found at the start stays until it has been decided on.
-    pub(super) async fn keep<O: Observer>(
-        &mut self,
-        keeper: &Keeper,
-        is_at_rest: bool,
-        shared: &Shared<'_, O>,
-    ) {
+    pub(super) async fn keep(&mut self, keeper: &Keeper, is_at_rest: bool, shared: &Shared<'_>) {
         if self.found.is_some() {
             return;
         }
@@ -122,12 +109,8 @@ impl<M: HeadingStore> Memory<M> {
     }
 
     /// Writes an item and reports the first failure.
-    async fn write<O: Observer>(
-        &mut self,
-        bytes: &[u8; Remembered::BYTES],
-        shared: &Shared<'_, O>,
-    ) {
-        if let Err(fault) = self.store.save_heading(bytes).await {
+    async fn write(&mut self, bytes: &[u8; Remembered::BYTES], shared: &Shared<'_>) {
+        if let Err(fault) = self.store.save(HEADING, bytes).await {
             self.fail(fault, shared);
         }
     }

@@ -30,7 +30,6 @@ use orientation::keep::Handover;
 use orientation::signal::InertialSample;
 use orientation::units::Instant;
 
-use crate::ports::Observer;
 use crate::shared::{QUEUE, Shared};
 
 /// Time after which a device that was given up is tried again while an azimuth is kept.
@@ -123,7 +122,7 @@ impl KeeperChannels {
     }
 }
 
-impl<O: Observer> Shared<'_, O> {
+impl Shared<'_> {
     /// Queues an increment for the keeper, if one runs. If the queue is full, the increment is
     /// discarded and counted; the keeper sees the gap in the time stamps.
     pub(crate) fn move_on(&self, motion: Motion) {

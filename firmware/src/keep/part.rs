@@ -13,7 +13,7 @@ use super::memory::Memory;
 use super::{Kept, Motion, VerticalGyro};
 use crate::configuration::{Alignment, KeepConfiguration, Realignment};
 use crate::event::Event;
-use crate::ports::{Aiding, HeadingStore, Observer};
+use crate::ports::{Aiding, Store};
 use crate::shared::Shared;
 
 /// Longest time for which inertial samples wait in the queue: half of the queue's capacity at 2
@@ -42,15 +42,14 @@ const TOLD_SECONDS: f64 = 3.0;
 
 /// The part of the instrument that keeps the attitude beside a session; the unit type keeps
 /// nothing.
-#[expect(async_fn_in_trait, reason = "one executor polls all of it: no future needs to be Send")]
 pub trait Keep {
     /// Runs until the configured duration of keeping is over. Never returns if nothing is kept.
-    async fn run<O: Observer>(&mut self, shared: &Shared<'_, O>);
+    async fn run(&mut self, shared: &Shared<'_>);
 }
 
 /// An instrument without attitude keeping.
 impl Keep for () {
-    async fn run<O: Observer>(&mut self, _: &Shared<'_, O>) {
+    async fn run(&mut self, _: &Shared<'_>) {
         pending::<()>().await;
     }
 }
@@ -101,7 +100,7 @@ struct Told {
     since: Option<Instant>,
 }
 
-impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
+impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
     /// Takes an estimator that has had no sample.
     pub fn new(
         keeper: &'k mut Keeper,
@@ -134,15 +133,9 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
         self.keeper.report()
     }
 
-    /// The non-volatile store of the heading.
-    #[must_use]
-    pub fn store(&self) -> &M {
-        self.memory.store()
-    }
-
     /// Takes the inertial samples that the session has had the chance to take, and the session's
     /// azimuth in its place among them.
-    fn take<O: Observer>(&mut self, shared: &Shared<'_, O>) {
+    fn take(&mut self, shared: &Shared<'_>) {
         if shared.keep.is_behind.get() {
             return;
         }
@@ -157,7 +150,7 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
     }
 
     /// Takes an increment, or a change of the gyro about the down axis.
-    fn push<O: Observer>(&mut self, motion: Motion, shared: &Shared<'_, O>) {
+    fn push(&mut self, motion: Motion, shared: &Shared<'_>) {
         match motion {
             Motion::Moved(sample) => {
                 self.take_azimuth(sample.time, shared);
@@ -181,7 +174,7 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
 
     /// Takes a found azimuth before an increment of the time `before`, if it belongs to an earlier
     /// sample. It is refused if the body has set off meanwhile.
-    fn take_azimuth<O: Observer>(&mut self, before: units::Instant, shared: &Shared<'_, O>) {
+    fn take_azimuth(&mut self, before: units::Instant, shared: &Shared<'_>) {
         let Some((_, handover)) = self.told.found.take_if(|(at, _)| *at < before) else { return };
         if self.has_set_off() {
             shared.tell(Event::Refused(Refusal::MovedDuringAlignment));
@@ -199,7 +192,7 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
 
     /// Takes an azimuth: as the first one, or fused with the kept one by an innovation test.
     #[inline(never)]
-    fn align<O: Observer>(&mut self, handover: Handover, shared: &Shared<'_, O>) {
+    fn align(&mut self, handover: Handover, shared: &Shared<'_>) {
         self.memory.drop_found();
         let outcome = if self.keeper.report().azimuth.is_none() {
             self.keeper.hand_over(handover);
@@ -215,7 +208,7 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
     }
 
     /// Checks the state and reports its changes; once a second also does everything else.
-    async fn look<O: Observer>(&mut self, shared: &Shared<'_, O>) {
+    async fn look(&mut self, shared: &Shared<'_>) {
         let report = self.keeper.report();
         let is_silent = self.told.moved.elapsed() >= SILENCE;
         let is_at_rest = report.is_at_rest && !is_silent;
@@ -232,7 +225,7 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
     }
 
     /// Reports a state that has changed. An acceleration is reported only if it lasts.
-    fn tell_state<O: Observer>(&mut self, state: Option<State>, shared: &Shared<'_, O>) {
+    fn tell_state(&mut self, state: Option<State>, shared: &Shared<'_>) {
         let is_told = match (state, self.told.state) {
             (Some(now), Some(then)) => {
                 core::mem::discriminant(&now) == core::mem::discriminant(&then)
@@ -253,7 +246,7 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
     }
 
     /// Reports once that the stated biases are not used any more.
-    fn tell_biases<O: Observer>(&mut self, report: &Report, shared: &Shared<'_, O>) {
+    fn tell_biases(&mut self, report: &Report, shared: &Shared<'_>) {
         let is_beyond = report.is_bias_beyond_stated;
         if is_beyond && !core::mem::replace(&mut self.told.is_bias_beyond_stated, true) {
             shared.tell(Event::BiasBeyondStated);
@@ -261,7 +254,7 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
     }
 
     /// Reports that the azimuth has become unknown.
-    fn tell_loss<O: Observer>(&mut self, report: &Report, shared: &Shared<'_, O>) {
+    fn tell_loss(&mut self, report: &Report, shared: &Shared<'_>) {
         let had = core::mem::replace(&mut self.told.has_azimuth, report.azimuth.is_some());
         if had && report.azimuth.is_none() {
             self.told.is_recalled = false;
@@ -288,7 +281,7 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
 
     /// The actions of every second: reads velocity and azimuth from outside, decides on the stored
     /// heading, stores the heading, starts a new alignment, and reports.
-    async fn second<O: Observer>(&mut self, shared: &Shared<'_, O>) {
+    async fn second(&mut self, shared: &Shared<'_>) {
         self.keeper.move_at(self.outside.velocity());
         if let Some(handover) = self.outside.azimuth() {
             self.align(handover, shared);
@@ -310,7 +303,7 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
     }
 
     /// Skips the running session where the azimuth is known and the configuration permits it.
-    fn spare<O: Observer>(&self, shared: &Shared<'_, O>) {
+    fn spare(&self, shared: &Shared<'_>) {
         if self.configuration.alignment == Alignment::UnlessKnown && !shared.keep.is_idle.get() {
             shared.keep.spare.signal(());
         }
@@ -318,7 +311,7 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
 
     /// Begins a new session, or aborts the running one, according to the rest and motion of the
     /// body.
-    fn realign<O: Observer>(&mut self, shared: &Shared<'_, O>) {
+    fn realign(&mut self, shared: &Shared<'_>) {
         let is_idle = shared.keep.is_idle.get();
         let was_idle = core::mem::replace(&mut self.told.is_idle, is_idle);
         if is_idle && !was_idle {
@@ -336,7 +329,7 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
     }
 
     /// Begins a new session where the body has been at rest for `after`, once at each stop.
-    fn begin_at_stop<O: Observer>(&mut self, after: Duration, shared: &Shared<'_, O>) {
+    fn begin_at_stop(&mut self, after: Duration, shared: &Shared<'_>) {
         let stood = self.told.rests.map_or(Duration::MIN, |since| since.elapsed());
         if !self.told.is_realigned && stood >= after {
             self.told.is_realigned = true;
@@ -348,7 +341,7 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
 
     /// Gives the link the attitude. Before the first session has ended, and without an azimuth, the
     /// link reports the session's status.
-    fn tell<O: Observer>(&self, shared: &Shared<'_, O>) {
+    fn tell(&self, shared: &Shared<'_>) {
         let report = self.keeper.report();
         shared.observer().kept(&report);
         if self.told.since.is_none() && report.azimuth.is_none() {
@@ -368,8 +361,8 @@ impl<'k, H: Aiding, M: HeadingStore> Keeping<'k, H, M> {
     }
 }
 
-impl<H: Aiding, M: HeadingStore> Keep for Keeping<'_, H, M> {
-    async fn run<O: Observer>(&mut self, shared: &Shared<'_, O>) {
+impl<H: Aiding, M: Store> Keep for Keeping<'_, H, M> {
+    async fn run(&mut self, shared: &Shared<'_>) {
         if self.configuration.hold == Duration::MIN {
             pending::<()>().await;
         }

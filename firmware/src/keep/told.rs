@@ -5,6 +5,8 @@ use core::fmt;
 use orientation::keep::{Report, State};
 use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 
+use crate::link::Thousandths;
+
 /// Attitude as reported, in thousandths of a degree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kept {
@@ -37,12 +39,11 @@ impl Kept {
     }
 }
 
-/// Writes a name and a number of thousandths as a decimal fraction. The sign is written apart,
-/// because −0.310 has a whole part of zero.
+/// Writes a name and a number of thousandths. The sign is written apart, because −0.310 has a whole
+/// part of zero.
 fn write(f: &mut fmt::Formatter<'_>, name: &str, value: i32) -> fmt::Result {
     let sign = if value < 0 { "-" } else { "" };
-    let size = value.unsigned_abs();
-    write!(f, "{name} {sign}{}.{:03} ", size / 1000, size % 1000)
+    write!(f, "{name} {sign}{} ", Thousandths(value.unsigned_abs()))
 }
 
 impl fmt::Display for Kept {

@@ -22,7 +22,7 @@ use orientation::units::{self, DEGREES_PER_RADIAN as DEGREES};
 
 use crate::event::Event;
 use crate::link::Status;
-use crate::ports::{Observer, Recorder};
+use crate::ports::Recorder;
 use crate::shared::{Channels, Queue, Shared};
 
 /// Longest time until the stage is homed, s: six searches over the whole travel with the rests
@@ -47,7 +47,7 @@ pub enum Step {
 /// A session that consumes samples of the type `S`, with the state of its reports. The runner is
 /// not generic over the kind of session, so an image with two kinds of session for the same samples
 /// contains one runner.
-pub trait AlignmentSession<O, S> {
+pub trait AlignmentSession<S> {
     /// The latitude of the site.
     fn latitude(&self) -> Latitude;
 
@@ -73,47 +73,37 @@ pub trait AlignmentSession<O, S> {
     fn renew(&mut self) {}
 
     /// Reports the changes of the last sample.
-    fn follow(&mut self, shared: &Shared<'_, O>);
+    fn follow(&mut self, shared: &Shared<'_>);
 
     /// Reports what was excluded from the fit, and returns azimuth, its 1σ and the Cramér–Rao bound
     /// of the σ, rad, or the reason of a refusal; [`None`] before the session has concluded.
-    fn conclude(&self, shared: &Shared<'_, O>) -> Option<Result<[f64; 3], Refusal>>;
+    fn conclude(&self, shared: &Shared<'_>) -> Option<Result<[f64; 3], Refusal>>;
 }
 
 /// The runner of a session.
-pub struct SessionRunner<'a, R, O, S> {
+pub struct SessionRunner<'a, R, S> {
     /// The session.
-    session: &'a mut dyn AlignmentSession<O, S>,
+    session: &'a mut dyn AlignmentSession<S>,
     /// Recorder of raw samples.
     recorder: &'a mut R,
     /// The queue of samples from acquisition.
     samples: &'a Queue<S>,
     /// Signals and counters that all parts share.
-    shared: &'a Shared<'a, O>,
+    shared: &'a Shared<'a>,
     /// Time of the latest sample that the session has taken.
     taken: Option<units::Instant>,
 }
 
-/// The cause that ends a session before its own conclusion.
-enum Break {
-    /// The session cannot continue.
-    Refused(Refusal),
-    /// The azimuth is known already, so the session is skipped.
-    Spared,
-}
+/// The cause that ends a session before its own conclusion: a refusal, or [`None`] if the azimuth is
+/// known already, so that the session is skipped.
+type Break = Option<Refusal>;
 
-impl From<Refusal> for Break {
-    fn from(reason: Refusal) -> Self {
-        Self::Refused(reason)
-    }
-}
-
-impl<'a, R: Recorder<S>, O: Observer, S> SessionRunner<'a, R, O, S> {
+impl<'a, R: Recorder<S>, S> SessionRunner<'a, R, S> {
     /// Takes a session that has not begun.
     pub fn new(
-        session: &'a mut dyn AlignmentSession<O, S>,
+        session: &'a mut dyn AlignmentSession<S>,
         recorder: &'a mut R,
-        channels: &'a Channels<'a, O, S>,
+        channels: &'a Channels<'a, S>,
     ) -> Self {
         Self {
             session,
@@ -131,9 +121,8 @@ impl<'a, R: Recorder<S>, O: Observer, S> SessionRunner<'a, R, O, S> {
         }
         loop {
             self.shared.tell(self.session.outset());
-            match self.runner().await {
-                Ok(()) | Err(Break::Spared) => {}
-                Err(Break::Refused(reason)) => self.session.fail(reason),
+            if let Err(Some(reason)) = self.runner().await {
+                self.session.fail(reason);
             }
             self.conclude();
             self.shared.concluded.signal(());
@@ -229,7 +218,7 @@ impl<'a, R: Recorder<S>, O: Observer, S> SessionRunner<'a, R, O, S> {
         match select3(failure.wait(), self.samples.receive(), keep.spare.wait()).await {
             Either3::First(reason) => Err(reason.into()),
             Either3::Second(sample) => Ok(sample),
-            Either3::Third(()) => Err(Break::Spared),
+            Either3::Third(()) => Err(None),
         }
     }
 
@@ -257,7 +246,7 @@ impl<'a, R: Recorder<S>, O: Observer, S> SessionRunner<'a, R, O, S> {
 
 /// Reports the inclination of a platform at rest along and across the sensitive axis, °, from its
 /// mean specific force.
-fn tell_level<O: Observer>([along, across, down]: [f64; 3], shared: &Shared<'_, O>) {
+fn tell_level([along, across, down]: [f64; 3], shared: &Shared<'_>) {
     let [along, across] = [along, across].map(|f| libm::atan2(f, -down) * DEGREES);
     shared.tell(Event::Levelled(along, across));
 }

@@ -10,35 +10,39 @@ use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 use super::{AlignmentSession, Step, tell_level};
 use crate::event::Event;
 use crate::link::Status;
-use crate::ports::Observer;
 use crate::shared::Shared;
 
 /// A session of continuous rotation with the state of its reports.
 pub struct Rotating<'a> {
     /// The session.
     session: &'a mut Session,
-    /// The state of its reports.
-    told: Told,
-}
-
-/// The part of the session's progress that has been reported.
-#[derive(Clone, Copy, Debug)]
-struct Told {
     /// Phase that was reported last.
-    phase: Phase,
+    told_phase: Phase,
     /// Number of turns that were reported.
-    turns: u32,
+    told_turns: u32,
 }
 
 impl<'a> Rotating<'a> {
-    /// Takes a session without any reported progress.
+    /// Takes a session without any reported progress. One whose sensor has an axis misalignment that
+    /// matters but is unknown is refused with [`Refusal::CouplingUnknown`].
     pub fn new(session: &'a mut Session) -> Self {
-        let told = Told { phase: session.phase(), turns: 0 };
-        Self { session, told }
+        if !is_coupled(session) {
+            session.handle(SessionEvent::Failed(Refusal::CouplingUnknown));
+        }
+        let told_phase = session.phase();
+        Self { session, told_phase, told_turns: 0 }
     }
 }
 
-impl<O: Observer> AlignmentSession<O, Sample> for Rotating<'_> {
+/// Whether the session knows the axis misalignment, or needs none: it is negligible by the sensor's
+/// statement, will be estimated by rate-modulated turns, or is known from a calibration.
+fn is_coupled(session: &Session) -> bool {
+    let setting = session.setting();
+    let is_known = setting.couplings.iter().any(Option::is_some);
+    setting.sensor.is_flat || session.procedure().uneven_turns > 0 || is_known
+}
+
+impl AlignmentSession<Sample> for Rotating<'_> {
     fn latitude(&self) -> Latitude {
         self.session.setting().common.latitude
     }
@@ -63,17 +67,17 @@ impl<O: Observer> AlignmentSession<O, Sample> for Rotating<'_> {
         self.session.handle(SessionEvent::Failed(reason));
     }
 
-    fn follow(&mut self, shared: &Shared<'_, O>) {
-        let (session, told) = (&*self.session, &mut self.told);
-        if session.phase() != told.phase {
-            tell_found(session, told.phase, shared);
+    fn follow(&mut self, shared: &Shared<'_>) {
+        let session = &*self.session;
+        if session.phase() != self.told_phase {
+            tell_found(session, self.told_phase, shared);
             tell_phase(session, shared);
-            told.phase = session.phase();
+            self.told_phase = session.phase();
         }
         // The number of planned turns is not computed here, as this runs with every sample.
         let done = session.turn_accumulator().stretches().iter().map(Stretch::count).sum();
-        if done > told.turns {
-            told.turns = done;
+        if done > self.told_turns {
+            self.told_turns = done;
             let (_, of) = session.turns();
             shared.tell(Event::Turned(done, of));
             tell_status(session, shared);
@@ -81,7 +85,7 @@ impl<O: Observer> AlignmentSession<O, Sample> for Rotating<'_> {
         }
     }
 
-    fn conclude(&self, shared: &Shared<'_, O>) -> Option<Result<[f64; 3], Refusal>> {
+    fn conclude(&self, shared: &Shared<'_>) -> Option<Result<[f64; 3], Refusal>> {
         let conclusion = self.session.conclusion()?;
         for average in conclusion.pairs.iter().flat_map(|pair| [&pair.clockwise, &pair.counter]) {
             if average.left_out > 0 {
@@ -95,7 +99,7 @@ impl<O: Observer> AlignmentSession<O, Sample> for Rotating<'_> {
 
 /// Reports the result of the phase that has ended: inclination of the platform, or axis
 /// misalignment.
-fn tell_found<O: Observer>(session: &Session, phase: Phase, shared: &Shared<'_, O>) {
+fn tell_found(session: &Session, phase: Phase, shared: &Shared<'_>) {
     match phase {
         Phase::Level => {
             if let Some(force) = session.force() {
@@ -113,7 +117,7 @@ fn tell_found<O: Observer>(session: &Session, phase: Phase, shared: &Shared<'_, 
 }
 
 /// Reports the begin of a phase: rate-modulated turns, or turns that are evaluated.
-fn tell_phase<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
+fn tell_phase(session: &Session, shared: &Shared<'_>) {
     let speed = |index: usize| session.procedure().speeds.get(index).map_or(0.0, |w| w * DEGREES);
     match session.phase() {
         Phase::Uneven(index) => shared.tell(Event::Uneven(speed(index))),
@@ -124,7 +128,7 @@ fn tell_phase<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
 }
 
 /// Updates the status line with completed and planned turns.
-fn tell_status<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
+fn tell_status(session: &Session, shared: &Shared<'_>) {
     let (done, of) = session.turns();
     shared.status.set(Status::Measuring { done: done as u16, of: of as u16 });
 }

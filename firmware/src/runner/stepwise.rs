@@ -12,7 +12,6 @@ use orientation::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN as DEGREES, Instant
 use super::{AlignmentSession, Step, tell_level};
 use crate::event::Event;
 use crate::link::Status;
-use crate::ports::Observer;
 use crate::shared::Shared;
 
 /// Fraction of the planned dwell above which a dwell counts as complete.
@@ -46,7 +45,7 @@ impl<'a> Stepwise<'a> {
     }
 }
 
-impl<O: Observer> AlignmentSession<O, Sample> for Stepwise<'_> {
+impl AlignmentSession<Sample> for Stepwise<'_> {
     fn latitude(&self) -> Latitude {
         self.session.setting().latitude
     }
@@ -90,7 +89,7 @@ impl<O: Observer> AlignmentSession<O, Sample> for Stepwise<'_> {
         }
     }
 
-    fn follow(&mut self, shared: &Shared<'_, O>) {
+    fn follow(&mut self, shared: &Shared<'_>) {
         let (session, told) = (&*self.session, &mut self.told);
         if !told.is_level && session.phase() != Phase::Level {
             told.is_level = true;
@@ -112,7 +111,7 @@ impl<O: Observer> AlignmentSession<O, Sample> for Stepwise<'_> {
         }
     }
 
-    fn conclude(&self, shared: &Shared<'_, O>) -> Option<Result<[f64; 3], Refusal>> {
+    fn conclude(&self, shared: &Shared<'_>) -> Option<Result<[f64; 3], Refusal>> {
         let conclusion = self.session.conclusion()?;
         for (number, why) in (1..).zip(&conclusion.disturbances) {
             if let Some(why) = why {
@@ -125,7 +124,7 @@ impl<O: Observer> AlignmentSession<O, Sample> for Stepwise<'_> {
 }
 
 /// Reports the inclination of the platform and the begin of a survey.
-fn tell_begun<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
+fn tell_begun(session: &Session, shared: &Shared<'_>) {
     if let Some(force) = session.force() {
         tell_level(force, shared);
     }
@@ -135,7 +134,7 @@ fn tell_begun<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
 }
 
 /// Reports the noise coefficients of the survey and the plan that follows from them.
-fn tell_plan<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
+fn tell_plan(session: &Session, shared: &Shared<'_>) {
     let found = session.surveyed().map(NoiseFit::in_field_units);
     for (coefficient, estimate) in found.into_iter().flatten() {
         shared.tell(Event::Noise(coefficient, estimate));
@@ -155,14 +154,14 @@ fn tell_plan<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
 }
 
 /// Reports a dwell that is measured again, with the disturbance.
-fn tell_repetition<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
+fn tell_repetition(session: &Session, shared: &Shared<'_>) {
     if let Some(repetition) = session.repetitions().last() {
         shared.tell(Event::Repeated(repetition.position + 1, repetition.why));
     }
 }
 
 /// Reports a completed dwell, and whether it was shorter than planned.
-fn tell_dwell<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
+fn tell_dwell(session: &Session, shared: &Shared<'_>) {
     if let Some(dwell) = session.dwells().last() {
         let rate = dwell.rate / DEGREE_PER_HOUR;
         shared.tell(Event::Dwelled(session.dwells().len(), session.planned(), rate));
@@ -174,7 +173,7 @@ fn tell_dwell<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
 }
 
 /// Updates the status line with completed and planned dwells.
-fn tell_status<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
+fn tell_status(session: &Session, shared: &Shared<'_>) {
     if session.phase() == Phase::Survey {
         shared.status.set(Status::Surveying);
         return;

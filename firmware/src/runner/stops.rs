@@ -15,7 +15,7 @@ use orientation::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN as DEGREES, Instant
 use super::{AlignmentSession, Step};
 use crate::event::Event;
 use crate::link::Status;
-use crate::ports::{Observer, PositionAiding};
+use crate::ports::PositionAiding;
 use crate::shared::Shared;
 
 /// The gyros about the axes forward, right, down.
@@ -93,7 +93,7 @@ impl<'a, W: PositionAiding> Stops<'a, W> {
     }
 }
 
-impl<W: PositionAiding, O: Observer> AlignmentSession<O, InertialSample> for Stops<'_, W> {
+impl<W: PositionAiding> AlignmentSession<InertialSample> for Stops<'_, W> {
     fn latitude(&self) -> Latitude {
         self.session.setting().common.latitude
     }
@@ -133,7 +133,7 @@ impl<W: PositionAiding, O: Observer> AlignmentSession<O, InertialSample> for Sto
         self.origin = None;
     }
 
-    fn follow(&mut self, shared: &Shared<'_, O>) {
+    fn follow(&mut self, shared: &Shared<'_>) {
         let (session, told) = (&*self.session, &mut self.told);
         if session.phase() != told.phase {
             tell_phase(session.phase(), told, shared);
@@ -150,7 +150,7 @@ impl<W: PositionAiding, O: Observer> AlignmentSession<O, InertialSample> for Sto
         }
     }
 
-    fn conclude(&self, shared: &Shared<'_, O>) -> Option<Result<[f64; 3], Refusal>> {
+    fn conclude(&self, shared: &Shared<'_>) -> Option<Result<[f64; 3], Refusal>> {
         let Conclusion { verdict, found } = self.session.conclusion()?;
         if let Some(found) = found.as_ref().filter(|found| found.are_biases_observed) {
             for ((gyro, bias), sigma) in GYROS.into_iter().zip(found.biases).zip(found.bias_sigmas)
@@ -165,7 +165,7 @@ impl<W: PositionAiding, O: Observer> AlignmentSession<O, InertialSample> for Sto
 }
 
 /// Reports the begin of a stop, with the duration of the drive before it, or of a drive.
-fn tell_phase<O: Observer>(phase: Phase, told: &Told, shared: &Shared<'_, O>) {
+fn tell_phase(phase: Phase, told: &Told, shared: &Shared<'_>) {
     match phase {
         Phase::Standing(index) => {
             if let Phase::Driving(_) = told.phase {
@@ -183,7 +183,7 @@ fn tell_phase<O: Observer>(phase: Phase, told: &Told, shared: &Shared<'_, O>) {
 }
 
 /// Reports that the stop was long enough, with the inclination of the vehicle.
-fn tell_levelled<O: Observer>(session: &Session, shared: &Shared<'_, O>) {
+fn tell_levelled(session: &Session, shared: &Shared<'_>) {
     let Some(stop) = session.stops().last() else { return };
     let number = session.stops().len();
     let level = pitch_and_roll(&stop.force.mean()).map(|angle| angle * DEGREES);

@@ -4,7 +4,7 @@ use drivers::ads1262::configuration::Gain;
 use drivers::ads1262::scale::{INTERNAL_REFERENCE_VOLTS, Scale};
 use orientation::units::AngleIncrement;
 
-use crate::ports::{Code, Quantity};
+use crate::ports::{Code, Quantity, clipped};
 
 /// Number of converters, for three gyros and two accelerometers.
 pub const CHANNELS: usize = 5;
@@ -53,12 +53,7 @@ impl Channel {
     #[must_use]
     pub fn steps(&self, code: Code) -> i32 {
         let steps = self.scale.steps(code.0);
-        let is_clipped = code.is_saturated() || code.0.unsigned_abs() >= self.limit;
-        match (is_clipped, steps < 0) {
-            (false, _) => steps,
-            (true, false) => i32::MAX,
-            (true, true) => i32::MIN,
-        }
+        clipped(steps, code.is_saturated() || code.0.unsigned_abs() >= self.limit)
     }
 }
 
@@ -74,12 +69,6 @@ pub struct SpinConfiguration {
 }
 
 impl SpinConfiguration {
-    /// The sampling period, µs, rounded to nearest.
-    #[must_use]
-    pub fn period(&self) -> u32 {
-        libm::round(1e6 / self.sample_rate) as u32
-    }
-
     /// Time from the middle of a conversion to its end, µs, rounded to nearest.
     #[must_use]
     pub fn half_period(&self) -> u32 {

@@ -17,18 +17,15 @@ use orientation::signal::SpinSample;
 
 use crate::event::Event;
 use crate::link::Status;
-use crate::ports::{Observer, Recorder};
+use crate::ports::Recorder;
 use crate::shared::Channels;
 
 /// Tracks a flight until its duration is over or acquisition gives a sensor up, and reports it.
-pub(crate) async fn follow<R, O>(
+pub(crate) async fn follow<R: Recorder<SpinSample>>(
     flight: &mut Flight,
     recorder: &mut R,
-    channels: &Channels<'_, O, SpinSample>,
-) where
-    R: Recorder<SpinSample>,
-    O: Observer,
-{
+    channels: &Channels<'_, SpinSample>,
+) {
     let shared = &channels.shared;
     shared.tell(Event::BegunSpin);
     while !flight.is_over() {

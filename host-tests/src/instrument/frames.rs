@@ -2,15 +2,18 @@
 
 use std::cell::RefCell;
 
+use firmware::acquire::{acquire, on_mount};
+use firmware::gimbal::Gimbal;
 use firmware::keep::Keeping;
-use firmware::ports::{Frames, HeadingStore, NoBase, Observer, Recorder};
-use firmware::run::{acquire_frames, run_frames_and_keep};
+use firmware::ports::{Frames, NoBase, Observer, Ports, Recorder, Store};
+use firmware::run::navigate;
+use firmware::runner::Stepwise;
 use firmware::simulated::Wires;
 use firmware::simulated::base;
 use firmware::simulated::fault::{Fault, FaultyRecorder, Injection};
 use firmware::simulated::keep::journey;
 use firmware::simulated::mount::FramesScenario;
-use firmware::steady::Base;
+use firmware::steady::{CompensatesSway, SwayCompensation};
 use hal_mock::gimbal::board::GimbalBoard;
 use orientation::keep::Keeper;
 use orientation::session::Session;
@@ -54,7 +57,7 @@ pub fn align_frames_and_keep<R: Recorder, W: Observer>(
     plan: &KeptPlan,
     recorder: R,
     watch: &W,
-    store: impl HeadingStore,
+    store: impl Store,
 ) -> Result<FramesRun, RunError> {
     if !scenario.base.has_base_imu {
         let board = RefCell::new(scenario.board(None, &plan.chips));
@@ -64,9 +67,17 @@ pub fn align_frames_and_keep<R: Recorder, W: Observer>(
     let journey = journey(&day, &plan.base);
     let journey = (scenario.base.hold.seconds > 0.0).then_some(journey);
     let rig = RefCell::new(base::rig(&scenario.base, journey.as_ref()));
-    let imu = base::imu(&rig, &scenario.base, &plan.chips);
+    let mut imu = base::imu(&rig, &scenario.base, &plan.chips);
     let board = RefCell::new(scenario.board(journey, &plan.chips));
-    let mut frames = align_with(&board, imu, scenario, &plan.chips, recorder, watch, store)?;
+    let mut frames = align_with(
+        &board,
+        SwayCompensation::new(&mut imu),
+        scenario,
+        &plan.chips,
+        recorder,
+        watch,
+        store,
+    )?;
     let rig = rig.borrow();
     let violations = base::violations(&rig).iter();
     frames.run.violations.extend(violations.map(|violation| format!("Base: {violation}")));
@@ -75,14 +86,14 @@ pub fn align_frames_and_keep<R: Recorder, W: Observer>(
 }
 
 /// Runs a scenario on a board with these sensors on the base.
-fn align_with<B: Base, R: Recorder, W: Observer>(
+fn align_with<B: CompensatesSway, R: Recorder, W: Observer>(
     board: &RefCell<GimbalBoard<'_>>,
     base: B,
     scenario: &FramesScenario,
     injection: &Injection,
     recorder: R,
     watch: &W,
-    store: impl HeadingStore,
+    store: impl Store,
 ) -> Result<FramesRun, RunError> {
     let outside = || RunError::Latitude(scenario.base.latitude_deg);
     let setting = scenario.setting().ok_or_else(outside)?;
@@ -95,13 +106,21 @@ fn align_with<B: Base, R: Recorder, W: Observer>(
     let wires = Wires(board, injection);
     let mut sensors = wires.frame_sensors(scenario).with_base(base);
     let recorder = FaultyRecorder::new(recorder, injection.hang);
-    let mut ports = wires.frame_ports(harness.wire(), recorder);
+    let Ports { mut actuator, mut link, mut recorder } =
+        wires.frame_ports(harness.wire(), recorder);
     let mut keeper = Keeper::new(&scenario.keeper().ok_or_else(outside)?);
     let keep = scenario.base.keeping().ok_or_else(outside)?;
     let mut keeping = Keeping::new(&mut keeper, &keep, scenario.base.hold.outside(), store);
     let ended = harness::run(
-        acquire_frames(&mut sensors, &configuration, &frames, &latest, &channels),
-        run_frames_and_keep(&mut ports, &frames, &latest, &mut session, &mut keeping, &channels),
+        acquire(&mut on_mount(&mut sensors, &configuration, &frames, &latest, &channels)),
+        navigate(
+            &mut Gimbal::new(&mut actuator, &frames, &latest, &channels.shared),
+            &mut Stepwise::new(&mut session),
+            &mut link,
+            &mut recorder,
+            &mut keeping,
+            &channels,
+        ),
     )?;
     let [outer, inner] = board.borrow().gimbal.frames();
     let misalignment = scenario.gimbal(None, injection).misalignment;

@@ -96,7 +96,7 @@ impl<'w, W: Observer> Harness<'w, W> {
     }
 
     /// The channels of the board's parts.
-    pub(super) fn channels<S>(&self) -> Channels<'_, Log<'w, W>, S> {
+    pub(super) fn channels<S>(&self) -> Channels<'_, S> {
         Channels::new(&self.log)
     }
 

@@ -2,8 +2,9 @@
 
 use std::cell::RefCell;
 
-use firmware::ports::{Observer, SpinPorts};
-use firmware::run::{acquire_spin, run_spin};
+use firmware::acquire::{SpinAcquisition, acquire};
+use firmware::ports::Observer;
+use firmware::run::run_spin;
 use firmware::simulated::Wires;
 use firmware::simulated::fault::Fault;
 use firmware::simulated::spin::SpinScenario;
@@ -48,10 +49,9 @@ pub fn follow_spin<W: Observer>(
     let harness = Harness::new(watch);
     let channels = harness.channels();
     let mut sensors = Wires(&board, &injection).spinning();
-    let mut ports = SpinPorts { link: harness.wire(), recorder: &mut kept };
     let ended = harness::run(
-        acquire_spin(&mut sensors, &configuration, &channels),
-        run_spin(&mut ports, &mut flight, &channels),
+        acquire(&mut SpinAcquisition::new(&mut sensors, &configuration, &channels)),
+        run_spin(&mut harness.wire(), &mut &mut kept, &mut flight, &channels),
     )?;
     drop(channels);
     let violations = harness::told(&board);

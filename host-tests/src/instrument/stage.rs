@@ -3,15 +3,18 @@
 use std::cell::RefCell;
 
 use drivers::tmc5160::configuration::Configuration as Motor;
+use firmware::acquire::{acquire, on_stage};
 use firmware::keep::Keeping;
-use firmware::ports::{HeadingStore, NoBase, Observer, Recorder};
-use firmware::run::{acquire, run_and_keep};
+use firmware::ports::{NoBase, Observer, Ports, Recorder, Store};
+use firmware::run::navigate;
+use firmware::runner::Stepwise;
 use firmware::simulated::base;
 use firmware::simulated::fault::{Fault, FaultyRecorder, Injection};
 use firmware::simulated::keep::journey;
 use firmware::simulated::scenario::{self, Scenario};
 use firmware::simulated::{self, Chips, Wires};
-use firmware::steady::Base;
+use firmware::stage::Stage;
+use firmware::steady::{CompensatesSway, SwayCompensation};
 use orientation::keep::Keeper;
 use orientation::session::Session;
 
@@ -46,15 +49,23 @@ pub fn align_and_keep<R: Recorder, W: Observer>(
     plan: &KeptPlan,
     recorder: R,
     watch: &W,
-    store: impl HeadingStore,
+    store: impl Store,
 ) -> Result<KeptRun, RunError> {
     let day = plan.day(scenario.day());
     let journey = journey(&day, &plan.base);
     let journey = (scenario.hold.seconds > 0.0).then_some(journey);
     let rig = RefCell::new(base::rig(scenario, journey.as_ref()));
-    let imu = base::imu(&rig, scenario, &plan.chips);
+    let mut imu = base::imu(&rig, scenario, &plan.chips);
     let board = RefCell::new(simulated::board(scenario, journey, &plan.chips));
-    let mut run = align_with(&board, imu, scenario, &plan.chips, recorder, watch, store)?;
+    let mut run = align_with(
+        &board,
+        SwayCompensation::new(&mut imu),
+        scenario,
+        &plan.chips,
+        recorder,
+        watch,
+        store,
+    )?;
     let rig = rig.borrow();
     run.violations
         .extend(base::violations(&rig).iter().map(|violation| format!("Base: {violation}")));
@@ -66,7 +77,7 @@ pub fn align_and_keep<R: Recorder, W: Observer>(
 ///
 /// # Errors
 /// Those of [`align`].
-pub fn align_on<B: Base, R: Recorder, W: Observer>(
+pub fn align_on<B: CompensatesSway, R: Recorder, W: Observer>(
     base: B,
     scenario: &Scenario,
     fault: Option<Fault>,
@@ -78,14 +89,14 @@ pub fn align_on<B: Base, R: Recorder, W: Observer>(
     align_with(&board, base, scenario, &injection, recorder, watch, ())
 }
 
-fn align_with<B: Base, R: Recorder, W: Observer>(
+fn align_with<B: CompensatesSway, R: Recorder, W: Observer>(
     board: &RefCell<Chips<'_>>,
     base: B,
     scenario: &Scenario,
     injection: &Injection,
     recorder: R,
     watch: &W,
-    store: impl HeadingStore,
+    store: impl Store,
 ) -> Result<Run, RunError> {
     let outside = || RunError::Latitude(scenario.latitude_deg);
     let setting = scenario.setting().ok_or_else(outside)?;
@@ -96,13 +107,21 @@ fn align_with<B: Base, R: Recorder, W: Observer>(
     let wires = Wires(board, injection);
     let mut sensors = wires.sensors(scenario, scenario::FORCE).with_base(base);
     let recorder = FaultyRecorder::new(recorder, injection.hang);
-    let mut ports = wires.ports(Motor::default(), harness.wire(), recorder);
+    let Ports { mut actuator, mut link, mut recorder } =
+        wires.ports(Motor::default(), harness.wire(), recorder);
     let mut keeper = Keeper::new(&scenario.keeper().ok_or_else(outside)?);
     let keep = scenario.keeping().ok_or_else(outside)?;
     let mut keeping = Keeping::new(&mut keeper, &keep, scenario.hold.outside(), store);
     let ended = harness::run(
-        acquire(&mut sensors, &configuration, &channels),
-        run_and_keep(&mut ports, &configuration, &mut session, &mut keeping, &channels),
+        acquire(&mut on_stage(&mut sensors, &configuration, &channels)),
+        navigate(
+            &mut Stage::new(&mut actuator, &configuration.stage, &channels.shared),
+            &mut Stepwise::new(&mut session),
+            &mut link,
+            &mut recorder,
+            &mut keeping,
+            &channels,
+        ),
     )?;
     let assumed = [ASSUMED].into_iter().chain(scenario.half.map(|_| HALF));
     let replay = Replay {

@@ -2,13 +2,16 @@
 
 use std::cell::RefCell;
 
-use firmware::ports::{Observer, Recorder};
-use firmware::run::{acquire, run_rotating, run_storing};
+use firmware::acquire::{acquire, on_stage};
+use firmware::ports::{Observer, Ports, Recorder};
+use firmware::run::navigate;
+use firmware::runner::Rotating;
 use firmware::simulated::Wires;
 use firmware::simulated::fault::{Fault, FaultyRecorder};
 use firmware::simulated::flash::Flash;
 use firmware::simulated::turntable::{self, TurntableScenario};
-use firmware::storage::{FlashStore, Today, load_calibration};
+use firmware::storage::{FlashStore, Today, load_calibration, save_calibration};
+use firmware::turntable::Turntable;
 use orientation::session::rotating;
 
 use super::harness::{self, Harness};
@@ -73,16 +76,25 @@ pub fn align_turning_again<R: Recorder, W: Observer>(
     let wires = Wires(&board, &injection);
     let mut sensors = wires.sensors(&scenario.base, turntable::FORCE);
     let recorder = FaultyRecorder::new(recorder, injection.hang);
-    let mut ports = wires.ports(turntable::motor(), harness.wire(), recorder);
+    let Ports { mut actuator, mut link, mut recorder } =
+        wires.ports(turntable::motor(), harness.wire(), recorder);
     let instrument = async {
-        match keeping {
-            None => run_rotating(&mut ports, &platform, &mut session, &channels).await,
-            Some(Keeping { store, .. }) => {
-                run_storing(&mut ports, &platform, &mut session, store, &channels).await
-            }
+        let health = navigate(
+            &mut Turntable::new(&mut actuator, &platform, &channels.shared),
+            &mut Rotating::new(&mut session),
+            &mut link,
+            &mut recorder,
+            &mut (),
+            &channels,
+        )
+        .await;
+        if let Some(Keeping { store, .. }) = keeping {
+            save_calibration(store, &session, &channels).await;
         }
+        health
     };
-    let ended = harness::run(acquire(&mut sensors, &configuration, &channels), instrument)?;
+    let ended =
+        harness::run(acquire(&mut on_stage(&mut sensors, &configuration, &channels)), instrument)?;
     let violations = harness::told(&board);
     let rate = board.borrow().plant.truth().stage.rate_rad_s;
     Ok(TurntableRun { run: harness.clear(&ended, violations, session), rate })

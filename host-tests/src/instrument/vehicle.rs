@@ -2,9 +2,12 @@
 
 use std::cell::RefCell;
 
+use firmware::acquire::{TriadAcquisition, acquire};
 use firmware::keep::Keeping;
-use firmware::ports::{HeadingStore, Observer, Recorder, VehiclePorts};
-use firmware::run::{acquire_triad, run_stops_and_keep};
+use firmware::mechanism::Strapdown;
+use firmware::ports::{Observer, Recorder, Store};
+use firmware::run::navigate;
+use firmware::runner::Stops;
 use firmware::simulated::Wires;
 use firmware::simulated::fault::{Fault, FaultyRecorder, Injection};
 use firmware::simulated::vehicle::{Day, KnownPlace, VehicleScenario};
@@ -51,7 +54,7 @@ pub fn align_stops_storing<R: Recorder<InertialSample>, W: Observer>(
     fault: Option<Fault>,
     recorder: R,
     watch: &W,
-    store: impl HeadingStore,
+    store: impl Store,
 ) -> Result<VehicleRun, RunError> {
     let (day, injection) = (scenario.day(fault), scenario.injection(fault));
     align_stops_along(&day, &injection, scenario, recorder, watch, store)
@@ -67,7 +70,7 @@ pub fn align_stops_along<R: Recorder<InertialSample>, W: Observer>(
     scenario: &VehicleScenario,
     recorder: R,
     watch: &W,
-    store: impl HeadingStore,
+    store: impl Store,
 ) -> Result<VehicleRun, RunError> {
     let board = RefCell::new(scenario.board(&day.legs, &day.events, injection));
     let found = align_on(&board, injection, scenario, recorder, watch, store)?;
@@ -95,7 +98,7 @@ fn align_on<R: Recorder<InertialSample>, W: Observer>(
     scenario: &VehicleScenario,
     recorder: R,
     watch: &W,
-    store: impl HeadingStore,
+    store: impl Store,
 ) -> Result<VehicleRun, RunError> {
     let setting = scenario.setting().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
     let session = stops::Session::new(setting, scenario.procedure());
@@ -103,18 +106,21 @@ fn align_on<R: Recorder<InertialSample>, W: Observer>(
     let harness = Harness::new(watch);
     let channels = harness.channels();
     let mut sensors = Wires(board, injection).triad(scenario);
-    let mut ports = VehiclePorts {
-        position_aiding: KnownPlace::new(board, scenario.place, scenario.base.seed),
-        link: harness.wire(),
-        recorder: FaultyRecorder::new(recorder, injection.hang),
-    };
+    let mut place = KnownPlace::new(board, scenario.place, scenario.base.seed);
     let setting = scenario.keeper().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
     let mut keeper = Keeper::new(&setting);
     let outside = scenario.base.hold.outside();
     let mut keeping = Keeping::new(&mut keeper, &scenario.keeping(), outside, store);
     let ended = harness::run(
-        acquire_triad(&mut sensors, &scenario.configuration(), &channels),
-        run_stops_and_keep(&mut ports, &mut session, &mut keeping, &channels),
+        acquire(&mut TriadAcquisition::new(&mut sensors, &scenario.configuration(), &channels)),
+        navigate(
+            &mut Strapdown::new(&channels.shared),
+            &mut Stops::new(&mut session, &mut place),
+            &mut harness.wire(),
+            &mut FaultyRecorder::new(recorder, injection.hang),
+            &mut keeping,
+            &channels,
+        ),
     )?;
     let truth = board.borrow().plant.truth();
     let violations = harness::told(board);

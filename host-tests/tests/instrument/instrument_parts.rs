@@ -120,7 +120,7 @@ fn without_harmonics_the_angle_is_untouched() {
 
 #[test]
 fn every_fault_counts_once() {
-    let mut health = Health::EMPTY;
+    let mut health = Health::default();
     health.lose(Device::Gyro);
     health.lose(Device::Stage);
     health.restart(Device::Encoder);

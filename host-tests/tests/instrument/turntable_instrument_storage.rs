@@ -7,7 +7,7 @@ use bench::virtual_time::run;
 use drivers::fault::Fault;
 use firmware::date::Day;
 use firmware::event::Event;
-use firmware::ports::{CalibrationStore, NoRecorder};
+use firmware::ports::{NoRecorder, Store};
 use firmware::simulated::flash::Flash;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;

@@ -55,10 +55,10 @@ mod wiring;
 use defmt_rtt as _;
 use embassy_executor::Spawner;
 use embassy_time::{Instant, Timer};
+use firmware::acquire::{acquire, on_stage};
 use firmware::health::Health;
 use firmware::link;
 use firmware::log::DefmtLog;
-use firmware::run::acquire;
 use firmware::shared::Shared;
 use panic_probe as _;
 use static_cell::StaticCell;
@@ -68,7 +68,7 @@ use ports::Inputs;
 use wiring::{Link, SensorWires};
 
 /// The channels between the instrument's parts.
-type Channels = firmware::shared::Channels<'static, DefmtLog>;
+type Channels = firmware::shared::Channels<'static>;
 
 defmt::timestamp!("{=u64:us}", Instant::now().as_micros());
 
@@ -101,12 +101,12 @@ fn sample(spawner: Spawner, sensors: SensorWires) -> &'static Channels {
 /// Samples without end.
 #[embassy_executor::task]
 async fn acquisition(mut inputs: Inputs, channels: &'static Channels) {
-    acquire(&mut inputs, &configuration::instrument(), channels).await;
+    acquire(&mut on_stage(&mut inputs, &configuration::instrument(), channels)).await;
 }
 
 /// Reports the conclusion without end. It never returns, because the peripherals would be dropped:
 /// the motor would lose its current and the link its last bytes.
-async fn tell(health: &Health, link: &mut Link, shared: &Shared<'static, DefmtLog>) -> ! {
+async fn tell(health: &Health, link: &mut Link, shared: &Shared<'static>) -> ! {
     defmt::info!("board: done, {} faults on the way", health.faults());
     loop {
         Timer::after_secs(1).await;

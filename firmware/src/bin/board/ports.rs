@@ -10,11 +10,11 @@ use embassy_time::Delay;
 use firmware::chips::{
     AnalogueGyro, AnalogueSensor, PlatformAccelerometer, StageEncoder, StageMotor,
 };
-use firmware::ports::{NoBase, NoRecorder, Ports, Sensors, SpinSensors, VehicleSensors};
+use firmware::ports::{NoBase, Sensors, SpinSensors, VehicleSensors};
 
 use crate::configuration;
 use crate::configuration::{CARRIER, Carrier};
-use crate::wiring::{ConverterWires, Device, Link, Ready, SensorWires};
+use crate::wiring::{ConverterWires, Device, Ready, SensorWires};
 
 /// Gyro behind its converter.
 type Gyro = AnalogueGyro<Device, Ready, Delay>;
@@ -26,8 +26,6 @@ pub type Inputs = Sensors<Gyro, Accelerometer, StageEncoder<Device, Delay>>;
 pub type Triad = VehicleSensors<Gyro, Accelerometer>;
 /// Sensors of a spinning body.
 pub type Spinning = SpinSensors<AnalogueSensor<Device, Ready, Delay>>;
-/// Actuator, link and recorder.
-pub type Outputs = Ports<StageMotor<Device, Delay>, Link, NoRecorder>;
 
 /// Connects the sensors of a stage to their wires.
 pub fn inputs(wires: SensorWires) -> Inputs {
@@ -76,10 +74,9 @@ fn accelerometer(bus: Device) -> Accelerometer {
     PlatformAccelerometer(Adxl355::new(bus, Delay, force()))
 }
 
-/// Connects actuator and link to their wires.
-pub fn outputs(motor: Device, link: Link) -> Outputs {
-    let motor = Tmc5160::new(motor, Delay, drive());
-    Ports { actuator: StageMotor(motor), link, recorder: NoRecorder }
+/// Connects the motor to its wires.
+pub fn motor(wires: Device) -> StageMotor<Device, Delay> {
+    StageMotor(Tmc5160::new(wires, Delay, drive()))
 }
 
 /// Configuration of the accelerometer. Its filter delays a force by two and a half outputs, during

@@ -1,9 +1,10 @@
 //! Program of the board on a body in fast rotation.
 
 use embassy_executor::Spawner;
+use firmware::acquire::{SpinAcquisition, acquire};
 use firmware::log::DefmtLog;
-use firmware::ports::{NoRecorder, SpinPorts};
-use firmware::run::{acquire_spin, run_spin};
+use firmware::ports::NoRecorder;
+use firmware::run::run_spin;
 use firmware::shared::Channels;
 use firmware::spin::Flight;
 use firmware::spin::configuration::SpinConfiguration;
@@ -15,7 +16,7 @@ use crate::wiring::Wiring;
 use crate::{configuration, ports, tell};
 
 /// Channels between the tasks of the instrument.
-type SpinSeams = Channels<'static, DefmtLog, SpinSample>;
+type SpinSeams = Channels<'static, SpinSample>;
 
 /// Estimates the roll for as long as the sensors give data, then reports how it ended.
 #[embassy_executor::task]
@@ -25,14 +26,13 @@ pub async fn follow(spawner: Spawner, wiring: Wiring) {
     let Some(sensors) = configuration::spinning() else {
         return defmt::error!("board: a sensor's scale factor is none");
     };
-    let Wiring { sensors: wires, link, motor: _, motor_enable: _, flash: _ } = wiring;
+    let Wiring { sensors: wires, mut link, motor: _, motor_enable: _, flash: _ } = wiring;
     let channels: &'static SpinSeams = SEAMS.init_with(|| Channels::new(&DefmtLog));
     let (setting, launch) = (configuration::spin_setting(), configuration::launch());
     let flight = FLIGHT.init_with(|| Flight::new(&setting, launch, None));
     spawner.spawn(defmt::unwrap!(acquisition(ports::spinning(wires), sensors, channels)));
-    let mut outputs = SpinPorts { link, recorder: NoRecorder };
-    let health = run_spin(&mut outputs, flight, channels).await;
-    tell(&health, &mut outputs.link, &channels.shared).await;
+    let health = run_spin(&mut link, &mut NoRecorder, flight, channels).await;
+    tell(&health, &mut link, &channels.shared).await;
 }
 
 /// Samples without end.
@@ -42,5 +42,5 @@ async fn acquisition(
     configuration: SpinConfiguration,
     channels: &'static SpinSeams,
 ) {
-    acquire_spin(&mut sensors, &configuration, channels).await;
+    acquire(&mut SpinAcquisition::new(&mut sensors, &configuration, channels)).await;
 }

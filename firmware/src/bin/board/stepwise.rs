@@ -1,7 +1,10 @@
 //! Program of the board on a stage that stands at positions.
 
 use embassy_executor::Spawner;
-use firmware::run::run;
+use firmware::ports::NoRecorder;
+use firmware::run::navigate;
+use firmware::runner::Stepwise;
+use firmware::stage::Stage;
 use orientation::session::procedure::ProcedureError;
 use orientation::session::{Prepared, Session};
 use static_cell::StaticCell;
@@ -16,11 +19,13 @@ pub async fn align(spawner: Spawner, wiring: Wiring) {
         Ok(session) => session,
         Err(error) => return defmt::error!("board: no session: {}", error),
     };
-    let Wiring { sensors, motor, link, motor_enable: _enabled, flash: _ } = wiring;
+    let Wiring { sensors, motor, mut link, motor_enable: _enabled, flash: _ } = wiring;
     let channels = sample(spawner, sensors);
-    let mut outputs = ports::outputs(motor, link);
-    let health = run(&mut outputs, &configuration::instrument(), session, channels).await;
-    tell(&health, &mut outputs.link, &channels.shared).await;
+    let mut motor = ports::motor(motor);
+    let mut stage = Stage::new(&mut motor, &configuration::instrument().stage, &channels.shared);
+    let session = &mut Stepwise::new(session);
+    let health = navigate(&mut stage, session, &mut link, &mut NoRecorder, &mut (), channels).await;
+    tell(&health, &mut link, &channels.shared).await;
 }
 
 /// Creates the session at its final place in memory.

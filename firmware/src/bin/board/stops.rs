@@ -2,10 +2,13 @@
 //! roll afterwards.
 
 use embassy_executor::Spawner;
+use firmware::acquire::{TriadAcquisition, acquire};
 use firmware::keep::Keeping;
 use firmware::log::DefmtLog;
-use firmware::ports::{NoOutside, NoRecorder, NoWhereabouts, VehiclePorts};
-use firmware::run::{acquire_triad, run_stops_and_keep};
+use firmware::mechanism::Strapdown;
+use firmware::ports::NoRecorder;
+use firmware::run::navigate;
+use firmware::runner::Stops;
 use firmware::shared::Channels;
 use orientation::keep::Keeper;
 use orientation::session::procedure::ProcedureError;
@@ -19,7 +22,7 @@ use crate::wiring::Wiring;
 use crate::{configuration, ports, tell};
 
 /// Channels between the tasks of the instrument.
-type VehicleSeams = Channels<'static, DefmtLog, InertialSample>;
+type VehicleSeams = Channels<'static, InertialSample>;
 
 /// Runs the instrument: it aligns, then holds the result without end, also across a loss of supply.
 #[embassy_executor::task]
@@ -29,20 +32,24 @@ pub async fn align(spawner: Spawner, wiring: Wiring) {
         Ok(session) => session,
         Err(error) => return defmt::error!("board: no session: {}", error),
     };
-    let Wiring { sensors, link, motor: _, motor_enable: _, flash } = wiring;
+    let Wiring { sensors, mut link, motor: _, motor_enable: _, flash } = wiring;
     let channels: &'static VehicleSeams = SEAMS.init_with(|| Channels::new(&DefmtLog));
     spawner.spawn(defmt::unwrap!(acquisition(ports::triad(sensors), channels)));
-    let mut outputs = VehiclePorts { position_aiding: NoWhereabouts, link, recorder: NoRecorder };
     let configuration = configuration::keeping();
-    let mut keeping = Keeping::new(keeper(), &configuration, NoOutside, store(flash));
-    let health = run_stops_and_keep(&mut outputs, session, &mut keeping, channels).await;
-    tell(&health, &mut outputs.link, &channels.shared).await;
+    let mut keeping = Keeping::new(keeper(), &configuration, (), store(flash));
+    let mut body = Strapdown::new(&channels.shared);
+    let position_aiding = &mut ();
+    let session = &mut Stops::new(session, position_aiding);
+    let health =
+        navigate(&mut body, session, &mut link, &mut NoRecorder, &mut keeping, channels).await;
+    tell(&health, &mut link, &channels.shared).await;
 }
 
 /// Samples without end.
 #[embassy_executor::task]
 async fn acquisition(mut triad: Triad, channels: &'static VehicleSeams) {
-    acquire_triad(&mut triad, &configuration::vehicle(), channels).await;
+    let configuration = configuration::vehicle();
+    acquire(&mut TriadAcquisition::new(&mut triad, &configuration, channels)).await;
 }
 
 /// Creates the attitude and heading keeper at its final place in memory.

@@ -2,8 +2,11 @@
 //! in flash.
 
 use embassy_executor::Spawner;
-use firmware::run::run_storing;
-use firmware::storage::{Today, load_calibration};
+use firmware::ports::NoRecorder;
+use firmware::run::navigate;
+use firmware::runner::Rotating;
+use firmware::storage::{Today, load_calibration, save_calibration};
+use firmware::turntable::Turntable;
 use orientation::session::rotating::{Session, check};
 use static_cell::StaticCell;
 
@@ -17,14 +20,17 @@ const TODAY: Today = Today { date: None, longest: None };
 /// Runs the instrument to its conclusion, then reports it without end.
 #[embassy_executor::task]
 pub async fn align(spawner: Spawner, wiring: Wiring) {
-    let Wiring { sensors, motor, link, motor_enable: _enabled, flash } = wiring;
+    let Wiring { sensors, motor, mut link, motor_enable: _enabled, flash } = wiring;
     let channels = sample(spawner, sensors);
     let mut store = store(flash);
     let Some(session) = session(&mut store, channels).await else { return };
-    let mut outputs = ports::outputs(motor, link);
-    let platform = configuration::platform();
-    let health = run_storing(&mut outputs, &platform, session, &mut store, channels).await;
-    tell(&health, &mut outputs.link, &channels.shared).await;
+    let mut motor = ports::motor(motor);
+    let mut platform = Turntable::new(&mut motor, &configuration::platform(), &channels.shared);
+    let rotating = &mut Rotating::new(session);
+    let health =
+        navigate(&mut platform, rotating, &mut link, &mut NoRecorder, &mut (), channels).await;
+    save_calibration(&mut store, session, channels).await;
+    tell(&health, &mut link, &channels.shared).await;
 }
 
 /// Creates the session at its final place in memory, with the stored axis misalignment.

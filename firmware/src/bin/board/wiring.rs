@@ -103,16 +103,9 @@ impl MoreWires {
     /// Connects the converters of the accelerometers up and to the right.
     pub fn connect(self) -> [ConverterWires; 2] {
         let Self { bus, selects, ready, lines } = self;
-        let settings = settings(MODE_1, ads1262::GREATEST_BUS_HERTZ);
         [
-            ConverterWires {
-                bus: device(bus, selects.0, settings),
-                ready: ExtiInput::new(ready.0, lines.0, Pull::Up, Interrupts),
-            },
-            ConverterWires {
-                bus: device(bus, selects.1, settings),
-                ready: ExtiInput::new(ready.1, lines.1, Pull::Up, Interrupts),
-            },
+            converter(bus, selects.0, ExtiInput::new(ready.0, lines.0, Pull::Up, Interrupts)),
+            converter(bus, selects.1, ExtiInput::new(ready.1, lines.1, Pull::Up, Interrupts)),
         ]
     }
 }
@@ -132,19 +125,14 @@ pub fn connect(p: Peripherals) -> Result<Wiring, ConfigError> {
     let stage = STAGE.init(Mutex::new(stage));
     Ok(Wiring {
         sensors: SensorWires {
-            converter: ConverterWires {
-                bus: device(sensors, p.PA2, low),
-                ready: ExtiInput::new(p.PD14, p.EXTI14, Pull::Up, Interrupts),
-            },
+            converter: converter(
+                sensors,
+                p.PA2,
+                ExtiInput::new(p.PD14, p.EXTI14, Pull::Up, Interrupts),
+            ),
             others: [
-                ConverterWires {
-                    bus: device(sensors, p.PB2, low),
-                    ready: ExtiInput::new(p.PB0, p.EXTI0, Pull::Up, Interrupts),
-                },
-                ConverterWires {
-                    bus: device(sensors, p.PA4, low),
-                    ready: ExtiInput::new(p.PB1, p.EXTI1, Pull::Up, Interrupts),
-                },
+                converter(sensors, p.PB2, ExtiInput::new(p.PB0, p.EXTI0, Pull::Up, Interrupts)),
+                converter(sensors, p.PA4, ExtiInput::new(p.PB1, p.EXTI1, Pull::Up, Interrupts)),
             ],
             more: MoreWires {
                 bus: sensors,
@@ -160,6 +148,12 @@ pub fn connect(p: Peripherals) -> Result<Wiring, ConfigError> {
         link: UartTx::new(p.USART1, p.PB6, p.DMA2_CH6, Interrupts, usart::Config::default())?,
         flash: p.FLASH,
     })
+}
+
+/// Connects an ADS1262 to its bus and its data-ready line.
+fn converter(bus: &'static Bus, select: Peri<'static, impl Pin>, ready: Ready) -> ConverterWires {
+    let settings = settings(MODE_1, ads1262::GREATEST_BUS_HERTZ);
+    ConverterWires { bus: device(bus, select, settings), ready }
 }
 
 /// Creates a device on a bus, not selected.

@@ -17,8 +17,8 @@ use orientation::units::{
 use crate::budget::{
     HEADING_INSTRUCTIONS, SPIN_INSTRUCTIONS, VERTICAL_GREATEST_INSTRUCTIONS, VERTICAL_INSTRUCTIONS,
 };
-use crate::counter::{Cost, Counter};
-use crate::report::{Report, figure};
+use crate::counter::Counter;
+use crate::report::{Report, figure, mean_and_greatest};
 
 /// Output rate of the coarse IMU, Hz.
 const COARSE_HZ: u64 = 416;
@@ -79,18 +79,15 @@ fn kept(counter: &Counter, mut keeper: Keeper, rate: u64, report: &mut Report) -
     let mut noise = Generator::new(3);
     // Through a pointer that is opaque to the optimiser the function is called, not inlined.
     let push = black_box(Keeper::push as Push);
-    let (mut total, mut worst, mut carried) = (Cost::default(), Cost::default(), [0.0; 3]);
-    let samples = (REST + MOTION) * rate;
-    for index in 0..samples {
+    let mut carried = [0.0; 3];
+    let costs = mean_and_greatest((REST + MOTION) * rate, |index| {
         let sample = moving(index, rate, &mut noise, &mut carried);
-        let (cost, ()) = counter.measure(|| push(&mut keeper, &sample));
-        total += cost;
-        worst = worst.max(cost);
-    }
+        counter.measure(|| push(&mut keeper, &sample)).0
+    });
     let kept = keeper.report();
     let is_level = libm::hypot(kept.pitch, kept.roll) < DEGREE;
     report.require("the body is level to a degree", is_level);
-    [total.mean(samples), worst.instructions()]
+    costs
 }
 
 /// Sample of a body that stands, then turns to and fro about the vertical and shakes.
@@ -115,20 +112,17 @@ fn spun(counter: &Counter, report: &mut Report) {
     let mut noise = Generator::new(4);
     let mut spin = Spin::new(&spin::Setting::new(1.0 / SPIN_HZ as f64));
     let push = black_box(Spin::push as PushSpin);
-    let (mut total, mut worst, mut carried) = (Cost::default(), Cost::default(), 0.0);
-    let mut roll = 0.0;
-    for index in 0..SPUN {
+    let (mut roll, mut carried) = (0.0, 0.0);
+    let [mean, worst] = mean_and_greatest(SPUN, |index| {
         roll += TURN * TURNS_HZ / SPIN_HZ as f64;
         let sample = spinning(index, roll, &mut noise, &mut carried);
-        let (cost, _) = counter.measure(|| push(&mut spin, &sample));
-        total += cost;
-        worst = worst.max(cost);
-    }
+        counter.measure(|| push(&mut spin, &sample)).0
+    });
     let off = spin.roll().rad() - roll;
     report.require("the roll is found to a degree, its turns counted", off.abs() < DEGREE);
     let name = "roll of a spinning body, a sample at 10 kHz";
-    report.budget(name, total.mean(SPUN), SPIN_INSTRUCTIONS);
-    figure("the same, a sample that ends four turns", worst.instructions());
+    report.budget(name, mean, SPIN_INSTRUCTIONS);
+    figure("the same, a sample that ends four turns", worst);
 }
 
 /// Sample of a spinning body.

@@ -97,11 +97,16 @@ fn sort(figures: &mut [u64]) {
 /// Measures every criterion on both schedules.
 pub fn report(counter: &Counter, report: &mut Report) -> Result<(), SeriesError> {
     for turn in TURNS {
-        quadratic(counter, report, turn, "maximum likelihood", Criterion::MaximumLikelihood)?;
-        quadratic(counter, report, turn, "least squares", Criterion::LeastSquares)?;
-        within(counter, report, turn)?;
-        within_absolute(counter, turn)?;
-        absolute(counter, turn)?;
+        let likeliest = searched(counter, turn, Criterion::MaximumLikelihood)?;
+        budgeted(report, turn, "maximum likelihood", &likeliest);
+        let least_squares = searched(counter, turn, Criterion::LeastSquares)?;
+        budgeted(report, turn, "least squares", &least_squares);
+        budgeted(report, turn, "within squares", &within(counter, turn, squares_limit())?);
+        rows(turn, "within absolute", &within(counter, turn, absolute_limit())?);
+        let criterion = Criterion::LeastAbsolute;
+        rows(turn, "least absolute", &searched(counter, turn, criterion)?);
+        let evaluations = |series: &Series| u64::from(search(series, criterion).evaluations);
+        rows(turn, "least absolute, evaluations", &Spread::of(evaluations, turn)?);
     }
     yardsticks::exhaustive(counter, report, &TURNS[0].series(1)?);
     Ok(())
@@ -136,44 +141,19 @@ fn squares_limit() -> Limit {
     Limit::WithinSquares((ACCEPTED_SQUARES * expected * ONE * ONE) as u128)
 }
 
-/// Measures a quadratic criterion.
-fn quadratic(
-    counter: &Counter,
-    report: &mut Report,
-    turn: Turn,
-    name: &str,
-    criterion: Criterion,
-) -> Result<(), SeriesError> {
-    let cost = |series: &Series| counter.measure(|| search(series, criterion)).0.instructions();
-    budgeted(report, turn, name, &Spread::of(cost, turn)?);
-    Ok(())
+/// Costs of the search by a criterion.
+fn searched(counter: &Counter, turn: Turn, criterion: Criterion) -> Result<Spread, SeriesError> {
+    Spread::of(|series| counter.measure(|| search(series, criterion)).0.instructions(), turn)
 }
 
-/// Measures the acceptance by a sum of squares.
-fn within(counter: &Counter, report: &mut Report, turn: Turn) -> Result<(), SeriesError> {
-    let limit = squares_limit();
-    let cost = |series: &Series| counter.measure(|| accepted(series, limit)).0.instructions();
-    budgeted(report, turn, "within squares", &Spread::of(cost, turn)?);
-    Ok(())
+/// Costs of the acceptance within a bound.
+fn within(counter: &Counter, turn: Turn, limit: Limit) -> Result<Spread, SeriesError> {
+    Spread::of(|series| counter.measure(|| accepted(series, limit)).0.instructions(), turn)
 }
 
-/// Measures the acceptance by a sum of absolute values.
-fn within_absolute(counter: &Counter, turn: Turn) -> Result<(), SeriesError> {
-    let limit = Limit::WithinAbsolute((ACCEPTED_ABSOLUTE * ONE) as u64);
-    let cost = |series: &Series| counter.measure(|| accepted(series, limit)).0.instructions();
-    rows(turn, "within absolute", &Spread::of(cost, turn)?);
-    Ok(())
-}
-
-/// Measures the search for the least sum of absolute values.
-fn absolute(counter: &Counter, turn: Turn) -> Result<(), SeriesError> {
-    let criterion = Criterion::LeastAbsolute;
-    let cost = |series: &Series| counter.measure(|| search(series, criterion)).0.instructions();
-    let spread = Spread::of(cost, turn)?;
-    let evaluations = Spread::of(|series| u64::from(search(series, criterion).evaluations), turn)?;
-    rows(turn, "least absolute", &spread);
-    rows(turn, "least absolute, evaluations", &evaluations);
-    Ok(())
+/// Bound α, in table units.
+fn absolute_limit() -> Limit {
+    Limit::WithinAbsolute((ACCEPTED_ABSOLUTE * ONE) as u64)
 }
 
 /// Reports the two rows of a criterion without a budget.

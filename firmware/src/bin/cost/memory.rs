@@ -2,6 +2,8 @@
 
 #![expect(unsafe_code, reason = "reads the linker's symbols")]
 
+use crate::stack::address;
+
 /// Symbols of cortex-m-rt's `link.x`, of which only the addresses are meaningful.
 mod symbols {
     // SAFETY: the script defines every one of them, and nothing reads a value through them.
@@ -12,11 +14,6 @@ mod symbols {
         pub safe static __ebss: u32;
         pub safe static __vector_table: u32;
     }
-}
-
-/// Address of a symbol.
-fn address(symbol: &'static u32) -> usize {
-    (&raw const *symbol).expose_provenance()
 }
 
 /// Size of the flash contents, bytes: vectors, code, constants, and initial values of variables.

@@ -10,8 +10,8 @@ use orientation::noise::model::GyroNoise;
 use orientation::units::AngularRate;
 
 use crate::budget::{ALLAN_INSTRUCTIONS, NOISE_FIT_INSTRUCTIONS};
-use crate::counter::{Cost, Counter};
-use crate::report::Report;
+use crate::counter::Counter;
+use crate::report::{Report, mean_and_greatest};
 use crate::stack::stack_of;
 
 /// Number of samples through the estimator.
@@ -61,12 +61,11 @@ fn sample(counter: &Counter) -> u64 {
     let mut allan = Allan::new();
     // Through a pointer that is opaque to the optimiser the function is called, not inlined.
     let push = black_box(Allan::push as Push);
-    let mut total = Cost::default();
-    for _ in 0..SAMPLES {
+    let [mean, _] = mean_and_greatest(SAMPLES, |_| {
         let rate = AngularRate::from_rad_per_s(SIGMA * noise.gaussian());
-        total += counter.measure(|| push(&mut allan, rate)).0;
-    }
-    total.mean(SAMPLES)
+        counter.measure(|| push(&mut allan, rate)).0
+    });
+    mean
 }
 
 /// Points as of a record with this many samples: those of the model, with the scatter of white

@@ -5,6 +5,8 @@ use core::fmt::Display;
 use cortex_m::asm::wfi;
 use cortex_m_semihosting::{debug, hprintln};
 
+use crate::counter::Cost;
+
 /// Divisor of the tolerance of a check: one per cent.
 const CHECK_PARTS: u64 = 100;
 
@@ -18,6 +20,17 @@ pub fn heading(quantity: &str) {
 #[inline(never)]
 pub fn figure(name: impl Display, count: u64) {
     hprintln!("{count:>10} {:>10} {:5} {name}", "-", "");
+}
+
+/// Mean and greatest number of instructions of equal pieces of work, each of which returns its cost.
+pub fn mean_and_greatest(count: u64, mut piece: impl FnMut(u64) -> Cost) -> [u64; 2] {
+    let (mut total, mut worst) = (Cost::default(), Cost::default());
+    for index in 0..count {
+        let cost = piece(index);
+        total += cost;
+        worst = worst.max(cost);
+    }
+    [total.mean(count), worst.instructions()]
 }
 
 /// Result of all checks so far.

@@ -9,8 +9,8 @@ use orientation::signal::dwell::DwellAverage;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce, Temperature};
 
 use crate::budget::{FILTER_AND_DWELL_INSTRUCTIONS, FILTER_INSTRUCTIONS};
-use crate::counter::{Cost, Counter};
-use crate::report::{Report, figure};
+use crate::counter::Counter;
+use crate::report::{Report, figure, mean_and_greatest};
 
 /// Sections of a filter of order 6.
 const SECTIONS: usize = 3;
@@ -40,16 +40,9 @@ type Push = fn(&mut DwellAverage<SECTIONS>, &Coefficients<SECTIONS>, &Sample);
 pub fn report(counter: &Counter, report: &mut Report) -> Result<(), DesignError> {
     let (cost, coefficients) = counter.measure(design);
     let coefficients = coefficients?;
-    report.budget(
-        "Butterworth of order 6, a sample",
-        filter(counter, &coefficients),
-        FILTER_INSTRUCTIONS,
-    );
-    report.budget(
-        "filter and dwell, a sample",
-        dwell(counter, &coefficients),
-        FILTER_AND_DWELL_INSTRUCTIONS,
-    );
+    let [filtered, averaged] = [filter(counter, &coefficients), dwell(counter, &coefficients)];
+    report.budget("Butterworth of order 6, a sample", filtered, FILTER_INSTRUCTIONS);
+    report.budget("filter and dwell, a sample", averaged, FILTER_AND_DWELL_INSTRUCTIONS);
     figure("design of the filter for 2 Hz at 2 kHz", cost.instructions());
     Ok(())
 }
@@ -66,12 +59,11 @@ fn filter(counter: &Counter, coefficients: &Coefficients<SECTIONS>) -> u64 {
     let mut filter = Filter::at_rest(AngularRate(0));
     // Through a pointer that is opaque to the optimiser the function is called, not inlined.
     let update = black_box(Filter::update as Update);
-    let mut total = Cost::default();
-    for _ in 0..FILTERED {
+    let [mean, _] = mean_and_greatest(FILTERED, |_| {
         let rate = AngularRate::from_rad_per_s(RATE_SIGMA * noise.gaussian());
-        total += counter.measure(|| update(&mut filter, coefficients, rate)).0;
-    }
-    total.mean(FILTERED)
+        counter.measure(|| update(&mut filter, coefficients, rate)).0
+    });
+    mean
 }
 
 /// Mean number of instructions of a sample through filter and dwell, call included.
@@ -79,12 +71,11 @@ fn dwell(counter: &Counter, coefficients: &Coefficients<SECTIONS>) -> u64 {
     let mut noise = Generator::new(2);
     let mut average = DwellAverage::begin(coefficients, &sample(0, &mut noise));
     let push = black_box(DwellAverage::push as Push);
-    let mut total = Cost::default();
-    for index in 1..=AVERAGED {
-        let sample = sample(index, &mut noise);
-        total += counter.measure(|| push(&mut average, coefficients, &sample)).0;
-    }
-    total.mean(AVERAGED)
+    let [mean, _] = mean_and_greatest(AVERAGED, |index| {
+        let sample = sample(index + 1, &mut noise);
+        counter.measure(|| push(&mut average, coefficients, &sample)).0
+    });
+    mean
 }
 
 /// Noisy sample of a standstill.

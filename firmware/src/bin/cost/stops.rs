@@ -14,8 +14,8 @@ use orientation::signal::InertialSample;
 use orientation::units::{AngleIncrement, DEGREE, DEGREE_PER_HOUR, Instant, SpecificForce};
 
 use crate::budget::{INCLINATION_INSTRUCTIONS, STOPS_INSTRUCTIONS, STRAPDOWN_INSTRUCTIONS};
-use crate::counter::{Cost, Counter};
-use crate::report::{Report, figure};
+use crate::counter::Counter;
+use crate::report::{Report, figure, mean_and_greatest};
 use crate::stack;
 
 /// Sample rate of the strapdown, Hz.
@@ -57,21 +57,14 @@ fn sample(counter: &Counter, report: &mut Report) {
     let mut stop_detector = stop_detector(RATE_HZ);
     // Through a pointer that is opaque to the optimiser the function is called, not inlined.
     let push = black_box(StopDetector::push as Push);
-    let (mut total, mut worst) = (Cost::default(), Cost::default());
     let mut carried = [0.0; 3];
-    for index in 0..SAMPLES {
+    let [mean, worst] = mean_and_greatest(SAMPLES, |index| {
         let rates = [0.02, -0.03, 0.4].map(|rate| rate * libm::sin(index as f64 / 700.0));
         let sample = inertial(index, RATE_HZ, rates, &mut carried);
-        let (cost, _) = counter.measure(|| push(&mut stop_detector, &sample));
-        total += cost;
-        worst = worst.max(cost);
-    }
-    report.budget(
-        "strapdown of three gyros, a sample at 2 kHz",
-        total.mean(SAMPLES),
-        STRAPDOWN_INSTRUCTIONS,
-    );
-    figure("the same, a sample that ends a second", worst.instructions());
+        counter.measure(|| push(&mut stop_detector, &sample)).0
+    });
+    report.budget("strapdown of three gyros, a sample at 2 kHz", mean, STRAPDOWN_INSTRUCTIONS);
+    figure("the same, a sample that ends a second", worst);
 }
 
 /// Measures the greatest cost of U over the circle, and that of the search.
@@ -81,15 +74,14 @@ fn inclination(counter: &Counter, report: &mut Report, inclination: &Inclination
         ("U(azp), the paper's form, greatest", Inclination::euler as Form),
     ] {
         let form = black_box(form);
-        let mut worst = Cost::default();
-        for step in 0..360 {
-            let azimuth = f64::from(step) * DEGREE;
-            worst = worst.max(counter.measure(|| form(inclination, azimuth)).0);
-        }
+        let [_, worst] = mean_and_greatest(360, |step| {
+            let azimuth = step as f64 * DEGREE;
+            counter.measure(|| form(inclination, azimuth)).0
+        });
         if name.contains("angle") {
-            report.budget(name, worst.instructions(), INCLINATION_INSTRUCTIONS);
+            report.budget(name, worst, INCLINATION_INSTRUCTIONS);
         } else {
-            figure(name, worst.instructions());
+            figure(name, worst);
         }
     }
     let (cost, minimum) = counter.measure(|| inclination.minimised(Inclination::angle));

@@ -8,8 +8,8 @@ use orientation::signal::Sample;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce, TURN};
 
 use crate::budget::TURNING_INSTRUCTIONS;
-use crate::counter::{Cost, Counter};
-use crate::report::{Report, figure};
+use crate::counter::Counter;
+use crate::report::{Report, figure, mean_and_greatest};
 
 /// Sample rate, Hz.
 const RATE_HZ: f64 = 2000.0;
@@ -37,21 +37,16 @@ pub fn report(counter: &Counter, report: &mut Report) {
     let mut turn_accumulator = TurnAccumulator::new(PERIODS, Mode::Even);
     // Through a pointer that is opaque to the optimiser the function is called, not inlined.
     let push = black_box(TurnAccumulator::push as Push);
-    let (mut total, mut worst, mut turns) = (Cost::default(), Cost::default(), 0);
-    for index in 0..SAMPLES {
+    let mut turns = 0;
+    let [mean, worst] = mean_and_greatest(SAMPLES, |index| {
         let sample = sample(index, &mut noise);
         let (cost, has_turned) = counter.measure(|| push(&mut turn_accumulator, &sample, None));
-        total += cost;
-        worst = worst.max(cost);
         turns += u32::from(has_turned);
-    }
+        cost
+    });
     report.require("the platform turned round twice", turns == 2);
-    report.budget(
-        "demodulation on a turning platform, a sample",
-        total.mean(SAMPLES),
-        TURNING_INSTRUCTIONS,
-    );
-    figure("the same, a sample that ends a turn", worst.instructions());
+    report.budget("demodulation on a turning platform, a sample", mean, TURNING_INSTRUCTIONS);
+    figure("the same, a sample that ends a turn", worst);
 }
 
 /// Sample of a platform that turns clockwise.
@@ -67,7 +62,6 @@ fn sample(index: u64, noise: &mut Generator) -> Sample {
         rate: AngularRate::from_rad_per_s(rate),
         force: (index.is_multiple_of(SLOW))
             .then(|| [along, 0.0, -9.81].map(SpecificForce::from_m_per_s2)),
-        temperature: None,
-        elevation: None,
+        ..Sample::default()
     }
 }

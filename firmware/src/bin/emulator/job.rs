@@ -6,7 +6,7 @@
 use core::mem::MaybeUninit;
 
 use drivers::tmc5160::configuration::Configuration as Motor;
-use firmware::ports::{NoRecorder, VehiclePorts};
+use firmware::ports::NoRecorder;
 use firmware::simulated::fault::Injection;
 use firmware::simulated::scenario::{self, Scenario};
 use firmware::simulated::turntable::{self, TurntableScenario};
@@ -114,18 +114,14 @@ fn driving(scenario: &VehicleScenario, meter: &'static Meter) -> Option<(Samplin
     let session = setup::driving(&setting, procedure)?;
     let keeping = setup::keeping(&scenario.keeper()?, &scenario.keeping());
     let around = Metering(meter);
-    let (inputs, outputs, channels) = setup::vehicle(
+    let (inputs, place, channels) = setup::vehicle(
         || scenario.board(&vehicle::BRIEF, &[], &HEALTHY),
         |rig| Wires(rig, &around).triad(scenario),
-        |rig| VehiclePorts {
-            position_aiding: KnownPlace::new(rig, scenario.place, scenario.base.seed),
-            link: NoLink,
-            recorder: NoRecorder,
-        },
+        |rig| KnownPlace::new(rig, scenario.place, scenario.base.seed),
         meter,
     )?;
     Some((
         Sampling::Vehicle(inputs, scenario.configuration(), channels),
-        Running::Stops(session, outputs, keeping, channels),
+        Running::Stops(session, place, keeping, channels),
     ))
 }

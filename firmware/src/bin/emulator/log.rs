@@ -11,14 +11,14 @@ use defmt_semihosting as _;
 use semihosting::process::ExitCode;
 
 use crate::clock;
-use crate::meter::{Meter, Stretch, Task};
+use crate::meter::{Accounts, Meter, Task};
 
 defmt::timestamp!("{=u64:us}", clock::now());
 
 /// Logs the cost of the whole instrument from its first dwell to its last, for a gyro with this
 /// sample rate, Hz.
 pub fn effort(meter: &Meter, sample_rate: f64) {
-    let Stretch { instrument, simulation, microseconds } = meter.between_marks();
+    let Accounts { instrument, simulation, microseconds } = meter.between_marks();
     println!(
         "effort instructions={=u64} simulation={=u64} samples={=u64} microseconds={=u64}",
         instrument.instructions(),
@@ -32,10 +32,10 @@ pub fn effort(meter: &Meter, sample_rate: f64) {
 pub fn task(task: &Task) {
     println!(
         "task polls={=u64} instructions={=u64} worst={=u64} name={=str}",
-        task.polls(),
-        task.total().instructions(),
-        task.worst().instructions(),
-        task.name()
+        task.polls.get(),
+        task.total.get().instructions(),
+        task.worst.get().instructions(),
+        task.name
     );
 }
 

@@ -13,19 +13,9 @@ use crate::counter::{Cost, Counter};
 /// Number of empty outside calls that calibrate their own cost.
 const CALIBRATIONS: u64 = 1000;
 
-/// Accounts at one moment.
+/// Cost of the instrument and of the simulation beside it: at one moment, or between two.
 #[derive(Clone, Copy, Default)]
-pub struct Mark {
-    /// Cost of the instrument.
-    instrument: Cost,
-    /// Cost of the simulation.
-    simulation: Cost,
-    /// Virtual time, µs.
-    microseconds: u64,
-}
-
-/// Cost between two moments.
-pub struct Stretch {
+pub struct Accounts {
     /// Cost of the instrument.
     pub instrument: Cost,
     /// Cost of the simulation.
@@ -44,7 +34,7 @@ pub struct Meter {
     /// Cost of an empty outside call.
     fee: Cost,
     /// Accounts at the first mark and at the last.
-    marks: Cell<Option<[Mark; 2]>>,
+    marks: Cell<Option<[Accounts; 2]>>,
 }
 
 impl Meter {
@@ -85,15 +75,15 @@ impl Meter {
     /// Marks this moment. The poll in progress is not included.
     pub fn mark(&self, microseconds: u64) {
         let simulation = self.outside.get();
-        let now = Mark { instrument: self.all.get() - simulation, simulation, microseconds };
+        let now = Accounts { instrument: self.all.get() - simulation, simulation, microseconds };
         let first = self.marks.get().map_or(now, |[first, _]| first);
         self.marks.set(Some([first, now]));
     }
 
     /// Cost between the first mark and the last.
-    pub fn between_marks(&self) -> Stretch {
+    pub fn between_marks(&self) -> Accounts {
         let [first, last] = self.marks.get().unwrap_or_default();
-        Stretch {
+        Accounts {
             instrument: last.instrument - first.instrument,
             simulation: last.simulation - first.simulation,
             microseconds: last.microseconds - first.microseconds,
@@ -104,13 +94,13 @@ impl Meter {
 /// Polls of one task.
 pub struct Task {
     /// Name in the log.
-    name: &'static str,
+    pub name: &'static str,
     /// Number of polls.
-    polls: Cell<u64>,
+    pub polls: Cell<u64>,
     /// Cost of all polls.
-    total: Cell<Cost>,
+    pub total: Cell<Cost>,
     /// Cost of the most expensive poll.
-    worst: Cell<Cost>,
+    pub worst: Cell<Cost>,
 }
 
 impl Task {
@@ -136,25 +126,5 @@ impl Task {
         self.polls.set(self.polls.get() + 1);
         self.total.set(self.total.get() + cost);
         self.worst.set(self.worst.get().max(cost));
-    }
-
-    /// Name of the task in the log.
-    pub fn name(&self) -> &'static str {
-        self.name
-    }
-
-    /// Number of polls.
-    pub fn polls(&self) -> u64 {
-        self.polls.get()
-    }
-
-    /// Cost of all polls.
-    pub fn total(&self) -> Cost {
-        self.total.get()
-    }
-
-    /// Cost of the most expensive poll.
-    pub fn worst(&self) -> Cost {
-        self.worst.get()
     }
 }

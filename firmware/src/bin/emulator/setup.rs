@@ -6,15 +6,20 @@
 
 use core::cell::RefCell;
 
+use firmware::acquire::{TriadAcquisition, acquire, on_stage};
 use firmware::configuration::{
     Configuration, KeepConfiguration, TurntableConfiguration, VehicleConfiguration,
 };
 use firmware::keep::Keeping;
-use firmware::ports::{NoOutside, NoRecorder, VehiclePorts};
-use firmware::run::{acquire, acquire_triad, run, run_rotating, run_stops_and_keep};
+use firmware::mechanism::Strapdown;
+use firmware::ports::{NoRecorder, Ports};
+use firmware::run::navigate;
+use firmware::runner::{Rotating, Stepwise, Stops};
 use firmware::shared::Channels;
 use firmware::simulated::vehicle::{KnownPlace, SimulatedTriad};
 use firmware::simulated::{Chips, SimulatedPorts, SimulatedSensors};
+use firmware::stage::Stage;
+use firmware::turntable::Turntable;
 use hal_mock::vehicle::board::VehicleBoard;
 use orientation::align;
 use orientation::align::rotating::Setting;
@@ -38,14 +43,14 @@ pub type StageInputs = SimulatedSensors<'static, Chips<'static>, Metering>;
 pub type StageOutputs = SimulatedPorts<'static, Chips<'static>, Metering, NoLink, NoRecorder>;
 /// The gyros and accelerometers of an instrument in a vehicle.
 pub type VehicleInputs = SimulatedTriad<'static, VehicleBoard<'static>, Metering>;
-/// The position aiding, link and recorder of an instrument in a vehicle.
-pub type VehicleOutputs = VehiclePorts<KnownPlace<'static, 'static>, NoLink, NoRecorder>;
+/// The position aiding of an instrument in a vehicle.
+pub type Place = KnownPlace<'static, 'static>;
 /// The attitude keeper of a vehicle, without aiding and without memory over a loss of supply.
-pub type VehicleKeeping = Keeping<'static, NoOutside, ()>;
+pub type VehicleKeeping = Keeping<'static, (), ()>;
 /// The channels of an instrument on a stage or on a turntable.
-type StageSeams = Channels<'static, Log>;
+type StageSeams = Channels<'static>;
 /// The channels of an instrument in a vehicle, which carry inertial samples.
-type VehicleSeams = Channels<'static, Log, InertialSample>;
+type VehicleSeams = Channels<'static, InertialSample>;
 
 /// The simulated board of either kind of run.
 #[expect(clippy::large_enum_variant, reason = "there is one, in static memory")]
@@ -57,7 +62,7 @@ enum Rig {
 /// The sensors, the other ports and the channels of either kind of run.
 enum Parts {
     Stage(StageInputs, StageOutputs, StageSeams),
-    Vehicle(VehicleInputs, VehicleOutputs, VehicleSeams),
+    Vehicle(VehicleInputs, Place, VehicleSeams),
 }
 
 /// The session of any kind of run, the largest object in memory.
@@ -105,15 +110,15 @@ pub fn stage(
 pub fn vehicle(
     board: impl FnOnce() -> VehicleBoard<'static>,
     inputs: impl FnOnce(&'static VehicleRig) -> VehicleInputs,
-    outputs: impl FnOnce(&'static VehicleRig) -> VehicleOutputs,
+    place: impl FnOnce(&'static VehicleRig) -> Place,
     meter: &'static Meter,
-) -> Option<(&'static mut VehicleInputs, &'static mut VehicleOutputs, &'static VehicleSeams)> {
+) -> Option<(&'static mut VehicleInputs, &'static mut Place, &'static VehicleSeams)> {
     let rig = RIG.init_with(|| Rig::Vehicle(RefCell::new(board())));
     let Rig::Vehicle(rig) = rig else { return None };
     let log = LOG.init(Log(meter));
-    let parts = PARTS.init_with(|| Parts::Vehicle(inputs(rig), outputs(rig), Channels::new(log)));
-    let Parts::Vehicle(inputs, outputs, channels) = parts else { return None };
-    Some((inputs, outputs, channels))
+    let parts = PARTS.init_with(|| Parts::Vehicle(inputs(rig), place(rig), Channels::new(log)));
+    let Parts::Vehicle(inputs, place, channels) = parts else { return None };
+    Some((inputs, place, channels))
 }
 
 /// Builds a session of multi-position alignment in static memory. Not inlined, so that the
@@ -147,7 +152,7 @@ pub fn driving(
 /// Builds the attitude keeper of a vehicle, without aiding from outside and without memory.
 #[inline(never)]
 pub fn keeping(setting: &keep::Setting, configuration: &KeepConfiguration) -> VehicleKeeping {
-    Keeping::new(KEEPER.init_with(|| Keeper::new(setting)), configuration, NoOutside, ())
+    Keeping::new(KEEPER.init_with(|| Keeper::new(setting)), configuration, (), ())
 }
 
 /// The sampling half of an instrument: sensors, configuration and channels.
@@ -163,10 +168,10 @@ impl Sampling {
     pub async fn run(self) {
         match self {
             Self::Stage(inputs, configuration, channels) => {
-                acquire(inputs, &configuration, channels).await;
+                acquire(&mut on_stage(inputs, &configuration, channels)).await;
             }
             Self::Vehicle(inputs, configuration, channels) => {
-                acquire_triad(inputs, &configuration, channels).await;
+                acquire(&mut TriadAcquisition::new(inputs, &configuration, channels)).await;
             }
         }
     }
@@ -180,12 +185,7 @@ pub enum Running {
     /// Continuous rotation on a turntable.
     Turning(&'static mut rotating::Session, &'static mut StageOutputs, &'static StageSeams),
     /// Inertial-frame alignment from stop to stop in a vehicle.
-    Stops(
-        &'static mut stops::Session,
-        &'static mut VehicleOutputs,
-        VehicleKeeping,
-        &'static VehicleSeams,
-    ),
+    Stops(&'static mut stops::Session, &'static mut Place, VehicleKeeping, &'static VehicleSeams),
 }
 
 impl Running {
@@ -193,15 +193,25 @@ impl Running {
     pub async fn run(self) -> Finished {
         match self {
             Self::Stepwise(session, outputs, configuration, channels) => {
-                run(outputs, &configuration, session, channels).await;
+                let Ports { actuator, link, recorder } = outputs;
+                let mut stage = Stage::new(actuator, &configuration.stage, &channels.shared);
+                let aligned = &mut Stepwise::new(session);
+                navigate(&mut stage, aligned, link, recorder, &mut (), channels).await;
                 Finished::Stepwise(session)
             }
             Self::Turning(session, outputs, channels) => {
-                run_rotating(outputs, &TurntableConfiguration::default(), session, channels).await;
+                let Ports { actuator, link, recorder } = outputs;
+                let tolerances = TurntableConfiguration::default();
+                let mut platform = Turntable::new(actuator, &tolerances, &channels.shared);
+                let aligned = &mut Rotating::new(session);
+                navigate(&mut platform, aligned, link, recorder, &mut (), channels).await;
                 Finished::Turning(session)
             }
-            Self::Stops(session, outputs, mut keeping, channels) => {
-                run_stops_and_keep(outputs, session, &mut keeping, channels).await;
+            Self::Stops(session, place, mut keeping, channels) => {
+                let mut body = Strapdown::new(&channels.shared);
+                let aligned = &mut Stops::new(session, place);
+                let (link, recorder) = (&mut NoLink, &mut NoRecorder);
+                navigate(&mut body, aligned, link, recorder, &mut keeping, channels).await;
                 Finished::Stops(session)
             }
         }
@@ -221,27 +231,28 @@ pub enum Finished {
 impl Finished {
     /// Logs the dwells, turns or stops and the outcome; [`None`] if the session has not concluded.
     pub fn log(&self, seed: u64) -> Option<()> {
-        match self {
+        let verdict = match self {
             Self::Stepwise(session) => {
                 session.dwells().iter().zip(1..).for_each(|(dwell, number)| {
                     results::dwell(number, dwell);
                 });
-                results::outcome(seed, &session.conclusion()?.verdict);
+                session.conclusion()?.verdict
             }
             Self::Turning(session) => {
                 let stretches = session.turn_accumulator().stretches().iter();
                 stretches.flat_map(Stretch::turns).zip(1..).for_each(|(turn, number)| {
                     results::turn(number, turn);
                 });
-                results::outcome(seed, &session.conclusion()?.verdict);
+                session.conclusion()?.verdict
             }
             Self::Stops(session) => {
                 session.stops().iter().zip(1..).for_each(|(stop, number)| {
                     results::stop(number, stop);
                 });
-                results::outcome(seed, &session.conclusion()?.verdict);
+                session.conclusion()?.verdict
             }
-        }
+        };
+        results::outcome(seed, &verdict);
         Some(())
     }
 }

@@ -33,7 +33,7 @@ mod symbols {
 }
 
 /// The address of a symbol.
-fn address(symbol: &'static u32) -> usize {
+pub fn address(symbol: &'static u32) -> usize {
     (&raw const *symbol).expose_provenance()
 }
 

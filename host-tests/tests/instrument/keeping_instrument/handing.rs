@@ -4,7 +4,6 @@ use bench::virtual_time;
 use embassy_time::{Duration, Timer};
 use firmware::configuration::{Alignment, KeepConfiguration, Realignment};
 use firmware::keep::{Keep, Keeping, Motion};
-use firmware::ports::NoOutside;
 use firmware::shared::Shared;
 use orientation::earth::Latitude;
 use orientation::keep::{Gyro, Handover, Keeper, Setting};
@@ -42,7 +41,7 @@ fn azimuth_after(later: u64) -> f64 {
     let mut keeper = Keeper::new(&Setting::precise(latitude, 0.01, gyro));
     (1..=500).for_each(|index| keeper.push(&sample(index, 0.0)));
     let shared = Shared::new(&());
-    let mut keeping = Keeping::new(&mut keeper, &configuration, NoOutside, ());
+    let mut keeping = Keeping::new(&mut keeper, &configuration, (), ());
     let fed = async {
         Timer::after(Duration::from_millis(50)).await;
         // The session has all of them but the last ones, and is at work on its conclusion.

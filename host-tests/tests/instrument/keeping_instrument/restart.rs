@@ -3,13 +3,13 @@
 use super::{told, vehicle};
 use bench::instrument::{VehicleRun, align_stops_along, align_stops_storing};
 use firmware::event::Event;
-use firmware::ports::{HeadingStore, NoRecorder};
+use firmware::ports::{NoRecorder, Store};
 use firmware::simulated::fault::Injection;
 use firmware::simulated::flash::Flash;
 use firmware::simulated::keep::Hold;
 use firmware::simulated::scenario::{GyroClass, Scenario};
 use firmware::simulated::vehicle::{Day, VehicleScenario};
-use firmware::storage::FlashStore;
+use firmware::storage::{FlashStore, HEADING};
 use hal_mock::vehicle::Stop;
 use orientation::keep::restart::{Doubt, Remembered};
 
@@ -33,7 +33,7 @@ fn second(
     before: &VehicleRun,
     [azimuth, pitch]: [f64; 2],
     gyro: GyroClass,
-    store: &mut impl HeadingStore,
+    store: &mut impl Store,
 ) -> VehicleRun {
     // Another seed draws other biases, as a start does.
     let scenario = scenario(2, 20.0, gyro);
@@ -123,8 +123,11 @@ fn a_power_cut_amid_the_writing_leaves_a_heading_that_is_whole_or_none() {
         let mut flash = store.into_flash();
         flash.left = None;
         let mut store = flash.store();
-        let kept = bench::virtual_time::run(store.load_heading()).expect("no deadlock");
-        let kept = kept.ok().flatten().and_then(|bytes| Remembered::from_bytes(&bytes));
+        let kept = bench::virtual_time::run(store.load(HEADING)).expect("no deadlock");
+        let kept = kept
+            .ok()
+            .flatten()
+            .and_then(|bytes: [u8; Remembered::BYTES]| Remembered::from_bytes(&bytes));
         let truth = before.kept.last().expect("it was kept").report;
         if let (Some(kept), Some(azimuth)) = (kept, truth.azimuth) {
             assert!((kept.azimuth - azimuth.angle).abs() < 1e-3, "{words} words");

@@ -10,6 +10,7 @@ use firmware::simulated::base::CoarseClass;
 use firmware::simulated::fault::{ChipFault, Fault};
 use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::{GyroClass, Scenario};
+use firmware::steady::SwayCompensation;
 use orientation::device::Device;
 use orientation::error::Refusal;
 use orientation::signal::sway::CoarseSensors;
@@ -223,9 +224,15 @@ impl BaseSensors for Failing {
 fn a_base_imu_that_fails_ends_only_a_session_that_needs_it() {
     let scenario = Scenario { sample_rate_hz: 100.0, sway_deg: 0.0, ..scenario(2) };
     for (until, feels, goes_on) in [(0, false, true), (60, false, true), (60, true, false)] {
-        let base = Failing { until: Instant::from_secs(until), feels, count: 0 };
-        let run = instrument::align_on(base, &scenario, None, NoRecorder, &())
-            .expect("the scenario is possible");
+        let mut base = Failing { until: Instant::from_secs(until), feels, count: 0 };
+        let run = instrument::align_on(
+            SwayCompensation::new(&mut base),
+            &scenario,
+            None,
+            NoRecorder,
+            &(),
+        )
+        .expect("the scenario is possible");
         let outcome = found(&scenario, &run);
         assert_eq!(outcome.is_ok(), goes_on, "{outcome:?}");
         let is_given_up = |(_, event): &(Instant, Event)| matches!(event, Event::GivenUp(..));
@@ -246,8 +253,15 @@ fn a_sway_that_a_missing_imu_would_have_measured_is_refused_for_the_missing_imu(
         let never = instrument::align(&scenario, fault, NoRecorder, &()).expect("possible");
         let in_frames =
             instrument::align_frames(&frames, fault, NoRecorder, &()).expect("possible").run;
-        let base = Failing { until: Instant::from_secs(5), feels: false, count: 0 };
-        let early = instrument::align_on(base, &scenario, None, NoRecorder, &()).expect("possible");
+        let mut base = Failing { until: Instant::from_secs(5), feels: false, count: 0 };
+        let early = instrument::align_on(
+            SwayCompensation::new(&mut base),
+            &scenario,
+            None,
+            NoRecorder,
+            &(),
+        )
+        .expect("possible");
         for run in [&never, &in_frames, &early] {
             let reason = found(&scenario, run).expect_err("nothing takes the sway off");
             assert_eq!(reason, Refusal::SwayUnmeasured, "seed {seed}");
@@ -261,8 +275,10 @@ fn rates_that_are_subtracted_are_small_beside_what_a_still_base_leaves_in_them()
     // A sway that is felt but not there goes into the rates as its change over a dwell: nothing is
     // subtracted but that.
     let scenario = Scenario { sample_rate_hz: 100.0, sway_deg: 0.0, ..scenario(2) };
-    let base = Failing { until: Instant::MAX, feels: true, count: 0 };
-    let felt = instrument::align_on(base, &scenario, None, NoRecorder, &()).expect("possible");
+    let mut base = Failing { until: Instant::MAX, feels: true, count: 0 };
+    let felt =
+        instrument::align_on(SwayCompensation::new(&mut base), &scenario, None, NoRecorder, &())
+            .expect("possible");
     let bound = 2.0 * 0.1 * DEGREE / 10.0 * 1.1;
     let azimuth = scenario.azimuth_deg.to_radians();
     let rate = 15.041 * scenario.latitude_deg.to_radians().cos() * DEGREE_PER_HOUR;

@@ -1,0 +1,40 @@
+//! The mechanism that carries the sensors, as the session commands it.
+
+use core::convert::Infallible;
+use core::future::pending;
+
+use orientation::error::Refusal;
+
+use crate::shared::Shared;
+
+/// A mechanism that executes the requests of a session: a stage, a two-frame mount, a turntable, or
+/// none.
+pub trait Mechanism {
+    /// Brings the mechanism to its reference, then executes requests without end.
+    ///
+    /// # Errors
+    /// The reason for which the mechanism or its encoder is given up.
+    async fn serve(&mut self) -> Result<Infallible, Refusal>;
+
+    /// Brings the mechanism to where it is to stand after the run. If that fails, the log has the
+    /// reason.
+    async fn park(&mut self) {}
+}
+
+/// Sensors fixed to the body (strapdown): there is nothing to turn.
+#[derive(Debug)]
+pub struct Strapdown;
+
+impl Strapdown {
+    /// Reports at once that the angles are valid, since there is no index to find.
+    pub fn new(shared: &Shared<'_>) -> Self {
+        shared.homed.signal(());
+        Self
+    }
+}
+
+impl Mechanism for Strapdown {
+    async fn serve(&mut self) -> Result<Infallible, Refusal> {
+        pending().await
+    }
+}
