@@ -1,6 +1,7 @@
 //! Schedules for a gyro: Burov's and the project's own, side by side.
 
 use std::fmt;
+use thiserror::Error;
 
 use orientation::align::POSITIONS;
 use orientation::earth::Latitude;
@@ -92,39 +93,24 @@ pub struct Planned {
 }
 
 /// Why nothing was planned.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum Unplanned {
     /// The time does not hold the fewest positions.
+    #[error(
+        "the time holds no schedule: {FEWEST} dwells of {SHORTEST} s and their rotations are the least"
+    )]
     TooShort,
     /// Neither N nor Q is given.
+    #[error(
+        "N and Q are zero, or next to it: without noise of its own any dwell is long enough; give --arw"
+    )]
     NoNoise,
     /// A day does not do; the least 1σ of a full azimuth, °.
+    #[error("out of reach: {0:.4}° (1σ) is the least that a day and {POSITIONS} positions give")]
     OutOfReach(f64),
     /// Too near to a pole.
+    #[error("beyond ±85° too little of the Earth rate is horizontal")]
     NoNorth,
-}
-
-impl fmt::Display for Unplanned {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::TooShort => write!(
-                f,
-                "the time holds no schedule: {FEWEST} dwells of {SHORTEST} s and their rotations \
-                 are the least"
-            ),
-            Self::NoNoise => f.write_str(
-                "N and Q are zero, or next to it: without noise of its own any dwell is long enough; give \
-                 --arw",
-            ),
-            Self::OutOfReach(sigma) => {
-                write!(
-                    f,
-                    "out of reach: {sigma:.4}° (1σ) is the least that a day and {POSITIONS} positions give"
-                )
-            }
-            Self::NoNorth => f.write_str("beyond ±85° too little of the Earth rate is horizontal"),
-        }
-    }
 }
 
 impl Request {

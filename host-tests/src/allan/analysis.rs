@@ -5,8 +5,6 @@
 //! degrees of freedom over the true one is distributed as chi-square, with the degrees of freedom
 //! that the fitted noise gives (NIST SP 1065, section 5.4).
 
-use std::fmt;
-
 use orientation::noise::allan::Point;
 use orientation::noise::allan::covariance::degrees_of_freedom;
 use orientation::noise::fit::{FitError, NoiseFit};
@@ -16,6 +14,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::{Estimator, Record};
 use crate::recording::{Body, Header, Kind, Short, Spacing, StaticRow};
+use thiserror::Error;
 
 /// The part of a normal distribution below its mean less 1σ.
 const BELOW: f64 = 0.158_655_253_931_457_05;
@@ -43,32 +42,18 @@ pub struct Rest {
 }
 
 /// Why a recording that could be read has no rates at rest.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum RestError {
     /// The recording is of another kind.
+    #[error("kind `{0}` is no record at rest; record the gyro at rest as kind `static`")]
     Kind(Kind),
     /// The name of a column that is not there, and those that are.
+    #[error("there is no rate column {0:?}; there is {there}", there = .1.join(", "))]
     Column(String, Vec<&'static str>),
     /// There is but one row.
+    #[error("record too short: one row has no time between samples")]
     OneRow,
 }
-
-impl fmt::Display for RestError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Kind(kind) => write!(
-                f,
-                "kind `{kind}` is no record at rest; record the gyro at rest as kind `static`"
-            ),
-            Self::Column(name, there) => {
-                write!(f, "there is no rate column {name:?}; there is {}", there.join(", "))
-            }
-            Self::OneRow => f.write_str("record too short: one row has no time between samples"),
-        }
-    }
-}
-
-impl std::error::Error for RestError {}
 
 impl Rest {
     /// Takes a column of a recording; without a name the gyro's, else that of body x.

@@ -1,13 +1,12 @@
 //! What a run found, as bits, and where two runs differ.
 
-use std::fmt;
-
 use orientation::align::conclusion::Azimuth;
 use orientation::align::rotating::turn::Turn;
 use orientation::align::stops::stop::Stop;
 use orientation::error::Refusal;
 use orientation::keep::Report;
 use orientation::signal::dwell::Dwell;
+use thiserror::Error;
 
 /// A kind of row of the log whose numbers are compared.
 #[derive(Debug, PartialEq, Eq)]
@@ -181,19 +180,13 @@ impl Outcome {
 }
 
 /// The first thing in which two runs differ.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{what}: {} in the emulator, {} on the host", values[0], values[1])]
 pub struct Difference {
     /// What it is.
     pub what: String,
     /// What it is in the emulated run, then on the host.
     pub values: [String; 2],
-}
-
-impl fmt::Display for Difference {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [emulated, host] = &self.values;
-        write!(f, "{}: {emulated} in the emulator, {host} on the host", self.what)
-    }
 }
 
 /// Whether two runs found the same, bit for bit; in the order of cause and effect, so that the

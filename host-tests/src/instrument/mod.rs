@@ -17,8 +17,6 @@ pub use vehicle::{
     VehicleRun, align_stops, align_stops_along, align_stops_on, align_stops_storing,
 };
 
-use std::fmt;
-
 use embassy_time::Instant;
 use firmware::event::Event;
 use firmware::health::Health;
@@ -29,6 +27,7 @@ use orientation::keep::Report;
 use orientation::session::procedure::ProcedureError;
 
 use crate::methods::stepwise::Replay;
+use thiserror::Error;
 
 /// A finished run of one kind of session.
 #[derive(Clone, Debug)]
@@ -60,30 +59,21 @@ impl Run {
 }
 
 /// Why a scenario could not be run; a refusal is not among them.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum RunError {
     /// The latitude is outside ±90°.
+    #[error("latitude {0}° is outside ±90°")]
     Latitude(f64),
     /// The session cannot begin.
+    #[error("{0}")]
     Procedure(ProcedureError),
     /// The mount's calibration is impossible.
+    #[error("{0}")]
     Mount(MountError),
     /// A sensor has a scale factor that is none.
+    #[error("a sensor's scale factor is none")]
     Scale,
     /// Everything waited and nothing would have come.
+    #[error("the instrument waits for something that never comes")]
     Deadlock,
 }
-
-impl fmt::Display for RunError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Latitude(latitude) => write!(f, "latitude {latitude}° is outside ±90°"),
-            Self::Procedure(error) => error.fmt(f),
-            Self::Mount(error) => error.fmt(f),
-            Self::Scale => f.write_str("a sensor's scale factor is none"),
-            Self::Deadlock => f.write_str("the instrument waits for something that never comes"),
-        }
-    }
-}
-
-impl std::error::Error for RunError {}

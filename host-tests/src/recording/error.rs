@@ -1,14 +1,14 @@
 //! What is wrong with a recording, where, and what to do about it, in one line.
 
-use std::error::Error;
-use std::fmt;
+use thiserror::Error;
 
 use super::problem::{Problem, ValueProblem};
 use super::quote::{printable, shortened};
 
-/// Why a recording was not read. [`Display`](fmt::Display) is one line, whatever the file holds:
+/// Why a recording was not read. Its text is one line, whatever the file holds:
 /// `walk.csv: line 812, column g_rad_s: "abc" is not a number; …`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{}: {place}{problem}", printable(file))]
 pub struct ReadError {
     /// The name under which the recording was read.
     pub file: String,
@@ -32,15 +32,19 @@ impl ReadError {
 }
 
 /// Where in a recording something is wrong. Lines count from 1, of the text after decompression.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum Place {
     /// The file as a whole.
+    #[error("")]
     Whole,
     /// A line.
+    #[error("line {0}: ")]
     Line(u64),
     /// A header key, and its line.
+    #[error("line {line}, key {}: ", shortened(.1), line = .0)]
     Key(u64, String),
     /// A column, and the line of the row or of the column names.
+    #[error("line {line}, column {}: ", shortened(.1), line = .0)]
     Column(u64, String),
 }
 
@@ -75,24 +79,5 @@ impl Fault {
     /// Names the file.
     pub fn in_file(self, file: &str) -> ReadError {
         ReadError { file: file.to_owned(), place: self.place, problem: self.problem }
-    }
-}
-
-impl fmt::Display for ReadError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}{}", printable(&self.file), self.place, self.problem)
-    }
-}
-
-impl Error for ReadError {}
-
-impl fmt::Display for Place {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Whole => Ok(()),
-            Self::Line(line) => write!(f, "line {line}: "),
-            Self::Key(line, key) => write!(f, "line {line}, key {}: ", shortened(key)),
-            Self::Column(line, name) => write!(f, "line {line}, column {}: ", shortened(name)),
-        }
     }
 }

@@ -3,90 +3,121 @@
 use std::fmt;
 use std::io;
 
+use thiserror::Error;
+
 use super::KINDS;
 use super::quote::{printable, quoted};
 use super::range::{Range, Short};
 
 /// What is wrong with a recording.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum Problem {
     /// The text cannot be had.
-    Source(SourceProblem),
+    #[error(transparent)]
+    Source(#[from] SourceProblem),
     /// The header or the column names do not say what is needed.
-    Header(HeaderProblem),
+    #[error(transparent)]
+    Header(#[from] HeaderProblem),
     /// A row's shape or a value is wrong.
-    Value(ValueProblem),
+    #[error(transparent)]
+    Value(#[from] ValueProblem),
     /// The times contradict each other or the header.
-    Time(TimeProblem),
+    #[error(transparent)]
+    Time(#[from] TimeProblem),
     /// The stops or their displacements do not do.
-    Stops(StopProblem),
+    #[error(transparent)]
+    Stops(#[from] StopProblem),
 }
 
 /// Why the text cannot be had.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum SourceProblem {
     /// The system refuses: its kind of error and its text.
+    #[error("{}", system(*.0, .1))]
     Io(io::ErrorKind, String),
     /// There is no line that is not blank.
+    #[error("the file is empty; record again or name another file")]
     Empty,
     /// The line is not UTF-8.
+    #[error("is not UTF-8 text; save the file as UTF-8")]
     NotUtf8,
     /// The line is longer than this many bytes.
+    #[error("is longer than {0} bytes; is this a recording in CSV?")]
     LongLine(u64),
     /// There is more than this reader holds: the limit and what it counts.
+    #[error("more than {0} {1}; split the recording")]
     TooMany(u64, &'static str),
 }
 
 /// Why the header or the line of column names does not do.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum HeaderProblem {
     /// No `# kind: …` line.
+    #[error("the header does not name the kind; add a line `# kind: …` with {KINDS}")]
     NoKind,
     /// A kind that the format does not have.
+    #[error("{} is not a kind; use {KINDS}", quoted(.0))]
     UnknownKind(String),
     /// A key given twice: the value here, the value before and its line.
+    #[error("{} contradicts {} of line {line}; keep one of them", quoted(.0), quoted(.1), line = .2)]
     Contradiction(String, String, u64),
     /// A key that matters, below the line of column names.
+    #[error("stands below the column names; move it above them")]
     Late,
     /// Not two numbers with a comma.
+    #[error("{} is not two numbers with a comma between", quoted(.0))]
     NotAPair(String),
     /// Neither `gyro` nor `met`.
+    #[error("{} is not a sensor; use gyro or met", quoted(.0))]
     UnknownSensor(String),
     /// The header ends without a line of column names.
+    #[error("the file ends without a line of column names")]
     NoColumnNames,
     /// A needed column is missing; the columns that the kind needs.
+    #[error("is missing; the kind needs {0}")]
     MissingColumn(String),
     /// A column's name is given twice.
+    #[error("is named twice; rename or remove one of them")]
     DuplicateColumn,
     /// The column at this position, from 1, has no name.
+    #[error("column {0} has no name; name it or remove the comma")]
     UnnamedColumn(usize),
 }
 
 /// Why a row or a value does not do.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum ValueProblem {
     /// The row's number of fields, and the number of columns.
+    #[error("{0} fields, but {1} columns are named")]
     FieldCount(usize, usize),
     /// The same, in a last line that has no line end.
+    #[error("truncated: {0} of {1} fields and no line end; remove the line")]
     CutShort(usize, usize),
     /// Nothing stands in the field.
+    #[error("the field is empty")]
     EmptyField,
     /// The text is not a number.
+    #[error("{} is not a number", quoted(.0))]
     NotANumber(String),
     /// The text is `nan` where only a `truth_` column may hold it.
+    #[error("{} is allowed only in truth_ columns", quoted(.0))]
     Nan(String),
     /// The number is infinite, or too large for a double.
+    #[error("{} is not a finite number", quoted(.0))]
     Infinite(String),
     /// The number is outside its range.
+    #[error("{} is outside the range of {range}; check the unit", quoted(.0), range = .1)]
     OutOfRange(String, &'static Range),
     /// There is no row.
+    #[error("no rows follow the column names")]
     NoRows,
 }
 
 /// Why the times do not do. All in seconds.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum TimeProblem {
     /// The time here is not later than the one before.
+    #[error("{} s does not come after {} s of line {before_line}", Short(*time_s), Short(*before_s))]
     NotLater {
         /// The time here.
         time_s: f64,
@@ -96,6 +127,10 @@ pub enum TimeProblem {
         before_line: u64,
     },
     /// Samples are missing.
+    #[error(
+        "{} s after line {before_line} is a gap longer than three sample periods of {} s; split the recording here",
+        Rounded(*gap_s), Rounded(*period_s)
+    )]
     Gap {
         /// The step to this line.
         gap_s: f64,
@@ -105,25 +140,39 @@ pub enum TimeProblem {
         period_s: f64,
     },
     /// The header's rate, in Hz, and the rate that the times have.
+    #[error("{} Hz contradicts the times, which have {} Hz; correct it", Rounded(*.0), Rounded(*.1))]
     Rate(f64, f64),
 }
 
 /// Why stops or their displacements do not do. Times in seconds, displacements in metres.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum StopProblem {
     /// Not two numbers with a minus.
+    #[error("{} is not a stop; write from-to;from-to in seconds", quoted(.0))]
     NotAStop(String),
     /// Not two numbers with a comma.
+    #[error("{} is not a displacement; write north,east;north,east in metres", quoted(.0))]
     NotADisplacement(String),
     /// More than this many.
+    #[error("more than {0} of them; split the recording")]
     TooMany(usize),
     /// A stop that does not end after it begins.
+    #[error("the stop {}-{} does not end after it begins; correct it", Short(*.0), Short(*.1))]
     Backwards(f64, f64),
     /// A stop, and the next one, which begins before it ends.
+    #[error(
+        "the stop {} begins before {} ends; name the stops one after the other",
+        span(.1), span(.0)
+    )]
     Overlap([f64; 2], [f64; 2]),
     /// The first stop is displaced from itself.
+    #[error(
+        "the first stop lies {},{} m from itself; displacements count from the first stop, which is at 0,0",
+        Short(.0[0]), Short(.0[1])
+    )]
     NotFromFirst([f64; 2]),
     /// There is not one displacement for each stop.
+    #[error("{displacements} for {stops} stops; give one for each stop")]
     Count {
         /// Displacements.
         displacements: usize,
@@ -131,6 +180,10 @@ pub enum StopProblem {
         stops: usize,
     },
     /// A stop that the recording does not hold.
+    #[error(
+        "the stop {} lies outside of the recording, which goes from {} s to {} s; correct it",
+        span(stop), Short(recording[0]), Short(recording[1])
+    )]
     Aiding {
         /// The stop, from … to.
         stop: [f64; 2],
@@ -139,183 +192,24 @@ pub enum StopProblem {
     },
 }
 
-impl From<SourceProblem> for Problem {
-    fn from(problem: SourceProblem) -> Self {
-        Self::Source(problem)
-    }
-}
-
-impl From<HeaderProblem> for Problem {
-    fn from(problem: HeaderProblem) -> Self {
-        Self::Header(problem)
-    }
-}
-
-impl From<ValueProblem> for Problem {
-    fn from(problem: ValueProblem) -> Self {
-        Self::Value(problem)
-    }
-}
-
-impl From<TimeProblem> for Problem {
-    fn from(problem: TimeProblem) -> Self {
-        Self::Time(problem)
-    }
-}
-
-impl From<StopProblem> for Problem {
-    fn from(problem: StopProblem) -> Self {
-        Self::Stops(problem)
-    }
-}
-
-impl fmt::Display for Problem {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Source(problem) => problem.fmt(f),
-            Self::Header(problem) => problem.fmt(f),
-            Self::Value(problem) => problem.fmt(f),
-            Self::Time(problem) => problem.fmt(f),
-            Self::Stops(problem) => problem.fmt(f),
-        }
-    }
-}
-
-impl fmt::Display for SourceProblem {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Io(kind, text) => system(*kind, text, f),
-            Self::Empty => f.write_str("the file is empty; record again or name another file"),
-            Self::NotUtf8 => f.write_str("is not UTF-8 text; save the file as UTF-8"),
-            Self::LongLine(limit) => {
-                write!(f, "is longer than {limit} bytes; is this a recording in CSV?")
-            }
-            Self::TooMany(limit, what) => {
-                write!(f, "more than {limit} {what}; split the recording")
-            }
-        }
-    }
-}
-
 /// The system's refusals that a user meets have words of their own.
-fn system(kind: io::ErrorKind, text: &str, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+fn system(kind: io::ErrorKind, text: &str) -> String {
     use io::ErrorKind as E;
+    let text = printable(text);
     match kind {
-        E::NotFound => f.write_str("there is no such file"),
-        E::PermissionDenied => f.write_str("may not be read; change its permissions"),
-        E::IsADirectory => f.write_str("is a directory; name a file in it"),
+        E::NotFound => "there is no such file".to_owned(),
+        E::PermissionDenied => "may not be read; change its permissions".to_owned(),
+        E::IsADirectory => "is a directory; name a file in it".to_owned(),
         E::UnexpectedEof | E::InvalidData | E::InvalidInput => {
-            let text = printable(text);
-            write!(f, "the compressed data are damaged or cut short ({text}); copy the file again")
+            format!("the compressed data are damaged or cut short ({text}); copy the file again")
         }
-        _ => write!(f, "cannot be read: {}", printable(text)),
+        _ => format!("cannot be read: {text}"),
     }
 }
 
-impl fmt::Display for HeaderProblem {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoKind => {
-                write!(f, "the header does not name the kind; add a line `# kind: …` with {KINDS}")
-            }
-            Self::UnknownKind(text) => write!(f, "{} is not a kind; use {KINDS}", quoted(text)),
-            Self::Contradiction(here, before, line) => {
-                let (here, before) = (quoted(here), quoted(before));
-                write!(f, "{here} contradicts {before} of line {line}; keep one of them")
-            }
-            Self::Late => f.write_str("stands below the column names; move it above them"),
-            Self::NotAPair(text) => {
-                write!(f, "{} is not two numbers with a comma between", quoted(text))
-            }
-            Self::UnknownSensor(text) => {
-                write!(f, "{} is not a sensor; use gyro or met", quoted(text))
-            }
-            Self::NoColumnNames => f.write_str("the file ends without a line of column names"),
-            Self::MissingColumn(all) => write!(f, "is missing; the kind needs {all}"),
-            Self::DuplicateColumn => f.write_str("is named twice; rename or remove one of them"),
-            Self::UnnamedColumn(position) => {
-                write!(f, "column {position} has no name; name it or remove the comma")
-            }
-        }
-    }
-}
-
-impl fmt::Display for ValueProblem {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::FieldCount(found, columns) => {
-                write!(f, "{found} fields, but {columns} columns are named")
-            }
-            Self::CutShort(found, columns) => {
-                write!(f, "truncated: {found} of {columns} fields and no line end; remove the line")
-            }
-            Self::EmptyField => f.write_str("the field is empty"),
-            Self::NotANumber(text) => write!(f, "{} is not a number", quoted(text)),
-            Self::Nan(text) => write!(f, "{} is allowed only in truth_ columns", quoted(text)),
-            Self::Infinite(text) => write!(f, "{} is not a finite number", quoted(text)),
-            Self::OutOfRange(text, range) => {
-                write!(f, "{} is outside the range of {range}; check the unit", quoted(text))
-            }
-            Self::NoRows => f.write_str("no rows follow the column names"),
-        }
-    }
-}
-
-impl fmt::Display for TimeProblem {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotLater { time_s, before_s, before_line } => {
-                let (time, before) = (Short(*time_s), Short(*before_s));
-                write!(f, "{time} s does not come after {before} s of line {before_line}")
-            }
-            Self::Gap { gap_s, before_line, period_s } => {
-                let (gap, period) = (Rounded(*gap_s), Rounded(*period_s));
-                write!(f, "{gap} s after line {before_line} is a gap longer than three sample ")?;
-                write!(f, "periods of {period} s; split the recording here")
-            }
-            Self::Rate(header, times) => {
-                let (header, times) = (Rounded(*header), Rounded(*times));
-                write!(f, "{header} Hz contradicts the times, which have {times} Hz; correct it")
-            }
-        }
-    }
-}
-
-impl fmt::Display for StopProblem {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotAStop(text) => {
-                write!(f, "{} is not a stop; write from-to;from-to in seconds", quoted(text))
-            }
-            Self::NotADisplacement(text) => {
-                let text = quoted(text);
-                write!(f, "{text} is not a displacement; write north,east;north,east in metres")
-            }
-            Self::TooMany(limit) => write!(f, "more than {limit} of them; split the recording"),
-            Self::Backwards(from, to) => {
-                let (from, to) = (Short(*from), Short(*to));
-                write!(f, "the stop {from}-{to} does not end after it begins; correct it")
-            }
-            Self::Overlap([from, to], [next_from, next_to]) => {
-                let [from, to, next, end] = [*from, *to, *next_from, *next_to].map(Short);
-                write!(f, "the stop {next}-{end} begins before {from}-{to} ends; ")?;
-                f.write_str("name the stops one after the other")
-            }
-            Self::NotFromFirst([north, east]) => {
-                let (north, east) = (Short(*north), Short(*east));
-                write!(f, "the first stop lies {north},{east} m from itself; ")?;
-                f.write_str("displacements count from the first stop, which is at 0,0")
-            }
-            Self::Count { displacements, stops } => {
-                write!(f, "{displacements} for {stops} stops; give one for each stop")
-            }
-            Self::Aiding { stop: [from, to], recording: [begin, end] } => {
-                let [from, to, begin, end] = [*from, *to, *begin, *end].map(Short);
-                write!(f, "the stop {from}-{to} lies outside of the recording, ")?;
-                write!(f, "which goes from {begin} s to {end} s; correct it")
-            }
-        }
-    }
+/// A stop, from-to in seconds.
+fn span([from, to]: &[f64; 2]) -> String {
+    format!("{}-{}", Short(*from), Short(*to))
 }
 
 /// A difference of times to six digits: the rest is what binary fractions leave over.

@@ -9,11 +9,10 @@ mod html;
 mod span;
 mod text;
 
-use std::error::Error;
-use std::fmt;
 use std::path::Path;
 
 use crate::unwritten;
+use thiserror::Error;
 
 /// A whole report.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -212,21 +211,14 @@ impl From<Table> for Part {
 }
 
 /// Why a report was not written.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{file}: the report cannot be written: {reason}")]
 pub struct ReportError {
     /// The file.
     pub file: String,
     /// What is wrong with it.
     pub reason: String,
 }
-
-impl fmt::Display for ReportError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: the report cannot be written: {}", self.file, self.reason)
-    }
-}
-
-impl Error for ReportError {}
 
 impl Report {
     /// The report for a terminal: its lines and tables; figures are for a page.
