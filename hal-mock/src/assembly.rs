@@ -4,7 +4,7 @@
 //! that a conversion sees the world as it was when the conversion ended. A supply that is lost at the
 //! moment of a chip's event is lost before it.
 //!
-//! A board says which chips it has and which environment each of them sees ([`Assembly::with`]); order,
+//! Chips say which of them there are and which environment each of them sees ([`Chips::with`]); order,
 //! losses of supply and the bus ([`Rig`]) follow from that.
 
 use embassy_time::Instant;
@@ -19,61 +19,68 @@ pub trait Task {
     fn perform<E: ?Sized, C: SpiChip<E>>(&mut self, chip: &mut C, environment: &mut E);
 }
 
-/// Chips around a world.
-///
-/// A board implements what names its parts; [`Assembly::advance`] and what it is made of are the same for
-/// every board. Times that boards are asked for never fall.
-pub trait Assembly {
+/// The chips of a board in a world `P`: what names its parts. Times that they are asked for never fall.
+pub trait Chips<P> {
     /// The chips, in the order in which they act at equal times.
-    const CHIPS: &'static [Select];
+    const SELECTS: &'static [Select];
 
     /// Performs a task with a chip, or nothing where the board has no such chip.
-    fn with(&mut self, select: Select, task: &mut impl Task);
+    fn with(&mut self, plant: &mut P, select: Select, task: &mut impl Task);
 
-    /// What was done to a chip that its data sheet forbids; none where the board has no such chip.
-    fn violations(&self, select: Select) -> Option<&Violations>;
-
-    /// Moves the world on to `now`, which is never before the time of an earlier call.
-    fn move_on(&mut self, now: Instant);
+    /// Moves the world on to `now`, which is never before the time of an earlier call, where readings alone
+    /// do not.
+    fn move_on(_plant: &mut P, _now: Instant) {}
 
     /// Takes from the world what it loses with the supply of a chip at `now`, as a motor's drive.
-    fn lose(&mut self, _: Select, _: Instant) {}
+    fn lose(_plant: &mut P, _select: Select, _now: Instant) {}
+}
 
-    /// The losses of supply to come, in order of time.
-    fn blackouts(&self) -> &[Blackout] {
-        &[]
+/// Chips around a world, on one bus.
+#[derive(Clone, Debug)]
+pub struct Board<'a, P, C> {
+    /// What the chips measure and move.
+    pub plant: P,
+    /// The chips.
+    pub chips: C,
+    /// Losses of supply to come, in order of time.
+    pub blackouts: &'a [Blackout],
+}
+
+impl<P, C: Chips<P>> Board<'_, P, C> {
+    /// What was done to a chip that its data sheet forbids; none where the board has no such chip.
+    pub fn violations(&mut self, select: Select) -> Option<Violations> {
+        let mut found = Found(None);
+        self.with(select, &mut found);
+        found.0
     }
 
-    /// Strikes the first of [`Self::blackouts`], which has happened.
-    fn drop_blackout(&mut self) {}
-
     /// The forbidden accesses that are kept ([`Violations::first`]) with their chips, chip by chip in the
-    /// order of [`Self::CHIPS`].
-    fn recorded(&self) -> impl Iterator<Item = (Select, Violation)> + '_ {
-        Self::CHIPS.iter().flat_map(|select| {
-            let found = self.violations(*select).into_iter().flat_map(Violations::first);
-            found.map(|violation| (*select, *violation))
+    /// order of [`Chips::SELECTS`].
+    pub fn recorded(&mut self) -> impl Iterator<Item = (Select, Violation)> {
+        C::SELECTS.iter().flat_map(|select| {
+            let found = self.violations(*select).unwrap_or_default().first;
+            found.into_iter().map(|violation| (*select, violation))
         })
     }
 
     /// Lets everything happen that is due until `now`, that moment included.
-    fn advance(&mut self, now: Instant) {
+    pub fn advance(&mut self, now: Instant) {
         loop {
             let event = self.next_event().filter(|(at, _)| *at <= now);
-            let blackout = self.blackouts().first().filter(|blackout| blackout.at <= now).copied();
+            let blackout = self.blackouts.first().filter(|blackout| blackout.at <= now).copied();
             match (event, blackout) {
                 (Some((at, select)), blackout) if blackout.is_none_or(|b| at < b.at) => {
-                    self.move_on(at);
+                    C::move_on(&mut self.plant, at);
                     self.with(select, &mut Event);
                 }
                 (_, Some(Blackout { select, at })) => {
-                    self.drop_blackout();
+                    self.blackouts = &self.blackouts[1..];
                     self.restart(select, at);
                 }
                 _ => break,
             }
         }
-        self.move_on(now);
+        C::move_on(&mut self.plant, now);
     }
 
     /// The chip that acts next, and when; of several at one time the first of [`Self::CHIPS`].
@@ -83,13 +90,18 @@ pub trait Assembly {
             self.with(select, &mut next);
             Some((next.0?, select))
         };
-        Self::CHIPS.iter().filter_map(|select| due(*select)).min_by_key(|(at, _)| *at)
+        C::SELECTS.iter().filter_map(|select| due(*select)).min_by_key(|(at, _)| *at)
     }
 
     /// Takes a chip's supply away at `now` and gives it back at once.
     fn restart(&mut self, select: Select, now: Instant) {
-        self.lose(select, now);
+        C::lose(&mut self.plant, select, now);
         self.with(select, &mut Restart(now));
+    }
+
+    /// Performs a task with a chip, or nothing where the board has no such chip.
+    fn with(&mut self, select: Select, task: &mut impl Task) {
+        self.chips.with(&mut self.plant, select, task);
     }
 }
 
@@ -138,7 +150,16 @@ impl Task for Restart {
     }
 }
 
-impl<A: Assembly> Rig for A {
+/// What was done to a chip that its data sheet forbids.
+struct Found(Option<Violations>);
+
+impl Task for Found {
+    fn perform<E: ?Sized, C: SpiChip<E>>(&mut self, chip: &mut C, _: &mut E) {
+        self.0 = Some(chip.violations().clone());
+    }
+}
+
+impl<P, C: Chips<P>> Rig for Board<'_, P, C> {
     fn transact(&mut self, select: Select, transaction: &Transaction, reply: &mut [u8]) {
         self.advance(transaction.now);
         self.with(select, &mut Answer(transaction, reply));

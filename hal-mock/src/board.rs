@@ -6,18 +6,14 @@
 
 use embassy_time::Instant;
 
-use crate::assembly::{Assembly, Task};
+use crate::assembly::{Board, Chips, Task};
 use crate::chip::{Select, SpiChip};
-use crate::fault::Blackout;
 use crate::plant::Plant;
-use crate::violation::Violations;
 
-/// The plant of a single-axis stage with the converter `G` of the gyro, the accelerometer `A`, the encoder
-/// `E` and the motor driver `M`. Its one frame answers on the select lines of an inner frame too.
+/// The converter `G` of the gyro, the accelerometer `A`, the encoder `E` and the motor driver `M` of a
+/// single-axis stage.
 #[derive(Clone, Debug)]
-pub struct Board<'a, G, A, E, M> {
-    /// What the chips measure and move.
-    pub plant: Plant<'a>,
+pub struct StageChips<G, A, E, M> {
     /// The converter of the precise gyro.
     pub gyro: G,
     /// The accelerometer on the platform.
@@ -26,11 +22,12 @@ pub struct Board<'a, G, A, E, M> {
     pub encoder: E,
     /// The motor driver of the stage.
     pub actuator: M,
-    /// Losses of supply to come, in order of time.
-    pub blackouts: &'a [Blackout],
 }
 
-impl<'a, G, A, E, M> Assembly for Board<'a, G, A, E, M>
+/// The plant of a single-axis stage with its chips.
+pub type StageBoard<'a, G, A, E, M> = Board<'a, Plant<'a>, StageChips<G, A, E, M>>;
+
+impl<'a, G, A, E, M> Chips<Plant<'a>> for StageChips<G, A, E, M>
 where
     G: SpiChip<Plant<'a>>,
     A: SpiChip<Plant<'a>>,
@@ -38,43 +35,26 @@ where
     M: SpiChip<Plant<'a>>,
 {
     // The stage moves before it is measured.
-    const CHIPS: &'static [Select] =
+    const SELECTS: &'static [Select] =
         &[Select::Actuator, Select::Gyro, Select::Accelerometer, Select::Encoder];
 
-    fn with(&mut self, select: Select, task: &mut impl Task) {
-        let Self { plant, gyro, accelerometer, encoder, actuator, .. } = self;
+    fn with(&mut self, plant: &mut Plant<'a>, select: Select, task: &mut impl Task) {
         match select {
-            Select::Accelerometer => task.perform(accelerometer, plant),
-            Select::Encoder | Select::InnerEncoder => task.perform(encoder, plant),
-            Select::Actuator | Select::InnerActuator => task.perform(actuator, plant),
-            _ => task.perform(gyro, plant),
+            Select::Gyro => task.perform(&mut self.gyro, plant),
+            Select::Accelerometer => task.perform(&mut self.accelerometer, plant),
+            Select::Encoder => task.perform(&mut self.encoder, plant),
+            Select::Actuator => task.perform(&mut self.actuator, plant),
+            _ => {}
         }
     }
 
-    fn violations(&self, select: Select) -> Option<&Violations> {
-        Some(match select {
-            Select::Accelerometer => self.accelerometer.violations(),
-            Select::Encoder | Select::InnerEncoder => self.encoder.violations(),
-            Select::Actuator | Select::InnerActuator => self.actuator.violations(),
-            _ => self.gyro.violations(),
-        })
+    fn move_on(plant: &mut Plant<'a>, now: Instant) {
+        plant.advance(now);
     }
 
-    fn move_on(&mut self, now: Instant) {
-        self.plant.advance(now);
-    }
-
-    fn lose(&mut self, select: Select, now: Instant) {
+    fn lose(plant: &mut Plant<'a>, select: Select, now: Instant) {
         if select == Select::Actuator {
-            self.plant.stop_motor(now);
+            plant.stop_motor(now);
         }
-    }
-
-    fn blackouts(&self) -> &[Blackout] {
-        self.blackouts
-    }
-
-    fn drop_blackout(&mut self) {
-        self.blackouts = self.blackouts.get(1..).unwrap_or_default();
     }
 }

@@ -5,7 +5,7 @@ use embassy_time::{Duration, Instant};
 use crate::violation::Violations;
 
 /// The select line of one chip on the board. Not every board has every line
-/// ([`crate::assembly::Assembly::CHIPS`]).
+/// ([`crate::assembly::Chips::SELECTS`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Select {
     /// The converter of the precise gyro; of several on one body, that of the one forward.

@@ -42,7 +42,7 @@
 //! ([`vehicle::board`]) three converters and an accelerometer, a spinning body ([`spin::board`]) five
 //! converters. The latter two are one type of board ([`converters`]); what all boards have in common,
 //! order of events, losses of supply, the bus and the record of forbidden accesses, is an
-//! [`assembly::Assembly`].
+//! [`assembly::Board`].
 //!
 //! A chip behaves as its data sheet says, and where that promises nothing, it does the worst that is
 //! still allowed. What a driver does that the data sheet forbids is recorded ([`violation`]), so that a

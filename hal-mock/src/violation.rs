@@ -53,10 +53,10 @@ impl fmt::Display for Violation {
 /// chip's.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Violations {
-    /// The first of them, in order of time.
-    first: Vec<Violation, KEPT>,
+    /// The first sixteen of them, in order of time.
+    pub first: Vec<Violation, KEPT>,
     /// How many there were, kept or not.
-    count: usize,
+    pub count: usize,
 }
 
 impl Violations {
@@ -66,17 +66,5 @@ impl Violations {
         let microseconds = u32::try_from(at.as_micros()).unwrap_or(u32::MAX);
         // Where there is no more room the count still tells.
         let _ = self.first.push(Violation { misuse, address, microseconds });
-    }
-
-    /// How many accesses were forbidden, those that are not kept included.
-    #[must_use]
-    pub fn count(&self) -> usize {
-        self.count
-    }
-
-    /// The first sixteen forbidden accesses, in order of time.
-    #[must_use]
-    pub fn first(&self) -> &[Violation] {
-        &self.first
     }
 }

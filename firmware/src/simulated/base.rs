@@ -97,11 +97,7 @@ pub fn rig<'a>(scenario: &Scenario, journey: Option<&JourneyConfiguration<'a>>) 
         lever_m: LEVER,
     };
     let instruments = scenario.instruments();
-    let base = Base::new(&instruments, &sway(scenario), &coarse, scenario.seed);
-    let environment = match journey {
-        Some(journey) => base.riding(journey, &instruments),
-        None => base,
-    };
+    let environment = Base::new(&instruments, &sway(scenario), &coarse, journey, scenario.seed);
     Single { chip: SimulatedImu::new(Instant::MIN, ADDRESS_LOW, CLOCK), environment }
 }
 
@@ -124,7 +120,7 @@ pub fn imu<'r, 'a, A: PortWrapper>(
 /// What the driver did that the data sheet forbids.
 #[must_use]
 pub fn violations<'r>(rig: &'r Rig<'_>) -> &'r [Violation] {
-    I2cChip::<Base>::violations(&rig.chip).first()
+    &I2cChip::<Base>::violations(&rig.chip).first
 }
 
 fn divider(scenario: &Scenario) -> u32 {

@@ -3,8 +3,8 @@
 use core::cell::Cell;
 
 use embassy_time::{Duration, Instant};
-use hal_mock::plant::journey::{BaseFault, JourneyConfiguration};
-use hal_mock::vehicle::{Leg, Stop};
+use hal_mock::plant::journey::JourneyConfiguration;
+use hal_mock::vehicle::{Leg, SensorFault, Stop};
 use orientation::earth::Latitude;
 use orientation::keep::{self, Handover};
 use orientation::session::procedure::Procedure;
@@ -152,7 +152,7 @@ pub type Day = hal_mock::vehicle::scenario::Scenario;
 
 /// The way of a base on such a day, with what goes wrong with its coarse sensors.
 #[must_use]
-pub fn journey<'a>(day: &'a Day, faults: &'a [BaseFault]) -> JourneyConfiguration<'a> {
+pub fn journey<'a>(day: &'a Day, faults: &'a [SensorFault]) -> JourneyConfiguration<'a> {
     let stands_s = day.legs.first().map_or(0.0, Leg::seconds);
     let departs_s = stands_s - 1.0;
     JourneyConfiguration { departs_s, legs: &day.legs, events: &day.events, faults }

@@ -23,7 +23,7 @@ use drivers::tmc5160::{self, Tmc5160};
 use embassy_time::{Delay, Instant};
 use hal_mock::ads1262::Ads1262 as SimulatedConverter;
 use hal_mock::adxl355::Adxl355 as SimulatedAccelerometer;
-use hal_mock::board::Board;
+use hal_mock::board::{StageBoard, StageChips};
 use hal_mock::chip::{Rig, Select};
 use hal_mock::mt6835::Mt6835 as SimulatedEncoder;
 use hal_mock::plant::journey::JourneyConfiguration;
@@ -44,8 +44,13 @@ const CONVERTER_HERTZ: u32 = 5_000_000;
 const OSCILLATOR: Oscillator = Oscillator::Internal { hertz: 12_240_000 };
 
 /// The simulated chips around their plant.
-pub type Chips<'a> =
-    Board<'a, SimulatedConverter, SimulatedAccelerometer, SimulatedEncoder, SimulatedMotorDriver>;
+pub type Chips<'a> = StageBoard<
+    'a,
+    SimulatedConverter,
+    SimulatedAccelerometer,
+    SimulatedEncoder,
+    SimulatedMotorDriver,
+>;
 
 /// The simulated board of a scenario with what goes wrong with it, on a base that goes along a journey where
 /// there is one.
@@ -73,12 +78,14 @@ fn board_around<'a>(
         faults: &injection.axes.outer,
         ..*plant
     };
-    Board {
+    StageBoard {
         plant: Plant::new(&configuration, seed),
-        gyro: SimulatedConverter::new(),
-        accelerometer: SimulatedAccelerometer::new(Instant::MIN),
-        encoder: SimulatedEncoder::new(Instant::MIN),
-        actuator: SimulatedMotorDriver::new(OSCILLATOR, Instant::MIN),
+        chips: StageChips {
+            gyro: SimulatedConverter::new(),
+            accelerometer: SimulatedAccelerometer::new(Instant::MIN),
+            encoder: SimulatedEncoder::new(Instant::MIN),
+            actuator: SimulatedMotorDriver::new(OSCILLATOR, Instant::MIN),
+        },
         blackouts: &injection.blackouts,
     }
 }

@@ -5,21 +5,17 @@
 
 use embassy_time::Instant;
 
-use super::{Gimbal, Side};
+use super::Gimbal;
 use crate::ads1262::Ads1262;
 use crate::adxl355::Adxl355;
-use crate::assembly::{Assembly, Task};
-use crate::chip::{Select, SpiChip};
-use crate::fault::Blackout;
+use crate::assembly::{Board, Chips, Task};
+use crate::chip::Select;
 use crate::mt6835::Mt6835;
 use crate::tmc5160::{Oscillator, Tmc5160};
-use crate::violation::Violations;
 
-/// The gimbal with its chips; the outer frame has the encoder and the actuator of a stage.
+/// The chips of a two-frame mount; the outer frame has the encoder and the actuator of a stage.
 #[derive(Clone, Debug)]
-pub struct GimbalBoard<'a> {
-    /// What the chips measure and move.
-    pub gimbal: Gimbal<'a>,
+pub struct GimbalChips {
     /// The converter of the gyro in the inner frame.
     gyro: Ads1262,
     /// The accelerometer on the base.
@@ -28,29 +24,29 @@ pub struct GimbalBoard<'a> {
     encoders: [Mt6835; 2],
     /// The motor drivers of the outer and the inner frame.
     actuators: [Tmc5160; 2],
-    /// Losses of supply to come, in order of time.
-    pub blackouts: &'a [Blackout],
 }
+
+/// The gimbal with its chips.
+pub type GimbalBoard<'a> = Board<'a, Gimbal<'a>, GimbalChips>;
 
 impl<'a> GimbalBoard<'a> {
     /// A board that gets its supply at the start of the clock and does not lose it; both motor drivers run
     /// from an oscillator of this kind.
     #[must_use]
     pub fn new(gimbal: Gimbal<'a>, oscillator: Oscillator) -> Self {
-        Self {
-            gimbal,
+        let chips = GimbalChips {
             gyro: Ads1262::new(),
             accelerometer: Adxl355::new(Instant::MIN),
             encoders: [(); 2].map(|()| Mt6835::new(Instant::MIN)),
             actuators: [(); 2].map(|()| Tmc5160::new(oscillator, Instant::MIN)),
-            blackouts: &[],
-        }
+        };
+        Self { plant: gimbal, chips, blackouts: &[] }
     }
 }
 
-impl Assembly for GimbalBoard<'_> {
+impl<'a> Chips<Gimbal<'a>> for GimbalChips {
     // The frames move before they are measured.
-    const CHIPS: &'static [Select] = &[
+    const SELECTS: &'static [Select] = &[
         Select::Actuator,
         Select::InnerActuator,
         Select::Gyro,
@@ -59,49 +55,26 @@ impl Assembly for GimbalBoard<'_> {
         Select::InnerEncoder,
     ];
 
-    fn with(&mut self, select: Select, task: &mut impl Task) {
-        let Self { gimbal, gyro, accelerometer, encoders, actuators, .. } = self;
-        let ([outer_encoder, inner_encoder], [outer_actuator, inner_actuator]) =
-            (encoders, actuators);
+    fn with(&mut self, plant: &mut Gimbal<'a>, select: Select, task: &mut impl Task) {
         match select {
-            Select::Gyro => task.perform(gyro, gimbal),
-            Select::Accelerometer => task.perform(accelerometer, gimbal),
-            Select::Encoder => task.perform(outer_encoder, &mut gimbal.outer()),
-            Select::InnerEncoder => task.perform(inner_encoder, &mut gimbal.inner()),
-            Select::Actuator => task.perform(outer_actuator, &mut gimbal.outer()),
-            Select::InnerActuator => task.perform(inner_actuator, &mut gimbal.inner()),
+            Select::Gyro => task.perform(&mut self.gyro, plant),
+            Select::Accelerometer => task.perform(&mut self.accelerometer, plant),
+            Select::Encoder => task.perform(&mut self.encoders[0], &mut plant.outer),
+            Select::InnerEncoder => task.perform(&mut self.encoders[1], &mut plant.inner),
+            Select::Actuator => task.perform(&mut self.actuators[0], &mut plant.outer.drive),
+            Select::InnerActuator => task.perform(&mut self.actuators[1], &mut plant.inner.drive),
             _ => {}
         }
     }
 
-    fn violations(&self, select: Select) -> Option<&Violations> {
-        Some(match select {
-            Select::Gyro => SpiChip::<Gimbal>::violations(&self.gyro),
-            Select::Accelerometer => SpiChip::<Gimbal>::violations(&self.accelerometer),
-            Select::Encoder => SpiChip::<Side>::violations(&self.encoders[0]),
-            Select::InnerEncoder => SpiChip::<Side>::violations(&self.encoders[1]),
-            Select::Actuator => SpiChip::<Side>::violations(&self.actuators[0]),
-            Select::InnerActuator => SpiChip::<Side>::violations(&self.actuators[1]),
-            _ => return None,
-        })
+    fn move_on(plant: &mut Gimbal<'a>, now: Instant) {
+        plant.advance(now);
     }
 
-    fn move_on(&mut self, now: Instant) {
-        self.gimbal.advance(now);
-    }
-
-    fn blackouts(&self) -> &[Blackout] {
-        self.blackouts
-    }
-
-    fn drop_blackout(&mut self) {
-        self.blackouts = self.blackouts.get(1..).unwrap_or_default();
-    }
-
-    fn lose(&mut self, select: Select, now: Instant) {
+    fn lose(plant: &mut Gimbal<'a>, select: Select, now: Instant) {
         match select {
-            Select::Actuator => self.gimbal.outer().stop_motor(now),
-            Select::InnerActuator => self.gimbal.inner().stop_motor(now),
+            Select::Actuator => plant.outer.drive.stop(now),
+            Select::InnerActuator => plant.inner.drive.stop(now),
             _ => {}
         }
     }

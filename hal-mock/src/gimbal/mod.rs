@@ -15,7 +15,7 @@ pub mod board;
 use embassy_time::Instant;
 
 use crate::earth::{Matrix, about_x, about_y, about_z, multiply};
-use crate::environment::{AnalogueInput, ForceInput, Mechanics, ShaftAngle};
+use crate::environment::{AnalogueInput, ForceInput, ShaftAngle};
 use crate::gyro::DEGREE_PER_HOUR;
 use crate::instruments::{BaseMotion, Felt, Instruments};
 use crate::plant::drive::Drive;
@@ -85,11 +85,11 @@ pub struct GimbalConfiguration<'a> {
     pub third_g_sensitivity_deg_h_g: f64,
 }
 
-/// A frame at work.
+/// A frame at work: what its encoder sees, and its motor driver by the drive.
 #[derive(Clone, Debug, PartialEq)]
-struct Frame<'a> {
+pub struct Frame<'a> {
     /// The train that moves it, with its faults.
-    drive: Drive<'a>,
+    pub drive: Drive<'a>,
     /// Errors of its encoder.
     encoder: EncoderConfiguration,
     /// What the encoder shows at zero, rad.
@@ -105,8 +105,9 @@ impl<'a> Frame<'a> {
             zero_rad: configuration.zero_rad,
         }
     }
+}
 
-    /// What the encoder shows, turns.
+impl ShaftAngle for Frame<'_> {
     fn shaft_turns(&mut self, now: Instant) -> f64 {
         self.drive.advance(now);
         let angle_rad = self.encoder.read(self.drive.state().angle_rad);
@@ -118,9 +119,9 @@ impl<'a> Frame<'a> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gimbal<'a> {
     /// The outer frame.
-    outer: Frame<'a>,
+    pub outer: Frame<'a>,
     /// The inner frame.
-    inner: Frame<'a>,
+    pub inner: Frame<'a>,
     /// How the mechanism is misaligned.
     misalignment: Misalignment,
     /// The g-sensitivity along the third axis, rad/s per g.
@@ -186,16 +187,6 @@ impl<'a> Gimbal<'a> {
     #[must_use]
     pub fn frames(&self) -> [StageState; 2] {
         [&self.outer, &self.inner].map(|frame| frame.drive.state())
-    }
-
-    /// The outer frame as its chips see it.
-    pub fn outer(&mut self) -> Side<'_, 'a> {
-        Side { gimbal: self, is_inner: false }
-    }
-
-    /// The inner frame as its chips see it.
-    pub fn inner(&mut self) -> Side<'_, 'a> {
-        Side { gimbal: self, is_inner: true }
     }
 
     /// Brings the instruments to what the gyro's converter, 0, or the accelerometer, 1, feels.
@@ -269,48 +260,5 @@ impl ForceInput for Gimbal<'_> {
 
     fn temperature_c(&mut self, now: Instant) -> f64 {
         self.payload.instruments.temperature(seconds(now))
-    }
-}
-
-/// One frame of a mount: what its encoder and its motor driver see.
-#[derive(Debug)]
-pub struct Side<'g, 'a> {
-    /// The mount.
-    gimbal: &'g mut Gimbal<'a>,
-    /// Whether this is its inner frame.
-    is_inner: bool,
-}
-
-impl<'a> Side<'_, 'a> {
-    /// The frame.
-    fn frame(&mut self) -> &mut Frame<'a> {
-        if self.is_inner { &mut self.gimbal.inner } else { &mut self.gimbal.outer }
-    }
-
-    /// The motor loses its current: its field stops where it is.
-    pub fn stop_motor(&mut self, now: Instant) {
-        self.frame().drive.stop(now);
-    }
-}
-
-impl ShaftAngle for Side<'_, '_> {
-    fn shaft_turns(&mut self, now: Instant) -> f64 {
-        self.frame().shaft_turns(now)
-    }
-}
-
-impl Mechanics for Side<'_, '_> {
-    fn drive(&mut self, now: Instant, microsteps: f64, microsteps_per_s: f64) {
-        self.frame().drive.drive(now, microsteps, microsteps_per_s);
-    }
-
-    fn is_blocked(&self) -> bool {
-        let frame = if self.is_inner { &self.gimbal.inner } else { &self.gimbal.outer };
-        frame.drive.is_blocked()
-    }
-
-    fn reference_switches(&self) -> [bool; 2] {
-        let frame = if self.is_inner { &self.gimbal.inner } else { &self.gimbal.outer };
-        frame.drive.switches()
     }
 }

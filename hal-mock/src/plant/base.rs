@@ -7,15 +7,16 @@
 use embassy_time::Instant;
 
 use super::STANDARD_GRAVITY_M_S2;
-use super::journey::{BaseFault, Journey, JourneyConfiguration};
+use super::journey::{Journey, JourneyConfiguration};
 use super::sway::SwayConfiguration;
 use crate::earth::{Attitude, Site, cross};
 use crate::environment::{ForceInput, MotionInput};
 use crate::instruments::InstrumentsConfiguration;
 use crate::noise::{Generator, White, source};
+use crate::vehicle::SensorFault;
 
-/// A rate beyond any range of a coarse gyro, rad/s.
-const BEYOND_RAD_S: f64 = 100.0;
+/// What sensors show at full scale, beyond any range: of the gyros, rad/s, and of the accelerometers, g.
+const FULL_SCALES: [f64; 2] = [100.0, f64::INFINITY];
 
 /// Half the time over which the angular acceleration is taken, s: sways are slower by far.
 const HALF_STEP_S: f64 = 1e-3;
@@ -45,7 +46,7 @@ pub struct Base<'a> {
     /// Where the base goes, where it leaves.
     journey: Option<Journey<'a>>,
     /// What goes wrong with the sensors on the way.
-    faults: &'a [BaseFault],
+    faults: &'a [SensorFault],
     /// What was shown last: rates, rad/s, and forces, g.
     shown: [[f64; 3]; 2],
     /// Time between two outputs, s.
@@ -91,47 +92,14 @@ impl Errors {
 }
 
 impl<'a> Base<'a> {
-    /// This base on a journey: from its departure on the sensors feel the journey's motion, not the
-    /// sway.
-    #[must_use]
-    pub fn riding(
-        mut self,
-        journey: &JourneyConfiguration<'a>,
-        instruments: &InstrumentsConfiguration,
-    ) -> Self {
-        let latitude_rad = instruments.latitude_deg.to_radians();
-        let azimuth_rad = instruments.attitude().azimuth_rad;
-        self.journey = Some(Journey::new(journey, latitude_rad, azimuth_rad, [0.0; 3]));
-        self.faults = journey.faults;
-        self
-    }
-
-    /// What is shown instead of `values`, the `index`-th sensor's, at a time in s.
-    fn spoilt(&mut self, index: usize, time_s: f64, values: [f64; 3]) -> [f64; 3] {
-        let mut shown = values;
-        for fault in self.faults {
-            match *fault {
-                BaseFault::Clipped { from_s, until_s }
-                    if index == 0 && (from_s..until_s).contains(&time_s) =>
-                {
-                    shown = [BEYOND_RAD_S; 3];
-                }
-                BaseFault::Stuck { from_s, until_s } if (from_s..until_s).contains(&time_s) => {
-                    shown = self.shown[index];
-                }
-                _ => {}
-            }
-        }
-        self.shown[index] = shown;
-        shown
-    }
-
-    /// The base of these instruments, swaying like this, with sensors of such errors.
+    /// The base of these instruments, swaying like this, with sensors of such errors; from the departure of
+    /// a journey on the sensors feel its motion, not the sway.
     #[must_use]
     pub fn new(
         instruments: &InstrumentsConfiguration,
         sway: &SwayConfiguration,
         coarse: &CoarseConfiguration,
+        journey: Option<&JourneyConfiguration<'a>>,
         seed: u64,
     ) -> Self {
         let attitude = instruments.attitude();
@@ -143,8 +111,8 @@ impl<'a> Base<'a> {
         let white = |sigma, source| White::new(sigma, seed, source);
         let mut errors = |bias, white| Errors::new(&mut start, coarse.scale_sigma, bias, white);
         Self {
-            journey: None,
-            faults: &[],
+            journey: journey.map(|journey| Journey::new(journey, instruments)),
+            faults: journey.map_or(&[], |journey| journey.faults),
             shown: [[0.0; 3]; 2],
             period_s: 1.0 / coarse.rate_hz,
             attitude,
@@ -156,6 +124,16 @@ impl<'a> Base<'a> {
                 errors(offset, white(force, source::COARSE_FORCE)),
             ],
         }
+    }
+
+    /// What is shown instead of `values`, the `index`-th sensor's, at a time in s.
+    fn spoilt(&mut self, index: usize, time_s: f64, values: [f64; 3]) -> [f64; 3] {
+        let (last, full) = (self.shown[index], FULL_SCALES[index]);
+        self.shown[index] = [0, 1, 2].map(|axis: usize| {
+            let value = [values[axis], last[axis]];
+            SensorFault::spoilt(self.faults, 3 * index + axis, time_s, value, full)
+        });
+        self.shown[index]
     }
 
     /// Where the base leans, and how fast it turns about its own axes, rad/s.

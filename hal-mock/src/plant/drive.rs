@@ -4,12 +4,13 @@ use embassy_time::Instant;
 
 use super::StageFault;
 use super::train::{StageConfiguration, Train};
+use crate::environment::Mechanics;
 use crate::stage::StageState;
 
 /// A train and its faults. It goes through every beginning and end of a fault at its own time, so that the
 /// motion does not depend on how often it is looked at.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Drive<'a> {
+pub struct Drive<'a> {
     /// The drive without faults.
     train: Train,
     /// What goes wrong with it, in any order.
@@ -60,13 +61,6 @@ impl<'a> Drive<'a> {
         self.train.stop();
     }
 
-    /// The motor's field stands at `microsteps` and turns at `microsteps_per_s` from `now` on.
-    pub(crate) fn drive(&mut self, now: Instant, microsteps: f64, microsteps_per_s: f64) {
-        self.advance(now);
-        self.creep();
-        self.train.drive(microsteps, microsteps_per_s);
-    }
-
     /// Keeps what has crept under the command that ends now.
     fn creep(&mut self) {
         if self.creep_rad_s != 0.0 {
@@ -80,16 +74,6 @@ impl<'a> Drive<'a> {
         self.train.state()
     }
 
-    /// Whether the motor cannot follow.
-    pub(crate) fn is_blocked(&self) -> bool {
-        self.train.is_blocked()
-    }
-
-    /// Left and right reference switch.
-    pub(crate) fn switches(&self) -> [bool; 2] {
-        self.train.switches()
-    }
-
     /// How far the encoder has slipped and crept, rad.
     pub(crate) fn slip_rad(&self, now: Instant) -> f64 {
         let slipped: f64 = self.faults.iter().map(|fault| fault.slip_rad(now)).sum();
@@ -97,6 +81,22 @@ impl<'a> Drive<'a> {
             return slipped;
         }
         slipped + (self.crept_rad + self.creep_rad_s * self.train.driven_s())
+    }
+}
+
+impl Mechanics for Drive<'_> {
+    fn drive(&mut self, now: Instant, microsteps: f64, microsteps_per_s: f64) {
+        self.advance(now);
+        self.creep();
+        self.train.drive(microsteps, microsteps_per_s);
+    }
+
+    fn is_blocked(&self) -> bool {
+        self.train.is_blocked()
+    }
+
+    fn reference_switches(&self) -> [bool; 2] {
+        self.train.switches()
     }
 }
 

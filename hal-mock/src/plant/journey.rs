@@ -3,9 +3,10 @@
 //! Until it departs the base stands, or sways, as it always did. From then on gyros and accelerometers on it
 //! feel what a vehicle feels: turns, slopes, accelerations, the Earth's rotation and its own.
 
+use crate::instruments::InstrumentsConfiguration;
 use crate::vehicle::averaged::Averaged;
 use crate::vehicle::motion::Motion;
-use crate::vehicle::{Event, Leg};
+use crate::vehicle::{Event, Leg, SensorFault};
 
 pub use crate::vehicle::Means;
 
@@ -19,27 +20,8 @@ pub struct JourneyConfiguration<'a> {
     pub legs: &'a [Leg],
     /// What happens to the base on the way, in any order.
     pub events: &'a [Event],
-    /// What goes wrong with coarse sensors on the base, in any order.
-    pub faults: &'a [BaseFault],
-}
-
-/// Something that goes wrong with coarse sensors on the base, for [from, until) in s.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum BaseFault {
-    /// The gyros show their full scale.
-    Clipped {
-        /// Beginning of the overload, s from the start of the clock.
-        from_s: f64,
-        /// End of the fault, s from the start of the clock.
-        until_s: f64,
-    },
-    /// Every sensor repeats its last value.
-    Stuck {
-        /// Beginning of the repetition, s from the start of the clock.
-        from_s: f64,
-        /// End of the fault, s from the start of the clock.
-        until_s: f64,
-    },
+    /// What goes wrong with coarse sensors on the base, in order; gaps are not looked at.
+    pub faults: &'a [SensorFault],
 }
 
 /// The base on its way.
@@ -52,15 +34,15 @@ pub(crate) struct Journey<'a> {
 }
 
 impl<'a> Journey<'a> {
-    /// A base that faces an azimuth, at a latitude, both in rad.
+    /// A base that is at the place of these instruments, and faces as they do, as it departs.
     pub(crate) fn new(
         configuration: &JourneyConfiguration<'a>,
-        latitude_rad: f64,
-        azimuth_rad: f64,
-        lever_m: [f64; 3],
+        instruments: &InstrumentsConfiguration,
     ) -> Self {
+        let InstrumentsConfiguration { latitude_deg, azimuth_deg, .. } = *instruments;
+        let [latitude_rad, azimuth_rad] = [latitude_deg, azimuth_deg].map(f64::to_radians);
         let JourneyConfiguration { departs_s, legs, events, .. } = *configuration;
-        let motion = Motion::new(legs, events, latitude_rad, azimuth_rad, lever_m);
+        let motion = Motion::new(legs, events, latitude_rad, azimuth_rad, [0.0; 3]);
         Self { departs_s, motion: Averaged::new(motion) }
     }
 

@@ -13,7 +13,7 @@
 //! warm-up and disturbances.
 
 pub mod base;
-pub(crate) mod drive;
+pub mod drive;
 pub mod journey;
 pub(crate) mod payload;
 mod ringing;
@@ -237,6 +237,6 @@ impl Mechanics for Plant<'_> {
     }
 
     fn reference_switches(&self) -> [bool; 2] {
-        self.drive.switches()
+        self.drive.reference_switches()
     }
 }

@@ -38,10 +38,7 @@ impl<'a> Payload<'a> {
         Self {
             instruments: Instruments::with_accelerometer_at(&instruments, accelerometer_hz, seed),
             sway: Some(configuration.sway).filter(SwayConfiguration::is_active),
-            journey: configuration.journey.map(|journey| {
-                let latitude_rad = instruments.latitude_deg.to_radians();
-                Journey::new(&journey, latitude_rad, instruments.attitude().azimuth_rad, [0.0; 3])
-            }),
+            journey: configuration.journey.map(|journey| Journey::new(&journey, &instruments)),
             periods_s: [1.0 / instruments.rate_hz, 1.0 / accelerometer_hz],
             converter: White::new(configuration.converter_noise_v, seed, source::CONVERTER),
             volts_per_rad_s: configuration.gyro_volts_per_rad_s,

@@ -92,51 +92,34 @@ impl Event {
 
 /// Something that goes wrong with the sensors, for [from, until) in s from the start. Channels 0 to 2 are
 /// the gyros forward, right, down, 3 to 5 the accelerometers; a spinning body has its own order
-/// ([`crate::spin::SpinConfiguration::faults`]).
+/// ([`crate::strapdown::StrapdownConfiguration::faults`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum SensorFault {
+pub struct SensorFault {
+    /// What goes wrong.
+    pub failure: SensorFailure,
+    /// Beginning of the fault, s from the start.
+    pub from_s: f64,
+    /// End of the fault, s from the start.
+    pub until_s: f64,
+}
+
+/// What a sensor, by its channel, or all of them do that are faulty.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SensorFailure {
     /// Samples that end in this time are missing.
-    Gap {
-        /// Beginning of the gap, s from the start.
-        from_s: f64,
-        /// End of the fault, s from the start.
-        until_s: f64,
-    },
-    /// A sensor shows its full scale, as under an overload.
-    Saturated {
-        /// The channel, 0 to 5.
-        channel: usize,
-        /// Beginning of the overload, s from the start.
-        from_s: f64,
-        /// End of the fault, s from the start.
-        until_s: f64,
-    },
-    /// What a sensor shows is not a number.
-    NotANumber {
-        /// The channel, 0 to 5.
-        channel: usize,
-        /// Beginning of the failure, s from the start.
-        from_s: f64,
-        /// End of the fault, s from the start.
-        until_s: f64,
-    },
-    /// A sensor repeats its last value.
-    Stuck {
-        /// The channel, 0 to 5.
-        channel: usize,
-        /// Beginning of the repetition, s from the start.
-        from_s: f64,
-        /// End of the fault, s from the start.
-        until_s: f64,
-    },
+    Gap,
+    /// The channel shows its full scale, as under an overload.
+    Saturated(usize),
+    /// What the channel shows is not a number.
+    NotANumber(usize),
+    /// The channel repeats its last value.
+    Stuck(usize),
 }
 
 impl SensorFault {
     /// Whether one of some faults has the sample missing that ends at a time in s.
     pub(crate) fn lost(faults: &[Self], time_s: f64) -> bool {
-        faults.iter().any(|fault| {
-            matches!(*fault, Self::Gap { from_s, until_s } if (from_s..until_s).contains(&time_s))
-        })
+        faults.iter().any(|fault| fault.failure == SensorFailure::Gap && fault.is_on(time_s))
     }
 
     /// What a channel shows at a time in s of a value, after the last one, both in its unit. Faults act in
@@ -148,25 +131,21 @@ impl SensorFault {
         [value, last]: [f64; 2],
         full: f64,
     ) -> f64 {
-        let shown = |value, fault: &Self| fault.shown(time_s, channel, [value, last], full);
-        let shown = faults.iter().fold(value, shown);
+        let mut shown = value;
+        for fault in faults.iter().filter(|fault| fault.is_on(time_s)) {
+            match fault.failure {
+                SensorFailure::Saturated(at) if at == channel => shown = full,
+                SensorFailure::NotANumber(at) if at == channel => shown = f64::NAN,
+                SensorFailure::Stuck(at) if at == channel => shown = last,
+                _ => {}
+            }
+        }
         // Full scale leaves what is not a number as it is.
         if shown.abs() > full { libm::copysign(full, shown) } else { shown }
     }
 
-    /// What the channel `at` shows under this fault at a time in s: its full scale, its last value, or the
-    /// value itself where the fault does not act on it then.
-    fn shown(&self, time_s: f64, at: usize, [value, last]: [f64; 2], full: f64) -> f64 {
-        let is_on = |channel: usize, from_s: f64, until_s: f64| {
-            channel == at && (from_s..until_s).contains(&time_s)
-        };
-        match *self {
-            Self::Saturated { channel, from_s, until_s } if is_on(channel, from_s, until_s) => full,
-            Self::Stuck { channel, from_s, until_s } if is_on(channel, from_s, until_s) => last,
-            Self::NotANumber { channel, from_s, until_s } if is_on(channel, from_s, until_s) => {
-                f64::NAN
-            }
-            _ => value,
-        }
+    /// Whether it acts at a time in s from the start.
+    fn is_on(&self, time_s: f64) -> bool {
+        (self.from_s..self.until_s).contains(&time_s)
     }
 }

@@ -18,7 +18,7 @@ pub mod scenario;
 mod sensors;
 mod smooth;
 
-pub use self::event::{Event, SensorFault};
+pub use self::event::{Event, SensorFailure, SensorFault};
 pub use self::leg::{Drive, Leg, Stop};
 use self::motion::{Integrals, Motion};
 pub use self::place::Position;

@@ -122,7 +122,7 @@ fn align_with<B: CompensatesSway, R: Recorder, W: Observer>(
             &channels,
         ),
     )?;
-    let [outer, inner] = board.borrow().gimbal.frames();
+    let [outer, inner] = board.borrow().plant.frames();
     let misalignment = scenario.gimbal(None, injection).misalignment;
     let axis = misalignment.axes(outer.angle_rad, inner.angle_rad).sensitive;
     let replay = Replay {

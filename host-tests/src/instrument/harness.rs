@@ -8,7 +8,7 @@ use firmware::event::Event;
 use firmware::health::Health;
 use firmware::ports::{BaseReading, Observer};
 use firmware::shared::Channels;
-use hal_mock::assembly::Assembly;
+use hal_mock::assembly::{Board, Chips};
 use orientation::keep::Report;
 use orientation::session::{Session, rotating, stops};
 
@@ -133,7 +133,7 @@ pub(super) fn run(
 }
 
 /// In words, what drivers did to a board's chips that a data sheet forbids.
-pub(super) fn told(board: &RefCell<impl Assembly>) -> Vec<String> {
-    let board = board.borrow();
+pub(super) fn told<P, C: Chips<P>>(board: &RefCell<Board<'_, P, C>>) -> Vec<String> {
+    let mut board = board.borrow_mut();
     board.recorded().map(|(select, violation)| format!("{select:?}: {violation}")).collect()
 }

@@ -5,9 +5,8 @@ use std::f64::consts::{PI, TAU};
 use firmware::simulated::fault::{Fault, Injection};
 use firmware::simulated::keep::Day;
 use hal_mock::earth::Attitude;
-use hal_mock::plant::journey::BaseFault;
-use hal_mock::vehicle::Event;
 use hal_mock::vehicle::motion::Motion;
+use hal_mock::vehicle::{Event, SensorFault};
 use orientation::keep::Report;
 
 use super::Run;
@@ -18,7 +17,7 @@ pub struct KeptPlan {
     /// With the chips of a stage or of two frames, its axes, and the coarse IMU's bus.
     pub chips: Injection,
     /// With what the coarse sensors feel.
-    pub base: Vec<BaseFault>,
+    pub base: Vec<SensorFault>,
     /// What else happens on the way.
     pub events: Vec<Event>,
 }

@@ -191,10 +191,10 @@ fn disturbed(seed: u64) -> (Case, Vec<Disturbance>) {
     let noise = case.world.gyro.n_deg_sqrt_h * 60.0 / seconds.sqrt();
     let rate_deg_h = noise * logarithmic(&mut generator, 1.0, 1000.0);
     let disturbance = if seed.is_multiple_of(2) {
-        Disturbance::Nudge { start_s, seconds, rate_deg_h }
+        Disturbance { start_s, seconds, rate_deg_h, ..Disturbance::default() }
     } else {
         let rate_deg_h = 30.0 * rate_deg_h;
-        Disturbance::Bump {
+        Disturbance {
             start_s,
             seconds,
             frequency_hz: 3.0,
@@ -314,7 +314,7 @@ fn a_gyro_that_is_noisier_than_stated_is_refused() {
 #[test]
 fn a_platform_that_tips_during_a_dwell_loses_that_dwell() {
     let case = sound();
-    let tip = Disturbance::Bump {
+    let tip = Disturbance {
         start_s: 3.0 * (case.seconds + 1.0),
         seconds: case.seconds,
         frequency_hz: 0.1,
@@ -393,10 +393,11 @@ fn few_positions_and_a_nudge_over_a_whole_dwell_stay_within_what_can_be_noticed(
         let mut generator = Generator::new(seed);
         let dwell = (generator.uniform() * f64::from(positions)).floor();
         let noise = 0.001 * 60.0 / case.seconds.sqrt();
-        vec![Disturbance::Nudge {
+        vec![Disturbance {
             start_s: dwell * (case.seconds + 1.0),
             seconds: case.seconds,
             rate_deg_h: noise * (3.0 + 7.0 * generator.uniform()),
+            ..Disturbance::default()
         }]
     });
     println!("{} answers, RMS {}, greatest {} σ", errors.len(), rms(&errors), greatest(&errors));

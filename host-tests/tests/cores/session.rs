@@ -81,7 +81,8 @@ fn a_circle_is_turned_step_by_step_and_gives_north() {
 
 #[test]
 fn a_disturbed_dwell_is_measured_again_without_moving_the_stage() {
-    let nudge = Disturbance::Nudge { start_s: 14.0, seconds: 2.0, rate_deg_h: 5.0 };
+    let nudge =
+        Disturbance { start_s: 14.0, seconds: 2.0, rate_deg_h: 5.0, ..Disturbance::default() };
     let mut session = session(circle());
     let sent = run(&mut session, &world(77.0), &[nudge], Rotation::fixed(1.0), 200.0, 5);
     assert_eq!(sent.len(), 11);
@@ -94,7 +95,12 @@ fn a_disturbed_dwell_is_measured_again_without_moving_the_stage() {
 #[test]
 fn retries_are_bounded_and_a_lasting_disturbance_is_refused() {
     let lasting: Vec<Disturbance> = (0..400)
-        .map(|i| Disturbance::Nudge { start_s: f64::from(i) * 3.0, seconds: 1.0, rate_deg_h: 60.0 })
+        .map(|i| Disturbance {
+            start_s: f64::from(i) * 3.0,
+            seconds: 1.0,
+            rate_deg_h: 60.0,
+            ..Disturbance::default()
+        })
         .collect();
     let mut session = session(circle());
     run(&mut session, &world(10.0), &lasting, Rotation::fixed(1.0), 2000.0, 6);
@@ -337,7 +343,8 @@ fn a_survey_of_a_stuck_or_saturated_gyro_says_so() {
     let session = surveyed(&stuck, StopRule::AllPositions, 26);
     let verdict = session.conclusion().expect("done").verdict;
     assert_eq!(verdict, Err(Refusal::NoiseUnknown(FitError::Constant)));
-    let overload = Disturbance::Nudge { start_s: 100.0, seconds: 1.0, rate_deg_h: 1e9 };
+    let overload =
+        Disturbance { start_s: 100.0, seconds: 1.0, rate_deg_h: 1e9, ..Disturbance::default() };
     let mut session = Session::new(
         setting(),
         circle().after(Survey {

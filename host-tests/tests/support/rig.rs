@@ -15,5 +15,5 @@ pub fn run<F: Future>(future: F) -> F::Output {
 /// The rules of the chip that were broken.
 pub fn violations<C: SpiChip<E>, E>(rig: &RefCell<Single<C, E>>) -> Vec<Misuse> {
     let rig = rig.borrow();
-    rig.chip.violations().first().iter().map(|violation| violation.misuse).collect()
+    rig.chip.violations().first.iter().map(|violation| violation.misuse).collect()
 }

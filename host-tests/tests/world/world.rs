@@ -480,14 +480,15 @@ fn the_encoder_adds_its_harmonics_and_rounds_to_its_step() {
 
 #[test]
 fn a_bump_and_a_nudge_act_inside_their_interval_only() {
-    let bump = Disturbance::Bump {
+    let bump = Disturbance {
         start_s: 10.0,
         seconds: 2.0,
         frequency_hz: 7.0,
         rate_deg_h: 500.0,
         force_m_s2: [0.1, -0.2, 0.0],
     };
-    let nudge = Disturbance::Nudge { start_s: 50.0, seconds: 4.0, rate_deg_h: 6.0 };
+    let nudge =
+        Disturbance { start_s: 50.0, seconds: 4.0, rate_deg_h: 6.0, ..Disturbance::default() };
     let instruments = InstrumentsConfiguration::default();
     let disturbances = &[bump, nudge];
     let disturbed =

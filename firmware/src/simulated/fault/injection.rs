@@ -8,7 +8,7 @@ use hal_mock::chip::Select;
 use hal_mock::disturbance::Disturbance;
 use hal_mock::fault::{Blackout, BusFault, FaultPlan, FaultyI2c, FaultyReady, FaultySpi, When};
 use hal_mock::plant::StageFault;
-use hal_mock::vehicle::SensorFault;
+use hal_mock::vehicle::{SensorFailure, SensorFault};
 use heapless::Vec;
 use orientation::device::Device;
 use orientation::units::TURN;
@@ -140,7 +140,11 @@ impl Injection {
         let start_s = middle.as_micros() as f64 * 1e-6;
         let clipped = |channels: core::ops::Range<usize>, seconds: f64| {
             let until_s = start_s + seconds;
-            let saturated = |channel| SensorFault::Saturated { channel, from_s: start_s, until_s };
+            let saturated = |channel| SensorFault {
+                failure: SensorFailure::Saturated(channel),
+                from_s: start_s,
+                until_s,
+            };
             channels.map(saturated).collect()
         };
         let (sensors, disturbance) = match fault {
@@ -154,8 +158,8 @@ impl Injection {
             Fault::Overload => (clipped(3..6, EVER), Disturbance::force_overload(start_s, EVER)),
             Fault::DoorSlam => (Vec::new(), Disturbance::door_slam(start_s)),
             Fault::Nudge => {
-                let nudge = Disturbance::Nudge { start_s, seconds: 4.0, rate_deg_h: 2.0 };
-                (Vec::new(), nudge)
+                let (seconds, rate_deg_h, none) = (4.0, 2.0, Disturbance::default());
+                (Vec::new(), Disturbance { start_s, seconds, rate_deg_h, ..none })
             }
             Fault::SpinSaturation => return self.sensors = clipped(0..1, CLIPPED_SPINNING),
             Fault::SpinOverload => return self.sensors = clipped(3..5, CLIPPED_SPINNING),

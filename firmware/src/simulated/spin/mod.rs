@@ -150,7 +150,7 @@ impl SpinScenario {
         let mut board = SpinBoard::new(SpinPlant::new(&plant, self.seed));
         board.blackouts = &injection.blackouts;
         // One oscillator for all five.
-        board.converters.iter_mut().for_each(SimulatedConverter::clock_externally);
+        board.chips.converters.iter_mut().for_each(SimulatedConverter::clock_externally);
         board
     }
 

@@ -259,7 +259,7 @@ impl VehicleScenario {
         let mut board = VehicleBoard::new(VehiclePlant::new(&plant, self.base.seed));
         board.blackouts = &injection.blackouts;
         // One oscillator for all three.
-        board.converters.iter_mut().for_each(SimulatedConverter::clock_externally);
+        board.chips.converters.iter_mut().for_each(SimulatedConverter::clock_externally);
         board
     }
 

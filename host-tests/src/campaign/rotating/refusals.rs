@@ -145,5 +145,5 @@ fn faster(world: &mut World, factor: f64) {
 
 fn saturate(world: &mut World, start_s: f64, seconds: f64) {
     let force_m_s2 = [100.0, 0.0, 0.0];
-    world.disturbances.push(Disturbance::Push { start_s, seconds, force_m_s2 });
+    world.disturbances.push(Disturbance { start_s, seconds, force_m_s2, ..Disturbance::default() });
 }

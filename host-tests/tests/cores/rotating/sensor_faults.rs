@@ -14,7 +14,12 @@ fn bumped_turns_are_left_out() {
     let bumps = [Disturbance::door_slam(clockwise_s(3.3)), Disturbance::door_slam(counter_s(2.2))];
     let overload = [Disturbance::overload(clockwise_s(3.3), 0.2)];
     let leant = |rate_deg_h: f64| {
-        [Disturbance::Nudge { start_s: clockwise_s(3.3), seconds: 20.0, rate_deg_h }]
+        [Disturbance {
+            start_s: clockwise_s(3.3),
+            seconds: 20.0,
+            rate_deg_h,
+            ..Disturbance::default()
+        }]
     };
     let (little, more, much) = (leant(0.3), leant(5.0), leant(60.0));
     for disturbances in [&bumps[..], &overload, &little, &more] {
@@ -36,10 +41,11 @@ fn bumped_turns_are_left_out() {
 #[test]
 fn a_platform_that_is_bumped_in_every_turn_is_refused() {
     let bumps: Vec<Disturbance> = (0..200)
-        .map(|number| Disturbance::Nudge {
+        .map(|number| Disturbance {
             start_s: f64::from(number) * 2.9 + f64::from(number % 5) * 0.3,
             seconds: 1.0,
             rate_deg_h: 20.0 + 10.0 * f64::from(number % 7),
+            ..Disturbance::default()
         })
         .collect();
     assert_refused(&["TurnsDisturbed", "ResidualsNotWhite"], |seed, case| {

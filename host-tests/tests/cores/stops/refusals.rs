@@ -1,6 +1,6 @@
 //! What is refused, by name, and what is not silently wrong.
 
-use hal_mock::vehicle::{Drive, Leg, SensorFault, VehicleSample};
+use hal_mock::vehicle::{Drive, Leg, SensorFailure, SensorFault, VehicleSample};
 use orientation::align::conclusion::Azimuth;
 use orientation::error::Refusal;
 
@@ -40,7 +40,7 @@ fn a_drive_of_no_length_is_named() {
 
 #[test]
 fn a_lost_sample_is_named_with_its_time() {
-    let faults = vec![SensorFault::Gap { from_s: 200.0, until_s: 200.03 }];
+    let faults = vec![SensorFault { failure: SensorFailure::Gap, from_s: 200.0, until_s: 200.03 }];
     let Err(Refusal::RotationMissing { at, .. }) = verdict(&Day { faults, ..two(1) }) else {
         panic!("a gap")
     };
@@ -51,7 +51,8 @@ fn a_lost_sample_is_named_with_its_time() {
 fn a_gyro_at_its_limit_is_named_with_its_time() {
     let mut day = two(1);
     day.scenario.vehicle.gyro_full_scale_rad_s = 10.0;
-    day.faults = vec![SensorFault::Saturated { channel: 1, from_s: 150.0, until_s: 150.1 }];
+    day.faults =
+        vec![SensorFault { failure: SensorFailure::Saturated(1), from_s: 150.0, until_s: 150.1 }];
     let Err(Refusal::RotationClipped { at }) = verdict(&day) else { panic!("it saturates") };
     assert!((at - 150.0).abs() < 0.1, "{at}");
 }
@@ -155,7 +156,11 @@ fn signs_axes_and_biases_of_accelerometers_are_never_silently_wrong() {
 fn a_stuck_sensor_is_never_silently_wrong() {
     for channel in [0, 1, 2, 3, 4] {
         for until_s in [210.0, 1e9] {
-            let faults = vec![SensorFault::Stuck { channel, from_s: 200.0, until_s }];
+            let faults = vec![SensorFault {
+                failure: SensorFailure::Stuck(channel),
+                from_s: 200.0,
+                until_s,
+            }];
             assert_never_silently_wrong(
                 "stuck",
                 |seed| Day { faults: faults.clone(), ..two(seed) },

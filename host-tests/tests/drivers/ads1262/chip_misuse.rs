@@ -19,7 +19,7 @@ fn after(micros: u64, hertz: u32, sent: &[u8]) -> Vec<(Misuse, u8)> {
     });
     let single = rig.borrow();
     let violations = SpiChip::<Input>::violations(&single.chip);
-    violations.first().iter().map(|violation| (violation.misuse, violation.address)).collect()
+    violations.first.iter().map(|violation| (violation.misuse, violation.address)).collect()
 }
 
 #[test]

@@ -60,7 +60,7 @@ pub async fn exchange(rig: &Rig, sent: &[u8]) -> Vec<u8> {
 
 pub fn violations(rig: &Rig) -> usize {
     let single = rig.borrow();
-    SpiChip::<Input>::violations(&single.chip).count()
+    SpiChip::<Input>::violations(&single.chip).count
 }
 
 /// Waits until so many microseconds after the start of time, unless they are over.

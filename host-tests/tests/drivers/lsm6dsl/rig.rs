@@ -70,7 +70,7 @@ pub async fn started(rig: &Bench, configuration: Configuration) -> Imu<'_> {
 pub fn violations(rig: &Bench) -> Vec<Misuse> {
     let rig = rig.borrow();
     let violations = I2cChip::<Table>::violations(&rig.chip);
-    violations.first().iter().map(|violation| violation.misuse).collect()
+    violations.first.iter().map(|violation| violation.misuse).collect()
 }
 
 /// One row of a transcript: a read of registers, or a write of some.

@@ -98,6 +98,6 @@ impl Bus {
 
     pub fn misuses(&self) -> Vec<Misuse> {
         let violations = SpiChip::<Motor>::violations(&self.single.chip);
-        violations.first().iter().map(|violation| violation.misuse).collect()
+        violations.first.iter().map(|violation| violation.misuse).collect()
     }
 }

@@ -10,8 +10,8 @@ use firmware::simulated::keep::Hold;
 use firmware::simulated::mount::FramesScenario;
 use hal_mock::chip::Select;
 use hal_mock::fault::{BusFault, FaultPlan, When};
-use hal_mock::plant::journey::BaseFault;
 use hal_mock::vehicle::Event;
+use hal_mock::vehicle::{SensorFailure, SensorFault};
 
 /// How long after its departure something goes wrong with a base, s.
 const AFTER: f64 = 60.0;
@@ -77,7 +77,12 @@ fn coarse_sensors_that_are_lost_on_the_way_come_back_and_nothing_wrong_is_told()
 fn coarse_gyros_that_clip_are_told_and_the_level_comes_back() {
     let scenario = scenario();
     let from_s = departure(&scenario) + AFTER;
-    let base = vec![BaseFault::Clipped { from_s, until_s: from_s + 1.0 }];
+    let clipped = |gyro| SensorFault {
+        failure: SensorFailure::Saturated(gyro),
+        from_s,
+        until_s: from_s + 1.0,
+    };
+    let base = (0..3).map(clipped).collect();
     let found = keep(&scenario, &KeptPlan { base, ..KeptPlan::of(None) });
     assert!(has(&found, "rotation was lost"), "{:#?}", told(&found.run));
     check(&found);
@@ -87,7 +92,12 @@ fn coarse_gyros_that_clip_are_told_and_the_level_comes_back() {
 fn coarse_sensors_that_are_stuck_are_started_again() {
     let scenario = scenario();
     let from_s = departure(&scenario) + AFTER;
-    let base = vec![BaseFault::Stuck { from_s, until_s: from_s + 3.0 }];
+    let stuck = |channel| SensorFault {
+        failure: SensorFailure::Stuck(channel),
+        from_s,
+        until_s: from_s + 3.0,
+    };
+    let base = (0..6).map(stuck).collect();
     let found = keep(&scenario, &KeptPlan { base, ..KeptPlan::of(None) });
     assert!(has(&found, "base: the same reading again and again"), "{:#?}", told(&found.run));
     check(&found);

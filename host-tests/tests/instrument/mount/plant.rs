@@ -1,6 +1,5 @@
 //! The simulated gimbal against the oracle: axes, rates, forces, encoders, faults.
 
-use hal_mock::assembly::Assembly;
 use hal_mock::chip::{Rig, Select, Transaction};
 use hal_mock::environment::{AnalogueInput, ForceInput, Mechanics, ShaftAngle};
 use hal_mock::gimbal::board::GimbalBoard;
@@ -10,7 +9,6 @@ use hal_mock::instruments::InstrumentsConfiguration;
 use hal_mock::plant::train::StageConfiguration;
 use hal_mock::plant::{PlantConfiguration, StageFault};
 use hal_mock::tmc5160::Oscillator;
-use hal_mock::violation::Violations;
 use orientation::align::mount::{FrameAngles, TwoFrame};
 use proptest::prelude::*;
 
@@ -79,9 +77,9 @@ proptest! {
         let rate = plant.volts(at(1.0)) / VOLTS;
         let expected = dot(sensitive, base()[0]);
         prop_assert!((rate - expected).abs() < 1e-17, "{rate} is not {expected}");
-        let shown = plant.outer().shaft_turns(at(1.0)) * core::f64::consts::TAU;
+        let shown = plant.outer.shaft_turns(at(1.0)) * core::f64::consts::TAU;
         prop_assert!((shown - angles.outer).abs() < 1e-12);
-        let shown = plant.inner().shaft_turns(at(1.0)) * core::f64::consts::TAU;
+        let shown = plant.inner.shaft_turns(at(1.0)) * core::f64::consts::TAU;
         prop_assert!((shown - angles.inner).abs() < 1e-12);
     }
 
@@ -121,8 +119,8 @@ fn a_turning_frame_turns_the_gyro_about_its_own_axis() {
     let rate = 0.2;
     for is_inner in [false, true] {
         let mut plant = Gimbal::new(&gimbal(&mount, start, [0.0; 3]), 1);
-        let mut side = if is_inner { plant.inner() } else { plant.outer() };
-        side.drive(at(1.0), 0.0, rate * PER_RAD);
+        let side = if is_inner { &mut plant.inner } else { &mut plant.outer };
+        side.drive.drive(at(1.0), 0.0, rate * PER_RAD);
         let now = if is_inner {
             FrameAngles { inner: inner + 2.0 * rate, ..start }
         } else {
@@ -158,20 +156,20 @@ fn one_frame_is_held_and_slips_and_meets_its_end_without_the_other() {
     let mut configuration = gimbal(&TwoFrame::default(), angles, [0.0; 3]);
     configuration.inner.faults = &faults;
     let mut plant = Gimbal::new(&configuration, 1);
-    plant.outer().drive(at(1.5), 0.0, 0.2 * PER_RAD);
-    plant.inner().drive(at(1.5), 0.0, 0.2 * PER_RAD);
+    plant.outer.drive.drive(at(1.5), 0.0, 0.2 * PER_RAD);
+    plant.inner.drive.drive(at(1.5), 0.0, 0.2 * PER_RAD);
     plant.advance(at(3.0));
     let [outer, inner] = plant.frames();
     assert!((outer.angle_rad - 0.3).abs() < 1e-9 && inner.angle_rad == 0.0);
-    assert!(plant.inner().is_blocked() && !plant.outer().is_blocked());
-    let shown = plant.inner().shaft_turns(at(3.0)) * core::f64::consts::TAU;
+    assert!(plant.inner.drive.is_blocked() && !plant.outer.drive.is_blocked());
+    let shown = plant.inner.shaft_turns(at(3.0)) * core::f64::consts::TAU;
     assert!((shown - 0.01).abs() < 1e-12);
-    assert!(plant.outer().shaft_turns(at(3.0)) > 0.0);
+    assert!(plant.outer.shaft_turns(at(3.0)) > 0.0);
     // The outer frame goes on to its hard end at 100°, past the switch at 95°.
     plant.advance(at(30.0));
     assert!((plant.frames()[0].angle_rad.to_degrees() - 100.0).abs() < 1e-9);
-    assert!(plant.outer().is_blocked());
-    assert_eq!(plant.outer().reference_switches(), [false, true]);
+    assert!(plant.outer.drive.is_blocked());
+    assert_eq!(plant.outer.drive.reference_switches(), [false, true]);
 }
 
 #[test]
@@ -180,11 +178,11 @@ fn a_driver_that_loses_its_supply_stops_its_own_frame_alone() {
     let gimbal = Gimbal::new(&gimbal(&TwoFrame::default(), angles, [0.0; 3]), 1);
     let oscillator = Oscillator::Internal { hertz: 12_000_000 };
     let mut board = GimbalBoard::new(gimbal, oscillator);
-    board.gimbal.outer().drive(at(1.0), 0.0, 0.1 * PER_RAD);
-    board.gimbal.inner().drive(at(1.0), 0.0, 0.1 * PER_RAD);
+    board.plant.outer.drive.drive(at(1.0), 0.0, 0.1 * PER_RAD);
+    board.plant.inner.drive.drive(at(1.0), 0.0, 0.1 * PER_RAD);
     board.power_cycle(Select::InnerActuator, at(2.0));
     board.advance(at(3.0));
-    let [outer, inner] = board.gimbal.frames().map(|frame| frame.angle_rad);
+    let [outer, inner] = board.plant.frames().map(|frame| frame.angle_rad);
     assert!((outer - 0.2).abs() < 1e-9 && (inner - 0.1).abs() < 1e-9, "{outer} {inner}");
     // Each encoder answers on its own select line; 64 ms after its supply came back, not before.
     let mut angle = |select, now| {
@@ -198,9 +196,9 @@ fn a_driver_that_loses_its_supply_stops_its_own_frame_alone() {
     assert!((angle(Select::Encoder, at(3.0)) - 0.2).abs() < 3e-6);
     assert!((angle(Select::InnerEncoder, at(3.0)) - 0.1).abs() < 3e-6);
     board.power_cycle(Select::InnerEncoder, at(4.0));
-    assert_eq!(board.violations(Select::InnerEncoder).map(Violations::count), Some(0));
+    assert_eq!(board.violations(Select::InnerEncoder).map(|found| found.count), Some(0));
     let transaction = Transaction { now: at(4.01), hertz: 5_000_000, sent: &[0x31, 0x00, 0] };
     board.transact(Select::InnerEncoder, &transaction, &mut [0; 3]);
-    assert_eq!(board.violations(Select::InnerEncoder).map(Violations::count), Some(1));
-    assert_eq!(board.violations(Select::Encoder).map(Violations::count), Some(0));
+    assert_eq!(board.violations(Select::InnerEncoder).map(|found| found.count), Some(1));
+    assert_eq!(board.violations(Select::Encoder).map(|found| found.count), Some(0));
 }

@@ -7,7 +7,7 @@ use bench::methods::spin::samples::Converter;
 use hal_mock::accelerometer::AccelerometerConfiguration;
 use hal_mock::spin::profile::Profile;
 use hal_mock::spin::{SpinConfiguration, SpinWorld};
-use hal_mock::vehicle::SensorFault;
+use hal_mock::vehicle::{SensorFailure, SensorFault};
 use orientation::keep::spin::{Setting, Spin, State};
 
 /// 80 turns a second.
@@ -152,8 +152,8 @@ fn faulty(fault: SensorFault) -> Vec<Seen> {
 fn gyro_readings_that_are_no_numbers_or_clip_are_told_and_got_over() {
     for (from_s, until_s) in [(0.5, 0.5005), (0.5, 0.505), (0.5, 0.55), (0.5, 0.8)] {
         for fault in [
-            SensorFault::NotANumber { channel: 0, from_s, until_s },
-            SensorFault::Saturated { channel: 0, from_s, until_s },
+            SensorFault { failure: SensorFailure::NotANumber(0), from_s, until_s },
+            SensorFault { failure: SensorFailure::Saturated(0), from_s, until_s },
         ] {
             let seen = faulty(fault);
             let before = between(&seen, 0.49, 0.5).last().and_then(|seen| seen.sigma_rad);
@@ -169,7 +169,11 @@ fn gyro_readings_that_are_no_numbers_or_clip_are_told_and_got_over() {
 #[test]
 fn forces_that_are_no_numbers_are_told_and_the_gyro_holds_the_roll() {
     for channel in [3, 4] {
-        let seen = faulty(SensorFault::NotANumber { channel, from_s: 0.5, until_s: 0.8 });
+        let seen = faulty(SensorFault {
+            failure: SensorFailure::NotANumber(channel),
+            from_s: 0.5,
+            until_s: 0.8,
+        });
         assert_told(&seen, 0.6, 0.8, |state| matches!(state, State::ForceLost { .. }));
         assert!(between(&seen, 0.2, 1.5).all(Seen::is_covered));
         assert_back(&seen, 0.8 + BOUNDED_S);
@@ -179,7 +183,7 @@ fn forces_that_are_no_numbers_are_told_and_the_gyro_holds_the_roll() {
 #[test]
 fn missing_samples_are_bridged_and_cost_sigma() {
     for until_s in [0.5003, 0.502, 0.52, 0.6] {
-        let seen = faulty(SensorFault::Gap { from_s: 0.5, until_s });
+        let seen = faulty(SensorFault { failure: SensorFailure::Gap, from_s: 0.5, until_s });
         assert!(between(&seen, 0.2, 1.5).all(Seen::is_covered), "until {until_s} s");
         let before = between(&seen, 0.49, 0.5).last().and_then(|seen| seen.sigma_rad);
         let after = between(&seen, until_s, until_s + 1e-3).next().and_then(|seen| seen.sigma_rad);
@@ -190,6 +194,6 @@ fn missing_samples_are_bridged_and_cost_sigma() {
 
 #[test]
 fn an_accelerometer_that_sticks_costs_accuracy_only_while_it_does() {
-    let seen = faulty(SensorFault::Stuck { channel: 3, from_s: 0.5, until_s: 0.8 });
+    let seen = faulty(SensorFault { failure: SensorFailure::Stuck(3), from_s: 0.5, until_s: 0.8 });
     assert_back(&seen, 0.8 + BOUNDED_S);
 }

@@ -1,8 +1,7 @@
 //! The board: the order of its chips' events.
 
 use embassy_time::Instant;
-use hal_mock::assembly::Assembly;
-use hal_mock::board::Board;
+use hal_mock::board::{StageBoard, StageChips};
 use hal_mock::chip::{ReadyLine, Rig, Select, SpiChip, Transaction};
 use hal_mock::environment::{Mechanics, ShaftAngle};
 use hal_mock::fault::Blackout;
@@ -62,13 +61,15 @@ impl SpiChip<Plant<'_>> for Metronome {
     }
 }
 
-fn board(blackouts: &[Blackout]) -> Board<'_, Metronome, Metronome, Metronome, Metronome> {
-    Board {
+fn board(blackouts: &[Blackout]) -> StageBoard<'_, Metronome, Metronome, Metronome, Metronome> {
+    StageBoard {
         plant: Plant::new(&PlantConfiguration::default(), 1),
-        gyro: Metronome::every(1000),
-        accelerometer: Metronome::every(8000),
-        encoder: Metronome::default(),
-        actuator: Metronome { turns_per_s: 0.01, ..Metronome::every(250_000) },
+        chips: StageChips {
+            gyro: Metronome::every(1000),
+            accelerometer: Metronome::every(8000),
+            encoder: Metronome::default(),
+            actuator: Metronome { turns_per_s: 0.01, ..Metronome::every(250_000) },
+        },
         blackouts,
     }
 }
@@ -77,10 +78,10 @@ fn board(blackouts: &[Blackout]) -> Board<'_, Metronome, Metronome, Metronome, M
 fn every_chip_acts_in_order_of_time_and_sees_the_stage_of_that_moment() {
     let mut board = board(&[]);
     board.advance(at(2.0));
-    assert_eq!(board.gyro.seen.len(), 2000);
-    assert_eq!(board.accelerometer.seen.len(), 250);
-    assert_eq!(board.actuator.seen.len(), 8);
-    for (now, turns) in board.gyro.seen.iter().chain(&board.accelerometer.seen) {
+    assert_eq!(board.chips.gyro.seen.len(), 2000);
+    assert_eq!(board.chips.accelerometer.seen.len(), 250);
+    assert_eq!(board.chips.actuator.seen.len(), 8);
+    for (now, turns) in board.chips.gyro.seen.iter().chain(&board.chips.accelerometer.seen) {
         // The motor begins at the actuator's first event with a jump that takes the rotor to the
         // nearest of its equal positions.
         let jump = (4_608_000.0 * 0.01 * 0.25_f64).rem_euclid(1024.0) / 4_608_000.0;
@@ -97,7 +98,7 @@ fn a_transaction_comes_after_everything_that_was_due() {
     let mut reply = [0; 2];
     board.transact(Select::Encoder, &transaction, &mut reply);
     assert_eq!(reply, [1, 1]);
-    assert_eq!(board.gyro.seen.len(), 1250);
+    assert_eq!(board.chips.gyro.seen.len(), 1250);
     assert_eq!(board.ready_line(Select::Gyro, at(1.5)).next, Some(at(1.501)));
     assert!(board.ready_line(Select::Gyro, at(1.5)).active);
     assert!(!board.ready_line(Select::Encoder, at(1.5)).active);
@@ -106,7 +107,7 @@ fn a_transaction_comes_after_everything_that_was_due() {
     let recorded: Vec<_> =
         board.recorded().map(|(select, found)| (select, found.address)).collect();
     assert_eq!(recorded, [(Select::Gyro, 7), (Select::Gyro, 7), (Select::Encoder, 7)]);
-    assert_eq!(board.violations(Select::Gyro).map(Violations::count), Some(2));
+    assert_eq!(board.violations(Select::Gyro).map(|found| found.count), Some(2));
 }
 
 #[test]
@@ -118,11 +119,12 @@ fn blackouts_happen_in_their_time_and_a_motor_without_driver_stands() {
     ];
     let mut board = board(&blackouts);
     board.advance(at(0.499_999));
-    assert!(board.gyro.restarts.is_empty());
+    assert!(board.chips.gyro.restarts.is_empty());
     board.advance(at(2.0));
-    assert_eq!(board.gyro.restarts, [500_000, 1_200_000]);
-    assert_eq!(board.actuator.restarts, [1_100_000]);
+    assert_eq!(board.chips.gyro.restarts, [500_000, 1_200_000]);
+    assert_eq!(board.chips.actuator.restarts, [1_100_000]);
     let stood: Vec<f64> = board
+        .chips
         .gyro
         .seen
         .iter()
@@ -131,6 +133,6 @@ fn blackouts_happen_in_their_time_and_a_motor_without_driver_stands() {
         .collect();
     assert!(stood.iter().all(|turns| *turns == stood[0]));
     board.power_cycle(Select::Encoder, at(2.5));
-    assert_eq!(board.encoder.restarts, [2_500_000]);
-    assert_eq!(board.gyro.seen.len(), 2500);
+    assert_eq!(board.chips.encoder.restarts, [2_500_000]);
+    assert_eq!(board.chips.gyro.seen.len(), 2500);
 }

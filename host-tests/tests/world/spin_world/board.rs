@@ -6,15 +6,11 @@ use std::cell::RefCell;
 use drivers::ads1262::Ads1262;
 use drivers::ads1262::configuration::{Configuration, DataRate};
 use embassy_time::{Delay, Duration, Instant, Timer};
-use embedded_hal::digital::OutputPin;
-use hal_mock::assembly::Assembly;
 use hal_mock::chip::{Rig, Select};
-use hal_mock::converters::StartPin;
 use hal_mock::fault::Blackout;
 use hal_mock::spi::{ReadyPin, SpiPort};
 use hal_mock::spin::board::{CHIPS, SpinBoard};
 use hal_mock::spin::plant::{SpinPlant, SpinPlantConfiguration};
-use hal_mock::violation::Violations;
 
 use super::{G, assert_near};
 
@@ -47,10 +43,9 @@ async fn start(board: &RefCell<SpinBoard<'_>>) {
     for select in CHIPS {
         converter(board, select).start().await.expect("it is healthy");
     }
-    let mut start = StartPin::new(board);
-    start.set_low().expect("it does not fail");
+    board.borrow_mut().set_start(false, Instant::now());
     Timer::after(Duration::from_millis(5)).await;
-    start.set_high().expect("it does not fail");
+    board.borrow_mut().set_start(true, Instant::now());
 }
 
 #[test]
@@ -95,10 +90,10 @@ fn each_converter_shows_its_own_sensor_as_it_was_in_the_middle_of_the_conversion
         assert!(after > 0.1);
     });
     for select in CHIPS {
-        let count = board.borrow().violations(select).map(Violations::count);
+        let count = board.borrow_mut().violations(select).map(|found| found.count);
         assert_eq!(count, Some(0), "{select:?}");
     }
-    assert!(board.borrow().violations(Select::Encoder).is_none());
+    assert!(board.borrow_mut().violations(Select::Encoder).is_none());
 }
 
 #[test]

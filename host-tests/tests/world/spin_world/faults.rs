@@ -2,7 +2,7 @@
 
 use hal_mock::spin::profile::Profile;
 use hal_mock::spin::{SpinConfiguration, SpinSample, SpinWorld};
-use hal_mock::vehicle::SensorFault;
+use hal_mock::vehicle::{SensorFailure, SensorFault};
 
 use super::{G, at, flown};
 
@@ -20,7 +20,8 @@ fn channels(sample: &SpinSample) -> [f64; 5] {
 
 #[test]
 fn samples_of_a_gap_are_missing_and_no_other_changes() {
-    let [lost, all] = both(&[SensorFault::Gap { from_s: 0.05, until_s: 0.052 }]);
+    let [lost, all] =
+        both(&[SensorFault { failure: SensorFailure::Gap, from_s: 0.05, until_s: 0.052 }]);
     assert_eq!((all.len(), lost.len()), (1000, 980));
     let kept = all.iter().filter(|sample| !(0.05..0.052).contains(&sample.time_s));
     assert!(kept.eq(&lost));
@@ -29,8 +30,11 @@ fn samples_of_a_gap_are_missing_and_no_other_changes() {
 #[test]
 fn one_channel_is_no_number_for_as_long_as_stated() {
     for channel in 0..5 {
-        let [spoilt, all] =
-            both(&[SensorFault::NotANumber { channel, from_s: 0.05, until_s: 0.06 }]);
+        let [spoilt, all] = both(&[SensorFault {
+            failure: SensorFailure::NotANumber(channel),
+            from_s: 0.05,
+            until_s: 0.06,
+        }]);
         for (sample, clean) in spoilt.iter().zip(&all) {
             let (shown, expected) = (channels(sample), channels(clean));
             for other in 0..5 {
@@ -44,7 +48,8 @@ fn one_channel_is_no_number_for_as_long_as_stated() {
 
 #[test]
 fn a_channel_sticks_at_its_last_value_and_comes_back() {
-    let [stuck, all] = both(&[SensorFault::Stuck { channel: 3, from_s: 0.05, until_s: 0.06 }]);
+    let [stuck, all] =
+        both(&[SensorFault { failure: SensorFailure::Stuck(3), from_s: 0.05, until_s: 0.06 }]);
     assert!(stuck[500..600].iter().all(|sample| sample.force_m_s2[0] == all[499].force_m_s2[0]));
     assert_eq!(stuck[600], all[600]);
 }
@@ -61,7 +66,7 @@ fn sensors_clip_at_their_full_scale_and_at_an_overload() {
     assert!(samples.iter().all(|sample| sample.rate_rad_s[0] == 600.0));
     assert!(samples.iter().all(|sample| sample.force_m_s2[0] == -5000.0));
     assert!(samples.iter().all(|sample| sample.force_m_s2[1].abs() < 5000.0));
-    let faults = [SensorFault::Saturated { channel: 1, from_s: 0.0, until_s: 0.01 }];
+    let faults = [SensorFault { failure: SensorFailure::Saturated(1), from_s: 0.0, until_s: 0.01 }];
     let samples: Vec<_> =
         SpinWorld::new(&SpinConfiguration { faults: &faults, ..body }, 1).collect();
     assert_eq!((samples[0].rate_rad_s[1], samples[100].rate_rad_s[1]), (1.0, 0.0));

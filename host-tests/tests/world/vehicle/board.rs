@@ -6,16 +6,12 @@ use drivers::ads1262::Ads1262;
 use drivers::ads1262::configuration::{Configuration, DataRate};
 use drivers::adxl355::{self, Adxl355};
 use embassy_time::{Delay, Duration, Instant, Timer};
-use embedded_hal::digital::OutputPin;
-use hal_mock::assembly::Assembly;
 use hal_mock::chip::{Rig, Select};
-use hal_mock::converters::StartPin;
 use hal_mock::fault::Blackout;
 use hal_mock::spi::{ReadyPin, SpiPort};
 use hal_mock::vehicle::board::{CHIPS, GYROS, VehicleBoard};
 use hal_mock::vehicle::plant::{VehiclePlant, VehiclePlantConfiguration};
 use hal_mock::vehicle::{Leg, Stop, VehicleConfiguration};
-use hal_mock::violation::Violations;
 
 use super::{EARTH, assert_near, sway, wave};
 
@@ -82,7 +78,7 @@ fn the_sum_of_conversions_is_the_angle_that_was_turned() {
         }
     });
     for select in CHIPS {
-        let count = board.borrow().violations(select).map(Violations::count);
+        let count = board.borrow_mut().violations(select).map(|found| found.count);
         assert_eq!(count, Some(0), "{select:?}");
     }
 }
@@ -97,11 +93,10 @@ fn a_common_start_line_sets_all_converters_in_step() {
         }
         let apart = GYROS.map(|select| board.borrow_mut().ready_line(select, Instant::now()).next);
         assert!(apart[0] != apart[1] && apart[1] != apart[2], "{apart:?}");
-        let mut start = StartPin::new(&board);
-        start.set_low().expect("it does not fail");
+        board.borrow_mut().set_start(false, Instant::now());
         Timer::after(Duration::from_millis(50)).await;
         assert_eq!(board.borrow_mut().ready_line(Select::GyroDown, Instant::now()).next, None);
-        start.set_high().expect("it does not fail");
+        board.borrow_mut().set_start(true, Instant::now());
         // Table 9-13: 10.35 ms at 100 SPS by the filter of one period.
         let due = Instant::now() + Duration::from_micros(10_350);
         for select in GYROS {

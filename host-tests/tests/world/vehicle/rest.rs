@@ -2,7 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use hal_mock::vehicle::{Event, Leg, SensorFault, Stop, Vehicle, VehicleConfiguration};
+use hal_mock::vehicle::{
+    Event, Leg, SensorFailure, SensorFault, Stop, Vehicle, VehicleConfiguration,
+};
 
 use super::{EARTH, assert_near, assert_vector, run, sway, wave};
 
@@ -100,9 +102,9 @@ fn a_slammed_door_leaves_nothing_behind_and_a_person_a_new_level() {
 fn faults_are_where_they_are_asked_for() {
     let legs = [Leg::Stop(still(10.0, 1.0, 1.0))];
     let faults = [
-        SensorFault::Gap { from_s: 2.0, until_s: 3.0 },
-        SensorFault::Saturated { channel: 1, from_s: 4.0, until_s: 4.5 },
-        SensorFault::Stuck { channel: 3, from_s: 6.0, until_s: 7.0 },
+        SensorFault { failure: SensorFailure::Gap, from_s: 2.0, until_s: 3.0 },
+        SensorFault { failure: SensorFailure::Saturated(1), from_s: 4.0, until_s: 4.5 },
+        SensorFault { failure: SensorFailure::Stuck(3), from_s: 6.0, until_s: 7.0 },
     ];
     let mut configuration = VehicleConfiguration {
         faults: &faults,
