@@ -1,6 +1,7 @@
 //! Vectors and rotations in three dimensions.
 
-use core::ops::{Add, Mul, Sub};
+use super::Scalar;
+use core::ops::{Add, Sub};
 
 /// A vector: three components on the axes of some frame.
 pub type Vector = [f64; 3];
@@ -13,13 +14,13 @@ pub const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
 
 /// Scalar product of two vectors.
 #[must_use]
-pub fn dot<T: Copy + Add<Output = T> + Mul<Output = T>>(a: &[T; 3], b: &[T; 3]) -> T {
+pub fn dot<T: Scalar>(a: &[T; 3], b: &[T; 3]) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// Vector product of two vectors.
 #[must_use]
-pub fn cross<T: Copy + Sub<Output = T> + Mul<Output = T>>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
+pub fn cross<T: Scalar>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
@@ -37,7 +38,7 @@ pub fn difference<T: Copy + Sub<Output = T>>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
 
 /// Product of a vector with a scalar.
 #[must_use]
-pub fn scaled<T: Copy + Mul<Output = T>>(a: &[T; 3], factor: T) -> [T; 3] {
+pub fn scaled<T: Scalar>(a: &[T; 3], factor: T) -> [T; 3] {
     a.map(|part| part * factor)
 }
 
@@ -55,10 +56,7 @@ pub fn unit(a: &Vector) -> Vector {
 
 /// Product of a rotation matrix with a vector: its components on the other frame.
 #[must_use]
-pub fn turned<T: Copy + Add<Output = T> + Mul<Output = T>>(
-    rotation: &[[T; 3]; 3],
-    vector: &[T; 3],
-) -> [T; 3] {
+pub fn turned<T: Scalar>(rotation: &[[T; 3]; 3], vector: &[T; 3]) -> [T; 3] {
     [dot(&rotation[0], vector), dot(&rotation[1], vector), dot(&rotation[2], vector)]
 }
 

@@ -153,8 +153,7 @@ impl<'a> Turns<'a> {
 
     /// Mean of a complex quantity over the turns used.
     fn mean_complex(&self, of: impl Fn(usize) -> Complex) -> Complex {
-        let sum = self.kept().map(of).fold(Complex::default(), |sum, part| sum + part);
-        sum.scaled(1.0 / self.count().max(1) as f64)
+        self.kept().map(of).sum::<Complex>().scaled(1.0 / self.count().max(1) as f64)
     }
 
     /// Least-squares slope of a quantity over the times of the turns, and the sum of squares of the

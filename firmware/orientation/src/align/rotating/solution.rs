@@ -248,7 +248,7 @@ impl Problem<'_> {
         let gravity = self.setting.common.latitude.gravity();
         let (mut sum, mut seconds) = (Complex::default(), 0.0);
         for average in self.pairs.iter().flat_map(Pair::senses) {
-            sum = sum + average.force.scaled(average.seconds);
+            sum += average.force.scaled(average.seconds);
             seconds += average.seconds;
         }
         let variance = force_density(self.pairs).0 / seconds;
@@ -282,7 +282,7 @@ impl Problem<'_> {
             fit.passed = fit.passed.min(1.0 / libm::hypot(1.0, tangent));
             let pair = pair.without_lag(lag);
             let weight = pair.information((self.density)(pair.speed()), 1.0);
-            sum = sum + pair.even().scaled(weight);
+            sum += pair.even().scaled(weight);
             information += weight;
             let odd = pair.odd().size();
             fit.difference = fit.difference.max(odd * odd * weight);

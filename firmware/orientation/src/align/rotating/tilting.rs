@@ -159,7 +159,7 @@ fn direction(marks: &[Mark]) -> Complex {
         let [re, im] = mark.value.map(f64::from);
         Complex::new(re, im).scaled(f64::from(mark.turns))
     };
-    Complex::unit(marks.iter().map(of).fold(Complex::default(), |sum, part| sum + part).angle())
+    Complex::unit(marks.iter().map(of).sum::<Complex>().angle())
 }
 
 /// Force phasors of all turns over gravity, g.

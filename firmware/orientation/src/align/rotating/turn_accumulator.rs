@@ -360,7 +360,7 @@ impl TurnAccumulator {
             self.begin_turn();
             return false;
         };
-        self.ellipse = self.ellipse + self.turn_ellipse.error(seconds);
+        self.ellipse += self.turn_ellipse.error(seconds);
         self.ellipse_turns += 1;
         let since = self.stretches[stretch].since();
         let turn = Turn::of(&self.turn, &reference, since, seconds, &forces);

@@ -304,7 +304,7 @@ impl Lock {
             self.lift = Some(0.0);
             return trouble;
         }
-        let phase = f64::from(libm::atan2f(fit.lift.imaginary, fit.lift.real));
+        let phase = f64::from(libm::atan2f(fit.lift.im, fit.lift.re));
         let square = |part: f64| part * part;
         // A lift that changes while the scale is still uncertain has a phase error of its own.
         let bent = self.scale * square(half) * square(f64::from(fit.change / lift))

@@ -14,7 +14,6 @@
 
 pub mod attitude;
 mod circle;
-mod complex;
 mod extrema;
 mod fit;
 mod harmonics;
@@ -33,6 +32,9 @@ use crate::signal::SpinSample;
 use crate::units::{AngleIncrement, Instant};
 use crate::words;
 use crate::words::Rounded;
+
+/// Complex numbers in single precision, for the sums of a spinning body.
+type Complex = crate::math::Complex<f32>;
 
 /// Method by which the roll is corrected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
