@@ -164,7 +164,6 @@ impl Configuration {
     }
 
     /// Registers for conversions of the gyro.
-    #[must_use]
     pub const fn image(self) -> Image {
         Image::plain()
             .with(registers::MODE1, (self.filter as u8) << registers::FILTER_SHIFT)
@@ -173,7 +172,6 @@ impl Configuration {
 
     /// Registers for a conversion of the test voltage, ±1 V after the gain at a 5 V supply
     /// (table 9-8: its steps halve as the gains double).
-    #[must_use]
     pub const fn test_image(self, sign: Sign) -> Image {
         let step = self.gain as u8;
         let (positive, negative) = match sign {

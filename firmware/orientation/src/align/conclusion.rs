@@ -66,6 +66,7 @@ pub struct Azimuth {
 }
 
 /// Complete result of a session.
+#[must_use]
 #[derive(Clone, Debug)]
 pub struct Conclusion {
     /// The azimuth, or the reason for refusing it.
@@ -100,7 +101,6 @@ impl Default for Conclusion {
 
 impl Conclusion {
     /// Checks the dwells, fits the sound ones, and decides.
-    #[must_use]
     pub fn of(setting: &Setting, dwells: &[Dwell], criterion: Criterion) -> Self {
         let mut conclusion = Self::default();
         conclusion.draw(setting, dwells, criterion);

@@ -105,6 +105,7 @@ pub fn levelled(up: &Vector) -> Matrix {
 }
 
 /// Attitude as a unit quaternion: the rotation from body axes to those of a reference.
+#[must_use]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quaternion([f64; 4]);
 
@@ -117,7 +118,6 @@ impl Quaternion {
     pub const ONE: Self = Self([1.0, 0.0, 0.0, 0.0]);
 
     /// Attitude after a further rotation of the body by a rotation vector on its own axes, rad.
-    #[must_use]
     #[inline(never)]
     pub fn turned(&self, rotation: &Vector) -> Self {
         let square = dot(rotation, rotation);
@@ -133,7 +133,6 @@ impl Quaternion {
     }
 
     /// Renormalised quaternion: rounding changes its norm by 1e-16 a rotation.
-    #[must_use]
     pub fn normalised(&self) -> Self {
         let Self([w, x, y, z]) = *self;
         // One Newton step towards 1/√n: exact as long as the norm is nearly one.

@@ -155,7 +155,6 @@ impl Session {
     }
 
     /// Procedure of the session.
-    #[must_use]
     pub fn procedure(&self) -> &Procedure {
         &self.procedure
     }
@@ -206,7 +205,6 @@ impl Session {
     }
 
     /// Conclusion from the dwells so far, for reporting progress and for stopping early.
-    #[must_use]
     pub fn preview(&self) -> Conclusion {
         Conclusion::of(&self.setting, self.dwells(), Criterion::MaximumLikelihood)
     }

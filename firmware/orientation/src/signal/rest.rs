@@ -74,6 +74,7 @@ impl Sensors {
 }
 
 /// Values of the two criteria for one average.
+#[must_use]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Criteria {
     /// Kryt1 = Ω − |ω|, rad/s.
@@ -85,7 +86,6 @@ pub struct Criteria {
 impl Criteria {
     /// Criteria from the magnitudes of the mean rate, rad/s, and of the mean specific force, m/s²,
     /// for the local gravity, m/s².
-    #[must_use]
     pub fn of(rate: f64, force: f64, gravity: f64) -> Self {
         Self { rate: EARTH_RATE - rate, force: gravity - force }
     }
@@ -93,7 +93,6 @@ impl Criteria {
     /// Criteria for a single gyro that is turned between averages, from the deviation of its mean
     /// rate from its usual one, rad/s. At rest two such rates differ by at most twice the Earth's
     /// rate, so only the excess over that counts.
-    #[must_use]
     pub fn of_axis(deviation: f64, force: f64, gravity: f64) -> Self {
         let beyond = (deviation.abs() - 2.0 * EARTH_RATE).max(0.0);
         Self { rate: -beyond, force: gravity - force }

@@ -115,7 +115,6 @@ impl Coupling {
     /// Response of the gyro to a modulation of the platform's rate at a frequency in rad/s,
     /// clockwise rotation positive: the misalignment behind one pole, which lags, or leads as a
     /// high-pass does.
-    #[must_use]
     pub fn response(&self, frequency: f64) -> Complex {
         let lag = self.lag();
         let passed = self.sine * (1.0 + squared(self.frequency * lag));

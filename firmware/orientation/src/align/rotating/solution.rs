@@ -88,13 +88,11 @@ impl Pair {
     }
 
     /// Half the sum of both senses' phasors: the part that does not change its sign with the sense.
-    #[must_use]
     pub fn even(&self) -> Complex {
         (self.clockwise.phasor + self.counter.phasor).scaled(0.5)
     }
 
     /// Half the difference of both senses' phasors: the part that changes its sign with the sense.
-    #[must_use]
     pub fn odd(&self) -> Complex {
         (self.clockwise.phasor - self.counter.phasor).scaled(0.5)
     }

@@ -118,13 +118,11 @@ impl Tilting {
 
     /// Change of the gyro's phasor from the middle of all turns to a time in s, rad/s: vertical
     /// Earth rate and g-sensitivity through the changed tilt.
-    #[must_use]
     pub fn vertical_part(&self, time: f64) -> Complex {
         self.per_tilt * self.rate.scaled(time - self.since)
     }
 
     /// Change of the tilt from the middle of all turns to a time in s, g.
-    #[must_use]
     pub fn tilt_at(&self, time: f64) -> Complex {
         self.rate.scaled(time - self.since)
     }
@@ -136,7 +134,6 @@ impl Tilting {
     }
 
     /// Phasor of the rotation of the tilting base itself, rad/s.
-    #[must_use]
     pub fn turning(&self, lean: &Lean) -> Complex {
         lean.turning(self.rate)
     }

@@ -161,7 +161,6 @@ impl TurnAccumulator {
 
     /// Encoder error ε sin(2θ + ψ) that would make the platform's rotation as uniform as possible,
     /// as ε e^{jψ}, rad.
-    #[must_use]
     pub fn ellipse(&self) -> Complex {
         self.ellipse.scaled(1.0 / f64::from(self.ellipse_turns.max(1)))
     }

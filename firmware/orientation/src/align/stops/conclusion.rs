@@ -65,6 +65,7 @@ const LEFT_OUT: u32 = 4;
 const OBSERVED: f64 = 0.5;
 
 /// Complete result of the stops.
+#[must_use]
 #[derive(Clone, Debug)]
 pub struct Conclusion {
     /// Azimuth of body x at the end, or the reason for refusing it.
@@ -115,7 +116,6 @@ pub struct Found {
 
 impl Conclusion {
     /// Checks the contents of a stop detector, solves, and decides.
-    #[must_use]
     #[inline(never)]
     pub fn of(setting: &Setting, stop_detector: &mut StopDetector) -> Self {
         let now = stop_detector.now();
@@ -135,7 +135,6 @@ impl Conclusion {
     }
 
     /// Refusal without any details.
-    #[must_use]
     pub const fn refused(reason: Refusal) -> Self {
         Self { verdict: Err(reason), found: None }
     }

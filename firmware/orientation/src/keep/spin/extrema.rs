@@ -22,7 +22,6 @@ pub enum Signal {
 
 impl Signal {
     /// Roll at which the signal occurs.
-    #[must_use]
     pub fn roll(self) -> Angle {
         match self {
             Self::YMaximum => Angle(0),

@@ -321,7 +321,6 @@ impl Vertical {
     }
 
     /// End of the latest sample.
-    #[must_use]
     pub fn time(&self) -> Instant {
         self.before.time.unwrap_or_default()
     }

@@ -200,7 +200,6 @@ impl NoiseFit {
     }
 
     /// Noise model of the coefficients found; a coefficient that is not observable is zero.
-    #[must_use]
     pub fn noise(&self) -> GyroNoise {
         GyroNoise {
             quantisation: self.quantisation.value().unwrap_or(0.0),

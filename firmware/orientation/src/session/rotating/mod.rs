@@ -166,7 +166,6 @@ impl Session {
     }
 
     /// Procedure of the session.
-    #[must_use]
     pub fn procedure(&self) -> &Procedure {
         &self.procedure
     }

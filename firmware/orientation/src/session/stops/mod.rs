@@ -57,6 +57,7 @@ pub enum Phase {
 }
 
 /// Procedure of a session with stops.
+#[must_use]
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Procedure {
@@ -85,7 +86,6 @@ const LONGEST_SECONDS: f64 = 6.0 * 3600.0;
 
 impl Procedure {
     /// Procedure with this number of stops of a minute, which the stop criteria find.
-    #[must_use]
     pub fn new(stops: usize, sample_seconds: f64) -> Self {
         Self {
             rests: Rests::Found,
@@ -99,7 +99,6 @@ impl Procedure {
     }
 
     /// Procedure for a recording with this sample period, whatever it contains.
-    #[must_use]
     pub fn recorded(rests: Rests, sample_seconds: f64) -> Self {
         Self {
             rests,
@@ -191,7 +190,6 @@ impl Session {
     }
 
     /// Procedure of the session.
-    #[must_use]
     pub fn procedure(&self) -> &Procedure {
         &self.procedure
     }
