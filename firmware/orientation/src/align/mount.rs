@@ -22,7 +22,6 @@ use super::setting::Mount;
 use crate::earth::Latitude;
 use crate::signal::dwell::Dwell;
 use crate::units::{DEGREE, DEGREES_PER_RADIAN, wrapped};
-use crate::words;
 use crate::words::Rounded;
 
 /// Greatest angle of either frame, rad: ±90° (Burov, Fig. 2) and 2° for the corrections of its
@@ -80,7 +79,7 @@ pub enum MountError {
     BeyondLimit(f64),
 }
 
-words! { Station:
+crate::words! { Station:
     Self::Forward => "forward";
     Self::Right => "right";
     Self::Backward => "backward";
@@ -88,7 +87,7 @@ words! { Station:
     Self::Storage => "vertical";
 }
 
-words! { MountError:
+crate::words! { MountError:
     Self::NoStation(heading) =>
         "the mount has no station at heading {}°", Rounded::<2>(heading * DEGREES_PER_RADIAN);
     Self::Unreachable(station) =>

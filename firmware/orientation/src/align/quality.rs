@@ -13,7 +13,6 @@ use crate::signal::dwell::{Dwell, SampleFault};
 use crate::signal::rest::{Criteria, Sensors};
 use crate::signal::sway::SwayNoise;
 use crate::units::DEGREE_PER_HOUR;
-use crate::words;
 use crate::words::Rounded;
 
 /// Reason for which a dwell is excluded from the fit. Numbers are in units of the expected standard
@@ -37,7 +36,7 @@ pub enum Disturbance {
     Outlier(f64),
 }
 
-words! { Disturbance:
+crate::words! { Disturbance:
     Self::Samples(SampleFault::Saturated) => "gyro saturated";
     Self::Samples(SampleFault::Stuck) => "gyro stuck: every sample the same";
     Self::Samples(SampleFault::Missing) => "samples missing";

@@ -7,7 +7,6 @@ use super::vertical::{Trust, Vertical};
 use super::{Gyro, Setting, attitude};
 use crate::signal::InertialSample;
 use crate::units::Instant;
-use crate::words;
 use crate::words::Rounded;
 
 pub use super::heading::Azimuth;
@@ -44,7 +43,7 @@ pub enum State {
     },
 }
 
-words! { State:
+crate::words! { State:
     Self::Starting => "starting";
     Self::Level => "level";
     Self::Coasting { seconds } => "coasting for {} s: the gyros alone carry the level", Rounded::<1>(seconds);

@@ -8,7 +8,6 @@
 use super::Setting;
 use crate::checksum::{numbers, record, record_bytes};
 use crate::units::{DEGREE, DEGREES_PER_RADIAN as DEGREES};
-use crate::words;
 use crate::words::Rounded;
 
 /// Shortest rest for the comparison, s.
@@ -79,7 +78,7 @@ pub enum Doubt {
     },
 }
 
-words! { Doubt:
+crate::words! { Doubt:
     Self::NotAtRest { seconds } => "the body stood for {} s: too short", Rounded::<1>(seconds);
     Self::Tilted { degrees } => "it stands otherwise, by {}°", Rounded::<3>(degrees);
     Self::Turned { sigmas } => "the Earth turns it otherwise, by {} σ", Rounded::<1>(sigmas);

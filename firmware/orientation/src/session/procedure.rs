@@ -8,7 +8,6 @@ use crate::align::criterion::Criterion;
 use crate::error::Refusal;
 use crate::signal::butterworth::DesignError;
 use crate::units::TURN;
-use crate::words;
 use crate::words::Rounded;
 
 /// Product of the filter's cut-off and the shortest dwell: the taper then costs 1.2 % of σ.
@@ -166,7 +165,7 @@ pub enum ProcedureError {
     TableCorrupt,
 }
 
-words! { ProcedureError:
+crate::words! { ProcedureError:
     Self::Filter(error) => "no filter for this sample rate: {}", error;
     Self::DwellTooShort { samples, needed } =>
         "the shortest dwell has {} samples; the filter needs {}", samples, needed;

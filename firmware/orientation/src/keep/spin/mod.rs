@@ -30,7 +30,6 @@ use self::pace::Timing;
 use self::phase_accumulator::PhaseAccumulator;
 use crate::signal::SpinSample;
 use crate::units::{AngleIncrement, Instant};
-use crate::words;
 use crate::words::Rounded;
 
 /// Complex numbers in single precision, for the sums of a spinning body.
@@ -93,7 +92,7 @@ pub enum Accelerometer {
     Both,
 }
 
-words! { Accelerometer:
+crate::words! { Accelerometer:
     Self::Y => "the accelerometer along y shows";
     Self::Z => "the accelerometer along z shows";
     Self::Both => "both accelerometers show";
@@ -156,7 +155,7 @@ pub enum State {
     },
 }
 
-words! { State:
+crate::words! { State:
     Self::Searching => "searching: no lift was felt yet";
     Self::Locked => "locked";
     Self::Holding { seconds } => "holding on the gyro for {} s: no lift", Rounded::<2>(seconds);
