@@ -53,7 +53,7 @@ pub struct Azimuth {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Heading {
     /// Azimuth of the level frame's x, rad.
-    frame: f64,
+    pub(super) frame: f64,
     /// Variance of the azimuth that was handed over, rad².
     variance: f64,
     /// Standard deviations of the gyro's scale factor, and of an unknown ramp of its bias, rad/s².
@@ -79,14 +79,9 @@ impl Heading {
         Azimuth { angle, sigma: libm::sqrt(self.variance(vertical)) }
     }
 
-    /// Azimuth of the level frame's x, rad.
-    pub(super) fn frame(&self) -> f64 {
-        self.frame
-    }
-
     /// Variance of the present azimuth, rad².
     fn variance(&self, vertical: &Vertical) -> f64 {
-        let motion = vertical.course();
+        let motion = &vertical.course;
         let scale = self.scale * f64::from(motion.turned);
         let ramp = self.ramp * f64::from(motion.ramp);
         self.variance + f64::from(vertical.turn_variance()) + scale * scale + ramp * ramp

@@ -106,8 +106,10 @@ fn the_shortest_record_of_white_noise_gives_n() {
 
 #[test]
 fn the_fit_says_its_units() {
-    let text = fit(noise(1_000_000, 5000)).expect("white noise").to_string();
-    for unit in ["″", "°/√h", "°/h;", "°/h/√h", "°/h²"] {
-        assert!(text.contains(unit), "{text}");
+    let found = fit(noise(1_000_000, 5000)).expect("white noise").in_field_units();
+    let units = ["arc seconds", "°/√h", "°/h", "°/h/√h", "°/h²"];
+    for ((coefficient, estimate), unit) in found.into_iter().zip(units) {
+        let text = format!("{coefficient}: {estimate}");
+        assert!(text.contains(&format!(", {unit}: ")), "{text}");
     }
 }

@@ -107,8 +107,8 @@ pub(super) struct Sweep {
     crossings: Vec<Crossing, { 2 * CAPACITY }>,
     /// Piece at index 0, before the first crossing.
     start: Piece,
-    /// Bound on the rounding of the continuous sum.
-    rounding: f64,
+    /// Bound on the difference between a piece at a grid index and the exact sum there.
+    pub(super) rounding: f64,
 }
 
 impl Sweep {
@@ -160,11 +160,6 @@ impl Sweep {
     fn cross(&mut self, at: f64, rises: bool) {
         // Two crossings for each of fewer terms than the capacity always fit.
         let _ = self.crossings.push(Crossing { at, term: self.terms.len() as u16, rises });
-    }
-
-    /// Bound on the difference between a piece at a grid index and the exact sum there.
-    pub(super) fn rounding(&self) -> f64 {
-        self.rounding
     }
 
     /// Pieces from index 0 round the circle, empty ones included.

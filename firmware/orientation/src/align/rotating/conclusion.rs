@@ -160,8 +160,8 @@ impl Conclusion {
         if let Some(trouble) = turn_accumulator.accelerometer() {
             return Err(Refusal::Device { device: Device::Accelerometer, trouble });
         }
-        if turn_accumulator.slip() != 0.0 {
-            return Err(Refusal::EncoderSlipped { angle: turn_accumulator.slip() * DEGREES });
+        if turn_accumulator.slip != 0.0 {
+            return Err(Refusal::EncoderSlipped { angle: turn_accumulator.slip * DEGREES });
         }
         Ok(())
     }

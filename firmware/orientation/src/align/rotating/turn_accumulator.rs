@@ -64,7 +64,7 @@ pub struct TurnAccumulator {
     /// Averages samples into blocks.
     blocks: Blocks,
     /// Kind of motion that is accumulated.
-    mode: Mode,
+    pub(crate) mode: Mode,
     /// The two latest blocks: a block is used when the platform's acceleration in it is known.
     latest: [Option<Block>; 2],
     /// Reference values of the turn in progress.
@@ -95,8 +95,8 @@ pub struct TurnAccumulator {
     stretches: Vec<Stretch, STRETCHES>,
     /// Interruption in progress.
     broken: Option<Broken>,
-    /// Greatest slip of the encoder so far, rad.
-    slip: f64,
+    /// Greatest slip of the encoder so far, rad; zero without a slip.
+    pub(super) slip: f64,
     /// Latest force along the sensitive axis.
     last_force: SpecificForce,
     /// Number of equal forces in succession, at present and at most; number of forces at the limit.
@@ -135,12 +135,6 @@ impl TurnAccumulator {
         }
     }
 
-    /// Kind of motion that is accumulated at present.
-    #[must_use]
-    pub fn mode(&self) -> Mode {
-        self.mode
-    }
-
     /// Stretches at constant rate so far.
     #[must_use]
     pub fn stretches(&self) -> &[Stretch] {
@@ -151,12 +145,6 @@ impl TurnAccumulator {
     #[must_use]
     pub fn uneven(&self) -> &[Uneven] {
         &self.uneven
-    }
-
-    /// Greatest slip of the encoder, rad; zero without a slip.
-    #[must_use]
-    pub fn slip(&self) -> f64 {
-        self.slip
     }
 
     /// Encoder error ε sin(2θ + ψ) that would make the platform's rotation as uniform as possible,

@@ -123,7 +123,7 @@ impl Conclusion {
             return Self { verdict: Err(reason), found: None };
         }
         let mut found = Found::of(setting, &path(setting, stop_detector, &now));
-        while found.correlation < SWAYS && stop_detector.blocks().all().len() >= MANY {
+        while found.correlation < SWAYS && stop_detector.blocks.list.len() >= MANY {
             stop_detector.coarsen();
             found = Found::of(setting, &path(setting, stop_detector, &now));
         }
@@ -147,8 +147,8 @@ fn path<'a>(setting: &Setting, stop_detector: &'a StopDetector, now: &(f64, Carr
         gravity: setting.common.latitude.gravity(),
         start: stop_detector.start(),
         stops: stop_detector.stops(),
-        blocks: stop_detector.blocks(),
-        drives: stop_detector.drives(),
+        blocks: &stop_detector.blocks,
+        drives: &stop_detector.drives,
         now: now.0,
         carried: now.1,
         stated_density: 0.5 * setting.force_noise * setting.force_noise,
@@ -157,14 +157,14 @@ fn path<'a>(setting: &Setting, stop_detector: &'a StopDetector, now: &(f64, Carr
 
 /// Refuses lost rotation, missing or short stops, and drives that are too short.
 fn inspect(setting: &Setting, stop_detector: &StopDetector) -> Result<(), Refusal> {
-    match stop_detector.loss() {
+    match stop_detector.loss {
         Some(Loss::Gap(at, seconds)) => return Err(Refusal::RotationMissing { at, seconds }),
         Some(Loss::Saturated(at)) => return Err(Refusal::RotationClipped { at }),
         None => {}
     }
     let stops = stop_detector.stops();
-    let is_whole = *stop_detector.rests() == Rests::Whole;
-    let seconds = stop_detector.fleeting();
+    let is_whole = stop_detector.rests == Rests::Whole;
+    let seconds = stop_detector.fleeting;
     if seconds > 0.0 && stops.len() < 2 {
         return Err(Refusal::StopTooShort { stop: stops.len() + 1, seconds, least: LEAST_REST });
     }
@@ -195,7 +195,7 @@ fn inspect_stop(
     index: usize,
     stop: &Stop,
 ) -> Result<(), Refusal> {
-    let rest: f64 = stop_detector.blocks().of(index).map(|block| f64::from(block.seconds)).sum();
+    let rest: f64 = stop_detector.blocks.of(index).map(|block| f64::from(block.seconds)).sum();
     if rest < LEAST_REST {
         return Err(Refusal::StopTooShort { stop: index + 1, seconds: rest, least: LEAST_REST });
     }
@@ -304,7 +304,7 @@ impl Found {
             plain: *plain,
             chi_square: [solution.chi_square, solution.degrees],
             correlation: solution.correlation(),
-            left_out: [solution.left_out, path.blocks.all().len() as u32],
+            left_out: [solution.left_out, path.blocks.list.len() as u32],
             turning: solution.turning,
             turning_rate: solution.turning_rate,
             unsteady: solution.unsteady,

@@ -38,7 +38,7 @@ pub(super) struct Extrema {
     /// Whether the extremum is located between samples.
     is_interpolated: bool,
     /// Whether a correction has been made.
-    has_corrected: bool,
+    pub(super) has_corrected: bool,
     /// The two previous pairs of forces, older first.
     before: Option<[[SpinForce; 2]; 2]>,
     /// Latest pair of forces.
@@ -49,11 +49,6 @@ impl Extrema {
     /// Detector before the first sample.
     pub(super) fn new(is_interpolated: bool) -> Self {
         Self { is_interpolated, has_corrected: false, before: None, latest: None }
-    }
-
-    /// Whether a correction has been made.
-    pub(super) fn has_corrected(&self) -> bool {
-        self.has_corrected
     }
 
     /// Discards the previous forces, which do not join on to those after a gap.

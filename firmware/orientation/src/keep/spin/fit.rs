@@ -40,9 +40,9 @@ pub(super) struct Sums {
     half: f32,
     scale: f32,
     /// Number of samples, including those without force.
-    samples: u32,
+    pub(super) samples: u32,
     /// Number of samples with a force.
-    count: u32,
+    pub(super) count: u32,
     /// Sum of the places.
     place: f32,
     /// Sum of the squared places.
@@ -93,20 +93,10 @@ impl Sums {
         Self { half, scale: 1.0 / half, ..Self::default() }
     }
 
-    /// Number of samples, including those without force.
-    pub(super) fn samples(&self) -> u32 {
-        self.samples
-    }
-
     /// Part of the samples after the middle, where the fit gives the phase.
     pub(super) fn part_after_middle(&self) -> f32 {
         let samples = self.samples as f32;
         (samples - 1.0 - self.half) / samples
-    }
-
-    /// Number of samples with a force.
-    pub(super) fn count(&self) -> u32 {
-        self.count
     }
 
     /// Skips missing samples, which have no force.

@@ -222,7 +222,7 @@ impl Spin {
     pub fn push(&mut self, sample: &SpinSample) -> Option<Signal> {
         let missing = self.missing(sample.time);
         let [turned, ..] = sample.turned;
-        let before = self.pace.before();
+        let before = self.pace.before;
         let turned = self.pace.take(turned);
         if missing > 0.0 || self.pace.is_lost() {
             self.bridge(missing, [before, turned]);
@@ -309,7 +309,7 @@ impl Spin {
     pub fn state(&self) -> State {
         let now = self.latest.unwrap_or_default();
         match &self.corrector {
-            Corrector::Extrema(extrema) if extrema.has_corrected() => State::Locked,
+            Corrector::Extrema(extrema) if extrema.has_corrected => State::Locked,
             Corrector::Extrema(_) => State::Searching,
             Corrector::Lock(lock) => match self.pace.stuck() {
                 Some(samples) => {

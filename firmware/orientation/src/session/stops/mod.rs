@@ -229,7 +229,7 @@ impl Session {
         let begun = *self.begun.get_or_insert(now);
         self.tell_displacements();
         let count = self.stop_detector.stops().len();
-        let phase = match (self.stop_detector.is_at_rest(), count) {
+        let phase = match (self.stop_detector.is_at_rest, count) {
             (_, 0) => Phase::Waiting,
             (true, count) => Phase::Standing(count - 1),
             (false, count) => Phase::Driving(count),
@@ -238,7 +238,7 @@ impl Session {
             self.is_told = false;
             self.phase = phase;
         }
-        if self.procedure.stops > 0 && self.stop_detector.loss().is_some() {
+        if self.procedure.stops > 0 && self.stop_detector.loss.is_some() {
             return self.conclude();
         }
         if now.seconds() - begun.seconds() > self.procedure.longest_seconds {
@@ -281,7 +281,7 @@ impl Session {
         let Procedure { sample_seconds: told, period_tolerance, .. } = self.procedure;
         let found = self.stop_detector.elapsed() / f64::from(self.samples.max(1));
         // Missing samples are reported as such instead.
-        let is_whole = self.samples > 0 && self.stop_detector.loss().is_none();
+        let is_whole = self.samples > 0 && self.stop_detector.loss.is_none();
         contradiction(told, found, period_tolerance).filter(|_| is_whole)
     }
 
