@@ -154,7 +154,7 @@ impl Conclusion {
     fn level(&mut self, setting: &Setting, dwells: &[Dwell]) {
         let kept = dwells.iter().zip(&self.disturbances).filter(|(_, why)| why.is_none());
         let (gravity, bias) = (setting.latitude.gravity(), setting.accelerometer_bias_sigma);
-        self.tilt = level::tilt_in(&setting.mount, kept.map(|(dwell, _)| dwell), gravity, bias);
+        self.tilt = level::tilt(&setting.mount, kept.map(|(dwell, _)| dwell), gravity, bias);
     }
 
     /// Fits, and excludes the dwell with the largest residual, until none stands out.

@@ -181,18 +181,9 @@ impl TiltRate {
 /// Fits the tilt to the dwells' mean forces, for gravity in m/s² and the 1σ of each accelerometer
 /// bias in m/s² (zero: taken as free of bias).
 ///
-/// The accelerometer rides on a stage. The scatter of the dwells about a first fit weights the
-/// second. Without forces the platform is taken as level and the tilt as not measured.
+/// The mount tells whether the accelerometer rides on the stage. The scatter of the dwells about a
+/// first fit weights the second. Without forces the platform is taken as level and the tilt as not measured.
 pub fn tilt<'a>(
-    dwells: impl Iterator<Item = &'a Dwell> + Clone,
-    gravity: f64,
-    bias_sigma: f64,
-) -> Tilt {
-    tilt_in(&Mount::STAGE, dwells, gravity, bias_sigma)
-}
-
-/// Fits the tilt to the dwells' mean forces as [`tilt`] does, for the accelerometer of any mount.
-pub fn tilt_in<'a>(
     mount: &Mount,
     dwells: impl Iterator<Item = &'a Dwell> + Clone,
     gravity: f64,

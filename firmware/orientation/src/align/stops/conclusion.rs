@@ -10,7 +10,7 @@ use super::filter::{BIAS, FORCE, LATITUDE, PLACE, Row, SCALE, START};
 use super::path::Path;
 use super::place::Place;
 use super::plain::Plain;
-use super::solution::{Belief, Solution, now_row};
+use super::solution::{Belief, Solution, Tally, now_row};
 use super::stop::Stop;
 use super::stop_detector::{Loss, Rests, StopDetector, WINDOW};
 use crate::align::budget::Budget;
@@ -100,18 +100,10 @@ pub struct Found {
     pub widening: f64,
     /// Result of the original method (Szymanowski 2003).
     pub plain: Plain,
-    /// Chi-square of the blocks, and its degrees of freedom.
-    pub chi_square: [f64; 2],
-    /// Correlation of neighbouring blocks.
-    pub correlation: f64,
-    /// Number of excluded blocks, and number of all blocks.
-    pub left_out: [u32; 2],
-    /// Number of stops at which the vehicle turned, whose rest rates are excluded.
-    pub turning: u32,
-    /// Greatest rate at which it turned there relative to the Earth, rad/s.
-    pub turning_rate: f64,
-    /// Number of drives that did not end at rest, whose velocity is excluded.
-    pub unsteady: u32,
+    /// Statistics of the last run along the path.
+    pub tally: Tally,
+    /// Number of all blocks at rest.
+    pub blocks: u32,
 }
 
 impl Conclusion {
@@ -123,7 +115,7 @@ impl Conclusion {
             return Self { verdict: Err(reason), found: None };
         }
         let mut found = Found::of(setting, &path(setting, stop_detector, &now));
-        while found.correlation < SWAYS && stop_detector.blocks.list.len() >= MANY {
+        while found.tally.correlation() < SWAYS && stop_detector.blocks.list.len() >= MANY {
             stop_detector.coarsen();
             found = Found::of(setting, &path(setting, stop_detector, &now));
         }
@@ -218,7 +210,7 @@ fn inspect_stop(
 
 /// Refuses where the excluded data contradict the rest. A vehicle may be turned at a stop, and a
 /// drive may end rolling; but where most of them deviate, the model is wrong.
-fn agree(found: &Found, stops: u32) -> Result<(), Refusal> {
+fn agree(found: &Tally, stops: u32) -> Result<(), Refusal> {
     let drives = stops.saturating_sub(1);
     // A single rest has no other data: the vehicle may be rocked, but not carried round.
     let is_carried = drives == 0 && found.turning_rate > CARRIED;
@@ -233,16 +225,15 @@ fn agree(found: &Found, stops: u32) -> Result<(), Refusal> {
 
 /// Tests the plausibility of the result.
 fn judge(setting: &Setting, found: &Found, stops: u32) -> Result<(), Refusal> {
-    agree(found, stops)?;
-    let [left_out, blocks] = found.left_out;
+    agree(&found.tally, stops)?;
+    let (Tally { left_out, chi_square, degrees, .. }, blocks) = (found.tally, found.blocks);
     if left_out * LEFT_OUT > blocks {
         return Err(Refusal::RestDisturbed { disturbed: left_out, of: blocks });
     }
-    let [chi_square, degrees] = found.chi_square;
     if chi_square_tail(chi_square / UNSURE, degrees) < SCATTER_PROBABILITY {
         return Err(Refusal::ResidualsNotWhite { ratio: chi_square / degrees });
     }
-    let correlation = found.correlation;
+    let correlation = found.tally.correlation();
     if correlation > CORRELATED {
         return Err(Refusal::ResidualsCorrelated { correlation });
     }
@@ -302,12 +293,8 @@ impl Found {
             are_biases_observed: bias_sigmas.iter().all(|sigma| *sigma <= OBSERVED * known),
             widening: solution.widening,
             plain: *plain,
-            chi_square: [solution.chi_square, solution.degrees],
-            correlation: solution.correlation(),
-            left_out: [solution.left_out, path.blocks.list.len() as u32],
-            turning: solution.turning,
-            turning_rate: solution.turning_rate,
-            unsteady: solution.unsteady,
+            tally: solution.tally,
+            blocks: path.blocks.list.len() as u32,
         }
     }
 }
