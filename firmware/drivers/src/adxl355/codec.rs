@@ -3,7 +3,7 @@
 use orientation::units::{SpecificForce, Temperature};
 
 use super::registers::{OFFSET_X_H, OutputRate, POWER_CTL, RANGE_2_G, STANDBY, Status};
-use crate::fault::Fault;
+use crate::fault::{self, Fault};
 
 /// Number of registers in a burst, from the status to the last byte of z.
 pub const BURST: usize = 13;
@@ -118,10 +118,5 @@ pub fn compare(found: &[u8; SETTINGS], expected: &[u8; SETTINGS]) -> Result<(), 
     if is_silent || found[usize::from(POWER_CTL - OFFSET_X_H)] == STANDBY {
         return Err(Fault::Reset);
     }
-    for (register, (found, expected)) in (OFFSET_X_H..).zip(found.iter().zip(expected)) {
-        if found != expected {
-            return Err(Fault::NotAsWritten { register });
-        }
-    }
-    Ok(())
+    fault::compare(OFFSET_X_H, found, expected)
 }

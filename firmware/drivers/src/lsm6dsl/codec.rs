@@ -6,7 +6,7 @@ use super::Configuration;
 use super::registers::{
     BLOCK_DATA_UPDATE, CTRL1_XL, ForceRange, INCREMENT, RateRange, control_force, control_rate,
 };
-use crate::fault::Fault;
+use crate::fault::{self, Fault};
 
 /// Bytes of a burst: temperature, three axes of the gyro, three of the accelerometer.
 pub const BURST: usize = 14;
@@ -127,10 +127,5 @@ pub fn compare(found: &[u8; SETTINGS], expected: &[u8; SETTINGS]) -> Result<(), 
     if found[..2] == [0; 2] || *found == [0xFF; SETTINGS] {
         return Err(Fault::Reset);
     }
-    for (register, (found, expected)) in (CTRL1_XL..).zip(found.iter().zip(expected)) {
-        if found != expected {
-            return Err(Fault::NotAsWritten { register });
-        }
-    }
-    Ok(())
+    fault::compare(CTRL1_XL, found, expected)
 }

@@ -86,16 +86,11 @@ impl Setting {
 
     /// Noise parameters of the gyros for the filter.
     fn expected(&self) -> Expected {
+        let squared = |part: f32| part * part;
         Expected {
-            walk: self.gyros.map(|gyro| {
-                let walk = gyro.noise.angle_random_walk as f32;
-                walk * walk
-            }),
+            walk: self.gyros.map(|gyro| squared(gyro.noise.angle_random_walk as f32)),
             drift: self.gyros.map(|gyro| gyro.drift() as f32),
-            scale: self.gyros.map(|gyro| {
-                let scale = gyro.scale_sigma as f32;
-                scale * scale
-            }),
+            scale: self.gyros.map(|gyro| squared(gyro.scale_sigma as f32)),
         }
     }
 }

@@ -104,6 +104,17 @@ pub fn levelled(up: &Vector) -> Matrix {
     [cross(&right, &down), right, down]
 }
 
+/// Rotation matrix of a unit quaternion w, x, y, z.
+#[must_use]
+pub fn matrix<T: Scalar>([w, x, y, z]: [T; 4]) -> [[T; 3]; 3] {
+    let (one, two) = (T::of(1.0), T::of(2.0));
+    [
+        [one - two * (y * y + z * z), two * (x * y - w * z), two * (x * z + w * y)],
+        [two * (x * y + w * z), one - two * (x * x + z * z), two * (y * z - w * x)],
+        [two * (x * z - w * y), two * (y * z + w * x), one - two * (x * x + y * y)],
+    ]
+}
+
 /// Attitude as a unit quaternion: the rotation from body axes to those of a reference.
 #[must_use]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,23 +154,13 @@ impl Quaternion {
     /// Rotation matrix of the attitude.
     #[must_use]
     pub fn matrix(&self) -> Matrix {
-        let Self([w, x, y, z]) = *self;
-        [
-            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
-            [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
-            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
-        ]
+        matrix(self.0)
     }
 
     /// Rotation matrix of the attitude in single precision, to 1e-7.
     #[must_use]
     pub fn rough_matrix(&self) -> [[f32; 3]; 3] {
-        let [w, x, y, z] = self.0.map(|part| part as f32);
-        [
-            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
-            [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
-            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
-        ]
+        matrix(self.0.map(|part| part as f32))
     }
 }
 

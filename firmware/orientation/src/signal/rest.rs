@@ -7,7 +7,6 @@
 //! time.
 
 use crate::earth::EARTH_RATE;
-use crate::noise::model::GyroNoise;
 
 /// Limit of a criterion at rest, in standard deviations.
 const BOUND: f64 = 4.0;
@@ -32,7 +31,7 @@ pub struct Limits {
 pub struct Sensors {
     /// Angle random walk N of each gyro, rad/√s.
     pub angle_random_walk: f64,
-    /// 1σ of the gyros' biases, rad/s.
+    /// 1σ of the gyros' biases, bias instability included, rad/s.
     pub bias_sigma: f64,
     /// Noise of the accelerometers, one-sided, m/s²/√Hz.
     pub force_noise: f64,
@@ -41,25 +40,6 @@ pub struct Sensors {
 }
 
 impl Sensors {
-    /// Sensors from the noise model of each gyro, the 1σ of the gyros' biases, rad/s, the noise of
-    /// the accelerometers, m/s²/√Hz one-sided, and the 1σ of their biases, m/s². The bias
-    /// instability of the model is added to the bias, root sum square.
-    #[must_use]
-    pub fn new(
-        noise: &GyroNoise,
-        bias_sigma: f64,
-        force_noise: f64,
-        force_bias_sigma: f64,
-    ) -> Self {
-        let bias_sigma = libm::hypot(bias_sigma, noise.bias_instability);
-        Self {
-            angle_random_walk: noise.angle_random_walk,
-            bias_sigma,
-            force_noise,
-            force_bias_sigma,
-        }
-    }
-
     /// Limits for averages over this many seconds (> 0).
     #[must_use]
     pub fn limits(&self, seconds: f64) -> Limits {

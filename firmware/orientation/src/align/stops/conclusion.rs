@@ -6,11 +6,11 @@
 //! Earth-rate ratio and the budget.
 
 use super::Setting;
-use super::filter::{BIAS, FORCE, LATITUDE, PLACE, Row, SCALE, START};
+use super::filter::{BIAS, FORCE, LATITUDE, NOW, PLACE, Row, SCALE, START, placed};
 use super::path::Path;
 use super::place::Place;
 use super::plain::Plain;
-use super::solution::{Belief, Solution, Tally, now_row};
+use super::solution::{Belief, Solution, Tally};
 use super::stop::Stop;
 use super::stop_detector::{Loss, Rests, StopDetector, WINDOW};
 use crate::align::budget::Budget;
@@ -317,7 +317,7 @@ impl End {
         let displaced = [north + farther_north, east + farther_east];
         let there = path.place.navigation(path.now - path.start, displaced);
         let navigation = product(&transposed(&there), &transposed(&solution.frame));
-        let error = solution.filter.three(super::filter::NOW);
+        let error = solution.filter.three(NOW);
         let body = product(&without(&error), &path.carried.attitude.matrix());
         let forward = transposed(&body)[0];
         Self { attitude: product(&navigation, &body), navigation, forward }
@@ -326,7 +326,7 @@ impl End {
     /// Derivatives of the azimuth at the end with respect to the states: the rotation φ now, and
     /// the displacement east.
     fn row(&self, path: &Path) -> Row {
-        let mut row = now_row(&gradient(&self.navigation, &self.forward));
+        let mut row = placed(NOW, &gradient(&self.navigation, &self.forward));
         row[PLACE + 1] = path.place.convergence();
         row
     }
@@ -345,10 +345,7 @@ fn start_attitude(solution: &Solution) -> Matrix {
 
 /// Derivatives of the azimuth at the start with respect to the states.
 fn start_row(solution: &Solution) -> Row {
-    let mut row = [0.0; super::filter::STATES];
-    let gradient = gradient(&transposed(&solution.frame), &IDENTITY[0]);
-    row[START..START + 3].copy_from_slice(&gradient);
-    row
+    placed(START, &gradient(&transposed(&solution.frame), &IDENTITY[0]))
 }
 
 /// Derivative of the azimuth of an axis, given on the start frame, with respect to an error φ of

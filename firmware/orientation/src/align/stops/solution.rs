@@ -3,8 +3,8 @@
 use super::Setting;
 use super::block::Block;
 use super::filter::{
-    BIAS, Filter, LATITUDE, Measurement, NOW, PLACE, START, STATES, VELOCITY, force_row, rest_row,
-    velocity_row,
+    BIAS, Filter, LATITUDE, Measurement, PLACE, START, STATES, VELOCITY, force_row, placed,
+    rest_row, velocity_row,
 };
 use super::path::Path;
 use super::place::{Place, up};
@@ -368,8 +368,7 @@ impl Run<'_> {
         let variance = self.velocity_variance(index, driven);
         let measurements: [Measurement; 2] = core::array::from_fn(|axis| {
             let direction = turned(&solution.frame, &along[axis]);
-            let mut row = [0.0; STATES];
-            row[VELOCITY..VELOCITY + 3].copy_from_slice(&direction);
+            let row = placed(VELOCITY, &direction);
             Measurement { row, value: dot(&beyond, &direction), variance }
         });
         if self.take(&mut solution.filter, &measurements).is_none() {
@@ -520,12 +519,4 @@ fn start_covariance(frame: &Matrix) -> Matrix {
 /// Change of a sensitivity, in double precision.
 fn gained(now: &Rough, before: &Rough) -> Matrix {
     core::array::from_fn(|row| difference(&now[row].map(f64::from), &before[row].map(f64::from)))
-}
-
-/// Row of a quantity that depends on φ now with this gradient.
-#[must_use]
-pub fn now_row(gradient: &Vector) -> [f64; STATES] {
-    let mut row = [0.0; STATES];
-    row[NOW..NOW + 3].copy_from_slice(gradient);
-    row
 }
