@@ -48,7 +48,10 @@ words! { Fault:
 /// # Errors
 /// [`Fault::NotAsWritten`] with the first register that differs.
 pub(crate) fn compare(first: u8, found: &[u8], written: &[u8]) -> Result<(), Fault> {
-    let mut registers = (first..).zip(found.iter().zip(written));
-    let wrong = registers.find(|(_, (found, written))| found != written);
-    wrong.map_or(Ok(()), |(register, _)| Err(Fault::NotAsWritten { register }))
+    for (register, (found, written)) in (first..).zip(found.iter().zip(written)) {
+        if found != written {
+            return Err(Fault::NotAsWritten { register });
+        }
+    }
+    Ok(())
 }

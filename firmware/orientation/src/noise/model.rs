@@ -37,13 +37,6 @@ impl GyroNoise {
         Self { quantisation: q * ARCSECOND, ..self }
     }
 
-    /// Model from Q, N, B, K and R in SI units, in that order.
-    pub fn of(coefficients: [f64; 5]) -> Self {
-        let [quantisation, angle_random_walk, bias_instability, rate_random_walk, rate_ramp] =
-            coefficients;
-        Self { quantisation, angle_random_walk, bias_instability, rate_random_walk, rate_ramp }
-    }
-
     /// Coefficients Q, N, B, K and R in SI units, in that order.
     #[must_use]
     pub fn coefficients(&self) -> [f64; 5] {
@@ -92,15 +85,6 @@ impl GyroNoise {
     #[must_use]
     pub fn is_coloured(&self) -> bool {
         self.bias_instability > 0.0 || self.rate_random_walk > 0.0
-    }
-
-    /// What successive dwells share, B and K alone, in another unit, of which one rad/s is `scale`.
-    pub fn coloured_part(&self, scale: f64) -> Self {
-        Self {
-            bias_instability: self.bias_instability * scale,
-            rate_random_walk: self.rate_random_walk * scale,
-            ..Self::default()
-        }
     }
 
     /// The model without drift: N alone remains.

@@ -58,7 +58,7 @@ pub fn rate_sigma(
     shortest: f64,
     visits: impl Iterator<Item = Visit>,
 ) -> Option<f64> {
-    let mut whitener = Whitener::<4, f32>::new(&noise.coloured_part(PER_HOUR), shortest);
+    let mut whitener = Whitener::<4, f32>::new(&in_degrees_per_hour(noise), shortest);
     let mut regression = Regression::<COLUMNS, f32>::default();
     let (mut first, mut own) = (None, Own::default());
     for Visit { unit: [cosine, sine], start, seconds } in visits {
@@ -93,5 +93,14 @@ impl Own {
             self.variance = noise.own_variance(seconds) * (PER_HOUR * PER_HOUR);
         }
         self.variance
+    }
+}
+
+/// Noise model with rates in °/h instead of rad/s, without the white part.
+fn in_degrees_per_hour(noise: &GyroNoise) -> GyroNoise {
+    GyroNoise {
+        bias_instability: noise.bias_instability * PER_HOUR,
+        rate_random_walk: noise.rate_random_walk * PER_HOUR,
+        ..GyroNoise::default()
     }
 }

@@ -350,11 +350,16 @@ impl Problem<'_> {
     fn whitener(&self, noise: &GyroNoise) -> Whitener<{ COLUMNS + 1 }> {
         let scale = 1.0 / self.setting.latitude.horizontal_rate();
         let shortest = self.dwells.iter().map(|dwell| dwell.seconds).fold(f64::INFINITY, f64::min);
+        let relative = GyroNoise {
+            bias_instability: noise.bias_instability * scale,
+            rate_random_walk: noise.rate_random_walk * scale,
+            ..GyroNoise::default()
+        };
         let sway = SwayNoise {
             angle_variance: self.setting.sway.angle_variance * scale * scale,
             ..self.setting.sway
         };
-        Whitener::new(&noise.coloured_part(scale), shortest).with_sway(&sway)
+        Whitener::new(&relative, shortest).with_sway(&sway)
     }
 
     /// Passes the row of each dwell, and the whitened row, to `each`. It is one function for all

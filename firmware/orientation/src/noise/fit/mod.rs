@@ -200,7 +200,14 @@ impl NoiseFit {
 
     /// Noise model of the coefficients found; a coefficient that is not observable is zero.
     pub fn noise(&self) -> GyroNoise {
-        GyroNoise::of(self.estimates().map(|estimate| estimate.value().unwrap_or(0.0)))
+        let found = |estimate: Estimate| estimate.value().unwrap_or(0.0);
+        GyroNoise {
+            quantisation: found(self.quantisation),
+            angle_random_walk: found(self.angle_random_walk),
+            bias_instability: found(self.bias_instability),
+            rate_random_walk: found(self.rate_random_walk),
+            rate_ramp: found(self.rate_ramp),
+        }
     }
 
     /// All estimates in the field's units, as [`Coefficient`] states them.
