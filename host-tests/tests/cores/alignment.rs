@@ -355,6 +355,6 @@ fn an_unknown_noise_is_taken_from_the_dwells() {
     let mut generator = Generator::new(8);
     let dwells: Vec<Dwell> = (0..20).map(|_| blocks(&mut generator, 1000, |_| 0.0)).collect();
     let setting = Setting { white_known: false, ..gyro() };
-    let found = ExpectedScatter::of(&setting, &dwells).white().sqrt();
+    let found = ExpectedScatter::of(&setting, &dwells).white.sqrt();
     assert!((found / 1e-7 - 1.0).abs() < 0.15, "{found}");
 }

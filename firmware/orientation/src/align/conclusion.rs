@@ -138,7 +138,7 @@ impl Conclusion {
     #[inline(never)]
     fn begin(&mut self, setting: &Setting, dwells: &[Dwell]) -> Option<f64> {
         let norm = ExpectedScatter::of(setting, dwells);
-        self.angle_random_walk = libm::sqrt(norm.white());
+        self.angle_random_walk = libm::sqrt(norm.white);
         for dwell in dwells {
             // The vectors hold as many entries as a session has dwells, so the pushes cannot fail.
             let _ = self.disturbances.push(norm.disturbance(dwell));

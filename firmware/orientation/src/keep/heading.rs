@@ -7,6 +7,7 @@
 
 use super::vertical::Vertical;
 use super::{Gyro, attitude};
+use crate::align::conclusion::Azimuth;
 use crate::earth::Latitude;
 use crate::units::{TURN, wrapped};
 
@@ -38,15 +39,6 @@ pub enum Realigned {
         /// Distance between the two, in σ.
         sigmas: f64,
     },
-}
-
-/// An azimuth with its standard deviation, rad.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Azimuth {
-    /// Azimuth of body x from north, clockwise from above, [0, 2π).
-    pub angle: f64,
-    /// Standard deviation of the azimuth, 1σ.
-    pub sigma: f64,
 }
 
 /// An azimuth that is held.

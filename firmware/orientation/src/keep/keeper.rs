@@ -9,7 +9,7 @@ use crate::signal::InertialSample;
 use crate::units::Instant;
 use crate::words::Rounded;
 
-pub use super::heading::Azimuth;
+pub use crate::align::conclusion::Azimuth;
 
 /// Standard deviation at which an azimuth carries no information, 1σ, rad: it is withdrawn.
 const NOWHERE: f64 = 0.5;

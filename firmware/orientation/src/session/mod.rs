@@ -360,7 +360,7 @@ impl Session {
 
     /// Standard deviation of the difference of two dwells, 1σ, rad/s.
     fn difference_sigma(&self) -> f64 {
-        let white = ExpectedScatter::of(&self.setting, self.dwells()).white();
+        let white = ExpectedScatter::of(&self.setting, self.dwells()).white;
         libm::sqrt(2.0 * white / self.procedure.schedule.shortest())
     }
 

@@ -90,6 +90,13 @@ impl Piece {
     pub(super) fn maximum(&self) -> f64 {
         circle(atan2(-self.im, self.re) / STEP)
     }
+
+    /// Adds a multiple of a term to the piece.
+    fn turn(&mut self, term: Term, times: f64) {
+        self.re += times * term.re;
+        self.im += times * term.im;
+        self.offset += times * term.offset;
+    }
 }
 
 /// Reduces a position in grid steps to [0, 129 600) from at most a few turns outside.
@@ -174,14 +181,5 @@ impl Sweep {
             }
             piece
         })
-    }
-}
-
-impl Piece {
-    /// Adds a multiple of a term to the piece.
-    fn turn(&mut self, term: Term, times: f64) {
-        self.re += times * term.re;
-        self.im += times * term.im;
-        self.offset += times * term.offset;
     }
 }

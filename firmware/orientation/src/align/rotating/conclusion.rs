@@ -219,20 +219,15 @@ impl Conclusion {
         let slow = stretches.first().map_or(0.0, Stretch::speed);
         let mut averages = Vec::new();
         for stretch in stretches {
-            let joined = stretch.count() / stretch.turns().len().max(1) as u32;
             let speed = stretch.speed();
-            let variance = of_one_turn(&self.noise(setting), speed) / f64::from(joined);
+            let variance = of_one_turn(&self.noise(setting), speed) / f64::from(stretch.joined);
             // Noise counts at the sensor's input, so the sensor's gain scales it.
             let is_flat = setting.sensor.is_flat;
             let gain = if is_flat { 1.0 } else { typical_size(stretch, couplings) / horizontal };
-            let since = stretch.since() as f64 * 1e-6;
             let is_second = (speed - slow).abs() > EQUAL_SPEEDS * slow;
             let mark = |turn: &Turn, phasor: Complex| {
-                let time = (since + f64::from(turn.middle)) as f32;
-                let odd = stretch.sense.signed(1.0) as f32;
-                let value = [phasor.re as f32, phasor.im as f32];
                 // The vector has room for every turn of every stretch.
-                let _ = marks.push(Mark { time, odd, is_second, turns: joined as f32, value });
+                let _ = marks.push(Mark { is_second, ..Mark::of(stretch, turn, phasor) });
             };
             let variance = variance * gain * gain;
             let average = Average::of(stretch, couplings, steady, variance, tilting, mark);

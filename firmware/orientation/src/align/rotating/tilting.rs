@@ -5,7 +5,7 @@ use heapless::Vec;
 
 use super::change::{MARKS, Mark, Record, Shape};
 use super::level::Lean;
-use super::turn::{Sense, Stretch};
+use super::turn::Stretch;
 use crate::align::regression::Column;
 use crate::math::Complex;
 use crate::units::DEGREE_PER_HOUR;
@@ -163,15 +163,10 @@ fn direction(marks: &[Mark]) -> Complex {
 fn marks(stretches: &[Stretch], gravity: f64) -> Vec<Mark, MARKS> {
     let mut marks = Vec::new();
     for stretch in stretches {
-        let joined = stretch.count() as f32 / stretch.turns().len().max(1) as f32;
-        let since = stretch.since() as f64 * 1e-6;
-        let odd = if stretch.sense == Sense::Clockwise { 1.0 } else { -1.0 };
         for turn in stretch.turns() {
             let force = Complex::of_signal(turn.force).scaled(1.0 / gravity);
-            let time = (since + f64::from(turn.middle)) as f32;
-            let value = [force.re as f32, force.im as f32];
             // There is room for every turn of every stretch.
-            let _ = marks.push(Mark { time, odd, is_second: false, turns: joined, value });
+            let _ = marks.push(Mark::of(stretch, turn, force));
         }
     }
     marks
