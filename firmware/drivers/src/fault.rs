@@ -42,3 +42,16 @@ words! { Fault:
     Self::NotReady => "not ready in time";
     Self::Alarm { status } => "alarm, status {:#x}", status;
 }
+
+/// Compares registers, as read back from the address `first` on, with what was written to them.
+///
+/// # Errors
+/// [`Fault::NotAsWritten`] with the first register that differs.
+pub(crate) fn compare(first: u8, found: &[u8], written: &[u8]) -> Result<(), Fault> {
+    for (register, (found, written)) in (first..).zip(found.iter().zip(written)) {
+        if found != written {
+            return Err(Fault::NotAsWritten { register });
+        }
+    }
+    Ok(())
+}

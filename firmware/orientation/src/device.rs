@@ -2,7 +2,6 @@
 //! for good only after the retries and restarts of its retry budget are used up; what a retry mends
 //! is logged and never becomes a [`Trouble`].
 
-use crate::words;
 use crate::words::Rounded;
 
 /// A sensor, actuator or sensor group of the board, as it is named in logs and refusals.
@@ -41,7 +40,7 @@ pub enum Device {
     Base,
 }
 
-words! { Device:
+crate::words! { Device:
     Self::Gyro => "gyro";
     Self::ForwardGyro => "forward gyro";
     Self::RightGyro => "right gyro";
@@ -102,7 +101,7 @@ pub enum Trouble {
     NotThere(f64),
 }
 
-words! { Trouble:
+crate::words! { Trouble:
     Self::Bus => "its bus fails";
     Self::Checksum => "its readings fail their checksum";
     Self::Resets => "it restarts again and again: check its supply";

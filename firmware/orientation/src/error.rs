@@ -6,7 +6,6 @@
 use crate::align::rotating::turn::Sense;
 use crate::device::{Device, Trouble};
 use crate::noise::fit::FitError;
-use crate::words;
 use crate::words::Rounded;
 
 /// Source of the uncertainty of an azimuth: one line of the error budget; see
@@ -34,7 +33,7 @@ pub enum Source {
     Displacement,
 }
 
-words! { Source:
+crate::words! { Source:
     Self::Noise => "gyro noise";
     Self::Drift => "gyro drift";
     Self::GSensitivity => "g-sensitivity";
@@ -363,7 +362,7 @@ pub enum Refusal {
     },
 }
 
-words! { Refusal:
+crate::words! { Refusal:
     Self::LatitudeTooHigh { latitude } =>
         "latitude {}° is beyond ±85°: too little of the Earth rate is horizontal",
         Rounded::<2>(latitude);

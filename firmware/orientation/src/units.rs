@@ -47,12 +47,12 @@ fn to_i32(value: f64) -> i32 {
 }
 
 /// Angular rate, 1 LSB = 1 nrad/s, range ±2.147 rad/s (±123 °/s).
+#[must_use]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct AngularRate(pub i32);
 
 impl AngularRate {
     /// Rate from rad/s, rounded to nearest and saturated.
-    #[must_use]
     pub fn from_rad_per_s(rate: f64) -> Self {
         Self(to_i32(rate * 1e9))
     }
@@ -74,6 +74,7 @@ impl AngularRate {
 ///
 /// The remainder of rounding is carried to the next sample, so that no rotation is lost: the sum of
 /// any number of increments is off by at most one LSB.
+#[must_use]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct AngleIncrement(pub i32);
 
@@ -86,7 +87,6 @@ impl AngleIncrement {
 
     /// Increment from rad; the remainder `carried`, rad, begins at zero and belongs to the axis.
     /// NaN is an unknown rotation and becomes the upper limit.
-    #[must_use]
     pub fn from_rad(angle: f64, carried: &mut f64) -> Self {
         let whole = if angle.is_nan() { f64::INFINITY } else { angle + *carried };
         let increment = Self(to_i32(whole / Self::STEP));
@@ -96,7 +96,6 @@ impl AngleIncrement {
 
     /// Increment of a rate over a time in µs; the remainder `carried`, 10⁻¹⁵ rad, begins at zero
     /// and belongs to the axis. A saturated rate gives a saturated increment.
-    #[must_use]
     pub fn of_rate(rate: AngularRate, microseconds: u32, carried: &mut i64) -> Self {
         let whole = i64::from(rate.0) * i64::from(microseconds) + *carried;
         let steps = whole / Self::STEP_FEMTORADIANS;
@@ -121,12 +120,12 @@ impl AngleIncrement {
 }
 
 /// Specific force, 1 LSB = 1 µm/s², range ±2147 m/s².
+#[must_use]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct SpecificForce(pub i32);
 
 impl SpecificForce {
     /// Force from m/s², rounded to nearest and saturated.
-    #[must_use]
     pub fn from_m_per_s2(force: f64) -> Self {
         Self(to_i32(force * 1e6))
     }
@@ -170,12 +169,12 @@ impl SpinForce {
 }
 
 /// Temperature, 1 LSB = 1 m°C.
+#[must_use]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Temperature(pub i32);
 
 impl Temperature {
     /// Temperature from °C, rounded to nearest and saturated.
-    #[must_use]
     pub fn from_celsius(temperature: f64) -> Self {
         Self(to_i32(temperature * 1e3))
     }
@@ -229,6 +228,7 @@ impl PartialEq for Optional {
 }
 
 /// An angle as a 32-bit fraction of a turn (1 LSB = 1.46 nrad); arithmetic wraps at whole turns.
+#[must_use]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Angle(pub u32);
 
@@ -237,7 +237,6 @@ impl Angle {
     pub const STEP: f64 = TURN / STEPS_PER_TURN;
 
     /// Angle from radians, any number of turns (exact to one LSB up to 10⁶ turns).
-    #[must_use]
     pub fn from_rad(angle: f64) -> Self {
         let turns = angle / TURN;
         let fraction = turns - libm::floor(turns);
@@ -266,12 +265,12 @@ impl Sub for Angle {
 }
 
 /// A point in time, 1 LSB = 1 µs since the start of the session's clock.
+#[must_use]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Instant(pub u64);
 
 impl Instant {
     /// Time from seconds, rounded to nearest; negative times become zero.
-    #[must_use]
     pub fn from_seconds(seconds: f64) -> Self {
         Self(libm::round(seconds * 1e6) as u64)
     }

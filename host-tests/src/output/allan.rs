@@ -44,9 +44,7 @@ struct Coefficient {
 
 /// Q, N, B, K and R, in the order of [`orientation::noise::allan::terms`].
 fn coefficients(fit: &NoiseFit) -> [Coefficient; 5] {
-    let [q, n] = [fit.arcseconds(), fit.degrees_per_sqrt_hour()];
-    let [b, k] = [fit.degrees_per_hour(), fit.degrees_per_hour_per_sqrt_hour()];
-    let r = fit.degrees_per_hour_squared();
+    let [q, n, b, k, r] = fit.in_field_units().map(|(_, estimate)| estimate);
     [
         ("Q quantisation", "arcsec", "q_arcsec", fit.quantisation, q),
         ("N angle random walk", "°/√h", "n_deg_sqrt_h", fit.angle_random_walk, n),

@@ -6,7 +6,7 @@ use orientation::align::direction::{Amplitude, Components};
 use orientation::align::level::tilt;
 use orientation::align::quality::{Disturbance, ExpectedScatter};
 use orientation::align::regression::{Column, Regression};
-use orientation::align::setting::{Half, Setting};
+use orientation::align::setting::{Half, Mount, Setting};
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
 use orientation::noise::whitener::Whitener;
@@ -246,7 +246,7 @@ fn a_full_circle_frees_the_tilt_of_the_bias_and_an_arc_does_not() {
         angles.iter().map(|&angle| leaning(angle, truth, [0.025, -0.015])).collect()
     };
     let circle = at(&[0.0, 60.0, 120.0, 180.0, 240.0, 300.0]);
-    let found = tilt(circle.iter(), 9.8, 0.3);
+    let found = tilt(&Mount::STAGE, circle.iter(), 9.8, 0.3);
     assert!((found.real - truth[0]).abs() < 1e-6 && (found.imaginary - truth[1]).abs() < 1e-6);
     assert!((found.bias[0] - 0.025).abs() < 1e-5, "{found:?}");
     // On an arc with some mg of scatter the tilt is known no better than the bias: 0.3/9.8 g.
@@ -254,7 +254,7 @@ fn a_full_circle_frees_the_tilt_of_the_bias_and_an_arc_does_not() {
     for (dwell, push) in arc.iter_mut().zip([0.05, -0.05, -0.05, 0.05]) {
         dwell.force = dwell.force.map(|[x, y, z]| [x + push, y - push, z]);
     }
-    let found = tilt(arc.iter(), 9.8, 0.3);
+    let found = tilt(&Mount::STAGE, arc.iter(), 9.8, 0.3);
     let sigma = found.covariance[0][0].sqrt();
     assert!((0.5..1.1).contains(&(sigma / (0.3 / 9.8))), "{found:?}");
     assert!((found.real - truth[0]).abs() < 3.5 * sigma, "{found:?}");
@@ -266,9 +266,9 @@ fn pitch_and_roll_come_from_the_phasor() {
     let phasor = [pitch.sin(), roll.sin() * pitch.cos()];
     let dwells: Vec<Dwell> =
         (0..12).map(|i| leaning(f64::from(i) * 30.0, phasor, [0.0, 0.0])).collect();
-    let found = tilt(dwells.iter(), 9.8, 0.05);
+    let found = tilt(&Mount::STAGE, dwells.iter(), 9.8, 0.05);
     assert!((found.pitch() - pitch).abs() < 1e-8 && (found.roll() - roll).abs() < 1e-8);
-    assert!(!tilt([Dwell::default()].iter(), 9.8, 0.0).measured);
+    assert!(!tilt(&Mount::STAGE, [Dwell::default()].iter(), 9.8, 0.0).measured);
 }
 
 /// Blocks of white noise of one unit (in µrad/s) a sample, plus what `add` says for each sample.
@@ -355,6 +355,6 @@ fn an_unknown_noise_is_taken_from_the_dwells() {
     let mut generator = Generator::new(8);
     let dwells: Vec<Dwell> = (0..20).map(|_| blocks(&mut generator, 1000, |_| 0.0)).collect();
     let setting = Setting { white_known: false, ..gyro() };
-    let found = ExpectedScatter::of(&setting, &dwells).white().sqrt();
+    let found = ExpectedScatter::of(&setting, &dwells).white.sqrt();
     assert!((found / 1e-7 - 1.0).abs() < 0.15, "{found}");
 }

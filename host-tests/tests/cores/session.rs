@@ -303,7 +303,7 @@ fn surveyed(configuration: &InstrumentsConfiguration, stop: StopRule, seed: u64)
 fn a_survey_learns_the_gyros_noise_and_the_plan_and_sigma_follow_from_it() {
     for (seed, azimuth) in [(21, 40.0), (22, 160.0), (23, 280.0)] {
         let session = surveyed(&world(azimuth), StopRule::AllPositions, seed);
-        let found = session.surveyed().expect("there was a survey").degrees_per_sqrt_hour();
+        let [_, (_, found), ..] = session.surveyed().expect("there was a survey").in_field_units();
         let n = found.value().expect("N is observable");
         assert!((n / N_DEG_SQRT_H - 1.0).abs() < 0.02, "{n}");
         let Schedule::Planned(plan) = session.procedure().schedule else { panic!("no plan") };

@@ -27,48 +27,22 @@ const SUM_OFFSET: u8 = 0x9B;
 pub struct Status(pub u8);
 
 impl Status {
-    const NEW: u8 = 1 << 6;
-    const EXTERNAL_CLOCK: u8 = 1 << 5;
-    const REFERENCE_LOW: u8 = 1 << 4;
-    const AMPLIFIER_LOW: u8 = 1 << 3;
-    const AMPLIFIER_HIGH: u8 = 1 << 2;
-    const AMPLIFIER_DIFFERENCE: u8 = 1 << 1;
-    const RESET: u8 = 1;
-    const AMPLIFIER: u8 = Self::AMPLIFIER_LOW | Self::AMPLIFIER_HIGH | Self::AMPLIFIER_DIFFERENCE;
-
-    const fn has(self, bits: u8) -> bool {
-        self.0 & bits != 0
-    }
-
     /// The conversion has not been read before.
-    #[must_use]
-    pub const fn is_new(self) -> bool {
-        self.has(Self::NEW)
-    }
-
+    pub const NEW: Self = Self(1 << 6);
     /// The chip runs from a clock or crystal at its pins: the data rate is not what was configured.
-    #[must_use]
-    pub const fn is_clock_external(self) -> bool {
-        self.has(Self::EXTERNAL_CLOCK)
-    }
-
+    pub const EXTERNAL_CLOCK: Self = Self(1 << 5);
     /// The reference is below 0.4 V.
-    #[must_use]
-    pub const fn is_reference_low(self) -> bool {
-        self.has(Self::REFERENCE_LOW)
-    }
-
+    pub const REFERENCE_LOW: Self = Self(1 << 4);
     /// An output of the amplifier came within 0.2 V of a supply, or their difference left 105 % of
     /// the range.
-    #[must_use]
-    pub const fn is_amplifier_overdriven(self) -> bool {
-        self.has(Self::AMPLIFIER)
-    }
-
+    pub const AMPLIFIER: Self = Self(1 << 3 | 1 << 2 | 1 << 1);
     /// The chip was reset since its reset flag was cleared.
+    pub const RESET: Self = Self(1);
+
+    /// Whether any of these bits is set.
     #[must_use]
-    pub const fn is_reset(self) -> bool {
-        self.has(Self::RESET)
+    pub const fn has(self, bits: Self) -> bool {
+        self.0 & bits.0 != 0
     }
 }
 
@@ -107,14 +81,14 @@ pub const fn decode(frame: [u8; FRAME]) -> Result<Conversion, Fault> {
     if sum(data) != received {
         return Err(Fault::Checksum);
     }
-    if status.is_reset() {
+    if status.has(Status::RESET) {
         return Err(Fault::Reset);
     }
-    if status.is_reference_low() {
+    if status.has(Status::REFERENCE_LOW) {
         return Err(Fault::Alarm { status: status.0 });
     }
     let code = i32::from_be_bytes(data);
     let is_at_end = code == i32::MAX || code == i32::MIN;
-    let is_clipped = is_at_end || status.is_amplifier_overdriven();
-    Ok(Conversion { code, is_new: status.is_new(), is_clipped, status })
+    let is_clipped = is_at_end || status.has(Status::AMPLIFIER);
+    Ok(Conversion { code, is_new: status.has(Status::NEW), is_clipped, status })
 }

@@ -12,6 +12,9 @@ const STAGE_HERTZ: u64 = 14_400;
 /// Delay that the digital part adds to the first conversion, ns: the constant with which
 /// [`Configuration::latency`] reproduces table 9-13 to its last digit.
 const OVERHEAD_NANOSECONDS: u64 = 76_800;
+/// Decimation of the second stage at each data rate (table 9-3).
+const SECOND_STAGE: [u16; 16] =
+    [5760, 2880, 1440, 864, 720, 288, 240, 144, 36, 12, 6, 3, 2, 1, 1, 1];
 
 /// Data rate, nominal: the internal oscillator is within 2 % (section 7.5), so measure it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,24 +57,12 @@ pub enum DataRate {
 impl DataRate {
     /// Decimation of the fifth-order stage and of the second stage (table 9-3).
     const fn decimation(self) -> (u16, u16) {
-        match self {
-            Self::Sps2p5 => (64, 5760),
-            Self::Sps5 => (64, 2880),
-            Self::Sps10 => (64, 1440),
-            Self::Sps16p6 => (64, 864),
-            Self::Sps20 => (64, 720),
-            Self::Sps50 => (64, 288),
-            Self::Sps60 => (64, 240),
-            Self::Sps100 => (64, 144),
-            Self::Sps400 => (64, 36),
-            Self::Sps1200 => (64, 12),
-            Self::Sps2400 => (64, 6),
-            Self::Sps4800 => (64, 3),
-            Self::Sps7200 => (64, 2),
-            Self::Sps14400 => (64, 1),
-            Self::Sps19200 => (48, 1),
-            Self::Sps38400 => (24, 1),
-        }
+        let first = match self {
+            Self::Sps38400 => 24,
+            Self::Sps19200 => 48,
+            _ => 64,
+        };
+        (first, SECOND_STAGE[self as usize])
     }
 
     /// Conversions per second, Hz, exact but for the oscillator.
@@ -164,7 +155,6 @@ impl Configuration {
     }
 
     /// Registers for conversions of the gyro.
-    #[must_use]
     pub const fn image(self) -> Image {
         Image::plain()
             .with(registers::MODE1, (self.filter as u8) << registers::FILTER_SHIFT)
@@ -173,7 +163,6 @@ impl Configuration {
 
     /// Registers for a conversion of the test voltage, ±1 V after the gain at a 5 V supply
     /// (table 9-8: its steps halve as the gains double).
-    #[must_use]
     pub const fn test_image(self, sign: Sign) -> Image {
         let step = self.gain as u8;
         let (positive, negative) = match sign {

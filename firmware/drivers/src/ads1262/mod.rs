@@ -35,7 +35,7 @@ use embedded_hal_async::spi::{MODE_1, Mode, Operation, SpiDevice};
 
 use crate::fault::Fault;
 use crate::pause::pause;
-use codec::{Conversion, FRAME};
+use codec::{Conversion, FRAME, Status};
 use configuration::{Configuration, Sign};
 use registers::Image;
 
@@ -190,7 +190,7 @@ impl<S: SpiDevice, R: Wait, D: DelayNs> Ads1262<S, R, D> {
         if !conversion.is_new {
             return Err(Fault::NotReady);
         }
-        if conversion.status.is_clock_external() != self.is_clocked {
+        if conversion.status.has(Status::EXTERNAL_CLOCK) != self.is_clocked {
             return Err(Fault::Alarm { status: conversion.status.0 });
         }
         let expected = if sign == Sign::Plus { TEST_CODE } else { -TEST_CODE };

@@ -78,13 +78,13 @@ pub(super) const READ_BACK: [u8; COMMAND] = {
 };
 
 /// Contents of the registers POWER to TDACN.
+#[must_use]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Image([u8; WRITTEN]);
 
 impl Image {
     /// Status byte and checksum as a sum, continuous conversions, internal reference; no
     /// calibration, no excitation currents, no test voltage.
-    #[must_use]
     pub const fn plain() -> Self {
         Self([0; WRITTEN])
             .with(POWER, POWER_REFERENCE)
@@ -97,7 +97,6 @@ impl Image {
 
     /// These contents with another value at `address`, which must be within POWER to TDACN; another
     /// address changes nothing.
-    #[must_use]
     pub const fn with(mut self, address: u8, value: u8) -> Self {
         let index = address.wrapping_sub(POWER) as usize;
         if index < WRITTEN {

@@ -48,7 +48,6 @@ impl Scale {
     /// The rate of a code, to the nearest nrad/s (ties upwards), saturated at the ends of
     /// [`AngularRate`]. Error ≤ 0.5 nrad/s + |rate| · 2⁻³¹ (tested against `f64`).
     /// Some 30 instructions of a Cortex-M4.
-    #[must_use]
     pub const fn rate(self, code: i32) -> AngularRate {
         AngularRate(self.steps(code))
     }

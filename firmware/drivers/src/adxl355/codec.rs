@@ -3,7 +3,7 @@
 use orientation::units::{SpecificForce, Temperature};
 
 use super::registers::{OFFSET_X_H, OutputRate, POWER_CTL, RANGE_2_G, STANDBY, Status};
-use crate::fault::Fault;
+use crate::fault::{self, Fault};
 
 /// Number of registers in a burst, from the status to the last byte of z.
 pub const BURST: usize = 13;
@@ -57,7 +57,6 @@ const SCALE: i64 = (196_133 << SCALE_BITS) / 5120;
 
 /// Specific force of a count at ±2 g (data sheet, Specifications: 256 000 LSB/g, g = 9.80665 m/s²),
 /// to the nearest µm/s², ties towards zero (so over all 2²⁰ counts, as a test asserts).
-#[must_use]
 pub fn force(count: i32) -> SpecificForce {
     let product = i64::from(count) * SCALE;
     SpecificForce(((product + (1 << (SCALE_BITS - 1))) >> SCALE_BITS) as i32)
@@ -75,7 +74,6 @@ const TEMPERATURE_AT_25: i32 = 1885;
 
 /// Temperature of a count, to the nearest m°C: −9.05 LSB/°C is −20 000/181 m°C per count, and no
 /// count is a tie.
-#[must_use]
 pub fn temperature(count: u16) -> Temperature {
     let numerator = (TEMPERATURE_AT_25 - i32::from(count)) * 20_000;
     let half = if numerator < 0 { -90 } else { 90 };
@@ -120,10 +118,5 @@ pub fn compare(found: &[u8; SETTINGS], expected: &[u8; SETTINGS]) -> Result<(), 
     if is_silent || found[usize::from(POWER_CTL - OFFSET_X_H)] == STANDBY {
         return Err(Fault::Reset);
     }
-    for (register, (found, expected)) in (OFFSET_X_H..).zip(found.iter().zip(expected)) {
-        if found != expected {
-            return Err(Fault::NotAsWritten { register });
-        }
-    }
-    Ok(())
+    fault::compare(OFFSET_X_H, found, expected)
 }

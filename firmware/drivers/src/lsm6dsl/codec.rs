@@ -6,7 +6,7 @@ use super::Configuration;
 use super::registers::{
     BLOCK_DATA_UPDATE, CTRL1_XL, ForceRange, INCREMENT, RateRange, control_force, control_rate,
 };
-use crate::fault::Fault;
+use crate::fault::{self, Fault};
 
 /// Bytes of a burst: temperature, three axes of the gyro, three of the accelerometer.
 pub const BURST: usize = 14;
@@ -52,21 +52,18 @@ fn scaled(count: i16, scale: i64, shift: u32) -> i64 {
 
 /// Rate of a count, to nearest within 0.6 nrad/s + 2⁻⁵ ppm. It saturates at ±123 °/s, the range of
 /// its type, whatever the chip's.
-#[must_use]
 pub fn rate(count: i16, range: RateRange) -> AngularRate {
     let rate = scaled(count, RATE_SCALE, range.shift());
     AngularRate(rate.max(i64::from(i32::MIN)).min(i64::from(i32::MAX)) as i32)
 }
 
 /// Specific force of a count, to nearest within 0.6 µm/s².
-#[must_use]
 pub fn force(count: i16, range: ForceRange) -> SpecificForce {
     SpecificForce(scaled(count, FORCE_SCALE, range.shift()) as i32)
 }
 
 /// Temperature of a count, rounded down to m°C: 256 LSB/°C, zero at 25 °C (data sheet, Temperature
 /// sensor characteristics; offset ±15 °C). An LSM6DS3 of the same family has 16 LSB/°C.
-#[must_use]
 pub fn temperature(count: i16) -> Temperature {
     Temperature(25_000 + ((i32::from(count) * 125) >> 5))
 }
@@ -130,10 +127,5 @@ pub fn compare(found: &[u8; SETTINGS], expected: &[u8; SETTINGS]) -> Result<(), 
     if found[..2] == [0; 2] || *found == [0xFF; SETTINGS] {
         return Err(Fault::Reset);
     }
-    for (register, (found, expected)) in (CTRL1_XL..).zip(found.iter().zip(expected)) {
-        if found != expected {
-            return Err(Fault::NotAsWritten { register });
-        }
-    }
-    Ok(())
+    fault::compare(CTRL1_XL, found, expected)
 }

@@ -108,16 +108,14 @@ impl Guard {
 #[must_use]
 pub fn switch_mode(configuration: &Configuration, guard: Guard) -> u32 {
     let switches = configuration.switches;
-    let left = match switches.left {
+    let bits = |switch: Option<Polarity>, enabled: u32, low: u32| match switch {
         None => 0,
-        Some(Polarity::ActiveHigh) => sw_mode::STOP_LEFT | sw_mode::LATCH_LEFT,
-        Some(Polarity::ActiveLow) => sw_mode::STOP_LEFT | sw_mode::LATCH_LEFT | sw_mode::LEFT_LOW,
+        Some(Polarity::ActiveHigh) => enabled,
+        Some(Polarity::ActiveLow) => enabled | low,
     };
-    let right = match switches.right {
-        None => 0,
-        Some(Polarity::ActiveHigh) => sw_mode::STOP_RIGHT,
-        Some(Polarity::ActiveLow) => sw_mode::STOP_RIGHT | sw_mode::RIGHT_LOW,
-    };
+    let left = sw_mode::STOP_LEFT | sw_mode::LATCH_LEFT;
+    let left = bits(switches.left, left, sw_mode::LEFT_LOW);
+    let right = bits(switches.right, sw_mode::STOP_RIGHT, sw_mode::RIGHT_LOW);
     let stop = match guard {
         Guard::Soft => sw_mode::SOFT_STOP,
         Guard::Stall => sw_mode::STALL_STOP,

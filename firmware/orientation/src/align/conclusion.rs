@@ -66,6 +66,7 @@ pub struct Azimuth {
 }
 
 /// Complete result of a session.
+#[must_use]
 #[derive(Clone, Debug)]
 pub struct Conclusion {
     /// The azimuth, or the reason for refusing it.
@@ -100,7 +101,6 @@ impl Default for Conclusion {
 
 impl Conclusion {
     /// Checks the dwells, fits the sound ones, and decides.
-    #[must_use]
     pub fn of(setting: &Setting, dwells: &[Dwell], criterion: Criterion) -> Self {
         let mut conclusion = Self::default();
         conclusion.draw(setting, dwells, criterion);
@@ -138,7 +138,7 @@ impl Conclusion {
     #[inline(never)]
     fn begin(&mut self, setting: &Setting, dwells: &[Dwell]) -> Option<f64> {
         let norm = ExpectedScatter::of(setting, dwells);
-        self.angle_random_walk = libm::sqrt(norm.white());
+        self.angle_random_walk = libm::sqrt(norm.white);
         for dwell in dwells {
             // The vectors hold as many entries as a session has dwells, so the pushes cannot fail.
             let _ = self.disturbances.push(norm.disturbance(dwell));
@@ -154,7 +154,7 @@ impl Conclusion {
     fn level(&mut self, setting: &Setting, dwells: &[Dwell]) {
         let kept = dwells.iter().zip(&self.disturbances).filter(|(_, why)| why.is_none());
         let (gravity, bias) = (setting.latitude.gravity(), setting.accelerometer_bias_sigma);
-        self.tilt = level::tilt_in(&setting.mount, kept.map(|(dwell, _)| dwell), gravity, bias);
+        self.tilt = level::tilt(&setting.mount, kept.map(|(dwell, _)| dwell), gravity, bias);
     }
 
     /// Fits, and excludes the dwell with the largest residual, until none stands out.

@@ -19,6 +19,7 @@ use crate::signal::dwell::Dwell;
 use crate::units::DEGREE_PER_HOUR;
 
 /// Tilt of the platform as a phasor in g: real part along body x, imaginary part in quadrature.
+#[must_use]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tilt {
     /// Real part of F, sin(pitch), at [`Self::time`].
@@ -61,7 +62,6 @@ pub struct TiltRate {
 
 impl Tilt {
     /// Tilt extrapolated to another time, s, with the proven rate.
-    #[must_use]
     pub fn at(&self, time: f64) -> Self {
         let elapsed = time - self.time;
         let [real, imaginary] = self.rate.value.map(|rate| rate * elapsed);
@@ -181,20 +181,9 @@ impl TiltRate {
 /// Fits the tilt to the dwells' mean forces, for gravity in m/s² and the 1σ of each accelerometer
 /// bias in m/s² (zero: taken as free of bias).
 ///
-/// The accelerometer rides on a stage. The scatter of the dwells about a first fit weights the
-/// second. Without forces the platform is taken as level and the tilt as not measured.
-#[must_use]
+/// The mount tells whether the accelerometer rides on the stage. The scatter of the dwells about a
+/// first fit weights the second. Without forces the platform is taken as level and the tilt as not measured.
 pub fn tilt<'a>(
-    dwells: impl Iterator<Item = &'a Dwell> + Clone,
-    gravity: f64,
-    bias_sigma: f64,
-) -> Tilt {
-    tilt_in(&Mount::STAGE, dwells, gravity, bias_sigma)
-}
-
-/// Fits the tilt to the dwells' mean forces as [`tilt`] does, for the accelerometer of any mount.
-#[must_use]
-pub fn tilt_in<'a>(
     mount: &Mount,
     dwells: impl Iterator<Item = &'a Dwell> + Clone,
     gravity: f64,

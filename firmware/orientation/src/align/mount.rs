@@ -20,9 +20,9 @@
 use super::level::Tilt;
 use super::setting::Mount;
 use crate::earth::Latitude;
+use crate::math::rotation::{IDENTITY, dot};
 use crate::signal::dwell::Dwell;
 use crate::units::{DEGREE, DEGREES_PER_RADIAN, wrapped};
-use crate::words;
 use crate::words::Rounded;
 
 /// Greatest angle of either frame, rad: ±90° (Burov, Fig. 2) and 2° for the corrections of its
@@ -80,7 +80,7 @@ pub enum MountError {
     BeyondLimit(f64),
 }
 
-words! { Station:
+crate::words! { Station:
     Self::Forward => "forward";
     Self::Right => "right";
     Self::Backward => "backward";
@@ -88,7 +88,7 @@ words! { Station:
     Self::Storage => "vertical";
 }
 
-words! { MountError:
+crate::words! { MountError:
     Self::NoStation(heading) =>
         "the mount has no station at heading {}°", Rounded::<2>(heading * DEGREES_PER_RADIAN);
     Self::Unreachable(station) =>
@@ -155,24 +155,22 @@ impl TwoFrame {
     /// [`MountError`] for a calibration with which a frame cannot take the axis there, or not
     /// within its limits.
     pub fn angles(&self, station: Station) -> Result<FrameAngles, MountError> {
-        const FORWARD: [f64; 3] = [1.0, 0.0, 0.0];
-        const RIGHT: [f64; 3] = [0.0, 1.0, 0.0];
-        const DOWN: [f64; 3] = [0.0, 0.0, 1.0];
+        let [forward, right, down] = IDENTITY;
         let (outer, inner, across) = match station {
             Station::Forward | Station::Backward => {
                 let way = if station == Station::Forward { QUARTER } else { -QUARTER };
                 let start = self.shown(0.0, way);
-                let found = self.perpendicular(start, Frame::Inner, DOWN);
+                let found = self.perpendicular(start, Frame::Inner, down);
                 return found.ok_or(MountError::Unreachable(station)).and_then(within_limits);
             }
-            Station::Right => (-QUARTER, 0.0, DOWN),
-            Station::Left => (QUARTER, 0.0, DOWN),
-            Station::Storage => (0.0, 0.0, RIGHT),
+            Station::Right => (-QUARTER, 0.0, down),
+            Station::Left => (QUARTER, 0.0, down),
+            Station::Storage => (0.0, 0.0, right),
         };
         let mut angles = self.shown(outer, inner);
         for _ in 0..ROUNDS {
             angles = self
-                .perpendicular(angles, Frame::Inner, FORWARD)
+                .perpendicular(angles, Frame::Inner, forward)
                 .and_then(|angles| self.perpendicular(angles, Frame::Outer, across))
                 .ok_or(MountError::Unreachable(station))?;
         }
@@ -194,10 +192,7 @@ impl TwoFrame {
             Frame::Outer => FrameAngles { outer: from.outer + turn, ..from },
             Frame::Inner => FrameAngles { inner: from.inner + turn, ..from },
         };
-        let component = |turn: f64| {
-            let axis = self.sensitive_axis(at(turn));
-            axis[0] * to[0] + axis[1] * to[1] + axis[2] * to[2]
-        };
+        let component = |turn: f64| dot(&self.sensitive_axis(at(turn)), &to);
         let [here, aside, opposite] = [0.0, QUARTER, 2.0 * QUARTER].map(component);
         let mean = 0.5 * (here + opposite);
         let [cosine, sine] = [here - mean, aside - mean];

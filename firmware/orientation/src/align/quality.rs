@@ -13,7 +13,6 @@ use crate::signal::dwell::{Dwell, SampleFault};
 use crate::signal::rest::{Criteria, Sensors};
 use crate::signal::sway::SwayNoise;
 use crate::units::DEGREE_PER_HOUR;
-use crate::words;
 use crate::words::Rounded;
 
 /// Reason for which a dwell is excluded from the fit. Numbers are in units of the expected standard
@@ -37,7 +36,7 @@ pub enum Disturbance {
     Outlier(f64),
 }
 
-words! { Disturbance:
+crate::words! { Disturbance:
     Self::Samples(SampleFault::Saturated) => "gyro saturated";
     Self::Samples(SampleFault::Stuck) => "gyro stuck: every sample the same";
     Self::Samples(SampleFault::Missing) => "samples missing";
@@ -68,7 +67,7 @@ const LEAST_SCATTER: f64 = 5e-5;
 #[derive(Clone, Copy, Debug)]
 pub struct ExpectedScatter {
     /// White noise N², (rad/s)²·s.
-    white: f64,
+    pub white: f64,
     /// Random walk K², (rad/s)²/s.
     walk: f64,
     /// Flicker B²/π, (rad/s)².
@@ -106,12 +105,6 @@ impl ExpectedScatter {
             force: median_of(dwells.iter().filter_map(force_of)),
             sensors: sensors(setting, dwells, white),
         }
-    }
-
-    /// White noise of the gyro N², (rad/s)²·s.
-    #[must_use]
-    pub fn white(&self) -> f64 {
-        self.white
     }
 
     /// Disturbance of this dwell, if there is one. The tests are applied in the order: sample

@@ -4,6 +4,8 @@
 //! solving, so that one pass serves every model that is compared. A column may carry a prior of
 //! zero mean and known standard deviation, entered as information on its diagonal.
 
+use heapless::Vec;
+
 use crate::math::{Scalar, cholesky, cholesky_solve};
 
 /// Number of columns of the regressions on a board: one size for all, so that one copy of the code
@@ -72,7 +74,9 @@ impl<const P: usize, T: Scalar> Regression<P, T> {
     /// few.
     #[must_use]
     pub fn solve(&self, model: &[Column; P]) -> Option<Solution<P>> {
-        let (used, size) = used_columns(model);
+        let is_used = |&column: &usize| model[column] != Column::Absent;
+        let used: Vec<usize, P> = (0..P).filter(is_used).collect();
+        let size = used.len();
         let free = model.iter().filter(|&&column| column == Column::Free).count();
         let degrees = self.rows.checked_sub(free)?;
         let mut factor = [[0.0; P]; P];
@@ -93,8 +97,8 @@ impl<const P: usize, T: Scalar> Regression<P, T> {
         let left = |i: usize| -> f64 { self.with_left[used[i]].into() };
         let explained: f64 = (0..size).map(|i| coefficients[i] * left(i)).sum();
         Some(Solution {
-            coefficients: spread(&coefficients, &used, size),
-            covariance: inverse(&factor, &used, size),
+            coefficients: spread(&coefficients, &used),
+            covariance: inverse(&factor, &used),
             chi_square: (self.left_squared.into() - explained).max(0.0),
             degrees,
         })
@@ -111,40 +115,23 @@ impl<const P: usize> Regression<P> {
     }
 }
 
-/// Indices of the columns in use, and their number.
-fn used_columns<const P: usize>(model: &[Column; P]) -> ([usize; P], usize) {
-    let mut used = [0; P];
-    let mut size = 0;
-    for (index, column) in model.iter().enumerate() {
-        if *column != Column::Absent {
-            used[size] = index;
-            size += 1;
-        }
-    }
-    (used, size)
-}
-
 /// Distributes packed values to the places of their columns.
-fn spread<const P: usize>(packed: &[f64; P], used: &[usize; P], size: usize) -> [f64; P] {
+fn spread<const P: usize>(packed: &[f64; P], used: &[usize]) -> [f64; P] {
     let mut full = [0.0; P];
-    for i in 0..size {
-        full[used[i]] = packed[i];
+    for (column, value) in used.iter().zip(packed) {
+        full[*column] = *value;
     }
     full
 }
 
 /// Inverse of the factored matrix, at the places of its columns.
-fn inverse<const P: usize>(
-    factor: &[[f64; P]; P],
-    used: &[usize; P],
-    size: usize,
-) -> [[f64; P]; P] {
+fn inverse<const P: usize>(factor: &[[f64; P]; P], used: &[usize]) -> [[f64; P]; P] {
     let mut full = [[0.0; P]; P];
-    for i in 0..size {
+    for (packed, column) in used.iter().enumerate() {
         let mut unit = [0.0; P];
-        unit[i] = 1.0;
-        cholesky_solve(factor, size, &mut unit);
-        full[used[i]] = spread(&unit, used, size);
+        unit[packed] = 1.0;
+        cholesky_solve(factor, used.len(), &mut unit);
+        full[*column] = spread(&unit, used);
     }
     full
 }

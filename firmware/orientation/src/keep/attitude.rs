@@ -5,6 +5,8 @@
 //! is the size of the Earth's rotation between two samples. Here a rotation is given as `f32`, with
 //! a relative error of 6e-8, and nothing of it is lost.
 
+use crate::math::rotation;
+
 /// Value of one, in steps of the stored components.
 const ONE: i64 = 1 << 62;
 /// Size of a step of the components' upper words.
@@ -106,12 +108,7 @@ impl Attitude {
     /// Rotation matrix, to 1e-7.
     #[must_use]
     pub fn matrix(&self) -> Matrix {
-        let [w, x, y, z] = self.rough();
-        [
-            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
-            [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
-            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
-        ]
+        rotation::matrix(self.rough())
     }
 
     /// Components in single precision.

@@ -7,6 +7,7 @@
 
 use super::vertical::Vertical;
 use super::{Gyro, attitude};
+use crate::align::conclusion::Azimuth;
 use crate::earth::Latitude;
 use crate::units::{TURN, wrapped};
 
@@ -40,20 +41,11 @@ pub enum Realigned {
     },
 }
 
-/// An azimuth with its standard deviation, rad.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Azimuth {
-    /// Azimuth of body x from north, clockwise from above, [0, 2π).
-    pub angle: f64,
-    /// Standard deviation of the azimuth, 1σ.
-    pub sigma: f64,
-}
-
 /// An azimuth that is held.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Heading {
     /// Azimuth of the level frame's x, rad.
-    frame: f64,
+    pub(super) frame: f64,
     /// Variance of the azimuth that was handed over, rad².
     variance: f64,
     /// Standard deviations of the gyro's scale factor, and of an unknown ramp of its bias, rad/s².
@@ -79,14 +71,9 @@ impl Heading {
         Azimuth { angle, sigma: libm::sqrt(self.variance(vertical)) }
     }
 
-    /// Azimuth of the level frame's x, rad.
-    pub(super) fn frame(&self) -> f64 {
-        self.frame
-    }
-
     /// Variance of the present azimuth, rad².
     fn variance(&self, vertical: &Vertical) -> f64 {
-        let motion = vertical.course();
+        let motion = &vertical.course;
         let scale = self.scale * f64::from(motion.turned);
         let ramp = self.ramp * f64::from(motion.ramp);
         self.variance + f64::from(vertical.turn_variance()) + scale * scale + ramp * ramp

@@ -7,10 +7,9 @@ use super::vertical::{Trust, Vertical};
 use super::{Gyro, Setting, attitude};
 use crate::signal::InertialSample;
 use crate::units::Instant;
-use crate::words;
 use crate::words::Rounded;
 
-pub use super::heading::Azimuth;
+pub use crate::align::conclusion::Azimuth;
 
 /// Standard deviation at which an azimuth carries no information, 1σ, rad: it is withdrawn.
 const NOWHERE: f64 = 0.5;
@@ -44,7 +43,7 @@ pub enum State {
     },
 }
 
-words! { State:
+crate::words! { State:
     Self::Starting => "starting";
     Self::Level => "level";
     Self::Coasting { seconds } => "coasting for {} s: the gyros alone carry the level", Rounded::<1>(seconds);
@@ -129,8 +128,8 @@ impl Keeper {
     /// Updates the reliability, and withdraws an azimuth that has become meaningless.
     #[inline(never)]
     fn judge(&mut self, now: Instant) {
-        if self.trust != self.vertical.trust() {
-            self.trust = self.vertical.trust();
+        if self.trust != self.vertical.trust {
+            self.trust = self.vertical.trust;
             self.since = now;
         }
         let is_nowhere = |heading: &Heading| heading.azimuth(&self.vertical).sigma > NOWHERE;
@@ -194,7 +193,7 @@ impl Keeper {
 
     /// Rate of the level frame, rad/s.
     fn frame_rate(&self) -> [f32; 3] {
-        let north = self.heading.as_ref().map(Heading::frame);
+        let north = self.heading.as_ref().map(|heading| heading.frame);
         frame_rate(self.setting.latitude, north, self.speed)
     }
 
@@ -216,9 +215,9 @@ impl Keeper {
             attitude: attitude::quaternion([course, pitch, roll]),
             state: self.state(time),
             is_at_rest: vertical.is_at_rest(),
-            biases: vertical.biases().map(f64::from),
+            biases: vertical.bias.map(f64::from),
             bias_sigmas: vertical.bias_sigmas().map(f64::from),
-            is_bias_beyond_stated: vertical.is_bias_beyond_stated(),
+            is_bias_beyond_stated: vertical.is_bias_beyond_stated,
             seconds,
         }
     }
@@ -247,7 +246,7 @@ impl Keeper {
             pitch: report.pitch,
             roll: report.roll,
             rates: self.vertical.rest_rates()?,
-            rest: f64::from(self.vertical.course().stood),
+            rest: f64::from(self.vertical.course.stood),
         })
     }
 
@@ -259,7 +258,7 @@ impl Keeper {
     pub fn recall(&mut self, remembered: &Remembered) -> Result<(), Doubt> {
         let report = self.report();
         let rates = self.vertical.rest_rates().filter(|_| report.is_at_rest);
-        let rest = f64::from(self.vertical.course().stood);
+        let rest = f64::from(self.vertical.course.stood);
         let now = restart::Now { pitch: report.pitch, roll: report.roll, rates, rest };
         restart::check(remembered, &now, &self.setting)?;
         self.hand_over(Handover { azimuth: remembered.azimuth, sigma: remembered.sigma });

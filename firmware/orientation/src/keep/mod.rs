@@ -34,6 +34,7 @@ pub struct Gyro {
 }
 
 /// Configuration of three gyros and accelerometers on a body, and its site.
+#[must_use]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
     /// Geodetic latitude.
@@ -68,19 +69,16 @@ impl Gyro {
 
 impl Setting {
     /// Configuration of a coarse IMU whose accelerometers are calibrated to 2 mg.
-    #[must_use]
     pub fn coarse(latitude: Latitude, sample_seconds: f64) -> Self {
         Self { latitude, gyros: [Gyro::coarse(); 3], force_bias_sigma: 0.02, sample_seconds }
     }
 
     /// Configuration of three equal gyros, with accelerometers calibrated to 0.1 mg.
-    #[must_use]
     pub fn precise(latitude: Latitude, sample_seconds: f64, gyro: Gyro) -> Self {
         Self { latitude, gyros: [gyro; 3], force_bias_sigma: 1e-3, sample_seconds }
     }
 
     /// Configuration with another gyro about the down axis.
-    #[must_use]
     pub fn with_down(self, gyro: Gyro) -> Self {
         let [forward, right, _] = self.gyros;
         Self { gyros: [forward, right, gyro], ..self }
@@ -88,16 +86,11 @@ impl Setting {
 
     /// Noise parameters of the gyros for the filter.
     fn expected(&self) -> Expected {
+        let squared = |part: f32| part * part;
         Expected {
-            walk: self.gyros.map(|gyro| {
-                let walk = gyro.noise.angle_random_walk as f32;
-                walk * walk
-            }),
+            walk: self.gyros.map(|gyro| squared(gyro.noise.angle_random_walk as f32)),
             drift: self.gyros.map(|gyro| gyro.drift() as f32),
-            scale: self.gyros.map(|gyro| {
-                let scale = gyro.scale_sigma as f32;
-                scale * scale
-            }),
+            scale: self.gyros.map(|gyro| squared(gyro.scale_sigma as f32)),
         }
     }
 }

@@ -6,9 +6,8 @@
 //! do not repeat cannot confirm the heading, and then the azimuth is rejected.
 
 use super::Setting;
-use crate::checksum::crc32;
+use crate::checksum::{numbers, record, record_bytes};
 use crate::units::{DEGREE, DEGREES_PER_RADIAN as DEGREES};
-use crate::words;
 use crate::words::Rounded;
 
 /// Shortest rest for the comparison, s.
@@ -23,10 +22,6 @@ const BOUND: f64 = 4.0;
 const TELLING: f64 = 0.5 * DEGREE;
 /// Version of the stored layout.
 const VERSION: u32 = 1;
-/// Number of stored values.
-const NUMBERS: usize = 8;
-/// Number of stored words: version, values, checksum.
-const WORDS: usize = 1 + 2 * NUMBERS + 1;
 
 /// State that is saved against a loss of supply.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -83,7 +78,7 @@ pub enum Doubt {
     },
 }
 
-words! { Doubt:
+crate::words! { Doubt:
     Self::NotAtRest { seconds } => "the body stood for {} s: too short", Rounded::<1>(seconds);
     Self::Tilted { degrees } => "it stands otherwise, by {}°", Rounded::<3>(degrees);
     Self::Turned { sigmas } => "the Earth turns it otherwise, by {} σ", Rounded::<1>(sigmas);
@@ -130,52 +125,21 @@ fn telling(before: &Remembered, setting: &Setting, sigmas: &[f64; 3]) -> f64 {
 
 impl Remembered {
     /// Size of the stored form, bytes.
-    pub const BYTES: usize = 4 * WORDS;
+    pub const BYTES: usize = record_bytes(8);
 
-    /// Stored form: version, values, CRC-32, all little-endian.
+    /// Stored form: version, values in the order of their fields, CRC-32, all little-endian.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; Self::BYTES] {
-        let mut words = [VERSION; WORDS];
-        for (pair, number) in words[1..WORDS - 1].chunks_exact_mut(2).zip(self.numbers()) {
-            let bits = number.to_bits();
-            pair.copy_from_slice(&[bits as u32, (bits >> 32) as u32]);
-        }
-        words[WORDS - 1] = crc32(words[..WORDS - 1].iter().copied());
-        let mut bytes = [0; Self::BYTES];
-        for (place, word) in bytes.chunks_exact_mut(4).zip(words) {
-            place.copy_from_slice(&word.to_le_bytes());
-        }
-        bytes
+        let Self { azimuth, sigma, pitch, roll, rates: [x, y, z], rest } = *self;
+        record(VERSION, &[azimuth, sigma, pitch, roll, x, y, z, rest].map(f64::to_bits))
     }
 
     /// Reads the stored form; `None` where it is damaged, of another version, or not finite.
     #[must_use]
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
-        let bytes: &[u8; Self::BYTES] = bytes.try_into().ok()?;
-        let mut words = [0; WORDS];
-        for (word, place) in words.iter_mut().zip(bytes.chunks_exact(4)) {
-            *word = u32::from_le_bytes([place[0], place[1], place[2], place[3]]);
-        }
-        let is_whole = crc32(words[..WORDS - 1].iter().copied()) == words[WORDS - 1];
-        if words[0] != VERSION || !is_whole {
-            return None;
-        }
-        let number = |place: usize| {
-            let [low, high] = [words[1 + 2 * place], words[2 + 2 * place]];
-            f64::from_bits(u64::from(low) | u64::from(high) << 32)
-        };
-        let numbers: [f64; NUMBERS] = core::array::from_fn(number);
-        numbers.iter().all(|number| number.is_finite()).then(|| Self::of(numbers))
-    }
-
-    /// Values in the order in which they are stored.
-    fn numbers(&self) -> [f64; NUMBERS] {
-        let [x, y, z] = self.rates;
-        [self.azimuth, self.sigma, self.pitch, self.roll, x, y, z, self.rest]
-    }
-
-    /// State from the values in the stored order.
-    fn of([azimuth, sigma, pitch, roll, x, y, z, rest]: [f64; NUMBERS]) -> Self {
-        Self { azimuth, sigma, pitch, roll, rates: [x, y, z], rest }
+        let values = numbers(VERSION, bytes)?.map(f64::from_bits);
+        let [azimuth, sigma, pitch, roll, x, y, z, rest] = values;
+        let are_finite = values.iter().all(|value| value.is_finite());
+        are_finite.then_some(Self { azimuth, sigma, pitch, roll, rates: [x, y, z], rest })
     }
 }

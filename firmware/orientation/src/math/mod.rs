@@ -5,7 +5,8 @@ pub mod brent;
 pub mod rotation;
 pub mod turn;
 
-use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Sub, SubAssign};
+use core::iter::Sum;
+use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// A number in the precision that a computation needs: `f64` for results, `f32`, a tenth of the
 /// instructions on this core, where a thousandth is enough.
@@ -16,6 +17,9 @@ pub trait Scalar:
     + AddAssign
     + SubAssign
     + MulAssign
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Neg<Output = Self>
     + Mul<Output = Self>
     + Div<Output = Self>
 {
@@ -48,29 +52,22 @@ impl Scalar for f32 {
 }
 
 /// A complex number: the phasor a of a signal Re{a e^{jθ}} on a turning platform.
+#[must_use]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Complex {
+pub struct Complex<T = f64> {
     /// Real part: the coefficient of cos θ.
-    pub re: f64,
+    pub re: T,
     /// Imaginary part: minus the coefficient of sin θ.
-    pub im: f64,
+    pub im: T,
 }
 
 impl Complex {
-    /// Number with these real and imaginary parts.
-    #[must_use]
-    pub const fn new(re: f64, im: f64) -> Self {
-        Self { re, im }
-    }
-
     /// Phasor of a signal with these coefficients of cosine and sine.
-    #[must_use]
     pub fn of_signal([cosine, sine]: [f32; 2]) -> Self {
         Self::new(f64::from(cosine), -f64::from(sine))
     }
 
     /// Unit phasor at an angle in rad.
-    #[must_use]
     pub fn unit(angle: f64) -> Self {
         let (sine, cosine) = libm::sincos(angle);
         Self::new(cosine, sine)
@@ -87,27 +84,38 @@ impl Complex {
     pub fn size(self) -> f64 {
         libm::hypot(self.re, self.im)
     }
+}
+
+impl<T: Scalar> Complex<T> {
+    /// Number with these real and imaginary parts.
+    pub const fn new(re: T, im: T) -> Self {
+        Self { re, im }
+    }
 
     /// Squared magnitude.
     #[must_use]
-    pub fn power(self) -> f64 {
+    pub fn power(self) -> T {
         self.re * self.re + self.im * self.im
     }
 
     /// Complex conjugate.
-    #[must_use]
-    pub const fn conjugate(self) -> Self {
+    pub fn conjugate(self) -> Self {
         Self::new(self.re, -self.im)
     }
 
     /// Product with a real factor.
-    #[must_use]
-    pub fn scaled(self, factor: f64) -> Self {
+    pub fn scaled(self, factor: T) -> Self {
         Self::new(self.re * factor, self.im * factor)
+    }
+
+    /// Product of the conjugate of this number with another.
+    pub fn against(self, other: Self) -> Self {
+        let Self { re, im } = other;
+        Self::new(self.re * re + self.im * im, self.re * im - self.im * re)
     }
 }
 
-impl Add for Complex {
+impl<T: Scalar> Add for Complex<T> {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
@@ -115,7 +123,13 @@ impl Add for Complex {
     }
 }
 
-impl Sub for Complex {
+impl<T: Scalar> AddAssign for Complex<T> {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<T: Scalar> Sub for Complex<T> {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
@@ -123,7 +137,7 @@ impl Sub for Complex {
     }
 }
 
-impl Mul for Complex {
+impl<T: Scalar> Mul for Complex<T> {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
@@ -137,6 +151,12 @@ impl Div for Complex {
 
     fn div(self, other: Self) -> Self {
         (self * other.conjugate()).scaled(1.0 / other.power())
+    }
+}
+
+impl<T: Scalar> Sum for Complex<T> {
+    fn sum<I: Iterator<Item = Self>>(numbers: I) -> Self {
+        numbers.fold(Self::default(), Add::add)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Vectors and rotations in three dimensions.
 
-use core::ops::{Add, Mul, Sub};
+use super::Scalar;
+use core::ops::{Add, Sub};
 
 /// A vector: three components on the axes of some frame.
 pub type Vector = [f64; 3];
@@ -13,13 +14,13 @@ pub const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
 
 /// Scalar product of two vectors.
 #[must_use]
-pub fn dot<T: Copy + Add<Output = T> + Mul<Output = T>>(a: &[T; 3], b: &[T; 3]) -> T {
+pub fn dot<T: Scalar>(a: &[T; 3], b: &[T; 3]) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// Vector product of two vectors.
 #[must_use]
-pub fn cross<T: Copy + Sub<Output = T> + Mul<Output = T>>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
+pub fn cross<T: Scalar>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
@@ -37,7 +38,7 @@ pub fn difference<T: Copy + Sub<Output = T>>(a: &[T; 3], b: &[T; 3]) -> [T; 3] {
 
 /// Product of a vector with a scalar.
 #[must_use]
-pub fn scaled<T: Copy + Mul<Output = T>>(a: &[T; 3], factor: T) -> [T; 3] {
+pub fn scaled<T: Scalar>(a: &[T; 3], factor: T) -> [T; 3] {
     a.map(|part| part * factor)
 }
 
@@ -55,10 +56,7 @@ pub fn unit(a: &Vector) -> Vector {
 
 /// Product of a rotation matrix with a vector: its components on the other frame.
 #[must_use]
-pub fn turned<T: Copy + Add<Output = T> + Mul<Output = T>>(
-    rotation: &[[T; 3]; 3],
-    vector: &[T; 3],
-) -> [T; 3] {
+pub fn turned<T: Scalar>(rotation: &[[T; 3]; 3], vector: &[T; 3]) -> [T; 3] {
     [dot(&rotation[0], vector), dot(&rotation[1], vector), dot(&rotation[2], vector)]
 }
 
@@ -106,7 +104,19 @@ pub fn levelled(up: &Vector) -> Matrix {
     [cross(&right, &down), right, down]
 }
 
+/// Rotation matrix of a unit quaternion w, x, y, z.
+#[must_use]
+pub fn matrix<T: Scalar>([w, x, y, z]: [T; 4]) -> [[T; 3]; 3] {
+    let (one, two) = (T::of(1.0), T::of(2.0));
+    [
+        [one - two * (y * y + z * z), two * (x * y - w * z), two * (x * z + w * y)],
+        [two * (x * y + w * z), one - two * (x * x + z * z), two * (y * z - w * x)],
+        [two * (x * z - w * y), two * (y * z + w * x), one - two * (x * x + y * y)],
+    ]
+}
+
 /// Attitude as a unit quaternion: the rotation from body axes to those of a reference.
+#[must_use]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quaternion([f64; 4]);
 
@@ -119,7 +129,6 @@ impl Quaternion {
     pub const ONE: Self = Self([1.0, 0.0, 0.0, 0.0]);
 
     /// Attitude after a further rotation of the body by a rotation vector on its own axes, rad.
-    #[must_use]
     #[inline(never)]
     pub fn turned(&self, rotation: &Vector) -> Self {
         let square = dot(rotation, rotation);
@@ -135,7 +144,6 @@ impl Quaternion {
     }
 
     /// Renormalised quaternion: rounding changes its norm by 1e-16 a rotation.
-    #[must_use]
     pub fn normalised(&self) -> Self {
         let Self([w, x, y, z]) = *self;
         // One Newton step towards 1/√n: exact as long as the norm is nearly one.
@@ -146,23 +154,13 @@ impl Quaternion {
     /// Rotation matrix of the attitude.
     #[must_use]
     pub fn matrix(&self) -> Matrix {
-        let Self([w, x, y, z]) = *self;
-        [
-            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
-            [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
-            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
-        ]
+        matrix(self.0)
     }
 
     /// Rotation matrix of the attitude in single precision, to 1e-7.
     #[must_use]
     pub fn rough_matrix(&self) -> [[f32; 3]; 3] {
-        let [w, x, y, z] = self.0.map(|part| part as f32);
-        [
-            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
-            [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
-            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
-        ]
+        matrix(self.0.map(|part| part as f32))
     }
 }
 

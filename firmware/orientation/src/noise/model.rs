@@ -4,6 +4,7 @@ use crate::units::{ARCSECOND, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, TURN};
 
 /// Noise coefficients of a gyro in SI units, for the Allan variance 3Q²/τ² + N²/τ + (2 ln 2/π)B² +
 /// K²τ/3 + R²τ²/2. A coefficient of zero is absent.
+#[must_use]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GyroNoise {
@@ -21,7 +22,6 @@ pub struct GyroNoise {
 
 impl GyroNoise {
     /// Model from N in °/√h, B in °/h, K in °/h/√h and R in °/h²; the quantisation is zero.
-    #[must_use]
     pub fn from_field_units(n: f64, b: f64, k: f64, r: f64) -> Self {
         Self {
             angle_random_walk: n * DEGREE_PER_SQRT_HOUR,
@@ -33,7 +33,6 @@ impl GyroNoise {
     }
 
     /// The model with a quantisation of Q arc seconds.
-    #[must_use]
     pub fn with_quantisation(self, q: f64) -> Self {
         Self { quantisation: q * ARCSECOND, ..self }
     }
@@ -89,7 +88,6 @@ impl GyroNoise {
     }
 
     /// The model without drift: N alone remains.
-    #[must_use]
     pub fn white_part(&self) -> Self {
         Self { angle_random_walk: self.angle_random_walk, ..Self::default() }
     }

@@ -230,6 +230,7 @@ impl<const COLUMNS: usize, T: Scalar> Belief<COLUMNS, T> {
 }
 
 /// The whitening filter; `COLUMNS` counts the regression's columns and its left side.
+#[must_use]
 #[derive(Clone, Debug)]
 pub struct Whitener<const COLUMNS: usize, T = f64> {
     /// Processes and their parameters.
@@ -253,7 +254,6 @@ impl<const COLUMNS: usize, T: Scalar> Whitener<COLUMNS, T> {
     /// low cut-off is therefore 1/(2π·1365·`shortest`) Hz. Slower flicker is a constant to the
     /// regression, which has a column for it. Faster flicker averages like white noise: processes
     /// of variance s² and correlation time τ leave 2s²τ/T, summed over τ/4, τ/16, …
-    #[must_use]
     pub fn new(noise: &GyroNoise, shortest: f64) -> Self {
         let zero = T::default();
         let mut belief = Belief {
@@ -280,7 +280,6 @@ impl<const COLUMNS: usize, T: Scalar> Whitener<COLUMNS, T> {
     }
 
     /// The filter with the noise that sway compensation leaves.
-    #[must_use]
     pub fn with_sway(mut self, sway: &SwayNoise) -> Self {
         if sway.angle_variance > 0.0 {
             self.model.sway = *sway;

@@ -69,7 +69,7 @@ impl Session {
     /// it.
     fn noise(&self) -> GyroNoise {
         let norm = ExpectedScatter::of(&self.setting, self.dwells());
-        let white = norm.white().max(norm.observed_white(self.dwells()));
+        let white = norm.white.max(norm.observed_white(self.dwells()));
         GyroNoise { angle_random_walk: libm::sqrt(white), ..self.setting.noise }
     }
 

@@ -155,7 +155,6 @@ impl Session {
     }
 
     /// Procedure of the session.
-    #[must_use]
     pub fn procedure(&self) -> &Procedure {
         &self.procedure
     }
@@ -206,7 +205,6 @@ impl Session {
     }
 
     /// Conclusion from the dwells so far, for reporting progress and for stopping early.
-    #[must_use]
     pub fn preview(&self) -> Conclusion {
         Conclusion::of(&self.setting, self.dwells(), Criterion::MaximumLikelihood)
     }
@@ -362,7 +360,7 @@ impl Session {
 
     /// Standard deviation of the difference of two dwells, 1σ, rad/s.
     fn difference_sigma(&self) -> f64 {
-        let white = ExpectedScatter::of(&self.setting, self.dwells()).white();
+        let white = ExpectedScatter::of(&self.setting, self.dwells()).white;
         libm::sqrt(2.0 * white / self.procedure.schedule.shortest())
     }
 

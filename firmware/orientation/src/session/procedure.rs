@@ -8,7 +8,6 @@ use crate::align::criterion::Criterion;
 use crate::error::Refusal;
 use crate::signal::butterworth::DesignError;
 use crate::units::TURN;
-use crate::words;
 use crate::words::Rounded;
 
 /// Product of the filter's cut-off and the shortest dwell: the taper then costs 1.2 % of σ.
@@ -36,6 +35,7 @@ pub(super) fn contradiction(told: f64, found: f64, tolerance: f64) -> Option<Ref
 }
 
 /// Procedure of a session.
+#[must_use]
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Procedure {
@@ -78,7 +78,6 @@ impl Procedure {
     /// arrival within 0.05°, five minutes for a rotation (enough for a stage to home again), and
     /// for the session twice the dwells' time, half a minute for each dwell and a minute for
     /// everything else.
-    #[must_use]
     pub fn new(schedule: Schedule, sample_seconds: f64) -> Self {
         let level_seconds = 0.25 * schedule.shortest();
         let longest_seconds = 2.0 * schedule.seconds() + 30.0 * schedule.len() as f64 + 60.0;
@@ -102,7 +101,6 @@ impl Procedure {
 
     /// Procedure with a survey of the gyro's noise before the dwells; the longest time grows
     /// accordingly.
-    #[must_use]
     pub fn after(self, survey: Survey) -> Self {
         let retry_budget = 2.0 * (survey.seconds + survey.plan_seconds) + 30.0 * POSITIONS as f64;
         let longest_seconds = self.longest_seconds + retry_budget;
@@ -111,7 +109,6 @@ impl Procedure {
 
     /// Procedure that continues until the accuracy of
     /// [`crate::align::setting::Setting::required_sigma`] is reached or `seconds` have passed.
-    #[must_use]
     pub fn until_accurate(self, seconds: f64) -> Self {
         let retry_budget = 2.0 * seconds + 30.0 * POSITIONS as f64 + 60.0;
         let longest_seconds = self.longest_seconds.max(retry_budget);
@@ -168,7 +165,7 @@ pub enum ProcedureError {
     TableCorrupt,
 }
 
-words! { ProcedureError:
+crate::words! { ProcedureError:
     Self::Filter(error) => "no filter for this sample rate: {}", error;
     Self::DwellTooShort { samples, needed } =>
         "the shortest dwell has {} samples; the filter needs {}", samples, needed;

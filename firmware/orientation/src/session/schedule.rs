@@ -19,6 +19,7 @@ pub struct Position {
 }
 
 /// Sequence of positions to visit.
+#[must_use]
 #[allow(
     clippy::large_enum_variant,
     reason = "without an allocator the list lives here; a session holds one schedule"
@@ -92,7 +93,6 @@ impl Schedule {
 
     /// Schedule of equal steps over the full circle from zero, the last one a step before a whole
     /// turn; at most [`POSITIONS`].
-    #[must_use]
     pub fn circle(positions: usize, seconds: f64) -> Self {
         let step = core::f64::consts::TAU / positions.max(1) as f64;
         let list = (0..positions.min(POSITIONS))
@@ -104,7 +104,6 @@ impl Schedule {
     /// Schedule of [`Self::circle`] with the first position repeated at the end, a whole turn on: a
     /// drift synchronous with the stage shows as the difference of the two. The repeat is omitted
     /// where there is no room.
-    #[must_use]
     pub fn closed_circle(positions: usize, seconds: f64) -> Self {
         let mut schedule = Self::circle(positions, seconds);
         if let Self::Listed(list) = &mut schedule

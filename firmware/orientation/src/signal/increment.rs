@@ -24,8 +24,9 @@ pub const STEP: f32 = AngleIncrement::STEP as f32;
 /// components are written out, because loops over three cost more than their bodies.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Increment {
-    /// Sums of the increments: exact integers, so no rotation is lost over any time.
-    sums: [i32; 3],
+    /// Sums of the increments since the last attitude update, in their steps: exact integers, so no
+    /// rotation is lost over any time.
+    pub sums: [i32; 3],
     /// Coning sums: contribution of the order of the rotations, in squared steps.
     coning: [f32; 3],
     /// A twelfth of the previous sample, or zero where that was a shock.
@@ -63,13 +64,6 @@ impl Increment {
     pub fn is_large(&self) -> bool {
         let [x, y, z] = self.sums;
         x.unsigned_abs().max(y.unsigned_abs()).max(z.unsigned_abs()) > LARGE_STEPS
-    }
-
-    /// Sums of the increments since the last attitude update, in steps of an increment.
-    #[must_use]
-    #[inline]
-    pub fn steps(&self) -> [i32; 3] {
-        self.sums
     }
 
     /// Rotation vector since the last attitude update, rad, in double precision; the sums begin

@@ -279,9 +279,7 @@ impl Products {
         }
         self.rows += 1;
     }
-}
 
-impl Products {
     /// Sums of cosine and sine over the blocks, in steps of 2⁻²².
     #[must_use]
     pub fn phasor(&self) -> [f32; 2] {

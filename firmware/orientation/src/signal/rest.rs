@@ -7,7 +7,6 @@
 //! time.
 
 use crate::earth::EARTH_RATE;
-use crate::noise::model::GyroNoise;
 
 /// Limit of a criterion at rest, in standard deviations.
 const BOUND: f64 = 4.0;
@@ -32,7 +31,7 @@ pub struct Limits {
 pub struct Sensors {
     /// Angle random walk N of each gyro, rad/√s.
     pub angle_random_walk: f64,
-    /// 1σ of the gyros' biases, rad/s.
+    /// 1σ of the gyros' biases, bias instability included, rad/s.
     pub bias_sigma: f64,
     /// Noise of the accelerometers, one-sided, m/s²/√Hz.
     pub force_noise: f64,
@@ -41,25 +40,6 @@ pub struct Sensors {
 }
 
 impl Sensors {
-    /// Sensors from the noise model of each gyro, the 1σ of the gyros' biases, rad/s, the noise of
-    /// the accelerometers, m/s²/√Hz one-sided, and the 1σ of their biases, m/s². The bias
-    /// instability of the model is added to the bias, root sum square.
-    #[must_use]
-    pub fn new(
-        noise: &GyroNoise,
-        bias_sigma: f64,
-        force_noise: f64,
-        force_bias_sigma: f64,
-    ) -> Self {
-        let bias_sigma = libm::hypot(bias_sigma, noise.bias_instability);
-        Self {
-            angle_random_walk: noise.angle_random_walk,
-            bias_sigma,
-            force_noise,
-            force_bias_sigma,
-        }
-    }
-
     /// Limits for averages over this many seconds (> 0).
     #[must_use]
     pub fn limits(&self, seconds: f64) -> Limits {
@@ -74,6 +54,7 @@ impl Sensors {
 }
 
 /// Values of the two criteria for one average.
+#[must_use]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Criteria {
     /// Kryt1 = Ω − |ω|, rad/s.
@@ -85,7 +66,6 @@ pub struct Criteria {
 impl Criteria {
     /// Criteria from the magnitudes of the mean rate, rad/s, and of the mean specific force, m/s²,
     /// for the local gravity, m/s².
-    #[must_use]
     pub fn of(rate: f64, force: f64, gravity: f64) -> Self {
         Self { rate: EARTH_RATE - rate, force: gravity - force }
     }
@@ -93,7 +73,6 @@ impl Criteria {
     /// Criteria for a single gyro that is turned between averages, from the deviation of its mean
     /// rate from its usual one, rad/s. At rest two such rates differ by at most twice the Earth's
     /// rate, so only the excess over that counts.
-    #[must_use]
     pub fn of_axis(deviation: f64, force: f64, gravity: f64) -> Self {
         let beyond = (deviation.abs() - 2.0 * EARTH_RATE).max(0.0);
         Self { rate: -beyond, force: gravity - force }

@@ -83,7 +83,7 @@ pub struct Strapdown {
     /// Rotation since the last attitude update.
     increment: Increment,
     /// Attitude and sensitivities at the last update.
-    carried: Carried,
+    pub carried: Carried,
     /// Mean rates between the last three attitude updates, rad/s, the latest first.
     rates: [[f32; 3]; 2],
     /// Attitude of the last update as a matrix.
@@ -129,7 +129,7 @@ impl Strapdown {
     pub fn update(&mut self, now: Instant) {
         let seconds = now.0.saturating_sub(self.since.0) as f32 * 1e-6;
         self.since = now;
-        let steps = self.increment.steps();
+        let steps = self.increment.sums;
         let small = steps.map(|sum| sum as f32 * STEP);
         let carried = &mut self.carried;
         carried.attitude = carried.attitude.turned(&self.increment.take());
@@ -166,12 +166,6 @@ impl Strapdown {
     pub fn rate(&self) -> [f32; 3] {
         let [latest, earlier] = self.rates;
         core::array::from_fn(|axis| 1.5 * latest[axis] - 0.5 * earlier[axis])
-    }
-
-    /// Attitude and sensitivities at the last update.
-    #[must_use]
-    pub fn carried(&self) -> &Carried {
-        &self.carried
     }
 
     /// Takes the sums up to the last update, which begin again. It must be called now and then:

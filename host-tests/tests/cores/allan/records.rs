@@ -26,14 +26,13 @@ fn recording() -> Allan {
 #[test]
 fn an_hour_of_an_independent_simulator_gives_its_coefficients() {
     let fit = NoiseFit::of(&recording(), 0.1).expect("an hour of noise");
-    println!("{fit}; χ² {:.1} of {}", fit.chi_square, fit.degrees);
-    let found =
-        [fit.degrees_per_sqrt_hour(), fit.degrees_per_hour(), fit.degrees_per_hour_per_sqrt_hour()];
-    for (estimate, truth) in found.into_iter().zip(TRUTH) {
+    println!("{fit:?}; χ² {:.1} of {}", fit.chi_square, fit.degrees);
+    let found = fit.in_field_units().map(|(_, estimate)| estimate);
+    for (estimate, truth) in found.into_iter().skip(1).zip(TRUTH) {
         let Estimate::Found { value, sigma } = estimate else { panic!("{estimate}, not {truth}") };
         assert!((value - truth).abs() < 2.0 * sigma, "{value} ± {sigma}, not {truth}");
     }
-    let n = fit.degrees_per_sqrt_hour().value().expect("N was found");
+    let n = found[1].value().expect("N was found");
     assert!((n / TRUTH[0] - 1.0).abs() < 0.02, "{n}");
     for absent in [fit.quantisation, fit.rate_ramp] {
         assert!(matches!(absent, Estimate::NotObservable { .. }), "{absent}");
@@ -101,14 +100,16 @@ fn the_shortest_record_of_white_noise_gives_n() {
     let fit = fit(noise(1_000_000, 64)).expect("64 samples are enough");
     // Uniform within ± a million: σ √(1/3) 1e-3 rad/s, N = σ √0.1 s.
     let known = 1e-3 / 3.0_f64.sqrt() * 0.1_f64.sqrt();
-    let Estimate::Found { value, sigma } = fit.angle_random_walk else { panic!("{fit}") };
+    let Estimate::Found { value, sigma } = fit.angle_random_walk else { panic!("{fit:?}") };
     assert!((value - known).abs() < 4.0 * sigma && sigma < 0.3 * known, "{value} ± {sigma}");
 }
 
 #[test]
 fn the_fit_says_its_units() {
-    let text = fit(noise(1_000_000, 5000)).expect("white noise").to_string();
-    for unit in ["″", "°/√h", "°/h;", "°/h/√h", "°/h²"] {
-        assert!(text.contains(unit), "{text}");
+    let found = fit(noise(1_000_000, 5000)).expect("white noise").in_field_units();
+    let units = ["arc seconds", "°/√h", "°/h", "°/h/√h", "°/h²"];
+    for ((coefficient, estimate), unit) in found.into_iter().zip(units) {
+        let text = format!("{coefficient}: {estimate}");
+        assert!(text.contains(&format!(", {unit}: ")), "{text}");
     }
 }

@@ -13,13 +13,7 @@ const NAMES: [&str; 5] = ["Q", "N", "B", "K", "R"];
 
 /// Q, N, B, K and R in the field's units.
 fn field_units(fit: &NoiseFit) -> [Estimate; 5] {
-    [
-        fit.arcseconds(),
-        fit.degrees_per_sqrt_hour(),
-        fit.degrees_per_hour(),
-        fit.degrees_per_hour_per_sqrt_hour(),
-        fit.degrees_per_hour_squared(),
-    ]
+    fit.in_field_units().map(|(_, estimate)| estimate)
 }
 
 /// What many fits say of one coefficient.

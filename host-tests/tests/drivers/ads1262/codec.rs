@@ -38,7 +38,7 @@ fn each_status_bit_has_its_consequence() {
     assert_eq!(decode(frame(0x10, 5)), Err(Fault::Alarm { status: 0x10 }));
     assert_eq!(decode(frame(0x01, 5)), Err(Fault::Reset));
     assert_eq!(decode(frame(0x51, 5)), Err(Fault::Reset), "before the alarm of a chip just reset");
-    assert!(Status(0x20).is_clock_external());
+    assert!(Status(0x20).has(Status::EXTERNAL_CLOCK));
 }
 
 #[test]

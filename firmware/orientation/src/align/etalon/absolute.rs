@@ -104,7 +104,7 @@ pub(super) fn search(table: Table, series: &Series) -> Match {
     let mut best = Best {
         table,
         series,
-        rounding: sweep.rounding(),
+        rounding: sweep.rounding,
         index: TURN,
         objective: u64::MAX,
         reach: f64::INFINITY,
@@ -180,7 +180,7 @@ pub(super) fn within(table: Table, series: &Series, limit: u64) -> Acceptance {
     let mut cover = Cover::default();
     let mut evaluations = 0;
     for piece in sweep.pieces() {
-        let rounding = sweep.rounding();
+        let rounding = sweep.rounding;
         let mut judge = Within { table, series, piece, limit, rounding, evaluations };
         let (first, last) = piece.indices();
         if first <= last && piece.dips_to(limit as f64 + rounding) {

@@ -90,6 +90,13 @@ impl Piece {
     pub(super) fn maximum(&self) -> f64 {
         circle(atan2(-self.im, self.re) / STEP)
     }
+
+    /// Adds a multiple of a term to the piece.
+    fn turn(&mut self, term: Term, times: f64) {
+        self.re += times * term.re;
+        self.im += times * term.im;
+        self.offset += times * term.offset;
+    }
 }
 
 /// Reduces a position in grid steps to [0, 129 600) from at most a few turns outside.
@@ -107,8 +114,8 @@ pub(super) struct Sweep {
     crossings: Vec<Crossing, { 2 * CAPACITY }>,
     /// Piece at index 0, before the first crossing.
     start: Piece,
-    /// Bound on the rounding of the continuous sum.
-    rounding: f64,
+    /// Bound on the difference between a piece at a grid index and the exact sum there.
+    pub(super) rounding: f64,
 }
 
 impl Sweep {
@@ -162,11 +169,6 @@ impl Sweep {
         let _ = self.crossings.push(Crossing { at, term: self.terms.len() as u16, rises });
     }
 
-    /// Bound on the difference between a piece at a grid index and the exact sum there.
-    pub(super) fn rounding(&self) -> f64 {
-        self.rounding
-    }
-
     /// Pieces from index 0 round the circle, empty ones included.
     pub(super) fn pieces(&self) -> impl Iterator<Item = Piece> + '_ {
         let mut state = self.start;
@@ -179,14 +181,5 @@ impl Sweep {
             }
             piece
         })
-    }
-}
-
-impl Piece {
-    /// Adds a multiple of a term to the piece.
-    fn turn(&mut self, term: Term, times: f64) {
-        self.re += times * term.re;
-        self.im += times * term.im;
-        self.offset += times * term.offset;
     }
 }

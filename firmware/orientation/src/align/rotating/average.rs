@@ -153,8 +153,7 @@ impl<'a> Turns<'a> {
 
     /// Mean of a complex quantity over the turns used.
     fn mean_complex(&self, of: impl Fn(usize) -> Complex) -> Complex {
-        let sum = self.kept().map(of).fold(Complex::default(), |sum, part| sum + part);
-        sum.scaled(1.0 / self.count().max(1) as f64)
+        self.kept().map(of).sum::<Complex>().scaled(1.0 / self.count().max(1) as f64)
     }
 
     /// Least-squares slope of a quantity over the times of the turns, and the sum of squares of the
@@ -216,6 +215,34 @@ impl<'a> Turns<'a> {
             self.is_kept[furthest.0] = false;
         }
     }
+
+    /// Variance of either part of the mean in units of a turn's, including the contribution of the
+    /// drift's slope. The variance of the turns' mean rates is half that of a phasor, or what they
+    /// show where they do not lie on a line, as after a disturbance of some turns.
+    fn share(&self, square: f64, variance: f64) -> f64 {
+        let own = 1.0 / self.count() as f64;
+        if self.count() < 2 || square <= 0.0 {
+            return own;
+        }
+        let leak = self.mean_complex(|index| Complex::of_signal(self.all[index].leak)).size();
+        let is_bent = self.slopes.iter().take(self.all.len()).any(|slope| *slope != self.slopes[0]);
+        // The local slopes have already followed the curvature.
+        let bend = if is_bent { 0.0 } else { self.bend() };
+        let offset = (bend / variance.max(f64::MIN_POSITIVE)).max(0.5);
+        own + 0.5 * leak * leak * offset / square
+    }
+
+    /// Variance of the turns' mean rates about a line, (rad/s)².
+    fn bend(&self) -> f64 {
+        let (slope, square) = self.slope_of(|index| self.own_rate(index));
+        let mean = self.mean(|index| self.own_rate(index));
+        let scatter = self.mean(|index| {
+            let away = self.own_rate(index) - mean;
+            away * away
+        });
+        let count = self.count() as f64;
+        (count * scatter - slope * slope * square).max(0.0) / (count - 2.0).max(1.0)
+    }
 }
 
 impl Average {
@@ -249,7 +276,7 @@ impl Average {
         }
         turns.free(variance);
         turns.kept().for_each(|index| each(&turns.all[index], turns.phasors[index]));
-        let joined = stretch.count() / stretch.turns().len().max(1) as u32;
+        let joined = stretch.joined;
         let turn = |index: usize| &turns.all[index];
         let phasor = turns.mean_complex(|index| turns.phasors[index]);
         let force = turns.mean_complex(|index| Complex::of_signal(turn(index).force));
@@ -278,43 +305,11 @@ impl Average {
             degrees: 2 * (count as u32 - 1),
         })
     }
-}
 
-impl Average {
     /// Number of turns of the platform that were joined to one entry.
     #[must_use]
     pub fn joined(&self) -> f64 {
         f64::from(self.turns) / (0.5 * f64::from(self.degrees) + 1.0)
-    }
-}
-
-impl Turns<'_> {
-    /// Variance of either part of the mean in units of a turn's, including the contribution of the
-    /// drift's slope. The variance of the turns' mean rates is half that of a phasor, or what they
-    /// show where they do not lie on a line, as after a disturbance of some turns.
-    fn share(&self, square: f64, variance: f64) -> f64 {
-        let own = 1.0 / self.count() as f64;
-        if self.count() < 2 || square <= 0.0 {
-            return own;
-        }
-        let leak = self.mean_complex(|index| Complex::of_signal(self.all[index].leak)).size();
-        let is_bent = self.slopes.iter().take(self.all.len()).any(|slope| *slope != self.slopes[0]);
-        // The local slopes have already followed the curvature.
-        let bend = if is_bent { 0.0 } else { self.bend() };
-        let offset = (bend / variance.max(f64::MIN_POSITIVE)).max(0.5);
-        own + 0.5 * leak * leak * offset / square
-    }
-
-    /// Variance of the turns' mean rates about a line, (rad/s)².
-    fn bend(&self) -> f64 {
-        let (slope, square) = self.slope_of(|index| self.own_rate(index));
-        let mean = self.mean(|index| self.own_rate(index));
-        let scatter = self.mean(|index| {
-            let away = self.own_rate(index) - mean;
-            away * away
-        });
-        let count = self.count() as f64;
-        (count * scatter - slope * slope * square).max(0.0) / (count - 2.0).max(1.0)
     }
 }
 

@@ -10,15 +10,16 @@
 
 use heapless::Vec;
 
-use super::turn::TURNS;
+use super::turn::{Stretch, TURNS, Turn};
 use super::turn_accumulator::STRETCHES;
 use crate::align::regression::{COLUMNS, Column, Regression, Solution};
-use crate::math::{median, sort};
+use crate::math::{Complex, median, sort};
 
 /// Greatest number of turns of all stretches.
 pub const MARKS: usize = STRETCHES * TURNS;
 
 /// Value of a quantity in one turn that should stay constant.
+#[must_use]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Mark {
     /// Middle of the turn, s.
@@ -31,6 +32,19 @@ pub struct Mark {
     pub turns: f32,
     /// The value; the second part is zero for a quantity with one part.
     pub value: [f32; 2],
+}
+
+impl Mark {
+    /// Mark of a turn, or of joined ones, of the first speed of a stretch, with this value.
+    pub fn of(stretch: &Stretch, turn: &Turn, value: Complex) -> Self {
+        Self {
+            time: (stretch.since() as f64 * 1e-6 + f64::from(turn.middle)) as f32,
+            odd: stretch.sense.signed(1.0) as f32,
+            is_second: false,
+            turns: stretch.joined as f32,
+            value: [value.re as f32, value.im as f32],
+        }
+    }
 }
 
 /// Hypothesis on the change of a quantity.

@@ -8,7 +8,7 @@ use super::average::{Average, steady_part, typical_size, variance_of_neighbours}
 use super::change::{MARKS, Mark};
 use super::coupling::Coupling;
 use super::heading::Directions;
-use super::solution::{Fit, Pair, Problem, SPEEDS, force_density, of_turn};
+use super::solution::{Fit, Pair, Problem, SPEEDS, force_density, of_one_turn, of_turn};
 use super::tilting::Tilting;
 use super::turn::{Sense, Stretch, Turn};
 use super::turn_accumulator::{STRETCHES, TurnAccumulator};
@@ -78,6 +78,16 @@ pub struct Conclusion {
     pub degrees: u32,
 }
 
+/// What a conclusion is drawn from.
+struct Evidence<'a> {
+    /// Configuration of the alignment.
+    setting: &'a Setting,
+    /// Turns of the platform.
+    turn_accumulator: &'a TurnAccumulator,
+    /// Motion of a tilting base, as the forces show it.
+    tilting: Tilting,
+}
+
 impl Default for Conclusion {
     /// Result without turns: a refusal.
     fn default() -> Self {
@@ -97,45 +107,38 @@ impl Conclusion {
     /// Checks the contents of a turn accumulator, solves, and decides, in place of a
     /// [`Self::default`].
     pub fn draw(&mut self, setting: &Setting, turn_accumulator: &TurnAccumulator) {
-        self.verdict = self.decide(setting, turn_accumulator);
+        self.verdict = self.decide(&Evidence::of(setting, turn_accumulator));
     }
 
     /// Sequence of checks and computations; the first failure is the refusal.
-    fn decide(
-        &mut self,
-        setting: &Setting,
-        turn_accumulator: &TurnAccumulator,
-    ) -> Result<Azimuth, Refusal> {
+    fn decide(&mut self, evidence: &Evidence) -> Result<Azimuth, Refusal> {
+        let Evidence { setting, turn_accumulator, tilting } = evidence;
         let latitude = setting.common.latitude;
         if !latitude.has_north() {
             return Err(Refusal::LatitudeTooHigh { latitude: latitude.rad() * DEGREES });
         }
-        self.couple(setting, turn_accumulator)?;
+        self.couple(evidence)?;
         Self::judge_followed(turn_accumulator)?;
-        let tilting = tilting(setting, turn_accumulator);
         let mut marks = Vec::new();
-        self.pair(setting, turn_accumulator.stretches(), &tilting, &mut marks)?;
+        self.pair(evidence, &mut marks)?;
         let drift = self.scatter(setting);
         let moved = |reason| {
             let tilted = |change: f64| Refusal::TiltChanged { change: change * 1e3 };
             tilting.step.map_or(reason, tilted)
         };
         self.judge_left_out(setting).map_err(moved)?;
-        self.solve(setting, &tilting, turn_accumulator.ellipse(), marks)?;
+        self.solve(evidence, marks)?;
         self.judge_turns(setting, drift)?;
         let fit = self.fit.ok_or(Refusal::CouplingUnknown)?;
-        self.judge_force(setting, &fit, &tilting)?;
+        self.judge_force(setting, &fit, tilting)?;
         judge(setting, &fit, self.degrees)?;
         within_budget(setting, &fit)
     }
 
     /// Determines the axis misalignments from the rate-modulated turns, or takes the stored ones.
     #[inline(never)]
-    fn couple(
-        &mut self,
-        setting: &Setting,
-        turn_accumulator: &TurnAccumulator,
-    ) -> Result<(), Refusal> {
+    fn couple(&mut self, evidence: &Evidence) -> Result<(), Refusal> {
+        let Evidence { setting, turn_accumulator, .. } = evidence;
         let mut noise = setting.common.noise;
         if !setting.common.white_known {
             noise.angle_random_walk = estimate(turn_accumulator.stretches(), &self.couplings);
@@ -160,8 +163,8 @@ impl Conclusion {
         if let Some(trouble) = turn_accumulator.accelerometer() {
             return Err(Refusal::Device { device: Device::Accelerometer, trouble });
         }
-        if turn_accumulator.slip() != 0.0 {
-            return Err(Refusal::EncoderSlipped { angle: turn_accumulator.slip() * DEGREES });
+        if turn_accumulator.slip != 0.0 {
+            return Err(Refusal::EncoderSlipped { angle: turn_accumulator.slip * DEGREES });
         }
         Ok(())
     }
@@ -171,24 +174,14 @@ impl Conclusion {
         GyroNoise { angle_random_walk: self.angle_random_walk, ..setting.common.noise }
     }
 
-    /// Variance of either part of one turn's phasor, (rad/s)², for a sensor of gain one.
-    fn of_one_turn(&self, setting: &Setting, speed: f64) -> f64 {
-        of_turn(speed, self.noise(setting).density_of_period(speed / TURN))
-    }
-
     /// Finds the averages of both senses for every speed.
     #[inline(never)]
-    fn pair(
-        &mut self,
-        setting: &Setting,
-        stretches: &[Stretch],
-        tilting: &Tilting,
-        marks: &mut Vec<Mark, MARKS>,
-    ) -> Result<(), Refusal> {
-        let averages = self.averages(setting, stretches, tilting, marks);
+    fn pair(&mut self, evidence: &Evidence, marks: &mut Vec<Mark, MARKS>) -> Result<(), Refusal> {
+        let averages = self.averages(evidence, marks);
         let of = |sense: Sense| averages.iter().filter(move |average| average.sense == sense);
         for sense in [Sense::Clockwise, Sense::CounterClockwise] {
             if of(sense).next().is_none() {
+                let stretches = evidence.turn_accumulator.stretches();
                 let count = stretches.iter().filter(|stretch| stretch.sense == sense);
                 return Err(Refusal::TurnsTooFew { sense, turns: count.map(Stretch::count).sum() });
             }
@@ -216,31 +209,25 @@ impl Conclusion {
     /// `marks` with the sign of their sense.
     fn averages(
         &self,
-        setting: &Setting,
-        stretches: &[Stretch],
-        tilting: &Tilting,
+        evidence: &Evidence,
         marks: &mut Vec<Mark, MARKS>,
     ) -> Vec<Average, STRETCHES> {
-        let couplings = &self.couplings;
+        let Evidence { setting, turn_accumulator, tilting } = evidence;
+        let (stretches, couplings) = (turn_accumulator.stretches(), &self.couplings);
         let horizontal = setting.common.latitude.horizontal_rate();
         let steady = steady_part(stretches);
         let slow = stretches.first().map_or(0.0, Stretch::speed);
         let mut averages = Vec::new();
         for stretch in stretches {
-            let joined = stretch.count() / stretch.turns().len().max(1) as u32;
             let speed = stretch.speed();
-            let variance = self.of_one_turn(setting, speed) / f64::from(joined);
+            let variance = of_one_turn(&self.noise(setting), speed) / f64::from(stretch.joined);
             // Noise counts at the sensor's input, so the sensor's gain scales it.
             let is_flat = setting.sensor.is_flat;
             let gain = if is_flat { 1.0 } else { typical_size(stretch, couplings) / horizontal };
-            let since = stretch.since() as f64 * 1e-6;
             let is_second = (speed - slow).abs() > EQUAL_SPEEDS * slow;
             let mark = |turn: &Turn, phasor: Complex| {
-                let time = (since + f64::from(turn.middle)) as f32;
-                let odd = stretch.sense.signed(1.0) as f32;
-                let value = [phasor.re as f32, phasor.im as f32];
                 // The vector has room for every turn of every stretch.
-                let _ = marks.push(Mark { time, odd, is_second, turns: joined as f32, value });
+                let _ = marks.push(Mark { is_second, ..Mark::of(stretch, turn, phasor) });
             };
             let variance = variance * gain * gain;
             let average = Average::of(stretch, couplings, steady, variance, tilting, mark);
@@ -316,7 +303,7 @@ impl Conclusion {
             |pair: &&Pair| (pair.speed() - average.speed).abs() <= EQUAL_SPEEDS * average.speed;
         let pair = self.pairs.iter().find(is_it).filter(|_| !setting.sensor.is_flat);
         let gain = pair.map_or(1.0, |pair| pair.gain(horizontal));
-        self.of_one_turn(setting, average.speed) * gain * gain / average.joined()
+        of_one_turn(&self.noise(setting), average.speed) * gain * gain / average.joined()
     }
 
     /// Sums up chi-square; returns the greatest drift of a stretch's phasor, in σ.
@@ -335,21 +322,11 @@ impl Conclusion {
 
     /// Solves, and raises σ by the scatter of the turns and by possible changes from turn to turn.
     #[inline(never)]
-    fn solve(
-        &mut self,
-        setting: &Setting,
-        tilting: &Tilting,
-        ellipse: Complex,
-        marks: Vec<Mark, MARKS>,
-    ) -> Result<(), Refusal> {
-        let noise = self.noise(setting);
-        let density = |speed: f64| noise.density_at(speed / TURN);
-        let problem = self.problem(setting, tilting, ellipse, &density);
+    fn solve(&mut self, evidence: &Evidence, marks: Vec<Mark, MARKS>) -> Result<(), Refusal> {
+        let Evidence { setting, tilting, .. } = evidence;
+        let problem = self.problem(evidence);
         let mut fit = problem.solve().ok_or(Refusal::CouplingUnknown)?;
-        let of_turn = |speed: f64| self.of_one_turn(setting, speed);
-        let is_known = setting.common.white_known;
-        let directions = Directions { problem: &problem, fit: &fit, of_turn: &of_turn, is_known };
-        let doubt = directions.doubt(marks);
+        let doubt = Directions { problem: &problem, fit: &fit }.doubt(marks);
         let excess = self.excess(setting);
         fit.budget.noise *= excess;
         let drift = fit.budget.drift * excess;
@@ -364,19 +341,12 @@ impl Conclusion {
         }
     }
 
-    /// Equations to be solved, with the noise's spectral density at a speed in rad/s.
-    fn problem<'a>(
-        &'a self,
-        setting: &'a Setting,
-        tilting: &'a Tilting,
-        ellipse: Complex,
-        density: &'a dyn Fn(f64) -> f64,
-    ) -> Problem<'a> {
-        let angle_random_walk = self.angle_random_walk;
-        let is_known = setting.common.white_known;
-        let white = if is_known { angle_random_walk * angle_random_walk } else { 0.0 };
-        let (pairs, couplings) = (&self.pairs, &self.couplings);
-        Problem { setting, pairs, couplings, density, white, angle_random_walk, tilting, ellipse }
+    /// Equations to be solved.
+    fn problem<'a>(&'a self, evidence: &'a Evidence) -> Problem<'a> {
+        let Evidence { setting, turn_accumulator, tilting } = evidence;
+        let (pairs, couplings, noise) = (&self.pairs, &self.couplings, self.noise(setting));
+        let ellipse = turn_accumulator.ellipse();
+        Problem { setting, pairs, couplings, noise, tilting, ellipse }
     }
 
     /// Observability of a slow rotation of the base about the vertical, from the turns of this
@@ -388,15 +358,10 @@ impl Conclusion {
         turn_accumulator: &TurnAccumulator,
     ) -> Option<SlowMotion> {
         let fit = self.fit.as_ref()?;
-        let tilting = tilting(setting, turn_accumulator);
+        let evidence = Evidence::of(setting, turn_accumulator);
         let mut marks = Vec::new();
-        self.averages(setting, turn_accumulator.stretches(), &tilting, &mut marks);
-        let noise = self.noise(setting);
-        let density = |speed: f64| noise.density_at(speed / TURN);
-        let problem = self.problem(setting, &tilting, turn_accumulator.ellipse(), &density);
-        let of_turn = |speed: f64| self.of_one_turn(setting, speed);
-        let is_known = setting.common.white_known;
-        Directions { problem: &problem, fit, of_turn: &of_turn, is_known }.slow_turn(marks)
+        self.averages(&evidence, &mut marks);
+        Directions { problem: &self.problem(&evidence), fit }.slow_turn(marks)
     }
 
     /// Checks that the accelerometer lies in the platform's plane and measured one constant tilt.
@@ -428,12 +393,15 @@ impl Conclusion {
     }
 }
 
-/// Motion of a tilting base, as the forces show it.
-fn tilting(setting: &Setting, turn_accumulator: &TurnAccumulator) -> Tilting {
-    let latitude = setting.common.latitude;
-    let [along, across] = setting.common.g_sensitivity;
-    let per_tilt = Complex::new(latitude.vertical_rate() + along, across);
-    Tilting::of(turn_accumulator.stretches(), latitude.gravity(), per_tilt)
+impl<'a> Evidence<'a> {
+    /// Evidence of these turns under this configuration.
+    fn of(setting: &'a Setting, turn_accumulator: &'a TurnAccumulator) -> Self {
+        let latitude = setting.common.latitude;
+        let [along, across] = setting.common.g_sensitivity;
+        let per_tilt = Complex::new(latitude.vertical_rate() + along, across);
+        let tilting = Tilting::of(turn_accumulator.stretches(), latitude.gravity(), per_tilt);
+        Self { setting, turn_accumulator, tilting }
+    }
 }
 
 /// Angle random walk N from the scatter of neighbouring turns, rad/√s.

@@ -9,7 +9,7 @@
 //! `Coupling`.
 
 use crate::align::regression::Column;
-use crate::checksum::crc32;
+use crate::checksum::{numbers, record, record_bytes};
 use crate::math::Complex;
 use crate::noise::model::GyroNoise;
 use crate::signal::phasor::{COLUMNS, QUICKENING, RATE, Sums, TURNING};
@@ -115,7 +115,6 @@ impl Coupling {
     /// Response of the gyro to a modulation of the platform's rate at a frequency in rad/s,
     /// clockwise rotation positive: the misalignment behind one pole, which lags, or leads as a
     /// high-pass does.
-    #[must_use]
     pub fn response(&self, frequency: f64) -> Complex {
         let lag = self.lag();
         let passed = self.sine * (1.0 + squared(self.frequency * lag));
@@ -148,7 +147,7 @@ pub fn nearest(couplings: &[Coupling], speed: f64) -> Option<&Coupling> {
 }
 
 /// Size of a stored misalignment, bytes.
-pub const BYTES: usize = 64;
+pub const BYTES: usize = record_bytes(7);
 
 /// Version of the stored layout.
 const LAYOUT: u32 = 1;
@@ -157,38 +156,23 @@ impl Coupling {
     /// Stored form: version, the numbers in the order of their fields, CRC-32, all little-endian.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; BYTES] {
-        let mut bytes = [0; BYTES];
-        bytes[..4].copy_from_slice(&LAYOUT.to_le_bytes());
-        let numbers =
-            [self.sine, self.quadrature, self.sine_sigma, self.quadrature_sigma, self.frequency];
-        for (place, number) in bytes[4..].chunks_exact_mut(8).zip(numbers) {
-            place.copy_from_slice(&number.to_le_bytes());
-        }
-        bytes[44..52].copy_from_slice(&self.date.to_le_bytes());
-        bytes[52..56].copy_from_slice(&self.temperature.to_le_bytes());
-        let checksum = checksum(&bytes);
-        bytes[CHECKED..].copy_from_slice(&checksum.to_le_bytes());
-        bytes
+        let [sine, quadrature] = [self.sine, self.quadrature].map(f64::to_bits);
+        let sigmas = [self.sine_sigma, self.quadrature_sigma].map(f64::to_bits);
+        let (frequency, temperature) =
+            (self.frequency.to_bits(), self.temperature.to_bits().into());
+        record(LAYOUT, &[sine, quadrature, sigmas[0], sigmas[1], frequency, self.date, temperature])
     }
 
     /// Reads the stored form; `None` where it is damaged, of another version, or out of range.
     #[must_use]
     pub fn from_bytes(bytes: &[u8; BYTES]) -> Option<Self> {
-        let word = |at: usize| <[u8; 4]>::try_from(bytes.get(at..at + 4)?).ok();
-        let long = |at: usize| <[u8; 8]>::try_from(bytes.get(at..at + 8)?).ok();
-        let number = |index: usize| long(4 + 8 * index).map(f64::from_le_bytes);
-        let is_sound = u32::from_le_bytes(word(CHECKED)?) == checksum(bytes)
-            && u32::from_le_bytes(word(0)?) == LAYOUT;
-        let coupling = Self {
-            sine: number(0)?,
-            quadrature: number(1)?,
-            sine_sigma: number(2)?,
-            quadrature_sigma: number(3)?,
-            frequency: number(4)?,
-            date: u64::from_le_bytes(long(44)?),
-            temperature: f32::from_le_bytes(word(52)?),
-        };
-        (is_sound && coupling.is_possible()).then_some(coupling)
+        let [numbers @ .., date, temperature] = numbers::<7>(LAYOUT, bytes)?;
+        let [sine, quadrature, sine_sigma, quadrature_sigma, frequency] =
+            numbers.map(f64::from_bits);
+        let temperature = f32::from_bits(temperature as u32);
+        let coupling =
+            Self { sine, quadrature, sine_sigma, quadrature_sigma, frequency, date, temperature };
+        coupling.is_possible().then_some(coupling)
     }
 
     /// Whether every number is finite and in its range.
@@ -197,15 +181,6 @@ impl Coupling {
         let are_finite = numbers.iter().all(|number| number.is_finite());
         are_finite && self.sine.abs() <= 1.0 && self.frequency > 0.0 && self.frequency.is_finite()
     }
-}
-
-/// Number of bytes that the checksum covers.
-const CHECKED: usize = BYTES - 4;
-
-/// CRC-32 of the bytes before it.
-fn checksum(bytes: &[u8; BYTES]) -> u32 {
-    let (words, _) = bytes[..CHECKED].as_chunks::<4>();
-    crc32(words.iter().map(|word| u32::from_le_bytes(*word)))
 }
 
 /// Square of a number.

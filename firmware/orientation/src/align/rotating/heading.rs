@@ -8,7 +8,7 @@
 use heapless::Vec;
 
 use super::change::{Found, MARKS, Mark, Record, Shape};
-use super::solution::{Fit, Pair, Problem, believed_lag};
+use super::solution::{Fit, Pair, Problem, believed_lag, of_one_turn};
 use super::turn::Sense;
 use super::{coupling, solution};
 use crate::align::regression::Column;
@@ -40,10 +40,6 @@ pub struct Directions<'a> {
     pub problem: &'a Problem<'a>,
     /// Fit of the azimuth.
     pub fit: &'a Fit,
-    /// Variance of either part of a turn's phasor at a speed in rad/s, (rad/s)², for a sensor of gain one.
-    pub of_turn: &'a dyn Fn(f64) -> f64,
-    /// Whether that variance is known independently of these turns.
-    pub is_known: bool,
 }
 
 impl Directions<'_> {
@@ -97,7 +93,8 @@ impl Directions<'_> {
             }
         }
         let odd = if self.is_flat() { Column::Prior(self.lag_sigma()) } else { Column::Free };
-        Some(Record::of_angles(marks, odd, (variance, self.is_known), self.lever()))
+        let is_known = self.problem.setting.common.white_known;
+        Some(Record::of_angles(marks, odd, (variance, is_known), self.lever()))
     }
 
     /// Refuses a significant drift, change with the sense or step, and a drift that agrees with the
@@ -142,7 +139,7 @@ impl Directions<'_> {
     fn angle_variance(&self, pair: &Pair) -> f64 {
         let size = self.reference(pair, Sense::Clockwise).size();
         let gain = if self.is_flat() { 1.0 } else { pair.gain(self.problem.earth()[0]) };
-        (self.of_turn)(pair.speed()) * gain * gain / (size * size)
+        of_one_turn(&self.problem.noise, pair.speed()) * gain * gain / (size * size)
     }
 
     /// Reference phasor of a turn: the Earth rate, or the mean phasor of its sense for a sensor

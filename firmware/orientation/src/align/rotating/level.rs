@@ -26,7 +26,6 @@ impl Lean {
 
     /// Rate of the base that a rate of the force's phasor, g/s, implies, as a phasor in the plane,
     /// rad/s: pitch about the axis to the right, roll about the axis forward.
-    #[must_use]
     pub fn turning(&self, rate: Complex) -> Complex {
         let (sine_pitch, cosine_pitch) = libm::sincos(self.pitch);
         let (sine_roll, cosine_roll) = libm::sincos(self.roll);

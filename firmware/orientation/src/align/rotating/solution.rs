@@ -12,6 +12,7 @@ use super::molecular::{self, Freed, Halves};
 use super::tilting::Tilting;
 use crate::align::budget::Budget;
 use crate::math::Complex;
+use crate::noise::model::GyroNoise;
 use crate::units::{ARCSECOND, TURN, wrapped};
 
 /// Standard deviation of a flat sensor's lag without a rate-modulated turn, 1σ, s.
@@ -88,13 +89,11 @@ impl Pair {
     }
 
     /// Half the sum of both senses' phasors: the part that does not change its sign with the sense.
-    #[must_use]
     pub fn even(&self) -> Complex {
         (self.clockwise.phasor + self.counter.phasor).scaled(0.5)
     }
 
     /// Half the difference of both senses' phasors: the part that changes its sign with the sense.
-    #[must_use]
     pub fn odd(&self) -> Complex {
         (self.clockwise.phasor - self.counter.phasor).scaled(0.5)
     }
@@ -125,6 +124,13 @@ impl Pair {
 #[must_use]
 pub fn of_turn(speed: f64, density: f64) -> f64 {
     2.0 * density * speed / TURN
+}
+
+/// Variance of either part of one turn's phasor at a speed in rad/s about those of other turns,
+/// (rad/s)², for a sensor of gain one.
+#[must_use]
+pub fn of_one_turn(noise: &GyroNoise, speed: f64) -> f64 {
+    of_turn(speed, noise.density_of_period(speed / TURN))
 }
 
 /// Azimuth after each stage of compensation, rad, [0, 2π).
@@ -201,12 +207,8 @@ pub struct Problem<'a> {
     pub pairs: &'a [Pair],
     /// Axis misalignments, at one speed or at each.
     pub couplings: &'a [Coupling],
-    /// Spectral density of the gyro's noise at a speed in rad/s, (rad/s)²/Hz.
-    pub density: &'a dyn Fn(f64) -> f64,
-    /// Spectral density of the gyro's white noise, (rad/s)²/Hz; zero where it is not known.
-    pub white: f64,
-    /// Angle random walk N of the gyro, rad/√s: known, or estimated from the turns.
-    pub angle_random_walk: f64,
+    /// Noise model of the gyro; its N is known, or estimated from the turns.
+    pub noise: GyroNoise,
     /// Motion of a tilting base.
     pub tilting: &'a Tilting,
     /// Encoder error twice per turn that would make the platform's rotation uniform, ε e^{jψ}, rad.
@@ -214,6 +216,17 @@ pub struct Problem<'a> {
 }
 
 impl Problem<'_> {
+    /// Spectral density of the gyro's noise at a speed in rad/s, (rad/s)²/Hz.
+    fn density(&self, speed: f64) -> f64 {
+        self.noise.density_at(speed / TURN)
+    }
+
+    /// Spectral density of the gyro's white noise, (rad/s)²/Hz; zero where it is not known.
+    fn white(&self) -> f64 {
+        let walk = self.noise.angle_random_walk;
+        if self.setting.common.white_known { walk * walk } else { 0.0 }
+    }
+
     /// Solves for the azimuth; `None` without a pair, or without a solution on the horizon.
     #[must_use]
     pub fn solve(&self) -> Option<Fit> {
@@ -227,7 +240,7 @@ impl Problem<'_> {
         fit.azimuth = wrapped(turned.angle);
         fit.budget = self.budget(&fit, &turned);
         fit.plain_limit = self.plain_limit();
-        fit.limit = if self.white > 0.0 { fit.budget.noise } else { 0.0 };
+        fit.limit = if self.white() > 0.0 { fit.budget.noise } else { 0.0 };
         let senses = if is_flat { first.even().angle() } else { self.halves(first).angle };
         let stages = [first.clockwise.raw.angle(), first.clockwise.phasor.angle(), senses];
         let [raw, coupling, senses] = stages.map(wrapped);
@@ -248,7 +261,7 @@ impl Problem<'_> {
         let gravity = self.setting.common.latitude.gravity();
         let (mut sum, mut seconds) = (Complex::default(), 0.0);
         for average in self.pairs.iter().flat_map(Pair::senses) {
-            sum = sum + average.force.scaled(average.seconds);
+            sum += average.force.scaled(average.seconds);
             seconds += average.seconds;
         }
         let variance = force_density(self.pairs).0 / seconds;
@@ -281,8 +294,8 @@ impl Problem<'_> {
             let tangent = libm::fabs(lag * pair.speed()) * (1.0 + LAG_LAW);
             fit.passed = fit.passed.min(1.0 / libm::hypot(1.0, tangent));
             let pair = pair.without_lag(lag);
-            let weight = pair.information((self.density)(pair.speed()), 1.0);
-            sum = sum + pair.even().scaled(weight);
+            let weight = pair.information(self.density(pair.speed()), 1.0);
+            sum += pair.even().scaled(weight);
             information += weight;
             let odd = pair.odd().size();
             fit.difference = fit.difference.max(odd * odd * weight);
@@ -333,7 +346,7 @@ impl Problem<'_> {
 
     /// Half-angle quantities of a pair.
     fn halves(&self, pair: &Pair) -> Halves {
-        let (gain, density) = (pair.gain(self.earth()[0]), (self.density)(pair.speed()));
+        let (gain, density) = (pair.gain(self.earth()[0]), self.density(pair.speed()));
         let beside = self.beside_at(pair);
         let rounded = of_turned(self.rounded(gain, beside), beside);
         Halves::of(pair.speed(), pair.phasors(), pair.variances(density, gain), rounded)
@@ -406,17 +419,18 @@ impl Problem<'_> {
 
     /// Cramér–Rao bound of a flat sensor of known g-sensitivity in the same time, 1σ, rad.
     fn plain_limit(&self) -> f64 {
-        if self.white <= 0.0 {
+        let white = self.white();
+        if white <= 0.0 {
             return 0.0;
         }
-        let information: f64 =
-            self.pairs.iter().map(|pair| pair.information(self.white, 1.0)).sum();
+        let information: f64 = self.pairs.iter().map(|pair| pair.information(white, 1.0)).sum();
         1.0 / libm::sqrt(information) / self.earth()[0]
     }
 
     /// White part of the noise power, 0 to 1; one where it is not known.
     fn white_part(&self, pair: &Pair) -> f64 {
-        if self.white > 0.0 { (self.white / (self.density)(pair.speed())).min(1.0) } else { 1.0 }
+        let white = self.white();
+        if white > 0.0 { (white / self.density(pair.speed())).min(1.0) } else { 1.0 }
     }
 
     /// Error budget of the azimuth.
@@ -434,7 +448,7 @@ impl Problem<'_> {
                     + self.tilting.doubt(&fit.lean, turned.angle, horizontal),
             ),
             g_sensitivity: libm::hypot(
-                common.kappa_sigma(self.angle_random_walk) * size / horizontal,
+                common.kappa_sigma(self.noise.angle_random_walk) * size / horizontal,
                 libm::sqrt(turned.left),
             ),
             accelerometer: self.per_tilt(1.0).size() * fit.tilt_sigma / horizontal,

@@ -5,7 +5,7 @@ use heapless::Vec;
 
 use super::change::{MARKS, Mark, Record, Shape};
 use super::level::Lean;
-use super::turn::{Sense, Stretch};
+use super::turn::Stretch;
 use crate::align::regression::Column;
 use crate::math::Complex;
 use crate::units::DEGREE_PER_HOUR;
@@ -118,13 +118,11 @@ impl Tilting {
 
     /// Change of the gyro's phasor from the middle of all turns to a time in s, rad/s: vertical
     /// Earth rate and g-sensitivity through the changed tilt.
-    #[must_use]
     pub fn vertical_part(&self, time: f64) -> Complex {
         self.per_tilt * self.rate.scaled(time - self.since)
     }
 
     /// Change of the tilt from the middle of all turns to a time in s, g.
-    #[must_use]
     pub fn tilt_at(&self, time: f64) -> Complex {
         self.rate.scaled(time - self.since)
     }
@@ -136,7 +134,6 @@ impl Tilting {
     }
 
     /// Phasor of the rotation of the tilting base itself, rad/s.
-    #[must_use]
     pub fn turning(&self, lean: &Lean) -> Complex {
         lean.turning(self.rate)
     }
@@ -159,22 +156,17 @@ fn direction(marks: &[Mark]) -> Complex {
         let [re, im] = mark.value.map(f64::from);
         Complex::new(re, im).scaled(f64::from(mark.turns))
     };
-    Complex::unit(marks.iter().map(of).fold(Complex::default(), |sum, part| sum + part).angle())
+    Complex::unit(marks.iter().map(of).sum::<Complex>().angle())
 }
 
 /// Force phasors of all turns over gravity, g.
 fn marks(stretches: &[Stretch], gravity: f64) -> Vec<Mark, MARKS> {
     let mut marks = Vec::new();
     for stretch in stretches {
-        let joined = stretch.count() as f32 / stretch.turns().len().max(1) as f32;
-        let since = stretch.since() as f64 * 1e-6;
-        let odd = if stretch.sense == Sense::Clockwise { 1.0 } else { -1.0 };
         for turn in stretch.turns() {
             let force = Complex::of_signal(turn.force).scaled(1.0 / gravity);
-            let time = (since + f64::from(turn.middle)) as f32;
-            let value = [force.re as f32, force.im as f32];
             // There is room for every turn of every stretch.
-            let _ = marks.push(Mark { time, odd, is_second: false, turns: joined, value });
+            let _ = marks.push(Mark::of(stretch, turn, force));
         }
     }
     marks

@@ -146,7 +146,7 @@ pub struct Stretch {
     turns: Vec<Turn, TURNS>,
     /// Number of turns that each entry stands for; number of turns waiting to be joined, and their
     /// average.
-    joined: u32,
+    pub(super) joined: u32,
     waiting: u32,
     sum: Turn,
 }

@@ -58,29 +58,36 @@ pub enum Mode {
     Recorded,
 }
 
+/// Complete eighths of a turn.
+#[derive(Clone, Copy, Debug, Default)]
+struct Eighths {
+    /// Sums of their blocks.
+    sums: Sums,
+    /// Force products.
+    forces: Forces,
+    /// Length, s.
+    seconds: f32,
+    /// Second-harmonic sums.
+    ellipse: Ellipse,
+    /// Number of eighths.
+    count: u32,
+}
+
 /// State of the segmentation.
 #[derive(Clone, Debug)]
 pub struct TurnAccumulator {
     /// Averages samples into blocks.
     blocks: Blocks,
     /// Kind of motion that is accumulated.
-    mode: Mode,
+    pub(crate) mode: Mode,
     /// The two latest blocks: a block is used when the platform's acceleration in it is known.
     latest: [Option<Block>; 2],
     /// Reference values of the turn in progress.
     reference: Option<Reference>,
     /// Eighth in progress.
     part: Part,
-    /// Sums of the turn in progress.
-    turn: Sums,
-    /// Force products of the turn in progress.
-    turn_forces: Forces,
-    /// Length of the turn in progress, s.
-    turn_seconds: f32,
-    /// Second-harmonic sums of the turn in progress.
-    turn_ellipse: Ellipse,
     /// Complete eighths of the turn in progress.
-    eighths: u32,
+    turn: Eighths,
     /// Encoder error twice per turn from the eighths, rad, summed over turns, and their number.
     ellipse: Complex,
     ellipse_turns: u32,
@@ -95,8 +102,8 @@ pub struct TurnAccumulator {
     stretches: Vec<Stretch, STRETCHES>,
     /// Interruption in progress.
     broken: Option<Broken>,
-    /// Greatest slip of the encoder so far, rad.
-    slip: f64,
+    /// Greatest slip of the encoder so far, rad; zero without a slip.
+    pub(super) slip: f64,
     /// Latest force along the sensitive axis.
     last_force: SpecificForce,
     /// Number of equal forces in succession, at present and at most; number of forces at the limit.
@@ -115,11 +122,7 @@ impl TurnAccumulator {
             latest: [None; 2],
             reference: None,
             part: Part::default(),
-            turn: Sums::default(),
-            turn_forces: Forces::default(),
-            turn_seconds: 0.0,
-            turn_ellipse: Ellipse::default(),
-            eighths: 0,
+            turn: Eighths::default(),
             ellipse: Complex::default(),
             ellipse_turns: 0,
             speed: 0.0,
@@ -135,12 +138,6 @@ impl TurnAccumulator {
         }
     }
 
-    /// Kind of motion that is accumulated at present.
-    #[must_use]
-    pub fn mode(&self) -> Mode {
-        self.mode
-    }
-
     /// Stretches at constant rate so far.
     #[must_use]
     pub fn stretches(&self) -> &[Stretch] {
@@ -153,15 +150,8 @@ impl TurnAccumulator {
         &self.uneven
     }
 
-    /// Greatest slip of the encoder, rad; zero without a slip.
-    #[must_use]
-    pub fn slip(&self) -> f64 {
-        self.slip
-    }
-
     /// Encoder error ε sin(2θ + ψ) that would make the platform's rotation as uniform as possible,
     /// as ε e^{jψ}, rad.
-    #[must_use]
     pub fn ellipse(&self) -> Complex {
         self.ellipse.scaled(1.0 / f64::from(self.ellipse_turns.max(1)))
     }
@@ -194,7 +184,7 @@ impl TurnAccumulator {
         self.latest = [None; 2];
         self.broken = None;
         self.part = Part::default();
-        self.begin_turn();
+        self.turn = Eighths::default();
         if self.mode != Mode::Recorded || !self.stretches.is_empty() {
             self.reference = None;
         }
@@ -302,7 +292,7 @@ impl TurnAccumulator {
         }
         let part = core::mem::take(&mut self.part);
         self.judge_slip(&part, false, false);
-        if self.eighths > 0 {
+        if self.turn.count > 0 {
             self.give_up_turn();
         }
         if !self.is_before_even() {
@@ -314,7 +304,7 @@ impl TurnAccumulator {
     /// Whether the eighth in progress is the last of a turn and nearly complete.
     fn is_nearly_whole(&self) -> bool {
         let reached = self.part.reached() as f64;
-        self.eighths == EIGHTHS - 1 && reached > NEARLY * EIGHTH as f64
+        self.turn.count == EIGHTHS - 1 && reached > NEARLY * EIGHTH as f64
     }
 
     /// Assigns a complete eighth; returns whether it completed a turn.
@@ -327,7 +317,7 @@ impl TurnAccumulator {
         }
         let (is_even, is_alike) = (part.is_even(), part.is_alike(self.speed));
         self.judge_slip(&part, is_even, is_alike);
-        if self.eighths > 0 && !(is_even && is_alike) {
+        if self.turn.count > 0 && !(is_even && is_alike) {
             self.give_up_turn();
         }
         if is_even {
@@ -339,32 +329,32 @@ impl TurnAccumulator {
 
     /// Adds an eighth at constant rate to the turn; returns whether it completed the turn.
     fn take_even(&mut self, part: &Part) -> bool {
-        if self.eighths == 0 {
+        if self.turn.count == 0 {
             self.speed = part.speed();
         }
-        self.turn.absorb(&part.products);
-        self.turn_forces.add(&part.forces);
-        self.turn_seconds += part.seconds;
-        self.turn_ellipse.push(part);
-        self.eighths += 1;
-        self.eighths == EIGHTHS && self.end_turn()
+        self.turn.sums.absorb(&part.products);
+        self.turn.forces.add(&part.forces);
+        self.turn.seconds += part.seconds;
+        self.turn.ellipse.push(part);
+        self.turn.count += 1;
+        self.turn.count == EIGHTHS && self.end_turn()
     }
 
     /// Completes a turn; returns whether it could be used.
     fn end_turn(&mut self) -> bool {
         let reference = self.reference.take().unwrap_or_default();
         let (sense, speed) = (Sense::of(f64::from(self.speed)), f64::from(self.speed.abs()));
-        let seconds = f64::from(self.turn_seconds);
-        let forces = [0, 1].map(|axis| self.turn_forces.regression(axis));
+        let seconds = f64::from(self.turn.seconds);
+        let forces = [0, 1].map(|axis| self.turn.forces.regression(axis));
         let Some(stretch) = self.stretch(sense, speed, reference.time) else {
-            self.begin_turn();
+            self.turn = Eighths::default();
             return false;
         };
-        self.ellipse = self.ellipse + self.turn_ellipse.error(seconds);
+        self.ellipse += self.turn.ellipse.error(seconds);
         self.ellipse_turns += 1;
         let since = self.stretches[stretch].since();
-        let turn = Turn::of(&self.turn, &reference, since, seconds, &forces);
-        self.begin_turn();
+        let turn = Turn::of(&self.turn.sums, &reference, since, seconds, &forces);
+        self.turn = Eighths::default();
         let Some(turn) = turn else { return false };
         self.stretches[stretch].push(turn);
         true
@@ -387,16 +377,16 @@ impl TurnAccumulator {
     /// belongs to the rate-modulated stretch.
     fn give_up_turn(&mut self) {
         if self.is_before_even() {
-            let share = f64::from(self.eighths) / f64::from(EIGHTHS);
+            let share = f64::from(self.turn.count) / f64::from(EIGHTHS);
             let turned = Sense::of(f64::from(self.speed)).signed(share * WHOLE_TURN);
-            let (turn, seconds) = (self.turn, f64::from(self.turn_seconds));
+            let (turn, seconds) = (self.turn.sums, f64::from(self.turn.seconds));
             if let Some(uneven) = self.uneven_in_progress() {
                 uneven.sums.add(&turn);
                 uneven.seconds += seconds;
                 uneven.turned += turned;
             }
         }
-        self.begin_turn();
+        self.turn = Eighths::default();
     }
 
     /// Discards a modulated eighth, or adds it to the rate-modulated stretch.
@@ -433,15 +423,6 @@ impl TurnAccumulator {
     /// Whether a recording has not yet had a whole turn at constant rate.
     fn is_before_even(&self) -> bool {
         self.mode == Mode::Recorded && self.stretches.is_empty()
-    }
-
-    /// Clears the sums of the turn.
-    fn begin_turn(&mut self) {
-        self.turn = Sums::default();
-        self.turn_forces = Forces::default();
-        self.turn_seconds = 0.0;
-        self.turn_ellipse = Ellipse::default();
-        self.eighths = 0;
     }
 
     /// Detects a slip: where the platform continues at its speed after an interruption, the encoder

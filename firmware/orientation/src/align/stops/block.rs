@@ -59,11 +59,13 @@ impl Block {
 #[derive(Clone, Debug)]
 pub struct Blocks<const N: usize> {
     /// Blocks in the order of time.
-    list: Vec<Block, N>,
+    pub(super) list: Vec<Block, N>,
     /// Greatest length of a block at present, s.
     span: f32,
-    /// Value of [`Self::swing`].
-    swing: f64,
+    /// Variance of the velocity with which the body swayed, (m/s)², from the scatter that vanished
+    /// when blocks were joined: longer blocks may hide a sway, of which only the velocities at both
+    /// ends of a stop remain.
+    pub(super) swing: f64,
 }
 
 impl<const N: usize> Blocks<N> {
@@ -125,20 +127,6 @@ impl<const N: usize> Blocks<N> {
             }
         }
         if count < LEAST_TRIPLETS { 0.0 } else { power / count }
-    }
-
-    /// Variance of the velocity with which the body swayed, (m/s)², from the scatter that vanished
-    /// when blocks were joined: longer blocks may hide a sway, of which only the velocities at both
-    /// ends of a stop remain.
-    #[must_use]
-    pub fn swing(&self) -> f64 {
-        self.swing
-    }
-
-    /// All blocks in the order of time.
-    #[must_use]
-    pub fn all(&self) -> &[Block] {
-        &self.list
     }
 
     /// Blocks of one stop.

@@ -6,11 +6,11 @@
 //! Earth-rate ratio and the budget.
 
 use super::Setting;
-use super::filter::{BIAS, FORCE, LATITUDE, PLACE, Row, SCALE, START};
+use super::filter::{BIAS, FORCE, LATITUDE, NOW, PLACE, Row, SCALE, START, placed};
 use super::path::Path;
 use super::place::Place;
 use super::plain::Plain;
-use super::solution::{Belief, Solution, now_row};
+use super::solution::{Belief, Solution, Tally};
 use super::stop::Stop;
 use super::stop_detector::{Loss, Rests, StopDetector, WINDOW};
 use crate::align::budget::Budget;
@@ -65,6 +65,7 @@ const LEFT_OUT: u32 = 4;
 const OBSERVED: f64 = 0.5;
 
 /// Complete result of the stops.
+#[must_use]
 #[derive(Clone, Debug)]
 pub struct Conclusion {
     /// Azimuth of body x at the end, or the reason for refusing it.
@@ -99,23 +100,14 @@ pub struct Found {
     pub widening: f64,
     /// Result of the original method (Szymanowski 2003).
     pub plain: Plain,
-    /// Chi-square of the blocks, and its degrees of freedom.
-    pub chi_square: [f64; 2],
-    /// Correlation of neighbouring blocks.
-    pub correlation: f64,
-    /// Number of excluded blocks, and number of all blocks.
-    pub left_out: [u32; 2],
-    /// Number of stops at which the vehicle turned, whose rest rates are excluded.
-    pub turning: u32,
-    /// Greatest rate at which it turned there relative to the Earth, rad/s.
-    pub turning_rate: f64,
-    /// Number of drives that did not end at rest, whose velocity is excluded.
-    pub unsteady: u32,
+    /// Statistics of the last run along the path.
+    pub tally: Tally,
+    /// Number of all blocks at rest.
+    pub blocks: u32,
 }
 
 impl Conclusion {
     /// Checks the contents of a stop detector, solves, and decides.
-    #[must_use]
     #[inline(never)]
     pub fn of(setting: &Setting, stop_detector: &mut StopDetector) -> Self {
         let now = stop_detector.now();
@@ -123,7 +115,7 @@ impl Conclusion {
             return Self { verdict: Err(reason), found: None };
         }
         let mut found = Found::of(setting, &path(setting, stop_detector, &now));
-        while found.correlation < SWAYS && stop_detector.blocks().all().len() >= MANY {
+        while found.tally.correlation() < SWAYS && stop_detector.blocks.list.len() >= MANY {
             stop_detector.coarsen();
             found = Found::of(setting, &path(setting, stop_detector, &now));
         }
@@ -135,7 +127,6 @@ impl Conclusion {
     }
 
     /// Refusal without any details.
-    #[must_use]
     pub const fn refused(reason: Refusal) -> Self {
         Self { verdict: Err(reason), found: None }
     }
@@ -148,8 +139,8 @@ fn path<'a>(setting: &Setting, stop_detector: &'a StopDetector, now: &(f64, Carr
         gravity: setting.common.latitude.gravity(),
         start: stop_detector.start(),
         stops: stop_detector.stops(),
-        blocks: stop_detector.blocks(),
-        drives: stop_detector.drives(),
+        blocks: &stop_detector.blocks,
+        drives: &stop_detector.drives,
         now: now.0,
         carried: now.1,
         stated_density: 0.5 * setting.force_noise * setting.force_noise,
@@ -158,14 +149,14 @@ fn path<'a>(setting: &Setting, stop_detector: &'a StopDetector, now: &(f64, Carr
 
 /// Refuses lost rotation, missing or short stops, and drives that are too short.
 fn inspect(setting: &Setting, stop_detector: &StopDetector) -> Result<(), Refusal> {
-    match stop_detector.loss() {
+    match stop_detector.loss {
         Some(Loss::Gap(at, seconds)) => return Err(Refusal::RotationMissing { at, seconds }),
         Some(Loss::Saturated(at)) => return Err(Refusal::RotationClipped { at }),
         None => {}
     }
     let stops = stop_detector.stops();
-    let is_whole = *stop_detector.rests() == Rests::Whole;
-    let seconds = stop_detector.fleeting();
+    let is_whole = stop_detector.rests == Rests::Whole;
+    let seconds = stop_detector.fleeting;
     if seconds > 0.0 && stops.len() < 2 {
         return Err(Refusal::StopTooShort { stop: stops.len() + 1, seconds, least: LEAST_REST });
     }
@@ -196,7 +187,7 @@ fn inspect_stop(
     index: usize,
     stop: &Stop,
 ) -> Result<(), Refusal> {
-    let rest: f64 = stop_detector.blocks().of(index).map(|block| f64::from(block.seconds)).sum();
+    let rest: f64 = stop_detector.blocks.of(index).map(|block| f64::from(block.seconds)).sum();
     if rest < LEAST_REST {
         return Err(Refusal::StopTooShort { stop: index + 1, seconds: rest, least: LEAST_REST });
     }
@@ -219,7 +210,7 @@ fn inspect_stop(
 
 /// Refuses where the excluded data contradict the rest. A vehicle may be turned at a stop, and a
 /// drive may end rolling; but where most of them deviate, the model is wrong.
-fn agree(found: &Found, stops: u32) -> Result<(), Refusal> {
+fn agree(found: &Tally, stops: u32) -> Result<(), Refusal> {
     let drives = stops.saturating_sub(1);
     // A single rest has no other data: the vehicle may be rocked, but not carried round.
     let is_carried = drives == 0 && found.turning_rate > CARRIED;
@@ -234,16 +225,15 @@ fn agree(found: &Found, stops: u32) -> Result<(), Refusal> {
 
 /// Tests the plausibility of the result.
 fn judge(setting: &Setting, found: &Found, stops: u32) -> Result<(), Refusal> {
-    agree(found, stops)?;
-    let [left_out, blocks] = found.left_out;
+    agree(&found.tally, stops)?;
+    let (Tally { left_out, chi_square, degrees, .. }, blocks) = (found.tally, found.blocks);
     if left_out * LEFT_OUT > blocks {
         return Err(Refusal::RestDisturbed { disturbed: left_out, of: blocks });
     }
-    let [chi_square, degrees] = found.chi_square;
     if chi_square_tail(chi_square / UNSURE, degrees) < SCATTER_PROBABILITY {
         return Err(Refusal::ResidualsNotWhite { ratio: chi_square / degrees });
     }
-    let correlation = found.correlation;
+    let correlation = found.tally.correlation();
     if correlation > CORRELATED {
         return Err(Refusal::ResidualsCorrelated { correlation });
     }
@@ -303,12 +293,8 @@ impl Found {
             are_biases_observed: bias_sigmas.iter().all(|sigma| *sigma <= OBSERVED * known),
             widening: solution.widening,
             plain: *plain,
-            chi_square: [solution.chi_square, solution.degrees],
-            correlation: solution.correlation(),
-            left_out: [solution.left_out, path.blocks.all().len() as u32],
-            turning: solution.turning,
-            turning_rate: solution.turning_rate,
-            unsteady: solution.unsteady,
+            tally: solution.tally,
+            blocks: path.blocks.list.len() as u32,
         }
     }
 }
@@ -331,7 +317,7 @@ impl End {
         let displaced = [north + farther_north, east + farther_east];
         let there = path.place.navigation(path.now - path.start, displaced);
         let navigation = product(&transposed(&there), &transposed(&solution.frame));
-        let error = solution.filter.three(super::filter::NOW);
+        let error = solution.filter.three(NOW);
         let body = product(&without(&error), &path.carried.attitude.matrix());
         let forward = transposed(&body)[0];
         Self { attitude: product(&navigation, &body), navigation, forward }
@@ -340,7 +326,7 @@ impl End {
     /// Derivatives of the azimuth at the end with respect to the states: the rotation φ now, and
     /// the displacement east.
     fn row(&self, path: &Path) -> Row {
-        let mut row = now_row(&gradient(&self.navigation, &self.forward));
+        let mut row = placed(NOW, &gradient(&self.navigation, &self.forward));
         row[PLACE + 1] = path.place.convergence();
         row
     }
@@ -359,10 +345,7 @@ fn start_attitude(solution: &Solution) -> Matrix {
 
 /// Derivatives of the azimuth at the start with respect to the states.
 fn start_row(solution: &Solution) -> Row {
-    let mut row = [0.0; super::filter::STATES];
-    let gradient = gradient(&transposed(&solution.frame), &IDENTITY[0]);
-    row[START..START + 3].copy_from_slice(&gradient);
-    row
+    placed(START, &gradient(&transposed(&solution.frame), &IDENTITY[0]))
 }
 
 /// Derivative of the azimuth of an axis, given on the start frame, with respect to an error φ of

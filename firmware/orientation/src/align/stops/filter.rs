@@ -87,8 +87,7 @@ impl Filter {
     /// `noise` is the variance that the gyros' noise adds, rad².
     pub fn carry(&mut self, bias: &Matrix, scale: &Matrix, noise: f64) {
         let rows = core::array::from_fn(|axis| {
-            let mut row = [0.0; STATES];
-            row[BIAS..BIAS + 3].copy_from_slice(&bias[axis]);
+            let mut row = placed(BIAS, &bias[axis]);
             row[SCALE..SCALE + 3].copy_from_slice(&scale[axis]);
             row
         });
@@ -257,13 +256,21 @@ fn product(a: &Row, b: &Row) -> f64 {
     a.iter().zip(b).filter(|(_, b)| **b != 0.0).map(|(a, b)| a * b).sum()
 }
 
+/// Row of a measurement that shows three successive states, the first at this index, by these
+/// factors.
+#[must_use]
+pub fn placed(first: usize, factors: &Vector) -> Row {
+    let mut row = [0.0; STATES];
+    row[first..first + 3].copy_from_slice(factors);
+    row
+}
+
 /// Row of a measurement of the specific force along a direction perpendicular to the predicted one,
 /// both on the start frame; `attitude` is that of the body.
 #[must_use]
 pub fn force_row(predicted: &Vector, direction: &Vector, attitude: &Rough) -> Row {
-    let mut row = [0.0; STATES];
     // Identity used: (φ × f)·p = φ·(f × p).
-    row[NOW..NOW + 3].copy_from_slice(&cross(predicted, direction));
+    let mut row = placed(NOW, &cross(predicted, direction));
     let columns: Vector = core::array::from_fn(|axis| {
         (0..3).map(|part| direction[part] * f64::from(attitude[part][axis])).sum()
     });

@@ -105,13 +105,9 @@ impl Inclination {
     pub fn minimised(&self, form: fn(&Self, f64) -> f64) -> Minimum {
         let eighths = (0..8).map(|eighth| TURN * f64::from(eighth) / 8.0);
         let least = eighths.map(|azimuth| (azimuth, form(self, azimuth)));
-        let (middle, _) =
-            least.fold(
-                (0.0, f64::INFINITY),
-                |least, value| {
-                    if value.1 < least.1 { value } else { least }
-                },
-            );
+        let lesser =
+            |least: (f64, f64), next: (f64, f64)| if next.1 < least.1 { next } else { least };
+        let (middle, _) = least.fold((0.0, f64::INFINITY), lesser);
         let bounds = [middle - 0.5 * HALF_TURN, middle + 0.5 * HALF_TURN];
         let minimum =
             brent::minimise(bounds, TOLERANCE, EVALUATIONS, |azimuth| form(self, azimuth));

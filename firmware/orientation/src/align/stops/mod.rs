@@ -76,8 +76,11 @@ impl Setting {
     /// Sensor properties for the stop criteria.
     #[must_use]
     pub fn sensors(&self) -> Sensors {
-        let bias = self.bias_sigma.unwrap_or(ANY_BIAS);
-        let force_bias = self.common.accelerometer_bias_sigma;
-        Sensors::new(&self.common.noise, bias, self.force_noise, force_bias)
+        Sensors {
+            angle_random_walk: self.common.noise.angle_random_walk,
+            bias_sigma: self.bias_sigma(),
+            force_noise: self.force_noise,
+            force_bias_sigma: self.common.accelerometer_bias_sigma,
+        }
     }
 }

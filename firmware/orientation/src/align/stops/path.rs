@@ -83,7 +83,7 @@ impl Path<'_> {
     #[must_use]
     pub fn density(&self) -> f64 {
         let stood: f64 = self.stops.iter().map(Stop::seconds).sum();
-        let of_ends = OF_ENDS * self.blocks.swing() / stood.max(1.0);
+        let of_ends = OF_ENDS * self.blocks.swing / stood.max(1.0);
         self.blocks.scatter().max(of_ends).max(self.least_density())
     }
 

@@ -7,6 +7,7 @@ use crate::earth::{EARTH_RATE, Latitude};
 use crate::math::rotation::{Matrix, Vector, product, scaled, transposed};
 
 /// Place of the first stop on the ellipsoid.
+#[must_use]
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
     /// Geodetic latitude, rad.
@@ -19,13 +20,11 @@ pub struct Place {
 
 impl Place {
     /// Place at a latitude. Beyond 89.9° the longitude is not meaningful.
-    #[must_use]
     pub fn new(latitude: Latitude) -> Self {
         Self::moved(latitude, 0.0)
     }
 
     /// Place displaced north by an angle, rad.
-    #[must_use]
     pub fn moved(latitude: Latitude, by: f64) -> Self {
         let [along, across] = latitude.radii();
         let latitude = latitude.rad() + by;

@@ -3,8 +3,8 @@
 use super::Setting;
 use super::block::Block;
 use super::filter::{
-    BIAS, Filter, LATITUDE, Measurement, NOW, PLACE, START, STATES, VELOCITY, force_row, rest_row,
-    velocity_row,
+    BIAS, Filter, LATITUDE, Measurement, PLACE, START, STATES, VELOCITY, force_row, placed,
+    rest_row, velocity_row,
 };
 use super::path::Path;
 use super::place::{Place, up};
@@ -90,6 +90,20 @@ pub struct Solution {
     pub filter: Filter,
     /// Rotation from the frozen north, east, down of the start to the start frame.
     pub frame: Matrix,
+    /// Statistics of the latest run.
+    pub tally: Tally,
+    /// Factor by which the blocks scatter more than their neighbours indicate, in power; at least
+    /// one.
+    pub roughness: f64,
+    /// Factor for the correlation of neighbouring blocks, in power; one until it is known.
+    pub colour: f64,
+    /// Factor on the prior 1σ of the biases; at least one.
+    pub widening: f64,
+}
+
+/// Statistics of a run along the path.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Tally {
     /// Sum of the blocks' normalised innovations squared.
     pub chi_square: f64,
     /// Degrees of freedom of that sum.
@@ -103,17 +117,19 @@ pub struct Solution {
     /// Number of drives that did not end at rest, whose velocity is excluded.
     pub unsteady: u32,
     /// Sum of products of successive blocks' innovations, and sum of their squares.
-    pub neighbours: [f64; 2],
-    /// Factor by which the blocks scatter more than their neighbours indicate, in power; at least
-    /// one.
-    pub roughness: f64,
-    /// Factor for the correlation of neighbouring blocks, in power; one until it is known.
-    pub colour: f64,
-    /// Factor on the prior 1σ of the biases; at least one.
-    pub widening: f64,
+    neighbours: [f64; 2],
     /// Greatest rate relative to the Earth that was present all through a stop whose rest was
     /// excluded, rad/s.
-    pub steady: f64,
+    steady: f64,
+}
+
+impl Tally {
+    /// Correlation of neighbouring blocks' innovations; zero with too few degrees of freedom.
+    #[must_use]
+    pub fn correlation(&self) -> f64 {
+        let [products, squares] = self.neighbours;
+        if self.degrees < LEAST_DEGREES { 0.0 } else { products / squares }
+    }
 }
 
 /// Sensitivities carried up to a moment.
@@ -156,22 +172,9 @@ struct Run<'a> {
 impl Solution {
     /// Solution before any run, with an approximate start frame.
     #[must_use]
-    pub const fn new(frame: Matrix) -> Self {
-        Self {
-            filter: Filter::EMPTY,
-            frame,
-            chi_square: 0.0,
-            degrees: 0.0,
-            left_out: 0,
-            turning: 0,
-            turning_rate: 0.0,
-            unsteady: 0,
-            neighbours: [0.0; 2],
-            roughness: 1.0,
-            colour: 1.0,
-            widening: 1.0,
-            steady: 0.0,
-        }
+    pub fn new(frame: Matrix) -> Self {
+        let (filter, tally) = (Filter::EMPTY, Tally::default());
+        Self { filter, frame, tally, roughness: 1.0, colour: 1.0, widening: 1.0 }
     }
 
     /// Iterates along the path until the start frame is consistent; the first run must have been
@@ -187,13 +190,6 @@ impl Solution {
         }
     }
 
-    /// Correlation of neighbouring blocks' innovations; zero with too few degrees of freedom.
-    #[must_use]
-    pub fn correlation(&self) -> f64 {
-        let [products, squares] = self.neighbours;
-        if self.degrees < LEAST_DEGREES { 0.0 } else { products / squares }
-    }
-
     /// Inflates the prior 1σ of the biases where their estimates exceed it by more than chance. The
     /// component along east is not observable at rest. Returns whether the prior changed.
     fn widen(&mut self, setting: &Setting) -> bool {
@@ -205,7 +201,7 @@ impl Solution {
         let found = self.filter.three(BIAS);
         let power = dot(&found, &found) / before;
         let ratio = if seen < LEAST_SEEN { 0.0 } else { power / seen };
-        let ratio = ratio.max(self.steady * self.steady / (3.0 * before));
+        let ratio = ratio.max(self.tally.steady * self.tally.steady / (3.0 * before));
         let degrees = libm::round(seen).max(1.0);
         let is_chance = if self.widening > 1.0 {
             ratio < BELIEVED
@@ -226,14 +222,14 @@ impl Solution {
     /// blocks does not show in neighbours, and correlated blocks carry less information. Returns
     /// whether the noise changed.
     fn roughen(&mut self) -> bool {
-        let correlation = self.correlation();
-        let is_coloured = correlation * libm::sqrt(self.degrees) > COLOURED;
+        let correlation = self.tally.correlation();
+        let is_coloured = correlation * libm::sqrt(self.tally.degrees) > COLOURED;
         if is_coloured && self.colour <= 1.0 {
             // The mean of correlated values has a variance larger by this factor.
             self.colour = (1.0 + correlation) / (1.0 - correlation);
             return true;
         }
-        let ratio = self.chi_square / self.degrees.max(1.0);
+        let ratio = self.tally.chi_square / self.tally.degrees.max(1.0);
         let is_rough = ratio > ROUGH && self.roughness * ratio < ROUGHEST;
         if is_rough {
             self.roughness *= ratio;
@@ -245,10 +241,7 @@ impl Solution {
     #[inline(never)]
     pub fn run(&mut self, setting: &Setting, path: &Path, belief: Belief) {
         let common = &setting.common;
-        (self.chi_square, self.degrees) = (0.0, 0.0);
-        (self.left_out, self.turning, self.unsteady) = (0, 0, 0);
-        (self.turning_rate, self.steady) = (0.0, 0.0);
-        self.neighbours = [0.0; 2];
+        self.tally = Tally::default();
         self.filter.begin(
             &start_covariance(&self.frame),
             self.widening * setting.bias_sigma(),
@@ -375,12 +368,11 @@ impl Run<'_> {
         let variance = self.velocity_variance(index, driven);
         let measurements: [Measurement; 2] = core::array::from_fn(|axis| {
             let direction = turned(&solution.frame, &along[axis]);
-            let mut row = [0.0; STATES];
-            row[VELOCITY..VELOCITY + 3].copy_from_slice(&direction);
+            let row = placed(VELOCITY, &direction);
             Measurement { row, value: dot(&beyond, &direction), variance }
         });
         if self.take(&mut solution.filter, &measurements).is_none() {
-            solution.unsteady += 1;
+            solution.tally.unsteady += 1;
         }
     }
 
@@ -431,14 +423,14 @@ impl Run<'_> {
         });
         let beyond = measurements.map(|measurement| solution.filter.beyond(&measurement));
         let Some(chi_square) = self.take(&mut solution.filter, &measurements) else {
-            solution.left_out += 1;
+            solution.tally.left_out += 1;
             return;
         };
-        solution.chi_square += chi_square;
-        solution.degrees += 2.0;
+        solution.tally.chi_square += chi_square;
+        solution.tally.degrees += 2.0;
         let [north, east] = beyond;
         let before = core::mem::replace(&mut self.before, beyond);
-        let [products, squares] = &mut solution.neighbours;
+        let [products, squares] = &mut solution.tally.neighbours;
         *products += north * before[0] + east * before[1];
         *squares += north * north + east * east;
     }
@@ -468,13 +460,13 @@ impl Run<'_> {
             Measurement { row, value: dot(&direction, &beyond), variance: sway[axis] }
         });
         if self.take(&mut solution.filter, &measurements).is_none() {
-            solution.turning += 1;
+            solution.tally.turning += 1;
             let rate = length(&beyond) / stop.seconds();
-            solution.turning_rate = solution.turning_rate.max(rate);
+            solution.tally.turning_rate = solution.tally.turning_rate.max(rate);
             // A rotation within a short time makes its seconds stand out of the others.
             let excess: f64 = self.excess(stop).iter().sum();
             if rate * rate * stop.seconds() > TURNED_BY_HAND * excess {
-                solution.steady = solution.steady.max(rate);
+                solution.tally.steady = solution.tally.steady.max(rate);
             }
         }
     }
@@ -527,12 +519,4 @@ fn start_covariance(frame: &Matrix) -> Matrix {
 /// Change of a sensitivity, in double precision.
 fn gained(now: &Rough, before: &Rough) -> Matrix {
     core::array::from_fn(|row| difference(&now[row].map(f64::from), &before[row].map(f64::from)))
-}
-
-/// Row of a quantity that depends on φ now with this gradient.
-#[must_use]
-pub fn now_row(gradient: &Vector) -> [f64; STATES] {
-    let mut row = [0.0; STATES];
-    row[NOW..NOW + 3].copy_from_slice(gradient);
-    row
 }

@@ -66,7 +66,7 @@ struct Progress {
 #[derive(Clone, Debug)]
 pub struct StopDetector {
     /// Source of the stops.
-    rests: Rests,
+    pub(super) rests: Rests,
     /// Limits of the stop criteria.
     limits: Limits,
     /// Local gravity, m/s².
@@ -88,23 +88,21 @@ pub struct StopDetector {
     /// Criteria of the window.
     criteria: Option<Criteria>,
     /// Whether the vehicle stands, and the last stop continues.
-    is_at_rest: bool,
+    pub(crate) is_at_rest: bool,
     /// Seconds for which the criteria have held without interruption.
     held: usize,
-    /// Length of the longest halt that was too short for a stop, s.
-    fleeting: f64,
+    /// Length of the longest halt that was too short for a stop, s; zero without one.
+    pub(super) fleeting: f64,
     /// Lever arm from the axis of the sway to the sensors.
     lever: Lever,
     /// Stops so far.
     stops: Vec<Stop, STOPS>,
-    /// Averages at rest.
-    blocks: Blocks<AT_REST>,
-    /// Averages of the drives.
-    drives: Blocks<DRIVEN>,
-    /// Seconds at rest that found no room among the stops.
-    unused: u32,
-    /// First loss of rotation.
-    loss: Option<Loss>,
+    /// Averages of the time at rest.
+    pub(super) blocks: Blocks<AT_REST>,
+    /// Averages of the drives, each with the number of the stop before it.
+    pub(super) drives: Blocks<DRIVEN>,
+    /// First event that made the carried attitude invalid.
+    pub(crate) loss: Option<Loss>,
 }
 
 impl StopDetector {
@@ -130,7 +128,6 @@ impl StopDetector {
             stops: Vec::new(),
             blocks: Blocks::new(REST_SPAN),
             drives: Blocks::new(DRIVE_SPAN),
-            unused: 0,
             loss: None,
         }
     }
@@ -192,7 +189,7 @@ impl StopDetector {
 
     /// Begins a second.
     fn restart(&mut self, now: Instant) {
-        let begin = *self.strapdown.carried();
+        let begin = self.strapdown.carried;
         self.progress = Progress { since: now, begin };
     }
 
@@ -260,7 +257,7 @@ impl StopDetector {
             is_blown,
             is_rest: false,
             begin,
-            end: *self.strapdown.carried(),
+            end: self.strapdown.carried,
             rate: self.strapdown.rate(),
         }
     }
@@ -336,7 +333,6 @@ impl StopDetector {
             let (from, begin) = (second.from, second.begin);
             let begun = Stop { from, begin, displacement, ..Stop::default() };
             if self.stops.push(begun).is_err() {
-                self.unused += 1;
                 return;
             }
         }
@@ -347,22 +343,10 @@ impl StopDetector {
         }
     }
 
-    /// Source of the stops.
-    #[must_use]
-    pub fn rests(&self) -> &Rests {
-        &self.rests
-    }
-
     /// Criteria of the last ten seconds, and their limits.
     #[must_use]
     pub fn criteria(&self) -> Option<(Criteria, Limits)> {
         self.criteria.map(|criteria| (criteria, self.limits))
-    }
-
-    /// Whether the vehicle stands at present.
-    #[must_use]
-    pub fn is_at_rest(&self) -> bool {
-        self.is_at_rest
     }
 
     /// Stops so far; the last one may still continue.
@@ -371,23 +355,11 @@ impl StopDetector {
         &self.stops
     }
 
-    /// Length of the longest halt that was too short for a stop, s; zero without one.
-    #[must_use]
-    pub fn fleeting(&self) -> f64 {
-        self.fleeting
-    }
-
     /// Sets the position of the last stop, north and east of the first, m.
     pub fn displace(&mut self, displacement: [f64; 2]) {
         if let Some(stop) = self.stops.last_mut() {
             stop.displacement = Some(displacement);
         }
-    }
-
-    /// Averages of the time at rest.
-    #[must_use]
-    pub fn blocks(&self) -> &Blocks<AT_REST> {
-        &self.blocks
     }
 
     /// Joins the blocks at rest in pairs, for a sway with a period shorter than two blocks.
@@ -403,18 +375,6 @@ impl StopDetector {
         self.last.0.saturating_sub(begun.0) as f64 * 1e-6
     }
 
-    /// Averages of the drives, each with the number of the stop before it.
-    #[must_use]
-    pub fn drives(&self) -> &Blocks<DRIVEN> {
-        &self.drives
-    }
-
-    /// First event that made the carried attitude invalid.
-    #[must_use]
-    pub fn loss(&self) -> Option<Loss> {
-        self.loss
-    }
-
     /// Beginning of the first sample, s.
     #[must_use]
     pub fn start(&self) -> f64 {
@@ -424,7 +384,7 @@ impl StopDetector {
     /// End of the last sample, s, with attitude and sensitivities at that time.
     pub fn now(&mut self) -> (f64, Carried) {
         self.strapdown.update(self.last);
-        (self.last.seconds(), *self.strapdown.carried())
+        (self.last.seconds(), self.strapdown.carried)
     }
 }
 

@@ -6,7 +6,7 @@
 //! whose rate varies by h twice a turn adds h/4 against the lift, and h/4 three times a turn, which
 //! no accelerometer error does; its angle is off by up to h/2.
 
-use super::complex::Complex;
+use super::Complex;
 use super::fit::Fit;
 
 /// Fading of the averages at each evaluation.
@@ -32,11 +32,11 @@ impl Circle {
     pub(super) fn take(&mut self, fit: &Fit, noise: f32) {
         let inverse = 1.0 / fit.lift.power();
         let swell = fit.lift.against(fit.ripple.thrice()).scaled(inverse);
-        let ellipse = fit.ripple.against().times(fit.lift).scaled(inverse) + swell.conjugate();
+        let ellipse = (fit.ripple.against() * fit.lift).scaled(inverse) + swell.conjugate();
         let weight = 2.0 * fit.count / (noise * inverse);
         self.weight += weight - FORGOTTEN * self.weight;
         let gain = weight / self.weight;
-        self.lean += gain * (ellipse.imaginary - self.lean);
+        self.lean += gain * (ellipse.im - self.lean);
         self.swell += (swell - self.swell).scaled(gain);
     }
 

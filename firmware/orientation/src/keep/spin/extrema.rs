@@ -22,7 +22,6 @@ pub enum Signal {
 
 impl Signal {
     /// Roll at which the signal occurs.
-    #[must_use]
     pub fn roll(self) -> Angle {
         match self {
             Self::YMaximum => Angle(0),
@@ -39,7 +38,7 @@ pub(super) struct Extrema {
     /// Whether the extremum is located between samples.
     is_interpolated: bool,
     /// Whether a correction has been made.
-    has_corrected: bool,
+    pub(super) has_corrected: bool,
     /// The two previous pairs of forces, older first.
     before: Option<[[SpinForce; 2]; 2]>,
     /// Latest pair of forces.
@@ -50,11 +49,6 @@ impl Extrema {
     /// Detector before the first sample.
     pub(super) fn new(is_interpolated: bool) -> Self {
         Self { is_interpolated, has_corrected: false, before: None, latest: None }
-    }
-
-    /// Whether a correction has been made.
-    pub(super) fn has_corrected(&self) -> bool {
-        self.has_corrected
     }
 
     /// Discards the previous forces, which do not join on to those after a gap.
@@ -75,7 +69,7 @@ impl Extrema {
         let (Some(now), Some(middle)) = (force, latest) else { return None };
         self.before = Some([middle, now]);
         let [old, _] = before?;
-        let (signal, [first, second, third]) = extremum(old, middle, now)?;
+        let (signal, [first, second, third]) = extremum([old, middle, now])?;
         let place = if self.is_interpolated { vertex(first, second, third) } else { 0.0 };
         // Rotation from the extremum to this sample.
         let since = (1.0 - place) * phase_accumulator.step() as f32;
@@ -86,12 +80,8 @@ impl Extrema {
 }
 
 /// Extremum at the middle one of three pairs of forces, with the three forces of that axis.
-fn extremum(
-    old: [SpinForce; 2],
-    middle: [SpinForce; 2],
-    now: [SpinForce; 2],
-) -> Option<(Signal, [i32; 3])> {
-    let [y, z] = [0, 1].map(|axis: usize| [old[axis].0, middle[axis].0, now[axis].0]);
+fn extremum(forces: [[SpinForce; 2]; 3]) -> Option<(Signal, [i32; 3])> {
+    let [y, z] = [0, 1].map(|axis: usize| forces.map(|force| force[axis].0));
     if is_greatest(y) {
         Some((Signal::YMaximum, y))
     } else if is_least(y) {

@@ -5,10 +5,9 @@
 //! slow change; Q is the lift and its change. The phase of Q₀ is the lag of γ̂ at the middle.
 //! Further harmonics are removed ([`super::harmonics`]), alternating with this fit.
 
-use super::Accelerometer;
-use super::complex::Complex;
 use super::harmonics::{Harmonics, PARTS, Ripple};
 use super::phase_accumulator::sine_and_cosine;
+use super::{Accelerometer, Complex};
 use crate::units::{Angle, SpinForce};
 
 /// Size of a force step, m/s².
@@ -41,9 +40,9 @@ pub(super) struct Sums {
     half: f32,
     scale: f32,
     /// Number of samples, including those without force.
-    samples: u32,
+    pub(super) samples: u32,
     /// Number of samples with a force.
-    count: u32,
+    pub(super) count: u32,
     /// Sum of the places.
     place: f32,
     /// Sum of the squared places.
@@ -94,20 +93,10 @@ impl Sums {
         Self { half, scale: 1.0 / half, ..Self::default() }
     }
 
-    /// Number of samples, including those without force.
-    pub(super) fn samples(&self) -> u32 {
-        self.samples
-    }
-
     /// Part of the samples after the middle, where the fit gives the phase.
     pub(super) fn part_after_middle(&self) -> f32 {
         let samples = self.samples as f32;
         (samples - 1.0 - self.half) / samples
-    }
-
-    /// Number of samples with a force.
-    pub(super) fn count(&self) -> u32 {
-        self.count
     }
 
     /// Skips missing samples, which have no force.
@@ -136,20 +125,20 @@ impl Sums {
         let (placed_cosine, placed_sine) = (place * cosine, place * sine);
         self.place += place;
         self.place_square += place * place;
-        self.turning[0].real += cosine;
-        self.turning[0].imaginary += sine;
-        self.turning[1].real += placed_cosine;
-        self.turning[1].imaginary += placed_sine;
-        self.turning[2].real += place * placed_cosine;
-        self.turning[2].imaginary += place * placed_sine;
-        self.force[0].real += real;
-        self.force[0].imaginary += imaginary;
-        self.force[1].real += place * real;
-        self.force[1].imaginary += place * imaginary;
-        self.turned_force[0].real += turned_real;
-        self.turned_force[0].imaginary += turned_imaginary;
-        self.turned_force[1].real += place * turned_real;
-        self.turned_force[1].imaginary += place * turned_imaginary;
+        self.turning[0].re += cosine;
+        self.turning[0].im += sine;
+        self.turning[1].re += placed_cosine;
+        self.turning[1].im += placed_sine;
+        self.turning[2].re += place * placed_cosine;
+        self.turning[2].im += place * placed_sine;
+        self.force[0].re += real;
+        self.force[0].im += imaginary;
+        self.force[1].re += place * real;
+        self.force[1].im += place * imaginary;
+        self.turned_force[0].re += turned_real;
+        self.turned_force[0].im += turned_imaginary;
+        self.turned_force[1].re += place * turned_real;
+        self.turned_force[1].im += place * turned_imaginary;
         self.power[0] += real * real;
         self.power[1] += imaginary * imaginary;
         self.harmonics.push(place, [cosine, sine], [real, imaginary]);
@@ -231,9 +220,9 @@ impl Normal {
         let [e0, e1, e2] = turning;
         let first = steady(&inverse, e0, e1);
         let second = steady(&inverse, e1, e2);
-        let m11 = count - both(e0, e1, &first).real;
-        let m12 = Complex { real: sums.place, imaginary: 0.0 } - both(e0, e1, &second);
-        let m22 = sums.place_square - both(e1, e2, &second).real;
+        let m11 = count - both(e0, e1, &first).re;
+        let m12 = Complex::new(sums.place, 0.0) - both(e0, e1, &second);
+        let m22 = sums.place_square - both(e1, e2, &second).re;
         let whole = m11 * m22 - m12.power();
         let goes_round = whole >= GOING_ROUND * m11 * m22 && m11 > 0.0;
         goes_round.then_some(Self { inverse, turning, first, second, m11, m12, m22, whole })
@@ -245,11 +234,11 @@ impl Normal {
         let own = steady(&self.inverse, force[0], force[1]);
         let r1 = turned[0] - both(e0, e1, &own);
         let r2 = turned[1] - both(e1, e2, &own);
-        let lift = (r1.scaled(self.m22) - self.m12.times(r2)).scaled(1.0 / self.whole);
+        let lift = (r1.scaled(self.m22) - self.m12 * r2).scaled(1.0 / self.whole);
         let change = (r2.scaled(self.m11) - self.m12.against(r1)).scaled(1.0 / self.whole);
-        let explained = both(own[0], own[1], &force).real + both(lift, change, &[r1, r2]).real;
-        let [steady, its_change] = [0, 1]
-            .map(|i: usize| own[i] - self.first[i].times(lift) - self.second[i].times(change));
+        let explained = both(own[0], own[1], &force).re + both(lift, change, &[r1, r2]).re;
+        let [steady, its_change] =
+            [0, 1].map(|i: usize| own[i] - self.first[i] * lift - self.second[i] * change);
         Solved { model: [steady, its_change, lift, change], explained }
     }
 

@@ -5,7 +5,7 @@
 //! Removing them keeps them from biasing the lift's phase and from counting as noise; their meaning
 //! for the sensors is in [`super::circle`].
 
-use super::complex::Complex;
+use super::Complex;
 
 /// Orders of the harmonics, per turn.
 const ORDERS: [i32; PARTS] = [AGAINST, 2, -2, THRICE];
@@ -61,31 +61,31 @@ impl Harmonics {
         let (cosine_2, sine_2) = (1.0 - twice * sine, twice * cosine);
         let cosine_3 = cosine_2 * cosine - sine_2 * sine;
         let sine_3 = cosine_2 * sine + sine_2 * cosine;
-        self.second[0].real += cosine_2;
-        self.second[0].imaginary += sine_2;
-        self.second[1].real += place * cosine_2;
-        self.second[1].imaginary += place * sine_2;
-        self.third[0].real += cosine_3;
-        self.third[0].imaginary += sine_3;
-        self.third[1].real += place * cosine_3;
-        self.third[1].imaginary += place * sine_3;
-        self.force[0].real += real * cosine - imaginary * sine;
-        self.force[0].imaginary += real * sine + imaginary * cosine;
+        self.second[0].re += cosine_2;
+        self.second[0].im += sine_2;
+        self.second[1].re += place * cosine_2;
+        self.second[1].im += place * sine_2;
+        self.third[0].re += cosine_3;
+        self.third[0].im += sine_3;
+        self.third[1].re += place * cosine_3;
+        self.third[1].im += place * sine_3;
+        self.force[0].re += real * cosine - imaginary * sine;
+        self.force[0].im += real * sine + imaginary * cosine;
         let (direct, crossed) = (real * cosine_2, imaginary * sine_2);
         let (straight, across) = (imaginary * cosine_2, real * sine_2);
-        self.force[1].real += direct + crossed;
-        self.force[1].imaginary += straight - across;
-        self.force[2].real += direct - crossed;
-        self.force[2].imaginary += straight + across;
-        self.force[3].real += real * cosine_3 + imaginary * sine_3;
-        self.force[3].imaginary += imaginary * cosine_3 - real * sine_3;
+        self.force[1].re += direct + crossed;
+        self.force[1].im += straight - across;
+        self.force[2].re += direct - crossed;
+        self.force[2].im += straight + across;
+        self.force[3].re += real * cosine_3 + imaginary * sine_3;
+        self.force[3].im += imaginary * cosine_3 - real * sine_3;
     }
 
     /// Sums of `e^{jkγ̂}` and of that times the place, k from −3 to 3; `even` and `first` are those
     /// of k = 0 and 1.
     fn round(&self, order: i32, even: [f32; 2], first: [Complex; 2]) -> [Complex; 2] {
         let sums = match order.abs() {
-            0 => even.map(|real| Complex { real, imaginary: 0.0 }),
+            0 => even.map(|real| Complex::new(real, 0.0)),
             1 => first,
             2 => self.second,
             _ => self.third,
@@ -107,7 +107,7 @@ impl Harmonics {
             let steady = self.round(-order, even, first);
             let turning = self.round(1 - order, even, first);
             let columns = [steady[0], steady[1], turning[0], turning[1]];
-            let shown = columns.iter().zip(model).map(|(column, part)| column.times(*part));
+            let shown = columns.iter().zip(model).map(|(column, part)| *column * *part);
             ripple.0[place] = (self.force[place] - shown.sum()).scaled(1.0 / count);
         }
     }
@@ -125,7 +125,7 @@ impl Harmonics {
             let [force, placed] = self.round(order, even, first);
             let [turned, turned_placed] = self.round(order - 1, even, first);
             for (share, sum) in shares.iter_mut().zip([force, placed, turned, turned_placed]) {
-                *share += part.times(sum);
+                *share += *part * sum;
             }
         }
         shares
@@ -134,6 +134,6 @@ impl Harmonics {
     /// Power of the forces that the harmonics explain in addition to the other fit.
     pub(super) fn explained(&self, ripple: &Ripple, count: f32) -> f32 {
         let parts = ripple.0.iter().zip(&self.force);
-        parts.map(|(part, force)| 2.0 * part.against(*force).real - count * part.power()).sum()
+        parts.map(|(part, force)| 2.0 * part.against(*force).re - count * part.power()).sum()
     }
 }

@@ -81,8 +81,9 @@ const SURE: f64 = 0.4;
 const UPRIGHT: f64 = 0.1;
 
 /// Reason for which the latest turn was not used.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Trouble {
+    #[default]
     None,
     NoLift,
     TooSlow,
@@ -94,8 +95,19 @@ enum Trouble {
     Contradicted,
 }
 
+/// Phase that turns show, with the sign of a correction of the angle.
+#[derive(Clone, Copy)]
+struct Seen {
+    /// The phase, rad.
+    phase: f64,
+    /// Its variance, rad².
+    variance: f64,
+    /// Rotation since the middle of these turns, rad.
+    half: f64,
+}
+
 /// State of the phase lock.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Lock {
     /// Noise power N², rad²/s, and sample period, s.
     walk: f64,
@@ -151,34 +163,19 @@ pub(super) struct Lock {
 impl Lock {
     /// Lock before the first sample.
     pub(super) fn new(setting: &Setting) -> Self {
+        let scale = setting.scale_sigma * setting.scale_sigma;
         Self {
             walk: setting.angle_random_walk * setting.angle_random_walk,
             period: setting.sample_seconds,
             bias: setting.bias_sigma,
-            slowness: None,
-            still: 0.0,
-            quickening: 0.0,
-            first: setting.scale_sigma * setting.scale_sigma,
+            first: scale,
             angle: TURN * TURN,
-            scale: setting.scale_sigma * setting.scale_sigma,
-            shared: 0.0,
-            error: 0.0,
+            scale,
             sums: Sums::of(USUAL),
             lost: f64::INFINITY,
-            begun: 0,
-            told: 0,
             wanted: SKIPPED,
-            since: 0,
-            noise: None,
-            lift: None,
-            is_found: false,
-            agreed: 0,
-            strays: 0,
-            stray: 0.0,
             calm: [0.0, 1.0],
-            circle: Circle::default(),
-            trouble: Trouble::None,
-            troubled: None,
+            ..Self::default()
         }
     }
 
@@ -188,7 +185,7 @@ impl Lock {
         self.sums.push(phase_accumulator.angle(), sample.force);
         self.since += 1;
         let turned = phase_accumulator.whole().wrapping_sub(self.begun).unsigned_abs();
-        if turned >= self.wanted || self.sums.samples() >= LONGEST {
+        if turned >= self.wanted || self.sums.samples >= LONGEST {
             self.finish(sample.time, phase_accumulator);
         }
     }
@@ -220,7 +217,7 @@ impl Lock {
     fn finish(&mut self, now: Instant, phase_accumulator: &mut PhaseAccumulator) {
         let turned = phase_accumulator.whole().wrapping_sub(self.begun).unsigned_abs();
         let is_whole = turned >= self.wanted;
-        let samples = self.sums.samples() as f32 / turned as f32;
+        let samples = self.sums.samples as f32 / turned as f32;
         let angle = f64::from(PhaseAccumulator::between(self.told, phase_accumulator.whole()));
         self.carry(angle, f64::from(self.since) * self.period);
         let half = f64::from(self.sums.part_after_middle())
@@ -287,7 +284,7 @@ impl Lock {
 
     /// Updates the filter with turns, whose middle is the rotation `half`, rad, ago.
     fn use_turn(&mut self, half: f64, phase_accumulator: &mut PhaseAccumulator) -> Trouble {
-        if self.sums.count() * 2 < self.sums.samples() {
+        if self.sums.count * 2 < self.sums.samples {
             return Trouble::NoForce;
         }
         if let Some(which) = self.sums.stuck() {
@@ -304,14 +301,14 @@ impl Lock {
             self.lift = Some(0.0);
             return trouble;
         }
-        let phase = f64::from(libm::atan2f(fit.lift.imaginary, fit.lift.real));
+        let phase = f64::from(libm::atan2f(fit.lift.im, fit.lift.re));
         let square = |part: f64| part * part;
         // A lift that changes while the scale is still uncertain has a phase error of its own.
         let bent = self.scale * square(half) * square(f64::from(fit.change / lift))
             + square(f64::from(fit.crowded() / lift));
         self.lift = Some(lift);
         let variance = square(f64::from(sigma / lift)) + bent + self.lost;
-        let is_used = self.learn(phase, variance, half, phase_accumulator);
+        let is_used = self.learn(Seen { phase, variance, half }, phase_accumulator);
         if !is_used && (noise > NOISE_RISE * quiet || lift < FOUND * sigma) {
             // The forces or chance are the cause, not the gyro.
             self.stray = 0.0;
@@ -351,27 +348,21 @@ impl Lock {
         if fit.noise > noise * (1.0 + chance) { fit.noise } else { noise }
     }
 
-    /// Updates the filter with a phase of this variance, at a middle that is the rotation `half`,
-    /// rad, ago; returns whether it was accepted.
-    fn learn(
-        &mut self,
-        phase: f64,
-        variance: f64,
-        half: f64,
-        phase_accumulator: &mut PhaseAccumulator,
-    ) -> bool {
+    /// Updates the filter with the phase of these turns; returns whether it was accepted.
+    fn learn(&mut self, seen: Seen, phase_accumulator: &mut PhaseAccumulator) -> bool {
+        let Seen { phase, variance, half } = seen;
         // The measured phase is that at the middle: the present angle error, less the scale's
         // effect since.
         let with_angle = self.angle + half * self.shared;
         let with_scale = self.shared + half * self.scale;
         let whole = with_angle + half * with_scale + variance;
         if self.agreed == 0 || whole > AMBIGUOUS * AMBIGUOUS {
-            self.begin(phase, variance, half, phase_accumulator);
+            self.begin(seen, phase_accumulator);
             return true;
         }
         let phase = self.upright(phase, whole);
         if phase * phase > BOUND * BOUND * whole {
-            self.disagree(phase, variance, half, phase_accumulator);
+            self.disagree(Seen { phase, ..seen }, phase_accumulator);
             return false;
         }
         self.strays = 0;
@@ -390,13 +381,8 @@ impl Lock {
     }
 
     /// Sets the angle from a phase alone, because the number of turns is ambiguous.
-    fn begin(
-        &mut self,
-        phase: f64,
-        variance: f64,
-        half: f64,
-        phase_accumulator: &mut PhaseAccumulator,
-    ) {
+    fn begin(&mut self, seen: Seen, phase_accumulator: &mut PhaseAccumulator) {
+        let Seen { phase, variance, half } = seen;
         self.agreed = 1;
         self.stray = 0.0;
         self.calm = [0.0, 1.0];
@@ -407,23 +393,17 @@ impl Lock {
 
     /// Handles a rejected phase. Before the roll is reported it starts anew; afterwards only when
     /// too many are rejected in succession.
-    fn disagree(
-        &mut self,
-        phase: f64,
-        variance: f64,
-        half: f64,
-        phase_accumulator: &mut PhaseAccumulator,
-    ) {
+    fn disagree(&mut self, seen: Seen, phase_accumulator: &mut PhaseAccumulator) {
         self.strays += 1;
-        self.stray = phase as f32;
+        self.stray = seen.phase as f32;
         let is_told = self.agreed >= AGREED;
         if self.strays >= if is_told { PATIENCE } else { DISAGREED } {
             self.strays = 0;
             self.scale = self.first.max(WRONG * WRONG);
             self.forget_angle();
-            self.begin(phase, variance, half, phase_accumulator);
+            self.begin(seen, phase_accumulator);
         } else if !is_told {
-            self.begin(phase, variance, half, phase_accumulator);
+            self.begin(seen, phase_accumulator);
         } else if self.strays > 1 {
             self.fade();
         }

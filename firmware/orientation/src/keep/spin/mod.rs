@@ -14,7 +14,6 @@
 
 pub mod attitude;
 mod circle;
-mod complex;
 mod extrema;
 mod fit;
 mod harmonics;
@@ -31,8 +30,10 @@ use self::pace::Timing;
 use self::phase_accumulator::PhaseAccumulator;
 use crate::signal::SpinSample;
 use crate::units::{AngleIncrement, Instant};
-use crate::words;
 use crate::words::Rounded;
+
+/// Complex numbers in single precision, for the sums of a spinning body.
+type Complex = crate::math::Complex<f32>;
 
 /// Method by which the roll is corrected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -91,7 +92,7 @@ pub enum Accelerometer {
     Both,
 }
 
-words! { Accelerometer:
+crate::words! { Accelerometer:
     Self::Y => "the accelerometer along y shows";
     Self::Z => "the accelerometer along z shows";
     Self::Both => "both accelerometers show";
@@ -154,7 +155,7 @@ pub enum State {
     },
 }
 
-words! { State:
+crate::words! { State:
     Self::Searching => "searching: no lift was felt yet";
     Self::Locked => "locked";
     Self::Holding { seconds } => "holding on the gyro for {} s: no lift", Rounded::<2>(seconds);
@@ -221,7 +222,7 @@ impl Spin {
     pub fn push(&mut self, sample: &SpinSample) -> Option<Signal> {
         let missing = self.missing(sample.time);
         let [turned, ..] = sample.turned;
-        let before = self.pace.before();
+        let before = self.pace.before;
         let turned = self.pace.take(turned);
         if missing > 0.0 || self.pace.is_lost() {
             self.bridge(missing, [before, turned]);
@@ -308,7 +309,7 @@ impl Spin {
     pub fn state(&self) -> State {
         let now = self.latest.unwrap_or_default();
         match &self.corrector {
-            Corrector::Extrema(extrema) if extrema.has_corrected() => State::Locked,
+            Corrector::Extrema(extrema) if extrema.has_corrected => State::Locked,
             Corrector::Extrema(_) => State::Searching,
             Corrector::Lock(lock) => match self.pace.stuck() {
                 Some(samples) => {

@@ -25,10 +25,10 @@ const JUMP_SIGMAS: f64 = 12.0;
 const JUMP_PART: u32 = 16;
 
 /// State of the plausibility check.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Timing {
     /// Latest increment that was accepted.
-    before: AngleIncrement,
+    pub(super) before: AngleIncrement,
     /// Latest increment, accepted or not, and its number of repetitions.
     shown: AngleIncrement,
     still: u32,
@@ -55,17 +55,11 @@ impl Timing {
     pub(super) fn new(setting: &Setting) -> Self {
         let noise = setting.angle_random_walk * libm::sqrt(setting.sample_seconds);
         Self {
-            before: AngleIncrement(0),
-            shown: AngleIncrement(0),
-            still: 0,
-            longest: 0,
-            lives: 0,
             jumped: PATIENCE,
             least: (JUMP.max(JUMP_SIGMAS * noise) / AngleIncrement::STEP) as u32,
-            lost: [0; 2],
             is_lively: noise > LIVELY * AngleIncrement::STEP,
-            is_calm: false,
             is_dull: true,
+            ..Self::default()
         }
     }
 
@@ -125,11 +119,6 @@ impl Timing {
         // A stuck gyro is detected late, so the repetitions count as lost.
         let late = if known == 0 && is_stuck { self.still as u16 } else { 1 };
         self.lost = [known, known.saturating_add(late)];
-    }
-
-    /// Increment that was assumed for the latest sample.
-    pub(super) fn before(&self) -> AngleIncrement {
-        self.before
     }
 
     /// Whether the rotation of the latest sample is unknown.

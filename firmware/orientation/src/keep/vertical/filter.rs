@@ -95,14 +95,14 @@ struct Balance {
 }
 
 /// State of the filter.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Filter {
     /// Covariance of the states.
     covariance: [States; STATES],
     /// Velocity north and east that the forces integrate to, m/s.
     velocity: [f32; 2],
     /// Statistics of the motion.
-    motion: Motion,
+    pub(super) motion: Motion,
     /// Low-passed force, as a check of the vertical.
     floor: Floor,
     /// Balance of the level's variance.
@@ -116,16 +116,9 @@ impl Filter {
     /// Filter with these 1σ of the gyros' biases, rad/s, before the level is set.
     #[must_use]
     pub fn new(biases: [f32; 3], expected: &Expected) -> Self {
-        let mut filter = Self {
-            covariance: [[0.0; STATES]; STATES],
-            velocity: [0.0; 2],
-            motion: Motion::default(),
-            floor: Floor::default(),
-            balance: Balance::default(),
-            correction: [0.0; STATES],
-        };
+        let mut filter = Self::default();
         for (axis, bias) in biases.into_iter().enumerate() {
-            filter.forget_bias(axis, bias * bias);
+            filter.reset(BIAS + axis, bias * bias);
             filter.forget_axis(axis, expected.scale[axis]);
         }
         filter.reset(0, ANY_ANGLE);
@@ -267,7 +260,7 @@ impl Filter {
     /// frame, m/s², where the filter's vertical is wrong beyond repair.
     pub fn watch(&mut self, stretch: &Stretch) -> Option<Vector> {
         let size = stretch.force();
-        self.motion.watch(stretch, size, &self.floor.mean());
+        self.motion.watch(stretch, size, &self.floor.mean);
         self.floor.watch(stretch, size);
         let tilt = 0.5 * self.level_variance();
         let Verdict { more, is_biased } = self.floor.compare(tilt, &self.motion, stretch.seconds);
@@ -340,16 +333,6 @@ impl Filter {
         }
     }
 
-    /// Restarts the error of the rotation about the vertical.
-    pub fn begin_turn(&mut self) {
-        self.reset(TURN, 0.0);
-    }
-
-    /// Resets a bias to this variance, (rad/s)².
-    pub fn forget_bias(&mut self, axis: usize, variance: f32) {
-        self.reset(BIAS + axis, variance);
-    }
-
     /// Resets a gyro's scale and axis errors to the configured variance.
     pub fn forget_axis(&mut self, axis: usize, scale: f32) {
         for place in axes(axis) {
@@ -358,7 +341,7 @@ impl Filter {
     }
 
     /// Resets a state to this variance, and removes its correlations.
-    fn reset(&mut self, place: usize, variance: f32) {
+    pub fn reset(&mut self, place: usize, variance: f32) {
         for other in 0..STATES {
             self.covariance[place][other] = 0.0;
             self.covariance[other][place] = 0.0;
@@ -374,11 +357,6 @@ impl Filter {
         }
         self.begin_balance();
         self.stand();
-    }
-
-    /// Reports that the body may be moving at an unknown speed.
-    pub fn expect_motion(&mut self) {
-        self.motion.expect_motion();
     }
 
     /// Restarts the balance, as if gravity had compensated all growth until now.
@@ -402,14 +380,8 @@ impl Filter {
 
 /// Results of the filter.
 impl Filter {
-    /// Variance of the rotation about the vertical, rad².
-    #[must_use]
-    pub fn turn_variance(&self) -> f32 {
-        self.variance(TURN)
-    }
-
     /// Variance of a state including corrections that have not been applied yet.
-    fn variance(&self, place: usize) -> f32 {
+    pub fn variance(&self, place: usize) -> f32 {
         let correction = self.correction[place];
         self.covariance[place][place].max(0.0) + correction * correction
     }
@@ -429,12 +401,6 @@ impl Filter {
     #[must_use]
     pub fn bias_variances(&self) -> [f32; 3] {
         core::array::from_fn(|axis| self.covariance[BIAS + axis][BIAS + axis].max(0.0))
-    }
-
-    /// Whether the body tumbles, or lately turned as no wheeled vehicle does.
-    #[must_use]
-    pub fn is_tumbled(&self) -> bool {
-        self.motion.is_tumbled()
     }
 
     /// Index of an axis's bias among the states.

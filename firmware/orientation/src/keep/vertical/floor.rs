@@ -43,7 +43,7 @@ const STRAIN: f32 = 400.0;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Floor {
     /// Mean force on the level frame, north, east, down, m/s².
-    mean: Vector,
+    pub(super) mean: Vector,
     /// Mean part of gravity that is missing in the supporting force.
     missing: f32,
     /// Recent inflation of the level's variance, rad².
@@ -96,11 +96,6 @@ impl Floor {
     /// Factor by which the variance of the gyros' scale exceeds the configured one.
     pub(super) fn strain(&self) -> f32 {
         (self.doubt / STRAINED).clamp(1.0, STRAIN)
-    }
-
-    /// Mean force on the level frame, north, east, down, m/s².
-    pub(super) fn mean(&self) -> Vector {
-        self.mean
     }
 
     /// Takes the mean force where hardly any of it supports the body on the filter's vertical;

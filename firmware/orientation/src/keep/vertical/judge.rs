@@ -105,7 +105,7 @@ impl Vertical {
             return self.start();
         }
         let hidden = 2.0 * self.hidden();
-        self.block = Stretch { is_rest: self.rest.is_at_rest(), hidden, ..stretch };
+        self.block = Stretch { is_rest: self.rest.is_at_rest, hidden, ..stretch };
         self.task = Task::Carry;
     }
 
@@ -214,7 +214,7 @@ impl Vertical {
         let is_first = self.trust == Trust::Starting;
         self.filter.relevel(if is_first && is_calm { START_TILT } else { MOVING_TILT });
         if !is_calm {
-            self.filter.expect_motion();
+            self.filter.motion.expect_motion();
         }
         self.is_lost = false;
         self.trust = Trust::Level;
@@ -342,7 +342,7 @@ impl Vertical {
     fn acceleration(&self, force: &Vector) -> Option<f32> {
         // A body that is turned over does not accelerate steadily for as long as rest detection
         // takes; and against an uncertain level no force counts as an acceleration.
-        if self.filter.is_tumbled() || self.sigma() > UNSURE {
+        if self.filter.motion.is_tumbled() || self.sigma() > UNSURE {
             return None;
         }
         let tolerance = SIGMAS * GRAVITY * self.force_tilt + GRAVITY_CHANGE;

@@ -23,7 +23,7 @@ mod sums;
 
 pub use self::course::Course;
 pub use self::filter::Expected;
-use self::filter::Filter;
+use self::filter::{Filter, TURN};
 use self::judge::{Findings, STRETCH, Task};
 use self::rest::ZeroVelocityDetector;
 use self::stretch::Stretch;
@@ -78,8 +78,9 @@ pub struct Vertical {
     /// contain while north is unknown.
     priors: Vector,
     unknown: f32,
-    /// Whether a bias exceeded its configured 1σ by far.
-    is_bias_beyond_stated: bool,
+    /// Whether a gyro's bias exceeded its configured 1σ by far, so that the configuration was
+    /// inflated.
+    pub(super) is_bias_beyond_stated: bool,
     /// Standard deviation of the accelerometers' biases, as a tilt, 1σ, rad.
     force_tilt: f32,
     /// Sample period, s.
@@ -95,7 +96,7 @@ pub struct Vertical {
     /// Attitude as a matrix.
     matrix: Matrix,
     /// Estimated biases, rad/s.
-    bias: Vector,
+    pub(super) bias: Vector,
     /// Excess of each gyro per rotation about each axis: scale factor and axis errors.
     axes: Matrix,
     /// Filter of tilt, biases and axes.
@@ -117,11 +118,11 @@ pub struct Vertical {
     /// Values of the previous sample.
     before: Before,
     /// Motion since the heading was handed over.
-    course: Course,
+    pub(super) course: Course,
     /// Time of the latest attitude update.
     since: Instant,
     /// Reliability of the level.
-    trust: Trust,
+    pub(super) trust: Trust,
     /// Whether the level is lost completely.
     is_lost: bool,
     /// Whether north is known, so that biases and Earth rate are separated.
@@ -289,54 +290,28 @@ impl Vertical {
         libm::sqrtf(tilt * tilt + self.force_tilt * self.force_tilt)
     }
 
-    /// Estimated biases of the gyros, rad/s.
-    #[must_use]
-    pub fn biases(&self) -> Vector {
-        self.bias
-    }
-
     /// Standard deviations of the biases, 1σ, rad/s.
     #[must_use]
     pub fn bias_sigmas(&self) -> Vector {
         self.filter.bias_variances().map(libm::sqrtf)
     }
 
-    /// Whether a gyro's bias exceeded its configured 1σ by far, so that the configuration was
-    /// inflated.
-    #[must_use]
-    pub fn is_bias_beyond_stated(&self) -> bool {
-        self.is_bias_beyond_stated
-    }
-
-    /// Reliability of the level.
-    #[must_use]
-    pub fn trust(&self) -> Trust {
-        self.trust
-    }
-
     /// Whether the body is at rest.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
-        self.rest.is_at_rest()
+        self.rest.is_at_rest
     }
 
     /// End of the latest sample.
-    #[must_use]
     pub fn time(&self) -> Instant {
         self.before.time.unwrap_or_default()
-    }
-
-    /// Motion of the body since [`Vertical::begin_course`].
-    #[must_use]
-    pub fn course(&self) -> &Course {
-        &self.course
     }
 
     /// Variance of the rotation about the vertical since then, rad²: noise and biases, and rotation
     /// during gaps.
     #[must_use]
     pub fn turn_variance(&self) -> f32 {
-        self.filter.turn_variance()
+        self.filter.variance(TURN)
     }
 
     /// Mean rates about the body's axes at rest, rad/s, including the Earth rate; `None` in motion.
@@ -355,7 +330,7 @@ impl Vertical {
         self.priors[2] = sigma * sigma;
         self.bias[2] = 0.0;
         self.axes[2] = [0.0; 3];
-        self.filter.forget_bias(2, sigma * sigma);
+        self.filter.reset(Filter::bias(2), sigma * sigma);
         self.filter.forget_axis(2, self.expected.scale[2]);
         self.rested = Rested::default();
         self.rest.exchange(2, self.expected.walk[2]);
@@ -397,7 +372,7 @@ impl Vertical {
     /// Restarts the motion statistics and the error of the rotation about the vertical.
     pub fn begin_course(&mut self) {
         self.learn_biases();
-        self.filter.begin_turn();
+        self.filter.reset(TURN, 0.0);
         self.course = Course { stood: self.course.stood, ..Course::default() };
     }
 }

@@ -119,7 +119,7 @@ pub struct ZeroVelocityDetector {
     /// Successive steady windows.
     steady: Steady,
     /// Whether the body is at rest.
-    is_at_rest: bool,
+    pub is_at_rest: bool,
     /// Mean force of the latest rest, m/s².
     force: Option<Vector>,
     /// Number of windows in which each gyro has rested with its bias, up to [`EVEN`].
@@ -243,12 +243,6 @@ impl ZeroVelocityDetector {
     /// Restarts the rotation beyond the biases: they were updated, or a motion ended.
     pub fn count_anew(&mut self) {
         (self.turned, self.seconds) = ([0.0; 3], 0.0);
-    }
-
-    /// Whether the body is at rest.
-    #[must_use]
-    pub fn is_at_rest(&self) -> bool {
-        self.is_at_rest
     }
 
     /// Restarts the detection, and keeps the knowledge of the gyros.

@@ -34,7 +34,6 @@ use self::search::Search;
 use super::allan::{Allan, MOST_POINTS, Point, variance};
 use super::model::GyroNoise;
 use crate::units::{ARCSECOND, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
-use crate::words;
 use crate::words::Rounded;
 
 /// Variance of the slope of a random walk, in K² over its length: 6/5 (least-squares line through
@@ -84,7 +83,7 @@ impl Estimate {
     }
 }
 
-words! { Estimate:
+crate::words! { Estimate:
     Self::Found { value, sigma } => "{} ± {}", Rounded::<6>(value), Rounded::<6>(sigma);
     Self::NotObservable { at_most } => "not observable, at most {}", Rounded::<6>(at_most);
 }
@@ -200,57 +199,28 @@ impl NoiseFit {
     }
 
     /// Noise model of the coefficients found; a coefficient that is not observable is zero.
-    #[must_use]
     pub fn noise(&self) -> GyroNoise {
+        let found = |estimate: Estimate| estimate.value().unwrap_or(0.0);
         GyroNoise {
-            quantisation: self.quantisation.value().unwrap_or(0.0),
-            angle_random_walk: self.angle_random_walk.value().unwrap_or(0.0),
-            bias_instability: self.bias_instability.value().unwrap_or(0.0),
-            rate_random_walk: self.rate_random_walk.value().unwrap_or(0.0),
-            rate_ramp: self.rate_ramp.value().unwrap_or(0.0),
+            quantisation: found(self.quantisation),
+            angle_random_walk: found(self.angle_random_walk),
+            bias_instability: found(self.bias_instability),
+            rate_random_walk: found(self.rate_random_walk),
+            rate_ramp: found(self.rate_ramp),
         }
     }
 
     /// All estimates in the field's units, as [`Coefficient`] states them.
     #[must_use]
     pub fn in_field_units(&self) -> [(Coefficient, Estimate); 5] {
+        let [q, n, b, k, r] = self.estimates();
         [
-            (Coefficient::Quantisation, self.arcseconds()),
-            (Coefficient::AngleRandomWalk, self.degrees_per_sqrt_hour()),
-            (Coefficient::BiasInstability, self.degrees_per_hour()),
-            (Coefficient::RateRandomWalk, self.degrees_per_hour_per_sqrt_hour()),
-            (Coefficient::RateRamp, self.degrees_per_hour_squared()),
+            (Coefficient::Quantisation, q.in_unit(ARCSECOND)),
+            (Coefficient::AngleRandomWalk, n.in_unit(DEGREE_PER_SQRT_HOUR)),
+            (Coefficient::BiasInstability, b.in_unit(DEGREE_PER_HOUR)),
+            (Coefficient::RateRandomWalk, k.in_unit(DEGREE_PER_HOUR / 60.0)),
+            (Coefficient::RateRamp, r.in_unit(DEGREE_PER_HOUR / 3600.0)),
         ]
-    }
-
-    /// Quantisation Q, arc seconds.
-    #[must_use]
-    pub fn arcseconds(&self) -> Estimate {
-        self.quantisation.in_unit(ARCSECOND)
-    }
-
-    /// Angle random walk N, °/√h.
-    #[must_use]
-    pub fn degrees_per_sqrt_hour(&self) -> Estimate {
-        self.angle_random_walk.in_unit(DEGREE_PER_SQRT_HOUR)
-    }
-
-    /// Bias instability B, °/h.
-    #[must_use]
-    pub fn degrees_per_hour(&self) -> Estimate {
-        self.bias_instability.in_unit(DEGREE_PER_HOUR)
-    }
-
-    /// Rate random walk K, °/h/√h.
-    #[must_use]
-    pub fn degrees_per_hour_per_sqrt_hour(&self) -> Estimate {
-        self.rate_random_walk.in_unit(DEGREE_PER_HOUR / 60.0)
-    }
-
-    /// Rate ramp R, °/h².
-    #[must_use]
-    pub fn degrees_per_hour_squared(&self) -> Estimate {
-        self.rate_ramp.in_unit(DEGREE_PER_HOUR / 3600.0)
     }
 }
 
@@ -269,18 +239,12 @@ pub enum Coefficient {
     RateRamp,
 }
 
-words! { Coefficient:
+crate::words! { Coefficient:
     Self::Quantisation => "quantisation Q, arc seconds";
     Self::AngleRandomWalk => "angle random walk N, °/√h";
     Self::BiasInstability => "bias instability B, °/h";
     Self::RateRandomWalk => "rate random walk K, °/h/√h";
     Self::RateRamp => "rate ramp R, °/h²";
-}
-
-words! { NoiseFit:
-    fit => "Q {}″; N {} °/√h; B {} °/h; K {} °/h/√h; R {} °/h²",
-        fit.arcseconds(), fit.degrees_per_sqrt_hour(), fit.degrees_per_hour(),
-        fit.degrees_per_hour_per_sqrt_hour(), fit.degrees_per_hour_squared();
 }
 
 /// Reason for which a record determines no noise coefficients.
@@ -306,7 +270,7 @@ pub enum FitError {
     Period,
 }
 
-words! { FitError:
+crate::words! { FitError:
     Self::TooShort { samples, needed } =>
         "record too short: {} samples, {} needed", samples, needed;
     Self::Constant => "all samples are equal: the gyro or its bus is stuck";

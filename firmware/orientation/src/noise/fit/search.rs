@@ -84,7 +84,7 @@ pub struct Search<'p> {
     /// Equivalent degrees of freedom of the points.
     degrees: Vec<f64, MOST_POINTS>,
     /// Expected variances of the points, (rad/s)², from which the next fit starts.
-    variances: Vec<f64, MOST_POINTS>,
+    pub variances: Vec<f64, MOST_POINTS>,
 }
 
 impl<'p> Search<'p> {
@@ -182,11 +182,6 @@ impl<'p> Search<'p> {
     pub fn sigmas(&self, variances: &[f64]) -> Vec<f64, MOST_POINTS> {
         let sigma = |(variance, degrees): (&f64, &f64)| variance * libm::sqrt(2.0 / degrees);
         variances.iter().zip(&self.degrees).map(sigma).collect()
-    }
-
-    /// Expected variances of the points, (rad/s)².
-    pub fn variances(&self) -> &[f64] {
-        &self.variances
     }
 
     /// Gamma deviance Σ ν (r − 1 − ln r) of the points from these expected variances.

@@ -27,7 +27,7 @@ impl Search<'_> {
     /// Factors by which correlation between the points raises the variances of the squares, under
     /// the expected model. A coefficient outside the model is treated as if it alone were added.
     pub fn inflations(&self, model: &Model) -> [f64; COLUMNS] {
-        let sigmas = self.sigmas(self.variances());
+        let sigmas = self.sigmas(&self.variances);
         let sums = Sums::new(self.points, &sigmas, Columns::ALL);
         let mut inflations = [0.0; COLUMNS];
         let rows: [Row; COLUMNS] = core::array::from_fn(|column| {

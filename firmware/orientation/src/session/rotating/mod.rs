@@ -166,7 +166,6 @@ impl Session {
     }
 
     /// Procedure of the session.
-    #[must_use]
     pub fn procedure(&self) -> &Procedure {
         &self.procedure
     }
@@ -297,7 +296,7 @@ impl Session {
             return Command::Wait;
         }
         self.commanded = sample.time;
-        if self.turn_accumulator.mode() == Mode::Ignore && elapsed >= self.settled {
+        if self.turn_accumulator.mode == Mode::Ignore && elapsed >= self.settled {
             self.turn_accumulator.follow_uneven(self.procedure.modulation_width());
         }
         let time = (elapsed as f64 - self.settled as f64) * 1e-6;

@@ -18,6 +18,7 @@ const BLOCK_SECONDS: f64 = 0.02;
 const BLOCK_ANGLE: f64 = 0.1 / 360.0 * TURN;
 
 /// Procedure of a session on a rotating platform.
+#[must_use]
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Procedure {
@@ -46,7 +47,6 @@ impl Procedure {
     /// Procedure with a default number of turns: three minutes in each sense for each speed, and
     /// twelve turns rate-modulated by a quarter, or twice as many with two speeds, where a lag has
     /// more effect.
-    #[must_use]
     pub fn new(speeds: &[f64], sample_seconds: f64) -> Self {
         let slowest = speeds.iter().copied().fold(f64::INFINITY, f64::min);
         Self {
@@ -63,7 +63,6 @@ impl Procedure {
     }
 
     /// Procedure for a recording with this sample period, whatever it contains.
-    #[must_use]
     pub fn recorded(sample_seconds: f64) -> Self {
         Self { block_seconds: BLOCK_SECONDS, ..Self::new(&[], sample_seconds) }
     }

@@ -57,6 +57,7 @@ pub enum Phase {
 }
 
 /// Procedure of a session with stops.
+#[must_use]
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Procedure {
@@ -85,7 +86,6 @@ const LONGEST_SECONDS: f64 = 6.0 * 3600.0;
 
 impl Procedure {
     /// Procedure with this number of stops of a minute, which the stop criteria find.
-    #[must_use]
     pub fn new(stops: usize, sample_seconds: f64) -> Self {
         Self {
             rests: Rests::Found,
@@ -99,7 +99,6 @@ impl Procedure {
     }
 
     /// Procedure for a recording with this sample period, whatever it contains.
-    #[must_use]
     pub fn recorded(rests: Rests, sample_seconds: f64) -> Self {
         Self {
             rests,
@@ -191,7 +190,6 @@ impl Session {
     }
 
     /// Procedure of the session.
-    #[must_use]
     pub fn procedure(&self) -> &Procedure {
         &self.procedure
     }
@@ -231,7 +229,7 @@ impl Session {
         let begun = *self.begun.get_or_insert(now);
         self.tell_displacements();
         let count = self.stop_detector.stops().len();
-        let phase = match (self.stop_detector.is_at_rest(), count) {
+        let phase = match (self.stop_detector.is_at_rest, count) {
             (_, 0) => Phase::Waiting,
             (true, count) => Phase::Standing(count - 1),
             (false, count) => Phase::Driving(count),
@@ -240,7 +238,7 @@ impl Session {
             self.is_told = false;
             self.phase = phase;
         }
-        if self.procedure.stops > 0 && self.stop_detector.loss().is_some() {
+        if self.procedure.stops > 0 && self.stop_detector.loss.is_some() {
             return self.conclude();
         }
         if now.seconds() - begun.seconds() > self.procedure.longest_seconds {
@@ -283,7 +281,7 @@ impl Session {
         let Procedure { sample_seconds: told, period_tolerance, .. } = self.procedure;
         let found = self.stop_detector.elapsed() / f64::from(self.samples.max(1));
         // Missing samples are reported as such instead.
-        let is_whole = self.samples > 0 && self.stop_detector.loss().is_none();
+        let is_whole = self.samples > 0 && self.stop_detector.loss.is_none();
         contradiction(told, found, period_tolerance).filter(|_| is_whole)
     }
 

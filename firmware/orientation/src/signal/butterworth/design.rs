@@ -7,7 +7,6 @@
 //! *Discrete-Time Signal Processing*, 3rd edition, §7.2; scipy's `butter` is the oracle in tests.)
 
 use super::sections::Gains;
-use crate::words;
 use core::f64::consts::PI;
 
 /// Highest cutoff as a part of the sample rate; beyond it p would not fit the gains.
@@ -33,7 +32,7 @@ pub enum DesignError {
     CutoffTooLow,
 }
 
-words! { DesignError:
+crate::words! { DesignError:
     Self::NotPositive => "cutoff and sample rate must be positive numbers: give both in Hz";
     Self::CutoffTooHigh =>
         "the cutoff is above 1/4 of the sample rate: lower the cutoff or sample faster";

@@ -64,7 +64,6 @@ impl<const SECTIONS: usize> Filter<SECTIONS> {
     ///
     /// Use one set of `coefficients` per filter. For another cutoff begin anew with
     /// [`Filter::at_rest`] at the last output: the state of one cutoff means a step to another.
-    #[must_use]
     #[inline]
     pub fn update(&mut self, coefficients: &Coefficients<SECTIONS>, x: AngularRate) -> AngularRate {
         let mut signal = widen(x.0, Self::INPUT_BITS);

@@ -33,6 +33,7 @@ mod noise;
 
 pub use noise::SwayNoise;
 
+use crate::math::rotation::cross;
 use crate::units::{AngularRate, DEGREE, SpecificForce};
 
 /// Gravity, m/s²: the unit of the estimated vector. Its error only changes τ slightly.
@@ -249,11 +250,11 @@ impl Sway {
     fn turn(&mut self, seconds: f32, rate: [f32; 3], force: [f32; 3], up: [f32; 3]) {
         self.age += seconds;
         self.upright += seconds;
-        let off = cross(force, up);
+        let off = cross(&force, &up);
         let draw = (4.0 / self.upright.max(YOUNGEST)).max(1.0 / self.sensors.memory);
         let turning = [0, 1, 2].map(|i| rate[i] - self.bias[i] + draw * off[i]);
         self.learn(seconds, rate, off);
-        let moved = cross(turning, up);
+        let moved = cross(&turning, &up);
         let up = normalised([0, 1, 2].map(|i| up[i] - seconds * moved[i]));
         self.up = Some(up);
         let lead = self.sensors.delay / seconds;
@@ -283,7 +284,7 @@ impl Sway {
             return;
         }
         let [angle, rate] = self.watch.variances();
-        let size = Size { angle: root(angle), rate: root(rate) };
+        let size = Size { angle: libm::sqrtf(angle), rate: libm::sqrtf(rate) };
         let own = self.sensors.angle_variance();
         let left = self.sensors.residual_variance(angle, rate);
         let is_large = angle > LARGE * LARGE * (own + left);
@@ -310,16 +311,6 @@ impl Sway {
             Decision::Watching | Decision::Still(_) => 0.0,
         }
     }
-}
-
-/// Square root in single precision.
-fn root(value: f32) -> f32 {
-    libm::sqrtf(value)
-}
-
-/// Vector product in single precision.
-fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// Renormalises a vector whose length is nearly one, by one Newton step for 1/√x.

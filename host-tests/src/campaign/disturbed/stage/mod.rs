@@ -178,7 +178,12 @@ fn aligned(session: &Session, truth_deg: f64) -> Aligned {
 fn plain_deg(session: &Session) -> Option<f64> {
     let setting = session.setting();
     let gravity = setting.latitude.gravity();
-    let tilt = level::tilt(session.dwells().iter(), gravity, setting.accelerometer_bias_sigma);
+    let tilt = level::tilt(
+        &setting.mount,
+        session.dwells().iter(),
+        gravity,
+        setting.accelerometer_bias_sigma,
+    );
     let mut regression = Regression::<3>::default();
     for dwell in session.dwells() {
         let axis = tilt.sensitive_axis(dwell.stage.rad());

@@ -146,10 +146,11 @@ impl Replay {
             Excluded { stop: Some(index + 1), reason, ..Excluded::default() }
         });
         let of_found = found.into_iter().flat_map(|found| {
-            let [left_out, of] = found.left_out;
+            let (left_out, of) = (found.tally.left_out, found.blocks);
             let means = format!("{left_out} of {of} means of the force: disturbed");
-            let turning = format!("rest rates of {} stop(s): the vehicle turned", found.turning);
-            let both = [(left_out > 0, means), (found.turning > 0, turning)];
+            let turning =
+                format!("rest rates of {} stop(s): the vehicle turned", found.tally.turning);
+            let both = [(left_out > 0, means), (found.tally.turning > 0, turning)];
             let told = both.into_iter().filter_map(|(is_there, reason)| is_there.then_some(reason));
             told.map(|reason| Excluded { reason, ..Excluded::default() })
         });
