@@ -8,12 +8,13 @@
 //!
 //! Numbers are kept as integers of thousandths, so that the board needs no formatting of floats.
 
-use core::fmt::{self, Write as _};
+use core::fmt::Write as _;
 
 use embassy_futures::select::select;
 use embassy_time::{Duration, Timer, with_timeout};
 use embedded_io_async::Write;
 use heapless::String;
+use orientation::words;
 
 use crate::event::Event;
 use crate::shared::Shared;
@@ -43,16 +44,10 @@ pub enum Status {
         /// Number of planned dwells or turns.
         of: u16,
     },
-    /// The vehicle stands at a stop, whose inclination is being measured.
-    Levelling {
-        /// Number of the stop, from 1.
-        stop: u16,
-    },
-    /// The stop was long enough, and the vehicle may drive on.
-    MayDrive {
-        /// Number of the stop, from 1.
-        stop: u16,
-    },
+    /// The vehicle stands at a stop, with this number from 1, whose inclination is being measured.
+    Levelling(u16),
+    /// The stop with this number, from 1, was long enough, and the vehicle may drive on.
+    MayDrive(u16),
     /// The vehicle is in motion.
     Driving,
     /// The alignment has concluded with an azimuth.
@@ -91,36 +86,28 @@ impl Status {
     }
 }
 
-impl fmt::Display for Status {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Starting => f.write_str("starting"),
-            Self::Homing => f.write_str("homing"),
-            Self::Surveying => f.write_str("surveying"),
-            Self::Measuring { done, of } => write!(f, "measuring {done}/{of}"),
-            Self::Levelling { stop } => write!(f, "levelling at stop {stop}"),
-            Self::MayDrive { stop } => write!(f, "stop {stop} done, may drive"),
-            Self::Driving => f.write_str("driving"),
-            Self::Concluded { azimuth, sigma } => {
-                write!(f, "azimuth {} sigma {}", Thousandths(*azimuth), Thousandths(*sigma))
-            }
-            Self::Refused => f.write_str("no azimuth"),
-            Self::Rolling { roll: Some([roll, sigma]), state } => {
-                write!(f, "roll {} sigma {} {state}", Thousandths(*roll), Thousandths(*sigma))
-            }
-            Self::Rolling { roll: None, state } => write!(f, "roll unknown, {state}"),
-            Self::RollEnded => f.write_str("no roll"),
-        }
-    }
+words! { Status:
+    Self::Starting => "starting";
+    Self::Homing => "homing";
+    Self::Surveying => "surveying";
+    Self::Measuring { done, of } => "measuring {}/{}", done, of;
+    Self::Levelling(stop) => "levelling at stop {}", stop;
+    Self::MayDrive(stop) => "stop {} done, may drive", stop;
+    Self::Driving => "driving";
+    Self::Concluded { azimuth, sigma } =>
+        "azimuth {} sigma {}", Thousandths(azimuth), Thousandths(sigma);
+    Self::Refused => "no azimuth";
+    Self::Rolling { roll: Some([roll, sigma]), state } =>
+        "roll {} sigma {} {}", Thousandths(roll), Thousandths(sigma), state;
+    Self::Rolling { roll: None, state } => "roll unknown, {}", state;
+    Self::RollEnded => "no roll";
 }
 
 /// A number of thousandths, written as a decimal fraction.
 pub(crate) struct Thousandths(pub(crate) u32);
 
-impl fmt::Display for Thousandths {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}.{:03}", self.0 / 1000, self.0 % 1000)
-    }
+words! { Thousandths:
+    Self(number) => "{}.{:03}", number / 1000, number % 1000;
 }
 
 /// Sends a status line every second until the conclusion of the session has been sent. Runs for

@@ -328,10 +328,8 @@ impl<E: Encoder> Pointing for FrameShafts<'_, E> {
 impl Frames<LatestAngle> {
     /// Angles without any reading yet.
     #[must_use]
-    pub const fn unread() -> Self {
-        Self {
-            outer: Cell::new((Angle(0), Instant::MIN)),
-            inner: Cell::new((Angle(0), Instant::MIN)),
-        }
+    pub fn unread() -> Self {
+        let unread = || Cell::new((Angle(0), Instant::MIN));
+        Self { outer: unread(), inner: unread() }
     }
 }

@@ -70,7 +70,7 @@ pub struct Shared<'a> {
     /// The status that the link reports.
     pub status: Cell<Status>,
     /// Receiver of events.
-    observer: &'a dyn Observer,
+    pub observer: &'a dyn Observer,
 }
 
 impl<'a> Shared<'a> {
@@ -103,11 +103,6 @@ impl<'a> Shared<'a> {
     #[inline(never)]
     pub fn tell(&self, event: Event) {
         self.observer.event(Instant::now(), &event);
-    }
-
-    /// The observer.
-    pub fn observer(&self) -> &'a dyn Observer {
-        self.observer
     }
 
     /// Changes the counters of faults.

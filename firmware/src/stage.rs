@@ -177,14 +177,14 @@ impl<'a, M: Actuator> Stage<'a, M> {
     /// again.
     async fn recover(&mut self, broken: Break, rest: Duration) -> Result<(), Refusal> {
         match broken {
-            Break::Refused(reason) => Err(reason),
-            Break::Lost => self.home().await,
+            Break::Refused(reason) => return Err(reason),
+            Break::Lost => {}
             Break::Stalled => {
                 self.motor.tell(Event::Blocked);
                 Timer::after(rest).await;
-                self.home().await
             }
         }
+        self.home().await
     }
 }
 

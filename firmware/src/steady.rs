@@ -15,7 +15,7 @@ use micromath::F32Ext;
 use orientation::device::Device;
 use orientation::error::Refusal;
 use orientation::signal::sway::{Decision, Sway, SwayNoise};
-use orientation::units::{Angle, AngularRate, DEGREES_PER_RADIAN as DEGREES, SpecificForce, TURN};
+use orientation::units::{Angle, AngularRate, DEGREES_PER_RADIAN as DEGREES, TURN};
 
 use crate::acquire::{RepeatCounter, STUCK};
 use crate::event::Event;
@@ -127,11 +127,6 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
         }
     }
 
-    /// Whether the sway is being subtracted.
-    fn is_swaying(&self) -> bool {
-        matches!(self.sway.decision(), Decision::Swaying(..))
-    }
-
     /// Takes a reading if there is a new one.
     ///
     /// # Errors
@@ -141,7 +136,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
         let outcome = self.base.device.read().await;
         match self.base.checked(begun, outcome)? {
             Some(reading) => {
-                shared.observer().sensed(begun, &reading);
+                shared.observer.sensed(begun, &reading);
                 self.push(begun, reading)
             }
             None if (begun - self.silent).as_micros() > SILENCE => Err(Symptom::Silent),
@@ -173,16 +168,11 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
         self.fresh = Some((at, reading));
         self.held = Some(reading);
         if !is_clipped {
-            self.turn(at, rate, force);
+            let seconds = (at - self.latest).as_micros() as f32 * 1e-6;
+            self.latest = at;
+            self.sway.push(seconds, rate, force);
         }
         Ok(())
-    }
-
-    /// Passes rates and specific forces to the estimator with the time since the reading before, s.
-    fn turn(&mut self, at: Instant, rate: [AngularRate; 3], force: [SpecificForce; 3]) {
-        let seconds = (at - self.latest).as_micros() as f32 * 1e-6;
-        self.latest = at;
-        self.sway.push(seconds, rate, force);
     }
 
     /// Starts the sensors again where necessary, and continues without them where the session
@@ -196,8 +186,9 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
         if self.base.restarts() != restarts {
             self.silent = Instant::now();
         }
+        let is_subtracted = matches!(self.sway.decision(), Decision::Swaying(..));
         match outcome {
-            Err(reason) if self.is_swaying() && !shared.keep.is_kept.get() => return Err(reason),
+            Err(reason) if is_subtracted && !shared.keep.is_kept.get() => return Err(reason),
             Err(_) => self.lose(shared),
             Ok(()) => {}
         }

@@ -119,7 +119,7 @@ impl<'a, M: Actuator> Turntable<'a, M> {
         let before = self.motor.shown_near(0.0).await?;
         Timer::after(STALL_REST).await;
         let shown = self.motor.shown_near(before).await?;
-        self.check(shown - before)?;
+        self.motor.check(shown - before, self.configuration.agreement)?;
         self.motor.ask(Request::SetAngle(shown)).await?;
         self.motor.look().await?;
         self.looked = Instant::now();
@@ -154,17 +154,12 @@ impl<'a, M: Actuator> Turntable<'a, M> {
         if self.is_far(apart) && !self.is_far(self.comparison.way(shown)) {
             return Err(Break::Stalled);
         }
-        self.check(apart)
+        self.motor.check(apart, self.configuration.agreement)
     }
 
     /// Whether two angles that should be equal differ by more than the tolerance, rad.
     fn is_far(&self, apart: f64) -> bool {
         apart.abs() > self.configuration.agreement
-    }
-
-    /// Gives the turntable up if motor and encoder differ by more than the tolerance, rad.
-    fn check(&self, apart: f64) -> Result<(), Break> {
-        self.motor.check(apart, self.configuration.agreement)
     }
 }
 

@@ -24,6 +24,7 @@ mod triad;
 
 pub use spin::SpinAcquisition;
 pub use stage::{on_mount, on_stage};
+pub(crate) use triad::TRIAD;
 pub use triad::TriadAcquisition;
 
 use core::convert::Infallible;

@@ -33,6 +33,8 @@ pub struct SpinAcquisition<'a, C> {
     converters: Group<'a, C, CHANNELS, Code>,
     /// Scale factors and rates.
     configuration: &'a SpinConfiguration,
+    /// Time from the middle of a conversion to its end, rounded to nearest.
+    half: Duration,
     /// Outlet of samples.
     outlet: Outlet<'a, SpinSample>,
     /// Rotation of the gyros in the previous conversion, in steps of an increment.
@@ -53,6 +55,7 @@ impl<'a, C: InStep<Code>> SpinAcquisition<'a, C> {
         Self {
             converters: Group::new(converters, NAMES, rate, period, &channels.shared),
             configuration,
+            half: Duration::from_micros(libm::round(0.5e6 / rate) as u64),
             outlet: Outlet::new(period, channels),
             before: None,
             carried: [0; GYROS],
@@ -98,8 +101,7 @@ impl<'a, C: InStep<Code>> Source<'a> for SpinAcquisition<'a, C> {
         }
         let Some(codes) = codes else { return Ok(None) };
         self.outlet.judge(time);
-        let half = Duration::from_micros(self.configuration.half_period().into());
-        let time = Instant((time - half).as_micros());
+        let time = Instant((time - self.half).as_micros());
         Ok(Some(SpinSample { time, turned: self.turned(&codes), force: self.force(&codes) }))
     }
 

@@ -19,8 +19,8 @@ use crate::keep::Motion;
 use crate::ports::{Accelerometer, ForceReading, InStep, VehicleSensors};
 use crate::shared::Channels;
 
-/// Names of the gyros in the log: forward, right, down.
-const NAMES: [Device; 3] = [Device::ForwardGyro, Device::RightGyro, Device::DownGyro];
+/// Names in the log of the gyros about the axes forward, right, down.
+pub(crate) const TRIAD: [Device; 3] = [Device::ForwardGyro, Device::RightGyro, Device::DownGyro];
 
 /// Acquisition of the sensors of a vehicle.
 pub struct TriadAcquisition<'a, G, A> {
@@ -46,7 +46,7 @@ impl<'a, G: InStep, A: Accelerometer> TriadAcquisition<'a, G, A> {
         let period = period(sample_rate);
         let VehicleSensors { gyros, accelerometer } = sensors;
         Self {
-            gyros: Group::new(gyros, NAMES, sample_rate, period, &channels.shared),
+            gyros: Group::new(gyros, TRIAD, sample_rate, period, &channels.shared),
             forces: Forces::new(accelerometer, force_divider, sample_rate),
             mean: Mean::of(forces),
             outlet: Outlet::new(period, channels),

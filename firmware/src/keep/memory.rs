@@ -31,7 +31,7 @@ pub(super) struct Memory<M> {
     /// The non-volatile store.
     store: M,
     /// The heading found at the start, until it has been accepted or rejected.
-    found: Option<Remembered>,
+    pub(super) found: Option<Remembered>,
     /// Azimuth and σ that this run has stored, rad, and the time of the write.
     stored: Option<([f64; 2], Instant)>,
     /// Whether the store has failed; a failure is reported once.
@@ -58,11 +58,6 @@ impl<M: Store> Memory<M> {
         if !core::mem::replace(&mut self.has_failed, true) {
             shared.tell(Event::HeadingNotKept(fault));
         }
-    }
-
-    /// Discards the heading from before the restart.
-    pub(super) fn drop_found(&mut self) {
-        self.found = None;
     }
 
     /// Decides on the heading from before the restart once the vehicle has rested long enough; true

@@ -193,7 +193,7 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
     /// Takes an azimuth: as the first one, or fused with the kept one by an innovation test.
     #[inline(never)]
     fn align(&mut self, handover: Handover, shared: &Shared<'_>) {
-        self.memory.drop_found();
+        self.memory.found = None;
         let outcome = if self.keeper.report().azimuth.is_none() {
             self.keeper.hand_over(handover);
             Realigned::Taken
@@ -343,7 +343,7 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
     /// link reports the session's status.
     fn tell(&self, shared: &Shared<'_>) {
         let report = self.keeper.report();
-        shared.observer().kept(&report);
+        shared.observer.kept(&report);
         if self.told.since.is_none() && report.azimuth.is_none() {
             return;
         }

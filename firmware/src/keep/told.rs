@@ -49,10 +49,8 @@ fn write(f: &mut fmt::Formatter<'_>, name: &str, value: i32) -> fmt::Result {
 impl fmt::Display for Kept {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.azimuth {
-            Some(both) => {
-                let [angle, sigma] = both.map(u32::cast_signed);
-                write(f, "azimuth", angle)?;
-                write(f, "sigma", sigma)?;
+            Some([angle, sigma]) => {
+                write!(f, "azimuth {} sigma {} ", Thousandths(angle), Thousandths(sigma))?;
             }
             None => f.write_str("no azimuth, ")?,
         }

@@ -49,10 +49,8 @@ impl AlignmentSession<Sample> for Rotating<'_> {
 
     fn outset(&self) -> Event {
         let (_, turns) = self.session.turns();
-        Event::BegunTurning {
-            turns,
-            latitude: self.session.setting().common.latitude.rad() * DEGREES,
-        }
+        let latitude = self.session.setting().common.latitude.rad() * DEGREES;
+        Event::BegunTurning { turns, latitude }
     }
 
     fn take(&mut self, sample: &Sample) -> Step {
@@ -81,7 +79,7 @@ impl AlignmentSession<Sample> for Rotating<'_> {
             let (_, of) = session.turns();
             shared.tell(Event::Turned(done, of));
             tell_status(session, shared);
-            shared.observer().turned(session);
+            shared.observer.turned(session);
         }
     }
 

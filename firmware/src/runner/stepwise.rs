@@ -169,7 +169,7 @@ fn tell_dwell(session: &Session, shared: &Shared<'_>) {
             shared.tell(Event::CutShort(dwell.seconds));
         }
     }
-    shared.observer().progress(session);
+    shared.observer.progress(session);
 }
 
 /// Updates the status line with completed and planned dwells.

@@ -5,7 +5,6 @@
 
 use orientation::align::stops::conclusion::Conclusion;
 use orientation::align::stops::inclination::pitch_and_roll;
-use orientation::device::Device;
 use orientation::earth::Latitude;
 use orientation::error::Refusal;
 use orientation::session::stops::{Command, Event as SessionEvent, Phase, Session};
@@ -13,13 +12,11 @@ use orientation::signal::InertialSample;
 use orientation::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN as DEGREES, Instant};
 
 use super::{AlignmentSession, Step};
+use crate::acquire::TRIAD;
 use crate::event::Event;
 use crate::link::Status;
 use crate::ports::PositionAiding;
 use crate::shared::Shared;
-
-/// The gyros about the axes forward, right, down.
-const GYROS: [Device; 3] = [Device::ForwardGyro, Device::RightGyro, Device::DownGyro];
 
 /// A session in a vehicle with the state of its reports.
 pub struct Stops<'a, W> {
@@ -139,21 +136,21 @@ impl<W: PositionAiding> AlignmentSession<InertialSample> for Stops<'_, W> {
             tell_phase(session.phase(), told, shared);
             told.phase = session.phase();
             told.since = told.now;
-            shared.observer().stopped(session);
+            shared.observer.stopped(session);
         }
         if let Some(place) = told.place.take() {
             shared.tell(Event::Displaced(told.placed + 1, place));
         }
         if core::mem::take(&mut told.may_drive) {
             tell_levelled(session, shared);
-            shared.observer().stopped(session);
+            shared.observer.stopped(session);
         }
     }
 
     fn conclude(&self, shared: &Shared<'_>) -> Option<Result<[f64; 3], Refusal>> {
         let Conclusion { verdict, found } = self.session.conclusion()?;
         if let Some(found) = found.as_ref().filter(|found| found.are_biases_observed) {
-            for ((gyro, bias), sigma) in GYROS.into_iter().zip(found.biases).zip(found.bias_sigmas)
+            for ((gyro, bias), sigma) in TRIAD.into_iter().zip(found.biases).zip(found.bias_sigmas)
             {
                 let [bias, sigma] = [bias, sigma].map(|rate| rate / DEGREE_PER_HOUR);
                 shared.tell(Event::Bias(gyro, bias, sigma));
@@ -172,7 +169,7 @@ fn tell_phase(phase: Phase, told: &Told, shared: &Shared<'_>) {
                 let seconds = told.now.seconds() - told.since.seconds();
                 shared.tell(Event::Stopped(index + 1, seconds));
             }
-            shared.status.set(Status::Levelling { stop: index as u16 + 1 });
+            shared.status.set(Status::Levelling(index as u16 + 1));
         }
         Phase::Driving(_) => {
             shared.tell(Event::Driving);
@@ -188,5 +185,5 @@ fn tell_levelled(session: &Session, shared: &Shared<'_>) {
     let number = session.stops().len();
     let level = pitch_and_roll(&stop.force.mean()).map(|angle| angle * DEGREES);
     shared.tell(Event::MayDrive(number, stop.seconds(), level));
-    shared.status.set(Status::MayDrive { stop: number as u16 });
+    shared.status.set(Status::MayDrive(number as u16));
 }

@@ -68,10 +68,4 @@ pub struct SpinConfiguration {
     pub accelerometers: [Channel; 2],
 }
 
-impl SpinConfiguration {
-    /// Time from the middle of a conversion to its end, µs, rounded to nearest.
-    #[must_use]
-    pub fn half_period(&self) -> u32 {
-        libm::round(0.5e6 / self.sample_rate) as u32
-    }
-}
+impl SpinConfiguration {}

@@ -21,19 +21,16 @@ use crate::ports::Triad;
 use crate::wiring::Wiring;
 use crate::{configuration, ports, tell};
 
-/// Channels between the tasks of the instrument.
-type VehicleSeams = Channels<'static, InertialSample>;
-
 /// Runs the instrument: it aligns, then holds the result without end, also across a loss of supply.
 #[embassy_executor::task]
 pub async fn align(spawner: Spawner, wiring: Wiring) {
-    static SEAMS: StaticCell<VehicleSeams> = StaticCell::new();
+    static SEAMS: StaticCell<Channels<'static, InertialSample>> = StaticCell::new();
     let session = match session() {
         Ok(session) => session,
         Err(error) => return defmt::error!("board: no session: {}", error),
     };
     let Wiring { sensors, mut link, motor: _, motor_enable: _, flash } = wiring;
-    let channels: &'static VehicleSeams = SEAMS.init_with(|| Channels::new(&DefmtLog));
+    let channels: &'static Channels<'_, _> = SEAMS.init_with(|| Channels::new(&DefmtLog));
     spawner.spawn(defmt::unwrap!(acquisition(ports::triad(sensors), channels)));
     let configuration = configuration::keeping();
     let mut keeping = Keeping::new(keeper(), &configuration, (), store(flash));
@@ -47,7 +44,7 @@ pub async fn align(spawner: Spawner, wiring: Wiring) {
 
 /// Samples without end.
 #[embassy_executor::task]
-async fn acquisition(mut triad: Triad, channels: &'static VehicleSeams) {
+async fn acquisition(mut triad: Triad, channels: &'static Channels<'static, InertialSample>) {
     let configuration = configuration::vehicle();
     acquire(&mut TriadAcquisition::new(&mut triad, &configuration, channels)).await;
 }

@@ -12,11 +12,12 @@ use firmware::simulated::scenario::{self, Scenario};
 use firmware::simulated::turntable::{self, TurntableScenario};
 use firmware::simulated::vehicle::{self, KnownPlace, VehicleScenario};
 use firmware::simulated::{self, Wires};
+use orientation::session::{Session, rotating, stops};
 use semihosting::sys::arm_compat::sys_get_cmdline_uninit;
 
 use crate::meter::Meter;
 use crate::outside::{Metering, NoLink};
-use crate::setup::{self, Running, Sampling};
+use crate::setup::{self, AnySession, Running, Sampling};
 
 /// Length of the longest command line, bytes; the emulator begins it with the image's path.
 const LONGEST: usize = 4096;
@@ -76,7 +77,9 @@ impl Job {
 
 /// Builds a run in positions.
 fn stepwise(scenario: &Scenario, meter: &'static Meter) -> Option<(Sampling, Running)> {
-    let session = setup::stepwise(scenario.prepared()?)?;
+    let prepared = scenario.prepared()?;
+    let session = setup::session(|| AnySession::Stepwise(Session::from(prepared)));
+    let AnySession::Stepwise(session) = session else { return None };
     let around = Metering(meter);
     let (inputs, outputs, channels) = setup::stage(
         || simulated::board(scenario, None, &HEALTHY),
@@ -94,7 +97,8 @@ fn stepwise(scenario: &Scenario, meter: &'static Meter) -> Option<(Sampling, Run
 /// Builds a run on a rotating platform.
 fn turning(scenario: &TurntableScenario, meter: &'static Meter) -> Option<(Sampling, Running)> {
     let (setting, procedure) = scenario.checked()?;
-    let session = setup::turning(&setting, procedure)?;
+    let session = || AnySession::Turning(rotating::Session::of(setting, procedure));
+    let AnySession::Turning(session) = setup::session(session) else { return None };
     let around = Metering(meter);
     let (inputs, outputs, channels) = setup::stage(
         || scenario.board(&HEALTHY),
@@ -111,7 +115,8 @@ fn turning(scenario: &TurntableScenario, meter: &'static Meter) -> Option<(Sampl
 /// Builds a run in a vehicle.
 fn driving(scenario: &VehicleScenario, meter: &'static Meter) -> Option<(Sampling, Running)> {
     let (setting, procedure) = scenario.checked()?;
-    let session = setup::driving(&setting, procedure)?;
+    let session = || AnySession::Stops(stops::Session::of(setting, procedure));
+    let AnySession::Stops(session) = setup::session(session) else { return None };
     let keeping = setup::keeping(&scenario.keeper()?, &scenario.keeping());
     let around = Metering(meter);
     let (inputs, place, channels) = setup::vehicle(

@@ -88,8 +88,8 @@ fn run() -> Result<(), Failure> {
     let peripherals = cortex_m::Peripherals::take().ok_or(Failure::NoTimer)?;
     let bench: &'static Bench = BENCH.init(Bench {
         meter: Meter::new(Counter::start(peripherals.SYST)),
-        acquisition: Task::new("acquisition"),
-        instrument: Task::new("instrument"),
+        acquisition: Task { name: "acquisition", ..Task::default() },
+        instrument: Task { name: "instrument", ..Task::default() },
         finished: OnceCell::new(),
     });
     let executor: &'static Executor = EXECUTOR.init_with(executor::new);

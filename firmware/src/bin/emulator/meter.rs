@@ -92,6 +92,7 @@ impl Meter {
 }
 
 /// Polls of one task.
+#[derive(Default)]
 pub struct Task {
     /// Name in the log.
     pub name: &'static str,
@@ -104,12 +105,6 @@ pub struct Task {
 }
 
 impl Task {
-    /// Creates a task before its first poll.
-    pub fn new(name: &'static str) -> Self {
-        let [total, worst] = [Cost::default(); 2].map(Cell::new);
-        Self { name, polls: Cell::new(0), total, worst }
-    }
-
     /// Runs a future and meters each of its polls. The future must pass on its results by itself:
     /// moving a large one out of every poll would be metered too.
     pub async fn run(&self, meter: &Meter, mut future: Pin<&mut impl Future<Output = ()>>) {

@@ -21,11 +21,9 @@ use firmware::simulated::{Chips, SimulatedPorts, SimulatedSensors};
 use firmware::stage::Stage;
 use firmware::turntable::Turntable;
 use hal_mock::vehicle::board::VehicleBoard;
-use orientation::align;
-use orientation::align::rotating::Setting;
 use orientation::align::rotating::turn::Stretch;
 use orientation::keep::{self, Keeper};
-use orientation::session::{Prepared, Session, rotating, stops};
+use orientation::session::{Session, rotating, stops};
 use orientation::signal::InertialSample;
 use static_cell::StaticCell;
 
@@ -67,9 +65,12 @@ enum Parts {
 
 /// The session of any kind of run, the largest object in memory.
 #[expect(clippy::large_enum_variant, reason = "there is one, and it stays where it is")]
-enum AnySession {
+pub enum AnySession {
+    /// A session of multi-position alignment.
     Stepwise(Session),
+    /// A session of continuous rotation.
     Turning(rotating::Session),
+    /// A session of inertial-frame alignment.
     Stops(stops::Session),
 }
 
@@ -121,32 +122,13 @@ pub fn vehicle(
     Some((inputs, place, channels))
 }
 
-/// Builds a session of multi-position alignment in static memory. Not inlined, so that the
-/// temporary copy on the stack is gone when the session runs.
+/// Builds the session in static memory. Not inlined, so that the temporary copy on the stack is gone
+/// when the session runs.
+///
+/// May be called once: a second call panics, as the memory is taken.
 #[inline(never)]
-pub fn stepwise(prepared: Prepared) -> Option<&'static mut Session> {
-    let sitting = SITTING.init_with(|| AnySession::Stepwise(Session::from(prepared)));
-    if let AnySession::Stepwise(session) = sitting { Some(session) } else { None }
-}
-
-/// Builds a session of continuous rotation in static memory; the procedure has been checked.
-#[inline(never)]
-pub fn turning(
-    setting: &Setting,
-    procedure: rotating::Procedure,
-) -> Option<&'static mut rotating::Session> {
-    let session = || AnySession::Turning(rotating::Session::of(*setting, procedure));
-    if let AnySession::Turning(session) = SITTING.init_with(session) { Some(session) } else { None }
-}
-
-/// Builds a session of inertial-frame alignment in a vehicle in static memory.
-#[inline(never)]
-pub fn driving(
-    setting: &align::stops::Setting,
-    procedure: stops::Procedure,
-) -> Option<&'static mut stops::Session> {
-    let session = || AnySession::Stops(stops::Session::of(*setting, procedure));
-    if let AnySession::Stops(session) = SITTING.init_with(session) { Some(session) } else { None }
+pub fn session(session: impl FnOnce() -> AnySession) -> &'static mut AnySession {
+    SITTING.init_with(session)
 }
 
 /// Builds the attitude keeper of a vehicle, without aiding from outside and without memory.
