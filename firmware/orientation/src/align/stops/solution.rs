@@ -92,6 +92,9 @@ pub struct Solution {
     pub frame: Matrix,
     /// Statistics of the latest run.
     pub tally: Tally,
+    /// Greatest rate relative to the Earth that was present all through a stop whose rest was
+    /// excluded, rad/s.
+    steady: f64,
     /// Factor by which the blocks scatter more than their neighbours indicate, in power; at least
     /// one.
     pub roughness: f64,
@@ -118,9 +121,6 @@ pub struct Tally {
     pub unsteady: u32,
     /// Sum of products of successive blocks' innovations, and sum of their squares.
     neighbours: [f64; 2],
-    /// Greatest rate relative to the Earth that was present all through a stop whose rest was
-    /// excluded, rad/s.
-    steady: f64,
 }
 
 impl Tally {
@@ -174,7 +174,7 @@ impl Solution {
     #[must_use]
     pub fn new(frame: Matrix) -> Self {
         let (filter, tally) = (Filter::EMPTY, Tally::default());
-        Self { filter, frame, tally, roughness: 1.0, colour: 1.0, widening: 1.0 }
+        Self { filter, frame, tally, steady: 0.0, roughness: 1.0, colour: 1.0, widening: 1.0 }
     }
 
     /// Iterates along the path until the start frame is consistent; the first run must have been
@@ -201,7 +201,7 @@ impl Solution {
         let found = self.filter.three(BIAS);
         let power = dot(&found, &found) / before;
         let ratio = if seen < LEAST_SEEN { 0.0 } else { power / seen };
-        let ratio = ratio.max(self.tally.steady * self.tally.steady / (3.0 * before));
+        let ratio = ratio.max(self.steady * self.steady / (3.0 * before));
         let degrees = libm::round(seen).max(1.0);
         let is_chance = if self.widening > 1.0 {
             ratio < BELIEVED
@@ -241,7 +241,7 @@ impl Solution {
     #[inline(never)]
     pub fn run(&mut self, setting: &Setting, path: &Path, belief: Belief) {
         let common = &setting.common;
-        self.tally = Tally::default();
+        (self.tally, self.steady) = (Tally::default(), 0.0);
         self.filter.begin(
             &start_covariance(&self.frame),
             self.widening * setting.bias_sigma(),
@@ -466,7 +466,7 @@ impl Run<'_> {
             // A rotation within a short time makes its seconds stand out of the others.
             let excess: f64 = self.excess(stop).iter().sum();
             if rate * rate * stop.seconds() > TURNED_BY_HAND * excess {
-                solution.tally.steady = solution.tally.steady.max(rate);
+                solution.steady = solution.steady.max(rate);
             }
         }
     }
