@@ -83,7 +83,7 @@ impl<P, C: Chips<P>> Board<'_, P, C> {
         C::move_on(&mut self.plant, now);
     }
 
-    /// The chip that acts next, and when; of several at one time the first of [`Self::CHIPS`].
+    /// The chip that acts next, and when; of several at one time the first of [`Chips::SELECTS`].
     fn next_event(&mut self) -> Option<(Instant, Select)> {
         let mut due = |select| {
             let mut next = Next(None);

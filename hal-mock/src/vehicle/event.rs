@@ -91,8 +91,8 @@ impl Event {
 }
 
 /// Something that goes wrong with the sensors, for [from, until) in s from the start. Channels 0 to 2 are
-/// the gyros forward, right, down, 3 to 5 the accelerometers; a spinning body has its own order
-/// ([`crate::strapdown::StrapdownConfiguration::faults`]).
+/// the gyros forward, right, down, 3 to 5 the accelerometers; of a spinning body 0
+/// to 2 are the gyros about x, y and z, 3 and 4 the accelerometers along y and z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorFault {
     /// What goes wrong.
