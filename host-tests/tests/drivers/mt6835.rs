@@ -213,7 +213,7 @@ fn the_driver_shows_the_shaft_exactly_and_leaves_no_violation() {
     for step in [0, 1, 2, 0x0F_FFFF, 0x10_0000, 0x1A_5A5A, 0x1F_FFFF] {
         let rig = bench_at(f64::from(step) / 2_097_152.0 - 3.0);
         let reading = run(async { started(&rig).await.read().await });
-        assert_eq!(reading.expect("the chip is well").angle, Angle(step << 11));
+        assert_eq!(reading.expect("the chip is well"), Angle(step << 11));
         assert_eq!(violations(&rig), []);
         assert_eq!(rig.borrow().chip.programmings(), 0);
     }
@@ -230,7 +230,7 @@ fn the_other_direction_mirrors_the_angle_and_keeps_the_makers_bits() {
     run(async {
         let mut encoder = encoder(&rig, configuration);
         encoder.start().await.expect("the chip is well");
-        let angle = encoder.read().await.expect("the chip is well").angle;
+        let angle = encoder.read().await.expect("the chip is well");
         assert_eq!(angle, Angle(0xE000_0000));
     });
     assert_eq!(rig.borrow().chip.register(0x00D), 0xA0 | 0x08 | 0x05);

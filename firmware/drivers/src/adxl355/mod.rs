@@ -326,8 +326,7 @@ impl<S: SpiDevice, D: DelayNs> Adxl355<S, D> {
     async fn status(&mut self) -> Result<Status, Fault> {
         let mut status = [0];
         self.read_from(STATUS, &mut status).await?;
-        let [status] = status;
-        Ok(Status(status))
+        Ok(Status(status[0]))
     }
 
     /// Reads registers in a row, from `first` on.
