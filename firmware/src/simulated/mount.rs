@@ -102,7 +102,6 @@ impl FramesScenario {
     }
 
     /// How the board goes about it.
-    #[must_use]
     pub fn procedure(&self) -> Procedure {
         let pass =
             PASS.map(|heading| Position { angle: heading * DEGREE, seconds: self.base.dwell_s });

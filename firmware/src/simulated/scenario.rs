@@ -251,7 +251,6 @@ impl Scenario {
     }
 
     /// How the board goes about it.
-    #[must_use]
     pub fn procedure(&self) -> Procedure {
         let circle = Schedule::closed_circle(self.positions, self.dwell_s);
         self.procedure_on(&Turning { rotation: ROTATION, orders: &Order::COMPARED, usual: circle })

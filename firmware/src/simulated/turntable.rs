@@ -127,7 +127,6 @@ impl TurntableScenario {
     }
 
     /// How the board goes about it.
-    #[must_use]
     pub fn procedure(&self) -> Procedure {
         let speeds = self.speeds_hz.map(|speed| speed * TURN);
         let count = speeds.iter().take_while(|speed| **speed > 0.0).count();

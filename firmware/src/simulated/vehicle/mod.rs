@@ -171,7 +171,6 @@ impl VehicleScenario {
     }
 
     /// How the board goes about it.
-    #[must_use]
     pub fn procedure(&self) -> Procedure {
         Procedure {
             stop_seconds: self.stop_s,

@@ -83,7 +83,6 @@ pub struct Grade {
 
 impl Grade {
     /// Its noise.
-    #[must_use]
     pub fn noise(&self) -> GyroNoise {
         let [n, b, k, r] = self.values();
         GyroNoise::from_field_units(n, b, k, r)
