@@ -174,7 +174,7 @@ impl<S: SpiDevice, D: DelayNs> Startable for StageEncoder<S, D> {
 
 impl<S: SpiDevice, D: DelayNs> Encoder for StageEncoder<S, D> {
     async fn read(&mut self) -> Result<Angle, Fault> {
-        self.0.read().await.map(|reading| reading.angle)
+        self.0.read().await
     }
 }
 

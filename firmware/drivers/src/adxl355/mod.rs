@@ -141,7 +141,6 @@ pub struct Adxl355<S, D> {
     configuration: Configuration,
     /// The factory settings as the chip loaded them before the first software reset.
     shadow: Option<Shadow>,
-    revision: u8,
     /// Number of new samples since all registers were found correct; at its limit until they are.
     reads_unchecked: u8,
 }
@@ -149,20 +148,7 @@ pub struct Adxl355<S, D> {
 impl<S: SpiDevice, D: DelayNs> Adxl355<S, D> {
     /// Creates the driver of a chip on `spi` (mode 0, at most 10 MHz); nothing is sent yet.
     pub const fn new(spi: S, delay: D, configuration: Configuration) -> Self {
-        Self {
-            spi,
-            delay,
-            configuration,
-            shadow: None,
-            revision: 0,
-            reads_unchecked: READS_UNCHECKED,
-        }
-    }
-
-    /// The revision of the silicon, known after [`Self::start`].
-    #[must_use]
-    pub const fn revision(&self) -> u8 {
-        self.revision
+        Self { spi, delay, configuration, shadow: None, reads_unchecked: READS_UNCHECKED }
     }
 
     /// Brings the chip from any state to measuring: identity, reset, self-test, configuration,
@@ -229,12 +215,9 @@ impl<S: SpiDevice, D: DelayNs> Adxl355<S, D> {
     async fn identify(&mut self) -> Result<(), Fault> {
         let mut found = [0; 4];
         self.read_from(DEVID_AD, &mut found).await?;
-        let [identity @ .., revision] = found;
-        if identity != IDENTITY {
-            return Err(Fault::Identity { found: u32::from_be_bytes(found) });
-        }
-        self.revision = revision;
-        Ok(())
+        let [identity @ .., _revision] = found;
+        let fault = Fault::Identity { found: u32::from_be_bytes(found) };
+        if identity == IDENTITY { Ok(()) } else { Err(fault) }
     }
 
     /// Keeps the factory settings as they are before the first software reset; two reads must agree.
@@ -326,8 +309,7 @@ impl<S: SpiDevice, D: DelayNs> Adxl355<S, D> {
     async fn status(&mut self) -> Result<Status, Fault> {
         let mut status = [0];
         self.read_from(STATUS, &mut status).await?;
-        let [status] = status;
-        Ok(Status(status))
+        Ok(Status(status[0]))
     }
 
     /// Reads registers in a row, from `first` on.

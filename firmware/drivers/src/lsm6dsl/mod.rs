@@ -254,8 +254,7 @@ impl<I: I2c, D: DelayNs> Lsm6dsl<I, D> {
     async fn status(&mut self) -> Result<Status, Fault> {
         let mut status = [0];
         self.read_from(STATUS, &mut status).await?;
-        let [status] = status;
-        Ok(Status(status))
+        Ok(Status(status[0]))
     }
 
     async fn sample(&mut self) -> Result<Frame, Fault> {

@@ -71,13 +71,6 @@ pub struct Configuration {
     pub bandwidth: Bandwidth,
 }
 
-/// One reading of the angle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Reading {
-    /// The shaft's angle when the transfer began, in steps of 2⁻²¹ turn; the conversion is exact.
-    pub angle: Angle,
-}
-
 /// The driver of an encoder on its bus.
 #[derive(Debug)]
 pub struct Mt6835<S, D> {
@@ -126,12 +119,12 @@ impl<S: SpiDevice, D: DelayNs> Mt6835<S, D> {
     /// end; [`Fault::NotAsWritten`] for a register that has changed; [`Fault::Alarm`] with the
     /// warnings of [`registers`]: at overspeed the angle lags without bound, with a weak magnet or
     /// supply it is noise, so none of them is an angle.
-    pub async fn read(&mut self) -> Result<Reading, Fault> {
+    pub async fn read(&mut self) -> Result<Angle, Fault> {
         let bytes = self.burst().await?;
         let frame = codec::frame(bytes)?;
         self.watch(bytes == [0; 4]).await?;
         match frame.status {
-            0 => Ok(Reading { angle: frame.angle }),
+            0 => Ok(frame.angle),
             status => Err(Fault::Alarm { status }),
         }
     }

@@ -167,6 +167,11 @@ const FASTEST: f64 = 3.0 * DEGREE_PER_HOUR;
 const SHOWN: f64 = 7.4;
 
 impl TiltRate {
+    /// Magnitude of the phasor.
+    fn size(&self) -> f64 {
+        libm::hypot(self.value[0], self.value[1])
+    }
+
     /// Rate shrunk by the prior of a base that tilts no faster than [`FASTEST`].
     fn possible(&self) -> Self {
         let [[a, _], [_, b]] = self.covariance;
@@ -207,7 +212,7 @@ pub fn tilt<'a>(
     let is_drifting = explains(&drifting, &tilting);
     let is_doubtful = !is_drifting && drifting.is_some() && !explains(&tilting, &drifting);
     if let Some(drifting) = drifting.filter(|_| is_drifting) {
-        forces.drift = drifting.beside;
+        forces.drift = drifting.beside.value;
         tilting = forces.weighted(bias, Beside::Rate);
     }
     let any = forces.fit(ANY_BIAS, SCATTER[0], Beside::Nothing).map_or(0.0, |fit| fit.scatter);
@@ -222,10 +227,10 @@ pub fn tilt<'a>(
     let is_shown =
         |fit: &Found| fit.significance() * fit.few(FEW) > STEP_BELIEVED * fit.few(STEP_FEW);
     let step = step.filter(|fit| is_shown(fit) && fit.scatter < tilt.left);
-    tilt.step = step.map(|fit| (after, libm::hypot(fit.beside[0], fit.beside[1])));
+    tilt.step = step.map(|fit| (after, fit.beside.size()));
     let alone = alone.filter(|fit| !fit.is_beaten_by(tilt.left));
     let counter = alone.or_else(|| forces.countering(bias, tilt.rate.value));
-    tilt.counter = counter.map_or(0.0, |fit| libm::hypot(fit.beside[0], fit.beside[1]));
+    tilt.counter = counter.map_or(0.0, |fit| fit.beside.size());
     tilt
 }
 
@@ -238,8 +243,7 @@ pub fn tilting<'a>(
     bias_sigma: f64,
 ) -> Option<TiltRate> {
     let bias = (bias_sigma / gravity).max(EXACT_BIAS);
-    let found = Forces::new(mount, dwells, gravity).weighted(bias, Beside::Rate)?;
-    Some(TiltRate { value: found.beside, covariance: found.beside_covariance })
+    Forces::new(mount, dwells, gravity).weighted(bias, Beside::Rate).map(|found| found.beside)
 }
 
 /// Mean specific force over gravity, positive where it points up through the platform, as at rest;
@@ -292,10 +296,8 @@ struct Found {
     covariance: [[f64; 2]; 2],
     /// Biases along x and y.
     bias: [f64; 2],
-    /// Additional phasor, in g or 1/s.
-    beside: [f64; 2],
-    /// Covariance of the additional phasor.
-    beside_covariance: [[f64; 2]; 2],
+    /// Additional phasor, in g or 1/s, and its covariance.
+    beside: TiltRate,
     /// RMS of the residuals.
     scatter: f64,
     /// Degrees of freedom.
@@ -321,7 +323,8 @@ impl<'a, 'm, D: Iterator<Item = &'a Dwell> + Clone> Forces<'m, D> {
     /// large.
     fn countering(&self, bias_sigma: f64, rate: [f64; 2]) -> Option<Found> {
         let found = self.weighted(bias_sigma, Beside::Counter(rate))?;
-        let [counter, with] = [found.beside, found.phasor].map(|[a, b]| libm::hypot(a, b));
+        let counter = found.beside.size();
+        let with = libm::hypot(found.phasor[0], found.phasor[1]);
         (found.significance() > BELIEVED && counter > COUNTER * with).then_some(found)
     }
 
@@ -414,8 +417,10 @@ impl<'a, 'm, D: Iterator<Item = &'a Dwell> + Clone> Forces<'m, D> {
             phasor: [real, imaginary],
             covariance: square(covariance, 0),
             bias: [bias_x, bias_y],
-            beside: [beside_real, beside_imaginary],
-            beside_covariance: square(covariance, 5),
+            beside: TiltRate {
+                value: [beside_real, beside_imaginary],
+                covariance: square(covariance, 5),
+            },
             scatter: sigma * libm::sqrt((solution.chi_square - biases).max(0.0) / freedom),
             freedom,
         })
@@ -446,8 +451,8 @@ impl Found {
 
     /// Squared significance of the additional phasor, to be compared with [`BELIEVED`].
     fn significance(&self) -> f64 {
-        inverted(&self.beside_covariance)
-            .map_or(0.0, |information| quadratic(&information, self.beside))
+        let information = inverted(&self.beside.covariance);
+        information.map_or(0.0, |information| quadratic(&information, self.beside.value))
     }
 
     /// Whether it is clearly more likely than another fit with as many parameters.
@@ -469,7 +474,7 @@ impl Found {
     /// explanation, otherwise kept as unproven.
     fn believed(&self, standing: Tilt, is_doubtful: bool) -> Tilt {
         let significance = self.significance();
-        let found = TiltRate { value: self.beside, covariance: self.beside_covariance };
+        let found = self.beside;
         if significance > BELIEVED && !is_doubtful {
             let Tilt { time, scatter, bias_rate, .. } = standing;
             return Tilt { rate: found, bias_rate, ..self.tilt(time, scatter) };

@@ -188,7 +188,7 @@ impl Keeper {
 
     /// Updates the rate of the level frame.
     fn turn_frame(&mut self) {
-        self.vertical.turn_frame(self.frame_rate());
+        self.vertical.frame = self.frame_rate();
     }
 
     /// Rate of the level frame, rad/s.

@@ -192,12 +192,6 @@ impl Session {
         }
     }
 
-    /// Criterion by which the azimuth is chosen.
-    #[must_use]
-    pub fn criterion(&self) -> Criterion {
-        self.procedure.criterion
-    }
-
     /// Conclusion; `None` until the session is over.
     #[must_use]
     pub fn conclusion(&self) -> Option<&Conclusion> {

@@ -83,7 +83,7 @@ impl Replay {
     /// The criterion as the command line names it.
     #[must_use]
     pub fn criterion_name(&self) -> String {
-        crate::criterion::name(self.session.criterion())
+        crate::criterion::name(self.session.procedure().criterion)
     }
 
     /// Whether the gyro's white noise was stated rather than estimated.

@@ -34,8 +34,8 @@ fn it_follows_the_roll_of_a_healthy_body_and_carries_course_and_pitch_on() {
     assert!((scale - run.truth.gyro_scale_error[0]).abs() < 4.0 * of_scale, "{scale}");
     // More lift than weight bends the flight upwards, and nothing to the side.
     let risen = run.truth.flight.pitch_rad - run.start.flight.pitch_rad;
-    let pitch = flight.attitude().pitch() - risen;
-    let course = wrapped(flight.attitude().course() - run.truth.flight.course_rad);
+    let pitch = flight.attitude().pitch - risen;
+    let course = wrapped(flight.attitude().course - run.truth.flight.course_rad);
     assert!(risen.to_degrees() > 5.0, "{risen}");
     assert!(pitch.abs().to_degrees() < 0.3 && course.abs().to_degrees() < 0.3, "{pitch} {course}");
     let health = run.run.health;

@@ -8,11 +8,12 @@
 //! encoder: rate = s (θ̇ − τ θ̈), the first order of a lag. The type keeps the historical name
 //! `Coupling`.
 
+use super::part::Uneven;
 use crate::align::regression::Column;
 use crate::checksum::{numbers, record, record_bytes};
 use crate::math::Complex;
 use crate::noise::model::GyroNoise;
-use crate::signal::phasor::{COLUMNS, QUICKENING, RATE, Sums, TURNING};
+use crate::signal::phasor::{COLUMNS, QUICKENING, RATE, TURNING};
 use crate::units::TURN;
 
 /// Least modulation of the platform's rate, RMS over its mean, that determines a misalignment.
@@ -21,6 +22,12 @@ const LEAST_MODULATION: f64 = 0.02;
 const SAME_FREQUENCY: f64 = 0.1;
 /// Least number of rate-modulated turns: the modulation must be resolved from once per turn.
 const LEAST_TURNS: f64 = 3.0;
+
+/// Size of a stored misalignment, bytes.
+pub const BYTES: usize = record_bytes(7);
+
+/// Version of the stored layout.
+const LAYOUT: u32 = 1;
 
 /// Axis misalignment and lag of the gyro, from one rate-modulated stretch or from storage.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,18 +58,13 @@ fn or_unknown<'de, D: serde::Deserializer<'de>>(text: D) -> Result<f32, D::Error
     Ok(number.unwrap_or(f32::NAN))
 }
 
-impl Coupling {
-    /// Misalignment from the sums of a rate-modulated stretch of `seconds`, in which the platform
-    /// turned by `turned` rad, modulated at two frequencies that are apart by twice `width` of
-    /// their mean, or at one; `None` where the modulation was too weak or the stretch too short.
+impl Uneven {
+    /// Axis misalignment that a rate-modulated stretch shows, modulated at two frequencies that are
+    /// apart by twice `width` of their mean, or at one; `None` where the modulation was too weak or
+    /// the stretch too short.
     #[must_use]
-    pub fn of(
-        sums: &Sums,
-        seconds: f64,
-        turned: f64,
-        width: f64,
-        noise: &GyroNoise,
-    ) -> Option<Self> {
+    pub fn coupling(&self, noise: &GyroNoise) -> Option<Coupling> {
+        let Self { sums, seconds, turned, width } = self;
         let mean = turned / seconds;
         let rows = f64::from(sums.rows().max(1));
         let modulation = sums.product(TURNING, TURNING) / rows - squared(sums.mean(TURNING));
@@ -80,9 +82,9 @@ impl Coupling {
         let density = noise.density_at(frequency / TURN) * rows / seconds;
         let sigma = |column: usize| libm::sqrt(density * found.covariance[column][column]);
         let (sine, quadrature) = (found.coefficients[TURNING], found.coefficients[QUICKENING]);
-        Some(Self {
+        Some(Coupling {
             sine,
-            quadrature: quadrature * at_one_frequency(frequency * quadrature / sine, width),
+            quadrature: quadrature * at_one_frequency(frequency * quadrature / sine, *width),
             sine_sigma: sigma(TURNING),
             quadrature_sigma: sigma(QUICKENING),
             frequency,
@@ -90,7 +92,9 @@ impl Coupling {
             temperature: f32::NAN,
         })
     }
+}
 
+impl Coupling {
     /// Misalignment angle α of the axis from the platform's plane, rad, up positive.
     #[must_use]
     pub fn angle(&self) -> f64 {
@@ -129,30 +133,7 @@ impl Coupling {
     pub fn sigmas(&self, frequency: f64) -> [f64; 2] {
         [self.sine_sigma, frequency * self.quadrature_sigma]
     }
-}
 
-/// Factor by which a lag fitted to two frequencies at once, apart by twice `width` of their mean,
-/// is too small: one pole attenuates the higher one more. A lead (tangent > 0) obeys another law
-/// and is left unchanged.
-fn at_one_frequency(lead: f64, width: f64) -> f64 {
-    let power = squared(lead);
-    if lead < 0.0 { 1.0 + squared(2.0 * width) * power / (1.0 + power) } else { 1.0 }
-}
-
-/// Misalignment that was measured nearest to a speed in rad/s.
-#[must_use]
-pub fn nearest(couplings: &[Coupling], speed: f64) -> Option<&Coupling> {
-    let apart = |coupling: &Coupling| (coupling.frequency - speed.abs()).abs();
-    couplings.iter().reduce(|best, next| if apart(next) < apart(best) { next } else { best })
-}
-
-/// Size of a stored misalignment, bytes.
-pub const BYTES: usize = record_bytes(7);
-
-/// Version of the stored layout.
-const LAYOUT: u32 = 1;
-
-impl Coupling {
     /// Stored form: version, the numbers in the order of their fields, CRC-32, all little-endian.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; BYTES] {
@@ -181,6 +162,21 @@ impl Coupling {
         let are_finite = numbers.iter().all(|number| number.is_finite());
         are_finite && self.sine.abs() <= 1.0 && self.frequency > 0.0 && self.frequency.is_finite()
     }
+}
+
+/// Factor by which a lag fitted to two frequencies at once, apart by twice `width` of their mean,
+/// is too small: one pole attenuates the higher one more. A lead (tangent > 0) obeys another law
+/// and is left unchanged.
+fn at_one_frequency(lead: f64, width: f64) -> f64 {
+    let power = squared(lead);
+    if lead < 0.0 { 1.0 + squared(2.0 * width) * power / (1.0 + power) } else { 1.0 }
+}
+
+/// Misalignment that was measured nearest to a speed in rad/s.
+#[must_use]
+pub fn nearest(couplings: &[Coupling], speed: f64) -> Option<&Coupling> {
+    let apart = |coupling: &Coupling| (coupling.frequency - speed.abs()).abs();
+    couplings.iter().reduce(|best, next| if apart(next) < apart(best) { next } else { best })
 }
 
 /// Square of a number.

@@ -1,10 +1,8 @@
 //! Parts of the turn accumulator: the eighth of a turn in progress, its forces, a rate-modulated
 //! stretch, an interruption.
 
-use super::coupling::Coupling;
 use crate::align::regression::Regression;
 use crate::math::Complex;
-use crate::noise::model::GyroNoise;
 use crate::signal::phasor::{Block, COLUMNS, COSINE, ONE, Products, Reference, SINE, Sums};
 use crate::units::Angle;
 
@@ -29,14 +27,6 @@ pub struct Uneven {
     /// Half width of the modulation's spectral line over its frequency, as commanded; zero where it
     /// is unknown.
     pub width: f64,
-}
-
-impl Uneven {
-    /// Axis misalignment that the stretch shows, if the modulation was strong enough.
-    #[must_use]
-    pub fn coupling(&self, noise: &GyroNoise) -> Option<Coupling> {
-        Coupling::of(&self.sums, self.seconds, self.turned, self.width, noise)
-    }
 }
 
 /// Interruption of constant rotation.

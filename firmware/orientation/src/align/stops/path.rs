@@ -4,8 +4,8 @@ use super::Setting;
 use super::block::{AT_REST, Blocks, DRIVEN};
 use super::place::Place;
 use super::stop::Stop;
-use crate::math::rotation::{Vector, difference, dot, transposed};
-use crate::signal::strapdown::Carried;
+use crate::math::rotation::{Matrix, Vector, difference, dot, transposed};
+use crate::signal::strapdown::{Carried, Rough};
 
 /// Least noise power of the accelerometers that is assumed, (m/s²)²·s: 1 µg/√Hz.
 const LEAST_DENSITY: f64 = 1e-10;
@@ -73,9 +73,7 @@ impl Path<'_> {
         let [Some(first), Some(last)] = [self.stops.first(), self.stops.last()] else {
             return [0.0; 3];
         };
-        let gained: [[f64; 3]; 3] = core::array::from_fn(|row| {
-            difference(&last.begin.scale[row].map(f64::from), &first.end.scale[row].map(f64::from))
-        });
+        let gained = gained(&last.begin.scale, &first.end.scale);
         transposed(&gained).map(|column| dot(about, &column))
     }
 
@@ -92,4 +90,9 @@ impl Path<'_> {
     pub fn least_density(&self) -> f64 {
         self.stated_density.max(LEAST_DENSITY)
     }
+}
+
+/// Change of a sensitivity, in double precision.
+pub(super) fn gained(now: &Rough, before: &Rough) -> Matrix {
+    core::array::from_fn(|row| difference(&now[row].map(f64::from), &before[row].map(f64::from)))
 }

@@ -6,7 +6,7 @@ use super::filter::{
     BIAS, Filter, LATITUDE, Measurement, PLACE, START, STATES, VELOCITY, force_row, placed,
     rest_row, velocity_row,
 };
-use super::path::Path;
+use super::path::{Path, gained};
 use super::place::{Place, up};
 use super::stop::Stop;
 use crate::earth::EARTH_RATE;
@@ -514,9 +514,4 @@ fn start_covariance(frame: &Matrix) -> Matrix {
             level + AZIMUTH_SIGMA * AZIMUTH_SIGMA * down[row] * down[column]
         })
     })
-}
-
-/// Change of a sensitivity, in double precision.
-fn gained(now: &Rough, before: &Rough) -> Matrix {
-    core::array::from_fn(|row| difference(&now[row].map(f64::from), &before[row].map(f64::from)))
 }

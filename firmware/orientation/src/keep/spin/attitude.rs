@@ -16,9 +16,9 @@ const STEEPEST: f64 = 1.553;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Attitude {
     /// Course, rad, clockwise from north.
-    course: f64,
+    pub course: f64,
     /// Pitch, rad, nose up positive.
-    pitch: f64,
+    pub pitch: f64,
     /// Rotation upwards and to the right since the last update, in steps of an increment.
     up: f32,
     right: f32,
@@ -62,17 +62,5 @@ impl Attitude {
         if middle.abs() < STEEPEST {
             self.course = wrapped(self.course + right / libm::cos(middle));
         }
-    }
-
-    /// Course, rad, [0, 2π).
-    #[must_use]
-    pub fn course(&self) -> f64 {
-        self.course
-    }
-
-    /// Pitch, rad.
-    #[must_use]
-    pub fn pitch(&self) -> f64 {
-        self.pitch
     }
 }

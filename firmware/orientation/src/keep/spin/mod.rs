@@ -265,10 +265,7 @@ impl Spin {
             }
         }
     }
-}
 
-/// Results of the roll estimation.
-impl Spin {
     /// Roll at the latest sample. Before the first correction it counts from zero at the first
     /// sample.
     #[must_use]

@@ -86,7 +86,7 @@ pub struct Vertical {
     /// Sample period, s.
     period: f32,
     /// Rate of the level frame, rad/s: Earth rate and transport rate.
-    frame: Vector,
+    pub(super) frame: Vector,
     /// Rotation since the latest attitude update.
     increment: Increment,
     /// Forces since the latest attitude update.
@@ -335,11 +335,6 @@ impl Vertical {
         self.rested = Rested::default();
         self.rest.exchange(2, self.expected.walk[2]);
         self.window = Window::default();
-    }
-
-    /// Sets the rate of the level frame, rad/s.
-    pub fn turn_frame(&mut self, rate: Vector) {
-        self.frame = rate;
     }
 
     /// Sets the rate of the level frame, rad/s, and reports that north is known for the first time,
