@@ -36,6 +36,7 @@ pub trait Chips<P> {
 }
 
 /// Chips around a world, on one bus.
+#[must_use]
 #[derive(Clone, Debug)]
 pub struct Board<'a, P, C> {
     /// What the chips measure and move.

@@ -59,10 +59,9 @@ pub type ConverterBoard<'a, P, const N: usize> = Board<'a, P, Converters<N>>;
 
 impl<P: Channels<N>, const N: usize> ConverterBoard<'_, P, N> {
     /// A board that gets its supply at the start of the clock and never loses it.
-    #[must_use]
     pub fn new(mut plant: P) -> Self {
         let accelerometer = plant.force().map(|_| Adxl355::new(Instant::MIN));
-        let converters = [(); N].map(|()| Ads1262::new());
+        let converters = [(); N].map(|()| Ads1262::default());
         Self { plant, chips: Converters { converters, accelerometer }, blackouts: &[] }
     }
 

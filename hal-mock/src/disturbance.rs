@@ -8,6 +8,7 @@ use crate::gyro::DEGREE_PER_HOUR;
 
 /// One event: a kick that oscillates and dies away linearly, amplitude·sin(2πft)·(1 − t/T), or, where it
 /// has no frequency, the steady rate of a base that sinks or is leant upon, or a steady force.
+#[must_use]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Disturbance {
     /// Beginning, s from the first sample.
@@ -23,6 +24,7 @@ pub struct Disturbance {
 }
 
 /// What disturbances add at one moment.
+#[must_use]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Effect {
     /// Rate along the sensitive axis, rad/s.
@@ -34,7 +36,6 @@ pub struct Effect {
 impl Disturbance {
     /// A door that falls shut nearby, `start_s` after the first sample: 0.4 s of a structure's 14 Hz,
     /// of 150 °/h and some hundredths of m/s², far above the noise of a good gyro.
-    #[must_use]
     pub const fn door_slam(start_s: f64) -> Self {
         Self {
             start_s,
@@ -46,19 +47,16 @@ impl Disturbance {
     }
 
     /// A rate of 1000 °/s, beyond the full scale of any precise gyro.
-    #[must_use]
     pub fn overload(start_s: f64, seconds: f64) -> Self {
         Self { start_s, seconds, rate_deg_h: 1000.0 * 3600.0, ..Self::default() }
     }
 
     /// Three times gravity along the sensitive axis, beyond the ±2 g of a tilt sensor.
-    #[must_use]
     pub fn force_overload(start_s: f64, seconds: f64) -> Self {
         Self { start_s, seconds, force_m_s2: [30.0, 0.0, 0.0], ..Self::default() }
     }
 
     /// Its effect at a time in s from the first sample; nothing outside its interval.
-    #[must_use]
     pub fn at(&self, time_s: f64) -> Effect {
         let shape = self.shape(time_s - self.start_s);
         Effect {
@@ -82,7 +80,6 @@ impl Disturbance {
 
 /// Sum of several disturbances at a time in s.
 #[inline]
-#[must_use]
 pub fn total(disturbances: &[Disturbance], time_s: f64) -> Effect {
     let mut sum = Effect::default();
     for disturbance in disturbances {

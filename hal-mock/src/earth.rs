@@ -48,6 +48,7 @@ pub fn earth_rate_rad_s(latitude_rad: f64) -> [f64; 3] {
 
 /// Attitude of the base: from north, turned by azimuth about down, pitch about right, roll about
 /// forward, in this order.
+#[must_use]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Attitude {
     /// Azimuth of body x from true north, clockwise from above, rad.
@@ -61,7 +62,6 @@ pub struct Attitude {
 impl Attitude {
     /// A base that leans by `tilt_rad` so that its axis at stage angle `uphill_rad` points uphill most:
     /// the force along an axis at θ is g·sin(tilt)·cos(θ − uphill), exactly.
-    #[must_use]
     pub fn tilted(azimuth_rad: f64, tilt_rad: f64, uphill_rad: f64) -> Self {
         let (rise, level) = libm::sincos(tilt_rad);
         let (across, along) = libm::sincos(uphill_rad);
@@ -78,6 +78,7 @@ impl Attitude {
 }
 
 /// A place on Earth and the attitude of the base that stands on it.
+#[must_use]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Site {
     /// Matrix from body to navigation axes.
@@ -90,7 +91,6 @@ pub struct Site {
 
 impl Site {
     /// A base at a geodetic latitude in rad.
-    #[must_use]
     pub fn new(latitude_rad: f64, attitude: &Attitude) -> Self {
         Self {
             body_to_navigation: attitude.body_to_navigation(),
@@ -100,7 +100,6 @@ impl Site {
     }
 
     /// This place under a base of another attitude.
-    #[must_use]
     pub fn with_attitude(&self, attitude: &Attitude) -> Self {
         Self { body_to_navigation: attitude.body_to_navigation(), ..*self }
     }
@@ -121,21 +120,22 @@ impl Site {
     /// What a platform at rest at `stage_rad` feels on its axes: x along the sensitive axis, y 90°
     /// clockwise of it, z down.
     #[must_use]
-    pub fn on_platform(&self, stage_rad: f64) -> PlatformInput {
+    pub fn on_platform(&self, stage_rad: f64) -> InertialInput {
         let to_navigation = self.platform_to_navigation(stage_rad);
-        PlatformInput {
+        InertialInput {
             rate_rad_s: apply_transposed(&to_navigation, self.earth_rate_rad_s),
             force_m_s2: apply_transposed(&to_navigation, [0.0, 0.0, -self.gravity_m_s2]),
         }
     }
 }
 
-/// Rate and specific force on the platform axes.
+/// Inertial angular rate and specific force on three axes: what sensors on them feel, in one moment or in the
+/// mean over a sample, and what they show of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PlatformInput {
-    /// Earth rate, rad/s.
+pub struct InertialInput {
+    /// Inertial angular rate, rad/s.
     pub rate_rad_s: [f64; 3],
-    /// Specific force, m/s²: −Cᵀ(0, 0, g), uphill reads positive.
+    /// Specific force, m/s²; at rest −Cᵀ(0, 0, g), uphill reads positive.
     pub force_m_s2: [f64; 3],
 }
 

@@ -20,18 +20,22 @@ pub const DEGREE_PER_HOUR: f64 = DEGREE / 3600.0;
 
 /// One second of arc in radians.
 const ARCSECOND: f64 = DEGREE / 3600.0;
+/// Lower cut-off of the flicker, Hz: below any run of this project.
+const FLICKER_LOW_HZ: f64 = 1e-5;
+/// Upper cut-off of the flicker where nothing else is stated, Hz.
+const FLICKER_HIGH_HZ: f64 = 10.0;
+/// Temperature at which a gyro's bias is stated, °C.
+const REFERENCE_C: f64 = 25.0;
 
 /// Errors of a gyro as a data sheet states them; all zero (the default) is a perfect gyro.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GyroConfiguration {
     /// N, angle random walk, °/√h, ≥ 0.
     pub n_deg_sqrt_h: f64,
     /// B, bias instability, °/h, ≥ 0: one-sided spectrum B²/(π f), Allan floor 0.664 B.
     pub b_deg_h: f64,
-    /// Lower cut-off of the flicker, Hz (default 10⁻⁵: below any run of this project).
-    pub flicker_low_hz: f64,
-    /// Upper cut-off of the flicker, Hz (default 10; keep it below half the sample rate).
-    pub flicker_high_hz: f64,
+    /// Upper cut-off of the flicker, Hz (default 10); keep it below half the sample rate.
+    pub flicker_high_hz: Option<f64>,
     /// K, rate random walk, °/h/√h, ≥ 0; zero at the first sample.
     pub k_deg_h_sqrt_h: f64,
     /// R, rate ramp, °/h², from the first sample.
@@ -53,36 +57,10 @@ pub struct GyroConfiguration {
     pub g_sensitivity_deg_h_g: [f64; 2],
     /// Temperature coefficient of the bias, °/h/°C.
     pub temperature_deg_h_c: f64,
-    /// Temperature at which the bias is stated, °C (default 25).
-    pub reference_c: f64,
     /// Elevation of the sensitive axis above the platform plane, rad (non-orthogonality α).
     pub axis_elevation_rad: f64,
     /// The dynamics of a molecular-electronic sensor; none (the default) for a gyro.
     pub molecular: Option<MolecularConfiguration>,
-}
-
-impl Default for GyroConfiguration {
-    fn default() -> Self {
-        Self {
-            n_deg_sqrt_h: 0.0,
-            b_deg_h: 0.0,
-            flicker_low_hz: 1e-5,
-            flicker_high_hz: 10.0,
-            k_deg_h_sqrt_h: 0.0,
-            r_deg_h2: 0.0,
-            q_arcsec: 0.0,
-            dither_arcsec: 0.0,
-            bias_deg_h: 0.0,
-            bias_sigma_deg_h: 0.0,
-            scale_error: 0.0,
-            scale_sigma: 0.0,
-            g_sensitivity_deg_h_g: [0.0; 2],
-            temperature_deg_h_c: 0.0,
-            reference_c: 25.0,
-            axis_elevation_rad: 0.0,
-            molecular: None,
-        }
-    }
 }
 
 impl GyroConfiguration {
@@ -109,8 +87,6 @@ pub struct Gyro {
     r_deg_h2: f64,
     /// Temperature coefficient of the bias, °/h/°C.
     temperature_deg_h_c: f64,
-    /// Temperature at which the bias is stated, °C.
-    reference_c: f64,
     /// Sine and cosine of the axis's elevation.
     elevation: [f64; 2],
     /// Turn-on bias of this start, rad/s.
@@ -142,18 +118,18 @@ impl Gyro {
         let bias_deg_h = c.bias_deg_h + c.bias_sigma_deg_h * start.gaussian();
         let b = c.b_deg_h * DEGREE_PER_HOUR;
         let noise = Generator::stream(seed, source::GYRO_FLICKER);
+        let flicker_high_hz = c.flicker_high_hz.unwrap_or(FLICKER_HIGH_HZ);
         Self {
             g_sensitivity_deg_h_g: c.g_sensitivity_deg_h_g,
             r_deg_h2: c.r_deg_h2,
             temperature_deg_h_c: c.temperature_deg_h_c,
-            reference_c: c.reference_c,
             elevation: [libm::sin(c.axis_elevation_rad), libm::cos(c.axis_elevation_rad)],
             bias_rad_s: bias_deg_h * DEGREE_PER_HOUR,
             scale_error: c.scale_error + c.scale_sigma * start.gaussian(),
             white: White::new(c.white_sigma_rad_s(rate_hz), seed, source::GYRO_WHITE),
             walk: White::new(c.walk_sigma_rad_s(rate_hz), seed, source::GYRO_WALK),
             walked_rad_s: 0.0,
-            flicker: Flicker::new(b, c.flicker_low_hz, c.flicker_high_hz, rate_hz, noise),
+            flicker: Flicker::new(b, FLICKER_LOW_HZ, flicker_high_hz, rate_hz, noise),
             dither: Dither::new(c.dither_arcsec * ARCSECOND, rate_hz, seed),
             quantiser: Quantiser::new(c.q_arcsec * ARCSECOND, rate_hz),
             molecular: c.molecular.map(|dynamics| Molecular::new(&dynamics, rate_hz)),
@@ -209,7 +185,7 @@ impl Gyro {
         temperature_c: f64,
     ) -> f64 {
         let drift_deg_h = self.r_deg_h2 / 3600.0 * elapsed_s
-            + self.temperature_deg_h_c * (temperature_c - self.reference_c);
+            + self.temperature_deg_h_c * (temperature_c - REFERENCE_C);
         let slow = drift_deg_h * DEGREE_PER_HOUR + self.walked_rad_s + self.flicker.sample();
         self.walked_rad_s += self.walk.sample();
         let white = self.white.sample();

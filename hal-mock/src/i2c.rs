@@ -55,56 +55,38 @@ pub trait I2cChip<E> {
     fn violations(&self) -> &Violations;
 }
 
-/// Chips that can be addressed through [`I2cPort`].
-pub trait I2cRig {
-    /// Takes a transfer of any address; tells whether a chip acknowledged.
-    fn transfer(&mut self, transfer: &Transfer, reply: &mut [u8]) -> bool;
-}
-
 impl<C: I2cChip<E>, E> Single<C, E> {
-    /// Lets an I²C chip do everything that is due until `now`, that moment included.
-    fn advance(&mut self, now: Instant) {
-        while self.chip.next_event().is_some_and(|at| at <= now) {
+    /// Does what is due before a transfer and has the chip take it; tells whether it acknowledged.
+    fn transfer(&mut self, transfer: &Transfer, reply: &mut [u8]) -> bool {
+        while self.chip.next_event().is_some_and(|at| at <= transfer.now) {
             self.chip.event(&mut self.environment);
         }
-    }
-
-    /// Has an I²C chip lose its supply for a moment.
-    pub fn interrupt_supply(&mut self, now: Instant) {
-        self.advance(now);
-        self.chip.power_cycle(now);
-    }
-}
-
-impl<C: I2cChip<E>, E> I2cRig for Single<C, E> {
-    fn transfer(&mut self, transfer: &Transfer, reply: &mut [u8]) -> bool {
-        self.advance(transfer.now);
         self.chip.transfer(&mut self.environment, transfer, reply)
     }
 }
 
-/// The bus of a rig.
+/// The bus of one chip.
 #[derive(Debug)]
-pub struct I2cPort<'a, R> {
-    /// The chips on the bus.
-    rig: &'a RefCell<R>,
+pub struct I2cPort<'a, C, E> {
+    /// The chip on the bus, with its environment.
+    rig: &'a RefCell<Single<C, E>>,
     /// Bus clock, Hz.
     hertz: u32,
 }
 
-impl<'a, R> I2cPort<'a, R> {
+impl<'a, C, E> I2cPort<'a, C, E> {
     /// The bus with a clock of `hertz` (> 0).
     #[must_use]
-    pub const fn new(rig: &'a RefCell<R>, hertz: u32) -> Self {
+    pub const fn new(rig: &'a RefCell<Single<C, E>>, hertz: u32) -> Self {
         Self { rig, hertz }
     }
 }
 
-impl<R> ErrorType for I2cPort<'_, R> {
+impl<C, E> ErrorType for I2cPort<'_, C, E> {
     type Error = ErrorKind;
 }
 
-impl<R: I2cRig> I2c for I2cPort<'_, R> {
+impl<C: I2cChip<E>, E> I2c for I2cPort<'_, C, E> {
     async fn transaction(
         &mut self,
         address: u8,

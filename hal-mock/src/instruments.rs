@@ -7,13 +7,13 @@
 
 use crate::accelerometer::{Accelerometer, AccelerometerConfiguration};
 use crate::disturbance::Effect;
-use crate::earth::{Attitude, PlatformInput, Site};
+use crate::earth::{Attitude, InertialInput, Site};
 use crate::gyro::{Gyro, GyroConfiguration};
 use crate::stage::{EncoderConfiguration, StageState};
 use crate::temperature::{TemperatureConfiguration, Thermometer};
-use crate::vehicle::Means;
 
 /// Where the base stands and what is mounted on it.
+#[must_use]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InstrumentsConfiguration {
     /// Geodetic latitude, °, ±90.
@@ -57,7 +57,6 @@ impl InstrumentsConfiguration {
     /// These instruments on a base that leans by `tilt_deg` with its axis at stage angle `uphill_deg`
     /// uphill
     /// ([`Attitude::tilted`]), °.
-    #[must_use]
     pub fn leaning(self, tilt_deg: f64, uphill_deg: f64) -> Self {
         let attitude = Attitude::tilted(0.0, tilt_deg.to_radians(), uphill_deg.to_radians());
         let (pitch_deg, roll_deg) =
@@ -66,7 +65,6 @@ impl InstrumentsConfiguration {
     }
 
     /// Attitude of the base, rad.
-    #[must_use]
     pub fn attitude(&self) -> Attitude {
         Attitude {
             azimuth_rad: self.azimuth_deg.to_radians(),
@@ -92,6 +90,7 @@ pub struct Sample {
 }
 
 /// What the sensors cannot know; for checking only.
+#[must_use]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Truth {
     /// Attitude of the base.
@@ -109,6 +108,7 @@ pub struct Truth {
 }
 
 /// The instruments at work.
+#[must_use]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Instruments {
     /// Attitude of the base at rest.
@@ -140,7 +140,6 @@ pub struct BaseMotion {
 
 impl BaseMotion {
     /// The attitude of a base that stands at `rest` without this motion.
-    #[must_use]
     pub fn moved(&self, rest: &Attitude) -> Attitude {
         Attitude {
             azimuth_rad: rest.azimuth_rad + self.lean.azimuth_rad,
@@ -191,14 +190,12 @@ pub(crate) struct Felt {
 
 impl Instruments {
     /// Instruments with the stage at zero; everything random comes from the seed.
-    #[must_use]
     pub fn new(configuration: &InstrumentsConfiguration, seed: u64) -> Self {
         Self::with_accelerometer_at(configuration, configuration.rate_hz, seed)
     }
 
     /// Instruments whose accelerometer is read `accelerometer_hz` times a second (> 0), and whose gyro
     /// `rate_hz` times.
-    #[must_use]
     pub fn with_accelerometer_at(
         configuration: &InstrumentsConfiguration,
         accelerometer_hz: f64,
@@ -237,15 +234,11 @@ impl Instruments {
     }
 
     /// Has everything feel what a base on its way feels, in the mean.
-    pub fn ride(&mut self, stage: StageState, means: &Means) {
+    pub fn ride(&mut self, stage: StageState, means: &InertialInput) {
         self.turn(stage);
         let [x, y, z] = about_stage(means.rate_rad_s, stage.angle_rad);
         let force_m_s2 = about_stage(means.force_m_s2, stage.angle_rad);
-        let axis_rad_s = self.gyro.along_axis([x, y, z + stage.rate_rad_s]);
-        let gravity = self.site.gravity_m_s2();
-        let force_g = [force_m_s2[0] / gravity, force_m_s2[1] / gravity];
-        let steady_rad_s = self.gyro.steady(axis_rad_s, force_g);
-        self.pose.felt = Felt { axis_rad_s, steady_rad_s, force_m_s2, force_g };
+        self.pose.felt = self.felt_on([x, y, z + stage.rate_rad_s], force_m_s2);
     }
 
     /// Sets what is felt by instruments that the caller has moved.
@@ -260,7 +253,7 @@ impl Instruments {
         Sample {
             time_s,
             stage_rad: self.pose.encoder_rad,
-            rate_rad_s: self.rate_at(time_s, temperature_c, effect),
+            rate_rad_s: self.rate(time_s, effect),
             force_m_s2: self.force(effect),
             temperature_c: self.thermometer.sample(temperature_c),
         }
@@ -269,7 +262,10 @@ impl Instruments {
     /// What the gyro shows next, rad/s, `time_s` after the first sample. Call `rate_hz` times a second.
     #[inline]
     pub fn rate(&mut self, time_s: f64, effect: &Effect) -> f64 {
-        self.rate_at(time_s, self.temperature.at(time_s), effect)
+        let Felt { steady_rad_s, force_g, .. } = self.pose.felt;
+        let temperature_c = self.temperature.at(time_s);
+        let rate_rad_s = steady_rad_s + effect.rate_rad_s;
+        self.gyro.sample_under(force_g, rate_rad_s, time_s, temperature_c)
     }
 
     /// What the accelerometer shows next, m/s², on platform x, y, z. Call at its own rate.
@@ -292,15 +288,7 @@ impl Instruments {
         self.pose.encoder_rad
     }
 
-    /// The gyro's next output at a true temperature.
-    #[inline]
-    fn rate_at(&mut self, time_s: f64, temperature_c: f64, effect: &Effect) -> f64 {
-        let rate_rad_s = self.pose.felt.steady_rad_s + effect.rate_rad_s;
-        self.gyro.sample_under(self.pose.felt.force_g, rate_rad_s, time_s, temperature_c)
-    }
-
     /// The truth behind the latest sample.
-    #[must_use]
     pub fn truth(&self) -> Truth {
         Truth {
             attitude: self.attitude,
@@ -320,11 +308,16 @@ impl Instruments {
 
     /// What is felt on a base that turns at `body_rad_s` about forward, right, down.
     fn felt_at(&self, site: &Site, stage: StageState, body_rad_s: [f64; 3]) -> Felt {
-        let PlatformInput { rate_rad_s: [x, y, z], force_m_s2 } = site.on_platform(stage.angle_rad);
+        let InertialInput { rate_rad_s: [x, y, z], force_m_s2 } = site.on_platform(stage.angle_rad);
         let [along, across, down] = about_stage(body_rad_s, stage.angle_rad);
         // The stage turns about platform z, down, clockwise from above.
-        let axis_rad_s = self.gyro.along_axis([x + along, y + across, z + down + stage.rate_rad_s]);
-        let gravity = site.gravity_m_s2();
+        self.felt_on([x + along, y + across, z + down + stage.rate_rad_s], force_m_s2)
+    }
+
+    /// What is felt of an angular rate, the stage's own included, and a specific force on the platform axes.
+    fn felt_on(&self, platform_rad_s: [f64; 3], force_m_s2: [f64; 3]) -> Felt {
+        let axis_rad_s = self.gyro.along_axis(platform_rad_s);
+        let gravity = self.site.gravity_m_s2();
         let force_g = [force_m_s2[0] / gravity, force_m_s2[1] / gravity];
         let steady_rad_s = self.gyro.steady(axis_rad_s, force_g);
         Felt { axis_rad_s, steady_rad_s, force_m_s2, force_g }

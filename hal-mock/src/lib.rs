@@ -84,6 +84,7 @@ pub mod molecular;
 pub mod mt6835;
 pub mod noise;
 pub mod plant;
+mod registers;
 pub mod spi;
 pub mod spin;
 pub mod stage;

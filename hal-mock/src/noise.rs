@@ -10,6 +10,7 @@ include!(concat!(env!("OUT_DIR"), "/ziggurat.rs"));
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// One random stream: xoshiro256++, period 2²⁵⁶ − 1.
+#[must_use]
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Generator {
     /// The four words of xoshiro256++.
@@ -18,14 +19,12 @@ pub struct Generator {
 
 impl Generator {
     /// The stream of a seed; any seed is good.
-    #[must_use]
     pub fn new(seed: u64) -> Self {
         Self::stream(seed, 0)
     }
 
     /// Stream `index` of a seed. Streams of one seed always differ, and start at hashed, unrelated
     /// places of a period of 2²⁵⁶; streams of two seeds coincide with a probability of 2⁻⁶⁴.
-    #[must_use]
     pub fn stream(seed: u64, index: u64) -> Self {
         // Hashing the index keeps streams from being shifted copies of one splitmix sequence.
         let mut place = mix(seed.wrapping_add(GOLDEN)) ^ mix(!index);
@@ -38,7 +37,6 @@ impl Generator {
 
     /// The generator in a given state, for comparison with published sequences. An all-zero state
     /// would stay zero for ever.
-    #[must_use]
     pub const fn from_state(state: [u64; 4]) -> Self {
         Self { state }
     }

@@ -6,6 +6,7 @@
 //! which a slow rotation begins still stands at the old angle: that dwell seems one sample longer.
 
 /// One position of the stage.
+#[must_use]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stop {
     /// Stage angle, rad, clockwise from above, not wrapped.
@@ -19,19 +20,18 @@ pub struct Stop {
 
 impl Stop {
     /// A stop entered in no time: `angle_rad`, `dwell_s`.
-    #[must_use]
     pub const fn new(angle_rad: f64, dwell_s: f64) -> Self {
         Self { angle_rad, dwell_s, rotation_s: 0.0 }
     }
 
     /// This stop, entered by a rotation of `rotation_s` seconds, ≥ 0.
-    #[must_use]
     pub const fn after(self, rotation_s: f64) -> Self {
         Self { rotation_s, ..self }
     }
 }
 
 /// Where the stage is and how fast it turns.
+#[must_use]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StageState {
     /// True angle, rad.
@@ -42,7 +42,6 @@ pub struct StageState {
 
 /// State of a rotation of minimum jerk from one angle to another, rad, that takes `seconds`, at
 /// `elapsed_s` after its start: s(u) = 10u³ − 15u⁴ + 6u⁵ (Flash and Hogan 1985). At rest outside.
-#[must_use]
 pub fn minimum_jerk(from: f64, to: f64, seconds: f64, elapsed_s: f64) -> StageState {
     let u = elapsed_s / seconds;
     if u <= 0.0 {
@@ -169,7 +168,6 @@ pub struct Unevenness {
 impl Unevenness {
     /// The stage behind a gear whose even angle and rate are these: angle y + Σ (`ε_k`/k)·sin k(y − `φ_k`)
     /// and rate ẏ·(1 + Σ `ε_k` cos k(y − `φ_k`)). An even gear changes no bit.
-    #[must_use]
     #[inline]
     pub fn stage(&self, even: StageState) -> StageState {
         if self.first.relative == 0.0 && self.second.relative == 0.0 {

@@ -88,8 +88,9 @@ pub struct EncoderSlip {
     pub rad_per_s: f64,
 }
 
-/// A run: the instruments, how the platform turns, what goes wrong.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A run: the instruments, how the platform turns, what goes wrong; by default perfect instruments on a level
+/// platform at the equator, with nowhere to turn.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TurntableConfiguration<'a> {
     /// Site, attitude, sensors, sample rate.
     pub instruments: InstrumentsConfiguration,
@@ -100,29 +101,13 @@ pub struct TurntableConfiguration<'a> {
     /// From the axis to the accelerometer, m, along the gyro's axis and 90° clockwise of it.
     pub accelerometer_lever_m: [f64; 2],
     /// Where the accelerometer clips, m/s² (default never; ±2.048 g of an ADXL355 are 20.08).
-    pub accelerometer_full_scale_m_s2: f64,
+    pub accelerometer_full_scale_m_s2: Option<f64>,
     /// What goes wrong with the encoder.
     pub slip: EncoderSlip,
     /// How the motor turns, in order; the run ends with the last of them.
     pub segments: &'a [Segment],
     /// Events, in any order.
     pub disturbances: &'a [Disturbance],
-}
-
-impl Default for TurntableConfiguration<'_> {
-    /// Perfect instruments on a level platform at the equator, with nowhere to turn.
-    fn default() -> Self {
-        Self {
-            instruments: InstrumentsConfiguration::default(),
-            unevenness: Unevenness::default(),
-            start_rad: 0.0,
-            accelerometer_lever_m: [0.0; 2],
-            accelerometer_full_scale_m_s2: f64::INFINITY,
-            slip: EncoderSlip::default(),
-            segments: &[],
-            disturbances: &[],
-        }
-    }
 }
 
 /// One reading of a turning platform, as a recording of kind `rotating` has it.
@@ -231,7 +216,7 @@ impl<'a> Turntable<'a> {
             unevenness: c.unevenness,
             instruments: Instruments::new(&c.instruments, seed),
             lever: Lever::new(c.accelerometer_lever_m),
-            full_scale_m_s2: c.accelerometer_full_scale_m_s2,
+            full_scale_m_s2: c.accelerometer_full_scale_m_s2.unwrap_or(f64::INFINITY),
             slip: c.slip,
             crept_rad: 0.0,
             disturbances: c.disturbances,
@@ -278,7 +263,6 @@ impl<'a> Turntable<'a> {
     }
 
     /// The truth behind the latest sample.
-    #[must_use]
     pub fn truth(&self) -> Truth {
         self.instruments.truth()
     }

@@ -46,7 +46,6 @@ impl<'a> World<'a> {
     }
 
     /// The truth behind the latest sample.
-    #[must_use]
     pub fn truth(&self) -> Truth {
         self.instruments.truth()
     }

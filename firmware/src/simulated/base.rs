@@ -106,7 +106,7 @@ pub fn imu<'r, 'a, A: PortWrapper>(
     rig: &'r RefCell<Rig<'a>>,
     scenario: &Scenario,
     wrapper: &A,
-) -> BaseImu<A::I2c<I2cPort<'r, Rig<'a>>>, Delay> {
+) -> BaseImu<A::I2c<I2cPort<'r, SimulatedImu, Base<'a>>>, Delay> {
     let bus = wrapper.i2c(I2cPort::new(rig, lsm6dsl::BUS_HERTZ));
     let configuration =
         lsm6dsl::Configuration { output: output(scenario), ..lsm6dsl::Configuration::default() };

@@ -128,7 +128,6 @@ impl Scenario {
     }
 
     /// Where the base goes after the alignment on a stage.
-    #[must_use]
     pub fn day(&self) -> Day {
         self.day_of(&self.procedure(), scenario::ROTATION.rest + scenario::RINGS_SECONDS)
     }

@@ -54,7 +54,6 @@ pub type Chips<'a> = StageBoard<
 
 /// The simulated board of a scenario with what goes wrong with it, on a base that goes along a journey where
 /// there is one.
-#[must_use]
 pub fn board<'a>(
     scenario: &Scenario,
     journey: Option<JourneyConfiguration<'a>>,
@@ -81,7 +80,7 @@ fn board_around<'a>(
     StageBoard {
         plant: Plant::new(&configuration, seed),
         chips: StageChips {
-            gyro: SimulatedConverter::new(),
+            gyro: SimulatedConverter::default(),
             accelerometer: SimulatedAccelerometer::new(Instant::MIN),
             encoder: SimulatedEncoder::new(Instant::MIN),
             actuator: SimulatedMotorDriver::new(OSCILLATOR, Instant::MIN),

@@ -167,7 +167,6 @@ impl FramesScenario {
     }
 
     /// The simulated board on such a base.
-    #[must_use]
     pub fn board<'a>(
         &self,
         journey: Option<JourneyConfiguration<'a>>,
@@ -187,7 +186,6 @@ impl FramesScenario {
     }
 
     /// Where the base goes after the alignment.
-    #[must_use]
     pub fn day(&self) -> Day {
         self.base.day_of(&self.procedure(), ROTATION.rest + FRAMES_SECONDS)
     }

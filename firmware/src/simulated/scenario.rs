@@ -115,6 +115,18 @@ impl GyroClass {
     pub const MICROMECHANICAL: Self =
         Self { n_deg_sqrt_h: 0.15, b_deg_h: 0.5, k_deg_h_sqrt_h: 0.0, bias_sigma_deg_h: 30.0 };
 
+    /// A gyro of the class, with a scale error that is drawn.
+    pub(super) fn simulated(&self) -> GyroConfiguration {
+        GyroConfiguration {
+            n_deg_sqrt_h: self.n_deg_sqrt_h,
+            b_deg_h: self.b_deg_h,
+            k_deg_h_sqrt_h: self.k_deg_h_sqrt_h,
+            bias_sigma_deg_h: self.bias_sigma_deg_h,
+            scale_sigma: SCALE_SIGMA,
+            ..GyroConfiguration::default()
+        }
+    }
+
     pub(super) fn noise(&self) -> GyroNoise {
         GyroNoise::from_field_units(self.n_deg_sqrt_h, self.b_deg_h, self.k_deg_h_sqrt_h, 0.0)
     }
@@ -145,6 +157,7 @@ pub enum Aim {
 }
 
 /// A simulated alignment. The true attitude is for the simulation alone: the board is never told.
+#[must_use]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scenario {
     /// What fixes everything random.
@@ -214,19 +227,16 @@ impl Default for Scenario {
 
 impl Scenario {
     /// The default with another seed.
-    #[must_use]
     pub fn usual(seed: u64) -> Self {
         Self { seed, ..Self::default() }
     }
 
     /// Four short dwells at 2400 Hz: what a sample costs at the highest rate of the stage path.
-    #[must_use]
     pub fn brief(seed: u64) -> Self {
         Self { seed, sample_rate_hz: 2400.0, positions: 4, dwell_s: 1.0, ..Self::default() }
     }
 
     /// Two minutes of survey at 100 Hz, and the plan that follows for one minute more.
-    #[must_use]
     pub fn surveying(seed: u64) -> Self {
         let base = Self::usual(seed);
         Self { sample_rate_hz: 100.0, survey_s: 120.0, aim: Aim::Time(60.0), ..base }
@@ -330,7 +340,6 @@ impl Scenario {
     }
 
     /// What is true of the instruments.
-    #[must_use]
     pub fn instruments(&self) -> InstrumentsConfiguration {
         InstrumentsConfiguration {
             latitude_deg: self.latitude_deg,
@@ -338,7 +347,11 @@ impl Scenario {
             pitch_deg: self.pitch_deg,
             roll_deg: self.roll_deg,
             rate_hz: self.sample_rate_hz,
-            gyro: self.gyroscope(),
+            gyro: GyroConfiguration {
+                g_sensitivity_deg_h_g: G_SENSITIVITY,
+                axis_elevation_rad: 0.05 * DEGREE,
+                ..self.gyro.simulated()
+            },
             accelerometer: AccelerometerConfiguration {
                 noise_m_s2_sqrt_hz: FORCE_NOISE,
                 bias_sigma_m_s2: FORCE_BIAS_SIGMA,
@@ -354,7 +367,6 @@ impl Scenario {
     }
 
     /// What is true of everything that the chips feel and move.
-    #[must_use]
     pub fn plant(&self) -> PlantConfiguration<'static> {
         PlantConfiguration {
             instruments: self.instruments(),
@@ -384,19 +396,6 @@ impl Scenario {
         let nearer = |best, rate| if off(rate) < off(best) { rate } else { best };
         let rate = RATES.into_iter().fold(DataRate::Sps100, nearer);
         converter::Configuration { rate, ..converter::Configuration::default() }
-    }
-
-    fn gyroscope(&self) -> GyroConfiguration {
-        GyroConfiguration {
-            n_deg_sqrt_h: self.gyro.n_deg_sqrt_h,
-            b_deg_h: self.gyro.b_deg_h,
-            k_deg_h_sqrt_h: self.gyro.k_deg_h_sqrt_h,
-            bias_sigma_deg_h: self.gyro.bias_sigma_deg_h,
-            scale_sigma: SCALE_SIGMA,
-            g_sensitivity_deg_h_g: G_SENSITIVITY,
-            axis_elevation_rad: 0.05 * DEGREE,
-            ..GyroConfiguration::default()
-        }
     }
 }
 

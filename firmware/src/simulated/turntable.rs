@@ -20,7 +20,6 @@ use orientation::units::{DEGREE, TURN};
 use super::fault::{Fault, Injection};
 use super::scenario::{GyroClass, Scenario};
 use super::{Chips, board_around};
-use crate::configuration::{Configuration, TurntableConfiguration};
 
 /// The motor driver of a platform that turns without end: it has no switches.
 const MOTOR: Switches = Switches { left: None, right: None };
@@ -50,6 +49,7 @@ const ENCODER_ZERO_SIGMA: f64 = 0.15 * DEGREE;
 const START_SECONDS: f64 = 1.0;
 
 /// A simulated alignment on a turning platform.
+#[must_use]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TurntableScenario {
     /// Site, attitude, gyro and sample rate; its positions and dwells are not looked at.
@@ -92,21 +92,18 @@ impl Default for TurntableScenario {
 
 impl TurntableScenario {
     /// The default with another seed.
-    #[must_use]
     pub fn usual(seed: u64) -> Self {
         Self { base: Scenario::usual(seed), ..Self::default() }
     }
 
     /// Four uneven turns and two each way at 0.2 Hz: what a sample costs at the highest rate of the stage
     /// path, 2400 Hz.
-    #[must_use]
     pub fn brief(seed: u64) -> Self {
         let base = Scenario { sample_rate_hz: 2400.0, ..Scenario::usual(seed) };
         Self { base, speeds_hz: [0.2, 0.0], uneven_turns: 4, turns: 2, ..Self::default() }
     }
 
     /// A molecular-electronic sensor at two speeds.
-    #[must_use]
     pub fn molecular(seed: u64) -> Self {
         let base = Scenario { gyro: MOLECULAR_ELECTRONIC, ..Scenario::usual(seed) };
         let (molecular, speeds_hz) = (Some(DYNAMICS), [0.1, 0.2]);
@@ -143,20 +140,7 @@ impl TurntableScenario {
         Some((self.setting()?, procedure))
     }
 
-    /// What the board is told of its devices.
-    #[must_use]
-    pub fn configuration(&self) -> Configuration {
-        self.base.configuration()
-    }
-
-    /// What it is told of the platform.
-    #[must_use]
-    pub fn turntable(&self) -> TurntableConfiguration {
-        TurntableConfiguration::default()
-    }
-
     /// What is true of everything that the chips feel and move.
-    #[must_use]
     pub fn plant(&self) -> PlantConfiguration<'static> {
         let mut plant = self.base.plant();
         plant.accelerometer_hz = FORCE_HERTZ;
@@ -177,7 +161,6 @@ impl TurntableScenario {
     }
 
     /// What a fault does that comes amid the clockwise turns.
-    #[must_use]
     pub fn injection(&self, fault: Option<Fault>) -> Injection {
         let Procedure { ramp_seconds, level_seconds, .. } = self.procedure();
         let turns = f64::from(self.uneven_turns) + 0.5 * f64::from(self.turns);
@@ -188,7 +171,6 @@ impl TurntableScenario {
     }
 
     /// The simulated board with what goes wrong with it.
-    #[must_use]
     pub fn board<'a>(&self, injection: &'a Injection) -> Chips<'a> {
         board_around(&self.plant(), self.base.seed, injection)
     }

@@ -1,6 +1,6 @@
 //! From the selected input to code and alarms (SBAS661C section 9.6, tables 9-8, 9-18, 9-19).
 
-use super::registers::Registers;
+use super::registers::{BYPASS, REFERENCE_ON, Registers};
 
 /// Codes in half of the range.
 const CODES: f64 = 2_147_483_648.0;
@@ -9,10 +9,11 @@ const ONE: f64 = 4_194_304.0;
 
 /// What is connected to the chip, V.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Voltages {
-    /// Analogue supply.
+pub struct Voltages {
+    /// Analogue supply (5.0 in a healthy chip): test voltages and the amplifier's range follow it.
     pub supply: f64,
-    /// The internal reference.
+    /// The internal reference (2.5 in a healthy chip); at 0.4 V or less the status byte carries the alarm of
+    /// a low reference.
     pub reference: f64,
 }
 
@@ -54,7 +55,7 @@ fn test_part(code: u8) -> f64 {
 /// The reference that the multiplexer selects, V; external ones are not connected.
 fn reference(registers: &Registers, voltages: Voltages) -> f64 {
     match registers.references() {
-        (0, 0) if registers.is_reference_on() => voltages.reference,
+        (0, 0) if registers.is_set(REFERENCE_ON) => voltages.reference,
         (4, 4) => voltages.supply,
         _ => 0.0,
     }
@@ -83,7 +84,7 @@ fn saturated(code: f64) -> f64 {
 /// supply, within 0.2 V of it; their difference beyond 105 % of the range.
 fn alarms(registers: &Registers, voltages: Voltages, amplified: f64, reference: f64) -> u8 {
     let low_reference = u8::from(reference <= 0.4) << 4;
-    if registers.is_amplifier_bypassed() {
+    if registers.is_set(BYPASS) {
         return low_reference;
     }
     let magnitude = libm::fabs(amplified);

@@ -2,7 +2,7 @@
 
 use heapless::Vec;
 
-use super::registers::Registers;
+use super::registers::{CHECKSUM, Registers, STATUS};
 use crate::checksum::remainder;
 
 /// Bytes of one conversion as far as they are sent.
@@ -11,8 +11,8 @@ pub(super) type Frame = Vec<u8, 6>;
 /// A frame in the form that INTERFACE asks for: status, four bytes of data, checksum.
 pub(super) fn frame(registers: &Registers, status: u8, code: i32) -> Frame {
     let data = code.to_be_bytes();
-    let status = registers.has_status().then_some(status);
-    let check = match registers.checksum_form() {
+    let status = registers.is_set(STATUS).then_some(status);
+    let check = match registers.value(CHECKSUM) {
         1 => Some(sum(data)),
         2 => Some(remainder(u32::from_be_bytes(data))),
         _ => None,

@@ -21,7 +21,8 @@ use crate::chip::{ReadyLine, SpiChip, Transaction};
 use crate::clock::Cadence;
 use crate::environment::AnalogueInput;
 use crate::violation::{Misuse, Violations};
-use analogue::{Selected, Voltages};
+use analogue::Selected;
+pub use analogue::Voltages;
 use registers::Registers;
 
 /// Bit of the status byte: the conversion was not read before.
@@ -43,15 +44,17 @@ struct Holding {
 
 /// What is broken in this chip.
 #[derive(Clone, Copy, Debug, Default)]
-struct Sickness {
-    /// The code that every conversion gives.
-    stuck_at: Option<i32>,
-    /// Whether no conversion ends any more.
-    is_dead: bool,
-    /// Whether the next frame that is read by command gets a wrong bit.
-    corrupts_next: bool,
-    /// A register that does not take what is written.
-    broken_register: Option<u8>,
+pub struct Sickness {
+    /// The code of 32 bits, two's complement, that every conversion gives whatever the input, signalled as
+    /// new nevertheless.
+    pub stuck_at: Option<i32>,
+    /// Whether no conversion ends that is begun.
+    pub is_dead: bool,
+    /// Whether the next frame that is read by command gets a wrong bit, in its third byte; frames that are
+    /// read directly stay whole.
+    pub corrupts_next: bool,
+    /// A register, 0 to 20, that keeps its value whatever is written; the write is not recorded.
+    pub broken_register: Option<u8>,
 }
 
 /// The chip with what is connected to it. Without a fault it converts exactly, to the nearest code.
@@ -62,7 +65,7 @@ pub struct Ads1262 {
     /// What the ID register holds.
     identity: u8,
     /// What supply and reference are connected to.
-    voltages: Voltages,
+    pub voltages: Voltages,
     /// Commands before this are too early.
     operational: Instant,
     /// When the internal reference was switched on.
@@ -74,19 +77,18 @@ pub struct Ads1262 {
     /// The data-ready line, and with it the shift register that is read directly.
     is_ready: bool,
     /// Conversions that a newer one replaced before they were read.
-    overwritten: u64,
-    /// Whether a clock is found at the pins.
-    has_external_clock: bool,
+    pub overwritten: u64,
+    /// Whether a clock is found at the pins, which the status byte shows.
+    pub has_external_clock: bool,
     /// What is broken in this chip.
-    sickness: Sickness,
+    pub sickness: Sickness,
     /// What was done to the chip that its data sheet forbids.
     violations: Violations,
 }
 
-impl Ads1262 {
+impl Default for Ads1262 {
     /// A healthy chip whose supply comes up at time zero.
-    #[must_use]
-    pub fn new() -> Self {
+    fn default() -> Self {
         Self {
             registers: Registers::reset(0),
             identity: 0,
@@ -102,39 +104,12 @@ impl Ads1262 {
             violations: Violations::default(),
         }
     }
+}
 
+impl Ads1262 {
     /// From now on every conversion repeats the last code, and is signalled as new nevertheless.
     pub fn stick(&mut self) {
-        self.stick_at(self.holding.code);
-    }
-
-    /// From now on every conversion gives this code of 32 bits, two's complement, whatever the input,
-    /// and is signalled as new.
-    pub fn stick_at(&mut self, code: i32) {
-        self.sickness.stuck_at = Some(code);
-    }
-
-    /// From now on no conversion ends.
-    pub fn die(&mut self) {
-        self.sickness.is_dead = true;
-        self.running = None;
-    }
-
-    /// The next frame that is read by command has one wrong bit, in its third byte; frames that are read
-    /// directly stay whole.
-    pub fn corrupt_next(&mut self) {
-        self.sickness.corrupts_next = true;
-    }
-
-    /// From now on the register at this address, 0 to 20, keeps its value whatever is written; the write
-    /// is not recorded.
-    pub fn break_register(&mut self, address: u8) {
-        self.sickness.broken_register = Some(address);
-    }
-
-    /// From now on a clock is found at the pins, which the status byte shows.
-    pub fn clock_externally(&mut self) {
-        self.has_external_clock = true;
+        self.sickness.stuck_at = Some(self.holding.code);
     }
 
     /// The level of the START pin changes at `at`: conversions begin with its rise, in one moment in all
@@ -149,47 +124,28 @@ impl Ads1262 {
         }
     }
 
-    /// Ends all sickness; voltages, clock and identity stay.
-    pub fn heal(&mut self) {
-        self.sickness = Sickness::default();
-    }
-
     /// Sets what the ID register says (zero is an ADS1262 of revision 0) and resets all others.
     pub fn set_identity(&mut self, identity: u8) {
         self.identity = identity;
         self.registers = Registers::reset(identity);
     }
 
-    /// Sets the internal reference's voltage, V (2.5 in a healthy chip); at 0.4 V or less the status byte
-    /// carries the alarm of a low reference.
-    pub fn set_reference(&mut self, volts: f64) {
-        self.voltages.reference = volts;
-    }
-
-    /// Sets the analogue supply's voltage, V (5.0 in a healthy chip): test voltages and the amplifier's
-    /// range follow it.
-    pub fn set_supply(&mut self, volts: f64) {
-        self.voltages.supply = volts;
-    }
-
-    /// Conversions that a newer one replaced before the bus read them.
-    #[must_use]
-    pub fn overwritten(&self) -> u64 {
-        self.overwritten
-    }
-
     /// The status byte of the newest conversion (table 9-18); there is no second converter.
     fn status(&self) -> u8 {
         let new = if self.holding.is_new { STATUS_NEW } else { 0 };
         let clock = u8::from(self.has_external_clock) << 5;
-        new | clock | self.holding.alarms | u8::from(self.registers.reset_flag())
+        new | clock | self.holding.alarms | u8::from(self.registers.is_set(registers::RESET_FLAG))
     }
 
     /// Begins conversions at `at`; what was converted before is lost.
     fn begin(&mut self, at: Instant) {
         let registers = &self.registers;
-        let latency = timing::latency(registers.filter(), registers.rate(), registers.delay());
-        let hertz = timing::hertz(registers.rate());
+        let latency = timing::latency(
+            registers.value(registers::FILTER),
+            registers.value(registers::RATE),
+            registers.value(registers::DELAY),
+        );
+        let hertz = timing::hertz(registers.value(registers::RATE));
         self.clear();
         if !self.sickness.is_dead {
             self.running = Some(Cadence { since: at + latency, count: 0, hertz });
@@ -205,17 +161,11 @@ impl Ads1262 {
 
     /// All registers as after a reset, which stops conversions.
     fn reset(&mut self, at: Instant) {
-        if !self.registers.is_reference_on() {
+        if !self.registers.is_set(registers::REFERENCE_ON) {
             self.reference_since = at;
         }
         self.registers = Registers::reset(self.identity);
         self.clear();
-    }
-}
-
-impl Default for Ads1262 {
-    fn default() -> Self {
-        Self::new()
     }
 }
 
@@ -231,7 +181,7 @@ impl<E: AnalogueInput> SpiChip<E> for Ads1262 {
             Selected::Own(volts) => volts,
         };
         running.count += 1;
-        self.running = (!self.registers.is_one_shot()).then_some(running);
+        self.running = (!self.registers.is_set(registers::ONE_SHOT)).then_some(running);
         self.overwritten += u64::from(self.holding.is_new);
         let (converted, alarms) = analogue::convert(&self.registers, self.voltages, volts);
         let code = self.sickness.stuck_at.unwrap_or(converted);

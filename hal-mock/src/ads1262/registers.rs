@@ -1,12 +1,15 @@
 //! The register map: reset values, what may be written, and what the values mean (SBAS661C 9.6).
 
+use crate::registers::{Registers as Row, both, read, reset_bytes, write_refusal};
 use crate::violation::Misuse;
 
 /// Registers of an ADS1262 (an ADS1263 has six more).
-pub(super) const COUNT: usize = 21;
+const COUNT: usize = 21;
 
 /// Reference, level shift and reset flag (9.6, POWER).
-pub(super) const POWER: u8 = 0x01;
+const POWER: u8 = 0x01;
+/// Status byte and checksum of frames (9.6, INTERFACE).
+const INTERFACE: u8 = 0x02;
 /// Reference polarity, run mode, chopping and delay (9.6, MODE0).
 pub(super) const MODE0: u8 = 0x03;
 /// Filter and sensor bias (9.6, MODE1).
@@ -18,30 +21,49 @@ pub(super) const INPMUX: u8 = 0x06;
 /// Positive and negative reference (9.6, REFMUX).
 pub(super) const REFMUX: u8 = 0x0F;
 
-/// Values after a reset and bits that must be written as zero, by address (table 9-34).
-const MAP: [(u8, u8); COUNT] = [
-    (0x00, 0x00), // ID: device 0, revision 0; read only
-    (0x11, 0xEC), // POWER
-    (0x05, 0xF0), // INTERFACE
-    (0x00, 0x00), // MODE0
-    (0x80, 0x00), // MODE1
-    (0x04, 0x00), // MODE2
-    (0x01, 0x00), // INPMUX
-    (0x00, 0x00), // OFCAL0
-    (0x00, 0x00), // OFCAL1
-    (0x00, 0x00), // OFCAL2
-    (0x00, 0x00), // FSCAL0
-    (0x00, 0x00), // FSCAL1
-    (0x40, 0x00), // FSCAL2
-    (0xBB, 0x00), // IDACMUX
-    (0x00, 0x00), // IDACMAG
-    (0x00, 0xC0), // REFMUX
-    (0x00, 0x60), // TDACP
-    (0x00, 0x60), // TDACN
-    (0x00, 0x00), // GPIOCON
-    (0x00, 0x00), // GPIODIR
-    (0x00, 0x00), // GPIODAT
+/// Which bits may be written, and the values after a reset (table 9-34): the identity, of device 0 and
+/// revision 0, is read only.
+const MAP: &[Row] = &[
+    read(0x00, 0x00),
+    both(0x01, 0x13, 0x11),
+    both(0x02, 0x0F, 0x05),
+    both(0x03, 0xFF, 0x00),
+    both(0x04, 0xFF, 0x80),
+    both(0x05, 0xFF, 0x04),
+    both(0x06, 0xFF, 0x01),
+    both(0x07, 0xFF, 0x00).to(0x0B),
+    both(0x0C, 0xFF, 0x40),
+    both(0x0D, 0xFF, 0xBB),
+    both(0x0E, 0xFF, 0x00),
+    both(0x0F, 0x3F, 0x00),
+    both(0x10, 0x9F, 0x00).to(0x11),
+    both(0x12, 0xFF, 0x00).to(0x14),
 ];
+
+/// Bits of the register at an address that mean something together.
+#[derive(Clone, Copy)]
+pub(super) struct Field(u8, u8);
+
+/// The reset flag, until it is cleared.
+pub(super) const RESET_FLAG: Field = Field(POWER, 0x10);
+/// Whether the reference inside the chip is on.
+pub(super) const REFERENCE_ON: Field = Field(POWER, 0x01);
+/// Whether frames carry the status byte.
+pub(super) const STATUS: Field = Field(INTERFACE, 0x04);
+/// Form of the checksum byte: 0 none, 1 sum, 2 CRC.
+pub(super) const CHECKSUM: Field = Field(INTERFACE, 0x03);
+/// Whether one start gives one conversion.
+pub(super) const ONE_SHOT: Field = Field(MODE0, 0x40);
+/// Code of the delay before a first conversion.
+pub(super) const DELAY: Field = Field(MODE0, 0x0F);
+/// Code of the filter: sinc 1 to sinc 4, FIR.
+pub(super) const FILTER: Field = Field(MODE1, 0xE0);
+/// Whether inputs go to the modulator without amplifier.
+pub(super) const BYPASS: Field = Field(MODE2, 0x80);
+/// The amplifier's gain, as a power of two.
+const GAIN: Field = Field(MODE2, 0x70);
+/// Code of the data rate.
+pub(super) const RATE: Field = Field(MODE2, 0x0F);
 
 /// The registers of one chip.
 #[derive(Clone, Debug)]
@@ -53,7 +75,7 @@ pub(super) struct Registers {
 impl Registers {
     /// As after a reset, with this identity.
     pub(super) fn reset(identity: u8) -> Self {
-        let mut values = MAP.map(|(value, _)| value);
+        let mut values = reset_bytes(MAP);
         values[0] = identity;
         Self { values }
     }
@@ -70,72 +92,30 @@ impl Registers {
 
     /// Writes a register; what may not be written is not, and is told.
     pub(super) fn set(&mut self, address: u8, value: u8) -> Result<(), Misuse> {
-        let index = usize::from(address);
-        let (_, reserved) = *MAP.get(index).ok_or(Misuse::UnknownRegister)?;
-        if index == 0 {
-            return Err(Misuse::ReadOnly);
-        }
-        if value & reserved != 0 {
-            return Err(Misuse::ReservedBits);
+        if let Some(misuse) = write_refusal(MAP, address.into(), value.into()) {
+            return Err(misuse);
         }
         if is_excluded(address, value) {
             return Err(Misuse::ForbiddenValue);
         }
-        self.values[index] = value;
+        self.values[usize::from(address)] = value;
         Ok(())
     }
 
-    /// The reset flag, until it is cleared.
-    pub(super) fn reset_flag(&self) -> bool {
-        self.at(POWER) & 0x10 != 0
+    /// What a field holds.
+    pub(super) fn value(&self, field: Field) -> u8 {
+        let Field(address, mask) = field;
+        (self.at(address) & mask) >> mask.trailing_zeros()
     }
 
-    /// Whether the reference inside the chip is on.
-    pub(super) fn is_reference_on(&self) -> bool {
-        self.at(POWER) & 0x01 != 0
-    }
-
-    /// Whether frames carry the status byte.
-    pub(super) fn has_status(&self) -> bool {
-        self.at(0x02) & 0x04 != 0
-    }
-
-    /// Form of the checksum byte: 0 none, 1 sum, 2 CRC.
-    pub(super) fn checksum_form(&self) -> u8 {
-        self.at(0x02) & 0x03
-    }
-
-    /// Whether one start gives one conversion.
-    pub(super) fn is_one_shot(&self) -> bool {
-        self.at(MODE0) & 0x40 != 0
-    }
-
-    /// Code of the delay before a first conversion.
-    pub(super) fn delay(&self) -> u8 {
-        self.at(MODE0) & 0x0F
-    }
-
-    /// Code of the filter: sinc 1 to sinc 4, FIR.
-    pub(super) fn filter(&self) -> u8 {
-        self.at(MODE1) >> 5
-    }
-
-    /// Code of the data rate.
-    pub(super) fn rate(&self) -> u8 {
-        self.at(MODE2) & 0x0F
-    }
-
-    /// Whether inputs go to the modulator without amplifier.
-    pub(super) fn is_amplifier_bypassed(&self) -> bool {
-        self.at(MODE2) & 0x80 != 0
+    /// Whether a field of one bit is set.
+    pub(super) fn is_set(&self, flag: Field) -> bool {
+        self.value(flag) != 0
     }
 
     /// Gain of the amplifier; one without it.
     pub(super) fn gain(&self) -> f64 {
-        if self.is_amplifier_bypassed() {
-            return 1.0;
-        }
-        f64::from(1_u8 << (self.at(MODE2) >> 4 & 0x07))
+        if self.is_set(BYPASS) { 1.0 } else { f64::from(1_u8 << self.value(GAIN)) }
     }
 
     /// Positive and negative input.
@@ -165,7 +145,7 @@ impl Registers {
 
     /// Whether the FIR filter does not have this data rate (section 9.6, MODE2).
     pub(super) fn is_rate_excluded(&self) -> bool {
-        self.filter() == 4 && !matches!(self.rate(), 0 | 1 | 2 | 4)
+        self.value(FILTER) == 4 && !matches!(self.value(RATE), 0 | 1 | 2 | 4)
     }
 }
 
@@ -174,7 +154,7 @@ impl Registers {
 fn is_excluded(address: u8, value: u8) -> bool {
     let low = value & 0x0F;
     match address {
-        0x02 => value & 0x03 == 3,
+        INTERFACE => value & 0x03 == 3,
         MODE0 => low > 11 || value & 0x30 != 0,
         MODE1 => value >> 5 > 4 || value & 0x10 != 0 || value & 0x07 == 7,
         MODE2 => value >> 4 & 0x07 > 5,

@@ -164,11 +164,11 @@ impl Ads1262 {
         if self.sickness.broken_register == Some(address) {
             return;
         }
-        let was_on = self.registers.is_reference_on();
+        let was_on = self.registers.is_set(registers::REFERENCE_ON);
         if let Err(misuse) = self.registers.set(address, value) {
             self.violations.record(misuse, address, at);
         }
-        if !was_on && self.registers.is_reference_on() {
+        if !was_on && self.registers.is_set(registers::REFERENCE_ON) {
             self.reference_since = at;
         }
         if registers::restarts(address) && self.running.is_some() {

@@ -48,7 +48,6 @@ impl Fifo {
     }
 
     /// Values in it, 0 … 96.
-    #[must_use]
     pub fn entries(&self) -> u8 {
         self.values.len() as u8
     }

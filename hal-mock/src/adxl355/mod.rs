@@ -18,12 +18,12 @@ use embassy_time::{Duration, Instant};
 use crate::chip::{ReadyLine, SpiChip, Transaction};
 use crate::clock::Cadence;
 use crate::environment::ForceInput;
+use crate::registers::{read_refusal, reset_bytes};
 use crate::violation::{Misuse, Violations};
 use fifo::Fifo;
 use registers::{
-    DEFAULTS, DRDY_OFF, FIFO_DATA, FIFO_ENTRIES, FIFO_SAMPLES, FILTER, OFFSET_X_H, POWER_CTL,
-    RANGE, RESET, SELF_TEST, SHADOW, SHADOW_LAST, SIZE, STANDBY, STATUS, TEMP1, TEMP2, XDATA3,
-    ZDATA1,
+    DRDY_OFF, FIFO_DATA, FIFO_ENTRIES, FIFO_SAMPLES, FILTER, MAP, OFFSET_X_H, POWER_CTL, RANGE,
+    RESET, SELF_TEST, SHADOW, SHADOW_LAST, SIZE, STANDBY, STATUS, TEMP1, TEMP2, XDATA3, ZDATA1,
 };
 
 /// From power to standby (Specifications, Turn-On Time: below 10 ms).
@@ -57,7 +57,7 @@ const NVM_BUSY: u8 = 0x10;
 #[derive(Clone, Debug)]
 pub struct Adxl355 {
     /// The register map as it stands.
-    registers: [u8; SIZE],
+    pub registers: [u8; SIZE],
     /// The factory settings as loaded, which the shadow registers show.
     shadow: [u8; 5],
     /// From when on the chip listens.
@@ -73,9 +73,10 @@ pub struct Adxl355 {
     /// The samples that were not read through the FIFO yet.
     fifo: Fifo,
     /// What a self-test adds to each axis, g.
-    self_test_response: [f64; 3],
-    /// Software resets to come that load wrong factory settings.
-    spoiled_resets: u32,
+    pub self_test_response: [f64; 3],
+    /// Software resets to come that load wrong factory settings (Reset Register, note: a race in silicon up
+    /// to revision 1); power cycles never do.
+    pub spoiled_resets: u32,
     /// What was done to the chip that its data sheet forbids.
     violations: Violations,
 }
@@ -85,7 +86,7 @@ impl Adxl355 {
     #[must_use]
     pub fn new(now: Instant) -> Self {
         Self {
-            registers: DEFAULTS,
+            registers: reset_bytes(MAP),
             shadow: FACTORY,
             ready_at: now + POWER_UP,
             is_powering_up: true,
@@ -96,25 +97,6 @@ impl Adxl355 {
             self_test_response: SELF_TEST_RESPONSE,
             spoiled_resets: 0,
             violations: Violations::default(),
-        }
-    }
-
-    /// Has the next software resets load wrong factory settings (Reset Register, note: a race in
-    /// silicon up to revision 1); power cycles never do.
-    pub fn spoil_resets(&mut self, count: u32) {
-        self.spoiled_resets = count;
-    }
-
-    /// Has the chip answer the self-test force like this, g.
-    pub fn answer_self_test(&mut self, response: [f64; 3]) {
-        self.self_test_response = response;
-    }
-
-    /// Flips a bit, 0 to 7, of the register at an address up to 0x2F, as a disturbance of the chip would;
-    /// beyond the last register it changes nothing.
-    pub fn flip(&mut self, address: u8, bit: u8) {
-        if let Some(register) = self.registers.get_mut(usize::from(address)) {
-            *register ^= 1 << bit;
         }
     }
 
@@ -206,7 +188,7 @@ impl Adxl355 {
         let landing = self.measuring.map(|measuring| measuring.next());
         let mut address = first;
         for (index, byte) in reply.iter_mut().enumerate() {
-            if let Some(misuse) = registers::read_refusal(address) {
+            if let Some(misuse) = read_refusal(MAP, address.into()) {
                 self.violations.record(misuse, address, transaction.now);
             } else if address == FIFO_DATA {
                 self.pin_falls = None;

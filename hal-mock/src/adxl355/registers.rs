@@ -1,5 +1,6 @@
 //! The register map of the ADXL355: what may be read and written where, and what a reset leaves.
 
+use crate::registers::{self, Registers, both, fixed, read, write};
 use crate::violation::Misuse;
 
 /// Addresses that hold something, up to the last.
@@ -49,59 +50,35 @@ pub const DRDY_OFF: u8 = 0x04;
 /// What the reset register takes.
 pub const RESET_CODE: u8 = 0x52;
 
-/// What power-up and reset leave in the registers (data sheet, Table "Register Map").
-pub const DEFAULTS: [u8; SIZE] = {
-    let mut values = [0; SIZE];
-    values[0x00] = 0xAD;
-    values[0x01] = 0x1D;
-    values[0x02] = 0xED;
-    values[0x03] = 0x01;
-    values[0x27] = 0x01;
-    values[0x29] = 0x60;
-    values[0x2C] = 0x81;
-    values[0x2D] = STANDBY;
-    values
-};
-
-/// Why a read of an address is forbidden, or none where it is allowed.
-#[must_use]
-pub fn read_refusal(address: u8) -> Option<Misuse> {
-    match address {
-        0x00..=FIFO_DATA | OFFSET_X_H..=SELF_TEST | SHADOW..=SHADOW_LAST => None,
-        RESET => Some(Misuse::WriteOnly),
-        _ => Some(Misuse::UnknownRegister),
-    }
-}
+/// What may be written, and what power-up and reset leave in it (data sheet, Table "Register Map").
+pub const MAP: &[Registers] = &[
+    fixed(0x00, 0x00, 0xAD),
+    fixed(0x01, 0x01, 0x1D),
+    fixed(0x02, 0x02, 0xED),
+    fixed(0x03, 0x03, 0x01),
+    read(0x04, 0x11),
+    both(0x1E, 0xFF, 0).to(0x23),
+    both(0x24, 0x07, 0),
+    both(0x25, 0xFF, 0).to(0x26),
+    both(0x27, 0xFF, 0x01),
+    both(0x28, 0x7F, 0),
+    both(0x29, 0x7F, 0x60),
+    both(0x2A, 0xFF, 0),
+    both(0x2B, 0x07, 0),
+    both(0x2C, 0xC3, 0x81),
+    both(0x2D, 0x07, 0x01),
+    both(0x2E, 0x03, 0),
+    write(0x2F, 0xFF, 0),
+    read(0x50, 0x54),
+];
 
 /// Why this write is forbidden, if it is: the register holds `held`, and the chip is measuring or not.
-#[must_use]
 pub fn write_refusal(address: u8, value: u8, held: u8, is_measuring: bool) -> Option<Misuse> {
-    match address {
-        0x00..=FIFO_DATA | SHADOW..=SHADOW_LAST => Some(Misuse::ReadOnly),
-        OFFSET_X_H..=RESET => {
-            if value & reserved(address) != 0 {
-                Some(Misuse::ReservedBits)
-            } else if is_forbidden(address, value)
-                || is_measuring && !may_change_measuring(address, value, held)
-            {
-                Some(Misuse::ForbiddenValue)
-            } else {
-                None
-            }
-        }
-        _ => Some(Misuse::UnknownRegister),
-    }
-}
-
-/// Bits that must be written as zero.
-const fn reserved(address: u8) -> u8 {
-    match address {
-        0x24 | SYNC | POWER_CTL => 0xF8,
-        FILTER | FIFO_SAMPLES => 0x80,
-        RANGE => 0x3C,
-        SELF_TEST => 0xFC,
-        _ => 0,
-    }
+    registers::write_refusal(MAP, address.into(), value.into()).or_else(|| {
+        let is_bad = is_forbidden(address, value)
+            || is_measuring && !may_change_measuring(address, value, held);
+        is_bad.then_some(Misuse::ForbiddenValue)
+    })
 }
 
 /// Values that the tables of the registers do not list.

@@ -41,6 +41,7 @@ pub enum Extent {
 }
 
 /// When a fault shows.
+#[must_use]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct When {
     /// When the fault begins.
@@ -51,19 +52,16 @@ pub struct When {
 
 impl When {
     /// A fault that shows once, at the first access from `start` on.
-    #[must_use]
     pub const fn once(start: Instant) -> Self {
         Self { start, extent: Extent::Once }
     }
 
     /// A fault that shows from `start` on for `duration`, the end not included.
-    #[must_use]
     pub const fn during(start: Instant, duration: Duration) -> Self {
         Self { start, extent: Extent::For(duration) }
     }
 
     /// A fault that shows from `start` on for ever.
-    #[must_use]
     pub const fn always(start: Instant) -> Self {
         Self { start, extent: Extent::Always }
     }

@@ -24,16 +24,11 @@ pub struct FaultyReady<W> {
 }
 
 impl<W> FaultyReady<W> {
-    /// The line with a time when it loses edges; without one it is healthy and passes all on.
+    /// The line with a time when it loses edges, and one since when they come 4 ms late; without either it is
+    /// healthy and passes all on.
     #[must_use]
-    pub const fn new(line: W, when: Option<When>) -> Self {
-        Self { line, when, shown: false, late: None }
-    }
-
-    /// The same line, whose edges come 4 ms late since a time, or never do.
-    #[must_use]
-    pub fn late(self, since: Option<Instant>) -> Self {
-        Self { late: since, ..self }
+    pub const fn new(line: W, when: Option<When>, late: Option<Instant>) -> Self {
+        Self { line, when, shown: false, late }
     }
 
     /// Whether what has just happened on the line is lost.

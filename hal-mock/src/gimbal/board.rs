@@ -32,10 +32,9 @@ pub type GimbalBoard<'a> = Board<'a, Gimbal<'a>, GimbalChips>;
 impl<'a> GimbalBoard<'a> {
     /// A board that gets its supply at the start of the clock and does not lose it; both motor drivers run
     /// from an oscillator of this kind.
-    #[must_use]
     pub fn new(gimbal: Gimbal<'a>, oscillator: Oscillator) -> Self {
         let chips = GimbalChips {
-            gyro: Ads1262::new(),
+            gyro: Ads1262::default(),
             accelerometer: Adxl355::new(Instant::MIN),
             encoders: [(); 2].map(|()| Mt6835::new(Instant::MIN)),
             actuators: [(); 2].map(|()| Tmc5160::new(oscillator, Instant::MIN)),

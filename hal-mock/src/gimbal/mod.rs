@@ -184,7 +184,6 @@ impl<'a> Gimbal<'a> {
     }
 
     /// True angles and rates of the outer and the inner frame at the latest moment.
-    #[must_use]
     pub fn frames(&self) -> [StageState; 2] {
         [&self.outer, &self.inner].map(|frame| frame.drive.state())
     }

@@ -16,10 +16,11 @@ use embassy_time::{Duration, Instant};
 use crate::clock::Cadence;
 use crate::environment::MotionInput;
 use crate::i2c::{I2cChip, Transfer};
+use crate::registers::{read_refusal, reset_bytes};
 use crate::violation::{Misuse, Violations};
 use registers::{
-    BDU, BOOT, CTRL1_XL, CTRL2_G, CTRL3_C, CTRL5_C, DEFAULTS, IF_INC, OUT_TEMP_L, OUTX_L_G,
-    OUTX_L_XL, OUTZ_H_XL, SIZE, STATUS, SW_RESET, force_unit_mg, hertz, rate_unit_mdps,
+    BDU, BOOT, CTRL1_XL, CTRL2_G, CTRL3_C, CTRL5_C, IF_INC, MAP, OUT_TEMP_L, OUTX_L_G, OUTX_L_XL,
+    OUTZ_H_XL, SIZE, STATUS, SW_RESET, force_unit_mg, hertz, rate_unit_mdps,
 };
 
 /// From power, and from the boot bit, to an answer (ST's examples: boot time).
@@ -60,7 +61,7 @@ pub struct Lsm6dsl {
     /// The 7-bit address that the chip answers to.
     address: u8,
     /// The register map as it stands.
-    registers: [u8; SIZE],
+    pub registers: [u8; SIZE],
     /// Until when it does not listen, but for the bit that it clears itself.
     ready_at: Instant,
     /// Whether that wait follows a loss of supply, not a reset or a boot.
@@ -70,7 +71,7 @@ pub struct Lsm6dsl {
     /// Ratio of its oscillator to the nominal one.
     clock: f64,
     /// What a self-test adds to each axis: g, and °/s.
-    self_test: (f64, f64),
+    pub self_test: (f64, f64),
     /// What was done to the chip that its data sheet forbids.
     violations: Violations,
 }
@@ -82,26 +83,13 @@ impl Lsm6dsl {
     pub fn new(now: Instant, address: u8, clock: f64) -> Self {
         Self {
             address,
-            registers: DEFAULTS,
+            registers: reset_bytes(MAP),
             ready_at: now + BOOT_TIME,
             is_powering_up: true,
             measuring: [None; 2],
             clock,
             self_test: SELF_TEST,
             violations: Violations::default(),
-        }
-    }
-
-    /// Has the chip answer the self-test forces like this: g, °/s, on each axis.
-    pub fn answer_self_test(&mut self, force_g: f64, rate_deg_s: f64) {
-        self.self_test = (force_g, rate_deg_s);
-    }
-
-    /// Flips a bit, 0 to 7, of the register at an address up to 0x75, as a disturbance of the chip would;
-    /// beyond the last register it changes nothing.
-    pub fn flip(&mut self, address: u8, bit: u8) {
-        if let Some(register) = self.registers.get_mut(usize::from(address)) {
-            *register ^= 1 << bit;
         }
     }
 
@@ -175,7 +163,7 @@ impl Lsm6dsl {
             while !is_held && self.next().is_some_and(|(at, _)| at <= transfer.time_of(index)) {
                 self.convert(environment);
             }
-            match registers::read_refusal(address) {
+            match read_refusal(MAP, address.into()) {
                 Some(misuse) => self.violations.record(misuse, address, transfer.now),
                 None => *byte = self.read(address),
             }
@@ -189,7 +177,7 @@ impl Lsm6dsl {
             return self.violations.record(misuse, address, now);
         }
         if address == CTRL3_C && value & SW_RESET != 0 {
-            self.registers = DEFAULTS;
+            self.registers = reset_bytes(MAP);
             self.registers[usize::from(CTRL3_C)] |= SW_RESET;
             self.measuring = [None; 2];
             self.ready_at = now + RESET_TIME;

@@ -12,10 +12,9 @@ use embassy_time::{Duration, Instant};
 use crate::checksum::remainder;
 use crate::chip::{SpiChip, Transaction};
 use crate::environment::ShaftAngle;
+use crate::registers::{read_refusal, reset_bytes, write_refusal};
 use crate::violation::{Misuse, Violations};
-use registers::{
-    ANGLE, CALIBRATION, CRC, DIRECTION, FACTORY, SIZE, ZERO_HIGH, ZERO_LOW, hysteresis, writable,
-};
+use registers::{ANGLE, CALIBRATION, CRC, DIRECTION, MAP, SIZE, ZERO_HIGH, ZERO_LOW, hysteresis};
 
 /// From power to angles (data sheet, Power-up Time, as quoted by a public evaluation of the chip).
 pub const POWER_UP: Duration = Duration::from_millis(64);
@@ -43,23 +42,23 @@ const ACKNOWLEDGE: u8 = 0x55;
 #[derive(Clone, Debug)]
 pub struct Mt6835 {
     /// The registers that the chip works with.
-    ram: [u8; SIZE],
+    pub ram: [u8; SIZE],
     /// What the registers are loaded with at power-up.
     eeprom: [u8; SIZE],
     /// How often the EEPROM was programmed.
-    programmings: u32,
+    pub programmings: u32,
     /// From when on the chip listens.
     ready_at: Instant,
-    /// State of the self-calibration, 0 to 3.
-    calibration: u8,
+    /// State of the self-calibration, two bits: none, running, failed, done.
+    pub calibration: u8,
     /// Where the hysteresis holds the angle, turns.
     held: Option<f64>,
     /// When the shaft was last looked at, and where it was.
     seen: Option<(Instant, f64)>,
-    /// Whether the supply is too low.
-    has_undervoltage: bool,
+    /// Whether the supply is too low, but not so low that the chip restarts.
+    pub has_undervoltage: bool,
     /// Bits of the next checksum that go out wrong.
-    spoiled: u8,
+    pub spoiled: u8,
     /// What was done to the chip that its data sheet forbids.
     violations: Violations,
 }
@@ -69,8 +68,8 @@ impl Mt6835 {
     #[must_use]
     pub fn new(now: Instant) -> Self {
         Self {
-            ram: FACTORY,
-            eeprom: FACTORY,
+            ram: reset_bytes(MAP),
+            eeprom: reset_bytes(MAP),
             programmings: 0,
             ready_at: now + POWER_UP,
             calibration: 0,
@@ -82,39 +81,9 @@ impl Mt6835 {
         }
     }
 
-    /// How often the EEPROM was programmed.
-    #[must_use]
-    pub fn programmings(&self) -> u32 {
-        self.programmings
-    }
-
     /// What a register in RAM holds.
-    #[must_use]
-    pub fn register(&self, address: u16) -> u8 {
+    fn register(&self, address: u16) -> u8 {
         self.ram.get(usize::from(address)).copied().unwrap_or(0)
-    }
-
-    /// Flips a bit, 0 to 7, of a register in RAM at an address up to 0x0D2, as a disturbance of the chip
-    /// would; beyond the last register it changes nothing.
-    pub fn flip(&mut self, address: u16, bit: u8) {
-        if let Some(register) = self.ram.get_mut(usize::from(address)) {
-            *register ^= 1 << bit;
-        }
-    }
-
-    /// Has the next burst carry these wrong bits in its checksum.
-    pub fn spoil_checksum(&mut self, bits: u8) {
-        self.spoiled = bits;
-    }
-
-    /// Sets the state of the self-calibration, two bits: none, running, failed, done.
-    pub fn set_calibration(&mut self, state: u8) {
-        self.calibration = state & 0x03;
-    }
-
-    /// Has the supply be too low, but not so low that the chip restarts.
-    pub fn set_undervoltage(&mut self, is_low: bool) {
-        self.has_undervoltage = is_low;
     }
 
     /// Angle, status and checksum of this moment.
@@ -152,9 +121,11 @@ impl Mt6835 {
         match address {
             ANGLE..=CRC => self.frame(environment, now)[usize::from(address - ANGLE)],
             CALIBRATION => self.calibration << 6,
-            _ if writable(address).is_some() => self.register(address),
             _ => {
-                self.violations.record(Misuse::UnknownRegister, address as u8, now);
+                let Some(misuse) = read_refusal(MAP, address) else {
+                    return self.register(address);
+                };
+                self.violations.record(misuse, address as u8, now);
                 0
             }
         }
@@ -163,16 +134,10 @@ impl Mt6835 {
     /// Writes a register in RAM, or records why it must not be written.
     fn write(&mut self, address: u16, value: u8, now: Instant) {
         let changed = value ^ self.register(address);
-        let misuse = match writable(address) {
-            None => Misuse::UnknownRegister,
-            Some(0) => Misuse::ReadOnly,
-            Some(mask) if changed & !mask != 0 => Misuse::ReservedBits,
-            Some(_) => {
-                self.ram[usize::from(address)] = value;
-                return;
-            }
-        };
-        self.violations.record(misuse, address as u8, now);
+        match write_refusal(MAP, address, changed.into()) {
+            Some(misuse) => self.violations.record(misuse, address as u8, now),
+            None => self.ram[usize::from(address)] = value,
+        }
     }
 
     /// Takes the angle of this moment as zero, in RAM.

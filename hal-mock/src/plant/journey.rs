@@ -3,12 +3,11 @@
 //! Until it departs the base stands, or sways, as it always did. From then on gyros and accelerometers on it
 //! feel what a vehicle feels: turns, slopes, accelerations, the Earth's rotation and its own.
 
+use crate::earth::InertialInput;
 use crate::instruments::InstrumentsConfiguration;
 use crate::vehicle::averaged::Averaged;
 use crate::vehicle::motion::Motion;
 use crate::vehicle::{Event, Leg, SensorFault};
-
-pub use crate::vehicle::Means;
 
 /// Where the base goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +47,12 @@ impl<'a> Journey<'a> {
 
     /// Means over the sample of a chip, the first or the second, that ends at a time in s; none before it
     /// departs.
-    pub(crate) fn felt(&mut self, chip: usize, time_s: f64, period_s: f64) -> Option<Means> {
+    pub(crate) fn felt(
+        &mut self,
+        chip: usize,
+        time_s: f64,
+        period_s: f64,
+    ) -> Option<InertialInput> {
         (time_s >= self.departs_s).then(|| self.motion.felt(chip, time_s, period_s))
     }
 }

@@ -70,6 +70,7 @@ pub enum StageFault {
 }
 
 /// A stage with its instruments, and everything that happens to them.
+#[must_use]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlantConfiguration<'a> {
     /// Site, attitude, sensors. Its `rate_hz` is the conversion rate of the gyro's converter; its
@@ -160,7 +161,6 @@ impl<'a> Plant<'a> {
 
     /// What the sensors cannot know: attitude of the base at rest, drawn biases and scale; stage as
     /// of the latest moment, rate as of the latest reading.
-    #[must_use]
     pub fn truth(&self) -> Truth {
         Truth { stage: self.drive.state(), ..self.payload.instruments.truth() }
     }

@@ -6,9 +6,9 @@ use super::journey::Journey;
 use super::sway::SwayConfiguration;
 use super::{PlantConfiguration, STANDARD_GRAVITY_M_S2, seconds};
 use crate::disturbance::{self, Disturbance, Effect};
+use crate::earth::InertialInput;
 use crate::instruments::Instruments;
 use crate::noise::{White, source};
-use crate::vehicle::Means;
 
 /// The instruments with the gyro's output stage, the base's own motion, and the disturbances.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,7 +50,7 @@ impl<'a> Payload<'a> {
     /// What a base that goes somewhere feels over the reading of the gyro's converter, 0, or of the
     /// accelerometer, 1, that ends `now`; none of a base that stays.
     #[inline]
-    pub(crate) fn ridden(&mut self, chip: usize, now: Instant) -> Option<Means> {
+    pub(crate) fn ridden(&mut self, chip: usize, now: Instant) -> Option<InertialInput> {
         let period_s = self.periods_s[chip];
         self.journey.as_mut().and_then(|way| way.felt(chip, seconds(now), period_s))
     }

@@ -14,13 +14,14 @@ use crate::stage::{StageState, Unevenness};
 /// rotor to the nearest of its equal positions, which are so far apart.
 const PERIOD_MICROSTEPS: f64 = 1024.0;
 
+/// A microstep (1/256 of a full step) of the stage, rad: 200 full steps in a turn of the motor, which is behind
+/// a worm gear of 1:90.
+const RAD_PER_MICROSTEP: f64 = core::f64::consts::TAU / (200.0 * 256.0 * 90.0);
+
 /// Mechanics of the stage; angles clockwise from above, not wrapped. Ends, switches and start are
 /// angles of the gear, which an uneven one shows as up to Σ `ε_k`/k more or less at the stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StageConfiguration {
-    /// Microsteps (1/256 of a full step) in a turn of the stage, > 0. Default 4 608 000: 200 full
-    /// steps behind a worm gear of 1:90.
-    pub microsteps_per_turn: f64,
     /// Angle at power-on, where the motor counts zero, rad, within the travel.
     pub start_rad: f64,
     /// Hard ends, rad, lower first: the stage stops there and the motor loses steps. Default −10° and
@@ -52,7 +53,6 @@ impl StageConfiguration {
 impl Default for StageConfiguration {
     fn default() -> Self {
         Self {
-            microsteps_per_turn: 4_608_000.0,
             start_rad: 0.0,
             travel_rad: [-10.0, 370.0].map(f64::to_radians),
             switches_rad: [-5.0, 365.0].map(f64::to_radians),
@@ -91,8 +91,6 @@ struct Segment {
 pub(crate) struct Train {
     /// What the drive is like.
     configuration: StageConfiguration,
-    /// How far one microstep turns the stage, rad.
-    rad_per_microstep: f64,
     /// What goes on since the latest command.
     segment: Segment,
     /// Rotor less field, microsteps: steps lost.
@@ -122,7 +120,6 @@ impl Train {
         };
         Self {
             configuration: c,
-            rad_per_microstep: core::f64::consts::TAU / c.microsteps_per_turn,
             segment,
             lost: 0.0,
             held: false,
@@ -165,7 +162,7 @@ impl Train {
 
     /// Something holds the stage, or lets it go; the field turns on.
     pub(crate) fn hold(&mut self, held: bool) {
-        let microsteps_per_s = self.segment.rate_rad_s / self.rad_per_microstep;
+        let microsteps_per_s = self.segment.rate_rad_s / RAD_PER_MICROSTEP;
         self.begin(self.field_now(), microsteps_per_s, 0.0, held);
     }
 
@@ -189,7 +186,7 @@ impl Train {
     /// Where the field stands, microsteps.
     fn field_now(&self) -> f64 {
         let turned_rad = self.segment.rate_rad_s * self.elapsed_s(self.now);
-        self.segment.field + turned_rad / self.rad_per_microstep
+        self.segment.field + turned_rad / RAD_PER_MICROSTEP
     }
 
     /// Rotor, rad at the stage.
@@ -250,7 +247,7 @@ impl Train {
     fn rotor_within(&mut self, field: f64) -> f64 {
         let play = 0.5 * self.configuration.backlash_rad;
         let [low, high] = self.configuration.travel_rad;
-        let free = self.configuration.start_rad + (field + self.lost) * self.rad_per_microstep;
+        let free = self.configuration.start_rad + (field + self.lost) * RAD_PER_MICROSTEP;
         let rotor_rad = free.max(low - play).min(high + play);
         if rotor_rad != free {
             self.lost = self.microsteps(rotor_rad) - field;
@@ -260,13 +257,13 @@ impl Train {
 
     /// Microsteps from power-on to a rotor's angle.
     fn microsteps(&self, rotor_rad: f64) -> f64 {
-        (rotor_rad - self.configuration.start_rad) / self.rad_per_microstep
+        (rotor_rad - self.configuration.start_rad) / RAD_PER_MICROSTEP
     }
 
     /// The segment that begins now with a rotor, a stage and a velocity.
     fn segment_from(&self, field: f64, rotor: f64, output: f64, microsteps_per_s: f64) -> Segment {
         let [low, high] = self.configuration.travel_rad;
-        let rate_rad_s = microsteps_per_s * self.rad_per_microstep;
+        let rate_rad_s = microsteps_per_s * RAD_PER_MICROSTEP;
         let play = libm::copysign(0.5 * self.configuration.backlash_rad, rate_rad_s);
         let end = if rate_rad_s < 0.0 { low } else { high };
         let output_rad = self.follow(output, rotor);

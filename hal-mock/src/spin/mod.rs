@@ -105,6 +105,7 @@ pub struct SpinSample {
 }
 
 /// What the sensors cannot know, at one moment; for checking only.
+#[must_use]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpinTruth {
     /// Roll, rad, whole turns counted.
@@ -168,7 +169,6 @@ impl<'a> SpinWorld<'a> {
     }
 
     /// The truth behind the latest sample.
-    #[must_use]
     pub fn truth(&self) -> SpinTruth {
         SpinTruth::of(&self.body, &self.sensors, self.time_s)
     }

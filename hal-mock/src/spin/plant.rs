@@ -108,7 +108,6 @@ impl<'a> SpinPlant<'a> {
     }
 
     /// The truth at a moment, which is not before the latest reading's half period.
-    #[must_use]
     pub fn truth_at(&self, now: Instant) -> SpinTruth {
         let time_s = seconds(now);
         let mut body = self.body.clone();

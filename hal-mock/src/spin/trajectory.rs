@@ -32,6 +32,7 @@ pub struct Forces<'a> {
 }
 
 /// Where the body is, and where it goes; its long axis lies along the velocity.
+#[must_use]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Flight {
     /// Speed V, m/s, > 0.
@@ -46,7 +47,6 @@ pub struct Flight {
 
 impl Flight {
     /// How fast everything in it changes at a time in s.
-    #[must_use]
     pub fn derivative(&self, forces: &Forces, time_s: f64) -> Self {
         let Self { speed_m_s: speed, pitch_rad, course_rad, .. } = *self;
         let [(sine, cosine), (east, north)] = [pitch_rad, course_rad].map(libm::sincos);
@@ -72,7 +72,6 @@ impl Flight {
     }
 
     /// Flies on from a time to a later one, s, by the classical method of Runge and Kutta.
-    #[must_use]
     pub fn flown(mut self, forces: &Forces, from_s: f64, to_s: f64) -> Self {
         let steps = libm::ceil((to_s - from_s) / STEP_S);
         let step_s = (to_s - from_s) / steps;

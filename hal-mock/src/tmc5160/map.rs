@@ -1,5 +1,7 @@
 //! The register map (data sheet, chapter 6): who may do what with which bits, and the reset values.
 
+use crate::registers::{Registers, both, fixed, flags, read, write};
+
 /// Addresses of the registers that do something here; all others only keep what is written.
 pub(super) mod address {
     /// Global configuration flags (6.1).
@@ -67,183 +69,69 @@ pub(super) mod address {
 /// Addresses that the seven bits can name.
 pub(super) const ADDRESSES: usize = 128;
 
-/// What the bus may do with a register.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Access {
-    /// The bus can read it, but not write it.
-    Read,
-    /// The bus can write it, but not read it.
-    Write,
-    /// The bus can read and write it.
-    ReadWrite,
-    /// Writing a one clears the bit.
-    WriteToClear,
-    /// IOIN where it is read, OUTPUT where it is written.
-    Split,
-}
-
-impl Access {
-    /// Whether the data sheet lists it as readable.
-    pub const fn can_read(self) -> bool {
-        !matches!(self, Self::Write)
-    }
-
-    /// Whether the data sheet lists it as writable.
-    pub const fn can_write(self) -> bool {
-        !matches!(self, Self::Read)
-    }
-}
-
-/// One register.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Register {
-    /// What the bus may do with it.
-    pub access: Access,
-    /// Bits that may be written as one.
-    pub mask: u32,
-    /// Its value after a reset.
-    pub reset: u32,
-}
-
-/// A register that can be read only, zero after a reset.
-const fn read() -> Register {
-    Register { access: Access::Read, mask: 0, reset: 0 }
-}
-
-/// A register that can be written only.
-const fn write(mask: u32, reset: u32) -> Register {
-    Register { access: Access::Write, mask, reset }
-}
-
-/// A register that can be read and written.
-const fn both(mask: u32, reset: u32) -> Register {
-    Register { access: Access::ReadWrite, mask, reset }
-}
-
-/// A register in which a written one clears the bit.
-const fn flags(mask: u32, reset: u32) -> Register {
-    Register { access: Access::WriteToClear, mask, reset }
-}
-
-/// The register at an address, if there is one.
-pub(super) const fn register(address: u8) -> Option<Register> {
-    match address {
-        0x00..=0x0C => general(address),
-        0x10..=0x15 => velocity_dependent(address),
-        0x20..=0x36 => ramp(address),
-        0x38..=0x3D => encoder(address),
-        0x60..=0x69 => Some(write(wave_mask(address), wave(address))),
-        0x6A..=0x73 => driver(address),
-        _ => None,
-    }
-}
-
-/// Section 6.1. `SHORT_CONF` and `DRV_CONF` with all memory bits programmed to zero, as delivered;
-/// the scaler's note allows 256 in a register of eight bits.
-const fn general(address: u8) -> Option<Register> {
-    Some(match address {
-        0x00 => both(0x0003_FFFF, 0x0000_0008),
-        0x01 => flags(0x0000_0007, 0x0000_0001),
-        0x03 => write(0x0000_0FFF, 0),
-        0x04 => Register { access: Access::Split, mask: 1, reset: 1 },
-        0x05 => write(u32::MAX, 0),
-        0x06 => write(0x0000_FF37, 0),
-        0x02 | 0x0C => read(),
-        0x07 => Register { access: Access::Read, mask: 0, reset: 0x0F },
-        0x08 => both(0x0000_001F, 0x0F),
-        0x09 => write(0x0007_0F0F, 0x0001_0606),
-        0x0A => write(0x003F_0F1F, 0x0008_0400),
-        0x0B => write(0x0000_01FF, 0),
-        _ => return None,
-    })
-}
-
-/// Section 6.2.
-const fn velocity_dependent(address: u8) -> Option<Register> {
-    Some(match address {
-        0x10 => write(0x000F_1F1F, 0),
-        0x11 => write(0x0000_00FF, 10),
-        0x12 => read(),
-        0x13..=0x15 => write(0x000F_FFFF, 0),
-        _ => return None,
-    })
-}
-
-/// Section 6.3.
-const fn ramp(address: u8) -> Option<Register> {
-    Some(match address {
-        0x20 => both(0x0000_0003, 0),
-        0x21 | 0x2D => both(u32::MAX, 0),
-        0x22 | 0x36 => read(),
-        0x23 => write(0x0003_FFFF, 0),
-        0x24 | 0x26 | 0x28 | 0x2A | 0x2C => write(0x0000_FFFF, 0),
-        0x25 => write(0x000F_FFFF, 0),
-        0x27 | 0x33 => write(0x007F_FFFF, 0),
-        0x2B => write(0x0003_FFFF, 1),
-        0x34 => both(0x0000_0FFF, 0),
-        // The data sheet has it written back as it was read.
-        0x35 => flags(0x0000_3FFF, 0),
-        _ => return None,
-    })
-}
-
-/// Section 6.4.
-const fn encoder(address: u8) -> Option<Register> {
-    Some(match address {
-        0x38 => both(0x0000_07FF, 0),
-        0x39 => both(u32::MAX, 0),
-        0x3A => write(u32::MAX, 0x0001_0000),
-        0x3B => flags(0x0000_0003, 0),
-        0x3C => read(),
-        0x3D => write(0x000F_FFFF, 0),
-        _ => return None,
-    })
-}
-
-/// Section 6.5.
-const fn driver(address: u8) -> Option<Register> {
-    Some(match address {
-        0x6A | 0x6B | 0x6F | 0x71..=0x73 => read(),
-        0x6C => both(0xFFFD_DFFF, 0x1041_0150),
-        0x6D => write(0x017F_EF6F, 0),
-        0x6E => write(0x00FF_03FF, 0),
-        0x70 => write(0xFF3F_FFFF, 0xC40C_001E),
-        _ => return None,
-    })
-}
-
-/// MSLUTSTART has gaps.
-const fn wave_mask(address: u8) -> u32 {
-    if address == 0x69 { 0x00FF_00FF } else { u32::MAX }
-}
-
-/// The sine wave that the chip holds after a reset.
-const fn wave(address: u8) -> u32 {
-    /// `MSLUT[0]` to `MSLUT[7]`, MSLUTSEL and MSLUTSTART.
-    const WAVE: [u32; 10] = [
-        0xAAAA_B554,
-        0x4A95_54AA,
-        0x2449_2929,
-        0x1010_4222,
-        0xFBFF_FFFF,
-        0xB5BB_777D,
-        0x4929_5556,
-        0x0040_4222,
-        0xFFFF_8056,
-        0x00F7_0000,
-    ];
-    WAVE[address as usize - 0x60]
-}
-
-/// All registers after a reset.
-pub(super) const fn reset_values() -> [u32; ADDRESSES] {
-    let mut values = [0; ADDRESSES];
-    let mut address = 0;
-    while address < ADDRESSES {
-        if let Some(register) = register(address as u8) {
-            values[address] = register.reset;
-        }
-        address += 1;
-    }
-    values
-}
+/// All registers. `SHORT_CONF` and `DRV_CONF` with all memory bits programmed to zero, as delivered; the
+/// scaler's note allows 256 in a register of eight bits; the wave, from 60h on, is the sine.
+pub(super) const MAP: &[Registers] = &[
+    // General configuration (6.1); 04h is IOIN where it is read, OUTPUT where it is written.
+    both(0x00, 0x0003_FFFF, 0x0000_0008),
+    flags(0x01, 0x0000_0007, 0x0000_0001),
+    read(0x02, 0x02),
+    write(0x03, 0x0000_0FFF, 0),
+    both(0x04, 1, 1),
+    write(0x05, u32::MAX, 0),
+    write(0x06, 0x0000_FF37, 0),
+    fixed(0x07, 0x07, 0x0F),
+    both(0x08, 0x0000_001F, 0x0F),
+    write(0x09, 0x0007_0F0F, 0x0001_0606),
+    write(0x0A, 0x003F_0F1F, 0x0008_0400),
+    write(0x0B, 0x0000_01FF, 0),
+    read(0x0C, 0x0C),
+    // Velocity-dependent driver features (6.2).
+    write(0x10, 0x000F_1F1F, 0),
+    write(0x11, 0x0000_00FF, 10),
+    read(0x12, 0x12),
+    write(0x13, 0x000F_FFFF, 0).to(0x15),
+    // Ramp generator (6.3); the data sheet has RAMP_STAT, 35h, written back as it was read.
+    both(0x20, 0x0000_0003, 0),
+    both(0x21, u32::MAX, 0),
+    read(0x22, 0x22),
+    write(0x23, 0x0003_FFFF, 0),
+    write(0x24, 0x0000_FFFF, 0),
+    write(0x25, 0x000F_FFFF, 0),
+    write(0x26, 0x0000_FFFF, 0),
+    write(0x27, 0x007F_FFFF, 0),
+    write(0x28, 0x0000_FFFF, 0),
+    write(0x2A, 0x0000_FFFF, 0),
+    write(0x2B, 0x0003_FFFF, 1),
+    write(0x2C, 0x0000_FFFF, 0),
+    both(0x2D, u32::MAX, 0),
+    write(0x33, 0x007F_FFFF, 0),
+    both(0x34, 0x0000_0FFF, 0),
+    flags(0x35, 0x0000_3FFF, 0),
+    read(0x36, 0x36),
+    // Encoder (6.4).
+    both(0x38, 0x0000_07FF, 0),
+    both(0x39, u32::MAX, 0),
+    write(0x3A, u32::MAX, 0x0001_0000),
+    flags(0x3B, 0x0000_0003, 0),
+    read(0x3C, 0x3C),
+    write(0x3D, 0x000F_FFFF, 0),
+    // Motor driver (6.5): `MSLUT[0]` to `MSLUT[7]`, MSLUTSEL and MSLUTSTART, which has gaps.
+    write(0x60, u32::MAX, 0xAAAA_B554),
+    write(0x61, u32::MAX, 0x4A95_54AA),
+    write(0x62, u32::MAX, 0x2449_2929),
+    write(0x63, u32::MAX, 0x1010_4222),
+    write(0x64, u32::MAX, 0xFBFF_FFFF),
+    write(0x65, u32::MAX, 0xB5BB_777D),
+    write(0x66, u32::MAX, 0x4929_5556),
+    write(0x67, u32::MAX, 0x0040_4222),
+    write(0x68, u32::MAX, 0xFFFF_8056),
+    write(0x69, 0x00FF_00FF, 0x00F7_0000),
+    read(0x6A, 0x6B),
+    both(0x6C, 0xFFFD_DFFF, 0x1041_0150),
+    write(0x6D, 0x017F_EF6F, 0),
+    write(0x6E, 0x00FF_03FF, 0),
+    read(0x6F, 0x6F),
+    write(0x70, 0xFF3F_FFFF, 0xC40C_001E),
+    read(0x71, 0x73),
+];

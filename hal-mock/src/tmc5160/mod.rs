@@ -23,10 +23,11 @@ mod status;
 use embassy_time::{Duration, Instant};
 
 use self::demand::{Demand, FRACTION_BITS};
-use self::map::{ADDRESSES, Access, address};
+use self::map::{ADDRESSES, MAP, address};
 use self::ramp::Ramp;
 use crate::chip::{SpiChip, Transaction};
 use crate::environment::Mechanics;
+use crate::registers::{self, Access, Registers};
 use crate::violation::{Misuse, Violations};
 
 /// Time between two looks at the surroundings while the motor moves.
@@ -150,7 +151,7 @@ impl Tmc5160 {
         let mut chip = Self {
             oscillator,
             per_second: f64::from(oscillator.hertz()) / (1_u64 << 41) as f64,
-            registers: map::reset_values(),
+            registers: registers::reset(MAP),
             ramp: Ramp::at(0),
             events: 0,
             sickness: Sickness::None,
@@ -238,24 +239,24 @@ impl Tmc5160 {
     /// Executes a command; what the next datagram carries back (4.1.1).
     fn execute(&mut self, command: u8, data: u32) -> u32 {
         let (address, is_write) = (command & 0x7F, command & 0x80 != 0);
-        let Some(register) = map::register(address) else {
+        let Some(register) = registers::register(MAP, address.into()) else {
             self.violate(Misuse::UnknownRegister, address);
             return if is_write { data } else { 0 };
         };
         if is_write {
             self.write(address, register, data);
             data
-        } else if register.access.can_read() {
-            self.value(address)
-        } else {
+        } else if register.access == Access::Write {
             self.violate(Misuse::WriteOnly, address);
             0
+        } else {
+            self.value(address)
         }
     }
 
     /// Writes a register; a reserved or forbidden value is recorded and taken as far as bits exist.
-    fn write(&mut self, address: u8, register: map::Register, data: u32) {
-        if !register.access.can_write() {
+    fn write(&mut self, address: u8, register: &Registers, data: u32) {
+        if register.access == Access::Read {
             return self.violate(Misuse::ReadOnly, address);
         }
         if data & !register.mask != 0 {

@@ -134,22 +134,18 @@ impl Tmc5160 {
 
     /// The register `RAMP_STAT` of this moment.
     fn ramp_status(&self) -> u32 {
-        use ramp_stat::{
-            EVENT_STOP_L, EVENT_STOP_R, POSITION_REACHED, SECOND_MOVE, STATUS_SG, STOP_L, STOP_R,
-            VELOCITY_REACHED, VZERO, ZEROWAIT,
-        };
         let [left, right] = self.switches();
         self.events
-            | flag(left, STOP_L)
-            | flag(right, STOP_R)
-            | flag(self.ramp.is_stopped(-1), EVENT_STOP_L)
-            | flag(self.ramp.is_stopped(1), EVENT_STOP_R)
-            | flag(self.ramp.at_peak(), VELOCITY_REACHED)
-            | flag(self.ramp.reached(), POSITION_REACHED)
-            | flag(self.ramp.velocity() == 0, VZERO)
-            | flag(self.ramp.is_resting(), ZEROWAIT)
-            | flag(self.ramp.second_move, SECOND_MOVE)
-            | flag(self.is_stalling(), STATUS_SG)
+            | flag(left, ramp_stat::STOP_L)
+            | flag(right, ramp_stat::STOP_R)
+            | flag(self.ramp.is_stopped(-1), ramp_stat::EVENT_STOP_L)
+            | flag(self.ramp.is_stopped(1), ramp_stat::EVENT_STOP_R)
+            | flag(self.ramp.at_peak(), ramp_stat::VELOCITY_REACHED)
+            | flag(self.ramp.reached(), ramp_stat::POSITION_REACHED)
+            | flag(self.ramp.velocity() == 0, ramp_stat::VZERO)
+            | flag(self.ramp.is_resting(), ramp_stat::ZEROWAIT)
+            | flag(self.ramp.second_move, ramp_stat::SECOND_MOVE)
+            | flag(self.is_stalling(), ramp_stat::STATUS_SG)
     }
 
     /// The register `DRV_STATUS` of this moment.

@@ -4,7 +4,7 @@
 //! the reading before it by the same chip, or over one period where that is long ago.
 
 use super::motion::{Integrals, Motion};
-use super::sensors::Means;
+use crate::earth::InertialInput;
 
 /// Periods after which a reading no longer reaches back to the one before it.
 const LONG_AGO: f64 = 1.5;
@@ -39,7 +39,7 @@ impl<'a, const CHIPS: usize> Averaged<'a, CHIPS> {
     }
 
     /// Means over the sample of a chip with a period in s that ends at a time in s.
-    pub(crate) fn felt(&mut self, chip: usize, time_s: f64, period_s: f64) -> Means {
+    pub(crate) fn felt(&mut self, chip: usize, time_s: f64, period_s: f64) -> InertialInput {
         if time_s - self.marks[chip].time_s > LONG_AGO * period_s {
             self.motion.advance(time_s - period_s);
             self.marks[chip] = self.mark();

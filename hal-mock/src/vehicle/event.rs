@@ -4,6 +4,7 @@ use super::Pose;
 use super::smooth::Smooth;
 
 /// Something that happens to the vehicle, standing or not.
+#[must_use]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
     /// A door falls shut: body and force ring and die away.
@@ -44,7 +45,6 @@ impl Event {
     const WEIGHTLESS: [f64; 3] = [0.0, 0.0, 9.806_65];
 
     /// A car door: 8 Hz for some tenths of a second, a hundredth of a degree, a tenth of a m/s².
-    #[must_use]
     pub const fn door_slam(at_s: f64) -> Self {
         Self::Slam {
             at_s,
@@ -56,7 +56,6 @@ impl Event {
     }
 
     /// A person gets in on the right within 2 s.
-    #[must_use]
     pub const fn person_boards(at_s: f64) -> Self {
         Self::Boarding { at_s, seconds: 2.0, pitch_deg: -0.02, roll_deg: 0.06 }
     }

@@ -22,7 +22,6 @@ pub use self::event::{Event, SensorFailure, SensorFault};
 pub use self::leg::{Drive, Leg, Stop};
 use self::motion::{Integrals, Motion};
 pub use self::place::Position;
-pub use self::sensors::Means;
 use self::sensors::Sensors;
 use self::smooth::Smooth;
 use crate::accelerometer::AccelerometerConfiguration;
@@ -102,7 +101,6 @@ impl<'a> VehicleConfiguration<'a> {
     }
 
     /// The motion of this vehicle, from its start, without sensors.
-    #[must_use]
     pub fn motion(&self) -> Motion<'a> {
         let [latitude_rad, azimuth_rad] =
             [self.latitude_deg, self.azimuth_deg].map(f64::to_radians);
@@ -124,6 +122,7 @@ pub struct VehicleSample {
 }
 
 /// What the sensors cannot know, at the end of the latest sample; for checking only.
+#[must_use]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VehicleTruth {
     /// Attitude of the body; the azimuth is not wrapped.
@@ -178,7 +177,6 @@ impl<'a> Vehicle<'a> {
     }
 
     /// The truth behind the latest sample.
-    #[must_use]
     pub fn truth(&self) -> VehicleTruth {
         self.sensors.truth(&self.motion)
     }

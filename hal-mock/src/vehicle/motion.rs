@@ -11,9 +11,8 @@
 use super::leg::Leg;
 use super::place::{Place, Position};
 use super::route::Route;
-use super::sensors::Means;
 use super::{Event, Pose};
-use crate::earth::{Attitude, Matrix, apply_transposed, cross};
+use crate::earth::{Attitude, InertialInput, Matrix, apply_transposed, cross};
 
 /// Longest panel of the quadrature, s: a tenth of a period of 10 Hz.
 const PANEL_S: f64 = 0.01;
@@ -57,11 +56,11 @@ pub struct Integrals {
 impl Integrals {
     /// Mean rate and force over the `seconds` since the integrals were `before`; zero seconds have no
     /// mean, and give zero.
-    pub(super) fn means(&self, before: &Self, seconds: f64) -> Means {
+    pub(super) fn means(&self, before: &Self, seconds: f64) -> InertialInput {
         let mean = |to: [f64; 3], from: [f64; 3]| {
             [0, 1, 2].map(|axis: usize| (to[axis] - from[axis]) / libm::fmax(seconds, 1e-9))
         };
-        Means {
+        InertialInput {
             rate_rad_s: mean(self.turned_rad, before.turned_rad),
             force_m_s2: mean(self.pushed_m_s, before.pushed_m_s),
         }
@@ -69,6 +68,7 @@ impl Integrals {
 }
 
 /// A moving vehicle.
+#[must_use]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion<'a> {
     /// What the vehicle does.
@@ -94,7 +94,6 @@ pub struct Motion<'a> {
 impl<'a> Motion<'a> {
     /// A vehicle at the beginning of its legs: latitude and azimuth in rad, and where the sensors are
     /// from the point about which it sways, m forward, right, down.
-    #[must_use]
     pub fn new(
         legs: &'a [Leg],
         events: &'a [Event],
@@ -158,7 +157,6 @@ impl<'a> Motion<'a> {
     }
 
     /// Attitude at the latest moment; the azimuth is not wrapped.
-    #[must_use]
     pub fn attitude(&self) -> Attitude {
         { self.route }.pose(self.time_s).attitude()
     }

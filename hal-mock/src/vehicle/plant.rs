@@ -12,10 +12,11 @@ use embassy_time::Instant;
 
 use super::averaged::Averaged;
 use super::board::CHIPS;
-use super::sensors::{Means, Sensors};
+use super::sensors::Sensors;
 use super::{VehicleConfiguration, VehicleTruth};
 use crate::chip::Select;
 use crate::converters::Channels;
+use crate::earth::InertialInput;
 use crate::environment::ForceInput;
 use crate::noise::{White, source};
 use crate::plant::{DEGREE_PER_SECOND, STANDARD_GRAVITY_M_S2, seconds};
@@ -92,13 +93,11 @@ impl<'a> VehiclePlant<'a> {
     }
 
     /// What the sensors cannot know, as of the latest reading.
-    #[must_use]
     pub fn truth(&self) -> VehicleTruth {
         self.sensors.truth(self.motion.motion())
     }
 
     /// The truth at `now`, which is not before the latest reading.
-    #[must_use]
     pub fn truth_at(&self, now: Instant) -> VehicleTruth {
         let mut motion = self.motion.motion().clone();
         motion.advance(seconds(now));
@@ -106,7 +105,7 @@ impl<'a> VehiclePlant<'a> {
     }
 
     /// Means over the sample of a chip that ends at a time in s.
-    fn felt(&mut self, chip: usize, time_s: f64) -> Means {
+    fn felt(&mut self, chip: usize, time_s: f64) -> InertialInput {
         self.motion.felt(chip, time_s, self.periods_s[chip / ACCELEROMETER])
     }
 }

@@ -35,6 +35,7 @@ pub fn silicon() -> AccelerometerConfiguration {
 }
 
 /// A drawn day. Everything may be changed before it is run.
+#[must_use]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
     /// Site, start azimuth and sensors; legs and events are the day's own.
@@ -48,21 +49,21 @@ pub struct Scenario {
 impl Scenario {
     /// 60 s at rest, 15 min of driving over some kilometres with turns and hills, 60 s at rest at any
     /// heading; ground at rest within ±3°, latitude 52°, gyros of the LN-200 class.
-    #[must_use]
     pub fn siap(seed: u64) -> Self {
         Self::stops(seed, 2, 60.0, 900.0)
     }
 
     /// A day of `count` stops (at most 10) of `stop_s` seconds each, with drives of `drive_s` seconds
     /// between them.
-    #[must_use]
     pub fn stops(seed: u64, count: usize, stop_s: f64, drive_s: f64) -> Self {
-        let mut draw = Draw::new(seed);
+        let mut draw = Draw::new(seed, source::VEHICLE_SCENARIO);
         let mut day = Self::empty(&mut draw);
         for index in 0..count {
             let parts = if index == 0 { 0 } else { PARTS };
             // What does not fit any more is not driven.
-            let _ = day.legs.extend_from_slice(&[(); PARTS].map(|()| draw.drive(drive_s))[..parts]);
+            let _ = day.legs.extend_from_slice(
+                &[(); PARTS].map(|()| draw.drive(drive_s / PARTS as f64))[..parts],
+            );
             let _ = day.legs.push(draw.stop(stop_s, SwayConfiguration::default()));
         }
         day
@@ -71,12 +72,12 @@ impl Scenario {
     /// Lets the day go on for at least `seconds` (as far as there is room for legs): drives of about
     /// `drive_s` seconds with stops of `stop_s` between them. What came before stays as it was.
     pub fn go_on(&mut self, seed: u64, seconds: f64, drive_s: f64, stop_s: f64) {
-        let mut draw = Draw::of(seed, source::VEHICLE_AFTERWARDS);
+        let mut draw = Draw::new(seed, source::VEHICLE_AFTERWARDS);
         let mut left_s = seconds;
         while left_s > 0.0 {
             let legs = [
-                draw.drive_of(0.5 * drive_s),
-                draw.drive_of(0.5 * drive_s),
+                draw.drive(0.5 * drive_s),
+                draw.drive(0.5 * drive_s),
                 draw.stop(stop_s, SwayConfiguration::default()),
             ];
             if self.legs.extend_from_slice(&legs).is_err() {
@@ -89,9 +90,8 @@ impl Scenario {
     /// A vehicle parked for `seconds`: three sinusoids of roll and pitch of 0.1 to 2 Hz with amplitudes
     /// that
     /// come to 0.5° together, sensors 1 m above the axis, a slammed door every 60 s or so.
-    #[must_use]
     pub fn parked(seed: u64, seconds: f64) -> Self {
-        let mut draw = Draw::new(seed);
+        let mut draw = Draw::new(seed, source::VEHICLE_SCENARIO);
         let mut day = Self::empty(&mut draw);
         let sway = draw.sway();
         let _ = day.legs.push(draw.stop(seconds, sway));
@@ -104,7 +104,6 @@ impl Scenario {
     }
 
     /// A vehicle that stands and faces an azimuth, for now.
-    #[must_use]
     pub fn standing(latitude_deg: f64, azimuth_deg: f64, stop: Stop) -> Self {
         let vehicle =
             VehicleConfiguration { latitude_deg, azimuth_deg, ..VehicleConfiguration::default() };
@@ -139,13 +138,8 @@ const TURNING_DEG_S: f64 = 15.0;
 struct Draw(Generator);
 
 impl Draw {
-    /// Draws the day of a seed.
-    fn new(seed: u64) -> Self {
-        Self::of(seed, source::VEHICLE_SCENARIO)
-    }
-
     /// Draws from a stream of a seed.
-    fn of(seed: u64, stream: u64) -> Self {
+    fn new(seed: u64, stream: u64) -> Self {
         Self(Generator::stream(seed, stream))
     }
 
@@ -161,13 +155,8 @@ impl Draw {
         Leg::Stop(Stop { seconds, pitch_deg, roll_deg, sway, settling_deg })
     }
 
-    /// One of [`PARTS`] parts of a drive.
-    fn drive(&mut self, seconds: f64) -> Leg {
-        self.drive_of(seconds / PARTS as f64)
-    }
-
     /// A drive of `seconds` with one turn.
-    fn drive_of(&mut self, seconds: f64) -> Leg {
+    fn drive(&mut self, seconds: f64) -> Leg {
         let wanted_deg = self.between(-150.0, 150.0);
         let turn_s = seconds * self.between(0.1, 0.3);
         let most_deg = TURNING_DEG_S * turn_s;

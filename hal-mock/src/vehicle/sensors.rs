@@ -1,20 +1,11 @@
 //! Three gyros and three accelerometers fixed to the vehicle.
 
 use super::{VehicleConfiguration, VehicleTruth};
-use crate::earth::normal_gravity_m_s2;
+use crate::earth::{InertialInput, normal_gravity_m_s2};
 use crate::noise::source;
 use crate::strapdown::{Strapdown, StrapdownConfiguration};
 use crate::temperature::TemperatureConfiguration;
 use crate::vehicle::motion::Motion;
-
-/// Means of the true rate and specific force over a sample; also what sensors show of them.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Means {
-    /// Inertial angular rate about forward, right, down, rad/s.
-    pub rate_rad_s: [f64; 3],
-    /// Specific force along forward, right, down, m/s².
-    pub force_m_s2: [f64; 3],
-}
 
 /// The sensors at work.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,7 +43,7 @@ impl<'a> Sensors<'a> {
     }
 
     /// What a gyro shows next, rad/s, at the end of its sample. Call at its rate.
-    pub(super) fn rate(&mut self, axis: usize, time_s: f64, felt: &Means) -> f64 {
+    pub(super) fn rate(&mut self, axis: usize, time_s: f64, felt: &InertialInput) -> f64 {
         let temperature_c = self.temperature.at(time_s);
         let force_g =
             [axis, (axis + 1) % 3].map(|along| felt.force_m_s2[along] / self.gravity_m_s2);
@@ -60,15 +51,15 @@ impl<'a> Sensors<'a> {
     }
 
     /// What the accelerometers show next, m/s². Call at their rate.
-    pub(super) fn force(&mut self, time_s: f64, felt: &Means) -> [f64; 3] {
+    pub(super) fn force(&mut self, time_s: f64, felt: &InertialInput) -> [f64; 3] {
         self.strapdown.force(time_s, felt.force_m_s2)
     }
 
     /// What all of them show next, and whether anything clips.
-    pub(super) fn sample(&mut self, time_s: f64, felt: &Means) -> (Means, bool) {
+    pub(super) fn sample(&mut self, time_s: f64, felt: &InertialInput) -> (InertialInput, bool) {
         let rate_rad_s = [0, 1, 2].map(|axis| self.rate(axis, time_s, felt));
         let force_m_s2 = self.force(time_s, felt);
-        (Means { rate_rad_s, force_m_s2 }, self.strapdown.is_clipped())
+        (InertialInput { rate_rad_s, force_m_s2 }, self.strapdown.is_clipped())
     }
 
     /// The truth behind them on a motion of this moment.

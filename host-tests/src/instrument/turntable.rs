@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 
 use firmware::acquire::{acquire, on_stage};
+use firmware::configuration::TurntableConfiguration;
 use firmware::ports::{Observer, Ports, Recorder};
 use firmware::run::navigate;
 use firmware::runner::Rotating;
@@ -71,8 +72,8 @@ pub fn align_turning_again<R: Recorder, W: Observer>(
         prepared.map_err(|_| RunError::Deadlock)?;
     }
     let mut session = rotating::Session::new(setting, procedure).map_err(RunError::Procedure)?;
-    let configuration = scenario.configuration();
-    let platform = scenario.turntable();
+    let configuration = scenario.base.configuration();
+    let platform = TurntableConfiguration::default();
     let wires = Wires(&board, &injection);
     let mut sensors = wires.sensors(&scenario.base, turntable::FORCE);
     let recorder = FaultyRecorder::new(recorder, injection.hang);

@@ -57,7 +57,6 @@ fn case(seed: u64, arc: bool) -> Case {
     let gyro = GyroConfiguration {
         n_deg_sqrt_h: n,
         b_deg_h: b,
-        flicker_low_hz: 1e-5,
         k_deg_h_sqrt_h: k,
         r_deg_h2: r * generator.gaussian(),
         bias_sigma_deg_h: 3.0,

@@ -392,7 +392,7 @@ fn a_chip_outside_its_self_test_limits_is_refused() {
         ([0.6, 0.6, 3.0], true),
     ] {
         let rig = bench_with([0.0, 0.0, 1.0]);
-        rig.borrow_mut().chip.answer_self_test(response);
+        rig.borrow_mut().chip.self_test_response = response;
         let result = run(accelerometer(&rig, OutputRate::Hz125).start());
         let expected = if passes { Ok(()) } else { Err(Fault::SelfTest) };
         assert_eq!(result, expected, "{response:?}");
@@ -423,10 +423,10 @@ fn an_accelerometer_whose_start_failed_gives_no_force() {
 fn factory_settings_that_load_wrongly_are_loaded_again() {
     let rig = bench_with([0.0, 0.0, -1.0]);
     run(async {
-        rig.borrow_mut().chip.spoil_resets(3);
+        rig.borrow_mut().chip.spoiled_resets = 3;
         let mut accelerometer = started(&rig, OutputRate::Hz125).await;
         assert_eq!(fresh(&mut accelerometer).await.force[2], SpecificForce(-9_806_650));
-        rig.borrow_mut().chip.spoil_resets(4);
+        rig.borrow_mut().chip.spoiled_resets = 4;
         assert_eq!(accelerometer.start().await, Err(Fault::NotReady));
         accelerometer.start().await.expect("the chip is well again");
         assert_eq!(fresh(&mut accelerometer).await.force[2], SpecificForce(-9_806_650));
@@ -456,7 +456,7 @@ fn a_changed_register_is_noticed_in_bounded_reads() {
         let rig = bench_with([0.0; 3]);
         run(async {
             let mut accelerometer = started(&rig, OutputRate::Hz1000).await;
-            rig.borrow_mut().chip.flip(register, bit);
+            rig.borrow_mut().chip.registers[usize::from(register)] ^= 1 << bit;
             let mut reads = 0;
             loop {
                 Timer::after_millis(1).await;

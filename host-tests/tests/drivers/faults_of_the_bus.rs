@@ -370,7 +370,7 @@ fn the_errors_of_a_device_keep_their_kind() {
 // Data-ready -------------------------------------------------------------------------------------
 
 fn line(rig: &Rig, when: Option<When>) -> FaultyReady<ReadyPin<'_, Single<Counter, ()>>> {
-    FaultyReady::new(ReadyPin::new(rig, Select::Gyro), when)
+    FaultyReady::new(ReadyPin::new(rig, Select::Gyro), when, None)
 }
 
 /// Moments of the next falling edges, µs.
@@ -486,13 +486,13 @@ impl Wait for Busy {
 fn every_wait_asks_the_line_for_what_was_asked() {
     let result = run(async {
         let mut busy = Busy { asked: Vec::new() };
-        let mut line = FaultyReady::new(&mut busy, None);
+        let mut line = FaultyReady::new(&mut busy, None, None);
         let _ = line.wait_for_high().await;
         let _ = line.wait_for_low().await;
         let _ = line.wait_for_rising_edge().await;
         let _ = line.wait_for_falling_edge().await;
         let _ = line.wait_for_any_edge().await;
-        let mut line = FaultyReady::new(&mut busy, Some(When::once(micros(0))));
+        let mut line = FaultyReady::new(&mut busy, Some(When::once(micros(0))), None);
         let _ = line.wait_for_high().await;
         busy.asked
     });

@@ -139,7 +139,7 @@ fn a_power_cycle_brings_back_what_the_eeprom_holds() {
         Timer::after(READY).await;
         assert_eq!(exchange(&rig, 1_000_000, [0x30, 0x01, 0x00]).await[2], 0x11);
     });
-    assert_eq!(rig.borrow().chip.programmings(), 1);
+    assert_eq!(rig.borrow().chip.programmings, 1);
     assert_eq!(violations(&rig), []);
 }
 
@@ -215,7 +215,7 @@ fn the_driver_shows_the_shaft_exactly_and_leaves_no_violation() {
         let reading = run(async { started(&rig).await.read().await });
         assert_eq!(reading.expect("the chip is well"), Angle(step << 11));
         assert_eq!(violations(&rig), []);
-        assert_eq!(rig.borrow().chip.programmings(), 0);
+        assert_eq!(rig.borrow().chip.programmings, 0);
     }
 }
 
@@ -233,8 +233,8 @@ fn the_other_direction_mirrors_the_angle_and_keeps_the_makers_bits() {
         let angle = encoder.read().await.expect("the chip is well");
         assert_eq!(angle, Angle(0xE000_0000));
     });
-    assert_eq!(rig.borrow().chip.register(0x00D), 0xA0 | 0x08 | 0x05);
-    assert_eq!(rig.borrow().chip.register(0x011), 0x90 | 0x03);
+    assert_eq!(rig.borrow().chip.ram[0x00D], 0xA0 | 0x08 | 0x05);
+    assert_eq!(rig.borrow().chip.ram[0x011], 0x90 | 0x03);
     assert_eq!(violations(&rig), []);
 }
 
@@ -243,7 +243,7 @@ fn a_wrong_checksum_is_told_once() {
     let rig = bench_at(0.7);
     run(async {
         let mut encoder = started(&rig).await;
-        rig.borrow_mut().chip.spoil_checksum(0x10);
+        rig.borrow_mut().chip.spoiled = 0x10;
         assert_eq!(encoder.read().await, Err(Fault::Checksum));
         assert!(encoder.read().await.is_ok());
     });
@@ -291,7 +291,7 @@ fn a_changed_register_is_noticed_within_ten_readings() {
         let rig = bench_at(0.7);
         run(async {
             let mut encoder = started(&rig).await;
-            rig.borrow_mut().chip.flip(register, 2);
+            rig.borrow_mut().chip.ram[register] ^= 1 << 2;
             let fault = Fault::NotAsWritten { register: register as u8 };
             let mut found = Vec::new();
             for _ in 0..10 {
@@ -311,9 +311,9 @@ fn every_warning_is_an_alarm_and_passes() {
         assert_eq!(encoder.read().await, Err(Fault::Alarm { status: WEAK_MAGNET }));
         assert_eq!(encoder.start().await, Err(Fault::Alarm { status: WEAK_MAGNET }));
         rig.borrow_mut().environment.has_magnet = true;
-        rig.borrow_mut().chip.set_undervoltage(true);
+        rig.borrow_mut().chip.has_undervoltage = true;
         assert_eq!(encoder.read().await, Err(Fault::Alarm { status: UNDERVOLTAGE }));
-        rig.borrow_mut().chip.set_undervoltage(false);
+        rig.borrow_mut().chip.has_undervoltage = false;
         encoder.start().await.expect("the chip is well again");
         rig.borrow_mut().environment.turns_per_s = 2001.0;
         Timer::after_millis(100).await;
@@ -330,7 +330,7 @@ fn an_encoder_that_was_not_started_gives_no_angle() {
         let mut other =
             encoder(&rig, Configuration { is_reversed: true, ..Configuration::default() });
         assert_eq!(other.read().await, Err(Fault::Reset));
-        rig.borrow_mut().chip.set_calibration(0b10);
+        rig.borrow_mut().chip.calibration = 0b10;
         assert_eq!(other.start().await, Err(Fault::SelfTest));
         assert_eq!(other.read().await, Err(Fault::Reset));
     });
@@ -344,7 +344,7 @@ fn a_calibration_that_runs_or_failed_is_told() {
         for (state, result) in
             [(0b01, Err(Fault::NotReady)), (0b10, Err(Fault::SelfTest)), (0b11, Ok(()))]
         {
-            rig.borrow_mut().chip.set_calibration(state);
+            rig.borrow_mut().chip.calibration = state;
             assert_eq!(encoder.start().await, result);
         }
     });

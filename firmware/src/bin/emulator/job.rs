@@ -107,7 +107,7 @@ fn turning(scenario: &TurntableScenario, meter: &'static Meter) -> Option<(Sampl
         meter,
     )?;
     Some((
-        Sampling::Stage(inputs, scenario.configuration(), channels),
+        Sampling::Stage(inputs, scenario.base.configuration(), channels),
         Running::Turning(session, outputs, channels),
     ))
 }

@@ -34,6 +34,7 @@ const SLIP: f64 = 0.5 / 360.0 * TURN;
 const CREEP: f64 = 0.02 / 360.0 * TURN;
 
 /// What a fault does to the parts of a board. A part that a board does not have is not looked at.
+#[must_use]
 #[derive(Clone, Debug, Default)]
 pub struct Injection {
     /// Faults of serial buses, by the chip that is selected.
@@ -74,14 +75,12 @@ impl Injection {
     };
 
     /// What a fault does that comes in the third dwell or so, or nothing.
-    #[must_use]
     pub fn of(fault: Option<Fault>) -> Self {
         Self::at(fault, MIDDLE)
     }
 
     /// What a fault does that comes at a time, or nothing. What a vehicle does wrong is in its day, how a
     /// spinning body flies wrong in its course.
-    #[must_use]
     pub fn at(fault: Option<Fault>, middle: Instant) -> Self {
         let mut injection = Self::NONE;
         match fault {
@@ -191,7 +190,7 @@ impl PortWrapper for Injection {
 
     fn line<W: Wait>(&self, select: Select, line: W) -> FaultyReady<W> {
         let since = self.late.filter(|(chip, _)| *chip == select).map(|(_, since)| since);
-        FaultyReady::new(line, for_chip(&self.ready, select)).late(since)
+        FaultyReady::new(line, for_chip(&self.ready, select), since)
     }
 
     fn i2c<B: I2c<Error = ErrorKind>>(&self, bus: B) -> FaultyI2c<B> {

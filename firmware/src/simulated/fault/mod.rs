@@ -99,6 +99,14 @@ const AXIS_FAULTS: [(AxisFault, [&str; 2], Notice); 7] = [
     (AxisFault::Creep, ["encoder-creep"; 2], Notice::Anything),
 ];
 
+impl AxisFault {
+    /// Its names on a stage and on a frame, and what must be noticed.
+    fn entry(self) -> ([&'static str; 2], Notice) {
+        let found = AXIS_FAULTS.iter().find(|(entry, ..)| *entry == self);
+        found.map_or(([""; 2], Notice::Nothing), |(_, names, notice)| (*names, *notice))
+    }
+}
+
 /// Something that goes wrong, where nothing else is said in the middle of the measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
@@ -212,33 +220,26 @@ impl Fault {
         match self {
             Self::Axis(_, AxisFault::SlipAtStart) if platform == Turntable => Notice::Nothing,
             Self::Chip(device, fault) => fault.notice(device),
-            Self::Axis(_, fault) => {
-                let found = AXIS_FAULTS.iter().find(|(entry, ..)| *entry == fault);
-                found.map_or(Notice::Nothing, |(.., notice)| *notice)
-            }
-            other => {
-                let found = OTHERS.iter().find(|(entry, ..)| *entry == other);
-                found.map_or(Notice::Nothing, |(.., notice)| *notice)
-            }
+            Self::Axis(_, fault) => fault.entry().1,
+            other => other.entry().1,
         }
+    }
+
+    /// Its name and what must be noticed, of a fault of neither a chip nor an axis.
+    fn entry(self) -> (&'static str, Notice) {
+        let found = OTHERS.iter().find(|(entry, ..)| *entry == self);
+        found.map_or(("", Notice::Nothing), |(_, name, _, notice)| (*name, *notice))
     }
 }
 
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let axis_name = |fault: &AxisFault, of: usize| {
-            let found = AXIS_FAULTS.iter().find(|(entry, ..)| entry == fault);
-            found.map_or("", |(_, names, _)| names[of])
-        };
         match self {
             Self::Chip(device, fault) => write!(f, "{}-{fault}", Chip::name(*device)),
-            Self::Axis(Device::OuterFrame, fault) => write!(f, "outer-{}", axis_name(fault, 1)),
-            Self::Axis(Device::InnerFrame, fault) => write!(f, "inner-{}", axis_name(fault, 1)),
-            Self::Axis(_, fault) => f.write_str(axis_name(fault, 0)),
-            other => {
-                let found = OTHERS.iter().find(|(entry, ..)| entry == other);
-                f.write_str(found.map_or("", |(_, name, ..)| name))
-            }
+            Self::Axis(Device::OuterFrame, fault) => write!(f, "outer-{}", fault.entry().0[1]),
+            Self::Axis(Device::InnerFrame, fault) => write!(f, "inner-{}", fault.entry().0[1]),
+            Self::Axis(_, fault) => f.write_str(fault.entry().0[0]),
+            other => f.write_str(other.entry().0),
         }
     }
 }

@@ -19,17 +19,15 @@ pub(super) fn course(fault: Option<Fault>, spin: f64, lift: f64, at: f64) -> Cou
     let gone = at + FADING;
     let back = gone + PASSING;
     let steady = |value: f64| [(0.0, value); 4];
+    let lost = |value: f64| [(at, value), (gone, 0.0), (gone, 0.0), (gone, 0.0)];
+    let mut course = Course { spin: steady(spin), lift: steady(lift) };
     match fault {
-        Some(Fault::LiftFades) => Course {
-            spin: steady(spin),
-            lift: [(at, lift), (gone, 0.0), (back, 0.0), (back + FADING, lift)],
-        },
-        Some(Fault::LiftGone) => {
-            Course { spin: steady(spin), lift: [(at, lift), (gone, 0.0), (gone, 0.0), (gone, 0.0)] }
+        Some(Fault::LiftFades) => {
+            course.lift = [(at, lift), (gone, 0.0), (back, 0.0), (back + FADING, lift)];
         }
-        Some(Fault::SpinStops) => {
-            Course { spin: [(at, spin), (gone, 0.0), (gone, 0.0), (gone, 0.0)], lift: steady(lift) }
-        }
-        _ => Course { spin: steady(spin), lift: steady(lift) },
+        Some(Fault::LiftGone) => course.lift = lost(lift),
+        Some(Fault::SpinStops) => course.spin = lost(spin),
+        _ => {}
     }
+    course
 }

@@ -8,7 +8,6 @@ use drivers::ads1262::GREATEST_BUS_HERTZ;
 use drivers::ads1262::configuration::{Configuration as Converter, DataRate};
 use embassy_time::{Delay, Instant};
 use hal_mock::accelerometer::AccelerometerConfiguration;
-use hal_mock::ads1262::Ads1262 as SimulatedConverter;
 use hal_mock::chip::Rig;
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::spin::SpinConfiguration as World;
@@ -119,13 +118,11 @@ impl SpinScenario {
     }
 
     /// What a fault does that comes in the middle.
-    #[must_use]
     pub fn injection(&self, fault: Option<Fault>) -> Injection {
         Injection::at(fault, Instant::from_micros((self.middle_s() * 1e6) as u64))
     }
 
     /// The simulated board of a body that flies so, with what goes wrong with it.
-    #[must_use]
     pub fn board<'a>(&self, course: &'a Course, injection: &'a Injection) -> SpinBoard<'a> {
         let mut body = World {
             rate_hz: SAMPLE_RATE,
@@ -150,7 +147,9 @@ impl SpinScenario {
         let mut board = SpinBoard::new(SpinPlant::new(&plant, self.seed));
         board.blackouts = &injection.blackouts;
         // One oscillator for all five.
-        board.chips.converters.iter_mut().for_each(SimulatedConverter::clock_externally);
+        for converter in &mut board.chips.converters {
+            converter.has_external_clock = true;
+        }
         board
     }
 

@@ -11,9 +11,7 @@ use drivers::adxl355;
 use drivers::adxl355::registers::OutputRate;
 use embassy_time::{Delay, Instant};
 use hal_mock::accelerometer::AccelerometerConfiguration;
-use hal_mock::ads1262::Ads1262 as SimulatedConverter;
 use hal_mock::chip::Rig;
-use hal_mock::gyro::GyroConfiguration;
 use hal_mock::plant::sway::{SwayComponent, SwayConfiguration};
 use hal_mock::vehicle::board::{GYROS, VehicleBoard};
 use hal_mock::vehicle::plant::{VehiclePlant, VehiclePlantConfiguration};
@@ -102,6 +100,7 @@ pub static BRIEF: [Leg; 4] = [
 pub type Day = world::scenario::Scenario;
 
 /// A simulated alignment in a vehicle. Where it is and how it faces is for the simulation alone.
+#[must_use]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VehicleScenario {
     /// Site, azimuth at first, gyros and sample rate; its positions, dwells and tilt are not looked at.
@@ -132,7 +131,6 @@ impl Default for VehicleScenario {
 
 impl VehicleScenario {
     /// The default with another seed.
-    #[must_use]
     pub fn usual(seed: u64) -> Self {
         let usual = Self::default();
         Self { base: Scenario { seed, ..usual.base }, ..usual }
@@ -140,7 +138,6 @@ impl VehicleScenario {
 
     /// Two stops of a quarter of a minute and a short drive at 50 Hz: what a sample costs, where a vehicle
     /// is dear to simulate.
-    #[must_use]
     pub fn brief(seed: u64) -> Self {
         let usual = Self::usual(seed);
         let hold = Hold::of(BRIEF_KEPT_SECONDS);
@@ -212,7 +209,6 @@ impl VehicleScenario {
     }
 
     /// What the vehicle does, where nothing or something is wrong with that.
-    #[must_use]
     pub fn day(&self, fault: Option<Fault>) -> Day {
         let mut day = Day::stops(self.base.seed, self.stops, self.standing_s(), self.drive_s);
         day.vehicle = self.vehicle();
@@ -233,14 +229,12 @@ impl VehicleScenario {
     }
 
     /// What a fault does that comes amid the first drive.
-    #[must_use]
     pub fn injection(&self, fault: Option<Fault>) -> Injection {
         let seconds = self.standing_s() + 0.5 * self.drive_s;
         Injection::at(fault, Instant::from_micros((seconds * 1e6) as u64))
     }
 
     /// The simulated board of a vehicle that does this, with what goes wrong with it.
-    #[must_use]
     pub fn board<'a>(
         &self,
         legs: &'a [Leg],
@@ -258,7 +252,9 @@ impl VehicleScenario {
         let mut board = VehicleBoard::new(VehiclePlant::new(&plant, self.base.seed));
         board.blackouts = &injection.blackouts;
         // One oscillator for all three.
-        board.chips.converters.iter_mut().for_each(SimulatedConverter::clock_externally);
+        for converter in &mut board.chips.converters {
+            converter.has_external_clock = true;
+        }
         board
     }
 
@@ -278,7 +274,7 @@ impl VehicleScenario {
             latitude_deg: self.base.latitude_deg,
             azimuth_deg: self.base.azimuth_deg,
             rate_hz: self.base.sample_rate_hz,
-            gyros: [self.gyro(); 3],
+            gyros: [self.base.gyro.simulated(); 3],
             gyro_full_scale_rad_s: scenario::FULL_SCALE,
             accelerometer: AccelerometerConfiguration {
                 noise_m_s2_sqrt_hz: scenario::FORCE_NOISE,
@@ -287,17 +283,6 @@ impl VehicleScenario {
             },
             accelerometer_full_scale_m_s2: FORCE_FULL_SCALE,
             ..VehicleConfiguration::default()
-        }
-    }
-
-    fn gyro(&self) -> GyroConfiguration {
-        GyroConfiguration {
-            n_deg_sqrt_h: self.base.gyro.n_deg_sqrt_h,
-            b_deg_h: self.base.gyro.b_deg_h,
-            k_deg_h_sqrt_h: self.base.gyro.k_deg_h_sqrt_h,
-            bias_sigma_deg_h: self.base.gyro.bias_sigma_deg_h,
-            scale_sigma: scenario::SCALE_SIGMA,
-            ..GyroConfiguration::default()
         }
     }
 

@@ -82,7 +82,7 @@ impl Grade {
             b_deg_h: self.b_deg_h,
             k_deg_h_sqrt_h: self.k_deg_h_sqrt_h,
             r_deg_h2: self.r_deg_h2,
-            flicker_high_hz: FLICKER_HIGH_HZ,
+            flicker_high_hz: Some(FLICKER_HIGH_HZ),
             bias_sigma_deg_h: BIAS_DEG_H,
             ..GyroConfiguration::default()
         }

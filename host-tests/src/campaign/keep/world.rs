@@ -144,7 +144,7 @@ impl Sheet {
     /// As it is simulated.
     fn simulated(&self) -> GyroConfiguration {
         GyroConfiguration {
-            flicker_high_hz: FLICKER_HIGH_HZ,
+            flicker_high_hz: Some(FLICKER_HIGH_HZ),
             bias_sigma_deg_h: self.bias_deg_h,
             scale_sigma: self.scale_sigma,
             ..self.grade.simulated()

@@ -189,7 +189,7 @@ impl World {
         let configuration = TurntableConfiguration {
             instruments: self.instruments(),
             unevenness: self.gear(),
-            accelerometer_full_scale_m_s2: FORCE_FULL_SCALE,
+            accelerometer_full_scale_m_s2: Some(FORCE_FULL_SCALE),
             slip: self.slip,
             segments: &self.segments,
             disturbances: &self.disturbances,

@@ -62,7 +62,7 @@ fn an_accelerometer_that_saturates_sticks_or_is_dead_is_refused() {
     assert_refused(&["Device"], |seed, case| {
         with(seed, &case, |configuration| TurntableConfiguration {
             disturbances: &pushed,
-            accelerometer_full_scale_m_s2: 20.08,
+            accelerometer_full_scale_m_s2: Some(20.08),
             ..configuration
         })
     });

@@ -157,7 +157,7 @@ fn conversions_come_after_the_latency_and_then_exactly_at_the_rate() {
     assert_eq!(times[7200], 1_000_494, "no error adds up");
     // The last one has just ended and the one before it was the last to be overwritten.
     rig.borrow_mut().ready_line(Select::Gyro, Instant::from_micros(SETTLED + 1_100_000));
-    assert!(rig.borrow().chip.overwritten() >= 7200);
+    assert!(rig.borrow().chip.overwritten >= 7200);
 }
 
 /// Figures 9-43 and 9-44: either way of reading, and what an unread conversion gives way to.
@@ -237,7 +237,7 @@ fn alarms_are_raised_where_the_data_sheet_draws_the_lines() {
         (0.0, 0.39, 0x10),
     ] {
         let rig = rig(Input::steady(volts));
-        rig.borrow_mut().chip.set_reference(reference);
+        rig.borrow_mut().chip.voltages.reference = reference;
         let reply = run(converted(&rig, 0x00, 0x08, 0x01, 3000));
         assert_eq!(reply[1] & 0x3E, alarms, "{volts} {reference}");
     }

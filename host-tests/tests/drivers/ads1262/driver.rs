@@ -77,7 +77,7 @@ fn every_conversion_is_read_once_and_in_time() {
             assert!((volts - (at - 1.0)).abs() < 2e-9, "{count}: {volts}");
         }
     });
-    assert_eq!(rig.borrow().chip.overwritten(), 0);
+    assert_eq!(rig.borrow().chip.overwritten, 0);
     assert_eq!(violations(&rig), 0);
 }
 
@@ -100,7 +100,7 @@ fn a_late_reader_gets_the_newest_and_then_waits_for_the_next() {
         device.ready().await.expect("there is a line");
         assert_eq!(now(), first + 27_500);
     });
-    assert_eq!(rig.borrow().chip.overwritten(), 10);
+    assert_eq!(rig.borrow().chip.overwritten, 10);
     assert_eq!(violations(&rig), 0);
 }
 
@@ -117,7 +117,7 @@ fn a_dropped_wait_loses_nothing() {
         device.ready().await.expect("there is a line");
         assert!(device.read().await.expect("it is healthy").is_new);
     });
-    assert_eq!(rig.borrow().chip.overwritten(), 0);
+    assert_eq!(rig.borrow().chip.overwritten, 0);
 }
 
 #[test]

@@ -7,7 +7,7 @@ use embassy_time::{Delay, Duration, Instant, with_timeout};
 use embedded_hal::digital::ErrorType as PinErrorType;
 use embedded_hal_async::digital::Wait;
 use embedded_hal_async::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
-use hal_mock::ads1262::Ads1262;
+use hal_mock::ads1262::{Ads1262, Sickness};
 use hal_mock::chip::{Rig as _, Select};
 
 use super::rig::{Device, Input, Rig, device, rig, run, violations};
@@ -40,7 +40,7 @@ fn a_wrong_checksum_costs_one_conversion() {
     let rig = rig(Input::steady(0.5));
     run(async {
         let mut device = running(&rig).await;
-        rig.borrow_mut().chip.corrupt_next();
+        rig.borrow_mut().chip.sickness.corrupts_next = true;
         device.ready().await.expect("there is a line");
         assert_eq!(device.read().await, Err(Fault::Checksum));
         assert!(!device.read().await.expect("the second time it is right").is_new);
@@ -81,20 +81,24 @@ fn a_chip_whose_supply_has_just_failed_is_started_without_delay() {
 
 #[test]
 fn a_dead_stuck_or_false_converter_does_not_start() {
-    assert_eq!(started(Ads1262::die), Err(Fault::NotReady));
+    assert_eq!(started(|chip| chip.sickness.is_dead = true), Err(Fault::NotReady));
     assert_eq!(started(Ads1262::stick), Err(Fault::SelfTest));
     for code in [858_993_459, -858_993_459, i32::MAX, i32::MIN, -1] {
-        assert_eq!(started(|chip| chip.stick_at(code)), Err(Fault::SelfTest), "{code}");
+        assert_eq!(
+            started(|chip| chip.sickness.stuck_at = Some(code)),
+            Err(Fault::SelfTest),
+            "{code}"
+        );
     }
-    assert_eq!(started(|chip| chip.set_reference(2.2)), Err(Fault::SelfTest));
-    assert_eq!(started(|chip| chip.set_reference(0.3)), Err(Fault::Alarm { status: 0x52 }));
-    assert_eq!(started(|chip| chip.set_supply(4.0)), Err(Fault::SelfTest));
+    assert_eq!(started(|chip| chip.voltages.reference = 2.2), Err(Fault::SelfTest));
+    assert_eq!(started(|chip| chip.voltages.reference = 0.3), Err(Fault::Alarm { status: 0x52 }));
+    assert_eq!(started(|chip| chip.voltages.supply = 4.0), Err(Fault::SelfTest));
 }
 
 #[test]
 fn a_register_that_does_not_take_its_value_is_named() {
     for register in [0x01, 0x04, 0x06, 0x10, 0x11] {
-        let fault = started(|chip| chip.break_register(register));
+        let fault = started(|chip| chip.sickness.broken_register = Some(register));
         assert_eq!(fault, Err(Fault::NotAsWritten { register }));
     }
 }
@@ -102,14 +106,14 @@ fn a_register_that_does_not_take_its_value_is_named() {
 /// It would convert at another rate than the one that was configured.
 #[test]
 fn a_clock_at_the_pins_is_an_alarm() {
-    assert_eq!(started(Ads1262::clock_externally), Err(Fault::Alarm { status: 0x60 }));
+    assert_eq!(started(|chip| chip.has_external_clock = true), Err(Fault::Alarm { status: 0x60 }));
 }
 
 /// Section 7.3: 4.75 V to 5.25 V.
 #[test]
 fn a_supply_within_its_range_is_no_fault() {
-    assert_eq!(started(|chip| chip.set_supply(4.75)), Ok(()));
-    assert_eq!(started(|chip| chip.set_supply(5.25)), Ok(()));
+    assert_eq!(started(|chip| chip.voltages.supply = 4.75), Ok(()));
+    assert_eq!(started(|chip| chip.voltages.supply = 5.25), Ok(()));
 }
 
 /// The driver cannot tell a stuck code from a quiet gyro; the next start can.
@@ -129,7 +133,7 @@ fn a_converter_that_sticks_is_found_by_the_next_start() {
         codes.dedup();
         assert_eq!(codes.len(), 1);
         assert_eq!(device.start().await, Err(Fault::SelfTest));
-        rig.borrow_mut().chip.heal();
+        rig.borrow_mut().chip.sickness = Sickness::default();
         device.start().await.expect("it is healthy");
     });
     assert_eq!(violations(&rig), 0);
@@ -156,7 +160,7 @@ fn a_failing_reference_is_an_alarm() {
     let rig = rig(Input::default());
     run(async {
         let mut device = running(&rig).await;
-        rig.borrow_mut().chip.set_reference(0.2);
+        rig.borrow_mut().chip.voltages.reference = 0.2;
         device.ready().await.expect("there is a line");
         assert_eq!(device.read().await, Err(Fault::Alarm { status: 0x50 }));
     });

@@ -40,7 +40,7 @@ pub type Device<'a> =
     Driver<SpiPort<'a, Single<Ads1262, Input>>, ReadyPin<'a, Single<Ads1262, Input>>, Delay>;
 
 pub fn rig(input: Input) -> Rig {
-    RefCell::new(Single { chip: Ads1262::new(), environment: input })
+    RefCell::new(Single { chip: Ads1262::default(), environment: input })
 }
 
 pub fn port(rig: &Rig, hertz: u32) -> SpiPort<'_, Single<Ads1262, Input>> {

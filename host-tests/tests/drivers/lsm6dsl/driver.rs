@@ -5,9 +5,10 @@ use drivers::lsm6dsl::registers::{ADDRESS_HIGH, ADDRESS_LOW, ForceRange, OutputR
 use drivers::lsm6dsl::{Configuration, Lsm6dsl, READS_UNCHECKED, Reading};
 use embassy_time::{Delay, Instant, Timer};
 use embedded_hal_async::i2c::{ErrorKind, ErrorType, I2c, Operation};
+use hal_mock::i2c::I2cChip;
 use orientation::units::Temperature;
 
-use super::rig::{Imu, bench_with, imu, level, port, run, started, violations};
+use super::rig::{Imu, Table, bench_with, imu, level, port, run, started, violations};
 
 const USUAL: Configuration =
     Configuration { output: OutputRate::Hz208, rate: RateRange::Dps125, force: ForceRange::G2 };
@@ -81,7 +82,7 @@ fn another_chip_or_none_is_refused() {
     run(async {
         let mut absent = Lsm6dsl::new(port(&rig), Delay, ADDRESS_HIGH, USUAL);
         assert_eq!(absent.start().await, Err(Fault::Bus), "nobody acknowledges");
-        rig.borrow_mut().chip.flip(0x0F, 0);
+        rig.borrow_mut().chip.registers[0x0F] ^= 1;
         let other = imu(&rig, USUAL).start().await;
         assert_eq!(other, Err(Fault::Identity { found: 0x6B }));
     });
@@ -136,7 +137,7 @@ fn a_chip_outside_its_self_test_limits_is_refused() {
         (1.6, 690.0, true),
     ] {
         let rig = bench_with([0.3, 0.2, -0.9], [3.0, -5.0, 2.0]);
-        rig.borrow_mut().chip.answer_self_test(force, rate);
+        rig.borrow_mut().chip.self_test = (force, rate);
         let expected = if passes { Ok(()) } else { Err(Fault::SelfTest) };
         assert_eq!(run(imu(&rig, USUAL).start()), expected, "{force} g, {rate} °/s");
     }
@@ -149,7 +150,7 @@ fn a_chip_that_reset_itself_is_noticed_by_the_second_reading_and_brought_back() 
         run(async {
             let mut imu = started(&rig, USUAL).await;
             fresh(&mut imu).await;
-            rig.borrow_mut().interrupt_supply(Instant::now());
+            I2cChip::<Table>::power_cycle(&mut rig.borrow_mut().chip, Instant::now());
             Timer::after_millis(pause).await;
             assert_eq!(imu.read().await, Ok(None));
             assert_eq!(imu.read().await, Err(Fault::Reset));
@@ -167,7 +168,7 @@ fn a_changed_register_is_noticed_in_bounded_reads() {
         let rig = level();
         run(async {
             let mut imu = started(&rig, USUAL).await;
-            rig.borrow_mut().chip.flip(register, bit);
+            rig.borrow_mut().chip.registers[usize::from(register)] ^= 1 << bit;
             let mut reads = 0;
             loop {
                 Timer::after_micros(4500).await;

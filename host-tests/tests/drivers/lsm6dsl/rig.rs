@@ -40,7 +40,7 @@ impl MotionInput for Table {
 }
 
 pub type Bench = RefCell<Single<Chip, Table>>;
-pub type Imu<'a> = Lsm6dsl<I2cPort<'a, Single<Chip, Table>>, Delay>;
+pub type Imu<'a> = Lsm6dsl<I2cPort<'a, Chip, Table>, Delay>;
 
 pub fn bench_with(force: [f64; 3], rate: [f64; 3]) -> Bench {
     let environment = Table { force, rate, temperature: 25.0 };
@@ -53,7 +53,7 @@ pub fn level() -> Bench {
 
 pub use crate::support::rig::run;
 
-pub fn port(rig: &Bench) -> I2cPort<'_, Single<Chip, Table>> {
+pub fn port(rig: &Bench) -> I2cPort<'_, Chip, Table> {
     I2cPort::new(rig, BUS_HERTZ)
 }
 

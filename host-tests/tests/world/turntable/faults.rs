@@ -108,7 +108,7 @@ fn a_push_takes_the_accelerometer_beyond_its_range_and_leaves_the_gyro_alone() {
     let clipping = TurntableConfiguration {
         segments: &segments,
         disturbances: &disturbances,
-        accelerometer_full_scale_m_s2: 20.08,
+        accelerometer_full_scale_m_s2: Some(20.08),
         ..Default::default()
     };
     let (level, still) = (plant.force_g(at(0.0)), plant.volts(at(0.0)));
