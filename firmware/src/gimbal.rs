@@ -106,11 +106,11 @@ impl<M: Actuator> Mechanism for Gimbal<'_, M> {
 
     /// After an azimuth was found, sets the gyro's sensitive axis vertical, where it can hold the
     /// azimuth; a keeper has requested that already.
-    async fn park(&mut self) {
+    async fn park(&mut self, meanwhile: impl Future<Output = ()>) {
         let is_found = matches!(self.shared.status.get(), Status::Concluded { .. });
         if is_found && !self.shared.keep.is_wanted.get() {
             // If this fails, the log has the reason; the azimuth is valid nevertheless.
-            let _ = self.store().await;
+            select(self.store(), meanwhile).await;
         }
     }
 }

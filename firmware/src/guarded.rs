@@ -29,10 +29,14 @@ pub struct Guarded<'a, D> {
     retry_budget: RetryBudget,
 }
 
-/// The remedy for a symptom of a device: true if it must be started again, false if only the reading
-/// is lost. Not a method, so that its code exists once for all devices.
-fn is_to_restart(remedy: Remedy, name: Device, shared: &Shared<'_>) -> Result<bool, Refusal> {
-    match remedy {
+/// Charges a symptom of a device to its budget: true if it must be started again, false if only the
+/// reading is lost. Not a method, so that its code exists once for all devices.
+fn is_to_restart(
+    (name, retry_budget): (Device, &mut RetryBudget),
+    symptom: Symptom,
+    shared: &Shared<'_>,
+) -> Result<bool, Refusal> {
+    match retry_budget.failed(symptom) {
         Remedy::Drop => Ok(false),
         Remedy::Restart => Ok(true),
         Remedy::GiveUp(trouble) => Err(shared.give_up(name, trouble)),
@@ -69,7 +73,7 @@ impl<'a, D: Startable> Guarded<'a, D> {
     /// # Errors
     /// The device is given up.
     pub async fn mend(&mut self, symptom: Symptom, shared: &Shared<'_>) -> Result<(), Refusal> {
-        if is_to_restart(self.retry_budget.failed(symptom), self.name, shared)? {
+        if is_to_restart((self.name, &mut self.retry_budget), symptom, shared)? {
             return self.start_after(Some(symptom), shared).await;
         }
         shared.lose(self.name, symptom);
@@ -119,7 +123,7 @@ impl<'a, D: Startable> Guarded<'a, D> {
             }
             let Err(fault) = self.device.start().await else { break };
             let symptom = Symptom::Chip(fault);
-            is_to_restart(self.retry_budget.failed(symptom), self.name, shared)?;
+            is_to_restart((self.name, &mut self.retry_budget), symptom, shared)?;
             trouble = Some(symptom);
         }
         shared.tell(Event::Started(self.name));

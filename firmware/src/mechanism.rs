@@ -16,9 +16,9 @@ pub trait Mechanism {
     /// The reason for which the mechanism or its encoder is given up.
     async fn serve(&mut self) -> Result<Infallible, Refusal>;
 
-    /// Brings the mechanism to where it is to stand after the run. If that fails, the log has the
-    /// reason.
-    async fn park(&mut self) {}
+    /// Brings the mechanism to where it is to stand after the run, while `meanwhile`, which never
+    /// ends, takes the samples. If that fails, the log has the reason.
+    async fn park(&mut self, _meanwhile: impl Future<Output = ()>) {}
 }
 
 /// Sensors fixed to the body (strapdown): there is nothing to turn.

@@ -9,7 +9,7 @@
 use core::future::pending;
 use core::pin::{Pin, pin};
 
-use embassy_futures::select::{select, select3, select5};
+use embassy_futures::select::{select3, select5};
 use embedded_io_async::Write;
 use orientation::signal::SpinSample;
 
@@ -45,7 +45,7 @@ pub async fn navigate<M: Mechanism, L: Write, R: Recorder<S>, K: Keep, S>(
         let kept = pin!(keeping.run(shared));
         join(turning, kept, link, recorder, session, channels).await
     };
-    select(mechanism.park(), discard(channels)).await;
+    mechanism.park(discard(channels)).await;
     health
 }
 

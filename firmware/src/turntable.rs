@@ -68,6 +68,16 @@ impl<'a, M: Actuator> Turntable<'a, M> {
         }
     }
 
+    /// Brings the platform to rest, again after each break that permits it.
+    async fn rest(&mut self) {
+        for _ in 0..=BLOCKS {
+            // A driver that was started again has stopped its motor, and so has a stall.
+            if let Err(Break::Refused(_)) = self.stop().await {
+                return;
+            }
+        }
+    }
+
     /// Brings the platform to rest by the motor's ramp, within 10 s.
     async fn stop(&mut self) -> Result<(), Break> {
         self.motor.look().await?;
@@ -176,13 +186,8 @@ impl<M: Actuator> Mechanism for Turntable<'_, M> {
     }
 
     /// Brings the platform to rest.
-    async fn park(&mut self) {
-        for _ in 0..=BLOCKS {
-            // A driver that was started again has stopped its motor, and so has a stall.
-            if let Err(Break::Refused(_)) = self.stop().await {
-                return;
-            }
-        }
+    async fn park(&mut self, meanwhile: impl Future<Output = ()>) {
+        select(self.rest(), meanwhile).await;
     }
 }
 

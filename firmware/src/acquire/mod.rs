@@ -81,7 +81,7 @@ pub trait Source<'a> {
 pub async fn acquire<'a>(source: &mut impl Source<'a>) {
     loop {
         let Err(reason) = sample_for_ever(source).await;
-        let shared = source.outlet().shared;
+        let shared = source.outlet().shared();
         shared.fail(reason);
         shared.keep.rest().await;
         source.renew();

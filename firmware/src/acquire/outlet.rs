@@ -3,15 +3,13 @@
 use embassy_time::Instant;
 
 use crate::event::Event;
-use crate::shared::{Channels, Queue, Shared};
+use crate::shared::{Channels, Shared};
 use crate::timeline::{Arrival, Timeline};
 
 /// Outlet of samples of kind `S`.
 pub struct Outlet<'a, S> {
-    /// Queue to the session.
-    queue: &'a Queue<S>,
-    /// Channels to the other tasks.
-    pub(super) shared: &'a Shared<'a>,
+    /// Channels to the session and to the other tasks.
+    channels: &'a Channels<'a, S>,
     /// Expected times of the samples.
     timeline: Timeline,
     /// Number of successive samples lost because the queue was full.
@@ -21,23 +19,23 @@ pub struct Outlet<'a, S> {
 impl<'a, S> Outlet<'a, S> {
     /// Outlet of samples with this period, µs.
     pub(super) fn new(period: u32, channels: &'a Channels<'a, S>) -> Self {
-        Self {
-            queue: &channels.samples,
-            shared: &channels.shared,
-            timeline: Timeline::new(period),
-            overflowed: 0,
-        }
+        Self { channels, timeline: Timeline::new(period), overflowed: 0 }
+    }
+
+    /// Signals and counters that all parts share.
+    pub(super) fn shared(&self) -> &'a Shared<'a> {
+        &self.channels.shared
     }
 
     /// Queues a sample for the session, and reports an overflow of the queue.
     pub(super) fn hand_over(&mut self, sample: S) {
-        self.shared.count(|health| health.samples = health.samples.saturating_add(1));
-        self.shared.keep.is_behind.set(true);
-        if self.queue.try_send(sample).is_err() {
+        self.channels.shared.count(|health| health.samples = health.samples.saturating_add(1));
+        self.channels.shared.keep.is_behind.set(true);
+        if self.channels.samples.try_send(sample).is_err() {
             self.overflowed += 1;
-            self.shared.count(|health| health.overflowed += 1);
+            self.channels.shared.count(|health| health.overflowed += 1);
         } else if self.overflowed > 0 {
-            self.shared.tell(Event::Overflowed(self.overflowed));
+            self.channels.shared.tell(Event::Overflowed(self.overflowed));
             self.overflowed = 0;
         }
     }
@@ -47,12 +45,14 @@ impl<'a, S> Outlet<'a, S> {
         match self.timeline.judge(time) {
             Arrival::InTime => {}
             Arrival::Late(microseconds) => {
-                self.shared.count(|health| health.late += 1);
-                self.shared.tell(Event::Late(microseconds));
+                self.channels.shared.count(|health| health.late += 1);
+                self.channels.shared.tell(Event::Late(microseconds));
             }
             Arrival::Missing(count) => {
-                self.shared.count(|health| health.missing = health.missing.saturating_add(count));
-                self.shared.tell(Event::Missing(count));
+                self.channels
+                    .shared
+                    .count(|health| health.missing = health.missing.saturating_add(count));
+                self.channels.shared.tell(Event::Missing(count));
             }
         }
     }

@@ -93,7 +93,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Acquisition
 
     /// Passes a coarse reading on to attitude and heading.
     fn pass_on(&mut self) {
-        let shared = self.outlet.shared;
+        let shared = self.outlet.shared();
         if let Some((at, reading)) = self.steady.reading() {
             self.coarse.pass_on(at, &reading, shared);
         }
@@ -101,7 +101,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Acquisition
 
     /// Reads the precise gyro; none where the reading was lost.
     async fn rate(&mut self) -> Result<Option<AngularRate>, Refusal> {
-        let shared = self.outlet.shared;
+        let shared = self.outlet.shared();
         match self.rates.read(shared).await? {
             Ok(rate) => Ok(rate),
             Err(symptom) => self.rates.gyro.mend(symptom, shared).await.map(|()| None),
@@ -119,7 +119,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
     }
 
     async fn start(&mut self) -> Result<(), Refusal> {
-        let shared = self.outlet.shared;
+        let shared = self.outlet.shared();
         self.forces.accelerometer.start(shared).await?;
         self.pointing.start().await?;
         self.steady.start(shared).await?;
@@ -127,7 +127,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
     }
 
     async fn sample(&mut self) -> Result<Option<Sample>, Refusal> {
-        let shared = self.outlet.shared;
+        let shared = self.outlet.shared();
         let time = match self.rates.conversion(self.silence).await {
             Ok(time) => time,
             Err(symptom) => return self.rates.gyro.mend(symptom, shared).await.map(|()| None),
@@ -162,7 +162,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
     /// While an azimuth is held, continues with the coarse sensors alone until the body rests and
     /// the others may be tried again.
     async fn do_without(&mut self, reason: Refusal) -> Result<(), Refusal> {
-        let shared = self.outlet.shared;
+        let shared = self.outlet.shared();
         if !shared.keep.is_kept.get() {
             return Err(reason);
         }

@@ -74,7 +74,7 @@ impl<'a, G: InStep, A: Accelerometer> Source<'a> for TriadAcquisition<'a, G, A> 
     }
 
     async fn start(&mut self) -> Result<(), Refusal> {
-        self.forces.accelerometer.start(self.outlet.shared).await?;
+        self.forces.accelerometer.start(self.outlet.shared()).await?;
         self.gyros.start().await
     }
 
@@ -86,14 +86,14 @@ impl<'a, G: InStep, A: Accelerometer> Source<'a> for TriadAcquisition<'a, G, A> 
         if !self.gyros.are_in_step(times, time).await? {
             return Ok(None);
         }
-        let reading = self.forces.read(self.outlet.shared).await?;
+        let reading = self.forces.read(self.outlet.shared()).await?;
         let force = reading.and_then(|reading| self.mean.push(reading));
         let Some(rates) = rates else { return Ok(None) };
         self.outlet.judge(time);
         let turned = increments(rates, lasted, &mut self.carried);
         let time = orientation::units::Instant(time.as_micros());
         let sample = InertialSample { time, turned, force };
-        self.outlet.shared.move_on(Motion::Moved(sample));
+        self.outlet.shared().move_on(Motion::Moved(sample));
         Ok(Some(sample))
     }
 

@@ -23,7 +23,7 @@ use orientation::units::{self, DEGREES_PER_RADIAN as DEGREES};
 use crate::event::Event;
 use crate::link::Status;
 use crate::ports::Recorder;
-use crate::shared::{Channels, Queue, Shared};
+use crate::shared::{Channels, Shared};
 
 /// Longest time until the stage is homed, s: six searches over the whole travel with the rests
 /// between them.
@@ -86,10 +86,8 @@ pub struct SessionRunner<'a, R, S> {
     session: &'a mut dyn AlignmentSession<S>,
     /// Recorder of raw samples.
     recorder: &'a mut R,
-    /// The queue of samples from acquisition.
-    samples: &'a Queue<S>,
-    /// Signals and counters that all parts share.
-    shared: &'a Shared<'a>,
+    /// The queue of samples, and the signals and counters that all parts share.
+    channels: &'a Channels<'a, S>,
     /// Time of the latest sample that the session has taken.
     taken: Option<units::Instant>,
 }
@@ -105,27 +103,21 @@ impl<'a, R: Recorder<S>, S> SessionRunner<'a, R, S> {
         recorder: &'a mut R,
         channels: &'a Channels<'a, S>,
     ) -> Self {
-        Self {
-            session,
-            recorder,
-            samples: &channels.samples,
-            shared: &channels.shared,
-            taken: None,
-        }
+        Self { session, recorder, channels, taken: None }
     }
 
     /// Runs the session to its conclusion, and further sessions as the keeper requests them.
     pub async fn run(&mut self) -> Infallible {
-        if !self.shared.homed.signaled() {
-            self.shared.status.set(Status::Homing);
+        if !self.channels.shared.homed.signaled() {
+            self.channels.shared.status.set(Status::Homing);
         }
         loop {
-            self.shared.tell(self.session.outset());
+            self.channels.shared.tell(self.session.outset());
             if let Err(Some(reason)) = self.runner().await {
                 self.session.fail(reason);
             }
             self.conclude();
-            self.shared.concluded.signal(());
+            self.channels.shared.concluded.signal(());
             self.wait_for_another().await;
             self.session.renew();
         }
@@ -134,24 +126,26 @@ impl<'a, R: Recorder<S>, S> SessionRunner<'a, R, S> {
     /// Discards samples until the keeper requests another session. Without a keeper it waits for
     /// ever, and the link ends the run once it has sent the last status.
     async fn wait_for_another(&mut self) {
-        let keep = &self.shared.keep;
+        let keep = &self.channels.shared.keep;
         if !keep.is_wanted.get() {
             pending::<()>().await;
         }
         keep.is_idle.set(true);
         keep.is_kept.set(true);
-        if self.samples.is_empty() {
+        if self.channels.samples.is_empty() {
             keep.catch_up();
         }
-        while let Either::Second(_) = select(keep.again.wait(), self.samples.receive()).await {
-            if self.samples.is_empty() {
+        while let Either::Second(_) =
+            select(keep.again.wait(), self.channels.samples.receive()).await
+        {
+            if self.channels.samples.is_empty() {
                 keep.catch_up();
                 Timer::after(REST).await;
             }
         }
         keep.is_idle.set(false);
         // A failure of the session before is over, or will be reported again.
-        self.shared.failure.reset();
+        self.channels.shared.failure.reset();
         keep.spare.reset();
     }
 
@@ -163,20 +157,20 @@ impl<'a, R: Recorder<S>, S> SessionRunner<'a, R, S> {
     async fn runner(&mut self) -> Result<(), Break> {
         self.check_place()?;
         self.wait_for_home().await?;
-        self.session.allow_for(self.shared.sway.get());
+        self.session.allow_for(self.channels.shared.sway.get());
         loop {
             let sample = self.sample().await?;
             self.recorder.record(&sample).await;
             self.taken = self.session.time(&sample);
             let step = self.session.take(&sample);
-            self.session.follow(self.shared);
+            self.session.follow(&self.channels.shared);
             match step {
                 Step::Wait => {}
-                Step::Move(to) => self.shared.wanted.signal(to),
+                Step::Move(to) => self.channels.shared.wanted.signal(to),
                 Step::Finish => return Ok(()),
             }
-            if self.samples.is_empty() {
-                self.shared.keep.catch_up();
+            if self.channels.samples.is_empty() {
+                self.channels.shared.keep.catch_up();
                 Timer::after(REST).await;
             }
         }
@@ -197,10 +191,10 @@ impl<'a, R: Recorder<S>, S> SessionRunner<'a, R, S> {
     /// [`Refusal::TimeExhausted`] after 15 minutes.
     async fn wait_for_home(&self) -> Result<(), Break> {
         let deadline = Instant::now() + HOMING;
-        while !self.shared.homed.signaled() {
+        while !self.channels.shared.homed.signaled() {
             self.sample().await?;
-            if self.samples.is_empty() {
-                self.shared.keep.catch_up();
+            if self.channels.samples.is_empty() {
+                self.channels.shared.keep.catch_up();
             }
             if Instant::now() > deadline {
                 return Err(Refusal::TimeExhausted.into());
@@ -214,8 +208,8 @@ impl<'a, R: Recorder<S>, S> SessionRunner<'a, R, S> {
     /// # Errors
     /// The failure of another part, or the request to skip the session.
     async fn sample(&self) -> Result<S, Break> {
-        let Shared { failure, keep, .. } = self.shared;
-        match select3(failure.wait(), self.samples.receive(), keep.spare.wait()).await {
+        let Shared { failure, keep, .. } = &self.channels.shared;
+        match select3(failure.wait(), self.channels.samples.receive(), keep.spare.wait()).await {
             Either3::First(reason) => Err(reason.into()),
             Either3::Second(sample) => Ok(sample),
             Either3::Third(()) => Err(None),
@@ -225,20 +219,20 @@ impl<'a, R: Recorder<S>, S> SessionRunner<'a, R, S> {
     /// Reports the result, and hands an azimuth to the keeper with the time of the session's last
     /// sample.
     fn conclude(&self) {
-        match self.session.conclude(self.shared) {
+        match self.session.conclude(&self.channels.shared) {
             None => {}
             Some(Ok(found)) => {
                 let [angle, sigma, limit] = found.map(|angle| angle * DEGREES);
-                self.shared.tell(Event::Concluded(angle, sigma, limit));
-                self.shared.status.set(Status::concluded(angle, sigma));
+                self.channels.shared.tell(Event::Concluded(angle, sigma, limit));
+                self.channels.shared.status.set(Status::concluded(angle, sigma));
                 let [azimuth, sigma, _] = found;
                 if let Some(taken) = self.taken {
-                    self.shared.keep.found.signal((taken, Handover { azimuth, sigma }));
+                    self.channels.shared.keep.found.signal((taken, Handover { azimuth, sigma }));
                 }
             }
             Some(Err(reason)) => {
-                self.shared.tell(Event::Refused(reason));
-                self.shared.status.set(Status::Refused);
+                self.channels.shared.tell(Event::Refused(reason));
+                self.channels.shared.status.set(Status::Refused);
             }
         }
     }
