@@ -1,42 +1,10 @@
 //! What the reports of campaigns are made of: one report for terminal and page, whose figures only the page shows.
 
-use std::fmt::Display;
-
 use super::statistics::{NORMAL_COVERAGE, Precision};
-use crate::report::{Axis, Figure, Part, Series, Table};
-
-/// A table that grows by columns: each names itself and shows one thing of every row.
-pub(super) struct Columns<'a, R> {
-    rows: &'a [R],
-    table: Table,
-}
+pub(super) use crate::report::Columns;
+use crate::report::{Figure, Part, Series};
 
 impl<'a, R> Columns<'a, R> {
-    /// A table of these rows, without columns yet.
-    pub(super) fn of(title: &str, rows: &'a [R]) -> Self {
-        let cells = vec![Vec::new(); rows.len()];
-        Self { rows, table: Table { rows: cells, ..Table::new(title, &[]) } }
-    }
-
-    /// Words or a whole number.
-    pub(super) fn column<C: Display>(mut self, name: &str, of: impl Fn(&'a R) -> C) -> Self {
-        self.table.head.push(name.to_owned());
-        for (row, cells) in self.rows.iter().zip(&mut self.table.rows) {
-            cells.push(of(row).to_string());
-        }
-        self
-    }
-
-    /// A number with so many decimal places.
-    pub(super) fn fixed(self, name: &str, places: usize, of: impl Fn(&'a R) -> f64) -> Self {
-        self.column(name, |row| format!("{:.places$}", of(row)))
-    }
-
-    /// A number with an exponent and so many decimal places.
-    pub(super) fn scientific(self, name: &str, places: usize, of: impl Fn(&'a R) -> f64) -> Self {
-        self.column(name, |row| format!("{:.places$e}", of(row)))
-    }
-
     /// Per cent of errors within 1, 2 and 3 σ.
     pub(super) fn covered(self, of: impl Fn(&'a R) -> [f64; 3]) -> Self {
         self.column("within 1, 2, 3 σ, %", |row| list(&of(row)))
@@ -54,12 +22,6 @@ impl<'a, R> Columns<'a, R> {
     }
 }
 
-impl<R> From<Columns<'_, R>> for Part {
-    fn from(columns: Columns<'_, R>) -> Self {
-        columns.table.into()
-    }
-}
-
 /// Three numbers with one decimal place.
 pub(super) fn list(values: &[f64; 3]) -> String {
     values.map(|value| format!("{value:.1}")).join(", ")
@@ -67,8 +29,7 @@ pub(super) fn list(values: &[f64; 3]) -> String {
 
 /// Curves over linear axes, each with its unit.
 pub(super) fn figure(title: &str, x: [&str; 2], y: [&str; 2], series: Vec<Series>) -> Part {
-    let [x, y] = [x, y].map(|[label, unit]| Axis::linear(label, unit));
-    Figure { title: title.to_owned(), x, y, series }.into()
+    Figure::new(title, x, y, series).into()
 }
 
 /// First reasons of refusals, a line each.

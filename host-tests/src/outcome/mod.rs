@@ -341,9 +341,7 @@ pub fn report(
 /// What every method says first: the result or the reason, the limit, the truth, the level.
 fn headline(outcome: &Outcome) -> Lines {
     let mut lines = Lines::default();
-    if let Some(reason) = &outcome.reason {
-        lines.add("reason", reason);
-    }
+    lines.add_found("reason", outcome.reason.as_ref());
     if let Some((azimuth, sigma)) = outcome.azimuth_deg.zip(outcome.sigma_deg) {
         lines.add("azimuth of body x", format!("{azimuth:.4}° ± {sigma:.4}° (1σ)"));
         error(&mut lines, outcome, azimuth, sigma);
@@ -400,19 +398,19 @@ fn of_fit(lines: &mut Lines, fit: &FitDetails) {
 }
 
 /// The parts of σ with each part's share of the variance.
-fn budget_table(BudgetDetails(budget): &BudgetDetails) -> Table {
+fn budget_table(details: &BudgetDetails) -> Table {
+    let budget = &details.0;
     let sigma = budget.sigma();
     let row = |(_, source, part): (_, Part, f64)| {
         let share = 100.0 * (part / sigma) * (part / sigma);
-        vec![source.to_string(), format!("{:.4}", degrees(part)), format!("{share:.1}")]
+        [source.to_string(), format!("{:.4}", degrees(part)), format!("{share:.1}")]
     };
-    let sum =
-        vec!["root sum of squares".to_owned(), format!("{:.4}", degrees(sigma)), String::new()];
+    let sum = ["root sum of squares".to_owned(), format!("{:.4}", degrees(sigma)), String::new()];
     let dominant =
         budget.dominant().map(|source| format!(": {source} dominates{}", remedy(source)));
     let title = format!("Error budget (1σ of the azimuth){}", dominant.unwrap_or_default());
-    let table = Table::new(&title, &["source", "part, °", "share of the variance, %"]);
-    Table { rows: BudgetDetails(*budget).shown().map(row).chain([sum]).collect(), ..table }
+    let rows = details.shown().map(row).chain([sum]);
+    Table::new(&title, &["source", "part, °", "share of the variance, %"], rows)
 }
 
 /// What helps against a part that dominates.

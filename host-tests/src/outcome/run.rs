@@ -13,7 +13,7 @@ use crate::instrument::Run;
 use crate::instrument::kept::{Kept, Point};
 use crate::output::{degrees, positive_zero};
 use crate::recording::{Body, Truth};
-use crate::report::{Axis, Figure, Lines, Part, Series, Style};
+use crate::report::{self, Figure, Lines, Part, Series, Style};
 
 /// What only a simulated run has.
 #[derive(Clone, Debug, Serialize)]
@@ -306,17 +306,14 @@ fn heading(kept: &Kept) -> Figure {
     let all =
         || kept.with_azimuth().map(|(point, [e, s])| (point.seconds(), degrees(e), degrees(s)));
     let band =
-        |times: f64| all().map(move |(at, _, sigma)| (at, 0.0, [-times * sigma, times * sigma]));
-    Figure {
-        title: "Error of the kept azimuth, and its stated 1σ and 3σ".to_owned(),
-        x: Axis::linear("time from power-on", "s"),
-        y: Axis::linear("error", "°"),
-        series: vec![
-            Series::new("±3σ", Style::Band, band(3.0)),
-            Series::new("±1σ", Style::Band, band(1.0)),
-            Series::new("error", Style::Line, all().map(|(at, error, _)| (at, error))),
-        ],
-    }
+        |times: f64| all().map(move |(at, _, sigma)| report::Point::within(at, 0.0, times * sigma));
+    let series = [
+        Series::new("±3σ", Style::Band, band(3.0)),
+        Series::new("±1σ", Style::Band, band(1.0)),
+        Series::new("error", Style::Line, all().map(|(at, error, _)| (at, error))),
+    ];
+    let title = "Error of the kept azimuth, and its stated 1σ and 3σ";
+    Figure::new(title, ["time from power-on", "s"], ["error", "°"], series)
 }
 
 fn level(kept: &Kept) -> Figure {
@@ -324,15 +321,12 @@ fn level(kept: &Kept) -> Figure {
         let points = kept.with_azimuth().map(|(point, _)| (point.seconds(), degrees(of(point))));
         Series::new(name, Style::Line, points)
     };
-    Figure {
-        title: "Pitch and roll while the azimuth was kept".to_owned(),
-        x: Axis::linear("time from power-on", "s"),
-        y: Axis::linear("angle", "°"),
-        series: vec![
-            curve("true pitch", &|point| point.truth.pitch_rad),
-            curve("true roll", &|point| point.truth.roll_rad),
-            curve("error of pitch", &|point| point.level_error()[0]),
-            curve("error of roll", &|point| point.level_error()[1]),
-        ],
-    }
+    let series = [
+        curve("true pitch", &|point| point.truth.pitch_rad),
+        curve("true roll", &|point| point.truth.roll_rad),
+        curve("error of pitch", &|point| point.level_error()[0]),
+        curve("error of roll", &|point| point.level_error()[1]),
+    ];
+    let title = "Pitch and roll while the azimuth was kept";
+    Figure::new(title, ["time from power-on", "s"], ["angle", "°"], series)
 }

@@ -5,6 +5,7 @@
 //! axis, is left out; a figure without any point says so. Every axis names its unit.
 
 mod chart;
+mod columns;
 mod html;
 mod span;
 mod text;
@@ -13,6 +14,8 @@ use std::path::Path;
 
 use crate::unwritten;
 use thiserror::Error;
+
+pub use self::columns::Columns;
 
 /// A whole report.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -55,6 +58,11 @@ impl Lines {
     /// Adds a line.
     pub fn add(&mut self, label: &str, value: impl Into<String>) {
         self.lines.push([label.to_owned(), value.into()]);
+    }
+
+    /// Adds a line where there is a value.
+    pub fn add_found(&mut self, label: &str, value: Option<impl Into<String>>) {
+        self.lines.extend(value.map(|value| [label.to_owned(), value.into()]));
     }
 }
 
@@ -140,11 +148,51 @@ pub struct Table {
 }
 
 impl Table {
-    /// A table with these columns, without rows yet.
-    #[must_use]
-    pub fn new(title: &str, head: &[&str]) -> Self {
+    /// A table of rows with these columns.
+    pub fn new(
+        title: &str,
+        head: &[&str],
+        rows: impl IntoIterator<Item = impl Into<Vec<String>>>,
+    ) -> Self {
         let head = head.iter().map(|name| (*name).to_owned()).collect();
-        Self { title: title.to_owned(), head, rows: Vec::new() }
+        Self { title: title.to_owned(), head, rows: rows.into_iter().map(Into::into).collect() }
+    }
+}
+
+impl Figure {
+    /// Curves over two axes.
+    pub fn new(
+        title: impl Into<String>,
+        x: impl Into<Axis>,
+        y: impl Into<Axis>,
+        series: impl IntoIterator<Item = Series>,
+    ) -> Self {
+        let series = series.into_iter().collect();
+        Self { title: title.into(), x: x.into(), y: y.into(), series }
+    }
+
+    /// Curves over the time in seconds.
+    pub fn over_time(
+        title: impl Into<String>,
+        y: impl Into<Axis>,
+        series: impl IntoIterator<Item = Series>,
+    ) -> Self {
+        Self::new(title, ["time", "s"], y, series)
+    }
+}
+
+impl From<[&str; 2]> for Axis {
+    /// A linear axis of a quantity and its unit.
+    fn from([label, unit]: [&str; 2]) -> Self {
+        Self::linear(label, unit)
+    }
+}
+
+impl Point {
+    /// A point with limits of one σ on either side.
+    #[must_use]
+    pub fn within(x: f64, y: f64, sigma: f64) -> Self {
+        Self { x, y, limits: Some([y - sigma, y + sigma]) }
     }
 }
 

@@ -13,7 +13,7 @@ use crate::methods::stepwise::{Method, Replay};
 use crate::outcome::{Excluded, Finished, FitDetails, Outcome};
 use crate::output::{columns, degrees, degrees_per_hour};
 use crate::recording::{Body, Header, Truth};
-use crate::report::{Axis, Figure, Lines, Part, Series, Style, Table};
+use crate::report::{Columns, Figure, Lines, Part, Point, Series, Style};
 
 /// What an alignment at standstills adds.
 #[derive(Clone, Debug, Serialize)]
@@ -77,23 +77,6 @@ impl DwellDetails {
             }
         });
         each.collect()
-    }
-
-    fn row(&self, number: usize) -> Vec<String> {
-        let fixed = |value: Option<f64>, decimals: usize| {
-            value.map_or_else(|| "-".to_owned(), |value| format!("{value:.decimals$}"))
-        };
-        vec![
-            number.to_string(),
-            format!("{:.4}", self.stage_deg),
-            format!("{:.2}", self.from_s),
-            format!("{:.2}", self.seconds),
-            format!("{:.5}", self.rate_deg_h),
-            format!("{:.5}", self.sigma_deg_h),
-            fixed(self.residual_deg_h, 5),
-            fixed(self.studentised, 2),
-            self.excluded.clone().unwrap_or_default(),
-        ]
     }
 }
 
@@ -183,23 +166,21 @@ impl Finished for Replay {
         lines.add("Earth rate is", details.horizontal_earth_rate.unwrap_or("not fitted"));
         let noise = details.gyro_n_deg_sqrt_h;
         lines.add("gyro noise N", format!("{noise:.6} °/√h ({})", details.gyro_noise));
-        if let Some((chi, degrees)) = details.chi_square.zip(details.degrees_of_freedom) {
-            lines.add("residuals", format!("χ² {chi:.1} for {degrees} degrees of freedom"));
-        }
+        let residuals = details.chi_square.zip(details.degrees_of_freedom);
+        let words = |(chi, degrees)| format!("χ² {chi:.1} for {degrees} degrees of freedom");
+        lines.add_found("residuals", residuals.map(words));
         details.autocompensation.iter().for_each(|found| positions(&mut lines, found));
-        let head = [
-            "dwell",
-            "stage, °",
-            "from, s",
-            "for, s",
-            "rate, °/h",
-            "1σ, °/h",
-            "residual, °/h",
-            "studentised",
-            "left out",
-        ];
-        let rows = details.dwells.iter().enumerate().map(|(index, dwell)| dwell.row(index + 1));
-        vec![lines.into(), Table { rows: rows.collect(), ..Table::new("Dwells", &head) }.into()]
+        let dwells = Columns::of("Dwells", &details.dwells)
+            .numbered("dwell")
+            .fixed("stage, °", 4, |dwell| dwell.stage_deg)
+            .fixed("from, s", 2, |dwell| dwell.from_s)
+            .fixed("for, s", 2, |dwell| dwell.seconds)
+            .fixed("rate, °/h", 5, |dwell| dwell.rate_deg_h)
+            .fixed("1σ, °/h", 5, |dwell| dwell.sigma_deg_h)
+            .found("residual, °/h", 5, |dwell| dwell.residual_deg_h)
+            .found("studentised", 2, |dwell| dwell.studentised)
+            .column("left out", |dwell| dwell.excluded.as_deref().unwrap_or_default());
+        vec![lines.into(), dwells.into()]
     }
 
     fn figures(&self, outcome: &Outcome, _: &Truth, _: Option<&Body>) -> Vec<Part> {
@@ -222,10 +203,10 @@ fn positions(lines: &mut Lines, found: &Autocompensation) {
     let list: Vec<String> =
         visited.map(|(angle, times)| format!("{angle:.1}° × {times}")).collect();
     lines.add("positions", list.join(", "));
-    if let Some((azimuth, off)) = found.plain_azimuth_deg.zip(found.plain_off_sigmas) {
-        let text = format!("{azimuth:.4}° by plain least squares, {off:+.2} σ from the azimuth");
-        lines.add("without weights", text);
-    }
+    let plain = found.plain_azimuth_deg.zip(found.plain_off_sigmas).map(|(azimuth, off)| {
+        format!("{azimuth:.4}° by plain least squares, {off:+.2} σ from the azimuth")
+    });
+    lines.add_found("without weights", plain);
 }
 
 /// The rates over the stage angle, with what the whole model of the fit makes of each.
@@ -244,12 +225,7 @@ fn rates(details: &StageDetails) -> Figure {
     if !left_out.is_empty() {
         series.push(Series::new("left out", Style::Points, left_out.into_iter().map(at)));
     }
-    Figure {
-        title: "Mean rate of each dwell".to_owned(),
-        x: Axis::linear("stage angle", "°"),
-        y: Axis::linear("rate", "°/h"),
-        series,
-    }
+    Figure::new("Mean rate of each dwell", ["stage angle", "°"], ["rate", "°/h"], series)
 }
 
 /// What the fit leaves of each dwell over time, with the 1σ that white noise gives the dwell.
@@ -257,12 +233,9 @@ fn residuals(details: &StageDetails) -> Figure {
     let points = details.dwells.iter().filter_map(|dwell| {
         let (residual, sigma) = (dwell.residual_deg_h?, dwell.sigma_deg_h);
         let middle = dwell.from_s + 0.5 * dwell.seconds;
-        Some((middle, residual, [residual - sigma, residual + sigma]))
+        Some(Point::within(middle, residual, sigma))
     });
-    Figure {
-        title: "Residuals, drift included, with the 1σ of each dwell".to_owned(),
-        x: Axis::linear("time", "s"),
-        y: Axis::linear("residual", "°/h"),
-        series: vec![Series::new("measured less fitted", Style::LineAndPoints, points)],
-    }
+    let series = [Series::new("measured less fitted", Style::LineAndPoints, points)];
+    let title = "Residuals, drift included, with the 1σ of each dwell";
+    Figure::over_time(title, ["residual", "°/h"], series)
 }

@@ -10,7 +10,7 @@ use crate::methods::vertical::{Met, Moment, Replay};
 use crate::outcome::{Finished, Outcome};
 use crate::output::{degrees, degrees_per_hour, positive_zero};
 use crate::recording::{Body, Header, Truth};
-use crate::report::{Axis, Figure, Lines, Part, Point, Series, Style, Table};
+use crate::report::{Columns, Figure, Lines, Part, Point, Series, Style};
 
 /// Most points of a curve.
 const POINTS: usize = 1500;
@@ -89,9 +89,9 @@ impl Finished for Replay {
 
     fn parts(&self, outcome: &Outcome) -> Vec<Part> {
         let Some(details) = outcome.details::<VerticalDetails>() else { return Vec::new() };
-        let row = |met: &Met| vec![met.state.to_owned(), format!("{:.2}", met.seconds)];
-        let states = Table::new("States that were met", &["state", "time, s"]);
-        let states = Table { rows: details.states.iter().map(row).collect(), ..states };
+        let states = Columns::of("States that were met", &details.states)
+            .column("state", |met| met.state)
+            .fixed("time, s", 2, |met| met.seconds);
         let errors = details.errors.as_ref().map(of_errors);
         let lines = [Some(lines(outcome, details)), errors].into_iter().flatten().map(Part::from);
         lines.chain([states.into()]).collect()
@@ -151,32 +151,27 @@ fn curve<T, P: Into<Point>>(name: &str, style: Style, all: &[T], of: impl Fn(&T)
     Series::new(name, style, all.iter().step_by(1 + all.len() / POINTS).map(of))
 }
 
-fn over_time(title: &str, label: &str, unit: &str, series: Vec<Series>) -> Figure {
-    let (x, y) = (Axis::linear("time", "s"), Axis::linear(label, unit));
-    Figure { title: title.to_owned(), x, y, series }
-}
-
 fn inclination(off: &[Off]) -> Figure {
     let tilt = |axis: usize| move |off: &Off| (off.time_s, off.tilts_deg[axis]);
-    let limits = |off: &Off| (off.time_s, 0.0, [-off.sigma_deg, off.sigma_deg]);
+    let limits = |off: &Off| Point::within(off.time_s, 0.0, off.sigma_deg);
     let series = vec![
         curve("±σ", Style::Band, off, limits),
         curve("about north of the level frame", Style::Line, off, tilt(1)),
         curve("about east of the level frame", Style::Line, off, tilt(0)),
         curve("inclination", Style::Dashed, off, |off| (off.time_s, off.inclination_deg)),
     ];
-    over_time("Error of the vertical, where the truth counts", "tilt", "°", series)
+    Figure::over_time("Error of the vertical, where the truth counts", ["tilt", "°"], series)
 }
 
 fn heading(off: &[Off]) -> Figure {
     let series = vec![curve("heading", Style::Line, off, |off| (off.time_s, off.heading_deg))];
-    over_time("Error of the heading after one constant offset", "heading", "°", series)
+    Figure::over_time("Error of the heading after one constant offset", ["heading", "°"], series)
 }
 
 fn sigma(moments: &[Moment]) -> Figure {
     let of = |moment: &Moment| (moment.time_s, degrees(moment.level_sigma));
     let series = vec![curve("1σ of pitch and of roll", Style::Line, moments, of)];
-    over_time("How good pitch and roll are", "1σ", "°", series)
+    Figure::over_time("How good pitch and roll are", ["1σ", "°"], series)
 }
 
 fn level(moments: &[Moment]) -> Figure {
@@ -187,7 +182,7 @@ fn level(moments: &[Moment]) -> Figure {
         curve("pitch", Style::Line, moments, of(1)),
         curve("roll", Style::Line, moments, of(2)),
     ];
-    over_time("Pitch and roll", "angle", "°", series)
+    Figure::over_time("Pitch and roll", ["angle", "°"], series)
 }
 
 fn biases(moments: &[Moment]) -> Figure {
@@ -195,14 +190,12 @@ fn biases(moments: &[Moment]) -> Figure {
     let series = axes.flat_map(|(axis, name)| {
         let bias = move |moment: &Moment| degrees_per_hour(moment.biases[axis]);
         let sigma = move |moment: &Moment| degrees_per_hour(moment.bias_sigmas[axis]);
-        let limits = move |moment: &Moment| {
-            let (bias, sigma) = (bias(moment), sigma(moment));
-            (moment.time_s, bias, [bias - sigma, bias + sigma])
-        };
+        let limits =
+            move |moment: &Moment| Point::within(moment.time_s, bias(moment), sigma(moment));
         [
             curve(&format!("{name} ±σ"), Style::Band, moments, limits),
             curve(name, Style::Line, moments, move |moment| (moment.time_s, bias(moment))),
         ]
     });
-    over_time("Biases of the gyros as they were learnt", "bias", "°/h", series.collect())
+    Figure::over_time("Biases of the gyros as they were learnt", ["bias", "°/h"], series)
 }

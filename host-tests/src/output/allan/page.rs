@@ -47,12 +47,10 @@ fn figure(analysis: &Analysis) -> Figure {
         Series::new("fit", Style::Line, fitted),
     ];
     series.extend(asymptotes(analysis));
-    Figure {
-        title: "Allan deviation".to_owned(),
-        x: Axis::logarithmic("averaging time τ", "s"),
-        y: Axis::logarithmic("Allan deviation σ", "°/h"),
-        series,
-    }
+    let title = "Allan deviation";
+    let (x, y) =
+        (Axis::logarithmic("averaging time τ", "s"), Axis::logarithmic("Allan deviation σ", "°/h"));
+    Figure::new(title, x, y, series)
 }
 
 /// Averaging times, equally far apart in ratio, over all of the record.
@@ -79,19 +77,12 @@ fn asymptotes(analysis: &Analysis) -> impl Iterator<Item = Series> {
 }
 
 fn coefficient_table(analysis: &Analysis) -> Table {
-    let row = |coefficient: Coefficient| vec![coefficient.name.to_owned(), coefficient.told()];
-    Table {
-        title: "Coefficients (± 1σ)".to_owned(),
-        head: ["coefficient", "value"].map(str::to_owned).to_vec(),
-        rows: coefficients(&analysis.fit).map(row).to_vec(),
-    }
+    let row = |coefficient: Coefficient| [coefficient.name.to_owned(), coefficient.told()];
+    let rows = coefficients(&analysis.fit).map(row);
+    Table::new("Coefficients (± 1σ)", &["coefficient", "value"], rows)
 }
 
 fn point_table(analysis: &Analysis) -> Table {
     let head = ["τ, s", "σ, °/h", "lower limit, °/h", "upper limit, °/h", "degrees of freedom"];
-    Table {
-        title: "Overlapping Allan deviation with its limits of 68.3 %".to_owned(),
-        head: head.map(str::to_owned).to_vec(),
-        rows: rows(analysis).map(|row| row.to_vec()).collect(),
-    }
+    Table::new("Overlapping Allan deviation with its limits of 68.3 %", &head, rows(analysis))
 }

@@ -46,15 +46,10 @@ fn autocompensation(request: &Request, seconds: f64) -> Figure {
     let of = |n| burov::rate_error(&request.noise, n, seconds, request.rotation);
     let curve = (2..=most).filter_map(|n| Some((f64::from(n), of(n)? / DEGREE_PER_HOUR)));
     let best = best.map(|best| (f64::from(best.positions), best.rate_error / DEGREE_PER_HOUR));
-    Figure {
-        title: format!("Burov's eq. (1) in {seconds:.0} s"),
-        x: Axis::linear("number of positions", ""),
-        y: Axis::linear("rate error, 1σ", "°/h"),
-        series: vec![
-            Series::new("rate error", Style::Line, curve),
-            Series::new("best", Style::Points, best),
-        ],
-    }
+    let series =
+        [Series::new("rate error", Style::Line, curve), Series::new("best", Style::Points, best)];
+    let title = format!("Burov's eq. (1) in {seconds:.0} s");
+    Figure::new(title, ["number of positions", ""], ["rate error, 1σ", "°/h"], series)
 }
 
 /// σ of every order over its number of positions.
@@ -66,12 +61,9 @@ fn orders(request: &Request, seconds: f64) -> Figure {
         let points = plans.map(|plan| (plan.positions() as f64, degrees(&plan)));
         Series::new(order.name(), Style::LineAndPoints, points)
     });
-    Figure {
-        title: format!("Orders of positions in {seconds:.0} s"),
-        x: Axis::linear("number of positions", ""),
-        y: Axis::linear("full azimuth, 1σ", "°"),
-        series: series.to_vec(),
-    }
+    let series = series.to_vec();
+    let title = format!("Orders of positions in {seconds:.0} s");
+    Figure::new(title, ["number of positions", ""], ["full azimuth, 1σ", "°"], series)
 }
 
 /// σ of the best schedule over the total time.
@@ -82,10 +74,8 @@ fn times(request: &Request, seconds: f64) -> Figure {
         let plan = for_time(&request.conditions(), time).ok()?;
         Some((time, plan.sigma(request.latitude) * DEGREES_PER_RADIAN))
     });
-    Figure {
-        title: "The best schedule over the time it may take".to_owned(),
-        x: Axis::logarithmic("total time", "s"),
-        y: Axis::logarithmic("full azimuth, 1σ", "°"),
-        series: vec![Series::new("optimum", Style::LineAndPoints, curve)],
-    }
+    let series = [Series::new("optimum", Style::LineAndPoints, curve)];
+    let title = "The best schedule over the time it may take";
+    let (x, y) = (Axis::logarithmic("total time", "s"), Axis::logarithmic("full azimuth, 1σ", "°"));
+    Figure::new(title, x, y, series)
 }

@@ -151,8 +151,46 @@ fn three_stops_at_different_headings_reach_the_limit_and_tell_the_biases(extent:
 }
 
 fn five_stops_are_calibrated_too(extent: Extent) {
-    Figures::of(extent.of(60), |seed| Day::new(Scenario::stops(seed, 5, 60.0, 180.0), seed))
-        .assert_calibrated("five stops", extent, 0.2);
+    let figures = Figures::of(extent.of(60), five);
+    figures.assert_calibrated("five stops", extent, 0.2);
+    // Of ten parts the fit takes up azimuth, level and biases.
+    let residuals = figures.outcomes.iter().flat_map(|outcome| &outcome.residuals).flatten();
+    let ratios = residuals.flat_map(|left| left.tilt.map(|part| part / left.sigma));
+    let ratio = rms(ratios);
+    assert!((0.4..0.95).contains(&ratio), "{ratio}");
+}
+
+fn five(seed: u64) -> Day {
+    Day::new(Scenario::stops(seed, 5, 60.0, 180.0), seed)
+}
+
+#[test]
+fn a_force_that_is_tilted_at_the_last_stop_alone_is_the_residual_of_that_stop_alone() {
+    let (tilt, last_s) = (1e-3, 4.0 * (60.0 + 180.0));
+    for seed in 0..4 {
+        let outcome = quiet(five(seed)).run_through(|sample| {
+            let by = if sample.time_s > last_s { tilt } else { 0.0 };
+            sample.force_m_s2[0] += 9.8 * by;
+            true
+        });
+        let [_, azimuth] = outcome.azimuths;
+        let wanted = [tilt * azimuth.cos(), tilt * azimuth.sin()];
+        for (stop, left) in outcome.residuals.iter().enumerate() {
+            let left = left.expect("its place is known");
+            let wanted = if stop == 4 { wanted } else { [0.0; 2] };
+            println!("{seed} {stop} {left:?}, {wanted:?}");
+            for (part, wanted) in left.tilt.into_iter().zip(wanted) {
+                assert!((part - wanted).abs() < 0.1 * tilt, "{seed} {stop}: {part}, {wanted}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_stop_whose_place_is_not_known_has_no_residual() {
+    let outcome = Day { told: Told::Nothing, ..three(1) }.run();
+    let are_there: Vec<bool> = outcome.residuals.iter().map(Option::is_some).collect();
+    assert_eq!(are_there, [true, false, false]);
 }
 
 #[test]

@@ -6,6 +6,7 @@ use hal_mock::vehicle::{SensorFault, Vehicle, VehicleSample};
 use orientation::align::setting::Setting as Common;
 use orientation::align::stops::Setting;
 use orientation::align::stops::conclusion::{Conclusion, Found};
+use orientation::align::stops::residual::Residual;
 use orientation::align::stops::stop::Stop;
 use orientation::align::stops::stop_detector::Rests;
 use orientation::earth::Latitude;
@@ -52,6 +53,8 @@ pub enum Kind {
 pub struct Outcome {
     pub conclusion: Conclusion,
     pub stops: Vec<Stop>,
+    /// What the solution leaves of them.
+    pub residuals: Vec<Option<Residual>>,
     /// True azimuth at the start and at the end, rad.
     pub azimuths: [f64; 2],
     /// True biases, rad/s.
@@ -175,6 +178,7 @@ impl Day {
         Outcome {
             conclusion: session.conclusion().expect("it has ended").clone(),
             stops: session.stops().to_vec(),
+            residuals: (0..session.stops().len()).map(|stop| session.residual(stop)).collect(),
             azimuths: [start, truth.attitude.azimuth_rad],
             biases: truth.gyro_bias_rad_s,
         }

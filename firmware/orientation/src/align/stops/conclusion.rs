@@ -10,6 +10,7 @@ use super::filter::{BIAS, FORCE, LATITUDE, NOW, PLACE, Row, SCALE, START, placed
 use super::path::Path;
 use super::place::Place;
 use super::plain::Plain;
+use super::residual::Residual;
 use super::solution::{Belief, Solution, Tally};
 use super::stop::Stop;
 use super::stop_detector::{Loss, Rests, StopDetector, WINDOW};
@@ -22,7 +23,6 @@ use crate::math::rotation::{
     IDENTITY, Matrix, Vector, cross, difference, length, product, transposed,
 };
 use crate::signal::rest::Criteria;
-use crate::signal::strapdown::Carried;
 use crate::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN as DEGREES, wrapped};
 
 /// Least time at rest of a stop, s: the length of the stop criteria's average.
@@ -81,6 +81,8 @@ pub struct Found {
     pub azimuth: Azimuth,
     /// Azimuth of body x at the start, with σ.
     pub start: Azimuth,
+    /// Attitude at the start: rotation from body axes to north, east, down.
+    pub start_attitude: Matrix,
     /// Cramér–Rao bound of the azimuth at the end for the same unknowns, 1σ, rad.
     pub limit: f64,
     /// Azimuth of body x at the end from the first run, before outliers are excluded, rad; for
@@ -110,14 +112,14 @@ impl Conclusion {
     /// Checks the contents of a stop detector, solves, and decides.
     #[inline(never)]
     pub fn of(setting: &Setting, stop_detector: &mut StopDetector) -> Self {
-        let now = stop_detector.now();
+        stop_detector.update();
         if let Err(reason) = inspect(setting, stop_detector) {
             return Self { verdict: Err(reason), found: None };
         }
-        let mut found = Found::of(setting, &path(setting, stop_detector, &now));
+        let mut found = Found::of(setting, &path(setting, stop_detector));
         while found.tally.correlation() < SWAYS && stop_detector.blocks.list.len() >= MANY {
             stop_detector.coarsen();
-            found = Found::of(setting, &path(setting, stop_detector, &now));
+            found = Found::of(setting, &path(setting, stop_detector));
         }
         Self {
             verdict: judge(setting, &found, stop_detector.stops().len() as u32)
@@ -126,14 +128,31 @@ impl Conclusion {
         }
     }
 
+    /// What the solution leaves of a stop of this session; none without a solution, or where it is
+    /// not known how far from the first one the vehicle stood.
+    #[must_use]
+    pub fn residual(
+        &self,
+        setting: &Setting,
+        stop_detector: &StopDetector,
+        stop: usize,
+    ) -> Option<Residual> {
+        let Found { start_attitude, biases, .. } = self.found.as_ref()?;
+        let path = path(setting, stop_detector);
+        path.stops.get(stop).filter(|at| stop == 0 || at.displacement.is_some())?;
+        let walk = setting.common.noise.angle_random_walk;
+        Some(Residual::of(&path, stop, start_attitude, biases, walk))
+    }
+
     /// Refusal without any details.
     pub const fn refused(reason: Refusal) -> Self {
         Self { verdict: Err(reason), found: None }
     }
 }
 
-/// Path of the vehicle until now, for the attitude carried at that time.
-fn path<'a>(setting: &Setting, stop_detector: &'a StopDetector, now: &(f64, Carried)) -> Path<'a> {
+/// Path of the vehicle until now.
+fn path<'a>(setting: &Setting, stop_detector: &'a StopDetector) -> Path<'a> {
+    let (now, carried) = stop_detector.now();
     Path {
         place: Place::new(setting.common.latitude),
         gravity: setting.common.latitude.gravity(),
@@ -141,8 +160,8 @@ fn path<'a>(setting: &Setting, stop_detector: &'a StopDetector, now: &(f64, Carr
         stops: stop_detector.stops(),
         blocks: &stop_detector.blocks,
         drives: &stop_detector.drives,
-        now: now.0,
-        carried: now.1,
+        now,
+        carried,
         stated_density: 0.5 * setting.force_noise * setting.force_noise,
     }
 }
@@ -256,8 +275,8 @@ impl Found {
     /// Solves the path and reports the result.
     #[inline(never)]
     fn of(setting: &Setting, path: &Path) -> Self {
-        let plain = Plain::of(setting, path);
-        let mut solution = Solution::new(plain.frame);
+        let (plain, frame) = Plain::of(setting, path);
+        let mut solution = Solution::new(frame);
         solution.run(setting, path, Belief::Ideal);
         // The uncertainty of the azimuth hardly depends on the azimuth itself.
         let end = End::of(path, &solution);
@@ -273,8 +292,9 @@ impl Found {
         let filter = &solution.filter;
         let end = End::of(path, solution);
         let row = end.row(path);
+        let start_attitude = start_attitude(solution);
         let start = Azimuth {
-            angle: azimuth_of(&start_attitude(solution)),
+            angle: azimuth_of(&start_attitude),
             sigma: libm::sqrt(filter.variance(&start_row(solution))),
         };
         let sigma = libm::sqrt(filter.variance(&row));
@@ -284,6 +304,7 @@ impl Found {
         Self {
             azimuth: Azimuth { angle: azimuth_of(&end.attitude), sigma },
             start,
+            start_attitude,
             limit: 0.0,
             unchecked: 0.0,
             budget: budget(setting, path, &filter.covariances(&row), sigma, solution.widening),

@@ -21,6 +21,7 @@ pub mod lever;
 pub mod path;
 pub mod place;
 pub mod plain;
+pub mod residual;
 pub mod solution;
 pub mod stop;
 pub mod stop_detector;

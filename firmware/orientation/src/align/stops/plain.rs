@@ -33,30 +33,28 @@ pub struct Plain {
     pub ratio: f64,
     /// Standard deviation of that ratio, 1σ.
     pub ratio_sigma: f64,
-    /// Rotation from the frozen north, east, down of the start to the start frame.
-    pub frame: Matrix,
 }
 
 /// Averages of the blocks at one end of the path.
 #[derive(Clone, Copy, Debug, Default)]
-struct End {
+pub(super) struct End {
     /// Mean time, s.
-    middle: f64,
+    pub middle: f64,
     /// Total length, s.
-    seconds: f64,
+    pub seconds: f64,
     /// Sum of forces times seconds, on the start frame.
     force: Vector,
     /// Mean attitude.
     attitude: Matrix,
     /// Mean sensitivity to gyro biases.
-    bias: Matrix,
+    pub bias: Matrix,
     /// Displacement from the first stop, m.
-    displacement: [f64; 2],
+    pub displacement: [f64; 2],
 }
 
 impl End {
     /// Averages of these blocks, weighted by their lengths.
-    fn of<'a>(blocks: impl Iterator<Item = &'a Block>, displacement: [f64; 2]) -> Self {
+    pub fn of<'a>(blocks: impl Iterator<Item = &'a Block>, displacement: [f64; 2]) -> Self {
         let mut end = Self { displacement, ..Self::default() };
         for block in blocks {
             let seconds = f64::from(block.seconds);
@@ -74,7 +72,7 @@ impl End {
     }
 
     /// Unit vector of the mean force.
-    fn up(&self) -> Vector {
+    pub fn up(&self) -> Vector {
         unit(&self.force)
     }
 }
@@ -95,10 +93,11 @@ fn orthonormal(matrix: &Matrix) -> Matrix {
 }
 
 impl Plain {
-    /// Applies the method to a path with blocks at both of its ends.
+    /// Applies the method to a path with blocks at both of its ends; with the rotation from the
+    /// frozen north, east, down of the start to the start frame.
     #[must_use]
     #[inline(never)]
-    pub fn of(setting: &Setting, path: &Path) -> Self {
+    pub fn of(setting: &Setting, path: &Path) -> (Self, Matrix) {
         let (first, last) = ends(path);
         let level = levelled(&turned(&transposed(&first.attitude), &first.up()));
         // Rotation from the start frame to the first stop's level axes.
@@ -114,16 +113,16 @@ impl Plain {
         let north_to_level = product(&transposed(&about_down(azimuth)), &transposed(&there));
         let [carried, predicted] = inclination.turns();
         let (sigma, ratio_sigma) = sigmas(setting, path, &first, &last, predicted);
-        Self {
+        let plain = Self {
             azimuth,
             sigma,
             angle: inclination.minimised(Inclination::angle),
             euler: inclination.minimised(Inclination::euler),
             ratio: carried / predicted,
             ratio_sigma,
-            frame: product(&transposed(&to_level), &north_to_level),
             inclination,
-        }
+        };
+        (plain, product(&transposed(&to_level), &north_to_level))
     }
 }
 

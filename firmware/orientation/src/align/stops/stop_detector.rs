@@ -381,9 +381,14 @@ impl StopDetector {
         self.begun.map_or(0.0, Instant::seconds)
     }
 
-    /// End of the last sample, s, with attitude and sensitivities at that time.
-    pub fn now(&mut self) -> (f64, Carried) {
+    /// Brings attitude and sensitivities to the end of the last sample.
+    pub fn update(&mut self) {
         self.strapdown.update(self.last);
+    }
+
+    /// Time of the latest update, s, with attitude and sensitivities then.
+    #[must_use]
+    pub fn now(&self) -> (f64, Carried) {
         (self.last.seconds(), self.strapdown.carried)
     }
 }

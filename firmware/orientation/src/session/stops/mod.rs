@@ -12,6 +12,7 @@ use heapless::Vec;
 use super::procedure::{CONVERTER_TOLERANCE, PERIOD_TOLERANCE, ProcedureError, contradiction};
 use crate::align::stops::Setting;
 use crate::align::stops::conclusion::Conclusion;
+use crate::align::stops::residual::Residual;
 use crate::align::stops::stop::{STOPS, Stop};
 use crate::align::stops::stop_detector::{Rests, StopDetector};
 use crate::error::Refusal;
@@ -216,6 +217,13 @@ impl Session {
     #[must_use]
     pub fn conclusion(&self) -> Option<&Conclusion> {
         self.conclusion.as_ref()
+    }
+
+    /// What the solution leaves of a stop, by its number from zero; none without a solution, or where
+    /// the place of the stop is not known.
+    #[must_use]
+    pub fn residual(&self, stop: usize) -> Option<Residual> {
+        self.conclusion()?.residual(&self.setting, &self.stop_detector, stop)
     }
 
     #[inline]

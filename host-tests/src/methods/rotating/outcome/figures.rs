@@ -3,11 +3,12 @@
 use rustfft::num_complex::Complex;
 
 use super::TurnDetails;
+use crate::median::median;
 use crate::methods::rotating::part::Part;
 use crate::methods::rotating::turns::{Signal, phasors, spectrum, turn_hz};
 use crate::output::degrees_per_hour;
 use crate::recording::RotatingRow;
-use crate::report::{Axis, Figure, Series, Style};
+use crate::report::{Axis, Figure, Point, Series, Style};
 
 /// Points of a profile; more would not be told apart.
 const PROFILE_POINTS: usize = 1500;
@@ -18,12 +19,8 @@ const MULTIPLES: f64 = 6.0;
 pub(crate) fn profile(part: &Part<'_>) -> Figure {
     let step = part.rows.len().div_ceil(PROFILE_POINTS).max(1);
     let points = part.rows.iter().step_by(step).map(|row| (row.time_s, row.stage_rate_rad_s));
-    Figure {
-        title: format!("Rate of the platform, {part}"),
-        x: Axis::linear("time", "s"),
-        y: Axis::linear("rate", "rad/s"),
-        series: vec![Series::new("encoder", Style::Line, points)],
-    }
+    let series = [Series::new("encoder", Style::Line, points)];
+    Figure::over_time(format!("Rate of the platform, {part}"), ["rate", "rad/s"], series)
 }
 
 /// The spectrum of a signal around the turn's frequency: over multiples of it, in °/h.
@@ -42,16 +39,18 @@ pub(crate) fn spectra(part: &Part<'_>, freed: &Part<'_>) -> Figure {
     let felt = Part { is_even: part.is_even, rows: &felt };
     let turn = turn_hz(part.rows).abs();
     let shown: Signal<'_> = &|row| row.rate_rad_s;
-    Figure {
-        title: format!("Amplitude spectra, {part}"),
-        x: Axis::linear(&format!("frequency in turns, of {turn:.4} Hz each"), ""),
-        y: Axis::logarithmic("amplitude", "°/h"),
-        series: vec![
-            lines("sensor, before", Style::Line, part, shown),
-            lines("platform's rate as the coupling shows it", Style::Dashed, &felt, shown),
-            lines("sensor, after that is taken off", Style::LineAndPoints, freed, shown),
-        ],
-    }
+    let series = [
+        lines("sensor, before", Style::Line, part, shown),
+        lines("platform's rate as the coupling shows it", Style::Dashed, &felt, shown),
+        lines("sensor, after that is taken off", Style::LineAndPoints, freed, shown),
+    ];
+    over_turns(format!("Amplitude spectra, {part}"), turn, series)
+}
+
+/// Amplitudes over the frequency in turns, each of so many hertz.
+fn over_turns(title: String, turn: f64, series: impl IntoIterator<Item = Series>) -> Figure {
+    let x = format!("frequency in turns, of {turn:.4} Hz each");
+    Figure::new(title, [&x, ""], Axis::logarithmic("amplitude", "°/h"), series)
 }
 
 /// A row whose rate is what it is less in the other.
@@ -65,12 +64,8 @@ pub(crate) fn compared(parts: &[Part<'_>], names: &[String]) -> Figure {
     let of = |(part, name): (&Part<'_>, &String)| {
         lines(name, Style::LineAndPoints, part, &|row| row.rate_rad_s)
     };
-    Figure {
-        title: "Amplitude spectra of the sensor".to_owned(),
-        x: Axis::linear(&format!("frequency in turns, of {turn:.4} Hz each"), ""),
-        y: Axis::logarithmic("amplitude", "°/h"),
-        series: parts.iter().zip(names).map(of).collect(),
-    }
+    let series = parts.iter().zip(names).map(of);
+    over_turns("Amplitude spectra of the sensor".to_owned(), turn, series)
 }
 
 /// The spectrum of the platform's rate alone, in Hz.
@@ -80,12 +75,10 @@ pub(crate) fn platform(parts: &[Part<'_>]) -> Figure {
         let points = lines.into_iter().map(|line| (line.frequency_hz, line.amplitude));
         Series::new(&part.to_string(), Style::Line, points)
     };
-    Figure {
-        title: "Amplitude spectrum of the platform's rate".to_owned(),
-        x: Axis::logarithmic("frequency", "Hz"),
-        y: Axis::logarithmic("amplitude", "rad/s"),
-        series: parts.iter().map(of).collect(),
-    }
+    let series = parts.iter().map(of);
+    let title = "Amplitude spectrum of the platform's rate";
+    let (x, y) = (Axis::logarithmic("frequency", "Hz"), Axis::logarithmic("amplitude", "rad/s"));
+    Figure::new(title, x, y, series)
 }
 
 /// The phasor of each turn of each even part in the complex plane.
@@ -95,12 +88,9 @@ pub(crate) fn plane(parts: &[Part<'_>]) -> Figure {
         let points = near.into_iter().map(|(_, at)| (at.re, at.im));
         Series::new(&part.to_string(), Style::Points, points)
     };
-    Figure {
-        title: "Phasor of the sensor's signal in each turn, the coupling taken off".to_owned(),
-        x: Axis::linear("in step with cos θ", "°/h"),
-        y: Axis::linear("in step with −sin θ", "°/h"),
-        series: parts.iter().filter(|part| part.is_even).map(of).collect(),
-    }
+    let series = parts.iter().filter(|part| part.is_even).map(of);
+    let title = "Phasor of the sensor's signal in each turn, the coupling taken off";
+    Figure::new(title, ["in step with cos θ", "°/h"], ["in step with −sin θ", "°/h"], series)
 }
 
 /// What the mean of its stretch leaves of each turn, with the 1σ of white noise.
@@ -110,19 +100,14 @@ pub(crate) fn residuals(turns: &[TurnDetails]) -> Figure {
         let speed = stretch[0].speed_hz;
         for (part, name) in [(0, "cos θ"), (1, "sin θ")] {
             let points = stretch.iter().map(|turn| {
-                let (residual, sigma) = (turn.residual_deg_h[part], turn.sigma_deg_h);
-                (turn.middle_s, residual, [residual - sigma, residual + sigma])
+                Point::within(turn.middle_s, turn.residual_deg_h[part], turn.sigma_deg_h)
             });
             let name = format!("{name}, {} at {speed:.3} Hz", stretch[0].sense);
             series.push(Series::new(&name, Style::LineAndPoints, points));
         }
     }
-    Figure {
-        title: "Phasor of each turn less the mean of its stretch, with 1σ".to_owned(),
-        x: Axis::linear("time since the stretch began", "s"),
-        y: Axis::linear("residual", "°/h"),
-        series,
-    }
+    let title = "Phasor of each turn less the mean of its stretch, with 1σ";
+    Figure::new(title, ["time since the stretch began", "s"], ["residual", "°/h"], series)
 }
 
 /// Distances from the middle, in the median of all, beyond which a turn would hide the others.
@@ -137,17 +122,12 @@ impl Turns {
     fn of(part: &Part<'_>) -> Self {
         let turns = phasors(part.rows, &|row| row.rate_rad_s).into_iter();
         let all: Vec<_> = turns.map(|(time, at)| (time, at * degrees_per_hour(1.0))).collect();
-        let middle_of = |of: fn(&Complex<f64>) -> f64| median(all.iter().map(|(_, at)| of(at)));
-        let middle = Complex::new(middle_of(|at| at.re), middle_of(|at| at.im));
-        let usual = median(all.iter().map(|(_, at)| (at - middle).norm()));
+        let median_of = |of: &dyn Fn(Complex<f64>) -> f64| {
+            median(&mut all.iter().map(|(_, at)| of(*at)).collect::<Vec<_>>())
+        };
+        let middle = Complex::new(median_of(&|at| at.re), median_of(&|at| at.im));
+        let usual = median_of(&|at| (at - middle).norm());
         let is_near = |(_, at): &(f64, Complex<f64>)| (at - middle).norm() <= FAR * usual;
         Self { near: all.iter().copied().filter(is_near).collect() }
     }
-}
-
-/// The (upper) median; zero of none.
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or_default()
 }

@@ -18,7 +18,7 @@ use crate::methods::rotating::turns::freed;
 use crate::outcome::{Excluded, Finished, FitDetails, Outcome};
 use crate::output::{azimuth_error, degrees, degrees_per_hour};
 use crate::recording::{Body, Header, RotatingRow, Truth};
-use crate::report::{Lines, Part, Table};
+use crate::report::{Columns, Lines, Part};
 
 /// What an alignment on a turning platform adds.
 #[derive(Clone, Debug, Serialize)]
@@ -277,8 +277,8 @@ impl Finished for Replay {
     fn parts(&self, outcome: &Outcome) -> Vec<Part> {
         let Some(details) = outcome.details::<RotatingDetails>() else { return Vec::new() };
         let stages = details.stages.as_ref().map(stages);
-        let parts = [Some(lines(details).into()), stages.map(Part::from)].into_iter().flatten();
-        parts.chain([stretches(&details.stretches).into()]).collect()
+        let parts = [Some(lines(details).into()), stages, Some(stretches(&details.stretches))];
+        parts.into_iter().flatten().collect()
     }
 
     fn figures(&self, outcome: &Outcome, _: &Truth, body: Option<&Body>) -> Vec<Part> {
@@ -307,9 +307,8 @@ fn lines(details: &RotatingDetails) -> Lines {
         let known = "were the sensor's gain, lag and g-sensitivity known";
         lines.add("limit", format!("{limit:.4}° {known}"));
     }
-    if let Some(tilt) = details.tilt_deg {
-        lines.add("tilt", format!("{tilt:.4}° of the platform"));
-    }
+    let tilt = details.tilt_deg.map(|tilt| format!("{tilt:.4}° of the platform"));
+    lines.add_found("tilt", tilt);
     details.couplings.iter().for_each(|coupling| lines.add("axis misalignment", coupling));
     if let Some((ratio, bias)) = details.met_ratio.zip(details.one_speed_bias_deg) {
         let is_one = details.stretches.len() < 3;
@@ -328,31 +327,24 @@ fn lines(details: &RotatingDetails) -> Lines {
     lines
 }
 
-fn stages(stages: &Stages) -> Table {
-    let full = stages.full_deg;
-    let row = |(stage, azimuth): (&str, f64)| {
-        let off = azimuth_error(azimuth, full);
-        vec![stage.to_owned(), format!("{azimuth:.4}"), format!("{off:+.4}")]
-    };
-    let head = ["stage", "azimuth, °", "from the last, °"];
-    let table = Table::new("Azimuth after each stage of compensation", &head);
-    Table { rows: stages.named().map(row).to_vec(), ..table }
+fn stages(stages: &Stages) -> Part {
+    let off = |azimuth| format!("{:+.4}", azimuth_error(azimuth, stages.full_deg));
+    Columns::of("Azimuth after each stage of compensation", &stages.named())
+        .column("stage", |(stage, _)| stage)
+        .fixed("azimuth, °", 4, |(_, azimuth)| *azimuth)
+        .column("from the last, °", |(_, azimuth)| off(*azimuth))
+        .into()
 }
 
-fn stretches(stretches: &[StretchDetails]) -> Table {
-    let row = |stretch: &StretchDetails| {
-        vec![
-            stretch.sense.clone(),
-            format!("{:.5}", stretch.speed_hz),
-            stretch.turns.to_string(),
-            stretch.left_out.to_string(),
-            format!("{:.2}", stretch.seconds),
-            format!("{:.4}", 100.0 * stretch.unevenness),
-        ]
-    };
-    let head = ["sense", "speed, Hz", "turns", "left out", "time, s", "uneven by, %"];
-    let table = Table::new("Even turns", &head);
-    Table { rows: stretches.iter().map(row).collect(), ..table }
+fn stretches(stretches: &[StretchDetails]) -> Part {
+    Columns::of("Even turns", stretches)
+        .column("sense", |stretch| &stretch.sense)
+        .fixed("speed, Hz", 5, |stretch| stretch.speed_hz)
+        .column("turns", |stretch| stretch.turns)
+        .column("left out", |stretch| stretch.left_out)
+        .fixed("time, s", 2, |stretch| stretch.seconds)
+        .fixed("uneven by, %", 4, |stretch| 100.0 * stretch.unevenness)
+        .into()
 }
 
 /// Spectra of every part as it came and freed of the axis misalignment, then the phasors of its turns.

@@ -5,7 +5,7 @@ use crate::methods::spin::track::{Point, Track};
 use crate::methods::spin::{Replay, name};
 use crate::output::degrees;
 use crate::recording::Truth;
-use crate::report::{Axis, Figure, Series, Style};
+use crate::report::{self, Axis, Figure, Series, Style};
 
 /// Points of a curve at most.
 const POINTS: usize = 2000;
@@ -28,12 +28,7 @@ pub(crate) fn errors(replay: &Replay, truth: &Truth) -> Vec<Figure> {
 fn figure(replay: &Replay, truth: &Truth, title: &str, from_s: f64) -> Option<Figure> {
     let series: Vec<Series> =
         replay.tracks.iter().filter_map(|track| curve(track, truth, from_s)).collect();
-    (!series.is_empty()).then(|| Figure {
-        title: title.to_owned(),
-        x: Axis::linear("time", "s"),
-        y: Axis::linear("roll error", "°"),
-        series,
-    })
+    (!series.is_empty()).then(|| Figure::over_time(title, ["roll error", "°"], series))
 }
 
 fn curve(track: &Track, truth: &Truth, from_s: f64) -> Option<Series> {
@@ -67,43 +62,30 @@ pub(crate) fn sigmas(replay: &Replay, truth: &Truth) -> Figure {
         let limits = answer.times_s.iter().copied().zip(bounds.iter().copied().map(degrees));
         series.push(Series::new("limit (Cramér–Rao)", Style::Dashed, limits.step_by(every)));
     }
-    Figure {
-        title: "σ of the roll".to_owned(),
-        x: Axis::linear("time", "s"),
-        y: Axis::logarithmic("roll", "°"),
-        series,
-    }
+    Figure::over_time("σ of the roll", Axis::logarithmic("roll", "°"), series)
 }
 
 /// The lift over the time.
 pub(crate) fn lift(replay: &Replay) -> Figure {
     let points = replay.answer().points.iter();
     let lifts = points.filter_map(|point| Some((point.time_s, point.lift?)));
-    Figure {
-        title: "Lift".to_owned(),
-        x: Axis::linear("time", "s"),
-        y: Axis::linear("lift", "m/s²"),
-        series: vec![Series::new("lift", Style::Line, lifts)],
-    }
+    Figure::over_time("Lift", ["lift", "m/s²"], [Series::new("lift", Style::Line, lifts)])
 }
 
 /// The scale error over the time, within its σ.
 pub(crate) fn scale(replay: &Replay) -> Figure {
     let found = |point: &Point| {
         let [scale, sigma] = point.scale?;
-        Some((point.time_s, scale, [scale - sigma, scale + sigma]))
+        Some(report::Point::within(point.time_s, scale, sigma))
     };
     let points: Vec<_> = replay.answer().points.iter().filter_map(found).collect();
     // What is not known yet would hide what is found.
     let settled = points.len() / 20;
     let shown = points.iter().skip(settled).copied();
-    Figure {
-        title: "Scale error of the gyro, after the first twentieth".to_owned(),
-        x: Axis::linear("time", "s"),
-        y: Axis::linear("gyro/true − 1", ""),
-        series: vec![
-            Series::new("within 1σ", Style::Band, shown.clone()),
-            Series::new("scale error", Style::Line, shown.map(|(time, scale, _)| (time, scale))),
-        ],
-    }
+    let series = [
+        Series::new("within 1σ", Style::Band, shown.clone()),
+        Series::new("scale error", Style::Line, shown.map(|point| (point.x, point.y))),
+    ];
+    let title = "Scale error of the gyro, after the first twentieth";
+    Figure::over_time(title, ["gyro/true − 1", ""], series)
 }

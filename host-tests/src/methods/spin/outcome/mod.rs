@@ -11,7 +11,7 @@ use crate::methods::spin::{Replay, name};
 use crate::outcome::{Finished, Outcome};
 use crate::output::degrees;
 use crate::recording::{Body, Truth};
-use crate::report::{Lines, Part, Table};
+use crate::report::{Columns, Lines, Part, Table};
 
 /// What the roll of a spinning body adds; rolls count whole turns, errors do not.
 #[derive(Clone, Debug, Serialize)]
@@ -110,10 +110,9 @@ impl Finished for Replay {
 
     fn parts(&self, outcome: &Outcome) -> Vec<Part> {
         let Some(details) = outcome.details::<SpinDetails>() else { return Vec::new() };
-        let states = &self.answer().states;
-        let row = |(from_s, state): &(f64, _)| vec![format!("{from_s:.4}"), format!("{state}")];
-        let table = Table::new("States of the phase lock", &["from, s", "state"]);
-        let states = Table { rows: states.iter().map(row).collect(), ..table };
+        let states = Columns::of("States of the phase lock", &self.answer().states)
+            .fixed("from, s", 4, |(from_s, _)| *from_s)
+            .column("state", |(_, state)| state);
         vec![lines(outcome, details).into(), methods(details).into(), states.into()]
     }
 
@@ -135,16 +134,13 @@ fn lines(outcome: &Outcome, details: &SpinDetails) -> Lines {
             lines.add("truth", format!("the error is {error:+.5}°, {sigmas:+.2} σ"));
         }
     }
-    if let Some(limit) = outcome.limit_deg {
-        lines.add("limit", format!("{limit:.5}° (Cramér–Rao)"));
-    }
+    let limit = outcome.limit_deg.map(|limit| format!("{limit:.5}° (Cramér–Rao)"));
+    lines.add_found("limit", limit);
     lines.add("state", &details.state);
-    if let Some(lift) = details.lift {
-        lines.add("lift", format!("{lift:.3} m/s²"));
-    }
-    if let Some((scale, sigma)) = details.scale_error.zip(details.scale_sigma) {
-        lines.add("gyro's scale error", format!("{scale:+.4e} ± {sigma:.1e} (1σ)"));
-    }
+    lines.add_found("lift", details.lift.map(|lift| format!("{lift:.3} m/s²")));
+    let scale = details.scale_error.zip(details.scale_sigma);
+    let words = |(scale, sigma)| format!("{scale:+.4e} ± {sigma:.1e} (1σ)");
+    lines.add_found("gyro's scale error", scale.map(words));
     let noise = details.force_noise_m_s2;
     lines.add("force noise", format!("{noise:.2e} m/s² a sample, as the turns show it"));
     lines
@@ -152,18 +148,14 @@ fn lines(outcome: &Outcome, details: &SpinDetails) -> Lines {
 
 /// How each method did; only corrections where there is no truth.
 fn methods(details: &SpinDetails) -> Table {
-    let row = |method: &MethodDetails| {
-        vec![
-            method.name.to_owned(),
-            method.corrections.to_string(),
-            method.rms_deg.map_or_else(|| "-".to_owned(), |rms| format!("{rms:.5}")),
-            method.turns_lost.map_or_else(|| "-".to_owned(), |turns| turns.to_string()),
-        ]
-    };
     let limit = details
         .limit_rms_deg
         .map(|limit| vec!["limit".to_owned(), String::new(), format!("{limit:.5}"), String::new()]);
-    let head = ["method", "corrections", "RMS error, °", "turns lost"];
-    let table = Table::new("Methods: errors within half a turn, after the first 0.1 s", &head);
-    Table { rows: details.methods.iter().map(row).chain(limit).collect(), ..table }
+    let title = "Methods: errors within half a turn, after the first 0.1 s";
+    Columns::of(title, &details.methods)
+        .column("method", |method| method.name)
+        .column("corrections", |method| method.corrections)
+        .found("RMS error, °", 5, |method| method.rms_deg)
+        .found("turns lost", 0, |method| method.turns_lost.map(|turns| turns as f64))
+        .table(limit)
 }

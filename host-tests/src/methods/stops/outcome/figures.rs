@@ -10,7 +10,7 @@ use super::PlainDetails;
 use crate::methods::stops::Replay;
 use crate::outcome::Outcome;
 use crate::output::{azimuth_error, degrees, degrees_per_hour};
-use crate::report::{Axis, Figure, Series, Style};
+use crate::report::{Axis, Figure, Point, Series, Style};
 
 /// Places along a curve.
 const PLACES: i32 = 240;
@@ -20,22 +20,16 @@ const LEAST_REACH_DEG: f64 = 0.02;
 
 /// The azimuths at the end by both methods; none where there is neither.
 pub(crate) fn azimuths(outcome: &Outcome, plain: Option<&PlainDetails>) -> Option<Figure> {
-    let with_limits = |at: f64, angle: f64, sigma: f64| (at, angle, [angle - sigma, angle + sigma]);
     let full = outcome.azimuth_deg.zip(outcome.sigma_deg);
     let plain = plain.map(|plain| (plain.azimuth_deg, plain.sigma_deg));
     let (near, _) = full.or(plain)?;
     let series = [("the paper's method", 1.0, plain), ("everything that is known", 2.0, full)];
     let series = series.into_iter().filter_map(|(name, at, found)| {
         let (angle, sigma) = found?;
-        let point = with_limits(at, near + azimuth_error(angle, near), sigma);
+        let point = Point::within(at, near + azimuth_error(angle, near), sigma);
         Some(Series::new(name, Style::Points, [point]))
     });
-    Some(Figure {
-        title: "Azimuth at the end, with 1σ".to_owned(),
-        x: Axis::linear("method", ""),
-        y: Axis::linear("azimuth", "°"),
-        series: series.collect(),
-    })
+    Some(Figure::new("Azimuth at the end, with 1σ", ["method", ""], ["azimuth", "°"], series))
 }
 
 /// U over the whole circle, and near its minimum.
@@ -58,20 +52,12 @@ fn inclination(plain: &Plain, title: &str, azimuths_deg: &[f64]) -> Figure {
     };
     let inclination = &plain.inclination;
     let least = (degrees(plain.azimuth), degrees(inclination.angle(plain.azimuth)));
-    Figure {
-        title: title.to_owned(),
-        x: Axis::linear("azimuth azp at the start", "°"),
-        y: Axis::linear("U", "°"),
-        series: vec![
-            Series::new(
-                "angle between the verticals",
-                Style::Line,
-                curve(&|a| inclination.angle(a)),
-            ),
-            Series::new("√(ΔΘ² + ΔΦ²)", Style::Dashed, curve(&|a| inclination.euler(a))),
-            Series::new("closed form", Style::Points, [least]),
-        ],
-    }
+    let series = [
+        Series::new("angle between the verticals", Style::Line, curve(&|a| inclination.angle(a))),
+        Series::new("√(ΔΘ² + ΔΦ²)", Style::Dashed, curve(&|a| inclination.euler(a))),
+        Series::new("closed form", Style::Points, [least]),
+    ];
+    Figure::new(title, ["azimuth azp at the start", "°"], ["U", "°"], series)
 }
 
 /// Kryt1 and Kryt2 over time, with their thresholds and the stops; none where the session never had them.
@@ -115,12 +101,7 @@ fn criterion(
         let name = format!("stop {}", index + 1);
         Series::new(&name, Style::Band, [edge(stop.from), edge(stop.to)])
     }));
-    Figure {
-        title: title.to_owned(),
-        x: Axis::linear("time", "s"),
-        y: Axis::logarithmic(label, unit),
-        series,
-    }
+    Figure::over_time(title, Axis::logarithmic(label, unit), series)
 }
 
 /// What a wrong azimuth makes of level rates at a latitude: the paper's p′ and q′, and
@@ -142,10 +123,6 @@ pub(crate) fn heading_error(latitude: Latitude, drive: Option<(&Plain, f64)>) ->
         let of = |error: f64| degrees_per_hour(at(error) / seconds);
         Series::new("U of this drive over its time", Style::Dashed, over(&of))
     }));
-    Figure {
-        title: "Rate errors and W over the heading error δ (Figs. 4 and 5)".to_owned(),
-        x: Axis::linear("heading error δ", "°"),
-        y: Axis::linear("rate", "°/h"),
-        series,
-    }
+    let title = "Rate errors and W over the heading error δ (Figs. 4 and 5)";
+    Figure::new(title, ["heading error δ", "°"], ["rate", "°/h"], series)
 }

@@ -4,6 +4,7 @@ pub(crate) mod figures;
 
 use orientation::align::stops::conclusion::Found;
 use orientation::align::stops::inclination::pitch_and_roll;
+use orientation::align::stops::residual::Residual;
 use orientation::align::stops::stop;
 use orientation::units::wrapped;
 use serde::Serialize;
@@ -14,7 +15,7 @@ use crate::methods::stops::Replay;
 use crate::outcome::{Excluded, Finished, FitDetails, Outcome};
 use crate::output::{azimuth_error, degrees, degrees_per_hour, positive_zero};
 use crate::recording::{Body, Header, Truth};
-use crate::report::{Lines, Part, Table};
+use crate::report::{Columns, Lines, Part};
 
 /// What an alignment from stops adds.
 #[derive(Clone, Debug, Serialize)]
@@ -88,11 +89,16 @@ pub struct StopDetails {
     pub level_sigma_deg: [f64; 2],
     /// How far it lies from the first, north and east, m; null where that was not known.
     pub displacement_m: Option<[f64; 2]>,
+    /// Levelled vertical less the one to which the Earth turned it, north and east, °; null without a fit, or where the
+    /// displacement was not known.
+    pub residual_deg: Option<[f64; 2]>,
+    /// 1σ of either part from white noise alone, °.
+    pub residual_sigma_deg: Option<f64>,
 }
 
 impl StopDetails {
-    /// The details of a stop of a session whose zero is at `zero_s`.
-    fn of(stop: &stop::Stop, zero_s: f64) -> Self {
+    /// The details of a stop of a session whose zero is at `zero_s`, with what the solution leaves of it.
+    fn of(stop: &stop::Stop, residual: Option<Residual>, zero_s: f64) -> Self {
         let [pitch, roll] = pitch_and_roll(&stop.force.mean());
         let gravity = stop.force.mean().iter().map(|part| part * part).sum::<f64>().sqrt();
         let [forward, right, _] = stop.force.variance();
@@ -104,19 +110,15 @@ impl StopDetails {
             roll_deg: degrees(roll),
             level_sigma_deg: [sigma(forward), sigma(right)],
             displacement_m: stop.displacement,
+            residual_deg: residual.map(|residual| residual.tilt.map(degrees)),
+            residual_sigma_deg: residual.map(|residual| degrees(residual.sigma)),
         }
     }
 
-    fn row(&self, number: usize) -> Vec<String> {
-        let [north, east] = match self.displacement_m {
-            Some(displacement) => displacement.map(|part| format!("{part:.1}")),
-            None => ["not known", ""].map(str::to_owned),
-        };
-        let times = [self.from_s, self.to_s].map(|time| format!("{time:.2}"));
-        let [pitch, roll] = [self.pitch_deg, self.roll_deg].map(|angle| positive_zero(angle, 5e-5));
-        let [of_pitch, of_roll] = self.level_sigma_deg;
-        let angles = [pitch, of_pitch, roll, of_roll].map(|angle| format!("{angle:.4}"));
-        [number.to_string()].into_iter().chain(times).chain(angles).chain([north, east]).collect()
+    /// How far it lies from the first one in a direction, m, or these words.
+    fn displaced(&self, direction: usize, unknown: &str) -> String {
+        let words = |displacement: [f64; 2]| format!("{:.1}", displacement[direction]);
+        self.displacement_m.map_or_else(|| unknown.to_owned(), words)
     }
 }
 
@@ -161,7 +163,8 @@ impl Replay {
         let start = found.filter(|_| is_ok).map(|found| found.start);
         let start_deg = start.map(|azimuth| degrees(azimuth.angle));
         let observed = found.filter(|found| found.are_biases_observed);
-        let stops = self.session.stops().iter();
+        let stops = self.session.stops().iter().enumerate();
+        let stop = |(index, stop)| StopDetails::of(stop, self.session.residual(index), self.zero_s);
         StopsDetails {
             start_azimuth_deg: start_deg,
             start_sigma_deg: start.map(|azimuth| degrees(azimuth.sigma)),
@@ -171,7 +174,7 @@ impl Replay {
             bias_dph: observed.map(|found| found.biases.map(degrees_per_hour)),
             bias_sigma_dph: observed.map(|found| found.bias_sigmas.map(degrees_per_hour)),
             plain: found.map(Into::into),
-            stops: stops.map(|stop| StopDetails::of(stop, self.zero_s)).collect(),
+            stops: stops.map(stop).collect(),
         }
     }
 
@@ -210,19 +213,19 @@ impl Finished for Replay {
         let lines = lines(details);
         let lines = (!lines.lines.is_empty()).then_some(lines);
         let papers = details.plain.as_ref().map(of_plain);
-        let head = [
-            "stop",
-            "from, s",
-            "to, s",
-            "pitch, °",
-            "1σ, °",
-            "roll, °",
-            "1σ, °",
-            "north, m",
-            "east, m",
-        ];
-        let rows = details.stops.iter().enumerate().map(|(index, stop)| stop.row(index + 1));
-        let stops = Table { rows: rows.collect(), ..Table::new("Stops", &head) };
+        let stops = Columns::of("Stops", &details.stops)
+            .numbered("stop")
+            .fixed("from, s", 2, |stop| stop.from_s)
+            .fixed("to, s", 2, |stop| stop.to_s)
+            .fixed("pitch, °", 4, |stop| positive_zero(stop.pitch_deg, 5e-5))
+            .fixed("1σ, °", 4, |stop| stop.level_sigma_deg[0])
+            .fixed("roll, °", 4, |stop| positive_zero(stop.roll_deg, 5e-5))
+            .fixed("1σ, °", 4, |stop| stop.level_sigma_deg[1])
+            .column("north, m", |stop| stop.displaced(0, "not known"))
+            .column("east, m", |stop| stop.displaced(1, ""))
+            .found("residual north, °", 5, |stop| stop.residual_deg.map(|[north, _]| north))
+            .found("east, °", 5, |stop| stop.residual_deg.map(|[_, east]| east))
+            .found("1σ, °", 5, |stop| stop.residual_sigma_deg);
         let both = [lines, papers].into_iter().flatten().map(Part::from);
         both.chain([stops.into()]).collect()
     }
@@ -257,12 +260,11 @@ fn seconds(stops: &[StopDetails]) -> Option<f64> {
 /// The azimuth at the beginning, and the biases of the gyros.
 fn lines(details: &StopsDetails) -> Lines {
     let mut lines = Lines::new("Start and gyros");
-    if let Some((angle, sigma)) = details.start_azimuth_deg.zip(details.start_sigma_deg) {
-        lines.add("at the start", format!("{angle:.4}° ± {sigma:.4}° (1σ)"));
-    }
-    if let Some(error) = details.start_error_deg {
-        lines.add("  truth", format!("the error is {error:+.4}°"));
-    }
+    let start = details.start_azimuth_deg.zip(details.start_sigma_deg);
+    let words = |(angle, sigma)| format!("{angle:.4}° ± {sigma:.4}° (1σ)");
+    lines.add_found("at the start", start.map(words));
+    let error = details.start_error_deg.map(|error| format!("the error is {error:+.4}°"));
+    lines.add_found("  truth", error);
     if let Some((biases, sigmas)) = details.bias_dph.zip(details.bias_sigma_dph) {
         let both = biases.into_iter().zip(sigmas);
         let all: Vec<String> =
