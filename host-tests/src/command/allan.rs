@@ -61,7 +61,8 @@ fn analyse(options: &AllanOptions, recording: Recording, as_json: bool) -> Resul
         schedule: found.and_then(|analysis| Suggestion::of(analysis.fit.noise())),
     };
     let refusal = analysis.as_ref().err().map(|reason| refusal(&name, &rest, reason));
-    let told = Told::of(refusal.is_none(), as_json, &shown.object(), |out| shown.text(out))?;
+    let report = || shown.report().text();
+    let told = Told::of(refusal.is_none(), as_json, &shown.object(), report)?;
     Ok(Told { refusal, ..told }.with_page(options.report.as_deref(), || shown.report()))
 }
 

@@ -85,10 +85,7 @@ pub fn run(options: &CampaignOptions, as_json: bool) -> Result<Told, String> {
     progress.finish();
     object["campaign"] = campaign.name.into();
     object["status"] = if refusal.is_none() { "ok" } else { "failed" }.into();
-    let told = Told::of(refusal.is_none(), as_json, &object, |text| {
-        text.push_str(&report.text());
-        Ok(())
-    })?;
+    let told = Told::of(refusal.is_none(), as_json, &object, || report.text())?;
     let told = Told { refusal: refusal.map(str::to_owned), ..told };
     Ok(told.with_page(options.report.as_deref(), || report))
 }

@@ -1,7 +1,5 @@
 //! `meridian run --fault`: the catalogue of faults on the command line.
 
-use std::fmt::Write;
-
 use firmware::simulated::fault::{Fault, Platform};
 use orientation::device::Device;
 use serde_json::json;
@@ -72,5 +70,5 @@ pub fn check(fault: Fault, platform: Platform, no_base_imu: bool) -> Result<(), 
 pub fn list(platform: Platform, as_json: bool) -> Result<Told, String> {
     let names: Vec<String> = Fault::all(platform).map(|fault| fault.to_string()).collect();
     let object = json!({ "status": "ok", "faults": names });
-    Told::of(true, as_json, &object, |text| text.write_str(&names.join("\n")))
+    Told::of(true, as_json, &object, || names.join("\n"))
 }

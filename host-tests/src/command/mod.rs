@@ -10,7 +10,6 @@ pub mod plan;
 pub mod replay;
 pub mod run;
 
-use std::fmt;
 use std::io::Write;
 use std::path::Path;
 
@@ -68,19 +67,17 @@ impl From<String> for Failure {
 }
 
 impl Told {
-    /// The object, or the text that a writer makes.
+    /// The object, or the text.
     fn of(
         found: bool,
         as_json: bool,
         object: &impl Serialize,
-        text: impl FnOnce(&mut String) -> fmt::Result,
+        text: impl FnOnce() -> String,
     ) -> Result<Self, String> {
         let output = if as_json {
             Output::Object(serde_json::to_value(object).map_err(|error| error.to_string())?)
         } else {
-            let mut output = String::new();
-            text(&mut output).map_err(|error| error.to_string())?;
-            Output::Text(output)
+            Output::Text(text())
         };
         Ok(Self { found, output, refusal: None, warnings: Vec::new() })
     }
@@ -154,10 +151,7 @@ impl Shown<'_> {
     pub fn told(self, report: Option<&Path>, as_json: bool) -> Result<Told, String> {
         let Self { name, outcome, finished, truth, body } = self;
         let made = |figures| outcome::report(name, &outcome, finished, figures);
-        let told = Told::of(outcome.is_ok(), as_json, &outcome, |text| {
-            text.push_str(&made(Vec::new()).text());
-            Ok(())
-        })?;
+        let told = Told::of(outcome.is_ok(), as_json, &outcome, || made(Vec::new()).text())?;
         let refusal = outcome.reason.clone();
         let page = || made(finished.figures(&outcome, truth, body));
         Ok(Told { refusal, ..told }.with_page(report, page))

@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 
 use bench::output::plan;
-use bench::planning::{Request, Wanted};
+use bench::planning::{Planned, Request, Wanted};
 use clap::{ArgGroup, Args};
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
-use serde_json::{Map, Value, json};
+use serde::Serialize;
+use serde_json::json;
 
 use super::{Told, files, latitude};
 
@@ -95,6 +96,14 @@ impl From<&PlanOptions> for Request {
     }
 }
 
+/// What was planned, as one object.
+#[derive(Serialize)]
+struct Found {
+    status: &'static str,
+    #[serde(flatten)]
+    planned: Planned,
+}
+
 /// Plans.
 pub fn run(options: &PlanOptions, as_json: bool) -> Result<Told, String> {
     let request = Request::from(options);
@@ -102,17 +111,14 @@ pub fn run(options: &PlanOptions, as_json: bool) -> Result<Told, String> {
         Ok(planned) => planned,
         Err(why) => return refused(&why.to_string(), as_json),
     };
-    let mut object = Map::from_iter([("status".to_owned(), json!("ok"))]);
-    if let Ok(Value::Object(fields)) = serde_json::to_value(planned) {
-        object.extend(fields);
-    }
-    let told = Told::of(true, as_json, &object, |text| plan::block(text, &request, &planned))?;
+    let object = Found { status: "ok", planned };
+    let told = Told::of(true, as_json, &object, || plan::report(&request, &planned).text())?;
     Ok(told.with_page(options.report.as_deref(), || plan::page::report(&request, &planned)))
 }
 
 /// No schedule, and why.
 fn refused(why: &str, as_json: bool) -> Result<Told, String> {
     let object = json!({ "status": "refused", "reason": why });
-    let told = Told::of(false, as_json, &object, |_| Ok(()))?;
+    let told = Told::of(false, as_json, &object, String::new)?;
     Ok(Told { refusal: Some(why.to_owned()), ..told })
 }

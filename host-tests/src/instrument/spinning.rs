@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 
 use firmware::acquire::{SpinAcquisition, acquire};
+use firmware::event::Event;
 use firmware::ports::Observer;
 use firmware::run::run_spin;
 use firmware::simulated::Wires;
@@ -11,6 +12,7 @@ use firmware::simulated::spin::SpinScenario;
 use firmware::spin::Flight;
 use hal_mock::spin::SpinTruth;
 use hal_mock::spin::plant::SpinPlant;
+use orientation::error::Refusal;
 use orientation::signal::SpinSample;
 use orientation::units::Instant;
 
@@ -31,6 +33,17 @@ pub struct SpinRun {
     pub start: SpinTruth,
     /// What was true at the last.
     pub truth: SpinTruth,
+}
+
+impl Run<Flight> {
+    /// Why the board gave the roll up, if it did: what it had by then is none of the end.
+    #[must_use]
+    pub fn ended(&self) -> Option<Refusal> {
+        self.events.iter().find_map(|(_, event)| match event {
+            Event::RollEnded(reason) => Some(*reason),
+            _ => None,
+        })
+    }
 }
 
 /// Runs a scenario in virtual time on this thread.

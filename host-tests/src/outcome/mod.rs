@@ -132,24 +132,17 @@ pub struct FitDetails {
 }
 
 /// What a method adds to an outcome: keys of its object, of which only the method itself knows the type.
-pub trait Details: fmt::Debug {
+pub trait Details: fmt::Debug + Any {
     /// The keys and their values.
     ///
     /// # Errors
     /// A value that JSON does not have.
     fn keys(&self) -> serde_json::Result<Value>;
-
-    /// The details as what they are.
-    fn as_any(&self) -> &dyn Any;
 }
 
 impl<T: Serialize + fmt::Debug + 'static> Details for T {
     fn keys(&self) -> serde_json::Result<Value> {
         serde_json::to_value(self)
-    }
-
-    fn as_any(&self) -> &dyn Any {
-        self
     }
 }
 
@@ -307,7 +300,7 @@ impl Outcome {
     /// What the method added, where it is of this type.
     #[must_use]
     pub fn details<D: 'static>(&self) -> Option<&D> {
-        self.details.as_any().downcast_ref()
+        (&*self.details as &dyn Any).downcast_ref()
     }
 
     /// Whether there is a result.
@@ -332,10 +325,8 @@ pub fn report(
     parts.push(assumed(outcome).into());
     parts.extend(outcome.run.iter().flat_map(RunDetails::parts));
     parts.extend(figures);
-    parts.retain(|part| !matches!(part, ReportPart::Lines(lines) if lines.lines.is_empty()));
     let [found, refused] = finished.titles();
-    let title = format!("{} {name}", if outcome.is_ok() { found } else { refused });
-    Report { title, subtitle: Vec::new(), parts }
+    Report::new(format!("{} {name}", if outcome.is_ok() { found } else { refused }), parts)
 }
 
 /// What every method says first: the result or the reason, the limit, the truth, the level.

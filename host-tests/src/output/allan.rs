@@ -2,17 +2,16 @@
 
 mod page;
 
-use std::fmt::{self, Write};
-
 use orientation::noise::fit::{Estimate, FitError, NoiseFit};
 use orientation::units::DEGREE_PER_HOUR;
 use serde_json::{Map, Value, json};
 
 use super::degrees_per_hour;
-use super::line;
 use crate::allan::analysis::{Analysis, Confident, Rest};
 use crate::allan::speed::Comparison;
 use crate::planning::Suggestion;
+use crate::recording::Gap;
+use crate::report::{Lines, Report};
 
 /// χ² over its degrees of freedom beyond which the model does not fit.
 const MISFIT: f64 = 3.0;
@@ -74,32 +73,27 @@ impl Coefficient {
 }
 
 impl Shown<'_> {
-    /// Writes the result for people.
-    ///
-    /// # Errors
-    /// Those of the writer.
-    pub fn text(&self, out: &mut impl Write) -> fmt::Result {
-        match self.analysis {
-            Ok(_) => writeln!(out, "\nNoise of {} in {}\n", self.rest.column, self.name)?,
-            Err(reason) => {
-                writeln!(out, "\nNo noise from {} in {}\n", self.rest.column, self.name)?;
-                line(out, "reason", format_args!("{reason}"))?;
-            }
-        }
-        line(out, "record", format_args!("{}", self.record()))?;
-        for note in self.notes() {
-            line(out, "noted", format_args!("{note}"))?;
-        }
+    /// The report for terminal and page: the record, the noise that it shows, and how both estimators did.
+    #[must_use]
+    pub fn report(&self) -> Report {
+        let mut record = Lines::default();
+        record.add_found("reason", self.analysis.as_ref().err().map(ToString::to_string));
+        record.add("record", self.record());
+        self.notes().into_iter().for_each(|note| record.add("noted", note));
+        let (mut parts, mut beside) = (Vec::new(), Lines::default());
         if let Ok(analysis) = self.analysis {
-            of_analysis(out, analysis)?;
+            let NoiseFit { chi_square, degrees, .. } = analysis.fit;
+            let text = format!("χ² {chi_square:.1} for {degrees} degrees of freedom");
+            record.add("residuals", text);
+            parts.extend(page::parts(analysis));
         }
         if let Some(comparison) = &self.comparison {
-            speed(out, comparison)?;
+            speed(&mut beside, comparison);
         }
-        match &self.schedule {
-            Some(schedule) => line(out, "schedule", format_args!("{schedule}")),
-            None => Ok(()),
-        }
+        beside.add_found("schedule", self.schedule.map(|schedule| schedule.to_string()));
+        let found = if self.analysis.is_ok() { "Noise of" } else { "No noise from" };
+        let title = format!("{found} {} in {}", self.rest.column, self.name);
+        Report::new(title, [record.into()].into_iter().chain(parts).chain([beside.into()]))
     }
 
     /// What is to be known of the record, and of what the fit leaves open.
@@ -135,52 +129,39 @@ impl Shown<'_> {
     pub fn object(&self) -> Value {
         let reason = self.analysis.as_ref().err().map(ToString::to_string);
         let mut object = Map::new();
-        let mut set = |key: &str, value: Value| object.insert(key.to_owned(), value);
-        set("status", if reason.is_none() { "ok" } else { "refused" }.into());
+        let mut set =
+            |values: Value| object.extend(values.as_object().cloned().unwrap_or_default());
+        set(json!({ "status": if reason.is_none() { "ok" } else { "refused" } }));
         if let Some(reason) = reason {
-            set("reason", reason.into());
+            set(json!({ "reason": reason }));
         }
-        set("column", self.rest.column.into());
-        set("samples", self.rest.rates.len().into());
-        set("rate_hz", (1.0 / self.rest.spacing.period_s).into());
-        set("gaps", self.gaps());
-        set("notes", self.notes().into());
+        let (rest, schedule) = (self.rest, self.schedule.map(|suggestion| suggestion.0));
+        let gaps = rest.spacing.gaps.iter();
+        let gap =
+            |gap: &Gap| json!({"line": gap.line, "from_s": gap.from_s, "seconds": gap.seconds});
+        set(json!({
+            "column": rest.column,
+            "samples": rest.rates.len(),
+            "rate_hz": 1.0 / rest.spacing.period_s,
+            "gaps": gaps.map(gap).collect::<Value>(),
+            "notes": self.notes(),
+        }));
         if let Ok(analysis) = self.analysis {
-            object.extend(deviations(analysis));
-            object.extend(coefficients(&analysis.fit).iter().flat_map(entries));
-            object.extend(quality(analysis, self.comparison.as_ref()));
+            set(deviations(&analysis.points));
+            coefficients(&analysis.fit).iter().for_each(|coefficient| set(entries(coefficient)));
+            let comparison = self.comparison.as_ref();
+            set(json!({
+                "chi_square": analysis.fit.chi_square,
+                "fit_degrees": analysis.fit.degrees,
+                "streaming_samples_s": comparison.map(|both| both.streaming),
+                "batch_samples_s": comparison.map(|both| both.batch),
+                "streaming_difference": comparison.map(|both| both.difference),
+            }));
         }
-        object.insert("schedule".to_owned(), json!(self.schedule.map(|s| s.0)));
-        object.insert("schedule_angles".to_owned(), "at the equator; times sec φ elsewhere".into());
+        let angles = "at the equator; times sec φ elsewhere";
+        set(json!({ "schedule": schedule, "schedule_angles": angles }));
         object.into()
     }
-
-    fn gaps(&self) -> Value {
-        let gaps = self.rest.spacing.gaps.iter();
-        gaps.map(|gap| json!({"line": gap.line, "from_s": gap.from_s, "seconds": gap.seconds}))
-            .collect()
-    }
-}
-
-fn of_analysis(out: &mut impl Write, analysis: &Analysis) -> fmt::Result {
-    let fit = &analysis.fit;
-    let (chi, degrees) = (fit.chi_square, fit.degrees);
-    line(out, "residuals", format_args!("χ² {chi:.1} for {degrees} degrees of freedom"))?;
-    writeln!(out, "\n  coefficients (± 1σ)")?;
-    for coefficient in coefficients(fit) {
-        writeln!(out, "    {:<22} {}", coefficient.name, coefficient.told())?;
-    }
-    writeln!(out, "\n  overlapping Allan deviation with its limits of 68.3 %")?;
-    writeln!(
-        out,
-        "    {:>10} {:>13} {:>13} {:>13} {:>10}",
-        "τ, s", "σ, °/h", "lower, °/h", "upper, °/h", "freedom"
-    )?;
-    for row in rows(analysis) {
-        let [tau, deviation, lower, upper, degrees] = row;
-        writeln!(out, "    {tau:>10} {deviation:>13} {lower:>13} {upper:>13} {degrees:>10}")?;
-    }
-    writeln!(out)
 }
 
 /// The points, ready to print: τ, deviation, limits, degrees of freedom.
@@ -201,62 +182,36 @@ fn short(number: f64) -> String {
     format!("{number:.6}").trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-fn speed(out: &mut impl Write, comparison: &Comparison) -> fmt::Result {
+fn speed(lines: &mut Lines, comparison: &Comparison) {
     let Comparison { streaming, batch, points, difference } = comparison;
     let [streaming, batch] = [streaming, batch].map(|rate| rate / 1e6);
-    line(
-        out,
-        "streaming",
-        format_args!("{streaming:.2} million samples/s, the board's estimator on this machine"),
-    )?;
-    line(out, "batch", format_args!("{batch:.2} million samples/s, every window"))?;
-    line(
-        out,
-        "agreement",
-        format_args!(
-            "variances of the same windows differ by at most {difference:.1e} at {points} τ"
-        ),
-    )
+    let text = format!("{streaming:.2} million samples/s, the board's estimator on this machine");
+    lines.add("streaming", text);
+    lines.add("batch", format!("{batch:.2} million samples/s, every window"));
+    let what = "variances of the same windows differ by at most";
+    lines.add("agreement", format!("{what} {difference:.1e} at {points} τ"));
 }
 
 /// The curve as arrays.
-fn deviations(analysis: &Analysis) -> Map<String, Value> {
-    let rates = |rate: fn(&Confident) -> f64| -> Value {
-        analysis.points.iter().map(|point| degrees_per_hour(rate(point))).collect()
-    };
-    let arrays = [
-        ("tau_s", analysis.points.iter().map(|point| point.seconds).collect()),
-        ("adev_deg_h", rates(|point| point.deviation)),
-        ("lower", rates(|point| point.limits[0])),
-        ("upper", rates(|point| point.limits[1])),
-        ("terms", analysis.points.iter().map(|point| point.terms).collect()),
-        ("degrees_of_freedom", analysis.points.iter().map(|point| point.degrees).collect()),
-    ];
-    arrays.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+fn deviations(points: &[Confident]) -> Value {
+    let column = |of: fn(&Confident) -> f64| points.iter().map(of).collect::<Value>();
+    json!({
+        "tau_s": column(|point| point.seconds),
+        "adev_deg_h": column(|point| degrees_per_hour(point.deviation)),
+        "lower": column(|point| degrees_per_hour(point.limits[0])),
+        "upper": column(|point| degrees_per_hour(point.limits[1])),
+        "terms": points.iter().map(|point| point.terms).collect::<Value>(),
+        "degrees_of_freedom": column(|point| point.degrees),
+    })
 }
 
 /// A coefficient with its deviation, or nothing with what it does not exceed.
-fn entries(coefficient: &Coefficient) -> [(String, Value); 2] {
+fn entries(coefficient: &Coefficient) -> Value {
     let key = coefficient.key;
     match coefficient.estimate {
-        Estimate::Found { value, sigma } => {
-            [(key.to_owned(), value.into()), (format!("{key}_sigma"), sigma.into())]
-        }
+        Estimate::Found { value, sigma } => json!({ key: value, (format!("{key}_sigma")): sigma }),
         Estimate::NotObservable { at_most } => {
-            [(key.to_owned(), Value::Null), (format!("{key}_at_most"), at_most.into())]
+            json!({ key: null, (format!("{key}_at_most")): at_most })
         }
     }
-}
-
-/// How well the fit and the estimators did.
-fn quality(analysis: &Analysis, comparison: Option<&Comparison>) -> [(String, Value); 5] {
-    let fit = &analysis.fit;
-    [
-        ("chi_square", fit.chi_square.into()),
-        ("fit_degrees", fit.degrees.into()),
-        ("streaming_samples_s", comparison.map(|both| both.streaming).into()),
-        ("batch_samples_s", comparison.map(|both| both.batch).into()),
-        ("streaming_difference", comparison.map(|both| both.difference).into()),
-    ]
-    .map(|(key, value)| (key.to_owned(), value))
 }

@@ -10,11 +10,16 @@ use crate::emulate::collect::Figures;
 use crate::emulate::cost::Row;
 use crate::emulate::outcome::{DWELL, Outcome};
 
-/// Writes what the emulated instrument found, whether the host found the same, and all figures.
-///
-/// # Errors
-/// Those of the writer.
-pub fn tables(out: &mut impl Write, emulation: &Emulation) -> fmt::Result {
+/// What the emulated instrument found, whether the host found the same, and all figures.
+#[must_use]
+pub fn tables(emulation: &Emulation) -> String {
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let _ = write(&mut text, emulation);
+    text
+}
+
+fn write(out: &mut String, emulation: &Emulation) -> fmt::Result {
     found(out, &emulation.emulated)?;
     match &emulation.comparison {
         Ok(()) => writeln!(out, "the host's run of this seed is the same, bit for bit")?,

@@ -5,7 +5,6 @@ pub mod emulation;
 pub mod plan;
 pub mod progress;
 
-use std::fmt;
 use std::io::{self, Write};
 
 use orientation::align::regression::Column;
@@ -39,20 +38,6 @@ pub fn degrees_per_hour(rate: f64) -> f64 {
 pub fn azimuth_error(azimuth: f64, truth: f64) -> f64 {
     let turns = (azimuth - truth) / 360.0;
     (turns - turns.round()) * 360.0
-}
-
-/// Writes what belongs to a label.
-///
-/// # Errors
-/// Those of the writer.
-pub fn line(out: &mut impl fmt::Write, label: &str, value: fmt::Arguments<'_>) -> fmt::Result {
-    writeln!(out, "  {label:<18} {value}")
-}
-
-/// Names as a table's head has them.
-#[must_use]
-pub fn named(head: &[&str]) -> Vec<String> {
-    head.iter().map(|name| (*name).to_owned()).collect()
 }
 
 /// The names of the columns that a fit used.

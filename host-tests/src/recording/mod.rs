@@ -51,7 +51,6 @@ pub use warning::{About, Warning};
 use error::Fault;
 use header::Collector;
 use lines::Lines;
-use timing::Times;
 
 /// What a recording holds.
 #[derive(Clone, Debug, PartialEq)]
@@ -288,18 +287,10 @@ fn kind(entries: &Collector) -> Result<Kind, Fault> {
 /// [`Spacing`] finds in a record at rest is no error.
 fn check_times(body: &Body, rate: Option<(u64, f64)>) -> Result<(), Fault> {
     match body {
-        Body::Stage(rows) => {
-            Times { rows, stamp: |row| (row.line, row.time_s), column: "t_s" }.check(rate)
-        }
-        Body::Rotating(rows) => {
-            Times { rows, stamp: |row| (row.line, row.time_s), column: "t_s" }.check(rate)
-        }
-        Body::Imu(rows) => {
-            Times { rows, stamp: |row| (row.line, row.time_s), column: "t_s" }.check(rate)
-        }
-        Body::Spin(rows) => {
-            Times { rows, stamp: |row| (row.line, row.time_s), column: "t_s" }.check(rate)
-        }
+        Body::Stage(rows) => timing::check(rows, |row| (row.line, row.time_s), rate),
+        Body::Rotating(rows) => timing::check(rows, |row| (row.line, row.time_s), rate),
+        Body::Imu(rows) => timing::check(rows, |row| (row.line, row.time_s), rate),
+        Body::Spin(rows) => timing::check(rows, |row| (row.line, row.time_s), rate),
         Body::Dwells(_) | Body::Static(_) => Ok(()),
     }
 }

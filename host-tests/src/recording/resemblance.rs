@@ -1,5 +1,7 @@
 //! Names that are not known but resemble one that is: a slip of the pen, another unit, or none.
 
+use strsim::levenshtein;
+
 /// Most characters by which two names may differ.
 const MOST: usize = 2;
 /// A name may differ by one character in so many, its first not counted: short ones resemble too much.
@@ -40,7 +42,7 @@ pub(super) fn resembled(
         return None;
     }
     let lower = name.to_ascii_lowercase();
-    let distance = |other: &&'static str| distance(&lower, &other.to_ascii_lowercase());
+    let distance = |other: &&'static str| levenshtein(&lower, &other.to_ascii_lowercase());
     let nearest = known.clone().min_by_key(distance)?;
     if distance(&nearest) <= MOST.min((nearest.len() - 1) / PART) {
         return Some(nearest);
@@ -75,19 +77,4 @@ fn stem(name: &str) -> &str {
         stem = before;
     }
     stem
-}
-
-/// How many characters must be put in, left out or exchanged to make one text the other (Levenshtein).
-fn distance(one: &str, other: &str) -> usize {
-    let other: Vec<char> = other.chars().collect();
-    let mut row: Vec<usize> = (0..=other.len()).collect();
-    for (i, a) in one.chars().enumerate() {
-        let mut corner = std::mem::replace(&mut row[0], i + 1);
-        for (j, b) in other.iter().enumerate() {
-            let exchanged = corner + usize::from(a != *b);
-            corner = row[j + 1];
-            row[j + 1] = exchanged.min(corner + 1).min(row[j] + 1);
-        }
-    }
-    row.last().copied().unwrap_or(0)
 }

@@ -13,50 +13,37 @@ const WRITING: f64 = 1e-3;
 /// The part by which the header's rate may miss that of the times: no crystal is worse, and what turned is wrong by it.
 const RATE_TOLERANCE: f64 = 0.01;
 
-/// The line and time, in seconds, of each sample; times increase.
-pub(super) struct Times<'a, T> {
-    /// The samples.
-    pub rows: &'a [T],
-    /// The line and time of one.
-    pub stamp: fn(&T) -> (u64, f64),
-    /// The column of the time.
-    pub column: &'static str,
+/// The line and time, in seconds, of a sample; times increase.
+type Stamp<T> = fn(&T) -> (u64, f64);
+
+/// Refuses a header's rate (its line, and Hz) that the times of samples contradict, and gaps.
+pub(super) fn check<T>(rows: &[T], stamp: Stamp<T>, rate: Option<(u64, f64)>) -> Result<(), Fault> {
+    let Some(usual) = Steps::of(rows, |row| stamp(row).1) else { return Ok(()) };
+    let Some((line, rate_hz)) = rate else { return check_gaps(rows, stamp, usual.median_s) };
+    let steps = || rows.windows(2).map(|pair| stamp(&pair[1]).1 - stamp(&pair[0]).1);
+    let unbroken = Timing::of(steps().filter(|step| usual.is_unbroken(*step)));
+    // Missing samples slow all steps down, few digits in the times make some seem to miss one: a wrong rate
+    // shows both ways.
+    let paces = [Timing::of(steps()), unbroken];
+    if paces.iter().all(|pace| pace.contradicts(rate_hz, unbroken.spread())) {
+        let found_hz = unbroken.count / unbroken.sum_s;
+        return Err(Fault::key(line, "rate_hz", TimeProblem::Rate(rate_hz, found_hz)));
+    }
+    check_gaps(rows, stamp, 1.0 / rate_hz)
 }
 
-impl<T> Times<'_, T> {
-    /// Refuses a header's rate (its line, and Hz) that the times contradict, and gaps.
-    pub fn check(&self, rate: Option<(u64, f64)>) -> Result<(), Fault> {
-        let Some(usual) = Steps::of(self.rows, |row| (self.stamp)(row).1) else { return Ok(()) };
-        let Some((line, rate_hz)) = rate else { return self.check_gaps(usual.median_s) };
-        let unbroken = Timing::of(self.steps().filter(|step| usual.is_unbroken(*step)));
-        // Missing samples slow all steps down, few digits in the times make some seem to miss one: a wrong rate
-        // shows both ways.
-        let paces = [Timing::of(self.steps()), unbroken];
-        if paces.iter().all(|pace| pace.contradicts(rate_hz, unbroken.spread())) {
-            let found_hz = unbroken.count / unbroken.sum_s;
-            return Err(Fault::key(line, "rate_hz", TimeProblem::Rate(rate_hz, found_hz)));
+/// Refuses a step longer than three periods.
+fn check_gaps<T>(rows: &[T], stamp: Stamp<T>, period_s: f64) -> Result<(), Fault> {
+    let longest = (GAP_PERIODS + WRITING) * period_s;
+    for pair in rows.windows(2) {
+        let [(before_line, before), (line, time)] = [0, 1].map(|i| stamp(&pair[i]));
+        let gap_s = time - before;
+        if gap_s > longest {
+            let problem = TimeProblem::Gap { gap_s, before_line, period_s };
+            return Err(Fault::column(line, "t_s", problem));
         }
-        self.check_gaps(1.0 / rate_hz)
     }
-
-    /// Refuses a step longer than three periods.
-    fn check_gaps(&self, period_s: f64) -> Result<(), Fault> {
-        let longest = (GAP_PERIODS + WRITING) * period_s;
-        for pair in self.rows.windows(2) {
-            let [(before_line, before), (line, time)] = [0, 1].map(|i| (self.stamp)(&pair[i]));
-            let gap_s = time - before;
-            if gap_s > longest {
-                let problem = TimeProblem::Gap { gap_s, before_line, period_s };
-                return Err(Fault::column(line, self.column, problem));
-            }
-        }
-        Ok(())
-    }
-
-    /// The steps, in seconds.
-    fn steps(&self) -> impl Iterator<Item = f64> + '_ {
-        self.rows.windows(2).map(|pair| (self.stamp)(&pair[1]).1 - (self.stamp)(&pair[0]).1)
-    }
+    Ok(())
 }
 
 /// What steps amount to, in seconds.

@@ -269,6 +269,13 @@ pub struct ReportError {
 }
 
 impl Report {
+    /// A report of these parts, without labelled lines of which there are none.
+    pub fn new(title: impl Into<String>, parts: impl IntoIterator<Item = Part>) -> Self {
+        let is_there = |part: &Part| !matches!(part, Part::Lines(lines) if lines.lines.is_empty());
+        let parts = parts.into_iter().filter(is_there).collect();
+        Self { title: title.into(), subtitle: Vec::new(), parts }
+    }
+
     /// The report for a terminal: its lines and tables; figures are for a page.
     #[must_use]
     pub fn text(&self) -> String {

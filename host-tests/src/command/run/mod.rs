@@ -53,9 +53,6 @@ enum Carrier {
 
 /// A platform that is run as its options say.
 trait Simulated {
-    /// As the catalogue of faults names it.
-    const PLATFORM: Platform;
-
     /// What every platform takes.
     fn common(&self) -> &Common;
 
@@ -106,59 +103,51 @@ impl RunOptions {
     /// # Errors
     /// The options, and why.
     pub fn check(&self, given: &Given) -> Result<(), String> {
-        match &self.platform {
-            Carrier::Stage(options) => check(&**options, given),
-            Carrier::TwoFrame(options) => check(&**options, given),
-            Carrier::Turntable(options) => check(&**options, given),
-            Carrier::Vehicle(options) => check(&**options, given),
-            Carrier::Spin(options) => check(options, given),
+        let (platform, options) = self.platform.of();
+        match options.common().fault {
+            Some(Asked::List) => {
+                // `--method positions` stands for `--seconds 300`.
+                let beside = given.beside(&["fault", "seconds", "json"]);
+                return beside.map_or(Ok(()), |option| {
+                    Err(format!("{}: --fault list runs nothing", given::long(option)))
+                });
+            }
+            Some(Asked::One(fault)) => faults::check(fault, platform, options.lacks_base_imu())?,
+            None => {}
         }
+        options.check(given)?;
+        let Common { record, report, .. } = options.common();
+        let record = files::written("--record", "the recording", record.as_ref());
+        let report = files::written("--report", "the page", report.as_ref());
+        let files: Vec<_> = [record].into_iter().chain(options.files()).chain([report]).collect();
+        files::check(None, &files)
     }
 }
 
-fn check<P: Simulated>(platform: &P, given: &Given) -> Result<(), String> {
-    let common = platform.common();
-    match common.fault {
-        Some(Asked::List) => {
-            // `--method positions` stands for `--seconds 300`.
-            let beside = given.beside(&["fault", "seconds", "json"]);
-            return beside.map_or(Ok(()), |option| {
-                Err(format!("{}: --fault list runs nothing", given::long(option)))
-            });
+impl Carrier {
+    /// The platform as the catalogue of faults names it, and its options.
+    fn of(&self) -> (Platform, &dyn Simulated) {
+        match self {
+            Self::Stage(options) => (Platform::Stage, &**options),
+            Self::TwoFrame(options) => (Platform::TwoFrame, &**options),
+            Self::Turntable(options) => (Platform::Turntable, &**options),
+            Self::Vehicle(options) => (Platform::Vehicle, &**options),
+            Self::Spin(options) => (Platform::Spin, options),
         }
-        Some(Asked::One(fault)) => {
-            faults::check(fault, P::PLATFORM, platform.lacks_base_imu())?;
-        }
-        None => {}
     }
-    platform.check(given)?;
-    let record = files::written("--record", "the recording", common.record.as_ref());
-    let report = files::written("--report", "the page", common.report.as_ref());
-    let files: Vec<_> = [record].into_iter().chain(platform.files()).chain([report]).collect();
-    files::check(None, &files)
 }
 
 /// Runs the board and tells what came of it.
 pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
-    match &options.platform {
-        Carrier::Stage(options) => told(&**options, as_json),
-        Carrier::TwoFrame(options) => told(&**options, as_json),
-        Carrier::Turntable(options) => told(&**options, as_json),
-        Carrier::Vehicle(options) => told(&**options, as_json),
-        Carrier::Spin(options) => told(options, as_json),
-    }
-}
-
-fn told<P: Simulated>(platform: &P, as_json: bool) -> Result<Told, String> {
-    let common = platform.common();
-    let Common { seed, fault, report, .. } = common;
+    let (platform, options) = options.platform.of();
+    let Common { seed, fault, report, .. } = options.common();
     let fault = match fault {
-        Some(Asked::List) => return faults::list(P::PLATFORM, as_json),
+        Some(Asked::List) => return faults::list(platform, as_json),
         Some(Asked::One(fault)) => Some(*fault),
         None => None,
     };
-    common.open()?;
-    let Ran { name, finished, truth, details, body, written } = platform.run(fault)?;
+    options.common().open()?;
+    let Ran { name, finished, truth, details, body, written } = options.run(fault)?;
     let outcome = finished.outcome(&truth).of_run(*seed, details);
     let shown = Shown { name, outcome, finished: &*finished, truth: &truth, body: body.as_ref() };
     Ok(shown.told(report.as_deref(), as_json)?.with_written(written))

@@ -1,6 +1,5 @@
 //! `meridian run spin`: the board on a body in fast rotation.
 
-use bench::instrument::Run;
 use bench::instrument::kept::Kept;
 use bench::instrument::spinning::{SpinRun, follow_spin};
 use bench::methods::spin::{Known, Replay, follow};
@@ -8,9 +7,8 @@ use bench::outcome::run::RunDetails;
 use bench::recording::Truth;
 use clap::Args;
 use firmware::event::Event;
-use firmware::simulated::fault::{Fault, Platform};
+use firmware::simulated::fault::Fault;
 use firmware::simulated::spin::{SAMPLE_RATE, SpinScenario};
-use firmware::spin::Flight;
 use orientation::units::DEGREE;
 
 use super::options::{Common, number};
@@ -45,8 +43,6 @@ const ASSUMED: &str = "what the board is told of its gyros";
 const REQUIRED_SIGMA: f64 = 10.0 * DEGREE;
 
 impl Simulated for SpinOptions {
-    const PLATFORM: Platform = Platform::Spin;
-
     fn common(&self) -> &Common {
         &self.common
     }
@@ -65,7 +61,8 @@ impl Simulated for SpinOptions {
         let SpinRun { run, samples, rolls_rad, .. } = flown;
         let assumed = vec![ASSUMED.to_owned()];
         let known = Known { setting: scenario.setting(), required_sigma: REQUIRED_SIGMA, assumed };
-        let replay = Replay { ended: ended(&run), ..follow(&samples, known) };
+        let ended = run.ended().map(|reason| Event::RollEnded(reason).to_string());
+        let replay = Replay { ended, ..follow(&samples, known) };
         Ok(Ran {
             name: "the simulated flight",
             finished: Box::new(replay),
@@ -75,12 +72,4 @@ impl Simulated for SpinOptions {
             written,
         })
     }
-}
-
-/// Why the board gave the roll up, if it did: what it had by then is none of the end.
-fn ended(run: &Run<Flight>) -> Option<String> {
-    run.events.iter().find_map(|(_, event)| match event {
-        Event::RollEnded(_) => Some(event.to_string()),
-        _ => None,
-    })
 }

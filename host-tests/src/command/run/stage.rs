@@ -9,7 +9,7 @@ use bench::recording::Truth;
 use clap::Args;
 use firmware::event::Event;
 use firmware::ports::Recorder;
-use firmware::simulated::fault::{Fault, Platform};
+use firmware::simulated::fault::Fault;
 use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::{Aim, Scenario};
 
@@ -164,8 +164,6 @@ impl StageOptions {
 }
 
 impl Simulated for StageOptions {
-    const PLATFORM: Platform = Platform::Stage;
-
     fn common(&self) -> &Common {
         &self.base.common
     }
@@ -204,8 +202,6 @@ impl FramesOptions {
 }
 
 impl Simulated for FramesOptions {
-    const PLATFORM: Platform = Platform::TwoFrame;
-
     fn common(&self) -> &Common {
         &self.base.common
     }

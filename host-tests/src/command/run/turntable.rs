@@ -11,7 +11,7 @@ use bench::recording::{Body, Truth};
 use clap::{Args, ValueEnum};
 use firmware::date::Day;
 use firmware::event::Event;
-use firmware::simulated::fault::{Fault, Platform};
+use firmware::simulated::fault::Fault;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;
 use firmware::storage::{Remembered, Today};
@@ -132,8 +132,6 @@ impl TurntableOptions {
 }
 
 impl Simulated for TurntableOptions {
-    const PLATFORM: Platform = Platform::Turntable;
-
     fn common(&self) -> &Common {
         &self.common
     }

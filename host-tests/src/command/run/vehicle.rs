@@ -10,7 +10,7 @@ use bench::recording::Truth;
 use clap::Args;
 use firmware::event::Event;
 use firmware::ports::Recorder;
-use firmware::simulated::fault::{Fault, Platform};
+use firmware::simulated::fault::Fault;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::vehicle::{self, VehicleScenario};
 use hal_mock::vehicle::VehicleTruth;
@@ -80,8 +80,6 @@ impl Recorder<InertialSample> for &mut Seen {
 }
 
 impl Simulated for VehicleOptions {
-    const PLATFORM: Platform = Platform::Vehicle;
-
     fn common(&self) -> &Common {
         &self.common
     }

@@ -2,7 +2,6 @@
 
 use std::io::{self, Write};
 
-use firmware::event::Event;
 use firmware::simulated::spin::{SAMPLE_RATE, SpinScenario};
 use orientation::signal::SpinSample;
 use orientation::units::{AngleIncrement, SpinForce};
@@ -18,14 +17,10 @@ impl Carrier for SpinScenario {
     type Sample = SpinSample;
 
     fn write(&self, to: &mut impl Write, run: &SpinRun, of: &[SpinSample]) -> io::Result<()> {
-        let ended = run.run.events.iter().find_map(|(_, event)| match event {
-            Event::RollEnded(reason) => Some(*reason),
-            _ => None,
-        });
         writeln!(to, "# kind: {}\n# rate_hz: {SAMPLE_RATE}", Kind::Spin)?;
         writeln!(to, "# gyro_N_deg_sqrt_h: {}", self.gyro_n_deg_sqrt_h)?;
         writeln!(to, "# gyro_scale_sigma: {}", self.scale_sigma)?;
-        let given = Given::new(self.setting(), (), ended);
+        let given = Given::new(self.setting(), (), run.run.ended());
         writeln!(to, "{given}\n{COLUMNS}")?;
         of.iter().zip(&run.rolls_rad).try_for_each(|(sample, roll)| {
             let [x, y, z] = sample.turned.map(mean_rate);

@@ -1,36 +1,21 @@
-//! The page of `meridian allan`: the curve with its limits, fit and asymptotes, and all numbers.
+//! What `meridian allan` finds: the curve with its limits, fit and asymptotes, and all numbers.
 
 use orientation::noise::allan::{terms, variance};
 use orientation::noise::fit::Estimate;
 
 use super::super::degrees_per_hour;
-use super::{Coefficient, Shown, coefficients, rows};
+use super::{Coefficient, coefficients, rows};
 use crate::allan::analysis::{Analysis, Confident};
-use crate::report::{Axis, Figure, Report, Series, Style, Table};
+use crate::report::{Axis, Figure, Part, Series, Style, Table};
 
 /// Beyond so many times the least and the greatest deviation no asymptote is drawn.
 const HEADROOM: f64 = 2.0;
 /// Places along a curve.
 const PLACES: u32 = 100;
 
-impl Shown<'_> {
-    /// The page; where the record says nothing, the reason for it.
-    #[must_use]
-    pub fn report(&self) -> Report {
-        let mut subtitle = vec![format!("{}: {}", self.name, self.record())];
-        subtitle.extend(self.notes());
-        let mut parts = Vec::new();
-        match self.analysis {
-            Ok(analysis) => {
-                parts.push(figure(analysis).into());
-                parts.push(coefficient_table(analysis).into());
-                parts.push(point_table(analysis).into());
-            }
-            Err(reason) => subtitle.push(format!("no noise: {reason}")),
-        }
-        subtitle.extend(self.schedule.map(|schedule| schedule.to_string()));
-        Report { title: format!("Noise of {}", self.rest.column), subtitle, parts }
-    }
+/// The curve, then all numbers.
+pub(super) fn parts(analysis: &Analysis) -> [Part; 3] {
+    [figure(analysis).into(), coefficient_table(analysis).into(), point_table(analysis).into()]
 }
 
 fn figure(analysis: &Analysis) -> Figure {

@@ -2,115 +2,82 @@
 
 pub mod page;
 
-use std::fmt::{self, Write};
-
 use orientation::planner::FEWEST;
 use orientation::units::{ARCSECOND, DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 
 use super::degrees;
-use crate::planning::{Optimum, Planned, Request, Wanted};
+use crate::planning::{OfBurov, Optimum, Planned, Request, Wanted};
+use crate::report::{Lines, Part, Report};
 
-/// Writes what was planned.
-///
-/// # Errors
-/// Those of the writer.
-pub fn block(out: &mut impl Write, request: &Request, planned: &Planned) -> fmt::Result {
-    asked(out, request)?;
-    of_burov(out, planned)?;
-    optimum(out, &planned.optimum, planned.one_pass_sigma_deg)
+/// The report for terminal and page: what was asked, and both schedules.
+#[must_use]
+pub fn report(request: &Request, planned: &Planned) -> Report {
+    let parts = [asked(request), burov(planned), optimum(planned)].map(Part::from);
+    Report::new("Schedule for a gyro", parts)
 }
 
-fn of_burov(out: &mut impl Write, planned: &Planned) -> fmt::Result {
-    writeln!(out, "\nBurov's eq. (1): the error of a rate, 1σ")?;
+/// An angle as 1σ and as 3σ.
+fn sigmas(sigma_deg: f64) -> String {
+    format!("{sigma_deg:.4}° (1σ), {:.4}° (3σ)", 3.0 * sigma_deg)
+}
+
+fn burov(planned: &Planned) -> Lines {
+    let mut lines = Lines::new("Burov's eq. (1): the error of a rate, 1σ");
     let Some(burov) = &planned.burov else {
         let least = planned.burov_least_sigma_deg.unwrap_or(f64::NAN);
-        return writeln!(
-            out,
-            "  out of reach: with the B that no turning takes away in this model, a full azimuth has \
-             at least {least:.4}° (1σ)"
+        let text = format!(
+            "with the B that no turning takes away in this model, a full azimuth has at least {least:.4}° (1σ)"
         );
+        lines.add("out of reach", text);
+        return lines;
     };
-    writeln!(
-        out,
-        "  {} positions of {:.2} s, {:.1} s in all: {:.4e} °/h; with B {:.4e} °/h",
-        burov.positions,
-        burov.dwell_s,
-        burov.seconds,
-        burov.rate_error_deg_h,
-        burov.rate_error_deg_h.hypot(burov.flicker_deg_h)
-    )?;
-    writeln!(
-        out,
-        "  as an azimuth along one axis (its half known): {:.4}° (1σ), {:.4}° (3σ)",
-        burov.one_axis_sigma_deg,
-        3.0 * burov.one_axis_sigma_deg
-    )?;
-    writeln!(
-        out,
-        "  as a full azimuth from one gyro, √2 of that:   {:.4}° (1σ), {:.4}° (3σ)",
-        burov.sigma_deg,
-        3.0 * burov.sigma_deg
-    )
+    let OfBurov { positions, dwell_s, seconds, rate_error_deg_h: rate, .. } = burov;
+    lines.add("positions", format!("{positions} of {dwell_s:.2} s, {seconds:.1} s in all"));
+    let with_b = rate.hypot(burov.flicker_deg_h);
+    lines.add("rate error", format!("{rate:.4e} °/h; with B {with_b:.4e} °/h"));
+    let one_axis = sigmas(burov.one_axis_sigma_deg);
+    lines.add("from one axis", format!("{one_axis}, the half of the azimuth known"));
+    lines.add("full azimuth", format!("{}, √2 of that", sigmas(burov.sigma_deg)));
+    lines
 }
 
-/// Writes the project's own schedule.
-///
-/// # Errors
-/// Those of the writer.
-pub fn optimum(out: &mut impl Write, optimum: &Optimum, one_pass: Option<f64>) -> fmt::Result {
-    writeln!(
-        out,
-        "\nThe best for Meridian's fit with {FEWEST} positions or more, so that a disturbed dwell is \
-         noticed:\nthe covariance of a full azimuth, noise alone"
-    )?;
-    writeln!(
-        out,
-        "  {} positions of {:.2} s, {:.1} s in all: {:.4}° (1σ), {:.4}° (3σ)",
-        optimum.positions,
-        optimum.dwell_s,
-        optimum.seconds,
-        optimum.sigma_deg,
-        3.0 * optimum.sigma_deg
-    )?;
-    writeln!(out, "  order {}, {} passes", optimum.order, optimum.passes)?;
-    if let Some(sigma) = one_pass {
-        let ratio = sigma / optimum.sigma_deg;
+fn optimum(planned: &Planned) -> Lines {
+    let Optimum { order, passes, positions, dwell_s, seconds, sigma_deg, .. } = planned.optimum;
+    let mut lines = Lines::new(&format!(
+        "The best for Meridian's fit with {FEWEST} positions or more, so that a disturbed dwell is noticed; noise alone, \
+         tilt, encoder and scale come on top of it"
+    ));
+    lines.add("positions", format!("{positions} of {dwell_s:.2} s, {seconds:.1} s in all"));
+    lines.add("order", format!("{order}, {passes} passes"));
+    lines.add("full azimuth", sigmas(sigma_deg));
+    lines.add_found("one pass", planned.one_pass_sigma_deg.map(|sigma| {
+        let ratio = sigma / sigma_deg;
         let but = if ratio < 1.0 { "; but it would not notice a disturbed dwell" } else { "" };
-        writeln!(
-            out,
-            "  one pass of 0, 180, 90, 270° in the same time: {sigma:.4}° (1σ), {ratio:.2} times as much{but}"
-        )?;
-    }
-    Ok(())
+        format!("of 0, 180, 90, 270° in the same time: {sigma:.4}° (1σ), {ratio:.2} times as much{but}")
+    }));
+    lines
 }
 
-/// Writes what was asked.
-///
-/// # Errors
-/// Those of the writer.
-pub fn asked(out: &mut impl Write, request: &Request) -> fmt::Result {
+fn asked(request: &Request) -> Lines {
     let noise = &request.noise;
-    writeln!(
-        out,
-        "\nGyro: N {} °/√h, B {} °/h, K {} °/h/√h, R {} °/h², Q {}″",
-        rounded(noise.angle_random_walk / DEGREE_PER_SQRT_HOUR),
-        rounded(noise.bias_instability / DEGREE_PER_HOUR),
-        rounded(noise.rate_random_walk / DEGREE_PER_HOUR * 60.0),
-        rounded(noise.rate_ramp / DEGREE_PER_HOUR * 3600.0),
-        rounded(noise.quantisation / ARCSECOND)
-    )?;
-    write!(
-        out,
-        "Latitude {:.4}°, {} s for a rotation; ",
-        degrees(request.latitude.rad()),
-        request.rotation
-    )?;
-    match request.wanted {
-        Wanted::Seconds(seconds) => writeln!(out, "the best in {seconds} s"),
-        Wanted::Sigma(sigma) => {
-            writeln!(out, "the least time for {:.4}° (1σ)", degrees(sigma))
-        }
-    }
+    let mut lines = Lines::default();
+    let [n, b, k, r, q] = [
+        noise.angle_random_walk / DEGREE_PER_SQRT_HOUR,
+        noise.bias_instability / DEGREE_PER_HOUR,
+        noise.rate_random_walk / DEGREE_PER_HOUR * 60.0,
+        noise.rate_ramp / DEGREE_PER_HOUR * 3600.0,
+        noise.quantisation / ARCSECOND,
+    ]
+    .map(rounded);
+    lines.add("gyro", format!("N {n} °/√h, B {b} °/h, K {k} °/h/√h, R {r} °/h², Q {q}″"));
+    lines.add("latitude", format!("{:.4}°", degrees(request.latitude.rad())));
+    lines.add("rotation", format!("{} s", request.rotation));
+    let wanted = match request.wanted {
+        Wanted::Seconds(seconds) => format!("the best in {seconds} s"),
+        Wanted::Sigma(sigma) => format!("the least time for {:.4}° (1σ)", degrees(sigma)),
+    };
+    lines.add("wanted", wanted);
+    lines
 }
 
 /// Six digits are enough of what was typed in.

@@ -6,7 +6,7 @@ use orientation::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN};
 
 use crate::output::plan;
 use crate::planning::{Planned, Request};
-use crate::report::{Axis, Figure, Report, Series, Style};
+use crate::report::{Axis, Figure, Part, Report, Series, Style};
 
 /// Most passes that the figure shows.
 const MOST_PASSES: usize = 21;
@@ -15,28 +15,15 @@ const TIMES: u32 = 24;
 /// Times between which the curve reaches, as factors of the plan's.
 const REACH: [f64; 2] = [0.3, 6.0];
 
-/// The page for a plan.
+/// The page for a plan: its report, then the figures.
 #[must_use]
 pub fn report(request: &Request, planned: &Planned) -> Report {
-    let optimum = &planned.optimum;
-    let mut asked = String::new();
-    // Writing to a string cannot fail.
-    let _ = plan::asked(&mut asked, request);
-    let mut subtitle: Vec<String> = asked.trim().lines().map(str::to_owned).collect();
-    subtitle.extend([
-        format!(
-            "{} positions of {:.2} s ({}), {:.1} s in all: full azimuth {:.4}° (1σ)",
-            optimum.positions, optimum.dwell_s, optimum.order, optimum.seconds, optimum.sigma_deg
-        ),
-        "noise alone; tilt, encoder and scale come on top of it".to_owned(),
-    ]);
-    let seconds = optimum.seconds;
-    let parts = vec![
-        autocompensation(request, planned.burov.map_or(seconds, |best| best.seconds)).into(),
-        orders(request, seconds).into(),
-        times(request, seconds).into(),
-    ];
-    Report { title: "Schedule for a gyro".to_owned(), subtitle, parts }
+    let seconds = planned.optimum.seconds;
+    let burov = autocompensation(request, planned.burov.map_or(seconds, |best| best.seconds));
+    let mut report = plan::report(request, planned);
+    let figures = [burov, orders(request, seconds), times(request, seconds)];
+    report.parts.extend(figures.map(Part::from));
+    report
 }
 
 /// Δω over the number of positions.
