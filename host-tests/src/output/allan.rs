@@ -148,7 +148,9 @@ impl Shown<'_> {
         }));
         if let Ok(analysis) = self.analysis {
             set(deviations(&analysis.points));
-            coefficients(&analysis.fit).iter().for_each(|coefficient| set(entries(coefficient)));
+            for coefficient in coefficients(&analysis.fit) {
+                set(entries(&coefficient));
+            }
             let comparison = self.comparison.as_ref();
             set(json!({
                 "chi_square": analysis.fit.chi_square,
