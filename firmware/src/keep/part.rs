@@ -6,7 +6,7 @@ use core::future::pending;
 use embassy_futures::select::select;
 use embassy_time::{Duration, Instant, Timer};
 use orientation::error::Refusal;
-use orientation::keep::{self, Handover, Keeper, Realigned, Report, State};
+use orientation::keep::{self, Handover, Keeper, Realigned, Report, State, Trust};
 use orientation::units::{self, DEGREE_PER_HOUR, DEGREES_PER_RADIAN as DEGREES};
 
 use super::memory::Memory;
@@ -226,19 +226,16 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
 
     /// Reports a state that has changed. An acceleration is reported only if it lasts.
     fn tell_state(&mut self, state: Option<State>, shared: &Shared<'_>) {
-        let is_told = match (state, self.told.state) {
-            (Some(now), Some(then)) => {
-                core::mem::discriminant(&now) == core::mem::discriminant(&then)
-            }
-            (now, then) => now.is_none() && then.is_none(),
-        };
-        let passes = matches!(state, Some(State::Coasting { seconds }) if seconds < TOLD_SECONDS);
+        let trust = |state: Option<State>| state.map(|state| state.trust);
+        let is_told = trust(state) == trust(self.told.state);
+        let passes =
+            state.is_some_and(|now| now.trust == Trust::Coasting && now.seconds < TOLD_SECONDS);
         if is_told || passes {
             return;
         }
         self.told.state = state;
         match state {
-            Some(State::Starting) => {}
+            Some(State { trust: Trust::Starting, .. }) => {}
             Some(state) => shared.tell(Event::Keeping(state)),
             None if self.told.moved == Instant::MIN => {}
             None => shared.tell(Event::NoMotion),

@@ -1,7 +1,7 @@
 //! The roll angle of a spinning body during its flight, with course and pitch.
 
 use orientation::keep::spin::attitude::Attitude;
-use orientation::keep::spin::{Setting, Spin, State};
+use orientation::keep::spin::{Condition, Setting, Spin, State};
 use orientation::signal::SpinSample;
 use orientation::units::{DEGREES_PER_RADIAN as DEGREES, Instant, TURN, wrapped};
 
@@ -43,7 +43,7 @@ impl Flight {
             begun: None,
             now: Instant::default(),
             samples: 0,
-            told: State::Searching,
+            told: State::default(),
         }
     }
 
@@ -75,18 +75,19 @@ impl Flight {
         self.seconds.zip(self.begun).is_some_and(|(seconds, begun)| elapsed(begun) >= seconds)
     }
 
-    /// The event of a change of state by the latest sample; [`None`] if the state is the same.
-    /// Numbers within a state are not compared.
+    /// The event of a change of state by the latest sample; [`None`] if the condition is the same.
     pub(super) fn news(&mut self) -> Option<Event> {
         let state = self.spin.state();
         let before = core::mem::replace(&mut self.told, state);
-        if core::mem::discriminant(&before) == core::mem::discriminant(&state) {
-            return None;
+        let is_back =
+            [before, state].map(|state| state.condition) == [Condition::Holding, Condition::Locked];
+        if before.condition == state.condition {
+            None
+        } else if is_back {
+            Some(Event::LiftBack(before.seconds))
+        } else {
+            Some(Event::Roll(state))
         }
-        Some(match (before, state) {
-            (State::Holding { seconds }, State::Locked) => Event::LiftBack(seconds),
-            (_, state) => Event::Roll(state),
-        })
     }
 
     /// Whether the status is due for an update.
@@ -100,7 +101,10 @@ impl Flight {
         let thousandths = |angle: f64| libm::ceil(angle * DEGREES * 1e3) as u32;
         let sigma = self.spin.sigma().map(thousandths);
         let roll = libm::round(wrapped(self.spin.roll().rad()) * DEGREES * 1e3) as u32 % 360_000;
-        Status::Rolling { roll: sigma.map(|sigma| [roll, sigma]), state: word(&self.spin.state()) }
+        Status::Rolling {
+            roll: sigma.map(|sigma| [roll, sigma]),
+            state: word(self.spin.state().condition),
+        }
     }
 
     /// The event that reports the end of the flight.
@@ -113,19 +117,19 @@ impl Flight {
     }
 }
 
-/// The name of a state for the status line.
-fn word(state: &State) -> &'static str {
-    match state {
-        State::Searching => "searching",
-        State::Locked => "locked",
-        State::Holding { .. } => "holding",
-        State::NotSpinning { .. } => "not spinning",
-        State::ForceLost { .. } => "force lost",
-        State::RotationLost { .. } => "rotation lost",
-        State::AccelerometerStuck { .. } => "accelerometer stuck",
-        State::GyroStuck { .. } => "gyro stuck",
-        State::Mirrored { .. } => "forces mirrored",
-        State::Elliptic { .. } => "forces elliptic",
-        State::Contradicted { .. } => "forces contradict",
+/// The name of a condition for the status line.
+fn word(condition: Condition) -> &'static str {
+    match condition {
+        Condition::Searching => "searching",
+        Condition::Locked => "locked",
+        Condition::Holding => "holding",
+        Condition::NotSpinning => "not spinning",
+        Condition::ForceLost => "force lost",
+        Condition::RotationLost => "rotation lost",
+        Condition::AccelerometerStuck(_) => "accelerometer stuck",
+        Condition::GyroStuck => "gyro stuck",
+        Condition::Mirrored => "forces mirrored",
+        Condition::Elliptic => "forces elliptic",
+        Condition::Contradicted => "forces contradict",
     }
 }

@@ -13,58 +13,35 @@ use thiserror::Error;
 pub struct Kind {
     /// The word with which its lines begin.
     pub word: &'static str,
+    /// The names of its numbers in the log, with blanks between them.
+    names: &'static str,
+}
+
+impl Kind {
     /// The names of its numbers in the log.
-    pub names: &'static [&'static str],
+    pub fn names(&self) -> impl Iterator<Item = &'static str> {
+        self.names.split(' ')
+    }
 }
 
 /// A dwell at a position.
 pub static DWELL: Kind = Kind {
     word: "dwell",
-    names: &[
-        "stage",
-        "middle",
-        "seconds",
-        "samples",
-        "rate",
-        "taper",
-        "force_x",
-        "force_y",
-        "force_z",
-        "temperature",
-    ],
+    names: "stage middle seconds samples rate taper force_x force_y force_z temperature",
 };
 
 /// A turn of a platform that turns all the time.
 pub static TURN: Kind = Kind {
     word: "turn",
-    names: &[
-        "rate_cos",
-        "rate_sin",
-        "turning_cos",
-        "turning_sin",
-        "leak_cos",
-        "leak_sin",
-        "force_cos",
-        "force_sin",
-        "mean_force",
-        "offset",
-        "middle",
-        "seconds",
-        "speed",
-    ],
+    names: "rate_cos rate_sin turning_cos turning_sin leak_cos leak_sin force_cos force_sin mean_force offset middle seconds speed",
 };
 
 /// A stop of a vehicle.
-pub static STOP: Kind = Kind {
-    word: "stop",
-    names: &["from", "to", "turned_x", "turned_y", "turned_z", "force_x", "force_y", "force_z"],
-};
+pub static STOP: Kind =
+    Kind { word: "stop", names: "from to turned_x turned_y turned_z force_x force_y force_z" };
 
 /// What is kept at a second after the alignment.
-pub static KEPT: Kind = Kind {
-    word: "kept",
-    names: &["time", "azimuth", "sigma", "pitch", "roll", "w", "x", "y", "z"],
-};
+pub static KEPT: Kind = Kind { word: "kept", names: "time azimuth sigma pitch roll w x y z" };
 
 /// All kinds, in the order of cause and effect.
 pub static KINDS: [&Kind; 4] = [&DWELL, &TURN, &STOP, &KEPT];
@@ -85,11 +62,11 @@ impl Row {
     /// From hexadecimal texts by their names; [`None`] where one is missing or is no number.
     #[must_use]
     pub fn parse<'t>(kind: &'static Kind, text: impl Fn(&str) -> Option<&'t str>) -> Option<Self> {
-        let bits = |name: &&str| {
+        let bits = |name: &str| {
             let bits = u64::from_str_radix(text(name)?, 16).ok()?;
             Some((bits != ABSENT).then_some(bits))
         };
-        Some(Self { kind, bits: kind.names.iter().map(bits).collect::<Option<_>>()? })
+        Some(Self { kind, bits: kind.names().map(bits).collect::<Option<_>>()? })
     }
 }
 
@@ -215,7 +192,7 @@ fn rows(kind: &'static Kind, runs: [&Outcome; 2]) -> Result<(), Difference> {
     let pairs = runs[0].rows_of(kind).zip(runs[1].rows_of(kind));
     for (number, (emulated, host)) in (1..).zip(pairs) {
         let both = emulated.bits.iter().zip(&host.bits);
-        for (name, (emulated, host)) in kind.names.iter().zip(both) {
+        for (name, (emulated, host)) in kind.names().zip(both) {
             let what = format!("{} {number}, {name}", kind.word);
             same(what, [emulated, host].map(|bits| shown(name, *bits)))?;
         }

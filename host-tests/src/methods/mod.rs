@@ -40,13 +40,13 @@ pub static METHODS: [Method; 7] = [
         name: "stepwise",
         meaning: "Stepwise gyrocompassing",
         takes: &["latitude", "criterion", "half"],
-        replay: at_standstills,
+        replay: |header, body, asked, watch| boxed(stepwise::replay(header, body, asked, watch)),
     },
     Method {
         name: "positions",
         meaning: "Autocompensated positions, in passes",
         takes: &["latitude", "criterion", "half"],
-        replay: at_standstills,
+        replay: |header, body, asked, watch| boxed(stepwise::replay(header, body, asked, watch)),
     },
     Method {
         name: "rotating",
@@ -100,13 +100,4 @@ fn boxed<F: Finished + 'static>(
     replay: Result<F, ReplayError>,
 ) -> Result<Box<dyn Finished>, ReplayError> {
     replay.map(|finished| Box::new(finished) as Box<dyn Finished>)
-}
-
-fn at_standstills(
-    header: &Header,
-    body: &Body,
-    asked: &Asked,
-    watch: Watch<'_>,
-) -> Result<Box<dyn Finished>, ReplayError> {
-    boxed(stepwise::replay(header, body, asked, watch))
 }

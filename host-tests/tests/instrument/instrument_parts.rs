@@ -16,7 +16,7 @@ use firmware::retry_budget::{Remedy, RetryBudget, Symptom};
 use firmware::shared::Shared;
 use firmware::timeline::{Arrival, Timeline};
 use orientation::device::{Device, Trouble};
-use orientation::keep::State;
+use orientation::keep::{State, Trust};
 use orientation::units::Angle;
 use proptest::prelude::*;
 
@@ -207,15 +207,15 @@ impl Write for Heard {
 
 #[test]
 fn the_line_of_an_attitude_is_whole_in_every_state_after_a_year_with_every_fault_counted() {
-    let seconds = 3.2e7;
     let states = [
-        State::Starting,
-        State::Level,
-        State::Coasting { seconds },
-        State::FreeFall { seconds },
-        State::NoForce { seconds },
-        State::RotationLost { seconds },
-    ];
+        Trust::Starting,
+        Trust::Level,
+        Trust::Coasting,
+        Trust::FreeFall,
+        Trust::NoForce,
+        Trust::RotationLost,
+    ]
+    .map(|trust| State { trust, seconds: 3.2e7 });
     let told = Told::default();
     let shared = Shared::new(&told);
     shared.count(|health| health.unsent = u32::MAX);

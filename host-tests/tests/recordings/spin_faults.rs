@@ -7,7 +7,7 @@ use bench::methods::spin::errors::wrapped;
 use bench::methods::spin::{Replay, replay};
 use bench::recording::{Body, Header, SpinRow};
 use hal_mock::noise::Generator;
-use orientation::keep::spin::{Accelerometer, State};
+use orientation::keep::spin::{Accelerometer, Condition, State};
 
 use crate::support::program::{code, meridian, object};
 
@@ -74,7 +74,7 @@ fn an_accelerometer_that_is_dead_is_named() {
         let reason = replay.refusal().expect("it is refused");
         assert!(reason.contains(words) && reason.contains("check supply"), "{reason}");
         let state = replay.answer().end.state;
-        assert!(matches!(state, State::AccelerometerStuck { which, .. } if which == stuck));
+        assert_eq!(state.condition, Condition::AccelerometerStuck(stuck));
     }
 }
 
@@ -86,7 +86,8 @@ fn an_accelerometer_that_sticks_for_a_while_is_told_and_the_gyro_holds_the_roll(
         row.force_m_s2[1] = stuck;
     }
     let replay = replayed(rows.clone());
-    let is_told = |(_, state): &(f64, State)| matches!(state, State::AccelerometerStuck { .. });
+    let is_told =
+        |(_, state): &(f64, State)| matches!(state.condition, Condition::AccelerometerStuck(_));
     assert!(replay.answer().states.iter().any(is_told));
     assert_true(&replay, &rows);
 }

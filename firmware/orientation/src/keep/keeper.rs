@@ -14,42 +14,22 @@ pub use crate::align::conclusion::Azimuth;
 /// Standard deviation at which an azimuth carries no information, 1σ, rad: it is withdrawn.
 const NOWHERE: f64 = 0.5;
 
-/// Reliability of the level, and the time for which that state has lasted.
+/// Reliability of the level, and how long it has been so.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum State {
-    /// No forces have been received yet.
-    Starting,
-    /// The level is corrected by gravity.
-    Level,
-    /// The motion of the body hides gravity, so the gyros alone carry the level and its σ grows.
-    Coasting {
-        /// Duration of the state, s.
-        seconds: f64,
-    },
-    /// The body is in free fall.
-    FreeFall {
-        /// Duration of the state, s.
-        seconds: f64,
-    },
-    /// There are no usable forces.
-    NoForce {
-        /// Duration of the state, s.
-        seconds: f64,
-    },
-    /// Rotation was lost, and the level must be found again.
-    RotationLost {
-        /// Duration of the state, s.
-        seconds: f64,
-    },
+pub struct State {
+    /// Reliability of the level, and the cause that limits it.
+    pub trust: Trust,
+    /// Duration of that reliability, s.
+    pub seconds: f64,
 }
 
 crate::words! { State:
-    Self::Starting => "starting";
-    Self::Level => "level";
-    Self::Coasting { seconds } => "coasting for {} s: the gyros alone carry the level", Rounded::<1>(seconds);
-    Self::FreeFall { seconds } => "falling freely for {} s", Rounded::<1>(seconds);
-    Self::NoForce { seconds } => "without forces for {} s", Rounded::<1>(seconds);
-    Self::RotationLost { seconds } => "finding the level again for {} s: rotation was lost", Rounded::<1>(seconds);
+    Self { trust: Trust::Starting, .. } => "starting";
+    Self { trust: Trust::Level, .. } => "level";
+    Self { trust: Trust::Coasting, seconds } => "coasting for {} s: the gyros alone carry the level", Rounded::<1>(seconds);
+    Self { trust: Trust::FreeFall, seconds } => "falling freely for {} s", Rounded::<1>(seconds);
+    Self { trust: Trust::NoForce, seconds } => "without forces for {} s", Rounded::<1>(seconds);
+    Self { trust: Trust::RotationLost, seconds } => "finding the level again for {} s: rotation was lost", Rounded::<1>(seconds);
 }
 
 /// Present attitude with its uncertainties, as reported to the user.
@@ -213,25 +193,12 @@ impl Keeper {
             level_sigma: vertical.sigma().into(),
             azimuth,
             attitude: attitude::quaternion([course, pitch, roll]),
-            state: self.state(time),
+            state: State { trust: self.trust, seconds: time.seconds() - self.since.seconds() },
             is_at_rest: vertical.is_at_rest(),
             biases: vertical.bias.map(f64::from),
             bias_sigmas: vertical.bias_sigmas().map(f64::from),
             is_bias_beyond_stated: vertical.is_bias_beyond_stated,
             seconds,
-        }
-    }
-
-    /// Reliability of the level with its duration.
-    fn state(&self, now: Instant) -> State {
-        let seconds = now.seconds() - self.since.seconds();
-        match self.trust {
-            Trust::Starting => State::Starting,
-            Trust::Level => State::Level,
-            Trust::Coasting => State::Coasting { seconds },
-            Trust::FreeFall => State::FreeFall { seconds },
-            Trust::NoForce => State::NoForce { seconds },
-            Trust::RotationLost => State::RotationLost { seconds },
         }
     }
 

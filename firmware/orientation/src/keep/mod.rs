@@ -15,6 +15,7 @@ pub mod vertical;
 
 pub use heading::{Handover, Realigned};
 pub use keeper::{Azimuth, Keeper, Report, State};
+pub use vertical::Trust;
 
 use crate::earth::Latitude;
 use crate::noise::model::GyroNoise;

@@ -5,7 +5,7 @@ use firmware::simulated::fault::Notice;
 use orientation::device::Device;
 use orientation::error::Refusal;
 use orientation::keep::Realigned;
-use orientation::keep::spin::State;
+use orientation::keep::spin::Condition;
 
 /// The first event that tells of something wrong.
 pub(super) fn first(events: &[Event]) -> Option<&Event> {
@@ -40,7 +40,7 @@ fn blamed(event: &Event) -> Option<Device> {
 fn is_wrong(event: &Event) -> bool {
     match event {
         Event::HandedOver(.., outcome) => matches!(outcome, Realigned::Disagrees { .. }),
-        Event::Roll(state) => !matches!(state, State::Searching | State::Locked),
+        Event::Roll(state) => !matches!(state.condition, Condition::Searching | Condition::Locked),
         Event::Missing(_)
         | Event::Late(_)
         | Event::Overflowed(_)

@@ -87,8 +87,8 @@ impl Track {
         self.rolls_rad.push(point.roll_rad);
         self.sigmas_rad.push(point.sigma_rad.unwrap_or(f64::NAN));
         self.times_s.push(point.time_s);
-        let kind = std::mem::discriminant(&point.state);
-        if self.states.last().is_none_or(|(_, state)| std::mem::discriminant(state) != kind) {
+        let condition = point.state.condition;
+        if self.states.last().is_none_or(|(_, state)| state.condition != condition) {
             self.states.push((point.time_s, point.state));
         }
         if is_kept {

@@ -10,7 +10,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 use orientation::earth::Latitude;
-use orientation::keep::{Gyro, Keeper, Report, Setting, State};
+use orientation::keep::{Gyro, Keeper, Report, Setting, Trust};
 use orientation::noise::model::GyroNoise;
 use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR};
 use serde::Serialize;
@@ -167,8 +167,10 @@ impl Watched {
 
     fn push(&mut self, time_s: f64, report: &Report) {
         let seconds = self.moments.last().map_or(self.period_s, |before| time_s - before.time_s);
-        self.meet(name(report.state), seconds);
-        if let Some(before) = self.moments.last().filter(|_| self.last.state != State::Starting) {
+        self.meet(name(report.state.trust), seconds);
+        if let Some(before) =
+            self.moments.last().filter(|_| self.last.state.trust != Trust::Starting)
+        {
             let [from, to] = [before.attitude, report.attitude].map(|q| degrees(heading(q)));
             self.turned += azimuth_error(to, from).to_radians();
         }
@@ -200,9 +202,9 @@ impl Watched {
 /// Why the last report is no result.
 fn refusal(last: &Report, required_sigma: Option<f64>) -> Option<String> {
     let sigma = degrees(last.level_sigma);
-    match (last.state, required_sigma.map(degrees)) {
-        (State::Starting, _) => Some("no level was found".to_owned()),
-        (State::RotationLost { .. }, _) => Some(format!("at the end, {}", last.state)),
+    match (last.state.trust, required_sigma.map(degrees)) {
+        (Trust::Starting, _) => Some("no level was found".to_owned()),
+        (Trust::RotationLost, _) => Some(format!("at the end, {}", last.state)),
         (_, Some(most)) if sigma > most || sigma.is_nan() => {
             Some(format!("pitch and roll are good to {sigma:.2}° only, {most:.2}° is wanted"))
         }
@@ -210,15 +212,15 @@ fn refusal(last: &Report, required_sigma: Option<f64>) -> Option<String> {
     }
 }
 
-/// A state without the time that it holds.
-fn name(state: State) -> &'static str {
-    match state {
-        State::Starting => "starting",
-        State::Level => "level",
-        State::Coasting { .. } => "coasting",
-        State::FreeFall { .. } => "free fall",
-        State::NoForce { .. } => "no force",
-        State::RotationLost { .. } => "rotation lost",
+/// Reliability of the level in a word.
+fn name(trust: Trust) -> &'static str {
+    match trust {
+        Trust::Starting => "starting",
+        Trust::Level => "level",
+        Trust::Coasting => "coasting",
+        Trust::FreeFall => "free fall",
+        Trust::NoForce => "no force",
+        Trust::RotationLost => "rotation lost",
     }
 }
 

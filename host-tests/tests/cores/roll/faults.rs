@@ -1,6 +1,6 @@
 //! Lifts that come late or go, gyros that are wrong, samples that are missing.
 
-use orientation::keep::spin::State;
+use orientation::keep::spin::Condition;
 use orientation::units::{AngleIncrement, Instant, SpinForce};
 
 use super::world::{Body, assert_followed, follow, worst};
@@ -10,7 +10,7 @@ fn a_lift_that_comes_after_two_seconds_is_found() {
     for scale in [1e-3, 0.01, -0.02] {
         let lift = |time: f64| if time < 2.0 { 0.0 } else { 20.0 };
         let known = follow(&Body { lift, scale, seconds: 3.0, ..Body::default() }, |_, _| true);
-        assert_eq!(known[15_000].state, State::Searching);
+        assert_eq!(known[15_000].state.condition, Condition::Searching);
         assert_followed(&known);
     }
 }
@@ -19,7 +19,7 @@ fn a_lift_that_comes_after_two_seconds_is_found() {
 fn a_lift_that_fades_for_three_tenths_of_a_second_is_held_within_three_sigma() {
     let lift = |time: f64| if (1.0..1.3).contains(&time) { 0.0 } else { 20.0 };
     let known = follow(&Body { lift, ..Body::default() }, |_, _| true);
-    assert!(known.iter().any(|known| matches!(known.state, State::Holding { .. })));
+    assert!(known.iter().any(|known| known.state.condition == Condition::Holding));
     assert!(worst(&known, 0.1) < 3.0, "{} σ", worst(&known, 0.1));
     assert_followed(&known);
 }
@@ -54,7 +54,7 @@ fn a_body_that_begins_to_spin_is_found_within_a_second_and_a_half() {
     };
     let rate = |time: f64| 100.0 * (time - 1.0).clamp(0.0, 1.0);
     let known = follow(&Body { turns, rate, seconds: 4.0, ..Body::default() }, |_, _| true);
-    assert!(matches!(known[9_000].state, State::NotSpinning { .. }));
+    assert_eq!(known[9_000].state.condition, Condition::NotSpinning);
     assert!(worst(&known, 2.5) < 4.0, "{} σ", worst(&known, 2.5));
     assert_followed(&known);
 }
@@ -81,7 +81,7 @@ fn a_spin_that_stops_says_so_and_goes_on() {
     };
     let rate = |time: f64| if (1.0..2.0).contains(&time) { 0.0 } else { 100.0 };
     let known = follow(&Body { turns, rate, seconds: 3.5, ..Body::default() }, |_, _| true);
-    assert!(matches!(known[19_000].state, State::NotSpinning { .. }));
+    assert_eq!(known[19_000].state.condition, Condition::NotSpinning);
     assert!(worst(&known, 0.1) < 4.0, "{} σ", worst(&known, 0.1));
     assert_followed(&known);
 }
@@ -109,7 +109,7 @@ fn a_sample_that_is_missing_now_and_then_keeps_no_turn_from_counting() {
     for each in [5, 37] {
         let known = follow(&Body::default(), |place, _| place % each != 0);
         assert!(worst(&known, 0.1) < 4.0, "{each}: {} σ", worst(&known, 0.1));
-        assert_eq!(known.last().map(|known| known.state), Some(State::Locked));
+        assert_eq!(known.last().map(|known| known.state.condition), Some(Condition::Locked));
         assert!(known.iter().skip(1000).all(|known| known.error.abs() < 0.02));
     }
 }
@@ -137,7 +137,7 @@ fn forces_that_are_lost_are_said_to_be() {
             }
             true
         });
-        let is_said = known.iter().any(|known| matches!(known.state, State::ForceLost { .. }));
+        let is_said = known.iter().any(|known| known.state.condition == Condition::ForceLost);
         assert_eq!(is_said, lost == 500);
         assert!(worst(&known, 0.1) < 4.0, "{lost}: {} σ", worst(&known, 0.1));
         assert_followed(&known);
@@ -152,7 +152,7 @@ fn a_blow_is_forgotten_at_the_next_turns() {
         }
         true
     });
-    assert!(known[11_500..].iter().all(|known| known.state == State::Locked));
+    assert!(known[11_500..].iter().all(|known| known.state.condition == Condition::Locked));
     assert_followed(&known);
 }
 
@@ -167,7 +167,7 @@ fn forces_of_a_mirrored_sensor_are_not_followed() {
         true
     });
     for known in [swapped, mirrored] {
-        assert!(known.iter().skip(1000).all(|known| known.state != State::Locked));
+        assert!(known.iter().skip(1000).all(|known| known.state.condition != Condition::Locked));
     }
 }
 

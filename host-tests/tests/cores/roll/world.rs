@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use hal_mock::noise::Generator;
-use orientation::keep::spin::{Setting, Spin, State};
+use orientation::keep::spin::{Condition, Setting, Spin, State};
 use orientation::signal::SpinSample;
 use orientation::units::{AngleIncrement, Instant, SpinForce};
 
@@ -115,7 +115,7 @@ pub fn worst(known: &[Known], from: f64) -> f64 {
 #[track_caller]
 pub fn assert_followed(known: &[Known]) {
     let last = known.last().expect("there were samples");
-    assert_eq!(last.state, State::Locked);
+    assert_eq!(last.state.condition, Condition::Locked);
     assert!(last.error.abs() < 2e-3, "{}° off", last.error.to_degrees());
     assert!(last.in_sigmas() < 4.0, "{} σ off", last.in_sigmas());
     assert!(last.scale[0].abs() < 4.0 * last.scale[1], "scale {:?}", last.scale);

@@ -7,7 +7,7 @@ use bench::methods::spin::{Known, follow};
 use firmware::event::Event;
 use firmware::simulated::fault::{Fault, Platform};
 use firmware::simulated::spin::SpinScenario;
-use orientation::keep::spin::State;
+use orientation::keep::spin::{Condition, State};
 
 fn flown(scenario: &SpinScenario, fault: Option<Fault>) -> SpinRun {
     follow_spin(scenario, fault, &()).unwrap_or_else(|error| panic!("{error}"))
@@ -44,12 +44,17 @@ fn it_follows_the_roll_of_a_healthy_body_and_carries_course_and_pitch_on() {
     assert!(run.samples.len().abs_diff(28_800) < 10, "{}", run.samples.len());
 }
 
+/// Whether an event tells that the roll has come into one of these conditions.
+fn is_roll(event: &Event, of: &[Condition]) -> bool {
+    matches!(event, Event::Roll(State { condition, .. }) if of.contains(condition))
+}
+
 #[test]
 fn it_tells_when_it_locks_and_what_the_roll_was_at_the_end() {
     let run = flown(&short(), None).run;
     let events: Vec<Event> = run.events.iter().map(|(_, event)| *event).collect();
     assert!(events.contains(&Event::BegunSpin));
-    assert!(events.contains(&Event::Roll(State::Locked)), "{events:?}");
+    assert!(events.iter().any(|event| is_roll(event, &[Condition::Locked])), "{events:?}");
     assert!(matches!(events.last(), Some(Event::Flown { sigma: Some(_), .. })), "{events:?}");
     let last = run.lines.lines().last().unwrap_or_default();
     assert!(last.starts_with("roll ") && last.ends_with(" locked, faults 0"), "{}", run.lines);
@@ -74,8 +79,7 @@ fn the_board_and_a_replay_of_its_samples_agree_to_the_last_bit() {
 fn it_holds_the_roll_while_there_is_no_lift_and_tells_when_it_is_back() {
     let run = flown(&SpinScenario::default(), Some(Fault::LiftFades));
     let events: Vec<Event> = run.run.events.iter().map(|(_, event)| *event).collect();
-    let holds = |event: &Event| matches!(event, Event::Roll(State::Holding { .. }));
-    assert!(events.iter().any(holds), "{events:?}");
+    assert!(events.iter().any(|event| is_roll(event, &[Condition::Holding])), "{events:?}");
     let back = events.iter().find_map(|event| match event {
         Event::LiftBack(seconds) => Some(*seconds),
         _ => None,
@@ -88,10 +92,9 @@ fn it_holds_the_roll_while_there_is_no_lift_and_tells_when_it_is_back() {
 #[test]
 fn a_spin_that_stops_is_told() {
     let run = flown(&SpinScenario::default(), Some(Fault::SpinStops));
-    let told = |(_, event): &(_, Event)| {
-        matches!(event, Event::Roll(State::NotSpinning { .. } | State::RotationLost { .. }))
-    };
-    assert!(run.run.events.iter().any(told), "{:?}", run.run.events);
+    let stopped = [Condition::NotSpinning, Condition::RotationLost];
+    let mut events = run.run.events.iter();
+    assert!(events.any(|(_, event)| is_roll(event, &stopped)), "{:?}", run.run.events);
 }
 
 #[test]

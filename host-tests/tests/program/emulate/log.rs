@@ -57,14 +57,14 @@ fn the_log_gives_back_the_bits_and_the_figures() {
 
 /// A row all of whose numbers are a half.
 fn halves(kind: &'static Kind) -> Row {
-    Row { kind, bits: vec![Some(0.5_f64.to_bits()); kind.names.len()] }
+    Row { kind, bits: vec![Some(0.5_f64.to_bits()); kind.names().count()] }
 }
 
 #[test]
 fn turns_and_stops_come_in_their_order_with_all_their_numbers() {
     for (kind, name) in [(&TURN, "offset="), (&STOP, "turned_y=")] {
         let names: Vec<_> =
-            kind.names.iter().map(|name| format!("{name}=3fe0000000000000")).collect();
+            kind.names().map(|name| format!("{name}=3fe0000000000000")).collect();
         let (names, word) = (names.join(" "), kind.word);
         let mut log = whole_log();
         log.drain(..2);

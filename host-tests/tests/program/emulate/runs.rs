@@ -7,7 +7,7 @@ use firmware::simulated::turntable::TurntableScenario;
 use firmware::simulated::vehicle::VehicleScenario;
 
 fn row(kind: &'static Kind, number: f64) -> Row {
-    Row { kind, bits: vec![Some(number.to_bits()); kind.names.len()] }
+    Row { kind, bits: vec![Some(number.to_bits()); kind.names().count()] }
 }
 
 /// Three dwells, then two rows of each other kind.
@@ -38,7 +38,7 @@ fn runs_that_are_the_same_in_every_bit_agree() {
 fn one_bit_of_any_number_of_any_row_is_found_and_named() {
     for (kind, last) in [(&DWELL, 3), (&TURN, 2), (&STOP, 2), (&KEPT, 2)] {
         for number in 1..=last {
-            for (index, name) in kind.names.iter().enumerate() {
+            for (index, name) in kind.names().enumerate() {
                 for bit in [0, 31, 63] {
                     let (host, mut emulated) = (outcome(), outcome());
                     let at = place(&emulated, kind, number);

@@ -8,7 +8,7 @@
 use super::circle::Circle;
 use super::fit::{Fit, Sums};
 use super::phase_accumulator::PhaseAccumulator;
-use super::{Accelerometer, Setting, State};
+use super::{Condition, Setting, State};
 use crate::signal::SpinSample;
 use crate::units::{AngleIncrement, Instant, TURN};
 
@@ -80,21 +80,6 @@ const SURE: f64 = 0.4;
 /// lift, 1σ, rad.
 const UPRIGHT: f64 = 0.1;
 
-/// Reason for which the latest turn was not used.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Trouble {
-    #[default]
-    None,
-    NoLift,
-    TooSlow,
-    NoForce,
-    NoRotation,
-    Stuck(Accelerometer),
-    Mirrored,
-    Elliptic,
-    Contradicted,
-}
-
 /// Phase that turns show, with the sign of a correction of the angle.
 #[derive(Clone, Copy)]
 struct Seen {
@@ -155,7 +140,7 @@ pub(super) struct Lock {
     /// Sensor errors that show in the forces.
     circle: Circle,
     /// Reason for which the latest turn was not used.
-    trouble: Trouble,
+    condition: Condition,
     /// Time since which turns have not been used.
     troubled: Option<Instant>,
 }
@@ -175,6 +160,7 @@ impl Lock {
             lost: f64::INFINITY,
             wanted: SKIPPED,
             calm: [0.0, 1.0],
+            condition: Condition::Locked,
             ..Self::default()
         }
     }
@@ -201,7 +187,7 @@ impl Lock {
         self.angle += variance;
         self.lost += variance;
         if self.angle > SURE * SURE {
-            self.trouble = Trouble::NoRotation;
+            self.condition = Condition::RotationLost;
         }
     }
 
@@ -222,13 +208,13 @@ impl Lock {
         self.carry(angle, f64::from(self.since) * self.period);
         let half = f64::from(self.sums.part_after_middle())
             * f64::from(PhaseAccumulator::between(self.begun, phase_accumulator.whole()));
-        let trouble = match (is_whole, self.lost > BROKEN * BROKEN) {
-            (false, _) => Trouble::TooSlow,
-            (true, true) => Trouble::None,
+        let condition = match (is_whole, self.lost > BROKEN * BROKEN) {
+            (false, _) => Condition::NotSpinning,
+            (true, true) => Condition::Locked,
             (true, false) => self.use_turn(half, phase_accumulator),
         };
         self.lost = 0.0;
-        self.note(trouble, now);
+        self.note(condition, now);
         self.wanted = TURN_STEPS * u64::from(self.together());
         self.sums = Sums::of(if is_whole { samples * self.wanted as f32 } else { USUAL });
         self.begun = phase_accumulator.whole();
@@ -283,23 +269,23 @@ impl Lock {
     }
 
     /// Updates the filter with turns, whose middle is the rotation `half`, rad, ago.
-    fn use_turn(&mut self, half: f64, phase_accumulator: &mut PhaseAccumulator) -> Trouble {
+    fn use_turn(&mut self, half: f64, phase_accumulator: &mut PhaseAccumulator) -> Condition {
         if self.sums.count * 2 < self.sums.samples {
-            return Trouble::NoForce;
+            return Condition::ForceLost;
         }
         if let Some(which) = self.sums.stuck() {
-            return Trouble::Stuck(which);
+            return Condition::AccelerometerStuck(which);
         }
         let turns = (self.wanted / TURN_STEPS).max(1) as u32;
-        let Some(fit) = self.sums.fit(turns) else { return Trouble::NoForce };
+        let Some(fit) = self.sums.fit(turns) else { return Condition::ForceLost };
         let quiet = self.noise.unwrap_or(fit.noise);
         let noise = self.noise(&fit);
         let sigma = libm::sqrtf(noise * fit.share);
         let lift = libm::sqrtf(fit.lift.power());
-        let trouble = self.judge(lift, libm::sqrtf(fit.ripple.against().power()), sigma);
-        if trouble != Trouble::None {
+        let condition = self.judge(lift, libm::sqrtf(fit.ripple.against().power()), sigma);
+        if condition != Condition::Locked {
             self.lift = Some(0.0);
-            return trouble;
+            return condition;
         }
         let phase = f64::from(libm::atan2f(fit.lift.im, fit.lift.re));
         let square = |part: f64| part * part;
@@ -318,23 +304,23 @@ impl Lock {
         if is_used && self.agreed >= AGREED {
             self.circle.take(&fit, noise);
         }
-        if self.stray == 0.0 { Trouble::None } else { Trouble::Contradicted }
+        if self.stray == 0.0 { Condition::Locked } else { Condition::Contradicted }
     }
 
     /// Checks whether a lift is significant, given the counter-rotating force and the noise of
     /// either part, m/s².
-    fn judge(&self, lift: f32, against: f32, sigma: f32) -> Trouble {
+    fn judge(&self, lift: f32, against: f32, sigma: f32) -> Condition {
         let felt = sigma * if self.agreed > 0 { USED } else { FOUND };
         if lift.max(against) < felt {
-            Trouble::NoLift
+            Condition::Holding
         } else if against > lift {
-            Trouble::Mirrored
+            Condition::Mirrored
         } else if against > ELLIPTIC * lift + BOUND as f32 * sigma {
-            Trouble::Elliptic
+            Condition::Elliptic
         } else if lift < felt {
-            Trouble::NoLift
+            Condition::Holding
         } else {
-            Trouble::None
+            Condition::Locked
         }
     }
 
@@ -440,12 +426,12 @@ impl Lock {
     }
 
     /// Stores the reason for which turns are not used, with its time.
-    fn note(&mut self, trouble: Trouble, now: Instant) {
+    fn note(&mut self, condition: Condition, now: Instant) {
         let is_lost =
-            trouble == Trouble::None && (self.agreed < AGREED || self.angle > SURE * SURE);
-        self.trouble = if is_lost { Trouble::NoRotation } else { trouble };
+            condition == Condition::Locked && (self.agreed < AGREED || self.angle > SURE * SURE);
+        self.condition = if is_lost { Condition::RotationLost } else { condition };
         let since = self.troubled.unwrap_or(now);
-        self.troubled = (self.trouble != Trouble::None).then_some(since);
+        self.troubled = (self.condition != Condition::Locked).then_some(since);
     }
 
     /// Standard deviation of the angle, 1σ, rad; `None` where it is unknown.
@@ -469,21 +455,16 @@ impl Lock {
         self.lift.map(f64::from)
     }
 
-    /// State with its duration.
+    /// State with its duration. Until the roll was found for the first time, nothing is lost or held.
     pub(super) fn state(&self, now: Instant) -> State {
         let since = self.troubled.unwrap_or(now);
         let seconds = now.seconds() - since.seconds();
-        match self.trouble {
-            Trouble::Stuck(which) => State::AccelerometerStuck { which, seconds },
-            Trouble::Mirrored => State::Mirrored { seconds },
-            Trouble::Elliptic => State::Elliptic { seconds },
-            Trouble::Contradicted => State::Contradicted { seconds },
-            Trouble::TooSlow => State::NotSpinning { seconds },
-            Trouble::NoForce => State::ForceLost { seconds },
-            Trouble::NoRotation if self.is_found => State::RotationLost { seconds },
-            _ if !self.is_found => State::Searching,
-            Trouble::NoLift => State::Holding { seconds },
-            Trouble::None | Trouble::NoRotation => State::Locked,
-        }
+        let is_of_roll = matches!(
+            self.condition,
+            Condition::Locked | Condition::Holding | Condition::RotationLost
+        );
+        let searches = is_of_roll && !self.is_found;
+        let condition = if searches { Condition::Searching } else { self.condition };
+        State { condition, seconds }
     }
 }

@@ -99,74 +99,54 @@ crate::words! { Accelerometer:
 }
 
 /// Source of the present roll, or fault that prevents it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum State {
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Condition {
     /// No lift has been detected yet.
     #[default]
     Searching,
     /// Lift and gyro agree.
     Locked,
     /// The lift is below the noise, and the gyro holds the roll.
-    Holding {
-        /// Duration of the state, s.
-        seconds: f64,
-    },
+    Holding,
     /// The body spins too slowly to evaluate its turns.
-    NotSpinning {
-        /// Duration of the state, s.
-        seconds: f64,
-    },
+    NotSpinning,
     /// There are no usable forces.
-    ForceLost {
-        /// Duration of the state, s.
-        seconds: f64,
-    },
+    ForceLost,
     /// Rotation was lost, and with it the roll, until the next turns show it again.
-    RotationLost {
-        /// Duration of the state, s.
-        seconds: f64,
-    },
+    RotationLost,
     /// An accelerometer repeats one identical value.
-    AccelerometerStuck {
-        /// Accelerometer that is stuck.
-        which: Accelerometer,
-        /// Duration of the state, s.
-        seconds: f64,
-    },
+    AccelerometerStuck(Accelerometer),
     /// The gyro about the longitudinal axis repeats one identical rate.
-    GyroStuck {
-        /// Duration of the state, s.
-        seconds: f64,
-    },
+    GyroStuck,
     /// The forces rotate against the gyro: axes or signs are exchanged.
-    Mirrored {
-        /// Duration of the state, s.
-        seconds: f64,
-    },
+    Mirrored,
     /// The forces describe an ellipse instead of a circle: a scale or axis is wrong.
-    Elliptic {
-        /// Duration of the state, s.
-        seconds: f64,
-    },
+    Elliptic,
     /// The phase of the forces contradicts the gyro's angle.
-    Contradicted {
-        /// Duration of the state, s.
-        seconds: f64,
-    },
+    Contradicted,
+}
+
+/// Source of the present roll, or fault that prevents it, and how long it has been so.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct State {
+    /// Source or fault.
+    pub condition: Condition,
+    /// Duration of a condition other than [`Condition::Searching`] and [`Condition::Locked`], s.
+    pub seconds: f64,
 }
 
 crate::words! { State:
-    Self::Searching => "searching: no lift was felt yet";
-    Self::Locked => "locked";
-    Self::Holding { seconds } => "holding on the gyro for {} s: no lift", Rounded::<2>(seconds);
-    Self::NotSpinning { seconds } => "not spinning for {} s", Rounded::<2>(seconds);
-    Self::ForceLost { seconds } => "without forces for {} s", Rounded::<2>(seconds);
-    Self::RotationLost { seconds } => "rotation lost for {} s", Rounded::<2>(seconds);
-    Self::AccelerometerStuck { which, seconds } => "{} one value for {} s: stuck or dead, check supply and wires", which, Rounded::<2>(seconds);
-    Self::GyroStuck { seconds } => "the gyro about x shows one rate for {} s: stuck or dead, check supply and wires", Rounded::<2>(seconds);
-    Self::Mirrored { seconds } => "the forces go round against the gyro for {} s: swapped or turned round, check axes and signs", Rounded::<2>(seconds);
-    Self::Elliptic { seconds } => "the forces draw an ellipse for {} s: check scales and axes of the accelerometers", Rounded::<2>(seconds);
-    Self::Contradicted { seconds } => "the forces contradict the gyro for {} s: check its scale", Rounded::<2>(seconds);
+    Self { condition: Condition::Searching, .. } => "searching: no lift was felt yet";
+    Self { condition: Condition::Locked, .. } => "locked";
+    Self { condition: Condition::Holding, seconds } => "holding on the gyro for {} s: no lift", Rounded::<2>(seconds);
+    Self { condition: Condition::NotSpinning, seconds } => "not spinning for {} s", Rounded::<2>(seconds);
+    Self { condition: Condition::ForceLost, seconds } => "without forces for {} s", Rounded::<2>(seconds);
+    Self { condition: Condition::RotationLost, seconds } => "rotation lost for {} s", Rounded::<2>(seconds);
+    Self { condition: Condition::AccelerometerStuck(which), seconds } => "{} one value for {} s: stuck or dead, check supply and wires", which, Rounded::<2>(seconds);
+    Self { condition: Condition::GyroStuck, seconds } => "the gyro about x shows one rate for {} s: stuck or dead, check supply and wires", Rounded::<2>(seconds);
+    Self { condition: Condition::Mirrored, seconds } => "the forces go round against the gyro for {} s: swapped or turned round, check axes and signs", Rounded::<2>(seconds);
+    Self { condition: Condition::Elliptic, seconds } => "the forces draw an ellipse for {} s: check scales and axes of the accelerometers", Rounded::<2>(seconds);
+    Self { condition: Condition::Contradicted, seconds } => "the forces contradict the gyro for {} s: check its scale", Rounded::<2>(seconds);
 }
 
 /// Greatest delay of a sample, in sample periods.
@@ -301,19 +281,20 @@ impl Spin {
         }
     }
 
-    /// Source of the present roll, or fault that prevents it.
+    /// Source of the present roll, or fault that prevents it, with its duration.
     #[must_use]
     pub fn state(&self) -> State {
-        let now = self.latest.unwrap_or_default();
-        match &self.corrector {
-            Corrector::Extrema(extrema) if extrema.has_corrected => State::Locked,
-            Corrector::Extrema(_) => State::Searching,
-            Corrector::Lock(lock) => match self.pace.stuck() {
-                Some(samples) => {
-                    State::GyroStuck { seconds: f64::from(samples) * f64::from(self.period) * 1e-6 }
-                }
-                None => lock.state(now),
-            },
+        match (&self.corrector, self.pace.stuck()) {
+            (Corrector::Extrema(extrema), _) => {
+                let found = Condition::Locked;
+                let condition = if extrema.has_corrected { found } else { Condition::Searching };
+                State { condition, seconds: 0.0 }
+            }
+            (Corrector::Lock(_), Some(samples)) => {
+                let seconds = f64::from(samples) * f64::from(self.period) * 1e-6;
+                State { condition: Condition::GyroStuck, seconds }
+            }
+            (Corrector::Lock(lock), None) => lock.state(self.latest.unwrap_or_default()),
         }
     }
 
