@@ -19,7 +19,7 @@ use crate::command::emulate::EmulateOptions;
 use crate::command::given::Given;
 use crate::command::plan::PlanOptions;
 use crate::command::replay::ReplayOptions;
-use crate::command::run::{RunOptions, alias};
+use crate::command::run::{RunOptions, usual};
 use crate::command::{Failure, print};
 
 /// Finds true north from a precise gyro on a rotation stage, with its standard deviation.
@@ -63,8 +63,7 @@ struct Asked {
 /// The command line; without a command it is a run of a stage with all its defaults.
 fn parse() -> Result<Asked, clap::Error> {
     let mut arguments: Vec<_> = std::env::args_os().collect();
-    let named = alias::expanded(arguments.split_off(1.min(arguments.len())))
-        .map_err(|wrong| clap::Error::raw(ErrorKind::InvalidValue, wrong))?;
+    let named = usual::named(arguments.split_off(1.min(arguments.len())));
     let program = taking_negative_numbers(CommandLine::command());
     let matches = program.try_get_matches_from(arguments.iter().chain(&named))?;
     let CommandLine { json: as_json, command } = CommandLine::from_arg_matches(&matches)?;

@@ -12,6 +12,7 @@ use crate::words::Rounded;
 /// [`crate::align::budget::Budget`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Source {
     /// White noise (angle random walk) of the gyro.
     Noise,

@@ -92,6 +92,30 @@ impl Precision {
     }
 }
 
+/// Errors with their 1σ over many runs, °.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Spread {
+    /// RMS of the errors.
+    pub rms_deg: f64,
+    /// RMS of the σ that goes with them.
+    pub sigma_deg: f64,
+    /// Per cent of errors within 1, 2 and 3 σ.
+    pub coverage_percent: [f64; 3],
+}
+
+impl Spread {
+    /// Of pairs of an error and its σ.
+    #[must_use]
+    pub fn of(pairs: &[[f64; 2]]) -> Self {
+        let (errors, sigmas): (Vec<_>, Vec<_>) = pairs.iter().map(|[e, s]| (*e, *s)).unzip();
+        Self {
+            rms_deg: rms(&errors),
+            sigma_deg: rms(&sigmas),
+            coverage_percent: coverage(&errors, &sigmas),
+        }
+    }
+}
+
 /// Root mean square; zero of none.
 #[must_use]
 pub fn rms(values: &[f64]) -> f64 {

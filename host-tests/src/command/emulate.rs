@@ -18,7 +18,7 @@ pub struct EmulateOptions {
 pub fn run(options: &EmulateOptions, as_json: bool) -> Result<Told, String> {
     let found = emulate(options.seed, |line| say(&line.to_string()))?;
     let object = emulation::object(&found);
-    let told = Told::of(found.is_right(), as_json, &object, || emulation::tables(&found))?;
+    let told = Told::of(found.is_right(), as_json, &object, || emulation::report(&found).text())?;
     let refusal = (!found.is_right()).then(|| "not all is as it must be".to_owned());
     Ok(Told { refusal, ..told })
 }

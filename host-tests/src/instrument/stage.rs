@@ -33,13 +33,10 @@ pub fn align<R: Recorder, W: Observer>(
     recorder: R,
     watch: &W,
 ) -> Result<Run, RunError> {
-    if !scenario.has_base_imu {
-        return align_on(NoBase, scenario, fault, recorder, watch);
-    }
     align_and_keep(scenario, &KeptPlan::of(fault), recorder, watch, ()).map(|kept| kept.run)
 }
 
-/// The same on a base with sensors, and goes on as the scenario says; with a store of the heading over a
+/// The same, and goes on as the scenario says where the base has sensors; with a store of the heading over a
 /// loss of supply.
 ///
 /// # Errors
@@ -51,6 +48,11 @@ pub fn align_and_keep<R: Recorder, W: Observer>(
     watch: &W,
     store: impl Store,
 ) -> Result<KeptRun, RunError> {
+    if !scenario.has_base_imu {
+        let board = RefCell::new(simulated::board(scenario, None, &plan.chips));
+        let run = align_with(&board, NoBase, scenario, &plan.chips, recorder, watch, store)?;
+        return Ok(KeptRun { run, kept: Kept::default() });
+    }
     let day = plan.day(scenario.day());
     let journey = journey(&day, &plan.base);
     let journey = (scenario.hold.seconds > 0.0).then_some(journey);

@@ -155,35 +155,21 @@ fn keys<S: Serializer>(details: &Box<dyn Details>, serializer: S) -> Result<S::O
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct NoDetails {}
 
-/// The 1σ parts of σ, serialised in degrees under the names of [`BUDGET_KEYS`].
+/// The 1σ parts of σ, serialised in degrees under the names of their sources.
 #[derive(Clone, Copy, Debug)]
 pub struct BudgetDetails(Budget);
 
-/// Keys of the parts of a budget, in the order of [`Budget::parts`].
-pub const BUDGET_KEYS: [&str; 9] = [
-    "noise",
-    "drift",
-    "g_sensitivity",
-    "accelerometer",
-    "encoder",
-    "latitude",
-    "scale",
-    "temperature",
-    "displacement",
-];
-
 impl BudgetDetails {
-    /// The parts with key and name, rad; a displacement only where a vehicle drove.
-    fn shown(&self) -> impl Iterator<Item = (&'static str, Part, f64)> {
-        let all = BUDGET_KEYS.into_iter().zip(self.0.parts());
-        let named = all.map(|(key, (source, part))| (key, source, part));
-        named.filter(|(_, source, part)| *source != Part::Displacement || *part > 0.0)
+    /// The parts, rad; a displacement only where a vehicle drove.
+    fn shown(&self) -> impl Iterator<Item = (Part, f64)> {
+        let parts = self.0.parts().into_iter();
+        parts.filter(|(source, part)| *source != Part::Displacement || *part > 0.0)
     }
 }
 
 impl Serialize for BudgetDetails {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.shown().map(|(key, _, part)| (key, degrees(part))))
+        serializer.collect_map(self.shown().map(|(source, part)| (source, degrees(part))))
     }
 }
 
@@ -392,7 +378,7 @@ fn of_fit(lines: &mut Lines, fit: &FitDetails) {
 fn budget_table(details: &BudgetDetails) -> Table {
     let budget = &details.0;
     let sigma = budget.sigma();
-    let row = |(_, source, part): (_, Part, f64)| {
+    let row = |(source, part): (Part, f64)| {
         let share = 100.0 * (part / sigma) * (part / sigma);
         [source.to_string(), format!("{:.4}", degrees(part)), format!("{share:.1}")]
     };

@@ -1,6 +1,6 @@
 //! The tables of an emulation.
 
-use std::fmt::{self, Write};
+use std::iter::once;
 
 use serde_json::{Value, json};
 
@@ -9,103 +9,104 @@ use crate::emulate::checks::Check;
 use crate::emulate::collect::Figures;
 use crate::emulate::cost::Row;
 use crate::emulate::outcome::{DWELL, Outcome};
+use crate::report::{Columns, Lines, Part, Report, Table};
 
-/// What the emulated instrument found, whether the host found the same, and all figures.
+/// What the images found, took and hold.
 #[must_use]
-pub fn tables(emulation: &Emulation) -> String {
-    let mut text = String::new();
-    // Writing to a string cannot fail.
-    let _ = write(&mut text, emulation);
-    text
+pub fn report(emulation: &Emulation) -> Report {
+    let costs = emulation.cost.chunk_by(|one, other| one.heading == other.heading).map(of_cost);
+    let rest = [of_tasks(emulation), of_runs(emulation).into(), of_memory(emulation)];
+    let parts = once(of_outcome(emulation).into()).chain(costs).chain(rest);
+    let verdict = if emulation.is_right() { "All as it must be" } else { "FAILED" };
+    let title = format!("{verdict}: the firmware on an emulated Cortex-M4F");
+    Report::new(title, parts.chain([of_checks(&emulation.checks)]))
 }
 
-fn write(out: &mut String, emulation: &Emulation) -> fmt::Result {
-    found(out, &emulation.emulated)?;
-    match &emulation.comparison {
-        Ok(()) => writeln!(out, "the host's run of this seed is the same, bit for bit")?,
-        Err(difference) => writeln!(out, "NOT THE SAME ON THE HOST: {difference}")?,
-    }
-    cores(out, &emulation.cost)?;
-    tasks(out, emulation)?;
-    sections(out, emulation)?;
-    heading(out, "the whole instrument: INSTRUCTIONS (not cycles) and bytes")?;
-    emulation.checks.iter().try_for_each(|check| row(out, check))?;
-    let verdict = if emulation.is_right() { "all as it must be" } else { "FAILED" };
-    writeln!(out, "\n{verdict}")
-}
-
-fn found(out: &mut impl Write, outcome: &Outcome) -> fmt::Result {
+/// The azimuth, and whether it is the host's.
+fn of_outcome(Emulation { emulated, comparison, .. }: &Emulation) -> Lines {
+    let Outcome { seed, reason, azimuth_bits, sigma_bits, .. } = emulated;
     let degrees = |bits| f64::from_bits(bits).to_degrees();
-    write!(out, "\nseed {}, {} dwells: ", outcome.seed, outcome.rows_of(&DWELL).count())?;
-    match (&outcome.reason, outcome.azimuth_bits.zip(outcome.sigma_bits)) {
+    let mut lines = Lines::default();
+    lines.add("seed", format!("{seed}, {} dwells", emulated.rows_of(&DWELL).count()));
+    let azimuth = match (reason, azimuth_bits.zip(*sigma_bits)) {
         (None, Some((azimuth, sigma))) => {
-            writeln!(out, "azimuth {:.4}° ± {:.4}° (1σ)", degrees(azimuth), degrees(sigma))
+            format!("{:.4}° ± {:.4}° (1σ)", degrees(azimuth), degrees(sigma))
         }
-        (reason, _) => writeln!(out, "no azimuth: {}", reason.as_deref().unwrap_or("")),
-    }
+        (reason, _) => format!("none: {}", reason.as_deref().unwrap_or("")),
+    };
+    lines.add("azimuth", azimuth);
+    let same = match comparison {
+        Ok(()) => "the same in its run of this seed, bit for bit".to_owned(),
+        Err(difference) => format!("NOT THE SAME: {difference}"),
+    };
+    lines.add("on the host", same);
+    lines
 }
 
-/// The heading of a table of this quantity.
-fn heading(out: &mut impl Write, quantity: &str) -> fmt::Result {
-    writeln!(out, "\n{:>10} {:>10} {:5} {quantity}", "count", "budget", "")
+/// What the cores take, under one heading.
+fn of_cost(rows: &[Row]) -> Part {
+    let heading = rows.first().map_or("", |row| &row.heading);
+    Columns::of(heading, rows)
+        .column("what", |row| &row.what)
+        .column("count", |row| row.count)
+        .column("budget", |row| row.budget.map_or("-".to_owned(), |budget| budget.to_string()))
+        .column("", |row| &row.verdict)
+        .into()
 }
 
-/// The image `cost`'s table as it printed it.
-fn cores(out: &mut impl Write, rows: &[Row]) -> fmt::Result {
-    let mut last = "";
-    for row in rows {
-        if row.heading != last {
-            heading(out, &row.heading)?;
-            last = &row.heading;
-        }
-        let budget = row.budget.map_or_else(|| "-".to_owned(), |budget| budget.to_string());
-        writeln!(out, "{:>10} {budget:>10} {:5} {}", row.count, row.verdict, row.what)?;
-    }
-    Ok(())
+fn of_tasks(emulation: &Emulation) -> Part {
+    Columns::of("Tasks, without bus drivers and interrupts", &emulation.runs.figures.tasks)
+        .column("task", |task| &task.name)
+        .column("polls", |task| task.polls)
+        .column("instructions", |task| task.instructions)
+        .column("longest", |task| task.worst)
+        .into()
 }
 
-fn tasks(out: &mut impl Write, emulation: &Emulation) -> fmt::Result {
-    let runs = &emulation.runs;
-    let figures = &runs.figures;
-    writeln!(out, "\n{:>10} {:>12} {:>10} task", "polls", "instructions", "longest")?;
-    for task in &figures.tasks {
-        writeln!(
-            out,
-            "{:>10} {:>12} {:>10} {}",
-            task.polls, task.instructions, task.worst, task.name
-        )?;
-    }
-    effort(out, "from the first dwell to the last", figures)?;
-    effort(out, "the same at 2400 Hz, in a brief run", &runs.brief)?;
-    effort(out, "the same at 100 Hz, after a survey of two minutes", &runs.survey)?;
-    effort(out, "from turn to turn at 2400 Hz, on a turning platform", &runs.turning)?;
-    effort(out, "from stop to stop at 50 Hz, three gyros in a vehicle", &runs.stops)?;
-    writeln!(out, "(without bus drivers and interrupts, which are the board's own)")
+/// What each run took with the executor, and more of the simulated chips and world.
+fn of_runs(Emulation { runs, .. }: &Emulation) -> Table {
+    let row = |(run, figures): (&str, &Figures)| {
+        let seconds = format!("{:.1}", figures.microseconds as f64 / 1e6);
+        let [samples, instructions, simulation] =
+            [figures.samples, figures.instructions, figures.simulation].map(|n| n.to_string());
+        [run.to_owned(), samples, seconds, instructions, simulation]
+    };
+    let all = [
+        ("from the first dwell to the last", &runs.figures),
+        ("the same at 2400 Hz, in a brief run", &runs.brief),
+        ("the same at 100 Hz, after a survey of two minutes", &runs.survey),
+        ("from turn to turn at 2400 Hz, on a turning platform", &runs.turning),
+        ("from stop to stop at 50 Hz, three gyros in a vehicle", &runs.stops),
+    ];
+    let head = ["run", "samples", "seconds", "instructions", "of the simulation"];
+    Table::new("Runs, with the executor", &head, all.map(row))
 }
 
-fn effort(out: &mut impl Write, when: &str, figures: &Figures) -> fmt::Result {
-    let seconds = figures.microseconds as f64 / 1e6;
-    writeln!(
-        out,
-        "{when}: {} samples in {seconds:.1} s of virtual time, {} instructions with the executor, \
-         {} more of the simulated chips and world",
-        figures.samples, figures.instructions, figures.simulation
-    )
+fn of_memory(Emulation { memory, .. }: &Emulation) -> Part {
+    let all = vec![
+        "all but the simulation".to_owned(),
+        memory.flash_bytes().to_string(),
+        memory.ram_bytes().to_string(),
+    ];
+    Columns::of("Memory, bytes", &memory.sections)
+        .column("section", |section| &section.name)
+        .column("flash", |section| section.flash_bytes)
+        .column("RAM", |section| section.ram_bytes)
+        .table(Some(all))
+        .into()
 }
 
-fn sections(out: &mut impl Write, emulation: &Emulation) -> fmt::Result {
-    writeln!(out, "\n{:>10} {:>10} section", "flash", "RAM")?;
-    for section in &emulation.memory.sections {
-        writeln!(out, "{:>10} {:>10} {}", section.flash_bytes, section.ram_bytes, section.name)?;
-    }
-    let memory = &emulation.memory;
-    writeln!(out, "{:>10} {:>10} all but the simulation", memory.flash_bytes(), memory.ram_bytes())
-}
-
-fn row(out: &mut impl Write, check: &Check) -> fmt::Result {
-    let bad = if check.at_least { "UNDER" } else { "OVER" };
-    let verdict = if check.is_kept() { "ok" } else { bad };
-    writeln!(out, "{:>10} {:>10} {verdict:5} {}", check.count, check.budget, check.what)
+fn of_checks(checks: &[Check]) -> Part {
+    Columns::of("The whole instrument: INSTRUCTIONS (not cycles) and bytes", checks)
+        .column("what", |check| check.what)
+        .column("count", |check| check.count)
+        .column("budget", |check| check.budget)
+        .column("", |check| match (check.is_kept(), check.at_least) {
+            (true, _) => "ok",
+            (false, true) => "UNDER",
+            (false, false) => "OVER",
+        })
+        .into()
 }
 
 /// The same as one object.

@@ -228,6 +228,21 @@ impl Series {
     }
 }
 
+/// Most points of a curve of which more could not be told apart.
+const POINTS: usize = 2000;
+
+impl Series {
+    /// A curve of as many points as can be told apart, evenly taken from all.
+    pub fn thinned<T, P: Into<Point>>(
+        name: &str,
+        style: Style,
+        all: &[T],
+        of: impl FnMut(&T) -> P,
+    ) -> Self {
+        Self::new(name, style, all.iter().step_by(all.len().div_ceil(POINTS).max(1)).map(of))
+    }
+}
+
 impl From<(f64, f64)> for Point {
     fn from((x, y): (f64, f64)) -> Self {
         Self { x, y, limits: None }
@@ -274,6 +289,12 @@ impl Report {
         let is_there = |part: &Part| !matches!(part, Part::Lines(lines) if lines.lines.is_empty());
         let parts = parts.into_iter().filter(is_there).collect();
         Self { title: title.into(), subtitle: Vec::new(), parts }
+    }
+
+    /// The same with lines below its heading.
+    #[must_use]
+    pub fn below(self, subtitle: impl IntoIterator<Item = impl Into<String>>) -> Self {
+        Self { subtitle: subtitle.into_iter().map(Into::into).collect(), ..self }
     }
 
     /// The report for a terminal: its lines and tables; figures are for a page.

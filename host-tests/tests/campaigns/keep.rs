@@ -4,8 +4,9 @@
 use std::f64::consts::{LN_2, PI};
 
 use bench::campaign::keep::limit::{adjacent_variance, stored_sigma};
-use bench::campaign::keep::{self, Row, Spread};
+use bench::campaign::keep::{self, Row};
 use bench::campaign::statistics::NORMAL_COVERAGE;
+use bench::campaign::statistics::Spread;
 use bench::methods::stops::samples::Converter;
 use bench::output::azimuth_error;
 use orientation::earth::Latitude;

@@ -1,6 +1,6 @@
 //! Sokolov's experiment in full, and the figures that the README prints of it.
 
-use bench::campaign::sokolov::{Precision, Table, Turn, precision, tabulate};
+use bench::campaign::sokolov::{FixedPoint, Table, Turn, fixed_point, tabulate};
 use bench::campaign::statistics::{NORMAL_COVERAGE, coverage, least, rms};
 
 use crate::support::campaign::{Extent, campaigns};
@@ -12,47 +12,49 @@ campaigns! {
     maximum_likelihood_reaches_the_limit_on_the_full_circle;
 }
 
-fn check_precision(turn: Turn, extent: Extent) -> Precision {
+fn check_precision(turn: Turn, extent: Extent) -> FixedPoint {
     let runs = extent.of(RUNS);
-    let result = precision(turn, runs, || {}).expect("it runs");
+    let result = fixed_point(turn, runs, || {}).expect("it runs");
     // Once in 16 000 runs noise looks like a trend that an arc cannot tell from the Earth rate.
-    assert!(result.refused <= extent.count(RUNS / 1000), "{result:?}");
-    assert!(result.ratio <= 1.0 + extent.rms(0.05, runs), "{result:?}");
+    assert!(result.precision.refused <= extent.count(RUNS / 1000), "{result:?}");
+    assert!(result.precision.ratio <= 1.0 + extent.rms(0.05, runs), "{result:?}");
     assert!(result.fixed_point_ratio <= 1.005, "{result:?}");
-    for (found, normal) in result.coverage_percent.iter().zip(NORMAL_COVERAGE) {
+    for (found, normal) in result.precision.coverage_percent.iter().zip(NORMAL_COVERAGE) {
         let chance = extent.share(3.0, normal, runs);
         assert!((found - normal).abs() <= chance, "{result:?}");
     }
     result
 }
 
-fn row_of_readme(name: &str, result: &Precision) -> String {
-    let [one, two, three] = result.coverage_percent;
+fn row_of_readme(name: &str, result: &FixedPoint) -> String {
+    let [one, two, three] = result.precision.coverage_percent;
     format!(
         "| {name} | {:.0}″ | {:.0}″ | {:.3} | {one:.1}, {two:.1}, {three:.1} % |",
-        result.rms_arcsec, result.limit_arcsec, result.ratio
+        3600.0 * result.precision.rms_deg,
+        3600.0 * result.precision.limit_deg,
+        result.precision.rms_deg / result.precision.limit_deg
     )
 }
 
 fn maximum_likelihood_reaches_the_limit_on_the_papers_arc(extent: Extent) {
     let result = check_precision(Turn::Arc, extent);
     // The limit for a known Earth rate, computed apart from this project: 290″.
-    assert!((result.limit_arcsec - 290.0).abs() < 1.5, "{result:?}");
+    assert!((3600.0 * result.precision.limit_deg - 290.0).abs() < 1.5, "{result:?}");
     extent.assert_in_readme(&[row_of_readme("28° arc, 60 steps of 28′", &result)]);
 }
 
 fn maximum_likelihood_reaches_the_limit_on_the_full_circle(extent: Extent) {
     let result = check_precision(Turn::Circle, extent);
     // √2 N/(Ω_h √T) for 60 s, computed apart from this project: 56″.
-    assert!((result.limit_arcsec - 56.0).abs() < 0.5, "{result:?}");
+    assert!((3600.0 * result.precision.limit_deg - 56.0).abs() < 0.5, "{result:?}");
     extent.assert_in_readme(&[row_of_readme("full circle, 60 steps of 6°", &result)]);
 }
 
 /// RMS of a criterion, ″.
 fn rms_of(table: &Table, criterion: &str) -> f64 {
     let row = table.rows.iter().find(|row| row.criterion == criterion).expect("it is there");
-    assert!(row.runs == 270 && row.refused <= 10, "{row:?}");
-    row.rms_arcsec
+    assert!(row.precision.runs == 270 && row.precision.refused <= 10, "{row:?}");
+    3600.0 * row.precision.rms_deg
 }
 
 /// The RMS figures were computed apart from this project: arc ≈ 920″ and 4400–5400″ for the paper's
@@ -68,7 +70,7 @@ fn the_papers_criteria_do_as_badly_as_they_must() {
     assert!((500.0..680.0).contains(&rms_of(&circle, "least-absolute")), "{circle:?}");
     for row in arc.rows.iter().chain(&circle.rows).take(3) {
         // What the criterion says of itself is true within the spread of 270 runs.
-        assert!((row.rms_arcsec / row.sigma_arcsec - 1.0).abs() < 0.2, "{row:?}");
+        assert!((row.precision.rms_deg / row.sigma_deg - 1.0).abs() < 0.2, "{row:?}");
     }
 }
 

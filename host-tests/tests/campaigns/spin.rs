@@ -2,6 +2,7 @@
 
 use bench::campaign::spin::cases::{self, Row, Spot};
 use bench::campaign::spin::paper;
+use bench::campaign::statistics::Spread;
 
 use crate::support::campaign::{Extent, assert_in_readme, campaigns};
 
@@ -26,7 +27,8 @@ fn the_papers_second_gives_its_figures() {
 
 /// RMS error, limit and coverage at a moment.
 fn figures(spot: &Spot) -> String {
-    let Spot { rms_deg, limit_deg, coverage_percent: [one, two, three], .. } = spot;
+    let Spot { spread: Spread { rms_deg, coverage_percent: [one, two, three], .. }, limit_deg } =
+        spot;
     format!("{rms_deg:.4}° | {limit_deg:.4}° | {one:.1}, {two:.1}, {three:.1} % |")
 }
 
@@ -52,7 +54,7 @@ fn noise_a_weak_gyro_and_a_missing_lift_stay_within_sigma_and_lose_no_turn(exten
     for row in &rows {
         assert_eq!((row.lost, row.miscounted), (0, 0), "{row:?}");
         for spot in [Some(&row.end), row.held.as_ref()].into_iter().flatten() {
-            let [one, _, three] = spot.coverage_percent;
+            let [one, _, three] = spot.spread.coverage_percent;
             assert!(one > of_one && three > of_three, "{row:?}");
         }
     }

@@ -1,4 +1,4 @@
-//! `run --method rotating`: the board on a turning platform from the command line, and its misuse.
+//! `run turntable`: the board on a turning platform from the command line, and its misuse.
 
 use std::process::Output;
 

@@ -1,4 +1,4 @@
-//! `run --method siap`: the board in a vehicle from the command line, and its misuse.
+//! `run vehicle`: the board in a vehicle from the command line, and its misuse.
 
 use std::process::Output;
 

@@ -47,27 +47,21 @@ const NEAR: std::ops::RangeInclusive<u32> = 8..=14;
 fn report(devices: &[Device], drift: &[Comparison], classes: &[classes::Row]) -> Report {
     let errors = curve(POSITIONS);
     let points = errors.iter().map(|(n, error)| (f64::from(*n), *error)).collect();
-    Report {
-        title: "Burov: orientation systems with rotated sensing elements".to_owned(),
-        subtitle: vec![
-            format!("{SECONDS} s in all, {ROTATION} s a rotation, {LATITUDE_DEG}° of latitude"),
-            "angles times the secant of the latitude; a full azimuth takes √2 of one axis"
-                .to_owned(),
-            normal(),
-        ],
-        parts: vec![
-            over_positions(
-                "Fig. 5: change of the rate error with n",
-                "change a position",
-                change(&errors),
-            ),
-            over_positions("Fig. 6: rate error after autocompensation", "rate error, 1σ", points),
-            of_curve(&errors),
-            of_devices(devices),
-            of_drift(drift),
-            of_classes(classes),
-        ],
-    }
+    let fig_5 = "Fig. 5: change of the rate error with n";
+    let fig_6 = "Fig. 6: rate error after autocompensation";
+    let parts = [
+        over_positions(fig_5, "change a position", change(&errors)),
+        over_positions(fig_6, "rate error, 1σ", points),
+        of_curve(&errors),
+        of_devices(devices),
+        of_drift(drift),
+        of_classes(classes),
+    ];
+    Report::new("Burov: orientation systems with rotated sensing elements", parts).below([
+        &format!("{SECONDS} s in all, {ROTATION} s a rotation, {LATITUDE_DEG}° of latitude"),
+        "angles times the secant of the latitude; a full azimuth takes √2 of one axis",
+        &normal(),
+    ])
 }
 
 fn over_positions(title: &str, label: &str, curve: Vec<(f64, f64)>) -> Part {

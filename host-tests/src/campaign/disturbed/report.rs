@@ -50,17 +50,11 @@ const HEALTHY: usize = 15;
 /// What healthy recordings gave, and what became of each class of faults.
 fn report(healthy: &[HealthyRow], rows: &[Row]) -> Report {
     let of_healthy = (!healthy.is_empty()).then(|| of_healthy(healthy));
-    let reasons = Some(reasons(rows)).filter(|lines| !lines.lines.is_empty());
-    let subtitle = [
-        format!("an answer is wrong beyond {WRONG_SIGMAS} of its σ"),
-        "a fault is harmless where it moves the answer by less than the healthy σ".to_owned(),
-    ];
-    let parts = [of_healthy, Some(of_classes(rows)), reasons.map(Part::from)];
-    Report {
-        title: "Recordings with faults of any severity".to_owned(),
-        subtitle: subtitle.to_vec(),
-        parts: parts.into_iter().flatten().collect(),
-    }
+    let parts = of_healthy.into_iter().chain([of_classes(rows), reasons(rows).into()]);
+    Report::new("Recordings with faults of any severity", parts).below([
+        &format!("an answer is wrong beyond {WRONG_SIGMAS} of its σ"),
+        "a fault is harmless where it moves the answer by less than the healthy σ",
+    ])
 }
 
 fn of_healthy(rows: &[HealthyRow]) -> Part {

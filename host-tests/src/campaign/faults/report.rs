@@ -52,8 +52,7 @@ fn report(rows: &[Row]) -> Report {
             let first = row.noticed.as_deref().unwrap_or("nothing");
             format!("{first}{}", reason.unwrap_or_default())
         });
-    let title = "Every fault on every platform".to_owned();
-    Report { title, subtitle: Vec::new(), parts: vec![table.into()] }
+    Report::new("Every fault on every platform", [table.into()])
 }
 
 fn or_dash(value: Option<impl Display>) -> String {

@@ -37,9 +37,6 @@ fn report(runs: &Runs) -> Report {
         .precision(|runs| &runs.precision);
     let what = "24 positions of 10 s and the first once more, latitudes ±70°, tilts to 5°";
     let subtitle = [what.to_owned(), normal()].into_iter().chain(reasons([&runs.precision]));
-    Report {
-        title: "The whole instrument on simulated chips".to_owned(),
-        subtitle: subtitle.collect(),
-        parts: vec![table.into(), lines.into()],
-    }
+    let title = "The whole instrument on simulated chips";
+    Report::new(title, [table.into(), lines.into()]).below(subtitle)
 }

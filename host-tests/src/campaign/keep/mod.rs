@@ -14,7 +14,7 @@ use self::world::{Fitting, MARK_S, Mark, Mount, Pair, STORED_S};
 use super::burov::classes::{CLASSES, Class, Way};
 use super::burov::{BIAS_DEG_H, Grade};
 use super::over;
-use super::statistics::{coverage, rms};
+use super::statistics::Spread;
 use crate::output::degrees;
 
 /// A class, and what it is fitted with.
@@ -53,17 +53,6 @@ const CASES: [Case; COUNT] = [
 pub const COUNT: usize = 7;
 /// Rest before the azimuth is handed over, s.
 const REST_S: f64 = 60.0;
-
-/// Errors and their 1σ over many runs, °.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct Spread {
-    /// RMS of the errors.
-    pub rms_deg: f64,
-    /// RMS of the σ that goes with them.
-    pub sigma_deg: f64,
-    /// Per cent of errors within 1, 2 and 3 σ.
-    pub coverage_percent: [f64; 3],
-}
 
 /// The errors so many seconds after the azimuth was handed over.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -132,26 +121,15 @@ pub fn row(case: usize, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
     CASES[case].row(runs, tick)
 }
 
-impl Spread {
-    /// Of errors with their σ.
-    fn of(pairs: &[[f64; 2]]) -> Self {
-        let errors: Vec<f64> = pairs.iter().map(|[error, _]| *error).collect();
-        let sigmas: Vec<f64> = pairs.iter().map(|[_, sigma]| *sigma).collect();
-        Self {
-            rms_deg: rms(&errors),
-            sigma_deg: rms(&sigmas),
-            coverage_percent: coverage(&errors, &sigmas),
-        }
-    }
+/// Errors of the azimuths.
+fn azimuths<'a>(marks: impl Iterator<Item = &'a Mark>) -> Spread {
+    Spread::of(&marks.filter_map(|mark| mark.azimuth).collect::<Vec<_>>())
+}
 
-    fn azimuth<'a>(marks: impl Iterator<Item = &'a Mark>) -> Self {
-        Self::of(&marks.filter_map(|mark| mark.azimuth).collect::<Vec<_>>())
-    }
-
-    fn level<'a>(marks: impl Iterator<Item = &'a Mark>) -> Self {
-        let both = marks.flat_map(|mark| mark.level.map(|error| [error, mark.level_sigma]));
-        Self::of(&both.collect::<Vec<_>>())
-    }
+/// Errors of pitch and roll.
+fn levels<'a>(marks: impl Iterator<Item = &'a Mark>) -> Spread {
+    let both = marks.flat_map(|mark| mark.level.map(|error| [error, mark.level_sigma]));
+    Spread::of(&both.collect::<Vec<_>>())
 }
 
 impl Case {
@@ -173,7 +151,7 @@ impl Case {
         let days = over(runs, tick, |seed| fitting.live(first + seed));
         let last = || days.iter().filter_map(|day| day.last());
         let on_way = days.iter().flat_map(|day| day.split_last().map_or(&[][..], |(_, way)| way));
-        let (azimuth, level) = (Spread::azimuth(last()), Spread::level(on_way));
+        let (azimuth, level) = (azimuths(last()), levels(on_way));
         let driving = days.iter().filter_map(|day| day.iter().nth_back(1));
         let lost = last().filter(|mark| mark.azimuth.is_none()).count();
         let is_good = azimuth.rms_deg <= class.stored_deg && level.rms_deg <= class.level_deg;
@@ -189,9 +167,9 @@ impl Case {
             runs,
             lost,
             azimuth,
-            azimuth_driving: Spread::azimuth(driving),
+            azimuth_driving: azimuths(driving),
             azimuth_limit_deg: limit_deg(&fitting),
-            level_at_rest: Spread::level(last()),
+            level_at_rest: levels(last()),
             level,
             growth: growth(&days),
             is_wanted: self.is_wanted,
@@ -234,8 +212,8 @@ fn growth(days: &[Vec<Mark>]) -> Vec<Growth> {
         let marks = || days.iter().filter_map(move |day| day.get(index));
         Growth {
             seconds: (index + 1) as f64 * MARK_S,
-            azimuth: Spread::azimuth(marks()),
-            level: Spread::level(marks()),
+            azimuth: azimuths(marks()),
+            level: levels(marks()),
         }
     };
     (0..minutes).map(of).collect()

@@ -3,9 +3,10 @@
 use serde_json::json;
 
 use super::{COUNT, rows};
-use super::{Growth, Row, Spread};
+use super::{Growth, Row};
 use crate::campaign::burov::LATITUDE_DEG;
 use crate::campaign::columns::{Columns, figure};
+use crate::campaign::statistics::Spread;
 use crate::campaign::{Asked, Campaign, Done, Tick, unless};
 use crate::report::{Part, Report, Series, Style};
 
@@ -38,13 +39,10 @@ fn report(rows: &[Row]) -> Report {
             growth(row, &format!("Pitch and roll: {name}"), level, |at| at.level),
         ]
     });
-    Report {
-        title: "Azimuth, pitch and roll, kept for half an hour".to_owned(),
-        subtitle: vec![format!(
-            "Burov, Table 1; a vehicle that drives without a halt, at {LATITUDE_DEG}° of latitude"
-        )],
-        parts: [of_classes(rows), of_errors(rows)].into_iter().chain(figures).collect(),
-    }
+    let parts = [of_classes(rows), of_errors(rows)].into_iter().chain(figures);
+    Report::new("Azimuth, pitch and roll, kept for half an hour", parts).below([format!(
+        "Burov, Table 1; a vehicle that drives without a halt, at {LATITUDE_DEG}° of latitude"
+    )])
 }
 
 /// Errors and σ over the time.

@@ -62,11 +62,8 @@ fn report(
         of_refusals(refusals),
     ]);
     parts.extend(of_couplings());
-    Report {
-        title: "Dynamic north finding on a turning platform".to_owned(),
-        subtitle: subtitle(stages, molecular),
-        parts,
-    }
+    let title = "Dynamic north finding on a turning platform";
+    Report::new(title, parts).below(subtitle(stages, molecular))
 }
 
 /// What was simulated, and why any was refused.

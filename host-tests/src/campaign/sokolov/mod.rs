@@ -18,19 +18,20 @@ use orientation::align::etalon::table::{self, ONE, STEP};
 use orientation::align::etalon::{self, Accepted, Limit, Series, Table as Etalon};
 use orientation::align::setting::Setting;
 use orientation::earth::Latitude;
+use orientation::error::Refusal;
 use orientation::noise::model::GyroNoise;
 use orientation::session::procedure::Procedure;
 use orientation::session::schedule::{Position, Schedule, StopRule};
 use orientation::session::{Event, Session};
 use orientation::signal::Sample;
 use orientation::signal::dwell::Dwell;
-use orientation::units::{ARCSECONDS_PER_RADIAN, DEGREE_PER_HOUR};
+use orientation::units::DEGREE_PER_HOUR;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::statistics::{coverage, least, rms};
+use super::statistics::{Answer, Precision, least, rms};
 use crate::methods::stepwise::drive;
-use crate::output::azimuth_error;
+use crate::output::degrees;
 use crate::reference::Filter;
 use crate::simulate::stage_path;
 
@@ -52,7 +53,7 @@ const TABLE_RUNS: usize = 90;
 const AZIMUTHS_DEG: [f64; 3] =
     [28.0 + 10.0 / 60.0 + 3.7 / 3600.0, 28.5 + 4.1 / 3600.0, 28.0 + 50.0 / 60.0 + 6.3 / 3600.0];
 /// The paper's Table 1: the least error over 90 realisations, ″.
-const PAPER_LEAST: [f64; 3] = [7.3, 9.6, 6.0];
+const PAPER_LEAST_ARCSEC: [f64; 3] = [7.3, 9.6, 6.0];
 
 /// Where the stage goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -141,28 +142,11 @@ fn in_floating_point(turn: Turn, samples: &[Sample], dwells: &[Dwell]) -> Vec<Dw
     dwells.iter().zip(means).map(|(dwell, rate)| Dwell { rate, ..*dwell }).collect()
 }
 
-/// One answer against the truth.
-#[derive(Clone, Copy, Debug)]
-struct Answer {
-    /// Error, ″.
-    error: f64,
-    /// Standard deviation, ″.
-    sigma: f64,
-    /// Cramér–Rao bound, ″.
-    limit: f64,
-    /// The same with the Earth rate free, ″.
-    limit_free: f64,
-}
-
-/// Solves by a criterion; none where it is refused.
-fn answer(dwells: &[Dwell], criterion: Criterion, azimuth_deg: f64) -> Option<Answer> {
-    let conclusion = Conclusion::of(&setting(), dwells, criterion);
-    let azimuth = conclusion.verdict.ok()?;
-    let error = azimuth_error(azimuth.angle.to_degrees(), azimuth_deg) * 3600.0;
-    let fit = conclusion.fit?;
-    let [sigma, limit, limit_free] =
-        [azimuth.sigma, fit.limit, fit.limit_free].map(|angle| angle * ARCSECONDS_PER_RADIAN);
-    Some(Answer { error, sigma, limit, limit_free })
+/// Solves by a criterion: the answer against the truth, and its bound where the Earth rate is free, °.
+fn solve(dwells: &[Dwell], by: Criterion, azimuth_deg: f64) -> Result<(Answer, f64), Refusal> {
+    let conclusion = Conclusion::of(&setting(), dwells, by);
+    let limit_free = conclusion.fit.as_ref().map_or(f64::NAN, |fit| degrees(fit.limit_free));
+    Ok((Answer::of_stage(&conclusion, azimuth_deg)?, limit_free))
 }
 
 /// The paper's bounds: 1.5 and 1.25 of what the noise alone is expected to leave, so that the truth
@@ -183,38 +167,31 @@ fn criteria() -> [(&'static str, Criterion); 6] {
     ]
 }
 
-/// A row of the table: one criterion on one turn.
+/// A row of the table: one criterion on one turn. Angles in degrees.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
     /// The criterion.
     pub criterion: &'static str,
-    /// Realisations.
-    pub runs: usize,
-    /// How many were refused.
-    pub refused: usize,
-    /// RMS error, ″.
-    pub rms_arcsec: f64,
-    /// Least error over the realisations of each azimuth, ″.
-    pub least_arcsec: [f64; 3],
-    /// RMS of the standard deviations that were stated, ″.
-    pub sigma_arcsec: f64,
-    /// Cramér–Rao bound with the Earth rate known, ″.
-    pub limit_arcsec: f64,
-    /// The same with the Earth rate free, ″.
-    pub limit_free_arcsec: f64,
-    /// RMS over limit.
-    pub ratio: f64,
+    /// Errors against the bound with the Earth rate known, and σ.
+    #[serde(flatten)]
+    pub precision: Precision,
+    /// Least error over the realisations of each azimuth.
+    pub least_deg: [f64; 3],
+    /// RMS of the standard deviations that were stated.
+    pub sigma_deg: f64,
+    /// Bound with the Earth rate free.
+    pub limit_free_deg: f64,
 }
 
-/// The table of one turn.
+/// The table of one turn. Angles in degrees.
 #[derive(Clone, Debug, Serialize)]
 pub struct Table {
     /// The turn.
     pub schedule: &'static str,
     /// One row for each criterion.
     pub rows: Vec<Row>,
-    /// The paper's figures for its least error, ″.
-    pub paper_least_arcsec: [f64; 3],
+    /// The paper's figures for its least error.
+    pub paper_least_deg: [f64; 3],
     /// The stop rules on these dwells.
     pub stop_rules: Vec<StopRow>,
     /// What the paper's α accepts.
@@ -265,38 +242,31 @@ pub fn tabulate(turn: Turn, tick: impl Fn() + Sync) -> Result<Table, String> {
     Ok(Table {
         schedule: turn.name(),
         rows: criteria().map(|(name, criterion)| row(&all, name, criterion)).to_vec(),
-        paper_least_arcsec: PAPER_LEAST,
+        paper_least_deg: PAPER_LEAST_ARCSEC.map(|least| least / 3600.0),
         stop_rules: if is_arc { stop_rules(&all) } else { Vec::new() },
         paper_alpha: if is_arc { paper_alpha(&all) } else { Vec::new() },
     })
 }
 
-/// One figure of all answers.
-fn column<'a>(
-    answers: impl IntoIterator<Item = &'a Answer>,
-    of: impl Fn(&Answer) -> f64,
-) -> Vec<f64> {
-    answers.into_iter().map(of).collect()
-}
-
 fn row(all: &[Vec<Dwell>], name: &'static str, criterion: Criterion) -> Row {
-    let solve = |(run, dwells): (usize, &Vec<Dwell>)| {
-        answer(dwells, criterion, AZIMUTHS_DEG[run / TABLE_RUNS])
+    let of = |(run, dwells): (usize, &Vec<Dwell>)| {
+        solve(dwells, criterion, AZIMUTHS_DEG[run / TABLE_RUNS])
     };
-    let answers: Vec<Option<Answer>> = all.par_iter().enumerate().map(solve).collect();
-    let rms_of = |of: fn(&Answer) -> f64| rms(&column(answers.iter().flatten(), of));
-    let at = |place: usize| answers.iter().skip(place * TABLE_RUNS).take(TABLE_RUNS).flatten();
-    let (rms_arcsec, limit_arcsec) = (rms_of(|answer| answer.error), rms_of(|answer| answer.limit));
+    let solved: Vec<Result<(Answer, f64), Refusal>> = all.par_iter().enumerate().map(of).collect();
+    let answers: Vec<Result<Answer, Refusal>> =
+        solved.iter().map(|run| run.map(|(answer, _)| answer)).collect();
+    let given = || solved.iter().flatten();
+    let errors = |runs: &[Result<Answer, Refusal>]| -> Vec<f64> {
+        runs.iter().flatten().map(|answer| answer.error).collect()
+    };
     Row {
         criterion: name,
-        runs: answers.len(),
-        refused: answers.iter().filter(|answer| answer.is_none()).count(),
-        rms_arcsec,
-        least_arcsec: [0, 1, 2].map(|place| least(&column(at(place), |answer| answer.error))),
-        sigma_arcsec: rms_of(|answer| answer.sigma),
-        limit_arcsec,
-        limit_free_arcsec: rms_of(|answer| answer.limit_free),
-        ratio: rms_arcsec / limit_arcsec,
+        precision: Precision::of(&answers),
+        least_deg: [0, 1, 2].map(|place: usize| {
+            least(&errors(&answers[place * TABLE_RUNS..(place + 1) * TABLE_RUNS]))
+        }),
+        sigma_deg: rms(&given().map(|(answer, _)| answer.sigma).collect::<Vec<_>>()),
+        limit_free_deg: rms(&given().map(|(_, limit_free)| *limit_free).collect::<Vec<_>>()),
     }
 }
 
@@ -370,27 +340,18 @@ fn covers_quarter(accepted: Accepted) -> bool {
     from + table::TURN / 4 <= width
 }
 
-/// How maximum likelihood does over many azimuths, and what fixed point costs it.
+/// How maximum likelihood does over many azimuths, and what fixed point costs it. Angles in degrees.
 #[derive(Clone, Debug, Serialize)]
-pub struct Precision {
+pub struct FixedPoint {
     /// The turn.
     pub schedule: &'static str,
-    /// Realisations.
-    pub runs: usize,
-    /// How many were refused.
-    pub refused: usize,
-    /// RMS error, ″.
-    pub rms_arcsec: f64,
-    /// RMS error of the same path in `f64`, ″.
-    pub rms_floating_point_arcsec: f64,
-    /// Cramér–Rao bound, RMS over the realisations, ″.
-    pub limit_arcsec: f64,
-    /// RMS over limit.
-    pub ratio: f64,
+    /// Errors through fixed point against limit and σ.
+    #[serde(flatten)]
+    pub precision: Precision,
+    /// RMS error of the same path in `f64`.
+    pub rms_floating_point_deg: f64,
     /// RMS of the fixed-point path over that of the `f64` path.
     pub fixed_point_ratio: f64,
-    /// Per cent of errors within one, two and three σ.
-    pub coverage_percent: [f64; 3],
 }
 
 /// Azimuths of the realisations: 28°…29° on the arc, all around on the circle, off the grid.
@@ -407,8 +368,8 @@ fn azimuth_of(turn: Turn, run: usize) -> f64 {
 ///
 /// # Errors
 /// What keeps a session from beginning.
-pub fn precision(turn: Turn, runs: usize, tick: impl Fn() + Sync) -> Result<Precision, String> {
-    let answers: Vec<[Option<Answer>; 2]> = (0..runs)
+pub fn fixed_point(turn: Turn, runs: usize, tick: impl Fn() + Sync) -> Result<FixedPoint, String> {
+    let pairs: Vec<Result<[Answer; 2], Refusal>> = (0..runs)
         .into_par_iter()
         .map(|run| {
             let azimuth = azimuth_of(turn, run);
@@ -416,23 +377,18 @@ pub fn precision(turn: Turn, runs: usize, tick: impl Fn() + Sync) -> Result<Prec
             let fixed = dwells(turn, &samples)?;
             let floating = in_floating_point(turn, &samples, &fixed);
             tick();
-            Ok([fixed, floating].map(|d| answer(&d, Criterion::MaximumLikelihood, azimuth)))
+            let [fixed, floating] =
+                [fixed, floating].map(|of| solve(&of, Criterion::MaximumLikelihood, azimuth));
+            Ok(fixed.and_then(|(fixed, _)| floating.map(|(floating, _)| [fixed, floating])))
         })
         .collect::<Result<_, String>>()?;
-    let given: Vec<[Answer; 2]> =
-        answers.iter().filter_map(|[a, b]| (*a).zip(*b)).map(Into::into).collect();
-    let of = |path: usize, of: fn(&Answer) -> f64| column(given.iter().map(|both| &both[path]), of);
-    let [fixed, floating] = [0, 1].map(|path| of(path, |answer| answer.error));
-    let limit_arcsec = rms(&of(0, |answer| answer.limit));
-    Ok(Precision {
+    let [precision, floating] = [0, 1].map(|path: usize| {
+        Precision::of(&pairs.iter().map(|pair| pair.map(|both| both[path])).collect::<Vec<_>>())
+    });
+    Ok(FixedPoint {
         schedule: turn.name(),
-        runs,
-        refused: runs - given.len(),
-        rms_arcsec: rms(&fixed),
-        rms_floating_point_arcsec: rms(&floating),
-        limit_arcsec,
-        ratio: rms(&fixed) / limit_arcsec,
-        fixed_point_ratio: rms(&fixed) / rms(&floating),
-        coverage_percent: coverage(&fixed, &of(0, |answer| answer.sigma)),
+        rms_floating_point_deg: floating.rms_deg,
+        fixed_point_ratio: precision.rms_deg / floating.rms_deg,
+        precision,
     })
 }

@@ -2,8 +2,7 @@
 
 use serde_json::json;
 
-use super::{AlphaRow, Precision, Table as Turn};
-use super::{TABLE_RUNS, TURNS, precision, tabulate};
+use super::{AlphaRow, FixedPoint, TABLE_RUNS, TURNS, Table as Turn, fixed_point, tabulate};
 use crate::campaign::columns::{Columns, list, normal};
 use crate::campaign::{Asked, Campaign, Done, Tick};
 use crate::output::positive_zero;
@@ -23,7 +22,7 @@ pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
 /// Both schedules: the paper's table, then the precision.
 fn run(asked: &Asked, tick: Tick<'_>) -> Result<Done, String> {
     let tables = TURNS.iter().map(|turn| tabulate(*turn, tick)).collect::<Result<Vec<_>, _>>()?;
-    let precisions = TURNS.iter().map(|turn| precision(*turn, asked.runs, tick));
+    let precisions = TURNS.iter().map(|turn| fixed_point(*turn, asked.runs, tick));
     let precisions = precisions.collect::<Result<Vec<_>, _>>()?;
     let object = json!({ "tables": tables, "precision": precisions });
     let report = report(&tables, &precisions);
@@ -31,31 +30,27 @@ fn run(asked: &Asked, tick: Tick<'_>) -> Result<Done, String> {
 }
 
 /// Both schedules: the paper's table, then the precision.
-fn report(turns: &[Turn], precisions: &[Precision]) -> Report {
+fn report(turns: &[Turn], precisions: &[FixedPoint]) -> Report {
     let parts = turns.iter().flat_map(of_turn).chain([of_precisions(precisions)]);
-    let subtitle = [
+    Report::new("Sokolov 2019, Table 1", parts).below([
         "60 dwells of 1 s, 0.15 °/h per sample at 100 Hz, 47°35′",
         "three azimuths (28°10′, 28°30′, 28°50′, off the grid); errors in arc seconds",
-    ];
-    Report {
-        title: "Sokolov 2019, Table 1".to_owned(),
-        subtitle: subtitle.map(str::to_owned).into_iter().chain([normal()]).collect(),
-        parts: parts.collect(),
-    }
+        &normal(),
+    ])
 }
 
 fn of_turn(turn: &Turn) -> [Part; 2] {
     let table = Columns::of(turn.schedule, &turn.rows)
         .column("criterion", |row| row.criterion)
-        .column("runs", |row| row.runs)
-        .column("refused", |row| row.refused)
-        .fixed("RMS, ″", 1, |row| row.rms_arcsec)
-        .fixed("stated σ, ″", 1, |row| row.sigma_arcsec)
-        .fixed("limit, ″", 1, |row| row.limit_arcsec)
-        .fixed("Ω_h free, ″", 1, |row| row.limit_free_arcsec)
-        .fixed("RMS / limit", 2, |row| row.ratio)
-        .column("least of 90 each, ″", |row| list(&row.least_arcsec))
-        .column("paper's least, ″", |_| list(&turn.paper_least_arcsec));
+        .column("runs", |row| row.precision.runs)
+        .column("refused", |row| row.precision.refused)
+        .fixed("RMS, ″", 1, |row| 3600.0 * row.precision.rms_deg)
+        .fixed("stated σ, ″", 1, |row| 3600.0 * row.sigma_deg)
+        .fixed("limit, ″", 1, |row| 3600.0 * row.precision.limit_deg)
+        .fixed("Ω_h free, ″", 1, |row| 3600.0 * row.limit_free_deg)
+        .fixed("RMS / limit", 2, |row| row.precision.rms_deg / row.precision.limit_deg)
+        .column("least of 90 each, ″", |row| in_arcseconds(row.least_deg))
+        .column("paper's least, ″", |_| in_arcseconds(turn.paper_least_deg));
     let mut lines = Lines::default();
     for rule in &turn.stop_rules {
         let reached = format!("all 60 reached in {} of {}", rule.all_positions, rule.runs);
@@ -73,17 +68,22 @@ fn of_turn(turn: &Turn) -> [Part; 2] {
     [table.into(), lines.into()]
 }
 
-fn of_precisions(precisions: &[Precision]) -> Part {
-    let added = |row: &Precision| positive_zero(100.0 * (row.fixed_point_ratio - 1.0), 5e-4);
+/// Three angles in degrees as arc seconds.
+fn in_arcseconds(angles: [f64; 3]) -> String {
+    list(&angles.map(|angle| 3600.0 * angle))
+}
+
+fn of_precisions(precisions: &[FixedPoint]) -> Part {
+    let added = |row: &FixedPoint| positive_zero(100.0 * (row.fixed_point_ratio - 1.0), 5e-4);
     Columns::of("Maximum likelihood through fixed point, azimuths off the grid", precisions)
         .column("schedule", |row| row.schedule)
-        .column("runs", |row| row.runs)
-        .column("refused", |row| row.refused)
-        .fixed("RMS, ″", 2, |row| row.rms_arcsec)
-        .fixed("limit, ″", 2, |row| row.limit_arcsec)
-        .fixed("RMS / limit", 4, |row| row.ratio)
-        .fixed("in f64, ″", 2, |row| row.rms_floating_point_arcsec)
+        .column("runs", |row| row.precision.runs)
+        .column("refused", |row| row.precision.refused)
+        .fixed("RMS, ″", 2, |row| 3600.0 * row.precision.rms_deg)
+        .fixed("limit, ″", 2, |row| 3600.0 * row.precision.limit_deg)
+        .fixed("RMS / limit", 4, |row| row.precision.rms_deg / row.precision.limit_deg)
+        .fixed("in f64, ″", 2, |row| 3600.0 * row.rms_floating_point_deg)
         .column("fixed point adds, %", |row| format!("{:+.3}", added(row)))
-        .covered(|row| row.coverage_percent)
+        .covered(|row| row.precision.coverage_percent)
         .into()
 }

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::paper::{errors, track};
 use super::world::{Flight, Recorded, SCALE_ERROR, drawn};
 use crate::campaign::over;
-use crate::campaign::statistics::{coverage, rms};
+use crate::campaign::statistics::{Spread, rms};
 use crate::methods::spin::METHODS;
 use crate::methods::spin::errors::bound_rms;
 use crate::output::degrees;
@@ -76,14 +76,11 @@ pub struct Row {
 /// Errors of many flights at one moment.
 #[derive(Clone, Debug, Serialize)]
 pub struct Spot {
-    /// RMS of the errors.
-    pub rms_deg: f64,
-    /// RMS of the stated σ.
-    pub sigma_deg: f64,
+    /// Errors and the stated σ.
+    #[serde(flatten)]
+    pub spread: Spread,
     /// RMS of the bounds.
     pub limit_deg: f64,
-    /// Per cent of errors within 1, 2 and 3 σ.
-    pub coverage_percent: [f64; 3],
 }
 
 /// One flight at one moment: error, σ and bound, °.
@@ -91,14 +88,10 @@ type Sight = [f64; 3];
 
 impl Spot {
     fn of(sights: &[Sight]) -> Self {
-        let column = |index: usize| sights.iter().map(|sight| sight[index]).collect::<Vec<f64>>();
-        let [errors, sigmas, bounds] = [0, 1, 2].map(column);
-        Self {
-            rms_deg: rms(&errors),
-            sigma_deg: rms(&sigmas),
-            limit_deg: rms(&bounds),
-            coverage_percent: coverage(&errors, &sigmas),
-        }
+        let pairs: Vec<[f64; 2]> =
+            sights.iter().map(|[error, sigma, _]| [*error, *sigma]).collect();
+        let bounds: Vec<f64> = sights.iter().map(|[.., bound]| *bound).collect();
+        Self { spread: Spread::of(&pairs), limit_deg: rms(&bounds) }
     }
 }
 

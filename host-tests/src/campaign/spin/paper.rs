@@ -61,9 +61,9 @@ pub fn paper() -> Paper {
         scale_miss: locked.end.scale.map_or(f64::NAN, |[scale, _]| scale - SCALE_ERROR),
         curves: [
             uncorrected,
-            curve(extrema, &errors[0]),
-            curve(&tracks[1], &errors[1]),
-            curve(locked, &errors[2]),
+            extrema.over_time(&errors[0].wrapped_rad),
+            tracks[1].over_time(&errors[1].wrapped_rad),
+            locked.over_time(&errors[2].wrapped_rad),
         ],
     }
 }
@@ -82,11 +82,6 @@ pub(super) fn track(method: Method, recorded: &Recorded) -> Track {
 /// The errors of a track over its own flight.
 pub(super) fn errors(track: &Track, recorded: &Recorded) -> Errors {
     Errors::between(track, &recorded.rolls_rad)
-}
-
-fn curve(track: &Track, errors: &Errors) -> Vec<(f64, f64)> {
-    let wrapped = errors.wrapped_rad.iter().copied().map(degrees);
-    track.times_s.iter().copied().zip(wrapped).collect()
 }
 
 /// The error of the gyro's own angle, which starts right.

@@ -5,10 +5,10 @@ use serde_json::json;
 use super::cases::{self, Row, Spot};
 use super::paper::{self, FRAGMENT_S, Paper, TURNS_PER_S};
 use super::world::{RATE_HZ, SCALE_ERROR};
-use crate::campaign::columns::{Columns, figure, normal};
+use crate::campaign::columns::{Columns, normal};
 use crate::campaign::{Asked, Campaign, Done, Tick, unless};
 use crate::methods::spin::{METHODS, name};
-use crate::report::{Lines, Part, Report, Series, Style};
+use crate::report::{Figure, Lines, Part, Report, Series, Style};
 
 /// The paper's second, and flights with noise.
 pub(in crate::campaign) const CAMPAIGN: Campaign = Campaign {
@@ -32,9 +32,6 @@ fn run(asked: &Asked, tick: Tick<'_>) -> Done {
     }
 }
 
-/// Points of a curve at most.
-const POINTS: usize = 2000;
-
 /// The page for a campaign.
 fn report(paper: &Paper, rows: &[Row]) -> Report {
     let [uncorrected, extrema, interpolated, locked] = &paper.curves;
@@ -46,7 +43,7 @@ fn report(paper: &Paper, rows: &[Row]) -> Report {
     let fragment: Vec<_> =
         named_methods().map(|(name, curve)| (name, from(curve, end_s - FRAGMENT_S))).collect();
     let beside: Vec<_> = named_methods().skip(1).map(|(name, curve)| (name, &curve[..])).collect();
-    let parts = vec![
+    let parts = [
         of_paper(paper).into(),
         over_time("Error of the roll over a second (Fig. 7)", &whole),
         over_time("A fragment of it between corrections (Fig. 8)", &fragment),
@@ -55,15 +52,11 @@ fn report(paper: &Paper, rows: &[Row]) -> Report {
         of_spots(rows),
     ];
     let percent = 100.0 * SCALE_ERROR;
-    Report {
-        title: "Roll of a spinning body".to_owned(),
-        subtitle: vec![
-            format!("Nekrasova 2017, section 5: {TURNS_PER_S} turns a second, gyro {percent} % too fast, {RATE_HZ} Hz"),
-            "with noise: 60 to 100 turns a second, changing by up to 5 % a second, a lift of 30 m/s²".to_owned(),
-            normal(),
-        ],
-        parts,
-    }
+    Report::new("Roll of a spinning body", parts).below([
+        &format!("Nekrasova 2017, section 5: {TURNS_PER_S} turns a second, gyro {percent} % too fast, {RATE_HZ} Hz"),
+        "with noise: 60 to 100 turns a second, changing by up to 5 % a second, a lift of 30 m/s²",
+        &normal(),
+    ])
 }
 
 /// The paper's second, without noise.
@@ -85,11 +78,10 @@ fn from(curve: &[(f64, f64)], from_s: f64) -> &[(f64, f64)] {
 }
 
 fn over_time(title: &str, curves: &[(&str, &[(f64, f64)])]) -> Part {
-    let series = curves.iter().map(|(name, curve)| {
-        let every = (curve.len() / POINTS).max(1);
-        Series::new(name, Style::Line, curve.iter().step_by(every).copied())
-    });
-    figure(title, ["time", "s"], ["roll error", "°"], series.collect())
+    let of = |(name, curve): &(&str, &[(f64, f64)])| {
+        Series::thinned(name, Style::Line, curve, |point| *point)
+    };
+    Figure::over_time(title, ["roll error", "°"], curves.iter().map(of)).into()
 }
 
 fn of_rows(rows: &[Row]) -> Part {
@@ -117,9 +109,9 @@ fn of_spots(rows: &[Row]) -> Part {
     Columns::of("The phase lock at a moment", &spots)
         .column("flights", |(case, ..)| case)
         .column("when", |(_, when, _)| when)
-        .fixed("RMS error, °", 4, |(.., spot)| spot.rms_deg)
-        .fixed("σ, °", 4, |(.., spot)| spot.sigma_deg)
+        .fixed("RMS error, °", 4, |(.., spot)| spot.spread.rms_deg)
+        .fixed("σ, °", 4, |(.., spot)| spot.spread.sigma_deg)
         .fixed("limit, °", 4, |(.., spot)| spot.limit_deg)
-        .covered(|(.., spot)| spot.coverage_percent)
+        .covered(|(.., spot)| spot.spread.coverage_percent)
         .into()
 }

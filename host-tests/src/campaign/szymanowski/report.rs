@@ -39,7 +39,7 @@ fn report(drives: &[drives::Row], parked: &[parked::Row]) -> Report {
     parts.extend(drives.iter().map(errors));
     let latitude = Latitude::from_degrees(drives::LATITUDE_DEG);
     parts.extend(latitude.map(|latitude| figures::heading_error(latitude, None).into()));
-    Report { title: "Azimuth from stops".to_owned(), subtitle: subtitle(drives, parked), parts }
+    Report::new("Azimuth from stops", parts).below(subtitle(drives, parked))
 }
 
 /// What was simulated, and why any was refused.
@@ -53,7 +53,7 @@ fn subtitle(drives: &[drives::Row], parked: &[parked::Row]) -> Vec<String> {
     let lines = [
         format!("Szymanowski 2003 over many drives: {times}; {gyros}"),
         "his Table 1, one drive each: 1.302° before, 0.390° after; 6.592° before, 3.195° after"
-            .to_owned(),
+            .into(),
         format!("parked for {parked_s} s: {standing}; sway of 0.5° at 0.1 Hz to 2 Hz"),
         normal(),
     ];

@@ -1,11 +1,11 @@
 //! `meridian run`: the whole board application on simulated chips, a subcommand for each platform.
 
-pub mod alias;
 mod keeping;
 mod options;
 mod spin;
 mod stage;
 mod turntable;
+pub mod usual;
 mod vehicle;
 
 use std::time::{Duration, Instant as WallClock};
@@ -106,8 +106,7 @@ impl RunOptions {
         let (platform, options) = self.platform.of();
         match options.common().fault {
             Some(Asked::List) => {
-                // `--method positions` stands for `--seconds 300`.
-                let beside = given.beside(&["fault", "seconds", "json"]);
+                let beside = given.beside(&["fault", "json"]);
                 return beside.map_or(Ok(()), |option| {
                     Err(format!("{}: --fault list runs nothing", given::long(option)))
                 });

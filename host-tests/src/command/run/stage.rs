@@ -1,14 +1,13 @@
 //! `meridian run stage` and `meridian run two-frame`: a base that stands while its gyro stops at positions.
 
-use bench::instrument::kept::{Kept, KeptPlan, KeptRun};
-use bench::instrument::{self, FramesRun, Run, RunError};
+use bench::instrument::kept::{KeptPlan, KeptRun};
+use bench::instrument::{self, FramesRun, Run};
 use bench::outcome::Finished;
 use bench::outcome::run::{KeptAzimuth, RunDetails};
 use bench::output::degrees;
 use bench::recording::Truth;
 use clap::Args;
 use firmware::event::Event;
-use firmware::ports::Recorder;
 use firmware::simulated::fault::Fault;
 use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::{Aim, Scenario};
@@ -182,8 +181,9 @@ impl Simulated for StageOptions {
     fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
         let scenario = self.scenario();
         let mut wanted = self.base.common.wanted();
-        let (KeptRun { run, kept }, wall) =
-            Terminal::watching("positions", |watch| align(&scenario, fault, &mut wanted, watch))?;
+        let (KeptRun { run, kept }, wall) = Terminal::watching("positions", |watch| {
+            instrument::align_and_keep(&scenario, &KeptPlan::of(fault), &mut wanted, watch, ())
+        })?;
         let written = self.base.common.write(&scenario, &run, wanted.samples());
         let details = RunDetails::of(&run, &kept, scenario.sample_rate_hz, wall);
         Ok(Ran { written, ..ran("the simulated run", run, details, &scenario) })
@@ -229,21 +229,6 @@ impl Simulated for FramesOptions {
         let ran = ran("the simulated run on two frames", run, details, &scenario.base);
         Ok(Ran { written, ..ran })
     }
-}
-
-/// Runs a stage on a base with sensors, or without.
-fn align<R: Recorder>(
-    scenario: &Scenario,
-    fault: Option<Fault>,
-    recorder: R,
-    watch: &Terminal,
-) -> Result<KeptRun, RunError> {
-    if scenario.has_base_imu {
-        let plan = KeptPlan::of(fault);
-        return instrument::align_and_keep(scenario, &plan, recorder, watch, ());
-    }
-    let run = instrument::align(scenario, fault, recorder, watch)?;
-    Ok(KeptRun { run, kept: Kept::default() })
 }
 
 /// What came of a run at standstills; what it kept, where no alignment of it stands.

@@ -3,6 +3,8 @@
 use orientation::keep::spin::{Method, Setting, Spin, State};
 use orientation::signal::SpinSample;
 
+use crate::output::degrees;
+
 /// Points that a curve over the time has at most.
 const POINTS: usize = 2000;
 
@@ -81,6 +83,12 @@ impl Track {
             track.take(Point::of(&spin, sample), index % every == 0);
         }
         track
+    }
+
+    /// Time, s, and an angle, °, of each sample.
+    #[must_use]
+    pub fn over_time(&self, angles_rad: &[f64]) -> Vec<(f64, f64)> {
+        self.times_s.iter().copied().zip(angles_rad.iter().copied().map(degrees)).collect()
     }
 
     fn take(&mut self, point: Point, is_kept: bool) {

@@ -4,6 +4,8 @@
 //! Estimation", Data 2021, 6(7), 72: the error `q ⊗ conj(q_true)` is a turn about the vertical, after one constant
 //! offset, and an inclination. Both are written so that the length of a rounded quaternion does not count.
 
+use serde::Serialize;
+
 use super::Moment;
 use crate::campaign::statistics::{coverage, rms};
 use crate::output::{azimuth_error, degrees};
@@ -24,9 +26,10 @@ pub struct Off {
 }
 
 /// The errors wherever the truth is known and counts.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Errors {
     /// Of each moment.
+    #[serde(skip)]
     pub off: Vec<Off>,
     /// RMS of the inclinations, °.
     pub inclination_rmse_deg: f64,
@@ -34,6 +37,8 @@ pub struct Errors {
     pub heading_rmse_deg: f64,
     /// Per cent of both tilts within 1, 2 and 3 σ.
     pub coverage_percent: [f64; 3],
+    /// Of how many moments.
+    pub samples: usize,
 }
 
 impl Errors {
@@ -54,6 +59,7 @@ impl Errors {
             inclination_rmse_deg: rms(&column(|off| off.inclination_deg)),
             heading_rmse_deg: rms(&column(|off| off.heading_deg)),
             coverage_percent: coverage(&tilts, &sigmas),
+            samples: off.len(),
             off,
         })
     }

@@ -12,9 +12,6 @@ use crate::output::{degrees, degrees_per_hour, positive_zero};
 use crate::recording::{Body, Header, Truth};
 use crate::report::{Columns, Figure, Lines, Part, Point, Series, Style};
 
-/// Most points of a curve.
-const POINTS: usize = 1500;
-
 /// What a kept level adds.
 #[derive(Clone, Debug, Serialize)]
 pub struct VerticalDetails {
@@ -32,32 +29,7 @@ pub struct VerticalDetails {
     pub bias_beyond_stated: bool,
     /// The errors, where the recording carries a truth.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
-    pub errors: Option<ErrorDetails>,
-}
-
-/// The errors where the truth is known and counts.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct ErrorDetails {
-    /// RMS angle between the true vertical and the kept one, °.
-    pub inclination_rmse_deg: f64,
-    /// RMS error of the heading after one constant offset, °.
-    pub heading_rmse_deg: f64,
-    /// Per cent of the tilts within 1, 2 and 3 σ.
-    pub coverage_percent: [f64; 3],
-    /// Samples that counted.
-    pub samples: usize,
-}
-
-impl From<&Errors> for ErrorDetails {
-    fn from(errors: &Errors) -> Self {
-        let Errors { off, inclination_rmse_deg, heading_rmse_deg, coverage_percent } = errors;
-        Self {
-            inclination_rmse_deg: *inclination_rmse_deg,
-            heading_rmse_deg: *heading_rmse_deg,
-            coverage_percent: *coverage_percent,
-            samples: off.len(),
-        }
-    }
+    pub errors: Option<Errors>,
 }
 
 impl Finished for Replay {
@@ -70,7 +42,7 @@ impl Finished for Replay {
             bias_dph: last.biases.map(degrees_per_hour),
             bias_sigma_dph: last.bias_sigmas.map(degrees_per_hour),
             bias_beyond_stated: last.is_bias_beyond_stated,
-            errors: Errors::of(&self.moments, &truth.attitude).as_ref().map(Into::into),
+            errors: Errors::of(&self.moments, &truth.attitude),
         };
         Outcome {
             sigma_deg: Some(degrees(last.level_sigma)),
@@ -97,8 +69,9 @@ impl Finished for Replay {
         lines.chain([states.into()]).collect()
     }
 
-    fn figures(&self, _: &Outcome, truth: &Truth, _: Option<&Body>) -> Vec<Part> {
-        let first = match Errors::of(&self.moments, &truth.attitude) {
+    fn figures(&self, outcome: &Outcome, _: &Truth, _: Option<&Body>) -> Vec<Part> {
+        let details = outcome.details::<VerticalDetails>();
+        let first = match details.and_then(|details| details.errors.as_ref()) {
             Some(errors) => vec![inclination(&errors.off), heading(&errors.off)],
             None => vec![sigma(&self.moments)],
         };
@@ -135,9 +108,8 @@ fn lines(outcome: &Outcome, details: &VerticalDetails) -> Lines {
     lines
 }
 
-fn of_errors(errors: &ErrorDetails) -> Lines {
-    let ErrorDetails { inclination_rmse_deg, heading_rmse_deg, coverage_percent, samples } =
-        *errors;
+fn of_errors(errors: &Errors) -> Lines {
+    let Errors { inclination_rmse_deg, heading_rmse_deg, coverage_percent, samples, .. } = errors;
     let [one, two, three] = coverage_percent;
     let mut lines = Lines::new(&format!("Against the truth, in {samples} samples"));
     lines.add("inclination", format!("{inclination_rmse_deg:.4}° RMS"));
@@ -146,31 +118,27 @@ fn of_errors(errors: &ErrorDetails) -> Lines {
     lines
 }
 
-/// A curve over the time with no more points than can be seen.
-fn curve<T, P: Into<Point>>(name: &str, style: Style, all: &[T], of: impl Fn(&T) -> P) -> Series {
-    Series::new(name, style, all.iter().step_by(1 + all.len() / POINTS).map(of))
-}
-
 fn inclination(off: &[Off]) -> Figure {
     let tilt = |axis: usize| move |off: &Off| (off.time_s, off.tilts_deg[axis]);
     let limits = |off: &Off| Point::within(off.time_s, 0.0, off.sigma_deg);
     let series = vec![
-        curve("±σ", Style::Band, off, limits),
-        curve("about north of the level frame", Style::Line, off, tilt(1)),
-        curve("about east of the level frame", Style::Line, off, tilt(0)),
-        curve("inclination", Style::Dashed, off, |off| (off.time_s, off.inclination_deg)),
+        Series::thinned("±σ", Style::Band, off, limits),
+        Series::thinned("about north of the level frame", Style::Line, off, tilt(1)),
+        Series::thinned("about east of the level frame", Style::Line, off, tilt(0)),
+        Series::thinned("inclination", Style::Dashed, off, |off| (off.time_s, off.inclination_deg)),
     ];
     Figure::over_time("Error of the vertical, where the truth counts", ["tilt", "°"], series)
 }
 
 fn heading(off: &[Off]) -> Figure {
-    let series = vec![curve("heading", Style::Line, off, |off| (off.time_s, off.heading_deg))];
+    let series =
+        vec![Series::thinned("heading", Style::Line, off, |off| (off.time_s, off.heading_deg))];
     Figure::over_time("Error of the heading after one constant offset", ["heading", "°"], series)
 }
 
 fn sigma(moments: &[Moment]) -> Figure {
     let of = |moment: &Moment| (moment.time_s, degrees(moment.level_sigma));
-    let series = vec![curve("1σ of pitch and of roll", Style::Line, moments, of)];
+    let series = vec![Series::thinned("1σ of pitch and of roll", Style::Line, moments, of)];
     Figure::over_time("How good pitch and roll are", ["1σ", "°"], series)
 }
 
@@ -179,8 +147,8 @@ fn level(moments: &[Moment]) -> Figure {
         move |moment: &Moment| (moment.time_s, degrees(angles(moment.attitude)[index]))
     };
     let series = vec![
-        curve("pitch", Style::Line, moments, of(1)),
-        curve("roll", Style::Line, moments, of(2)),
+        Series::thinned("pitch", Style::Line, moments, of(1)),
+        Series::thinned("roll", Style::Line, moments, of(2)),
     ];
     Figure::over_time("Pitch and roll", ["angle", "°"], series)
 }
@@ -193,8 +161,10 @@ fn biases(moments: &[Moment]) -> Figure {
         let limits =
             move |moment: &Moment| Point::within(moment.time_s, bias(moment), sigma(moment));
         [
-            curve(&format!("{name} ±σ"), Style::Band, moments, limits),
-            curve(name, Style::Line, moments, move |moment| (moment.time_s, bias(moment))),
+            Series::thinned(&format!("{name} ±σ"), Style::Band, moments, limits),
+            Series::thinned(name, Style::Line, moments, move |moment| {
+                (moment.time_s, bias(moment))
+            }),
         ]
     });
     Figure::over_time("Biases of the gyros as they were learnt", ["bias", "°/h"], series)

@@ -63,8 +63,7 @@ fn halves(kind: &'static Kind) -> Row {
 #[test]
 fn turns_and_stops_come_in_their_order_with_all_their_numbers() {
     for (kind, name) in [(&TURN, "offset="), (&STOP, "turned_y=")] {
-        let names: Vec<_> =
-            kind.names().map(|name| format!("{name}=3fe0000000000000")).collect();
+        let names: Vec<_> = kind.names().map(|name| format!("{name}=3fe0000000000000")).collect();
         let (names, word) = (names.join(" "), kind.word);
         let mut log = whole_log();
         log.drain(..2);

@@ -49,9 +49,8 @@ const NUMBERS: [(&str, &[&str]); 23] = [
     ("campaign spin --runs", &["0", "-1", "1000001", "many"]),
 ];
 /// Names that nothing bears.
-const NAMES: [&str; 14] = [
+const NAMES: [&str; 13] = [
     "run --method magic",
-    "run --mount table",
     "run --gyro laser",
     "run --fault nothing",
     "run --half north",
@@ -84,7 +83,7 @@ const LONELY: [&str; 12] = [
 const IGNORED: [(&str, &[&str]); 6] = [
     ("run spin", &["--latitude=1", "--dwell=3", "--stops=2", "--hold=9"]),
     ("run vehicle", &["--pitch=1", "--positions=6", "--turns=3", "--sway=0.1"]),
-    ("run turntable", &["--half=east", "--realign", "--stops=2", "--mount=stage"]),
+    ("run turntable", &["--half=east", "--realign", "--stops=2"]),
     ("run two-frame", &["--positions=6", "--turns=3"]),
     ("replay FILE --method spin", &["--latitude=1", "--half=east", "--attitude-out=x"]),
     ("replay FILE --method rotating", &["--criterion=ml", "--displacements=0,0"]),
@@ -176,7 +175,7 @@ fn whatever_stands_in_an_argument_the_message_is_one_line() {
 }
 
 /// Options of `run` that do not go together or are impossible, and what is named of them.
-const APART: [(&str, &str); 43] = [
+const APART: [(&str, &str); 41] = [
     ("--flash x", "--flash"),
     ("--uneven-turns 6", "--uneven-turns"),
     ("--speeds 0.1", "--speeds"),
@@ -192,7 +191,6 @@ const APART: [(&str, &str); 43] = [
     ("turntable --date 2026-03-14", "--flash"),
     ("turntable --dwell 3", "--dwell"),
     ("turntable --sigma 0.1", "--sigma"),
-    ("--method rotating --mount two-frame", "--mount"),
     ("turntable --sway 0.1", "--sway"),
     ("turntable --sensor met --gyro fog", "--gyro"),
     ("turntable --no-displacement", "--no-displacement"),
@@ -209,7 +207,6 @@ const APART: [(&str, &str); 43] = [
     ("turntable --speeds=-0.1", "--speeds"),
     ("vehicle --stops 1", "--stops"),
     ("vehicle --dwell 3", "--dwell"),
-    ("--method siap --mount two-frame", "--mount"),
     ("vehicle --turns 3", "--turns"),
     ("vehicle --sway 0.1", "--sway"),
     ("vehicle --fault nothing", "nothing"),
@@ -217,9 +214,9 @@ const APART: [(&str, &str); 43] = [
     ("spin --sway 1", "--sway"),
     ("spin --stops 3", "--stops"),
     ("spin --fault blocked", "blocked"),
-    ("--method stepwise --fault lift-fades", "a fault of spin"),
+    ("stage --fault lift-fades", "a fault of spin"),
     ("--fault never-drives", "a fault of vehicle"),
-    ("--mount table", "--mount"),
+    ("--method rotating", "--method"),
 ];
 
 #[test]

@@ -8,35 +8,25 @@ const IGNORED: [(&str, &str); 5] = [
     (
         "spin",
         "--latitude=1 --azimuth=1 --pitch=1 --roll=1 --gyro=fog --rate=100 --seconds=60 --sigma=1 --survey=60 \
-         --mount=stage --passes=1 --half=east --positions=6 --dwell=5 --sensor=gyro --speeds=0.1 --turns=3 \
+         --passes=1 --half=east --positions=6 --dwell=5 --sensor=gyro --speeds=0.1 --turns=3 \
          --uneven-turns=5 --flash=x --stops=3 --stop-seconds=50 --drive-seconds=300 --no-displacement --hold=5 \
          --realign --handover=1,1 --sway=0.1",
     ),
     (
         "vehicle",
-        "--pitch=1 --roll=1 --seconds=60 --sigma=1 --survey=60 --mount=stage --passes=1 --half=east \
+        "--pitch=1 --roll=1 --seconds=60 --sigma=1 --survey=60 --passes=1 --half=east \
          --positions=6 --dwell=5 --sensor=gyro --speeds=0.1 --turns=3 --uneven-turns=5 --flash=x \
          --flight-seconds=1 --turns-per-second=90 --sway=0.1",
     ),
     (
         "turntable",
-        "--seconds=60 --sigma=1 --survey=60 --mount=stage --passes=1 --half=east --positions=6 --dwell=5 \
+        "--seconds=60 --sigma=1 --survey=60 --passes=1 --half=east --positions=6 --dwell=5 \
          --stops=3 --stop-seconds=50 --drive-seconds=300 --no-displacement --hold=5 --realign --handover=1,1 \
          --flight-seconds=1 --turns-per-second=90 --sway=0.1",
     ),
     ("two-frame", "--positions=6 --turns=3 --stops=3"),
     ("stage", "--passes=1 --turns=3 --stops=3 --flight-seconds=1"),
 ];
-/// What `--method` and `--mount` stand for.
-const ALIASES: [(&str, &str); 6] = [
-    ("--method spin", "spin"),
-    ("--method=siap", "vehicle"),
-    ("--method rotating", "turntable"),
-    ("--mount two-frame", "two-frame"),
-    ("--method stepwise --mount=two-frame", "two-frame"),
-    ("--mount stage", "stage"),
-];
-
 #[test]
 fn an_option_that_a_platform_does_not_take_is_refused_with_both_named() {
     for (platform, options) in IGNORED {
@@ -50,18 +40,15 @@ fn an_option_that_a_platform_does_not_take_is_refused_with_both_named() {
 }
 
 #[test]
-fn a_method_or_a_mount_stands_for_its_platform() {
-    for (alias, platform) in ALIASES {
-        let words: Vec<&str> = alias.split(' ').collect();
-        for after in [&["--help"][..], &["--fault", "list"], &["--nothing"], &["--seed", "x"]] {
-            let by_alias = meridian(&[&["run"], &words[..], after].concat());
-            let by_name = meridian(&[&["run", platform], after].concat());
-            assert_eq!(by_alias, by_name, "{alias} {after:?}");
-        }
+fn a_run_that_names_no_platform_is_one_of_a_stage() {
+    for after in
+        [&["--fault", "list"][..], &["--nothing"], &["--seed", "x"], &["--json", "--seed=x"]]
+    {
+        let unnamed = meridian(&[&["run"], after].concat());
+        assert_eq!(unnamed, meridian(&[&["run", "stage"], after].concat()), "{after:?}");
     }
-    let planned = ["--positions", "4"];
     let words = "'--seconds <SECONDS>' cannot be used with";
-    assert_misuse(&[&["run", "--method", "positions"], &planned[..]].concat(), words);
+    assert_misuse(&["run", "--seconds", "300", "--positions", "4"], words);
 }
 
 #[test]

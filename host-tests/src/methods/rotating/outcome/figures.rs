@@ -10,16 +10,13 @@ use crate::output::degrees_per_hour;
 use crate::recording::RotatingRow;
 use crate::report::{Axis, Figure, Point, Series, Style};
 
-/// Points of a profile; more would not be told apart.
-const PROFILE_POINTS: usize = 1500;
 /// Multiples of the turn's frequency that a spectrum shows.
 const MULTIPLES: f64 = 6.0;
 
 /// How the platform's rate went over time.
 pub(crate) fn profile(part: &Part<'_>) -> Figure {
-    let step = part.rows.len().div_ceil(PROFILE_POINTS).max(1);
-    let points = part.rows.iter().step_by(step).map(|row| (row.time_s, row.stage_rate_rad_s));
-    let series = [Series::new("encoder", Style::Line, points)];
+    let of = |row: &RotatingRow| (row.time_s, row.stage_rate_rad_s);
+    let series = [Series::thinned("encoder", Style::Line, part.rows, of)];
     Figure::over_time(format!("Rate of the platform, {part}"), ["rate", "rad/s"], series)
 }
 

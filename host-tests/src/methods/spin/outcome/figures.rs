@@ -7,8 +7,6 @@ use crate::output::degrees;
 use crate::recording::Truth;
 use crate::report::{self, Axis, Figure, Series, Style};
 
-/// Points of a curve at most.
-const POINTS: usize = 2000;
 /// Length of the fragment between corrections, s: the paper's Fig. 8.
 const FRAGMENT_S: f64 = 0.03;
 
@@ -33,34 +31,24 @@ fn figure(replay: &Replay, truth: &Truth, title: &str, from_s: f64) -> Option<Fi
 
 fn curve(track: &Track, truth: &Truth, from_s: f64) -> Option<Series> {
     let errors = Errors::of(track, &truth.roll_rad)?;
-    let all: Vec<(f64, f64)> = track
-        .times_s
-        .iter()
-        .copied()
-        .zip(errors.wrapped_rad.iter().copied().map(degrees))
-        .collect();
+    let all = track.over_time(&errors.wrapped_rad);
     let from = all.partition_point(|(time_s, _)| *time_s < from_s);
-    let every = ((all.len() - from) / POINTS).max(1);
-    let points = all.iter().skip(from).step_by(every).copied();
-    Some(Series::new(name(track.method), Style::Line, points))
+    Some(Series::thinned(name(track.method), Style::Line, &all[from..], |point| *point))
 }
 
 /// σ of the answer, the bound, and the size of the error where the truth is there.
 pub(crate) fn sigmas(replay: &Replay, truth: &Truth) -> Figure {
     let answer = replay.answer();
     let stated = answer.points.iter().filter_map(|p| Some((p.time_s, degrees(p.sigma_rad?))));
-    let mut series = Vec::new();
+    let mut series = vec![Series::new("σ of the phase lock", Style::Line, stated)];
     if let Some(errors) = Errors::of(answer, &truth.roll_rad) {
-        let every = (errors.wrapped_rad.len() / POINTS).max(1);
-        let sizes = errors.wrapped_rad.iter().map(|error| degrees(error.abs()));
-        let points = answer.times_s.iter().copied().zip(sizes).step_by(every);
-        series.push(Series::new("size of the error", Style::Line, points));
+        let all = answer.over_time(&errors.wrapped_rad);
+        let size = |(time_s, error): &(f64, f64)| (*time_s, error.abs());
+        series.insert(0, Series::thinned("size of the error", Style::Line, &all, size));
     }
-    series.push(Series::new("σ of the phase lock", Style::Line, stated));
     if let Some(bounds) = &replay.bounds {
-        let every = (bounds.len() / POINTS).max(1);
-        let limits = answer.times_s.iter().copied().zip(bounds.iter().copied().map(degrees));
-        series.push(Series::new("limit (Cramér–Rao)", Style::Dashed, limits.step_by(every)));
+        let all = answer.over_time(bounds);
+        series.push(Series::thinned("limit (Cramér–Rao)", Style::Dashed, &all, |point| *point));
     }
     Figure::over_time("σ of the roll", Axis::logarithmic("roll", "°"), series)
 }
