@@ -13,6 +13,7 @@ const SILENCE: Duration = Duration::from_secs(30);
 
 /// Counters since the start; each saturates at the limit of its type.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Health {
     /// Samples that were acquired.
     pub samples: u32,

@@ -147,10 +147,8 @@ pub struct SpinWorld<'a> {
     faults: &'a [SensorFault],
     /// Time of the latest sample, s.
     time_s: f64,
-    /// Samples that were taken, missing ones counted.
-    taken: u64,
-    /// Samples of the whole run.
-    count: u64,
+    /// Numbers of the samples that are still to come.
+    samples: core::ops::Range<u64>,
 }
 
 impl<'a> SpinWorld<'a> {
@@ -163,8 +161,7 @@ impl<'a> SpinWorld<'a> {
             sensors: Sensors::new(configuration, seed),
             faults: configuration.faults,
             time_s: 0.0,
-            taken: 0,
-            count: first_sample(configuration.seconds, configuration.rate_hz),
+            samples: 0..first_sample(configuration.seconds, configuration.rate_hz),
         }
     }
 
@@ -175,11 +172,7 @@ impl<'a> SpinWorld<'a> {
 
     /// The next sample, whether it is missing or not; none after the end.
     fn sample(&mut self) -> Option<SpinSample> {
-        if self.taken == self.count {
-            return None;
-        }
-        let time_s = self.taken as f64 / self.rate_hz;
-        self.taken += 1;
+        let time_s = self.samples.next()? as f64 / self.rate_hz;
         self.time_s = time_s;
         self.body.advance(time_s);
         let shown = self.sensors.sample(time_s, &self.body.felt(time_s));

@@ -155,10 +155,8 @@ pub struct Vehicle<'a> {
     faults: &'a [SensorFault],
     /// Integrals at the end of the latest sample.
     before: Integrals,
-    /// Samples that were taken, missing ones counted.
-    taken: u64,
-    /// Samples of the whole run.
-    count: u64,
+    /// Numbers of the samples that are still to come.
+    samples: core::ops::RangeInclusive<u64>,
 }
 
 impl<'a> Vehicle<'a> {
@@ -171,8 +169,7 @@ impl<'a> Vehicle<'a> {
             sensors: Sensors::new(configuration, configuration.rate_hz, seed),
             faults: configuration.faults,
             before: Integrals::default(),
-            taken: 0,
-            count: first_sample(configuration.seconds(), configuration.rate_hz),
+            samples: 1..=first_sample(configuration.seconds(), configuration.rate_hz),
         }
     }
 
@@ -183,11 +180,7 @@ impl<'a> Vehicle<'a> {
 
     /// The next sample, whether it is missing or not; none after the end.
     fn sample(&mut self) -> Option<VehicleSample> {
-        if self.taken == self.count {
-            return None;
-        }
-        self.taken += 1;
-        let time_s = self.taken as f64 / self.rate_hz;
+        let time_s = self.samples.next()? as f64 / self.rate_hz;
         self.motion.advance(time_s);
         let felt = self.motion.integrals().means(&self.before, 1.0 / self.rate_hz);
         self.before = *self.motion.integrals();

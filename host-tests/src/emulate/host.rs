@@ -44,7 +44,7 @@ pub fn turning(scenario: &TurntableScenario) -> Result<Outcome, String> {
 pub fn stops(scenario: &VehicleScenario) -> Result<Outcome, String> {
     let healthy = Injection::NONE;
     let board = RefCell::new(scenario.board(&BRIEF, &[], &healthy));
-    let run = instrument::align_stops_on(&board, &healthy, scenario, NoRecorder, &())
+    let run = instrument::align_stops_on(&board, &healthy, scenario, NoRecorder, &(), ())
         .map_err(|error| failed(&error))?
         .run;
     let conclusion = run.replay.conclusion().ok_or(NOTHING)?;

@@ -131,7 +131,6 @@ fn align_with<B: CompensatesSway, R: Recorder, W: Observer>(
         session,
         assumed: vec![ASSUMED.to_owned()],
     };
-    let violations = harness::told(board);
-    let run = harness.clear(&ended, violations, replay);
+    let run = harness.clear(&ended, board, replay);
     Ok(FramesRun { run, axis, kept: Kept::default() })
 }

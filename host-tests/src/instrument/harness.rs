@@ -105,8 +105,15 @@ impl<'w, W: Observer> Harness<'w, W> {
         Wire(&self.bytes)
     }
 
-    /// What is left of a run.
-    pub(super) fn clear<R>(self, ended: &Ended, violations: Vec<String>, replay: R) -> Run<R> {
+    /// What is left of a run on a board.
+    pub(super) fn clear<R, P, C: Chips<P>>(
+        self,
+        ended: &Ended,
+        board: &RefCell<Board<'_, P, C>>,
+        replay: R,
+    ) -> Run<R> {
+        let mut board = board.borrow_mut();
+        let violations = board.recorded();
         Run {
             replay,
             events: self.log.events.into_inner(),
@@ -115,7 +122,7 @@ impl<'w, W: Observer> Harness<'w, W> {
             lines: String::from_utf8_lossy(&self.bytes.into_inner()).into_owned(),
             seconds: ended.at.as_micros() as f64 * 1e-6,
             health: ended.health,
-            violations,
+            violations: violations.map(|(chip, told)| format!("{chip:?}: {told}")).collect(),
         }
     }
 }
@@ -130,10 +137,4 @@ pub(super) fn run(
 ) -> Result<Ended, RunError> {
     let instrument = async { Ended { health: instrument.await, at: Instant::now() } };
     virtual_time::run_beside(acquisition, instrument).map_err(|_| RunError::Deadlock)
-}
-
-/// In words, what drivers did to a board's chips that a data sheet forbids.
-pub(super) fn told<P, C: Chips<P>>(board: &RefCell<Board<'_, P, C>>) -> Vec<String> {
-    let mut board = board.borrow_mut();
-    board.recorded().map(|(select, violation)| format!("{select:?}: {violation}")).collect()
 }

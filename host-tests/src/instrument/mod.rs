@@ -13,9 +13,7 @@ mod vehicle;
 pub use frames::{FramesRun, align_frames, align_frames_and_keep};
 pub use stage::{align, align_and_keep, align_on};
 pub use turntable::{Keeping, TurntableRun, align_turning, align_turning_again};
-pub use vehicle::{
-    VehicleRun, align_stops, align_stops_along, align_stops_on, align_stops_storing,
-};
+pub use vehicle::{VehicleRun, align_stops, align_stops_along, align_stops_on};
 
 use embassy_time::Instant;
 use firmware::event::Event;

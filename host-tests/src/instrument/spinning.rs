@@ -67,7 +67,7 @@ pub fn follow_spin<W: Observer>(
         run_spin(&mut harness.wire(), &mut &mut kept, &mut flight, &channels),
     )?;
     drop(channels);
-    let violations = harness::told(&board);
+    let run = harness.clear(&ended, &board, flight);
     // Another body of the same course, which has not flown yet.
     let fresh = scenario.board(&course, &injection).plant;
     let at = |plant: &SpinPlant, time: Instant| {
@@ -77,6 +77,5 @@ pub fn follow_spin<W: Observer>(
     let (start, flown) = (at(&fresh, time(kept.0.first())), &board.borrow().plant);
     let rolls_rad = kept.0.iter().map(|sample| at(flown, sample.time).roll_rad).collect();
     let truth = at(flown, time(kept.0.last()));
-    let run = harness.clear(&ended, violations, flight);
     Ok(SpinRun { run, samples: kept.0, rolls_rad, start, truth })
 }

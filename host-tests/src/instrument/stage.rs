@@ -132,6 +132,5 @@ fn align_with<B: CompensatesSway, R: Recorder, W: Observer>(
         session,
         assumed: assumed.map(str::to_owned).collect(),
     };
-    let violations = harness::told(board);
-    Ok(harness.clear(&ended, violations, replay))
+    Ok(harness.clear(&ended, board, replay))
 }

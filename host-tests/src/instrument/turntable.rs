@@ -96,7 +96,6 @@ pub fn align_turning_again<R: Recorder, W: Observer>(
     };
     let ended =
         harness::run(acquire(&mut on_stage(&mut sensors, &configuration, &channels)), instrument)?;
-    let violations = harness::told(&board);
     let rate = board.borrow().plant.truth().stage.rate_rad_s;
-    Ok(TurntableRun { run: harness.clear(&ended, violations, session), rate })
+    Ok(TurntableRun { run: harness.clear(&ended, &board, session), rate })
 }

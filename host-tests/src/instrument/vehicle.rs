@@ -42,25 +42,11 @@ pub fn align_stops<R: Recorder<InertialSample>, W: Observer>(
     recorder: R,
     watch: &W,
 ) -> Result<VehicleRun, RunError> {
-    align_stops_storing(scenario, fault, recorder, watch, ())
-}
-
-/// The same with a store of the heading over a loss of supply.
-///
-/// # Errors
-/// Those of [`align_stops`].
-pub fn align_stops_storing<R: Recorder<InertialSample>, W: Observer>(
-    scenario: &VehicleScenario,
-    fault: Option<Fault>,
-    recorder: R,
-    watch: &W,
-    store: impl Store,
-) -> Result<VehicleRun, RunError> {
     let (day, injection) = (scenario.day(fault), scenario.injection(fault));
-    align_stops_along(&day, &injection, scenario, recorder, watch, store)
+    align_stops_along(&day, &injection, scenario, recorder, watch, ())
 }
 
-/// The same on a given day, with what goes wrong.
+/// The same on a given day, with what goes wrong, and with a store of the heading over a loss of supply.
 ///
 /// # Errors
 /// Those of [`align_stops`].
@@ -73,7 +59,7 @@ pub fn align_stops_along<R: Recorder<InertialSample>, W: Observer>(
     store: impl Store,
 ) -> Result<VehicleRun, RunError> {
     let board = RefCell::new(scenario.board(&day.legs, &day.events, injection));
-    let found = align_on(&board, injection, scenario, recorder, watch, store)?;
+    let found = align_stops_on(&board, injection, scenario, recorder, watch, store)?;
     let kept = Kept::of(&found.run.reports, day.configuration().motion());
     Ok(VehicleRun { kept, ..found })
 }
@@ -83,16 +69,6 @@ pub fn align_stops_along<R: Recorder<InertialSample>, W: Observer>(
 /// # Errors
 /// Those of [`align_stops`].
 pub fn align_stops_on<R: Recorder<InertialSample>, W: Observer>(
-    board: &RefCell<VehicleBoard<'_>>,
-    injection: &Injection,
-    scenario: &VehicleScenario,
-    recorder: R,
-    watch: &W,
-) -> Result<VehicleRun, RunError> {
-    align_on(board, injection, scenario, recorder, watch, ())
-}
-
-fn align_on<R: Recorder<InertialSample>, W: Observer>(
     board: &RefCell<VehicleBoard<'_>>,
     injection: &Injection,
     scenario: &VehicleScenario,
@@ -123,7 +99,6 @@ fn align_on<R: Recorder<InertialSample>, W: Observer>(
         ),
     )?;
     let truth = board.borrow().plant.truth();
-    let violations = harness::told(board);
-    let run = harness.clear(&ended, violations, session);
+    let run = harness.clear(&ended, board, session);
     Ok(VehicleRun { run, truth, kept: Kept::default() })
 }

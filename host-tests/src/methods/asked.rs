@@ -9,7 +9,7 @@ use crate::recording::{Body, Header};
 use crate::setting::{Described, describe};
 
 /// What a user asks of a replay, whatever the method.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Asked {
     /// Name of the method; `None` for the one that the recording shows.
     pub method: Option<&'static str>,
@@ -25,20 +25,12 @@ pub struct Asked {
     pub required_sigma: Option<f64>,
 }
 
-impl Default for Asked {
-    fn default() -> Self {
-        Self {
-            method: None,
-            latitude: None,
-            criterion: Criterion::MaximumLikelihood,
-            half: None,
-            displacements_m: None,
-            required_sigma: None,
-        }
-    }
-}
-
 impl Asked {
+    /// Displacements of the stops: the user's, or the header's.
+    pub(crate) fn displacements_m<'a>(&'a self, header: &'a Header) -> Option<&'a [[f64; 2]]> {
+        self.displacements_m.as_deref().or(header.displacements_m.as_deref())
+    }
+
     /// The user's latitude, or the header's.
     ///
     /// # Errors

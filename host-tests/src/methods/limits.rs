@@ -1,6 +1,9 @@
 //! Where sensors were at their limits. A recording does not say what its sensors can measure, but one at its limit
 //! shows the same greatest value, or least, again and again.
 
+use orientation::signal::Sample;
+use orientation::units::AngularRate;
+
 /// How much longer than any other a standstill at the greatest value must be: where a smooth signal is
 /// coarsely written, its top is the longest by three.
 const LONGER: usize = 4;
@@ -18,6 +21,12 @@ pub(crate) fn limits(values: &(impl Iterator<Item = f64> + Clone), few: f64) -> 
         if is_limit(least) { least } else { f64::NEG_INFINITY },
         if is_limit(greatest) { greatest } else { f64::INFINITY },
     ]
+}
+
+/// A sample whose rate is told as saturated where its column stands at one of these limits.
+pub(crate) fn saturated(limits: [f64; 2], column: f64, sample: Sample) -> Sample {
+    let is_cut = column <= limits[0] || column >= limits[1];
+    if is_cut { Sample { rate: AngularRate(i32::MAX), ..sample } } else { sample }
 }
 
 /// Where each channel of so many is cut, whatever its sign; infinite where it is not.

@@ -40,9 +40,6 @@ pub struct RunDetails {
     /// Time that the run took on this machine, s.
     #[serde(skip)]
     wall_s: f64,
-    /// Forbidden accesses, in words.
-    #[serde(skip)]
-    violations: Vec<String>,
     /// Error of what was kept over time.
     #[serde(skip)]
     figures: Vec<Figure>,
@@ -51,20 +48,9 @@ pub struct RunDetails {
 /// What went wrong on the board, counted.
 #[derive(Clone, Debug, Serialize)]
 pub struct HealthDetails {
-    /// Samples taken.
-    pub samples: u32,
-    /// Samples missing.
-    pub missing: u32,
-    /// Samples that came late.
-    pub late: u32,
-    /// Samples for which the queue had no room.
-    pub overflowed: u32,
-    /// Samples that the keeper did not get.
-    pub unkept: u32,
-    /// Lost readings, by device.
-    pub lost: Vec<u16>,
-    /// Restarts, by device.
-    pub restarts: Vec<u16>,
+    /// Counts of the board itself.
+    #[serde(flatten)]
+    pub counts: Health,
     /// Accesses that a data sheet forbids, in words.
     pub violations: Vec<String>,
 }
@@ -132,14 +118,13 @@ impl RunDetails {
     pub fn of<R>(run: &Run<R>, kept: &Kept, rate_hz: f64, wall: Duration) -> Self {
         Self {
             simulated_seconds: run.seconds,
-            health: HealthDetails::of(&run.health, &run.violations),
+            health: HealthDetails { counts: run.health, violations: run.violations.clone() },
             recalled: None,
             stored: None,
             truth_off_vertical_deg: None,
             kept: KeptDetails::of(run, kept),
             rate_hz,
             wall_s: wall.as_secs_f64(),
-            violations: run.violations.clone(),
             figures: figures(kept),
         }
     }
@@ -161,14 +146,14 @@ impl RunDetails {
         let text =
             format!("{seconds:.1} s at {rate} Hz in {wall:.2} s: {ratio:.0} times real time");
         lines.add("simulated", text);
-        let HealthDetails { samples, missing, late, overflowed, lost, restarts, .. } = &self.health;
+        let Health { samples, missing, late, overflowed, lost, restarts, .. } = &self.health.counts;
         let text =
             format!("{samples} taken, {missing} missing, {late} late, {overflowed} overflowed");
         lines.add("samples", text);
         let [lost, restarts]: [u32; 2] =
             [lost, restarts].map(|counts| counts.iter().map(|n| u32::from(*n)).sum());
         lines.add("devices", format!("{lost} readings lost, {restarts} restarts"));
-        for violation in &self.violations {
+        for violation in &self.health.violations {
             lines.add("FORBIDDEN", violation);
         }
         if let Some((is_stored, off)) = self.stored.zip(self.truth_off_vertical_deg) {
@@ -176,21 +161,6 @@ impl RunDetails {
             lines.add("gyro", format!("{what}: truly {off:.4}° off the base's vertical"));
         }
         lines
-    }
-}
-
-impl HealthDetails {
-    fn of(health: &Health, violations: &[String]) -> Self {
-        Self {
-            samples: health.samples,
-            missing: health.missing,
-            late: health.late,
-            overflowed: health.overflowed,
-            unkept: health.unkept,
-            lost: health.lost.to_vec(),
-            restarts: health.restarts.to_vec(),
-            violations: violations.to_vec(),
-        }
     }
 }
 

@@ -95,40 +95,27 @@ const LARGEST: f64 = 1e6;
 const SIGNED: Range = Range::symmetric(LARGEST, " °/h/g");
 const AZIMUTH: Range = Range::symmetric(360.0, "°");
 
-/// A key whose value is one number.
-struct NumberKey {
-    name: &'static str,
-    range: Range,
-    slot: fn(&mut Header) -> &mut Option<f64>,
-}
-
-/// Shortens the table.
-const fn key(
-    name: &'static str,
-    range: Range,
-    slot: fn(&mut Header) -> &mut Option<f64>,
-) -> NumberKey {
-    NumberKey { name, range, slot }
-}
+/// A key whose value is one number: its name, its range, and where it goes.
+type NumberKey = (&'static str, Range, fn(&mut Header) -> &mut Option<f64>);
 
 static NUMBERS: [NumberKey; 11] = [
-    key("latitude_deg", Range::symmetric(90.0, "°"), |h| &mut h.latitude_deg),
-    key("rate_hz", Range::above_zero(1e6, " Hz"), |h| &mut h.rate_hz),
-    key("gyro_N_deg_sqrt_h", Range::from_zero(LARGEST, " °/√h"), |h| &mut h.gyro_n_deg_sqrt_h),
-    key("gyro_B_deg_h", Range::from_zero(LARGEST, " °/h"), |h| &mut h.gyro_b_deg_h),
-    key("gyro_K_deg_h_sqrt_h", Range::from_zero(LARGEST, " °/h/√h"), |h| {
+    ("latitude_deg", Range::symmetric(90.0, "°"), |h| &mut h.latitude_deg),
+    ("rate_hz", Range::above_zero(1e6, " Hz"), |h| &mut h.rate_hz),
+    ("gyro_N_deg_sqrt_h", Range::from_zero(LARGEST, " °/√h"), |h| &mut h.gyro_n_deg_sqrt_h),
+    ("gyro_B_deg_h", Range::from_zero(LARGEST, " °/h"), |h| &mut h.gyro_b_deg_h),
+    ("gyro_K_deg_h_sqrt_h", Range::from_zero(LARGEST, " °/h/√h"), |h| {
         &mut h.gyro_k_deg_h_sqrt_h
     }),
-    key("gyro_R_deg_h2", Range::from_zero(LARGEST, " °/h²"), |h| &mut h.gyro_r_deg_h2),
-    key("gyro_bias_deg_h", Range::from_zero(LARGEST, " °/h"), |h| &mut h.gyro_bias_deg_h),
-    key("gyro_scale_sigma", Range::from_zero(1.0, ""), |h| &mut h.gyro_scale_sigma),
-    key("accelerometer_bias_m_s2", Range::from_zero(2147.0, " m/s²"), |h| {
+    ("gyro_R_deg_h2", Range::from_zero(LARGEST, " °/h²"), |h| &mut h.gyro_r_deg_h2),
+    ("gyro_bias_deg_h", Range::from_zero(LARGEST, " °/h"), |h| &mut h.gyro_bias_deg_h),
+    ("gyro_scale_sigma", Range::from_zero(1.0, ""), |h| &mut h.gyro_scale_sigma),
+    ("accelerometer_bias_m_s2", Range::from_zero(2147.0, " m/s²"), |h| {
         &mut h.accelerometer_bias_m_s2
     }),
-    key("g_sensitivity_sigma_deg_h_g", Range::from_zero(LARGEST, " °/h/g"), |h| {
+    ("g_sensitivity_sigma_deg_h_g", Range::from_zero(LARGEST, " °/h/g"), |h| {
         &mut h.g_sensitivity_sigma_deg_h_g
     }),
-    key("encoder_zero_sigma_deg", Range::from_zero(180.0, "°"), |h| &mut h.encoder_zero_sigma_deg),
+    ("encoder_zero_sigma_deg", Range::from_zero(180.0, "°"), |h| &mut h.encoder_zero_sigma_deg),
 ];
 
 /// One header line.
@@ -156,12 +143,12 @@ fn key_and_value(comment: &str) -> Option<(&str, &str)> {
 
 /// Whether the key bears on how a recording is read.
 fn is_known(key: &str) -> bool {
-    WORDS.contains(&key) || NUMBERS.iter().any(|number| number.name == key)
+    WORDS.contains(&key) || NUMBERS.iter().any(|(name, ..)| *name == key)
 }
 
 /// The names of all keys that are looked at.
 fn names() -> impl Iterator<Item = &'static str> + Clone {
-    WORDS.into_iter().chain(TRUTHS).chain(NUMBERS.iter().map(|number| number.name))
+    WORDS.into_iter().chain(TRUTHS).chain(NUMBERS.iter().map(|(name, ..)| *name))
 }
 
 /// Refuses a comment below the column names that says what only the header may say: skipping it
@@ -224,7 +211,7 @@ impl Collector {
     /// What a solver may know.
     pub fn header(&self) -> Result<Header, Fault> {
         let mut header = Header::default();
-        for NumberKey { name, range, slot } in &NUMBERS {
+        for (name, range, slot) in &NUMBERS {
             *slot(&mut header) = self.parse(name, |text| Ok(number(text, range)?))?;
         }
         header.g_sensitivity_deg_h_g = self.parse(PAIR, pair)?;

@@ -249,12 +249,6 @@ impl From<(f64, f64)> for Point {
     }
 }
 
-impl From<(f64, f64, [f64; 2])> for Point {
-    fn from((x, y, limits): (f64, f64, [f64; 2])) -> Self {
-        Self { x, y, limits: Some(limits) }
-    }
-}
-
 impl From<Figure> for Part {
     fn from(figure: Figure) -> Self {
         Self::Figure(figure)

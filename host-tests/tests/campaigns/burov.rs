@@ -89,7 +89,7 @@ fn each_of_the_five_classes_is_met_by_its_gyro(extent: Extent) {
         );
         format!(
             "| {} | {:.2}° in {} min | {:.3}° |",
-            row.class, row.wanted_deg, row.minutes, row.three_rms_deg
+            row.class.name, row.class.wanted_deg, row.class.minutes, row.three_rms_deg
         )
     });
     extent.assert_in_readme(&lines.collect::<Vec<_>>());

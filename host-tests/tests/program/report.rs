@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use bench::report::{Axis, Figure, Part, Report, Series, Style, Table};
+use bench::report::{Axis, Figure, Part, Point, Report, Series, Style, Table};
 
 use crate::support::files::Scratch;
 
@@ -83,11 +83,16 @@ fn assert_well_formed(text: &str) {
     }
 }
 
+/// A point with its limits.
+fn bar((x, y, limits): (f64, f64, [f64; 2])) -> Point {
+    Point { x, y, limits: Some(limits) }
+}
+
 #[test]
 fn a_page_with_everything_in_it_is_well_formed_and_needs_no_other_file() {
     let styles = [Style::Line, Style::Dashed, Style::Points, Style::LineAndPoints, Style::Band];
     let series = styles.map(|style| {
-        let points = (1..20).map(f64::from).map(|x| (x, x * x, [x, 2.0 * x * x]));
+        let points = (1..20).map(f64::from).map(|x| bar((x, x * x, [x, 2.0 * x * x])));
         Series::new(&format!("<{style:?}> & \"more\""), style, points)
     });
     let table = Table {
@@ -218,7 +223,7 @@ fn ticks_carry_round_numbers() {
 fn limits_become_bars_that_are_cut_at_the_edge() {
     let points =
         [(1.0, 2.0, [1.0, 4.0]), (10.0, 3.0, [0.0, f64::INFINITY]), (20.0, 3.0, [f64::NAN, 5.0])];
-    let bars = Series::new("a", Style::Points, points);
+    let bars = Series::new("a", Style::Points, points.map(bar));
     let text = page("bars.html", vec![logarithmic(vec![bars]).into()]);
     let uprights: Vec<_> = attributes(&text, "polyline", FIRST, "points")
         .iter()
@@ -234,7 +239,10 @@ fn limits_become_bars_that_are_cut_at_the_edge() {
 #[test]
 fn a_band_runs_along_its_lower_limits_and_back_along_the_upper_ones() {
     let points = [(0.0, 2.0, [1.0, 3.0]), (1.0, 2.0, [1.5, 2.5])];
-    let text = page("band.html", vec![linear(vec![Series::new("a", Style::Band, points)]).into()]);
+    let text = page(
+        "band.html",
+        vec![linear(vec![Series::new("a", Style::Band, points.map(bar))]).into()],
+    );
     let [a, b, c, d] = corners(&attributes(&text, "polygon", FIRST, "points")[0])
         .try_into()
         .expect("four corners");

@@ -18,10 +18,11 @@ use crate::signal::dwell::Dwell;
 use crate::units::wrapped;
 
 /// Criterion by which the azimuth is chosen.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Criterion {
     /// Generalised least squares on the dwells themselves.
+    #[default]
     MaximumLikelihood,
     /// Mean-removed least squares over the table: maximum likelihood for white noise on a level
     /// stage, in integers.

@@ -35,17 +35,25 @@ pub(crate) enum Way {
 }
 
 /// A class of the paper's Table 1, and the gyro that is to meet it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Class {
-    pub(crate) name: &'static str,
-    /// Azimuth, °, 3σ.
-    wanted_deg: f64,
-    minutes: f64,
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Class {
+    /// The class.
+    #[serde(rename = "class")]
+    pub name: &'static str,
+    /// Azimuth that is wanted, °, 3σ.
+    pub wanted_deg: f64,
+    /// In so many minutes.
+    pub minutes: f64,
     /// Azimuth after half an hour of storage, and pitch and roll meanwhile, °, 1σ.
+    #[serde(skip)]
     pub(crate) stored_deg: f64,
+    #[serde(skip)]
     pub(crate) level_deg: f64,
-    pub(crate) gyro: &'static str,
-    pub(crate) grade: Grade,
+    /// The gyro in words.
+    pub gyro: &'static str,
+    /// The gyro.
+    pub grade: Grade,
+    #[serde(skip)]
     pub(crate) way: Way,
 }
 
@@ -110,16 +118,9 @@ const fn grade(n: f64, b: f64, k: f64, r: f64) -> Grade {
 /// A row of the table.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
-    /// The class.
-    pub class: &'static str,
-    /// Azimuth that is wanted, °, 3σ.
-    pub wanted_deg: f64,
-    /// In so many minutes.
-    pub minutes: f64,
-    /// The gyro in words.
-    pub gyro: &'static str,
-    /// The gyro.
-    pub grade: Grade,
+    /// The class and its gyro.
+    #[serde(flatten)]
+    pub class: Class,
     /// How it comes to its azimuth.
     pub way: String,
     /// Three times the RMS error, °.
@@ -153,11 +154,7 @@ impl Class {
         };
         let three_rms_deg = 3.0 * precision.rms_deg;
         Row {
-            class: self.name,
-            wanted_deg: self.wanted_deg,
-            minutes: self.minutes,
-            gyro: self.gyro,
-            grade: self.grade,
+            class: *self,
             way,
             three_rms_deg,
             three_limit_deg: 3.0 * precision.limit_deg,

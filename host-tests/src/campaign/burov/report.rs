@@ -118,9 +118,9 @@ fn of_drift(drift: &[Comparison]) -> Part {
 
 fn of_classes(rows: &[classes::Row]) -> Part {
     Columns::of("Table 1: azimuth in the time given", rows)
-        .column("class", |row| row.class)
-        .fixed("wanted, 3σ, °", 2, |row| row.wanted_deg)
-        .column("time, min", |row| row.minutes)
+        .column("class", |row| row.class.name)
+        .fixed("wanted, 3σ, °", 2, |row| row.class.wanted_deg)
+        .column("time, min", |row| row.class.minutes)
         .fixed("3 RMS, °", 3, |row| row.three_rms_deg)
         .fixed("3 limits, °", 3, |row| row.three_limit_deg)
         .column("met", |row| if row.is_met { "yes" } else { "no" })
@@ -128,8 +128,8 @@ fn of_classes(rows: &[classes::Row]) -> Part {
         .column("gyro (N °/√h, B °/h, K °/h/√h, R °/h²)", |row| {
             format!(
                 "{} ({})",
-                row.gyro,
-                row.grade.values().map(|value| value.to_string()).join(", ")
+                row.class.gyro,
+                row.class.grade.values().map(|value| value.to_string()).join(", ")
             )
         })
         .into()

@@ -55,6 +55,8 @@ pub(super) trait Subject: Clone {
     /// The random stream of its faults: none of those that a world draws from.
     const FAULT: u64;
 
+    /// A healthy one; what it is told of itself is true.
+    fn drawn(seed: u64) -> Self;
     /// The seed from which it is drawn.
     fn seed(&self) -> u64;
     /// What its recording gives.

@@ -23,6 +23,7 @@ use serde::Serialize;
 use super::over;
 use super::statistics::{Answer, Precision};
 
+use self::class::Subject;
 pub use class::{Class, Fault, Pair, WRONG_SIGMAS};
 
 /// Residuals below which σ rests on few.
@@ -43,6 +44,13 @@ pub struct Platform {
     pub healthy: fn(u64) -> Result<Answer, String>,
     /// Its classes of faults.
     pub classes: fn() -> Vec<Class>,
+}
+
+impl Platform {
+    /// Of drawn units.
+    const fn of<S: Subject>(name: &'static str, classes: fn() -> Vec<Class>) -> Self {
+        Self { name, healthy: |seed| S::drawn(seed).align().answer, classes }
+    }
 }
 
 /// Every platform.

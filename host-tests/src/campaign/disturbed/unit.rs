@@ -194,9 +194,6 @@ pub(super) trait Rig: Subject + 'static {
     /// Samples a second.
     const RATE_HZ: f64;
 
-    /// A healthy one at a drawn place; what it is told of itself is true.
-    fn drawn(seed: u64) -> Self;
-
     /// One that goes all around: on an arc a drift in step with the turn looks like the Earth.
     fn on_circle(seed: u64) -> Self {
         Self::drawn(seed)

@@ -151,12 +151,8 @@ fn in_flight(fault: Fault, seed: u64) -> Result<Ended, RunError> {
     let scenario = SpinScenario { seed, seconds: FLIGHT_S, ..SpinScenario::default() };
     let flown = follow_spin(&scenario, Some(fault), &())?;
     let spin = flown.run.replay.spin();
-    let ended = flown.run.events.iter().find_map(|(_, event)| match event {
-        Event::RollEnded(reason) => Some(reason.to_string()),
-        _ => None,
-    });
-    let verdict = match (ended, spin.sigma().map(degrees)) {
-        (Some(reason), _) => Err(reason),
+    let verdict = match (flown.run.ended(), spin.sigma().map(degrees)) {
+        (Some(reason), _) => Err(reason.to_string()),
         (None, Some(sigma)) if sigma <= ROLL_SIGMA_DEG => {
             let [roll, truth] = [spin.roll().rad(), flown.truth.roll_rad].map(degrees);
             Ok(azimuth_error(roll, truth) / sigma)

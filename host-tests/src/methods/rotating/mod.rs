@@ -19,7 +19,7 @@ use self::part::Part;
 use crate::median::median;
 use crate::methods::asked::Asked;
 use crate::methods::error::ReplayError;
-use crate::methods::limits::limits;
+use crate::methods::limits::{limits, saturated};
 use crate::recording::period::period_s;
 use crate::recording::{self, Body, GIVEN, Given, Header, RotatingRow};
 use crate::setting::Described;
@@ -185,10 +185,7 @@ pub fn follow(
     let begin = rows.first().map_or(0.0, |row| row.time_s);
     let limits = limits(&rows.iter().map(|row| row.rate_rad_s), FEW_CUT);
     for row in rows {
-        let mut sample = sample(row, begin);
-        if row.rate_rad_s <= limits[0] || row.rate_rad_s >= limits[1] {
-            sample.rate = AngularRate(i32::MAX);
-        }
+        let sample = saturated(limits, row.rate_rad_s, sample(row, begin));
         session.handle(Event::Recorded(&sample, row.stage_rate_rad_s as f32));
     }
     session.handle(Event::End);

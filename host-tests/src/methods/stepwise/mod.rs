@@ -21,7 +21,7 @@ use orientation::units::{Angle, AngularRate, Instant, SpecificForce, TURN, Tempe
 
 use super::asked::Asked;
 use super::error::ReplayError;
-use super::limits::limits;
+use super::limits::{limits, saturated};
 use super::stops::samples::dead_accelerometer;
 use crate::median::median;
 use crate::recording::period::period_s;
@@ -185,13 +185,7 @@ fn stage(
     let mut session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
     let begin = rows.first().map_or(0.0, |row| row.time_s);
     let limits = limits(&rows.iter().map(|row| row.rate_rad_s), 0.0);
-    let shown = |row: &StageRow| {
-        let mut sample = sample(row, begin);
-        if row.rate_rad_s <= limits[0] || row.rate_rad_s >= limits[1] {
-            sample.rate = AngularRate(i32::MAX);
-        }
-        sample
-    };
+    let shown = |row: &StageRow| saturated(limits, row.rate_rad_s, sample(row, begin));
     drive(&mut session, rows.iter().map(shown), Event::End, progress);
     Ok(session)
 }

@@ -162,7 +162,7 @@ fn check_kilometres(
     asked: &Asked,
     replay: &Replay,
 ) -> Result<(), ReplayError> {
-    let stated = asked.displacements_m.as_ref().or(header.displacements_m.as_ref());
+    let stated = asked.displacements_m(header);
     let is_answered = |replay: &Replay| replay.conclusion().is_some_and(|it| it.verdict.is_ok());
     let greatest =
         stated.iter().flat_map(|list| list.as_flattened()).fold(0.0, |a: f64, b| a.max(b.abs()));
@@ -269,8 +269,7 @@ fn rests(header: &Header, method: Method, zero_s: f64) -> Result<Rests, ReplayEr
 
 /// The user's displacements, or the header's; one for each stop where stops are stated.
 fn displacements(header: &Header, asked: &Asked) -> Result<Few<[f64; 2], STOPS>, ReplayError> {
-    let list = asked.displacements_m.as_ref().or(header.displacements_m.as_ref());
-    let list = list.map_or(&[][..], Vec::as_slice);
+    let list = asked.displacements_m(header).unwrap_or_default();
     let wrong = |stops| ReplayError::Displacements { stated: list.len(), stops };
     match &header.stops_s {
         Some(stops) if !list.is_empty() && stops.len() != list.len() => Err(wrong(stops.len())),

@@ -6,7 +6,7 @@ use orientation::noise::fit::Estimate;
 use super::super::degrees_per_hour;
 use super::{Coefficient, coefficients, rows};
 use crate::allan::analysis::{Analysis, Confident};
-use crate::report::{Axis, Figure, Part, Series, Style, Table};
+use crate::report::{Axis, Figure, Part, Point, Series, Style, Table};
 
 /// Beyond so many times the least and the greatest deviation no asymptote is drawn.
 const HEADROOM: f64 = 2.0;
@@ -20,10 +20,9 @@ pub(super) fn parts(analysis: &Analysis) -> [Part; 3] {
 
 fn figure(analysis: &Analysis) -> Figure {
     let points = || analysis.points.iter();
-    let limits = |rates: [f64; 2]| rates.map(degrees_per_hour);
     let measured = || points().map(|point| (point.seconds, degrees_per_hour(point.deviation)));
-    let band = points()
-        .map(|point| (point.seconds, degrees_per_hour(point.deviation), limits(point.limits)));
+    let limits = points().map(|point| point.limits.map(degrees_per_hour));
+    let band = measured().zip(limits).map(|((x, y), limits)| Point { x, y, limits: Some(limits) });
     let noise = analysis.fit.noise();
     let fitted = times(analysis).map(|tau| (tau, degrees_per_hour(variance(&noise, tau).sqrt())));
     let mut series = vec![

@@ -1,7 +1,7 @@
 //! The supply is lost, and comes back.
 
 use super::{told, vehicle};
-use bench::instrument::{VehicleRun, align_stops_along, align_stops_storing};
+use bench::instrument::{VehicleRun, align_stops_along};
 use firmware::event::Event;
 use firmware::ports::{NoRecorder, Store};
 use firmware::simulated::fault::Injection;
@@ -25,7 +25,8 @@ fn scenario(seed: u64, seconds: f64, gyro: GyroClass) -> VehicleScenario {
 /// The first run: it aligns itself, and the supply is lost so many seconds later.
 fn first(seconds: f64, gyro: GyroClass, store: &mut FlashStore<Flash>) -> VehicleRun {
     let scenario = scenario(1, seconds, gyro);
-    align_stops_storing(&scenario, None, NoRecorder, &(), store).expect("possible")
+    let (day, healthy) = (scenario.day(None), Injection::NONE);
+    align_stops_along(&day, &healthy, &scenario, NoRecorder, &(), store).expect("possible")
 }
 
 /// The second: the vehicle stands as it stood, but for these degrees of azimuth and pitch.

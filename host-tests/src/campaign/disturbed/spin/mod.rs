@@ -21,11 +21,7 @@ use crate::output::degrees;
 use crate::recording::{Body, Header, SpinRow};
 
 /// A spinning body.
-pub(super) const PLATFORM: Platform = Platform {
-    name: "spin",
-    healthy: |seed| Recorded::drawn(seed).align().answer,
-    classes: classes::classes,
-};
+pub(super) const PLATFORM: Platform = Platform::of::<Recorded>("spin", classes::classes);
 
 /// The random stream of a flight: none of those that a world draws from.
 const DRAWN: u64 = 2_031;
@@ -134,11 +130,6 @@ struct Recorded {
 }
 
 impl Recorded {
-    /// A healthy flight.
-    fn drawn(seed: u64) -> Self {
-        Flight::drawn(seed).recorded()
-    }
-
     /// Error of a roll at the last sample, °.
     fn error_deg(&self, roll_rad: f64) -> f64 {
         degrees(wrapped(roll_rad - self.rolls_rad.last().copied().unwrap_or(f64::NAN)))
@@ -164,6 +155,11 @@ impl Recorded {
 
 impl Subject for Recorded {
     const FAULT: u64 = 2_032;
+
+    /// A healthy flight.
+    fn drawn(seed: u64) -> Self {
+        Flight::drawn(seed).recorded()
+    }
 
     fn seed(&self) -> u64 {
         self.seed

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::Bench;
-use crate::campaign::disturbed::class::Class;
+use crate::campaign::disturbed::class::{Class, Subject};
 use crate::campaign::disturbed::faults;
 use crate::campaign::disturbed::gyro::Drift;
 use crate::campaign::disturbed::unit::Rig;

@@ -26,11 +26,7 @@ use crate::recording::{Body, StageRow};
 use crate::untold::unseen;
 
 /// A stage that stops.
-pub(super) const PLATFORM: Platform = Platform {
-    name: "stage",
-    healthy: |seed| Bench::drawn(seed).align().answer,
-    classes: classes::classes,
-};
+pub(super) const PLATFORM: Platform = Platform::of::<Bench>("stage", classes::classes);
 
 /// The random stream of an instrument: none of those that a world draws from.
 const DRAWN: u64 = 2_001;
@@ -93,6 +89,20 @@ impl Bench {
 impl Subject for Bench {
     const FAULT: u64 = 2_002;
 
+    fn drawn(seed: u64) -> Self {
+        let mut chance = Chance::new(seed, DRAWN);
+        let grade = Grade::drawn(&mut chance, N);
+        let kappa = grade.g_sensitivity(&mut chance);
+        let level = |_: &mut Chance| GyroConfiguration::default().axis_elevation_rad;
+        let instruments = grade.instruments(&mut chance, Self::RATE_HZ, kappa, level);
+        let header = grade.header(Self::RATE_HZ, chance.happens(0.7));
+        Self {
+            unit: Unit::new(seed, &instruments, header),
+            stops: stops(&mut chance, 0.9),
+            has_temperature: chance.happens(0.3),
+        }
+    }
+
     fn seed(&self) -> u64 {
         self.unit.seed
     }
@@ -116,20 +126,6 @@ impl Rig for Bench {
     const MIDWAY: &'static str = "between two dwells";
     /// The noise of a dwell does not depend on it.
     const RATE_HZ: f64 = 25.0;
-
-    fn drawn(seed: u64) -> Self {
-        let mut chance = Chance::new(seed, DRAWN);
-        let grade = Grade::drawn(&mut chance, N);
-        let kappa = grade.g_sensitivity(&mut chance);
-        let level = |_: &mut Chance| GyroConfiguration::default().axis_elevation_rad;
-        let instruments = grade.instruments(&mut chance, Self::RATE_HZ, kappa, level);
-        let header = grade.header(Self::RATE_HZ, chance.happens(0.7));
-        Self {
-            unit: Unit::new(seed, &instruments, header),
-            stops: stops(&mut chance, 0.9),
-            has_temperature: chance.happens(0.3),
-        }
-    }
 
     fn on_circle(seed: u64) -> Self {
         let stops = stops(&mut Chance::new(seed, Self::FAULT + 3), 1.0);

@@ -1,9 +1,8 @@
 //! The faults of a platform that turns all the time, of its base, its gyro and its accelerometer.
 
 use super::Bench;
-use crate::campaign::disturbed::class::Class;
+use crate::campaign::disturbed::class::{Class, Subject};
 use crate::campaign::disturbed::faults;
-use crate::campaign::disturbed::unit::Rig;
 
 /// The classes of a platform that turns all the time.
 pub(super) fn classes() -> Vec<Class> {

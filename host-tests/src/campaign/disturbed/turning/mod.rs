@@ -26,11 +26,7 @@ use crate::recording::{Body, Header, RotatingRow, Sensor};
 use crate::untold::unseen;
 
 /// A platform that turns all the time.
-pub(super) const PLATFORM: Platform = Platform {
-    name: "turning",
-    healthy: |seed| Bench::drawn(seed).align().answer,
-    classes: classes::classes,
-};
+pub(super) const PLATFORM: Platform = Platform::of::<Bench>("turning", classes::classes);
 
 /// The random stream of an instrument: none of those that a world draws from.
 const DRAWN: u64 = 2_011;
@@ -174,6 +170,16 @@ impl Bench {
 impl Subject for Bench {
     const FAULT: u64 = 2_012;
 
+    /// One of four has a molecular-electronic sensor.
+    fn drawn(seed: u64) -> Self {
+        let mut chance = Chance::new(seed, MOLECULAR);
+        let mut bench = Self::with_gyro(seed);
+        if chance.happens(MOLECULAR_PART) {
+            bench.make_molecular(&mut chance);
+        }
+        bench
+    }
+
     fn seed(&self) -> u64 {
         self.unit.seed
     }
@@ -193,16 +199,6 @@ impl Rig for Bench {
     const MIDWAY: &'static str = "mid-way";
     /// The noise of a turn does not depend on it.
     const RATE_HZ: f64 = 50.0;
-
-    /// One of four has a molecular-electronic sensor.
-    fn drawn(seed: u64) -> Self {
-        let mut chance = Chance::new(seed, MOLECULAR);
-        let mut bench = Self::with_gyro(seed);
-        if chance.happens(MOLECULAR_PART) {
-            bench.make_molecular(&mut chance);
-        }
-        bench
-    }
 
     fn unit(&self) -> &Unit {
         &self.unit

@@ -20,11 +20,7 @@ use crate::output::degrees;
 use crate::recording::{Body, Header, ImuRow, ImuSample};
 
 /// A vehicle: one that stops and drives where the seed is even, one that only stands where it is odd.
-pub(super) const PLATFORM: Platform = Platform {
-    name: "vehicle",
-    healthy: |seed| Bench::drawn(seed).align().answer,
-    classes: classes::classes,
-};
+pub(super) const PLATFORM: Platform = Platform::of::<Bench>("vehicle", classes::classes);
 
 /// The random stream of a unit: none of those that a world draws from.
 const DRAWN: u64 = 2_011;
@@ -76,11 +72,6 @@ impl Bench {
             }
         }
         Self::of(seed, Method::Static, day, &mut chance)
-    }
-
-    /// One or the other.
-    fn drawn(seed: u64) -> Self {
-        if seed.is_multiple_of(2) { Self::siap(seed) } else { Self::standing(seed) }
     }
 
     /// One that moves: what is built in wrongly shows in sway and drives, not in a level vehicle that is quiet.
@@ -185,6 +176,11 @@ impl Bench {
 
 impl Subject for Bench {
     const FAULT: u64 = 2_012;
+
+    /// One or the other.
+    fn drawn(seed: u64) -> Self {
+        if seed.is_multiple_of(2) { Self::siap(seed) } else { Self::standing(seed) }
+    }
 
     fn seed(&self) -> u64 {
         self.seed

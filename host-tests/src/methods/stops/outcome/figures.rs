@@ -97,7 +97,7 @@ fn criterion(
         ),
     ];
     series.extend(replay.session.stops().iter().enumerate().map(|(index, stop)| {
-        let edge = |time: f64| (replay.zero_s + time, high, [low, high]);
+        let edge = |time| Point { x: replay.zero_s + time, y: high, limits: Some([low, high]) };
         let name = format!("stop {}", index + 1);
         Series::new(&name, Style::Band, [edge(stop.from), edge(stop.to)])
     }));
