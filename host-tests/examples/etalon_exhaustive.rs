@@ -8,7 +8,7 @@
 
 use std::process::ExitCode;
 
-use bench::oracle::{CRITERIA, Case, Outcome, Random, adversarial, compare, ordinary, paper};
+use host::oracle::{CRITERIA, Case, Outcome, Random, adversarial, compare, ordinary, paper};
 use rayon::prelude::*;
 
 /// Makes case number `index` of a family.

@@ -1,4 +1,4 @@
-//! The host's bench: recordings, replay, campaigns, the emulator, and their output.
+//! What the command line is made of: recordings, replay, campaigns, the emulator, and their output.
 //!
 //! It drives the same session and cores that the board runs; only files, threads and the terminal
 //! are its own.

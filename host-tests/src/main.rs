@@ -9,9 +9,9 @@ mod command;
 
 use std::process::ExitCode;
 
-use bench::output::say;
 use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use host::output::say;
 
 use crate::command::allan::AllanOptions;
 use crate::command::campaign::CampaignOptions;

@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use bench::allan::analysis::{Analysis, Rest};
-use bench::allan::speed;
-use bench::output::allan::Shown;
-use bench::planning::Suggestion;
-use bench::recording::{self, Recording};
 use clap::Args;
+use host::allan::analysis::{Analysis, Rest};
+use host::allan::speed;
+use host::output::allan::Shown;
+use host::planning::Suggestion;
+use host::recording::{self, Recording};
 use orientation::noise::fit::FitError;
 
 use super::{Failure, Told, files};

@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use bench::campaign::{Asked, CAMPAIGNS, Campaign, Done, disturbed};
-use bench::output::progress::Progress;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use firmware::simulated::fault::Platform;
+use host::campaign::{Asked, CAMPAIGNS, Campaign, Done, disturbed};
+use host::output::progress::Progress;
 
 use super::{Told, faults as of_run, files, whole};
 

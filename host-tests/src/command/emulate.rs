@@ -1,8 +1,8 @@
 //! `meridian emulate`: the firmware on an emulated Cortex-M4F.
 
-use bench::emulate::emulate;
-use bench::output::{emulation, say};
 use clap::Args;
+use host::emulate::emulate;
+use host::output::{emulation, say};
 
 use super::Told;
 

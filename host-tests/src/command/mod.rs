@@ -13,10 +13,10 @@ pub mod run;
 use std::io::Write;
 use std::path::Path;
 
-use bench::outcome::{self, Finished, Outcome};
-use bench::recording::{Body, Truth};
-use bench::report::Report;
 use clap::ValueEnum;
+use host::outcome::{self, Finished, Outcome};
+use host::recording::{Body, Truth};
+use host::report::Report;
 use orientation::align::setting;
 use orientation::earth::Latitude;
 use serde::Serialize;

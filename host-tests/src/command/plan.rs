@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use bench::output::plan;
-use bench::planning::{Planned, Request, Wanted};
 use clap::{ArgGroup, Args};
+use host::output::plan;
+use host::planning::{Planned, Request, Wanted};
 use orientation::earth::Latitude;
 use orientation::noise::model::GyroNoise;
 use serde::Serialize;

@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
-use bench::methods::asked::Asked;
-use bench::methods::vertical::write_attitude;
-use bench::methods::{self, METHODS, Method};
-use bench::outcome::{Outcome, Source};
-use bench::output::progress::Progress;
-use bench::recording::{self, Recording};
-use bench::unwritten;
 use clap::Args;
+use host::methods::asked::Asked;
+use host::methods::vertical::write_attitude;
+use host::methods::{self, METHODS, Method};
+use host::outcome::{Outcome, Source};
+use host::output::progress::Progress;
+use host::recording::{self, Recording};
+use host::unwritten;
 use orientation::align::criterion::Criterion;
 use orientation::earth::Latitude;
 
@@ -29,7 +29,7 @@ pub struct ReplayOptions {
     latitude: Option<Latitude>,
     /// How the azimuth is found: ml, table (ml over the etalon table), least-squares, least-absolute, within-squares=A1 in (°/h)²,
     /// within-absolute=A in °/h.
-    #[arg(long, default_value = "ml", value_parser = bench::criterion::parse)]
+    #[arg(long, default_value = "ml", value_parser = host::criterion::parse)]
     criterion: Criterion,
     /// The half of the circle in which the azimuth is known to lie: two positions need it.
     #[arg(long, value_enum)]

@@ -1,8 +1,8 @@
 //! Burov's paper by simulation: its example, schedules under drift, its five classes, and the
 //! figures that the README prints of them.
 
-use bench::campaign::burov::{classes, devices, drift};
-use bench::campaign::statistics::NORMAL_COVERAGE;
+use host::campaign::burov::{classes, devices, drift};
+use host::campaign::statistics::NORMAL_COVERAGE;
 
 use crate::support::campaign::{Extent, campaigns};
 

@@ -1,8 +1,8 @@
 //! Whole instruments on simulated chips: many healthy boards, as the README prints them, and every fault of every chip.
 
-use bench::campaign::faults::{self, WRONG_SIGMAS};
-use bench::campaign::instrument::{self, Runs};
-use bench::campaign::statistics::{NORMAL_COVERAGE, Precision};
+use host::campaign::faults::{self, WRONG_SIGMAS};
+use host::campaign::instrument::{self, Runs};
+use host::campaign::statistics::{NORMAL_COVERAGE, Precision};
 
 use firmware::simulated::fault::Platform;
 

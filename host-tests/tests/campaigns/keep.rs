@@ -3,12 +3,12 @@
 
 use std::f64::consts::{LN_2, PI};
 
-use bench::campaign::keep::limit::{adjacent_variance, stored_sigma};
-use bench::campaign::keep::{self, Row};
-use bench::campaign::statistics::NORMAL_COVERAGE;
-use bench::campaign::statistics::Spread;
-use bench::methods::stops::samples::Converter;
-use bench::output::azimuth_error;
+use host::campaign::keep::limit::{adjacent_variance, stored_sigma};
+use host::campaign::keep::{self, Row};
+use host::campaign::statistics::NORMAL_COVERAGE;
+use host::campaign::statistics::Spread;
+use host::methods::stops::samples::Converter;
+use host::output::azimuth_error;
 use orientation::earth::Latitude;
 use orientation::keep::{Gyro, Handover, Keeper, Setting};
 use orientation::noise::model::GyroNoise;

@@ -3,9 +3,9 @@
 
 use std::f64::consts::TAU;
 
-use bench::campaign::rotating::world::{Integrating, LATITUDE_DEG};
-use bench::campaign::rotating::{molecular, refusals, stages};
-use bench::campaign::statistics::Precision;
+use host::campaign::rotating::world::{Integrating, LATITUDE_DEG};
+use host::campaign::rotating::{molecular, refusals, stages};
+use host::campaign::statistics::Precision;
 
 use crate::support::campaign::{Extent, campaigns};
 

@@ -1,7 +1,7 @@
 //! Sokolov's experiment in full, and the figures that the README prints of it.
 
-use bench::campaign::sokolov::{FixedPoint, Table, Turn, fixed_point, tabulate};
-use bench::campaign::statistics::{NORMAL_COVERAGE, coverage, least, rms};
+use host::campaign::sokolov::{FixedPoint, Table, Turn, fixed_point, tabulate};
+use host::campaign::statistics::{NORMAL_COVERAGE, coverage, least, rms};
 
 use crate::support::campaign::{Extent, campaigns};
 

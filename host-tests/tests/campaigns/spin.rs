@@ -1,8 +1,8 @@
 //! The campaign of spinning bodies as the README prints it: the paper's second, and flights with noise.
 
-use bench::campaign::spin::cases::{self, Row, Spot};
-use bench::campaign::spin::paper;
-use bench::campaign::statistics::Spread;
+use host::campaign::spin::cases::{self, Row, Spot};
+use host::campaign::spin::paper;
+use host::campaign::statistics::Spread;
 
 use crate::support::campaign::{Extent, assert_in_readme, campaigns};
 

@@ -1,7 +1,7 @@
 //! The campaign of vehicles: Szymanowski's Table 1 by simulation, and parked vehicles, quiet and swaying.
 
-use bench::campaign::statistics::Precision;
-use bench::campaign::szymanowski::{drives, parked};
+use host::campaign::statistics::Precision;
+use host::campaign::szymanowski::{drives, parked};
 
 use crate::support::campaign::{Extent, campaigns};
 use crate::support::program::{assert_drawn, meridian, object, page, text};

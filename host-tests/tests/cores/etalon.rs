@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use bench::oracle::{
+use host::oracle::{
     CRITERIA, Case, Outcome, Random, TURN, adversarial, compare, long, ordinary, paper, unfolded,
 };
 use orientation::align::etalon::series::CAPACITY;

@@ -2,10 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use bench::campaign::statistics::rms;
-use bench::methods::stepwise::drive;
-use bench::output::azimuth_error;
-use bench::simulate::stage_path;
 use hal_mock::accelerometer::AccelerometerConfiguration;
 use hal_mock::disturbance::Disturbance;
 use hal_mock::gyro::GyroConfiguration;
@@ -13,6 +9,10 @@ use hal_mock::instruments::InstrumentsConfiguration;
 use hal_mock::noise::Generator;
 use hal_mock::stage::Stop;
 use hal_mock::world::{World, WorldConfiguration};
+use host::campaign::statistics::rms;
+use host::methods::stepwise::drive;
+use host::output::azimuth_error;
+use host::simulate::stage_path;
 use orientation::align::conclusion::Azimuth;
 use orientation::align::setting::Setting;
 use orientation::earth::Latitude;

@@ -1,15 +1,15 @@
 //! Autocompensated positions: two, three, four and many, in passes, under drift.
 
-use bench::campaign::statistics::rms;
-use bench::methods::asked::Asked;
-use bench::methods::stepwise::positions::autocompensation;
-use bench::methods::stepwise::{drive, replay};
-use bench::output::azimuth_error;
-use bench::simulate::stage_path;
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::instruments::InstrumentsConfiguration;
 use hal_mock::stage::Stop;
 use hal_mock::world::{World, WorldConfiguration};
+use host::campaign::statistics::rms;
+use host::methods::asked::Asked;
+use host::methods::stepwise::positions::autocompensation;
+use host::methods::stepwise::{drive, replay};
+use host::output::azimuth_error;
+use host::simulate::stage_path;
 use orientation::align::setting::{Half, Setting};
 use orientation::earth::Latitude;
 use orientation::error::Refusal;

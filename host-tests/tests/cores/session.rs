@@ -1,10 +1,10 @@
 //! The session with a simulated stage that obeys it: retries, travel, direction, refusals.
 
-use bench::output::azimuth_error;
-use bench::simulate::run;
 use hal_mock::disturbance::Disturbance;
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::instruments::InstrumentsConfiguration;
+use host::output::azimuth_error;
+use host::simulate::run;
 use orientation::align::setting::Setting;
 use orientation::earth::Latitude;
 use orientation::error::Refusal;
@@ -202,7 +202,7 @@ fn dwells_that_the_filter_has_no_time_to_settle_in_are_unbiased() {
     }
     let ratio = orientation::math::median(&mut ratios);
     assert!(ratio < 1.12, "{ratio} of the limit");
-    let rms = bench::campaign::statistics::rms(&errors);
+    let rms = host::campaign::statistics::rms(&errors);
     // A tenth of the sessions scatter by chance as if the base had moved, which widens their σ.
     assert!((0.8..1.12).contains(&rms), "RMS {rms} σ");
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use bench::spectrum::{Line, Window, amplitudes};
+use host::spectrum::{Line, Window, amplitudes};
 use serde::Deserialize;
 
 /// One signal with what `scipy.signal.periodogram` makes of it, as amplitudes.

@@ -7,7 +7,6 @@
 use std::cell::RefCell;
 use std::convert::Infallible;
 
-use bench::virtual_time::{Deadlock, run};
 use embassy_time::{Duration, Instant, Timer, with_timeout};
 use embedded_hal::digital::ErrorType as PinErrorType;
 use embedded_hal_async::digital::Wait;
@@ -16,6 +15,7 @@ use hal_mock::chip::{ReadyLine, Select, Single, SpiChip, Transaction};
 use hal_mock::fault::{BusFault, FaultPlan, FaultyReady, FaultySpi, When};
 use hal_mock::spi::{ReadyPin, SpiPort};
 use hal_mock::violation::Violations;
+use host::virtual_time::{Deadlock, run};
 
 /// Bus clock, Hz: 1 µs a byte.
 const HERTZ: u32 = 8_000_000;

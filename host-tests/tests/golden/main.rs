@@ -16,14 +16,14 @@ use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-use bench::emulate::host;
-use bench::emulate::outcome::Outcome;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;
 use firmware::simulated::vehicle::VehicleScenario;
 use flate2::Compression;
 use flate2::read::GzDecoder;
 use flate2::write::GzEncoder;
+use host::emulate::host as on_host;
+use host::emulate::outcome::Outcome;
 use serde_json::Value;
 
 use support::files::{Scratch, recordings};
@@ -177,9 +177,9 @@ fn noise_analyses_and_plans_print_what_they_printed() {
 fn the_bits_that_the_emulated_firmware_is_compared_with_are_what_they_were() {
     let mut found = String::new();
     for seed in [1, 2] {
-        let stage = host::outcome(&Scenario { seed, ..Scenario::default() });
-        let turntable = host::turning(&TurntableScenario::brief(seed));
-        let vehicle = host::stops(&VehicleScenario::brief(seed));
+        let stage = on_host::outcome(&Scenario { seed, ..Scenario::default() });
+        let turntable = on_host::turning(&TurntableScenario::brief(seed));
+        let vehicle = on_host::stops(&VehicleScenario::brief(seed));
         for (carrier, outcome) in [("stage", stage), ("turntable", turntable), ("vehicle", vehicle)]
         {
             let outcome = outcome.expect("the simulated board comes to an end");

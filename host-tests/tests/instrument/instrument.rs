@@ -4,15 +4,15 @@
 use std::path::PathBuf;
 use std::thread;
 
-use bench::instrument::recorder::{self, Samples};
-use bench::instrument::{self, Run};
-use bench::methods::asked::Asked;
-use bench::methods::stepwise::replay;
-use bench::output::{azimuth_error, degrees};
-use bench::recording::{self, Header};
 use firmware::event::Event;
 use firmware::ports::NoRecorder;
 use firmware::simulated::scenario::Scenario;
+use host::instrument::recorder::{self, Samples};
+use host::instrument::{self, Run};
+use host::methods::asked::Asked;
+use host::methods::stepwise::replay;
+use host::output::{azimuth_error, degrees};
+use host::recording::{self, Header};
 use orientation::align::conclusion::Conclusion;
 
 use crate::support::files::Scratch;

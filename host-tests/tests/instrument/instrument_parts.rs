@@ -2,7 +2,6 @@
 
 use std::cell::RefCell;
 
-use bench::virtual_time;
 use drivers::fault::Fault;
 use embassy_time::{Duration, Instant, Timer};
 use embedded_io_async::{ErrorKind, ErrorType, Write};
@@ -15,6 +14,7 @@ use firmware::ports::Observer;
 use firmware::retry_budget::{Remedy, RetryBudget, Symptom};
 use firmware::shared::Shared;
 use firmware::timeline::{Arrival, Timeline};
+use host::virtual_time;
 use orientation::device::{Device, Trouble};
 use orientation::keep::{State, Trust};
 use orientation::units::Angle;

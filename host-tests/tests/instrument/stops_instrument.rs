@@ -1,11 +1,11 @@
 //! The whole instrument in a vehicle, on simulated chips: a healthy run, what the log tells, and what a
 //! lost conversion costs.
 
-use bench::instrument::{VehicleRun, align_stops};
 use firmware::event::Event;
 use firmware::ports::NoRecorder;
 use firmware::simulated::fault::Fault;
 use firmware::simulated::vehicle::{Place, VehicleScenario};
+use host::instrument::{VehicleRun, align_stops};
 use orientation::align::conclusion::Azimuth;
 use orientation::error::Refusal;
 

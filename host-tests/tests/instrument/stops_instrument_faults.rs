@@ -1,10 +1,10 @@
 //! The instrument in a vehicle with something wrong: every fault is survived or refused for its reason,
 //! and no rotation that was lost is hidden.
 
-use bench::instrument::{VehicleRun, align_stops};
 use firmware::ports::NoRecorder;
 use firmware::simulated::fault::{ChipFault, Fault, Platform};
 use firmware::simulated::vehicle::VehicleScenario;
+use host::instrument::{VehicleRun, align_stops};
 use orientation::align::conclusion::Azimuth;
 use orientation::device::{Device, Trouble};
 use orientation::error::Refusal;

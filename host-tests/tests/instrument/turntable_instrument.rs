@@ -1,13 +1,13 @@
 //! The whole instrument on simulated chips with a platform that turns all the time: it finds north,
 //! tells what it did, comes to rest at the end, and never reports a wrong north.
 
-use bench::instrument::{TurntableRun, align_turning};
-use bench::output::{azimuth_error, degrees};
 use firmware::event::Event;
 use firmware::ports::NoRecorder;
 use firmware::simulated::fault::{AxisFault, ChipFault, Fault, Platform};
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;
+use host::instrument::{TurntableRun, align_turning};
+use host::output::{azimuth_error, degrees};
 use orientation::align::conclusion::Azimuth;
 use orientation::align::rotating::solution::SPEEDS;
 use orientation::device::{Device, Trouble};

@@ -1,9 +1,6 @@
 //! Couplings are kept over a loss of supply: whenever it comes, the old one or the new one is there. The
 //! whole instrument uses what it kept, and tells it.
 
-use bench::instrument::{Keeping, TurntableRun, align_turning_again};
-use bench::output::{azimuth_error, degrees};
-use bench::virtual_time::run;
 use drivers::fault::Fault;
 use firmware::date::Day;
 use firmware::event::Event;
@@ -12,6 +9,9 @@ use firmware::simulated::flash::Flash;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;
 use firmware::storage::{FlashStore, Today, keep, recall};
+use host::instrument::{Keeping, TurntableRun, align_turning_again};
+use host::output::{azimuth_error, degrees};
+use host::virtual_time::run;
 use orientation::align::conclusion::Azimuth;
 use orientation::align::rotating::coupling::{BYTES, Coupling};
 use orientation::error::Refusal;

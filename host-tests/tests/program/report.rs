@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use bench::report::{Axis, Figure, Part, Point, Report, Series, Style, Table};
+use host::report::{Axis, Figure, Part, Point, Report, Series, Style, Table};
 
 use crate::support::files::Scratch;
 

@@ -3,14 +3,14 @@
 //! Their samples scatter by far more than their N: quantisation and dither are noise of the angle, which comes
 //! back with the next sample. A bias of 0.01 °/h is 0.05° of azimuth, N of 0.002 °/√h another 0.07° in a minute.
 
-use bench::methods::asked::Asked;
-use bench::methods::stops::{Replay, replay};
-use bench::output::{azimuth_error, degrees};
-use bench::recording::{Body, Header, ImuRow, ImuSample};
 use hal_mock::accelerometer::AccelerometerConfiguration;
 use hal_mock::gyro::GyroConfiguration;
 use hal_mock::vehicle::scenario::Scenario;
 use hal_mock::vehicle::{Event, Stop, Vehicle};
+use host::methods::asked::Asked;
+use host::methods::stops::{Replay, replay};
+use host::output::{azimuth_error, degrees};
+use host::recording::{Body, Header, ImuRow, ImuSample};
 use rayon::prelude::*;
 
 use crate::support::campaign::{Extent, campaigns};

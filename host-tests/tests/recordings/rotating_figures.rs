@@ -3,12 +3,12 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use bench::methods::rotating::part::Part;
-use bench::methods::rotating::turns::{
+use host::methods::rotating::part::Part;
+use host::methods::rotating::turns::{
     freed, phasor, phasors, rate_hz, spectrum, turn_hz, whole_turns,
 };
-use bench::recording::{Body, RotatingRow};
-use bench::spectrum::Line;
+use host::recording::{Body, RotatingRow};
+use host::spectrum::Line;
 
 use crate::support::files::recording;
 

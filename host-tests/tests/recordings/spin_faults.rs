@@ -2,11 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use bench::methods::asked::Asked;
-use bench::methods::spin::errors::wrapped;
-use bench::methods::spin::{Replay, replay};
-use bench::recording::{Body, Header, SpinRow};
 use hal_mock::noise::Generator;
+use host::methods::asked::Asked;
+use host::methods::spin::errors::wrapped;
+use host::methods::spin::{Replay, replay};
+use host::recording::{Body, Header, SpinRow};
 use orientation::keep::spin::{Accelerometer, Condition, State};
 
 use crate::support::program::{code, meridian, object};

@@ -1,11 +1,11 @@
 //! What a vehicle's recording shows of faults: in itself, and in what its header says.
 
-use bench::methods::asked::Asked;
-use bench::methods::error::ReplayError;
-use bench::methods::stops::floor::Spectrum;
-use bench::methods::stops::{Replay, grade, noise, replay};
-use bench::recording::{Body, Header, ImuRow};
 use hal_mock::noise::Generator;
+use host::methods::asked::Asked;
+use host::methods::error::ReplayError;
+use host::methods::stops::floor::Spectrum;
+use host::methods::stops::{Replay, grade, noise, replay};
+use host::recording::{Body, Header, ImuRow};
 use orientation::align::setting::Setting as Common;
 use orientation::align::stops::Setting;
 use orientation::align::stops::stop_detector::Rests;

@@ -5,8 +5,8 @@ use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use bench::recording::{Recording, read};
 use flate2::read::MultiGzDecoder;
+use host::recording::{Recording, read};
 
 /// The folder of the stored recordings.
 pub fn recordings() -> PathBuf {

@@ -2,9 +2,9 @@
 
 use std::cell::RefCell;
 
-use bench::virtual_time;
 use hal_mock::chip::{Single, SpiChip};
 use hal_mock::violation::Misuse;
+use host::virtual_time;
 
 /// Runs what must end.
 #[track_caller]

@@ -58,7 +58,7 @@ enum Failure {
 }
 
 /// State that the tasks share with [`main`].
-struct Bench {
+struct Harness {
     meter: Meter,
     acquisition: Task,
     instrument: Task,
@@ -66,7 +66,7 @@ struct Bench {
     finished: OnceCell<Finished>,
 }
 
-static BENCH: StaticCell<Bench> = StaticCell::new();
+static HARNESS: StaticCell<Harness> = StaticCell::new();
 static EXECUTOR: StaticCell<Executor> = StaticCell::new();
 
 #[entry]
@@ -86,38 +86,38 @@ fn main() -> ! {
 fn run() -> Result<(), Failure> {
     let job = Job::from_host().ok_or(Failure::NoOrder)?;
     let peripherals = cortex_m::Peripherals::take().ok_or(Failure::NoTimer)?;
-    let bench: &'static Bench = BENCH.init(Bench {
+    let harness: &'static Harness = HARNESS.init(Harness {
         meter: Meter::new(Counter::start(peripherals.SYST)),
         acquisition: Task { name: "acquisition", ..Task::default() },
         instrument: Task { name: "instrument", ..Task::default() },
         finished: OnceCell::new(),
     });
     let executor: &'static Executor = EXECUTOR.init_with(executor::new);
-    let (sampling, running) = job.begin(&bench.meter).ok_or(Failure::Session)?;
+    let (sampling, running) = job.begin(&harness.meter).ok_or(Failure::Session)?;
     let spawner = executor.spawner();
-    spawner.spawn(acquisition(bench, sampling).map_err(|_| Failure::NotStarted)?);
-    spawner.spawn(instrument(bench, running).map_err(|_| Failure::NotStarted)?);
-    let finished = || bench.finished.get();
-    let finished = executor::run(executor, &bench.meter, finished).ok_or(Failure::Deadlock)?;
+    spawner.spawn(acquisition(harness, sampling).map_err(|_| Failure::NotStarted)?);
+    spawner.spawn(instrument(harness, running).map_err(|_| Failure::NotStarted)?);
+    let finished = || harness.finished.get();
+    let finished = executor::run(executor, &harness.meter, finished).ok_or(Failure::Deadlock)?;
     finished.log(job.base().seed).ok_or(Failure::NoConclusion)?;
-    log::effort(&bench.meter, job.base().sample_rate_hz);
-    log::task(&bench.acquisition);
-    log::task(&bench.instrument);
+    log::effort(&harness.meter, job.base().sample_rate_hz);
+    log::task(&harness.acquisition);
+    log::task(&harness.instrument);
     Ok(())
 }
 
 #[embassy_executor::task]
-async fn acquisition(bench: &'static Bench, sampling: Sampling) {
+async fn acquisition(harness: &'static Harness, sampling: Sampling) {
     let future = pin!(sampling.run());
-    bench.acquisition.run(&bench.meter, future).await;
+    harness.acquisition.run(&harness.meter, future).await;
 }
 
 #[embassy_executor::task]
-async fn instrument(bench: &'static Bench, running: Running) {
+async fn instrument(harness: &'static Harness, running: Running) {
     let future = pin!(async {
         let finished = running.run().await;
         // The task runs once, so nothing was set before.
-        let _ = bench.finished.set(finished);
+        let _ = harness.finished.set(finished);
     });
-    bench.instrument.run(&bench.meter, future).await;
+    harness.instrument.run(&harness.meter, future).await;
 }

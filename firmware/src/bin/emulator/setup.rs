@@ -81,7 +81,7 @@ static LOG: StaticCell<Log> = StaticCell::new();
 /// Ports and channels of this run.
 static PARTS: StaticCell<Parts> = StaticCell::new();
 /// The session of this run.
-static SITTING: StaticCell<AnySession> = StaticCell::new();
+static SESSION: StaticCell<AnySession> = StaticCell::new();
 /// The attitude keeper of this run.
 static KEEPER: StaticCell<Keeper> = StaticCell::new();
 
@@ -128,7 +128,7 @@ pub fn vehicle(
 /// May be called once: a second call panics, as the memory is taken.
 #[inline(never)]
 pub fn session(session: impl FnOnce() -> AnySession) -> &'static mut AnySession {
-    SITTING.init_with(session)
+    SESSION.init_with(session)
 }
 
 /// Builds the attitude keeper of a vehicle, without aiding from outside and without memory.

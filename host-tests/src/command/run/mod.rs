@@ -10,16 +10,16 @@ mod vehicle;
 
 use std::time::{Duration, Instant as WallClock};
 
-use bench::instrument::RunError;
-use bench::outcome::Finished;
-use bench::outcome::run::RunDetails;
-use bench::output::progress::Progress;
-use bench::recording::{Body, Truth};
 use clap::{Args, Subcommand};
 use embassy_time::Instant;
 use firmware::event::Event;
 use firmware::ports::Observer;
 use firmware::simulated::fault::{Fault, Platform};
+use host::instrument::RunError;
+use host::outcome::Finished;
+use host::outcome::run::RunDetails;
+use host::output::progress::Progress;
+use host::recording::{Body, Truth};
 use orientation::session::{Session, rotating, stops};
 
 use self::options::Common;

@@ -3,12 +3,12 @@
 use std::fs::OpenOptions;
 use std::path::PathBuf;
 
-use bench::instrument::recorder::{self, Carrier};
-use bench::unwritten;
 use clap::{Args, ValueEnum};
 use drivers::ads1262::configuration::DataRate;
 use firmware::ports::Recorder;
 use firmware::simulated::scenario::{GyroClass, RATES, Scenario};
+use host::instrument::recorder::{self, Carrier};
+use host::unwritten;
 
 use crate::command::faults::{self, Asked};
 use crate::command::seed;

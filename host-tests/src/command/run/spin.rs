@@ -1,14 +1,14 @@
 //! `meridian run spin`: the board on a body in fast rotation.
 
-use bench::instrument::kept::Kept;
-use bench::instrument::spinning::{SpinRun, follow_spin};
-use bench::methods::spin::{Known, Replay, follow};
-use bench::outcome::run::RunDetails;
-use bench::recording::Truth;
 use clap::Args;
 use firmware::event::Event;
 use firmware::simulated::fault::Fault;
 use firmware::simulated::spin::{SAMPLE_RATE, SpinScenario};
+use host::instrument::kept::Kept;
+use host::instrument::spinning::{SpinRun, follow_spin};
+use host::methods::spin::{Known, Replay, follow};
+use host::outcome::run::RunDetails;
+use host::recording::Truth;
 use orientation::units::DEGREE;
 
 use super::options::{Common, number};

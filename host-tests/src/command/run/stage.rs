@@ -1,16 +1,16 @@
 //! `meridian run stage` and `meridian run two-frame`: a base that stands while its gyro stops at positions.
 
-use bench::instrument::kept::{KeptPlan, KeptRun};
-use bench::instrument::{self, FramesRun, Run};
-use bench::outcome::Finished;
-use bench::outcome::run::{KeptAzimuth, RunDetails};
-use bench::output::degrees;
-use bench::recording::Truth;
 use clap::Args;
 use firmware::event::Event;
 use firmware::simulated::fault::Fault;
 use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::{Aim, Scenario};
+use host::instrument::kept::{KeptPlan, KeptRun};
+use host::instrument::{self, FramesRun, Run};
+use host::outcome::Finished;
+use host::outcome::run::{KeptAzimuth, RunDetails};
+use host::output::degrees;
+use host::recording::Truth;
 
 use super::keeping::KeepingOptions;
 use super::options::{Common, Inclination, Place, number, seconds};

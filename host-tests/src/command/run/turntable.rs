@@ -2,12 +2,6 @@
 
 use std::path::PathBuf;
 
-use bench::instrument::kept::Kept;
-use bench::instrument::recorder::{Samples, turning_rows};
-use bench::instrument::{Keeping, Run, TurntableRun, align_turning_again, flash_file};
-use bench::methods::rotating::Replay;
-use bench::outcome::run::RunDetails;
-use bench::recording::{Body, Truth};
 use clap::{Args, ValueEnum};
 use firmware::date::Day;
 use firmware::event::Event;
@@ -15,6 +9,12 @@ use firmware::simulated::fault::Fault;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;
 use firmware::storage::{Remembered, Today};
+use host::instrument::kept::Kept;
+use host::instrument::recorder::{Samples, turning_rows};
+use host::instrument::{Keeping, Run, TurntableRun, align_turning_again, flash_file};
+use host::methods::rotating::Replay;
+use host::outcome::run::RunDetails;
+use host::recording::{Body, Truth};
 
 use super::options::{Common, Inclination, Place};
 use super::{Ran, Simulated, Terminal};

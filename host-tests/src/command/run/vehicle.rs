@@ -1,12 +1,5 @@
 //! `meridian run vehicle`: the board in a vehicle that goes from stop to stop.
 
-use bench::instrument::kept::{Kept, Point};
-use bench::instrument::{Run, VehicleRun, align_stops};
-use bench::methods::stops::{Method, Replay, Watched};
-use bench::outcome::Finished;
-use bench::outcome::run::{KeptAzimuth, RunDetails};
-use bench::output::degrees;
-use bench::recording::Truth;
 use clap::Args;
 use firmware::event::Event;
 use firmware::ports::Recorder;
@@ -14,6 +7,13 @@ use firmware::simulated::fault::Fault;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::vehicle::{self, VehicleScenario};
 use hal_mock::vehicle::VehicleTruth;
+use host::instrument::kept::{Kept, Point};
+use host::instrument::{Run, VehicleRun, align_stops};
+use host::methods::stops::{Method, Replay, Watched};
+use host::outcome::Finished;
+use host::outcome::run::{KeptAzimuth, RunDetails};
+use host::output::degrees;
+use host::recording::Truth;
 use orientation::session::stops::Session;
 use orientation::signal::InertialSample;
 

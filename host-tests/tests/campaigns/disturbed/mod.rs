@@ -6,7 +6,7 @@ mod stage;
 mod turning;
 mod vehicle;
 
-use bench::campaign::statistics::NORMAL_COVERAGE;
+use host::campaign::statistics::NORMAL_COVERAGE;
 
 use crate::support::campaign::Extent;
 

@@ -1,7 +1,7 @@
 //! Recordings of spinning bodies.
 
-use bench::campaign::disturbed::{PLATFORMS, row};
-use bench::campaign::statistics::{Answer, coverage};
+use host::campaign::disturbed::{PLATFORMS, row};
+use host::campaign::statistics::{Answer, coverage};
 use rayon::prelude::*;
 
 use crate::support::campaign::{Extent, campaigns};

@@ -1,6 +1,6 @@
 //! Recordings of a stage.
 
-use bench::campaign::disturbed::{PLATFORMS, classes, healthy, row};
+use host::campaign::disturbed::{PLATFORMS, classes, healthy, row};
 
 use crate::support::campaign::{Extent, campaigns};
 

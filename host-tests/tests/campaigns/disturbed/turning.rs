@@ -1,7 +1,7 @@
 //! Recordings of a platform that turns all the time.
 
-use bench::campaign::disturbed::{PLATFORMS, row};
-use bench::campaign::statistics::{Answer, Precision};
+use host::campaign::disturbed::{PLATFORMS, row};
+use host::campaign::statistics::{Answer, Precision};
 use rayon::prelude::*;
 
 use crate::support::campaign::{Extent, campaigns};

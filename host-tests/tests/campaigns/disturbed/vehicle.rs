@@ -1,7 +1,7 @@
 //! Recordings of vehicles, between stops and where they stand.
 
-use bench::campaign::disturbed::{PLATFORMS, row};
-use bench::campaign::statistics::{Answer, coverage};
+use host::campaign::disturbed::{PLATFORMS, row};
+use host::campaign::statistics::{Answer, coverage};
 use rayon::prelude::*;
 
 use crate::support::campaign::{Extent, campaigns};

@@ -2,7 +2,6 @@
 
 use std::cell::{Cell, RefCell};
 
-use bench::virtual_time::run;
 use drivers::fault::Fault;
 use drivers::tmc5160::Tmc5160;
 use drivers::tmc5160::codec::{DriverError, Status};
@@ -14,6 +13,7 @@ use hal_mock::chip::{Rig as _, Select, Single, SpiChip};
 use hal_mock::noise::Generator;
 use hal_mock::spi::SpiPort;
 use hal_mock::tmc5160::{Sickness, Tmc5160 as Chip};
+use host::virtual_time::run;
 
 use super::plant::{Motor, NOMINAL};
 

@@ -2,8 +2,6 @@
 //! is greater than is said.
 
 use super::{at, departure, frames, keep, sigmas, told};
-use bench::instrument::FramesRun;
-use bench::instrument::kept::KeptPlan;
 use embassy_time::{Duration, Instant};
 use firmware::simulated::fault::Injection;
 use firmware::simulated::keep::Hold;
@@ -12,6 +10,8 @@ use hal_mock::chip::Select;
 use hal_mock::fault::{BusFault, FaultPlan, When};
 use hal_mock::vehicle::Event;
 use hal_mock::vehicle::{SensorFailure, SensorFault};
+use host::instrument::FramesRun;
+use host::instrument::kept::KeptPlan;
 
 /// How long after its departure something goes wrong with a base, s.
 const AFTER: f64 = 60.0;

@@ -1,10 +1,10 @@
 //! The moment of the handing over, sample by sample.
 
-use bench::virtual_time;
 use embassy_time::{Duration, Timer};
 use firmware::configuration::{Alignment, KeepConfiguration, Realignment};
 use firmware::keep::{Keep, Keeping, Motion};
 use firmware::shared::Shared;
+use host::virtual_time;
 use orientation::earth::Latitude;
 use orientation::keep::{Gyro, Handover, Keeper, Setting};
 use orientation::signal::InertialSample;

@@ -1,12 +1,12 @@
 //! Nothing goes wrong.
 
 use super::{drive, frames, keep, sigmas, told, vehicle, when};
-use bench::instrument::align_and_keep;
-use bench::instrument::kept::KeptPlan;
 use firmware::event::Event;
 use firmware::ports::NoRecorder;
 use firmware::simulated::keep::Hold;
 use firmware::simulated::scenario::Scenario;
+use host::instrument::align_and_keep;
+use host::instrument::kept::KeptPlan;
 
 #[test]
 fn thirty_minutes_of_driving_in_a_vehicle_stay_within_three_sigma() {

@@ -6,8 +6,6 @@ mod healthy;
 mod realigning;
 mod restart;
 
-use bench::instrument::kept::{Kept, KeptPlan};
-use bench::instrument::{FramesRun, Run, VehicleRun, align_frames_and_keep, align_stops};
 use embassy_time::Instant;
 use firmware::event::Event;
 use firmware::ports::NoRecorder;
@@ -15,6 +13,8 @@ use firmware::simulated::keep::Hold;
 use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::vehicle::VehicleScenario;
+use host::instrument::kept::{Kept, KeptPlan};
+use host::instrument::{FramesRun, Run, VehicleRun, align_frames_and_keep, align_stops};
 
 /// A vehicle that goes on like this.
 fn vehicle(seed: u64, hold: Hold) -> VehicleScenario {

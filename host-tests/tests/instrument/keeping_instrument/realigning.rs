@@ -1,9 +1,9 @@
 //! The azimuth is found anew at stops.
 
 use super::{drive, frames, keep, sigmas, told, vehicle};
-use bench::instrument::kept::KeptPlan;
 use firmware::event::Event;
 use firmware::simulated::keep::Hold;
+use host::instrument::kept::KeptPlan;
 use orientation::keep::Realigned;
 
 #[test]

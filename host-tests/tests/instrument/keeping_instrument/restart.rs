@@ -1,7 +1,6 @@
 //! The supply is lost, and comes back.
 
 use super::{told, vehicle};
-use bench::instrument::{VehicleRun, align_stops_along};
 use firmware::event::Event;
 use firmware::ports::{NoRecorder, Store};
 use firmware::simulated::fault::Injection;
@@ -11,6 +10,7 @@ use firmware::simulated::scenario::{GyroClass, Scenario};
 use firmware::simulated::vehicle::{Day, VehicleScenario};
 use firmware::storage::{FlashStore, HEADING};
 use hal_mock::vehicle::Stop;
+use host::instrument::{VehicleRun, align_stops_along};
 use orientation::keep::restart::{Doubt, Remembered};
 
 /// Gyros whose biases come back to 0.03 °/h: only such ones can tell whether a vehicle was turned.
@@ -124,7 +124,7 @@ fn a_power_cut_amid_the_writing_leaves_a_heading_that_is_whole_or_none() {
         let mut flash = store.into_flash();
         flash.left = None;
         let mut store = flash.store();
-        let kept = bench::virtual_time::run(store.load(HEADING)).expect("no deadlock");
+        let kept = host::virtual_time::run(store.load(HEADING)).expect("no deadlock");
         let kept = kept
             .ok()
             .flatten()

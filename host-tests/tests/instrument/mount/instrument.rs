@@ -1,9 +1,5 @@
 //! The whole instrument on a simulated two-frame mount.
 
-use bench::campaign::statistics::rms;
-use bench::instrument::kept::KeptPlan;
-use bench::instrument::{FramesRun, align_frames_and_keep};
-use bench::output::{azimuth_error, degrees};
 use embassy_time::{Duration, Instant};
 use firmware::event::Event;
 use firmware::ports::{Frames, NoRecorder};
@@ -12,6 +8,10 @@ use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::Scenario;
 use hal_mock::noise::Generator;
 use hal_mock::plant::StageFault;
+use host::campaign::statistics::rms;
+use host::instrument::kept::KeptPlan;
+use host::instrument::{FramesRun, align_frames_and_keep};
+use host::output::{azimuth_error, degrees};
 use orientation::align::mount::TwoFrame;
 use orientation::device::{Device, Trouble};
 use orientation::error::Refusal;

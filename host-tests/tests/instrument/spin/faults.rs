@@ -1,13 +1,13 @@
 //! Lift that fades or turns round, a spin that stops, sensors that fail: the state says so, and the roll
 //! comes back by itself within a bounded time.
 
-use bench::campaign::spin::world::{RATE_HZ, SCALE_ERROR};
-use bench::methods::spin::errors::wrapped;
-use bench::methods::spin::samples::Converter;
 use hal_mock::accelerometer::AccelerometerConfiguration;
 use hal_mock::spin::profile::Profile;
 use hal_mock::spin::{SpinConfiguration, SpinWorld};
 use hal_mock::vehicle::{SensorFailure, SensorFault};
+use host::campaign::spin::world::{RATE_HZ, SCALE_ERROR};
+use host::methods::spin::errors::wrapped;
+use host::methods::spin::samples::Converter;
 use orientation::keep::spin::{Condition, Setting, Spin, State};
 
 /// 80 turns a second.

@@ -1,12 +1,12 @@
 //! The instrument on a spinning body: five converters in step at 14 400 samples a second, its log, its link,
 //! and every fault in the catalogue.
 
-use bench::instrument::spinning::{SpinRun, follow_spin};
-use bench::methods::spin::errors::wrapped;
-use bench::methods::spin::{Known, follow};
 use firmware::event::Event;
 use firmware::simulated::fault::{Fault, Platform};
 use firmware::simulated::spin::SpinScenario;
+use host::instrument::spinning::{SpinRun, follow_spin};
+use host::methods::spin::errors::wrapped;
+use host::methods::spin::{Known, follow};
 use orientation::keep::spin::{Condition, State};
 
 fn flown(scenario: &SpinScenario, fault: Option<Fault>) -> SpinRun {

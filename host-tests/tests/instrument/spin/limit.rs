@@ -1,7 +1,7 @@
 //! The Cramér–Rao bound of the roll against the inverse of the whole information matrix, and the noise that
 //! turns show against what was put in.
 
-use bench::methods::spin::limit::{Noise, Turns, bounds, gyro_walk};
+use host::methods::spin::limit::{Noise, Turns, bounds, gyro_walk};
 use orientation::signal::SpinSample;
 use orientation::units::{AngleIncrement, Instant, SpinForce};
 

@@ -1,10 +1,10 @@
 //! The stored recordings of spinning bodies, which an independent simulator made.
 
-use bench::methods::asked::Asked;
-use bench::methods::error::ReplayError;
-use bench::methods::spin::errors::Errors;
-use bench::methods::spin::{Replay, replay};
-use bench::recording::{Body, Header};
+use host::methods::asked::Asked;
+use host::methods::error::ReplayError;
+use host::methods::spin::errors::Errors;
+use host::methods::spin::{Replay, replay};
+use host::recording::{Body, Header};
 
 use crate::support::files::recording;
 

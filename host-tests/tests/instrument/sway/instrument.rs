@@ -1,7 +1,5 @@
 //! The whole instrument on a base that sways.
 
-use bench::instrument::{self, Run};
-use bench::output::{azimuth_error, degrees};
 use drivers::fault::Fault as BusFault;
 use embassy_time::Instant;
 use firmware::event::Event;
@@ -11,6 +9,8 @@ use firmware::simulated::fault::{ChipFault, Fault};
 use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::{GyroClass, Scenario};
 use firmware::steady::SwayCompensation;
+use host::instrument::{self, Run};
+use host::output::{azimuth_error, degrees};
 use orientation::device::Device;
 use orientation::error::Refusal;
 use orientation::signal::sway::CoarseSensors;

@@ -1,6 +1,6 @@
 //! The table that the image `cost` prints.
 
-use bench::emulate::cost;
+use host::emulate::cost;
 
 const TABLE: &str = "
      count     budget       checks, instructions

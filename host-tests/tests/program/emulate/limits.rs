@@ -1,10 +1,10 @@
 //! Where a handmade image's memory goes, and figures against their budget.
 
-use bench::emulate::budget::{Budget, NAMES};
-use bench::emulate::checks::{self, Check, Runs};
-use bench::emulate::collect::{Figures, Task};
-use bench::emulate::images::root;
-use bench::emulate::sections::{Memory, Section};
+use host::emulate::budget::{Budget, NAMES};
+use host::emulate::checks::{self, Check, Runs};
+use host::emulate::collect::{Figures, Task};
+use host::emulate::images::root;
+use host::emulate::sections::{Memory, Section};
 
 use super::handmade::{self, ABSOLUTE, ALLOC, EXECUTE, NOBITS, PROGBITS, WRITE};
 

@@ -1,8 +1,8 @@
 //! What the image's log says to the host.
 
-use bench::emulate::collect::{Collected, Figures, Task};
-use bench::emulate::decode::Line;
-use bench::emulate::outcome::{self, Kind, Outcome, Row, STOP, TURN};
+use host::emulate::collect::{Collected, Figures, Task};
+use host::emulate::decode::Line;
+use host::emulate::outcome::{self, Kind, Outcome, Row, STOP, TURN};
 
 fn printed(words: &str) -> Line {
     Line { time: "1.5".to_owned(), level: None, words: words.to_owned() }

@@ -4,8 +4,8 @@ use std::fs;
 use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 
-use bench::emulate::images::{Images, artifacts, root};
-use bench::emulate::qemu;
+use host::emulate::images::{Images, artifacts, root};
+use host::emulate::qemu;
 use serde_json::Value;
 
 use crate::support::program::command;

@@ -1,10 +1,10 @@
 //! Two runs are compared bit for bit, and where they differ is named.
 
-use bench::emulate::host;
-use bench::emulate::outcome::{DWELL, KEPT, KINDS, Kind, Outcome, Row, STOP, TURN, compare};
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;
 use firmware::simulated::vehicle::VehicleScenario;
+use host::emulate::host as on_host;
+use host::emulate::outcome::{DWELL, KEPT, KINDS, Kind, Outcome, Row, STOP, TURN, compare};
 
 fn row(kind: &'static Kind, number: f64) -> Row {
     Row { kind, bits: vec![Some(number.to_bits()); kind.names().count()] }
@@ -114,7 +114,7 @@ fn reasons_differ_by_words_and_digits_but_not_by_zeros_at_the_end() {
 
 #[test]
 fn the_host_finds_the_same_again_and_something_else_for_another_seed() {
-    let run = |seed| host::outcome(&Scenario::brief(seed)).expect("it ends");
+    let run = |seed| on_host::outcome(&Scenario::brief(seed)).expect("it ends");
     assert_eq!(compare(&run(3), &run(3)), Ok(()));
     assert!(run(3).azimuth_bits.is_some() || run(3).reason.is_some());
     assert_ne!(run(3).rows, run(4).rows);
@@ -122,7 +122,7 @@ fn the_host_finds_the_same_again_and_something_else_for_another_seed() {
 
 #[test]
 fn the_host_finds_the_same_turns_again_and_others_for_another_seed() {
-    let run = |seed| host::turning(&TurntableScenario::brief(seed)).expect("it ends");
+    let run = |seed| on_host::turning(&TurntableScenario::brief(seed)).expect("it ends");
     assert_eq!(compare(&run(3), &run(3)), Ok(()));
     assert_eq!((run(3).rows_of(&TURN).count(), run(3).reason), (4, None));
     assert_ne!(run(3).rows, run(4).rows);
@@ -130,7 +130,7 @@ fn the_host_finds_the_same_turns_again_and_others_for_another_seed() {
 
 #[test]
 fn the_host_finds_the_same_stops_again_and_others_for_another_seed() {
-    let run = |seed| host::stops(&VehicleScenario::brief(seed)).expect("it ends");
+    let run = |seed| on_host::stops(&VehicleScenario::brief(seed)).expect("it ends");
     assert_eq!(compare(&run(3), &run(3)), Ok(()));
     assert_eq!((run(3).rows_of(&STOP).count(), run(3).reason), (2, None));
     assert_ne!(run(3).rows, run(4).rows);

@@ -1,7 +1,7 @@
 //! The defmt stream of a handmade image.
 
-use bench::emulate::decode::{self, Decoder, Line};
-use bench::emulate::sections::Memory;
+use host::emulate::decode::{self, Decoder, Line};
+use host::emulate::sections::Memory;
 
 use super::handmade::{self, ABSOLUTE, PROGBITS};
 

@@ -83,7 +83,7 @@ fn no_stored_recording_is_warned_of() {
     for file in fs::read_dir(recordings()).expect("it is there") {
         let path = file.expect("it is there").path();
         if path.extension().is_some_and(|extension| extension == "gz") {
-            let recording = bench::recording::read(&path).expect("it reads");
+            let recording = host::recording::read(&path).expect("it reads");
             assert_eq!(recording.warnings, [], "{}", path.display());
         }
     }

@@ -1,9 +1,9 @@
 //! The limits hold the true deviation as often as they say, and the analysis refuses what it must.
 
-use bench::allan::analysis::{Analysis, Rest, RestError, factors};
-use bench::allan::speed::compare;
-use bench::recording::{Body, Header, Kind, StaticRow};
 use hal_mock::noise::Generator;
+use host::allan::analysis::{Analysis, Rest, RestError, factors};
+use host::allan::speed::compare;
+use host::recording::{Body, Header, Kind, StaticRow};
 use orientation::noise::fit::FitError;
 
 /// The rows of a gyro at rest that has these rates at 10 Hz.

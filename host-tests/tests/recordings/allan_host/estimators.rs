@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use bench::allan::{Estimator, Record};
+use host::allan::{Estimator, Record};
 use proptest::prelude::*;
 use serde_json::Value;
 

@@ -1,6 +1,6 @@
 //! Recordings of kind `static`: one gyro or an inertial measurement unit, with gaps that are kept.
 
-use bench::recording::{Body, Gap, ImuSample, Recording, Spacing, StaticRow, read_from};
+use host::recording::{Body, Gap, ImuSample, Recording, Spacing, StaticRow, read_from};
 
 use crate::support::files::recording;
 

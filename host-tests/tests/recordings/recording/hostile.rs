@@ -5,8 +5,8 @@ use std::fs;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
-use bench::recording::{MAX_LINE_BYTES, MAX_ROWS, read, read_from};
 use flate2::{Compression, write::GzEncoder};
+use host::recording::{MAX_LINE_BYTES, MAX_ROWS, read, read_from};
 use proptest::prelude::*;
 
 use crate::support::files::Scratch;

@@ -1,6 +1,6 @@
 //! An `imu` recording is read as strictly as the others, and so are the stops of its header.
 
-use bench::recording::{
+use host::recording::{
     Body, ImuRow, ImuSample, Problem, Recording, StopProblem, displacements, read_from,
 };
 use proptest::prelude::*;

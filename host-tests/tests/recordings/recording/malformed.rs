@@ -1,6 +1,6 @@
 //! What is wrong with a file, its header or its column names is said in these words.
 
-use bench::recording::{HeaderProblem, Kind, Place, Problem, read_from};
+use host::recording::{HeaderProblem, Kind, Place, Problem, read_from};
 
 use super::{DWELLS, STAGE, changed, message, read};
 

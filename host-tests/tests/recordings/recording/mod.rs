@@ -11,8 +11,8 @@ mod stored;
 
 use std::io::Write;
 
-use bench::recording::{Body, Header, Recording, Sensor, StageRow, read_from};
 use flate2::{Compression, write::GzEncoder};
+use host::recording::{Body, Header, Recording, Sensor, StageRow, read_from};
 use proptest::prelude::*;
 
 /// A `stage` recording; its column names stand in line 4, its rows in lines 5 to 8.

@@ -1,6 +1,6 @@
 //! A `rotating` recording is read as strictly as the others.
 
-use bench::recording::{Body, RotatingRow, Sensor};
+use host::recording::{Body, RotatingRow, Sensor};
 
 use super::{ROTATING, changed, message, read};
 

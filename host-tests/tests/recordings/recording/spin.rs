@@ -1,6 +1,6 @@
 //! A `spin` recording is read as strictly as the others; its true roll goes to the truth alone.
 
-use bench::recording::{Body, Recording, SpinRow};
+use host::recording::{Body, Recording, SpinRow};
 
 use super::{changed, message, read};
 

@@ -1,6 +1,6 @@
 //! The stored recordings are complete, and `data/README.md` says what they are.
 
-use bench::recording::{Body, Header, Sensor};
+use host::recording::{Body, Header, Sensor};
 
 use crate::support::files::recording;
 

@@ -6,13 +6,13 @@ mod slow;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 use std::fmt::Write;
 
-use bench::methods::asked::Asked;
-use bench::methods::error::ReplayError;
-use bench::methods::stepwise::{Replay, replay};
-use bench::outcome::{self, Finished};
-use bench::output::{azimuth_error, columns};
-use bench::recording::{Body, Header, StageRow, Truth};
 use hal_mock::noise::Generator;
+use host::methods::asked::Asked;
+use host::methods::error::ReplayError;
+use host::methods::stepwise::{Replay, replay};
+use host::outcome::{self, Finished};
+use host::output::{azimuth_error, columns};
+use host::recording::{Body, Header, StageRow, Truth};
 use orientation::align::conclusion::Conclusion;
 use orientation::align::criterion::Criterion;
 use orientation::align::quality::Disturbance;
@@ -156,7 +156,7 @@ fn all_of_the_papers_criteria_answer_within_their_sigma() {
     let criteria = [
         Criterion::LeastSquares,
         Criterion::LeastAbsolute,
-        bench::criterion::parse("within-squares=0.05").expect("it parses"),
+        host::criterion::parse("within-squares=0.05").expect("it parses"),
     ];
     for criterion in criteria {
         for name in ["stepwise-circle", "stepwise-paper-1", "stepwise-paper-2", "stepwise-paper-3"]
@@ -288,7 +288,7 @@ fn dwells_with(count: usize, azimuth_deg: f64, disturbed: Disturbing) -> (String
 }
 
 fn replayed_dwells(text: &str, options: &Asked) -> Result<Replay, ReplayError> {
-    let recording = bench::recording::read_from("dwells.csv", text.as_bytes()).expect("it reads");
+    let recording = host::recording::read_from("dwells.csv", text.as_bytes()).expect("it reads");
     let (header, body, _) = recording.into_parts();
     replay(&header, &body, options, |_| {})
 }
@@ -359,7 +359,7 @@ fn dwells_without_forces_are_told_to_be_taken_as_level() {
         writeln!(text, "{stage},{rate},1e-8,60").expect("a String takes all");
     }
     let (header, body, _) =
-        bench::recording::read_from("level", text.as_bytes()).expect("it reads").into_parts();
+        host::recording::read_from("level", text.as_bytes()).expect("it reads").into_parts();
     let replay = replay(&header, &body, &Asked::default(), |_| {}).expect("it replays");
     let level =
         "a level platform, for there are no forces: by each degree of tilt north is 1.00° off";

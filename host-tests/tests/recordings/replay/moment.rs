@@ -1,6 +1,6 @@
 //! Columns of another moment: late or early, at the recording's ends filled up with their first or last value, or cut.
 
-use bench::recording::{Body, Header, StageRow};
+use host::recording::{Body, Header, StageRow};
 
 use crate::support::files::recording;
 

@@ -1,7 +1,7 @@
 //! A base that moves slowly, put into the recordings of one that stands.
 
-use bench::recording::{Body, Header, StageRow};
 use hal_mock::noise::Generator;
+use host::recording::{Body, Header, StageRow};
 use orientation::earth::Latitude;
 
 use crate::support::files::recording;

@@ -6,12 +6,12 @@ mod output;
 mod simulated;
 mod spoilt;
 
-use bench::cause::of_turning;
-use bench::methods::asked::Asked;
-use bench::methods::error::ReplayError;
-use bench::methods::rotating::{Replay, replay};
-use bench::output::azimuth_error;
-use bench::recording::{Body, Header, Kind, RotatingRow};
+use host::cause::of_turning;
+use host::methods::asked::Asked;
+use host::methods::error::ReplayError;
+use host::methods::rotating::{Replay, replay};
+use host::output::azimuth_error;
+use host::recording::{Body, Header, Kind, RotatingRow};
 use orientation::align::rotating::conclusion::Conclusion;
 use orientation::align::rotating::solution::Pair;
 use orientation::earth::Latitude;

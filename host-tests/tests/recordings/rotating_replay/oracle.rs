@@ -1,7 +1,7 @@
 //! North from a turning platform once more, in plain `f64` on the rows as they are: equations.md §4
 //! word for word, with nothing of the core's.
 
-use bench::recording::RotatingRow;
+use host::recording::RotatingRow;
 
 /// Earth rate, rad/s.
 const EARTH: f64 = 7.292_115e-5;

@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use bench::campaign::rotating::world::{LATITUDE_DEG, World};
-use bench::methods::rotating::part::Part;
-use bench::output::azimuth_error;
+use host::campaign::rotating::world::{LATITUDE_DEG, World};
+use host::methods::rotating::part::Part;
+use host::output::azimuth_error;
 
 use super::oracle::{self, Known};
 

@@ -3,8 +3,8 @@
 use orientation::device::{Device, Trouble};
 
 use super::{BACK_S, GYRO, MET, Recorded, Refusal, UNEVEN_S, conclusion, recorded};
-use bench::output::azimuth_error;
-use bench::recording::RotatingRow;
+use host::output::azimuth_error;
+use host::recording::RotatingRow;
 
 /// The gyro's recording with its rows changed.
 fn gyro(change: impl FnOnce(&mut Vec<RotatingRow>)) -> Recorded {

@@ -5,11 +5,11 @@ mod output;
 mod parts;
 mod spoilt;
 
-use bench::methods::asked::Asked;
-use bench::methods::stops::averaging::Averages;
-use bench::methods::stops::{Method, Replay, replay};
-use bench::output::{azimuth_error, degrees, degrees_per_hour};
-use bench::recording::{Body, Header, ImuRow, Truth};
+use host::methods::asked::Asked;
+use host::methods::stops::averaging::Averages;
+use host::methods::stops::{Method, Replay, replay};
+use host::output::{azimuth_error, degrees, degrees_per_hour};
+use host::recording::{Body, Header, ImuRow, Truth};
 use orientation::align::conclusion::Azimuth;
 use orientation::align::stops::conclusion::{Conclusion, Found};
 use orientation::error::Refusal;

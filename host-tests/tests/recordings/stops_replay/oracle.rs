@@ -1,7 +1,7 @@
 //! The paper's method once more, in double precision throughout and by other means: direction cosine
 //! matrices and Rodrigues' formula at every sample, the Earth from geocentric coordinates.
 
-use bench::recording::{Header, ImuRow};
+use host::recording::{Header, ImuRow};
 
 type Vector = [f64; 3];
 type Matrix = [Vector; 3];

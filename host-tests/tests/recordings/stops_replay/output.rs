@@ -61,7 +61,7 @@ fn numbers_are_told_where_they_mean_something() {
     let number = |object: &Value, key: &str| object[key].as_f64().unwrap_or(f64::NAN);
     let azimuth = number(&three, "azimuth_deg");
     assert!((0.0..360.0).contains(&azimuth));
-    let off = bench::output::azimuth_error(azimuth, 12.5621) - number(&three, "error_deg");
+    let off = host::output::azimuth_error(azimuth, 12.5621) - number(&three, "error_deg");
     assert!(off.abs() < 1e-9, "{off}");
     assert!((number(&three, "seconds") - 180.0).abs() < 3.0, "{three}");
     let [first, last] = [0, 2].map(|index| &three["stops"][index]);

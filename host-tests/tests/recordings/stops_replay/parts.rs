@@ -1,13 +1,13 @@
-//! What the bench itself makes of a vehicle's rows: period, samples, noise, averages, sensors at their limit.
+//! What the host makes of a vehicle's rows: period, samples, noise, averages, sensors at their limit.
 
 use std::f64::consts::TAU;
 
-use bench::methods::stops::averaging::Averages;
-use bench::methods::stops::noise::estimate;
-use bench::methods::stops::samples::{rows, samples};
-use bench::recording::period::period_s;
-use bench::recording::{Body, ImuRow, ImuSample, StaticRow};
 use hal_mock::noise::Generator;
+use host::methods::stops::averaging::Averages;
+use host::methods::stops::noise::estimate;
+use host::methods::stops::samples::{rows, samples};
+use host::recording::period::period_s;
+use host::recording::{Body, ImuRow, ImuSample, StaticRow};
 use proptest::prelude::*;
 
 const EARTH_RATE: f64 = 7.292_115e-5;

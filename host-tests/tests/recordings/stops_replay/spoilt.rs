@@ -1,9 +1,9 @@
 //! Recordings spoilt in one place are refused with the reason, or survive it.
 
-use bench::methods::asked::Asked;
-use bench::methods::error::ReplayError;
-use bench::methods::stops::replay;
-use bench::recording::{Body, ImuRow, Kind};
+use host::methods::asked::Asked;
+use host::methods::error::ReplayError;
+use host::methods::stops::replay;
+use host::recording::{Body, ImuRow, Kind};
 use orientation::error::Refusal;
 
 use super::{FOG, IDEAL, PARKED, Recorded, SIGMAS, THREE, conclusion, recorded};

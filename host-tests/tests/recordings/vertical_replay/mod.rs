@@ -2,15 +2,15 @@
 //!
 //! VQF's figures were computed with its authors' Python package `vqf` 2.1 in its default setting (6 axes, offline
 //! methods not used) on the very samples of `data/recordings/imu-broad-*`, axes turned from forward, right, down to
-//! forward, left, up and its quaternions back; errors as `bench::methods::vertical::errors` defines them.
+//! forward, left, up and its quaternions back; errors as `host::methods::vertical::errors` defines them.
 
 mod output;
 mod spoilt;
 
-use bench::methods::asked::Asked;
-use bench::methods::vertical::errors::{Errors, Off};
-use bench::methods::vertical::{Moment, Replay, replay};
-use bench::recording::{Body, Header, ImuRow};
+use host::methods::asked::Asked;
+use host::methods::vertical::errors::{Errors, Off};
+use host::methods::vertical::{Moment, Replay, replay};
+use host::recording::{Body, Header, ImuRow};
 
 use crate::support::campaign::assert_in_readme;
 use crate::support::files::recording;
@@ -91,7 +91,7 @@ fn sigma_covers_the_inclination_and_is_no_wide_guess() {
         let of = |off: &Off| off.inclination_deg / (2.0_f64.sqrt() * off.sigma_deg);
         ratios.extend(errors.off.iter().map(of));
     }
-    let rms = bench::campaign::statistics::rms(&ratios);
+    let rms = host::campaign::statistics::rms(&ratios);
     assert!((0.5..=1.2).contains(&rms), "{rms}");
     for (bound, least) in [(1.0, 0.60), (2.0, 0.93), (3.0, 0.98)] {
         let within = ratios.iter().filter(|ratio| **ratio <= bound).count();

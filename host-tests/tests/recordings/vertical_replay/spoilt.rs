@@ -1,8 +1,8 @@
 //! Recordings with something wrong in them: the state says so, σ covers it, and the level comes back.
 
-use bench::methods::asked::Asked;
-use bench::methods::vertical::{Replay, replay};
-use bench::recording::{Body, ImuRow, read_from};
+use host::methods::asked::Asked;
+use host::methods::vertical::{Replay, replay};
+use host::recording::{Body, ImuRow, read_from};
 
 use super::{Recorded, recorded};
 

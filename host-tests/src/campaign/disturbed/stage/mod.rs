@@ -26,7 +26,7 @@ use crate::recording::{Body, StageRow};
 use crate::untold::unseen;
 
 /// A stage that stops.
-pub(super) const PLATFORM: Platform = Platform::of::<Bench>("stage", classes::classes);
+pub(super) const PLATFORM: Platform = Platform::of::<Instrument>("stage", classes::classes);
 
 /// The random stream of an instrument: none of those that a world draws from.
 const DRAWN: u64 = 2_001;
@@ -35,13 +35,13 @@ const N: [f64; 2] = [5e-4, 1e-2];
 
 /// A drawn instrument on its stage.
 #[derive(Clone, Debug)]
-struct Bench {
+struct Instrument {
     unit: Unit,
     stops: Vec<Stop>,
     has_temperature: bool,
 }
 
-impl Bench {
+impl Instrument {
     /// One on an arc that does not come back.
     fn one_way(seed: u64) -> Self {
         let mut stops = stops(&mut Chance::new(seed, Self::FAULT + 3), 0.0);
@@ -86,7 +86,7 @@ impl Bench {
     }
 }
 
-impl Subject for Bench {
+impl Subject for Instrument {
     const FAULT: u64 = 2_002;
 
     fn drawn(seed: u64) -> Self {
@@ -120,7 +120,7 @@ impl Subject for Bench {
     }
 }
 
-impl Rig for Bench {
+impl Rig for Instrument {
     const NAME: &'static str = "";
     const MEAN: &'static str = "dwell";
     const MIDWAY: &'static str = "between two dwells";

@@ -26,7 +26,7 @@ use crate::recording::{Body, Header, RotatingRow, Sensor};
 use crate::untold::unseen;
 
 /// A platform that turns all the time.
-pub(super) const PLATFORM: Platform = Platform::of::<Bench>("turning", classes::classes);
+pub(super) const PLATFORM: Platform = Platform::of::<Instrument>("turning", classes::classes);
 
 /// The random stream of an instrument: none of those that a world draws from.
 const DRAWN: u64 = 2_011;
@@ -42,7 +42,7 @@ const RAMP_SECONDS: f64 = 3.0;
 
 /// A drawn instrument on its platform.
 #[derive(Clone, Debug)]
-struct Bench {
+struct Instrument {
     unit: Unit,
     unevenness: Unevenness,
     start_rad: f64,
@@ -56,7 +56,7 @@ struct Bench {
     second: Option<f64>,
 }
 
-impl Bench {
+impl Instrument {
     /// A healthy gyro at a drawn place; what it is told of itself is true.
     fn with_gyro(seed: u64) -> Self {
         let mut chance = Chance::new(seed, DRAWN);
@@ -76,7 +76,7 @@ impl Bench {
             encoder_zero_sigma_deg: Some(zero_sigma_deg),
             ..grade.header(Self::RATE_HZ, chance.happens(0.7))
         };
-        let mut bench = Self {
+        let mut rig = Self {
             unit: Unit::new(seed, &instruments, header),
             unevenness,
             start_rad: chance.between(0.0, TAU),
@@ -86,9 +86,9 @@ impl Bench {
             rate_is_encoders: false,
             second: None,
         };
-        bench.unit.slips.push((0.0, zero_sigma_deg.to_radians() * chance.normal()));
-        bench.rate_is_encoders = chance.happens(0.5);
-        bench
+        rig.unit.slips.push((0.0, zero_sigma_deg.to_radians() * chance.normal()));
+        rig.rate_is_encoders = chance.happens(0.5);
+        rig
     }
 
     /// Puts a molecular-electronic sensor of unknown gain, lag and g-sensitivity in its place, which needs two speeds.
@@ -167,17 +167,17 @@ impl Bench {
     }
 }
 
-impl Subject for Bench {
+impl Subject for Instrument {
     const FAULT: u64 = 2_012;
 
     /// One of four has a molecular-electronic sensor.
     fn drawn(seed: u64) -> Self {
         let mut chance = Chance::new(seed, MOLECULAR);
-        let mut bench = Self::with_gyro(seed);
+        let mut rig = Self::with_gyro(seed);
         if chance.happens(MOLECULAR_PART) {
-            bench.make_molecular(&mut chance);
+            rig.make_molecular(&mut chance);
         }
-        bench
+        rig
     }
 
     fn seed(&self) -> u64 {
@@ -193,7 +193,7 @@ impl Subject for Bench {
     }
 }
 
-impl Rig for Bench {
+impl Rig for Instrument {
     const NAME: &'static str = "turning-";
     const MEAN: &'static str = "turn";
     const MIDWAY: &'static str = "mid-way";
@@ -250,7 +250,7 @@ fn ripple(chance: &mut Chance, low: f64, high: f64) -> Ripple {
 fn with_own_rate(mut rows: Vec<RotatingRow>) -> Vec<RotatingRow> {
     let angles: Vec<f64> = rows.iter().map(|row| row.stage_rad).collect();
     for (row, beside) in rows.iter_mut().skip(1).zip(angles.windows(3)) {
-        row.stage_rate_rad_s = 0.5 * (beside[2] - beside[0]) * Bench::RATE_HZ;
+        row.stage_rate_rad_s = 0.5 * (beside[2] - beside[0]) * Instrument::RATE_HZ;
     }
     rows
 }

@@ -2,7 +2,7 @@
 
 use hal_mock::vehicle::Leg;
 
-use super::{Bench, DRAWN, MILLI_G};
+use super::{DRAWN, Instrument, MILLI_G};
 use crate::campaign::disturbed::axes::turned;
 use crate::campaign::disturbed::chance::Chance;
 use crate::campaign::disturbed::class::{Class, Fault, Subject};
@@ -26,23 +26,23 @@ fn understated() -> [Class; 3] {
     let noise = "the gyros' N is so many times what is stated, on the way and standing";
     let bias = "the gyros' biases are so many times what is stated, in a vehicle that only stands";
     let of_bias = Fault::new("standing-bias-understated", bias, [1.0, 30.0], "").spoils(
-        Bench::standing,
-        |bench, _, size| {
-            bench.header.gyro_bias_deg_h = Some(bench.gyro().bias_sigma_deg_h / size);
+        Instrument::standing,
+        |unit, _, size| {
+            unit.header.gyro_bias_deg_h = Some(unit.gyro().bias_sigma_deg_h / size);
         },
     );
     [
         Fault::new("vehicle-short-stops", short, [300.0, 6000.0], "samples of a stop").drawn(
             |seed, size| {
-                let mut bench = Bench::siap(seed).stating_noise();
-                bench.shorten_stops(size);
-                bench.pair(|bench, _| bench.header.gyro_n_deg_sqrt_h = None)
+                let mut unit = Instrument::siap(seed).stating_noise();
+                unit.shorten_stops(size);
+                unit.pair(|unit, _| unit.header.gyro_n_deg_sqrt_h = None)
             },
         ),
         Fault::new("vehicle-noise-understated", noise, [1.0, 30.0], "").spoils(
-            |seed| Bench::drawn(seed).stating_noise(),
-            |bench, _, size| {
-                bench.header.gyro_n_deg_sqrt_h = Some(bench.gyro().n_deg_sqrt_h / size);
+            |seed| Instrument::drawn(seed).stating_noise(),
+            |unit, _, size| {
+                unit.header.gyro_n_deg_sqrt_h = Some(unit.gyro().n_deg_sqrt_h / size);
             },
         ),
         Class { wrong_allowed: WRONG_OF_FALSE_BIAS, ..of_bias },
@@ -55,16 +55,16 @@ fn wrong_times() -> [Class; 2] {
     let clock = "the times run at another pace than the sensors, whose rate is stated";
     [
         Fault::new("vehicle-rate", rate, [1e-4, 2.0], "of the rate").spoils(
-            Bench::drawn,
-            |bench, chance, size| {
+            Instrument::drawn,
+            |unit, chance, size| {
                 let wrong = chance.factor_or_inverse(1.0 + size);
-                bench.header.rate_hz = bench.header.rate_hz.map(|rate| rate * wrong);
+                unit.header.rate_hz = unit.header.rate_hz.map(|rate| rate * wrong);
             },
         ),
         Fault::new("vehicle-clock", clock, [1e-4, 2.0], "of the pace").spoils(
-            Bench::drawn,
-            |bench, chance, size| {
-                bench.clock = chance.factor_or_inverse(1.0 + size);
+            Instrument::drawn,
+            |unit, chance, size| {
+                unit.clock = chance.factor_or_inverse(1.0 + size);
             },
         ),
     ]
@@ -74,9 +74,9 @@ fn accelerometer_axes() -> Class {
     let fault = "the accelerometers are turned by 90° or 180° about the vertical";
     Fault::new("vehicle-accelerometer-axes", fault, [0.005, 5.0], "° of slope").drawn(
         |seed, size| {
-            let mut bench = Bench::moving(seed);
-            bench.lean(size);
-            let pair = bench.pair(|bench, chance| bench.accelerometer_axes = turned(chance));
+            let mut unit = Instrument::moving(seed);
+            unit.lean(size);
+            let pair = unit.pair(|unit, chance| unit.accelerometer_axes = turned(chance));
             pair.never_harmless()
         },
     )
@@ -91,46 +91,46 @@ fn unstated() -> [Class; 4] {
     let kappa_unit = "of the bias's σ, per g";
     [
         Fault::new("vehicle-unstated-g-sensitivity", kappa, [0.01, 3.0], kappa_unit).spoils(
-            Bench::drawn,
-            |bench, chance, size| {
-                let size = size * bench.gyro().bias_sigma_deg_h;
-                for gyro in &mut bench.day.vehicle.gyros {
+            Instrument::drawn,
+            |unit, chance, size| {
+                let size = size * unit.gyro().bias_sigma_deg_h;
+                for gyro in &mut unit.day.vehicle.gyros {
                     gyro.g_sensitivity_deg_h_g = [0, 1].map(|_| size * chance.normal());
                 }
-                bench.header.g_sensitivity_deg_h_g = None;
-                bench.header.g_sensitivity_sigma_deg_h_g = None;
+                unit.header.g_sensitivity_deg_h_g = None;
+                unit.header.g_sensitivity_sigma_deg_h_g = None;
             },
         ),
         Fault::new("vehicle-unstated-scale", scale, [1e-6, 1e-3], "").spoils(
-            Bench::drawn,
-            |bench, chance, size| {
-                for gyro in &mut bench.day.vehicle.gyros {
+            Instrument::drawn,
+            |unit, chance, size| {
+                for gyro in &mut unit.day.vehicle.gyros {
                     gyro.scale_sigma = 0.0;
                     gyro.scale_error = size * chance.normal();
                 }
-                bench.header.gyro_scale_sigma = None;
+                unit.header.gyro_scale_sigma = None;
             },
         ),
         Fault::new("vehicle-unstated-accelerometer-bias", force, [0.01, 10.0], "mg").spoils(
-            Bench::drawn,
-            |bench, chance, size| {
-                let accelerometer = &mut bench.day.vehicle.accelerometer;
+            Instrument::drawn,
+            |unit, chance, size| {
+                let accelerometer = &mut unit.day.vehicle.accelerometer;
                 accelerometer.bias_sigma_m_s2 = 0.0;
                 accelerometer.bias_m_s2 = [0, 1, 2].map(|_| chance.normal() * size * MILLI_G);
-                bench.header.accelerometer_bias_m_s2 = None;
+                unit.header.accelerometer_bias_m_s2 = None;
             },
         ),
         Fault::new("vehicle-unstated-bias", bias, [0.003, 3.0], "°/h").spoils(
-            Bench::siap,
-            |bench, _, size| {
-                bench.day.vehicle.gyros.iter_mut().for_each(|gyro| gyro.bias_sigma_deg_h = size);
-                bench.header.gyro_bias_deg_h = None;
+            Instrument::siap,
+            |unit, _, size| {
+                unit.day.vehicle.gyros.iter_mut().for_each(|gyro| gyro.bias_sigma_deg_h = size);
+                unit.header.gyro_bias_deg_h = None;
             },
         ),
     ]
 }
 
-impl Bench {
+impl Instrument {
     /// The same with its N stated.
     fn stating_noise(mut self) -> Self {
         self.header.gyro_n_deg_sqrt_h = Some(self.gyro().n_deg_sqrt_h);

@@ -20,7 +20,7 @@ use crate::output::degrees;
 use crate::recording::{Body, Header, ImuRow, ImuSample};
 
 /// A vehicle: one that stops and drives where the seed is even, one that only stands where it is odd.
-pub(super) const PLATFORM: Platform = Platform::of::<Bench>("vehicle", classes::classes);
+pub(super) const PLATFORM: Platform = Platform::of::<Instrument>("vehicle", classes::classes);
 
 /// The random stream of a unit: none of those that a world draws from.
 const DRAWN: u64 = 2_011;
@@ -33,7 +33,7 @@ const FIX_M: f64 = 5.0;
 
 /// A drawn unit in its vehicle, and what is wrong with it.
 #[derive(Clone, Debug)]
-struct Bench {
+struct Instrument {
     seed: u64,
     method: Method,
     day: Scenario,
@@ -47,7 +47,7 @@ struct Bench {
     clock: f64,
 }
 
-impl Bench {
+impl Instrument {
     /// A healthy unit that stops and drives; what it is told of itself is true.
     fn siap(seed: u64) -> Self {
         let mut chance = Chance::new(seed, DRAWN);
@@ -76,9 +76,9 @@ impl Bench {
 
     /// One that moves: what is built in wrongly shows in sway and drives, not in a level vehicle that is quiet.
     fn moving(seed: u64) -> Self {
-        let moves = |bench: &Self| {
-            bench.method == Method::Siap
-                || bench
+        let moves = |unit: &Self| {
+            unit.method == Method::Siap
+                || unit
                     .day
                     .legs
                     .iter()
@@ -174,7 +174,7 @@ impl Bench {
     }
 }
 
-impl Subject for Bench {
+impl Subject for Instrument {
     const FAULT: u64 = 2_012;
 
     /// One or the other.
