@@ -79,7 +79,7 @@ pub fn of_turning(
     }
     let passes = |header: &Header, body: &Body| {
         let replay = rotating::replay(header, body, asked);
-        replay.is_ok_and(|replay| replay.conclusion().is_some_and(|c| c.verdict.is_ok()))
+        replay.is_ok_and(|replay| replay.session.conclusion().is_some_and(|c| c.verdict.is_ok()))
     };
     let noise = || {
         let stated = header.gyro_n_deg_sqrt_h.filter(|_| is_scattered(refusal)).map(Short)?;

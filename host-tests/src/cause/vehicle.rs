@@ -28,7 +28,9 @@ pub fn of_vehicle(
     let passes = |rate: &Unit| {
         let body = Body::Imu(converted(&rows, rate.0, force.map_or(1.0, |unit| unit.0)));
         let replay = stops::replay(header, &body, asked);
-        replay.is_ok_and(|replay| replay.conclusion().is_some_and(|found| found.verdict.is_ok()))
+        replay.is_ok_and(|replay| {
+            replay.session.conclusion().is_some_and(|found| found.verdict.is_ok())
+        })
     };
     let of_rates = RATES.into_iter().find(passes).map(|unit| unit.told(GYROS));
     let told: Vec<String> = of_rates.into_iter().chain(of_force).collect();

@@ -47,19 +47,6 @@ pub struct KeptRun {
     pub kept: Kept,
 }
 
-/// The true attitude at rising times.
-pub trait Truths {
-    /// At a time in s from the start.
-    fn at(&mut self, time_s: f64) -> Attitude;
-}
-
-impl Truths for Motion<'_> {
-    fn at(&mut self, time_s: f64) -> Attitude {
-        self.advance(time_s);
-        self.attitude()
-    }
-}
-
 /// Something that was kept at one moment, with its truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
@@ -105,9 +92,11 @@ pub struct Kept {
 
 impl Kept {
     /// Reports with the truth of their moments.
-    pub(super) fn of(reports: &[Report], mut truths: impl Truths) -> Self {
-        let point =
-            |report: &Report| Point { report: *report, truth: truths.at(report.time.seconds()) };
+    pub(super) fn of(reports: &[Report], mut motion: Motion<'_>) -> Self {
+        let point = |report: &Report| {
+            motion.advance(report.time.seconds());
+            Point { report: *report, truth: motion.attitude() }
+        };
         Self { points: reports.iter().map(point).collect() }
     }
 

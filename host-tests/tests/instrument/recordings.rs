@@ -105,7 +105,7 @@ fn replay_turntable(scenario: &TurntableScenario, fault: Option<Fault>) {
     let of_run = |run: &Run<rotating_session::Session>| {
         let (session, assumed) = (run.replay.clone(), Vec::new());
         let replay = rotating::Replay { session, zero_s: 0.0, assumed };
-        told(&replay, &replay.conclusion())
+        told(&replay, &replay.session.conclusion())
     };
     let plain = align_turning(scenario, fault, NoRecorder, &()).expect("it is possible");
     let found = plain.run.replay.conclusion().map(|conclusion| conclusion.verdict);
@@ -116,7 +116,7 @@ fn replay_turntable(scenario: &TurntableScenario, fault: Option<Fault>) {
     let Some((header, body)) = read_back(scenario, &run, &samples.0) else { return };
     let again = rotating::replay(&header, &body, &Asked::default());
     let again = again.unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(told(&again, &again.conclusion()), of_run(&run.run));
+    assert_eq!(told(&again, &again.session.conclusion()), of_run(&run.run));
 }
 
 fn replay_vehicle(scenario: &VehicleScenario, fault: Option<Fault>) {

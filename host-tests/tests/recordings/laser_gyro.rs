@@ -82,7 +82,7 @@ fn answers(seeds: u64, seconds: f64, n_deg_sqrt_h: Option<f64>) -> Vec<[f64; 2]>
     all.into_par_iter()
         .map(|(seed, dither)| {
             let replay = replayed(&parked(seconds, dither), seed, n_deg_sqrt_h);
-            let verdict = replay.conclusion().expect("it has ended").verdict;
+            let verdict = replay.session.conclusion().expect("it has ended").verdict;
             let azimuth = verdict.unwrap_or_else(|why| panic!("{seed}, {dither}″: {why}"));
             let error = azimuth_error(degrees(azimuth.angle), AZIMUTH_DEG);
             println!(

@@ -182,6 +182,7 @@ fn a_false_bias_of_a_vehicle_that_stands_widens_sigma() {
     let sigma = |header: &Header| {
         let replay = replay(header, &Body::Imu(rows.clone()), &options).expect("it replays");
         replay
+            .session
             .conclusion()
             .and_then(|it| it.found)
             .map(|found| (found.azimuth.sigma, found.widening))

@@ -113,7 +113,7 @@ impl Simulated for VehicleOptions {
             criteria: seen.watched.into_criteria(),
             assumed: vec![ASSUMED.to_owned()],
         };
-        let is_aligned = replay.conclusion().is_some();
+        let is_aligned = replay.session.conclusion().is_some();
         let finished: Box<dyn Finished> =
             if is_aligned { Box::new(replay) } else { Box::new(KeptAzimuth) };
         let (name, body) = ("the simulated drive", None);

@@ -6,7 +6,6 @@ pub mod turns;
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI, TAU};
 
-use orientation::align::rotating::conclusion::Conclusion;
 use orientation::align::rotating::turn::Stretch;
 use orientation::align::rotating::{Sensor, Setting};
 use orientation::align::setting::Setting as Common;
@@ -37,12 +36,6 @@ pub struct Replay {
 }
 
 impl Replay {
-    /// The conclusion; of a session that was given its end there is one.
-    #[must_use]
-    pub fn conclusion(&self) -> Option<&Conclusion> {
-        self.session.conclusion()
-    }
-
     /// Whether the sensor's white noise was stated rather than estimated.
     #[must_use]
     pub fn noise_is_known(&self) -> bool {

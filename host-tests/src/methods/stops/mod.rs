@@ -15,7 +15,6 @@ use firmware::ports::Recorder;
 use heapless::Vec as Few;
 use orientation::align::setting::Setting as Common;
 use orientation::align::stops::Setting;
-use orientation::align::stops::conclusion::Conclusion;
 use orientation::align::stops::stop::STOPS;
 use orientation::align::stops::stop_detector::Rests;
 use orientation::earth::EARTH_RATE;
@@ -82,12 +81,6 @@ pub struct Replay {
 }
 
 impl Replay {
-    /// The conclusion; of a session that was given its end there is one.
-    #[must_use]
-    pub fn conclusion(&self) -> Option<&Conclusion> {
-        self.session.conclusion()
-    }
-
     /// Whether the gyros' white noise was stated rather than estimated.
     #[must_use]
     pub fn noise_is_known(&self) -> bool {
@@ -134,7 +127,7 @@ fn again(
 
 /// Refuses displacements that the forces on the way contradict, and tells where they cannot.
 fn check_way(body: &Body, header: &Header, mut replay: Replay) -> Result<Replay, ReplayError> {
-    let found = replay.conclusion().filter(|it| it.verdict.is_ok()).and_then(|it| it.found);
+    let found = replay.session.conclusion().filter(|it| it.verdict.is_ok()).and_then(|it| it.found);
     let (Some(rows), Some(found)) = (samples::rows(body), found) else { return Ok(replay) };
     let period_s = period_s(header.rate_hz, &rows, |row| row.time_s);
     let common = &replay.session.setting().common;
@@ -163,7 +156,8 @@ fn check_kilometres(
     replay: &Replay,
 ) -> Result<(), ReplayError> {
     let stated = asked.displacements_m(header);
-    let is_answered = |replay: &Replay| replay.conclusion().is_some_and(|it| it.verdict.is_ok());
+    let is_answered =
+        |replay: &Replay| replay.session.conclusion().is_some_and(|it| it.verdict.is_ok());
     let greatest =
         stated.iter().flat_map(|list| list.as_flattened()).fold(0.0, |a: f64, b| a.max(b.abs()));
     let (Some(list), false) = (stated, is_answered(replay)) else { return Ok(()) };

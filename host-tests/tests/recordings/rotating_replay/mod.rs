@@ -60,7 +60,7 @@ fn with_exact_zero(recorded: Recorded) -> Recorded {
 }
 
 fn conclusion(replay: &Replay) -> &Conclusion {
-    replay.conclusion().expect("the session has ended")
+    replay.session.conclusion().expect("the session has ended")
 }
 
 const GYRO: &str = "rotating-gyro";

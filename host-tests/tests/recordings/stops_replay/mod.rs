@@ -73,7 +73,7 @@ fn found(conclusion: &Conclusion) -> &Found {
 }
 
 fn conclusion(replay: &Replay) -> &Conclusion {
-    replay.conclusion().expect("the session has ended")
+    replay.session.conclusion().expect("the session has ended")
 }
 
 #[test]

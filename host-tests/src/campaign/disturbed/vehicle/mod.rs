@@ -198,7 +198,7 @@ impl Subject for Instrument {
 
 /// What a replay found, and what it found believed or not.
 fn aligned(replay: &Replay, truth_deg: f64) -> Aligned {
-    let conclusion = replay.conclusion();
+    let conclusion = replay.session.conclusion();
     let found = conclusion.and_then(|conclusion| conclusion.found.as_ref());
     let limit = found.map(|found| found.limit);
     let answer = conclusion.map(|conclusion| Answer::of(conclusion.verdict, limit, truth_deg));

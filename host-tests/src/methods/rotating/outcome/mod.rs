@@ -250,7 +250,9 @@ fn compensated(turn: &Turn, coupling: Option<&Coupling>) -> [f64; 2] {
 
 impl Finished for Replay {
     fn outcome(&self, truth: &Truth) -> Outcome {
-        let Some(conclusion) = self.conclusion() else { return Outcome::unfinished("rotating") };
+        let Some(conclusion) = self.session.conclusion() else {
+            return Outcome::unfinished("rotating");
+        };
         let fit = conclusion.fit.as_ref();
         let flat = fit.filter(|fit| fit.ratio_sigma.is_finite());
         let attitude = fit.map(|fit| pitch_and_roll(fit).map(degrees));
@@ -289,7 +291,7 @@ impl Finished for Replay {
     }
 
     fn cause(&self, header: &Header, body: &Body, asked: &Asked) -> Option<String> {
-        let refusal = self.conclusion()?.verdict.as_ref().err()?;
+        let refusal = self.session.conclusion()?.verdict.as_ref().err()?;
         cause::of_turning(header, body, asked, refusal)
     }
 }
@@ -350,7 +352,7 @@ fn stretches(stretches: &[StretchDetails]) -> Part {
 /// Spectra of every part as it came and freed of the axis misalignment, then the phasors of its turns.
 fn figures(replay: &Replay, outcome: &Outcome, rows: &[RotatingRow]) -> Vec<Part> {
     let Some(details) = outcome.details::<RotatingDetails>() else { return Vec::new() };
-    let coupling = replay.conclusion().and_then(|conclusion| conclusion.couplings.first());
+    let coupling = replay.session.conclusion().and_then(|conclusion| conclusion.couplings.first());
     let without = match coupling {
         Some(coupling) => freed(rows, coupling.sine, coupling.quadrature),
         None => rows.to_vec(),

@@ -179,14 +179,16 @@ impl Replay {
     }
 
     fn found(&self) -> Option<&Found> {
-        self.conclusion()?.found.as_ref()
+        self.session.conclusion()?.found.as_ref()
     }
 }
 
 impl Finished for Replay {
     fn outcome(&self, truth: &Truth) -> Outcome {
         let method = self.method.name();
-        let Some(conclusion) = self.conclusion() else { return Outcome::unfinished(method) };
+        let Some(conclusion) = self.session.conclusion() else {
+            return Outcome::unfinished(method);
+        };
         let found = conclusion.found.as_ref();
         let stops = self.session.stops();
         let details = self.details(found, conclusion.verdict.is_ok(), truth);
@@ -246,7 +248,7 @@ impl Finished for Replay {
     }
 
     fn cause(&self, header: &Header, body: &Body, asked: &Asked) -> Option<String> {
-        let refusal = self.conclusion()?.verdict.as_ref().err()?;
+        let refusal = self.session.conclusion()?.verdict.as_ref().err()?;
         cause::of_vehicle(header, body, asked, refusal)
     }
 }
