@@ -41,20 +41,22 @@ fn main() -> io::Result<()> {
     Ok(())
 }
 
-/// The budget's keys and values.
-fn entries(budget: &str) -> impl Iterator<Item = (&str, &str)> {
+/// The budget's keys, values and remarks.
+fn entries(budget: &str) -> impl Iterator<Item = [&str; 3]> {
     budget.lines().filter_map(|line| {
-        let (key, value) = line.split('#').next()?.split_once('=')?;
-        Some((key.trim(), value.trim()))
+        let (entry, remark) = line.split_once('#').unwrap_or((line, ""));
+        let (key, value) = entry.split_once('=')?;
+        Some([key, value, remark].map(str::trim))
     })
 }
 
 /// Every entry of the budget as a constant.
 fn constants(budget: &str) -> io::Result<String> {
     let mut source = String::new();
-    for (key, value) in entries(budget) {
+    for [key, value, remark] in entries(budget) {
         let key = key.to_uppercase();
-        writeln!(source, "pub const {key}: u64 = {value};").map_err(io::Error::other)?;
+        let constant = format!("#[doc = {remark:?}]\npub const {key}: u64 = {value};");
+        writeln!(source, "{constant}").map_err(io::Error::other)?;
     }
     Ok(source)
 }
@@ -62,9 +64,9 @@ fn constants(budget: &str) -> io::Result<String> {
 /// A linker script that refuses an image beyond its memory.
 fn limits(budget: &str) -> io::Result<String> {
     let limit = |name: &str| {
-        let entry = entries(budget).find(|(key, _)| *key == name);
+        let entry = entries(budget).find(|[key, ..]| *key == name);
         entry
-            .map(|(_, value)| value.replace('_', ""))
+            .map(|[_, value, _]| value.replace('_', ""))
             .ok_or_else(|| io::Error::other(format!("{BUDGET}: no {name}")))
     };
     let sum = |sections: &[&str]| {

@@ -26,6 +26,7 @@ pub mod ports;
 pub mod chips;
 
 pub mod acquire;
+pub mod budget;
 pub mod calibration;
 pub mod guarded;
 pub mod pointing;

@@ -1,8 +1,8 @@
 //! The figures of the whole instrument against its budget.
 
+use firmware::budget;
 use serde::Serialize;
 
-use super::budget::Budget;
 use super::collect::Figures;
 use super::sections::Memory;
 
@@ -51,53 +51,56 @@ pub struct Runs {
 
 /// All checks, in the order of the printed table.
 #[must_use]
-pub fn all(runs: &Runs, memory: &Memory, budget: &Budget) -> Vec<Check> {
+pub fn all(runs: &Runs, memory: &Memory) -> Vec<Check> {
     let Runs { figures, brief, survey, turning, stops } = runs;
     let most = |what, count, budget| Check { what, count, budget, at_least: false };
-    let limited = |what, count, name| most(what, count, budget.limit(name));
     let worst = |of: &Figures| of.tasks.iter().map(|task| task.worst).max().unwrap_or(0);
-    let least = |what, count, name| Check { at_least: true, ..limited(what, count, name) };
+    let least = |what, count, budget| Check { at_least: true, ..most(what, count, budget) };
     let stack = [figures, survey, turning, stops].map(|run| run.stack_bytes);
     let stack = stack.into_iter().max().unwrap_or(0);
     vec![
-        limited(
+        most(
             "instructions a sample at 2400 Hz, the whole instrument",
             per_sample(brief),
-            "sample_instructions",
+            budget::SAMPLE_INSTRUCTIONS,
         ),
-        limited(
+        most(
             "the same on a platform that turns all the time",
             per_sample(turning),
-            "turning_sample_instructions",
+            budget::TURNING_SAMPLE_INSTRUCTIONS,
         ),
-        limited(
+        most(
             "the same in a vehicle, three gyros at 50 Hz",
             per_sample(stops),
-            "stops_sample_instructions",
+            budget::STOPS_SAMPLE_INSTRUCTIONS,
         ),
-        limited(
+        most(
             "instructions of the longest poll of a task",
             worst(figures).max(worst(turning)).max(worst(stops)),
-            "poll_instructions",
+            budget::POLL_INSTRUCTIONS,
         ),
-        limited(
+        most(
             "the same where the noise is learnt and a plan made",
             worst(survey),
-            "survey_poll_instructions",
+            budget::SURVEY_POLL_INSTRUCTIONS,
         ),
         least(
             "percent idle with 2000 samples a second at 80 MHz, at least",
             idle_percent(brief),
-            "idle_percent",
+            budget::IDLE_PERCENT,
         ),
         least(
             "the same on a platform that turns all the time, at least",
             idle_percent(turning),
-            "idle_percent",
+            budget::IDLE_PERCENT,
         ),
-        limited("bytes of flash, the etalon table included", memory.flash_bytes(), "flash_bytes"),
-        limited("bytes of static RAM", memory.ram_bytes(), "static_ram_bytes"),
-        limited("bytes of stack at its deepest", stack, "stack_bytes"),
+        most(
+            "bytes of flash, the etalon table included",
+            memory.flash_bytes(),
+            budget::FLASH_BYTES,
+        ),
+        most("bytes of static RAM", memory.ram_bytes(), budget::STATIC_RAM_BYTES),
+        most("bytes of stack at its deepest", stack, budget::STACK_BYTES),
         most(
             "bytes of that stack twice, in what RAM leaves",
             stack * STACK_MARGIN,

@@ -9,7 +9,6 @@
 //! The image `emulator` runs the instrument on simulated chips and says what it found, bit by bit,
 //! and what it took; the image `cost` counts the cores alone.
 
-pub mod budget;
 pub mod checks;
 pub mod collect;
 pub mod cost;
@@ -28,7 +27,6 @@ use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;
 use firmware::simulated::vehicle::VehicleScenario;
 
-use self::budget::Budget;
 use self::checks::Runs;
 use self::collect::Collected;
 use self::decode::Decoder;
@@ -74,7 +72,6 @@ impl Emulation {
 pub fn emulate(seed: u64, mut tell: impl FnMut(&decode::Line)) -> Result<Emulation, String> {
     qemu::require()?;
     let images = images::build()?;
-    let budget = Budget::read(&images::root().join("firmware/budget.toml"))?;
     let elf = read(&images.emulator)?;
     let mut run = |order: &str| instrument(&images.emulator, &elf, order, &mut tell);
     let (emulated, figures) = run(&seed.to_string())?;
@@ -95,7 +92,7 @@ pub fn emulate(seed: u64, mut tell: impl FnMut(&decode::Line)) -> Result<Emulati
     };
     let memory = Memory::of(&elf)?;
     let (cost, cost_is_right) = cores(&images.cost)?;
-    let checks = checks::all(&runs, &memory, &budget);
+    let checks = checks::all(&runs, &memory);
     Ok(Emulation { emulated, comparison, runs, memory, cost, cost_is_right, checks })
 }
 

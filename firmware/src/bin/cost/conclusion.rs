@@ -12,10 +12,10 @@ use orientation::signal::butterworth::{Coefficients, DesignError};
 use orientation::signal::dwell::{Dwell, DwellAverage};
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce, TURN, Temperature};
 
-use crate::budget::CONCLUSION_INSTRUCTIONS;
 use crate::counter::Counter;
 use crate::report::Report;
 use crate::stack::stack_of;
+use firmware::budget::CONCLUSION_INSTRUCTIONS;
 
 /// Latitude, °.
 const LATITUDE_DEG: f64 = 47.0 + 35.0 / 60.0;

@@ -14,11 +14,11 @@ use orientation::units::{
     AngleIncrement, DEGREE, DEGREE_PER_HOUR, Instant, SpecificForce, SpinForce, TURN,
 };
 
-use crate::budget::{
-    HEADING_INSTRUCTIONS, SPIN_INSTRUCTIONS, VERTICAL_GREATEST_INSTRUCTIONS, VERTICAL_INSTRUCTIONS,
-};
 use crate::counter::Counter;
 use crate::report::{Report, figure, mean_and_greatest};
+use firmware::budget::{
+    HEADING_INSTRUCTIONS, SPIN_INSTRUCTIONS, VERTICAL_GREATEST_INSTRUCTIONS, VERTICAL_INSTRUCTIONS,
+};
 
 /// Output rate of the coarse IMU, Hz.
 const COARSE_HZ: u64 = 416;

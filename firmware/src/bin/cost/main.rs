@@ -9,7 +9,6 @@
 #![no_std]
 #![no_main]
 
-mod budget;
 mod conclusion;
 #[path = "../measure/counter.rs"]
 mod counter;

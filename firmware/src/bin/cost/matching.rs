@@ -5,11 +5,11 @@ use orientation::align::etalon::series::SeriesError;
 use orientation::align::etalon::table::{ONE, STEP, TURN};
 use orientation::align::etalon::{self, Acceptance, Criterion, Limit, Match, Series, Table};
 
-use crate::budget::MATCH_INSTRUCTIONS;
 use crate::counter::Counter;
 use crate::report::{Report, figure};
 use crate::stack::stack_of;
 use crate::yardsticks;
+use firmware::budget::MATCH_INSTRUCTIONS;
 
 /// Number of positions n.
 const POSITIONS: u32 = 60;

@@ -9,10 +9,10 @@ use orientation::noise::fit::{Estimate, FitError, NoiseFit};
 use orientation::noise::model::GyroNoise;
 use orientation::units::AngularRate;
 
-use crate::budget::{ALLAN_INSTRUCTIONS, NOISE_FIT_INSTRUCTIONS};
 use crate::counter::Counter;
 use crate::report::{Report, mean_and_greatest};
 use crate::stack::stack_of;
+use firmware::budget::{ALLAN_INSTRUCTIONS, NOISE_FIT_INSTRUCTIONS};
 
 /// Number of samples through the estimator.
 const SAMPLES: u64 = 4096;

@@ -4,10 +4,10 @@ use orientation::noise::model::GyroNoise;
 use orientation::planner::order::Order;
 use orientation::planner::{Conditions, Plan, PlanError, Rotation, burov, for_sigma, for_time};
 
-use crate::budget::PLAN_INSTRUCTIONS;
 use crate::counter::{Cost, Counter};
 use crate::report::Report;
 use crate::stack::stack_of;
+use firmware::budget::PLAN_INSTRUCTIONS;
 
 /// Noise of the gyros that are planned for: N in °/√h, B in °/h, K in °/h/√h and R in °/h².
 const GYROS: [[f64; 4]; 2] = [[0.001, 0.007, 0.0, 0.127], [0.06, 1.0, 0.5, 2.0]];

@@ -8,9 +8,9 @@ use orientation::signal::butterworth::{Coefficients, DesignError, Filter};
 use orientation::signal::dwell::DwellAverage;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce, Temperature};
 
-use crate::budget::{FILTER_AND_DWELL_INSTRUCTIONS, FILTER_INSTRUCTIONS};
 use crate::counter::Counter;
 use crate::report::{Report, figure, mean_and_greatest};
+use firmware::budget::{FILTER_AND_DWELL_INSTRUCTIONS, FILTER_INSTRUCTIONS};
 
 /// Sections of a filter of order 6.
 const SECTIONS: usize = 3;

@@ -13,10 +13,10 @@ use orientation::noise::model::GyroNoise;
 use orientation::signal::InertialSample;
 use orientation::units::{AngleIncrement, DEGREE, DEGREE_PER_HOUR, Instant, SpecificForce};
 
-use crate::budget::{INCLINATION_INSTRUCTIONS, STOPS_INSTRUCTIONS, STRAPDOWN_INSTRUCTIONS};
 use crate::counter::Counter;
 use crate::report::{Report, figure, mean_and_greatest};
 use crate::stack;
+use firmware::budget::{INCLINATION_INSTRUCTIONS, STOPS_INSTRUCTIONS, STRAPDOWN_INSTRUCTIONS};
 
 /// Sample rate of the strapdown, Hz.
 const RATE_HZ: u64 = 2000;

@@ -7,9 +7,9 @@ use orientation::align::rotating::turn_accumulator::{Mode, TurnAccumulator};
 use orientation::signal::Sample;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce, TURN};
 
-use crate::budget::TURNING_INSTRUCTIONS;
 use crate::counter::Counter;
 use crate::report::{Report, figure, mean_and_greatest};
+use firmware::budget::TURNING_INSTRUCTIONS;
 
 /// Sample rate, Hz.
 const RATE_HZ: f64 = 2000.0;

@@ -1,9 +1,8 @@
 //! Where a handmade image's memory goes, and figures against their budget.
 
-use host::emulate::budget::{Budget, NAMES};
-use host::emulate::checks::{self, Check, Runs};
+use firmware::budget;
+use host::emulate::checks::{self, Runs};
 use host::emulate::collect::{Figures, Task};
-use host::emulate::images::root;
 use host::emulate::sections::{Memory, Section};
 
 use super::handmade::{self, ABSOLUTE, ALLOC, EXECUTE, NOBITS, PROGBITS, WRITE};
@@ -50,91 +49,70 @@ fn an_image_without_stack_symbols_is_refused() {
 }
 
 #[test]
-fn the_budget_of_the_firmware_has_a_limit_for_everything() {
-    let budget = Budget::read(&root().join("firmware/budget.toml")).expect("it is well formed");
-    assert!(NAMES.iter().all(|name| budget.limit(name) > 0));
-    assert_eq!(budget.limit("filter_instructions"), 115);
-    assert_eq!(budget.limit("filter_and_dwell_instructions"), 150);
-    assert_eq!(budget.limit("match_instructions"), 310_000);
-    assert_eq!(budget.limit("flash_bytes"), 484 * 1024);
-    assert_eq!(budget.limit("static_ram_bytes"), 32 * 1024);
-    assert_eq!(budget.limit("idle_percent"), 90);
-    assert_eq!(budget.limit("turning_instructions"), 250);
-    assert_eq!(budget.limit("nothing"), 0);
+fn the_budget_of_the_firmware_is_that_of_its_file() {
+    assert_eq!((budget::FILTER_INSTRUCTIONS, budget::IDLE_PERCENT), (115, 90));
+    assert_eq!((budget::FLASH_BYTES, budget::STATIC_RAM_BYTES), (484 * 1024, 32 * 1024));
+    // The README's 4 000 instructions are a tenth of the board's 80 million at 2 000 samples a second.
+    assert_eq!(budget::SAMPLE_INSTRUCTIONS * 2000 * 10, 80_000_000);
 }
 
-#[test]
-fn a_budget_that_is_not_well_formed_says_where() {
-    let whole = NAMES.map(|name| format!("{name} = 1 # why\n")).concat();
-    assert!(Budget::parse(&format!("# remark\n\n{whole}")).is_ok());
-    let error = |text: String| Budget::parse(&text).expect_err("not well formed");
-    assert_eq!(error(format!("{whole}speed = 1")), "line 25: `speed` is no limit");
-    assert_eq!(error(format!("speed\n{whole}")), "line 1: not `name = number`");
-    assert_eq!(error(format!("{whole}flash_bytes = 2")), "line 25: flash_bytes stands twice");
-    assert_eq!(
-        error(whole.replace("stack_bytes = 1", "stack_bytes = -1")),
-        "line 24: the limit of stack_bytes is no whole number"
-    );
-    assert_eq!(error(whole.replace("idle_percent = 1", "")), "idle_percent is missing");
-}
-
-fn budget() -> Budget {
-    let values = [
-        0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 4000, 4000, 4000, 500, 500, 90, 135_668, 3040,
-        4096,
-    ];
-    let lines = NAMES.iter().zip(values).map(|(name, value)| format!("{name} = {value}"));
-    Budget::parse(&lines.collect::<Vec<_>>().join("\n")).expect("well formed")
-}
-
-fn figures() -> Figures {
+/// A run of ten samples of so many instructions, whose longest poll takes so many.
+fn figures(sample: u64, worst: u64) -> Figures {
     let task = |worst| Task { name: "task".into(), polls: 1, instructions: 1, worst };
     Figures {
-        // 4000 instructions a sample, rounded up: with 2000 samples a second a tenth of 80 million.
-        instructions: 39_991,
+        // Rounded up.
+        instructions: 10 * sample - 9,
         simulation: 5,
         samples: 10,
         microseconds: 124,
-        stack_bytes: 4096,
-        tasks: vec![task(400), task(500), task(3)],
+        stack_bytes: budget::STACK_BYTES,
+        tasks: vec![task(400), task(worst), task(3)],
     }
 }
 
-/// The same in every run.
-fn alike(figures: &Figures) -> Runs {
-    let [brief, survey, turning, stops] = [(); 4].map(|()| figures.clone());
-    Runs { figures: figures.clone(), brief, survey, turning, stops }
+/// Runs at their limits.
+fn runs() -> Runs {
+    Runs {
+        figures: figures(1, budget::POLL_INSTRUCTIONS),
+        brief: figures(budget::SAMPLE_INSTRUCTIONS, 0),
+        survey: figures(1, budget::SURVEY_POLL_INSTRUCTIONS),
+        turning: figures(budget::TURNING_SAMPLE_INSTRUCTIONS, budget::POLL_INSTRUCTIONS),
+        stops: figures(budget::STOPS_SAMPLE_INSTRUCTIONS, budget::POLL_INSTRUCTIONS),
+    }
+}
+
+/// The memory of an image at its limits.
+fn memory() -> Memory {
+    let [flash_bytes, ram_bytes] = [budget::FLASH_BYTES, budget::STATIC_RAM_BYTES];
+    let section = Section { name: ".text".into(), flash_bytes, ram_bytes };
+    Memory { sections: vec![section], stack_room_bytes: 2 * budget::STACK_BYTES }
 }
 
 #[test]
 fn figures_at_their_limits_are_within_them() {
-    let memory = Memory::of(&image()).expect("an image");
-    let checks = checks::all(&alike(&figures()), &memory, &budget());
-    let counts: Vec<u64> = checks.iter().map(|check| check.count).collect();
-    assert_eq!(counts, [4000, 4000, 4000, 500, 500, 90, 90, 135_668, 3040, 4096, 8192]);
-    assert_eq!(checks[10].budget, memory.stack_room_bytes);
-    assert!(checks.iter().all(Check::is_kept), "{checks:?}");
+    let checks = checks::all(&runs(), &memory());
+    assert_eq!(checks.len(), 11);
+    assert!(
+        checks.iter().all(|check| check.is_kept() && check.count == check.budget),
+        "{checks:?}"
+    );
 }
 
 #[test]
 fn a_figure_beyond_its_limit_is_found() {
-    let memory = Memory::of(&image()).expect("an image");
-    let failing = |figures: &Figures, memory: &Memory| -> Vec<usize> {
-        let checks = checks::all(&alike(figures), memory, &budget());
+    let failing = |change: fn(&mut Runs, &mut Memory)| -> Vec<usize> {
+        let (mut runs, mut memory) = (runs(), memory());
+        change(&mut runs, &mut memory);
+        let checks = checks::all(&runs, &memory);
         (0..checks.len()).filter(|&index| !checks[index].is_kept()).collect()
     };
-    let worse = |change: fn(&mut Figures)| {
-        let mut figures = figures();
-        change(&mut figures);
-        figures
-    };
-    assert_eq!(failing(&worse(|f| f.instructions = 40_001), &memory), [0, 1, 2, 5, 6]);
-    assert_eq!(failing(&worse(|f| f.tasks[0].worst = 501), &memory), [3, 4]);
-    assert_eq!(failing(&worse(|f| f.stack_bytes = 4097), &memory), [9]);
-    let smaller = Memory { stack_room_bytes: 8191, ..memory.clone() };
-    assert_eq!(failing(&figures(), &smaller), [10]);
-    let mut greater = memory;
-    greater.sections[3].flash_bytes += 1;
-    greater.sections[4].ram_bytes += 1;
-    assert_eq!(failing(&figures(), &greater), [7, 8]);
+    assert_eq!(failing(|runs, _| runs.brief.instructions += 10), [0, 5]);
+    assert_eq!(failing(|runs, _| runs.turning.instructions += 10), [1, 6]);
+    assert_eq!(failing(|runs, _| runs.stops.instructions += 10), [2]);
+    assert_eq!(failing(|runs, _| runs.stops.tasks[0].worst = budget::POLL_INSTRUCTIONS + 1), [3]);
+    assert_eq!(failing(|runs, _| runs.survey.tasks[1].worst += 1), [4]);
+    assert_eq!(failing(|_, memory| memory.sections[0].flash_bytes += 1), [7]);
+    assert_eq!(failing(|_, memory| memory.sections[0].ram_bytes += 1), [8]);
+    assert_eq!(failing(|runs, _| runs.turning.stack_bytes += 1), [9, 10]);
+    assert_eq!(failing(|_, memory| memory.stack_room_bytes -= 1), [10]);
 }
