@@ -6,7 +6,7 @@ use orientation::align::quality::Disturbance;
 use orientation::align::rotating::turn::Sense;
 use orientation::device::{Device, Trouble};
 use orientation::error::Refusal;
-use orientation::keep::restart::Doubt;
+use orientation::keep::restart::RecallRefusal;
 use orientation::keep::{Handover, Realigned, State, spin};
 use orientation::noise::fit::{Coefficient, Estimate};
 use orientation::units::DEGREES_PER_RADIAN as DEGREES;
@@ -111,10 +111,10 @@ pub enum Event {
     LeftOut(usize, Disturbance),
     /// The platform begins rate-modulated turns, which make the axis misalignment observable, at
     /// this mean rate, °/s.
-    Uneven(f64),
+    Modulated(f64),
     /// The estimated axis misalignment, the elevation of the gyro's sensitive axis above the plane
     /// of rotation, and its 1σ, °.
-    Coupled(f64, f64),
+    Misalignment(f64, f64),
     /// A stored axis misalignment is used.
     Recalled(Remembered),
     /// No stored axis misalignment fits the speeds of this session and is recent enough.
@@ -165,7 +165,7 @@ pub enum Event {
     /// and its 1σ, °.
     HeadingRecalled(f64, f64),
     /// The heading from before the restart is rejected, with the reason.
-    Doubted(Doubt),
+    RecallRefused(RecallRefusal),
     /// The heading cannot be stored for the next start.
     HeadingNotKept(Fault),
     /// Tracking of the roll angle of a spinning body begins.
@@ -236,15 +236,15 @@ words! { Event:
         "that dwell is short, {} s: the stage moved of itself", Rounded::<1>(seconds);
     Self::Repeated(number, why) => "dwell {} is measured again: {}", number, why;
     Self::LeftOut(number, why) => "dwell {} is left out: {}", number, why;
-    Self::Uneven(rate) =>
-        "uneven turns, {} °/s in the mean, to know how the gyro feels the platform", Rounded::<2>(rate);
-    Self::Coupled(angle, sigma) =>
+    Self::Modulated(rate) =>
+        "rate-modulated turns, {} °/s in the mean, to measure the axis misalignment", Rounded::<2>(rate);
+    Self::Misalignment(angle, sigma) =>
         "gyro's axis {}° ± {}° (1σ) above the platform", Rounded::<4>(angle), Rounded::<4>(sigma);
-    Self::Recalled(coupling) => "coupling recalled: {}", coupling;
-    Self::NothingRecalled => "no stored coupling is of these speeds, and fresh";
-    Self::CalibrationUnreadable(fault) => "stored couplings cannot be read: {}", fault;
-    Self::CalibrationSaved(coupling) => "coupling kept: {}", coupling;
-    Self::CalibrationNotSaved(fault) => "coupling lost, it could not be kept: {}", fault;
+    Self::Recalled(misalignment) => "axis misalignment recalled: {}", misalignment;
+    Self::NothingRecalled => "no stored axis misalignment is of these speeds, and fresh";
+    Self::CalibrationUnreadable(fault) => "stored axis misalignments cannot be read: {}", fault;
+    Self::CalibrationSaved(misalignment) => "axis misalignment saved: {}", misalignment;
+    Self::CalibrationNotSaved(fault) => "axis misalignment not saved: {}", fault;
     Self::Stretch(sense, speed) =>
         "turns count from here: {}, {} °/s", sense, Rounded::<2>(speed);
     Self::Turned(number, of) => "turn {} of {}", number, of;
@@ -286,7 +286,7 @@ words! { Event:
     Self::HeadingRecalled(azimuth, sigma) =>
         "the vehicle stands as it stood before the restart: azimuth {}° ± {}° (1σ) recalled",
         Rounded::<4>(azimuth), Rounded::<4>(sigma);
-    Self::Doubted(doubt) => "the heading of before the restart is not believed: {}", doubt;
+    Self::RecallRefused(doubt) => "the heading of before the restart is not believed: {}", doubt;
     Self::HeadingNotKept(fault) => "the heading cannot be kept for the next start: {}", fault;
     Self::BegunSpin => "begin: following the roll of a spinning body";
     Self::Roll(state) => "roll: {}", state;

@@ -8,7 +8,7 @@ use drivers::fault::Fault;
 use embassy_futures::select::select;
 use embedded_storage_async::nor_flash::NorFlash;
 use orientation::align::rotating::Setting;
-use orientation::align::rotating::coupling::{BYTES, Coupling};
+use orientation::align::rotating::misalignment::{AxisMisalignment, BYTES};
 use orientation::align::rotating::solution::SPEEDS;
 use orientation::keep::restart::Remembered as Heading;
 use orientation::session::rotating::{Procedure, Session};
@@ -79,9 +79,9 @@ impl Today {
     /// Whether an axis misalignment is recent enough. If its date or today's is unknown, only where
     /// any age is permitted; one with a date in the future never is.
     #[must_use]
-    pub fn is_fresh(&self, coupling: &Coupling) -> bool {
+    pub fn is_fresh(&self, misalignment: &AxisMisalignment) -> bool {
         let known = |date: u64| Some(date).filter(|date| *date > 0);
-        match (self.date, known(coupling.date), self.longest) {
+        match (self.date, known(misalignment.date), self.longest) {
             (Some(today), Some(found), longest) => {
                 let age = today.checked_sub(found);
                 age.is_some_and(|age| longest.is_none_or(|longest| age <= longest))
@@ -104,17 +104,17 @@ pub async fn recall<S: Store>(
     store: &mut S,
     speeds: &[f64],
     today: Today,
-) -> Result<Option<[Option<Coupling>; SPEEDS]>, Fault> {
-    let mut couplings = [None; SPEEDS];
-    for ((slot, place), speed) in (0..).zip(&mut couplings).zip(speeds) {
+) -> Result<Option<[Option<AxisMisalignment>; SPEEDS]>, Fault> {
+    let mut misalignments = [None; SPEEDS];
+    for ((slot, place), speed) in (0..).zip(&mut misalignments).zip(speeds) {
         let is_near = |found: f64| (found - speed).abs() < SAME_SPEED * speed;
-        let found = store.load(slot).await?.as_ref().and_then(Coupling::from_bytes);
+        let found = store.load(slot).await?.as_ref().and_then(AxisMisalignment::from_bytes);
         *place = found.filter(|found| today.is_fresh(found) && is_near(found.frequency));
         if place.is_none() {
             return Ok(None);
         }
     }
-    Ok(Some(couplings))
+    Ok(Some(misalignments))
 }
 
 /// Stores the axis misalignments of a session by the index of their speed. Without any, those
@@ -124,10 +124,10 @@ pub async fn recall<S: Store>(
 /// The fault of the store.
 pub async fn keep<S: Store>(
     store: &mut S,
-    found: impl Iterator<Item = Coupling>,
+    found: impl Iterator<Item = AxisMisalignment>,
 ) -> Result<(), Fault> {
-    for (slot, coupling) in (0..).zip(found) {
-        store.save(slot, &coupling.to_bytes()).await?;
+    for (slot, misalignment) in (0..).zip(found) {
+        store.save(slot, &misalignment.to_bytes()).await?;
     }
     Ok(())
 }
@@ -141,14 +141,14 @@ pub async fn load_calibration<S: Store>(
     shared: &Shared<'_>,
 ) {
     procedure.date = today.date.unwrap_or_default();
-    if procedure.uneven_turns > 0 {
+    if procedure.modulated_turns > 0 {
         return;
     }
     match recall(store, &procedure.speeds, today).await {
-        Ok(Some(couplings)) => {
-            setting.couplings = couplings;
-            for coupling in couplings.iter().flatten() {
-                shared.tell(Event::Recalled(coupling.into()));
+        Ok(Some(misalignments)) => {
+            setting.misalignments = misalignments;
+            for misalignment in misalignments.iter().flatten() {
+                shared.tell(Event::Recalled(misalignment.into()));
             }
         }
         Ok(None) => shared.tell(Event::NothingRecalled),
@@ -163,9 +163,9 @@ pub async fn save_calibration<S: Store>(store: &mut S, session: &Session, channe
         return;
     }
     let saved = async {
-        let told = |found: Coupling| Event::CalibrationSaved((&found).into());
-        match keep(store, session.couplings()).await {
-            Ok(()) => session.couplings().for_each(|found| channels.shared.tell(told(found))),
+        let told = |found: AxisMisalignment| Event::CalibrationSaved((&found).into());
+        match keep(store, session.misalignments()).await {
+            Ok(()) => session.misalignments().for_each(|found| channels.shared.tell(told(found))),
             Err(fault) => channels.shared.tell(Event::CalibrationNotSaved(fault)),
         }
     };
@@ -185,13 +185,13 @@ pub struct Remembered {
     pub temperature: f32,
 }
 
-impl From<&Coupling> for Remembered {
-    fn from(coupling: &Coupling) -> Self {
+impl From<&AxisMisalignment> for Remembered {
+    fn from(misalignment: &AxisMisalignment) -> Self {
         Self {
-            angle: coupling.angle() * DEGREES,
-            rate: coupling.frequency * DEGREES,
-            day: Day::of(coupling.date),
-            temperature: coupling.temperature,
+            angle: misalignment.angle() * DEGREES,
+            rate: misalignment.frequency * DEGREES,
+            day: Day::of(misalignment.date),
+            temperature: misalignment.temperature,
         }
     }
 }

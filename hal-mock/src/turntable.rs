@@ -33,10 +33,10 @@ impl Segment {
         Self { rate_rad_s, depth: 0.0, frequency_hz: 0.0, ramp_s: 0.0, seconds }
     }
 
-    /// This segment made uneven on purpose: by `depth` relative to the mean rate, 1, at `frequency_hz`,
+    /// This segment with its rate modulated: by `depth` relative to the mean rate, 1, at `frequency_hz`,
     /// > 0.
     #[must_use]
-    pub const fn uneven(self, depth: f64, frequency_hz: f64) -> Self {
+    pub const fn modulated(self, depth: f64, frequency_hz: f64) -> Self {
         Self { depth, frequency_hz, ..self }
     }
 

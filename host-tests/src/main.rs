@@ -184,7 +184,7 @@ fn warn(warnings: &[String]) {
 
 /// Runs the command and prints what came of it; whether there was a result.
 fn tell(command: &Command, given: &Given, as_json: bool) -> Result<bool, Failure> {
-    let told = match command {
+    let answer = match command {
         Command::Run(options) => command::run::run(options, as_json)?,
         Command::Replay(options) => command::replay::run(options, given, as_json)?,
         Command::Plan(options) => command::plan::run(options, as_json)?,
@@ -192,10 +192,10 @@ fn tell(command: &Command, given: &Given, as_json: bool) -> Result<bool, Failure
         Command::Campaign(options) => command::campaign::run(options, as_json)?,
         Command::Emulate(options) => command::emulate::run(options, as_json)?,
     };
-    print(&told.printed())?;
-    warn(&told.warnings);
-    if let Some(reason) = &told.refusal {
+    print(&answer.printed())?;
+    warn(&answer.warnings);
+    if let Some(reason) = &answer.refusal {
         say(&one_line(&format!("meridian: {reason}")));
     }
-    Ok(told.found)
+    Ok(answer.found)
 }

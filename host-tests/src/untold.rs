@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 use orientation::align::conclusion::Conclusion;
 use orientation::align::level::Tilt;
 use orientation::align::rotating::conclusion::Conclusion as PlatformConclusion;
-use orientation::align::rotating::coupling;
+use orientation::align::rotating::misalignment;
 use orientation::align::rotating::solution::{Fit, Pair};
 use orientation::align::setting::Setting;
 use orientation::math::Complex;
@@ -106,21 +106,21 @@ pub fn of_platform(session: &rotating::Session) -> Vec<String> {
     words_of(&untold).chain(pole(session, conclusion)).chain(unseen).chain(shown.untold()).collect()
 }
 
-/// What it rests on that a sensor of unknown lag lags at a speed without an uneven turn as one pole does.
+/// What it rests on that a sensor of unknown lag lags at a speed without a rate-modulated turn as one pole does.
 fn pole(session: &rotating::Session, conclusion: &PlatformConclusion) -> Option<String> {
     let setting = session.setting();
     let horizontal = setting.common.latitude.horizontal_rate();
     let off = |pair: &Pair| {
-        let coupling = coupling::nearest(&conclusion.couplings, pair.speed())?;
-        let is_there = (coupling.frequency / pair.speed() - 1.0).abs() < SAME_SPEED;
+        let misalignment = misalignment::nearest(&conclusion.misalignments, pair.speed())?;
+        let is_there = (misalignment.frequency / pair.speed() - 1.0).abs() < SAME_SPEED;
         let [clockwise, counter] = pair.senses().map(|average| average.turning);
-        let felt = coupling.sine.abs() * (clockwise - counter).size() * 0.5;
+        let felt = misalignment.sine.abs() * (clockwise - counter).size() * 0.5;
         (!is_there).then_some(felt / horizontal)
     };
     let most = conclusion.pairs.iter().filter_map(off).reduce(f64::max);
     most.filter(|_| !setting.sensor.is_flat).map(|off| {
         format!(
-            "the lag of one pole at the speed without an uneven turn: by each degree of another one north is up to \
+            "the lag of one pole at the speed without a rate-modulated turn: by each degree of another one north is up to \
              {off:.2}° off"
         )
     })

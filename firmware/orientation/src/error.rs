@@ -237,7 +237,7 @@ pub enum Refusal {
         allowed: f64,
     },
     /// The axis misalignment is unknown: neither configured, nor measured by rate-modulated turns.
-    CouplingUnknown,
+    MisalignmentUnknown,
     /// The phasors of both senses of rotation differ by more than a sensor of flat response allows.
     SensesDisagree {
         /// Half of the difference, in standard deviations.
@@ -449,8 +449,8 @@ crate::words! { Refusal:
     Self::Misaligned { angle, allowed } =>
         "the sensitive axis stands {}° from the platform's plane, more than {}°: align the sensor mechanically",
         Rounded::<2>(angle), Rounded::<1>(allowed);
-    Self::CouplingUnknown =>
-        "nobody knows how the sensor feels the platform's own rate: turn it unevenly first";
+    Self::MisalignmentUnknown =>
+        "the axis misalignment of the sensor is not known: modulate the platform's rate first";
     Self::SensesDisagree { sigmas } =>
         "clockwise and counter-clockwise disagree by {} σ: this sensor is not flat, or lags",
         Rounded::<1>(sigmas);

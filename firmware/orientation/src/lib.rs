@@ -48,8 +48,8 @@
 //! | dwell | one standstill at a position; its averaged rate is one measurement | [`signal::dwell`] |
 //! | reference table (etalon) | Sokolov's table of expected rate differences for every azimuth on a 10″ grid, and the search for the best one | [`align::etalon`] |
 //! | continuous rotation, carouselling | the gyro rotates all the time and its rate is demodulated at the turn (MET 2018) | [`align::rotating`], [`session::rotating`] |
-//! | rate-modulated turns | turns with a deliberate modulation of the platform's rate, which show the axis misalignment and the lag of the gyro | [`align::rotating::coupling`] |
-//! | axis misalignment | angle between the sensitive axis and the plane of rotation; the identifier `Coupling` stands for it | [`align::rotating::coupling`] |
+//! | rate-modulated turns | turns with a deliberate modulation of the platform's rate, which show the axis misalignment and the lag of the gyro | [`align::rotating::misalignment`] |
+//! | axis misalignment | angle between the sensitive axis and the plane of rotation | [`align::rotating::misalignment::AxisMisalignment`] |
 //! | inertial-frame alignment | gravity, seen from a frame frozen in inertial space, rotates with the Earth and shows north (Szymanowski 2003) | [`align::stops`], [`session::stops`] |
 //! | strapdown | attitude by integrating the rates of gyros that are fixed to the body | [`signal::strapdown`], [`keep::attitude`] |
 //! | coning | rotation that the order of small rotations adds, and its compensation | [`signal::strapdown`] |

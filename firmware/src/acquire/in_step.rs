@@ -149,7 +149,7 @@ impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
         times: [Instant; N],
         time: Instant,
     ) -> Result<bool, Refusal> {
-        let Some(index) = self.stray(times, time) else {
+        let Some(index) = self.outlier(times, time) else {
             self.strays = 0;
             return Ok(true);
         };
@@ -166,7 +166,7 @@ impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
 
     /// Converter whose conversion ended furthest from the median, where that is more than a quarter
     /// of a period: the majority is right.
-    fn stray(&self, times: [Instant; N], middle: Instant) -> Option<usize> {
+    fn outlier(&self, times: [Instant; N], middle: Instant) -> Option<usize> {
         let beside = |index: &usize| times[*index].max(middle) - times[*index].min(middle);
         (0..N).max_by_key(beside).filter(|index| beside(index) > self.period / 4)
     }

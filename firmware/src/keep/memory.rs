@@ -11,7 +11,7 @@
 use drivers::fault::Fault;
 use embassy_time::{Duration, Instant};
 use orientation::keep::Keeper;
-use orientation::keep::restart::{Doubt, Remembered};
+use orientation::keep::restart::{RecallRefusal, Remembered};
 use orientation::units::DEGREE;
 
 use crate::event::Event;
@@ -66,8 +66,8 @@ impl<M: Store> Memory<M> {
         let Some(found) = &self.found else { return false };
         let outcome = keeper.recall(found);
         match outcome {
-            Err(Doubt::NotAtRest { .. }) => return false,
-            Err(doubt) => shared.tell(Event::Doubted(doubt)),
+            Err(RecallRefusal::NotAtRest { .. }) => return false,
+            Err(doubt) => shared.tell(Event::RecallRefused(doubt)),
             Ok(()) => {}
         }
         self.found = None;

@@ -66,12 +66,12 @@ pub struct Keeping<'k, H, M> {
     /// The stored heading.
     memory: Memory<M>,
     /// The state of reports and pending actions.
-    told: Told,
+    reported: Reported,
 }
 
 /// The state of reports, so that each change is reported once, and pending actions.
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own; all combine")]
-struct Told {
+struct Reported {
     /// The state that was reported last.
     state: Option<State>,
     /// Time at which the latest inertial sample came, by the clock.
@@ -108,7 +108,7 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
         outside: H,
         store: M,
     ) -> Self {
-        let told = Told {
+        let reported = Reported {
             state: None,
             moved: Instant::MIN,
             looks: 0,
@@ -124,7 +124,7 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
             since: None,
         };
         let memory = Memory::new(store);
-        Self { keeper, configuration: *configuration, outside, memory, told }
+        Self { keeper, configuration: *configuration, outside, memory, reported }
     }
 
     /// The attitude and azimuth now.
@@ -140,7 +140,7 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
             return;
         }
         if let Some(found) = shared.keep.found.try_take() {
-            self.told.found = Some(found);
+            self.reported.found = Some(found);
         }
         while let Ok(motion) = shared.keep.motions.try_receive() {
             self.push(motion, shared);
@@ -155,7 +155,7 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
             Motion::Moved(sample) => {
                 self.take_azimuth(sample.time, shared);
                 self.keeper.push(&sample);
-                self.told.moved = Instant::now();
+                self.reported.moved = Instant::now();
             }
             Motion::Exchanged(down) => {
                 let KeepConfiguration { beside, precise, .. } = self.configuration;
@@ -175,7 +175,9 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
     /// Takes a found azimuth before an increment of the time `before`, if it belongs to an earlier
     /// sample. It is refused if the body has set off meanwhile.
     fn take_azimuth(&mut self, before: units::Instant, shared: &Shared<'_>) {
-        let Some((_, handover)) = self.told.found.take_if(|(at, _)| *at < before) else { return };
+        let Some((_, handover)) = self.reported.found.take_if(|(at, _)| *at < before) else {
+            return;
+        };
         if self.has_set_off() {
             shared.tell(Event::Refused(Refusal::MovedDuringAlignment));
         } else {
@@ -187,7 +189,10 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
     /// rest is invalid. In a vehicle with stops the session itself distinguishes rest from motion.
     fn has_set_off(&self) -> bool {
         !self.configuration.knows_stops
-            && self.told.moves.is_some_and(|since| since.elapsed() >= self.told.retry_budget)
+            && self
+                .reported
+                .moves
+                .is_some_and(|since| since.elapsed() >= self.reported.retry_budget)
     }
 
     /// Takes an azimuth: as the first one, or fused with the kept one by an innovation test.
@@ -201,25 +206,25 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
             self.keeper.realign(handover)
         };
         if !matches!(outcome, Realigned::Disagrees { .. }) {
-            self.told.is_recalled = false;
+            self.reported.is_recalled = false;
         }
         shared.tell(Event::handed_over(&handover, outcome));
-        self.told.has_azimuth = true;
+        self.reported.has_azimuth = true;
     }
 
     /// Checks the state and reports its changes; once a second also does everything else.
     async fn look(&mut self, shared: &Shared<'_>) {
         let report = self.keeper.report();
-        let is_silent = self.told.moved.elapsed() >= SILENCE;
+        let is_silent = self.reported.moved.elapsed() >= SILENCE;
         let is_at_rest = report.is_at_rest && !is_silent;
         shared.keep.is_at_rest.set(is_at_rest);
         self.tell_state((!is_silent).then_some(report.state), shared);
         self.tell_loss(&report, shared);
         self.tell_biases(&report, shared);
         self.rest(is_at_rest);
-        self.told.looks += 1;
-        if self.told.looks >= LOOKS {
-            self.told.looks = 0;
+        self.reported.looks += 1;
+        if self.reported.looks >= LOOKS {
+            self.reported.looks = 0;
             self.second(shared).await;
         }
     }
@@ -227,17 +232,17 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
     /// Reports a state that has changed. An acceleration is reported only if it lasts.
     fn tell_state(&mut self, state: Option<State>, shared: &Shared<'_>) {
         let trust = |state: Option<State>| state.map(|state| state.trust);
-        let is_told = trust(state) == trust(self.told.state);
+        let is_told = trust(state) == trust(self.reported.state);
         let passes =
             state.is_some_and(|now| now.trust == Trust::Coasting && now.seconds < TOLD_SECONDS);
         if is_told || passes {
             return;
         }
-        self.told.state = state;
+        self.reported.state = state;
         match state {
             Some(State { trust: Trust::Starting, .. }) => {}
             Some(state) => shared.tell(Event::Keeping(state)),
-            None if self.told.moved == Instant::MIN => {}
+            None if self.reported.moved == Instant::MIN => {}
             None => shared.tell(Event::NoMotion),
         }
     }
@@ -245,16 +250,16 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
     /// Reports once that the stated biases are not used any more.
     fn tell_biases(&mut self, report: &Report, shared: &Shared<'_>) {
         let is_beyond = report.is_bias_beyond_stated;
-        if is_beyond && !core::mem::replace(&mut self.told.is_bias_beyond_stated, true) {
+        if is_beyond && !core::mem::replace(&mut self.reported.is_bias_beyond_stated, true) {
             shared.tell(Event::BiasBeyondStated);
         }
     }
 
     /// Reports that the azimuth has become unknown.
     fn tell_loss(&mut self, report: &Report, shared: &Shared<'_>) {
-        let had = core::mem::replace(&mut self.told.has_azimuth, report.azimuth.is_some());
+        let had = core::mem::replace(&mut self.reported.has_azimuth, report.azimuth.is_some());
         if had && report.azimuth.is_none() {
-            self.told.is_recalled = false;
+            self.reported.is_recalled = false;
             shared.tell(Event::AzimuthLost);
         }
     }
@@ -262,16 +267,16 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
     /// Tracks since when the body has been at rest. A motion as short as that of a slammed door
     /// does not end the rest.
     fn rest(&mut self, is_at_rest: bool) {
-        let told = &mut self.told;
+        let reported = &mut self.reported;
         if is_at_rest {
-            told.moves = None;
-            told.rests.get_or_insert(Instant::now());
-        } else if let Some(rests) = told.rests {
-            let moves = *told.moves.get_or_insert(Instant::now());
-            told.retry_budget = RESTLESS + LEARNING - (moves - rests).min(LEARNING);
-            if moves.elapsed() >= told.retry_budget {
-                told.rests = None;
-                told.is_realigned = false;
+            reported.moves = None;
+            reported.rests.get_or_insert(Instant::now());
+        } else if let Some(rests) = reported.rests {
+            let moves = *reported.moves.get_or_insert(Instant::now());
+            reported.retry_budget = RESTLESS + LEARNING - (moves - rests).min(LEARNING);
+            if moves.elapsed() >= reported.retry_budget {
+                reported.rests = None;
+                reported.is_realigned = false;
             }
         }
     }
@@ -285,8 +290,8 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
             self.spare(shared);
         }
         if self.memory.recall(self.keeper, shared) {
-            self.told.is_recalled = true;
-            self.told.has_azimuth = true;
+            self.reported.is_recalled = true;
+            self.reported.has_azimuth = true;
             if let Some(keep::Azimuth { angle, sigma }) = self.keeper.report().azimuth {
                 let [angle, sigma] = [angle, sigma].map(|angle| angle * DEGREES);
                 shared.tell(Event::HeadingRecalled(angle, sigma));
@@ -310,9 +315,9 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
     /// body.
     fn realign(&mut self, shared: &Shared<'_>) {
         let is_idle = shared.keep.is_idle.get();
-        let was_idle = core::mem::replace(&mut self.told.is_idle, is_idle);
+        let was_idle = core::mem::replace(&mut self.reported.is_idle, is_idle);
         if is_idle && !was_idle {
-            self.told.since.get_or_insert(Instant::now());
+            self.reported.since.get_or_insert(Instant::now());
             shared.keep.store.signal(());
         }
         match self.configuration.realignment {
@@ -327,9 +332,9 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
 
     /// Begins a new session where the body has been at rest for `after`, once at each stop.
     fn begin_at_stop(&mut self, after: Duration, shared: &Shared<'_>) {
-        let stood = self.told.rests.map_or(Duration::MIN, |since| since.elapsed());
-        if !self.told.is_realigned && stood >= after {
-            self.told.is_realigned = true;
+        let stood = self.reported.rests.map_or(Duration::MIN, |since| since.elapsed());
+        if !self.reported.is_realigned && stood >= after {
+            self.reported.is_realigned = true;
             shared.tell(Event::Realigning);
             shared.wanted.signal(0.0);
             shared.keep.again.signal(());
@@ -341,12 +346,12 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
     fn tell(&self, shared: &Shared<'_>) {
         let report = self.keeper.report();
         shared.observer.kept(&report);
-        if self.told.since.is_none() && report.azimuth.is_none() {
+        if self.reported.since.is_none() && report.azimuth.is_none() {
             return;
         }
-        let mut kept = Kept::of(&report, self.told.is_recalled);
+        let mut kept = Kept::of(&report, self.reported.is_recalled);
         // Without inertial samples the azimuth is not valid any more.
-        if self.told.moved.elapsed() >= SILENCE {
+        if self.reported.moved.elapsed() >= SILENCE {
             kept = Kept { azimuth: None, state: None, ..kept };
         }
         shared.keep.told.set(Some(kept));
@@ -354,7 +359,7 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
 
     /// Whether the configured duration of keeping is over.
     fn is_over(&self) -> bool {
-        self.told.since.is_some_and(|since| since.elapsed() >= self.configuration.hold)
+        self.reported.since.is_some_and(|since| since.elapsed() >= self.configuration.hold)
     }
 }
 

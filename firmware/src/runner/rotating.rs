@@ -24,10 +24,10 @@ pub struct Rotating<'a> {
 
 impl<'a> Rotating<'a> {
     /// Takes a session without any reported progress. One whose sensor has an axis misalignment that
-    /// matters but is unknown is refused with [`Refusal::CouplingUnknown`].
+    /// matters but is unknown is refused with [`Refusal::MisalignmentUnknown`].
     pub fn new(session: &'a mut Session) -> Self {
         if !is_coupled(session) {
-            session.handle(SessionEvent::Failed(Refusal::CouplingUnknown));
+            session.handle(SessionEvent::Failed(Refusal::MisalignmentUnknown));
         }
         let told_phase = session.phase();
         Self { session, told_phase, told_turns: 0 }
@@ -38,8 +38,8 @@ impl<'a> Rotating<'a> {
 /// statement, will be estimated by rate-modulated turns, or is known from a calibration.
 fn is_coupled(session: &Session) -> bool {
     let setting = session.setting();
-    let is_known = setting.couplings.iter().any(Option::is_some);
-    setting.sensor.is_flat || session.procedure().uneven_turns > 0 || is_known
+    let is_known = setting.misalignments.iter().any(Option::is_some);
+    setting.sensor.is_flat || session.procedure().modulated_turns > 0 || is_known
 }
 
 impl AlignmentSession<Sample> for Rotating<'_> {
@@ -104,10 +104,10 @@ fn tell_found(session: &Session, phase: Phase, shared: &Shared<'_>) {
                 tell_level(force, shared);
             }
         }
-        Phase::Uneven(index) => {
-            if let Some(coupling) = session.couplings().nth(index) {
-                let [angle, sigma] = [coupling.angle(), coupling.sine_sigma];
-                shared.tell(Event::Coupled(angle * DEGREES, sigma * DEGREES));
+        Phase::Modulated(index) => {
+            if let Some(misalignment) = session.misalignments().nth(index) {
+                let [angle, sigma] = [misalignment.angle(), misalignment.sine_sigma];
+                shared.tell(Event::Misalignment(angle * DEGREES, sigma * DEGREES));
             }
         }
         _ => {}
@@ -118,7 +118,7 @@ fn tell_found(session: &Session, phase: Phase, shared: &Shared<'_>) {
 fn tell_phase(session: &Session, shared: &Shared<'_>) {
     let speed = |index: usize| session.procedure().speeds.get(index).map_or(0.0, |w| w * DEGREES);
     match session.phase() {
-        Phase::Uneven(index) => shared.tell(Event::Uneven(speed(index))),
+        Phase::Modulated(index) => shared.tell(Event::Modulated(speed(index))),
         Phase::Even(index, sense) => shared.tell(Event::Stretch(sense, speed(index))),
         _ => {}
     }

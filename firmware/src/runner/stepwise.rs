@@ -22,12 +22,12 @@ pub struct Stepwise<'a> {
     /// The session.
     session: &'a mut Session,
     /// The state of its reports.
-    told: Told,
+    reported: Reported,
 }
 
 /// The part of the session's progress that has been reported.
 #[derive(Clone, Copy, Debug, Default)]
-struct Told {
+struct Reported {
     /// Number of dwells that were reported.
     dwells: usize,
     /// Number of repeated dwells that were reported.
@@ -41,7 +41,7 @@ struct Told {
 impl<'a> Stepwise<'a> {
     /// Takes a session without any reported progress.
     pub fn new(session: &'a mut Session) -> Self {
-        Self { session, told: Told::default() }
+        Self { session, reported: Reported::default() }
     }
 }
 
@@ -79,7 +79,7 @@ impl AlignmentSession<Sample> for Stepwise<'_> {
     // Not inlined, so that the temporary copies on the stack are gone when the session runs.
     #[inline(never)]
     fn renew(&mut self) {
-        self.told = Told::default();
+        self.reported = Reported::default();
         let mut procedure = self.session.procedure().clone();
         // The result of the survey is in the setting and the schedule already.
         procedure.survey = None;
@@ -90,22 +90,22 @@ impl AlignmentSession<Sample> for Stepwise<'_> {
     }
 
     fn follow(&mut self, shared: &Shared<'_>) {
-        let (session, told) = (&*self.session, &mut self.told);
-        if !told.is_level && session.phase() != Phase::Level {
-            told.is_level = true;
+        let (session, reported) = (&*self.session, &mut self.reported);
+        if !reported.is_level && session.phase() != Phase::Level {
+            reported.is_level = true;
             tell_begun(session, shared);
             tell_status(session, shared);
         }
-        if !told.is_planned && session.surveyed().is_some() {
-            told.is_planned = true;
+        if !reported.is_planned && session.surveyed().is_some() {
+            reported.is_planned = true;
             tell_plan(session, shared);
         }
-        if session.repetitions().len() > told.repetitions {
-            told.repetitions = session.repetitions().len();
+        if session.repetitions().len() > reported.repetitions {
+            reported.repetitions = session.repetitions().len();
             tell_repetition(session, shared);
         }
-        if session.dwells().len() > told.dwells {
-            told.dwells = session.dwells().len();
+        if session.dwells().len() > reported.dwells {
+            reported.dwells = session.dwells().len();
             tell_dwell(session, shared);
             tell_status(session, shared);
         }

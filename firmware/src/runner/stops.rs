@@ -28,12 +28,12 @@ pub struct Stops<'a, W> {
     /// does not know it.
     origin: Option<[f64; 2]>,
     /// The state of its reports.
-    told: Told,
+    reported: Reported,
 }
 
 /// The part of the session's progress that has been reported, and news to be reported.
 #[derive(Clone, Copy, Debug)]
-struct Told {
+struct Reported {
     /// Phase that was reported last.
     phase: Phase,
     /// Time at which that phase began.
@@ -49,7 +49,7 @@ struct Told {
     may_drive: bool,
 }
 
-impl Told {
+impl Reported {
     /// The state of a session that has not begun.
     fn of(session: &Session) -> Self {
         Self {
@@ -67,8 +67,8 @@ impl<'a, W: PositionAiding> Stops<'a, W> {
     /// Takes a session without any reported progress. The first stop of the first session is the
     /// origin of displacements.
     pub fn new(session: &'a mut Session, position_aiding: &'a mut W) -> Self {
-        let told = Told::of(session);
-        Self { session, position_aiding, origin: Some([0.0; 2]), told }
+        let reported = Reported::of(session);
+        Self { session, position_aiding, origin: Some([0.0; 2]), reported }
     }
 
     /// Informs the session of the displacement of the present stop as soon as it is known.
@@ -77,14 +77,14 @@ impl<'a, W: PositionAiding> Stops<'a, W> {
         if index == 0 && self.origin.is_none() {
             self.origin = self.position_aiding.displacement();
         }
-        if index <= self.told.placed {
+        if index <= self.reported.placed {
             return;
         }
         let here = self.position_aiding.displacement();
-        self.told.place =
+        self.reported.place =
             here.zip(self.origin).map(|(here, origin)| [here[0] - origin[0], here[1] - origin[1]]);
-        if let Some(place) = self.told.place {
-            self.told.placed = index;
+        if let Some(place) = self.reported.place {
+            self.reported.placed = index;
             self.session.handle(SessionEvent::Displaced(place));
         }
     }
@@ -100,13 +100,13 @@ impl<W: PositionAiding> AlignmentSession<InertialSample> for Stops<'_, W> {
     }
 
     fn take(&mut self, sample: &InertialSample) -> Step {
-        self.told.now = sample.time;
+        self.reported.now = sample.time;
         let command = self.session.handle(SessionEvent::Sample(sample));
         self.place();
         match command {
             Command::Wait => Step::Wait,
             Command::Drive => {
-                self.told.may_drive = true;
+                self.reported.may_drive = true;
                 Step::Wait
             }
             Command::Finished => Step::Finish,
@@ -126,22 +126,22 @@ impl<W: PositionAiding> AlignmentSession<InertialSample> for Stops<'_, W> {
     fn renew(&mut self) {
         let (setting, procedure) = (*self.session.setting(), self.session.procedure().clone());
         *self.session = Session::of(setting, procedure);
-        self.told = Told::of(self.session);
+        self.reported = Reported::of(self.session);
         self.origin = None;
     }
 
     fn follow(&mut self, shared: &Shared<'_>) {
-        let (session, told) = (&*self.session, &mut self.told);
-        if session.phase() != told.phase {
-            tell_phase(session.phase(), told, shared);
-            told.phase = session.phase();
-            told.since = told.now;
+        let (session, reported) = (&*self.session, &mut self.reported);
+        if session.phase() != reported.phase {
+            tell_phase(session.phase(), reported, shared);
+            reported.phase = session.phase();
+            reported.since = reported.now;
             shared.observer.stopped(session);
         }
-        if let Some(place) = told.place.take() {
-            shared.tell(Event::Displaced(told.placed + 1, place));
+        if let Some(place) = reported.place.take() {
+            shared.tell(Event::Displaced(reported.placed + 1, place));
         }
-        if core::mem::take(&mut told.may_drive) {
+        if core::mem::take(&mut reported.may_drive) {
             tell_levelled(session, shared);
             shared.observer.stopped(session);
         }
@@ -162,11 +162,11 @@ impl<W: PositionAiding> AlignmentSession<InertialSample> for Stops<'_, W> {
 }
 
 /// Reports the begin of a stop, with the duration of the drive before it, or of a drive.
-fn tell_phase(phase: Phase, told: &Told, shared: &Shared<'_>) {
+fn tell_phase(phase: Phase, reported: &Reported, shared: &Shared<'_>) {
     match phase {
         Phase::Standing(index) => {
-            if let Phase::Driving(_) = told.phase {
-                let seconds = told.now.seconds() - told.since.seconds();
+            if let Phase::Driving(_) = reported.phase {
+                let seconds = reported.now.seconds() - reported.since.seconds();
                 shared.tell(Event::Stopped(index + 1, seconds));
             }
             shared.status.set(Status::Levelling(index as u16 + 1));

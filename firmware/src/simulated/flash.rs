@@ -63,7 +63,7 @@ impl Flash {
         &self.bytes
     }
 
-    /// A store of couplings in it.
+    /// A store of axis misalignments in it.
     #[must_use]
     pub fn store(self) -> FlashStore<Self> {
         FlashStore::new(self, const { MapConfig::new(0..BYTES as u32) })

@@ -11,7 +11,7 @@ use hal_mock::molecular::MolecularConfiguration;
 use hal_mock::plant::PlantConfiguration;
 use hal_mock::plant::train::StageConfiguration;
 use hal_mock::stage::{Ripple, Unevenness};
-use orientation::align::rotating::coupling::Coupling;
+use orientation::align::rotating::misalignment::AxisMisalignment;
 use orientation::align::rotating::solution::SPEEDS;
 use orientation::align::rotating::{Sensor, Setting};
 use orientation::session::rotating::{self, Procedure};
@@ -58,8 +58,8 @@ pub struct TurntableScenario {
     pub molecular: Option<MolecularConfiguration>,
     /// Turns a second, the second speed zero where there is none, Hz.
     pub speeds_hz: [f64; 2],
-    /// Uneven turns at each speed; none where a stored coupling is to do.
-    pub uneven_turns: u32,
+    /// Modulated turns at each speed; none where a stored misalignment is to do.
+    pub modulated_turns: u32,
     /// Turns in each direction at each speed.
     pub turns: u32,
     /// How far the sensitive axis rises over the platform's plane, °.
@@ -68,19 +68,19 @@ pub struct TurntableScenario {
     pub unevenness: [f64; 2],
     /// Angles at which it is quickest, °.
     pub quickest_deg: [f64; 2],
-    /// Couplings that were stored, for each speed.
-    pub stored: [Option<Coupling>; SPEEDS],
+    /// Axis misalignments that were stored, for each speed.
+    pub stored: [Option<AxisMisalignment>; SPEEDS],
 }
 
 impl Default for TurntableScenario {
-    /// The default gyro, raised by 0.8°, at 0.137 Hz for twelve uneven turns and ten each way, on a gear
+    /// The default gyro, raised by 0.8°, at 0.137 Hz for twelve rate-modulated turns and ten each way, on a gear
     /// that is uneven by 0.2 % once and 0.05 % twice per turn.
     fn default() -> Self {
         Self {
             base: Scenario::default(),
             molecular: None,
             speeds_hz: [0.137, 0.0],
-            uneven_turns: 12,
+            modulated_turns: 12,
             turns: 10,
             elevation_deg: 0.8,
             unevenness: [0.002, 0.0005],
@@ -96,11 +96,11 @@ impl TurntableScenario {
         Self { base: Scenario::usual(seed), ..Self::default() }
     }
 
-    /// Four uneven turns and two each way at 0.2 Hz: what a sample costs at the highest rate of the stage
+    /// Four rate-modulated turns and two each way at 0.2 Hz: what a sample costs at the highest rate of the stage
     /// path, 2400 Hz.
     pub fn brief(seed: u64) -> Self {
         let base = Scenario { sample_rate_hz: 2400.0, ..Scenario::usual(seed) };
-        Self { base, speeds_hz: [0.2, 0.0], uneven_turns: 4, turns: 2, ..Self::default() }
+        Self { base, speeds_hz: [0.2, 0.0], modulated_turns: 4, turns: 2, ..Self::default() }
     }
 
     /// A molecular-electronic sensor at two speeds.
@@ -114,7 +114,11 @@ impl TurntableScenario {
     #[must_use]
     pub fn setting(&self) -> Option<Setting> {
         let setting = Setting::new(self.base.setting()?, self.sensor());
-        Some(Setting { couplings: self.stored, encoder_zero_sigma: ENCODER_ZERO_SIGMA, ..setting })
+        Some(Setting {
+            misalignments: self.stored,
+            encoder_zero_sigma: ENCODER_ZERO_SIGMA,
+            ..setting
+        })
     }
 
     fn sensor(&self) -> Sensor {
@@ -127,9 +131,9 @@ impl TurntableScenario {
     pub fn procedure(&self) -> Procedure {
         let speeds = self.speeds_hz.map(|speed| speed * TURN);
         let count = speeds.iter().take_while(|speed| **speed > 0.0).count();
-        let Self { uneven_turns, turns, .. } = *self;
+        let Self { modulated_turns, turns, .. } = *self;
         let sample_seconds = 1.0 / self.base.sample_rate_hz;
-        Procedure { uneven_turns, turns, ..Procedure::new(&speeds[..count], sample_seconds) }
+        Procedure { modulated_turns, turns, ..Procedure::new(&speeds[..count], sample_seconds) }
     }
 
     /// Both, checked; none where the latitude is none or the procedure impossible.
@@ -163,8 +167,8 @@ impl TurntableScenario {
     /// What a fault does that comes amid the clockwise turns.
     pub fn injection(&self, fault: Option<Fault>) -> Injection {
         let Procedure { ramp_seconds, level_seconds, .. } = self.procedure();
-        let turns = f64::from(self.uneven_turns) + 0.5 * f64::from(self.turns);
-        let phases = if self.uneven_turns > 0 { 2.0 } else { 1.0 };
+        let turns = f64::from(self.modulated_turns) + 0.5 * f64::from(self.turns);
+        let phases = if self.modulated_turns > 0 { 2.0 } else { 1.0 };
         let seconds = START_SECONDS + level_seconds + phases * ramp_seconds;
         let seconds = seconds + turns / self.speeds_hz[0];
         Injection::at(fault, Instant::MIN + Duration::from_millis((seconds * 1e3) as u64))

@@ -44,7 +44,7 @@ struct Holding {
 
 /// What is broken in this chip.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Sickness {
+pub struct ChipFault {
     /// The code of 32 bits, two's complement, that every conversion gives whatever the input, signalled as
     /// new nevertheless.
     pub stuck_at: Option<i32>,
@@ -81,7 +81,7 @@ pub struct Ads1262 {
     /// Whether a clock is found at the pins, which the status byte shows.
     pub has_external_clock: bool,
     /// What is broken in this chip.
-    pub sickness: Sickness,
+    pub chip_fault: ChipFault,
     /// What was done to the chip that its data sheet forbids.
     violations: Violations,
 }
@@ -100,7 +100,7 @@ impl Default for Ads1262 {
             is_ready: false,
             overwritten: 0,
             has_external_clock: false,
-            sickness: Sickness::default(),
+            chip_fault: ChipFault::default(),
             violations: Violations::default(),
         }
     }
@@ -109,7 +109,7 @@ impl Default for Ads1262 {
 impl Ads1262 {
     /// From now on every conversion repeats the last code, and is signalled as new nevertheless.
     pub fn stick(&mut self) {
-        self.sickness.stuck_at = Some(self.holding.code);
+        self.chip_fault.stuck_at = Some(self.holding.code);
     }
 
     /// The level of the START pin changes at `at`: conversions begin with its rise, in one moment in all
@@ -147,7 +147,7 @@ impl Ads1262 {
         );
         let hertz = timing::hertz(registers.value(registers::RATE));
         self.clear();
-        if !self.sickness.is_dead {
+        if !self.chip_fault.is_dead {
             self.running = Some(Cadence { since: at + latency, count: 0, hertz });
         }
     }
@@ -184,7 +184,7 @@ impl<E: AnalogueInput> SpiChip<E> for Ads1262 {
         self.running = (!self.registers.is_set(registers::ONE_SHOT)).then_some(running);
         self.overwritten += u64::from(self.holding.is_new);
         let (converted, alarms) = analogue::convert(&self.registers, self.voltages, volts);
-        let code = self.sickness.stuck_at.unwrap_or(converted);
+        let code = self.chip_fault.stuck_at.unwrap_or(converted);
         self.holding = Holding { code, alarms, is_new: true };
         self.is_ready = true;
     }

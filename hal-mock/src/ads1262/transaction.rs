@@ -80,7 +80,7 @@ impl Ads1262 {
     /// The answer to a read command, in which a bit of the data may be wrong.
     fn commanded_frame(&mut self) -> Frame {
         let mut frame = self.frame();
-        if core::mem::take(&mut self.sickness.corrupts_next) {
+        if core::mem::take(&mut self.chip_fault.corrupts_next) {
             frame.iter_mut().skip(2).take(1).for_each(|byte| *byte ^= 0x10);
         }
         frame
@@ -161,7 +161,7 @@ impl Ads1262 {
 
     /// Writes a register at the end of its byte, with what that starts anew.
     fn write(&mut self, address: u8, value: u8, at: Instant) {
-        if self.sickness.broken_register == Some(address) {
+        if self.chip_fault.broken_register == Some(address) {
             return;
         }
         let was_on = self.registers.is_set(registers::REFERENCE_ON);

@@ -81,9 +81,9 @@ impl Oscillator {
     }
 }
 
-/// What only a chip can suffer from.
+/// What only a chip can inject from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Sickness {
+pub enum ChipFault {
     /// The chip is well.
     #[default]
     None,
@@ -117,7 +117,7 @@ pub struct Tmc5160 {
     /// Latched bits of `RAMP_STAT`.
     events: u32,
     /// What the chip suffers from.
-    sickness: Sickness,
+    chip_fault: ChipFault,
     /// Levels of REFL and REFR.
     pins: [bool; 2],
     /// The active switches at the last look, left and right.
@@ -154,7 +154,7 @@ impl Tmc5160 {
             registers: registers::reset(MAP),
             ramp: Ramp::at(0),
             events: 0,
-            sickness: Sickness::None,
+            chip_fault: ChipFault::None,
             pins: [false; 2],
             stops_seen: 0,
             was_reached: false,
@@ -176,8 +176,8 @@ impl Tmc5160 {
 
     /// Makes the chip sick, or well again; flags of errors that have been raised stay until they are
     /// cleared. A loss of supply does not heal it.
-    pub fn suffer(&mut self, sickness: Sickness) {
-        self.sickness = sickness;
+    pub fn inject(&mut self, chip_fault: ChipFault) {
+        self.chip_fault = chip_fault;
         self.catch_errors();
     }
 
@@ -338,7 +338,7 @@ impl<E: Mechanics> SpiChip<E> for Tmc5160 {
     fn power_cycle(&mut self, now: Instant) {
         let field = self.field();
         let violations = core::mem::take(&mut self.violations);
-        *self = Self { sickness: self.sickness, ..Self::new(self.oscillator, now) };
+        *self = Self { chip_fault: self.chip_fault, ..Self::new(self.oscillator, now) };
         // The rotor is drawn to the nearest beginning of an electrical period.
         self.ramp = Ramp::at((field + PERIOD / 2).div_euclid(PERIOD) * PERIOD);
         self.ramp.ask(Demand::of(&self.registers));

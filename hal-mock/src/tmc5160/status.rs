@@ -2,7 +2,7 @@
 
 use super::map::address;
 use super::ramp::Stops;
-use super::{FREE_RUNNING, Sickness, Tmc5160};
+use super::{ChipFault, FREE_RUNNING, Tmc5160};
 
 /// `RAMP_STAT` (6.3.2.2).
 mod ramp_stat {
@@ -101,10 +101,10 @@ impl Tmc5160 {
 
     /// Global flags of errors that persist; a short stays until the bridges are switched off.
     pub(super) fn catch_errors(&mut self) {
-        let errors = match self.sickness {
-            Sickness::Overheated => DRV_ERR,
-            Sickness::Short => flag(self.is_enabled(), DRV_ERR),
-            Sickness::ChargePumpLow => UV_CP,
+        let errors = match self.chip_fault {
+            ChipFault::Overheated => DRV_ERR,
+            ChipFault::Short => flag(self.is_enabled(), DRV_ERR),
+            ChipFault::ChargePumpLow => UV_CP,
             _ => 0,
         };
         self.registers[usize::from(address::GSTAT)] |= errors;
@@ -152,10 +152,10 @@ impl Tmc5160 {
     fn driver_status(&self) -> u32 {
         let is_still = self.is_still();
         let load = if self.is_stalling() { 0 } else { FREE_RUNNING };
-        let errors = match self.sickness {
-            Sickness::Overheated => 1 << 25 | 1 << 26,
-            Sickness::Short => flag(self.is_enabled(), 1 << 27),
-            Sickness::OpenLoad => flag(self.is_enabled() && !is_still, 1 << 29),
+        let errors = match self.chip_fault {
+            ChipFault::Overheated => 1 << 25 | 1 << 26,
+            ChipFault::Short => flag(self.is_enabled(), 1 << 27),
+            ChipFault::OpenLoad => flag(self.is_enabled() && !is_still, 1 << 29),
             _ => 0,
         };
         load | errors
@@ -184,17 +184,17 @@ impl Tmc5160 {
 
     /// Whether the bridges are on: an off time, and the enable pin.
     fn is_enabled(&self) -> bool {
-        self.written(address::CHOPCONF) & 0xF != 0 && self.sickness != Sickness::Disabled
+        self.written(address::CHOPCONF) & 0xF != 0 && self.chip_fault != ChipFault::Disabled
     }
 
     /// The register IOIN of this moment.
     fn inputs(&self) -> u32 {
         let [left, right] = self.pins;
-        let version = if self.sickness == Sickness::Foreign { 0x11 } else { 0x30 };
+        let version = if self.chip_fault == ChipFault::Foreign { 0x11 } else { 0x30 };
         flag(left, 1)
             | flag(right, 1 << 1)
-            | flag(self.sickness == Sickness::Disabled, 1 << 4)
-            | flag(self.sickness == Sickness::StepMode, 1 << 6)
+            | flag(self.chip_fault == ChipFault::Disabled, 1 << 4)
+            | flag(self.chip_fault == ChipFault::StepMode, 1 << 6)
             | version << 24
     }
 

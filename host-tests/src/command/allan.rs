@@ -10,7 +10,7 @@ use host::planning::Suggestion;
 use host::recording::{self, Recording};
 use orientation::noise::fit::FitError;
 
-use super::{Failure, Told, files};
+use super::{Answer, Failure, files};
 
 /// Which recording, and what of it.
 #[derive(Args)]
@@ -37,16 +37,16 @@ impl AllanOptions {
 }
 
 /// Analyses a recording.
-pub fn run(options: &AllanOptions, as_json: bool) -> Result<Told, Failure> {
+pub fn run(options: &AllanOptions, as_json: bool) -> Result<Answer, Failure> {
     let recording = recording::read(&options.file).map_err(|error| error.told())?;
     let warnings = recording.told_warnings(&options.file);
     analyse(options, recording, as_json)
         .map_err(|reason| Failure { warnings: warnings.clone(), ..reason.into() })
-        .map(|told| told.with_warnings(warnings))
+        .map(|answer| answer.with_warnings(warnings))
 }
 
 /// Analyses what was read.
-fn analyse(options: &AllanOptions, recording: Recording, as_json: bool) -> Result<Told, String> {
+fn analyse(options: &AllanOptions, recording: Recording, as_json: bool) -> Result<Answer, String> {
     let name = options.file.display().to_string();
     let (header, body, _) = recording.into_parts();
     let rest = Rest::take(&header, &body, options.column.as_deref())
@@ -62,12 +62,12 @@ fn analyse(options: &AllanOptions, recording: Recording, as_json: bool) -> Resul
     };
     let refusal = analysis.as_ref().err().map(|reason| refusal(&name, &rest, reason));
     let report = || shown.report().text();
-    let told = Told::of(refusal.is_none(), as_json, &shown.object(), report)?;
-    Ok(Told { refusal, ..told }.with_page(options.report.as_deref(), || shown.report()))
+    let answer = Answer::of(refusal.is_none(), as_json, &shown.object(), report)?;
+    Ok(Answer { refusal, ..answer }.with_page(options.report.as_deref(), || shown.report()))
 }
 
 /// Why there is no noise, with what is to be known of the record.
 fn refusal(name: &str, rest: &Rest, reason: &FitError) -> String {
-    let told = [vec![reason.to_string()], rest.notes()].concat().join("; ");
-    format!("{name}: column {}: {told}", rest.column)
+    let reasons = [vec![reason.to_string()], rest.notes()].concat().join("; ");
+    format!("{name}: column {}: {reasons}", rest.column)
 }

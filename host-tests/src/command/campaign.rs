@@ -8,7 +8,7 @@ use firmware::simulated::fault::Platform;
 use host::campaign::{Asked, CAMPAIGNS, Campaign, Done, disturbed};
 use host::output::progress::Progress;
 
-use super::{Told, faults as of_run, files, whole};
+use super::{Answer, faults as of_run, files, whole};
 
 /// Which campaign, how long.
 #[derive(Args)]
@@ -73,7 +73,7 @@ impl CampaignOptions {
 }
 
 /// Runs a campaign.
-pub fn run(options: &CampaignOptions, as_json: bool) -> Result<Told, String> {
+pub fn run(options: &CampaignOptions, as_json: bool) -> Result<Answer, String> {
     let campaign = options.campaign;
     let asked = Asked {
         runs: options.runs.map_or(campaign.runs, |runs| runs as usize),
@@ -85,7 +85,7 @@ pub fn run(options: &CampaignOptions, as_json: bool) -> Result<Told, String> {
     progress.finish();
     object["campaign"] = campaign.name.into();
     object["status"] = if refusal.is_none() { "ok" } else { "failed" }.into();
-    let told = Told::of(refusal.is_none(), as_json, &object, || report.text())?;
-    let told = Told { refusal: refusal.map(str::to_owned), ..told };
-    Ok(told.with_page(options.report.as_deref(), || report))
+    let answer = Answer::of(refusal.is_none(), as_json, &object, || report.text())?;
+    let answer = Answer { refusal: refusal.map(str::to_owned), ..answer };
+    Ok(answer.with_page(options.report.as_deref(), || report))
 }

@@ -4,7 +4,7 @@ use clap::Args;
 use host::emulate::emulate;
 use host::output::{emulation, say};
 
-use super::Told;
+use super::Answer;
 
 /// What to emulate.
 #[derive(Args)]
@@ -15,10 +15,11 @@ pub struct EmulateOptions {
 }
 
 /// Runs the firmware's images; whether all is as it must be.
-pub fn run(options: &EmulateOptions, as_json: bool) -> Result<Told, String> {
+pub fn run(options: &EmulateOptions, as_json: bool) -> Result<Answer, String> {
     let found = emulate(options.seed, |line| say(&line.to_string()))?;
     let object = emulation::object(&found);
-    let told = Told::of(found.is_right(), as_json, &object, || emulation::report(&found).text())?;
+    let answer =
+        Answer::of(found.is_right(), as_json, &object, || emulation::report(&found).text())?;
     let refusal = (!found.is_right()).then(|| "not all is as it must be".to_owned());
-    Ok(Told { refusal, ..told })
+    Ok(Answer { refusal, ..answer })
 }

@@ -4,7 +4,7 @@ use firmware::simulated::fault::{Fault, Platform};
 use orientation::device::Device;
 use serde_json::json;
 
-use super::Told;
+use super::Answer;
 
 /// A fault that is asked for, or the wish to see the names.
 #[derive(Clone, Copy, Debug)]
@@ -67,8 +67,8 @@ pub fn check(fault: Fault, platform: Platform, no_base_imu: bool) -> Result<(), 
 ///
 /// # Errors
 /// Those of the writer.
-pub fn list(platform: Platform, as_json: bool) -> Result<Told, String> {
+pub fn list(platform: Platform, as_json: bool) -> Result<Answer, String> {
     let names: Vec<String> = Fault::all(platform).map(|fault| fault.to_string()).collect();
     let object = json!({ "status": "ok", "faults": names });
-    Told::of(true, as_json, &object, || names.join("\n"))
+    Answer::of(true, as_json, &object, || names.join("\n"))
 }

@@ -1,4 +1,4 @@
-//! The commands of the program, one file each: options in, [`Told`] out.
+//! The commands of the program, one file each: options in, [`Answer`] out.
 
 pub mod allan;
 pub mod campaign;
@@ -23,7 +23,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 /// What came of a command, ready to print.
-pub struct Told {
+pub struct Answer {
     /// Whether there was a result.
     pub found: bool,
     /// For standard output.
@@ -66,7 +66,7 @@ impl From<String> for Failure {
     }
 }
 
-impl Told {
+impl Answer {
     /// The object, or the text.
     fn of(
         found: bool,
@@ -148,13 +148,13 @@ impl Shown<'_> {
     ///
     /// # Errors
     /// An object that cannot be serialised.
-    pub fn told(self, report: Option<&Path>, as_json: bool) -> Result<Told, String> {
+    pub fn answer(self, report: Option<&Path>, as_json: bool) -> Result<Answer, String> {
         let Self { name, outcome, finished, truth, body } = self;
         let made = |figures| outcome::report(name, &outcome, finished, figures);
-        let told = Told::of(outcome.is_ok(), as_json, &outcome, || made(Vec::new()).text())?;
+        let answer = Answer::of(outcome.is_ok(), as_json, &outcome, || made(Vec::new()).text())?;
         let refusal = outcome.reason.clone();
         let page = || made(finished.figures(&outcome, truth, body));
-        Ok(Told { refusal, ..told }.with_page(report, page))
+        Ok(Answer { refusal, ..answer }.with_page(report, page))
     }
 }
 
@@ -216,7 +216,7 @@ fn sigma(text: &str) -> Result<f64, String> {
     }
 }
 
-impl Told {
+impl Answer {
     /// The same with a page for `--report`, where one was asked for. A page that cannot be written is a
     /// failure, but the rest is not lost with it.
     fn with_page(self, path: Option<&Path>, page: impl FnOnce() -> Report) -> Self {

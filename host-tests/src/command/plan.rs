@@ -10,7 +10,7 @@ use orientation::noise::model::GyroNoise;
 use serde::Serialize;
 use serde_json::json;
 
-use super::{Told, files, latitude};
+use super::{Answer, files, latitude};
 
 /// The gyro, the place, the stage, and what is asked.
 #[derive(Args)]
@@ -105,20 +105,20 @@ struct Found {
 }
 
 /// Plans.
-pub fn run(options: &PlanOptions, as_json: bool) -> Result<Told, String> {
+pub fn run(options: &PlanOptions, as_json: bool) -> Result<Answer, String> {
     let request = Request::from(options);
     let planned = match request.plan() {
         Ok(planned) => planned,
         Err(why) => return refused(&why.to_string(), as_json),
     };
     let object = Found { status: "ok", planned };
-    let told = Told::of(true, as_json, &object, || plan::report(&request, &planned).text())?;
-    Ok(told.with_page(options.report.as_deref(), || plan::page::report(&request, &planned)))
+    let answer = Answer::of(true, as_json, &object, || plan::report(&request, &planned).text())?;
+    Ok(answer.with_page(options.report.as_deref(), || plan::page::report(&request, &planned)))
 }
 
 /// No schedule, and why.
-fn refused(why: &str, as_json: bool) -> Result<Told, String> {
+fn refused(why: &str, as_json: bool) -> Result<Answer, String> {
     let object = json!({ "status": "refused", "reason": why });
-    let told = Told::of(false, as_json, &object, String::new)?;
-    Ok(Told { refusal: Some(why.to_owned()), ..told })
+    let answer = Answer::of(false, as_json, &object, String::new)?;
+    Ok(Answer { refusal: Some(why.to_owned()), ..answer })
 }

@@ -14,7 +14,7 @@ use orientation::align::criterion::Criterion;
 use orientation::earth::Latitude;
 
 use super::given::{Given, long};
-use super::{Failure, Half, Shown, Told, explained, files, latitude, sigma};
+use super::{Answer, Failure, Half, Shown, explained, files, latitude, sigma};
 
 /// Which recording, and how it is taken.
 #[derive(Args)]
@@ -113,7 +113,7 @@ fn check(given: &Given, method: &Method) -> Result<(), String> {
 }
 
 /// Replays a recording.
-pub fn run(options: &ReplayOptions, given: &Given, as_json: bool) -> Result<Told, Failure> {
+pub fn run(options: &ReplayOptions, given: &Given, as_json: bool) -> Result<Answer, Failure> {
     let recording = recording::read(&options.file).map_err(|error| error.told())?;
     let usual = || methods::named(methods::usual(&recording)).unwrap_or(&METHODS[0]);
     let method = options.method.unwrap_or_else(usual);
@@ -122,7 +122,7 @@ pub fn run(options: &ReplayOptions, given: &Given, as_json: bool) -> Result<Told
     let warnings = recording.told_warnings(&options.file);
     replay(options, method, recording, as_json)
         .map_err(|reason| Failure { warnings: warnings.clone(), ..reason.into() })
-        .map(|told| told.with_warnings(warnings))
+        .map(|answer| answer.with_warnings(warnings))
 }
 
 /// Replays what was read.
@@ -131,7 +131,7 @@ fn replay(
     method: &Method,
     recording: Recording,
     as_json: bool,
-) -> Result<Told, String> {
+) -> Result<Answer, String> {
     let name = options.file.display().to_string();
     let (header, body, truth) = recording.into_parts();
     let (asked, progress) = (options.asked(method), Progress::new(0, "positions"));
@@ -147,11 +147,11 @@ fn replay(
     let outcome = Outcome { source: Some(Source::File(name.clone())), reason, ..outcome };
     let (finished, body) = (&*finished, Some(&body));
     let shown = Shown { name: &name, outcome, finished, truth: &truth, body };
-    let told = shown.told(options.report.as_deref(), as_json)?;
-    let refusal = told.refusal.as_ref().map(|reason| format!("{name}: {reason}"));
+    let answer = shown.answer(options.report.as_deref(), as_json)?;
+    let refusal = answer.refusal.as_ref().map(|reason| format!("{name}: {reason}"));
     let attitude = options.attitude_out.as_ref().zip(finished.attitude());
     let written = attitude.map_or(Ok(()), |(path, moments)| {
         write_attitude(path, moments).map_err(|error| unwritten::told("the attitude", path, &error))
     });
-    Ok(Told { refusal, ..told }.with_written(written))
+    Ok(Answer { refusal, ..answer }.with_written(written))
 }

@@ -19,7 +19,7 @@ use super::harness::{self, Harness};
 use super::{Run, RunError};
 use crate::virtual_time;
 
-/// The store of a board that keeps couplings, and what it is told of the time.
+/// The store of a board that keeps misalignments, and what it is told of the time.
 pub struct Keeping {
     /// Where they are kept.
     pub store: FlashStore<Flash>,
@@ -49,7 +49,7 @@ pub fn align_turning<R: Recorder, W: Observer>(
     align_turning_again(scenario, fault, recorder, watch, None)
 }
 
-/// The same on a board that may have found couplings before, and keeps those that it finds.
+/// The same on a board that may have found misalignments before, and keeps those that it finds.
 ///
 /// # Errors
 /// Those of [`align_turning`].

@@ -56,10 +56,10 @@ fn north_is_found_as_well_as_the_limit_allows_over_sites_attitudes_and_tilts(ext
 /// What a fault must come to: an azimuth, or a refusal whose reason says this.
 fn expected(fault: &str) -> Option<&'static str> {
     const NOT_THERE: &str = "another chip answers, or none";
-    let (device, sickness) = fault.split_once('-').expect("device and sickness");
+    let (device, chip_fault) = fault.split_once('-').expect("device and its fault");
     let [is_gyro, is_stage] = ["gyro", "stage"].map(|name| device == name);
     let is_force = device == "accelerometer";
-    match sickness {
+    match chip_fault {
         "identity" => Some(NOT_THERE),
         "silent" => Some("gives no more data"),
         // Without a checksum a broken reply shows in identity or read-back, after a while.

@@ -31,7 +31,7 @@ fn a_flat_gyro_reaches_its_limit_after_every_stage_of_compensation(extent: Exten
     for row in &found {
         let precision = &row.precision;
         assert_eq!(precision.refused, 0, "{precision:?}");
-        let [raw, coupling, senses, full] =
+        let [raw, misalignment, senses, full] =
             [0, 1, 2, 3].map(|index| row.stages.get(index).map_or(f64::NAN, |s| s.rms_deg));
         // The platform's own motion leaves 0.002°, which only the quietest gyro shows.
         let most = if row.n_deg_sqrt_h < 0.001 { 0.15 } else { 0.05 };
@@ -39,7 +39,7 @@ fn a_flat_gyro_reaches_its_limit_after_every_stage_of_compensation(extent: Exten
         assert!(precision.ratio > 1.0 - extent.rms(0.08, runs), "{precision:?}");
         assert!(precision.worst_sigmas < 4.5, "{precision:?}");
         rows.push(format!(
-            "| N {} | {raw:.1}° | {coupling:.2}° | {senses:.2}° | {full:.4}° | {:.4}° | {:.3} | {} |",
+            "| N {} | {raw:.1}° | {misalignment:.2}° | {senses:.2}° | {full:.4}° | {:.4}° | {:.3} | {} |",
             row.n_deg_sqrt_h,
             precision.limit_deg,
             precision.ratio,
@@ -76,7 +76,7 @@ fn the_raw_error_is_greatest_where_the_unevenness_acts_across_the_azimuth(rows: 
 }
 
 fn two_speeds_free_a_molecular_electronic_sensor_of_its_g_sensitivity(extent: Extent) {
-    // What the coupling's own error leaves comes on top, with or without a g-sensitivity; the noise is 5/3 of the
+    // What the misalignment's own error leaves comes on top, with or without a g-sensitivity; the noise is 5/3 of the
     // limit.
     let (runs, aligned, leaning, noise) = match extent {
         Extent::Whole => (RUNS[1], [0.01, 0.03], [0.02, 0.03], 2.5),

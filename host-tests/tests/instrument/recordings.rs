@@ -167,7 +167,7 @@ fn stage(seed: u64) -> Scenario {
 fn turntable(seed: u64) -> TurntableScenario {
     let base = Scenario { sample_rate_hz: 100.0, ..Scenario::usual(seed) };
     let brief = TurntableScenario::brief(seed);
-    TurntableScenario { base, uneven_turns: 6, turns: 4, ..brief }
+    TurntableScenario { base, modulated_turns: 6, turns: 4, ..brief }
 }
 
 /// Three stops of a minute.

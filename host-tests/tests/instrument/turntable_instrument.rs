@@ -18,7 +18,7 @@ use rayon::prelude::*;
 fn short(seed: u64) -> TurntableScenario {
     let base = Scenario { sample_rate_hz: 100.0, ..Scenario::usual(seed) };
     let brief = TurntableScenario::brief(seed);
-    TurntableScenario { base, uneven_turns: 6, turns: 4, ..brief }
+    TurntableScenario { base, modulated_turns: 6, turns: 4, ..brief }
 }
 
 fn run_with(scenario: &TurntableScenario, fault: Option<Fault>) -> TurntableRun {
@@ -66,8 +66,9 @@ fn the_default_run_finds_north_and_breaks_no_rule_of_a_chip() {
     assert_north(&scenario, &run);
     assert_eq!(run.run.violations, Vec::<String>::new());
     assert_eq!(run.run.health.faults(), 0, "{:?}", run.run.health);
-    let coupling = run.run.replay.couplings().next().expect("the uneven turns show it");
-    let off = degrees(coupling.angle()) - scenario.elevation_deg;
+    let misalignment =
+        run.run.replay.misalignments().next().expect("the rate-modulated turns show it");
+    let off = degrees(misalignment.angle()) - scenario.elevation_deg;
     assert!(off.abs() < 1e-3, "the axis is found {off}° beside its elevation");
     assert_eq!(run.run.replay.turns(), (20, 20));
 }
@@ -84,7 +85,7 @@ fn a_molecular_electronic_sensor_finds_north_at_two_speeds() {
 
 #[test]
 fn a_sensor_that_leads_finds_north_at_every_azimuth_although_its_motor_is_fast() {
-    // Where the unevenness acts across the Earth rate, a coupling beside the turn would show at 8 σ.
+    // Where the unevenness acts across the Earth rate, a misalignment beside the turn would show at 8 σ.
     for azimuth_deg in [33.7, 123.7, 303.7] {
         let molecular = TurntableScenario::molecular(1);
         let base = Scenario { azimuth_deg, ..molecular.base };
@@ -114,7 +115,7 @@ fn the_log_tells_what_the_board_did_in_order() {
         "begin: 8 turns at latitude 47.58",
         "identity and self-test passed",
         "level: platform inclined",
-        "uneven turns, 72.00 °/s in the mean",
+        "rate-modulated turns, 72.00 °/s in the mean",
         "stage: turns at 72.00 °/s",
         "gyro's axis 0.80",
         "turns count from here: clockwise, 72.00 °/s",
@@ -132,9 +133,9 @@ fn the_log_tells_what_the_board_did_in_order() {
     assert!(run.lines.contains("measuring 7/8"), "{}", run.lines);
 }
 
-/// Between two commands of an uneven turn pass 50 ms: they are not worth a line each.
+/// Between two commands of a rate-modulated turn pass 50 ms: they are not worth a line each.
 #[test]
-fn the_commands_of_an_uneven_turn_are_not_told() {
+fn the_commands_of_a_modulated_turn_are_not_told() {
     let run = run(&short(1));
     let rates = run.run.events.iter().filter(|(_, event)| matches!(event, Event::Revolving(..)));
     assert_eq!(rates.count(), 3, "clockwise, counter-clockwise, at rest");
@@ -151,14 +152,14 @@ fn the_platform_comes_to_rest_whatever_the_end() {
 }
 
 #[test]
-fn a_stored_coupling_spares_the_uneven_turns() {
+fn a_stored_misalignment_spares_the_modulated_turns() {
     let before = run(&short(5)).run.replay;
     let mut stored = [None; SPEEDS];
-    stored.iter_mut().zip(before.couplings()).for_each(|(place, found)| *place = Some(found));
-    let scenario = TurntableScenario { uneven_turns: 0, stored, ..short(6) };
+    stored.iter_mut().zip(before.misalignments()).for_each(|(place, found)| *place = Some(found));
+    let scenario = TurntableScenario { modulated_turns: 0, stored, ..short(6) };
     let run = run(&scenario);
     assert_north(&scenario, &run);
-    assert!(!told(&run).iter().any(|line| line.contains("uneven")));
+    assert!(!told(&run).iter().any(|line| line.contains("rate-modulated")));
 }
 
 #[test]

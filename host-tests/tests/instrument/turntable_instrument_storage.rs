@@ -1,4 +1,4 @@
-//! Couplings are kept over a loss of supply: whenever it comes, the old one or the new one is there. The
+//! Axis misalignments are kept over a loss of supply: whenever it comes, the old one or the new one is there. The
 //! whole instrument uses what it kept, and tells it.
 
 use drivers::fault::Fault;
@@ -13,7 +13,7 @@ use host::instrument::{Keeping, TurntableRun, align_turning_again};
 use host::output::{azimuth_error, degrees};
 use host::virtual_time::run;
 use orientation::align::conclusion::Azimuth;
-use orientation::align::rotating::coupling::{BYTES, Coupling};
+use orientation::align::rotating::misalignment::{AxisMisalignment, BYTES};
 use orientation::error::Refusal;
 use proptest::prelude::*;
 
@@ -25,8 +25,8 @@ fn load(store: &mut FlashStore<Flash>) -> Option<[u8; BYTES]> {
     run(store.load(0)).expect("it ends").expect("the flash is sound")
 }
 
-fn coupling(sine: f64, date: u64) -> Coupling {
-    Coupling {
+fn misalignment(sine: f64, date: u64) -> AxisMisalignment {
+    AxisMisalignment {
         sine,
         quadrature: 1e-6,
         sine_sigma: 1e-6,
@@ -38,10 +38,10 @@ fn coupling(sine: f64, date: u64) -> Coupling {
 }
 
 fn stored(number: u8) -> [u8; BYTES] {
-    coupling(f64::from(number) * 1e-4, 1_700_000_000).to_bytes()
+    misalignment(f64::from(number) * 1e-4, 1_700_000_000).to_bytes()
 }
 
-/// A store with so many couplings written one after the other, the last of number 1.
+/// A store with so many misalignments written one after the other, the last of number 1.
 fn used(times: usize) -> FlashStore<Flash> {
     let mut store = Flash::default().store();
     for _ in 0..times {
@@ -74,7 +74,7 @@ fn what_is_saved_last_is_loaded_from_then_on() {
 /// At every word of a save, on an empty page, in the middle of one, and where pages are changed and
 /// erased.
 #[test]
-fn a_loss_of_supply_at_any_moment_leaves_the_old_coupling_or_the_new_one() {
+fn a_loss_of_supply_at_any_moment_leaves_the_old_misalignment_or_the_new_one() {
     let mut cuts = 0;
     for times in [0, 5, 20, 21, 22, 23, 24, 25, 26, 27, 28] {
         for cut in 0..effort(times) {
@@ -97,14 +97,14 @@ fn a_loss_of_supply_at_any_moment_leaves_the_old_coupling_or_the_new_one() {
 }
 
 #[test]
-fn every_speed_has_its_own_coupling_and_all_are_needed() {
+fn every_speed_has_its_own_misalignment_and_all_are_needed() {
     let mut store = Flash::default().store();
     let today = Today { date: Some(1_700_000_100), longest: Some(3600) };
     let recalled = |store: &mut FlashStore<Flash>, speeds: &[f64]| {
         run(recall(store, speeds, today)).expect("it ends").expect("the flash is sound")
     };
     assert_eq!(recalled(&mut store, &[0.9]), None);
-    let found = [coupling(0.01, 1_700_000_000), coupling(0.02, 1_700_000_050)];
+    let found = [misalignment(0.01, 1_700_000_000), misalignment(0.02, 1_700_000_050)];
     run(keep(&mut store, found.into_iter().take(1))).expect("it ends").expect("there is room");
     assert_eq!(recalled(&mut store, &[0.9]), Some([Some(found[0]), None]));
     assert_eq!(recalled(&mut store, &[0.9, 0.9]), None);
@@ -113,7 +113,7 @@ fn every_speed_has_its_own_coupling_and_all_are_needed() {
 }
 
 #[test]
-fn what_is_no_coupling_is_not_recalled() {
+fn what_is_no_misalignment_is_not_recalled() {
     let mut store = Flash::default().store();
     let mut bytes = stored(1);
     bytes[12] ^= 1;
@@ -131,17 +131,17 @@ fn keeping(flash: Flash, date: u64) -> Keeping {
     Keeping { store: flash.store(), today: Today { date: Some(date), longest: None } }
 }
 
-/// A short alignment with so many uneven turns.
-fn scenario(seed: u64, uneven_turns: u32) -> TurntableScenario {
+/// A short alignment with so many rate-modulated turns.
+fn scenario(seed: u64, modulated_turns: u32) -> TurntableScenario {
     let base = Scenario { sample_rate_hz: 100.0, ..Scenario::usual(seed) };
-    TurntableScenario { base, uneven_turns, turns: 4, ..TurntableScenario::brief(seed) }
+    TurntableScenario { base, modulated_turns, turns: 4, ..TurntableScenario::brief(seed) }
 }
 
-/// A sensor that is not flat, which must know its coupling.
-fn molecular(uneven_turns: u32) -> TurntableScenario {
+/// A sensor that is not flat, which must know its misalignment.
+fn molecular(modulated_turns: u32) -> TurntableScenario {
     let molecular = TurntableScenario::molecular(1);
     let base = Scenario { sample_rate_hz: 100.0, ..molecular.base };
-    TurntableScenario { base, uneven_turns, turns: 2, ..molecular }
+    TurntableScenario { base, modulated_turns, turns: 2, ..molecular }
 }
 
 fn aligned(scenario: &TurntableScenario, keeping: &mut Keeping) -> TurntableRun {
@@ -158,17 +158,17 @@ fn told(run: &TurntableRun, part: &str) -> Option<String> {
 }
 
 #[test]
-fn what_an_uneven_turn_found_gives_the_same_north_the_next_time() {
+fn what_a_modulated_turn_found_gives_the_same_north_the_next_time() {
     let mut before = keeping(Flash::default(), THEN);
     let first = aligned(&scenario(5, 6), &mut before);
-    let kept = told(&first, "coupling kept").expect("it is kept");
+    let kept = told(&first, "axis misalignment saved").expect("it is kept");
     assert!(kept.contains("found on 2026-03-14 at 2") && kept.contains("°C"), "{kept}");
     let mut after = keeping(before.store.into_flash(), NOW);
     let second = aligned(&scenario(5, 0), &mut after);
-    let recalled = told(&second, "coupling recalled").expect("it is used");
+    let recalled = told(&second, "misalignment recalled").expect("it is used");
     assert_eq!(recalled.replace("recalled", "kept"), kept);
-    assert_eq!(told(&second, "uneven"), None);
-    assert_eq!(told(&second, "coupling kept"), None, "nothing new was found");
+    assert_eq!(told(&second, "rate-modulated"), None);
+    assert_eq!(told(&second, "axis misalignment saved"), None, "nothing new was found");
     let [first, second] = [&first, &second].map(|run| verdict(run).expect("north"));
     let apart = azimuth_error(degrees(first.angle), degrees(second.angle)).abs();
     // Both have noise of their own.
@@ -176,16 +176,16 @@ fn what_an_uneven_turn_found_gives_the_same_north_the_next_time() {
 }
 
 #[test]
-fn a_sensor_that_must_know_its_coupling_is_refused_before_anything_turns() {
+fn a_sensor_that_must_know_its_misalignment_is_refused_before_anything_turns() {
     let mut keeping = keeping(Flash::default(), NOW);
     let run = aligned(&molecular(0), &mut keeping);
-    assert_eq!(verdict(&run), Err(Refusal::CouplingUnknown));
-    assert!(told(&run, "no stored coupling").is_some());
+    assert_eq!(verdict(&run), Err(Refusal::MisalignmentUnknown));
+    assert!(told(&run, "no stored axis misalignment").is_some());
     assert_eq!(told(&run, "stage: turns"), None);
 }
 
 #[test]
-fn couplings_of_both_speeds_of_a_molecular_electronic_sensor_are_used_again() {
+fn misalignments_of_both_speeds_of_a_molecular_electronic_sensor_are_used_again() {
     let mut before = keeping(Flash::default(), THEN);
     verdict(&aligned(&molecular(12), &mut before)).expect("north");
     let mut after = keeping(before.store.into_flash(), NOW);
@@ -207,9 +207,9 @@ fn a_refused_session_keeps_nothing() {
 }
 
 #[test]
-fn a_coupling_of_another_speed_or_of_tomorrow_is_not_used() {
+fn a_misalignment_of_another_speed_or_of_tomorrow_is_not_used() {
     let mut store = Flash::default().store();
-    let found = coupling(0.01, THEN);
+    let found = misalignment(0.01, THEN);
     run(keep(&mut store, core::iter::once(found))).expect("it ends").expect("there is room");
     let mut recalled = |speed: f64, date| {
         let today = Today { date: Some(date), longest: None };
@@ -229,7 +229,7 @@ fn a_store_that_fails_is_told_and_north_is_found_all_the_same() {
     let mut keeping = keeping(flash, THEN);
     let run = aligned(&scenario(5, 6), &mut keeping);
     verdict(&run).expect("north");
-    assert!(told(&run, "coupling lost, it could not be kept: bus error").is_some());
+    assert!(told(&run, "axis misalignment not saved: bus error").is_some());
 }
 
 /// Seconds by `date -u -d … +%s`.
@@ -257,10 +257,10 @@ fn days_are_those_of_the_calendar() {
 
 proptest! {
     #[test]
-    fn a_coupling_is_fresh_between_its_date_and_the_longest_age(
+    fn a_misalignment_is_fresh_between_its_date_and_the_longest_age(
         found in 1_u64..4_000_000_000, age in 0_u64..4_000_000_000, longest in 0_u64..4_000_000_000,
     ) {
-        let fresh = |date, longest| Today { date, longest }.is_fresh(&coupling(0.01, found));
+        let fresh = |date, longest| Today { date, longest }.is_fresh(&misalignment(0.01, found));
         prop_assert_eq!(fresh(Some(found + age), Some(longest)), age <= longest);
         prop_assert!(fresh(Some(found + age), None));
         prop_assert!(!fresh(Some(found - 1), Some(longest)), "it is from the future");
@@ -270,10 +270,10 @@ proptest! {
     }
 
     #[test]
-    fn a_coupling_without_a_date_is_fresh_where_its_age_does_not_matter(
+    fn a_misalignment_without_a_date_is_fresh_where_its_age_does_not_matter(
         date in prop::option::of(1_u64..4_000_000_000), longest in 0_u64..4_000_000_000,
     ) {
-        let undated = coupling(0.01, 0);
+        let undated = misalignment(0.01, 0);
         let of_an_age = Today { date, longest: Some(longest) };
         prop_assert!(!of_an_age.is_fresh(&undated));
         let any_age = Today { date, longest: None };

@@ -38,12 +38,12 @@ fn speeds_and_turns_are_those_that_were_asked_for() {
 }
 
 #[test]
-fn a_flash_file_spares_the_uneven_turns_of_the_next_run() {
+fn a_flash_file_spares_the_modulated_turns_of_the_next_run() {
     let scratch = Scratch::new("kept");
     let file = scratch.path("flash");
     let turns = ["turntable", "--turns", "4", "--json", "--flash", file.as_str()];
     let first = run(&[&turns[..], &["--date", "2026-03-14"]].concat());
-    let second = run(&[&turns[..], &["--date", "2026-03-20", "--uneven-turns", "0"]].concat());
+    let second = run(&[&turns[..], &["--date", "2026-03-20", "--modulated-turns", "0"]].concat());
     let [first, second] = [first, second].map(|output| object(&output));
     assert_eq!(first["recalled"], Value::Array(Vec::new()));
     let number = |object: &Value, key: &str| object[key].as_f64().unwrap_or(f64::NAN);
@@ -61,15 +61,23 @@ fn a_flash_file_spares_the_uneven_turns_of_the_next_run() {
 }
 
 #[test]
-fn a_molecular_electronic_sensor_without_a_stored_coupling_is_refused() {
+fn a_molecular_electronic_sensor_without_a_stored_misalignment_is_refused() {
     let scratch = Scratch::new("empty");
     let file = scratch.path("flash");
-    let output =
-        run(&["turntable", "--sensor", "met", "--uneven-turns", "0", "--flash", &file, "--json"]);
+    let output = run(&[
+        "turntable",
+        "--sensor",
+        "met",
+        "--modulated-turns",
+        "0",
+        "--flash",
+        &file,
+        "--json",
+    ]);
     let object = object(&output);
     assert_eq!((output.status.code(), &object["status"]), (Some(1), &"refused".into()));
     let reason = object["reason"].as_str().unwrap_or_default();
-    assert!(reason.contains("turn it unevenly first"), "{reason}");
+    assert!(reason.contains("modulate its rate first"), "{reason}");
 }
 
 #[test]
@@ -93,6 +101,6 @@ fn a_damaged_flash_file_is_named_and_left_alone() {
 #[test]
 fn the_report_of_a_run_draws_its_turns() {
     let (_, page) = page(&["run", "turntable", "--turns", "3"]);
-    assert_drawn(&page, &["unevenly", "Phasor of each turn"]);
+    assert_drawn(&page, &["rate-modulated", "Phasor of each turn"]);
     assert!(!page.contains("no points to draw"));
 }

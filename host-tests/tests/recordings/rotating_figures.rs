@@ -1,5 +1,5 @@
 //! What the figures of a rotating recording show: phasors against closed forms, and spectra in which the
-//! platform's unevenness stands before, and not after, the coupling is taken off.
+//! platform's unevenness stands before, and not after, the misalignment is taken off.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -72,7 +72,7 @@ fn a_part_is_cut_by_its_times_and_says_what_it_is() {
     let rows = even_rows(-FRAC_PI_2, 900);
     let part = Part::between(&rows, 9.0, 11.0, false);
     assert_eq!(part.rows.len(), 100);
-    assert_eq!(part.to_string(), "counter-clockwise at 0.250 Hz, unevenly");
+    assert_eq!(part.to_string(), "counter-clockwise at 0.250 Hz, rate-modulated");
     assert_eq!(Part::between(&rows, 40.0, 30.0, true).rows, []);
 }
 
@@ -92,28 +92,28 @@ fn at(lines: &[Line], frequency: f64) -> f64 {
 }
 
 /// −sin of the 0.8° of which the recordings of equations.md §4 are made.
-const COUPLING: f64 = -0.013_962_2;
+const MISALIGNMENT: f64 = -0.013_962_2;
 
 #[test]
-fn the_deliberate_unevenness_leaves_the_spectrum_with_the_coupling() {
+fn the_deliberate_unevenness_leaves_the_spectrum_with_the_misalignment() {
     let rows = recorded();
-    let uneven = Part::between(&rows, 0.0, 87.5, false);
-    let after = |row: &RotatingRow| row.rate_rad_s - COUPLING * row.stage_rate_rad_s;
-    let modulation = 0.83 * turn_hz(uneven.rows);
+    let modulated = Part::between(&rows, 0.0, 87.5, false);
+    let after = |row: &RotatingRow| row.rate_rad_s - MISALIGNMENT * row.stage_rate_rad_s;
+    let modulation = 0.83 * turn_hz(modulated.rows);
     let [before, after] = [
-        at(&spectrum(uneven.rows, &gyro), modulation),
-        at(&spectrum(uneven.rows, &after), modulation),
+        at(&spectrum(modulated.rows, &gyro), modulation),
+        at(&spectrum(modulated.rows, &after), modulation),
     ];
     assert!(after < 2e-3 * before, "{before} {after}");
-    let platform = at(&spectrum(uneven.rows, &|row| row.stage_rate_rad_s), modulation);
-    assert!((platform * COUPLING.abs() / before - 1.0).abs() < 2e-3, "{platform} {before}");
+    let platform = at(&spectrum(modulated.rows, &|row| row.stage_rate_rad_s), modulation);
+    assert!((platform * MISALIGNMENT.abs() / before - 1.0).abs() < 2e-3, "{platform} {before}");
 }
 
 #[test]
 fn at_even_rotation_the_line_of_the_turn_becomes_the_earth_rate() {
     let rows = recorded();
     let even = Part::between(&rows, 87.6, 175.2, true);
-    let after = |row: &RotatingRow| row.rate_rad_s - COUPLING * row.stage_rate_rad_s;
+    let after = |row: &RotatingRow| row.rate_rad_s - MISALIGNMENT * row.stage_rate_rad_s;
     let turn = turn_hz(even.rows);
     assert!((turn - 0.137).abs() < 1e-4, "{turn}");
     let horizontal = 7.292_115e-5 * 55.75_f64.to_radians().cos();
@@ -126,12 +126,12 @@ fn at_even_rotation_the_line_of_the_turn_becomes_the_earth_rate() {
 
 #[test]
 fn what_a_sensor_shows_of_the_platforms_rate_and_its_derivative_is_taken_off() {
-    let uneven = |row: RotatingRow| {
+    let modulated = |row: RotatingRow| {
         let turn = 3.0 * row.time_s;
         let felt = 0.01 * turn.sin() - 0.002 * 3.0 * turn.cos();
         RotatingRow { stage_rate_rad_s: turn.sin(), rate_rad_s: 0.5 + felt, ..row }
     };
-    let rows: Vec<RotatingRow> = even_rows(1.0, 500).into_iter().map(uneven).collect();
+    let rows: Vec<RotatingRow> = even_rows(1.0, 500).into_iter().map(modulated).collect();
     let left = freed(&rows, 0.01, -0.002);
     // The central difference misses (3 · 0.02)²/6 of the derivative.
     assert!(left[1..499].iter().all(|row| (row.rate_rad_s - 0.5).abs() < 4e-6));

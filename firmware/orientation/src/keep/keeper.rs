@@ -2,7 +2,7 @@
 //! from switch-on and reports pitch, roll and azimuth.
 
 use super::heading::{Handover, Heading, Realigned, frame_rate};
-use super::restart::{self, Doubt, Remembered};
+use super::restart::{self, RecallRefusal, Remembered};
 use super::vertical::{Trust, Vertical};
 use super::{Gyro, Setting, attitude};
 use crate::signal::InertialSample;
@@ -222,7 +222,7 @@ impl Keeper {
     ///
     /// # Errors
     /// Reason for which the saved azimuth is rejected.
-    pub fn recall(&mut self, remembered: &Remembered) -> Result<(), Doubt> {
+    pub fn recall(&mut self, remembered: &Remembered) -> Result<(), RecallRefusal> {
         let report = self.report();
         let rates = self.vertical.rest_rates().filter(|_| report.is_at_rest);
         let rest = f64::from(self.vertical.course.stood);

@@ -55,7 +55,7 @@ pub(super) struct Now {
 
 /// Reason for which a saved azimuth is rejected.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Doubt {
+pub enum RecallRefusal {
     /// The body is not at rest, or not for long enough.
     NotAtRest {
         /// Time at rest, s.
@@ -78,7 +78,7 @@ pub enum Doubt {
     },
 }
 
-crate::words! { Doubt:
+crate::words! { RecallRefusal:
     Self::NotAtRest { seconds } => "the body stood for {} s: too short", Rounded::<1>(seconds);
     Self::Tilted { degrees } => "it stands otherwise, by {}°", Rounded::<3>(degrees);
     Self::Turned { sigmas } => "the Earth turns it otherwise, by {} σ", Rounded::<1>(sigmas);
@@ -88,13 +88,17 @@ crate::words! { Doubt:
 }
 
 /// Checks that a body is still in its saved attitude.
-pub(super) fn check(before: &Remembered, now: &Now, setting: &Setting) -> Result<(), Doubt> {
+pub(super) fn check(
+    before: &Remembered,
+    now: &Now,
+    setting: &Setting,
+) -> Result<(), RecallRefusal> {
     let Some(rates) = now.rates.filter(|_| now.rest >= REST_SECONDS) else {
-        return Err(Doubt::NotAtRest { seconds: now.rest });
+        return Err(RecallRefusal::NotAtRest { seconds: now.rest });
     };
     let tilt = (now.pitch - before.pitch).abs().max((now.roll - before.roll).abs());
     if tilt > TILT || tilt.is_nan() {
-        return Err(Doubt::Tilted { degrees: tilt * DEGREES });
+        return Err(RecallRefusal::Tilted { degrees: tilt * DEGREES });
     }
     let sigmas: [f64; 3] = core::array::from_fn(|axis| {
         let gyro = &setting.gyros[axis];
@@ -104,11 +108,11 @@ pub(super) fn check(before: &Remembered, now: &Now, setting: &Setting) -> Result
     let away = (0..3).map(|axis| (rates[axis] - before.rates[axis]).abs() / sigmas[axis]);
     let away = away.fold(0.0, f64::max);
     if away > BOUND || away.is_nan() {
-        return Err(Doubt::Turned { sigmas: away });
+        return Err(RecallRefusal::Turned { sigmas: away });
     }
     let sigma = telling(before, setting, &sigmas);
     if sigma > TELLING || sigma.is_nan() {
-        return Err(Doubt::CannotTell { sigma: sigma * DEGREES });
+        return Err(RecallRefusal::CannotTell { sigma: sigma * DEGREES });
     }
     Ok(())
 }

@@ -187,7 +187,7 @@ impl<const COLUMNS: usize, T: Scalar> Belief<COLUMNS, T> {
     }
 
     /// Subtracts from a row the predicted mean: what remains is the innovation.
-    fn surprise(&self, steps: &[Step<T>; STATES], row: &mut [T; COLUMNS]) {
+    fn innovation(&self, steps: &[Step<T>; STATES], row: &mut [T; COLUMNS]) {
         for (step, state) in steps.iter().zip(&self.state).take(self.active) {
             for (value, state) in row.iter_mut().zip(state) {
                 *value -= step.mean * *state;
@@ -196,11 +196,11 @@ impl<const COLUMNS: usize, T: Scalar> Belief<COLUMNS, T> {
     }
 
     /// Updates the states with an innovation of this variance and covariance with the states.
-    fn learn(&mut self, cross: &[T; STATES], variance: T, surprise: &[T; COLUMNS]) {
+    fn learn(&mut self, cross: &[T; STATES], variance: T, innovation: &[T; COLUMNS]) {
         for i in 0..self.active {
             let gain = cross[i] / variance;
-            for (state, surprise) in self.state[i].iter_mut().zip(surprise) {
-                *state += gain * *surprise;
+            for (state, innovation) in self.state[i].iter_mut().zip(innovation) {
+                *state += gain * *innovation;
             }
             for (shared, other) in self.covariance[i].iter_mut().zip(cross).take(i + 1) {
                 *shared -= gain * *other;
@@ -318,7 +318,7 @@ impl<const COLUMNS: usize, T: Scalar> Whitener<COLUMNS, T> {
         let fast = dwell.fast(model, seconds);
         let steps = dwell.over(model, seconds);
         let (cross, variance) = belief.mean_covariance(steps, T::of(white + fast));
-        belief.surprise(steps, row);
+        belief.innovation(steps, row);
         belief.advance(steps);
         belief.learn(&cross, variance, row);
         scale(row, variance);

@@ -8,7 +8,7 @@
 //! | [`GYRO_SCALE`], [`GYRO_SCALE_SIGMA`], [`GYRO_LIMIT`] | the gyro's test sheet, and the amplifier between it and the converter |
 //! | [`GYRO_N`], [`GYRO_B`], [`GYRO_K`] | the gyro's data sheet; better `meridian allan` of a record at rest, or a [`SURVEY`] on the board |
 //! | [`G_SENSITIVITY`] | the test sheet, or a calibration with the axis up and down |
-//! | [`SPEEDS`], [`SENSOR`], [`UNEVEN_TURNS`] | of a turning platform: how fast it is to turn, and what turns |
+//! | [`SPEEDS`], [`SENSOR`], [`MODULATED_TURNS`] | of a turning platform: how fast it is to turn, and what turns |
 //! | [`STOPS`], [`BIAS_SIGMA`], [`FORCE_CALIBRATED_SIGMA`] | in a vehicle: how many stops, and what the test sheets promise |
 //! | [`REALIGNS`], [`ALIGNS_ALWAYS`] | in a vehicle, once the azimuth is known: a choice |
 //! | [`SPIN_GYROS`], [`SPIN_FORCES`], [`SPIN_WALK`], [`SPIN_SCALE_SIGMA`], [`SPIN_BIAS_SIGMA`] | on a spinning body: the test sheets of its analogue sensors |
@@ -170,7 +170,7 @@ const SPEEDS: &[f64] = &[0.137];
 const SENSOR: Sensor = Sensor::GYRO;
 /// Rate-modulated turns before those at constant rate, to measure the axis misalignment; zero to
 /// use the misalignment stored in flash. `None`: the default number.
-const UNEVEN_TURNS: Option<u32> = None;
+const MODULATED_TURNS: Option<u32> = None;
 
 /// Standard deviation of the encoder's zero on a rotating platform, as it enters the azimuth, 1σ,
 /// rad: without an index no rotation shows it.
@@ -187,7 +187,7 @@ pub fn turning_procedure() -> Turning {
     let mut speeds = [0.0; SPEEDS.len()];
     speeds.iter_mut().zip(SPEEDS).for_each(|(speed, hertz)| *speed = hertz * TURN);
     let usual = Turning::new(&speeds, 1.0 / CONVERTER.rate.hertz());
-    Turning { uneven_turns: UNEVEN_TURNS.unwrap_or(usual.uneven_turns), ..usual }
+    Turning { modulated_turns: MODULATED_TURNS.unwrap_or(usual.modulated_turns), ..usual }
 }
 
 /// Configuration of the platform's devices.

@@ -53,7 +53,7 @@ fn is_wrong(event: &Event) -> bool {
         | Event::NoMotion
         | Event::AzimuthLost
         | Event::BiasBeyondStated
-        | Event::Doubted(_)
+        | Event::RecallRefused(_)
         | Event::HeadingNotKept(_)
         | Event::LinkSilent
         | Event::Refused(_)

@@ -24,9 +24,9 @@ const RATE_HZ: f64 = 100.0;
 const SWAY_DEG: f64 = 0.1;
 /// Passes on two frames.
 const PASSES: usize = 2;
-/// Speed of the turntable, Hz, its uneven turns, and its turns each way.
+/// Speed of the turntable, Hz, its rate-modulated turns, and its turns each way.
 const SPEED_HZ: f64 = 0.2;
-const UNEVEN_TURNS: u32 = 6;
+const MODULATED_TURNS: u32 = 6;
 const TURNS: u32 = 4;
 /// Stops of the vehicle, how long it levels at each, and how long it drives between them, s.
 const STOPS: usize = 2;
@@ -129,7 +129,7 @@ fn on_turntable(fault: Fault, seed: u64) -> Result<Ended, RunError> {
     let scenario = TurntableScenario {
         base: base(fault, seed),
         speeds_hz: [SPEED_HZ, 0.0],
-        uneven_turns: UNEVEN_TURNS,
+        modulated_turns: MODULATED_TURNS,
         turns: TURNS,
         ..TurntableScenario::default()
     };

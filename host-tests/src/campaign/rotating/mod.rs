@@ -26,7 +26,7 @@ use crate::methods::rotating::follow;
 const GOLDEN_ANGLE_DEG: f64 = 137.507_764;
 /// By how much a number of turns may miss a whole one for rounding.
 const WHOLE: f64 = 1e-9;
-/// Time for level, uneven turns and changes of speed, s.
+/// Time for level, rate-modulated turns and changes of speed, s.
 const SPARE: f64 = 600.0;
 /// What a solver is told of a gyro without noise, °/√h: less than any.
 const LEAST_WALK: f64 = 0.000_2;

@@ -10,7 +10,7 @@ use orientation::error::Refusal;
 use rustfft::num_complex::Complex;
 use serde::Serialize;
 
-use super::world::{COUPLING_DEG, Integrating, LATITUDE_DEG, TILT_DEG, World};
+use super::world::{Integrating, LATITUDE_DEG, MISALIGNMENT_DEG, TILT_DEG, World};
 use super::{Solved, solve};
 use crate::campaign::over;
 use crate::campaign::statistics::{Answer, Precision, greatest, rms};
@@ -22,10 +22,10 @@ pub const SPEEDS_HZ: [f64; 2] = [0.1, 0.2];
 pub const SECONDS: f64 = 200.0;
 /// Integrated g-sensitivities over the horizontal Earth rate, at the slower speed.
 pub const RATIOS: [f64; 3] = [0.01, 0.1, 0.3];
-/// Couplings, °: of a sensor that was aligned, and of one that was not.
-pub const COUPLINGS_DEG: [f64; 2] = [0.0, COUPLING_DEG];
+/// Axis misalignments, °: of a sensor that was aligned, and of one that was not.
+pub const MISALIGNMENTS_DEG: [f64; 2] = [0.0, MISALIGNMENT_DEG];
 /// How many rows there are.
-pub const COUNT: usize = RATIOS.len() * COUPLINGS_DEG.len();
+pub const COUNT: usize = RATIOS.len() * MISALIGNMENTS_DEG.len();
 /// Phase of the sensor at the slower speed, °, from … to.
 pub const PHASES_DEG: [f64; 2] = [5.0, 20.0];
 /// Angle random walk of the runs with noise, °/√h.
@@ -80,11 +80,11 @@ struct Run {
     answer: Result<Answer, Refusal>,
 }
 
-/// Runs each ratio at each coupling with seeds 1 to `runs`; `tick` after each.
+/// Runs each ratio at each misalignment with seeds 1 to `runs`; `tick` after each.
 #[must_use]
 pub fn rows(runs: usize, tick: impl Fn() + Sync) -> Vec<Row> {
-    let at = |coupling| RATIOS.map(|ratio| row(coupling, ratio, runs, &tick));
-    COUPLINGS_DEG.into_iter().flat_map(at).collect()
+    let at = |misalignment| RATIOS.map(|ratio| row(misalignment, ratio, runs, &tick));
+    MISALIGNMENTS_DEG.into_iter().flat_map(at).collect()
 }
 
 fn row(coupling_deg: f64, ratio: f64, runs: usize, tick: &(impl Fn() + Sync)) -> Row {

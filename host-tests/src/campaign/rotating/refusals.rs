@@ -18,7 +18,7 @@ use crate::campaign::statistics::Answer;
 
 /// Angle random walk of the gyro, °/√h.
 const WALK: f64 = 0.002;
-/// Before this the deliberately uneven stretch is over, and the first even turns, s.
+/// Before this the rate-modulated stretch is over, and the first even turns, s.
 const LATER: f64 = 160.0;
 
 /// Something that goes wrong.

@@ -3,7 +3,7 @@
 
 use serde_json::json;
 
-use super::world::{COUPLING_DEG, LATITUDE_DEG, TILT_DEG, UNEVENNESS, World, segments};
+use super::world::{LATITUDE_DEG, MISALIGNMENT_DEG, TILT_DEG, UNEVENNESS, World, segments};
 use super::{molecular, refusals, stages};
 use crate::campaign::columns::{Columns, figure, normal, reasons};
 use crate::campaign::statistics::Precision;
@@ -41,8 +41,8 @@ fn run(asked: &Asked, tick: Tick<'_>) -> Done {
     }
 }
 
-/// The couplings of the figure with two of them, °: as in the campaign, and nearly aligned.
-const COUPLINGS_DEG: [f64; 2] = [COUPLING_DEG, 0.1];
+/// The misalignments of the figure with two of them, °: as in the campaign, and nearly aligned.
+const MISALIGNMENTS_DEG: [f64; 2] = [MISALIGNMENT_DEG, 0.1];
 /// When the platform has taken on its speed, s.
 const SETTLED: f64 = 5.0;
 /// Length of the even stretch that it shows, s.
@@ -61,7 +61,7 @@ fn report(
         of_molecular(molecular),
         of_refusals(refusals),
     ]);
-    parts.extend(of_couplings());
+    parts.extend(of_misalignments());
     let title = "Dynamic north finding on a turning platform";
     Report::new(title, parts).below(subtitle(stages, molecular))
 }
@@ -72,7 +72,7 @@ fn subtitle(stages: &[stages::Row], molecular: &[molecular::Row]) -> Vec<String>
     let (hertz, seconds, [slow, fast]) = (stages::TURN_HZ, stages::SECONDS, molecular::SPEEDS_HZ);
     let ([least, most], all, walk) = (molecular::PHASES_DEG, molecular::SECONDS, molecular::WALK);
     let gyro = format!(
-        "a flat gyro at {LATITUDE_DEG}°, {hertz} Hz, {seconds} s each way: axis misalignment {COUPLING_DEG}°, tilt \
+        "a flat gyro at {LATITUDE_DEG}°, {hertz} Hz, {seconds} s each way: axis misalignment {MISALIGNMENT_DEG}°, tilt \
          {TILT_DEG}°, unevenness {unevenness} % once per turn"
     );
     let sensor = format!(
@@ -104,8 +104,8 @@ fn of_precisions(stages: &[stages::Row], molecular: &[molecular::Row]) -> OfPage
     let gyro = |row: &stages::Row| format!("gyro, N {} °/√h", row.n_deg_sqrt_h);
     let sensor = |row: &molecular::Row| {
         let walk = molecular::WALK;
-        let (coupling, ratio) = (row.coupling_deg, row.ratio);
-        format!("molecular-electronic, axis misalignment {coupling}°, ρ {ratio}, N {walk} °/√h")
+        let (misalignment, ratio) = (row.coupling_deg, row.ratio);
+        format!("molecular-electronic, axis misalignment {misalignment}°, ρ {ratio}, N {walk} °/√h")
     };
     let gyros = stages.iter().map(|row| (gyro(row), row.precision.clone()));
     let sensors = molecular.iter().map(|row| (sensor(row), row.precision.clone()));
@@ -143,14 +143,14 @@ fn of_refusals(rows: &[refusals::Row]) -> OfPage {
 }
 
 /// The first figures of MET 2018: the sensor's spectrum at two axis misalignments, and the platform's.
-fn of_couplings() -> Vec<OfPage> {
-    let rows = COUPLINGS_DEG.map(|coupling_deg| {
+fn of_misalignments() -> Vec<OfPage> {
+    let rows = MISALIGNMENTS_DEG.map(|coupling_deg| {
         let even = segments(&[stages::TURN_HZ], SECONDS).split_off(1);
         let world = World { coupling_deg, segments: even, ..stages::world(stages::WALKS[0], 1) };
         world.rows(1)
     });
     let parts = rows.each_ref().map(|rows| Part::between(rows, SETTLED, SECONDS, true));
-    let names = COUPLINGS_DEG.map(|coupling| format!("coupling {coupling}°"));
+    let names = MISALIGNMENTS_DEG.map(|misalignment| format!("axis misalignment {misalignment}°"));
     let platform = figures::platform(&parts[..1]);
     vec![figures::compared(&parts, &names).into(), platform.into()]
 }

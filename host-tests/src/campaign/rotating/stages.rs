@@ -102,12 +102,12 @@ pub fn world(n_deg_sqrt_h: f64, seed: u64) -> World {
 fn run(n_deg_sqrt_h: f64, seed: u64) -> Run {
     let world = world(n_deg_sqrt_h, seed);
     let solved = solve(&world, SENSOR, &[TURN_HZ], SECONDS, seed);
-    // The coupling's sine is negative: what is quickest acts as slowest. Its phasor is conjugate.
+    // The misalignment's sine is negative: what is quickest acts as slowest. Its phasor is conjugate.
     let acts_deg = azimuth_error(180.0 - world.quickest_deg, world.azimuth_deg);
     let error = |stage: f64| azimuth_error(stage.to_degrees(), world.azimuth_deg);
     let errors_deg = solved.fit.map(|fit| {
         let stages = fit.stages;
-        [stages.raw, stages.coupling, stages.senses, stages.full].map(error)
+        [stages.raw, stages.misalignment, stages.senses, stages.full].map(error)
     });
     Run { acts_deg, errors_deg, solved }
 }

@@ -22,13 +22,13 @@ pub const LATITUDE_DEG: f64 = 55.75;
 /// Sample rate, Hz: the noise of a turn does not depend on it; at fewer the motion between two samples does not follow a line.
 pub const RATE_HZ: f64 = 200.0;
 /// Non-orthogonality of sensitive axis and platform axis, °.
-pub const COUPLING_DEG: f64 = 0.8;
+pub const MISALIGNMENT_DEG: f64 = 0.8;
 /// Tilt of the platform, °.
 pub const TILT_DEG: f64 = 0.3;
 /// Unevenness of the gear once per turn, relative.
 pub const UNEVENNESS: f64 = 0.002;
-/// Length of the deliberately uneven stretch, turns.
-const UNEVEN_TURNS: f64 = 12.0;
+/// Length of the rate-modulated stretch, turns.
+const MODULATED_TURNS: f64 = 12.0;
 /// Time in which the platform takes on another rate, s.
 const RAMP_SECONDS: f64 = 3.0;
 /// Its depth, relative, and its frequency in turns.
@@ -78,7 +78,7 @@ impl World {
             azimuth_deg: angle(),
             quickest_deg: angle(),
             uphill_deg: angle(),
-            coupling_deg: COUPLING_DEG,
+            coupling_deg: MISALIGNMENT_DEG,
             n_deg_sqrt_h: 0.0,
             g_sensitivity_deg_h_g: [0.0; 2],
             molecular: None,
@@ -89,18 +89,18 @@ impl World {
     }
 }
 
-/// An uneven stretch, then as many seconds clockwise and counter-clockwise at each speed in turns a
+/// A rate-modulated stretch, then as many seconds clockwise and counter-clockwise at each speed in turns a
 /// second.
 #[must_use]
 pub fn segments(speeds_hz: &[f64], seconds: f64) -> Vec<Segment> {
     let Some(first) = speeds_hz.first() else { return Vec::new() };
     let (depth, frequency) = MODULATION;
-    let uneven =
-        Segment::steady(TAU * first, UNEVEN_TURNS / first).uneven(depth, frequency * first);
+    let modulated =
+        Segment::steady(TAU * first, MODULATED_TURNS / first).modulated(depth, frequency * first);
     let both = |speed: &f64| {
         [TAU * speed, -TAU * speed].map(|rate| Segment::steady(rate, seconds).after(RAMP_SECONDS))
     };
-    [uneven].into_iter().chain(speeds_hz.iter().flat_map(both)).collect()
+    [modulated].into_iter().chain(speeds_hz.iter().flat_map(both)).collect()
 }
 
 /// A molecular-electronic sensor by what it does at a speed.

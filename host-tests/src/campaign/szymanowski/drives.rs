@@ -7,7 +7,7 @@ use orientation::align::stops::stop_detector::Rests;
 use orientation::error::Refusal;
 use serde::Serialize;
 
-use super::world::{Day, Told, live};
+use super::world::{Day, Known, live};
 use crate::campaign::over;
 use crate::campaign::statistics::{Answer, Precision, greatest, rms};
 use crate::output::{azimuth_error, degrees, degrees_per_hour};
@@ -131,8 +131,8 @@ impl Case {
         let scenario = Scenario::stops(seed, self.stops, STOP_S, drive_s);
         let stated = scenario.configuration().stops().collect();
         let rests = if self.is_stated { Rests::Stated(stated) } else { Rests::Found };
-        let told = Told { rests, knows_displacement: self.knows_displacement };
-        Run::of(&live(&scenario, seed, told))
+        let known = Known { rests, knows_displacement: self.knows_displacement };
+        Run::of(&live(&scenario, seed, known))
     }
 }
 

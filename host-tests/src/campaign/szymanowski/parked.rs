@@ -9,7 +9,7 @@ use orientation::align::stops::stop_detector::Rests;
 use serde::Serialize;
 
 use super::drives::{DRIVE_S, STOP_S};
-use super::world::{Told, live};
+use super::world::{Known, live};
 use crate::campaign::over;
 use crate::campaign::statistics::{Precision, rms};
 use crate::output::{azimuth_error, degrees};
@@ -73,8 +73,8 @@ pub fn rows(runs: usize, tick: impl Fn() + Sync) -> Vec<Row> {
 pub fn row(case: usize, runs: usize, tick: &(impl Fn() + Sync)) -> Row {
     let case = &CASES[case];
     let days = over(runs, tick, |seed| {
-        let told = Told { rests: Rests::Whole, knows_displacement: false };
-        let day = live(&case.scenario(seed), seed, told);
+        let known = Known { rests: Rests::Whole, knows_displacement: false };
+        let day = live(&case.scenario(seed), seed, known);
         let averaging = azimuth_error(degrees(day.whole.azimuth()), degrees(day.end));
         (averaging, day.answer())
     });

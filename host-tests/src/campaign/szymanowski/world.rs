@@ -52,7 +52,7 @@ impl Day {
 
 /// What the session is told of a day.
 #[derive(Clone, Debug)]
-pub struct Told {
+pub struct Known {
     /// Its stops.
     pub rests: Rests,
     /// Whether it is told how far they lie from each other.
@@ -61,12 +61,12 @@ pub struct Told {
 
 /// Lives through a day. The session knows the sensors' noise and the 1σ of their biases.
 #[must_use]
-pub fn live(day: &Scenario, seed: u64, told: Told) -> Day {
+pub fn live(day: &Scenario, seed: u64, known: Known) -> Day {
     let day = at_rate(day);
     let configuration = day.configuration();
     let mut vehicle = Vehicle::new(&configuration, seed);
     let mut session = setting(&day).and_then(|setting| {
-        let procedure = Procedure::recorded(told.rests, 1.0 / RATE_HZ);
+        let procedure = Procedure::recorded(known.rests, 1.0 / RATE_HZ);
         Session::new(setting, procedure).ok()
     });
     let stops: Vec<[f64; 2]> = configuration.stops().collect();
@@ -85,7 +85,8 @@ pub fn live(day: &Scenario, seed: u64, told: Told) -> Day {
         let Some(session) = &mut session else { continue };
         let VehicleSample { time_s, turned_rad, force_m_s2, .. } = sample;
         session.handle(Event::Sample(&path.sample(time_s, turned_rad, force_m_s2)));
-        if middles.next_if(|middle| *middle <= sample.time_s).is_some() && told.knows_displacement {
+        if middles.next_if(|middle| *middle <= sample.time_s).is_some() && known.knows_displacement
+        {
             session.handle(Event::Displaced(truth.displacement_m));
         }
     }

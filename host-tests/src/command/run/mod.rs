@@ -26,7 +26,7 @@ use self::options::Common;
 use super::faults::{self, Asked};
 use super::files::{self, Written};
 use super::given::{self, Given};
-use super::{Shown, Told};
+use super::{Answer, Shown};
 
 /// What is run.
 #[derive(Args)]
@@ -137,7 +137,7 @@ impl Carrier {
 }
 
 /// Runs the board and tells what came of it.
-pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
+pub fn run(options: &RunOptions, as_json: bool) -> Result<Answer, String> {
     let (platform, options) = options.platform.of();
     let Common { seed, fault, report, .. } = options.common();
     let fault = match fault {
@@ -149,7 +149,7 @@ pub fn run(options: &RunOptions, as_json: bool) -> Result<Told, String> {
     let Ran { name, finished, truth, details, body, written } = options.run(fault)?;
     let outcome = finished.outcome(&truth).of_run(*seed, details);
     let shown = Shown { name, outcome, finished: &*finished, truth: &truth, body: body.as_ref() };
-    Ok(shown.told(report.as_deref(), as_json)?.with_written(written))
+    Ok(shown.answer(report.as_deref(), as_json)?.with_written(written))
 }
 
 /// Shows the log and the progress while a board works.

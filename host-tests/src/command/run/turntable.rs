@@ -41,8 +41,8 @@ pub struct TurntableOptions {
     #[arg(long, value_parser = whole::<2, 1000>)]
     turns: Option<u64>,
     /// Rate-modulated turns before them, 0 where what --flash keeps is to do (12).
-    #[arg(long, value_name = "TURNS", value_parser = uneven_turns)]
-    uneven_turns: Option<u32>,
+    #[arg(long, value_name = "TURNS", value_parser = modulated_turns)]
+    modulated_turns: Option<u32>,
     /// The board's flash, which keeps the axis misalignments that rate-modulated turns find from run to run.
     #[arg(long, value_name = "FILE")]
     flash: Option<PathBuf>,
@@ -52,7 +52,7 @@ pub struct TurntableOptions {
 }
 
 /// None, or enough to tell an axis misalignment from the Earth rate.
-fn uneven_turns(text: &str) -> Result<u32, String> {
+fn modulated_turns(text: &str) -> Result<u32, String> {
     match text.parse::<u32>() {
         Ok(turns) if turns == 0 || (4..=1000).contains(&turns) => Ok(turns),
         _ => Err("neither 0 nor a number of turns from 4 to 1000".to_owned()),
@@ -104,12 +104,12 @@ impl TurntableOptions {
             _ => TurntableScenario { base: Scenario::usual(seed), ..TurntableScenario::default() },
         };
         let Inclination { pitch: pitch_deg, roll: roll_deg } = self.inclination;
-        let told = Scenario { pitch_deg, roll_deg, ..self.place.scenario(seed) };
-        let gyro = if self.place.gyro.is_some() { told.gyro } else { usual.base.gyro };
+        let base = Scenario { pitch_deg, roll_deg, ..self.place.scenario(seed) };
+        let gyro = if self.place.gyro.is_some() { base.gyro } else { usual.base.gyro };
         TurntableScenario {
-            base: Scenario { gyro, ..told },
+            base: Scenario { gyro, ..base },
             speeds_hz: self.speeds.unwrap_or(usual.speeds_hz),
-            uneven_turns: self.uneven_turns.unwrap_or(usual.uneven_turns),
+            modulated_turns: self.modulated_turns.unwrap_or(usual.modulated_turns),
             turns: self.turns.map_or(usual.turns, |turns| turns as u32),
             ..usual
         }
@@ -181,7 +181,7 @@ impl Simulated for TurntableOptions {
 /// The stored axis misalignments that the board used.
 fn recalled<R>(run: &Run<R>) -> impl Iterator<Item = &Remembered> {
     run.events.iter().filter_map(|(_, event)| match event {
-        Event::Recalled(coupling) => Some(coupling),
+        Event::Recalled(misalignment) => Some(misalignment),
         _ => None,
     })
 }

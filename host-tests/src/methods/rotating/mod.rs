@@ -53,9 +53,9 @@ impl Replay {
         let between = |from: f64, to: f64, is_even| {
             Part::between(rows, self.zero_s + from, self.zero_s + to, is_even)
         };
-        let uneven = between(0.0, begin, false);
+        let first = between(0.0, begin, false);
         let even = spans.iter().map(|(from, to)| between(*from, *to, true));
-        [uneven].into_iter().chain(even).filter(|part| turns::whole_turns(part.rows) > 0).collect()
+        [first].into_iter().chain(even).filter(|part| turns::whole_turns(part.rows) > 0).collect()
     }
 }
 

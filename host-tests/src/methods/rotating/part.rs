@@ -1,4 +1,4 @@
-//! The parts of a recording: where the platform turned unevenly, and where evenly one way round.
+//! The parts of a recording: where the platform's rate was modulated, and where it turned evenly one way round.
 
 use std::fmt;
 
@@ -8,7 +8,7 @@ use crate::recording::RotatingRow;
 /// A part of a recording that was taken for one.
 #[derive(Clone, Copy, Debug)]
 pub struct Part<'a> {
-    /// Whether the platform turned evenly; unevenly it does for the coupling.
+    /// Whether the platform turned evenly; its rate is modulated for the axis misalignment.
     pub is_even: bool,
     /// The samples.
     pub rows: &'a [RotatingRow],
@@ -28,7 +28,7 @@ impl fmt::Display for Part<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let speed = turn_hz(self.rows);
         let way = if speed < 0.0 { "counter-clockwise" } else { "clockwise" };
-        let how = if self.is_even { "" } else { ", unevenly" };
+        let how = if self.is_even { "" } else { ", rate-modulated" };
         write!(f, "{way} at {:.3} Hz{how}", speed.abs())
     }
 }

@@ -1,9 +1,9 @@
 //! Holds the north finder on a platform that turns all the time to closed forms, to plain arithmetic
 //! written here, and to the truth of a simulated platform (equations.md §4).
 
-mod coupling;
 mod integrity;
 mod met;
+mod misalignment;
 mod molecular;
 mod outcome;
 mod phasor;

@@ -17,8 +17,8 @@ pub const LATITUDE_DEG: f64 = 55.75;
 /// Platform speed, rad/s, and turns in either sense.
 pub const SPEED: f64 = 0.8;
 pub const TURNS: f64 = 12.0;
-/// Uneven turns of [`both_senses`], and its ramps, s.
-const UNEVEN: f64 = 8.0;
+/// Modulated turns of [`both_senses`], and its ramps, s.
+const MODULATED: f64 = 8.0;
 const RAMP_S: f64 = 2.0;
 
 /// Seconds of so many turns.
@@ -28,7 +28,7 @@ pub fn turns_s(turns: f64) -> f64 {
 
 /// When so many turns of the clockwise stretch are over, s.
 pub fn clockwise_s(turn: f64) -> f64 {
-    turns_s(UNEVEN + turn) + RAMP_S
+    turns_s(MODULATED + turn) + RAMP_S
 }
 
 /// When so many turns of the counter-clockwise stretch are over, s.

@@ -114,7 +114,7 @@ fn found(made: &Made, turns: f64, periods: u32) -> ([f64; COLUMNS], [f64; COLUMN
     let rows = made.rows(turns);
     let (sums, _) = made.sums(&rows, periods);
     let model = [Column::Free; COLUMNS];
-    let found = sums.regression(RATE).solve(&model).expect("it turns unevenly").coefficients;
+    let found = sums.regression(RATE).solve(&model).expect("its rate is modulated").coefficients;
     (found, fit(&rows))
 }
 

@@ -83,7 +83,7 @@ fn stalled_at(time_s: f64) -> Result<f64, Refusal> {
 
 #[test]
 fn a_session_whose_platform_stops_ends_and_says_so() {
-    // Before anything, in the uneven turns, in the clockwise and in the counter-clockwise ones.
+    // Before anything, in the rate-modulated turns, in the clockwise and in the counter-clockwise ones.
     for time_s in [0.0, 10.0, 110.0, 150.0] {
         let refused = stalled_at(time_s).expect_err("it did not turn");
         assert!(matches!(refused, Refusal::PlatformStopped { .. }), "{refused:?} at {time_s}");
@@ -91,7 +91,7 @@ fn a_session_whose_platform_stops_ends_and_says_so() {
     assert!(stalled_at(1e9).is_ok());
 }
 
-/// Where in a run an encoder may slip, s: in the uneven turn, in the ramps, at both ends of a stretch, in
+/// Where in a run an encoder may slip, s: in the rate-modulated turn, in the ramps, at both ends of a stretch, in
 /// the middle of a turn.
 fn places() -> [f64; 8] {
     [

@@ -64,15 +64,15 @@ fn replayed(
 }
 
 /// Turns with amplitude `depth` about `speed`, at 0.83 of once per turn.
-pub fn uneven(speed: f64, turns: f64) -> Segment {
-    Segment::steady(speed, turns * TAU / speed).uneven(0.25, 0.83 * speed / TAU)
+pub fn modulated(speed: f64, turns: f64) -> Segment {
+    Segment::steady(speed, turns * TAU / speed).modulated(0.25, 0.83 * speed / TAU)
 }
 
-/// An uneven stretch, and so many turns in both senses.
+/// A rate-modulated stretch, and so many turns in both senses.
 pub fn both_senses(speed: f64, turns: f64) -> Vec<Segment> {
     let seconds = turns * TAU / speed;
     let even = |rate: f64| Segment::steady(rate, seconds).after(2.0);
-    vec![uneven(speed, 8.0), even(speed), even(-speed)]
+    vec![modulated(speed, 8.0), even(speed), even(-speed)]
 }
 
 /// A flat sensor at a latitude, of a known N in °/√h.

@@ -165,7 +165,7 @@ fn a_platform_too_steep_is_refused() {
 }
 
 #[test]
-fn without_an_uneven_turn_or_a_stored_coupling_the_sigma_says_so() {
+fn without_a_modulated_turn_or_a_stored_misalignment_the_sigma_says_so() {
     assert_never_wrong(&["SensesDisagree"], |seed, mut case| {
         case.segments.remove(0);
         plain(seed, &case)

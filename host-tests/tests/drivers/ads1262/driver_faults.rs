@@ -7,15 +7,15 @@ use embassy_time::{Delay, Duration, Instant, with_timeout};
 use embedded_hal::digital::ErrorType as PinErrorType;
 use embedded_hal_async::digital::Wait;
 use embedded_hal_async::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
-use hal_mock::ads1262::{Ads1262, Sickness};
+use hal_mock::ads1262::{Ads1262, ChipFault};
 use hal_mock::chip::{Rig as _, Select};
 
 use super::rig::{Device, Input, Rig, device, rig, run, violations};
 
 /// A chip that is sick before it is started.
-fn started(sicken: impl FnOnce(&mut Ads1262)) -> Result<(), Fault> {
+fn started(inject: impl FnOnce(&mut Ads1262)) -> Result<(), Fault> {
     let rig = rig(Input::default());
-    sicken(&mut rig.borrow_mut().chip);
+    inject(&mut rig.borrow_mut().chip);
     run(async { device(&rig, Configuration::default()).start().await })
 }
 
@@ -40,7 +40,7 @@ fn a_wrong_checksum_costs_one_conversion() {
     let rig = rig(Input::steady(0.5));
     run(async {
         let mut device = running(&rig).await;
-        rig.borrow_mut().chip.sickness.corrupts_next = true;
+        rig.borrow_mut().chip.chip_fault.corrupts_next = true;
         device.ready().await.expect("there is a line");
         assert_eq!(device.read().await, Err(Fault::Checksum));
         assert!(!device.read().await.expect("the second time it is right").is_new);
@@ -81,11 +81,11 @@ fn a_chip_whose_supply_has_just_failed_is_started_without_delay() {
 
 #[test]
 fn a_dead_stuck_or_false_converter_does_not_start() {
-    assert_eq!(started(|chip| chip.sickness.is_dead = true), Err(Fault::NotReady));
+    assert_eq!(started(|chip| chip.chip_fault.is_dead = true), Err(Fault::NotReady));
     assert_eq!(started(Ads1262::stick), Err(Fault::SelfTest));
     for code in [858_993_459, -858_993_459, i32::MAX, i32::MIN, -1] {
         assert_eq!(
-            started(|chip| chip.sickness.stuck_at = Some(code)),
+            started(|chip| chip.chip_fault.stuck_at = Some(code)),
             Err(Fault::SelfTest),
             "{code}"
         );
@@ -98,7 +98,7 @@ fn a_dead_stuck_or_false_converter_does_not_start() {
 #[test]
 fn a_register_that_does_not_take_its_value_is_named() {
     for register in [0x01, 0x04, 0x06, 0x10, 0x11] {
-        let fault = started(|chip| chip.sickness.broken_register = Some(register));
+        let fault = started(|chip| chip.chip_fault.broken_register = Some(register));
         assert_eq!(fault, Err(Fault::NotAsWritten { register }));
     }
 }
@@ -133,7 +133,7 @@ fn a_converter_that_sticks_is_found_by_the_next_start() {
         codes.dedup();
         assert_eq!(codes.len(), 1);
         assert_eq!(device.start().await, Err(Fault::SelfTest));
-        rig.borrow_mut().chip.sickness = Sickness::default();
+        rig.borrow_mut().chip.chip_fault = ChipFault::default();
         device.start().await.expect("it is healthy");
     });
     assert_eq!(violations(&rig), 0);

@@ -12,7 +12,7 @@ use embedded_hal_async::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
 use hal_mock::chip::{Rig as _, Select, Single, SpiChip};
 use hal_mock::noise::Generator;
 use hal_mock::spi::SpiPort;
-use hal_mock::tmc5160::{Sickness, Tmc5160 as Chip};
+use hal_mock::tmc5160::{ChipFault, Tmc5160 as Chip};
 use host::virtual_time::run;
 
 use super::plant::{Motor, NOMINAL};
@@ -114,8 +114,8 @@ pub async fn rest(driver: &mut Driver<'_>) -> (Status, f64) {
     }
 }
 
-fn sicken(rig: &Rig, sickness: Sickness) {
-    rig.borrow_mut().chip.suffer(sickness);
+fn inject(rig: &Rig, chip_fault: ChipFault) {
+    rig.borrow_mut().chip.inject(chip_fault);
 }
 
 fn power_cycle(rig: &Rig) {
@@ -169,18 +169,18 @@ fn a_target_can_be_changed_on_the_way() {
 #[test]
 fn a_foreign_or_disabled_chip_is_refused() {
     on_a_chip(async |driver, rig, _| {
-        for (sickness, fault) in [
-            (Sickness::Foreign, Fault::Identity { found: 0x1100_0000 }),
-            (Sickness::StepMode, Fault::Identity { found: 0x3000_0040 }),
-            (Sickness::Disabled, Fault::NotReady),
-            (Sickness::Short, Fault::SelfTest),
-            (Sickness::Overheated, Fault::Alarm { status: 2 }),
-            (Sickness::ChargePumpLow, Fault::Alarm { status: 4 }),
+        for (chip_fault, fault) in [
+            (ChipFault::Foreign, Fault::Identity { found: 0x1100_0000 }),
+            (ChipFault::StepMode, Fault::Identity { found: 0x3000_0040 }),
+            (ChipFault::Disabled, Fault::NotReady),
+            (ChipFault::Short, Fault::SelfTest),
+            (ChipFault::Overheated, Fault::Alarm { status: 2 }),
+            (ChipFault::ChargePumpLow, Fault::Alarm { status: 4 }),
         ] {
-            sicken(rig, sickness);
-            assert_eq!(driver.start().await, Err(fault), "{sickness:?}");
+            inject(rig, chip_fault);
+            assert_eq!(driver.start().await, Err(fault), "{chip_fault:?}");
         }
-        sicken(rig, Sickness::None);
+        inject(rig, ChipFault::None);
         assert_eq!(driver.start().await, Ok(()));
     });
 }
@@ -283,21 +283,21 @@ fn the_bus_budget_is_kept() {
 #[test]
 fn errors_of_the_bridges_are_told_and_refuse_motions() {
     on_a_stage(async |driver, rig, _| {
-        for (sickness, error) in [
-            (Sickness::Overheated, DriverError::OverTemperature),
-            (Sickness::Short, DriverError::Short),
+        for (chip_fault, error) in [
+            (ChipFault::Overheated, DriverError::OverTemperature),
+            (ChipFault::Short, DriverError::Short),
         ] {
-            sicken(rig, sickness);
+            inject(rig, chip_fault);
             let status = driver.status().await.expect("the bus is well");
             assert_eq!(status.driver_error, Some(error));
             assert!(
                 matches!(driver.go_to(5).await, Err(Fault::Alarm { status }) if status & 2 != 0)
             );
-            sicken(rig, Sickness::None);
+            inject(rig, ChipFault::None);
             assert!(driver.go_to(5).await.is_err(), "the flag is latched");
             driver.start().await.expect("it starts");
         }
-        sicken(rig, Sickness::ChargePumpLow);
+        inject(rig, ChipFault::ChargePumpLow);
         let status = driver.status().await.expect("the bus is well");
         assert_eq!(status.driver_error, Some(DriverError::ChargePump));
     });
@@ -306,7 +306,7 @@ fn errors_of_the_bridges_are_told_and_refuse_motions() {
 #[test]
 fn an_open_coil_is_told_in_slow_motion() {
     on_a_stage(async |driver, rig, _| {
-        sicken(rig, Sickness::OpenLoad);
+        inject(rig, ChipFault::OpenLoad);
         driver.run(Velocity(40_000)).await.expect("it runs");
         Timer::after(Duration::from_millis(500)).await;
         let status = driver.status().await.expect("the bus is well");

@@ -11,7 +11,7 @@ use firmware::simulated::vehicle::{Day, VehicleScenario};
 use firmware::storage::{FlashStore, HEADING};
 use hal_mock::vehicle::Stop;
 use host::instrument::{VehicleRun, align_stops_along};
-use orientation::keep::restart::{Doubt, Remembered};
+use orientation::keep::restart::{RecallRefusal, Remembered};
 
 /// Gyros whose biases come back to 0.03 °/h: only such ones can tell whether a vehicle was turned.
 const STEADY: GyroClass =
@@ -54,9 +54,9 @@ fn second(
     align_stops_along(&day, &Injection::NONE, &scenario, NoRecorder, &(), store).expect("possible")
 }
 
-fn doubt(run: &VehicleRun) -> Option<Doubt> {
+fn doubt(run: &VehicleRun) -> Option<RecallRefusal> {
     run.run.events.iter().find_map(|(_, event)| match event {
-        Event::Doubted(doubt) => Some(*doubt),
+        Event::RecallRefused(doubt) => Some(*doubt),
         _ => None,
     })
 }
@@ -83,7 +83,7 @@ fn a_vehicle_that_was_turned_while_it_was_switched_off_is_not_believed() {
     let before = first(8.0, STEADY, &mut store);
     for turned in [30.0, 180.0, -90.0] {
         let after = second(&before, [turned, 0.0], STEADY, &mut store);
-        assert!(matches!(doubt(&after), Some(Doubt::Turned { .. })), "{:?}", doubt(&after));
+        assert!(matches!(doubt(&after), Some(RecallRefusal::Turned { .. })), "{:?}", doubt(&after));
         assert_eq!(after.kept.with_azimuth().count(), 0);
     }
 }
@@ -93,7 +93,7 @@ fn a_vehicle_that_was_tilted_while_it_was_switched_off_is_not_believed() {
     let mut store = Flash::default().store();
     let before = first(8.0, STEADY, &mut store);
     let after = second(&before, [0.0, 0.3], STEADY, &mut store);
-    assert!(matches!(doubt(&after), Some(Doubt::Tilted { .. })), "{:?}", doubt(&after));
+    assert!(matches!(doubt(&after), Some(RecallRefusal::Tilted { .. })), "{:?}", doubt(&after));
     assert_eq!(after.kept.with_azimuth().count(), 0);
 }
 
@@ -102,7 +102,7 @@ fn gyros_that_cannot_tell_a_turn_recall_nothing() {
     let mut store = Flash::default().store();
     let before = first(8.0, GyroClass::FIBRE_OPTIC, &mut store);
     let after = second(&before, [0.0, 0.0], GyroClass::FIBRE_OPTIC, &mut store);
-    assert!(matches!(doubt(&after), Some(Doubt::CannotTell { .. })), "{:?}", doubt(&after));
+    assert!(matches!(doubt(&after), Some(RecallRefusal::CannotTell { .. })), "{:?}", doubt(&after));
 }
 
 #[test]

@@ -39,7 +39,7 @@ const NUMBERS: [(&str, &[&str]); 23] = [
     ("run --sway", &["-0.1", "2.1", "nan"]),
     ("run --seed", &["-1", "18446744073709551616", "1.5", "x"]),
     ("run turntable --speeds", &["0", "-0.1", "0.1,0.1", "0.1,0.2,0.3", "1"]),
-    ("run turntable --uneven-turns", &["-1", "3", "1001"]),
+    ("run turntable --modulated-turns", &["-1", "3", "1001"]),
     ("run vehicle --stops", &["1", "9", "-2", "two"]),
     ("run vehicle --drive-seconds", &["9", "3601", "-60"]),
     ("run spin --flight-seconds", &["0", "61", "-1"]),
@@ -177,7 +177,7 @@ fn whatever_stands_in_an_argument_the_message_is_one_line() {
 /// Options of `run` that do not go together or are impossible, and what is named of them.
 const APART: [(&str, &str); 41] = [
     ("--flash x", "--flash"),
-    ("--uneven-turns 6", "--uneven-turns"),
+    ("--modulated-turns 6", "--modulated-turns"),
     ("--speeds 0.1", "--speeds"),
     ("--sensor met", "--sensor"),
     ("--stops 3", "--stops"),
@@ -197,8 +197,8 @@ const APART: [(&str, &str); 41] = [
     ("turntable --flash x --date=2026-02-29", "--date"),
     ("turntable --flash x --date=14.3.2026", "--date"),
     ("turntable --flash x --date=2026-03-14-1", "--date"),
-    ("turntable --flash x --uneven-turns=3", "--uneven-turns"),
-    ("turntable --flash x --uneven-turns=-1", "--uneven-turns"),
+    ("turntable --flash x --modulated-turns=3", "--modulated-turns"),
+    ("turntable --flash x --modulated-turns=-1", "--modulated-turns"),
     ("turntable --speeds=0", "--speeds"),
     ("turntable --speeds=0.6", "--speeds"),
     ("turntable --speeds=0.1,0.11", "--speeds"),

@@ -9,13 +9,13 @@ const IGNORED: [(&str, &str); 5] = [
         "spin",
         "--latitude=1 --azimuth=1 --pitch=1 --roll=1 --gyro=fog --rate=100 --seconds=60 --sigma=1 --survey=60 \
          --passes=1 --half=east --positions=6 --dwell=5 --sensor=gyro --speeds=0.1 --turns=3 \
-         --uneven-turns=5 --flash=x --stops=3 --stop-seconds=50 --drive-seconds=300 --no-displacement --hold=5 \
+         --modulated-turns=5 --flash=x --stops=3 --stop-seconds=50 --drive-seconds=300 --no-displacement --hold=5 \
          --realign --handover=1,1 --sway=0.1",
     ),
     (
         "vehicle",
         "--pitch=1 --roll=1 --seconds=60 --sigma=1 --survey=60 --passes=1 --half=east \
-         --positions=6 --dwell=5 --sensor=gyro --speeds=0.1 --turns=3 --uneven-turns=5 --flash=x \
+         --positions=6 --dwell=5 --sensor=gyro --speeds=0.1 --turns=3 --modulated-turns=5 --flash=x \
          --flight-seconds=1 --turns-per-second=90 --sway=0.1",
     ),
     (
@@ -182,7 +182,7 @@ fn a_number_may_be_negative_where_its_quantity_may() {
 fn a_negative_number_is_refused_in_words_where_its_quantity_has_none() {
     let stage = stored("stepwise-circle");
     for (arguments, words) in [
-        (&["run", "turntable", "--uneven-turns", "-1"][..], "neither 0 nor a number"),
+        (&["run", "turntable", "--modulated-turns", "-1"][..], "neither 0 nor a number"),
         (&["run", "turntable", "--speeds", "-0.1,0.2"], "not a speed from"),
         (&["run", "turntable", "--turns", "-3"], "not a whole number from 2 to 1000"),
         (&["run", "--handover", "-1,-0.2"], "not an azimuth within"),

@@ -12,7 +12,7 @@ const RUNS: [&[&str]; 8] = [
     &["stage", "--rate", "50", "--sway", "0.2", "--dwell", "2", "--positions", "8"],
     &["stage", "--rate", "50", "--seconds", "60", "--gyro", "fog"],
     &["two-frame", "--rate", "50", "--dwell", "2", "--passes", "2"],
-    &["turntable", "--rate", "50", "--turns", "2", "--uneven-turns", "4"],
+    &["turntable", "--rate", "50", "--turns", "2", "--modulated-turns", "4"],
     &["vehicle", "--rate", "50", "--stops", "2", "--drive-seconds", "240", "--hold", "10"],
     &["spin", "--flight-seconds", "0.5"],
 ];
@@ -126,7 +126,7 @@ fn a_flash_that_cannot_be_written_is_no_ok() {
     let scratch = Scratch::new("flash");
     let path = scratch.path("no-folder/flash");
     assert!(!Path::new(&path).exists());
-    let turning = ["run", "turntable", "--turns", "2", "--uneven-turns", "4"];
+    let turning = ["run", "turntable", "--turns", "2", "--modulated-turns", "4"];
     let output = meridian(&[&turning[..], &["--rate", "50", "--flash", &path, "--json"]].concat());
     assert_eq!((code(&output), &object(&output)["status"]), (1, &"failed".into()));
 }

@@ -1,4 +1,4 @@
-//! The recordings of a turning platform, replayed through the session: north, coupling and stages against
+//! The recordings of a turning platform, replayed through the session: north, misalignment and stages against
 //! the truth and an independent solution, and refusals where the recording is spoilt.
 
 mod oracle;
@@ -65,8 +65,8 @@ fn conclusion(replay: &Replay) -> &Conclusion {
 
 const GYRO: &str = "rotating-gyro";
 const MET: &str = "rotating-met-two-speeds";
-/// When the uneven stretch of the gyro's recording ends, s: twelve turns at 0.137 Hz.
-const UNEVEN_S: f64 = 87.59;
+/// When the rate-modulated stretch of the gyro's recording ends, s: twelve turns at 0.137 Hz.
+const MODULATED_S: f64 = 87.59;
 /// When it turns back, s.
 const BACK_S: f64 = 175.19;
 
@@ -116,11 +116,12 @@ fn two_speeds_cost_what_the_times_of_the_recording_make_of_them() {
 }
 
 #[test]
-fn the_coupling_is_that_of_an_independent_fit() {
+fn the_misalignment_is_that_of_an_independent_fit() {
     let recorded = recorded(GYRO);
-    let independent = -oracle::coupling(recorded.between(0.0, UNEVEN_S)).asin().to_degrees();
+    let independent = -oracle::misalignment(recorded.between(0.0, MODULATED_S)).asin().to_degrees();
     let replay = recorded.replayed();
-    let found = conclusion(&replay).couplings.first().expect("there is one").angle().to_degrees();
+    let found =
+        conclusion(&replay).misalignments.first().expect("there is one").angle().to_degrees();
     println!("{found:.6}° {independent:.6}°");
     assert!((found - independent).abs() < 1e-4, "{found}° {independent}°");
     assert!((found - 0.8).abs() < 1e-4, "{found}°");
@@ -134,9 +135,9 @@ fn an_independent_solution_of_the_gyros_recording_agrees() {
         gravity: hal_mock::earth::normal_gravity_m_s2(55.75_f64.to_radians()),
         g_sensitivity: [8.0, -5.0].map(|part: f64| part.to_radians() / 3600.0),
     };
-    let coupling = oracle::coupling(recorded.between(0.0, UNEVEN_S));
-    let turns = [recorded.between(UNEVEN_S, BACK_S), recorded.between(BACK_S, 300.0)];
-    let independent = oracle::azimuth(turns, coupling, &known).to_degrees();
+    let misalignment = oracle::misalignment(recorded.between(0.0, MODULATED_S));
+    let turns = [recorded.between(MODULATED_S, BACK_S), recorded.between(BACK_S, 300.0)];
+    let independent = oracle::azimuth(turns, misalignment, &known).to_degrees();
     let replay = recorded.replayed();
     let azimuth = conclusion(&replay).verdict.expect("there is an azimuth");
     let difference = azimuth_error(azimuth.angle.to_degrees(), independent);
@@ -161,13 +162,13 @@ fn a_recording_is_parted_where_the_platform_changed_its_way() {
     let parts = replay.parts(&recorded.rows);
     let names: Vec<String> = parts.iter().map(ToString::to_string).collect();
     let expected = [
-        "clockwise at 0.137 Hz, unevenly",
+        "clockwise at 0.137 Hz, rate-modulated",
         "clockwise at 0.137 Hz",
         "counter-clockwise at 0.137 Hz",
     ];
     assert_eq!(names, expected);
     let begins: Vec<f64> = parts.iter().map(|part| part.rows[0].time_s).collect();
-    for (begin, expected) in begins.iter().zip([0.0, UNEVEN_S, BACK_S]) {
+    for (begin, expected) in begins.iter().zip([0.0, MODULATED_S, BACK_S]) {
         assert!((begin - expected).abs() < 8.0, "{begins:?}");
     }
 }
@@ -332,7 +333,7 @@ fn a_base_that_is_turned_between_stretches_of_a_sensor_of_unknown_lag_is_not_tak
 #[test]
 fn what_an_unknown_lag_hides_at_one_speed_and_at_two_is_assumed() {
     let of_one = "no turn of the base and no slip between the senses";
-    let of_two = "the lag of one pole at the speed without an uneven turn";
+    let of_two = "the lag of one pole at the speed without a rate-modulated turn";
     let told = |replay: &Replay| {
         let is_told = |words: &&str| replay.assumed.iter().any(|line| line.starts_with(*words));
         [of_one, of_two].iter().map(is_told).collect::<Vec<bool>>()

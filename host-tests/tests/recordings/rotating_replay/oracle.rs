@@ -66,12 +66,12 @@ fn turning(rows: &[RotatingRow]) -> Vec<Vec<f64>> {
     ]
 }
 
-/// The sensor's part of the platform's rate, s = −sin α, from an uneven stretch: the fit on
+/// The sensor's part of the platform's rate, s = −sin α, from a rate-modulated stretch: the fit on
 /// 1, t, cos θ, sin θ, θ̇.
-pub fn coupling(uneven: &[RotatingRow]) -> f64 {
-    let mut columns = turning(uneven);
-    columns.push(column(uneven, |row| row.stage_rate_rad_s));
-    least_squares(&columns, &column(uneven, |row| row.rate_rad_s))[3]
+pub fn misalignment(modulated: &[RotatingRow]) -> f64 {
+    let mut columns = turning(modulated);
+    columns.push(column(modulated, |row| row.stage_rate_rad_s));
+    least_squares(&columns, &column(modulated, |row| row.rate_rad_s))[3]
 }
 
 /// The phasor of a signal.
@@ -91,8 +91,8 @@ pub struct Known {
 }
 
 /// The azimuth, rad, of a flat sensor that turned clockwise, then counter-clockwise; whole turns.
-pub fn azimuth(turns: [&[RotatingRow]; 2], coupling: f64, known: &Known) -> f64 {
-    let freed = |row: &RotatingRow| row.rate_rad_s - coupling * row.stage_rate_rad_s;
+pub fn azimuth(turns: [&[RotatingRow]; 2], misalignment: f64, known: &Known) -> f64 {
+    let freed = |row: &RotatingRow| row.rate_rad_s - misalignment * row.stage_rate_rad_s;
     let mean = |[a, b]: [Complex; 2]| [0, 1].map(|part| 0.5 * (a[part] + b[part]));
     let sensor = mean(turns.map(|rows| phasor(rows, freed)));
     let tilt = mean(turns.map(|rows| phasor(rows, |row| row.force_m_s2 / known.gravity)));

@@ -67,7 +67,7 @@ fn numbers_are_told_where_they_mean_something() {
 }
 
 #[test]
-fn the_block_prints_the_limit_the_coupling_and_every_stage() {
+fn the_block_prints_the_limit_the_misalignment_and_every_stage() {
     let output = replayed(GYRO, &[]);
     let text = String::from_utf8_lossy(&output.stdout);
     for words in [
@@ -97,8 +97,8 @@ fn the_report_draws_profile_spectra_phasors_and_residuals() {
     let (_, page) = page(&["replay", &stored(MET)]);
     let titles = [
         "Azimuth after each stage of compensation",
-        "Rate of the platform, clockwise at 0.100 Hz, unevenly",
-        "Amplitude spectra, clockwise at 0.100 Hz, unevenly",
+        "Rate of the platform, clockwise at 0.100 Hz, rate-modulated",
+        "Amplitude spectra, clockwise at 0.100 Hz, rate-modulated",
         "Amplitude spectra, counter-clockwise at 0.200 Hz",
         "Phasor of the sensor's signal in each turn",
         "Phasor of each turn less the mean of its stretch",

@@ -2,7 +2,7 @@
 
 use orientation::device::{Device, Trouble};
 
-use super::{BACK_S, GYRO, MET, Recorded, Refusal, UNEVEN_S, conclusion, recorded};
+use super::{BACK_S, GYRO, MET, MODULATED_S, Recorded, Refusal, conclusion, recorded};
 use host::output::azimuth_error;
 use host::recording::RotatingRow;
 
@@ -113,11 +113,11 @@ fn an_accelerometer_that_is_stuck_or_saturated_is_refused() {
 }
 
 #[test]
-fn without_the_uneven_stretch_there_is_no_north_of_an_uneven_platform() {
+fn without_the_modulated_stretch_there_is_no_north_of_an_uneven_platform() {
     for name in [GYRO, MET] {
         let mut even = recorded(name);
-        let uneven_s = if name == GYRO { UNEVEN_S } else { 122.0 };
-        even.rows.retain(|row| row.time_s > uneven_s);
+        let modulated_s = if name == GYRO { MODULATED_S } else { 122.0 };
+        even.rows.retain(|row| row.time_s > modulated_s);
         let replay = even.replayed();
         if let Ok(azimuth) = conclusion(&replay).verdict {
             let error = azimuth_error(azimuth.angle.to_degrees(), even.truth_deg);

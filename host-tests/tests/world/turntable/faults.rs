@@ -125,7 +125,7 @@ fn a_push_takes_the_accelerometer_beyond_its_range_and_leaves_the_gyro_alone() {
 #[test]
 fn an_accelerometer_off_the_axis_feels_the_turning_and_its_changes() {
     let lever = [0.05, -0.02];
-    let wave = Segment::steady(RATE_RAD_S, 20.0).uneven(0.25, 0.1);
+    let wave = Segment::steady(RATE_RAD_S, 20.0).modulated(0.25, 0.1);
     let segments = [wave];
     let instruments = InstrumentsConfiguration { rate_hz: 1000.0, ..Default::default() };
     let configuration = TurntableConfiguration {

@@ -1,4 +1,4 @@
-//! An uneven gear and a deliberately uneven motor.
+//! An uneven gear and a rate-modulated motor.
 
 use std::f64::consts::TAU;
 
@@ -156,7 +156,7 @@ fn the_plants_stage_is_as_uneven_and_its_encoder_sees_it() {
 fn a_motor_goes_through_ramps_and_waves_without_a_jump_and_its_rate_is_the_slope_of_its_angle() {
     let segments = [
         Segment::steady(0.0, 1.0),
-        Segment::steady(0.86, 12.0).after(0.5).uneven(0.25, 0.114),
+        Segment::steady(0.86, 12.0).after(0.5).modulated(0.25, 0.114),
         Segment::steady(-1.7, 7.3).after(1.2),
         Segment::steady(0.0, 2.0).after(0.7),
     ];

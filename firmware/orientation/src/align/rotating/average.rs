@@ -3,7 +3,7 @@
 
 use heapless::Vec;
 
-use super::coupling::{self, Coupling};
+use super::misalignment::{self, AxisMisalignment};
 use super::tilting::Tilting;
 use super::turn::{Sense, Stretch, TURNS, Turn};
 use crate::align::regression::{Column, Regression};
@@ -84,10 +84,11 @@ struct Turns<'a> {
 
 /// Phasors of the turns without the response to the platform's unevenness.
 impl<'a> Turns<'a> {
-    fn of(stretch: &'a Stretch, couplings: &[Coupling], steady: f64) -> Self {
+    fn of(stretch: &'a Stretch, misalignments: &[AxisMisalignment], steady: f64) -> Self {
         let frequency = stretch.sense.signed(stretch.speed());
-        let coupling = coupling::nearest(couplings, frequency);
-        let response = coupling.map_or(Complex::default(), |coupling| coupling.response(frequency));
+        let misalignment = misalignment::nearest(misalignments, frequency);
+        let response = misalignment
+            .map_or(Complex::default(), |misalignment| misalignment.response(frequency));
         let (all, phasors) = (stretch.turns(), Vec::new());
         let slopes = [0.0; TURNS];
         let mut found = Self { all, steady, phasors, slopes, is_kept: [true; TURNS] };
@@ -252,13 +253,13 @@ impl Average {
     #[must_use]
     pub fn of(
         stretch: &Stretch,
-        couplings: &[Coupling],
+        misalignments: &[AxisMisalignment],
         steady: f64,
         variance: f64,
         tilting: &Tilting,
         mut each: impl FnMut(&Turn, Complex),
     ) -> Option<Self> {
-        let mut turns = Turns::of(stretch, couplings, steady);
+        let mut turns = Turns::of(stretch, misalignments, steady);
         let since = stretch.since() as f64 * 1e-6;
         for (phasor, turn) in turns.phasors.iter_mut().zip(turns.all) {
             *phasor = *phasor - tilting.vertical_part(since + f64::from(turn.middle));
@@ -331,8 +332,8 @@ pub fn steady_part(stretches: &[Stretch]) -> f64 {
 
 /// Median magnitude of a turn's phasor, rad/s, which disturbed turns hardly affect.
 #[must_use]
-pub fn typical_size(stretch: &Stretch, couplings: &[Coupling]) -> f64 {
-    let turns = Turns::of(stretch, couplings, 0.0);
+pub fn typical_size(stretch: &Stretch, misalignments: &[AxisMisalignment]) -> f64 {
+    let turns = Turns::of(stretch, misalignments, 0.0);
     let mut sizes: Vec<f64, TURNS> = turns.phasors.iter().map(|phasor| phasor.size()).collect();
     median(&mut sizes)
 }
@@ -340,10 +341,10 @@ pub fn typical_size(stretch: &Stretch, couplings: &[Coupling]) -> f64 {
 /// Variance of either part of a turn's phasor from the differences of neighbours, (rad/s)², by a
 /// median, which disturbed turns hardly affect, raised for a small sample; zero without neighbours.
 #[must_use]
-pub fn variance_of_neighbours(stretches: &[Stretch], couplings: &[Coupling]) -> f64 {
+pub fn variance_of_neighbours(stretches: &[Stretch], misalignments: &[AxisMisalignment]) -> f64 {
     let mut squares: Vec<f64, { 4 * TURNS }> = Vec::new();
     for stretch in stretches {
-        let turns = Turns::of(stretch, couplings, 0.0);
+        let turns = Turns::of(stretch, misalignments, 0.0);
         for index in 1..turns.all.len() {
             // Four stretches hold no more differences than the vector's capacity.
             let _ = squares.push(turns.distance(index, turns.phasors[index - 1]));

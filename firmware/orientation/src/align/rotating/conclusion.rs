@@ -6,8 +6,8 @@ use heapless::Vec;
 use super::Setting;
 use super::average::{Average, steady_part, typical_size, variance_of_neighbours};
 use super::change::{MARKS, Mark};
-use super::coupling::Coupling;
 use super::heading::Directions;
+use super::misalignment::AxisMisalignment;
 use super::solution::{Fit, Pair, Problem, SPEEDS, force_density, of_one_turn, of_turn};
 use super::tilting::Tilting;
 use super::turn::{Sense, Stretch, Turn};
@@ -67,7 +67,7 @@ pub struct Conclusion {
     /// verdict.
     pub fit: Option<Fit>,
     /// Axis misalignment of the gyro, measured or stored, at one speed or at each.
-    pub couplings: Vec<Coupling, SPEEDS>,
+    pub misalignments: Vec<AxisMisalignment, SPEEDS>,
     /// Averages of both senses at each speed.
     pub pairs: Vec<Pair, SPEEDS>,
     /// Angle random walk N used, rad/√s: known, or from the scatter of the turns.
@@ -94,7 +94,7 @@ impl Default for Conclusion {
         Self {
             verdict: Err(Refusal::TurnsTooFew { sense: Sense::Clockwise, turns: 0 }),
             fit: None,
-            couplings: Vec::new(),
+            misalignments: Vec::new(),
             pairs: Vec::new(),
             angle_random_walk: 0.0,
             chi_square: 0.0,
@@ -129,7 +129,7 @@ impl Conclusion {
         self.judge_left_out(setting).map_err(moved)?;
         self.solve(evidence, marks)?;
         self.judge_turns(setting, drift)?;
-        let fit = self.fit.ok_or(Refusal::CouplingUnknown)?;
+        let fit = self.fit.ok_or(Refusal::MisalignmentUnknown)?;
         self.judge_force(setting, &fit, tilting)?;
         judge(setting, &fit, self.degrees)?;
         within_budget(setting, &fit)
@@ -141,21 +141,22 @@ impl Conclusion {
         let Evidence { setting, turn_accumulator, .. } = evidence;
         let mut noise = setting.common.noise;
         if !setting.common.white_known {
-            noise.angle_random_walk = estimate(turn_accumulator.stretches(), &self.couplings);
+            noise.angle_random_walk = estimate(turn_accumulator.stretches(), &self.misalignments);
         }
-        let found = turn_accumulator.uneven().iter().filter_map(|uneven| uneven.coupling(&noise));
-        self.couplings = found.collect();
-        if self.couplings.is_empty() {
-            self.couplings = setting.couplings.iter().flatten().copied().collect();
+        let stretches = turn_accumulator.modulated().iter();
+        let found = stretches.filter_map(|stretch| stretch.misalignment(&noise));
+        self.misalignments = found.collect();
+        if self.misalignments.is_empty() {
+            self.misalignments = setting.misalignments.iter().flatten().copied().collect();
         }
         if !setting.common.white_known {
-            noise.angle_random_walk = estimate(turn_accumulator.stretches(), &self.couplings);
+            noise.angle_random_walk = estimate(turn_accumulator.stretches(), &self.misalignments);
         }
         self.angle_random_walk = noise.angle_random_walk;
-        if self.couplings.is_empty() && !setting.sensor.is_flat {
-            return Err(Refusal::CouplingUnknown);
+        if self.misalignments.is_empty() && !setting.sensor.is_flat {
+            return Err(Refusal::MisalignmentUnknown);
         }
-        self.couplings.iter().try_for_each(|coupling| setting.accept(coupling))
+        self.misalignments.iter().try_for_each(|misalignment| setting.accept(misalignment))
     }
 
     /// Refuses a failed accelerometer and an encoder that slipped.
@@ -213,7 +214,7 @@ impl Conclusion {
         marks: &mut Vec<Mark, MARKS>,
     ) -> Vec<Average, STRETCHES> {
         let Evidence { setting, turn_accumulator, tilting } = evidence;
-        let (stretches, couplings) = (turn_accumulator.stretches(), &self.couplings);
+        let (stretches, misalignments) = (turn_accumulator.stretches(), &self.misalignments);
         let horizontal = setting.common.latitude.horizontal_rate();
         let steady = steady_part(stretches);
         let slow = stretches.first().map_or(0.0, Stretch::speed);
@@ -223,14 +224,15 @@ impl Conclusion {
             let variance = of_one_turn(&self.noise(setting), speed) / f64::from(stretch.joined);
             // Noise counts at the sensor's input, so the sensor's gain scales it.
             let is_flat = setting.sensor.is_flat;
-            let gain = if is_flat { 1.0 } else { typical_size(stretch, couplings) / horizontal };
+            let size = || typical_size(stretch, misalignments);
+            let gain = if is_flat { 1.0 } else { size() / horizontal };
             let is_second = (speed - slow).abs() > EQUAL_SPEEDS * slow;
             let mark = |turn: &Turn, phasor: Complex| {
                 // The vector has room for every turn of every stretch.
                 let _ = marks.push(Mark { is_second, ..Mark::of(stretch, turn, phasor) });
             };
             let variance = variance * gain * gain;
-            let average = Average::of(stretch, couplings, steady, variance, tilting, mark);
+            let average = Average::of(stretch, misalignments, steady, variance, tilting, mark);
             if let Some(average) = average {
                 // The vector has room for every stretch.
                 let _ = averages.push(average);
@@ -325,28 +327,29 @@ impl Conclusion {
     fn solve(&mut self, evidence: &Evidence, marks: Vec<Mark, MARKS>) -> Result<(), Refusal> {
         let Evidence { setting, tilting, .. } = evidence;
         let problem = self.problem(evidence);
-        let mut fit = problem.solve().ok_or(Refusal::CouplingUnknown)?;
-        let doubt = Directions { problem: &problem, fit: &fit }.doubt(marks);
+        let mut fit = problem.solve().ok_or(Refusal::MisalignmentUnknown)?;
+        let inflation = Directions { problem: &problem, fit: &fit }.inflation(marks);
         let excess = self.excess(setting);
         fit.budget.noise *= excess;
         let drift = fit.budget.drift * excess;
-        fit.budget.drift = libm::sqrt(drift * drift + doubt.as_ref().map_or(0.0, |doubt| *doubt));
+        fit.budget.drift =
+            libm::sqrt(drift * drift + inflation.as_ref().map_or(0.0, |inflation| *inflation));
         let slip = tilting.slip(fit.tilt.size());
         let is_small = slip <= SMALL_SLIP * fit.sigma();
         fit.budget.encoder = libm::hypot(fit.budget.encoder, OF_SLIP * slip);
         self.fit = Some(fit);
         match tilting.step.filter(|_| !is_small) {
             Some(change) => Err(Refusal::TiltChanged { change: change * 1e3 }),
-            None => doubt.map(|_| ()),
+            None => inflation.map(|_| ()),
         }
     }
 
     /// Equations to be solved.
     fn problem<'a>(&'a self, evidence: &'a Evidence) -> Problem<'a> {
         let Evidence { setting, turn_accumulator, tilting } = evidence;
-        let (pairs, couplings, noise) = (&self.pairs, &self.couplings, self.noise(setting));
+        let (pairs, misalignments, noise) = (&self.pairs, &self.misalignments, self.noise(setting));
         let ellipse = turn_accumulator.ellipse();
-        Problem { setting, pairs, couplings, noise, tilting, ellipse }
+        Problem { setting, pairs, misalignments, noise, tilting, ellipse }
     }
 
     /// Observability of a slow rotation of the base about the vertical, from the turns of this
@@ -405,8 +408,8 @@ impl<'a> Evidence<'a> {
 }
 
 /// Angle random walk N from the scatter of neighbouring turns, rad/√s.
-fn estimate(stretches: &[Stretch], couplings: &[Coupling]) -> f64 {
-    let variance = variance_of_neighbours(stretches, couplings);
+fn estimate(stretches: &[Stretch], misalignments: &[AxisMisalignment]) -> f64 {
+    let variance = variance_of_neighbours(stretches, misalignments);
     let speed = stretches.first().map_or(0.0, Stretch::speed);
     libm::sqrt(variance / of_turn(speed, 1.0).max(f64::MIN_POSITIVE))
 }

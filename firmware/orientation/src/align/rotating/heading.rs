@@ -10,7 +10,7 @@ use heapless::Vec;
 use super::change::{Found, MARKS, Mark, Record, Shape};
 use super::solution::{Fit, Pair, Problem, believed_lag, of_one_turn};
 use super::turn::Sense;
-use super::{coupling, solution};
+use super::{misalignment, solution};
 use crate::align::regression::Column;
 use crate::align::slow::SlowMotion;
 use crate::error::Refusal;
@@ -50,7 +50,7 @@ impl Directions<'_> {
     /// [`Refusal::DirectionDrifts`], [`Refusal::HeadingStepped`], [`Refusal::SensesDisagree`], and
     /// [`Refusal::TiltChanged`] where the tilt's direction drifts as an encoder that creeps lets it.
     #[inline(never)]
-    pub fn doubt(&self, marks: Vec<Mark, MARKS>) -> Result<f64, Refusal> {
+    pub fn inflation(&self, marks: Vec<Mark, MARKS>) -> Result<f64, Refusal> {
         let Some(record) = self.record(marks) else { return Ok(0.0) };
         let Some(steady) = record.steady() else { return Ok(0.0) };
         let drift = record.changing(Shape::Rate, &steady);
@@ -164,7 +164,7 @@ impl Directions<'_> {
 
     /// Lag that was compensated, s.
     fn lag(&self, pair: &Pair) -> f64 {
-        coupling::nearest(self.problem.couplings, pair.speed()).map_or(0.0, believed_lag)
+        misalignment::nearest(self.problem.misalignments, pair.speed()).map_or(0.0, believed_lag)
     }
 
     /// Standard deviation of the lag that was not compensated, 1σ, s.

@@ -14,9 +14,9 @@
 pub mod average;
 pub mod change;
 pub mod conclusion;
-pub mod coupling;
 pub mod heading;
 pub mod level;
+pub mod misalignment;
 pub mod molecular;
 pub mod part;
 pub mod solution;
@@ -24,7 +24,7 @@ pub mod tilting;
 pub mod turn;
 pub mod turn_accumulator;
 
-use self::coupling::Coupling;
+use self::misalignment::AxisMisalignment;
 use self::solution::SPEEDS;
 use super::setting::Setting as Common;
 use crate::error::Refusal;
@@ -64,9 +64,9 @@ pub struct Setting {
     /// Kind of sensor.
     pub sensor: Sensor,
     /// Stored axis misalignments, one for each speed; rate-modulated turns replace them.
-    pub couplings: [Option<Coupling>; SPEEDS],
+    pub misalignments: [Option<AxisMisalignment>; SPEEDS],
     /// Greatest misalignment of the sensitive axis from the platform's plane, rad.
-    pub coupling_limit: f64,
+    pub misalignment_limit: f64,
     /// Standard deviation of the encoder's zero, 1σ, rad. It enters the azimuth fully, and no
     /// rotation shows it.
     pub encoder_zero_sigma: f64,
@@ -78,8 +78,8 @@ pub struct Setting {
     pub rate_step: f64,
 }
 
-/// Default of [`Setting::coupling_limit`]: 2°.
-const COUPLING_LIMIT: f64 = 2.0 * DEGREE;
+/// Default of [`Setting::misalignment_limit`]: 2°.
+const MISALIGNMENT_LIMIT: f64 = 2.0 * DEGREE;
 
 impl Setting {
     /// Configuration without stored misalignments, for an exact encoder.
@@ -88,8 +88,8 @@ impl Setting {
         Self {
             common,
             sensor,
-            couplings: [None; SPEEDS],
-            coupling_limit: COUPLING_LIMIT,
+            misalignments: [None; SPEEDS],
+            misalignment_limit: MISALIGNMENT_LIMIT,
             encoder_zero_sigma: 0.0,
             harmonics_known: true,
             rate_step: 0.0,
@@ -100,8 +100,8 @@ impl Setting {
     ///
     /// # Errors
     /// [`Refusal::Misaligned`]: the sensor must be aligned mechanically.
-    pub fn accept(&self, coupling: &Coupling) -> Result<(), Refusal> {
-        let (angle, allowed) = (coupling.angle(), self.coupling_limit);
+    pub fn accept(&self, misalignment: &AxisMisalignment) -> Result<(), Refusal> {
+        let (angle, allowed) = (misalignment.angle(), self.misalignment_limit);
         if angle.abs() <= allowed {
             return Ok(());
         }

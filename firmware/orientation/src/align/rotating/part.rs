@@ -17,7 +17,7 @@ const ALIKE: f32 = 0.02;
 const JUMP: f32 = 0.02;
 /// Sums of a rate-modulated stretch.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Uneven {
+pub struct Modulated {
     /// Products of all signals.
     pub sums: Sums,
     /// Length of the stretch, s.

@@ -6,8 +6,8 @@
 
 use super::Setting;
 use super::average::Average;
-use super::coupling::{self, Coupling};
 use super::level::Lean;
+use super::misalignment::{self, AxisMisalignment};
 use super::molecular::{self, Freed, Halves};
 use super::tilting::Tilting;
 use crate::align::budget::Budget;
@@ -76,7 +76,7 @@ impl Pair {
 
     /// Half the difference of the platform's rate phasors: an unevenness that is fixed to the
     /// angle.
-    fn uneven(&self) -> Complex {
+    fn unevenness(&self) -> Complex {
         (self.clockwise.turning - self.counter.turning).scaled(0.5)
     }
 
@@ -139,7 +139,7 @@ pub struct Stages {
     /// Angle of the raw phasor of the clockwise turns at the first speed.
     pub raw: f64,
     /// Angle after the axis misalignment is compensated.
-    pub coupling: f64,
+    pub misalignment: f64,
     /// Angle from both senses together.
     pub senses: f64,
     /// Azimuth after all compensations: tilt, g-sensitivity, second speed.
@@ -206,7 +206,7 @@ pub struct Problem<'a> {
     /// Pairs of averages, one for each of one or two speeds.
     pub pairs: &'a [Pair],
     /// Axis misalignments, at one speed or at each.
-    pub couplings: &'a [Coupling],
+    pub misalignments: &'a [AxisMisalignment],
     /// Noise model of the gyro; its N is known, or estimated from the turns.
     pub noise: GyroNoise,
     /// Motion of a tilting base.
@@ -243,8 +243,8 @@ impl Problem<'_> {
         fit.limit = if self.white() > 0.0 { fit.budget.noise } else { 0.0 };
         let senses = if is_flat { first.even().angle() } else { self.halves(first).angle };
         let stages = [first.clockwise.raw.angle(), first.clockwise.phasor.angle(), senses];
-        let [raw, coupling, senses] = stages.map(wrapped);
-        fit.stages = Stages { raw, coupling, senses, full: fit.azimuth };
+        let [raw, misalignment, senses] = stages.map(wrapped);
+        fit.stages = Stages { raw, misalignment, senses, full: fit.azimuth };
         Some(fit)
     }
 
@@ -252,7 +252,7 @@ impl Problem<'_> {
     #[must_use]
     pub fn earth(&self) -> [f64; 2] {
         let latitude = self.setting.common.latitude;
-        let along = self.couplings.first().map_or(1.0, |coupling| libm::cos(coupling.angle()));
+        let along = self.misalignments.first().map_or(1.0, |found| libm::cos(found.angle()));
         [latitude.horizontal_rate() * along, latitude.vertical_rate()]
     }
 
@@ -279,18 +279,18 @@ impl Problem<'_> {
         let [horizontal, _] = self.earth();
         let (mut sum, mut information) = (Complex::default(), 0.0);
         for pair in self.pairs {
-            let coupling = coupling::nearest(self.couplings, pair.speed());
-            let sigma = coupling.map_or(UNKNOWN_LAG, Coupling::lag_sigma).min(UNKNOWN_LAG);
+            let found = misalignment::nearest(self.misalignments, pair.speed());
+            let sigma = found.map_or(UNKNOWN_LAG, AxisMisalignment::lag_sigma).min(UNKNOWN_LAG);
             let harmonic = ENCODER_HARMONIC + self.setting.common.encoder_sigma;
-            let shown = match coupling {
-                Some(coupling) => harmonic * coupling.sine.abs() * pair.speed() / horizontal,
+            let shown = match found {
+                Some(found) => harmonic * found.sine.abs() * pair.speed() / horizontal,
                 // Without a misalignment the response to the platform's unevenness cancels between
                 // the senses.
-                None => self.setting.coupling_limit * pair.uneven().size() / horizontal,
+                None => self.setting.misalignment_limit * pair.unevenness().size() / horizontal,
             };
             let known = libm::hypot(shown, self.rounded(1.0, self.beside()));
             fit.senses_sigma = fit.senses_sigma.max(libm::hypot(sigma * pair.speed(), known));
-            let lag = coupling.map_or(0.0, believed_lag);
+            let lag = found.map_or(0.0, believed_lag);
             let tangent = libm::fabs(lag * pair.speed()) * (1.0 + LAG_LAW);
             fit.passed = fit.passed.min(1.0 / libm::hypot(1.0, tangent));
             let pair = pair.without_lag(lag);
@@ -335,8 +335,8 @@ impl Problem<'_> {
 
     /// Rotating signal due to the platform's unevenness at one speed, relative to the Earth rate.
     fn beside_at(&self, pair: &Pair) -> f64 {
-        let coupling = coupling::nearest(self.couplings, pair.speed());
-        coupling.map_or(0.0, |found| found.sine.abs() * pair.uneven().size()) / self.earth()[0]
+        let found = misalignment::nearest(self.misalignments, pair.speed());
+        found.map_or(0.0, |found| found.sine.abs() * pair.unevenness().size()) / self.earth()[0]
     }
 
     /// Slowest speed, at which an integrated g-sensitivity is greatest.
@@ -366,7 +366,7 @@ impl Problem<'_> {
         fit.molecular = freed.ratio;
         fit.one_speed = freed.one_speed;
         fit.disagreement = freed.disagreement;
-        fit.astray = self.astray(&halves, &freed, self.coupling_sigma(fit));
+        fit.astray = self.astray(&halves, &freed, self.misalignment_sigma(fit));
         let slowest = self.slowest()?.speed();
         for (phase, pair) in fit.phases.iter_mut().zip(self.pairs) {
             *phase += freed.ratio.re * slowest / pair.speed();
@@ -382,20 +382,20 @@ impl Problem<'_> {
     /// Disagreement of two speeds with the lag from the rate-modulated turn, in σ: of their own
     /// lags, and of the azimuth change by the g-sensitivity that follows from these. A base that
     /// rotates between the stretches causes both.
-    fn astray(&self, halves: &[Halves], freed: &Freed, coupling_sigma: f64) -> f64 {
+    fn astray(&self, halves: &[Halves], freed: &Freed, misalignment_sigma: f64) -> f64 {
         let [slow, quick] = halves else { return 0.0 };
         let (slow, quick) = if quick.speed < slow.speed { (quick, slow) } else { (slow, quick) };
         // The difference of a phase from the law's is −x, which falls as the speed grows.
-        let uneven = coupling_sigma * coupling_sigma;
+        let residual = misalignment_sigma * misalignment_sigma;
         let [(at_slow, slow_variance), (at_quick, quick_variance)] = [slow, quick].map(|half| {
             let (law, sigma) = self.law(half.speed, freed.ratio.size());
-            (half.phase - law, half.variance + uneven + sigma * sigma)
+            (half.phase - law, half.variance + residual + sigma * sigma)
         });
         let falls = slow.speed / quick.speed;
         let lags = (at_quick - falls * at_slow)
             / libm::sqrt(quick_variance + falls * falls * slow_variance);
         let (y, span) = (freed.ratio.im, 1.0 - falls * falls);
-        let variance = (slow.variance + quick.variance + 2.0 * uneven) / (span * span);
+        let variance = (slow.variance + quick.variance + 2.0 * residual) / (span * span);
         let speeds = (freed.one_speed + at_slow * y) / libm::sqrt(variance + y * y * slow_variance);
         lags.abs().max(speeds.abs())
     }
@@ -404,7 +404,8 @@ impl Problem<'_> {
     /// rad. An integrated g-sensitivity of this size relative to the Earth rate responds to the
     /// modulation too.
     fn law(&self, speed: f64, molecular: f64) -> (f64, f64) {
-        let Some(found) = coupling::nearest(self.couplings, speed) else { return (0.0, TURN) };
+        let found = misalignment::nearest(self.misalignments, speed);
+        let Some(found) = found else { return (0.0, TURN) };
         let at = |speed: f64| found.response(speed).scaled(found.sine.signum()).angle();
         let phase = at(speed);
         // A pole and a high-pass together curve as either may; the test is whether one pole holds
@@ -445,14 +446,14 @@ impl Problem<'_> {
             noise: libm::sqrt(turned.noise * white),
             drift: libm::sqrt(
                 turned.noise * (1.0 - white)
-                    + self.tilting.doubt(&fit.lean, turned.angle, horizontal),
+                    + self.tilting.inflation(&fit.lean, turned.angle, horizontal),
             ),
             g_sensitivity: libm::hypot(
                 common.kappa_sigma(self.noise.angle_random_walk) * size / horizontal,
                 libm::sqrt(turned.left),
             ),
             accelerometer: self.per_tilt(1.0).size() * fit.tilt_sigma / horizontal,
-            encoder: libm::hypot(self.encoder_sigma(turned.angle), self.coupling_sigma(fit)),
+            encoder: libm::hypot(self.encoder_sigma(turned.angle), self.misalignment_sigma(fit)),
             latitude: across.abs() * common.latitude_sigma / (cosine * cosine),
             // A flat sensor's scale is estimated with the azimuth, but it still scales the rotation
             // of a tilting base.
@@ -480,18 +481,18 @@ impl Problem<'_> {
     /// that is fixed to the angle, and so changes its sign with the sense, the in-phase part
     /// cancels except for what an integrated g-sensitivity mixes in; the quadrature part, a lag,
     /// does not cancel.
-    fn coupling_sigma(&self, fit: &Fit) -> f64 {
+    fn misalignment_sigma(&self, fit: &Fit) -> f64 {
         let [horizontal, _] = self.earth();
         let worst = self.pairs.iter().map(|pair| {
             let [clockwise, counter] = pair.senses().map(|average| average.turning);
-            let (even, odd) = ((clockwise + counter).scaled(0.5), pair.uneven());
-            let coupling = coupling::nearest(self.couplings, pair.speed());
-            let limit = self.setting.coupling_limit;
+            let (even, odd) = ((clockwise + counter).scaled(0.5), pair.unevenness());
+            let found = misalignment::nearest(self.misalignments, pair.speed());
+            let limit = self.setting.misalignment_limit;
             let unknown = [limit, limit * UNKNOWN_LAG * pair.speed()];
-            let [in_phase, lagging] = coupling.map_or(unknown, |found| found.sigmas(pair.speed()));
+            let [in_phase, lagging] = found.map_or(unknown, |found| found.sigmas(pair.speed()));
             let mixed = libm::hypot(even.size(), odd.size() * fit.molecular.size());
             // A flat sensor has no dynamics that the rate-modulated turn could show in part only.
-            let response = coupling.filter(|_| !self.setting.sensor.is_flat);
+            let response = found.filter(|_| !self.setting.sensor.is_flat);
             let left = response.map_or(0.0, |found| UNTOLD * found.sine.abs());
             libm::hypot(in_phase * mixed, libm::hypot(lagging, left) * odd.size())
         });
@@ -502,9 +503,9 @@ impl Problem<'_> {
 /// Lag of a flat sensor, s: that of the rate-modulated turn, shrunk towards zero by the prior that
 /// a lag is small.
 #[must_use]
-pub fn believed_lag(coupling: &Coupling) -> f64 {
-    let (known, sigma) = (UNKNOWN_LAG * UNKNOWN_LAG, coupling.lag_sigma());
-    coupling.lag() * known / (known + sigma * sigma)
+pub fn believed_lag(misalignment: &AxisMisalignment) -> f64 {
+    let (known, sigma) = (UNKNOWN_LAG * UNKNOWN_LAG, misalignment.lag_sigma());
+    misalignment.lag() * known / (known + sigma * sigma)
 }
 
 /// Variance of either part of a force's phasor times the time over which it was measured,

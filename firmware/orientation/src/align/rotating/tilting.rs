@@ -39,7 +39,7 @@ pub struct Tilting {
     /// Variance of either part of the true rate about `rate`, (g/s)².
     pub variance: f64,
     /// Most likely rate where none is accepted, g/s, and the probability that there is one.
-    doubted: Complex,
+    possible: Complex,
     probability: f64,
     /// Time from the first turn to the last, s.
     seconds: f64,
@@ -89,7 +89,7 @@ impl Tilting {
         let odds = prior * libm::exp(0.5 * found.gain);
         let possible = 1.0 / (1.0 + found.change_variance / (FASTEST * FASTEST));
         let probability = odds / (1.0 + odds) * possible;
-        Self { doubted: rate, variance: found.change_variance, probability, ..standing }
+        Self { possible: rate, variance: found.change_variance, probability, ..standing }
     }
 
     /// Rate of a creeping encoder that would explain the drift of the tilt's direction, rad/s, for
@@ -141,11 +141,11 @@ impl Tilting {
     /// Variance of an azimuth, rad², for the tilting that the forces leave open, for a horizontal
     /// Earth rate in rad/s.
     #[must_use]
-    pub fn doubt(&self, lean: &Lean, azimuth: f64, horizontal: f64) -> f64 {
+    pub fn inflation(&self, lean: &Lean, azimuth: f64, horizontal: f64) -> f64 {
         if self.probability == 0.0 {
             return self.variance / (horizontal * horizontal);
         }
-        let across = (lean.turning(self.doubted) * Complex::unit(-azimuth)).im;
+        let across = (lean.turning(self.possible) * Complex::unit(-azimuth)).im;
         self.probability * (across * across + self.variance) / (horizontal * horizontal)
     }
 }

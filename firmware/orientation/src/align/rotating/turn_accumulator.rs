@@ -11,7 +11,7 @@
 
 use heapless::Vec;
 
-use super::part::{AXES, Broken, EIGHTH, Ellipse, Forces, Part, Uneven, is_jump};
+use super::part::{AXES, Broken, EIGHTH, Ellipse, Forces, Modulated, Part, is_jump};
 use super::solution::SPEEDS;
 use super::turn::{Sense, Stretch, Turn};
 use crate::align::etalon::Table;
@@ -51,7 +51,7 @@ pub enum Mode {
     /// Nothing is accumulated: the platform starts, stops or reverses.
     Ignore,
     /// A rate-modulated turn.
-    Uneven,
+    Modulated,
     /// Turns at constant rate.
     Even,
     /// A recording: a rate-modulated stretch first, if there is one, then turns at constant rate.
@@ -94,7 +94,7 @@ pub struct TurnAccumulator {
     /// Rate of the turn's first eighth, rad/s.
     speed: f32,
     /// Rate-modulated stretches.
-    uneven: Vec<Uneven, SPEEDS>,
+    modulated: Vec<Modulated, SPEEDS>,
     /// Whether the next modulated eighth is skipped, because the sensor still responds to the
     /// previous motion.
     is_settling: bool,
@@ -126,7 +126,7 @@ impl TurnAccumulator {
             ellipse: Complex::default(),
             ellipse_turns: 0,
             speed: 0.0,
-            uneven: Vec::new(),
+            modulated: Vec::new(),
             is_settling: true,
             stretches: Vec::new(),
             broken: None,
@@ -146,8 +146,8 @@ impl TurnAccumulator {
 
     /// Rate-modulated stretches so far, one for each speed.
     #[must_use]
-    pub fn uneven(&self) -> &[Uneven] {
-        &self.uneven
+    pub fn modulated(&self) -> &[Modulated] {
+        &self.modulated
     }
 
     /// Encoder error ε sin(2θ + ψ) that would make the platform's rotation as uniform as possible,
@@ -164,10 +164,10 @@ impl TurnAccumulator {
 
     /// Begins another rate-modulated stretch, modulated by a spectral line of this half width over
     /// its frequency.
-    pub fn follow_uneven(&mut self, width: f64) {
-        self.follow(Mode::Uneven);
+    pub fn follow_modulated(&mut self, width: f64) {
+        self.follow(Mode::Modulated);
         // With more stretches than speeds, the last one is continued.
-        let _ = self.uneven.push(Uneven { width, ..Uneven::default() });
+        let _ = self.modulated.push(Modulated { width, ..Modulated::default() });
     }
 
     /// Ends the recording: a turn that is nearly complete counts.
@@ -311,8 +311,8 @@ impl TurnAccumulator {
     fn end_part(&mut self) -> bool {
         let ahead = (self.part.reached() - EIGHTH).max(0);
         let part = core::mem::replace(&mut self.part, Part { ahead, ..Part::default() });
-        if self.mode == Mode::Uneven {
-            self.take_uneven(&part);
+        if self.mode == Mode::Modulated {
+            self.take_modulated(&part);
             return false;
         }
         let (is_even, is_alike) = (part.is_even(), part.is_alike(self.speed));
@@ -380,10 +380,10 @@ impl TurnAccumulator {
             let share = f64::from(self.turn.count) / f64::from(EIGHTHS);
             let turned = Sense::of(f64::from(self.speed)).signed(share * WHOLE_TURN);
             let (turn, seconds) = (self.turn.sums, f64::from(self.turn.seconds));
-            if let Some(uneven) = self.uneven_in_progress() {
-                uneven.sums.add(&turn);
-                uneven.seconds += seconds;
-                uneven.turned += turned;
+            if let Some(modulated) = self.modulated_in_progress() {
+                modulated.sums.add(&turn);
+                modulated.seconds += seconds;
+                modulated.turned += turned;
             }
         }
         self.turn = Eighths::default();
@@ -392,7 +392,7 @@ impl TurnAccumulator {
     /// Discards a modulated eighth, or adds it to the rate-modulated stretch.
     fn leave(&mut self, part: &Part) {
         if self.is_before_even() {
-            self.take_uneven(part);
+            self.take_modulated(part);
         } else {
             self.reference = None;
         }
@@ -400,24 +400,24 @@ impl TurnAccumulator {
 
     /// Adds an eighth to the rate-modulated stretch, unless the sensor settles or its rate is
     /// implausible.
-    fn take_uneven(&mut self, part: &Part) {
+    fn take_modulated(&mut self, part: &Part) {
         if core::mem::take(&mut self.is_settling) || part.products.is_astray {
             return;
         }
-        if let Some(uneven) = self.uneven_in_progress() {
-            uneven.sums.absorb(&part.products);
-            uneven.seconds += f64::from(part.seconds);
-            uneven.turned += part.turned as f64 * Angle::STEP;
+        if let Some(modulated) = self.modulated_in_progress() {
+            modulated.sums.absorb(&part.products);
+            modulated.seconds += f64::from(part.seconds);
+            modulated.turned += part.turned as f64 * Angle::STEP;
         }
     }
 
     /// Rate-modulated stretch in progress, created if there is none.
-    fn uneven_in_progress(&mut self) -> Option<&mut Uneven> {
-        if self.uneven.is_empty() {
+    fn modulated_in_progress(&mut self) -> Option<&mut Modulated> {
+        if self.modulated.is_empty() {
             // An empty vector has room, so the push cannot fail.
-            let _ = self.uneven.push(Uneven::default());
+            let _ = self.modulated.push(Modulated::default());
         }
-        self.uneven.last_mut()
+        self.modulated.last_mut()
     }
 
     /// Whether a recording has not yet had a whole turn at constant rate.

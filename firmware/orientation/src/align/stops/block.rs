@@ -110,7 +110,7 @@ impl<const N: usize> Blocks<N> {
     }
 
     /// Removes the blocks of the last stop, where it turned out not to be one.
-    pub fn forget(&mut self, stop: usize) {
+    pub fn discard(&mut self, stop: usize) {
         while self.list.last().is_some_and(|block| usize::from(block.stop) == stop) {
             self.list.pop();
         }

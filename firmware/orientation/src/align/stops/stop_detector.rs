@@ -314,7 +314,7 @@ impl StopDetector {
         let Some(last) = self.stops.last().map(Stop::seconds) else { return };
         if last < WINDOW as f64 {
             self.stops.pop();
-            self.blocks.forget(self.stops.len());
+            self.blocks.discard(self.stops.len());
             self.fleeting = self.fleeting.max(last);
         }
     }

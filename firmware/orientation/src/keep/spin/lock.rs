@@ -132,9 +132,9 @@ pub(super) struct Lock {
     is_found: bool,
     /// Number of evaluations that agreed, and number of successive contradicting ones.
     agreed: u8,
-    strays: u32,
+    rejected: u32,
     /// Phase of the latest contradicting evaluation, rad: either it is wrong, or the roll.
-    stray: f32,
+    discrepancy: f32,
     /// Mean and mean square of the normalised innovations.
     calm: [f32; 2],
     /// Sensor errors that show in the forces.
@@ -239,7 +239,7 @@ impl Lock {
         self.scale += SCALE_WALK * SCALE_WALK * seconds;
         self.stray_by_bias(angle, seconds);
         if self.angle > TURN * TURN {
-            self.forget_angle();
+            self.reset_angle();
         }
     }
 
@@ -262,7 +262,7 @@ impl Lock {
 
     /// Resets the angle to unknown. Its covariance with the scale is dropped, because turns were
     /// not counted.
-    fn forget_angle(&mut self) {
+    fn reset_angle(&mut self) {
         self.angle = TURN * TURN;
         self.shared = 0.0;
         self.agreed = 0;
@@ -297,14 +297,14 @@ impl Lock {
         let is_used = self.learn(Seen { phase, variance, half }, phase_accumulator);
         if !is_used && (noise > NOISE_RISE * quiet || lift < FOUND * sigma) {
             // The forces or chance are the cause, not the gyro.
-            self.stray = 0.0;
+            self.discrepancy = 0.0;
         }
         // Rotation lost after the middle remains uncertain.
         self.angle += self.lost;
         if is_used && self.agreed >= AGREED {
             self.circle.take(&fit, noise);
         }
-        if self.stray == 0.0 { Condition::Locked } else { Condition::Contradicted }
+        if self.discrepancy == 0.0 { Condition::Locked } else { Condition::Contradicted }
     }
 
     /// Checks whether a lift is significant, given the counter-rotating force and the noise of
@@ -351,8 +351,8 @@ impl Lock {
             self.disagree(Seen { phase, ..seen }, phase_accumulator);
             return false;
         }
-        self.strays = 0;
-        self.stray = 0.0;
+        self.rejected = 0;
+        self.discrepancy = 0.0;
         self.agreed = self.agreed.saturating_add(1);
         self.is_found |= self.agreed >= AGREED;
         let (angle_gain, scale_gain) = (with_angle / whole, with_scale / whole);
@@ -370,7 +370,7 @@ impl Lock {
     fn begin(&mut self, seen: Seen, phase_accumulator: &mut PhaseAccumulator) {
         let Seen { phase, variance, half } = seen;
         self.agreed = 1;
-        self.stray = 0.0;
+        self.discrepancy = 0.0;
         self.calm = [0.0, 1.0];
         self.angle = variance + half * half * self.scale;
         self.shared = -half * self.scale;
@@ -380,17 +380,17 @@ impl Lock {
     /// Handles a rejected phase. Before the roll is reported it starts anew; afterwards only when
     /// too many are rejected in succession.
     fn disagree(&mut self, seen: Seen, phase_accumulator: &mut PhaseAccumulator) {
-        self.strays += 1;
-        self.stray = seen.phase as f32;
+        self.rejected += 1;
+        self.discrepancy = seen.phase as f32;
         let is_told = self.agreed >= AGREED;
-        if self.strays >= if is_told { PATIENCE } else { DISAGREED } {
-            self.strays = 0;
+        if self.rejected >= if is_told { PATIENCE } else { DISAGREED } {
+            self.rejected = 0;
             self.scale = self.first.max(WRONG * WRONG);
-            self.forget_angle();
+            self.reset_angle();
             self.begin(seen, phase_accumulator);
         } else if !is_told {
             self.begin(seen, phase_accumulator);
-        } else if self.strays > 1 {
+        } else if self.rejected > 1 {
             self.fade();
         }
     }
@@ -439,9 +439,9 @@ impl Lock {
         let angle = f64::from(PhaseAccumulator::between(self.told, phase_accumulator.whole()));
         let seconds = f64::from(self.since) * self.period;
         let grown = angle * (angle * self.scale - 2.0 * self.shared) + self.walk * seconds;
-        let stray = f64::from(self.stray) * f64::from(self.stray);
+        let discrepancy = f64::from(self.discrepancy) * f64::from(self.discrepancy);
         let of_sensors = f64::from(self.circle.variance());
-        let sigma = libm::sqrt(self.angle + grown + stray + of_sensors);
+        let sigma = libm::sqrt(self.angle + grown + discrepancy + of_sensors);
         (self.agreed >= AGREED && sigma < NOTHING).then_some(sigma)
     }
 

@@ -91,10 +91,10 @@ impl Timing {
             self.lives += u16::from(self.lives < MOST);
         }
         if off > self.least || self.is_stuck() {
-            self.doubt(off);
+            self.gate(off);
         } else {
             self.jumped = self.jumped.saturating_sub(1);
-            self.believe();
+            self.accept();
         }
         self.is_dull = self.lives == 0;
         let is_usual = self.is_dull || (self.lives == MOST && self.still == 0);
@@ -102,18 +102,18 @@ impl Timing {
     }
 
     /// Accepts the latest increment.
-    fn believe(&mut self) {
+    fn accept(&mut self) {
         self.before = self.shown;
         self.lost = [0; 2];
     }
 
     /// Handles an increment that may be wrong.
-    fn doubt(&mut self, off: u32) {
+    fn gate(&mut self, off: u32) {
         let is_jump = off > self.least.max(self.before.0.unsigned_abs() / JUMP_PART);
         self.jumped = self.jumped.saturating_add(u16::from(is_jump));
         let is_stuck = self.is_stuck();
         if !self.shown.is_saturated() && !is_stuck && (!is_jump || self.jumped > PATIENCE) {
-            return self.believe();
+            return self.accept();
         }
         let [_, known] = self.lost;
         // A stuck gyro is detected late, so the repetitions count as lost.

@@ -33,7 +33,7 @@ const MISSING: f32 = 0.5;
 /// deviation, s.
 const WIDENING: f32 = 2.0;
 /// Decay time of an inflation, s.
-const DOUBT: f32 = 30.0;
+const INFLATION_SECONDS: f32 = 30.0;
 /// Variance of the level, rad², from which an inflation makes the gyros' scale uncertain.
 const STRAINED: f32 = 1e-5;
 /// Greatest factor on the variance of the gyros' scale: a gyro near saturation errs by a tenth.
@@ -47,7 +47,7 @@ pub(super) struct Floor {
     /// Mean part of gravity that is missing in the supporting force.
     missing: f32,
     /// Recent inflation of the level's variance, rad².
-    doubt: f32,
+    inflation: f32,
 }
 
 /// Result of the comparison.
@@ -81,21 +81,21 @@ impl Floor {
         let beside = 0.5 * (north * north + east * east) / square;
         let explained = tilt + motion.greatest() / (BAND * BAND * square);
         let most = FLOOR * FLOOR * explained;
-        self.doubt *= 1.0 - (seconds / DOUBT).min(1.0);
+        self.inflation *= 1.0 - (seconds / INFLATION_SECONDS).min(1.0);
         if !motion.is_tumbled() {
             let more = (beside - most).max(0.0) * (seconds / WIDENING).min(1.0);
             return Verdict { more, is_biased: false };
         }
         if beside > most.min(FARTHEST) {
-            self.doubt = self.doubt.max(beside);
+            self.inflation = self.inflation.max(beside);
         }
         let is_biased = beside > BIAS_SIGMAS * BIAS_SIGMAS * explained;
-        Verdict { more: (self.doubt - tilt).max(0.0), is_biased }
+        Verdict { more: (self.inflation - tilt).max(0.0), is_biased }
     }
 
     /// Factor by which the variance of the gyros' scale exceeds the configured one.
     pub(super) fn strain(&self) -> f32 {
-        (self.doubt / STRAINED).clamp(1.0, STRAIN)
+        (self.inflation / STRAINED).clamp(1.0, STRAIN)
     }
 
     /// Takes the mean force where hardly any of it supports the body on the filter's vertical;
@@ -105,13 +105,13 @@ impl Floor {
             return None;
         }
         let size = libm::sqrtf(dot(&self.mean, &self.mean));
-        self.doubt = self.doubt.max(self.missing);
+        self.inflation = self.inflation.max(self.missing);
         self.missing = 0.0;
         Some(core::mem::replace(&mut self.mean, [0.0, 0.0, -size]))
     }
 
     /// Restarts for a body at rest, whose level is set anew.
     pub(super) fn stand(&mut self) {
-        *self = Self { doubt: self.doubt, ..Self::default() };
+        *self = Self { inflation: self.inflation, ..Self::default() };
     }
 }

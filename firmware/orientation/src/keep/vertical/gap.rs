@@ -32,7 +32,7 @@ impl Vertical {
     pub(super) fn bridge(&mut self, elapsed: f32, sample: &InertialSample) {
         let missing = elapsed - self.period;
         if missing > LONGEST {
-            return self.forget(sample.time);
+            return self.reset(sample.time);
         }
         let end = Instant(sample.time.0.saturating_sub((self.period * 1e6) as u64));
         self.tick(Instant(end.0.saturating_sub((missing * 1e6) as u64)));
@@ -48,7 +48,7 @@ impl Vertical {
     }
 
     /// Resets everything but the biases, which are kept with the variance of a switch-on.
-    fn forget(&mut self, now: Instant) {
+    fn reset(&mut self, now: Instant) {
         let sigmas = self.priors.map(|prior| libm::sqrtf(prior + self.unknown));
         self.filter = Filter::new(sigmas, &self.expected);
         self.axes = [[0.0; 3]; 3];

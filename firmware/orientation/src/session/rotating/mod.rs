@@ -14,7 +14,7 @@ pub use procedure::{Procedure, check};
 use super::procedure::{PERIOD_TOLERANCE, ProcedureError, contradiction};
 use crate::align::rotating::Setting;
 use crate::align::rotating::conclusion::Conclusion;
-use crate::align::rotating::coupling::Coupling;
+use crate::align::rotating::misalignment::AxisMisalignment;
 use crate::align::rotating::turn::{Sense, Stretch};
 use crate::align::rotating::turn_accumulator::{Mode, TurnAccumulator};
 use crate::error::Refusal;
@@ -51,7 +51,7 @@ pub enum Phase {
     /// The tilt is measured before anything turns.
     Level,
     /// The platform makes rate-modulated turns at a speed.
-    Uneven(usize),
+    Modulated(usize),
     /// The platform accelerates to a speed, and the sensor settles.
     Settle(usize, Sense),
     /// The platform turns at constant rate.
@@ -198,12 +198,12 @@ impl Session {
     }
 
     /// Axis misalignments that were measured, with date and temperature, to be stored.
-    pub fn couplings(&self) -> impl Iterator<Item = Coupling> {
+    pub fn misalignments(&self) -> impl Iterator<Item = AxisMisalignment> {
         let temperature = self.level.temperature.unwrap_or(f32::NAN);
-        let found = self.turn_accumulator.uneven().iter();
+        let found = self.turn_accumulator.modulated().iter();
         found
-            .filter_map(|uneven| uneven.coupling(&self.setting.common.noise))
-            .map(move |coupling| Coupling { date: self.procedure.date, temperature, ..coupling })
+            .filter_map(|stretch| stretch.misalignment(&self.setting.common.noise))
+            .map(move |it| AxisMisalignment { date: self.procedure.date, temperature, ..it })
     }
 
     /// Conclusion; `None` until the session is over.
@@ -231,7 +231,7 @@ impl Session {
         }
         match self.phase {
             Phase::Level => self.level(sample, elapsed),
-            Phase::Uneven(index) => self.uneven(index, sample, elapsed),
+            Phase::Modulated(index) => self.modulated(index, sample, elapsed),
             Phase::Settle(index, sense) => self.settle(index, sense, elapsed),
             Phase::Even(index, sense) => self.even(index, sense, has_turned, elapsed),
             Phase::Recorded | Phase::Done => Command::Wait,
@@ -274,33 +274,33 @@ impl Session {
 
     /// Begins with a speed: with rate-modulated turns first, where they are configured.
     fn begin_speed(&mut self, index: usize) -> Command {
-        if self.procedure.uneven_turns == 0 {
+        if self.procedure.modulated_turns == 0 {
             return self.begin_sense(index, Sense::Clockwise);
         }
         // The first ramp is part of the rate-modulated motion.
-        self.enter(Phase::Uneven(index), Mode::Ignore);
+        self.enter(Phase::Modulated(index), Mode::Ignore);
         Command::Turn(self.speed(index))
     }
 
     /// Turns once at constant rate to measure the speed, then rate-modulated for the configured
     /// number of turns once the sensor has settled.
-    fn uneven(&mut self, index: usize, sample: &Sample, elapsed: u64) -> Command {
+    fn modulated(&mut self, index: usize, sample: &Sample, elapsed: u64) -> Command {
         if self.rate <= 0.0 {
             self.measure(index, sample, elapsed);
             return Command::Wait;
         }
         if elapsed >= self.end {
-            return self.end_uneven(index);
+            return self.end_modulated(index);
         }
         if sample.time.0.saturating_sub(self.commanded.0) < COMMAND_PERIOD {
             return Command::Wait;
         }
         self.commanded = sample.time;
         if self.turn_accumulator.mode == Mode::Ignore && elapsed >= self.settled {
-            self.turn_accumulator.follow_uneven(self.procedure.modulation_width());
+            self.turn_accumulator.follow_modulated(self.procedure.modulation_width());
         }
         let time = (elapsed as f64 - self.settled as f64) * 1e-6;
-        Command::Turn(self.procedure.uneven_rate(self.speed(index), self.rate, time))
+        Command::Turn(self.procedure.modulated_rate(self.speed(index), self.rate, time))
     }
 
     /// Measures the platform's speed by the encoder over one turn: a motor driver's clock may be
@@ -318,17 +318,17 @@ impl Session {
         }
         self.rate = (TURN + (sample.stage - stage).signed_rad()) / seconds;
         self.since = Some(sample.time);
-        self.end =
-            self.settled + microseconds(f64::from(self.procedure.uneven_turns) * TURN / self.rate);
+        self.end = self.settled
+            + microseconds(f64::from(self.procedure.modulated_turns) * TURN / self.rate);
     }
 
     /// Ends the session where the axis misalignment is too large, or the platform did not turn.
-    fn end_uneven(&mut self, index: usize) -> Command {
-        let Some(coupling) = self.couplings().nth(index) else {
+    fn end_modulated(&mut self, index: usize) -> Command {
+        let Some(misalignment) = self.misalignments().nth(index) else {
             let wanted = self.speed(index) * DEGREES;
             return self.conclude(Some(Refusal::PlatformStopped { wanted }));
         };
-        match self.setting.accept(&coupling) {
+        match self.setting.accept(&misalignment) {
             Ok(()) => self.begin_sense(index, Sense::Clockwise),
             Err(reason) => self.conclude(Some(reason)),
         }
@@ -402,7 +402,7 @@ impl Session {
                 PATIENCE.0 * turned / self.speed(index) + PATIENCE.1
             }
             // The end of a rate-modulated stretch follows from the speed that it measures.
-            Phase::Uneven(_) | Phase::Level | Phase::Recorded | Phase::Done => 0.0,
+            Phase::Modulated(_) | Phase::Level | Phase::Recorded | Phase::Done => 0.0,
         }
     }
 

@@ -28,7 +28,7 @@ pub struct Procedure {
     /// [`Self::turns_at`].
     pub turns: u32,
     /// Rate-modulated turns before them; zero where the stored axis misalignments are used.
-    pub uneven_turns: u32,
+    pub modulated_turns: u32,
     /// Greatest amplitude of their modulation over the speed, 0 to 1.
     pub modulation: f64,
     /// Sample period, s.
@@ -52,7 +52,7 @@ impl Procedure {
         Self {
             speeds: speeds.iter().copied().take(SPEEDS).collect(),
             turns: default_turns(speeds, slowest),
-            uneven_turns: if speeds.len() > 1 { 24 } else { 12 },
+            modulated_turns: if speeds.len() > 1 { 24 } else { 12 },
             modulation: 0.25,
             sample_seconds,
             block_seconds: BLOCK_SECONDS.max(BLOCK_ANGLE / slowest),
@@ -86,7 +86,7 @@ impl Procedure {
     /// Half width of the modulation's spectral line over its frequency: the modulation reverses its
     /// sign in the course of all rate-modulated turns.
     pub(super) fn modulation_width(&self) -> f64 {
-        0.5 / f64::from(self.uneven_turns.max(1))
+        0.5 / f64::from(self.modulated_turns.max(1))
     }
 
     /// Commanded rate of the platform `time` s into the rate-modulated turns at a speed, rad/s;
@@ -94,7 +94,7 @@ impl Procedure {
     /// modulated once per turn, where the relevant unevenness lies too, by a modulation that
     /// reverses its sign meanwhile. So a constant phasor, such as the Earth rate, is separated from
     /// it.
-    pub(super) fn uneven_rate(&self, speed: f64, rate: f64, time: f64) -> f64 {
+    pub(super) fn modulated_rate(&self, speed: f64, rate: f64, time: f64) -> f64 {
         let depth = self.modulation * libm::cos(self.modulation_width() * rate * time);
         speed * (1.0 + depth * libm::sin(rate * time))
     }
@@ -116,8 +116,8 @@ fn default_turns(speeds: &[f64], slowest: f64) -> u32 {
 pub fn check(procedure: &Procedure) -> Result<(), ProcedureError> {
     Table::built_in().verify().map_err(|_| ProcedureError::TableCorrupt)?;
     let are_speeds = procedure.speeds.iter().all(|speed| *speed > 0.0 && speed.is_finite());
-    let is_uneven =
-        procedure.uneven_turns == 0 || (procedure.modulation > 0.0 && procedure.modulation < 1.0);
+    let is_uneven = procedure.modulated_turns == 0
+        || (procedure.modulation > 0.0 && procedure.modulation < 1.0);
     let has_turns = f64::from(procedure.turns) >= LEAST_TURNS;
     let has_period = procedure.sample_seconds > 0.0 && procedure.sample_seconds.is_finite();
     if are_speeds && is_uneven && has_turns && has_period {

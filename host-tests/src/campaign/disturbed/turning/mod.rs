@@ -35,8 +35,8 @@ const MOLECULAR: u64 = 2_014;
 const MOLECULAR_PART: f64 = 0.25;
 /// N of its gyro, °/√h.
 const N: [f64; 2] = [1e-3, 2e-2];
-/// Turns of the uneven stretch, its depth, relative, and its frequency in turns.
-const UNEVEN: (f64, f64, f64) = (12.0, 0.25, 0.83);
+/// Turns of the rate-modulated stretch, its depth, relative, and its frequency in turns.
+const MODULATED: (f64, f64, f64) = (12.0, 0.25, 0.83);
 /// Time in which the platform takes on another rate, s.
 const RAMP_SECONDS: f64 = 3.0;
 
@@ -46,8 +46,8 @@ struct Instrument {
     unit: Unit,
     unevenness: Unevenness,
     start_rad: f64,
-    /// How long the platform turns unevenly, and then either way, s; how fast, rad/s.
-    uneven_s: f64,
+    /// How long the platform's rate is modulated, and how long it then turns either way, s; how fast, rad/s.
+    modulated_s: f64,
     either_s: f64,
     speed: f64,
     /// Whether the stage's rate is the encoder's own.
@@ -80,7 +80,7 @@ impl Instrument {
             unit: Unit::new(seed, &instruments, header),
             unevenness,
             start_rad: chance.between(0.0, TAU),
-            uneven_s: UNEVEN.0 / turn_hz,
+            modulated_s: MODULATED.0 / turn_hz,
             either_s: chance.between(120.0, 240.0),
             speed: TAU * turn_hz,
             rate_is_encoders: false,
@@ -112,11 +112,11 @@ impl Instrument {
     }
 
     fn segments(&self) -> Vec<Segment> {
-        let (_, depth, part) = UNEVEN;
-        let uneven = Segment::steady(self.speed, self.uneven_s);
+        let (_, depth, part) = MODULATED;
+        let modulated = Segment::steady(self.speed, self.modulated_s);
         let even = |rate: f64| Segment::steady(rate, self.either_s).after(RAMP_SECONDS);
         let speeds = [Some(1.0), self.second].into_iter().flatten();
-        let first = uneven.uneven(depth, part * self.speed / TAU);
+        let first = modulated.modulated(depth, part * self.speed / TAU);
         let both = speeds.flat_map(|times| [even(times * self.speed), even(-times * self.speed)]);
         [first].into_iter().chain(both).collect()
     }
@@ -214,8 +214,8 @@ impl Rig for Instrument {
 
     /// In the even turns, with a quarter of them on either side at least.
     fn some_time(&self, chance: &mut Chance) -> f64 {
-        let even_s = self.seconds() - self.uneven_s;
-        self.uneven_s + even_s * chance.between(0.25, 0.75)
+        let even_s = self.seconds() - self.modulated_s;
+        self.modulated_s + even_s * chance.between(0.25, 0.75)
     }
 
     /// Of either part of a turn's phasor.
@@ -225,7 +225,7 @@ impl Rig for Instrument {
 
     /// Those of the even turns.
     fn rates(&self) -> Vec<f64> {
-        let even = (self.uneven_s + RAMP_SECONDS) * Self::RATE_HZ;
+        let even = (self.modulated_s + RAMP_SECONDS) * Self::RATE_HZ;
         self.rows().iter().skip(even as usize).map(|row| row.rate_rad_s).collect()
     }
 }

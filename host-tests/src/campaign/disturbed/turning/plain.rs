@@ -1,7 +1,7 @@
 //! The plain mean of all turns of a platform: nothing is checked, nothing left out.
 
-use orientation::align::rotating::coupling::{self, Coupling};
 use orientation::align::rotating::level::Lean;
+use orientation::align::rotating::misalignment::{self, AxisMisalignment};
 use orientation::align::rotating::molecular::{self, Halves};
 use orientation::align::rotating::turn::{Sense, Stretch, Turn};
 use orientation::math::Complex;
@@ -25,14 +25,14 @@ pub(super) fn azimuth_deg(session: &Session) -> Option<f64> {
     let force = |stretch: &Stretch| average(stretch, 0, |turn| Complex::of_signal(turn.force));
     let tilt = mean(first.map(force)).scaled(1.0 / latitude.gravity());
     let felt = tilt.scaled(latitude.vertical_rate());
-    let couplings = &session.conclusion()?.couplings;
+    let misalignments = &session.conclusion()?.misalignments;
     let sensor = session.setting().sensor;
     let azimuth = if sensor.is_flat {
-        let earth = mean(first.map(|stretch| rate(stretch, couplings, 0)));
+        let earth = mean(first.map(|stretch| rate(stretch, misalignments, 0)));
         Lean::of(tilt).azimuth(earth - felt).0
     } else {
         let half = |pair: &Pair| {
-            let phasors = pair.map(|stretch| rate(stretch, couplings, SETTLING));
+            let phasors = pair.map(|stretch| rate(stretch, misalignments, SETTLING));
             Halves::of(pair[0].speed(), phasors, [VARIANCE; 2], 0.0)
         };
         let halves: Vec<Halves> = pairs.iter().map(half).collect();
@@ -57,10 +57,10 @@ fn mean([one, other]: [Complex; 2]) -> Complex {
 }
 
 /// A stretch's phasor without what its unevenness lets the sensor feel.
-fn rate(stretch: &Stretch, couplings: &[Coupling], settling: usize) -> Complex {
+fn rate(stretch: &Stretch, misalignments: &[AxisMisalignment], settling: usize) -> Complex {
     let frequency = stretch.sense.signed(stretch.speed());
-    let coupling = coupling::nearest(couplings, frequency);
-    let response = coupling.map_or(Complex::default(), |found| found.response(frequency));
+    let misalignment = misalignment::nearest(misalignments, frequency);
+    let response = misalignment.map_or(Complex::default(), |found| found.response(frequency));
     average(stretch, settling, |turn| {
         Complex::of_signal(turn.rate) - response * Complex::of_signal(turn.turning)
     })

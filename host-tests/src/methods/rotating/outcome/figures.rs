@@ -38,7 +38,7 @@ pub(crate) fn spectra(part: &Part<'_>, freed: &Part<'_>) -> Figure {
     let shown: Signal<'_> = &|row| row.rate_rad_s;
     let series = [
         lines("sensor, before", Style::Line, part, shown),
-        lines("platform's rate as the coupling shows it", Style::Dashed, &felt, shown),
+        lines("platform's rate as the axis misalignment shows it", Style::Dashed, &felt, shown),
         lines("sensor, after that is taken off", Style::LineAndPoints, freed, shown),
     ];
     over_turns(format!("Amplitude spectra, {part}"), turn, series)
@@ -86,7 +86,7 @@ pub(crate) fn plane(parts: &[Part<'_>]) -> Figure {
         Series::new(&part.to_string(), Style::Points, points)
     };
     let series = parts.iter().filter(|part| part.is_even).map(of);
-    let title = "Phasor of the sensor's signal in each turn, the coupling taken off";
+    let title = "Phasor of the sensor's signal in each turn, the axis misalignment taken off";
     Figure::new(title, ["in step with cos θ", "°/h"], ["in step with −sin θ", "°/h"], series)
 }
 

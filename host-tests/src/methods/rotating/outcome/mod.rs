@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 
 use orientation::align::rotating::average::Average;
 use orientation::align::rotating::conclusion::Conclusion;
-use orientation::align::rotating::coupling::Coupling;
+use orientation::align::rotating::misalignment::AxisMisalignment;
 use orientation::align::rotating::solution::Fit;
 use orientation::align::rotating::turn::{Stretch, Turn};
 use serde::Serialize;
@@ -48,7 +48,7 @@ pub struct RotatingDetails {
     pub turns: Vec<TurnDetails>,
     /// Axis misalignment and lag at each speed, for the text.
     #[serde(skip)]
-    couplings: Vec<String>,
+    misalignments: Vec<String>,
 }
 
 /// The azimuth after each stage of compensation, °.
@@ -131,7 +131,7 @@ impl From<&Fit> for Stages {
     fn from(fit: &Fit) -> Self {
         Self {
             raw_deg: degrees(fit.stages.raw),
-            without_unevenness_deg: degrees(fit.stages.coupling),
+            without_unevenness_deg: degrees(fit.stages.misalignment),
             both_senses_deg: degrees(fit.stages.senses),
             full_deg: degrees(fit.stages.full),
         }
@@ -158,7 +158,7 @@ impl Replay {
     /// The names of the columns that the fits used.
     fn columns(&self, conclusion: &Conclusion) -> Vec<&'static str> {
         let mut names = vec!["cos", "sin", "1", "t"];
-        if conclusion.couplings.is_empty() {
+        if conclusion.misalignments.is_empty() {
             return names;
         }
         names.extend(["stage rate", "stage acceleration"]);
@@ -181,35 +181,35 @@ impl Replay {
         let stretches = self.session.turn_accumulator().stretches().iter();
         let walk = conclusion.angle_random_walk;
         stretches
-            .flat_map(|stretch| of_stretch(stretch, conclusion.couplings.first(), walk))
+            .flat_map(|stretch| of_stretch(stretch, conclusion.misalignments.first(), walk))
             .collect()
     }
 
     fn details(&self, conclusion: &Conclusion) -> RotatingDetails {
         let fit = conclusion.fit.as_ref();
         let bounded = fit.filter(|_| self.noise_is_known());
-        let coupling = conclusion.couplings.first();
+        let misalignment = conclusion.misalignments.first();
         RotatingDetails {
             sensor: if self.session.setting().sensor.is_flat { "gyro" } else { "met" },
             plain_limit_deg: bounded.map(|fit| degrees(fit.plain_limit)),
-            coupling_deg: coupling.map(|coupling| degrees(coupling.angle())),
-            coupling_sigma_deg: coupling.map(|coupling| degrees(coupling.sine_sigma)),
-            lag_s: coupling.map(Coupling::lag),
+            coupling_deg: misalignment.map(|found| degrees(found.angle())),
+            coupling_sigma_deg: misalignment.map(|found| degrees(found.sine_sigma)),
+            lag_s: misalignment.map(AxisMisalignment::lag),
             tilt_deg: fit.map(|fit| degrees(fit.tilt.size().min(1.0).asin())),
             met_ratio: fit.filter(|_| self.is_molecular()).map(|fit| fit.molecular.size()),
             one_speed_bias_deg: fit.and_then(|fit| self.one_speed(conclusion, fit)).map(degrees),
             stages: fit.map(Into::into),
             stretches: averages(conclusion).map(Into::into).collect(),
             turns: self.turns(conclusion),
-            couplings: conclusion.couplings.iter().map(in_words).collect(),
+            misalignments: conclusion.misalignments.iter().map(in_words).collect(),
         }
     }
 }
 
 /// An axis misalignment with its lag.
-fn in_words(coupling: &Coupling) -> String {
-    let [angle, sigma] = [coupling.angle(), coupling.sine_sigma].map(degrees);
-    let (lag, turn) = (1e3 * coupling.lag(), coupling.frequency / TAU);
+fn in_words(misalignment: &AxisMisalignment) -> String {
+    let [angle, sigma] = [misalignment.angle(), misalignment.sine_sigma].map(degrees);
+    let (lag, turn) = (1e3 * misalignment.lag(), misalignment.frequency / TAU);
     format!("{angle:.5}° ± {sigma:.5}°, {lag:.2} ms late, at {turn:.3} Hz")
 }
 
@@ -217,11 +217,11 @@ fn in_words(coupling: &Coupling) -> String {
 /// N·√(2/T).
 fn of_stretch<'a>(
     stretch: &'a Stretch,
-    coupling: Option<&'a Coupling>,
+    misalignment: Option<&'a AxisMisalignment>,
     walk: f64,
 ) -> impl Iterator<Item = TurnDetails> + 'a {
     let phasors: Vec<[f64; 2]> =
-        stretch.turns().iter().map(|turn| compensated(turn, coupling)).collect();
+        stretch.turns().iter().map(|turn| compensated(turn, misalignment)).collect();
     let count = phasors.len().max(1) as f64;
     let mean = [0, 1].map(|part: usize| phasors.iter().map(|at| at[part]).sum::<f64>() / count);
     stretch.turns().iter().zip(phasors).map(move |(turn, phasor)| {
@@ -240,9 +240,10 @@ fn of_stretch<'a>(
 
 /// A turn's rate in step with cos θ and sin θ, rad/s, without what an axis misalignment shows of the platform's rate
 /// and acceleration.
-fn compensated(turn: &Turn, coupling: Option<&Coupling>) -> [f64; 2] {
+fn compensated(turn: &Turn, misalignment: Option<&AxisMisalignment>) -> [f64; 2] {
     let [rate, turning] = [turn.rate, turn.turning].map(|phasor| phasor.map(f64::from));
-    let (sine, quadrature) = coupling.map_or((0.0, 0.0), |found| (found.sine, found.quadrature));
+    let parts = |found: &AxisMisalignment| (found.sine, found.quadrature);
+    let (sine, quadrature) = misalignment.map_or((0.0, 0.0), parts);
     let speed = f64::from(turn.speed);
     let quickening = [speed * turning[1], -speed * turning[0]];
     [0, 1].map(|part: usize| rate[part] - sine * turning[part] - quadrature * quickening[part])
@@ -311,7 +312,7 @@ fn lines(details: &RotatingDetails) -> Lines {
     }
     let tilt = details.tilt_deg.map(|tilt| format!("{tilt:.4}° of the platform"));
     lines.add_found("tilt", tilt);
-    details.couplings.iter().for_each(|coupling| lines.add("axis misalignment", coupling));
+    details.misalignments.iter().for_each(|words| lines.add("axis misalignment", words));
     if let Some((ratio, bias)) = details.met_ratio.zip(details.one_speed_bias_deg) {
         let is_one = details.stretches.len() < 3;
         let seen =
@@ -352,9 +353,9 @@ fn stretches(stretches: &[StretchDetails]) -> Part {
 /// Spectra of every part as it came and freed of the axis misalignment, then the phasors of its turns.
 fn figures(replay: &Replay, outcome: &Outcome, rows: &[RotatingRow]) -> Vec<Part> {
     let Some(details) = outcome.details::<RotatingDetails>() else { return Vec::new() };
-    let coupling = replay.session.conclusion().and_then(|conclusion| conclusion.couplings.first());
-    let without = match coupling {
-        Some(coupling) => freed(rows, coupling.sine, coupling.quadrature),
+    let conclusion = replay.session.conclusion();
+    let without = match conclusion.and_then(|found| found.misalignments.first()) {
+        Some(found) => freed(rows, found.sine, found.quadrature),
         None => rows.to_vec(),
     };
     let (parts, freed) = (replay.parts(rows), replay.parts(&without));

@@ -5,10 +5,9 @@
 //! rate (MET 2018, section 4). Rotation is never perfectly uniform, and its unevenness is mostly
 //! once per turn, where the Earth rate is looked for. A rate-modulated turn, with a strong
 //! modulation away from that frequency, determines the sine and the lag of the gyro behind the
-//! encoder: rate = s (θ̇ − τ θ̈), the first order of a lag. The type keeps the historical name
-//! `Coupling`.
+//! encoder: rate = s (θ̇ − τ θ̈), the first order of a lag.
 
-use super::part::Uneven;
+use super::part::Modulated;
 use crate::align::regression::Column;
 use crate::checksum::{numbers, record, record_bytes};
 use crate::math::Complex;
@@ -32,7 +31,7 @@ const LAYOUT: u32 = 1;
 /// Axis misalignment and lag of the gyro, from one rate-modulated stretch or from storage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Coupling {
+pub struct AxisMisalignment {
     /// Part of the platform's rate that the gyro shows, s = −sin α: the in-phase response at the
     /// frequency of the modulation.
     pub sine: f64,
@@ -58,12 +57,12 @@ fn or_unknown<'de, D: serde::Deserializer<'de>>(text: D) -> Result<f32, D::Error
     Ok(number.unwrap_or(f32::NAN))
 }
 
-impl Uneven {
+impl Modulated {
     /// Axis misalignment that a rate-modulated stretch shows, modulated at two frequencies that are
     /// apart by twice `width` of their mean, or at one; `None` where the modulation was too weak or
     /// the stretch too short.
     #[must_use]
-    pub fn coupling(&self, noise: &GyroNoise) -> Option<Coupling> {
+    pub fn misalignment(&self, noise: &GyroNoise) -> Option<AxisMisalignment> {
         let Self { sums, seconds, turned, width } = self;
         let mean = turned / seconds;
         let rows = f64::from(sums.rows().max(1));
@@ -82,7 +81,7 @@ impl Uneven {
         let density = noise.density_at(frequency / TURN) * rows / seconds;
         let sigma = |column: usize| libm::sqrt(density * found.covariance[column][column]);
         let (sine, quadrature) = (found.coefficients[TURNING], found.coefficients[QUICKENING]);
-        Some(Coupling {
+        Some(AxisMisalignment {
             sine,
             quadrature: quadrature * at_one_frequency(frequency * quadrature / sine, *width),
             sine_sigma: sigma(TURNING),
@@ -94,7 +93,7 @@ impl Uneven {
     }
 }
 
-impl Coupling {
+impl AxisMisalignment {
     /// Misalignment angle α of the axis from the platform's plane, rad, up positive.
     #[must_use]
     pub fn angle(&self) -> f64 {
@@ -106,8 +105,8 @@ impl Coupling {
     #[must_use]
     pub fn lag(&self) -> f64 {
         // The estimate is shrunk by the part that noise alone would explain.
-        let doubt = squared(self.frequency * self.quadrature_sigma) + squared(self.sine_sigma);
-        -self.quadrature * self.sine / (squared(self.sine) + doubt).max(f64::MIN_POSITIVE)
+        let variance = squared(self.frequency * self.quadrature_sigma) + squared(self.sine_sigma);
+        -self.quadrature * self.sine / (squared(self.sine) + variance).max(f64::MIN_POSITIVE)
     }
 
     /// Standard deviation of that lag, 1σ, s; infinite without misalignment.
@@ -151,9 +150,9 @@ impl Coupling {
         let [sine, quadrature, sine_sigma, quadrature_sigma, frequency] =
             numbers.map(f64::from_bits);
         let temperature = f32::from_bits(temperature as u32);
-        let coupling =
+        let misalignment =
             Self { sine, quadrature, sine_sigma, quadrature_sigma, frequency, date, temperature };
-        coupling.is_possible().then_some(coupling)
+        misalignment.is_possible().then_some(misalignment)
     }
 
     /// Whether every number is finite and in its range.
@@ -174,9 +173,9 @@ fn at_one_frequency(lead: f64, width: f64) -> f64 {
 
 /// Misalignment that was measured nearest to a speed in rad/s.
 #[must_use]
-pub fn nearest(couplings: &[Coupling], speed: f64) -> Option<&Coupling> {
-    let apart = |coupling: &Coupling| (coupling.frequency - speed.abs()).abs();
-    couplings.iter().reduce(|best, next| if apart(next) < apart(best) { next } else { best })
+pub fn nearest(misalignments: &[AxisMisalignment], speed: f64) -> Option<&AxisMisalignment> {
+    let apart = |misalignment: &AxisMisalignment| (misalignment.frequency - speed.abs()).abs();
+    misalignments.iter().reduce(|best, next| if apart(next) < apart(best) { next } else { best })
 }
 
 /// Square of a number.

@@ -1,29 +1,29 @@
-//! What an uneven turn tells of the coupling, against the simulation's truth; and how it is stored.
+//! What a rate-modulated turn tells of the misalignment, against the simulation's truth; and how it is stored.
 
 use hal_mock::molecular::MolecularConfiguration;
 use hal_mock::turntable::{Segment, Turntable};
-use orientation::align::rotating::coupling::{BYTES, Coupling, nearest};
+use orientation::align::rotating::misalignment::{AxisMisalignment, BYTES, nearest};
 use orientation::align::rotating::turn_accumulator::{Mode, TurnAccumulator};
 use proptest::prelude::*;
 
 use super::outcome::{SPEED, healthy, turns_s};
-use super::rig::{Case, over, rms, sample, uneven};
+use super::rig::{Case, modulated, over, rms, sample};
 
 const LAG_S: f64 = 0.05;
 
-/// What an uneven turn of a sensor with this lag tells.
-fn found(seed: u64, lag_s: f64, segment: Segment) -> (Case, Option<Coupling>) {
+/// What a rate-modulated turn of a sensor with this lag tells.
+fn found(seed: u64, lag_s: f64, segment: Segment) -> (Case, Option<AxisMisalignment>) {
     let mut case = healthy(seed, 0.02);
     case.instruments.gyro.molecular = (lag_s > 0.0)
         .then_some(MolecularConfiguration { lag_s, ..MolecularConfiguration::default() });
     case.segments = vec![segment];
-    let mut turn_accumulator = TurnAccumulator::new(1, Mode::Uneven);
+    let mut turn_accumulator = TurnAccumulator::new(1, Mode::Modulated);
     for turning in Turntable::new(&case.configuration(), seed) {
         let turning_rate = (seed.is_multiple_of(2)).then_some(turning.stage_rate_rad_s as f32);
         turn_accumulator.push(&sample(&turning), turning_rate);
     }
-    let coupling = turn_accumulator.uneven()[0].coupling(&case.setting.common.noise);
-    (case, coupling)
+    let misalignment = turn_accumulator.modulated()[0].misalignment(&case.setting.common.noise);
+    (case, misalignment)
 }
 
 /// s/(1 + jwτ): in phase with the rate, and over w for its derivative.
@@ -36,16 +36,16 @@ fn pole(sine: f64, lag: f64, frequency: f64) -> (f64, f64) {
 fn sine_and_lag_are_the_simulations_and_their_sigma_is_honest() {
     for lag_s in [0.0, LAG_S] {
         let ratios = over(0..150, |seed| {
-            let (case, coupling) = found(seed, lag_s, uneven(SPEED, 10.0));
-            let coupling = coupling.expect("it was uneven");
+            let (case, misalignment) = found(seed, lag_s, modulated(SPEED, 10.0));
+            let misalignment = misalignment.expect("it was modulated");
             let sine = -case.instruments.gyro.axis_elevation_rad.sin();
             let (in_phase, quadrature) = pole(sine, lag_s, 0.83 * SPEED);
-            assert!((coupling.frequency / SPEED / 0.83 - 1.0).abs() < 0.03);
-            assert!((coupling.angle() - case.instruments.gyro.axis_elevation_rad).abs() < 1e-4);
+            assert!((misalignment.frequency / SPEED / 0.83 - 1.0).abs() < 0.03);
+            assert!((misalignment.angle() - case.instruments.gyro.axis_elevation_rad).abs() < 1e-4);
             let quadrature = quadrature / (0.83 * SPEED);
             [
-                (coupling.sine - in_phase) / coupling.sine_sigma,
-                (coupling.quadrature - quadrature) / coupling.quadrature_sigma,
+                (misalignment.sine - in_phase) / misalignment.sine_sigma,
+                (misalignment.quadrature - quadrature) / misalignment.quadrature_sigma,
             ]
         });
         for part in [0, 1] {
@@ -61,24 +61,32 @@ fn the_response_at_the_turn_is_that_of_one_pole() {
     for (sine, lag) in [(0.02, 0.05), (-0.01, 0.3), (0.03, 0.0)] {
         let learnt = 0.7;
         let (in_phase, lagging) = pole(sine, lag, learnt);
-        let coupling = stored(in_phase, lagging / learnt, learnt);
-        assert!((coupling.lag() - lag).abs() < 1e-6);
+        let misalignment = stored(in_phase, lagging / learnt, learnt);
+        assert!((misalignment.lag() - lag).abs() < 1e-6);
         for frequency in [0.1, -0.8, 0.8, 2.0] {
             let (re, im) = pole(sine, lag, frequency);
-            let response = coupling.response(frequency);
+            let response = misalignment.response(frequency);
             assert!((response.re - re).abs() < 1e-7 && (response.im - im).abs() < 1e-7);
         }
     }
 }
 
-fn stored(sine: f64, quadrature: f64, frequency: f64) -> Coupling {
+fn stored(sine: f64, quadrature: f64, frequency: f64) -> AxisMisalignment {
     let (sine_sigma, quadrature_sigma, date) = (1e-9, 1e-9, 1_700_000_000);
-    Coupling { sine, quadrature, sine_sigma, quadrature_sigma, frequency, date, temperature: 21.5 }
+    AxisMisalignment {
+        sine,
+        quadrature,
+        sine_sigma,
+        quadrature_sigma,
+        frequency,
+        date,
+        temperature: 21.5,
+    }
 }
 
 #[test]
 fn an_even_or_short_turn_tells_nothing() {
-    for segment in [Segment::steady(SPEED, turns_s(10.0)), uneven(SPEED, 2.5)] {
+    for segment in [Segment::steady(SPEED, turns_s(10.0)), modulated(SPEED, 2.5)] {
         for seed in 0..6 {
             assert_eq!(found(seed, 0.0, segment).1, None);
         }
@@ -89,14 +97,14 @@ fn an_even_or_short_turn_tells_nothing() {
 fn the_nearest_speed_counts_in_either_sense() {
     let both = [stored(0.01, 0.0, 0.4), stored(0.02, 0.0, 1.0)];
     for (speed, sine) in [(0.1, 0.01), (-0.65, 0.01), (0.75, 0.02), (-3.0, 0.02)] {
-        assert_eq!(nearest(&both, speed).map(|coupling| coupling.sine), Some(sine));
+        assert_eq!(nearest(&both, speed).map(|misalignment| misalignment.sine), Some(sine));
     }
     assert_eq!(nearest(&[], 1.0), None);
 }
 
 proptest! {
     #[test]
-    fn a_coupling_comes_back_from_its_bytes(
+    fn a_misalignment_comes_back_from_its_bytes(
         sine in -1.0..1.0_f64,
         quadrature in -10.0..10.0_f64,
         sigmas in (0.0..1.0_f64, 0.0..1.0_f64),
@@ -104,7 +112,7 @@ proptest! {
         date in any::<u64>(),
         temperature in -100.0..100.0_f32,
     ) {
-        let coupling = Coupling {
+        let misalignment = AxisMisalignment {
             sine,
             quadrature,
             sine_sigma: sigmas.0,
@@ -113,26 +121,26 @@ proptest! {
             date,
             temperature,
         };
-        prop_assert_eq!(Coupling::from_bytes(&coupling.to_bytes()), Some(coupling));
+        prop_assert_eq!(AxisMisalignment::from_bytes(&misalignment.to_bytes()), Some(misalignment));
     }
 
     #[test]
-    fn any_bytes_are_a_sound_coupling_or_none(bytes in proptest::array::uniform32(any::<u8>())) {
+    fn any_bytes_are_a_sound_misalignment_or_none(bytes in proptest::array::uniform32(any::<u8>())) {
         let mut all = [0; BYTES];
         all[..32].copy_from_slice(&bytes);
         all[32..].copy_from_slice(&bytes);
-        prop_assert_eq!(Coupling::from_bytes(&all), None);
+        prop_assert_eq!(AxisMisalignment::from_bytes(&all), None);
     }
 }
 
 #[test]
 fn any_flipped_bit_is_refused() {
     let bytes = stored(0.01, -1e-4, 0.7).to_bytes();
-    assert!(Coupling::from_bytes(&bytes).is_some());
+    assert!(AxisMisalignment::from_bytes(&bytes).is_some());
     for bit in 0..8 * BYTES {
         let mut damaged = bytes;
         damaged[bit / 8] ^= 1 << (bit % 8);
-        assert_eq!(Coupling::from_bytes(&damaged), None, "bit {bit}");
+        assert_eq!(AxisMisalignment::from_bytes(&damaged), None, "bit {bit}");
     }
 }
 
@@ -157,7 +165,7 @@ fn another_version_a_cut_and_impossible_numbers_are_refused_though_the_checksum_
         edit(&mut bytes);
         let checksum = crc32(&bytes[..BYTES - 4]);
         bytes[BYTES - 4..].copy_from_slice(&checksum.to_le_bytes());
-        Coupling::from_bytes(&bytes)
+        AxisMisalignment::from_bytes(&bytes)
     };
     assert!(with(&|_| {}).is_some());
     for version in [0, 2, 255] {
