@@ -204,7 +204,7 @@ words! { Event:
     Self::GivenUp(device, trouble) => "{}: given up: {}", device, trouble;
     Self::Missing(count) => "{} sample(s) missing", count;
     Self::Late(microseconds) => "a sample came {} µs beside its time", microseconds;
-    Self::Overflowed(count) => "{} sample(s) lost: nobody took them in time", count;
+    Self::Overflowed(count) => "{} sample(s) lost: the queue was full", count;
     Self::BaseStill(angle) =>
         "base: still within {}°, nothing is subtracted", Rounded::<4>(angle);
     Self::BaseSways(angle, hertz, left) =>

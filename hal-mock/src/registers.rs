@@ -55,7 +55,7 @@ pub(crate) const fn flags(address: u16, mask: u32, reset: u32) -> Registers {
 }
 
 impl Registers {
-    /// The same up to another last address.
+    /// These registers up to another last address.
     pub(crate) const fn to(self, last: u16) -> Self {
         Self { addresses: [self.addresses[0], last], ..self }
     }

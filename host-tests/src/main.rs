@@ -70,7 +70,7 @@ fn parse() -> Result<Asked, clap::Error> {
     Ok(Asked { as_json, command, given: Given::of(&matches) })
 }
 
-/// The same where what begins with a minus is the value of an option that takes a number: what it may be, its
+/// The program, in which an option that takes a number may have a value that begins with a minus: what it may be, its
 /// parser knows.
 fn taking_negative_numbers(program: clap::Command) -> clap::Command {
     program.mut_subcommands(|command| {

@@ -23,7 +23,7 @@ const LEVEL: f64 = 5.0;
 const LEAST_TILT: f64 = 1e-5;
 /// How far the Earth-rate ratio may be off and still pass every test, in its σ.
 const UNNOTICED: f64 = 5.0;
-/// The same beyond that, where the gyro's scale is exact.
+/// Tolerance of the Earth-rate ratio beyond its σ, where the gyro's scale is exact.
 const TOLERANCE: f64 = 0.005;
 /// Part of σ from which on an error that does not show is worth telling.
 const WORTH_TELLING: f64 = 0.3;
@@ -33,18 +33,18 @@ const SAME_SPEED: f64 = 0.3;
 /// Sine of the tilt below which an accelerometer in g instead of m/s² shows no impossible one: 1.5°.
 const NEARLY_LEVEL: f64 = 0.026;
 
-/// Of a platform whose accelerometer does not show its sense.
+/// What is assumed of a platform whose accelerometer does not show its sense.
 const SENSE_OF_A_PLATFORM: &str =
     "sense of the platform, which neither one axis of an accelerometer nor a level platform shows";
-/// Of a platform that is nearly level.
+/// What is assumed of a platform that is nearly level.
 const UNIT_OF_A_PLATFORM: &str =
     "accelerometer in m/s², which a platform that is nearly level does not show";
-/// Of a sensor of unknown lag that turns at one speed.
+/// What is assumed of a sensor of unknown lag that turns at one speed.
 const LAG_OF_ONE_SPEED: &str = "no turn of the base and no slip between the senses, which one speed of a sensor whose \
                                 lag is not known does not show";
-/// Of the gyros and accelerometers of a vehicle, whose mounting a vehicle at rest does not show.
+/// What is assumed of the gyros and accelerometers of a vehicle, whose mounting a vehicle at rest does not show.
 pub const AXES_OF_A_VEHICLE: &str = "axes forward, right and down, as the columns say";
-/// Of displacements whose size the forces on the way do not show.
+/// What is assumed of displacements whose size the forces on the way do not show.
 pub const WAY_OF_A_VEHICLE: &str =
     "displacements in metres north and east: the forces on the way show them too badly";
 

@@ -20,7 +20,7 @@ pub fn words(path: &Path, error: &io::Error) -> String {
     }
 }
 
-/// The same with the file, and with what was to be in it.
+/// The words with the file, and with what was to be in it.
 #[must_use]
 pub fn told(what: &str, path: &Path, error: &io::Error) -> String {
     format!("{}: {what} cannot be written: {}", path.display(), words(path, error))

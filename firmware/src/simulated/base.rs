@@ -31,7 +31,7 @@ const CLOCK: f64 = 1.015;
 const RATE_BIAS: f64 = 3.0;
 /// 1σ of the accelerometers' offset, mg: ±40 mg (data sheet, `LA_TyOff`) at two σ.
 const FORCE_BIAS: f64 = 20.0;
-/// The same once they are calibrated, as they are where they keep pitch and roll.
+/// 1σ of the accelerometers' biases once they are calibrated, as where the sensors keep pitch and roll, mg.
 const CALIBRATED: f64 = 2.0;
 /// 1σ of the scale of each axis: ±1 % at two σ, as later chips of the family state it.
 const SCALE: f64 = 0.005;

@@ -9,7 +9,7 @@ use crate::storage::FlashStore;
 
 /// Bytes of a page and of a word of the board's flash (STM32L475, RM0351, 3.3).
 const PAGE: usize = 2048;
-/// The same of a word, which is programmed at once, with its check bits, and once between two erasures.
+/// Bytes of a word: it is programmed at once, with its check bits, and once between two erasures.
 const WORD: usize = 8;
 /// Bytes of both pages.
 pub const BYTES: usize = 2 * PAGE;

@@ -29,9 +29,9 @@ pub struct Hold {
     pub seconds: f64,
     /// Whether it is aligned anew at stops.
     pub realigns: bool,
-    /// Length of a drive and of a stop, s.
+    /// Duration of a drive after the alignment, s.
     pub drive_s: f64,
-    /// The same of a stop.
+    /// Duration of a stop after the alignment, s.
     pub stop_s: f64,
     /// An azimuth that is handed over from outside, with its 1σ, °, and when, s.
     pub handover: Option<([f64; 2], f64)>,
@@ -132,7 +132,7 @@ impl Scenario {
         self.day_of(&self.procedure(), scenario::ROTATION.rest + scenario::RINGS_SECONDS)
     }
 
-    /// The same where each movement takes about so many seconds beside the ramp.
+    /// The day of an alignment by a procedure, where each movement takes about `rest_s` beside the ramp, s.
     pub(super) fn day_of(&self, procedure: &Procedure, rest_s: f64) -> Day {
         let schedule = &procedure.schedule;
         let movements = schedule.len() as f64 * (rest_s + MOVEMENT_SECONDS);

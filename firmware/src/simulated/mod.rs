@@ -63,7 +63,7 @@ pub fn board<'a>(
     board_around(&plant, scenario.seed, injection)
 }
 
-/// The same around any plant.
+/// The chips of a board around a plant.
 fn board_around<'a>(
     plant: &PlantConfiguration<'a>,
     seed: u64,

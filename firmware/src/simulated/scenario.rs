@@ -82,7 +82,7 @@ pub(super) const VOLTS: f64 = 0.05 / DEGREE;
 pub(super) const FULL_SCALE: f64 = 40.0 * DEGREE;
 /// What the board takes for clipped: 97 % of that.
 pub const LIMIT: AngularRate = AngularRate((0.97 * FULL_SCALE * 1e9) as i32);
-/// The same scale factor as the board knows it.
+/// The gyro's scale factor as the board is configured with it.
 pub const SCALE: Scale = match Scale::new(VOLTS, INTERNAL_REFERENCE_VOLTS, Gain::X1) {
     Some(scale) => scale,
     None => unreachable!(),
@@ -266,7 +266,7 @@ impl Scenario {
         self.procedure_on(&Turning { rotation: ROTATION, orders: &Order::COMPARED, usual: circle })
     }
 
-    /// The same on any mount.
+    /// The procedure on any mount, which turns like this.
     pub(super) fn procedure_on(&self, turning: &Turning) -> Procedure {
         let procedure = Procedure::new(self.schedule(turning), 1.0 / self.sample_rate_hz);
         let mut procedure = Procedure {

@@ -27,7 +27,7 @@ const MOTOR: Switches = Switches { left: None, right: None };
 /// The accelerometer of a platform that turns: its filter delays a force by two and a half outputs, in
 /// which the platform is not to turn far.
 pub const FORCE: adxl355::Configuration = adxl355::Configuration { rate: OutputRate::Hz1000 };
-/// The same rate, Hz.
+/// Output rate of the accelerometer, Hz.
 const FORCE_HERTZ: f64 = 1000.0;
 
 /// A molecular-electronic sensor: little noise at the turn's frequency, a drift that no gyro has.

@@ -126,7 +126,7 @@ pub struct Gimbal<'a> {
     misalignment: Misalignment,
     /// The g-sensitivity along the third axis, rad/s per g.
     third_rad_s: f64,
-    /// What is mounted in the inner frame and on the base, and what befalls the base.
+    /// Instruments in the inner frame and on the base, and the motion of the base.
     payload: Payload<'a>,
     /// What was felt last, on a base at rest, with the frames that it belongs to.
     felt: Option<([StageState; 2], Felt)>,

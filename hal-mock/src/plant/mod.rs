@@ -121,7 +121,7 @@ impl Default for PlantConfiguration<'_> {
 /// The plant at work.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plant<'a> {
-    /// What is mounted on the stage, and what befalls the base.
+    /// Instruments on the stage, and the motion of the base.
     payload: Payload<'a>,
     /// Motor, gear and stage, with their faults.
     drive: Drive<'a>,

@@ -1,4 +1,4 @@
-//! What a stage or a two-frame mount carries, and what befalls the base under it.
+//! What a stage or a two-frame mount carries, and how the base under it moves.
 
 use embassy_time::Instant;
 

@@ -146,7 +146,7 @@ pub struct Analysis {
 }
 
 impl Analysis {
-    /// Of a record at rest.
+    /// Analyses a record at rest.
     ///
     /// # Errors
     /// Why the record says nothing.

@@ -19,7 +19,7 @@ impl Sum {
         Self { squares: self.squares + other.squares, terms: self.terms + other.terms }
     }
 
-    /// Of these differences.
+    /// Sums the squares of these differences.
     fn of(differences: impl Iterator<Item = f64>) -> Self {
         differences.fold(Self::default(), |sum, difference| Self {
             squares: sum.squares + difference * difference,

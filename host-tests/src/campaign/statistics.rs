@@ -71,7 +71,7 @@ impl Precision {
         self.refused == 0
     }
 
-    /// Of these answers.
+    /// Summarises answers.
     #[must_use]
     pub fn of<E: Display>(answers: &[Result<Answer, E>]) -> Self {
         let given: Vec<Answer> =
@@ -104,7 +104,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Of pairs of an error and its σ.
+    /// Summarises pairs of an error and its σ.
     #[must_use]
     pub fn of(pairs: &[[f64; 2]]) -> Self {
         let (errors, sigmas): (Vec<_>, Vec<_>) = pairs.iter().map(|[e, s]| (*e, *s)).unzip();

@@ -63,7 +63,7 @@ pub fn of_stopping(
         .or_else(|| too_much(body, refusal))
 }
 
-/// The same of one whose platform turns all the time.
+/// The cause of a refusal on a platform that turns all the time.
 #[must_use]
 pub fn of_turning(
     header: &Header,

@@ -11,9 +11,9 @@ const FEWEST: usize = 64;
 const MOST: f64 = 0.5;
 /// Parts of a standstill whose mean rates are compared.
 const PARTS: usize = 8;
-/// By how much they differ where the stage turned, in the noise of one of them.
+/// By how much the mean rates of parts differ where the stage turned, in the noise of one of them.
 const DIFFERENT: f64 = 5.0;
-/// The same as a part of the horizontal Earth rate.
+/// By how much the mean rates of parts differ where the stage turned, as a part of the horizontal Earth rate.
 const EARTHLY: f64 = 0.3;
 /// Rate from which on a platform turns, rad/s.
 const TURNS: f64 = 0.01;
@@ -32,7 +32,7 @@ pub fn of_stage(header: &Header, body: &Body) -> Option<String> {
     })
 }
 
-/// The same of a platform that turns all the time.
+/// What is stuck on a platform that turns all the time.
 pub fn of_platform(rows: &[RotatingRow]) -> Option<String> {
     let line = |row: &RotatingRow| row.line;
     let gyro = alone(rows, FEWEST, |row| row.rate_rad_s).map(|run| told("g_rad_s", run, line));

@@ -94,7 +94,7 @@ impl Trial {
         angle < 0.0 && rate == 1.0 && force == 1.0
     }
 
-    /// The same where what goes with a column is as it should be; none where nothing does.
+    /// This trial with only one column in another unit; none where both must change together.
     fn apart(self, body: &Body) -> Option<Self> {
         (!matches!(body, Body::Stage(_))).then_some(Self { together: false, ..self })
     }

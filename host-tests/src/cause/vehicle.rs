@@ -37,7 +37,7 @@ pub fn of_vehicle(
     (!told.is_empty()).then(|| told.join("; "))
 }
 
-/// The same where no level was found.
+/// The cause where no level was found.
 #[must_use]
 pub fn of_level(body: &Body) -> Option<String> {
     units::force_unit(body).map(|unit| unit.told(units::force_columns(body)))

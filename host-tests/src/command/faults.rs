@@ -66,7 +66,7 @@ pub fn check(fault: Fault, platform: Platform, no_base_imu: bool) -> Result<(), 
 /// Names the faults of a platform.
 ///
 /// # Errors
-/// Those of the writer.
+/// The object cannot be serialised.
 pub fn list(platform: Platform, as_json: bool) -> Result<Answer, String> {
     let names: Vec<String> = Fault::all(platform).map(|fault| fault.to_string()).collect();
     let object = json!({ "status": "ok", "faults": names });

@@ -60,7 +60,7 @@ pub fn check(recording: Option<&Path>, outputs: &[Option<Written>]) -> Result<()
 /// What makes a file the same under all its names.
 #[derive(Debug, PartialEq, Eq)]
 enum Identity {
-    /// Of a file that is there: its place on the device.
+    /// Place of an existing file on its device.
     #[cfg(unix)]
     Node(u64, u64),
     /// Its path without links.
@@ -68,7 +68,7 @@ enum Identity {
 }
 
 impl Identity {
-    /// Of a path; none of what holds nothing, as a terminal.
+    /// Identity of the file at a path; none where the path holds nothing that can be overwritten, as a terminal.
     fn of(path: &Path) -> Option<Self> {
         match fs::metadata(path) {
             Ok(there) if there.is_file() => Some(Self::there(path, &there)),

@@ -8,7 +8,7 @@ use clap::parser::ValueSource;
 pub struct Given(Vec<String>);
 
 impl Given {
-    /// Those of a command and of its subcommands.
+    /// Collects the options of a command and of its subcommands.
     pub fn of(matches: &ArgMatches) -> Self {
         // What begins with a capital letter is a group of options.
         let stands = |id: &&clap::Id| {

@@ -54,7 +54,7 @@ pub struct Failure {
 }
 
 impl Failure {
-    /// Of options that do not suit what was read.
+    /// A failure because the options do not suit what was read.
     pub fn misuse(reason: String) -> Self {
         Self { reason, warnings: Vec::new(), is_misuse: true }
     }
@@ -110,14 +110,14 @@ impl Answer {
         object
     }
 
-    /// The same with what was to be said before.
+    /// This answer with warnings before its own.
     fn with_warnings(mut self, before: Vec<String>) -> Self {
         self.warnings.splice(..0, before);
         self
     }
 
-    /// The same with what was written beside: where that failed, the command did, but the rest is not lost
-    /// with it, nor is why there was no result.
+    /// This answer with what became of a file that was written beside it: where that failed, the command did, but the
+    /// rest is not lost with it, nor is why there was no result.
     fn with_written(mut self, written: Result<(), String>) -> Self {
         let Err(reason) = written else { return self };
         self.found = false;
@@ -217,7 +217,7 @@ fn sigma(text: &str) -> Result<f64, String> {
 }
 
 impl Answer {
-    /// The same with a page for `--report`, where one was asked for. A page that cannot be written is a
+    /// This answer with a page for `--report`, where one was asked for. A page that cannot be written is a
     /// failure, but the rest is not lost with it.
     fn with_page(self, path: Option<&Path>, page: impl FnOnce() -> Report) -> Self {
         let write = |path: &Path| page().write(path).map_err(|error| error.to_string());

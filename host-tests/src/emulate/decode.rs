@@ -53,7 +53,7 @@ pub struct Decoder<'t> {
 }
 
 impl<'t> Decoder<'t> {
-    /// Of a stream that begins.
+    /// A decoder at the beginning of a stream.
     #[must_use]
     pub fn new(table: &'t Table) -> Self {
         Self { stream: table.new_stream_decoder() }
@@ -62,7 +62,7 @@ impl<'t> Decoder<'t> {
     /// Takes bytes and hands over the lines that they complete.
     ///
     /// # Errors
-    /// Those of `tell`, and bytes that are no defmt frame: nothing is lost on the way from the
+    /// An error of `tell`, or bytes that are no defmt frame: nothing is lost on the way from the
     /// emulator, so something else has printed there.
     pub fn take(
         &mut self,

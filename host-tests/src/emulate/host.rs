@@ -23,7 +23,7 @@ pub fn outcome(scenario: &Scenario) -> Result<Outcome, String> {
     Ok(Outcome::of(scenario.seed, &conclusion.verdict, dwells))
 }
 
-/// The same on a platform that turns all the time.
+/// Runs a platform that turns all the time on the host.
 ///
 /// # Errors
 /// Where it comes to no end.
@@ -37,7 +37,7 @@ pub fn turning(scenario: &TurntableScenario) -> Result<Outcome, String> {
     Ok(Outcome::of(scenario.base.seed, &conclusion.verdict, turns))
 }
 
-/// The same in a vehicle that goes from stop to stop.
+/// Runs a vehicle that goes from stop to stop on the host.
 ///
 /// # Errors
 /// Where it comes to no end.

@@ -133,7 +133,7 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Of a verdict and what led to it.
+    /// The outcome of a verdict and what led to it.
     #[must_use]
     pub fn of(
         seed: u64,

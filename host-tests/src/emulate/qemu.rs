@@ -37,7 +37,7 @@ pub fn require() -> Result<(), String> {
 /// Runs `image` with further options and hands over what it prints; how it ended.
 ///
 /// # Errors
-/// Those of `take`, and where the emulator does not start or does not end within `limit`; it is
+/// An error of `take`, or an emulator that does not start or does not end within `limit`; it is
 /// stopped then.
 pub fn run(
     image: &Path,

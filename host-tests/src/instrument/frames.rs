@@ -51,7 +51,7 @@ pub fn align_frames<R: Recorder, W: Observer>(
 /// heading over a loss of supply.
 ///
 /// # Errors
-/// Those of [`align_frames`].
+/// Fails as [`align_frames`] does.
 pub fn align_frames_and_keep<R: Recorder, W: Observer>(
     scenario: &FramesScenario,
     plan: &KeptPlan,

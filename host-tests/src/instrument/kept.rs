@@ -14,9 +14,9 @@ use super::Run;
 /// What goes wrong with a board on a base, in the middle of its alignment or later.
 #[derive(Clone, Debug)]
 pub struct KeptPlan {
-    /// With the chips of a stage or of two frames, its axes, and the coarse IMU's bus.
+    /// Faults of the chips of a stage or of two frames, of its axes, and of the coarse IMU's bus.
     pub chips: Injection,
-    /// With what the coarse sensors feel.
+    /// Faults of what the coarse sensors feel.
     pub base: Vec<SensorFault>,
     /// What else happens on the way.
     pub events: Vec<Event>,
@@ -106,7 +106,7 @@ impl Kept {
         self.points.last()
     }
 
-    /// Those from an azimuth on.
+    /// Points with an azimuth, with its error and 1σ, rad.
     pub fn with_azimuth(&self) -> impl Iterator<Item = (&Point, [f64; 2])> {
         self.points.iter().filter_map(|point| Some((point, point.azimuth_error()?)))
     }

@@ -36,11 +36,11 @@ pub fn align<R: Recorder, W: Observer>(
     align_and_keep(scenario, &KeptPlan::of(fault), recorder, watch, ()).map(|kept| kept.run)
 }
 
-/// The same, and goes on as the scenario says where the base has sensors; with a store of the heading over a
+/// Runs a scenario and, where the base has sensors, what follows its alignment; with a store of the heading over a
 /// loss of supply.
 ///
 /// # Errors
-/// Those of [`align`].
+/// Fails as [`align`] does.
 pub fn align_and_keep<R: Recorder, W: Observer>(
     scenario: &Scenario,
     plan: &KeptPlan,
@@ -75,10 +75,10 @@ pub fn align_and_keep<R: Recorder, W: Observer>(
     Ok(KeptRun { run, kept })
 }
 
-/// The same with these sensors on the base.
+/// Runs a scenario with these sensors on the base.
 ///
 /// # Errors
-/// Those of [`align`].
+/// Fails as [`align`] does.
 pub fn align_on<B: CompensatesSway, R: Recorder, W: Observer>(
     base: B,
     scenario: &Scenario,

@@ -49,10 +49,10 @@ pub fn align_turning<R: Recorder, W: Observer>(
     align_turning_again(scenario, fault, recorder, watch, None)
 }
 
-/// The same on a board that may have found misalignments before, and keeps those that it finds.
+/// Runs a scenario on a board that may have stored axis misalignments, and stores those that it finds.
 ///
 /// # Errors
-/// Those of [`align_turning`].
+/// Fails as [`align_turning`] does.
 pub fn align_turning_again<R: Recorder, W: Observer>(
     scenario: &TurntableScenario,
     fault: Option<Fault>,

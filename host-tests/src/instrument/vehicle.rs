@@ -46,10 +46,10 @@ pub fn align_stops<R: Recorder<InertialSample>, W: Observer>(
     align_stops_along(&day, &injection, scenario, recorder, watch, ())
 }
 
-/// The same on a given day, with what goes wrong, and with a store of the heading over a loss of supply.
+/// Runs a scenario on a given day, with what goes wrong, and with a store of the heading over a loss of supply.
 ///
 /// # Errors
-/// Those of [`align_stops`].
+/// Fails as [`align_stops`] does.
 pub fn align_stops_along<R: Recorder<InertialSample>, W: Observer>(
     day: &Day,
     injection: &Injection,
@@ -64,10 +64,10 @@ pub fn align_stops_along<R: Recorder<InertialSample>, W: Observer>(
     Ok(VehicleRun { kept, ..found })
 }
 
-/// The same on a board to which something else may be done, with something around its ports.
+/// Runs a scenario on a board to which something else may be done, with something around its ports.
 ///
 /// # Errors
-/// Those of [`align_stops`].
+/// Fails as [`align_stops`] does.
 pub fn align_stops_on<R: Recorder<InertialSample>, W: Observer>(
     board: &RefCell<VehicleBoard<'_>>,
     injection: &Injection,

@@ -124,7 +124,7 @@ impl Shown<'_> {
         format!("{samples} samples at {rate} Hz, {seconds:.1} s in {segments} segment{plural}")
     }
 
-    /// The same as one object.
+    /// The analysis as one JSON object.
     #[must_use]
     pub fn object(&self) -> Value {
         let reason = self.analysis.as_ref().err().map(ToString::to_string);

@@ -109,7 +109,7 @@ fn of_checks(checks: &[Check]) -> Part {
         .into()
 }
 
-/// The same as one object.
+/// The emulation as one JSON object.
 #[must_use]
 pub fn object(emulation: &Emulation) -> Value {
     let outcome = &emulation.emulated;

@@ -10,7 +10,7 @@ use std::io::{self, Write};
 use orientation::align::regression::Column;
 use orientation::align::stepwise::{Fit, Hypothesis};
 
-/// Writes a line to standard error. Where nobody reads it, it is lost, and that is no error of ours.
+/// Writes a line to standard error. A line that has no reader is lost, which is no error.
 pub fn say(line: &str) {
     let _ = writeln!(io::stderr(), "{line}");
 }

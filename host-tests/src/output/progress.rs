@@ -18,7 +18,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Of a task of `length` steps; `what` names them.
+    /// Progress of a task of `length` steps; `what` names them.
     #[must_use]
     pub fn new(length: u64, what: &'static str) -> Self {
         let style = ProgressStyle::with_template("{prefix} [{bar:30}] {pos}/{len} {msg}");

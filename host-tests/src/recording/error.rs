@@ -19,7 +19,7 @@ pub struct ReadError {
 }
 
 impl ReadError {
-    /// The same line with the unit in which a number beyond its range is likely to stand.
+    /// The message with the unit in which a number beyond its range is likely to stand.
     #[must_use]
     pub fn told(&self) -> String {
         match &self.problem {

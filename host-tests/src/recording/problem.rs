@@ -90,7 +90,7 @@ pub enum ValueProblem {
     /// The row's number of fields, and the number of columns.
     #[error("{0} fields, but {1} columns are named")]
     FieldCount(usize, usize),
-    /// The same, in a last line that has no line end.
+    /// Fields are missing in a last line that has no line end.
     #[error("truncated: {0} of {1} fields and no line end; remove the line")]
     CutShort(usize, usize),
     /// Nothing stands in the field.

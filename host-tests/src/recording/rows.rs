@@ -45,10 +45,10 @@ const LEAST_SQUARE: f64 = 0.9;
 const FLAG: Range = Range::from_zero(1.0, "");
 /// The force columns of a dwell come together or not at all.
 const FORCES: [&str; 3] = ["fx_m_s2", "fy_m_s2", "fz_m_s2"];
-/// So do those of an inertial measurement unit.
+/// The columns of an inertial measurement unit come together or not at all.
 const IMU: [&str; 6] = ["gx_rad_s", "gy_rad_s", "gz_rad_s", "ax_m_s2", "ay_m_s2", "az_m_s2"];
 
-/// So do the rates across the long axis of a spinning body.
+/// The rates across the long axis of a spinning body come together or not at all.
 const ACROSS: [&str; 2] = ["gy_rad_s", "gz_rad_s"];
 /// A coarse one of them, on the base of a stage.
 const BASE: [&str; 6] = ["bgx_rad_s", "bgy_rad_s", "bgz_rad_s", "bax_m_s2", "bay_m_s2", "baz_m_s2"];
@@ -99,7 +99,7 @@ pub struct RotatingRow {
     pub rate_rad_s: f64,
     /// Specific force along the sensitive axis, in the platform's plane, m/s², ±2147.483647.
     pub force_m_s2: f64,
-    /// The same 90° clockwise of it, when recorded.
+    /// Specific force 90° clockwise of the sensitive axis, m/s², when recorded.
     pub across_m_s2: Option<f64>,
     /// Whether the force was read with this sample; always where the recording does not tell.
     pub force_is_new: bool,

@@ -36,7 +36,7 @@ pub struct Gap {
 }
 
 impl Spacing {
-    /// Of these rows, whose times increase, and the header's rate in Hz; `None` with fewer than two
+    /// Spacing of rows whose times increase, with the header's rate in Hz; `None` with fewer than two
     /// rows.
     #[must_use]
     pub fn of(rows: &[StaticRow], rate_hz: Option<f64>) -> Option<Self> {

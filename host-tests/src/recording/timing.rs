@@ -56,7 +56,7 @@ struct Timing {
 }
 
 impl Timing {
-    /// Of some steps.
+    /// Summarises steps of time.
     fn of(steps: impl Iterator<Item = f64>) -> Self {
         let none = Self { sum_s: 0.0, count: 0.0, ends_s: [f64::INFINITY, 0.0] };
         steps.fold(none, |Self { sum_s, count, ends_s: [shortest, longest] }, step| Self {

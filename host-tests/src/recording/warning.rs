@@ -23,7 +23,7 @@ pub enum About {
     /// An unknown key, and the known one that it resembles.
     #[error("key {key}: is not known and passed over; if {1} is meant, write that", key = shortened(.0))]
     Key(String, &'static str),
-    /// The same of a column.
+    /// A column that is not known, but resembles one that is.
     #[error("column {name}: is not known and passed over; if {1} is meant, write that", name = shortened(.0))]
     Column(String, &'static str),
     /// A field of a `truth_` column that is no number.

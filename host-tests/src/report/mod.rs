@@ -285,7 +285,7 @@ impl Report {
         Self { title: title.into(), subtitle: Vec::new(), parts }
     }
 
-    /// The same with lines below its heading.
+    /// This report with lines below its heading.
     #[must_use]
     pub fn below(self, subtitle: impl IntoIterator<Item = impl Into<String>>) -> Self {
         Self { subtitle: subtitle.into_iter().map(Into::into).collect(), ..self }

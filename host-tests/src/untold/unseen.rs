@@ -40,7 +40,7 @@ pub fn of_stage(session: &Session) -> Vec<Unseen> {
     motions.filter_map(|(motion, slow)| Unseen::of(motion, slow, azimuth.sigma)).collect()
 }
 
-/// The same of a turning platform's.
+/// Slow motions of the base that a turning platform does not show.
 #[must_use]
 pub fn of_platform(session: &rotating::Session) -> Vec<Unseen> {
     let found = session.conclusion().and_then(|found| Some((found, found.verdict.ok()?)));

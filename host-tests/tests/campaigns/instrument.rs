@@ -120,7 +120,7 @@ fn what_is_survived_is_noticed(rows: &[faults::Row]) {
         ("gyro-hang", "gyro: its bus hangs"),
         ("stage-blocked-once", "stage: blocked, trying again"),
         ("saturation-once", "gyro: at the limit of its range"),
-        ("overflow-once", "nobody took them in time"),
+        ("overflow-once", "the queue was full"),
         ("door-slam", "is measured again"),
         ("base-nudge", "is measured again"),
     ] {

@@ -42,7 +42,7 @@ use orientation::units::{AngularRate, DEGREE, DEGREE_PER_HOUR, DEGREE_PER_SQRT_H
 
 /// Platform that carries the gyro.
 #[derive(Clone, Copy, PartialEq, Eq)]
-#[expect(dead_code, reason = "whoever edits this file chooses one")]
+#[expect(dead_code, reason = "the choice of the carrier is made by editing this file")]
 pub enum Carrier {
     /// A stage that stands at positions.
     Stage,

@@ -1,6 +1,6 @@
 //! Executor of the emulated image: when all tasks wait, the virtual clock advances.
 
-#![expect(unsafe_code, reason = "embassy's raw executor trusts whoever polls it")]
+#![expect(unsafe_code, reason = "embassy's raw executor relies on its caller to poll it correctly")]
 
 use core::sync::atomic::{AtomicBool, Ordering};
 

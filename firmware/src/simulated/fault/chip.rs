@@ -21,7 +21,7 @@ pub enum ChipFault {
     ChecksumOnce,
     /// One bit of every reply is wrong.
     ChecksumAlways,
-    /// The same reply comes again and again.
+    /// The chip repeats one reply again and again.
     Stuck,
     /// One data-ready edge is lost; where there is no such line, one answer.
     SilentOnce,

@@ -11,10 +11,10 @@ use crate::ports::PositionAiding;
 /// A stream of random numbers that no source of noise has.
 const STREAM: u64 = 1001;
 
-/// Who knows how far the vehicle has come.
+/// Source of the displacement of a vehicle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
-    /// Nobody.
+    /// The displacement of a stop is not known.
     Unknown,
     /// A satellite receiver, or an odometer with a map.
     Known {

@@ -36,7 +36,7 @@ pub struct Device {
     pub positions: u32,
     /// Δω of eq. (1), °/h, 1σ.
     pub rate_error_deg_h: f64,
-    /// The same with B√(2 ln 2/π), °/h, 1σ.
+    /// Rate error with the flicker floor B√(2 ln 2/π), °/h, 1σ.
     pub with_flicker_deg_h: f64,
     /// Azimuth along one axis, 3σ, in ° times sec φ.
     pub three_sigma_secant_deg: f64,

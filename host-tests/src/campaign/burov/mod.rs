@@ -75,7 +75,7 @@ impl Grade {
         }
     }
 
-    /// The same for the simulation, whose ramp is R to the full.
+    /// The gyro as it is simulated, with its ramp R to the full.
     pub(crate) fn simulated(&self) -> GyroConfiguration {
         GyroConfiguration {
             n_deg_sqrt_h: self.n_deg_sqrt_h,

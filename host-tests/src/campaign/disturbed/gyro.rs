@@ -38,7 +38,7 @@ pub(super) struct Drifting {
 }
 
 impl Drifting {
-    /// With the random stream of its walk.
+    /// Begins without a drift; the generator draws the random walk.
     pub(super) fn new(rate_hz: f64, chance: Generator) -> Self {
         Self { rate_hz, chance, walked: 0.0 }
     }

@@ -47,7 +47,7 @@ pub struct Platform {
 }
 
 impl Platform {
-    /// Of drawn units.
+    /// Describes a platform by the units that are drawn on it.
     const fn of<S: Subject>(name: &'static str, classes: fn() -> Vec<Class>) -> Self {
         Self { name, healthy: |seed| S::drawn(seed).align().answer, classes }
     }
@@ -97,9 +97,9 @@ pub struct Row {
     pub answered: usize,
     /// Answers beyond [`WRONG_SIGMAS`], and how many of these rest on few residuals.
     pub wrong: usize,
-    /// Of the wrong answers those that rest on few residuals.
+    /// Wrong answers that rest on few residuals.
     pub wrong_of_few: usize,
-    /// Of the wrong answers those that are off by no more than a slow motion of the base is said to put them.
+    /// Wrong answers whose error a slow motion of the base may explain, as is stated beside them.
     pub wrong_told: usize,
     /// The greatest error of an answer in its σ.
     pub worst_sigmas: f64,
@@ -109,7 +109,7 @@ pub struct Row {
     pub lost_runs: Vec<(u64, f64)>,
     /// Runs in which the fault does no harm.
     pub harmless: usize,
-    /// Of these, those that were answered, with a σ not much greater than without the fault.
+    /// Harmless runs that were answered, with a σ not much greater than without the fault.
     pub harmless_answered: usize,
     /// Healthy runs that were refused, and the first reason.
     pub healthy_refused: usize,

@@ -37,7 +37,7 @@ pub(super) struct Grade {
 }
 
 impl Grade {
-    /// With an N between two values, °/√h.
+    /// Draws a grade with an N between two values, °/√h.
     pub(super) fn drawn(chance: &mut Chance, [least_n, greatest_n]: [f64; 2]) -> Self {
         let latitude_deg = chance.between(-65.0, 65.0);
         let n = chance.scaled(least_n, greatest_n);
@@ -128,7 +128,7 @@ pub(super) struct Unit {
 }
 
 impl Unit {
-    /// With nothing wrong.
+    /// A unit with nothing wrong.
     pub(super) fn new(seed: u64, instruments: &InstrumentsConfiguration, header: Header) -> Self {
         Self {
             seed,

@@ -33,7 +33,7 @@ struct Case {
 /// Bias of tactical micromechanical gyros, 1σ, °/h, and their scale: STIM300 (data sheet TS1524, ±500 ppm), after
 /// it has warmed up.
 const TACTICAL: [f64; 2] = [5.0, 5e-4];
-/// The same of fibre-optic gyros that were calibrated: 1 °/h as for [`classes`](super::burov::classes), 100 ppm.
+/// Bias of calibrated fibre-optic gyros, 1σ, °/h, as for [`classes`](super::burov::classes), and their scale: 100 ppm.
 const FIBRE: [f64; 2] = [BIAS_DEG_H, 1e-4];
 /// Biases of accelerometers, 1σ, m/s²: 0.75 mg of STIM300 from start to start; half a milli-g once calibrated.
 const FORCE: [f64; 2] = [7.5e-3, 5e-3];
@@ -59,9 +59,9 @@ const REST_S: f64 = 60.0;
 pub struct Growth {
     /// How long.
     pub seconds: f64,
-    /// Of the azimuth.
+    /// Errors of the azimuth.
     pub azimuth: Spread,
-    /// Of pitch and roll.
+    /// Errors of pitch and roll.
     pub level: Spread,
 }
 

@@ -50,9 +50,9 @@ pub enum Mount {
 /// The gyros of the level axes beside a precise one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pair {
-    /// Of the class of LSM6DSL, as [`Gyro::coarse`] has it.
+    /// Sensors of the class of the LSM6DSL, as [`Gyro::coarse`] has it.
     Coarse,
-    /// Of the class of STIM300.
+    /// Sensors of the class of the STIM300.
     Tactical,
 }
 
@@ -110,9 +110,9 @@ pub struct Fitting {
 pub struct Mark {
     /// Since the azimuth was handed over, s.
     pub seconds: f64,
-    /// Of the azimuth, and its 1σ; none where it was lost.
+    /// Error of the azimuth and its 1σ; none where it was lost.
     pub azimuth: Option<[f64; 2]>,
-    /// Of pitch and of roll.
+    /// Errors of pitch and of roll.
     pub level: [f64; 2],
     /// 1σ of either.
     pub level_sigma: f64,

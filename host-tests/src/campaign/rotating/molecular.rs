@@ -75,7 +75,7 @@ struct Run {
     one_speed: f64,
     predicted: f64,
     two_speeds: f64,
-    /// Of the limit without G and H, with noise.
+    /// Limit without G and H, with noise.
     plain_limit: f64,
     answer: Result<Answer, Refusal>,
 }

@@ -63,7 +63,7 @@ pub struct World {
     pub segments: Vec<Segment>,
     /// What goes wrong with the encoder.
     pub slip: EncoderSlip,
-    /// What befalls the sensors.
+    /// Disturbances of the sensors.
     pub disturbances: Vec<Disturbance>,
 }
 

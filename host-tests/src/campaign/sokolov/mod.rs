@@ -134,7 +134,7 @@ fn dwells(turn: Turn, samples: &[Sample]) -> Result<Vec<Dwell>, String> {
     Ok(session.dwells().to_vec())
 }
 
-/// The same dwells with rates from the filter in `f64`.
+/// These dwells with rates from the filter in `f64`.
 fn in_floating_point(turn: Turn, samples: &[Sample], dwells: &[Dwell]) -> Vec<Dwell> {
     let filter = Filter::low_pass(6, procedure(turn).cutoff(), RATE_HZ);
     let rates: Vec<f64> = samples.iter().map(|sample| sample.rate.rad_per_s()).collect();

@@ -59,7 +59,7 @@ pub struct Row {
     pub plain_sigma_deg: f64,
     /// Greatest difference between the closed form and Brent's search for the least angle.
     pub brent_difference_deg: f64,
-    /// The same of the paper's Euler form.
+    /// Greatest difference between the closed form and the least of the paper's Euler form.
     pub euler_difference_deg: f64,
     /// RMS of the biases' errors over their σ; not a number where no drive showed them.
     pub bias_ratio: Option<f64>,
@@ -68,7 +68,7 @@ pub struct Row {
     /// The azimuths at the end by everything that is known, against limit and σ.
     #[serde(flatten)]
     pub precision: Precision,
-    /// Of each drive: the error of averaging and that of the end's azimuth.
+    /// Error of averaging and error of the azimuth at the end, drive by drive.
     #[serde(skip)]
     pub errors: Vec<(f64, f64)>,
 }

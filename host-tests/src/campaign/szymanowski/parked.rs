@@ -16,7 +16,7 @@ use crate::output::{azimuth_error, degrees};
 
 /// How long a vehicle with good gyros stands, s.
 pub const PARKED_S: f64 = 660.0;
-/// Those gyros' N, °/√h, and 1σ of their biases, °/h.
+/// N of good gyros, °/√h, and 1σ of their biases, °/h.
 pub const GOOD: [f64; 2] = [0.01, 0.02];
 
 /// A row's vehicles.
@@ -50,7 +50,7 @@ pub const COUNT: usize = 4;
 /// Many parked vehicles. Angles in degrees.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
-    /// What befell them.
+    /// Name of the case.
     pub case: &'static str,
     /// RMS error of averaging all of it.
     pub averaging_rms_deg: f64,

@@ -45,7 +45,7 @@ impl<S: Copy> Recorder<S> for &mut Wanted<S> {
 }
 
 impl<S> Wanted<S> {
-    /// Those so far; none where none are recorded.
+    /// Samples recorded so far; none where none are asked for.
     pub fn samples(&self) -> &[S] {
         &self.samples
     }
@@ -60,7 +60,7 @@ impl Common {
     /// Writes the recording of a finished run, where one is asked for.
     ///
     /// # Errors
-    /// Those of the file, in words.
+    /// The recording cannot be written; the words say why.
     pub fn write<C: Carrier>(
         &self,
         carrier: &C,
@@ -76,7 +76,7 @@ impl Common {
     /// Makes the file of the recording before the run, so that one that cannot be written is told at once.
     ///
     /// # Errors
-    /// Those of the file, in words.
+    /// The file cannot be made; the words say why.
     pub fn open(&self) -> Result<(), String> {
         self.record.as_ref().map_or(Ok(()), |path| {
             let opened = OpenOptions::new().append(true).create(true).open(path);

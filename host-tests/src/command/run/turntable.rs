@@ -74,7 +74,7 @@ fn date(text: &str) -> Result<u64, String> {
 enum Sensor {
     /// A gyro, by --gyro.
     Gyro,
-    /// A molecular-electronic sensor, whose gain, lag and g-sensitivity nobody knows.
+    /// A molecular-electronic sensor, whose gain, lag and g-sensitivity are not known.
     Met,
 }
 

@@ -43,14 +43,14 @@ pub trait Carrier {
     /// Writes header, column names and rows.
     ///
     /// # Errors
-    /// Those of the file.
+    /// The file cannot be written.
     fn write(&self, to: &mut impl Write, run: &Self::Run, of: &[Self::Sample]) -> io::Result<()>;
 }
 
 /// Writes the recording of a finished run and its session's samples to a file.
 ///
 /// # Errors
-/// Those of the file.
+/// The file cannot be made or written.
 pub fn write<C: Carrier>(
     path: &Path,
     carrier: &C,

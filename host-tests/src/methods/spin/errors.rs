@@ -16,7 +16,7 @@ fn settled_s(track: &Track) -> f64 {
 /// The errors of a track.
 #[derive(Clone, Debug)]
 pub struct Errors {
-    /// Of each sample, rad, within ±π; not a number where the truth is not known.
+    /// Error of each sample, rad, within ±π; not a number where the truth is not known.
     pub wrapped_rad: Vec<f64>,
     /// RMS after [`SETTLED_S`], rad; none of nothing.
     pub rms_rad: Option<f64>,
@@ -25,13 +25,13 @@ pub struct Errors {
 }
 
 impl Errors {
-    /// Of a track whose samples had these true rolls, rad; none where there are not as many.
+    /// Compares a track with the true rolls of its samples, rad; none where there are not as many.
     #[must_use]
     pub fn of(track: &Track, truth_rad: &[f64]) -> Option<Self> {
         (truth_rad.len() == track.rolls_rad.len()).then(|| Self::between(track, truth_rad))
     }
 
-    /// Of a track and as many true rolls, rad.
+    /// Compares a track with as many true rolls, rad.
     #[must_use]
     pub fn between(track: &Track, truth_rad: &[f64]) -> Self {
         let whole: Vec<f64> =

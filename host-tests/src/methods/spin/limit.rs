@@ -23,7 +23,7 @@ const UNKNOWN: f64 = TURN / 3.464_101_615_137_754_6;
 /// What the noise of a recording is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Noise {
-    /// Of each accelerometer in each sample, m/s² (1σ).
+    /// Noise of each accelerometer in each sample, m/s² (1σ).
     pub force: f64,
     /// Angle random walk of the gyro, rad/√s.
     pub angle_random_walk: f64,
@@ -39,7 +39,7 @@ pub struct Turns {
 }
 
 impl Turns {
-    /// Of samples without gaps in them; a part of a turn at the end belongs to the last one.
+    /// Divides samples without gaps into turns; a part of a turn at the end belongs to the last one.
     #[must_use]
     pub fn of(samples: &[SpinSample]) -> Self {
         let mut starts = vec![0];

@@ -17,7 +17,7 @@ pub struct Converter {
 }
 
 impl Converter {
-    /// Of samples with such a period, s.
+    /// A converter of samples with this period, s.
     #[must_use]
     pub fn new(period_s: f64) -> Self {
         Self { period_s, carried: [0.0; 3], before: None }

@@ -61,7 +61,7 @@ pub struct Track {
 }
 
 impl Track {
-    /// Of a method and samples.
+    /// Tracks the roll through samples.
     #[must_use]
     pub fn of(setting: &Setting, samples: &[SpinSample]) -> Self {
         let every = (samples.len() / POINTS).max(1);

@@ -39,7 +39,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// Of a session that ran by itself: a planned schedule goes through positions.
+    /// The method of a session that ran by itself: a planned schedule goes through positions.
     #[must_use]
     pub fn of(session: &Session) -> Self {
         match session.procedure().schedule {
@@ -241,7 +241,7 @@ fn sample(row: &StageRow, begin: f64) -> Sample {
 
 /// Greatest change of a noisy encoder's angle that counts as standing, rad.
 const STILL_NOISY: f64 = 300e-6;
-/// The same in medians of the encoder's change from sample to sample: six standard deviations of a
+/// Tolerance of a standstill in medians of the encoder's change from sample to sample: six standard deviations of a
 /// difference of two readings.
 const STILL_MEDIANS: f64 = 9.0;
 /// A standstill shorter than this part of the usual one is a pause in a rotation, not a dwell.

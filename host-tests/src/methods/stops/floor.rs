@@ -55,7 +55,7 @@ struct Group {
 }
 
 impl Spectrum {
-    /// Of no samples yet, which come with this period, s.
+    /// A filter without samples yet, which come with this period, s.
     #[must_use]
     pub const fn new(period_s: f64) -> Self {
         Self { period_s, values: Vec::new() }

@@ -28,7 +28,7 @@ pub struct Off {
 /// The errors wherever the truth is known and counts.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Errors {
-    /// Of each moment.
+    /// Errors, moment by moment.
     #[serde(skip)]
     pub off: Vec<Off>,
     /// RMS of the inclinations, °.
@@ -37,12 +37,12 @@ pub struct Errors {
     pub heading_rmse_deg: f64,
     /// Per cent of both tilts within 1, 2 and 3 σ.
     pub coverage_percent: [f64; 3],
-    /// Of how many moments.
+    /// Number of moments.
     pub samples: usize,
 }
 
 impl Errors {
-    /// Of moments against the truth, row by row; none where it is nowhere known.
+    /// Compares moments with the truth, row by row; none where it is nowhere known.
     #[must_use]
     pub fn of(moments: &[Moment], truth: &[Option<[f64; 4]>]) -> Option<Self> {
         let known =

@@ -232,7 +232,7 @@ fn heading([w, x, y, z]: [f64; 4]) -> f64 {
 /// Writes the attitude after each sample and 1σ of either tilt: `t_s,qw,qx,qy,qz,sigma_tilt_rad`.
 ///
 /// # Errors
-/// Those of the file.
+/// The file cannot be made or written.
 pub fn write_attitude(path: &Path, moments: &[Moment]) -> io::Result<()> {
     let mut file = BufWriter::new(std::fs::File::create(path)?);
     writeln!(file, "t_s,qw,qx,qy,qz,sigma_tilt_rad")?;

@@ -218,12 +218,12 @@ impl Rig for Instrument {
         self.modulated_s + even_s * chance.between(0.25, 0.75)
     }
 
-    /// Of either part of a turn's phasor.
+    /// 1σ of either part of a turn's phasor, rad/s.
     fn mean_sigma(&self) -> f64 {
         self.sample_sigma() * (2.0 * self.speed / TAU / Self::RATE_HZ).sqrt()
     }
 
-    /// Those of the even turns.
+    /// Rates of the gyro in the even turns, rad/s.
     fn rates(&self) -> Vec<f64> {
         let even = (self.modulated_s + RAMP_SECONDS) * Self::RATE_HZ;
         self.rows().iter().skip(even as usize).map(|row| row.rate_rad_s).collect()

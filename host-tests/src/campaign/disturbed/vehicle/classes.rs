@@ -131,7 +131,7 @@ fn unstated() -> [Class; 4] {
 }
 
 impl Instrument {
-    /// The same with its N stated.
+    /// This unit with its N stated.
     fn stating_noise(mut self) -> Self {
         self.header.gyro_n_deg_sqrt_h = Some(self.gyro().n_deg_sqrt_h);
         self

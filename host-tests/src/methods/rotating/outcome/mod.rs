@@ -60,7 +60,7 @@ pub struct Stages {
     pub without_unevenness_deg: f64,
     /// Both senses together.
     pub both_senses_deg: f64,
-    /// With all compensations.
+    /// Azimuth with all compensations.
     pub full_deg: f64,
 }
 
