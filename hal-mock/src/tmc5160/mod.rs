@@ -81,7 +81,7 @@ impl Oscillator {
     }
 }
 
-/// What only a chip can inject from.
+/// Faults that only the chip itself can have.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ChipFault {
     /// The chip is well.

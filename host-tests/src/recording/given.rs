@@ -23,17 +23,28 @@ pub struct Given<S, P = ()> {
     pub setting: S,
     /// How the session goes about it.
     pub procedure: P,
-    /// Why there is no result, where there is none: a failure of the instrument ends a session, too.
+    /// Why the instrument ended the session before its end, where it did: a device failed, or time was over.
     pub ended: Option<Refusal>,
 }
 
 impl<S, P> Given<S, P> {
-    /// What a session was given that ended so. A refusal with a number that text cannot hold comes of the samples,
-    /// and need not be told.
+    /// What a session was given that ended so. A refusal of the session itself is not among it: a replay has to come
+    /// to the same one.
     pub fn new(setting: S, procedure: P, ended: Option<Refusal>) -> Self {
-        let is_text = |it: &Refusal| serde_json::to_string(it).is_ok_and(|it| !it.contains("null"));
-        Self { setting, procedure, ended: ended.filter(is_text) }
+        Self { setting, procedure, ended: ended.filter(is_from_outside) }
     }
+}
+
+/// Whether an instrument may end a session with this refusal, of which the samples tell nothing.
+fn is_from_outside(refusal: &Refusal) -> bool {
+    matches!(
+        refusal,
+        Refusal::Device { .. }
+            | Refusal::LatitudeTooHigh { .. }
+            | Refusal::MisalignmentUnknown
+            | Refusal::MovedDuringAlignment
+            | Refusal::TimeExhausted
+    )
 }
 
 impl<S: DeserializeOwned, P: DeserializeOwned> Given<S, P> {
