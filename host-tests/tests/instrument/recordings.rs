@@ -170,9 +170,11 @@ fn turntable(seed: u64) -> TurntableScenario {
     TurntableScenario { base, modulated_turns: 6, turns: 4, ..brief }
 }
 
-/// Three stops of a minute.
+/// Two stops of half a minute.
 fn vehicle(seed: u64) -> VehicleScenario {
-    VehicleScenario::usual(seed)
+    let usual = VehicleScenario::usual(seed);
+    let base = Scenario { sample_rate_hz: 50.0, ..usual.base };
+    VehicleScenario { base, stops: 2, stop_s: 30.0, ..usual }
 }
 
 #[test]

@@ -166,7 +166,7 @@ fn what_a_modulated_turn_found_gives_the_same_north_the_next_time() {
     let mut after = keeping(before.store.into_flash(), NOW);
     let second = aligned(&scenario(5, 0), &mut after);
     let recalled = told(&second, "misalignment recalled").expect("it is used");
-    assert_eq!(recalled.replace("recalled", "kept"), kept);
+    assert_eq!(recalled.replace("recalled", "saved"), kept);
     assert_eq!(told(&second, "rate-modulated"), None);
     assert_eq!(told(&second, "axis misalignment saved"), None, "nothing new was found");
     let [first, second] = [&first, &second].map(|run| verdict(run).expect("north"));

@@ -77,7 +77,7 @@ fn a_molecular_electronic_sensor_without_a_stored_misalignment_is_refused() {
     let object = object(&output);
     assert_eq!((output.status.code(), &object["status"]), (Some(1), &"refused".into()));
     let reason = object["reason"].as_str().unwrap_or_default();
-    assert!(reason.contains("modulate its rate first"), "{reason}");
+    assert!(reason.contains("modulate the platform's rate first"), "{reason}");
 }
 
 #[test]

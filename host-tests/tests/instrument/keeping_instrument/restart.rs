@@ -116,7 +116,8 @@ fn a_vehicle_that_has_set_off_since_is_forgotten() {
 
 #[test]
 fn a_power_cut_amid_the_writing_leaves_a_heading_that_is_whole_or_none() {
-    for words in 0..24 {
+    // Up to a whole record, denser where its first words are written.
+    for words in [0, 1, 2, 3, 5, 8, 13, 21] {
         let mut flash = Flash::default();
         flash.left = Some(words);
         let mut store = flash.store();
