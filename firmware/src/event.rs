@@ -286,7 +286,7 @@ words! { Event:
     Self::HeadingRecalled(azimuth, sigma) =>
         "the vehicle stands as it stood before the restart: azimuth {}° ± {}° (1σ) recalled",
         Rounded::<4>(azimuth), Rounded::<4>(sigma);
-    Self::RecallRefused(doubt) => "the heading of before the restart is not believed: {}", doubt;
+    Self::RecallRefused(reason) => "the heading of before the restart is not believed: {}", reason;
     Self::HeadingNotKept(fault) => "the heading cannot be kept for the next start: {}", fault;
     Self::BegunSpin => "begin: following the roll of a spinning body";
     Self::Roll(state) => "roll: {}", state;

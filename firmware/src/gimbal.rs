@@ -67,7 +67,7 @@ impl<'a, M: Actuator> Gimbal<'a, M> {
     async fn store(&mut self) -> Result<(), Refusal> {
         self.go_to(Station::Storage).await?;
         let shown = |latest: &LatestAngle| latest.get().0.signed_rad() * DEGREES;
-        self.shared.tell(Event::Stored(shown(&self.latest.outer), shown(&self.latest.inner)));
+        self.shared.report(Event::Stored(shown(&self.latest.outer), shown(&self.latest.inner)));
         Ok(())
     }
 

@@ -126,7 +126,7 @@ impl<'a, D: Startable> Guarded<'a, D> {
             is_to_restart((self.name, &mut self.retry_budget), symptom, shared)?;
             trouble = Some(symptom);
         }
-        shared.tell(Event::Started(self.name));
+        shared.report(Event::Started(self.name));
         Ok(())
     }
 }

@@ -129,13 +129,13 @@ pub async fn send<L: Write>(link: &mut L, shared: &Shared<'_>) {
     let mut line = String::<LENGTH>::new();
     let faults = shared.health.get().faults();
     // The capacity holds the longest line; a longer one would be cut.
-    let _ = match shared.keep.told.get() {
+    let _ = match shared.keep.attitude.get() {
         Some(kept) => write!(line, "{kept}, faults {faults}\r\n"),
         None => write!(line, "{}, faults {faults}\r\n", shared.status.get()),
     };
     if !matches!(with_timeout(LONGEST, link.write_all(line.as_bytes())).await, Ok(Ok(()))) {
         if shared.health.get().unsent == 0 {
-            shared.tell(Event::LinkSilent);
+            shared.report(Event::LinkSilent);
         }
         shared.count(|health| health.unsent = health.unsent.saturating_add(1));
     }

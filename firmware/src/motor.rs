@@ -175,8 +175,8 @@ impl<'a, M: Actuator> Motor<'a, M> {
     }
 
     /// Reports an event of this axis under the name of its drive.
-    pub(crate) fn tell(&self, event: impl FnOnce(Device) -> Event) {
-        self.shared.tell(event(self.axis.drive));
+    pub(crate) fn report(&self, event: impl FnOnce(Device) -> Event) {
+        self.shared.report(event(self.axis.drive));
     }
 
     /// Reports that the motor is given up, and returns the reason for the session's end.

@@ -59,12 +59,12 @@ pub async fn run_spin<L: Write, R: Recorder<SpinSample>>(
 ) -> Health {
     let shared = &channels.shared;
     {
-        let tell = pin!(async {
+        let reporting = pin!(async {
             link::run(link, shared).await;
             pending::<()>().await;
         });
         let watch = pin!(health::watch(shared));
-        select3(spin::follow(flight, recorder, channels), tell, watch).await;
+        select3(spin::follow(flight, recorder, channels), reporting, watch).await;
     }
     link::send(link, shared).await;
     shared.health.get()
@@ -91,9 +91,9 @@ async fn join<L: Write, R: Recorder<S>, S>(
     let mut conductor = SessionRunner::new(session, recorder, channels);
     // Each part is pinned here, so that it exists in memory once.
     let runner = pin!(conductor.run());
-    let tell = pin!(link::run(link, shared));
+    let reporting = pin!(link::run(link, shared));
     let watch = pin!(health::watch(shared));
     // The keeper is polled last, so that it takes only what the session has taken.
-    select5(runner, turning, tell, watch, kept).await;
+    select5(runner, turning, reporting, watch, kept).await;
     shared.health.get()
 }

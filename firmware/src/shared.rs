@@ -101,7 +101,7 @@ impl<'a> Shared<'a> {
     /// Reports an event with the present time. Not inlined, since every part calls it and it
     /// contains the clock and the log.
     #[inline(never)]
-    pub fn tell(&self, event: Event) {
+    pub fn report(&self, event: Event) {
         self.observer.event(Instant::now(), &event);
     }
 
@@ -115,18 +115,18 @@ impl<'a> Shared<'a> {
     /// Counts and reports a lost reading of a device.
     pub fn lose(&self, device: Device, symptom: Symptom) {
         self.count(|health| health.lose(device));
-        self.tell(Event::Lost(device, symptom));
+        self.report(Event::Lost(device, symptom));
     }
 
     /// Counts and reports the restart of a device.
     pub fn restart(&self, device: Device, symptom: Symptom) {
         self.count(|health| health.restart(device));
-        self.tell(Event::Restarting(device, symptom));
+        self.report(Event::Restarting(device, symptom));
     }
 
     /// Reports that a device is given up, and returns the refusal that ends the session.
     pub fn give_up(&self, device: Device, trouble: Trouble) -> Refusal {
-        self.tell(Event::GivenUp(device, trouble));
+        self.report(Event::GivenUp(device, trouble));
         Refusal::Device { device, trouble }
     }
 }

@@ -65,13 +65,13 @@ impl<'a, M: Actuator> Stage<'a, M> {
     /// # Errors
     /// The index was not found, or motor or encoder is given up.
     pub(crate) async fn home(&mut self) -> Result<(), Refusal> {
-        self.motor.tell(Event::Homing);
+        self.motor.report(Event::Homing);
         for attempt in 0..=RETRIES {
             match self.find_index().await {
                 Ok(()) => return Ok(()),
                 Err(Break::Refused(reason)) => return Err(reason),
                 Err(Break::Stalled) => {
-                    self.motor.tell(Event::Blocked);
+                    self.motor.report(Event::Blocked);
                     Timer::after(STALL_REST * (1 << attempt)).await;
                 }
                 Err(Break::Lost) => {}
@@ -110,7 +110,7 @@ impl<'a, M: Actuator> Stage<'a, M> {
         let shown = self.motor.shown_near(index).await?;
         self.motor.check(shown - index, self.configuration.index_tolerance)?;
         self.motor.ask(Request::SetAngle(shown)).await?;
-        self.motor.tell(|axis| Event::Homed(axis, shown * DEGREES));
+        self.motor.report(|axis| Event::Homed(axis, shown * DEGREES));
         Ok(())
     }
 
@@ -125,7 +125,7 @@ impl<'a, M: Actuator> Stage<'a, M> {
             return Err(self.motor.fail(Trouble::BeyondTravel(target * DEGREES)));
         }
         let begun = Instant::now();
-        self.motor.tell(|axis| Event::Turning(axis, target * DEGREES));
+        self.motor.report(|axis| Event::Turning(axis, target * DEGREES));
         let mut aim = target;
         let mut trouble = None;
         for attempt in 0..=MOVES {
@@ -133,11 +133,11 @@ impl<'a, M: Actuator> Stage<'a, M> {
                 Ok(off) if off.abs() <= self.configuration.tolerance => {
                     let took = begun.elapsed().as_micros() as f64 * 1e-6;
                     let angle = (target + off) * DEGREES;
-                    self.motor.tell(|axis| Event::Arrived(axis, angle, took));
+                    self.motor.report(|axis| Event::Arrived(axis, angle, took));
                     return Ok(());
                 }
                 Ok(off) => {
-                    self.motor.tell(|axis| Event::Corrected(axis, off * DEGREES));
+                    self.motor.report(|axis| Event::Corrected(axis, off * DEGREES));
                     trouble = Some(Trouble::NotThere(off * DEGREES));
                     aim -= off;
                 }
@@ -180,7 +180,7 @@ impl<'a, M: Actuator> Stage<'a, M> {
             Break::Refused(reason) => return Err(reason),
             Break::Lost => {}
             Break::Stalled => {
-                self.motor.tell(Event::Blocked);
+                self.motor.report(Event::Blocked);
                 Timer::after(rest).await;
             }
         }

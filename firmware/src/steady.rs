@@ -213,7 +213,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
     }
 
     /// Reports the decision; called when the decision may have been taken.
-    fn tell(&self, shared: &Shared<'_>) {
+    fn report(&self, shared: &Shared<'_>) {
         let (noise, event) = match self.sway.decision() {
             Decision::Watching => return,
             Decision::Still(size) => {
@@ -227,7 +227,7 @@ impl<'a, B: BaseSensors> SwayCompensation<'a, B> {
             }
         };
         shared.sway.set(noise);
-        shared.tell(event);
+        shared.report(event);
     }
 
     /// Contribution of the sway to the gyro's rate at a stage angle, nrad/s.
@@ -264,7 +264,7 @@ impl<B: BaseSensors> CompensatesSway for SwayCompensation<'_, B> {
             self.mend(symptom, shared).await?;
         }
         if !was_decided {
-            self.tell(shared);
+            self.report(shared);
         }
         Ok(())
     }

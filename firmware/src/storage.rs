@@ -148,11 +148,11 @@ pub async fn load_calibration<S: Store>(
         Ok(Some(misalignments)) => {
             setting.misalignments = misalignments;
             for misalignment in misalignments.iter().flatten() {
-                shared.tell(Event::Recalled(misalignment.into()));
+                shared.report(Event::Recalled(misalignment.into()));
             }
         }
-        Ok(None) => shared.tell(Event::NothingRecalled),
-        Err(fault) => shared.tell(Event::CalibrationUnreadable(fault)),
+        Ok(None) => shared.report(Event::NothingRecalled),
+        Err(fault) => shared.report(Event::CalibrationUnreadable(fault)),
     }
 }
 
@@ -163,10 +163,12 @@ pub async fn save_calibration<S: Store>(store: &mut S, session: &Session, channe
         return;
     }
     let saved = async {
-        let told = |found: AxisMisalignment| Event::CalibrationSaved((&found).into());
+        let saved = |found: AxisMisalignment| Event::CalibrationSaved((&found).into());
         match keep(store, session.misalignments()).await {
-            Ok(()) => session.misalignments().for_each(|found| channels.shared.tell(told(found))),
-            Err(fault) => channels.shared.tell(Event::CalibrationNotSaved(fault)),
+            Ok(()) => {
+                session.misalignments().for_each(|found| channels.shared.report(saved(found)));
+            }
+            Err(fault) => channels.shared.report(Event::CalibrationNotSaved(fault)),
         }
     };
     select(saved, discard(channels)).await;

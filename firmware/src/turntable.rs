@@ -84,7 +84,7 @@ impl<'a, M: Actuator> Turntable<'a, M> {
         if self.motor.motion.is_standing {
             return Ok(());
         }
-        self.motor.tell(|axis| Event::Revolving(axis, 0.0));
+        self.motor.report(|axis| Event::Revolving(axis, 0.0));
         self.motor.ask(Request::Seek(0.0)).await?;
         self.motor.follow(Trouble::Restless, LONGEST_STOP, |motion| motion.is_standing).await
     }
@@ -99,7 +99,7 @@ impl<'a, M: Actuator> Turntable<'a, M> {
             }
             Break::Stalled => {
                 self.blocks += 1;
-                self.motor.tell(Event::Blocked);
+                self.motor.report(Event::Blocked);
             }
             Break::Lost => {}
         }
@@ -144,7 +144,7 @@ impl<'a, M: Actuator> Turntable<'a, M> {
         // it.
         self.watch().await?;
         if rate == 0.0 || rate * self.rate <= 0.0 {
-            self.motor.tell(|axis| Event::Revolving(axis, rate * DEGREES));
+            self.motor.report(|axis| Event::Revolving(axis, rate * DEGREES));
         }
         self.rate = rate;
         self.motor.ask(Request::Seek(rate)).await

@@ -102,7 +102,7 @@ fn main() -> ExitCode {
     }
     // Where there is a pool already, or no room for another one, that one serves.
     let _ = rayon::ThreadPoolBuilder::new().stack_size(STACK).build_global();
-    match tell(&command, &given, as_json) {
+    match answer(&command, &given, as_json) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
         Err(failure) if failure.is_misuse => misused(&failure.reason),
@@ -183,7 +183,7 @@ fn warn(warnings: &[String]) {
 }
 
 /// Runs the command and prints what came of it; whether there was a result.
-fn tell(command: &Command, given: &Given, as_json: bool) -> Result<bool, Failure> {
+fn answer(command: &Command, given: &Given, as_json: bool) -> Result<bool, Failure> {
     let answer = match command {
         Command::Run(options) => command::run::run(options, as_json)?,
         Command::Replay(options) => command::replay::run(options, given, as_json)?,

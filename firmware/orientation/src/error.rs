@@ -323,7 +323,7 @@ pub enum Refusal {
     /// The time stamps contradict the configured sample period.
     PeriodContradicted {
         /// Configured sample period, ms.
-        told: f64,
+        stated: f64,
         /// Sample period found from the time stamps, ms.
         found: f64,
     },
@@ -488,9 +488,9 @@ crate::words! { Refusal:
     Self::RotationMissing { at, seconds } =>
         "samples are missing after {} s, for {} s: what the vehicle turned meanwhile is lost",
         Rounded::<3>(at), Rounded::<3>(seconds);
-    Self::PeriodContradicted { told, found } =>
+    Self::PeriodContradicted { stated, found } =>
         "samples come every {} ms, not every {} ms as was told: correct the sample rate or the times",
-        Rounded::<3>(found), Rounded::<3>(told);
+        Rounded::<3>(found), Rounded::<3>(stated);
     Self::RotationClipped { at } =>
         "a gyro stood at the limit of its range at {} s: what the vehicle turned beyond is lost",
         Rounded::<3>(at);

@@ -35,7 +35,7 @@ impl<'a, S> Outlet<'a, S> {
             self.overflowed += 1;
             self.channels.shared.count(|health| health.overflowed += 1);
         } else if self.overflowed > 0 {
-            self.channels.shared.tell(Event::Overflowed(self.overflowed));
+            self.channels.shared.report(Event::Overflowed(self.overflowed));
             self.overflowed = 0;
         }
     }
@@ -46,13 +46,13 @@ impl<'a, S> Outlet<'a, S> {
             Arrival::InTime => {}
             Arrival::Late(microseconds) => {
                 self.channels.shared.count(|health| health.late += 1);
-                self.channels.shared.tell(Event::Late(microseconds));
+                self.channels.shared.report(Event::Late(microseconds));
             }
             Arrival::Missing(count) => {
                 self.channels
                     .shared
                     .count(|health| health.missing = health.missing.saturating_add(count));
-                self.channels.shared.tell(Event::Missing(count));
+                self.channels.shared.report(Event::Missing(count));
             }
         }
     }

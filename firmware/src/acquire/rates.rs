@@ -97,7 +97,7 @@ impl<'a, V: Quantity, G: Gyro<V>> Rates<'a, G, V> {
             return Ok(Ok(None));
         }
         if rate.is_saturated() && !core::mem::replace(&mut self.has_clipped, true) {
-            shared.tell(Event::Clipped(self.gyro.name));
+            shared.report(Event::Clipped(self.gyro.name));
         }
         match self.plausibility.judge(rate, rate.is_saturated(), 1) {
             Ok(symptom) => Ok(symptom.map_or(Ok(Some(rate)), Err)),

@@ -56,7 +56,7 @@ impl<M: Store> Memory<M> {
     /// Reports the first failure of the store.
     fn fail(&mut self, fault: Fault, shared: &Shared<'_>) {
         if !core::mem::replace(&mut self.has_failed, true) {
-            shared.tell(Event::HeadingNotKept(fault));
+            shared.report(Event::HeadingNotKept(fault));
         }
     }
 
@@ -67,7 +67,7 @@ impl<M: Store> Memory<M> {
         let outcome = keeper.recall(found);
         match outcome {
             Err(RecallRefusal::NotAtRest { .. }) => return false,
-            Err(doubt) => shared.tell(Event::RecallRefused(doubt)),
+            Err(reason) => shared.report(Event::RecallRefused(reason)),
             Ok(()) => {}
         }
         self.found = None;

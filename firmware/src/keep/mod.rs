@@ -12,12 +12,12 @@
 //! belongs to the last sample of its session, so it is handed over exactly between that sample and
 //! the next, and no rotation during the computation is lost.
 
+mod attitude;
 mod memory;
 mod part;
-mod told;
 
+pub use attitude::AttitudeReport;
 pub use part::{Keep, Keeping};
-pub use told::Kept;
 
 use core::cell::Cell;
 use core::future::pending;
@@ -83,7 +83,7 @@ pub struct KeeperChannels {
     pub is_at_rest: Cell<bool>,
     /// The attitude that the link reports instead of the session's status; [`None`] before there is
     /// any.
-    pub told: Cell<Option<Kept>>,
+    pub attitude: Cell<Option<AttitudeReport>>,
 }
 
 impl KeeperChannels {
@@ -101,7 +101,7 @@ impl KeeperChannels {
             is_kept: Cell::new(false),
             store: Signal::new(),
             is_at_rest: Cell::new(false),
-            told: Cell::new(None),
+            attitude: Cell::new(None),
         }
     }
 

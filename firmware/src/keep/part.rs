@@ -10,7 +10,7 @@ use orientation::keep::{self, Handover, Keeper, Realigned, Report, State, Trust}
 use orientation::units::{self, DEGREE_PER_HOUR, DEGREES_PER_RADIAN as DEGREES};
 
 use super::memory::Memory;
-use super::{Kept, Motion, VerticalGyro};
+use super::{AttitudeReport, Motion, VerticalGyro};
 use crate::configuration::{Alignment, KeepConfiguration, Realignment};
 use crate::event::Event;
 use crate::ports::{Aiding, Store};
@@ -167,7 +167,7 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
                     }
                     VerticalGyro::Precise => precise,
                 });
-                shared.tell(Event::DownGyro(down));
+                shared.report(Event::DownGyro(down));
             }
         }
     }
@@ -179,7 +179,7 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
             return;
         };
         if self.has_set_off() {
-            shared.tell(Event::Refused(Refusal::MovedDuringAlignment));
+            shared.report(Event::Refused(Refusal::MovedDuringAlignment));
         } else {
             self.align(handover, shared);
         }
@@ -208,7 +208,7 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
         if !matches!(outcome, Realigned::Disagrees { .. }) {
             self.reported.is_recalled = false;
         }
-        shared.tell(Event::handed_over(&handover, outcome));
+        shared.report(Event::handed_over(&handover, outcome));
         self.reported.has_azimuth = true;
     }
 
@@ -218,9 +218,9 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
         let is_silent = self.reported.moved.elapsed() >= SILENCE;
         let is_at_rest = report.is_at_rest && !is_silent;
         shared.keep.is_at_rest.set(is_at_rest);
-        self.tell_state((!is_silent).then_some(report.state), shared);
-        self.tell_loss(&report, shared);
-        self.tell_biases(&report, shared);
+        self.report_state((!is_silent).then_some(report.state), shared);
+        self.report_loss(&report, shared);
+        self.report_biases(&report, shared);
         self.rest(is_at_rest);
         self.reported.looks += 1;
         if self.reported.looks >= LOOKS {
@@ -230,37 +230,37 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
     }
 
     /// Reports a state that has changed. An acceleration is reported only if it lasts.
-    fn tell_state(&mut self, state: Option<State>, shared: &Shared<'_>) {
+    fn report_state(&mut self, state: Option<State>, shared: &Shared<'_>) {
         let trust = |state: Option<State>| state.map(|state| state.trust);
-        let is_told = trust(state) == trust(self.reported.state);
+        let is_reported = trust(state) == trust(self.reported.state);
         let passes =
             state.is_some_and(|now| now.trust == Trust::Coasting && now.seconds < TOLD_SECONDS);
-        if is_told || passes {
+        if is_reported || passes {
             return;
         }
         self.reported.state = state;
         match state {
             Some(State { trust: Trust::Starting, .. }) => {}
-            Some(state) => shared.tell(Event::Keeping(state)),
+            Some(state) => shared.report(Event::Keeping(state)),
             None if self.reported.moved == Instant::MIN => {}
-            None => shared.tell(Event::NoMotion),
+            None => shared.report(Event::NoMotion),
         }
     }
 
     /// Reports once that the stated biases are not used any more.
-    fn tell_biases(&mut self, report: &Report, shared: &Shared<'_>) {
+    fn report_biases(&mut self, report: &Report, shared: &Shared<'_>) {
         let is_beyond = report.is_bias_beyond_stated;
         if is_beyond && !core::mem::replace(&mut self.reported.is_bias_beyond_stated, true) {
-            shared.tell(Event::BiasBeyondStated);
+            shared.report(Event::BiasBeyondStated);
         }
     }
 
     /// Reports that the azimuth has become unknown.
-    fn tell_loss(&mut self, report: &Report, shared: &Shared<'_>) {
+    fn report_loss(&mut self, report: &Report, shared: &Shared<'_>) {
         let had = core::mem::replace(&mut self.reported.has_azimuth, report.azimuth.is_some());
         if had && report.azimuth.is_none() {
             self.reported.is_recalled = false;
-            shared.tell(Event::AzimuthLost);
+            shared.report(Event::AzimuthLost);
         }
     }
 
@@ -294,14 +294,14 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
             self.reported.has_azimuth = true;
             if let Some(keep::Azimuth { angle, sigma }) = self.keeper.report().azimuth {
                 let [angle, sigma] = [angle, sigma].map(|angle| angle * DEGREES);
-                shared.tell(Event::HeadingRecalled(angle, sigma));
+                shared.report(Event::HeadingRecalled(angle, sigma));
             }
             self.spare(shared);
         }
         let is_at_rest = shared.keep.is_at_rest.get();
         self.memory.keep(self.keeper, is_at_rest, shared).await;
         self.realign(shared);
-        self.tell(shared);
+        self.update_link(shared);
     }
 
     /// Skips the running session where the azimuth is known and the configuration permits it.
@@ -335,7 +335,7 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
         let stood = self.reported.rests.map_or(Duration::MIN, |since| since.elapsed());
         if !self.reported.is_realigned && stood >= after {
             self.reported.is_realigned = true;
-            shared.tell(Event::Realigning);
+            shared.report(Event::Realigning);
             shared.wanted.signal(0.0);
             shared.keep.again.signal(());
         }
@@ -343,18 +343,18 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
 
     /// Gives the link the attitude. Before the first session has ended, and without an azimuth, the
     /// link reports the session's status.
-    fn tell(&self, shared: &Shared<'_>) {
+    fn update_link(&self, shared: &Shared<'_>) {
         let report = self.keeper.report();
         shared.observer.kept(&report);
         if self.reported.since.is_none() && report.azimuth.is_none() {
             return;
         }
-        let mut kept = Kept::of(&report, self.reported.is_recalled);
+        let mut kept = AttitudeReport::of(&report, self.reported.is_recalled);
         // Without inertial samples the azimuth is not valid any more.
         if self.reported.moved.elapsed() >= SILENCE {
-            kept = Kept { azimuth: None, state: None, ..kept };
+            kept = AttitudeReport { azimuth: None, state: None, ..kept };
         }
-        shared.keep.told.set(Some(kept));
+        shared.keep.attitude.set(Some(kept));
     }
 
     /// Whether the configured duration of keeping is over.

@@ -112,7 +112,7 @@ impl<'a, R: Recorder<S>, S> SessionRunner<'a, R, S> {
             self.channels.shared.status.set(Status::Homing);
         }
         loop {
-            self.channels.shared.tell(self.session.outset());
+            self.channels.shared.report(self.session.outset());
             if let Err(Some(reason)) = self.runner().await {
                 self.session.fail(reason);
             }
@@ -223,7 +223,7 @@ impl<'a, R: Recorder<S>, S> SessionRunner<'a, R, S> {
             None => {}
             Some(Ok(found)) => {
                 let [angle, sigma, limit] = found.map(|angle| angle * DEGREES);
-                self.channels.shared.tell(Event::Concluded(angle, sigma, limit));
+                self.channels.shared.report(Event::Concluded(angle, sigma, limit));
                 self.channels.shared.status.set(Status::concluded(angle, sigma));
                 let [azimuth, sigma, _] = found;
                 if let Some(taken) = self.taken {
@@ -231,7 +231,7 @@ impl<'a, R: Recorder<S>, S> SessionRunner<'a, R, S> {
                 }
             }
             Some(Err(reason)) => {
-                self.channels.shared.tell(Event::Refused(reason));
+                self.channels.shared.report(Event::Refused(reason));
                 self.channels.shared.status.set(Status::Refused);
             }
         }
@@ -240,7 +240,7 @@ impl<'a, R: Recorder<S>, S> SessionRunner<'a, R, S> {
 
 /// Reports the inclination of a platform at rest along and across the sensitive axis, °, from its
 /// mean specific force.
-fn tell_level([along, across, down]: [f64; 3], shared: &Shared<'_>) {
+fn report_level([along, across, down]: [f64; 3], shared: &Shared<'_>) {
     let [along, across] = [along, across].map(|f| libm::atan2(f, -down) * DEGREES);
-    shared.tell(Event::Levelled(along, across));
+    shared.report(Event::Levelled(along, across));
 }

@@ -7,7 +7,7 @@ use orientation::session::rotating::{Command, Event as SessionEvent, Phase, Sess
 use orientation::signal::Sample;
 use orientation::units::DEGREES_PER_RADIAN as DEGREES;
 
-use super::{AlignmentSession, Step, tell_level};
+use super::{AlignmentSession, Step, report_level};
 use crate::event::Event;
 use crate::link::Status;
 use crate::shared::Shared;
@@ -17,9 +17,9 @@ pub struct Rotating<'a> {
     /// The session.
     session: &'a mut Session,
     /// Phase that was reported last.
-    told_phase: Phase,
+    reported_phase: Phase,
     /// Number of turns that were reported.
-    told_turns: u32,
+    reported_turns: u32,
 }
 
 impl<'a> Rotating<'a> {
@@ -29,8 +29,8 @@ impl<'a> Rotating<'a> {
         if !is_coupled(session) {
             session.handle(SessionEvent::Failed(Refusal::MisalignmentUnknown));
         }
-        let told_phase = session.phase();
-        Self { session, told_phase, told_turns: 0 }
+        let reported_phase = session.phase();
+        Self { session, reported_phase, reported_turns: 0 }
     }
 }
 
@@ -67,18 +67,18 @@ impl AlignmentSession<Sample> for Rotating<'_> {
 
     fn follow(&mut self, shared: &Shared<'_>) {
         let session = &*self.session;
-        if session.phase() != self.told_phase {
-            tell_found(session, self.told_phase, shared);
-            tell_phase(session, shared);
-            self.told_phase = session.phase();
+        if session.phase() != self.reported_phase {
+            report_found(session, self.reported_phase, shared);
+            report_phase(session, shared);
+            self.reported_phase = session.phase();
         }
         // The number of planned turns is not computed here, as this runs with every sample.
         let done = session.turn_accumulator().stretches().iter().map(Stretch::count).sum();
-        if done > self.told_turns {
-            self.told_turns = done;
+        if done > self.reported_turns {
+            self.reported_turns = done;
             let (_, of) = session.turns();
-            shared.tell(Event::Turned(done, of));
-            tell_status(session, shared);
+            shared.report(Event::Turned(done, of));
+            report_status(session, shared);
             shared.observer.turned(session);
         }
     }
@@ -87,7 +87,7 @@ impl AlignmentSession<Sample> for Rotating<'_> {
         let conclusion = self.session.conclusion()?;
         for average in conclusion.pairs.iter().flat_map(|pair| [&pair.clockwise, &pair.counter]) {
             if average.left_out > 0 {
-                shared.tell(Event::TurnsLeftOut(average.left_out, average.sense));
+                shared.report(Event::TurnsLeftOut(average.left_out, average.sense));
             }
         }
         let limit = conclusion.fit.as_ref().map_or(0.0, |fit| fit.limit);
@@ -97,17 +97,17 @@ impl AlignmentSession<Sample> for Rotating<'_> {
 
 /// Reports the result of the phase that has ended: inclination of the platform, or axis
 /// misalignment.
-fn tell_found(session: &Session, phase: Phase, shared: &Shared<'_>) {
+fn report_found(session: &Session, phase: Phase, shared: &Shared<'_>) {
     match phase {
         Phase::Level => {
             if let Some(force) = session.force() {
-                tell_level(force, shared);
+                report_level(force, shared);
             }
         }
         Phase::Modulated(index) => {
             if let Some(misalignment) = session.misalignments().nth(index) {
                 let [angle, sigma] = [misalignment.angle(), misalignment.sine_sigma];
-                shared.tell(Event::Misalignment(angle * DEGREES, sigma * DEGREES));
+                shared.report(Event::Misalignment(angle * DEGREES, sigma * DEGREES));
             }
         }
         _ => {}
@@ -115,18 +115,18 @@ fn tell_found(session: &Session, phase: Phase, shared: &Shared<'_>) {
 }
 
 /// Reports the begin of a phase: rate-modulated turns, or turns that are evaluated.
-fn tell_phase(session: &Session, shared: &Shared<'_>) {
+fn report_phase(session: &Session, shared: &Shared<'_>) {
     let speed = |index: usize| session.procedure().speeds.get(index).map_or(0.0, |w| w * DEGREES);
     match session.phase() {
-        Phase::Modulated(index) => shared.tell(Event::Modulated(speed(index))),
-        Phase::Even(index, sense) => shared.tell(Event::Stretch(sense, speed(index))),
+        Phase::Modulated(index) => shared.report(Event::Modulated(speed(index))),
+        Phase::Even(index, sense) => shared.report(Event::Stretch(sense, speed(index))),
         _ => {}
     }
-    tell_status(session, shared);
+    report_status(session, shared);
 }
 
 /// Updates the status line with completed and planned turns.
-fn tell_status(session: &Session, shared: &Shared<'_>) {
+fn report_status(session: &Session, shared: &Shared<'_>) {
     let (done, of) = session.turns();
     shared.status.set(Status::Measuring { done: done as u16, of: of as u16 });
 }

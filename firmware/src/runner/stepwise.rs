@@ -9,7 +9,7 @@ use orientation::signal::Sample;
 use orientation::signal::sway::SwayNoise;
 use orientation::units::{DEGREE_PER_HOUR, DEGREES_PER_RADIAN as DEGREES, Instant};
 
-use super::{AlignmentSession, Step, tell_level};
+use super::{AlignmentSession, Step, report_level};
 use crate::event::Event;
 use crate::link::Status;
 use crate::shared::Shared;
@@ -93,21 +93,21 @@ impl AlignmentSession<Sample> for Stepwise<'_> {
         let (session, reported) = (&*self.session, &mut self.reported);
         if !reported.is_level && session.phase() != Phase::Level {
             reported.is_level = true;
-            tell_begun(session, shared);
-            tell_status(session, shared);
+            report_begun(session, shared);
+            report_status(session, shared);
         }
         if !reported.is_planned && session.surveyed().is_some() {
             reported.is_planned = true;
-            tell_plan(session, shared);
+            report_plan(session, shared);
         }
         if session.repetitions().len() > reported.repetitions {
             reported.repetitions = session.repetitions().len();
-            tell_repetition(session, shared);
+            report_repetition(session, shared);
         }
         if session.dwells().len() > reported.dwells {
             reported.dwells = session.dwells().len();
-            tell_dwell(session, shared);
-            tell_status(session, shared);
+            report_dwell(session, shared);
+            report_status(session, shared);
         }
     }
 
@@ -115,7 +115,7 @@ impl AlignmentSession<Sample> for Stepwise<'_> {
         let conclusion = self.session.conclusion()?;
         for (number, why) in (1..).zip(&conclusion.disturbances) {
             if let Some(why) = why {
-                shared.tell(Event::LeftOut(number, *why));
+                shared.report(Event::LeftOut(number, *why));
             }
         }
         let limit = conclusion.fit.as_ref().map_or(0.0, |fit| fit.limit);
@@ -124,27 +124,27 @@ impl AlignmentSession<Sample> for Stepwise<'_> {
 }
 
 /// Reports the inclination of the platform and the begin of a survey.
-fn tell_begun(session: &Session, shared: &Shared<'_>) {
+fn report_begun(session: &Session, shared: &Shared<'_>) {
     if let Some(force) = session.force() {
-        tell_level(force, shared);
+        report_level(force, shared);
     }
     if let Some(survey) = &session.procedure().survey {
-        shared.tell(Event::Surveying(survey.seconds));
+        shared.report(Event::Surveying(survey.seconds));
     }
 }
 
 /// Reports the noise coefficients of the survey and the plan that follows from them.
-fn tell_plan(session: &Session, shared: &Shared<'_>) {
+fn report_plan(session: &Session, shared: &Shared<'_>) {
     let found = session.surveyed().map(NoiseFit::in_field_units);
     for (coefficient, estimate) in found.into_iter().flatten() {
-        shared.tell(Event::Noise(coefficient, estimate));
+        shared.report(Event::Noise(coefficient, estimate));
     }
     // If the survey ended with a refusal, the schedule is still the original one.
     if session.phase() == Phase::Done {
         return;
     }
     if let Schedule::Planned(plan) = &session.procedure().schedule {
-        shared.tell(Event::Planned {
+        shared.report(Event::Planned {
             positions: plan.positions(),
             dwell: plan.dwell,
             seconds: plan.seconds,
@@ -154,26 +154,26 @@ fn tell_plan(session: &Session, shared: &Shared<'_>) {
 }
 
 /// Reports a dwell that is measured again, with the disturbance.
-fn tell_repetition(session: &Session, shared: &Shared<'_>) {
+fn report_repetition(session: &Session, shared: &Shared<'_>) {
     if let Some(repetition) = session.repetitions().last() {
-        shared.tell(Event::Repeated(repetition.position + 1, repetition.why));
+        shared.report(Event::Repeated(repetition.position + 1, repetition.why));
     }
 }
 
 /// Reports a completed dwell, and whether it was shorter than planned.
-fn tell_dwell(session: &Session, shared: &Shared<'_>) {
+fn report_dwell(session: &Session, shared: &Shared<'_>) {
     if let Some(dwell) = session.dwells().last() {
         let rate = dwell.rate / DEGREE_PER_HOUR;
-        shared.tell(Event::Dwelled(session.dwells().len(), session.planned(), rate));
+        shared.report(Event::Dwelled(session.dwells().len(), session.planned(), rate));
         if dwell.seconds < WHOLE * session.procedure().schedule.shortest() {
-            shared.tell(Event::CutShort(dwell.seconds));
+            shared.report(Event::CutShort(dwell.seconds));
         }
     }
     shared.observer.progress(session);
 }
 
 /// Updates the status line with completed and planned dwells.
-fn tell_status(session: &Session, shared: &Shared<'_>) {
+fn report_status(session: &Session, shared: &Shared<'_>) {
     if session.phase() == Phase::Survey {
         shared.status.set(Status::Surveying);
         return;

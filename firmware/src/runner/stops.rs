@@ -133,16 +133,16 @@ impl<W: PositionAiding> AlignmentSession<InertialSample> for Stops<'_, W> {
     fn follow(&mut self, shared: &Shared<'_>) {
         let (session, reported) = (&*self.session, &mut self.reported);
         if session.phase() != reported.phase {
-            tell_phase(session.phase(), reported, shared);
+            report_phase(session.phase(), reported, shared);
             reported.phase = session.phase();
             reported.since = reported.now;
             shared.observer.stopped(session);
         }
         if let Some(place) = reported.place.take() {
-            shared.tell(Event::Displaced(reported.placed + 1, place));
+            shared.report(Event::Displaced(reported.placed + 1, place));
         }
         if core::mem::take(&mut reported.may_drive) {
-            tell_levelled(session, shared);
+            report_levelled(session, shared);
             shared.observer.stopped(session);
         }
     }
@@ -153,7 +153,7 @@ impl<W: PositionAiding> AlignmentSession<InertialSample> for Stops<'_, W> {
             for ((gyro, bias), sigma) in TRIAD.into_iter().zip(found.biases).zip(found.bias_sigmas)
             {
                 let [bias, sigma] = [bias, sigma].map(|rate| rate / DEGREE_PER_HOUR);
-                shared.tell(Event::Bias(gyro, bias, sigma));
+                shared.report(Event::Bias(gyro, bias, sigma));
             }
         }
         let limit = found.as_ref().map_or(0.0, |found| found.limit);
@@ -162,17 +162,17 @@ impl<W: PositionAiding> AlignmentSession<InertialSample> for Stops<'_, W> {
 }
 
 /// Reports the begin of a stop, with the duration of the drive before it, or of a drive.
-fn tell_phase(phase: Phase, reported: &Reported, shared: &Shared<'_>) {
+fn report_phase(phase: Phase, reported: &Reported, shared: &Shared<'_>) {
     match phase {
         Phase::Standing(index) => {
             if let Phase::Driving(_) = reported.phase {
                 let seconds = reported.now.seconds() - reported.since.seconds();
-                shared.tell(Event::Stopped(index + 1, seconds));
+                shared.report(Event::Stopped(index + 1, seconds));
             }
             shared.status.set(Status::Levelling(index as u16 + 1));
         }
         Phase::Driving(_) => {
-            shared.tell(Event::Driving);
+            shared.report(Event::Driving);
             shared.status.set(Status::Driving);
         }
         Phase::Waiting | Phase::Done => {}
@@ -180,10 +180,10 @@ fn tell_phase(phase: Phase, reported: &Reported, shared: &Shared<'_>) {
 }
 
 /// Reports that the stop was long enough, with the inclination of the vehicle.
-fn tell_levelled(session: &Session, shared: &Shared<'_>) {
+fn report_levelled(session: &Session, shared: &Shared<'_>) {
     let Some(stop) = session.stops().last() else { return };
     let number = session.stops().len();
     let level = pitch_and_roll(&stop.force.mean()).map(|angle| angle * DEGREES);
-    shared.tell(Event::MayDrive(number, stop.seconds(), level));
+    shared.report(Event::MayDrive(number, stop.seconds(), level));
     shared.status.set(Status::MayDrive(number as u16));
 }

@@ -59,37 +59,37 @@ impl Hold {
         beside: keep::Gyro,
         precise: keep::Gyro,
     ) -> KeepConfiguration {
-        let is_told = self.handover.is_some();
+        let is_handed_over = self.handover.is_some();
         KeepConfiguration {
             hold: Duration::from_micros((self.seconds * 1e6) as u64),
             knows_stops: realignment == Realignment::BetweenStops,
             realignment: if self.realigns { realignment } else { Realignment::Never },
-            alignment: if is_told { Alignment::UnlessKnown } else { Alignment::Always },
+            alignment: if is_handed_over { Alignment::UnlessKnown } else { Alignment::Always },
             beside,
             precise,
         }
     }
 
-    /// Who tells the board what it cannot measure.
+    /// Aiding that hands over the azimuth of the scenario.
     #[must_use]
-    pub fn outside(&self) -> Teller {
-        Teller { told: Cell::new(self.handover) }
+    pub fn aiding(&self) -> HandoverAiding {
+        HandoverAiding { pending: Cell::new(self.handover) }
     }
 }
 
-/// Tells one azimuth, once it is time.
+/// Hands over one azimuth at its time.
 #[derive(Debug)]
-pub struct Teller {
-    told: Cell<Option<([f64; 2], f64)>>,
+pub struct HandoverAiding {
+    pending: Cell<Option<([f64; 2], f64)>>,
 }
 
-impl Aiding for Teller {
+impl Aiding for HandoverAiding {
     fn azimuth(&mut self) -> Option<Handover> {
-        let ([azimuth, sigma], at_s) = self.told.get()?;
+        let ([azimuth, sigma], at_s) = self.pending.get()?;
         if Instant::now().as_micros() as f64 * 1e-6 < at_s {
             return None;
         }
-        self.told.set(None);
+        self.pending.set(None);
         Some(Handover { azimuth: azimuth * DEGREE, sigma: sigma * DEGREE })
     }
 

@@ -148,10 +148,10 @@ impl<'a, B: Rig, A: PortWrapper> Wires<'a, '_, B, A> {
         &self,
         select: Select,
         hertz: u32,
-        told: Converter,
+        configuration: Converter,
     ) -> Ads1262<Bus<'a, B, A>, Line<'a, B, A>, Delay> {
         let ready = self.1.line(select, ReadyPin::new(self.0, select));
-        Ads1262::new(self.bus(select, hertz), ready, Delay, told)
+        Ads1262::new(self.bus(select, hertz), ready, Delay, configuration)
     }
 
     /// A gyro with its converter.
@@ -163,10 +163,10 @@ impl<'a, B: Rig, A: PortWrapper> Wires<'a, '_, B, A> {
     /// The accelerometer.
     fn accelerometer(
         &self,
-        told: adxl355::Configuration,
+        configuration: adxl355::Configuration,
     ) -> chips::PlatformAccelerometer<Bus<'a, B, A>, Delay> {
         let bus = self.bus(Select::Accelerometer, adxl355::BUS_HERTZ);
-        chips::PlatformAccelerometer(Adxl355::new(bus, Delay, told))
+        chips::PlatformAccelerometer(Adxl355::new(bus, Delay, configuration))
     }
 
     /// The encoder of a stage or of one of its frames.
@@ -176,8 +176,12 @@ impl<'a, B: Rig, A: PortWrapper> Wires<'a, '_, B, A> {
     }
 
     /// The motor of a stage or of one of its frames.
-    fn motor(&self, select: Select, told: Motor) -> chips::StageMotor<Bus<'a, B, A>, Delay> {
+    fn motor(
+        &self,
+        select: Select,
+        configuration: Motor,
+    ) -> chips::StageMotor<Bus<'a, B, A>, Delay> {
         let bus = self.bus(select, tmc5160::BUS_HERTZ);
-        chips::StageMotor(Tmc5160::new(bus, Delay, told))
+        chips::StageMotor(Tmc5160::new(bus, Delay, configuration))
     }
 }

@@ -60,7 +60,7 @@ pub struct FramesScenario {
     /// 1σ of each non-orthogonality that it leaves, rad.
     pub orthogonality_sigma: f64,
     /// Whether the board is told of it; else it takes the mount for perfect.
-    pub is_told: bool,
+    pub is_calibrated: bool,
     /// Frame angles at power-on, °.
     pub start_deg: Frames<f64>,
 }
@@ -81,7 +81,7 @@ impl Default for FramesScenario {
                 inner_zero: -0.2 * DEGREE,
             },
             orthogonality_sigma: 5.0 / 3600.0 * DEGREE,
-            is_told: true,
+            is_calibrated: true,
             start_deg: Frames { outer: 12.0, inner: -35.0 },
         }
     }
@@ -119,9 +119,9 @@ impl FramesScenario {
     /// # Errors
     /// A calibration that lets the axis not stand where it must.
     pub fn frames(&self) -> Result<FramesConfiguration, MountError> {
-        let told = if self.is_told { self.calibrated } else { self.zeros() };
+        let stated = if self.is_calibrated { self.calibrated } else { self.zeros() };
         let harmonics = self.base.configuration().encoder;
-        FramesConfiguration::new(told, Frames { outer: harmonics, inner: harmonics })
+        FramesConfiguration::new(stated, Frames { outer: harmonics, inner: harmonics })
     }
 
     /// A perfect mount with the same zeros of its encoders, without which nothing homes.
@@ -140,12 +140,12 @@ impl FramesScenario {
     ) -> GimbalConfiguration<'a> {
         let mut chance = Generator::stream(self.base.seed, STREAM);
         let mut left = |sigma: f64| sigma * chance.gaussian();
-        let told = &self.calibrated;
+        let stated = &self.calibrated;
         let misalignment = Misalignment {
-            azimuth_rad: told.azimuth,
-            pitch_rad: told.pitch,
-            frames_rad: told.frames + left(self.orthogonality_sigma),
-            gyro_rad: told.gyro + left(self.orthogonality_sigma),
+            azimuth_rad: stated.azimuth,
+            pitch_rad: stated.pitch,
+            frames_rad: stated.frames + left(self.orthogonality_sigma),
+            gyro_rad: stated.gyro + left(self.orthogonality_sigma),
         };
         let disturbances = &injection.disturbances;
         let mut plant = PlantConfiguration { journey, disturbances, ..self.base.plant() };
@@ -158,8 +158,8 @@ impl FramesScenario {
         let Injection { axes, caught, .. } = injection;
         let start = self.start_deg;
         GimbalConfiguration {
-            outer: frame(&plant, &axes.outer, caught.outer, told.outer_zero, start.outer),
-            inner: frame(&plant, &axes.inner, caught.inner, told.inner_zero, start.inner),
+            outer: frame(&plant, &axes.outer, caught.outer, stated.outer_zero, start.outer),
+            inner: frame(&plant, &axes.inner, caught.inner, stated.inner_zero, start.inner),
             plant,
             misalignment,
             third_g_sensitivity_deg_h_g,

@@ -28,7 +28,7 @@ pub struct Flight {
     /// Number of samples, modulo 2³².
     samples: u32,
     /// State that was reported last.
-    told: State,
+    reported: State,
 }
 
 impl Flight {
@@ -43,7 +43,7 @@ impl Flight {
             begun: None,
             now: Instant::default(),
             samples: 0,
-            told: State::default(),
+            reported: State::default(),
         }
     }
 
@@ -78,7 +78,7 @@ impl Flight {
     /// The event of a change of state by the latest sample; [`None`] if the condition is the same.
     pub(super) fn news(&mut self) -> Option<Event> {
         let state = self.spin.state();
-        let before = core::mem::replace(&mut self.told, state);
+        let before = core::mem::replace(&mut self.reported, state);
         let is_back =
             [before, state].map(|state| state.condition) == [Condition::Holding, Condition::Locked];
         if before.condition == state.condition {

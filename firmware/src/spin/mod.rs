@@ -27,26 +27,26 @@ pub(crate) async fn follow<R: Recorder<SpinSample>>(
     channels: &Channels<'_, SpinSample>,
 ) {
     let shared = &channels.shared;
-    shared.tell(Event::BegunSpin);
+    shared.report(Event::BegunSpin);
     while !flight.is_over() {
         match select(channels.samples.receive(), shared.failure.wait()).await {
             Either::First(sample) => {
                 recorder.record(&sample).await;
                 flight.push(&sample);
                 if let Some(news) = flight.news() {
-                    shared.tell(news);
+                    shared.report(news);
                 }
                 if flight.is_status_due() {
                     shared.status.set(flight.status());
                 }
             }
             Either::Second(reason) => {
-                shared.tell(Event::RollEnded(reason));
+                shared.report(Event::RollEnded(reason));
                 shared.status.set(Status::RollEnded);
                 return;
             }
         }
     }
-    shared.tell(flight.ending());
+    shared.report(flight.ending());
     shared.status.set(flight.status());
 }

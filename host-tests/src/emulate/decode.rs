@@ -62,17 +62,17 @@ impl<'t> Decoder<'t> {
     /// Takes bytes and hands over the lines that they complete.
     ///
     /// # Errors
-    /// An error of `tell`, or bytes that are no defmt frame: nothing is lost on the way from the
+    /// An error of `on_line`, or bytes that are no defmt frame: nothing is lost on the way from the
     /// emulator, so something else has printed there.
     pub fn take(
         &mut self,
         bytes: &[u8],
-        mut tell: impl FnMut(&Line) -> Result<(), String>,
+        mut on_line: impl FnMut(&Line) -> Result<(), String>,
     ) -> Result<(), String> {
         self.stream.received(bytes);
         loop {
             match self.stream.decode() {
-                Ok(frame) => tell(&Line::of(&frame))?,
+                Ok(frame) => on_line(&Line::of(&frame))?,
                 Err(DecodeError::UnexpectedEof) => return Ok(()),
                 Err(DecodeError::Malformed) => {
                     return Err("the emulator's log holds bytes that are no defmt frame".to_owned());

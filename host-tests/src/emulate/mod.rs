@@ -65,15 +65,15 @@ impl Emulation {
     }
 }
 
-/// Builds, runs, compares and checks; the log's lines go to `tell` as they come.
+/// Builds, runs, compares and checks; the log's lines go to `on_line` as they come.
 ///
 /// # Errors
 /// One line that says what is missing or what went wrong.
-pub fn emulate(seed: u64, mut tell: impl FnMut(&decode::Line)) -> Result<Emulation, String> {
+pub fn emulate(seed: u64, mut on_line: impl FnMut(&decode::Line)) -> Result<Emulation, String> {
     qemu::require()?;
     let images = images::build()?;
     let elf = read(&images.emulator)?;
-    let mut run = |order: &str| instrument(&images.emulator, &elf, order, &mut tell);
+    let mut run = |order: &str| instrument(&images.emulator, &elf, order, &mut on_line);
     let (emulated, figures) = run(&seed.to_string())?;
     let mut comparison = outcome::compare(&emulated, &host::outcome(&Scenario::usual(seed))?);
     let mut compared = |order: &str, host: Outcome| {
@@ -105,14 +105,14 @@ fn instrument(
     image: &Path,
     elf: &[u8],
     order: &str,
-    mut tell: impl FnMut(&decode::Line),
+    mut on_line: impl FnMut(&decode::Line),
 ) -> Result<(Outcome, collect::Figures), String> {
     let table = decode::table(elf)?;
     let mut decoder = Decoder::new(&table);
     let mut collected = Collected::default();
     let status = qemu::run(image, &["-append", order], PATIENCE, |bytes| {
         decoder.take(bytes, |line| {
-            tell(line);
+            on_line(line);
             collected.take(line)
         })
     })?;

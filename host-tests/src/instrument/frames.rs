@@ -110,7 +110,7 @@ fn align_with<B: CompensatesSway, R: Recorder, W: Observer>(
         wires.frame_ports(harness.wire(), recorder);
     let mut keeper = Keeper::new(&scenario.keeper().ok_or_else(outside)?);
     let keep = scenario.base.keeping().ok_or_else(outside)?;
-    let mut keeping = Keeping::new(&mut keeper, &keep, scenario.base.hold.outside(), store);
+    let mut keeping = Keeping::new(&mut keeper, &keep, scenario.base.hold.aiding(), store);
     let ended = harness::run(
         acquire(&mut on_mount(&mut sensors, &configuration, &frames, &latest, &channels)),
         navigate(

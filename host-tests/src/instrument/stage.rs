@@ -113,7 +113,7 @@ fn align_with<B: CompensatesSway, R: Recorder, W: Observer>(
         wires.ports(Motor::default(), harness.wire(), recorder);
     let mut keeper = Keeper::new(&scenario.keeper().ok_or_else(outside)?);
     let keep = scenario.keeping().ok_or_else(outside)?;
-    let mut keeping = Keeping::new(&mut keeper, &keep, scenario.hold.outside(), store);
+    let mut keeping = Keeping::new(&mut keeper, &keep, scenario.hold.aiding(), store);
     let ended = harness::run(
         acquire(&mut on_stage(&mut sensors, &configuration, &channels)),
         navigate(

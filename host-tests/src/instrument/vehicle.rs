@@ -85,8 +85,8 @@ pub fn align_stops_on<R: Recorder<InertialSample>, W: Observer>(
     let mut place = KnownPlace::new(board, scenario.place, scenario.base.seed);
     let setting = scenario.keeper().ok_or(RunError::Latitude(scenario.base.latitude_deg))?;
     let mut keeper = Keeper::new(&setting);
-    let outside = scenario.base.hold.outside();
-    let mut keeping = Keeping::new(&mut keeper, &scenario.keeping(), outside, store);
+    let aiding = scenario.base.hold.aiding();
+    let mut keeping = Keeping::new(&mut keeper, &scenario.keeping(), aiding, store);
     let ended = harness::run(
         acquire(&mut TriadAcquisition::new(&mut sensors, &scenario.configuration(), &channels)),
         navigate(

@@ -16,7 +16,7 @@ use self::error::ReplayError;
 use crate::outcome::Finished;
 use crate::recording::{Body, Header, Kind, Recording};
 
-/// Told of each step of a replay: the session so far.
+/// What is called at each step of a replay: the session so far.
 pub type Watch<'a> = &'a dyn Fn(&orientation::session::Session);
 
 /// Replays a recording.

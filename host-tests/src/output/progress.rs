@@ -14,7 +14,7 @@ const LINES: u64 = 12;
 pub struct Progress {
     bar: ProgressBar,
     what: &'static str,
-    told: AtomicU64,
+    printed: AtomicU64,
 }
 
 impl Progress {
@@ -27,27 +27,27 @@ impl Progress {
             Ok(style) => bar.with_style(style.progress_chars("━╸ ")),
             Err(_) => bar,
         };
-        Self { bar, what, told: AtomicU64::new(0) }
+        Self { bar, what, printed: AtomicU64::new(0) }
     }
 
     /// One more step is done.
     pub fn step(&self) {
         self.bar.inc(1);
-        self.tell(String::new);
+        self.show(String::new);
     }
 
     /// Shows how far a session is and what its dwells so far would give.
     pub fn session(&self, session: &Session) {
         self.bar.set_length(session.planned() as u64);
         self.bar.set_position(session.dwells().len() as u64);
-        self.tell(|| so_far(session));
+        self.show(|| so_far(session));
     }
 
     /// Shows how many of the planned steps are done: a platform's turns, a vehicle's stops.
     pub fn steps(&self, (done, planned): (u32, u32)) {
         self.bar.set_length(u64::from(planned));
         self.bar.set_position(u64::from(done));
-        self.tell(String::new);
+        self.show(String::new);
     }
 
     /// Prints a line of a log above the bar.
@@ -62,14 +62,14 @@ impl Progress {
 
     /// Puts a message behind the bar; without a terminal, prints a line each time that another
     /// twelfth of the task is done.
-    fn tell(&self, message: impl FnOnce() -> String) {
+    fn show(&self, message: impl FnOnce() -> String) {
         if !self.bar.is_hidden() {
             self.bar.set_message(message());
             return;
         }
         let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0).max(1));
         let part = done * LINES / all;
-        if self.told.fetch_max(part, Ordering::Relaxed) < part {
+        if self.printed.fetch_max(part, Ordering::Relaxed) < part {
             say(&format!("{} {done}/{all} {}", self.what, message()));
         }
     }

@@ -13,7 +13,7 @@ use embassy_time::{Delay, Instant, Timer};
 use embedded_hal_async::digital::Wait;
 use embedded_hal_async::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
 use hal_mock::adxl355::{Adxl355 as Chip, POWER_UP, RESET_TIME};
-use hal_mock::chip::{Rig, Select, Single};
+use hal_mock::chip::{Rig as _, Select, Single};
 use hal_mock::environment::ForceInput;
 use hal_mock::spi::{ReadyPin, SpiPort};
 use hal_mock::violation::Misuse;
@@ -40,37 +40,37 @@ impl ForceInput for Table {
     }
 }
 
-type Bench = RefCell<Single<Chip, Table>>;
+type Rig = RefCell<Single<Chip, Table>>;
 type Accelerometer<'a> = Adxl355<SpiPort<'a, Single<Chip, Table>>, Delay>;
 
-fn bench_with(force: [f64; 3]) -> Bench {
+fn rig_with(force: [f64; 3]) -> Rig {
     let environment = Table { force, temperature: 25.0, samples: 0 };
     RefCell::new(Single { chip: Chip::new(Instant::from_ticks(0)), environment })
 }
 
-fn accelerometer(rig: &Bench, rate: OutputRate) -> Accelerometer<'_> {
+fn accelerometer(rig: &Rig, rate: OutputRate) -> Accelerometer<'_> {
     let port = SpiPort::new(rig, Select::Accelerometer, BUS_HERTZ);
     Adxl355::new(port, Delay, Configuration { rate })
 }
 
-async fn started(rig: &Bench, rate: OutputRate) -> Accelerometer<'_> {
+async fn started(rig: &Rig, rate: OutputRate) -> Accelerometer<'_> {
     let mut accelerometer = accelerometer(rig, rate);
     accelerometer.start().await.expect("the chip is well");
     accelerometer
 }
 
-fn power_cycle(rig: &Bench) {
+fn power_cycle(rig: &Rig) {
     rig.borrow_mut().power_cycle(Select::Accelerometer, Instant::now());
 }
 
-async fn exchange(rig: &Bench, hertz: u32, sent: &[u8]) -> Vec<u8> {
+async fn exchange(rig: &Rig, hertz: u32, sent: &[u8]) -> Vec<u8> {
     let mut bytes = sent.to_vec();
     let mut port = SpiPort::new(rig, Select::Accelerometer, hertz);
     port.transfer_in_place(&mut bytes).await.expect("the bus is well");
     bytes
 }
 
-async fn transcript(rig: &Bench, rows: &[(&[u8], &[u8])]) {
+async fn transcript(rig: &Rig, rows: &[(&[u8], &[u8])]) {
     for (sent, expected) in rows {
         assert_eq!(exchange(rig, 1_000_000, sent).await, *expected, "{sent:02x?}");
     }
@@ -80,7 +80,7 @@ async fn transcript(rig: &Bench, rows: &[(&[u8], &[u8])]) {
 /// 5 ms, shadow registers again, data-ready pin off, measuring; then temperature and axes in a row.
 #[test]
 fn the_chip_starts_as_the_linux_driver_starts_it() {
-    let rig = bench_with([0.0, -1.0, 1.0]);
+    let rig = rig_with([0.0, -1.0, 1.0]);
     run(async {
         Timer::after(POWER_UP).await;
         transcript(
@@ -114,7 +114,7 @@ fn the_chip_starts_as_the_linux_driver_starts_it() {
 /// Reset values of no-OS' adxl355.h, which carries one beside each address.
 #[test]
 fn a_chip_holds_the_documented_values_after_power_up() {
-    let rig = bench_with([0.0; 3]);
+    let rig = rig_with([0.0; 3]);
     run(async {
         Timer::after(POWER_UP).await;
         for (register, value) in [
@@ -144,7 +144,7 @@ fn a_chip_holds_the_documented_values_after_power_up() {
 /// overrun, and answers with bit 1 where it is empty.
 #[test]
 fn status_and_fifo_follow_the_data_sheet() {
-    let rig = bench_with([0.5, 0.0, -1.0]);
+    let rig = rig_with([0.5, 0.0, -1.0]);
     run(async {
         Timer::after(POWER_UP).await;
         exchange(&rig, 1_000_000, &[0x5A, 0x00]).await;
@@ -170,7 +170,7 @@ fn status_and_fifo_follow_the_data_sheet() {
 
 #[test]
 fn samples_come_exactly_at_the_output_rate() {
-    let rig = bench_with([0.0; 3]);
+    let rig = rig_with([0.0; 3]);
     run(async {
         Timer::after(POWER_UP).await;
         exchange(&rig, 1_000_000, &[0x50, 0x0A]).await;
@@ -191,7 +191,7 @@ fn samples_come_exactly_at_the_output_rate() {
 
 #[test]
 fn every_kind_of_misuse_is_recorded() {
-    let rig = bench_with([0.0; 3]);
+    let rig = rig_with([0.0; 3]);
     run(async {
         exchange(&rig, 1_000_000, &[0x01, 0]).await;
         Timer::after(POWER_UP).await;
@@ -234,7 +234,7 @@ fn the_budget_is_that_of_the_documentation() {
     assert_eq!(BYTES_PER_SAMPLE, 16);
     assert_eq!(BYTES_PER_CHECK, 18);
     assert_eq!(TIME_PER_SAMPLE, Duration::from_nanos(25_600));
-    let rig = bench_with([0.0; 3]);
+    let rig = rig_with([0.0; 3]);
     run(async {
         let mut accelerometer = started(&rig, OutputRate::Hz125).await;
         fresh(&mut accelerometer).await;
@@ -294,7 +294,7 @@ fn the_driver_reads_force_and_temperature_and_leaves_no_violation() {
         OutputRate::Hz3,
     ];
     for rate in rates {
-        let rig = bench_with([0.25, -0.5, -1.0]);
+        let rig = rig_with([0.25, -0.5, -1.0]);
         rig.borrow_mut().environment.temperature = -15.0;
         let reading = run(async {
             let mut accelerometer = started(&rig, rate).await;
@@ -310,7 +310,7 @@ fn the_driver_reads_force_and_temperature_and_leaves_no_violation() {
 
 #[test]
 fn a_start_takes_the_time_that_it_states() {
-    let rig = bench_with([0.0, 0.0, -1.0]);
+    let rig = rig_with([0.0, 0.0, -1.0]);
     let milliseconds = run(async {
         started(&rig, OutputRate::Hz4000).await;
         Instant::now().as_millis()
@@ -320,7 +320,7 @@ fn a_start_takes_the_time_that_it_states() {
 
 #[test]
 fn no_sample_is_lost_or_told_twice() {
-    let rig = bench_with([0.0; 3]);
+    let rig = rig_with([0.0; 3]);
     run(async {
         let mut accelerometer = started(&rig, OutputRate::Hz1000).await;
         fresh(&mut accelerometer).await;
@@ -341,7 +341,7 @@ fn no_sample_is_lost_or_told_twice() {
 #[test]
 fn a_sample_that_lands_within_a_burst_does_not_tear_it() {
     for early in 0..40 {
-        let rig = bench_with([0.3, -0.2, 1.0]);
+        let rig = rig_with([0.3, -0.2, 1.0]);
         run(async {
             let mut accelerometer = started(&rig, OutputRate::Hz1000).await;
             fresh(&mut accelerometer).await;
@@ -358,8 +358,8 @@ fn a_sample_that_lands_within_a_burst_does_not_tear_it() {
 }
 
 #[test]
-fn too_slow_a_bus_is_told_instead_of_torn_samples() {
-    let rig = bench_with([0.0; 3]);
+fn too_slow_a_bus_is_reported_instead_of_torn_samples() {
+    let rig = rig_with([0.0; 3]);
     let fault = run(async {
         let port = SpiPort::new(&rig, Select::Accelerometer, 100_000);
         let configuration = Configuration { rate: OutputRate::Hz1000 };
@@ -374,7 +374,7 @@ fn the_self_test_is_not_spoiled_by_gravity() {
     for force in
         [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [0.6, 0.0, 0.8]]
     {
-        let rig = bench_with(force);
+        let rig = rig_with(force);
         run(started(&rig, OutputRate::Hz125));
     }
 }
@@ -391,7 +391,7 @@ fn a_chip_outside_its_self_test_limits_is_refused() {
         ([0.1, 0.1, 0.5], true),
         ([0.6, 0.6, 3.0], true),
     ] {
-        let rig = bench_with([0.0, 0.0, 1.0]);
+        let rig = rig_with([0.0, 0.0, 1.0]);
         rig.borrow_mut().chip.self_test_response = response;
         let result = run(accelerometer(&rig, OutputRate::Hz125).start());
         let expected = if passes { Ok(()) } else { Err(Fault::SelfTest) };
@@ -401,7 +401,7 @@ fn a_chip_outside_its_self_test_limits_is_refused() {
 
 #[test]
 fn an_accelerometer_whose_start_failed_gives_no_force() {
-    let rig = bench_with([0.0, 0.0, 1.0]);
+    let rig = rig_with([0.0, 0.0, 1.0]);
     run(async {
         let mut accelerometer = started(&rig, OutputRate::Hz1000).await;
         let starting = embassy_time::with_timeout(
@@ -421,7 +421,7 @@ fn an_accelerometer_whose_start_failed_gives_no_force() {
 
 #[test]
 fn factory_settings_that_load_wrongly_are_loaded_again() {
-    let rig = bench_with([0.0, 0.0, -1.0]);
+    let rig = rig_with([0.0, 0.0, -1.0]);
     run(async {
         rig.borrow_mut().chip.spoiled_resets = 3;
         let mut accelerometer = started(&rig, OutputRate::Hz125).await;
@@ -437,7 +437,7 @@ fn factory_settings_that_load_wrongly_are_loaded_again() {
 #[test]
 fn a_chip_that_reset_itself_is_noticed_at_once_and_brought_back() {
     for pause in [1, 5_000, 9_900, 10_000, 50_000] {
-        let rig = bench_with([0.0, 0.0, -1.0]);
+        let rig = rig_with([0.0, 0.0, -1.0]);
         run(async {
             let mut accelerometer = started(&rig, OutputRate::Hz125).await;
             fresh(&mut accelerometer).await;
@@ -453,7 +453,7 @@ fn a_chip_that_reset_itself_is_noticed_at_once_and_brought_back() {
 #[test]
 fn a_changed_register_is_noticed_in_bounded_reads() {
     for (register, bit) in [(0x1E, 3), (0x2C, 1), (0x28, 4), (0x2E, 1)] {
-        let rig = bench_with([0.0; 3]);
+        let rig = rig_with([0.0; 3]);
         run(async {
             let mut accelerometer = started(&rig, OutputRate::Hz1000).await;
             rig.borrow_mut().chip.registers[usize::from(register)] ^= 1 << bit;
@@ -475,7 +475,7 @@ fn an_axis_at_its_limit_is_clipped() {
     for (force, is_clipped) in
         [(2.04, false), (2.05, true), (-2.04, false), (-2.05, true), (5.0, true)]
     {
-        let rig = bench_with([0.0; 3]);
+        let rig = rig_with([0.0; 3]);
         run(async {
             let mut accelerometer = started(&rig, OutputRate::Hz250).await;
             rig.borrow_mut().environment.force[1] = force;

@@ -10,7 +10,7 @@ use drivers::mt6835::{
 };
 use embassy_time::{Delay, Instant, Timer};
 use embedded_hal_async::spi::{ErrorKind, ErrorType, Operation, SpiDevice};
-use hal_mock::chip::{Rig, Select, Single};
+use hal_mock::chip::{Rig as _, Select, Single};
 use hal_mock::environment::ShaftAngle;
 use hal_mock::mt6835::Mt6835 as Chip;
 use hal_mock::spi::SpiPort;
@@ -37,30 +37,30 @@ impl ShaftAngle for Shaft {
     }
 }
 
-type Bench = RefCell<Single<Chip, Shaft>>;
+type Rig = RefCell<Single<Chip, Shaft>>;
 type Encoder<'a> = Mt6835<SpiPort<'a, Single<Chip, Shaft>>, Delay>;
 
-fn bench_at(turns: f64) -> Bench {
+fn bench_at(turns: f64) -> Rig {
     let environment = Shaft { turns, turns_per_s: 0.0, has_magnet: true };
     RefCell::new(Single { chip: Chip::new(Instant::from_ticks(0)), environment })
 }
 
-fn encoder(rig: &Bench, configuration: Configuration) -> Encoder<'_> {
+fn encoder(rig: &Rig, configuration: Configuration) -> Encoder<'_> {
     Mt6835::new(SpiPort::new(rig, Select::Encoder, BUS_HERTZ), Delay, configuration)
 }
 
-async fn started(rig: &Bench) -> Encoder<'_> {
+async fn started(rig: &Rig) -> Encoder<'_> {
     let mut encoder = encoder(rig, Configuration::default());
     encoder.start().await.expect("the chip is well");
     encoder
 }
 
-fn power_cycle(rig: &Bench) {
+fn power_cycle(rig: &Rig) {
     rig.borrow_mut().power_cycle(Select::Encoder, Instant::now());
 }
 
 /// Sends bytes and gives the answer.
-async fn exchange<const N: usize>(rig: &Bench, hertz: u32, sent: [u8; N]) -> [u8; N] {
+async fn exchange<const N: usize>(rig: &Rig, hertz: u32, sent: [u8; N]) -> [u8; N] {
     let mut bytes = sent;
     let mut port = SpiPort::new(rig, Select::Encoder, hertz);
     port.transfer_in_place(&mut bytes).await.expect("the bus is well");
@@ -68,7 +68,7 @@ async fn exchange<const N: usize>(rig: &Bench, hertz: u32, sent: [u8; N]) -> [u8
 }
 
 /// Sends rows of bytes and compares all answers.
-async fn transcript<const N: usize>(rig: &Bench, rows: &[([u8; N], [u8; N])]) {
+async fn transcript<const N: usize>(rig: &Rig, rows: &[([u8; N], [u8; N])]) {
     for (sent, expected) in rows {
         assert_eq!(exchange(rig, 1_000_000, *sent).await, *expected, "{sent:02x?}");
     }
@@ -239,7 +239,7 @@ fn the_other_direction_mirrors_the_angle_and_keeps_the_makers_bits() {
 }
 
 #[test]
-fn a_wrong_checksum_is_told_once() {
+fn a_wrong_checksum_is_reported_once() {
     let rig = bench_at(0.7);
     run(async {
         let mut encoder = started(&rig).await;
@@ -337,7 +337,7 @@ fn an_encoder_that_was_not_started_gives_no_angle() {
 }
 
 #[test]
-fn a_calibration_that_runs_or_failed_is_told() {
+fn a_calibration_that_runs_or_failed_is_reported() {
     let rig = bench_at(0.7);
     run(async {
         let mut encoder = encoder(&rig, Configuration::default());

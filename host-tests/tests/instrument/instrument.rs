@@ -121,7 +121,7 @@ fn the_log_tells_what_the_board_did_in_order() {
 }
 
 #[test]
-fn nothing_is_told_of_a_healthy_run_that_is_not_so() {
+fn nothing_is_reported_of_a_healthy_run_that_is_not_so() {
     let run = run(&short(2));
     let wrong = run.events.iter().find(|(_, event)| {
         matches!(

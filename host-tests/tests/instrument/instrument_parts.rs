@@ -8,7 +8,7 @@ use embedded_io_async::{ErrorKind, ErrorType, Write};
 use firmware::calibration::{Calibration, Harmonics};
 use firmware::event::Event;
 use firmware::health::Health;
-use firmware::keep::Kept;
+use firmware::keep::AttitudeReport;
 use firmware::link::{self, Status};
 use firmware::ports::Observer;
 use firmware::retry_budget::{Remedy, RetryBudget, Symptom};
@@ -137,9 +137,9 @@ fn a_status_never_tells_a_smaller_sigma_than_there_is() {
 
 /// Keeps what is told.
 #[derive(Default)]
-struct Told(RefCell<Vec<Event>>);
+struct Recorded(RefCell<Vec<Event>>);
 
-impl Observer for Told {
+impl Observer for Recorded {
     fn event(&self, _: Instant, event: &Event) {
         self.0.borrow_mut().push(*event);
     }
@@ -169,9 +169,9 @@ impl Write for SickLink {
 }
 
 #[test]
-fn a_sick_link_costs_its_lines_and_is_told_once() {
+fn a_sick_link_costs_its_lines_and_is_reported_once() {
     for mut sick in [SickLink::Hangs, SickLink::Refuses] {
-        let told = Told::default();
+        let told = Recorded::default();
         let shared = Shared::new(&told);
         virtual_time::run(async {
             for _ in 0..3 {
@@ -216,13 +216,14 @@ fn the_line_of_an_attitude_is_whole_in_every_state_after_a_year_with_every_fault
         Trust::RotationLost,
     ]
     .map(|trust| State { trust, seconds: 3.2e7 });
-    let told = Told::default();
+    let told = Recorded::default();
     let shared = Shared::new(&told);
     shared.count(|health| health.unsent = u32::MAX);
     for state in states.map(Some).into_iter().chain([None]) {
         let level = [-90_000, -180_000];
-        let kept = Kept { azimuth: Some([359_999, 180_000]), level, state, is_recalled: true };
-        shared.keep.told.set(Some(kept));
+        let kept =
+            AttitudeReport { azimuth: Some([359_999, 180_000]), level, state, is_recalled: true };
+        shared.keep.attitude.set(Some(kept));
         let mut heard = Heard::default();
         virtual_time::run(link::send(&mut heard, &shared)).expect("time wakes everybody");
         let line = String::from_utf8(heard.0).expect("text");

@@ -110,7 +110,7 @@ fn every_fault_is_survived_or_refused_for_its_reason_and_nothing_hangs(extent: E
 }
 
 #[test]
-fn one_lost_conversion_of_any_axis_is_told_as_a_gap_of_its_length() {
+fn one_lost_conversion_of_any_axis_is_reported_as_a_gap_of_its_length() {
     for device in [Device::ForwardGyro, Device::RightGyro, Device::DownGyro] {
         let found = run(Fault::Chip(device, ChipFault::ChecksumOnce));
         assert_eq!(found.run.health.missing, 1, "{device}");

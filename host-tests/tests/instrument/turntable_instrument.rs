@@ -223,7 +223,7 @@ fn a_blocked_platform_is_tried_once_more_from_rest() {
 
 /// The turn in which it clips is taken anew, so that nothing else would tell of it.
 #[test]
-fn a_gyro_that_clips_for_a_moment_is_told_once() {
+fn a_gyro_that_clips_for_a_moment_is_reported_once() {
     let run = with_fault("saturation-once");
     let clipped = told(&run).iter().filter(|line| line.contains("limit of its range")).count();
     assert_eq!(clipped, 1, "{:#?}", told(&run));

@@ -197,7 +197,7 @@ fn misalignments_of_both_speeds_of_a_molecular_electronic_sensor_are_used_again(
     assert_eq!(run.run.events.iter().filter(|(_, event)| is_recalled(event)).count(), 2);
 }
 
-/// What is found in doubt is not kept: it would be in doubt the next time, too.
+/// A misalignment that a refused session found is not saved: the next session would be refused for it, too.
 #[test]
 fn a_refused_session_keeps_nothing() {
     let mut keeping = keeping(Flash::default(), THEN);
@@ -223,7 +223,7 @@ fn a_misalignment_of_another_speed_or_of_tomorrow_is_not_used() {
 }
 
 #[test]
-fn a_store_that_fails_is_told_and_north_is_found_all_the_same() {
+fn a_store_that_fails_is_reported_and_north_is_found_all_the_same() {
     let mut flash = Flash::default();
     flash.left = Some(2);
     let mut keeping = keeping(flash, THEN);

@@ -79,16 +79,16 @@ fn an_accelerometer_that_is_dead_is_named() {
 }
 
 #[test]
-fn an_accelerometer_that_sticks_for_a_while_is_told_and_the_gyro_holds_the_roll() {
+fn an_accelerometer_that_sticks_for_a_while_is_reported_and_the_gyro_holds_the_roll() {
     let mut rows = rows();
     let stuck = rows[6000].force_m_s2[1];
     for row in &mut rows[6000..8000] {
         row.force_m_s2[1] = stuck;
     }
     let replay = replayed(rows.clone());
-    let is_told =
+    let is_reported =
         |(_, state): &(f64, State)| matches!(state.condition, Condition::AccelerometerStuck(_));
-    assert!(replay.answer().states.iter().any(is_told));
+    assert!(replay.answer().states.iter().any(is_reported));
     assert_true(&replay, &rows);
 }
 

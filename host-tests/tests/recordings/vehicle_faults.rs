@@ -122,7 +122,7 @@ fn a_stuck_gyro_is_named_by_its_column_with_a_remedy() {
 }
 
 #[test]
-fn a_recording_without_latitude_is_told_what_can_be_had_without_it() {
+fn a_recording_without_latitude_says_what_can_be_had_without_it() {
     let (mut header, rows) = recorded(FOG);
     header.latitude_deg = None;
     let reason = reason(&header, &rows);
@@ -170,8 +170,8 @@ fn noise_that_was_stated_too_small_is_taken_as_the_recording_shows_it() {
         let n = walk / orientation::units::DEGREE_PER_SQRT_HOUR;
         println!("{name}: {n:.4} °/√h of {true_n}");
         assert!((n / true_n - 1.0).abs() < 0.3, "{name}: {n}");
-        let is_told = |words: &String| words.contains("more than the stated");
-        assert!(replay.assumed.iter().any(is_told), "{:?}", replay.assumed);
+        let is_reported = |words: &String| words.contains("more than the stated");
+        assert!(replay.assumed.iter().any(is_reported), "{:?}", replay.assumed);
     }
 }
 

@@ -110,7 +110,7 @@ pub(super) fn check(
     if away > BOUND || away.is_nan() {
         return Err(RecallRefusal::Turned { sigmas: away });
     }
-    let sigma = telling(before, setting, &sigmas);
+    let sigma = rotation_sigma(before, setting, &sigmas);
     if sigma > TELLING || sigma.is_nan() {
         return Err(RecallRefusal::CannotTell { sigma: sigma * DEGREES });
     }
@@ -119,7 +119,7 @@ pub(super) fn check(
 
 /// Standard deviation, 1σ, rad, with which the gyros forward and right can determine a rotation
 /// about the vertical: it moves the horizontal Earth rate from one to the other.
-fn telling(before: &Remembered, setting: &Setting, sigmas: &[f64; 3]) -> f64 {
+fn rotation_sigma(before: &Remembered, setting: &Setting, sigmas: &[f64; 3]) -> f64 {
     let (sine, cosine) = libm::sincos(before.azimuth);
     let rate = setting.latitude.horizontal_rate();
     let weight = |moved: f64, sigma: f64| (moved / sigma) * (moved / sigma);

@@ -29,9 +29,9 @@ pub const CONVERTER_TOLERANCE: f64 = 0.02;
 
 /// Refuses samples whose time stamps show a period of `found` s where `told` s is configured,
 /// beyond a relative tolerance.
-pub(super) fn contradiction(told: f64, found: f64, tolerance: f64) -> Option<Refusal> {
-    let is_off = (found / told - 1.0).abs() > tolerance;
-    is_off.then_some(Refusal::PeriodContradicted { told: 1e3 * told, found: 1e3 * found })
+pub(super) fn contradiction(stated: f64, found: f64, tolerance: f64) -> Option<Refusal> {
+    let is_off = (found / stated - 1.0).abs() > tolerance;
+    is_off.then_some(Refusal::PeriodContradicted { stated: 1e3 * stated, found: 1e3 * found })
 }
 
 /// Procedure of a session.

@@ -106,7 +106,7 @@ async fn acquisition(mut inputs: Inputs, channels: &'static Channels) {
 
 /// Reports the conclusion without end. It never returns, because the peripherals would be dropped:
 /// the motor would lose its current and the link its last bytes.
-async fn tell(health: &Health, link: &mut Link, shared: &Shared<'static>) -> ! {
+async fn report_conclusion(health: &Health, link: &mut Link, shared: &Shared<'static>) -> ! {
     defmt::info!("board: done, {} faults on the way", health.faults());
     loop {
         Timer::after_secs(1).await;

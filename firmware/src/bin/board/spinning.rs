@@ -13,7 +13,7 @@ use static_cell::StaticCell;
 
 use crate::ports::Spinning;
 use crate::wiring::Wiring;
-use crate::{configuration, ports, tell};
+use crate::{configuration, ports, report_conclusion};
 
 /// Estimates the roll for as long as the sensors give data, then reports how it ended.
 #[embassy_executor::task]
@@ -29,7 +29,7 @@ pub async fn follow(spawner: Spawner, wiring: Wiring) {
     let flight = FLIGHT.init_with(|| Flight::new(&setting, launch, None));
     spawner.spawn(defmt::unwrap!(acquisition(ports::spinning(wires), sensors, channels)));
     let health = run_spin(&mut link, &mut NoRecorder, flight, channels).await;
-    tell(&health, &mut link, &channels.shared).await;
+    report_conclusion(&health, &mut link, &channels.shared).await;
 }
 
 /// Samples without end.

@@ -10,7 +10,7 @@ use orientation::session::{Prepared, Session};
 use static_cell::StaticCell;
 
 use crate::wiring::Wiring;
-use crate::{configuration, ports, sample, tell};
+use crate::{configuration, ports, report_conclusion, sample};
 
 /// Runs the instrument to its conclusion, then reports it without end.
 #[embassy_executor::task]
@@ -25,7 +25,7 @@ pub async fn align(spawner: Spawner, wiring: Wiring) {
     let mut stage = Stage::new(&mut motor, &configuration::instrument().stage, &channels.shared);
     let session = &mut Stepwise::new(session);
     let health = navigate(&mut stage, session, &mut link, &mut NoRecorder, &mut (), channels).await;
-    tell(&health, &mut link, &channels.shared).await;
+    report_conclusion(&health, &mut link, &channels.shared).await;
 }
 
 /// Creates the session at its final place in memory.

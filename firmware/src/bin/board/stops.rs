@@ -19,7 +19,7 @@ use static_cell::StaticCell;
 use crate::flash::store;
 use crate::ports::Triad;
 use crate::wiring::Wiring;
-use crate::{configuration, ports, tell};
+use crate::{configuration, ports, report_conclusion};
 
 /// Runs the instrument: it aligns, then holds the result without end, also across a loss of supply.
 #[embassy_executor::task]
@@ -39,7 +39,7 @@ pub async fn align(spawner: Spawner, wiring: Wiring) {
     let session = &mut Stops::new(session, position_aiding);
     let health =
         navigate(&mut body, session, &mut link, &mut NoRecorder, &mut keeping, channels).await;
-    tell(&health, &mut link, &channels.shared).await;
+    report_conclusion(&health, &mut link, &channels.shared).await;
 }
 
 /// Samples without end.

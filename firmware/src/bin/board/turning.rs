@@ -12,7 +12,7 @@ use static_cell::StaticCell;
 
 use crate::flash::{Store, store};
 use crate::wiring::Wiring;
-use crate::{Channels, configuration, ports, sample, tell};
+use crate::{Channels, configuration, ports, report_conclusion, sample};
 
 /// Date of the day, which a board does not know: an axis misalignment of any age is used.
 const TODAY: Today = Today { date: None, longest: None };
@@ -30,7 +30,7 @@ pub async fn align(spawner: Spawner, wiring: Wiring) {
     let health =
         navigate(&mut platform, rotating, &mut link, &mut NoRecorder, &mut (), channels).await;
     save_calibration(&mut store, session, channels).await;
-    tell(&health, &mut link, &channels.shared).await;
+    report_conclusion(&health, &mut link, &channels.shared).await;
 }
 
 /// Creates the session at its final place in memory, with the stored axis misalignment.

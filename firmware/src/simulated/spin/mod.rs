@@ -170,8 +170,8 @@ impl<'a, B: Rig, A: PortWrapper> Wires<'a, '_, B, A> {
     /// The sensors of a spinning body.
     #[must_use]
     pub fn spinning(&self) -> SimulatedSpin<'a, B, A> {
-        let told = Converter { rate: DataRate::Sps14400, ..Converter::default() };
-        let converter = |select| self.converter(select, GREATEST_BUS_HERTZ, told);
+        let configuration = Converter { rate: DataRate::Sps14400, ..Converter::default() };
+        let converter = |select| self.converter(select, GREATEST_BUS_HERTZ, configuration);
         SpinSensors(CHIPS.map(|select| AnalogueSensor(converter(select).clocked())))
     }
 }

@@ -364,7 +364,7 @@ impl<'a, B: Rig, A: PortWrapper> Wires<'a, '_, B, A> {
             let gyro = self.gyro(select, &scenario.base);
             chips::AnalogueGyro { converter: gyro.converter.clocked(), ..gyro }
         };
-        let told = adxl355::Configuration { rate: scenario.output().0 };
-        VehicleSensors { gyros: GYROS.map(gyro), accelerometer: self.accelerometer(told) }
+        let configuration = adxl355::Configuration { rate: scenario.output().0 };
+        VehicleSensors { gyros: GYROS.map(gyro), accelerometer: self.accelerometer(configuration) }
     }
 }

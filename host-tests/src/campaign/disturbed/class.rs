@@ -108,7 +108,7 @@ impl Pair {
     }
 
     /// Whether the fault's answer is wrong, and by how much it may be is told beside it.
-    pub(super) fn is_told(&self) -> bool {
+    pub(super) fn is_reported(&self) -> bool {
         let is_within = |answer: &Answer| answer.error.abs() <= self.faulty.untold_deg;
         self.is_wrong() && self.faulty.answer.as_ref().is_ok_and(is_within)
     }

@@ -155,7 +155,7 @@ fn summary(class: &Class, all: &[Run]) -> Row {
         answered,
         wrong,
         wrong_of_few,
-        wrong_told: count(Pair::is_told),
+        wrong_told: count(Pair::is_reported),
         worst_sigmas: all.iter().filter_map(|run| run.pair.sigmas()).fold(0.0, f64::max),
         wrong_runs: such(Pair::is_wrong)
             .filter_map(|run| Some((run.seed, run.severity, run.pair.sigmas()?)))

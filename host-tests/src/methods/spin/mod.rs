@@ -54,7 +54,7 @@ pub struct Replay {
     /// Why the board that took the samples gave its roll up, if it did.
     pub ended: Option<String>,
     /// What the recording as a whole shows that forbids to believe a roll.
-    pub doubt: Option<String>,
+    pub ended_for: Option<String>,
 }
 
 impl Replay {
@@ -80,7 +80,7 @@ impl Replay {
                 self.required_sigma.to_degrees(),
                 end.state
             )),
-            Some(_) => self.doubt.clone(),
+            Some(_) => self.ended_for.clone(),
         }
     }
 }
@@ -100,7 +100,7 @@ pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, Rep
     let samples: Vec<SpinSample> = samples::samples(rows, period_s).collect();
     let (setting, assumed) = setting(header, rows, period_s);
     let replay = follow(&samples, Known { setting, required_sigma, assumed });
-    Ok(Replay { doubt: stuck_gyro(rows), ..replay })
+    Ok(Replay { ended_for: stuck_gyro(rows), ..replay })
 }
 
 /// Replays a run with what its board was given.
@@ -148,8 +148,8 @@ pub fn follow(samples: &[SpinSample], known: Known) -> Replay {
     let Known { setting, required_sigma, assumed } = known;
     let turns = Turns::of(samples);
     let noise = Noise { force: turns.force_noise, angle_random_walk: setting.angle_random_walk };
-    let is_told = !turns.lifts.is_empty();
-    let bounds = is_told
+    let has_lift = !turns.lifts.is_empty();
+    let bounds = has_lift
         .then(|| limit::bounds(samples, noise, setting.scale_sigma, |index| turns.lift(index)));
     Replay {
         tracks: METHODS.map(|method| Track::of(&Setting { method, ..setting }, samples)),
@@ -159,7 +159,7 @@ pub fn follow(samples: &[SpinSample], known: Known) -> Replay {
         required_sigma,
         assumed,
         ended: None,
-        doubt: None,
+        ended_for: None,
     }
 }
 

@@ -30,7 +30,7 @@ fn a_fault_that_the_dwells_show_is_answered_within_its_sigma_or_refused(extent: 
 const SLOW_RUNS: usize = 100;
 
 #[test]
-fn a_base_that_turns_too_slowly_to_be_seen_is_told_beside_the_azimuth_that_it_puts_off() {
+fn a_base_that_turns_too_slowly_to_be_seen_is_reported_beside_the_azimuth_that_it_puts_off() {
     let mut wrong = 0;
     for class in classes().filter(|class| class.fault.name.ends_with("base-yawing")) {
         let found = row(&class, SLOW_RUNS, &|| ());

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::support::campaign::{Extent, campaigns};
 
-use super::world::{Day, Kind, Outcome, Told, known};
+use super::world::{Day, Kind, Outcome, Place, known};
 
 /// What many drives show.
 struct Figures {
@@ -188,7 +188,7 @@ fn a_force_that_is_tilted_at_the_last_stop_alone_is_the_residual_of_that_stop_al
 
 #[test]
 fn a_stop_whose_place_is_not_known_has_no_residual() {
-    let outcome = Day { told: Told::Nothing, ..three(1) }.run();
+    let outcome = Day { place: Place::Nothing, ..three(1) }.run();
     let are_there: Vec<bool> = outcome.residuals.iter().map(Option::is_some).collect();
     assert_eq!(are_there, [true, false, false]);
 }
@@ -213,7 +213,7 @@ fn an_unknown_displacement_widens_sigma_as_far_as_the_vehicle_could_have_driven(
     let middling = |seed| with_gyros(two(seed), 0.01, 0.005);
     let told = Figures::of(40, middling);
     told.assert_covered("N 0.01 °/√h, displacement told");
-    let untold = Figures::of(40, |seed| Day { told: Told::Nothing, ..middling(seed) });
+    let untold = Figures::of(40, |seed| Day { place: Place::Nothing, ..middling(seed) });
     untold.assert_covered("N 0.01 °/√h, displacement unknown");
     assert!(untold.sigma() > 1.3 * told.sigma(), "{} {}", untold.sigma(), told.sigma());
 }

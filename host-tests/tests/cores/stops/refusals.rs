@@ -6,7 +6,7 @@ use orientation::error::Refusal;
 
 use super::criteria::{day, drive, stop};
 use super::drives::{quiet, three, two};
-use super::world::{Day, Kind, Told, known};
+use super::world::{Day, Kind, Place, known};
 
 fn verdict(day: &Day) -> Result<Azimuth, Refusal> {
     day.run().conclusion.verdict
@@ -172,9 +172,9 @@ fn a_stuck_sensor_is_never_silently_wrong() {
 
 #[test]
 fn a_displacement_that_is_wrong_by_kilometres_is_never_silently_wrong() {
-    let told = Told::Wrong([3000.0, -4000.0]);
-    assert_never_silently_wrong("5 km", |seed| Day { told, ..two(seed) }, |_| ());
-    assert_never_silently_wrong("5 km", |seed| Day { told, ..quiet(two(seed)) }, |_| ());
+    let place = Place::Wrong([3000.0, -4000.0]);
+    assert_never_silently_wrong("5 km", |seed| Day { place, ..two(seed) }, |_| ());
+    assert_never_silently_wrong("5 km", |seed| Day { place, ..quiet(two(seed)) }, |_| ());
 }
 
 #[test]

@@ -307,7 +307,7 @@ fn forces_are_summed_on_the_axes_of_the_start() {
 }
 
 #[test]
-fn a_blow_is_told_with_the_forces_it_spoils() {
+fn a_blow_is_reported_with_the_forces_it_spoils() {
     let mut strapdown = Strapdown::since(Instant(0));
     let mut sampler = Sampler::every(10_000);
     strapdown.push(&sampler.sample([0.0, 0.15, 0.0]));

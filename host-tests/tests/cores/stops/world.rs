@@ -18,9 +18,9 @@ use orientation::units::{AngleIncrement, DEGREE_PER_HOUR, Instant, SpecificForce
 /// Stream of the errors of position fixes.
 const FIXES: u64 = 7001;
 
-/// What is told of where the vehicle stands.
+/// What is stated of where the vehicle stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Told {
+pub enum Place {
     /// Nothing.
     Nothing,
     /// The truth, with an error of this 1σ, m, on either axis.
@@ -35,7 +35,7 @@ pub struct Day {
     pub faults: Vec<SensorFault>,
     pub seed: u64,
     pub setting: Setting,
-    pub told: Told,
+    pub place: Place,
     /// The stops of the scenario are stated, found, or all is one.
     pub rests: Kind,
 }
@@ -116,7 +116,7 @@ impl Day {
             faults: Vec::new(),
             seed,
             setting,
-            told: Told::Fix(5.0),
+            place: Place::Fix(5.0),
             rests: Kind::Found,
         }
     }
@@ -185,11 +185,11 @@ impl Day {
     }
 
     fn fix(&self, stop: usize, there: [f64; 2], fixes: &mut Generator) -> Option<[f64; 2]> {
-        match self.told {
-            Told::Nothing => None,
+        match self.place {
+            Place::Nothing => None,
             _ if stop == 0 => Some([0.0; 2]),
-            Told::Fix(sigma) => Some(there.map(|part| part + sigma * fixes.gaussian())),
-            Told::Wrong(by) => Some([there[0] + by[0], there[1] + by[1]]),
+            Place::Fix(sigma) => Some(there.map(|part| part + sigma * fixes.gaussian())),
+            Place::Wrong(by) => Some([there[0] + by[0], there[1] + by[1]]),
         }
     }
 }

@@ -119,7 +119,7 @@ fn a_bend_at_15_m_per_s_is_kept_within_three_sigma() {
 }
 
 #[test]
-fn a_free_fall_is_told_and_over_at_once() {
+fn a_free_fall_is_reported_and_over_at_once() {
     let acceleration =
         |time: f64| if (50.0..60.0).contains(&time) { [0.0, 0.0, 9.815] } else { [0.0; 3] };
     let attitude = |time: f64| [0.5, 0.03 + (time - 50.0).clamp(0.0, 10.0), -0.02];

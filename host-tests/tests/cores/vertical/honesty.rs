@@ -67,7 +67,7 @@ fn after_an_unseen_turn_a_body_that_only_rocks_is_level_within_ten_seconds() {
 }
 
 #[test]
-fn a_vehicle_that_is_shaken_at_random_hides_no_bias_that_is_told() {
+fn a_vehicle_that_is_shaken_at_random_hides_no_bias_that_is_reported() {
     for seed in 1..=3 {
         let known = keep(&Body { attitude: shaken, seed, ..coarse(300.0) }, |_, _| true);
         assert!(known.iter().all(|known| !known.report.is_bias_beyond_stated), "{seed}");

@@ -214,7 +214,7 @@ impl Wait for Cut {
 }
 
 #[test]
-fn a_sick_bus_is_told() {
+fn a_sick_bus_is_reported() {
     for (answer, at_start, at_read) in [
         (None, Fault::Bus, Fault::Bus),
         (Some(0x00), Fault::Identity { found: 0 }, Fault::Checksum),

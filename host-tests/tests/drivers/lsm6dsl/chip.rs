@@ -7,13 +7,13 @@ use hal_mock::lsm6dsl::{BOOT_TIME, RESET_TIME};
 use hal_mock::violation::Misuse;
 
 use super::rig::Row::{Read, Write};
-use super::rig::{bench_with, level, port, run, transcript, violations};
+use super::rig::{level, port, rig_with, run, transcript, violations};
 
 /// The byte sequence of `st_lsm6dsx_init_device` in Linux' `st_lsm6dsx_core.c`: reset, 50 ms, boot,
 /// 50 ms, block data update; then 208 Hz, 8750 µ°/s and 61 µg a count as its tables have them.
 #[test]
 fn the_chip_starts_as_the_linux_driver_starts_it() {
-    let rig = bench_with([0.5, 0.0, -1.0], [90.0, 0.0, -1.0]);
+    let rig = rig_with([0.5, 0.0, -1.0], [90.0, 0.0, -1.0]);
     run(async {
         Timer::after(BOOT_TIME).await;
         transcript(&rig, &[Read(0x0F, &[0x6A]), Read(0x12, &[0x04]), Write(&[0x12, 0x05])]).await;
@@ -38,7 +38,7 @@ fn the_chip_starts_as_the_linux_driver_starts_it() {
 /// each call; five samples less one, its limits 90 … 1700 mg and 150 … 700 °/s.
 #[test]
 fn the_chip_passes_the_makers_own_self_test() {
-    let rig = bench_with([0.1, 0.0, -1.0], [0.0; 3]);
+    let rig = rig_with([0.1, 0.0, -1.0], [0.0; 3]);
     run(async {
         Timer::after_millis(15).await;
         transcript(&rig, &[Read(0x0F, &[0x6A]), Read(0x12, &[0x04]), Write(&[0x12, 0x05])]).await;
@@ -71,7 +71,7 @@ fn the_chip_passes_the_makers_own_self_test() {
     assert_eq!(violations(&rig), []);
 }
 
-async fn answer(rig: &super::rig::Bench, first: u8) -> [i16; 3] {
+async fn answer(rig: &super::rig::Rig, first: u8) -> [i16; 3] {
     let mut bytes = [0; 6];
     port(rig).write_read(0x6A, &[first], &mut bytes).await.expect("it answers");
     [0, 2, 4].map(|i| i16::from_le_bytes([bytes[i], bytes[i + 1]]))
@@ -165,7 +165,7 @@ fn block_data_update_holds_an_axis_together() {
     for (control, may_tear) in [(0x44, false), (0x04, true)] {
         let mut torn = 0;
         for early in 0..60 {
-            let rig = bench_with([0.0, 0.0, -1.0], [0.0; 3]);
+            let rig = rig_with([0.0, 0.0, -1.0], [0.0; 3]);
             run(async {
                 Timer::after(BOOT_TIME).await;
                 transcript(&rig, &[Write(&[0x12, control]), Write(&[0x11, 0x50])]).await;

@@ -8,7 +8,7 @@ use embedded_hal_async::i2c::{ErrorKind, ErrorType, I2c, Operation};
 use hal_mock::i2c::I2cChip;
 use orientation::units::Temperature;
 
-use super::rig::{Imu, Table, bench_with, imu, level, port, run, started, violations};
+use super::rig::{Imu, Table, imu, level, port, rig_with, run, started, violations};
 
 const USUAL: Configuration =
     Configuration { output: OutputRate::Hz208, rate: RateRange::Dps125, force: ForceRange::G2 };
@@ -31,7 +31,7 @@ fn the_driver_reads_rates_and_forces_and_leaves_no_violation() {
     );
     for output in [OutputRate::Hz104, OutputRate::Hz208, OutputRate::Hz416] {
         for (rate, force) in rates.into_iter().zip(forces) {
-            let rig = bench_with([0.25, -0.5, -1.0], [1.0, -20.0, 100.0]);
+            let rig = rig_with([0.25, -0.5, -1.0], [1.0, -20.0, 100.0]);
             rig.borrow_mut().environment.temperature = -15.0;
             let configuration = Configuration { output, rate, force };
             let reading = run(async {
@@ -62,7 +62,7 @@ fn a_start_takes_the_time_that_it_states() {
 }
 
 #[test]
-fn no_sample_is_told_twice_and_none_is_lost() {
+fn no_sample_is_reported_twice_and_none_is_lost() {
     let rig = level();
     run(async {
         let mut imu = started(&rig, USUAL).await;
@@ -136,7 +136,7 @@ fn a_chip_outside_its_self_test_limits_is_refused() {
         (0.1, 160.0, true),
         (1.6, 690.0, true),
     ] {
-        let rig = bench_with([0.3, 0.2, -0.9], [3.0, -5.0, 2.0]);
+        let rig = rig_with([0.3, 0.2, -0.9], [3.0, -5.0, 2.0]);
         rig.borrow_mut().chip.self_test = (force, rate);
         let expected = if passes { Ok(()) } else { Err(Fault::SelfTest) };
         assert_eq!(run(imu(&rig, USUAL).start()), expected, "{force} g, {rate} °/s");
@@ -183,7 +183,7 @@ fn a_changed_register_is_noticed_in_bounded_reads() {
 }
 
 #[test]
-fn what_stands_at_its_limit_is_told() {
+fn what_stands_at_its_limit_is_reported() {
     let rig = level();
     run(async {
         let mut imu = started(&rig, USUAL).await;

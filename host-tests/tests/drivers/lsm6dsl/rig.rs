@@ -39,35 +39,35 @@ impl MotionInput for Table {
     }
 }
 
-pub type Bench = RefCell<Single<Chip, Table>>;
+pub type Rig = RefCell<Single<Chip, Table>>;
 pub type Imu<'a> = Lsm6dsl<I2cPort<'a, Chip, Table>, Delay>;
 
-pub fn bench_with(force: [f64; 3], rate: [f64; 3]) -> Bench {
+pub fn rig_with(force: [f64; 3], rate: [f64; 3]) -> Rig {
     let environment = Table { force, rate, temperature: 25.0 };
     RefCell::new(Single { chip: Chip::new(Instant::from_ticks(0), 0x6A, 1.0), environment })
 }
 
-pub fn level() -> Bench {
-    bench_with([0.0, 0.0, -1.0], [0.0; 3])
+pub fn level() -> Rig {
+    rig_with([0.0, 0.0, -1.0], [0.0; 3])
 }
 
 pub use crate::support::rig::run;
 
-pub fn port(rig: &Bench) -> I2cPort<'_, Chip, Table> {
+pub fn port(rig: &Rig) -> I2cPort<'_, Chip, Table> {
     I2cPort::new(rig, BUS_HERTZ)
 }
 
-pub fn imu(rig: &Bench, configuration: Configuration) -> Imu<'_> {
+pub fn imu(rig: &Rig, configuration: Configuration) -> Imu<'_> {
     Lsm6dsl::new(port(rig), Delay, ADDRESS_LOW, configuration)
 }
 
-pub async fn started(rig: &Bench, configuration: Configuration) -> Imu<'_> {
+pub async fn started(rig: &Rig, configuration: Configuration) -> Imu<'_> {
     let mut imu = imu(rig, configuration);
     imu.start().await.expect("the chip is well");
     imu
 }
 
-pub fn violations(rig: &Bench) -> Vec<Misuse> {
+pub fn violations(rig: &Rig) -> Vec<Misuse> {
     let rig = rig.borrow();
     let violations = I2cChip::<Table>::violations(&rig.chip);
     violations.first.iter().map(|violation| violation.misuse).collect()
@@ -82,7 +82,7 @@ pub enum Row<'a> {
     Write(&'a [u8]),
 }
 
-pub async fn transcript(rig: &Bench, rows: &[Row<'_>]) {
+pub async fn transcript(rig: &Rig, rows: &[Row<'_>]) {
     for row in rows {
         match row {
             Row::Read(register, expected) => {

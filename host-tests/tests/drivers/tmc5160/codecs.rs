@@ -120,7 +120,7 @@ fn soft_stop_and_stall_stop_exclude_each_other() {
 }
 
 #[test]
-fn the_gravest_error_is_told() {
+fn the_gravest_error_is_reported() {
     let error = |velocity, driver, global| {
         Status::new(Clock::Internal, [0, 0, velocity, driver, global]).driver_error
     };

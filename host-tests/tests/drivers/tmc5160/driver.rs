@@ -304,7 +304,7 @@ fn errors_of_the_bridges_are_told_and_refuse_motions() {
 }
 
 #[test]
-fn an_open_coil_is_told_in_slow_motion() {
+fn an_open_coil_is_reported_in_slow_motion() {
     on_a_stage(async |driver, rig, _| {
         inject(rig, ChipFault::OpenLoad);
         driver.run(Velocity(40_000)).await.expect("it runs");

@@ -65,7 +65,7 @@ fn coarse_sensors_that_are_lost_at_rest_cost_nothing() {
 }
 
 #[test]
-fn coarse_sensors_that_are_lost_on_the_way_come_back_and_nothing_wrong_is_told() {
+fn coarse_sensors_that_are_lost_on_the_way_come_back_and_nothing_wrong_is_reported() {
     let scenario = scenario();
     let coarse_imu = Some(lost(departure(&scenario) + AFTER, 3));
     let found = injected(&scenario, Injection { coarse_imu, ..Injection::NONE });
@@ -127,7 +127,7 @@ fn without_the_accelerometer_the_gyros_carry_the_level_on() {
 }
 
 #[test]
-fn a_free_fall_is_told_and_over_at_once() {
+fn a_free_fall_is_reported_and_over_at_once() {
     let scenario = scenario();
     let at_s = departure(&scenario) + AFTER;
     let events = vec![Event::Fall { at_s, seconds: 0.6 }];

@@ -50,7 +50,7 @@ fn a_vehicle_that_drives_on_ends_the_new_alignment_and_keeps_the_azimuth() {
 }
 
 #[test]
-fn an_azimuth_that_disagrees_is_told_and_never_fused() {
+fn an_azimuth_that_disagrees_is_reported_and_never_fused() {
     let wrong = Hold { handover: Some(([12.0, 0.1], 1600.0)), ..Hold::of(300.0) };
     let found = drive(&vehicle(1, wrong));
     let lines = told(&found.run);

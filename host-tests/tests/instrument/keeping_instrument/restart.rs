@@ -54,9 +54,9 @@ fn second(
     align_stops_along(&day, &Injection::NONE, &scenario, NoRecorder, &(), store).expect("possible")
 }
 
-fn doubt(run: &VehicleRun) -> Option<RecallRefusal> {
+fn refusal(run: &VehicleRun) -> Option<RecallRefusal> {
     run.run.events.iter().find_map(|(_, event)| match event {
-        Event::RecallRefused(doubt) => Some(*doubt),
+        Event::RecallRefused(refusal) => Some(*refusal),
         _ => None,
     })
 }
@@ -83,7 +83,11 @@ fn a_vehicle_that_was_turned_while_it_was_switched_off_is_not_believed() {
     let before = first(8.0, STEADY, &mut store);
     for turned in [30.0, 180.0, -90.0] {
         let after = second(&before, [turned, 0.0], STEADY, &mut store);
-        assert!(matches!(doubt(&after), Some(RecallRefusal::Turned { .. })), "{:?}", doubt(&after));
+        assert!(
+            matches!(refusal(&after), Some(RecallRefusal::Turned { .. })),
+            "{:?}",
+            refusal(&after)
+        );
         assert_eq!(after.kept.with_azimuth().count(), 0);
     }
 }
@@ -93,7 +97,7 @@ fn a_vehicle_that_was_tilted_while_it_was_switched_off_is_not_believed() {
     let mut store = Flash::default().store();
     let before = first(8.0, STEADY, &mut store);
     let after = second(&before, [0.0, 0.3], STEADY, &mut store);
-    assert!(matches!(doubt(&after), Some(RecallRefusal::Tilted { .. })), "{:?}", doubt(&after));
+    assert!(matches!(refusal(&after), Some(RecallRefusal::Tilted { .. })), "{:?}", refusal(&after));
     assert_eq!(after.kept.with_azimuth().count(), 0);
 }
 
@@ -102,7 +106,11 @@ fn gyros_that_cannot_tell_a_turn_recall_nothing() {
     let mut store = Flash::default().store();
     let before = first(8.0, GyroClass::FIBRE_OPTIC, &mut store);
     let after = second(&before, [0.0, 0.0], GyroClass::FIBRE_OPTIC, &mut store);
-    assert!(matches!(doubt(&after), Some(RecallRefusal::CannotTell { .. })), "{:?}", doubt(&after));
+    assert!(
+        matches!(refusal(&after), Some(RecallRefusal::CannotTell { .. })),
+        "{:?}",
+        refusal(&after)
+    );
 }
 
 #[test]
@@ -111,7 +119,7 @@ fn a_vehicle_that_has_set_off_since_is_forgotten() {
     // The supply is lost amid a drive.
     let before = first(90.0, STEADY, &mut store);
     let after = second(&before, [0.0, 0.0], STEADY, &mut store);
-    assert!(!is_recalled(&after) && doubt(&after).is_none(), "{:#?}", told(&after.run));
+    assert!(!is_recalled(&after) && refusal(&after).is_none(), "{:#?}", told(&after.run));
 }
 
 #[test]

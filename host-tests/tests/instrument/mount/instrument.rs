@@ -114,7 +114,7 @@ fn a_calibration_that_the_board_does_not_know_turns_its_azimuth() {
     let scenario = FramesScenario { base, calibrated, ..FramesScenario::default() };
     let [error, sigma] = found(&scenario, &healthy(&scenario)).expect("it is healthy");
     assert!(error.abs() < 4.0 * sigma, "{error}° of σ {sigma}°");
-    let blind = FramesScenario { is_told: false, ..scenario };
+    let blind = FramesScenario { is_calibrated: false, ..scenario };
     let [error, sigma] = found(&blind, &healthy(&blind)).expect("it looks healthy");
     let expected = -0.2 * 70.0_f64.to_radians().tan();
     assert!((error - expected).abs() < 4.0 * sigma, "{error}° is not {expected}° ± {sigma}°");

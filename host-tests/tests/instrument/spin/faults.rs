@@ -134,7 +134,7 @@ fn a_lift_that_turns_round_is_told_from_a_body_that_did() {
 }
 
 #[test]
-fn a_spin_that_stops_is_told_and_found_again_when_it_goes_on() {
+fn a_spin_that_stops_is_reported_and_found_again_when_it_goes_on() {
     let mut body = body();
     body.spin_rad_s = Profile(&[(0.4, SPIN), (0.45, 0.0), (0.8, 0.0), (0.85, SPIN)]);
     let seen = followed(&body, 1);

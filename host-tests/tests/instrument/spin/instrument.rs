@@ -90,7 +90,7 @@ fn it_holds_the_roll_while_there_is_no_lift_and_tells_when_it_is_back() {
 }
 
 #[test]
-fn a_spin_that_stops_is_told() {
+fn a_spin_that_stops_is_reported() {
     let run = flown(&SpinScenario::default(), Some(Fault::SpinStops));
     let stopped = [Condition::NotSpinning, Condition::RotationLost];
     let mut events = run.run.events.iter();

@@ -53,7 +53,7 @@ fn one_bit_of_any_number_of_any_row_is_found_and_named() {
 }
 
 #[test]
-fn a_difference_is_told_with_both_values() {
+fn a_difference_is_reported_with_both_values() {
     let (host, mut emulated) = (outcome(), outcome());
     emulated.rows[1].bits[4] = Some(2.5_f64.to_bits());
     let told = compare(&emulated, &host).expect_err("they differ").to_string();

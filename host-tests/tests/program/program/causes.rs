@@ -259,7 +259,7 @@ fn averaged_dwells_that_are_all_alike_or_too_sure_are_named_and_no_arc_is() {
 }
 
 #[test]
-fn a_number_of_very_many_zeros_is_told_in_short() {
+fn a_number_of_very_many_zeros_is_printed_in_short() {
     let scratch = Scratch::new("zeros");
     let sound = dwells("", "2e-8");
     let back = sound.replace(",60,90\n", ",60,1e-300\n");

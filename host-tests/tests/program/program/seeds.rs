@@ -104,7 +104,7 @@ fn the_status_is_ok_exactly_where_the_exit_code_is_zero() {
 }
 
 #[test]
-fn a_result_whose_page_cannot_be_written_is_told_all_the_same() {
+fn a_result_whose_page_cannot_be_written_is_printed_all_the_same() {
     let stage = stored("stepwise-circle");
     let arguments = ["replay", &stage, "--report", "/nowhere/page.html"];
     let output = meridian(&[&arguments[..], &["--json"]].concat());

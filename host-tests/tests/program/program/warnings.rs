@@ -22,7 +22,7 @@ fn warnings(scratch: &Scratch, recording: &str) -> Vec<String> {
 }
 
 #[test]
-fn an_unknown_key_that_resembles_a_known_one_is_told_with_its_line() {
+fn an_unknown_key_that_resembles_a_known_one_is_reported_with_its_line() {
     let scratch = Scratch::new("keys");
     let sound = recorded(&scratch);
     for (line, key, known) in [
@@ -56,7 +56,7 @@ fn an_unknown_key_that_resembles_a_known_one_is_told_with_its_line() {
 }
 
 #[test]
-fn a_key_of_the_drift_that_is_called_otherwise_is_told() {
+fn a_key_of_the_drift_that_is_called_otherwise_is_reported() {
     let scratch = Scratch::new("drift-keys");
     for (key, known) in [
         ("gyro_bias_instability_deg_h", "gyro_B_deg_h"),
@@ -100,7 +100,7 @@ fn a_kind_that_is_written_otherwise_is_found_in_its_line() {
 }
 
 #[test]
-fn a_column_of_truth_that_is_malformed_is_told() {
+fn a_column_of_truth_that_is_malformed_is_reported() {
     let scratch = Scratch::new("truth");
     let sound = recorded(&scratch);
     let with = |name: &str, value: &str| {
@@ -126,7 +126,7 @@ fn a_column_of_truth_that_is_malformed_is_told() {
 }
 
 #[test]
-fn a_true_attitude_in_parts_or_of_no_length_is_told() {
+fn a_true_attitude_in_parts_or_of_no_length_is_reported() {
     let header = "# kind: imu\n# latitude_deg: 50\n# rate_hz: 10\n";
     let columns = "t_s,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s2,ay_m_s2,az_m_s2";
     let recording = |names: &str, values: &str| {

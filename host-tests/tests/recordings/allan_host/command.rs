@@ -240,7 +240,7 @@ fn a_record_that_is_all_gaps_is_refused_with_its_gaps() {
 }
 
 #[test]
-fn a_wrong_rate_is_told_and_the_times_are_believed() {
+fn a_wrong_rate_is_reported_and_the_times_are_believed() {
     let right = noisy(500, |_, row| Some(row));
     let wrong = right.replace("rate_hz: 10", "rate_hz: 100");
     let [right, wrong] = [right, wrong].map(|text| object(&on("rate.csv", &text, &["--json"])));

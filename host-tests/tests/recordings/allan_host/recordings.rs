@@ -109,7 +109,7 @@ fn a_whole_record_is_one_segment_at_the_rate_of_its_times() {
 }
 
 #[test]
-fn a_missing_sample_parts_the_record_and_is_told() {
+fn a_missing_sample_parts_the_record_and_is_reported() {
     let spacing = spacing(&changed(GYRO, "0.3,4e-5\n", ""), None);
     let Gap { row, line, from_s, seconds } = spacing.gaps[0];
     assert_eq!((spacing.gaps.len(), row, line, from_s), (1, 3, 7, 0.2));
@@ -126,7 +126,7 @@ fn times_that_jitter_by_less_than_half_a_period_have_no_gap() {
 }
 
 #[test]
-fn a_rate_that_misses_by_more_than_one_per_cent_is_told_and_the_times_are_believed() {
+fn a_rate_that_misses_by_more_than_one_per_cent_is_reported_and_the_times_are_believed() {
     for (rate, contradicted) in
         [(10.09, None), (9.91, None), (10.2, Some(10.2)), (100.0, Some(100.0))]
     {

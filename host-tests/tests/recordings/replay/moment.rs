@@ -84,7 +84,7 @@ fn refused(sound: &Sound, (column, shift): (&str, Shift), is_cut: bool) -> usize
 }
 
 #[test]
-fn a_column_of_another_moment_is_refused_or_gives_an_azimuth_that_is_told_with_its_size() {
+fn a_column_of_another_moment_is_refused_or_gives_an_azimuth_that_is_reported_with_its_size() {
     for name in ALL {
         let sound = sound(name);
         let is_arc = name.starts_with("stepwise-paper");
@@ -97,7 +97,7 @@ fn a_column_of_another_moment_is_refused_or_gives_an_azimuth_that_is_told_with_i
 }
 
 #[test]
-fn a_column_of_another_moment_whose_ends_are_cut_is_told_with_its_size() {
+fn a_column_of_another_moment_whose_ends_are_cut_is_reported_with_its_size() {
     let refused: usize = ALL.map(|name| refused(&sound(name), COLUMNS[0], true)).iter().sum();
     assert!(refused < 18 * ALL.len(), "none is answered at all");
 }

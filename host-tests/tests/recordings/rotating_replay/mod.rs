@@ -186,15 +186,15 @@ fn what_is_not_known_is_said() {
 }
 
 #[test]
-fn an_encoder_whose_zero_is_not_stated_is_told_and_in_sigma() {
+fn an_encoder_whose_zero_is_not_stated_is_reported_and_in_sigma() {
     let recorded = recorded(GYRO);
     let replay = recorded.replayed();
-    let is_told = |words: &String| words.contains("encoder zero to 0.15°");
-    assert!(replay.assumed.iter().any(is_told), "{:?}", replay.assumed);
+    let is_reported = |words: &String| words.contains("encoder zero to 0.15°");
+    assert!(replay.assumed.iter().any(is_reported), "{:?}", replay.assumed);
     let encoder = conclusion(&replay).fit.expect("there is a fit").budget.encoder.to_degrees();
     assert!((encoder - 0.15).abs() < 0.01, "{encoder}");
     let exact = with_exact_zero(recorded).replayed();
-    assert!(!exact.assumed.iter().any(is_told), "{:?}", exact.assumed);
+    assert!(!exact.assumed.iter().any(is_reported), "{:?}", exact.assumed);
 }
 
 #[test]
@@ -335,8 +335,8 @@ fn what_an_unknown_lag_hides_at_one_speed_and_at_two_is_assumed() {
     let of_one = "no turn of the base and no slip between the senses";
     let of_two = "the lag of one pole at the speed without a rate-modulated turn";
     let told = |replay: &Replay| {
-        let is_told = |words: &&str| replay.assumed.iter().any(|line| line.starts_with(*words));
-        [of_one, of_two].iter().map(is_told).collect::<Vec<bool>>()
+        let is_reported = |words: &&str| replay.assumed.iter().any(|line| line.starts_with(*words));
+        [of_one, of_two].iter().map(is_reported).collect::<Vec<bool>>()
     };
     let mut one = recorded(MET);
     assert_eq!(told(&one.replayed()), [false, true]);
@@ -389,9 +389,9 @@ fn a_platform_that_is_built_otherwise_is_refused_or_stands_under_what_is_assumed
             let replay = recorded.replayed();
             let Ok(azimuth) = conclusion(&replay).verdict else { continue };
             let error = azimuth_error(azimuth.angle.to_degrees(), recorded.truth_deg).abs();
-            let is_told = replay.assumed.iter().any(|line| line.starts_with(words));
+            let is_reported = replay.assumed.iter().any(|line| line.starts_with(words));
             let is_wrong = error > 4.0 * azimuth.sigma.to_degrees();
-            assert!(is_told || !is_wrong, "{name}, {words}: {error}° in silence");
+            assert!(is_reported || !is_wrong, "{name}, {words}: {error}° in silence");
             told += i32::from(is_wrong);
         }
     }

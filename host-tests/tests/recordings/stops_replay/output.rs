@@ -134,7 +134,7 @@ fn a_false_truth_changes_nothing_but_the_errors() {
 }
 
 #[test]
-fn a_refusal_is_told_with_its_reason_and_exit_one() {
+fn a_refusal_is_reported_with_its_reason_and_exit_one() {
     let one_stop = |text: String| {
         text.replace("# stops_s: 0-60;960-1020", "# stops_s: 0-60")
             .replace("displacements_north_east_m", "unknown")

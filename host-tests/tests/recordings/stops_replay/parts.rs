@@ -178,7 +178,7 @@ fn is_clipped(rows: &[ImuRow]) -> bool {
 }
 
 #[test]
-fn a_gyro_at_its_limit_is_told_and_a_steady_one_is_not() {
+fn a_gyro_at_its_limit_is_reported_and_a_steady_one_is_not() {
     let wave = |index: usize| 0.6 * (TAU * 0.05 * index as f64 * 0.04).sin();
     let cut = |limit: f64| {
         at(times(25.0, 1e9, 5000), |index| [0.0, wave(index).clamp(-limit, limit), 0.0])
@@ -195,7 +195,7 @@ fn a_gyro_at_its_limit_is_told_and_a_steady_one_is_not() {
 }
 
 #[test]
-fn an_accelerometer_at_its_limit_is_told_and_gravity_is_not() {
+fn an_accelerometer_at_its_limit_is_reported_and_gravity_is_not() {
     let mut rows = at(times(25.0, 1e9, 5000), |_| [0.0; 3]);
     assert!(!is_clipped(&rows));
     for (index, row) in rows.iter_mut().enumerate() {

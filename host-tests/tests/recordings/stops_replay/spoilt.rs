@@ -144,7 +144,7 @@ fn a_latitude_that_is_not_the_vehicles_does_not_pass_in_silence() {
 }
 
 #[test]
-fn what_keeps_a_replay_from_beginning_is_told() {
+fn what_keeps_a_replay_from_beginning_is_reported() {
     let recorded = recorded(IDEAL);
     let begin = |recorded: &Recorded, options: &Asked| {
         let body = Body::Imu(recorded.rows.clone());
@@ -205,7 +205,7 @@ fn displacements_that_the_forces_on_the_way_contradict_are_refused_with_their_li
 }
 
 #[test]
-fn a_displacement_that_the_forces_cannot_tell_is_told_as_assumed() {
+fn a_displacement_that_the_forces_cannot_tell_is_reported_as_assumed() {
     let mut recorded = recorded(FOG);
     let assumes = |recorded: &Recorded| {
         let replay = recorded.replayed();

@@ -126,7 +126,7 @@ fn enlarge_biases(recorded: &mut Recorded, more_deg_s: [f64; 3]) {
 }
 
 #[test]
-fn a_bias_ten_times_as_large_as_stated_is_told_and_costs_no_level() {
+fn a_bias_ten_times_as_large_as_stated_is_reported_and_costs_no_level() {
     for (name, _) in TRIALS {
         let mut recorded = recorded(name);
         enlarge_biases(&mut recorded, [0.5, 0.4, 0.3]);

@@ -101,7 +101,7 @@ fn accelerometers_that_clip_are_left_out_and_told() {
 }
 
 #[test]
-fn a_free_fall_is_told_and_costs_no_level() {
+fn a_free_fall_is_reported_and_costs_no_level() {
     let recorded = spoilt([40.0, 41.0], |row| row.sample.force_m_s2 = [0.01, -0.02, 0.03]);
     let replay = recorded.replayed();
     assert!(met(&replay, "free fall") > 0.5, "{:?}", replay.states);

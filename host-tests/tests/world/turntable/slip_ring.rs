@@ -1,7 +1,7 @@
 //! A stage without ends: an hour of turning, many commands a second, the motor driver's own ramps.
 
 use embassy_time::{Duration, Instant};
-use hal_mock::chip::{Rig, Select, Single, Transaction};
+use hal_mock::chip::{Rig as _, Select, Single, Transaction};
 use hal_mock::environment::Mechanics;
 use hal_mock::noise::Generator;
 use hal_mock::plant::train::StageConfiguration;
@@ -75,9 +75,9 @@ const AMAX: u8 = 0x26;
 const VMAX: u8 = 0x27;
 
 /// The motor driver with its stage.
-struct Bench(Single<Tmc5160, Plant<'static>>);
+struct Rig(Single<Tmc5160, Plant<'static>>);
 
-impl Bench {
+impl Rig {
     fn write(&mut self, now: Instant, address: u8, data: u32) {
         let [a, b, c, d] = data.to_be_bytes();
         let sent = [address | 0x80, a, b, c, d];
@@ -96,17 +96,17 @@ impl Bench {
 fn the_motor_driver_turns_an_endless_stage_in_velocity_mode_as_its_ramps_say() {
     let chip = Tmc5160::new(Oscillator::Internal { hertz: 12_000_000 }, Instant::MIN);
     let environment = with_stage(StageConfiguration::endless());
-    let mut bench = Bench(Single { chip, environment });
+    let mut rig = Rig(Single { chip, environment });
     let acceleration = 20_000_u32;
     let mut now = Instant::from_millis(1);
-    bench.write(now, AMAX, acceleration);
-    bench.write(now, RAMPMODE, 1);
+    rig.write(now, AMAX, acceleration);
+    rig.write(now, RAMPMODE, 1);
     let mut draw = Generator::new(9);
     let (mut speed, mut field) = (0.0, 0.0);
     // An hour with a new velocity every 100 ms; XACTUAL wraps around nearly twice.
     for k in 0..10 * HOUR_S {
         let asked = (1.2e6 + 6e5 * draw.uniform()).round() as u32;
-        bench.write(now, VMAX, asked);
+        rig.write(now, VMAX, asked);
         now += Duration::from_millis(100);
         let to = f64::from(asked) * VELOCITY;
         let slope = f64::from(acceleration) * ACCELERATION;
@@ -116,18 +116,18 @@ fn the_motor_driver_turns_an_endless_stage_in_velocity_mode_as_its_ramps_say() {
         field += 0.5 * (speed + reached) * ramp + reached * (0.1 - ramp);
         speed = reached;
         if k % 1000 == 999 {
-            let angle = bench.angle(now);
+            let angle = rig.angle(now);
             assert_near(angle, field / PER_RAD, 1e-6);
             let fraction_rad = 1.0 / PER_RAD;
-            assert_near(angle, bench.0.chip.field() as f64 / PER_RAD, fraction_rad);
+            assert_near(angle, rig.0.chip.field() as f64 / PER_RAD, fraction_rad);
         }
     }
     assert!(field / PER_RAD > 4600.0);
     // And to a stop with the same slope.
-    bench.write(now, VMAX, 0);
+    rig.write(now, VMAX, 0);
     now += Duration::from_secs(20);
     let slope = f64::from(acceleration) * ACCELERATION;
     let end = field + 0.5 * speed * speed / slope;
-    assert_near(bench.angle(now), end / PER_RAD, 1e-6);
-    assert_eq!(bench.0.environment.truth().stage.rate_rad_s, 0.0);
+    assert_near(rig.angle(now), end / PER_RAD, 1e-6);
+    assert_eq!(rig.0.environment.truth().stage.rate_rad_s, 0.0);
 }

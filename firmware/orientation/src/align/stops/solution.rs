@@ -391,9 +391,9 @@ impl Run<'_> {
     /// Deviation of the way to a stop, driven in this many seconds, from the assumed one, 1σ, m.
     fn astray(&self, index: usize, driven: f64) -> f64 {
         let stops = &self.path.stops;
-        let is_told = |stop: usize| stop == 0 || stops[stop].displacement.is_some();
+        let is_known = |stop: usize| stop == 0 || stops[stop].displacement.is_some();
         let speed = self.setting.speed_sigma;
-        if is_told(index - 1) && is_told(index) {
+        if is_known(index - 1) && is_known(index) {
             return DETOUR * speed * driven;
         }
         speed * (stops[index].from - stops[0].to)

@@ -47,13 +47,13 @@ impl Attitude {
         }
         self.count += 1;
         if self.count == SAMPLES {
-            self.tell();
+            self.update();
         }
     }
 
     /// Updates course and pitch with the summed rotation.
     #[inline(never)]
-    fn tell(&mut self) {
+    fn update(&mut self) {
         let [up, right] =
             [self.up, self.right].map(|steps| f64::from(steps) * AngleIncrement::STEP);
         (self.up, self.right, self.count) = (0.0, 0.0, 0);

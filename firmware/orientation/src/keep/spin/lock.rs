@@ -119,7 +119,7 @@ pub(super) struct Lock {
     lost: f64,
     /// Angle at which the turns began, and angle of the last filter update.
     begun: i64,
-    told: i64,
+    updated: i64,
     /// Rotation until the turns are evaluated.
     wanted: u64,
     /// Samples since the last filter update.
@@ -204,7 +204,7 @@ impl Lock {
         let turned = phase_accumulator.whole().wrapping_sub(self.begun).unsigned_abs();
         let is_whole = turned >= self.wanted;
         let samples = self.sums.samples as f32 / turned as f32;
-        let angle = f64::from(PhaseAccumulator::between(self.told, phase_accumulator.whole()));
+        let angle = f64::from(PhaseAccumulator::between(self.updated, phase_accumulator.whole()));
         self.carry(angle, f64::from(self.since) * self.period);
         let half = f64::from(self.sums.part_after_middle())
             * f64::from(PhaseAccumulator::between(self.begun, phase_accumulator.whole()));
@@ -218,7 +218,7 @@ impl Lock {
         self.wanted = TURN_STEPS * u64::from(self.together());
         self.sums = Sums::of(if is_whole { samples * self.wanted as f32 } else { USUAL });
         self.begun = phase_accumulator.whole();
-        self.told = self.begun;
+        self.updated = self.begun;
         self.since = 0;
     }
 
@@ -382,13 +382,13 @@ impl Lock {
     fn disagree(&mut self, seen: Seen, phase_accumulator: &mut PhaseAccumulator) {
         self.rejected += 1;
         self.discrepancy = seen.phase as f32;
-        let is_told = self.agreed >= AGREED;
-        if self.rejected >= if is_told { PATIENCE } else { DISAGREED } {
+        let is_locked = self.agreed >= AGREED;
+        if self.rejected >= if is_locked { PATIENCE } else { DISAGREED } {
             self.rejected = 0;
             self.scale = self.first.max(WRONG * WRONG);
             self.reset_angle();
             self.begin(seen, phase_accumulator);
-        } else if !is_told {
+        } else if !is_locked {
             self.begin(seen, phase_accumulator);
         } else if self.rejected > 1 {
             self.fade();
@@ -436,7 +436,7 @@ impl Lock {
 
     /// Standard deviation of the angle, 1σ, rad; `None` where it is unknown.
     pub(super) fn sigma(&self, phase_accumulator: &PhaseAccumulator) -> Option<f64> {
-        let angle = f64::from(PhaseAccumulator::between(self.told, phase_accumulator.whole()));
+        let angle = f64::from(PhaseAccumulator::between(self.updated, phase_accumulator.whole()));
         let seconds = f64::from(self.since) * self.period;
         let grown = angle * (angle * self.scale - 2.0 * self.shared) + self.walk * seconds;
         let discrepancy = f64::from(self.discrepancy) * f64::from(self.discrepancy);

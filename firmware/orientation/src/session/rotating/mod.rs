@@ -247,8 +247,8 @@ impl Session {
         let (since, last) = (self.since?, self.last?);
         let elapsed = last.0.saturating_sub(since.0) as f64 * 1e-6;
         let found = elapsed / f64::from(self.samples.max(2) - 1);
-        let told = self.procedure.sample_seconds;
-        contradiction(told, found, PERIOD_TOLERANCE)
+        let stated = self.procedure.sample_seconds;
+        contradiction(stated, found, PERIOD_TOLERANCE)
     }
 
     /// Measures the tilt at rest.

@@ -140,7 +140,7 @@ pub struct Session {
     /// Number of samples so far.
     samples: u32,
     /// Whether the command to drive was returned for this stop.
-    is_told: bool,
+    is_reported: bool,
     /// Conclusion, once the session is over.
     conclusion: Option<Conclusion>,
 }
@@ -166,8 +166,8 @@ impl Session {
         let stop_detector =
             StopDetector::new(procedure.rests.clone(), &setting.sensors(), gravity, period);
         let phase = Phase::Waiting;
-        let (begun, samples, is_told, conclusion) = (None, 0, false, None);
-        Self { setting, procedure, stop_detector, phase, begun, samples, is_told, conclusion }
+        let (begun, samples, is_reported, conclusion) = (None, 0, false, None);
+        Self { setting, procedure, stop_detector, phase, begun, samples, is_reported, conclusion }
     }
 
     /// Takes one event and returns the command that follows.
@@ -235,7 +235,7 @@ impl Session {
     /// Updates phase and limits once a second.
     fn second(&mut self, now: Instant) -> Command {
         let begun = *self.begun.get_or_insert(now);
-        self.tell_displacements();
+        self.report_displacements();
         let count = self.stop_detector.stops().len();
         let phase = match (self.stop_detector.is_at_rest, count) {
             (_, 0) => Phase::Waiting,
@@ -243,7 +243,7 @@ impl Session {
             (false, count) => Phase::Driving(count),
         };
         if phase != self.phase {
-            self.is_told = false;
+            self.is_reported = false;
             self.phase = phase;
         }
         if self.procedure.stops > 0 && self.stop_detector.loss.is_some() {
@@ -259,15 +259,15 @@ impl Session {
     fn stand(&mut self, count: usize) -> Command {
         let Phase::Standing(_) = self.phase else { return Command::Wait };
         let length = self.stop_detector.stops().last().map_or(0.0, Stop::seconds);
-        if self.is_told || length < self.procedure.stop_seconds {
+        if self.is_reported || length < self.procedure.stop_seconds {
             return Command::Wait;
         }
-        self.is_told = true;
+        self.is_reported = true;
         if count == self.procedure.stops { self.conclude() } else { Command::Drive }
     }
 
     /// Reports the position of the last stop, if it is known in advance.
-    fn tell_displacements(&mut self) {
+    fn report_displacements(&mut self) {
         let Some(last) = self.stop_detector.stops().len().checked_sub(1) else { return };
         if let Some(displacement) = self.procedure.displacements.get(last) {
             self.stop_detector.displace(*displacement);
@@ -286,11 +286,11 @@ impl Session {
 
     /// Refusal of samples whose time stamps contradict the configured period.
     fn contradiction(&self) -> Option<Refusal> {
-        let Procedure { sample_seconds: told, period_tolerance, .. } = self.procedure;
+        let Procedure { sample_seconds: stated, period_tolerance, .. } = self.procedure;
         let found = self.stop_detector.elapsed() / f64::from(self.samples.max(1));
         // Missing samples are reported as such instead.
         let is_whole = self.samples > 0 && self.stop_detector.loss.is_none();
-        contradiction(told, found, period_tolerance).filter(|_| is_whole)
+        contradiction(stated, found, period_tolerance).filter(|_| is_whole)
     }
 
     /// Ends the session with a conclusion.

@@ -9,7 +9,7 @@ use crate::link::Thousandths;
 
 /// Attitude as reported, in thousandths of a degree.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Kept {
+pub struct AttitudeReport {
     /// Azimuth of body x, 0–359 999, and its 1σ, rounded up; [`None`] if the azimuth is unknown.
     pub azimuth: Option<[u32; 2]>,
     /// Pitch and roll.
@@ -25,7 +25,7 @@ fn thousandths(angle: f64) -> i32 {
     libm::round(angle * DEGREES * 1e3) as i32
 }
 
-impl Kept {
+impl AttitudeReport {
     /// Converts a report of the keeper.
     pub(super) fn of(report: &Report, is_recalled: bool) -> Self {
         let azimuth = report.azimuth.map(|azimuth| {
@@ -46,7 +46,7 @@ fn write(f: &mut fmt::Formatter<'_>, name: &str, value: i32) -> fmt::Result {
     write!(f, "{name} {sign}{} ", Thousandths(value.unsigned_abs()))
 }
 
-impl fmt::Display for Kept {
+impl fmt::Display for AttitudeReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.azimuth {
             Some([angle, sigma]) => {
