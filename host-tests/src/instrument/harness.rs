@@ -122,7 +122,9 @@ impl<'w, W: Observer> Harness<'w, W> {
             lines: String::from_utf8_lossy(&self.bytes.into_inner()).into_owned(),
             seconds: ended.at.as_micros() as f64 * 1e-6,
             health: ended.health,
-            violations: violations.map(|(chip, told)| format!("{chip:?}: {told}")).collect(),
+            violations: violations
+                .map(|(chip, violation)| format!("{chip:?}: {violation}"))
+                .collect(),
         }
     }
 }

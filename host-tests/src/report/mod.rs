@@ -216,6 +216,9 @@ impl Axis {
     }
 }
 
+/// Most points of a curve of which more could not be told apart.
+const POINTS: usize = 2000;
+
 impl Series {
     /// A curve through (x, y).
     pub fn new(
@@ -226,12 +229,7 @@ impl Series {
         let points = points.into_iter().map(Into::into).collect();
         Self { name: name.to_owned(), style, points }
     }
-}
 
-/// Most points of a curve of which more could not be told apart.
-const POINTS: usize = 2000;
-
-impl Series {
     /// A curve of as many points as can be told apart, evenly taken from all.
     pub fn thinned<T, P: Into<Point>>(
         name: &str,

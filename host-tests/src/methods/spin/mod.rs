@@ -53,8 +53,8 @@ pub struct Replay {
     pub assumed: Vec<String>,
     /// Why the board that took the samples gave its roll up, if it did.
     pub ended: Option<String>,
-    /// What the recording as a whole shows that forbids to believe a roll.
-    pub ended_for: Option<String>,
+    /// Why the gyro of the whole recording counts as stuck, which forbids to believe a roll.
+    pub stuck_gyro: Option<String>,
 }
 
 impl Replay {
@@ -80,7 +80,7 @@ impl Replay {
                 self.required_sigma.to_degrees(),
                 end.state
             )),
-            Some(_) => self.ended_for.clone(),
+            Some(_) => self.stuck_gyro.clone(),
         }
     }
 }
@@ -100,7 +100,7 @@ pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, Rep
     let samples: Vec<SpinSample> = samples::samples(rows, period_s).collect();
     let (setting, assumed) = setting(header, rows, period_s);
     let replay = follow(&samples, Known { setting, required_sigma, assumed });
-    Ok(Replay { ended_for: stuck_gyro(rows), ..replay })
+    Ok(Replay { stuck_gyro: stuck_gyro(rows), ..replay })
 }
 
 /// Replays a run with what its board was given.
@@ -159,7 +159,7 @@ pub fn follow(samples: &[SpinSample], known: Known) -> Replay {
         required_sigma,
         assumed,
         ended: None,
-        ended_for: None,
+        stuck_gyro: None,
     }
 }
 

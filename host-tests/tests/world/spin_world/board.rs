@@ -30,7 +30,7 @@ fn converter<'a, 'b>(board: &'a RefCell<SpinBoard<'b>>, select: Select) -> Conve
 }
 
 fn run<T>(future: impl Future<Output = T>) -> T {
-    host::virtual_time::run(future).expect("somebody waits for ever")
+    host::virtual_time::run(future).expect("no task waits without end")
 }
 
 /// A code as the input's voltage: 2.5 V full scale.

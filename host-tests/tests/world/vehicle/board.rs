@@ -40,7 +40,7 @@ fn converter<'a, 'b>(board: &'a RefCell<VehicleBoard<'b>>, select: Select) -> Co
 }
 
 fn run<T>(future: impl Future<Output = T>) -> T {
-    host::virtual_time::run(future).expect("somebody waits for ever")
+    host::virtual_time::run(future).expect("no task waits without end")
 }
 
 /// A code as a rate, rad/s: 2.5 V full scale, 50 mV per °/s.
