@@ -92,9 +92,9 @@ def kept(meridian, rate, time, rates, forces):
             file.write(f'# kind: imu\n# rate_hz: {rate:.6f}\nt_s,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s2,ay_m_s2,az_m_s2\n')
             np.savetxt(file, np.column_stack([time, rates, forces]), delimiter=',', fmt=['%.5f'] + ['%.6f'] * 3 + ['%.5f'] * 3)
         words = [meridian, 'replay', recording, '--method', 'vertical', '--attitude-out', attitude]
-        told = subprocess.run(words, capture_output=True, text=True)
+        finished = subprocess.run(words, capture_output=True, text=True)
         if not os.path.exists(attitude):
-            sys.exit(told.stderr)
+            sys.exit(finished.stderr)
         table = np.loadtxt(attitude, delimiter=',', skiprows=1)
     return matrices(table[:, 1:5]), np.degrees(table[:, 5])
 

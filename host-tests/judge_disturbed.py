@@ -16,8 +16,8 @@ KNOWN = {
     "base-yawing": (7, 0.90),
     "random-walk": (1, 0.85),
 }
-# Classes whose wrong answers must lie within what is told beside them.
-TOLD = ("base-tilting", "base-yawing", "turning-base-yawing")
+# Classes whose wrong answers must lie within what is stated beside them.
+STATED = ("base-tilting", "base-yawing", "turning-base-yawing")
 # Percentage points by which the coverage of all healthy recordings may be off a normal distribution's.
 COVERAGE = 3.0
 NORMAL = (68.27, 95.45, 99.73)
@@ -36,8 +36,8 @@ def judge(campaign):
         if wrong > most or answered < least * harmless:
             failed.append(words)
     for row in campaign["classes"]:
-        if row["class"] in TOLD and row["wrong_told"] < row["wrong"]:
-            failed.append(f"{row['class']}: {row['wrong'] - row['wrong_told']} wrong and not told")
+        if row["class"] in STATED and row["wrong_stated"] < row["wrong"]:
+            failed.append(f"{row['class']}: {row['wrong'] - row['wrong_stated']} wrong and not stated")
     coverage = next(row for row in campaign["healthy"] if row["method"] == "all")["coverage_percent"]
     print("healthy: within 1, 2, 3 σ are", ", ".join(f"{part:.1f} %" for part in coverage))
     if any(abs(part - normal) > COVERAGE for part, normal in zip(coverage, NORMAL)):

@@ -44,7 +44,7 @@ pub trait I2cChip<E> {
     /// Does what is due at [`Self::next_event`].
     fn event(&mut self, environment: &mut E);
 
-    /// Takes a transfer and answers it into `reply`; tells whether it acknowledged. All events up to the
+    /// Takes a transfer and answers it into `reply`; returns whether it acknowledged. All events up to the
     /// beginning of the transfer have happened.
     fn transfer(&mut self, environment: &mut E, transfer: &Transfer, reply: &mut [u8]) -> bool;
 
@@ -56,7 +56,7 @@ pub trait I2cChip<E> {
 }
 
 impl<C: I2cChip<E>, E> Single<C, E> {
-    /// Does what is due before a transfer and has the chip take it; tells whether it acknowledged.
+    /// Does what is due before a transfer and has the chip take it; returns whether it acknowledged.
     fn transfer(&mut self, transfer: &Transfer, reply: &mut [u8]) -> bool {
         while self.chip.next_event().is_some_and(|at| at <= transfer.now) {
             self.chip.event(&mut self.environment);

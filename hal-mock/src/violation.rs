@@ -64,7 +64,7 @@ impl Violations {
     pub fn record(&mut self, misuse: Misuse, address: u8, at: Instant) {
         self.count += 1;
         let microseconds = u32::try_from(at.as_micros()).unwrap_or(u32::MAX);
-        // Where there is no more room the count still tells.
+        // Where there is no more room the count still shows it.
         let _ = self.first.push(Violation { misuse, address, microseconds });
     }
 }

@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 pub mod allan;
+pub mod assumptions;
 pub mod campaign;
 pub mod cause;
 pub mod criterion;
@@ -22,6 +23,5 @@ pub mod report;
 pub mod setting;
 pub mod simulate;
 pub mod spectrum;
-pub mod untold;
 pub mod unwritten;
 pub mod virtual_time;

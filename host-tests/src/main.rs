@@ -125,7 +125,7 @@ fn check(command: &Command, given: &Given) -> Result<(), String> {
 /// How the lines of a misuse begin that only hint at what else there is.
 const HINTS: [&str; 2] = ["tip: ", "For more information"];
 
-/// Prints help where that was asked for, else what is wrong with the options in one line, and whose help tells more.
+/// Prints help where that was asked for, else what is wrong with the options in one line, and whose help says more.
 fn misuse(error: &clap::Error) -> ExitCode {
     if !error.use_stderr() {
         // Nothing is to be done where even the help cannot be printed.

@@ -132,7 +132,7 @@ impl Request {
         Ok(Planned {
             burov,
             burov_least_sigma_deg,
-            optimum: self.told(&optimum),
+            optimum: self.described(&optimum),
             one_pass_sigma_deg: one_pass.map(|plan| self.degrees(plan.rate_sigma)),
         })
     }
@@ -199,7 +199,7 @@ impl Request {
         }
     }
 
-    fn told(&self, plan: &Plan) -> Optimum {
+    fn described(&self, plan: &Plan) -> Optimum {
         Optimum {
             order: plan.order.name(),
             passes: plan.passes,

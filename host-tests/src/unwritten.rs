@@ -22,6 +22,6 @@ pub fn words(path: &Path, error: &io::Error) -> String {
 
 /// The words with the file, and with what was to be in it.
 #[must_use]
-pub fn told(what: &str, path: &Path, error: &io::Error) -> String {
+pub fn message(what: &str, path: &Path, error: &io::Error) -> String {
     format!("{}: {what} cannot be written: {}", path.display(), words(path, error))
 }

@@ -443,7 +443,7 @@ crate::words! { Refusal:
         "the platform turned by {} °/s clockwise, by {} °/s counter-clockwise: both must be equal",
         Rounded::<3>(clockwise), Rounded::<3>(counter);
     Self::PlatformStopped { wanted } =>
-        "the platform does not turn, or not evenly, by {} °/s as it is told", Rounded::<2>(wanted);
+        "the platform does not turn, or not evenly, by {} °/s as stated", Rounded::<2>(wanted);
     Self::EncoderSlipped { angle } =>
         "the encoder moved by {}° against the platform", Rounded::<2>(angle);
     Self::Misaligned { angle, allowed } =>
@@ -489,7 +489,7 @@ crate::words! { Refusal:
         "samples are missing after {} s, for {} s: what the vehicle turned meanwhile is lost",
         Rounded::<3>(at), Rounded::<3>(seconds);
     Self::PeriodContradicted { stated, found } =>
-        "samples come every {} ms, not every {} ms as was told: correct the sample rate or the times",
+        "samples come every {} ms, not every {} ms as stated: correct the sample rate or the times",
         Rounded::<3>(found), Rounded::<3>(stated);
     Self::RotationClipped { at } =>
         "a gyro stood at the limit of its range at {} s: what the vehicle turned beyond is lost",

@@ -21,7 +21,7 @@ use crate::shared::Shared;
 
 /// Number of successive conversions that may be out of step: a single lost edge of a data-ready
 /// line is no reason for a restart.
-const STRAYS: u8 = 3;
+const MOST_OUT_OF_STEP: u8 = 3;
 
 /// Arrival of a conversion: its end, or the fault of the chip; none while it is awaited.
 type Arrival = Cell<Option<Result<Instant, Fault>>>;
@@ -37,7 +37,7 @@ pub(super) struct Group<'a, C, const N: usize, V = AngularRate> {
     /// Time without a conversion after which a converter counts as silent.
     silence: Duration,
     /// Number of successive conversions that were out of step.
-    strays: u8,
+    out_of_step: u8,
 }
 
 impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
@@ -59,7 +59,7 @@ impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
             shared,
             period: Duration::from_micros(period.into()),
             silence: silence(period),
-            strays: 0,
+            out_of_step: 0,
         }
     }
 
@@ -89,7 +89,7 @@ impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
                 self.shared.lose(converter.gyro.name, Symptom::Chip(fault));
             }
         }
-        self.strays = 0;
+        self.out_of_step = 0;
     }
 
     /// Waits for a conversion of every converter; returns the end of each, or none after a fault.
@@ -150,11 +150,11 @@ impl<'a, C: InStep<V>, V: Quantity, const N: usize> Group<'a, C, N, V> {
         time: Instant,
     ) -> Result<bool, Refusal> {
         let Some(index) = self.outlier(times, time) else {
-            self.strays = 0;
+            self.out_of_step = 0;
             return Ok(true);
         };
-        self.strays += 1;
-        if self.strays > STRAYS {
+        self.out_of_step += 1;
+        if self.out_of_step > MOST_OUT_OF_STEP {
             self.mend::<()>(index, Symptom::OutOfStep).await?;
         } else {
             self.shared.lose(self.converters[index].gyro.name, Symptom::OutOfStep);

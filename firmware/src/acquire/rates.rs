@@ -25,7 +25,7 @@ pub(super) struct Rates<'a, G, V = AngularRate> {
     pub(super) period: Duration,
     /// End of the latest conversion.
     latest: Option<Instant>,
-    /// Whether it was told that the gyro came to the limit of its range: once is enough for a log.
+    /// Whether it was reported that the gyro came to the limit of its range: once is enough for a log.
     has_clipped: bool,
 }
 

@@ -38,7 +38,7 @@ const RESTLESS: Duration = Duration::from_secs(5);
 /// that stay constant for as long disprove it.
 const LEARNING: Duration = Duration::from_secs(20);
 /// Duration of an acceleration below which it is not reported as an event, s.
-const TOLD_SECONDS: f64 = 3.0;
+const REPORTED_SECONDS: f64 = 3.0;
 
 /// The part of the instrument that keeps the attitude beside a session; the unit type keeps
 /// nothing.
@@ -62,7 +62,7 @@ pub struct Keeping<'k, H, M> {
     /// Duration, policy at stops and stated errors of the gyros.
     configuration: KeepConfiguration,
     /// Source of azimuths and velocities from outside.
-    outside: H,
+    aiding: H,
     /// The stored heading.
     memory: Memory<M>,
     /// The state of reports and pending actions.
@@ -105,7 +105,7 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
     pub fn new(
         keeper: &'k mut Keeper,
         configuration: &KeepConfiguration,
-        outside: H,
+        aiding: H,
         store: M,
     ) -> Self {
         let reported = Reported {
@@ -124,7 +124,7 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
             since: None,
         };
         let memory = Memory::new(store);
-        Self { keeper, configuration: *configuration, outside, memory, reported }
+        Self { keeper, configuration: *configuration, aiding, memory, reported }
     }
 
     /// The attitude and azimuth now.
@@ -234,7 +234,7 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
         let trust = |state: Option<State>| state.map(|state| state.trust);
         let is_reported = trust(state) == trust(self.reported.state);
         let passes =
-            state.is_some_and(|now| now.trust == Trust::Coasting && now.seconds < TOLD_SECONDS);
+            state.is_some_and(|now| now.trust == Trust::Coasting && now.seconds < REPORTED_SECONDS);
         if is_reported || passes {
             return;
         }
@@ -284,8 +284,8 @@ impl<'k, H: Aiding, M: Store> Keeping<'k, H, M> {
     /// The actions of every second: reads velocity and azimuth from outside, decides on the stored
     /// heading, stores the heading, starts a new alignment, and reports.
     async fn second(&mut self, shared: &Shared<'_>) {
-        self.keeper.move_at(self.outside.velocity());
-        if let Some(handover) = self.outside.azimuth() {
+        self.keeper.move_at(self.aiding.velocity());
+        if let Some(handover) = self.aiding.azimuth() {
             self.align(handover, shared);
             self.spare(shared);
         }

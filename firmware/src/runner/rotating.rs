@@ -26,7 +26,7 @@ impl<'a> Rotating<'a> {
     /// Takes a session without any reported progress. One whose sensor has an axis misalignment that
     /// matters but is unknown is refused with [`Refusal::MisalignmentUnknown`].
     pub fn new(session: &'a mut Session) -> Self {
-        if !is_coupled(session) {
+        if !is_misalignment_settled(session) {
             session.handle(SessionEvent::Failed(Refusal::MisalignmentUnknown));
         }
         let reported_phase = session.phase();
@@ -36,7 +36,7 @@ impl<'a> Rotating<'a> {
 
 /// Whether the session knows the axis misalignment, or needs none: it is negligible by the sensor's
 /// statement, will be estimated by rate-modulated turns, or is known from a calibration.
-fn is_coupled(session: &Session) -> bool {
+fn is_misalignment_settled(session: &Session) -> bool {
     let setting = session.setting();
     let is_known = setting.misalignments.iter().any(Option::is_some);
     setting.sensor.is_flat || session.procedure().modulated_turns > 0 || is_known

@@ -133,7 +133,7 @@ fn output(scenario: &Scenario) -> OutputRate {
     if read < 150.0 { OutputRate::Hz104 } else { OutputRate::Hz208 }
 }
 
-/// What the board is told: the class, and the times of its readings. An output is half a period old
+/// What the board is given: the class, and the times of its readings. An output is half a period old
 /// on average when it is read, and is held for some samples; one that is not read is lost to the
 /// noise.
 fn sensors(scenario: &Scenario) -> CoarseSensors {
@@ -151,13 +151,13 @@ fn sensors(scenario: &Scenario) -> CoarseSensors {
     }
 }
 
-/// Seconds between two readings, as the keeper is told.
+/// Seconds between two readings, as the keeper is given them.
 #[must_use]
 pub(super) fn period(scenario: &Scenario) -> f64 {
     f64::from(divider(scenario)) / scenario.sample_rate_hz
 }
 
-/// The coarse gyros as the keeper is told, and 1σ of the accelerometers' offsets, m/s².
+/// The coarse gyros as the keeper is given them, and 1σ of the accelerometers' offsets, m/s².
 pub(super) fn gyros(scenario: &Scenario) -> ([keep::Gyro; 3], f64) {
     let walk = STATED * scenario.coarse.rate_mdps_sqrt_hz * 1e-3 * 60.0;
     let class = keep::Gyro::coarse();

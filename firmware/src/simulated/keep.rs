@@ -1,4 +1,4 @@
-//! How a simulated run goes on after its alignment: what the vehicle does, what it is told.
+//! How a simulated run goes on after its alignment: what the vehicle does, what it is given.
 
 use core::cell::Cell;
 
@@ -51,7 +51,7 @@ impl Hold {
         Self { seconds, ..Self::default() }
     }
 
-    /// What the instrument is told, with what realigns it where it may, and the gyros about down: beside
+    /// What the instrument is given, with what realigns it where it may, and the gyros about down: beside
     /// the two others, and the precise one.
     pub(super) fn configuration(
         &self,
@@ -99,7 +99,7 @@ impl Aiding for HandoverAiding {
 }
 
 impl Scenario {
-    /// What the board is told of its precise gyro.
+    /// What the board is given about its precise gyro.
     #[must_use]
     pub fn precise(&self) -> keep::Gyro {
         keep::Gyro {
@@ -109,7 +109,7 @@ impl Scenario {
         }
     }
 
-    /// What the keeper on a base is told of place and gyros; none where the latitude is none.
+    /// What the keeper on a base is given about place and gyros; none where the latitude is none.
     #[must_use]
     pub fn keeper(&self) -> Option<keep::Setting> {
         let latitude = Latitude::from_degrees(self.latitude_deg)?;

@@ -113,7 +113,7 @@ pub type SimulatedPorts<'a, B, A, L, R> = Ports<chips::StageMotor<Bus<'a, B, A>,
 pub struct Wires<'a, 'w, B, A>(pub &'a RefCell<B>, pub &'w A);
 
 impl<'a, B: Rig, A: PortWrapper> Wires<'a, '_, B, A> {
-    /// The sensors of a stage or a turntable, whose accelerometer is told this.
+    /// The sensors of a stage or a turntable, whose accelerometer is given this.
     #[must_use]
     pub fn sensors(
         &self,
@@ -128,7 +128,7 @@ impl<'a, B: Rig, A: PortWrapper> Wires<'a, '_, B, A> {
         }
     }
 
-    /// The other ports of a stage or a turntable, whose motor driver is told this.
+    /// The other ports of a stage or a turntable, whose motor driver is given this.
     pub fn ports<L, R>(
         &self,
         motor: Motor,

@@ -1,4 +1,4 @@
-//! One simulated alignment on a two-frame mount: what is true, what the board is told, the wiring.
+//! One simulated alignment on a two-frame mount: what is true, what the board is given, the wiring.
 //!
 //! Site, attitude, gyro and dwells are those of a [`Scenario`]; the mechanism, its calibration and the
 //! accelerometer on the base are its own. What a calibration leaves is drawn from the seed.
@@ -59,7 +59,7 @@ pub struct FramesScenario {
     pub calibrated: TwoFrame,
     /// 1σ of each non-orthogonality that it leaves, rad.
     pub orthogonality_sigma: f64,
-    /// Whether the board is told of it; else it takes the mount for perfect.
+    /// Whether the board is given it; else it takes the mount for perfect.
     pub is_calibrated: bool,
     /// Frame angles at power-on, °.
     pub start_deg: Frames<f64>,
@@ -88,7 +88,7 @@ impl Default for FramesScenario {
 }
 
 impl FramesScenario {
-    /// What the board is told of place and instrument; none where the latitude is none.
+    /// What the board is given about place and instrument; none where the latitude is none.
     #[must_use]
     pub fn setting(&self) -> Option<Setting> {
         let setting = self.base.setting()?;
@@ -114,7 +114,7 @@ impl FramesScenario {
         Procedure { arrival: ARRIVAL, ..self.base.procedure_on(&turning) }
     }
 
-    /// What the board is told of the frames.
+    /// What the board is given about the frames.
     ///
     /// # Errors
     /// A calibration that lets the axis not stand where it must.
@@ -178,7 +178,7 @@ impl FramesScenario {
         board
     }
 
-    /// What the keeper is told of place and gyros; none where the latitude is none.
+    /// What the keeper is given about place and gyros; none where the latitude is none.
     #[must_use]
     pub fn keeper(&self) -> Option<keep::Setting> {
         let keeper = self.base.keeper()?;

@@ -1,4 +1,4 @@
-//! One simulated alignment: what is true, what the board is told, and what goes wrong.
+//! One simulated alignment: what is true, what the board is given, and what goes wrong.
 
 use drivers::ads1262::configuration::{self as converter, DataRate, Gain};
 use drivers::ads1262::scale::{INTERNAL_REFERENCE_VOLTS, Scale};
@@ -36,7 +36,7 @@ pub(super) const SCALE_SIGMA: f64 = 5e-4;
 pub(super) const FORCE_NOISE: f64 = 25e-6 * 9.80665;
 /// 1σ of the ADXL355's offset, 25 mg at most (data sheet, table 1), m/s².
 const FORCE_BIAS_SIGMA: f64 = 0.0083 * 9.80665;
-/// What the accelerometer's driver is told: more outputs than are read.
+/// What the accelerometer's driver is given: more outputs than are read.
 pub const FORCE: adxl355::Configuration =
     adxl355::Configuration { rate: adxl355::registers::OutputRate::Hz125 };
 /// Magnet's eccentricity and ellipticity as the encoder shows them, rad: 0.05° and 0.02°.
@@ -156,7 +156,7 @@ pub enum Aim {
     },
 }
 
-/// A simulated alignment. The true attitude is for the simulation alone: the board is never told.
+/// A simulated alignment. The true attitude is for the simulation alone: the board is never given it.
 #[must_use]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scenario {
@@ -182,7 +182,7 @@ pub struct Scenario {
     pub aim: Aim,
     /// How long the stage stands still first, to know the gyro, s; zero for not at all.
     pub survey_s: f64,
-    /// The half of the circle in which the azimuth is known to lie, where the board is told.
+    /// The half of the circle in which the azimuth is known to lie, where the board is given it.
     pub half: Option<Half>,
     /// Stage angle at power-on, °.
     pub start_deg: f64,
@@ -242,7 +242,7 @@ impl Scenario {
         Self { sample_rate_hz: 100.0, survey_s: 120.0, aim: Aim::Time(60.0), ..base }
     }
 
-    /// What the board is told of place and instrument; none where the latitude is none.
+    /// What the board is given about place and instrument; none where the latitude is none.
     #[must_use]
     pub fn setting(&self) -> Option<Setting> {
         let latitude = Latitude::from_degrees(self.latitude_deg)?;
@@ -292,7 +292,7 @@ impl Scenario {
     }
 
     /// The schedule for the noise that is stated; for an accuracy that is out of reach the best in the
-    /// time, so that the session can tell how near it comes. A time that holds none has the usual one.
+    /// time, so that the session can state how near it comes. A time that holds none has the usual one.
     fn schedule(&self, turning: &Turning) -> Schedule {
         let usual = || turning.usual.clone();
         let conditions = Conditions {
@@ -333,7 +333,7 @@ impl Scenario {
         Prepared::new(self.setting()?, self.procedure()).ok()
     }
 
-    /// What the board is told of its devices.
+    /// What the board is given about its devices.
     #[must_use]
     pub fn configuration(&self) -> Configuration {
         Configuration { encoder: calibration(), ..Configuration::at(self.sample_rate_hz) }

@@ -1,4 +1,4 @@
-//! One simulated alignment on a platform that turns all the time: what is true, what the board is told.
+//! One simulated alignment on a platform that turns all the time: what is true, what the board is given.
 //!
 //! Site, attitude, gyro and sample rate are those of a [`Scenario`]; slip ring, unevenness, speeds and
 //! the sensor's own dynamics are its own. The chips are the same.
@@ -110,7 +110,7 @@ impl TurntableScenario {
         Self { base, molecular, speeds_hz, ..Self::default() }
     }
 
-    /// What the board is told of place and instrument; none where the latitude is none.
+    /// What the board is given about place and instrument; none where the latitude is none.
     #[must_use]
     pub fn setting(&self) -> Option<Setting> {
         let setting = Setting::new(self.base.setting()?, self.sensor());
@@ -180,7 +180,7 @@ impl TurntableScenario {
     }
 }
 
-/// What its motor driver is told.
+/// What its motor driver is given.
 #[must_use]
 pub fn motor() -> Motor {
     Motor { switches: MOTOR, ..Motor::default() }

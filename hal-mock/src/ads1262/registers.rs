@@ -90,7 +90,7 @@ impl Registers {
         self.get(address).unwrap_or(0)
     }
 
-    /// Writes a register; what may not be written is not, and is told.
+    /// Writes a register; what may not be written is not, and is noted.
     pub(super) fn set(&mut self, address: u8, value: u8) -> Result<(), Misuse> {
         if let Some(misuse) = write_refusal(MAP, address.into(), value.into()) {
             return Err(misuse);

@@ -23,7 +23,7 @@ pub struct Fifo {
 }
 
 impl Fifo {
-    /// Takes a sample; tells whether older values were lost for it.
+    /// Takes a sample; returns whether older values were lost for it.
     pub fn push(&mut self, counts: [i32; 3]) -> bool {
         let is_full = self.values.len() + counts.len() > SIZE;
         for (axis, count) in counts.into_iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Flags: what the chip tells of its ramp, its switches, its load and its bridges.
+//! Flags: what the chip reports of its ramp, its switches, its load and its bridges.
 
 use super::map::address;
 use super::ramp::Stops;

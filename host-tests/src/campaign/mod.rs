@@ -1,4 +1,4 @@
-//! Monte-Carlo campaigns: many simulated alignments, told as tables; and their registry.
+//! Monte-Carlo campaigns: many simulated alignments, reported as tables; and their registry.
 //!
 //! A further campaign is an entry here; its world, its figures and its verdict stand in a folder of their own.
 

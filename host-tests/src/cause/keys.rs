@@ -1,4 +1,4 @@
-//! Noise and σ that are not those of the dwells, and keys that are missing: what they would tell is unknown, not zero.
+//! Noise and σ that are not those of the dwells, and keys that are missing: what they would show is unknown, not zero.
 
 use orientation::align::conclusion::Azimuth;
 use orientation::error::Refusal;

@@ -2,7 +2,7 @@
 //! sensor that is stuck, an encoder that slipped, a key that is missing.
 //!
 //! What the columns prove is named at once. Else the recording is tried as it may have been meant: where it then gives
-//! an azimuth that passes every test, that is named. The azimuth itself is not told: the recording is to be put right.
+//! an azimuth that passes every test, that is named. The azimuth itself is not given: the recording is to be put right.
 //! A recording that is merely too short is not tried: almost anything would pass.
 
 mod keys;
@@ -46,7 +46,7 @@ pub fn of_stopping(
     };
     let force = units::force_unit(body);
     if is_short(refusal) && session.dwells().len() < FEW {
-        return force.map(|unit| unit.told(units::force_columns(body)));
+        return force.map(|unit| unit.describe(units::force_columns(body)));
     }
     let meant = units::tried(body, force, true, &passes);
     let warming = || {
@@ -54,8 +54,8 @@ pub fn of_stopping(
         is_possible.then(|| warming::of(session, refusal, meant.is_some())).flatten()
     };
     warming()
-        .or_else(|| meant.as_ref().map(|trial| trial.told(body)))
-        .or_else(|| force.map(|unit| unit.told(units::force_columns(body))))
+        .or_else(|| meant.as_ref().map(|trial| trial.describe(body)))
+        .or_else(|| force.map(|unit| unit.describe(units::force_columns(body))))
         .or_else(|| units::of_sigma(header, body, asked))
         .or_else(|| keys::noise(header, body, asked))
         .or_else(|| slip::of(session, refusal))
@@ -90,11 +90,11 @@ pub fn of_turning(
     };
     let gain_is_known = header.sensor != Some(Sensor::Met);
     units::tried(body, None, gain_is_known, &|body| passes(header, body))
-        .map(|trial| trial.told(body))
+        .map(|trial| trial.describe(body))
         .or_else(noise)
 }
 
-/// Whether there was too little to tell from, so that almost any other reading of it would pass.
+/// Whether there was too little to judge from, so that almost any other reading of it would pass.
 fn is_short(refusal: &Refusal) -> bool {
     matches!(
         refusal,

@@ -24,23 +24,23 @@ pub fn of_stage(header: &Header, body: &Body) -> Option<String> {
     let horizontal = header.latitude_deg.and_then(Latitude::from_degrees);
     let horizontal = horizontal.map_or(EARTH_RATE, Latitude::horizontal_rate);
     let line = |row: &StageRow| row.line;
-    let gyro = alone(rows, FEWEST, |row| row.rate_rad_s).map(|run| told("g_rad_s", run, line));
+    let gyro = alone(rows, FEWEST, |row| row.rate_rad_s).map(|run| describe("g_rad_s", run, line));
     gyro.or_else(|| {
         let run = longest(rows, |row| row.stage_rad);
         let is_long = run.len() as f64 > MOST * rows.len() as f64;
-        (is_long && is_turned(run, horizontal)).then(|| told("stage_rad", run, line))
+        (is_long && is_turned(run, horizontal)).then(|| describe("stage_rad", run, line))
     })
 }
 
 /// What is stuck on a platform that turns all the time.
 pub fn of_platform(rows: &[RotatingRow]) -> Option<String> {
     let line = |row: &RotatingRow| row.line;
-    let gyro = alone(rows, FEWEST, |row| row.rate_rad_s).map(|run| told("g_rad_s", run, line));
+    let gyro = alone(rows, FEWEST, |row| row.rate_rad_s).map(|run| describe("g_rad_s", run, line));
     gyro.or_else(|| {
         let run = longest(rows, |row| row.stage_rad);
         let turning = run.iter().filter(|row| row.stage_rate_rad_s.abs() > TURNS).count();
         let is_long = turning as f64 > MOST * rows.len() as f64;
-        is_long.then(|| told("stage_rad", run, line))
+        is_long.then(|| describe("stage_rad", run, line))
     })
 }
 
@@ -67,7 +67,7 @@ fn is_turned(run: &[StageRow], horizontal: f64) -> bool {
     greatest - least > (DIFFERENT * noise).max(EARTHLY * horizontal)
 }
 
-fn told<R>(column: &str, run: &[R], line: fn(&R) -> u64) -> String {
+fn describe<R>(column: &str, run: &[R], line: fn(&R) -> u64) -> String {
     let (begin, count) = (run.first().map_or(0, line), run.len());
     format!(
         "column {column} holds the same value in {count} rows from line {begin} on: the sensor is stuck; check its \

@@ -27,7 +27,7 @@ pub struct Unit(pub f64, &'static str);
 
 impl Unit {
     /// What is wrong with a column, in words.
-    pub fn told(&self, column: &str) -> String {
+    pub fn describe(&self, column: &str) -> String {
         format!("{column}: {}", self.1)
     }
 }
@@ -100,11 +100,11 @@ impl Trial {
     }
 
     /// What is wrong with the columns, in words.
-    pub fn told(&self, body: &Body) -> String {
+    pub fn describe(&self, body: &Body) -> String {
         let [angle, rate, force] = names(body, self.together);
         let units = [(angle, self.angle), (rate, self.rate), (force, self.force)];
-        let told = units.into_iter().filter(|(_, Unit(_, words))| !words.is_empty());
-        told.map(|(name, unit)| unit.told(name)).collect::<Vec<_>>().join("; ")
+        let wrong = units.into_iter().filter(|(_, Unit(_, words))| !words.is_empty());
+        wrong.map(|(name, unit)| unit.describe(name)).collect::<Vec<_>>().join("; ")
     }
 
     /// The factors of the stage angle, the rate, the forces, and of what goes with angle and rate.
@@ -229,20 +229,20 @@ pub fn force_unit(body: &Body) -> Option<Unit> {
 
 /// What is wrong with the rate of a platform, which its angle shows.
 pub fn of_platform_rate(rows: &[RotatingRow]) -> Option<String> {
-    let (mut turned, mut told) = (0.0, 0.0);
+    let (mut turned, mut stated) = (0.0, 0.0);
     for pair in rows.windows(2) {
         let (step, seconds) =
             (pair[1].stage_rad - pair[0].stage_rad, pair[1].time_s - pair[0].time_s);
         let rate = 0.5 * (pair[0].stage_rate_rad_s + pair[1].stage_rate_rad_s);
         turned += step * rate.signum();
-        told += rate.abs() * seconds;
+        stated += rate.abs() * seconds;
     }
-    let is = |factor: f64| (turned / (factor * told) - 1.0).abs() < NEAR;
+    let is = |factor: f64| (turned / (factor * stated) - 1.0).abs() < NEAR;
     if is(1.0 / DEGREE) {
-        return Some(DEGREES.told("column stage_rad"));
+        return Some(DEGREES.describe("column stage_rad"));
     }
     let unit = TURN_RATES.into_iter().find(|Unit(factor, _)| is(*factor))?;
-    Some(unit.told("column stage_rate_rad_s"))
+    Some(unit.describe("column stage_rate_rad_s"))
 }
 
 /// Whether the σ of averaged dwells alone are in another unit: in the one that is meant they pass, and scatter so.
@@ -258,5 +258,5 @@ pub fn of_sigma(header: &Header, body: &Body, asked: &Asked) -> Option<String> {
         (scatter > LEAST_SCATTER).then_some(())
     };
     let unit = RATES.into_iter().find(|unit| passes(unit).is_some())?;
-    Some(unit.told("column sigma_rad_s"))
+    Some(unit.describe("column sigma_rad_s"))
 }

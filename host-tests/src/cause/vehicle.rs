@@ -20,7 +20,7 @@ pub fn of_vehicle(
     refusal: &Refusal,
 ) -> Option<String> {
     let force = units::force_unit(body);
-    let of_force = force.map(|unit| unit.told(units::force_columns(body)));
+    let of_force = force.map(|unit| unit.describe(units::force_columns(body)));
     let rows = samples::rows(body).filter(|rows| rows.len() <= MOST_ROWS)?;
     if is_short(refusal) {
         return of_force;
@@ -32,15 +32,15 @@ pub fn of_vehicle(
             replay.session.conclusion().is_some_and(|found| found.verdict.is_ok())
         })
     };
-    let of_rates = RATES.into_iter().find(passes).map(|unit| unit.told(GYROS));
-    let told: Vec<String> = of_rates.into_iter().chain(of_force).collect();
-    (!told.is_empty()).then(|| told.join("; "))
+    let of_rates = RATES.into_iter().find(passes).map(|unit| unit.describe(GYROS));
+    let named: Vec<String> = of_rates.into_iter().chain(of_force).collect();
+    (!named.is_empty()).then(|| named.join("; "))
 }
 
 /// The cause where no level was found.
 #[must_use]
 pub fn of_level(body: &Body) -> Option<String> {
-    units::force_unit(body).map(|unit| unit.told(units::force_columns(body)))
+    units::force_unit(body).map(|unit| unit.describe(units::force_columns(body)))
 }
 
 /// The rows in other units.

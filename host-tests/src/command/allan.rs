@@ -38,8 +38,8 @@ impl AllanOptions {
 
 /// Analyses a recording.
 pub fn run(options: &AllanOptions, as_json: bool) -> Result<Answer, Failure> {
-    let recording = recording::read(&options.file).map_err(|error| error.told())?;
-    let warnings = recording.told_warnings(&options.file);
+    let recording = recording::read(&options.file).map_err(|error| error.message())?;
+    let warnings = recording.warning_lines(&options.file);
     analyse(options, recording, as_json)
         .map_err(|reason| Failure { warnings: warnings.clone(), ..reason.into() })
         .map(|answer| answer.with_warnings(warnings))

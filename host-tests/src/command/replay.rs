@@ -114,12 +114,12 @@ fn check(given: &Given, method: &Method) -> Result<(), String> {
 
 /// Replays a recording.
 pub fn run(options: &ReplayOptions, given: &Given, as_json: bool) -> Result<Answer, Failure> {
-    let recording = recording::read(&options.file).map_err(|error| error.told())?;
+    let recording = recording::read(&options.file).map_err(|error| error.message())?;
     let usual = || methods::named(methods::usual(&recording)).unwrap_or(&METHODS[0]);
     let method = options.method.unwrap_or_else(usual);
     // Without a method stated, that the options do not suit shows only now.
     check(given, method).map_err(Failure::misuse)?;
-    let warnings = recording.told_warnings(&options.file);
+    let warnings = recording.warning_lines(&options.file);
     replay(options, method, recording, as_json)
         .map_err(|reason| Failure { warnings: warnings.clone(), ..reason.into() })
         .map(|answer| answer.with_warnings(warnings))
@@ -151,7 +151,8 @@ fn replay(
     let refusal = answer.refusal.as_ref().map(|reason| format!("{name}: {reason}"));
     let attitude = options.attitude_out.as_ref().zip(finished.attitude());
     let written = attitude.map_or(Ok(()), |(path, moments)| {
-        write_attitude(path, moments).map_err(|error| unwritten::told("the attitude", path, &error))
+        write_attitude(path, moments)
+            .map_err(|error| unwritten::message("the attitude", path, &error))
     });
     Ok(Answer { refusal, ..answer }.with_written(written))
 }

@@ -167,7 +167,7 @@ pub struct Difference {
 }
 
 /// Whether two runs found the same, bit for bit; in the order of cause and effect, so that the
-/// difference told is where it began.
+/// difference reported is where it began.
 ///
 /// # Errors
 /// The first difference.

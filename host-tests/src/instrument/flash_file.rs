@@ -1,6 +1,6 @@
 //! A simulated flash in a file, so that what a board keeps outlives its run.
 //!
-//! The file is the flash's bytes as gzip, whose checksum tells a damaged one.
+//! The file is the flash's bytes as gzip, whose checksum reveals a damaged one.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read, Write};
@@ -29,7 +29,7 @@ pub fn load(path: &Path) -> Result<Flash, String> {
 
 fn read(file: File) -> io::Result<[u8; BYTES]> {
     let mut bytes = Vec::new();
-    // One byte more than there may be tells a longer one, and the checksum comes behind the last.
+    // One byte more than there may be reveals a longer one, and the checksum comes behind the last.
     GzDecoder::new(file).take(BYTES as u64 + 1).read_to_end(&mut bytes)?;
     let wrong = |bytes: Vec<u8>| io::Error::other(format!("{} bytes, not {BYTES}", bytes.len()));
     bytes.try_into().map_err(wrong)
@@ -55,5 +55,5 @@ pub fn save(path: &Path, flash: &Flash) -> Result<(), String> {
         file.finish()?.sync_all()?;
         fs::rename(&beside, path)
     };
-    write().map_err(|error| unwritten::told("the flash", path, &error))
+    write().map_err(|error| unwritten::message("the flash", path, &error))
 }

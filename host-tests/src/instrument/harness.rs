@@ -15,10 +15,10 @@ use orientation::session::{Session, rotating, stops};
 use super::{Run, RunError};
 use crate::virtual_time;
 
-/// What the board was not told but takes as known.
+/// What the board was not given but takes as known.
 pub(super) const ASSUMED: &str = "latitude exact, calibrations as stated";
 
-/// Keeps what the board tells and passes it on.
+/// Keeps what the board reports and passes it on.
 pub(super) struct Log<'w, W> {
     events: RefCell<Vec<(Instant, Event)>>,
     reports: RefCell<Vec<Report>>,
@@ -89,7 +89,7 @@ pub(super) struct Ended {
 }
 
 impl<'w, W: Observer> Harness<'w, W> {
-    /// An empty one; what a board tells goes on to `watch`.
+    /// An empty one; what a board reports goes on to `watch`.
     pub(super) fn new(watch: &'w W) -> Self {
         let (events, reports, base) = Default::default();
         Self { log: Log { events, reports, base, watch }, bytes: RefCell::default() }

@@ -30,9 +30,9 @@ use thiserror::Error;
 /// A finished run of one kind of session.
 #[derive(Clone, Debug)]
 pub struct Run<R = Replay> {
-    /// The session with its conclusion, told like a replay.
+    /// The session with its conclusion, reported like a replay.
     pub replay: R,
-    /// What the board told, in order.
+    /// What the board reported, in order.
     pub events: Vec<(Instant, Event)>,
     /// What the keeper reported, once a second.
     pub reports: Vec<Report>,

@@ -19,7 +19,7 @@ use super::harness::{self, Harness};
 use super::{Run, RunError};
 use crate::virtual_time;
 
-/// The store of a board that keeps misalignments, and what it is told of the time.
+/// The store of a board that keeps misalignments, and what it is given of the time.
 pub struct Keeping {
     /// Where they are kept.
     pub store: FlashStore<Flash>,
@@ -67,8 +67,8 @@ pub fn align_turning_again<R: Recorder, W: Observer>(
     let harness = Harness::new(watch);
     let channels = harness.channels();
     if let Some(Keeping { store, today }) = &mut keeping {
-        let told = (&mut setting, &mut procedure);
-        let prepared = virtual_time::run(load_calibration(store, *today, told, &channels.shared));
+        let given = (&mut setting, &mut procedure);
+        let prepared = virtual_time::run(load_calibration(store, *today, given, &channels.shared));
         prepared.map_err(|_| RunError::Deadlock)?;
     }
     let mut session = rotating::Session::new(setting, procedure).map_err(RunError::Procedure)?;

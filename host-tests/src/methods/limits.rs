@@ -23,7 +23,7 @@ pub(crate) fn limits(values: &(impl Iterator<Item = f64> + Clone), few: f64) -> 
     ]
 }
 
-/// A sample whose rate is told as saturated where its column stands at one of these limits.
+/// A sample whose rate is reported as saturated where its column stands at one of these limits.
 pub(crate) fn saturated(limits: [f64; 2], column: f64, sample: Sample) -> Sample {
     let is_cut = column <= limits[0] || column >= limits[1];
     if is_cut { Sample { rate: AngularRate(i32::MAX), ..sample } } else { sample }

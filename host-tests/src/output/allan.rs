@@ -56,7 +56,7 @@ fn coefficients(fit: &NoiseFit) -> [Coefficient; 5] {
 
 impl Coefficient {
     /// The value with its unit, or that there is none.
-    fn told(&self) -> String {
+    fn text(&self) -> String {
         let unit = self.unit;
         match self.estimate {
             Estimate::Found { value, sigma } => {

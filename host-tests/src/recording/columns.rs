@@ -180,7 +180,7 @@ impl Layout {
         Ok(Values { line: line.number, numbers, present })
     }
 
-    /// A wrong count is told before a wrong number: a cut line has both.
+    /// A wrong count is reported before a wrong number: a cut line has both.
     fn check_count(&self, line: &Line<'_>) -> Result<(), Fault> {
         let found = 1 + line.text.bytes().filter(|&byte| byte == b',').count();
         let columns = self.fields.len();

@@ -21,7 +21,7 @@ pub struct ReadError {
 impl ReadError {
     /// The message with the unit in which a number beyond its range is likely to stand.
     #[must_use]
-    pub fn told(&self) -> String {
+    pub fn message(&self) -> String {
         match &self.problem {
             Problem::Value(ValueProblem::OutOfRange(_, range)) => {
                 format!("{self}{}", range.mistaken())

@@ -1,7 +1,7 @@
 //! What the session of a recorded run was given beside its samples, and how it ended.
 //!
 //! A replay that gives the same to the same session comes to the same result, to the last bit; without it, a
-//! replay has to find out from the samples what the instrument was told. It stands in the header as JSON under
+//! replay has to find out from the samples what the instrument was given. It stands in the header as JSON under
 //! the key `session`.
 
 use std::fmt;
@@ -14,7 +14,7 @@ use super::Header;
 use super::header::SESSION;
 
 /// What a replay of a run rests on.
-pub(crate) const GIVEN: &str = "what the board was told of place and instrument";
+pub(crate) const GIVEN: &str = "what the board was given about place and instrument";
 
 /// What a session was given beside its samples.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -35,7 +35,7 @@ impl<S, P> Given<S, P> {
     }
 }
 
-/// Whether an instrument may end a session with this refusal, of which the samples tell nothing.
+/// Whether an instrument may end a session with this refusal, of which the samples show nothing.
 fn is_from_outside(refusal: &Refusal) -> bool {
     matches!(
         refusal,

@@ -74,7 +74,7 @@ impl Recording {
 
     /// The warnings in words, a line each, of a recording in this file.
     #[must_use]
-    pub fn told_warnings(&self, file: &Path) -> Vec<String> {
+    pub fn warning_lines(&self, file: &Path) -> Vec<String> {
         let file = quote::printable(&file.display().to_string());
         self.warnings.iter().map(|warning| format!("{file}: {warning}")).collect()
     }
@@ -207,7 +207,7 @@ fn parse(reader: impl Read) -> Result<Recording, Fault> {
     let (body, Truth { roll_rad, attitude, .. }) =
         body(kind, &mut lines, line, &names, &mut warnings)?;
     let rate = entries.get("rate_hz").map(|(line, _)| line).zip(header.rate_hz);
-    // A run tells its session of a gap by the times alone.
+    // A run notifies its session of a gap by the times alone.
     if header.session.is_none() {
         check_times(&body, rate)?;
     }

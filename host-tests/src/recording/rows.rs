@@ -76,7 +76,7 @@ pub struct StageRow {
     pub force_m_s2: [f64; 3],
     /// Temperature of the gyro, °C, when recorded.
     pub temperature_c: Option<f64>,
-    /// Whether the force was read with this sample; always where the recording does not tell.
+    /// Whether the force was read with this sample; always where the recording does not say.
     pub force_is_new: bool,
     /// Elevation of the sensitive axis over the base's plane, rad, where a mount moves it and a force came.
     pub elevation_rad: Option<f64>,
@@ -101,7 +101,7 @@ pub struct RotatingRow {
     pub force_m_s2: f64,
     /// Specific force 90° clockwise of the sensitive axis, m/s², when recorded.
     pub across_m_s2: Option<f64>,
-    /// Whether the force was read with this sample; always where the recording does not tell.
+    /// Whether the force was read with this sample; always where the recording does not say.
     pub force_is_new: bool,
 }
 
@@ -145,7 +145,7 @@ pub struct ImuRow {
     pub time_s: f64,
     /// Means over the sample.
     pub sample: ImuSample,
-    /// Whether the force was read with this sample; always where the recording does not tell.
+    /// Whether the force was read with this sample; always where the recording does not say.
     pub force_is_new: bool,
 }
 

@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::period::Steps;
 use super::rows::StaticRow;
 
-/// The part by which the header's rate may miss that of the times before it is told.
+/// The part by which the header's rate may miss that of the times before it is reported.
 const RATE_TOLERANCE: f64 = 0.01;
 
 /// The times of a recording at rest.

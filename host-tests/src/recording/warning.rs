@@ -1,4 +1,4 @@
-//! What in a recording is passed over although it looks as if it was meant: told, for it changes no number.
+//! What in a recording is passed over although it looks as if it was meant: reported, for it changes no number.
 
 use thiserror::Error;
 

@@ -25,7 +25,7 @@ const BAR: i32 = 8;
 const DASH: u32 = 16;
 const BAND_OPACITY: f64 = 0.2;
 
-/// Colours that people who cannot tell red from green tell apart (Okabe and Ito 2008, with grey and
+/// Colours that people who cannot distinguish red from green can distinguish (Okabe and Ito 2008, with grey and
 /// brown for its black and yellow).
 const COLOURS: [RGBColor; 8] = [
     RGBColor(0, 114, 178),

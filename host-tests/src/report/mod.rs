@@ -216,8 +216,8 @@ impl Axis {
     }
 }
 
-/// Most points of a curve of which more could not be told apart.
-const POINTS: usize = 2000;
+/// Most points of a curve of which more could not be distinguished.
+pub const POINTS: usize = 2000;
 
 impl Series {
     /// A curve through (x, y).
@@ -230,7 +230,7 @@ impl Series {
         Self { name: name.to_owned(), style, points }
     }
 
-    /// A curve of as many points as can be told apart, evenly taken from all.
+    /// A curve of as many points as can be distinguished, evenly taken from all.
     pub fn thinned<T, P: Into<Point>>(
         name: &str,
         style: Style,

@@ -15,7 +15,7 @@ const MARGIN: f64 = 0.03;
 /// Ticks that an axis bears at most.
 const TICKS: f64 = 8.0;
 
-/// Decades over which the lines between powers of ten can still be told apart.
+/// Decades over which the lines between powers of ten can still be distinguished.
 const FINE_DECADES: f64 = 7.0;
 
 /// Powers of ten up to this are written as plain numbers.

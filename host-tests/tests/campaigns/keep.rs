@@ -42,7 +42,7 @@ fn the_limit_of_a_perfect_gyro_is_what_was_handed_over() {
 const RATE_HZ: f64 = 50.0;
 
 /// Azimuth, °, after a rest of 60 s with an azimuth of 70°, and ten minutes of turning at a rate, rad/s, with gyros
-/// of one bias, rad/s, that the keeper is not told.
+/// of one bias, rad/s, that the keeper is not reported.
 fn stored(latitude_deg: f64, bias: f64, turning: f64) -> f64 {
     let latitude = Latitude::from_degrees(latitude_deg).expect("it is one");
     let noise = GyroNoise::from_field_units(0.001, 0.0, 0.0, 0.0);

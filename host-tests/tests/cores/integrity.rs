@@ -24,7 +24,7 @@ use orientation::session::{Event, Session};
 use orientation::units::DEGREE_PER_HOUR;
 use rayon::prelude::*;
 
-/// One instrument at one place, with what the solver is told of it.
+/// One instrument at one place, with what the solver is stated of it.
 struct Case {
     world: InstrumentsConfiguration,
     setting: Setting,

@@ -319,7 +319,7 @@ fn a_start_takes_the_time_that_it_states() {
 }
 
 #[test]
-fn no_sample_is_lost_or_told_twice() {
+fn no_sample_is_lost_or_reported_twice() {
     let rig = rig_with([0.0; 3]);
     run(async {
         let mut accelerometer = started(&rig, OutputRate::Hz1000).await;

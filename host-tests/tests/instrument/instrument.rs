@@ -94,8 +94,8 @@ fn a_recorded_run_replays_to_the_same_azimuth_without_what_its_session_was_given
 #[test]
 fn the_log_tells_what_the_board_did_in_order() {
     let run = run(&short(1));
-    let told: Vec<String> = run.events.iter().map(|(_, event)| event.to_string()).collect();
-    let mut rest = told.iter();
+    let reported: Vec<String> = run.events.iter().map(|(_, event)| event.to_string()).collect();
+    let mut rest = reported.iter();
     for part in [
         "begin: 9 positions of 4.0 s at latitude 47.58",
         "identity and self-test passed",
@@ -112,7 +112,7 @@ fn the_log_tells_what_the_board_did_in_order() {
     ] {
         assert!(
             rest.any(|line| line.contains(part)),
-            "{part} is missing or misplaced in {told:#?}"
+            "{part} is missing or misplaced in {reported:#?}"
         );
     }
     assert!(run.events.is_sorted_by_key(|(at, _)| *at));

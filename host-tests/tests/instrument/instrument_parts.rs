@@ -135,7 +135,7 @@ fn a_status_never_tells_a_smaller_sigma_than_there_is() {
     assert_eq!(Status::Measuring { done: 5, of: 24 }.to_string(), "measuring 5/24");
 }
 
-/// Keeps what is told.
+/// Keeps what is reported.
 #[derive(Default)]
 struct Recorded(RefCell<Vec<Event>>);
 
@@ -171,8 +171,8 @@ impl Write for SickLink {
 #[test]
 fn a_sick_link_costs_its_lines_and_is_reported_once() {
     for mut sick in [SickLink::Hangs, SickLink::Refuses] {
-        let told = Recorded::default();
-        let shared = Shared::new(&told);
+        let reported = Recorded::default();
+        let shared = Shared::new(&reported);
         virtual_time::run(async {
             for _ in 0..3 {
                 link::send(&mut sick, &shared).await;
@@ -182,7 +182,7 @@ fn a_sick_link_costs_its_lines_and_is_reported_once() {
         })
         .expect("time wakes everybody");
         assert_eq!(shared.health.get().unsent, 3);
-        assert_eq!(*told.0.borrow(), [Event::LinkSilent]);
+        assert_eq!(*reported.0.borrow(), [Event::LinkSilent]);
     }
 }
 
@@ -216,8 +216,8 @@ fn the_line_of_an_attitude_is_whole_in_every_state_after_a_year_with_every_fault
         Trust::RotationLost,
     ]
     .map(|trust| State { trust, seconds: 3.2e7 });
-    let told = Recorded::default();
-    let shared = Shared::new(&told);
+    let reported = Recorded::default();
+    let shared = Shared::new(&reported);
     shared.count(|health| health.unsent = u32::MAX);
     for state in states.map(Some).into_iter().chain([None]) {
         let level = [-90_000, -180_000];

@@ -52,22 +52,22 @@ fn read_back<C: Carrier>(
     let path = scratch.path("run.csv");
     recorder::write(Path::new(&path), carrier, run, samples).expect("the folder is ours");
     let recording = recording::read(Path::new(&path)).unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(recording.told_warnings(Path::new(&path)), [""; 0]);
+    assert_eq!(recording.warning_lines(Path::new(&path)), [""; 0]);
     let (header, body, _) = recording.into_parts();
     Some((header, body))
 }
 
-/// All that is told of an analysis but what it assumed, and its numbers in full.
-fn told(finished: &dyn Finished, conclusion: &impl Debug) -> (Value, String) {
+/// All that is reported of an analysis but what it assumed, and its numbers in full.
+fn reported(finished: &dyn Finished, conclusion: &impl Debug) -> (Value, String) {
     let mut outcome = serde_json::to_value(finished.outcome(&Truth::default()));
     let keys = outcome.as_mut().ok().and_then(Value::as_object_mut).expect("it is an object");
     keys.remove("assumed");
     (outcome.expect("it is an object"), format!("{conclusion:?}"))
 }
 
-/// What is told of an alignment in positions.
-fn told_of_stage(replay: &stepwise::Replay) -> (Value, String) {
-    told(
+/// What is reported of an alignment in positions.
+fn reported_of_stage(replay: &stepwise::Replay) -> (Value, String) {
+    reported(
         replay,
         &(replay.session.conclusion(), replay.session.dwells(), replay.session.repetitions()),
     )
@@ -75,11 +75,11 @@ fn told_of_stage(replay: &stepwise::Replay) -> (Value, String) {
 
 /// Compares runs without and with a recorder with what a replay makes of the recording.
 fn compare_stage<C: Carrier>(plain: &Run, carrier: &C, run: &C::Run, of: &Run, it: &[C::Sample]) {
-    assert_eq!(told_of_stage(&plain.replay), told_of_stage(&of.replay));
+    assert_eq!(reported_of_stage(&plain.replay), reported_of_stage(&of.replay));
     let Some((header, body)) = read_back(carrier, run, it) else { return };
     let again = stepwise::replay(&header, &body, &Asked::default(), |_| {});
     let again = again.unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(told_of_stage(&again), told_of_stage(&of.replay));
+    assert_eq!(reported_of_stage(&again), reported_of_stage(&of.replay));
     assert_eq!(again.setting, of.replay.setting);
 }
 
@@ -105,7 +105,7 @@ fn replay_turntable(scenario: &TurntableScenario, fault: Option<Fault>) {
     let of_run = |run: &Run<rotating_session::Session>| {
         let (session, assumed) = (run.replay.clone(), Vec::new());
         let replay = rotating::Replay { session, zero_s: 0.0, assumed };
-        told(&replay, &replay.session.conclusion())
+        reported(&replay, &replay.session.conclusion())
     };
     let plain = align_turning(scenario, fault, NoRecorder, &()).expect("it is possible");
     let found = plain.run.replay.conclusion().map(|conclusion| conclusion.verdict);
@@ -116,11 +116,11 @@ fn replay_turntable(scenario: &TurntableScenario, fault: Option<Fault>) {
     let Some((header, body)) = read_back(scenario, &run, &samples.0) else { return };
     let again = rotating::replay(&header, &body, &Asked::default());
     let again = again.unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(told(&again, &again.session.conclusion()), of_run(&run.run));
+    assert_eq!(reported(&again, &again.session.conclusion()), of_run(&run.run));
 }
 
 fn replay_vehicle(scenario: &VehicleScenario, fault: Option<Fault>) {
-    let told = |session: &stops_session::Session| {
+    let reported = |session: &stops_session::Session| {
         format!("{:?} {:?}", session.conclusion(), session.stops())
     };
     let plain = align_stops(scenario, fault, NoRecorder, &()).expect("it is possible");
@@ -128,11 +128,11 @@ fn replay_vehicle(scenario: &VehicleScenario, fault: Option<Fault>) {
     assert!(fault.is_some() || matches!(found, Some(Ok(_))), "{found:?}");
     let mut samples = Samples::default();
     let found = align_stops(scenario, fault, &mut samples, &()).expect("it is possible");
-    assert_eq!(told(&plain.run.replay), told(&found.run.replay));
+    assert_eq!(reported(&plain.run.replay), reported(&found.run.replay));
     let Some((header, body)) = read_back(scenario, &found, &samples.0) else { return };
     let again = stops::replay(&header, &body, &Asked::default());
     let again = again.unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(told(&again.session), told(&found.run.replay));
+    assert_eq!(reported(&again.session), reported(&found.run.replay));
 }
 
 fn replay_spin(scenario: &SpinScenario, fault: Option<Fault>) {

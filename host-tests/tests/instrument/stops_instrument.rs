@@ -17,8 +17,8 @@ fn verdict(found: &VehicleRun) -> Result<Azimuth, Refusal> {
     found.run.replay.conclusion().expect("every run concludes").verdict
 }
 
-/// What was told, without the times.
-fn told(found: &VehicleRun) -> Vec<String> {
+/// What was reported, without the times.
+fn reported(found: &VehicleRun) -> Vec<String> {
     found.run.events.iter().map(|(_, event)| event.to_string()).collect()
 }
 
@@ -54,14 +54,14 @@ fn three_headings_tell_the_biases_that_the_gyros_have() {
     for ((bias, sigma), truth) in solved.biases.into_iter().zip(solved.bias_sigmas).zip(truth) {
         assert!((bias - truth).abs() < 3.5 * sigma, "{bias} is not {truth} within {sigma}");
     }
-    let of_gyros = told(&found).iter().filter(|line| line.contains("gyro: bias ")).count();
+    let of_gyros = reported(&found).iter().filter(|line| line.contains("gyro: bias ")).count();
     assert_eq!(of_gyros, if solved.are_biases_observed { 3 } else { 0 });
 }
 
 #[test]
 fn the_log_tells_what_the_board_did_in_order() {
     let found = run(&VehicleScenario::usual(1), None);
-    let lines = told(&found);
+    let lines = reported(&found);
     let expected = [
         "begin: level, drive, stop and level again",
         "accelerometer: identity and self-test passed",
@@ -114,8 +114,8 @@ fn a_displacement_that_nobody_knows_costs_accuracy_and_no_truth() {
         let found = run(&VehicleScenario { place, ..VehicleScenario::usual(1) }, None);
         let azimuth = verdict(&found).unwrap_or_else(|reason| panic!("{reason}"));
         assert!(error(&found, &azimuth).abs() < 3.5 * azimuth.sigma);
-        let is_told = told(&found).iter().any(|line| line.contains(" north and "));
-        assert_eq!(is_told, place != Place::Unknown);
+        let is_reported = reported(&found).iter().any(|line| line.contains(" north and "));
+        assert_eq!(is_reported, place != Place::Unknown);
         azimuth.sigma
     };
     assert!(sigma(Place::Unknown) > sigma(Place::Known { sigma_m: 2.0 }));

@@ -18,7 +18,7 @@ enum End {
     Survived,
     /// The device is given up for its reason.
     Named(Device, Trouble),
-    /// Rotation was lost, and the session was told.
+    /// Rotation was lost, and the session was reported.
     Lost,
     /// A gyro clipped.
     Clipped,

@@ -33,7 +33,7 @@ fn verdict(run: &TurntableRun) -> Result<Azimuth, Refusal> {
     run.run.replay.conclusion().expect("every run concludes").verdict
 }
 
-fn told(run: &TurntableRun) -> Vec<String> {
+fn reported(run: &TurntableRun) -> Vec<String> {
     run.run.events.iter().map(|(_, event)| event.to_string()).collect()
 }
 
@@ -109,8 +109,8 @@ fn a_seed_gives_one_run_and_another_seed_another() {
 
 #[test]
 fn the_log_tells_what_the_board_did_in_order() {
-    let told = told(&run(&short(1)));
-    let mut rest = told.iter();
+    let reported = reported(&run(&short(1)));
+    let mut rest = reported.iter();
     for part in [
         "begin: 8 turns at latitude 47.58",
         "identity and self-test passed",
@@ -126,7 +126,10 @@ fn the_log_tells_what_the_board_did_in_order() {
         "azimuth 213.",
         "stage: comes to rest",
     ] {
-        assert!(rest.any(|line| line.contains(part)), "{part}: not, or not there, in {told:#?}");
+        assert!(
+            rest.any(|line| line.contains(part)),
+            "{part}: not, or not there, in {reported:#?}"
+        );
     }
     let run = run(&short(1)).run;
     assert!(run.lines.contains("measuring 0/8"), "{}", run.lines);
@@ -135,7 +138,7 @@ fn the_log_tells_what_the_board_did_in_order() {
 
 /// Between two commands of a rate-modulated turn pass 50 ms: they are not worth a line each.
 #[test]
-fn the_commands_of_a_modulated_turn_are_not_told() {
+fn the_commands_of_a_modulated_turn_are_not_reported() {
     let run = run(&short(1));
     let rates = run.run.events.iter().filter(|(_, event)| matches!(event, Event::Revolving(..)));
     assert_eq!(rates.count(), 3, "clockwise, counter-clockwise, at rest");
@@ -159,7 +162,7 @@ fn a_stored_misalignment_spares_the_modulated_turns() {
     let scenario = TurntableScenario { modulated_turns: 0, stored, ..short(6) };
     let run = run(&scenario);
     assert_north(&scenario, &run);
-    assert!(!told(&run).iter().any(|line| line.contains("rate-modulated")));
+    assert!(!reported(&run).iter().any(|line| line.contains("rate-modulated")));
 }
 
 #[test]
@@ -167,7 +170,11 @@ fn an_uneven_gear_is_no_disagreement() {
     for seed in [7, 8] {
         let scenario = TurntableScenario { unevenness: [0.005, 0.003], ..short(seed) };
         let run = run(&scenario);
-        assert!(!told(&run).iter().any(|line| line.contains("disagree")), "{:?}", told(&run));
+        assert!(
+            !reported(&run).iter().any(|line| line.contains("disagree")),
+            "{:?}",
+            reported(&run)
+        );
     }
 }
 
@@ -211,7 +218,8 @@ fn a_motor_driver_whose_answers_cannot_be_read_is_named_for_that() {
 #[test]
 fn a_blocked_platform_is_tried_once_more_from_rest() {
     let run = with_fault("stage-blocked");
-    let blocked = told(&run).iter().filter(|line| line.contains("blocked, trying again")).count();
+    let blocked =
+        reported(&run).iter().filter(|line| line.contains("blocked, trying again")).count();
     assert_eq!(blocked, 1);
     let reason = verdict(&run).expect_err("it does not turn");
     let is_blocked = |trouble| matches!(trouble, Trouble::Stalled(_));
@@ -225,8 +233,8 @@ fn a_blocked_platform_is_tried_once_more_from_rest() {
 #[test]
 fn a_gyro_that_clips_for_a_moment_is_reported_once() {
     let run = with_fault("saturation-once");
-    let clipped = told(&run).iter().filter(|line| line.contains("limit of its range")).count();
-    assert_eq!(clipped, 1, "{:#?}", told(&run));
+    let clipped = reported(&run).iter().filter(|line| line.contains("limit of its range")).count();
+    assert_eq!(clipped, 1, "{:#?}", reported(&run));
     assert_north(&short(1), &run);
 }
 
@@ -239,9 +247,9 @@ fn an_overloaded_accelerometer_is_named() {
 #[test]
 fn a_motor_driver_that_was_reset_turns_on() {
     let run = with_fault("stage-reset");
-    let told = told(&run);
-    assert!(told.iter().any(|line| line.contains("it has restarted")), "{told:#?}");
-    assert!(run.run.events.len() > 20, "{told:#?}");
+    let reported = reported(&run);
+    assert!(reported.iter().any(|line| line.contains("it has restarted")), "{reported:#?}");
+    assert!(run.run.events.len() > 20, "{reported:#?}");
     if verdict(&run).is_ok() {
         assert_north(&short(1), &run);
     }

@@ -152,23 +152,23 @@ fn verdict(run: &TurntableRun) -> Result<Azimuth, Refusal> {
     run.run.replay.conclusion().expect("every run concludes").verdict
 }
 
-fn told(run: &TurntableRun, part: &str) -> Option<String> {
-    let mut told = run.run.events.iter().map(|(_, event)| event.to_string());
-    told.find(|line| line.contains(part))
+fn reported(run: &TurntableRun, part: &str) -> Option<String> {
+    let mut reported = run.run.events.iter().map(|(_, event)| event.to_string());
+    reported.find(|line| line.contains(part))
 }
 
 #[test]
 fn what_a_modulated_turn_found_gives_the_same_north_the_next_time() {
     let mut before = keeping(Flash::default(), THEN);
     let first = aligned(&scenario(5, 6), &mut before);
-    let kept = told(&first, "axis misalignment saved").expect("it is kept");
+    let kept = reported(&first, "axis misalignment saved").expect("it is kept");
     assert!(kept.contains("found on 2026-03-14 at 2") && kept.contains("°C"), "{kept}");
     let mut after = keeping(before.store.into_flash(), NOW);
     let second = aligned(&scenario(5, 0), &mut after);
-    let recalled = told(&second, "misalignment recalled").expect("it is used");
+    let recalled = reported(&second, "misalignment recalled").expect("it is used");
     assert_eq!(recalled.replace("recalled", "saved"), kept);
-    assert_eq!(told(&second, "rate-modulated"), None);
-    assert_eq!(told(&second, "axis misalignment saved"), None, "nothing new was found");
+    assert_eq!(reported(&second, "rate-modulated"), None);
+    assert_eq!(reported(&second, "axis misalignment saved"), None, "nothing new was found");
     let [first, second] = [&first, &second].map(|run| verdict(run).expect("north"));
     let apart = azimuth_error(degrees(first.angle), degrees(second.angle)).abs();
     // Both have noise of their own.
@@ -180,8 +180,8 @@ fn a_sensor_that_must_know_its_misalignment_is_refused_before_anything_turns() {
     let mut keeping = keeping(Flash::default(), NOW);
     let run = aligned(&molecular(0), &mut keeping);
     assert_eq!(verdict(&run), Err(Refusal::MisalignmentUnknown));
-    assert!(told(&run, "no stored axis misalignment").is_some());
-    assert_eq!(told(&run, "stage: turns"), None);
+    assert!(reported(&run, "no stored axis misalignment").is_some());
+    assert_eq!(reported(&run, "stage: turns"), None);
 }
 
 #[test]
@@ -229,7 +229,7 @@ fn a_store_that_fails_is_reported_and_north_is_found_all_the_same() {
     let mut keeping = keeping(flash, THEN);
     let run = aligned(&scenario(5, 6), &mut keeping);
     verdict(&run).expect("north");
-    assert!(told(&run, "axis misalignment not saved: bus error").is_some());
+    assert!(reported(&run, "axis misalignment not saved: bus error").is_some());
 }
 
 /// Seconds by `date -u -d … +%s`.

@@ -52,13 +52,13 @@ fn replayed(rows: Vec<SpinRow>) -> Replay {
     replay(&header, &Body::Spin(rows), &Asked::default()).expect("it is of a spinning body")
 }
 
-/// That the roll at the end is told, and true.
+/// That the roll at the end is stated, and true.
 #[track_caller]
 fn assert_true(replay: &Replay, rows: &[SpinRow]) {
     assert_eq!(replay.refusal(), None);
     let end = &replay.answer().end;
     let error = wrapped(end.roll_rad - roll_rad(rows.last().expect("there are rows").time_s));
-    let sigma = end.sigma_rad.expect("it is told");
+    let sigma = end.sigma_rad.expect("it is stated");
     assert!(error.abs() < 4.0 * sigma, "{error} {sigma}");
 }
 
@@ -110,7 +110,7 @@ fn forces_that_go_round_the_other_way_never_give_a_roll() {
 }
 
 #[test]
-fn a_gyro_that_sticks_is_named_and_told_from_one_that_is_coarse() {
+fn a_gyro_that_sticks_is_named_and_distinguished_from_one_that_is_coarse() {
     let mut stuck = rows();
     let rate = stuck[5000].rate_rad_s;
     stuck[5000..].iter_mut().for_each(|row| row.rate_rad_s = rate);
@@ -160,14 +160,14 @@ fn first_samples_that_are_zero_cost_a_turn_and_nothing_else() {
         }
         let replay = replayed(rows.clone());
         assert_true(&replay, &rows);
-        let sigma = replay.answer().end.sigma_rad.expect("it is told");
+        let sigma = replay.answer().end.sigma_rad.expect("it is stated");
         assert!(sigma < 1e-3, "{zeros}: {sigma}");
     }
 }
 
 #[test]
 fn an_axis_that_leans_widens_sigma_by_half_of_that_and_one_that_is_too_large_does_not() {
-    let healthy = replayed(rows()).answer().end.sigma_rad.expect("it is told");
+    let healthy = replayed(rows()).answer().end.sigma_rad.expect("it is stated");
     let (lean, mut leaning) = (2.0_f64.to_radians(), rows());
     for row in &mut leaning {
         let [y, z] = row.force_m_s2;
@@ -175,7 +175,7 @@ fn an_axis_that_leans_widens_sigma_by_half_of_that_and_one_that_is_too_large_doe
     }
     let replay = replayed(leaning.clone());
     assert_true(&replay, &leaning);
-    let sigma = replay.answer().end.sigma_rad.expect("it is told");
+    let sigma = replay.answer().end.sigma_rad.expect("it is stated");
     assert!((sigma / (0.5 * lean) - 1.0).abs() < 0.1, "{sigma}");
     let mut large = rows();
     for row in &mut large {
@@ -183,7 +183,7 @@ fn an_axis_that_leans_widens_sigma_by_half_of_that_and_one_that_is_too_large_doe
     }
     let replay = replayed(large.clone());
     assert_true(&replay, &large);
-    let sigma = replay.answer().end.sigma_rad.expect("it is told");
+    let sigma = replay.answer().end.sigma_rad.expect("it is stated");
     assert!(sigma < 1.5 * healthy, "{sigma} {healthy}");
 }
 

@@ -48,11 +48,11 @@ fn a_rate_that_the_times_contradict_by_more_than_a_per_cent_is_refused_with_both
     assert!(replay.session.setting().common.scale_sigma >= 0.003);
 }
 
-/// A session that is told one period and given another, s.
-fn paced(told: f64, given: f64, tolerance: f64) -> Option<Refusal> {
+/// A session that is given one period and given another, s.
+fn paced(reported: f64, given: f64, tolerance: f64) -> Option<Refusal> {
     let latitude = Latitude::from_degrees(50.0).expect("a latitude");
     let procedure =
-        Procedure { period_tolerance: tolerance, ..Procedure::recorded(Rests::Whole, told) };
+        Procedure { period_tolerance: tolerance, ..Procedure::recorded(Rests::Whole, reported) };
     let setting = Setting::new(Common::at(latitude));
     let mut session = Session::new(setting, procedure).expect("a procedure");
     for index in 1..2000 {
@@ -66,8 +66,8 @@ fn paced(told: f64, given: f64, tolerance: f64) -> Option<Refusal> {
 
 #[test]
 fn a_session_is_held_to_its_sample_period_as_far_as_its_clock_goes() {
-    let is_refused = |told, given, tolerance| {
-        matches!(paced(told, given, tolerance), Some(Refusal::PeriodContradicted { .. }))
+    let is_refused = |reported, given, tolerance| {
+        matches!(paced(reported, given, tolerance), Some(Refusal::PeriodContradicted { .. }))
     };
     assert!(is_refused(0.02, 0.0203, 0.01));
     assert!(!is_refused(0.02, 0.0201, 0.01));
@@ -77,7 +77,7 @@ fn a_session_is_held_to_its_sample_period_as_far_as_its_clock_goes() {
     assert_eq!(
         words.as_deref(),
         Some(
-            "samples come every 20.300 ms, not every 20.000 ms as was told: correct the sample rate or the times"
+            "samples come every 20.300 ms, not every 20.000 ms as stated: correct the sample rate or the times"
         )
     );
 }

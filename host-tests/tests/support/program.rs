@@ -37,11 +37,14 @@ pub fn reason(output: &Output) -> String {
 #[track_caller]
 pub fn assert_misuse(arguments: &[&str], words: &str) {
     let output = meridian(arguments);
-    let told = text(&output.stderr);
-    assert_eq!(code(&output), 2, "{arguments:?}: {told}");
-    assert_eq!(told.lines().count(), 1, "{arguments:?}: {told}");
-    assert!(told.starts_with("error: ") && told.contains(words), "{arguments:?}: {told}");
-    assert!(!told.contains("For more information"), "{arguments:?}: {told}");
+    let reported = text(&output.stderr);
+    assert_eq!(code(&output), 2, "{arguments:?}: {reported}");
+    assert_eq!(reported.lines().count(), 1, "{arguments:?}: {reported}");
+    assert!(
+        reported.starts_with("error: ") && reported.contains(words),
+        "{arguments:?}: {reported}"
+    );
+    assert!(!reported.contains("For more information"), "{arguments:?}: {reported}");
     assert!(output.stdout.is_empty(), "{arguments:?}");
 }
 

@@ -12,7 +12,7 @@
 //! The newest conversion is read by command, not straight from the shift register: the direct way
 //! saves one byte, but allows no other clocking since data-ready and must end 2.2 µs before the next
 //! conversion (figure 9-43), which a late task cannot promise. By command data are valid at any
-//! time, and the status byte tells whether they are new.
+//! time, and the status byte shows whether they are new.
 //!
 //! Time: at 400 SPS the first conversion comes 2.855 ms after the start, the others every 2.5 ms, and
 //! each shows the input as it was 1.4 ms before, in the mean ([`Configuration::latency`]).

@@ -122,7 +122,7 @@ impl<S: SpiDevice, D: DelayNs> Tmc5160<S, D> {
 
     /// Stops the motor, checks and configures the chip, tests the bridges, and leaves it standing in
     /// position mode. After a loss of supply the position is zero wherever the stage stands, and the
-    /// chip cannot tell afterwards: home after every start.
+    /// chip cannot detect afterwards: home after every start.
     ///
     /// # Errors
     /// [`Fault::Identity`] for another chip or one strapped to external steps, [`Fault::NotReady`] where

@@ -186,7 +186,7 @@ impl TiltRate {
 /// Fits the tilt to the dwells' mean forces, for gravity in m/s² and the 1σ of each accelerometer
 /// bias in m/s² (zero: taken as free of bias).
 ///
-/// The mount tells whether the accelerometer rides on the stage. The scatter of the dwells about a
+/// The mount determines whether the accelerometer rides on the stage. The scatter of the dwells about a
 /// first fit weights the second. Without forces the platform is taken as level and the tilt as not measured.
 pub fn tilt<'a>(
     mount: &Mount,

@@ -19,7 +19,7 @@ const TILT: f64 = 0.05 * DEGREE;
 const BOUND: f64 = 4.0;
 /// Greatest 1σ with which the gyros must be able to determine a rotation about the vertical, rad:
 /// 0.5°.
-const TELLING: f64 = 0.5 * DEGREE;
+const DETERMINED: f64 = 0.5 * DEGREE;
 /// Version of the stored layout.
 const VERSION: u32 = 1;
 
@@ -111,7 +111,7 @@ pub(super) fn check(
         return Err(RecallRefusal::Turned { sigmas: away });
     }
     let sigma = rotation_sigma(before, setting, &sigmas);
-    if sigma > TELLING || sigma.is_nan() {
+    if sigma > DETERMINED || sigma.is_nan() {
         return Err(RecallRefusal::CannotTell { sigma: sigma * DEGREES });
     }
     Ok(())

@@ -27,7 +27,7 @@ pub(super) const PERIOD_TOLERANCE: f64 = 0.01;
 /// oscillator accuracy), which holds for a board's samples.
 pub const CONVERTER_TOLERANCE: f64 = 0.02;
 
-/// Refuses samples whose time stamps show a period of `found` s where `told` s is configured,
+/// Refuses samples whose time stamps show a period of `found` s where `stated` s is configured,
 /// beyond a relative tolerance.
 pub(super) fn contradiction(stated: f64, found: f64, tolerance: f64) -> Option<Refusal> {
     let is_off = (found / stated - 1.0).abs() > tolerance;

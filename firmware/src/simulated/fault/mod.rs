@@ -159,7 +159,7 @@ pub enum Fault {
 pub enum Notice {
     /// Nothing need be noticed: the fault may pass without a trace, or cannot be seen.
     Nothing,
-    /// Something must be told that a healthy run does not tell.
+    /// Something must be reported that a healthy run does not report.
     Anything,
     /// This device must be named.
     Named(Device),

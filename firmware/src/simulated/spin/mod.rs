@@ -1,4 +1,4 @@
-//! One simulated flight of a body in fast rotation: what is true, what the board is told.
+//! One simulated flight of a body in fast rotation: what is true, what the board is given.
 
 mod course;
 
@@ -72,7 +72,7 @@ impl Default for SpinScenario {
 }
 
 impl SpinScenario {
-    /// What the board is told of the gyro about x.
+    /// What the board is given about the gyro about x.
     #[must_use]
     pub fn setting(&self) -> Setting {
         Setting {
@@ -90,7 +90,7 @@ impl SpinScenario {
         Flight::new(&self.setting(), [0.0; 2], Some(self.seconds))
     }
 
-    /// What the board is told of its devices; none where a scale factor is none.
+    /// What the board is given about its devices; none where a scale factor is none.
     #[must_use]
     pub fn configuration(&self) -> Option<SpinConfiguration> {
         let gyro = |full: f64| Channel::gyro(FULL_VOLTS / full, LIMIT * full, SAMPLE_RATE);

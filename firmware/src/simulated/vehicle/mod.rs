@@ -1,4 +1,4 @@
-//! One simulated alignment in a vehicle that goes from stop to stop: what is true, what the board is told.
+//! One simulated alignment in a vehicle that goes from stop to stop: what is true, what the board is given.
 //!
 //! Site, gyro and sample rate are those of a [`Scenario`], which also says how the vehicle faces at first;
 //! the way, the stops and the calibrated accelerometer are its own.
@@ -145,7 +145,7 @@ impl VehicleScenario {
         Self { base, stops: 2, stop_s: BRIEF_STOP_SECONDS, drive_s: BRIEF_DRIVE_SECONDS, ..usual }
     }
 
-    /// What the board is told of place and instrument; none where the latitude is none.
+    /// What the board is given about place and instrument; none where the latitude is none.
     #[must_use]
     pub fn setting(&self) -> Option<Setting> {
         let common = setting::Setting {
@@ -184,7 +184,7 @@ impl VehicleScenario {
         Some((self.setting()?, procedure))
     }
 
-    /// What the keeper is told of place and gyros; none where the latitude is none.
+    /// What the keeper is given about place and gyros; none where the latitude is none.
     #[must_use]
     pub fn keeper(&self) -> Option<keep::Setting> {
         let latitude = Latitude::from_degrees(self.base.latitude_deg)?;
@@ -202,7 +202,7 @@ impl VehicleScenario {
         )
     }
 
-    /// What the board is told of its devices.
+    /// What the board is given about its devices.
     #[must_use]
     pub fn configuration(&self) -> configuration::VehicleConfiguration {
         configuration::VehicleConfiguration::at(self.base.sample_rate_hz)

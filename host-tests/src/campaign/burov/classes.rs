@@ -221,7 +221,7 @@ impl Class {
         Answer { error: azimuth_error(angle, 180.0), sigma, limit }
     }
 
-    /// What the keeper is told: the class's gyro about the axis down, coarse ones beside it.
+    /// What the keeper is given: the class's gyro about the axis down, coarse ones beside it.
     fn setting(&self) -> Setting {
         Setting::coarse(latitude(), 1.0 / RATE_HZ).with_down(Known {
             noise: self.grade.noise(),

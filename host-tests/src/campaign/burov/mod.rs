@@ -64,7 +64,7 @@ impl Grade {
         [self.n_deg_sqrt_h, self.b_deg_h, self.k_deg_h_sqrt_h, self.r_deg_h2]
     }
 
-    /// What a planner is told of it on such a stage.
+    /// What a planner is given about it on such a stage.
     fn conditions(&self, rotation: Rotation) -> Conditions {
         Conditions {
             noise: self.noise(),

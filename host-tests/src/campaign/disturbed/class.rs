@@ -6,9 +6,9 @@ use orientation::error::Refusal;
 use serde::Serialize;
 
 use super::chance::Chance;
+use crate::assumptions::unseen::Unseen;
 use crate::campaign::statistics::Answer;
 use crate::output::azimuth_error;
-use crate::untold::unseen::Unseen;
 
 /// Error in σ beyond which an answer is wrong.
 pub const WRONG_SIGMAS: f64 = 5.0;
@@ -22,14 +22,14 @@ pub struct Aligned {
     pub answer: Result<Answer, String>,
     /// Error when nothing is checked, °; none where even that has no answer.
     pub unchecked_deg: Option<f64>,
-    /// By how much a slow motion of the base may put the answer off unseen, as is told beside it, °.
-    pub untold_deg: f64,
+    /// By how much a slow motion of the base may put the answer off unseen, as is stated beside it, °.
+    pub unseen_deg: f64,
 }
 
 impl Aligned {
     /// A recording that was not even begun.
     pub(super) fn refused(reason: impl fmt::Display) -> Self {
-        Self { answer: Err(reason.to_string()), unchecked_deg: None, untold_deg: 0.0 }
+        Self { answer: Err(reason.to_string()), unchecked_deg: None, unseen_deg: 0.0 }
     }
 
     /// A session's answer, if it came to its end, the azimuth when nothing is checked, °, and the slow motions of the
@@ -45,7 +45,7 @@ impl Aligned {
         Self {
             answer: answer.unwrap_or_else(|| Err("the session did not end".to_owned())),
             unchecked_deg: unchecked_deg.map(|azimuth| azimuth_error(azimuth, truth_deg)),
-            untold_deg: shifts.fold(0.0, f64::max),
+            unseen_deg: shifts.fold(0.0, f64::max),
         }
     }
 }
@@ -55,7 +55,7 @@ pub(super) trait Subject: Clone {
     /// The random stream of its faults: none of those that a world draws from.
     const FAULT: u64;
 
-    /// A healthy one; what it is told of itself is true.
+    /// A healthy one; what is stated about it is true.
     fn drawn(seed: u64) -> Self;
     /// The seed from which it is drawn.
     fn seed(&self) -> u64;
@@ -107,9 +107,9 @@ impl Pair {
         Some(if sigmas.is_nan() { f64::INFINITY } else { sigmas })
     }
 
-    /// Whether the fault's answer is wrong, and by how much it may be is told beside it.
+    /// Whether the fault's answer is wrong, and by how much it may be is stated beside it.
     pub(super) fn is_reported(&self) -> bool {
-        let is_within = |answer: &Answer| answer.error.abs() <= self.faulty.untold_deg;
+        let is_within = |answer: &Answer| answer.error.abs() <= self.faulty.unseen_deg;
         self.is_wrong() && self.faulty.answer.as_ref().is_ok_and(is_within)
     }
 
@@ -146,7 +146,7 @@ pub struct Fault {
 pub struct Class {
     /// What happens.
     pub fault: Fault,
-    /// Part of the answers that may be wrong; zero but where the data cannot tell.
+    /// Part of the answers that may be wrong; zero but where the data cannot show it.
     pub wrong_allowed: f64,
     /// The run of a seed and a severity.
     pub(super) draw: Box<dyn Fn(u64, f64) -> Pair + Send + Sync>,

@@ -158,7 +158,7 @@ fn clips<R: Rig>(fault: &str) -> Class {
 }
 
 /// Two of the accelerometer's axes are flipped together or turned by 90°, under so many degrees of tilt. As far as
-/// the Earth-rate ratio tells: what the wrong axes add lies along the Earth rate.
+/// the Earth-rate ratio shows: what the wrong axes add lies along the Earth rate.
 pub(super) fn accelerometer_axes<R: Rig>(drawn: fn(u64) -> R) -> Class {
     let fault = "two of the accelerometer's axes are flipped together or turned by 90°";
     let fault = of::<R>("accelerometer-axes", fault, [0.01, 5.0], "° of tilt");

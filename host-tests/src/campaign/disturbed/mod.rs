@@ -1,4 +1,4 @@
-//! Recordings with and without a fault that the data can tell: what gets past every check, and what is
+//! Recordings with and without a fault that the data can show: what gets past every check, and what is
 //! refused without need.
 //!
 //! A class is one fault of any severity, from harmless to gross. Each of its runs draws an instrument, a place
@@ -100,7 +100,7 @@ pub struct Row {
     /// Wrong answers that rest on few residuals.
     pub wrong_of_few: usize,
     /// Wrong answers whose error a slow motion of the base may explain, as is stated beside them.
-    pub wrong_told: usize,
+    pub wrong_stated: usize,
     /// The greatest error of an answer in its σ.
     pub worst_sigmas: f64,
     /// Seed, severity and error in σ of every wrong answer.
@@ -155,7 +155,7 @@ fn summary(class: &Class, all: &[Run]) -> Row {
         answered,
         wrong,
         wrong_of_few,
-        wrong_told: count(Pair::is_reported),
+        wrong_stated: count(Pair::is_reported),
         worst_sigmas: all.iter().filter_map(|run| run.pair.sigmas()).fold(0.0, f64::max),
         wrong_runs: such(Pair::is_wrong)
             .filter_map(|run| Some((run.seed, run.severity, run.pair.sigmas()?)))

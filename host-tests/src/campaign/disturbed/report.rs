@@ -67,8 +67,8 @@ fn of_classes(rows: &[Row]) -> Part {
         .column("class", |row| &row.fault.name)
         .column("runs", |row| row.runs)
         .column("answered", |row| row.answered)
-        .column("wrong (few, told)", |row| {
-            format!("{} ({}, {})", row.wrong, row.wrong_of_few, row.wrong_told)
+        .column("wrong (few, stated)", |row| {
+            format!("{} ({}, {})", row.wrong, row.wrong_of_few, row.wrong_stated)
         })
         .fixed("worst, σ", 1, |row| row.worst_sigmas)
         .column("harmless answered", |row| format!("{} of {}", row.harmless_answered, row.harmless))

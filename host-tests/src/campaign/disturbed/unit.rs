@@ -91,7 +91,7 @@ impl Grade {
         .leaning(chance.scaled(0.02, 2.0), chance.between(0.0, 360.0))
     }
 
-    /// What is told of it, all true; of its noise only where that is known.
+    /// What is stated about it, all true; of its noise only where that is known.
     pub(super) fn header(&self, rate_hz: f64, knows_noise: bool) -> Header {
         Header {
             latitude_deg: Some(self.latitude_deg),

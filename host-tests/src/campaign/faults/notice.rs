@@ -1,4 +1,4 @@
-//! What a board tells that a healthy one does not tell.
+//! What a board reports that a healthy one does not.
 
 use firmware::event::Event;
 use firmware::simulated::fault::Notice;
@@ -7,7 +7,7 @@ use orientation::error::Refusal;
 use orientation::keep::Realigned;
 use orientation::keep::spin::Condition;
 
-/// The first event that tells of something wrong.
+/// The first event that reports something wrong.
 pub(super) fn first(events: &[Event]) -> Option<&Event> {
     events.iter().find(|event| is_wrong(event))
 }
@@ -21,7 +21,7 @@ pub(super) fn is_noticed(notice: Notice, events: &[Event]) -> Option<bool> {
     }
 }
 
-/// The device that an event tells something wrong of.
+/// The device about which an event reports something wrong.
 fn blamed(event: &Event) -> Option<Device> {
     match event {
         Event::Lost(device, _)
@@ -36,7 +36,7 @@ fn blamed(event: &Event) -> Option<Device> {
     }
 }
 
-/// Whether an event tells of something wrong.
+/// Whether an event reports something wrong.
 fn is_wrong(event: &Event) -> bool {
     match event {
         Event::HandedOver(.., outcome) => matches!(outcome, Realigned::Disagrees { .. }),

@@ -1,4 +1,4 @@
-//! One run of a platform with a fault in its middle, on the shortest schedule that tells.
+//! One run of a platform with a fault in its middle, on the shortest schedule that shows it.
 
 use firmware::event::Event;
 use firmware::health::Health;

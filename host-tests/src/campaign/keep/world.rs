@@ -151,8 +151,8 @@ impl Sheet {
         }
     }
 
-    /// As the keeper is told of it.
-    fn told(&self) -> Gyro {
+    /// As the keeper is given it.
+    fn stated(&self) -> Gyro {
         Gyro {
             noise: self.grade.noise(),
             bias_sigma: self.bias_deg_h * DEGREE_PER_HOUR,
@@ -177,9 +177,9 @@ impl Fitting {
         }
     }
 
-    /// What the keeper is told at first: on a two-frame mount the third of the pair's kind shows the down axis.
+    /// What the keeper is given at first: on a two-frame mount the third of the pair's kind shows the down axis.
     fn setting(&self, latitude: Latitude) -> Setting {
-        let [level, ..] = self.gyros().map(|sheet| sheet.told());
+        let [level, ..] = self.gyros().map(|sheet| sheet.stated());
         let setting = Setting::precise(latitude, 1.0 / RATE_HZ, level);
         Setting { force_bias_sigma: self.force_bias_m_s2, ..setting }
     }
@@ -272,7 +272,7 @@ impl Board {
             }
         };
         let keeper = Keeper::new(&fitting.setting(latitude()));
-        Self { keeper, path: Converter::default(), coarse, precise: fitting.precise().told() }
+        Self { keeper, path: Converter::default(), coarse, precise: fitting.precise().stated() }
     }
 
     fn push(&mut self, sample: &VehicleSample) {

@@ -28,7 +28,7 @@ const GOLDEN_ANGLE_DEG: f64 = 137.507_764;
 const WHOLE: f64 = 1e-9;
 /// Time for level, rate-modulated turns and changes of speed, s.
 const SPARE: f64 = 600.0;
-/// What a solver is told of a gyro without noise, °/√h: less than any.
+/// What a solver is given about a gyro without noise, °/√h: less than any.
 const LEAST_WALK: f64 = 0.000_2;
 
 /// What a session made of a world.

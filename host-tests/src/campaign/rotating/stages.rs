@@ -21,7 +21,7 @@ pub const WALKS: [f64; 2] = [0.000_2, 0.02];
 /// An integrated g-sensitivity that cancels between the senses, over the horizontal Earth rate.
 const RATIO: f64 = 0.004;
 
-/// What the solver is told of such a gyro: no more than what size the part may have that cancels, rad/s.
+/// What the solver is given about such a gyro: no more than what size the part may have that cancels, rad/s.
 const SENSOR: Sensor =
     Sensor { is_flat: true, molecular_sigma: RATIO * TAU * TURN_HZ, settle_seconds: 1.0 };
 

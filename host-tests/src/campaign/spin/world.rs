@@ -14,7 +14,7 @@ use crate::methods::spin::samples::Converter;
 pub const RATE_HZ: f64 = 10_000.0;
 /// Scale error of the gyro: the paper's.
 pub const SCALE_ERROR: f64 = 1e-3;
-/// 1σ of the scale error that the core is told.
+/// 1σ of the scale error that the core is given.
 pub const SCALE_SIGMA: f64 = 0.01;
 
 /// What a flight is like.

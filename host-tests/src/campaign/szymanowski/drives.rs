@@ -21,7 +21,7 @@ pub const LATITUDE_DEG: f64 = 52.0;
 /// The gyros' N, °/√h, and 1σ of their biases, °/h.
 pub const GYRO: [f64; 2] = [0.05, 1.0];
 
-/// What a row's vehicles do, and what the session is told of it.
+/// What a row's vehicles do, and what the session is given of it.
 #[derive(Clone, Copy, Debug)]
 struct Case {
     name: &'static str,
@@ -31,7 +31,7 @@ struct Case {
     knows_displacement: bool,
 }
 
-/// Two stops of which all is told.
+/// Two stops of which all is given.
 const TWO: Case = Case { name: "two stops", stops: 2, is_stated: true, knows_displacement: true };
 
 const CASES: [Case; COUNT] = [

@@ -50,12 +50,12 @@ impl Day {
     }
 }
 
-/// What the session is told of a day.
+/// What the session is given of a day.
 #[derive(Clone, Debug)]
 pub struct Known {
     /// Its stops.
     pub rests: Rests,
-    /// Whether it is told how far they lie from each other.
+    /// Whether it is given how far they lie from each other.
     pub knows_displacement: bool,
 }
 
@@ -111,7 +111,7 @@ fn at_rate(day: &Scenario) -> Scenario {
     day
 }
 
-/// What the session is told of place and sensors.
+/// What the session is given about place and sensors.
 fn setting(day: &Scenario) -> Option<Setting> {
     let [gyro, ..]: [GyroConfiguration; 3] = day.vehicle.gyros;
     let accelerometer: AccelerometerConfiguration = day.vehicle.accelerometer;

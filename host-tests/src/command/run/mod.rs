@@ -136,7 +136,7 @@ impl Carrier {
     }
 }
 
-/// Runs the board and tells what came of it.
+/// Runs the board and reports what came of it.
 pub fn run(options: &RunOptions, as_json: bool) -> Result<Answer, String> {
     let (platform, options) = options.platform.of();
     let Common { seed, fault, report, .. } = options.common();

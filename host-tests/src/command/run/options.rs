@@ -69,18 +69,18 @@ impl Common {
     ) -> Result<(), String> {
         self.record.as_ref().map_or(Ok(()), |path| {
             recorder::write(path, carrier, run, samples)
-                .map_err(|error| unwritten::told("the recording", path, &error))
+                .map_err(|error| unwritten::message("the recording", path, &error))
         })
     }
 
-    /// Makes the file of the recording before the run, so that one that cannot be written is told at once.
+    /// Makes the file of the recording before the run, so that one that cannot be written is reported at once.
     ///
     /// # Errors
     /// The file cannot be made; the words say why.
     pub fn open(&self) -> Result<(), String> {
         self.record.as_ref().map_or(Ok(()), |path| {
             let opened = OpenOptions::new().append(true).create(true).open(path);
-            opened.map(drop).map_err(|error| unwritten::told("the recording", path, &error))
+            opened.map(drop).map_err(|error| unwritten::message("the recording", path, &error))
         })
     }
 }
@@ -91,7 +91,7 @@ pub struct Place {
     /// Latitude in degrees, north positive.
     #[arg(long, value_name = "DEGREES", default_value = "47.58", value_parser = within::<90>)]
     latitude: f64,
-    /// True azimuth of body x in degrees; the board is not told.
+    /// True azimuth of body x in degrees; the board is not given it.
     #[arg(long, value_name = "DEGREES", default_value = "213.7", value_parser = within::<360>)]
     azimuth: f64,
     /// The gyro (fog).

@@ -37,8 +37,8 @@ fn turns(text: &str) -> Result<f64, String> {
     number(text, 20.0, 105.0, "a number of turns a second")
 }
 
-/// What a simulated board is told.
-const ASSUMED: &str = "what the board is told of its gyros";
+/// What a simulated board is given.
+const ASSUMED: &str = "what the board is given about its gyros";
 /// Greatest 1σ of a roll that is one, rad: 10°, as a replay has it.
 const REQUIRED_SIGMA: f64 = 10.0 * DEGREE;
 

@@ -58,7 +58,7 @@ struct BaseOptions {
     /// Stands still first for so many seconds, to know the gyro's noise and to plan by it.
     #[arg(long, value_name = "SECONDS", value_parser = seconds::<60, 36_000>)]
     survey: Option<f64>,
-    /// The half of the circle in which the board is told that the azimuth lies: two positions need it.
+    /// The half of the circle in which the board is given that the azimuth lies: two positions need it.
     #[arg(long, value_enum)]
     half: Option<Half>,
     /// Seconds at each position (10).

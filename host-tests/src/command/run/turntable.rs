@@ -51,7 +51,7 @@ pub struct TurntableOptions {
     date: Option<u64>,
 }
 
-/// None, or enough to tell an axis misalignment from the Earth rate.
+/// None, or enough to distinguish an axis misalignment from the Earth rate.
 fn modulated_turns(text: &str) -> Result<u32, String> {
     match text.parse::<u32>() {
         Ok(turns) if turns == 0 || (4..=1000).contains(&turns) => Ok(turns),
@@ -93,7 +93,7 @@ fn speeds(text: &str) -> Result<[f64; 2], String> {
     if alike { Err("two speeds must be apart by a fifth at least".to_owned()) } else { Ok(both) }
 }
 
-/// Speeds closer than this tell nothing apart.
+/// Speeds closer than this distinguish nothing.
 const LEAST_RATIO: f64 = 1.2;
 
 impl TurntableOptions {
@@ -186,5 +186,5 @@ fn recalled<R>(run: &Run<R>) -> impl Iterator<Item = &Remembered> {
     })
 }
 
-/// What a simulated board is told.
-const ASSUMED: &str = "what the board is told of place and instrument";
+/// What a simulated board is given.
+const ASSUMED: &str = "what the board is given about place and instrument";

@@ -39,15 +39,15 @@ pub struct VehicleOptions {
     /// Seconds of driving from stop to stop (600).
     #[arg(long, value_name = "SECONDS", value_parser = seconds::<10, 3600>)]
     drive_seconds: Option<f64>,
-    /// The board is not told how far it has come.
+    /// The board is not given how far it has come.
     #[arg(long)]
     no_displacement: bool,
     #[command(flatten)]
     keeping: KeepingOptions,
 }
 
-/// What a simulated board is told.
-const ASSUMED: &str = "what the board is told of place and instrument";
+/// What a simulated board is given.
+const ASSUMED: &str = "what the board is given about place and instrument";
 
 impl VehicleOptions {
     fn scenario(&self) -> VehicleScenario {

@@ -62,7 +62,7 @@ pub fn write<C: Carrier>(
     to.flush()
 }
 
-/// Writes what a board was told: what keys of their own say of place and instrument, then all that its session was
+/// Writes what a board was given: what keys of their own say of place and instrument, then all that its session was
 /// given.
 fn header(
     to: &mut impl Write,

@@ -42,7 +42,7 @@ impl Carrier for FramesScenario {
     }
 }
 
-/// Writes what a board was told at the begin, for a survey changes it, and what it measured.
+/// Writes what a board was given at the beginning, for a survey changes it, and what it measured.
 fn write(
     to: &mut impl Write,
     scenario: &Scenario,

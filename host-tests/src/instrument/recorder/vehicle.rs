@@ -52,7 +52,7 @@ fn mean_rate(turned: AngleIncrement, period_s: f64) -> f64 {
     if turned.is_saturated() { GREATEST_BODY_RATE } else { turned.rad() / period_s }
 }
 
-/// Writes where the vehicle stood, and what the board was told of how far from the first stop that was.
+/// Writes where the vehicle stood, and what the board was given of how far from the first stop that was.
 fn stops(to: &mut impl Write, run: &VehicleRun) -> io::Result<()> {
     let stops = run.run.replay.stops();
     if stops.is_empty() {

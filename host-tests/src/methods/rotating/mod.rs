@@ -15,6 +15,7 @@ use orientation::signal::Sample;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce};
 
 use self::part::Part;
+use crate::assumptions;
 use crate::median::median;
 use crate::methods::asked::Asked;
 use crate::methods::error::ReplayError;
@@ -22,7 +23,6 @@ use crate::methods::limits::{limits, saturated};
 use crate::recording::period::period_s;
 use crate::recording::{self, Body, GIVEN, Given, Header, RotatingRow};
 use crate::setting::Described;
-use crate::untold;
 
 /// A finished replay.
 #[derive(Clone, Debug)]
@@ -88,7 +88,7 @@ pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, Rep
     let setting = Setting { encoder_zero_sigma, harmonics_known: false, rate_step, ..setting };
     let session = follow(setting, rows, 1.0 / rate);
     let session = session.map_err(ReplayError::Procedure)?;
-    assumed.extend(untold::of_platform(&session));
+    assumed.extend(assumptions::of_platform(&session));
     let zero_s = rows.first().map_or(0.0, |row| row.time_s);
     Ok(Replay { session, zero_s, assumed })
 }

@@ -1,4 +1,4 @@
-//! What the data of a spinning body can tell at best: their noise, and the Cramér–Rao bound of the roll.
+//! What the data of a spinning body can show at best: their noise, and the Cramér–Rao bound of the roll.
 //!
 //! Turn by turn of the gyro's angle both forces are fitted with their first harmonic, which may grow and
 //! turn evenly, over a parabola, which the square of the rate draws. What is left over is noise. A sample
@@ -13,7 +13,7 @@ use orientation::units::{SpinForce, TURN};
 
 /// Columns of the fit of one turn: 1, u, cos, sin, u cos, u sin. A parabola would be mistaken for a turn.
 const COLUMNS: usize = 6;
-/// Fewest samples of a turn from which noise is told.
+/// Fewest samples of a turn from which noise is estimated.
 const FEWEST: usize = 2 * COLUMNS;
 /// The sum of the squared binomial coefficients of a sixth difference.
 const SIXTH: f64 = 924.0;
@@ -98,14 +98,14 @@ fn of_turn(samples: &[SpinSample]) -> Option<[f64; 2]> {
     Some([(up * up + across * across - noise).max(0.0).sqrt(), variance])
 }
 
-/// Angle random walk of the gyro, rad/√s, where only its rates, rad/s, tell.
+/// Angle random walk of the gyro, rad/√s, where only its rates, rad/s, show it.
 #[must_use]
 pub fn gyro_walk(rates: &[f64], period_s: f64) -> f64 {
     white(rates) * period_s.sqrt()
 }
 
 /// White noise of a signal, 1σ of a sample: sixth differences leave nothing of what changes slowly. A stretch over
-/// which it is stuck tells nothing.
+/// which it is stuck shows nothing.
 #[must_use]
 pub(super) fn white(rates: &[f64]) -> f64 {
     const WEIGHTS: [f64; 7] = [1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0];

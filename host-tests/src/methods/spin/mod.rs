@@ -1,4 +1,4 @@
-//! Recordings of spinning bodies: replay through the three methods of the core, and what the data can tell
+//! Recordings of spinning bodies: replay through the three methods of the core, and what the data can show
 //! at best.
 //!
 //! The types that come in here hold no truth; [`errors`] compares with it afterwards.
@@ -23,7 +23,7 @@ use crate::recording::{Body, GIVEN, Given, Header, SpinRow};
 /// 1σ of a gyro's scale error of which the header says nothing: 1 %.
 pub const SCALE_SIGMA: f64 = 0.01;
 
-/// The methods in the order in which they are told; the last one is the answer.
+/// The methods in the order in which they are reported; the last one is the answer.
 pub const METHODS: [Method; 3] = [Method::Extrema, Method::Interpolated, Method::PhaseLocked];
 
 /// The name of a method in tables.

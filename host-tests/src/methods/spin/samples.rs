@@ -25,7 +25,7 @@ impl Converter {
 
     /// The sample of a time, s: rates about body x, y and z, rad/s, forces along y and z, m/s². Between two
     /// moments a rate is taken to change evenly; before the first one nothing has turned, and of a gap only
-    /// its last period is told, as on a board. What is not a number goes out as a sensor at its limit, a force
+    /// its last period is reported, as on a board. What is not a number goes out as a sensor at its limit, a force
     /// as none.
     #[must_use]
     pub fn sample(&mut self, time_s: f64, rates: [f64; 3], force: [f64; 2]) -> SpinSample {

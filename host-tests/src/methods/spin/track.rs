@@ -4,9 +4,7 @@ use orientation::keep::spin::{Method, Setting, Spin, State};
 use orientation::signal::SpinSample;
 
 use crate::output::degrees;
-
-/// Points that a curve over the time has at most.
-const POINTS: usize = 2000;
+use crate::report::POINTS;
 
 /// What is known at one sample.
 #[derive(Clone, Copy, Debug)]

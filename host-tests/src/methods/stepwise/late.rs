@@ -1,8 +1,8 @@
-//! Columns of a stage's recording that are not of the same moment, as both of its ends tell.
+//! Columns of a stage's recording that are not of the same moment, as both of its ends show.
 //!
 //! A column that is late repeats its first value, one that is early its last. A gyro that does so for a whole dwell shows
 //! at each position what belongs to another; a stage's column that does so makes the first dwell, or the last, longer
-//! than the others, and the rate steps within it. By less than a dwell, the dwells themselves tell.
+//! than the others, and the rate steps within it. By less than a dwell, the dwells themselves show it.
 
 use std::fmt;
 
@@ -95,7 +95,7 @@ pub fn check_gyro(
 /// What an azimuth from samples assumes of their columns: one that is early or late by whole dwells, and begins and ends
 /// as the others do, shows nothing of it.
 #[must_use]
-pub fn untold(session: &Session) -> Option<String> {
+pub fn assumption(session: &Session) -> Option<String> {
     session.conclusion().filter(|conclusion| conclusion.verdict.is_ok())?;
     let angle = |pair: &[Dwell]| (pair[1].stage - pair[0].stage).signed_rad().abs();
     let mut steps: Vec<f64> = session.dwells().windows(2).map(angle).collect();

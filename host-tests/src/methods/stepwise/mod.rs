@@ -23,11 +23,11 @@ use super::asked::Asked;
 use super::error::ReplayError;
 use super::limits::{limits, saturated};
 use super::stops::samples::dead_accelerometer;
+use crate::assumptions;
 use crate::median::median;
 use crate::recording::period::period_s;
 use crate::recording::{Body, DwellRow, GIVEN, Given, Header, Kind, StageRow};
 use crate::setting::Described;
-use crate::untold;
 
 /// By which of its names an alignment in positions is called; the fit is the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,8 +117,8 @@ pub fn replay(
         Stops::Averages(rows) => dwells(rows, setting, asked.criterion, progress),
     }?;
     late::check_stage(&session).map_err(ReplayError::Late)?;
-    assumed.extend(untold::of_stage(&session));
-    assumed.extend(late::untold(&session).filter(|_| body.kind() == Kind::Stage));
+    assumed.extend(assumptions::of_stage(&session));
+    assumed.extend(late::assumption(&session).filter(|_| body.kind() == Kind::Stage));
     let method = Method::named(asked.method);
     Ok(Replay { method, session, setting, assumed })
 }
@@ -208,7 +208,7 @@ fn followed(
     })
 }
 
-/// Feeds samples to a session until it has finished or they end, as this event tells it.
+/// Feeds samples to a session until it has finished or they end, as this event states it.
 pub fn drive(
     session: &mut Session,
     samples: impl Iterator<Item = Sample>,

@@ -25,13 +25,13 @@ use orientation::units::{DEGREE_PER_HOUR, DEGREE_PER_SQRT_HOUR, DEGREES_PER_RADI
 
 use self::noise::White;
 use self::way::{Leg, Slip};
+use crate::assumptions;
 use crate::median::median;
 use crate::methods::asked::Asked;
 use crate::methods::error::ReplayError;
 use crate::recording::period::{Steps, period_s};
 use crate::recording::{Body, GIVEN, Given, Header, ImuRow, Kind};
 use crate::setting::Described;
-use crate::untold;
 
 /// How a vehicle's azimuth is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -125,7 +125,7 @@ fn again(
     Ok(Replay { method: Method::Siap, session, zero_s: 0.0, criteria, assumed })
 }
 
-/// Refuses displacements that the forces on the way contradict, and tells where they cannot.
+/// Refuses displacements that the forces on the way contradict, and states where they cannot.
 fn check_way(body: &Body, header: &Header, mut replay: Replay) -> Result<Replay, ReplayError> {
     let found = replay.session.conclusion().filter(|it| it.verdict.is_ok()).and_then(|it| it.found);
     let (Some(rows), Some(found)) = (samples::rows(body), found) else { return Ok(replay) };
@@ -138,7 +138,7 @@ fn check_way(body: &Body, header: &Header, mut replay: Replay) -> Result<Replay,
         return Err(ReplayError::Way { stop: leg + 1, stated_m, driven_m, slip });
     }
     if legs.iter().any(Leg::tells_nothing) {
-        replay.assumed.push(untold::WAY_OF_A_VEHICLE.to_owned());
+        replay.assumed.push(assumptions::WAY_OF_A_VEHICLE.to_owned());
     }
     Ok(replay)
 }
@@ -183,11 +183,11 @@ fn follow(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, ReplayE
     let method = stated.unwrap_or_else(|| usual(header, &rows, period_s));
     let rests = rests(header, method, zero_s)?;
     let displacements = displacements(header, asked)?;
-    let mut told = Vec::new();
-    let header = &grade::filled(header, &mut told);
+    let mut substituted = Vec::new();
+    let header = &grade::filled(header, &mut substituted);
     let Described { setting: mut common, mut assumed } = asked.describe(header, body)?;
-    assumed.append(&mut told);
-    assumed.push(untold::AXES_OF_A_VEHICLE.to_owned());
+    assumed.append(&mut substituted);
+    assumed.push(assumptions::AXES_OF_A_VEHICLE.to_owned());
     common.scale_sigma = common.scale_sigma.hypot(astray(header.rate_hz, period_s));
     let setting = setting(header, common, &rows, period_s, method, &mut assumed)?;
     let procedure = Procedure { displacements, ..Procedure::recorded(rests, period_s) };
@@ -204,7 +204,7 @@ fn follow(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, ReplayE
 const NO_WALK: f64 = 1e-3 * LEAST_WALK;
 
 /// Refuses a recording in which a sensor stands still while the others have noise: a part of the rotation is
-/// lost, and nothing else tells.
+/// lost, and nothing else shows it.
 pub(crate) fn check_stuck(rows: &[ImuRow], period_s: f64) -> Result<(), ReplayError> {
     let dead = samples::dead_accelerometer(rows, |row| row.sample.force_m_s2);
     let dead = dead.map(|axis| (["ax_m_s2", "ay_m_s2"][axis], &rows[0], rows.len()));
@@ -282,7 +282,7 @@ fn check_displacements(session: &Session) -> Result<(), ReplayError> {
     }
 }
 
-/// By how much a stated rate misses the times, relative, where they tell.
+/// By how much a stated rate misses the times, relative, where they show it.
 fn astray(rate_hz: Option<f64>, period_s: f64) -> f64 {
     rate_hz.map_or(0.0, |rate| (rate * period_s - 1.0).abs())
 }

@@ -4,7 +4,7 @@
 //! It is taken where the vehicle stood, from the spectrum of the rates: N² is what the noise that is noise of
 //! the angle (quantisation, dither; rising with the square of the frequency, −1 in an Allan deviation) leaves
 //! beneath it, and what sway and engine, whose lines stand above it, leave between them. The coefficients are
-//! those of the Allan variance, which cannot tell a line from a slope.
+//! those of the Allan variance, which cannot distinguish a line from a slope.
 
 use super::floor::{Floor, Spectrum};
 use crate::recording::ImuRow;
@@ -27,9 +27,9 @@ const HELD: f64 = 1.2;
 /// Fewest samples at rest that say something of noise: a spectrum of three axes with a dozen lines beside the
 /// first, which are the window's.
 const LEAST_SAMPLES: usize = 64;
-/// Longest stretch of one spectrum, s: lines of a sixtieth of a Hz tell N from noise of the angle.
+/// Longest stretch of one spectrum, s: lines of a sixtieth of a Hz distinguish N from noise of the angle.
 const LONGEST_S: f64 = 60.0;
-/// Most stretches that are looked at: more tell nothing new.
+/// Most stretches that are looked at: more show nothing new.
 const MOST_STRETCHES: usize = 64;
 /// Time after the wheels stand in which a body rocks, and before they roll again, s.
 const ROCKING_S: [f64; 2] = [4.0, 2.0];

@@ -3,7 +3,7 @@
 //! Between two stops the gyros' rates, less those that they showed at rest, and the forces are integrated from the
 //! level and the azimuth found. What the velocity and the level at the next stop are off then is an even and a
 //! linearly growing acceleration, and is taken off. What is left is good to a tenth of the way: not enough for the
-//! azimuth, but for telling metres from kilometres and north from east.
+//! azimuth, but enough to distinguish metres from kilometres and north from east.
 
 use orientation::align::setting::Setting as Common;
 use orientation::align::stops::stop::Stop;
@@ -100,7 +100,7 @@ impl Leg {
         self.fits(self.stated_m)
     }
 
-    /// Whether it cannot be told from none.
+    /// Whether it cannot be distinguished from none.
     #[must_use]
     pub fn tells_nothing(&self) -> bool {
         self.fits([0.0; 2])

@@ -55,13 +55,13 @@ fn asymptotes(analysis: &Analysis) -> impl Iterator<Item = Series> {
         let curve = times(analysis)
             .map(|tau| (tau, degrees_per_hour(value * terms(tau)[index].sqrt())))
             .filter(|(_, deviation)| (low..high).contains(deviation));
-        let name = format!("{}: {}", coefficient.name, coefficient.told());
+        let name = format!("{}: {}", coefficient.name, coefficient.text());
         Series::new(&name, Style::Dashed, curve)
     })
 }
 
 fn coefficient_table(analysis: &Analysis) -> Table {
-    let row = |coefficient: Coefficient| [coefficient.name.to_owned(), coefficient.told()];
+    let row = |coefficient: Coefficient| [coefficient.name.to_owned(), coefficient.text()];
     let rows = coefficients(&analysis.fit).map(row);
     Table::new("Coefficients (± 1σ)", &["coefficient", "value"], rows)
 }

@@ -34,7 +34,7 @@ fn a_base_that_turns_too_slowly_to_be_seen_is_reported_beside_the_azimuth_that_i
     let mut wrong = 0;
     for class in classes().filter(|class| class.fault.name.ends_with("base-yawing")) {
         let found = row(&class, SLOW_RUNS, &|| ());
-        assert_eq!(found.wrong_told, found.wrong, "{found:?}");
+        assert_eq!(found.wrong_stated, found.wrong, "{found:?}");
         wrong += found.wrong;
     }
     assert!(wrong > 0, "none is wrong at all");

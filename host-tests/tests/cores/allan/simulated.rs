@@ -121,7 +121,7 @@ fn all_statistics(fits: &[[Estimate; 5]], mix: Mix) -> [Statistics; 5] {
 }
 
 /// Whether N is within 2 %, B and K within 2σ, and Q and R are not observable.
-fn is_told(estimates: &[Estimate; 5]) -> bool {
+fn is_reported(estimates: &[Estimate; 5]) -> bool {
     let [q, n, b, k, r] = *estimates;
     let is_near = |estimate: Estimate, truth: f64| matches!(estimate, Estimate::Found { value, sigma } if (value - truth).abs() < 2.0 * sigma);
     q.value().or(r.value()).is_none()
@@ -138,9 +138,9 @@ fn a_walk_that_hardly_shows_is_found_or_limited() {
     // What is found of a walk that is missed in each fourth record lies nearer than its deviation.
     assert!((0.8..1.2).contains(&b.ratio) && (0.6..1.2).contains(&k.ratio), "{b:?} {k:?}");
     assert!(k.above <= 0.065 && q.found <= 0.05 && r.found <= 0.086, "{k:?} {q:?} {r:?}");
-    let told = fits.iter().filter(|fit| is_told(fit)).count();
-    println!("{told} of {} records tell all of this gyro", fits.len());
-    assert!(told as f64 > 0.65 * fits.len() as f64, "{told}");
+    let reported = fits.iter().filter(|fit| is_reported(fit)).count();
+    println!("{reported} of {} records tell all of this gyro", fits.len());
+    assert!(reported as f64 > 0.65 * fits.len() as f64, "{reported}");
 }
 
 #[test]
@@ -156,7 +156,7 @@ fn walks_beside_bias_instability_have_honest_deviations() {
 }
 
 #[test]
-fn one_slow_noise_is_seldom_told_as_another() {
+fn one_slow_noise_is_seldom_taken_for_another() {
     // The fit's module says how often: these mixes in up to one record of eight.
     let mix = [0.0, 0.02, 0.0, 2.0, 0.0];
     let [_, _, b, k, r] = all_statistics(&fits(mix), mix);

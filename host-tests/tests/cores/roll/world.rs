@@ -17,7 +17,7 @@ pub struct Body {
     pub rate: fn(f64) -> f64,
     /// m/s².
     pub lift: fn(f64) -> f64,
-    /// Gyro shown over true less one, and what the core is told of it.
+    /// Gyro shown over true less one, and what the core is reported of it.
     pub scale: f64,
     pub scale_sigma: f64,
     /// 1σ of each force, m/s².

@@ -98,8 +98,8 @@ fn one_speed_is_off_by_half_the_angle_of_one_plus_the_square_of_gamma() {
         let predicted = 0.5 * im.atan2(1.0 + re);
         assert!((away(slow.angle, sensor.angle) - predicted).abs() < 1e-9);
         // Both speeds tell what one would be off by.
-        let told = solved(&sensor.both(), f64::INFINITY).one_speed;
-        assert!((told - predicted).abs() < 1e-4, "{told} {predicted}");
+        let reported = solved(&sensor.both(), f64::INFINITY).one_speed;
+        assert!((reported - predicted).abs() < 1e-4, "{reported} {predicted}");
     }
 }
 

@@ -17,7 +17,7 @@ use orientation::session::rotating::{Command, Event, Procedure, Session};
 use orientation::signal::Sample;
 use orientation::units::{Angle, AngularRate, Instant, SpecificForce};
 
-/// A platform as the simulation knows it, and what the solver is told of it.
+/// A platform as the simulation knows it, and what the solver is reported of it.
 #[derive(Clone, Debug)]
 pub struct Case {
     pub instruments: InstrumentsConfiguration,

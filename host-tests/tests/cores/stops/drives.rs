@@ -211,11 +211,11 @@ fn stated_stops_do_as_well_as_found_ones(extent: Extent) {
 #[test]
 fn an_unknown_displacement_widens_sigma_as_far_as_the_vehicle_could_have_driven() {
     let middling = |seed| with_gyros(two(seed), 0.01, 0.005);
-    let told = Figures::of(40, middling);
-    told.assert_covered("N 0.01 °/√h, displacement told");
-    let untold = Figures::of(40, |seed| Day { place: Place::Nothing, ..middling(seed) });
-    untold.assert_covered("N 0.01 °/√h, displacement unknown");
-    assert!(untold.sigma() > 1.3 * told.sigma(), "{} {}", untold.sigma(), told.sigma());
+    let known = Figures::of(40, middling);
+    known.assert_covered("N 0.01 °/√h, displacement known");
+    let unknown = Figures::of(40, |seed| Day { place: Place::Nothing, ..middling(seed) });
+    unknown.assert_covered("N 0.01 °/√h, displacement unknown");
+    assert!(unknown.sigma() > 1.3 * known.sigma(), "{} {}", unknown.sigma(), known.sigma());
 }
 
 fn accelerometer_biases_are_covered_by_their_sigma(extent: Extent) {

@@ -139,7 +139,7 @@ fn a_body_that_falls_when_it_is_switched_on_has_no_level_yet() {
 }
 
 #[test]
-fn forces_that_are_missing_or_clipped_for_half_a_minute_are_told() {
+fn forces_that_are_missing_or_clipped_for_half_a_minute_are_reported() {
     let clipped = Some([SpecificForce(i32::MAX), SpecificForce(i32::MIN), SpecificForce(0)]);
     for force in [None, clipped] {
         let known = keep(&coarse(120.0), |time, sample| {

@@ -95,7 +95,7 @@ fn understated(seconds: f64) -> Body {
 }
 
 #[test]
-fn biases_ten_times_as_large_as_stated_are_told_and_learnt_at_rest() {
+fn biases_ten_times_as_large_as_stated_are_reported_and_learnt_at_rest() {
     let body = Body { attitude: hand, acceleration: shaking, ..understated(75.0) };
     let known = keep(&body, |_, _| true);
     assert!(worst_tilt(&known, 1.0) < 3.0, "{}°", worst_tilt(&known, 1.0));
@@ -118,7 +118,7 @@ fn pushed(time: f64) -> [f64; 3] {
 }
 
 #[test]
-fn biases_ten_times_as_large_as_stated_are_told_by_a_body_that_never_rests() {
+fn biases_ten_times_as_large_as_stated_are_shown_by_a_body_that_never_rests() {
     for seed in 1..=3 {
         let body = understated(120.0);
         let known =
@@ -142,7 +142,7 @@ fn a_body_that_moves_as_it_is_switched_on_says_how_little_it_knows() {
 }
 
 #[test]
-fn biases_that_are_as_stated_are_not_told() {
+fn biases_that_are_as_stated_are_not_reported() {
     for body in [coarse(75.0), precise(75.0)] {
         let known = keep(&Body { attitude: hand, acceleration: shaking, ..body }, |_, _| true);
         assert!(known.iter().all(|known| !known.report.is_bias_beyond_stated));

@@ -85,7 +85,7 @@ fn the_budget_is_that_of_the_documentation() {
 }
 
 #[test]
-fn a_changed_register_and_a_reset_are_told_apart() {
+fn a_changed_register_and_a_reset_are_distinguished() {
     let expected = codec::settings(&Configuration::default());
     assert_eq!(codec::compare(&expected, &expected), Ok(()));
     assert_eq!(codec::compare(&[0, 0, 4, 0, 0, 0, 0, 0], &expected), Err(Fault::Reset));

@@ -132,7 +132,7 @@ fn the_gravest_error_is_reported() {
     assert_eq!(error(0, 1 << 26, 0), None, "the prewarning is none");
     assert_eq!(error(0, 0, 4), Some(DriverError::ChargePump));
     assert_eq!(error(100, 1 << 29, 0), Some(DriverError::OpenLoad));
-    assert_eq!(error(0, 1 << 29, 0), None, "not told in standstill");
+    assert_eq!(error(0, 1 << 29, 0), None, "not reported in standstill");
     assert_eq!(error(200_000, 1 << 30, 0), None, "nor in fast motion");
 }
 

@@ -145,8 +145,8 @@ fn a_step_and_a_turn_take_the_stated_times_and_end_exactly() {
             driver.go_to(target).await.expect("it goes");
             let (status, took) = rest(driver).await;
             assert!((took - seconds).abs() < 0.01, "{took} s");
-            let told = Configuration::default().ramp.time(way.unsigned_abs()).as_secs_f64();
-            assert!((took - told).abs() < 0.01, "{took} s, told {told} s");
+            let reported = Configuration::default().ramp.time(way.unsigned_abs()).as_secs_f64();
+            assert!((took - reported).abs() < 0.01, "{took} s, reported {reported} s");
             assert!(status.reached);
             assert_eq!(status.position, target);
             assert_eq!(rig.borrow().environment.microsteps, f64::from(target));
@@ -281,7 +281,7 @@ fn the_bus_budget_is_kept() {
 }
 
 #[test]
-fn errors_of_the_bridges_are_told_and_refuse_motions() {
+fn errors_of_the_bridges_are_reported_and_refuse_motions() {
     on_a_stage(async |driver, rig, _| {
         for (chip_fault, error) in [
             (ChipFault::Overheated, DriverError::OverTemperature),

@@ -32,7 +32,7 @@ fn a_blocked_motor_stops_at_once_until_the_stall_is_acknowledged() {
     });
 }
 
-/// Data sheet, 13.5 and 6.2 (TCOOLTHRS): below its threshold a stall cannot be told.
+/// Data sheet, 13.5 and 6.2 (TCOOLTHRS): below its threshold a stall cannot be reported.
 #[test]
 fn a_slow_motor_does_not_notice_that_it_is_blocked() {
     on_a_stage(async |driver, rig, _| {
@@ -77,7 +77,7 @@ fn a_switch_stops_a_fast_motion_at_once_and_lets_it_go_back() {
         let (status, _) = rest(driver).await;
         assert!(status.left_switch && !status.reached);
         assert!((-100_300..=-100_000).contains(&status.position), "{}", status.position);
-        driver.go_to(-400_000).await.expect("it is told");
+        driver.go_to(-400_000).await.expect("it is stated");
         Timer::after(Duration::from_millis(100)).await;
         assert_eq!(driver.status().await.expect("it is well").position, status.position);
         driver.go_to(0).await.expect("it goes");

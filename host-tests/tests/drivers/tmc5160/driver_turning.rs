@@ -15,19 +15,20 @@ const ACCELERATION: f64 = 420_000.0;
 /// Turns a second of the platform: the paper's.
 const HERTZ: f64 = 0.137;
 
-/// What a velocity that is told every so many seconds makes of the way: it grows by the ramp, then
+/// What a velocity that is reported every so many seconds makes of the way: it grows by the ramp, then
 /// stays.
 fn way(velocities: &[f64], seconds: f64) -> f64 {
     let before = [0.0].iter().chain(velocities);
-    let told = before.zip(velocities);
-    told.map(|(before, now)| {
-        let ramp = (now - before).abs() / ACCELERATION;
-        now * seconds - (now - before) * ramp / 2.0
-    })
-    .sum()
+    let reported = before.zip(velocities);
+    reported
+        .map(|(before, now)| {
+            let ramp = (now - before).abs() / ACCELERATION;
+            now * seconds - (now - before) * ramp / 2.0
+        })
+        .sum()
 }
 
-/// Unevenness by a quarter at 0.83 of the turn's frequency, told 20 times a second: the motor goes
+/// Unevenness by a quarter at 0.83 of the turn's frequency, reported 20 times a second: the motor goes
 /// exactly the way that its ramps make of it, and never stands.
 #[test]
 fn a_velocity_that_changes_twenty_times_a_second_is_followed() {
@@ -47,12 +48,12 @@ fn a_velocity_that_changes_twenty_times_a_second_is_followed() {
             let status = driver.status().await.expect("it is well");
             assert!(!status.standing && !status.stalled);
             let off = f64::from(status.velocity.0) - velocity;
-            assert!(off.abs() < 2.0, "{off} microsteps/s beside the velocity told in step {k}");
+            assert!(off.abs() < 2.0, "{off} microsteps/s beside the velocity reported in step {k}");
         }
         let status = driver.status().await.expect("it is well");
         // The first step begins at full speed, not at rest.
-        let told = way(&velocities, SECONDS) + speed * speed / ACCELERATION / 2.0;
-        let off = f64::from(status.position - begun) - told;
+        let reported = way(&velocities, SECONDS) + speed * speed / ACCELERATION / 2.0;
+        let off = f64::from(status.position - begun) - reported;
         // The position is a look later than the last velocity: 0.2 ms; velocities are rounded to 0.7
         // microsteps/s, for 20 s.
         assert!(off.abs() < 800.0, "{off} microsteps beside the way");

@@ -139,7 +139,7 @@ fn taking_the_stall_stop_back_releases_the_motor() {
 
 /// TCOOLTHRS 240 is 50 000 microsteps/s, and the hysteresis of 1/16 makes it 53 571 on the way up.
 #[test]
-fn stalls_are_told_above_the_threshold_only() {
+fn stalls_are_reported_above_the_threshold_only() {
     let mut bus = running(1, SG_STOP);
     bus.write(0x27, 75_000);
     bus.pass(Duration::from_millis(500));

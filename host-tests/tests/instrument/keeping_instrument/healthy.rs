@@ -1,6 +1,6 @@
 //! Nothing goes wrong.
 
-use super::{drive, frames, keep, sigmas, told, vehicle, when};
+use super::{drive, frames, keep, reported, sigmas, vehicle, when};
 use firmware::event::Event;
 use firmware::ports::NoRecorder;
 use firmware::simulated::keep::Hold;
@@ -84,10 +84,10 @@ fn the_link_tells_attitude_once_a_second_and_no_line_is_cut() {
 #[test]
 fn the_frames_turn_the_precise_gyro_vertical_and_the_keeper_takes_it_there() {
     let found = keep(&frames(1, Hold::of(60.0)), &KeptPlan::of(None));
-    let lines = told(&found.run);
+    let lines = reported(&found.run);
     let place = |words: &str| {
         let line = lines.iter().position(|line| line.contains(words));
-        line.unwrap_or_else(|| panic!("{words} is told: {lines:#?}"))
+        line.unwrap_or_else(|| panic!("{words} is reported: {lines:#?}"))
     };
     assert!(place("handed over") < place("gyro vertical"));
     assert!(place("gyro vertical") < place("the precise gyro shows"));
@@ -103,5 +103,5 @@ fn an_azimuth_from_outside_spares_the_alignment() {
     assert!(handed.is_some_and(|at| (30.0..32.0).contains(&at)), "{handed:?}");
     let [worst, _] = sigmas(&found.kept);
     assert!(worst < 3.5, "{worst} σ");
-    assert!(told(&found.run).iter().any(|line| line.contains("the precise gyro shows")));
+    assert!(reported(&found.run).iter().any(|line| line.contains("the precise gyro shows")));
 }

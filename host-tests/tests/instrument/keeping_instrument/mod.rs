@@ -42,12 +42,12 @@ fn departure(scenario: &FramesScenario) -> f64 {
     scenario.day().legs.first().map_or(0.0, hal_mock::vehicle::Leg::seconds)
 }
 
-/// What was told.
-fn told<R>(run: &Run<R>) -> Vec<String> {
+/// What was reported.
+fn reported<R>(run: &Run<R>) -> Vec<String> {
     run.events.iter().map(|(_, event)| event.to_string()).collect()
 }
 
-/// When the first event of a kind was told, s.
+/// When the first event of a kind was reported, s.
 fn when<R>(run: &Run<R>, is_it: impl Fn(&Event) -> bool) -> Option<f64> {
     let seconds = |at: &Instant| at.as_micros() as f64 * 1e-6;
     run.events.iter().find(|(_, event)| is_it(event)).map(|(at, _)| seconds(at))

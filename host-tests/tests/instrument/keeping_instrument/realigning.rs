@@ -1,6 +1,6 @@
 //! The azimuth is found anew at stops.
 
-use super::{drive, frames, keep, sigmas, told, vehicle};
+use super::{drive, frames, keep, reported, sigmas, vehicle};
 use firmware::event::Event;
 use firmware::simulated::keep::Hold;
 use host::instrument::kept::KeptPlan;
@@ -27,7 +27,7 @@ fn the_stop_that_ends_a_session_in_a_vehicle_begins_the_next() {
 fn a_mount_returns_to_gyrocompassing_where_the_vehicle_stands_and_back_to_the_vertical() {
     let hold = Hold { realigns: true, drive_s: 100.0, stop_s: 320.0, ..Hold::of(500.0) };
     let found = keep(&frames(1, hold), &KeptPlan::of(None));
-    let lines = told(&found.run);
+    let lines = reported(&found.run);
     let fused = lines.iter().position(|line| line.starts_with("realigned: "));
     let fused = fused.unwrap_or_else(|| panic!("it is realigned: {lines:#?}"));
     assert!(lines[..fused].iter().any(|line| line == "the vehicle stands: aligning anew"));
@@ -40,7 +40,7 @@ fn a_mount_returns_to_gyrocompassing_where_the_vehicle_stands_and_back_to_the_ve
 fn a_vehicle_that_drives_on_ends_the_new_alignment_and_keeps_the_azimuth() {
     let hold = Hold { realigns: true, drive_s: 100.0, stop_s: 80.0, ..Hold::of(400.0) };
     let found = keep(&frames(2, hold), &KeptPlan::of(None));
-    let lines = told(&found.run);
+    let lines = reported(&found.run);
     assert!(
         lines.iter().any(|line| line == "no azimuth: the vehicle drove on before it was aligned")
     );
@@ -53,7 +53,7 @@ fn a_vehicle_that_drives_on_ends_the_new_alignment_and_keeps_the_azimuth() {
 fn an_azimuth_that_disagrees_is_reported_and_never_fused() {
     let wrong = Hold { handover: Some(([12.0, 0.1], 1600.0)), ..Hold::of(300.0) };
     let found = drive(&vehicle(1, wrong));
-    let lines = told(&found.run);
+    let lines = reported(&found.run);
     let line = lines.iter().find(|line| line.contains("disagrees with what was kept"));
     assert!(line.is_some_and(|line| line.ends_with("neither is believed")), "{lines:#?}");
     assert!(lines.iter().any(|line| line.contains("the azimuth is lost")));

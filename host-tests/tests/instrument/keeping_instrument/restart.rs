@@ -1,6 +1,6 @@
 //! The supply is lost, and comes back.
 
-use super::{told, vehicle};
+use super::{reported, vehicle};
 use firmware::event::Event;
 use firmware::ports::{NoRecorder, Store};
 use firmware::simulated::fault::Injection;
@@ -70,7 +70,7 @@ fn a_restart_without_motion_keeps_the_heading() {
     let mut store = Flash::default().store();
     let before = first(8.0, STEADY, &mut store);
     let after = second(&before, [0.0, 0.0], STEADY, &mut store);
-    assert!(is_recalled(&after), "{:#?}", told(&after.run));
+    assert!(is_recalled(&after), "{:#?}", reported(&after.run));
     let (point, [error, sigma]) = after.kept.with_azimuth().next().expect("it is known at once");
     assert!(point.seconds() < 20.0, "after {} s", point.seconds());
     assert!(error.abs() < 3.0 * sigma, "{error} of {sigma} rad");
@@ -119,7 +119,7 @@ fn a_vehicle_that_has_set_off_since_is_forgotten() {
     // The supply is lost amid a drive.
     let before = first(90.0, STEADY, &mut store);
     let after = second(&before, [0.0, 0.0], STEADY, &mut store);
-    assert!(!is_recalled(&after) && refusal(&after).is_none(), "{:#?}", told(&after.run));
+    assert!(!is_recalled(&after) && refusal(&after).is_none(), "{:#?}", reported(&after.run));
 }
 
 #[test]
@@ -143,8 +143,8 @@ fn a_power_cut_amid_the_writing_leaves_a_heading_that_is_whole_or_none() {
             assert!((kept.azimuth - azimuth.angle).abs() < 1e-3, "{words} words");
         }
         if words < 2 {
-            let told = told(&before.run);
-            assert!(told.iter().any(|line| line.contains("cannot be kept")), "{told:#?}");
+            let reported = reported(&before.run);
+            assert!(reported.iter().any(|line| line.contains("cannot be kept")), "{reported:#?}");
         }
     }
 }

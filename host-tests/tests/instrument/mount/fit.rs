@@ -117,10 +117,10 @@ fn a_minute_of_elevation_left_out_turns_the_azimuth_by_its_tangent_of_the_latitu
 #[test]
 fn the_g_sensitivity_meets_the_force_along_the_gyros_own_axes() {
     let kappa = [3.0, -2.0];
-    let told = Setting { g_sensitivity: kappa.map(|k| k * DEGREE_PER_HOUR), ..setting() };
+    let reported = Setting { g_sensitivity: kappa.map(|k| k * DEGREE_PER_HOUR), ..setting() };
     for azimuth_deg in [10.0, 100.0, 260.0] {
         let world = World { azimuth_deg, pitch_deg: 2.0, roll_deg: 5.0, kappa, ..World::default() };
-        let [error, _] = found(&told, &world, &dwells(&world));
+        let [error, _] = found(&reported, &world, &dwells(&world));
         assert!(error.abs() < 1e-5, "{azimuth_deg}: {error}°");
     }
     // Left out, the part along the inner axis stands for an Earth rate along body y.
@@ -142,8 +142,8 @@ fn the_g_sensitivity_meets_the_force_along_the_gyros_own_axes() {
 fn a_bias_of_the_accelerometer_on_the_base_is_tilt_and_stands_in_sigma() {
     let world = World { azimuth_deg: 40.0, bias: 1e-3, ..World::default() };
     let gravity = setting().latitude.gravity();
-    let told = Setting { accelerometer_bias_sigma: 1e-3 * gravity, ..setting() };
-    let [error, sigma] = found(&told, &world, &dwells(&world));
+    let reported = Setting { accelerometer_bias_sigma: 1e-3 * gravity, ..setting() };
+    let [error, sigma] = found(&reported, &world, &dwells(&world));
     let expected = 1e-3 * LATITUDE_DEG.to_radians().tan().abs().to_degrees();
     assert!((sigma / expected - 1.0).abs() < 0.01, "σ {sigma}°, not {expected}°");
     assert!(error.abs() > 0.1 * sigma && error.abs() < 2.0 * sigma, "{error}° of σ {sigma}°");

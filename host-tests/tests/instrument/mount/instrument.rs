@@ -71,7 +71,7 @@ fn found(scenario: &FramesScenario, run: &FramesRun) -> Result<[f64; 2], Refusal
     Ok([error, degrees(azimuth.sigma)])
 }
 
-fn told(run: &FramesRun) -> Vec<String> {
+fn reported(run: &FramesRun) -> Vec<String> {
     run.run.events.iter().map(|(_, event)| event.to_string()).collect()
 }
 
@@ -145,7 +145,7 @@ fn assert_refused(
         Err(Refusal::Device { device: found, trouble }) if found == device => {
             assert!(is_expected(trouble), "{trouble}");
         }
-        other => panic!("{other:?}: {:#?}", told(&run)),
+        other => panic!("{other:?}: {:#?}", reported(&run)),
     }
     assert!(!run.run.events.iter().any(|(_, event)| matches!(event, Event::Stored(..))));
     assert!(run.run.seconds < 400.0, "it takes {} s", run.run.seconds);
@@ -216,7 +216,7 @@ fn a_frame_that_is_blocked_for_a_while_homes_again_and_north_is_found() {
                 found(&scenario, &run).unwrap_or_else(|reason| panic!("{seed}: {reason}"));
             assert!(error.abs() < 4.0 * sigma, "{error}° of σ {sigma}°");
             let blocked = format!("{name}: blocked, trying again");
-            assert!(told(&run).contains(&blocked), "{:#?}", told(&run));
+            assert!(reported(&run).contains(&blocked), "{:#?}", reported(&run));
         }
     }
 }
@@ -232,8 +232,9 @@ fn whenever_a_frame_is_held_for_a_while_north_is_found_and_no_encoder_is_blamed(
         for plan in [of_inner(held), of_outer(held)] {
             let scenario = short(second);
             let run = run(&scenario, &plan);
-            let [error, sigma] = found(&scenario, &run)
-                .unwrap_or_else(|reason| panic!("held at {second} s: {reason}: {:#?}", told(&run)));
+            let [error, sigma] = found(&scenario, &run).unwrap_or_else(|reason| {
+                panic!("held at {second} s: {reason}: {:#?}", reported(&run))
+            });
             assert!(error.abs() < 4.0 * sigma, "held at {second} s: {error}° of σ {sigma}°");
         }
     });
@@ -269,8 +270,8 @@ fn whenever_an_encoder_slips_there_is_never_a_wrong_north() {
 #[test]
 fn the_log_tells_both_frames_and_the_storage_in_order() {
     let run = healthy(&short(1));
-    let told = told(&run);
-    let mut rest = told.iter();
+    let reported = reported(&run);
+    let mut rest = reported.iter();
     for part in [
         "begin: 8 positions of 6.0 s",
         "outer encoder: identity and self-test passed",
@@ -286,7 +287,7 @@ fn the_log_tells_both_frames_and_the_storage_in_order() {
         "outer frame: to ",
         "gyro vertical to store the azimuth",
     ] {
-        assert!(rest.any(|line| line.contains(part)), "{part} is missing in {told:#?}");
+        assert!(rest.any(|line| line.contains(part)), "{part} is missing in {reported:#?}");
     }
     assert!(run.run.lines.contains("azimuth "), "{}", run.run.lines);
     // The frames turn the gyro about its own axis: nothing of that has come into a dwell.

@@ -91,7 +91,7 @@ fn each_calibration_angle_has_the_sign_that_its_words_say() {
 }
 
 #[test]
-fn headings_are_told_from_their_stations() {
+fn headings_are_distinguished_from_their_stations() {
     for (station, heading) in STATIONS {
         for off in [-0.9, 0.0, 0.9, 360.0, -360.0] {
             assert_eq!(Station::at_heading((heading + off).to_radians()), Ok(station));

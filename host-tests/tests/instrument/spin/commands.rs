@@ -125,10 +125,10 @@ fn the_faults_of_a_spinning_body_are_listed() {
 #[test]
 fn the_campaign_prints_the_papers_figures_and_draws_them() {
     let (output, page) = page(&["campaign", "spin", "--runs", "2"]);
-    let told = text(&output.stdout);
+    let reported = text(&output.stdout);
     for words in ["Fig. 7", "Fig. 8", "between corrections", "a turn", "noise of 1.5 m/s²", "limit"]
     {
-        assert!(told.contains(words), "{words}: {told}");
+        assert!(reported.contains(words), "{words}: {reported}");
     }
     let titles = ["(Fig. 7)", "(Fig. 8)", "without correction", "The phase lock at a moment"];
     assert_drawn(&page, &titles);

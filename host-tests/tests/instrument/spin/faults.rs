@@ -87,8 +87,8 @@ fn assert_back(seen: &[Seen], from_s: f64) {
     assert_eq!(after.iter().find(|seen| !is_good(seen)).map(|seen| format!("{seen:?}")), None);
 }
 
-/// That a state was told between two times.
-fn assert_told(seen: &[Seen], from_s: f64, to_s: f64, is_state: impl Fn(&State) -> bool) {
+/// That a state was reported between two times.
+fn assert_stated(seen: &[Seen], from_s: f64, to_s: f64, is_state: impl Fn(&State) -> bool) {
     let states: Vec<_> = between(seen, from_s, to_s).map(|seen| seen.state).collect();
     assert!(states.iter().any(is_state), "{:?}", states.last());
 }
@@ -114,7 +114,7 @@ fn a_lift_that_is_gone_for_three_tenths_of_a_second_is_bridged_within_the_stated
     body.forces.lift_m_s2 = Profile(&[(0.5, 30.0), (0.52, 0.0), (0.82, 0.0), (0.84, 30.0)]);
     for seed in 1..=10 {
         let seen = followed(&body, seed);
-        assert_told(&seen, 0.6, 0.82, |state| matches!(state.condition, Condition::Holding));
+        assert_stated(&seen, 0.6, 0.82, |state| matches!(state.condition, Condition::Holding));
         let sigmas = |seen: &Seen| seen.sigma_rad.map_or(0.0, |sigma| seen.error_rad.abs() / sigma);
         let greatest = between(&seen, 0.5, 0.9).map(sigmas).fold(0.0, f64::max);
         let held = between(&seen, 0.8, 0.82).map(sigmas).fold(0.0, f64::max);
@@ -125,7 +125,7 @@ fn a_lift_that_is_gone_for_three_tenths_of_a_second_is_bridged_within_the_stated
 }
 
 #[test]
-fn a_lift_that_turns_round_is_told_from_a_body_that_did() {
+fn a_lift_that_turns_round_is_distinguished_from_a_body_that_did() {
     let mut body = SpinConfiguration { seconds: 1.8, ..body() };
     body.forces.lift_m_s2 = Profile(&[(0.5, 30.0), (0.55, -30.0), (1.0, -30.0), (1.05, 30.0)]);
     let seen = followed(&body, 1);
@@ -138,7 +138,7 @@ fn a_spin_that_stops_is_reported_and_found_again_when_it_goes_on() {
     let mut body = body();
     body.spin_rad_s = Profile(&[(0.4, SPIN), (0.45, 0.0), (0.8, 0.0), (0.85, SPIN)]);
     let seen = followed(&body, 1);
-    assert_told(&seen, 0.5, 0.95, |state| {
+    assert_stated(&seen, 0.5, 0.95, |state| {
         matches!(state.condition, Condition::NotSpinning | Condition::RotationLost)
     });
     assert!(between(&seen, 0.2, 1.5).all(Seen::is_covered));
@@ -151,7 +151,7 @@ fn faulty(fault: SensorFault) -> Vec<Seen> {
 }
 
 #[test]
-fn gyro_readings_that_are_no_numbers_or_clip_are_told_and_got_over() {
+fn gyro_readings_that_are_no_numbers_or_clip_are_reported_and_got_over() {
     for (from_s, until_s) in [(0.5, 0.5005), (0.5, 0.505), (0.5, 0.55), (0.5, 0.8)] {
         for fault in [
             SensorFault { failure: SensorFailure::NotANumber(0), from_s, until_s },
@@ -169,14 +169,14 @@ fn gyro_readings_that_are_no_numbers_or_clip_are_told_and_got_over() {
 }
 
 #[test]
-fn forces_that_are_no_numbers_are_told_and_the_gyro_holds_the_roll() {
+fn forces_that_are_no_numbers_are_reported_and_the_gyro_holds_the_roll() {
     for channel in [3, 4] {
         let seen = faulty(SensorFault {
             failure: SensorFailure::NotANumber(channel),
             from_s: 0.5,
             until_s: 0.8,
         });
-        assert_told(&seen, 0.6, 0.8, |state| matches!(state.condition, Condition::ForceLost));
+        assert_stated(&seen, 0.6, 0.8, |state| matches!(state.condition, Condition::ForceLost));
         assert!(between(&seen, 0.2, 1.5).all(Seen::is_covered));
         assert_back(&seen, 0.8 + BOUNDED_S);
     }

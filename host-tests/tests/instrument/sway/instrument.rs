@@ -54,7 +54,7 @@ fn rms(values: impl Iterator<Item = f64> + Clone) -> f64 {
     (values.map(|value| value * value).sum::<f64>() / count).sqrt()
 }
 
-fn told(run: &Run) -> Vec<String> {
+fn reported(run: &Run) -> Vec<String> {
     run.events.iter().map(|(_, event)| event.to_string()).collect()
 }
 
@@ -157,16 +157,16 @@ fn on_a_still_base_nothing_is_subtracted_and_sigma_is_the_same() {
         let [sigma, expected] = [&run_with, &run(&without)].map(sigma_of_the_fit);
         // The accelerometer's own noise differs, as the session begins later.
         assert!((sigma / expected - 1.0).abs() < 0.01, "{sigma}° instead of {expected}°");
-        assert!(told(&run_with).iter().any(|line| line.contains("nothing is subtracted")));
+        assert!(reported(&run_with).iter().any(|line| line.contains("nothing is subtracted")));
     }
 }
 
 #[test]
 fn the_log_tells_the_size_of_the_sway() {
     let run = run(&Scenario { sway_deg: 0.1, sway_hz: 1.0, ..scenario(1) });
-    let line = told(&run).into_iter().find(|line| line.contains("base: sways"));
+    let line = reported(&run).into_iter().find(|line| line.contains("base: sways"));
     // 0.1° of roll and of pitch are 0.0707° along any axis; at 1 Hz and 0.83 Hz.
-    let line = line.expect("it is told");
+    let line = line.expect("it is stated");
     assert!(line.contains("by 0.07") && line.contains("at 0.9"), "{line}");
     assert!(line.contains("it is subtracted but for 0.0"), "{line}");
 }
@@ -236,7 +236,7 @@ fn a_base_imu_that_fails_ends_only_a_session_that_needs_it() {
         let outcome = found(&scenario, &run);
         assert_eq!(outcome.is_ok(), goes_on, "{outcome:?}");
         let is_given_up = |(_, event): &(Instant, Event)| matches!(event, Event::GivenUp(..));
-        assert!(run.events.iter().any(is_given_up), "{:?}", told(&run));
+        assert!(run.events.iter().any(is_given_up), "{:?}", reported(&run));
         if let Err(reason) = outcome {
             assert!(reason.to_string().starts_with("base: "), "{reason}");
         }

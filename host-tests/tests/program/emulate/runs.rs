@@ -44,8 +44,8 @@ fn one_bit_of_any_number_of_any_row_is_found_and_named() {
                     let at = place(&emulated, kind, number);
                     let place = &mut emulated.rows[at].bits[index];
                     *place = place.map(|bits| bits ^ (1 << bit));
-                    let told = compare(&emulated, &host).expect_err("they differ").what;
-                    assert_eq!(told, format!("{} {number}, {name}", kind.word));
+                    let reported = compare(&emulated, &host).expect_err("they differ").what;
+                    assert_eq!(reported, format!("{} {number}, {name}", kind.word));
                 }
             }
         }
@@ -56,9 +56,9 @@ fn one_bit_of_any_number_of_any_row_is_found_and_named() {
 fn a_difference_is_reported_with_both_values() {
     let (host, mut emulated) = (outcome(), outcome());
     emulated.rows[1].bits[4] = Some(2.5_f64.to_bits());
-    let told = compare(&emulated, &host).expect_err("they differ").to_string();
+    let reported = compare(&emulated, &host).expect_err("they differ").to_string();
     assert_eq!(
-        told,
+        reported,
         "dwell 2, rate: 0x4004000000000000 (2.5e0) in the emulator, 0x4000000000000000 (2e0) on the host"
     );
 }
@@ -67,8 +67,8 @@ fn a_difference_is_reported_with_both_values() {
 fn an_absent_number_differs_from_any_number() {
     let (host, mut emulated) = (outcome(), outcome());
     emulated.rows[2].bits[9] = None;
-    let told = compare(&emulated, &host).expect_err("they differ").to_string();
-    assert!(told.starts_with("dwell 3, temperature: none in the emulator"), "{told}");
+    let reported = compare(&emulated, &host).expect_err("they differ").to_string();
+    assert!(reported.starts_with("dwell 3, temperature: none in the emulator"), "{reported}");
 }
 
 /// What makes a run another one.
@@ -88,8 +88,8 @@ fn seed_azimuth_sigma_and_the_number_of_rows_are_compared() {
     for (name, change) in changes {
         let mut emulated = outcome();
         change(&mut emulated);
-        let told = compare(&emulated, &outcome()).expect_err("they differ").to_string();
-        assert!(told.starts_with(&format!("{name}: ")), "{told}");
+        let reported = compare(&emulated, &outcome()).expect_err("they differ").to_string();
+        assert!(reported.starts_with(&format!("{name}: ")), "{reported}");
     }
 }
 

@@ -102,10 +102,10 @@ fn a_file_in_a_folder_that_is_not_there_is_refused_in_words_that_name_both() {
     ] {
         let file = format!("{folder}/x");
         let output = meridian(&[arguments, &[option, &file]].concat());
-        let told = format!(
+        let reported = format!(
             "meridian: {file}: {what} cannot be written: there is no such folder: {folder}"
         );
-        assert_eq!((code(&output), reason(&output)), (1, told));
+        assert_eq!((code(&output), reason(&output)), (1, reported));
     }
     let file = format!("{beneath}/x");
     let output = meridian(&[&short[..], &["--record", &file]].concat());

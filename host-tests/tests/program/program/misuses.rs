@@ -1,4 +1,4 @@
-//! Misuses drawn by chance: each is told in one line, with exit code 2, and nothing is done.
+//! Misuses drawn by chance: each is reported in one line, with exit code 2, and nothing is done.
 
 use std::fs;
 
@@ -135,7 +135,7 @@ fn drawn(chance: &mut Chance) -> Vec<String> {
 }
 
 #[test]
-fn two_hundred_drawn_misuses_are_told_in_one_line_each_and_do_nothing() {
+fn two_hundred_drawn_misuses_are_reported_in_one_line_each_and_do_nothing() {
     let scratch = Scratch::new("misuses");
     let (file, folder) = (scratch.path("sound.csv.gz"), scratch.folder().display().to_string());
     fs::copy(stored("stepwise-bumped"), &file).expect("the folder is ours");

@@ -37,8 +37,8 @@ fn the_text_for_people_names_the_likely_cause_too() {
     let scratch = Scratch::new("text");
     let path = scratch.with("x.csv", scaled(&recorded(&scratch), &["stage_rad"], DEGREES));
     let output = meridian(&["replay", &path]);
-    let told = text(&output.stdout);
-    assert!(told.contains("; column stage_rad: in degrees"), "{told}");
+    let reported = text(&output.stdout);
+    assert!(reported.contains("; column stage_rad: in degrees"), "{reported}");
 }
 
 #[test]
@@ -51,8 +51,8 @@ fn dwells_that_scatter_alike_tell_of_n_and_not_of_the_platform() {
         let why = refused(&scratch, &with(n));
         assert!(why.contains("all dwells scatter alike, with "), "{why}");
         assert!(why.contains("check N, and the unit of the rates"), "{why}");
-        let told = format!("key gyro_N_deg_sqrt_h says {n} °/√h, but the dwells show ");
-        assert!(why.contains(&told), "{why}");
+        let reported = format!("key gyro_N_deg_sqrt_h says {n} °/√h, but the dwells show ");
+        assert!(why.contains(&reported), "{why}");
     }
     let why = refused(&scratch, &with("30"));
     assert!(why.contains("says 30 °/√h, but the dwells show "), "{why}");

@@ -114,11 +114,14 @@ fn a_result_whose_page_cannot_be_written_is_printed_all_the_same() {
     let why = object["reason"].as_str().expect("a reason");
     assert!(why.contains("/nowhere/page.html: the report cannot be written"), "{why}");
     assert!(text(&meridian(&arguments).stdout).contains("azimuth of body x"));
-    // Where there is no result, both are told.
+    // Where there is no result, both are reported.
     let refused = meridian(&[&arguments[..], &["--require-sigma", "0.001"]].concat());
-    let told = text(&refused.stderr);
-    assert!(told.contains("above the accepted 0.001°"), "{told}");
-    assert!(told.contains("warning: /nowhere/page.html: the report cannot be written"), "{told}");
+    let stated = text(&refused.stderr);
+    assert!(stated.contains("above the accepted 0.001°"), "{stated}");
+    assert!(
+        stated.contains("warning: /nowhere/page.html: the report cannot be written"),
+        "{stated}"
+    );
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! What a recording says to no purpose is told, and changes nothing.
+//! What a recording says to no purpose is reported, and changes nothing.
 
 use std::fs;
 
@@ -11,9 +11,11 @@ use super::recorded;
 fn warnings(scratch: &Scratch, recording: &str) -> Vec<String> {
     let path = scratch.with("warned.csv", recording);
     let output = meridian(&["replay", &path, "--json"]);
-    let told = text(&output.stderr);
-    let lines: Vec<String> =
-        told.lines().filter_map(|line| line.strip_prefix("warning: ").map(str::to_owned)).collect();
+    let reported = text(&output.stderr);
+    let lines: Vec<String> = reported
+        .lines()
+        .filter_map(|line| line.strip_prefix("warning: ").map(str::to_owned))
+        .collect();
     let object = object(&output);
     let listed = object["warnings"].as_array().cloned().unwrap_or_default();
     let listed: Vec<&str> = listed.iter().filter_map(serde_json::Value::as_str).collect();
@@ -48,10 +50,10 @@ fn an_unknown_key_that_resembles_a_known_one_is_reported_with_its_line() {
     ] {
         let changed = sound.replace(&format!("# {known}:"), &format!("# {key}:"));
         assert_ne!(changed, sound);
-        let told = warnings(&scratch, &changed);
+        let reported = warnings(&scratch, &changed);
         let words =
             format!("line {line}, key {key}: is not known and passed over; if {known} is meant");
-        assert!(told.iter().any(|line| line.contains(&words)), "{words}: {told:?}");
+        assert!(reported.iter().any(|line| line.contains(&words)), "{words}: {reported:?}");
     }
 }
 
@@ -64,9 +66,9 @@ fn a_key_of_the_drift_that_is_called_otherwise_is_reported() {
         ("rate_random_walk_deg_h_sqrt_h", "gyro_K_deg_h_sqrt_h"),
         ("rate_ramp_deg_h2", "gyro_R_deg_h2"),
     ] {
-        let told = warnings(&scratch, &format!("# {key}: 0.01\n{}", recorded(&scratch)));
+        let reported = warnings(&scratch, &format!("# {key}: 0.01\n{}", recorded(&scratch)));
         let words = format!("key {key}: is not known and passed over; if {known} is meant");
-        assert!(told.iter().any(|line| line.contains(&words)), "{words}: {told:?}");
+        assert!(reported.iter().any(|line| line.contains(&words)), "{words}: {reported:?}");
     }
 }
 
@@ -95,8 +97,8 @@ fn a_kind_that_is_written_otherwise_is_found_in_its_line() {
     let path = scratch.with("kind.csv", recorded(&scratch).replace("# kind:", "# Kind:"));
     let output = meridian(&["replay", &path]);
     assert_eq!(code(&output), 1);
-    let told = text(&output.stderr);
-    assert!(told.contains("line 1, key Kind: the header does not name the kind"), "{told}");
+    let reported = text(&output.stderr);
+    assert!(reported.contains("line 1, key Kind: the header does not name the kind"), "{reported}");
 }
 
 #[test]
@@ -116,13 +118,16 @@ fn a_column_of_truth_that_is_malformed_is_reported() {
         };
         sound.lines().map(line).collect::<String>()
     };
-    let told = warnings(&scratch, &with("truth_heading_deg", "north"));
-    assert_eq!(told.len(), 1, "{told:?}");
-    assert!(told[0].contains("line 15, column truth_heading_deg: \"north\" is not a number"));
+    let reported = warnings(&scratch, &with("truth_heading_deg", "north"));
+    assert_eq!(reported.len(), 1, "{reported:?}");
+    assert!(reported[0].contains("line 15, column truth_heading_deg: \"north\" is not a number"));
     assert_eq!(warnings(&scratch, &with("truth_heading_deg", "nan")), [""; 0]);
-    let told =
+    let reported =
         warnings(&scratch, &with("Temperature_C", "20").replace(",temperature_c,", ",warmth,"));
-    assert!(told[0].contains("column Temperature_C: is not known and passed over"), "{told:?}");
+    assert!(
+        reported[0].contains("column Temperature_C: is not known and passed over"),
+        "{reported:?}"
+    );
 }
 
 #[test]
@@ -135,10 +140,13 @@ fn a_true_attitude_in_parts_or_of_no_length_is_reported() {
         format!("{header}{columns}{names}\n{}", (0..50).map(row).collect::<String>())
     };
     let scratch = Scratch::new("attitude");
-    let told = warnings(&scratch, &recording(",truth_qw,truth_qx,truth_qz", ",1,0,0"));
-    assert!(told[0].contains("truth_qy is missing, so the others are passed over"), "{told:?}");
+    let reported = warnings(&scratch, &recording(",truth_qw,truth_qx,truth_qz", ",1,0,0"));
+    assert!(
+        reported[0].contains("truth_qy is missing, so the others are passed over"),
+        "{reported:?}"
+    );
     let all = ",truth_qw,truth_qx,truth_qy,truth_qz";
-    let told = warnings(&scratch, &recording(all, ",0,0,0,0"));
-    assert!(told[0].contains("no row holds a quaternion of length one"), "{told:?}");
+    let reported = warnings(&scratch, &recording(all, ",0,0,0,0"));
+    assert!(reported[0].contains("no row holds a quaternion of length one"), "{reported:?}");
     assert_eq!(warnings(&scratch, &recording(all, ",1,0,0,0")), [""; 0]);
 }

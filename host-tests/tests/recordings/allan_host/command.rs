@@ -167,7 +167,7 @@ fn a_record_that_is_too_short_is_refused_with_what_it_needs() {
 }
 
 #[test]
-fn the_longest_times_of_a_short_record_are_told_as_unsure() {
+fn the_longest_times_of_a_short_record_are_reported_as_unsure() {
     let object = object(&on("brief.csv", &noisy(100, |_, row| Some(row)), &["--json"]));
     assert_eq!(object["status"], "ok");
     let last = |key: &str| object[key].as_array().and_then(|a| a.last()?.as_f64()).expect("one");
@@ -213,15 +213,15 @@ fn time_that_runs_backwards_is_named_with_its_line() {
 }
 
 #[test]
-fn gaps_part_the_record_and_are_told() {
+fn gaps_part_the_record_and_are_reported() {
     let row = |index, row| (!(500..600).contains(&index) && index != 1200).then_some(row);
     let gapped = noisy(2000, row);
     let output = on("gaps.csv", &gapped, &[]);
     assert_eq!(code(&output), 0, "{}", text(&output.stderr));
     let block = text(&output.stdout);
     assert!(block.contains("1899 samples at 10 Hz, 189.9 s in 3 segments"), "{block}");
-    let told = "2 gaps, 10.100 s in all, the first before line 504 after 49.9 s";
-    assert!(block.contains(told), "{block}");
+    let reported = "2 gaps, 10.100 s in all, the first before line 504 after 49.9 s";
+    assert!(block.contains(reported), "{block}");
     let found = object(&on("gaps.csv", &gapped, &["--json"]));
     assert_eq!(found["gaps"].as_array().map(Vec::len), Some(2));
     assert_eq!(found["gaps"][1]["line"], 4 + 1100);

@@ -264,7 +264,7 @@ fn the_true_attitude_is_parted_too_and_only_where_it_counts() {
 }
 
 #[test]
-fn a_stop_problem_can_be_told_from_others() {
+fn a_stop_problem_can_be_distinguished_from_others() {
     let text = changed(IMU, "0-0.04;0.06-0.10", "0.04-0");
     let error = read_from("walk.csv", text.as_bytes()).expect_err("it ends before it begins");
     assert_eq!(error.problem, Problem::Stops(StopProblem::Backwards(0.04, 0.0)));

@@ -26,7 +26,7 @@ fn a_row_with_too_few_or_too_many_fields_is_refused() {
 }
 
 #[test]
-fn a_last_line_cut_short_is_told_from_one_that_has_few_fields() {
+fn a_last_line_cut_short_is_distinguished_from_one_that_has_few_fields() {
     assert_eq!(
         stage(",-0.28,-9.84\n", ""),
         "walk.csv: line 8: truncated: 4 of 6 fields and no line end; remove the line"

@@ -350,7 +350,7 @@ fn what_no_dwell_can_tell_is_assumed() {
 }
 
 #[test]
-fn dwells_without_forces_are_told_to_be_taken_as_level() {
+fn dwells_without_forces_are_reported_to_be_taken_as_level() {
     let mut text =
         "# kind: dwells\n# latitude_deg: 45\nstage_rad,rate_rad_s,sigma_rad_s,seconds\n".to_owned();
     for position in 0..9 {
@@ -388,7 +388,7 @@ const OTHERWISE: [(&str, Change); 4] = [
 
 #[test]
 fn a_stage_that_is_built_otherwise_is_refused_or_stands_under_what_is_assumed_with_its_size() {
-    let mut told = 0;
+    let mut reported = 0;
     for name in ALL {
         let (header, body, truth) = recording(name).into_parts();
         let truth_deg = truth.azimuth_deg.expect("it carries a truth");
@@ -407,15 +407,15 @@ fn a_stage_that_is_built_otherwise_is_refused_or_stands_under_what_is_assumed_wi
                     error < 1.1 * size + 4.0 * sigma,
                     "{name}, {words}: {error}° beyond {size}°"
                 );
-                told += 1;
+                reported += 1;
             }
         }
     }
-    assert!(told > 12, "only {told} are wrong at all");
+    assert!(reported > 12, "only {reported} are wrong at all");
 }
 
 #[test]
-fn accelerometer_biases_that_drift_are_told_from_a_base_that_tilts() {
+fn accelerometer_biases_that_drift_are_distinguished_from_a_base_that_tilts() {
     let per_second = [3e-5, 1e-4, 1e-3].map(|per_minute| per_minute / 60.0);
     let mut answered = 0;
     for name in ["stepwise-circle", "positions-four-fog", "stepwise-tilted-drift", "stepwise-mems"]

@@ -55,7 +55,7 @@ fn each_deg(assumed: &[String]) -> Option<f64> {
     line.split_once("north is ")?.1.split_once('°')?.0.parse().ok()
 }
 
-/// How many of all shifts are refused; what is answered is right, or told with its size.
+/// How many of all shifts are refused; what is answered is right, or stated with its size.
 fn refused(sound: &Sound, (column, shift): (&str, Shift), is_cut: bool) -> usize {
     let mut refused = 0;
     for late in LATE.iter().flat_map(|late| [late * sound.dwell as f64, -late * sound.dwell as f64])
@@ -76,7 +76,7 @@ fn refused(sound: &Sound, (column, shift): (&str, Shift), is_cut: bool) -> usize
             continue;
         };
         let error = error.abs();
-        let each = each_deg(&replayed.replay.assumed).expect("it is told of each answer");
+        let each = each_deg(&replayed.replay.assumed).expect("it is stated of each answer");
         let dwells = (late.abs() / sound.period as f64).ceil();
         assert!(error < each * dwells + 5.0 * sigma, "{words}: {error}° ± {sigma}°, {each}° each");
     }

@@ -90,9 +90,9 @@ fn most(assumed: &[String], words: &str, rate: f64) -> Option<f64> {
         .or_else(|| Some(number("north is ", "° off")? * rate / number("by each ", " ")?))
 }
 
-/// Moves every recording's base at every rate: what is answered is right, or told with its size. How many were told.
-fn assert_told(words: &str, rates: &[f64], rad_s: f64, moves: Moves, turned: f64) -> usize {
-    let mut told = 0;
+/// Moves every recording's base at every rate: what is answered is right, or stated with its size. How many were reported.
+fn assert_stated(words: &str, rates: &[f64], rad_s: f64, moves: Moves, turned: f64) -> usize {
+    let mut reported = 0;
     for name in ALL {
         let (header, body, truth) = recording(name).into_parts();
         let truth_deg = truth.azimuth_deg.expect("it carries a truth");
@@ -107,25 +107,25 @@ fn assert_told(words: &str, rates: &[f64], rad_s: f64, moves: Moves, turned: f64
                 let most = most(&replayed.replay.assumed, words, rate.abs());
                 let most = most.unwrap_or_else(|| panic!("{name}, {rate}: {error}° in silence"));
                 assert!(error < most + 4.0 * sigma, "{name}, {rate}: {error}° beyond {most}°");
-                told += 1;
+                reported += 1;
             }
         }
     }
-    told
+    reported
 }
 
 #[test]
 fn a_base_that_turns_slowly_is_seen_or_in_sigma_or_assumed_not_to_with_its_size() {
     let rad_s = 1f64.to_radians() / 60.0;
-    let told = assert_told("no slow turn of the base", &TURNING_DEG_MIN, rad_s, turns, 1.0);
-    assert!(told > 2, "only {told} are wrong at all");
+    let reported = assert_stated("no slow turn of the base", &TURNING_DEG_MIN, rad_s, turns, 1.0);
+    assert!(reported > 2, "only {reported} are wrong at all");
 }
 
 #[test]
 fn a_base_that_tilts_slowly_is_seen_or_in_sigma_or_assumed_not_to_with_its_size() {
     let rad_s = 1f64.to_radians() / 3600.0;
-    let told = [rolls, pitches].map(|moves: Moves| {
-        assert_told("no slow tilting of the base", &TILTING_DEG_H, rad_s, moves, 0.0)
+    let reported = [rolls, pitches].map(|moves: Moves| {
+        assert_stated("no slow tilting of the base", &TILTING_DEG_H, rad_s, moves, 0.0)
     });
-    assert!(told.iter().sum::<usize>() > 2, "only {told:?} are wrong at all");
+    assert!(reported.iter().sum::<usize>() > 2, "only {reported:?} are wrong at all");
 }

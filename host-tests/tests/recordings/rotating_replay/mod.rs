@@ -240,7 +240,7 @@ const SLOW_DEG_MIN: [f64; 8] = [0.003, -0.01, 0.03, -0.06, 0.1, -0.2, 0.5, -1.0]
 
 #[test]
 fn a_base_that_turns_slowly_is_seen_or_in_sigma_or_assumed_not_to_with_its_size() {
-    let mut told = 0;
+    let mut reported = 0;
     let recorded = with_exact_zero(recorded(GYRO));
     let latitude = Latitude::from_degrees(recorded.header.latitude_deg.expect("it has one"));
     let horizontal = latitude.expect("it is one").horizontal_rate();
@@ -268,9 +268,9 @@ fn a_base_that_turns_slowly_is_seen_or_in_sigma_or_assumed_not_to_with_its_size(
             let most_deg: f64 = most.expect("it has a size").1.parse().expect("it is a number");
             assert!(error < most_deg + 4.0 * sigma, "{rate_deg_min}: {error}°, {line}");
         }
-        told += i32::from(line.is_some());
+        reported += i32::from(line.is_some());
     }
-    assert!(told > 2, "only {told} are answered with what they do not show");
+    assert!(reported > 2, "only {reported} are answered with what they do not show");
 }
 
 /// The recording of a molecular-electronic sensor whose base is turned by an angle, °, after one of its stretches.
@@ -334,19 +334,19 @@ fn a_base_that_is_turned_between_stretches_of_a_sensor_of_unknown_lag_is_not_tak
 fn what_an_unknown_lag_hides_at_one_speed_and_at_two_is_assumed() {
     let of_one = "no turn of the base and no slip between the senses";
     let of_two = "the lag of one pole at the speed without a rate-modulated turn";
-    let told = |replay: &Replay| {
+    let reported = |replay: &Replay| {
         let is_reported = |words: &&str| replay.assumed.iter().any(|line| line.starts_with(*words));
         [of_one, of_two].iter().map(is_reported).collect::<Vec<bool>>()
     };
     let mut one = recorded(MET);
-    assert_eq!(told(&one.replayed()), [false, true]);
-    assert_eq!(told(&recorded(GYRO).replayed()), [false, false]);
+    assert_eq!(reported(&one.replayed()), [false, true]);
+    assert_eq!(reported(&recorded(GYRO).replayed()), [false, false]);
     one.rows.retain(|row| row.time_s < 280.0);
     one.header.g_sensitivity_deg_h_g = Some([0.0; 2]);
     let options = Asked { required_sigma: Some(0.5), ..Asked::default() };
     let replay = replay(&one.header, &Body::Rotating(one.rows), &options).expect("it replays");
     assert!(conclusion(&replay).verdict.is_ok(), "{:?}", conclusion(&replay).verdict);
-    assert_eq!(told(&replay), [true, false], "{:?}", replay.assumed);
+    assert_eq!(reported(&replay), [true, false], "{:?}", replay.assumed);
 }
 
 /// What is answered of a recording whose rates are rounded to 40 steps, up to two and a half times the horizontal Earth
@@ -381,7 +381,7 @@ fn a_sensor_whose_steps_are_as_coarse_as_the_earth_rate_is_refused_or_states_wha
 
 #[test]
 fn a_platform_that_is_built_otherwise_is_refused_or_stands_under_what_is_assumed() {
-    let mut told = 0;
+    let mut reported = 0;
     for name in ["rotating-gyro", "rotating-met-two-speeds"] {
         for (words, change) in OTHERWISE {
             let mut recorded = recorded(name);
@@ -392,8 +392,8 @@ fn a_platform_that_is_built_otherwise_is_refused_or_stands_under_what_is_assumed
             let is_reported = replay.assumed.iter().any(|line| line.starts_with(words));
             let is_wrong = error > 4.0 * azimuth.sigma.to_degrees();
             assert!(is_reported || !is_wrong, "{name}, {words}: {error}° in silence");
-            told += i32::from(is_wrong);
+            reported += i32::from(is_wrong);
         }
     }
-    assert!(told >= 4, "only {told} are wrong at all");
+    assert!(reported >= 4, "only {reported} are wrong at all");
 }

@@ -50,7 +50,7 @@ fn the_object_has_every_key_of_an_azimuth_and_its_own() {
 }
 
 #[test]
-fn numbers_are_told_where_they_mean_something() {
+fn numbers_are_reported_where_they_mean_something() {
     let gyro = object(&replayed(GYRO, &["--json"]));
     let number = |key: &str| gyro[key].as_f64().unwrap_or(f64::NAN);
     assert!((number("coupling_deg") - 0.8).abs() < 1e-4);

@@ -100,11 +100,11 @@ fn an_accelerometer_that_is_stuck_or_saturated_is_refused() {
         for begin in [0.0, 130.0, 200.0] {
             let spoilt = gyro(|rows| from(rows, begin, |row| row.force_m_s2 = force_m_s2));
             let reason = spoilt.refusal();
-            let Refusal::Device { device, trouble: told } = reason else {
+            let Refusal::Device { device, trouble: reported } = reason else {
                 panic!("{force_m_s2} from {begin} s: {reason}");
             };
             assert_eq!(
-                (device, told),
+                (device, reported),
                 (Device::Accelerometer, trouble),
                 "{force_m_s2} from {begin} s"
             );

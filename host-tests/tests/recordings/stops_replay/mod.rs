@@ -232,12 +232,12 @@ fn displacements_of_the_user_count_before_those_of_the_header() {
     let mut recorded = recorded(IDEAL);
     let displacements_m = recorded.header.displacements_m.take();
     let options = Asked { displacements_m: displacements_m.clone(), ..Asked::default() };
-    let told = recorded.replayed_by(&options);
+    let reported = recorded.replayed_by(&options);
     recorded.header.displacements_m = Some(vec![[0.0; 2], [9e3, 9e3]]);
     let instead = recorded.replayed_by(&options);
     let angle = |replay: &Replay| conclusion(replay).verdict.map(|azimuth| azimuth.angle);
-    assert_eq!(angle(&told), angle(&instead));
-    let [error, _] = recorded.error(conclusion(&told));
+    assert_eq!(angle(&reported), angle(&instead));
+    let [error, _] = recorded.error(conclusion(&reported));
     assert!(error.abs() <= 0.003, "{error}°");
 }
 

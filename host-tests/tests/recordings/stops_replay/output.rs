@@ -53,7 +53,7 @@ fn the_object_has_every_key_of_an_azimuth_and_its_own() {
 }
 
 #[test]
-fn numbers_are_told_where_they_mean_something() {
+fn numbers_are_reported_where_they_mean_something() {
     let three = object(&replayed(THREE, &["--json"]));
     for key in ["bias_dph", "bias_sigma_dph"] {
         assert_eq!(three[key].as_array().map(Vec::len), Some(3), "{key}: {three}");
@@ -126,11 +126,12 @@ fn a_false_truth_changes_nothing_but_the_errors() {
     let scratch = Scratch::new("lie");
     let lied = object(&meridian(&["replay", &changed(&scratch, THREE, lie), "--json"]));
     let mut lied = lied.as_object().expect("an object").clone();
-    let mut told = object(&replayed(THREE, &["--json"])).as_object().expect("an object").clone();
+    let mut reported =
+        object(&replayed(THREE, &["--json"])).as_object().expect("an object").clone();
     for key in ["error_deg", "start_error_deg", "file"] {
-        assert_ne!(lied.remove(key), told.remove(key), "{key}");
+        assert_ne!(lied.remove(key), reported.remove(key), "{key}");
     }
-    assert_eq!(lied, told);
+    assert_eq!(lied, reported);
 }
 
 #[test]
@@ -178,7 +179,7 @@ fn latitude_and_displacements_may_come_from_the_command_line() {
     let scratch = Scratch::new("bare");
     let path = changed(&scratch, IDEAL, bare);
     let nothing = meridian(&["replay", &path]);
-    let told = meridian(&[
+    let reported = meridian(&[
         "replay",
         &path,
         "--latitude",
@@ -188,11 +189,12 @@ fn latitude_and_displacements_may_come_from_the_command_line() {
         "--json",
     ]);
     assert_eq!(nothing.status.code(), Some(1));
-    let [mut told, mut stored] = [told, replayed(IDEAL, &["--json"])].map(|output| object(&output));
+    let [mut reported, mut stored] =
+        [reported, replayed(IDEAL, &["--json"])].map(|output| object(&output));
     // The header says the same.
-    for value in [&mut told, &mut stored] {
+    for value in [&mut reported, &mut stored] {
         value["file"].take();
         assert!(value["azimuth_deg"].is_f64(), "{value}");
     }
-    assert_eq!(told, stored);
+    assert_eq!(reported, stored);
 }

@@ -170,7 +170,7 @@ proptest! {
     }
 }
 
-/// Whether a gyro or an accelerometer is told to stand at its limit in any sample.
+/// Whether a gyro or an accelerometer is reported to stand at its limit in any sample.
 fn is_clipped(rows: &[ImuRow]) -> bool {
     samples(rows, 0.04).any(|sample| {
         sample.force.is_none() || sample.turned.iter().any(|turned| turned.is_saturated())

@@ -38,11 +38,11 @@ fn the_object_has_its_keys_and_the_errors_where_there_is_a_truth() {
 }
 
 #[test]
-fn the_attitude_is_written_for_every_sample_and_has_the_errors_that_are_told() {
+fn the_attitude_is_written_for_every_sample_and_has_the_errors_that_are_reported() {
     for (name, _) in TRIALS {
         let scratch = Scratch::new("attitude");
         let path = scratch.path("attitude.csv");
-        let told = object(&replayed(name, &["--json", "--attitude-out", &path]));
+        let reported = object(&replayed(name, &["--json", "--attitude-out", &path]));
         let written = scratch.read("attitude.csv");
         let mut lines = written.lines();
         assert_eq!(lines.next(), Some("t_s,qw,qx,qy,qz,sigma_tilt_rad"));
@@ -61,7 +61,7 @@ fn the_attitude_is_written_for_every_sample_and_has_the_errors_that_are_told() {
         }
         assert_eq!((lines.next(), truth.len()), (None, written.lines().count() - 1));
         let rmse = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
-        let said = number(&told, "inclination_rmse_deg");
+        let said = number(&reported, "inclination_rmse_deg");
         assert!((rmse - said).abs() < 2e-3, "{name}: {rmse}° {said}°");
     }
 }
@@ -116,8 +116,8 @@ fn a_recording_is_not_written_over_and_no_output_over_another() {
         (["--attitude-out", "x.csv", "--report", "x.csv"], "takes the attitude already"),
     ] {
         let output = meridian(&[&["replay", &path, "--method", "vertical"], &options[..]].concat());
-        let told = reason(&output);
-        assert!(!output.status.success() && told.contains(words), "{told}");
+        let reported = reason(&output);
+        assert!(!output.status.success() && reported.contains(words), "{reported}");
     }
     assert_eq!(std::fs::read(&path).expect("it is there"), before);
 }

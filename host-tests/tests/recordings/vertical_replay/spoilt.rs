@@ -93,7 +93,7 @@ fn gyros_that_are_soft_at_their_limit_err_like_the_floor_and_are_doubted() {
 }
 
 #[test]
-fn accelerometers_that_clip_are_left_out_and_told() {
+fn accelerometers_that_clip_are_left_out_and_reported() {
     let recorded = spoilt([40.0, 45.0], |row| row.sample.force_m_s2 = [39.0, 39.0, -39.0]);
     let replay = recorded.replayed();
     assert!(met(&replay, "no force") > 4.0, "{:?}", replay.states);

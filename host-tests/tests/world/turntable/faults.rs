@@ -49,7 +49,7 @@ fn a_creeping_magnet_shows_more_for_every_second_of_turning_and_keeps_it_at_rest
 }
 
 #[test]
-fn creeping_does_not_depend_on_how_often_the_motor_is_told_the_same() {
+fn creeping_does_not_depend_on_how_often_the_motor_is_given_the_same() {
     let faults = [StageFault::Creep { from: Instant::MIN, rad_per_s: -2e-3 }];
     let (mut often, mut once) = (endless(&faults), endless(&faults));
     once.drive(at(0.0), 0.0, RATE_RAD_S * PER_RAD);

@@ -179,7 +179,7 @@ fn a_motor_goes_through_ramps_and_waves_without_a_jump_and_its_rate_is_the_slope
 }
 
 #[test]
-fn a_leaning_base_points_uphill_where_it_is_told_to() {
+fn a_leaning_base_points_uphill_where_it_is_stated_to_point() {
     let attitude = Attitude::tilted(0.4, 0.2, 2.5);
     let site = Site::new(0.9, &attitude);
     for k in 0..12 {

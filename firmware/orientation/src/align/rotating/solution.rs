@@ -26,7 +26,7 @@ pub const LAG_LAW: f64 = 0.15;
 
 /// Part of a sensor's phase at the turn rate that a rate-modulated turn does not determine, 1σ,
 /// rad: the modulation covers a band, and an integrated g-sensitivity responds to it.
-const UNTOLD: f64 = 2.5e-3;
+const UNDETERMINED_PHASE: f64 = 2.5e-3;
 
 /// Greatest relative distance of a modulation's frequency from the speed that it represents.
 const SAME_SPEED: f64 = 0.3;
@@ -415,7 +415,7 @@ impl Problem<'_> {
         let lag = speed * found.lag_sigma();
         let beside = molecular * self.earth()[0] / (speed * found.sine).abs();
         let sigma = libm::hypot(libm::hypot(lag, beside), bent).min(TURN);
-        (phase, libm::hypot(UNTOLD, sigma))
+        (phase, libm::hypot(UNDETERMINED_PHASE, sigma))
     }
 
     /// Cramér–Rao bound of a flat sensor of known g-sensitivity in the same time, 1σ, rad.
@@ -493,7 +493,7 @@ impl Problem<'_> {
             let mixed = libm::hypot(even.size(), odd.size() * fit.molecular.size());
             // A flat sensor has no dynamics that the rate-modulated turn could show in part only.
             let response = found.filter(|_| !self.setting.sensor.is_flat);
-            let left = response.map_or(0.0, |found| UNTOLD * found.sine.abs());
+            let left = response.map_or(0.0, |found| UNDETERMINED_PHASE * found.sine.abs());
             libm::hypot(in_phase * mixed, libm::hypot(lagging, left) * odd.size())
         });
         worst.fold(0.0, f64::max) / horizontal

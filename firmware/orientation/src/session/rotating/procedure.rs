@@ -116,11 +116,11 @@ fn default_turns(speeds: &[f64], slowest: f64) -> u32 {
 pub fn check(procedure: &Procedure) -> Result<(), ProcedureError> {
     Table::built_in().verify().map_err(|_| ProcedureError::TableCorrupt)?;
     let are_speeds = procedure.speeds.iter().all(|speed| *speed > 0.0 && speed.is_finite());
-    let is_uneven = procedure.modulated_turns == 0
+    let is_modulation_possible = procedure.modulated_turns == 0
         || (procedure.modulation > 0.0 && procedure.modulation < 1.0);
     let has_turns = f64::from(procedure.turns) >= LEAST_TURNS;
     let has_period = procedure.sample_seconds > 0.0 && procedure.sample_seconds.is_finite();
-    if are_speeds && is_uneven && has_turns && has_period {
+    if are_speeds && is_modulation_possible && has_turns && has_period {
         Ok(())
     } else {
         Err(ProcedureError::NoSpeed)

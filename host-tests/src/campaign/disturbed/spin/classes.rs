@@ -23,7 +23,7 @@ fn accelerometer_stuck() -> Class {
             let axis = chance.one_of(&[0, 1]);
             recorded.stick(size, chance, |row| &mut row.force_m_s2[axis]);
         });
-        // Of one force alone nothing tells which way round it goes.
+        // Of one force alone nothing shows which way round it goes.
         if size < 1.0 { pair } else { pair.never_harmless() }
     })
 }

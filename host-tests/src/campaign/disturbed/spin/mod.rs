@@ -26,7 +26,7 @@ pub(super) const PLATFORM: Platform = Platform::of::<Recorded>("spin", classes::
 /// The random stream of a flight: none of those that a world draws from.
 const DRAWN: u64 = 2_031;
 
-/// A drawn flight; what is told of its gyro is true.
+/// A drawn flight; what is stated about its gyro is true.
 #[derive(Clone, Debug)]
 struct Flight {
     seed: u64,
@@ -170,7 +170,7 @@ impl Subject for Recorded {
         Aligned {
             answer: self.answer(),
             unchecked_deg: unchecked.map(|roll_rad| self.error_deg(roll_rad)),
-            untold_deg: 0.0,
+            unseen_deg: 0.0,
         }
     }
 }

@@ -18,12 +18,12 @@ use super::chance::Chance;
 use super::class::{Aligned, Subject};
 use super::unit::{Grade, Rig, Unit};
 use super::{FEW_RESIDUALS, Platform};
+use crate::assumptions::unseen;
 use crate::campaign::statistics::Answer;
 use crate::methods::asked::Asked;
 use crate::methods::stepwise::replay;
 use crate::output::degrees;
 use crate::recording::{Body, StageRow};
-use crate::untold::unseen;
 
 /// A stage that stops.
 pub(super) const PLATFORM: Platform = Platform::of::<Instrument>("stage", classes::classes);

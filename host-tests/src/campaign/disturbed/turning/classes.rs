@@ -20,7 +20,7 @@ pub(super) fn classes() -> Vec<Class> {
     classes.extend(faults::columns::<Instrument>([0.02, 10.0], clipped));
     classes.extend([
         faults::reversed("stage-reversed", reversed, Instrument::drawn),
-        // Nothing tells them where the sensor's gain is not known.
+        // Nothing shows them where the sensor's gain is not known.
         faults::accelerometer_axes(Instrument::with_gyro),
         faults::period::<Instrument>(),
     ]);

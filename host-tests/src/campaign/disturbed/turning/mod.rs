@@ -19,11 +19,11 @@ use super::chance::Chance;
 use super::class::{Aligned, Subject};
 use super::gyro::Column;
 use super::unit::{Grade, Rig, Unit};
+use crate::assumptions::unseen;
 use crate::campaign::statistics::Answer;
 use crate::methods::asked::Asked;
 use crate::methods::rotating::replay;
 use crate::recording::{Body, Header, RotatingRow, Sensor};
-use crate::untold::unseen;
 
 /// A platform that turns all the time.
 pub(super) const PLATFORM: Platform = Platform::of::<Instrument>("turning", classes::classes);
@@ -57,7 +57,7 @@ struct Instrument {
 }
 
 impl Instrument {
-    /// A healthy gyro at a drawn place; what it is told of itself is true.
+    /// A healthy gyro at a drawn place; what is stated about it is true.
     fn with_gyro(seed: u64) -> Self {
         let mut chance = Chance::new(seed, DRAWN);
         let grade = Grade::drawn(&mut chance, N);

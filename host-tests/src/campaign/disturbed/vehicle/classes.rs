@@ -8,7 +8,7 @@ use crate::campaign::disturbed::chance::Chance;
 use crate::campaign::disturbed::class::{Class, Fault, Subject};
 
 /// Answers that may be wrong of a vehicle that only stands, where a bias is not what it was said to be: no data
-/// tell the bias along east from north.
+/// distinguish the bias along east from north.
 const WRONG_OF_FALSE_BIAS: f64 = 0.05;
 
 /// The classes of a vehicle.

@@ -28,7 +28,7 @@ const DRAWN: u64 = 2_011;
 const RESERVED: u64 = 1 << 20;
 /// m/s² of a thousandth of gravity.
 const MILLI_G: f64 = 9.806_65e-3;
-/// How well a stop's place is told, 1σ, m.
+/// How well a stop's place is stated, 1σ, m.
 const FIX_M: f64 = 5.0;
 
 /// A drawn unit in its vehicle, and what is wrong with it.
@@ -48,7 +48,7 @@ struct Instrument {
 }
 
 impl Instrument {
-    /// A healthy unit that stops and drives; what it is told of itself is true.
+    /// A healthy unit that stops and drives; what is stated about it is true.
     fn siap(seed: u64) -> Self {
         let mut chance = Chance::new(seed, DRAWN);
         let stops = chance.one_of(&[2, 2, 3]);
@@ -91,7 +91,7 @@ impl Instrument {
     /// A unit of drawn quality for a day.
     fn of(seed: u64, method: Method, mut day: Scenario, chance: &mut Chance) -> Self {
         let n = chance.scaled(1e-3, 5e-2);
-        // A vehicle that only stands cannot tell a bias from the Earth: σ would be degrees.
+        // A vehicle that only stands cannot distinguish a bias from the Earth: σ would be degrees.
         let bias = n * chance.scaled(3.0, if method == Method::Siap { 20.0 } else { 8.0 });
         let scale = chance.scaled(1e-5, 3e-4);
         let force_bias = chance.scaled(0.05, 1.0) * MILLI_G;

@@ -29,7 +29,7 @@ pub struct StopsDetails {
     /// Its error, °, where the truth is known; only with `ok`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub start_error_deg: Option<f64>,
-    /// Biases of the gyros forward, right, down, °/h, where they could be told from the Earth rate.
+    /// Biases of the gyros forward, right, down, °/h, where they could be distinguished from the Earth rate.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bias_dph: Option<[f64; 3]>,
     /// Their 1σ, °/h.
@@ -153,8 +153,9 @@ impl Replay {
             let turning =
                 format!("rest rates of {} stop(s): the vehicle turned", found.tally.turning);
             let both = [(left_out > 0, means), (found.tally.turning > 0, turning)];
-            let told = both.into_iter().filter_map(|(is_there, reason)| is_there.then_some(reason));
-            told.map(|reason| Excluded { reason, ..Excluded::default() })
+            let excluded =
+                both.into_iter().filter_map(|(is_there, reason)| is_there.then_some(reason));
+            excluded.map(|reason| Excluded { reason, ..Excluded::default() })
         });
         blown.chain(of_found).collect()
     }

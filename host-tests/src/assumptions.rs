@@ -1,4 +1,4 @@
-//! What a recording cannot tell, in words: every azimuth from it assumes that.
+//! What a recording cannot show, in words: every azimuth from it assumes that.
 
 pub mod unseen;
 
@@ -25,8 +25,8 @@ const LEAST_TILT: f64 = 1e-5;
 const UNNOTICED: f64 = 5.0;
 /// Tolerance of the Earth-rate ratio beyond its σ, where the gyro's scale is exact.
 const TOLERANCE: f64 = 0.005;
-/// Part of σ from which on an error that does not show is worth telling.
-const WORTH_TELLING: f64 = 0.3;
+/// Part of σ from which on an error that does not show is worth stating.
+const WORTH_STATING: f64 = 0.3;
 
 /// How far the frequency of a modulation may be from the speed that it stands for, relative.
 const SAME_SPEED: f64 = 0.3;
@@ -60,7 +60,7 @@ pub fn of_stage(session: &Session) -> Vec<String> {
     let is_level =
         tilt.magnitude() < LEVEL * tilt.covariance[0][0].max(tilt.covariance[1][1]).sqrt();
     let few = session.dwells().len() < ENOUGH && !is_repeated(session);
-    let untold = [
+    let assumed = [
         (true, "no drift in step with the turn"),
         (true, "no turn of the base or slip of the encoder in the last quarter of the dwells"),
         (is_level, "sense of the stage, which no level stage shows"),
@@ -75,12 +75,12 @@ pub fn of_stage(session: &Session) -> Vec<String> {
     });
     let unseen = unseen::of_stage(session);
     let unseen = level.into_iter().chain(unseen.iter().map(ToString::to_string));
-    words_of(&untold).chain(unseen).chain(shown.iter().flat_map(Shown::untold)).collect()
+    words_of(&assumed).chain(unseen).chain(shown.iter().flat_map(Shown::assumptions)).collect()
 }
 
-/// The words of what is untold.
-fn words_of(untold: &[(bool, &str)]) -> impl Iterator<Item = String> {
-    untold.iter().filter(|(is_untold, _)| *is_untold).map(|(_, words)| (*words).to_owned())
+/// The words of what is assumed.
+fn words_of(assumed: &[(bool, &str)]) -> impl Iterator<Item = String> {
+    assumed.iter().filter(|(is_assumed, _)| *is_assumed).map(|(_, words)| (*words).to_owned())
 }
 
 /// What the azimuth of a turning platform assumes that none of its data show; nothing where there is none.
@@ -96,14 +96,18 @@ pub fn of_platform(session: &rotating::Session) -> Vec<String> {
         felt: felt(&session.setting().common, fit.tilt),
     };
     let is_one_lag = !session.setting().sensor.is_flat && conclusion.pairs.len() < 2;
-    let untold = [
+    let assumed = [
         (is_one_lag, LAG_OF_ONE_SPEED),
         (!shows_sense(conclusion, &fit), SENSE_OF_A_PLATFORM),
         (fit.tilt.size() < NEARLY_LEVEL, UNIT_OF_A_PLATFORM),
     ];
     let unseen = unseen::of_platform(session);
     let unseen = unseen.iter().map(ToString::to_string);
-    words_of(&untold).chain(pole(session, conclusion)).chain(unseen).chain(shown.untold()).collect()
+    words_of(&assumed)
+        .chain(pole(session, conclusion))
+        .chain(unseen)
+        .chain(shown.assumptions())
+        .collect()
 }
 
 /// What it rests on that a sensor of unknown lag lags at a speed without a rate-modulated turn as one pole does.
@@ -181,8 +185,8 @@ fn shown_by_stage(setting: &Setting, conclusion: &Conclusion) -> Option<Shown> {
 }
 
 impl Shown {
-    /// What the Earth rate does not tell of how the sensors are built in, with what it would change.
-    fn untold(&self) -> impl Iterator<Item = String> {
+    /// What the Earth rate does not show about how the sensors are built in, with what it would change.
+    fn assumptions(&self) -> impl Iterator<Item = String> {
         let [here, mirrored] = self.felt;
         let reversed = self.change(-1.0, here).map(|change| {
             format!("sign of the gyro: with the other one {:.1}° away", change.to_degrees())
@@ -190,7 +194,7 @@ impl Shown {
         let turns = (0..360_u16).map(|degrees| Complex::unit(f64::from(degrees).to_radians()));
         let others = turns.flat_map(|turn| [here, mirrored].map(|felt| turn * felt));
         let changes = others.filter_map(|felt| self.change(1.0, felt));
-        let worth_telling = changes.filter(|change| *change > WORTH_TELLING * self.sigma);
+        let worth_telling = changes.filter(|change| *change > WORTH_STATING * self.sigma);
         let axes = worth_telling.reduce(f64::max).map(|change| {
             format!(
                 "axes of the accelerometer and the hemisphere: turned about the vertical, or in the other one, up to \

@@ -6,10 +6,10 @@ use std::fmt;
 use orientation::align::slow::SlowMotion;
 use orientation::session::{Session, rotating};
 
-/// From how many of its σ on a slow motion of the base is told, or taken off.
-const TOLD: f64 = 5.0;
-/// By how much of its σ an azimuth may be off with which its noise makes it wrong, beyond five of them: worth telling.
-const WORTH_TELLING: f64 = 3.0;
+/// From how many of its σ on a slow motion of the base is stated, or taken off.
+const STATED: f64 = 5.0;
+/// By how much of its σ an azimuth may be off with which its noise makes it wrong, beyond five of them: worth stating.
+const WORTH_STATING: f64 = 3.0;
 
 /// How a base moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,11 +53,11 @@ impl Unseen {
     /// Nothing where it hides in the azimuth's σ, rad.
     fn of(motion: Motion, slow: Option<SlowMotion>, sigma: f64) -> Option<Self> {
         let slow = slow?;
-        let unseen = Self { motion, rate: TOLD * slow.sigma, lever: slow.lever.abs() };
-        (unseen.rate * unseen.lever > WORTH_TELLING * sigma).then_some(unseen)
+        let unseen = Self { motion, rate: STATED * slow.sigma, lever: slow.lever.abs() };
+        (unseen.rate * unseen.lever > WORTH_STATING * sigma).then_some(unseen)
     }
 
-    /// By how much it puts north off at the most, rad; infinite where the recording tells nothing of it.
+    /// By how much it puts north off at the most, rad; infinite where the recording shows nothing of it.
     #[must_use]
     pub fn shift(&self) -> f64 {
         let shift = self.rate * self.lever;
