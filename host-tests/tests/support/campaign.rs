@@ -1,4 +1,4 @@
-//! Campaigns: one body, which runs in a tenth with every `cargo test` and whole in `.ci/full`.
+//! Campaigns: one body, which runs in a tenth in `.ci/run` and whole in `.ci/full`; `cargo test` leaves it out.
 //!
 //! The figures of the README are those of the whole. Seeds are fixed, so what passes once passes always. A
 //! bound of chance is four standard errors of the sample that it is of.
@@ -87,6 +87,7 @@ macro_rules! campaigns {
             use crate::support::campaign::Extent;
 
             #[test]
+            #[ignore = "a campaign: a tenth in .ci/run"]
             fn in_a_tenth() {
                 super::$name(Extent::Tenth);
             }
