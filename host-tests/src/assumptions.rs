@@ -194,8 +194,8 @@ impl Shown {
         let turns = (0..360_u16).map(|degrees| Complex::unit(f64::from(degrees).to_radians()));
         let others = turns.flat_map(|turn| [here, mirrored].map(|felt| turn * felt));
         let changes = others.filter_map(|felt| self.change(1.0, felt));
-        let worth_telling = changes.filter(|change| *change > WORTH_STATING * self.sigma);
-        let axes = worth_telling.reduce(f64::max).map(|change| {
+        let worth_stating = changes.filter(|change| *change > WORTH_STATING * self.sigma);
+        let axes = worth_stating.reduce(f64::max).map(|change| {
             format!(
                 "axes of the accelerometer and the hemisphere: turned about the vertical, or in the other one, up to \
                  {:.2}° away",

@@ -28,6 +28,9 @@ use super::files::{self, Written};
 use super::given::{self, Given};
 use super::{Answer, Shown};
 
+/// What the azimuth of a simulated board rests on.
+const ASSUMED: &str = "what the board is given about place and instrument";
+
 /// What is run.
 #[derive(Args)]
 pub struct RunOptions {

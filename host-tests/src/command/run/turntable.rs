@@ -17,7 +17,7 @@ use host::outcome::run::RunDetails;
 use host::recording::{Body, Truth};
 
 use super::options::{Common, Inclination, Place};
-use super::{Ran, Simulated, Terminal};
+use super::{ASSUMED, Ran, Simulated, Terminal};
 use crate::command::files::{self, Written};
 use crate::command::given::Given;
 use crate::command::whole;
@@ -185,6 +185,3 @@ fn recalled<R>(run: &Run<R>) -> impl Iterator<Item = &Remembered> {
         _ => None,
     })
 }
-
-/// What a simulated board is given.
-const ASSUMED: &str = "what the board is given about place and instrument";

@@ -19,7 +19,7 @@ use orientation::signal::InertialSample;
 
 use super::keeping::KeepingOptions;
 use super::options::{Common, Place, Wanted, seconds};
-use super::{Ran, Simulated, Terminal};
+use super::{ASSUMED, Ran, Simulated, Terminal};
 use crate::command::given::Given;
 use crate::command::whole;
 
@@ -45,9 +45,6 @@ pub struct VehicleOptions {
     #[command(flatten)]
     keeping: KeepingOptions,
 }
-
-/// What a simulated board is given.
-const ASSUMED: &str = "what the board is given about place and instrument";
 
 impl VehicleOptions {
     fn scenario(&self) -> VehicleScenario {
