@@ -31,7 +31,6 @@ pub mod calibration;
 pub mod guarded;
 pub mod pointing;
 pub mod retry_budget;
-pub mod steady;
 pub mod timeline;
 
 pub mod gimbal;
@@ -40,6 +39,7 @@ pub mod mechanism;
 pub mod motor;
 pub mod runner;
 pub mod stage;
+pub mod sway;
 pub mod turntable;
 
 pub mod date;

@@ -19,7 +19,7 @@ pub(crate) const STALL_REST: Duration = Duration::from_millis(500);
 /// Age beyond which the encoder's latest angle is not used.
 const STALE: Duration = Duration::from_millis(100);
 /// Longest wait for a recent angle: sensors that are being started again give none.
-const PATIENCE: Duration = Duration::from_secs(5);
+const LONGEST_WAIT: Duration = Duration::from_secs(5);
 
 /// Names of an axis' devices in the log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -149,7 +149,7 @@ impl<'a, M: Actuator> Motor<'a, M> {
     /// # Errors
     /// The encoder is given up as silent.
     pub(crate) async fn shown_near(&self, near: f64) -> Result<f64, Refusal> {
-        let deadline = Instant::now() + PATIENCE;
+        let deadline = Instant::now() + LONGEST_WAIT;
         while self.fresh().is_none() {
             if Instant::now() > deadline {
                 return Err(self.shared.give_up(self.axis.encoder, Trouble::Silent));

@@ -88,9 +88,9 @@ async fn join<L: Write, R: Recorder<S>, S>(
     channels: &Channels<'_, S>,
 ) -> Health {
     let shared = &channels.shared;
-    let mut conductor = SessionRunner::new(session, recorder, channels);
+    let mut session_runner = SessionRunner::new(session, recorder, channels);
     // Each part is pinned here, so that it exists in memory once.
-    let runner = pin!(conductor.run());
+    let runner = pin!(session_runner.run());
     let reporting = pin!(link::run(link, shared));
     let watch = pin!(health::watch(shared));
     // The keeper is polled last, so that it takes only what the session has taken.

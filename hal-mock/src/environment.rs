@@ -1,4 +1,4 @@
-//! What the chips feel and move, in physical units: the seam between a chip and the world.
+//! What the chips feel and move, in physical units: what passes between a chip and the world.
 //!
 //! Chips ask in rising order of time; each call stands for one measurement, so noise is drawn once
 //! for each.

@@ -25,7 +25,7 @@ pub(crate) struct Registers {
     pub(crate) access: Access,
     /// Bits that may be written as one.
     pub(crate) mask: u32,
-    /// Their value after a reset.
+    /// Value of the bits after a reset.
     reset: u32,
 }
 

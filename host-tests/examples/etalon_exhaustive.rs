@@ -8,11 +8,12 @@
 
 use std::process::ExitCode;
 
-use host::oracle::{CRITERIA, Case, Outcome, Random, adversarial, compare, ordinary, paper};
+use hal_mock::noise::Generator;
+use host::oracle::{CRITERIA, Case, Outcome, adversarial, compare, ordinary, paper};
 use rayon::prelude::*;
 
 /// Makes case number `index` of a family.
-type Family = fn(&mut Random, usize) -> Case;
+type Family = fn(&mut Generator, usize) -> Case;
 
 /// The value below which `share` of the sorted `values` lie.
 fn quantile(values: &[u32], share: f64) -> u32 {
@@ -24,7 +25,7 @@ fn run(name: &str, family: Family, cases: usize) -> usize {
     let outcomes: Vec<[Outcome; 5]> = (0..cases)
         .into_par_iter()
         .map(|index| {
-            let mut random = Random(index as u64);
+            let mut random = Generator::new(index as u64);
             let case = family(&mut random, index);
             let outcomes = compare(&case, &mut random);
             for (outcome, criterion) in outcomes.iter().zip(CRITERIA) {

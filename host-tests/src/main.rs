@@ -16,10 +16,10 @@ use host::output::say;
 use crate::command::allan::AllanOptions;
 use crate::command::campaign::CampaignOptions;
 use crate::command::emulate::EmulateOptions;
-use crate::command::given::Given;
 use crate::command::plan::PlanOptions;
 use crate::command::replay::ReplayOptions;
 use crate::command::run::{RunOptions, usual};
+use crate::command::stated::Stated;
 use crate::command::{Failure, print};
 
 /// Finds true north from a precise gyro on a rotation stage, with its standard deviation.
@@ -38,6 +38,7 @@ struct CommandLine {
 #[derive(Subcommand)]
 enum Command {
     /// Runs the whole board application on simulated chips.
+    #[command(override_usage = "meridian run [PLATFORM] [OPTIONS]")]
     Run(RunOptions),
     /// Runs the alignment on a recording of kind `stage`, `dwells`, `rotating` or `imu`, or finds
     /// the roll of a spinning body on one of kind `spin`.
@@ -54,20 +55,20 @@ enum Command {
 }
 
 /// What was asked, and which options stand on the command line.
-struct Asked {
+struct Parsed {
     as_json: bool,
     command: Command,
-    given: Given,
+    stated: Stated,
 }
 
 /// The command line; without a command it is a run of a stage with all its defaults.
-fn parse() -> Result<Asked, clap::Error> {
+fn parse() -> Result<Parsed, clap::Error> {
     let mut arguments: Vec<_> = std::env::args_os().collect();
     let named = usual::named(arguments.split_off(1.min(arguments.len())));
     let program = taking_negative_numbers(CommandLine::command());
     let matches = program.try_get_matches_from(arguments.iter().chain(&named))?;
     let CommandLine { json: as_json, command } = CommandLine::from_arg_matches(&matches)?;
-    Ok(Asked { as_json, command, given: Given::of(&matches) })
+    Ok(Parsed { as_json, command, stated: Stated::of(&matches) })
 }
 
 /// The program, in which an option that takes a number may have a value that begins with a minus: what it may be, its
@@ -93,16 +94,16 @@ fn takes_number(arg: &clap::Arg) -> bool {
 const STACK: usize = 16 << 20;
 
 fn main() -> ExitCode {
-    let Asked { as_json, command, given } = match parse() {
+    let Parsed { as_json, command, stated } = match parse() {
         Ok(asked) => asked,
         Err(error) => return misuse(&error),
     };
-    if let Err(wrong) = check(&command, &given) {
+    if let Err(wrong) = check(&command, &stated) {
         return misused(&wrong);
     }
     // Where there is a pool already, or no room for another one, that one serves.
     let _ = rayon::ThreadPoolBuilder::new().stack_size(STACK).build_global();
-    match answer(&command, &given, as_json) {
+    match answer(&command, &stated, as_json) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
         Err(failure) if failure.is_misuse => misused(&failure.reason),
@@ -111,11 +112,11 @@ fn main() -> ExitCode {
 }
 
 /// What cannot go together in a command's options.
-fn check(command: &Command, given: &Given) -> Result<(), String> {
+fn check(command: &Command, stated: &Stated) -> Result<(), String> {
     match command {
-        Command::Run(options) => options.check(given),
+        Command::Run(options) => options.check(stated),
         Command::Campaign(options) => options.check(),
-        Command::Replay(options) => options.check(given),
+        Command::Replay(options) => options.check(stated),
         Command::Allan(options) => options.check(),
         Command::Plan(options) => options.check(),
         Command::Emulate(_) => Ok(()),
@@ -183,10 +184,10 @@ fn warn(warnings: &[String]) {
 }
 
 /// Runs the command and prints what came of it; whether there was a result.
-fn answer(command: &Command, given: &Given, as_json: bool) -> Result<bool, Failure> {
+fn answer(command: &Command, stated: &Stated, as_json: bool) -> Result<bool, Failure> {
     let answer = match command {
         Command::Run(options) => command::run::run(options, as_json)?,
-        Command::Replay(options) => command::replay::run(options, given, as_json)?,
+        Command::Replay(options) => command::replay::run(options, stated, as_json)?,
         Command::Plan(options) => command::plan::run(options, as_json)?,
         Command::Allan(options) => command::allan::run(options, as_json)?,
         Command::Campaign(options) => command::campaign::run(options, as_json)?,

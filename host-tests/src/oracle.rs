@@ -5,6 +5,7 @@
 
 use std::sync::LazyLock;
 
+use hal_mock::noise::Generator;
 use orientation::align::etalon::{
     self, Accepted, Criterion, Limit, Series, Table, table::QUARTER_COSINE,
 };
@@ -34,32 +35,9 @@ pub fn unfolded(k: i32) -> i64 {
     }
 }
 
-/// A small generator of reproducible random numbers (`SplitMix64`).
-pub struct Random(pub u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut x = self.0;
-        x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        x ^ (x >> 31)
-    }
-
-    /// Uniform in [0, 1).
-    pub fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / 9_007_199_254_740_992.0
-    }
-
-    /// Uniform integer in `from` to `to`, both included.
-    pub fn integer(&mut self, from: i32, to: i32) -> i32 {
-        from + (self.unit() * f64::from(to - from + 1)) as i32
-    }
-
-    /// Normal with unit variance.
-    pub fn normal(&mut self) -> f64 {
-        (-2.0 * (1.0 - self.unit()).ln()).sqrt() * (std::f64::consts::TAU * self.unit()).cos()
-    }
+/// Uniform integer in `from` to `to`, both included.
+fn integer(random: &mut Generator, from: i32, to: i32) -> i32 {
+    from + (random.uniform() * f64::from(to - from + 1)) as i32
 }
 
 /// One measured series.
@@ -82,9 +60,9 @@ impl Case {
 
     /// Adds normal noise of standard deviation `sigma` and a constant `drift`.
     #[must_use]
-    pub fn disturbed(mut self, random: &mut Random, sigma: f64, drift: f64) -> Self {
+    pub fn disturbed(mut self, random: &mut Generator, sigma: f64, drift: f64) -> Self {
         for ratio in &mut self.ratios {
-            *ratio += drift + sigma * random.normal();
+            *ratio += drift + sigma * random.gaussian();
         }
         self
     }
@@ -106,67 +84,67 @@ fn sensitivity(azimuth: f64, count: i32, step: i32) -> f64 {
 
 /// A case as users meet them: any azimuth, 3 to 64 positions, any step either way, a drift, and
 /// noise worth up to 1° (1σ) of azimuth.
-pub fn ordinary(random: &mut Random) -> Case {
-    let (azimuth, count) = (std::f64::consts::TAU * random.unit(), random.integer(3, 64));
-    let step = random.integer(1, 64_799) * (2 * random.integer(0, 1) - 1);
-    let sigma = random.unit().to_radians() * sensitivity(azimuth, count, step);
-    let drift = random.normal();
+pub fn ordinary(random: &mut Generator) -> Case {
+    let (azimuth, count) = (std::f64::consts::TAU * random.uniform(), integer(random, 3, 64));
+    let step = integer(random, 1, 64_799) * (2 * integer(random, 0, 1) - 1);
+    let sigma = random.uniform().to_radians() * sensitivity(azimuth, count, step);
+    let drift = random.gaussian();
     Case::clean(azimuth, count, step).disturbed(random, sigma, drift)
 }
 
 /// The paper's settings: 60 dwells on a 28° arc, or round the circle.
-pub fn paper(random: &mut Random) -> Case {
-    let step = [168, -168, 2160][random.integer(0, 2) as usize];
-    let azimuth = std::f64::consts::TAU * random.unit();
+pub fn paper(random: &mut Generator) -> Case {
+    let step = [168, -168, 2160][integer(random, 0, 2) as usize];
+    let azimuth = std::f64::consts::TAU * random.uniform();
     Case::clean(azimuth, 60, step).disturbed(random, 1.48e-3, 0.001)
 }
 
 /// A case of 127 to 1 024 positions, with noise from hardly any to what hides the signal.
-pub fn long(random: &mut Random) -> Case {
-    let (azimuth, count) = (std::f64::consts::TAU * random.unit(), random.integer(127, 1024));
-    let step = random.integer(1, 64_799) * (2 * random.integer(0, 1) - 1);
-    let (sigma, drift) = (10_f64.powf(8.0 * random.unit() - 6.0), random.normal());
+pub fn long(random: &mut Generator) -> Case {
+    let (azimuth, count) = (std::f64::consts::TAU * random.uniform(), integer(random, 127, 1024));
+    let step = integer(random, 1, 64_799) * (2 * integer(random, 0, 1) - 1);
+    let (sigma, drift) = (10_f64.powf(8.0 * random.uniform() - 6.0), random.gaussian());
     Case::clean(azimuth, count, step).disturbed(random, sigma, drift)
 }
 
 /// A case made to break a search; `kind` is taken modulo 10.
-pub fn adversarial(random: &mut Random, kind: usize) -> Case {
+pub fn adversarial(random: &mut Generator, kind: usize) -> Case {
     let grid = std::f64::consts::TAU / f64::from(TURN);
-    let azimuth = std::f64::consts::TAU * random.unit();
-    let direction = 2 * random.integer(0, 1) - 1;
-    let step = direction * random.integer(1, 64_799);
-    let count = random.integer(3, 64);
-    let small = direction * random.integer(1, 30);
+    let azimuth = std::f64::consts::TAU * random.uniform();
+    let direction = 2 * integer(random, 0, 1) - 1;
+    let step = direction * integer(random, 1, 64_799);
+    let count = integer(random, 3, 64);
+    let small = direction * integer(random, 1, 30);
     let closed = [(3, 43_200), (4, 32_400), (5, 25_920), (12, 10_800), (60, 2160), (64, 2025)];
-    let (whole, turn) = closed[random.integer(0, 5) as usize];
+    let (whole, turn) = closed[integer(random, 0, 5) as usize];
     match kind % 10 {
         // Truth on the grid, no noise.
         0 => Case::clean((azimuth / grid).round() * grid, count, step),
         // The shortest arcs.
         1 => {
-            let (count, sigma) = (random.integer(3, 8), 1e-6 * random.unit());
+            let (count, sigma) = (integer(random, 3, 8), 1e-6 * random.uniform());
             Case::clean(azimuth, count, direction).disturbed(random, sigma, 0.1)
         }
         2 => {
-            let sigma = 10_f64.powf(-6.0 * random.unit());
+            let sigma = 10_f64.powf(-6.0 * random.uniform());
             Case::clean(azimuth, 3, step).disturbed(random, sigma, 0.0)
         }
         // Noise that hides the signal.
         3 => {
-            let sigma = 100.0 * random.unit();
+            let sigma = 100.0 * random.uniform();
             Case::clean(azimuth, count, step).disturbed(random, sigma, 0.0)
         }
         // No signal at all: every index nearly ties.
-        4 => Case { ratios: vec![random.integer(-2, 2).into(); whole as usize], step: turn },
+        4 => Case { ratios: vec![integer(random, -2, 2).into(); whole as usize], step: turn },
         // Truth half-way between two indices, mirrored about north or east.
         5 => {
-            let half = (f64::from(random.integer(0, 4) * 32_400) + 0.5) * grid;
+            let half = (f64::from(integer(random, 0, 4) * 32_400) + 0.5) * grid;
             Case::clean(half - f64::from(step * (count - 1)) * grid / 2.0, count, step)
         }
         // Almost mirror-tied.
         6 => {
-            let sigma = 1e-5 * random.unit();
-            let step = direction * (64_800 - random.integer(1, 3));
+            let sigma = 1e-5 * random.uniform();
+            let step = direction * (64_800 - integer(random, 1, 3));
             Case::clean(azimuth, count, step).disturbed(random, sigma, 0.0)
         }
         // On and near an axis of the ellipse: two equal minima.
@@ -182,7 +160,7 @@ pub fn adversarial(random: &mut Random, kind: usize) -> Case {
         8 => Case::clean(azimuth, count, step).disturbed(random, 400.0, 0.0),
         // Short noisy arcs, where many indices compete.
         _ => {
-            let sigma = random.unit().to_radians() * sensitivity(azimuth, count, small);
+            let sigma = random.uniform().to_radians() * sensitivity(azimuth, count, small);
             Case::clean(azimuth, count, small).disturbed(random, sigma, 0.0)
         }
     }
@@ -249,11 +227,11 @@ fn covering(objective: &[u128], limit: u128) -> Accepted {
 
 /// A limit that tries the edges of the accepted set: below, at and just above the minimum, at the
 /// objective of some index, at and just below the maximum.
-fn limit(random: &mut Random, objective: &[u128]) -> u128 {
+fn limit(random: &mut Generator, objective: &[u128]) -> u128 {
     let minimum = least(objective).1;
     let maximum = objective.iter().copied().max().unwrap_or(0);
-    let any = objective[random.integer(0, TURN - 1) as usize];
-    match random.integer(0, 9) {
+    let any = objective[integer(random, 0, TURN - 1) as usize];
+    match integer(random, 0, 9) {
         0 => minimum.saturating_sub(1),
         1 => minimum,
         2 => minimum + minimum / 100_000,
@@ -288,7 +266,7 @@ impl Outcome {
 /// # Panics
 /// Where the case is no series that can be matched; the families make none such.
 #[expect(clippy::unwrap_used, reason = "the families make only series that can be matched")]
-pub fn compare(case: &Case, random: &mut Random) -> [Outcome; 5] {
+pub fn compare(case: &Case, random: &mut Generator) -> [Outcome; 5] {
     let table = Table::built_in();
     let series = Series::new(case.ratios.iter().copied(), case.step).unwrap();
     let all = Objectives::new(&case.values(), case.step);

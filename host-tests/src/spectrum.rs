@@ -21,7 +21,7 @@ pub enum Window {
 /// A line of a spectrum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {
-    /// Its frequency, Hz.
+    /// Frequency of the line, Hz.
     pub frequency_hz: f64,
     /// Amplitude of the sinusoid there, in the signal's unit.
     pub amplitude: f64,

@@ -19,9 +19,6 @@ pub const DEGREE: f64 = TURN / 360.0;
 /// Degrees in one radian.
 pub const DEGREES_PER_RADIAN: f64 = 360.0 / TURN;
 
-/// Seconds of arc in one radian.
-pub const ARCSECONDS_PER_RADIAN: f64 = 1_296_000.0 / TURN;
-
 /// One second of arc, in radians.
 pub const ARCSECOND: f64 = TURN / 1_296_000.0;
 

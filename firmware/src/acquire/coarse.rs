@@ -90,7 +90,7 @@ impl Timing {
 #[derive(Clone, Copy, Debug)]
 struct Precise {
     /// Time between conversions.
-    pace: Timing,
+    timing: Timing,
     /// Sense of the axis: +1 down, −1 up, 0 neither.
     sense: i32,
     /// Rotation in steps of an increment, and remainder of whole steps.
@@ -106,7 +106,7 @@ struct Precise {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Coarse {
     /// Time between coarse readings.
-    pace: Timing,
+    timing: Timing,
     /// Remainders of whole steps.
     carried: [i64; 3],
     /// Rotation of the precise gyro.
@@ -125,12 +125,12 @@ impl Coarse {
     /// Motion before the first reading, for coarse readings and precise samples with these periods,
     /// µs.
     pub(super) fn new(coarse: u32, precise: u32) -> Self {
-        let pace = |period| Timing { period, latest: None };
+        let timing = |period| Timing { period, latest: None };
         Self {
-            pace: pace(coarse),
+            timing: timing(coarse),
             carried: [0; 3],
             precise: Precise {
-                pace: pace(precise),
+                timing: timing(precise),
                 sense: 0,
                 turned: 0,
                 carried: 0,
@@ -150,7 +150,7 @@ impl Coarse {
         let Some(rate) = rate.filter(|_| precise.sense != 0) else {
             return;
         };
-        let (lasted, is_whole) = precise.pace.lasted(at);
+        let (lasted, is_whole) = precise.timing.lasted(at);
         let turned = AngleIncrement::of_rate(rate, lasted, &mut precise.carried);
         precise.is_whole &= is_whole && !turned.is_saturated();
         precise.turned += i64::from(turned.0) * i64::from(precise.sense);
@@ -163,7 +163,7 @@ impl Coarse {
         if sense != self.precise.sense {
             self.precise.sense = sense;
             self.precise.is_vertical = false;
-            self.precise.pace.latest = None;
+            self.precise.timing.latest = None;
         }
     }
 
@@ -182,7 +182,7 @@ impl Coarse {
     /// Converts a coarse reading to a sample and passes it on. Saturation is kept as such; missing
     /// readings show in the times.
     pub(super) fn pass_on(&mut self, at: Instant, reading: &BaseReading, shared: &Shared<'_>) {
-        let (lasted, _) = self.pace.lasted(at);
+        let (lasted, _) = self.timing.lasted(at);
         let mut turned = increments(reading.rate, lasted, &mut self.carried);
         turned[2] = match self.take_precise(shared) {
             Some(precise) => {

@@ -20,7 +20,7 @@ use crate::keep::RETRY;
 use crate::pointing::{FrameShafts, Pointing, Shaft};
 use crate::ports::{Accelerometer, Encoder, Frames, Gyro, Sensors};
 use crate::shared::{Channels, LatestAngle};
-use crate::steady::CompensatesSway;
+use crate::sway::CompensatesSway;
 
 /// The sensors of a stage or a turntable as a source of samples; nothing is started yet.
 pub fn on_stage<'a, G: Gyro, A: Accelerometer, E: Encoder, B: CompensatesSway>(
@@ -54,7 +54,7 @@ struct Acquisition<'a, G, A, P, S> {
     rates: Rates<'a, G>,
     forces: Forces<'a, A>,
     pointing: P,
-    steady: &'a mut S,
+    compensation: &'a mut S,
     coarse: Coarse,
     outlet: Outlet<'a, Sample>,
     silence: Duration,
@@ -66,18 +66,18 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Acquisition
         gyro: &'a mut G,
         accelerometer: &'a mut A,
         pointing: P,
-        steady: &'a mut S,
+        compensation: &'a mut S,
         configuration: &Configuration,
         channels: &'a Channels<'a>,
     ) -> Self {
         let Configuration { sample_rate, force_divider, .. } = *configuration;
         let period = period(sample_rate);
-        let coarse = Coarse::new(steady.period(period), period);
+        let coarse = Coarse::new(compensation.period(period), period);
         Self {
             rates: Rates::new(gyro, Device::Gyro, sample_rate),
             forces: Forces::new(accelerometer, force_divider, sample_rate),
             pointing,
-            steady,
+            compensation,
             coarse,
             outlet: Outlet::new(period, channels),
             silence: silence(period),
@@ -94,7 +94,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Acquisition
     /// Passes a coarse reading on to attitude and heading.
     fn pass_on(&mut self) {
         let shared = self.outlet.shared();
-        if let Some((at, reading)) = self.steady.reading() {
+        if let Some((at, reading)) = self.compensation.reading() {
             self.coarse.pass_on(at, &reading, shared);
         }
     }
@@ -122,7 +122,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
         let shared = self.outlet.shared();
         self.forces.accelerometer.start(shared).await?;
         self.pointing.start().await?;
-        self.steady.start(shared).await?;
+        self.compensation.start(shared).await?;
         self.rates.gyro.start(shared).await
     }
 
@@ -133,10 +133,10 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
             Err(symptom) => return self.rates.gyro.mend(symptom, shared).await.map(|()| None),
         };
         let rate = self.rate().await?;
-        self.steady.follow(shared).await?;
+        self.compensation.follow(shared).await?;
         self.coarse.turn(time, rate);
         self.pass_on();
-        if !self.steady.is_decided() {
+        if !self.compensation.is_decided() {
             shared.count(|health| health.samples += 1);
             return Ok(None);
         }
@@ -152,7 +152,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
         Ok(Some(Sample {
             time: orientation::units::Instant(time.as_micros()),
             stage: aim.heading,
-            rate: self.steady.steadied(rate, aim.heading),
+            rate: self.compensation.compensated(rate, aim.heading),
             force: force.map(|reading| reading.force),
             temperature: force.map(|reading| reading.temperature),
             elevation: aim.elevation.filter(|_| force.is_some()),
@@ -171,7 +171,7 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
         let mut ticker = Ticker::every(self.rates.period);
         while Instant::now() < until || !shared.keep.is_at_rest.get() {
             ticker.next().await;
-            self.steady.follow(shared).await?;
+            self.compensation.follow(shared).await?;
             self.pass_on();
             shared.count(|health| health.samples = health.samples.saturating_add(1));
             if !shared.keep.is_idle.get() {
@@ -184,6 +184,6 @@ impl<'a, G: Gyro, A: Accelerometer, P: Pointing, S: CompensatesSway> Source<'a>
 
     fn renew(&mut self) {
         self.renew_precise();
-        self.steady.renew();
+        self.compensation.renew();
     }
 }

@@ -188,11 +188,11 @@ pub struct Scenario {
     pub start_deg: f64,
     /// Amplitude of the base's sway, °; zero for a base at rest.
     pub sway_deg: f64,
-    /// Its frequency, Hz.
+    /// Frequency of the sway, Hz.
     pub sway_hz: f64,
     /// Whether a coarse IMU stands on the base.
     pub has_base_imu: bool,
-    /// Its class.
+    /// Class of the coarse IMU.
     pub coarse: CoarseClass,
     /// How it goes on after the alignment.
     pub hold: Hold,

@@ -113,7 +113,7 @@ impl Adxl355 {
         self.registers[usize::from(STATUS)] = NVM_BUSY;
     }
 
-    /// A chip as after a loss of supply at `now`, with the sicknesses and the record of this one.
+    /// A chip as after a loss of supply at `now`, with the faults and the record of this one.
     fn sane(&mut self, now: Instant) -> Self {
         Self {
             self_test_response: self.self_test_response,

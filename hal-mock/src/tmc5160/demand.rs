@@ -75,7 +75,7 @@ pub(super) struct Demand {
 }
 
 impl Demand {
-    /// As the registers stand.
+    /// The demand that the registers state.
     pub fn of(registers: &[u32; ADDRESSES]) -> Self {
         let plain = |address: u8| i64::from(registers[usize::from(address)]);
         let fine = |address: u8| plain(address) << VELOCITY_BITS;

@@ -81,7 +81,7 @@ impl Rest {
         self.segments().max_by_key(|segment| segment.len()).unwrap_or_default()
     }
 
-    /// Its record for the estimators.
+    /// Record of all segments for the estimators.
     #[must_use]
     pub fn record(&self) -> Record {
         Record::new(self.spacing.period_s, self.segments())

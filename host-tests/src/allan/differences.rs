@@ -7,7 +7,7 @@
 /// Squares and how many they are.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Sum {
-    /// Their sum.
+    /// Sum of the squares.
     pub squares: f64,
     /// How many.
     pub terms: u64,

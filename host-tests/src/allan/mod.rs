@@ -48,7 +48,7 @@ pub struct Variance {
 }
 
 impl Variance {
-    /// Its root, in the rate's unit.
+    /// Allan deviation, the root of the variance, in the rate's unit.
     #[must_use]
     pub fn deviation(&self) -> f64 {
         self.variance.sqrt()

@@ -36,7 +36,7 @@ pub type Tick<'a> = &'a (dyn Fn() + Sync);
 
 /// A campaign.
 pub struct Campaign {
-    /// Its name on the command line.
+    /// Name of the campaign on the command line.
     pub name: &'static str,
     /// What it runs, for the help.
     pub meaning: &'static str,
@@ -56,7 +56,7 @@ pub struct Campaign {
 pub struct Done {
     /// Its JSON object but for the status.
     pub object: Value,
-    /// Its text and page.
+    /// Text and page of the campaign.
     pub report: Report,
     /// Why it is no result, where it is none.
     pub refusal: Option<&'static str>,

@@ -13,7 +13,7 @@ use crate::output::{azimuth_error, degrees};
 pub struct Answer {
     /// Error of the azimuth.
     pub error: f64,
-    /// Its standard deviation.
+    /// Standard deviation of the azimuth.
     pub sigma: f64,
     /// Cramér–Rao bound.
     pub limit: f64,
@@ -23,7 +23,7 @@ impl Answer {
     /// A verdict against the true azimuth; its limit, rad, where there is one.
     ///
     /// # Errors
-    /// Its refusal.
+    /// The refusal of the verdict.
     pub fn of(
         verdict: Result<Azimuth, Refusal>,
         limit: Option<f64>,
@@ -38,7 +38,7 @@ impl Answer {
     /// The conclusion of a stage against the true azimuth.
     ///
     /// # Errors
-    /// Its refusal.
+    /// The refusal of the conclusion.
     pub fn of_stage(conclusion: &Conclusion, truth_deg: f64) -> Result<Self, Refusal> {
         Self::of(conclusion.verdict, conclusion.fit.as_ref().map(|fit| fit.limit), truth_deg)
     }

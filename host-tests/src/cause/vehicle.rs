@@ -1,4 +1,4 @@
-//! The same of three gyros and three accelerometers.
+//! Causes of a refusal of three gyros and three accelerometers: columns in other units.
 
 use orientation::error::Refusal;
 

@@ -8,14 +8,14 @@ use super::Answer;
 
 /// A fault that is asked for, or the wish to see the names.
 #[derive(Clone, Copy, Debug)]
-pub enum Asked {
+pub enum FaultChoice {
     /// The names of the platform's faults.
     List,
     /// This fault.
     One(Fault),
 }
 
-impl Asked {
+impl FaultChoice {
     /// Whether it is a fault of the coarse IMU, which comes with it then.
     pub fn is_of_base_imu(self) -> bool {
         matches!(self, Self::One(Fault::Chip(Device::Base, _)))
@@ -26,13 +26,13 @@ impl Asked {
 ///
 /// # Errors
 /// A name that no fault bears.
-pub fn parse(text: &str) -> Result<Asked, String> {
+pub fn parse(text: &str) -> Result<FaultChoice, String> {
     if text == "list" {
-        return Ok(Asked::List);
+        return Ok(FaultChoice::List);
     }
     let mut faults = Platform::ALL.into_iter().flat_map(Fault::all);
     let found = faults.find(|fault| fault.to_string() == text);
-    found.map(Asked::One).ok_or_else(|| "no such fault; `--fault list` names them".to_owned())
+    found.map(FaultChoice::One).ok_or_else(|| "no such fault; `--fault list` names them".to_owned())
 }
 
 /// A platform by its name.
@@ -50,7 +50,7 @@ pub fn platform(text: &str) -> Result<Platform, String> {
 /// # Errors
 /// The platforms that have the fault, or that the coarse IMU which it needs is left out.
 pub fn check(fault: Fault, platform: Platform, no_base_imu: bool) -> Result<(), String> {
-    if no_base_imu && Asked::One(fault).is_of_base_imu() {
+    if no_base_imu && FaultChoice::One(fault).is_of_base_imu() {
         return Err("--fault: --no-base-imu leaves out what it happens to".to_owned());
     }
     let having: Vec<_> = fault.platforms().map(Platform::name).collect();

@@ -63,7 +63,7 @@ enum Identity {
     /// Place of an existing file on its device.
     #[cfg(unix)]
     Node(u64, u64),
-    /// Its path without links.
+    /// Path of the file without links.
     Path(PathBuf),
 }
 

@@ -5,10 +5,10 @@ pub mod campaign;
 pub mod emulate;
 pub mod faults;
 pub mod files;
-pub mod given;
 pub mod plan;
 pub mod replay;
 pub mod run;
+pub mod stated;
 
 use std::io::Write;
 use std::path::Path;

@@ -109,7 +109,7 @@ pub fn run(options: &PlanOptions, as_json: bool) -> Result<Answer, String> {
     let request = Request::from(options);
     let planned = match request.plan() {
         Ok(planned) => planned,
-        Err(why) => return refused(&why.to_string(), as_json),
+        Err(why) => return refused(options, &why.to_string(), as_json),
     };
     let object = Found { status: "ok", planned };
     let answer = Answer::of(true, as_json, &object, || plan::report(&request, &planned).text())?;
@@ -117,8 +117,10 @@ pub fn run(options: &PlanOptions, as_json: bool) -> Result<Answer, String> {
 }
 
 /// No schedule, and why.
-fn refused(why: &str, as_json: bool) -> Result<Answer, String> {
+fn refused(options: &PlanOptions, why: &str, as_json: bool) -> Result<Answer, String> {
     let object = json!({ "status": "refused", "reason": why });
     let answer = Answer::of(false, as_json, &object, String::new)?;
-    Ok(Answer { refusal: Some(why.to_owned()), ..answer })
+    let no_page = |_| "--report: without a schedule there is no page".to_owned();
+    let warnings = options.report.iter().map(no_page).collect();
+    Ok(Answer { refusal: Some(why.to_owned()), warnings, ..answer })
 }

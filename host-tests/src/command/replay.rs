@@ -13,7 +13,7 @@ use host::unwritten;
 use orientation::align::criterion::Criterion;
 use orientation::earth::Latitude;
 
-use super::given::{Given, long};
+use super::stated::{Stated, long};
 use super::{Answer, Failure, Half, Shown, explained, files, latitude, sigma};
 
 /// Which recording, and how it is taken.
@@ -28,9 +28,9 @@ pub struct ReplayOptions {
     #[arg(long, value_name = "DEGREES", value_parser = latitude)]
     latitude: Option<Latitude>,
     /// How the azimuth is found: ml, table (ml over the etalon table), least-squares, least-absolute, within-squares=A1 in (°/h)²,
-    /// within-absolute=A in °/h.
-    #[arg(long, default_value = "ml", value_parser = host::criterion::parse)]
-    criterion: Criterion,
+    /// within-absolute=A in °/h (ml, or as the run had it).
+    #[arg(long, value_parser = host::criterion::parse)]
+    criterion: Option<Criterion>,
     /// The half of the circle in which the azimuth is known to lie: two positions need it.
     #[arg(long, value_enum)]
     half: Option<Half>,
@@ -38,9 +38,9 @@ pub struct ReplayOptions {
     /// instead of the recording's.
     #[arg(long, value_name = "N,E;N,E", value_parser = displacements)]
     displacements: Option<Displacements>,
-    /// Greatest standard deviation that is accepted, in degrees (1σ).
-    #[arg(long, value_name = "DEGREES", default_value = "10", value_parser = sigma)]
-    require_sigma: f64,
+    /// Greatest standard deviation that is accepted, in degrees (1σ) (10, or what the run asked for).
+    #[arg(long, value_name = "DEGREES", value_parser = sigma)]
+    require_sigma: Option<f64>,
     /// Writes the attitude after each sample, body to north, east, down up to a constant heading:
     /// `t_s,qw,qx,qy,qz,sigma_tilt_rad`, the last 1σ of either tilt.
     #[arg(long, value_name = "FILE.csv")]
@@ -75,7 +75,7 @@ impl ReplayOptions {
             criterion: self.criterion,
             half: self.half.map(Into::into),
             displacements_m: self.displacements.as_ref().map(|list| list.0.clone()),
-            required_sigma: Some(self.require_sigma),
+            required_sigma: self.require_sigma,
         }
     }
 
@@ -83,8 +83,8 @@ impl ReplayOptions {
     ///
     /// # Errors
     /// The options, and why.
-    pub fn check(&self, given: &Given) -> Result<(), String> {
-        self.method.map_or(Ok(()), |method| check(given, method))?;
+    pub fn check(&self, stated: &Stated) -> Result<(), String> {
+        self.method.map_or(Ok(()), |method| check(stated, method))?;
         let attitude = files::written("--attitude-out", "the attitude", self.attitude_out.as_ref());
         let report = files::written("--report", "the page", self.report.as_ref());
         files::check(Some(&self.file), &[attitude, report])
@@ -104,21 +104,20 @@ const SPECIAL: [(&str, &str); 5] = [
 ///
 /// # Errors
 /// The option, the method, and why.
-fn check(given: &Given, method: &Method) -> Result<(), String> {
+fn check(stated: &Stated, method: &Method) -> Result<(), String> {
     let is_ignored =
-        |(option, _): &&(&str, &str)| given.has(option) && !method.takes.contains(option);
+        |(option, _): &&(&str, &str)| stated.has(option) && !method.takes.contains(option);
     SPECIAL.iter().find(is_ignored).map_or(Ok(()), |(option, why)| {
         Err(format!("{}: --method {} does not take it: {why}", long(option), method.name))
     })
 }
 
 /// Replays a recording.
-pub fn run(options: &ReplayOptions, given: &Given, as_json: bool) -> Result<Answer, Failure> {
+pub fn run(options: &ReplayOptions, stated: &Stated, as_json: bool) -> Result<Answer, Failure> {
     let recording = recording::read(&options.file).map_err(|error| error.message())?;
-    let usual = || methods::named(methods::usual(&recording)).unwrap_or(&METHODS[0]);
-    let method = options.method.unwrap_or_else(usual);
+    let method = options.method.unwrap_or_else(|| methods::usual(&recording));
     // Without a method stated, that the options do not suit shows only now.
-    check(given, method).map_err(Failure::misuse)?;
+    check(stated, method).map_err(Failure::misuse)?;
     let warnings = recording.warning_lines(&options.file);
     replay(options, method, recording, as_json)
         .map_err(|reason| Failure { warnings: warnings.clone(), ..reason.into() })

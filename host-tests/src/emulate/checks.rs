@@ -20,7 +20,7 @@ pub struct Check {
     pub what: &'static str,
     /// The figure.
     pub count: u64,
-    /// Its limit.
+    /// Greatest figure that is allowed.
     pub budget: u64,
     /// Whether the limit is the least that is allowed, not the most.
     pub at_least: bool,

@@ -27,7 +27,7 @@ pub struct Figures {
 /// What one task took.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Task {
-    /// Its name.
+    /// Name of the task.
     pub name: String,
     /// How often it was polled.
     pub polls: u64,

@@ -11,7 +11,7 @@ pub struct Row {
     pub what: String,
     /// The count.
     pub count: u64,
-    /// Its limit, where it has one.
+    /// Greatest cost that is allowed, where there is a limit.
     pub budget: Option<u64>,
     /// `ok`, or what is wrong; empty without limit.
     pub verdict: String,

@@ -34,7 +34,7 @@ use self::outcome::{Difference, Outcome};
 use self::sections::Memory;
 
 /// Longest time for an image to run: a hundred times what is usual, and never for ever.
-const PATIENCE: Duration = Duration::from_mins(10);
+const LONGEST: Duration = Duration::from_mins(10);
 
 /// All that an emulation showed.
 #[derive(Clone, Debug)]
@@ -110,7 +110,7 @@ fn instrument(
     let table = decode::table(elf)?;
     let mut decoder = Decoder::new(&table);
     let mut collected = Collected::default();
-    let status = qemu::run(image, &["-append", order], PATIENCE, |bytes| {
+    let status = qemu::run(image, &["-append", order], LONGEST, |bytes| {
         decoder.take(bytes, |line| {
             on_line(line);
             collected.take(line)
@@ -125,7 +125,7 @@ fn instrument(
 /// Runs the image `cost`.
 fn cores(image: &Path) -> Result<(Vec<cost::Row>, bool), String> {
     let mut output = Vec::new();
-    let status = qemu::run(image, &[], PATIENCE, |bytes| {
+    let status = qemu::run(image, &[], LONGEST, |bytes| {
         output.extend_from_slice(bytes);
         Ok(())
     })?;

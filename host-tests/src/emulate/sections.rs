@@ -13,7 +13,7 @@ const SIMULATION: &str = ".simulation";
 /// A section that takes memory.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Section {
-    /// Its name.
+    /// Name of the section.
     pub name: String,
     /// Bytes of flash.
     pub flash_bytes: u64,
@@ -24,7 +24,7 @@ pub struct Section {
 /// The memory of an image.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Memory {
-    /// Its sections, in their order.
+    /// Sections of the image, in their order.
     pub sections: Vec<Section>,
     /// Bytes of RAM that the statics leave for the stack.
     pub stack_room_bytes: u64,

@@ -13,25 +13,23 @@ use firmware::simulated::base;
 use firmware::simulated::fault::{Fault, FaultyRecorder, Injection};
 use firmware::simulated::keep::journey;
 use firmware::simulated::mount::FramesScenario;
-use firmware::steady::{CompensatesSway, SwayCompensation};
+use firmware::sway::{CompensatesSway, SwayCompensation};
 use hal_mock::gimbal::board::GimbalBoard;
 use orientation::keep::Keeper;
 use orientation::session::Session;
 
-use super::harness::{self, ASSUMED, Harness};
+use super::harness::{self, Harness};
 use super::kept::{Kept, KeptPlan};
 use super::{Run, RunError};
-use crate::methods::stepwise::{Method, Replay};
+use crate::methods::stepwise::{POSITIONS, Replay, given_with};
 
 /// A finished run on a two-frame mount.
 #[derive(Clone, Debug)]
 pub struct FramesRun {
-    /// As of any board.
+    /// What every simulated board brings back.
     pub run: Run,
     /// The true direction of the gyro's axis at the end: forward, right, down in the base.
     pub axis: [f64; 3],
-    /// What was kept, with the truth.
-    pub kept: Kept,
 }
 
 /// Runs a scenario in virtual time on this thread, with a fault in its middle or none.
@@ -81,7 +79,7 @@ pub fn align_frames_and_keep<R: Recorder, W: Observer>(
     let rig = rig.borrow();
     let violations = base::violations(&rig).iter();
     frames.run.violations.extend(violations.map(|violation| format!("Base: {violation}")));
-    frames.kept = Kept::of(&frames.run.reports, day.configuration().motion());
+    frames.run.kept = Kept::of(&frames.run.reports, day.configuration().motion());
     Ok(frames)
 }
 
@@ -126,11 +124,11 @@ fn align_with<B: CompensatesSway, R: Recorder, W: Observer>(
     let misalignment = scenario.gimbal(None, injection).misalignment;
     let axis = misalignment.axes(outer.angle_rad, inner.angle_rad).sensitive;
     let replay = Replay {
-        method: Method::Positions,
+        method: POSITIONS,
         setting: *session.setting(),
         session,
-        assumed: vec![ASSUMED.to_owned()],
+        assumed: given_with(scenario.base.half),
     };
     let run = harness.clear(&ended, board, replay);
-    Ok(FramesRun { run, axis, kept: Kept::default() })
+    Ok(FramesRun { run, axis })
 }

@@ -12,11 +12,9 @@ use hal_mock::assembly::{Board, Chips};
 use orientation::keep::Report;
 use orientation::session::{Session, rotating, stops};
 
+use super::kept::Kept;
 use super::{Run, RunError};
 use crate::virtual_time;
-
-/// What the board was not given but takes as known.
-pub(super) const ASSUMED: &str = "latitude exact, calibrations as stated";
 
 /// Keeps what the board reports and passes it on.
 pub(super) struct Log<'w, W> {
@@ -121,6 +119,7 @@ impl<'w, W: Observer> Harness<'w, W> {
             base: self.log.base.into_inner(),
             lines: String::from_utf8_lossy(&self.bytes.into_inner()).into_owned(),
             seconds: ended.at.as_micros() as f64 * 1e-6,
+            kept: Kept::default(),
             health: ended.health,
             violations: violations
                 .map(|(chip, violation)| format!("{chip:?}: {violation}"))

@@ -9,8 +9,6 @@ use hal_mock::vehicle::motion::Motion;
 use hal_mock::vehicle::{Event, SensorFault};
 use orientation::keep::Report;
 
-use super::Run;
-
 /// What goes wrong with a board on a base, in the middle of its alignment or later.
 #[derive(Clone, Debug)]
 pub struct KeptPlan {
@@ -36,15 +34,6 @@ impl KeptPlan {
         day.events.extend(self.events.iter().take(room).copied());
         day
     }
-}
-
-/// A finished run on a stage that went on keeping.
-#[derive(Clone, Debug)]
-pub struct KeptRun {
-    /// As of any board.
-    pub run: Run,
-    /// What was kept, with the truth.
-    pub kept: Kept,
 }
 
 /// Something that was kept at one moment, with its truth.

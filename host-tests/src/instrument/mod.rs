@@ -24,8 +24,10 @@ use orientation::align::mount::MountError;
 use orientation::keep::Report;
 use orientation::session::procedure::ProcedureError;
 
-use crate::methods::stepwise::Replay;
 use thiserror::Error;
+
+use self::kept::Kept;
+use crate::methods::stepwise::Replay;
 
 /// A finished run of one kind of session.
 #[derive(Clone, Debug)]
@@ -42,6 +44,8 @@ pub struct Run<R = Replay> {
     pub lines: String,
     /// Virtual time from power-on to the end, s.
     pub seconds: f64,
+    /// What was kept after the alignment, with the truth.
+    pub kept: Kept,
     /// What went wrong, counted.
     pub health: Health,
     /// What the drivers did that a data sheet forbids.

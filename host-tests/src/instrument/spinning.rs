@@ -23,7 +23,7 @@ use super::{Run, RunError};
 /// A finished flight.
 #[derive(Clone, Debug)]
 pub struct SpinRun {
-    /// As of any board.
+    /// What every simulated board brings back.
     pub run: Run<Flight>,
     /// The samples that the board made.
     pub samples: Vec<SpinSample>,

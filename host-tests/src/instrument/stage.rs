@@ -14,14 +14,14 @@ use firmware::simulated::keep::journey;
 use firmware::simulated::scenario::{self, Scenario};
 use firmware::simulated::{self, Chips, Wires};
 use firmware::stage::Stage;
-use firmware::steady::{CompensatesSway, SwayCompensation};
+use firmware::sway::{CompensatesSway, SwayCompensation};
 use orientation::keep::Keeper;
 use orientation::session::Session;
 
-use super::harness::{self, ASSUMED, Harness};
-use super::kept::{Kept, KeptPlan, KeptRun};
+use super::harness::{self, Harness};
+use super::kept::{Kept, KeptPlan};
 use super::{Run, RunError};
-use crate::methods::stepwise::{HALF, Method, Replay};
+use crate::methods::stepwise::{Replay, given_with, name_of};
 
 /// Runs a scenario in virtual time on this thread.
 ///
@@ -33,7 +33,7 @@ pub fn align<R: Recorder, W: Observer>(
     recorder: R,
     watch: &W,
 ) -> Result<Run, RunError> {
-    align_and_keep(scenario, &KeptPlan::of(fault), recorder, watch, ()).map(|kept| kept.run)
+    align_and_keep(scenario, &KeptPlan::of(fault), recorder, watch, ())
 }
 
 /// Runs a scenario and, where the base has sensors, what follows its alignment; with a store of the heading over a
@@ -47,11 +47,10 @@ pub fn align_and_keep<R: Recorder, W: Observer>(
     recorder: R,
     watch: &W,
     store: impl Store,
-) -> Result<KeptRun, RunError> {
+) -> Result<Run, RunError> {
     if !scenario.has_base_imu {
         let board = RefCell::new(simulated::board(scenario, None, &plan.chips));
-        let run = align_with(&board, NoBase, scenario, &plan.chips, recorder, watch, store)?;
-        return Ok(KeptRun { run, kept: Kept::default() });
+        return align_with(&board, NoBase, scenario, &plan.chips, recorder, watch, store);
     }
     let day = plan.day(scenario.day());
     let journey = journey(&day, &plan.base);
@@ -71,8 +70,8 @@ pub fn align_and_keep<R: Recorder, W: Observer>(
     let rig = rig.borrow();
     run.violations
         .extend(base::violations(&rig).iter().map(|violation| format!("Base: {violation}")));
-    let kept = Kept::of(&run.reports, day.configuration().motion());
-    Ok(KeptRun { run, kept })
+    run.kept = Kept::of(&run.reports, day.configuration().motion());
+    Ok(run)
 }
 
 /// Runs a scenario with these sensors on the base.
@@ -125,12 +124,11 @@ fn align_with<B: CompensatesSway, R: Recorder, W: Observer>(
             &channels,
         ),
     )?;
-    let assumed = [ASSUMED].into_iter().chain(scenario.half.map(|_| HALF));
     let replay = Replay {
-        method: Method::of(&session),
+        method: name_of(&session),
         setting: *session.setting(),
         session,
-        assumed: assumed.map(str::to_owned).collect(),
+        assumed: given_with(scenario.half),
     };
     Ok(harness.clear(&ended, board, replay))
 }

@@ -30,7 +30,7 @@ pub struct Keeping {
 /// A finished run on a turning platform.
 #[derive(Clone, Debug)]
 pub struct TurntableRun {
-    /// As of any board.
+    /// What every simulated board brings back.
     pub run: Run<rotating::Session>,
     /// The platform's true rate at the end, rad/s.
     pub rate: f64,

@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 
 use firmware::acquire::{TriadAcquisition, acquire};
+use firmware::event::Event;
 use firmware::keep::Keeping;
 use firmware::mechanism::Strapdown;
 use firmware::ports::{Observer, Recorder, Store};
@@ -18,18 +19,30 @@ use orientation::session::stops;
 use orientation::signal::InertialSample;
 
 use super::harness::{self, Harness};
-use super::kept::Kept;
+use super::kept::{Kept, Point};
 use super::{Run, RunError};
 
 /// A finished run in a vehicle.
 #[derive(Clone, Debug)]
 pub struct VehicleRun {
-    /// As of any board.
+    /// What every simulated board brings back.
     pub run: Run<stops::Session>,
     /// What was true at the end.
     pub truth: VehicleTruth,
-    /// What was kept, with the truth.
-    pub kept: Kept,
+}
+
+impl VehicleRun {
+    /// The true azimuth when the session concluded, rad: at the end, unless the vehicle went on.
+    #[must_use]
+    pub fn azimuth_rad(&self) -> f64 {
+        let is_conclusion = |event: &Event| matches!(event, Event::Concluded(..));
+        let mut events = self.run.events.iter();
+        let at =
+            events.find(|(_, event)| is_conclusion(event)).map(|(at, _)| at.as_micros() as f64);
+        let later = |point: &&Point| at.is_some_and(|at| point.seconds() * 1e6 >= at);
+        let point = self.run.kept.points.iter().find(later);
+        point.map_or(self.truth.attitude.azimuth_rad, |point| point.truth.azimuth_rad)
+    }
 }
 
 /// Runs a scenario in virtual time on this thread.
@@ -59,9 +72,9 @@ pub fn align_stops_along<R: Recorder<InertialSample>, W: Observer>(
     store: impl Store,
 ) -> Result<VehicleRun, RunError> {
     let board = RefCell::new(scenario.board(&day.legs, &day.events, injection));
-    let found = align_stops_on(&board, injection, scenario, recorder, watch, store)?;
-    let kept = Kept::of(&found.run.reports, day.configuration().motion());
-    Ok(VehicleRun { kept, ..found })
+    let mut found = align_stops_on(&board, injection, scenario, recorder, watch, store)?;
+    found.run.kept = Kept::of(&found.run.reports, day.configuration().motion());
+    Ok(found)
 }
 
 /// Runs a scenario on a board to which something else may be done, with something around its ports.
@@ -100,5 +113,5 @@ pub fn align_stops_on<R: Recorder<InertialSample>, W: Observer>(
     )?;
     let truth = board.borrow().plant.truth();
     let run = harness.clear(&ended, board, session);
-    Ok(VehicleRun { run, truth, kept: Kept::default() })
+    Ok(VehicleRun { run, truth })
 }

@@ -3,12 +3,16 @@
 use orientation::align::criterion::Criterion;
 use orientation::align::setting::{Half, Setting};
 use orientation::earth::Latitude;
+use orientation::units::DEGREE;
 
 use super::error::ReplayError;
 use crate::recording::{Body, Header};
 use crate::setting::{Described, describe};
 
-/// What a user asks of a replay, whatever the method.
+/// Greatest 1σ that is accepted where none is asked for, rad: 10°, as [`Setting`] has it.
+pub const REQUIRED_SIGMA: f64 = 10.0 * DEGREE;
+
+/// What a user asks of a replay, whatever the method; what is not asked for is as the recording has it.
 #[derive(Clone, Debug, Default)]
 pub struct Asked {
     /// Name of the method; `None` for the one that the recording shows.
@@ -16,12 +20,12 @@ pub struct Asked {
     /// Latitude instead of the header's.
     pub latitude: Option<Latitude>,
     /// How the azimuth is found; of a stage that stops.
-    pub criterion: Criterion,
+    pub criterion: Option<Criterion>,
     /// The half of the circle in which the azimuth lies, where that is known; of a stage that stops.
     pub half: Option<Half>,
     /// Displacements of the stops, north and east, m, instead of the header's; of a vehicle.
     pub displacements_m: Option<Vec<[f64; 2]>>,
-    /// Greatest accepted 1σ, rad; `None` for the method's default.
+    /// Greatest accepted 1σ, rad.
     pub required_sigma: Option<f64>,
 }
 
@@ -48,6 +52,11 @@ impl Asked {
         let mut described = describe(header, body, self.latitude(header, body)?);
         self.change(&mut described.setting);
         Ok(described)
+    }
+
+    /// Greatest accepted 1σ of a method whose recordings hold none, rad.
+    pub(crate) fn required_sigma(&self) -> f64 {
+        self.required_sigma.unwrap_or(REQUIRED_SIGMA)
     }
 
     /// Puts what the user states in the place of what a session was given.

@@ -61,7 +61,7 @@ pub enum ReplayError {
          and cable, then record again or cut the recording off before"
     )]
     Stuck {
-        /// Its column.
+        /// Name of the column.
         column: &'static str,
         /// The line where that begins.
         line: u64,

@@ -24,12 +24,14 @@ type Replays = fn(&Header, &Body, &Asked, Watch<'_>) -> Result<Box<dyn Finished>
 
 /// A method of `replay`.
 pub struct Method {
-    /// Its name on the command line.
+    /// Name of the method on the command line.
     pub name: &'static str,
     /// What it does, for the help.
     pub meaning: &'static str,
     /// Options of `replay`, by their names without dashes, that it takes beside those that every method takes.
     pub takes: &'static [&'static str],
+    /// Whether a recording for which no method was asked is one of its.
+    pub suits: fn(&Header, &Body) -> bool,
     /// Replays a recording.
     pub replay: Replays,
 }
@@ -37,45 +39,52 @@ pub struct Method {
 /// The methods, in the order of the help.
 pub static METHODS: [Method; 7] = [
     Method {
-        name: "stepwise",
+        name: stepwise::STEPWISE,
         meaning: "Stepwise gyrocompassing",
         takes: &["latitude", "criterion", "half"],
+        suits: |_, body| matches!(body.kind(), Kind::Stage | Kind::Dwells),
         replay: |header, body, asked, watch| boxed(stepwise::replay(header, body, asked, watch)),
     },
     Method {
-        name: "positions",
+        name: stepwise::POSITIONS,
         meaning: "Autocompensated positions, in passes",
         takes: &["latitude", "criterion", "half"],
+        suits: |_, _| false,
         replay: |header, body, asked, watch| boxed(stepwise::replay(header, body, asked, watch)),
     },
     Method {
         name: "rotating",
         meaning: "A platform that turns all the time",
         takes: &["latitude"],
+        suits: |_, body| body.kind() == Kind::Rotating,
         replay: |header, body, asked, _| boxed(rotating::replay(header, body, asked)),
     },
     Method {
         name: "siap",
         meaning: "A vehicle: the azimuth from two stops and more",
         takes: &["latitude", "displacements"],
+        suits: |header, body| stops::Method::of(header, body) == Some(stops::Method::Siap),
         replay: |header, body, asked, _| boxed(stops::replay(header, body, asked)),
     },
     Method {
         name: "static",
         meaning: "A vehicle at rest all the time, sway allowed",
         takes: &["latitude"],
+        suits: |header, body| stops::Method::of(header, body) == Some(stops::Method::Static),
         replay: |header, body, asked, _| boxed(stops::replay(header, body, asked)),
     },
     Method {
         name: "vertical",
         meaning: "Pitch and roll, and the turn about the vertical, kept from the beginning to the end",
         takes: &["latitude", "attitude_out"],
+        suits: |_, _| false,
         replay: |header, body, asked, _| boxed(vertical::replay(header, body, asked)),
     },
     Method {
         name: "spin",
         meaning: "The roll of a body in fast rotation, from the extrema of its accelerometers and by phase lock",
         takes: &[],
+        suits: |_, body| body.kind() == Kind::Spin,
         replay: |header, body, asked, _| boxed(spin::replay(header, body, asked)),
     },
 ];
@@ -86,14 +95,11 @@ pub fn named(name: &str) -> Option<&'static Method> {
     METHODS.iter().find(|method| method.name == name)
 }
 
-/// Name of the method for a recording for which none was asked; a vehicle's shows which of both it needs.
+/// The method for a recording for which none was asked: the first that suits it, or else the first, which says why it
+/// does not.
 #[must_use]
-pub fn usual(Recording { header, body, .. }: &Recording) -> &'static str {
-    match body.kind() {
-        Kind::Rotating => "rotating",
-        Kind::Spin => "spin",
-        _ => stops::Method::of(header, body).map_or("stepwise", stops::Method::name),
-    }
+pub fn usual(Recording { header, body, .. }: &Recording) -> &'static Method {
+    METHODS.iter().find(|method| (method.suits)(header, body)).unwrap_or(&METHODS[0])
 }
 
 fn boxed<F: Finished + 'static>(

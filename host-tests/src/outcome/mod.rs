@@ -75,7 +75,7 @@ pub struct Outcome {
     pub source: Option<Source>,
     /// Name of the method on the command line.
     pub method: &'static str,
-    /// `ok` or `refused`.
+    /// `ok` or `refused`; `failed` on the command line where a file could not be written.
     pub status: &'static str,
     /// Why the result is refused; only with `refused`.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -84,7 +84,8 @@ pub struct Outcome {
     /// with `ok`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub azimuth_deg: Option<f64>,
-    /// 1σ, °, of what the method finds: the azimuth, the roll of a spinning body, either angle of the level.
+    /// 1σ, °, of what the method finds: the azimuth, the roll of a spinning body, either angle of the level; only with
+    /// `ok`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sigma_deg: Option<f64>,
     /// Found less true, within ±180 °, where the truth is known; only with `ok`.
@@ -179,7 +180,7 @@ pub struct Excluded {
     /// Number of the dwell, from one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dwell: Option<usize>,
-    /// Its stage angle, °.
+    /// Stage angle of the dwell, °.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stage_deg: Option<f64>,
     /// When it began, s.

@@ -90,9 +90,9 @@ pub struct KeptDetails {
     pub seconds: f64,
     /// Azimuth of body x, °; null where it was lost, or never known.
     pub azimuth_deg: Option<f64>,
-    /// Its 1σ, °.
+    /// 1σ of the azimuth, °.
     pub sigma_deg: Option<f64>,
-    /// Its error, °.
+    /// Error of the azimuth, °.
     pub error_deg: Option<f64>,
     /// The greatest error on the way, over its σ of the moment.
     pub greatest_sigmas: Option<f64>,
@@ -113,19 +113,19 @@ pub struct KeptDetails {
 }
 
 impl RunDetails {
-    /// The details of a run with samples at `rate_hz` that took `wall` here and kept this.
+    /// The details of a run with samples at `rate_hz` that took `wall` here.
     #[must_use]
-    pub fn of<R>(run: &Run<R>, kept: &Kept, rate_hz: f64, wall: Duration) -> Self {
+    pub fn of<R>(run: &Run<R>, rate_hz: f64, wall: Duration) -> Self {
         Self {
             simulated_seconds: run.seconds,
             health: HealthDetails { counts: run.health, violations: run.violations.clone() },
             recalled: None,
             stored: None,
             truth_off_vertical_deg: None,
-            kept: KeptDetails::of(run, kept),
+            kept: KeptDetails::of(run),
             rate_hz,
             wall_s: wall.as_secs_f64(),
-            figures: figures(kept),
+            figures: figures(&run.kept),
         }
     }
 
@@ -166,8 +166,8 @@ impl RunDetails {
 
 impl KeptDetails {
     /// What a run kept; `None` where it kept nothing.
-    fn of<R>(run: &Run<R>, kept: &Kept) -> Option<Self> {
-        let last = kept.last()?;
+    fn of<R>(run: &Run<R>) -> Option<Self> {
+        let (kept, last) = (&run.kept, run.kept.last()?);
         let errors = last.azimuth_error();
         let greatest = kept.with_azimuth().map(|(_, [error, sigma])| error.abs() / sigma);
         let fused =

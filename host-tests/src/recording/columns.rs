@@ -39,7 +39,7 @@ pub(super) enum Need {
 
 /// A column that a kind knows.
 pub(super) struct Column {
-    /// Its name.
+    /// Name of the column.
     pub name: &'static str,
     /// When it must be there.
     pub need: Need,

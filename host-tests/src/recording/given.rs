@@ -2,19 +2,19 @@
 //!
 //! A replay that gives the same to the same session comes to the same result, to the last bit; without it, a
 //! replay has to find out from the samples what the instrument was given. It stands in the header as JSON under
-//! the key `session`.
+//! the key `session`, behind the checksum of all that the header says: it counts as the run wrote it, or not at all.
 
-use std::fmt;
+use std::io::{self, Write};
 
 use orientation::error::Refusal;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::Header;
-use super::header::SESSION;
+use super::header::{self, SESSION};
 
-/// What a replay of a run rests on.
-pub(crate) const GIVEN: &str = "what the board was given about place and instrument";
+/// What a run of a board rests on, and so its replay.
+pub const GIVEN: &str = "what the board was given about place and instrument";
 
 /// What a session was given beside its samples.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -51,16 +51,21 @@ impl<S: DeserializeOwned, P: DeserializeOwned> Given<S, P> {
     /// What the header says, where it comes from a run.
     ///
     /// # Errors
-    /// The text was changed, or belongs to another kind of session: why it cannot be read.
+    /// It belongs to another kind of session, or to another version of it: why it cannot be read.
     pub fn of(header: &Header) -> Result<Option<Self>, String> {
         let read = header.session.as_ref().map(|text| serde_json::from_str(text));
         read.transpose().map_err(|error| error.to_string())
     }
 }
 
-impl<S: Serialize, P: Serialize> fmt::Display for Given<S, P> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let text = serde_json::to_string(self).map_err(|_| fmt::Error)?;
-        write!(f, "# {SESSION}: {text}")
+impl<S: Serialize, P: Serialize> Given<S, P> {
+    /// Writes the lines of a header, and this as its last one.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn write(&self, to: &mut impl Write, lines: &[u8]) -> io::Result<()> {
+        let (lines, text) = (String::from_utf8_lossy(lines), serde_json::to_string(self)?);
+        let keys = lines.lines().filter_map(header::key_and_value);
+        writeln!(to, "{lines}# {SESSION}: {} {text}", header::checksum(keys, &text))
     }
 }

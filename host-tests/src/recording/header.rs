@@ -3,6 +3,8 @@
 //! What a solver may know becomes a [`Header`]; `truth_*` keys go to [`Truth`] while the lines are
 //! read, so no other type ever holds them. Unknown keys, and comments without a colon, are skipped.
 
+use flate2::Crc;
+
 use super::error::Fault;
 use super::number::number;
 use super::problem::{HeaderProblem, Problem, SourceProblem, ValueProblem};
@@ -136,7 +138,7 @@ pub(super) struct Collector {
 }
 
 /// The key and value of a comment line, without its `#`; `None` for a plain remark.
-fn key_and_value(comment: &str) -> Option<(&str, &str)> {
+pub(super) fn key_and_value(comment: &str) -> Option<(&str, &str)> {
     let (key, value) = comment.trim_start_matches('#').split_once(':')?;
     Some((key.trim_ascii(), value.trim_ascii()))
 }
@@ -144,6 +146,19 @@ fn key_and_value(comment: &str) -> Option<(&str, &str)> {
 /// Whether the key bears on how a recording is read.
 fn is_known(key: &str) -> bool {
     WORDS.contains(&key) || NUMBERS.iter().any(|(name, ..)| *name == key)
+}
+
+/// Checksum of a run's header with what its session was given, in hexadecimal digits: the CRC-32 of gzip (RFC 1952,
+/// section 8) over all keys that bear on how the recording is read.
+pub(super) fn checksum<'a>(
+    keys: impl Iterator<Item = (&'a str, &'a str)>,
+    session: &'a str,
+) -> String {
+    let mut sum = Crc::new();
+    let keys = keys.filter(|(key, _)| is_known(key) && *key != SESSION);
+    keys.chain([(SESSION, session)])
+        .for_each(|(key, value)| sum.update(format!("{key}:{value}\n").as_bytes()));
+    format!("{:08x}", sum.sum())
 }
 
 /// The names of all keys that are looked at.
@@ -216,8 +231,16 @@ impl Collector {
         }
         header.g_sensitivity_deg_h_g = self.parse(PAIR, pair)?;
         header.sensor = self.parse("sensor", sensor)?;
-        header.session = self.get(SESSION).map(|(_, text)| text.to_owned());
+        header.session = self.parse(SESSION, |text| self.unchanged(text))?;
         Ok(header)
+    }
+
+    /// What a session was given, behind the checksum that the run wrote.
+    fn unchanged(&self, text: &str) -> Result<String, Problem> {
+        let keys = self.known.iter().map(|entry| (entry.key.as_str(), entry.value.as_str()));
+        let (sum, session) = text.split_once(' ').unwrap_or_default();
+        let is_unchanged = sum == checksum(keys, session);
+        is_unchanged.then(|| session.to_owned()).ok_or_else(|| HeaderProblem::Changed.into())
     }
 
     /// What only a check may know.

@@ -30,9 +30,9 @@ const BUFFER_BYTES: usize = 32 * 1024;
 
 /// One line that is not blank, without spaces around it and without its line end.
 pub(super) struct Line<'a> {
-    /// Its number in the file, from 1.
+    /// Number of the line in the file, from 1.
     pub number: u64,
-    /// Its text.
+    /// Text of the line.
     pub text: &'a str,
     /// Whether it had a line end: a last line without one may be cut short.
     pub ended: bool,

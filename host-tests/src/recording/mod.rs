@@ -34,8 +34,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 pub use error::{Place, ReadError};
-pub(crate) use given::GIVEN;
-pub use given::Given;
+pub use given::{GIVEN, Given};
 pub use header::{Header, Sensor, Truth};
 pub use lines::{MAX_LINE_BYTES, MAX_ROWS};
 pub use problem::{HeaderProblem, Problem, SourceProblem, StopProblem, TimeProblem, ValueProblem};

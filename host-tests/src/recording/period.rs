@@ -1,12 +1,16 @@
 //! The sample period of a recording: one rule for every kind.
 //!
 //! It is the header's, unless over all the rows it and the times come apart by more than half a sample; then the times are
-//! believed. Times may be rounded, so the mean of the steps counts, of those without a missing sample. Only a turning
-//! platform holds on to a stated rate, which its session refuses where the times contradict it.
+//! believed. Times may be rounded, so the mean of the steps counts, of those without a missing sample. Two kinds differ: a
+//! turning platform holds on to a stated rate, which its session refuses where the times contradict it, and an analysis of
+//! noise at rest goes by the times alone.
 
 /// Samples are consecutive while the step between them is no more than so many times the usual one: with one missing it
 /// is two, and clocks jitter.
 const LONGEST_STEP: f64 = 1.75;
+
+/// The part by which a stated rate may miss that of the times: no crystal is worse, and what turned is wrong by it.
+pub(super) const RATE_TOLERANCE: f64 = 0.01;
 
 /// The steps from sample to sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,6 +48,13 @@ impl Steps {
     #[must_use]
     pub fn mean_s(&self) -> f64 {
         self.sum_s / self.count
+    }
+
+    /// The rate of the times, Hz, where this one misses it.
+    #[must_use]
+    pub fn contradicted(&self, rate_hz: f64) -> Option<f64> {
+        let found_hz = 1.0 / self.mean_s();
+        ((rate_hz / found_hz - 1.0).abs() > RATE_TOLERANCE).then_some(found_hz)
     }
 
     /// The sample period, s, with the header's rate, Hz, where it has one.

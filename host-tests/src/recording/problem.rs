@@ -64,6 +64,11 @@ pub enum HeaderProblem {
     /// A key that matters, below the line of column names.
     #[error("stands below the column names; move it above them")]
     Late,
+    /// A header that is not the one that a run wrote.
+    #[error(
+        "the header was changed since its run; leave this line out to go by what the others say"
+    )]
+    Changed,
     /// Not two numbers with a comma.
     #[error("{} is not two numbers with a comma between", quoted(.0))]
     NotAPair(String),
@@ -150,6 +155,11 @@ pub enum StopProblem {
     /// Not two numbers with a minus.
     #[error("{} is not a stop; write from-to;from-to in seconds", quoted(.0))]
     NotAStop(String),
+    /// A header that is not the one that a run wrote.
+    #[error(
+        "the header was changed since its run; leave this line out to go by what the others say"
+    )]
+    Changed,
     /// Not two numbers with a comma.
     #[error("{} is not a displacement; write north,east;north,east in metres", quoted(.0))]
     NotADisplacement(String),

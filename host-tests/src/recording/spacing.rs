@@ -6,9 +6,6 @@ use std::ops::Range;
 use super::period::Steps;
 use super::rows::StaticRow;
 
-/// The part by which the header's rate may miss that of the times before it is reported.
-const RATE_TOLERANCE: f64 = 0.01;
-
 /// The times of a recording at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spacing {
@@ -41,15 +38,13 @@ impl Spacing {
     #[must_use]
     pub fn of(rows: &[StaticRow], rate_hz: Option<f64>) -> Option<Self> {
         let steps = Steps::of(rows, |row| row.time_s)?;
-        let period_s = steps.mean_s();
-        let misses = |rate: &f64| (rate * period_s - 1.0).abs() > RATE_TOLERANCE;
         let between = rows.windows(2).enumerate();
         let gaps = between.filter(|(_, pair)| !steps.is_unbroken(step(pair))).map(|(i, pair)| {
             Gap { row: i + 1, line: pair[1].line, from_s: pair[0].time_s, seconds: step(pair) }
         });
         let gaps = gaps.collect();
-        let contradicted_rate_hz = rate_hz.filter(misses);
-        Some(Self { period_s, gaps, contradicted_rate_hz, rows: rows.len() })
+        let contradicted_rate_hz = rate_hz.filter(|rate| steps.contradicted(*rate).is_some());
+        Some(Self { period_s: steps.mean_s(), gaps, contradicted_rate_hz, rows: rows.len() })
     }
 
     /// The rows between the gaps.

@@ -1,7 +1,7 @@
 //! Whether the times of a sampled recording keep its rate.
 
 use super::error::Fault;
-use super::period::Steps;
+use super::period::{RATE_TOLERANCE, Steps};
 use super::problem::TimeProblem;
 
 /// A gap is a step longer than this many sample periods.
@@ -9,9 +9,6 @@ const GAP_PERIODS: f64 = 3.0;
 
 /// The part of a period by which times written with few digits may miss.
 const WRITING: f64 = 1e-3;
-
-/// The part by which the header's rate may miss that of the times: no crystal is worse, and what turned is wrong by it.
-const RATE_TOLERANCE: f64 = 0.01;
 
 /// The line and time, in seconds, of a sample; times increase.
 type Stamp<T> = fn(&T) -> (u64, f64);
@@ -24,8 +21,8 @@ pub(super) fn check<T>(rows: &[T], stamp: Stamp<T>, rate: Option<(u64, f64)>) ->
     let unbroken = Timing::of(steps().filter(|step| usual.is_unbroken(*step)));
     // Missing samples slow all steps down, few digits in the times make some seem to miss one: a wrong rate
     // shows both ways.
-    let paces = [Timing::of(steps()), unbroken];
-    if paces.iter().all(|pace| pace.contradicts(rate_hz, unbroken.spread())) {
+    let timings = [Timing::of(steps()), unbroken];
+    if timings.iter().all(|timing| timing.contradicts(rate_hz, unbroken.spread())) {
         let found_hz = unbroken.count / unbroken.sum_s;
         return Err(Fault::key(line, "rate_hz", TimeProblem::Rate(rate_hz, found_hz)));
     }

@@ -102,7 +102,7 @@ pub enum Scale {
 /// A curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
-    /// Its name in the legend.
+    /// Name of the series in the legend.
     pub name: String,
     /// How it is drawn.
     pub style: Style,

@@ -2,8 +2,9 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+use hal_mock::noise::Generator;
 use host::oracle::{
-    CRITERIA, Case, Outcome, Random, TURN, adversarial, compare, long, ordinary, paper, unfolded,
+    CRITERIA, Case, Outcome, TURN, adversarial, compare, long, ordinary, paper, unfolded,
 };
 use orientation::align::etalon::series::CAPACITY;
 use orientation::align::etalon::table::{CHECKSUM, ENTRIES, QUARTER_COSINE};
@@ -30,9 +31,9 @@ fn series(case: &Case) -> Series {
 }
 
 /// Compares `count` cases with the oracle and returns the outcomes.
-fn agree(count: usize, case: impl Fn(&mut Random, usize) -> Case + Sync) -> Vec<[Outcome; 5]> {
+fn agree(count: usize, case: impl Fn(&mut Generator, usize) -> Case + Sync) -> Vec<[Outcome; 5]> {
     let one = |index: usize| {
-        let mut random = Random(1_000_000 + index as u64);
+        let mut random = Generator::new(1_000_000 + index as u64);
         let case = case(&mut random, index);
         let outcomes = compare(&case, &mut random);
         for (outcome, criterion) in outcomes.iter().zip(CRITERIA) {
@@ -177,7 +178,7 @@ fn without_earth_rate_opposite_azimuths_tie_and_the_lower_wins() {
 
 #[test]
 fn a_drift_changes_nothing() {
-    let mut random = Random(7);
+    let mut random = Generator::new(7);
     let case = ordinary(&mut random);
     let shifted = Case { ratios: case.ratios.iter().map(|z| z + 0.25).collect(), ..case.clone() };
     for criterion in [Criterion::MaximumLikelihood, Criterion::LeastSquares] {
@@ -211,7 +212,7 @@ fn the_azimuth_is_interpolated_below_the_grid_on_the_whole_circle() {
 
 #[test]
 fn the_papers_limit_accepts_its_whole_quarter_as_degrees_and_nothing_as_arcseconds() {
-    let mut random = Random(3);
+    let mut random = Generator::new(3);
     let clean = Case::clean(28.5_f64.to_radians(), 60, -168);
     let series = series(&clean.disturbed(&mut random, 0.015 / PAPER_RATE, 0.0));
     let units = |limit: f64| (limit / PAPER_RATE * ONE) as u64;

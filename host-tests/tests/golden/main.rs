@@ -24,9 +24,11 @@ use flate2::read::GzDecoder;
 use flate2::write::GzEncoder;
 use host::emulate::host as on_host;
 use host::emulate::outcome::Outcome;
+use host::methods::METHODS;
+use host::methods::asked::Asked;
 use serde_json::Value;
 
-use support::files::{Scratch, recordings};
+use support::files::{Scratch, recording, recordings};
 use support::program::command;
 
 /// A command, and the name of its files.
@@ -220,12 +222,18 @@ fn hexadecimal(bits: &[Option<u64>]) -> String {
     bits.iter().map(one).collect::<Vec<_>>().join(" ")
 }
 
-/// The keys that `README.md` lists: what stands in the code marks of its tables.
-fn listed() -> BTreeSet<String> {
+/// The keys that `README.md` lists in its tables: those of objects, and those of what objects hold.
+fn listed() -> [BTreeSet<String>; 2] {
     let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
     let text = fs::read_to_string(readme).expect("the list is there");
+    let marked =
+        |text: &str| text.split('`').skip(1).step_by(2).map(str::to_owned).collect::<Vec<_>>();
     let rows = text.lines().filter(|line| line.starts_with("| `"));
-    rows.flat_map(|row| row.split('`').skip(1).step_by(2)).map(str::to_owned).collect()
+    let (of_objects, held): (Vec<_>, Vec<_>) = rows
+        .filter_map(|row| row[1..].split_once('|'))
+        .map(|(key, rest)| (marked(key), marked(rest)))
+        .unzip();
+    [of_objects, held].map(|keys| keys.into_iter().flatten().collect())
 }
 
 /// All keys of a value, those of what it holds too.
@@ -244,8 +252,8 @@ fn keys(value: &Value, into: &mut BTreeSet<String>) {
 
 #[test]
 fn every_object_of_a_run_or_replay_keeps_the_contract_of_the_readme() {
-    let (list, listed) = (fs::read_to_string(folder().join("commands.txt")), listed());
-    let list = list.expect("the list is there");
+    let list = fs::read_to_string(folder().join("commands.txt")).expect("the list is there");
+    let [of_objects, held] = listed();
     let mut found = BTreeSet::new();
     for Golden { name, .. } in ["run", "replay"].iter().flat_map(|family| goldens(&list, family)) {
         let file = folder().join(format!("{name}.json"));
@@ -265,6 +273,50 @@ fn every_object_of_a_run_or_replay_keeps_the_contract_of_the_readme() {
         let sigma = object.get("sigma_deg").and_then(Value::as_f64);
         assert!(!is_ok || sigma.is_some_and(|sigma| sigma > 0.0), "{name}: a result has its σ");
     }
-    let unlisted: Vec<_> = found.difference(&listed).collect();
+    let unlisted: Vec<_> = found.difference(&(&of_objects | &held)).cloned().collect();
     assert!(unlisted.is_empty(), "not in README.md: {unlisted:?}");
+    // No recording of these has a warning.
+    let unmet: Vec<_> = of_objects.difference(&found).filter(|key| *key != "warnings").collect();
+    assert!(unmet.is_empty(), "in README.md, but in no object: {unmet:?}");
+}
+
+/// A recording of every kind.
+const KINDS: [&str; 6] = [
+    "stepwise-circle",
+    "positions-four-fog",
+    "rotating-gyro",
+    "drive-fog-three-stops",
+    "spin-80rps-noisy",
+    "static-gyro-1h",
+];
+
+#[test]
+fn every_method_answers_some_kinds_by_its_name_with_listed_keys_and_says_why_it_refuses_the_others()
+{
+    let [of_objects, held] = listed();
+    let listed = &of_objects | &held;
+    for method in &METHODS {
+        let mut answered = 0;
+        for name in KINDS {
+            let (header, body, truth) = recording(name).into_parts();
+            let asked = Asked { method: Some(method.name), ..Asked::default() };
+            let finished = match (method.replay)(&header, &body, &asked, &|_| {}) {
+                Ok(finished) => finished,
+                Err(why) => {
+                    assert!(!why.to_string().is_empty(), "{} of {name}", method.name);
+                    continue;
+                }
+            };
+            let outcome = finished.outcome(&truth);
+            assert_eq!(outcome.method, method.name, "{name}");
+            assert!(!outcome.assumed.is_empty() && outcome.seconds > 0.0, "{name}");
+            assert!(!finished.parts(&outcome).is_empty(), "{name} is shown to people, too");
+            let mut found = BTreeSet::new();
+            keys(&serde_json::to_value(&outcome).expect("it is an object"), &mut found);
+            let unlisted: Vec<_> = found.difference(&listed).collect();
+            assert!(unlisted.is_empty(), "{}, not in README.md: {unlisted:?}", method.name);
+            answered += 1;
+        }
+        assert!(answered > 0, "{} answers nothing", method.name);
+    }
 }

@@ -15,7 +15,7 @@ use firmware::simulated::vehicle::{Place, VehicleScenario};
 use host::instrument::recorder::{self, Carrier, Samples};
 use host::instrument::spinning::{SpinRun, follow_spin};
 use host::instrument::{Run, align, align_frames, align_stops, align_turning};
-use host::methods::asked::Asked;
+use host::methods::asked::{Asked, REQUIRED_SIGMA};
 use host::methods::spin::{Known, follow};
 use host::methods::{rotating, spin, stepwise, stops};
 use host::outcome::Finished;
@@ -149,7 +149,7 @@ fn replay_spin(scenario: &SpinScenario, fault: Option<Fault>) {
 /// What the command line tells of a flight.
 fn of_spin(scenario: &SpinScenario, run: &SpinRun, assumed: &[String]) -> spin::Replay {
     let (setting, assumed) = (scenario.setting(), assumed.to_vec());
-    let known = Known { setting, required_sigma: f64::INFINITY, assumed };
+    let known = Known { setting, required_sigma: REQUIRED_SIGMA, assumed };
     let ended = run.run.events.iter().find_map(|(_, event)| match event {
         Event::RollEnded(_) => Some(event.to_string()),
         _ => None,

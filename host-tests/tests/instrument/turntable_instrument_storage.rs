@@ -265,7 +265,7 @@ proptest! {
         prop_assert!(fresh(Some(found + age), None));
         prop_assert!(!fresh(Some(found - 1), Some(longest)), "it is from the future");
         prop_assert!(!fresh(Some(found - 1), None), "it is from the future");
-        prop_assert!(!fresh(None, Some(longest)), "nobody knows its age");
+        prop_assert!(!fresh(None, Some(longest)), "its age is unknown");
         prop_assert!(fresh(None, None), "its age does not matter");
     }
 

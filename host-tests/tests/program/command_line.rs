@@ -161,7 +161,7 @@ fn impossible_options_are_misuse() {
         &["replay", &file, "--method", "magic"],
         &["replay", &file, "--require-sigma", "0"],
         &["campaign", "sokolov", "--runs", "0"],
-        &["campaign", "nobody"],
+        &["campaign", "unknown"],
         &["campaign", "sokolov", "--runs", "many"],
         &["fly"],
     ];

@@ -7,6 +7,7 @@ mod support;
 mod command_line;
 mod emulate;
 mod program;
+mod records;
 mod report;
 mod rotating_run;
 mod stops_run;

@@ -129,17 +129,17 @@ impl<S: SpiDevice, D: DelayNs> Mt6835<S, D> {
         }
     }
 
-    /// Reads the register whose turn it is. A doubtful burst, one of zeros, passes its checksum, so
+    /// Reads the register whose turn it is. A suspicious burst, one of zeros, passes its checksum, so
     /// the pattern is read as well.
     ///
     /// # Errors
     /// [`Fault::Reset`] if the pattern is lost or no start has succeeded, [`Fault::NotAsWritten`]
     /// if a register has changed.
-    async fn watch(&mut self, is_doubtful: bool) -> Result<(), Fault> {
+    async fn watch(&mut self, is_suspicious: bool) -> Result<(), Fault> {
         let expected = self.expected.ok_or(Fault::Reset)?;
         let (index, is_pattern) = (self.turn / 2, self.turn.is_multiple_of(2));
         self.turn = (self.turn + 1) % (2 * WATCHED.len());
-        if is_pattern || is_doubtful {
+        if is_pattern || is_suspicious {
             self.see_pattern().await?;
         }
         if is_pattern {

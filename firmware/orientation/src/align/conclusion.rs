@@ -43,7 +43,7 @@ const CORRELATION_BOUND: f64 = 5.0;
 const SECOND_MINIMUM: f64 = 16.0;
 /// RMS of the dwells' mean forces about any tilt, g, beyond which accelerometer and encoder do not
 /// turn alike: ten times the effect of the worst accelerometer's scale error at 5° of tilt.
-const STRAYING: f64 = 3e-3;
+const FORCE_TOLERANCE: f64 = 3e-3;
 /// Greatest σ, rad, over the tangent of the angle between the azimuth and the axis of two
 /// positions: the second-order error is then a tenth of the first-order one.
 const STEEPNESS: f64 = 0.2;
@@ -326,7 +326,7 @@ impl Conclusion {
             return Err(Refusal::TiltStepped { change: change * 1e3, after });
         }
         let Tilt { counter, scatter, .. } = self.tilt;
-        if counter > 0.0 || scatter > STRAYING {
+        if counter > 0.0 || scatter > FORCE_TOLERANCE {
             let scatter = if counter > 0.0 { counter } else { scatter };
             return Err(Refusal::AccelerometerAstray { scatter: scatter * 1e3 });
         }

@@ -210,7 +210,7 @@ pub fn tilt<'a>(
         (None, Some(_)) => false,
     };
     let is_drifting = explains(&drifting, &tilting);
-    let is_doubtful = !is_drifting && drifting.is_some() && !explains(&tilting, &drifting);
+    let is_ambiguous = !is_drifting && drifting.is_some() && !explains(&tilting, &drifting);
     if let Some(drifting) = drifting.filter(|_| is_drifting) {
         forces.drift = drifting.beside.value;
         tilting = forces.weighted(bias, Beside::Rate);
@@ -220,7 +220,7 @@ pub fn tilt<'a>(
     let mut tilt = Tilt { bias_rate: forces.drift, ..standing.tilt(time, any) };
     let after = forces.likeliest_step(&standing);
     if let Some(tilting) = tilting {
-        tilt = tilting.believed(tilt, is_doubtful);
+        tilt = tilting.believed(tilt, is_ambiguous);
     }
     let step = forces.weighted(bias, Beside::Step(after));
     // A step is searched for at many places, and is one more hypothesis to accept.
@@ -472,10 +472,10 @@ impl Found {
 
     /// Tilt with this rate of change: adopted where it is significant and there is no other
     /// explanation, otherwise kept as unproven.
-    fn believed(&self, standing: Tilt, is_doubtful: bool) -> Tilt {
+    fn believed(&self, standing: Tilt, is_ambiguous: bool) -> Tilt {
         let significance = self.significance();
         let found = self.beside;
-        if significance > BELIEVED && !is_doubtful {
+        if significance > BELIEVED && !is_ambiguous {
             let Tilt { time, scatter, bias_rate, .. } = standing;
             return Tilt { rate: found, bias_rate, ..self.tilt(time, scatter) };
         }

@@ -9,22 +9,22 @@
 //! angle, whatever commanded it. So a recording replays the same session that a board runs.
 
 mod accuracy;
-mod pace;
 mod prepared;
 pub mod procedure;
 pub mod rotating;
 pub mod schedule;
 pub mod stops;
 pub mod survey;
+mod timing;
 
 pub use prepared::Prepared;
 
 use heapless::Vec;
 
-use self::pace::{Target, Timing};
 use self::procedure::{Procedure, ProcedureError};
 use self::schedule::{Position, StopRule};
 use self::survey::Store;
+use self::timing::{Target, Timing};
 use crate::align::conclusion::Conclusion;
 use crate::align::criterion::Criterion;
 use crate::align::quality::{Disturbance, ExpectedScatter};
@@ -101,7 +101,7 @@ pub struct Session {
     /// Coefficients of the stage filter.
     coefficients: Coefficients<SECTIONS>,
     /// Procedure in the units of the sample path.
-    pace: Timing,
+    timing: Timing,
     /// State of the session.
     phase: Phase,
     /// Position to which the stage was sent.
@@ -206,7 +206,7 @@ impl Session {
     /// Processes a sample.
     fn sample(&mut self, sample: &Sample) -> Command {
         let begun = *self.begun.get_or_insert(sample.time);
-        if sample.time.0.saturating_sub(begun.0) > self.pace.longest {
+        if sample.time.0.saturating_sub(begun.0) > self.timing.longest {
             return self.conclude(Some(Refusal::TimeExhausted));
         }
         if let Some(command) = self.follow(sample) {
@@ -225,7 +225,7 @@ impl Session {
     fn follow(&mut self, sample: &Sample) -> Option<Command> {
         let mut ended = None;
         match &mut self.average {
-            Some(average) if average.stands_at(sample.stage, self.pace.still) => {
+            Some(average) if average.stands_at(sample.stage, self.timing.still) => {
                 average.push(&self.coefficients, sample);
                 return None;
             }
@@ -238,7 +238,7 @@ impl Session {
 
     /// Tests the tilt once there are enough samples and a force, then goes to the first position.
     fn level(&mut self, now: Instant) -> Command {
-        let is_long = |average: &&DwellAverage<SECTIONS>| average.count() >= self.pace.level;
+        let is_long = |average: &&DwellAverage<SECTIONS>| average.count() >= self.timing.level;
         let Some([x, y, _]) = self.average.as_ref().filter(is_long).and_then(DwellAverage::force)
         else {
             return Command::Wait;
@@ -269,7 +269,7 @@ impl Session {
 
     /// Whether the running average began at the commanded angle.
     fn stands_at_target(&self) -> bool {
-        let (stage, arrival) = (self.target.stage, self.pace.arrival);
+        let (stage, arrival) = (self.target.stage, self.timing.arrival);
         self.average.as_ref().is_some_and(|average| average.stands_at(stage, arrival))
     }
 
@@ -282,9 +282,9 @@ impl Session {
     /// Waits until the stage stands at the commanded angle; refuses when that takes too long.
     fn rotate(&mut self, sample: &Sample, since: Instant) -> Command {
         let count = self.average.as_ref().map_or(0, DwellAverage::count);
-        if self.stands_at_target() && count > 1 && count >= self.pace.settle {
+        if self.stands_at_target() && count > 1 && count >= self.timing.settle {
             self.phase = Phase::Dwell;
-        } else if sample.time.0.saturating_sub(since.0) > self.pace.longest_rotation {
+        } else if sample.time.0.saturating_sub(since.0) > self.timing.longest_rotation {
             let [target, actual] =
                 [self.target.stage, sample.stage].map(|a| a.rad() / TURN * 360.0);
             return self.conclude(Some(Refusal::StageNotThere { target, actual }));

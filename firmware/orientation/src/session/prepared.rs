@@ -2,9 +2,9 @@
 
 use heapless::Vec;
 
-use super::pace::{Target, Timing, samples};
 use super::procedure::{Procedure, ProcedureError};
 use super::survey::Store;
+use super::timing::{Target, Timing, samples};
 use super::{Phase, SECTIONS, Session};
 use crate::align::etalon::Table;
 use crate::align::setting::Setting;
@@ -44,7 +44,7 @@ impl From<Prepared> for Session {
         Self {
             setting,
             target,
-            pace: Timing::of(&procedure),
+            timing: Timing::of(&procedure),
             store: Store::Dwells(Vec::new()),
             surveyed: None,
             procedure,

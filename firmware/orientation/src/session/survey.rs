@@ -112,7 +112,7 @@ impl Session {
     /// Takes a sample of the survey, which begins anew when the stage moves.
     pub(super) fn survey(&mut self, sample: &Sample) -> Command {
         let is_first = self.average.as_ref().is_none_or(|average| average.count() <= 1);
-        if self.store.survey(sample.rate, is_first) < self.pace.survey {
+        if self.store.survey(sample.rate, is_first) < self.timing.survey {
             return Command::Wait;
         }
         match self.learn(sample.time) {

@@ -92,8 +92,8 @@ async fn main(spawner: Spawner) {
 
 /// Creates the channels, with the sensors sampling into them.
 fn sample(spawner: Spawner, sensors: SensorWires) -> &'static Channels {
-    static SEAMS: StaticCell<Channels> = StaticCell::new();
-    let channels: &'static Channels = SEAMS.init_with(|| Channels::new(&DefmtLog));
+    static CHANNELS: StaticCell<Channels> = StaticCell::new();
+    let channels: &'static Channels = CHANNELS.init_with(|| Channels::new(&DefmtLog));
     spawner.spawn(defmt::unwrap!(acquisition(ports::inputs(sensors), channels)));
     channels
 }

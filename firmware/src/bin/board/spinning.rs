@@ -18,13 +18,13 @@ use crate::{configuration, ports, report_conclusion};
 /// Estimates the roll for as long as the sensors give data, then reports how it ended.
 #[embassy_executor::task]
 pub async fn follow(spawner: Spawner, wiring: Wiring) {
-    static SEAMS: StaticCell<Channels<'static, SpinSample>> = StaticCell::new();
+    static CHANNELS: StaticCell<Channels<'static, SpinSample>> = StaticCell::new();
     static FLIGHT: StaticCell<Flight> = StaticCell::new();
     let Some(sensors) = configuration::spinning() else {
         return defmt::error!("board: a sensor's scale factor is none");
     };
     let Wiring { sensors: wires, mut link, motor: _, motor_enable: _, flash: _ } = wiring;
-    let channels: &'static Channels<'_, _> = SEAMS.init_with(|| Channels::new(&DefmtLog));
+    let channels: &'static Channels<'_, _> = CHANNELS.init_with(|| Channels::new(&DefmtLog));
     let (setting, launch) = (configuration::spin_setting(), configuration::launch());
     let flight = FLIGHT.init_with(|| Flight::new(&setting, launch, None));
     spawner.spawn(defmt::unwrap!(acquisition(ports::spinning(wires), sensors, channels)));

@@ -24,13 +24,13 @@ use crate::{configuration, ports, report_conclusion};
 /// Runs the instrument: it aligns, then holds the result without end, also across a loss of supply.
 #[embassy_executor::task]
 pub async fn align(spawner: Spawner, wiring: Wiring) {
-    static SEAMS: StaticCell<Channels<'static, InertialSample>> = StaticCell::new();
+    static CHANNELS: StaticCell<Channels<'static, InertialSample>> = StaticCell::new();
     let session = match session() {
         Ok(session) => session,
         Err(error) => return defmt::error!("board: no session: {}", error),
     };
     let Wiring { sensors, mut link, motor: _, motor_enable: _, flash } = wiring;
-    let channels: &'static Channels<'_, _> = SEAMS.init_with(|| Channels::new(&DefmtLog));
+    let channels: &'static Channels<'_, _> = CHANNELS.init_with(|| Channels::new(&DefmtLog));
     spawner.spawn(defmt::unwrap!(acquisition(ports::triad(sensors), channels)));
     let configuration = configuration::keeping();
     let mut keeping = Keeping::new(keeper(), &configuration, (), store(flash));

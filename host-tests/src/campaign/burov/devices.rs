@@ -28,9 +28,9 @@ const DEVICES: [(&str, Grade); 3] = [
 /// A device with and without autocompensation.
 #[derive(Clone, Debug, Serialize)]
 pub struct Device {
-    /// Its name.
+    /// Name of the device.
     pub name: &'static str,
-    /// Its noise.
+    /// Noise of its gyro.
     pub gyro: Grade,
     /// Best number of positions.
     pub positions: u32,

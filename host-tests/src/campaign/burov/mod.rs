@@ -52,7 +52,7 @@ pub struct Grade {
 }
 
 impl Grade {
-    /// Its noise.
+    /// Noise of a gyro of this grade.
     pub fn noise(&self) -> GyroNoise {
         let [n, b, k, r] = self.values();
         GyroNoise::from_field_units(n, b, k, r)

@@ -5,7 +5,7 @@ use super::chance::Chance;
 /// What the columns show of the true axes, row by row.
 pub(super) type Axes = [[f64; 3]; 3];
 
-/// As they should be.
+/// Axes that stand as they should: each column shows its own axis.
 pub(super) const UPRIGHT: Axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// Turned about the vertical by 180°, 90° and −90°: what a level unit does not show.

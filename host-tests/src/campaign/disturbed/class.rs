@@ -134,7 +134,7 @@ pub struct Fault {
     /// The class's name on the command line.
     #[serde(rename = "class")]
     pub name: String,
-    /// What happens.
+    /// What the fault is, in words.
     pub fault: String,
     /// From harmless to gross; severities are drawn evenly in their logarithm.
     pub severity: [f64; 2],
@@ -144,7 +144,7 @@ pub struct Fault {
 
 /// A fault of any severity.
 pub struct Class {
-    /// What happens.
+    /// The fault as it is named and described.
     pub fault: Fault,
     /// Part of the answers that may be wrong; zero but where the data cannot show it.
     pub wrong_allowed: f64,

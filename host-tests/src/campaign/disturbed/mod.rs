@@ -38,11 +38,11 @@ const SEVERITY: u64 = 2_000;
 /// What is drawn with and without faults.
 #[derive(Clone, Copy)]
 pub struct Platform {
-    /// Its name.
+    /// Name of the platform on the command line.
     pub name: &'static str,
     /// The answer of a seed's healthy recording, or why there is none.
     pub healthy: fn(u64) -> Result<Answer, String>,
-    /// Its classes of faults.
+    /// Classes of faults that are drawn on the platform.
     pub classes: fn() -> Vec<Class>,
 }
 

@@ -22,7 +22,7 @@ const RATE_HZ: f64 = 100.0;
 /// What many runs of the instrument amount to.
 #[derive(Clone, Debug, Serialize)]
 pub struct Runs {
-    /// Their errors.
+    /// Errors of the runs.
     #[serde(flatten)]
     pub precision: Precision,
     /// Dwells that were measured again, in all runs.

@@ -141,7 +141,7 @@ impl Pair {
 }
 
 impl Sheet {
-    /// As it is simulated.
+    /// Errors of the gyro as the simulated sensor has them.
     fn simulated(&self) -> GyroConfiguration {
         GyroConfiguration {
             flicker_high_hz: Some(FLICKER_HIGH_HZ),
@@ -151,7 +151,7 @@ impl Sheet {
         }
     }
 
-    /// As the keeper is given it.
+    /// Errors of the gyro as the keeper is given them.
     fn stated(&self) -> Gyro {
         Gyro {
             noise: self.grade.noise(),

@@ -45,7 +45,7 @@ pub struct Row {
     pub bound_deg: f64,
     /// RMS of the error of one speed, without noise.
     pub one_speed_rms_deg: f64,
-    /// Its greatest.
+    /// Greatest error of one speed, without noise.
     pub one_speed_greatest_deg: f64,
     /// RMS of what §4 predicts for it, run by run.
     pub predicted_rms_deg: f64,
@@ -53,7 +53,7 @@ pub struct Row {
     pub off_prediction_deg: f64,
     /// RMS of the error of two speeds, without noise.
     pub two_speeds_rms_deg: f64,
-    /// Its greatest.
+    /// Greatest error of two speeds, without noise.
     pub two_speeds_greatest_deg: f64,
     /// RMS error over the limit without G and H, with noise.
     pub noise_ratio: f64,

@@ -42,7 +42,7 @@ pub struct Stage {
 /// Many runs with one gyro.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
-    /// Its N, °/√h.
+    /// N of the gyro, °/√h.
     pub n_deg_sqrt_h: f64,
     /// What each stage leaves.
     pub stages: Vec<Stage>,

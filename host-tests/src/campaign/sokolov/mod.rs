@@ -68,7 +68,7 @@ pub enum Turn {
 const TURNS: [Turn; 2] = [Turn::Arc, Turn::Circle];
 
 impl Turn {
-    /// Its name in tables.
+    /// Name of the criterion in tables.
     fn name(self) -> &'static str {
         match self {
             Self::Arc => "28° arc, steps of 28′",

@@ -53,7 +53,7 @@ impl Day {
 /// What the session is given of a day.
 #[derive(Clone, Debug)]
 pub struct Known {
-    /// Its stops.
+    /// When the vehicle stood, as stated or to be found.
     pub rests: Rests,
     /// Whether it is given how far they lie from each other.
     pub knows_displacement: bool,

@@ -4,7 +4,7 @@ use clap::Args;
 use firmware::simulated::keep::Hold;
 
 use super::options::{Common, seconds};
-use crate::command::given::{self, Given};
+use crate::command::stated::{self, Stated};
 
 /// How long a run goes on where nothing is said, s, and where it aligns anew at stops: several come then.
 const USUAL: f64 = 60.0;
@@ -16,7 +16,7 @@ const HANDED: f64 = 20.0;
 #[derive(Args, Clone, Debug)]
 pub struct KeepingOptions {
     /// Seconds for which the azimuth is kept, while the vehicle drives and stops; 0 for not at all (60;
-    /// with --realign 1800; with --record, --fault or --sigma 0).
+    /// with --realign 1800; with --fault or --sigma 0).
     #[arg(long, value_name = "SECONDS", value_parser = seconds::<0, 14_400>)]
     hold: Option<f64>,
     /// While the azimuth is kept, aligns anew at stops.
@@ -60,19 +60,18 @@ impl KeepingOptions {
     /// The option, and why it does not go with the others.
     pub fn check(
         &self,
-        given: &Given,
+        stated: &Stated,
         hold: &Hold,
         common: &Common,
         aligning: &[&'static str],
     ) -> Result<(), String> {
-        let asked = given.first(&["realign", "handover"]);
-        if common.record.is_some() && (asked.is_some() || hold.seconds > 0.0) {
-            return Err(
-                "--record: a recording holds an alignment, not what is kept after it".to_owned()
-            );
+        let asked = stated.first(&["realign", "handover"]);
+        if let Some(option) = asked.filter(|_| common.record.is_some()) {
+            let option = stated::long(option);
+            return Err(format!("--record: a recording holds one alignment; leave {option} out"));
         }
         if let Some(option) = asked.filter(|_| hold.seconds <= 0.0) {
-            let option = given::long(option);
+            let option = stated::long(option);
             return Err(format!("{option}: nothing is kept after this run; add --hold SECONDS"));
         }
         let first = Hold::default().drive_s + Hold::default().stop_s;
@@ -82,10 +81,10 @@ impl KeepingOptions {
             ));
         }
         let is_alone = self.handover.is_some() && !self.realign;
-        given.first(aligning).filter(|_| is_alone).map_or(Ok(()), |option| {
+        stated.first(aligning).filter(|_| is_alone).map_or(Ok(()), |option| {
             Err(format!(
                 "{}: --handover takes the place of the alignment; add --realign or leave one out",
-                given::long(option)
+                stated::long(option)
             ))
         })
     }

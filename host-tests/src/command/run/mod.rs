@@ -23,13 +23,10 @@ use host::recording::{Body, Truth};
 use orientation::session::{Session, rotating, stops};
 
 use self::options::Common;
-use super::faults::{self, Asked};
+use super::faults::{self, FaultChoice};
 use super::files::{self, Written};
-use super::given::{self, Given};
+use super::stated::{self, Stated};
 use super::{Answer, Shown};
-
-/// What the azimuth of a simulated board rests on.
-const ASSUMED: &str = "what the board is given about place and instrument";
 
 /// What is run.
 #[derive(Args)]
@@ -63,7 +60,7 @@ trait Simulated {
     ///
     /// # Errors
     /// The options, and why.
-    fn check(&self, _given: &Given) -> Result<(), String> {
+    fn check(&self, _stated: &Stated) -> Result<(), String> {
         Ok(())
     }
 
@@ -88,7 +85,7 @@ trait Simulated {
 struct Ran {
     /// What texts and pages call it.
     name: &'static str,
-    /// Its analysis.
+    /// The analysis of the run.
     finished: Box<dyn Finished>,
     /// The truth, for errors alone.
     truth: Truth,
@@ -105,19 +102,21 @@ impl RunOptions {
     ///
     /// # Errors
     /// The options, and why.
-    pub fn check(&self, given: &Given) -> Result<(), String> {
+    pub fn check(&self, stated: &Stated) -> Result<(), String> {
         let (platform, options) = self.platform.of();
         match options.common().fault {
-            Some(Asked::List) => {
-                let beside = given.beside(&["fault", "json"]);
+            Some(FaultChoice::List) => {
+                let beside = stated.beside(&["fault", "json"]);
                 return beside.map_or(Ok(()), |option| {
-                    Err(format!("{}: --fault list runs nothing", given::long(option)))
+                    Err(format!("{}: --fault list runs nothing", stated::long(option)))
                 });
             }
-            Some(Asked::One(fault)) => faults::check(fault, platform, options.lacks_base_imu())?,
+            Some(FaultChoice::One(fault)) => {
+                faults::check(fault, platform, options.lacks_base_imu())?;
+            }
             None => {}
         }
-        options.check(given)?;
+        options.check(stated)?;
         let Common { record, report, .. } = options.common();
         let record = files::written("--record", "the recording", record.as_ref());
         let report = files::written("--report", "the page", report.as_ref());
@@ -144,8 +143,8 @@ pub fn run(options: &RunOptions, as_json: bool) -> Result<Answer, String> {
     let (platform, options) = options.platform.of();
     let Common { seed, fault, report, .. } = options.common();
     let fault = match fault {
-        Some(Asked::List) => return faults::list(platform, as_json),
-        Some(Asked::One(fault)) => Some(*fault),
+        Some(FaultChoice::List) => return faults::list(platform, as_json),
+        Some(FaultChoice::One(fault)) => Some(*fault),
         None => None,
     };
     options.common().open()?;

@@ -10,7 +10,7 @@ use firmware::simulated::scenario::{GyroClass, RATES, Scenario};
 use host::instrument::recorder::{self, Carrier};
 use host::unwritten;
 
-use crate::command::faults::{self, Asked};
+use crate::command::faults::{self, FaultChoice};
 use crate::command::seed;
 
 /// What every platform takes.
@@ -21,7 +21,7 @@ pub struct Common {
     pub seed: u64,
     /// What goes wrong; `list` names the faults of the platform.
     #[arg(long, value_name = "NAME", value_parser = faults::parse)]
-    pub fault: Option<Asked>,
+    pub fault: Option<FaultChoice>,
     /// Writes the samples that the session got as a recording for `replay`.
     #[arg(long, value_name = "FILE.csv")]
     pub record: Option<PathBuf>,

@@ -4,12 +4,11 @@ use clap::Args;
 use firmware::event::Event;
 use firmware::simulated::fault::Fault;
 use firmware::simulated::spin::{SAMPLE_RATE, SpinScenario};
-use host::instrument::kept::Kept;
 use host::instrument::spinning::{SpinRun, follow_spin};
+use host::methods::asked::REQUIRED_SIGMA;
 use host::methods::spin::{Known, Replay, follow};
 use host::outcome::run::RunDetails;
-use host::recording::Truth;
-use orientation::units::DEGREE;
+use host::recording::{GIVEN, Truth};
 
 use super::options::{Common, number};
 use super::{Ran, Simulated, Terminal};
@@ -37,11 +36,6 @@ fn turns(text: &str) -> Result<f64, String> {
     number(text, 20.0, 105.0, "a number of turns a second")
 }
 
-/// What a simulated board is given.
-const ASSUMED: &str = "what the board is given about its gyros";
-/// Greatest 1σ of a roll that is one, rad: 10°, as a replay has it.
-const REQUIRED_SIGMA: f64 = 10.0 * DEGREE;
-
 impl Simulated for SpinOptions {
     fn common(&self) -> &Common {
         &self.common
@@ -59,7 +53,7 @@ impl Simulated for SpinOptions {
             Terminal::watching("samples", |watch| follow_spin(&scenario, fault, watch))?;
         let written = self.common.write(&scenario, &flown, &flown.samples);
         let SpinRun { run, samples, rolls_rad, .. } = flown;
-        let assumed = vec![ASSUMED.to_owned()];
+        let assumed = vec![GIVEN.to_owned()];
         let known = Known { setting: scenario.setting(), required_sigma: REQUIRED_SIGMA, assumed };
         let ended = run.ended().map(|reason| Event::RollEnded(reason).to_string());
         let replay = Replay { ended, ..follow(&samples, known) };
@@ -67,7 +61,7 @@ impl Simulated for SpinOptions {
             name: "the simulated flight",
             finished: Box::new(replay),
             truth: Truth { roll_rad: rolls_rad, ..Truth::default() },
-            details: RunDetails::of(&run, &Kept::default(), SAMPLE_RATE, wall),
+            details: RunDetails::of(&run, SAMPLE_RATE, wall),
             body: None,
             written,
         })

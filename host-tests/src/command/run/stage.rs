@@ -5,7 +5,7 @@ use firmware::event::Event;
 use firmware::simulated::fault::Fault;
 use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::{Aim, Scenario};
-use host::instrument::kept::{KeptPlan, KeptRun};
+use host::instrument::kept::KeptPlan;
 use host::instrument::{self, FramesRun, Run};
 use host::outcome::Finished;
 use host::outcome::run::{KeptAzimuth, RunDetails};
@@ -15,8 +15,8 @@ use host::recording::Truth;
 use super::keeping::KeepingOptions;
 use super::options::{Common, Inclination, Place, number, seconds};
 use super::{Ran, Simulated, Terminal};
-use crate::command::faults::Asked;
-use crate::command::given::Given;
+use crate::command::faults::FaultChoice;
+use crate::command::stated::Stated;
 use crate::command::{Half, sigma, whole};
 
 /// What is asked of a stage.
@@ -110,17 +110,17 @@ impl BaseOptions {
         }
     }
 
-    /// The scenario of the base; what is recorded does not go on after its alignment.
+    /// The scenario of the base.
     fn scenario(&self) -> Scenario {
         let usual = self.place.scenario(self.common.seed);
-        // A fault is seen as it ever was, and where nobody knows how long the alignment takes, the base must not drive
-        // off.
+        // A fault shows in the alignment, and one that goes on until an accuracy is reached may last: the base must not
+        // drive off meanwhile.
         let fault = self.common.fault;
-        let is_recorded = self.common.record.is_some();
-        let is_plain = is_recorded || fault.is_some() || self.no_base_imu || self.sigma.is_some();
+        let is_plain = fault.is_some() || self.no_base_imu || self.sigma.is_some();
         let hold = self.keeping.hold(is_plain);
-        let needs_base_imu =
-            self.sway.is_some() || hold.seconds > 0.0 || fault.is_some_and(Asked::is_of_base_imu);
+        let needs_base_imu = self.sway.is_some()
+            || hold.seconds > 0.0
+            || fault.is_some_and(FaultChoice::is_of_base_imu);
         Scenario {
             pitch_deg: self.inclination.pitch,
             roll_deg: self.inclination.roll,
@@ -139,16 +139,16 @@ impl BaseOptions {
     /// What keeping needs, and what it takes the place of.
     fn check(
         &self,
-        given: &Given,
+        stated: &Stated,
         scenario: &Scenario,
         aligning: &[&'static str],
     ) -> Result<(), String> {
-        let asked = given.first(&["realign", "handover"]);
-        let keeps = asked.is_some() || given.has("hold") && scenario.hold.seconds > 0.0;
+        let asked = stated.first(&["realign", "handover"]);
+        let keeps = asked.is_some() || stated.has("hold") && scenario.hold.seconds > 0.0;
         if keeps && self.no_base_imu {
             return Err("--no-base-imu: without coarse sensors nothing is kept".to_owned());
         }
-        self.keeping.check(given, &scenario.hold, &self.common, aligning)
+        self.keeping.check(stated, &scenario.hold, &self.common, aligning)
     }
 }
 
@@ -171,21 +171,21 @@ impl Simulated for StageOptions {
         self.base.no_base_imu
     }
 
-    fn check(&self, given: &Given) -> Result<(), String> {
+    fn check(&self, stated: &Stated) -> Result<(), String> {
         let scenario = self.scenario();
         // A stage keeps its azimuth by the coarse gyros alone.
         let aligning = [&["gyro"][..], &ALIGNING].concat();
-        self.base.check(given, &scenario, &aligning)
+        self.base.check(stated, &scenario, &aligning)
     }
 
     fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
         let scenario = self.scenario();
         let mut wanted = self.base.common.wanted();
-        let (KeptRun { run, kept }, wall) = Terminal::watching("positions", |watch| {
+        let (run, wall) = Terminal::watching("positions", |watch| {
             instrument::align_and_keep(&scenario, &KeptPlan::of(fault), &mut wanted, watch, ())
         })?;
         let written = self.base.common.write(&scenario, &run, wanted.samples());
-        let details = RunDetails::of(&run, &kept, scenario.sample_rate_hz, wall);
+        let details = RunDetails::of(&run, scenario.sample_rate_hz, wall);
         Ok(Ran { written, ..ran("the simulated run", run, details, &scenario) })
     }
 }
@@ -210,8 +210,8 @@ impl Simulated for FramesOptions {
         self.base.no_base_imu
     }
 
-    fn check(&self, given: &Given) -> Result<(), String> {
-        self.base.check(given, &self.scenario().base, &ALIGNING)
+    fn check(&self, stated: &Stated) -> Result<(), String> {
+        self.base.check(stated, &self.scenario().base, &ALIGNING)
     }
 
     fn run(&self, fault: Option<Fault>) -> Result<Ran, String> {
@@ -221,9 +221,9 @@ impl Simulated for FramesOptions {
             instrument::align_frames(&scenario, fault, &mut wanted, watch)
         })?;
         let written = self.base.common.write(&scenario, &run, wanted.samples());
-        let FramesRun { run, axis: [forward, right, down], kept } = run;
+        let FramesRun { run, axis: [forward, right, down] } = run;
         let stored = run.events.iter().any(|(_, event)| matches!(event, Event::Stored(..)));
-        let mut details = RunDetails::of(&run, &kept, scenario.base.sample_rate_hz, wall);
+        let mut details = RunDetails::of(&run, scenario.base.sample_rate_hz, wall);
         details.stored = Some(stored);
         details.truth_off_vertical_deg = Some(degrees(forward.hypot(right).atan2(down)));
         let ran = ran("the simulated run on two frames", run, details, &scenario.base);

@@ -9,17 +9,16 @@ use firmware::simulated::fault::Fault;
 use firmware::simulated::scenario::Scenario;
 use firmware::simulated::turntable::TurntableScenario;
 use firmware::storage::{Remembered, Today};
-use host::instrument::kept::Kept;
 use host::instrument::recorder::{Samples, turning_rows};
 use host::instrument::{Keeping, Run, TurntableRun, align_turning_again, flash_file};
 use host::methods::rotating::Replay;
 use host::outcome::run::RunDetails;
-use host::recording::{Body, Truth};
+use host::recording::{Body, GIVEN, Truth};
 
 use super::options::{Common, Inclination, Place};
-use super::{ASSUMED, Ran, Simulated, Terminal};
+use super::{Ran, Simulated, Terminal};
 use crate::command::files::{self, Written};
-use crate::command::given::Given;
+use crate::command::stated::Stated;
 use crate::command::whole;
 
 /// What is asked of a platform that turns all the time.
@@ -143,7 +142,7 @@ impl Simulated for TurntableOptions {
         files.map(|path| files::written("--flash", "the flash", path)).into()
     }
 
-    fn check(&self, _: &Given) -> Result<(), String> {
+    fn check(&self, _: &Stated) -> Result<(), String> {
         if self.sensor == Some(Sensor::Met) && self.place.gyro.is_some() {
             return Err(
                 "--gyro: a molecular-electronic sensor takes its place; leave out --sensor met"
@@ -162,11 +161,9 @@ impl Simulated for TurntableOptions {
         let recorded = self.common.write(&scenario, &run, &recorder.0);
         let written = self.put_away(keeping).and(recorded);
         let TurntableRun { run, .. } = run;
-        let mut details =
-            RunDetails::of(&run, &Kept::default(), scenario.base.sample_rate_hz, wall);
+        let mut details = RunDetails::of(&run, scenario.base.sample_rate_hz, wall);
         details.recalled = Some(recalled(&run).map(Into::into).collect());
-        let finished =
-            Replay { session: run.replay, zero_s: 0.0, assumed: vec![ASSUMED.to_owned()] };
+        let finished = Replay { session: run.replay, zero_s: 0.0, assumed: vec![GIVEN.to_owned()] };
         Ok(Ran {
             name: "the simulated run",
             finished: Box::new(finished),

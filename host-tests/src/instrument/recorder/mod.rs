@@ -9,13 +9,14 @@ mod stage;
 mod turntable;
 mod vehicle;
 
-use std::fmt::Display;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 use firmware::ports::Recorder;
 use firmware::simulated::scenario::Scenario;
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use orientation::align::setting::Setting;
 use orientation::units::{AngularRate, DEGREE_PER_HOUR, Instant, SpecificForce};
 
@@ -47,30 +48,32 @@ pub trait Carrier {
     fn write(&self, to: &mut impl Write, run: &Self::Run, of: &[Self::Sample]) -> io::Result<()>;
 }
 
-/// Writes the recording of a finished run and its session's samples to a file.
+/// Writes the recording of a finished run and its session's samples to a file; compressed where its name ends in `gz`.
 ///
 /// # Errors
-/// The file cannot be made or written.
+/// The file cannot be made or written, or there is no sample.
 pub fn write<C: Carrier>(
     path: &Path,
     carrier: &C,
     run: &C::Run,
     samples: &[C::Sample],
 ) -> io::Result<()> {
+    if samples.is_empty() {
+        return Err(io::Error::other("the run ended before its session got a sample"));
+    }
     let mut to = BufWriter::new(File::create(path)?);
-    carrier.write(&mut to, run, samples)?;
+    if path.extension().is_some_and(|extension| extension == "gz") {
+        let mut packed = GzEncoder::new(to, Compression::default());
+        carrier.write(&mut packed, run, samples)?;
+        to = packed.finish()?;
+    } else {
+        carrier.write(&mut to, run, samples)?;
+    }
     to.flush()
 }
 
-/// Writes what a board was given: what keys of their own say of place and instrument, then all that its session was
-/// given.
-fn header(
-    to: &mut impl Write,
-    kind: Kind,
-    base: &Scenario,
-    setting: &Setting,
-    given: &impl Display,
-) -> io::Result<()> {
+/// Writes what a board was given of place and instrument, as far as keys of their own say it.
+fn header(to: &mut impl Write, kind: Kind, base: &Scenario, setting: &Setting) -> io::Result<()> {
     let [along, across] = setting.g_sensitivity.map(|part| part / DEGREE_PER_HOUR);
     let kappa_sigma = setting.g_sensitivity_sigma / DEGREE_PER_HOUR;
     writeln!(to, "# kind: {kind}")?;
@@ -82,8 +85,7 @@ fn header(
     writeln!(to, "# gyro_scale_sigma: {}", setting.scale_sigma)?;
     writeln!(to, "# g_sensitivity_deg_h_g: {along:.9},{across:.9}")?;
     writeln!(to, "# g_sensitivity_sigma_deg_h_g: {kappa_sigma:.9}")?;
-    writeln!(to, "# accelerometer_bias_m_s2: {:.9}", setting.accelerometer_bias_sigma)?;
-    writeln!(to, "{given}")
+    writeln!(to, "# accelerometer_bias_m_s2: {:.9}", setting.accelerometer_bias_sigma)
 }
 
 /// Writes a row, with all digits of its numbers; what is not a number leaves its field empty.

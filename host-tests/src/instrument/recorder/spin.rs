@@ -17,11 +17,12 @@ impl Carrier for SpinScenario {
     type Sample = SpinSample;
 
     fn write(&self, to: &mut impl Write, run: &SpinRun, of: &[SpinSample]) -> io::Result<()> {
-        writeln!(to, "# kind: {}\n# rate_hz: {SAMPLE_RATE}", Kind::Spin)?;
-        writeln!(to, "# gyro_N_deg_sqrt_h: {}", self.gyro_n_deg_sqrt_h)?;
-        writeln!(to, "# gyro_scale_sigma: {}", self.scale_sigma)?;
-        let given = Given::new(self.setting(), (), run.run.ended());
-        writeln!(to, "{given}\n{COLUMNS}")?;
+        let mut head = Vec::new();
+        writeln!(head, "# kind: {}\n# rate_hz: {SAMPLE_RATE}", Kind::Spin)?;
+        writeln!(head, "# gyro_N_deg_sqrt_h: {}", self.gyro_n_deg_sqrt_h)?;
+        writeln!(head, "# gyro_scale_sigma: {}", self.scale_sigma)?;
+        Given::new(self.setting(), (), run.run.ended()).write(to, &head)?;
+        writeln!(to, "{COLUMNS}")?;
         of.iter().zip(&run.rolls_rad).try_for_each(|(sample, roll)| {
             let [x, y, z] = sample.turned.map(mean_rate);
             let force = sample.force.unwrap_or([SpinForce(i32::MAX); 2]);

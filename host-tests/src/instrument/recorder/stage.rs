@@ -53,7 +53,9 @@ fn write(
     let setting = setting.ok_or(io::ErrorKind::InvalidInput)?;
     let setting = Setting { sway: run.replay.setting.sway, ..setting };
     let ended = run.conclusion().and_then(|conclusion| conclusion.verdict.err());
-    header(to, Kind::Stage, scenario, &setting, &Given::new(setting, procedure, ended))?;
+    let mut head = Vec::new();
+    header(&mut head, Kind::Stage, scenario, &setting)?;
+    Given::new(setting, procedure, ended).write(to, &head)?;
     let is_mounted = of.iter().any(|sample| sample.elevation.is_some());
     let (groups, fields) = match (run.base.is_empty(), is_mounted) {
         (true, false) => (1, 8),

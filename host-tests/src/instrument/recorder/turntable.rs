@@ -20,12 +20,13 @@ impl Carrier for TurntableScenario {
         let session = &run.run.replay;
         let (setting, procedure) = (*session.setting(), session.procedure().clone());
         let ended = session.conclusion().and_then(|conclusion| conclusion.verdict.err());
-        let given = Given::new(setting, procedure, ended);
-        header(to, Kind::Rotating, &self.base, &setting.common, &given)?;
+        let mut head = Vec::new();
+        header(&mut head, Kind::Rotating, &self.base, &setting.common)?;
         let sensor = if self.molecular.is_some() { "met" } else { "gyro" };
-        writeln!(to, "# sensor: {sensor}")?;
+        writeln!(head, "# sensor: {sensor}")?;
         let zero_sigma = setting.encoder_zero_sigma.to_degrees();
-        writeln!(to, "# encoder_zero_sigma_deg: {zero_sigma:.9}")?;
+        writeln!(head, "# encoder_zero_sigma_deg: {zero_sigma:.9}")?;
+        Given::new(setting, procedure, ended).write(to, &head)?;
         writeln!(to, "# truth_azimuth_deg: {}\n{COLUMNS}", self.base.azimuth_deg)?;
         let start = of.first().map_or(0.0, |first| first.stage.rad());
         turning_rows(of).iter().try_for_each(|it| {

@@ -27,14 +27,14 @@ impl Carrier for VehicleScenario {
         let (setting, procedure) = (*session.setting(), session.procedure().clone());
         let period_s = procedure.sample_seconds;
         let ended = session.conclusion().and_then(|conclusion| conclusion.verdict.err());
-        let given = Given::new(setting, procedure, ended);
-        header(to, Kind::Imu, &self.base, &setting.common, &given)?;
-        writeln!(to, "# gyro_bias_deg_h: {}", self.base.gyro.bias_sigma_deg_h)?;
-        // The vehicle stands when its alignment ends, and may drive afterwards.
-        let kept = run.kept.with_azimuth().next().map(|(point, _)| point.truth.azimuth_rad);
-        let azimuth = kept.unwrap_or(run.truth.attitude.azimuth_rad).rem_euclid(TAU);
-        writeln!(to, "# truth_azimuth_deg: {}", azimuth.to_degrees())?;
-        stops(to, run)?;
+        let mut head = Vec::new();
+        header(&mut head, Kind::Imu, &self.base, &setting.common)?;
+        writeln!(head, "# gyro_bias_deg_h: {}", self.base.gyro.bias_sigma_deg_h)?;
+        stops(&mut head, run)?;
+        Given::new(setting, procedure, ended).write(to, &head)?;
+        let azimuth = run.azimuth_rad().rem_euclid(TAU).to_degrees();
+        writeln!(to, "# truth_azimuth_deg: {azimuth}")?;
+        writeln!(to, "# truth_start_azimuth_deg: {}", self.base.azimuth_deg)?;
         writeln!(to, "{COLUMNS}")?;
         let mut force = [0.0; 3];
         of.iter().try_for_each(|sample| {

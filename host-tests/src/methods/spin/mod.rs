@@ -74,12 +74,14 @@ impl Replay {
         }
         match end.sigma_rad {
             None => Some(format!("the roll is not known at the end: {}", end.state)),
-            Some(sigma) if sigma > self.required_sigma => Some(format!(
-                "σ of the roll at the end is {:.3}°, more than the {:.3}° asked for: {}",
-                sigma.to_degrees(),
-                self.required_sigma.to_degrees(),
-                end.state
-            )),
+            Some(sigma) if sigma > self.required_sigma && self.stuck_gyro.is_none() => {
+                Some(format!(
+                    "σ of the roll at the end is {:.3}°, more than the {:.3}° asked for: {}",
+                    sigma.to_degrees(),
+                    self.required_sigma.to_degrees(),
+                    end.state
+                ))
+            }
             Some(_) => self.stuck_gyro.clone(),
         }
     }
@@ -91,7 +93,7 @@ impl Replay {
 /// A recording of another kind, or of less than two samples.
 pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, ReplayError> {
     let Body::Spin(rows) = body else { return Err(ReplayError::NoSpin(body.kind())) };
-    let required_sigma = asked.required_sigma.unwrap_or(f64::INFINITY);
+    let required_sigma = asked.required_sigma();
     if let Some(given) = Given::of(header).map_err(ReplayError::Session)? {
         return Ok(again(&given, rows, required_sigma));
     }

@@ -10,7 +10,7 @@ pub mod positions;
 
 use orientation::align::criterion::Criterion;
 use orientation::align::mount::TWO_FRAMES;
-use orientation::align::setting::Setting;
+use orientation::align::setting::{Half, Setting};
 use orientation::planner::order::Order;
 use orientation::session::procedure::{Procedure, STILL};
 use orientation::session::schedule::{Position, Schedule};
@@ -29,48 +29,28 @@ use crate::recording::period::period_s;
 use crate::recording::{Body, DwellRow, GIVEN, Given, Header, Kind, StageRow};
 use crate::setting::Described;
 
-/// By which of its names an alignment in positions is called; the fit is the same.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
-    /// Stepwise gyrocompassing.
-    Stepwise,
-    /// Autocompensated positions, in passes.
-    Positions,
-}
+/// Name on the command line of an alignment in positions.
+pub const STEPWISE: &str = "stepwise";
+/// Name on the command line of one that goes through them in passes; the fit is the same.
+pub const POSITIONS: &str = "positions";
 
-impl Method {
-    /// The method of a session that ran by itself: a planned schedule goes through positions.
-    #[must_use]
-    pub fn of(session: &Session) -> Self {
-        match session.procedure().schedule {
-            Schedule::Planned(_) => Self::Positions,
-            Schedule::Listed(_) | Schedule::TowardMaximum { .. } => Self::Stepwise,
-        }
-    }
-
-    /// That of a name on the command line.
-    fn named(name: Option<&str>) -> Self {
-        if name == Some(Self::Positions.name()) { Self::Positions } else { Self::Stepwise }
-    }
-
-    /// Its name on the command line.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Stepwise => "stepwise",
-            Self::Positions => "positions",
-        }
+/// The name of a session that ran by itself: a planned schedule goes through positions in passes.
+#[must_use]
+pub fn name_of(session: &Session) -> &'static str {
+    match session.procedure().schedule {
+        Schedule::Planned(_) => POSITIONS,
+        Schedule::Listed(_) | Schedule::TowardMaximum { .. } => STEPWISE,
     }
 }
 
 /// What an answer rests on where the half of the circle was stated.
-pub const HALF: &str = "the half of the circle as stated: two positions give its mirror image else";
+const HALF: &str = "the half of the circle as stated: two positions give its mirror image else";
 
 /// A finished replay.
 #[derive(Clone, Debug)]
 pub struct Replay {
-    /// The method.
-    pub method: Method,
+    /// Name of the method.
+    pub method: &'static str,
     /// The session, with its conclusion.
     pub session: Session,
     /// The setting it ran in.
@@ -112,15 +92,15 @@ pub fn replay(
     }
     let Described { setting, mut assumed } = asked.describe(header, body)?;
     assumed.extend(asked.half.map(|_| HALF.to_owned()));
+    let criterion = asked.criterion.unwrap_or_default();
     let session = match stops {
-        Stops::Samples(rows) => stage(header, rows, setting, asked.criterion, progress),
-        Stops::Averages(rows) => dwells(rows, setting, asked.criterion, progress),
+        Stops::Samples(rows) => stage(header, rows, setting, criterion, progress),
+        Stops::Averages(rows) => dwells(rows, setting, criterion, progress),
     }?;
     late::check_stage(&session).map_err(ReplayError::Late)?;
     assumed.extend(assumptions::of_stage(&session));
     assumed.extend(late::assumption(&session).filter(|_| body.kind() == Kind::Stage));
-    let method = Method::named(asked.method);
-    Ok(Replay { method, session, setting, assumed })
+    Ok(Replay { method: asked.method.unwrap_or(STEPWISE), session, setting, assumed })
 }
 
 /// Replays a run by giving its session what the board's was given. Elevations show a mount of two frames.
@@ -132,7 +112,7 @@ fn again(
 ) -> Result<Replay, ReplayError> {
     let Given { mut setting, mut procedure, ended } = given;
     asked.change(&mut setting);
-    procedure.criterion = asked.criterion;
+    procedure.criterion = asked.criterion.unwrap_or(procedure.criterion);
     let is_mounted = rows.iter().any(|row| row.elevation_rad.is_some());
     if is_mounted {
         setting.mount = TWO_FRAMES;
@@ -143,8 +123,14 @@ fn again(
     let mut session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
     let end = ended.map_or(Event::End, Event::Failed);
     drive(&mut session, rows.iter().map(|row| sample(row, 0.0)), end, progress);
-    let method = if is_mounted { Method::Positions } else { Method::of(&session) };
-    Ok(Replay { method, setting: *session.setting(), session, assumed: vec![GIVEN.to_owned()] })
+    let method = if is_mounted { POSITIONS } else { name_of(&session) };
+    let assumed = given_with(session.setting().half);
+    Ok(Replay { method, setting: *session.setting(), session, assumed })
+}
+
+/// What an azimuth rests on where the board was given what it needs, and this half of the circle.
+pub(crate) fn given_with(half: Option<Half>) -> Vec<String> {
+    [GIVEN].into_iter().chain(half.map(|_| HALF)).map(str::to_owned).collect()
 }
 
 /// The rows of a recording whose stage stops.

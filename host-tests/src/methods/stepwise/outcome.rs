@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::cause;
 use crate::methods::asked::Asked;
 use crate::methods::stepwise::positions::{Autocompensation, autocompensation};
-use crate::methods::stepwise::{Method, Replay};
+use crate::methods::stepwise::{POSITIONS, Replay};
 use crate::outcome::{Excluded, Finished, FitDetails, Outcome};
 use crate::output::{columns, degrees, degrees_per_hour};
 use crate::recording::{Body, Header, Truth};
@@ -28,7 +28,7 @@ pub struct StageDetails {
     pub gyro_noise: &'static str,
     /// Chi-square of the residuals.
     pub chi_square: Option<f64>,
-    /// Its degrees of freedom.
+    /// Degrees of freedom of chi-square.
     pub degrees_of_freedom: Option<usize>,
     /// The positions and what plain least squares makes of them; of method `positions`.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -44,7 +44,7 @@ pub struct DwellDetails {
     pub stage_deg: f64,
     /// When the averaged time began, s.
     pub from_s: f64,
-    /// Its length, s.
+    /// Length of the dwell, s.
     pub seconds: f64,
     /// Mean rate about the sensitive axis, °/h.
     pub rate_deg_h: f64,
@@ -118,7 +118,7 @@ impl Replay {
             gyro_noise,
             chi_square: fit.map(|fit| fit.chi_square),
             degrees_of_freedom: fit.map(|fit| fit.degrees),
-            autocompensation: (self.method == Method::Positions)
+            autocompensation: (self.method == POSITIONS)
                 .then(|| autocompensation(&self.session, conclusion)),
             dwells: DwellDetails::all(&self.session, conclusion),
         }
@@ -133,7 +133,7 @@ fn earth_rate(fit: &Fit) -> &'static str {
 impl Finished for Replay {
     fn outcome(&self, truth: &Truth) -> Outcome {
         let Some(conclusion) = self.session.conclusion() else {
-            return Outcome::unfinished(self.method.name());
+            return Outcome::unfinished(self.method);
         };
         let fit = conclusion.fit.as_ref();
         let seen = fit.filter(|fit| !fit.model.is_single_axis);
@@ -154,7 +154,7 @@ impl Finished for Replay {
                 ..FitDetails::of(fit.map(|fit| &fit.budget), kept.len())
             }),
             assumed: self.assumed.clone(),
-            ..Outcome::new(self.method.name(), self.details(conclusion))
+            ..Outcome::new(self.method, self.details(conclusion))
         }
         .judged(&conclusion.verdict, truth.azimuth_deg)
     }

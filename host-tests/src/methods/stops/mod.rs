@@ -55,7 +55,7 @@ impl Method {
         [Self::Siap, Self::Static].into_iter().find(|method| method.name() == name)
     }
 
-    /// Its name on the command line.
+    /// Name of the method on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -94,10 +94,11 @@ impl Replay {
 /// What keeps the session from beginning, or makes it refuse: displacements in kilometres. Another refusal is
 /// not an error but the session's conclusion.
 pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, ReplayError> {
+    let rows = samples::rows(body).ok_or_else(|| missing(body))?;
     if asked.method != Some(Method::Static.name())
         && let Some(given) = Given::of(header).map_err(ReplayError::Session)?
     {
-        return again(given, header, body, asked);
+        return again(given, header, &rows, asked);
     }
     let replay = follow(header, body, asked)?;
     check_kilometres(header, body, asked, &replay)?;
@@ -108,17 +109,16 @@ pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, Rep
 fn again(
     given: Given<Setting, Procedure>,
     header: &Header,
-    body: &Body,
+    rows: &[ImuRow],
     asked: &Asked,
 ) -> Result<Replay, ReplayError> {
     let Given { mut setting, mut procedure, ended } = given;
-    let (common, rows) = (&mut setting.common, samples::rows(body).ok_or_else(|| missing(body))?);
-    asked.change(common);
+    asked.change(&mut setting.common);
     procedure.displacements = displacements(header, asked)?;
     let period_s = procedure.sample_seconds;
     let session = Session::new(setting, procedure).map_err(ReplayError::Procedure)?;
     let mut watched = Watched::new(session);
-    samples::given(&rows, period_s).for_each(|sample| watched.push(&sample));
+    samples::given(rows, period_s).for_each(|sample| watched.push(&sample));
     let Watched { mut session, criteria } = watched;
     session.handle(ended.map_or(Event::End, Event::Failed));
     let assumed = vec![GIVEN.to_owned()];
@@ -287,18 +287,12 @@ fn astray(rate_hz: Option<f64>, period_s: f64) -> f64 {
     rate_hz.map_or(0.0, |rate| (rate * period_s - 1.0).abs())
 }
 
-/// How far a stated rate may be from that of the times: no crystal is worse, and within it the difference is a
-/// scale error of every rotation.
-const RATE_TOLERANCE: f64 = 0.01;
-
 /// Refuses a stated rate that the times contradict: one of both is wrong, and every rotation with it.
 fn check_rate(rate_hz: Option<f64>, rows: &[ImuRow]) -> Result<(), ReplayError> {
-    let found = Steps::of(rows, |row| row.time_s).map(|steps| 1.0 / steps.mean_s());
-    let (Some(stated_hz), Some(found_hz)) = (rate_hz, found) else { return Ok(()) };
-    if (stated_hz / found_hz - 1.0).abs() <= RATE_TOLERANCE {
-        return Ok(());
-    }
-    Err(ReplayError::Rate { stated_hz, found_hz })
+    let steps = Steps::of(rows, |row| row.time_s);
+    let (Some(stated_hz), Some(steps)) = (rate_hz, steps) else { return Ok(()) };
+    let contradiction = |found_hz| Err(ReplayError::Rate { stated_hz, found_hz });
+    steps.contradicted(stated_hz).map_or(Ok(()), contradiction)
 }
 
 /// Part by which the rate at rest may miss the Earth's in a unit that is wrong: biases.

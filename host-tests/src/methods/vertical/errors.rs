@@ -38,7 +38,7 @@ pub struct Errors {
     /// Per cent of both tilts within 1, 2 and 3 σ.
     pub coverage_percent: [f64; 3],
     /// Number of moments.
-    pub samples: usize,
+    pub compared: usize,
 }
 
 impl Errors {
@@ -59,7 +59,7 @@ impl Errors {
             inclination_rmse_deg: rms(&column(|off| off.inclination_deg)),
             heading_rmse_deg: rms(&column(|off| off.heading_deg)),
             coverage_percent: coverage(&tilts, &sigmas),
-            samples: off.len(),
+            compared: off.len(),
             off,
         })
     }

@@ -37,7 +37,7 @@ pub struct Moment {
     pub level_sigma: f64,
     /// Biases of the gyros, rad/s.
     pub biases: [f64; 3],
-    /// Their 1σ, rad/s.
+    /// 1σ of the biases, rad/s.
     pub bias_sigmas: [f64; 3],
 }
 
@@ -85,7 +85,7 @@ pub fn replay(header: &Header, body: &Body, asked: &Asked) -> Result<Replay, Rep
         keeper.push(&sample);
         watched.push(row.time_s, &keeper.report());
     }
-    Ok(watched.ended(assumed, asked.required_sigma))
+    Ok(watched.ended(assumed, asked.required_sigma()))
 }
 
 /// The user's latitude, the header's, or the one that is assumed.
@@ -191,7 +191,7 @@ impl Watched {
         }
     }
 
-    fn ended(self, assumed: Vec<String>, required_sigma: Option<f64>) -> Replay {
+    fn ended(self, assumed: Vec<String>, required_sigma: f64) -> Replay {
         let Self { moments, last, states, turned, .. } = self;
         let refusal = refusal(&last, required_sigma);
         let seconds = states.iter().map(|met| met.seconds).sum();
@@ -200,12 +200,12 @@ impl Watched {
 }
 
 /// Why the last report is no result.
-fn refusal(last: &Report, required_sigma: Option<f64>) -> Option<String> {
-    let sigma = degrees(last.level_sigma);
-    match (last.state.trust, required_sigma.map(degrees)) {
-        (Trust::Starting, _) => Some("no level was found".to_owned()),
-        (Trust::RotationLost, _) => Some(format!("at the end, {}", last.state)),
-        (_, Some(most)) if sigma > most || sigma.is_nan() => {
+fn refusal(last: &Report, required_sigma: f64) -> Option<String> {
+    let (sigma, most) = (degrees(last.level_sigma), degrees(required_sigma));
+    match last.state.trust {
+        Trust::Starting => Some("no level was found".to_owned()),
+        Trust::RotationLost => Some(format!("at the end, {}", last.state)),
+        _ if sigma > most || sigma.is_nan() => {
             Some(format!("pitch and roll are good to {sigma:.2}° only, {most:.2}° is wanted"))
         }
         _ => None,

@@ -23,7 +23,7 @@ pub struct VerticalDetails {
     pub states: Vec<Met>,
     /// Biases of the gyros forward, right, down, °/h.
     pub bias_dph: [f64; 3],
-    /// Their 1σ, °/h.
+    /// 1σ of the biases, °/h.
     pub bias_sigma_dph: [f64; 3],
     /// Whether a bias is beyond five of the 1σ stated or assumed for it, which is not believed any more then.
     pub bias_beyond_stated: bool,
@@ -45,7 +45,7 @@ impl Finished for Replay {
             errors: Errors::of(&self.moments, &truth.attitude),
         };
         Outcome {
-            sigma_deg: Some(degrees(last.level_sigma)),
+            sigma_deg: is_found.then(|| degrees(last.level_sigma)),
             pitch_deg: is_found.then(|| degrees(last.pitch)),
             roll_deg: is_found.then(|| degrees(last.roll)),
             seconds: self.seconds,
@@ -109,9 +109,9 @@ fn lines(outcome: &Outcome, details: &VerticalDetails) -> Lines {
 }
 
 fn of_errors(errors: &Errors) -> Lines {
-    let Errors { inclination_rmse_deg, heading_rmse_deg, coverage_percent, samples, .. } = errors;
+    let Errors { inclination_rmse_deg, heading_rmse_deg, coverage_percent, compared, .. } = errors;
     let [one, two, three] = coverage_percent;
-    let mut lines = Lines::new(&format!("Against the truth, in {samples} samples"));
+    let mut lines = Lines::new(&format!("Against the truth, in {compared} samples"));
     lines.add("inclination", format!("{inclination_rmse_deg:.4}° RMS"));
     lines.add("heading", format!("{heading_rmse_deg:.4}° RMS after one constant offset"));
     lines.add("within 1, 2, 3 σ", format!("{one:.1}, {two:.1}, {three:.1} % of the tilts"));

@@ -110,7 +110,7 @@ proptest! {
     }
 
     #[test]
-    fn an_outlook_in_single_precision_is_right_to_a_thousandth(
+    fn a_prediction_in_single_precision_is_right_to_a_thousandth(
         n in 1e-4..0.2_f64, b in 0.0..10.0_f64, k in 0.0..10.0_f64, r in 0.0..10.0_f64,
         order in 0..Order::COMPARED.len(), passes in 1_usize..6, dwell in 1.0..60.0_f64,
     ) {

@@ -145,7 +145,7 @@ fn signs_axes_and_biases_of_accelerometers_are_never_silently_wrong() {
             assert_never_silently_wrong("swapped", day, |sample| {
                 sample.force_m_s2.swap(axis, next);
             });
-            assert_never_silently_wrong("5 mg that nobody stated", day, |sample| {
+            assert_never_silently_wrong("5 mg that are not stated", day, |sample| {
                 sample.force_m_s2[axis] += 0.05;
             });
         }

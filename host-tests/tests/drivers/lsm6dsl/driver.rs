@@ -1,4 +1,4 @@
-//! The driver on the simulated chip: identity, resets, nobody there, stuck lines, saturation, recovery.
+//! The driver on the simulated chip: identity, resets, no chip there, stuck lines, saturation, recovery.
 
 use drivers::fault::Fault;
 use drivers::lsm6dsl::registers::{ADDRESS_HIGH, ADDRESS_LOW, ForceRange, OutputRate, RateRange};
@@ -81,7 +81,7 @@ fn another_chip_or_none_is_refused() {
     let rig = level();
     run(async {
         let mut absent = Lsm6dsl::new(port(&rig), Delay, ADDRESS_HIGH, USUAL);
-        assert_eq!(absent.start().await, Err(Fault::Bus), "nobody acknowledges");
+        assert_eq!(absent.start().await, Err(Fault::Bus), "no chip acknowledges");
         rig.borrow_mut().chip.registers[0x0F] ^= 1;
         let other = imu(&rig, USUAL).start().await;
         assert_eq!(other, Err(Fault::Identity { found: 0x6B }));

@@ -39,9 +39,9 @@ fn bus_error(select: Select, when: When) -> Injection {
 
 /// No error is greater than is said, and the level is found again at the end.
 fn check(found: &FramesRun) {
-    let [worst, within] = sigmas(&found.kept);
+    let [worst, within] = sigmas(&found.run.kept);
     assert!(worst < 4.5 && within > 0.98, "{worst} σ, {within}: {:#?}", reported(&found.run));
-    let last = found.kept.last().expect("it was kept");
+    let last = found.run.kept.last().expect("it was kept");
     let [pitch, roll] = last.level_error().map(f64::to_degrees);
     // Where it stands gravity shows the level; on the road coarse gyros have it within what they say.
     let bound =
@@ -113,7 +113,7 @@ fn where_the_precise_gyro_is_lost_the_coarse_one_goes_on() {
         "{:#?}",
         reported(&found.run)
     );
-    assert!(found.kept.last().is_some_and(|point| point.report.time.seconds() > 400.0));
+    assert!(found.run.kept.last().is_some_and(|point| point.report.time.seconds() > 400.0));
     check(&found);
 }
 
@@ -137,7 +137,7 @@ fn a_free_fall_is_reported_and_over_at_once() {
     let events = vec![Event::Fall { at_s, seconds: 0.6 }];
     let found = keep(&scenario, &KeptPlan { events, ..KeptPlan::of(None) });
     assert!(has(&found, "falling freely"), "{:#?}", reported(&found.run));
-    let [_, _, level] = at(&found.kept, at_s + 20.0);
+    let [_, _, level] = at(&found.run.kept, at_s + 20.0);
     assert!(level.is_some_and(|level| level < 1.5), "{level:?}°");
     check(&found);
 }

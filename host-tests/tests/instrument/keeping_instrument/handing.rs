@@ -87,7 +87,7 @@ fn the_azimuth_goes_on_from_the_sessions_last_sample_without_a_gap() {
         let late = handed.expect("it is handed over") - at;
         assert!(late <= Duration::from_millis(10), "{late:?}");
         // The vehicle stands: what is kept a moment later is what was found.
-        let (point, [error, _]) = found.kept.with_azimuth().next().expect("it is kept");
+        let (point, [error, _]) = found.run.kept.with_azimuth().next().expect("it is kept");
         let truth = point.truth.azimuth_rad.to_degrees();
         let found_error = (azimuth - truth + 180.0).rem_euclid(360.0) - 180.0;
         assert!((error.to_degrees() - found_error).abs() < 0.01, "seed {seed}");

@@ -13,9 +13,9 @@ fn thirty_minutes_of_driving_in_a_vehicle_stay_within_three_sigma() {
     for seed in 1..=2 {
         // Long ways, so that no bend turns it more quickly than its gyros show.
         let found = drive(&vehicle(seed, Hold { drive_s: 240.0, ..Hold::of(1800.0) }));
-        let [worst, within] = sigmas(&found.kept);
+        let [worst, within] = sigmas(&found.run.kept);
         assert!(worst < 4.0 && within > 0.99, "seed {seed}: {worst} σ, {within}");
-        let (last, [error, sigma]) = found.kept.with_azimuth().last().expect("it is kept");
+        let (last, [error, sigma]) = found.run.kept.with_azimuth().last().expect("it is kept");
         assert!(last.report.seconds > 1790.0, "{} s", last.report.seconds);
         // Gyros of 0.001 °/√h and 0.5 °/h, whose biases the alignment and the stops tell.
         assert!(error.abs().to_degrees() < 0.6, "seed {seed}: {}°", error.to_degrees());
@@ -28,12 +28,12 @@ fn thirty_minutes_of_driving_in_a_vehicle_stay_within_three_sigma() {
 #[test]
 fn thirty_minutes_of_driving_on_two_frames_stay_within_three_sigma() {
     let found = keep(&frames(1, Hold::of(1800.0)), &KeptPlan::of(None));
-    let [worst, within] = sigmas(&found.kept);
+    let [worst, within] = sigmas(&found.run.kept);
     assert!(worst < 4.5 && within > 0.99, "{worst} σ, {within}");
-    let (_, [error, _]) = found.kept.with_azimuth().last().expect("it is kept");
+    let (_, [error, _]) = found.run.kept.with_azimuth().last().expect("it is kept");
     assert!(error.abs().to_degrees() < 1.0, "{}°", error.to_degrees());
     // On the way coarse gyros have the level to degrees; where it stands gravity shows it.
-    for point in found.kept.points[60..].iter().filter(|point| point.report.is_at_rest) {
+    for point in found.run.kept.points[60..].iter().filter(|point| point.report.is_at_rest) {
         let [pitch, roll] = point.level_error().map(f64::to_degrees);
         assert!(pitch.abs().max(roll.abs()) < 0.5, "{} s: {pitch}°, {roll}°", point.seconds());
     }
@@ -101,7 +101,7 @@ fn an_azimuth_from_outside_spares_the_alignment() {
     assert!(found.run.conclusion().is_none(), "no session has concluded");
     let handed = when(&found.run, |event| matches!(event, Event::HandedOver(..)));
     assert!(handed.is_some_and(|at| (30.0..32.0).contains(&at)), "{handed:?}");
-    let [worst, _] = sigmas(&found.kept);
+    let [worst, _] = sigmas(&found.run.kept);
     assert!(worst < 3.5, "{worst} σ");
     assert!(reported(&found.run).iter().any(|line| line.contains("the precise gyro shows")));
 }

@@ -18,7 +18,7 @@ fn the_stop_that_ends_a_session_in_a_vehicle_begins_the_next() {
         let outcomes: Vec<Realigned> = found.run.events.iter().filter_map(handed).collect();
         let is_fused = matches!(outcomes[..], [Realigned::Taken, Realigned::Fused { .. }, ..]);
         assert!(is_fused, "seed {seed}: {outcomes:?}");
-        let [worst, _] = sigmas(&found.kept);
+        let [worst, _] = sigmas(&found.run.kept);
         assert!(worst < 4.5, "seed {seed}: {worst} σ");
     }
 }
@@ -32,7 +32,7 @@ fn a_mount_returns_to_gyrocompassing_where_the_vehicle_stands_and_back_to_the_ve
     let fused = fused.unwrap_or_else(|| panic!("it is realigned: {lines:#?}"));
     assert!(lines[..fused].iter().any(|line| line == "the vehicle stands: aligning anew"));
     assert!(lines[fused..].iter().any(|line| line.starts_with("gyro vertical")));
-    let [worst, _] = sigmas(&found.kept);
+    let [worst, _] = sigmas(&found.run.kept);
     assert!(worst < 4.0, "{worst} σ");
 }
 
@@ -44,8 +44,8 @@ fn a_vehicle_that_drives_on_ends_the_new_alignment_and_keeps_the_azimuth() {
     assert!(
         lines.iter().any(|line| line == "no azimuth: the vehicle drove on before it was aligned")
     );
-    assert!(found.kept.last().is_some_and(|point| point.report.azimuth.is_some()));
-    let [worst, _] = sigmas(&found.kept);
+    assert!(found.run.kept.last().is_some_and(|point| point.report.azimuth.is_some()));
+    let [worst, _] = sigmas(&found.run.kept);
     assert!(worst < 4.0, "{worst} σ");
 }
 
@@ -57,5 +57,5 @@ fn an_azimuth_that_disagrees_is_reported_and_never_fused() {
     let line = lines.iter().find(|line| line.contains("disagrees with what was kept"));
     assert!(line.is_some_and(|line| line.ends_with("neither is believed")), "{lines:#?}");
     assert!(lines.iter().any(|line| line.contains("the azimuth is lost")));
-    assert!(found.kept.last().is_some_and(|point| point.report.azimuth.is_none()));
+    assert!(found.run.kept.last().is_some_and(|point| point.report.azimuth.is_none()));
 }

@@ -38,7 +38,7 @@ fn second(
 ) -> VehicleRun {
     // Another seed draws other biases, as a start does.
     let scenario = scenario(2, 20.0, gyro);
-    let truth = before.kept.last().expect("it was kept").truth;
+    let truth = before.run.kept.last().expect("it was kept").truth;
     let stop = Stop {
         seconds: 90.0,
         pitch_deg: truth.pitch_rad.to_degrees() + pitch,
@@ -71,7 +71,8 @@ fn a_restart_without_motion_keeps_the_heading() {
     let before = first(8.0, STEADY, &mut store);
     let after = second(&before, [0.0, 0.0], STEADY, &mut store);
     assert!(is_recalled(&after), "{:#?}", reported(&after.run));
-    let (point, [error, sigma]) = after.kept.with_azimuth().next().expect("it is known at once");
+    let (point, [error, sigma]) =
+        after.run.kept.with_azimuth().next().expect("it is known at once");
     assert!(point.seconds() < 20.0, "after {} s", point.seconds());
     assert!(error.abs() < 3.0 * sigma, "{error} of {sigma} rad");
     assert!(after.run.lines.contains(", recalled"), "{}", after.run.lines);
@@ -88,7 +89,7 @@ fn a_vehicle_that_was_turned_while_it_was_switched_off_is_not_believed() {
             "{:?}",
             refusal(&after)
         );
-        assert_eq!(after.kept.with_azimuth().count(), 0);
+        assert_eq!(after.run.kept.with_azimuth().count(), 0);
     }
 }
 
@@ -98,7 +99,7 @@ fn a_vehicle_that_was_tilted_while_it_was_switched_off_is_not_believed() {
     let before = first(8.0, STEADY, &mut store);
     let after = second(&before, [0.0, 0.3], STEADY, &mut store);
     assert!(matches!(refusal(&after), Some(RecallRefusal::Tilted { .. })), "{:?}", refusal(&after));
-    assert_eq!(after.kept.with_azimuth().count(), 0);
+    assert_eq!(after.run.kept.with_azimuth().count(), 0);
 }
 
 #[test]
@@ -138,7 +139,7 @@ fn a_power_cut_amid_the_writing_leaves_a_heading_that_is_whole_or_none() {
             .ok()
             .flatten()
             .and_then(|bytes: [u8; Remembered::BYTES]| Remembered::from_bytes(&bytes));
-        let truth = before.kept.last().expect("it was kept").report;
+        let truth = before.run.kept.last().expect("it was kept").report;
         if let (Some(kept), Some(azimuth)) = (kept, truth.azimuth) {
             assert!((kept.azimuth - azimuth.angle).abs() < 1e-3, "{words} words");
         }

@@ -56,7 +56,7 @@ fn the_bound_is_the_inverse_of_the_information_of_all_samples() {
             rs += each * since;
             ss += each * since * since;
         }
-        // What nobody knew of the roll at first counts there.
+        // What was unknown of the roll at first counts there.
         let since = TURNED * at as f64;
         let prior = 1.0 / (circle * circle);
         (rr, rs, ss) = (rr + prior, rs + prior * since, ss + prior * since * since);

@@ -8,7 +8,7 @@ use firmware::simulated::base::CoarseClass;
 use firmware::simulated::fault::{ChipFault, Fault};
 use firmware::simulated::mount::FramesScenario;
 use firmware::simulated::scenario::{GyroClass, Scenario};
-use firmware::steady::SwayCompensation;
+use firmware::sway::SwayCompensation;
 use host::instrument::{self, Run};
 use host::output::{azimuth_error, degrees};
 use orientation::device::Device;

@@ -58,7 +58,7 @@ const NAMES: [&str; 13] = [
     "replay FILE --method magic",
     "replay FILE --criterion best",
     "replay FILE --half up",
-    "campaign nobody",
+    "campaign unknown",
     "campaign disturbed --class nothing",
     "fly",
     "run --sead 1",

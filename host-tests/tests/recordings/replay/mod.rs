@@ -161,7 +161,7 @@ fn all_of_the_papers_criteria_answer_within_their_sigma() {
     for criterion in criteria {
         for name in ["stepwise-circle", "stepwise-paper-1", "stepwise-paper-2", "stepwise-paper-3"]
         {
-            let options = Asked { criterion, ..Asked::default() };
+            let options = Asked { criterion: Some(criterion), ..Asked::default() };
             let (error, sigma) = replayed_with(name, &options).error_and_sigma();
             assert!(error.abs() <= 3.5 * sigma, "{name} {criterion:?}: {error} ± {sigma}");
         }
@@ -170,7 +170,7 @@ fn all_of_the_papers_criteria_answer_within_their_sigma() {
 
 #[test]
 fn a_left_out_dwell_makes_the_steps_uneven_for_the_papers_criteria() {
-    let options = Asked { criterion: Criterion::LeastSquares, ..Asked::default() };
+    let options = Asked { criterion: Some(Criterion::LeastSquares), ..Asked::default() };
     let replayed = replayed_with("stepwise-bumped", &options);
     assert_eq!(replayed.conclusion().verdict, Err(Refusal::StepsUneven));
 }
@@ -298,7 +298,7 @@ fn a_thousand_positions_are_one_alignment_and_one_more_is_refused() {
     let azimuth_deg = 213.7;
     let (text, sigma) = dwells(1024, azimuth_deg);
     for criterion in [Criterion::MaximumLikelihood, Criterion::OnTable, Criterion::LeastAbsolute] {
-        let options = Asked { criterion, ..Asked::default() };
+        let options = Asked { criterion: Some(criterion), ..Asked::default() };
         let replay = replayed_dwells(&text, &options).expect("it replays");
         let conclusion = replay.session.conclusion().expect("it has ended");
         let azimuth = conclusion.verdict.expect("there is an azimuth");

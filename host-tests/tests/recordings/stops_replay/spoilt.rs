@@ -15,7 +15,7 @@ fn drive(change: impl FnOnce(&mut Vec<ImuRow>)) -> Recorded {
     recorded
 }
 
-/// The fibre-optic drive with other stops, of which nobody knows the displacement.
+/// The fibre-optic drive with other stops, whose displacement is unknown.
 fn stops(stops: &[[f64; 2]]) -> Recorded {
     let mut recorded = recorded(FOG);
     recorded.header.stops_s = Some(stops.to_vec());

@@ -27,12 +27,12 @@ fn the_object_has_its_keys_and_the_errors_where_there_is_a_truth() {
     for key in ["bias_dph", "bias_sigma_dph", "coverage_percent"] {
         assert_eq!(broad[key].as_array().map(Vec::len), Some(3), "{key}");
     }
-    assert_eq!(broad["samples"], 7198);
+    assert_eq!(broad["compared"], 7198);
     let states = broad["states"].as_array().expect("states were met");
     let met: f64 = states.iter().map(|met| number(met, "seconds")).sum();
     assert!((met - number(&broad, "seconds")).abs() < 1e-6 && (met - 70.0).abs() < 0.1, "{met}");
     let parked = object(&replayed("parked-swaying", &["--json"]));
-    assert!(parked.get("inclination_rmse_deg").is_none() && parked.get("samples").is_none());
+    assert!(parked.get("inclination_rmse_deg").is_none() && parked.get("compared").is_none());
     // The body stands but for its sway of half a degree.
     assert!(number(&parked, "turned_deg").abs() < 1.0, "{parked}");
 }

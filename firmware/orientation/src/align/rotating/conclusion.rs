@@ -45,7 +45,7 @@ const SENSES_TOLERANCE: f64 = 0.01;
 const RATIO_TOLERANCE: f64 = 0.005;
 /// Greatest difference of the accelerometer's two axes, relative to the rotating force: scales,
 /// angles and delays.
-const STRAYING: f64 = 0.2;
+const AXES_TOLERANCE: f64 = 0.2;
 /// Tolerance of the tilt between stretches beyond five σ, g.
 const TILT_TOLERANCE: f64 = 1e-5;
 /// Degrees of freedom at which a limit on an estimated scatter doubles.
@@ -381,10 +381,10 @@ impl Conclusion {
             let sigma = libm::sqrt(density / average.seconds) / gravity;
             // The other axis measures the same force a quarter of a turn later.
             let beside = average.across - Complex::new(0.0, 1.0) * average.force;
-            let strays = beside.size() / gravity;
-            let allowed = different * 2.0 * sigma + STRAYING * average.force.size() / gravity;
-            if average.across != Complex::default() && strays > allowed + TILT_TOLERANCE {
-                return Err(Refusal::AccelerometerAstray { scatter: strays * 1e3 });
+            let difference = beside.size() / gravity;
+            let allowed = different * 2.0 * sigma + AXES_TOLERANCE * average.force.size() / gravity;
+            if average.across != Complex::default() && difference > allowed + TILT_TOLERANCE {
+                return Err(Refusal::AccelerometerAstray { scatter: difference * 1e3 });
             }
             let tilt = fit.tilt + tilting.tilt_at(average.middle);
             let apart = average.force.scaled(1.0 / gravity) - tilt;

@@ -23,14 +23,14 @@ const BELIEVED: f64 = 15.1;
 /// over all of them).
 const STEP_BELIEVED: f64 = 10.8;
 /// Gain of chi-square from which a drift is possible (p = 0.2).
-const DOUBTFUL: f64 = 1.64;
+const POSSIBLE: f64 = 1.64;
 /// Gain of chi-square from which a step is possible, beyond that of the choice among its places.
-const STEP_DOUBTFUL: f64 = 3.8;
+const STEP_POSSIBLE: f64 = 3.8;
 /// Prior probability of a changing direction: where the turns indicate one, and where they do not.
 const CHANGING: [f64; 2] = [0.03, 0.0003];
 /// Greatest inflation of the azimuth's variance for a change other than with the sense, in units of
 /// the variance: σ is then five times as great.
-const DOUBT: f64 = 24.0;
+const INFLATION: f64 = 24.0;
 /// Distance in σ within which a drift of the direction agrees with that of the tilt.
 const ALIKE: f64 = 3.0;
 
@@ -65,7 +65,7 @@ impl Directions<'_> {
         let lacks = |change: Option<Found>, places: f64| {
             change.map_or(0.0, |change| lacking(&change, &steady, places))
         };
-        let most = DOUBT * steady.variance;
+        let most = INFLATION * steady.variance;
         let [drift, step] = [lacks(drift, 0.0), lacks(step, record.places())];
         Ok(drift.min(most) + lacks(turn, 0.0) + step.min(most))
     }
@@ -192,8 +192,8 @@ fn stepped(record: &Record, step: Option<Found>) -> Refusal {
 /// step on either side of it. `places` is the gain in chi-square that chance achieves by choosing
 /// among them.
 fn lacking(change: &Found, steady: &Found, places: f64) -> f64 {
-    let doubtful = if places > 0.0 { STEP_DOUBTFUL + places } else { DOUBTFUL };
-    let prior = CHANGING[usize::from(change.gain < doubtful)];
+    let possible = if places > 0.0 { STEP_POSSIBLE + places } else { POSSIBLE };
+    let prior = CHANGING[usize::from(change.gain < possible)];
     let odds = prior * libm::exp(0.5 * (change.gain.min(50.0) - places));
     let late = change.at_end[0] - steady.at_end[0];
     let is_step = matches!(change.shape, Shape::Step(_));

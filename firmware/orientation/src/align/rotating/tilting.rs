@@ -22,7 +22,7 @@ const BELIEVED: f64 = 18.4;
 /// over all of them).
 const STEP_BELIEVED: f64 = 16.0;
 /// Gain of chi-square from which tilting is possible (two parts, p = 0.01).
-const DOUBTFUL: f64 = 9.21;
+const POSSIBLE: f64 = 9.21;
 /// Prior probability of a tilting base: where the forces indicate it, and where they do not.
 const TILTING: [f64; 2] = [0.02, 0.0003];
 /// Standard deviation of the rate of a base that tilts, 1/s: 3 °/h.
@@ -85,7 +85,7 @@ impl Tilting {
         if found.gain > BELIEVED {
             return Self { rate, variance: found.change_variance, ..standing };
         }
-        let prior = TILTING[usize::from(found.gain < DOUBTFUL)];
+        let prior = TILTING[usize::from(found.gain < POSSIBLE)];
         let odds = prior * libm::exp(0.5 * found.gain);
         let possible = 1.0 / (1.0 + found.change_variance / (FASTEST * FASTEST));
         let probability = odds / (1.0 + odds) * possible;

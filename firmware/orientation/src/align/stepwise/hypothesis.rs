@@ -73,10 +73,10 @@ const STEP_BELIEVED: f64 = 13.8;
 pub(super) const OBSERVABLE: f64 = 100.0;
 /// Chi-square of one degree of freedom from which σ covers a hypothesis that is not accepted: noise
 /// exceeds it with a probability of 0.025.
-const DOUBTFUL: f64 = 5.02;
+const COVERED: f64 = 5.02;
 /// Chi-square from which σ covers a hypothesis whose 1σ would put the azimuth wrong: noise exceeds
 /// it with a probability of 0.1.
-const FAR_DOUBTFUL: f64 = 2.71;
+const FAR_COVERED: f64 = 2.71;
 /// Allowance, in σ of an alternative's azimuth, for its being further away than it shows: one of
 /// fifty is.
 pub(super) const MISSED: f64 = 1.8;
@@ -144,8 +144,8 @@ impl Hypothesis {
     /// Gain below which the hypothesis is disregarded in a session without other anomalies; for a
     /// step it is increased by the gain that chance achieves over so many dwells. `is_far` is set
     /// where its 1σ would put the azimuth wrong.
-    fn doubtful(self, dwells: usize, is_far: bool) -> f64 {
-        let one = if is_far { FAR_DOUBTFUL } else { DOUBTFUL };
+    fn least_covered(self, dwells: usize, is_far: bool) -> f64 {
+        let one = if is_far { FAR_COVERED } else { COVERED };
         match self {
             Self::Stepped { .. } => one + 2.0 * libm::log(dwells as f64),
             _ => one,
@@ -273,12 +273,12 @@ impl Problem<'_> {
             let level = one.protection(azimuth, sigma);
             let is_lost = one.is_lost(steady);
             let is_far = one.sigma > WRONG * sigma && !is_lost;
-            let is_doubtful =
-                one.gain() >= one.model.hypothesis.doubtful(self.dwells.len(), is_far);
-            if is_doubtful || !is_lost {
+            let is_covered =
+                one.gain() >= one.model.hypothesis.least_covered(self.dwells.len(), is_far);
+            if is_covered || !is_lost {
                 fit.protection.astray = fit.protection.astray.max(level);
             }
-            if is_doubtful {
+            if is_covered {
                 fit.protection.always = fit.protection.always.max(level);
             }
         }

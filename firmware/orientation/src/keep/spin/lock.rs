@@ -30,8 +30,8 @@ const FOUND: f32 = 5.0;
 const USED: f32 = 3.0;
 /// Significance, in σ, at which a turn's phase is rejected.
 const BOUND: f64 = 4.0;
-/// Retry budget: number of successive rejected turns after which the search begins anew.
-const PATIENCE: u32 = 8;
+/// Number of successive rejected turns after which the search begins anew.
+const REJECTED: u32 = 8;
 /// Standard deviation of the scale error after its estimate has proved wrong, 1σ.
 const WRONG: f64 = 0.1;
 /// Standard deviation of the angle, rad, from which a phase may be off by a turn: it then sets the
@@ -85,7 +85,7 @@ const UPRIGHT: f64 = 0.1;
 struct Seen {
     /// The phase, rad.
     phase: f64,
-    /// Its variance, rad².
+    /// Variance of the phase, rad².
     variance: f64,
     /// Rotation since the middle of these turns, rad.
     half: f64,
@@ -193,7 +193,7 @@ impl Lock {
 
     /// Effective length of a run of samples without valid rotation: the body changes its rate as
     /// fast as it lately did, plus a margin.
-    pub(super) fn strayed(&self, samples: f32) -> f32 {
+    pub(super) fn unknown_length(&self, samples: f32) -> f32 {
         let left = (self.quickening + QUICKENING) * samples * self.period as f32;
         samples * (0.5 * left / CHANGE).min(1.0)
     }
@@ -237,7 +237,7 @@ impl Lock {
         self.angle += angle * (angle * self.scale - 2.0 * self.shared) + self.walk * seconds;
         self.shared -= angle * self.scale;
         self.scale += SCALE_WALK * SCALE_WALK * seconds;
-        self.stray_by_bias(angle, seconds);
+        self.propagate_bias(angle, seconds);
         if self.angle > TURN * TURN {
             self.reset_angle();
         }
@@ -245,7 +245,7 @@ impl Lock {
 
     /// Effect of an unknown bias: on a spinning body it is a scale error that changes with the
     /// rate, on one that does not spin it rotates the angle.
-    fn stray_by_bias(&mut self, angle: f64, seconds: f64) {
+    fn propagate_bias(&mut self, angle: f64, seconds: f64) {
         let square = |part: f64| part * part;
         let slowness = seconds / angle.abs().max(SLOWEST * seconds);
         let before = self.slowness.replace(slowness).unwrap_or(slowness);
@@ -383,7 +383,7 @@ impl Lock {
         self.rejected += 1;
         self.discrepancy = seen.phase as f32;
         let is_locked = self.agreed >= AGREED;
-        if self.rejected >= if is_locked { PATIENCE } else { DISAGREED } {
+        if self.rejected >= if is_locked { REJECTED } else { DISAGREED } {
             self.rejected = 0;
             self.scale = self.first.max(WRONG * WRONG);
             self.reset_angle();

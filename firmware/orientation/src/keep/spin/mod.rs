@@ -18,16 +18,16 @@ mod extrema;
 mod fit;
 mod harmonics;
 mod lock;
-mod pace;
 mod phase_accumulator;
+mod plausibility;
 
 pub use self::extrema::Signal;
 pub use self::phase_accumulator::Roll;
 
 use self::extrema::Extrema;
 use self::lock::Lock;
-use self::pace::Timing;
 use self::phase_accumulator::PhaseAccumulator;
+use self::plausibility::Plausibility;
 use crate::signal::SpinSample;
 use crate::units::{AngleIncrement, Instant};
 use crate::words::Rounded;
@@ -164,7 +164,7 @@ pub struct Spin {
     /// Time of the latest sample.
     latest: Option<Instant>,
     /// Plausibility check of the gyro.
-    pace: Timing,
+    plausibility: Plausibility,
 }
 
 #[expect(
@@ -193,7 +193,7 @@ impl Spin {
             corrector,
             period: (setting.sample_seconds * 1e6) as f32,
             latest: None,
-            pace: Timing::new(setting),
+            plausibility: Plausibility::new(setting),
         }
     }
 
@@ -202,9 +202,9 @@ impl Spin {
     pub fn push(&mut self, sample: &SpinSample) -> Option<Signal> {
         let missing = self.missing(sample.time);
         let [turned, ..] = sample.turned;
-        let before = self.pace.before;
-        let turned = self.pace.take(turned);
-        if missing > 0.0 || self.pace.is_lost() {
+        let before = self.plausibility.before;
+        let turned = self.plausibility.take(turned);
+        if missing > 0.0 || self.plausibility.is_lost() {
             self.bridge(missing, [before, turned]);
         }
         self.phase_accumulator.turn(turned);
@@ -236,10 +236,11 @@ impl Spin {
         match &mut self.corrector {
             Corrector::Extrema(extrema) => extrema.disturb(),
             Corrector::Lock(lock) => {
-                let off = self.pace.off();
+                let off = self.plausibility.off();
                 // A jump may be genuine at once; a saturated or stuck gyro was right before.
-                let strayed = |samples| if off > 0.0 { samples } else { lock.strayed(samples) };
-                let [known, lost] = self.pace.lost().map(strayed);
+                let unknown =
+                    |samples| if off > 0.0 { samples } else { lock.unknown_length(samples) };
+                let [known, lost] = self.plausibility.lost().map(unknown);
                 let change = (now - before).abs() + off;
                 lock.lose(missing, [known, lost + missing], mean, change);
             }
@@ -284,7 +285,7 @@ impl Spin {
     /// Source of the present roll, or fault that prevents it, with its duration.
     #[must_use]
     pub fn state(&self) -> State {
-        match (&self.corrector, self.pace.stuck()) {
+        match (&self.corrector, self.plausibility.stuck()) {
             (Corrector::Extrema(extrema), _) => {
                 let found = Condition::Locked;
                 let condition = if extrema.has_corrected { found } else { Condition::Searching };

@@ -207,10 +207,10 @@ impl Filter {
         self.add_drift(stretch, expected, square);
         // A body that keeps its attitude shows a constant error: that is a tilt, not noise.
         let turned = (square / stretch.seconds * SWING * SWING).min(1.0);
-        let strayed = FORCE_SCALE * FORCE_SCALE * SWING * turned;
+        let scale_noise = FORCE_SCALE * FORCE_SCALE * SWING * turned;
         for place in [VELOCITY, VELOCITY + 1] {
             self.covariance[place][place] +=
-                (FORCE_NOISE * FORCE_NOISE + strayed) * stretch.seconds;
+                (FORCE_NOISE * FORCE_NOISE + scale_noise) * stretch.seconds;
         }
     }
 
@@ -218,14 +218,14 @@ impl Filter {
     /// axes.
     fn add_turn_noise(&mut self, stretch: &Stretch, expected: &Expected) {
         let scale = SWING * self.floor.strain();
-        let strays: [f32; 3] = core::array::from_fn(|axis| {
+        let variances: [f32; 3] = core::array::from_fn(|axis| {
             let swung = scale * expected.scale[axis] * stretch.rate_squares[axis];
             expected.walk[axis] * stretch.seconds + swung
         });
         let [about_north, about_east, _] =
-            stretch.attitude.map(|row| weighed(&row, &strays, stretch));
+            stretch.attitude.map(|row| weighed(&row, &variances, stretch));
         // The scale error of the down gyro over a turn is accounted for in heading hold.
-        let [x, y, _] = strays;
+        let [x, y, _] = variances;
         let own = expected.walk[2] * stretch.seconds;
         let about_down = weighed(&stretch.attitude[2], &[x, y, own], stretch);
         let about_down = if stretch.is_rest { 0.0 } else { about_down + self.slanted(stretch) };
@@ -264,7 +264,7 @@ impl Filter {
         self.floor.watch(stretch, size);
         let tilt = 0.5 * self.level_variance();
         let Verdict { more, is_biased } = self.floor.compare(tilt, &self.motion, stretch.seconds);
-        self.doubt_level(more);
+        self.inflate_level(more);
         if is_biased {
             for place in BIAS..AXES {
                 self.covariance[place][place] *= 1.0 + stretch.seconds / WIDENING;
@@ -372,7 +372,7 @@ impl Filter {
     }
 
     /// Inflates the variance of both tilts, rad².
-    pub fn doubt_level(&mut self, variance: f32) {
+    pub fn inflate_level(&mut self, variance: f32) {
         self.inflate(0, variance);
         self.inflate(1, variance);
     }
@@ -429,10 +429,10 @@ fn lasting(scale: f32) -> f32 {
 }
 
 /// Variance about an axis of the level frame, from variances about the body's axes.
-fn weighed(row: &[f32; 3], strays: &[f32; 3], stretch: &Stretch) -> f32 {
+fn weighed(row: &[f32; 3], variances: &[f32; 3], stretch: &Stretch) -> f32 {
     let part = 1.0 / (stretch.seconds * stretch.seconds);
     let [x, y, z] = row.map(|cosine| cosine * cosine * part);
-    x * strays[0] + y * strays[1] + z * strays[2]
+    x * variances[0] + y * variances[1] + z * variances[2]
 }
 
 /// Subtracts a multiple of another row from a row, four numbers at a time, because a loop costs as

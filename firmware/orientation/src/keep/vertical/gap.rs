@@ -80,7 +80,7 @@ impl Vertical {
 
     /// Inflates attitude variances, rad², and discards the averages in progress.
     fn lose_square(&mut self, variance: f32) {
-        self.filter.doubt_level(variance);
+        self.filter.inflate_level(variance);
         self.filter.inflate(TURN, variance);
         if self.filter.tilt_sigma() > ALL && self.trust != Trust::Starting {
             self.is_lost = true;

@@ -87,12 +87,12 @@ pub(super) struct Findings {
     level: Option<[f32; 2]>,
     /// Whether the biases are to be inflated afterwards: the part of the Earth rate in them changes
     /// as the body turns.
-    is_doubted: bool,
+    is_inflated: bool,
 }
 
 impl Vertical {
     /// Number of tasks for each sample.
-    pub(super) fn pace(period: f32) -> u32 {
+    pub(super) fn tasks_per_sample(period: f32) -> u32 {
         (TASKS * period / STRETCH) as u32 + 1
     }
 
@@ -176,8 +176,8 @@ impl Vertical {
             return Task::Learn(axis + 1);
         }
         self.findings.biases = None;
-        if core::mem::take(&mut self.findings.is_doubted) {
-            self.doubt_biases();
+        if core::mem::take(&mut self.findings.is_inflated) {
+            self.inflate_biases();
         }
         self.after_look()
     }
@@ -296,14 +296,14 @@ impl Vertical {
         self.rested.due = 0.0;
         if was_rest && !self.knows_north {
             match self.findings.biases {
-                Some(_) => self.findings.is_doubted = true,
-                None => self.doubt_biases(),
+                Some(_) => self.findings.is_inflated = true,
+                None => self.inflate_biases(),
             }
         }
     }
 
     /// Inflates the biases by the Earth rate that they may contain.
-    pub(super) fn doubt_biases(&mut self) {
+    pub(super) fn inflate_biases(&mut self) {
         for axis in 0..3 {
             self.filter.inflate(Filter::bias(axis), 2.0 * self.unknown);
         }
@@ -359,7 +359,7 @@ impl Vertical {
     fn lose_level(&mut self, force: &Vector) {
         let [about_north, about_east] = tilt(force);
         let square = about_north * about_north + about_east * about_east;
-        self.filter.doubt_level(square);
+        self.filter.inflate_level(square);
     }
 
     /// Sets the level by this force on it, because the filter's vertical was invalid.

@@ -106,7 +106,7 @@ pub struct Vertical {
     /// Stretch that is being processed, its next task, and the number of tasks for each sample.
     block: Stretch,
     task: Task,
-    pace: u32,
+    tasks_per_sample: u32,
     /// Measurements of a rest for the filter.
     findings: Findings,
     /// Window of rest detection in progress.
@@ -158,7 +158,7 @@ impl Vertical {
             stretch: Stretch::default(),
             block: Stretch::default(),
             task: Task::Nothing,
-            pace: Self::pace(period),
+            tasks_per_sample: Self::tasks_per_sample(period),
             findings: Findings::default(),
             window: Window::default(),
             rest: ZeroVelocityDetector::default(),
@@ -199,7 +199,7 @@ impl Vertical {
             self.tick(sample.time);
         }
         // A sample that updates the attitude does no further task, if there are others.
-        for _ in u32::from(is_due)..self.pace {
+        for _ in u32::from(is_due)..self.tasks_per_sample {
             self.work();
         }
         is_due || is_lost
@@ -361,7 +361,7 @@ impl Vertical {
     pub fn lose_north(&mut self, rate: Vector) {
         self.frame = rate;
         self.knows_north = false;
-        self.doubt_biases();
+        self.inflate_biases();
     }
 
     /// Restarts the motion statistics and the error of the rotation about the vertical.

@@ -29,9 +29,9 @@ const BOUND: f32 = 4.0;
 pub const WINDOW: f32 = 0.5;
 /// Number of quiet windows that make a rest.
 const ENOUGH: u32 = 3;
-/// Retry budget: number of windows that make a rest where a steady acceleration would look the
-/// same: a minute.
-const PATIENCE: u32 = 120;
+/// Greatest number of windows that make a rest, where a steady acceleration would look the same: a
+/// minute.
+const MOST: u32 = 120;
 /// Number of windows after which constant rates are no rotation, but the bias of a gyro that has
 /// never rested: 20 s.
 const EVEN: u32 = 40;
@@ -205,7 +205,7 @@ impl ZeroVelocityDetector {
         if self.is_at_rest || self.force.is_some_and(|rested| is_steady(force, &rested)) {
             return ENOUGH;
         }
-        ((TOO_FAST / (acceleration * WINDOW)) as u32).clamp(ENOUGH, PATIENCE)
+        ((TOO_FAST / (acceleration * WINDOW)) as u32).clamp(ENOUGH, MOST)
     }
 
     /// Begins a motion.

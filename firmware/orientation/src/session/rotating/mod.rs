@@ -64,8 +64,8 @@ pub enum Phase {
 
 /// Time between two commands of a rate-modulated turn, µs.
 const COMMAND_PERIOD: u64 = 20_000;
-/// Retry budget of a stretch: factor on its planned time, and additional time, s.
-const PATIENCE: (f64, f64) = (2.0, 30.0);
+/// Time allowed for a stretch: factor on its planned time, and additional time, s.
+const ALLOWANCE: (f64, f64) = (2.0, 30.0);
 /// Distance of two samples, in sample periods, that counts as a gap.
 const GAP: f64 = 3.5;
 
@@ -399,7 +399,7 @@ impl Session {
             Phase::Settle(..) => self.settle_seconds(),
             Phase::Even(index, _) => {
                 let turned = f64::from(self.procedure.turns_at(index)) * TURN;
-                PATIENCE.0 * turned / self.speed(index) + PATIENCE.1
+                ALLOWANCE.0 * turned / self.speed(index) + ALLOWANCE.1
             }
             // The end of a rate-modulated stretch follows from the speed that it measures.
             Phase::Modulated(_) | Phase::Level | Phase::Recorded | Phase::Done => 0.0,

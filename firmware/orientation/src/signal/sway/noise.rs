@@ -42,8 +42,8 @@ impl SwayNoise {
         if self.angle_variance <= 0.0 {
             return 0.0;
         }
-        let forgotten = -libm::expm1(-seconds / self.correlation);
-        2.0 * self.angle_variance * forgotten / (seconds * seconds)
+        let decorrelated = -libm::expm1(-seconds / self.correlation);
+        2.0 * self.angle_variance * decorrelated / (seconds * seconds)
     }
 
     /// Uncorrelated part of [`Self::mean_variance`], (rad/s)².

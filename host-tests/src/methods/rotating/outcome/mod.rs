@@ -27,13 +27,11 @@ pub struct RotatingDetails {
     pub sensor: &'static str,
     /// Cramér–Rao bound of a sensor whose gain, lag and g-sensitivity are known, °.
     pub plain_limit_deg: Option<f64>,
-    /// Axis misalignment: how far the sensitive axis stands from the platform's plane, up positive, °; null
-    /// where no rate-modulated turn showed it.
-    pub coupling_deg: Option<f64>,
-    /// Its 1σ, °.
-    pub coupling_sigma_deg: Option<f64>,
-    /// By how much the sensor lags behind the encoder where the turn was rate-modulated, s.
-    pub lag_s: Option<f64>,
+    /// Axis misalignment at the first speed; none where no rate-modulated turn showed it.
+    #[serde(flatten)]
+    pub misalignment: Option<MisalignmentDetails>,
+    /// Axis misalignment at each speed, in the order of the speeds.
+    pub axis_misalignments: Vec<SpeedDetails>,
     /// Tilt of the platform's axis, °.
     pub tilt_deg: Option<f64>,
     /// Integrated g-sensitivity over the Earth rate at the slower speed, ρ; of a molecular-electronic sensor.
@@ -46,9 +44,29 @@ pub struct RotatingDetails {
     pub stretches: Vec<StretchDetails>,
     /// Every turn, in the order of its stretch.
     pub turns: Vec<TurnDetails>,
-    /// Axis misalignment and lag at each speed, for the text.
-    #[serde(skip)]
-    misalignments: Vec<String>,
+}
+
+/// How the sensitive axis stands, as rate-modulated turns at a speed showed it.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct MisalignmentDetails {
+    /// How far it stands from the platform's plane, up positive, °.
+    #[serde(rename = "coupling_deg")]
+    pub angle_deg: f64,
+    /// 1σ of that angle, °.
+    #[serde(rename = "coupling_sigma_deg")]
+    pub sigma_deg: f64,
+    /// By how much the sensor lags behind the encoder there, s.
+    pub lag_s: f64,
+}
+
+/// The axis misalignment at a speed.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct SpeedDetails {
+    /// Turns a second.
+    pub speed_hz: f64,
+    /// What it showed.
+    #[serde(flatten)]
+    pub misalignment: MisalignmentDetails,
 }
 
 /// The azimuth after each stage of compensation, °.
@@ -90,7 +108,7 @@ pub struct TurnDetails {
     pub speed_hz: f64,
     /// Its middle since the stretch began, s.
     pub middle_s: f64,
-    /// Its length, s.
+    /// Length of the turn, s.
     pub seconds: f64,
     /// Phasor of the gyro's rate less the stretch's mean, axis misalignment compensated: in step with cos θ
     /// and with sin θ, °/h.
@@ -188,29 +206,38 @@ impl Replay {
     fn details(&self, conclusion: &Conclusion) -> RotatingDetails {
         let fit = conclusion.fit.as_ref();
         let bounded = fit.filter(|_| self.noise_is_known());
-        let misalignment = conclusion.misalignments.first();
+        let axis_misalignments: Vec<SpeedDetails> =
+            conclusion.misalignments.iter().map(Into::into).collect();
         RotatingDetails {
             sensor: if self.session.setting().sensor.is_flat { "gyro" } else { "met" },
             plain_limit_deg: bounded.map(|fit| degrees(fit.plain_limit)),
-            coupling_deg: misalignment.map(|found| degrees(found.angle())),
-            coupling_sigma_deg: misalignment.map(|found| degrees(found.sine_sigma)),
-            lag_s: misalignment.map(AxisMisalignment::lag),
+            misalignment: axis_misalignments.first().map(|speed| speed.misalignment),
+            axis_misalignments,
             tilt_deg: fit.map(|fit| degrees(fit.tilt.size().min(1.0).asin())),
             met_ratio: fit.filter(|_| self.is_molecular()).map(|fit| fit.molecular.size()),
             one_speed_bias_deg: fit.and_then(|fit| self.one_speed(conclusion, fit)).map(degrees),
             stages: fit.map(Into::into),
             stretches: averages(conclusion).map(Into::into).collect(),
             turns: self.turns(conclusion),
-            misalignments: conclusion.misalignments.iter().map(in_words).collect(),
         }
     }
 }
 
-/// An axis misalignment with its lag.
-fn in_words(misalignment: &AxisMisalignment) -> String {
-    let [angle, sigma] = [misalignment.angle(), misalignment.sine_sigma].map(degrees);
-    let (lag, turn) = (1e3 * misalignment.lag(), misalignment.frequency / TAU);
-    format!("{angle:.5}° ± {sigma:.5}°, {lag:.2} ms late, at {turn:.3} Hz")
+impl From<&AxisMisalignment> for SpeedDetails {
+    fn from(found: &AxisMisalignment) -> Self {
+        let [angle_deg, sigma_deg] = [found.angle(), found.sine_sigma].map(degrees);
+        let misalignment = MisalignmentDetails { angle_deg, sigma_deg, lag_s: found.lag() };
+        Self { speed_hz: found.frequency / TAU, misalignment }
+    }
+}
+
+impl SpeedDetails {
+    /// The axis misalignment with its lag, in words.
+    fn words(&self) -> String {
+        let Self { speed_hz, misalignment: of } = self;
+        let (angle, sigma, lag) = (of.angle_deg, of.sigma_deg, 1e3 * of.lag_s);
+        format!("{angle:.5}° ± {sigma:.5}°, {lag:.2} ms late, at {speed_hz:.3} Hz")
+    }
 }
 
 /// The turns of a stretch about their mean; a random walk in rad/√s gives either part of a phasor 1σ of
@@ -312,7 +339,8 @@ fn lines(details: &RotatingDetails) -> Lines {
     }
     let tilt = details.tilt_deg.map(|tilt| format!("{tilt:.4}° of the platform"));
     lines.add_found("tilt", tilt);
-    details.misalignments.iter().for_each(|words| lines.add("axis misalignment", words));
+    let misalignments = details.axis_misalignments.iter();
+    misalignments.for_each(|speed| lines.add("axis misalignment", speed.words()));
     if let Some((ratio, bias)) = details.met_ratio.zip(details.one_speed_bias_deg) {
         let is_one = details.stretches.len() < 3;
         let seen =

@@ -2,6 +2,7 @@
 
 mod figures;
 
+use orientation::keep::spin::State;
 use orientation::units::TURN;
 use serde::Serialize;
 
@@ -21,10 +22,12 @@ pub struct SpinDetails {
     pub roll_rad_end: Option<f64>,
     /// The gyro's scale error, gyro/true − 1.
     pub scale_error: Option<f64>,
-    /// Its 1σ.
+    /// 1σ of the scale error.
     pub scale_sigma: Option<f64>,
     /// What the phase lock is doing at the end.
     pub state: String,
+    /// What it was doing before, in order.
+    pub states: Vec<StateDetails>,
     /// The lift at the end, m/s².
     pub lift: Option<f64>,
     /// RMS error after the first 0.1 s, °, where the recording carries the truth.
@@ -43,10 +46,19 @@ pub struct SpinDetails {
     pub samples: usize,
 }
 
+/// What the phase lock did from a moment on.
+#[derive(Clone, Debug, Serialize)]
+pub struct StateDetails {
+    /// When it began, s.
+    pub from_s: f64,
+    /// What it was doing, in words.
+    pub state: String,
+}
+
 /// A method on the samples.
 #[derive(Clone, Debug, Serialize)]
 pub struct MethodDetails {
-    /// Its name.
+    /// Name of the method in tables.
     pub name: &'static str,
     /// Roll at the last sample, rad.
     pub roll_rad_end: f64,
@@ -74,6 +86,12 @@ impl MethodDetails {
     }
 }
 
+impl From<&(f64, State)> for StateDetails {
+    fn from((from_s, state): &(f64, State)) -> Self {
+        Self { from_s: *from_s, state: state.to_string() }
+    }
+}
+
 impl Finished for Replay {
     fn outcome(&self, truth: &Truth) -> Outcome {
         let (answer, reason) = (self.answer(), self.refusal());
@@ -85,6 +103,7 @@ impl Finished for Replay {
             scale_error: end.scale.map(|[scale, _]| scale),
             scale_sigma: end.scale.map(|[_, sigma]| sigma),
             state: end.state.to_string(),
+            states: answer.states.iter().map(Into::into).collect(),
             lift: end.lift,
             rms_deg: errors.as_ref().and_then(|errors| errors.rms_rad).map(degrees),
             limit_rms_deg: bounds.and_then(|bounds| bound_rms(answer, bounds)).map(degrees),
@@ -97,7 +116,7 @@ impl Finished for Replay {
             sigma_deg: end.sigma_rad.filter(|_| is_ok).map(degrees),
             error_deg: errors.as_ref().and_then(Errors::end_rad).filter(|_| is_ok).map(degrees),
             limit_deg: bounds.and_then(<[f64]>::last).copied().map(degrees),
-            seconds: end.time_s,
+            seconds: self.period_s * answer.rolls_rad.len() as f64,
             assumed: self.assumed.clone(),
             ..Outcome::new("spin", details)
         }
@@ -110,9 +129,9 @@ impl Finished for Replay {
 
     fn parts(&self, outcome: &Outcome) -> Vec<Part> {
         let Some(details) = outcome.details::<SpinDetails>() else { return Vec::new() };
-        let states = Columns::of("States of the phase lock", &self.answer().states)
-            .fixed("from, s", 4, |(from_s, _)| *from_s)
-            .column("state", |(_, state)| state);
+        let states = Columns::of("States of the phase lock", &details.states)
+            .fixed("from, s", 4, |it| it.from_s)
+            .column("state", |it| &it.state);
         vec![lines(outcome, details).into(), methods(details).into(), states.into()]
     }
 

@@ -23,7 +23,7 @@ pub struct StopsDetails {
     /// Azimuth of body x at the beginning, [0, 360) °; only with `ok`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub start_azimuth_deg: Option<f64>,
-    /// Its 1σ, °; only with `ok`.
+    /// 1σ of the azimuth at the beginning, °; only with `ok`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub start_sigma_deg: Option<f64>,
     /// Its error, °, where the truth is known; only with `ok`.
@@ -32,7 +32,7 @@ pub struct StopsDetails {
     /// Biases of the gyros forward, right, down, °/h, where they could be distinguished from the Earth rate.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bias_dph: Option<[f64; 3]>,
-    /// Their 1σ, °/h.
+    /// 1σ of the biases, °/h.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bias_sigma_dph: Option<[f64; 3]>,
     /// What the method of Szymanowski 2003 makes of the first and the last stop.
@@ -45,9 +45,9 @@ pub struct StopsDetails {
 /// finds that at the first stop; what the gyros turned leads to the end.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct PlainDetails {
-    /// At the end, in closed form, [0, 360) °.
+    /// Azimuth at the end, in closed form, [0, 360) °.
     pub azimuth_deg: f64,
-    /// Its 1σ, °.
+    /// 1σ of the azimuth at the end, °.
     pub sigma_deg: f64,
     /// At the first stop, in closed form, °.
     pub start_azimuth_deg: f64,

@@ -5,9 +5,9 @@ use clap::parser::ValueSource;
 
 /// The options that stand on the command line, by the names of their fields.
 #[derive(Default)]
-pub struct Given(Vec<String>);
+pub struct Stated(Vec<String>);
 
-impl Given {
+impl Stated {
     /// Collects the options of a command and of its subcommands.
     pub fn of(matches: &ArgMatches) -> Self {
         // What begins with a capital letter is a group of options.
@@ -15,14 +15,14 @@ impl Given {
             id.as_str().starts_with(char::is_lowercase)
                 && matches.value_source(id.as_str()) == Some(ValueSource::CommandLine)
         };
-        let mut given: Vec<_> = matches.ids().filter(stands).map(ToString::to_string).collect();
-        given.extend(matches.subcommand().into_iter().flat_map(|(_, inner)| Self::of(inner).0));
-        Self(given)
+        let mut stated: Vec<_> = matches.ids().filter(stands).map(ToString::to_string).collect();
+        stated.extend(matches.subcommand().into_iter().flat_map(|(_, inner)| Self::of(inner).0));
+        Self(stated)
     }
 
     /// Whether this one is among them.
     pub fn has(&self, option: &str) -> bool {
-        self.0.iter().any(|given| given == option)
+        self.0.iter().any(|stated| stated == option)
     }
 
     /// The first of these that is among them.
@@ -32,7 +32,7 @@ impl Given {
 
     /// The first that is none of these.
     pub fn beside(&self, options: &[&str]) -> Option<&str> {
-        self.0.iter().map(String::as_str).find(|given| !options.contains(given))
+        self.0.iter().map(String::as_str).find(|stated| !options.contains(stated))
     }
 }
 

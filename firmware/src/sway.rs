@@ -72,7 +72,7 @@ pub trait CompensatesSway {
     fn renew(&mut self) {}
 
     /// The rate along a horizontal axis at this heading, less the sway.
-    fn steadied(&mut self, rate: AngularRate, _heading: Angle) -> AngularRate {
+    fn compensated(&mut self, rate: AngularRate, _heading: Angle) -> AngularRate {
         rate
     }
 }
@@ -282,7 +282,7 @@ impl<B: BaseSensors> CompensatesSway for SwayCompensation<'_, B> {
         self.is_lost = false;
     }
 
-    fn steadied(&mut self, rate: AngularRate, heading: Angle) -> AngularRate {
+    fn compensated(&mut self, rate: AngularRate, heading: Angle) -> AngularRate {
         if rate.is_saturated() {
             return rate;
         }

@@ -12,9 +12,9 @@ const LONGER: u32 = 2;
 const LIVES: u16 = 128;
 /// Greatest surplus that is counted.
 const MOST: u16 = 512;
-/// Retry budget: number of successive jumps after which they are accepted; enough to detect first
+/// Number of successive jumps after which they are accepted; enough to detect first
 /// whether the gyro is stuck at the new value.
-const PATIENCE: u16 = 128;
+const MOST_JUMPS: u16 = 128;
 /// Noise, in steps, from which a live gyro does not repeat itself.
 const LIVELY: f64 = 8.0;
 /// Least jump, rad per sample.
@@ -26,7 +26,7 @@ const JUMP_PART: u32 = 16;
 
 /// State of the plausibility check.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Timing {
+pub(super) struct Plausibility {
     /// Latest increment that was accepted.
     pub(super) before: AngleIncrement,
     /// Latest increment, accepted or not, and its number of repetitions.
@@ -50,12 +50,12 @@ pub(super) struct Timing {
     is_dull: bool,
 }
 
-impl Timing {
+impl Plausibility {
     /// Check before the first sample.
     pub(super) fn new(setting: &Setting) -> Self {
         let noise = setting.angle_random_walk * libm::sqrt(setting.sample_seconds);
         Self {
-            jumped: PATIENCE,
+            jumped: MOST_JUMPS,
             least: (JUMP.max(JUMP_SIGMAS * noise) / AngleIncrement::STEP) as u32,
             is_lively: noise > LIVELY * AngleIncrement::STEP,
             is_dull: true,
@@ -112,7 +112,7 @@ impl Timing {
         let is_jump = off > self.least.max(self.before.0.unsigned_abs() / JUMP_PART);
         self.jumped = self.jumped.saturating_add(u16::from(is_jump));
         let is_stuck = self.is_stuck();
-        if !self.shown.is_saturated() && !is_stuck && (!is_jump || self.jumped > PATIENCE) {
+        if !self.shown.is_saturated() && !is_stuck && (!is_jump || self.jumped > MOST_JUMPS) {
             return self.accept();
         }
         let [_, known] = self.lost;
